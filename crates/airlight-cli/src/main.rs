@@ -1,0 +1,3 @@
+//! The airlight program.
+
+fn main() {}

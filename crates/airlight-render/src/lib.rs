@@ -1,0 +1,1 @@
+//! Cameras, pictures in and out, tone curves.

@@ -1,0 +1,21 @@
+//! What air does to light: the colour of sky and sun, haze over distance, fog.
+//!
+//! # World axes
+//! Right-handed, metres: **x east, y up, z south** (north is -z). Azimuth is measured clockwise from north,
+//! elevation up from the horizon; see [`axes`]. A view direction points away from the eye.
+//!
+//! # Rooms, each importing only from those above it
+//! - [`spectrum`]: wavelength grids, spectra, the solar spectrum, colour.
+//! - [`optics`]: what one particle does to light: Rayleigh, ozone, phase functions.
+//! - [`medium`]: what fills the air and where: density profiles, constituents, [`medium::Atmosphere`], presets.
+//! - [`light`]: what shines: the sun's position, disc and irradiance.
+//! - [`path`]: [`path::PathOptics`] and its law of composition.
+//! - [`sky`]: the solver for a spherical, multiply scattering atmosphere.
+
+pub mod axes;
+pub mod light;
+pub mod medium;
+pub mod optics;
+pub mod path;
+pub mod sky;
+pub mod spectrum;

@@ -1,0 +1,1 @@
+//! What one particle does to light.

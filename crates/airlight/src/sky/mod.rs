@@ -1,0 +1,1 @@
+//! The solver for a spherical, multiply scattering atmosphere.
