@@ -136,7 +136,7 @@ fn ln_lane(x: f32) -> f32 {
     let p = p * m - 1.666_805_8e-1;
     let p = p * m + 2.000_071_5e-1;
     let p = p * m - 2.499_999_4e-1;
-    let p = p * m + 3.333_333_1e-1;
+    let p = p * m + 3.333_333e-1;
     let e = exponent as f32;
     let y = p * m * z + e * -2.121_944_4e-4 - 0.5 * z;
     m + y + e * 0.693_359_4
