@@ -17,5 +17,6 @@ pub mod light;
 pub mod medium;
 pub mod optics;
 pub mod path;
+mod quadrature;
 pub mod sky;
 pub mod spectrum;

@@ -1,1 +1,5 @@
 //! What shines.
+
+pub mod sun;
+
+pub use sun::{LimbDarkening, SunDisc, SunError};

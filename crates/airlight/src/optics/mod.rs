@@ -1,1 +1,8 @@
 //! What one particle does to light.
+
+pub mod phase;
+pub mod rayleigh;
+mod tabulated;
+
+pub use phase::{Depolarization, PhaseError, PhaseFunction};
+pub use tabulated::TabulatedPhase;

@@ -1,0 +1,3 @@
+//! Atmospheres ready to use.
+
+pub mod reference;

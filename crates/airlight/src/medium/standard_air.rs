@@ -1,0 +1,124 @@
+//! Number density of the U.S. Standard Atmosphere, 1976 (NOAA-S/T 76-1562), by the standard's own formulas.
+
+#[cfg(test)]
+use crate::optics::rayleigh::BOLTZMANN_J_PER_K;
+
+/// Effective radius of the Earth for geopotential altitude, m (table 2 of the standard).
+const GEOPOTENTIAL_RADIUS_M: f64 = 6_356_766.0;
+/// Sea-level gravity, m/s^2; molar mass of air, kg/mol; gas constant as the standard has it, J/(mol K).
+const GRAVITY: f64 = 9.806_65;
+const MOLAR_MASS: f64 = 0.028_964_4;
+const GAS_CONSTANT: f64 = 8.314_32;
+
+/// A layer in which temperature is linear in geopotential altitude: base (geopotential m), temperature there (K),
+/// lapse (K/m) and pressure at the base (Pa). Table 4 of the standard; the pressures follow from eqs. 33a and 33b.
+struct Layer {
+    base_m: f64,
+    temperature_k: f64,
+    lapse_k_per_m: f64,
+    pressure_pa: f64,
+}
+
+const LAYERS: [Layer; 7] = [
+    layer(0.0, 288.15, -6.5e-3, 101_325.0),
+    layer(11_000.0, 216.65, 0.0, 22_632.06),
+    layer(20_000.0, 216.65, 1.0e-3, 5_474.889),
+    layer(32_000.0, 228.65, 2.8e-3, 868.018_7),
+    layer(47_000.0, 270.65, 0.0, 110.906_3),
+    layer(51_000.0, 270.65, -2.8e-3, 66.938_87),
+    layer(71_000.0, 214.65, -2.0e-3, 3.956_420),
+];
+
+const fn layer(base_m: f64, temperature_k: f64, lapse_k_per_m: f64, pressure_pa: f64) -> Layer {
+    Layer {
+        base_m,
+        temperature_k,
+        lapse_k_per_m,
+        pressure_pa,
+    }
+}
+
+/// Where the layers end and molecular diffusion takes over, geometric m.
+pub(super) const HOMOPAUSE_M: f64 = 86_000.0;
+/// Above 86 km the density falls as in table VIII of the standard between 86 km (1.447e20 m^-3) and 100 km
+/// (1.189e19 m^-3): scale height 14 km / ln(1.447e20 / 1.189e19).
+const UPPER_SCALE_HEIGHT_M: f64 = 5_602.6;
+
+/// Pressure (Pa) and temperature (K) at a geometric altitude, m, up to 86 km; below sea level the lowest layer goes on.
+pub(super) fn pressure_and_temperature(altitude_m: f64) -> (f64, f64) {
+    // No planet reaches down 30 km; the bound keeps the power law's base positive.
+    let z = altitude_m.clamp(-30_000.0, HOMOPAUSE_M);
+    let geopotential = GEOPOTENTIAL_RADIUS_M * z / (GEOPOTENTIAL_RADIUS_M + z);
+    let index = LAYERS.partition_point(|l| l.base_m <= geopotential).max(1) - 1;
+    let layer = &LAYERS[index];
+    let rise = geopotential - layer.base_m;
+    let temperature = layer.temperature_k + layer.lapse_k_per_m * rise;
+    let hydrostatic = GRAVITY * MOLAR_MASS / GAS_CONSTANT;
+    let pressure = if layer.lapse_k_per_m == 0.0 {
+        layer.pressure_pa * (-hydrostatic * rise / layer.temperature_k).exp()
+    } else {
+        layer.pressure_pa
+            * (layer.temperature_k / temperature).powf(hydrostatic / layer.lapse_k_per_m)
+    };
+    (pressure, temperature)
+}
+
+/// Number density of air relative to sea level at a geometric altitude, m.
+pub(super) fn relative_density(altitude_m: f64) -> f64 {
+    let (pressure, temperature) = pressure_and_temperature(altitude_m);
+    let below = pressure / temperature / (101_325.0 / 288.15);
+    match altitude_m > HOMOPAUSE_M {
+        true => below * (-(altitude_m - HOMOPAUSE_M) / UPPER_SCALE_HEIGHT_M).exp(),
+        false => below,
+    }
+}
+
+/// Geometric altitudes at which the temperature gradient changes, m.
+pub(super) fn breakpoints_m() -> impl Iterator<Item = f64> {
+    LAYERS
+        .iter()
+        .map(|l| GEOPOTENTIAL_RADIUS_M * l.base_m / (GEOPOTENTIAL_RADIUS_M - l.base_m))
+        .chain([HOMOPAUSE_M])
+}
+
+/// Number density of air at sea level in the standard atmosphere, m^-3.
+#[cfg(test)]
+const SEA_LEVEL_DENSITY_PER_M3: f64 = 101_325.0 / (BOLTZMANN_J_PER_K * 288.15);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn densities_are_those_of_the_standards_tables() {
+        // Table I (number density from density, table I: rho / rho0) of the standard.
+        for (km, ratio) in [
+            (-5.0, 1.5760),
+            (5.0, 6.0117e-1),
+            (11.0, 2.9780e-1),
+            (20.0, 7.2580e-2),
+            (32.0, 1.1065e-2),
+            (50.0, 8.3827e-4),
+            (80.0, 1.5067e-5),
+        ] {
+            let got = relative_density(km * 1e3);
+            assert!(
+                (got / ratio - 1.0).abs() < 1e-3,
+                "{km} km: {got} against {ratio}"
+            );
+        }
+        // Table VIII, m^-3.
+        for (km, density) in [(86.0, 1.447e20), (90.0, 7.12e19), (100.0, 1.189e19)] {
+            let got = relative_density(km * 1e3) * SEA_LEVEL_DENSITY_PER_M3;
+            assert!((got / density - 1.0).abs() < 0.01, "{km} km: {got}");
+        }
+    }
+
+    #[test]
+    fn layers_join_without_a_step() {
+        for z in breakpoints_m() {
+            let (below, above) = (relative_density(z - 1e-3), relative_density(z + 1e-3));
+            assert!((below / above - 1.0).abs() < 2e-6, "{z}: {below} {above}");
+        }
+    }
+}

@@ -1,0 +1,200 @@
+//! Phase functions given as tables.
+
+use super::phase::PhaseError;
+use crate::quadrature::gauss_legendre;
+use std::f64::consts::PI;
+
+/// A phase function given at angles from 0 to 180 degrees and at one or more wavelengths.
+///
+/// Between angles `ln p` follows a monotone cubic (Fritsch & Butland, SIAM J. Sci. Stat. Comput. 5, 300, 1984; slope
+/// 0 at both ends, about which every phase function is even), so a peak of many decades stays smooth and nothing overshoots. Between wavelengths `p` is
+/// linear, which keeps its integral 1; beyond the first and last wavelength it is constant. Each wavelength is scaled
+/// at construction so that the integral over the sphere is 1 (to 1e-12).
+#[derive(Clone, Debug, PartialEq)]
+pub struct TabulatedPhase {
+    wavelengths_nm: Vec<f64>,
+    angles_rad: Vec<f64>,
+    /// `ln p` and its slope by angle, wavelength by wavelength.
+    log_values: Vec<f64>,
+    slopes: Vec<f64>,
+}
+
+/// Points of the Gauss-Legendre rule used in each panel.
+const PANEL_POINTS: usize = 12;
+
+impl TabulatedPhase {
+    /// Takes `values[w * angles + a]` at wavelength `w` and angle `a`, in any common unit.
+    ///
+    /// # Errors
+    /// [`PhaseError`] where angles do not rise from 0 to 180, wavelengths do not rise, the number of values is wrong or
+    /// one is not positive.
+    pub fn new(
+        angles_deg: Vec<f64>,
+        wavelengths_nm: Vec<f64>,
+        values: Vec<f64>,
+    ) -> Result<Self, PhaseError> {
+        let last = angles_deg.len().saturating_sub(1);
+        for (index, &value) in angles_deg.iter().enumerate() {
+            let wrong_end = (index == 0 && value != 0.0) || (index == last && value != 180.0);
+            if !value.is_finite() || wrong_end || (index > 0 && value <= angles_deg[index - 1]) {
+                return Err(PhaseError::Angles { index, value });
+            }
+        }
+        for (index, &value) in wavelengths_nm.iter().enumerate() {
+            let low = if index == 0 {
+                0.0
+            } else {
+                wavelengths_nm[index - 1]
+            };
+            if !value.is_finite() || value <= low {
+                return Err(PhaseError::Wavelengths { index, value });
+            }
+        }
+        let (wavelengths, angles) = (wavelengths_nm.len(), angles_deg.len());
+        if values.len() != wavelengths * angles || wavelengths == 0 || angles < 2 {
+            return Err(PhaseError::Length {
+                wavelengths,
+                angles,
+                got: values.len(),
+            });
+        }
+        if let Some(index) = values.iter().position(|v| !(v.is_finite() && *v > 0.0)) {
+            return Err(PhaseError::Value {
+                index,
+                value: values[index],
+            });
+        }
+        let angles_rad: Vec<f64> = angles_deg.iter().map(|a| a.to_radians()).collect();
+        let mut log_values: Vec<f64> = values.iter().map(|v| v.ln()).collect();
+        let mut slopes = Vec::with_capacity(values.len());
+        for row in log_values.chunks(angles) {
+            slopes.extend(monotone_slopes(&angles_rad, row));
+        }
+        let mut table = Self {
+            wavelengths_nm,
+            angles_rad,
+            log_values: log_values.clone(),
+            slopes,
+        };
+        for (w, row) in log_values.chunks_mut(angles).enumerate() {
+            let integral: f64 = table.moments_of_row(w, 1)[0];
+            row.iter_mut().for_each(|v| *v -= integral.ln());
+        }
+        table.log_values = log_values;
+        Ok(table)
+    }
+
+    /// The wavelengths of the table, nm.
+    pub fn wavelengths_nm(&self) -> &[f64] {
+        &self.wavelengths_nm
+    }
+
+    /// The phase function, sr^-1, at the cosine of the scattering angle.
+    pub fn evaluate(&self, cos_angle: f64, wavelength_nm: f64) -> f64 {
+        let mu = cos_angle.clamp(-1.0, 1.0);
+        // Keeps the digits that acos loses near both ends.
+        let angle = ((1.0 - mu) * (1.0 + mu)).sqrt().atan2(mu);
+        let interval = self
+            .angles_rad
+            .partition_point(|&a| a <= angle)
+            .clamp(1, self.angles_rad.len() - 1)
+            - 1;
+        let (row, t) = self.between(wavelength_nm);
+        let near = self.at_row(row, interval, angle);
+        match t {
+            0.0 => near,
+            _ => near * (1.0 - t) + self.at_row(row + 1, interval, angle) * t,
+        }
+    }
+
+    /// Legendre moments, see [`super::PhaseFunction::legendre_moments`].
+    pub fn legendre_moments(&self, count: usize, wavelength_nm: f64) -> Vec<f64> {
+        let (row, t) = self.between(wavelength_nm);
+        let mut moments = self.moments_of_row(row, count);
+        if t > 0.0 {
+            for (moment, other) in moments.iter_mut().zip(self.moments_of_row(row + 1, count)) {
+                *moment = *moment * (1.0 - t) + other * t;
+            }
+        }
+        moments
+    }
+
+    /// The row at or below a wavelength, and how far it is on the way to the next.
+    fn between(&self, wavelength_nm: f64) -> (usize, f64) {
+        let above = self.wavelengths_nm.partition_point(|&w| w <= wavelength_nm);
+        if above == 0 || above == self.wavelengths_nm.len() {
+            return (above.saturating_sub(1), 0.0);
+        }
+        let (low, high) = (self.wavelengths_nm[above - 1], self.wavelengths_nm[above]);
+        (above - 1, (wavelength_nm - low) / (high - low))
+    }
+
+    fn at_row(&self, row: usize, interval: usize, angle: f64) -> f64 {
+        let at = row * self.angles_rad.len() + interval;
+        let width = self.angles_rad[interval + 1] - self.angles_rad[interval];
+        let t = (angle - self.angles_rad[interval]) / width;
+        let (y0, y1) = (self.log_values[at], self.log_values[at + 1]);
+        let (m0, m1) = (self.slopes[at] * width, self.slopes[at + 1] * width);
+        let u = 1.0 - t;
+        (y0 * u * u * (1.0 + 2.0 * t) + m0 * t * u * u + y1 * t * t * (3.0 - 2.0 * t)
+            - m1 * t * t * u)
+            .exp()
+    }
+
+    fn moments_of_row(&self, row: usize, count: usize) -> Vec<f64> {
+        let (nodes, weights) = gauss_legendre(PANEL_POINTS);
+        let mut moments = vec![0.0; count];
+        for interval in 0..self.angles_rad.len() - 1 {
+            let (low, high) = (self.angles_rad[interval], self.angles_rad[interval + 1]);
+            // No panel turns P_l by more than about a quarter, or ln p by more than about 2.
+            let at = row * self.angles_rad.len() + interval;
+            let rise = (self.log_values[at + 1] - self.log_values[at]).abs();
+            let panels = ((high - low) * count as f64 / 1.6)
+                .max(rise / 2.0)
+                .max((high - low) / 0.4)
+                .ceil();
+            let width = (high - low) / panels;
+            for panel in 0..panels as usize {
+                let start = low + width * panel as f64;
+                for (node, weight) in nodes.iter().zip(&weights) {
+                    let angle = start + 0.5 * width * (1.0 + node);
+                    let (sin, mu) = angle.sin_cos();
+                    let p = self.at_row(row, interval, angle) * weight * PI * width * sin;
+                    add_legendre(&mut moments, mu, p);
+                }
+            }
+        }
+        moments
+    }
+}
+
+/// Adds `p * P_l(mu)` to each moment.
+fn add_legendre(moments: &mut [f64], mu: f64, p: f64) {
+    let (mut before, mut now) = (0.0, 1.0);
+    for (l, moment) in moments.iter_mut().enumerate() {
+        *moment += p * now;
+        let x = l as f64;
+        (before, now) = (now, ((2.0 * x + 1.0) * mu * now - x * before) / (x + 1.0));
+    }
+}
+
+/// Slopes of the monotone piecewise cubic through the points: zero at local extremes, else the weighted harmonic mean
+/// of the neighbouring secants (Fritsch & Butland 1984).
+fn monotone_slopes(x: &[f64], y: &[f64]) -> Vec<f64> {
+    let last = x.len() - 1;
+    let secant = |i: usize| (y[i + 1] - y[i]) / (x[i + 1] - x[i]);
+    (0..=last)
+        .map(|i| {
+            if i == 0 || i == last {
+                return 0.0;
+            }
+            let (left, right) = (secant(i - 1), secant(i));
+            if left * right <= 0.0 {
+                return 0.0;
+            }
+            let (h0, h1) = (x[i] - x[i - 1], x[i + 1] - x[i]);
+            let (w0, w1) = (2.0 * h1 + h0, h1 + 2.0 * h0);
+            (w0 + w1) / (w0 / left + w1 / right)
+        })
+        .collect()
+}
