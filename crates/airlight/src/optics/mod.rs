@@ -1,1 +1,3 @@
 //! What one particle does to light.
+
+pub mod ozone;
