@@ -35,7 +35,8 @@ pub(crate) fn gauss_legendre(count: usize) -> (Vec<f64>, Vec<f64>) {
     (nodes, weights)
 }
 
-/// Integral of `f` from `from` to `to`: one Gauss-Legendre rule of `points` in each stretch between `breaks`.
+/// [`integrate_by`] with a rule of `points` made for it.
+#[cfg(test)]
 pub(crate) fn integrate(
     points: usize,
     from: f64,
@@ -43,7 +44,18 @@ pub(crate) fn integrate(
     breaks: &[f64],
     f: impl Fn(f64) -> f64,
 ) -> f64 {
-    let (nodes, weights) = gauss_legendre(points);
+    integrate_by(&gauss_legendre(points), from, to, breaks, f)
+}
+
+/// Integral of `f` from `from` to `to`: one Gauss-Legendre rule in each stretch between `breaks`.
+pub(crate) fn integrate_by(
+    rule: &(Vec<f64>, Vec<f64>),
+    from: f64,
+    to: f64,
+    breaks: &[f64],
+    f: impl Fn(f64) -> f64,
+) -> f64 {
+    let (nodes, weights) = rule;
     let mut edges: Vec<f64> = breaks
         .iter()
         .copied()
@@ -58,7 +70,7 @@ pub(crate) fn integrate(
             let half = 0.5 * (edge[1] - edge[0]);
             let sum: f64 = nodes
                 .iter()
-                .zip(&weights)
+                .zip(weights)
                 .map(|(x, w)| w * f(edge[0] + half * (1.0 + x)))
                 .sum();
             half * sum

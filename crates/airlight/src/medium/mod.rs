@@ -2,6 +2,7 @@
 
 pub mod aerosol;
 mod atmosphere;
+pub mod config;
 mod density;
 pub mod gases;
 mod nearest;

@@ -8,63 +8,70 @@ pub mod reference;
 use super::{Atmosphere, nearest::nearest};
 use crate::spectrum::SpectralCurve;
 
-/// Names and descriptions, in the order to list them in.
-const PRESETS: [(&str, &str, fn() -> Atmosphere); 11] = [
-    (
-        "clear",
-        "Earth on a clear day: aerosol optical depth 0.05 at 550 nm",
-        earth::clear,
-    ),
-    (
-        "average",
-        "Earth on an average day: aerosol optical depth 0.12 at 550 nm",
-        earth::average,
-    ),
-    (
-        "hazy",
-        "Earth on a hazy day: aerosol optical depth 0.35 at 550 nm",
-        earth::hazy,
-    ),
-    (
-        "mars",
-        "Mars on a moderately dusty day: dust optical depth 0.5 at 880 nm",
-        mars::mars,
-    ),
-    (
-        "bruneton",
-        "Earth of Bruneton's precomputed scattering (2017), spectral",
-        published::bruneton,
-    ),
-    (
-        "hillaire",
-        "Earth of Hillaire's production sky (2020), red, green and blue",
-        published::hillaire,
-    ),
-    (
-        "sky-article",
-        "Earth of \"Sky and Atmosphere rendering: A physical approach\", as printed",
-        published::sky_article,
-    ),
-    (
-        "reference-rayleigh",
-        "Reference: air molecules alone over black ground, unit sun",
-        || reference::rayleigh(0.0),
-    ),
-    (
-        "reference-rayleigh-albedo-0.3",
-        "Reference: air molecules alone over ground of albedo 0.3, unit sun",
-        || reference::rayleigh(0.3),
-    ),
-    (
-        "reference-earth-demo",
-        "Reference: Bruneton's Earth at 680, 550 and 440 nm",
-        reference::earth_demo,
-    ),
-    (
-        "reference-csm",
-        "Reference: the comparison of clear-sky models (2017), 40 wavelengths",
-        reference::csm,
-    ),
+/// One line of the list of presets.
+struct Preset {
+    name: &'static str,
+    description: &'static str,
+    build: fn() -> Atmosphere,
+}
+
+/// The presets in the order to list them in.
+const PRESETS: [Preset; 11] = [
+    Preset {
+        name: "clear",
+        description: "Earth on a clear day: aerosol optical depth 0.05 at 550 nm",
+        build: earth::clear,
+    },
+    Preset {
+        name: "average",
+        description: "Earth on an average day: aerosol optical depth 0.12 at 550 nm",
+        build: earth::average,
+    },
+    Preset {
+        name: "hazy",
+        description: "Earth on a hazy day: aerosol optical depth 0.35 at 550 nm",
+        build: earth::hazy,
+    },
+    Preset {
+        name: "mars",
+        description: "Mars on a moderately dusty day: dust optical depth 0.5 at 880 nm",
+        build: mars::mars,
+    },
+    Preset {
+        name: "bruneton",
+        description: "Earth of Bruneton's precomputed scattering (2017), spectral",
+        build: published::bruneton,
+    },
+    Preset {
+        name: "hillaire",
+        description: "Earth of Hillaire's production sky (2020), red, green and blue",
+        build: published::hillaire,
+    },
+    Preset {
+        name: "sky-article",
+        description: "Earth of \"Sky and Atmosphere rendering: A physical approach\", as printed",
+        build: published::sky_article,
+    },
+    Preset {
+        name: "reference-rayleigh",
+        description: "Reference: air molecules alone over black ground, unit sun",
+        build: || reference::rayleigh(0.0),
+    },
+    Preset {
+        name: "reference-rayleigh-albedo-0.3",
+        description: "Reference: air molecules alone over ground of albedo 0.3, unit sun",
+        build: || reference::rayleigh(0.3),
+    },
+    Preset {
+        name: "reference-earth-demo",
+        description: "Reference: Bruneton's Earth at 680, 550 and 440 nm",
+        build: reference::earth_demo,
+    },
+    Preset {
+        name: "reference-csm",
+        description: "Reference: the comparison of clear-sky models (2017), 40 wavelengths",
+        build: reference::csm,
+    },
 ];
 
 /// There is no preset of that name.
@@ -84,7 +91,7 @@ impl UnknownPreset {
     }
 
     fn names(&self) -> String {
-        PRESETS.map(|preset| preset.0).join(", ")
+        PRESETS.map(|preset| preset.name).join(", ")
     }
 }
 
@@ -93,18 +100,20 @@ impl UnknownPreset {
 /// # Errors
 /// [`UnknownPreset`], which lists the names there are and the nearest one.
 pub fn preset(name: &str) -> Result<Atmosphere, UnknownPreset> {
-    match PRESETS.iter().find(|preset| preset.0 == name) {
-        Some((_, _, build)) => Ok(build()),
+    match PRESETS.iter().find(|preset| preset.name == name) {
+        Some(preset) => Ok((preset.build)()),
         None => Err(UnknownPreset {
             name: name.to_owned(),
-            nearest: nearest(name, PRESETS.iter().map(|preset| preset.0)),
+            nearest: nearest(name, PRESETS.iter().map(|preset| preset.name)),
         }),
     }
 }
 
 /// Name and one-line description of each preset.
 pub fn preset_names() -> impl Iterator<Item = (&'static str, &'static str)> {
-    PRESETS.iter().map(|preset| (preset.0, preset.1))
+    PRESETS
+        .iter()
+        .map(|preset| (preset.name, preset.description))
 }
 
 /// A table whose samples are constants of this crate.

@@ -13,7 +13,7 @@ pub const MARS_DISTANCE_AU: f64 = 1.5237;
 /// Scale height of gas and dust, m.
 const SCALE_HEIGHT_M: f64 = 11.1e3;
 /// Mean surface pressure (Pa) and a mean temperature of the lower air (K).
-const PRESSURE_PA: f64 = 610.0;
+pub(in crate::medium) const MARS_PRESSURE_PA: f64 = 610.0;
 const TEMPERATURE_K: f64 = 210.0;
 /// Vertical optical depth of the dust at 880 nm: between the clear season (0.3 to 0.4) and the dusty one (1.25 and
 /// more) seen from the ground (Lemmon et al., Icarus 251, 96, 2015; Chen-Chen et al., Icarus 319, 43, 2019).
@@ -52,7 +52,7 @@ pub fn mars() -> Atmosphere {
         scale_height_m: SCALE_HEIGHT_M,
     };
     let top_m = 120e3;
-    let molecules = 0.972 * number_density_per_m3(PRESSURE_PA, TEMPERATURE_K);
+    let molecules = 0.972 * number_density_per_m3(MARS_PRESSURE_PA, TEMPERATURE_K);
     let gas: Vec<(f64, f64)> = (50..=220)
         .map(|i| 5.0 * f64::from(i))
         .map(|nm| (nm, molecules * carbon_dioxide_cross_section_m2(nm)))
