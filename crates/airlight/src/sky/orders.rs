@@ -1,0 +1,415 @@
+//! Successive orders of scattering in spherical geometry.
+//!
+//! The n-th order of light is what order n - 1 becomes when it is scattered, or reflected by the ground, once more.
+//! Each order is carried from place to place along straight rays from the nodes of the grid in a fixed set of
+//! directions, and gathered there into angular moments, from which the next order's source follows with every
+//! constituent's own phase function. Rays, transmittances and quadrature nodes depend only on the height of the start
+//! and its zenith angle: they are worked out once and serve every sun angle, azimuth and order.
+
+use super::air::Air;
+use super::field::{FieldGrid, Place, RadianceField, scattering_moment};
+use super::harmonics::{self, Harmonics};
+use super::march::Marcher;
+use super::quadrature::GaussRule;
+use super::ray::{Ray, in_shadow};
+use super::shell::PerConstituent;
+use crate::spectrum::Spectrum;
+use pulp::Arch;
+use rayon::prelude::*;
+use std::f64::consts::PI;
+use std::ops::ControlFlow;
+
+/// How finely the orders are solved.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OrderSettings {
+    /// Degree of the angular moments.
+    pub l_max: usize,
+    /// Number of directions in zenith angle: below the horizon, just above it, and higher up.
+    pub zenith_nodes: [usize; 3],
+    /// Number of azimuths between the sun's and the opposite one.
+    pub azimuths: usize,
+    /// Orders are added until the next is below this part of the sum.
+    pub tolerance: f32,
+    /// Orders never exceed this number.
+    pub max_orders: usize,
+}
+
+/// Solves for the moments of all light scattered or reflected at least once, per unit solar irradiance.
+pub fn solve<const N: usize>(
+    air: &Air<N>,
+    grid: FieldGrid,
+    settings: &OrderSettings,
+) -> RadianceField<N> {
+    let transport = Transport::new(air, grid, settings);
+    let l_max = settings.l_max;
+    let mut order = transport.first_order();
+    let mut sum = order.clone();
+    for _ in 2..=settings.max_orders {
+        let field = RadianceField::new(
+            transport.grid.clone(),
+            l_max,
+            order.moments.clone(),
+            &order.ground,
+        );
+        let next = transport.next_order(&field);
+        let growth = sum.add(&next, harmonics::count(l_max));
+        let ratio = next.ratio_to(&order, harmonics::count(l_max));
+        order = next;
+        if growth < settings.tolerance {
+            sum.add_geometric_tail(&order, &ratio, harmonics::count(l_max));
+            break;
+        }
+    }
+    RadianceField::new(transport.grid, l_max, sum.moments, &sum.ground)
+}
+
+/// One order of light, or a sum of orders: moments `[radius][sun][harmonic]` and ground irradiances `[sun]`.
+#[derive(Clone)]
+struct Order<const N: usize> {
+    moments: Vec<Spectrum<N>>,
+    ground: Vec<Spectrum<N>>,
+}
+
+impl<const N: usize> Order<N> {
+    /// Adds another order; returns the largest part that it adds to the intensity anywhere.
+    fn add(&mut self, other: &Self, harmonics: usize) -> f32 {
+        let mut growth = 0.0f32;
+        for (k, (a, b)) in self.moments.iter_mut().zip(&other.moments).enumerate() {
+            *a += *b;
+            if k % harmonics == 0 {
+                growth = growth.max((*b / a.max_scalar(1e-30)).max_element());
+            }
+        }
+        for (a, b) in self.ground.iter_mut().zip(&other.ground) {
+            *a += *b;
+        }
+        growth
+    }
+
+    /// Ratio of this order's intensity to the previous one's, at every point.
+    fn ratio_to(&self, previous: &Self, harmonics: usize) -> Vec<Spectrum<N>> {
+        self.moments
+            .chunks_exact(harmonics)
+            .zip(previous.moments.chunks_exact(harmonics))
+            .map(|(a, b)| a[0] / b[0].max_scalar(1e-34))
+            .collect()
+    }
+
+    /// Adds the orders after `last` as a geometric series: late orders keep their shape and shrink by a constant
+    /// factor.
+    fn add_geometric_tail(&mut self, last: &Self, ratio: &[Spectrum<N>], harmonics: usize) {
+        let factor = |r: Spectrum<N>| r.map(|r| if r < 0.95 { r / (1.0 - r) } else { 19.0 });
+        for ((point, last), &r) in self
+            .moments
+            .chunks_exact_mut(harmonics)
+            .zip(last.moments.chunks_exact(harmonics))
+            .zip(ratio)
+        {
+            for (a, b) in point.iter_mut().zip(last) {
+                *a = a.mul_acc(factor(r), *b);
+            }
+        }
+        // The ground's nodes are the first row of points.
+        for ((a, b), &r) in self.ground.iter_mut().zip(&last.ground).zip(ratio) {
+            *a = a.mul_acc(factor(r), *b);
+        }
+    }
+}
+
+/// A quadrature node on the way of a [`Path`].
+struct PathNode<const N: usize> {
+    t: f64,
+    radius_m: f64,
+    mu: f32,
+    densities: PerConstituent,
+    place: Place,
+    /// Transmittance from the start times the length that the node stands for, m.
+    weight: Spectrum<N>,
+    /// `weight` times the scattering coefficients' l-th phase moments.
+    source_weights: Vec<Spectrum<N>>,
+}
+
+/// The rays that leave one height under one zenith angle.
+struct Path<const N: usize> {
+    mu: f64,
+    /// Weight of this zenith angle in an integral over the cosine.
+    solid_weight: f64,
+    nodes: Vec<PathNode<N>>,
+    /// Distance to the ground and transmittance up to it, where the ray ends there.
+    ground: Option<(f64, Spectrum<N>)>,
+}
+
+struct Transport<'a, const N: usize> {
+    air: &'a Air<N>,
+    grid: FieldGrid,
+    harmonics: Harmonics,
+    /// For each height, the rays that leave it.
+    paths: Vec<Vec<Path<N>>>,
+    azimuth_cosines: Vec<f64>,
+}
+
+impl<'a, const N: usize> Transport<'a, N> {
+    fn new(air: &'a Air<N>, grid: FieldGrid, settings: &OrderSettings) -> Self {
+        let marcher = Marcher::new(3, 2.0, air.max_extinction_per_m());
+        let arch = Arch::new();
+        let paths = grid
+            .radii_m
+            .par_iter()
+            .map(|&radius_m| {
+                arch.dispatch(
+                    #[inline(always)]
+                    || {
+                        zenith_rule(air, radius_m, settings)
+                            .into_iter()
+                            .map(|(mu, w)| trace_path(air, &grid, &marcher, radius_m, mu, w))
+                            .collect()
+                    },
+                )
+            })
+            .collect();
+        let azimuths = settings.azimuths;
+        let azimuth_cosines = (0..azimuths)
+            .map(|k| (PI * (k as f64 + 0.5) / azimuths as f64).cos())
+            .collect();
+        Self {
+            air,
+            grid,
+            harmonics: Harmonics::new(settings.l_max),
+            paths,
+            azimuth_cosines,
+        }
+    }
+
+    /// Light that has been scattered, or reflected by the ground, exactly once.
+    fn first_order(&self) -> Order<N> {
+        let (air, shell) = (self.air, &self.air.shell);
+        let degree = self.harmonics.degree();
+        self.gather(|start_radius, path, light| {
+            let mut legendre = vec![0.0; degree + 1];
+            let mut phases = vec![Spectrum::ZERO; air.scatterers.len()];
+            self.each_ray(start_radius, path, |slot, ray, _| {
+                harmonics::legendre(ray.nu, &mut legendre);
+                for (phase, s) in phases.iter_mut().zip(&air.scatterers) {
+                    *phase = s.scattering * s.truncated_phase(&legendre);
+                }
+                let mut sum = Spectrum::ZERO;
+                for node in &path.nodes {
+                    let mu_sun = (ray.radius_m * ray.mu_sun + node.t * ray.nu) / node.radius_m;
+                    if in_shadow(node.radius_m, mu_sun, shell.ground_radius_m) {
+                        continue;
+                    }
+                    let sun = air.transmittance(&shell.columns_to_space_m(node.radius_m, mu_sun));
+                    let mut scattering = Spectrum::ZERO;
+                    for (phase, s) in phases.iter().zip(&air.scatterers) {
+                        scattering =
+                            scattering.scale_acc(*phase, node.densities[s.constituent] as f32);
+                    }
+                    sum = sum.mul_acc(node.weight * sun, scattering);
+                }
+                if let Some((t, transmittance)) = path.ground {
+                    let mu_sun = ray.advanced(t).mu_sun;
+                    if mu_sun > 0.0 {
+                        let columns = shell.columns_to_space_m(shell.ground_radius_m, mu_sun);
+                        let irradiance = air.transmittance(&columns) * mu_sun as f32;
+                        sum = sum.mul_acc(transmittance, air.reflected(irradiance));
+                    }
+                }
+                light[slot] = sum;
+            });
+        })
+    }
+
+    /// What becomes of the light `field` when it is scattered or reflected once more.
+    fn next_order(&self, field: &RadianceField<N>) -> Order<N> {
+        let air = self.air;
+        let count = harmonics::count(self.harmonics.degree());
+        self.gather(|start_radius, path, light| {
+            light.fill(Spectrum::ZERO);
+            let mut row = Vec::new();
+            let mut y = [0.0f32; Harmonics::MAX_COUNT];
+            for node in &path.nodes {
+                field.at_radius(node.place, &mut row);
+                self.each_ray(start_radius, path, |slot, ray, _| {
+                    let mu_sun = (ray.radius_m * ray.mu_sun + node.t * ray.nu) / node.radius_m;
+                    let here = Ray {
+                        radius_m: node.radius_m,
+                        mu: f64::from(node.mu),
+                        mu_sun,
+                        nu: ray.nu,
+                    };
+                    self.harmonics
+                        .evaluate(node.mu, here.toward_sun() as f32, &mut y);
+                    let at = self.grid.place_of_sun(mu_sun);
+                    let (a, b) = row[at.below * count..(at.below + 2) * count].split_at(count);
+                    let (wa, wb) = (1.0 - at.fraction, at.fraction);
+                    let mut sum = node.source_weights[0] * y[0];
+                    for (l, weight) in node.source_weights.iter().enumerate().skip(1) {
+                        let mut degree = Spectrum::ZERO;
+                        for k in harmonics::index(l, 0)..=harmonics::index(l, l) {
+                            degree = degree.scale_acc(a[k], wa * y[k]).scale_acc(b[k], wb * y[k]);
+                        }
+                        sum = sum.mul_acc(*weight, degree);
+                    }
+                    let intensity = (a[0] * wa + b[0] * wb).exp();
+                    light[slot] = light[slot].mul_acc(sum, intensity);
+                });
+            }
+            if let Some((t, transmittance)) = path.ground {
+                self.each_ray(start_radius, path, |slot, ray, _| {
+                    let irradiance = field.ground_irradiance(ray.advanced(t).mu_sun);
+                    light[slot] = light[slot].mul_acc(transmittance, air.reflected(irradiance));
+                });
+            }
+        })
+    }
+
+    /// Calls `visit(slot, ray, toward_sun)` for every sun cosine and azimuth of the rays of `path`.
+    #[inline(always)]
+    fn each_ray(&self, radius_m: f64, path: &Path<N>, mut visit: impl FnMut(usize, Ray, f32)) {
+        let sin = ((1.0 - path.mu) * (1.0 + path.mu)).max(0.0).sqrt();
+        let mut slot = 0;
+        for &mu_sun in &self.grid.sun_cosines {
+            let sin_sun = ((1.0 - mu_sun) * (1.0 + mu_sun)).max(0.0).sqrt();
+            for &cos_azimuth in &self.azimuth_cosines {
+                let nu = path.mu * mu_sun + sin * sin_sun * cos_azimuth;
+                visit(
+                    slot,
+                    Ray {
+                        radius_m,
+                        mu: path.mu,
+                        mu_sun,
+                        nu,
+                    },
+                    (sin * cos_azimuth) as f32,
+                );
+                slot += 1;
+            }
+        }
+    }
+
+    /// Lets `carry(start radius, path, light)` find the light that arrives along each path, for every sun cosine and
+    /// azimuth, and gathers it into moments and ground irradiances.
+    fn gather(&self, carry: impl Fn(f64, &Path<N>, &mut [Spectrum<N>]) + Sync) -> Order<N> {
+        let count = harmonics::count(self.harmonics.degree());
+        let suns = self.grid.sun_cosines.len();
+        let arch = Arch::new();
+        let rows: Vec<(Vec<Spectrum<N>>, Vec<Spectrum<N>>)> = self
+            .paths
+            .par_iter()
+            .zip(&self.grid.radii_m)
+            .map(|(paths, &radius_m)| {
+                arch.dispatch(
+                    #[inline(always)]
+                    || {
+                        let mut moments = vec![Spectrum::ZERO; suns * count];
+                        let mut downward = vec![Spectrum::ZERO; suns];
+                        let mut light = vec![Spectrum::ZERO; suns * self.azimuth_cosines.len()];
+                        let mut y = [0.0f32; Harmonics::MAX_COUNT];
+                        for path in paths {
+                            carry(radius_m, path, &mut light);
+                            let w =
+                                path.solid_weight * 2.0 * PI / self.azimuth_cosines.len() as f64;
+                            self.each_ray(radius_m, path, |slot, _, toward_sun| {
+                                let sun = slot / self.azimuth_cosines.len();
+                                self.harmonics.evaluate(path.mu as f32, toward_sun, &mut y);
+                                for k in 0..count {
+                                    let moment = &mut moments[sun * count + k];
+                                    *moment = moment.scale_acc(light[slot], y[k] * w as f32);
+                                }
+                                if path.mu > 0.0 {
+                                    downward[sun] =
+                                        downward[sun].scale_acc(light[slot], (w * path.mu) as f32);
+                                }
+                            });
+                        }
+                        (moments, downward)
+                    },
+                )
+            })
+            .collect();
+        let ground = rows[0].1.clone();
+        Order {
+            moments: rows.into_iter().flat_map(|(moments, _)| moments).collect(),
+            ground,
+        }
+    }
+}
+
+/// Cosines of the zenith angle and their weights: Gauss rules below the horizon, in the band just above it where the
+/// light changes fastest, and in the rest of the sky.
+fn zenith_rule<const N: usize>(
+    air: &Air<N>,
+    radius_m: f64,
+    settings: &OrderSettings,
+) -> Vec<(f64, f64)> {
+    const BAND: f64 = 0.2;
+    let sin = (air.shell.ground_radius_m / radius_m).min(1.0);
+    let horizon = -((1.0 - sin) * (1.0 + sin)).sqrt();
+    let [below, band, above] = settings.zenith_nodes.map(GaussRule::new);
+    below
+        .on(-1.0, horizon)
+        .chain(band.on(horizon, horizon + BAND))
+        .chain(above.on(horizon + BAND, 1.0))
+        .collect()
+}
+
+#[inline(always)]
+fn trace_path<const N: usize>(
+    air: &Air<N>,
+    grid: &FieldGrid,
+    marcher: &Marcher,
+    radius_m: f64,
+    mu: f64,
+    solid_weight: f64,
+) -> Path<N> {
+    let mut path = Path {
+        mu,
+        solid_weight,
+        nodes: Vec::new(),
+        ground: None,
+    };
+    // The sun in the zenith casts no shadow across the ray: the panels serve all sun angles.
+    let ray = Ray {
+        radius_m,
+        mu,
+        mu_sun: 1.0,
+        nu: mu,
+    };
+    let Some(stretch) = air.shell.stretch(&ray, f64::INFINITY) else {
+        return path;
+    };
+    let columns = marcher.walk(
+        &air.shell,
+        &ray,
+        (stretch.start_m, stretch.end_m),
+        &mut Vec::new(),
+        |nodes| {
+            let mut brightest = 0.0f32;
+            for node in nodes {
+                let transmittance = air.transmittance(&node.columns_m);
+                brightest = brightest.max(transmittance.max_element());
+                let weight = transmittance * node.dt as f32;
+                path.nodes.push(PathNode {
+                    t: node.t,
+                    radius_m: node.here.radius_m,
+                    mu: node.here.mu as f32,
+                    densities: node.densities,
+                    place: grid.place_of_radius(node.here.radius_m),
+                    weight,
+                    source_weights: (0..air.scatterers[0].moments.len())
+                        .map(|l| weight * scattering_moment(air, &node.densities, l))
+                        .collect(),
+                });
+            }
+            if brightest < 1e-6 {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
+        },
+    );
+    if stretch.meets_ground {
+        path.ground = Some((stretch.end_m, air.transmittance(&columns)));
+    }
+    path
+}
