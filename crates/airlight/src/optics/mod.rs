@@ -1,5 +1,6 @@
 //! What one particle does to light.
 
+pub mod ozone;
 pub mod phase;
 pub mod rayleigh;
 mod tabulated;

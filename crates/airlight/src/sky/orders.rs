@@ -22,16 +22,27 @@ use std::ops::ControlFlow;
 /// How finely the orders are solved.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OrderSettings {
-    /// Degree of the angular moments.
-    pub l_max: usize,
-    /// Number of directions in zenith angle: below the horizon, just above it, and higher up.
-    pub zenith_nodes: [usize; 3],
-    /// Number of azimuths between the sun's and the opposite one.
-    pub azimuths: usize,
+    /// Rays that carry light scattered once: it holds the aerosol's forward peak and wants the most directions.
+    pub first: Directions,
+    /// Rays that carry every later order: smoother, so fewer of them.
+    pub later: Directions,
     /// Orders are added until the next is below this part of the sum.
     pub tolerance: f32,
     /// Orders never exceed this number.
     pub max_orders: usize,
+}
+
+/// A set of directions, and the angular detail gathered from them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Directions {
+    /// Degree of the angular moments.
+    pub l_max: usize,
+    /// Number of zenith angles: below the horizon, just above it, and higher up.
+    pub zenith_nodes: [usize; 3],
+    /// Number of azimuths between the sun's and the opposite one.
+    pub azimuths: usize,
+    /// Quadrature nodes in a panel of a ray.
+    pub panel_nodes: usize,
 }
 
 /// Solves for the moments of all light scattered or reflected at least once, per unit solar irradiance.
@@ -40,45 +51,66 @@ pub fn solve<const N: usize>(
     grid: FieldGrid,
     settings: &OrderSettings,
 ) -> RadianceField<N> {
-    let transport = Transport::new(air, grid, settings);
-    let l_max = settings.l_max;
-    let mut order = transport.first_order();
-    let mut sum = order.clone();
+    let mut sum = Transport::new(air, &grid, &settings.first).first_order();
+    let transport = Transport::new(air, &grid, &settings.later);
+    let mut order = sum.truncated(settings.later.l_max);
     for _ in 2..=settings.max_orders {
-        let field = RadianceField::new(
-            transport.grid.clone(),
-            l_max,
-            order.moments.clone(),
-            &order.ground,
-        );
-        let next = transport.next_order(&field);
-        let growth = sum.add(&next, harmonics::count(l_max));
-        let ratio = next.ratio_to(&order, harmonics::count(l_max));
+        let next = transport.next_order(&order.field(&grid));
+        let growth = sum.add(&next);
+        let ratio = next.ratio_to(&order);
         order = next;
         if growth < settings.tolerance {
-            sum.add_geometric_tail(&order, &ratio, harmonics::count(l_max));
+            sum.add_geometric_tail(&order, &ratio);
             break;
         }
     }
-    RadianceField::new(transport.grid, l_max, sum.moments, &sum.ground)
+    sum.field(&grid)
 }
 
 /// One order of light, or a sum of orders: moments `[radius][sun][harmonic]` and ground irradiances `[sun]`.
 #[derive(Clone)]
 struct Order<const N: usize> {
+    l_max: usize,
     moments: Vec<Spectrum<N>>,
     ground: Vec<Spectrum<N>>,
 }
 
 impl<const N: usize> Order<N> {
-    /// Adds another order; returns the largest part that it adds to the intensity anywhere.
-    fn add(&mut self, other: &Self, harmonics: usize) -> f32 {
+    /// The moments of each point.
+    fn points(&self) -> impl Iterator<Item = &[Spectrum<N>]> {
+        self.moments.chunks_exact(harmonics::count(self.l_max))
+    }
+
+    /// The same light with its angular detail beyond `l_max` dropped.
+    fn truncated(&self, l_max: usize) -> Self {
+        let kept = harmonics::count(l_max);
+        Self {
+            l_max,
+            moments: self
+                .points()
+                .flat_map(|point| point[..kept].iter().copied())
+                .collect(),
+            ground: self.ground.clone(),
+        }
+    }
+
+    fn field(&self, grid: &FieldGrid) -> RadianceField<N> {
+        RadianceField::new(grid.clone(), self.l_max, self.moments.clone(), &self.ground)
+    }
+
+    /// Adds another order, of the same or lower degree; returns the largest part that it adds to the intensity
+    /// anywhere.
+    fn add(&mut self, other: &Self) -> f32 {
         let mut growth = 0.0f32;
-        for (k, (a, b)) in self.moments.iter_mut().zip(&other.moments).enumerate() {
-            *a += *b;
-            if k % harmonics == 0 {
-                growth = growth.max((*b / a.max_scalar(1e-30)).max_element());
+        for (sum, point) in self
+            .moments
+            .chunks_exact_mut(harmonics::count(self.l_max))
+            .zip(other.points())
+        {
+            for (a, b) in sum.iter_mut().zip(point) {
+                *a += *b;
             }
+            growth = growth.max((point[0] / sum[0].max_scalar(1e-30)).max_element());
         }
         for (a, b) in self.ground.iter_mut().zip(&other.ground) {
             *a += *b;
@@ -87,25 +119,25 @@ impl<const N: usize> Order<N> {
     }
 
     /// Ratio of this order's intensity to the previous one's, at every point.
-    fn ratio_to(&self, previous: &Self, harmonics: usize) -> Vec<Spectrum<N>> {
-        self.moments
-            .chunks_exact(harmonics)
-            .zip(previous.moments.chunks_exact(harmonics))
+    fn ratio_to(&self, previous: &Self) -> Vec<Spectrum<N>> {
+        self.points()
+            .zip(previous.points())
             .map(|(a, b)| a[0] / b[0].max_scalar(1e-34))
             .collect()
     }
 
     /// Adds the orders after `last` as a geometric series: late orders keep their shape and shrink by a constant
     /// factor.
-    fn add_geometric_tail(&mut self, last: &Self, ratio: &[Spectrum<N>], harmonics: usize) {
+    fn add_geometric_tail(&mut self, last: &Self, ratio: &[Spectrum<N>]) {
         let factor = |r: Spectrum<N>| r.map(|r| if r < 0.95 { r / (1.0 - r) } else { 19.0 });
-        for ((point, last), &r) in self
+        let count = harmonics::count(self.l_max);
+        for ((sum, point), &r) in self
             .moments
-            .chunks_exact_mut(harmonics)
-            .zip(last.moments.chunks_exact(harmonics))
+            .chunks_exact_mut(count)
+            .zip(last.points())
             .zip(ratio)
         {
-            for (a, b) in point.iter_mut().zip(last) {
+            for (a, b) in sum.iter_mut().zip(point) {
                 *a = a.mul_acc(factor(r), *b);
             }
         }
@@ -141,7 +173,7 @@ struct Path<const N: usize> {
 
 struct Transport<'a, const N: usize> {
     air: &'a Air<N>,
-    grid: FieldGrid,
+    grid: &'a FieldGrid,
     harmonics: Harmonics,
     /// For each height, the rays that leave it.
     paths: Vec<Vec<Path<N>>>,
@@ -149,8 +181,8 @@ struct Transport<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> Transport<'a, N> {
-    fn new(air: &'a Air<N>, grid: FieldGrid, settings: &OrderSettings) -> Self {
-        let marcher = Marcher::new(3, 2.0, air.max_extinction_per_m());
+    fn new(air: &'a Air<N>, grid: &'a FieldGrid, directions: &Directions) -> Self {
+        let marcher = Marcher::new(directions.panel_nodes, 2.0, air.max_extinction_per_m());
         let arch = Arch::new();
         let paths = grid
             .radii_m
@@ -159,22 +191,24 @@ impl<'a, const N: usize> Transport<'a, N> {
                 arch.dispatch(
                     #[inline(always)]
                     || {
-                        zenith_rule(air, radius_m, settings)
+                        zenith_rule(air, radius_m, directions)
                             .into_iter()
-                            .map(|(mu, w)| trace_path(air, &grid, &marcher, radius_m, mu, w))
+                            .map(|(mu, w)| {
+                                trace_path(air, grid, &marcher, radius_m, mu, w, directions.l_max)
+                            })
                             .collect()
                     },
                 )
             })
             .collect();
-        let azimuths = settings.azimuths;
+        let azimuths = directions.azimuths;
         let azimuth_cosines = (0..azimuths)
             .map(|k| (PI * (k as f64 + 0.5) / azimuths as f64).cos())
             .collect();
         Self {
             air,
             grid,
-            harmonics: Harmonics::new(settings.l_max),
+            harmonics: Harmonics::new(directions.l_max),
             paths,
             azimuth_cosines,
         }
@@ -329,6 +363,7 @@ impl<'a, const N: usize> Transport<'a, N> {
             .collect();
         let ground = rows[0].1.clone();
         Order {
+            l_max: self.harmonics.degree(),
             moments: rows.into_iter().flat_map(|(moments, _)| moments).collect(),
             ground,
         }
@@ -340,12 +375,12 @@ impl<'a, const N: usize> Transport<'a, N> {
 fn zenith_rule<const N: usize>(
     air: &Air<N>,
     radius_m: f64,
-    settings: &OrderSettings,
+    directions: &Directions,
 ) -> Vec<(f64, f64)> {
     const BAND: f64 = 0.2;
     let sin = (air.shell.ground_radius_m / radius_m).min(1.0);
     let horizon = -((1.0 - sin) * (1.0 + sin)).sqrt();
-    let [below, band, above] = settings.zenith_nodes.map(GaussRule::new);
+    let [below, band, above] = directions.zenith_nodes.map(GaussRule::new);
     below
         .on(-1.0, horizon)
         .chain(band.on(horizon, horizon + BAND))
@@ -361,6 +396,7 @@ fn trace_path<const N: usize>(
     radius_m: f64,
     mu: f64,
     solid_weight: f64,
+    l_max: usize,
 ) -> Path<N> {
     let mut path = Path {
         mu,
@@ -396,7 +432,7 @@ fn trace_path<const N: usize>(
                     densities: node.densities,
                     place: grid.place_of_radius(node.here.radius_m),
                     weight,
-                    source_weights: (0..air.scatterers[0].moments.len())
+                    source_weights: (0..=l_max)
                         .map(|l| weight * scattering_moment(air, &node.densities, l))
                         .collect(),
                 });

@@ -1,0 +1,200 @@
+//! Integrals over wavelength of a smooth response, known only at the nodes of a grid, times a kernel that is not smooth.
+
+/// Step of the integrals over wavelength, nm: the finest step of the solar and observer tables.
+const STEP_NM: f64 = 0.5;
+
+/// Fewest nodes joined by a spline; fewer are joined by straight lines.
+const SPLINE_NODES: usize = 5;
+
+/// Weights `w_k` such that `sum_k w_k r(node_k)` is the integral over `first_nm..=last_nm` of `kernel(l) r(l)`, with r
+/// interpolated between the nodes: by the natural cubic spline from 5 nodes on, by straight lines below, and held
+/// constant beyond the end nodes. Trapezoidal rule in steps of 0.5 nm.
+///
+/// Straight lines give weights of the kernel's sign, which a spline through 3 or 4 nodes does not. `nodes` must be
+/// strictly increasing and not empty.
+pub(super) fn product_weights(
+    nodes: &[f64],
+    (first_nm, last_nm): (f64, f64),
+    kernel: impl Fn(f64) -> [f64; 3],
+) -> Vec<[f64; 3]> {
+    let n = nodes.len();
+    let spline = n >= SPLINE_NODES;
+    // The interpolant is linear in the values r_k and in the second derivatives m_k; gather the integrals that multiply
+    // each, and only then turn those of m_k into more of those of r_k.
+    let mut values = vec![[0.0; 3]; n];
+    let mut curvatures = vec![[0.0; 3]; n];
+    let steps = ((last_nm - first_nm) / STEP_NM).round() as usize;
+    for step in 0..=steps {
+        let nm = first_nm + step as f64 * STEP_NM;
+        let end = if step == 0 || step == steps { 0.5 } else { 1.0 };
+        let k = kernel(nm).map(|v| v * STEP_NM * end);
+        let above = nodes.partition_point(|&node| node <= nm);
+        if above == 0 || above == n {
+            add(&mut values[above.min(n - 1)], k, 1.0);
+            continue;
+        }
+        let h = nodes[above] - nodes[above - 1];
+        let t = (nm - nodes[above - 1]) / h;
+        let s = 1.0 - t;
+        add(&mut values[above - 1], k, s);
+        add(&mut values[above], k, t);
+        if spline {
+            add(&mut curvatures[above - 1], k, (s * s * s - s) * h * h / 6.0);
+            add(&mut curvatures[above], k, (t * t * t - t) * h * h / 6.0);
+        }
+    }
+    if spline {
+        absorb_curvatures(nodes, &mut values, curvatures);
+    }
+    values
+}
+
+fn add(sum: &mut [f64; 3], term: [f64; 3], factor: f64) {
+    for (s, t) in sum.iter_mut().zip(term) {
+        *s += t * factor;
+    }
+}
+
+/// The second derivatives of the natural spline are `m = A^-1 B r` with A symmetric and tridiagonal, so
+/// `c . m = (B^T A^-1 c) . r`: one tridiagonal solve for the weights of all nodes.
+fn absorb_curvatures(nodes: &[f64], values: &mut [[f64; 3]], mut c: Vec<[f64; 3]>) {
+    let last = nodes.len() - 1;
+    let h: Vec<f64> = nodes.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    // Elimination over the inner nodes 1..last; the end nodes have no second derivative.
+    let mut diagonal = vec![0.0; last];
+    for i in 1..last {
+        diagonal[i] = 2.0 * (h[i - 1] + h[i]);
+        if i > 1 {
+            let factor = h[i - 1] / diagonal[i - 1];
+            diagonal[i] -= factor * h[i - 1];
+            let before = c[i - 1];
+            add(&mut c[i], before, -factor);
+        }
+    }
+    for i in (1..last).rev() {
+        if i + 1 < last {
+            let after = c[i + 1];
+            add(&mut c[i], after, -h[i]);
+        }
+        c[i] = c[i].map(|v| v / diagonal[i]);
+    }
+    for i in 1..last {
+        let (left, right) = (6.0 / h[i - 1], 6.0 / h[i]);
+        add(&mut values[i - 1], c[i], left);
+        add(&mut values[i], c[i], -left - right);
+        add(&mut values[i + 1], c[i], right);
+    }
+}
+
+/// Mean of `curve` about each node: weighted by a triangle, symmetric about the node, that reaches half-way to the
+/// nearer neighbour but no further than 20 nm. A lone node takes 20 nm.
+pub(super) fn local_means(nodes: &[f64], curve: impl Fn(f64) -> f64) -> Vec<f64> {
+    const WIDEST_NM: f64 = 20.0;
+    const INTERVALS: i32 = 80;
+    (0..nodes.len())
+        .map(|k| {
+            let below = k
+                .checked_sub(1)
+                .map_or(f64::INFINITY, |b| nodes[k] - nodes[b]);
+            let above = nodes.get(k + 1).map_or(f64::INFINITY, |a| a - nodes[k]);
+            let reach = (below.min(above) / 2.0).min(WIDEST_NM);
+            let (mut sum, mut total) = (0.0, 0.0);
+            for j in -INTERVALS..=INTERVALS {
+                let offset = j as f64 / INTERVALS as f64;
+                let weight = 1.0 - offset.abs();
+                sum += weight * curve(nodes[k] + offset * reach);
+                total += weight;
+            }
+            sum / total
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const NODES: [f64; 7] = [370.0, 400.0, 437.5, 505.0, 560.0, 633.0, 810.0];
+
+    fn kernel(nm: f64) -> [f64; 3] {
+        [1.0, nm / 500.0, (nm / 30.0).sin()]
+    }
+
+    fn integral(f: impl Fn(f64) -> f64) -> [f64; 3] {
+        let mut sum = [0.0; 3];
+        for step in 0..=940 {
+            let nm = 360.0 + step as f64 * STEP_NM;
+            let end = if step % 940 == 0 { 0.5 } else { 1.0 };
+            add(&mut sum, kernel(nm), f(nm) * end * STEP_NM);
+        }
+        sum
+    }
+
+    fn close(got: [f64; 3], want: [f64; 3]) {
+        for i in 0..3 {
+            assert!(
+                (got[i] - want[i]).abs() < 1e-9 * want[1].abs(),
+                "{got:?} against {want:?}"
+            );
+        }
+    }
+
+    fn weighted(nodes: &[f64], r: impl Fn(f64) -> f64) -> [f64; 3] {
+        let mut sum = [0.0; 3];
+        for (&node, w) in nodes
+            .iter()
+            .zip(product_weights(nodes, (360.0, 830.0), kernel))
+        {
+            add(&mut sum, w, r(node));
+        }
+        sum
+    }
+
+    #[test]
+    fn straight_lines_are_integrated_exactly_by_every_kind() {
+        for nodes in [&NODES[2..3], &NODES[2..5], &NODES[1..6], &NODES[..]] {
+            let (first, last) = (nodes[0], nodes[nodes.len() - 1]);
+            let line = |nm: f64| 3.0 - nm.clamp(first, last) / 400.0;
+            close(weighted(nodes, line), integral(line));
+        }
+    }
+
+    #[test]
+    fn weights_are_the_integrals_of_the_natural_spline() {
+        // Second derivatives by relaxation of the spline's own equations: slow, plain and independent of the adjoint.
+        let r = |nm: f64| (nm / 90.0).sin() + 2.0;
+        let y: Vec<f64> = NODES.iter().map(|&x| r(x)).collect();
+        let mut m = [0.0; 7];
+        for _ in 0..400 {
+            for i in 1..6 {
+                let (a, b) = (NODES[i] - NODES[i - 1], NODES[i + 1] - NODES[i]);
+                let bend = 6.0 * ((y[i + 1] - y[i]) / b - (y[i] - y[i - 1]) / a);
+                m[i] = (bend - a * m[i - 1] - b * m[i + 1]) / (2.0 * (a + b));
+            }
+        }
+        let spline = |nm: f64| {
+            let x = nm.clamp(NODES[0], NODES[6]);
+            let i = NODES.partition_point(|&node| node <= x).clamp(1, 6);
+            let h = NODES[i] - NODES[i - 1];
+            let (p, q) = (NODES[i] - x, x - NODES[i - 1]);
+            (m[i - 1] * p.powi(3) + m[i] * q.powi(3)) / (6.0 * h)
+                + (y[i - 1] / h - m[i - 1] * h / 6.0) * p
+                + (y[i] / h - m[i] * h / 6.0) * q
+        };
+        close(weighted(&NODES, r), integral(spline));
+    }
+
+    #[test]
+    fn local_means_keep_straight_lines_and_stay_within_their_reach() {
+        let means = local_means(&NODES, |nm| 2.0 * nm);
+        for (mean, node) in means.iter().zip(NODES) {
+            assert!((mean - 2.0 * node).abs() < 1e-9);
+        }
+        // Half-way from 400 to 370 is 385.
+        assert_eq!(
+            local_means(&NODES, |nm| if nm < 385.0 { 1.0 } else { 0.0 })[1],
+            0.0
+        );
+        assert!((local_means(&[500.0], |nm| (nm - 500.0).abs())[0] - 20.0 / 3.0).abs() < 0.01);
+    }
+}

@@ -1,0 +1,226 @@
+//! Linear RGB spaces and the sRGB transfer function.
+//!
+//! A space is given by the chromaticities of its primaries and of its white; the matrices follow (SMPTE RP 177-1993).
+//! Conversion is colorimetric and absolute: XYZ goes through the plain primaries matrix and nothing adapts it to
+//! another white, so light of a given XYZ keeps that XYZ in every space. RGB (1, 1, 1) is the space's own white with
+//! Y = 1: an XYZ in cd/m^2 gives an RGB whose luminance is in cd/m^2. Where pictures are to look neutral against another
+//! white (ACEScg's white is near D60), multiply by [`adaptation_matrix`] first.
+
+/// A 3 by 3 matrix, row by row.
+pub type Matrix3 = [[f64; 3]; 3];
+
+/// A linear RGB colour space.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub enum RgbSpace {
+    /// IEC 61966-2-1 primaries (those of BT.709), white D65.
+    #[default]
+    Srgb,
+    /// ITU-R BT.2020 primaries, white D65.
+    Rec2020,
+    /// ACEScg: Academy S-2014-004 (AP1 primaries), white near D60.
+    AcesCg,
+}
+
+impl RgbSpace {
+    /// Chromaticities (x, y) of the red, green and blue primaries.
+    pub fn primaries_xy(self) -> [[f64; 2]; 3] {
+        match self {
+            Self::Srgb => [[0.64, 0.33], [0.30, 0.60], [0.15, 0.06]],
+            Self::Rec2020 => [[0.708, 0.292], [0.170, 0.797], [0.131, 0.046]],
+            Self::AcesCg => [[0.713, 0.293], [0.165, 0.830], [0.128, 0.044]],
+        }
+    }
+
+    /// Chromaticity (x, y) of the white point.
+    pub fn white_point_xy(self) -> [f64; 2] {
+        match self {
+            Self::Srgb | Self::Rec2020 => [0.3127, 0.3290],
+            Self::AcesCg => [0.32168, 0.33767],
+        }
+    }
+
+    /// XYZ of RGB (1, 1, 1): Y is 1.
+    pub fn white_xyz(self) -> [f64; 3] {
+        xy_to_xyz(self.white_point_xy())
+    }
+
+    /// The matrix from linear RGB to XYZ: columns are the primaries, each as bright as makes their sum the white.
+    pub fn to_xyz_matrix(self) -> Matrix3 {
+        let primaries = self.primaries_xy().map(xy_to_xyz);
+        let columns: Matrix3 =
+            std::array::from_fn(|row| std::array::from_fn(|column| primaries[column][row]));
+        let amounts = apply(&invert(&columns), self.white_xyz());
+        columns.map(|row| std::array::from_fn(|column| row[column] * amounts[column]))
+    }
+
+    /// The matrix from XYZ to linear RGB.
+    pub fn from_xyz_matrix(self) -> Matrix3 {
+        invert(&self.to_xyz_matrix())
+    }
+
+    /// Linear RGB of an XYZ. Components are negative where the colour lies outside the space's triangle.
+    ///
+    /// The matrix is derived anew each time: for a whole picture take [`Self::from_xyz_matrix`] once and [`apply`] it.
+    pub fn from_xyz(self, xyz: [f64; 3]) -> [f64; 3] {
+        apply(&self.from_xyz_matrix(), xyz)
+    }
+
+    /// XYZ of a linear RGB.
+    pub fn to_xyz(self, rgb: [f64; 3]) -> [f64; 3] {
+        apply(&self.to_xyz_matrix(), rgb)
+    }
+
+    /// Luminance Y of a linear RGB, in the unit of its components.
+    pub fn luminance(self, rgb: [f64; 3]) -> f64 {
+        self.to_xyz(rgb)[1]
+    }
+}
+
+/// The matrix that carries XYZ seen under one white to the XYZ that looks alike under another (chromaticities x, y).
+///
+/// The linearised Bradford transform: scaling in its sharpened cone space (Lam 1985, as used by ICC.1:2022 annex E).
+/// The whites' y must not be 0. Equal whites give the identity up to rounding.
+pub fn adaptation_matrix(from_white_xy: [f64; 2], to_white_xy: [f64; 2]) -> Matrix3 {
+    const BRADFORD: Matrix3 = [
+        [0.8951, 0.2664, -0.1614],
+        [-0.7502, 1.7135, 0.0367],
+        [0.0389, -0.0685, 1.0296],
+    ];
+    let from = apply(&BRADFORD, xy_to_xyz(from_white_xy));
+    let to = apply(&BRADFORD, xy_to_xyz(to_white_xy));
+    let scaled: Matrix3 =
+        std::array::from_fn(|cone| BRADFORD[cone].map(|v| v * to[cone] / from[cone]));
+    multiply(&invert(&BRADFORD), &scaled)
+}
+
+/// `matrix * vector`.
+pub fn apply(matrix: &Matrix3, vector: [f64; 3]) -> [f64; 3] {
+    matrix.map(|row| row[0] * vector[0] + row[1] * vector[1] + row[2] * vector[2])
+}
+
+/// `a * b`.
+pub fn multiply(a: &Matrix3, b: &Matrix3) -> Matrix3 {
+    a.map(|row| std::array::from_fn(|j| row[0] * b[0][j] + row[1] * b[1][j] + row[2] * b[2][j]))
+}
+
+/// The sRGB signal of a linear component: IEC 61966-2-1, carried on as an odd function below 0 and unclipped above 1.
+pub fn srgb_encode(linear: f64) -> f64 {
+    let v = linear.abs();
+    let signal = if v <= 0.003_130_8 {
+        12.92 * v
+    } else {
+        1.055 * v.powf(1.0 / 2.4) - 0.055
+    };
+    signal.copysign(linear)
+}
+
+/// The linear component of an sRGB signal: the inverse of [`srgb_encode`] to 2e-8 (the standard's two branches are
+/// rounded so that they meet only to that).
+pub fn srgb_decode(signal: f64) -> f64 {
+    let v = signal.abs();
+    let linear = if v <= 0.040_45 {
+        v / 12.92
+    } else {
+        ((v + 0.055) / 1.055).powf(2.4)
+    };
+    linear.copysign(signal)
+}
+
+/// XYZ with Y = 1 of a chromaticity.
+fn xy_to_xyz([x, y]: [f64; 2]) -> [f64; 3] {
+    [x / y, 1.0, (1.0 - x - y) / y]
+}
+
+/// The inverse by cofactors; used only on matrices known to be regular.
+fn invert(m: &Matrix3) -> Matrix3 {
+    let cofactor = |r: usize, c: usize| {
+        let (r1, r2) = ((r + 1) % 3, (r + 2) % 3);
+        let (c1, c2) = ((c + 1) % 3, (c + 2) % 3);
+        m[r1][c1] * m[r2][c2] - m[r1][c2] * m[r2][c1]
+    };
+    let determinant: f64 = (0..3).map(|c| m[0][c] * cofactor(0, c)).sum();
+    std::array::from_fn(|r| std::array::from_fn(|c| cofactor(c, r) / determinant))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SPACES: [RgbSpace; 3] = [RgbSpace::Srgb, RgbSpace::Rec2020, RgbSpace::AcesCg];
+
+    fn close(a: &Matrix3, b: &Matrix3, tolerance: f64) {
+        for (ra, rb) in a.iter().zip(b) {
+            for (x, y) in ra.iter().zip(rb) {
+                assert!((x - y).abs() < tolerance, "{a:?} against {b:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn matrices_are_the_published_ones() {
+        // IEC 61966-2-1 prints four decimals, ITU-R BT.2020 four for Y, S-2014-004 ten for AP1.
+        let srgb = [
+            [0.4124, 0.3576, 0.1805],
+            [0.2126, 0.7152, 0.0722],
+            [0.0193, 0.1192, 0.9505],
+        ];
+        close(&RgbSpace::Srgb.to_xyz_matrix(), &srgb, 6e-5);
+        let y = RgbSpace::Rec2020.to_xyz_matrix()[1];
+        for (got, want) in y.iter().zip([0.2627, 0.6780, 0.0593]) {
+            assert!((got - want).abs() < 5e-5);
+        }
+        let ap1 = [
+            [0.662_454_181_1, 0.134_004_206_5, 0.156_187_687_0],
+            [0.272_228_716_8, 0.674_081_765_8, 0.053_689_517_4],
+            [-0.005_574_649_5, 0.004_060_733_5, 1.010_339_100_3],
+        ];
+        close(&RgbSpace::AcesCg.to_xyz_matrix(), &ap1, 1e-9);
+    }
+
+    #[test]
+    fn white_is_one_and_conversion_is_reversible() {
+        for space in SPACES {
+            let white = space.from_xyz(space.white_xyz());
+            assert!(white.iter().all(|v| (v - 1.0).abs() < 1e-12), "{white:?}");
+            assert!((space.luminance([1.0; 3]) - 1.0).abs() < 1e-12);
+            let xyz = [0.3, 0.7, 0.2];
+            let back = space.to_xyz(space.from_xyz(xyz));
+            for i in 0..3 {
+                assert!((back[i] - xyz[i]).abs() < 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn adaptation_carries_white_to_white() {
+        let (d65, d60) = (
+            RgbSpace::Srgb.white_point_xy(),
+            RgbSpace::AcesCg.white_point_xy(),
+        );
+        let adapted = apply(&adaptation_matrix(d65, d60), RgbSpace::Srgb.white_xyz());
+        let rgb = RgbSpace::AcesCg.from_xyz(adapted);
+        assert!(rgb.iter().all(|v| (v - 1.0).abs() < 1e-12), "{rgb:?}");
+        // The same change of white by colour-science 0.4.7.
+        let patch = apply(&adaptation_matrix(d65, d60), [0.3, 0.5, 0.2]);
+        for (got, want) in patch.iter().zip([0.303_968_91, 0.500_384_74, 0.186_391_41]) {
+            assert!((got - want).abs() < 1e-8, "{patch:?}");
+        }
+        let identity = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        close(&adaptation_matrix(d65, d65), &identity, 1e-12);
+        let round = multiply(&adaptation_matrix(d60, d65), &adaptation_matrix(d65, d60));
+        close(&round, &identity, 1e-12);
+    }
+
+    #[test]
+    fn transfer_function_is_srgb() {
+        // 8-bit code values of the standard: mid grey and the ends.
+        assert_eq!(srgb_encode(0.0), 0.0);
+        assert!((srgb_encode(1.0) - 1.0).abs() < 1e-15);
+        assert!((srgb_encode(0.214_041_140_5) - 0.5).abs() < 1e-9);
+        for i in -300..=300 {
+            let signal = i as f64 / 200.0;
+            assert!((srgb_encode(srgb_decode(signal)) - signal).abs() < 3e-8);
+        }
+        assert_eq!(srgb_encode(-0.5), -srgb_encode(0.5));
+    }
+}
