@@ -21,16 +21,15 @@ fn solve(atm: &Atmosphere, nm: [f64; 4], sun: f64) -> Solved {
     let shell = Arc::new(Shell::new(atm).unwrap());
     let t1 = t.elapsed();
     let env = |k: &str, d: usize| std::env::var(k).map_or(d, |v| v.parse().unwrap());
-    let (la, lb) = (env("LA", 8), env("LB", 4));
     let s = OrderSettings {
+        full_degree: env("LF", 4),
+        zonal_degree: env("LZ", 12),
         first: Directions {
-            l_max: la,
             zenith_nodes: [env("Z0", 8), env("Z1", 5), env("Z2", 8)],
             azimuths: env("AZ", 12),
             panel_nodes: env("PN", 3),
         },
         later: Directions {
-            l_max: lb,
             zenith_nodes: [env("Y0", 5), env("Y1", 4), env("Y2", 6)],
             azimuths: env("AY", 8),
             panel_nodes: env("PY", 2),
@@ -38,7 +37,7 @@ fn solve(atm: &Atmosphere, nm: [f64; 4], sun: f64) -> Solved {
         tolerance: 1e-3,
         max_orders: 30,
     };
-    let air = Air::new(atm, shell, nm, la);
+    let air = Air::new(atm, shell, nm, s.zonal_degree);
     let offs = std::env::var("OFF").unwrap_or("-14,-8,-4,-1.5,0,1.5,4,8,14".into());
     let offs: Vec<f64> = offs.split(',').map(|x| x.parse().unwrap()).collect();
     let mut z: Vec<f64> = offs.iter().map(|d| sun + d).filter(|z| *z > 0.0).collect();

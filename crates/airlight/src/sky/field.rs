@@ -1,7 +1,7 @@
 //! The angular moments of the light inside the atmosphere, on a grid of altitudes and sun angles.
 
 use super::air::Air;
-use super::harmonics;
+use super::harmonics::Harmonics;
 use super::ray::Ray;
 use super::shell::{PerConstituent, Shell};
 use crate::spectrum::Spectrum;
@@ -107,7 +107,8 @@ fn radii_m<const N: usize>(air: &Air<N>, count: usize) -> Vec<f64> {
 pub struct RadianceField<const N: usize> {
     /// Where the moments are known.
     pub grid: FieldGrid,
-    l_max: usize,
+    /// The basis of the moments.
+    pub basis: Harmonics,
     /// `[radius][sun][harmonic]`.
     moments: Vec<Spectrum<N>>,
     /// Logarithm of the ground's diffuse irradiance at each sun cosine.
@@ -121,11 +122,11 @@ impl<const N: usize> RadianceField<N> {
     /// Converts plain moments, `[radius][sun][harmonic]`, and plain ground irradiances.
     pub fn new(
         grid: FieldGrid,
-        l_max: usize,
+        basis: Harmonics,
         mut moments: Vec<Spectrum<N>>,
         ground: &[Spectrum<N>],
     ) -> Self {
-        for point in moments.chunks_exact_mut(harmonics::count(l_max)) {
+        for point in moments.chunks_exact_mut(basis.count()) {
             let intensity = point[0].max_scalar(DARKNESS);
             for ratio in &mut point[1..] {
                 *ratio = *ratio / intensity;
@@ -135,26 +136,15 @@ impl<const N: usize> RadianceField<N> {
         let ground_irradiance = ground.iter().map(|e| e.max_scalar(DARKNESS).ln()).collect();
         Self {
             grid,
-            l_max,
+            basis,
             moments,
             ground_irradiance,
         }
     }
 
-    /// Number of harmonics at each point.
-    #[inline(always)]
-    fn harmonics(&self) -> usize {
-        harmonics::count(self.l_max)
-    }
-
-    /// The highest degree of the moments.
-    pub fn degree(&self) -> usize {
-        self.l_max
-    }
-
     #[inline(always)]
     fn point(&self, radius: usize, sun: usize) -> &[Spectrum<N>] {
-        let count = self.harmonics();
+        let count = self.basis.count();
         let start = (radius * self.grid.sun_cosines.len() + sun) * count;
         &self.moments[start..start + count]
     }
@@ -173,7 +163,7 @@ impl<const N: usize> RadianceField<N> {
     /// Interpolates the stored form of the moments in altitude, for all sun cosines: `[sun][harmonic]` into `out`.
     #[inline(always)]
     pub fn at_radius(&self, at: Place, out: &mut Vec<Spectrum<N>>) {
-        let row = self.grid.sun_cosines.len() * self.harmonics();
+        let row = self.grid.sun_cosines.len() * self.basis.count();
         let below = &self.moments[at.below * row..(at.below + 1) * row];
         let above = &self.moments[(at.below + 1) * row..(at.below + 2) * row];
         out.clear();
@@ -215,9 +205,9 @@ impl<const N: usize> RadianceField<N> {
             log_intensity = log_intensity.scale_acc(corner[0], w);
         }
         let mut sum = scattering_moment(air, densities, 0) * harmonics[0];
-        for l in 1..=self.l_max {
+        for l in 1..=self.basis.degree() {
             let mut degree = Spectrum::ZERO;
-            for k in harmonics::index(l, 0)..=harmonics::index(l, l) {
+            for k in self.basis.span(l) {
                 for (corner, &w) in corners.iter().zip(&weights) {
                     degree = degree.scale_acc(corner[k], w * harmonics[k]);
                 }

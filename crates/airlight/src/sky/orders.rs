@@ -8,7 +8,7 @@
 
 use super::air::Air;
 use super::field::{FieldGrid, Place, RadianceField, scattering_moment};
-use super::harmonics::{self, Harmonics};
+use super::harmonics::{Harmonics, legendre};
 use super::march::Marcher;
 use super::quadrature::GaussRule;
 use super::ray::{Ray, in_shadow};
@@ -22,6 +22,10 @@ use std::ops::ControlFlow;
 /// How finely the orders are solved.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OrderSettings {
+    /// Degree up to which the light's angular moments are kept in full.
+    pub full_degree: usize,
+    /// Degree up to which they are kept as far as they are symmetric about the sun's direction.
+    pub zonal_degree: usize,
     /// Rays that carry light scattered once: it holds the aerosol's forward peak and wants the most directions.
     pub first: Directions,
     /// Rays that carry every later order: smoother, so fewer of them.
@@ -32,11 +36,9 @@ pub struct OrderSettings {
     pub max_orders: usize,
 }
 
-/// A set of directions, and the angular detail gathered from them.
+/// A set of directions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Directions {
-    /// Degree of the angular moments.
-    pub l_max: usize,
     /// Number of zenith angles: below the horizon, just above it, and higher up.
     pub zenith_nodes: [usize; 3],
     /// Number of azimuths between the sun's and the opposite one.
@@ -51,11 +53,12 @@ pub fn solve<const N: usize>(
     grid: FieldGrid,
     settings: &OrderSettings,
 ) -> RadianceField<N> {
-    let mut sum = Transport::new(air, &grid, &settings.first).first_order();
-    let transport = Transport::new(air, &grid, &settings.later);
-    let mut order = sum.truncated(settings.later.l_max);
+    let basis = Harmonics::new(settings.full_degree, settings.zonal_degree);
+    let mut sum = Transport::new(air, &grid, &basis, &settings.first).first_order();
+    let transport = Transport::new(air, &grid, &basis, &settings.later);
+    let mut order = sum.clone();
     for _ in 2..=settings.max_orders {
-        let next = transport.next_order(&order.field(&grid));
+        let next = transport.next_order(&order.field(&grid, &basis));
         let growth = sum.add(&next);
         let ratio = next.ratio_to(&order);
         order = next;
@@ -64,13 +67,14 @@ pub fn solve<const N: usize>(
             break;
         }
     }
-    sum.field(&grid)
+    sum.field(&grid, &basis)
 }
 
 /// One order of light, or a sum of orders: moments `[radius][sun][harmonic]` and ground irradiances `[sun]`.
 #[derive(Clone)]
 struct Order<const N: usize> {
-    l_max: usize,
+    /// Moments of each point.
+    count: usize,
     moments: Vec<Spectrum<N>>,
     ground: Vec<Spectrum<N>>,
 }
@@ -78,33 +82,24 @@ struct Order<const N: usize> {
 impl<const N: usize> Order<N> {
     /// The moments of each point.
     fn points(&self) -> impl Iterator<Item = &[Spectrum<N>]> {
-        self.moments.chunks_exact(harmonics::count(self.l_max))
+        self.moments.chunks_exact(self.count)
     }
 
-    /// The same light with its angular detail beyond `l_max` dropped.
-    fn truncated(&self, l_max: usize) -> Self {
-        let kept = harmonics::count(l_max);
-        Self {
-            l_max,
-            moments: self
-                .points()
-                .flat_map(|point| point[..kept].iter().copied())
-                .collect(),
-            ground: self.ground.clone(),
-        }
+    fn field(&self, grid: &FieldGrid, basis: &Harmonics) -> RadianceField<N> {
+        RadianceField::new(
+            grid.clone(),
+            basis.clone(),
+            self.moments.clone(),
+            &self.ground,
+        )
     }
 
-    fn field(&self, grid: &FieldGrid) -> RadianceField<N> {
-        RadianceField::new(grid.clone(), self.l_max, self.moments.clone(), &self.ground)
-    }
-
-    /// Adds another order, of the same or lower degree; returns the largest part that it adds to the intensity
-    /// anywhere.
+    /// Adds another order; returns the largest part that it adds to the intensity anywhere.
     fn add(&mut self, other: &Self) -> f32 {
         let mut growth = 0.0f32;
         for (sum, point) in self
             .moments
-            .chunks_exact_mut(harmonics::count(self.l_max))
+            .chunks_exact_mut(self.count)
             .zip(other.points())
         {
             for (a, b) in sum.iter_mut().zip(point) {
@@ -130,7 +125,7 @@ impl<const N: usize> Order<N> {
     /// factor.
     fn add_geometric_tail(&mut self, last: &Self, ratio: &[Spectrum<N>]) {
         let factor = |r: Spectrum<N>| r.map(|r| if r < 0.95 { r / (1.0 - r) } else { 19.0 });
-        let count = harmonics::count(self.l_max);
+        let count = self.count;
         for ((sum, point), &r) in self
             .moments
             .chunks_exact_mut(count)
@@ -174,14 +169,19 @@ struct Path<const N: usize> {
 struct Transport<'a, const N: usize> {
     air: &'a Air<N>,
     grid: &'a FieldGrid,
-    harmonics: Harmonics,
+    basis: &'a Harmonics,
     /// For each height, the rays that leave it.
     paths: Vec<Vec<Path<N>>>,
     azimuth_cosines: Vec<f64>,
 }
 
 impl<'a, const N: usize> Transport<'a, N> {
-    fn new(air: &'a Air<N>, grid: &'a FieldGrid, directions: &Directions) -> Self {
+    fn new(
+        air: &'a Air<N>,
+        grid: &'a FieldGrid,
+        basis: &'a Harmonics,
+        directions: &Directions,
+    ) -> Self {
         let marcher = Marcher::new(directions.panel_nodes, 2.0, air.max_extinction_per_m());
         let arch = Arch::new();
         let paths = grid
@@ -194,7 +194,7 @@ impl<'a, const N: usize> Transport<'a, N> {
                         zenith_rule(air, radius_m, directions)
                             .into_iter()
                             .map(|(mu, w)| {
-                                trace_path(air, grid, &marcher, radius_m, mu, w, directions.l_max)
+                                trace_path(air, grid, &marcher, radius_m, mu, w, basis.degree())
                             })
                             .collect()
                     },
@@ -208,7 +208,7 @@ impl<'a, const N: usize> Transport<'a, N> {
         Self {
             air,
             grid,
-            harmonics: Harmonics::new(directions.l_max),
+            basis,
             paths,
             azimuth_cosines,
         }
@@ -217,14 +217,14 @@ impl<'a, const N: usize> Transport<'a, N> {
     /// Light that has been scattered, or reflected by the ground, exactly once.
     fn first_order(&self) -> Order<N> {
         let (air, shell) = (self.air, &self.air.shell);
-        let degree = self.harmonics.degree();
+        let degree = self.basis.degree();
         self.gather(|start_radius, path, light| {
-            let mut legendre = vec![0.0; degree + 1];
+            let mut p = vec![0.0; degree + 1];
             let mut phases = vec![Spectrum::ZERO; air.scatterers.len()];
             self.each_ray(start_radius, path, |slot, ray, _| {
-                harmonics::legendre(ray.nu, &mut legendre);
+                legendre(ray.nu, &mut p);
                 for (phase, s) in phases.iter_mut().zip(&air.scatterers) {
-                    *phase = s.scattering * s.truncated_phase(&legendre);
+                    *phase = s.scattering * s.truncated_phase(&p);
                 }
                 let mut sum = Spectrum::ZERO;
                 for node in &path.nodes {
@@ -256,7 +256,7 @@ impl<'a, const N: usize> Transport<'a, N> {
     /// What becomes of the light `field` when it is scattered or reflected once more.
     fn next_order(&self, field: &RadianceField<N>) -> Order<N> {
         let air = self.air;
-        let count = harmonics::count(self.harmonics.degree());
+        let count = self.basis.count();
         self.gather(|start_radius, path, light| {
             light.fill(Spectrum::ZERO);
             let mut row = Vec::new();
@@ -271,15 +271,15 @@ impl<'a, const N: usize> Transport<'a, N> {
                         mu_sun,
                         nu: ray.nu,
                     };
-                    self.harmonics
-                        .evaluate(node.mu, here.toward_sun() as f32, &mut y);
+                    self.basis
+                        .evaluate(node.mu, here.toward_sun() as f32, ray.nu as f32, &mut y);
                     let at = self.grid.place_of_sun(mu_sun);
                     let (a, b) = row[at.below * count..(at.below + 2) * count].split_at(count);
                     let (wa, wb) = (1.0 - at.fraction, at.fraction);
                     let mut sum = node.source_weights[0] * y[0];
                     for (l, weight) in node.source_weights.iter().enumerate().skip(1) {
                         let mut degree = Spectrum::ZERO;
-                        for k in harmonics::index(l, 0)..=harmonics::index(l, l) {
+                        for k in self.basis.span(l) {
                             degree = degree.scale_acc(a[k], wa * y[k]).scale_acc(b[k], wb * y[k]);
                         }
                         sum = sum.mul_acc(*weight, degree);
@@ -324,7 +324,7 @@ impl<'a, const N: usize> Transport<'a, N> {
     /// Lets `carry(start radius, path, light)` find the light that arrives along each path, for every sun cosine and
     /// azimuth, and gathers it into moments and ground irradiances.
     fn gather(&self, carry: impl Fn(f64, &Path<N>, &mut [Spectrum<N>]) + Sync) -> Order<N> {
-        let count = harmonics::count(self.harmonics.degree());
+        let count = self.basis.count();
         let suns = self.grid.sun_cosines.len();
         let arch = Arch::new();
         let rows: Vec<(Vec<Spectrum<N>>, Vec<Spectrum<N>>)> = self
@@ -343,9 +343,14 @@ impl<'a, const N: usize> Transport<'a, N> {
                             carry(radius_m, path, &mut light);
                             let w =
                                 path.solid_weight * 2.0 * PI / self.azimuth_cosines.len() as f64;
-                            self.each_ray(radius_m, path, |slot, _, toward_sun| {
+                            self.each_ray(radius_m, path, |slot, ray, toward_sun| {
                                 let sun = slot / self.azimuth_cosines.len();
-                                self.harmonics.evaluate(path.mu as f32, toward_sun, &mut y);
+                                self.basis.evaluate(
+                                    path.mu as f32,
+                                    toward_sun,
+                                    ray.nu as f32,
+                                    &mut y,
+                                );
                                 for k in 0..count {
                                     let moment = &mut moments[sun * count + k];
                                     *moment = moment.scale_acc(light[slot], y[k] * w as f32);
@@ -363,7 +368,7 @@ impl<'a, const N: usize> Transport<'a, N> {
             .collect();
         let ground = rows[0].1.clone();
         Order {
-            l_max: self.harmonics.degree(),
+            count: self.basis.count(),
             moments: rows.into_iter().flat_map(|(moments, _)| moments).collect(),
             ground,
         }

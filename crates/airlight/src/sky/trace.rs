@@ -50,7 +50,6 @@ pub struct Tracer<'a, const N: usize> {
     /// Multiply scattered light, if it is wanted.
     pub field: Option<&'a RadianceField<N>>,
     marcher: Marcher,
-    harmonics: Harmonics,
     edges: Vec<f64>,
 }
 
@@ -61,7 +60,6 @@ impl<'a, const N: usize> Tracer<'a, N> {
             air,
             field,
             marcher: Marcher::new(4, 2.0, air.max_extinction_per_m()),
-            harmonics: Harmonics::new(field.map_or(0, RadianceField::degree)),
             edges: Vec::new(),
         }
     }
@@ -75,6 +73,9 @@ impl<'a, const N: usize> Tracer<'a, N> {
             return light;
         };
         let mut y = [0.0f32; Harmonics::MAX_COUNT];
+        if let Some(field) = self.field {
+            field.basis.evaluate_zonal(ray.nu as f32, &mut y);
+        }
         let columns = self.marcher.walk(
             shell,
             ray,
@@ -97,11 +98,8 @@ impl<'a, const N: usize> Tracer<'a, N> {
                         }
                     }
                     if let Some(field) = self.field {
-                        self.harmonics.evaluate(
-                            node.here.mu as f32,
-                            node.here.toward_sun() as f32,
-                            &mut y,
-                        );
+                        let (mu, toward_sun) = (node.here.mu as f32, node.here.toward_sun() as f32);
+                        field.basis.evaluate_local(mu, toward_sun, &mut y);
                         let source = field.source(air, &node.here, &node.densities, &y);
                         light.multiple = light
                             .multiple
