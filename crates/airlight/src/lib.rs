@@ -7,8 +7,8 @@
 //! # Rooms, each importing only from those above it
 //! - [`spectrum`]: wavelength grids, spectra, the solar spectrum, colour.
 //! - [`optics`]: what one particle does to light: Rayleigh, ozone, phase functions.
-//! - [`medium`]: what fills the air and where: density profiles, constituents, [`medium::Atmosphere`], presets.
 //! - [`light`]: what shines: the sun's position, disc and irradiance.
+//! - [`medium`]: what fills the air and where: density profiles, constituents, [`medium::Atmosphere`], presets.
 //! - [`path`]: [`path::PathOptics`] and its law of composition.
 //! - [`sky`]: the solver for a spherical, multiply scattering atmosphere.
 

@@ -1,5 +1,6 @@
 //! A planet's air: what it is made of, what lies under it and what shines on it.
 
+use super::aerosol::ClearAir;
 use super::density::{DensityError, DensityProfile};
 use crate::light::{SunDisc, SunError};
 use crate::optics::{PhaseError, PhaseFunction};
@@ -222,6 +223,24 @@ impl Atmosphere {
         all.sort_by(f64::total_cmp);
         all.dedup();
         all
+    }
+
+    /// What turbidity and visibility are stated relative to: the scattering of the constituent "rayleigh" at 550 nm
+    /// (none where there is no such constituent).
+    pub fn clear_air(&self) -> ClearAir {
+        let (ground, top) = (self.planet.ground_altitude_m, self.planet.top_altitude_m);
+        let molecules = || {
+            self.constituents
+                .iter()
+                .filter(|part| part.name == "rayleigh")
+        };
+        let at_550 = |part: &Constituent| part.scattering_per_m.at(550.0);
+        ClearAir {
+            optical_depth_550: molecules()
+                .map(|m| at_550(m) * m.density.column_m(ground, top))
+                .sum(),
+            ground_extinction_per_m: molecules().map(|m| at_550(m) * m.density.at(ground)).sum(),
+        }
     }
 
     /// The constituent of a name.

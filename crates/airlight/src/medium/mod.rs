@@ -1,10 +1,14 @@
 //! What fills the air and where.
 
+pub mod aerosol;
 mod atmosphere;
 mod density;
+pub mod gases;
+mod nearest;
 pub mod presets;
 mod standard_air;
 
+pub use aerosol::{AerosolError, AerosolLoad, AngstromAerosol, ClearAir};
 pub use atmosphere::{Atmosphere, AtmosphereError, Constituent, Planet};
 pub use density::{AltitudeTable, DensityError, DensityProfile, Interpolation};
-pub use presets::reference;
+pub use presets::{UnknownPreset, preset, preset_names, reference};

@@ -1,3 +1,163 @@
-//! Atmospheres ready to use.
+//! Atmospheres ready to use, by name.
 
+pub mod earth;
+pub mod mars;
+pub mod published;
 pub mod reference;
+
+use super::{Atmosphere, nearest::nearest};
+use crate::spectrum::SpectralCurve;
+
+/// Names and descriptions, in the order to list them in.
+const PRESETS: [(&str, &str, fn() -> Atmosphere); 11] = [
+    (
+        "clear",
+        "Earth on a clear day: aerosol optical depth 0.05 at 550 nm",
+        earth::clear,
+    ),
+    (
+        "average",
+        "Earth on an average day: aerosol optical depth 0.12 at 550 nm",
+        earth::average,
+    ),
+    (
+        "hazy",
+        "Earth on a hazy day: aerosol optical depth 0.35 at 550 nm",
+        earth::hazy,
+    ),
+    (
+        "mars",
+        "Mars on a moderately dusty day: dust optical depth 0.5 at 880 nm",
+        mars::mars,
+    ),
+    (
+        "bruneton",
+        "Earth of Bruneton's precomputed scattering (2017), spectral",
+        published::bruneton,
+    ),
+    (
+        "hillaire",
+        "Earth of Hillaire's production sky (2020), red, green and blue",
+        published::hillaire,
+    ),
+    (
+        "sky-article",
+        "Earth of \"Sky and Atmosphere rendering: A physical approach\", as printed",
+        published::sky_article,
+    ),
+    (
+        "reference-rayleigh",
+        "Reference: air molecules alone over black ground, unit sun",
+        || reference::rayleigh(0.0),
+    ),
+    (
+        "reference-rayleigh-albedo-0.3",
+        "Reference: air molecules alone over ground of albedo 0.3, unit sun",
+        || reference::rayleigh(0.3),
+    ),
+    (
+        "reference-earth-demo",
+        "Reference: Bruneton's Earth at 680, 550 and 440 nm",
+        reference::earth_demo,
+    ),
+    (
+        "reference-csm",
+        "Reference: the comparison of clear-sky models (2017), 40 wavelengths",
+        reference::csm,
+    ),
+];
+
+/// There is no preset of that name.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("there is no atmosphere called \"{name}\"{}; there are: {}", self.hint(), self.names())]
+pub struct UnknownPreset {
+    /// The name asked for.
+    pub name: String,
+    /// The name it may have been meant to be.
+    pub nearest: Option<&'static str>,
+}
+
+impl UnknownPreset {
+    fn hint(&self) -> String {
+        self.nearest
+            .map_or(String::new(), |near| format!(" (did you mean \"{near}\"?)"))
+    }
+
+    fn names(&self) -> String {
+        PRESETS.map(|preset| preset.0).join(", ")
+    }
+}
+
+/// The atmosphere of a name.
+///
+/// # Errors
+/// [`UnknownPreset`], which lists the names there are and the nearest one.
+pub fn preset(name: &str) -> Result<Atmosphere, UnknownPreset> {
+    match PRESETS.iter().find(|preset| preset.0 == name) {
+        Some((_, _, build)) => Ok(build()),
+        None => Err(UnknownPreset {
+            name: name.to_owned(),
+            nearest: nearest(name, PRESETS.iter().map(|preset| preset.0)),
+        }),
+    }
+}
+
+/// Name and one-line description of each preset.
+pub fn preset_names() -> impl Iterator<Item = (&'static str, &'static str)> {
+    PRESETS.iter().map(|preset| (preset.0, preset.1))
+}
+
+/// A table whose samples are constants of this crate.
+fn fixed_table(samples: &[(f64, f64)]) -> SpectralCurve {
+    let (wavelengths, values) = samples.iter().copied().unzip();
+    SpectralCurve::table(wavelengths, values).expect("tables of this crate are in order")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_preset_is_valid_and_bears_its_name() {
+        for (name, description) in preset_names() {
+            let atmosphere = preset(name).unwrap();
+            atmosphere
+                .validate()
+                .unwrap_or_else(|error| panic!("{name}: {error}"));
+            assert!(
+                name.starts_with(&atmosphere.name),
+                "{name} is called {}",
+                atmosphere.name
+            );
+            assert!(!description.is_empty() && !description.contains('\n'));
+        }
+    }
+
+    #[test]
+    fn unknown_names_get_help() {
+        let error = preset("claer").unwrap_err();
+        assert_eq!(error.nearest, Some("clear"));
+        let text = error.to_string();
+        assert!(
+            text.contains("did you mean \"clear\"") && text.contains("mars"),
+            "{text}"
+        );
+    }
+
+    #[test]
+    fn earths_have_the_optical_depths_they_state() {
+        for (name, aerosol) in [("clear", 0.05), ("average", 0.12), ("hazy", 0.35)] {
+            let earth = preset(name).unwrap();
+            let ozone = earth
+                .constituent("ozone")
+                .unwrap()
+                .optical_depth(0.0, 100e3, 550.0);
+            let depth = earth.vertical_optical_depth(550.0);
+            assert!(
+                (depth - ozone - aerosol - 0.0973).abs() < 1e-3,
+                "{name}: {depth}"
+            );
+            assert!((0.025..0.03).contains(&ozone), "{ozone}");
+        }
+    }
+}

@@ -198,3 +198,73 @@ fn monotone_slopes(x: &[f64], y: &[f64]) -> Vec<f64> {
         })
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_smooth_function_is_met_between_its_samples() {
+        // Henyey-Greenstein, g = 0.8, every 2 degrees.
+        let g: f64 = 0.8;
+        let hg = |a: f64| {
+            (1.0 - g * g) / (4.0 * PI * (1.0 + g * g - 2.0 * g * a.to_radians().cos()).powf(1.5))
+        };
+        let angles: Vec<f64> = (0..=90).map(|i| 2.0 * f64::from(i)).collect();
+        let values = angles.iter().map(|&a| hg(a)).collect();
+        let table = TabulatedPhase::new(angles, vec![550.0], values).unwrap();
+        let mut worst: f64 = 0.0;
+        for i in 0..1800 {
+            let a = 0.1 * f64::from(i);
+            worst = worst.max((table.evaluate(a.to_radians().cos(), 550.0) / hg(a) - 1.0).abs());
+        }
+        assert!(worst < 4e-3, "{worst}");
+    }
+
+    #[test]
+    fn wavelengths_blend_and_end() {
+        let table = TabulatedPhase::new(
+            vec![0.0, 90.0, 180.0],
+            vec![400.0, 600.0],
+            vec![3.0, 1.0, 1.0, 1.0, 1.0, 1.0],
+        );
+        let table = table.unwrap();
+        let [low, middle, high] = [400.0, 500.0, 600.0].map(|nm| table.evaluate(0.9, nm));
+        assert!((middle - 0.5 * (low + high)).abs() < 1e-15);
+        assert_eq!(table.evaluate(0.9, 300.0), low);
+        assert_eq!(table.evaluate(0.9, 900.0), high);
+        assert!((high * 4.0 * PI - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn bad_tables_are_refused() {
+        let new = |angles: &[f64], wavelengths: &[f64], values: &[f64]| {
+            TabulatedPhase::new(angles.to_vec(), wavelengths.to_vec(), values.to_vec()).unwrap_err()
+        };
+        assert!(matches!(
+            new(&[1.0, 180.0], &[5.0], &[1.0; 2]),
+            PhaseError::Angles { index: 0, .. }
+        ));
+        assert!(matches!(
+            new(&[0.0, 170.0], &[5.0], &[1.0; 2]),
+            PhaseError::Angles { index: 1, .. }
+        ));
+        assert!(matches!(
+            new(&[0.0], &[5.0], &[1.0]),
+            PhaseError::Angles { .. }
+        ));
+        assert!(matches!(new(&[], &[5.0], &[]), PhaseError::Length { .. }));
+        assert!(matches!(
+            new(&[0.0, 180.0], &[5.0, 5.0], &[1.0; 4]),
+            PhaseError::Wavelengths { index: 1, .. }
+        ));
+        assert!(matches!(
+            new(&[0.0, 180.0], &[5.0], &[1.0; 3]),
+            PhaseError::Length { got: 3, .. }
+        ));
+        assert!(matches!(
+            new(&[0.0, 180.0], &[5.0], &[1.0, 0.0]),
+            PhaseError::Value { index: 1, .. }
+        ));
+    }
+}

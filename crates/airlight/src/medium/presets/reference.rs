@@ -2,10 +2,11 @@
 //!
 //! Earth radius 6360 km, top at 60 km, scale heights 8 km (molecules) and 1.2 km (aerosol) in all.
 
+use super::fixed_table;
 use crate::light::SunDisc;
 use crate::medium::{Atmosphere, Constituent, DensityProfile, Planet};
 use crate::optics::{Depolarization, PhaseFunction};
-use crate::spectrum::SpectralCurve;
+use crate::spectrum::{SpectralCurve, embedded_table};
 
 const ZERO: SpectralCurve = SpectralCurve::Constant(0.0);
 
@@ -44,12 +45,6 @@ fn aerosol(
         absorption_per_m,
         phase: PhaseFunction::CornetteShanks { g },
     }
-}
-
-/// A table whose abscissae and values are constants of this crate.
-pub(super) fn fixed_table(samples: &[(f64, f64)]) -> SpectralCurve {
-    let (wavelengths, values) = samples.iter().copied().unzip();
-    SpectralCurve::table(wavelengths, values).expect("tables of this crate are in order")
 }
 
 /// Air molecules alone: sea-level scattering 5.8, 13.5, 33.1 per 1000 km at 680, 550, 440 nm (linear between), unit
@@ -113,7 +108,7 @@ pub fn earth_demo() -> Atmosphere {
 /// The atmosphere of Bruneton's comparison of clear-sky models (IEEE TVCG 23(12), 2017) at its 40 wavelengths: aerosol
 /// of optical depth 0.04 (lambda/um)^-0.8, single-scattering albedo 0.8, Cornette-Shanks g = 0.7, no ozone, grass.
 pub fn csm() -> Atmosphere {
-    let rows = parse(include_str!("../../../data/csm_atmosphere.csv"));
+    let rows = embedded_table::<6>(include_str!("../../../data/medium/csm_atmosphere.txt"));
     let column = |of: fn(&[f64; 6]) -> f64| {
         fixed_table(&rows.iter().map(|row| (row[0], of(row))).collect::<Vec<_>>())
     };
@@ -127,20 +122,6 @@ pub fn csm() -> Atmosphere {
         solar_irradiance: column(|row| row[1]),
         sun: SunDisc::default(),
     }
-}
-
-/// Rows of six numbers; lines that begin otherwise are headings.
-fn parse(text: &str) -> Vec<[f64; 6]> {
-    text.lines()
-        .filter_map(|line| {
-            let mut fields = line.split(',').map(str::parse);
-            let mut row = [0.0; 6];
-            for value in &mut row {
-                *value = fields.next()?.ok()?;
-            }
-            Some(row)
-        })
-        .collect()
 }
 
 #[cfg(test)]
