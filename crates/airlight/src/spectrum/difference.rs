@@ -5,8 +5,8 @@ pub const D65_WHITE: [f64; 3] = [95.047, 100.0, 108.883];
 
 /// CIELAB (L*, a*, b*) of `xyz` against the white `white`, both on the same scale.
 ///
-/// CIE 015:2018, equations 8.3 to 8.11. Negative XYZ, which no light has but a coarse grid may give, continue the straight
-/// part of the curve.
+/// CIE 015:2018, CIE 1976 L*a*b* colour space. Negative XYZ, which no light has but a coarse grid may give, continue
+/// the straight part of the curve.
 pub fn xyz_to_lab(xyz: [f64; 3], white: [f64; 3]) -> [f64; 3] {
     const BEND: f64 = 6.0 / 29.0;
     let f: [f64; 3] = std::array::from_fn(|i| {

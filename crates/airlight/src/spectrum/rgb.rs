@@ -59,6 +59,8 @@ impl RgbSpace {
     }
 
     /// Linear RGB of an XYZ. Components are negative where the colour lies outside the space's triangle.
+    ///
+    /// The matrix is derived anew each time: for a whole picture take [`Self::from_xyz_matrix`] once and [`apply`] it.
     pub fn from_xyz(self, xyz: [f64; 3]) -> [f64; 3] {
         apply(&self.from_xyz_matrix(), xyz)
     }
@@ -198,6 +200,11 @@ mod tests {
         let adapted = apply(&adaptation_matrix(d65, d60), RgbSpace::Srgb.white_xyz());
         let rgb = RgbSpace::AcesCg.from_xyz(adapted);
         assert!(rgb.iter().all(|v| (v - 1.0).abs() < 1e-12), "{rgb:?}");
+        // The same change of white by colour-science 0.4.7.
+        let patch = apply(&adaptation_matrix(d65, d60), [0.3, 0.5, 0.2]);
+        for (got, want) in patch.iter().zip([0.303_968_91, 0.500_384_74, 0.186_391_41]) {
+            assert!((got - want).abs() < 1e-8, "{patch:?}");
+        }
         let identity = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         close(&adaptation_matrix(d65, d65), &identity, 1e-12);
         let round = multiply(&adaptation_matrix(d60, d65), &adaptation_matrix(d65, d60));

@@ -1,0 +1,129 @@
+//! An atmosphere sampled at the N wavelengths of one block of lanes.
+
+use super::shell::{MAX_CONSTITUENTS, PerConstituent, Shell};
+use crate::medium::Atmosphere;
+use crate::optics::PhaseFunction;
+use crate::spectrum::Spectrum;
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+/// What the constituents do to light at N wavelengths.
+#[derive(Clone, Debug)]
+pub struct Air<const N: usize> {
+    /// The geometry, shared by all blocks of wavelengths.
+    pub shell: Arc<Shell>,
+    /// Extinction of each constituent at density 1, 1/m.
+    extinction: Vec<Spectrum<N>>,
+    /// The constituents that scatter.
+    pub scatterers: Vec<Scatterer<N>>,
+    /// Lambertian reflectance of the ground.
+    pub ground_albedo: Spectrum<N>,
+    wavelengths_nm: [f64; N],
+}
+
+/// A constituent that scatters.
+#[derive(Clone, Debug)]
+pub struct Scatterer<const N: usize> {
+    /// Its place among the constituents.
+    pub constituent: usize,
+    /// Scattering at density 1, 1/m.
+    pub scattering: Spectrum<N>,
+    /// Legendre moments of its phase function, `moments[l]`.
+    pub moments: Vec<Spectrum<N>>,
+    phase: PhaseFunction,
+}
+
+impl<const N: usize> Air<N> {
+    /// Samples `atmosphere` at N wavelengths, with phase-function moments up to degree `l_max`.
+    pub fn new(
+        atmosphere: &Atmosphere,
+        shell: Arc<Shell>,
+        wavelengths_nm: [f64; N],
+        l_max: usize,
+    ) -> Self {
+        let sample =
+            |f: &dyn Fn(f64) -> f64| Spectrum::from_fn(|lane| f(wavelengths_nm[lane]) as f32);
+        let extinction = atmosphere
+            .constituents
+            .iter()
+            .map(|c| sample(&|nm| c.scattering_per_m.at(nm) + c.absorption_per_m.at(nm)))
+            .collect();
+        let scatterers = atmosphere
+            .constituents
+            .iter()
+            .enumerate()
+            .map(|(constituent, c)| {
+                let by_lane = wavelengths_nm.map(|nm| c.phase.legendre_moments(l_max + 1, nm));
+                Scatterer {
+                    constituent,
+                    scattering: sample(&|nm| c.scattering_per_m.at(nm)),
+                    moments: (0..=l_max)
+                        .map(|l| Spectrum::from_fn(|lane| by_lane[lane][l] as f32))
+                        .collect(),
+                    phase: c.phase.clone(),
+                }
+            })
+            .filter(|s| s.scattering.max_element() > 0.0)
+            .collect();
+        let ground_albedo = sample(&|nm| atmosphere.planet.ground_albedo.at(nm));
+        Self {
+            shell,
+            extinction,
+            scatterers,
+            ground_albedo,
+            wavelengths_nm,
+        }
+    }
+
+    /// Optical depth of the given columns.
+    #[inline(always)]
+    pub fn optical_depth(&self, columns_m: &PerConstituent) -> Spectrum<N> {
+        let mut depth = Spectrum::ZERO;
+        for (extinction, &column) in self.extinction.iter().zip(columns_m) {
+            depth = depth.scale_acc(*extinction, column as f32);
+        }
+        depth
+    }
+
+    /// Transmittance through the given columns.
+    #[inline(always)]
+    pub fn transmittance(&self, columns_m: &PerConstituent) -> Spectrum<N> {
+        (Spectrum::ZERO - self.optical_depth(columns_m)).exp()
+    }
+
+    /// The largest extinction of each constituent over the lanes, 1/m at density 1.
+    pub fn max_extinction_per_m(&self) -> PerConstituent {
+        let mut out = [0.0; MAX_CONSTITUENTS];
+        for (value, extinction) in out.iter_mut().zip(&self.extinction) {
+            *value = f64::from(extinction.max_element());
+        }
+        out
+    }
+
+    /// Radiance that the ground sends up when it receives the irradiance `irradiance`.
+    #[inline(always)]
+    pub fn reflected(&self, irradiance: Spectrum<N>) -> Spectrum<N> {
+        self.ground_albedo * irradiance * std::f32::consts::FRAC_1_PI
+    }
+}
+
+impl<const N: usize> Scatterer<N> {
+    /// Phase function at the cosine `nu` of the scattering angle, 1/sr.
+    pub fn phase(&self, air: &Air<N>, nu: f64) -> Spectrum<N> {
+        if self.phase.depends_on_wavelength() {
+            Spectrum::from_fn(|lane| self.phase.evaluate(nu, air.wavelengths_nm[lane]) as f32)
+        } else {
+            Spectrum::splat(self.phase.evaluate(nu, air.wavelengths_nm[0]) as f32)
+        }
+    }
+
+    /// The phase function cut off after the degree of `legendre`, whose entries are `P_l(nu)`, 1/sr.
+    #[inline(always)]
+    pub fn truncated_phase(&self, legendre: &[f64]) -> Spectrum<N> {
+        let mut sum = Spectrum::ZERO;
+        for (l, (moment, &p)) in self.moments.iter().zip(legendre).enumerate() {
+            sum = sum.scale_acc(*moment, ((2 * l + 1) as f64 * p / (4.0 * PI)) as f32);
+        }
+        sum
+    }
+}

@@ -1,0 +1,140 @@
+//! Slant columns from any point to space: how much of each constituent lies on the way to the sun.
+//!
+//! Integrated once on a grid of altitudes and zenith angles, the same for all wavelengths. What is stored is the
+//! inverse air mass `N(r, 1) / N(r, mu)`: close to `mu` high in the sky and smooth down to the horizon, so that
+//! third-degree interpolation keeps the columns to about 1e-4 (see the test).
+
+use super::quadrature::GaussRule;
+use super::shell::{MAX_CONSTITUENTS, PerConstituent, Shell};
+use rayon::prelude::*;
+
+/// Altitudes of the table, evenly spaced in [`Shell::altitude_coordinate`].
+const ALTITUDES: usize = 64;
+/// Zenith angles of the table, evenly spaced in `sqrt(mu)`: dense at the horizon.
+const ANGLES: usize = 64;
+/// Nodes of the finer table of vertical columns.
+const VERTICAL: usize = 1024;
+
+/// Vertical columns and inverse air masses of every constituent.
+#[derive(Clone, Debug, Default)]
+pub struct ColumnTable {
+    /// At even steps of the altitude coordinate: the vertical column and its slope in that coordinate.
+    vertical: Vec<[PerConstituent; 2]>,
+    /// `[altitude][angle]`, angles running fastest.
+    inverse_air_mass: Vec<PerConstituent>,
+}
+
+impl ColumnTable {
+    pub(super) fn new(shell: &Shell) -> Self {
+        let vertical = (0..VERTICAL)
+            .map(|i| {
+                let x = i as f64 / (VERTICAL - 1) as f64;
+                let radius_m = shell.radius_of_coordinate(x);
+                let stretch = 2.0 * x * shell.thickness_m();
+                [
+                    shell.vertical_columns_m(radius_m),
+                    shell
+                        .densities_at(radius_m)
+                        .map(|density| -density * stretch),
+                ]
+            })
+            .collect();
+        let rule = GaussRule::new(4);
+        let rows: Vec<Vec<PerConstituent>> = (0..ALTITUDES)
+            .into_par_iter()
+            .map(|i| {
+                let radius_m = shell.radius_of_coordinate(i as f64 / (ALTITUDES - 1) as f64);
+                let zenith = shell.integrate_columns_m(radius_m, 1.0, &rule);
+                (0..ANGLES)
+                    .map(|j| {
+                        let mu = (j as f64 / (ANGLES - 1) as f64).powi(2);
+                        let slant = shell.integrate_columns_m(radius_m, mu, &rule);
+                        std::array::from_fn(|c| zenith[c] / slant[c])
+                    })
+                    .collect()
+            })
+            .collect();
+        let mut inverse_air_mass: Vec<PerConstituent> = rows.concat();
+        // Where nothing of a constituent lies above, its air mass means nothing: carry the one below upwards, so that
+        // interpolation just beneath stays smooth.
+        for k in 0..inverse_air_mass.len() {
+            for c in 0..MAX_CONSTITUENTS {
+                if !inverse_air_mass[k][c].is_finite() {
+                    inverse_air_mass[k][c] = if k >= ANGLES {
+                        inverse_air_mass[k - ANGLES][c]
+                    } else {
+                        1.0
+                    };
+                }
+            }
+        }
+        Self {
+            vertical,
+            inverse_air_mass,
+        }
+    }
+
+    /// Columns from `radius_m` along `mu` to the top, in metres of density 1. A ray that starts downwards passes its
+    /// lowest point first: `N = 2 N(tangent, 0) - N(r, -mu)`.
+    #[inline(always)]
+    pub(super) fn to_space_m(&self, shell: &Shell, radius_m: f64, mu: f64) -> PerConstituent {
+        if mu >= 0.0 {
+            return self.upward_m(shell, radius_m, mu);
+        }
+        let tangent = (radius_m * (1.0 - mu * mu).max(0.0).sqrt()).max(shell.ground_radius_m);
+        let beyond = self.upward_m(shell, tangent, 0.0);
+        let above = self.upward_m(shell, radius_m, -mu);
+        std::array::from_fn(|c| (2.0 * beyond[c] - above[c]).max(0.0))
+    }
+
+    #[inline(always)]
+    fn upward_m(&self, shell: &Shell, radius_m: f64, mu: f64) -> PerConstituent {
+        let x = shell.altitude_coordinate(radius_m);
+        let vertical = self.vertical_m(x);
+        let (row, row_weights) = cubic(x, ALTITUDES);
+        let (column, column_weights) = cubic(mu.sqrt(), ANGLES);
+        let mut inverse = [0.0; MAX_CONSTITUENTS];
+        for (i, wi) in row_weights.iter().enumerate() {
+            for (j, wj) in column_weights.iter().enumerate() {
+                let entry = &self.inverse_air_mass[(row + i) * ANGLES + column + j];
+                let w = wi * wj;
+                for c in 0..MAX_CONSTITUENTS {
+                    inverse[c] += w * entry[c];
+                }
+            }
+        }
+        std::array::from_fn(|c| vertical[c] / inverse[c].max(1e-6))
+    }
+
+    /// Hermite interpolation of the vertical columns, whose slopes (the densities) are known.
+    #[inline(always)]
+    fn vertical_m(&self, x: f64) -> PerConstituent {
+        let position = x * (VERTICAL - 1) as f64;
+        let below = (position as usize).min(VERTICAL - 2);
+        let t = position - below as f64;
+        let step = 1.0 / (VERTICAL - 1) as f64;
+        let u = 1.0 - t;
+        let (h0, h1) = (u * u * (1.0 + 2.0 * t), t * t * (1.0 + 2.0 * u));
+        let (s0, s1) = (u * u * t * step, -t * t * u * step);
+        let ([v0, d0], [v1, d1]) = (&self.vertical[below], &self.vertical[below + 1]);
+        std::array::from_fn(|c| (h0 * v0[c] + h1 * v1[c] + s0 * d0[c] + s1 * d1[c]).max(0.0))
+    }
+}
+
+/// First node and weights of third-degree Lagrange interpolation at `x` in `[0, 1]` among `count` even nodes.
+#[inline(always)]
+fn cubic(x: f64, count: usize) -> (usize, [f64; 4]) {
+    let position = x * (count - 1) as f64;
+    let first = (position as usize).saturating_sub(1).min(count - 4);
+    let t = position - first as f64;
+    let (a, b, c, d) = (t, t - 1.0, t - 2.0, t - 3.0);
+    (
+        first,
+        [
+            -b * c * d / 6.0,
+            a * c * d / 2.0,
+            -a * b * d / 2.0,
+            a * b * c / 6.0,
+        ],
+    )
+}

@@ -1,0 +1,234 @@
+//! The angular moments of the light inside the atmosphere, on a grid of altitudes and sun angles.
+
+use super::air::Air;
+use super::harmonics::Harmonics;
+use super::ray::Ray;
+use super::shell::{PerConstituent, Shell};
+use crate::spectrum::Spectrum;
+
+/// Where the field is known: altitudes and cosines of the sun's zenith angle.
+#[derive(Clone, Debug)]
+pub struct FieldGrid {
+    /// Increasing, from the ground to the top of the atmosphere, m from the planet's centre.
+    pub radii_m: Vec<f64>,
+    /// Increasing cosines of the sun's zenith angle.
+    pub sun_cosines: Vec<f64>,
+}
+
+/// A place on an axis of the grid: between nodes `below` and `below + 1`, at `fraction` of the way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place {
+    /// The node below.
+    pub below: usize,
+    /// From 0 (at `below`) to 1 (at the next).
+    pub fraction: f32,
+}
+
+/// Where `x` lies among increasing `nodes` (at least two); held at the ends.
+#[inline(always)]
+fn place(nodes: &[f64], x: f64) -> Place {
+    let below = nodes
+        .partition_point(|&node| node <= x)
+        .clamp(1, nodes.len() - 1)
+        - 1;
+    let fraction = (x - nodes[below]) / (nodes[below + 1] - nodes[below]);
+    Place {
+        below,
+        fraction: fraction.clamp(0.0, 1.0) as f32,
+    }
+}
+
+impl FieldGrid {
+    /// `altitudes` heights, placed where the scatterers and the tables' own altitude coordinate ask for them, and the
+    /// given zenith angles of the sun (degrees, increasing).
+    pub fn new<const N: usize>(air: &Air<N>, altitudes: usize, sun_zeniths_deg: &[f64]) -> Self {
+        Self {
+            radii_m: radii_m(air, altitudes),
+            sun_cosines: sun_zeniths_deg
+                .iter()
+                .rev()
+                .map(|angle| angle.to_radians().cos())
+                .collect(),
+        }
+    }
+
+    /// Place of a distance from the planet's centre.
+    #[inline(always)]
+    pub fn place_of_radius(&self, radius_m: f64) -> Place {
+        place(&self.radii_m, radius_m)
+    }
+
+    /// Place of a sun cosine.
+    #[inline(always)]
+    pub fn place_of_sun(&self, mu_sun: f64) -> Place {
+        place(&self.sun_cosines, mu_sun)
+    }
+
+    /// Number of `(radius, sun cosine)` nodes.
+    pub fn points(&self) -> usize {
+        self.radii_m.len() * self.sun_cosines.len()
+    }
+}
+
+/// Heights at even steps of a measure that grows with the column of each scatterer passed and with height itself.
+fn radii_m<const N: usize>(air: &Air<N>, count: usize) -> Vec<f64> {
+    const SAMPLES: usize = 2000;
+    let shell: &Shell = &air.shell;
+    let ground = shell.vertical_columns_m(shell.ground_radius_m);
+    let share = 1.0 / air.scatterers.len().max(1) as f64;
+    let measure = |x: f64| -> f64 {
+        let columns = shell.vertical_columns_m(shell.radius_of_coordinate(x));
+        let passed: f64 = air
+            .scatterers
+            .iter()
+            .map(|s| share * (1.0 - columns[s.constituent] / ground[s.constituent].max(1e-30)))
+            .sum();
+        passed + x
+    };
+    let total = measure(1.0);
+    let mut radii = vec![shell.ground_radius_m];
+    for i in 1..SAMPLES {
+        let x = i as f64 / SAMPLES as f64;
+        if measure(x) >= total * radii.len() as f64 / (count - 1) as f64 && radii.len() < count - 1
+        {
+            radii.push(shell.radius_of_coordinate(x));
+        }
+    }
+    radii.push(shell.top_radius_m);
+    radii
+}
+
+/// Moments of the radiance, `A_lm = integral of L Y_lm`, at every node of a grid; and the diffuse irradiance of the
+/// ground. All per unit solar irradiance.
+///
+/// `A_00` is kept as its logarithm and the others as ratios to it: light falls by orders of magnitude as the sun goes
+/// down, and its logarithm is what can be interpolated.
+#[derive(Clone, Debug)]
+pub struct RadianceField<const N: usize> {
+    /// Where the moments are known.
+    pub grid: FieldGrid,
+    /// The basis of the moments.
+    pub basis: Harmonics,
+    /// `[radius][sun][harmonic]`.
+    moments: Vec<Spectrum<N>>,
+    /// Logarithm of the ground's diffuse irradiance at each sun cosine.
+    ground_irradiance: Vec<Spectrum<N>>,
+}
+
+/// The smallest intensity kept: below it a logarithm would mean nothing.
+const DARKNESS: f32 = 1e-34;
+
+impl<const N: usize> RadianceField<N> {
+    /// Converts plain moments, `[radius][sun][harmonic]`, and plain ground irradiances.
+    pub fn new(
+        grid: FieldGrid,
+        basis: Harmonics,
+        mut moments: Vec<Spectrum<N>>,
+        ground: &[Spectrum<N>],
+    ) -> Self {
+        for point in moments.chunks_exact_mut(basis.count()) {
+            let intensity = point[0].max_scalar(DARKNESS);
+            for ratio in &mut point[1..] {
+                *ratio = *ratio / intensity;
+            }
+            point[0] = intensity.ln();
+        }
+        let ground_irradiance = ground.iter().map(|e| e.max_scalar(DARKNESS).ln()).collect();
+        Self {
+            grid,
+            basis,
+            moments,
+            ground_irradiance,
+        }
+    }
+
+    #[inline(always)]
+    fn point(&self, radius: usize, sun: usize) -> &[Spectrum<N>] {
+        let count = self.basis.count();
+        let start = (radius * self.grid.sun_cosines.len() + sun) * count;
+        &self.moments[start..start + count]
+    }
+
+    /// Diffuse irradiance of the ground under the sun cosine `mu_sun`.
+    #[inline(always)]
+    pub fn ground_irradiance(&self, mu_sun: f64) -> Spectrum<N> {
+        let at = self.grid.place_of_sun(mu_sun);
+        let (a, b) = (
+            self.ground_irradiance[at.below],
+            self.ground_irradiance[at.below + 1],
+        );
+        (a * (1.0 - at.fraction) + b * at.fraction).exp()
+    }
+
+    /// Interpolates the stored form of the moments in altitude, for all sun cosines: `[sun][harmonic]` into `out`.
+    #[inline(always)]
+    pub fn at_radius(&self, at: Place, out: &mut Vec<Spectrum<N>>) {
+        let row = self.grid.sun_cosines.len() * self.basis.count();
+        let below = &self.moments[at.below * row..(at.below + 1) * row];
+        let above = &self.moments[(at.below + 1) * row..(at.below + 2) * row];
+        out.clear();
+        out.extend(
+            below
+                .iter()
+                .zip(above)
+                .map(|(a, b)| *a * (1.0 - at.fraction) + *b * at.fraction),
+        );
+    }
+
+    /// Light scattered towards the eye per metre (times solar irradiance) at a point `here` of a line of sight, from
+    /// light that has been scattered or reflected at least once. `harmonics` are those of the line of sight.
+    #[inline(always)]
+    pub fn source(
+        &self,
+        air: &Air<N>,
+        here: &Ray,
+        densities: &PerConstituent,
+        harmonics: &[f32],
+    ) -> Spectrum<N> {
+        let radius = self.grid.place_of_radius(here.radius_m);
+        let sun = self.grid.place_of_sun(here.mu_sun);
+        let corners = [
+            self.point(radius.below, sun.below),
+            self.point(radius.below, sun.below + 1),
+            self.point(radius.below + 1, sun.below),
+            self.point(radius.below + 1, sun.below + 1),
+        ];
+        let (fr, fs) = (radius.fraction, sun.fraction);
+        let weights = [
+            (1.0 - fr) * (1.0 - fs),
+            (1.0 - fr) * fs,
+            fr * (1.0 - fs),
+            fr * fs,
+        ];
+        let mut log_intensity = Spectrum::ZERO;
+        for (corner, &w) in corners.iter().zip(&weights) {
+            log_intensity = log_intensity.scale_acc(corner[0], w);
+        }
+        let mut sum = scattering_moment(air, densities, 0) * harmonics[0];
+        for l in 1..=self.basis.degree() {
+            let mut degree = Spectrum::ZERO;
+            for k in self.basis.span(l) {
+                for (corner, &w) in corners.iter().zip(&weights) {
+                    degree = degree.scale_acc(corner[k], w * harmonics[k]);
+                }
+            }
+            sum = sum.mul_acc(scattering_moment(air, densities, l), degree);
+        }
+        // Cut-off harmonics can dip below zero in directions that receive almost nothing.
+        sum.max_scalar(0.0) * log_intensity.exp()
+    }
+}
+
+/// Scattering coefficient times the l-th phase moment, summed over the scatterers, 1/m.
+#[inline(always)]
+pub fn scattering_moment<const N: usize>(
+    air: &Air<N>,
+    densities: &PerConstituent,
+    l: usize,
+) -> Spectrum<N> {
+    let mut sum = Spectrum::ZERO;
+    for s in &air.scatterers {
+        sum = sum.scale_acc(s.scattering * s.moments[l], densities[s.constituent] as f32);
+    }
+    sum
+}

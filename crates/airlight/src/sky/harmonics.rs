@@ -1,0 +1,232 @@
+//! Angular bases for fields that are mirror-symmetric about the sun's vertical plane.
+//!
+//! Such a field needs only the cosine harmonics `Y_lm(theta, phi)` with `0 <= m <= l`, here orthonormal over the whole
+//! sphere: `Y_lm = N_lm P_lm(cos theta) cos(m phi)`. They are evaluated from `mu = cos(theta)` and
+//! `a = sin(theta) cos(phi)`, both polynomials of the direction's components: no angle is ever computed, and nothing
+//! special happens at the zenith.
+//!
+//! High degrees matter only for aerosol, whose forward peak keeps the light that it scatters in a cone about the sun:
+//! what scattered light has of them is nearly symmetric about the sun's direction. So beyond a degree of choice one
+//! zonal harmonic about the sun, `Z_l = sqrt((2l + 1) / (4 pi)) P_l(nu)`, stands for the whole degree.
+
+use std::ops::RangeInclusive;
+
+/// Number of harmonics of degree up to `l_max`, all orders.
+const fn count_all_orders(l_max: usize) -> usize {
+    (l_max + 1) * (l_max + 2) / 2
+}
+
+/// Place of `Y_lm` in a list of harmonics.
+const fn index(l: usize, m: usize) -> usize {
+    l * (l + 1) / 2 + m
+}
+
+/// Evaluates a basis: holds its degrees, normalisations and recurrence coefficients.
+#[derive(Clone, Debug)]
+pub struct Harmonics {
+    /// Degree up to which every order is kept.
+    full: usize,
+    /// Degree up to which the zonal harmonic about the sun is kept.
+    zonal: usize,
+    /// For each `(l, m)`: the coefficients `(p, q)` of `Y_lm = p mu Y_(l-1)m - q Y_(l-2)m`, for `l > m`.
+    recurrence: Vec<(f32, f32)>,
+    /// Normalised `P_mm / sin^m(theta)`.
+    diagonal: Vec<f32>,
+}
+
+impl Harmonics {
+    /// All orders up to degree `full` (at most [`Harmonics::MAX_FULL`]) and zonal harmonics about the sun from there
+    /// to degree `zonal` (at most [`Harmonics::MAX_ZONAL`]).
+    pub fn new(full: usize, zonal: usize) -> Self {
+        assert!(full <= Self::MAX_FULL && full <= zonal && zonal <= Self::MAX_ZONAL);
+        let l_max = full;
+        let mut recurrence = vec![(0.0, 0.0); count_all_orders(l_max)];
+        for l in 1..=l_max {
+            for m in 0..l {
+                let (lf, mf) = (l as f64, m as f64);
+                let p = ((4.0 * lf * lf - 1.0) / (lf * lf - mf * mf)).sqrt();
+                let q = if l >= 2 {
+                    let below = lf - 1.0;
+                    p * ((below * below - mf * mf) / (4.0 * below * below - 1.0))
+                        .max(0.0)
+                        .sqrt()
+                } else {
+                    0.0
+                };
+                recurrence[index(l, m)] = (p as f32, q as f32);
+            }
+        }
+        // N_mm P_mm / sin^m = sqrt((2 - d_m0) (2m + 1) / (4 pi (2m)!)) (2m - 1)!!
+        let mut diagonal = Vec::with_capacity(l_max + 1);
+        let mut norm = 1.0 / (4.0 * std::f64::consts::PI);
+        for m in 0..=l_max {
+            let mf = m as f64;
+            if m > 0 {
+                // (2m - 1)!!^2 / (2m)! = prod (2k - 1) / (2k)
+                norm *= (2.0 * mf - 1.0) / (2.0 * mf);
+            }
+            let doubled = if m == 0 { 1.0 } else { 2.0 };
+            diagonal.push((norm * doubled * (2.0 * mf + 1.0)).sqrt() as f32);
+        }
+        Self {
+            full,
+            zonal,
+            recurrence,
+            diagonal,
+        }
+    }
+
+    /// The largest degree of which every order can be kept.
+    pub const MAX_FULL: usize = 12;
+    /// The largest degree of zonal harmonics.
+    pub const MAX_ZONAL: usize = 32;
+    /// The largest size of a basis: the size of the arrays that [`Harmonics::evaluate`] fills.
+    pub const MAX_COUNT: usize =
+        count_all_orders(Self::MAX_FULL) + Self::MAX_ZONAL - Self::MAX_FULL;
+
+    /// Number of functions in the basis.
+    #[inline(always)]
+    pub fn count(&self) -> usize {
+        count_all_orders(self.full) + self.zonal - self.full
+    }
+
+    /// The highest degree.
+    #[inline(always)]
+    pub fn degree(&self) -> usize {
+        self.zonal
+    }
+
+    /// Places of the functions of degree `l`.
+    #[inline(always)]
+    pub fn span(&self, l: usize) -> RangeInclusive<usize> {
+        if l <= self.full {
+            index(l, 0)..=index(l, l)
+        } else {
+            let place = count_all_orders(self.full) + l - self.full - 1;
+            place..=place
+        }
+    }
+
+    /// Writes the basis functions in the direction with `mu = cos(theta)`, `toward_sun = sin(theta) cos(phi)` and the
+    /// cosine `nu` to the sun.
+    #[inline(always)]
+    pub fn evaluate(&self, mu: f32, toward_sun: f32, nu: f32, out: &mut [f32]) {
+        self.evaluate_zonal(nu, out);
+        self.evaluate_local(mu, toward_sun, out);
+    }
+
+    /// The zonal part of [`Harmonics::evaluate`]: the same all along a straight ray.
+    #[inline(always)]
+    pub fn evaluate_zonal(&self, nu: f32, out: &mut [f32]) {
+        let (mut below, mut here) = (0.0f32, 1.0f32);
+        for l in 1..=self.zonal {
+            let n = l as f32;
+            (below, here) = (here, ((2.0 * n - 1.0) * nu * here - (n - 1.0) * below) / n);
+            if l > self.full {
+                let norm = ((2.0 * n + 1.0) * (0.25 * std::f32::consts::FRAC_1_PI)).sqrt();
+                out[*self.span(l).start()] = norm * here;
+            }
+        }
+    }
+
+    /// The part of [`Harmonics::evaluate`] that keeps all orders, in the frame of the local zenith.
+    #[inline(always)]
+    pub fn evaluate_local(&self, mu: f32, toward_sun: f32, out: &mut [f32]) {
+        let sin2 = (1.0 - mu * mu).max(0.0);
+        // sin^m cos(m phi) by Chebyshev's recurrence.
+        let (mut azimuthal_below, mut azimuthal) = (toward_sun, 1.0f32);
+        for m in 0..=self.full {
+            out[index(m, m)] = self.diagonal[m] * azimuthal;
+            let mut below = 0.0;
+            let mut here = out[index(m, m)];
+            for l in m + 1..=self.full {
+                let (p, q) = self.recurrence[index(l, m)];
+                let next = p * mu * here - q * below;
+                below = here;
+                here = next;
+                out[index(l, m)] = next;
+            }
+            let next = if m == 0 {
+                toward_sun
+            } else {
+                2.0 * toward_sun * azimuthal - sin2 * azimuthal_below
+            };
+            azimuthal_below = azimuthal;
+            azimuthal = next;
+        }
+    }
+}
+
+/// `P_l(x)` for `l` below `out.len()`.
+#[inline(always)]
+pub fn legendre(x: f64, out: &mut [f64]) {
+    for l in 0..out.len() {
+        out[l] = match l {
+            0 => 1.0,
+            1 => x,
+            _ => {
+                let n = l as f64;
+                ((2.0 * n - 1.0) * x * out[l - 1] - (n - 1.0) * out[l - 2]) / n
+            }
+        };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sky::quadrature::GaussRule;
+    use std::f64::consts::PI;
+
+    #[test]
+    fn harmonics_are_orthonormal_over_the_sphere() {
+        let l_max = 10;
+        let harmonics = Harmonics::new(l_max, l_max);
+        let n = harmonics.count();
+        let mut gram = vec![0.0f64; n * n];
+        let azimuths = 32;
+        for (mu, w) in GaussRule::new(16).on(-1.0, 1.0) {
+            for k in 0..azimuths {
+                let phi = 2.0 * PI * (k as f64 + 0.3) / f64::from(azimuths);
+                let mut y = vec![0.0; n];
+                let a = (1.0 - mu * mu).sqrt() * phi.cos();
+                harmonics.evaluate_local(mu as f32, a as f32, &mut y);
+                for i in 0..n {
+                    for j in 0..n {
+                        gram[i * n + j] +=
+                            f64::from(y[i]) * f64::from(y[j]) * w * 2.0 * PI / f64::from(azimuths);
+                    }
+                }
+            }
+        }
+        for i in 0..n {
+            for j in 0..n {
+                let want = if i == j { 1.0 } else { 0.0 };
+                assert!(
+                    (gram[i * n + j] - want).abs() < 1e-5,
+                    "{i} {j} {}",
+                    gram[i * n + j]
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn the_addition_theorem_holds() {
+        // sum_m Y_lm(a) Y_lm(b) = (2l + 1) / (4 pi) P_l(a.b), for both directions in the sun's plane.
+        let harmonics = Harmonics::new(8, 8);
+        let (mut ya, mut yb, mut p) = ([0.0; 45], [0.0; 45], [0.0; 9]);
+        let (ta, tb) = (0.7f64, 1.9f64);
+        harmonics.evaluate_local(ta.cos() as f32, ta.sin() as f32, &mut ya);
+        harmonics.evaluate_local(tb.cos() as f32, tb.sin() as f32, &mut yb);
+        legendre((ta - tb).cos(), &mut p);
+        for l in 0..=8 {
+            let sum: f32 = (0..=l).map(|m| ya[index(l, m)] * yb[index(l, m)]).sum();
+            let want = (2 * l + 1) as f64 / (4.0 * PI) * p[l];
+            assert!(
+                (f64::from(sum) - want).abs() < 1e-5,
+                "l = {l}: {sum} against {want}"
+            );
+        }
+    }
+}

@@ -1,0 +1,202 @@
+//! A straight line of sight in the frame of the planet's centre, and where it meets spheres and shadows.
+
+use glam::DVec3;
+
+/// A line of sight from a point, reduced to the four numbers that radiative transfer in a spherically symmetric
+/// atmosphere lit by a distant sun depends on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ray {
+    /// Distance of the starting point from the planet's centre, m.
+    pub radius_m: f64,
+    /// Cosine between the line of sight and the local zenith.
+    pub mu: f64,
+    /// Cosine between the sun and the local zenith.
+    pub mu_sun: f64,
+    /// Cosine between the line of sight and the sun.
+    pub nu: f64,
+}
+
+impl Ray {
+    /// The ray from `position` (m, from the planet's centre) along the unit vector `direction`, with the sun in the
+    /// direction of the unit vector `sun`.
+    pub fn new(position: DVec3, direction: DVec3, sun: DVec3) -> Self {
+        let radius_m = position.length();
+        let zenith = position / radius_m;
+        Self {
+            radius_m,
+            mu: zenith.dot(direction).clamp(-1.0, 1.0),
+            mu_sun: zenith.dot(sun).clamp(-1.0, 1.0),
+            nu: direction.dot(sun).clamp(-1.0, 1.0),
+        }
+    }
+
+    /// Distance from the planet's centre after travelling `t` metres.
+    #[inline(always)]
+    pub fn radius_at(&self, t: f64) -> f64 {
+        (self.radius_m * self.radius_m + t * (2.0 * self.radius_m * self.mu + t)).sqrt()
+    }
+
+    /// Height gained after `t` metres: `radius_at(t) - radius_m` without its cancellation.
+    #[inline(always)]
+    pub fn climb_at(&self, t: f64) -> f64 {
+        t * (2.0 * self.radius_m * self.mu + t) / (self.radius_at(t) + self.radius_m)
+    }
+
+    /// The same line of sight as seen from the point `t` metres along it.
+    #[inline(always)]
+    pub fn advanced(&self, t: f64) -> Self {
+        let radius_m = self.radius_at(t);
+        Self {
+            radius_m,
+            mu: ((self.radius_m * self.mu + t) / radius_m).clamp(-1.0, 1.0),
+            mu_sun: ((self.radius_m * self.mu_sun + t * self.nu) / radius_m).clamp(-1.0, 1.0),
+            nu: self.nu,
+        }
+    }
+
+    /// Where along the line it comes closest to the planet's centre (negative: behind the start), m.
+    #[inline(always)]
+    pub fn closest_approach_m(&self) -> f64 {
+        -self.radius_m * self.mu
+    }
+
+    /// The smallest distance of the whole line from the planet's centre, m.
+    #[inline(always)]
+    pub fn tangent_radius_m(&self) -> f64 {
+        self.radius_m * ((1.0 - self.mu) * (1.0 + self.mu)).max(0.0).sqrt()
+    }
+
+    /// The two (possibly negative) distances at which the line crosses the sphere of radius `radius_m` about the
+    /// planet's centre, or `None` where it passes outside.
+    pub fn crossings(&self, radius_m: f64) -> Option<(f64, f64)> {
+        let closest = self.closest_approach_m();
+        let tangent = self.tangent_radius_m();
+        if tangent > radius_m {
+            return None;
+        }
+        let half_chord = ((radius_m - tangent) * (radius_m + tangent)).sqrt();
+        // The product of the two roots is r^2 - R^2: take the small one from it, to keep its digits.
+        let product = (self.radius_m - radius_m) * (self.radius_m + radius_m);
+        let (near, far) = if closest >= 0.0 {
+            let far = closest + half_chord;
+            (if far > 0.0 { product / far } else { 0.0 }, far)
+        } else {
+            let near = closest - half_chord;
+            (near, product / near)
+        };
+        Some((near, far))
+    }
+
+    /// Distance to the ground sphere, where the ray starts above it (or on it, looking down) and meets it.
+    pub fn distance_to_ground(&self, ground_radius_m: f64) -> Option<f64> {
+        if self.mu >= 0.0 {
+            return None;
+        }
+        let (near, _) = self.crossings(ground_radius_m)?;
+        Some(near.max(0.0))
+    }
+
+    /// The distances at which the line enters and leaves the planet's cylindrical shadow (radius `ground_radius_m`,
+    /// on the side away from the sun), as far as they exist; unordered.
+    pub fn shadow_edges(&self, ground_radius_m: f64) -> [Option<f64>; 2] {
+        // |x|^2 - (x.s)^2 = R^2 along x(t): a t^2 + 2 b t + c = 0.
+        let a = (1.0 - self.nu) * (1.0 + self.nu);
+        let b = self.radius_m * (self.mu - self.mu_sun * self.nu);
+        let sin2 = (1.0 - self.mu_sun) * (1.0 + self.mu_sun);
+        let c = self.radius_m * self.radius_m * sin2 - ground_radius_m * ground_radius_m;
+        let discriminant = b * b - a * c;
+        if discriminant < 0.0 || a < 1e-14 {
+            return [None, None];
+        }
+        let q = -(b + discriminant.sqrt().copysign(b));
+        let behind_planet = |t: f64| {
+            (t.is_finite() && self.radius_m * self.mu_sun + t * self.nu < 0.0).then_some(t)
+        };
+        [behind_planet(q / a), behind_planet(c / q)]
+    }
+
+    /// `sin(theta) cos(phi)` of the line of sight in the local frame whose zenith is up and whose azimuth 0 is the
+    /// sun's; 0 where the sun stands in the zenith and azimuth means nothing.
+    #[inline(always)]
+    pub fn toward_sun(&self) -> f64 {
+        let sin2 = (1.0 - self.mu) * (1.0 + self.mu);
+        let sin2_sun = (1.0 - self.mu_sun) * (1.0 + self.mu_sun);
+        if sin2_sun < 1e-12 {
+            return 0.0;
+        }
+        let limit = sin2.max(0.0).sqrt();
+        ((self.nu - self.mu * self.mu_sun) / sin2_sun.sqrt()).clamp(-limit, limit)
+    }
+}
+
+/// True where the planet hides the sun from a point at `radius_m` with sun cosine `mu_sun`.
+#[inline(always)]
+pub fn in_shadow(radius_m: f64, mu_sun: f64, ground_radius_m: f64) -> bool {
+    mu_sun < 0.0
+        && radius_m * radius_m * (1.0 - mu_sun * mu_sun) < ground_radius_m * ground_radius_m
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const GROUND: f64 = 6_360_000.0;
+
+    fn ray(radius_m: f64, mu: f64) -> Ray {
+        Ray {
+            radius_m,
+            mu,
+            mu_sun: 0.3,
+            nu: 0.1,
+        }
+    }
+
+    #[test]
+    fn crossings_keep_their_digits_close_to_the_sphere() {
+        let eye = ray(GROUND + 0.001, -1.0);
+        assert!((eye.distance_to_ground(GROUND).unwrap() - 0.001).abs() < 1e-8);
+        let up = ray(GROUND, 0.0);
+        let (near, far) = up.crossings(GROUND).unwrap();
+        assert!(near.abs() < 1e-6 && far.abs() < 1e-6);
+        assert_eq!(up.distance_to_ground(GROUND), None);
+    }
+
+    #[test]
+    fn crossings_lie_on_the_sphere() {
+        for mu in [-1.0, -0.5, -0.14, 0.0, 0.2, 1.0] {
+            let ray = ray(GROUND + 30_000.0, mu);
+            let (near, far) = ray.crossings(GROUND + 60_000.0).unwrap();
+            assert!(near < 0.0 && far > 0.0);
+            for t in [near, far] {
+                assert!((ray.radius_at(t) - GROUND - 60_000.0).abs() < 1e-6);
+            }
+        }
+    }
+
+    #[test]
+    fn shadow_edges_lie_on_the_cylinder_behind_the_planet() {
+        let sun = DVec3::new(0.995, -0.0998, 0.0).normalize();
+        let position = DVec3::Y * (GROUND + 1.0);
+        for direction in [
+            DVec3::new(-0.9, 0.3, 0.2),
+            DVec3::new(0.9, 0.3, -0.2),
+            DVec3::Y,
+        ] {
+            let ray = Ray::new(position, direction.normalize(), sun);
+            let edges = ray.shadow_edges(GROUND);
+            assert!(edges.iter().any(Option::is_some));
+            for t in edges.into_iter().flatten() {
+                let x = position + t * direction.normalize();
+                let along = x.dot(sun);
+                assert!(along < 0.0);
+                assert!(((x.length_squared() - along * along).sqrt() - GROUND).abs() < 1e-3);
+            }
+        }
+    }
+
+    #[test]
+    fn the_climb_is_exact_for_short_steps() {
+        let ray = ray(GROUND, 1e-9);
+        assert!((ray.climb_at(1.0) - (1e-9 + 0.5 / GROUND)).abs() < 1e-15);
+    }
+}

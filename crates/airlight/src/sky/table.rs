@@ -1,0 +1,247 @@
+//! All directions of one view, tabulated: a picture's pixel costs a table look-up.
+//!
+//! Two tables, above and below the horizon (where radiance jumps), with rows crowding towards it as the square of an
+//! even coordinate, interpolated with third-degree polynomials. Everything that varies fast is kept out of the tables:
+//! light scattered once by a constituent with a peaked phase function is stored without it, and the phase function is
+//! applied for each pixel.
+
+use super::block::ChannelMatrix;
+use super::ray::Ray;
+use super::view::View;
+use crate::spectrum::{RgbSpace, rgb};
+use glam::DVec3;
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// What the channels of a table are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TableChannels {
+    /// Linear red, green and blue; luminance in cd/m^2 where (1, 1, 1) is 1 cd/m^2 of the space's white.
+    Rgb(RgbSpace),
+    /// Radiance at each wavelength of the sky's grid, W m^-2 sr^-1 nm^-1.
+    Spectral,
+}
+
+/// Steps in azimuth from the sun's to the opposite one.
+const AZIMUTHS: usize = 64;
+/// Rows from the horizon to the zenith.
+const ROWS_ABOVE: usize = 128;
+/// Rows from the horizon to the nadir.
+const ROWS_BELOW: usize = 96;
+/// Samples of a phase function in the sine of half the scattering angle.
+const PHASE_SAMPLES: usize = 4096;
+
+/// A view's radiance in every direction, without the sun's disc.
+pub struct SkyTable {
+    channels: usize,
+    sun: DVec3,
+    sun_azimuth: DVec3,
+    horizon_elevation: f64,
+    above: Half,
+    below: Half,
+    /// For each peaked scatterer, its phase function at even steps of the sine of half the scattering angle.
+    phases: Vec<Vec<f32>>,
+}
+
+/// The part of a table on one side of the horizon.
+struct Half {
+    /// Signed angle from the horizon to the last row, rad.
+    span: f64,
+    rows: usize,
+    /// `[row][azimuth][channel of each part]`.
+    values: Vec<f32>,
+}
+
+impl SkyTable {
+    pub(super) fn new(view: &View<'_>, channels: TableChannels) -> Self {
+        let sky = view.sky();
+        let shell = sky.shell();
+        let radius_m = view.radius_m();
+        let horizon_elevation = -(shell.ground_radius_m / radius_m).min(1.0).acos();
+        // From outside the air, nothing is seen above the line that grazes its top.
+        let ceiling = if radius_m > shell.top_radius_m {
+            -(shell.top_radius_m / radius_m).acos()
+        } else {
+            FRAC_PI_2
+        };
+        let matrices = channel_matrices(view, channels);
+        let peaked: Vec<usize> = sky
+            .atmosphere()
+            .constituents
+            .iter()
+            .enumerate()
+            .filter(|(_, c)| sky.grid().wavelengths_nm().iter().any(|&nm| c.phase.asymmetry(nm).abs() > 0.1))
+            .map(|(constituent, _)| constituent)
+            .collect();
+        let channel_count = matrices[0].weights.len();
+        let width = channel_count * (1 + peaked.len());
+        let half = |span: f64, rows: usize| {
+            let rays = half_rays(view, horizon_elevation, span, rows);
+            let mut values = vec![0.0; rays.len() * width];
+            for (block, matrix) in sky.blocks.iter().zip(&matrices) {
+                block.fill(&rays, matrix, &peaked, &mut values);
+            }
+            Half { span, rows, values }
+        };
+        // Blocks of wavelengths must agree on the phase function that pixels will be multiplied by: the first one's.
+        let phases = peaked
+            .iter()
+            .map(|&constituent| {
+                (0..=PHASE_SAMPLES)
+                    .map(|i| {
+                        let half_sine = i as f64 / PHASE_SAMPLES as f64;
+                        sky.blocks[0].peaked_phase(constituent, 1.0 - 2.0 * half_sine * half_sine) as f32
+                    })
+                    .collect()
+            })
+            .collect();
+        let horizontal = DVec3::new(view.sun().x, 0.0, view.sun().z);
+        Self {
+            channels: channel_count,
+            sun: view.sun(),
+            sun_azimuth: if horizontal.length() > 1e-9 { horizontal.normalize() } else { DVec3::X },
+            horizon_elevation,
+            above: half(ceiling - horizon_elevation, ROWS_ABOVE),
+            below: half(-FRAC_PI_2 - horizon_elevation, ROWS_BELOW),
+            phases,
+        }
+    }
+
+    /// Number of channels.
+    pub fn channels(&self) -> usize {
+        self.channels
+    }
+
+    /// Elevation of the horizon, rad (0 on the ground, negative above it).
+    pub fn horizon_elevation_rad(&self) -> f64 {
+        self.horizon_elevation
+    }
+
+    /// Writes the radiance along the unit vector `direction` into `out`, one value a channel.
+    #[inline]
+    pub fn sample(&self, direction: DVec3, out: &mut [f32]) {
+        let horizontal = direction.x.hypot(direction.z);
+        let elevation = direction.y.atan2(horizontal);
+        let cos_azimuth = if horizontal > 0.0 {
+            (direction.x * self.sun_azimuth.x + direction.z * self.sun_azimuth.z) / horizontal
+        } else {
+            1.0
+        };
+        let azimuth = cos_azimuth.clamp(-1.0, 1.0).acos();
+        let half = if elevation >= self.horizon_elevation { &self.above } else { &self.below };
+        let depth = (elevation - self.horizon_elevation) / half.span;
+        if depth > 1.0 {
+            out[..self.channels].fill(0.0);
+            return;
+        }
+        let half_sine = 0.5 * direction.distance(self.sun);
+        self.interpolate(half, depth.max(0.0).sqrt(), azimuth / PI, half_sine, out);
+    }
+
+    fn interpolate(&self, half: &Half, row: f64, azimuth: f64, half_sine: f64, out: &mut [f32]) {
+        let width = self.channels * (1 + self.phases.len());
+        let stride = (AZIMUTHS + 1) * width;
+        let (first_row, row_weights) = cubic(row, half.rows);
+        let (first_column, column_weights) = cubic_mirrored(azimuth);
+        let mut parts = [1.0f32; 1 + super::shell::MAX_CONSTITUENTS];
+        let position = (half_sine * PHASE_SAMPLES as f64).clamp(0.0, PHASE_SAMPLES as f64 - 1e-6);
+        let (below, fraction) = (position as usize, position.fract() as f32);
+        for (part, phase) in parts[1..].iter_mut().zip(&self.phases) {
+            *part = phase[below] * (1.0 - fraction) + phase[below + 1] * fraction;
+        }
+        out[..self.channels].fill(0.0);
+        for (i, &wr) in row_weights.iter().enumerate() {
+            for (j, &wc) in column_weights.iter().enumerate() {
+                let start = (first_row + i) * stride + first_column[j] * width;
+                let cell = &half.values[start..start + width];
+                let w = wr * wc;
+                for (part, values) in parts.iter().zip(cell.chunks_exact(self.channels)) {
+                    for (out, value) in out.iter_mut().zip(values) {
+                        *out += w * part * value;
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The rays of one half of the table, row by row.
+fn half_rays(view: &View<'_>, horizon: f64, span: f64, rows: usize) -> Vec<Ray> {
+    let mut rays = Vec::with_capacity(rows * (AZIMUTHS + 1));
+    let sun = view.ray(view.sun());
+    let mu_sun = sun.mu;
+    let sin_sun = ((1.0 - mu_sun) * (1.0 + mu_sun)).max(0.0).sqrt();
+    for row in 0..rows {
+        let x = row as f64 / (rows - 1) as f64;
+        // The horizon itself is a jump: start a hair's breadth from it.
+        let elevation = horizon + span * (x * x).max(1e-9);
+        let (mu, cos_elevation) = elevation.sin_cos();
+        for azimuth in 0..=AZIMUTHS {
+            let cos_azimuth = (PI * azimuth as f64 / AZIMUTHS as f64).cos();
+            rays.push(Ray {
+                radius_m: view.radius_m(),
+                mu,
+                mu_sun,
+                nu: (mu * mu_sun + cos_elevation * sin_sun * cos_azimuth).clamp(-1.0, 1.0),
+            });
+        }
+    }
+    rays
+}
+
+/// For each block of wavelengths, the weights that turn its lanes into the table's channels.
+fn channel_matrices(view: &View<'_>, channels: TableChannels) -> Vec<ChannelMatrix> {
+    let solar = view.solar_irradiance();
+    let grid = view.sky().grid();
+    let rows: Vec<Vec<f32>> = match channels {
+        TableChannels::Spectral => (0..solar.len())
+            .map(|channel| {
+                let mut row = vec![0.0; solar.len()];
+                row[channel] = solar[channel];
+                row
+            })
+            .collect(),
+        TableChannels::Rgb(space) => {
+            let from_xyz = space.from_xyz_matrix();
+            let lanes: Vec<[f64; 3]> = grid.xyz_weights().iter().map(|&w| rgb::apply(&from_xyz, w)).collect();
+            (0..3)
+                .map(|c| lanes.iter().zip(&solar).map(|(w, &e)| (w[c] * f64::from(e)) as f32).collect())
+                .collect()
+        }
+    };
+    let mut first = 0;
+    view.sky()
+        .blocks
+        .iter()
+        .map(|block| {
+            let lanes = first..first + block.lanes();
+            first = lanes.end;
+            ChannelMatrix { weights: rows.iter().map(|row| row[lanes.clone()].to_vec()).collect() }
+        })
+        .collect()
+}
+
+/// First node and weights of third-degree Lagrange interpolation at `x` in `[0, 1]` among `count` even nodes.
+#[inline(always)]
+fn cubic(x: f64, count: usize) -> (usize, [f32; 4]) {
+    let position = x * (count - 1) as f64;
+    let first = (position as usize).saturating_sub(1).min(count - 4);
+    (first, cubic_weights((position - first as f64) as f32))
+}
+
+/// The same in azimuth, where the table is its own mirror image beyond both ends.
+#[inline(always)]
+fn cubic_mirrored(x: f64) -> ([usize; 4], [f32; 4]) {
+    let position = x * AZIMUTHS as f64;
+    let first = (position as isize).min(AZIMUTHS as isize - 1) - 1;
+    let nodes = std::array::from_fn(|k| {
+        let node = (first + k as isize).unsigned_abs();
+        if node > AZIMUTHS { 2 * AZIMUTHS - node } else { node }
+    });
+    (nodes, cubic_weights((position - first as f64) as f32))
+}
+
+#[inline(always)]
+fn cubic_weights(t: f32) -> [f32; 4] {
+    let (a, b, c, d) = (t, t - 1.0, t - 2.0, t - 3.0);
+    [-b * c * d / 6.0, a * c * d / 2.0, -a * b * d / 2.0, a * b * c / 6.0]
+}
