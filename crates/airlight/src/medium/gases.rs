@@ -37,25 +37,21 @@ pub fn air(sea_level_pressure_pa: f64) -> Constituent {
 
 /// Altitude (km) and ozone molecules per cubic metre (1e18): the mid-latitude model that the U.S. Standard Atmosphere 1976
 /// adopts (Krueger & Minzner, J. Geophys. Res. 81, 4477, 1976), of whose 37 samples, every 2 km from 2 to 74 km, these
-/// are enough to stay within 2 % of the peak. Fewer samples are fewer panels for a solver.
-const OZONE_KM_1E18_PER_M3: [(f64, f64); 13] = [
+/// are enough to stay within 4 % of the peak. Fewer samples are fewer panels for a solver.
+const OZONE_KM_1E18_PER_M3: [(f64, f64); 9] = [
     (2.0, 0.68),
     (8.0, 0.65),
     (12.0, 2.02),
-    (16.0, 2.95),
-    (18.0, 4.04),
     (20.0, 4.77),
     (22.0, 4.86),
-    (24.0, 4.54),
     (26.0, 4.03),
     (32.0, 2.03),
     (36.0, 1.22),
-    (40.0, 0.607),
     (74.0, 0.000_17),
 ];
 
 /// The density of ozone relative to its peak at 22 km: straight lines in the logarithm, constant below 2 km, zero above
-/// 74 km. Within 2 % of the peak of the model it is taken from.
+/// 74 km. Within 4 % of the peak of the model it is taken from.
 pub fn ozone_profile() -> DensityProfile {
     let (altitudes, densities) = OZONE_KM_1E18_PER_M3
         .iter()
@@ -133,7 +129,7 @@ mod tests {
         for (i, density) in model.iter().enumerate() {
             let got = 4.86 * profile.at(2e3 * (i as f64 + 1.0));
             assert!(
-                (got - density).abs() < 0.02 * 4.86,
+                (got - density).abs() < 0.04 * 4.86,
                 "sample {i}: {got} against {density}"
             );
         }
