@@ -5,6 +5,9 @@ use airlight::axes;
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
+/// How far beyond a fisheye's circle rounding may put a direction on it, relatively.
+const RIM: f64 = 1e-12;
+
 /// A projection made ready for one picture size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Lens {
@@ -121,7 +124,7 @@ impl Lens {
                 let (x, y) = (px - center.0, center.1 - py);
                 let radius = x.hypot(y);
                 let theta = radius * radians_per_pixel;
-                if theta > *half_angle {
+                if theta > half_angle * (1.0 + RIM) {
                     return None;
                 }
                 if radius == 0.0 {
@@ -169,7 +172,7 @@ impl Lens {
                 let (x, y, z) = view.split(direction);
                 let sideways = x.hypot(y);
                 let theta = sideways.atan2(z);
-                if theta > half_angle * (1.0 + 1e-12) {
+                if theta > half_angle * (1.0 + RIM) {
                     return None;
                 }
                 let radius = theta / radians_per_pixel;

@@ -4,27 +4,29 @@ use super::{
     Metadata, Written,
     bands::{Bands, RowBuffer},
     deflate::{Deflater, End},
-    exr_header, into_file,
+    exr_header,
+    exr_stream::ScanLineStream,
+    into_file,
 };
 use crate::{Control, RenderError, RowSource, Size};
 use ::exr::{
     block::{
         BlockIndex, UncompressedBlock,
-        chunk::{Chunk, CompressedBlock, CompressedScanLineBlock},
-        writer::ChunksWriter,
+        chunk::{CompressedBlock, CompressedScanLineBlock},
     },
     compression::Compression,
     error::Error as ExrError,
     math::Vec2,
-    meta::{Headers, header::Header},
+    meta::header::Header,
 };
 use half::{f16, slice::HalfFloatSliceExt};
 use std::{
     io::{Seek, Write},
+    ops::Range,
     path::Path,
 };
 
-const FORMAT: &str = "OpenEXR";
+pub(super) const FORMAT: &str = "OpenEXR";
 
 /// How samples are stored.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -97,39 +99,28 @@ pub fn encode<W: Write + Seek + Send>(
     let (header, order) = exr_header::build(size, channels, options, metadata)?;
     let lines = header.compression.scan_lines_per_block() as u32;
     let block_bytes = header.channels.bytes_per_pixel * size.width() as usize * lines as usize;
-    let headers: Headers = std::iter::once(header).collect();
     let bands = Bands::of_rows(size, lines);
     let mut written = Written::default();
-    let mut fault = None;
-    let outcome = ::exr::block::write(out, headers, true, |meta, chunks| {
-        let encoder = BlockEncoder {
-            source,
-            size,
-            order: &order,
-            headers: &meta.headers,
-            half: options.sample == ExrSample::Half,
-        };
-        bands
-            .run(
-                block_bytes * 4,
-                control,
-                |band| encoder.block(bands.rows(band)),
-                |band, (chunk, counts)| {
-                    written.clamped_samples += counts.clamped_samples;
-                    written.nan_samples += counts.nan_samples;
-                    chunks.write_chunk(band as usize, chunk).map_err(failed)
-                },
-            )
-            .map_err(|error| {
-                fault = Some(error);
-                ExrError::Aborted
-            })
-    });
-    match (fault, outcome) {
-        (Some(error), _) => Err(error),
-        (None, Err(error)) => Err(failed(error)),
-        (None, Ok(())) => Ok(written),
-    }
+    let mut stream = ScanLineStream::start(out, &header)?;
+    let encoder = BlockEncoder {
+        source,
+        size,
+        order: &order,
+        headers: std::slice::from_ref(&header),
+        half: options.sample == ExrSample::Half,
+    };
+    bands.run(
+        block_bytes * 4,
+        control,
+        |band| encoder.block(bands.rows(band)),
+        |band, (packed, counts)| {
+            written.clamped_samples += counts.clamped_samples;
+            written.nan_samples += counts.nan_samples;
+            stream.block(bands.rows(band).start, &packed)
+        },
+    )?;
+    stream.finish()?;
+    Ok(written)
 }
 
 fn check_channels(channels: &[&str], source: &dyn RowSource) -> Result<(), RenderError> {
@@ -163,7 +154,7 @@ struct BlockEncoder<'a> {
 
 impl BlockEncoder<'_> {
     /// The compressed block of these rows.
-    fn block(&self, rows: std::ops::Range<u32>) -> Result<(Chunk, Written), RenderError> {
+    fn block(&self, rows: Range<u32>) -> Result<(Vec<u8>, Written), RenderError> {
         let width = self.size.width() as usize;
         let pixel_bytes = self.headers[0].channels.bytes_per_pixel;
         let mut counts = Written::default();
@@ -214,27 +205,34 @@ impl BlockEncoder<'_> {
         }
     }
 
-    fn compress(&self, data: Vec<u8>, rows: &std::ops::Range<u32>) -> Result<Chunk, RenderError> {
-        let header = &self.headers[0];
-        match header.compression {
-            Compression::ZIP1 | Compression::ZIP16 if cfg!(target_endian = "little") => Ok(Chunk {
-                layer_index: 0,
-                compressed_block: CompressedBlock::ScanLine(CompressedScanLineBlock {
-                    y_coordinate: rows.start as i32,
-                    compressed_pixels_le: zip(data)?,
-                }),
-            }),
-            _ => UncompressedBlock {
-                index: BlockIndex {
-                    layer: 0,
-                    pixel_position: Vec2(0, rows.start as usize),
-                    pixel_size: Vec2(self.size.width() as usize, rows.len()),
-                    level: Vec2(0, 0),
-                },
-                data,
-            }
+    fn compress(&self, data: Vec<u8>, rows: &Range<u32>) -> Result<Vec<u8>, RenderError> {
+        let compression = self.headers[0].compression;
+        let is_zip = matches!(compression, Compression::ZIP1 | Compression::ZIP16);
+        if is_zip && cfg!(target_endian = "little") {
+            return zip(data);
+        }
+        let block = UncompressedBlock {
+            index: BlockIndex {
+                layer: 0,
+                pixel_position: Vec2(0, rows.start as usize),
+                pixel_size: Vec2(self.size.width() as usize, rows.len()),
+                level: Vec2(0, 0),
+            },
+            data,
+        };
+        match block
             .compress_to_chunk(self.headers)
-            .map_err(failed),
+            .map_err(failed)?
+            .compressed_block
+        {
+            CompressedBlock::ScanLine(CompressedScanLineBlock {
+                compressed_pixels_le,
+                ..
+            }) => Ok(compressed_pixels_le),
+            _ => Err(RenderError::Encode {
+                format: FORMAT,
+                reason: "scan lines were packed as something else".to_owned(),
+            }),
         }
     }
 }
@@ -257,7 +255,7 @@ fn zip(data: Vec<u8>) -> Result<Vec<u8>, RenderError> {
     })
 }
 
-fn failed(error: ExrError) -> RenderError {
+pub(super) fn failed(error: ExrError) -> RenderError {
     match error {
         ExrError::Io(source) => RenderError::Stream {
             format: FORMAT,

@@ -8,6 +8,7 @@ mod bands;
 mod deflate;
 pub mod exr;
 mod exr_header;
+mod exr_stream;
 pub mod hdr;
 pub mod jpeg;
 mod metadata;

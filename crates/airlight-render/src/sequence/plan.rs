@@ -73,8 +73,8 @@ impl SequencePlan {
         } = *self;
         (0..self.count).map(move |index| FrameStep {
             number: index + 1,
-            // No overflow: the last of these was checked to lie at or before the end.
-            time_s: start_s.saturating_add(every_s.saturating_mul(index as i64)),
+            // The result lies between start and end, even where a step from the start overflows on the way.
+            time_s: start_s.wrapping_add(every_s.wrapping_mul(index as i64)),
         })
     }
 }

@@ -14,18 +14,19 @@ const STEPS_LOG2: u32 = 8;
 const SHIFT: u32 = 23 - STEPS_LOG2;
 
 impl OctaveTable {
-    /// Tabulates `f` from `lowest` to `highest`, both positive and normal.
+    /// Tabulates `f` from `lowest` to `highest`, both positive and normal, and up to a step beyond.
     pub(super) fn new(lowest: f32, highest: f32, f: impl Fn(f64) -> f64) -> Self {
         let first_bits = lowest.to_bits() >> SHIFT << SHIFT;
-        let steps = (highest.to_bits() - first_bits) >> SHIFT;
-        let values = (0..=steps + 1)
-            .map(|i| f(f64::from(f32::from_bits(first_bits + (i << SHIFT)))) as f32)
-            .collect();
+        let steps = (highest.to_bits() - first_bits).div_ceil(1 << SHIFT);
+        let sample_at = |i: u32| f32::from_bits(first_bits + (i << SHIFT));
         Self {
-            lowest,
-            highest,
+            lowest: sample_at(0),
+            highest: sample_at(steps),
             first_bits,
-            values,
+            // One more than is read with any weight, so that the last step needs no special case.
+            values: (0..=steps + 1)
+                .map(|i| f(f64::from(sample_at(i))) as f32)
+                .collect(),
         }
     }
 
