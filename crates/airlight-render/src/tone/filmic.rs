@@ -164,7 +164,9 @@ impl FilmicSettings {
     fn display_light(&self, v: f64) -> f64 {
         let stops = (v / MIDDLE_GREY).log2();
         let x = (stops + self.black_stops) / (self.black_stops + self.white_stops);
-        let x = x.clamp(0.0, 1.0);
+        if x <= 0.0 || x >= 1.0 {
+            return x.clamp(0.0, 1.0);
+        }
         let pivot = self.pivot();
         let bend = |width: f64, height: f64, power: f64, distance: f64| {
             let reach = self.slope * width;
