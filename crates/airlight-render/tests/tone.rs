@@ -180,7 +180,7 @@ fn dither_is_balanced_and_the_same_every_time() {
         let mut row = RowDither::new(y);
         let mut before = 0.0;
         for _ in 0..columns {
-            let noise = row.next_pixel();
+            let noise = row.next_pixels::<1>().map(|[v]| v);
             for c in 0..3 {
                 assert!(noise[c].abs() < 1.0);
                 sum[c] += f64::from(noise[c]);
@@ -197,10 +197,12 @@ fn dither_is_balanced_and_the_same_every_time() {
     }
     // Neighbours lean to opposite sides: the noise is fine-grained.
     assert!((next_to / count + 1.0 / 12.0).abs() < 2e-3);
-    assert_eq!(
-        RowDither::new(7).next_pixel(),
-        RowDither::new(7).next_pixel()
-    );
+    // However many are asked for at a time.
+    let many = RowDither::new(7).next_pixels::<5>();
+    let mut one = RowDither::new(7);
+    for i in 0..5 {
+        assert_eq!(one.next_pixels::<1>(), many.map(|plane| [plane[i]]));
+    }
 }
 
 #[test]

@@ -22,16 +22,29 @@ impl RowDither {
         }
     }
 
-    /// Noise for the three components of the next pixel, in steps: each in `(-1, 1)`, mean 0, variance 1/6.
+    /// Noise for the three components of the next N pixels, component by component, in steps: each in `(-1, 1)`, mean
+    /// 0, variance 1/6.
     #[inline(always)]
-    pub fn next_pixel(&mut self) -> [f32; 3] {
-        self.column = self.column.wrapping_add(1);
-        let now = split(scramble(
-            self.seed
-                .wrapping_add(self.column.wrapping_mul(0x9e37_79b9)),
-        ));
-        let noise = std::array::from_fn(|c| now[c] - self.last[c]);
-        self.last = now;
+    pub fn next_pixels<const N: usize>(&mut self) -> [[f32; N]; 3] {
+        let mut now = [[0.0; N]; 3];
+        for i in 0..N {
+            let column = self.column.wrapping_add(1 + i as u32);
+            let bits = scramble(self.seed.wrapping_add(column.wrapping_mul(0x9e37_79b9)));
+            let values = split(bits);
+            for (plane, value) in now.iter_mut().zip(values) {
+                plane[i] = value;
+            }
+        }
+        self.column = self.column.wrapping_add(N as u32);
+        let mut noise = now;
+        for ((noise, now), last) in noise.iter_mut().zip(&now).zip(&mut self.last) {
+            for i in 0..N {
+                noise[i] -= if i == 0 { *last } else { now[i - 1] };
+            }
+            if let Some(end) = now.last() {
+                *last = *end;
+            }
+        }
         noise
     }
 }

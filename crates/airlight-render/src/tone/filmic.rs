@@ -15,7 +15,10 @@
 //! (0.2120, 0.3922, 0.3958). After the curve the exact inverse, `c = (c' - s (w . c')) / (1 - s)` as the weights sum to
 //! 1, gives the saturation back where the curve was straight.
 
-use super::{srgb, table::OctaveTable};
+use super::{
+    planes::{Planes, into_unit_cube, mix},
+    table::OctaveTable,
+};
 use crate::RenderError;
 
 /// Linear value of middle grey.
@@ -141,13 +144,16 @@ impl Filmic {
         &self.settings
     }
 
-    /// Display light in `[0, 1]` of an exposed linear colour whose components are not negative.
+    /// Display light in `[0, 1]` of exposed linear colours whose components are not negative.
     #[inline(always)]
-    pub(super) fn apply(&self, rgb: [f32; 3]) -> [f32; 3] {
-        let drawn_in = mix(rgb, 1.0 - self.inset, self.inset);
-        let shaped = drawn_in.map(|v| self.table.at(v));
-        let out = mix(shaped, self.outset_scale, -self.inset * self.outset_scale);
-        into_unit_cube(out)
+    pub(super) fn apply<const N: usize>(&self, planes: &mut Planes<N>) {
+        mix(planes, INSET_WEIGHTS, 1.0 - self.inset, self.inset);
+        for v in planes.as_flattened_mut() {
+            *v = self.table.at(*v);
+        }
+        let share = -self.inset * self.outset_scale;
+        mix(planes, INSET_WEIGHTS, self.outset_scale, share);
+        into_unit_cube(planes);
     }
 }
 
@@ -187,44 +193,4 @@ impl FilmicSettings {
         };
         signal.clamp(0.0, 1.0).powf(SIGNAL_POWER)
     }
-}
-
-/// `keep * c + share * (weighted mean of c)`.
-#[inline(always)]
-fn mix(rgb: [f32; 3], keep: f32, share: f32) -> [f32; 3] {
-    let [r, g, b] = INSET_WEIGHTS;
-    let mean = r * rgb[0] + g * rgb[1] + b * rgb[2];
-    rgb.map(|v| keep * v + share * mean)
-}
-
-/// Raises a colour with negative components (outside the gamut) along the line to grey of its own luminance until none
-/// is negative; black where the luminance is not positive.
-#[inline(always)]
-pub(super) fn without_negatives(rgb: [f32; 3]) -> [f32; 3] {
-    let least = rgb[0].min(rgb[1]).min(rgb[2]);
-    if least >= 0.0 {
-        return rgb;
-    }
-    let grey = srgb::luminance(rgb);
-    if grey <= 0.0 {
-        return [0.0; 3];
-    }
-    let part = grey / (grey - least);
-    rgb.map(|v| (grey + part * (v - grey)).max(0.0))
-}
-
-/// Brings a colour into `[0, 1]` along the line to grey of its own luminance.
-#[inline(always)]
-fn into_unit_cube(rgb: [f32; 3]) -> [f32; 3] {
-    let rgb = without_negatives(rgb);
-    let most = rgb[0].max(rgb[1]).max(rgb[2]);
-    if most <= 1.0 {
-        return rgb;
-    }
-    let grey = srgb::luminance(rgb);
-    if grey >= 1.0 {
-        return [1.0; 3];
-    }
-    let part = (1.0 - grey) / (most - grey);
-    rgb.map(|v| (grey + part * (v - grey)).clamp(0.0, 1.0))
 }

@@ -7,6 +7,7 @@ pub mod dither;
 pub mod exposure;
 mod filmic;
 mod mapper;
+mod planes;
 pub mod srgb;
 mod table;
 

@@ -6,7 +6,8 @@ pub(super) struct OctaveTable {
     lowest: f32,
     highest: f32,
     first_bits: u32,
-    values: Vec<f32>,
+    /// Each sample, and how much greater the next one is.
+    samples: Vec<[f32; 2]>,
 }
 
 /// Samples in each octave: 2^8.
@@ -23,9 +24,13 @@ impl OctaveTable {
             lowest: sample_at(0),
             highest: sample_at(steps),
             first_bits,
-            // One more than is read with any weight, so that the last step needs no special case.
-            values: (0..=steps + 1)
-                .map(|i| f(f64::from(sample_at(i))) as f32)
+            samples: (0..=steps)
+                .map(|i| {
+                    let value = f(f64::from(sample_at(i))) as f32;
+                    // Beyond the last sample nothing is read with any weight.
+                    let next = f(f64::from(sample_at((i + 1).min(steps)))) as f32;
+                    [value, next - value]
+                })
                 .collect(),
         }
     }
@@ -38,7 +43,7 @@ impl OctaveTable {
         let bits = x.to_bits() - self.first_bits;
         let step = (bits >> SHIFT) as usize;
         let part = (bits & ((1 << SHIFT) - 1)) as f32 * (1.0 / (1 << SHIFT) as f32);
-        let (low, high) = (self.values[step], self.values[step + 1]);
-        low + (high - low) * part
+        let [value, rise] = self.samples[step];
+        value + rise * part
     }
 }
