@@ -39,9 +39,6 @@ pub trait Block: Send + Sync {
     /// Light along one ray.
     fn trace(&self, ray: &Ray, limit_m: f64) -> BlockLight;
 
-    /// Radiance of the ground under the sun cosine `mu_sun`, per unit solar irradiance.
-    fn ground_radiance(&self, mu_sun: f64) -> Vec<f32>;
-
     /// Transmittance from a point to space along `mu`; 0 where the planet is in the way.
     fn transmittance_to_space(&self, radius_m: f64, mu: f64) -> Vec<f32>;
 
@@ -62,8 +59,18 @@ pub fn solve(
     settings: &SkySettings,
 ) -> Result<Vec<Box<dyn Block>>, SkyError> {
     match wavelengths_nm.len() {
-        0..=4 => Ok(vec![Solved::<4>::boxed(atmosphere, shell, wavelengths_nm, settings)]),
-        5..=8 => Ok(vec![Solved::<8>::boxed(atmosphere, shell, wavelengths_nm, settings)]),
+        0..=4 => Ok(vec![Solved::<4>::boxed(
+            atmosphere,
+            shell,
+            wavelengths_nm,
+            settings,
+        )]),
+        5..=8 => Ok(vec![Solved::<8>::boxed(
+            atmosphere,
+            shell,
+            wavelengths_nm,
+            settings,
+        )]),
         _ => Ok(wavelengths_nm
             .chunks(16)
             .map(|chunk| match chunk.len() {
@@ -90,12 +97,20 @@ impl<const N: usize> Solved<N> {
     ) -> Box<dyn Block> {
         let lanes = wavelengths_nm.len();
         let padded = std::array::from_fn(|lane| wavelengths_nm[lane.min(lanes - 1)]);
-        let air = Air::<N>::new(atmosphere, shell.clone(), padded, settings.orders.zonal_degree);
-        let field = (settings.scattering == Scattering::All && !air.scatterers.is_empty()).then(|| {
-            let zeniths = settings.suns.sun_zeniths_deg(shell.ground_radius_m, shell.top_radius_m);
-            let grid = FieldGrid::new(&air, settings.altitudes, &zeniths);
-            orders::solve(&air, grid, &settings.orders)
-        });
+        let air = Air::<N>::new(
+            atmosphere,
+            shell.clone(),
+            padded,
+            settings.orders.zonal_degree,
+        );
+        let field =
+            (settings.scattering == Scattering::All && !air.scatterers.is_empty()).then(|| {
+                let zeniths = settings
+                    .suns
+                    .sun_zeniths_deg(shell.ground_radius_m, shell.top_radius_m);
+                let grid = FieldGrid::new(&air, settings.altitudes, &zeniths);
+                orders::solve(&air, grid, &settings.orders)
+            });
         Box::new(Self { air, field, lanes })
     }
 
@@ -124,13 +139,14 @@ impl<const N: usize> Block for Solved<N> {
         }
     }
 
-    fn ground_radiance(&self, mu_sun: f64) -> Vec<f32> {
-        self.used(&self.tracer().ground_radiance(mu_sun))
-    }
-
     fn transmittance_to_space(&self, radius_m: f64, mu: f64) -> Vec<f32> {
         let shell = &self.air.shell;
-        let ray = Ray { radius_m, mu, mu_sun: 1.0, nu: mu };
+        let ray = Ray {
+            radius_m,
+            mu,
+            mu_sun: 1.0,
+            nu: mu,
+        };
         if ray.distance_to_ground(shell.ground_radius_m).is_some() {
             return vec![0.0; self.lanes];
         }
@@ -138,14 +154,26 @@ impl<const N: usize> Block for Solved<N> {
             return vec![1.0; self.lanes];
         };
         let entry = ray.advanced(stretch.start_m);
-        self.used(&self.air.transmittance(&shell.columns_to_space_m(entry.radius_m, entry.mu)))
+        self.used(
+            &self
+                .air
+                .transmittance(&shell.columns_to_space_m(entry.radius_m, entry.mu)),
+        )
     }
 
     fn peaked_phase(&self, constituent: usize, nu: f64) -> f64 {
-        let scatterer = self.air.scatterers.iter().find(|s| s.constituent == constituent);
+        let scatterer = self
+            .air
+            .scatterers
+            .iter()
+            .find(|s| s.constituent == constituent);
         scatterer.map_or(0.0, |s| {
             let phase = s.phase(&self.air, nu);
-            phase.0[..self.lanes].iter().map(|&p| f64::from(p)).sum::<f64>() / self.lanes as f64
+            phase.0[..self.lanes]
+                .iter()
+                .map(|&p| f64::from(p))
+                .sum::<f64>()
+                / self.lanes as f64
         })
     }
 
@@ -159,31 +187,37 @@ impl<const N: usize> Block for Solved<N> {
             .map(|row| Spectrum::from_fn(|lane| if lane < self.lanes { row[lane] } else { 0.0 }))
             .collect();
         let arch = Arch::new();
-        out.par_chunks_mut(width * CHUNK).zip(rays.par_chunks(CHUNK)).for_each(|(out, rays)| {
-            arch.dispatch(
-                #[inline(always)]
-                || {
-                    let mut tracer = self.tracer();
-                    for (ray, out) in rays.iter().zip(out.chunks_exact_mut(width)) {
-                        let light = tracer.trace(ray, f64::INFINITY);
-                        let (smooth, rest) = out.split_at_mut(channels);
-                        let mut sum = light.multiple + light.ground;
-                        for (s, unphased) in self.air.scatterers.iter().zip(&light.unphased) {
-                            let phase = s.phase(&self.air, ray.nu);
-                            match peaked.iter().position(|&c| c == s.constituent) {
-                                None => sum = sum.mul_acc(*unphased, phase),
-                                Some(place) => {
-                                    let mean = self.peaked_phase(s.constituent, ray.nu) as f32;
-                                    let value = *unphased * phase / mean;
-                                    add_channels(&mut rest[place * channels..][..channels], &weights, &value);
+        out.par_chunks_mut(width * CHUNK)
+            .zip(rays.par_chunks(CHUNK))
+            .for_each(|(out, rays)| {
+                arch.dispatch(
+                    #[inline(always)]
+                    || {
+                        let mut tracer = self.tracer();
+                        for (ray, out) in rays.iter().zip(out.chunks_exact_mut(width)) {
+                            let light = tracer.trace(ray, f64::INFINITY);
+                            let (smooth, rest) = out.split_at_mut(channels);
+                            let mut sum = light.multiple + light.ground;
+                            for (s, unphased) in self.air.scatterers.iter().zip(&light.unphased) {
+                                let phase = s.phase(&self.air, ray.nu);
+                                match peaked.iter().position(|&c| c == s.constituent) {
+                                    None => sum = sum.mul_acc(*unphased, phase),
+                                    Some(place) => {
+                                        let mean = self.peaked_phase(s.constituent, ray.nu) as f32;
+                                        let value = *unphased * phase / mean;
+                                        add_channels(
+                                            &mut rest[place * channels..][..channels],
+                                            &weights,
+                                            &value,
+                                        );
+                                    }
                                 }
                             }
+                            add_channels(smooth, &weights, &sum);
                         }
-                        add_channels(smooth, &weights, &sum);
-                    }
-                },
-            );
-        });
+                    },
+                );
+            });
     }
 }
 

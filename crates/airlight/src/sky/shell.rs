@@ -221,7 +221,10 @@ fn panel_altitudes_m(
         .flat_map(|((density, &floor), &scatters)| {
             let peak = floor / if scatters { 0.003 } else { 0.1 };
             let allowed = peak * if scatters { 0.2 } else { 0.8 };
-            density.breakpoints_m().into_iter().filter(move |&h| sharpness(density, h, top - bottom) > allowed)
+            density
+                .breakpoints_m()
+                .into_iter()
+                .filter(move |&h| sharpness(density, h, top - bottom) > allowed)
         })
         .filter(|&h| h > bottom && h < top)
         .collect();
@@ -258,7 +261,8 @@ fn panel_altitudes_m(
 /// How much a density jumps at an altitude, plus how far its change of slope leads away over an eighth of the shell.
 fn sharpness(density: &DensityProfile, altitude_m: f64, thickness_m: f64) -> f64 {
     let step = 1e-6 * thickness_m;
-    let [below2, below, above, above2] = [-2.0, -1.0, 1.0, 2.0].map(|k| density.at(altitude_m + k * step));
+    let [below2, below, above, above2] =
+        [-2.0, -1.0, 1.0, 2.0].map(|k| density.at(altitude_m + k * step));
     let jump = (above - below).abs();
     let bend = ((above2 - above) - (below - below2)).abs() / step;
     jump + bend * thickness_m / 8.0

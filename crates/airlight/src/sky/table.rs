@@ -6,6 +6,7 @@
 //! applied for each pixel.
 
 use super::block::ChannelMatrix;
+use super::quadrature::GaussRule;
 use super::ray::Ray;
 use super::view::View;
 use crate::spectrum::{RgbSpace, rgb};
@@ -69,7 +70,12 @@ impl SkyTable {
             .constituents
             .iter()
             .enumerate()
-            .filter(|(_, c)| sky.grid().wavelengths_nm().iter().any(|&nm| c.phase.asymmetry(nm).abs() > 0.1))
+            .filter(|(_, c)| {
+                sky.grid()
+                    .wavelengths_nm()
+                    .iter()
+                    .any(|&nm| c.phase.asymmetry(nm).abs() > 0.1)
+            })
             .map(|(constituent, _)| constituent)
             .collect();
         let channel_count = matrices[0].weights.len();
@@ -89,7 +95,8 @@ impl SkyTable {
                 (0..=PHASE_SAMPLES)
                     .map(|i| {
                         let half_sine = i as f64 / PHASE_SAMPLES as f64;
-                        sky.blocks[0].peaked_phase(constituent, 1.0 - 2.0 * half_sine * half_sine) as f32
+                        sky.blocks[0].peaked_phase(constituent, 1.0 - 2.0 * half_sine * half_sine)
+                            as f32
                     })
                     .collect()
             })
@@ -98,7 +105,11 @@ impl SkyTable {
         Self {
             channels: channel_count,
             sun: view.sun(),
-            sun_azimuth: if horizontal.length() > 1e-9 { horizontal.normalize() } else { DVec3::X },
+            sun_azimuth: if horizontal.length() > 1e-9 {
+                horizontal.normalize()
+            } else {
+                DVec3::X
+            },
             horizon_elevation,
             above: half(ceiling - horizon_elevation, ROWS_ABOVE),
             below: half(-FRAC_PI_2 - horizon_elevation, ROWS_BELOW),
@@ -127,7 +138,11 @@ impl SkyTable {
             1.0
         };
         let azimuth = cos_azimuth.clamp(-1.0, 1.0).acos();
-        let half = if elevation >= self.horizon_elevation { &self.above } else { &self.below };
+        let half = if elevation >= self.horizon_elevation {
+            &self.above
+        } else {
+            &self.below
+        };
         let depth = (elevation - self.horizon_elevation) / half.span;
         if depth > 1.0 {
             out[..self.channels].fill(0.0);
@@ -135,6 +150,37 @@ impl SkyTable {
         }
         let half_sine = 0.5 * direction.distance(self.sun);
         self.interpolate(half, depth.max(0.0).sqrt(), azimuth / PI, half_sine, out);
+    }
+
+    /// Irradiance, one value a channel, of a surface with the unit normal `normal` from all that the table holds: sky
+    /// and ground, without the sun's disc (W m^-2 nm^-1, or lux for RGB channels).
+    ///
+    /// A sum over about 25 000 directions, rows crowding towards the horizon as in the table: good to 0.1 % for skies
+    /// whose aureole is wider than a degree.
+    pub fn irradiance(&self, normal: DVec3) -> Vec<f32> {
+        const AROUND: usize = 256;
+        let rule = GaussRule::new(48);
+        let mut sum = vec![0.0f64; self.channels];
+        let mut radiance = vec![0.0f32; self.channels];
+        for half in [&self.above, &self.below] {
+            for (x, w) in rule.on(0.0, 1.0) {
+                let elevation = self.horizon_elevation + half.span * x * x;
+                let (sin, cos) = elevation.sin_cos();
+                let solid_angle = w * 2.0 * x * half.span.abs() * cos * 2.0 * PI / AROUND as f64;
+                for k in 0..AROUND {
+                    let (z, x) = (2.0 * PI * (k as f64 + 0.5) / AROUND as f64).sin_cos();
+                    let direction = DVec3::new(cos * x, sin, cos * z);
+                    let cosine = direction.dot(normal);
+                    if cosine > 0.0 {
+                        self.sample(direction, &mut radiance);
+                        for (sum, &radiance) in sum.iter_mut().zip(&radiance) {
+                            *sum += solid_angle * cosine * f64::from(radiance);
+                        }
+                    }
+                }
+            }
+        }
+        sum.into_iter().map(|e| e as f32).collect()
     }
 
     fn interpolate(&self, half: &Half, row: f64, azimuth: f64, half_sine: f64, out: &mut [f32]) {
@@ -202,9 +248,19 @@ fn channel_matrices(view: &View<'_>, channels: TableChannels) -> Vec<ChannelMatr
             .collect(),
         TableChannels::Rgb(space) => {
             let from_xyz = space.from_xyz_matrix();
-            let lanes: Vec<[f64; 3]> = grid.xyz_weights().iter().map(|&w| rgb::apply(&from_xyz, w)).collect();
+            let lanes: Vec<[f64; 3]> = grid
+                .xyz_weights()
+                .iter()
+                .map(|&w| rgb::apply(&from_xyz, w))
+                .collect();
             (0..3)
-                .map(|c| lanes.iter().zip(&solar).map(|(w, &e)| (w[c] * f64::from(e)) as f32).collect())
+                .map(|c| {
+                    lanes
+                        .iter()
+                        .zip(&solar)
+                        .map(|(w, &e)| (w[c] * f64::from(e)) as f32)
+                        .collect()
+                })
                 .collect()
         }
     };
@@ -215,7 +271,9 @@ fn channel_matrices(view: &View<'_>, channels: TableChannels) -> Vec<ChannelMatr
         .map(|block| {
             let lanes = first..first + block.lanes();
             first = lanes.end;
-            ChannelMatrix { weights: rows.iter().map(|row| row[lanes.clone()].to_vec()).collect() }
+            ChannelMatrix {
+                weights: rows.iter().map(|row| row[lanes.clone()].to_vec()).collect(),
+            }
         })
         .collect()
 }
@@ -235,7 +293,11 @@ fn cubic_mirrored(x: f64) -> ([usize; 4], [f32; 4]) {
     let first = (position as isize).min(AZIMUTHS as isize - 1) - 1;
     let nodes = std::array::from_fn(|k| {
         let node = (first + k as isize).unsigned_abs();
-        if node > AZIMUTHS { 2 * AZIMUTHS - node } else { node }
+        if node > AZIMUTHS {
+            2 * AZIMUTHS - node
+        } else {
+            node
+        }
     });
     (nodes, cubic_weights((position - first as f64) as f32))
 }
@@ -243,5 +305,10 @@ fn cubic_mirrored(x: f64) -> ([usize; 4], [f32; 4]) {
 #[inline(always)]
 fn cubic_weights(t: f32) -> [f32; 4] {
     let (a, b, c, d) = (t, t - 1.0, t - 2.0, t - 3.0);
-    [-b * c * d / 6.0, a * c * d / 2.0, -a * b * d / 2.0, a * b * c / 6.0]
+    [
+        -b * c * d / 6.0,
+        a * c * d / 2.0,
+        -a * b * d / 2.0,
+        a * b * c / 6.0,
+    ]
 }
