@@ -7,10 +7,10 @@ use super::orders;
 use super::ray::Ray;
 use super::shell::Shell;
 use super::trace::Tracer;
+use super::vector::vectorized;
 use super::{Scattering, SkyError};
 use crate::medium::Atmosphere;
 use crate::spectrum::Spectrum;
-use pulp::Arch;
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -186,11 +186,10 @@ impl<const N: usize> Block for Solved<N> {
             .iter()
             .map(|row| Spectrum::from_fn(|lane| if lane < self.lanes { row[lane] } else { 0.0 }))
             .collect();
-        let arch = Arch::new();
         out.par_chunks_mut(width * CHUNK)
             .zip(rays.par_chunks(CHUNK))
             .for_each(|(out, rays)| {
-                arch.dispatch(
+                vectorized(
                     #[inline(always)]
                     || {
                         let mut tracer = self.tracer();

@@ -34,6 +34,7 @@ pub mod shell;
 mod solver;
 mod table;
 pub mod trace;
+mod vector;
 mod view;
 
 pub use coverage::SunCoverage;

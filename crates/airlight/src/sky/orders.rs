@@ -13,8 +13,8 @@ use super::march::Marcher;
 use super::quadrature::GaussRule;
 use super::ray::{Ray, in_shadow};
 use super::shell::PerConstituent;
+use super::vector::vectorized;
 use crate::spectrum::Spectrum;
-use pulp::Arch;
 use rayon::prelude::*;
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
@@ -26,6 +26,9 @@ pub struct OrderSettings {
     pub full_degree: usize,
     /// Degree up to which they are kept as far as they are symmetric about the sun's direction.
     pub zonal_degree: usize,
+    /// Degree (at most `full_degree`) of the moments that are scattered again while the orders are solved; the light
+    /// that is finally looked at keeps all.
+    pub rescattered_degree: usize,
     /// Rays that carry light scattered once: it holds the aerosol's forward peak and wants the most directions.
     pub first: Directions,
     /// Rays that carry every later order: smoother, so fewer of them.
@@ -54,8 +57,14 @@ pub fn solve<const N: usize>(
     settings: &OrderSettings,
 ) -> RadianceField<N> {
     let basis = Harmonics::new(settings.full_degree, settings.zonal_degree);
-    let mut sum = Transport::new(air, &grid, &basis, &settings.first).first_order();
-    let transport = Transport::new(air, &grid, &basis, &settings.later);
+    let mut sum = Transport::new(air, &grid, &basis, 0, &settings.first).first_order();
+    let transport = Transport::new(
+        air,
+        &grid,
+        &basis,
+        settings.rescattered_degree,
+        &settings.later,
+    );
     let mut order = sum.clone();
     for _ in 2..=settings.max_orders {
         let next = transport.next_order(&order.field(&grid, &basis));
@@ -170,6 +179,8 @@ struct Transport<'a, const N: usize> {
     air: &'a Air<N>,
     grid: &'a FieldGrid,
     basis: &'a Harmonics,
+    /// The low degrees of the basis: what is scattered again.
+    rescattered: Harmonics,
     /// For each height, the rays that leave it.
     paths: Vec<Vec<Path<N>>>,
     azimuth_cosines: Vec<f64>,
@@ -180,21 +191,21 @@ impl<'a, const N: usize> Transport<'a, N> {
         air: &'a Air<N>,
         grid: &'a FieldGrid,
         basis: &'a Harmonics,
+        rescattered_degree: usize,
         directions: &Directions,
     ) -> Self {
         let marcher = Marcher::new(directions.panel_nodes, 2.0, air.max_extinction_per_m());
-        let arch = Arch::new();
         let paths = grid
             .radii_m
             .par_iter()
             .map(|&radius_m| {
-                arch.dispatch(
+                vectorized(
                     #[inline(always)]
                     || {
                         zenith_rule(air, radius_m, directions)
                             .into_iter()
                             .map(|(mu, w)| {
-                                trace_path(air, grid, &marcher, radius_m, mu, w, basis.degree())
+                                trace_path(air, grid, &marcher, radius_m, mu, w, rescattered_degree)
                             })
                             .collect()
                     },
@@ -209,6 +220,7 @@ impl<'a, const N: usize> Transport<'a, N> {
             air,
             grid,
             basis,
+            rescattered: Harmonics::new(rescattered_degree, rescattered_degree),
             paths,
             azimuth_cosines,
         }
@@ -216,109 +228,118 @@ impl<'a, const N: usize> Transport<'a, N> {
 
     /// Light that has been scattered, or reflected by the ground, exactly once.
     fn first_order(&self) -> Order<N> {
+        self.gather(
+            #[inline(always)]
+            |radius_m, path, light| self.carry_sunlight(radius_m, path, light),
+        )
+    }
+
+    #[inline(always)]
+    fn carry_sunlight(&self, radius_m: f64, path: &Path<N>, light: &mut [Spectrum<N>]) {
         let (air, shell) = (self.air, &self.air.shell);
-        let degree = self.basis.degree();
-        self.gather(|start_radius, path, light| {
-            let mut p = vec![0.0; degree + 1];
-            let mut phases = vec![Spectrum::ZERO; air.scatterers.len()];
-            self.each_ray(start_radius, path, |slot, ray, _| {
-                legendre(ray.nu, &mut p);
-                for (phase, s) in phases.iter_mut().zip(&air.scatterers) {
-                    *phase = s.scattering * s.truncated_phase(&p);
+        let mut p = vec![0.0; self.basis.degree() + 1];
+        let mut phases = vec![Spectrum::ZERO; air.scatterers.len()];
+        for (light, ray) in light.iter_mut().zip(self.rays(radius_m, path.mu)) {
+            legendre(ray.nu, &mut p);
+            for (phase, s) in phases.iter_mut().zip(&air.scatterers) {
+                *phase = s.scattering * s.truncated_phase(&p);
+            }
+            let mut sum = Spectrum::ZERO;
+            for node in &path.nodes {
+                let mu_sun = (ray.radius_m * ray.mu_sun + node.t * ray.nu) / node.radius_m;
+                if in_shadow(node.radius_m, mu_sun, shell.ground_radius_m) {
+                    continue;
                 }
-                let mut sum = Spectrum::ZERO;
-                for node in &path.nodes {
-                    let mu_sun = (ray.radius_m * ray.mu_sun + node.t * ray.nu) / node.radius_m;
-                    if in_shadow(node.radius_m, mu_sun, shell.ground_radius_m) {
-                        continue;
-                    }
-                    let sun = air.transmittance(&shell.columns_to_space_m(node.radius_m, mu_sun));
-                    let mut scattering = Spectrum::ZERO;
-                    for (phase, s) in phases.iter().zip(&air.scatterers) {
-                        scattering =
-                            scattering.scale_acc(*phase, node.densities[s.constituent] as f32);
-                    }
-                    sum = sum.mul_acc(node.weight * sun, scattering);
+                let sun = air.transmittance(&shell.columns_to_space_m(node.radius_m, mu_sun));
+                let mut scattering = Spectrum::ZERO;
+                for (phase, s) in phases.iter().zip(&air.scatterers) {
+                    scattering = scattering.scale_acc(*phase, node.densities[s.constituent] as f32);
                 }
-                if let Some((t, transmittance)) = path.ground {
-                    let mu_sun = ray.advanced(t).mu_sun;
-                    if mu_sun > 0.0 {
-                        let columns = shell.columns_to_space_m(shell.ground_radius_m, mu_sun);
-                        let irradiance = air.transmittance(&columns) * mu_sun as f32;
-                        sum = sum.mul_acc(transmittance, air.reflected(irradiance));
-                    }
+                sum = sum.mul_acc(node.weight * sun, scattering);
+            }
+            if let Some((t, transmittance)) = path.ground {
+                let mu_sun = ray.advanced(t).mu_sun;
+                if mu_sun > 0.0 {
+                    let columns = shell.columns_to_space_m(shell.ground_radius_m, mu_sun);
+                    let irradiance = air.transmittance(&columns) * mu_sun as f32;
+                    sum = sum.mul_acc(transmittance, air.reflected(irradiance));
                 }
-                light[slot] = sum;
-            });
-        })
+            }
+            *light = sum;
+        }
     }
 
     /// What becomes of the light `field` when it is scattered or reflected once more.
     fn next_order(&self, field: &RadianceField<N>) -> Order<N> {
-        let air = self.air;
-        let count = self.basis.count();
-        self.gather(|start_radius, path, light| {
-            light.fill(Spectrum::ZERO);
-            let mut row = Vec::new();
-            let mut y = [0.0f32; Harmonics::MAX_COUNT];
-            for node in &path.nodes {
-                field.at_radius(node.place, &mut row);
-                self.each_ray(start_radius, path, |slot, ray, _| {
-                    let mu_sun = (ray.radius_m * ray.mu_sun + node.t * ray.nu) / node.radius_m;
-                    let here = Ray {
-                        radius_m: node.radius_m,
-                        mu: f64::from(node.mu),
-                        mu_sun,
-                        nu: ray.nu,
-                    };
-                    self.basis
-                        .evaluate(node.mu, here.toward_sun() as f32, ray.nu as f32, &mut y);
-                    let at = self.grid.place_of_sun(mu_sun);
-                    let (a, b) = row[at.below * count..(at.below + 2) * count].split_at(count);
-                    let (wa, wb) = (1.0 - at.fraction, at.fraction);
-                    let mut sum = node.source_weights[0] * y[0];
-                    for (l, weight) in node.source_weights.iter().enumerate().skip(1) {
-                        let mut degree = Spectrum::ZERO;
-                        for k in self.basis.span(l) {
-                            degree = degree.scale_acc(a[k], wa * y[k]).scale_acc(b[k], wb * y[k]);
-                        }
-                        sum = sum.mul_acc(*weight, degree);
-                    }
-                    let intensity = (a[0] * wa + b[0] * wb).exp();
-                    light[slot] = light[slot].mul_acc(sum, intensity);
-                });
-            }
-            if let Some((t, transmittance)) = path.ground {
-                self.each_ray(start_radius, path, |slot, ray, _| {
-                    let irradiance = field.ground_irradiance(ray.advanced(t).mu_sun);
-                    light[slot] = light[slot].mul_acc(transmittance, air.reflected(irradiance));
-                });
-            }
-        })
+        self.gather(
+            #[inline(always)]
+            |radius_m, path, light| self.carry_scattered(field, radius_m, path, light),
+        )
     }
 
-    /// Calls `visit(slot, ray, toward_sun)` for every sun cosine and azimuth of the rays of `path`.
     #[inline(always)]
-    fn each_ray(&self, radius_m: f64, path: &Path<N>, mut visit: impl FnMut(usize, Ray, f32)) {
-        let sin = ((1.0 - path.mu) * (1.0 + path.mu)).max(0.0).sqrt();
-        let mut slot = 0;
-        for &mu_sun in &self.grid.sun_cosines {
-            let sin_sun = ((1.0 - mu_sun) * (1.0 + mu_sun)).max(0.0).sqrt();
-            for &cos_azimuth in &self.azimuth_cosines {
-                let nu = path.mu * mu_sun + sin * sin_sun * cos_azimuth;
-                visit(
-                    slot,
-                    Ray {
-                        radius_m,
-                        mu: path.mu,
-                        mu_sun,
-                        nu,
-                    },
-                    (sin * cos_azimuth) as f32,
-                );
-                slot += 1;
+    fn carry_scattered(
+        &self,
+        field: &RadianceField<N>,
+        radius_m: f64,
+        path: &Path<N>,
+        light: &mut [Spectrum<N>],
+    ) {
+        let basis = &self.rescattered;
+        let mut row = Vec::new();
+        let mut y = [0.0f32; Harmonics::MAX_COUNT];
+        light.fill(Spectrum::ZERO);
+        for node in &path.nodes {
+            field.at_radius(node.place, basis.count(), &mut row);
+            for (light, ray) in light.iter_mut().zip(self.rays(radius_m, path.mu)) {
+                let mu_sun = (ray.radius_m * ray.mu_sun + node.t * ray.nu) / node.radius_m;
+                let here = Ray {
+                    radius_m: node.radius_m,
+                    mu: f64::from(node.mu),
+                    mu_sun,
+                    nu: ray.nu,
+                };
+                basis.evaluate_local(node.mu, here.toward_sun() as f32, &mut y);
+                let at = self.grid.place_of_sun(mu_sun);
+                let (a, b) =
+                    row[at.below * basis.count()..][..2 * basis.count()].split_at(basis.count());
+                let (wa, wb) = (1.0 - at.fraction, at.fraction);
+                let mut sum = node.source_weights[0] * y[0];
+                for (l, weight) in node.source_weights.iter().enumerate().skip(1) {
+                    let mut degree = Spectrum::ZERO;
+                    for k in basis.span(l) {
+                        degree = degree.scale_acc(a[k], wa * y[k]).scale_acc(b[k], wb * y[k]);
+                    }
+                    sum = sum.mul_acc(*weight, degree);
+                }
+                let intensity = (a[0] * wa + b[0] * wb).exp();
+                *light = light.mul_acc(sum, intensity);
             }
         }
+        if let Some((t, transmittance)) = path.ground {
+            for (light, ray) in light.iter_mut().zip(self.rays(radius_m, path.mu)) {
+                let irradiance = field.ground_irradiance(ray.advanced(t).mu_sun);
+                *light = light.mul_acc(transmittance, self.air.reflected(irradiance));
+            }
+        }
+    }
+
+    /// The rays that leave a height under a zenith angle: every azimuth for every sun cosine.
+    #[inline(always)]
+    fn rays(&self, radius_m: f64, mu: f64) -> impl Iterator<Item = Ray> {
+        let sin = ((1.0 - mu) * (1.0 + mu)).max(0.0).sqrt();
+        self.grid.sun_cosines.iter().flat_map(move |&mu_sun| {
+            let sin_sun = ((1.0 - mu_sun) * (1.0 + mu_sun)).max(0.0).sqrt();
+            self.azimuth_cosines.iter().map(move |&cos_azimuth| {
+                let nu = mu * mu_sun + sin * sin_sun * cos_azimuth;
+                Ray {
+                    radius_m,
+                    mu,
+                    mu_sun,
+                    nu,
+                }
+            })
+        })
     }
 
     /// Lets `carry(start radius, path, light)` find the light that arrives along each path, for every sun cosine and
@@ -326,13 +347,12 @@ impl<'a, const N: usize> Transport<'a, N> {
     fn gather(&self, carry: impl Fn(f64, &Path<N>, &mut [Spectrum<N>]) + Sync) -> Order<N> {
         let count = self.basis.count();
         let suns = self.grid.sun_cosines.len();
-        let arch = Arch::new();
         let rows: Vec<(Vec<Spectrum<N>>, Vec<Spectrum<N>>)> = self
             .paths
             .par_iter()
             .zip(&self.grid.radii_m)
             .map(|(paths, &radius_m)| {
-                arch.dispatch(
+                vectorized(
                     #[inline(always)]
                     || {
                         let mut moments = vec![Spectrum::ZERO; suns * count];
@@ -341,10 +361,12 @@ impl<'a, const N: usize> Transport<'a, N> {
                         let mut y = [0.0f32; Harmonics::MAX_COUNT];
                         for path in paths {
                             carry(radius_m, path, &mut light);
-                            let w =
-                                path.solid_weight * 2.0 * PI / self.azimuth_cosines.len() as f64;
-                            self.each_ray(radius_m, path, |slot, ray, toward_sun| {
-                                let sun = slot / self.azimuth_cosines.len();
+                            let azimuths = self.azimuth_cosines.len();
+                            let w = path.solid_weight * 2.0 * PI / azimuths as f64;
+                            let sin = ((1.0 - path.mu) * (1.0 + path.mu)).max(0.0).sqrt();
+                            for (slot, ray) in self.rays(radius_m, path.mu).enumerate() {
+                                let (sun, azimuth) = (slot / azimuths, slot % azimuths);
+                                let toward_sun = (sin * self.azimuth_cosines[azimuth]) as f32;
                                 self.basis.evaluate(
                                     path.mu as f32,
                                     toward_sun,
@@ -359,7 +381,7 @@ impl<'a, const N: usize> Transport<'a, N> {
                                     downward[sun] =
                                         downward[sun].scale_acc(light[slot], (w * path.mu) as f32);
                                 }
-                            });
+                            }
                         }
                         (moments, downward)
                     },
@@ -424,6 +446,7 @@ fn trace_path<const N: usize>(
         &ray,
         (stretch.start_m, stretch.end_m),
         &mut Vec::new(),
+        #[inline(always)]
         |nodes| {
             let mut brightest = 0.0f32;
             for node in nodes {
