@@ -24,6 +24,7 @@ pub mod air;
 mod block;
 pub mod columns;
 mod coverage;
+mod fan;
 pub mod field;
 pub mod harmonics;
 pub mod march;

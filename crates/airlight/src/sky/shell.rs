@@ -1,7 +1,7 @@
 //! The geometry of an atmosphere: what does not depend on wavelength, worked out once for all of them.
 
 use super::SkyError;
-use super::columns::ColumnTable;
+use super::columns::{ColumnRow, ColumnTable};
 use super::quadrature::GaussRule;
 use super::ray::Ray;
 use crate::medium::{Atmosphere, DensityProfile};
@@ -105,6 +105,12 @@ impl Shell {
     #[inline(always)]
     pub fn columns_to_space_m(&self, radius_m: f64, mu: f64) -> PerConstituent {
         self.columns.to_space_m(self, radius_m, mu)
+    }
+
+    /// The columns to space from one distance from the centre, for many zenith angles.
+    #[inline(always)]
+    pub fn columns_at(&self, radius_m: f64) -> ColumnRow {
+        self.columns.at(self, radius_m)
     }
 
     /// The stretch of a ray inside the air, from `t = 0` or the entry to `limit_m`, the ground or the exit; and
