@@ -347,7 +347,7 @@ fn hdr_files_hold_what_was_given() {
 
 #[test]
 fn png_files_hold_what_was_given() {
-    for (width, height) in [(1, 1), (5, 3), (64, 700), (3000, 900)] {
+    for (width, height) in [(1, 1), (5, 3), (64, 700), (3000, 400)] {
         for depth in [PngDepth::Eight, PngDepth::Sixteen] {
             for compression_level in [0, 1, 4, 9] {
                 if compression_level == 9 && width == 3000 {
@@ -500,7 +500,7 @@ fn a_bad_path_is_named_with_the_reason() {
 #[test]
 fn a_stopped_write_leaves_nothing() {
     let folder = Folder::new("stopped");
-    let size = size(2000, 4000);
+    let size = size(1000, 3000);
     for ending in ["exr", "hdr", "png", "jpg"] {
         let path = folder.0.join(format!("sky.{ending}"));
         fs::write(&path, "before").unwrap();
