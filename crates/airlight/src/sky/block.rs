@@ -7,10 +7,10 @@ use super::orders;
 use super::ray::Ray;
 use super::shell::Shell;
 use super::trace::Tracer;
+use super::vector::vectorized;
 use super::{Scattering, SkyError};
 use crate::medium::Atmosphere;
 use crate::spectrum::Spectrum;
-use pulp::Arch;
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -38,9 +38,6 @@ pub trait Block: Send + Sync {
 
     /// Light along one ray.
     fn trace(&self, ray: &Ray, limit_m: f64) -> BlockLight;
-
-    /// Radiance of the ground under the sun cosine `mu_sun`, per unit solar irradiance.
-    fn ground_radiance(&self, mu_sun: f64) -> Vec<f32>;
 
     /// Transmittance from a point to space along `mu`; 0 where the planet is in the way.
     fn transmittance_to_space(&self, radius_m: f64, mu: f64) -> Vec<f32>;
@@ -142,10 +139,6 @@ impl<const N: usize> Block for Solved<N> {
         }
     }
 
-    fn ground_radiance(&self, mu_sun: f64) -> Vec<f32> {
-        self.used(&self.tracer().ground_radiance(mu_sun))
-    }
-
     fn transmittance_to_space(&self, radius_m: f64, mu: f64) -> Vec<f32> {
         let shell = &self.air.shell;
         let ray = Ray {
@@ -193,11 +186,10 @@ impl<const N: usize> Block for Solved<N> {
             .iter()
             .map(|row| Spectrum::from_fn(|lane| if lane < self.lanes { row[lane] } else { 0.0 }))
             .collect();
-        let arch = Arch::new();
         out.par_chunks_mut(width * CHUNK)
             .zip(rays.par_chunks(CHUNK))
             .for_each(|(out, rays)| {
-                arch.dispatch(
+                vectorized(
                     #[inline(always)]
                     || {
                         let mut tracer = self.tracer();

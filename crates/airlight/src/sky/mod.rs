@@ -24,6 +24,7 @@ pub mod air;
 mod block;
 pub mod columns;
 mod coverage;
+mod fan;
 pub mod field;
 pub mod harmonics;
 pub mod march;
@@ -34,6 +35,7 @@ pub mod shell;
 mod solver;
 mod table;
 pub mod trace;
+mod vector;
 mod view;
 
 pub use coverage::SunCoverage;

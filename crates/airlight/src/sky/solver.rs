@@ -43,6 +43,7 @@ impl Default for SkySettings {
             orders: OrderSettings {
                 full_degree: 8,
                 zonal_degree: 12,
+                rescattered_degree: 4,
                 first: Directions {
                     zenith_nodes: [8, 5, 8],
                     azimuths: 12,
@@ -53,7 +54,7 @@ impl Default for SkySettings {
                     azimuths: 8,
                     panel_nodes: 2,
                 },
-                tolerance: 1e-3,
+                tolerance: 1e-2,
                 max_orders: 40,
             },
         }

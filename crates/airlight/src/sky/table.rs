@@ -6,6 +6,7 @@
 //! applied for each pixel.
 
 use super::block::ChannelMatrix;
+use super::quadrature::GaussRule;
 use super::ray::Ray;
 use super::view::View;
 use crate::spectrum::{RgbSpace, rgb};
@@ -149,6 +150,37 @@ impl SkyTable {
         }
         let half_sine = 0.5 * direction.distance(self.sun);
         self.interpolate(half, depth.max(0.0).sqrt(), azimuth / PI, half_sine, out);
+    }
+
+    /// Irradiance, one value a channel, of a surface with the unit normal `normal` from all that the table holds: sky
+    /// and ground, without the sun's disc (W m^-2 nm^-1, or lux for RGB channels).
+    ///
+    /// A sum over about 25 000 directions, rows crowding towards the horizon as in the table: good to 0.1 % for skies
+    /// whose aureole is wider than a degree.
+    pub fn irradiance(&self, normal: DVec3) -> Vec<f32> {
+        const AROUND: usize = 256;
+        let rule = GaussRule::new(48);
+        let mut sum = vec![0.0f64; self.channels];
+        let mut radiance = vec![0.0f32; self.channels];
+        for half in [&self.above, &self.below] {
+            for (x, w) in rule.on(0.0, 1.0) {
+                let elevation = self.horizon_elevation + half.span * x * x;
+                let (sin, cos) = elevation.sin_cos();
+                let solid_angle = w * 2.0 * x * half.span.abs() * cos * 2.0 * PI / AROUND as f64;
+                for k in 0..AROUND {
+                    let (z, x) = (2.0 * PI * (k as f64 + 0.5) / AROUND as f64).sin_cos();
+                    let direction = DVec3::new(cos * x, sin, cos * z);
+                    let cosine = direction.dot(normal);
+                    if cosine > 0.0 {
+                        self.sample(direction, &mut radiance);
+                        for (sum, &radiance) in sum.iter_mut().zip(&radiance) {
+                            *sum += solid_angle * cosine * f64::from(radiance);
+                        }
+                    }
+                }
+            }
+        }
+        sum.into_iter().map(|e| e as f32).collect()
     }
 
     fn interpolate(&self, half: &Half, row: f64, azimuth: f64, half_sine: f64, out: &mut [f32]) {

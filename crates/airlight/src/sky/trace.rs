@@ -81,6 +81,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
             ray,
             (stretch.start_m, stretch.end_m),
             &mut self.edges,
+            #[inline(always)]
             |nodes| {
                 let mut brightest = 0.0f32;
                 for node in nodes {

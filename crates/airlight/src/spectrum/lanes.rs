@@ -24,8 +24,13 @@ impl<const N: usize> Spectrum<N> {
 
     /// `f(lane)` for every lane.
     #[inline(always)]
-    pub fn from_fn(f: impl FnMut(usize) -> f32) -> Self {
-        Self(std::array::from_fn(f))
+    pub fn from_fn(mut f: impl FnMut(usize) -> f32) -> Self {
+        // A loop, not `array::from_fn`: the compiler leaves calls in the latter, and vector code with it.
+        let mut lanes = [0.0; N];
+        for (i, lane) in lanes.iter_mut().enumerate() {
+            *lane = f(i);
+        }
+        Self(lanes)
     }
 
     /// `f(value)` in every lane.

@@ -1,0 +1,110 @@
+//! What can go wrong, in sentences that say what, where, and what would be right.
+
+use std::{io, path::PathBuf};
+
+/// Why a picture could not be set up or written.
+#[derive(Debug, thiserror::Error)]
+pub enum RenderError {
+    /// A width or height outside `1..=65536`.
+    #[error("a picture must be 1 to 65536 pixels wide and high: {width} x {height} was asked for")]
+    Size {
+        /// Pixels in a row.
+        width: u32,
+        /// Rows.
+        height: u32,
+    },
+    /// A setting that makes no sense.
+    #[error("{what} must be {right}: got {got}")]
+    Setting {
+        /// Which setting, with its unit.
+        what: &'static str,
+        /// What was given.
+        got: String,
+        /// What would be right.
+        right: &'static str,
+    },
+    /// A file ending that names no known picture format.
+    #[error("cannot tell the picture format of `{path}`: {ending}. Known endings: {known}", path = .path.display())]
+    UnknownFormat {
+        /// The file asked for.
+        path: PathBuf,
+        /// What its ending is, or that there is none.
+        ending: String,
+        /// The endings that are known.
+        known: String,
+    },
+    /// The rows have the wrong number of channels for the format.
+    #[error("{format} needs rows of {expected} channels: these have {got}")]
+    Channels {
+        /// The format or layout.
+        format: &'static str,
+        /// Channels it holds.
+        expected: usize,
+        /// Channels of the row source.
+        got: usize,
+    },
+    /// The folder a file should go to is not there.
+    #[error("cannot write `{path}`: there is no folder `{folder}`", path = .path.display(), folder = .folder.display())]
+    NoFolder {
+        /// The file asked for.
+        path: PathBuf,
+        /// The missing folder.
+        folder: PathBuf,
+    },
+    /// The name given for a file cannot be one.
+    #[error("cannot write `{path}`: {reason}", path = .path.display())]
+    Target {
+        /// The file asked for.
+        path: PathBuf,
+        /// Why not.
+        reason: &'static str,
+    },
+    /// The operating system refused.
+    #[error("cannot {action} `{path}`: {source}", path = .path.display())]
+    File {
+        /// What was tried, as a verb.
+        action: &'static str,
+        /// On which file.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// Bytes could not be written to a stream that is not a file with a name.
+    #[error("cannot write the {format} picture: {source}")]
+    Stream {
+        /// The format being written.
+        format: &'static str,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// The encoder refused the picture.
+    #[error("cannot encode the picture as {format}: {reason}")]
+    Encode {
+        /// The format being written.
+        format: &'static str,
+        /// What the encoder said.
+        reason: String,
+    },
+    /// The caller asked to stop; nothing was left behind.
+    #[error("stopped as asked; no file was left behind")]
+    Cancelled,
+}
+
+impl RenderError {
+    /// The same error with the name of the file, where it lacked one.
+    pub fn at(self, path: &std::path::Path) -> Self {
+        match self {
+            Self::Stream { source, .. } => Self::File {
+                action: "write",
+                path: path.to_owned(),
+                source,
+            },
+            other => other,
+        }
+    }
+
+    /// True where the caller asked to stop.
+    pub fn is_cancelled(&self) -> bool {
+        matches!(self, Self::Cancelled)
+    }
+}

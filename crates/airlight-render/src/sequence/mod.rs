@@ -1,0 +1,8 @@
+//! Many pictures: file names, time steps, taking up where an earlier run stopped.
+
+mod calendar;
+mod pattern;
+mod plan;
+
+pub use pattern::FramePattern;
+pub use plan::{FrameStep, SequencePlan, SequenceProgress, SequenceReport, run};
