@@ -2,11 +2,12 @@
 
 use super::SkySettings;
 use super::air::Air;
+use super::fan::{Fan, Path, Scratch};
 use super::field::{FieldGrid, RadianceField};
 use super::orders;
 use super::ray::Ray;
 use super::shell::Shell;
-use super::trace::Tracer;
+use super::trace::{Tracer, ground_irradiance};
 use super::vector::vectorized;
 use super::{Scattering, SkyError};
 use crate::medium::Atmosphere;
@@ -46,9 +47,24 @@ pub trait Block: Send + Sync {
     /// averaged over the lanes.
     fn peaked_phase(&self, constituent: usize, nu: f64) -> f64;
 
-    /// Adds the light along each ray to `out`: for each ray first one value a channel of all smooth light, then for each
-    /// of the `peaked` constituents one value a channel, to be multiplied by the mean of its phase function.
-    fn fill(&self, rays: &[Ray], matrix: &ChannelMatrix, peaked: &[usize], out: &mut [f32]);
+    /// Adds the light along each ray of `rows` to `out`: for each ray first one value a channel of all smooth light, then
+    /// for each of the `peaked` constituents one value a channel, to be multiplied by the mean of its phase function;
+    /// `width` values a ray in all.
+    fn fill(
+        &self,
+        rows: &[TableRow],
+        matrix: &ChannelMatrix,
+        peaked: &[usize],
+        width: usize,
+        out: &mut [f32],
+    );
+}
+
+/// Rays of one elevation, in equally many azimuths for each row of a table.
+pub struct TableRow {
+    /// Distance of the eye from the planet's centre, m, and cosine of the zenith angle.
+    pub start: (f64, f64),
+    pub fan: Fan,
 }
 
 /// Solves for all `wavelengths_nm` in blocks of fitting width.
@@ -167,56 +183,125 @@ impl<const N: usize> Block for Solved<N> {
             .scatterers
             .iter()
             .find(|s| s.constituent == constituent);
-        scatterer.map_or(0.0, |s| {
-            let phase = s.phase(&self.air, nu);
-            phase.0[..self.lanes]
-                .iter()
-                .map(|&p| f64::from(p))
-                .sum::<f64>()
-                / self.lanes as f64
-        })
+        scatterer.map_or(0.0, |s| f64::from(self.mean(&s.phase(&self.air, nu))))
     }
 
-    fn fill(&self, rays: &[Ray], matrix: &ChannelMatrix, peaked: &[usize], out: &mut [f32]) {
-        const CHUNK: usize = 16;
-        let channels = matrix.weights.len();
-        let width = channels * (1 + peaked.len());
+    fn fill(
+        &self,
+        rows: &[TableRow],
+        matrix: &ChannelMatrix,
+        peaked: &[usize],
+        width: usize,
+        out: &mut [f32],
+    ) {
         let weights: Vec<Spectrum<N>> = matrix
             .weights
             .iter()
             .map(|row| Spectrum::from_fn(|lane| if lane < self.lanes { row[lane] } else { 0.0 }))
             .collect();
-        out.par_chunks_mut(width * CHUNK)
-            .zip(rays.par_chunks(CHUNK))
-            .for_each(|(out, rays)| {
-                vectorized(
-                    #[inline(always)]
-                    || {
-                        let mut tracer = self.tracer();
-                        for (ray, out) in rays.iter().zip(out.chunks_exact_mut(width)) {
-                            let light = tracer.trace(ray, f64::INFINITY);
-                            let (smooth, rest) = out.split_at_mut(channels);
-                            let mut sum = light.multiple + light.ground;
-                            for (s, unphased) in self.air.scatterers.iter().zip(&light.unphased) {
-                                let phase = s.phase(&self.air, ray.nu);
-                                match peaked.iter().position(|&c| c == s.constituent) {
-                                    None => sum = sum.mul_acc(*unphased, phase),
-                                    Some(place) => {
-                                        let mean = self.peaked_phase(s.constituent, ray.nu) as f32;
-                                        let value = *unphased * phase / mean;
-                                        add_channels(
-                                            &mut rest[place * channels..][..channels],
-                                            &weights,
-                                            &value,
-                                        );
-                                    }
-                                }
-                            }
-                            add_channels(smooth, &weights, &sum);
-                        }
-                    },
+        let stride = width * rows[0].fan.len();
+        out.par_chunks_mut(stride).zip(rows).for_each(|(out, row)| {
+            vectorized(
+                #[inline(always)]
+                || {
+                    let light = self.row_light(row);
+                    for (slot, cell) in out.chunks_exact_mut(width).enumerate() {
+                        self.fill_cell(&light, row.fan.nu[slot], slot, &weights, peaked, cell);
+                    }
+                },
+            );
+        });
+    }
+}
+
+/// Light along the rays of a row.
+struct RowLight<const N: usize> {
+    /// Sunlight scattered once, without phase function, `[scatterer][ray]`.
+    unphased: Vec<Spectrum<N>>,
+    /// All other light.
+    rest: Vec<Spectrum<N>>,
+}
+
+impl<const N: usize> Solved<N> {
+    #[inline(always)]
+    fn row_light(&self, row: &TableRow) -> RowLight<N> {
+        let (air, field, rays) = (&self.air, self.field.as_ref(), row.fan.len());
+        let mut light = RowLight {
+            unphased: Vec::new(),
+            rest: vec![Spectrum::ZERO; rays],
+        };
+        let mut tracer = self.tracer();
+        let grid = field.map(|f| &f.grid);
+        let degree = field.map_or(0, |f| f.basis.degree());
+        let path = Path::new(air, grid, &tracer.marcher, row.start, degree);
+        if path.is_lit(air, &row.fan) {
+            path.carry_sunlight(air, &row.fan, &mut light.unphased);
+            if let Some(field) = field {
+                path.carry_scattered(
+                    field,
+                    &field.basis,
+                    &row.fan,
+                    &mut Scratch::default(),
+                    &mut light.rest,
                 );
-            });
+            }
+            path.carry_ground(
+                air,
+                &row.fan,
+                |mu_sun| ground_irradiance(air, field, mu_sun),
+                &mut light.rest,
+            );
+        } else {
+            // The planet's shadow ends somewhere else on each ray.
+            light
+                .unphased
+                .resize(air.scatterers.len() * rays, Spectrum::ZERO);
+            for slot in 0..rays {
+                let one = tracer.trace(&row.fan.ray(row.start, slot), f64::INFINITY);
+                light.rest[slot] = one.multiple + one.ground;
+                for (s, unphased) in one.unphased[..air.scatterers.len()].iter().enumerate() {
+                    light.unphased[s * rays + slot] = *unphased;
+                }
+            }
+        }
+        light
+    }
+
+    #[inline(always)]
+    fn fill_cell(
+        &self,
+        light: &RowLight<N>,
+        nu: f64,
+        slot: usize,
+        weights: &[Spectrum<N>],
+        peaked: &[usize],
+        cell: &mut [f32],
+    ) {
+        let channels = weights.len();
+        let mut smooth = light.rest[slot];
+        for (place, s) in self.air.scatterers.iter().enumerate() {
+            let unphased = light.unphased[place * light.rest.len() + slot];
+            let phase = s.phase(&self.air, nu);
+            match peaked.iter().position(|&c| c == s.constituent) {
+                None => smooth = smooth.mul_acc(unphased, phase),
+                Some(part) => {
+                    let mean = self.mean(&phase);
+                    let value = unphased * phase / mean;
+                    add_channels(
+                        &mut cell[(1 + part) * channels..][..channels],
+                        weights,
+                        &value,
+                    );
+                }
+            }
+        }
+        add_channels(&mut cell[..channels], weights, &smooth);
+    }
+
+    /// Mean over the lanes in use.
+    #[inline(always)]
+    fn mean(&self, spectrum: &Spectrum<N>) -> f32 {
+        spectrum.0[..self.lanes].iter().sum::<f32>() / self.lanes as f32
     }
 }
 

@@ -61,11 +61,12 @@ impl Fan {
         self.nu.push(nu);
     }
 
+    /// One of the rays.
     #[inline(always)]
-    fn ray<const N: usize>(&self, path: &Path<N>, slot: usize) -> Ray {
+    pub fn ray(&self, (radius_m, mu): (f64, f64), slot: usize) -> Ray {
         Ray {
-            radius_m: path.radius_m,
-            mu: path.mu,
+            radius_m,
+            mu,
             mu_sun: self.mu_sun[slot],
             nu: self.nu[slot],
         }
@@ -156,6 +157,19 @@ impl<const N: usize> Path<N> {
         path
     }
 
+    /// Whether the sun is above the planet's limb at every node of every ray.
+    #[inline(always)]
+    pub fn is_lit(&self, air: &Air<N>, fan: &Fan) -> bool {
+        let ground_radius_m = air.shell.ground_radius_m;
+        self.nodes.iter().all(|node| {
+            (0..fan.len()).all(|slot| {
+                let mu_sun =
+                    (self.radius_m * fan.mu_sun[slot] + node.t * fan.nu[slot]) / node.radius_m;
+                !in_shadow(node.radius_m, mu_sun, ground_radius_m)
+            })
+        })
+    }
+
     /// Sunlight scattered once into each ray, before phase functions are applied: `[scatterer][ray]` into `out`.
     #[inline(always)]
     pub fn carry_sunlight(&self, air: &Air<N>, fan: &Fan, out: &mut Vec<Spectrum<N>>) {
@@ -243,7 +257,7 @@ impl<const N: usize> Path<N> {
             return;
         };
         for (slot, out) in out.iter_mut().enumerate() {
-            let mu_sun = fan.ray(self, slot).advanced(t).mu_sun;
+            let mu_sun = fan.ray((self.radius_m, self.mu), slot).advanced(t).mu_sun;
             *out = out.mul_acc(transmittance, air.reflected(irradiance(mu_sun)));
         }
     }

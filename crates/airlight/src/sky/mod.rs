@@ -40,5 +40,5 @@ mod view;
 
 pub use coverage::SunCoverage;
 pub use solver::{Scattering, Sky, SkyError, SkySettings};
-pub use table::{SkyTable, TableChannels};
+pub use table::{SkyColumns, SkyTable, TableChannels};
 pub use view::{LineOfSight, View};

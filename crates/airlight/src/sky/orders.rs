@@ -12,6 +12,7 @@ use super::field::{FieldGrid, RadianceField};
 use super::harmonics::{Harmonics, legendre};
 use super::march::Marcher;
 use super::quadrature::GaussRule;
+use super::trace::sun_on_ground;
 use super::vector::vectorized;
 use crate::spectrum::Spectrum;
 use rayon::prelude::*;
@@ -212,7 +213,7 @@ impl<'a, const N: usize> Transport<'a, N> {
 
     /// Light that has been scattered, or reflected by the ground, exactly once.
     fn first_order(&self) -> Order<N> {
-        let (air, shell) = (self.air, &self.air.shell);
+        let air = self.air;
         self.gather(
             #[inline(always)]
             |path, fan, work| {
@@ -228,14 +229,12 @@ impl<'a, const N: usize> Transport<'a, N> {
                         );
                     }
                 }
-                let sunlight = |mu_sun: f64| match mu_sun > 0.0 {
-                    true => {
-                        let columns = shell.columns_to_space_m(shell.ground_radius_m, mu_sun);
-                        air.transmittance(&columns) * mu_sun as f32
-                    }
-                    false => Spectrum::ZERO,
-                };
-                path.carry_ground(air, fan, sunlight, &mut work.light);
+                path.carry_ground(
+                    air,
+                    fan,
+                    |mu_sun| sun_on_ground(air, mu_sun),
+                    &mut work.light,
+                );
             },
         )
     }
@@ -302,7 +301,7 @@ impl<'a, const N: usize> Transport<'a, N> {
     fn gather_row(
         &self,
         paths: &[(Path<N>, f64)],
-        carry: impl Fn(&Path<N>, &Fan, &mut Work<N>),
+        carry: &impl Fn(&Path<N>, &Fan, &mut Work<N>),
     ) -> (Vec<Spectrum<N>>, Vec<Spectrum<N>>) {
         let (suns, azimuths, count) = (
             self.grid.sun_cosines.len(),
@@ -319,7 +318,8 @@ impl<'a, const N: usize> Transport<'a, N> {
         for (path, solid_weight) in paths {
             let fan = self.fan(path.mu);
             work.light.fill(Spectrum::ZERO);
-            carry(path, &fan, &mut work);
+            // Not `carry(..)`: a call through the reference would not be inlined into the vector code.
+            (*carry)(path, &fan, &mut work);
             let w = solid_weight * 2.0 * PI / azimuths as f64;
             let sin = ((1.0 - path.mu) * (1.0 + path.mu)).max(0.0).sqrt();
             for (slot, light) in work.light.iter().enumerate() {
