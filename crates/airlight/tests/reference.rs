@@ -13,7 +13,7 @@ fn rows(text: &str) -> Vec<Vec<String>> {
 
 struct Solved {
     air: Air<4>,
-    field: RadianceField<4>,
+    field: Diffuse<4>,
 }
 
 fn solve(atm: &Atmosphere, nm: [f64; 4], sun: f64) -> Solved {
@@ -22,29 +22,29 @@ fn solve(atm: &Atmosphere, nm: [f64; 4], sun: f64) -> Solved {
     let t1 = t.elapsed();
     let env = |k: &str, d: usize| std::env::var(k).map_or(d, |v| v.parse().unwrap());
     let s = OrderSettings {
-        full_degree: env("LF", 8),
-        zonal_degree: env("LZ", 12),
+        degree: env("LF", 8),
+
         rescattered_degree: env("LR", 4),
         first: Directions {
-            zenith_nodes: [env("Z0", 8), env("Z1", 5), env("Z2", 8)],
+            zenith_nodes: [env("Z0", 7), env("Z1", 5), env("Z2", 8)],
             azimuths: env("AZ", 12),
-            panel_nodes: env("PN", 3),
+            panel_nodes: env("PN", 2),
         },
         later: Directions {
-            zenith_nodes: [env("Y0", 5), env("Y1", 4), env("Y2", 6)],
-            azimuths: env("AY", 8),
+            zenith_nodes: [env("Y0", 4), env("Y1", 4), env("Y2", 5)],
+            azimuths: env("AY", 7),
             panel_nodes: env("PY", 2),
         },
-        tolerance: 1e-4 * env("TOL", 100) as f32,
+        tolerance: 1e-4 * env("TOL", 300) as f32,
         max_orders: 30,
     };
-    let air = Air::new(atm, shell, nm, s.zonal_degree);
+    let air = Air::new(atm, shell, nm, s.degree);
     let offs = std::env::var("OFF").unwrap_or("-14,-8,-4,-1.5,0,1.5,4,8,14".into());
     let offs: Vec<f64> = offs.split(',').map(|x| x.parse().unwrap()).collect();
     let mut z: Vec<f64> = offs.iter().map(|d| sun + d).filter(|z| *z > 0.0).collect();
     z.insert(0, 0.0);
     z.dedup();
-    let grid = FieldGrid::new(&air, env("NR", 24), &z);
+    let grid = FieldGrid::new(&air, env("NR", 20), &z);
     let field = orders_solve(&air, grid, &s);
     if std::env::var("TIMES").is_ok() {
         println!(
@@ -145,7 +145,8 @@ fn monte_carlo() {
                     atm.solar_irradiance.at(nm[lane])
                 };
                 let single = f64::from(light.single(&solved.air, nu)[lane]) * e0;
-                let all = single + f64::from((light.multiple + light.ground)[lane]) * e0;
+                let all =
+                    single + f64::from((light.multiple(&solved.air, nu) + light.ground)[lane]) * e0;
                 let want: f64 = r[5].parse().unwrap();
                 let se: f64 = r[6].parse().unwrap();
                 let want1: f64 = r[7].parse().unwrap();

@@ -41,8 +41,7 @@ impl Default for SkySettings {
             scattering: Scattering::All,
             altitudes: 20,
             orders: OrderSettings {
-                full_degree: 8,
-                zonal_degree: 12,
+                degree: 8,
                 rescattered_degree: 4,
                 first: Directions {
                     zenith_nodes: [7, 5, 8],
