@@ -51,7 +51,7 @@ impl StoredRows {
     /// # Errors
     /// [`RenderError::Setting`] where it is not.
     pub fn new(width: u32, channels: usize, samples: Vec<f32>) -> Result<Self, RenderError> {
-        let row = width as usize * channels;
+        let row = (width as usize).saturating_mul(channels);
         if row == 0 || !samples.len().is_multiple_of(row) {
             return Err(RenderError::Setting {
                 what: "the number of samples",

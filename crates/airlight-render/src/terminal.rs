@@ -53,7 +53,7 @@ pub fn half_blocks(rgb: &[u8], width: usize, columns: usize, color: TerminalColo
     let height = if width == 0 {
         0
     } else {
-        rgb.len() / (width * 3)
+        rgb.len() / width.saturating_mul(3)
     };
     if height == 0 || columns == 0 || color == TerminalColor::None {
         return String::new();

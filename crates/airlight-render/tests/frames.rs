@@ -299,3 +299,20 @@ fn nonsense_is_refused_with_a_reason() {
         assert_eq!(frame.pixel_solid_angle(9999, 0), 0.0);
     }
 }
+
+#[test]
+fn a_preview_shows_the_same_view() {
+    for frame in frames() {
+        for side in [0, 1, 7, 20, 10_000] {
+            let small = frame.preview(side);
+            let size = small.size();
+            assert!(size.width().max(size.height()) <= side.max(1));
+            assert!(size.width() <= frame.size().width());
+            let middle = |f: &Frame| {
+                let (w, h) = (f64::from(f.size().width()), f64::from(f.size().height()));
+                f.direction(w / 2.0, h / 2.0).unwrap()
+            };
+            assert!(middle(&small).distance(middle(&frame)) < 1e-9);
+        }
+    }
+}

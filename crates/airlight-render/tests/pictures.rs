@@ -1,9 +1,11 @@
-//! Picture files, read back by decoders that share no code with the writers.
+//! Pictures read back by decoders that share no code with the writers.
+
+mod common;
 
 use airlight_render::{
-    Control, Frame, PictureFormat, PictureOptions, Progress, RenderError, Size,
+    Control,
     output::{
-        Chromaticities, Metadata, Written,
+        Metadata,
         exr::{self, ExrCompression, ExrOptions, ExrSample},
         hdr,
         jpeg::{self, JpegOptions},
@@ -11,101 +13,10 @@ use airlight_render::{
         spectral::{self, SpectralLayout},
     },
     rows::{RowFn, RowSource, StoredRows},
-    tone::{ToneCurve, ToneMapper},
-    write_picture,
 };
+use common::{Folder, full_metadata, sample, size, sky, tone};
 use image::ImageDecoder;
-use std::{
-    fs,
-    io::Cursor,
-    path::{Path, PathBuf},
-    sync::{
-        Mutex,
-        atomic::{AtomicBool, Ordering},
-    },
-};
-
-/// A folder that goes when the test ends.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("airlight-{name}-{}", std::process::id()));
-        fs::create_dir_all(&path).unwrap();
-        Self(path)
-    }
-
-    fn files(&self) -> Vec<String> {
-        fs::read_dir(&self.0)
-            .unwrap()
-            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-            .collect()
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
-
-/// A smooth sky with a bright sun, `channels` values a pixel.
-fn sky(size: Size, channels: usize) -> impl RowSource {
-    RowFn::new(channels, move |y, out: &mut [f32]| {
-        for (x, pixel) in out.chunks_mut(channels).enumerate() {
-            for (c, value) in pixel.iter_mut().enumerate() {
-                *value = sample(size, x as u32, y, c);
-            }
-        }
-    })
-}
-
-fn sample(size: Size, x: u32, y: u32, c: usize) -> f32 {
-    let (u, v) = (
-        x as f32 / size.width() as f32,
-        y as f32 / size.height() as f32,
-    );
-    let sun = if (u - 0.3).hypot(v - 0.4) < 0.03 {
-        900.0
-    } else {
-        0.0
-    };
-    (0.02 + 0.3 * v * v + 0.1 * u) * (1.0 + 0.5 * c as f32) + sun
-}
-
-fn size(width: u32, height: u32) -> Size {
-    Size::new(width, height).unwrap()
-}
-
-fn tone() -> ToneMapper {
-    ToneMapper::new(1.0, ToneCurve::default()).unwrap()
-}
-
-fn full_metadata() -> Metadata {
-    Metadata {
-        software: Some("airlight test".into()),
-        owner: Some("Zażółć".into()),
-        comments: Some("two\nlines".into()),
-        capture_date: Some("2024:06:21 14:00:00".into()),
-        utc_offset_s: Some(7200.0),
-        latitude_deg: Some(52.5),
-        longitude_deg: Some(13.4),
-        altitude_m: Some(34.0),
-        white_luminance_cd_m2: Some(1.0),
-        chromaticities: Some(Chromaticities::SRGB),
-        is_latitude_longitude: false,
-        texts: vec![
-            ("units".into(), "cd/m^2".into()),
-            ("place".into(), "Łódź".into()),
-            // Names that mean something to the format, or nothing to anyone.
-            ("channels".into(), "not really".into()),
-            ("software".into(), "twice".into()),
-            (String::new(), "nameless".into()),
-            ("x".repeat(400), "long\0".into()),
-        ],
-    }
-    .with_frame(&Frame::equirectangular(16).unwrap())
-}
+use std::io::Cursor;
 
 #[test]
 fn exr_files_hold_what_was_given() {
@@ -347,7 +258,7 @@ fn hdr_files_hold_what_was_given() {
 
 #[test]
 fn png_files_hold_what_was_given() {
-    for (width, height) in [(1, 1), (5, 3), (64, 700), (3000, 900)] {
+    for (width, height) in [(1, 1), (5, 3), (64, 700), (3000, 400)] {
         for depth in [PngDepth::Eight, PngDepth::Sixteen] {
             for compression_level in [0, 1, 4, 9] {
                 if compression_level == 9 && width == 3000 {
@@ -434,230 +345,4 @@ fn jpeg_files_look_like_what_was_given() {
             assert!(rms < most, "{width} x {height} at {quality}: {rms}");
         }
     }
-}
-
-fn write_to(path: &Path, size: Size, source: &dyn RowSource) -> Result<Written, RenderError> {
-    write_picture(
-        path,
-        size,
-        source,
-        &tone(),
-        &PictureOptions::default(),
-        Control::default(),
-    )
-}
-
-#[test]
-fn the_ending_names_the_format() {
-    let folder = Folder::new("ending");
-    let size = size(40, 20);
-    for ending in ["exr", "hdr", "png", "jpg", "JPEG", "PNG"] {
-        let path = folder.0.join(format!("sky.{ending}"));
-        let written = write_to(&path, size, &sky(size, 3)).unwrap();
-        assert_eq!(fs::metadata(&path).unwrap().len(), written.bytes);
-        assert!(written.bytes > 100);
-        // Again, over the first.
-        write_to(&path, size, &sky(size, 3)).unwrap();
-    }
-    assert_eq!(folder.files().len(), 6);
-    assert_eq!(
-        PictureFormat::from_path(Path::new("a.b.Hdr")).unwrap(),
-        PictureFormat::Hdr
-    );
-    let error = PictureFormat::from_path(Path::new("sky.tif"))
-        .unwrap_err()
-        .to_string();
-    assert!(
-        error.contains("sky.tif") && error.contains(".exr") && error.contains("`.tif`"),
-        "{error}"
-    );
-    let error = PictureFormat::from_path(Path::new("sky"))
-        .unwrap_err()
-        .to_string();
-    assert!(error.contains("no ending"), "{error}");
-}
-
-#[test]
-fn a_bad_path_is_named_with_the_reason() {
-    let folder = Folder::new("paths");
-    let size = size(40, 20);
-    let missing = folder.0.join("none").join("sky.png");
-    let error = write_to(&missing, size, &sky(size, 3))
-        .unwrap_err()
-        .to_string();
-    assert!(
-        error.contains("none") && error.contains("no folder"),
-        "{error}"
-    );
-    fs::create_dir(folder.0.join("folder.png")).unwrap();
-    let error = write_to(&folder.0.join("folder.png"), size, &sky(size, 3)).unwrap_err();
-    assert!(error.to_string().contains("it is a folder"), "{error}");
-    let error = write_to(&folder.0.join("sky.exr"), size, &sky(size, 4)).unwrap_err();
-    assert!(error.to_string().contains('4'), "{error}");
-    assert_eq!(folder.files(), ["folder.png"]);
-}
-
-#[test]
-fn a_stopped_write_leaves_nothing() {
-    let folder = Folder::new("stopped");
-    let size = size(2000, 4000);
-    for ending in ["exr", "hdr", "png", "jpg"] {
-        let path = folder.0.join(format!("sky.{ending}"));
-        fs::write(&path, "before").unwrap();
-        let cancel = AtomicBool::new(false);
-        let inner = sky(size, 3);
-        let source = RowFn::new(3, |y, out: &mut [f32]| {
-            if y == 1500 {
-                cancel.store(true, Ordering::Relaxed);
-            }
-            inner.fill_row(y, out);
-        });
-        let error = write_picture(
-            &path,
-            size,
-            &source,
-            &tone(),
-            &PictureOptions::default(),
-            Control::cancelled_by(&cancel),
-        )
-        .unwrap_err();
-        assert!(error.is_cancelled(), "{ending}: {error}");
-        assert_eq!(fs::read(&path).unwrap(), b"before");
-    }
-    assert_eq!(folder.files().len(), 4);
-}
-
-#[test]
-fn a_panicking_source_leaves_nothing() {
-    let folder = Folder::new("panic");
-    let size = size(200, 100);
-    for ending in ["exr", "hdr", "png", "jpg"] {
-        let path = folder.0.join(format!("sky.{ending}"));
-        let source = RowFn::new(3, |y, out: &mut [f32]| {
-            assert!(y < 50, "the source gives up");
-            out.fill(0.5);
-        });
-        let outcome = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
-            write_to(&path, size, &source)
-        }));
-        assert!(outcome.is_err());
-    }
-    assert!(folder.files().is_empty(), "{:?}", folder.files());
-}
-
-#[test]
-fn a_full_disk_is_reported() {
-    struct Full(usize);
-    impl std::io::Write for Full {
-        fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
-            if self.0 < bytes.len() {
-                return Err(std::io::Error::other("the disk is full"));
-            }
-            self.0 -= bytes.len();
-            Ok(bytes.len())
-        }
-        fn flush(&mut self) -> std::io::Result<()> {
-            Ok(())
-        }
-    }
-    let size = size(500, 2000);
-    let source = sky(size, 3);
-    for room in [0, 10, 5000] {
-        let metadata = Metadata::default();
-        let control = Control::default();
-        for outcome in [
-            hdr::encode(&mut Full(room), size, &source, &metadata, control),
-            png::encode(
-                &mut Full(room),
-                size,
-                &source,
-                &tone(),
-                &PngOptions::default(),
-                &metadata,
-                control,
-            ),
-            jpeg::encode(
-                &mut Full(room),
-                size,
-                &source,
-                &tone(),
-                &JpegOptions::default(),
-                &metadata,
-                control,
-            ),
-        ] {
-            let error = outcome.unwrap_err().at(Path::new("sky.x")).to_string();
-            assert!(
-                error.contains("disk is full") && error.contains("sky.x"),
-                "{error}"
-            );
-        }
-    }
-}
-
-#[test]
-fn progress_is_told_in_order_and_to_the_end() {
-    #[derive(Default)]
-    struct Heard(Mutex<Vec<u32>>);
-    impl Progress for Heard {
-        fn rows_written(&self, done: u32, total: u32) {
-            assert_eq!(total, 1000);
-            self.0.lock().unwrap().push(done);
-        }
-    }
-    let folder = Folder::new("progress");
-    let size = size(500, 1000);
-    for ending in ["exr", "hdr", "png", "jpg"] {
-        let heard = Heard::default();
-        write_picture(
-            &folder.0.join(format!("sky.{ending}")),
-            size,
-            &sky(size, 3),
-            &tone(),
-            &PictureOptions::default(),
-            Control::default().reporting_to(&heard),
-        )
-        .unwrap();
-        let rows = heard.0.into_inner().unwrap();
-        assert!(rows.is_sorted() && rows.len() > 2, "{rows:?}");
-        assert_eq!(rows.last(), Some(&1000));
-    }
-}
-
-#[test]
-fn the_same_rows_make_the_same_file() {
-    let size = size(700, 400);
-    let make = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .unwrap();
-        pool.install(|| {
-            let mut out = Cursor::new(Vec::new());
-            exr::encode(
-                &mut out,
-                size,
-                &["R", "G", "B"],
-                &sky(size, 3),
-                &ExrOptions::default(),
-                &full_metadata(),
-                Control::default(),
-            )
-            .unwrap();
-            let mut png = Vec::new();
-            png::encode(
-                &mut png,
-                size,
-                &sky(size, 3),
-                &tone(),
-                &PngOptions::default(),
-                &full_metadata(),
-                Control::default(),
-            )
-            .unwrap();
-            (out.into_inner(), png)
-        })
-    };
-    let (one, four) = (make(1), make(4));
-    assert!(one == four);
 }

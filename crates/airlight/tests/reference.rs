@@ -22,8 +22,9 @@ fn solve(atm: &Atmosphere, nm: [f64; 4], sun: f64) -> Solved {
     let t1 = t.elapsed();
     let env = |k: &str, d: usize| std::env::var(k).map_or(d, |v| v.parse().unwrap());
     let s = OrderSettings {
-        full_degree: env("LF", 4),
+        full_degree: env("LF", 8),
         zonal_degree: env("LZ", 12),
+        rescattered_degree: env("LR", 4),
         first: Directions {
             zenith_nodes: [env("Z0", 8), env("Z1", 5), env("Z2", 8)],
             azimuths: env("AZ", 12),
@@ -34,7 +35,7 @@ fn solve(atm: &Atmosphere, nm: [f64; 4], sun: f64) -> Solved {
             azimuths: env("AY", 8),
             panel_nodes: env("PY", 2),
         },
-        tolerance: 1e-3,
+        tolerance: 1e-4 * env("TOL", 100) as f32,
         max_orders: 30,
     };
     let air = Air::new(atm, shell, nm, s.zonal_degree);

@@ -87,6 +87,26 @@ impl Frame {
         )
     }
 
+    /// The same view in few pixels, for a preview or for metering: `longest_side` at most, each side at least 1.
+    pub fn preview(&self, longest_side: u32) -> Self {
+        let (width, height) = (self.size.width, self.size.height);
+        let longest = width.max(height);
+        let side = longest_side.clamp(1, longest);
+        let scaled = |n: u32| {
+            let n = u64::from(n) * u64::from(side) + u64::from(longest) / 2;
+            (n / u64::from(longest)).max(1) as u32
+        };
+        let size = Size {
+            width: scaled(width),
+            height: scaled(height),
+        };
+        Self {
+            projection: self.projection,
+            size,
+            lens: Lens::new(&self.projection, size),
+        }
+    }
+
     /// What was given.
     pub fn projection(&self) -> &Projection {
         &self.projection

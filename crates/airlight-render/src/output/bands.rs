@@ -14,8 +14,8 @@ pub(super) struct Bands {
 /// Bytes of a band's rows as the source fills them that a writer aims for.
 const BAND_BYTES: usize = 4 << 20;
 
-/// Bytes of bands held at a time that the loop aims for, beyond one band for each thread.
-const HELD_BYTES: usize = 48 << 20;
+/// Bytes that the bands being made at a time may take: it bounds a writer's memory however many threads there are.
+const HELD_BYTES: usize = 64 << 20;
 
 impl Bands {
     /// Bands of `rows` rows.
@@ -43,7 +43,8 @@ impl Bands {
     }
 
     /// Makes every band by `make(band)` in parallel and hands them in order to `write`, which works while the next ones
-    /// are made. `band_bytes` is about what one band takes in memory while it is made.
+    /// are made. `band_bytes` is about what one band takes in memory while it is made; once made it is taken to need much
+    /// less.
     pub(super) fn run<T: Send>(
         self,
         band_bytes: usize,
@@ -52,7 +53,7 @@ impl Bands {
         mut write: impl FnMut(u32, T) -> Result<(), RenderError> + Send,
     ) -> Result<(), RenderError> {
         let threads = rayon::current_num_threads();
-        let batch = (HELD_BYTES / band_bytes.max(1)).clamp(threads, threads * 4) as u32;
+        let batch = (HELD_BYTES / band_bytes.max(1)).clamp(1, threads * 4) as u32;
         let height = self.size.height();
         let mut made: Vec<T> = Vec::new();
         let mut first = 0;

@@ -28,7 +28,7 @@ pub enum PngDepth {
 pub struct PngOptions {
     /// Bits of a component.
     pub depth: PngDepth,
-    /// Effort of compression: 0 stores, 1 is fastest, 9 smallest.
+    /// Effort of compression: 0 stores, 1 is fastest, 9 smallest; from 3 up little is gained.
     pub compression_level: u8,
 }
 
@@ -36,7 +36,7 @@ impl Default for PngOptions {
     fn default() -> Self {
         Self {
             depth: PngDepth::Eight,
-            compression_level: 4,
+            compression_level: 3,
         }
     }
 }

@@ -46,7 +46,7 @@ impl Exposure {
     }
 
     /// Metered from luminances, such as those of a coarse grid of pixels of the picture: brings their typical value to
-    /// the metering's key. `None` where nothing is lit.
+    /// the metering's key. `None` where nothing is lit or the key is negative or not a number.
     ///
     /// `samples` are pairs of luminance and weight (solid angle, or 1): not-a-number, infinite and non-positive
     /// luminances and weights do not count. The typical value is the weighted mean logarithm of what lies between two

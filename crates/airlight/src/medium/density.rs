@@ -199,7 +199,8 @@ impl DensityProfile {
             }
             Self::StandardAir1976 => {
                 static RULE: LazyLock<(Vec<f64>, Vec<f64>)> = LazyLock::new(|| gauss_legendre(16));
-                integrate_by(&RULE, a, b, &self.breakpoints_m(), |z| self.at(z))
+                let kinks: Vec<f64> = standard_air::kinks_m().collect();
+                integrate_by(&RULE, a, b, &kinks, |z| self.at(z))
             }
             Self::Tabulated(table) => table.column(a, b),
             Self::Sum(parts) => parts
@@ -209,7 +210,8 @@ impl DensityProfile {
         }
     }
 
-    /// Altitudes at which the profile has a kink or a jump, m, rising: edges for quadrature panels.
+    /// Altitudes at which the profile has a kink or a jump, m, rising: edges for quadrature panels. Of the standard
+    /// atmosphere only the tropopause.
     pub fn breakpoints_m(&self) -> Vec<f64> {
         let mut all = match self {
             Self::Exponential { .. } => vec![],
@@ -219,7 +221,8 @@ impl DensityProfile {
                 peak_m,
                 top_m,
             } => vec![*bottom_m, *peak_m, *top_m],
-            Self::StandardAir1976 => standard_air::breakpoints_m().collect(),
+            // The other kinks change the slope by less than 10 %: not worth a panel edge each.
+            Self::StandardAir1976 => standard_air::kinks_m().skip(1).take(1).collect(),
             Self::Tabulated(table) => table.altitudes_m.clone(),
             Self::Sum(parts) => parts
                 .iter()

@@ -74,7 +74,7 @@ pub(super) fn relative_density(altitude_m: f64) -> f64 {
 }
 
 /// Geometric altitudes at which the temperature gradient changes, m.
-pub(super) fn breakpoints_m() -> impl Iterator<Item = f64> {
+pub(super) fn kinks_m() -> impl Iterator<Item = f64> {
     LAYERS
         .iter()
         .map(|l| GEOPOTENTIAL_RADIUS_M * l.base_m / (GEOPOTENTIAL_RADIUS_M - l.base_m))
@@ -115,8 +115,18 @@ mod tests {
     }
 
     #[test]
+    fn only_the_tropopause_is_a_kink_worth_telling() {
+        for (i, z) in kinks_m().enumerate().skip(1) {
+            let slope = |d: f64| (relative_density(z + d) / relative_density(z)).ln() / d;
+            let change = (slope(1.0) / slope(-1.0) - 1.0).abs();
+            // Above 86 km less than 1e-5 of the air is left.
+            assert_eq!(i == 1, change > 0.10 && z < 80e3, "{z} m: {change}");
+        }
+    }
+
+    #[test]
     fn layers_join_without_a_step() {
-        for z in breakpoints_m() {
+        for z in kinks_m() {
             let (below, above) = (relative_density(z - 1e-3), relative_density(z + 1e-3));
             assert!((below / above - 1.0).abs() < 2e-6, "{z}: {below} {above}");
         }

@@ -85,6 +85,16 @@ impl<const N: usize> Air<N> {
         depth
     }
 
+    /// [`Air::optical_depth`] of columns in single precision.
+    #[inline(always)]
+    pub fn optical_depth_f32(&self, columns_m: &[f32; MAX_CONSTITUENTS]) -> Spectrum<N> {
+        let mut depth = Spectrum::ZERO;
+        for (extinction, &column) in self.extinction.iter().zip(columns_m) {
+            depth = depth.scale_acc(*extinction, column);
+        }
+        depth
+    }
+
     /// Transmittance through the given columns.
     #[inline(always)]
     pub fn transmittance(&self, columns_m: &PerConstituent) -> Spectrum<N> {

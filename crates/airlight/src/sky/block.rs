@@ -2,15 +2,16 @@
 
 use super::SkySettings;
 use super::air::Air;
+use super::fan::{Fan, Path, Scratch};
 use super::field::{FieldGrid, RadianceField};
 use super::orders;
 use super::ray::Ray;
 use super::shell::Shell;
-use super::trace::Tracer;
+use super::trace::{Tracer, ground_irradiance};
+use super::vector::vectorized;
 use super::{Scattering, SkyError};
 use crate::medium::Atmosphere;
 use crate::spectrum::Spectrum;
-use pulp::Arch;
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -39,9 +40,6 @@ pub trait Block: Send + Sync {
     /// Light along one ray.
     fn trace(&self, ray: &Ray, limit_m: f64) -> BlockLight;
 
-    /// Radiance of the ground under the sun cosine `mu_sun`, per unit solar irradiance.
-    fn ground_radiance(&self, mu_sun: f64) -> Vec<f32>;
-
     /// Transmittance from a point to space along `mu`; 0 where the planet is in the way.
     fn transmittance_to_space(&self, radius_m: f64, mu: f64) -> Vec<f32>;
 
@@ -49,9 +47,24 @@ pub trait Block: Send + Sync {
     /// averaged over the lanes.
     fn peaked_phase(&self, constituent: usize, nu: f64) -> f64;
 
-    /// Adds the light along each ray to `out`: for each ray first one value a channel of all smooth light, then for each
-    /// of the `peaked` constituents one value a channel, to be multiplied by the mean of its phase function.
-    fn fill(&self, rays: &[Ray], matrix: &ChannelMatrix, peaked: &[usize], out: &mut [f32]);
+    /// Adds the light along each ray of `rows` to `out`: for each ray first one value a channel of all smooth light, then
+    /// for each of the `peaked` constituents one value a channel, to be multiplied by the mean of its phase function;
+    /// `width` values a ray in all.
+    fn fill(
+        &self,
+        rows: &[TableRow],
+        matrix: &ChannelMatrix,
+        peaked: &[usize],
+        width: usize,
+        out: &mut [f32],
+    );
+}
+
+/// Rays of one elevation, in equally many azimuths for each row of a table.
+pub struct TableRow {
+    /// Distance of the eye from the planet's centre, m, and cosine of the zenith angle.
+    pub start: (f64, f64),
+    pub fan: Fan,
 }
 
 /// Solves for all `wavelengths_nm` in blocks of fitting width.
@@ -62,8 +75,18 @@ pub fn solve(
     settings: &SkySettings,
 ) -> Result<Vec<Box<dyn Block>>, SkyError> {
     match wavelengths_nm.len() {
-        0..=4 => Ok(vec![Solved::<4>::boxed(atmosphere, shell, wavelengths_nm, settings)]),
-        5..=8 => Ok(vec![Solved::<8>::boxed(atmosphere, shell, wavelengths_nm, settings)]),
+        0..=4 => Ok(vec![Solved::<4>::boxed(
+            atmosphere,
+            shell,
+            wavelengths_nm,
+            settings,
+        )]),
+        5..=8 => Ok(vec![Solved::<8>::boxed(
+            atmosphere,
+            shell,
+            wavelengths_nm,
+            settings,
+        )]),
         _ => Ok(wavelengths_nm
             .chunks(16)
             .map(|chunk| match chunk.len() {
@@ -90,12 +113,20 @@ impl<const N: usize> Solved<N> {
     ) -> Box<dyn Block> {
         let lanes = wavelengths_nm.len();
         let padded = std::array::from_fn(|lane| wavelengths_nm[lane.min(lanes - 1)]);
-        let air = Air::<N>::new(atmosphere, shell.clone(), padded, settings.orders.zonal_degree);
-        let field = (settings.scattering == Scattering::All && !air.scatterers.is_empty()).then(|| {
-            let zeniths = settings.suns.sun_zeniths_deg(shell.ground_radius_m, shell.top_radius_m);
-            let grid = FieldGrid::new(&air, settings.altitudes, &zeniths);
-            orders::solve(&air, grid, &settings.orders)
-        });
+        let air = Air::<N>::new(
+            atmosphere,
+            shell.clone(),
+            padded,
+            settings.orders.zonal_degree,
+        );
+        let field =
+            (settings.scattering == Scattering::All && !air.scatterers.is_empty()).then(|| {
+                let zeniths = settings
+                    .suns
+                    .sun_zeniths_deg(shell.ground_radius_m, shell.top_radius_m);
+                let grid = FieldGrid::new(&air, settings.altitudes, &zeniths);
+                orders::solve(&air, grid, &settings.orders)
+            });
         Box::new(Self { air, field, lanes })
     }
 
@@ -124,13 +155,14 @@ impl<const N: usize> Block for Solved<N> {
         }
     }
 
-    fn ground_radiance(&self, mu_sun: f64) -> Vec<f32> {
-        self.used(&self.tracer().ground_radiance(mu_sun))
-    }
-
     fn transmittance_to_space(&self, radius_m: f64, mu: f64) -> Vec<f32> {
         let shell = &self.air.shell;
-        let ray = Ray { radius_m, mu, mu_sun: 1.0, nu: mu };
+        let ray = Ray {
+            radius_m,
+            mu,
+            mu_sun: 1.0,
+            nu: mu,
+        };
         if ray.distance_to_ground(shell.ground_radius_m).is_some() {
             return vec![0.0; self.lanes];
         }
@@ -138,52 +170,138 @@ impl<const N: usize> Block for Solved<N> {
             return vec![1.0; self.lanes];
         };
         let entry = ray.advanced(stretch.start_m);
-        self.used(&self.air.transmittance(&shell.columns_to_space_m(entry.radius_m, entry.mu)))
+        self.used(
+            &self
+                .air
+                .transmittance(&shell.columns_to_space_m(entry.radius_m, entry.mu)),
+        )
     }
 
     fn peaked_phase(&self, constituent: usize, nu: f64) -> f64 {
-        let scatterer = self.air.scatterers.iter().find(|s| s.constituent == constituent);
-        scatterer.map_or(0.0, |s| {
-            let phase = s.phase(&self.air, nu);
-            phase.0[..self.lanes].iter().map(|&p| f64::from(p)).sum::<f64>() / self.lanes as f64
-        })
+        let scatterer = self
+            .air
+            .scatterers
+            .iter()
+            .find(|s| s.constituent == constituent);
+        scatterer.map_or(0.0, |s| f64::from(self.mean(&s.phase(&self.air, nu))))
     }
 
-    fn fill(&self, rays: &[Ray], matrix: &ChannelMatrix, peaked: &[usize], out: &mut [f32]) {
-        const CHUNK: usize = 16;
-        let channels = matrix.weights.len();
-        let width = channels * (1 + peaked.len());
+    fn fill(
+        &self,
+        rows: &[TableRow],
+        matrix: &ChannelMatrix,
+        peaked: &[usize],
+        width: usize,
+        out: &mut [f32],
+    ) {
         let weights: Vec<Spectrum<N>> = matrix
             .weights
             .iter()
             .map(|row| Spectrum::from_fn(|lane| if lane < self.lanes { row[lane] } else { 0.0 }))
             .collect();
-        let arch = Arch::new();
-        out.par_chunks_mut(width * CHUNK).zip(rays.par_chunks(CHUNK)).for_each(|(out, rays)| {
-            arch.dispatch(
+        let stride = width * rows[0].fan.len();
+        out.par_chunks_mut(stride).zip(rows).for_each(|(out, row)| {
+            vectorized(
                 #[inline(always)]
                 || {
-                    let mut tracer = self.tracer();
-                    for (ray, out) in rays.iter().zip(out.chunks_exact_mut(width)) {
-                        let light = tracer.trace(ray, f64::INFINITY);
-                        let (smooth, rest) = out.split_at_mut(channels);
-                        let mut sum = light.multiple + light.ground;
-                        for (s, unphased) in self.air.scatterers.iter().zip(&light.unphased) {
-                            let phase = s.phase(&self.air, ray.nu);
-                            match peaked.iter().position(|&c| c == s.constituent) {
-                                None => sum = sum.mul_acc(*unphased, phase),
-                                Some(place) => {
-                                    let mean = self.peaked_phase(s.constituent, ray.nu) as f32;
-                                    let value = *unphased * phase / mean;
-                                    add_channels(&mut rest[place * channels..][..channels], &weights, &value);
-                                }
-                            }
-                        }
-                        add_channels(smooth, &weights, &sum);
+                    let light = self.row_light(row);
+                    for (slot, cell) in out.chunks_exact_mut(width).enumerate() {
+                        self.fill_cell(&light, row.fan.nu[slot], slot, &weights, peaked, cell);
                     }
                 },
             );
         });
+    }
+}
+
+/// Light along the rays of a row.
+struct RowLight<const N: usize> {
+    /// Sunlight scattered once, without phase function, `[scatterer][ray]`.
+    unphased: Vec<Spectrum<N>>,
+    /// All other light.
+    rest: Vec<Spectrum<N>>,
+}
+
+impl<const N: usize> Solved<N> {
+    #[inline(always)]
+    fn row_light(&self, row: &TableRow) -> RowLight<N> {
+        let (air, field, rays) = (&self.air, self.field.as_ref(), row.fan.len());
+        let mut light = RowLight {
+            unphased: Vec::new(),
+            rest: vec![Spectrum::ZERO; rays],
+        };
+        let mut tracer = self.tracer();
+        let grid = field.map(|f| &f.grid);
+        let degree = field.map_or(0, |f| f.basis.degree());
+        let path = Path::new(air, grid, &tracer.marcher, row.start, degree);
+        if path.is_lit(air, &row.fan) {
+            path.carry_sunlight(air, &row.fan, &mut light.unphased);
+            if let Some(field) = field {
+                path.carry_scattered(
+                    field,
+                    &field.basis,
+                    &row.fan,
+                    &mut Scratch::default(),
+                    &mut light.rest,
+                );
+            }
+            path.carry_ground(
+                air,
+                &row.fan,
+                |mu_sun| ground_irradiance(air, field, mu_sun),
+                &mut light.rest,
+            );
+        } else {
+            // The planet's shadow ends somewhere else on each ray.
+            light
+                .unphased
+                .resize(air.scatterers.len() * rays, Spectrum::ZERO);
+            for slot in 0..rays {
+                let one = tracer.trace(&row.fan.ray(row.start, slot), f64::INFINITY);
+                light.rest[slot] = one.multiple + one.ground;
+                for (s, unphased) in one.unphased[..air.scatterers.len()].iter().enumerate() {
+                    light.unphased[s * rays + slot] = *unphased;
+                }
+            }
+        }
+        light
+    }
+
+    #[inline(always)]
+    fn fill_cell(
+        &self,
+        light: &RowLight<N>,
+        nu: f64,
+        slot: usize,
+        weights: &[Spectrum<N>],
+        peaked: &[usize],
+        cell: &mut [f32],
+    ) {
+        let channels = weights.len();
+        let mut smooth = light.rest[slot];
+        for (place, s) in self.air.scatterers.iter().enumerate() {
+            let unphased = light.unphased[place * light.rest.len() + slot];
+            let phase = s.phase(&self.air, nu);
+            match peaked.iter().position(|&c| c == s.constituent) {
+                None => smooth = smooth.mul_acc(unphased, phase),
+                Some(part) => {
+                    let mean = self.mean(&phase);
+                    let value = unphased * phase / mean;
+                    add_channels(
+                        &mut cell[(1 + part) * channels..][..channels],
+                        weights,
+                        &value,
+                    );
+                }
+            }
+        }
+        add_channels(&mut cell[..channels], weights, &smooth);
+    }
+
+    /// Mean over the lanes in use.
+    #[inline(always)]
+    fn mean(&self, spectrum: &Spectrum<N>) -> f32 {
+        spectrum.0[..self.lanes].iter().sum::<f32>() / self.lanes as f32
     }
 }
 

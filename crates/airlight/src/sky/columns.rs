@@ -21,7 +21,32 @@ pub struct ColumnTable {
     /// At even steps of the altitude coordinate: the vertical column and its slope in that coordinate.
     vertical: Vec<[PerConstituent; 2]>,
     /// `[altitude][angle]`, angles running fastest.
-    inverse_air_mass: Vec<PerConstituent>,
+    inverse_air_mass: Vec<[f32; MAX_CONSTITUENTS]>,
+}
+
+/// The table at one altitude.
+pub struct ColumnRow {
+    vertical: [f32; MAX_CONSTITUENTS],
+    inverse_air_mass: [[f32; MAX_CONSTITUENTS]; ANGLES],
+}
+
+impl ColumnRow {
+    /// Columns from this altitude along `mu >= 0` to the top, in metres of density 1.
+    #[inline(always)]
+    pub fn to_space_m(&self, mu: f32) -> [f32; MAX_CONSTITUENTS] {
+        let (first, weights) = cubic(f64::from(mu.sqrt()), ANGLES);
+        let mut inverse = [0.0f32; MAX_CONSTITUENTS];
+        for (entry, w) in self.inverse_air_mass[first..first + 4].iter().zip(weights) {
+            for c in 0..MAX_CONSTITUENTS {
+                inverse[c] += w as f32 * entry[c];
+            }
+        }
+        let mut columns = self.vertical;
+        for c in 0..MAX_CONSTITUENTS {
+            columns[c] /= if inverse[c] > 1e-6 { inverse[c] } else { 1e-6 };
+        }
+        columns
+    }
 }
 
 impl ColumnTable {
@@ -40,7 +65,7 @@ impl ColumnTable {
             })
             .collect();
         let rule = GaussRule::new(4);
-        let rows: Vec<Vec<PerConstituent>> = (0..ALTITUDES)
+        let rows: Vec<Vec<[f32; MAX_CONSTITUENTS]>> = (0..ALTITUDES)
             .into_par_iter()
             .map(|i| {
                 let radius_m = shell.radius_of_coordinate(i as f64 / (ALTITUDES - 1) as f64);
@@ -49,12 +74,12 @@ impl ColumnTable {
                     .map(|j| {
                         let mu = (j as f64 / (ANGLES - 1) as f64).powi(2);
                         let slant = shell.integrate_columns_m(radius_m, mu, &rule);
-                        std::array::from_fn(|c| zenith[c] / slant[c])
+                        std::array::from_fn(|c| (zenith[c] / slant[c]) as f32)
                     })
                     .collect()
             })
             .collect();
-        let mut inverse_air_mass: Vec<PerConstituent> = rows.concat();
+        let mut inverse_air_mass = rows.concat();
         // Where nothing of a constituent lies above, its air mass means nothing: carry the one below upwards, so that
         // interpolation just beneath stays smooth.
         for k in 0..inverse_air_mass.len() {
@@ -93,17 +118,41 @@ impl ColumnTable {
         let vertical = self.vertical_m(x);
         let (row, row_weights) = cubic(x, ALTITUDES);
         let (column, column_weights) = cubic(mu.sqrt(), ANGLES);
-        let mut inverse = [0.0; MAX_CONSTITUENTS];
+        let mut inverse = [0.0f32; MAX_CONSTITUENTS];
         for (i, wi) in row_weights.iter().enumerate() {
-            for (j, wj) in column_weights.iter().enumerate() {
-                let entry = &self.inverse_air_mass[(row + i) * ANGLES + column + j];
-                let w = wi * wj;
+            let entries = &self.inverse_air_mass[(row + i) * ANGLES + column..][..4];
+            for (entry, wj) in entries.iter().zip(&column_weights) {
+                let w = (wi * wj) as f32;
                 for c in 0..MAX_CONSTITUENTS {
                     inverse[c] += w * entry[c];
                 }
             }
         }
-        std::array::from_fn(|c| vertical[c] / inverse[c].max(1e-6))
+        let mut columns = vertical;
+        for c in 0..MAX_CONSTITUENTS {
+            columns[c] /= f64::from(if inverse[c] > 1e-6 { inverse[c] } else { 1e-6 });
+        }
+        columns
+    }
+
+    /// The table at one altitude, for many zenith angles.
+    #[inline(always)]
+    pub(super) fn at(&self, shell: &Shell, radius_m: f64) -> ColumnRow {
+        let x = shell.altitude_coordinate(radius_m);
+        let (first, weights) = cubic(x, ALTITUDES);
+        let mut row = ColumnRow {
+            vertical: self.vertical_m(x).map(|column| column as f32),
+            inverse_air_mass: [[0.0; MAX_CONSTITUENTS]; ANGLES],
+        };
+        for (i, w) in weights.iter().enumerate() {
+            let entries = &self.inverse_air_mass[(first + i) * ANGLES..][..ANGLES];
+            for (sum, entry) in row.inverse_air_mass.iter_mut().zip(entries) {
+                for c in 0..MAX_CONSTITUENTS {
+                    sum[c] += *w as f32 * entry[c];
+                }
+            }
+        }
+        row
     }
 
     /// Hermite interpolation of the vertical columns, whose slopes (the densities) are known.

@@ -20,17 +20,28 @@ const NIGHT_DEG: f64 = 118.0;
 impl SunCoverage {
     /// [`SunCoverage::Near`] in short.
     pub fn near(sun_elevation_deg: f64, observer_altitude_m: f64) -> Self {
-        Self::Near { sun_elevation_deg, observer_altitude_m }
+        Self::Near {
+            sun_elevation_deg,
+            observer_altitude_m,
+        }
     }
 
     /// Zenith angles of the sun, increasing (degrees), at which the light inside the air is solved for.
     pub(super) fn sun_zeniths_deg(self, ground_radius_m: f64, top_radius_m: f64) -> Vec<f64> {
-        let Self::Near { sun_elevation_deg, observer_altitude_m } = self else {
+        let Self::Near {
+            sun_elevation_deg,
+            observer_altitude_m,
+        } = self
+        else {
             return all_zeniths_deg();
         };
         // A line of sight ends below the horizon of the highest air; seen from there the sun stands differently by
         // as much as the planet's surface has curved on the way.
-        let dip = |radius_m: f64| (ground_radius_m / radius_m.max(ground_radius_m)).acos().to_degrees();
+        let dip = |radius_m: f64| {
+            (ground_radius_m / radius_m.max(ground_radius_m))
+                .acos()
+                .to_degrees()
+        };
         let reach = dip(top_radius_m) + dip(ground_radius_m + observer_altitude_m.max(0.0));
         if reach > 15.0 {
             return all_zeniths_deg();

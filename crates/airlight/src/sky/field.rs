@@ -160,19 +160,17 @@ impl<const N: usize> RadianceField<N> {
         (a * (1.0 - at.fraction) + b * at.fraction).exp()
     }
 
-    /// Interpolates the stored form of the moments in altitude, for all sun cosines: `[sun][harmonic]` into `out`.
+    /// Interpolates the stored form of the first `count` moments in altitude, for all sun cosines: `[sun][harmonic]`
+    /// into `out`.
     #[inline(always)]
-    pub fn at_radius(&self, at: Place, out: &mut Vec<Spectrum<N>>) {
-        let row = self.grid.sun_cosines.len() * self.basis.count();
-        let below = &self.moments[at.below * row..(at.below + 1) * row];
-        let above = &self.moments[(at.below + 1) * row..(at.below + 2) * row];
+    pub fn at_radius(&self, at: Place, count: usize, out: &mut Vec<Spectrum<N>>) {
         out.clear();
-        out.extend(
-            below
-                .iter()
-                .zip(above)
-                .map(|(a, b)| *a * (1.0 - at.fraction) + *b * at.fraction),
-        );
+        for sun in 0..self.grid.sun_cosines.len() {
+            let (below, above) = (self.point(at.below, sun), self.point(at.below + 1, sun));
+            for (a, b) in below[..count].iter().zip(&above[..count]) {
+                out.push(*a * (1.0 - at.fraction) + *b * at.fraction);
+            }
+        }
     }
 
     /// Light scattered towards the eye per metre (times solar irradiance) at a point `here` of a line of sight, from

@@ -155,6 +155,66 @@ impl Harmonics {
             azimuthal = next;
         }
     }
+
+    /// [`Harmonics::evaluate_zonal`] for many rays: `[function][ray]` into `out`.
+    #[inline(always)]
+    pub fn evaluate_zonal_fan(&self, nu: &[f64], out: &mut [f32]) {
+        let mut y = [0.0; Self::MAX_COUNT];
+        let rays = nu.len();
+        for (slot, &nu) in nu.iter().enumerate() {
+            self.evaluate_zonal(nu as f32, &mut y);
+            for k in count_all_orders(self.full)..self.count() {
+                out[k * rays + slot] = y[k];
+            }
+        }
+    }
+
+    /// [`Harmonics::evaluate_local`] for many rays of the same `mu`: `[function][ray]` into `out`. `scratch` has three
+    /// arrays of one entry a ray.
+    #[inline(always)]
+    pub fn evaluate_local_fan(
+        &self,
+        mu: f32,
+        toward_sun: &[f32],
+        scratch: &mut [Vec<f32>; 3],
+        out: &mut [f32],
+    ) {
+        let rays = toward_sun.len();
+        let sin2 = (1.0 - mu * mu).max(0.0);
+        let [below, here, next] = scratch;
+        below[..rays].copy_from_slice(toward_sun);
+        here[..rays].fill(1.0);
+        for m in 0..=self.full {
+            let diagonal = index(m, m) * rays;
+            for (y, azimuthal) in out[diagonal..diagonal + rays].iter_mut().zip(&here[..rays]) {
+                *y = self.diagonal[m] * azimuthal;
+            }
+            for l in m + 1..=self.full {
+                let (p, q) = self.recurrence[index(l, m)];
+                let (done, rest) = out.split_at_mut(index(l, m) * rays);
+                let one = &done[index(l - 1, m) * rays..][..rays];
+                if l == m + 1 {
+                    for (y, one) in rest[..rays].iter_mut().zip(one) {
+                        *y = p * mu * one;
+                    }
+                } else {
+                    let two = &done[index(l - 2, m) * rays..][..rays];
+                    for ((y, one), two) in rest[..rays].iter_mut().zip(one).zip(two) {
+                        *y = p * mu * one - q * two;
+                    }
+                }
+            }
+            for slot in 0..rays {
+                next[slot] = if m == 0 {
+                    toward_sun[slot]
+                } else {
+                    2.0 * toward_sun[slot] * here[slot] - sin2 * below[slot]
+                };
+            }
+            std::mem::swap(below, here);
+            std::mem::swap(here, next);
+        }
+    }
 }
 
 /// `P_l(x)` for `l` below `out.len()`.

@@ -7,17 +7,16 @@
 //! and its zenith angle: they are worked out once and serve every sun angle, azimuth and order.
 
 use super::air::Air;
-use super::field::{FieldGrid, Place, RadianceField, scattering_moment};
+use super::fan::{Fan, Path, Scratch};
+use super::field::{FieldGrid, RadianceField};
 use super::harmonics::{Harmonics, legendre};
 use super::march::Marcher;
 use super::quadrature::GaussRule;
-use super::ray::{Ray, in_shadow};
-use super::shell::PerConstituent;
+use super::trace::sun_on_ground;
+use super::vector::vectorized;
 use crate::spectrum::Spectrum;
-use pulp::Arch;
 use rayon::prelude::*;
 use std::f64::consts::PI;
-use std::ops::ControlFlow;
 
 /// How finely the orders are solved.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,6 +25,9 @@ pub struct OrderSettings {
     pub full_degree: usize,
     /// Degree up to which they are kept as far as they are symmetric about the sun's direction.
     pub zonal_degree: usize,
+    /// Degree (at most `full_degree`) of the moments that are scattered again while the orders are solved; the light
+    /// that is finally looked at keeps all.
+    pub rescattered_degree: usize,
     /// Rays that carry light scattered once: it holds the aerosol's forward peak and wants the most directions.
     pub first: Directions,
     /// Rays that carry every later order: smoother, so fewer of them.
@@ -54,8 +56,14 @@ pub fn solve<const N: usize>(
     settings: &OrderSettings,
 ) -> RadianceField<N> {
     let basis = Harmonics::new(settings.full_degree, settings.zonal_degree);
-    let mut sum = Transport::new(air, &grid, &basis, &settings.first).first_order();
-    let transport = Transport::new(air, &grid, &basis, &settings.later);
+    let mut sum = Transport::new(air, &grid, &basis, 0, &settings.first).first_order();
+    let transport = Transport::new(
+        air,
+        &grid,
+        &basis,
+        settings.rescattered_degree,
+        &settings.later,
+    );
     let mut order = sum.clone();
     for _ in 2..=settings.max_orders {
         let next = transport.next_order(&order.field(&grid, &basis));
@@ -143,35 +151,14 @@ impl<const N: usize> Order<N> {
     }
 }
 
-/// A quadrature node on the way of a [`Path`].
-struct PathNode<const N: usize> {
-    t: f64,
-    radius_m: f64,
-    mu: f32,
-    densities: PerConstituent,
-    place: Place,
-    /// Transmittance from the start times the length that the node stands for, m.
-    weight: Spectrum<N>,
-    /// `weight` times the scattering coefficients' l-th phase moments.
-    source_weights: Vec<Spectrum<N>>,
-}
-
-/// The rays that leave one height under one zenith angle.
-struct Path<const N: usize> {
-    mu: f64,
-    /// Weight of this zenith angle in an integral over the cosine.
-    solid_weight: f64,
-    nodes: Vec<PathNode<N>>,
-    /// Distance to the ground and transmittance up to it, where the ray ends there.
-    ground: Option<(f64, Spectrum<N>)>,
-}
-
 struct Transport<'a, const N: usize> {
     air: &'a Air<N>,
     grid: &'a FieldGrid,
     basis: &'a Harmonics,
-    /// For each height, the rays that leave it.
-    paths: Vec<Vec<Path<N>>>,
+    /// The low degrees of the basis: what is scattered again.
+    rescattered: Harmonics,
+    /// For each height, the paths that leave it, with their weights in an integral over the zenith angle's cosine.
+    paths: Vec<Vec<(Path<N>, f64)>>,
     azimuth_cosines: Vec<f64>,
 }
 
@@ -180,21 +167,30 @@ impl<'a, const N: usize> Transport<'a, N> {
         air: &'a Air<N>,
         grid: &'a FieldGrid,
         basis: &'a Harmonics,
+        rescattered_degree: usize,
         directions: &Directions,
     ) -> Self {
         let marcher = Marcher::new(directions.panel_nodes, 2.0, air.max_extinction_per_m());
-        let arch = Arch::new();
         let paths = grid
             .radii_m
             .par_iter()
             .map(|&radius_m| {
-                arch.dispatch(
+                vectorized(
                     #[inline(always)]
                     || {
                         zenith_rule(air, radius_m, directions)
                             .into_iter()
                             .map(|(mu, w)| {
-                                trace_path(air, grid, &marcher, radius_m, mu, w, basis.degree())
+                                (
+                                    Path::new(
+                                        air,
+                                        Some(grid),
+                                        &marcher,
+                                        (radius_m, mu),
+                                        rescattered_degree,
+                                    ),
+                                    w,
+                                )
                             })
                             .collect()
                     },
@@ -209,6 +205,7 @@ impl<'a, const N: usize> Transport<'a, N> {
             air,
             grid,
             basis,
+            rescattered: Harmonics::new(rescattered_degree, rescattered_degree),
             paths,
             azimuth_cosines,
         }
@@ -216,153 +213,78 @@ impl<'a, const N: usize> Transport<'a, N> {
 
     /// Light that has been scattered, or reflected by the ground, exactly once.
     fn first_order(&self) -> Order<N> {
-        let (air, shell) = (self.air, &self.air.shell);
-        let degree = self.basis.degree();
-        self.gather(|start_radius, path, light| {
-            let mut p = vec![0.0; degree + 1];
-            let mut phases = vec![Spectrum::ZERO; air.scatterers.len()];
-            self.each_ray(start_radius, path, |slot, ray, _| {
-                legendre(ray.nu, &mut p);
-                for (phase, s) in phases.iter_mut().zip(&air.scatterers) {
-                    *phase = s.scattering * s.truncated_phase(&p);
-                }
-                let mut sum = Spectrum::ZERO;
-                for node in &path.nodes {
-                    let mu_sun = (ray.radius_m * ray.mu_sun + node.t * ray.nu) / node.radius_m;
-                    if in_shadow(node.radius_m, mu_sun, shell.ground_radius_m) {
-                        continue;
-                    }
-                    let sun = air.transmittance(&shell.columns_to_space_m(node.radius_m, mu_sun));
-                    let mut scattering = Spectrum::ZERO;
-                    for (phase, s) in phases.iter().zip(&air.scatterers) {
-                        scattering =
-                            scattering.scale_acc(*phase, node.densities[s.constituent] as f32);
-                    }
-                    sum = sum.mul_acc(node.weight * sun, scattering);
-                }
-                if let Some((t, transmittance)) = path.ground {
-                    let mu_sun = ray.advanced(t).mu_sun;
-                    if mu_sun > 0.0 {
-                        let columns = shell.columns_to_space_m(shell.ground_radius_m, mu_sun);
-                        let irradiance = air.transmittance(&columns) * mu_sun as f32;
-                        sum = sum.mul_acc(transmittance, air.reflected(irradiance));
+        let air = self.air;
+        self.gather(
+            #[inline(always)]
+            |path, fan, work| {
+                path.carry_sunlight(air, fan, &mut work.unphased);
+                let mut p = [0.0; Harmonics::MAX_ZONAL + 1];
+                let p = &mut p[..=self.basis.degree()];
+                for (slot, light) in work.light.iter_mut().enumerate() {
+                    legendre(fan.nu[slot], p);
+                    for (place, s) in air.scatterers.iter().enumerate() {
+                        *light = light.mul_acc(
+                            work.unphased[place * fan.len() + slot],
+                            s.truncated_phase(p),
+                        );
                     }
                 }
-                light[slot] = sum;
-            });
-        })
+                path.carry_ground(
+                    air,
+                    fan,
+                    |mu_sun| sun_on_ground(air, mu_sun),
+                    &mut work.light,
+                );
+            },
+        )
     }
 
     /// What becomes of the light `field` when it is scattered or reflected once more.
     fn next_order(&self, field: &RadianceField<N>) -> Order<N> {
-        let air = self.air;
-        let count = self.basis.count();
-        self.gather(|start_radius, path, light| {
-            light.fill(Spectrum::ZERO);
-            let mut row = Vec::new();
-            let mut y = [0.0f32; Harmonics::MAX_COUNT];
-            for node in &path.nodes {
-                field.at_radius(node.place, &mut row);
-                self.each_ray(start_radius, path, |slot, ray, _| {
-                    let mu_sun = (ray.radius_m * ray.mu_sun + node.t * ray.nu) / node.radius_m;
-                    let here = Ray {
-                        radius_m: node.radius_m,
-                        mu: f64::from(node.mu),
-                        mu_sun,
-                        nu: ray.nu,
-                    };
-                    self.basis
-                        .evaluate(node.mu, here.toward_sun() as f32, ray.nu as f32, &mut y);
-                    let at = self.grid.place_of_sun(mu_sun);
-                    let (a, b) = row[at.below * count..(at.below + 2) * count].split_at(count);
-                    let (wa, wb) = (1.0 - at.fraction, at.fraction);
-                    let mut sum = node.source_weights[0] * y[0];
-                    for (l, weight) in node.source_weights.iter().enumerate().skip(1) {
-                        let mut degree = Spectrum::ZERO;
-                        for k in self.basis.span(l) {
-                            degree = degree.scale_acc(a[k], wa * y[k]).scale_acc(b[k], wb * y[k]);
-                        }
-                        sum = sum.mul_acc(*weight, degree);
-                    }
-                    let intensity = (a[0] * wa + b[0] * wb).exp();
-                    light[slot] = light[slot].mul_acc(sum, intensity);
-                });
-            }
-            if let Some((t, transmittance)) = path.ground {
-                self.each_ray(start_radius, path, |slot, ray, _| {
-                    let irradiance = field.ground_irradiance(ray.advanced(t).mu_sun);
-                    light[slot] = light[slot].mul_acc(transmittance, air.reflected(irradiance));
-                });
-            }
-        })
+        self.gather(
+            #[inline(always)]
+            |path, fan, work| {
+                path.carry_scattered(
+                    field,
+                    &self.rescattered,
+                    fan,
+                    &mut work.scratch,
+                    &mut work.light,
+                );
+                path.carry_ground(
+                    self.air,
+                    fan,
+                    |mu_sun| field.ground_irradiance(mu_sun),
+                    &mut work.light,
+                );
+            },
+        )
     }
 
-    /// Calls `visit(slot, ray, toward_sun)` for every sun cosine and azimuth of the rays of `path`.
+    /// The rays that leave a height under a zenith angle: every azimuth for every sun cosine.
     #[inline(always)]
-    fn each_ray(&self, radius_m: f64, path: &Path<N>, mut visit: impl FnMut(usize, Ray, f32)) {
-        let sin = ((1.0 - path.mu) * (1.0 + path.mu)).max(0.0).sqrt();
-        let mut slot = 0;
+    fn fan(&self, mu: f64) -> Fan {
+        let sin = ((1.0 - mu) * (1.0 + mu)).max(0.0).sqrt();
+        let mut fan = Fan::default();
         for &mu_sun in &self.grid.sun_cosines {
             let sin_sun = ((1.0 - mu_sun) * (1.0 + mu_sun)).max(0.0).sqrt();
             for &cos_azimuth in &self.azimuth_cosines {
-                let nu = path.mu * mu_sun + sin * sin_sun * cos_azimuth;
-                visit(
-                    slot,
-                    Ray {
-                        radius_m,
-                        mu: path.mu,
-                        mu_sun,
-                        nu,
-                    },
-                    (sin * cos_azimuth) as f32,
-                );
-                slot += 1;
+                fan.push(mu_sun, mu * mu_sun + sin * sin_sun * cos_azimuth);
             }
         }
+        fan
     }
 
-    /// Lets `carry(start radius, path, light)` find the light that arrives along each path, for every sun cosine and
-    /// azimuth, and gathers it into moments and ground irradiances.
-    fn gather(&self, carry: impl Fn(f64, &Path<N>, &mut [Spectrum<N>]) + Sync) -> Order<N> {
-        let count = self.basis.count();
-        let suns = self.grid.sun_cosines.len();
-        let arch = Arch::new();
+    /// Lets `carry` find the light that arrives along the rays of each path, and gathers it into moments and ground
+    /// irradiances.
+    fn gather(&self, carry: impl Fn(&Path<N>, &Fan, &mut Work<N>) + Sync) -> Order<N> {
         let rows: Vec<(Vec<Spectrum<N>>, Vec<Spectrum<N>>)> = self
             .paths
             .par_iter()
-            .zip(&self.grid.radii_m)
-            .map(|(paths, &radius_m)| {
-                arch.dispatch(
+            .map(|paths| {
+                vectorized(
                     #[inline(always)]
-                    || {
-                        let mut moments = vec![Spectrum::ZERO; suns * count];
-                        let mut downward = vec![Spectrum::ZERO; suns];
-                        let mut light = vec![Spectrum::ZERO; suns * self.azimuth_cosines.len()];
-                        let mut y = [0.0f32; Harmonics::MAX_COUNT];
-                        for path in paths {
-                            carry(radius_m, path, &mut light);
-                            let w =
-                                path.solid_weight * 2.0 * PI / self.azimuth_cosines.len() as f64;
-                            self.each_ray(radius_m, path, |slot, ray, toward_sun| {
-                                let sun = slot / self.azimuth_cosines.len();
-                                self.basis.evaluate(
-                                    path.mu as f32,
-                                    toward_sun,
-                                    ray.nu as f32,
-                                    &mut y,
-                                );
-                                for k in 0..count {
-                                    let moment = &mut moments[sun * count + k];
-                                    *moment = moment.scale_acc(light[slot], y[k] * w as f32);
-                                }
-                                if path.mu > 0.0 {
-                                    downward[sun] =
-                                        downward[sun].scale_acc(light[slot], (w * path.mu) as f32);
-                                }
-                            });
-                        }
-                        (moments, downward)
-                    },
+                    || self.gather_row(paths, &carry),
                 )
             })
             .collect();
@@ -373,6 +295,57 @@ impl<'a, const N: usize> Transport<'a, N> {
             ground,
         }
     }
+
+    /// Moments, `[sun][harmonic]`, and downward irradiances, `[sun]`, at one height.
+    #[inline(always)]
+    fn gather_row(
+        &self,
+        paths: &[(Path<N>, f64)],
+        carry: &impl Fn(&Path<N>, &Fan, &mut Work<N>),
+    ) -> (Vec<Spectrum<N>>, Vec<Spectrum<N>>) {
+        let (suns, azimuths, count) = (
+            self.grid.sun_cosines.len(),
+            self.azimuth_cosines.len(),
+            self.basis.count(),
+        );
+        let mut moments = vec![Spectrum::ZERO; suns * count];
+        let mut downward = vec![Spectrum::ZERO; suns];
+        let mut work = Work {
+            light: vec![Spectrum::ZERO; suns * azimuths],
+            ..Default::default()
+        };
+        let mut y = [0.0f32; Harmonics::MAX_COUNT];
+        for (path, solid_weight) in paths {
+            let fan = self.fan(path.mu);
+            work.light.fill(Spectrum::ZERO);
+            // Not `carry(..)`: a call through the reference would not be inlined into the vector code.
+            (*carry)(path, &fan, &mut work);
+            let w = solid_weight * 2.0 * PI / azimuths as f64;
+            let sin = ((1.0 - path.mu) * (1.0 + path.mu)).max(0.0).sqrt();
+            for (slot, light) in work.light.iter().enumerate() {
+                let (sun, azimuth) = (slot / azimuths, slot % azimuths);
+                let toward_sun = (sin * self.azimuth_cosines[azimuth]) as f32;
+                self.basis
+                    .evaluate(path.mu as f32, toward_sun, fan.nu[slot] as f32, &mut y);
+                for (moment, y) in moments[sun * count..(sun + 1) * count].iter_mut().zip(&y) {
+                    *moment = moment.scale_acc(*light, y * w as f32);
+                }
+                if path.mu > 0.0 {
+                    downward[sun] = downward[sun].scale_acc(*light, (w * path.mu) as f32);
+                }
+            }
+        }
+        (moments, downward)
+    }
+}
+
+/// Reused arrays of one height's rays.
+#[derive(Default)]
+struct Work<const N: usize> {
+    /// Light arriving along each ray.
+    light: Vec<Spectrum<N>>,
+    unphased: Vec<Spectrum<N>>,
+    scratch: Scratch<N>,
 }
 
 /// Cosines of the zenith angle and their weights: Gauss rules below the horizon, in the band just above it where the
@@ -391,66 +364,4 @@ fn zenith_rule<const N: usize>(
         .chain(band.on(horizon, horizon + BAND))
         .chain(above.on(horizon + BAND, 1.0))
         .collect()
-}
-
-#[inline(always)]
-fn trace_path<const N: usize>(
-    air: &Air<N>,
-    grid: &FieldGrid,
-    marcher: &Marcher,
-    radius_m: f64,
-    mu: f64,
-    solid_weight: f64,
-    l_max: usize,
-) -> Path<N> {
-    let mut path = Path {
-        mu,
-        solid_weight,
-        nodes: Vec::new(),
-        ground: None,
-    };
-    // The sun in the zenith casts no shadow across the ray: the panels serve all sun angles.
-    let ray = Ray {
-        radius_m,
-        mu,
-        mu_sun: 1.0,
-        nu: mu,
-    };
-    let Some(stretch) = air.shell.stretch(&ray, f64::INFINITY) else {
-        return path;
-    };
-    let columns = marcher.walk(
-        &air.shell,
-        &ray,
-        (stretch.start_m, stretch.end_m),
-        &mut Vec::new(),
-        |nodes| {
-            let mut brightest = 0.0f32;
-            for node in nodes {
-                let transmittance = air.transmittance(&node.columns_m);
-                brightest = brightest.max(transmittance.max_element());
-                let weight = transmittance * node.dt as f32;
-                path.nodes.push(PathNode {
-                    t: node.t,
-                    radius_m: node.here.radius_m,
-                    mu: node.here.mu as f32,
-                    densities: node.densities,
-                    place: grid.place_of_radius(node.here.radius_m),
-                    weight,
-                    source_weights: (0..=l_max)
-                        .map(|l| weight * scattering_moment(air, &node.densities, l))
-                        .collect(),
-                });
-            }
-            if brightest < 1e-6 {
-                ControlFlow::Break(())
-            } else {
-                ControlFlow::Continue(())
-            }
-        },
-    );
-    if stretch.meets_ground {
-        path.ground = Some((stretch.end_m, air.transmittance(&columns)));
-    }
-    path
 }

@@ -1,7 +1,7 @@
 //! The geometry of an atmosphere: what does not depend on wavelength, worked out once for all of them.
 
 use super::SkyError;
-use super::columns::ColumnTable;
+use super::columns::{ColumnRow, ColumnTable};
 use super::quadrature::GaussRule;
 use super::ray::Ray;
 use crate::medium::{Atmosphere, DensityProfile};
@@ -105,6 +105,12 @@ impl Shell {
     #[inline(always)]
     pub fn columns_to_space_m(&self, radius_m: f64, mu: f64) -> PerConstituent {
         self.columns.to_space_m(self, radius_m, mu)
+    }
+
+    /// The columns to space from one distance from the centre, for many zenith angles.
+    #[inline(always)]
+    pub fn columns_at(&self, radius_m: f64) -> ColumnRow {
+        self.columns.at(self, radius_m)
     }
 
     /// The stretch of a ray inside the air, from `t = 0` or the entry to `limit_m`, the ground or the exit; and
@@ -221,7 +227,10 @@ fn panel_altitudes_m(
         .flat_map(|((density, &floor), &scatters)| {
             let peak = floor / if scatters { 0.003 } else { 0.1 };
             let allowed = peak * if scatters { 0.2 } else { 0.8 };
-            density.breakpoints_m().into_iter().filter(move |&h| sharpness(density, h, top - bottom) > allowed)
+            density
+                .breakpoints_m()
+                .into_iter()
+                .filter(move |&h| sharpness(density, h, top - bottom) > allowed)
         })
         .filter(|&h| h > bottom && h < top)
         .collect();
@@ -258,7 +267,8 @@ fn panel_altitudes_m(
 /// How much a density jumps at an altitude, plus how far its change of slope leads away over an eighth of the shell.
 fn sharpness(density: &DensityProfile, altitude_m: f64, thickness_m: f64) -> f64 {
     let step = 1e-6 * thickness_m;
-    let [below2, below, above, above2] = [-2.0, -1.0, 1.0, 2.0].map(|k| density.at(altitude_m + k * step));
+    let [below2, below, above, above2] =
+        [-2.0, -1.0, 1.0, 2.0].map(|k| density.at(altitude_m + k * step));
     let jump = (above - below).abs();
     let bend = ((above2 - above) - (below - below2)).abs() / step;
     jump + bend * thickness_m / 8.0

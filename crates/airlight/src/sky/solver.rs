@@ -43,9 +43,18 @@ impl Default for SkySettings {
             orders: OrderSettings {
                 full_degree: 8,
                 zonal_degree: 12,
-                first: Directions { zenith_nodes: [8, 5, 8], azimuths: 12, panel_nodes: 3 },
-                later: Directions { zenith_nodes: [5, 4, 6], azimuths: 8, panel_nodes: 2 },
-                tolerance: 1e-3,
+                rescattered_degree: 4,
+                first: Directions {
+                    zenith_nodes: [8, 5, 8],
+                    azimuths: 12,
+                    panel_nodes: 3,
+                },
+                later: Directions {
+                    zenith_nodes: [5, 4, 6],
+                    azimuths: 8,
+                    panel_nodes: 2,
+                },
+                tolerance: 1e-2,
                 max_orders: 40,
             },
         }
@@ -56,7 +65,9 @@ impl Default for SkySettings {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SkyError {
     /// More constituents than the solver handles.
-    #[error("the sky solver handles at most {MAX_CONSTITUENTS} constituents: this atmosphere has {0}")]
+    #[error(
+        "the sky solver handles at most {MAX_CONSTITUENTS} constituents: this atmosphere has {0}"
+    )]
     TooManyConstituents(usize),
     /// The atmosphere itself is refused.
     #[error(transparent)]
@@ -77,12 +88,21 @@ impl Sky {
     ///
     /// # Errors
     /// [`SkyError`] for an atmosphere that fails its own validation or has too many constituents.
-    pub fn prepare(atmosphere: &Atmosphere, grid: &WavelengthGrid, settings: &SkySettings) -> Result<Self, SkyError> {
+    pub fn prepare(
+        atmosphere: &Atmosphere,
+        grid: &WavelengthGrid,
+        settings: &SkySettings,
+    ) -> Result<Self, SkyError> {
         atmosphere.validate()?;
         let shell = Arc::new(Shell::new(atmosphere)?);
         let grid = grid.clone().with_solar(&atmosphere.solar_irradiance);
         let blocks = block::solve(atmosphere, &shell, grid.wavelengths_nm(), settings)?;
-        Ok(Self { atmosphere: atmosphere.clone(), grid, shell, blocks })
+        Ok(Self {
+            atmosphere: atmosphere.clone(),
+            grid,
+            shell,
+            blocks,
+        })
     }
 
     /// The atmosphere solved for.

@@ -49,7 +49,8 @@ pub struct Tracer<'a, const N: usize> {
     pub air: &'a Air<N>,
     /// Multiply scattered light, if it is wanted.
     pub field: Option<&'a RadianceField<N>>,
-    marcher: Marcher,
+    /// How it walks.
+    pub marcher: Marcher,
     edges: Vec<f64>,
 }
 
@@ -81,6 +82,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
             ray,
             (stretch.start_m, stretch.end_m),
             &mut self.edges,
+            #[inline(always)]
             |nodes| {
                 let mut brightest = 0.0f32;
                 for node in nodes {
@@ -128,14 +130,30 @@ impl<'a, const N: usize> Tracer<'a, N> {
     /// Radiance of the ground where the sun's cosine is `mu_sun`, per unit solar irradiance.
     #[inline(always)]
     pub fn ground_radiance(&self, mu_sun: f64) -> Spectrum<N> {
-        let shell = &self.air.shell;
-        let mut irradiance = self
-            .field
-            .map_or(Spectrum::ZERO, |field| field.ground_irradiance(mu_sun));
-        if mu_sun > 0.0 {
-            let columns = shell.columns_to_space_m(shell.ground_radius_m, mu_sun);
-            irradiance = irradiance.scale_acc(self.air.transmittance(&columns), mu_sun as f32);
-        }
-        self.air.reflected(irradiance)
+        self.air
+            .reflected(ground_irradiance(self.air, self.field, mu_sun))
     }
+}
+
+/// Irradiance of the ground where the sun's cosine is `mu_sun`, of sun and sky, per unit solar irradiance.
+#[inline(always)]
+pub fn ground_irradiance<const N: usize>(
+    air: &Air<N>,
+    field: Option<&RadianceField<N>>,
+    mu_sun: f64,
+) -> Spectrum<N> {
+    let diffuse = field.map_or(Spectrum::ZERO, |field| field.ground_irradiance(mu_sun));
+    diffuse + sun_on_ground(air, mu_sun)
+}
+
+/// Irradiance of the ground where the sun's cosine is `mu_sun`, of the sun alone, per unit solar irradiance.
+#[inline(always)]
+pub fn sun_on_ground<const N: usize>(air: &Air<N>, mu_sun: f64) -> Spectrum<N> {
+    if mu_sun <= 0.0 {
+        return Spectrum::ZERO;
+    }
+    let columns = air
+        .shell
+        .columns_to_space_m(air.shell.ground_radius_m, mu_sun);
+    air.transmittance(&columns) * mu_sun as f32
 }

@@ -39,12 +39,20 @@ pub struct LineOfSight {
 impl LineOfSight {
     /// Radiance scattered into the line of sight: `single + multiple`.
     pub fn path_radiance(&self) -> Vec<f32> {
-        self.single.iter().zip(&self.multiple).map(|(s, m)| s + m).collect()
+        self.single
+            .iter()
+            .zip(&self.multiple)
+            .map(|(s, m)| s + m)
+            .collect()
     }
 
     /// All that arrives: path radiance and ground.
     pub fn radiance(&self) -> Vec<f32> {
-        self.path_radiance().iter().zip(&self.ground).map(|(p, g)| p + g).collect()
+        self.path_radiance()
+            .iter()
+            .zip(&self.ground)
+            .map(|(p, g)| p + g)
+            .collect()
     }
 
     /// The affine map of the air on the line, for a grid of N wavelengths; `None` for a grid of another size.
@@ -72,7 +80,8 @@ impl<'a> View<'a> {
     /// the disc shrinks.
     pub fn at_sun_distance(mut self, ratio: f64) -> Self {
         self.irradiance_scale = 1.0 / (ratio * ratio);
-        self.disc.angular_radius_rad = (self.sky.atmosphere().sun.angular_radius_rad.sin() / ratio).asin();
+        self.disc.angular_radius_rad =
+            (self.sky.atmosphere().sun.angular_radius_rad.sin() / ratio).asin();
         self
     }
 
@@ -98,7 +107,12 @@ impl<'a> View<'a> {
 
     /// Solar irradiance outside the atmosphere on a surface that faces the sun, W m^-2 nm^-1.
     pub fn solar_irradiance(&self) -> Vec<f32> {
-        self.sky.grid().solar_irradiance().iter().map(|e| (e * self.irradiance_scale) as f32).collect()
+        self.sky
+            .grid()
+            .solar_irradiance()
+            .iter()
+            .map(|e| (e * self.irradiance_scale) as f32)
+            .collect()
     }
 
     pub(super) fn ray(&self, direction: DVec3) -> Ray {
@@ -109,11 +123,18 @@ impl<'a> View<'a> {
     /// `None`).
     pub fn along(&self, direction: DVec3, limit_m: Option<f64>) -> LineOfSight {
         let ray = self.ray(direction.normalize());
-        let blocks: Vec<BlockLight> =
-            self.sky.blocks.iter().map(|b| b.trace(&ray, limit_m.unwrap_or(f64::INFINITY))).collect();
+        let blocks: Vec<BlockLight> = self
+            .sky
+            .blocks
+            .iter()
+            .map(|b| b.trace(&ray, limit_m.unwrap_or(f64::INFINITY)))
+            .collect();
         let solar = self.solar_irradiance();
         let join = |part: fn(&BlockLight) -> &Vec<f32>| -> Vec<f32> {
-            blocks.iter().flat_map(|b| part(b).iter().copied()).collect()
+            blocks
+                .iter()
+                .flat_map(|b| part(b).iter().copied())
+                .collect()
         };
         let lit = |part: fn(&BlockLight) -> &Vec<f32>| -> Vec<f32> {
             join(part).iter().zip(&solar).map(|(l, e)| l * e).collect()
@@ -130,7 +151,11 @@ impl<'a> View<'a> {
     /// Transmittance from the eye to space along `direction`; 0 where the planet is in the way.
     pub fn transmittance_to_space(&self, direction: DVec3) -> Vec<f32> {
         let ray = self.ray(direction.normalize());
-        self.sky.blocks.iter().flat_map(|b| b.transmittance_to_space(ray.radius_m, ray.mu)).collect()
+        self.sky
+            .blocks
+            .iter()
+            .flat_map(|b| b.transmittance_to_space(ray.radius_m, ray.mu))
+            .collect()
     }
 
     /// Irradiance of the sun's disc on a surface that faces it, W m^-2 nm^-1: dimmed by the air strip by strip, and
@@ -140,7 +165,11 @@ impl<'a> View<'a> {
         let radius = self.disc.angular_radius_rad;
         // Horizontal strips of equal height; in each the mean of the darkened radiance goes by its length.
         let across = self.sun.cross(DVec3::Y);
-        let up = if across.length() > 1e-9 { across.normalize().cross(self.sun).normalize() } else { DVec3::X };
+        let up = if across.length() > 1e-9 {
+            across.normalize().cross(self.sun).normalize()
+        } else {
+            DVec3::X
+        };
         let mut sum = vec![0.0f64; self.sky.grid().len()];
         let mut total = vec![0.0f64; sum.len()];
         for strip in 0..strips {

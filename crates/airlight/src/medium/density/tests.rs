@@ -32,6 +32,7 @@ fn columns_are_integrals_of_the_density() {
     for profile in kinds() {
         for (a, b) in [(-500.0, 700.0), (0.0, 90e3), (2.5e3, 30e3), (4.5e3, 4.6e3)] {
             let mut breaks = profile.breakpoints_m();
+            breaks.extend(standard_air::kinks_m());
             breaks.extend((1..90).map(|i| f64::from(i) * 1e3));
             let want = integrate(12, a, b, &breaks, |z| profile.at(z));
             let got = profile.column_m(a, b);
