@@ -63,9 +63,9 @@ impl From<RenderError> for CliError {
     fn from(error: RenderError) -> Self {
         match error {
             RenderError::Cancelled => Self::Interrupted,
-            RenderError::Size { .. } | RenderError::Setting { .. } | RenderError::UnknownFormat { .. } => {
-                Self::usage(error.to_string())
-            }
+            RenderError::Size { .. }
+            | RenderError::Setting { .. }
+            | RenderError::UnknownFormat { .. } => Self::usage(error.to_string()),
             _ => Self::failure(error.to_string()),
         }
     }
@@ -82,7 +82,14 @@ macro_rules! refusals {
     )*};
 }
 
-refusals!(AerosolError, AtmosphereError, EphemerisError, GridError, SkyError, UnknownPreset);
+refusals!(
+    AerosolError,
+    AtmosphereError,
+    EphemerisError,
+    GridError,
+    SkyError,
+    UnknownPreset
+);
 
 #[cfg(test)]
 mod tests {
@@ -90,9 +97,15 @@ mod tests {
 
     #[test]
     fn codes_tell_bad_use_from_failure() {
-        let size = RenderError::Size { width: 0, height: 0 };
+        let size = RenderError::Size {
+            width: 0,
+            height: 0,
+        };
         assert_eq!(CliError::from(size).exit_code(), 2);
-        let missing = RenderError::NoFolder { path: "a/b".into(), folder: "a".into() };
+        let missing = RenderError::NoFolder {
+            path: "a/b".into(),
+            folder: "a".into(),
+        };
         assert_eq!(CliError::from(missing).exit_code(), 1);
         assert_eq!(CliError::from(RenderError::Cancelled).exit_code(), 130);
         let pipe = io::Error::from(io::ErrorKind::BrokenPipe);

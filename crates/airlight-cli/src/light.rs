@@ -1,7 +1,7 @@
 //! Light of sun and sky on surfaces at the eye.
 
-use airlight::axes;
 use airlight::sky::{SkyTable, View};
+use glam::DVec3;
 
 /// Illuminances at the eye, lx.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,30 +21,7 @@ impl Illuminances {
         Self {
             sun_normal_lx,
             sun_horizontal_lx: sun_normal_lx * view.sun().y.max(0.0),
-            sky_horizontal_lx: luminance(&sky_irradiance(table)),
+            sky_horizontal_lx: luminance(&table.irradiance(DVec3::Y)),
         }
     }
-}
-
-/// Irradiance of the sky on a horizontal surface, channel by channel: the table's radiance times the cosine, summed
-/// over the upper half of the sphere at the middles of rings half a degree high and of steps of 2 degrees in azimuth.
-pub fn sky_irradiance(table: &SkyTable) -> Vec<f32> {
-    const RINGS: u32 = 180;
-    const STEPS: u32 = 180;
-    let mut sum = vec![0.0f64; table.channels()];
-    let mut radiance = vec![0.0; table.channels()];
-    for ring in 0..RINGS {
-        let (low, high) = (f64::from(ring) / f64::from(RINGS), f64::from(ring + 1) / f64::from(RINGS));
-        // Integral of sin(e) cos(e) over the ring: half the step of sin^2.
-        let sine2 = |part: f64| (0.5 * std::f64::consts::PI * part).sin().powi(2);
-        let weight = 0.5 * (sine2(high) - sine2(low)) * std::f64::consts::TAU / f64::from(STEPS);
-        for step in 0..STEPS {
-            let azimuth = (f64::from(step) + 0.5) * 360.0 / f64::from(STEPS);
-            table.sample(axes::direction(azimuth, 45.0 * (low + high)), &mut radiance);
-            for (sum, value) in sum.iter_mut().zip(&radiance) {
-                *sum += weight * f64::from(*value);
-            }
-        }
-    }
-    sum.iter().map(|&v| v as f32).collect()
 }

@@ -27,13 +27,21 @@ impl Moment {
             return Ok(Self::now());
         }
         let unix_s = ephemeris::parse_time(text).map_err(|e| format!("{e}; or write now"))?;
-        Ok(Self { unix_s, offset_s: offset_s(text.trim()) })
+        Ok(Self {
+            unix_s,
+            offset_s: offset_s(text.trim()),
+        })
     }
 
     /// The present, in UTC; 1970 where the clock stands before that.
     pub fn now() -> Self {
-        let unix_s = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0.0, |d| d.as_secs_f64());
-        Self { unix_s: unix_s.floor(), offset_s: 0 }
+        let unix_s = SystemTime::now()
+            .duration_since(UNIX_EPOCH)
+            .map_or(0.0, |d| d.as_secs_f64());
+        Self {
+            unix_s: unix_s.floor(),
+            offset_s: 0,
+        }
     }
 
     /// The same zone at another time.
@@ -46,22 +54,37 @@ impl Moment {
         let c = self.local();
         let zone = match self.offset_s {
             0 => "Z".to_owned(),
-            s => format!("{}{:02}:{:02}", if s < 0 { '-' } else { '+' }, s.abs() / 3600, s.abs() / 60 % 60),
+            s => format!(
+                "{}{:02}:{:02}",
+                if s < 0 { '-' } else { '+' },
+                s.abs() / 3600,
+                s.abs() / 60 % 60
+            ),
         };
         let (h, m, s) = c.clock();
-        format!("{:04}-{:02}-{:02}T{h:02}:{m:02}:{s:02}{zone}", c.year, c.month, c.day)
+        format!(
+            "{:04}-{:02}-{:02}T{h:02}:{m:02}:{s:02}{zone}",
+            c.year, c.month, c.day
+        )
     }
 
     /// The same in UTC.
     pub fn utc(self) -> String {
-        Self { offset_s: 0, ..self }.rfc3339()
+        Self {
+            offset_s: 0,
+            ..self
+        }
+        .rfc3339()
     }
 
     /// Local `2026:06:21 21:15:00`, as pictures keep it.
     pub fn capture_date(self) -> String {
         let c = self.local();
         let (h, m, s) = c.clock();
-        format!("{:04}:{:02}:{:02} {h:02}:{m:02}:{s:02}", c.year, c.month, c.day)
+        format!(
+            "{:04}:{:02}:{:02} {h:02}:{m:02}:{s:02}",
+            c.year, c.month, c.day
+        )
     }
 
     fn local(self) -> Calendar {
@@ -84,24 +107,46 @@ impl Calendar {
         let leap = first_day(year + 1) - first_day(year) == 366;
         let mut day = days - first_day(year);
         let mut month = 1;
-        for length in [31, if leap { 29 } else { 28 }, 31, 30, 31, 30, 31, 31, 30, 31, 30] {
+        for length in [
+            31,
+            if leap { 29 } else { 28 },
+            31,
+            30,
+            31,
+            30,
+            31,
+            31,
+            30,
+            31,
+            30,
+        ] {
             if day < length {
                 break;
             }
             day -= length;
             month += 1;
         }
-        Self { year, month, day: day as u32 + 1, second_of_day }
+        Self {
+            year,
+            month,
+            day: day as u32 + 1,
+            second_of_day,
+        }
     }
 
     fn clock(&self) -> (i64, i64, i64) {
-        (self.second_of_day / 3600, self.second_of_day / 60 % 60, self.second_of_day % 60)
+        (
+            self.second_of_day / 3600,
+            self.second_of_day / 60 % 60,
+            self.second_of_day % 60,
+        )
     }
 }
 
 /// Days from 1970-01-01 to the first of January of a year.
 fn first_day(year: i64) -> i64 {
-    let leap_days_before = |y: i64| (y - 1).div_euclid(4) - (y - 1).div_euclid(100) + (y - 1).div_euclid(400);
+    let leap_days_before =
+        |y: i64| (y - 1).div_euclid(4) - (y - 1).div_euclid(100) + (y - 1).div_euclid(400);
     365 * (year - 1970) + leap_days_before(year) - leap_days_before(1970)
 }
 
@@ -141,6 +186,10 @@ mod tests {
         assert_eq!(m.utc(), "2026-06-20T23:15:00Z");
         assert_eq!(m.capture_date(), "2026:06:21 01:15:00");
         assert!(Moment::parse("now").unwrap().unix_s > 1.7e9);
-        assert!(Moment::parse("tomorrow").unwrap_err().contains("2013-05-27T16:30:00Z"));
+        assert!(
+            Moment::parse("tomorrow")
+                .unwrap_err()
+                .contains("2013-05-27T16:30:00Z")
+        );
     }
 }

@@ -18,7 +18,10 @@ impl RowsBar {
         let bar = ProgressBar::new(rows);
         let style = ProgressStyle::with_template("{msg} {wide_bar} {percent:>3} %, {eta} left");
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-        Self { bar, before: AtomicU64::new(0) }
+        Self {
+            bar,
+            before: AtomicU64::new(0),
+        }
     }
 
     /// Says what is being made now.
@@ -34,13 +37,15 @@ impl RowsBar {
 
     /// So many rows were there already: they neither need nor measure time.
     pub fn skip(&self, rows: u64) {
-        self.bar.set_length(self.bar.length().unwrap_or(0).saturating_sub(rows));
+        self.bar
+            .set_length(self.bar.length().unwrap_or(0).saturating_sub(rows));
     }
 }
 
 impl Progress for RowsBar {
     fn rows_written(&self, done: u32, _total: u32) {
-        self.bar.set_position(self.before.load(Ordering::Relaxed) + u64::from(done));
+        self.bar
+            .set_position(self.before.load(Ordering::Relaxed) + u64::from(done));
     }
 }
 

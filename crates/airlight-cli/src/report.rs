@@ -10,7 +10,9 @@ use std::time::Duration;
 /// [`CliError::ReaderGone`] where nobody reads it any more, [`CliError::Failure`] where it cannot be written.
 pub fn print(text: &str) -> Result<(), CliError> {
     let mut out = std::io::stdout().lock();
-    out.write_all(text.as_bytes()).and_then(|()| out.flush()).map_err(|error| CliError::from_stdout(&error))
+    out.write_all(text.as_bytes())
+        .and_then(|()| out.flush())
+        .map_err(|error| CliError::from_stdout(&error))
 }
 
 /// Writes a remark to standard error; where that is gone there is nobody to read it.

@@ -65,7 +65,12 @@ impl SunSource {
     pub fn at(&self, moment: Option<Moment>) -> Result<Sun, CliError> {
         let (place, start, altitude_m, refraction) = match *self {
             Self::Told(sun) => return Ok(sun),
-            Self::Ephemeris { place, start, altitude_m, refraction } => (place, start, altitude_m, refraction),
+            Self::Ephemeris {
+                place,
+                start,
+                altitude_m,
+                refraction,
+            } => (place, start, altitude_m, refraction),
         };
         let time = moment.unwrap_or(start);
         let place = Place {
@@ -120,7 +125,13 @@ impl Scene {
             ScatteringArg::All => Scattering::All,
             ScatteringArg::Single => Scattering::Single,
         };
-        Ok(Self { atmosphere, grid, eye_altitude_m, sun, scattering })
+        Ok(Self {
+            atmosphere,
+            grid,
+            eye_altitude_m,
+            sun,
+            scattering,
+        })
     }
 
     /// Solves for the light inside the air; tells how long it took.
@@ -130,7 +141,11 @@ impl Scene {
     pub fn prepare(&self, suns: SunCoverage) -> Result<(Sky, Duration), CliError> {
         let start = Instant::now();
         let _busy = Busy::with("solving for the light in the air");
-        let settings = SkySettings { suns, scattering: self.scattering, ..SkySettings::default() };
+        let settings = SkySettings {
+            suns,
+            scattering: self.scattering,
+            ..SkySettings::default()
+        };
         let sky = Sky::prepare(&self.atmosphere, &self.grid, &settings)?;
         Ok((sky, start.elapsed()))
     }
@@ -142,7 +157,8 @@ impl Scene {
 
     /// What is seen under a sun.
     pub fn view<'a>(&self, sky: &'a Sky, sun: &Sun) -> View<'a> {
-        sky.view(self.eye_altitude_m, sun.direction()).at_sun_distance(sun.distance_ratio)
+        sky.view(self.eye_altitude_m, sun.direction())
+            .at_sun_distance(sun.distance_ratio)
     }
 }
 
@@ -153,7 +169,23 @@ impl Sun {
     }
 }
 
-fn sun_source(args: &PlaceArgs, air: &Atmosphere, eye_altitude_m: f64) -> Result<SunSource, CliError> {
+/// Computes with so many threads.
+///
+/// # Errors
+/// [`CliError::Failure`] where the system refuses.
+pub fn use_threads(count: Option<u32>) -> Result<(), CliError> {
+    let Some(count) = count else { return Ok(()) };
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(count as usize)
+        .build_global()
+        .map_err(|error| CliError::failure(format!("cannot start {count} threads: {error}")))
+}
+
+fn sun_source(
+    args: &PlaceArgs,
+    air: &Atmosphere,
+    eye_altitude_m: f64,
+) -> Result<SunSource, CliError> {
     if let Some(elevation_deg) = args.sun_elevation {
         return Ok(SunSource::Told(Sun {
             azimuth_deg: args.sun_azimuth.unwrap_or(180.0).rem_euclid(360.0),
@@ -176,7 +208,12 @@ fn sun_source(args: &PlaceArgs, air: &Atmosphere, eye_altitude_m: f64) -> Result
     }
     let when = args.when.as_deref().unwrap_or("now");
     let start = Moment::parse(when).map_err(|error| CliError::usage(format!("--when: {error}")))?;
-    Ok(SunSource::Ephemeris { place, start, altitude_m: eye_altitude_m, refraction: args.refraction })
+    Ok(SunSource::Ephemeris {
+        place,
+        start,
+        altitude_m: eye_altitude_m,
+        refraction: args.refraction,
+    })
 }
 
 /// Pressure and temperature of the International Standard Atmosphere (ISO 2533) up to 11 km, and above that as if it

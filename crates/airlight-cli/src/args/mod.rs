@@ -6,7 +6,9 @@ mod place;
 mod probe;
 
 pub use air::{AirArgs, ScatteringArg};
-pub use picture::{ColorSpaceArg, CompressionArg, PictureArgs, PrecisionArg, ProjectionArg, SunDiscArg, ToneArg};
+pub use picture::{
+    ColorSpaceArg, CompressionArg, PictureArgs, PrecisionArg, ProjectionArg, SunDiscArg, ToneArg,
+};
 pub use place::PlaceArgs;
 pub use probe::{FormatArg, ProbeArgs};
 
@@ -15,7 +17,13 @@ use std::path::PathBuf;
 
 /// The colour of the sky, computed: spectral, multiply scattered, in physical units.
 #[derive(Debug, Parser)]
-#[command(name = "airlight", version, about, subcommand_required = true, arg_required_else_help = true)]
+#[command(
+    name = "airlight",
+    version,
+    about,
+    subcommand_required = true,
+    arg_required_else_help = true
+)]
 #[command(max_term_width = 110, after_help = EXIT_CODES)]
 pub struct Cli {
     /// What to do.

@@ -111,7 +111,12 @@ pub struct PictureArgs {
     #[arg(long, value_enum, default_value_t = CompressionArg::Zip)]
     pub compression: CompressionArg,
     /// Exposure of .png, .jpg and preview: auto, or a camera's exposure value at ISO 100 (sunny day 15, dusk 8)
-    #[arg(long, value_name = "auto|EV100", default_value = "auto", allow_negative_numbers = true)]
+    #[arg(
+        long,
+        value_name = "auto|EV100",
+        default_value = "auto",
+        allow_negative_numbers = true
+    )]
     pub exposure: String,
     /// Stops by which to brighten .png, .jpg and preview (negative: darken)
     #[arg(long, value_name = "STOPS", value_parser = parse::number, default_value_t = 0.0)]
