@@ -34,12 +34,6 @@ impl RowsBar {
         let before = self.before.fetch_add(rows, Ordering::Relaxed);
         self.bar.set_position(before + rows);
     }
-
-    /// So many rows were there already: they neither need nor measure time.
-    pub fn skip(&self, rows: u64) {
-        self.bar
-            .set_length(self.bar.length().unwrap_or(0).saturating_sub(rows));
-    }
 }
 
 impl Progress for RowsBar {

@@ -150,6 +150,14 @@ impl Scene {
         Ok((sky, start.elapsed()))
     }
 
+    /// Which light is computed, as on the command line.
+    pub fn scattering_name(&self) -> &'static str {
+        match self.scattering {
+            Scattering::All => "all",
+            Scattering::Single => "single",
+        }
+    }
+
     /// The fastest preparation for one position of the sun.
     pub fn near(&self, sun: &Sun) -> SunCoverage {
         SunCoverage::near(sun.elevation_deg, self.eye_altitude_m)

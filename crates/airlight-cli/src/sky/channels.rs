@@ -43,14 +43,6 @@ impl Channels {
         }
     }
 
-    /// Values a pixel.
-    pub fn count(&self, sky: &Sky) -> usize {
-        match self.spectral {
-            Some(_) => 3 + sky.grid().len(),
-            None => 3,
-        }
-    }
-
     /// Luminance, cd/m^2, of a table's channels.
     pub fn luminance(&self, sky: &Sky, table_values: &[f32]) -> f64 {
         match (self.spectral.is_some(), table_values) {
@@ -86,5 +78,14 @@ pub fn space_of(arg: ColorSpaceArg) -> RgbSpace {
         ColorSpaceArg::Srgb => RgbSpace::Srgb,
         ColorSpaceArg::Rec2020 => RgbSpace::Rec2020,
         ColorSpaceArg::Acescg => RgbSpace::AcesCg,
+    }
+}
+
+/// The name of a space on the command line.
+pub fn space_name(space: RgbSpace) -> &'static str {
+    match space {
+        RgbSpace::Srgb => "srgb",
+        RgbSpace::Rec2020 => "rec2020",
+        RgbSpace::AcesCg => "acescg",
     }
 }
