@@ -14,9 +14,7 @@ pub fn option_help() -> String {
     let names: String = preset_names()
         .map(|(name, what)| format!("\n- {name}: {what}"))
         .collect();
-    format!(
-        "The atmosphere: one of these names, or a TOML file (docs/src/atmosphere.md)\n{names}\n"
-    )
+    format!("The atmosphere: one of these names, or a TOML file\n{names}\n")
 }
 
 /// The atmosphere of a name or a file.

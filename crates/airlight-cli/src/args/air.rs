@@ -35,7 +35,7 @@ pub struct AirArgs {
     #[arg(long, value_name = "ALBEDO", value_parser = parse::fraction)]
     pub ground_albedo: Option<f64>,
     /// Altitude of the ground above sea level, m [default: 0, or --altitude-m where that is lower]
-    #[arg(long, value_name = "M", value_parser = parse::altitude_m, allow_negative_numbers = true)]
+    #[arg(long, value_name = "M", value_parser = parse::altitude_m)]
     pub ground_altitude_m: Option<f64>,
     /// Wavelengths to compute: rgb (3), fast (8), standard (16), fine (95), 1nm (471), or a list in nm: 440,550,680
     #[arg(long, value_name = "GRID|LIST", default_value = "standard")]

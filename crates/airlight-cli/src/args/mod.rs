@@ -61,7 +61,7 @@ pub struct AtmospheresArgs {
 
 /// Options of `airlight sky`.
 #[derive(Debug, Args)]
-#[command(after_help = SKY_EXAMPLES)]
+#[command(allow_negative_numbers = true, after_help = SKY_EXAMPLES)]
 pub struct SkyArgs {
     /// File to write; its ending says the format: .exr, .hdr, .png, .jpg, or .spectral.exr
     #[arg(short, long, value_name = "FILE", help_heading = "Files")]

@@ -80,13 +80,13 @@ pub struct PictureArgs {
     pub size: Option<PixelSize>,
     /// Azimuth of the middle of the picture, degrees clockwise from north [default: 0; perspective: the sun's at the
     /// start; fisheye: 180, which puts north on top when it looks up]
-    #[arg(long, value_name = "DEG", value_parser = parse::number, allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEG", value_parser = parse::number)]
     pub camera_azimuth: Option<f64>,
     /// Elevation of the middle of a perspective or fisheye picture, degrees [default: perspective 10, fisheye 90]
-    #[arg(long, value_name = "DEG", value_parser = parse::elevation_deg, allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEG", value_parser = parse::elevation_deg)]
     pub camera_elevation: Option<f64>,
     /// Turn of the perspective camera about its axis, degrees clockwise
-    #[arg(long, value_name = "DEG", value_parser = parse::number, allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEG", value_parser = parse::number)]
     pub camera_roll: Option<f64>,
     /// Field of view, degrees: left to right edge of a perspective picture [default: 75], across the disc of a
     /// fisheye [default: 180]
@@ -111,16 +111,10 @@ pub struct PictureArgs {
     #[arg(long, value_enum, default_value_t = CompressionArg::Zip)]
     pub compression: CompressionArg,
     /// Exposure of .png, .jpg and preview: auto, or a camera's exposure value at ISO 100 (sunny day 15, dusk 8)
-    #[arg(
-        long,
-        value_name = "auto|EV100",
-        default_value = "auto",
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "auto|EV100", default_value = "auto")]
     pub exposure: String,
     /// Stops by which to brighten .png, .jpg and preview (negative: darken)
     #[arg(long, value_name = "STOPS", value_parser = parse::number, default_value_t = 0.0)]
-    #[arg(allow_negative_numbers = true)]
     pub brighten: f64,
     /// How light becomes what .png, .jpg and preview show
     #[arg(long, value_enum, default_value_t = ToneArg::Filmic)]

@@ -15,15 +15,14 @@ pub struct PlaceArgs {
     #[arg(long, value_name = "TIME", requires = "at")]
     pub when: Option<String>,
     /// Elevation of the sun's centre above the horizontal, degrees, instead of place and time
-    #[arg(long, value_name = "DEG", value_parser = parse::elevation_deg, allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEG", value_parser = parse::elevation_deg)]
     pub sun_elevation: Option<f64>,
     /// Azimuth of the sun, degrees clockwise from north [default: 180, south]
-    #[arg(long, value_name = "DEG", value_parser = parse::number, allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEG", value_parser = parse::number)]
     #[arg(requires = "sun_elevation")]
     pub sun_azimuth: Option<f64>,
     /// Altitude of the eye above sea level, m; held at least 2 m above the ground
     #[arg(long, value_name = "M", value_parser = parse::altitude_m, default_value_t = 0.0)]
-    #[arg(allow_negative_numbers = true)]
     pub altitude_m: f64,
     /// Height of the eye above the ground, m, that it is not to fall below
     #[arg(long, value_name = "M", value_parser = parse::length_m, default_value_t = 2.0)]

@@ -18,7 +18,7 @@ pub enum FormatArg {
 
 /// Options of `airlight probe`.
 #[derive(Debug, Args)]
-#[command(after_help = EXAMPLES)]
+#[command(allow_negative_numbers = true, after_help = EXAMPLES)]
 pub struct ProbeArgs {
     /// A direction to look in: azimuth,elevation in degrees; may be given many times
     #[arg(long, value_name = "AZ,EL", value_parser = parse::az_el, allow_hyphen_values = true)]

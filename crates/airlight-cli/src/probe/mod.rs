@@ -1,9 +1,9 @@
 //! `airlight probe`: the light along given directions, in numbers.
 //!
-//! [`views`] reads the directions, [`values`] holds what is told of them; [`csv`] and [`table`] write it where JSON is
-//! not asked for.
+//! [`views`] reads the directions, [`values`] holds what is told of them; [`json`], [`csv`] and [`table`] write it.
 
 mod csv;
+mod json;
 mod table;
 mod values;
 mod views;
@@ -39,7 +39,7 @@ pub fn run(args: &ProbeArgs) -> Result<(), CliError> {
     let (sky, _) = scene.prepare(scene.near(&sun))?;
     let answer = Answer::new(args, &scene, &sky, &sun, &views);
     let text = match args.format {
-        FormatArg::Json => json(&answer)?,
+        FormatArg::Json => json::text(&answer)?,
         FormatArg::Csv => csv::text(&answer),
         FormatArg::Table => table::text(&answer),
     };
@@ -47,12 +47,6 @@ pub fn run(args: &ProbeArgs) -> Result<(), CliError> {
         Some(path) => write(path, &text),
         None => report::print(&text),
     }
-}
-
-fn json(answer: &Answer) -> Result<String, CliError> {
-    serde_json::to_string_pretty(answer)
-        .map(|text| text + "\n")
-        .map_err(|error| CliError::failure(format!("cannot put the answer into JSON: {error}")))
 }
 
 fn write(path: &Path, text: &str) -> Result<(), CliError> {
