@@ -1,165 +1,210 @@
-//! The solver against outside truth.
+//! The solver against outside truth: Monte Carlo and SASKTRAN2 on the sphere, for three atmospheres.
+//!
+//! `data/` holds copies of the tables; its README says where they come from. Observer at the ground, point sun, no disc;
+//! radiance per unit solar irradiance, so that no choice of solar spectrum enters. Run with `--nocapture` for the table
+//! of errors that the book shows.
+
+use airlight::axes::direction;
 use airlight::medium::{Atmosphere, reference};
-use airlight::sky::{air::Air, field::*, orders::*, ray::Ray, shell::Shell, trace::Tracer};
-use std::sync::Arc;
-use std::time::Instant;
+use airlight::sky::{LineOfSight, Sky, SkySettings, SunCoverage};
+use airlight::spectrum::WavelengthGrid;
+use std::collections::BTreeMap;
 
-fn rows(text: &str) -> Vec<Vec<String>> {
-    text.lines()
-        .skip(1)
-        .map(|l| l.split(',').map(|s| s.trim().to_string()).collect())
-        .collect()
+/// One atmosphere under one sun, solved for at the three wavelengths of a table.
+struct Case {
+    sky: Sky,
+    /// Solar irradiance of the table at each wavelength.
+    solar: Vec<f64>,
+    sun_zenith_deg: f64,
 }
 
-struct Solved {
-    air: Air<4>,
-    field: RadianceField<4>,
-}
+impl Case {
+    fn new(
+        atmosphere: &Atmosphere,
+        wavelengths_nm: &[f64],
+        unit_solar: bool,
+        sun_zenith_deg: f64,
+    ) -> Self {
+        let grid = WavelengthGrid::from_wavelengths_nm(wavelengths_nm.to_vec()).unwrap();
+        let suns = SunCoverage::near(90.0 - sun_zenith_deg, 0.0);
+        let sky = Sky::prepare(
+            atmosphere,
+            &grid,
+            &SkySettings {
+                suns,
+                ..Default::default()
+            },
+        )
+        .unwrap();
+        let solar = |&nm: &f64| {
+            if unit_solar {
+                1.0
+            } else {
+                atmosphere.solar_irradiance.at(nm)
+            }
+        };
+        Self {
+            sky,
+            solar: wavelengths_nm.iter().map(solar).collect(),
+            sun_zenith_deg,
+        }
+    }
 
-fn solve(atm: &Atmosphere, nm: [f64; 4], sun: f64) -> Solved {
-    let t = Instant::now();
-    let shell = Arc::new(Shell::new(atm).unwrap());
-    let t1 = t.elapsed();
-    let env = |k: &str, d: usize| std::env::var(k).map_or(d, |v| v.parse().unwrap());
-    let s = OrderSettings {
-        full_degree: env("LF", 8),
-        zonal_degree: env("LZ", 12),
-        rescattered_degree: env("LR", 4),
-        first: Directions {
-            zenith_nodes: [env("Z0", 8), env("Z1", 5), env("Z2", 8)],
-            azimuths: env("AZ", 12),
-            panel_nodes: env("PN", 3),
-        },
-        later: Directions {
-            zenith_nodes: [env("Y0", 5), env("Y1", 4), env("Y2", 6)],
-            azimuths: env("AY", 8),
-            panel_nodes: env("PY", 2),
-        },
-        tolerance: 1e-4 * env("TOL", 100) as f32,
-        max_orders: 30,
-    };
-    let air = Air::new(atm, shell, nm, s.zonal_degree);
-    let offs = std::env::var("OFF").unwrap_or("-14,-8,-4,-1.5,0,1.5,4,8,14".into());
-    let offs: Vec<f64> = offs.split(',').map(|x| x.parse().unwrap()).collect();
-    let mut z: Vec<f64> = offs.iter().map(|d| sun + d).filter(|z| *z > 0.0).collect();
-    z.insert(0, 0.0);
-    z.dedup();
-    let grid = FieldGrid::new(&air, env("NR", 24), &z);
-    let field = orders_solve(&air, grid, &s);
-    if std::env::var("TIMES").is_ok() {
-        println!(
-            "shell {t1:?} all {:?} panels {:?}",
-            t.elapsed(),
-            air.shell
-                .panel_radii_m
-                .iter()
-                .map(|r| (r - air.shell.planet_radius_m).round())
-                .collect::<Vec<_>>()
+    /// Single scattering and all orders, in the unit of the table.
+    fn radiance(&self, view_zenith_deg: f64, relative_azimuth_deg: f64, lane: usize) -> (f64, f64) {
+        let view = self
+            .sky
+            .view(0.0, direction(0.0, 90.0 - self.sun_zenith_deg));
+        let line: LineOfSight = view.along(
+            direction(relative_azimuth_deg, 90.0 - view_zenith_deg),
+            None,
         );
+        let scale = self.solar[lane] / f64::from(view.solar_irradiance()[lane]);
+        (
+            f64::from(line.single[lane]) * scale,
+            f64::from(line.radiance()[lane]) * scale,
+        )
     }
-    Solved { air, field }
 }
-use airlight::sky::orders::solve as orders_solve;
 
-fn mean_rms(v: &[(f64, String)]) -> String {
-    if v.is_empty() {
-        return "none".into();
+/// The atmospheres, with the wavelengths at which their coefficients are those of the tables' columns.
+fn atmosphere(name: &str) -> (Atmosphere, &'static [f64; 3], bool) {
+    match name {
+        "a0.0" => (reference::rayleigh(0.0), &[440.0, 550.0, 680.0], true),
+        "a0.3" => (reference::rayleigh(0.3), &[440.0, 550.0, 680.0], true),
+        "earth_demo" => (reference::earth_demo(), &[440.0, 550.0, 680.0], false),
+        "csm" => (reference::csm(), &[442.25, 548.0, 677.25], false),
+        other => panic!("no atmosphere {other}"),
     }
-    let n = v.len() as f64;
-    let m = v.iter().map(|x| x.0).sum::<f64>() / n;
-    let r = (v.iter().map(|x| x.0 * x.0).sum::<f64>() / n).sqrt();
-    let mut s: Vec<_> = v.to_vec();
-    s.sort_by(|a, b| b.0.abs().total_cmp(&a.0.abs()));
-    format!(
-        "n {} mean {:+.3}% rms {:.3}% worst {:+.3}% {} | {:+.3}% {} | {:+.3}% {}",
-        v.len(),
-        m * 100.,
-        r * 100.,
-        s[0].0 * 100.,
-        s[0].1,
-        s[1].0 * 100.,
-        s[1].1,
-        s[2].0 * 100.,
-        s[2].1
+}
+
+fn lane(channel: &str) -> usize {
+    match channel.trim_start_matches("L_").trim_start_matches("beta") {
+        "33.1e-6" | "440" | "442.25" => 0,
+        "13.5e-6" | "550" | "548" => 1,
+        "5.8e-6" | "680" | "677.25" => 2,
+        other => panic!("no channel {other}"),
+    }
+}
+
+fn rows(text: &str) -> (Vec<&str>, Vec<Vec<&str>>) {
+    let mut lines = text.lines();
+    let header = lines.next().unwrap().split(',').collect();
+    (
+        header,
+        lines.map(|line| line.split(',').collect()).collect(),
     )
 }
 
+fn number(text: &str) -> f64 {
+    text.parse()
+        .unwrap_or_else(|_| panic!("not a number: {text}"))
+}
+
+#[derive(Default)]
+struct Errors(Vec<f64>);
+
+impl Errors {
+    fn summary(&self) -> String {
+        let n = self.0.len() as f64;
+        let mean = self.0.iter().sum::<f64>() / n;
+        let rms = (self.0.iter().map(|e| e * e).sum::<f64>() / n).sqrt();
+        let worst = self.0.iter().fold(0.0f64, |w, e| w.max(e.abs()));
+        format!(
+            "{n:4} views, mean {:+.2} %, rms {:.2} %, worst {:.2} %",
+            100.0 * mean,
+            100.0 * rms,
+            100.0 * worst
+        )
+    }
+}
+
+/// The largest error allowed for all orders: 1 % up to a sun zenith angle of 80 degrees, 2 % at 87 and 88.
+fn limit(sun_zenith_deg: f64) -> f64 {
+    if sun_zenith_deg <= 80.0 { 0.01 } else { 0.02 }
+}
+
 #[test]
-fn monte_carlo() {
-    let sets: Vec<(
-        &str,
-        &str,
-        Box<dyn Fn(&str) -> Atmosphere>,
-        Vec<(&str, f64)>,
-    )> = vec![
-        (
-            "rayleigh",
-            include_str!("data/mc_sphere_rayleigh.csv"),
-            Box::new(|c| reference::rayleigh(c[1..].parse().unwrap())),
-            vec![("5.8e-6", 680.), ("13.5e-6", 550.), ("33.1e-6", 440.)],
-        ),
-        (
-            "earth_demo",
-            include_str!("data/mc_sphere_earth_demo.csv"),
-            Box::new(|_| reference::earth_demo()),
-            vec![("680", 680.), ("550", 550.), ("440", 440.)],
-        ),
-        (
-            "csm",
-            include_str!("data/mc_sphere_csm.csv"),
-            Box::new(|_| reference::csm()),
-            vec![("442.25", 442.25), ("548", 548.), ("677.25", 677.25)],
-        ),
-    ];
-    for (name, text, make, channels) in sets {
-        let rows = rows(text);
-        let mut keys: Vec<(String, String)> =
-            rows.iter().map(|r| (r[0].clone(), r[1].clone())).collect();
-        keys.dedup();
-        keys.sort();
-        keys.dedup();
-        let nm: [f64; 4] = [channels[0].1, channels[1].1, channels[2].1, 500.];
-        for (config, sun) in keys {
-            let atm = make(&config);
-            let sz: f64 = sun.parse().unwrap();
-            let solved = solve(&atm, nm, sz);
-            let mut tracer = Tracer::new(&solved.air, Some(&solved.field));
-            let (mut e1, mut e) = (vec![], vec![]);
-            for r in rows.iter().filter(|r| r[0] == config && r[1] == sun) {
-                let vz: f64 = r[2].parse().unwrap();
-                let az: f64 = r[3].parse().unwrap();
-                let lane = channels.iter().position(|c| c.0 == r[4]).unwrap();
-                let (mu, mus) = (vz.to_radians().cos(), sz.to_radians().cos());
-                let nu = mu * mus
-                    + vz.to_radians().sin() * sz.to_radians().sin() * az.to_radians().cos();
-                let ray = Ray {
-                    radius_m: solved.air.shell.ground_radius_m + 1.0,
-                    mu,
-                    mu_sun: mus,
-                    nu,
-                };
-                let light = tracer.trace(&ray, f64::INFINITY);
-                let e0 = if name == "rayleigh" {
-                    1.0
-                } else {
-                    atm.solar_irradiance.at(nm[lane])
-                };
-                let single = f64::from(light.single(&solved.air, nu)[lane]) * e0;
-                let all = single + f64::from((light.multiple + light.ground)[lane]) * e0;
-                let want: f64 = r[5].parse().unwrap();
-                let se: f64 = r[6].parse().unwrap();
-                let want1: f64 = r[7].parse().unwrap();
-                let what = format!("vz{} az{} {}", r[2], r[3], r[4]);
-                e.push((
-                    all / want - 1.0,
-                    format!("{what} se {:.2}%", se / want * 100.),
-                ));
-                e1.push((single / want1 - 1.0, what));
+fn all_orders_agree_with_monte_carlo() {
+    for text in [
+        include_str!("data/mc_sphere_rayleigh.csv"),
+        include_str!("data/mc_sphere_earth_demo.csv"),
+        include_str!("data/mc_sphere_csm.csv"),
+    ] {
+        let mut by_case: BTreeMap<(&str, &str), Vec<Vec<&str>>> = BTreeMap::new();
+        for row in rows(text).1 {
+            by_case.entry((row[0], row[1])).or_default().push(row);
+        }
+        for ((config, sun), rows) in by_case {
+            let (air, wavelengths, unit_solar) = atmosphere(config);
+            let case = Case::new(&air, wavelengths, unit_solar, number(sun));
+            let mut errors = Errors::default();
+            for row in rows {
+                let (_, all) = case.radiance(number(row[2]), number(row[3]), lane(row[4]));
+                let (want, standard_error) = (number(row[5]), number(row[6]));
+                errors.0.push(all / want - 1.0);
+                let allowed = limit(number(sun)) * want + 3.0 * standard_error;
+                assert!(
+                    (all - want).abs() < allowed,
+                    "{row:?}: got {all:.6e}, {:.2} %",
+                    100.0 * (all / want - 1.0)
+                );
             }
             println!(
-                "{name} {config} sun {sun}\n   single {}\n   all    {}",
-                mean_rms(&e1),
-                mean_rms(&e)
+                "Monte Carlo, all orders   {config:>10}, sun zenith {sun:>2}: {}",
+                errors.summary()
+            );
+        }
+    }
+}
+
+/// SASKTRAN2 agrees with the Monte Carlo to 0.3 % (95th percentile; csm 1.1 %): allowed here on top of our own limit.
+#[test]
+fn single_scattering_and_all_orders_agree_with_sasktran() {
+    for (text, config_column, tolerance) in [
+        (include_str!("data/sasktran2_rayleigh_sphere.csv"), 1, 0.003),
+        (include_str!("data/sasktran2_earth_demo.csv"), 0, 0.003),
+        (include_str!("data/sasktran2_csm.csv"), 0, 0.011),
+    ] {
+        let (header, rows) = rows(text);
+        let mut by_case: BTreeMap<(String, &str, &str), Vec<Vec<&str>>> = BTreeMap::new();
+        let mode_column = 1 - config_column;
+        for row in rows {
+            let config = match row[config_column] {
+                "0" | "0.0" => "a0.0".to_string(),
+                "0.3" => "a0.3".to_string(),
+                other => other.to_string(),
+            };
+            by_case
+                .entry((config, row[mode_column], row[2]))
+                .or_default()
+                .push(row);
+        }
+        for ((config, mode, sun), rows) in by_case {
+            let (air, wavelengths, unit_solar) = atmosphere(&config);
+            let case = Case::new(&air, wavelengths, unit_solar, number(sun));
+            let mut errors = Errors::default();
+            for row in rows {
+                for column in 5..8 {
+                    let (single, all) =
+                        case.radiance(number(row[3]), number(row[4]), lane(header[column]));
+                    let (got, allowed) = match mode {
+                        "single" => (single, 0.002),
+                        _ => (all, limit(number(sun)) + tolerance),
+                    };
+                    let error = got / number(row[column]) - 1.0;
+                    errors.0.push(error);
+                    assert!(
+                        error.abs() < allowed,
+                        "{mode} {row:?} {}: got {got:.6e}, {:.2} %",
+                        header[column],
+                        100.0 * error
+                    );
+                }
+            }
+            println!(
+                "SASKTRAN2, {mode:>8}       {config:>10}, sun zenith {sun:>2}: {}",
+                errors.summary()
             );
         }
     }

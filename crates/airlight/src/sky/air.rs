@@ -34,7 +34,7 @@ pub struct Scatterer<const N: usize> {
 }
 
 impl<const N: usize> Air<N> {
-    /// Samples `atmosphere` at N wavelengths, with phase-function moments up to degree `l_max`.
+    /// Samples `atmosphere` at N wavelengths, with phase-function moments up to degree `l_max + 1`.
     pub fn new(
         atmosphere: &Atmosphere,
         shell: Arc<Shell>,
@@ -53,11 +53,11 @@ impl<const N: usize> Air<N> {
             .iter()
             .enumerate()
             .map(|(constituent, c)| {
-                let by_lane = wavelengths_nm.map(|nm| c.phase.legendre_moments(l_max + 1, nm));
+                let by_lane = wavelengths_nm.map(|nm| c.phase.legendre_moments(l_max + 2, nm));
                 Scatterer {
                     constituent,
                     scattering: sample(&|nm| c.scattering_per_m.at(nm)),
-                    moments: (0..=l_max)
+                    moments: (0..=l_max + 1)
                         .map(|l| Spectrum::from_fn(|lane| by_lane[lane][l] as f32))
                         .collect(),
                     phase: c.phase.clone(),
@@ -73,6 +73,26 @@ impl<const N: usize> Air<N> {
             ground_albedo,
             wavelengths_nm,
         }
+    }
+
+    /// The same air with the forward peaks of its phase functions counted as no scattering at all (the delta-M method:
+    /// Wiscombe, J. Atmos. Sci. 34, 1408, 1977): with `f` the moment of degree `l_max + 1`, scattering shrinks by
+    /// `1 - f` and the moments become `(chi_l - f) / (1 - f)`. What is left of a phase function is well described
+    /// by its moments up to `l_max`.
+    pub fn without_forward_peaks(&self, l_max: usize) -> Self {
+        let mut air = self.clone();
+        for s in &mut air.scatterers {
+            let peak = s.moments[l_max + 1].map(|f| f.clamp(0.0, 0.99));
+            let rest = Spectrum::ONE - peak;
+            let removed = s.scattering * peak;
+            air.extinction[s.constituent] -= removed;
+            s.scattering -= removed;
+            s.moments.truncate(l_max + 1);
+            for moment in &mut s.moments {
+                *moment = (*moment - peak) / rest;
+            }
+        }
+        air
     }
 
     /// Optical depth of the given columns.

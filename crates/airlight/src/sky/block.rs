@@ -3,8 +3,8 @@
 use super::SkySettings;
 use super::air::Air;
 use super::fan::{Fan, Path, Scratch};
-use super::field::{FieldGrid, RadianceField};
-use super::orders;
+use super::field::FieldGrid;
+use super::orders::{self, Diffuse};
 use super::ray::Ray;
 use super::shell::Shell;
 use super::trace::{Tracer, ground_irradiance};
@@ -99,7 +99,7 @@ pub fn solve(
 
 struct Solved<const N: usize> {
     air: Air<N>,
-    field: Option<RadianceField<N>>,
+    diffuse: Option<Diffuse<N>>,
     /// Lanes in use; those beyond repeat the last wavelength.
     lanes: usize,
 }
@@ -113,13 +113,8 @@ impl<const N: usize> Solved<N> {
     ) -> Box<dyn Block> {
         let lanes = wavelengths_nm.len();
         let padded = std::array::from_fn(|lane| wavelengths_nm[lane.min(lanes - 1)]);
-        let air = Air::<N>::new(
-            atmosphere,
-            shell.clone(),
-            padded,
-            settings.orders.zonal_degree,
-        );
-        let field =
+        let air = Air::<N>::new(atmosphere, shell.clone(), padded, settings.orders.degree);
+        let diffuse =
             (settings.scattering == Scattering::All && !air.scatterers.is_empty()).then(|| {
                 let zeniths = settings
                     .suns
@@ -127,11 +122,15 @@ impl<const N: usize> Solved<N> {
                 let grid = FieldGrid::new(&air, settings.altitudes, &zeniths);
                 orders::solve(&air, grid, &settings.orders)
             });
-        Box::new(Self { air, field, lanes })
+        Box::new(Self {
+            air,
+            diffuse,
+            lanes,
+        })
     }
 
     fn tracer(&self) -> Tracer<'_, N> {
-        Tracer::new(&self.air, self.field.as_ref())
+        Tracer::new(&self.air, self.diffuse.as_ref())
     }
 
     fn used(&self, spectrum: &Spectrum<N>) -> Vec<f32> {
@@ -149,7 +148,7 @@ impl<const N: usize> Block for Solved<N> {
         BlockLight {
             transmittance: self.used(&light.transmittance),
             single: self.used(&light.single(&self.air, ray.nu)),
-            multiple: self.used(&light.multiple),
+            multiple: self.used(&light.multiple(&self.air, ray.nu)),
             ground: self.used(&light.ground),
             meets_ground: light.meets_ground,
         }
@@ -225,18 +224,19 @@ struct RowLight<const N: usize> {
 impl<const N: usize> Solved<N> {
     #[inline(always)]
     fn row_light(&self, row: &TableRow) -> RowLight<N> {
-        let (air, field, rays) = (&self.air, self.field.as_ref(), row.fan.len());
+        let (air, diffuse, rays) = (&self.air, self.diffuse.as_ref(), row.fan.len());
         let mut light = RowLight {
             unphased: Vec::new(),
             rest: vec![Spectrum::ZERO; rays],
         };
         let mut tracer = self.tracer();
-        let grid = field.map(|f| &f.grid);
-        let degree = field.map_or(0, |f| f.basis.degree());
+        let grid = diffuse.map(|d| &d.field.grid);
+        let degree = diffuse.map_or(0, |d| d.field.basis.degree());
         let path = Path::new(air, grid, &tracer.marcher, row.start, degree);
         if path.is_lit(air, &row.fan) {
-            path.carry_sunlight(air, &row.fan, &mut light.unphased);
-            if let Some(field) = field {
+            let sun_air = diffuse.map_or(air, |d| &d.air);
+            path.carry_sunlight(air, sun_air, &row.fan, &mut light.unphased);
+            if let Some(Diffuse { field, .. }) = diffuse {
                 path.carry_scattered(
                     field,
                     &field.basis,
@@ -248,7 +248,7 @@ impl<const N: usize> Solved<N> {
             path.carry_ground(
                 air,
                 &row.fan,
-                |mu_sun| ground_irradiance(air, field, mu_sun),
+                |mu_sun| ground_irradiance(air, diffuse, mu_sun),
                 &mut light.rest,
             );
         } else {
@@ -258,9 +258,9 @@ impl<const N: usize> Solved<N> {
                 .resize(air.scatterers.len() * rays, Spectrum::ZERO);
             for slot in 0..rays {
                 let one = tracer.trace(&row.fan.ray(row.start, slot), f64::INFINITY);
-                light.rest[slot] = one.multiple + one.ground;
-                for (s, unphased) in one.unphased[..air.scatterers.len()].iter().enumerate() {
-                    light.unphased[s * rays + slot] = *unphased;
+                light.rest[slot] = one.diffuse + one.ground;
+                for s in 0..air.scatterers.len() {
+                    light.unphased[s * rays + slot] = one.unphased[s] + one.unphased_forward[s];
                 }
             }
         }

@@ -170,9 +170,16 @@ impl<const N: usize> Path<N> {
         })
     }
 
-    /// Sunlight scattered once into each ray, before phase functions are applied: `[scatterer][ray]` into `out`.
+    /// Sunlight scattered once into each ray, before phase functions are applied: `[scatterer][ray]` into `out`. On its
+    /// way to where it is scattered it is dimmed by `sun_air`: `air`, or that without its forward peaks.
     #[inline(always)]
-    pub fn carry_sunlight(&self, air: &Air<N>, fan: &Fan, out: &mut Vec<Spectrum<N>>) {
+    pub fn carry_sunlight(
+        &self,
+        air: &Air<N>,
+        sun_air: &Air<N>,
+        fan: &Fan,
+        out: &mut Vec<Spectrum<N>>,
+    ) {
         let shell = &air.shell;
         out.clear();
         out.resize(air.scatterers.len() * fan.len(), Spectrum::ZERO);
@@ -182,11 +189,11 @@ impl<const N: usize> Path<N> {
                 let mu_sun =
                     (self.radius_m * fan.mu_sun[slot] + node.t * fan.nu[slot]) / node.radius_m;
                 let depth = if mu_sun >= 0.0 {
-                    air.optical_depth_f32(&columns.to_space_m(mu_sun as f32))
+                    sun_air.optical_depth_f32(&columns.to_space_m(mu_sun as f32))
                 } else if in_shadow(node.radius_m, mu_sun, shell.ground_radius_m) {
                     continue;
                 } else {
-                    air.optical_depth(&shell.columns_to_space_m(node.radius_m, mu_sun))
+                    sun_air.optical_depth(&shell.columns_to_space_m(node.radius_m, mu_sun))
                 };
                 let arriving = node.weight * (Spectrum::ZERO - depth).exp();
                 for (place, s) in air.scatterers.iter().enumerate() {
@@ -214,11 +221,10 @@ impl<const N: usize> Path<N> {
     ) {
         let (rays, count) = (fan.len(), basis.count());
         scratch.resize(rays, count);
-        basis.evaluate_zonal_fan(&fan.nu, &mut scratch.y);
         for node in &self.nodes {
             field.at_radius(node.place, count, &mut scratch.row);
             scratch.locate(&field.grid, self, node, fan);
-            basis.evaluate_local_fan(
+            basis.evaluate_fan(
                 node.mu,
                 &scratch.toward_sun,
                 &mut scratch.azimuthal,

@@ -128,8 +128,12 @@ impl<const N: usize> RadianceField<N> {
     ) -> Self {
         for point in moments.chunks_exact_mut(basis.count()) {
             let intensity = point[0].max_scalar(DARKNESS);
-            for ratio in &mut point[1..] {
-                *ratio = *ratio / intensity;
+            for l in 1..=basis.degree() {
+                // No light that is nowhere negative has larger moments; rounding can have, in the dark.
+                let limit = ((2 * l + 1) as f32).sqrt();
+                for ratio in &mut point[basis.span(l)] {
+                    *ratio = (*ratio / intensity).map(|r| r.clamp(-limit, limit));
+                }
             }
             point[0] = intensity.ln();
         }

@@ -1,18 +1,14 @@
-//! Angular bases for fields that are mirror-symmetric about the sun's vertical plane.
+//! Real spherical harmonics of fields that are mirror-symmetric about the sun's vertical plane.
 //!
 //! Such a field needs only the cosine harmonics `Y_lm(theta, phi)` with `0 <= m <= l`, here orthonormal over the whole
 //! sphere: `Y_lm = N_lm P_lm(cos theta) cos(m phi)`. They are evaluated from `mu = cos(theta)` and
 //! `a = sin(theta) cos(phi)`, both polynomials of the direction's components: no angle is ever computed, and nothing
 //! special happens at the zenith.
-//!
-//! High degrees matter only for aerosol, whose forward peak keeps the light that it scatters in a cone about the sun:
-//! what scattered light has of them is nearly symmetric about the sun's direction. So beyond a degree of choice one
-//! zonal harmonic about the sun, `Z_l = sqrt((2l + 1) / (4 pi)) P_l(nu)`, stands for the whole degree.
 
 use std::ops::RangeInclusive;
 
-/// Number of harmonics of degree up to `l_max`, all orders.
-const fn count_all_orders(l_max: usize) -> usize {
+/// Number of harmonics of degree up to `l_max`.
+const fn count(l_max: usize) -> usize {
     (l_max + 1) * (l_max + 2) / 2
 }
 
@@ -21,13 +17,10 @@ const fn index(l: usize, m: usize) -> usize {
     l * (l + 1) / 2 + m
 }
 
-/// Evaluates a basis: holds its degrees, normalisations and recurrence coefficients.
+/// Evaluates the harmonics up to a degree: holds normalisations and recurrence coefficients.
 #[derive(Clone, Debug)]
 pub struct Harmonics {
-    /// Degree up to which every order is kept.
-    full: usize,
-    /// Degree up to which the zonal harmonic about the sun is kept.
-    zonal: usize,
+    degree: usize,
     /// For each `(l, m)`: the coefficients `(p, q)` of `Y_lm = p mu Y_(l-1)m - q Y_(l-2)m`, for `l > m`.
     recurrence: Vec<(f32, f32)>,
     /// Normalised `P_mm / sin^m(theta)`.
@@ -35,13 +28,11 @@ pub struct Harmonics {
 }
 
 impl Harmonics {
-    /// All orders up to degree `full` (at most [`Harmonics::MAX_FULL`]) and zonal harmonics about the sun from there
-    /// to degree `zonal` (at most [`Harmonics::MAX_ZONAL`]).
-    pub fn new(full: usize, zonal: usize) -> Self {
-        assert!(full <= Self::MAX_FULL && full <= zonal && zonal <= Self::MAX_ZONAL);
-        let l_max = full;
-        let mut recurrence = vec![(0.0, 0.0); count_all_orders(l_max)];
-        for l in 1..=l_max {
+    /// Harmonics up to `degree` (at most [`Harmonics::MAX_DEGREE`]).
+    pub fn new(degree: usize) -> Self {
+        assert!(degree <= Self::MAX_DEGREE);
+        let mut recurrence = vec![(0.0, 0.0); count(degree)];
+        for l in 1..=degree {
             for m in 0..l {
                 let (lf, mf) = (l as f64, m as f64);
                 let p = ((4.0 * lf * lf - 1.0) / (lf * lf - mf * mf)).sqrt();
@@ -57,9 +48,9 @@ impl Harmonics {
             }
         }
         // N_mm P_mm / sin^m = sqrt((2 - d_m0) (2m + 1) / (4 pi (2m)!)) (2m - 1)!!
-        let mut diagonal = Vec::with_capacity(l_max + 1);
+        let mut diagonal = Vec::with_capacity(degree + 1);
         let mut norm = 1.0 / (4.0 * std::f64::consts::PI);
-        for m in 0..=l_max {
+        for m in 0..=degree {
             let mf = m as f64;
             if m > 0 {
                 // (2m - 1)!!^2 / (2m)! = prod (2k - 1) / (2k)
@@ -69,77 +60,46 @@ impl Harmonics {
             diagonal.push((norm * doubled * (2.0 * mf + 1.0)).sqrt() as f32);
         }
         Self {
-            full,
-            zonal,
+            degree,
             recurrence,
             diagonal,
         }
     }
 
-    /// The largest degree of which every order can be kept.
-    pub const MAX_FULL: usize = 12;
-    /// The largest degree of zonal harmonics.
-    pub const MAX_ZONAL: usize = 32;
-    /// The largest size of a basis: the size of the arrays that [`Harmonics::evaluate`] fills.
-    pub const MAX_COUNT: usize =
-        count_all_orders(Self::MAX_FULL) + Self::MAX_ZONAL - Self::MAX_FULL;
+    /// The largest degree.
+    pub const MAX_DEGREE: usize = 16;
+    /// The largest number of harmonics: the size of the arrays that [`Harmonics::evaluate`] fills.
+    pub const MAX_COUNT: usize = count(Self::MAX_DEGREE);
 
-    /// Number of functions in the basis.
+    /// Number of harmonics.
     #[inline(always)]
     pub fn count(&self) -> usize {
-        count_all_orders(self.full) + self.zonal - self.full
+        count(self.degree)
     }
 
     /// The highest degree.
     #[inline(always)]
     pub fn degree(&self) -> usize {
-        self.zonal
+        self.degree
     }
 
-    /// Places of the functions of degree `l`.
+    /// Places of the harmonics of degree `l`.
     #[inline(always)]
     pub fn span(&self, l: usize) -> RangeInclusive<usize> {
-        if l <= self.full {
-            index(l, 0)..=index(l, l)
-        } else {
-            let place = count_all_orders(self.full) + l - self.full - 1;
-            place..=place
-        }
+        index(l, 0)..=index(l, l)
     }
 
-    /// Writes the basis functions in the direction with `mu = cos(theta)`, `toward_sun = sin(theta) cos(phi)` and the
-    /// cosine `nu` to the sun.
+    /// Writes the harmonics in the direction with `mu = cos(theta)` and `toward_sun = sin(theta) cos(phi)`.
     #[inline(always)]
-    pub fn evaluate(&self, mu: f32, toward_sun: f32, nu: f32, out: &mut [f32]) {
-        self.evaluate_zonal(nu, out);
-        self.evaluate_local(mu, toward_sun, out);
-    }
-
-    /// The zonal part of [`Harmonics::evaluate`]: the same all along a straight ray.
-    #[inline(always)]
-    pub fn evaluate_zonal(&self, nu: f32, out: &mut [f32]) {
-        let (mut below, mut here) = (0.0f32, 1.0f32);
-        for l in 1..=self.zonal {
-            let n = l as f32;
-            (below, here) = (here, ((2.0 * n - 1.0) * nu * here - (n - 1.0) * below) / n);
-            if l > self.full {
-                let norm = ((2.0 * n + 1.0) * (0.25 * std::f32::consts::FRAC_1_PI)).sqrt();
-                out[*self.span(l).start()] = norm * here;
-            }
-        }
-    }
-
-    /// The part of [`Harmonics::evaluate`] that keeps all orders, in the frame of the local zenith.
-    #[inline(always)]
-    pub fn evaluate_local(&self, mu: f32, toward_sun: f32, out: &mut [f32]) {
+    pub fn evaluate(&self, mu: f32, toward_sun: f32, out: &mut [f32]) {
         let sin2 = (1.0 - mu * mu).max(0.0);
         // sin^m cos(m phi) by Chebyshev's recurrence.
         let (mut azimuthal_below, mut azimuthal) = (toward_sun, 1.0f32);
-        for m in 0..=self.full {
+        for m in 0..=self.degree {
             out[index(m, m)] = self.diagonal[m] * azimuthal;
             let mut below = 0.0;
             let mut here = out[index(m, m)];
-            for l in m + 1..=self.full {
+            for l in m + 1..=self.degree {
                 let (p, q) = self.recurrence[index(l, m)];
                 let next = p * mu * here - q * below;
                 below = here;
@@ -156,23 +116,10 @@ impl Harmonics {
         }
     }
 
-    /// [`Harmonics::evaluate_zonal`] for many rays: `[function][ray]` into `out`.
-    #[inline(always)]
-    pub fn evaluate_zonal_fan(&self, nu: &[f64], out: &mut [f32]) {
-        let mut y = [0.0; Self::MAX_COUNT];
-        let rays = nu.len();
-        for (slot, &nu) in nu.iter().enumerate() {
-            self.evaluate_zonal(nu as f32, &mut y);
-            for k in count_all_orders(self.full)..self.count() {
-                out[k * rays + slot] = y[k];
-            }
-        }
-    }
-
-    /// [`Harmonics::evaluate_local`] for many rays of the same `mu`: `[function][ray]` into `out`. `scratch` has three
+    /// [`Harmonics::evaluate`] for many rays of the same `mu`: `[function][ray]` into `out`. `scratch` has three
     /// arrays of one entry a ray.
     #[inline(always)]
-    pub fn evaluate_local_fan(
+    pub fn evaluate_fan(
         &self,
         mu: f32,
         toward_sun: &[f32],
@@ -184,12 +131,12 @@ impl Harmonics {
         let [below, here, next] = scratch;
         below[..rays].copy_from_slice(toward_sun);
         here[..rays].fill(1.0);
-        for m in 0..=self.full {
+        for m in 0..=self.degree {
             let diagonal = index(m, m) * rays;
             for (y, azimuthal) in out[diagonal..diagonal + rays].iter_mut().zip(&here[..rays]) {
                 *y = self.diagonal[m] * azimuthal;
             }
-            for l in m + 1..=self.full {
+            for l in m + 1..=self.degree {
                 let (p, q) = self.recurrence[index(l, m)];
                 let (done, rest) = out.split_at_mut(index(l, m) * rays);
                 let one = &done[index(l - 1, m) * rays..][..rays];
@@ -241,7 +188,7 @@ mod tests {
     #[test]
     fn harmonics_are_orthonormal_over_the_sphere() {
         let l_max = 10;
-        let harmonics = Harmonics::new(l_max, l_max);
+        let harmonics = Harmonics::new(l_max);
         let n = harmonics.count();
         let mut gram = vec![0.0f64; n * n];
         let azimuths = 32;
@@ -250,7 +197,7 @@ mod tests {
                 let phi = 2.0 * PI * (k as f64 + 0.3) / f64::from(azimuths);
                 let mut y = vec![0.0; n];
                 let a = (1.0 - mu * mu).sqrt() * phi.cos();
-                harmonics.evaluate_local(mu as f32, a as f32, &mut y);
+                harmonics.evaluate(mu as f32, a as f32, &mut y);
                 for i in 0..n {
                     for j in 0..n {
                         gram[i * n + j] +=
@@ -274,11 +221,11 @@ mod tests {
     #[test]
     fn the_addition_theorem_holds() {
         // sum_m Y_lm(a) Y_lm(b) = (2l + 1) / (4 pi) P_l(a.b), for both directions in the sun's plane.
-        let harmonics = Harmonics::new(8, 8);
+        let harmonics = Harmonics::new(8);
         let (mut ya, mut yb, mut p) = ([0.0; 45], [0.0; 45], [0.0; 9]);
         let (ta, tb) = (0.7f64, 1.9f64);
-        harmonics.evaluate_local(ta.cos() as f32, ta.sin() as f32, &mut ya);
-        harmonics.evaluate_local(tb.cos() as f32, tb.sin() as f32, &mut yb);
+        harmonics.evaluate(ta.cos() as f32, ta.sin() as f32, &mut ya);
+        harmonics.evaluate(tb.cos() as f32, tb.sin() as f32, &mut yb);
         legendre((ta - tb).cos(), &mut p);
         for l in 0..=8 {
             let sum: f32 = (0..=l).map(|m| ya[index(l, m)] * yb[index(l, m)]).sum();

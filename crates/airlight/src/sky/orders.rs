@@ -21,11 +21,9 @@ use std::f64::consts::PI;
 /// How finely the orders are solved.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OrderSettings {
-    /// Degree up to which the light's angular moments are kept in full.
-    pub full_degree: usize,
-    /// Degree up to which they are kept as far as they are symmetric about the sun's direction.
-    pub zonal_degree: usize,
-    /// Degree (at most `full_degree`) of the moments that are scattered again while the orders are solved; the light
+    /// Degree of the light's angular moments.
+    pub degree: usize,
+    /// Degree (at most `degree`) of the moments that are scattered again while the orders are solved; the light
     /// that is finally looked at keeps all.
     pub rescattered_degree: usize,
     /// Rays that carry light scattered once: it holds the aerosol's forward peak and wants the most directions.
@@ -49,16 +47,26 @@ pub struct Directions {
     pub panel_nodes: usize,
 }
 
-/// Solves for the moments of all light scattered or reflected at least once, per unit solar irradiance.
+/// Light that has been scattered or reflected at least once, other than into a forward peak.
+pub struct Diffuse<const N: usize> {
+    /// Its moments, per unit solar irradiance.
+    pub field: RadianceField<N>,
+    /// The air in which it was solved for: forward peaks count as unscattered. Sunlight dimmed by this air, less
+    /// sunlight dimmed by the real air, is light that forward peaks have scattered, still going the sun's way.
+    pub air: Air<N>,
+}
+
+/// Solves for all light scattered or reflected at least once.
 pub fn solve<const N: usize>(
-    air: &Air<N>,
+    real_air: &Air<N>,
     grid: FieldGrid,
     settings: &OrderSettings,
-) -> RadianceField<N> {
-    let basis = Harmonics::new(settings.full_degree, settings.zonal_degree);
-    let mut sum = Transport::new(air, &grid, &basis, 0, &settings.first).first_order();
+) -> Diffuse<N> {
+    let air = real_air.without_forward_peaks(settings.degree);
+    let basis = Harmonics::new(settings.degree);
+    let mut sum = Transport::new(&air, &grid, &basis, 0, &settings.first).first_order();
     let transport = Transport::new(
-        air,
+        &air,
         &grid,
         &basis,
         settings.rescattered_degree,
@@ -75,7 +83,8 @@ pub fn solve<const N: usize>(
             break;
         }
     }
-    sum.field(&grid, &basis)
+    let field = sum.field(&grid, &basis);
+    Diffuse { field, air }
 }
 
 /// One order of light, or a sum of orders: moments `[radius][sun][harmonic]` and ground irradiances `[sun]`.
@@ -205,7 +214,7 @@ impl<'a, const N: usize> Transport<'a, N> {
             air,
             grid,
             basis,
-            rescattered: Harmonics::new(rescattered_degree, rescattered_degree),
+            rescattered: Harmonics::new(rescattered_degree),
             paths,
             azimuth_cosines,
         }
@@ -217,8 +226,8 @@ impl<'a, const N: usize> Transport<'a, N> {
         self.gather(
             #[inline(always)]
             |path, fan, work| {
-                path.carry_sunlight(air, fan, &mut work.unphased);
-                let mut p = [0.0; Harmonics::MAX_ZONAL + 1];
+                path.carry_sunlight(air, air, fan, &mut work.unphased);
+                let mut p = [0.0; Harmonics::MAX_DEGREE + 1];
                 let p = &mut p[..=self.basis.degree()];
                 for (slot, light) in work.light.iter_mut().enumerate() {
                     legendre(fan.nu[slot], p);
@@ -323,15 +332,16 @@ impl<'a, const N: usize> Transport<'a, N> {
             let w = solid_weight * 2.0 * PI / azimuths as f64;
             let sin = ((1.0 - path.mu) * (1.0 + path.mu)).max(0.0).sqrt();
             for (slot, light) in work.light.iter().enumerate() {
+                // What is left of a phase function after the cut can still dip below zero.
+                let light = light.max_scalar(0.0);
                 let (sun, azimuth) = (slot / azimuths, slot % azimuths);
                 let toward_sun = (sin * self.azimuth_cosines[azimuth]) as f32;
-                self.basis
-                    .evaluate(path.mu as f32, toward_sun, fan.nu[slot] as f32, &mut y);
+                self.basis.evaluate(path.mu as f32, toward_sun, &mut y);
                 for (moment, y) in moments[sun * count..(sun + 1) * count].iter_mut().zip(&y) {
-                    *moment = moment.scale_acc(*light, y * w as f32);
+                    *moment = moment.scale_acc(light, y * w as f32);
                 }
                 if path.mu > 0.0 {
-                    downward[sun] = downward[sun].scale_acc(*light, (w * path.mu) as f32);
+                    downward[sun] = downward[sun].scale_acc(light, (w * path.mu) as f32);
                 }
             }
         }

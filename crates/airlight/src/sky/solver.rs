@@ -39,22 +39,21 @@ impl Default for SkySettings {
         Self {
             suns: SunCoverage::All,
             scattering: Scattering::All,
-            altitudes: 24,
+            altitudes: 20,
             orders: OrderSettings {
-                full_degree: 8,
-                zonal_degree: 12,
+                degree: 8,
                 rescattered_degree: 4,
                 first: Directions {
-                    zenith_nodes: [8, 5, 8],
+                    zenith_nodes: [7, 5, 8],
                     azimuths: 12,
-                    panel_nodes: 3,
-                },
-                later: Directions {
-                    zenith_nodes: [5, 4, 6],
-                    azimuths: 8,
                     panel_nodes: 2,
                 },
-                tolerance: 1e-2,
+                later: Directions {
+                    zenith_nodes: [4, 4, 5],
+                    azimuths: 7,
+                    panel_nodes: 2,
+                },
+                tolerance: 0.03,
                 max_orders: 40,
             },
         }

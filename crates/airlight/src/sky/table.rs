@@ -32,8 +32,8 @@ const ROWS_BELOW: usize = 96;
 /// Samples of a phase function in the sine of half the scattering angle.
 const PHASE_SAMPLES: usize = 4096;
 
-/// The widest cell: 112 wavelengths and eight peaked scatterers.
-const MAX_WIDTH: usize = 1024;
+/// The widest cell that is interpolated without allocating: 16 wavelengths and three peaked scatterers.
+const SMALL_WIDTH: usize = 64;
 
 /// A view's radiance in every direction, without the sun's disc.
 pub struct SkyTable {
@@ -266,8 +266,15 @@ impl SkyTable {
         let stride = (AZIMUTHS + 1) * self.width;
         let (first_row, row_weights) = cubic(row, half.rows);
         // Four values at a time stay in one register over all sixteen cells.
-        let mut cell = [0.0f32; MAX_WIDTH];
-        for (part, sums) in cell[..self.width].chunks_exact_mut(4).enumerate() {
+        let mut small = [0.0f32; SMALL_WIDTH];
+        let mut large = Vec::new();
+        let cell = if self.width <= SMALL_WIDTH {
+            &mut small[..self.width]
+        } else {
+            large.resize(self.width, 0.0);
+            &mut large[..]
+        };
+        for (part, sums) in cell.chunks_exact_mut(4).enumerate() {
             let mut sum = [0.0f32; 4];
             for (i, &wr) in row_weights.iter().enumerate() {
                 for (&column, &wc) in columns.iter().zip(column_weights) {
@@ -281,7 +288,7 @@ impl SkyTable {
             }
             sums.copy_from_slice(&sum);
         }
-        self.combine(&cell[..self.width], half_sine, out);
+        self.combine(cell, half_sine, out);
     }
 
     /// Applies the phase functions and adds up the parts of a cell.

@@ -1,11 +1,11 @@
 //! Light along one line of sight: exact single scattering, the solved field for all higher orders, the ground.
 
 use super::air::Air;
-use super::field::RadianceField;
 use super::harmonics::Harmonics;
 use super::march::Marcher;
+use super::orders::Diffuse;
 use super::ray::Ray;
-use super::shell::MAX_CONSTITUENTS;
+use super::shell::{MAX_CONSTITUENTS, PerConstituent};
 use crate::spectrum::Spectrum;
 use std::ops::ControlFlow;
 
@@ -16,8 +16,10 @@ pub struct Light<const N: usize> {
     pub transmittance: Spectrum<N>,
     /// Sunlight scattered once, by scatterer and before its phase function is applied (no unit).
     pub unphased: [Spectrum<N>; MAX_CONSTITUENTS],
-    /// Light scattered or reflected before, scattered into the line of sight.
-    pub multiple: Spectrum<N>,
+    /// The same for sunlight that forward peaks have scattered before, still going the sun's way.
+    pub unphased_forward: [Spectrum<N>; MAX_CONSTITUENTS],
+    /// Other light scattered or reflected before, scattered into the line of sight.
+    pub diffuse: Spectrum<N>,
     /// What of the ground's own radiance arrives, where the line ends on the ground.
     pub ground: Spectrum<N>,
     /// Whether the line ends on the ground.
@@ -28,19 +30,29 @@ impl<const N: usize> Light<N> {
     const NOTHING: Self = Self {
         transmittance: Spectrum::ONE,
         unphased: [Spectrum::ZERO; MAX_CONSTITUENTS],
-        multiple: Spectrum::ZERO,
+        unphased_forward: [Spectrum::ZERO; MAX_CONSTITUENTS],
+        diffuse: Spectrum::ZERO,
         ground: Spectrum::ZERO,
         meets_ground: false,
     };
 
     /// Sunlight scattered once, with the phase functions at the scattering angle whose cosine is `nu`.
     pub fn single(&self, air: &Air<N>, nu: f64) -> Spectrum<N> {
-        let mut sum = Spectrum::ZERO;
-        for (s, unphased) in air.scatterers.iter().zip(&self.unphased) {
-            sum = sum.mul_acc(*unphased, s.phase(air, nu));
-        }
-        sum
+        phased(air, &self.unphased, nu)
     }
+
+    /// Light scattered or reflected more than once, its last time on the way.
+    pub fn multiple(&self, air: &Air<N>, nu: f64) -> Spectrum<N> {
+        self.diffuse + phased(air, &self.unphased_forward, nu)
+    }
+}
+
+fn phased<const N: usize>(air: &Air<N>, unphased: &[Spectrum<N>], nu: f64) -> Spectrum<N> {
+    let mut sum = Spectrum::ZERO;
+    for (s, unphased) in air.scatterers.iter().zip(unphased) {
+        sum = sum.mul_acc(*unphased, s.phase(air, nu));
+    }
+    sum
 }
 
 /// Follows lines of sight through air lit by the sun and by a solved field.
@@ -48,7 +60,7 @@ pub struct Tracer<'a, const N: usize> {
     /// The air.
     pub air: &'a Air<N>,
     /// Multiply scattered light, if it is wanted.
-    pub field: Option<&'a RadianceField<N>>,
+    pub diffuse: Option<&'a Diffuse<N>>,
     /// How it walks.
     pub marcher: Marcher,
     edges: Vec<f64>,
@@ -56,10 +68,10 @@ pub struct Tracer<'a, const N: usize> {
 
 impl<'a, const N: usize> Tracer<'a, N> {
     /// A tracer at full accuracy.
-    pub fn new(air: &'a Air<N>, field: Option<&'a RadianceField<N>>) -> Self {
+    pub fn new(air: &'a Air<N>, diffuse: Option<&'a Diffuse<N>>) -> Self {
         Self {
             air,
-            field,
+            diffuse,
             marcher: Marcher::new(4, 2.0, air.max_extinction_per_m()),
             edges: Vec::new(),
         }
@@ -74,9 +86,6 @@ impl<'a, const N: usize> Tracer<'a, N> {
             return light;
         };
         let mut y = [0.0f32; Harmonics::MAX_COUNT];
-        if let Some(field) = self.field {
-            field.basis.evaluate_zonal(ray.nu as f32, &mut y);
-        }
         let columns = self.marcher.walk(
             shell,
             ray,
@@ -91,20 +100,29 @@ impl<'a, const N: usize> Tracer<'a, N> {
                     brightest = brightest.max(transmittance.max_element());
                     if node.lit {
                         let to_sun = shell.columns_to_space_m(node.here.radius_m, node.here.mu_sun);
-                        let arriving = (Spectrum::ZERO - depth - air.optical_depth(&to_sun)).exp();
-                        for (s, sum) in air.scatterers.iter().zip(&mut light.unphased) {
-                            *sum = sum.scale_acc(
-                                arriving,
-                                (node.densities[s.constituent] * node.dt) as f32,
+                        let single = (Spectrum::ZERO - depth - air.optical_depth(&to_sun)).exp();
+                        add_scattered(air, &node.densities, node.dt, single, &mut light.unphased);
+                        if let Some(diffuse) = self.diffuse {
+                            let all =
+                                (Spectrum::ZERO - depth - diffuse.air.optical_depth(&to_sun)).exp();
+                            add_scattered(
+                                air,
+                                &node.densities,
+                                node.dt,
+                                all - single,
+                                &mut light.unphased_forward,
                             );
                         }
                     }
-                    if let Some(field) = self.field {
-                        let (mu, toward_sun) = (node.here.mu as f32, node.here.toward_sun() as f32);
-                        field.basis.evaluate_local(mu, toward_sun, &mut y);
+                    if let Some(Diffuse { field, .. }) = self.diffuse {
+                        field.basis.evaluate(
+                            node.here.mu as f32,
+                            node.here.toward_sun() as f32,
+                            &mut y,
+                        );
                         let source = field.source(air, &node.here, &node.densities, &y);
-                        light.multiple = light
-                            .multiple
+                        light.diffuse = light
+                            .diffuse
                             .mul_acc(transmittance * node.dt as f32, source);
                     }
                 }
@@ -115,8 +133,9 @@ impl<'a, const N: usize> Tracer<'a, N> {
                 }
             },
         );
-        for (s, sum) in air.scatterers.iter().zip(&mut light.unphased) {
-            *sum *= s.scattering;
+        for (k, s) in air.scatterers.iter().enumerate() {
+            light.unphased[k] *= s.scattering;
+            light.unphased_forward[k] *= s.scattering;
         }
         light.transmittance = air.transmittance(&columns);
         light.meets_ground = stretch.meets_ground;
@@ -131,7 +150,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
     #[inline(always)]
     pub fn ground_radiance(&self, mu_sun: f64) -> Spectrum<N> {
         self.air
-            .reflected(ground_irradiance(self.air, self.field, mu_sun))
+            .reflected(ground_irradiance(self.air, self.diffuse, mu_sun))
     }
 }
 
@@ -139,11 +158,29 @@ impl<'a, const N: usize> Tracer<'a, N> {
 #[inline(always)]
 pub fn ground_irradiance<const N: usize>(
     air: &Air<N>,
-    field: Option<&RadianceField<N>>,
+    diffuse: Option<&Diffuse<N>>,
     mu_sun: f64,
 ) -> Spectrum<N> {
-    let diffuse = field.map_or(Spectrum::ZERO, |field| field.ground_irradiance(mu_sun));
-    diffuse + sun_on_ground(air, mu_sun)
+    match diffuse {
+        Some(diffuse) => {
+            diffuse.field.ground_irradiance(mu_sun) + sun_on_ground(&diffuse.air, mu_sun)
+        }
+        None => sun_on_ground(air, mu_sun),
+    }
+}
+
+/// Adds what is scattered of the light `arriving` at a node, per unit scattering coefficient.
+#[inline(always)]
+fn add_scattered<const N: usize>(
+    air: &Air<N>,
+    densities: &PerConstituent,
+    dt: f64,
+    arriving: Spectrum<N>,
+    sums: &mut [Spectrum<N>],
+) {
+    for (s, sum) in air.scatterers.iter().zip(sums) {
+        *sum = sum.scale_acc(arriving, (densities[s.constituent] * dt) as f32);
+    }
 }
 
 /// Irradiance of the ground where the sun's cosine is `mu_sun`, of the sun alone, per unit solar irradiance.
