@@ -164,25 +164,19 @@ fn views_come_from_standard_input_and_answers_go_to_files() {
 fn extremes_are_answered_with_numbers() {
     let folder = Folder::new();
     for words in [
-        "--sun-elevation 90 --view 0,90 --view 0,-90 --view 0,0",
-        "--sun-elevation -90 --view 0,90 --view 0,-90",
-        "--sun-elevation 0 --view 180,0 --view 0,0 --view 180,0.1",
-        "--sun-elevation 10 --altitude-m 400e3 --view 180,-20 --view 0,90 --view 180,-89",
-        "--sun-elevation 10 --altitude-m 1e9 --view 180,-90 --view 0,0",
-        "--sun-elevation 10 --altitude-m -400 --view 180,1 --view 0,-5",
-        "--sun-elevation 10 --ground-altitude-m 4000 --view 180,1 --distance-m 1e9",
-        "--sun-elevation 10 --aod-550 0 --ozone-du 0 --ground-albedo 0 --view 180,1 --view 180,10",
-        "--sun-elevation 10 --aod-550 50 --view 180,1 --view 180,10",
-        "--sun-elevation 10 --wavelengths 300,900 --view 180,1e-9",
-        "--sun-elevation 10 --view 1e300,5 --view -720.5,5 --distance-m 1e-9",
+        "--wavelengths rgb --scattering single --sun-elevation 90 --view 0,90 --view 0,-90 --view 0,0",
+        "--wavelengths rgb --scattering single --sun-elevation -90 --view 0,90 --view 0,-90",
+        "--wavelengths rgb --sun-elevation 0 --view 180,0 --view 0,0 --view 180,0.1",
+        "--wavelengths rgb --scattering single --sun-elevation 10 --altitude-m 400e3 --view 180,-20 --view 0,90 --view 180,-89",
+        "--wavelengths rgb --scattering single --sun-elevation 10 --altitude-m 1e9 --view 180,-90 --view 0,0",
+        "--wavelengths rgb --sun-elevation 10 --altitude-m -400 --view 180,1 --view 0,-5",
+        "--wavelengths rgb --scattering single --sun-elevation 10 --ground-altitude-m 4000 --view 180,1 --distance-m 1e9",
+        "--wavelengths rgb --scattering single --sun-elevation 10 --aod-550 0 --ozone-du 0 --ground-albedo 0 --view 180,1 --view 180,10",
+        "--wavelengths rgb --sun-elevation 10 --aod-550 50 --view 180,1 --view 180,10",
+        "--scattering single --sun-elevation 10 --wavelengths 300,900 --view 180,1e-9",
+        "--wavelengths rgb --scattering single --sun-elevation 10 --view 1e300,5 --view -720.5,5 --distance-m 1e-9",
     ] {
-        let output = run(
-            &folder,
-            &format!("probe --wavelengths rgb --format json {words}").replace(
-                "--wavelengths rgb --format json --sun-elevation 10 --wavelengths",
-                "--format json --sun-elevation 10 --wavelengths",
-            ),
-        );
+        let output = run(&folder, &format!("probe --format json {words}"));
         let error = String::from_utf8_lossy(&output.stderr);
         assert!(output.status.success(), "{words}: {error}");
         let text = String::from_utf8(output.stdout).unwrap();
