@@ -48,12 +48,17 @@ impl SunCoverage {
         }
         let centre = (90.0 - sun_elevation_deg).clamp(0.0, NIGHT_DEG);
         // In twilight the light comes from air beyond the horizon, where the sun is higher.
+        // The deeper it is, the faster it fades with every degree.
         let twilight = centre > 86.0;
         let lowest = (centre - reach - if twilight { 8.0 } else { 5.0 }).max(0.0);
         let highest = (centre + reach + 2.0).min(NIGHT_DEG);
         let mut zeniths = vec![centre];
         for (side, end) in [(-1.0, lowest), (1.0, highest)] {
-            let (mut step, growth) = if twilight { (0.8, 1.25) } else { (1.5, 1.5) };
+            let (mut step, growth) = if twilight {
+                (0.8, if centre > 98.0 { 1.12 } else { 1.25 })
+            } else {
+                (1.5, 1.5)
+            };
             let mut here = centre;
             while (here - end) * side < 0.0 {
                 here += side * step;
@@ -82,7 +87,7 @@ fn all_zeniths_deg() -> Vec<f64> {
             z if z < 55.0 => 5.0,
             z if z < 73.0 => 3.0,
             z if z < 83.0 => 2.0,
-            z if z < 102.0 => 1.0,
+            z if z < 112.0 => 1.0,
             _ => 2.0,
         };
         zeniths.push(here);

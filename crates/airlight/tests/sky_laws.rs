@@ -1,0 +1,270 @@
+//! Laws that every prepared sky obeys, whatever the numbers.
+
+use airlight::axes::direction;
+use airlight::medium::{presets, reference};
+use airlight::sky::{LineOfSight, Scattering, Sky, SkySettings, SunCoverage, TableChannels};
+use airlight::spectrum::{RgbSpace, WavelengthGrid};
+use glam::DVec3;
+
+fn prepare(preset: &str, suns: SunCoverage) -> Sky {
+    let settings = SkySettings {
+        suns,
+        ..Default::default()
+    };
+    Sky::prepare(
+        &presets::preset(preset).unwrap(),
+        &WavelengthGrid::rgb(),
+        &settings,
+    )
+    .unwrap()
+}
+
+fn relative_difference(a: &[f32], b: &[f32]) -> f32 {
+    a.iter()
+        .zip(b)
+        .map(|(a, b)| (a / b - 1.0).abs())
+        .fold(0.0, f32::max)
+}
+
+#[test]
+fn a_line_of_sight_may_be_split_anywhere() {
+    // Level on a ray that climbs: from the split on, the second half is seen from higher up under a turned sky.
+    let sky = prepare("average", SunCoverage::near(12.0, 0.0));
+    let (sun, eye) = (direction(180.0, 12.0), direction(170.0, 3.0));
+    let near_view = sky.view(100.0, sun);
+    for (split_m, length_m) in [(10.0, 2e3), (5e3, 40e3), (60e3, 61e3), (1e3, 2e5)] {
+        let whole = near_view.along(eye, Some(length_m)).optics::<3>().unwrap();
+        let near = near_view.along(eye, Some(split_m)).optics::<3>().unwrap();
+        // The place of the split, turned so that its zenith is up.
+        let place = DVec3::Y * near_view.radius_m() + eye * split_m;
+        let turn = glam::DQuat::from_rotation_arc(place.normalize(), DVec3::Y);
+        let altitude = place.length() - sky.atmosphere().planet.radius_m;
+        let far_view = sky.view(altitude, turn * sun);
+        let far = far_view
+            .along(turn * eye, Some(length_m - split_m))
+            .optics::<3>()
+            .unwrap();
+        let joined = near.then(far);
+        for lane in 0..3 {
+            let (a, b) = (joined.transmittance[lane], whole.transmittance[lane]);
+            assert!(
+                (a - b).abs() < 2e-4 * b + 1e-6,
+                "T at {split_m}: {a} against {b}"
+            );
+            let (a, b) = (joined.path_radiance[lane], whole.path_radiance[lane]);
+            assert!(
+                (a / b - 1.0).abs() < 2e-3,
+                "S at {split_m}: {a} against {b}"
+            );
+        }
+    }
+}
+
+#[test]
+fn transmittance_lies_between_nothing_and_all_and_falls_with_distance() {
+    let sky = prepare("hazy", SunCoverage::near(30.0, 0.0));
+    let view = sky.view(2.0, direction(90.0, 30.0));
+    for elevation in [-30.0, -1.0, 0.0, 0.5, 10.0, 90.0] {
+        let mut last = vec![1.0; 3];
+        for distance in [1e-3, 1.0, 1e2, 1e3, 1e4, 1e5, 1e6] {
+            let here = view.along(direction(0.0, elevation), Some(distance));
+            for (now, before) in here.transmittance.iter().zip(&last) {
+                assert!(
+                    (0.0..=1.0).contains(now) && *now <= before * (1.0 + 1e-5),
+                    "{elevation} {distance}"
+                );
+            }
+            last = here.transmittance;
+        }
+    }
+}
+
+#[test]
+fn a_short_path_scatters_in_proportion_to_its_length() {
+    let sky = prepare("clear", SunCoverage::near(40.0, 0.0));
+    let view = sky.view(500.0, direction(0.0, 40.0));
+    let metre = view.along(direction(60.0, 5.0), Some(1.0)).path_radiance();
+    let millimetre = view.along(direction(60.0, 5.0), Some(1e-3)).path_radiance();
+    for (a, b) in metre.iter().zip(&millimetre) {
+        assert!(*b > 0.0 && (a / (1000.0 * b) - 1.0).abs() < 1e-3, "{a} {b}");
+    }
+}
+
+#[test]
+fn preparing_for_one_sun_or_for_all_is_the_same() {
+    let all = prepare("average", SunCoverage::All);
+    for (elevation, allowed) in [
+        (50.0, 0.01),
+        (5.0, 0.01),
+        (-1.0, 0.02),
+        (-5.0, 0.02),
+        (-9.0, 0.04),
+        (-14.0, 0.08),
+    ] {
+        let near = prepare("average", SunCoverage::near(elevation, 0.0));
+        let sun = direction(180.0, elevation);
+        for eye in [
+            direction(180.0, 1.0),
+            direction(180.0, 20.0),
+            direction(0.0, 10.0),
+            direction(0.0, 90.0),
+        ] {
+            let a = all.view(0.0, sun).along(eye, None).radiance();
+            let b = near.view(0.0, sun).along(eye, None).radiance();
+            let difference = relative_difference(&a, &b);
+            assert!(
+                difference < allowed,
+                "sun {elevation}, {eye}: {difference} {a:?} {b:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_table_gives_what_tracing_gives() {
+    for (preset, altitude, elevation) in [
+        ("average", 0.0, 40.0),
+        ("clear", 0.0, 2.0),
+        ("clear", 0.0, -5.0),
+        ("average", 11e3, 15.0),
+        ("mars", 0.0, 20.0),
+    ] {
+        let sky = prepare(preset, SunCoverage::near(elevation, altitude));
+        let view = sky.view(altitude, direction(200.0, elevation));
+        let table = view.table(TableChannels::Spectral);
+        let azimuths: Vec<f64> = vec![0.0, 17.0, 62.0, 118.0, 180.0];
+        let columns = table.columns(azimuths.iter().map(|a| (a - 200.0f64).to_radians()));
+        let horizon = table.horizon_elevation_rad().to_degrees();
+        for above in [-60.0, -5.0, -0.5, 0.05, 0.5, 3.0, 20.0, 70.0] {
+            let mut row = vec![0.0; 3 * azimuths.len()];
+            table.sample_row((horizon + above).to_radians(), &columns, &mut row);
+            for (azimuth, in_row) in azimuths.iter().zip(row.chunks_exact(3)) {
+                let eye = direction(*azimuth, horizon + above);
+                let mut sampled = [0.0f32; 3];
+                table.sample(eye, &mut sampled);
+                let traced = view.along(eye, None).radiance();
+                let difference = relative_difference(&sampled, &traced);
+                assert!(
+                    difference < 0.01,
+                    "{preset} {elevation} {azimuth} {above}: {sampled:?} {traced:?}"
+                );
+                assert!(
+                    relative_difference(in_row, &sampled) < 1e-3,
+                    "{in_row:?} {sampled:?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn the_sky_on_the_ground_adds_up_to_what_the_solver_says_the_ground_receives() {
+    // The ground's own radiance tells how much light it receives: albedo / pi times sun and sky.
+    let sky = prepare("average", SunCoverage::near(35.0, 0.0));
+    let view = sky.view(0.0, direction(180.0, 35.0));
+    let sky_irradiance = view.table(TableChannels::Spectral).irradiance(DVec3::Y);
+    let sun_irradiance = view.sun_irradiance();
+    let ground = view.along(-DVec3::Y, None).ground;
+    for (lane, &nm) in sky.grid().wavelengths_nm().iter().enumerate() {
+        let albedo = sky.atmosphere().planet.ground_albedo.at(nm) as f32;
+        let received = ground[lane] * std::f32::consts::PI / albedo;
+        let summed = sky_irradiance[lane] + sun_irradiance[lane] * 35f32.to_radians().sin();
+        assert!(
+            (summed / received - 1.0).abs() < 0.005,
+            "{nm}: {summed} against {received}"
+        );
+    }
+}
+
+#[test]
+fn no_place_and_no_sun_gives_anything_but_finite_light() {
+    for preset in ["clear", "mars", "reference-csm"] {
+        let sky = match preset {
+            "reference-csm" => Sky::prepare(
+                &reference::csm(),
+                &WavelengthGrid::rgb(),
+                &SkySettings::default(),
+            )
+            .unwrap(),
+            name => prepare(name, SunCoverage::All),
+        };
+        for altitude in [-500.0, 0.0, 1.0, 9e3, 59.9e3, 100e3, 400e3, 4e7] {
+            for sun_elevation in [-90.0, -18.0, -0.3, 0.0, 30.0, 90.0] {
+                let view = sky.view(altitude, direction(10.0, sun_elevation));
+                for elevation in [-90.0, -70.0, -19.9, -3.0, 0.0, 1e-6, 4.0, 90.0] {
+                    for azimuth in [10.0, 100.0, 190.0] {
+                        let line = view.along(direction(azimuth, elevation), None);
+                        let LineOfSight {
+                            transmittance,
+                            single,
+                            multiple,
+                            ground,
+                            ..
+                        } = &line;
+                        for list in [transmittance, single, multiple, ground] {
+                            assert!(
+                                list.iter().all(|v| v.is_finite() && *v >= 0.0),
+                                "{preset} {altitude} {sun_elevation} {elevation} {azimuth}: {line:?}"
+                            );
+                        }
+                    }
+                }
+                let irradiance = view.sun_irradiance();
+                assert!(irradiance.iter().all(|v| v.is_finite() && *v >= 0.0));
+            }
+        }
+    }
+}
+
+#[test]
+fn twilight_only_gets_darker() {
+    let sky = prepare("clear", SunCoverage::All);
+    let mut last = f32::INFINITY;
+    for step in 0..=60 {
+        let elevation = 3.0 - 0.35 * f64::from(step);
+        let view = sky.view(0.0, direction(180.0, elevation));
+        let zenith = view.along(DVec3::Y, None).radiance()[1];
+        assert!(
+            zenith > 0.0 && zenith < last,
+            "{elevation}: {zenith} after {last}"
+        );
+        last = zenith;
+    }
+}
+
+#[test]
+fn scattering_once_is_part_of_all_scattering() {
+    let settings = |scattering| SkySettings {
+        suns: SunCoverage::near(20.0, 0.0),
+        scattering,
+        ..Default::default()
+    };
+    let air = presets::preset("average").unwrap();
+    let once = Sky::prepare(&air, &WavelengthGrid::rgb(), &settings(Scattering::Single)).unwrap();
+    let all = Sky::prepare(&air, &WavelengthGrid::rgb(), &settings(Scattering::All)).unwrap();
+    let (sun, eye) = (direction(180.0, 20.0), direction(90.0, 30.0));
+    let once = once.view(0.0, sun).along(eye, None);
+    let all = all.view(0.0, sun).along(eye, None);
+    assert_eq!(once.single, all.single);
+    assert!(once.multiple.iter().all(|v| *v == 0.0) && all.multiple.iter().all(|v| *v > 0.0));
+}
+
+#[test]
+fn every_number_of_threads_gives_the_same_bits() {
+    let picture = |threads: usize| {
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap()
+            .install(|| {
+                let sky = prepare("average", SunCoverage::near(8.0, 0.0));
+                let table = sky
+                    .view(0.0, direction(45.0, 8.0))
+                    .table(TableChannels::Rgb(RgbSpace::Srgb));
+                let mut out = [0.0; 3];
+                table.sample(direction(80.0, 12.0), &mut out);
+                out.map(f32::to_bits)
+            })
+    };
+    assert_eq!(picture(1), picture(3));
+}
