@@ -131,10 +131,7 @@ fn bad_use_of_sky() {
             "sky --sun-elevation 30 --color-space acescg -o a.png",
             "sRGB",
         ),
-        (
-            "sky --sun-elevation 30 --sun-disc separate --preview",
-            "--output",
-        ),
+        ("sky --sun-elevation 30 --sun-disc separate", "--output"),
         (
             "sky --sun-elevation 30 --fov 90 -o a.exr",
             "--projection fisheye or perspective",

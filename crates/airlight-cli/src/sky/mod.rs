@@ -75,6 +75,7 @@ fn single(
             .map(|file| u64::from(file.frame.size().height()))
             .sum();
         let bar = RowsBar::new(rows);
+        bar.say("drawing".to_owned());
         let writing = interrupt::start_writing()?;
         let written = drawing.write(&shot, &files, &bar)?;
         drop(writing);
