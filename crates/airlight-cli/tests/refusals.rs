@@ -179,14 +179,14 @@ fn bad_use_of_sky() {
         ),
         (
             "sky --at 1,2 --when 2026-01-01T00:00:00Z --until +9000000d --every 9000d -o a.png",
-            "--",
+            "26667-",
         ),
         (
             "sky --at 1,2 --when 2026-01-01T00:00:00Z --until +1h --every 10m",
             "--output",
         ),
         ("", "Usage"),
-        ("draw", "sky"),
+        ("draw", "--help"),
         ("atmospheres claer", "\"clear\""),
     ] {
         refused(&folder, words, 2, part);

@@ -20,6 +20,7 @@ use airlight_render::output::png::{PngDepth, PngOptions};
 use airlight_render::output::{AtomicFile, Written, spectral};
 use airlight_render::tone::{ToneCurve, ToneMapper};
 use airlight_render::{Control, Frame, PictureFormat, PictureOptions, RowSource, write_picture};
+use glam::DVec3;
 use std::path::Path;
 
 /// What is drawn and how.
@@ -74,6 +75,11 @@ impl<'a> Shot<'a> {
             disc,
             weights,
         }
+    }
+
+    /// Whether a direction points to the ground.
+    pub fn is_below_horizon(&self, direction: DVec3) -> bool {
+        direction.y.clamp(-1.0, 1.0).asin() < self.table.horizon_elevation_rad()
     }
 }
 

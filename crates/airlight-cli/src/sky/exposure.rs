@@ -8,6 +8,10 @@ use airlight_render::tone::{Exposure, FilmicSettings, Metering, ToneCurve, ToneM
 
 /// Columns of the small picture that is metered.
 const METERED_WIDTH: u32 = 96;
+/// What ground counts against sky: a dark foreground is not to wash out the sky above it.
+const GROUND_SHARE: f64 = 0.2;
+/// Stops by which a sky is brighter than middle grey.
+const SKY_STOPS: f64 = 1.0;
 /// Luminance of a daylight sky, cd/m^2, and by how many stops a picture gets darker for each stop below it: dusk is to
 /// look like dusk.
 const DAYLIGHT_CD_M2: f64 = 2000.0;
@@ -48,7 +52,14 @@ pub fn of(drawing: &Drawing<'_>, shot: &Shot<'_>) -> Result<Exposure, CliError> 
     for (index, rgb) in (0..).zip(&pixels) {
         let (i, j) = (index % frame.size().width(), index / frame.size().width());
         let luminance = drawing.channels.space.luminance(rgb.map(f64::from));
-        samples.push((luminance as f32, frame.pixel_solid_angle(i, j) as f32));
+        let below = frame
+            .pixel_direction(i, j)
+            .is_some_and(|direction| shot.is_below_horizon(direction));
+        let share = if below { GROUND_SHARE } else { 1.0 };
+        samples.push((
+            luminance as f32,
+            (share * frame.pixel_solid_angle(i, j)) as f32,
+        ));
     }
     let metering = Metering::default();
     // Where nothing is lit any exposure shows black.
@@ -56,7 +67,8 @@ pub fn of(drawing: &Drawing<'_>, shot: &Shot<'_>) -> Result<Exposure, CliError> 
         .typical_luminance(&samples)
         .unwrap_or(DAYLIGHT_CD_M2);
     let dusk_stops = DARKER_PER_STOP * (typical / DAYLIGHT_CD_M2).log2().min(0.0);
-    Ok(Exposure::factor_of(metering.key / typical)?.brighter_by(args.brighten + dusk_stops)?)
+    Ok(Exposure::factor_of(metering.key / typical)?
+        .brighter_by(args.brighten + SKY_STOPS + dusk_stops)?)
 }
 
 /// What makes display light of linear light.
