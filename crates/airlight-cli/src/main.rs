@@ -1,3 +1,49 @@
-//! The airlight program.
+//! The airlight program: skies from the command line.
+//!
+//! Rooms, each importing only from those above it:
+//! - [`error`]: why a command ends, and its exit code; [`parse`]: values on the command line; [`moment`]: times.
+//! - [`args`]: every option of every command.
+//! - [`interrupt`], [`progress`], [`report`]: Ctrl-C, bars on standard error, text on standard output.
+//! - [`atmosphere`], [`scene`], [`light`]: what is asked for, from options to the solver; sums over the sky.
+//! - [`sky`] and [`probe`]: the commands.
 
-fn main() {}
+mod args;
+mod atmosphere;
+mod error;
+mod interrupt;
+mod light;
+mod moment;
+mod parse;
+mod probe;
+mod progress;
+mod report;
+mod scene;
+mod sky;
+
+use args::{Cli, Command};
+use clap::Parser;
+use error::CliError;
+use std::{io::Write, process::ExitCode};
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    match run(&cli) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            if let Some(sentence) = error.sentence() {
+                // Where standard error is gone there is nobody left to tell.
+                let _ = writeln!(std::io::stderr(), "airlight: {sentence}");
+            }
+            ExitCode::from(error.exit_code())
+        }
+    }
+}
+
+fn run(cli: &Cli) -> Result<(), CliError> {
+    interrupt::install()?;
+    match &cli.command {
+        Command::Sky(args) => sky::run(args),
+        Command::Probe(args) => probe::run(args),
+        Command::Atmospheres(args) => atmosphere::list(args),
+    }
+}

@@ -26,8 +26,10 @@ pub struct Air<const N: usize> {
 pub struct Scatterer<const N: usize> {
     /// Its place among the constituents.
     pub constituent: usize,
-    /// Scattering at density 1, 1/m.
+    /// Scattering at density 1, 1/m; without what goes into the forward peak, where that counts as unscattered.
     pub scattering: Spectrum<N>,
+    /// Scattering at density 1, 1/m, forward peak included: what goes with the exact phase function.
+    pub whole_scattering: Spectrum<N>,
     /// Legendre moments of its phase function, `moments[l]`.
     pub moments: Vec<Spectrum<N>>,
     phase: PhaseFunction,
@@ -54,9 +56,11 @@ impl<const N: usize> Air<N> {
             .enumerate()
             .map(|(constituent, c)| {
                 let by_lane = wavelengths_nm.map(|nm| c.phase.legendre_moments(l_max + 2, nm));
+                let scattering = sample(&|nm| c.scattering_per_m.at(nm));
                 Scatterer {
                     constituent,
-                    scattering: sample(&|nm| c.scattering_per_m.at(nm)),
+                    scattering,
+                    whole_scattering: scattering,
                     moments: (0..=l_max + 1)
                         .map(|l| Spectrum::from_fn(|lane| by_lane[lane][l] as f32))
                         .collect(),
@@ -77,8 +81,7 @@ impl<const N: usize> Air<N> {
 
     /// The same air with the forward peaks of its phase functions counted as no scattering at all (the delta-M method:
     /// Wiscombe, J. Atmos. Sci. 34, 1408, 1977): with `f` the moment of degree `l_max + 1`, scattering shrinks by
-    /// `1 - f` and the moments become `(chi_l - f) / (1 - f)`. What is left of a phase function is well described
-    /// by its moments up to `l_max`.
+    /// `1 - f` and the moments become `(chi_l - f) / (1 - f)`: small beyond degree `l_max`.
     pub fn without_forward_peaks(&self, l_max: usize) -> Self {
         let mut air = self.clone();
         for s in &mut air.scatterers {
@@ -87,7 +90,6 @@ impl<const N: usize> Air<N> {
             let removed = s.scattering * peak;
             air.extinction[s.constituent] -= removed;
             s.scattering -= removed;
-            s.moments.truncate(l_max + 1);
             for moment in &mut s.moments {
                 *moment = (*moment - peak) / rest;
             }

@@ -113,7 +113,12 @@ impl<const N: usize> Solved<N> {
     ) -> Box<dyn Block> {
         let lanes = wavelengths_nm.len();
         let padded = std::array::from_fn(|lane| wavelengths_nm[lane.min(lanes - 1)]);
-        let air = Air::<N>::new(atmosphere, shell.clone(), padded, settings.orders.degree);
+        let air = Air::<N>::new(
+            atmosphere,
+            shell.clone(),
+            padded,
+            settings.orders.peak_degree,
+        );
         let diffuse =
             (settings.scattering == Scattering::All && !air.scatterers.is_empty()).then(|| {
                 let zeniths = settings
@@ -147,8 +152,8 @@ impl<const N: usize> Block for Solved<N> {
         let light = self.tracer().trace(ray, limit_m);
         BlockLight {
             transmittance: self.used(&light.transmittance),
-            single: self.used(&light.single(&self.air, ray.nu)),
-            multiple: self.used(&light.multiple(&self.air, ray.nu)),
+            single: self.used(&light.single),
+            multiple: self.used(&light.multiple),
             ground: self.used(&light.ground),
             meets_ground: light.meets_ground,
         }
@@ -229,38 +234,39 @@ impl<const N: usize> Solved<N> {
             unphased: Vec::new(),
             rest: vec![Spectrum::ZERO; rays],
         };
-        let mut tracer = self.tracer();
         let grid = diffuse.map(|d| &d.field.grid);
         let degree = diffuse.map_or(0, |d| d.field.basis.degree());
-        let path = Path::new(air, grid, &tracer.marcher, row.start, degree);
+        // The air that dims light on its way: see `trace`.
+        let dimming = diffuse.map_or(air, |d| &d.air);
+        let path = Path::new(dimming, grid, &Tracer::marcher(air), row.start, degree);
         if path.is_lit(air, &row.fan) {
-            let sun_air = diffuse.map_or(air, |d| &d.air);
-            path.carry_sunlight(air, sun_air, &row.fan, &mut light.unphased);
-            if let Some(Diffuse { field, .. }) = diffuse {
-                path.carry_scattered(
-                    field,
-                    &field.basis,
-                    &row.fan,
-                    &mut Scratch::default(),
-                    &mut light.rest,
-                );
+            path.carry_sunlight(dimming, &row.fan, &mut light.unphased);
+            for (s, sums) in air
+                .scatterers
+                .iter()
+                .zip(light.unphased.chunks_exact_mut(rays))
+            {
+                for sum in sums {
+                    *sum *= s.whole_scattering;
+                }
             }
-            path.carry_ground(
-                air,
-                &row.fan,
-                |mu_sun| ground_irradiance(air, diffuse, mu_sun),
-                &mut light.rest,
-            );
+            if let Some(Diffuse { field, .. }) = diffuse {
+                let scratch = &mut Scratch::default();
+                path.carry_scattered(field, &field.basis, &row.fan, scratch, &mut light.rest);
+            }
+            let irradiance = |mu_sun| ground_irradiance(air, diffuse, mu_sun);
+            path.carry_ground(air, &row.fan, irradiance, &mut light.rest);
         } else {
             // The planet's shadow ends somewhere else on each ray.
+            let mut tracer = self.tracer();
             light
                 .unphased
                 .resize(air.scatterers.len() * rays, Spectrum::ZERO);
             for slot in 0..rays {
-                let one = tracer.trace(&row.fan.ray(row.start, slot), f64::INFINITY);
-                light.rest[slot] = one.diffuse + one.ground;
+                let one = tracer.arriving(&row.fan.ray(row.start, slot));
+                light.rest[slot] = one.rest;
                 for s in 0..air.scatterers.len() {
-                    light.unphased[s * rays + slot] = one.unphased[s] + one.unphased_forward[s];
+                    light.unphased[s * rays + slot] = one.unphased[s];
                 }
             }
         }

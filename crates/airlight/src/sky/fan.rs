@@ -170,16 +170,10 @@ impl<const N: usize> Path<N> {
         })
     }
 
-    /// Sunlight scattered once into each ray, before phase functions are applied: `[scatterer][ray]` into `out`. On its
-    /// way to where it is scattered it is dimmed by `sun_air`: `air`, or that without its forward peaks.
+    /// Sunlight scattered for the first time into each ray, per unit scattering coefficient and before phase functions
+    /// are applied: `[scatterer][ray]` into `out`.
     #[inline(always)]
-    pub fn carry_sunlight(
-        &self,
-        air: &Air<N>,
-        sun_air: &Air<N>,
-        fan: &Fan,
-        out: &mut Vec<Spectrum<N>>,
-    ) {
+    pub fn carry_sunlight(&self, air: &Air<N>, fan: &Fan, out: &mut Vec<Spectrum<N>>) {
         let shell = &air.shell;
         out.clear();
         out.resize(air.scatterers.len() * fan.len(), Spectrum::ZERO);
@@ -189,22 +183,17 @@ impl<const N: usize> Path<N> {
                 let mu_sun =
                     (self.radius_m * fan.mu_sun[slot] + node.t * fan.nu[slot]) / node.radius_m;
                 let depth = if mu_sun >= 0.0 {
-                    sun_air.optical_depth_f32(&columns.to_space_m(mu_sun as f32))
+                    air.optical_depth_f32(&columns.to_space_m(mu_sun as f32))
                 } else if in_shadow(node.radius_m, mu_sun, shell.ground_radius_m) {
                     continue;
                 } else {
-                    sun_air.optical_depth(&shell.columns_to_space_m(node.radius_m, mu_sun))
+                    air.optical_depth(&shell.columns_to_space_m(node.radius_m, mu_sun))
                 };
                 let arriving = node.weight * (Spectrum::ZERO - depth).exp();
                 for (place, s) in air.scatterers.iter().enumerate() {
                     let sum = &mut out[place * fan.len() + slot];
                     *sum = sum.scale_acc(arriving, node.densities[s.constituent] as f32);
                 }
-            }
-        }
-        for (s, row) in air.scatterers.iter().zip(out.chunks_exact_mut(fan.len())) {
-            for sum in row {
-                *sum *= s.scattering;
             }
         }
     }

@@ -23,6 +23,10 @@ use std::f64::consts::PI;
 pub struct OrderSettings {
     /// Degree of the light's angular moments.
     pub degree: usize,
+    /// Degree (at least `degree`) beyond which a phase function's moments count as a forward peak, and what they scatter
+    /// as unscattered: the higher, the better the light just around the sun; the lower, the calmer the rest of the sky
+    /// where the air is thick with forward-scattering dust.
+    pub peak_degree: usize,
     /// Degree (at most `degree`) of the moments that are scattered again while the orders are solved; the light
     /// that is finally looked at keeps all.
     pub rescattered_degree: usize,
@@ -62,7 +66,7 @@ pub fn solve<const N: usize>(
     grid: FieldGrid,
     settings: &OrderSettings,
 ) -> Diffuse<N> {
-    let air = real_air.without_forward_peaks(settings.degree);
+    let air = real_air.without_forward_peaks(settings.peak_degree);
     let basis = Harmonics::new(settings.degree);
     let mut sum = Transport::new(&air, &grid, &basis, 0, &settings.first).first_order();
     let transport = Transport::new(
@@ -226,7 +230,7 @@ impl<'a, const N: usize> Transport<'a, N> {
         self.gather(
             #[inline(always)]
             |path, fan, work| {
-                path.carry_sunlight(air, air, fan, &mut work.unphased);
+                path.carry_sunlight(air, fan, &mut work.unphased);
                 let mut p = [0.0; Harmonics::MAX_DEGREE + 1];
                 let p = &mut p[..=self.basis.degree()];
                 for (slot, light) in work.light.iter_mut().enumerate() {
@@ -234,7 +238,7 @@ impl<'a, const N: usize> Transport<'a, N> {
                     for (place, s) in air.scatterers.iter().enumerate() {
                         *light = light.mul_acc(
                             work.unphased[place * fan.len() + slot],
-                            s.truncated_phase(p),
+                            s.scattering * s.truncated_phase(p),
                         );
                     }
                 }

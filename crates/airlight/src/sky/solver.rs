@@ -42,6 +42,7 @@ impl Default for SkySettings {
             altitudes: 20,
             orders: OrderSettings {
                 degree: 8,
+                peak_degree: 10,
                 rescattered_degree: 4,
                 first: Directions {
                     zenith_nodes: [7, 5, 8],

@@ -1,11 +1,24 @@
-//! Light along one line of sight: exact single scattering, the solved field for all higher orders, the ground.
+//! Light along one line of sight.
+//!
+//! Sunlight scattered for the first time is followed with the exact phase functions, everything else comes from the
+//! solved field. As in the field, what goes into a forward peak counts as not scattered at all (delta-M), so all light
+//! on its way to the eye is dimmed by the air without forward peaks, transmittance `T'`; the correction of the first
+//! scattering to the exact phase function is that of Nakajima & Tanaka (J. Quant. Spectrosc. Radiat. Transfer 40, 51,
+//! 1988, their TMS). A background with detail of its own is dimmed by the real transmittance `T`: over a stretch that
+//! ends where the light `L'` arrives from behind, the path radiance is
+//!
+//! ```text
+//! S = integral of T' J' + (T' - T) L'
+//! ```
+//!
+//! which composes exactly: splitting the stretch does not change it.
 
 use super::air::Air;
 use super::harmonics::Harmonics;
-use super::march::Marcher;
+use super::march::{Marcher, Node};
 use super::orders::Diffuse;
 use super::ray::Ray;
-use super::shell::{MAX_CONSTITUENTS, PerConstituent};
+use super::shell::MAX_CONSTITUENTS;
 use crate::spectrum::Spectrum;
 use std::ops::ControlFlow;
 
@@ -14,55 +27,34 @@ use std::ops::ControlFlow;
 pub struct Light<const N: usize> {
     /// Transmittance to the end of the line.
     pub transmittance: Spectrum<N>,
-    /// Sunlight scattered once, by scatterer and before its phase function is applied (no unit).
-    pub unphased: [Spectrum<N>; MAX_CONSTITUENTS],
-    /// The same for sunlight that forward peaks have scattered before, still going the sun's way.
-    pub unphased_forward: [Spectrum<N>; MAX_CONSTITUENTS],
-    /// Other light scattered or reflected before, scattered into the line of sight.
-    pub diffuse: Spectrum<N>,
+    /// Sunlight scattered once.
+    pub single: Spectrum<N>,
+    /// Light scattered or reflected more than once, its last time on the way.
+    pub multiple: Spectrum<N>,
     /// What of the ground's own radiance arrives, where the line ends on the ground.
     pub ground: Spectrum<N>,
     /// Whether the line ends on the ground.
     pub meets_ground: bool,
 }
 
-impl<const N: usize> Light<N> {
-    const NOTHING: Self = Self {
-        transmittance: Spectrum::ONE,
-        unphased: [Spectrum::ZERO; MAX_CONSTITUENTS],
-        unphased_forward: [Spectrum::ZERO; MAX_CONSTITUENTS],
-        diffuse: Spectrum::ZERO,
-        ground: Spectrum::ZERO,
-        meets_ground: false,
-    };
-
-    /// Sunlight scattered once, with the phase functions at the scattering angle whose cosine is `nu`.
-    pub fn single(&self, air: &Air<N>, nu: f64) -> Spectrum<N> {
-        phased(air, &self.unphased, nu)
-    }
-
-    /// Light scattered or reflected more than once, its last time on the way.
-    pub fn multiple(&self, air: &Air<N>, nu: f64) -> Spectrum<N> {
-        self.diffuse + phased(air, &self.unphased_forward, nu)
-    }
-}
-
-fn phased<const N: usize>(air: &Air<N>, unphased: &[Spectrum<N>], nu: f64) -> Spectrum<N> {
-    let mut sum = Spectrum::ZERO;
-    for (s, unphased) in air.scatterers.iter().zip(unphased) {
-        sum = sum.mul_acc(*unphased, s.phase(air, nu));
-    }
-    sum
+/// All light that arrives along a line of sight without end, per unit solar irradiance (1/sr).
+#[derive(Clone, Copy, Debug)]
+pub struct Arriving<const N: usize> {
+    /// Sunlight, by the scatterer that sent it here, before its phase function is applied (no unit).
+    pub unphased: [Spectrum<N>; MAX_CONSTITUENTS],
+    /// Light scattered or reflected before, and that of the ground.
+    pub rest: Spectrum<N>,
 }
 
 /// Follows lines of sight through air lit by the sun and by a solved field.
 pub struct Tracer<'a, const N: usize> {
-    /// The air.
-    pub air: &'a Air<N>,
+    /// The real air.
+    air: &'a Air<N>,
+    /// The air that dims light on its way: that of the field, or the real one.
+    dimming: &'a Air<N>,
     /// Multiply scattered light, if it is wanted.
-    pub diffuse: Option<&'a Diffuse<N>>,
-    /// How it walks.
-    pub marcher: Marcher,
+    diffuse: Option<&'a Diffuse<N>>,
+    marcher: Marcher,
     edges: Vec<f64>,
 }
 
@@ -71,59 +63,144 @@ impl<'a, const N: usize> Tracer<'a, N> {
     pub fn new(air: &'a Air<N>, diffuse: Option<&'a Diffuse<N>>) -> Self {
         Self {
             air,
+            dimming: diffuse.map_or(air, |d| &d.air),
             diffuse,
-            marcher: Marcher::new(4, 2.0, air.max_extinction_per_m()),
+            marcher: Self::marcher(air),
             edges: Vec::new(),
         }
     }
 
+    /// Steps of full accuracy.
+    pub fn marcher(air: &Air<N>) -> Marcher {
+        Marcher::new(4, 2.0, air.max_extinction_per_m())
+    }
+
     /// The light along `ray`, over at most `limit_m`.
-    #[inline(always)]
     pub fn trace(&mut self, ray: &Ray, limit_m: f64) -> Light<N> {
-        let (air, shell) = (self.air, &self.air.shell);
-        let mut light = Light::NOTHING;
-        let Some(stretch) = shell.stretch(ray, limit_m) else {
+        let (air, dimming) = (self.air, self.dimming);
+        let Some(stretch) = air.shell.stretch(ray, limit_m) else {
+            return Light {
+                transmittance: Spectrum::ONE,
+                single: Spectrum::ZERO,
+                multiple: Spectrum::ZERO,
+                ground: Spectrum::ZERO,
+                meets_ground: false,
+            };
+        };
+        let phases: Vec<_> = air
+            .scatterers
+            .iter()
+            .map(|s| s.phase(air, ray.nu))
+            .collect();
+        let (mut single, mut path) = (Spectrum::ZERO, Spectrum::ZERO);
+        let mut y = [0.0f32; Harmonics::MAX_COUNT];
+        let mut edges = std::mem::take(&mut self.edges);
+        let span = (stretch.start_m, stretch.end_m);
+        let columns = self
+            .marcher
+            .walk(&air.shell, ray, span, &mut edges, |nodes| {
+                let mut brightest = 0.0f32;
+                for node in nodes {
+                    let transmittance = dimming.transmittance(&node.columns_m);
+                    brightest = brightest.max(transmittance.max_element());
+                    let mut source = self.source(node, &mut y);
+                    if node.lit {
+                        let mut scattering = Spectrum::ZERO;
+                        for (s, phase) in air.scatterers.iter().zip(&phases) {
+                            let density = node.densities[s.constituent] as f32;
+                            scattering = scattering.scale_acc(s.whole_scattering * *phase, density);
+                        }
+                        let to_sun = air
+                            .shell
+                            .columns_to_space_m(node.here.radius_m, node.here.mu_sun);
+                        source = source.mul_acc(scattering, dimming.transmittance(&to_sun));
+                        let once = (Spectrum::ZERO
+                            - air.optical_depth(&node.columns_m)
+                            - air.optical_depth(&to_sun))
+                        .exp();
+                        single = single.mul_acc(scattering * node.dt as f32, once);
+                    }
+                    path = path.mul_acc(transmittance * node.dt as f32, source);
+                }
+                if brightest < 1e-7 {
+                    ControlFlow::Break(())
+                } else {
+                    ControlFlow::Continue(())
+                }
+            });
+        self.edges = edges;
+        let end = ray.advanced(stretch.end_m);
+        let ground = match stretch.meets_ground {
+            true => air.reflected(ground_irradiance(air, self.diffuse, end.mu_sun)),
+            false => Spectrum::ZERO,
+        };
+        let behind = match stretch.meets_ground {
+            true => ground,
+            false if self.diffuse.is_some() => self.radiance(&end),
+            false => Spectrum::ZERO,
+        };
+        let transmittance = air.transmittance(&columns);
+        // T' - T, without cancellation where both are close to 1.
+        let into_peaks = air.optical_depth(&columns) - dimming.optical_depth(&columns);
+        let difference = transmittance * into_peaks.map(f32::exp_m1);
+        path = path.mul_acc(difference, behind);
+        Light {
+            transmittance,
+            single,
+            multiple: match self.diffuse {
+                Some(_) => (path - single).max_scalar(0.0),
+                None => Spectrum::ZERO,
+            },
+            ground: transmittance * ground,
+            meets_ground: stretch.meets_ground,
+        }
+    }
+
+    /// All light along `ray` to its very end, summed.
+    fn radiance(&mut self, ray: &Ray) -> Spectrum<N> {
+        let arriving = self.arriving(ray);
+        let mut sum = arriving.rest;
+        for (s, unphased) in self.air.scatterers.iter().zip(&arriving.unphased) {
+            sum = sum.mul_acc(*unphased, s.phase(self.air, ray.nu));
+        }
+        sum
+    }
+
+    /// All light along `ray` to its very end.
+    #[inline(always)]
+    pub fn arriving(&mut self, ray: &Ray) -> Arriving<N> {
+        let (air, dimming) = (self.air, self.dimming);
+        let mut light = Arriving {
+            unphased: [Spectrum::ZERO; MAX_CONSTITUENTS],
+            rest: Spectrum::ZERO,
+        };
+        let Some(stretch) = air.shell.stretch(ray, f64::INFINITY) else {
             return light;
         };
         let mut y = [0.0f32; Harmonics::MAX_COUNT];
+        let mut edges = std::mem::take(&mut self.edges);
+        let span = (stretch.start_m, stretch.end_m);
         let columns = self.marcher.walk(
-            shell,
+            &air.shell,
             ray,
-            (stretch.start_m, stretch.end_m),
-            &mut self.edges,
+            span,
+            &mut edges,
             #[inline(always)]
             |nodes| {
                 let mut brightest = 0.0f32;
                 for node in nodes {
-                    let depth = air.optical_depth(&node.columns_m);
-                    let transmittance = (Spectrum::ZERO - depth).exp();
+                    let transmittance = dimming.transmittance(&node.columns_m);
                     brightest = brightest.max(transmittance.max_element());
+                    let weight = transmittance * node.dt as f32;
+                    light.rest = light.rest.mul_acc(weight, self.source(node, &mut y));
                     if node.lit {
-                        let to_sun = shell.columns_to_space_m(node.here.radius_m, node.here.mu_sun);
-                        let single = (Spectrum::ZERO - depth - air.optical_depth(&to_sun)).exp();
-                        add_scattered(air, &node.densities, node.dt, single, &mut light.unphased);
-                        if let Some(diffuse) = self.diffuse {
-                            let all =
-                                (Spectrum::ZERO - depth - diffuse.air.optical_depth(&to_sun)).exp();
-                            add_scattered(
-                                air,
-                                &node.densities,
-                                node.dt,
-                                all - single,
-                                &mut light.unphased_forward,
-                            );
+                        let to_sun = air
+                            .shell
+                            .columns_to_space_m(node.here.radius_m, node.here.mu_sun);
+                        let sunlight = weight * dimming.transmittance(&to_sun);
+                        for (s, sum) in air.scatterers.iter().zip(&mut light.unphased) {
+                            *sum = sum.scale_acc(sunlight, node.densities[s.constituent] as f32);
                         }
-                    }
-                    if let Some(Diffuse { field, .. }) = self.diffuse {
-                        field.basis.evaluate(
-                            node.here.mu as f32,
-                            node.here.toward_sun() as f32,
-                            &mut y,
-                        );
-                        let source = field.source(air, &node.here, &node.densities, &y);
-                        light.diffuse = light
-                            .diffuse
-                            .mul_acc(transmittance * node.dt as f32, source);
                     }
                 }
                 if brightest < 1e-7 {
@@ -133,24 +210,30 @@ impl<'a, const N: usize> Tracer<'a, N> {
                 }
             },
         );
-        for (k, s) in air.scatterers.iter().enumerate() {
-            light.unphased[k] *= s.scattering;
-            light.unphased_forward[k] *= s.scattering;
+        self.edges = edges;
+        for (s, sum) in air.scatterers.iter().zip(&mut light.unphased) {
+            *sum *= s.whole_scattering;
         }
-        light.transmittance = air.transmittance(&columns);
-        light.meets_ground = stretch.meets_ground;
         if stretch.meets_ground {
-            light.ground =
-                light.transmittance * self.ground_radiance(ray.advanced(stretch.end_m).mu_sun);
+            let irradiance =
+                ground_irradiance(air, self.diffuse, ray.advanced(stretch.end_m).mu_sun);
+            light.rest = light
+                .rest
+                .mul_acc(dimming.transmittance(&columns), air.reflected(irradiance));
         }
         light
     }
 
-    /// Radiance of the ground where the sun's cosine is `mu_sun`, per unit solar irradiance.
+    /// Light of the field scattered into the line of sight at a node, per metre. `y` is scratch space.
     #[inline(always)]
-    pub fn ground_radiance(&self, mu_sun: f64) -> Spectrum<N> {
-        self.air
-            .reflected(ground_irradiance(self.air, self.diffuse, mu_sun))
+    fn source(&self, node: &Node, y: &mut [f32]) -> Spectrum<N> {
+        let Some(Diffuse { field, air }) = self.diffuse else {
+            return Spectrum::ZERO;
+        };
+        field
+            .basis
+            .evaluate(node.here.mu as f32, node.here.toward_sun() as f32, y);
+        field.source(air, &node.here, &node.densities, y)
     }
 }
 
@@ -166,20 +249,6 @@ pub fn ground_irradiance<const N: usize>(
             diffuse.field.ground_irradiance(mu_sun) + sun_on_ground(&diffuse.air, mu_sun)
         }
         None => sun_on_ground(air, mu_sun),
-    }
-}
-
-/// Adds what is scattered of the light `arriving` at a node, per unit scattering coefficient.
-#[inline(always)]
-fn add_scattered<const N: usize>(
-    air: &Air<N>,
-    densities: &PerConstituent,
-    dt: f64,
-    arriving: Spectrum<N>,
-    sums: &mut [Spectrum<N>],
-) {
-    for (s, sum) in air.scatterers.iter().zip(sums) {
-        *sum = sum.scale_acc(arriving, (densities[s.constituent] * dt) as f32);
     }
 }
 

@@ -161,38 +161,59 @@ impl<'a> View<'a> {
     /// Irradiance of the sun's disc on a surface that faces it, W m^-2 nm^-1: dimmed by the air strip by strip, and
     /// cut off by the horizon.
     pub fn sun_irradiance(&self) -> Vec<f32> {
-        let strips = 16;
         let radius = self.disc.angular_radius_rad;
-        // Horizontal strips of equal height; in each the mean of the darkened radiance goes by its length.
         let across = self.sun.cross(DVec3::Y);
         let up = if across.length() > 1e-9 {
             across.normalize().cross(self.sun).normalize()
         } else {
             DVec3::X
         };
+        // Where the horizon cuts the disc, measured up from its centre.
+        let ground_radius_m = self.sky.shell().ground_radius_m;
+        let horizon = -(ground_radius_m / self.radius_m()).min(1.0).acos();
+        let cut = (horizon - self.sun.y.clamp(-1.0, 1.0).asin()).clamp(-radius, radius);
         let mut sum = vec![0.0f64; self.sky.grid().len()];
-        let mut total = vec![0.0f64; sum.len()];
-        for strip in 0..strips {
-            let height = (2.0 * (f64::from(strip) + 0.5) / f64::from(strips) - 1.0) * radius;
+        for (height, light) in self.disc_strips(cut) {
             let direction = (self.sun + up * height.tan()).normalize();
             let transmittance = self.transmittance_to_space(direction);
-            let half_length = (radius * radius - height * height).sqrt();
-            for (lane, &nm) in self.sky.grid().wavelengths_nm().iter().enumerate() {
-                let mean = (0..8)
-                    .map(|k| {
-                        let along = (f64::from(k) + 0.5) / 8.0 * half_length;
-                        self.disc.radiance_per_irradiance(along.hypot(height), nm)
-                    })
-                    .sum::<f64>()
-                    * half_length;
-                total[lane] += mean;
-                sum[lane] += mean * f64::from(transmittance[lane]);
+            for ((sum, light), t) in sum.iter_mut().zip(&light).zip(&transmittance) {
+                *sum += light * f64::from(*t);
             }
+        }
+        let mut total = vec![0.0f64; sum.len()];
+        for (_, light) in self.disc_strips(-radius) {
+            total.iter_mut().zip(&light).for_each(|(t, l)| *t += l);
         }
         self.solar_irradiance()
             .iter()
             .zip(sum.iter().zip(&total))
             .map(|(e, (s, t))| (f64::from(*e) * s / t) as f32)
+            .collect()
+    }
+
+    /// Horizontal strips of the disc from `lowest` (rad, up from its centre) to its upper limb: the height of each, and
+    /// its light at each wavelength before the air dims it, all to one scale.
+    fn disc_strips(&self, lowest: f64) -> Vec<(f64, Vec<f64>)> {
+        const STRIPS: u32 = 24;
+        const POINTS: u32 = 8;
+        let radius = self.disc.angular_radius_rad;
+        let step = (radius - lowest) / f64::from(STRIPS);
+        (0..STRIPS)
+            .map(|strip| {
+                let height = lowest + (f64::from(strip) + 0.5) * step;
+                let half_length = (radius * radius - height * height).max(0.0).sqrt();
+                let light = |&nm: &f64| {
+                    let mean = (0..POINTS).map(|k| {
+                        let along = (f64::from(k) + 0.5) / f64::from(POINTS) * half_length;
+                        self.disc.radiance_per_irradiance(along.hypot(height), nm)
+                    });
+                    mean.sum::<f64>() * half_length * step
+                };
+                (
+                    height,
+                    self.sky.grid().wavelengths_nm().iter().map(light).collect(),
+                )
+            })
             .collect()
     }
 

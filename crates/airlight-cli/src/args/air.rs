@@ -1,0 +1,49 @@
+//! Options that say what the air is and how its light is solved for.
+
+use crate::{atmosphere, parse};
+use clap::{Args, ValueEnum};
+
+/// Which light is computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ScatteringArg {
+    /// All orders of scattering and reflection.
+    All,
+    /// Sunlight scattered once, and the ground lit by the sun alone.
+    Single,
+}
+
+/// What the air is and how its light is solved for.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Air")]
+pub struct AirArgs {
+    /// The atmosphere: a name (see --help or `airlight atmospheres`) or a TOML file
+    #[arg(long, value_name = "NAME|FILE.toml", default_value = "average", long_help = atmosphere::option_help())]
+    pub atmosphere: String,
+    /// Optical depth of the haze (aerosol) at 550 nm: 0.05 clear, 0.12 average, 0.35 hazy
+    #[arg(long, value_name = "DEPTH", value_parser = parse::not_negative, group = "haze")]
+    pub aod_550: Option<f64>,
+    /// Haze as turbidity at 550 nm: optical depth of air and haze over that of air; 1 is pure air
+    #[arg(long, value_name = "RATIO", value_parser = parse::positive, group = "haze")]
+    pub turbidity: Option<f64>,
+    /// Haze as visibility at the ground, m: the distance at which 2 % of contrast is left at 550 nm
+    #[arg(long, value_name = "M", value_parser = parse::positive, group = "haze")]
+    pub visibility_m: Option<f64>,
+    /// Ozone column, Dobson units (the Earth's atmospheres by default: 300)
+    #[arg(long, value_name = "DU", value_parser = parse::not_negative)]
+    pub ozone_du: Option<f64>,
+    /// Albedo of the ground, 0 to 1, the same at all wavelengths
+    #[arg(long, value_name = "ALBEDO", value_parser = parse::fraction)]
+    pub ground_albedo: Option<f64>,
+    /// Altitude of the ground above sea level, m [default: 0, or --altitude-m where that is lower]
+    #[arg(long, value_name = "M", value_parser = parse::altitude_m)]
+    pub ground_altitude_m: Option<f64>,
+    /// Wavelengths to compute: rgb (3), fast (8), standard (16), fine (95), 1nm (471), or a list in nm: 440,550,680
+    #[arg(long, value_name = "GRID|LIST", default_value = "standard")]
+    pub wavelengths: String,
+    /// Which light is computed
+    #[arg(long, value_enum, default_value_t = ScatteringArg::All)]
+    pub scattering: ScatteringArg,
+    /// Threads to compute with [default: one for each processor]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
+    pub threads: Option<u32>,
+}

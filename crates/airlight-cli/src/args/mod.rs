@@ -1,0 +1,113 @@
+//! Every option of every command.
+
+mod air;
+mod picture;
+mod place;
+mod probe;
+
+pub use air::{AirArgs, ScatteringArg};
+pub use picture::{
+    ColorSpaceArg, CompressionArg, PictureArgs, PrecisionArg, ProjectionArg, SunDiscArg, ToneArg,
+};
+pub use place::PlaceArgs;
+pub use probe::{FormatArg, ProbeArgs};
+
+use clap::{Args, Parser, Subcommand};
+use std::path::PathBuf;
+
+/// The colour of the sky, computed: spectral, multiply scattered, in physical units.
+#[derive(Debug, Parser)]
+#[command(
+    name = "airlight",
+    version,
+    about,
+    subcommand_required = true,
+    arg_required_else_help = true
+)]
+#[command(max_term_width = 110, after_help = EXIT_CODES)]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+const EXIT_CODES: &str = "\
+Angles are in degrees: azimuth clockwise from north, elevation up from the horizon.
+Exit codes: 0 done, 1 failed, 2 asked for something that makes no sense, 130 stopped by Ctrl-C.
+
+Examples:
+  airlight sky --at 48.8584,2.2945 --when 2026-06-21T21:15:00+02:00 -o sky.exr
+  airlight probe --sun-elevation 30 --view 180,45
+  airlight atmospheres";
+
+/// What to do.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Draw the sky: whole sphere, cube faces, fisheye or camera; as EXR, HDR, PNG or JPEG.
+    Sky(Box<SkyArgs>),
+    /// Tell the spectral radiance of the sky along given directions, and the light of sun and sky, in numbers.
+    Probe(Box<ProbeArgs>),
+    /// List the atmospheres that can be asked for by name, or tell what one is made of.
+    Atmospheres(AtmospheresArgs),
+}
+
+/// Options of `airlight atmospheres`.
+#[derive(Debug, Args)]
+pub struct AtmospheresArgs {
+    /// An atmosphere to describe: its name, or a TOML file
+    #[arg(value_name = "NAME|FILE.toml")]
+    pub atmosphere: Option<String>,
+}
+
+/// Options of `airlight sky`.
+#[derive(Debug, Args)]
+#[command(allow_negative_numbers = true, after_help = SKY_EXAMPLES)]
+pub struct SkyArgs {
+    /// File to write; its ending says the format: .exr, .hdr, .png, .jpg, or .spectral.exr
+    #[arg(short, long, value_name = "FILE", help_heading = "Files")]
+    pub output: Option<PathBuf>,
+    /// Show the picture in the terminal as well (the default where there is no --output)
+    #[arg(long, help_heading = "Files")]
+    pub preview: bool,
+    /// Say nothing on standard output
+    #[arg(short, long, help_heading = "Files")]
+    pub quiet: bool,
+    #[command(flatten)]
+    pub place: PlaceArgs,
+    #[command(flatten)]
+    pub sequence: SequenceArgs,
+    #[command(flatten)]
+    pub picture: PictureArgs,
+    #[command(flatten)]
+    pub air: AirArgs,
+}
+
+/// Many pictures over a span of time.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Sequences")]
+pub struct SequenceArgs {
+    /// Draw a sequence from --when until this time, or for a span of time after it: +6h
+    #[arg(long, value_name = "TIME|+SPAN", requires = "every")]
+    pub until: Option<String>,
+    /// Time from frame to frame: 10m, 1h30m, 45s
+    #[arg(long, value_name = "SPAN", requires = "until", value_parser = crate::parse::span_s)]
+    pub every: Option<i64>,
+    /// Draw frames anew whose file is there already; else those are taken as done
+    #[arg(long, requires = "until")]
+    pub overwrite: bool,
+}
+
+const SKY_EXAMPLES: &str = "\
+Examples:
+  The sky over Paris as a map of the whole sphere, linear light in cd/m^2:
+    airlight sky --at 48.8584,2.2945 --when 2026-06-21T21:15:00+02:00 -o sky.exr
+  A photograph of a low sun through haze:
+    airlight sky --sun-elevation 3 --aod-550 0.3 --projection perspective --size 1920x1080 -o dusk.png
+  A dome for rendering, with the sun in a file of its own (dome.sun.exr):
+    airlight sky --sun-elevation 40 --sun-disc separate --size 4096x2048 -o dome.exr
+  A day, a frame every ten minutes (day.0001.png, ...); started again it goes on where it stopped:
+    airlight sky --at 64.1,-21.9 --when 2026-06-21T00:00:00Z --until +24h --every 10m \\
+      --projection fisheye -o day.png
+  From a height of 400 km, from Mars:
+    airlight sky --sun-elevation 20 --altitude-m 400e3 --projection perspective --camera-elevation -15 -o iss.png
+    airlight sky --atmosphere mars --sun-elevation 5 --projection perspective -o mars.png";

@@ -1,0 +1,61 @@
+//! Options of `airlight probe`.
+
+use super::{AirArgs, ColorSpaceArg, PlaceArgs};
+use crate::parse::{self, AzEl};
+use clap::{Args, ValueEnum};
+use std::path::PathBuf;
+
+/// How numbers are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum FormatArg {
+    /// One JSON object, format airlight-probe/1.
+    Json,
+    /// A line for each view and wavelength, with a header.
+    Csv,
+    /// A text to read.
+    Table,
+}
+
+/// Options of `airlight probe`.
+#[derive(Debug, Args)]
+#[command(allow_negative_numbers = true, after_help = EXAMPLES)]
+pub struct ProbeArgs {
+    /// A direction to look in: azimuth,elevation in degrees; may be given many times
+    #[arg(long, value_name = "AZ,EL", value_parser = parse::az_el, allow_hyphen_values = true)]
+    #[arg(help_heading = "Directions")]
+    pub view: Vec<AzEl>,
+    /// CSV file of directions: a header with azimuth_deg, elevation_deg and, if wanted, distance_m; - reads standard
+    /// input
+    #[arg(long, value_name = "FILE.csv", help_heading = "Directions")]
+    pub views: Option<PathBuf>,
+    /// Look no farther than this, m: the air between the eye and a thing at that distance [default: to the ground or
+    /// to space]
+    #[arg(long, value_name = "M", value_parser = parse::length_m, help_heading = "Directions")]
+    pub distance_m: Option<f64>,
+    /// How the numbers are written
+    #[arg(long, value_enum, default_value_t = FormatArg::Table, help_heading = "Output")]
+    pub format: FormatArg,
+    /// File to write instead of standard output
+    #[arg(short, long, value_name = "FILE", help_heading = "Output")]
+    pub output: Option<PathBuf>,
+    /// Colour space of the RGB values
+    #[arg(long, value_enum, value_name = "SPACE", default_value_t = ColorSpaceArg::Srgb, help_heading = "Output")]
+    pub color_space: ColorSpaceArg,
+    #[command(flatten)]
+    pub place: PlaceArgs,
+    #[command(flatten)]
+    pub air: AirArgs,
+}
+
+const EXAMPLES: &str = "\
+Radiances leave out the sun's own disc; its light is told apart from the sky's.
+
+Examples:
+  The zenith and a point near the horizon, to read:
+    airlight probe --sun-elevation 30 --view 0,90 --view 90,2
+  Every 5 nm over Paris, for a program:
+    airlight probe --at 48.8584,2.2945 --when 2026-06-21T19:15:00Z --view 180,45 --wavelengths fine --format json
+  The haze before a mountain 20 km away:
+    airlight probe --sun-elevation 20 --view 90,1 --distance-m 20e3 --visibility-m 40e3
+  Illuminance of sun and sky alone:
+    airlight probe --sun-elevation 5 --format json";

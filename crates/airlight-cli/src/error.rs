@@ -1,0 +1,115 @@
+//! Why a command ends before its time, and with which exit code.
+
+use airlight::light::ephemeris::EphemerisError;
+use airlight::medium::{AerosolError, AtmosphereError, UnknownPreset};
+use airlight::sky::SkyError;
+use airlight::spectrum::GridError;
+use airlight_render::RenderError;
+use std::io;
+
+/// Why a command ends before its time.
+#[derive(Debug, PartialEq, Eq)]
+pub enum CliError {
+    /// What was asked for makes no sense; the sentence says what would.
+    Usage(String),
+    /// It made sense and failed.
+    Failure(String),
+    /// The user stopped it.
+    Interrupted,
+    /// Whoever read standard output has gone: no failure of this program's.
+    ReaderGone,
+}
+
+impl CliError {
+    /// What was asked for makes no sense.
+    pub fn usage(sentence: impl Into<String>) -> Self {
+        Self::Usage(sentence.into())
+    }
+
+    /// It failed.
+    pub fn failure(sentence: impl Into<String>) -> Self {
+        Self::Failure(sentence.into())
+    }
+
+    /// What to say on standard error, if anything.
+    pub fn sentence(&self) -> Option<&str> {
+        match self {
+            Self::Usage(sentence) | Self::Failure(sentence) => Some(sentence),
+            Self::Interrupted => Some("stopped; no unfinished file was left behind"),
+            Self::ReaderGone => None,
+        }
+    }
+
+    /// 2 for bad use, 1 for failure, 130 after Ctrl-C (as shells have it).
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Usage(_) => 2,
+            Self::Failure(_) => 1,
+            Self::Interrupted => 130,
+            Self::ReaderGone => 0,
+        }
+    }
+
+    /// What standard output said.
+    pub fn from_stdout(error: &io::Error) -> Self {
+        match error.kind() {
+            io::ErrorKind::BrokenPipe => Self::ReaderGone,
+            _ => Self::failure(format!("cannot write to standard output: {error}")),
+        }
+    }
+}
+
+impl From<RenderError> for CliError {
+    fn from(error: RenderError) -> Self {
+        match error {
+            RenderError::Cancelled => Self::Interrupted,
+            RenderError::Size { .. }
+            | RenderError::Setting { .. }
+            | RenderError::UnknownFormat { .. } => Self::usage(error.to_string()),
+            _ => Self::failure(error.to_string()),
+        }
+    }
+}
+
+/// These are refusals of what was asked for.
+macro_rules! refusals {
+    ($($kind:ty),*) => {$(
+        impl From<$kind> for CliError {
+            fn from(error: $kind) -> Self {
+                Self::usage(error.to_string())
+            }
+        }
+    )*};
+}
+
+refusals!(
+    AerosolError,
+    AtmosphereError,
+    EphemerisError,
+    GridError,
+    SkyError,
+    UnknownPreset
+);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn codes_tell_bad_use_from_failure() {
+        let size = RenderError::Size {
+            width: 0,
+            height: 0,
+        };
+        assert_eq!(CliError::from(size).exit_code(), 2);
+        let missing = RenderError::NoFolder {
+            path: "a/b".into(),
+            folder: "a".into(),
+        };
+        assert_eq!(CliError::from(missing).exit_code(), 1);
+        assert_eq!(CliError::from(RenderError::Cancelled).exit_code(), 130);
+        let pipe = io::Error::from(io::ErrorKind::BrokenPipe);
+        assert_eq!(CliError::from_stdout(&pipe), CliError::ReaderGone);
+        assert_eq!(CliError::ReaderGone.exit_code(), 0);
+    }
+}

@@ -1,0 +1,253 @@
+//! Values on the command line: each parser's error says what would be right.
+
+use std::str::FromStr;
+
+/// Two numbers of degrees.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LatLon {
+    /// Degrees north of the equator.
+    pub latitude_deg: f64,
+    /// Degrees east of Greenwich.
+    pub longitude_deg: f64,
+}
+
+/// A view direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AzEl {
+    /// Degrees clockwise from north.
+    pub azimuth_deg: f64,
+    /// Degrees above the horizon.
+    pub elevation_deg: f64,
+}
+
+/// Width and height in pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PixelSize {
+    /// Pixels in a row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+}
+
+/// A finite number.
+pub fn number(text: &str) -> Result<f64, String> {
+    within(text, "a number", f64::is_finite)
+}
+
+/// A number of at least 0.
+pub fn not_negative(text: &str) -> Result<f64, String> {
+    within(text, "a number, 0 or above", |v| v.is_finite() && v >= 0.0)
+}
+
+/// A number above 0.
+pub fn positive(text: &str) -> Result<f64, String> {
+    within(text, "a number above 0", |v| v.is_finite() && v > 0.0)
+}
+
+/// A number from 0 to 1.
+pub fn fraction(text: &str) -> Result<f64, String> {
+    within(text, "a number from 0 to 1", |v| (0.0..=1.0).contains(&v))
+}
+
+/// An elevation in degrees.
+pub fn elevation_deg(text: &str) -> Result<f64, String> {
+    within(text, "a number of degrees from -90 to 90", |v| {
+        (-90.0..=90.0).contains(&v)
+    })
+}
+
+/// An altitude in metres: from the deepest sea to far out in space.
+pub fn altitude_m(text: &str) -> Result<f64, String> {
+    within(text, "a number of metres from -12000 to 1e9", |v| {
+        (-12e3..=1e9).contains(&v)
+    })
+}
+
+/// A distance or a height in metres.
+pub fn length_m(text: &str) -> Result<f64, String> {
+    within(text, "a number of metres above 0 and at most 1e9", |v| {
+        v > 0.0 && v <= 1e9
+    })
+}
+
+fn within(text: &str, right: &str, accepts: impl Fn(f64) -> bool) -> Result<f64, String> {
+    match f64::from_str(text.trim()) {
+        Ok(value) if accepts(value) => Ok(value),
+        _ => Err(format!("must be {right}")),
+    }
+}
+
+fn pair(text: &str) -> Option<(f64, f64)> {
+    let (a, b) = text.split_once(',')?;
+    Some((number(a).ok()?, number(b).ok()?))
+}
+
+/// `LAT,LON` in degrees.
+pub fn lat_lon(text: &str) -> Result<LatLon, String> {
+    let (latitude_deg, longitude_deg) = pair(text)
+        .ok_or("must be latitude,longitude in degrees, north and east positive: 48.8584,2.2945")?;
+    if !(-90.0..=90.0).contains(&latitude_deg) {
+        return Err(format!(
+            "the latitude must be from -90 to 90 degrees, got {latitude_deg}"
+        ));
+    }
+    if !(-180.0..=180.0).contains(&longitude_deg) {
+        return Err(format!(
+            "the longitude must be from -180 to 180 degrees, got {longitude_deg}"
+        ));
+    }
+    Ok(LatLon {
+        latitude_deg,
+        longitude_deg,
+    })
+}
+
+/// `AZ,EL` in degrees.
+pub fn az_el(text: &str) -> Result<AzEl, String> {
+    let (azimuth_deg, elevation_deg) = pair(text).ok_or(
+        "must be azimuth,elevation in degrees, clockwise from north and above the horizon: 180,45",
+    )?;
+    match (-90.0..=90.0).contains(&elevation_deg) {
+        true => Ok(AzEl {
+            azimuth_deg,
+            elevation_deg,
+        }),
+        false => Err(format!(
+            "the elevation must be from -90 to 90 degrees, got {elevation_deg}"
+        )),
+    }
+}
+
+/// `WIDTHxHEIGHT` in pixels.
+pub fn pixel_size(text: &str) -> Result<PixelSize, String> {
+    let right = "must be width x height in pixels, each from 1 to 65536: 2048x1024";
+    let (width, height) = text.split_once(['x', 'X']).ok_or(right)?;
+    let side = |text: &str| {
+        text.trim()
+            .parse::<u32>()
+            .ok()
+            .filter(|n| (1..=65536).contains(n))
+            .ok_or(right)
+    };
+    Ok(PixelSize {
+        width: side(width)?,
+        height: side(height)?,
+    })
+}
+
+/// A span of time such as `90s`, `10m`, `1h30m` or `2d`, in whole seconds above 0.
+pub fn span_s(text: &str) -> Result<i64, String> {
+    let right =
+        "must be a span of time above 0 in days, hours, minutes and whole seconds: 10m, 1h30m, 45s";
+    let mut total = 0i64;
+    let mut rest = text.trim();
+    while !rest.is_empty() {
+        let digits = rest.bytes().take_while(u8::is_ascii_digit).count();
+        let count: i64 = rest[..digits].parse().map_err(|_| right)?;
+        let mut after = rest[digits..].chars();
+        let unit = match after.next() {
+            Some('d') => 86_400,
+            Some('h') => 3_600,
+            Some('m') => 60,
+            Some('s') => 1,
+            _ => return Err(right.to_owned()),
+        };
+        total = count
+            .checked_mul(unit)
+            .and_then(|s| total.checked_add(s))
+            .ok_or(right)?;
+        rest = after.as_str();
+    }
+    match total > 0 {
+        true => Ok(total),
+        false => Err(right.to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_right_is_read() {
+        assert_eq!(
+            lat_lon("48.8584,2.2945"),
+            Ok(LatLon {
+                latitude_deg: 48.8584,
+                longitude_deg: 2.2945
+            })
+        );
+        assert_eq!(
+            lat_lon(" -33.9 , 151.2 "),
+            Ok(LatLon {
+                latitude_deg: -33.9,
+                longitude_deg: 151.2
+            })
+        );
+        assert_eq!(
+            az_el("-10,5"),
+            Ok(AzEl {
+                azimuth_deg: -10.0,
+                elevation_deg: 5.0
+            })
+        );
+        assert_eq!(
+            pixel_size("2048x1024"),
+            Ok(PixelSize {
+                width: 2048,
+                height: 1024
+            })
+        );
+        for (text, s) in [("10m", 600), ("1h30m", 5400), ("90s", 90), ("2d", 172_800)] {
+            assert_eq!(span_s(text), Ok(s));
+        }
+    }
+
+    #[test]
+    fn what_is_wrong_is_refused() {
+        for text in [
+            "", "1", "91,0", "0,181", "NaN,0", "0,inf", "1,2,3", "a,b", ",",
+        ] {
+            assert!(lat_lon(text).is_err(), "{text}");
+        }
+        for text in [
+            "",
+            "0x0",
+            "1x0",
+            "-1x5",
+            "5",
+            "65537x1",
+            "1x1x1",
+            "9999999999x2",
+            "ax1",
+        ] {
+            assert!(pixel_size(text).is_err(), "{text}");
+        }
+        for text in [
+            "",
+            "10",
+            "m",
+            "0s",
+            "-1m",
+            "1y",
+            "1h30",
+            "99999999999999999999s",
+            "9223372036854775807d",
+            "1é",
+        ] {
+            assert!(span_s(text).is_err(), "{text}");
+        }
+        for text in ["nan", "inf", "x", ""] {
+            assert!(
+                number(text).is_err() && positive(text).is_err() && altitude_m(text).is_err(),
+                "{text}"
+            );
+        }
+        assert!(
+            fraction("1.01").is_err()
+                && not_negative("-0.1").is_err()
+                && elevation_deg("90.1").is_err()
+        );
+        assert!(length_m("0").is_err() && az_el("0,91").is_err());
+    }
+}

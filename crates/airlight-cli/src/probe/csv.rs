@@ -1,0 +1,63 @@
+//! A probe's answer as CSV: a line for each view and wavelength, each of which stands by itself.
+
+use super::values::{Answer, ViewLight};
+use std::fmt::Write;
+
+/// Names of the columns, in order.
+const HEADER: &str = "view,azimuth_deg,elevation_deg,distance_m,meets_ground,sun_angle_deg,wavelength_nm,\
+    radiance_w_m2_sr_nm,radiance_single_w_m2_sr_nm,radiance_multiple_w_m2_sr_nm,radiance_ground_w_m2_sr_nm,transmittance,\
+    luminance_cd_m2,x_cd_m2,y_cd_m2,z_cd_m2,red_cd_m2,green_cd_m2,blue_cd_m2,\
+    sun_azimuth_deg,sun_elevation_deg,sun_irradiance_outside_w_m2_nm,sun_irradiance_normal_w_m2_nm,\
+    sun_irradiance_horizontal_w_m2_nm,sky_irradiance_horizontal_w_m2_nm,sun_illuminance_normal_lx,\
+    sun_illuminance_horizontal_lx,sky_illuminance_horizontal_lx\n";
+
+/// The whole text.
+pub fn text(answer: &Answer) -> String {
+    let mut text = HEADER.to_owned();
+    for (number, view) in (1..).zip(&answer.views) {
+        for lane in 0..answer.wavelengths_nm.len() {
+            line(&mut text, answer, number, view, lane);
+        }
+    }
+    text
+}
+
+fn line(text: &mut String, answer: &Answer, number: usize, view: &ViewLight, lane: usize) {
+    let (sun, sky) = (&answer.sun, &answer.sky);
+    let distance = view.distance_m.map_or(String::new(), |m| m.to_string());
+    let [x, y, z] = view.xyz_cd_m2;
+    let [r, g, b] = view.rgb_cd_m2;
+    // Writing to a string cannot fail.
+    let _ = write!(
+        text,
+        "{number},{},{},{distance},{},{},{},",
+        view.azimuth_deg,
+        view.elevation_deg,
+        view.meets_ground,
+        view.sun_angle_deg,
+        answer.wavelengths_nm[lane]
+    );
+    let _ = write!(
+        text,
+        "{},{},{},{},{},{},{x},{y},{z},{r},{g},{b},",
+        view.radiance_w_m2_sr_nm[lane],
+        view.radiance_single_w_m2_sr_nm[lane],
+        view.radiance_multiple_w_m2_sr_nm[lane],
+        view.radiance_ground_w_m2_sr_nm[lane],
+        view.transmittance[lane],
+        view.luminance_cd_m2
+    );
+    let _ = writeln!(
+        text,
+        "{},{},{},{},{},{},{},{},{}",
+        sun.azimuth_deg,
+        sun.elevation_deg,
+        sun.irradiance_outside_w_m2_nm[lane],
+        sun.irradiance_normal_w_m2_nm[lane],
+        sun.irradiance_horizontal_w_m2_nm[lane],
+        sky.irradiance_horizontal_w_m2_nm[lane],
+        sun.illuminance_normal_lx,
+        sun.illuminance_horizontal_lx,
+        sky.illuminance_horizontal_lx
+    );
+}

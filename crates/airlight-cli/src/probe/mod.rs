@@ -1,0 +1,59 @@
+//! `airlight probe`: the light along given directions, in numbers.
+//!
+//! [`views`] reads the directions, [`values`] holds what is told of them; [`json`], [`csv`] and [`table`] write it.
+
+mod csv;
+mod json;
+mod table;
+mod values;
+mod views;
+
+use crate::args::{FormatArg, ProbeArgs};
+use crate::error::CliError;
+use crate::interrupt;
+use crate::report;
+use crate::scene::Scene;
+use airlight_render::output::AtomicFile;
+use std::io::Write;
+use std::path::Path;
+use values::Answer;
+
+/// Runs the command.
+///
+/// # Errors
+/// [`CliError`]: what was wrong with the options, or what failed.
+pub fn run(args: &ProbeArgs) -> Result<(), CliError> {
+    crate::scene::use_threads(args.air.threads)?;
+    let views = views::read(args)?;
+    if views.is_empty() && args.format == FormatArg::Csv {
+        return Err(CliError::usage(
+            "CSV has a line for each view: give --view AZ,EL or --views FILE.csv",
+        ));
+    }
+    let scene = Scene::new(&args.place, &args.air)?;
+    if let Some(path) = &args.output {
+        let _writing = interrupt::start_writing()?;
+        AtomicFile::create(path)?;
+    }
+    let sun = scene.sun.at(None)?;
+    let (sky, _) = scene.prepare(scene.near(&sun))?;
+    let answer = Answer::new(args, &scene, &sky, &sun, &views);
+    let text = match args.format {
+        FormatArg::Json => json::text(&answer)?,
+        FormatArg::Csv => csv::text(&answer),
+        FormatArg::Table => table::text(&answer),
+    };
+    match &args.output {
+        Some(path) => write(path, &text),
+        None => report::print(&text),
+    }
+}
+
+fn write(path: &Path, text: &str) -> Result<(), CliError> {
+    let _writing = interrupt::start_writing()?;
+    let file = AtomicFile::create(path)?;
+    file.file().write_all(text.as_bytes()).map_err(|error| {
+        CliError::failure(format!("cannot write `{}`: {error}", path.display()))
+    })?;
+    Ok(file.commit()?)
+}

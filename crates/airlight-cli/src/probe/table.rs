@@ -1,0 +1,99 @@
+//! A probe's answer as a text to read.
+
+use super::values::{Answer, ViewLight};
+use crate::report::short;
+use std::fmt::Write;
+
+/// The whole text.
+pub fn text(answer: &Answer) -> String {
+    let mut text = head(answer);
+    for view in &answer.views {
+        text.push('\n');
+        text.push_str(&one(answer, view));
+    }
+    text
+}
+
+fn head(answer: &Answer) -> String {
+    let (observer, sun) = (&answer.observer, &answer.sun);
+    let mut text = format!(
+        "air           {}, eye at {} m\n",
+        answer.atmosphere,
+        short(observer.altitude_m)
+    );
+    if let (Some(latitude), Some(longitude), Some(time)) = (
+        observer.latitude_deg,
+        observer.longitude_deg,
+        &observer.time_utc,
+    ) {
+        // Writing to a string cannot fail.
+        let _ = writeln!(
+            text,
+            "place, time   latitude {latitude}, longitude {longitude}, {time}"
+        );
+    }
+    let _ = writeln!(
+        text,
+        "sun           elevation {:.4} deg, azimuth {:.4} deg\nilluminance   sun {} lx facing it, {} lx on the \
+         horizontal; sky {} lx on the horizontal",
+        sun.elevation_deg,
+        sun.azimuth_deg,
+        short(sun.illuminance_normal_lx),
+        short(sun.illuminance_horizontal_lx),
+        short(answer.sky.illuminance_horizontal_lx)
+    );
+    if answer.views.is_empty() {
+        let columns = [
+            ("outside", &sun.irradiance_outside_w_m2_nm),
+            ("sun, facing", &sun.irradiance_normal_w_m2_nm),
+            ("sun, horiz.", &sun.irradiance_horizontal_w_m2_nm),
+            ("sky, horiz.", &answer.sky.irradiance_horizontal_w_m2_nm),
+        ];
+        text.push_str("\nirradiance, W m^-2 nm^-1\n");
+        lines(&mut text, &answer.wavelengths_nm, &columns);
+    }
+    text
+}
+
+fn one(answer: &Answer, view: &ViewLight) -> String {
+    let end = match (view.distance_m, view.meets_ground) {
+        (_, true) => "to the ground".to_owned(),
+        (Some(m), false) => format!("over {} m", short(m)),
+        (None, false) => "to space".to_owned(),
+    };
+    let [r, g, b] = view.rgb_cd_m2.map(short);
+    let [x, y, z] = view.xyz_cd_m2.map(short);
+    let mut text = format!(
+        "azimuth {} deg, elevation {} deg, {end}, {:.3} deg from the sun\nluminance {} cd/m^2; XYZ {x} {y} {z}; {} {r} {g} \
+         {b} cd/m^2\nradiance, W m^-2 sr^-1 nm^-1\n",
+        view.azimuth_deg,
+        view.elevation_deg,
+        view.sun_angle_deg,
+        short(view.luminance_cd_m2),
+        answer.color_space,
+    );
+    let columns = [
+        ("all", &view.radiance_w_m2_sr_nm),
+        ("single", &view.radiance_single_w_m2_sr_nm),
+        ("multiple", &view.radiance_multiple_w_m2_sr_nm),
+        ("ground", &view.radiance_ground_w_m2_sr_nm),
+        ("transmittance", &view.transmittance),
+    ];
+    lines(&mut text, &answer.wavelengths_nm, &columns);
+    text
+}
+
+fn lines(text: &mut String, wavelengths_nm: &[f64], columns: &[(&str, &Vec<f32>)]) {
+    let _ = write!(text, "{:>8}", "nm");
+    for (name, _) in columns {
+        let _ = write!(text, " {name:>13}");
+    }
+    text.push('\n');
+    for (lane, nm) in wavelengths_nm.iter().enumerate() {
+        let _ = write!(text, "{nm:>8}");
+        for (_, values) in columns {
+            let _ = write!(text, " {:>13}", short(f64::from(values[lane])));
+        }
+        text.push('\n');
+    }
+}

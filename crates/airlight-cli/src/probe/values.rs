@@ -1,0 +1,195 @@
+//! What a probe tells: the format `airlight-probe/1`, described in docs/src/probe.md.
+
+use super::views::AskedView;
+use crate::args::ProbeArgs;
+use crate::scene::{Scene, Sun};
+use crate::sky::{SOFTWARE, space_name, space_of};
+use airlight::axes;
+use airlight::sky::{LineOfSight, Sky, TableChannels, View};
+use airlight::spectrum::RgbSpace;
+use glam::DVec3;
+use rayon::prelude::*;
+use serde::Serialize;
+
+/// The whole answer.
+#[derive(Debug, Serialize)]
+pub struct Answer {
+    /// Name and version of the format.
+    pub format: &'static str,
+    /// Program and version.
+    pub program: &'static str,
+    /// Name of the atmosphere.
+    pub atmosphere: String,
+    /// `all` or `single`.
+    pub scattering: &'static str,
+    /// The RGB space.
+    pub color_space: &'static str,
+    /// Wavelengths of every list.
+    pub wavelengths_nm: Vec<f64>,
+    /// Where and when.
+    pub observer: Observer,
+    /// The sun and its light.
+    pub sun: SunLight,
+    /// The sky's light.
+    pub sky: SkyLight,
+    /// Each direction.
+    pub views: Vec<ViewLight>,
+}
+
+/// Where and when.
+#[derive(Debug, Serialize)]
+pub struct Observer {
+    /// Degrees north, where a place was given.
+    pub latitude_deg: Option<f64>,
+    /// Degrees east.
+    pub longitude_deg: Option<f64>,
+    /// Altitude of the eye above sea level.
+    pub altitude_m: f64,
+    /// Altitude of the ground.
+    pub ground_altitude_m: f64,
+    /// When, in UTC.
+    pub time_utc: Option<String>,
+}
+
+/// The sun and its light.
+#[derive(Debug, Serialize)]
+pub struct SunLight {
+    /// Degrees clockwise from north.
+    pub azimuth_deg: f64,
+    /// Degrees above the horizontal, as seen.
+    pub elevation_deg: f64,
+    /// The same without refraction.
+    pub geometric_elevation_deg: Option<f64>,
+    /// Distance over the planet's mean distance.
+    pub distance_ratio: f64,
+    /// Half the angle across the disc.
+    pub angular_radius_deg: f64,
+    /// Irradiance outside the air on a surface that faces the sun.
+    pub irradiance_outside_w_m2_nm: Vec<f32>,
+    /// Irradiance at the eye on a surface that faces the sun.
+    pub irradiance_normal_w_m2_nm: Vec<f32>,
+    /// Irradiance at the eye on the horizontal.
+    pub irradiance_horizontal_w_m2_nm: Vec<f32>,
+    /// Illuminance at the eye on a surface that faces the sun.
+    pub illuminance_normal_lx: f64,
+    /// Illuminance at the eye on the horizontal.
+    pub illuminance_horizontal_lx: f64,
+}
+
+/// The sky's light, the sun's disc left out.
+#[derive(Debug, Serialize)]
+pub struct SkyLight {
+    /// Irradiance at the eye on the horizontal.
+    pub irradiance_horizontal_w_m2_nm: Vec<f32>,
+    /// Illuminance at the eye on the horizontal.
+    pub illuminance_horizontal_lx: f64,
+}
+
+/// The light along one direction, the sun's disc left out.
+#[derive(Debug, Serialize)]
+pub struct ViewLight {
+    /// Degrees clockwise from north.
+    pub azimuth_deg: f64,
+    /// Degrees above the horizontal.
+    pub elevation_deg: f64,
+    /// How far was looked; nothing: to the ground or to space.
+    pub distance_m: Option<f64>,
+    /// Whether the line ends on the ground.
+    pub meets_ground: bool,
+    /// Angle from the sun's centre.
+    pub sun_angle_deg: f64,
+    /// All that arrives.
+    pub radiance_w_m2_sr_nm: Vec<f32>,
+    /// Of it, light scattered once on the way.
+    pub radiance_single_w_m2_sr_nm: Vec<f32>,
+    /// Light scattered or reflected more than once.
+    pub radiance_multiple_w_m2_sr_nm: Vec<f32>,
+    /// Light of the ground.
+    pub radiance_ground_w_m2_sr_nm: Vec<f32>,
+    /// Transmittance to the end of the line.
+    pub transmittance: Vec<f32>,
+    /// CIE 1931 XYZ.
+    pub xyz_cd_m2: [f64; 3],
+    /// Linear red, green and blue.
+    pub rgb_cd_m2: [f64; 3],
+    /// Luminance: Y.
+    pub luminance_cd_m2: f64,
+}
+
+impl Answer {
+    /// Computes all of it.
+    pub fn new(args: &ProbeArgs, scene: &Scene, sky: &Sky, sun: &Sun, views: &[AskedView]) -> Self {
+        let view = scene.view(sky, sun);
+        let space = space_of(args.color_space);
+        let place = scene.sun.place();
+        Self {
+            format: "airlight-probe/1",
+            program: SOFTWARE,
+            atmosphere: scene.atmosphere.name.clone(),
+            scattering: scene.scattering_name(),
+            color_space: space_name(space),
+            wavelengths_nm: sky.grid().wavelengths_nm().to_vec(),
+            observer: Observer {
+                latitude_deg: place.map(|place| place.latitude_deg),
+                longitude_deg: place.map(|place| place.longitude_deg),
+                altitude_m: scene.eye_altitude_m,
+                ground_altitude_m: scene.atmosphere.planet.ground_altitude_m,
+                time_utc: scene.sun.start().map(|time| time.utc()),
+            },
+            sun: sun_light(&view, sun),
+            sky: sky_light(&view),
+            views: views
+                .par_iter()
+                .map(|asked| view_light(&view, asked, space))
+                .collect(),
+        }
+    }
+}
+
+fn sun_light(view: &View<'_>, sun: &Sun) -> SunLight {
+    let normal = view.sun_irradiance();
+    let cosine = view.sun().y.max(0.0);
+    let illuminance = view.sky().grid().to_xyz(&normal)[1];
+    SunLight {
+        azimuth_deg: sun.azimuth_deg,
+        elevation_deg: sun.elevation_deg,
+        geometric_elevation_deg: sun.geometric_elevation_deg,
+        distance_ratio: sun.distance_ratio,
+        angular_radius_deg: view.disc().angular_radius_rad.to_degrees(),
+        irradiance_outside_w_m2_nm: view.solar_irradiance(),
+        irradiance_horizontal_w_m2_nm: normal.iter().map(|e| e * cosine as f32).collect(),
+        irradiance_normal_w_m2_nm: normal,
+        illuminance_normal_lx: illuminance,
+        illuminance_horizontal_lx: illuminance * cosine,
+    }
+}
+
+fn sky_light(view: &View<'_>) -> SkyLight {
+    let irradiance = view.table(TableChannels::Spectral).irradiance(DVec3::Y);
+    SkyLight {
+        illuminance_horizontal_lx: view.sky().grid().to_xyz(&irradiance)[1],
+        irradiance_horizontal_w_m2_nm: irradiance,
+    }
+}
+
+fn view_light(view: &View<'_>, asked: &AskedView, space: RgbSpace) -> ViewLight {
+    let direction = axes::direction(asked.azimuth_deg, asked.elevation_deg);
+    let line: LineOfSight = view.along(direction, asked.distance_m);
+    let radiance = line.radiance();
+    let xyz = view.sky().grid().to_xyz(&radiance);
+    ViewLight {
+        azimuth_deg: asked.azimuth_deg,
+        elevation_deg: asked.elevation_deg,
+        distance_m: asked.distance_m,
+        meets_ground: line.meets_ground,
+        sun_angle_deg: direction.angle_between(view.sun()).to_degrees(),
+        radiance_w_m2_sr_nm: radiance,
+        radiance_single_w_m2_sr_nm: line.single,
+        radiance_multiple_w_m2_sr_nm: line.multiple,
+        radiance_ground_w_m2_sr_nm: line.ground,
+        transmittance: line.transmittance,
+        xyz_cd_m2: xyz,
+        rgb_cd_m2: space.from_xyz(xyz),
+        luminance_cd_m2: xyz[1],
+    }
+}

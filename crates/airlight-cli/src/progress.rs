@@ -1,0 +1,71 @@
+//! Bars on standard error, shown only where that is a terminal.
+
+use airlight_render::Progress;
+use indicatif::{ProgressBar, ProgressStyle};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Duration;
+
+/// How far many rows of one or more files have come.
+pub struct RowsBar {
+    bar: ProgressBar,
+    /// Rows of files already done.
+    before: AtomicU64,
+}
+
+impl RowsBar {
+    /// A bar for so many rows in all.
+    pub fn new(rows: u64) -> Self {
+        let bar = ProgressBar::new(rows);
+        let style = ProgressStyle::with_template("{msg} {wide_bar} {percent:>3} %, {eta} left");
+        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        Self {
+            bar,
+            before: AtomicU64::new(0),
+        }
+    }
+
+    /// Says what is being made now.
+    pub fn say(&self, what: String) {
+        self.bar.set_message(what);
+    }
+
+    /// A file of so many rows is whole.
+    pub fn file_done(&self, rows: u64) {
+        let before = self.before.fetch_add(rows, Ordering::Relaxed);
+        self.bar.set_position(before + rows);
+    }
+}
+
+impl Progress for RowsBar {
+    fn rows_written(&self, done: u32, _total: u32) {
+        self.bar
+            .set_position(self.before.load(Ordering::Relaxed) + u64::from(done));
+    }
+}
+
+impl Drop for RowsBar {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+/// A sign of life during work whose length is not known.
+pub struct Busy(ProgressBar);
+
+impl Busy {
+    /// Says what is being done.
+    pub fn with(what: &'static str) -> Self {
+        let bar = ProgressBar::new_spinner();
+        let style = ProgressStyle::with_template("{spinner} {msg}, {elapsed}");
+        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()));
+        bar.set_message(what);
+        bar.enable_steady_tick(Duration::from_millis(100));
+        Self(bar)
+    }
+}
+
+impl Drop for Busy {
+    fn drop(&mut self) {
+        self.0.finish_and_clear();
+    }
+}

@@ -1,0 +1,76 @@
+//! Text on standard output and standard error, written so that nothing ever panics.
+
+use crate::error::CliError;
+use std::io::Write;
+use std::time::Duration;
+
+/// Writes a text to standard output.
+///
+/// # Errors
+/// [`CliError::ReaderGone`] where nobody reads it any more, [`CliError::Failure`] where it cannot be written.
+pub fn print(text: &str) -> Result<(), CliError> {
+    let mut out = std::io::stdout().lock();
+    out.write_all(text.as_bytes())
+        .and_then(|()| out.flush())
+        .map_err(|error| CliError::from_stdout(&error))
+}
+
+/// Writes a remark to standard error; where that is gone there is nobody to read it.
+pub fn note(text: &str) {
+    let _ = writeln!(std::io::stderr(), "airlight: {text}");
+}
+
+/// A number with 4 significant digits.
+pub fn short(value: f64) -> String {
+    let size = value.abs();
+    match size {
+        _ if !value.is_finite() => value.to_string(),
+        0.0 => "0".to_owned(),
+        s if !(1e-3..1e7).contains(&s) => format!("{value:.3e}"),
+        s => {
+            let decimals = (3 - s.log10().floor() as i32).clamp(0, 6) as usize;
+            format!("{value:.decimals$}")
+        }
+    }
+}
+
+/// A span of time in words.
+pub fn seconds(time: Duration) -> String {
+    let s = time.as_secs_f64();
+    match s {
+        s if s < 10.0 => format!("{s:.2} s"),
+        s if s < 100.0 => format!("{s:.1} s"),
+        s => format!("{} min {:02} s", s as u64 / 60, s as u64 % 60),
+    }
+}
+
+/// A number of bytes in words.
+pub fn bytes(count: u64) -> String {
+    match count {
+        0..10_000 => format!("{count} bytes"),
+        10_000..10_000_000 => format!("{:.0} kB", count as f64 / 1e3),
+        _ => format!("{:.1} MB", count as f64 / 1e6),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_keep_four_digits() {
+        for (value, text) in [
+            (0.0, "0"),
+            (123_456.7, "123457"),
+            (1234.6, "1235"),
+            (5.0, "5.000"),
+            (-0.012_346, "-0.01235"),
+            (1.5e9, "1.500e9"),
+            (1e-7, "1.000e-7"),
+        ] {
+            assert_eq!(short(value), text);
+        }
+        assert_eq!(short(f64::NAN), "NaN");
+        assert_eq!(seconds(Duration::from_secs(125)), "2 min 05 s");
+    }
+}

@@ -1,0 +1,265 @@
+//! One moment into files.
+
+use super::channels::{Channels, RgbWeights};
+use super::disc::Disc;
+use super::layout::{Layout, PictureFile};
+use super::rows::{Layer, SkyRows};
+use super::{exposure, facts};
+use crate::args::{CompressionArg, PrecisionArg, SkyArgs, SunDiscArg};
+use crate::error::CliError;
+use crate::interrupt::STOP;
+use crate::light::Illuminances;
+use crate::moment::Moment;
+use crate::progress::RowsBar;
+use crate::report;
+use crate::scene::{Scene, Sun};
+use airlight::sky::{Sky, SkyTable, View};
+use airlight_render::output::exr::{ExrCompression, ExrOptions, ExrSample};
+use airlight_render::output::jpeg::JpegOptions;
+use airlight_render::output::png::{PngDepth, PngOptions};
+use airlight_render::output::{AtomicFile, Written, spectral};
+use airlight_render::tone::{ToneCurve, ToneMapper};
+use airlight_render::{Control, Frame, PictureFormat, PictureOptions, RowSource, write_picture};
+use glam::DVec3;
+use std::path::Path;
+
+/// What is drawn and how.
+pub struct Drawing<'a> {
+    /// The options.
+    pub args: &'a SkyArgs,
+    /// Air, eye and sun.
+    pub scene: &'a Scene,
+    /// Files and frames.
+    pub layout: &'a Layout,
+    /// Values of a pixel.
+    pub channels: &'a Channels,
+}
+
+/// One moment, tabulated.
+pub struct Shot<'a> {
+    /// Where the sun stands.
+    pub sun: Sun,
+    /// When.
+    pub time: Option<Moment>,
+    /// Light at the eye.
+    pub light: Illuminances,
+    view: View<'a>,
+    table: SkyTable,
+    disc: Option<Disc>,
+    weights: RgbWeights,
+}
+
+impl<'a> Shot<'a> {
+    /// Tabulates the sky under a sun.
+    pub fn new(drawing: &Drawing<'_>, sky: &'a Sky, sun: &Sun, time: Option<Moment>) -> Self {
+        let channels = drawing.channels;
+        let view = drawing.scene.view(sky, sun);
+        let table = view.table(channels.table());
+        let light = Illuminances::of(&view, &table, |values| channels.luminance(sky, values));
+        let weights = channels.rgb_weights(sky);
+        let disc = match drawing.args.picture.sun_disc {
+            SunDiscArg::Out => None,
+            _ => Disc::new(
+                &view,
+                table.horizon_elevation_rad(),
+                &weights,
+                channels.spectral.is_some(),
+            ),
+        };
+        Self {
+            sun: *sun,
+            time,
+            light,
+            view,
+            table,
+            disc,
+            weights,
+        }
+    }
+
+    /// Whether a direction points to the ground.
+    pub fn is_below_horizon(&self, direction: DVec3) -> bool {
+        direction.y.clamp(-1.0, 1.0).asin() < self.table.horizon_elevation_rad()
+    }
+}
+
+impl Drawing<'_> {
+    /// Refuses what would fail after all has been computed: an exposure that is none, files that cannot be made.
+    ///
+    /// # Errors
+    /// [`CliError`]: what.
+    pub fn check(&self, first: Option<&Path>) -> Result<(), CliError> {
+        exposure::fixed(&self.args.picture)?;
+        for file in first
+            .map(|path| self.layout.files(path))
+            .unwrap_or_default()
+        {
+            let _writing = crate::interrupt::start_writing()?;
+            AtomicFile::create(&file.path)?;
+        }
+        Ok(())
+    }
+
+    /// The rows of a frame.
+    pub fn rows<'s>(
+        &self,
+        shot: &'s Shot<'_>,
+        frame: &Frame,
+        layer: Layer,
+        scale: f32,
+    ) -> SkyRows<'s> {
+        let spectral = self.layout.is_spectral().then_some(&shot.weights);
+        SkyRows::new(
+            frame,
+            layer,
+            &shot.table,
+            shot.disc.as_ref(),
+            spectral,
+            shot.view.sun(),
+            scale,
+        )
+    }
+
+    /// Writes the files of a shot.
+    ///
+    /// # Errors
+    /// [`CliError`]: what failed; files before it are whole, and nothing is left of it.
+    pub fn write(
+        &self,
+        shot: &Shot<'_>,
+        files: &[PictureFile],
+        bar: &RowsBar,
+    ) -> Result<Vec<Written>, CliError> {
+        let tone = match self.layout.format {
+            Some(PictureFormat::Png | PictureFormat::Jpeg) => exposure::tone(self, shot)?,
+            _ => ToneMapper::new(1.0, ToneCurve::Clip)?,
+        };
+        let mut written = Vec::with_capacity(files.len());
+        for file in files {
+            written.push(self.write_file(shot, file, &tone, bar)?);
+            bar.file_done(u64::from(file.frame.size().height()));
+        }
+        Ok(written)
+    }
+
+    fn write_file(
+        &self,
+        shot: &Shot<'_>,
+        file: &PictureFile,
+        tone: &ToneMapper,
+        bar: &RowsBar,
+    ) -> Result<Written, CliError> {
+        let linear = self.layout.format.is_some_and(PictureFormat::is_linear);
+        let scale = if linear {
+            self.args.picture.scale as f32
+        } else {
+            1.0
+        };
+        let rows = self.rows(shot, &file.frame, file.layer, scale);
+        let control = Control::cancelled_by(&STOP).reporting_to(bar);
+        let options = self.options(shot, file);
+        let size = file.frame.size();
+        Ok(match &self.channels.spectral {
+            Some(layout) => spectral::write(
+                &file.path,
+                size,
+                layout,
+                &rows,
+                &options.exr,
+                &options.metadata,
+                control,
+            )?,
+            None => write_picture(&file.path, size, &rows, tone, &options, control)?,
+        })
+    }
+
+    fn options(&self, shot: &Shot<'_>, file: &PictureFile) -> PictureOptions {
+        let args = &self.args.picture;
+        PictureOptions {
+            exr: ExrOptions {
+                sample: match args.precision {
+                    PrecisionArg::Float => ExrSample::Float,
+                    PrecisionArg::Half => ExrSample::Half,
+                },
+                compression: match args.compression {
+                    CompressionArg::None => ExrCompression::None,
+                    CompressionArg::Rle => ExrCompression::Rle,
+                    CompressionArg::Zips => ExrCompression::ZipLine,
+                    CompressionArg::Zip => ExrCompression::Zip,
+                    CompressionArg::Piz => ExrCompression::Piz,
+                },
+            },
+            png: PngOptions {
+                depth: if args.bits == "16" {
+                    PngDepth::Sixteen
+                } else {
+                    PngDepth::Eight
+                },
+                ..PngOptions::default()
+            },
+            jpeg: JpegOptions {
+                quality: args.quality,
+            },
+            metadata: facts::of(self, shot, file.layer).with_frame(&file.frame),
+        }
+    }
+
+    /// The files' projection and format in words.
+    pub fn kind(&self) -> String {
+        use crate::args::ProjectionArg::{Cube, Equirectangular, Fisheye, Perspective};
+        let projection = match self.args.picture.projection {
+            Equirectangular => "equirectangular",
+            Cube => "cube face",
+            Fisheye => "fisheye",
+            Perspective => "perspective",
+        };
+        let format = match (self.layout.format, self.args.picture.precision) {
+            (Some(PictureFormat::Exr), PrecisionArg::Float) => "float EXR",
+            (Some(PictureFormat::Exr), PrecisionArg::Half) => "half EXR",
+            (Some(PictureFormat::Hdr), _) => "Radiance HDR",
+            (Some(PictureFormat::Png), _) => "PNG",
+            (Some(PictureFormat::Jpeg), _) => "JPEG",
+            (None, _) => "picture",
+        };
+        match &self.channels.spectral {
+            Some(_) => format!(
+                "{projection}, spectral {format}, {} wavelengths",
+                self.scene.grid.len()
+            ),
+            None => format!("{projection}, {format}"),
+        }
+    }
+
+    /// Says what the format could not hold.
+    pub fn warn_of_clipping(&self, written: &[Written]) {
+        let clamped: u64 = written.iter().map(|w| w.clamped_samples).sum();
+        let nans: u64 = written.iter().map(|w| w.nan_samples).sum();
+        match self.layout.format {
+            Some(PictureFormat::Exr) if clamped > 0 => report::note(&format!(
+                "{clamped} samples were brighter than half precision holds (65504) and are cut off there: --precision \
+                 float keeps them, --scale 1e-5 makes them fit, --sun-disc separate or out keeps the sun apart"
+            )),
+            Some(PictureFormat::Hdr) if clamped > 0 => report::note(&format!(
+                "{clamped} samples lay below 0, for colours outside the RGB space, which HDR cannot hold: they are 0"
+            )),
+            _ => {}
+        }
+        if nans > 0 {
+            report::note(&format!(
+                "{nans} samples were not a number and are 0: please report this"
+            ));
+        }
+    }
+}
+
+/// The RGB of a small picture's pixels, row after row.
+pub fn stored(rows: &dyn RowSource, frame: &Frame) -> Vec<[f32; 3]> {
+    let (width, channels) = (frame.size().width() as usize, rows.channels());
+    let mut row = vec![0.0; width * channels];
+    let mut pixels = Vec::with_capacity(width * frame.size().height() as usize);
+    for y in 0..frame.size().height() {
+        rows.fill_row(y, &mut row);
+        pixels.extend(row.chunks_exact(channels).map(|p| [p[0], p[1], p[2]]));
+    }
+    pixels
+}

@@ -1,0 +1,84 @@
+//! How bright PNG, JPEG and preview are.
+
+use super::draw::{Drawing, Shot};
+use super::rows::Layer;
+use crate::args::{PictureArgs, ToneArg};
+use crate::error::CliError;
+use airlight_render::tone::{Exposure, FilmicSettings, Metering, ToneCurve, ToneMapper};
+
+/// Columns of the small picture that is metered.
+const METERED_WIDTH: u32 = 96;
+/// What ground counts against sky: a dark foreground is not to wash out the sky above it.
+const GROUND_SHARE: f64 = 0.2;
+/// Stops by which a sky is brighter than middle grey.
+const SKY_STOPS: f64 = 1.0;
+/// Luminance of a daylight sky, cd/m^2, and by how many stops a picture gets darker for each stop below it: dusk is to
+/// look like dusk.
+const DAYLIGHT_CD_M2: f64 = 2000.0;
+const DARKER_PER_STOP: f64 = 0.1;
+
+/// What `--exposure` says: `None` for auto.
+///
+/// # Errors
+/// [`CliError::Usage`] where it is neither auto nor an exposure value in range.
+pub fn fixed(args: &PictureArgs) -> Result<Option<Exposure>, CliError> {
+    if args.exposure.eq_ignore_ascii_case("auto") {
+        return Ok(None);
+    }
+    let ev100 = crate::parse::number(&args.exposure).map_err(|_| {
+        CliError::usage(format!(
+            "--exposure must be auto or an exposure value at ISO 100 such as 14.5, got `{}`",
+            args.exposure
+        ))
+    })?;
+    Ok(Some(
+        Exposure::from_ev100(ev100)?.brighter_by(args.brighten)?,
+    ))
+}
+
+/// The exposure of a shot.
+///
+/// # Errors
+/// As [`fixed`].
+pub fn of(drawing: &Drawing<'_>, shot: &Shot<'_>) -> Result<Exposure, CliError> {
+    let args = &drawing.args.picture;
+    if let Some(exposure) = fixed(args)? {
+        return Ok(exposure);
+    }
+    let frame = drawing.layout.overview(METERED_WIDTH)?;
+    let rows = drawing.rows(shot, &frame, Layer::Sky, 1.0);
+    let pixels = super::draw::stored(&rows, &frame);
+    let mut samples = Vec::with_capacity(pixels.len());
+    for (index, rgb) in (0..).zip(&pixels) {
+        let (i, j) = (index % frame.size().width(), index / frame.size().width());
+        let luminance = drawing.channels.space.luminance(rgb.map(f64::from));
+        let below = frame
+            .pixel_direction(i, j)
+            .is_some_and(|direction| shot.is_below_horizon(direction));
+        let share = if below { GROUND_SHARE } else { 1.0 };
+        samples.push((
+            luminance as f32,
+            (share * frame.pixel_solid_angle(i, j)) as f32,
+        ));
+    }
+    let metering = Metering::default();
+    // Where nothing is lit any exposure shows black.
+    let typical = metering
+        .typical_luminance(&samples)
+        .unwrap_or(DAYLIGHT_CD_M2);
+    let dusk_stops = DARKER_PER_STOP * (typical / DAYLIGHT_CD_M2).log2().min(0.0);
+    Ok(Exposure::factor_of(metering.key / typical)?
+        .brighter_by(args.brighten + SKY_STOPS + dusk_stops)?)
+}
+
+/// What makes display light of linear light.
+///
+/// # Errors
+/// As [`of`].
+pub fn tone(drawing: &Drawing<'_>, shot: &Shot<'_>) -> Result<ToneMapper, CliError> {
+    let curve = match drawing.args.picture.tone {
+        ToneArg::Filmic => ToneCurve::Filmic(FilmicSettings::default()),
+        ToneArg::Clip => ToneCurve::Clip,
+    };
+    Ok(ToneMapper::new(of(drawing, shot)?.factor() as f32, curve)?)
+}

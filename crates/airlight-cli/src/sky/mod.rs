@@ -1,0 +1,147 @@
+//! `airlight sky`: pictures of the sky.
+//!
+//! - [`channels`]: what the values of a pixel are, and how spectra become them.
+//! - [`disc`]: the sun's disc in a picture, exact in irradiance at every size; [`rows`]: sky and disc, row by row.
+//! - [`layout`]: which files a picture consists of and where each looks.
+//! - [`facts`]: what the files say about themselves; [`exposure`]: how bright PNG, JPEG and preview are.
+//! - [`draw`]: one moment into files; [`preview`]: onto the terminal; [`sequence`]: many moments.
+
+mod channels;
+mod disc;
+mod draw;
+mod exposure;
+mod facts;
+mod layout;
+mod preview;
+mod rows;
+mod sequence;
+
+use crate::args::SkyArgs;
+use crate::error::CliError;
+use crate::interrupt;
+use crate::light::Illuminances;
+use crate::progress::RowsBar;
+use crate::report::{self, bytes, seconds, short};
+use crate::scene::{Scene, Sun};
+use channels::Channels;
+pub use channels::{space_name, space_of};
+use draw::{Drawing, Shot};
+pub use facts::SOFTWARE;
+use layout::Layout;
+use std::fmt::Write;
+use std::time::Instant;
+
+/// Runs the command.
+///
+/// # Errors
+/// [`CliError`]: what was wrong with the options, or what failed.
+pub fn run(args: &SkyArgs) -> Result<(), CliError> {
+    crate::scene::use_threads(args.air.threads)?;
+    let preview = preview::wanted(args)?;
+    let scene = Scene::new(&args.place, &args.air)?;
+    let first = scene.sun.at(None)?;
+    let layout = Layout::new(args, &first)?;
+    let channels = Channels::new(&args.picture, layout.is_spectral(), &scene)?;
+    let drawing = Drawing {
+        args,
+        scene: &scene,
+        layout: &layout,
+        channels: &channels,
+    };
+    match &args.sequence.until {
+        Some(until) => sequence::run(&drawing, until, preview),
+        None => single(&drawing, &first, preview),
+    }
+}
+
+fn single(
+    drawing: &Drawing<'_>,
+    sun: &Sun,
+    preview: Option<preview::Terminal>,
+) -> Result<(), CliError> {
+    let scene = drawing.scene;
+    drawing.check(drawing.layout.output.as_deref())?;
+    let (sky, solving) = scene.prepare(scene.near(sun))?;
+    let start = Instant::now();
+    let shot = Shot::new(drawing, &sky, sun, scene.sun.start());
+    if let Some(terminal) = preview {
+        report::print(&preview::text(drawing, &shot, terminal)?)?;
+    }
+    let mut text = String::new();
+    if let Some(path) = &drawing.layout.output {
+        let files = drawing.layout.files(path);
+        let rows = files
+            .iter()
+            .map(|file| u64::from(file.frame.size().height()))
+            .sum();
+        let bar = RowsBar::new(rows);
+        bar.say("drawing".to_owned());
+        let writing = interrupt::start_writing()?;
+        let written = drawing.write(&shot, &files, &bar)?;
+        drop(writing);
+        drop(bar);
+        for (file, written) in files.iter().zip(&written) {
+            let size = file.frame.size();
+            // Writing to a string cannot fail.
+            let _ = writeln!(
+                text,
+                "{}: {} x {} {}, {}",
+                file.path.display(),
+                size.width(),
+                size.height(),
+                drawing.kind(),
+                bytes(written.bytes)
+            );
+        }
+        drawing.warn_of_clipping(&written);
+    }
+    if drawing.args.quiet {
+        return Ok(());
+    }
+    text.push_str(&said(drawing, sun, &shot.light));
+    let _ = writeln!(
+        text,
+        "  time          {} to solve, {} to draw",
+        seconds(solving),
+        seconds(start.elapsed())
+    );
+    report::print(&text)
+}
+
+/// Sun and light in words.
+fn said(drawing: &Drawing<'_>, sun: &Sun, light: &Illuminances) -> String {
+    let scene = drawing.scene;
+    let mut text = String::new();
+    if let (Some(place), Some(time)) = (scene.sun.place(), scene.sun.start()) {
+        let _ = writeln!(
+            text,
+            "  place, time   latitude {}, longitude {}, {}",
+            place.latitude_deg,
+            place.longitude_deg,
+            time.rfc3339()
+        );
+    }
+    let geometric = match sun.geometric_elevation_deg {
+        Some(deg) if deg != sun.elevation_deg => format!(" ({deg:.3} without refraction)"),
+        _ => String::new(),
+    };
+    let _ = writeln!(
+        text,
+        "  sun           elevation {:.3} deg{geometric}, azimuth {:.3} deg",
+        sun.elevation_deg, sun.azimuth_deg
+    );
+    let _ = writeln!(
+        text,
+        "  illuminance   sun {} lx facing it, {} lx on the horizontal; sky {} lx on the horizontal",
+        short(light.sun_normal_lx),
+        short(light.sun_horizontal_lx),
+        short(light.sky_horizontal_lx)
+    );
+    let _ = writeln!(
+        text,
+        "  air           {}; eye at {} m",
+        scene.atmosphere.name,
+        short(scene.eye_altitude_m)
+    );
+    text
+}

@@ -1,0 +1,217 @@
+//! Sky and sun's disc, row by row.
+
+use super::channels::RgbWeights;
+use super::disc::Disc;
+use airlight::sky::{SkyColumns, SkyTable};
+use airlight_render::frame::FrameRows;
+use airlight_render::{Frame, Projection, RowSource};
+use glam::DVec3;
+
+/// What of the light is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Layer {
+    /// Sky and sun's disc.
+    All,
+    /// The sky without the disc.
+    Sky,
+    /// The disc alone.
+    Disc,
+}
+
+/// One moment's sky in one frame.
+pub struct SkyRows<'a> {
+    table: &'a SkyTable,
+    disc: Option<&'a Disc>,
+    /// Weights of wavelengths in RGB, for a table of spectra.
+    spectral: Option<&'a RgbWeights>,
+    draws_sky: bool,
+    rows: FrameRows,
+    /// For projections whose columns keep their azimuth.
+    columns: Option<SkyColumns>,
+    scale: f32,
+    /// How far a pixel's corners lie from its middle at most (rad), with some to spare.
+    pixel_reach: f64,
+}
+
+/// Points across a pixel that the horizon runs through, whose mean it gets.
+const SUBPIXELS: u32 = 4;
+
+impl<'a> SkyRows<'a> {
+    /// Rows of `frame`; values are `scale` times those of the table.
+    pub fn new(
+        frame: &Frame,
+        layer: Layer,
+        table: &'a SkyTable,
+        disc: Option<&'a Disc>,
+        spectral: Option<&'a RgbWeights>,
+        sun: DVec3,
+        scale: f32,
+    ) -> Self {
+        Self {
+            table,
+            disc: disc.filter(|_| layer != Layer::Sky),
+            spectral,
+            draws_sky: layer != Layer::Disc,
+            rows: frame.rows(),
+            columns: columns(frame, table, sun),
+            scale,
+            pixel_reach: pixel_reach(frame),
+        }
+    }
+
+    fn frame(&self) -> &Frame {
+        self.rows.frame()
+    }
+
+    /// Table values of one pixel: the mean over the pixel where the horizon runs through.
+    fn sample(&self, direction: DVec3, (i, j): (u32, u32), values: &mut [f32]) {
+        if !self.is_at_horizon(direction) {
+            self.table.sample(direction, values);
+            return;
+        }
+        let mut sum = vec![0.0; values.len()];
+        let mut count = 0.0f32;
+        for k in 0..SUBPIXELS * SUBPIXELS {
+            let at = |n: u32, k: u32| f64::from(n) + (f64::from(k) + 0.5) / f64::from(SUBPIXELS);
+            if let Some(direction) = self
+                .frame()
+                .direction(at(i, k % SUBPIXELS), at(j, k / SUBPIXELS))
+            {
+                self.table.sample(direction, values);
+                count += 1.0;
+                sum.iter_mut()
+                    .zip(values.iter())
+                    .for_each(|(sum, value)| *sum += value);
+            }
+        }
+        values
+            .iter_mut()
+            .zip(&sum)
+            .for_each(|(value, sum)| *value = sum / count.max(1.0));
+    }
+
+    fn is_at_horizon(&self, direction: DVec3) -> bool {
+        let height = direction.y.clamp(-1.0, 1.0).asin() - self.table.horizon_elevation_rad();
+        height.abs() < self.pixel_reach
+    }
+
+    /// Table values of a whole row, one after the other.
+    fn sample_row(&self, y: u32, directions: &[DVec3], values: &mut [f32]) {
+        let n = self.table.channels();
+        match (&self.columns, directions.first()) {
+            (Some(columns), Some(&first)) if !self.is_at_horizon(first) => {
+                let elevation = first.y.atan2(first.x.hypot(first.z));
+                self.table.sample_row(elevation, columns, values);
+            }
+            _ => {
+                for ((i, &direction), values) in
+                    (0..).zip(directions).zip(values.chunks_exact_mut(n))
+                {
+                    if direction != DVec3::ZERO {
+                        self.sample(direction, (i, y), values);
+                    }
+                }
+            }
+        }
+    }
+
+    /// From a table's values to a pixel's.
+    fn put(&self, values: &[f32], pixel: &mut [f32]) {
+        match self.spectral {
+            None => pixel
+                .iter_mut()
+                .zip(values)
+                .for_each(|(p, v)| *p = v * self.scale),
+            Some(weights) => {
+                let (rgb, spectrum) = pixel.split_at_mut(3);
+                rgb.fill(0.0);
+                for ((value, weight), radiance) in values.iter().zip(weights).zip(spectrum) {
+                    *radiance = value * self.scale;
+                    rgb.iter_mut()
+                        .zip(weight)
+                        .for_each(|(c, w)| *c += w * *radiance);
+                }
+            }
+        }
+    }
+
+    fn add_disc(&self, disc: &Disc, y: u32, directions: &[DVec3], out: &mut [f32]) {
+        let reach = disc.radius_rad() + self.pixel_reach;
+        let nearest = if reach < 3.0 { reach.cos() } else { -2.0 };
+        let channels = self.channels();
+        for ((i, direction), pixel) in (0..).zip(directions).zip(out.chunks_exact_mut(channels)) {
+            if *direction != DVec3::ZERO && direction.dot(disc.sun()) >= nearest {
+                disc.add_pixel(self.frame(), (i, y), self.scale, pixel);
+            }
+        }
+    }
+}
+
+impl RowSource for SkyRows<'_> {
+    fn channels(&self) -> usize {
+        3 + self.spectral.map_or(0, Vec::len)
+    }
+
+    fn fill_row(&self, y: u32, out: &mut [f32]) {
+        let width = self.frame().size().width() as usize;
+        let mut directions = vec![DVec3::ZERO; width];
+        self.rows.fill(y, &mut directions);
+        out.fill(0.0);
+        if self.draws_sky {
+            let n = self.table.channels();
+            let mut values = vec![0.0; width * n];
+            self.sample_row(y, &directions, &mut values);
+            for (values, pixel) in values
+                .chunks_exact(n)
+                .zip(out.chunks_exact_mut(self.channels()))
+            {
+                self.put(values, pixel);
+            }
+        }
+        if let Some(disc) = self.disc {
+            self.add_disc(disc, y, &directions, out);
+        }
+    }
+}
+
+fn columns(frame: &Frame, table: &SkyTable, sun: DVec3) -> Option<SkyColumns> {
+    let Projection::Equirectangular { center_azimuth_deg } = *frame.projection() else {
+        return None;
+    };
+    let sun_azimuth = airlight::axes::azimuth_deg(sun);
+    let width = f64::from(frame.size().width());
+    let azimuths = (0..frame.size().width()).map(|i| {
+        let turn = (f64::from(i) + 0.5) / width - 0.5;
+        (center_azimuth_deg - sun_azimuth + 360.0 * turn).to_radians()
+    });
+    Some(table.columns(azimuths))
+}
+
+/// The greatest angle from a pixel's middle to its corners, looked for at 33 by 33 pixels, and half as much again.
+fn pixel_reach(frame: &Frame) -> f64 {
+    const STEPS: u32 = 32;
+    let size = frame.size();
+    if size.width() < 8 || size.height() < 8 {
+        // Pixels so large may bulge beyond their corners.
+        return std::f64::consts::PI;
+    }
+    let mut most = 0.0f64;
+    for k in 0..=STEPS {
+        for l in 0..=STEPS {
+            let pick = |n: u32, k: u32| (u64::from(n - 1) * u64::from(k) / u64::from(STEPS)) as u32;
+            let (i, j) = (
+                f64::from(pick(size.width(), k)),
+                f64::from(pick(size.height(), l)),
+            );
+            let Some(centre) = frame.direction(i + 0.5, j + 0.5) else {
+                continue;
+            };
+            for (dx, dy) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)] {
+                if let Some(corner) = frame.direction(i + dx, j + dy) {
+                    most = most.max(corner.angle_between(centre));
+                }
+            }
+        }
+    }
+    1.5 * most
+}

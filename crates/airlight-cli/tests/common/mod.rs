@@ -1,0 +1,155 @@
+//! Running the program, folders that go away, reading what it wrote.
+#![allow(dead_code)]
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::sync::atomic::{AtomicU32, Ordering};
+
+/// A folder of a test's own.
+pub struct Folder(pub PathBuf);
+
+impl Folder {
+    pub fn new() -> Self {
+        static COUNT: AtomicU32 = AtomicU32::new(0);
+        let name = format!(
+            "airlight-cli-{}-{}",
+            std::process::id(),
+            COUNT.fetch_add(1, Ordering::Relaxed)
+        );
+        let path = std::env::temp_dir().join(name);
+        std::fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+
+    pub fn file(&self, name: &str) -> PathBuf {
+        self.0.join(name)
+    }
+
+    /// Names of the files in it, hidden ones too.
+    pub fn names(&self) -> Vec<String> {
+        let mut names: Vec<String> = std::fs::read_dir(&self.0)
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        names
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+/// The program, to be run in a folder, with words split at spaces.
+pub fn command(folder: &Folder, words: &str) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_airlight"));
+    command
+        .current_dir(&folder.0)
+        .args(words.split_whitespace());
+    for variable in ["COLORTERM", "TERM", "NO_COLOR"] {
+        command.env_remove(variable);
+    }
+    command
+}
+
+/// Runs it.
+pub fn run(folder: &Folder, words: &str) -> Output {
+    command(folder, words).output().unwrap()
+}
+
+/// Runs it and expects success; standard output.
+pub fn succeed(folder: &Folder, words: &str) -> String {
+    let output = run(folder, words);
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{words}: {error}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// The number after a text.
+pub fn number_after(text: &str, before: &str) -> f64 {
+    let start = text
+        .find(before)
+        .unwrap_or_else(|| panic!("no `{before}` in {text}"))
+        + before.len();
+    let word: String = text[start..]
+        .trim_start()
+        .chars()
+        .take_while(|c| !c.is_whitespace())
+        .collect();
+    word.parse()
+        .unwrap_or_else(|_| panic!("`{word}` after `{before}`"))
+}
+
+/// An EXR file's samples and texts.
+pub struct Exr {
+    pub width: u32,
+    pub height: u32,
+    pub channels: BTreeMap<String, Vec<f32>>,
+    pub texts: BTreeMap<String, String>,
+    pub attributes: exr::meta::header::LayerAttributes,
+    pub shared: exr::meta::header::ImageAttributes,
+    pub is_half: bool,
+}
+
+impl Exr {
+    pub fn read(path: &Path) -> Self {
+        use exr::prelude::*;
+        let image = read_first_flat_layer_from_file(path).unwrap();
+        let layer = image.layer_data;
+        let text = |value: &AttributeValue| match value {
+            AttributeValue::Text(text) => Some(text.to_string()),
+            _ => None,
+        };
+        Self {
+            width: layer.size.0 as u32,
+            height: layer.size.1 as u32,
+            is_half: matches!(layer.channel_data.list[0].sample_data, FlatSamples::F16(_)),
+            channels: layer
+                .channel_data
+                .list
+                .iter()
+                .map(|channel| {
+                    (
+                        channel.name.to_string(),
+                        channel.sample_data.values_as_f32().collect(),
+                    )
+                })
+                .collect(),
+            texts: layer
+                .attributes
+                .other
+                .iter()
+                .filter_map(|(name, value)| Some((name.to_string(), text(value)?)))
+                .collect(),
+            attributes: layer.attributes,
+            shared: image.attributes,
+        }
+    }
+
+    pub fn rgb(&self, x: u32, y: u32) -> [f32; 3] {
+        let at = (y * self.width + x) as usize;
+        ["R", "G", "B"].map(|name| self.channels[name][at])
+    }
+
+    /// Luminance of linear sRGB.
+    pub fn luminance(&self, x: u32, y: u32) -> f64 {
+        let [r, g, b] = self.rgb(x, y).map(f64::from);
+        0.212_639 * r + 0.715_169 * g + 0.072_192 * b
+    }
+
+    /// Sum over the pixels of luminance, solid angle and a weight of the direction.
+    pub fn sum(&self, frame: &airlight_render::Frame, weight: impl Fn(glam::DVec3) -> f64) -> f64 {
+        let mut sum = 0.0;
+        for y in 0..self.height {
+            for x in 0..self.width {
+                if let Some(direction) = frame.pixel_direction(x, y) {
+                    sum += self.luminance(x, y) * frame.pixel_solid_angle(x, y) * weight(direction);
+                }
+            }
+        }
+        sum
+    }
+}

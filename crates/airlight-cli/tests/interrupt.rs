@@ -1,0 +1,104 @@
+//! A run that is stopped half-way leaves nothing behind.
+#![cfg(unix)]
+
+mod common;
+
+use common::{Folder, command};
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
+use std::process::{Child, Stdio};
+use std::time::{Duration, Instant};
+
+fn spawn(folder: &Folder, words: &str) -> Child {
+    command(folder, words)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap()
+}
+
+fn stop(child: Child, signal: Signal) -> (Option<i32>, String) {
+    kill(Pid::from_raw(child.id() as i32), signal).unwrap();
+    let output = child.wait_with_output().unwrap();
+    (
+        output.status.code(),
+        String::from_utf8_lossy(&output.stderr).into_owned(),
+    )
+}
+
+/// Waits until a temporary file that has grown lies in the folder.
+fn wait_for_part(folder: &Folder) {
+    let start = Instant::now();
+    let grown = |name: &String| {
+        name.ends_with(".part")
+            && std::fs::metadata(folder.file(name)).is_ok_and(|about| about.len() > 100_000)
+    };
+    while !folder.names().iter().any(grown) {
+        assert!(
+            start.elapsed() < Duration::from_secs(120),
+            "nothing was written: {:?}",
+            folder.names()
+        );
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+#[test]
+fn stopped_while_writing() {
+    let words =
+        "sky --wavelengths rgb --scattering single --sun-elevation 30 --size 16384x8192 -o a.exr";
+    for signal in [Signal::SIGINT, Signal::SIGTERM] {
+        let folder = Folder::new();
+        std::fs::write(folder.file("a.exr"), "what was there before").unwrap();
+        let child = spawn(&folder, words);
+        wait_for_part(&folder);
+        let (code, error) = stop(child, signal);
+        assert_eq!(code, Some(130), "{error}");
+        assert!(error.contains("stopped"), "{error}");
+        assert_eq!(folder.names(), ["a.exr"]);
+        assert_eq!(
+            std::fs::read(folder.file("a.exr")).unwrap(),
+            b"what was there before"
+        );
+    }
+}
+
+#[test]
+fn stopped_while_solving() {
+    let folder = Folder::new();
+    // Wavelengths enough to be at it for a while.
+    let child = spawn(&folder, "sky --wavelengths 1nm --sun-elevation 3 -o a.exr");
+    std::thread::sleep(Duration::from_millis(700));
+    let (code, error) = stop(child, Signal::SIGINT);
+    assert_eq!(code, Some(130), "{error}");
+    assert!(folder.names().is_empty());
+}
+
+#[test]
+fn a_stopped_sequence_keeps_its_whole_frames_and_goes_on() {
+    let folder = Folder::new();
+    let words = "sky --wavelengths rgb --scattering single --at 50,10 --when 2026-06-21T10:00:00Z --until +2h \
+                 --every 1h --size 512x256 -o a.png";
+    let child = spawn(&folder, &words.replace("512x256", "8192x4096"));
+    let start = Instant::now();
+    while !folder.file("a.0001.png").exists() {
+        assert!(start.elapsed() < Duration::from_secs(240));
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    let (code, error) = stop(child, Signal::SIGINT);
+    assert_eq!(code, Some(130), "{error}");
+    let names = folder.names();
+    assert!(
+        names
+            .iter()
+            .all(|name| name.ends_with(".png") && !name.starts_with('.')),
+        "{names:?}"
+    );
+    let done = names.len();
+    let text = common::succeed(&folder, words);
+    assert!(
+        text.contains(&format!("{} of 3 frames made", 3 - done)),
+        "{text}"
+    );
+    assert_eq!(folder.names(), ["a.0001.png", "a.0002.png", "a.0003.png"]);
+}

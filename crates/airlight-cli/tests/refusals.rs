@@ -1,0 +1,300 @@
+//! What makes no sense is refused in a sentence, with its exit code, and leaves nothing behind.
+
+mod common;
+
+use common::{Folder, command, run, succeed};
+
+const SUN: &str = "--wavelengths rgb --scattering single --size 16x8 --sun-elevation 30";
+
+/// Runs, and checks the exit code, that the message holds a text, and that no file appeared.
+fn refused(folder: &Folder, words: &str, code: i32, part: &str) {
+    let before = folder.names();
+    let output = run(folder, words);
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(code), "{words}: {error}");
+    assert!(error.contains(part), "{words}: `{part}` is not in: {error}");
+    assert!(!error.contains("panicked"), "{words}: {error}");
+    assert_eq!(folder.names(), before, "{words}");
+}
+
+#[test]
+fn bad_use_of_sky() {
+    let folder = Folder::new();
+    std::fs::write(
+        folder.file("bad.toml"),
+        "base = \"clear\"\n[aerosol]\naod_505 = 0.1\n",
+    )
+    .unwrap();
+    std::fs::write(folder.file("broken.toml"), "base = [").unwrap();
+    std::fs::write(folder.file("binary.toml"), [0xff, 0xfe, 0x00]).unwrap();
+    for (words, part) in [
+        ("sky -o a.exr", "--sun-elevation"),
+        ("sky --sun-elevation 30", "--output"),
+        ("sky --sun-elevation NaN -o a.exr", "-90 to 90"),
+        ("sky --sun-elevation 91 -o a.exr", "-90 to 90"),
+        ("sky --sun-azimuth 10 -o a.exr", "--sun-elevation"),
+        ("sky --at 100,0 -o a.exr", "latitude must be from -90 to 90"),
+        ("sky --at 1;2 -o a.exr", "latitude,longitude"),
+        (
+            "sky --at 1,2 --sun-elevation 3 -o a.exr",
+            "cannot be used with",
+        ),
+        (
+            "sky --at 1,2 --when yesterday -o a.exr",
+            "2013-05-27T16:30:00Z",
+        ),
+        (
+            "sky --at 1,2 --when 2026-02-30T00:00:00Z -o a.exr",
+            "day 30 does not exist",
+        ),
+        (
+            "sky --at 1,2 --when 9999-01-01T00:00:00Z -o a.exr",
+            "9999-01-01",
+        ),
+        ("sky --sun-elevation 30 --size 0x0 -o a.exr", "1 to 65536"),
+        (
+            "sky --sun-elevation 30 --size 70000x10 -o a.exr",
+            "1 to 65536",
+        ),
+        (
+            "sky --sun-elevation 30 --size 99999999999x1 -o a.exr",
+            "1 to 65536",
+        ),
+        ("sky --sun-elevation 30 -o a.bmp", ".exr"),
+        ("sky --sun-elevation 30 -o a", "no ending"),
+        (
+            "sky --sun-elevation 30 --atmosphere claer -o a.exr",
+            "did you mean \"clear\"",
+        ),
+        (
+            "sky --sun-elevation 30 --atmosphere bad.toml -o a.exr",
+            "line 3",
+        ),
+        (
+            "sky --sun-elevation 30 --atmosphere bad.toml -o a.exr",
+            "aod_550",
+        ),
+        (
+            "sky --sun-elevation 30 --atmosphere broken.toml -o a.exr",
+            "broken.toml",
+        ),
+        (
+            "sky --sun-elevation 30 --atmosphere binary.toml -o a.exr",
+            "UTF-8",
+        ),
+        ("sky --at 1,2 --atmosphere mars -o a.exr", "--sun-elevation"),
+        (
+            "sky --sun-elevation 30 --atmosphere mars --ozone-du 300 -o a.exr",
+            "Earth",
+        ),
+        ("sky --sun-elevation 30 --aod-550 -1 -o a.exr", "--aod-550"),
+        (
+            "sky --sun-elevation 30 --aod-550 0.1 --turbidity 2 -o a.exr",
+            "cannot be used with",
+        ),
+        (
+            "sky --sun-elevation 30 --turbidity 0.5 -o a.exr",
+            "turbidity",
+        ),
+        (
+            "sky --sun-elevation 30 --visibility-m 1e9 -o a.exr",
+            "visibility",
+        ),
+        (
+            "sky --sun-elevation 30 --ground-albedo 1.5 -o a.exr",
+            "0 to 1",
+        ),
+        (
+            "sky --sun-elevation 30 --ground-altitude-m 2e5 -o a.exr",
+            "top_altitude_m",
+        ),
+        (
+            "sky --sun-elevation 30 --wavelengths red -o a.exr",
+            "standard",
+        ),
+        (
+            "sky --sun-elevation 30 --wavelengths 200,500 -o a.exr",
+            "300 nm",
+        ),
+        (
+            "sky --sun-elevation 30 --wavelengths 500,400 -o a.exr",
+            "increasing",
+        ),
+        ("sky --sun-elevation 30 --exposure bright -o a.png", "auto"),
+        (
+            "sky --sun-elevation 30 --exposure 1000 -o a.png",
+            "-40 and 60",
+        ),
+        ("sky --sun-elevation 30 --brighten 1e9 -o a.png", "exposure"),
+        ("sky --sun-elevation 30 --spectral -o a.png", ".exr"),
+        (
+            "sky --sun-elevation 30 --color-space acescg -o a.png",
+            "sRGB",
+        ),
+        ("sky --sun-elevation 30 --sun-disc separate", "--output"),
+        (
+            "sky --sun-elevation 30 --fov 90 -o a.exr",
+            "--projection fisheye or perspective",
+        ),
+        (
+            "sky --sun-elevation 30 --camera-roll 9 --projection fisheye -o a.exr",
+            "perspective",
+        ),
+        (
+            "sky --sun-elevation 30 --projection perspective --fov 180 -o a.exr",
+            "below 180",
+        ),
+        (
+            "sky --sun-elevation 30 --projection fisheye --fov 400 -o a.exr",
+            "360",
+        ),
+        (
+            "sky --sun-elevation 30 --projection cube --size 8x4 -o a.exr",
+            "as wide as high",
+        ),
+        ("sky --sun-elevation 30 --scale 0 -o a.exr", "above 0"),
+        ("sky --sun-elevation 30 --quality 0 -o a.jpg", "1..=100"),
+        ("sky --sun-elevation 30 --bits 12 -o a.png", "16"),
+        ("sky --sun-elevation 30 --threads 0 -o a.png", "1..=1024"),
+        ("sky --sun-elevation 30 --altitude-m inf -o a.png", "metres"),
+        (
+            "sky --sun-elevation 30 --until +1h --every 10m -o a.png",
+            "--when",
+        ),
+        (
+            "sky --at 1,2 --when 2026-01-01T00:00:00Z --until +1h -o a.png",
+            "--every",
+        ),
+        (
+            "sky --at 1,2 --when 2026-01-01T00:00:00Z --until +1h --every 5x -o a.png",
+            "1h30m",
+        ),
+        (
+            "sky --at 1,2 --when 2026-01-01T00:00:00Z --until 2025-01-01T00:00:00Z --every 5m -o a.png",
+            "later",
+        ),
+        (
+            "sky --at 1,2 --when 2026-01-01T00:00:00Z --until +9000d --every 1s -o a.png",
+            "1000000",
+        ),
+        (
+            "sky --at 1,2 --when 2026-01-01T00:00:00Z --until +9000000d --every 9000d -o a.png",
+            "26667-",
+        ),
+        (
+            "sky --at 1,2 --when 2026-01-01T00:00:00Z --until +1h --every 10m",
+            "--output",
+        ),
+        ("", "Usage"),
+        ("draw", "--help"),
+        ("atmospheres claer", "\"clear\""),
+    ] {
+        refused(&folder, words, 2, part);
+    }
+}
+
+#[test]
+fn bad_use_of_probe() {
+    let folder = Folder::new();
+    std::fs::write(
+        folder.file("views.csv"),
+        "azimuth_deg,elevation_deg\n1,2\n1,b\n",
+    )
+    .unwrap();
+    for (words, part) in [
+        ("probe --view 0,90", "--sun-elevation"),
+        ("probe --sun-elevation 30 --format csv", "--view"),
+        ("probe --sun-elevation 30 --view 0,91", "-90 to 90"),
+        ("probe --sun-elevation 30 --view 0", "azimuth,elevation"),
+        ("probe --sun-elevation 30 --view 0,nan", "azimuth,elevation"),
+        (
+            "probe --sun-elevation 30 --views views.csv",
+            "line 3: elevation_deg",
+        ),
+        (
+            "probe --sun-elevation 30 --view 0,9 --distance-m 0",
+            "above 0",
+        ),
+        ("probe --sun-elevation 30 --format xml", "json"),
+    ] {
+        refused(&folder, words, 2, part);
+    }
+}
+
+#[test]
+fn failures() {
+    let folder = Folder::new();
+    std::fs::create_dir(folder.file("dir.exr")).unwrap();
+    for (words, part) in [
+        (
+            format!("sky {SUN} -o missing/a.exr"),
+            "there is no folder `missing`",
+        ),
+        (format!("sky {SUN} -o dir.exr"), "it is a folder"),
+        (
+            "sky --sun-elevation 30 --atmosphere none.toml -o a.exr".to_owned(),
+            "cannot read",
+        ),
+        (
+            "probe --sun-elevation 30 --views none.csv".to_owned(),
+            "cannot read",
+        ),
+        (
+            "probe --sun-elevation 30 -o missing/a.json".to_owned(),
+            "there is no folder",
+        ),
+    ] {
+        refused(&folder, &words, 1, part);
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_full_disk_is_a_failure_and_a_reader_gone_is_none() {
+    let folder = Folder::new();
+    let words = "probe --wavelengths rgb --scattering single --sun-elevation 30 --view 0,90";
+    let full = std::fs::File::options()
+        .write(true)
+        .open("/dev/full")
+        .unwrap();
+    let output = command(&folder, words).stdout(full).output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("standard output"));
+
+    let mut child = command(&folder, words)
+        .stdout(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(0));
+    assert!(
+        output.stderr.is_empty(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+}
+
+#[test]
+fn help_and_lists_name_what_there_is() {
+    let folder = Folder::new();
+    let help = succeed(&folder, "sky --help");
+    for part in [
+        "Examples:",
+        "--at <LAT,LON>",
+        "Place and sun:",
+        "Air:",
+        "Picture:",
+        "mars: Mars",
+        "EV100",
+    ] {
+        assert!(help.contains(part), "{part}");
+    }
+    assert!(succeed(&folder, "probe --help").contains("--views <FILE.csv>"));
+    assert!(succeed(&folder, "--help").contains("130"));
+    assert!(succeed(&folder, "--version").starts_with("airlight "));
+    let list = succeed(&folder, "atmospheres");
+    assert!(list.lines().count() > 8 && list.contains("average"));
+    assert!(succeed(&folder, "atmospheres mars").contains("optical depth"));
+}
