@@ -20,3 +20,8 @@ pub mod path;
 mod quadrature;
 pub mod sky;
 pub mod spectrum;
+
+/// The example of the README, compiled and run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;

@@ -1,0 +1,23 @@
+//! What the book shows must work.
+
+use airlight::medium::config;
+
+/// The fenced blocks of a language in a Markdown text.
+fn blocks<'a>(text: &'a str, language: &str) -> Vec<&'a str> {
+    let fence = format!("```{language}\n");
+    text.split(fence.as_str())
+        .skip(1)
+        .map(|rest| rest.split("```").next().unwrap_or(""))
+        .collect()
+}
+
+#[test]
+fn atmospheres_of_the_book_are_read() {
+    let chapter = include_str!("../../../docs/src/atmosphere.md");
+    let examples = blocks(chapter, "toml");
+    assert!(examples.len() >= 4, "{}", examples.len());
+    for example in examples {
+        let air = config::from_toml(example).unwrap_or_else(|error| panic!("{error}\n{example}"));
+        assert!(!air.constituents.is_empty(), "{example}");
+    }
+}
