@@ -82,14 +82,17 @@ impl ColumnTable {
         let mut inverse_air_mass = rows.concat();
         // Where nothing of a constituent lies above, its air mass means nothing: carry the one below upwards, so that
         // interpolation just beneath stays smooth.
-        for k in 0..inverse_air_mass.len() {
-            for c in 0..MAX_CONSTITUENTS {
-                if !inverse_air_mass[k][c].is_finite() {
-                    inverse_air_mass[k][c] = if k >= ANGLES {
-                        inverse_air_mass[k - ANGLES][c]
-                    } else {
-                        1.0
-                    };
+        let mut below = [[1.0f32; MAX_CONSTITUENTS]; ANGLES];
+        for row in inverse_air_mass.chunks_exact_mut(ANGLES) {
+            for (entry, below) in row
+                .as_flattened_mut()
+                .iter_mut()
+                .zip(below.as_flattened_mut())
+            {
+                if entry.is_finite() {
+                    *below = *entry;
+                } else {
+                    *entry = *below;
                 }
             }
         }

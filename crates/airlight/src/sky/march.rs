@@ -105,8 +105,8 @@ impl Marcher {
                     }
                 }
                 for node in nodes.iter() {
-                    for c in 0..count {
-                        columns[c] += node.dt * node.densities[c];
+                    for (column, density) in columns.iter_mut().zip(&node.densities) {
+                        *column += node.dt * density;
                     }
                 }
                 if visit(nodes).is_break() {

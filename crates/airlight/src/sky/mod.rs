@@ -18,7 +18,8 @@
 //!
 //! Inside, from the ground up: [`ray`] (lines, spheres, shadows), [`quadrature`], [`shell`] (the geometry of an
 //! atmosphere) with its [`columns`], [`march`] (walking along a ray), [`air`] (an atmosphere at N wavelengths),
-//! [`harmonics`] and [`field`] (the light inside the air), [`orders`] (solving for it), [`trace`] (light along a line).
+//! [`harmonics`] and [`field`] (the light inside the air), `fan` (rays that share their way), [`orders`] (solving for the
+//! light), [`trace`] (light along a line), `table` (all directions of a view).
 
 pub mod air;
 mod block;
@@ -34,6 +35,7 @@ pub mod ray;
 pub mod shell;
 mod solver;
 mod table;
+mod tabulate;
 pub mod trace;
 mod vector;
 mod view;

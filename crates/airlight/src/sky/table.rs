@@ -5,14 +5,11 @@
 //! light scattered once by a constituent with a peaked phase function is stored without it, and the phase function is
 //! applied for each pixel.
 
-use super::block::{ChannelMatrix, TableRow};
-use super::fan::Fan;
 use super::quadrature::GaussRule;
-use super::view::View;
-use crate::medium::Constituent;
-use crate::spectrum::{RgbSpace, rgb};
+use super::vector::vectorized;
+use crate::spectrum::RgbSpace;
 use glam::DVec3;
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::PI;
 
 /// What the channels of a table are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,38 +21,38 @@ pub enum TableChannels {
 }
 
 /// Steps in azimuth from the sun's to the opposite one.
-const AZIMUTHS: usize = 64;
+pub(super) const AZIMUTHS: usize = 64;
 /// Rows from the horizon to the zenith.
-const ROWS_ABOVE: usize = 128;
+pub(super) const ROWS_ABOVE: usize = 128;
 /// Rows from the horizon to the nadir.
-const ROWS_BELOW: usize = 96;
+pub(super) const ROWS_BELOW: usize = 96;
 /// Samples of a phase function in the sine of half the scattering angle.
-const PHASE_SAMPLES: usize = 4096;
+pub(super) const PHASE_SAMPLES: usize = 4096;
 
 /// The widest cell that is interpolated without allocating: 16 wavelengths and three peaked scatterers.
 const SMALL_WIDTH: usize = 64;
 
 /// A view's radiance in every direction, without the sun's disc.
 pub struct SkyTable {
-    channels: usize,
+    pub(super) channels: usize,
     /// Values in a cell of the table: every channel of every part, padded for vector loads.
-    width: usize,
-    sun: DVec3,
-    sun_azimuth: DVec3,
-    horizon_elevation: f64,
-    above: Half,
-    below: Half,
+    pub(super) width: usize,
+    pub(super) sun: DVec3,
+    pub(super) sun_azimuth: DVec3,
+    pub(super) horizon_elevation: f64,
+    pub(super) above: Half,
+    pub(super) below: Half,
     /// For each peaked scatterer, its phase function at even steps of the sine of half the scattering angle.
-    phases: Vec<Vec<f32>>,
+    pub(super) phases: Vec<Vec<f32>>,
 }
 
 /// The part of a table on one side of the horizon.
-struct Half {
+pub(super) struct Half {
     /// Signed angle from the horizon to the last row, rad.
-    span: f64,
-    rows: usize,
+    pub(super) span: f64,
+    pub(super) rows: usize,
     /// `[row][azimuth][channel of each part]`.
-    values: Vec<f32>,
+    pub(super) values: Vec<f32>,
 }
 
 /// Where the columns of a picture lie in the table: worked out once for pictures whose columns keep their azimuth.
@@ -71,59 +68,6 @@ struct Column {
 }
 
 impl SkyTable {
-    pub(super) fn new(view: &View<'_>, channels: TableChannels) -> Self {
-        let sky = view.sky();
-        let shell = sky.shell();
-        let radius_m = view.radius_m();
-        let horizon_elevation = -(shell.ground_radius_m / radius_m).min(1.0).acos();
-        // From outside the air, nothing is seen above the line that grazes its top.
-        let ceiling = if radius_m > shell.top_radius_m {
-            -(shell.top_radius_m / radius_m).acos()
-        } else {
-            FRAC_PI_2
-        };
-        let matrices = channel_matrices(view, channels);
-        let peaked = peaked_constituents(view);
-        let channel_count = matrices[0].weights.len();
-        let width = (channel_count * (1 + peaked.len())).next_multiple_of(4);
-        let half = |span: f64, rows: usize| {
-            let table_rows = half_rows(view, horizon_elevation, span, rows);
-            let mut values = vec![0.0; rows * (AZIMUTHS + 1) * width];
-            for (block, matrix) in sky.blocks.iter().zip(&matrices) {
-                block.fill(&table_rows, matrix, &peaked, width, &mut values);
-            }
-            Half { span, rows, values }
-        };
-        // Blocks of wavelengths must agree on the phase function that pixels will be multiplied by: the first one's.
-        let phases = peaked
-            .iter()
-            .map(|&constituent| {
-                (0..=PHASE_SAMPLES)
-                    .map(|i| {
-                        let half_sine = i as f64 / PHASE_SAMPLES as f64;
-                        sky.blocks[0].peaked_phase(constituent, 1.0 - 2.0 * half_sine * half_sine)
-                            as f32
-                    })
-                    .collect()
-            })
-            .collect();
-        let horizontal = DVec3::new(view.sun().x, 0.0, view.sun().z);
-        Self {
-            channels: channel_count,
-            width,
-            sun: view.sun(),
-            sun_azimuth: if horizontal.length() > 1e-9 {
-                horizontal.normalize()
-            } else {
-                DVec3::X
-            },
-            horizon_elevation,
-            above: half(ceiling - horizon_elevation, ROWS_ABOVE),
-            below: half(-FRAC_PI_2 - horizon_elevation, ROWS_BELOW),
-            phases,
-        }
-    }
-
     /// Number of channels.
     pub fn channels(&self) -> usize {
         self.channels
@@ -175,6 +119,23 @@ impl SkyTable {
             out.fill(0.0);
             return;
         };
+        vectorized(
+            #[inline(always)]
+            || {
+                let line = self.line(half, row);
+                match self.width {
+                    4 => self.cells::<4>(&line, elevation_rad, columns, out),
+                    8 => self.cells::<8>(&line, elevation_rad, columns, out),
+                    12 => self.cells::<12>(&line, elevation_rad, columns, out),
+                    _ => self.wide_cells(&line, elevation_rad, columns, out),
+                }
+            },
+        );
+    }
+
+    /// The table interpolated at a row coordinate: every azimuth's cell.
+    #[inline(always)]
+    fn line(&self, half: &Half, row: f64) -> Vec<f32> {
         let stride = (AZIMUTHS + 1) * self.width;
         let (first, weights) = cubic(row, half.rows);
         let mut line = vec![0.0f32; stride];
@@ -184,9 +145,46 @@ impl SkyTable {
                 *sum += w * value;
             }
         }
+        line
+    }
+
+    /// Squared sine of half the angle to the sun, as `a + b * column.half_sine2`, on a row of one elevation.
+    #[inline(always)]
+    fn half_sines2(&self, elevation_rad: f64) -> (f64, f64) {
         let sun_elevation = crate::axes::elevation_deg(self.sun).to_radians();
-        let half_sine2 = (0.5 * (elevation_rad - sun_elevation)).sin().powi(2);
-        let cosines = elevation_rad.cos() * sun_elevation.cos();
+        let between = (0.5 * (elevation_rad - sun_elevation)).sin();
+        (between * between, elevation_rad.cos() * sun_elevation.cos())
+    }
+
+    /// The columns of one row, for cells that stay in registers.
+    #[inline(always)]
+    fn cells<const W: usize>(
+        &self,
+        line: &[f32],
+        elevation_rad: f64,
+        columns: &SkyColumns,
+        out: &mut [f32],
+    ) {
+        let (a, b) = self.half_sines2(elevation_rad);
+        let (line, _) = line.as_chunks::<W>();
+        for (column, out) in columns
+            .columns
+            .iter()
+            .zip(out.chunks_exact_mut(self.channels))
+        {
+            let mut cell = [0.0f32; W];
+            for (node, w) in column.nodes.iter().zip(&column.weights) {
+                for (sum, value) in cell.iter_mut().zip(&line[*node]) {
+                    *sum += w * value;
+                }
+            }
+            self.combine(&cell, (a + b * column.half_sine2).sqrt(), out);
+        }
+    }
+
+    /// The columns of one row, for cells of any width.
+    fn wide_cells(&self, line: &[f32], elevation_rad: f64, columns: &SkyColumns, out: &mut [f32]) {
+        let (a, b) = self.half_sines2(elevation_rad);
         let mut cell = vec![0.0f32; self.width];
         for (column, out) in columns
             .columns
@@ -202,11 +200,7 @@ impl SkyTable {
                     *sum += w * value;
                 }
             }
-            self.combine(
-                &cell,
-                (half_sine2 + cosines * column.half_sine2).sqrt(),
-                out,
-            );
+            self.combine(&cell, (a + b * column.half_sine2).sqrt(), out);
         }
     }
 
@@ -309,95 +303,6 @@ impl SkyTable {
             }
         }
     }
-}
-
-/// The constituents whose phase function is too peaked to be tabulated.
-fn peaked_constituents(view: &View<'_>) -> Vec<usize> {
-    let wavelengths = view.sky().grid().wavelengths_nm();
-    let scatters = |c: &Constituent| {
-        wavelengths
-            .iter()
-            .any(|&nm| c.scattering_per_m.at(nm) > 0.0)
-    };
-    let peaked = |c: &Constituent| {
-        wavelengths
-            .iter()
-            .any(|&nm| c.phase.asymmetry(nm).abs() > 0.1)
-    };
-    let constituents = view.sky().atmosphere().constituents.iter().enumerate();
-    constituents
-        .filter(|(_, c)| scatters(c) && peaked(c))
-        .map(|(place, _)| place)
-        .collect()
-}
-
-/// The rays of one half of the table.
-fn half_rows(view: &View<'_>, horizon: f64, span: f64, rows: usize) -> Vec<TableRow> {
-    let mu_sun = view.ray(view.sun()).mu;
-    let sin_sun = ((1.0 - mu_sun) * (1.0 + mu_sun)).max(0.0).sqrt();
-    (0..rows)
-        .map(|row| {
-            let x = row as f64 / (rows - 1) as f64;
-            // The horizon itself is a jump: start a hair's breadth from it.
-            let (mu, cos_elevation) = (horizon + span * (x * x).max(1e-9)).sin_cos();
-            let mut fan = Fan::default();
-            for azimuth in 0..=AZIMUTHS {
-                let cos_azimuth = (PI * azimuth as f64 / AZIMUTHS as f64).cos();
-                fan.push(
-                    mu_sun,
-                    (mu * mu_sun + cos_elevation * sin_sun * cos_azimuth).clamp(-1.0, 1.0),
-                );
-            }
-            TableRow {
-                start: (view.radius_m(), mu),
-                fan,
-            }
-        })
-        .collect()
-}
-
-/// For each block of wavelengths, the weights that turn its lanes into the table's channels.
-fn channel_matrices(view: &View<'_>, channels: TableChannels) -> Vec<ChannelMatrix> {
-    let solar = view.solar_irradiance();
-    let grid = view.sky().grid();
-    let rows: Vec<Vec<f32>> = match channels {
-        TableChannels::Spectral => (0..solar.len())
-            .map(|channel| {
-                let mut row = vec![0.0; solar.len()];
-                row[channel] = solar[channel];
-                row
-            })
-            .collect(),
-        TableChannels::Rgb(space) => {
-            let from_xyz = space.from_xyz_matrix();
-            let lanes: Vec<[f64; 3]> = grid
-                .xyz_weights()
-                .iter()
-                .map(|&w| rgb::apply(&from_xyz, w))
-                .collect();
-            (0..3)
-                .map(|c| {
-                    lanes
-                        .iter()
-                        .zip(&solar)
-                        .map(|(w, &e)| (w[c] * f64::from(e)) as f32)
-                        .collect()
-                })
-                .collect()
-        }
-    };
-    let mut first = 0;
-    view.sky()
-        .blocks
-        .iter()
-        .map(|block| {
-            let lanes = first..first + block.lanes();
-            first = lanes.end;
-            ChannelMatrix {
-                weights: rows.iter().map(|row| row[lanes.clone()].to_vec()).collect(),
-            }
-        })
-        .collect()
 }
 
 /// First node and weights of third-degree Lagrange interpolation at `x` in `[0, 1]` among `count` even nodes.

@@ -1,0 +1,156 @@
+//! Filling the table of a view.
+
+use super::block::{ChannelMatrix, TableRow};
+use super::fan::Fan;
+use super::table::{
+    AZIMUTHS, Half, PHASE_SAMPLES, ROWS_ABOVE, ROWS_BELOW, SkyTable, TableChannels,
+};
+use super::view::View;
+use crate::medium::Constituent;
+use crate::spectrum::rgb;
+use glam::DVec3;
+use std::f64::consts::{FRAC_PI_2, PI};
+
+impl SkyTable {
+    pub(super) fn new(view: &View<'_>, channels: TableChannels) -> Self {
+        let sky = view.sky();
+        let shell = sky.shell();
+        let radius_m = view.radius_m();
+        let horizon_elevation = -(shell.ground_radius_m / radius_m).min(1.0).acos();
+        // From outside the air, nothing is seen above the line that grazes its top.
+        let ceiling = if radius_m > shell.top_radius_m {
+            -(shell.top_radius_m / radius_m).acos()
+        } else {
+            FRAC_PI_2
+        };
+        let matrices = channel_matrices(view, channels);
+        let peaked = peaked_constituents(view);
+        let channel_count = matrices[0].weights.len();
+        let width = (channel_count * (1 + peaked.len())).next_multiple_of(4);
+        let half = |span: f64, rows: usize| {
+            let table_rows = half_rows(view, horizon_elevation, span, rows);
+            let mut values = vec![0.0; rows * (AZIMUTHS + 1) * width];
+            for (block, matrix) in sky.blocks.iter().zip(&matrices) {
+                block.fill(&table_rows, matrix, &peaked, width, &mut values);
+            }
+            Half { span, rows, values }
+        };
+        // Blocks of wavelengths must agree on the phase function that pixels will be multiplied by: the first one's.
+        let phases = peaked
+            .iter()
+            .map(|&constituent| {
+                (0..=PHASE_SAMPLES)
+                    .map(|i| {
+                        let half_sine = i as f64 / PHASE_SAMPLES as f64;
+                        sky.blocks[0].peaked_phase(constituent, 1.0 - 2.0 * half_sine * half_sine)
+                            as f32
+                    })
+                    .collect()
+            })
+            .collect();
+        let horizontal = DVec3::new(view.sun().x, 0.0, view.sun().z);
+        Self {
+            channels: channel_count,
+            width,
+            sun: view.sun(),
+            sun_azimuth: if horizontal.length() > 1e-9 {
+                horizontal.normalize()
+            } else {
+                DVec3::X
+            },
+            horizon_elevation,
+            above: half(ceiling - horizon_elevation, ROWS_ABOVE),
+            below: half(-FRAC_PI_2 - horizon_elevation, ROWS_BELOW),
+            phases,
+        }
+    }
+}
+
+/// The constituents whose phase function is too peaked to be tabulated.
+fn peaked_constituents(view: &View<'_>) -> Vec<usize> {
+    let wavelengths = view.sky().grid().wavelengths_nm();
+    let scatters = |c: &Constituent| {
+        wavelengths
+            .iter()
+            .any(|&nm| c.scattering_per_m.at(nm) > 0.0)
+    };
+    let peaked = |c: &Constituent| {
+        wavelengths
+            .iter()
+            .any(|&nm| c.phase.asymmetry(nm).abs() > 0.1)
+    };
+    let constituents = view.sky().atmosphere().constituents.iter().enumerate();
+    constituents
+        .filter(|(_, c)| scatters(c) && peaked(c))
+        .map(|(place, _)| place)
+        .collect()
+}
+
+/// The rays of one half of the table.
+fn half_rows(view: &View<'_>, horizon: f64, span: f64, rows: usize) -> Vec<TableRow> {
+    let mu_sun = view.ray(view.sun()).mu;
+    let sin_sun = ((1.0 - mu_sun) * (1.0 + mu_sun)).max(0.0).sqrt();
+    (0..rows)
+        .map(|row| {
+            let x = row as f64 / (rows - 1) as f64;
+            // The horizon itself is a jump: start a hair's breadth from it.
+            let (mu, cos_elevation) = (horizon + span * (x * x).max(1e-9)).sin_cos();
+            let mut fan = Fan::default();
+            for azimuth in 0..=AZIMUTHS {
+                let cos_azimuth = (PI * azimuth as f64 / AZIMUTHS as f64).cos();
+                fan.push(
+                    mu_sun,
+                    (mu * mu_sun + cos_elevation * sin_sun * cos_azimuth).clamp(-1.0, 1.0),
+                );
+            }
+            TableRow {
+                start: (view.radius_m(), mu),
+                fan,
+            }
+        })
+        .collect()
+}
+
+/// For each block of wavelengths, the weights that turn its lanes into the table's channels.
+fn channel_matrices(view: &View<'_>, channels: TableChannels) -> Vec<ChannelMatrix> {
+    let solar = view.solar_irradiance();
+    let grid = view.sky().grid();
+    let rows: Vec<Vec<f32>> = match channels {
+        TableChannels::Spectral => (0..solar.len())
+            .map(|channel| {
+                let mut row = vec![0.0; solar.len()];
+                row[channel] = solar[channel];
+                row
+            })
+            .collect(),
+        TableChannels::Rgb(space) => {
+            let from_xyz = space.from_xyz_matrix();
+            let lanes: Vec<[f64; 3]> = grid
+                .xyz_weights()
+                .iter()
+                .map(|&w| rgb::apply(&from_xyz, w))
+                .collect();
+            (0..3)
+                .map(|c| {
+                    lanes
+                        .iter()
+                        .zip(&solar)
+                        .map(|(w, &e)| (w[c] * f64::from(e)) as f32)
+                        .collect()
+                })
+                .collect()
+        }
+    };
+    let mut first = 0;
+    view.sky()
+        .blocks
+        .iter()
+        .map(|block| {
+            let lanes = first..first + block.lanes();
+            first = lanes.end;
+            ChannelMatrix {
+                weights: rows.iter().map(|row| row[lanes.clone()].to_vec()).collect(),
+            }
+        })
+        .collect()
+}
