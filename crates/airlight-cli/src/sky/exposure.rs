@@ -10,7 +10,7 @@ use airlight_render::tone::{Exposure, FilmicSettings, Metering, ToneCurve, ToneM
 const METERED_WIDTH: u32 = 96;
 /// What ground counts against sky: a dark foreground is not to wash out the sky above it.
 const GROUND_SHARE: f64 = 0.2;
-/// Stops by which a sky is brighter than middle grey.
+/// Stops by which a picture that is all sky is brighter than middle grey; one that is all ground (from space) by none.
 const SKY_STOPS: f64 = 1.0;
 /// Luminance of a daylight sky, cd/m^2, and by how many stops a picture gets darker for each stop below it: dusk is to
 /// look like dusk.
@@ -49,6 +49,7 @@ pub fn of(drawing: &Drawing<'_>, shot: &Shot<'_>) -> Result<Exposure, CliError> 
     let rows = drawing.rows(shot, &frame, Layer::Sky, 1.0);
     let pixels = super::draw::stored(&rows, &frame);
     let mut samples = Vec::with_capacity(pixels.len());
+    let (mut lit_sky, mut lit) = (0.0f64, 0.0f64);
     for (index, rgb) in (0..).zip(&pixels) {
         let (i, j) = (index % frame.size().width(), index / frame.size().width());
         let luminance = drawing.channels.space.luminance(rgb.map(f64::from));
@@ -56,10 +57,12 @@ pub fn of(drawing: &Drawing<'_>, shot: &Shot<'_>) -> Result<Exposure, CliError> 
             .pixel_direction(i, j)
             .is_some_and(|direction| shot.is_below_horizon(direction));
         let share = if below { GROUND_SHARE } else { 1.0 };
-        samples.push((
-            luminance as f32,
-            (share * frame.pixel_solid_angle(i, j)) as f32,
-        ));
+        let weight = share * frame.pixel_solid_angle(i, j);
+        samples.push((luminance as f32, weight as f32));
+        if luminance > 0.0 {
+            lit += weight;
+            lit_sky += if below { 0.0 } else { weight };
+        }
     }
     let metering = Metering::default();
     // Where nothing is lit any exposure shows black.
@@ -67,8 +70,9 @@ pub fn of(drawing: &Drawing<'_>, shot: &Shot<'_>) -> Result<Exposure, CliError> 
         .typical_luminance(&samples)
         .unwrap_or(DAYLIGHT_CD_M2);
     let dusk_stops = DARKER_PER_STOP * (typical / DAYLIGHT_CD_M2).log2().min(0.0);
+    let sky_stops = SKY_STOPS * lit_sky / lit.max(f64::MIN_POSITIVE);
     Ok(Exposure::factor_of(metering.key / typical)?
-        .brighter_by(args.brighten + SKY_STOPS + dusk_stops)?)
+        .brighter_by(args.brighten + sky_stops + dusk_stops)?)
 }
 
 /// What makes display light of linear light.
