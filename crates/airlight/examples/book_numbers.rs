@@ -1,0 +1,107 @@
+//! Prints the numbers that the book states about the air and the sun: `cargo run --release --example book_numbers -p airlight`.
+
+use airlight::light::{self, Place, RefractingAir};
+use airlight::medium::aerosol::{turbidity_of_optical_depth, visibility_of_extinction_m};
+use airlight::medium::{gases, preset, preset_names};
+use airlight::optics::rayleigh;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    molecules();
+    haze()?;
+    presets()?;
+    sun()
+}
+
+/// Cross-sections and vertical optical depths of the standard atmosphere.
+fn molecules() {
+    println!(
+        "nm, cross-section m^2, King factor, depolarization, Rayleigh optical depth, ozone optical depth (300 DU)"
+    );
+    let (air, ozone) = (
+        gases::air(rayleigh::STANDARD_PRESSURE_PA),
+        gases::ozone(300.0),
+    );
+    for nm in [
+        360.0, 400.0, 450.0, 500.0, 550.0, 600.0, 650.0, 700.0, 800.0,
+    ] {
+        let king = rayleigh::king_factor(nm, rayleigh::CO2_PPM);
+        println!(
+            "{nm}, {:.4e}, {king:.4}, {:.4}, {:.4}, {:.4}",
+            rayleigh::cross_section_m2(nm, rayleigh::CO2_PPM),
+            rayleigh::depolarization_of_king_factor(king),
+            air.optical_depth(0.0, 100e3, nm),
+            ozone.optical_depth(0.0, 100e3, nm),
+        );
+    }
+}
+
+/// The three ways to state the same haze.
+fn haze() -> Result<(), Box<dyn std::error::Error>> {
+    println!("\natmosphere, optical depth of aerosol at 550 nm, turbidity, visibility km");
+    for name in ["clear", "average", "hazy"] {
+        let air = preset(name)?;
+        let aerosol = air.constituent("aerosol").ok_or("no aerosol")?;
+        let depth = aerosol.optical_depth(0.0, air.planet.top_altitude_m, 550.0);
+        println!(
+            "{name}, {depth:.3}, {:.2}, {:.1}",
+            turbidity_of_optical_depth(depth, air.clear_air()),
+            visibility_of_extinction_m(aerosol.extinction_per_m(550.0), air.clear_air()) / 1e3,
+        );
+    }
+    let clear = preset("clear")?.clear_air();
+    println!(
+        "no aerosol, 0, 1, {:.1}",
+        visibility_of_extinction_m(0.0, clear) / 1e3
+    );
+    Ok(())
+}
+
+/// What each atmosphere is made of.
+fn presets() -> Result<(), Box<dyn std::error::Error>> {
+    for (name, _) in preset_names() {
+        let air = preset(name)?;
+        let planet = &air.planet;
+        println!(
+            "\n{name}: radius {} km, top {} km, ground albedo {} / {} / {} at 440 / 550 / 680 nm",
+            planet.radius_m / 1e3,
+            planet.top_altitude_m / 1e3,
+            planet.ground_albedo.at(440.0),
+            planet.ground_albedo.at(550.0),
+            planet.ground_albedo.at(680.0),
+        );
+        println!(
+            "  sun: {:.4} W m^-2 nm^-1 at 550 nm, angular radius {:.5} deg, {:?}",
+            air.solar_irradiance.at(550.0),
+            air.sun.angular_radius_rad.to_degrees(),
+            air.sun.limb_darkening,
+        );
+        for part in &air.constituents {
+            let depth =
+                |nm| part.optical_depth(planet.ground_altitude_m, planet.top_altitude_m, nm);
+            let extinction = part.extinction_per_m(550.0);
+            println!(
+                "  {}: optical depth {:.4} / {:.4} / {:.4}, single-scattering albedo {:.3}, mean cosine {:.3}",
+                part.name,
+                depth(440.0),
+                depth(550.0),
+                depth(680.0),
+                part.scattering_per_m.at(550.0) / extinction,
+                part.phase.asymmetry(550.0),
+            );
+        }
+    }
+    Ok(())
+}
+
+/// The sun over Paris at midsummer, and how far the air lifts it.
+fn sun() -> Result<(), Box<dyn std::error::Error>> {
+    let paris = Place {
+        latitude_deg: 48.8584,
+        longitude_deg: 2.2945,
+        altitude_m: 0.0,
+    };
+    let time = light::ephemeris::parse_time("2026-06-21T21:15:00+02:00")?;
+    let sun = light::sun_position(time, paris, Some(RefractingAir::STANDARD))?;
+    println!("\nParis, 2026-06-21T21:15:00+02:00: {sun:?}");
+    Ok(())
+}

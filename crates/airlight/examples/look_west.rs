@@ -1,0 +1,24 @@
+//! The sky in the west in late afternoon: `cargo run --release -p airlight --example look_west`.
+
+use airlight::sky::{Sky, SkySettings, SunCoverage};
+use airlight::spectrum::{RgbSpace, WavelengthGrid};
+use airlight::{axes, medium};
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    // Solve for the light inside the air, for a sun 10 degrees high seen from the ground.
+    let air = medium::preset("average")?;
+    let settings = SkySettings {
+        suns: SunCoverage::near(10.0, 0.0),
+        ..Default::default()
+    };
+    let sky = Sky::prepare(&air, &WavelengthGrid::standard(), &settings)?;
+
+    // Stand 2 m up, with the sun in the south-west.
+    let view = sky.view(2.0, axes::direction(225.0, 10.0));
+
+    // Look west, 20 degrees up.
+    let light = view.along(axes::direction(270.0, 20.0), None);
+    let rgb = RgbSpace::Srgb.from_xyz(sky.grid().to_xyz(&light.radiance()));
+    println!("red, green, blue: {rgb:.0?} cd/m^2");
+    Ok(())
+}
