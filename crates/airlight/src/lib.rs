@@ -1,4 +1,4 @@
-//! What air does to light: the colour of sky and sun, haze over distance, fog.
+//! What air does to light: the colour of sky and sun, haze over distance.
 //!
 //! # World axes
 //! Right-handed, metres: **x east, y up, z south** (north is -z). Azimuth is measured clockwise from north,

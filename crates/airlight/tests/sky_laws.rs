@@ -158,6 +158,34 @@ fn a_table_gives_what_tracing_gives() {
 }
 
 #[test]
+fn a_table_of_many_wavelengths_gives_what_tracing_gives() {
+    // More than one block of lanes, and dust whose phase function depends on wavelength.
+    let grid =
+        WavelengthGrid::from_wavelengths_nm((0..20).map(|i| 400.0 + 17.0 * f64::from(i)).collect())
+            .unwrap();
+    let settings = SkySettings {
+        suns: SunCoverage::near(25.0, 0.0),
+        ..Default::default()
+    };
+    let sky = Sky::prepare(&presets::preset("mars").unwrap(), &grid, &settings).unwrap();
+    let view = sky.view(0.0, direction(120.0, 25.0));
+    let table = view.table(TableChannels::Spectral);
+    for eye in [
+        direction(118.0, 26.0),
+        direction(100.0, 5.0),
+        direction(300.0, 60.0),
+    ] {
+        let mut sampled = [0.0f32; 20];
+        table.sample(eye, &mut sampled);
+        let traced = view.along(eye, None).radiance();
+        assert!(
+            relative_difference(&sampled, &traced) < 0.01,
+            "{sampled:?} {traced:?}"
+        );
+    }
+}
+
+#[test]
 fn the_sky_on_the_ground_adds_up_to_what_the_solver_says_the_ground_receives() {
     // The ground's own radiance tells how much light it receives: albedo / pi times sun and sky.
     let sky = prepare("average", SunCoverage::near(35.0, 0.0));

@@ -43,12 +43,12 @@ pub trait Block: Send + Sync {
     /// Transmittance from a point to space along `mu`; 0 where the planet is in the way.
     fn transmittance_to_space(&self, radius_m: f64, mu: f64) -> Vec<f32>;
 
-    /// The scatterers whose phase function is peaked, by their place among the constituents, with their phase function
-    /// averaged over the lanes.
+    /// Phase function of a scatterer, given by its place among the constituents,
+    /// averaged over the lanes, 1/sr.
     fn peaked_phase(&self, constituent: usize, nu: f64) -> f64;
 
     /// Adds the light along each ray of `rows` to `out`: for each ray first one value a channel of all smooth light, then
-    /// for each of the `peaked` constituents one value a channel, to be multiplied by the mean of its phase function;
+    /// for each of the `peaked` constituents one value a channel, to be multiplied by the row's phase function;
     /// `width` values a ray in all.
     fn fill(
         &self,
@@ -65,6 +65,9 @@ pub struct TableRow {
     /// Distance of the eye from the planet's centre, m, and cosine of the zenith angle.
     pub start: (f64, f64),
     pub fan: Fan,
+    /// For each peaked constituent, its phase function along each ray, the same for all blocks of wavelengths: what
+    /// the pixels of a picture will be multiplied by.
+    pub phases: Vec<Vec<f32>>,
 }
 
 /// Solves for all `wavelengths_nm` in blocks of fitting width.
@@ -210,7 +213,7 @@ impl<const N: usize> Block for Solved<N> {
                 || {
                     let light = self.row_light(row);
                     for (slot, cell) in out.chunks_exact_mut(width).enumerate() {
-                        self.fill_cell(&light, row.fan.nu[slot], slot, &weights, peaked, cell);
+                        self.fill_cell(&light, row, slot, &weights, peaked, cell);
                     }
                 },
             );
@@ -277,7 +280,7 @@ impl<const N: usize> Solved<N> {
     fn fill_cell(
         &self,
         light: &RowLight<N>,
-        nu: f64,
+        row: &TableRow,
         slot: usize,
         weights: &[Spectrum<N>],
         peaked: &[usize],
@@ -287,12 +290,11 @@ impl<const N: usize> Solved<N> {
         let mut smooth = light.rest[slot];
         for (place, s) in self.air.scatterers.iter().enumerate() {
             let unphased = light.unphased[place * light.rest.len() + slot];
-            let phase = s.phase(&self.air, nu);
+            let phase = s.phase(&self.air, row.fan.nu[slot]);
             match peaked.iter().position(|&c| c == s.constituent) {
                 None => smooth = smooth.mul_acc(unphased, phase),
                 Some(part) => {
-                    let mean = self.mean(&phase);
-                    let value = unphased * phase / mean;
+                    let value = unphased * phase / row.phases[part][slot];
                     add_channels(
                         &mut cell[(1 + part) * channels..][..channels],
                         weights,

@@ -1,5 +1,7 @@
 //! Gauss-Legendre rules, with the running integral up to each node.
 
+use crate::quadrature::gauss_legendre;
+
 /// A Gauss-Legendre rule on `[0, 1]`.
 #[derive(Clone, Debug)]
 pub struct GaussRule {
@@ -15,7 +17,9 @@ pub struct GaussRule {
 impl GaussRule {
     /// The rule with `count` nodes.
     pub fn new(count: usize) -> Self {
-        let (nodes, weights) = nodes_and_weights(count);
+        let (nodes, weights) = gauss_legendre(count);
+        let nodes: Vec<f64> = nodes.iter().map(|x| 0.5 + 0.5 * x).collect();
+        let weights: Vec<f64> = weights.iter().map(|w| 0.5 * w).collect();
         let running = nodes
             .iter()
             .map(|&end| {
@@ -54,41 +58,6 @@ fn integrate_cardinal(nodes: &[f64], weights: &[f64], j: usize, end: f64) -> f64
         .zip(weights)
         .map(|(&x, &w)| w * end * cardinal(x * end))
         .sum()
-}
-
-/// Newton's iteration on the Legendre polynomial from the asymptotic positions of its roots.
-fn nodes_and_weights(count: usize) -> (Vec<f64>, Vec<f64>) {
-    let n = count as f64;
-    (0..count)
-        .rev()
-        .map(|i| {
-            let mut x = (std::f64::consts::PI * (i as f64 + 0.75) / (n + 0.5)).cos();
-            let mut slope = 1.0;
-            for _ in 0..100 {
-                let (value, derivative) = legendre_with_slope(count, x);
-                slope = derivative;
-                let step = value / derivative;
-                x -= step;
-                if step.abs() < 1e-15 {
-                    break;
-                }
-            }
-            (0.5 + 0.5 * x, 1.0 / ((1.0 - x * x) * slope * slope))
-        })
-        .unzip()
-}
-
-/// `P_n(x)` and its derivative, for `|x| < 1`.
-fn legendre_with_slope(n: usize, x: f64) -> (f64, f64) {
-    let (mut below, mut here) = (1.0, x);
-    for k in 2..=n {
-        let k = k as f64;
-        (below, here) = (here, ((2.0 * k - 1.0) * x * here - (k - 1.0) * below) / k);
-    }
-    if n == 0 {
-        return (1.0, 0.0);
-    }
-    (here, n as f64 * (x * here - below) / (x * x - 1.0))
 }
 
 #[cfg(test)]

@@ -28,7 +28,7 @@ impl SkyTable {
         let channel_count = matrices[0].weights.len();
         let width = (channel_count * (1 + peaked.len())).next_multiple_of(4);
         let half = |span: f64, rows: usize| {
-            let table_rows = half_rows(view, horizon_elevation, span, rows);
+            let table_rows = half_rows(view, &peaked, horizon_elevation, span, rows);
             let mut values = vec![0.0; rows * (AZIMUTHS + 1) * width];
             for (block, matrix) in sky.blocks.iter().zip(&matrices) {
                 block.fill(&table_rows, matrix, &peaked, width, &mut values);
@@ -87,7 +87,14 @@ fn peaked_constituents(view: &View<'_>) -> Vec<usize> {
 }
 
 /// The rays of one half of the table.
-fn half_rows(view: &View<'_>, horizon: f64, span: f64, rows: usize) -> Vec<TableRow> {
+fn half_rows(
+    view: &View<'_>,
+    peaked: &[usize],
+    horizon: f64,
+    span: f64,
+    rows: usize,
+) -> Vec<TableRow> {
+    let first_block = &view.sky().blocks[0];
     let mu_sun = view.ray(view.sun()).mu;
     let sin_sun = ((1.0 - mu_sun) * (1.0 + mu_sun)).max(0.0).sqrt();
     (0..rows)
@@ -103,9 +110,17 @@ fn half_rows(view: &View<'_>, horizon: f64, span: f64, rows: usize) -> Vec<Table
                     (mu * mu_sun + cos_elevation * sin_sun * cos_azimuth).clamp(-1.0, 1.0),
                 );
             }
+            let phase_of = |&c: &usize| {
+                fan.nu
+                    .iter()
+                    .map(|&nu| first_block.peaked_phase(c, nu) as f32)
+                    .collect()
+            };
+            let phases = peaked.iter().map(phase_of).collect();
             TableRow {
                 start: (view.radius_m(), mu),
                 fan,
+                phases,
             }
         })
         .collect()
