@@ -2,6 +2,7 @@
 
 use super::block::{self, Block};
 use super::coverage::SunCoverage;
+use super::harmonics::Harmonics;
 use super::orders::{Directions, OrderSettings};
 use super::shell::{MAX_CONSTITUENTS, Shell};
 use super::view::View;
@@ -61,6 +62,59 @@ impl Default for SkySettings {
     }
 }
 
+impl SkySettings {
+    /// Checks what the solver relies on.
+    ///
+    /// # Errors
+    /// [`SkyError::Setting`] for the first setting out of its range.
+    pub fn validate(&self) -> Result<(), SkyError> {
+        let orders = &self.orders;
+        let directions = |d: &Directions| {
+            d.azimuths >= 1
+                && (1..=4).contains(&d.panel_nodes)
+                && d.zenith_nodes.iter().all(|&n| (1..=64).contains(&n))
+        };
+        let finite = match self.suns {
+            SunCoverage::All => true,
+            SunCoverage::Near {
+                sun_elevation_deg,
+                observer_altitude_m,
+            } => (-90.0..=90.0).contains(&sun_elevation_deg) && observer_altitude_m.is_finite(),
+        };
+        let checks = [
+            (
+                finite,
+                "suns: an elevation from -90 to 90 degrees and a finite altitude",
+            ),
+            (
+                (2..=200).contains(&self.altitudes),
+                "altitudes: from 2 to 200",
+            ),
+            (
+                orders.degree <= Harmonics::MAX_DEGREE,
+                "orders.degree: at most 16",
+            ),
+            (
+                orders.peak_degree >= orders.degree && orders.peak_degree <= 64,
+                "orders.peak_degree: from degree to 64",
+            ),
+            (
+                orders.rescattered_degree <= orders.degree,
+                "orders.rescattered_degree: at most degree",
+            ),
+            (
+                directions(&orders.first) && directions(&orders.later),
+                "directions: 1 to 64 zenith nodes, 1 to 4 panel nodes, at least 1 azimuth",
+            ),
+            (orders.tolerance > 0.0, "orders.tolerance: above 0"),
+        ];
+        match checks.into_iter().find(|(holds, _)| !holds) {
+            Some((_, expected)) => Err(SkyError::Setting(expected)),
+            None => Ok(()),
+        }
+    }
+}
+
 /// Why a sky cannot be prepared.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SkyError {
@@ -69,6 +123,9 @@ pub enum SkyError {
         "the sky solver handles at most {MAX_CONSTITUENTS} constituents: this atmosphere has {0}"
     )]
     TooManyConstituents(usize),
+    /// A setting is out of its range; says which, and what would be right.
+    #[error("sky setting out of range; {0}")]
+    Setting(&'static str),
     /// The atmosphere itself is refused.
     #[error(transparent)]
     Atmosphere(#[from] AtmosphereError),
@@ -87,12 +144,14 @@ impl Sky {
     /// atmosphere's own).
     ///
     /// # Errors
-    /// [`SkyError`] for an atmosphere that fails its own validation or has too many constituents.
+    /// [`SkyError`] for settings out of range, and for an atmosphere that fails its own validation or has too many
+    /// constituents.
     pub fn prepare(
         atmosphere: &Atmosphere,
         grid: &WavelengthGrid,
         settings: &SkySettings,
     ) -> Result<Self, SkyError> {
+        settings.validate()?;
         atmosphere.validate()?;
         let shell = Arc::new(Shell::new(atmosphere)?);
         let grid = grid.clone().with_solar(&atmosphere.solar_irradiance);
@@ -123,5 +182,33 @@ impl Sky {
     /// vector `sun` (world axes: [`crate::axes`]), at the planet's mean distance from it.
     pub fn view(&self, altitude_m: f64, sun: DVec3) -> View<'_> {
         View::new(self, altitude_m, sun)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn settings_out_of_range_are_refused() {
+        type Change = fn(&mut SkySettings);
+        let changes: [Change; 7] = [
+            |s| s.suns = SunCoverage::near(f64::NAN, 0.0),
+            |s| s.altitudes = 1,
+            |s| s.orders.degree = 17,
+            |s| s.orders.peak_degree = 7,
+            |s| s.orders.rescattered_degree = 9,
+            |s| s.orders.later.panel_nodes = 5,
+            |s| s.orders.tolerance = 0.0,
+        ];
+        for change in changes {
+            let mut settings = SkySettings::default();
+            assert_eq!(settings.validate(), Ok(()));
+            change(&mut settings);
+            assert!(
+                matches!(settings.validate(), Err(SkyError::Setting(_))),
+                "{settings:?}"
+            );
+        }
     }
 }
