@@ -79,13 +79,10 @@ impl SkySettings {
             SunCoverage::Near {
                 sun_elevation_deg,
                 observer_altitude_m,
-            } => (-90.0..=90.0).contains(&sun_elevation_deg) && observer_altitude_m.is_finite(),
+            } => sun_elevation_deg.is_finite() && observer_altitude_m.is_finite(),
         };
         let checks = [
-            (
-                finite,
-                "suns: an elevation from -90 to 90 degrees and a finite altitude",
-            ),
+            (finite, "suns: a finite elevation and altitude"),
             (
                 (2..=200).contains(&self.altitudes),
                 "altitudes: from 2 to 200",
