@@ -4,6 +4,7 @@
 //! inverse air mass `N(r, 1) / N(r, mu)`: close to `mu` high in the sky and smooth down to the horizon, so that
 //! third-degree interpolation keeps the columns to about 1e-4 (see the test).
 
+use super::cubic;
 use super::quadrature::GaussRule;
 use super::shell::{MAX_CONSTITUENTS, PerConstituent, Shell};
 use rayon::prelude::*;
@@ -34,7 +35,7 @@ impl ColumnRow {
     /// Columns from this altitude along `mu >= 0` to the top, in metres of density 1.
     #[inline(always)]
     pub fn to_space_m(&self, mu: f32) -> [f32; MAX_CONSTITUENTS] {
-        let (first, weights) = cubic(f64::from(mu.sqrt()), ANGLES);
+        let (first, weights) = cubic::among(f64::from(mu.sqrt()), ANGLES);
         let mut inverse = [0.0f32; MAX_CONSTITUENTS];
         for (entry, w) in self.inverse_air_mass[first..first + 4].iter().zip(weights) {
             for c in 0..MAX_CONSTITUENTS {
@@ -119,8 +120,8 @@ impl ColumnTable {
     fn upward_m(&self, shell: &Shell, radius_m: f64, mu: f64) -> PerConstituent {
         let x = shell.altitude_coordinate(radius_m);
         let vertical = self.vertical_m(x);
-        let (row, row_weights) = cubic(x, ALTITUDES);
-        let (column, column_weights) = cubic(mu.sqrt(), ANGLES);
+        let (row, row_weights) = cubic::among(x, ALTITUDES);
+        let (column, column_weights) = cubic::among(mu.sqrt(), ANGLES);
         let mut inverse = [0.0f32; MAX_CONSTITUENTS];
         for (i, wi) in row_weights.iter().enumerate() {
             let entries = &self.inverse_air_mass[(row + i) * ANGLES + column..][..4];
@@ -142,7 +143,7 @@ impl ColumnTable {
     #[inline(always)]
     pub(super) fn at(&self, shell: &Shell, radius_m: f64) -> ColumnRow {
         let x = shell.altitude_coordinate(radius_m);
-        let (first, weights) = cubic(x, ALTITUDES);
+        let (first, weights) = cubic::among(x, ALTITUDES);
         let mut row = ColumnRow {
             vertical: self.vertical_m(x).map(|column| column as f32),
             inverse_air_mass: [[0.0; MAX_CONSTITUENTS]; ANGLES],
@@ -171,22 +172,4 @@ impl ColumnTable {
         let ([v0, d0], [v1, d1]) = (&self.vertical[below], &self.vertical[below + 1]);
         std::array::from_fn(|c| (h0 * v0[c] + h1 * v1[c] + s0 * d0[c] + s1 * d1[c]).max(0.0))
     }
-}
-
-/// First node and weights of third-degree Lagrange interpolation at `x` in `[0, 1]` among `count` even nodes.
-#[inline(always)]
-fn cubic(x: f64, count: usize) -> (usize, [f64; 4]) {
-    let position = x * (count - 1) as f64;
-    let first = (position as usize).saturating_sub(1).min(count - 4);
-    let t = position - first as f64;
-    let (a, b, c, d) = (t, t - 1.0, t - 2.0, t - 3.0);
-    (
-        first,
-        [
-            -b * c * d / 6.0,
-            a * c * d / 2.0,
-            -a * b * d / 2.0,
-            a * b * c / 6.0,
-        ],
-    )
 }

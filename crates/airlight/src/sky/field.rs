@@ -63,11 +63,6 @@ impl FieldGrid {
     pub fn place_of_sun(&self, mu_sun: f64) -> Place {
         place(&self.sun_cosines, mu_sun)
     }
-
-    /// Number of `(radius, sun cosine)` nodes.
-    pub fn points(&self) -> usize {
-        self.radii_m.len() * self.sun_cosines.len()
-    }
 }
 
 /// Heights at even steps of a measure that grows with the column of each scatterer passed and with height itself.

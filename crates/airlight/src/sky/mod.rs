@@ -25,6 +25,7 @@ pub mod air;
 mod block;
 pub mod columns;
 mod coverage;
+mod cubic;
 mod fan;
 pub mod field;
 pub mod harmonics;

@@ -5,6 +5,7 @@
 //! light scattered once by a constituent with a peaked phase function is stored without it, and the phase function is
 //! applied for each pixel.
 
+use super::cubic;
 use super::quadrature::GaussRule;
 use super::vector::vectorized;
 use crate::spectrum::RgbSpace;
@@ -137,7 +138,7 @@ impl SkyTable {
     #[inline(always)]
     fn line(&self, half: &Half, row: f64) -> Vec<f32> {
         let stride = (AZIMUTHS + 1) * self.width;
-        let (first, weights) = cubic(row, half.rows);
+        let (first, weights) = row_cubic(row, half.rows);
         let mut line = vec![0.0f32; stride];
         for (i, w) in weights.iter().enumerate() {
             let values = &half.values[(first + i) * stride..][..stride];
@@ -258,7 +259,7 @@ impl SkyTable {
         out: &mut [f32],
     ) {
         let stride = (AZIMUTHS + 1) * self.width;
-        let (first_row, row_weights) = cubic(row, half.rows);
+        let (first_row, row_weights) = row_cubic(row, half.rows);
         // Four values at a time stay in one register over all sixteen cells.
         let mut small = [0.0f32; SMALL_WIDTH];
         let mut large = Vec::new();
@@ -305,12 +306,11 @@ impl SkyTable {
     }
 }
 
-/// First node and weights of third-degree Lagrange interpolation at `x` in `[0, 1]` among `count` even nodes.
+/// First row and weights at the row coordinate `x` in `[0, 1]`.
 #[inline(always)]
-fn cubic(x: f64, count: usize) -> (usize, [f32; 4]) {
-    let position = x * (count - 1) as f64;
-    let first = (position as usize).saturating_sub(1).min(count - 4);
-    (first, cubic_weights((position - first as f64) as f32))
+fn row_cubic(x: f64, rows: usize) -> (usize, [f32; 4]) {
+    let (first, weights) = cubic::among(x, rows);
+    (first, weights.map(|w| w as f32))
 }
 
 /// The same in azimuth, where the table is its own mirror image beyond both ends.
@@ -326,16 +326,8 @@ fn cubic_mirrored(x: f64) -> ([usize; 4], [f32; 4]) {
             node
         }
     });
-    (nodes, cubic_weights((position - first as f64) as f32))
-}
-
-#[inline(always)]
-fn cubic_weights(t: f32) -> [f32; 4] {
-    let (a, b, c, d) = (t, t - 1.0, t - 2.0, t - 3.0);
-    [
-        -b * c * d / 6.0,
-        a * c * d / 2.0,
-        -a * b * d / 2.0,
-        a * b * c / 6.0,
-    ]
+    (
+        nodes,
+        cubic::weights(position - first as f64).map(|w| w as f32),
+    )
 }
