@@ -13,6 +13,7 @@
 //! - [`sky`]: the solver for a spherical, multiply scattering atmosphere.
 
 pub mod axes;
+pub mod fog;
 pub mod light;
 pub mod medium;
 pub mod optics;

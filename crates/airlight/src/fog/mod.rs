@@ -1,0 +1,6 @@
+//! Fog in closed form.
+pub mod lanes;
+pub mod line;
+pub mod matter;
+pub mod profile;
+pub mod visibility;
