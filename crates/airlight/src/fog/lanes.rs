@@ -28,6 +28,10 @@ pub trait Lanes:
     /// Relative error below 1e-15 in f64, 2e-7 in f32; `1 / x` for any large x.
     fn mean_transmittance(self) -> Self;
 
+    /// `((1 - e^-x) / x - e^-x)` for `x >= 0`: the mean transmittance less that of the whole, `x / 2` for small `x`.
+    /// Relative error below 1e-13 in f64, 1e-6 in f32.
+    fn mean_less_end(self) -> Self;
+
     /// The smaller of each lane and 0.
     fn min_zero(self) -> Self;
 
@@ -52,6 +56,23 @@ impl Lanes for f64 {
             1.0 - 0.5 * self
         } else {
             -(-self).exp_m1() / self
+        }
+    }
+
+    #[inline(always)]
+    fn mean_less_end(self) -> Self {
+        if self < 0.5 {
+            // sum over k of (-x)^k (k - 1) / k!, from k = 2, over -x.
+            let mut term = 0.5 * self;
+            let mut sum = term;
+            for k in 3..18 {
+                let k = f64::from(k);
+                term *= -self * (k - 1.0) / (k * (k - 2.0));
+                sum += term;
+            }
+            sum
+        } else {
+            self.mean_transmittance() - (-self).exp()
         }
     }
 
@@ -92,6 +113,24 @@ impl<const N: usize> Lanes for Spectrum<N> {
                             + x * (1.0 / 120.0
                                 + x * (-1.0 / 720.0 + x * (1.0 / 5040.0 - x / 40320.0))))));
             let direct = (1.0 - e[i]) / x;
+            if x < 0.75 { series } else { direct }
+        })
+    }
+
+    #[inline(always)]
+    fn mean_less_end(self) -> Self {
+        let e = self.map(|x| -x).exp();
+        Self::from_fn(|i| {
+            let x = self[i];
+            // x / 2 - x^2 / 3 + x^3 / 8 - x^4 / 30 + ...: the k-th term is (-x)^k k / (k + 1)!.
+            let series = x
+                * (1.0 / 2.0
+                    + x * (-1.0 / 3.0
+                        + x * (1.0 / 8.0
+                            + x * (-1.0 / 30.0
+                                + x * (1.0 / 144.0
+                                    + x * (-1.0 / 840.0 + x * (1.0 / 5760.0 - x / 45360.0)))))));
+            let direct = (1.0 - e[i]) / x - e[i];
             if x < 0.75 { series } else { direct }
         })
     }
