@@ -21,7 +21,13 @@ use super::lanes::Lanes;
 /// 1e30), `near` and `along` must not be negative, nor may `near + growth`.
 #[inline(always)]
 pub fn once<L: Lanes>(near: L, growth: L, along: L) -> L {
-    (near + growth.min_zero()).exp_neg() * along * growth.abs().mean_transmittance()
+    along * mean_once(near, growth)
+}
+
+/// [`once`] for each unit of optical depth: the mean of `e^-(d + t)` along the line.
+#[inline(always)]
+pub fn mean_once<L: Lanes>(near: L, growth: L) -> L {
+    (near + growth.min_zero()).exp_neg() * growth.abs().mean_transmittance()
 }
 
 /// The same for a source that is not dimmed: `1 - e^-along`, exact where `along` is tiny.

@@ -1,0 +1,115 @@
+//! What shines on a fog, and the ground under it.
+
+use super::line::Line;
+use super::matter::FogError;
+use crate::spectrum::Spectrum;
+use glam::DVec3;
+
+/// The sun above the fog.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sun<const N: usize> {
+    /// Unit vector towards it.
+    pub direction: DVec3,
+    /// Irradiance on a surface that faces it, above the fog (W m^-2 nm^-1, lux, or any unit of one's own).
+    pub irradiance: Spectrum<N>,
+}
+
+/// The light that a fog is in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Light<const N: usize> {
+    /// The sun, if it shines.
+    pub sun: Option<Sun<N>>,
+    /// Radiance that comes evenly from all sides: the sky's, on average.
+    pub ambient: Spectrum<N>,
+}
+
+/// The ground under a fog.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ground {
+    /// Its height, m.
+    pub height_m: f64,
+    /// Its radius, m; infinite where it is flat.
+    pub radius_m: f64,
+}
+
+/// Which light a fog scatters.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Scattering {
+    /// Sun and ambient light scattered once, neither dimmed by the fog on its way to where it is scattered: Ishiyama's
+    /// model as printed. Right for thin fog; too bright in thick.
+    Undimmed,
+    /// Sunlight scattered once after its way through the fog; ambient light the same everywhere.
+    #[default]
+    Single,
+}
+
+impl Ground {
+    /// Flat ground at height 0.
+    pub const FLAT: Self = Self {
+        height_m: 0.0,
+        radius_m: f64::INFINITY,
+    };
+
+    /// The Earth's mean radius, m, at height 0.
+    pub const EARTH: Self = Self {
+        height_m: 0.0,
+        radius_m: 6.371e6,
+    };
+
+    /// Whether it is flat.
+    #[inline]
+    pub fn is_flat(&self) -> bool {
+        self.radius_m == f64::INFINITY
+    }
+
+    /// Whether an endless line meets it.
+    #[inline]
+    pub(super) fn blocks(&self, line: &Line) -> bool {
+        if self.is_flat() {
+            return line.climb <= 0.0;
+        }
+        let lowest = (-0.5 * line.climb / line.bend_per_m).max(0.0);
+        line.climb < 0.0 && line.height_at(lowest) < self.height_m
+    }
+
+    pub(super) fn validate(&self) -> Result<(), FogError> {
+        let number = |what, got: f64, right| Err(FogError::Number { what, got, right });
+        if !self.height_m.is_finite() {
+            return number("the height of the ground, m,", self.height_m, "finite");
+        }
+        match self.radius_m > 0.0 {
+            true => Ok(()),
+            false => number(
+                "the radius of the ground, m,",
+                self.radius_m,
+                "above 0, or infinite for flat ground",
+            ),
+        }
+    }
+}
+
+impl<const N: usize> Light<N> {
+    pub(super) fn validate(&self) -> Result<(), FogError> {
+        let check = |what, light: Spectrum<N>| match light
+            .0
+            .iter()
+            .find(|v| !(**v >= 0.0 && v.is_finite()))
+        {
+            Some(&got) => Err(FogError::Light { what, got }),
+            None => Ok(()),
+        };
+        check("ambient light", self.ambient)?;
+        if let Some(sun) = &self.sun {
+            check("the sun's irradiance", sun.irradiance)?;
+            let length = sun.direction.length();
+            if (length - 1.0).abs() > 1e-6 || length.is_nan() {
+                return Err(FogError::Number {
+                    what: "the length of the direction to the sun",
+                    got: length,
+                    right: "1",
+                });
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,446 @@
+use super::*;
+use crate::axes;
+use crate::fog::Sun;
+use crate::optics::{Depolarization, PhaseFunction};
+use crate::quadrature::{gauss_legendre, integrate_by};
+
+const EARTH: Ground = Ground::EARTH;
+
+fn matter(extinction_per_m: [f32; 3], albedo: f32, phase: PhaseFunction) -> Matter<3> {
+    Matter {
+        extinction_per_m: Spectrum(extinction_per_m),
+        single_scattering_albedo: Spectrum::splat(albedo),
+        phase,
+    }
+}
+
+fn droplets(extinction: f32) -> Matter<3> {
+    let e = [extinction, 1.1 * extinction, 1.2 * extinction];
+    matter(e, 0.95, PhaseFunction::HenyeyGreenstein { g: 0.8 })
+}
+
+fn molecules(extinction: f32) -> Matter<3> {
+    let e = [0.2 * extinction, 0.5 * extinction, extinction];
+    matter(e, 1.0, PhaseFunction::Rayleigh(Depolarization::None))
+}
+
+fn light(sun_elevation_deg: f64) -> Light<3> {
+    Light {
+        sun: Some(Sun {
+            direction: axes::direction(120.0, sun_elevation_deg),
+            irradiance: Spectrum([1.5, 1.8, 1.9]),
+        }),
+        ambient: Spectrum([0.1, 0.15, 0.3]),
+    }
+}
+
+/// Single scattering along a line by brute force in f64, lane by lane: `(optical depth, path radiance)`.
+fn by_quadrature(
+    layers: &[Layer<3>],
+    ground: Ground,
+    light: &Light<3>,
+    scattering: Scattering,
+    line: &Line,
+    cos_sun: f64,
+    lane: usize,
+) -> (f64, f64) {
+    let sine = light.sun.unwrap().direction.y;
+    let depth = |line: &Line| -> f64 {
+        let of = |l: &Layer<3>| f64::from(l.matter.extinction_per_m[lane]) * l.profile.column(line);
+        layers.iter().map(of).sum()
+    };
+    // Stop where nothing is left to see.
+    let mut end = line.length_m.min(1e9);
+    while depth(&line.part(0.0, end)) > 60.0 {
+        end *= 0.8;
+    }
+    let rule = gauss_legendre(12);
+    let mut breaks: Vec<f64> = (0..45)
+        .flat_map(|k| {
+            let step = end * 0.55f64.powi(k);
+            [step, end - step]
+        })
+        .collect();
+    let lowest = -0.5 * line.climb / line.bend_per_m;
+    let mut kinks = vec![lowest];
+    for layer in layers {
+        let edge = match layer.profile {
+            Profile::Clamped { base_height_m, .. } => base_height_m,
+            Profile::Slab { top_height_m } => top_height_m,
+            _ => continue,
+        };
+        let (a, b) = line.below(edge);
+        kinks.extend([a, b]);
+    }
+    for kink in kinks.into_iter().filter(|k| k.is_finite()) {
+        breaks.push(kink);
+        for k in 0..45 {
+            let step = end * 0.55f64.powi(k);
+            breaks.extend([kink - step, kink + step]);
+        }
+    }
+    breaks.sort_by(f64::total_cmp);
+    let path = integrate_by(&rule, 0.0, end, &breaks, |s| {
+        let height = line.height_at(s);
+        let to_sun = Line::new(height, sine, f64::INFINITY, ground.radius_m);
+        let sunlit = if ground.blocks(&to_sun) && scattering != Scattering::Undimmed {
+            0.0
+        } else if scattering == Scattering::Undimmed {
+            1.0
+        } else {
+            let solid = layers.iter().filter(|l| l.profile != Profile::Uniform);
+            let of = |l: &Layer<3>| {
+                f64::from(l.matter.extinction_per_m[lane]) * l.profile.column(&to_sun)
+            };
+            (-solid.map(of).sum::<f64>()).exp()
+        };
+        let mut source = 0.0;
+        for layer in layers {
+            let scattered = f64::from(layer.matter.scattering_per_m()[lane]);
+            source += scattered
+                * layer.profile.density(height)
+                * (f64::from(light.ambient[lane])
+                    + f64::from(light.sun.unwrap().irradiance[lane])
+                        * sunlit
+                        * layer.matter.phase.evaluate(cos_sun, 550.0));
+        }
+        source * (-depth(&line.part(0.0, s))).exp()
+    });
+    (depth(line), path)
+}
+
+fn worst_error(layers: &[Layer<3>], ground: Ground, lines: &[Line], elevations: &[f64]) -> f64 {
+    let mut worst = 0.0f64;
+    for &elevation in elevations {
+        for scattering in [Scattering::Undimmed, Scattering::Single] {
+            let light = light(elevation);
+            let fog = Fog::new(layers, ground, light, scattering).unwrap();
+            for line in lines {
+                let got = fog.along_line(line, 0.3);
+                for lane in [0, 2] {
+                    let (depth, path) =
+                        by_quadrature(layers, ground, &light, scattering, line, 0.3, lane);
+                    let t = f64::from(got.transmittance[lane]);
+                    assert!(
+                        (t - (-depth).exp()).abs() < 1e-4 * (-depth).exp() + 1e-37,
+                        "T {t} against e^-{depth}: {line:?}"
+                    );
+                    // What f32 cannot hold counts as dark.
+                    let error = (f64::from(got.path_radiance[lane]) - path).abs() / (path + 1e-30);
+                    if error > worst {
+                        worst = error;
+                        if std::env::var("FOG_ERRORS").is_ok() {
+                            println!(
+                                "{error:.2e} {scattering:?} sun {elevation} lane {lane} {line:?} depth {depth}: {} {path}",
+                                got.path_radiance[lane]
+                            );
+                        }
+                    }
+                }
+            }
+        }
+    }
+    worst
+}
+
+/// Lines that stay above `floor_m`.
+fn lines(ground: Ground, floor_m: f64, heights: &[f64], lengths: &[f64]) -> Vec<Line> {
+    let mut lines = Vec::new();
+    for &height in heights {
+        for climb in [
+            0.0, 1e-7, -1e-7, 1e-3, -1e-3, 0.05, -0.05, 0.5, -0.5, 1.0, -1.0,
+        ] {
+            for &length in lengths {
+                let line = Line::new(height, climb, length, ground.radius_m);
+                let lowest = (-0.5 * climb / line.bend_per_m).clamp(0.0, length);
+                let lowest = if lowest.is_nan() { 0.0 } else { lowest };
+                if line.end_height_m().min(line.height_at(lowest)) >= floor_m {
+                    lines.push(line);
+                }
+            }
+        }
+    }
+    lines
+}
+
+#[test]
+fn one_profile_over_flat_ground_is_exact() {
+    for scale in [1e-2, 1.0, 30.0, 1e3, 1e5, 1e7] {
+        let exponential = Profile::Exponential {
+            reference_height_m: 0.0,
+            scale_height_m: scale,
+        };
+        let clamped = Profile::Clamped {
+            base_height_m: 12.0,
+            scale_height_m: scale,
+        };
+        for profile in [
+            exponential,
+            clamped,
+            Profile::Slab { top_height_m: 40.0 },
+            Profile::Uniform,
+        ] {
+            for extinction in [1e-6, 0.01, 1.0] {
+                let layers = [
+                    Layer {
+                        profile,
+                        matter: droplets(extinction),
+                    },
+                    Layer {
+                        profile,
+                        matter: molecules(0.3 * extinction),
+                    },
+                ];
+                // A fog so deep that the sun cannot be seen at all leaves f32's range.
+                if extinction as f64 * profile.column_above(0.0) > 10.0
+                    && profile != Profile::Uniform
+                {
+                    continue;
+                }
+                let heights = [0.0, 1.7, 30.0].map(|h: f64| h.min(20.0 * scale));
+                let lengths = [1e-6, 1e-2, 3.0, 200.0, 1e4, 1e7];
+                let lines = lines(Ground::FLAT, -scale.min(20.0), &heights, &lengths);
+                let worst = worst_error(&layers, Ground::FLAT, &lines, &[0.5, 30.0]);
+                assert!(worst < 1e-5, "{profile:?} {extinction}: {worst:.2e}");
+            }
+        }
+    }
+}
+
+/// What the doc comment of [`Fog::along_line`] states.
+#[test]
+fn several_profiles_and_round_ground_err_as_stated() {
+    let exponential = |scale_height_m| Profile::Exponential {
+        reference_height_m: 0.0,
+        scale_height_m,
+    };
+    let valley = Profile::Clamped {
+        base_height_m: 30.0,
+        scale_height_m: 10.0,
+    };
+    let slab = Profile::Slab { top_height_m: 80.0 };
+    let fogs: [Vec<Layer<3>>; 4] = [
+        vec![Layer {
+            profile: exponential(1200.0),
+            matter: droplets(1e-4),
+        }],
+        vec![
+            Layer {
+                profile: exponential(50.0),
+                matter: droplets(0.02),
+            },
+            Layer {
+                profile: exponential(1200.0),
+                matter: droplets(2e-4),
+            },
+            Layer {
+                profile: exponential(8000.0),
+                matter: molecules(3e-5),
+            },
+        ],
+        vec![
+            Layer {
+                profile: valley,
+                matter: droplets(0.03),
+            },
+            Layer {
+                profile: exponential(2000.0),
+                matter: droplets(1e-4),
+            },
+        ],
+        vec![
+            Layer {
+                profile: slab,
+                matter: droplets(0.01),
+            },
+            Layer {
+                profile: exponential(15.0),
+                matter: droplets(0.02),
+            },
+        ],
+    ];
+    for layers in &fogs {
+        for ground in [Ground::FLAT, EARTH] {
+            let lines = lines(
+                ground,
+                -1.0,
+                &[0.0, 1.7, 100.0, 2e3],
+                &[5.0, 200.0, 1e4, 1e5],
+            );
+            let worst = worst_error(layers, ground, &lines, &[0.5, 5.0, 40.0]);
+            let stated = if ground.is_flat() { 2e-3 } else { 1e-2 };
+            assert!(worst < stated, "{layers:?} {ground:?}: {worst:.2e}");
+        }
+    }
+}
+
+#[test]
+fn a_line_may_be_cut_anywhere() {
+    let exponential = |scale_height_m| Profile::Exponential {
+        reference_height_m: 0.0,
+        scale_height_m,
+    };
+    let one = vec![Layer {
+        profile: exponential(40.0),
+        matter: droplets(0.02),
+    }];
+    let two = vec![
+        Layer {
+            profile: Profile::Slab { top_height_m: 25.0 },
+            matter: droplets(0.02),
+        },
+        Layer {
+            profile: exponential(900.0),
+            matter: molecules(3e-4),
+        },
+    ];
+    for (layers, ground, tolerance) in [
+        (&one, Ground::FLAT, 1e-5),
+        (&two, Ground::FLAT, 1e-3),
+        (&one, EARTH, 1e-3),
+    ] {
+        for scattering in [Scattering::Undimmed, Scattering::Single] {
+            let fog = Fog::new(layers, ground, light(20.0), scattering).unwrap();
+            for climb in [0.0, 1e-3, -1e-3, 0.3, -0.3] {
+                let line = Line::new(60.0, climb, 180.0, ground.radius_m);
+                let whole = fog.along_line(&line, 0.4);
+                for cut in [1e-3, 1.0, 45.0, 179.9] {
+                    let near = fog.along_line(&line.part(0.0, cut), 0.4);
+                    let far = fog.along_line(&line.part(cut, 180.0), 0.4);
+                    let joined = near.then(far);
+                    for lane in 0..3 {
+                        let pair = |of: fn(&PathOptics<3>) -> Spectrum<3>| {
+                            (of(&joined)[lane], of(&whole)[lane])
+                        };
+                        for (a, b) in [pair(|p| p.transmittance), pair(|p| p.path_radiance)] {
+                            assert!((a / b - 1.0).abs() < tolerance, "{climb} {cut}: {a} {b}");
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn fog_that_loses_nothing_is_invisible_in_light_that_is_the_same_everywhere() {
+    let mut clear = droplets(0.01);
+    clear.single_scattering_albedo = Spectrum::ONE;
+    let everywhere = Light {
+        sun: None,
+        ambient: Spectrum([0.3, 0.4, 0.5]),
+    };
+    for profile in [
+        Profile::Uniform,
+        Profile::Slab { top_height_m: 30.0 },
+        Profile::Exponential {
+            reference_height_m: 0.0,
+            scale_height_m: 60.0,
+        },
+    ] {
+        let layers = [Layer {
+            profile,
+            matter: clear.clone(),
+        }];
+        for ground in [Ground::FLAT, EARTH] {
+            let fog = Fog::new(&layers, ground, everywhere, Scattering::Single).unwrap();
+            for line in lines(
+                ground,
+                -1.0,
+                &[0.0, 5.0, 50.0],
+                &[1e-3, 1.0, 100.0, 1e5, f64::INFINITY],
+            ) {
+                let seen = fog.along_line(&line, 0.0).apply(everywhere.ambient);
+                for lane in 0..3 {
+                    let ratio = seen[lane] / everywhere.ambient[lane];
+                    assert!((ratio - 1.0).abs() < 1e-5, "{profile:?} {line:?}: {ratio}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn transmittance_keeps_between_nothing_and_all_and_falls_with_distance() {
+    for profile in [
+        Profile::Uniform,
+        Profile::Clamped {
+            base_height_m: 5.0,
+            scale_height_m: 20.0,
+        },
+        Profile::Exponential {
+            reference_height_m: 0.0,
+            scale_height_m: 0.5,
+        },
+    ] {
+        let fog = Fog::new(
+            &[Layer {
+                profile,
+                matter: droplets(0.05),
+            }],
+            EARTH,
+            light(10.0),
+            Scattering::Single,
+        )
+        .unwrap();
+        for climb in [0.0, 0.2, -1e-2, 1.0] {
+            let mut before = Spectrum::ONE;
+            for k in -20..48 {
+                let line = Line::new(40.0, climb, 1.4f64.powi(k), EARTH.radius_m);
+                let optics = fog.along_line(&line, 0.9);
+                for lane in 0..3 {
+                    let t = optics.transmittance[lane];
+                    assert!(
+                        (0.0..=before[lane]).contains(&t),
+                        "{profile:?} {line:?}: {t}"
+                    );
+                    assert!(optics.path_radiance[lane] >= 0.0 && optics.path_radiance.is_finite());
+                }
+                before = optics.transmittance;
+            }
+        }
+    }
+}
+
+#[test]
+fn bad_numbers_are_refused_at_the_door() {
+    let layer = |m: Matter<3>| {
+        [Layer {
+            profile: Profile::Uniform,
+            matter: m,
+        }]
+    };
+    let refused = |layers: &[Layer<3>], ground, light| {
+        Fog::new(layers, ground, light, Scattering::Single)
+            .unwrap_err()
+            .to_string()
+    };
+    let phase = || PhaseFunction::Isotropic;
+    let good = matter([0.1; 3], 1.0, phase());
+    let error = refused(
+        &layer(matter([0.1, f32::NAN, 0.1], 1.0, phase())),
+        Ground::FLAT,
+        light(5.0),
+    );
+    assert!(
+        error.contains("extinction") && error.contains("lane 1"),
+        "{error}"
+    );
+    let error = refused(
+        &layer(matter([0.1; 3], 1.5, phase())),
+        Ground::FLAT,
+        light(5.0),
+    );
+    assert!(error.contains("albedo"), "{error}");
+    let flat = Ground {
+        radius_m: 0.0,
+        ..Ground::FLAT
+    };
+    assert!(refused(&layer(good.clone()), flat, light(5.0)).contains("radius"));
+    let mut dark = light(5.0);
+    dark.ambient = Spectrum([-1.0, 0.0, 0.0]);
+    assert!(refused(&layer(good.clone()), Ground::FLAT, dark).contains("ambient"));
+    let mut long = light(5.0);
+    long.sun.as_mut().unwrap().direction *= 2.0;
+    assert!(refused(&layer(good), Ground::FLAT, long).contains("direction"));
+}

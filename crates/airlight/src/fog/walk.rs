@@ -1,0 +1,116 @@
+//! Walking along a line from height to height.
+
+use super::line::Line;
+
+/// Calls `visit` with the parts into which the rising `levels_m` cut a line, from its start on, until it says `false`.
+/// A line over round ground is also cut at its lowest point, so that each part only climbs or only falls.
+pub(super) fn parts(line: &Line, levels_m: &[f64], mut visit: impl FnMut(&Line) -> bool) {
+    let lowest = -0.5 * line.climb / line.bend_per_m;
+    if lowest > 0.0 && lowest < line.length_m {
+        let falling = line.part(0.0, lowest);
+        if monotone(&falling, false, levels_m, &mut visit) {
+            monotone(
+                &line.part(lowest, line.length_m),
+                true,
+                levels_m,
+                &mut visit,
+            );
+        }
+    } else {
+        let rises = if lowest > 0.0 {
+            false
+        } else {
+            line.climb > 0.0 || line.bend_per_m > 0.0
+        };
+        monotone(line, rises, levels_m, &mut visit);
+    }
+}
+
+/// The same for a line that only climbs or only falls; says whether all was visited.
+fn monotone(
+    line: &Line,
+    rises: bool,
+    levels_m: &[f64],
+    visit: &mut impl FnMut(&Line) -> bool,
+) -> bool {
+    let mut from = 0.0;
+    let mut cut = |at: f64, visit: &mut dyn FnMut(&Line) -> bool| {
+        // A level that the line starts on cuts nothing off.
+        if at > from && at < line.length_m {
+            let part = line.part(from, at);
+            from = at;
+            return visit(&part);
+        }
+        true
+    };
+    if rises {
+        let first = levels_m.partition_point(|&level| level <= line.height_m);
+        for &level in &levels_m[first..] {
+            let at = line.below(level).1;
+            if at >= line.length_m {
+                break;
+            }
+            if !cut(at, visit) {
+                return false;
+            }
+        }
+    } else {
+        let last = levels_m.partition_point(|&level| level < line.height_m);
+        for &level in levels_m[..last].iter().rev() {
+            let (enters, leaves) = line.below(level);
+            if enters == leaves {
+                break;
+            }
+            if !cut(enters, visit) {
+                return false;
+            }
+        }
+    }
+    visit(&line.part(from, line.length_m))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cuts(line: Line, levels: &[f64]) -> Vec<Line> {
+        let mut all = Vec::new();
+        parts(&line, levels, |part| {
+            all.push(*part);
+            true
+        });
+        all
+    }
+
+    #[test]
+    fn the_parts_make_up_the_line_and_keep_between_levels() {
+        let levels = [0.0, 5.0, 10.0, 40.0, 300.0];
+        for line in [
+            Line::flat(7.0, 0.5, 300.0),
+            Line::flat(70.0, -0.5, 130.0),
+            Line::flat(10.0, 0.0, 1e4),
+            Line::flat(10.0, -1e-4, 1e5),
+            Line::new(20.0, -2e-3, 5e4, 6.4e6),
+            Line::new(20.0, 0.0, 5e4, 6.4e6),
+            Line::new(5.0, 1.0, 1e4, 6.4e6),
+        ] {
+            let parts = cuts(line, &levels);
+            let sum: f64 = parts.iter().map(|part| part.length_m).sum();
+            assert!((sum / line.length_m - 1.0).abs() < 1e-12, "{line:?}");
+            for part in &parts {
+                let (a, b) = (part.height_m, part.end_height_m());
+                for level in levels {
+                    let (low, high) = (a.min(b) + 1e-6, a.max(b) - 1e-6);
+                    assert!(
+                        !(low < level && level < high),
+                        "{line:?}: {part:?} crosses {level}"
+                    );
+                }
+            }
+        }
+        assert_eq!(cuts(Line::flat(7.0, 0.5, 300.0), &levels).len(), 3);
+        // A line without end: the last part has none.
+        let parts = cuts(Line::flat(7.0, 0.5, f64::INFINITY), &levels);
+        assert_eq!(parts.last().unwrap().length_m, f64::INFINITY);
+    }
+}
