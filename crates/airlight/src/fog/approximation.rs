@@ -23,8 +23,8 @@ pub fn constant_source<const N: usize>(
 /// Split sum: `S = (1 - T) (1 / tau) int_0^tau J dt`, the mean of a product as the product of the means.
 ///
 /// `mean_source` is averaged over optical depth (in uniform fog: over distance). Exact for a constant source, and to first
-/// order in thin fog, where `T` is nearly 1 all along; in thick fog it overrates the light of the far part, as it forgets
-/// that this is dimmed more than the near part.
+/// order in thin fog, where `T` is nearly 1 all along. In thick fog it forgets that the far part is dimmed more than the
+/// near part: too bright where the source grows with distance, too dark where it falls.
 pub fn split_sum<const N: usize>(
     optical_depth: Spectrum<N>,
     mean_source: Spectrum<N>,
