@@ -109,10 +109,12 @@ fn sun_undimmed() {
                 let fog = Fog::new(&[layer], Ground::FLAT, light, scattering).expect("a fog");
                 fog.along(2.0, direction(180.0, 0.0), 150.0).path_radiance[0]
             };
-            print!(
-                "{:>9.2}",
-                path(Scattering::Undimmed) / path(Scattering::Single)
-            );
+            let ratio = path(Scattering::Undimmed) / path(Scattering::Single);
+            let text = match ratio < 1e3 {
+                true => format!("{ratio:.2}"),
+                false => "> 1000".to_owned(),
+            };
+            print!("{text:>9}");
         }
         println!();
     }
