@@ -49,6 +49,7 @@ fn fog<const N: usize>(names: &[&str], ground: Ground, scattering: Scattering) -
             irradiance: Spectrum::splat(1e5),
         }),
         ambient: Spectrum::splat(5e3),
+        ground_albedo: Spectrum::ZERO,
     };
     Fog::new(&layers, ground, light, scattering).unwrap()
 }

@@ -105,6 +105,7 @@ fn sun_undimmed() {
                         irradiance: Spectrum::ONE,
                     }),
                     ambient: Spectrum::ZERO,
+                    ground_albedo: Spectrum::ZERO,
                 };
                 let fog = Fog::new(&[layer], Ground::FLAT, light, scattering).expect("a fog");
                 fog.along(2.0, direction(180.0, 0.0), 150.0).path_radiance[0]

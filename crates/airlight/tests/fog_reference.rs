@@ -43,6 +43,7 @@ fn whole_line(row: &[&str], scattering: Scattering) -> PathOptics<1> {
             irradiance: Spectrum::ONE,
         }),
         ambient: Spectrum::ZERO,
+        ground_albedo: Spectrum::ZERO,
     };
     let fog = Fog::new(
         &[Layer { profile, matter }],
@@ -62,5 +63,213 @@ fn single_scattering_matches_the_closed_form_and_mitsuba() {
         let (closed, mitsuba, error) = (number(7), number(8), number(9));
         assert!((got / closed - 1.0).abs() < 1e-6, "{row:?}: {got}");
         assert!((got - mitsuba).abs() < 3.0 * error, "{row:?}: {got}");
+    }
+}
+
+/// The radiance that the reference says is scattered into a line, beside ours; and the irradiance on the ground.
+struct Compared {
+    g: f64,
+    tau: f64,
+    /// Angle between the line and the sun, degrees; none under the sky alone.
+    from_sun_deg: Option<f64>,
+    scattered: f64,
+    irradiance: f64,
+}
+
+/// `ours / theirs - 1` for every row of the table of slabs.
+fn slabs() -> Vec<Compared> {
+    let table = include_str!("data/fog_slabs_disort.csv");
+    let rows = table.lines().filter(|line| !line.starts_with('#')).skip(1);
+    rows.map(|line| {
+        let row: Vec<&str> = line.split(',').collect();
+        let number = |column: usize| row[column].parse::<f64>().unwrap();
+        let (omega, g, tau) = (number(0), number(1), number(2));
+        let sun_zenith = row[3].parse::<f64>().ok();
+        let (albedo, above) = (number(4), number(5));
+        let (zenith, azimuth) = (number(6), number(7));
+        let sun = sun_zenith.map(|zenith| Sun {
+            direction: direction(0.0, 90.0 - zenith),
+            irradiance: Spectrum::ONE,
+        });
+        let light = Light {
+            sun,
+            ambient: Spectrum([if sun.is_some() { 0.0 } else { 1.0 }]),
+            ground_albedo: Spectrum([albedo as f32]),
+        };
+        let matter = Matter {
+            extinction_per_m: Spectrum([(tau / 100.0) as f32]),
+            single_scattering_albedo: Spectrum([omega as f32]),
+            phase: PhaseFunction::HenyeyGreenstein { g },
+        };
+        let profile = Profile::Slab {
+            top_height_m: 100.0,
+        };
+        let layers = [Layer { profile, matter }];
+        let fog = Fog::new(&layers, Ground::FLAT, light, Scattering::Multiple).unwrap();
+        let height = 100.0 * (1.0 - above);
+        let view = direction(azimuth, 90.0 - zenith);
+        let length = match view.y < 0.0 {
+            true => height / -view.y,
+            false => f64::INFINITY,
+        };
+        let ours = fog.along(height, view, length).path_radiance[0];
+        let ground = fog.ground_irradiance().unwrap()[0];
+        Compared {
+            g,
+            tau,
+            from_sun_deg: sun.map(|sun| view.angle_between(sun.direction).to_degrees()),
+            scattered: f64::from(ours) / number(8) - 1.0,
+            irradiance: f64::from(ground) / number(9) - 1.0,
+        }
+    })
+    .collect()
+}
+
+/// Median, 90th percentile and worst of the errors without their signs, in percent.
+fn spread(errors: impl Iterator<Item = f64>) -> [f64; 3] {
+    let mut errors: Vec<f64> = errors.map(|e| 100.0 * e.abs()).collect();
+    errors.sort_by(f64::total_cmp);
+    let last = errors.len() - 1;
+    [errors[last / 2], errors[last * 9 / 10], errors[last]]
+}
+
+/// The table of the book's chapter on fog; shown with `--nocapture`. The limits are the measured errors, a little rounded
+/// up: median, 90th percentile, worst.
+#[test]
+fn light_scattered_many_times_matches_the_slabs() {
+    let slabs = slabs();
+    let towards = |c: &Compared, near: bool| c.from_sun_deg.is_some_and(|a| (a < 20.0) == near);
+    let far = |c: &Compared| towards(c, false);
+    let near = |c: &Compared| towards(c, true);
+    let scattered = |of: &dyn Fn(&Compared) -> bool| -> Vec<f64> {
+        slabs
+            .iter()
+            .filter(|c| of(c))
+            .map(|c| c.scattered)
+            .collect()
+    };
+    let cases = [
+        (
+            "20 degrees or more from the sun",
+            scattered(&far),
+            [0.2, 2.0, 12.0],
+        ),
+        (
+            "  asymmetry 0.7 or less",
+            scattered(&|c| far(c) && c.g <= 0.7),
+            [0.15, 0.6, 2.5],
+        ),
+        (
+            "  optical depth 5 or more",
+            scattered(&|c| far(c) && c.tau >= 5.0),
+            [0.15, 1.0, 7.0],
+        ),
+        (
+            "less than 20 degrees from the sun",
+            scattered(&near),
+            [0.3, 5.0, 17.0],
+        ),
+        (
+            "  asymmetry 0.7 or less",
+            scattered(&|c| near(c) && c.g <= 0.7),
+            [0.2, 1.0, 2.0],
+        ),
+        (
+            "under an even sky",
+            scattered(&|c| c.from_sun_deg.is_none()),
+            [0.1, 0.4, 0.8],
+        ),
+        (
+            "irradiance on the ground",
+            slabs.iter().map(|c| c.irradiance).collect(),
+            [0.1, 0.2, 1.0],
+        ),
+    ];
+    println!("errors, percent                     rows  median  90 %   worst");
+    for (name, errors, limits) in cases {
+        let measured @ [median, most, worst] = spread(errors.iter().copied());
+        println!(
+            "{name:<35} {:>4} {median:>7.2} {most:>6.2} {worst:>6.1}",
+            errors.len()
+        );
+        for (error, limit) in measured.into_iter().zip(limits) {
+            assert!(error < limit, "{name}: {error} % above {limit} %");
+        }
+    }
+}
+
+/// Mitsuba and PythonicDISORT on the same four scenes.
+#[test]
+fn light_scattered_many_times_matches_path_tracing() {
+    for row in rows(include_str!("data/mitsuba_fog_checks.csv")) {
+        let got = f64::from(whole_line(&row, Scattering::Multiple).path_radiance[0]);
+        let number = |column: usize| row[column].parse::<f64>().unwrap();
+        let (mitsuba, error) = (number(11), number(12));
+        println!(
+            "{}: {:+.2} % of {mitsuba}",
+            row[0],
+            100.0 * (got / mitsuba - 1.0)
+        );
+        assert!(
+            (got - mitsuba).abs() < 3.0 * error + 0.01 * mitsuba,
+            "{row:?}: {got}"
+        );
+    }
+    for row in rows(include_str!("data/disort_vs_mitsuba.csv")) {
+        let got = f64::from(whole_line(&row, Scattering::Multiple).path_radiance[0]);
+        let disort: f64 = row[7].parse().unwrap();
+        assert!((got / disort - 1.0).abs() < 0.01, "{row:?}: {got}");
+    }
+}
+
+/// Nearly level lines in thin fog: the hardest case, as the forward peak is taken to be narrower than the band of bright fog
+/// along the horizon.
+#[test]
+fn level_lines_err_as_stated() {
+    let table = include_str!("data/fog_level_disort.csv");
+    let mut errors = [Vec::new(), Vec::new()];
+    for line in table.lines().filter(|line| !line.starts_with('#')).skip(1) {
+        let row: Vec<f64> = line.split(',').map(|v| v.parse().unwrap()).collect();
+        let &[g, tau, sun_zenith, zenith, azimuth, length, scattered] = &row[..] else {
+            panic!("seven columns: {line}");
+        };
+        let light = Light {
+            sun: Some(Sun {
+                direction: direction(0.0, 90.0 - sun_zenith),
+                irradiance: Spectrum::ONE,
+            }),
+            ambient: Spectrum::ZERO,
+            ground_albedo: Spectrum([0.2]),
+        };
+        let matter = Matter {
+            extinction_per_m: Spectrum([(tau / 100.0) as f32]),
+            single_scattering_albedo: Spectrum([0.999999]),
+            phase: PhaseFunction::HenyeyGreenstein { g },
+        };
+        let profile = Profile::Slab {
+            top_height_m: 100.0,
+        };
+        let layers = [Layer { profile, matter }];
+        let fog = Fog::new(&layers, Ground::FLAT, light, Scattering::Multiple).unwrap();
+        let length = if length > 1e8 {
+            f64::INFINITY
+        } else {
+            length / tau * 100.0
+        };
+        let path = fog
+            .along(0.0, direction(azimuth, 90.0 - zenith), length)
+            .path_radiance[0];
+        errors[usize::from(g > 0.8)].push(f64::from(path) / scattered - 1.0);
+    }
+    println!("nearly level lines, percent: median, 90 %, worst");
+    for ((name, limits), errors) in [("g 0.7", [1.0, 3.0, 4.0]), ("g 0.85", [5.0, 12.0, 25.0])]
+        .into_iter()
+        .zip(errors)
+    {
+        let measured = spread(errors.iter().copied());
+        println!("{name}: {measured:.1?}");
+        for (error, limit) in measured.into_iter().zip(limits) {
+            assert!(error < limit, "{name}: {error} % above {limit} %");
+        }
     }
 }

@@ -19,8 +19,17 @@ pub struct Sun<const N: usize> {
 pub struct Light<const N: usize> {
     /// The sun, if it shines.
     pub sun: Option<Sun<N>>,
-    /// Radiance that comes evenly from all sides: the sky's, on average.
+    /// Radiance that comes evenly from all sides: the sky's, on average. With [`Scattering::Multiple`] from above only.
     pub ambient: Spectrum<N>,
+    /// What the ground sends back of the light on it, 0 to 1; matters with [`Scattering::Multiple`] only.
+    pub ground_albedo: Spectrum<N>,
+}
+
+impl<const N: usize> Light<N> {
+    /// The same light without the sun.
+    pub fn without_sun(self) -> Self {
+        Self { sun: None, ..self }
+    }
 }
 
 /// The ground under a fog.
@@ -41,6 +50,10 @@ pub enum Scattering {
     /// Sunlight scattered once after its way through the fog; ambient light the same everywhere.
     #[default]
     Single,
+    /// Light scattered any number of times: sun and sky enter at the top, the ground sends back its part. Solved for once
+    /// when the fog is made. A fog without an upper end, which no light could enter, counts as lit evenly by the ambient
+    /// light and by the undimmed sun.
+    Multiple,
 }
 
 impl Ground {
@@ -99,6 +112,14 @@ impl<const N: usize> Light<N> {
             None => Ok(()),
         };
         check("ambient light", self.ambient)?;
+        check("the albedo of the ground", self.ground_albedo)?;
+        if let Some(&got) = self.ground_albedo.0.iter().find(|&&albedo| albedo > 1.0) {
+            return Err(FogError::Number {
+                what: "the albedo of the ground",
+                got: f64::from(got),
+                right: "from 0 to 1",
+            });
+        }
         if let Some(sun) = &self.sun {
             check("the sun's irradiance", sun.irradiance)?;
             let length = sun.direction.length();

@@ -8,9 +8,12 @@ mod light;
 pub mod line;
 pub mod matter;
 mod model;
+mod multiple;
+mod once;
 pub mod profile;
 pub mod scatter;
 pub mod slab1987;
+mod strata;
 pub mod visibility;
 mod walk;
 

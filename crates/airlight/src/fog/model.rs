@@ -1,47 +1,43 @@
 //! A fog: layers of matter, lit by sun and sky, and what they do along any line.
 
 use super::lanes::Lanes;
+use super::levels;
 use super::light::{Ground, Light, Scattering};
 use super::line::Line;
-use super::matter::{FogError, Layer, Matter};
+use super::matter::{FogError, Layer};
+use super::multiple::Field;
+use super::once::Once;
 use super::profile::Profile;
-use super::{levels, scatter, walk};
+use super::strata::{Stratum, gather};
 use crate::path::PathOptics;
 use crate::spectrum::Spectrum;
 use glam::DVec3;
 
 /// The most that a column or an optical depth counts for: far beyond opaque, far from f32's end.
-const OPAQUE: f64 = 1e25;
+pub(super) const OPAQUE: f64 = 1e25;
 
 /// Fog at N wavelengths (or, with N = 3, in red, green and blue), ready to be looked through. Nothing is allocated while
 /// it is.
 ///
 /// Any number of layers; those with the same [`Profile`] are merged. Over flat ground a fog of one profile is solved in
 /// closed form: transmittance (Ishiyama 2018, eqs. 14 and 23), ambient light (eq. 21) and sunlight with its own way through
-/// the fog ([`scatter`]), at the rounding of f32. Several profiles, and round ground, are walked from level to level: the
-/// same closed forms between levels (see [`Fog::along_line`] for the error).
+/// the fog ([`super::scatter`]), at the rounding of f32. Several profiles, and round ground, are walked from level to level: the
+/// same closed forms between levels. With [`Scattering::Multiple`] the diffuse light inside is solved for when the fog is
+/// made, and added.
 #[derive(Clone, Debug)]
 pub struct Fog<const N: usize> {
     strata: Vec<Stratum<N>>,
     ground: Ground,
     light: Light<N>,
     scattering: Scattering,
-    wavelengths_nm: [f64; N],
     /// Heights between which the walk need not look, rising, m.
     levels_m: Vec<f64>,
-}
-
-/// All matter that shares one profile.
-#[derive(Clone, Debug)]
-struct Stratum<const N: usize> {
-    profile: Profile,
-    extinction_per_m: Spectrum<N>,
-    scattering_per_m: Spectrum<N>,
-    matter: Vec<Matter<N>>,
+    /// Diffuse light; none for single scattering, and for fog that has no upper end.
+    field: Option<Field<N>>,
 }
 
 impl<const N: usize> Fog<N> {
-    /// Checks and takes layers and light.
+    /// Checks and takes layers and light. Phase functions are taken at 550 nm in every lane.
     ///
     /// # Errors
     /// [`FogError`] for the first number that cannot be.
@@ -51,44 +47,48 @@ impl<const N: usize> Fog<N> {
         light: Light<N>,
         scattering: Scattering,
     ) -> Result<Self, FogError> {
+        Self::at_wavelengths_nm(layers, ground, light, scattering, [550.0; N])
+    }
+
+    /// The same with the wavelength (nm) of each lane, for phase functions that depend on it.
+    ///
+    /// # Errors
+    /// [`FogError`] for the first number that cannot be.
+    pub fn at_wavelengths_nm(
+        layers: &[Layer<N>],
+        ground: Ground,
+        light: Light<N>,
+        scattering: Scattering,
+        wavelengths_nm: [f64; N],
+    ) -> Result<Self, FogError> {
         ground.validate()?;
         light.validate()?;
-        let mut strata: Vec<Stratum<N>> = Vec::new();
-        for layer in layers {
-            layer.validate()?;
-            let (extinction, scattered) = (
-                layer.matter.extinction_per_m,
-                layer.matter.scattering_per_m(),
-            );
-            match strata.iter_mut().find(|s| s.profile == layer.profile) {
-                Some(stratum) => {
-                    stratum.extinction_per_m += extinction;
-                    stratum.scattering_per_m += scattered;
-                    stratum.matter.push(layer.matter.clone());
-                }
-                None => strata.push(Stratum {
-                    profile: layer.profile,
-                    extinction_per_m: extinction,
-                    scattering_per_m: scattered,
-                    matter: vec![layer.matter.clone()],
-                }),
-            }
-        }
+        let strata = gather(layers, scattering, wavelengths_nm)?;
         let profiles: Vec<Profile> = strata.iter().map(|s| s.profile).collect();
-        Ok(Self {
+        let mut fog = Self {
             levels_m: levels::between(&profiles, ground.height_m),
             strata,
             ground,
             light,
             scattering,
-            wavelengths_nm: [550.0; N],
-        })
+            field: None,
+        };
+        if scattering == Scattering::Multiple {
+            fog.field = fog.solve();
+        }
+        Ok(fog)
     }
 
-    /// The same fog with the wavelengths (nm) of its lanes, for phase functions that depend on them; 550 nm else.
-    pub fn at_wavelengths_nm(mut self, wavelengths_nm: [f64; N]) -> Self {
-        self.wavelengths_nm = wavelengths_nm;
-        self
+    /// The diffuse light inside.
+    fn solve(&self) -> Option<Field<N>> {
+        let reduced: Vec<_> = self.strata.iter().filter_map(Stratum::reduced).collect();
+        if reduced.is_empty() {
+            return None;
+        }
+        let sine = self.light.sun.map_or(1.0, |sun| sun.direction.y);
+        let once = self.once(Stratum::reduced_extinction, |_| Spectrum::ZERO);
+        let sun_depth = |height| once.depth_to_sun(height, sine);
+        Some(Field::solve(reduced, &self.ground, &self.light, sun_depth))
     }
 
     /// The light that it is in.
@@ -99,6 +99,12 @@ impl<const N: usize> Fog<N> {
     /// The ground under it.
     pub fn ground(&self) -> &Ground {
         &self.ground
+    }
+
+    /// Irradiance on the horizontal ground under the fog, of sun and sky through it, all orders of scattering; `None`
+    /// unless these are solved for.
+    pub fn ground_irradiance(&self) -> Option<Spectrum<N>> {
+        self.field.as_ref().map(|field| field.ground_irradiance)
     }
 
     /// Extinction at a height, 1/m.
@@ -132,121 +138,211 @@ impl<const N: usize> Fog<N> {
     /// Optical depth along a line (held at 1e25).
     #[inline]
     pub fn optical_depth(&self, line: &Line) -> Spectrum<N> {
+        self.depth_of(line, &|stratum| stratum.extinction_per_m)
+    }
+
+    #[inline]
+    fn depth_of(
+        &self,
+        line: &Line,
+        extinction: &impl Fn(&Stratum<N>) -> Spectrum<N>,
+    ) -> Spectrum<N> {
         self.strata.iter().fold(Spectrum::ZERO, |sum, stratum| {
             let column = stratum.profile.column(line).min(OPAQUE);
-            sum.scale_acc(stratum.extinction_per_m, column as f32)
+            sum.scale_acc(extinction(stratum), column as f32)
         })
     }
 
     /// What the fog does along a line whose direction makes an angle with that to the sun whose cosine is `cos_sun`.
     ///
-    /// Error of the path radiance against exact single scattering: rounding (below 1e-5) for one profile over flat ground;
-    /// below 0.2 % for several profiles; over round ground below 1 % (lines up to 100 km, a sun 0.5 degrees high or more;
-    /// 0.02 % up to 10 km). Measured over scale heights from 10 m to 8 km, lines from level to vertical. The transmittance
-    /// has no such error.
+    /// The transmittance is exact. Error of the path radiance against exact single scattering: rounding (below 1e-5) for one
+    /// profile over flat ground; below 0.2 % for several profiles; over round ground below 1 % (lines up to 100 km, a sun
+    /// 0.5 degrees high or more; 0.02 % up to 10 km). Measured over scale heights from 10 m to 8 km, lines from level to
+    /// vertical. Error of multiple scattering: see the book's chapter on fog.
     #[inline]
     pub fn along_line(&self, line: &Line, cos_sun: f64) -> PathOptics<N> {
-        let path_radiance = match &self.strata[..] {
-            [] => return PathOptics::CLEAR,
-            [stratum] if self.ground.is_flat() => self.in_one(stratum, line, cos_sun),
-            _ => self.in_several(line, cos_sun),
+        if self.strata.is_empty() {
+            return PathOptics::CLEAR;
+        }
+        let depth = self.optical_depth(line);
+        let path_radiance = match &self.field {
+            Some(field) => self.scattered_often(field, line, cos_sun, depth),
+            None => {
+                let (sunlit, even) = self
+                    .once(|s| s.extinction_per_m, |s| s.towards_eye(cos_sun))
+                    .along(line, &|s| s.scattering_per_m);
+                even * self.light.ambient + sunlit * self.sunlight()
+            }
         };
         PathOptics {
-            transmittance: self.transmittance(line),
+            transmittance: depth.exp_neg(),
             path_radiance,
         }
     }
 
-    /// One profile over flat ground: closed form.
     #[inline]
-    fn in_one(&self, stratum: &Stratum<N>, line: &Line, cos_sun: f64) -> Spectrum<N> {
-        let column = stratum.profile.column(line).min(OPAQUE);
-        let along = stratum.extinction_per_m * column as f32;
-        // Scattered light is stated for each metre of column, as extinction may be 0.
-        let opacity = along.mean_transmittance() * column as f32;
-        let mut path = self.light.ambient * stratum.scattering_per_m * opacity;
-        if let Some(sun) = &self.light.sun {
-            let sine = sun.direction.y;
-            let arriving = match (self.scattering, stratum.profile) {
-                (Scattering::Undimmed, _) | (_, Profile::Uniform) => opacity,
-                _ if sine <= 0.0 => Spectrum::ZERO,
-                _ => {
-                    let near = stratum.profile.column_above(line.height_m) / sine;
-                    let near = stratum.extinction_per_m * near.min(OPAQUE) as f32;
-                    let growth = along * (1.0 - line.climb / sine) as f32;
-                    scatter::mean_once(near, growth) * column as f32
-                }
-            };
-            path += sun.irradiance * self.towards_eye(stratum, cos_sun) * arriving;
+    fn sunlight(&self) -> Spectrum<N> {
+        match &self.light.sun {
+            Some(sun) => sun.irradiance,
+            None => Spectrum::ZERO,
         }
-        path
     }
 
-    /// Several profiles, or round ground: the closed form from level to level.
-    fn in_several(&self, line: &Line, cos_sun: f64) -> Spectrum<N> {
-        let mut path = Spectrum::ZERO;
-        let mut before = Spectrum::ZERO;
-        let sun = self.light.sun.as_ref();
-        walk::parts(line, &self.levels_m, |part| {
-            let mut along = Spectrum::ZERO;
-            let mut ambient = Spectrum::ZERO;
-            let mut direct = Spectrum::ZERO;
-            for stratum in &self.strata {
-                let column = stratum.profile.column(part).min(OPAQUE) as f32;
-                along = along.scale_acc(stratum.extinction_per_m, column);
-                ambient = ambient.scale_acc(stratum.scattering_per_m, column);
-                if sun.is_some() {
-                    direct = direct.scale_acc(self.towards_eye(stratum, cos_sun), column);
-                }
-            }
-            let seen = before.exp_neg();
-            let opacity = along.mean_transmittance();
-            path += seen * self.light.ambient * ambient * opacity;
-            if let Some(sun) = sun {
-                let arriving = match self.scattering {
-                    Scattering::Undimmed => opacity,
-                    _ => {
-                        let near = self.depth_to_sun(part.height_m, sun.direction.y);
-                        let far = self.depth_to_sun(part.end_height_m(), sun.direction.y);
-                        scatter::mean_once(near, far - near + along)
-                    }
-                };
-                path += seen * sun.irradiance * direct * arriving;
-            }
-            before += along;
-            before.min_element() < 40.0
-        });
-        path
+    /// Sunlight scattered once, dimmed by an extinction of each stratum, with a strength of each stratum towards the eye.
+    #[inline]
+    fn once<'a, X, S>(&'a self, extinction: X, towards_eye: S) -> Once<'a, N, X, S>
+    where
+        X: Fn(&Stratum<N>) -> Spectrum<N>,
+        S: Fn(&Stratum<N>) -> Spectrum<N>,
+    {
+        Once {
+            strata: &self.strata,
+            levels_m: &self.levels_m,
+            ground: &self.ground,
+            sine_sun: self.light.sun.map(|sun| sun.direction.y),
+            dimmed: self.scattering != Scattering::Undimmed,
+            extinction,
+            towards_eye,
+        }
     }
 
-    /// Optical depth between a height and the sun; [`OPAQUE`] where the ground is in the way. Layers without an upper end
-    /// are left out: no light would come through them.
-    pub(super) fn depth_to_sun(&self, height_m: f64, sine: f64) -> Spectrum<N> {
-        let line = Line::new(height_m, sine, f64::INFINITY, self.ground.radius_m);
-        if self.ground.blocks(&line) {
-            return Spectrum::splat(OPAQUE as f32);
+    /// Path radiance of light scattered any number of times.
+    ///
+    /// Inside, light that the forward peak scatters counts as not scattered; so the fog is looked through with less
+    /// extinction than it has, and the radiance that arrives from the edge of the fog, `I`, contains what the peak scatters
+    /// into the line. The path radiance of a segment is what is left of it without what arrives unscattered from the
+    /// segment's far end: `S = I(near) - T I(far)`, which composes at any cut, and vanishes where light is the same
+    /// everywhere. It is added up from terms that do not cancel.
+    fn scattered_often(
+        &self,
+        field: &Field<N>,
+        line: &Line,
+        cos_sun: f64,
+        depth: Spectrum<N>,
+    ) -> Spectrum<N> {
+        let towards = Towards::new(self, line.climb, cos_sun);
+        let near = self.part(field, line, &towards);
+        let path = near.smooth + near.peaked;
+        // What passes through with the peak, and not without.
+        let through = |reduced: Spectrum<N>| {
+            let rest = (depth - reduced).map(|d| if d > 0.0 { d } else { 0.0 });
+            reduced.exp_neg() * rest * rest.mean_transmittance()
+        };
+        let (smooth, peaked) = (through(near.smooth_depth), through(near.peaked_depth));
+        let most = smooth.max_element().max(peaked.max_element());
+        if most < 1e-7 {
+            return path;
         }
-        if height_m == f64::INFINITY {
-            return Spectrum::ZERO;
+        let (beyond, boundary) = self.beyond(field, line);
+        let Some(beyond) = beyond else {
+            return path + smooth * boundary;
+        };
+        let far = self.part(field, &beyond, &towards);
+        let arriving = far.smooth + far.smooth_depth.exp_neg() * boundary;
+        path + smooth * arriving + peaked * far.peaked
+    }
+
+    /// The line from the end of `line` to the edge of the fog, if there is any left, and the radiance there.
+    fn beyond(&self, field: &Field<N>, line: &Line) -> (Option<Line>, Spectrum<N>) {
+        if line.length_m == f64::INFINITY {
+            return (None, self.light.ambient);
         }
-        self.strata
+        let mut beyond = line.part(line.length_m, f64::INFINITY);
+        let (enters, leaves) = beyond.below(self.ground.height_m);
+        if enters == leaves {
+            return (Some(beyond), self.light.ambient);
+        }
+        beyond.length_m = enters;
+        match enters > 0.0 {
+            true => (Some(beyond), field.ground_radiance),
+            false => (None, field.ground_radiance),
+        }
+    }
+
+    /// What is scattered into one line, by what it is dimmed.
+    fn part(&self, field: &Field<N>, line: &Line, towards: &Towards) -> Part<N> {
+        let cos_sun = towards.cos_sun;
+        let endless = |s: &Stratum<N>| match s.profile {
+            Profile::Uniform => s.scattering_per_m,
+            _ => Spectrum::ZERO,
+        };
+        let reduced = |s: &Stratum<N>| s.reduced_extinction();
+        let residual = |s: &Stratum<N>| s.residual_extinction(cos_sun);
+        let of_endless = self
+            .strata
             .iter()
-            .filter(|stratum| stratum.profile != Profile::Uniform)
-            .fold(Spectrum::ZERO, |sum, stratum| {
-                let column = stratum.profile.column(&line).min(OPAQUE);
-                sum.scale_acc(stratum.extinction_per_m, column as f32)
-            })
+            .fold(Spectrum::ZERO, |sum, s| match s.profile {
+                Profile::Uniform => sum + s.extinction_per_m,
+                _ => sum,
+            });
+        let mut smooth = field.scattered(line, towards.cos_azimuth, of_endless);
+        let smooth_depth = self.depth_of(line, &reduced);
+        let (mut peaked, mut peaked_depth) = (Spectrum::ZERO, smooth_depth);
+        if towards.in_peak {
+            let (sunlit, even) = self
+                .once(reduced, |s| s.smooth_towards_eye(cos_sun))
+                .along(line, &endless);
+            smooth += even * self.light.ambient + sunlit * self.sunlight();
+            let (sunlit, _) = self
+                .once(residual, |s| {
+                    s.towards_eye(cos_sun) - s.smooth_towards_eye(cos_sun)
+                })
+                .along(line, &|_| Spectrum::ZERO);
+            peaked = sunlit * self.sunlight();
+            peaked_depth = self.depth_of(line, &residual);
+        } else {
+            let (sunlit, even) = self
+                .once(reduced, |s| s.towards_eye(cos_sun))
+                .along(line, &endless);
+            smooth += even * self.light.ambient + sunlit * self.sunlight();
+        }
+        Part {
+            smooth,
+            peaked,
+            smooth_depth,
+            peaked_depth,
+        }
     }
+}
 
-    /// `sum over j of sigma_s,j p_j`: sunlight scattered towards the eye, 1/(m sr).
-    #[inline]
-    fn towards_eye(&self, stratum: &Stratum<N>, cos_sun: f64) -> Spectrum<N> {
-        stratum.matter.iter().fold(Spectrum::ZERO, |sum, matter| {
-            sum.mul_acc(
-                matter.scattering_per_m(),
-                matter.phase_lanes(cos_sun, &self.wavelengths_nm),
-            )
-        })
+/// Light scattered into a line: that which is dimmed by the extinction without the peak, and that which is dimmed by the
+/// extinction of the residual; and both optical depths.
+struct Part<const N: usize> {
+    smooth: Spectrum<N>,
+    peaked: Spectrum<N>,
+    smooth_depth: Spectrum<N>,
+    peaked_depth: Spectrum<N>,
+}
+
+/// A direction as the field sees it.
+struct Towards {
+    cos_sun: f64,
+    cos_azimuth: f64,
+    in_peak: bool,
+}
+
+impl Towards {
+    fn new<const N: usize>(fog: &Fog<N>, climb: f64, cos_sun: f64) -> Self {
+        let Some(sun) = &fog.light.sun else {
+            return Self {
+                cos_sun,
+                cos_azimuth: 1.0,
+                in_peak: false,
+            };
+        };
+        let sine = sun.direction.y;
+        let across = ((1.0 - climb * climb) * (1.0 - sine * sine))
+            .max(0.0)
+            .sqrt();
+        let cos_azimuth = match across > 1e-9 {
+            true => ((cos_sun - climb * sine) / across).clamp(-1.0, 1.0),
+            false => 1.0,
+        };
+        Self {
+            cos_sun,
+            cos_azimuth,
+            in_peak: fog.strata.iter().any(|s| s.in_peak(cos_sun)),
+        }
     }
 }
 

@@ -36,13 +36,12 @@ pub fn constant_source<L: Lanes>(along: L) -> L {
     along * along.mean_transmittance()
 }
 
-/// The two weights of a source that changes linearly with optical depth from the near end to the far end of a stretch:
-/// `int_0^tau e^-t (near (1 - t/tau) + far t/tau) dt = w_near near + w_far far`.
+/// The two weights of a source that changes linearly with optical depth from the near end to the far end of a stretch, for
+/// each unit of its optical depth: `1/tau int_0^tau e^-t (near (1 - t/tau) + far t/tau) dt = w_near near + w_far far`.
 #[inline(always)]
-pub fn linear_source<L: Lanes>(along: L) -> (L, L) {
-    let opacity = constant_source(along);
-    let far = along.mean_less_end();
-    (opacity - far, far)
+pub fn linear_source_mean<L: Lanes>(along: L) -> (L, L) {
+    let far = along.ramp_transmittance();
+    (along.mean_transmittance() - far, far)
 }
 
 #[cfg(test)]
@@ -105,14 +104,13 @@ mod tests {
         for tau in [1e-9, 1e-4, 1e-2, 0.3, 1.0, 7.0, 40.0] {
             let exact = weighted(tau, |t| (-t).exp() * t / tau);
             let opaque = weighted(tau, |t| (-t).exp());
-            let (near, far) = linear_source(tau);
+            let (near, far) = linear_source_mean(tau);
+            let (near, far) = (tau * near, tau * far);
             assert!((far / exact - 1.0).abs() < 1e-9, "{tau}: {far} {exact}");
             assert!(((near + far) / opaque - 1.0).abs() < 1e-12);
-            let (_, far) = linear_source(Spectrum::<4>::splat(tau as f32));
-            assert!(
-                (f64::from(far[0]) / exact - 1.0).abs() < 1e-5,
-                "{tau}: {far:?} {exact}"
-            );
+            let (_, far) = linear_source_mean(Spectrum::<4>::splat(tau as f32));
+            let far = tau * f64::from(far[0]);
+            assert!((far / exact - 1.0).abs() < 1e-5, "{tau}: {far} {exact}");
         }
     }
 

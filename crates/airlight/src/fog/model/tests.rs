@@ -1,6 +1,6 @@
 use super::*;
 use crate::axes;
-use crate::fog::Sun;
+use crate::fog::{Matter, Sun};
 use crate::optics::{Depolarization, PhaseFunction};
 use crate::quadrature::{gauss_legendre, integrate_by};
 
@@ -31,6 +31,7 @@ fn light(sun_elevation_deg: f64) -> Light<3> {
             irradiance: Spectrum([1.5, 1.8, 1.9]),
         }),
         ambient: Spectrum([0.1, 0.15, 0.3]),
+        ground_albedo: Spectrum([0.1, 0.2, 0.3]),
     }
 }
 
@@ -299,7 +300,11 @@ fn a_line_may_be_cut_anywhere() {
         (&two, Ground::FLAT, 1e-3),
         (&one, EARTH, 1e-3),
     ] {
-        for scattering in [Scattering::Undimmed, Scattering::Single] {
+        for scattering in [
+            Scattering::Undimmed,
+            Scattering::Single,
+            Scattering::Multiple,
+        ] {
             let fog = Fog::new(layers, ground, light(20.0), scattering).unwrap();
             for climb in [0.0, 1e-3, -1e-3, 0.3, -0.3] {
                 let line = Line::new(60.0, climb, 180.0, ground.radius_m);
@@ -329,6 +334,7 @@ fn fog_that_loses_nothing_is_invisible_in_light_that_is_the_same_everywhere() {
     let everywhere = Light {
         sun: None,
         ambient: Spectrum([0.3, 0.4, 0.5]),
+        ground_albedo: Spectrum::ONE,
     };
     for profile in [
         Profile::Uniform,
@@ -343,17 +349,20 @@ fn fog_that_loses_nothing_is_invisible_in_light_that_is_the_same_everywhere() {
             matter: clear.clone(),
         }];
         for ground in [Ground::FLAT, EARTH] {
-            let fog = Fog::new(&layers, ground, everywhere, Scattering::Single).unwrap();
-            for line in lines(
-                ground,
-                -1.0,
-                &[0.0, 5.0, 50.0],
-                &[1e-3, 1.0, 100.0, 1e5, f64::INFINITY],
-            ) {
-                let seen = fog.along_line(&line, 0.0).apply(everywhere.ambient);
-                for lane in 0..3 {
-                    let ratio = seen[lane] / everywhere.ambient[lane];
-                    assert!((ratio - 1.0).abs() < 1e-5, "{profile:?} {line:?}: {ratio}");
+            for scattering in [Scattering::Single, Scattering::Multiple] {
+                let fog = Fog::new(&layers, ground, everywhere, scattering).unwrap();
+                for line in lines(
+                    ground,
+                    -1.0,
+                    &[0.0, 5.0, 50.0],
+                    &[1e-3, 1.0, 100.0, 1e5, f64::INFINITY],
+                ) {
+                    let seen = fog.along_line(&line, 0.0).apply(everywhere.ambient);
+                    for lane in 0..3 {
+                        let ratio = seen[lane] / everywhere.ambient[lane];
+                        // The moments of the diffuse light are kept in f32.
+                        assert!((ratio - 1.0).abs() < 2e-5, "{profile:?} {line:?}: {ratio}");
+                    }
                 }
             }
         }
@@ -443,4 +452,75 @@ fn bad_numbers_are_refused_at_the_door() {
     let mut long = light(5.0);
     long.sun.as_mut().unwrap().direction *= 2.0;
     assert!(refused(&layer(good), Ground::FLAT, long).contains("direction"));
+}
+
+#[test]
+fn in_thin_fog_many_scatterings_are_one() {
+    let layers = [Layer {
+        profile: Profile::Exponential {
+            reference_height_m: 0.0,
+            scale_height_m: 30.0,
+        },
+        matter: droplets(1e-6),
+    }];
+    let mut black = light(25.0);
+    black.ground_albedo = Spectrum::ZERO;
+    black.ambient = Spectrum::ZERO;
+    let [one, many] = [Scattering::Single, Scattering::Multiple]
+        .map(|scattering| Fog::new(&layers, Ground::FLAT, black, scattering).unwrap());
+    for (azimuth, elevation) in [(120.0, 25.0), (120.0, 40.0), (300.0, 3.0), (10.0, 90.0)] {
+        let view = axes::direction(azimuth, elevation);
+        let [a, b] = [&one, &many].map(|fog| fog.along(1.7, view, 2e3).path_radiance[1]);
+        assert!((b / a - 1.0).abs() < 2e-3, "{azimuth} {elevation}: {a} {b}");
+    }
+}
+
+#[test]
+fn thick_fog_is_not_dark() {
+    // A white cloud 30 optical depths thick sends a good part of the sunlight on; single scattering sends next to none.
+    let mut white = droplets(0.3);
+    white.single_scattering_albedo = Spectrum::ONE;
+    let layers = [Layer {
+        profile: Profile::Slab {
+            top_height_m: 100.0,
+        },
+        matter: white,
+    }];
+    let [one, many] = [Scattering::Single, Scattering::Multiple]
+        .map(|scattering| Fog::new(&layers, Ground::FLAT, light(40.0), scattering).unwrap());
+    let level = |fog: &Fog<3>| {
+        fog.along(1.7, axes::direction(200.0, 5.0), 500.0)
+            .path_radiance[1]
+    };
+    assert!(
+        level(&many) > 0.05 && level(&one) < 0.2,
+        "{} {}",
+        level(&many),
+        level(&one)
+    );
+    let ground = many.ground_irradiance().unwrap()[1] / (1.8 * axes::direction(0.0, 40.0).y as f32);
+    assert!((0.15..0.7).contains(&ground), "{ground}");
+    // Nothing below 0 anywhere, near the sun and away from it, in thick and in thin fog.
+    for extinction in [1e-4, 0.01, 1.0] {
+        let layers = [Layer {
+            profile: Profile::Exponential {
+                reference_height_m: 0.0,
+                scale_height_m: 20.0,
+            },
+            matter: Matter {
+                phase: crate::fog::droplets::phase(12.0),
+                ..droplets(extinction)
+            },
+        }];
+        let fog = Fog::new(&layers, Ground::FLAT, light(8.0), Scattering::Multiple).unwrap();
+        for k in 0..400 {
+            let k = f64::from(k);
+            let view = axes::direction(0.9 * k, -20.0 + 0.27 * k);
+            let path = fog.along(3.0, view, 1.0 + k * k).path_radiance;
+            assert!(
+                path.min_element() >= 0.0 && path.is_finite(),
+                "{extinction} {view}: {path:?}"
+            );
+        }
+    }
 }

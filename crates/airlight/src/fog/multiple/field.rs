@@ -1,0 +1,201 @@
+//! The light inside a fog, solved for once, and what of it is scattered into a line of sight.
+
+use super::heights::{self, Weighted};
+use super::legendre::{self, COUNT, STREAMS};
+use super::ordinates::{self, Boundary, Cell};
+use crate::fog::lanes::Lanes;
+use crate::fog::light::{Ground, Light};
+use crate::fog::line::Line;
+use crate::fog::profile::Profile;
+use crate::fog::{scatter, walk};
+use crate::spectrum::Spectrum;
+use std::f64::consts::PI;
+
+/// Optical depth of the layers that the solver steps through.
+const THINNEST: f64 = 0.2;
+
+/// A profile with what the solver needs of its matter: extinction and scattering without the forward peak.
+#[derive(Clone, Debug)]
+pub struct Reduced<const N: usize> {
+    pub profile: Profile,
+    /// Extinction without the peak, 1/m.
+    pub extinction_per_m: Spectrum<N>,
+    /// Scattering times its Legendre moments without the peak, 1/m.
+    pub scattering_per_m: [Spectrum<N>; STREAMS],
+}
+
+/// The source function of diffuse light, by height and direction, and the light on the ground.
+#[derive(Clone, Debug)]
+pub struct Field<const N: usize> {
+    strata: Vec<Reduced<N>>,
+    /// For interpolation within a layer.
+    weighted: Vec<Weighted>,
+    heights_m: Vec<f64>,
+    /// Optical depth above each height, by mean extinction.
+    depths: Vec<f64>,
+    /// For each layer between two heights, at its lower and upper end: moments of the source function.
+    sources: Vec<[[Spectrum<N>; COUNT]; 2]>,
+    /// Radiance of the ground.
+    pub ground_radiance: Spectrum<N>,
+    /// Irradiance on the ground, of sun and diffuse light.
+    pub ground_irradiance: Spectrum<N>,
+}
+
+impl<const N: usize> Field<N> {
+    /// Solves for the light in these layers. `sun_depth(height)` is the reduced optical depth to the sun, huge where the
+    /// ground is in the way.
+    pub fn solve(
+        strata: Vec<Reduced<N>>,
+        ground: &Ground,
+        light: &Light<N>,
+        sun_depth: impl Fn(f64) -> Spectrum<N>,
+    ) -> Self {
+        let weighted: Vec<Weighted> = strata
+            .iter()
+            .map(|s| {
+                let sum: f32 = s.extinction_per_m.0.iter().sum();
+                (s.profile, f64::from(sum) / N as f64)
+            })
+            .collect();
+        let heights_m = heights::between(&weighted, ground.height_m);
+        let depths = heights_m
+            .iter()
+            .map(|&height| heights::depth_above(&weighted, height))
+            .collect();
+        let mut field = Self {
+            sources: vec![[[Spectrum::ZERO; COUNT]; 2]; heights_m.len() - 1],
+            ground_radiance: Spectrum::ZERO,
+            ground_irradiance: Spectrum::ZERO,
+            strata,
+            weighted,
+            heights_m,
+            depths,
+        };
+        let sun_depths: Vec<Spectrum<N>> = field.heights_m.iter().map(|&h| sun_depth(h)).collect();
+        for lane in 0..N {
+            field.solve_lane(lane, light, &sun_depths);
+        }
+        field
+    }
+
+    fn solve_lane(&mut self, lane: usize, light: &Light<N>, sun_depths: &[Spectrum<N>]) {
+        let (sine_sun, irradiance) = match &light.sun {
+            Some(sun) => (sun.direction.y, f64::from(sun.irradiance[lane])),
+            None => (1.0, 0.0),
+        };
+        let cells: Vec<Cell> = (0..self.sources.len())
+            .map(|k| self.cell(k, lane))
+            .collect();
+        let boundary = Boundary {
+            sine_sun,
+            sky: f64::from(light.ambient[lane]),
+            albedo: f64::from(light.ground_albedo[lane]),
+            sun_on_ground: irradiance
+                * sine_sun.max(0.0)
+                * f64::from(sun_depths[0][lane]).exp_neg(),
+        };
+        // The solver counts from the top, and takes thinner layers than are kept.
+        let mut thin = Vec::new();
+        let mut kept = vec![0];
+        for (k, cell) in cells.iter().enumerate().rev() {
+            let [low, high] = [sun_depths[k][lane], sun_depths[k + 1][lane]].map(f64::from);
+            let parts = (cell.extinction / THINNEST).ceil().clamp(1.0, 64.0);
+            let step = (low - high) / parts;
+            for part in 0..parts as usize {
+                // The mean over the part of light that falls off exponentially.
+                let sunlight = scatter::mean_once(high + part as f64 * step, step);
+                thin.push(Cell {
+                    extinction: cell.extinction / parts,
+                    scattering: cell.scattering.map(|s| s / parts),
+                    sunlight: irradiance * sunlight,
+                });
+            }
+            kept.push(thin.len());
+        }
+        let solution = ordinates::solve(&thin, &boundary);
+        // From the ground up.
+        let at_heights: Vec<&[f64; COUNT]> =
+            kept.iter().rev().map(|&k| &solution.moments[k]).collect();
+        for (k, cell) in cells.iter().enumerate() {
+            for (end, moments) in [at_heights[k], at_heights[k + 1]].into_iter().enumerate() {
+                for m in 0..STREAMS {
+                    for l in m..STREAMS {
+                        let at = legendre::index(l, m);
+                        let scattered = (2 * l + 1) as f64 * cell.scattering[l] * moments[at];
+                        let source = if cell.extinction > 0.0 {
+                            scattered / cell.extinction
+                        } else {
+                            0.0
+                        };
+                        self.sources[k][end][at][lane] = source as f32;
+                    }
+                }
+            }
+        }
+        self.ground_irradiance[lane] = solution.ground_irradiance as f32;
+        self.ground_radiance[lane] = (boundary.albedo * solution.ground_irradiance / PI) as f32;
+    }
+
+    /// One wavelength of the layer between two heights.
+    fn cell(&self, k: usize, lane: usize) -> Cell {
+        let (low, high) = (self.heights_m[k], self.heights_m[k + 1]);
+        let mut cell = Cell::default();
+        for stratum in &self.strata {
+            let column = stratum.profile.column(&Line::flat(low, 1.0, high - low));
+            cell.extinction += f64::from(stratum.extinction_per_m[lane]) * column;
+            for (sum, scattering) in cell.scattering.iter_mut().zip(&stratum.scattering_per_m) {
+                *sum += f64::from(scattering[lane]) * column;
+            }
+        }
+        cell
+    }
+
+    /// Diffuse light scattered into a line, seen through the extinction without peaks of everything on it (`endless` is
+    /// that of matter without an upper end, which the field does not hold).
+    pub fn scattered(&self, line: &Line, cos_azimuth: f64, endless: Spectrum<N>) -> Spectrum<N> {
+        let weights = legendre::in_direction(line.climb.clamp(-1.0, 1.0), cos_azimuth);
+        let mut path = Spectrum::ZERO;
+        let mut before = Spectrum::ZERO;
+        walk::parts(line, &self.heights_m, |part| {
+            let inside = part.height_at(0.5 * part.length_m.min(1e9));
+            let above = self.heights_m.partition_point(|&height| height <= inside);
+            let k = above.clamp(1, self.sources.len()) - 1;
+            let along = self.strata.iter().fold(Spectrum::ZERO, |sum, stratum| {
+                let column = stratum.profile.column(part).min(1e25);
+                sum.scale_acc(stratum.extinction_per_m, column as f32)
+            });
+            let near = self.source(k, part.height_m, &weights);
+            let far = self.source(k, part.end_height_m(), &weights);
+            let whole = along.scale_acc(endless, part.length_m.min(1e25) as f32);
+            let (w_near, w_far) = scatter::linear_source_mean(whole);
+            path += before.exp_neg() * along * (w_near * near + w_far * far);
+            before += whole;
+            before.min_element() < 17.0
+        });
+        path
+    }
+
+    /// The source function at a height in or beside layer `k`.
+    #[inline]
+    fn source(&self, k: usize, height_m: f64, weights: &[f32; COUNT]) -> Spectrum<N> {
+        let sum = |end: usize| {
+            let source = &self.sources[k][end];
+            let mut sum = Spectrum::ZERO;
+            for (moment, &weight) in source.iter().zip(weights) {
+                sum = sum.scale_acc(*moment, weight);
+            }
+            sum
+        };
+        let (low, high) = (self.heights_m[k], self.heights_m[k + 1]);
+        let slack = 1e-7 * (high - low);
+        if height_m <= low + slack {
+            return sum(0);
+        }
+        if height_m >= high - slack {
+            return sum(1);
+        }
+        let depth = heights::depth_above(&self.weighted, height_m);
+        let up = (self.depths[k] - depth) / (self.depths[k] - self.depths[k + 1]);
+        sum(0) * (1.0 - up) as f32 + sum(1) * up as f32
+    }
+}

@@ -1,0 +1,125 @@
+//! Heights at which the light inside a fog is solved for.
+
+use crate::fog::profile::Profile;
+
+/// A profile and the mean of its reduced extinction over wavelengths, 1/m.
+pub type Weighted = (Profile, f64);
+
+/// Optical depth above a height, by mean extinction.
+pub fn depth_above(layers: &[Weighted], height_m: f64) -> f64 {
+    layers
+        .iter()
+        .map(|(profile, extinction)| extinction * profile.column_above(height_m))
+        .sum()
+}
+
+/// Rising heights from the ground to where next to nothing is above: close together, in optical depth, where light enters
+/// and leaves, and wide apart in between. Edges of the profiles are among them.
+pub fn between(layers: &[Weighted], ground_m: f64) -> Vec<f64> {
+    let whole = depth_above(layers, ground_m);
+    if whole <= 0.0 {
+        return vec![ground_m, ground_m + 1.0];
+    }
+    let top_m = height_of(layers, ground_m, 1e-4 * whole.min(1.0));
+    let mut heights: Vec<f64> = depths(whole)
+        .into_iter()
+        .map(|depth| height_of(layers, ground_m, depth))
+        .filter(|&height| height < top_m)
+        .collect();
+    for (profile, _) in layers {
+        let edge = match *profile {
+            Profile::Clamped { base_height_m, .. } => base_height_m,
+            Profile::Slab { top_height_m } => top_height_m,
+            _ => continue,
+        };
+        if edge > ground_m && edge < top_m {
+            heights.push(edge);
+        }
+    }
+    heights.extend([ground_m, top_m]);
+    heights.sort_by(f64::total_cmp);
+    let least = 1e-9 * (top_m - ground_m);
+    heights.dedup_by(|b, a| *b - *a <= least);
+    heights
+}
+
+/// The widest step, by mean extinction.
+const WIDEST: f64 = 0.8;
+
+/// The most steps from an end to the middle: fog deeper than some 300 optical depths is the same all through.
+const MOST: usize = 200;
+
+/// Optical depths from the top: steps that grow away from both ends.
+fn depths(whole: f64) -> Vec<f64> {
+    let first = (whole / 24.0).min(0.04);
+    let mut from_end = Vec::new();
+    let mut depth = 0.0;
+    while depth < 0.5 * whole && from_end.len() < MOST {
+        from_end.push(depth);
+        depth += (0.25 * depth).max(first).min(WIDEST);
+    }
+    let other_end = from_end.iter().map(|depth| whole - depth);
+    let mut depths: Vec<f64> = from_end.iter().copied().chain(other_end).collect();
+    depths.push(0.5 * whole);
+    depths
+}
+
+/// The height with an optical depth above it, at or above the ground: by halving.
+fn height_of(layers: &[Weighted], ground_m: f64, depth: f64) -> f64 {
+    let deeper = |height: f64| depth_above(layers, height) > depth;
+    if !deeper(ground_m) {
+        return ground_m;
+    }
+    let mut step = 1e-3;
+    while deeper(ground_m + step) && step < 1e12 {
+        step *= 2.0;
+    }
+    let (mut low, mut high) = (0.0, step);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if deeper(ground_m + middle) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    ground_m + high
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn heights_rise_from_the_ground_and_step_finely_where_light_enters() {
+        let exponential = Profile::Exponential {
+            reference_height_m: 0.0,
+            scale_height_m: 50.0,
+        };
+        let slab = Profile::Slab { top_height_m: 30.0 };
+        for layers in [
+            vec![(exponential, 0.02)],
+            vec![(slab, 1.0)],
+            vec![(slab, 1e-4), (exponential, 1e-3)],
+            vec![(exponential, 10.0)],
+        ] {
+            let heights = between(&layers, 5.0);
+            assert_eq!(heights[0], 5.0);
+            assert!(
+                heights.is_sorted() && (12..420).contains(&heights.len()),
+                "{}",
+                heights.len()
+            );
+            let depth = |h: f64| depth_above(&layers, h);
+            let whole = depth(5.0);
+            let steps = heights.windows(2).map(|w| depth(w[0]) - depth(w[1]));
+            assert!(steps.clone().all(|step| step <= 0.6 * whole), "{layers:?}");
+            assert!(
+                whole > 300.0 || steps.clone().all(|step| step <= 0.81),
+                "{layers:?}"
+            );
+            assert!(depth(heights[heights.len() - 1]) <= 1e-3 * whole);
+        }
+        assert_eq!(between(&[], 0.0), [0.0, 1.0]);
+    }
+}

@@ -1,0 +1,16 @@
+//! Light scattered many times inside a fog.
+//!
+//! Sunlight and sky light enter at the top and are scattered until they leave, reach the ground or are absorbed. What a fog
+//! sends along a line of sight is then mostly light that comes from everywhere. It is solved for once ([`ordinates`]: eight
+//! polar angles, all azimuths; [`peak`]: without the forward peak), kept as moments of the source function by height
+//! ([`field`]), and integrated along each line with weights that are exact for a source linear in optical depth.
+
+mod field;
+mod heights;
+mod legendre;
+mod ordinates;
+mod peak;
+
+pub(super) use field::{Field, Reduced};
+pub(super) use legendre::STREAMS;
+pub(super) use peak::Peak;

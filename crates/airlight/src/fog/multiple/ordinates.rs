@@ -1,0 +1,322 @@
+//! Light inside plane-parallel layers at a few polar angles (discrete ordinates; Chandrasekhar 1960, Stamnes et al. 1988),
+//! for one wavelength.
+//!
+//! Each azimuth mode is a two-point boundary problem in optical depth. It is solved by imbedding: from the ground up, what
+//! each height sends up is kept as a linear function of what comes down, `up = reflection * down + emission`, which never
+//! grows; then from the top down. Between two heights the equation of transfer is differenced at the middle.
+
+use super::legendre::{self, COUNT, STREAMS};
+use crate::quadrature::gauss_legendre;
+use std::f64::consts::PI;
+
+/// Polar angles in one hemisphere.
+const HALF: usize = STREAMS / 2;
+
+type Vector = [f64; HALF];
+type Matrix = [[f64; HALF]; HALF];
+
+/// A homogeneous layer between two heights.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Cell {
+    /// Optical depth, vertical.
+    pub extinction: f64,
+    /// Optical depth of scattering times the Legendre moment, for each `l`.
+    pub scattering: [f64; STREAMS],
+    /// Sunlight that arrives on a surface facing the sun, averaged over the layer's optical depth.
+    pub sunlight: f64,
+}
+
+/// What shines on the layers.
+#[derive(Clone, Copy, Debug)]
+pub struct Boundary {
+    /// Sine of the sun's elevation.
+    pub sine_sun: f64,
+    /// Radiance that comes evenly from above.
+    pub sky: f64,
+    /// Albedo of the Lambertian ground.
+    pub albedo: f64,
+    /// Irradiance of the sun's own light on the ground, on the horizontal.
+    pub sun_on_ground: f64,
+}
+
+/// Moments of the light at each height, `1/2 int Y_lm I_m dmu`, from the top down, without the sun's own light; and the
+/// irradiance on the ground from all light.
+pub struct Solution {
+    pub moments: Vec<[f64; COUNT]>,
+    pub ground_irradiance: f64,
+}
+
+/// Gauss's points on `(0, 1)` with weights that add up to 1, so that a hemisphere's flux is exact.
+struct Angles {
+    cosine: Vector,
+    weight: Vector,
+    down: [[f64; COUNT]; HALF],
+}
+
+impl Angles {
+    fn new() -> Self {
+        let (nodes, weights) = gauss_legendre(HALF);
+        let cosine = std::array::from_fn(|i| 0.5 * (nodes[i] + 1.0));
+        Self {
+            cosine,
+            weight: std::array::from_fn(|i| 0.5 * weights[i]),
+            down: cosine.map(legendre::evaluate),
+        }
+    }
+}
+
+/// `(-1)^(l + m)`: the function of the opposite polar angle.
+fn parity(l: usize, m: usize) -> f64 {
+    if (l + m).is_multiple_of(2) { 1.0 } else { -1.0 }
+}
+
+/// Solves for the light in layers given from the top down.
+pub fn solve(cells: &[Cell], boundary: &Boundary) -> Solution {
+    let angles = Angles::new();
+    let mut solution = Solution {
+        moments: vec![[0.0; COUNT]; cells.len() + 1],
+        ground_irradiance: 0.0,
+    };
+    let sun = legendre::evaluate(boundary.sine_sun);
+    for m in 0..STREAMS {
+        let lit = |cell: &Cell| {
+            let beam = (m..STREAMS).map(|l| cell.scattering[l] * sun[legendre::index(l, m)]);
+            cell.sunlight != 0.0 && beam.map(f64::abs).sum::<f64>() > 1e-9 * cell.extinction
+        };
+        // Only the sun tells one azimuth from another.
+        if m == 0 || cells.iter().any(lit) {
+            solve_mode(m, cells, boundary, &angles, &sun, &mut solution);
+        }
+    }
+    solution
+}
+
+fn solve_mode(
+    m: usize,
+    cells: &[Cell],
+    boundary: &Boundary,
+    angles: &Angles,
+    sun: &[f64; COUNT],
+    solution: &mut Solution,
+) {
+    // The ground: Lambertian, so that only the mean over azimuth comes back.
+    let mut reflection = Matrix::default();
+    let mut emission = Vector::default();
+    if m == 0 {
+        for i in 0..HALF {
+            for j in 0..HALF {
+                reflection[i][j] = 2.0 * boundary.albedo * angles.cosine[j] * angles.weight[j];
+            }
+            emission[i] = boundary.albedo * boundary.sun_on_ground / PI;
+        }
+    }
+    // From the ground up.
+    let mut steps = Vec::with_capacity(cells.len());
+    for cell in cells.iter().rev() {
+        let step = Step::new(m, cell, angles, sun, &reflection, &emission);
+        steps.push((reflection, emission, step.transmission, step.arriving));
+        (reflection, emission) = (step.reflection, step.emission);
+    }
+    // From the top down.
+    let mut down = [if m == 0 { boundary.sky } else { 0.0 }; HALF];
+    let mut up = add(&emission, &times(&reflection, &down));
+    store(m, &down, &up, angles, &mut solution.moments[0]);
+    for (k, (reflection, emission, transmission, arriving)) in steps.iter().rev().enumerate() {
+        down = add(arriving, &times(transmission, &down));
+        up = add(emission, &times(reflection, &down));
+        store(m, &down, &up, angles, &mut solution.moments[k + 1]);
+    }
+    if m == 0 {
+        let diffuse: f64 = (0..HALF)
+            .map(|j| 2.0 * PI * angles.cosine[j] * angles.weight[j] * down[j])
+            .sum();
+        solution.ground_irradiance = diffuse + boundary.sun_on_ground;
+    }
+}
+
+/// One layer put on top of all below it.
+struct Step {
+    /// `up_above = reflection * down_above + emission`.
+    reflection: Matrix,
+    emission: Vector,
+    /// `down_below = transmission * down_above + arriving`.
+    transmission: Matrix,
+    arriving: Vector,
+}
+
+impl Step {
+    fn new(
+        m: usize,
+        cell: &Cell,
+        angles: &Angles,
+        sun: &[f64; COUNT],
+        below: &Matrix,
+        from_below: &Vector,
+    ) -> Self {
+        const TWO: usize = 2 * HALF;
+        // Scattering between directions of the same and of opposite hemispheres, and of sunlight into each.
+        let mut same = Matrix::default();
+        let mut opposite = Matrix::default();
+        let mut beam_down = Vector::default();
+        let mut beam_up = Vector::default();
+        let beam = cell.sunlight / (4.0 * PI) * if m == 0 { 1.0 } else { 2.0 };
+        for l in m..STREAMS {
+            let strength = (2 * l + 1) as f64 * cell.scattering[l];
+            let at = legendre::index(l, m);
+            for i in 0..HALF {
+                let to = strength * angles.down[i][at];
+                beam_down[i] += beam * to * sun[at];
+                beam_up[i] += beam * to * sun[at] * parity(l, m);
+                for j in 0..HALF {
+                    let pair = 0.5 * to * angles.down[j][at] * angles.weight[j];
+                    same[i][j] += pair;
+                    opposite[i][j] += pair * parity(l, m);
+                }
+            }
+        }
+        // P d' - H u = Q d + H u' + b_down,  P u - H d' = Q u' + H d + b_up;  primes below the layer.
+        let part = |i: usize, j: usize, sign: f64| {
+            let on = f64::from(u8::from(i == j));
+            on * angles.cosine[i] + sign * 0.5 * (on * cell.extinction - same[i][j])
+        };
+        let p: Matrix = std::array::from_fn(|i| std::array::from_fn(|j| part(i, j, 1.0)));
+        let q: Matrix = std::array::from_fn(|i| std::array::from_fn(|j| part(i, j, -1.0)));
+        let h = opposite.map(|row| row.map(|v| 0.5 * v));
+        let (h_below, q_below) = (product(&h, below), product(&q, below));
+        let (h_source, q_source) = (times(&h, from_below), times(&q, from_below));
+        // Unknown: d', u. Right-hand sides: one for each component of d, one for the sources.
+        let mut matrix = [[0.0; TWO]; TWO];
+        let mut right = [[0.0; HALF + 1]; TWO];
+        for i in 0..HALF {
+            for j in 0..HALF {
+                matrix[i][j] = p[i][j] - h_below[i][j];
+                matrix[i][HALF + j] = -h[i][j];
+                matrix[HALF + i][j] = -h[i][j] - q_below[i][j];
+                matrix[HALF + i][HALF + j] = p[i][j];
+                right[i][j] = q[i][j];
+                right[HALF + i][j] = h[i][j];
+            }
+            right[i][HALF] = h_source[i] + beam_down[i];
+            right[HALF + i][HALF] = q_source[i] + beam_up[i];
+        }
+        eliminate(&mut matrix, &mut right);
+        Self {
+            transmission: std::array::from_fn(|i| std::array::from_fn(|j| right[i][j])),
+            arriving: std::array::from_fn(|i| right[i][HALF]),
+            reflection: std::array::from_fn(|i| std::array::from_fn(|j| right[HALF + i][j])),
+            emission: std::array::from_fn(|i| right[HALF + i][HALF]),
+        }
+    }
+}
+
+/// The moments of mode `m` from the light at the polar angles.
+fn store(m: usize, down: &Vector, up: &Vector, angles: &Angles, moments: &mut [f64; COUNT]) {
+    for l in m..STREAMS {
+        let at = legendre::index(l, m);
+        moments[at] = (0..HALF)
+            .map(|j| 0.5 * angles.weight[j] * angles.down[j][at] * (down[j] + parity(l, m) * up[j]))
+            .sum();
+    }
+}
+
+/// Gauss's elimination with pivots: the solutions replace the right-hand sides.
+fn eliminate<const N: usize, const R: usize>(
+    matrix: &mut [[f64; N]; N],
+    right: &mut [[f64; R]; N],
+) {
+    for k in 0..N {
+        let largest = |a: &usize, b: &usize| matrix[*a][k].abs().total_cmp(&matrix[*b][k].abs());
+        let pivot = (k..N).max_by(largest).unwrap_or(k);
+        matrix.swap(k, pivot);
+        right.swap(k, pivot);
+        for i in k + 1..N {
+            let factor = matrix[i][k] / matrix[k][k];
+            for j in k..N {
+                matrix[i][j] -= factor * matrix[k][j];
+            }
+            for j in 0..R {
+                right[i][j] -= factor * right[k][j];
+            }
+        }
+    }
+    for k in (0..N).rev() {
+        for j in 0..R {
+            let known: f64 = (k + 1..N).map(|i| matrix[k][i] * right[i][j]).sum();
+            right[k][j] = (right[k][j] - known) / matrix[k][k];
+        }
+    }
+}
+
+fn times(matrix: &Matrix, vector: &Vector) -> Vector {
+    matrix.map(|row| row.iter().zip(vector).map(|(a, b)| a * b).sum())
+}
+
+fn product(a: &Matrix, b: &Matrix) -> Matrix {
+    a.map(|row| std::array::from_fn(|j| (0..HALF).map(|k| row[k] * b[k][j]).sum()))
+}
+
+fn add(a: &Vector, b: &Vector) -> Vector {
+    std::array::from_fn(|i| a[i] + b[i])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn slab(depth: f64, cells: usize, albedo: f64, g: f64) -> Vec<Cell> {
+        let each = depth / cells as f64;
+        let scattering = std::array::from_fn(|l| each * albedo * g.powi(l as i32));
+        vec![
+            Cell {
+                extinction: each,
+                scattering,
+                sunlight: 0.0,
+            };
+            cells
+        ]
+    }
+
+    #[test]
+    fn light_that_is_the_same_everywhere_stays_so() {
+        for depth in [0.01, 1.0, 100.0] {
+            let boundary = Boundary {
+                sine_sun: 0.5,
+                sky: 2.0,
+                albedo: 1.0,
+                sun_on_ground: 0.0,
+            };
+            let solution = solve(&slab(depth, 20, 1.0, 0.6), &boundary);
+            assert!((solution.ground_irradiance - 2.0 * PI).abs() < 1e-9);
+            for moments in &solution.moments {
+                // 1/2 int I dmu over both hemispheres is the radiance itself; all others are 0.
+                assert!((moments[0] - 2.0).abs() < 1e-9, "{}", moments[0]);
+                assert!(moments[1..].iter().all(|m| m.abs() < 1e-9));
+            }
+        }
+    }
+
+    #[test]
+    fn no_light_is_lost_where_nothing_absorbs() {
+        // Sunlight on a white slab over black ground: what enters leaves by the top or reaches the ground.
+        let (depth, count, m) = (2.0, 60, 0.6);
+        let mut cells = slab(depth, count, 1.0, 0.5);
+        let each = depth / count as f64;
+        for (k, cell) in cells.iter_mut().enumerate() {
+            let top = k as f64 * each / m;
+            cell.sunlight = (-top).exp() * -(-each / m).exp_m1() / (each / m);
+        }
+        let direct = m * f64::exp(-depth / m);
+        let boundary = Boundary {
+            sine_sun: m,
+            sky: 0.0,
+            albedo: 0.0,
+            sun_on_ground: direct,
+        };
+        let solution = solve(&cells, &boundary);
+        // Net flux from the moment l = 1: 4 pi times it, downwards.
+        let top = 4.0 * PI * solution.moments[0][1];
+        let bottom = 4.0 * PI * solution.moments[count][1];
+        assert!((top + m - bottom - direct).abs() < 1e-9, "{top} {bottom}");
+        assert!((solution.ground_irradiance - bottom - direct).abs() < 1e-9);
+    }
+}
