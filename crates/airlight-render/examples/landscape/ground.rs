@@ -10,7 +10,7 @@ use glam::DVec3;
 pub const TALLEST: f64 = 24.0;
 
 /// Size of the squares that hold a tree each, metres.
-const PLOT: f64 = 8.0;
+const PLOT: f64 = 7.5;
 /// Size of fields, metres.
 const FIELD: [f64; 2] = [260.0, 170.0];
 /// Floor of the woods above the terrain, as seen from above, metres.
@@ -21,13 +21,11 @@ const MEAN_CROWN: f64 = 5.0;
 /// The terrain with what stands on it.
 pub struct Ground {
     heights: Grid,
-    /// 0 open to 1 wooded, before chance has its say.
+    /// 0 open to 1 wooded.
     woods: Grid,
     /// Part of the sky's light that reaches a level surface past the mountains around.
     sky: Grid,
     highest: f64,
-    /// Where trees are cleared for the view: metres east, south.
-    clearing: [f64; 2],
 }
 
 /// What light meets at a point of the ground.
@@ -53,7 +51,7 @@ impl Ground {
     /// Plants the terrain, but not within some hundred metres of `clearing`.
     pub fn new(terrain: Terrain, clearing: [f64; 2]) -> Self {
         let heights = terrain.heights;
-        let woods = heights.map(|x, z| {
+        let likely = heights.map(|x, z| {
             let [east, south] = slope(&heights, x, z, 60.0);
             let mean = (0..8)
                 .map(|k| {
@@ -68,13 +66,15 @@ impl Ground {
             let high = step(420.0, 520.0, here);
             (1.0 - (1.0 - steep) * (1.0 - raised) * (1.0 - 0.8 * high)) as f32
         });
+        let woods = likely.finer(8, |x, z| {
+            density(likely.linear(x, z), x, z, clearing) as f32
+        });
         let sky = heights.map(|x, z| sky_seen(&heights, x, z) as f32);
         Self {
             highest: heights.highest() + TALLEST,
             heights,
             woods,
             sky,
-            clearing,
         }
     }
 
@@ -90,7 +90,7 @@ impl Ground {
 
     /// The surface above sea level, metres, for looks that take in `footprint` metres.
     pub fn surface(&self, x: f64, z: f64, footprint: f64) -> f64 {
-        let density = self.density(x, z);
+        let density = self.woods.linear(x, z);
         let crown = crown(x, z, density, footprint);
         self.terrain(x, z) + density * UNDERGROWTH + crown.height + roughness(x, z, footprint)
     }
@@ -104,7 +104,7 @@ impl Ground {
             2.0 * reach,
             at(0.0, -1.0) - at(0.0, 1.0),
         );
-        let density = self.density(x, z);
+        let density = self.woods.linear(x, z);
         let crown = crown(x, z, density, footprint);
         let [east, south] = slope(&self.heights, x, z, 20.0);
         // Big patches of woods differ in kind, trees in themselves.
@@ -112,9 +112,20 @@ impl Ground {
             + noise::smooth(x / 90.0, z / 90.0, 12) * 0.4;
         let fine = step(5.0, 1.5, footprint);
         let own = 0.5 + fine * (crown.own - 0.5);
-        let leaves = DVec3::new(0.024, 0.042, 0.013)
-            .lerp(DVec3::new(0.050, 0.066, 0.020), 0.5 * kind + 0.5 * own)
-            * (0.85 + 0.3 * own);
+        let leaf =
+            1.0 + 0.7 * step(0.7, 0.2, footprint) * (noise::smooth(x / 0.7, z / 0.7, 14) - 0.5);
+        let leaves = DVec3::new(0.022, 0.038, 0.014)
+            .lerp(
+                DVec3::new(0.060, 0.070, 0.020),
+                0.5 * step(0.2, 0.8, kind) + 0.5 * own,
+            )
+            // The first trees of autumn.
+            .lerp(
+                DVec3::new(0.11, 0.065, 0.020),
+                0.7 * step(0.86, 0.92, own + 0.15 * (kind - 0.5)),
+            )
+            * leaf
+            * (0.8 + 0.4 * own);
         let stony = step(0.75, 1.0, east.hypot(south) + 0.3 * (kind - 0.5));
         let rock = DVec3::new(0.20, 0.18, 0.15) * (0.7 + 0.6 * noise::smooth(x / 7.0, z / 7.0, 13));
         let open = field(x, z).lerp(rock, stony);
@@ -131,16 +142,16 @@ impl Ground {
             open_to_sun: 1.0 - 0.35 * density * (1.0 - fine),
         }
     }
+}
 
-    /// How wooded a place is, 0 to 1.
-    fn density(&self, x: f64, z: f64) -> f64 {
-        let chance = 0.6 * noise::smooth(x / 140.0, z / 140.0, 1)
-            + 0.4 * noise::smooth(x / 45.0, z / 45.0, 2);
-        let woods = step(-0.25, 0.25, self.woods.linear(x, z) - 0.1 - 0.8 * chance);
-        let hedge = (1.0 - step(5.0, 9.0, hedge_distance(x, z))) * step(0.4, 0.6, chance);
-        let from_eye = (x - self.clearing[0]).hypot(z - self.clearing[1]);
-        woods.max(0.8 * hedge) * step(35.0, 95.0, from_eye + 50.0 * (chance - 0.5))
-    }
+/// How wooded a place is, 0 to 1: `likely` by its lie, and by chance.
+fn density(likely: f64, x: f64, z: f64, clearing: [f64; 2]) -> f64 {
+    let chance =
+        0.6 * noise::smooth(x / 140.0, z / 140.0, 1) + 0.4 * noise::smooth(x / 45.0, z / 45.0, 2);
+    let woods = step(-0.25, 0.25, likely - 0.1 - 0.8 * chance);
+    let hedge = (1.0 - step(6.0, 12.0, hedge_distance(x, z))) * step(0.4, 0.6, chance);
+    let from_eye = (x - clearing[0]).hypot(z - clearing[1]);
+    woods.max(0.8 * hedge) * step(35.0, 95.0, from_eye + 50.0 * (chance - 0.5))
 }
 
 /// Rise a metre eastward and southward, over a length of `2 * reach`.
@@ -195,31 +206,28 @@ fn crown(x: f64, z: f64, density: f64, footprint: f64) -> Crown {
             own: 0.5,
         };
     }
-    // Boughs and leaves.
-    let leaves = [(3.1, 2.2), (1.3, 1.2), (0.6, 0.6)]
-        .into_iter()
-        .enumerate()
-        .map(|(k, (wave, height))| {
-            let seen = step(0.5, 0.2, footprint / wave);
-            if seen == 0.0 {
-                return 0.0;
-            }
-            seen * height * (noise::smooth(x / wave, z / wave, 60 + k as u32) - 0.5)
-        })
-        .sum::<f64>();
     let mut best = Crown::default();
-    let (column, row) = ((x / PLOT).floor() as i64, (z / PLOT).floor() as i64);
-    for j in row - 1..=row + 1 {
-        for i in column - 1..=column + 1 {
+    let mut body = 0.0;
+    let (u, v) = (x / PLOT, z / PLOT);
+    // No crown reaches farther than from its plot to the middle of the next.
+    let near = |t: f64| {
+        let first = (t - 0.5).floor() as i64;
+        first..=first + 1
+    };
+    for j in near(v) {
+        for i in near(u) {
             let chance = |salt: u32| noise::hash(i, j, salt);
-            let there = (2.5 * (1.25 * density - chance(3))).clamp(0.0, 1.0);
-            let centre = |index: i64, chance: f64| (index as f64 + 0.1 + 0.8 * chance) * PLOT;
-            let radius = PLOT * (0.45 + 0.35 * chance(6));
-            let away = (x - centre(i, chance(4))).hypot(z - centre(j, chance(5))) / radius;
+            let beside = u - i as f64 - 0.25 - 0.5 * chance(4);
+            let before = v - j as f64 - 0.25 - 0.5 * chance(5);
+            let radius = 0.45 + 0.3 * chance(6);
+            // Squared, in radii.
+            let away = (beside * beside + before * before) / (radius * radius);
             if away < 1.0 {
-                let dome = (1.0 - away * away).sqrt();
-                let height = there * (2.0 + 7.0 * chance(7)) * dome + leaves * dome * there;
+                let there = (2.5 * (1.25 * density - chance(3))).clamp(0.0, 1.0);
+                let dome = there * (1.0 - away).sqrt();
+                let height = (2.0 + 8.0 * chance(7)) * dome;
                 if height > best.height {
+                    body = dome;
                     best = Crown {
                         height,
                         own: chance(8),
@@ -228,8 +236,24 @@ fn crown(x: f64, z: f64, density: f64, footprint: f64) -> Crown {
             }
         }
     }
+    if body > 0.0 {
+        best.height = (best.height + body * leaves(x, z, footprint)).max(0.0);
+    }
     best.height = mean + fine * (best.height - mean);
     best
+}
+
+/// Boughs and leaves: metres above or below a crown's smooth shape.
+fn leaves(x: f64, z: f64, footprint: f64) -> f64 {
+    let mut sum = 0.0;
+    for (salt, wave, height) in [(60, 2.7, 2.4), (61, 1.2, 1.7), (62, 0.6, 0.9)] {
+        let seen = step(0.5, 0.2, footprint / wave);
+        if seen == 0.0 {
+            break;
+        }
+        sum += seen * height * (noise::smooth(x / wave, z / wave, salt) - 0.5);
+    }
+    sum
 }
 
 /// Coordinates in which fields are squares of size 1.

@@ -42,12 +42,12 @@ impl Options {
             sun_elevation: 12.0,
             sun_azimuth: 250.0,
             atmosphere: "average".to_owned(),
-            latitude: 36.503,
-            longitude: -84.2417,
-            height: 30.0,
-            azimuth: 20.0,
-            elevation: -6.0,
-            horizontal_fov: 55.0,
+            latitude: 36.52333,
+            longitude: -84.25583,
+            height: 60.0,
+            azimuth: 290.0,
+            elevation: -7.0,
+            horizontal_fov: 58.0,
         };
         while let Some(name) = arguments.next() {
             if !name.starts_with("--") {

@@ -68,44 +68,47 @@ impl Scene {
     fn pixel(&self, x: u32, y: u32) -> [f32; 4] {
         let n = self.samples;
         let mut colour = DVec3::ZERO;
+        let mut middle = None;
         for i in 0..n * n {
             let within = |k: u32| (f64::from(k) + 0.5) / f64::from(n);
             let (px, py) = (f64::from(x) + within(i % n), f64::from(y) + within(i / n));
             let chance =
                 |salt: u32| noise::hash(i64::from(x * n + i % n), i64::from(y * n + i / n), salt);
-            colour += self.seen(px, py, [chance(50), chance(51)]);
+            if let Some(sight) = self.look(px, py) {
+                colour += self.seen(&sight, px, py, [chance(50), chance(51)]);
+                if n % 2 == 1 && i == n * n / 2 {
+                    middle = Some(sight);
+                }
+            }
         }
-        let colour = colour / f64::from(n * n);
-        let depth = self
-            .look(f64::from(x) + 0.5, f64::from(y) + 0.5)
-            .and_then(|(ray, hit)| hit.map(|t| t * ray.direction.dot(self.axis)));
-        [
-            colour.x as f32,
-            colour.y as f32,
-            colour.z as f32,
-            depth.map_or(f32::INFINITY, |z| z as f32),
-        ]
+        let colour = (colour / f64::from(n * n)).as_vec3();
+        let depth = middle
+            .or_else(|| self.look(f64::from(x) + 0.5, f64::from(y) + 0.5))
+            .and_then(|(ray, hit)| hit.map(|t| t * ray.direction.dot(self.axis)))
+            .unwrap_or(f64::INFINITY);
+        [colour.x, colour.y, colour.z, depth as f32]
     }
 
     /// The line of sight at a place in the picture, and how far away it meets the ground.
     fn look(&self, px: f64, py: f64) -> Option<(Ray, Option<f64>)> {
         let direction = self.frame.direction(px, py)?;
-        let beside = self.frame.direction(px - 0.5, py - 0.5)?;
+        // Half a pixel on, towards the middle of the picture.
+        let size = self.frame.size();
+        let inward = |p: f64, n: u32| p + if 2.0 * p > f64::from(n) { -0.5 } else { 0.5 };
+        let beside = self
+            .frame
+            .direction(inward(px, size.width()), inward(py, size.height()))?;
         let ray = Ray {
             origin: DVec3::new(0.0, self.altitude, 0.0),
             direction,
-            // Half the diagonal of a pixel, in part: several samples share it.
             footprint: [0.0, direction.distance(beside)],
         };
         Some((ray, march::first_hit(self, &ray, 0.0, FARTHEST)))
     }
 
-    /// The luminance that a sample sees, cd/m^2; `chance` picks a point of the sun's disc.
-    fn seen(&self, px: f64, py: f64, chance: [f64; 2]) -> DVec3 {
-        let Some((ray, hit)) = self.look(px, py) else {
-            return DVec3::ZERO;
-        };
-        let Some(t) = hit else {
+    /// The luminance that a line of sight meets, cd/m^2; `chance` picks a point of the sun's disc.
+    fn seen(&self, (ray, hit): &(Ray, Option<f64>), px: f64, py: f64, chance: [f64; 2]) -> DVec3 {
+        let Some(t) = *hit else {
             return self.light.sky(ray.direction);
         };
         let light = self.reflected(ray.at(t), ray.footprint_at(t), chance);

@@ -91,18 +91,26 @@ impl Grid {
 
     /// A grid of the same posts with values made by `value(x, z)`.
     pub fn map(&self, value: impl Fn(f64, f64) -> f32 + Sync) -> Self {
+        self.finer(1, value)
+    }
+
+    /// A grid over the same map of `times` as many posts each way, with values made by `value(x, z)`.
+    pub fn finer(&self, times: usize, value: impl Fn(f64, f64) -> f32 + Sync) -> Self {
         use rayon::prelude::*;
-        let values = (0..self.values.len())
+        let mut finer = Self {
+            columns: self.columns * times,
+            rows: self.rows * times,
+            spacing_m: self.spacing_m.map(|spacing| spacing / times as f64),
+            values: Vec::new(),
+        };
+        finer.values = (0..finer.columns * finer.rows)
             .into_par_iter()
             .map(|i| {
-                let [x, z] = self.post(i % self.columns, i / self.columns);
+                let [x, z] = finer.post(i % finer.columns, i / finer.columns);
                 value(x, z)
             })
             .collect();
-        Self {
-            values,
-            ..self.clone()
-        }
+        finer
     }
 
     /// Where a post stands.
