@@ -101,7 +101,11 @@ impl Scene {
         let ray = Ray {
             origin: DVec3::new(0.0, self.altitude, 0.0),
             direction,
-            footprint: [0.0, direction.distance(beside)],
+            // Samples share a pixel, and what is too fine for one may be right for their mean.
+            footprint: [
+                0.0,
+                direction.distance(beside) / f64::from(self.samples).sqrt(),
+            ],
         };
         Some((ray, march::first_hit(self, &ray, 0.0, FARTHEST)))
     }
