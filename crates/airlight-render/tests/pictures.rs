@@ -212,6 +212,47 @@ fn samples_that_do_not_fit_are_counted() {
 }
 
 #[test]
+fn single_precision_exr_holds_infinity() {
+    let odd = vec![1e6, f32::INFINITY, f32::NEG_INFINITY, f32::MAX];
+    let rows = StoredRows::new(2, 2, odd.clone()).unwrap();
+    let mut bytes = Cursor::new(Vec::new());
+    let options = ExrOptions {
+        sample: ExrSample::Float,
+        ..ExrOptions::default()
+    };
+    let written = exr::encode(
+        &mut bytes,
+        size(2, 1),
+        &["Y", "Z"],
+        &rows,
+        &options,
+        &Metadata::default(),
+        Control::default(),
+    )
+    .unwrap();
+    assert_eq!((written.clamped_samples, written.nan_samples), (0, 0));
+    use ::exr::prelude::*;
+    let image = read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .all_channels()
+        .first_valid_layer()
+        .all_attributes()
+        .from_buffered(Cursor::new(bytes.into_inner()))
+        .unwrap();
+    let values = image
+        .layer_data
+        .channel_data
+        .list
+        .iter()
+        .map(|channel| channel.sample_data.values_as_f32().collect::<Vec<_>>());
+    assert_eq!(
+        values.collect::<Vec<_>>(),
+        [[odd[0], odd[2]], [odd[1], odd[3]]]
+    );
+}
+
+#[test]
 fn hdr_files_hold_what_was_given() {
     for (width, height) in [(1, 1), (7, 3), (8, 2), (300, 40), (33_000, 2)] {
         let size = size(width, height);

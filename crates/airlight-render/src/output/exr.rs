@@ -37,7 +37,7 @@ pub enum ExrSample {
     /// 16 bits: about 3 digits, up to 65504; brighter samples are brought to that and counted.
     #[default]
     Half,
-    /// 32 bits.
+    /// 32 bits; infinite samples stay infinite.
     Float,
 }
 
@@ -170,7 +170,8 @@ impl BlockEncoder<'_> {
         let largest = if self.half {
             f16::MAX.to_f32()
         } else {
-            f32::MAX
+            // Holds infinity: the depth of the sky, for one.
+            f32::INFINITY
         };
         for y in rows.clone() {
             self.split_planes(buffer.row(y), &mut planes);
