@@ -145,9 +145,8 @@ fn check(header: &Header) -> Result<(), Fault> {
     if header.max_block_byte_size() > BLOCK_BYTES {
         return Err(Fault::bad("as EXR it has blocks of more than 2 GiB"));
     }
-    let coarse = |channel: &&::exr::meta::attribute::ChannelDescription| {
-        channel.sampling != Vec2(1, 1)
-    };
+    let coarse =
+        |channel: &&::exr::meta::attribute::ChannelDescription| channel.sampling != Vec2(1, 1);
     match header.channels.list.iter().find(coarse) {
         Some(channel) => Err(Fault::Bad(format!(
             "its channel `{}` has fewer samples than the picture has pixels (as luminance with chroma has), which is \
@@ -239,7 +238,10 @@ impl Layout {
                     let start = before * width;
                     let bytes = &data[start..start + width * kind.bytes_per_sample()];
                     scratch.convert(bytes, kind);
-                    for (to, from) in row[c..].iter_mut().step_by(group.len()).zip(&scratch.floats)
+                    for (to, from) in row[c..]
+                        .iter_mut()
+                        .step_by(group.len())
+                        .zip(&scratch.floats)
                     {
                         *to = *from;
                     }

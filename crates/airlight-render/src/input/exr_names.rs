@@ -141,14 +141,7 @@ fn with_prefix(number: usize, part: &Part, prefix: &str) -> Option<Colours> {
 }
 
 /// Names that depth goes by, the likeliest first. In a name of several words, the last ones count.
-const DEPTH_NAMES: [&str; 6] = [
-    "Z",
-    "depth.Z",
-    "depth.V",
-    "depth.Y",
-    "depth.R",
-    "depth",
-];
+const DEPTH_NAMES: [&str; 6] = ["Z", "depth.Z", "depth.V", "depth.Y", "depth.R", "depth"];
 
 /// The channel of that name, else the one that must be depth: part and number.
 ///

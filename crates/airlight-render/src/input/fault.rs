@@ -83,7 +83,9 @@ pub(super) fn room(count: usize) -> Result<Vec<f32>, Fault> {
     let mut samples = Vec::new();
     samples.try_reserve_exact(count).map_err(|_| {
         let megabytes = (count as u64 * 4) >> 20;
-        Fault::Bad(format!("there is no memory for its {megabytes} MiB of samples"))
+        Fault::Bad(format!(
+            "there is no memory for its {megabytes} MiB of samples"
+        ))
     })?;
     Ok(samples)
 }

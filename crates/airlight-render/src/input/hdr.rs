@@ -179,11 +179,7 @@ fn scan_line(reader: &mut impl BufRead, line: &mut [[u8; 4]]) -> Result<(), Faul
 
 /// Plain pixels, among which `1 1 1 n` repeats the one before: n times, 256 n times if it follows another such, and so
 /// on.
-fn old_line(
-    reader: &mut impl BufRead,
-    first: [u8; 4],
-    line: &mut [[u8; 4]],
-) -> Result<(), Fault> {
+fn old_line(reader: &mut impl BufRead, first: [u8; 4], line: &mut [[u8; 4]]) -> Result<(), Fault> {
     let (mut at, mut shift) = (0, 0);
     let mut next = first;
     loop {

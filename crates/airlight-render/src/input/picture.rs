@@ -1,7 +1,9 @@
 //! Pictures: linear red, green and blue from OpenEXR, Radiance HDR, PNG and JPEG files.
 
 use super::{
-    exr, exr_names, fault::Fault, hdr, jpeg, png,
+    exr, exr_names,
+    fault::Fault,
+    hdr, jpeg, png,
     source::{Kind, Source, with_source},
 };
 use crate::{RenderError, Size, output::Chromaticities};

@@ -167,14 +167,14 @@ impl Layout {
     ) {
         // A table with one entry for each value that T can take: the default is never used.
         let light = |v: T| table.get(v.into()).copied().unwrap_or(0.0);
-        let opaque = 1.0 / (table.len() - 1) as f32;
+        let opaque = (table.len() - 1) as f32;
         match (self.colours, alpha) {
             (3, None) => rgb.extend(values.map(light)),
             (1, None) => values.for_each(|v| rgb.extend_from_slice(&[light(v); 3])),
             (3, Some(alpha)) => {
                 for (i, v) in values.enumerate() {
                     match i % 4 {
-                        3 => alpha.push(v.into() as f32 * opaque),
+                        3 => alpha.push(v.into() as f32 / opaque),
                         _ => rgb.push(light(v)),
                     }
                 }
@@ -182,7 +182,7 @@ impl Layout {
             (_, Some(alpha)) => {
                 for (i, v) in values.enumerate() {
                     match i % 2 {
-                        1 => alpha.push(v.into() as f32 * opaque),
+                        1 => alpha.push(v.into() as f32 / opaque),
                         _ => rgb.extend_from_slice(&[light(v); 3]),
                     }
                 }
