@@ -1,8 +1,9 @@
 //! What can go wrong, in sentences that say what, where, and what would be right.
 
+use crate::Size;
 use std::{io, path::PathBuf};
 
-/// Why a picture could not be set up or written.
+/// Why a picture could not be set up, written or read.
 #[derive(Debug, thiserror::Error)]
 pub enum RenderError {
     /// A width or height outside `1..=65536`.
@@ -84,6 +85,61 @@ pub enum RenderError {
         format: &'static str,
         /// What the encoder said.
         reason: String,
+    },
+    /// What a file holds cannot be read, or is not what it should be.
+    #[error("cannot read `{path}`: {reason}", path = .path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// A file breaks off before all is there that its beginning promises.
+    #[error("`{path}` ends too early: {reason}", path = .path.display())]
+    EndsEarly {
+        /// The file.
+        path: PathBuf,
+        /// What is missing.
+        reason: String,
+    },
+    /// A file lacks a channel that is needed, or has several that could be meant.
+    #[error("`{path}` has no {wanted}. Its channels: {there}", path = .path.display())]
+    NoChannel {
+        /// The file.
+        path: PathBuf,
+        /// What was looked for.
+        wanted: String,
+        /// The channels that are there, with commas between them.
+        there: String,
+    },
+    /// Depth below 0, where a mistake of sign is likelier than a hole.
+    #[error(
+        "`{path}` has negative depth in {count} of its pixels, the first at x {x}, y {y}: {value}. Depth must grow away from \
+         the camera; where negative numbers mean that nothing is known, say so",
+        path = .path.display()
+    )]
+    NegativeDepth {
+        /// The file.
+        path: PathBuf,
+        /// How many pixels.
+        count: u64,
+        /// Column of the first, from 0.
+        x: u32,
+        /// Row of the first, from 0 at the top.
+        y: u32,
+        /// What the file says there, before any scale.
+        value: f32,
+    },
+    /// A depth map that is not as large as its picture.
+    #[error(
+        "the depth map is {} x {} pixels, the picture {} x {}: both must be the same",
+        .depth.width(), .depth.height(), .picture.width(), .picture.height()
+    )]
+    SizesDiffer {
+        /// Of the depth map.
+        depth: Size,
+        /// Of the picture.
+        picture: Size,
     },
     /// The caller asked to stop; nothing was left behind.
     #[error("stopped as asked; no file was left behind")]

@@ -10,11 +10,13 @@
 //! - [`rows`]: where pixels come from; stopping and following a long write.
 //! - [`tone`]: from linear light to what a display shows: exposure, tone curves, dither.
 //! - [`output`]: picture files: OpenEXR (RGB and spectral), Radiance HDR, PNG, JPEG.
+//! - [`input`]: pictures and depth maps read from files.
 //! - [`terminal`]: a small picture as coloured text.
 //! - [`sequence`]: many pictures: file names, time steps, taking up where an earlier run stopped.
 
 pub mod error;
 pub mod frame;
+pub mod input;
 pub mod output;
 pub mod rows;
 pub mod sequence;
@@ -22,6 +24,7 @@ pub mod terminal;
 pub mod tone;
 
 pub use error::RenderError;
-pub use frame::{Camera, CubeFace, Fisheye, Frame, Projection, Size};
+pub use frame::{Camera, CubeFace, Fisheye, Frame, Intrinsics, Projection, Size};
+pub use input::{DepthMap, DepthOptions, Picture, read_depth, read_picture};
 pub use output::{PictureFormat, PictureOptions, write_picture};
 pub use rows::{Control, Progress, RowSource};

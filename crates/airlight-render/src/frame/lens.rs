@@ -36,13 +36,13 @@ pub(super) enum Lens {
 /// Right, up and forward of a camera: unit vectors, each square to the others.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct View {
-    right: DVec3,
-    up: DVec3,
-    forward: DVec3,
+    pub(super) right: DVec3,
+    pub(super) up: DVec3,
+    pub(super) forward: DVec3,
 }
 
 impl View {
-    fn new(azimuth_deg: f64, elevation_deg: f64, roll_deg: f64) -> Self {
+    pub(super) fn new(azimuth_deg: f64, elevation_deg: f64, roll_deg: f64) -> Self {
         let forward = axes::direction(azimuth_deg, elevation_deg);
         let level = axes::direction(azimuth_deg + 90.0, 0.0);
         let upright = level.cross(forward);

@@ -4,10 +4,12 @@
 //! pixel `(i, j)` is at `(i + 0.5, j + 0.5)`. Directions are unit vectors in the world axes of [`airlight::axes`]
 //! (x east, y up, z south).
 
+mod intrinsics;
 mod lens;
 mod projection;
 mod solid_angle;
 
+pub use intrinsics::{Intrinsics, PixelCentres};
 pub use projection::{Camera, CubeFace, Fisheye, Projection};
 
 use crate::RenderError;

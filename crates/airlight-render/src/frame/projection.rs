@@ -179,7 +179,7 @@ impl Projection {
     }
 }
 
-fn azimuth(degrees: f64) -> Result<(), RenderError> {
+pub(super) fn azimuth(degrees: f64) -> Result<(), RenderError> {
     demand(
         degrees.is_finite(),
         "the azimuth in degrees",
@@ -188,7 +188,7 @@ fn azimuth(degrees: f64) -> Result<(), RenderError> {
     )
 }
 
-fn elevation(degrees: f64) -> Result<(), RenderError> {
+pub(super) fn elevation(degrees: f64) -> Result<(), RenderError> {
     demand(
         (-90.0..=90.0).contains(&degrees),
         "the elevation in degrees",
@@ -197,7 +197,7 @@ fn elevation(degrees: f64) -> Result<(), RenderError> {
     )
 }
 
-fn demand(
+pub(super) fn demand(
     fulfilled: bool,
     what: &'static str,
     got: f64,

@@ -1,4 +1,4 @@
-//! PNG files: sRGB, 8 or 16 bits. Bands are filtered and compressed in parallel, each on its own, and joined to one
+//! PNG files: sRGB, 8 or 16 bits, with or without opacity. Bands are filtered and compressed in parallel, each on its own, and joined to one
 //! stream.
 
 use super::{
@@ -32,6 +32,15 @@ pub struct PngOptions {
     pub compression_level: u8,
 }
 
+impl PngDepth {
+    fn bytes(self) -> usize {
+        match self {
+            Self::Eight => 1,
+            Self::Sixteen => 2,
+        }
+    }
+}
+
 impl Default for PngOptions {
     fn default() -> Self {
         Self {
@@ -41,7 +50,8 @@ impl Default for PngOptions {
     }
 }
 
-/// Writes linear RGB rows, as `tone` shows them, to a file.
+/// Writes linear RGB rows, as `tone` shows them, to a file. A fourth channel is opacity in `[0, 1]`: it is rounded,
+/// without tone curve or dither, and colours are taken as not multiplied by it.
 ///
 /// # Errors
 /// [`RenderError`]; the target is then as before.
@@ -59,10 +69,10 @@ pub fn write(
     })
 }
 
-/// Writes linear RGB rows, as `tone` shows them, to a stream. [`Written::bytes`] is left 0.
+/// Writes rows to a stream as [`write()`] does. [`Written::bytes`] is left 0.
 ///
 /// # Errors
-/// [`RenderError`] where the source has not three channels, a setting is out of range, the stream fails, or the caller
+/// [`RenderError`] where the source has neither three channels nor four, a setting is out of range, the stream fails, or the caller
 /// asks to stop.
 pub fn encode<W: Write + Send>(
     out: &mut W,
@@ -73,7 +83,10 @@ pub fn encode<W: Write + Send>(
     metadata: &Metadata,
     control: Control<'_>,
 ) -> Result<Written, RenderError> {
-    expect_channels(FORMAT, source, 3)?;
+    let channels = source.channels();
+    if channels != 4 {
+        expect_channels(FORMAT, source, 3)?;
+    }
     if options.compression_level > 9 {
         return Err(RenderError::Setting {
             what: "the PNG compression level",
@@ -81,12 +94,9 @@ pub fn encode<W: Write + Send>(
             right: "0 to 9",
         });
     }
-    let mut png = header(out, size, options, metadata).map_err(failed)?;
-    let bands = Bands::for_channels(size, 3, 1);
-    let pixel_bytes = match options.depth {
-        PngDepth::Eight => 3,
-        PngDepth::Sixteen => 6,
-    };
+    let mut png = header(out, size, channels, options, metadata).map_err(failed)?;
+    let bands = Bands::for_channels(size, channels, 1);
+    let pixel_bytes = channels * options.depth.bytes();
     let row_bytes = size.width() as usize * pixel_bytes;
     let mut checksum = Adler32::EMPTY;
     let last = bands.count() - 1;
@@ -129,34 +139,15 @@ fn filtered_band(
     band: u32,
 ) -> Vec<u8> {
     let width = size.width() as usize;
-    let step = match depth {
-        PngDepth::Eight => 3,
-        PngDepth::Sixteen => 6,
-    };
+    let step = source.channels() * depth.bytes();
     let mut rows = RowBuffer::new(source, size);
-    let mut wide = vec![
-        0u16;
-        if depth == PngDepth::Sixteen {
-            width * 3
-        } else {
-            0
-        }
-    ];
+    let mut writer = RowBytes::new(tone, width, source.channels(), depth);
     let mut now = vec![0u8; width * step];
     let mut above = vec![0u8; width * step];
     let mut scratch = png_filter::Scratch::default();
     let mut filtered = Vec::with_capacity((width * step + 1) * bands.rows(band).len());
     for (index, y) in bands.rows(band).enumerate() {
-        let linear = rows.row(y);
-        match depth {
-            PngDepth::Eight => tone.row_to_u8(y, linear, &mut now),
-            PngDepth::Sixteen => {
-                tone.row_to_u16(linear, &mut wide);
-                for (bytes, value) in now.as_chunks_mut::<2>().0.iter_mut().zip(&wide) {
-                    *bytes = value.to_be_bytes();
-                }
-            }
-        }
+        writer.write(y, rows.row(y), &mut now);
         let before = (index > 0).then_some(above.as_slice());
         png_filter::filter(&now, before, step, &mut scratch, &mut filtered);
         std::mem::swap(&mut now, &mut above);
@@ -164,14 +155,89 @@ fn filtered_band(
     filtered
 }
 
+/// Makes the bytes of rows.
+struct RowBytes<'a> {
+    tone: &'a ToneMapper,
+    depth: PngDepth,
+    has_alpha: bool,
+    /// Colours without the opacity between them; empty where there is none.
+    linear: Vec<f32>,
+    narrow: Vec<u8>,
+    wide: Vec<u16>,
+}
+
+impl<'a> RowBytes<'a> {
+    fn new(tone: &'a ToneMapper, width: usize, channels: usize, depth: PngDepth) -> Self {
+        let has_alpha = channels == 4;
+        let of = |needed: bool| if needed { width * 3 } else { 0 };
+        Self {
+            tone,
+            depth,
+            has_alpha,
+            linear: vec![0.0; of(has_alpha)],
+            narrow: vec![0; of(has_alpha && depth == PngDepth::Eight)],
+            wide: vec![0; of(depth == PngDepth::Sixteen)],
+        }
+    }
+
+    fn write(&mut self, y: u32, row: &[f32], out: &mut [u8]) {
+        // Not-a-number is transparent.
+        let level = |alpha: f32, most: f32| alpha.clamp(0.0, 1.0) * most + 0.5;
+        let linear = if self.has_alpha {
+            let pixels = row.as_chunks::<4>().0;
+            for (rgb, [r, g, b, _]) in self.linear.as_chunks_mut::<3>().0.iter_mut().zip(pixels) {
+                *rgb = [*r, *g, *b];
+            }
+            &self.linear
+        } else {
+            row
+        };
+        match (self.depth, self.has_alpha) {
+            (PngDepth::Eight, false) => self.tone.row_to_u8(y, linear, out),
+            (PngDepth::Eight, true) => {
+                self.tone.row_to_u8(y, linear, &mut self.narrow);
+                let colours = self.narrow.as_chunks::<3>().0.iter();
+                let alphas = row.as_chunks::<4>().0.iter();
+                let pixels = out.as_chunks_mut::<4>().0.iter_mut();
+                for ((pixel, &[r, g, b]), &[.., alpha]) in pixels.zip(colours).zip(alphas) {
+                    *pixel = [r, g, b, level(alpha, 255.0) as u8];
+                }
+            }
+            (PngDepth::Sixteen, false) => {
+                self.tone.row_to_u16(linear, &mut self.wide);
+                for (bytes, value) in out.as_chunks_mut::<2>().0.iter_mut().zip(&self.wide) {
+                    *bytes = value.to_be_bytes();
+                }
+            }
+            (PngDepth::Sixteen, true) => {
+                self.tone.row_to_u16(linear, &mut self.wide);
+                let colours = self.wide.as_chunks::<3>().0.iter();
+                let alphas = row.as_chunks::<4>().0.iter();
+                let pixels = out.as_chunks_mut::<8>().0.iter_mut();
+                for ((pixel, &[r, g, b]), &[.., alpha]) in pixels.zip(colours).zip(alphas) {
+                    let values = [r, g, b, level(alpha, 65535.0) as u16];
+                    for (bytes, value) in pixel.as_chunks_mut::<2>().0.iter_mut().zip(values) {
+                        *bytes = value.to_be_bytes();
+                    }
+                }
+            }
+        }
+    }
+}
+
 fn header<'a, W: Write>(
     out: &'a mut W,
     size: Size,
+    channels: usize,
     options: &PngOptions,
     metadata: &Metadata,
 ) -> Result<png::Writer<&'a mut W>, png::EncodingError> {
     let mut encoder = png::Encoder::new(out, size.width(), size.height());
-    encoder.set_color(ColorType::Rgb);
+    encoder.set_color(if channels == 4 {
+        ColorType::Rgba
+    } else {
+        ColorType::Rgb
+    });
     encoder.set_depth(match options.depth {
         PngDepth::Eight => BitDepth::Eight,
         PngDepth::Sixteen => BitDepth::Sixteen,

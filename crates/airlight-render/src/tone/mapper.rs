@@ -69,6 +69,17 @@ impl ToneMapper {
         })
     }
 
+    /// For light that a display is to show as it is, 1 being its white: cut off at 0 and 1, encoded as sRGB and rounded,
+    /// without dither. A picture read from an sRGB file of 8 or 16 bits comes out bit for bit the same.
+    pub fn as_displayed() -> Self {
+        Self {
+            exposure: 1.0,
+            dither: false,
+            filmic: None,
+            encode: OctaveTable::new(STRAIGHT, 1.0, srgb::encode),
+        }
+    }
+
     /// The same, with dither of 8-bit output on or off.
     pub fn with_dither(self, dither: bool) -> Self {
         Self { dither, ..self }

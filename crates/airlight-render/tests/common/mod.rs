@@ -1,6 +1,8 @@
 //! What the tests of picture files share.
 #![allow(dead_code, reason = "each test file uses its own part")]
 
+pub mod files;
+
 use airlight_render::{
     Frame, Size,
     output::{Chromaticities, Metadata},

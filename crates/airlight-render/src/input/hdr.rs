@@ -1,0 +1,217 @@
+//! Radiance HDR files: RGBE or XYZE, plain or run-length encoded.
+
+use super::{
+    fault::{Fault, checked_size, room, samples},
+    picture::{LightReference, Picture, SampleBits, mend_colours},
+    source::Source,
+};
+use crate::{Size, output::Chromaticities};
+use std::io::{BufRead, Read};
+
+/// The longest line of a header.
+const LONGEST_LINE: u64 = 1 << 16;
+
+/// The longest header in lines.
+const MOST_LINES: usize = 1 << 12;
+
+struct Header {
+    size: Size,
+    /// By which the stored values are to be multiplied.
+    factor: f64,
+    chromaticities: Option<Chromaticities>,
+}
+
+pub(super) fn read(mut source: Source) -> Result<Picture, Fault> {
+    let reader = &mut source.reader;
+    let header = header(reader)?;
+    let size = header.size;
+    let width = size.width() as usize;
+    // 2^(e - 136) for each exponent, none for 0.
+    let scale: Vec<f32> = (0..=255)
+        .map(|e| match e {
+            0 => 0.0,
+            _ => (f64::from(e - 136).exp2() * header.factor) as f32,
+        })
+        .collect();
+    let mut rgb = room(samples(size, 3))?;
+    let mut line = vec![[0; 4]; width];
+    for _ in 0..size.height() {
+        scan_line(reader, &mut line)?;
+        rgb.extend(line.iter().flat_map(|&[r, g, b, e]| {
+            let unit = scale.get(usize::from(e)).copied().unwrap_or(0.0);
+            [r, g, b].map(|mantissa| f32::from(mantissa) * unit)
+        }));
+    }
+    // Only a tiny exposure can have made anything infinite.
+    let repaired_samples = mend_colours(&mut rgb);
+    Ok(Picture {
+        size,
+        rgb,
+        alpha: None,
+        reference: LightReference::Scene,
+        bits: SampleBits::Float,
+        chromaticities: header.chromaticities,
+        profile_ignored: false,
+        repaired_samples,
+    })
+}
+
+fn header(reader: &mut impl BufRead) -> Result<Header, Fault> {
+    let mut exposure = 1.0;
+    let mut chromaticities = None;
+    let mut is_xyz = false;
+    for number in 0.. {
+        let line = header_line(reader)?;
+        if number == MOST_LINES {
+            return Err(Fault::bad("as HDR it has a header that does not end"));
+        }
+        if line.is_empty() {
+            break;
+        }
+        if number == 0 || line.starts_with('#') {
+            continue;
+        }
+        let Some((name, value)) = line.split_once('=') else {
+            continue;
+        };
+        let value = value.trim();
+        match name.trim() {
+            "FORMAT" => match value {
+                "32-bit_rle_rgbe" => {}
+                "32-bit_rle_xyze" => is_xyz = true,
+                _ => {
+                    return Err(Fault::Bad(format!(
+                        "as HDR it must have the format 32-bit_rle_rgbe or 32-bit_rle_xyze: this is `{value}`"
+                    )));
+                }
+            },
+            // Several multiply.
+            "EXPOSURE" => exposure *= value.parse().unwrap_or(1.0),
+            "PRIMARIES" => chromaticities = primaries(value),
+            _ => {}
+        }
+    }
+    let usable = f64::is_normal(exposure) && exposure > 0.0;
+    Ok(Header {
+        size: dimensions(&header_line(reader)?)?,
+        factor: if usable { 1.0 / exposure } else { 1.0 },
+        chromaticities: if is_xyz {
+            Some(Chromaticities::XYZ)
+        } else {
+            chromaticities
+        },
+    })
+}
+
+fn header_line(reader: &mut impl BufRead) -> Result<String, Fault> {
+    let mut line = Vec::new();
+    reader.take(LONGEST_LINE).read_until(b'\n', &mut line)?;
+    if line.pop() != Some(b'\n') {
+        return Err(Fault::bad("as HDR it has a header that does not end"));
+    }
+    Ok(String::from_utf8_lossy(&line).trim().to_owned())
+}
+
+fn primaries(value: &str) -> Option<Chromaticities> {
+    let numbers: Vec<f32> = value
+        .split_whitespace()
+        .map(|n| n.parse().ok().filter(|n: &f32| n.is_finite()))
+        .collect::<Option<_>>()?;
+    let [rx, ry, gx, gy, bx, by, wx, wy] = numbers.try_into().ok()?;
+    Some(Chromaticities {
+        red: [rx, ry],
+        green: [gx, gy],
+        blue: [bx, by],
+        white: [wx, wy],
+    })
+}
+
+fn dimensions(line: &str) -> Result<Size, Fault> {
+    let words: Vec<&str> = line.split_whitespace().collect();
+    let refused = || {
+        Fault::Bad(format!(
+            "as HDR it must give its size as `-Y HEIGHT +X WIDTH`, rows from the top: this says `{line}`"
+        ))
+    };
+    let ["-Y", height, "+X", width] = words[..] else {
+        return Err(refused());
+    };
+    let number = |text: &str| text.parse::<u64>().map_err(|_| refused());
+    checked_size(number(width)?, number(height)?)
+}
+
+fn scan_line(reader: &mut impl BufRead, line: &mut [[u8; 4]]) -> Result<(), Fault> {
+    let width = line.len();
+    let first = four(reader)?;
+    let [2, 2, high @ 0..128, low] = first else {
+        return old_line(reader, first, line);
+    };
+    if usize::from(u16::from_be_bytes([high, low])) != width {
+        return Err(Fault::bad("as HDR it has a row of the wrong length"));
+    }
+    let mut loose = [0; 128];
+    for component in 0..4 {
+        let mut rest = &mut line[..];
+        while !rest.is_empty() {
+            let code = usize::from(byte(reader)?);
+            let length = if code > 128 { code - 128 } else { code };
+            if length == 0 || length > rest.len() {
+                return Err(Fault::bad("as HDR it has a run that leaves its row"));
+            }
+            let (now, later) = rest.split_at_mut(length);
+            if code > 128 {
+                let value = byte(reader)?;
+                for pixel in now {
+                    pixel[component] = value;
+                }
+            } else {
+                let values = &mut loose[..length];
+                reader.read_exact(values)?;
+                for (pixel, value) in now.iter_mut().zip(values) {
+                    pixel[component] = *value;
+                }
+            }
+            rest = later;
+        }
+    }
+    Ok(())
+}
+
+/// Plain pixels, among which `1 1 1 n` repeats the one before: n times, 256 n times if it follows another such, and so
+/// on.
+fn old_line(reader: &mut impl BufRead, first: [u8; 4], line: &mut [[u8; 4]]) -> Result<(), Fault> {
+    let (mut at, mut shift) = (0, 0);
+    let mut next = first;
+    loop {
+        if let [1, 1, 1, n] = next {
+            let run = usize::from(n).checked_shl(shift).unwrap_or(usize::MAX);
+            if at == 0 || run > line.len() - at {
+                return Err(Fault::bad("as HDR it has a run that leaves its row"));
+            }
+            let before = line[at - 1];
+            line[at..at + run].fill(before);
+            at += run;
+            shift = (shift + 8).min(32);
+        } else {
+            line[at] = next;
+            at += 1;
+            shift = 0;
+        }
+        if at == line.len() {
+            return Ok(());
+        }
+        next = four(reader)?;
+    }
+}
+
+fn byte(reader: &mut impl BufRead) -> Result<u8, Fault> {
+    let mut one = [0];
+    reader.read_exact(&mut one)?;
+    Ok(one[0])
+}
+
+fn four(reader: &mut impl BufRead) -> Result<[u8; 4], Fault> {
+    let mut four = [0; 4];
+    reader.read_exact(&mut four)?;
+    Ok(four)
+}

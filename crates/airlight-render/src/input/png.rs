@@ -1,0 +1,227 @@
+//! PNG files: pictures of any colour type and depth, depth maps of 8 or 16 bits of grey.
+
+use super::{
+    fault::{Fault, checked_size, room, samples},
+    metres::Raw,
+    picture::{LightReference, Picture, SampleBits, is_foreign},
+    source::{Source, Watched},
+};
+use crate::{Size, output::Chromaticities, tone::srgb};
+use png::{BitDepth, ColorType, Decoder, DecodingError, Info, Limits, Reader, Transformations};
+use std::{io::BufReader, sync::LazyLock};
+
+type PngReader = Reader<BufReader<Watched>>;
+
+/// Linear light of every 8-bit sRGB value.
+static SRGB_8: LazyLock<Vec<f32>> = LazyLock::new(|| table(256, srgb::decode));
+/// Linear light of every 16-bit sRGB value.
+static SRGB_16: LazyLock<Vec<f32>> = LazyLock::new(|| table(65536, srgb::decode));
+
+fn table(count: u32, decode: impl Fn(f64) -> f64) -> Vec<f32> {
+    let scale = 1.0 / f64::from(count - 1);
+    (0..count)
+        .map(|n| decode(f64::from(n) * scale) as f32)
+        .collect()
+}
+
+/// Linear light of every 8-bit value of a picture that is sRGB.
+pub(super) fn srgb_8() -> &'static [f32] {
+    &SRGB_8
+}
+
+fn start(source: Source, transform: Transformations) -> Result<(PngReader, Size), Fault> {
+    let mut decoder = Decoder::new_with_limits(source.reader, Limits { bytes: 1 << 28 });
+    decoder.set_transformations(transform);
+    decoder.set_ignore_text_chunk(true);
+    let header = decoder.read_header_info().map_err(failed)?;
+    let size = checked_size(u64::from(header.width), u64::from(header.height))?;
+    Ok((decoder.read_info().map_err(failed)?, size))
+}
+
+pub(super) fn read(source: Source) -> Result<Picture, Fault> {
+    let (mut reader, size) = start(source, Transformations::EXPAND)?;
+    let (color, depth) = reader.output_color_type();
+    let layout = Layout {
+        colours: match color {
+            ColorType::Grayscale | ColorType::GrayscaleAlpha => 1,
+            _ => 3,
+        },
+        alpha: matches!(color, ColorType::GrayscaleAlpha | ColorType::Rgba),
+    };
+    let info = reader.info();
+    let chromaticities = chromaticities(info);
+    let profile_ignored = info.icc_profile.as_deref().is_some_and(is_foreign);
+    let gamma = foreign_gamma(info);
+    let mut rgb = room(samples(size, 3))?;
+    let mut alpha = layout.alpha.then(|| room(samples(size, 1))).transpose()?;
+    let count = if depth == BitDepth::Sixteen {
+        65536
+    } else {
+        256
+    };
+    let own_table = gamma.map(|gamma| table(count, |v| v.powf(1.0 / gamma)));
+    let bits = if depth == BitDepth::Sixteen {
+        let table = own_table.as_deref().unwrap_or(&SRGB_16);
+        rows(&mut reader, |row| {
+            let (values, _) = row.as_chunks::<2>();
+            let values = values.iter().map(|&two| u16::from_be_bytes(two));
+            layout.split(values, table, &mut rgb, alpha.as_mut());
+        })?;
+        SampleBits::U16
+    } else {
+        let table = own_table.as_deref().unwrap_or(&SRGB_8);
+        rows(&mut reader, |row| {
+            layout.split(row.iter().copied(), table, &mut rgb, alpha.as_mut());
+        })?;
+        SampleBits::U8
+    };
+    Ok(Picture {
+        size,
+        rgb,
+        alpha,
+        reference: LightReference::Display,
+        bits,
+        chromaticities,
+        profile_ignored,
+        repaired_samples: 0,
+    })
+}
+
+/// A depth map: grey of 8 or 16 bits, in the numbers of the file.
+pub(super) fn read_grey(source: Source) -> Result<Raw, Fault> {
+    let (mut reader, size) = start(source, Transformations::IDENTITY)?;
+    let (color, depth) = reader.output_color_type();
+    let bits = match (color, depth) {
+        (ColorType::Grayscale, BitDepth::Eight) => SampleBits::U8,
+        (ColorType::Grayscale, BitDepth::Sixteen) => SampleBits::U16,
+        _ => {
+            let kind = match color {
+                ColorType::Grayscale => "grey",
+                ColorType::GrayscaleAlpha => "grey and opacity",
+                ColorType::Rgb => "RGB",
+                ColorType::Rgba => "RGB and opacity",
+                ColorType::Indexed => "a palette",
+            };
+            return Err(Fault::Bad(format!(
+                "a depth map in PNG must be grey of 8 or 16 bits, without opacity: this is {kind} of {} bits",
+                depth as u8
+            )));
+        }
+    };
+    let mut values = room(samples(size, 1))?;
+    if bits == SampleBits::U16 {
+        rows(&mut reader, |row| {
+            let (pairs, _) = row.as_chunks::<2>();
+            values.extend(pairs.iter().map(|&two| f32::from(u16::from_be_bytes(two))));
+        })?;
+    } else {
+        rows(&mut reader, |row| {
+            values.extend(row.iter().copied().map(f32::from));
+        })?;
+    }
+    Ok(Raw { size, values, bits })
+}
+
+/// Hands over each row from the top. Interlaced pictures are put together first.
+fn rows(reader: &mut PngReader, mut take: impl FnMut(&[u8])) -> Result<(), Fault> {
+    let info = reader.info();
+    let (width, height) = (info.width, info.height);
+    let too_large = || Fault::bad("a row of it does not fit into memory");
+    let line = reader.output_line_size(width).ok_or_else(too_large)?;
+    if info.interlaced {
+        let bytes = reader.output_buffer_size().ok_or_else(too_large)?;
+        Vec::<u8>::new()
+            .try_reserve_exact(bytes)
+            .map_err(|_| Fault::bad("there is no memory for an interlaced picture of its size"))?;
+        let mut whole = vec![0; bytes];
+        reader.next_frame(&mut whole).map_err(failed)?;
+        whole.chunks_exact(line).for_each(take);
+        return Ok(());
+    }
+    let mut row = vec![0; line];
+    for _ in 0..height {
+        if reader.read_row(&mut row).map_err(failed)?.is_none() {
+            return Err(Fault::Early("rows are missing".to_owned()));
+        }
+        take(&row);
+    }
+    Ok(())
+}
+
+/// Components of a pixel.
+#[derive(Clone, Copy)]
+struct Layout {
+    colours: usize,
+    alpha: bool,
+}
+
+impl Layout {
+    /// Appends a row of interleaved values, decoded by the table; opacity is linear already.
+    #[inline(always)]
+    fn split<T: Copy + Into<usize>>(
+        self,
+        values: impl ExactSizeIterator<Item = T>,
+        table: &[f32],
+        rgb: &mut Vec<f32>,
+        alpha: Option<&mut Vec<f32>>,
+    ) {
+        // A table with one entry for each value that T can take: the default is never used.
+        let light = |v: T| table.get(v.into()).copied().unwrap_or(0.0);
+        let opaque = (table.len() - 1) as f32;
+        match (self.colours, alpha) {
+            (3, None) => rgb.extend(values.map(light)),
+            (1, None) => values.for_each(|v| rgb.extend_from_slice(&[light(v); 3])),
+            (3, Some(alpha)) => {
+                for (i, v) in values.enumerate() {
+                    match i % 4 {
+                        3 => alpha.push(v.into() as f32 / opaque),
+                        _ => rgb.push(light(v)),
+                    }
+                }
+            }
+            (_, Some(alpha)) => {
+                for (i, v) in values.enumerate() {
+                    match i % 2 {
+                        1 => alpha.push(v.into() as f32 / opaque),
+                        _ => rgb.extend_from_slice(&[light(v); 3]),
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
+/// The exponent of encoding, where the file states one that is not about sRGB's and nothing outweighs it.
+fn foreign_gamma(info: &Info<'_>) -> Option<f64> {
+    let outweighed = info.srgb.is_some()
+        || info.icc_profile.is_some()
+        || info.coding_independent_code_points.is_some();
+    let gamma = f64::from(info.gama_chunk?.into_value());
+    let is_about_srgb = (gamma * 2.2 - 1.0).abs() < 0.05;
+    (!outweighed && !is_about_srgb && (0.1..=10.0).contains(&gamma)).then_some(gamma)
+}
+
+fn chromaticities(info: &Info<'_>) -> Option<Chromaticities> {
+    if info.srgb.is_some() {
+        return Some(Chromaticities::SRGB);
+    }
+    let c = info.chrm_chunk?;
+    let xy = |(x, y): (png::ScaledFloat, png::ScaledFloat)| [x.into_value(), y.into_value()];
+    Some(Chromaticities {
+        red: xy(c.red),
+        green: xy(c.green),
+        blue: xy(c.blue),
+        white: xy(c.white),
+    })
+}
+
+fn failed(error: DecodingError) -> Fault {
+    match error {
+        DecodingError::IoError(error) => Fault::Io(error),
+        DecodingError::LimitsExceeded => {
+            Fault::bad("its rows or notes take more than 256 MiB of memory")
+        }
+        other => Fault::Bad(format!("as PNG it is corrupt: {other}")),
+    }
+}
