@@ -1,4 +1,5 @@
 //! Fog in closed form.
+pub mod lamp;
 pub mod lanes;
 pub mod line;
 pub mod matter;
