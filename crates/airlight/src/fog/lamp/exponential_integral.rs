@@ -63,7 +63,10 @@ mod tests {
     fn both_parts_agree_with_forty_digits() {
         for (re, im, want_re, want_im) in VALUES {
             let got = scaled(re, im);
-            assert!((got.0 / want_re - 1.0).abs() < 1e-13, "({re}, {im}): {got:?}");
+            assert!(
+                (got.0 / want_re - 1.0).abs() < 1e-13,
+                "({re}, {im}): {got:?}"
+            );
             assert!(
                 (got.1 - want_im).abs() <= 1e-13 * f64::abs(want_im),
                 "({re}, {im}): {got:?}"
@@ -75,7 +78,10 @@ mod tests {
     fn the_two_forms_meet() {
         for step in 0..=40 {
             let (sin, cos) = (f64::from(step) / 40.0 * std::f64::consts::FRAC_PI_2).sin_cos();
-            let (a, b) = (series(2.0 * cos, -2.0 * sin), fraction(2.0 * cos, -2.0 * sin));
+            let (a, b) = (
+                series(2.0 * cos, -2.0 * sin),
+                fraction(2.0 * cos, -2.0 * sin),
+            );
             assert!((a.0 / b.0 - 1.0).abs() < 5e-14, "{step}: {a:?} {b:?}");
             assert!((a.1 - b.1).abs() <= 5e-14 * b.1, "{step}: {a:?} {b:?}");
         }

@@ -17,6 +17,9 @@ use std::f64::consts::PI;
 /// The optical depth within a node's scale that Gauss's rule takes in its stride.
 const STRIDE: f64 = 12.0;
 
+/// The optical depth of a panel up to which its nodes may crowd at the lamp's end.
+const OUTWARDS: f64 = 4.0;
+
 /// What of the fog is the same for all lamps and lines.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Haze<'a, const N: usize> {
@@ -38,9 +41,11 @@ impl<'a, const N: usize> Haze<'a, N> {
     pub(super) fn new(murk: &'a Murk<'a, N>) -> Option<Self> {
         let matter = murk.matter;
         let thickest = f64::from(matter.extinction_per_m.max_element());
-        let thinnest = matter.extinction_per_m.0.iter().fold(f32::INFINITY, |m, &v| {
-            if v > 0.0 && v < m { v } else { m }
-        });
+        let thinnest = matter
+            .extinction_per_m
+            .0
+            .iter()
+            .fold(f32::INFINITY, |m, &v| if v > 0.0 && v < m { v } else { m });
         let isotropic = matter.phase == crate::optics::PhaseFunction::Isotropic;
         (N > 0 && thickest > 0.0).then(|| Self {
             murk,
@@ -127,28 +132,47 @@ impl<'a, const N: usize> Ray<'a, N> {
             cuts.keep(outer);
             cuts.add(inner);
         }
+        if *haze.murk.profile != Profile::Uniform {
+            let closest = -self.passage.start_m;
+            cuts.add((closest, closest));
+        }
         let mut sum = Spectrum::ZERO;
         cuts.visit(|from, to| self.panel(from, to, nodes, &mut sum));
         sum * haze.scattering_per_m * self.intensity
     }
 
     /// Adds what one panel scatters, for an intensity and a scattering coefficient of 1.
+    ///
+    /// Its nodes crowd at its start, or, where it lies before the lamp in fog that is not uniform and not thick, at its end:
+    /// outwards from the lamp they reach ever farther, and density changes with distance, not with the angle.
     fn panel(&self, from: f64, to: f64, nodes: &Nodes, sum: &mut Spectrum<N>) {
         let haze = self.haze;
         let murk = haze.murk;
         let part = self.passage.part(from, to);
-        let h = part.nearest_m;
-        let (r0, ahead) = (part.distance_m(0.0), part.ahead_at_start());
-        let place = |excess: f64| 0.5 * excess * (excess + 2.0 * r0) / (excess + ahead);
         let (end, rate) = self.spent(&part, from, nodes.spent());
+        let outwards = *murk.profile != Profile::Uniform
+            && part.start_m + part.length_m <= 0.0
+            && rate * end < OUTWARDS;
+        let (anchor, origin, sign, end) = match outwards {
+            false => (part, from, 1.0, end),
+            true => {
+                let reach = part.place_m(end).min(part.length_m);
+                let back = part.part(0.0, reach).reversed();
+                (back, from + reach, -1.0, back.excess_m())
+            }
+        };
+        let h = anchor.nearest_m;
+        let (r0, ahead) = (anchor.distance_m(0.0), anchor.ahead_at_start());
         // The smaller of the scales over which geometry, phase function and extinction change.
-        let wide = (haze.peak * h).hypot(ahead);
+        let peak = if outwards { 1.0 } else { haze.peak };
+        let rate = if outwards { 0.0 } else { rate };
+        let wide = (peak * h).hypot(ahead);
         let scale = wide / (1.0 + (rate * wide / STRIDE).powi(2)).sqrt();
         nodes.visit(scale, end, |excess, step| {
             let s = excess + ahead;
             let (squares, twice) = (h * h + s * s, 2.0 * s);
-            let t = from + place(excess);
-            let (u, mut r) = ((s - h) * (s + h) / twice, squares / twice);
+            let t = origin + sign * 0.5 * excess * (excess + 2.0 * r0) / s;
+            let (u, mut r) = (sign * (s - h) * (s + h) / twice, squares / twice);
             let mut weight = 2.0 * step / squares;
             let mut leg = r;
             match &self.emission {

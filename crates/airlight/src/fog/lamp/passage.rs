@@ -46,6 +46,15 @@ impl Passage {
         }
     }
 
+    /// The same stretch, which must have an end, walked from there.
+    #[inline]
+    pub fn reversed(&self) -> Self {
+        Self {
+            start_m: -(self.start_m + self.length_m),
+            ..*self
+        }
+    }
+
     /// Distance from the lamp `t_m` on, m.
     #[inline]
     pub fn distance_m(&self, t_m: f64) -> f64 {

@@ -22,11 +22,7 @@ impl<const N: usize> PointLamp<N> {
     ///
     /// # Errors
     /// [`FogError`] unless the position is finite, the radius above 0 and the intensity finite and not below 0.
-    pub fn new(
-        position: DVec3,
-        intensity: Spectrum<N>,
-        radius_m: f64,
-    ) -> Result<Self, FogError> {
+    pub fn new(position: DVec3, intensity: Spectrum<N>, radius_m: f64) -> Result<Self, FogError> {
         check::position(position)?;
         check::radius(radius_m)?;
         check::light("the intensity of a lamp", intensity)?;

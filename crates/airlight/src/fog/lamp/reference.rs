@@ -122,11 +122,13 @@ pub fn path_radiance<const N: usize>(lamp: &Lamp<N>, murk: &Murk<N>, sight: &Sig
             bend_per_m: bend * (1.0 - towards.y * towards.y).max(0.0),
             length_m: leg,
         };
-        let way = murk.profile.column(&Line { length_m: t, ..line })
-            + match *murk.profile {
-                Profile::Uniform => leg,
-                _ => murk.profile.column(&to_lamp),
-            };
+        let way = murk.profile.column(&Line {
+            length_m: t,
+            ..line
+        }) + match *murk.profile {
+            Profile::Uniform => leg,
+            _ => murk.profile.column(&to_lamp),
+        };
         let phase = matter.phase.evaluate(-u / r, murk.wavelengths_nm[0]);
         murk.profile.density(height) * part * phase * (-extinction * way).exp() / (r * r)
     });
@@ -135,12 +137,7 @@ pub fn path_radiance<const N: usize>(lamp: &Lamp<N>, murk: &Murk<N>, sight: &Sig
 }
 
 /// Where density or the lamp's intensity has a kink, or fog is densest.
-fn edges<const N: usize>(
-    lamp: &Lamp<N>,
-    murk: &Murk<N>,
-    sight: &Sight,
-    line: &Line,
-) -> Vec<f64> {
+fn edges<const N: usize>(lamp: &Lamp<N>, murk: &Murk<N>, sight: &Sight, line: &Line) -> Vec<f64> {
     let mut edges = Vec::new();
     match *murk.profile {
         Profile::Clamped { base_height_m, .. } => edges.push(line.below(base_height_m)),

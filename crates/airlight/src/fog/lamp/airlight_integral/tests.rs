@@ -8,7 +8,10 @@ fn without_extinction_it_matches_quadrature_everywhere() {
     for passage in passages(&EVERY_DISTANCE) {
         let want = isotropic_beyond(&passage, 0.0);
         let got = airlight_without_extinction(&passage);
-        assert!((got / want - 1.0).abs() < 1e-12, "{passage:?}: {got} against {want}");
+        assert!(
+            (got / want - 1.0).abs() < 1e-12,
+            "{passage:?}: {got} against {want}"
+        );
     }
 }
 
@@ -67,7 +70,10 @@ fn thin_fog_ends_in_the_form_without_extinction() {
         let mut before = f64::INFINITY;
         for extinction in [1e-14, 1e-16, 1e-20, 1e-30, 0.0] {
             let apart = (airlight_isotropic(&passage, extinction) / without - 1.0).abs();
-            assert!(apart < before.max(2e-13), "{passage:?} {extinction}: {apart}");
+            assert!(
+                apart < before.max(2e-13),
+                "{passage:?} {extinction}: {apart}"
+            );
             before = apart;
         }
         assert!(before == 0.0);

@@ -25,15 +25,21 @@ fn worst(count: usize, depth: f64) -> (f64, f64) {
 
 #[test]
 fn the_fast_form_is_as_good_as_it_says() {
-    for (count, limit) in [(8, 1.25e-4), (10, 2e-5), (12, 5e-6), (16, 1.1e-6), (20, 3.5e-7)] {
+    for (count, limit) in [
+        (8, 1.25e-4),
+        (10, 2e-5),
+        (12, 5e-6),
+        (16, 1.1e-6),
+        (20, 3.5e-7),
+    ] {
         let mut all = (0.0f64, 0.0f64);
         for depth in [
-            1e-6, 1e-4, 1e-3, 0.01, 0.03, 0.1, 0.3, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 80.0, 300.0, 600.0,
+            1e-6, 1e-4, 1e-3, 0.01, 0.03, 0.1, 0.3, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 80.0, 300.0,
+            600.0,
         ] {
             let (in64, in32) = worst(count, depth);
             all = (all.0.max(in64), all.1.max(in32));
         }
-        println!("{count} nodes: {:.1e}, {:.1e}", all.0, all.1);
         assert!(all.0 < limit, "{count}: {all:?}");
         assert!(all.1 < limit + 2e-6 + 1e-7 * 80.0, "{count}: {all:?}");
     }
