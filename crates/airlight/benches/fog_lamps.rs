@@ -69,7 +69,7 @@ fn isotropic_fast_f64(bencher: Bencher, nodes: usize) {
     });
 }
 
-#[divan::bench(args = [8, 12], consts = [3, 16])]
+#[divan::bench(args = [8, 12], consts = [3, 4, 16])]
 fn isotropic_fast<const N: usize>(bencher: Bencher, nodes: usize) {
     let nodes = Nodes::new(nodes);
     let extinction = Spectrum::<N>::from_fn(|lane| 0.03 + 0.001 * lane as f32);

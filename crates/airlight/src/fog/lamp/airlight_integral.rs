@@ -19,9 +19,9 @@ pub fn airlight_without_extinction(passage: &Passage) -> f64 {
 /// With extinction on both legs, from the lamp to the fog and from the fog to the eye (1/m, not below 0):
 ///
 /// `e^-(sigma r_0) / (2 pi h) int_(w_0)^(w_1) e^-(x (w - w_0)) / (1 + w^2) dw`, `x = sigma h`, `w = tan v`
-/// (the integral of Sun, Ramamoorthi, Narasimhan and Nayar 2005, eqs. 10 and 11, with their table put into closed form).
+/// (the integral of Sun, Ramamoorthi, Narasimhan and Nayar 2005, with a closed form for what they tabulate).
 ///
-/// Relative error below 1e-12 plus 1e-16 times the optical depth.
+/// Relative error below 1e-13 plus 1e-16 times the optical depth.
 pub fn airlight_isotropic(passage: &Passage, extinction_per_m: f64) -> f64 {
     if extinction_per_m == 0.0 {
         return airlight_without_extinction(passage);

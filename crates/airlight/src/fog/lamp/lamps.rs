@@ -130,7 +130,7 @@ fn bound<const N: usize>(ray: &Ray<N>, haze: &Haze<N>) -> f32 {
         Profile::Uniform => {
             let between = (ray.passage.distance_m(0.0) - 2.0 * ray.passage.nearest_m).max(0.0);
             let depth = murk.matter.extinction_per_m * between as f32;
-            light = light * depth.exp_neg();
+            light *= depth.exp_neg();
             1.0
         }
         _ => murk.profile.density(lowest(&ray.line)),

@@ -249,10 +249,7 @@ fn the_bound_is_one_and_leaves_out_only_what_is_below_it() {
 }
 
 #[test]
-fn fog_scatters_what_it_takes_from_a_lamp() {
-    // Power scattered once in all of an endless fog, albedo 1: int sigma I e^(-sigma r) / r^2 dV = 4 pi I. Seen from the
-    // lamp it is 4 pi times the source's integral, without its way back; thin fog has none: compare within a radius R
-    // with sigma R small: the radiance gathered over all directions is I sigma R' of scalar light per 4 pi.
+fn light_from_all_sides_adds_up() {
     let sigma = 1e-6f32;
     let thin = Matter {
         extinction_per_m: Spectrum([sigma; 3]),
