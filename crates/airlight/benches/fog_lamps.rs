@@ -94,7 +94,10 @@ fn over_sights<const N: usize>(
     let matter = Matter {
         extinction_per_m: Spectrum::from_fn(|lane| 0.03 + 0.001 * lane as f32),
         single_scattering_albedo: Spectrum::ONE,
-        phase: PhaseFunction::henyey_greenstein(g).expect("a phase function"),
+        phase: match g {
+            0.0 => PhaseFunction::Isotropic,
+            _ => PhaseFunction::henyey_greenstein(g).expect("a phase function"),
+        },
     };
     let murk = Murk {
         matter: &matter,
@@ -127,6 +130,11 @@ const HEIGHT_FOG: Profile = Profile::Exponential {
     reference_height_m: 0.0,
     scale_height_m: 10.0,
 };
+
+#[divan::bench(consts = [3, 16])]
+fn isotropic_lamps<const N: usize>(bencher: Bencher) {
+    over_sights::<N>(bencher, point(), 0.0, Profile::Uniform, 12, f64::INFINITY);
+}
 
 #[divan::bench(args = [8, 12], consts = [3, 16])]
 fn forward_085_uniform<const N: usize>(bencher: Bencher, nodes: usize) {

@@ -5,6 +5,7 @@ use super::march::{Haze, Ray};
 use super::murk::{Murk, Sight};
 use super::nodes::Nodes;
 use super::panels::lowest;
+use super::passage::Passage;
 use super::{Lamp, check};
 use crate::fog::lanes::Lanes;
 use crate::fog::matter::FogError;
@@ -108,12 +109,28 @@ impl<const N: usize> Lamps<N> {
         match lamp {
             Lamp::Point(_) if haze.isotropic && *murk.profile == Profile::Uniform => {
                 let extinction = murk.matter.extinction_per_m;
-                airlight_isotropic_lanes(&ray.passage, extinction, &self.nodes)
+                evenly(&ray.passage, extinction, &self.nodes)
                     * haze.scattering_per_m
                     * ray.intensity
             }
             _ => ray.path_radiance(&self.nodes),
         }
+    }
+}
+
+/// [`airlight_isotropic_lanes`], with a fourth lane for company where there are three: the machine likes that better.
+#[inline]
+fn evenly<const N: usize>(
+    passage: &Passage,
+    extinction_per_m: Spectrum<N>,
+    nodes: &Nodes,
+) -> Spectrum<N> {
+    if N == 3 {
+        let four = Spectrum::<4>::from_fn(|lane| extinction_per_m[lane.min(2)]);
+        let light = airlight_isotropic_lanes(passage, four, nodes);
+        Spectrum::from_fn(|lane| light[lane])
+    } else {
+        airlight_isotropic_lanes(passage, extinction_per_m, nodes)
     }
 }
 
