@@ -33,7 +33,7 @@ impl<const N: usize> CubeRoot for Spectrum<N> {
 /// every case; each lane's integral ends where its light is spent.
 ///
 /// Worst relative error against the exact form for nodes 8, 10, 12, 16, 20: 1.25e-4, 2e-5, 5e-6, 1.1e-6, 3.5e-7 (f64;
-/// h, start and length from 1e-6 m to 1e7 m and endless, optical depths from 1e-6 to 1e3: a test measures it). In f32
+/// h, start and length from 1e-6 m to 1e7 m and endless, optical depths from 1e-6 to 600: a test measures it). In f32
 /// rounding adds 2e-6 plus 1e-7 times the optical depth, and light dimmed below `e^-87` is 0.
 #[inline]
 pub fn airlight_isotropic_lanes<V: CubeRoot>(
