@@ -10,6 +10,7 @@
 //! - [`light`]: what shines: the sun's position, disc and irradiance.
 //! - [`medium`]: what fills the air and where: density profiles, constituents, [`medium::Atmosphere`], presets.
 //! - [`path`]: [`path::PathOptics`] and its law of composition.
+//! - [`fog`]: closed forms of fog, and lamps in it.
 //! - [`sky`]: the solver for a spherical, multiply scattering atmosphere.
 
 pub mod axes;

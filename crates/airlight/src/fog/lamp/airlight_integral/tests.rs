@@ -1,0 +1,105 @@
+use super::super::reference::{isotropic_beyond, passages};
+use super::*;
+
+const EVERY_DISTANCE: [f64; 8] = [1e-6, 1e-3, 0.1, 1.0, 8.0, 250.0, 3e4, 1e7];
+
+#[test]
+fn without_extinction_it_matches_quadrature_everywhere() {
+    for passage in passages(&EVERY_DISTANCE) {
+        let want = isotropic_beyond(&passage, 0.0);
+        let got = airlight_without_extinction(&passage);
+        assert!(
+            (got / want - 1.0).abs() < 1e-12,
+            "{passage:?}: {got} against {want}"
+        );
+    }
+}
+
+#[test]
+fn with_extinction_it_matches_quadrature_everywhere() {
+    for passage in passages(&EVERY_DISTANCE) {
+        for extinction in [1e-9, 1e-6, 1e-4, 1e-2, 0.3, 3.0, 1e2] {
+            let depth = extinction * passage.distance_m(0.0);
+            if depth > 600.0 {
+                continue;
+            }
+            let want = (-depth).exp() * isotropic_beyond(&passage, extinction);
+            let got = airlight_isotropic(&passage, extinction);
+            assert!(
+                (got / want - 1.0).abs() < 1e-13,
+                "{passage:?}, extinction {extinction}: {got} against {want}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_lamp_passed_on_the_way_has_no_jump_of_pi() {
+    // The note's b = -5, c = 26, d = 20, whose arctangent gives -0.2640.
+    let passage = Passage {
+        nearest_m: 1.0,
+        start_m: -5.0,
+        length_m: 20.0,
+    };
+    let integral = 4.0 * PI * airlight_without_extinction(&passage);
+    assert!((integral - 2.8776).abs() < 5e-5, "{integral}");
+    let printed = ((15.0 - -5.0) / (1.0 + 15.0 * -5.0f64)).atan();
+    assert!((printed + 0.2640).abs() < 5e-5);
+    assert!((integral - printed - PI).abs() < 1e-12);
+}
+
+#[test]
+fn leaving_extinction_out_makes_dense_fog_glow_too_much() {
+    let passage = Passage {
+        nearest_m: 1.0,
+        start_m: -5.0,
+        length_m: 20.0,
+    };
+    let ratio = |sigma| airlight_without_extinction(&passage) / airlight_isotropic(&passage, sigma);
+    // Visibility 100 m, 10 m (5 % contrast); and where the glow is 5.8 times too bright.
+    for (sigma, want) in [(0.029957, 1.2398), (0.29957, 6.95), (0.27, 5.8)] {
+        let got: f64 = ratio(sigma);
+        assert!((got / want - 1.0).abs() < 3e-3, "{sigma}: {got}");
+    }
+}
+
+#[test]
+fn thin_fog_ends_in_the_form_without_extinction() {
+    for passage in passages(&EVERY_DISTANCE) {
+        let without = airlight_without_extinction(&passage);
+        let mut before = f64::INFINITY;
+        for extinction in [1e-14, 1e-16, 1e-20, 1e-30, 0.0] {
+            let apart = (airlight_isotropic(&passage, extinction) / without - 1.0).abs();
+            assert!(
+                apart < before.max(2e-13),
+                "{passage:?} {extinction}: {apart}"
+            );
+            before = apart;
+        }
+        assert!(before == 0.0);
+    }
+}
+
+#[test]
+fn near_and_far_compose_to_the_whole() {
+    for passage in passages(&EVERY_DISTANCE) {
+        for extinction in [0.0, 1e-6, 0.05, 4.0] {
+            let whole = airlight_isotropic(&passage, extinction);
+            if whole < 1e-200 {
+                continue;
+            }
+            for share in [1e-3, 0.3, 0.9] {
+                let split = share * passage.length_m.min(1e5);
+                let near = airlight_isotropic(&passage.part(0.0, split), extinction);
+                let far = airlight_isotropic(&passage.part(split, passage.length_m), extinction);
+                let both = near + (-extinction * split).exp() * far;
+                // Where a part's start is rounded away from the point closest to the lamp nothing better can be said.
+                let rounded = 1e-15 * (split + passage.start_m.abs()) / passage.nearest_m;
+                assert!(
+                    (both / whole - 1.0).abs() < 1e-12 + 2.0 * rounded,
+                    "{passage:?}, extinction {extinction}, split {split}: {both} against {whole}"
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,44 @@
+//! What is asked of the numbers of a lamp.
+
+use crate::fog::matter::FogError;
+use crate::spectrum::Spectrum;
+use glam::DVec3;
+
+/// A position is finite.
+pub(super) fn position(position: DVec3) -> Result<(), FogError> {
+    match position.is_finite() {
+        true => Ok(()),
+        false => Err(FogError::Number {
+            what: "every coordinate of a lamp's position (m)",
+            got: position
+                .to_array()
+                .into_iter()
+                .find(|c| !c.is_finite())
+                .unwrap_or(f64::NAN),
+            right: "finite",
+        }),
+    }
+}
+
+/// A radius is above 0.
+pub(super) fn radius(radius_m: f64) -> Result<(), FogError> {
+    match radius_m > 0.0 && radius_m.is_finite() {
+        true => Ok(()),
+        false => Err(FogError::Number {
+            what: "the radius of a lamp (m)",
+            got: radius_m,
+            right: "finite and above 0",
+        }),
+    }
+}
+
+/// Light is not negative.
+pub(super) fn light<const N: usize>(
+    what: &'static str,
+    light: Spectrum<N>,
+) -> Result<(), FogError> {
+    match light.0.iter().find(|v| !(v.is_finite() && **v >= 0.0)) {
+        None => Ok(()),
+        Some(&got) => Err(FogError::Light { what, got }),
+    }
+}

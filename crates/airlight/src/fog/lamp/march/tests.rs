@@ -1,0 +1,324 @@
+use super::super::reference;
+use super::super::{PointLamp, SphereLamp, SpotLamp};
+use super::*;
+use crate::fog::matter::Matter;
+use crate::optics::PhaseFunction;
+
+const EARTH_M: f64 = 6.371e6;
+
+fn matter(extinction: f32, phase: PhaseFunction) -> Matter<1> {
+    Matter {
+        extinction_per_m: Spectrum([extinction]),
+        single_scattering_albedo: Spectrum([0.9]),
+        phase,
+    }
+}
+
+fn hg(g: f64) -> PhaseFunction {
+    PhaseFunction::henyey_greenstein(g).expect("a phase function")
+}
+
+fn point(position: DVec3) -> Lamp<1> {
+    Lamp::Point(PointLamp::new(position, Spectrum([1.0]), 1e-3).expect("a lamp"))
+}
+
+/// The quadrature itself, not the closed form.
+fn march(lamp: &Lamp<1>, murk: &Murk<1>, sight: &Sight, nodes: usize) -> f64 {
+    let haze = Haze::new(murk).expect("some fog");
+    f64::from(Ray::new(lamp, &haze, sight).path_radiance(&Nodes::new(nodes))[0])
+}
+
+/// The worst relative error, and where, of the march over lines that pass lamps `nearest` m away, in uniform fog.
+fn worst_in_uniform_fog(phase: &PhaseFunction, nodes: usize) -> (f64, String) {
+    let mut worst = (0.0, String::new());
+    for nearest in [0.002, 0.1, 1.0, 12.0, 300.0, 1e4] {
+        for start in [-1e4, -300.0, -20.0, -1.0, 0.0, 0.5, 40.0, 3e3] {
+            for length in [0.1, 10.0, 35.0, 1e3, f64::INFINITY] {
+                for extinction in [1e-5f32, 1e-3, 0.03, 0.3, 3.0] {
+                    let matter = matter(extinction, phase.clone());
+                    let murk = Murk {
+                        matter: &matter,
+                        profile: &Profile::Uniform,
+                        wavelengths_nm: &[550.0],
+                        ground_radius_m: f64::INFINITY,
+                    };
+                    let lamp = point(DVec3::new(nearest, 0.0, 0.0));
+                    let sight = Sight {
+                        eye: DVec3::new(0.0, 0.0, start),
+                        direction: DVec3::Z,
+                        length_m: length,
+                    };
+                    let depth = f64::from(extinction) * nearest.hypot(start);
+                    if depth > 60.0 {
+                        continue;
+                    }
+                    let exact = reference::path_radiance(&lamp, &murk, &sight);
+                    let off = (march(&lamp, &murk, &sight, nodes) / exact - 1.0).abs();
+                    if off > worst.0 {
+                        worst = (
+                            off,
+                            format!(
+                                "nearest {nearest}, start {start}, length {length}, {extinction}/m"
+                            ),
+                        );
+                    }
+                }
+            }
+        }
+    }
+    worst
+}
+
+#[test]
+fn uniform_fog_of_any_phase_function_converges_in_a_few_nodes() {
+    for (g, limit) in [
+        (0.0, 1e-5),
+        (0.5, 1e-5),
+        (0.9, 1e-5),
+        (0.95, 1e-5),
+        (-0.5, 2e-5),
+    ] {
+        let (off, place) = worst_in_uniform_fog(&hg(g), 12);
+        assert!(off < limit, "g {g}: {off:e} at {place}");
+    }
+}
+
+#[test]
+#[ignore = "prints the table of the book"]
+fn print_convergence_in_uniform_fog() {
+    for g in [0.0, 0.5, 0.8, 0.9, 0.95, -0.3, -0.7] {
+        for nodes in [4, 6, 8, 10, 12, 16, 24] {
+            let (off, place) = worst_in_uniform_fog(&hg(g), nodes);
+            println!("g {g}, {nodes} nodes: {off:.1e} at {place}");
+        }
+    }
+}
+
+/// Lamps and lines in fog that thins with height, a few hundred of each kind.
+fn in_thinning_fog(visit: &mut dyn FnMut(&Murk<1>, &Lamp<1>, &Sight)) {
+    let profiles = |scale_height_m| {
+        [
+            Profile::Exponential {
+                reference_height_m: 0.0,
+                scale_height_m,
+            },
+            Profile::Clamped {
+                base_height_m: 6.0,
+                scale_height_m,
+            },
+            Profile::Slab {
+                top_height_m: 2.0 * scale_height_m,
+            },
+        ]
+    };
+    let lamps = [
+        DVec3::new(0.3, 5.0, -30.0),
+        DVec3::new(-8.0, 25.0, -60.0),
+        DVec3::new(400.0, 3.0, -900.0),
+        DVec3::new(0.0, 300.0, 5.0),
+    ];
+    for ground_radius_m in [f64::INFINITY, EARTH_M] {
+        for profile in [3.0, 40.0, 1200.0].into_iter().flat_map(profiles) {
+            for extinction in [1e-3f32, 0.02, 0.5] {
+                for g in [0.0, 0.8] {
+                    let matter = matter(extinction, hg(g));
+                    let murk = Murk {
+                        matter: &matter,
+                        profile: &profile,
+                        wavelengths_nm: &[550.0],
+                        ground_radius_m,
+                    };
+                    for lamp in lamps.map(point) {
+                        for (height, climb, length_m) in [
+                            (1.7, 0.0, 50.0),
+                            (1.7, 0.0, f64::INFINITY),
+                            (1.7, 0.1, f64::INFINITY),
+                            (1.7, 0.9, f64::INFINITY),
+                            (1.7, 0.03, 2000.0),
+                            (90.0, -0.4, 220.0),
+                            (90.0, -0.05, 1799.0),
+                            (1500.0, -0.9, 1665.0),
+                            (1500.0, -1e-3, 1e5),
+                        ] {
+                            let level = f64::sqrt(1.0 - climb * climb);
+                            let sight = Sight {
+                                eye: DVec3::new(0.0, height, 0.0),
+                                direction: DVec3::new(0.05 * level, climb, -level).normalize(),
+                                length_m,
+                            };
+                            visit(&murk, &lamp, &sight);
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Relative errors over every `stride`-th of those lines, rising; what is dimmed by e^-30 or more is left out.
+fn errors_in_thinning_fog(nodes: usize, stride: usize) -> Vec<(f64, String)> {
+    let mut all = Vec::new();
+    let mut count = 0;
+    in_thinning_fog(&mut |murk, lamp, sight| {
+        count += 1;
+        if count % stride != 0 {
+            return;
+        }
+        let exact = reference::path_radiance(lamp, murk, sight);
+        let near = (lamp.position() - sight.eye).length();
+        if exact > 1e-13 * f64::from(murk.matter.extinction_per_m[0]) / near {
+            let off = (march(lamp, murk, sight, nodes) / exact - 1.0).abs();
+            all.push((off, format!("{murk:?} {lamp:?} {sight:?}")));
+        }
+    });
+    all.sort_by(|a, b| a.0.total_cmp(&b.0));
+    all
+}
+
+/// The error that a share of the lines stays below.
+fn below(errors: &[(f64, String)], share: f64) -> f64 {
+    errors[((errors.len() - 1) as f64 * share) as usize].0
+}
+
+#[test]
+fn thinning_fog_converges() {
+    let errors = errors_in_thinning_fog(12, 11);
+    assert!(errors.len() > 200);
+    let (worst, place) = errors.last().expect("lines");
+    assert!(below(&errors, 0.5) < 3e-7);
+    assert!(below(&errors, 0.9) < 1e-6, "{:e}", below(&errors, 0.9));
+    assert!(below(&errors, 0.98) < 1e-4, "{:e}", below(&errors, 0.98));
+    assert!(*worst < 0.01, "{worst:e} at {place}");
+}
+
+#[test]
+#[ignore = "prints the table of the book"]
+fn print_convergence_in_thinning_fog() {
+    for nodes in [6, 8, 12, 16, 24] {
+        let errors = errors_in_thinning_fog(nodes, 1);
+        let [half, most, nearly] = [0.5, 0.9, 0.99].map(|share| below(&errors, share));
+        let (worst, place) = errors.last().expect("lines");
+        println!(
+            "{nodes} nodes, {} lines: median {half:.1e}, 90 % {most:.1e}, 99 % {nearly:.1e}, \
+             worst {worst:.1e} at {place}",
+            errors.len()
+        );
+    }
+}
+
+#[test]
+fn beams_and_balls_match_quadrature() {
+    let profiles = [
+        Profile::Uniform,
+        Profile::Clamped {
+            base_height_m: 2.0,
+            scale_height_m: 3.0,
+        },
+    ];
+    let position = DVec3::new(0.4, 6.0, -20.0);
+    let one = Spectrum([1.0]);
+    let mut lamps = Vec::new();
+    for axis in [DVec3::NEG_Y, DVec3::new(0.2, -0.3, 0.9), DVec3::NEG_Z] {
+        for (inner, outer) in [(0.0, 0.5), (0.3, 0.31), (0.4, 0.4), (0.7, 1.5)] {
+            lamps.push(Lamp::Spot(
+                SpotLamp::new(position, axis, one, inner, outer, 0.01).expect("a lamp"),
+            ));
+        }
+    }
+    for radius in [0.05, 0.5, 3.0] {
+        lamps.push(Lamp::Sphere(
+            SphereLamp::new(position, radius, one).expect("a lamp"),
+        ));
+    }
+    let mut lit = 0;
+    for profile in &profiles {
+        for extinction in [1e-3, 0.1] {
+            let matter = matter(extinction, hg(0.7));
+            let murk = Murk {
+                matter: &matter,
+                profile,
+                wavelengths_nm: &[550.0],
+                ground_radius_m: f64::INFINITY,
+            };
+            for lamp in &lamps {
+                for aim in [
+                    DVec3::new(0.2, 2.0, -18.0),
+                    DVec3::new(0.4, 5.0, -20.0),
+                    DVec3::new(0.4, 5.9, -20.0),
+                    DVec3::new(-5.0, 6.0, -30.0),
+                    DVec3::new(3.0, 1.6, 10.0),
+                ] {
+                    for length_m in [15.0, 60.0, f64::INFINITY] {
+                        let eye = DVec3::new(0.0, 1.6, 0.0);
+                        let sight = Sight {
+                            eye,
+                            direction: (aim - eye).normalize(),
+                            length_m,
+                        };
+                        let exact = reference::path_radiance(lamp, &murk, &sight);
+                        let got = march(lamp, &murk, &sight, 12);
+                        lit += usize::from(exact > 0.0);
+                        // A ball's scalar irradiance has a square root's edge where the line touches it.
+                        let limit = match lamp {
+                            Lamp::Sphere(_) => 2e-3,
+                            _ => 1e-4,
+                        };
+                        assert!(
+                            (got - exact).abs() <= limit * exact,
+                            "{lamp:?} {murk:?} {sight:?}: {got:e} against {exact:e}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+    assert!(lit > 150, "{lit}");
+}
+
+#[test]
+fn lanes_of_different_extinction_share_nodes() {
+    for spread in [1.0f32, 4.0, 16.0, 64.0] {
+        for (near, limit) in [(0.01, 2e-5), (1.0, 2e-5), (200.0, 2e-5)] {
+            let all = Matter {
+                extinction_per_m: Spectrum([0.02, 0.02 * spread.sqrt(), 0.02 * spread, 0.0]),
+                single_scattering_albedo: Spectrum::ONE,
+                phase: hg(0.8),
+            };
+            let lamp = DVec3::new(near, 0.0, -20.0);
+            let sight = Sight {
+                eye: DVec3::ZERO,
+                direction: DVec3::NEG_Z,
+                length_m: 100.0,
+            };
+            let murk = Murk {
+                matter: &all,
+                profile: &Profile::Uniform,
+                wavelengths_nm: &[450.0, 500.0, 550.0, 600.0],
+                ground_radius_m: f64::INFINITY,
+            };
+            let lamp4 = PointLamp::new(lamp, Spectrum::<4>::ONE, 1e-3).expect("a lamp");
+            let haze = Haze::new(&murk).expect("fog");
+            let got = Ray::new(&Lamp::Point(lamp4), &haze, &sight).path_radiance(&Nodes::new(12));
+            assert_eq!(got[3], 0.0);
+            for lane in 0..3 {
+                let alone = matter(all.extinction_per_m[lane], hg(0.8));
+                let murk = Murk {
+                    matter: &alone,
+                    profile: &Profile::Uniform,
+                    wavelengths_nm: &[550.0],
+                    ground_radius_m: f64::INFINITY,
+                };
+                let exact = reference::path_radiance(&point(lamp), &murk, &sight) / 0.9;
+                if exact < 1e-30 {
+                    continue;
+                }
+                let off = (f64::from(got[lane]) / exact - 1.0).abs();
+                let limit = if spread > 20.0 { 2e-3 } else { limit };
+                assert!(
+                    off < limit,
+                    "spread {spread}, lane {lane}, {near} m: {off:e}"
+                );
+            }
+        }
+    }
+}
