@@ -4,8 +4,7 @@ mod common;
 
 use airlight_render::{
     DepthOptions, RenderError,
-    input::{DepthMeaning, Unknown, read_depth, read_picture},
-    tone::srgb,
+    input::{Unknown, read_depth, read_picture},
 };
 use common::{Folder, files::*};
 use exr::prelude::{Compression, FlatSamples, f16};
@@ -153,10 +152,11 @@ fn truncated_files_end_too_early() {
     let path = folder.0.join("file");
     for (name, bytes, is_picture) in valid_files() {
         let all = bytes.len();
-        // Ends of PNG and JPEG say nothing about the picture, and the last bytes of a PNG's zlib are a checksum.
+        // The last chunk of a PNG says nothing.
         let end = match name.as_str() {
-            "png" | "palette" | "grey" => 12 + 4 + 4 + 1,
-            "jpeg" | "progressive" | "jpeg grey" => 1,
+            "png" | "palette" | "grey" => 12,
+            // The first part is read, and others are not missed.
+            "exr parts" => all / 2,
             _ => 1,
         };
         let mut lengths = vec![11, 12, 20, 30, all / 5, all / 3, all / 2, all * 9 / 10];
@@ -189,7 +189,7 @@ fn corrupt_files(variants: usize, seed: u64) {
     let folder = Folder::new(&format!("robust-{seed}"));
     let path = folder.0.join("file");
     let mut numbers = Numbers(seed);
-    for (name, bytes, _) in valid_files() {
+    for (_, bytes, _) in valid_files() {
         for variant in 0..variants {
             let mut bytes = bytes.clone();
             let all = bytes.len();
@@ -218,12 +218,7 @@ fn corrupt_files(variants: usize, seed: u64) {
                 bytes.truncate(1 + numbers.next(all));
             }
             std::fs::write(&path, &bytes).unwrap();
-            let outcome = std::panic::catch_unwind(|| read_both(&path));
-            if outcome.is_err() {
-                std::fs::write(std::env::temp_dir().join("airlight-panic.bin"), &bytes).unwrap();
-                panic!("{name}, variant {variant}");
-            }
-            for error in outcome.unwrap().into_iter().flatten() {
+            for error in read_both(&path).into_iter().flatten() {
                 assert!(error.to_string().contains("file"), "{error}");
             }
         }
@@ -232,13 +227,13 @@ fn corrupt_files(variants: usize, seed: u64) {
 
 #[test]
 fn corrupt_files_never_panic() {
-    corrupt_files(300, 42);
+    corrupt_files(150, 42);
 }
 
 #[test]
 #[ignore = "takes minutes: many more variants"]
 fn corrupt_files_never_panic_at_length() {
-    for seed in 1..=20 {
+    for seed in 1..=4 {
         corrupt_files(3000, seed * 7919);
     }
 }
@@ -265,108 +260,4 @@ fn arbitrary_bytes_after_a_magic_number() {
             read_both(&path);
         }
     }
-}
-
-/// What reading costs; see the numbers with `--release -- --ignored --nocapture reading_is_fast`.
-#[test]
-#[ignore = "a measurement"]
-fn reading_is_fast() {
-    let folder = Folder::new("robust-time");
-    let path = folder.0.join("file");
-    let (width, height) = (4000usize, 2500usize);
-    let timed = |name: &str, bytes: &[u8], work: &dyn Fn()| {
-        std::fs::write(&path, bytes).unwrap();
-        work();
-        let best = (0..5)
-            .map(|_| {
-                let start = std::time::Instant::now();
-                work();
-                start.elapsed()
-            })
-            .min()
-            .unwrap();
-        println!(
-            "{name}: {:.2} ms a megapixel",
-            best.as_secs_f64() * 1e3 / 10.0
-        );
-    };
-    let mut noise = Numbers(3);
-    let shade = |i: usize, noise: usize| {
-        let (x, y) = (i % width, i / width);
-        (128.0 + 60.0 * (x as f64 * 0.01).sin() + 50.0 * (y as f64 * 0.013).cos()) as u8
-            + noise as u8
-    };
-    let rgb: Vec<u8> = (0..width * height)
-        .flat_map(|i| [0, 1, 2].map(|_| shade(i, noise.next(4))))
-        .collect();
-    let size = (width as u32, height as u32);
-    let fast = |encoder: &mut png::Encoder<'_, &mut Vec<u8>>| {
-        encoder.set_compression(png::Compression::Balanced);
-    };
-    let decode_alone = || {
-        let file = std::io::BufReader::new(std::fs::File::open(&path).unwrap());
-        let mut reader = png::Decoder::new(file).read_info().unwrap();
-        let mut row = vec![0; reader.output_line_size(size.0).unwrap()];
-        while reader.read_row(&mut row).unwrap().is_some() {}
-    };
-    let picture = || drop(read_picture(&path, None).unwrap());
-    let eight = png_file(size, ColorType::Rgb, BitDepth::Eight, &rgb, fast);
-    timed("PNG 8 bits, decoder alone", &eight, &decode_alone);
-    timed("PNG 8 bits", &eight, &picture);
-    let wide: Vec<u8> = rgb.iter().flat_map(|&v| [v, v]).collect();
-    let sixteen = png_file(size, ColorType::Rgb, BitDepth::Sixteen, &wide, fast);
-    timed("PNG 16 bits, decoder alone", &sixteen, &decode_alone);
-    timed("PNG 16 bits", &sixteen, &picture);
-    let mut jpeg = Vec::new();
-    let encoder = jpeg_encoder::Encoder::new(&mut jpeg, 90);
-    let color = jpeg_encoder::ColorType::Rgb;
-    encoder.encode(&rgb, 4000, 2500, color).unwrap();
-    timed("JPEG", &jpeg, &picture);
-    let plane = |c: usize| -> Vec<f16> {
-        let linear = |v: u8| f16::from_f64(srgb::decode(f64::from(v) / 255.0));
-        rgb.iter().skip(c).step_by(3).map(|&v| linear(v)).collect()
-    };
-    for compression in [
-        Compression::ZIP16,
-        Compression::PIZ,
-        Compression::Uncompressed,
-    ] {
-        let channels = ["R", "G", "B"]
-            .into_iter()
-            .enumerate()
-            .map(|(c, name)| (name, FlatSamples::F16(plane(c))))
-            .collect();
-        let part = Part {
-            compression,
-            ..Part::new((width, height), channels)
-        };
-        let bytes = exr_file((0, 0, width, height), vec![part]);
-        timed(&format!("EXR half {compression:?}"), &bytes, &picture);
-    }
-    let holes: Vec<u16> = (0..width * height)
-        .map(|i| match noise.next(20) {
-            0 => 0,
-            _ => 2000 + u16::from(shade(i, 0)) * 10,
-        })
-        .collect();
-    let millimetres = DepthOptions {
-        scale: 0.001,
-        ..DepthOptions::default()
-    };
-    timed("depth PNG, filled", &grey_16(size, &holes), &|| {
-        drop(read_depth(&path, &millimetres).unwrap());
-    });
-    let floats: Vec<f32> = holes.iter().map(|&v| f32::from(v)).collect();
-    let stereo = DepthOptions {
-        meaning: DepthMeaning::Disparity {
-            focal_length_px: 1000.0,
-            baseline_m: 0.2,
-            offset_px: 0.0,
-        },
-        ..millimetres.clone()
-    };
-    let pfm = pfm_file((width, height), true, &floats);
-    timed("disparity PFM, filled", &pfm, &|| {
-        drop(read_depth(&path, &stereo).unwrap());
-    });
 }

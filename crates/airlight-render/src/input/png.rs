@@ -62,16 +62,16 @@ pub(super) fn read(source: Source) -> Result<Picture, Fault> {
     let own_table = gamma.map(|gamma| table(count, |v| v.powf(1.0 / gamma)));
     let bits = if depth == BitDepth::Sixteen {
         let table = own_table.as_deref().unwrap_or(&SRGB_16);
-        rows(&mut reader, |row| {
-            let (values, _) = row.as_chunks::<2>();
+        rows(&mut reader, |rows| {
+            let (values, _) = rows.as_chunks::<2>();
             let values = values.iter().map(|&two| u16::from_be_bytes(two));
             layout.split(values, table, &mut rgb, alpha.as_mut());
         })?;
         SampleBits::U16
     } else {
         let table = own_table.as_deref().unwrap_or(&SRGB_8);
-        rows(&mut reader, |row| {
-            layout.split(row.iter().copied(), table, &mut rgb, alpha.as_mut());
+        rows(&mut reader, |rows| {
+            layout.split(rows.iter().copied(), table, &mut rgb, alpha.as_mut());
         })?;
         SampleBits::U8
     };
@@ -110,24 +110,28 @@ pub(super) fn read_grey(source: Source) -> Result<Raw, Fault> {
     };
     let mut values = room(samples(size, 1))?;
     if bits == SampleBits::U16 {
-        rows(&mut reader, |row| {
-            let (pairs, _) = row.as_chunks::<2>();
+        rows(&mut reader, |rows| {
+            let (pairs, _) = rows.as_chunks::<2>();
             values.extend(pairs.iter().map(|&two| f32::from(u16::from_be_bytes(two))));
         })?;
     } else {
-        rows(&mut reader, |row| {
-            values.extend(row.iter().copied().map(f32::from));
+        rows(&mut reader, |rows| {
+            values.extend(rows.iter().copied().map(f32::from));
         })?;
     }
     Ok(Raw { size, values, bits })
 }
 
-/// Hands over each row from the top. Interlaced pictures are put together first.
-fn rows(reader: &mut PngReader, mut take: impl FnMut(&[u8])) -> Result<(), Fault> {
+/// Bytes of the rows that are decoded while those before them are taken.
+const BATCH_BYTES: usize = 1 << 18;
+
+/// Hands over whole rows from the top, several at a time, while the next ones are decoded. Interlaced pictures are put
+/// together first.
+fn rows(reader: &mut PngReader, mut take: impl FnMut(&[u8]) + Send) -> Result<(), Fault> {
     let info = reader.info();
-    let (width, height) = (info.width, info.height);
+    let (width, height) = (info.width, info.height as usize);
     let too_large = || Fault::bad("a row of it does not fit into memory");
-    let line = reader.output_line_size(width).ok_or_else(too_large)?;
+    let line = reader.output_line_size(width).ok_or_else(too_large)?.max(1);
     if info.interlaced {
         let bytes = reader.output_buffer_size().ok_or_else(too_large)?;
         Vec::<u8>::new()
@@ -135,17 +139,37 @@ fn rows(reader: &mut PngReader, mut take: impl FnMut(&[u8])) -> Result<(), Fault
             .map_err(|_| Fault::bad("there is no memory for an interlaced picture of its size"))?;
         let mut whole = vec![0; bytes];
         reader.next_frame(&mut whole).map_err(failed)?;
-        whole.chunks_exact(line).for_each(take);
+        take(&whole);
         return Ok(());
     }
-    let mut row = vec![0; line];
-    for _ in 0..height {
-        if reader.read_row(&mut row).map_err(failed)?.is_none() {
-            return Err(Fault::Early("rows are missing".to_owned()));
-        }
-        take(&row);
+    let batch = (BATCH_BYTES / line).clamp(1, height);
+    let (mut next, mut ready) = (vec![0; batch * line], vec![0; batch * line]);
+    let (mut left, mut taken) = (height, 0);
+    while left > 0 || taken > 0 {
+        let count = batch.min(left);
+        let (decoded, ()) = rayon::join(
+            || {
+                next[..count * line]
+                    .chunks_exact_mut(line)
+                    .try_for_each(|row| decode_row(reader, row))
+            },
+            || take(&ready[..taken * line]),
+        );
+        decoded?;
+        std::mem::swap(&mut next, &mut ready);
+        taken = count;
+        left -= count;
     }
+    // Past the last row: the rest of the data and its checksums.
+    reader.read_row(&mut next).map_err(failed)?;
     Ok(())
+}
+
+fn decode_row(reader: &mut PngReader, row: &mut [u8]) -> Result<(), Fault> {
+    match reader.read_row(row).map_err(failed)? {
+        Some(_) => Ok(()),
+        None => Err(Fault::Early("rows are missing".to_owned())),
+    }
 }
 
 /// Components of a pixel.
@@ -156,7 +180,7 @@ struct Layout {
 }
 
 impl Layout {
-    /// Appends a row of interleaved values, decoded by the table; opacity is linear already.
+    /// Appends rows of interleaved values, decoded by the table; opacity is linear already.
     #[inline(always)]
     fn split<T: Copy + Into<usize>>(
         self,

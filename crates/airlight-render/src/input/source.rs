@@ -3,11 +3,14 @@
 use super::fault::Fault;
 use crate::RenderError;
 use std::{
-    cell::Cell,
     fs::File,
     io::{self, BufReader, Read, Seek, SeekFrom},
+    panic::{self, AssertUnwindSafe},
     path::Path,
-    rc::Rc,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
 };
 
 /// What the first bytes of a file say.
@@ -47,20 +50,20 @@ pub(super) struct Source {
     pub(super) reader: BufReader<Watched>,
     /// Bytes in the file.
     pub(super) length: u64,
-    ended: Rc<Cell<bool>>,
+    ended: Arc<AtomicBool>,
 }
 
 /// A file that remembers whether more was asked of it than it holds.
 pub(super) struct Watched {
     file: File,
-    ended: Rc<Cell<bool>>,
+    ended: Arc<AtomicBool>,
 }
 
 impl Read for Watched {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let read = self.file.read(buffer)?;
         if read == 0 && !buffer.is_empty() {
-            self.ended.set(true);
+            self.ended.store(true, Ordering::Relaxed);
         }
         Ok(read)
     }
@@ -81,7 +84,10 @@ pub(super) fn with_source<T>(
 ) -> Result<T, RenderError> {
     let source = open(path, known).map_err(|fault| fault.at(path, false))?;
     let ended = source.ended.clone();
-    decode(source).map_err(|fault| fault.at(path, ended.get()))
+    // Some decoders that this room builds on panic on corrupt files.
+    panic::catch_unwind(AssertUnwindSafe(|| decode(source)))
+        .unwrap_or_else(|_| Err(Fault::bad("it is corrupt: its decoder gave up")))
+        .map_err(|fault| fault.at(path, ended.load(Ordering::Relaxed)))
 }
 
 fn open(path: &Path, known: &str) -> Result<Source, Fault> {
@@ -95,7 +101,7 @@ fn open(path: &Path, known: &str) -> Result<Source, Fault> {
     let kind = Kind::of(&start)
         .ok_or_else(|| Fault::Bad(format!("it is none of the formats that are read ({known})")))?;
     file.rewind()?;
-    let ended = Rc::new(Cell::new(false));
+    let ended = Arc::new(AtomicBool::new(false));
     Ok(Source {
         kind,
         length,

@@ -43,9 +43,11 @@ pub fn exr_file(window: (i32, i32, usize, usize), parts: Vec<Part>) -> Vec<u8> {
                 .into_iter()
                 .map(|(name, samples)| AnyChannel::new(name, samples))
                 .collect();
-            let mut attributes = LayerAttributes::default();
-            attributes.layer_name = part.name.map(Text::from);
-            attributes.layer_position = Vec2(part.position.0, part.position.1);
+            let attributes = LayerAttributes {
+                layer_name: part.name.map(Text::from),
+                layer_position: Vec2(part.position.0, part.position.1),
+                ..LayerAttributes::default()
+            };
             let encoding = Encoding {
                 compression: part.compression,
                 blocks: match part.tile {
