@@ -103,3 +103,27 @@ fn two_profiles_rgb(bencher: Bencher) {
         &fog(&["exponential", "slab"], Ground::FLAT, Scattering::Single),
     );
 }
+
+#[divan::bench(args = ["exponential", "clamped", "slab"])]
+fn many_scatterings_rgb(bencher: Bencher, name: &str) {
+    walk::<3>(bencher, &fog(&[name], Ground::FLAT, Scattering::Multiple));
+}
+
+#[divan::bench]
+fn many_scatterings_16_wavelengths(bencher: Bencher) {
+    walk::<16>(
+        bencher,
+        &fog(&["exponential"], Ground::FLAT, Scattering::Multiple),
+    );
+}
+
+/// Solving for the light inside: once for a fog and its sun.
+#[divan::bench]
+fn solving_rgb() -> Fog<3> {
+    fog(&["exponential"], Ground::FLAT, Scattering::Multiple)
+}
+
+#[divan::bench]
+fn solving_16_wavelengths() -> Fog<16> {
+    fog(&["exponential"], Ground::FLAT, Scattering::Multiple)
+}

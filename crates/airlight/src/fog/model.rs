@@ -5,7 +5,7 @@ use super::levels;
 use super::light::{Ground, Light, Scattering};
 use super::line::Line;
 use super::matter::{FogError, Layer};
-use super::multiple::Field;
+use super::multiple::{self, DirectionWeights, Field};
 use super::once::Once;
 use super::profile::Profile;
 use super::strata::{Stratum, gather};
@@ -86,7 +86,7 @@ impl<const N: usize> Fog<N> {
             return None;
         }
         let sine = self.light.sun.map_or(1.0, |sun| sun.direction.y);
-        let once = self.once(Stratum::reduced_extinction, |_| Spectrum::ZERO);
+        let once = self.once(|s| s.reduced_extinction_per_m, |_| Spectrum::ZERO);
         let sun_depth = |height| once.depth_to_sun(height, sine);
         Some(Field::solve(reduced, &self.ground, &self.light, sun_depth))
     }
@@ -266,7 +266,7 @@ impl<const N: usize> Fog<N> {
             Profile::Uniform => s.scattering_per_m,
             _ => Spectrum::ZERO,
         };
-        let reduced = |s: &Stratum<N>| s.reduced_extinction();
+        let reduced = |s: &Stratum<N>| s.reduced_extinction_per_m;
         let residual = |s: &Stratum<N>| s.residual_extinction(cos_sun);
         let of_endless = self
             .strata
@@ -275,7 +275,7 @@ impl<const N: usize> Fog<N> {
                 Profile::Uniform => sum + s.extinction_per_m,
                 _ => sum,
             });
-        let mut smooth = field.scattered(line, towards.cos_azimuth, of_endless);
+        let mut smooth = field.scattered(line, &towards.weights, of_endless);
         let smooth_depth = self.depth_of(line, &reduced);
         let (mut peaked, mut peaked_depth) = (Spectrum::ZERO, smooth_depth);
         if towards.in_peak {
@@ -317,16 +317,17 @@ struct Part<const N: usize> {
 /// A direction as the field sees it.
 struct Towards {
     cos_sun: f64,
-    cos_azimuth: f64,
+    weights: DirectionWeights,
     in_peak: bool,
 }
 
 impl Towards {
     fn new<const N: usize>(fog: &Fog<N>, climb: f64, cos_sun: f64) -> Self {
+        let climb = climb.clamp(-1.0, 1.0);
         let Some(sun) = &fog.light.sun else {
             return Self {
                 cos_sun,
-                cos_azimuth: 1.0,
+                weights: multiple::in_direction(climb, 1.0),
                 in_peak: false,
             };
         };
@@ -340,7 +341,7 @@ impl Towards {
         };
         Self {
             cos_sun,
-            cos_azimuth,
+            weights: multiple::in_direction(climb, cos_azimuth),
             in_peak: fog.strata.iter().any(|s| s.in_peak(cos_sun)),
         }
     }

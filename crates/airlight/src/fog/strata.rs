@@ -12,6 +12,8 @@ pub(super) struct Stratum<const N: usize> {
     pub profile: Profile,
     pub extinction_per_m: Spectrum<N>,
     pub scattering_per_m: Spectrum<N>,
+    /// Extinction without the forward peak.
+    pub reduced_extinction_per_m: Spectrum<N>,
     parts: Vec<Part<N>>,
 }
 
@@ -56,6 +58,7 @@ pub(super) fn gather<const N: usize>(
                 profile: layer.profile,
                 extinction_per_m: Spectrum::ZERO,
                 scattering_per_m: Spectrum::ZERO,
+                reduced_extinction_per_m: Spectrum::ZERO,
                 parts: Vec::new(),
             });
             strata.len() - 1
@@ -63,6 +66,8 @@ pub(super) fn gather<const N: usize>(
         let stratum = &mut strata[index];
         stratum.extinction_per_m += matter.extinction_per_m;
         stratum.scattering_per_m += matter.scattering_per_m();
+        stratum.reduced_extinction_per_m += matter.extinction_per_m
+            - matter.scattering_per_m() * lanes(&part.peaks, |peak| peak.fraction as f32);
         stratum.parts.push(part);
     }
     Ok(strata)
@@ -83,12 +88,6 @@ impl<const N: usize> Stratum<N> {
         })
     }
 
-    /// Extinction without the forward peak, 1/m.
-    #[inline]
-    pub fn reduced_extinction(&self) -> Spectrum<N> {
-        self.extinction_per_m - self.sum(|part| lanes(&part.peaks, |peak| peak.fraction as f32))
-    }
-
     /// Extinction of light that the residual of the peak scatters, 1/m.
     #[inline]
     pub fn residual_extinction(&self, cos_sun: f64) -> Spectrum<N> {
@@ -107,7 +106,7 @@ impl<const N: usize> Stratum<N> {
     pub fn reduced(&self) -> Option<Reduced<N>> {
         (self.profile != Profile::Uniform).then(|| Reduced {
             profile: self.profile,
-            extinction_per_m: self.reduced_extinction(),
+            extinction_per_m: self.reduced_extinction_per_m,
             scattering_per_m: std::array::from_fn::<_, STREAMS, _>(|l| {
                 self.sum(|part| lanes(&part.peaks, |p| (p.moments[l] - p.fraction) as f32))
             }),

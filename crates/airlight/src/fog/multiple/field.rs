@@ -12,7 +12,7 @@ use crate::spectrum::Spectrum;
 use std::f64::consts::PI;
 
 /// Optical depth of the layers that the solver steps through.
-const THINNEST: f64 = 0.2;
+const THINNEST: f64 = 0.05;
 
 /// A profile with what the solver needs of its matter: extinction and scattering without the forward peak.
 #[derive(Clone, Debug)]
@@ -24,6 +24,9 @@ pub struct Reduced<const N: usize> {
     pub scattering_per_m: [Spectrum<N>; STREAMS],
 }
 
+/// What each moment adds in a direction.
+pub type DirectionWeights = [f32; COUNT];
+
 /// The source function of diffuse light, by height and direction, and the light on the ground.
 #[derive(Clone, Debug)]
 pub struct Field<const N: usize> {
@@ -33,6 +36,8 @@ pub struct Field<const N: usize> {
     heights_m: Vec<f64>,
     /// Optical depth above each height, by mean extinction.
     depths: Vec<f64>,
+    /// Column above each height of the first profile, m.
+    columns_m: Vec<f64>,
     /// For each layer between two heights, at its lower and upper end: moments of the source function.
     sources: Vec<[[Spectrum<N>; COUNT]; 2]>,
     /// Radiance of the ground.
@@ -62,7 +67,10 @@ impl<const N: usize> Field<N> {
             .iter()
             .map(|&height| heights::depth_above(&weighted, height))
             .collect();
+        let column_m = |&height: &f64| strata[0].profile.column_above(height);
+        let columns_m = heights_m.iter().map(column_m).collect();
         let mut field = Self {
+            columns_m,
             sources: vec![[[Spectrum::ZERO; COUNT]; 2]; heights_m.len() - 1],
             ground_radiance: Spectrum::ZERO,
             ground_irradiance: Spectrum::ZERO,
@@ -152,8 +160,19 @@ impl<const N: usize> Field<N> {
 
     /// Diffuse light scattered into a line, seen through the extinction without peaks of everything on it (`endless` is
     /// that of matter without an upper end, which the field does not hold).
-    pub fn scattered(&self, line: &Line, cos_azimuth: f64, endless: Spectrum<N>) -> Spectrum<N> {
-        let weights = legendre::in_direction(line.climb.clamp(-1.0, 1.0), cos_azimuth);
+    pub fn scattered(
+        &self,
+        line: &Line,
+        weights: &DirectionWeights,
+        endless: Spectrum<N>,
+    ) -> Spectrum<N> {
+        if let [stratum] = &self.strata[..]
+            && line.bend_per_m == 0.0
+            && line.climb.abs() > 1e-3
+            && endless == Spectrum::ZERO
+        {
+            return self.scattered_in_one(stratum, line, weights);
+        }
         let mut path = Spectrum::ZERO;
         let mut before = Spectrum::ZERO;
         walk::parts(line, &self.heights_m, |part| {
@@ -164,8 +183,8 @@ impl<const N: usize> Field<N> {
                 let column = stratum.profile.column(part).min(1e25);
                 sum.scale_acc(stratum.extinction_per_m, column as f32)
             });
-            let near = self.source(k, part.height_m, &weights);
-            let far = self.source(k, part.end_height_m(), &weights);
+            let near = self.source(k, part.height_m, weights);
+            let far = self.source(k, part.end_height_m(), weights);
             let whole = along.scale_acc(endless, part.length_m.min(1e25) as f32);
             let (w_near, w_far) = scatter::linear_source_mean(whole);
             path += before.exp_neg() * along * (w_near * near + w_far * far);
@@ -175,17 +194,74 @@ impl<const N: usize> Field<N> {
         path
     }
 
+    /// [`Field::scattered`] in one profile over flat ground, in the vertical column as the measure of height: a line passes
+    /// it evenly, and the source function is linear in it from one height to the next.
+    fn scattered_in_one(
+        &self,
+        stratum: &Reduced<N>,
+        line: &Line,
+        weights: &DirectionWeights,
+    ) -> Spectrum<N> {
+        let column_m = |height_m: f64| stratum.profile.column_above(height_m).min(1e25);
+        let per_m = stratum.extinction_per_m * (1.0 / line.climb.abs()) as f32;
+        let (from, to) = (column_m(line.height_m), column_m(line.end_height_m()));
+        // Columns fall with height: count heights whose column is above that of the start.
+        let above = self.columns_m.partition_point(|&column| column > from);
+        let last = self.columns_m.len() - 1;
+        let node = |k: usize| self.at_node(k, weights);
+        let between = |k: usize, column: f64| {
+            // In the layer below height `k`, held at the ends.
+            let (low, high) = (self.columns_m[k - 1], self.columns_m[k]);
+            let up = ((low - column) / (low - high)).clamp(0.0, 1.0) as f32;
+            node(k - 1) * (1.0 - up) + node(k) * up
+        };
+        let mut path = Spectrum::ZERO;
+        let mut before = Spectrum::ZERO;
+        let mut column = from;
+        let mut source = between(above.clamp(1, last), from);
+        let rises = line.climb > 0.0;
+        let mut next = if rises { above } else { above.wrapping_sub(1) };
+        loop {
+            // Up to the next height or the end of the line, whichever comes first.
+            let passes = match self.columns_m.get(next) {
+                Some(&column) => (rises && column > to) || (!rises && column < to),
+                None => false,
+            };
+            let (until, far) = if passes {
+                (self.columns_m[next], node(next))
+            } else {
+                let k = if rises { next } else { next.wrapping_add(1) };
+                (to, between(k.clamp(1, last), to))
+            };
+            let along = per_m * (column - until).abs() as f32;
+            let (w_near, w_far) = scatter::linear_source_mean(along);
+            path += before.exp_neg() * along * (w_near * source + w_far * far);
+            before += along;
+            if !passes || before.min_element() > 17.0 {
+                return path;
+            }
+            (column, source) = (until, far);
+            next = if rises {
+                next + 1
+            } else {
+                next.wrapping_sub(1)
+            };
+        }
+    }
+
+    /// The source function at height `k`, of the layer below it (of the one above it at the ground).
+    #[inline]
+    fn at_node(&self, k: usize, weights: &DirectionWeights) -> Spectrum<N> {
+        match k {
+            0 => weighted(&self.sources[0][0], weights),
+            _ => weighted(&self.sources[k - 1][1], weights),
+        }
+    }
+
     /// The source function at a height in or beside layer `k`.
     #[inline]
-    fn source(&self, k: usize, height_m: f64, weights: &[f32; COUNT]) -> Spectrum<N> {
-        let sum = |end: usize| {
-            let source = &self.sources[k][end];
-            let mut sum = Spectrum::ZERO;
-            for (moment, &weight) in source.iter().zip(weights) {
-                sum = sum.scale_acc(*moment, weight);
-            }
-            sum
-        };
+    fn source(&self, k: usize, height_m: f64, weights: &DirectionWeights) -> Spectrum<N> {
+        let sum = |end: usize| weighted(&self.sources[k][end], weights);
         let (low, high) = (self.heights_m[k], self.heights_m[k + 1]);
         let slack = 1e-7 * (high - low);
         if height_m <= low + slack {
@@ -198,4 +274,17 @@ impl<const N: usize> Field<N> {
         let up = (self.depths[k] - depth) / (self.depths[k] - self.depths[k + 1]);
         sum(0) * (1.0 - up) as f32 + sum(1) * up as f32
     }
+}
+
+/// The moments of a source function summed for a direction.
+#[inline]
+fn weighted<const N: usize>(
+    moments: &[Spectrum<N>; COUNT],
+    weights: &DirectionWeights,
+) -> Spectrum<N> {
+    let mut sum = Spectrum::ZERO;
+    for (moment, &weight) in moments.iter().zip(weights) {
+        sum = sum.scale_acc(*moment, weight);
+    }
+    sum
 }

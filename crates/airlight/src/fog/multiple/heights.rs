@@ -51,12 +51,12 @@ const MOST: usize = 200;
 
 /// Optical depths from the top: steps that grow away from both ends.
 fn depths(whole: f64) -> Vec<f64> {
-    let first = (whole / 24.0).min(0.04);
+    let first = (whole / 10.0).min(0.05);
     let mut from_end = Vec::new();
     let mut depth = 0.0;
     while depth < 0.5 * whole && from_end.len() < MOST {
         from_end.push(depth);
-        depth += (0.25 * depth).max(first).min(WIDEST);
+        depth += (0.4 * depth).max(first).min(WIDEST);
     }
     let other_end = from_end.iter().map(|depth| whole - depth);
     let mut depths: Vec<f64> = from_end.iter().copied().chain(other_end).collect();

@@ -1,6 +1,8 @@
 //! Associated Legendre functions, normalised so that the addition theorem has no factors:
 //! `P_l(cos angle) = sum over m of (2 - delta_m0) Y_lm(mu) Y_lm(mu') cos(m azimuth)`.
 
+use std::sync::LazyLock;
+
 /// Number of polar angles in both hemispheres together, and of Legendre moments.
 pub const STREAMS: usize = 8;
 
@@ -13,24 +15,40 @@ pub const fn index(l: usize, m: usize) -> usize {
     m * STREAMS - m * (m + 1) / 2 + l
 }
 
+/// Factors of the recurrence `Y_l = a mu Y_(l-1) - b Y_(l-2)` at fixed `m`, and of `Y_mm = a sine Y_(m-1)(m-1)`.
+static FACTORS: LazyLock<[(f64, f64); COUNT]> = LazyLock::new(|| {
+    let mut factors = [(0.0, 0.0); COUNT];
+    for m in 0..STREAMS {
+        let y = m as f64;
+        if m > 0 {
+            factors[index(m, m)].0 = ((2.0 * y - 1.0) / (2.0 * y)).sqrt();
+        }
+        for l in m + 1..STREAMS {
+            let x = l as f64;
+            let norm = (x * x - y * y).sqrt();
+            let back = ((x - 1.0) * (x - 1.0) - y * y).max(0.0).sqrt();
+            factors[index(l, m)] = ((2.0 * x - 1.0) / norm, back / norm);
+        }
+    }
+    factors
+});
+
 /// `sqrt((l - m)! / (l + m)!) P_l^m(mu)` for all pairs, without the sign `(-1)^m`.
 #[inline]
 pub fn evaluate(mu: f64) -> [f64; COUNT] {
+    let factors = &*FACTORS;
     let sine = (1.0 - mu * mu).max(0.0).sqrt();
     let mut values = [0.0; COUNT];
     let mut diagonal = 1.0;
     for m in 0..STREAMS {
         if m > 0 {
-            let m = m as f64;
-            diagonal *= sine * ((2.0 * m - 1.0) / (2.0 * m)).sqrt();
+            diagonal *= sine * factors[index(m, m)].0;
         }
         let (mut before, mut now) = (0.0, diagonal);
         values[index(m, m)] = now;
         for l in m + 1..STREAMS {
-            let (x, y) = (l as f64, m as f64);
-            let back = ((x - 1.0) * (x - 1.0) - y * y).max(0.0).sqrt();
-            let next = ((2.0 * x - 1.0) * mu * now - back * before) / (x * x - y * y).sqrt();
-            (before, now) = (now, next);
+            let (a, b) = factors[index(l, m)];
+            (before, now) = (now, a * mu * now - b * before);
             values[index(l, m)] = now;
         }
     }

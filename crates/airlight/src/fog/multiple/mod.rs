@@ -11,6 +11,6 @@ mod legendre;
 mod ordinates;
 mod peak;
 
-pub(super) use field::{Field, Reduced};
-pub(super) use legendre::STREAMS;
+pub(super) use field::{DirectionWeights, Field, Reduced};
+pub(super) use legendre::{STREAMS, in_direction};
 pub(super) use peak::Peak;
