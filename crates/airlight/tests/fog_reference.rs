@@ -2,7 +2,7 @@
 //! tracing, with standard errors) and PythonicDISORT. `data/README.md` says where the tables come from.
 
 use airlight::axes::direction;
-use airlight::fog::{Fog, Ground, Layer, Light, Matter, Profile, Scattering, Sun};
+use airlight::fog::{Fog, Ground, Layer, Light, Matter, Profile, Scattering, Sun, droplets};
 use airlight::optics::PhaseFunction;
 use airlight::path::PathOptics;
 use airlight::spectrum::Spectrum;
@@ -271,5 +271,68 @@ fn level_lines_err_as_stated() {
         for (error, limit) in measured.into_iter().zip(limits) {
             assert!(error < limit, "{name}: {error} % above {limit} %");
         }
+    }
+}
+
+/// The phase function of real fog has a far sharper peak than Henyey-Greenstein's.
+#[test]
+fn fog_of_droplets_matches_the_slabs() {
+    let table = include_str!("data/fog_droplets_disort.csv");
+    let errors = table
+        .lines()
+        .filter(|line| !line.starts_with('#'))
+        .skip(1)
+        .map(|line| {
+            let row: Vec<f64> = line.split(',').map(|v| v.parse().unwrap()).collect();
+            let &[
+                tau,
+                sun_zenith,
+                above,
+                zenith,
+                azimuth,
+                scattered,
+                irradiance,
+            ] = &row[..]
+            else {
+                panic!("seven columns: {line}");
+            };
+            let light = Light {
+                sun: Some(Sun {
+                    direction: direction(0.0, 90.0 - sun_zenith),
+                    irradiance: Spectrum::ONE,
+                }),
+                ambient: Spectrum::ZERO,
+                ground_albedo: Spectrum([0.2]),
+            };
+            let matter = Matter {
+                extinction_per_m: Spectrum([(tau / 100.0) as f32]),
+                single_scattering_albedo: Spectrum([0.999999]),
+                phase: droplets::phase(10.0),
+            };
+            let profile = Profile::Slab {
+                top_height_m: 100.0,
+            };
+            let fog = Fog::new(
+                &[Layer { profile, matter }],
+                Ground::FLAT,
+                light,
+                Scattering::Multiple,
+            )
+            .unwrap();
+            let height = 100.0 * (1.0 - above);
+            let view = direction(azimuth, 90.0 - zenith);
+            let length = if view.y < 0.0 {
+                height / -view.y
+            } else {
+                f64::INFINITY
+            };
+            let ground = f64::from(fog.ground_irradiance().unwrap()[0]);
+            assert!((ground / irradiance - 1.0).abs() < 2e-3, "{line}: {ground}");
+            f64::from(fog.along(height, view, length).path_radiance[0]) / scattered - 1.0
+        });
+    let measured = spread(errors);
+    println!("fog of droplets, percent: median, 90 %, worst: {measured:.2?}");
+    for (error, limit) in measured.into_iter().zip([0.3, 2.5, 8.0]) {
+        assert!(error < limit, "{error} % above {limit} %");
     }
 }
