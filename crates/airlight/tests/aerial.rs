@@ -186,9 +186,8 @@ fn errors_of_aerial_perspective() {
         let begun = std::time::Instant::now();
         let table = AerialPerspective::<16>::new(&view, Channels::SPECTRAL, limit_m).unwrap();
         let built = begun.elapsed();
-        let horizon_deg = -((6371e3 / (6371e3 + altitude_m)) as f64)
-            .acos()
-            .to_degrees();
+        let ratio: f64 = 6371e3 / (6371e3 + altitude_m);
+        let horizon_deg = -ratio.acos().to_degrees();
         let lines = lines(view.sun(), horizon_deg, limit_m.min(1.5e6), 1500);
         let (path, dimming) = errors(&table, &lines, |d, m| spectral(&view, d, m));
         let at = |share: f64| ((path.len() - 1) as f64 * share) as usize;

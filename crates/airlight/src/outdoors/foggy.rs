@@ -3,12 +3,14 @@
 use super::aerial::AerialPerspective;
 use super::channels::{Channels, Converter};
 use super::error::OutdoorsError;
-use super::{light, places};
-use crate::fog::{Fog, Ground, Layer, Line, Scattering};
+use super::light::{self, TopLight};
+use super::places;
+use crate::fog::{Fog, Ground, Layer, Light, Line, Scattering};
 use crate::path::PathOptics;
 use crate::sky::{SkyTable, TableChannels, View};
 use crate::spectrum::Spectrum;
 use glam::DVec3;
+use std::sync::Arc;
 
 /// A sky with fog in it: sunlight and skylight fall on the fog, air and fog lie along every line in their true order, the
 /// ground is dimmed, and what is far away goes over into the drawn sky.
@@ -20,7 +22,7 @@ use glam::DVec3;
 pub struct FoggySky<'a, const N: usize> {
     view: View<'a>,
     converter: Converter<N>,
-    clear: SkyTable,
+    clear: Arc<SkyTable>,
     /// The table's first channel that is a lane.
     first: usize,
     aerial: AerialPerspective<N>,
@@ -28,6 +30,28 @@ pub struct FoggySky<'a, const N: usize> {
     eye_height_m: f64,
     /// Irradiance of the ground over that without fog.
     ground_share: Spectrum<N>,
+}
+
+/// What is the same for all pieces of a spectrum.
+struct Surroundings {
+    top: TopLight,
+    clear: Arc<SkyTable>,
+}
+
+/// The view from the top of a fog, straight above or below that of the eye; the fog is checked.
+fn top_view<'a, const N: usize>(
+    view: &View<'a>,
+    layers: &[Layer<N>],
+    ground: Ground,
+    scattering: Scattering,
+) -> Result<View<'a>, OutdoorsError> {
+    let unlit = Light {
+        sun: None,
+        ambient: Spectrum::ZERO,
+    };
+    Fog::new(layers, ground, unlit, scattering)?;
+    let ground_m = view.sky().atmosphere().planet.ground_altitude_m;
+    Ok(view.at_altitude(ground_m + light::top_m(layers, &ground) - ground.height_m))
 }
 
 /// What fog puts before and into clear air on a line.
@@ -51,30 +75,61 @@ impl<'a, const N: usize> FoggySky<'a, N> {
         ground: Ground,
         scattering: Scattering,
     ) -> Result<Self, OutdoorsError> {
+        let table = match channels {
+            Channels::Rgb(space) => TableChannels::Rgb(space),
+            Channels::Wavelengths { .. } => TableChannels::Spectral,
+        };
+        // Checked before anything is computed.
+        Converter::<N>::new(view, channels)?;
+        let surroundings = Surroundings {
+            top: TopLight::of(&top_view(view, layers, ground, scattering)?),
+            clear: Arc::new(view.table(table)),
+        };
+        Self::among(view, channels, layers, ground, scattering, &surroundings)
+    }
+
+    /// The same at every wavelength of the sky's grid, N in a piece (lanes beyond the last wavelength repeat it), for fog
+    /// that is the same in each piece.
+    ///
+    /// # Errors
+    /// [`OutdoorsError`] for a fog that is none.
+    pub fn spectral(
+        view: &View<'a>,
+        layers: &[Layer<N>],
+        ground: Ground,
+        scattering: Scattering,
+    ) -> Result<Vec<Self>, OutdoorsError> {
+        let surroundings = Surroundings {
+            top: TopLight::of(&top_view(view, layers, ground, scattering)?),
+            clear: Arc::new(view.table(TableChannels::Spectral)),
+        };
+        (0..view.sky().grid().len())
+            .step_by(N.max(1))
+            .map(|first| {
+                let channels = Channels::Wavelengths { first };
+                Self::among(view, channels, layers, ground, scattering, &surroundings)
+            })
+            .collect()
+    }
+
+    fn among(
+        view: &View<'a>,
+        channels: Channels,
+        layers: &[Layer<N>],
+        ground: Ground,
+        scattering: Scattering,
+        surroundings: &Surroundings,
+    ) -> Result<Self, OutdoorsError> {
         let converter = Converter::new(view, channels)?;
-        // Checked before anything is measured by it.
-        let unlit = crate::fog::Light {
-            sun: None,
-            ambient: Spectrum::ZERO,
-        };
-        Fog::new(layers, ground, unlit, scattering)?;
-        let planet = &view.sky().atmosphere().planet;
-        let top = view.at_altitude(
-            planet.ground_altitude_m + light::top_m(layers, &ground) - ground.height_m,
-        );
-        let light = light::on_fog(view, &top, &converter);
+        let light = surroundings.top.on_fog(view, &converter);
         let wavelengths_nm = converter.wavelengths_nm();
-        let fog = Fog::new(layers, ground, light, scattering)?.at_wavelengths_nm(wavelengths_nm);
-        let albedo = wavelengths_nm.map(|nm| planet.ground_albedo.at(nm));
-        let (table, first) = match channels {
-            Channels::Rgb(space) => (TableChannels::Rgb(space), 0),
-            Channels::Wavelengths { first } => (TableChannels::Spectral, first),
-        };
+        let albedo = &view.sky().atmosphere().planet.ground_albedo;
+        let albedo = wavelengths_nm.map(|nm| albedo.at(nm));
         Ok(Self {
-            clear: view.table(table),
-            first,
+            clear: surroundings.clear.clone(),
+            first: converter.used().start,
             aerial: AerialPerspective::new(view, channels, f64::INFINITY)?,
-            fog,
+            fog: Fog::new(layers, ground, light, scattering)?.at_wavelengths_nm(wavelengths_nm),
             eye_height_m: view.radius_m() - view.bounds_m().0 + ground.height_m,
             ground_share: light::share_on_ground(layers, &ground, albedo, &wavelengths_nm),
             converter,
@@ -101,7 +156,7 @@ impl<'a, const N: usize> FoggySky<'a, N> {
     }
 
     /// The sky without the fog.
-    pub fn clear(&self) -> &SkyTable {
+    pub fn clear(&self) -> &Arc<SkyTable> {
         &self.clear
     }
 

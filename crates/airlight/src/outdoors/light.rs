@@ -12,29 +12,39 @@ const ABOVE_TOP: f64 = 0.01;
 /// How far up the top is looked for, m.
 const HIGHEST_M: f64 = 100e3;
 
-/// The light on a fog whose top lies at the eye of `above`: the sun's disc as it is there, and the mean radiance of all
-/// directions, half of sky and half of ground (each its irradiance of a level surface over pi).
-pub(super) fn on_fog<const N: usize>(
-    view: &View<'_>,
-    top: &View<'_>,
-    to: &Converter<N>,
-) -> Light<N> {
-    let solar = view.solar_irradiance();
-    let table = top.table(TableChannels::Spectral);
-    let (down, up) = (table.irradiance(DVec3::Y), table.irradiance(-DVec3::Y));
-    let mean: Vec<f32> = down
-        .iter()
-        .zip(&up)
-        .map(|(down, up)| (0.5 * f64::from(down + up) / PI) as f32)
-        .collect();
-    let irradiance = to.light(&top.sun_irradiance(), &solar);
-    let shines = irradiance.max_element() > 0.0;
-    Light {
-        sun: shines.then_some(Sun {
-            direction: view.sun(),
-            irradiance,
-        }),
-        ambient: to.light(&mean, &solar),
+/// The light of a sky at the top of a fog, at every wavelength of its grid.
+pub(super) struct TopLight {
+    /// Of the sun's disc on a surface that faces it, W m^-2 nm^-1.
+    sun_irradiance: Vec<f32>,
+    /// Mean radiance of all directions, W m^-2 sr^-1 nm^-1: half of sky, half of ground, each as its irradiance of a level
+    /// surface over pi.
+    mean_radiance: Vec<f32>,
+}
+
+impl TopLight {
+    /// As seen from the fog's top.
+    pub fn of(top: &View<'_>) -> Self {
+        let table = top.table(TableChannels::Spectral);
+        let (down, up) = (table.irradiance(DVec3::Y), table.irradiance(-DVec3::Y));
+        let mean = |(down, up): (&f32, &f32)| (0.5 * f64::from(down + up) / PI) as f32;
+        Self {
+            sun_irradiance: top.sun_irradiance(),
+            mean_radiance: down.iter().zip(&up).map(mean).collect(),
+        }
+    }
+
+    /// In lanes, as a fog wants it.
+    pub fn on_fog<const N: usize>(&self, view: &View<'_>, to: &Converter<N>) -> Light<N> {
+        let solar = view.solar_irradiance();
+        let irradiance = to.light(&self.sun_irradiance, &solar);
+        let shines = irradiance.max_element() > 0.0;
+        Light {
+            sun: shines.then_some(Sun {
+                direction: view.sun(),
+                irradiance,
+            }),
+            ambient: to.light(&self.mean_radiance, &solar),
+        }
     }
 }
 

@@ -9,6 +9,7 @@ use crate::light::SunDisc;
 use crate::path::PathOptics;
 use crate::spectrum::Spectrum;
 use glam::DVec3;
+use std::ops::Range;
 
 /// A prepared sky seen from one altitude under one sun.
 #[derive(Clone)]
@@ -160,12 +161,13 @@ impl<'a> View<'a> {
 
     /// What lies between the eye and each of the rising distances `stops_m` along a unit vector: for each its optical
     /// depths, one a wavelength, and path radiance per unit solar irradiance, first of all smooth light and then of each
-    /// peaked constituent without the phase function.
+    /// peaked constituent without the phase function. Wavelengths whose places are not in `used` may be left at 0.
     pub(crate) fn stops(
         &self,
         direction: DVec3,
         stops_m: &[f64],
         peaked: &Peaked,
+        used: &Range<usize>,
     ) -> Vec<StopLight> {
         let ray = self.ray(direction);
         let half_sine = (0.5 * (1.0 - ray.nu)).max(0.0).sqrt();
@@ -175,12 +177,24 @@ impl<'a> View<'a> {
             .zip(&peaked.phases)
             .map(|(&c, phase)| (c, Peaked::sampled(phase, half_sine)))
             .collect();
-        let mut blocks = self.sky.blocks.iter();
-        let mut all = match blocks.next() {
-            Some(first) => first.stops(&ray, stops_m, &phases),
-            None => Vec::new(),
+        let nothing = StopLight {
+            depth: Vec::new(),
+            path: vec![Vec::new(); 1 + phases.len()],
         };
-        for block in blocks {
+        let mut all = vec![nothing; stops_m.len()];
+        let mut first = 0;
+        for block in &self.sky.blocks {
+            let lanes = first..first + block.lanes();
+            first = lanes.end;
+            if lanes.start >= used.end || lanes.end <= used.start {
+                for stop in &mut all {
+                    stop.depth.resize(lanes.end, 0.0);
+                    stop.path
+                        .iter_mut()
+                        .for_each(|part| part.resize(lanes.end, 0.0));
+                }
+                continue;
+            }
             for (stop, more) in all.iter_mut().zip(block.stops(&ray, stops_m, &phases)) {
                 stop.depth.extend(more.depth);
                 for (part, more) in stop.path.iter_mut().zip(more.path) {
