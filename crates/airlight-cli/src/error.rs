@@ -2,6 +2,7 @@
 
 use airlight::light::ephemeris::EphemerisError;
 use airlight::medium::{AerosolError, AtmosphereError, UnknownPreset};
+use airlight::outdoors::OutdoorsError;
 use airlight::sky::SkyError;
 use airlight::spectrum::GridError;
 use airlight_render::RenderError;
@@ -87,6 +88,7 @@ refusals!(
     AtmosphereError,
     EphemerisError,
     GridError,
+    OutdoorsError,
     SkyError,
     UnknownPreset
 );

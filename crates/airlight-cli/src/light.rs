@@ -24,4 +24,12 @@ impl Illuminances {
             sky_horizontal_lx: luminance(&table.irradiance(DVec3::Y)),
         }
     }
+    /// The same in fog that lets a part of the sun's disc through, under a sky that sheds `sky_horizontal_lx`.
+    pub fn through(self, transmittance: f64, sky_horizontal_lx: f64) -> Self {
+        Self {
+            sun_normal_lx: self.sun_normal_lx * transmittance,
+            sun_horizontal_lx: self.sun_horizontal_lx * transmittance,
+            sky_horizontal_lx,
+        }
+    }
 }

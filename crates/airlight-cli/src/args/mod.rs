@@ -1,11 +1,13 @@
 //! Every option of every command.
 
 mod air;
+mod fog;
 mod picture;
 mod place;
 mod probe;
 
 pub use air::{AirArgs, ScatteringArg};
+pub use fog::FogArgs;
 pub use picture::{
     ColorSpaceArg, CompressionArg, PictureArgs, PrecisionArg, ProjectionArg, SunDiscArg, ToneArg,
 };
@@ -80,6 +82,8 @@ pub struct SkyArgs {
     pub picture: PictureArgs,
     #[command(flatten)]
     pub air: AirArgs,
+    #[command(flatten)]
+    pub fog: FogArgs,
 }
 
 /// Many pictures over a span of time.
@@ -108,6 +112,8 @@ Examples:
   A day, a frame every ten minutes (day.0001.png, ...); started again it goes on where it stopped:
     airlight sky --at 64.1,-21.9 --when 2026-06-21T00:00:00Z --until +24h --every 10m \\
       --projection fisheye -o day.png
+  Ground fog at sunrise, seen from a hill 60 m high:
+    airlight sky --sun-elevation 2 --fog-visibility-m 150 --fog-top-m 40 --altitude-m 60 --projection perspective -o fog.png
   From a height of 400 km, from Mars:
     airlight sky --sun-elevation 20 --altitude-m 400e3 --projection perspective --camera-elevation -15 -o iss.png
     airlight sky --atmosphere mars --sun-elevation 5 --projection perspective -o mars.png";

@@ -39,12 +39,13 @@ struct Cell {
 
 impl Disc {
     /// Tabulates the disc of a view; `horizon_rad` is the elevation of the horizon. `None` where the planet hides all
-    /// of it. With `weights` the channels are RGB, or RGB and then radiances where `spectral`.
+    /// of it. `fog` is the transmittance of what lies before it besides the air. With `weights` the channels are RGB, or RGB and then radiances where `spectral`.
     pub fn new(
         view: &View<'_>,
         horizon_rad: f64,
         weights: &RgbWeights,
         spectral: bool,
+        fog: impl Fn(DVec3) -> f32,
     ) -> Option<Self> {
         let sun = view.sun();
         let radius_rad = view.disc().angular_radius_rad;
@@ -63,11 +64,17 @@ impl Disc {
             range: (lowest, highest),
             table: Vec::new(),
         };
-        disc.tabulate(view, weights, spectral);
+        disc.tabulate(view, weights, spectral, fog);
         Some(disc)
     }
 
-    fn tabulate(&mut self, view: &View<'_>, weights: &RgbWeights, spectral: bool) {
+    fn tabulate(
+        &mut self,
+        view: &View<'_>,
+        weights: &RgbWeights,
+        spectral: bool,
+        fog: impl Fn(DVec3) -> f32,
+    ) {
         let irradiance = view.solar_irradiance();
         let wavelengths = view.sky().grid().wavelengths_nm();
         let azimuth = airlight::axes::azimuth_deg(self.sun);
@@ -87,11 +94,12 @@ impl Disc {
         for k in 0..ELEVATIONS {
             let part = k as f64 / (ELEVATIONS - 1) as f64;
             let elevation = self.range.0 + (self.range.1 - self.range.0) * part;
-            let transmittance = view
-                .transmittance_to_space(airlight::axes::direction(azimuth, elevation.to_degrees()));
+            let direction = airlight::axes::direction(azimuth, elevation.to_degrees());
+            let transmittance = view.transmittance_to_space(direction);
+            let fog = fog(direction);
             for row in &shape {
                 let arriving = |lane: usize| {
-                    (f64::from(irradiance[lane] * transmittance[lane]) * row[lane]) as f32
+                    (f64::from(irradiance[lane] * transmittance[lane] * fog) * row[lane]) as f32
                 };
                 let mut sum = [0.0f32; 3];
                 for (lane, weight) in weights.iter().enumerate() {

@@ -2,6 +2,7 @@
 
 use super::channels::{Channels, RgbWeights};
 use super::disc::Disc;
+use super::fog::Fog;
 use super::layout::{Layout, PictureFile};
 use super::rows::{Layer, SkyRows};
 use super::{exposure, facts};
@@ -22,6 +23,7 @@ use airlight_render::tone::{ToneCurve, ToneMapper};
 use airlight_render::{Control, Frame, PictureFormat, PictureOptions, RowSource, write_picture};
 use glam::DVec3;
 use std::path::Path;
+use std::sync::Arc;
 
 /// What is drawn and how.
 pub struct Drawing<'a> {
@@ -44,18 +46,36 @@ pub struct Shot<'a> {
     /// Light at the eye.
     pub light: Illuminances,
     view: View<'a>,
-    table: SkyTable,
+    table: Arc<SkyTable>,
+    fog: Option<Fog<'a>>,
     disc: Option<Disc>,
     weights: RgbWeights,
 }
 
 impl<'a> Shot<'a> {
-    /// Tabulates the sky under a sun.
-    pub fn new(drawing: &Drawing<'_>, sky: &'a Sky, sun: &Sun, time: Option<Moment>) -> Self {
+    /// Tabulates the sky under a sun, and the fog before it.
+    ///
+    /// # Errors
+    /// [`CliError::Usage`] for a fog that is none.
+    pub fn new(
+        drawing: &Drawing<'_>,
+        sky: &'a Sky,
+        sun: &Sun,
+        time: Option<Moment>,
+    ) -> Result<Self, CliError> {
         let channels = drawing.channels;
         let view = drawing.scene.view(sky, sun);
-        let table = view.table(channels.table());
-        let light = Illuminances::of(&view, &table, |values| channels.luminance(sky, values));
+        let fog = Fog::new(&drawing.args.fog, &view, channels.table())?;
+        let table = match &fog {
+            Some(fog) => fog.clear(),
+            None => Arc::new(view.table(channels.table())),
+        };
+        let luminance = |values: &[f32]| channels.luminance(sky, values);
+        let mut light = Illuminances::of(&view, &table, luminance);
+        if let Some(fog) = &fog {
+            let left = f64::from(fog.transmittance(view.sun()));
+            light = light.through(left, fog.horizontal_lx(luminance));
+        }
         let weights = channels.rgb_weights(sky);
         let disc = match drawing.args.picture.sun_disc {
             SunDiscArg::Out => None,
@@ -64,17 +84,19 @@ impl<'a> Shot<'a> {
                 table.horizon_elevation_rad(),
                 &weights,
                 channels.spectral.is_some(),
+                |direction| fog.as_ref().map_or(1.0, |fog| fog.transmittance(direction)),
             ),
         };
-        Self {
+        Ok(Self {
             sun: *sun,
             time,
             light,
             view,
             table,
+            fog,
             disc,
             weights,
-        }
+        })
     }
 
     /// Whether a direction points to the ground.
@@ -112,7 +134,7 @@ impl Drawing<'_> {
         SkyRows::new(
             frame,
             layer,
-            &shot.table,
+            (&shot.table, shot.fog.as_ref()),
             shot.disc.as_ref(),
             spectral,
             shot.view.sun(),

@@ -34,6 +34,9 @@ pub fn of(drawing: &Drawing<'_>, shot: &Shot<'_>, layer: Layer) -> Metadata {
         add("time", time.rfc3339());
     }
     add("atmosphere", scene.atmosphere.name.clone());
+    if let Some(fog) = super::fog::in_words(&drawing.args.fog) {
+        add("fog", fog);
+    }
     add(
         "sunPosition",
         format!(

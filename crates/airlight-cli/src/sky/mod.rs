@@ -2,6 +2,7 @@
 //!
 //! - [`channels`]: what the values of a pixel are, and how spectra become them.
 //! - [`disc`]: the sun's disc in a picture, exact in irradiance at every size; [`rows`]: sky and disc, row by row.
+//! - [`fog`]: fog before the sky.
 //! - [`layout`]: which files a picture consists of and where each looks.
 //! - [`facts`]: what the files say about themselves; [`exposure`]: how bright PNG, JPEG and preview are.
 //! - [`draw`]: one moment into files; [`preview`]: onto the terminal; [`sequence`]: many moments.
@@ -11,6 +12,7 @@ mod disc;
 mod draw;
 mod exposure;
 mod facts;
+mod fog;
 mod layout;
 mod preview;
 mod rows;
@@ -63,7 +65,7 @@ fn single(
     drawing.check(drawing.layout.output.as_deref())?;
     let (sky, solving) = scene.prepare(scene.near(sun))?;
     let start = Instant::now();
-    let shot = Shot::new(drawing, &sky, sun, scene.sun.start());
+    let shot = Shot::new(drawing, &sky, sun, scene.sun.start())?;
     if let Some(terminal) = preview {
         report::print(&preview::text(drawing, &shot, terminal)?)?;
     }
@@ -143,5 +145,8 @@ fn said(drawing: &Drawing<'_>, sun: &Sun, light: &Illuminances) -> String {
         scene.atmosphere.name,
         short(scene.eye_altitude_m)
     );
+    if let Some(fog) = fog::in_words(&drawing.args.fog) {
+        let _ = writeln!(text, "  fog           {fog}");
+    }
     text
 }

@@ -2,6 +2,7 @@
 
 use super::channels::RgbWeights;
 use super::disc::Disc;
+use super::fog::Fog;
 use airlight::sky::{SkyColumns, SkyTable};
 use airlight_render::frame::FrameRows;
 use airlight_render::{Frame, Projection, RowSource};
@@ -21,6 +22,7 @@ pub enum Layer {
 /// One moment's sky in one frame.
 pub struct SkyRows<'a> {
     table: &'a SkyTable,
+    fog: Option<&'a Fog<'a>>,
     disc: Option<&'a Disc>,
     /// Weights of wavelengths in RGB, for a table of spectra.
     spectral: Option<&'a RgbWeights>,
@@ -37,11 +39,11 @@ pub struct SkyRows<'a> {
 const SUBPIXELS: u32 = 4;
 
 impl<'a> SkyRows<'a> {
-    /// Rows of `frame`; values are `scale` times those of the table.
+    /// Rows of `frame`, of a table and the fog before it; values are `scale` times those of the table.
     pub fn new(
         frame: &Frame,
         layer: Layer,
-        table: &'a SkyTable,
+        (table, fog): (&'a SkyTable, Option<&'a Fog<'a>>),
         disc: Option<&'a Disc>,
         spectral: Option<&'a RgbWeights>,
         sun: DVec3,
@@ -49,6 +51,7 @@ impl<'a> SkyRows<'a> {
     ) -> Self {
         Self {
             table,
+            fog,
             disc: disc.filter(|_| layer != Layer::Sky),
             spectral,
             draws_sky: layer != Layer::Disc,
@@ -63,10 +66,18 @@ impl<'a> SkyRows<'a> {
         self.rows.frame()
     }
 
-    /// Table values of one pixel: the mean over the pixel where the horizon runs through.
+    /// Light from one direction.
+    fn at(&self, direction: DVec3, values: &mut [f32]) {
+        self.table.sample(direction, values);
+        if let Some(fog) = self.fog {
+            fog.cover(direction, values);
+        }
+    }
+
+    /// Light of one pixel: the mean over the pixel where the horizon runs through.
     fn sample(&self, direction: DVec3, (i, j): (u32, u32), values: &mut [f32]) {
         if !self.is_at_horizon(direction) {
-            self.table.sample(direction, values);
+            self.at(direction, values);
             return;
         }
         let mut sum = vec![0.0; values.len()];
@@ -77,7 +88,7 @@ impl<'a> SkyRows<'a> {
                 .frame()
                 .direction(at(i, k % SUBPIXELS), at(j, k / SUBPIXELS))
             {
-                self.table.sample(direction, values);
+                self.at(direction, values);
                 count += 1.0;
                 sum.iter_mut()
                     .zip(values.iter())
@@ -95,13 +106,18 @@ impl<'a> SkyRows<'a> {
         height.abs() < self.pixel_reach
     }
 
-    /// Table values of a whole row, one after the other.
+    /// Light of a whole row, one after the other.
     fn sample_row(&self, y: u32, directions: &[DVec3], values: &mut [f32]) {
         let n = self.table.channels();
         match (&self.columns, directions.first()) {
             (Some(columns), Some(&first)) if !self.is_at_horizon(first) => {
                 let elevation = first.y.atan2(first.x.hypot(first.z));
                 self.table.sample_row(elevation, columns, values);
+                if let Some(fog) = self.fog {
+                    for (&direction, values) in directions.iter().zip(values.chunks_exact_mut(n)) {
+                        fog.cover(direction, values);
+                    }
+                }
             }
             _ => {
                 for ((i, &direction), values) in

@@ -126,7 +126,7 @@ fn make(
     for frame in missing {
         bar.say(format!("frame {} of {total}", frame.number));
         let sun = scene.sun.at(Some(frame.time))?;
-        let shot = Shot::new(drawing, &sky, &sun, Some(frame.time));
+        let shot = Shot::new(drawing, &sky, &sun, Some(frame.time))?;
         if let Some(terminal) = preview {
             report::print(&preview::text(drawing, &shot, terminal)?)?;
         }

@@ -25,6 +25,15 @@ pub struct BlockLight {
     pub meets_ground: bool,
 }
 
+/// What lies between the eye and a stop on a line, at the wavelengths of a block.
+#[derive(Clone, Debug)]
+pub struct StopLight {
+    /// Optical depth.
+    pub depth: Vec<f32>,
+    /// Path radiance per unit solar irradiance: first all smooth light, then that of each peaked constituent.
+    pub path: Vec<Vec<f32>>,
+}
+
 /// How the light of a block's lanes is summed into the channels of a table.
 #[derive(Clone, Debug)]
 pub struct ChannelMatrix {
@@ -39,6 +48,10 @@ pub trait Block: Send + Sync {
 
     /// Light along one ray.
     fn trace(&self, ray: &Ray, limit_m: f64) -> BlockLight;
+
+    /// What lies between the eye and each of the rising distances `stops_m`, for `peaked` constituents without their phase
+    /// function, which is the second of each pair at this ray and will be multiplied with.
+    fn stops(&self, ray: &Ray, stops_m: &[f64], peaked: &[(usize, f32)]) -> Vec<StopLight>;
 
     /// Transmittance from a point to space along `mu`; 0 where the planet is in the way.
     fn transmittance_to_space(&self, radius_m: f64, mu: f64) -> Vec<f32>;
@@ -160,6 +173,31 @@ impl<const N: usize> Block for Solved<N> {
             ground: self.used(&light.ground),
             meets_ground: light.meets_ground,
         }
+    }
+
+    fn stops(&self, ray: &Ray, stops_m: &[f64], peaked: &[(usize, f32)]) -> Vec<StopLight> {
+        let stops = vectorized(
+            #[inline(always)]
+            || self.tracer().stops(ray, stops_m),
+        );
+        stops
+            .iter()
+            .map(|stop| {
+                let mut parts = vec![stop.path.rest; 1 + peaked.len()];
+                parts[1..].fill(Spectrum::ZERO);
+                for (s, unphased) in self.air.scatterers.iter().zip(&stop.path.unphased) {
+                    let phased = *unphased * s.phase(&self.air, ray.nu);
+                    match peaked.iter().position(|&(c, _)| c == s.constituent) {
+                        None => parts[0] += phased,
+                        Some(place) => parts[1 + place] = phased / peaked[place].1,
+                    }
+                }
+                StopLight {
+                    depth: self.used(&stop.depth),
+                    path: parts.iter().map(|part| self.used(part)).collect(),
+                }
+            })
+            .collect()
     }
 
     fn transmittance_to_space(&self, radius_m: f64, mu: f64) -> Vec<f32> {

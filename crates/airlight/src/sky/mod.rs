@@ -19,13 +19,13 @@
 //! Inside, from the ground up: [`ray`] (lines, spheres, shadows), [`quadrature`], [`shell`] (the geometry of an
 //! atmosphere) with its [`columns`], [`march`] (walking along a ray), [`air`] (an atmosphere at N wavelengths),
 //! [`harmonics`] and [`field`] (the light inside the air), `fan` (rays that share their way), [`orders`] (solving for the
-//! light), [`trace`] (light along a line), `table` (all directions of a view).
+//! light), [`trace`] (light along a line), `stops` (the same, kept on the way), `table` (all directions of a view).
 
 pub mod air;
 mod block;
 pub mod columns;
 mod coverage;
-mod cubic;
+pub(crate) mod cubic;
 mod fan;
 pub mod field;
 pub mod harmonics;
@@ -35,6 +35,7 @@ pub mod quadrature;
 pub mod ray;
 pub mod shell;
 mod solver;
+mod stops;
 mod table;
 mod tabulate;
 pub mod trace;
@@ -44,4 +45,5 @@ mod view;
 pub use coverage::SunCoverage;
 pub use solver::{Scattering, Sky, SkyError, SkySettings};
 pub use table::{SkyColumns, SkyTable, TableChannels};
+pub(crate) use tabulate::{Peaked, channel_weights};
 pub use view::{LineOfSight, View};

@@ -7,6 +7,7 @@
 
 use super::cubic;
 use super::quadrature::GaussRule;
+use super::tabulate::Peaked;
 use super::vector::vectorized;
 use crate::spectrum::RgbSpace;
 use glam::DVec3;
@@ -289,16 +290,13 @@ impl SkyTable {
     /// Applies the phase functions and adds up the parts of a cell.
     #[inline(always)]
     fn combine(&self, cell: &[f32], half_sine: f64, out: &mut [f32]) {
-        let position = (half_sine * PHASE_SAMPLES as f64).clamp(0.0, PHASE_SAMPLES as f64 - 1e-6);
-        let below = position as usize;
-        let fraction = (position - below as f64) as f32;
         out[..self.channels].copy_from_slice(&cell[..self.channels]);
         for (phase, values) in self
             .phases
             .iter()
             .zip(cell[self.channels..].chunks_exact(self.channels))
         {
-            let phase = phase[below] * (1.0 - fraction) + phase[below + 1] * fraction;
+            let phase = Peaked::sampled(phase, half_sine);
             for (out, value) in out.iter_mut().zip(values) {
                 *out += phase * value;
             }

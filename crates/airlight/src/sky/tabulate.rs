@@ -7,7 +7,7 @@ use super::table::{
 };
 use super::view::View;
 use crate::medium::Constituent;
-use crate::spectrum::rgb;
+use crate::spectrum::{WavelengthGrid, rgb};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -24,30 +24,23 @@ impl SkyTable {
             FRAC_PI_2
         };
         let matrices = channel_matrices(view, channels);
-        let peaked = peaked_constituents(view);
+        let peaked = Peaked::of(view);
         let channel_count = matrices[0].weights.len();
-        let width = (channel_count * (1 + peaked.len())).next_multiple_of(4);
+        let width = (channel_count * (1 + peaked.constituents.len())).next_multiple_of(4);
         let half = |span: f64, rows: usize| {
-            let table_rows = half_rows(view, &peaked, horizon_elevation, span, rows);
+            let table_rows = half_rows(view, &peaked.constituents, horizon_elevation, span, rows);
             let mut values = vec![0.0; rows * (AZIMUTHS + 1) * width];
             for (block, matrix) in sky.blocks.iter().zip(&matrices) {
-                block.fill(&table_rows, matrix, &peaked, width, &mut values);
+                block.fill(
+                    &table_rows,
+                    matrix,
+                    &peaked.constituents,
+                    width,
+                    &mut values,
+                );
             }
             Half { span, rows, values }
         };
-        // Blocks of wavelengths must agree on the phase function that pixels will be multiplied by: the first one's.
-        let phases = peaked
-            .iter()
-            .map(|&constituent| {
-                (0..=PHASE_SAMPLES)
-                    .map(|i| {
-                        let half_sine = i as f64 / PHASE_SAMPLES as f64;
-                        sky.blocks[0].peaked_phase(constituent, 1.0 - 2.0 * half_sine * half_sine)
-                            as f32
-                    })
-                    .collect()
-            })
-            .collect();
         let horizontal = DVec3::new(view.sun().x, 0.0, view.sun().z);
         Self {
             channels: channel_count,
@@ -61,29 +54,65 @@ impl SkyTable {
             horizon_elevation,
             above: half(ceiling - horizon_elevation, ROWS_ABOVE),
             below: half(-FRAC_PI_2 - horizon_elevation, ROWS_BELOW),
-            phases,
+            phases: peaked.phases,
         }
     }
 }
 
-/// The constituents whose phase function is too peaked to be tabulated.
-fn peaked_constituents(view: &View<'_>) -> Vec<usize> {
-    let wavelengths = view.sky().grid().wavelengths_nm();
-    let scatters = |c: &Constituent| {
-        wavelengths
+/// The constituents whose phase function is too peaked to be tabulated with the light.
+pub(crate) struct Peaked {
+    /// Their places among the constituents.
+    pub constituents: Vec<usize>,
+    /// For each, its phase function (1/sr) at even steps of the sine of half the scattering angle. Blocks of wavelengths
+    /// must agree on what pixels will be multiplied by: the mean over the first one's.
+    pub phases: Vec<Vec<f32>>,
+}
+
+impl Peaked {
+    /// Those of a view's air.
+    pub fn of(view: &View<'_>) -> Self {
+        let wavelengths = view.sky().grid().wavelengths_nm();
+        let scatters = |c: &Constituent| {
+            wavelengths
+                .iter()
+                .any(|&nm| c.scattering_per_m.at(nm) > 0.0)
+        };
+        let peaked = |c: &Constituent| {
+            wavelengths
+                .iter()
+                .any(|&nm| c.phase.asymmetry(nm).abs() > 0.1)
+        };
+        let all = view.sky().atmosphere().constituents.iter().enumerate();
+        let constituents: Vec<usize> = all
+            .filter(|(_, c)| scatters(c) && peaked(c))
+            .map(|(place, _)| place)
+            .collect();
+        let block = &view.sky().blocks[0];
+        let phases = constituents
             .iter()
-            .any(|&nm| c.scattering_per_m.at(nm) > 0.0)
-    };
-    let peaked = |c: &Constituent| {
-        wavelengths
-            .iter()
-            .any(|&nm| c.phase.asymmetry(nm).abs() > 0.1)
-    };
-    let constituents = view.sky().atmosphere().constituents.iter().enumerate();
-    constituents
-        .filter(|(_, c)| scatters(c) && peaked(c))
-        .map(|(place, _)| place)
-        .collect()
+            .map(|&constituent| {
+                (0..=PHASE_SAMPLES)
+                    .map(|i| {
+                        let half_sine = i as f64 / PHASE_SAMPLES as f64;
+                        block.peaked_phase(constituent, 1.0 - 2.0 * half_sine * half_sine) as f32
+                    })
+                    .collect()
+            })
+            .collect();
+        Self {
+            constituents,
+            phases,
+        }
+    }
+
+    /// The phase function of a sampled list at the sine of half the scattering angle.
+    #[inline(always)]
+    pub fn sampled(phase: &[f32], half_sine: f64) -> f32 {
+        let position = (half_sine * PHASE_SAMPLES as f64).clamp(0.0, PHASE_SAMPLES as f64 - 1e-6);
+        let below = position as usize;
+        let fraction = (position - below as f64) as f32;
+        phase[below] * (1.0 - fraction) + phase[below + 1] * fraction
+    }
 }
 
 /// The rays of one half of the table.
@@ -126,11 +155,13 @@ fn half_rows(
         .collect()
 }
 
-/// For each block of wavelengths, the weights that turn its lanes into the table's channels.
-fn channel_matrices(view: &View<'_>, channels: TableChannels) -> Vec<ChannelMatrix> {
-    let solar = view.solar_irradiance();
-    let grid = view.sky().grid();
-    let rows: Vec<Vec<f32>> = match channels {
+/// For each channel the weight of each wavelength's radiance (over solar irradiance where `solar` is that).
+pub(crate) fn channel_weights(
+    grid: &WavelengthGrid,
+    solar: &[f32],
+    channels: TableChannels,
+) -> Vec<Vec<f32>> {
+    match channels {
         TableChannels::Spectral => (0..solar.len())
             .map(|channel| {
                 let mut row = vec![0.0; solar.len()];
@@ -149,13 +180,18 @@ fn channel_matrices(view: &View<'_>, channels: TableChannels) -> Vec<ChannelMatr
                 .map(|c| {
                     lanes
                         .iter()
-                        .zip(&solar)
+                        .zip(solar)
                         .map(|(w, &e)| (w[c] * f64::from(e)) as f32)
                         .collect()
                 })
                 .collect()
         }
-    };
+    }
+}
+
+/// For each block of wavelengths, the weights that turn its lanes into the table's channels.
+fn channel_matrices(view: &View<'_>, channels: TableChannels) -> Vec<ChannelMatrix> {
+    let rows = channel_weights(view.sky().grid(), &view.solar_irradiance(), channels);
     let mut first = 0;
     view.sky()
         .blocks

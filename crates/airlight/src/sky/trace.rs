@@ -49,13 +49,13 @@ pub struct Arriving<const N: usize> {
 /// Follows lines of sight through air lit by the sun and by a solved field.
 pub struct Tracer<'a, const N: usize> {
     /// The real air.
-    air: &'a Air<N>,
+    pub(super) air: &'a Air<N>,
     /// The air that dims light on its way: that of the field, or the real one.
-    dimming: &'a Air<N>,
+    pub(super) dimming: &'a Air<N>,
     /// Multiply scattered light, if it is wanted.
-    diffuse: Option<&'a Diffuse<N>>,
+    pub(super) diffuse: Option<&'a Diffuse<N>>,
     marcher: Marcher,
-    edges: Vec<f64>,
+    pub(super) edges: Vec<f64>,
 }
 
 impl<'a, const N: usize> Tracer<'a, N> {
@@ -226,7 +226,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
 
     /// Light of the field scattered into the line of sight at a node, per metre. `y` is scratch space.
     #[inline(always)]
-    fn source(&self, node: &Node, y: &mut [f32]) -> Spectrum<N> {
+    pub(super) fn source(&self, node: &Node, y: &mut [f32]) -> Spectrum<N> {
         let Some(Diffuse { field, air }) = self.diffuse else {
             return Spectrum::ZERO;
         };

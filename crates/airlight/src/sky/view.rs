@@ -1,13 +1,15 @@
 //! Looking out from one place under one sun.
 
-use super::block::BlockLight;
+use super::block::{BlockLight, StopLight};
 use super::ray::Ray;
 use super::solver::Sky;
 use super::table::{SkyTable, TableChannels};
+use super::tabulate::Peaked;
 use crate::light::SunDisc;
 use crate::path::PathOptics;
 use crate::spectrum::Spectrum;
 use glam::DVec3;
+use std::ops::Range;
 
 /// A prepared sky seen from one altitude under one sun.
 #[derive(Clone)]
@@ -85,6 +87,15 @@ impl<'a> View<'a> {
         self
     }
 
+    /// The same sun seen from another altitude (m; held at the ground below it), straight above or below.
+    pub fn at_altitude(&self, altitude_m: f64) -> Self {
+        let place = Self::new(self.sky, altitude_m, self.sun);
+        Self {
+            position: place.position,
+            ..self.clone()
+        }
+    }
+
     /// The sky that is looked at.
     pub fn sky(&self) -> &'a Sky {
         self.sky
@@ -146,6 +157,58 @@ impl<'a> View<'a> {
             ground: lit(|b| &b.ground),
             meets_ground: blocks.iter().any(|b| b.meets_ground),
         }
+    }
+
+    /// What lies between the eye and each of the rising distances `stops_m` along a unit vector: for each its optical
+    /// depths, one a wavelength, and path radiance per unit solar irradiance, first of all smooth light and then of each
+    /// peaked constituent without the phase function. Wavelengths whose places are not in `used` may be left at 0.
+    pub(crate) fn stops(
+        &self,
+        direction: DVec3,
+        stops_m: &[f64],
+        peaked: &Peaked,
+        used: &Range<usize>,
+    ) -> Vec<StopLight> {
+        let ray = self.ray(direction);
+        let half_sine = (0.5 * (1.0 - ray.nu)).max(0.0).sqrt();
+        let phases: Vec<(usize, f32)> = peaked
+            .constituents
+            .iter()
+            .zip(&peaked.phases)
+            .map(|(&c, phase)| (c, Peaked::sampled(phase, half_sine)))
+            .collect();
+        let nothing = StopLight {
+            depth: Vec::new(),
+            path: vec![Vec::new(); 1 + phases.len()],
+        };
+        let mut all = vec![nothing; stops_m.len()];
+        let mut first = 0;
+        for block in &self.sky.blocks {
+            let lanes = first..first + block.lanes();
+            first = lanes.end;
+            if lanes.start >= used.end || lanes.end <= used.start {
+                for stop in &mut all {
+                    stop.depth.resize(lanes.end, 0.0);
+                    stop.path
+                        .iter_mut()
+                        .for_each(|part| part.resize(lanes.end, 0.0));
+                }
+                continue;
+            }
+            for (stop, more) in all.iter_mut().zip(block.stops(&ray, stops_m, &phases)) {
+                stop.depth.extend(more.depth);
+                for (part, more) in stop.path.iter_mut().zip(more.path) {
+                    part.extend(more);
+                }
+            }
+        }
+        all
+    }
+
+    /// Radii of the ground and of the air's top, m.
+    pub(crate) fn bounds_m(&self) -> (f64, f64) {
+        let shell = self.sky.shell();
+        (shell.ground_radius_m, shell.top_radius_m)
     }
 
     /// Transmittance from the eye to space along `direction`; 0 where the planet is in the way.

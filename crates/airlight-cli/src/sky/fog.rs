@@ -1,0 +1,166 @@
+//! Fog before the sky of a picture.
+
+use crate::args::FogArgs;
+use crate::error::CliError;
+use crate::report::short;
+use airlight::fog::droplets::Droplets;
+use airlight::fog::visibility::{Contrast, extinction_per_m};
+use airlight::fog::{Layer, Matter, Profile, Scattering};
+use airlight::outdoors::{Channels, FoggySky};
+use airlight::sky::{SkyTable, TableChannels, View};
+use airlight::spectrum::Spectrum;
+use glam::DVec3;
+use std::sync::Arc;
+
+/// Wavelengths in a piece of a spectrum.
+const PIECE: usize = 16;
+/// Height over which fog thins where nothing is said, m.
+const SCALE_HEIGHT_M: f64 = 50.0;
+
+/// A sky with fog in it, in the channels of a picture.
+pub enum Fog<'a> {
+    /// Red, green and blue.
+    Rgb(Box<FoggySky<'a, 3>>),
+    /// All wavelengths, one piece after the other.
+    Spectral(Vec<FoggySky<'a, PIECE>>),
+}
+
+impl<'a> Fog<'a> {
+    /// As the options say, under the sky of a view; `None` without fog.
+    ///
+    /// # Errors
+    /// [`CliError::Usage`] for a fog that is none.
+    pub fn new(
+        args: &FogArgs,
+        view: &View<'a>,
+        channels: TableChannels,
+    ) -> Result<Option<Self>, CliError> {
+        let ground = FoggySky::<3>::round_ground(view);
+        let scattering = Scattering::Multiple;
+        Ok(match channels {
+            TableChannels::Rgb(space) => match layer(args) {
+                None => None,
+                Some(layer) => Some(Self::Rgb(Box::new(FoggySky::new(
+                    view,
+                    Channels::Rgb(space),
+                    &[layer],
+                    ground,
+                    scattering,
+                )?))),
+            },
+            TableChannels::Spectral => match layer(args) {
+                None => None,
+                Some(layer) => Some(Self::Spectral(FoggySky::spectral(
+                    view,
+                    &[layer],
+                    ground,
+                    scattering,
+                )?)),
+            },
+        })
+    }
+
+    /// The sky without the fog.
+    pub fn clear(&self) -> Arc<SkyTable> {
+        match self {
+            Self::Rgb(sky) => sky.clear().clone(),
+            Self::Spectral(pieces) => pieces[0].clear().clone(),
+        }
+    }
+
+    /// From radiance without fog, one value a channel, to that through the fog.
+    #[inline]
+    pub fn cover(&self, direction: DVec3, values: &mut [f32]) {
+        match self {
+            Self::Rgb(sky) => cover(sky, direction, values),
+            Self::Spectral(pieces) => {
+                for (sky, values) in pieces.iter().zip(values.chunks_mut(PIECE)) {
+                    cover(sky, direction, values);
+                }
+            }
+        }
+    }
+
+    /// Transmittance of the fog, which is the same for all light.
+    pub fn transmittance(&self, direction: DVec3) -> f32 {
+        match self {
+            Self::Rgb(sky) => sky.fog_transmittance(direction)[0],
+            Self::Spectral(pieces) => pieces[0].fog_transmittance(direction)[0],
+        }
+    }
+
+    /// Illuminance of a level surface at the eye by the foggy sky, without the sun's disc, where `luminance` makes cd/m^2
+    /// of channels: to a few percent where the fog's glow about the sun is narrow.
+    pub fn horizontal_lx(&self, luminance: impl Fn(&[f32]) -> f64) -> f64 {
+        const RINGS: u32 = 60;
+        const SPOKES: u32 = 120;
+        let table = self.clear();
+        let mut values = vec![0.0; table.channels()];
+        let mut sum = 0.0;
+        for ring in 0..RINGS {
+            // Rings of equal weight: even in the squared sine of the elevation.
+            let sine = ((f64::from(ring) + 0.5) / f64::from(RINGS)).sqrt();
+            for spoke in 0..SPOKES {
+                let azimuth_deg = 360.0 * (f64::from(spoke) + 0.5) / f64::from(SPOKES);
+                let direction = airlight::axes::direction(azimuth_deg, sine.asin().to_degrees());
+                table.sample(direction, &mut values);
+                self.cover(direction, &mut values);
+                sum += luminance(&values);
+            }
+        }
+        std::f64::consts::PI * sum / f64::from(RINGS * SPOKES)
+    }
+}
+
+#[inline]
+fn cover<const N: usize>(sky: &FoggySky<'_, N>, direction: DVec3, values: &mut [f32]) {
+    let last = values.len() - 1;
+    let seen = sky.before(direction, Spectrum::from_fn(|lane| values[lane.min(last)]));
+    values
+        .iter_mut()
+        .zip(seen.0)
+        .for_each(|(value, seen)| *value = seen);
+}
+
+/// The fog of the options.
+fn layer<const N: usize>(args: &FogArgs) -> Option<Layer<N>> {
+    let visibility_m = args.fog_visibility_m?;
+    let profile = match args.fog_top_m {
+        Some(top_height_m) => Profile::Slab { top_height_m },
+        None => Profile::Clamped {
+            base_height_m: args.fog_base_m.unwrap_or(0.0),
+            scale_height_m: args.fog_scale_height_m.unwrap_or(SCALE_HEIGHT_M),
+        },
+    };
+    let extinction = extinction_per_m(visibility_m, Contrast::FivePercent) as f32;
+    Some(Layer {
+        profile,
+        matter: Matter {
+            extinction_per_m: Spectrum::splat(extinction),
+            single_scattering_albedo: Spectrum::ONE,
+            phase: Droplets::from(args.fog_droplets).phase(),
+        },
+    })
+}
+
+/// The fog of the options in words.
+pub fn in_words(args: &FogArgs) -> Option<String> {
+    let visibility_m = args.fog_visibility_m?;
+    let height = match (args.fog_top_m, args.fog_base_m.unwrap_or(0.0)) {
+        (Some(top_m), _) => format!("up to {} m", short(top_m)),
+        (None, base_m) => {
+            let scale_m = args.fog_scale_height_m.unwrap_or(SCALE_HEIGHT_M);
+            let from = match base_m > 0.0 {
+                true => format!(" from {} m on", short(base_m)),
+                false => String::new(),
+            };
+            format!("scale height {} m{from}", short(scale_m))
+        }
+    };
+    let diameter_um = Droplets::from(args.fog_droplets).diameter_um();
+    Some(format!(
+        "visibility {} m, {height}, droplets of {} um",
+        short(visibility_m),
+        short(diameter_um)
+    ))
+}

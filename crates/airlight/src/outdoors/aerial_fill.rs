@@ -1,0 +1,134 @@
+//! Filling the table of aerial perspective.
+
+use super::aerial::{AZIMUTHS, AerialPerspective, DISTANCES, Eye, Half, ROWS, part_of};
+use super::channels::Converter;
+use crate::sky::{Peaked, View};
+use glam::DVec3;
+use rayon::prelude::*;
+use std::f64::consts::FRAC_PI_2;
+
+/// Where the first node lies, in steps of the coordinate: at the eye itself there is no air to take the mean of.
+const FIRST_NODE: f64 = 0.01;
+/// A channel whose transmittance falls below this counts as opaque: RGB channels of saturated light may even be negative.
+const OPAQUE: f64 = 1e-6;
+
+/// The table of a view, in the lanes of `converter`.
+pub(super) fn tabulated<const N: usize>(
+    view: &View<'_>,
+    converter: &Converter<N>,
+    limit_m: f64,
+) -> AerialPerspective<N> {
+    let peaked = Peaked::of(view);
+    let (ground_radius_m, top_radius_m) = view.bounds_m();
+    let radius_m = view.radius_m();
+    let horizon_elevation = -(ground_radius_m / radius_m).min(1.0).acos();
+    let eye = Eye {
+        radius_m,
+        ground_radius_m,
+        top_radius_m,
+        horizon_elevation,
+        horizon_sine: horizon_elevation.sin(),
+        limit_m,
+    };
+    // From outside the air, nothing is seen above the line that grazes its top.
+    let ceiling = if radius_m > top_radius_m {
+        -(top_radius_m / radius_m).acos()
+    } else {
+        FRAC_PI_2
+    };
+    let horizontal = DVec3::new(view.sun().x, 0.0, view.sun().z);
+    let sun_azimuth = if horizontal.length() > 1e-9 {
+        horizontal.normalize()
+    } else {
+        DVec3::X
+    };
+    let half = |below: bool| {
+        let span = if below { -FRAC_PI_2 } else { ceiling } - eye.horizon_elevation;
+        let rows = ROWS[usize::from(below)];
+        let filled: Vec<(Vec<f32>, Vec<f32>)> = (0..rows)
+            .into_par_iter()
+            .map(|row| {
+                let x = row as f64 / (rows - 1) as f64;
+                // The horizon itself is a jump: start a hair's breadth from it.
+                let elevation = eye.horizon_elevation + span * (x * x).max(1e-9);
+                row_of(
+                    view,
+                    converter,
+                    &peaked,
+                    &eye,
+                    sun_azimuth,
+                    (elevation, below),
+                )
+            })
+            .collect();
+        let (extinction, source): (Vec<_>, Vec<_>) = filled.into_iter().unzip();
+        Half {
+            below,
+            span,
+            rows,
+            extinction: extinction.concat(),
+            source: source.concat(),
+        }
+    };
+    AerialPerspective {
+        sun: view.sun(),
+        sun_azimuth,
+        eye,
+        above: half(false),
+        below: half(true),
+        phases: peaked.phases,
+    }
+}
+
+/// One row: mean extinctions by distance, and mean source functions by azimuth and distance.
+fn row_of<const N: usize>(
+    view: &View<'_>,
+    converter: &Converter<N>,
+    peaked: &Peaked,
+    eye: &Eye,
+    sun_azimuth: DVec3,
+    (elevation, below): (f64, bool),
+) -> (Vec<f32>, Vec<f32>) {
+    let (sin, cos) = elevation.sin_cos();
+    let (start_m, end_m) = eye.span_m(sin, below);
+    let stops_m: Vec<f64> = (0..DISTANCES)
+        .map(|node| {
+            let x = (node as f64).max(FIRST_NODE) / (DISTANCES - 1) as f64;
+            start_m + (end_m - start_m) * part_of(x)
+        })
+        .collect();
+    let across = DVec3::Y.cross(sun_azimuth);
+    let (mut extinction, mut source) = (Vec::new(), Vec::new());
+    for azimuth in 0..AZIMUTHS {
+        let cos_azimuth = 2.0 * azimuth as f64 / (AZIMUTHS - 1) as f64 - 1.0;
+        let sin_azimuth = (1.0 - cos_azimuth * cos_azimuth).sqrt();
+        let direction = DVec3::Y * sin + (sun_azimuth * cos_azimuth + across * sin_azimuth) * cos;
+        let stops = view.stops(direction, &stops_m, peaked, &converter.used());
+        for (stop, stop_m) in stops.iter().zip(&stops_m) {
+            let opacity = converter.opacity(&stop.depth).map(|a| a.min(1.0 - OPAQUE));
+            if azimuth == 0 {
+                let length_m = stop_m - start_m;
+                let mean = |a: &f64| {
+                    if length_m > 0.0 {
+                        (-(-a).ln_1p() / length_m) as f32
+                    } else {
+                        0.0
+                    }
+                };
+                padded(&mut extinction, opacity.iter().map(mean));
+            }
+            for part in &stop.path {
+                let path = converter.radiance(part);
+                let ratio = |(s, a): (&f64, &f64)| if *a == 0.0 { 0.0 } else { (s / a) as f32 };
+                padded(&mut source, path.iter().zip(&opacity).map(ratio));
+            }
+        }
+    }
+    (extinction, source)
+}
+
+/// Adds lanes, filled up with zeros to whole vector loads.
+fn padded(out: &mut Vec<f32>, lanes: impl Iterator<Item = f32>) {
+    out.extend(lanes);
+    out.resize(out.len().next_multiple_of(4), 0.0);
+}
