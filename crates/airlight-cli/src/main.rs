@@ -5,11 +5,12 @@
 //! - [`args`]: every option of every command.
 //! - [`interrupt`], [`progress`], [`report`]: Ctrl-C, bars on standard error, text on standard output.
 //! - [`atmosphere`], [`scene`], [`light`]: what is asked for, from options to the solver; sums over the sky.
-//! - [`sky`] and [`probe`]: the commands.
+//! - [`sky`], [`fog`] and [`probe`]: the commands.
 
 mod args;
 mod atmosphere;
 mod error;
+mod fog;
 mod interrupt;
 mod light;
 mod moment;
@@ -43,6 +44,7 @@ fn run(cli: &Cli) -> Result<(), CliError> {
     interrupt::install()?;
     match &cli.command {
         Command::Sky(args) => sky::run(args),
+        Command::Fog(args) => fog::run(args),
         Command::Probe(args) => probe::run(args),
         Command::Atmospheres(args) => atmosphere::list(args),
     }

@@ -82,6 +82,22 @@ fn pair(text: &str) -> Option<(f64, f64)> {
     Some((number(a).ok()?, number(b).ok()?))
 }
 
+/// `X,Y`.
+pub fn two_numbers(text: &str) -> Result<(f64, f64), String> {
+    pair(text).ok_or_else(|| "must be two numbers: 311.2,254.9".to_owned())
+}
+
+/// `R,G,B`, each 0 or above.
+pub fn three_numbers(text: &str) -> Result<[f64; 3], String> {
+    let right = || "must be three numbers, 0 or above: 0.7,0.8,0.9".to_owned();
+    let numbers: Vec<f64> = text
+        .split(',')
+        .map(not_negative)
+        .collect::<Result<_, _>>()
+        .map_err(|_| right())?;
+    numbers.try_into().map_err(|_| right())
+}
+
 /// `LAT,LON` in degrees.
 pub fn lat_lon(text: &str) -> Result<LatLon, String> {
     let (latitude_deg, longitude_deg) = pair(text)

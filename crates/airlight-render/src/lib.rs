@@ -11,6 +11,7 @@
 //! - [`tone`]: from linear light to what a display shows: exposure, tone curves, dither.
 //! - [`output`]: picture files: OpenEXR (RGB and spectral), Radiance HDR, PNG, JPEG.
 //! - [`input`]: pictures and depth maps read from files.
+//! - [`overlay`]: fog laid over a picture and its depth.
 //! - [`terminal`]: a small picture as coloured text.
 //! - [`sequence`]: many pictures: file names, time steps, taking up where an earlier run stopped.
 
@@ -18,6 +19,7 @@ pub mod error;
 pub mod frame;
 pub mod input;
 pub mod output;
+pub mod overlay;
 pub mod rows;
 pub mod sequence;
 pub mod terminal;

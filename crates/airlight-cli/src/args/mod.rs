@@ -2,12 +2,14 @@
 
 mod air;
 mod fog;
+mod overlay;
 mod picture;
 mod place;
 mod probe;
 
 pub use air::{AirArgs, ScatteringArg};
 pub use fog::FogArgs;
+pub use overlay::{DepthKindArg, HolesArg, ModelArg, OverlayArgs};
 pub use picture::{
     ColorSpaceArg, CompressionArg, PictureArgs, PrecisionArg, ProjectionArg, SunDiscArg, ToneArg,
 };
@@ -47,6 +49,8 @@ Examples:
 pub enum Command {
     /// Draw the sky: whole sphere, cube faces, fisheye or camera; as EXR, HDR, PNG or JPEG.
     Sky(Box<SkyArgs>),
+    /// Lay fog over a picture that exists, by its depth.
+    Fog(Box<OverlayArgs>),
     /// Tell the spectral radiance of the sky along given directions, and the light of sun and sky, in numbers.
     Probe(Box<ProbeArgs>),
     /// List the atmospheres that can be asked for by name, or tell what one is made of.

@@ -1,0 +1,270 @@
+//! `airlight fog`: fog laid over a picture that exists.
+
+use crate::args::{DepthKindArg, HolesArg, ModelArg, OverlayArgs};
+use crate::error::CliError;
+use crate::report::{self, bytes};
+use crate::{interrupt, parse};
+use airlight::axes;
+use airlight::fog::visibility::{Contrast, extinction_per_m};
+use airlight::fog::{Fog, Ground, Layer, Light, Matter, Profile, Scattering, Sun, legacy};
+use airlight::spectrum::Spectrum;
+use airlight_render::frame::{Intrinsics, PixelCentres};
+use airlight_render::input::{
+    DepthMap, DepthMeaning, DepthOptions, LightReference, Picture, SampleBits, Unknown, read_depth,
+    read_picture,
+};
+use airlight_render::output::{Metadata, PictureFormat, Written, exr, hdr, jpeg, png};
+use airlight_render::overlay::{Ambient, Channels, Overlay, Veil, estimate_ambient};
+use airlight_render::tone::ToneMapper;
+use airlight_render::{Control, RowSource};
+use std::f32::consts::PI;
+
+/// Runs the command.
+///
+/// # Errors
+/// [`CliError`]: what was wrong with the options or the files.
+pub fn run(args: &OverlayArgs) -> Result<(), CliError> {
+    let format = PictureFormat::from_path(&args.output)?;
+    if args.layers && format != PictureFormat::Exr {
+        return Err(CliError::usage(
+            "--layers needs an OpenEXR file to go to: give --output a name that ends in .exr",
+        ));
+    }
+    let depth_file = args.depth.as_ref().unwrap_or(&args.colour);
+    for input in [&args.colour, depth_file] {
+        if same_file(input, &args.output) {
+            return Err(CliError::usage(format!(
+                "`{}` would be written over: give --output another name",
+                input.display()
+            )));
+        }
+    }
+    if args.sun_elevation.is_some_and(|elevation| elevation <= 0.0) {
+        return Err(CliError::usage(
+            "the sun must stand above the horizon to shine on fog: give --sun-elevation above 0, or leave it out for \
+             fog in even light",
+        ));
+    }
+    let options = depth_options(args)?;
+    let picture = read_picture(&args.colour, None)?;
+    if (format == PictureFormat::Exr || format == PictureFormat::Hdr)
+        != (picture.reference == LightReference::Scene)
+    {
+        return Err(CliError::usage(format!(
+            "`{}` holds {}, and so must the output: give --output a name that ends in {}",
+            args.colour.display(),
+            match picture.reference {
+                LightReference::Scene => "linear light",
+                LightReference::Display => "values for a display",
+            },
+            match picture.reference {
+                LightReference::Scene => ".exr or .hdr",
+                LightReference::Display => ".png or .jpg",
+            }
+        )));
+    }
+    let depth = read_depth(depth_file, &options)?;
+    depth.check_against(&picture)?;
+    let camera = camera(args, &picture)?;
+    let (ambient, how) = ambient(args, &picture, &depth)?;
+    let veil = veil(args, ambient)?;
+    let channels = match args.layers {
+        true => Channels::Layers,
+        false => Channels::Picture,
+    };
+    let overlay = Overlay::new(
+        &picture,
+        &depth,
+        &camera,
+        args.eye_height_m,
+        &veil,
+        channels,
+    )?;
+    let writing = interrupt::start_writing()?;
+    let written = write(args, format, &picture, &overlay)?;
+    drop(writing);
+    if args.quiet {
+        return Ok(());
+    }
+    report::print(&format!(
+        "{}: {} x {}, {}\n  visibility    {} m ({} of contrast)\n  ambient       {:.4} {:.4} {:.4} ({how})\n  \
+         depth         {} pixels unknown, {} infinitely far\n",
+        args.output.display(),
+        picture.size.width(),
+        picture.size.height(),
+        bytes(written.bytes),
+        report::short(args.visibility_m),
+        args.contrast,
+        ambient[0],
+        ambient[1],
+        ambient[2],
+        depth.holes,
+        depth.infinite,
+    ))
+}
+
+/// Whether two paths lead to one file that is there.
+fn same_file(a: &std::path::Path, b: &std::path::Path) -> bool {
+    match (a.canonicalize(), b.canonicalize()) {
+        (Ok(a), Ok(b)) => a == b,
+        _ => false,
+    }
+}
+
+fn depth_options(args: &OverlayArgs) -> Result<DepthOptions, CliError> {
+    let meaning = match args.depth_kind {
+        DepthKindArg::Z => DepthMeaning::ZDepth,
+        DepthKindArg::Ray => DepthMeaning::RayDistance,
+        DepthKindArg::Inverse => DepthMeaning::Inverse,
+        DepthKindArg::Disparity => match (args.focal_px, args.baseline_m) {
+            (Some(focal_length_px), Some(baseline_m)) => DepthMeaning::Disparity {
+                focal_length_px,
+                baseline_m,
+                offset_px: args.disparity_offset_px,
+            },
+            _ => {
+                return Err(CliError::usage(
+                    "--depth-kind disparity needs --focal-px and --baseline-m",
+                ));
+            }
+        },
+    };
+    Ok(DepthOptions {
+        meaning,
+        scale: args.depth_scale,
+        channel: args.depth_channel.clone(),
+        unknown: match args.holes {
+            HolesArg::Fill => Unknown::Fill,
+            HolesArg::Far => Unknown::Far,
+            HolesArg::Clear => Unknown::Clear,
+        },
+        far_from_m: args.far_m,
+        negative_is_unknown: false,
+    })
+}
+
+fn camera(args: &OverlayArgs, picture: &Picture) -> Result<Intrinsics, CliError> {
+    let size = picture.size;
+    let camera = match args.focal_px {
+        Some(focal) => {
+            let middle = |n: u32| 0.5 * f64::from(n) - 0.5;
+            let principal = args
+                .principal_point
+                .unwrap_or((middle(size.width()), middle(size.height())));
+            Intrinsics::new(size, (focal, focal), principal, PixelCentres::Whole)?
+        }
+        None => Intrinsics::from_horizontal_fov(size, args.fov.unwrap_or(60.0))?,
+    };
+    Ok(camera.looking(args.camera_azimuth, args.camera_elevation, args.camera_roll)?)
+}
+
+/// The ambient light, and where it is from.
+fn ambient(
+    args: &OverlayArgs,
+    picture: &Picture,
+    depth: &DepthMap,
+) -> Result<(Spectrum<3>, &'static str), CliError> {
+    if args.ambient != "auto" {
+        let given = parse::three_numbers(&args.ambient)
+            .map_err(|right| CliError::usage(format!("--ambient {right}, or auto")))?;
+        return Ok((Spectrum(given.map(|v| v as f32)), "as given"));
+    }
+    let (colour, how) = estimate_ambient(picture, depth);
+    let how = match how {
+        Ambient::Sky => "from the sky of the picture",
+        Ambient::DarkChannel => "from the picture's dark channel",
+    };
+    Ok((colour, how))
+}
+
+fn veil(args: &OverlayArgs, ambient: Spectrum<3>) -> Result<Veil, CliError> {
+    let contrast = match args.contrast.as_str() {
+        "0.02" => Contrast::TwoPercent,
+        _ => Contrast::FivePercent,
+    };
+    let extinction = extinction_per_m(args.visibility_m, contrast);
+    let profile = match args.model {
+        ModelArg::Uniform => Profile::Uniform,
+        ModelArg::Height => Profile::Exponential {
+            reference_height_m: 0.0,
+            scale_height_m: args.scale_height_m,
+        },
+        ModelArg::Clamped => Profile::Clamped {
+            base_height_m: args.base_height_m,
+            scale_height_m: args.scale_height_m,
+        },
+        ModelArg::Slab => Profile::Slab {
+            top_height_m: args.top_m,
+        },
+        ModelArg::Exp2 => {
+            let density =
+                legacy::exponential_squared_density_per_m(args.visibility_m, contrast.value());
+            return Ok(Veil::ExponentialSquared(density, ambient));
+        }
+        ModelArg::Linear => return Ok(Veil::Linear(0.0, args.visibility_m, ambient)),
+        ModelArg::FoggyCityscapes => return Ok(Veil::Encoded(extinction, ambient)),
+    };
+    let sun = args.sun_elevation.map(|elevation| Sun {
+        direction: axes::direction(args.sun_azimuth, elevation),
+        irradiance: ambient * (PI * args.sun_strength as f32),
+    });
+    let light = Light {
+        sun,
+        ambient,
+        ground_albedo: Spectrum::splat(args.ground_albedo as f32),
+    };
+    let droplets = airlight::fog::droplets::Droplets::from(args.droplets);
+    let matter = Matter {
+        extinction_per_m: Spectrum::splat(extinction as f32),
+        single_scattering_albedo: Spectrum::ONE,
+        phase: droplets.phase(),
+    };
+    let layers = [Layer { profile, matter }];
+    let fog = Fog::new(&layers, Ground::FLAT, light, Scattering::Multiple)
+        .map_err(|error| CliError::usage(error.to_string()))?;
+    Ok(Veil::Fog(Box::new(fog)))
+}
+
+fn write(
+    args: &OverlayArgs,
+    format: PictureFormat,
+    picture: &Picture,
+    overlay: &Overlay<'_>,
+) -> Result<Written, CliError> {
+    let control = Control::cancelled_by(&interrupt::STOP);
+    let metadata = Metadata::default();
+    let (path, size) = (&args.output, picture.size);
+    let tone = ToneMapper::as_displayed();
+    Ok(match format {
+        PictureFormat::Exr => {
+            let names: &[&str] = match overlay.channels() {
+                3 => &["R", "G", "B"],
+                4 => &["R", "G", "B", "A"],
+                _ => &Channels::LAYER_NAMES,
+            };
+            let options = exr::ExrOptions {
+                sample: match (picture.bits, args.layers) {
+                    (SampleBits::Half, false) => exr::ExrSample::Half,
+                    _ => exr::ExrSample::Float,
+                },
+                ..Default::default()
+            };
+            exr::write(path, size, names, overlay, &options, &metadata, control)?
+        }
+        PictureFormat::Hdr => hdr::write(path, size, overlay, &metadata, control)?,
+        PictureFormat::Png => {
+            let options = png::PngOptions {
+                depth: match picture.bits {
+                    SampleBits::U8 => png::PngDepth::Eight,
+                    _ => png::PngDepth::Sixteen,
+                },
+                ..Default::default()
+            };
+            png::write(path, size, overlay, &tone, &options, &metadata, control)?
+        }
+        PictureFormat::Jpeg => {
+            let options = jpeg::JpegOptions::default();
+            jpeg::write(path, size, overlay, &tone, &options, &metadata, control)?
+        }
+    })
+}

@@ -1,0 +1,110 @@
+use super::*;
+use crate::Size;
+use crate::input::{LightReference, SampleBits};
+use airlight::fog::{Ground, Layer, Light, Matter, Profile, Scattering};
+use airlight::optics::PhaseFunction;
+
+fn picture(width: u32, height: u32, rgb: impl Fn(u32, u32) -> [f32; 3]) -> Picture {
+    let size = Size::new(width, height).unwrap();
+    let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+    Picture {
+        size,
+        rgb: pixels.flat_map(|(x, y)| rgb(x, y)).collect(),
+        alpha: None,
+        reference: LightReference::Display,
+        bits: SampleBits::U8,
+        chromaticities: None,
+        profile_ignored: false,
+        repaired_samples: 0,
+    }
+}
+
+fn depth(width: u32, height: u32, metres: impl Fn(u32, u32) -> f32) -> DepthMap {
+    let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+    DepthMap {
+        size: Size::new(width, height).unwrap(),
+        metres: pixels.map(|(x, y)| metres(x, y)).collect(),
+        kind: DepthKind::Z,
+        bits: SampleBits::Float,
+        holes: 0,
+        infinite: 0,
+    }
+}
+
+fn uniform(extinction: f32, ambient: [f32; 3]) -> Veil {
+    let matter = Matter {
+        extinction_per_m: Spectrum::splat(extinction),
+        single_scattering_albedo: Spectrum::ONE,
+        phase: PhaseFunction::Isotropic,
+    };
+    let light = Light {
+        sun: None,
+        ambient: Spectrum(ambient),
+        ground_albedo: Spectrum::ZERO,
+    };
+    let layers = [Layer {
+        profile: Profile::Uniform,
+        matter,
+    }];
+    let fog = Fog::new(&layers, Ground::FLAT, light, Scattering::Single).unwrap();
+    Veil::Fog(Box::new(fog))
+}
+
+#[test]
+fn depth_along_the_axis_becomes_distance_along_the_ray() {
+    let (picture, depth) = (
+        picture(9, 5, |_, _| [0.2, 0.4, 0.6]),
+        depth(9, 5, |_, _| 10.0),
+    );
+    let camera = Intrinsics::from_horizontal_fov(picture.size, 90.0).unwrap();
+    let veil = uniform(0.05, [0.8, 0.8, 0.9]);
+    let overlay = Overlay::new(&picture, &depth, &camera, 1.6, &veil, Channels::Layers).unwrap();
+    let mut row = vec![0.0; 9 * overlay.channels()];
+    overlay.fill_row(2, &mut row);
+    for i in 0..9u32 {
+        let pixel = &row[10 * i as usize..][..10];
+        let distance = 10.0 * camera.ray_length_per_z(i, 2);
+        let t = (-0.05 * distance).exp();
+        assert!((f64::from(pixel[9]) - distance).abs() < 1e-4);
+        assert!((f64::from(pixel[3]) - t).abs() < 1e-5);
+        assert!((f64::from(pixel[0]) - (0.2 * t + 0.8 * (1.0 - t))).abs() < 1e-5);
+        assert!((f64::from(pixel[8]) - 0.9 * (1.0 - t)).abs() < 1e-5);
+    }
+}
+
+#[test]
+fn sky_in_thick_fog_is_the_ambient_and_encoded_blending_is_another_thing() {
+    let picture = picture(4, 4, |_, _| [0.1, 0.1, 0.1]);
+    let depth = depth(4, 4, |_, y| if y < 2 { f32::INFINITY } else { 20.0 });
+    let camera = Intrinsics::from_horizontal_fov(picture.size, 60.0).unwrap();
+    let colour = Spectrum([0.8; 3]);
+    let light = uniform(0.03, colour.0);
+    let encoded = Veil::Encoded(0.03, colour);
+    let shown = |veil: &Veil, y: u32| {
+        let overlay =
+            Overlay::new(&picture, &depth, &camera, 1.6, veil, Channels::Picture).unwrap();
+        let mut row = vec![0.0; 12];
+        overlay.fill_row(y, &mut row);
+        row[4]
+    };
+    assert!((shown(&light, 0) - 0.8).abs() < 1e-6 && (shown(&encoded, 0) - 0.8).abs() < 1e-5);
+    // Blending encoded values keeps dark things darker.
+    assert!(shown(&encoded, 3) < shown(&light, 3) - 0.03);
+}
+
+#[test]
+fn the_ambient_is_that_of_the_sky_or_of_the_brightest_dark_patch() {
+    let bright = |x: u32, y: u32| match (x, y) {
+        (_, 0..=9) => [0.5, 0.6, 0.8],
+        (20..=39, 20..=39) => [0.9, 0.8, 0.7],
+        _ => [0.1, 0.05, 0.02],
+    };
+    let picture = picture(60, 60, bright);
+    let sky = depth(60, 60, |_, y| if y < 10 { f32::INFINITY } else { 5.0 });
+    let (colour, how) = estimate_ambient(&picture, &sky);
+    assert_eq!(how, Ambient::Sky);
+    assert!((colour[2] - 0.8).abs() < 1e-6);
+    let (colour, how) = estimate_ambient(&picture, &depth(60, 60, |_, _| 5.0));
+    assert_eq!(how, Ambient::DarkChannel);
+    assert!((colour[0] - 0.9).abs() < 1e-6, "{colour:?}");
+}
