@@ -12,7 +12,6 @@
 //! - [`path`]: [`path::PathOptics`] and its law of composition.
 //! - [`fog`]: closed forms of fog, and lamps in it.
 //! - [`sky`]: the solver for a spherical, multiply scattering atmosphere.
-//! - [`fog`]: closed forms for fog and haze layers.
 //! - [`outdoors`]: one lighting of sky, air, fog and ground.
 
 pub mod axes;
