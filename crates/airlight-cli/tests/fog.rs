@@ -144,7 +144,7 @@ fn files_that_are_not_what_they_should_be_are_refused() {
 fn npy(path: &Path, of: impl Fn(usize) -> f32) {
     let mut head = b"\x93NUMPY\x01\x00".to_vec();
     let mut text = "{'descr': '<f4', 'fortran_order': False, 'shape': (30, 40), }".to_owned();
-    while (10 + text.len() + 1) % 64 != 0 {
+    while !(10 + text.len() + 1).is_multiple_of(64) {
         text.push(' ');
     }
     text.push('\n');
