@@ -290,3 +290,40 @@ fn thick_fog_takes_its_own_colour() {
         }
     }
 }
+
+#[test]
+#[ignore = "prints the times that the book states"]
+fn times_of_foggy_sky() {
+    let sky = sky("average", 25.0, 0.0);
+    let view = sky.view(2.0, direction(180.0, 25.0));
+    for (what, ground) in [
+        ("flat", Ground::FLAT),
+        ("round", FoggySky::<3>::round_ground(&view)),
+    ] {
+        let begun = std::time::Instant::now();
+        let foggy = FoggySky::<3>::new(
+            &view,
+            Channels::Rgb(RgbSpace::Srgb),
+            &[layer(300.0, thinning(50.0))],
+            ground,
+            Scattering::Single,
+        )
+        .unwrap();
+        let built = begun.elapsed();
+        let mut fastest = f64::INFINITY;
+        let mut sum = 0.0;
+        for k in 0..40 {
+            let begun = std::time::Instant::now();
+            for i in 0..2000 {
+                let towards = direction(f64::from(i) * 0.18, f64::from(k) * 2.0 - 20.0);
+                sum += foggy.sky(towards)[0];
+            }
+            fastest = fastest.min(begun.elapsed().as_secs_f64() / 2000.0);
+        }
+        println!(
+            "{what}: built in {} ms, {:.2} us a direction ({sum})",
+            built.as_millis(),
+            1e6 * fastest
+        );
+    }
+}
