@@ -1,7 +1,7 @@
 //! What shines on a fog, and the ground under it.
 
 use super::line::Line;
-use super::matter::FogError;
+use super::matter::{FogError, check_light};
 use crate::spectrum::Spectrum;
 use glam::DVec3;
 
@@ -23,13 +23,6 @@ pub struct Light<const N: usize> {
     pub ambient: Spectrum<N>,
     /// What the ground sends back of the light on it, 0 to 1; matters with [`Scattering::Multiple`] only.
     pub ground_albedo: Spectrum<N>,
-}
-
-impl<const N: usize> Light<N> {
-    /// The same light without the sun.
-    pub fn without_sun(self) -> Self {
-        Self { sun: None, ..self }
-    }
 }
 
 /// The ground under a fog.
@@ -81,8 +74,7 @@ impl Ground {
         if self.is_flat() {
             return line.climb <= 0.0;
         }
-        let lowest = (-0.5 * line.climb / line.bend_per_m).max(0.0);
-        line.climb < 0.0 && line.height_at(lowest) < self.height_m
+        line.climb < 0.0 && line.lowest_height_m() < self.height_m
     }
 
     pub(super) fn validate(&self) -> Result<(), FogError> {
@@ -103,16 +95,8 @@ impl Ground {
 
 impl<const N: usize> Light<N> {
     pub(super) fn validate(&self) -> Result<(), FogError> {
-        let check = |what, light: Spectrum<N>| match light
-            .0
-            .iter()
-            .find(|v| !(**v >= 0.0 && v.is_finite()))
-        {
-            Some(&got) => Err(FogError::Light { what, got }),
-            None => Ok(()),
-        };
-        check("ambient light", self.ambient)?;
-        check("the albedo of the ground", self.ground_albedo)?;
+        check_light("ambient light", self.ambient)?;
+        check_light("the albedo of the ground", self.ground_albedo)?;
         if let Some(&got) = self.ground_albedo.0.iter().find(|&&albedo| albedo > 1.0) {
             return Err(FogError::Number {
                 what: "the albedo of the ground",
@@ -121,7 +105,7 @@ impl<const N: usize> Light<N> {
             });
         }
         if let Some(sun) = &self.sun {
-            check("the sun's irradiance", sun.irradiance)?;
+            check_light("the sun's irradiance", sun.irradiance)?;
             let length = sun.direction.length();
             if (length - 1.0).abs() > 1e-6 || length.is_nan() {
                 return Err(FogError::Number {

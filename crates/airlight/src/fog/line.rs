@@ -76,13 +76,19 @@ impl Line {
         }
     }
 
-    /// The same part walked from its far end, which must be at a finite distance.
+    /// The distance of its lowest point, where that lies between its ends.
     #[inline]
-    pub fn reversed(&self) -> Self {
-        Self {
-            height_m: self.height_at(self.length_m),
-            climb: -self.climb_at(self.length_m),
-            ..*self
+    pub fn dip_m(&self) -> Option<f64> {
+        let dip = -0.5 * self.climb / self.bend_per_m;
+        (dip > 0.0 && dip < self.length_m).then_some(dip)
+    }
+
+    /// The lowest height it reaches, m; minus infinity where it goes down without end.
+    #[inline]
+    pub fn lowest_height_m(&self) -> f64 {
+        match self.dip_m() {
+            Some(dip) => self.height_at(dip),
+            None => self.height_m.min(self.end_height_m()),
         }
     }
 
@@ -157,12 +163,11 @@ mod tests {
     }
 
     #[test]
-    fn a_reversed_line_is_the_same_line() {
+    fn a_part_of_a_line_and_its_lowest_point_lie_on_it() {
         let line = Line::new(10.0, -1e-3, 50e3, 6.371e6);
-        let back = line.reversed();
-        for s in [0.0, 1e3, 2.2e4, 5e4] {
-            assert!((line.height_at(s) - back.height_at(50e3 - s)).abs() < 1e-9);
-        }
+        assert!((line.dip_m().unwrap() / 6371.0 - 1.0).abs() < 1e-5);
+        assert!((line.lowest_height_m() - line.height_at(6371.0)).abs() < 1e-6);
+        assert_eq!(Line::flat(5.0, -0.1, 20.0).lowest_height_m(), 3.0);
         let part = line.part(1e3, 2e4);
         assert!((part.height_at(500.0) - line.height_at(1.5e3)).abs() < 1e-9);
     }

@@ -71,6 +71,20 @@ pub enum FogError {
     Profile(#[from] ProfileError),
 }
 
+/// Light must be finite and not below 0 in every lane.
+///
+/// # Errors
+/// [`FogError::Light`] for the first lane that is not.
+pub(super) fn check_light<const N: usize>(
+    what: &'static str,
+    light: Spectrum<N>,
+) -> Result<(), FogError> {
+    match light.0.iter().find(|v| !(v.is_finite() && **v >= 0.0)) {
+        None => Ok(()),
+        Some(&got) => Err(FogError::Light { what, got }),
+    }
+}
+
 impl<const N: usize> Matter<N> {
     /// Checks every number.
     ///

@@ -278,23 +278,20 @@ impl<const N: usize> Fog<N> {
         let mut smooth = field.scattered(line, &towards.weights, of_endless);
         let smooth_depth = self.depth_of(line, &reduced);
         let (mut peaked, mut peaked_depth) = (Spectrum::ZERO, smooth_depth);
-        if towards.in_peak {
-            let (sunlit, even) = self
-                .once(reduced, |s| s.smooth_towards_eye(cos_sun))
-                .along(line, &endless);
-            smooth += even * self.light.ambient + sunlit * self.sunlight();
-            let (sunlit, _) = self
-                .once(residual, |s| {
-                    s.towards_eye(cos_sun) - s.smooth_towards_eye(cos_sun)
-                })
-                .along(line, &|_| Spectrum::ZERO);
+        // In the peak the residual is dimmed in its own way; elsewhere the whole phase function is dimmed alike.
+        let in_peak = towards.in_peak;
+        let (sunlit, even) = self
+            .once(reduced, |s| match in_peak {
+                true => s.smooth_towards_eye(cos_sun),
+                false => s.towards_eye(cos_sun),
+            })
+            .along(line, &endless);
+        smooth += even * self.light.ambient + sunlit * self.sunlight();
+        if in_peak {
+            let beyond = |s: &Stratum<N>| s.towards_eye(cos_sun) - s.smooth_towards_eye(cos_sun);
+            let (sunlit, _) = self.once(residual, beyond).along(line, &|_| Spectrum::ZERO);
             peaked = sunlit * self.sunlight();
             peaked_depth = self.depth_of(line, &residual);
-        } else {
-            let (sunlit, even) = self
-                .once(reduced, |s| s.towards_eye(cos_sun))
-                .along(line, &endless);
-            smooth += even * self.light.ambient + sunlit * self.sunlight();
         }
         Part {
             smooth,

@@ -5,8 +5,7 @@ use super::line::Line;
 /// Calls `visit` with the parts into which the rising `levels_m` cut a line, from its start on, until it says `false`.
 /// A line over round ground is also cut at its lowest point, so that each part only climbs or only falls.
 pub(super) fn parts(line: &Line, levels_m: &[f64], mut visit: impl FnMut(&Line) -> bool) {
-    let lowest = -0.5 * line.climb / line.bend_per_m;
-    if lowest > 0.0 && lowest < line.length_m {
+    if let Some(lowest) = line.dip_m() {
         let falling = line.part(0.0, lowest);
         if monotone(&falling, false, levels_m, &mut visit) {
             monotone(
@@ -17,11 +16,8 @@ pub(super) fn parts(line: &Line, levels_m: &[f64], mut visit: impl FnMut(&Line) 
             );
         }
     } else {
-        let rises = if lowest > 0.0 {
-            false
-        } else {
-            line.climb > 0.0 || line.bend_per_m > 0.0
-        };
+        // Over round ground a level line climbs from its start on.
+        let rises = line.climb > 0.0 || (line.climb == 0.0 && line.bend_per_m > 0.0);
         monotone(line, rises, levels_m, &mut visit);
     }
 }

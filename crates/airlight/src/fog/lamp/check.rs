@@ -1,7 +1,8 @@
 //! What is asked of the numbers of a lamp.
 
+pub(super) use crate::fog::matter::check_light as light;
+
 use crate::fog::matter::FogError;
-use crate::spectrum::Spectrum;
 use glam::DVec3;
 
 /// A position is finite.
@@ -29,16 +30,5 @@ pub(super) fn radius(radius_m: f64) -> Result<(), FogError> {
             got: radius_m,
             right: "finite and above 0",
         }),
-    }
-}
-
-/// Light is not negative.
-pub(super) fn light<const N: usize>(
-    what: &'static str,
-    light: Spectrum<N>,
-) -> Result<(), FogError> {
-    match light.0.iter().find(|v| !(v.is_finite() && **v >= 0.0)) {
-        None => Ok(()),
-        Some(&got) => Err(FogError::Light { what, got }),
     }
 }

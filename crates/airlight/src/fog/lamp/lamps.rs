@@ -4,7 +4,6 @@ use super::fast::airlight_isotropic_lanes;
 use super::march::{Haze, Ray};
 use super::murk::{Murk, Sight};
 use super::nodes::Nodes;
-use super::panels::lowest;
 use super::passage::Passage;
 use super::{Lamp, check};
 use crate::fog::lanes::Lanes;
@@ -150,7 +149,7 @@ fn bound<const N: usize>(ray: &Ray<N>, haze: &Haze<N>) -> f32 {
             light *= depth.exp_neg();
             1.0
         }
-        _ => murk.profile.density(lowest(&ray.line)),
+        _ => murk.profile.density(ray.line.lowest_height_m()),
     };
     // 4: twice for a ball's closeness, twice for its line moved out to its radius.
     let glow = 4.0 * density * ray.passage.angle() / ray.passage.nearest_m;

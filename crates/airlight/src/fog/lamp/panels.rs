@@ -39,13 +39,17 @@ impl Cuts {
                 scale_height_m,
             } => {
                 cuts.add(line.below(base_height_m));
-                cuts.stratify(line, lowest(line).max(base_height_m), scale_height_m);
+                cuts.stratify(
+                    line,
+                    line.lowest_height_m().max(base_height_m),
+                    scale_height_m,
+                );
             }
             Profile::Exponential {
                 reference_height_m,
                 scale_height_m,
             } => {
-                let mut floor = lowest(line);
+                let mut floor = line.lowest_height_m();
                 if line.climb < 0.0 {
                     // The fog in which even a steady descent has left DARK behind it.
                     let density = profile.density(line.height_m)
@@ -107,15 +111,6 @@ impl Cuts {
     }
 }
 
-/// The lowest height of a line; minus infinity where it goes down without end.
-pub(super) fn lowest(line: &Line) -> f64 {
-    let dip = -0.5 * line.climb / line.bend_per_m;
-    match dip > 0.0 && dip < line.length_m {
-        true => line.height_at(dip),
-        false => line.height_m.min(line.end_height_m()),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -167,7 +162,7 @@ mod tests {
     #[test]
     fn a_line_over_round_ground_is_lowest_where_it_dips() {
         let line = Line::new(100.0, -1e-3, 1e5, 6.371e6);
-        let low = lowest(&line);
+        let low = line.lowest_height_m();
         assert!(low < 100.0 && low > 80.0);
         assert!(low <= line.height_at(6371.0) + 1e-9);
     }
