@@ -24,6 +24,7 @@ impl Illuminances {
             sky_horizontal_lx: luminance(&table.irradiance(DVec3::Y)),
         }
     }
+
     /// The same in fog that lets a part of the sun's disc through, under a sky that sheds `sky_horizontal_lx`.
     pub fn through(self, transmittance: f64, sky_horizontal_lx: f64) -> Self {
         Self {

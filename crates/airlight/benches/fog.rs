@@ -3,9 +3,7 @@
 //! `cargo bench -p airlight --bench fog`
 
 use airlight::axes::direction;
-use airlight::fog::{
-    Fog, Ground, Layer, Light, Matter, Profile, Scattering, Sun, droplets::Droplets,
-};
+use airlight::fog::{Fog, Ground, Layer, Light, Profile, Scattering, Sun, droplets::Droplets};
 use airlight::spectrum::Spectrum;
 use divan::{Bencher, black_box};
 use glam::DVec3;
@@ -36,11 +34,7 @@ fn fog<const N: usize>(names: &[&str], ground: Ground, scattering: Scattering) -
         .iter()
         .map(|name| Layer {
             profile: profile(name),
-            matter: Matter {
-                extinction_per_m: Spectrum::splat(0.02),
-                single_scattering_albedo: Spectrum::ONE,
-                phase: Droplets::Radiation.phase(),
-            },
+            matter: Droplets::Radiation.matter(0.02),
         })
         .collect();
     let light = Light {

@@ -4,7 +4,7 @@
 
 use airlight::axes::direction;
 use airlight::fog::{
-    Fog, Ground, Layer, Light, Matter, Profile, Scattering, Sun, approximation, droplets::Droplets,
+    Fog, Ground, Layer, Light, Profile, Scattering, Sun, approximation, droplets::Droplets,
 };
 use airlight::spectrum::Spectrum;
 
@@ -88,16 +88,12 @@ fn sun_undimmed() {
         print!("{visibility:>14}");
         for elevation in suns {
             let path = |scattering| {
-                let layer = Layer {
+                let layer: Layer<1> = Layer {
                     profile: Profile::Exponential {
                         reference_height_m: 0.0,
                         scale_height_m: 50.0,
                     },
-                    matter: Matter {
-                        extinction_per_m: Spectrum([(3.0 / visibility) as f32]),
-                        single_scattering_albedo: Spectrum::ONE,
-                        phase: Droplets::Radiation.phase(),
-                    },
+                    matter: Droplets::Radiation.matter(3.0 / visibility),
                 };
                 let light = Light {
                     sun: Some(Sun {

@@ -4,61 +4,99 @@
 use airlight::axes::direction;
 use airlight::fog::{Fog, Ground, Layer, Light, Matter, Profile, Scattering, Sun, droplets};
 use airlight::optics::PhaseFunction;
-use airlight::path::PathOptics;
 use airlight::spectrum::Spectrum;
+use glam::DVec3;
 
-/// The lines of a table without its head, split at the commas.
+/// The lines of a table without remarks and head, split at the commas.
 fn rows(table: &'static str) -> impl Iterator<Item = Vec<&'static str>> {
-    table.lines().skip(1).map(|line| line.split(',').collect())
+    let lines = table.lines().filter(|line| !line.starts_with('#')).skip(1);
+    lines.map(|line| line.split(',').collect())
 }
 
-/// One row: the fog, and the line of sight from the ground through all of it.
-fn whole_line(row: &[&str], scattering: Scattering) -> PathOptics<1> {
-    let number = |column: usize| row[column].parse::<f64>().unwrap();
-    let (g, omega, mut depth) = (number(1), number(2), number(3));
-    if row[0] == "expfog" {
-        // The path tracer's fog ends ten scale heights up; only its optical depth counts.
-        depth *= 1.0 - f64::exp(-10.0);
+/// The same where every column is a number.
+fn numbers<const N: usize>(table: &'static str) -> impl Iterator<Item = [f64; N]> {
+    rows(table).map(|row| std::array::from_fn(|column| row[column].parse().unwrap()))
+}
+
+const SLAB: Profile = Profile::Slab {
+    top_height_m: 100.0,
+};
+
+/// Fog 100 m high over flat ground.
+struct Scene {
+    profile: Profile,
+    /// Optical depth, vertical.
+    depth: f64,
+    single_scattering_albedo: f64,
+    phase: PhaseFunction,
+    /// A sun of unit irradiance in the north, or else an even sky of unit radiance.
+    sun_zenith_deg: Option<f64>,
+    ground_albedo: f64,
+}
+
+impl Scene {
+    fn fog(self, scattering: Scattering) -> Fog<1> {
+        let sun = self.sun_zenith_deg.map(|zenith| Sun {
+            direction: direction(0.0, 90.0 - zenith),
+            irradiance: Spectrum::ONE,
+        });
+        let light = Light {
+            sun,
+            ambient: Spectrum([if sun.is_some() { 0.0 } else { 1.0 }]),
+            ground_albedo: Spectrum([self.ground_albedo as f32]),
+        };
+        let matter = Matter {
+            extinction_per_m: Spectrum([(self.depth / 100.0) as f32]),
+            single_scattering_albedo: Spectrum([self.single_scattering_albedo as f32]),
+            phase: self.phase,
+        };
+        let profile = self.profile;
+        let layers = [Layer { profile, matter }];
+        Fog::new(&layers, Ground::FLAT, light, scattering).unwrap()
     }
-    let (sun_zenith, view_zenith, azimuth) = (number(4), number(5), number(6));
-    // A slab 100 m high, or an exponential fog of 100 m scale height.
-    let profile = match row[0] {
-        "slab" => Profile::Slab {
-            top_height_m: 100.0,
-        },
-        "expfog" => Profile::Exponential {
-            reference_height_m: 0.0,
-            scale_height_m: 100.0,
-        },
+}
+
+/// Path radiance up to the edge of a slab, of which the part `above` lies above the eye.
+fn to_the_edge(fog: &Fog<1>, above: f64, view: DVec3) -> f64 {
+    let height = 100.0 * (1.0 - above);
+    let length = match view.y < 0.0 {
+        true => height / -view.y,
+        false => f64::INFINITY,
+    };
+    f64::from(fog.along(height, view, length).path_radiance[0])
+}
+
+/// One row of Mitsuba's table: the line of sight from the ground through all of the fog.
+fn whole_line(row: &[&str], scattering: Scattering) -> f64 {
+    let number = |column: usize| row[column].parse::<f64>().unwrap();
+    let (profile, depth) = match row[0] {
+        "slab" => (SLAB, number(3)),
+        "expfog" => {
+            let profile = Profile::Exponential {
+                reference_height_m: 0.0,
+                scale_height_m: 100.0,
+            };
+            // The path tracer's fog ends ten scale heights up; only its optical depth counts.
+            (profile, number(3) * (1.0 - f64::exp(-10.0)))
+        }
         other => panic!("unknown case {other}"),
     };
-    let matter = Matter {
-        extinction_per_m: Spectrum([(depth / 100.0) as f32]),
-        single_scattering_albedo: Spectrum([omega as f32]),
-        phase: PhaseFunction::HenyeyGreenstein { g },
-    };
-    let light = Light {
-        sun: Some(Sun {
-            direction: direction(0.0, 90.0 - sun_zenith),
-            irradiance: Spectrum::ONE,
-        }),
-        ambient: Spectrum::ZERO,
-        ground_albedo: Spectrum::ZERO,
-    };
-    let fog = Fog::new(
-        &[Layer { profile, matter }],
-        Ground::FLAT,
-        light,
-        scattering,
-    )
-    .unwrap();
-    fog.along(0.0, direction(azimuth, 90.0 - view_zenith), f64::INFINITY)
+    let fog = Scene {
+        profile,
+        depth,
+        single_scattering_albedo: number(2),
+        phase: PhaseFunction::HenyeyGreenstein { g: number(1) },
+        sun_zenith_deg: Some(number(4)),
+        ground_albedo: 0.0,
+    }
+    .fog(scattering);
+    to_the_edge(&fog, 1.0, direction(number(6), 90.0 - number(5)))
 }
 
 #[test]
 fn single_scattering_matches_the_closed_form_and_mitsuba() {
     for row in rows(include_str!("data/mitsuba_fog_checks.csv")) {
-        let got = f64::from(whole_line(&row, Scattering::Single).path_radiance[0]);
+        let got = whole_line(&row, Scattering::Single);
         let number = |column: usize| row[column].parse::<f64>().unwrap();
         let (closed, mitsuba, error) = (number(7), number(8), number(9));
         assert!((got / closed - 1.0).abs() < 1e-6, "{row:?}: {got}");
@@ -78,51 +116,33 @@ struct Compared {
 
 /// `ours / theirs - 1` for every row of the table of slabs.
 fn slabs() -> Vec<Compared> {
-    let table = include_str!("data/fog_slabs_disort.csv");
-    let rows = table.lines().filter(|line| !line.starts_with('#')).skip(1);
-    rows.map(|line| {
-        let row: Vec<&str> = line.split(',').collect();
-        let number = |column: usize| row[column].parse::<f64>().unwrap();
-        let (omega, g, tau) = (number(0), number(1), number(2));
-        let sun_zenith = row[3].parse::<f64>().ok();
-        let (albedo, above) = (number(4), number(5));
-        let (zenith, azimuth) = (number(6), number(7));
-        let sun = sun_zenith.map(|zenith| Sun {
-            direction: direction(0.0, 90.0 - zenith),
-            irradiance: Spectrum::ONE,
-        });
-        let light = Light {
-            sun,
-            ambient: Spectrum([if sun.is_some() { 0.0 } else { 1.0 }]),
-            ground_albedo: Spectrum([albedo as f32]),
-        };
-        let matter = Matter {
-            extinction_per_m: Spectrum([(tau / 100.0) as f32]),
-            single_scattering_albedo: Spectrum([omega as f32]),
-            phase: PhaseFunction::HenyeyGreenstein { g },
-        };
-        let profile = Profile::Slab {
-            top_height_m: 100.0,
-        };
-        let layers = [Layer { profile, matter }];
-        let fog = Fog::new(&layers, Ground::FLAT, light, Scattering::Multiple).unwrap();
-        let height = 100.0 * (1.0 - above);
-        let view = direction(azimuth, 90.0 - zenith);
-        let length = match view.y < 0.0 {
-            true => height / -view.y,
-            false => f64::INFINITY,
-        };
-        let ours = fog.along(height, view, length).path_radiance[0];
-        let ground = fog.ground_irradiance().unwrap()[0];
-        Compared {
-            g,
-            tau,
-            from_sun_deg: sun.map(|sun| view.angle_between(sun.direction).to_degrees()),
-            scattered: f64::from(ours) / number(8) - 1.0,
-            irradiance: f64::from(ground) / number(9) - 1.0,
-        }
-    })
-    .collect()
+    rows(include_str!("data/fog_slabs_disort.csv"))
+        .map(|row| {
+            let number = |column: usize| row[column].parse::<f64>().unwrap();
+            let (g, tau) = (number(1), number(2));
+            // `sky` in place of an angle.
+            let sun_zenith_deg = row[3].parse().ok();
+            let fog = Scene {
+                profile: SLAB,
+                depth: tau,
+                single_scattering_albedo: number(0),
+                phase: PhaseFunction::HenyeyGreenstein { g },
+                sun_zenith_deg,
+                ground_albedo: number(4),
+            }
+            .fog(Scattering::Multiple);
+            let view = direction(number(7), 90.0 - number(6));
+            let sun = sun_zenith_deg.map(|zenith| direction(0.0, 90.0 - zenith));
+            let ground = fog.ground_irradiance().unwrap()[0];
+            Compared {
+                g,
+                tau,
+                from_sun_deg: sun.map(|sun| view.angle_between(sun).to_degrees()),
+                scattered: to_the_edge(&fog, number(5), view) / number(8) - 1.0,
+                irradiance: f64::from(ground) / number(9) - 1.0,
+            }
+        })
+        .collect()
 }
 
 /// Median, 90th percentile and worst of the errors without their signs, in percent.
@@ -202,7 +222,7 @@ fn light_scattered_many_times_matches_the_slabs() {
 #[test]
 fn light_scattered_many_times_matches_path_tracing() {
     for row in rows(include_str!("data/mitsuba_fog_checks.csv")) {
-        let got = f64::from(whole_line(&row, Scattering::Multiple).path_radiance[0]);
+        let got = whole_line(&row, Scattering::Multiple);
         let number = |column: usize| row[column].parse::<f64>().unwrap();
         let (mitsuba, error) = (number(11), number(12));
         println!(
@@ -216,7 +236,7 @@ fn light_scattered_many_times_matches_path_tracing() {
         );
     }
     for row in rows(include_str!("data/disort_vs_mitsuba.csv")) {
-        let got = f64::from(whole_line(&row, Scattering::Multiple).path_radiance[0]);
+        let got = whole_line(&row, Scattering::Multiple);
         let disort: f64 = row[7].parse().unwrap();
         assert!((got / disort - 1.0).abs() < 0.01, "{row:?}: {got}");
     }
@@ -226,40 +246,25 @@ fn light_scattered_many_times_matches_path_tracing() {
 /// along the horizon.
 #[test]
 fn level_lines_err_as_stated() {
-    let table = include_str!("data/fog_level_disort.csv");
     let mut errors = [Vec::new(), Vec::new()];
-    for line in table.lines().filter(|line| !line.starts_with('#')).skip(1) {
-        let row: Vec<f64> = line.split(',').map(|v| v.parse().unwrap()).collect();
-        let &[g, tau, sun_zenith, zenith, azimuth, length, scattered] = &row[..] else {
-            panic!("seven columns: {line}");
-        };
-        let light = Light {
-            sun: Some(Sun {
-                direction: direction(0.0, 90.0 - sun_zenith),
-                irradiance: Spectrum::ONE,
-            }),
-            ambient: Spectrum::ZERO,
-            ground_albedo: Spectrum([0.2]),
-        };
-        let matter = Matter {
-            extinction_per_m: Spectrum([(tau / 100.0) as f32]),
-            single_scattering_albedo: Spectrum([0.999999]),
+    for row in numbers::<7>(include_str!("data/fog_level_disort.csv")) {
+        let [g, tau, sun_zenith, zenith, azimuth, length, scattered] = row;
+        let fog = Scene {
+            profile: SLAB,
+            depth: tau,
+            single_scattering_albedo: 0.999999,
             phase: PhaseFunction::HenyeyGreenstein { g },
+            sun_zenith_deg: Some(sun_zenith),
+            ground_albedo: 0.2,
+        }
+        .fog(Scattering::Multiple);
+        let length = match length > 1e8 {
+            true => f64::INFINITY,
+            false => length / tau * 100.0,
         };
-        let profile = Profile::Slab {
-            top_height_m: 100.0,
-        };
-        let layers = [Layer { profile, matter }];
-        let fog = Fog::new(&layers, Ground::FLAT, light, Scattering::Multiple).unwrap();
-        let length = if length > 1e8 {
-            f64::INFINITY
-        } else {
-            length / tau * 100.0
-        };
-        let path = fog
-            .along(0.0, direction(azimuth, 90.0 - zenith), length)
-            .path_radiance[0];
-        errors[usize::from(g > 0.8)].push(f64::from(path) / scattered - 1.0);
+        let view = direction(azimuth, 90.0 - zenith);
+        let path = f64::from(fog.along(0.0, view, length).path_radiance[0]);
+        errors[usize::from(g > 0.8)].push(path / scattered - 1.0);
     }
     println!("nearly level lines, percent: median, 90 %, worst");
     for ((name, limits), errors) in [("g 0.7", [1.0, 3.0, 4.0]), ("g 0.85", [5.0, 12.0, 25.0])]
@@ -277,59 +282,32 @@ fn level_lines_err_as_stated() {
 /// The phase function of real fog has a far sharper peak than Henyey-Greenstein's.
 #[test]
 fn fog_of_droplets_matches_the_slabs() {
-    let table = include_str!("data/fog_droplets_disort.csv");
-    let errors = table
-        .lines()
-        .filter(|line| !line.starts_with('#'))
-        .skip(1)
-        .map(|line| {
-            let row: Vec<f64> = line.split(',').map(|v| v.parse().unwrap()).collect();
-            let &[
-                tau,
-                sun_zenith,
-                above,
-                zenith,
-                azimuth,
-                scattered,
-                irradiance,
-            ] = &row[..]
-            else {
-                panic!("seven columns: {line}");
-            };
-            let light = Light {
-                sun: Some(Sun {
-                    direction: direction(0.0, 90.0 - sun_zenith),
-                    irradiance: Spectrum::ONE,
-                }),
-                ambient: Spectrum::ZERO,
-                ground_albedo: Spectrum([0.2]),
-            };
-            let matter = Matter {
-                extinction_per_m: Spectrum([(tau / 100.0) as f32]),
-                single_scattering_albedo: Spectrum([0.999999]),
-                phase: droplets::phase(10.0),
-            };
-            let profile = Profile::Slab {
-                top_height_m: 100.0,
-            };
-            let fog = Fog::new(
-                &[Layer { profile, matter }],
-                Ground::FLAT,
-                light,
-                Scattering::Multiple,
-            )
-            .unwrap();
-            let height = 100.0 * (1.0 - above);
-            let view = direction(azimuth, 90.0 - zenith);
-            let length = if view.y < 0.0 {
-                height / -view.y
-            } else {
-                f64::INFINITY
-            };
-            let ground = f64::from(fog.ground_irradiance().unwrap()[0]);
-            assert!((ground / irradiance - 1.0).abs() < 2e-3, "{line}: {ground}");
-            f64::from(fog.along(height, view, length).path_radiance[0]) / scattered - 1.0
-        });
+    let errors = numbers::<7>(include_str!("data/fog_droplets_disort.csv")).map(|row| {
+        let [
+            tau,
+            sun_zenith,
+            above,
+            zenith,
+            azimuth,
+            scattered,
+            irradiance,
+        ] = row;
+        let fog = Scene {
+            profile: SLAB,
+            depth: tau,
+            single_scattering_albedo: 0.999999,
+            phase: droplets::phase(10.0),
+            sun_zenith_deg: Some(sun_zenith),
+            ground_albedo: 0.2,
+        }
+        .fog(Scattering::Multiple);
+        let ground = f64::from(fog.ground_irradiance().unwrap()[0]);
+        assert!(
+            (ground / irradiance - 1.0).abs() < 2e-3,
+            "{row:?}: {ground}"
+        );
+        to_the_edge(&fog, above, direction(azimuth, 90.0 - zenith)) / scattered - 1.0
+    });
     let measured = spread(errors);
     println!("fog of droplets, percent: median, 90 %, worst: {measured:.2?}");
     for (error, limit) in measured.into_iter().zip([0.3, 2.5, 8.0]) {

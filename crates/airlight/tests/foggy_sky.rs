@@ -23,13 +23,7 @@ fn sky(preset: &str, sun_deg: f64, altitude_m: f64) -> Sky {
 fn layer(visibility_m: f64, profile: Profile) -> Layer<3> {
     Layer {
         profile,
-        matter: Matter {
-            extinction_per_m: Spectrum::splat(
-                extinction_per_m(visibility_m, Contrast::FivePercent) as f32,
-            ),
-            single_scattering_albedo: Spectrum::ONE,
-            phase: Droplets::Radiation.phase(),
-        },
+        matter: Droplets::Radiation.matter(extinction_per_m(visibility_m, Contrast::FivePercent)),
     }
 }
 

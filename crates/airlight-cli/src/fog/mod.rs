@@ -5,8 +5,9 @@ use crate::error::CliError;
 use crate::report::{self, bytes};
 use crate::{interrupt, parse};
 use airlight::axes;
+use airlight::fog::droplets::Droplets;
 use airlight::fog::visibility::{Contrast, extinction_per_m};
-use airlight::fog::{Fog, Ground, Layer, Light, Matter, Profile, Scattering, Sun, legacy};
+use airlight::fog::{Fog, Ground, Layer, Light, Profile, Scattering, Sun, legacy};
 use airlight::spectrum::Spectrum;
 use airlight_render::frame::{Intrinsics, PixelCentres};
 use airlight_render::input::{
@@ -213,12 +214,7 @@ fn veil(args: &OverlayArgs, ambient: Spectrum<3>) -> Result<Veil, CliError> {
         ambient,
         ground_albedo: Spectrum::splat(args.ground_albedo as f32),
     };
-    let droplets = airlight::fog::droplets::Droplets::from(args.droplets);
-    let matter = Matter {
-        extinction_per_m: Spectrum::splat(extinction as f32),
-        single_scattering_albedo: Spectrum::ONE,
-        phase: droplets.phase(),
-    };
+    let matter = Droplets::from(args.droplets).matter(extinction);
     let layers = [Layer { profile, matter }];
     let fog = Fog::new(&layers, Ground::FLAT, light, Scattering::Multiple)
         .map_err(|error| CliError::usage(error.to_string()))?;

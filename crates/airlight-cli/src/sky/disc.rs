@@ -39,7 +39,8 @@ struct Cell {
 
 impl Disc {
     /// Tabulates the disc of a view; `horizon_rad` is the elevation of the horizon. `None` where the planet hides all
-    /// of it. `fog` is the transmittance of what lies before it besides the air. With `weights` the channels are RGB, or RGB and then radiances where `spectral`.
+    /// of it. `fog` is the transmittance of what lies before it besides the air. With `weights` the channels are RGB, or
+    /// RGB and then radiances where `spectral`.
     pub fn new(
         view: &View<'_>,
         horizon_rad: f64,

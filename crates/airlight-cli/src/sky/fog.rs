@@ -5,7 +5,7 @@ use crate::error::CliError;
 use crate::report::short;
 use airlight::fog::droplets::Droplets;
 use airlight::fog::visibility::{Contrast, extinction_per_m};
-use airlight::fog::{Layer, Matter, Profile, Scattering};
+use airlight::fog::{Layer, Profile, Scattering};
 use airlight::outdoors::{Channels, FoggySky};
 use airlight::sky::{SkyTable, TableChannels, View};
 use airlight::spectrum::Spectrum;
@@ -37,27 +37,20 @@ impl<'a> Fog<'a> {
     ) -> Result<Option<Self>, CliError> {
         let ground = FoggySky::<3>::round_ground(view);
         let scattering = Scattering::Multiple;
-        Ok(match channels {
-            TableChannels::Rgb(space) => match layer(args) {
-                None => None,
-                Some(layer) => Some(Self::Rgb(Box::new(FoggySky::new(
-                    view,
-                    Channels::Rgb(space),
-                    &[layer],
-                    ground,
-                    scattering,
-                )?))),
-            },
-            TableChannels::Spectral => match layer(args) {
-                None => None,
-                Some(layer) => Some(Self::Spectral(FoggySky::spectral(
-                    view,
-                    &[layer],
-                    ground,
-                    scattering,
-                )?)),
-            },
-        })
+        let Some(visibility_m) = args.fog_visibility_m else {
+            return Ok(None);
+        };
+        Ok(Some(match channels {
+            TableChannels::Rgb(space) => {
+                let (channels, layers) = (Channels::Rgb(space), [layer(args, visibility_m)]);
+                let sky = FoggySky::new(view, channels, &layers, ground, scattering)?;
+                Self::Rgb(Box::new(sky))
+            }
+            TableChannels::Spectral => {
+                let layers = [layer(args, visibility_m)];
+                Self::Spectral(FoggySky::spectral(view, &layers, ground, scattering)?)
+            }
+        }))
     }
 
     /// The sky without the fog.
@@ -123,8 +116,7 @@ fn cover<const N: usize>(sky: &FoggySky<'_, N>, direction: DVec3, values: &mut [
 }
 
 /// The fog of the options.
-fn layer<const N: usize>(args: &FogArgs) -> Option<Layer<N>> {
-    let visibility_m = args.fog_visibility_m?;
+fn layer<const N: usize>(args: &FogArgs, visibility_m: f64) -> Layer<N> {
     let profile = match args.fog_top_m {
         Some(top_height_m) => Profile::Slab { top_height_m },
         None => Profile::Clamped {
@@ -132,15 +124,9 @@ fn layer<const N: usize>(args: &FogArgs) -> Option<Layer<N>> {
             scale_height_m: args.fog_scale_height_m.unwrap_or(SCALE_HEIGHT_M),
         },
     };
-    let extinction = extinction_per_m(visibility_m, Contrast::FivePercent) as f32;
-    Some(Layer {
-        profile,
-        matter: Matter {
-            extinction_per_m: Spectrum::splat(extinction),
-            single_scattering_albedo: Spectrum::ONE,
-            phase: Droplets::from(args.fog_droplets).phase(),
-        },
-    })
+    let extinction = extinction_per_m(visibility_m, Contrast::FivePercent);
+    let matter = Droplets::from(args.fog_droplets).matter(extinction);
+    Layer { profile, matter }
 }
 
 /// The fog of the options in words.

@@ -1,6 +1,8 @@
 //! Water droplets: how fog scatters, by the diameter of its drops.
 
+use super::matter::Matter;
 use crate::optics::PhaseFunction;
+use crate::spectrum::Spectrum;
 
 /// The diameters (micrometres) for which [`phase`] was fitted.
 pub const DIAMETERS_UM: std::ops::RangeInclusive<f64> = 5.0..=50.0;
@@ -58,6 +60,15 @@ impl Droplets {
     /// Its phase function.
     pub fn phase(self) -> PhaseFunction {
         phase(self.diameter_um())
+    }
+
+    /// Fog of such drops: an extinction (1/m) the same at all wavelengths, and no absorption.
+    pub fn matter<const N: usize>(self, extinction_per_m: f64) -> Matter<N> {
+        Matter {
+            extinction_per_m: Spectrum::splat(extinction_per_m as f32),
+            single_scattering_albedo: Spectrum::ONE,
+            phase: self.phase(),
+        }
     }
 }
 

@@ -5,7 +5,7 @@
 //!
 //! ```
 //! use airlight::axes::direction;
-//! use airlight::fog::{Fog, Ground, Layer, Light, Matter, Profile, Scattering, Sun};
+//! use airlight::fog::{Fog, Ground, Layer, Light, Profile, Scattering, Sun};
 //! use airlight::fog::{droplets::Droplets, visibility::{Contrast, extinction_per_m}};
 //! use airlight::spectrum::Spectrum;
 //!
@@ -13,11 +13,7 @@
 //! let fog = Fog::new(
 //!     &[Layer {
 //!         profile: Profile::Exponential { reference_height_m: 0.0, scale_height_m: 30.0 },
-//!         matter: Matter {
-//!             extinction_per_m: Spectrum::splat(extinction_per_m(200.0, Contrast::FivePercent) as f32),
-//!             single_scattering_albedo: Spectrum::ONE,
-//!             phase: Droplets::Radiation.phase(),
-//!         },
+//!         matter: Droplets::Radiation.matter(extinction_per_m(200.0, Contrast::FivePercent)),
 //!     }],
 //!     Ground::EARTH,
 //!     Light {
