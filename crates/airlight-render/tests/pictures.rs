@@ -18,6 +18,22 @@ use common::{Folder, full_metadata, sample, size, sky, tone};
 use image::ImageDecoder;
 use std::io::Cursor;
 
+/// The first layer of an EXR file.
+fn read_back(
+    bytes: Cursor<Vec<u8>>,
+) -> ::exr::image::Image<::exr::image::Layer<::exr::image::AnyChannels<::exr::image::FlatSamples>>>
+{
+    use ::exr::prelude::*;
+    read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .all_channels()
+        .first_valid_layer()
+        .all_attributes()
+        .from_buffered(Cursor::new(bytes.into_inner()))
+        .unwrap()
+}
+
 #[test]
 fn exr_files_hold_what_was_given() {
     use ::exr::prelude::*;
@@ -46,14 +62,7 @@ fn exr_files_hold_what_was_given() {
                     Control::default(),
                 )
                 .unwrap();
-                let image = read()
-                    .no_deep_data()
-                    .largest_resolution_level()
-                    .all_channels()
-                    .first_valid_layer()
-                    .all_attributes()
-                    .from_buffered(Cursor::new(bytes.into_inner()))
-                    .unwrap();
+                let image = read_back(bytes);
                 let layer = &image.layer_data;
                 assert_eq!(layer.size, Vec2(width as usize, height as usize));
                 for (c, name) in ["R", "G", "B", "depth"].into_iter().enumerate() {
@@ -231,15 +240,7 @@ fn single_precision_exr_holds_infinity() {
     )
     .unwrap();
     assert_eq!((written.clamped_samples, written.nan_samples), (0, 0));
-    use ::exr::prelude::*;
-    let image = read()
-        .no_deep_data()
-        .largest_resolution_level()
-        .all_channels()
-        .first_valid_layer()
-        .all_attributes()
-        .from_buffered(Cursor::new(bytes.into_inner()))
-        .unwrap();
+    let image = read_back(bytes);
     let values = image
         .layer_data
         .channel_data

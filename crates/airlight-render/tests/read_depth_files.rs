@@ -3,18 +3,12 @@
 mod common;
 
 use airlight_render::{
-    DepthMap, DepthOptions, RenderError,
-    input::{DepthKind, SampleBits, read_depth},
+    DepthOptions, RenderError,
+    input::{DepthKind, SampleBits},
 };
 use common::{Folder, files::*, size};
 use exr::prelude::{FlatSamples, f16};
 use png::{BitDepth, ColorType};
-
-fn read_as(folder: &Folder, bytes: &[u8], options: &DepthOptions) -> Result<DepthMap, RenderError> {
-    let path = folder.0.join("depth.bin");
-    std::fs::write(&path, bytes).unwrap();
-    read_depth(&path, options)
-}
 
 fn options() -> DepthOptions {
     DepthOptions::default()

@@ -3,16 +3,10 @@
 mod common;
 
 use airlight_render::{
-    DepthMap, DepthOptions, RenderError,
+    DepthOptions, RenderError,
     input::{DepthKind, DepthMeaning, Unknown, read_depth, read_picture},
 };
 use common::{Folder, files::*, size};
-
-fn read_as(folder: &Folder, bytes: &[u8], options: &DepthOptions) -> Result<DepthMap, RenderError> {
-    let path = folder.0.join("depth.bin");
-    std::fs::write(&path, bytes).unwrap();
-    read_depth(&path, options)
-}
 
 fn options() -> DepthOptions {
     DepthOptions::default()

@@ -1,5 +1,7 @@
 //! Files made in memory for the tests of reading.
 
+use super::Folder;
+use airlight_render::{DepthMap, DepthOptions, RenderError, read_depth};
 use exr::prelude::*;
 use std::io::Cursor;
 
@@ -161,4 +163,15 @@ pub fn jpeg_file(size: (u16, u16), color: jpeg_encoder::ColorType, progressive: 
     encoder.set_progressive(progressive);
     encoder.encode(&data, size.0, size.1, color).unwrap();
     bytes
+}
+
+/// The depth map in `bytes`, by way of a file.
+pub fn read_as(
+    folder: &Folder,
+    bytes: &[u8],
+    options: &DepthOptions,
+) -> std::result::Result<DepthMap, RenderError> {
+    let path = folder.0.join("depth.bin");
+    std::fs::write(&path, bytes).unwrap();
+    read_depth(&path, options)
 }

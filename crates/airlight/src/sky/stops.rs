@@ -33,6 +33,7 @@ pub struct Stop<const N: usize> {
 #[derive(Clone, Copy)]
 struct Gathered<const N: usize> {
     columns_m: PerConstituent,
+    /// First scattering without its coefficients.
     path: Arriving<N>,
 }
 
@@ -95,8 +96,8 @@ impl<const N: usize> Tracer<'_, N> {
         let (own, whole) = (&gathered.path, whole);
         let mut path = *own;
         path.rest = mix(own.rest, whole.rest);
-        for (s, mixed) in path.unphased.iter_mut().enumerate() {
-            *mixed = mix(own.unphased[s], whole.unphased[s]);
+        for (s, scatterer) in self.air.scatterers.iter().enumerate() {
+            path.unphased[s] = mix(own.unphased[s], whole.unphased[s]) * scatterer.whole_scattering;
         }
         Stop { depth, path }
     }
@@ -110,13 +111,13 @@ impl<const N: usize> Tracer<'_, N> {
         span: (f64, f64),
         gathered: &mut Gathered<N>,
     ) {
-        let (air, dimming) = (self.air, self.dimming);
+        let dimming = self.dimming;
         let seen = dimming.transmittance(&gathered.columns_m);
         let mut y = [0.0f32; Harmonics::MAX_COUNT];
         let mut edges = std::mem::take(&mut self.edges);
         let path = &mut gathered.path;
         let columns_m = marcher.walk(
-            &air.shell,
+            &self.air.shell,
             ray,
             span,
             &mut edges,
@@ -125,17 +126,7 @@ impl<const N: usize> Tracer<'_, N> {
                 for node in nodes {
                     let transmittance = seen * dimming.transmittance(&node.columns_m);
                     let weight = transmittance * node.dt as f32;
-                    path.rest = path.rest.mul_acc(weight, self.source(node, &mut y));
-                    if node.lit {
-                        let to_sun = air
-                            .shell
-                            .columns_to_space_m(node.here.radius_m, node.here.mu_sun);
-                        let sunlight = weight * dimming.transmittance(&to_sun);
-                        for (s, sum) in air.scatterers.iter().zip(&mut path.unphased) {
-                            let density = node.densities[s.constituent] as f32;
-                            *sum = sum.mul_acc(sunlight, s.whole_scattering * density);
-                        }
-                    }
+                    self.add(node, weight, &mut y, path);
                 }
                 ControlFlow::Continue(())
             },

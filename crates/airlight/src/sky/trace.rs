@@ -192,16 +192,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
                     let transmittance = dimming.transmittance(&node.columns_m);
                     brightest = brightest.max(transmittance.max_element());
                     let weight = transmittance * node.dt as f32;
-                    light.rest = light.rest.mul_acc(weight, self.source(node, &mut y));
-                    if node.lit {
-                        let to_sun = air
-                            .shell
-                            .columns_to_space_m(node.here.radius_m, node.here.mu_sun);
-                        let sunlight = weight * dimming.transmittance(&to_sun);
-                        for (s, sum) in air.scatterers.iter().zip(&mut light.unphased) {
-                            *sum = sum.scale_acc(sunlight, node.densities[s.constituent] as f32);
-                        }
-                    }
+                    self.add(node, weight, &mut y, &mut light);
                 }
                 if brightest < 1e-7 {
                     ControlFlow::Break(())
@@ -224,9 +215,32 @@ impl<'a, const N: usize> Tracer<'a, N> {
         light
     }
 
+    /// Adds what a node scatters into the line of sight, of which the part `weight` (times a length) arrives: sunlight
+    /// scattered for the first time by density alone, without scattering coefficients. `y` is scratch space.
+    #[inline(always)]
+    pub(super) fn add(
+        &self,
+        node: &Node,
+        weight: Spectrum<N>,
+        y: &mut [f32],
+        light: &mut Arriving<N>,
+    ) {
+        light.rest = light.rest.mul_acc(weight, self.source(node, y));
+        if node.lit {
+            let to_sun = self
+                .air
+                .shell
+                .columns_to_space_m(node.here.radius_m, node.here.mu_sun);
+            let sunlight = weight * self.dimming.transmittance(&to_sun);
+            for (s, sum) in self.air.scatterers.iter().zip(&mut light.unphased) {
+                *sum = sum.scale_acc(sunlight, node.densities[s.constituent] as f32);
+            }
+        }
+    }
+
     /// Light of the field scattered into the line of sight at a node, per metre. `y` is scratch space.
     #[inline(always)]
-    pub(super) fn source(&self, node: &Node, y: &mut [f32]) -> Spectrum<N> {
+    fn source(&self, node: &Node, y: &mut [f32]) -> Spectrum<N> {
         let Some(Diffuse { field, air }) = self.diffuse else {
             return Spectrum::ZERO;
         };
