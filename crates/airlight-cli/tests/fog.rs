@@ -142,14 +142,95 @@ fn files_that_are_not_what_they_should_be_are_refused() {
 
 /// Writes 30 rows of 40 numbers.
 fn npy(path: &Path, of: impl Fn(usize) -> f32) {
+    npy_of(path, (30, 40), of);
+}
+
+/// Writes rows of numbers, as many as `shape` says.
+fn npy_of(path: &Path, shape: (usize, usize), of: impl Fn(usize) -> f32) {
     let mut head = b"\x93NUMPY\x01\x00".to_vec();
-    let mut text = "{'descr': '<f4', 'fortran_order': False, 'shape': (30, 40), }".to_owned();
+    let mut text = format!("{{'descr': '<f4', 'fortran_order': False, 'shape': {shape:?}, }}");
     while !(10 + text.len() + 1).is_multiple_of(64) {
         text.push(' ');
     }
     text.push('\n');
     head.extend((text.len() as u16).to_le_bytes());
     head.extend(text.bytes());
-    head.extend((0..1200).flat_map(|pixel| of(pixel).to_le_bytes()));
+    head.extend((0..shape.0 * shape.1).flat_map(|pixel| of(pixel).to_le_bytes()));
     std::fs::write(path, head).unwrap();
+}
+
+#[test]
+fn layers_make_the_fogged_picture_of_the_clear_one() {
+    let folder = Folder::new();
+    let (width, height) = (12, 8);
+    exr::prelude::write_rgba_file(folder.file("scene.exr"), width, height, |x, y| {
+        let opacity = if x < 6 { 1.0f32 } else { 0.25 };
+        (
+            opacity * 0.1 * x as f32,
+            opacity * 0.5,
+            opacity * 0.2 * y as f32,
+            opacity,
+        )
+    })
+    .unwrap();
+    npy_of(&folder.file("depth.npy"), (height, width), |pixel| {
+        1.0 + pixel as f32
+    });
+    let words = "fog scene.exr --depth depth.npy --visibility-m 60 --ambient 0.7,0.8,0.9 --sun-elevation 20 \
+                 --model height --layers -q -o layers.exr";
+    let output = run(&folder, words);
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let channels = |name: &str| {
+        let image = exr::prelude::read_first_flat_layer_from_file(folder.file(name)).unwrap();
+        let list = image.layer_data.channel_data.list;
+        let one = |c: exr::prelude::AnyChannel<exr::prelude::FlatSamples>| {
+            (
+                c.name.to_string(),
+                c.sample_data.values_as_f32().collect::<Vec<_>>(),
+            )
+        };
+        list.into_iter()
+            .map(one)
+            .collect::<std::collections::BTreeMap<_, _>>()
+    };
+    let (clear, fogged) = (channels("scene.exr"), channels("layers.exr"));
+    assert_eq!(fogged.len(), 11);
+    assert_eq!(fogged["A"], clear["A"]);
+    for colour in ["R", "G", "B"] {
+        let transmittance = &fogged[&format!("transmittance.{colour}")];
+        let path = &fogged[&format!("path_radiance.{colour}")];
+        for pixel in 0..width * height {
+            let made =
+                clear[colour][pixel] * transmittance[pixel] + path[pixel] * clear["A"][pixel];
+            assert!(
+                (made - fogged[colour][pixel]).abs() < 1e-5,
+                "{colour} {pixel}"
+            );
+            assert!((0.0..=1.0).contains(&transmittance[pixel]) && path[pixel] >= 0.0);
+        }
+    }
+    assert!(fogged["Z"][0] >= 1.0 && fogged["Z"][95] >= 96.0);
+}
+
+#[test]
+fn formats_without_opacity_take_pictures_that_have_it() {
+    let folder = Folder::new();
+    let picture = image::RgbaImage::from_pixel(40, 30, image::Rgba([90, 80, 70, 128]));
+    picture.save(folder.file("glass.png")).unwrap();
+    npy(&folder.file("depth.npy"), |_| 2.0);
+    for (name, opacity) in [("out.jpg", 255), ("out.png", 128)] {
+        let words = format!("fog glass.png --depth depth.npy --visibility-m 5 -q -o {name}");
+        let output = run(&folder, &words);
+        assert!(
+            output.status.success(),
+            "{name}: {}",
+            String::from_utf8_lossy(&output.stderr)
+        );
+        let seen = image::open(folder.file(name)).unwrap().to_rgba8();
+        assert_eq!(seen.get_pixel(3, 3).0[3], opacity, "{name}");
+    }
 }

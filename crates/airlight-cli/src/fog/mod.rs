@@ -9,15 +9,15 @@ use airlight::fog::droplets::Droplets;
 use airlight::fog::visibility::{Contrast, extinction_per_m};
 use airlight::fog::{Fog, Ground, Layer, Light, Profile, Scattering, Sun, legacy};
 use airlight::spectrum::Spectrum;
+use airlight_render::Control;
 use airlight_render::frame::{Intrinsics, PixelCentres};
 use airlight_render::input::{
     DepthMap, DepthMeaning, DepthOptions, LightReference, Picture, SampleBits, Unknown, read_depth,
     read_picture,
 };
-use airlight_render::output::{Metadata, PictureFormat, Written, exr, hdr, jpeg, png};
+use airlight_render::output::{PictureFormat, PictureOptions, Written, exr, png, write_picture};
 use airlight_render::overlay::{Ambient, Channels, Overlay, Veil, estimate_ambient};
 use airlight_render::tone::ToneMapper;
-use airlight_render::{Control, RowSource};
 use std::f32::consts::PI;
 
 /// Runs the command.
@@ -47,7 +47,11 @@ pub fn run(args: &OverlayArgs) -> Result<(), CliError> {
         ));
     }
     let options = depth_options(args)?;
-    let picture = read_picture(&args.colour, None)?;
+    let mut picture = read_picture(&args.colour, None)?;
+    if matches!(format, PictureFormat::Jpeg | PictureFormat::Hdr) {
+        // These formats hold no opacity.
+        picture.alpha = None;
+    }
     if (format == PictureFormat::Exr || format == PictureFormat::Hdr)
         != (picture.reference == LightReference::Scene)
     {
@@ -228,39 +232,32 @@ fn write(
     overlay: &Overlay<'_>,
 ) -> Result<Written, CliError> {
     let control = Control::cancelled_by(&interrupt::STOP);
-    let metadata = Metadata::default();
+    let options = PictureOptions {
+        exr: exr::ExrOptions {
+            sample: match (picture.bits, args.layers) {
+                (SampleBits::Half, false) => exr::ExrSample::Half,
+                _ => exr::ExrSample::Float,
+            },
+            ..Default::default()
+        },
+        png: png::PngOptions {
+            depth: match picture.bits {
+                SampleBits::U8 => png::PngDepth::Eight,
+                _ => png::PngDepth::Sixteen,
+            },
+            ..Default::default()
+        },
+        ..Default::default()
+    };
     let (path, size) = (&args.output, picture.size);
-    let tone = ToneMapper::as_displayed();
     Ok(match format {
         PictureFormat::Exr => {
-            let names: &[&str] = match overlay.channels() {
-                3 => &["R", "G", "B"],
-                4 => &["R", "G", "B", "A"],
-                _ => &Channels::LAYER_NAMES,
-            };
-            let options = exr::ExrOptions {
-                sample: match (picture.bits, args.layers) {
-                    (SampleBits::Half, false) => exr::ExrSample::Half,
-                    _ => exr::ExrSample::Float,
-                },
-                ..Default::default()
-            };
-            exr::write(path, size, names, overlay, &options, &metadata, control)?
+            let (names, metadata) = (overlay.channel_names(), &options.metadata);
+            exr::write(path, size, &names, overlay, &options.exr, metadata, control)?
         }
-        PictureFormat::Hdr => hdr::write(path, size, overlay, &metadata, control)?,
-        PictureFormat::Png => {
-            let options = png::PngOptions {
-                depth: match picture.bits {
-                    SampleBits::U8 => png::PngDepth::Eight,
-                    _ => png::PngDepth::Sixteen,
-                },
-                ..Default::default()
-            };
-            png::write(path, size, overlay, &tone, &options, &metadata, control)?
-        }
-        PictureFormat::Jpeg => {
-            let options = jpeg::JpegOptions::default();
-            jpeg::write(path, size, overlay, &tone, &options, &metadata, control)?
+        _ => {
+            let tone = ToneMapper::as_displayed();
+            write_picture(path, size, overlay, &tone, &options, control)?
         }
     })
 }

@@ -4,7 +4,7 @@ mod ambient;
 
 pub use ambient::{Ambient, estimate_ambient};
 
-use crate::input::{DepthKind, DepthMap, Picture};
+use crate::input::{DepthKind, DepthMap, LightReference, Picture};
 use crate::{Intrinsics, RenderError, RowSource};
 use airlight::fog::{Fog, legacy};
 use airlight::path::PathOptics;
@@ -75,26 +75,34 @@ pub struct Overlay<'a> {
 /// What a row of an [`Overlay`] holds for each pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Channels {
-    /// Red, green, blue of the fogged picture; opacity after them where the picture has it.
+    /// Red, green, blue of the fogged picture.
     Picture,
-    /// Red, green, blue; those of the transmittance; those of the path radiance; distance in metres.
+    /// The same; red, green, blue of the transmittance and of the path radiance; distance in metres.
     Layers,
 }
 
+/// EXR names of [`Channels::Layers`], of which the first three are those of [`Channels::Picture`].
+const NAMES: [&str; 10] = [
+    "R",
+    "G",
+    "B",
+    "transmittance.R",
+    "transmittance.G",
+    "transmittance.B",
+    "path_radiance.R",
+    "path_radiance.G",
+    "path_radiance.B",
+    "Z",
+];
+
 impl Channels {
-    /// EXR names of [`Channels::Layers`].
-    pub const LAYER_NAMES: [&'static str; 10] = [
-        "R",
-        "G",
-        "B",
-        "transmittance.R",
-        "transmittance.G",
-        "transmittance.B",
-        "path_radiance.R",
-        "path_radiance.G",
-        "path_radiance.B",
-        "Z",
-    ];
+    /// Without opacity.
+    fn names(self) -> &'static [&'static str] {
+        match self {
+            Self::Picture => &NAMES[..3],
+            Self::Layers => &NAMES,
+        }
+    }
 }
 
 impl<'a> Overlay<'a> {
@@ -129,17 +137,29 @@ impl<'a> Overlay<'a> {
         })
     }
 
-    fn has_alpha(&self) -> bool {
-        self.channels == Channels::Picture && self.picture.alpha.is_some()
+    /// EXR names of the channels: opacity comes last, where the picture has it.
+    pub fn channel_names(&self) -> Vec<&'static str> {
+        let opacity = self.picture.alpha.as_ref().map(|_| "A");
+        let names = self.channels.names().iter().copied();
+        names.chain(opacity).collect()
+    }
+
+    /// A pixel's colour seen through the fog, and the opacity that its colour is multiplied by: fog scatters before what is
+    /// there only.
+    fn seen(&self, optics: &PathOptics<3>, colour: Spectrum<3>, opacity: f32) -> Spectrum<3> {
+        if self.picture.reference == LightReference::Display || opacity == 1.0 {
+            self.veil.apply(optics, colour)
+        } else if opacity > 0.0 {
+            self.veil.apply(optics, colour / opacity) * opacity
+        } else {
+            colour * optics.transmittance
+        }
     }
 }
 
 impl RowSource for Overlay<'_> {
     fn channels(&self) -> usize {
-        match self.channels {
-            Channels::Picture => 3 + usize::from(self.has_alpha()),
-            Channels::Layers => Channels::LAYER_NAMES.len(),
-        }
+        self.channels.names().len() + usize::from(self.picture.alpha.is_some())
     }
 
     fn fill_row(&self, y: u32, out: &mut [f32]) {
@@ -158,15 +178,16 @@ impl RowSource for Overlay<'_> {
                     DepthKind::Ray => 1.0,
                 };
             let optics = self.veil.optics(self.eye_height_m, directions[i], distance);
-            out[..3].copy_from_slice(&self.veil.apply(&optics, colour).0);
-            match (self.channels, &self.picture.alpha) {
-                (Channels::Picture, Some(alpha)) => out[3] = alpha[pixel],
-                (Channels::Picture, None) => {}
-                (Channels::Layers, _) => {
-                    out[3..6].copy_from_slice(&optics.transmittance.0);
-                    out[6..9].copy_from_slice(&optics.path_radiance.0);
-                    out[9] = distance as f32;
-                }
+            let opacity = self.picture.alpha.as_ref().map(|alpha| alpha[pixel]);
+            let seen = self.seen(&optics, colour, opacity.unwrap_or(1.0));
+            out[..3].copy_from_slice(&seen.0);
+            if self.channels == Channels::Layers {
+                out[3..6].copy_from_slice(&optics.transmittance.0);
+                out[6..9].copy_from_slice(&optics.path_radiance.0);
+                out[9] = distance as f32;
+            }
+            if let (Some(opacity), Some(last)) = (opacity, out.last_mut()) {
+                *last = opacity;
             }
         }
     }

@@ -108,3 +108,35 @@ fn the_ambient_is_that_of_the_sky_or_of_the_brightest_dark_patch() {
     assert_eq!(how, Ambient::DarkChannel);
     assert!((colour[0] - 0.9).abs() < 1e-6, "{colour:?}");
 }
+
+#[test]
+fn fog_lies_before_what_is_there_only() {
+    // Colours of linear files are multiplied by their opacity.
+    let mut half = picture(3, 1, |x, _| match x {
+        0 => [0.4; 3],
+        1 => [0.2; 3],
+        _ => [0.0; 3],
+    });
+    half.reference = LightReference::Scene;
+    half.alpha = Some(vec![1.0, 0.5, 0.0]);
+    let depth = depth(3, 1, |_, _| 20.0);
+    let camera = Intrinsics::from_horizontal_fov(half.size, 1.0).unwrap();
+    for veil in [
+        uniform(0.03, [0.8; 3]),
+        Veil::Encoded(0.03, Spectrum([0.8; 3])),
+    ] {
+        for channels in [Channels::Picture, Channels::Layers] {
+            let overlay = Overlay::new(&half, &depth, &camera, 1.6, &veil, channels).unwrap();
+            let names = overlay.channel_names();
+            assert_eq!(names.len(), overlay.channels());
+            assert_eq!(names.last(), Some(&"A"));
+            let mut row = vec![0.0; 3 * names.len()];
+            overlay.fill_row(0, &mut row);
+            let pixel = |i: usize| &row[i * names.len()..][..names.len()];
+            assert!((pixel(1)[0] - 0.5 * pixel(0)[0]).abs() < 1e-4, "{row:?}");
+            assert_eq!(pixel(2)[0], 0.0, "nothing is there");
+            let opacities = [0, 1, 2].map(|i| pixel(i)[names.len() - 1]);
+            assert_eq!(opacities, [1.0, 0.5, 0.0]);
+        }
+    }
+}
