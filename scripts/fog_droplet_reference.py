@@ -11,9 +11,9 @@ degrees or more from the sun are kept: nearer, 64 streams do not resolve the dif
 from importlib.metadata import version
 
 import numpy as np
-from PythonicDISORT import pydisort
 
-from fog_reference import VIEWS, depth_nodes, henyey_greenstein
+from fog_disort import Slab, henyey_greenstein
+from fog_reference import VIEWS
 
 STREAMS, OMEGA, ALBEDO, DIAMETER_UM = 64, 0.999999, 0.2, 10.0
 
@@ -35,43 +35,13 @@ def moments():
 
 
 def slab(tau, sun_zenith, chi):
-    peak, sun_cosine = chi[STREAMS], np.cos(np.radians(sun_zenith))
-    angles, _, down, _, field = pydisort(
-        np.array([tau]), np.array([OMEGA]), STREAMS, chi[None, :STREAMS], sun_cosine, 1.0, 0.0,
-        f_arr=np.array([peak]), BDRF_Fourier_modes=[ALBEDO], NFourier=STREAMS,
-    )
-    irradiance = float(sum(np.squeeze(part) for part in down(tau)))
-    depth, depth_weight = depth_nodes(tau)
-    azimuth = np.linspace(0.0, np.pi, STREAMS + 1)
-    azimuth_weight = np.full(STREAMS + 1, np.pi / STREAMS)
-    azimuth_weight[[0, -1]] /= 2.0
-    radiance = field(depth, azimuth)
-    nodes, weights = np.polynomial.legendre.leggauss(STREAMS // 2)
-    nodes, weights = (nodes + 1.0) / 2.0, weights / 2.0
-    angle_weight = weights[np.argmin(np.abs(np.abs(angles)[:, None] - nodes), axis=1)]
-    thinning = 1.0 - OMEGA * peak
-    truncated = OMEGA * (chi[:STREAMS] - peak) * (2.0 * np.arange(STREAMS) + 1.0) / (4.0 * np.pi)
-    cosine = -angles
-    sine = np.sqrt(1.0 - cosine**2)
-    for above, zenith, view_azimuth in VIEWS:
-        mu = np.cos(np.radians(zenith))
-        mu_sine, phi = np.sqrt(1.0 - mu * mu), np.radians(view_azimuth)
-        scattering = np.clip(mu * sun_cosine + mu_sine * np.sqrt(1.0 - sun_cosine**2) * np.cos(phi), -1.0, 1.0)
-        kernel = 0.0
-        for side in (1.0, -1.0):
-            between = cosine[:, None] * mu + sine[:, None] * mu_sine * np.cos(phi - side * azimuth)
-            kernel = kernel + np.polynomial.legendre.legval(np.clip(between, -1.0, 1.0), truncated)
-        source = np.einsum("mp,mtp,m,p->t", kernel, radiance, angle_weight, azimuth_weight)
-        source = source + OMEGA * phase(scattering) * np.exp(-thinning * depth / sun_cosine)
-        path = (above * tau - depth) / mu
-        ahead = path > 0.0
-        weight = np.where(ahead, depth_weight / abs(mu), 0.0)
-        scattered = np.sum(weight * source * np.exp(-thinning * np.where(ahead, path, 0.0)))
-        full = (above * tau if mu > 0.0 else (above - 1.0) * tau) / mu
-        beyond = 0.0 if mu > 0.0 else ALBEDO * irradiance / np.pi
-        scattered += (np.exp(-thinning * full) - np.exp(-full)) * beyond
-        if np.degrees(np.arccos(scattering)) >= 5.0:
-            yield above, zenith, view_azimuth, scattered, irradiance
+    """Rows of the table for one slab."""
+    solved = Slab(OMEGA, tau, np.radians(sun_zenith), ALBEDO, chi, phase)
+    views = [(above, *np.radians((zenith, azimuth))) for above, zenith, azimuth in VIEWS]
+    for view, radians, scattered in zip(VIEWS, views, solved.to_the_edge(views)):
+        from_sun = solved.from_sun(np.cos(radians[1]), radians[2])
+        if np.degrees(np.arccos(from_sun)) >= 5.0:
+            yield *view, scattered, solved.irradiance
 
 
 def main():

@@ -21,7 +21,8 @@ import sys
 from importlib.metadata import version
 
 import numpy as np
-from PythonicDISORT import pydisort
+
+from fog_disort import Slab, henyey_greenstein
 
 STREAMS = 48
 OMEGA = (0.999999, 0.99, 0.9)
@@ -42,89 +43,14 @@ VIEWS = (
 )
 
 
-def depth_nodes(tau):
-    """Gauss-Legendre nodes and weights in depth, dense at the boundaries and on both sides of the middle."""
-    wanted = [0.0, tau / 2.0, tau]
-    offsets = (0.03, 0.1, 0.25, 0.5, 1.0, 2.0, 3.5, 5.0, 7.5, 10.0, 15.0, 20.0, 30.0)
-    for start, sign in ((0.0, 1.0), (tau, -1.0), (tau / 2.0, 1.0), (tau / 2.0, -1.0)):
-        for offset in offsets:
-            edge = start + sign * offset
-            if 0.0 < edge < tau and min(abs(edge - other) for other in wanted) > 1e-3 * min(tau, 10.0):
-                wanted.append(edge)
-    edges = np.array(sorted(wanted))
-    x, w = np.polynomial.legendre.leggauss(8)
-    half = np.diff(edges)[:, None] / 2.0
-    middle = (edges[:-1, None] + edges[1:, None]) / 2.0
-    return (middle + half * x).ravel(), (half * w).ravel()
-
-
-def henyey_greenstein(g, cosine):
-    return (1.0 - g * g) / (4.0 * np.pi) / (1.0 + g * g - 2.0 * g * cosine) ** 1.5
-
-
 def slab(omega, g, tau, light, albedo, views, streams):
     """Returns, for each view, the radiance scattered into the line of sight up to the edge of the fog, and the ground's irradiance."""
-    sky = light == "sky"
-    sun_cosine = 0.5 if sky else np.cos(np.radians(light))
-    sun = 0.0 if sky else 1.0
-    peak = g**streams
-    moments = np.array([g**order if order else 1.0 for order in range(streams)])
-    axial = sky or g == 0.0 or sun_cosine == 1.0
-    angles, _, down, axial_field, *field = pydisort(
-        np.array([tau]),
-        np.array([omega]),
-        streams,
-        moments[None, :],
-        sun_cosine,
-        sun,
-        0.0,
-        b_neg=0.0 if sun else 1.0,
-        f_arr=np.array([peak]),
-        BDRF_Fourier_modes=[albedo] if albedo > 0.0 else [],
-        NFourier=1 if axial else streams,
-    )
-    diffuse, direct = down(tau)
-    irradiance = float(np.squeeze(diffuse) + np.squeeze(direct))
-
-    depth, depth_weight = depth_nodes(tau)
-    azimuth = np.linspace(0.0, np.pi, streams + 1)
-    azimuth_weight = np.full(streams + 1, np.pi / streams)
-    azimuth_weight[[0, -1]] /= 2.0
-    if axial:
-        radiance = np.repeat(axial_field(depth)[:, :, None], streams + 1, axis=2)
-    else:
-        radiance = field[0](depth, azimuth)
-    half_nodes, half_weights = np.polynomial.legendre.leggauss(streams // 2)
-    half_nodes, half_weights = (half_nodes + 1.0) / 2.0, half_weights / 2.0
-    angle_weight = half_weights[np.argmin(np.abs(np.abs(angles)[:, None] - half_nodes), axis=1)]
-
-    thinning = 1.0 - omega * peak
-    truncated = omega * (moments - peak) * (2.0 * np.arange(streams) + 1.0) / (4.0 * np.pi)
-    cosine = -angles  # of the direction in which light travels, positive downwards
-    sine = np.sqrt(1.0 - cosine**2)
-    out = []
-    for above, zenith, view_azimuth in views:
-        mu = np.cos(np.radians(zenith))
-        mu_sine = np.sqrt(1.0 - mu * mu)
-        phi = np.radians(view_azimuth)
-        phase = 0.0
-        for side in (1.0, -1.0):
-            between = cosine[:, None] * mu + sine[:, None] * mu_sine * np.cos(phi - side * azimuth)
-            phase = phase + np.polynomial.legendre.legval(np.clip(between, -1.0, 1.0), truncated)
-        source = np.einsum("mp,mtp,m,p->t", phase, radiance, angle_weight, azimuth_weight)
-        scattering = np.clip(mu * sun_cosine + mu_sine * np.sqrt(1.0 - sun_cosine**2) * np.cos(phi), -1.0, 1.0)
-        once = sun * omega * henyey_greenstein(g, scattering)
-        source = source + once * np.exp(-thinning * depth / sun_cosine)
-        path = (above * tau - depth) / mu
-        ahead = path > 0.0
-        weight = np.where(ahead, depth_weight / abs(mu), 0.0)
-        scattered = np.sum(weight * source * np.exp(-thinning * np.where(ahead, path, 0.0)))
-        # What the scaling let through of the light from beyond the fog, although it was scattered in it.
-        full = (above * tau if mu > 0.0 else (above - 1.0) * tau) / mu
-        beyond = (1.0 if sky else 0.0) if mu > 0.0 else albedo * irradiance / np.pi
-        scattered += (np.exp(-thinning * full) - np.exp(-full)) * beyond
-        out.append((scattered, irradiance))
-    return out
+    zenith = None if light == "sky" else np.radians(light)
+    moments = np.array([g**order if order else 1.0 for order in range(streams + 1)])
+    axial = zenith is None or g == 0.0 or zenith == 0.0
+    solved = Slab(omega, tau, zenith, albedo, moments, lambda cosine: henyey_greenstein(g, cosine), axial)
+    views = [(above, *np.radians((zenith, azimuth))) for above, zenith, azimuth in views]
+    return [(scattered, solved.irradiance) for scattered in solved.to_the_edge(views)]
 
 
 def chosen():
