@@ -1,4 +1,4 @@
-//! `airlight fog` from the outside: what it makes, and what it refuses.
+//! `airlight fog`, and fog in `airlight sky`, from the outside: what they make, and what they refuse.
 
 mod common;
 
@@ -232,5 +232,48 @@ fn formats_without_opacity_take_pictures_that_have_it() {
         );
         let seen = image::open(folder.file(name)).unwrap().to_rgba8();
         assert_eq!(seen.get_pixel(3, 3).0[3], opacity, "{name}");
+    }
+}
+
+#[test]
+fn a_sky_is_drawn_through_fog_or_refused() {
+    let folder = Folder::new();
+    let sky = "sky --sun-elevation 20 --wavelengths rgb --size 32x16 -q -o";
+    for (name, fog) in [
+        ("clear.png", ""),
+        (
+            "thinning.png",
+            "--fog-visibility-m 200 --fog-scale-height-m 60",
+        ),
+        (
+            "slab.png",
+            "--fog-visibility-m 200 --fog-top-m 60 --fog-droplets coarse",
+        ),
+    ] {
+        let output = run(&folder, &format!("{sky} {name} {fog}"));
+        assert!(
+            output.status.success(),
+            "{name}: {}",
+            String::from_utf8_lossy(&output.stderr)
+        );
+    }
+    let [clear, thinning, slab] =
+        ["clear.png", "thinning.png", "slab.png"].map(|name| pixels(&folder.file(name)));
+    assert!(clear != thinning && thinning != slab);
+    for (fog, sentence) in [
+        ("--fog-visibility-m 0", "above 0"),
+        ("--fog-visibility-m nan", "above 0"),
+        ("--fog-top-m 60", "--fog-visibility-m"),
+        (
+            "--fog-visibility-m 9 --fog-top-m 60 --fog-base-m 5",
+            "cannot be used with",
+        ),
+        (
+            "--fog-visibility-m 9 --fog-droplets rain",
+            "possible values",
+        ),
+    ] {
+        let text = refused(&folder, &format!("{sky} refused.png {fog}"), 2);
+        assert!(text.contains(sentence), "{fog}: {text}");
     }
 }

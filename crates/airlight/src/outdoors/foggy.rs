@@ -15,9 +15,10 @@ use std::sync::Arc;
 /// A sky with fog in it: sunlight and skylight fall on the fog, air and fog lie along every line in their true order, the
 /// ground is dimmed, and what is far away goes over into the drawn sky.
 ///
-/// The fog's share of a line is [`Fog`]'s, with its errors. What this adds: fog and air in the right order, to 0.3 % of
-/// the path radiance against lines cut into 400 slices (the test `fog_and_air_lie_in_their_order` says where); the
-/// table of [`AerialPerspective`]. Left out: the shadow of the fog on the air in and under it, which matters where fog is
+/// The fog's share of a line is [`Fog`]'s, with its errors. What this adds: fog and air in the right order, against lines
+/// cut into 500 slices median 0.04 % of the path radiance, 90 % below 0.22 %, worst 1.3 % in haze that fills the lower
+/// kilometre and 0.6 % elsewhere (the test `fog_and_air_lie_in_their_order`); the table of [`AerialPerspective`]. The
+/// ground under the fog is dimmed by a two-stream estimate, whatever the fog's own order of scattering. Left out: the shadow of the fog on the air in and under it, which matters where fog is
 /// hardly thicker than air; the fog's own light on the air above it.
 pub struct FoggySky<'a, const N: usize> {
     view: View<'a>,
