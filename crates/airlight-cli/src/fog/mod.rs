@@ -1,24 +1,20 @@
 //! `airlight fog`: fog laid over a picture that exists.
 
-use crate::args::{DepthKindArg, HolesArg, ModelArg, OverlayArgs};
+mod veil;
+
+use crate::args::{DepthKindArg, HolesArg, OverlayArgs};
 use crate::error::CliError;
+use crate::interrupt;
 use crate::report::{self, bytes};
-use crate::{interrupt, parse};
-use airlight::axes;
-use airlight::fog::droplets::Droplets;
-use airlight::fog::visibility::{Contrast, extinction_per_m};
-use airlight::fog::{Fog, Ground, Layer, Light, Profile, Scattering, Sun, legacy};
-use airlight::spectrum::Spectrum;
 use airlight_render::Control;
 use airlight_render::frame::{Intrinsics, PixelCentres};
 use airlight_render::input::{
-    DepthMap, DepthMeaning, DepthOptions, LightReference, Picture, SampleBits, Unknown, read_depth,
+    DepthMeaning, DepthOptions, LightReference, Picture, SampleBits, Unknown, read_depth,
     read_picture,
 };
 use airlight_render::output::{PictureFormat, PictureOptions, Written, exr, png, write_picture};
-use airlight_render::overlay::{Ambient, Channels, Overlay, Veil, estimate_ambient};
+use airlight_render::overlay::{Channels, Overlay};
 use airlight_render::tone::ToneMapper;
-use std::f32::consts::PI;
 
 /// Runs the command.
 ///
@@ -71,8 +67,8 @@ pub fn run(args: &OverlayArgs) -> Result<(), CliError> {
     let depth = read_depth(depth_file, &options)?;
     depth.check_against(&picture)?;
     let camera = camera(args, &picture)?;
-    let (ambient, how) = ambient(args, &picture, &depth)?;
-    let veil = veil(args, ambient)?;
+    let (ambient, how) = veil::ambient(args, &picture, &depth)?;
+    let veil = veil::veil(args, ambient)?;
     let channels = match args.layers {
         true => Channels::Layers,
         false => Channels::Picture,
@@ -161,68 +157,6 @@ fn camera(args: &OverlayArgs, picture: &Picture) -> Result<Intrinsics, CliError>
         None => Intrinsics::from_horizontal_fov(size, args.fov.unwrap_or(60.0))?,
     };
     Ok(camera.looking(args.camera_azimuth, args.camera_elevation, args.camera_roll)?)
-}
-
-/// The ambient light, and where it is from.
-fn ambient(
-    args: &OverlayArgs,
-    picture: &Picture,
-    depth: &DepthMap,
-) -> Result<(Spectrum<3>, &'static str), CliError> {
-    if args.ambient != "auto" {
-        let given = parse::three_numbers(&args.ambient)
-            .map_err(|right| CliError::usage(format!("--ambient {right}, or auto")))?;
-        return Ok((Spectrum(given.map(|v| v as f32)), "as given"));
-    }
-    let (colour, how) = estimate_ambient(picture, depth);
-    let how = match how {
-        Ambient::Sky => "from the sky of the picture",
-        Ambient::DarkChannel => "from the picture's dark channel",
-    };
-    Ok((colour, how))
-}
-
-fn veil(args: &OverlayArgs, ambient: Spectrum<3>) -> Result<Veil, CliError> {
-    let contrast = match args.contrast.as_str() {
-        "0.02" => Contrast::TwoPercent,
-        _ => Contrast::FivePercent,
-    };
-    let extinction = extinction_per_m(args.visibility_m, contrast);
-    let profile = match args.model {
-        ModelArg::Uniform => Profile::Uniform,
-        ModelArg::Height => Profile::Exponential {
-            reference_height_m: 0.0,
-            scale_height_m: args.scale_height_m,
-        },
-        ModelArg::Clamped => Profile::Clamped {
-            base_height_m: args.base_height_m,
-            scale_height_m: args.scale_height_m,
-        },
-        ModelArg::Slab => Profile::Slab {
-            top_height_m: args.top_m,
-        },
-        ModelArg::Exp2 => {
-            let density =
-                legacy::exponential_squared_density_per_m(args.visibility_m, contrast.value());
-            return Ok(Veil::ExponentialSquared(density, ambient));
-        }
-        ModelArg::Linear => return Ok(Veil::Linear(0.0, args.visibility_m, ambient)),
-        ModelArg::FoggyCityscapes => return Ok(Veil::Encoded(extinction, ambient)),
-    };
-    let sun = args.sun_elevation.map(|elevation| Sun {
-        direction: axes::direction(args.sun_azimuth, elevation),
-        irradiance: ambient * (PI * args.sun_strength as f32),
-    });
-    let light = Light {
-        sun,
-        ambient,
-        ground_albedo: Spectrum::splat(args.ground_albedo as f32),
-    };
-    let matter = Droplets::from(args.droplets).matter(extinction);
-    let layers = [Layer { profile, matter }];
-    let fog = Fog::new(&layers, Ground::FLAT, light, Scattering::Multiple)
-        .map_err(|error| CliError::usage(error.to_string()))?;
-    Ok(Veil::Fog(Box::new(fog)))
 }
 
 fn write(
