@@ -1,0 +1,260 @@
+//! A value of ours beside a reference, many times, and what that says.
+
+use serde::Serialize;
+use std::fmt;
+
+/// A family of checks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Suite {
+    /// Skies against a Monte Carlo, SASKTRAN2 and libRadtran, from tables.
+    Tables,
+    /// Other models of the sky beside ours: how far apart, not who is right.
+    Peers,
+    /// The sky measured on 27 May 2013.
+    Measured,
+}
+
+impl Suite {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Tables, Self::Peers, Self::Measured];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Tables => "tables",
+            Self::Peers => "peers",
+            Self::Measured => "measured",
+        }
+    }
+}
+
+/// What an error is counted in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Unit {
+    /// `ours / reference - 1`, percent.
+    Percent,
+    /// `ours - reference`, mW m^-2 sr^-1 nm^-1 (values in W m^-2 sr^-1 nm^-1).
+    Milliwatts,
+}
+
+impl fmt::Display for Unit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Percent => "%",
+            Self::Milliwatts => "mW/(m2 sr nm)",
+        })
+    }
+}
+
+/// Which value it is: a direction of the sky from the ground, at a wavelength. Degrees; relative azimuth 0 is towards the sun.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct At {
+    /// Sun's angle from the zenith, degrees.
+    pub sun_zenith_deg: f64,
+    /// View's angle from the zenith, degrees.
+    pub view_zenith_deg: f64,
+    /// Azimuth of the view from the sun's, degrees.
+    pub relative_azimuth_deg: f64,
+    /// Wavelength, nm.
+    pub wavelength_nm: f64,
+}
+
+impl At {
+    /// Angle between view and sun, degrees.
+    pub fn from_sun_deg(&self) -> f64 {
+        let [s, v, a] = [
+            self.sun_zenith_deg,
+            self.view_zenith_deg,
+            self.relative_azimuth_deg,
+        ]
+        .map(f64::to_radians);
+        let cosine = s.cos() * v.cos() + s.sin() * v.sin() * a.cos();
+        cosine.clamp(-1.0, 1.0).acos().to_degrees()
+    }
+}
+
+impl fmt::Display for At {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "sun zenith {:.1}, view zenith {:.1}, azimuth {:.1} from the sun, {} nm",
+            self.sun_zenith_deg,
+            self.view_zenith_deg,
+            self.relative_azimuth_deg,
+            self.wavelength_nm
+        )
+    }
+}
+
+/// One value of ours beside a reference.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Row {
+    /// Which value.
+    #[serde(flatten)]
+    pub at: At,
+    /// Ours.
+    pub ours: f64,
+    /// The other.
+    pub reference: f64,
+    /// Standard error of the difference, in the unit of the values: 0 where none is stated.
+    pub standard_error: f64,
+}
+
+/// Many values beside one reference.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Check {
+    /// Family.
+    pub suite: Suite,
+    /// What is compared: the light and the air.
+    pub what: String,
+    /// With what.
+    pub against: String,
+    /// What errors are counted in.
+    pub unit: Unit,
+    /// What no row's error may exceed, beyond three standard errors: the claim. None where nothing is claimed.
+    pub limit: Option<f64>,
+    /// What the root of the mean square may not exceed. None where nothing is claimed of it.
+    pub limit_of_rms: Option<f64>,
+    /// The values.
+    #[serde(skip)]
+    pub rows: Vec<Row>,
+}
+
+/// What the errors of a check come to, in its unit.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Statistics {
+    /// Number of values.
+    pub count: usize,
+    /// Mean error.
+    pub mean: f64,
+    /// Root of the mean square.
+    pub rms: f64,
+    /// Error that 95 % of the values stay within.
+    pub percentile_95: f64,
+    /// Largest error, with its sign.
+    pub worst: f64,
+    /// Where that is.
+    pub worst_at: At,
+    /// Root mean square of the standard errors: noise that is not ours to mend.
+    pub noise: f64,
+}
+
+impl Check {
+    /// Error of a row.
+    pub fn error(&self, row: &Row) -> f64 {
+        match self.unit {
+            Unit::Percent => 100.0 * (row.ours / row.reference - 1.0),
+            Unit::Milliwatts => 1e3 * (row.ours - row.reference),
+        }
+    }
+
+    /// Standard error of a row, in the unit of errors.
+    pub fn noise(&self, row: &Row) -> f64 {
+        match self.unit {
+            Unit::Percent => 100.0 * row.standard_error / row.reference,
+            Unit::Milliwatts => 1e3 * row.standard_error,
+        }
+    }
+
+    /// What the errors come to; `None` without rows.
+    pub fn statistics(&self) -> Option<Statistics> {
+        let worst_row = self
+            .rows
+            .iter()
+            .max_by(|a, b| self.error(a).abs().total_cmp(&self.error(b).abs()))?;
+        let n = self.rows.len() as f64;
+        let mean_of = |of: &dyn Fn(&Row) -> f64| self.rows.iter().map(of).sum::<f64>() / n;
+        let mut sizes: Vec<f64> = self.rows.iter().map(|row| self.error(row).abs()).collect();
+        sizes.sort_by(f64::total_cmp);
+        let index = (0.95 * n).ceil() as usize;
+        Some(Statistics {
+            count: self.rows.len(),
+            mean: mean_of(&|row| self.error(row)),
+            rms: mean_of(&|row| self.error(row).powi(2)).sqrt(),
+            percentile_95: sizes[index.clamp(1, sizes.len()) - 1],
+            worst: self.error(worst_row),
+            worst_at: worst_row.at,
+            noise: mean_of(&|row| self.noise(row).powi(2)).sqrt(),
+        })
+    }
+
+    /// Whether all that is claimed is true.
+    pub fn holds(&self) -> bool {
+        let rms = |limit| self.statistics().is_some_and(|s| s.rms <= limit);
+        self.broken().is_none() && self.limit_of_rms.is_none_or(rms)
+    }
+
+    /// The row that breaks the claim by most, if any does.
+    pub fn broken(&self) -> Option<&Row> {
+        let limit = self.limit?;
+        let excess = |row: &Row| self.error(row).abs() - limit - 3.0 * self.noise(row);
+        self.rows
+            .iter()
+            .filter(|row| excess(row) > 0.0 || excess(row).is_nan())
+            .max_by(|a, b| excess(a).total_cmp(&excess(b)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn check(values: &[(f64, f64, f64)], unit: Unit) -> Check {
+        let at = At {
+            sun_zenith_deg: 60.0,
+            view_zenith_deg: 0.0,
+            relative_azimuth_deg: 0.0,
+            wavelength_nm: 550.0,
+        };
+        Check {
+            suite: Suite::Tables,
+            what: "sky".into(),
+            against: "truth".into(),
+            unit,
+            limit: Some(1.0),
+            limit_of_rms: None,
+            rows: values
+                .iter()
+                .map(|&(ours, reference, standard_error)| Row {
+                    at,
+                    ours,
+                    reference,
+                    standard_error,
+                })
+                .collect(),
+        }
+    }
+
+    #[test]
+    fn errors_are_counted_in_their_unit() {
+        let values = [(1.01, 1.0, 0.0), (1.98, 2.0, 0.02)];
+        let percent = check(&values, Unit::Percent);
+        let s = percent.statistics().unwrap();
+        assert!(s.mean.abs() < 1e-9 && (s.rms - 1.0).abs() < 1e-9);
+        assert!((s.noise - 0.5f64.sqrt()).abs() < 1e-9);
+        let absolute = check(&values, Unit::Milliwatts).statistics().unwrap();
+        assert!((absolute.mean + 5.0).abs() < 1e-9 && (absolute.worst + 20.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn noise_excuses_and_nonsense_does_not() {
+        assert!(
+            check(&[(1.02, 1.0, 0.004)], Unit::Percent)
+                .broken()
+                .is_none()
+        );
+        assert!(
+            check(&[(1.02, 1.0, 0.003)], Unit::Percent)
+                .broken()
+                .is_some()
+        );
+        assert!(
+            check(&[(f64::NAN, 1.0, 0.1)], Unit::Percent)
+                .broken()
+                .is_some()
+        );
+        assert!(check(&[], Unit::Percent).statistics().is_none());
+    }
+}
