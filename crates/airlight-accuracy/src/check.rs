@@ -27,6 +27,15 @@ impl Suite {
             Self::Measured => "measured",
         }
     }
+
+    /// What it is about.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Tables => "Skies against tables of other solvers",
+            Self::Peers => "Other models of the sky beside ours (how far apart, not who is right)",
+            Self::Measured => "The sky measured at Ithaca on 27 May 2013",
+        }
+    }
 }
 
 /// What an error is counted in.
@@ -178,6 +187,11 @@ impl Check {
             worst_at: worst_row.at,
             noise: mean_of(&|row| self.noise(row).powi(2)).sqrt(),
         })
+    }
+
+    /// Whether anything is claimed.
+    pub fn claims(&self) -> bool {
+        self.limit.is_some() || self.limit_of_rms.is_some()
     }
 
     /// Whether all that is claimed is true.

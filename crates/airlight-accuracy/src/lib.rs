@@ -9,6 +9,7 @@
 
 pub mod check;
 pub mod measured;
+pub mod report;
 pub mod skies;
 pub mod solved;
 pub mod table;

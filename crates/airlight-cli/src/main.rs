@@ -5,8 +5,9 @@
 //! - [`args`]: every option of every command.
 //! - [`interrupt`], [`progress`], [`report`]: Ctrl-C, bars on standard error, text on standard output.
 //! - [`atmosphere`], [`scene`], [`light`]: what is asked for, from options to the solver; sums over the sky.
-//! - [`sky`], [`fog`] and [`probe`]: the commands.
+//! - [`sky`], [`fog`], [`probe`] and [`accuracy`]: the commands.
 
+mod accuracy;
 mod args;
 mod atmosphere;
 mod error;
@@ -46,6 +47,7 @@ fn run(cli: &Cli) -> Result<(), CliError> {
         Command::Sky(args) => sky::run(args),
         Command::Fog(args) => fog::run(args),
         Command::Probe(args) => probe::run(args),
+        Command::Accuracy(args) => accuracy::run(args),
         Command::Atmospheres(args) => atmosphere::list(args),
     }
 }

@@ -1,7 +1,10 @@
 //! Text on standard output and standard error, written so that nothing ever panics.
 
 use crate::error::CliError;
+use crate::interrupt;
+use airlight_render::output::AtomicFile;
 use std::io::Write;
+use std::path::Path;
 use std::time::Duration;
 
 /// Writes a text to standard output.
@@ -13,6 +16,19 @@ pub fn print(text: &str) -> Result<(), CliError> {
     out.write_all(text.as_bytes())
         .and_then(|()| out.flush())
         .map_err(|error| CliError::from_stdout(&error))
+}
+
+/// Writes a text to a file, which appears whole or not at all.
+///
+/// # Errors
+/// [`CliError`] where the file cannot be written.
+pub fn write(path: &Path, text: &str) -> Result<(), CliError> {
+    let _writing = interrupt::start_writing()?;
+    let file = AtomicFile::create(path)?;
+    file.file().write_all(text.as_bytes()).map_err(|error| {
+        CliError::failure(format!("cannot write `{}`: {error}", path.display()))
+    })?;
+    Ok(file.commit()?)
 }
 
 /// Writes a remark to standard error; where that is gone there is nobody to read it.

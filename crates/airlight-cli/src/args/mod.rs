@@ -1,5 +1,6 @@
 //! Every option of every command.
 
+mod accuracy;
 mod air;
 mod fog;
 mod overlay;
@@ -7,6 +8,7 @@ mod picture;
 mod place;
 mod probe;
 
+pub use accuracy::{AccuracyArgs, ReportArg};
 pub use air::{AirArgs, ScatteringArg};
 pub use fog::FogArgs;
 pub use overlay::{DepthKindArg, HolesArg, ModelArg, OverlayArgs};
@@ -53,6 +55,8 @@ pub enum Command {
     Fog(Box<OverlayArgs>),
     /// Tell the spectral radiance of the sky along given directions, and the light of sun and sky, in numbers.
     Probe(Box<ProbeArgs>),
+    /// Tell how right the solvers are, beside measurement and other people's codes.
+    Accuracy(AccuracyArgs),
     /// List the atmospheres that can be asked for by name, or tell what one is made of.
     Atmospheres(AtmospheresArgs),
 }

@@ -14,8 +14,6 @@ use crate::interrupt;
 use crate::report;
 use crate::scene::Scene;
 use airlight_render::output::AtomicFile;
-use std::io::Write;
-use std::path::Path;
 use values::Answer;
 
 /// Runs the command.
@@ -44,16 +42,7 @@ pub fn run(args: &ProbeArgs) -> Result<(), CliError> {
         FormatArg::Table => table::text(&answer),
     };
     match &args.output {
-        Some(path) => write(path, &text),
+        Some(path) => report::write(path, &text),
         None => report::print(&text),
     }
-}
-
-fn write(path: &Path, text: &str) -> Result<(), CliError> {
-    let _writing = interrupt::start_writing()?;
-    let file = AtomicFile::create(path)?;
-    file.file().write_all(text.as_bytes()).map_err(|error| {
-        CliError::failure(format!("cannot write `{}`: {error}", path.display()))
-    })?;
-    Ok(file.commit()?)
 }

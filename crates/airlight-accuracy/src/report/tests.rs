@@ -1,0 +1,42 @@
+use super::*;
+use crate::check::{At, Row, Suite, Unit};
+
+fn checks() -> Vec<Check> {
+    let row = |view_zenith_deg, ours| Row {
+        at: At {
+            sun_zenith_deg: 60.0,
+            view_zenith_deg,
+            relative_azimuth_deg: 0.0,
+            wavelength_nm: 550.0,
+        },
+        ours,
+        reference: 1.0,
+        standard_error: 0.0,
+    };
+    vec![Check {
+        suite: Suite::Tables,
+        what: "all orders, <air>".into(),
+        against: "truth".into(),
+        unit: Unit::Percent,
+        limit: Some(1.0),
+        limit_of_rms: None,
+        rows: vec![row(10.0, 1.005), row(80.0, 1.03)],
+    }]
+}
+
+#[test]
+fn a_broken_claim_is_told_in_every_form() {
+    let checks = checks();
+    let text = text(&checks);
+    assert!(
+        text.contains("worst 3.00") && text.contains("view zenith 80.0"),
+        "{text}"
+    );
+    assert!(text.contains("1 of 1 claims do not hold"));
+    let json: serde_json::Value = serde_json::from_str(&json(&checks, true).unwrap()).unwrap();
+    assert_eq!(json["holds"], false);
+    assert_eq!(json["checks"][0]["statistics"]["count"], 2);
+    assert_eq!(json["checks"][0]["rows"][1]["view_zenith_deg"], 80.0);
+    let page = html(&checks).unwrap();
+    assert!(page.contains("class=\"no\"") && page.contains("&lt;air&gt;") && page.contains("<svg"));
+}

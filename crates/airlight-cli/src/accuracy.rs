@@ -1,0 +1,66 @@
+//! `airlight accuracy`: how right the solvers are, beside measurement and other people's codes.
+
+use crate::args::{AccuracyArgs, ReportArg};
+use crate::error::CliError;
+use crate::progress::Busy;
+use crate::report;
+use airlight_accuracy::report::{html, json, text};
+use airlight_accuracy::{Check, Suite, run as make};
+use airlight_render::output::AtomicFile;
+
+/// Runs the command.
+///
+/// # Errors
+/// [`CliError`]: what was wrong with the options, what failed, or that a claim does not hold.
+pub fn run(args: &AccuracyArgs) -> Result<(), CliError> {
+    let format = format(args)?;
+    if args.rows && format != ReportArg::Json {
+        return Err(CliError::usage(
+            "--rows goes into JSON: give --format json, or --output a name that ends in .json",
+        ));
+    }
+    if let Some(path) = &args.output {
+        // Told before anything is computed.
+        AtomicFile::create(path)?;
+    }
+    let suites: Vec<Suite> = match args.suites.as_slice() {
+        [] => Suite::ALL.to_vec(),
+        some => some.iter().map(|&suite| suite.into()).collect(),
+    };
+    let busy = Busy::with("comparing");
+    let checks = make(&suites);
+    drop(busy);
+    let wrong = |error: &dyn std::fmt::Display| {
+        CliError::failure(format!("cannot write the report: {error}"))
+    };
+    let text = match format {
+        ReportArg::Text => text(&checks),
+        ReportArg::Json => json(&checks, args.rows).map_err(|error| wrong(&error))?,
+        ReportArg::Html => html(&checks).map_err(|error| wrong(&error))?,
+    };
+    match &args.output {
+        Some(path) => report::write(path, &text)?,
+        None => report::print(&text)?,
+    }
+    match checks.iter().filter(|check| !check.holds()).count() {
+        0 => Ok(()),
+        n => Err(CliError::failure(format!(
+            "{n} of {} comparisons break a claim of the documentation",
+            checks.iter().filter(|check| Check::claims(check)).count()
+        ))),
+    }
+}
+
+fn format(args: &AccuracyArgs) -> Result<ReportArg, CliError> {
+    let ending = args.output.as_ref().and_then(|path| path.extension());
+    match (args.format, ending.and_then(|ending| ending.to_str())) {
+        (Some(format), _) => Ok(format),
+        (None, Some("html" | "htm")) => Ok(ReportArg::Html),
+        (None, Some("json")) => Ok(ReportArg::Json),
+        (None, Some("txt")) => Ok(ReportArg::Text),
+        (None, _) if args.output.is_none() => Ok(ReportArg::Text),
+        (None, _) => Err(CliError::usage(
+            "--output must end in .html, .json or .txt, or --format say how the report is written",
+        )),
+    }
+}
