@@ -284,3 +284,41 @@ fn thick_fog_takes_its_own_colour() {
         }
     }
 }
+
+#[test]
+fn the_ground_under_fog_is_lit_through_it() {
+    let sky = sky("average", 25.0, 0.0);
+    let view = sky.view(120.0, direction(180.0, 25.0));
+    let down = direction(0.0, -90.0);
+    let albedo = &sky.atmosphere().planet.ground_albedo;
+    let albedo = Spectrum::<3>::from_fn(|lane| albedo.at(sky.grid().wavelengths_nm()[lane]) as f32);
+    let ground = FoggySky::<3>::round_ground(&view);
+    let share = |visibility_m: f64, scattering| {
+        let fog = [layer(visibility_m, slab(100.0))];
+        let foggy = FoggySky::new(&view, Channels::SPECTRAL, &fog, ground, scattering).unwrap();
+        if let Some(irradiance) = foggy.fog().ground_irradiance() {
+            // The ground as the fog has it, seen through fog and air.
+            let lit = irradiance * albedo / std::f32::consts::PI;
+            let whole = foggy.optics(down, 120.0).apply(lit);
+            for lane in 0..3 {
+                let off = (foggy.sky(down)[lane] / whole[lane] - 1.0).abs();
+                assert!(off < 0.01, "{visibility_m} m, lane {lane}: {off}");
+            }
+        }
+        let added = foggy.optics(down, 120.0);
+        let clear = view.along(down, None);
+        let through = (foggy.sky(down) - added.path_radiance) / added.transmittance;
+        f64::from(through[1] / (clear.ground[1] / clear.transmittance[1]))
+    };
+    for visibility_m in [50.0, 400.0, 1e5] {
+        let [solved, estimated] =
+            [Scattering::Multiple, Scattering::Single].map(|orders| share(visibility_m, orders));
+        println!(
+            "visibility {visibility_m} m: ground's light {solved:.3}, by two streams {estimated:.3}"
+        );
+        assert!((0.0..1.01).contains(&solved), "{solved}");
+        assert!(visibility_m < 1e5 || solved > 0.98, "{solved}");
+        // The slant of the sun is not in the estimate: thick fog takes more of a low sun's light.
+        assert!(solved < estimated * 1.02 && solved > 0.5 * estimated);
+    }
+}

@@ -18,8 +18,9 @@ use std::sync::Arc;
 /// The fog's share of a line is [`Fog`]'s, with its errors. What this adds: fog and air in the right order, against lines
 /// cut into 500 slices median 0.04 % of the path radiance, 90 % below 0.22 %, worst 1.3 % in haze that fills the lower
 /// kilometre and 0.6 % elsewhere (the test `fog_and_air_lie_in_their_order`); the table of [`AerialPerspective`]. The
-/// ground under the fog is dimmed by a two-stream estimate, whatever the fog's own order of scattering. Left out: the shadow of the fog on the air in and under it, which matters where fog is
-/// hardly thicker than air; the fog's own light on the air above it.
+/// ground under the fog is lit as the fog's own solution says, or by a two-stream estimate where light is scattered once only.
+/// Left out: the shadow of the fog on the air in and under it, which matters where fog is hardly thicker than air; the fog's own
+/// light on the air above it.
 pub struct FoggySky<'a, const N: usize> {
     view: View<'a>,
     converter: Converter<N>,
@@ -125,15 +126,14 @@ impl<'a, const N: usize> FoggySky<'a, N> {
         let converter = Converter::new(view, channels)?;
         let light = surroundings.top.on_fog(view, &converter, scattering);
         let wavelengths_nm = converter.wavelengths_nm();
-        let albedo = &view.sky().atmosphere().planet.ground_albedo;
-        let albedo = wavelengths_nm.map(|nm| albedo.at(nm));
+        let fog = Fog::at_wavelengths_nm(layers, ground, light, scattering, wavelengths_nm)?;
         Ok(Self {
             clear: surroundings.clear.clone(),
             first: converter.used().start,
             aerial: AerialPerspective::new(view, channels, f64::INFINITY)?,
-            fog: Fog::at_wavelengths_nm(layers, ground, light, scattering, wavelengths_nm)?,
             eye_height_m: view.radius_m() - view.bounds_m().0 + ground.height_m,
-            ground_share: light::share_on_ground(layers, &ground, albedo, &wavelengths_nm),
+            ground_share: light::share_on_ground(&fog, layers, &wavelengths_nm),
+            fog,
             converter,
             view: view.clone(),
         })

@@ -1,7 +1,7 @@
 //! The light that a sky sheds on a fog, and what of it reaches the ground under the fog.
 
 use super::channels::Converter;
-use crate::fog::{Ground, Layer, Light, Scattering, Sun};
+use crate::fog::{Fog, Ground, Layer, Light, Scattering, Sun};
 use crate::sky::{TableChannels, View};
 use crate::spectrum::Spectrum;
 use glam::DVec3;
@@ -94,15 +94,24 @@ pub(super) fn top_m<const N: usize>(layers: &[Layer<N>], ground: &Ground) -> f64
 
 /// The irradiance of the ground under a fog over that without it.
 ///
-/// Light that falls on the fog comes through by two-stream theory (Meador & Weaver 1980, quadrature: their table 1), and
+/// Where the fog's light is solved for, that solution says it. Else light that falls on the fog comes through by two-stream theory (Meador & Weaver 1980, quadrature: their table 1), and
 /// what the ground reflects comes back from the fog's underside: `t / (1 - albedo r)`. The slant of the sunlight is left
 /// out. It tends to 1 for thin fog, and to 1 for any fog over a white ground.
 pub(super) fn share_on_ground<const N: usize>(
+    fog: &Fog<N>,
     layers: &[Layer<N>],
-    ground: &Ground,
-    ground_albedo: [f64; N],
     wavelengths_nm: &[f64; N],
 ) -> Spectrum<N> {
+    let (ground, light) = (fog.ground(), fog.light());
+    if let Some(through) = fog.ground_irradiance() {
+        let level = |sun: &Sun<N>| sun.irradiance * sun.direction.y.max(0.0) as f32;
+        let sun = light.sun.as_ref().map_or(Spectrum::ZERO, level);
+        let without = sun + light.ambient * std::f32::consts::PI;
+        return Spectrum::from_fn(|lane| match without[lane] > 0.0 {
+            true => through[lane] / without[lane],
+            false => 1.0,
+        });
+    }
     Spectrum::from_fn(|lane| {
         let (mut depth, mut scattered, mut forward) = (0.0, 0.0, 0.0);
         for layer in layers {
@@ -117,7 +126,7 @@ pub(super) fn share_on_ground<const N: usize>(
             }
         }
         let (t, r) = two_streams(depth, scattered, forward);
-        (t / (1.0 - ground_albedo[lane] * r)) as f32
+        (t / (1.0 - f64::from(light.ground_albedo[lane]) * r)) as f32
     })
 }
 
