@@ -3,6 +3,8 @@
 mod air;
 mod fog;
 mod overlay;
+mod overlay_batch;
+mod overlay_vary;
 mod picture;
 mod place;
 mod probe;
