@@ -48,9 +48,15 @@ mod tests {
     #[test]
     fn draws_stay_what_they_are() {
         for (seed, picture, variant, option, expected) in [
-            (0, "0001", 1, "visibility", 0.0),
-            (0, "0001", 2, "visibility", 0.0),
-            (7, "street/\u{e9}t\u{e9}", 1, "sun-elevation", 0.0),
+            (0, "0001", 1, "visibility", 0.5924187492576692),
+            (0, "0001", 2, "visibility", 0.0998649442159063),
+            (
+                7,
+                "street/\u{e9}t\u{e9}",
+                1,
+                "sun-elevation",
+                0.1837321651840088,
+            ),
         ] {
             assert_eq!(part(seed, picture, variant, option), expected);
         }

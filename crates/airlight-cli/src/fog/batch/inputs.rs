@@ -75,6 +75,14 @@ pub fn find(args: &OverlayArgs) -> Result<Vec<Input>, CliError> {
             args.colour.display()
         )));
     }
+    if let Some([a, b]) = colours.array_windows().find(|[a, b]| a.parts == b.parts) {
+        return Err(CliError::usage(format!(
+            "`{}` and `{}` are both called `{}`: give a pattern such as 'rgb/*.png' that names one of them",
+            a.path.display(),
+            b.path.display(),
+            a.parts.join("/")
+        )));
+    }
     let depths = match &args.depth {
         None => Depths::Inside,
         Some(path) => Depths::new(path, &colours)?,

@@ -38,9 +38,7 @@ pub fn run(args: &OverlayArgs) -> Result<(), CliError> {
         Some(path) => path.clone(),
         None => plan.folder.join("manifest.jsonl"),
     };
-    for folder in [Some(plan.folder.as_path()), path.parent()] {
-        make_folder(folder)?;
-    }
+    make_folder(path.parent())?;
     let manifest = Manifest::open(&path)?;
     let tasks = match missing(args, &plan, &manifest) {
         Ok(tasks) => tasks,
