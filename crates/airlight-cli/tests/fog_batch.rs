@@ -1,86 +1,10 @@
-//! `airlight fog` over many pictures: pairs, resuming, variation, the manifest, and what is refused.
+//! `airlight fog` over many pictures: pairs, resuming, variation, the manifest.
 
 mod common;
 
-use common::{Folder, command, run, succeed};
-use serde_json::{Map, Value};
+use common::batch::*;
+use common::succeed;
 use std::collections::BTreeMap;
-use std::path::Path;
-
-/// A folder with pictures `rgb/NAME.png` and depths `depth/NAME.png`.
-fn pictures(names: &[&str]) -> Folder {
-    let folder = Folder::new();
-    for (number, name) in (1..).zip(names) {
-        picture(&folder.file(&format!("rgb/{name}.png")), (40, 30), number);
-        depth(&folder.file(&format!("depth/{name}.png")), (40, 30));
-    }
-    folder
-}
-
-fn picture(path: &Path, (width, height): (u32, u32), number: u8) {
-    std::fs::create_dir_all(path.parent().unwrap()).unwrap();
-    let colour = |x, y| image::Rgb([(x * 5) as u8, (y * 7) as u8, 20 * number]);
-    image::RgbImage::from_fn(width, height, colour)
-        .save(path)
-        .unwrap();
-}
-
-fn depth(path: &Path, (width, height): (u32, u32)) {
-    std::fs::create_dir_all(path.parent().unwrap()).unwrap();
-    let millimetres = |x, y| image::Luma([(2000 + 100 * x + 50 * y) as u16]);
-    image::ImageBuffer::from_fn(width, height, millimetres)
-        .save(path)
-        .unwrap();
-}
-
-const WORDS: &str = "fog rgb/*.png --depth depth/*.png --depth-scale 0.001 -o out/*.png";
-
-/// The lines of a manifest, by output.
-fn manifest(path: &Path) -> BTreeMap<String, Map<String, Value>> {
-    let text = std::fs::read_to_string(path).unwrap();
-    assert!(text.ends_with('\n'));
-    let lines: Vec<Map<String, Value>> = text
-        .lines()
-        .map(|line| serde_json::from_str(line).unwrap())
-        .collect();
-    let count = lines.len();
-    let by_output: BTreeMap<_, _> = lines
-        .into_iter()
-        .map(|line| (line["output"].as_str().unwrap().to_owned(), line))
-        .collect();
-    assert_eq!(by_output.len(), count, "an output has two lines");
-    by_output
-}
-
-/// The names in a subfolder, hidden ones too.
-fn names(folder: &Folder, below: &str) -> Vec<String> {
-    let mut names: Vec<String> = std::fs::read_dir(folder.file(below))
-        .unwrap()
-        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-        .collect();
-    names.sort();
-    names
-}
-
-fn bytes(folder: &Folder, name: &str) -> Vec<u8> {
-    std::fs::read(folder.file(name)).unwrap()
-}
-
-/// Runs what must fail, and returns the sentence.
-fn fails(folder: &Folder, words: &str, code: i32) -> String {
-    let output = run(folder, words);
-    let text = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(code), "{words}: {text}");
-    text
-}
-
-/// Runs what must be refused before anything is written.
-fn refused(folder: &Folder, words: &str, code: i32) -> String {
-    let before = folder.names();
-    let text = fails(folder, words, code);
-    assert_eq!(folder.names(), before, "{words} left something behind");
-    text
-}
 
 #[test]
 fn a_batch_makes_what_single_runs_make() {
@@ -179,6 +103,12 @@ fn pictures_made_otherwise_are_not_mixed_with_new_ones() {
     );
     assert_eq!(names(&folder, "out"), ["a.png", "manifest.jsonl"]);
     assert_eq!(bytes(&folder, "out/manifest.jsonl"), told);
+    let other = WORDS.replace("depth/*.png", "depth/b.png");
+    let text = fails(&folder, &format!("{other} --visibility-m 8"), 2);
+    assert!(
+        text.contains("depth was \"depth/a.png\", is \"depth/b.png\""),
+        "{text}"
+    );
     // More variants are no other options.
     let vary = format!("{WORDS} --vary visibility=5..9").replace("out/", "v/");
     succeed(&folder, &format!("{vary} --variants 1"));
@@ -289,211 +219,10 @@ fn a_picture_that_fails_does_not_stop_the_others() {
 }
 
 #[test]
-fn what_does_not_pair_is_refused_with_what_would_be_right() {
-    let folder = pictures(&["a", "b", "c"]);
-    std::fs::remove_file(folder.file("depth/b.png")).unwrap();
-    depth(&folder.file("depth/z.png"), (40, 30));
-    for words in [WORDS, "fog rgb --depth depth -o out --depth-scale 0.001"] {
-        let text = refused(&folder, &format!("{words} --visibility-m 8"), 1);
-        assert!(
-            text.contains("1 of 3 pictures have no depth")
-                && text.contains("`rgb/b.png`: there is no `depth/b"),
-            "{text}"
-        );
-    }
-    let output = run(
-        &folder,
-        &format!("{WORDS} --visibility-m 8 --skip-unpaired"),
-    );
-    assert!(output.status.success());
-    let text = String::from_utf8(output.stderr).unwrap();
-    assert!(text.contains("depth/z.png"), "{text}");
-    assert_eq!(names(&folder, "out"), ["a.png", "c.png", "manifest.jsonl"]);
-    std::fs::write(folder.file("depth/c.npy"), "").unwrap();
-    let text = fails(&folder, "fog rgb --depth depth -o out --visibility-m 8", 1);
-    assert!(text.contains("could both be its depth"), "{text}");
-}
-
-#[test]
-fn what_makes_no_sense_is_refused() {
-    let folder = pictures(&["a", "b"]);
-    picture(&folder.file("twice/a.png"), (40, 30), 1);
-    picture(&folder.file("twice/a.jpg"), (40, 30), 1);
-    std::fs::create_dir(folder.file("empty")).unwrap();
-    let depth = "--depth depth/a.png";
-    for (words, code, sentence) in [
-        (
-            "fog none/*.png -o out/*.png --visibility-m 8",
-            1,
-            "cannot read the folder",
-        ),
-        (
-            "fog rgb/*.tif -o out/*.png --visibility-m 8",
-            1,
-            "names no picture",
-        ),
-        ("fog empty -o out --visibility-m 8", 1, "names no picture"),
-        (
-            "fog rgb/*.png --depth depth/*_*.png -o out/*.png --visibility-m 8",
-            2,
-            "open parts",
-        ),
-        (
-            &format!("fog rgb/*.png {depth} -o out/*/*.png --visibility-m 8"),
-            2,
-            "open parts",
-        ),
-        (
-            &format!("fog rgb/*.png {depth} -o out/***.png --visibility-m 8"),
-            2,
-            "put text between",
-        ),
-        (
-            &format!("fog rgb/*.png {depth} -o out.png --visibility-m 8"),
-            2,
-            "many pictures cannot all be",
-        ),
-        (
-            &format!("fog rgb/*.png {depth} -o out/*.tif --visibility-m 8"),
-            2,
-            "Known endings",
-        ),
-        (
-            &format!("fog rgb/*.png {depth} -o rgb/*.png --visibility-m 8"),
-            2,
-            "written over",
-        ),
-        (
-            &format!("fog rgb/*.png {depth} -o rgb/*_fog.png --visibility-m 8"),
-            2,
-            "the next time",
-        ),
-        (
-            &format!("fog twice/a.* {depth} -o out/a_*.png --vary visibility=8,9 --layers"),
-            2,
-            ".exr",
-        ),
-        (
-            &format!("fog twice/** {depth} -o out/x{{variant}}/** --visibility-m 8"),
-            2,
-            "Known endings",
-        ),
-        (
-            &format!("fog rgb {depth} -o out --visibility-m 8 --manifest twice/a.png"),
-            1,
-            "manifest of pictures",
-        ),
-        (
-            &format!("fog twice {depth} -o out --visibility-m 8"),
-            2,
-            "both called `a`",
-        ),
-        (&format!("{WORDS} --visibility-m 8 --jobs 0"), 2, "--jobs"),
-        (
-            &format!("{WORDS} --visibility-m 8 --variants 2"),
-            2,
-            "--vary",
-        ),
-        (
-            &format!("{WORDS} --vary visibility=500..50"),
-            2,
-            "smaller to a greater number: 50..500",
-        ),
-        (&format!("{WORDS} --vary visibility=-5..50"), 2, "above 0"),
-        (&format!("{WORDS} --vary visibility=0..50"), 2, "above 0"),
-        (&format!("{WORDS} --vary visibility=nan..50"), 2, "above 0"),
-        (
-            &format!("{WORDS} --vary visibility=cubic:5..50"),
-            2,
-            "uniform: and log:",
-        ),
-        (&format!("{WORDS} --vary visibility"), 2, "NAME=LOW..HIGH"),
-        (
-            &format!("{WORDS} --vary fogginess=1..2"),
-            2,
-            "visibility, scale-height, base-height",
-        ),
-        (
-            &format!("{WORDS} --vary sun-elevation=-5..20 --visibility-m 5"),
-            2,
-            "above 0",
-        ),
-        (
-            &format!("{WORDS} --vary sun-azimuth=0..20 --visibility-m 5"),
-            2,
-            "needs a sun",
-        ),
-        (
-            &format!("{WORDS} --vary base-height=log:0..20 --visibility-m 5"),
-            2,
-            "logarithms",
-        ),
-        (
-            &format!("{WORDS} --vary model=uniform,thick --visibility-m 5"),
-            2,
-            "foggy-cityscapes",
-        ),
-        (
-            &format!("{WORDS} --vary visibility=5..9 --vary visibility-m=5..9"),
-            2,
-            "twice",
-        ),
-        (
-            &format!("{WORDS} --vary visibility=5..9 --visibility-m 5"),
-            2,
-            "leave one out",
-        ),
-        (&format!("{WORDS} --vary top=5..9"), 2, "--visibility-m"),
-        (WORDS, 2, "--visibility-m"),
-    ] {
-        let text = refused(&folder, words, code);
-        assert!(text.contains(sentence), "{words}: {text}");
-    }
-    for name in ["x_y/z", "x/y_z"] {
-        picture(&folder.file(&format!("deep/{name}.png")), (40, 30), 1);
-    }
-    let words = format!("fog deep/*/*.png {depth} -o out/*_*.png --visibility-m 8");
-    let text = refused(&folder, &words, 2);
-    assert!(text.contains("would both become `out/x_y_z.png`"), "{text}");
-}
-
-#[cfg(unix)]
-#[test]
-fn folders_and_names_that_cannot_be_are_told() {
-    use std::os::unix::ffi::OsStrExt;
-    let folder = pictures(&["a"]);
-    std::fs::write(folder.file("file"), "").unwrap();
-    let words = format!("{WORDS} --visibility-m 8").replace("out/", "file/out/");
-    let text = refused(&folder, &words, 1);
-    assert!(text.contains("cannot make the folder `file/out`"), "{text}");
-    let words = format!("{WORDS} --visibility-m 8 --manifest rgb");
-    let text = fails(&folder, &words, 1);
-    assert!(text.contains("manifest `rgb`"), "{text}");
-    let odd = std::ffi::OsStr::from_bytes(b"\xff.png");
-    std::fs::copy(folder.file("rgb/a.png"), folder.file("rgb").join(odd)).unwrap();
-    let text = fails(&folder, &format!("{WORDS} --visibility-m 8"), 1);
-    assert!(text.contains("not Unicode"), "{text}");
-}
-
-#[test]
 fn names_that_need_escaping_are_told_as_they_are() {
     let name = "a \"quoted\" \\ \u{e9}t\u{e9}";
     let folder = pictures(&[name]);
     succeed(&folder, &format!("{WORDS} --visibility-m 8"));
     let lines = manifest(&folder.file("out/manifest.jsonl"));
     assert_eq!(lines[&format!("{name}.png")]["name"], name);
-}
-
-#[test]
-fn two_runs_do_not_work_on_one_manifest() {
-    let folder = pictures(&["a"]);
-    std::fs::create_dir(folder.file("out")).unwrap();
-    let held = std::fs::File::create(folder.file("out/manifest.jsonl")).unwrap();
-    held.lock().unwrap();
-    let output = command(&folder, &format!("{WORDS} --visibility-m 8"))
-        .output()
-        .unwrap();
-    let text = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(1), "{text}");
-    assert!(text.contains("another run"), "{text}");
 }

@@ -51,7 +51,7 @@ Examples:
 pub enum Command {
     /// Draw the sky: whole sphere, cube faces, fisheye or camera; as EXR, HDR, PNG or JPEG.
     Sky(Box<SkyArgs>),
-    /// Lay fog over a picture that exists, by its depth.
+    /// Lay fog over pictures that exist, by their depth: one, or whole folders.
     Fog(Box<OverlayArgs>),
     /// Tell the spectral radiance of the sky along given directions, and the light of sun and sky, in numbers.
     Probe(Box<ProbeArgs>),

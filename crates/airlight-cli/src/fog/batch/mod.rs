@@ -14,6 +14,7 @@ use crate::interrupt;
 use crate::report::{self, seconds};
 use inputs::{Input, Place, listed};
 use manifest::{Manifest, is_whole};
+use pattern::Pattern;
 use plan::Plan;
 use record::Which;
 use std::path::{Path, PathBuf};
@@ -25,7 +26,8 @@ use work::{Outcome, Task};
 /// # Errors
 /// [`CliError::Usage`] for a pattern that is none.
 pub fn is_asked_for(args: &OverlayArgs) -> Result<bool, CliError> {
-    Ok(args.batch.is_given() || !matches!(Place::to_read(&args.colour)?, Place::File(_)))
+    let many = !matches!(Place::to_read(&args.colour)?, Place::File(_));
+    Ok(many || args.batch.is_given() || Pattern::new(&args.output)?.is_some())
 }
 
 /// Makes them.

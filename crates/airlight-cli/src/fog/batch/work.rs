@@ -149,12 +149,14 @@ impl Batch<'_> {
             let options = self.plan.options(self.args, input, *variant);
             let made = self.make_one(&subject, input, *variant, &options, &path);
             match made {
-                Ok(()) => self.outcome().made += 1,
+                Ok(()) => {
+                    self.outcome().made += 1;
+                    self.bar.one_more();
+                }
                 // The options make no fog.
                 Err(error @ CliError::Usage(_)) => self.failed(input, *variant, path, &error)?,
                 Err(error) => return Err(error),
             }
-            self.bar.one_more();
         }
         Ok(())
     }
@@ -201,6 +203,7 @@ impl Batch<'_> {
         let name = self.manifest.name_of(&path);
         self.manifest
             .add(&name, true, &Which::new(input, variant, &name).failed(why))?;
+        self.bar.one_more();
         let mut outcome = self.outcome();
         outcome
             .failures
