@@ -160,6 +160,11 @@ fn what_makes_no_sense_is_refused() {
             2,
             "leave one out",
         ),
+        (
+            &format!("{WORDS} --vary scale-height=5..9 --visibility-m 5"),
+            2,
+            "belongs to --model height or clamped",
+        ),
         (&format!("{WORDS} --vary top=5..9"), 2, "--visibility-m"),
         (WORDS, 2, "--visibility-m"),
     ] {

@@ -12,6 +12,7 @@ mod probe;
 pub use air::{AirArgs, ScatteringArg};
 pub use fog::FogArgs;
 pub use overlay::{DepthKindArg, HolesArg, ModelArg, OverlayArgs};
+pub use overlay_vary::Variation;
 pub use picture::{
     ColorSpaceArg, CompressionArg, PictureArgs, PrecisionArg, ProjectionArg, SunDiscArg, ToneArg,
 };

@@ -229,6 +229,14 @@ fn kinds<T: ValueEnum>(name: &str, text: &str) -> Result<Vec<T>, String> {
 }
 
 impl Variation {
+    /// The models that it draws from, where it is of the model.
+    pub fn models(&self) -> Option<&[ModelArg]> {
+        match &self.draw {
+            Draw::Models(models) => Some(models),
+            _ => None,
+        }
+    }
+
     /// Sets the option to what `part`, from 0 to 1 (exclusive), of the way through its range or list says.
     pub fn set(&self, args: &mut OverlayArgs, part: f64) {
         match &self.draw {

@@ -3,7 +3,7 @@
 use super::draw;
 use super::inputs::{self, Input, Place, must_have};
 use super::pattern::Pattern;
-use crate::args::OverlayArgs;
+use crate::args::{ModelArg, OverlayArgs, Variation};
 use crate::error::CliError;
 use crate::fog::{picture, written_over};
 use airlight_render::output::PictureFormat;
@@ -156,6 +156,26 @@ fn check_variation(args: &OverlayArgs) -> Result<(), CliError> {
             ));
         }
         _ => {}
+    }
+    let own = [args.model];
+    let models = args.batch.vary.iter().find_map(Variation::models);
+    let models = models.unwrap_or(&own);
+    let of_models = [
+        ("scale-height", &[ModelArg::Height, ModelArg::Clamped][..]),
+        ("base-height", &[ModelArg::Clamped]),
+        ("top", &[ModelArg::Slab]),
+    ];
+    for (name, its) in of_models {
+        if names.contains(name) && !models.iter().any(|model| its.contains(model)) {
+            let its: Vec<String> = its
+                .iter()
+                .map(|model| format!("{model:?}").to_lowercase())
+                .collect();
+            return Err(CliError::usage(format!(
+                "--vary {name} would change nothing: it belongs to --model {}",
+                its.join(" or ")
+            )));
+        }
     }
     let sun = args.sun_elevation.is_some() || names.contains("sun-elevation");
     let of_sun = ["sun-azimuth", "sun-strength"];
