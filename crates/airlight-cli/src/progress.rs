@@ -69,3 +69,29 @@ impl Drop for Busy {
         self.0.finish_and_clear();
     }
 }
+
+/// How many of many pictures are done.
+pub struct PicturesBar(ProgressBar);
+
+impl PicturesBar {
+    /// A bar for so many pictures.
+    pub fn new(count: u64) -> Self {
+        let bar = ProgressBar::new(count);
+        let style = ProgressStyle::with_template(
+            "{pos} of {len} pictures {wide_bar} {per_sec}, {eta} left",
+        );
+        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        Self(bar)
+    }
+
+    /// One more is done.
+    pub fn one_more(&self) {
+        self.0.inc(1);
+    }
+}
+
+impl Drop for PicturesBar {
+    fn drop(&mut self) {
+        self.0.finish_and_clear();
+    }
+}

@@ -102,3 +102,51 @@ fn a_stopped_sequence_keeps_its_whole_frames_and_goes_on() {
     );
     assert_eq!(folder.names(), ["a.0001.png", "a.0002.png", "a.0003.png"]);
 }
+
+#[test]
+fn a_stopped_batch_keeps_its_whole_pictures_and_goes_on() {
+    let folder = Folder::new();
+    let (width, height) = (300, 200);
+    for place in ["rgb", "depth"] {
+        std::fs::create_dir(folder.file(place)).unwrap();
+    }
+    let picture = image::RgbImage::from_fn(width, height, |x, y| image::Rgb([x as u8, y as u8, 9]));
+    let depth =
+        image::ImageBuffer::from_fn(width, height, |x, y| image::Luma([(9 * x + y) as u16 + 1]));
+    for number in 10..30 {
+        picture
+            .save(folder.file(&format!("rgb/{number}.png")))
+            .unwrap();
+        depth
+            .save(folder.file(&format!("depth/{number}.png")))
+            .unwrap();
+    }
+    let words =
+        "fog rgb --depth depth --depth-scale 0.01 --model height --vary visibility=5..50 -o out";
+    let child = spawn(&folder, words);
+    let start = Instant::now();
+    let made = || -> Vec<String> {
+        let names = std::fs::read_dir(folder.file("out")).into_iter().flatten();
+        let names = names.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+        names
+            .filter(|name| !name.starts_with('.') && name.ends_with(".png"))
+            .collect()
+    };
+    while made().is_empty() {
+        assert!(start.elapsed() < Duration::from_secs(120));
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    let (code, error) = stop(child, Signal::SIGINT);
+    assert_eq!(code, Some(130), "{error}");
+    let done = made().len();
+    let all = std::fs::read_dir(folder.file("out")).unwrap().count();
+    assert_eq!(all, done + 1, "pictures and manifest, nothing else");
+    let manifest = || std::fs::read_to_string(folder.file("out/manifest.jsonl")).unwrap();
+    assert_eq!(manifest().lines().count(), done);
+    let text = common::succeed(&folder, words);
+    assert!(
+        text.contains(&format!("{} of 20 pictures made", 20 - done)),
+        "{text}"
+    );
+    assert_eq!((made().len(), manifest().lines().count()), (20, 20));
+}

@@ -3,9 +3,11 @@
 use crate::parse;
 use airlight::fog::droplets::Droplets;
 use clap::{Args, ValueEnum};
+use serde::Serialize;
 
 /// Kinds of fog by their drops.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum DropletsArg {
     /// Young fog over land, smog: 5 micrometres.
     Fine,

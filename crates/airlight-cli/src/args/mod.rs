@@ -4,6 +4,8 @@ mod accuracy;
 mod air;
 mod fog;
 mod overlay;
+mod overlay_batch;
+mod overlay_vary;
 mod picture;
 mod place;
 mod probe;
@@ -12,6 +14,7 @@ pub use accuracy::{AccuracyArgs, ReportArg};
 pub use air::{AirArgs, ScatteringArg};
 pub use fog::FogArgs;
 pub use overlay::{DepthKindArg, HolesArg, ModelArg, OverlayArgs};
+pub use overlay_vary::Variation;
 pub use picture::{
     ColorSpaceArg, CompressionArg, PictureArgs, PrecisionArg, ProjectionArg, SunDiscArg, ToneArg,
 };
@@ -51,7 +54,7 @@ Examples:
 pub enum Command {
     /// Draw the sky: whole sphere, cube faces, fisheye or camera; as EXR, HDR, PNG or JPEG.
     Sky(Box<SkyArgs>),
-    /// Lay fog over a picture that exists, by its depth.
+    /// Lay fog over pictures that exist, by their depth: one, or whole folders.
     Fog(Box<OverlayArgs>),
     /// Tell the spectral radiance of the sky along given directions, and the light of sun and sky, in numbers.
     Probe(Box<ProbeArgs>),

@@ -1,12 +1,16 @@
 //! Options of `airlight fog`.
 
 use super::fog::DropletsArg;
+use super::overlay_batch::BatchArgs;
 use crate::parse;
+use airlight::fog::visibility::Contrast;
 use clap::{Args, ValueEnum};
+use serde::Serialize;
 use std::path::PathBuf;
 
 /// How the fog thins with height, or which look it is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum ModelArg {
     /// The same everywhere.
     Uniform,
@@ -25,7 +29,8 @@ pub enum ModelArg {
 }
 
 /// What the numbers of the depth file mean.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum DepthKindArg {
     /// Depth along the camera's axis.
     Z,
@@ -38,7 +43,8 @@ pub enum DepthKindArg {
 }
 
 /// What becomes of pixels of unknown depth.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum HolesArg {
     /// Filled from their neighbours.
     Fill,
@@ -48,25 +54,32 @@ pub enum HolesArg {
     Clear,
 }
 
-/// Options of `airlight fog`.
-#[derive(Debug, Args)]
+/// Options of `airlight fog`. Serialized, they are what a picture was made with: all that bears upon it.
+#[derive(Clone, Debug, Args, Serialize)]
 #[command(allow_negative_numbers = true, after_help = EXAMPLES)]
 pub struct OverlayArgs {
-    /// The picture: EXR or HDR (linear), PNG or JPEG (decoded to light, encoded again)
+    /// The picture: EXR or HDR (linear), PNG or JPEG (decoded to light, encoded again); many: a folder, or 'rgb/*.png'
     #[arg(value_name = "COLOUR")]
+    #[serde(skip)]
     pub colour: PathBuf,
-    /// Its depth: EXR, PNG, NPY or PFM [default: the depth channel of COLOUR, if that is an EXR]
+    /// Its depth: EXR, PNG, NPY or PFM; a folder, or 'depth/*.png' [default: the depth channel of COLOUR, if that is an EXR]
     #[arg(long, value_name = "DEPTH")]
+    #[serde(skip)]
     pub depth: Option<PathBuf>,
-    /// File to write: .png, .jpg, .exr or .hdr
+    /// File to write: .png, .jpg, .exr or .hdr; a folder, or 'out/*.png'
     #[arg(short, long, value_name = "FILE")]
+    #[serde(skip)]
     pub output: PathBuf,
     /// Write transmittance, path radiance and distance as layers too (.exr)
     #[arg(long)]
     pub layers: bool,
     /// Say nothing on standard output
     #[arg(short, long)]
+    #[serde(skip)]
     pub quiet: bool,
+    #[command(flatten)]
+    #[serde(skip)]
+    pub batch: BatchArgs,
 
     /// What the depth means
     #[arg(long, value_enum, default_value_t = DepthKindArg::Z, help_heading = "Depth")]
@@ -92,6 +105,7 @@ pub struct OverlayArgs {
 
     /// Field of view from left to right, degrees [default: 60]
     #[arg(long, value_name = "DEG", value_parser = parse::positive, help_heading = "Camera", conflicts_with = "focal_px")]
+    #[serde(rename = "fov_deg")]
     pub fov: Option<f64>,
     /// Focal length, pixels, instead of --fov
     #[arg(long, value_name = "PX", value_parser = parse::positive, help_heading = "Camera")]
@@ -101,19 +115,27 @@ pub struct OverlayArgs {
     pub principal_point: Option<(f64, f64)>,
     /// Elevation of the axis above the horizon, degrees
     #[arg(long, value_name = "DEG", value_parser = parse::elevation_deg, default_value_t = 0.0, help_heading = "Camera")]
+    #[serde(rename = "camera_elevation_deg")]
     pub camera_elevation: f64,
     /// Azimuth of the axis, degrees clockwise from north
     #[arg(long, value_name = "DEG", value_parser = parse::number, default_value_t = 0.0, help_heading = "Camera")]
+    #[serde(rename = "camera_azimuth_deg")]
     pub camera_azimuth: f64,
     /// Turn about the axis, degrees clockwise
     #[arg(long, value_name = "DEG", value_parser = parse::number, default_value_t = 0.0, help_heading = "Camera")]
+    #[serde(rename = "camera_roll_deg")]
     pub camera_roll: f64,
     /// Height of the eye above the ground, m
     #[arg(long, value_name = "M", value_parser = parse::length_m, default_value_t = 1.6, help_heading = "Camera")]
     pub eye_height_m: f64,
 
     /// Distance at which a contrast of 5 % is left, where the fog is thickest, m
-    #[arg(long, value_name = "M", value_parser = parse::length_m, help_heading = "Fog")]
+    #[arg(long = "visibility-m", value_name = "M", value_parser = parse::length_m, help_heading = "Fog")]
+    #[arg(required_unless_present = "vary")]
+    #[serde(skip)]
+    pub given_visibility_m: Option<f64>,
+    /// The visibility of a picture, m: as given, or as drawn.
+    #[arg(skip)]
     pub visibility_m: f64,
     /// Contrast that visibility means: 0.05 (meteorological optical range) or 0.02
     #[arg(long, value_name = "C", default_value = "0.05", value_parser = ["0.05", "0.02"], help_heading = "Fog")]
@@ -142,11 +164,16 @@ pub struct OverlayArgs {
         help_heading = "Light"
     )]
     pub ambient: String,
+    /// Factor on that light
+    #[arg(long, value_name = "FACTOR", value_parser = parse::positive, default_value_t = 1.0, help_heading = "Light")]
+    pub ambient_scale: f64,
     /// Elevation of the sun, degrees [default: no sun]
     #[arg(long, value_name = "DEG", value_parser = parse::elevation_deg, help_heading = "Light")]
+    #[serde(rename = "sun_elevation_deg")]
     pub sun_elevation: Option<f64>,
     /// Azimuth of the sun, degrees clockwise from north
     #[arg(long, value_name = "DEG", value_parser = parse::number, default_value_t = 180.0, help_heading = "Light", requires = "sun_elevation")]
+    #[serde(rename = "sun_azimuth_deg")]
     pub sun_azimuth: f64,
     /// Irradiance facing the sun over that of the ambient light on the level (pi times its radiance)
     #[arg(long, value_name = "RATIO", value_parser = parse::not_negative, default_value_t = 3.0, help_heading = "Light", requires = "sun_elevation")]
@@ -154,6 +181,16 @@ pub struct OverlayArgs {
     /// Albedo of the ground under fog that has a top
     #[arg(long, value_name = "ALBEDO", value_parser = parse::fraction, default_value_t = 0.2, help_heading = "Light")]
     pub ground_albedo: f64,
+}
+
+impl OverlayArgs {
+    /// The contrast that visibility means.
+    pub fn contrast(&self) -> Contrast {
+        match self.contrast.as_str() {
+            "0.02" => Contrast::TwoPercent,
+            _ => Contrast::FivePercent,
+        }
+    }
 }
 
 const EXAMPLES: &str = "\
@@ -164,4 +201,13 @@ Examples:
     airlight fog render.exr --visibility-m 400 --model height --scale-height-m 40 --eye-height-m 60 \\
       --camera-elevation -7 --layers -o fogged.exr
   What Foggy Cityscapes would have made of it:
-    airlight fog photo.png --depth depth_mm.png --depth-scale 0.001 --visibility-m 12 --model foggy-cityscapes -o fogged.png";
+    airlight fog photo.png --depth depth_mm.png --depth-scale 0.001 --visibility-m 12 --model foggy-cityscapes -o fogged.png
+  Every picture of a folder, with the depth of the same name:
+    airlight fog rgb/ --depth depth/ --depth-scale 0.001 --visibility-m 80 -o foggy/
+  Training data: what * stands for links colour, depth and output; three fogs for each picture, told in foggy/manifest.jsonl:
+    airlight fog 'rgb/*_left.png' --depth 'depth/*_depth.png' --depth-scale 0.001 --vary visibility=50..500 \\
+      --vary droplets=fine,radiation,advection --variants 3 --seed 1 -o 'foggy/*.png'
+
+--vary takes visibility, scale-height, top, eye-height, ambient-scale (drawn so that their logarithms lie evenly), base-height,
+camera-elevation, camera-azimuth, camera-roll, sun-elevation, sun-azimuth, sun-strength, ground-albedo (drawn evenly);
+NAME=log:LOW..HIGH and NAME=uniform:LOW..HIGH say otherwise. model and droplets take lists.";

@@ -5,7 +5,7 @@ use crate::error::CliError;
 use crate::parse;
 use airlight::axes;
 use airlight::fog::droplets::Droplets;
-use airlight::fog::visibility::{Contrast, extinction_per_m};
+use airlight::fog::visibility::extinction_per_m;
 use airlight::fog::{Fog, Ground, Layer, Light, Profile, Scattering, Sun, legacy};
 use airlight::spectrum::Spectrum;
 use airlight_render::input::{DepthMap, Picture};
@@ -39,10 +39,7 @@ pub fn ambient(
 /// # Errors
 /// [`CliError::Usage`] for a fog that is none.
 pub fn veil(args: &OverlayArgs, ambient: Spectrum<3>) -> Result<Veil, CliError> {
-    let contrast = match args.contrast.as_str() {
-        "0.02" => Contrast::TwoPercent,
-        _ => Contrast::FivePercent,
-    };
+    let contrast = args.contrast();
     let extinction = extinction_per_m(args.visibility_m, contrast);
     let profile = match args.model {
         ModelArg::Uniform => Profile::Uniform,

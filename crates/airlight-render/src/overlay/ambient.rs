@@ -34,7 +34,7 @@ pub fn estimate_ambient(picture: &Picture, depth: &DepthMap) -> (Spectrum<3>, Am
         });
         return (mean(picture, lowest), Ambient::Sky);
     }
-    let dark = dark_channel(picture, width, height);
+    let dark = dark_channel(picture, width);
     let mut order: Vec<usize> = (0..count).collect();
     let brightest = count.div_ceil(1000);
     order.select_nth_unstable_by(brightest - 1, |&a, &b| dark[b].total_cmp(&dark[a]));
@@ -54,26 +54,58 @@ fn mean(picture: &Picture, pixels: impl Iterator<Item = usize>) -> Spectrum<3> {
     Spectrum(sum.map(|s| (s / f64::max(count, 1.0)) as f32))
 }
 
-/// The smallest value in the patch round each pixel: rows first, then columns.
-fn dark_channel(picture: &Picture, width: usize, height: usize) -> Vec<f32> {
-    let smallest: Vec<f32> = picture
+/// The smallest value in the patch round each pixel: columns first, then rows.
+fn dark_channel(picture: &Picture, width: usize) -> Vec<f32> {
+    let smallest = picture
         .rgb
         .chunks_exact(3)
-        .map(|rgb| rgb[0].min(rgb[1]).min(rgb[2]))
+        .map(|rgb| least(least(rgb[0], rgb[1]), rgb[2]))
         .collect();
-    let window =
-        |at: usize, end: usize| at.saturating_sub(HALF_PATCH)..(at + HALF_PATCH + 1).min(end);
-    let least = |values: &mut dyn Iterator<Item = f32>| values.fold(f32::INFINITY, f32::min);
-    let rows: Vec<f32> = (0..width * height)
-        .map(|pixel| {
-            let (x, y) = (pixel % width, pixel / width);
-            least(&mut window(x, width).map(|x| smallest[y * width + x]))
-        })
-        .collect();
-    (0..width * height)
-        .map(|pixel| {
-            let (x, y) = (pixel % width, pixel / width);
-            least(&mut window(y, height).map(|y| rows[y * width + x]))
-        })
-        .collect()
+    let columns = least_around(smallest, width);
+    let rows = columns.chunks_exact(width);
+    rows.flat_map(|row| least_around(row.to_vec(), 1)).collect()
+}
+
+/// The least of the 15 values `step` apart round each one, fewer at the ends.
+fn least_around(values: Vec<f32>, step: usize) -> Vec<f32> {
+    let beyond = vec![f32::INFINITY; HALF_PATCH * step];
+    let mut least_of = [&beyond[..], &values, &beyond].concat();
+    // The least of 2, of 4, of 8, of 8 and 8 that share one.
+    for by in [1, 2, 4, 7] {
+        let ahead = &least_of[by * step..];
+        least_of = least_of
+            .iter()
+            .zip(ahead)
+            .map(|(&a, &b)| least(a, b))
+            .collect();
+    }
+    least_of
+}
+
+/// The smaller of two numbers, neither of them NaN: one instruction, where the library's takes several.
+#[inline(always)]
+fn least(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_least_around_is_that_of_the_patch() {
+        for count in [1usize, 5, 14, 15, 16, 40] {
+            let values: Vec<f32> = (0..count).map(|i| ((i * 37 + 11) % 29) as f32).collect();
+            for step in [1, 3] {
+                let made = least_around(values.clone(), step);
+                assert_eq!(made.len(), count);
+                for (i, &made) in made.iter().enumerate() {
+                    let near = (0..count)
+                        .filter(|j| j % step == i % step && i.abs_diff(*j) <= HALF_PATCH * step);
+                    let expected = near.map(|j| values[j]).fold(f32::INFINITY, f32::min);
+                    assert_eq!(made, expected, "{i} of {count}, {step}");
+                }
+            }
+        }
+    }
 }

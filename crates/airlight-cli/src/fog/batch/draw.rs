@@ -1,0 +1,89 @@
+//! Numbers that look drawn at random and follow from names: the same on every machine, whatever else is drawn, in any order.
+
+/// A number from 0 (inclusive) to 1 (exclusive) for an option of a variant of a picture: an FNV-1a hash of the four, mixed by
+/// the last step of SplitMix64 (Steele et al. 2014), its upper 53 bits as a fraction.
+pub fn part(seed: u64, picture: &str, variant: u32, option: &str) -> f64 {
+    // Zero bytes end the names, which cannot hold any.
+    let bytes = seed
+        .to_le_bytes()
+        .into_iter()
+        .chain(picture.bytes())
+        .chain([0])
+        .chain(variant.to_le_bytes())
+        .chain(option.bytes());
+    let hash = bytes.fold(0xcbf2_9ce4_8422_2325u64, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
+    });
+    (mixed(hash) >> 11) as f64 * (0.5f64).powi(53)
+}
+
+/// The finalizer of SplitMix64 after one step of its counter.
+fn mixed(counter: u64) -> u64 {
+    let z = counter.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn splitmix64_is_itself() {
+        // The first outputs for seed 1234567, as published with the generator's test vectors.
+        let step = 0x9e37_79b9_7f4a_7c15u64;
+        for (n, value) in [
+            6_457_827_717_110_365_317u64,
+            3_203_168_211_198_807_973,
+            9_817_491_932_198_370_423,
+        ]
+        .into_iter()
+        .enumerate()
+        {
+            assert_eq!(mixed(1_234_567 + step.wrapping_mul(n as u64)), value);
+        }
+    }
+
+    #[test]
+    fn draws_stay_what_they_are() {
+        for (seed, picture, variant, option, expected) in [
+            (0, "0001", 1, "visibility", 0.5924187492576692),
+            (0, "0001", 2, "visibility", 0.0998649442159063),
+            (
+                7,
+                "street/\u{e9}t\u{e9}",
+                1,
+                "sun-elevation",
+                0.1837321651840088,
+            ),
+        ] {
+            assert_eq!(part(seed, picture, variant, option), expected);
+        }
+    }
+
+    #[test]
+    fn draws_are_even_and_independent() {
+        let count = 20_000;
+        let of = |n: u32, option| part(1, &format!("{:05}", n / 4), n % 4, option);
+        let (mut tenths, mut product) = ([0u32; 10], 0.0);
+        for n in 0..count {
+            let (a, b) = (of(n, "visibility"), of(n, "top"));
+            tenths[(a * 10.0) as usize] += 1;
+            product += (a - 0.5) * (b - 0.5);
+        }
+        // Chi-squared with 9 degrees of freedom is above 27.9 once in a thousand times.
+        let expected = f64::from(count) / 10.0;
+        let chi_squared: f64 = tenths
+            .iter()
+            .map(|&n| (f64::from(n) - expected).powi(2) / expected)
+            .sum();
+        assert!(chi_squared < 27.9, "{tenths:?}");
+        // The correlation's standard deviation is 1 / sqrt(count).
+        let correlation = 12.0 * product / f64::from(count);
+        assert!(
+            correlation.abs() < 3.0 / f64::from(count).sqrt(),
+            "{correlation}"
+        );
+    }
+}

@@ -1,0 +1,219 @@
+//! One picture: read, fogged, written.
+
+use super::veil;
+use crate::args::{DepthKindArg, HolesArg, OverlayArgs};
+use crate::error::CliError;
+use crate::interrupt;
+use airlight::spectrum::Spectrum;
+use airlight_render::Control;
+use airlight_render::frame::{Intrinsics, PixelCentres};
+use airlight_render::input::{
+    DepthMap, DepthMeaning, DepthOptions, LightReference, Picture, SampleBits, Unknown, read_depth,
+    read_picture,
+};
+use airlight_render::output::{PictureFormat, PictureOptions, Written, exr, png, write_picture};
+use airlight_render::overlay::{Channels, Overlay};
+use airlight_render::tone::ToneMapper;
+use std::path::Path;
+
+/// A picture and its depth in memory, and the light that fog over it is in.
+pub struct Subject {
+    pub picture: Picture,
+    pub depth: DepthMap,
+    ambient: Spectrum<3>,
+    /// Where the light is from.
+    pub ambient_from: &'static str,
+}
+
+/// Refuses options that no picture could go with, before any is read.
+///
+/// # Errors
+/// [`CliError::Usage`].
+pub fn check(args: &OverlayArgs) -> Result<(), CliError> {
+    if args.sun_elevation.is_some_and(|elevation| elevation <= 0.0) {
+        return Err(CliError::usage(
+            "the sun must stand above the horizon to shine on fog: give --sun-elevation above 0, or leave it out for \
+             fog in even light",
+        ));
+    }
+    depth_options(args).map(drop)
+}
+
+/// The format of an output, which must hold what is asked for.
+///
+/// # Errors
+/// [`CliError::Usage`] where it does not.
+pub fn format_of(args: &OverlayArgs, output: &Path) -> Result<PictureFormat, CliError> {
+    let format = PictureFormat::from_path(output)?;
+    if args.layers && format != PictureFormat::Exr {
+        return Err(CliError::usage(
+            "--layers needs an OpenEXR file to go to: give --output a name that ends in .exr",
+        ));
+    }
+    Ok(format)
+}
+
+impl Subject {
+    /// Reads a picture and its depth, to be written in a format.
+    ///
+    /// # Errors
+    /// [`CliError`] where one cannot be read, or they do not go together.
+    pub fn read(
+        args: &OverlayArgs,
+        colour: &Path,
+        depth: &Path,
+        format: PictureFormat,
+    ) -> Result<Self, CliError> {
+        let mut picture = read_picture(colour, None)?;
+        if matches!(format, PictureFormat::Jpeg | PictureFormat::Hdr) {
+            // These formats hold no opacity.
+            picture.alpha = None;
+        }
+        if (format == PictureFormat::Exr || format == PictureFormat::Hdr)
+            != (picture.reference == LightReference::Scene)
+        {
+            return Err(CliError::usage(format!(
+                "`{}` holds {}, and so must the output: give --output a name that ends in {}",
+                colour.display(),
+                match picture.reference {
+                    LightReference::Scene => "linear light",
+                    LightReference::Display => "values for a display",
+                },
+                match picture.reference {
+                    LightReference::Scene => ".exr or .hdr",
+                    LightReference::Display => ".png or .jpg",
+                }
+            )));
+        }
+        let depth = read_depth(depth, &depth_options(args)?)?;
+        depth.check_against(&picture)?;
+        let (ambient, ambient_from) = veil::ambient(args, &picture, &depth)?;
+        Ok(Self {
+            picture,
+            depth,
+            ambient,
+            ambient_from,
+        })
+    }
+
+    /// The light that fog is in.
+    pub fn ambient(&self, args: &OverlayArgs) -> Spectrum<3> {
+        self.ambient * args.ambient_scale as f32
+    }
+
+    /// Where the pixels look.
+    ///
+    /// # Errors
+    /// [`CliError::Usage`] where the options make no camera.
+    pub fn camera(&self, args: &OverlayArgs) -> Result<Intrinsics, CliError> {
+        let size = self.picture.size;
+        let camera = match args.focal_px {
+            Some(focal) => {
+                let middle = |n: u32| 0.5 * f64::from(n) - 0.5;
+                let principal = args
+                    .principal_point
+                    .unwrap_or((middle(size.width()), middle(size.height())));
+                Intrinsics::new(size, (focal, focal), principal, PixelCentres::Whole)?
+            }
+            None => Intrinsics::from_horizontal_fov(size, args.fov.unwrap_or(60.0))?,
+        };
+        Ok(camera.looking(args.camera_azimuth, args.camera_elevation, args.camera_roll)?)
+    }
+
+    /// Writes it with the fog of the options over it. While it does, [`interrupt::start_writing`] must be in force.
+    ///
+    /// # Errors
+    /// [`CliError`]; nothing is left at `output`, or what was there before.
+    pub fn write_fogged(
+        &self,
+        args: &OverlayArgs,
+        output: &Path,
+        format: PictureFormat,
+    ) -> Result<Written, CliError> {
+        let camera = self.camera(args)?;
+        let veil = veil::veil(args, self.ambient(args))?;
+        let channels = match args.layers {
+            true => Channels::Layers,
+            false => Channels::Picture,
+        };
+        let overlay = Overlay::new(
+            &self.picture,
+            &self.depth,
+            &camera,
+            args.eye_height_m,
+            &veil,
+            channels,
+        )?;
+        write(args, format, &self.picture, &overlay, output)
+    }
+}
+
+fn depth_options(args: &OverlayArgs) -> Result<DepthOptions, CliError> {
+    let meaning = match args.depth_kind {
+        DepthKindArg::Z => DepthMeaning::ZDepth,
+        DepthKindArg::Ray => DepthMeaning::RayDistance,
+        DepthKindArg::Inverse => DepthMeaning::Inverse,
+        DepthKindArg::Disparity => match (args.focal_px, args.baseline_m) {
+            (Some(focal_length_px), Some(baseline_m)) => DepthMeaning::Disparity {
+                focal_length_px,
+                baseline_m,
+                offset_px: args.disparity_offset_px,
+            },
+            _ => {
+                return Err(CliError::usage(
+                    "--depth-kind disparity needs --focal-px and --baseline-m",
+                ));
+            }
+        },
+    };
+    Ok(DepthOptions {
+        meaning,
+        scale: args.depth_scale,
+        channel: args.depth_channel.clone(),
+        unknown: match args.holes {
+            HolesArg::Fill => Unknown::Fill,
+            HolesArg::Far => Unknown::Far,
+            HolesArg::Clear => Unknown::Clear,
+        },
+        far_from_m: args.far_m,
+        negative_is_unknown: false,
+    })
+}
+
+fn write(
+    args: &OverlayArgs,
+    format: PictureFormat,
+    picture: &Picture,
+    overlay: &Overlay<'_>,
+    path: &Path,
+) -> Result<Written, CliError> {
+    let control = Control::cancelled_by(&interrupt::STOP);
+    let options = PictureOptions {
+        exr: exr::ExrOptions {
+            sample: match (picture.bits, args.layers) {
+                (SampleBits::Half, false) => exr::ExrSample::Half,
+                _ => exr::ExrSample::Float,
+            },
+            ..Default::default()
+        },
+        png: png::PngOptions {
+            depth: match picture.bits {
+                SampleBits::U8 => png::PngDepth::Eight,
+                _ => png::PngDepth::Sixteen,
+            },
+            ..Default::default()
+        },
+        ..Default::default()
+    };
+    let size = picture.size;
+    Ok(match format {
+        PictureFormat::Exr => {
+            let (names, metadata) = (overlay.channel_names(), &options.metadata);
+            exr::write(path, size, &names, overlay, &options.exr, metadata, control)?
+        }
+        _ => {
+            let tone = ToneMapper::as_displayed();
+            write_picture(path, size, overlay, &tone, &options, control)?
+        }
+    })
+}
