@@ -3,6 +3,7 @@
 mod air;
 mod fog;
 mod overlay;
+mod overlay_light;
 mod picture;
 mod place;
 mod probe;
@@ -10,6 +11,7 @@ mod probe;
 pub use air::{AirArgs, ScatteringArg};
 pub use fog::FogArgs;
 pub use overlay::{DepthKindArg, HolesArg, ModelArg, OverlayArgs};
+pub use overlay_light::{AirArg, LampArg, LampKind, LampPlace, LayerShape, OverlayLightArgs};
 pub use picture::{
     ColorSpaceArg, CompressionArg, PictureArgs, PrecisionArg, ProjectionArg, SunDiscArg, ToneArg,
 };

@@ -151,9 +151,11 @@ pub struct OverlayArgs {
     /// Irradiance facing the sun over that of the ambient light on the level (pi times its radiance)
     #[arg(long, value_name = "RATIO", value_parser = parse::not_negative, default_value_t = 3.0, help_heading = "Light", requires = "sun_elevation")]
     pub sun_strength: f64,
-    /// Albedo of the ground under fog that has a top
-    #[arg(long, value_name = "ALBEDO", value_parser = parse::fraction, default_value_t = 0.2, help_heading = "Light")]
-    pub ground_albedo: f64,
+    /// Albedo of the ground under fog that has a top [default: 0.2; that of the atmosphere with --sky-light]
+    #[arg(long, value_name = "ALBEDO", value_parser = parse::fraction, help_heading = "Light")]
+    pub ground_albedo: Option<f64>,
+    #[command(flatten)]
+    pub light: super::OverlayLightArgs,
 }
 
 const EXAMPLES: &str = "\

@@ -1,5 +1,8 @@
 //! `airlight fog`: fog laid over a picture that exists.
 
+mod lamps;
+mod layers;
+mod light;
 mod veil;
 
 use crate::args::{DepthKindArg, HolesArg, OverlayArgs};
@@ -36,10 +39,11 @@ pub fn run(args: &OverlayArgs) -> Result<(), CliError> {
             )));
         }
     }
-    if args.sun_elevation.is_some_and(|elevation| elevation <= 0.0) {
+    let sun_is_down = args.sun_elevation.is_some_and(|elevation| elevation <= 0.0);
+    if sun_is_down && !args.light.sky_light {
         return Err(CliError::usage(
             "the sun must stand above the horizon to shine on fog: give --sun-elevation above 0, or leave it out for \
-             fog in even light",
+             fog in even light; --sky-light knows twilight",
         ));
     }
     let options = depth_options(args)?;
@@ -67,8 +71,9 @@ pub fn run(args: &OverlayArgs) -> Result<(), CliError> {
     let depth = read_depth(depth_file, &options)?;
     depth.check_against(&picture)?;
     let camera = camera(args, &picture)?;
-    let (ambient, how) = veil::ambient(args, &picture, &depth)?;
-    let veil = veil::veil(args, ambient)?;
+    let solved = light::SolvedSky::of(args)?;
+    let source = light::LightSource::new(solved.as_ref());
+    let (veil, level) = veil::veil(args, &source, &picture, &depth, &camera)?;
     let channels = match args.layers {
         true => Channels::Layers,
         false => Channels::Picture,
@@ -88,7 +93,7 @@ pub fn run(args: &OverlayArgs) -> Result<(), CliError> {
         return Ok(());
     }
     report::print(&format!(
-        "{}: {} x {}, {}\n  visibility    {} m ({} of contrast)\n  ambient       {:.4} {:.4} {:.4} ({how})\n  \
+        "{}: {} x {}, {}\n  visibility    {} m ({} of contrast)\n  light         {:.4} {:.4} {:.4} ({})\n  \
          depth         {} pixels unknown, {} infinitely far\n",
         args.output.display(),
         picture.size.width(),
@@ -96,9 +101,10 @@ pub fn run(args: &OverlayArgs) -> Result<(), CliError> {
         bytes(written.bytes),
         report::short(args.visibility_m),
         args.contrast,
-        ambient[0],
-        ambient[1],
-        ambient[2],
+        level.colour[0],
+        level.colour[1],
+        level.colour[2],
+        level.how,
         depth.holes,
         depth.infinite,
     ))
