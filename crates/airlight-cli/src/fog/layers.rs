@@ -1,17 +1,10 @@
 //! The layers of fog of the options.
 
 use crate::args::{LayerShape, ModelArg, OverlayArgs};
+use crate::atmosphere::contrast;
 use airlight::fog::droplets::Droplets;
-use airlight::fog::visibility::{Contrast, extinction_per_m};
+use airlight::fog::visibility::extinction_per_m;
 use airlight::fog::{Layer, Profile};
-
-/// The contrast that visibility means.
-pub fn contrast(args: &OverlayArgs) -> Contrast {
-    match args.contrast.as_str() {
-        "0.02" => Contrast::TwoPercent,
-        _ => Contrast::FivePercent,
-    }
-}
 
 /// The layer of the simple options, then those of `--layer`; nothing for a look, which is no layer.
 pub fn of(args: &OverlayArgs) -> Option<Vec<Layer<3>>> {
@@ -28,7 +21,8 @@ pub fn of(args: &OverlayArgs) -> Option<Vec<Layer<3>>> {
     };
     let layer = |shape, visibility_m, droplets| Layer {
         profile: profile(shape),
-        matter: Droplets::from(droplets).matter(extinction_per_m(visibility_m, contrast(args))),
+        matter: Droplets::from(droplets)
+            .matter(extinction_per_m(visibility_m, contrast(&args.contrast))),
     };
     let first = layer(shape, args.visibility_m, args.droplets);
     let more = args.light.layer.iter();

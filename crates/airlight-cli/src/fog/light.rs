@@ -54,6 +54,7 @@ impl SolvedSky {
             aod_550: light.aod_550,
             turbidity: None,
             visibility_m: None,
+            contrast: args.contrast.clone(),
             ozone_du: None,
             ground_albedo: args.ground_albedo,
             ground_altitude_m: light.ground_altitude_m,

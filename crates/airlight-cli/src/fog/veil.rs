@@ -3,6 +3,7 @@
 use super::light::{self, Level, LightSource};
 use super::{lamps, layers};
 use crate::args::{ModelArg, OverlayArgs};
+use crate::atmosphere::contrast;
 use crate::error::CliError;
 use airlight::axes;
 use airlight::fog::visibility::extinction_per_m;
@@ -60,7 +61,7 @@ fn refuse_with_looks(args: &OverlayArgs) -> Result<(), CliError> {
 }
 
 fn look<'a>(args: &OverlayArgs, ambient: Spectrum<3>) -> Veil<'a> {
-    let (visibility_m, contrast) = (args.visibility_m, layers::contrast(args));
+    let (visibility_m, contrast) = (args.visibility_m, contrast(&args.contrast));
     match args.model {
         ModelArg::Exp2 => {
             let density = legacy::exponential_squared_density_per_m(visibility_m, contrast.value());
