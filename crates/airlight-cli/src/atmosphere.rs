@@ -4,6 +4,7 @@ use crate::args::{AirArgs, AtmospheresArgs};
 use crate::error::CliError;
 use crate::report;
 use airlight::medium::presets::earth::{EARTH_RADIUS_M, Earth};
+use airlight::medium::visibility::Contrast;
 use airlight::medium::{AerosolLoad, Atmosphere, Constituent, config, gases, preset, preset_names};
 use airlight::spectrum::SpectralCurve;
 use std::fmt::Write;
@@ -84,6 +85,14 @@ fn require_earth(air: &Atmosphere, option: &str) -> Result<(), CliError> {
     }
 }
 
+/// The contrast that visibility means, of the option's two values.
+pub fn contrast(option: &str) -> Contrast {
+    match option {
+        "0.02" => Contrast::TwoPercent,
+        _ => Contrast::FivePercent,
+    }
+}
+
 fn haze(args: &AirArgs) -> Option<(&'static str, AerosolLoad)> {
     let depth = args
         .aod_550
@@ -91,9 +100,15 @@ fn haze(args: &AirArgs) -> Option<(&'static str, AerosolLoad)> {
     let turbidity = args
         .turbidity
         .map(|ratio| ("--turbidity", AerosolLoad::Turbidity(ratio)));
-    let visibility = args
-        .visibility_m
-        .map(|range| ("--visibility-m", AerosolLoad::VisibilityM(range)));
+    let visibility = args.visibility_m.map(|range_m| {
+        (
+            "--visibility-m",
+            AerosolLoad::Visibility {
+                range_m,
+                contrast: contrast(&args.contrast),
+            },
+        )
+    });
     depth.or(turbidity).or(visibility)
 }
 
@@ -215,7 +230,11 @@ mod tests {
             assert!((depth - 0.4).abs() < 1e-9, "{name}: {depth}");
         }
         let mut air = named("average").unwrap();
-        assert!(set_haze(&mut air, "--visibility-m", AerosolLoad::VisibilityM(1e9)).is_err());
+        let endless = AerosolLoad::Visibility {
+            range_m: 1e9,
+            contrast: Contrast::FivePercent,
+        };
+        assert!(set_haze(&mut air, "--visibility-m", endless).is_err());
         assert!(set_haze(&mut air, "--turbidity", AerosolLoad::Turbidity(0.5)).is_err());
     }
 

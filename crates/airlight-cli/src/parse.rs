@@ -1,9 +1,11 @@
 //! Values on the command line: each parser's error says what would be right.
 
+pub mod words;
+
 use std::str::FromStr;
 
 /// Two numbers of degrees.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct LatLon {
     /// Degrees north of the equator.
     pub latitude_deg: f64,
@@ -93,6 +95,17 @@ pub fn three_numbers(text: &str) -> Result<[f64; 3], String> {
     let numbers: Vec<f64> = text
         .split(',')
         .map(not_negative)
+        .collect::<Result<_, _>>()
+        .map_err(|_| right())?;
+    numbers.try_into().map_err(|_| right())
+}
+
+/// `X,Y,Z`.
+pub fn three_coordinates(text: &str) -> Result<[f64; 3], String> {
+    let right = || "must be three numbers: 1.5,2,-6".to_owned();
+    let numbers: Vec<f64> = text
+        .split(',')
+        .map(number)
         .collect::<Result<_, _>>()
         .map_err(|_| right())?;
     numbers.try_into().map_err(|_| right())

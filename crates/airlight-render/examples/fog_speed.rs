@@ -11,7 +11,7 @@ use airlight::spectrum::Spectrum;
 use airlight_render::input::{DepthMap, DepthOptions, Picture, read_depth, read_picture};
 use airlight_render::output::exr::{ExrOptions, ExrSample};
 use airlight_render::output::{Metadata, PictureOptions, exr, png};
-use airlight_render::overlay::{Channels, Overlay, Veil, estimate_ambient};
+use airlight_render::overlay::{Body, Channels, Overlay, Veil, estimate_ambient};
 use airlight_render::rows::{RowFn, StoredRows};
 use airlight_render::tone::ToneMapper;
 use airlight_render::{Control, Intrinsics, RenderError, RowSource, Size, write_picture};
@@ -143,7 +143,7 @@ fn measure(folder: &Path, ending: &str, scale: f64) -> Result<(), RenderError> {
     let camera = Intrinsics::from_horizontal_fov(picture.size, 60.0)?;
     let mut even = None;
     for (name, profile, sun) in fogs() {
-        let make = || Veil::Fog(Box::new(fog(profile, sun, ambient)));
+        let make = || Veil::Fog(Body::Alone(Box::new(fog(profile, sun, ambient))), None);
         let veil = timed(&format!("{name}: prepare"), make);
         let overlay = Overlay::new(&picture, &depth, &camera, 1.6, &veil, Channels::Picture)?;
         let rows = timed(&format!("{name}: fog"), || rows(&picture, &overlay));

@@ -311,6 +311,7 @@ fn written_pictures_come_back() {
     let options = PictureOptions {
         metadata: Metadata {
             chromaticities: Some(output::Chromaticities::REC2020),
+            white_luminance_cd_m2: Some(250.0),
             ..Metadata::default()
         },
         ..PictureOptions::default()
@@ -340,6 +341,8 @@ fn written_pictures_come_back() {
             }
             _ => assert_eq!(picture.bits, SampleBits::U8),
         }
+        let white = (ending == "exr").then_some(250.0);
+        assert_eq!(picture.white_luminance_cd_m2, white, "{ending}");
         if picture.reference == LightReference::Scene {
             let rec2020 = Some(output::Chromaticities::REC2020);
             assert_eq!(picture.chromaticities, rec2020, "{ending}");

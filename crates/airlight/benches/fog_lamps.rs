@@ -102,6 +102,7 @@ fn over_sights<const N: usize>(
     let murk = Murk {
         matter: &matter,
         profile: &profile,
+        others: &[],
         wavelengths_nm: &[550.0; N],
         ground_radius_m,
     };

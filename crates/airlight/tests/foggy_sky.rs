@@ -322,3 +322,44 @@ fn the_ground_under_fog_is_lit_through_it() {
         assert!(solved < estimated * 1.02 && solved > 0.5 * estimated);
     }
 }
+
+#[test]
+fn another_fog_in_the_same_sky_is_as_if_made_anew() {
+    let sky = sky("average", 20.0, 30.0);
+    let view = sky.view(30.0, direction(120.0, 20.0));
+    let ground = FoggySky::<3>::round_ground(&view);
+    let new = |layers: &[Layer<3>]| {
+        let channels = Channels::Rgb(RgbSpace::Srgb);
+        FoggySky::new(&view, channels, layers, ground, Scattering::Multiple).unwrap()
+    };
+    let first = new(&[layer(300.0, slab(40.0))]);
+    // As high, and higher.
+    for other in [layer(900.0, slab(40.0)), layer(300.0, thinning(80.0))] {
+        let other = [other];
+        let (anew, changed) = (
+            new(&other),
+            first.with_fog(&other, Scattering::Multiple).unwrap(),
+        );
+        for (azimuth, elevation, distance_m) in [
+            (100.0, 1.0, f64::INFINITY),
+            (300.0, -2.0, 700.0),
+            (10.0, 30.0, 5e3),
+        ] {
+            let towards = direction(azimuth, elevation);
+            let optics = anew.optics(towards, distance_m);
+            assert_eq!(optics, changed.optics(towards, distance_m));
+            let seen = [anew.sky(towards), changed.sky(towards)];
+            assert_eq!(seen[0], seen[1]);
+            // The fog over what has come through the air is the fog without the air.
+            let air = anew.aerial().optics(towards, distance_m);
+            let both = anew.over_clear(towards, distance_m).then(air);
+            assert_eq!(both, optics);
+        }
+        assert!(first.sky(direction(100.0, 1.0)) != changed.sky(direction(100.0, 1.0)));
+    }
+    assert!(
+        first
+            .with_fog(&[layer(-1.0, slab(4.0))], Scattering::Multiple)
+            .is_err()
+    );
+}

@@ -25,9 +25,12 @@ pub struct AirArgs {
     /// Haze as turbidity at 550 nm: optical depth of air and haze over that of air; 1 is pure air
     #[arg(long, value_name = "RATIO", value_parser = parse::positive, group = "haze")]
     pub turbidity: Option<f64>,
-    /// Haze as visibility at the ground, m: the distance at which 2 % of contrast is left at 550 nm
+    /// Haze as visibility at the ground, m: the distance at which 5 % of contrast is left at 550 nm
     #[arg(long, value_name = "M", value_parser = parse::positive, group = "haze")]
     pub visibility_m: Option<f64>,
+    /// Contrast that --visibility-m means: 0.05 (meteorological optical range) or 0.02 (Koschmieder's visual range)
+    #[arg(long, value_name = "C", default_value = "0.05", value_parser = ["0.05", "0.02"], requires = "visibility_m")]
+    pub contrast: String,
     /// Ozone column, Dobson units (the Earth's atmospheres by default: 300)
     #[arg(long, value_name = "DU", value_parser = parse::not_negative)]
     pub ozone_du: Option<f64>,

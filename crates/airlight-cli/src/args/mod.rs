@@ -5,7 +5,8 @@ mod air;
 mod fog;
 mod overlay;
 mod overlay_batch;
-mod overlay_vary;
+mod overlay_light;
+pub mod overlay_vary;
 mod picture;
 mod place;
 mod probe;
@@ -14,6 +15,7 @@ pub use accuracy::{AccuracyArgs, ReportArg};
 pub use air::{AirArgs, ScatteringArg};
 pub use fog::FogArgs;
 pub use overlay::{DepthKindArg, HolesArg, ModelArg, OverlayArgs};
+pub use overlay_light::{AirArg, LampArg, LampKind, LampPlace, LayerShape, OverlayLightArgs};
 pub use overlay_vary::Variation;
 pub use picture::{
     ColorSpaceArg, CompressionArg, PictureArgs, PrecisionArg, ProjectionArg, SunDiscArg, ToneArg,

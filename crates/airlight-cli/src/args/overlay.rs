@@ -3,7 +3,6 @@
 use super::fog::DropletsArg;
 use super::overlay_batch::BatchArgs;
 use crate::parse;
-use airlight::fog::visibility::Contrast;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 use std::path::PathBuf;
@@ -178,19 +177,12 @@ pub struct OverlayArgs {
     /// Irradiance facing the sun over that of the ambient light on the level (pi times its radiance)
     #[arg(long, value_name = "RATIO", value_parser = parse::not_negative, default_value_t = 3.0, help_heading = "Light", requires = "sun_elevation")]
     pub sun_strength: f64,
-    /// Albedo of the ground under fog that has a top
-    #[arg(long, value_name = "ALBEDO", value_parser = parse::fraction, default_value_t = 0.2, help_heading = "Light")]
-    pub ground_albedo: f64,
-}
-
-impl OverlayArgs {
-    /// The contrast that visibility means.
-    pub fn contrast(&self) -> Contrast {
-        match self.contrast.as_str() {
-            "0.02" => Contrast::TwoPercent,
-            _ => Contrast::FivePercent,
-        }
-    }
+    /// Albedo of the ground under fog that has a top [default: 0.2; that of the atmosphere with --sky-light]
+    #[arg(long, value_name = "ALBEDO", value_parser = parse::fraction, help_heading = "Light")]
+    pub ground_albedo: Option<f64>,
+    #[command(flatten)]
+    #[serde(flatten)]
+    pub light: super::OverlayLightArgs,
 }
 
 const EXAMPLES: &str = "\
@@ -202,6 +194,10 @@ Examples:
       --camera-elevation -7 --layers -o fogged.exr
   What Foggy Cityscapes would have made of it:
     airlight fog photo.png --depth depth_mm.png --depth-scale 0.001 --visibility-m 12 --model foggy-cityscapes -o fogged.png
+  A street lamp in it, and light from the sky solver on ground fog:
+    airlight fog photo.png --depth depth_mm.png --depth-scale 0.001 --visibility-m 12 --lamp 'pixel=120,80 intensity=3,2.5,2' \
+      -o fogged.png
+    airlight fog render.exr --visibility-m 400 --model height --sky-light --sun-elevation 20 -o fogged.exr
   Every picture of a folder, with the depth of the same name:
     airlight fog rgb/ --depth depth/ --depth-scale 0.001 --visibility-m 80 -o foggy/
   Training data: what * stands for links colour, depth and output; three fogs for each picture, told in foggy/manifest.jsonl:

@@ -104,7 +104,7 @@ const NUMBERS: [(&str, Number); 13] = [
     (
         "ground-albedo",
         even("", parse::fraction, |args, value| {
-            args.ground_albedo = value
+            args.ground_albedo = Some(value)
         }),
     ),
 ];
@@ -129,6 +129,18 @@ const fn even(
         check,
         set,
     }
+}
+
+/// Whether something varies that the sky of `--sky-light` depends on.
+pub fn changes_the_sky(vary: &[Variation]) -> bool {
+    const OF_SKY: [&str; 4] = [
+        "sun-elevation",
+        "sun-azimuth",
+        "eye-height",
+        "ground-albedo",
+    ];
+    vary.iter()
+        .any(|variation| OF_SKY.contains(&variation.name))
 }
 
 /// An elevation of a sun that shines on fog.

@@ -1,6 +1,9 @@
 //! `airlight fog`: fog laid over pictures that exist.
 
 mod batch;
+mod lamps;
+mod layers;
+mod light;
 mod picture;
 mod veil;
 
@@ -8,6 +11,7 @@ use crate::args::OverlayArgs;
 use crate::error::CliError;
 use crate::interrupt;
 use crate::report::{self, bytes};
+use light::{LightSource, SolvedSky};
 use picture::Subject;
 use std::path::Path;
 
@@ -37,16 +41,18 @@ fn one(args: &OverlayArgs) -> Result<(), CliError> {
         }
     }
     let subject = Subject::read(args, &args.colour, depth, format)?;
+    let solved = SolvedSky::of(args)?;
+    let fogged = subject.fogged(args, &LightSource::new(solved.as_ref()))?;
     let writing = interrupt::start_writing()?;
-    let written = subject.write_fogged(args, &args.output, format)?;
+    let written = subject.write(&fogged, args, &args.output, format)?;
     drop(writing);
     if args.quiet {
         return Ok(());
     }
     let size = subject.picture.size;
-    let [red, green, blue] = subject.ambient(args).0;
+    let [red, green, blue] = fogged.level.colour.0;
     report::print(&format!(
-        "{}: {} x {}, {}\n  visibility    {} m ({} of contrast)\n  ambient       {red:.4} {green:.4} {blue:.4} ({})\n  \
+        "{}: {} x {}, {}\n  visibility    {} m ({} of contrast)\n  light         {red:.4} {green:.4} {blue:.4} ({})\n  \
          depth         {} pixels unknown, {} infinitely far\n",
         args.output.display(),
         size.width(),
@@ -54,7 +60,7 @@ fn one(args: &OverlayArgs) -> Result<(), CliError> {
         bytes(written.bytes),
         report::short(args.visibility_m),
         args.contrast,
-        subject.ambient_from,
+        fogged.level.how,
         subject.depth.holes,
         subject.depth.infinite,
     ))

@@ -1,10 +1,10 @@
 //! One picture: read, fogged, written.
 
+use super::light::{self, Level, LightSource, Shown};
 use super::veil;
 use crate::args::{DepthKindArg, HolesArg, OverlayArgs};
 use crate::error::CliError;
 use crate::interrupt;
-use airlight::spectrum::Spectrum;
 use airlight_render::Control;
 use airlight_render::frame::{Intrinsics, PixelCentres};
 use airlight_render::input::{
@@ -12,17 +12,24 @@ use airlight_render::input::{
     read_picture,
 };
 use airlight_render::output::{PictureFormat, PictureOptions, Written, exr, png, write_picture};
-use airlight_render::overlay::{Channels, Overlay};
+use airlight_render::overlay::{Channels, Overlay, Veil};
 use airlight_render::tone::ToneMapper;
 use std::path::Path;
 
-/// A picture and its depth in memory, and the light that fog over it is in.
+/// A picture and its depth in memory.
 pub struct Subject {
     pub picture: Picture,
     pub depth: DepthMap,
-    ambient: Spectrum<3>,
-    /// Where the light is from.
-    pub ambient_from: &'static str,
+    /// The ambient light that it shows or that is given.
+    ambient: Level,
+}
+
+/// The fog of some options over a picture.
+pub struct Fogged<'a> {
+    pub camera: Intrinsics,
+    veil: Veil<'a>,
+    /// The light that the fog is in.
+    pub level: Level,
 }
 
 /// Refuses options that no picture could go with, before any is read.
@@ -30,10 +37,11 @@ pub struct Subject {
 /// # Errors
 /// [`CliError::Usage`].
 pub fn check(args: &OverlayArgs) -> Result<(), CliError> {
-    if args.sun_elevation.is_some_and(|elevation| elevation <= 0.0) {
+    let sun_is_down = args.sun_elevation.is_some_and(|elevation| elevation <= 0.0);
+    if sun_is_down && !args.light.sky_light {
         return Err(CliError::usage(
             "the sun must stand above the horizon to shine on fog: give --sun-elevation above 0, or leave it out for \
-             fog in even light",
+             fog in even light; --sky-light knows twilight",
         ));
     }
     depth_options(args).map(drop)
@@ -87,25 +95,19 @@ impl Subject {
         }
         let depth = read_depth(depth, &depth_options(args)?)?;
         depth.check_against(&picture)?;
-        let (ambient, ambient_from) = veil::ambient(args, &picture, &depth)?;
+        let ambient = light::ambient(args, &picture, &depth)?;
         Ok(Self {
             picture,
             depth,
             ambient,
-            ambient_from,
         })
-    }
-
-    /// The light that fog is in.
-    pub fn ambient(&self, args: &OverlayArgs) -> Spectrum<3> {
-        self.ambient * args.ambient_scale as f32
     }
 
     /// Where the pixels look.
     ///
     /// # Errors
     /// [`CliError::Usage`] where the options make no camera.
-    pub fn camera(&self, args: &OverlayArgs) -> Result<Intrinsics, CliError> {
+    fn camera(&self, args: &OverlayArgs) -> Result<Intrinsics, CliError> {
         let size = self.picture.size;
         let camera = match args.focal_px {
             Some(focal) => {
@@ -120,18 +122,45 @@ impl Subject {
         Ok(camera.looking(args.camera_azimuth, args.camera_elevation, args.camera_roll)?)
     }
 
-    /// Writes it with the fog of the options over it. While it does, [`interrupt::start_writing`] must be in force.
+    /// The fog of the options over it.
+    ///
+    /// # Errors
+    /// [`CliError::Usage`] where the options make no camera or no fog.
+    pub fn fogged<'a>(
+        &self,
+        args: &OverlayArgs,
+        source: &LightSource<'a>,
+    ) -> Result<Fogged<'a>, CliError> {
+        let camera = self.camera(args)?;
+        let ambient = Level {
+            colour: self.ambient.colour * args.ambient_scale as f32,
+            ..self.ambient
+        };
+        let shown = Shown {
+            picture: &self.picture,
+            depth: &self.depth,
+            camera: &camera,
+            ambient,
+        };
+        let (veil, level) = veil::veil(args, source, &shown)?;
+        Ok(Fogged {
+            camera,
+            veil,
+            level,
+        })
+    }
+
+    /// Writes it with fog over it. While it does, [`interrupt::start_writing`] must be in force.
     ///
     /// # Errors
     /// [`CliError`]; nothing is left at `output`, or what was there before.
-    pub fn write_fogged(
+    pub fn write(
         &self,
+        fogged: &Fogged<'_>,
         args: &OverlayArgs,
         output: &Path,
         format: PictureFormat,
     ) -> Result<Written, CliError> {
-        let camera = self.camera(args)?;
-        let veil = veil::veil(args, self.ambient(args))?;
         let channels = match args.layers {
             true => Channels::Layers,
             false => Channels::Picture,
@@ -139,9 +168,9 @@ impl Subject {
         let overlay = Overlay::new(
             &self.picture,
             &self.depth,
-            &camera,
+            &fogged.camera,
             args.eye_height_m,
-            &veil,
+            &fogged.veil,
             channels,
         )?;
         write(args, format, &self.picture, &overlay, output)

@@ -1,67 +1,75 @@
-//! What lies over a picture: the fog of the options, and the light it is in.
+//! What lies over a picture: the fog of the options, the light it is in, the lamps in it.
 
+use super::light::{self, Level, LightSource, Shown};
+use super::{lamps, layers};
 use crate::args::{ModelArg, OverlayArgs};
+use crate::atmosphere::contrast;
 use crate::error::CliError;
-use crate::parse;
 use airlight::axes;
-use airlight::fog::droplets::Droplets;
 use airlight::fog::visibility::extinction_per_m;
-use airlight::fog::{Fog, Ground, Layer, Light, Profile, Scattering, Sun, legacy};
+use airlight::fog::{Fog, Ground, Layer, Light, Scattering, Sun, legacy};
 use airlight::spectrum::Spectrum;
-use airlight_render::input::{DepthMap, Picture};
-use airlight_render::overlay::{Ambient, Veil, estimate_ambient};
+use airlight_render::overlay::{Body, Glow, Veil};
 use std::f32::consts::PI;
 
-/// The ambient light, and where it is from.
+/// Albedo of the ground where nothing is said.
+const GROUND_ALBEDO: f64 = 0.2;
+
+/// What lies over a picture, and how bright the light is in it.
 ///
 /// # Errors
-/// [`CliError::Usage`] where the option does not say a colour.
-pub fn ambient(
+/// [`CliError::Usage`] for options that do not fit together, and for a fog or a lamp that is none.
+pub fn veil<'a>(
     args: &OverlayArgs,
-    picture: &Picture,
-    depth: &DepthMap,
-) -> Result<(Spectrum<3>, &'static str), CliError> {
-    if args.ambient != "auto" {
-        let given = parse::three_numbers(&args.ambient)
-            .map_err(|right| CliError::usage(format!("--ambient {right}, or auto")))?;
-        return Ok((Spectrum(given.map(|v| v as f32)), "as given"));
-    }
-    let (colour, how) = estimate_ambient(picture, depth);
-    let how = match how {
-        Ambient::Sky => "from the sky of the picture",
-        Ambient::DarkChannel => "from the picture's dark channel",
+    source: &LightSource<'a>,
+    shown: &Shown<'_>,
+) -> Result<(Veil<'a>, Level), CliError> {
+    let Some(layers) = layers::of(args) else {
+        refuse_with_looks(args)?;
+        return Ok((look(args, shown.ambient.colour), shown.ambient));
     };
-    Ok((colour, how))
+    let (body, level) = match source.foggy(&layers)? {
+        Some(sky) => light::at_level(args, sky, shown)?,
+        None => (alone(args, &layers, shown.ambient.colour)?, shown.ambient),
+    };
+    let glow = glow(args, &layers, &body, shown)?;
+    Ok((Veil::Fog(body, glow), level))
 }
 
-/// The fog of the options, in this ambient light.
-///
-/// # Errors
-/// [`CliError::Usage`] for a fog that is none.
-pub fn veil(args: &OverlayArgs, ambient: Spectrum<3>) -> Result<Veil, CliError> {
-    let contrast = args.contrast();
-    let extinction = extinction_per_m(args.visibility_m, contrast);
-    let profile = match args.model {
-        ModelArg::Uniform => Profile::Uniform,
-        ModelArg::Height => Profile::Exponential {
-            reference_height_m: 0.0,
-            scale_height_m: args.scale_height_m,
-        },
-        ModelArg::Clamped => Profile::Clamped {
-            base_height_m: args.base_height_m,
-            scale_height_m: args.scale_height_m,
-        },
-        ModelArg::Slab => Profile::Slab {
-            top_height_m: args.top_m,
-        },
+/// Looks have a colour, and nothing shines on them.
+fn refuse_with_looks(args: &OverlayArgs) -> Result<(), CliError> {
+    let given = [
+        (!args.light.lamp.is_empty(), "--lamp"),
+        (!args.light.layer.is_empty(), "--layer"),
+        (args.light.sky_light, "--sky-light"),
+    ];
+    match given.iter().find(|(given, _)| *given) {
+        None => Ok(()),
+        Some((_, option)) => Err(CliError::usage(format!(
+            "{option} is for fog that scatters light: the looks exp2, linear and foggy-cityscapes are one colour; choose \
+             --model uniform, height, clamped or slab"
+        ))),
+    }
+}
+
+fn look<'a>(args: &OverlayArgs, ambient: Spectrum<3>) -> Veil<'a> {
+    let (visibility_m, contrast) = (args.visibility_m, contrast(&args.contrast));
+    match args.model {
         ModelArg::Exp2 => {
-            let density =
-                legacy::exponential_squared_density_per_m(args.visibility_m, contrast.value());
-            return Ok(Veil::ExponentialSquared(density, ambient));
+            let density = legacy::exponential_squared_density_per_m(visibility_m, contrast.value());
+            Veil::ExponentialSquared(density, ambient)
         }
-        ModelArg::Linear => return Ok(Veil::Linear(0.0, args.visibility_m, ambient)),
-        ModelArg::FoggyCityscapes => return Ok(Veil::Encoded(extinction, ambient)),
-    };
+        ModelArg::Linear => Veil::Linear(0.0, visibility_m, ambient),
+        _ => Veil::Encoded(extinction_per_m(visibility_m, contrast), ambient),
+    }
+}
+
+/// Fog in ambient light, and in the sun's of the options.
+fn alone<'a>(
+    args: &OverlayArgs,
+    layers: &[Layer<3>],
+    ambient: Spectrum<3>,
+) -> Result<Body<'a>, CliError> {
     let sun = args.sun_elevation.map(|elevation| Sun {
         direction: axes::direction(args.sun_azimuth, elevation),
         irradiance: ambient * (PI * args.sun_strength as f32),
@@ -69,11 +77,34 @@ pub fn veil(args: &OverlayArgs, ambient: Spectrum<3>) -> Result<Veil, CliError> 
     let light = Light {
         sun,
         ambient,
-        ground_albedo: Spectrum::splat(args.ground_albedo as f32),
+        ground_albedo: Spectrum::splat(args.ground_albedo.unwrap_or(GROUND_ALBEDO) as f32),
     };
-    let matter = Droplets::from(args.droplets).matter(extinction);
-    let layers = [Layer { profile, matter }];
-    let fog = Fog::new(&layers, Ground::FLAT, light, Scattering::Multiple)
+    let fog = Fog::new(layers, Ground::FLAT, light, Scattering::Multiple)
         .map_err(|error| CliError::usage(error.to_string()))?;
-    Ok(Veil::Fog(Box::new(fog)))
+    Ok(Body::Alone(Box::new(fog)))
+}
+
+/// The lamps of the options in the fog.
+fn glow(
+    args: &OverlayArgs,
+    layers: &[Layer<3>],
+    body: &Body<'_>,
+    shown: &Shown<'_>,
+) -> Result<Option<Glow>, CliError> {
+    if args.light.lamp.is_empty() {
+        return Ok(None);
+    }
+    let ground = match body {
+        Body::Alone(_) => Ground::FLAT,
+        Body::Sky { sky, .. } => *sky.fog().ground(),
+    };
+    let lamps = lamps::of(
+        &args.light.lamp,
+        shown.camera,
+        shown.depth,
+        args.eye_height_m,
+    )?;
+    Glow::new(lamps, layers, ground)
+        .map(Some)
+        .map_err(|error| CliError::usage(error.to_string()))
 }

@@ -75,6 +75,12 @@ impl ExrFile {
         })
     }
 
+    /// The luminance of a value of 1 (red, green and blue), cd/m^2, where the file states one above 0.
+    pub(super) fn white_luminance_cd_m2(&self, part: usize) -> Option<f32> {
+        let stated = self.headers()[part].own_attributes.white_luminance?;
+        (stated.is_finite() && stated > 0.0).then_some(stated)
+    }
+
     /// Decodes groups of channels of one part; `mend` is given the number of the group and pieces of its samples.
     pub(super) fn load(
         self,

@@ -51,6 +51,7 @@ pub(super) fn read(mut source: Source) -> Result<Picture, Fault> {
         reference: LightReference::Scene,
         bits: SampleBits::Float,
         chromaticities: header.chromaticities,
+        white_luminance_cd_m2: None,
         profile_ignored: false,
         repaired_samples,
     })

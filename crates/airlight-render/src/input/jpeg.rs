@@ -61,6 +61,7 @@ pub(super) fn read(mut source: Source) -> Result<Picture, Fault> {
         reference: LightReference::Display,
         bits: SampleBits::U8,
         chromaticities: None,
+        white_luminance_cd_m2: None,
         profile_ignored,
         repaired_samples: 0,
     })

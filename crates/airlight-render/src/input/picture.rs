@@ -52,6 +52,8 @@ pub struct Picture {
     pub bits: SampleBits,
     /// Primaries and white of the colours, where the file states them; else take sRGB's.
     pub chromaticities: Option<Chromaticities>,
+    /// Luminance of a value of 1, cd/m^2, where an EXR file states it (`whiteLuminance`).
+    pub white_luminance_cd_m2: Option<f32>,
     /// The file holds a colour profile (ICC) that does not call itself sRGB. It was not applied: the colours were taken
     /// for sRGB.
     pub profile_ignored: bool,
@@ -101,6 +103,7 @@ fn from_exr(source: Source, layer: Option<&str>) -> Result<Picture, Fault> {
     let pick = exr_names::colours(file.headers(), layer)?;
     let bits = file.bits(pick.part, &pick.rgb);
     let chromaticities = file.chromaticities(pick.part);
+    let white_luminance_cd_m2 = file.white_luminance_cd_m2(pick.part);
     let mut groups: Vec<&[usize]> = vec![&pick.rgb];
     groups.extend(pick.alpha.as_ref().map(std::slice::from_ref));
     let loaded = file.load(pick.part, &groups, |group, samples| match group {
@@ -115,6 +118,7 @@ fn from_exr(source: Source, layer: Option<&str>) -> Result<Picture, Fault> {
         reference: LightReference::Scene,
         bits,
         chromaticities,
+        white_luminance_cd_m2,
         profile_ignored: false,
         repaired_samples: loaded.mended,
     })

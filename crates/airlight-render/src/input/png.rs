@@ -82,6 +82,7 @@ pub(super) fn read(source: Source) -> Result<Picture, Fault> {
         reference: LightReference::Display,
         bits,
         chromaticities,
+        white_luminance_cd_m2: None,
         profile_ignored,
         repaired_samples: 0,
     })

@@ -6,7 +6,7 @@ use airlight::spectrum::Spectrum;
 /// How an estimate came about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ambient {
-    /// The mean of the lowest sky pixels of each column.
+    /// The sky above its lower edge, in the columns of middling brightness.
     Sky,
     /// The brightest thousandth of the dark channel.
     DarkChannel,
@@ -14,32 +14,65 @@ pub enum Ambient {
 
 /// Half the side of the dark channel's patch: 15 x 15 pixels.
 const HALF_PATCH: usize = 7;
+/// How far from the sky's edge pixels may be mixed with what stands before it, or blurred into it.
+const MIXED: usize = 2;
+/// The sky pixels of a column that count.
+const COUNTED: usize = 8;
 
-/// The light that fog would be made of. Where at least 0.5 % of the pixels are sky (infinitely far): the mean of the
-/// lowest eight of them in each column, as the fog ends in the sky near the horizon. Else, as Foggy Cityscapes and He et al.
-/// (2011) do, the dark channel (the smallest of the three colours within 15 x 15 pixels); of the pixels where it is
-/// brightest, one in a thousand, the mean colour.
+/// The light that fog would be made of: the mean colour of the [`horizon_pixels`], as the fog ends in the sky near the
+/// horizon. Where there are none, as Foggy Cityscapes and He et al. (2011) do, the dark channel (the smallest of the three
+/// colours within 15 x 15 pixels); of the pixels where it is brightest, one in a thousand, the mean colour.
 pub fn estimate_ambient(picture: &Picture, depth: &DepthMap) -> (Spectrum<3>, Ambient) {
-    let (width, height) = (
-        picture.size.width() as usize,
-        picture.size.height() as usize,
-    );
-    let count = width * height;
-    let is_sky = |pixel: usize| depth.metres.get(pixel) == Some(&f32::INFINITY);
-    let skies = (0..count).filter(|&pixel| is_sky(pixel)).count();
-    if 200 * skies >= count {
-        let lowest = (0..width).flat_map(|x| {
-            let column = (0..height).rev().map(move |y| y * width + x);
-            column.filter(|&pixel| is_sky(pixel)).take(8)
-        });
-        return (mean(picture, lowest), Ambient::Sky);
+    if let Some(pixels) = horizon_pixels(picture, depth) {
+        return (mean(picture, pixels.into_iter()), Ambient::Sky);
     }
+    let width = picture.size.width() as usize;
+    let count = width * picture.size.height() as usize;
     let dark = dark_channel(picture, width);
     let mut order: Vec<usize> = (0..count).collect();
     let brightest = count.div_ceil(1000);
     order.select_nth_unstable_by(brightest - 1, |&a, &b| dark[b].total_cmp(&dark[a]));
     let pixels = order[..brightest].iter().copied();
     (mean(picture, pixels), Ambient::DarkChannel)
+}
+
+/// Pixels that show the sky's usual colour near the horizon; nothing where less than 0.5 % of the picture is sky
+/// (infinitely far), or all of it near an edge.
+///
+/// Of each column, the lowest eight sky pixels that have sky two pixels below and to either side: nearer to the edge they
+/// are mixed with what stands before them. Of the columns, the fifth in the middle by brightness: the sun's surroundings may
+/// take up two fifths of the horizon, and so may dark clouds, without having a say.
+pub fn horizon_pixels(picture: &Picture, depth: &DepthMap) -> Option<Vec<usize>> {
+    let (width, height) = (
+        picture.size.width() as usize,
+        picture.size.height() as usize,
+    );
+    let is_sky = |x: usize, y: usize| depth.metres.get(y * width + x) == Some(&f32::INFINITY);
+    let skies = depth.metres.iter().filter(|m| **m == f32::INFINITY).count();
+    if 200 * skies < width * height {
+        return None;
+    }
+    let is_pure = |x: usize, y: usize| {
+        let below = y..(y + MIXED + 1).min(height);
+        let beside = x.saturating_sub(MIXED)..(x + MIXED + 1).min(width);
+        below.into_iter().all(|y| is_sky(x, y)) && beside.into_iter().all(|x| is_sky(x, y))
+    };
+    let mut columns: Vec<(f32, Vec<usize>)> = (0..width)
+        .map(|x| {
+            let pure = (0..height).rev().filter(|&y| is_pure(x, y));
+            let pixels: Vec<usize> = pure.take(COUNTED).map(|y| y * width + x).collect();
+            let colour = mean(picture, pixels.iter().copied());
+            (colour[0] + colour[1] + colour[2], pixels)
+        })
+        .filter(|(_, pixels)| !pixels.is_empty())
+        .collect();
+    if columns.is_empty() {
+        return None;
+    }
+    columns.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let middle = 2 * columns.len() / 5..(3 * columns.len()).div_ceil(5);
+    let middle = columns.drain(middle).flat_map(|(_, pixels)| pixels);
+    Some(middle.collect())
 }
 
 fn mean(picture: &Picture, pixels: impl Iterator<Item = usize>) -> Spectrum<3> {

@@ -1,74 +1,30 @@
 //! Fog laid over a picture that exists: colour and depth in, the fogged picture and its layers out.
+//!
+//! From the ground up: the light that a picture shows fog to be in ([`estimate_ambient`]); lamps ([`Glow`]); what lies
+//! between camera and scene ([`Veil`]); both put together, row by row ([`Overlay`]).
 
 mod ambient;
+mod glow;
+mod veil;
 
-pub use ambient::{Ambient, estimate_ambient};
+pub use ambient::{Ambient, estimate_ambient, horizon_pixels};
+pub use glow::Glow;
+pub use veil::{AirBefore, Body, Veil};
 
 use crate::input::{DepthKind, DepthMap, LightReference, Picture};
 use crate::{Intrinsics, RenderError, RowSource};
-use airlight::fog::{Fog, legacy};
 use airlight::path::PathOptics;
 use airlight::spectrum::Spectrum;
-use airlight::spectrum::rgb::{srgb_decode, srgb_encode};
 use glam::DVec3;
 
-/// What lies between camera and scene.
-#[derive(Clone, Debug)]
-pub enum Veil {
-    /// A fog.
-    Fog(Box<Fog<3>>),
-    /// Exponential-squared fog, a look: density (1/m) and colour.
-    ExponentialSquared(f64, Spectrum<3>),
-    /// Linear fog, a look: where it starts and ends (m), and colour.
-    Linear(f64, f64, Spectrum<3>),
-    /// Foggy Cityscapes (Sakaridis et al. 2018): uniform fog of an extinction (1/m) and one colour, blended in encoded
-    /// (sRGB) values instead of light.
-    Encoded(f64, Spectrum<3>),
-}
-
-impl Veil {
-    /// What it does up to a distance (m; infinite: the sky) in a direction from an eye at a height (m).
-    pub fn optics(&self, eye_height_m: f64, direction: DVec3, distance_m: f64) -> PathOptics<3> {
-        match self {
-            Self::Fog(fog) => fog.along(eye_height_m, direction, distance_m),
-            Self::ExponentialSquared(density, colour) => {
-                legacy::exponential_squared(*density, distance_m, *colour)
-            }
-            Self::Linear(start, end, colour) => legacy::linear(*start, *end, distance_m, *colour),
-            Self::Encoded(extinction, colour) => {
-                let transmittance = (-extinction * distance_m).exp() as f32;
-                PathOptics {
-                    transmittance: Spectrum::splat(transmittance),
-                    path_radiance: *colour * (1.0 - transmittance),
-                }
-            }
-        }
-    }
-
-    /// A colour seen through it.
-    fn apply(&self, optics: &PathOptics<3>, colour: Spectrum<3>) -> Spectrum<3> {
-        let Self::Encoded(_, fog) = self else {
-            return optics.apply(colour);
-        };
-        let part = f64::from(optics.transmittance[0]);
-        if part == 1.0 {
-            return colour;
-        }
-        Spectrum::from_fn(|i| {
-            let of = |value: f32| srgb_encode(f64::from(value));
-            srgb_decode(of(colour[i]) * part + of(fog[i]) * (1.0 - part)) as f32
-        })
-    }
-}
-
 /// A picture, its depth, its camera, and a veil over it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy)]
 pub struct Overlay<'a> {
     picture: &'a Picture,
     depth: &'a DepthMap,
     camera: &'a Intrinsics,
     eye_height_m: f64,
-    veil: &'a Veil,
+    veil: &'a Veil<'a>,
     channels: Channels,
 }
 
@@ -116,7 +72,7 @@ impl<'a> Overlay<'a> {
         depth: &'a DepthMap,
         camera: &'a Intrinsics,
         eye_height_m: f64,
-        veil: &'a Veil,
+        veil: &'a Veil<'a>,
         channels: Channels,
     ) -> Result<Self, RenderError> {
         depth.check_against(picture)?;

@@ -1,7 +1,7 @@
 use super::*;
 use crate::Size;
 use crate::input::{LightReference, SampleBits};
-use airlight::fog::{Ground, Layer, Light, Matter, Profile, Scattering};
+use airlight::fog::{Fog, Ground, Layer, Light, Matter, Profile, Scattering};
 use airlight::optics::PhaseFunction;
 
 fn picture(width: u32, height: u32, rgb: impl Fn(u32, u32) -> [f32; 3]) -> Picture {
@@ -14,6 +14,7 @@ fn picture(width: u32, height: u32, rgb: impl Fn(u32, u32) -> [f32; 3]) -> Pictu
         reference: LightReference::Display,
         bits: SampleBits::U8,
         chromaticities: None,
+        white_luminance_cd_m2: None,
         profile_ignored: false,
         repaired_samples: 0,
     }
@@ -31,7 +32,7 @@ fn depth(width: u32, height: u32, metres: impl Fn(u32, u32) -> f32) -> DepthMap 
     }
 }
 
-fn uniform(extinction: f32, ambient: [f32; 3]) -> Veil {
+fn uniform(extinction: f32, ambient: [f32; 3]) -> Veil<'static> {
     let matter = Matter {
         extinction_per_m: Spectrum::splat(extinction),
         single_scattering_albedo: Spectrum::ONE,
@@ -47,7 +48,7 @@ fn uniform(extinction: f32, ambient: [f32; 3]) -> Veil {
         matter,
     }];
     let fog = Fog::new(&layers, Ground::FLAT, light, Scattering::Single).unwrap();
-    Veil::Fog(Box::new(fog))
+    Veil::Fog(Body::Alone(Box::new(fog)), None)
 }
 
 #[test]
@@ -137,6 +138,101 @@ fn fog_lies_before_what_is_there_only() {
             assert_eq!(pixel(2)[0], 0.0, "nothing is there");
             let opacities = [0, 1, 2].map(|i| pixel(i)[names.len() - 1]);
             assert_eq!(opacities, [1.0, 0.5, 0.0]);
+        }
+    }
+}
+
+#[test]
+fn the_ambient_takes_no_notice_of_sun_cloud_and_edges() {
+    let horizon = [0.5f32, 0.6, 0.8];
+    // Hills whose edge is mixed with the sky over two pixels, sky that darkens upwards from them.
+    let (width, height) = (120u32, 60u32);
+    let edge = |x: u32| 38 + (x * 7) % 5;
+    let near = |x: u32, y: u32| if y <= edge(x) { f32::INFINITY } else { 50.0 };
+    let depth = depth(width, height, near);
+    let sky = |x: u32, y: u32| -> f32 {
+        match edge(x).saturating_sub(y) {
+            0 => 0.3,
+            1 => 0.7,
+            up => 1.0 - 0.002 * up as f32,
+        }
+    };
+    let sun = |x: u32, y: u32| {
+        let away = (f64::from(x) - 20.0).hypot(f64::from(y) - 30.0);
+        1.0 + 6.0 * (-(away / 15.0).powi(2)).exp() as f32
+    };
+    let cloud = |x: u32| if x > 85 { 0.5 } else { 1.0 };
+    let plain = |_: u32, _: u32| 1.0f32;
+    let shining: [&dyn Fn(u32, u32) -> f32; 4] =
+        [&plain, &sun, &|x, _| cloud(x), &|x, y| sun(x, y) * cloud(x)];
+    for (case, factor) in shining.into_iter().enumerate() {
+        let picture = picture(width, height, |x, y| match y <= edge(x) {
+            true => horizon.map(|c| c * sky(x, y) * factor(x, y)),
+            false => [0.05, 0.06, 0.03],
+        });
+        let (colour, how) = estimate_ambient(&picture, &depth);
+        assert_eq!(how, Ambient::Sky);
+        for lane in 0..3 {
+            let off = colour[lane] / horizon[lane] - 1.0;
+            assert!(off.abs() < 0.02, "case {case}, lane {lane}: {off}");
+        }
+    }
+    // Gaps in a hedge, all of them edge, are no sky to judge by.
+    let hedge = self::depth(width, height, |x, y| match (x % 4, y % 3) {
+        (0, 0) => f32::INFINITY,
+        _ => 9.0,
+    });
+    let picture = picture(width, height, |_, _| [0.3; 3]);
+    assert_eq!(horizon_pixels(&picture, &hedge), None);
+    assert_eq!(estimate_ambient(&picture, &hedge).1, Ambient::DarkChannel);
+}
+
+#[test]
+fn a_lamp_glows_before_what_is_there() {
+    use airlight::fog::lamp::{Lamp, Passage, PointLamp, airlight_isotropic};
+    let (picture, depth) = (
+        picture(9, 5, |_, _| [0.0; 3]),
+        depth(9, 5, |x, _| if x < 4 { 6.0 } else { f32::INFINITY }),
+    );
+    let camera = Intrinsics::from_horizontal_fov(picture.size, 60.0).unwrap();
+    let matter = Matter {
+        extinction_per_m: Spectrum::splat(0.05),
+        single_scattering_albedo: Spectrum::splat(0.8),
+        phase: PhaseFunction::Isotropic,
+    };
+    // Half of the fog in each of two layers.
+    let mut half = matter.clone();
+    half.extinction_per_m = Spectrum::splat(0.025);
+    let layer = |matter| Layer {
+        profile: Profile::Uniform,
+        matter,
+    };
+    let (whole, halves) = (layer(matter), [layer(half.clone()), layer(half)]);
+    let at = DVec3::new(-1.0, 2.5, -5.0);
+    let lamp = PointLamp::new(at, Spectrum([3.0, 2.0, 1.0]), 0.01).unwrap();
+    let light = Light {
+        sun: None,
+        ambient: Spectrum::ZERO,
+        ground_albedo: Spectrum::ZERO,
+    };
+    for layers in [&[whole][..], &halves[..]] {
+        let fog = Fog::new(layers, Ground::FLAT, light, Scattering::Single).unwrap();
+        let glow = Glow::new(vec![Lamp::Point(lamp)], layers, Ground::FLAT).unwrap();
+        let veil = Veil::Fog(Body::Alone(Box::new(fog)), Some(glow));
+        let overlay =
+            Overlay::new(&picture, &depth, &camera, 1.6, &veil, Channels::Picture).unwrap();
+        let mut row = vec![0.0; 27];
+        overlay.fill_row(1, &mut row);
+        for x in 0..9 {
+            let (direction, length) = (camera.pixel_direction(x, 1), camera.ray_length_per_z(x, 1));
+            let length_m = if x < 4 { 6.0 * length } else { f64::INFINITY };
+            let passage = Passage::new(DVec3::Y * 1.6, direction, length_m, at, 0.01);
+            let exact = 0.05 * 0.8 * airlight_isotropic(&passage, 0.05);
+            let seen = &row[3 * x as usize..][..3];
+            for (lane, intensity) in [3.0, 2.0, 1.0].into_iter().enumerate() {
+                let off = f64::from(seen[lane]) / (intensity * exact) - 1.0;
+                assert!(off.abs() < 2e-5, "{x}, {lane}: {off}");
+            }
         }
     }
 }

@@ -29,7 +29,7 @@
 //! # Ok::<(), airlight::fog::FogError>(())
 //! ```
 //!
-//! From the ground up: [`visibility`]; [`line`](mod@line) and [`profile`] (how much fog lies along a line); [`matter`] and [`droplets`];
+//! From the ground up: [`line`](mod@line) and [`profile`] (how much fog lies along a line); [`matter`] and [`droplets`];
 //! [`lanes`] and [`scatter`] (the formulas); light and ground; the fog itself ([`Fog`]) with light scattered once and many
 //! times; [`lamp`]s; and beside it [`slab1987`], [`legacy`] looks, [`approximation`]s.
 
@@ -49,9 +49,9 @@ pub mod profile;
 pub mod scatter;
 pub mod slab1987;
 mod strata;
-pub mod visibility;
 mod walk;
 
+pub use crate::medium::visibility;
 pub use light::{Ground, Light, Scattering, Sun};
 pub use line::Line;
 pub use matter::{FogError, Layer, Matter};

@@ -1,13 +1,12 @@
 //! Haze: an aerosol after Angstrom's law, set by optical depth, turbidity or visibility.
 
+use super::visibility::{self, Contrast};
 use super::{Constituent, DensityProfile};
 use crate::optics::{PhaseError, PhaseFunction};
 use crate::spectrum::{SampledCurve, SpectralCurve};
 
 /// The wavelength that loads are stated at, nm.
 pub const REFERENCE_NM: f64 = 550.0;
-/// `ln(1 / 0.02)`: at the meteorological optical range a black object's contrast has fallen to 2 % (Koschmieder 1924).
-pub const KOSCHMIEDER: f64 = 3.912_023_005_428_146;
 
 /// How much aerosol there is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,10 +18,15 @@ pub enum AerosolLoad {
     ///
     /// `tau_aerosol = (T - 1) tau_molecules`
     Turbidity(f64),
-    /// Meteorological optical range at the ground, m, for 2 % contrast at 550 nm.
+    /// Visibility at the ground, at 550 nm.
     ///
-    /// `extinction_aerosol = ln(50) / V - extinction_molecules`
-    VisibilityM(f64),
+    /// `extinction_aerosol = ln(1 / contrast) / range - extinction_molecules`
+    Visibility {
+        /// How far one sees, m.
+        range_m: f64,
+        /// The contrast that is left there: 5 % makes it the meteorological optical range.
+        contrast: Contrast,
+    },
 }
 
 /// What the other gases do at 550 nm, which turbidity and visibility are stated relative to.
@@ -98,12 +102,11 @@ impl AerosolLoad {
                 Ok((turbidity - 1.0) * clear.optical_depth_550)
             }
             Self::Turbidity(turbidity) => Err(AerosolError::Turbidity(turbidity)),
-            Self::VisibilityM(range_m) => {
-                let clearest_m = KOSCHMIEDER / clear.ground_extinction_per_m;
+            Self::Visibility { range_m, contrast } => {
+                let clearest_m = visibility::visibility_m(clear.ground_extinction_per_m, contrast);
+                let whole_per_m = visibility::extinction_per_m(range_m, contrast);
                 match range_m > 0.0 && range_m <= clearest_m {
-                    true => Ok(
-                        (KOSCHMIEDER / range_m - clear.ground_extinction_per_m).max(0.0) * column_m,
-                    ),
+                    true => Ok((whole_per_m - clear.ground_extinction_per_m).max(0.0) * column_m),
                     false => Err(AerosolError::Visibility {
                         got_m: range_m,
                         clearest_m,
@@ -119,9 +122,10 @@ pub fn turbidity_of_optical_depth(aerosol_optical_depth_550: f64, clear: ClearAi
     1.0 + aerosol_optical_depth_550 / clear.optical_depth_550
 }
 
-/// Meteorological optical range (m, 2 % contrast, 550 nm) of air with this aerosol extinction at the ground, m^-1.
+/// Meteorological optical range (m, 5 % contrast, 550 nm) of air with this aerosol extinction at the ground, m^-1.
 pub fn visibility_of_extinction_m(aerosol_extinction_550_per_m: f64, clear: ClearAir) -> f64 {
-    KOSCHMIEDER / (aerosol_extinction_550_per_m + clear.ground_extinction_per_m)
+    let whole_per_m = aerosol_extinction_550_per_m + clear.ground_extinction_per_m;
+    visibility::visibility_m(whole_per_m, Contrast::FivePercent)
 }
 
 impl AngstromAerosol {
@@ -147,7 +151,7 @@ impl AngstromAerosol {
         let at_ground = self.density.at(ground_altitude_m);
         let depth = match self.load {
             // A layer aloft has no extinction at the ground that visibility could set.
-            AerosolLoad::VisibilityM(_) if at_ground <= 0.0 => {
+            AerosolLoad::Visibility { .. } if at_ground <= 0.0 => {
                 return Err(AerosolError::EmptyProfile);
             }
             load => load.optical_depth_550(clear, column_m / at_ground)?,
@@ -219,6 +223,13 @@ mod tests {
     const GROUND: f64 = 0.0;
     const TOP: f64 = 100e3;
 
+    fn seen(range_m: f64) -> AerosolLoad {
+        AerosolLoad::Visibility {
+            range_m,
+            contrast: Contrast::FivePercent,
+        }
+    }
+
     fn clear() -> ClearAir {
         let air = gases::air(101_325.0);
         ClearAir {
@@ -257,15 +268,21 @@ mod tests {
         assert!((depth / (2.0 * clear().optical_depth_550) - 1.0).abs() < 1e-12);
         assert!((turbidity_of_optical_depth(depth, clear()) - 3.0).abs() < 1e-12);
 
-        let by_visibility = build(AerosolLoad::VisibilityM(23e3));
+        let by_visibility = build(seen(23e3));
         let total = by_visibility.extinction_per_m(550.0) + clear().ground_extinction_per_m;
-        assert!(((-total * 23e3).exp() / 0.02 - 1.0).abs() < 1e-12);
+        assert!(((-total * 23e3).exp() / 0.05 - 1.0).abs() < 1e-12);
         let range = visibility_of_extinction_m(by_visibility.extinction_per_m(550.0), clear());
         assert!((range / 23e3 - 1.0).abs() < 1e-12);
-        // Clear air is seen through for some 340 km.
+        // Clear air is seen through for some 260 km.
         let clearest = visibility_of_extinction_m(0.0, clear());
-        assert!((330e3..350e3).contains(&clearest), "{clearest}");
-        let none = build(AerosolLoad::VisibilityM(clearest));
+        assert!((255e3..265e3).contains(&clearest), "{clearest}");
+        let by_contrast = build(AerosolLoad::Visibility {
+            range_m: 23e3,
+            contrast: Contrast::TwoPercent,
+        });
+        let total = by_contrast.extinction_per_m(550.0) + clear().ground_extinction_per_m;
+        assert!(((-total * 23e3).exp() / 0.02 - 1.0).abs() < 1e-12);
+        let none = build(seen(clearest));
         assert!(none.extinction_per_m(550.0) < 1e-15);
     }
 
@@ -295,7 +312,7 @@ mod tests {
         );
         for range in [0.0, -5.0, f64::NAN, 1e7] {
             assert!(matches!(
-                refuse(&aerosol(AerosolLoad::VisibilityM(range))),
+                refuse(&aerosol(seen(range))),
                 AerosolError::Visibility { .. }
             ));
         }
@@ -310,7 +327,7 @@ mod tests {
         ));
         bad.angstrom_exponent = f64::NAN;
         assert!(matches!(refuse(&bad), AerosolError::AngstromExponent(_)));
-        let mut aloft = aerosol(AerosolLoad::VisibilityM(20e3));
+        let mut aloft = aerosol(seen(20e3));
         aloft.density = DensityProfile::Layer {
             bottom_m: 2e3,
             top_m: 3e3,

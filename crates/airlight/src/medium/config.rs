@@ -35,6 +35,7 @@
 //! | `rayleigh.pressure_pa` | sea-level pressure; scales the base's molecules, or adds the Earth's where it has none |
 //! | `ozone.column_du` | replaces the base's ozone by the measured cross-section and mid-latitude profile, of this column |
 //! | `aerosol.aod_550`, `.turbidity` or `.visibility_m` | one of three ways to say how much ([`AerosolLoad`]) |
+//! | `aerosol.contrast` | which contrast visibility means: 0.05 (if absent) or 0.02 |
 //! | `aerosol.angstrom_exponent`, `.single_scattering_albedo` | exponent of the extinction; *spectrum* in `[0, 1]` |
 //! | `aerosol.scale_height_m` or `.density` | how it thins out with altitude; *density* |
 //! | `aerosol.phase` | *phase*; `kind` may be left out to change the parameters the base has |
@@ -58,6 +59,7 @@ pub use error::{ConfigError, ConfigProblem};
 
 use super::aerosol::{AerosolLoad, AngstromAerosol, continental_phase};
 use super::presets::{self, earth};
+use super::visibility::Contrast;
 use super::{Atmosphere, AtmosphereError, Constituent, DensityProfile, gases};
 use crate::light::LimbDarkening;
 use crate::optics::{PhaseFunction, rayleigh::STANDARD_PRESSURE_PA};
@@ -268,6 +270,7 @@ fn aerosol(section: &Section<'_>, atmosphere: &mut Atmosphere) -> Result<(), Con
         "aod_550",
         "turbidity",
         "visibility_m",
+        "contrast",
         "angstrom_exponent",
         "single_scattering_albedo",
         "scale_height_m",
@@ -283,6 +286,11 @@ fn aerosol(section: &Section<'_>, atmosphere: &mut Atmosphere) -> Result<(), Con
         .as_ref()
         .map_or(0.0, |part| part.optical_depth(ground, top, 550.0));
     let loads = ["aod_550", "turbidity", "visibility_m"];
+    let contrast = section.number("contrast", "0.05 or 0.02", |c| c == 0.05 || c == 0.02)?;
+    let contrast = match contrast {
+        Some(0.02) => Contrast::TwoPercent,
+        _ => Contrast::FivePercent,
+    };
     let mut load = None;
     for key in loads {
         let Some(value) = section.number(key, "a number", |_| true)? else {
@@ -294,7 +302,10 @@ fn aerosol(section: &Section<'_>, atmosphere: &mut Atmosphere) -> Result<(), Con
         let kind = match key {
             "aod_550" => AerosolLoad::OpticalDepth550(value),
             "turbidity" => AerosolLoad::Turbidity(value),
-            _ => AerosolLoad::VisibilityM(value),
+            _ => AerosolLoad::Visibility {
+                range_m: value,
+                contrast,
+            },
         };
         load = Some((key, kind));
     }

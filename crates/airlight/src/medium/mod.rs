@@ -8,6 +8,7 @@ pub mod gases;
 mod nearest;
 pub mod presets;
 mod standard_air;
+pub mod visibility;
 
 pub use aerosol::{AerosolError, AerosolLoad, AngstromAerosol, ClearAir};
 pub use atmosphere::{Atmosphere, AtmosphereError, Constituent, Planet};

@@ -23,11 +23,12 @@ use std::sync::Arc;
 /// light on the air above it.
 pub struct FoggySky<'a, const N: usize> {
     view: View<'a>,
-    converter: Converter<N>,
+    converter: Arc<Converter<N>>,
     clear: Arc<SkyTable>,
     /// The table's first channel that is a lane.
     first: usize,
-    aerial: AerialPerspective<N>,
+    aerial: Arc<AerialPerspective<N>>,
+    top: Arc<TopLight>,
     fog: Fog<N>,
     eye_height_m: f64,
     /// Irradiance of the ground over that without fog.
@@ -36,7 +37,7 @@ pub struct FoggySky<'a, const N: usize> {
 
 /// What is the same for all pieces of a spectrum.
 struct Surroundings {
-    top: TopLight,
+    top: Arc<TopLight>,
     clear: Arc<SkyTable>,
 }
 
@@ -55,14 +56,6 @@ fn top_view<'a, const N: usize>(
     Fog::new(layers, ground, unlit, Scattering::Single)?;
     let ground_m = view.sky().atmosphere().planet.ground_altitude_m;
     Ok(view.at_altitude(ground_m + light::top_m(layers, &ground) - ground.height_m))
-}
-
-/// What fog puts before and into clear air on a line.
-struct Veil<const N: usize> {
-    /// Transmittance of the fog.
-    transmittance: Spectrum<N>,
-    /// Light added: by the fog, dimmed by the air before it, and by the air before the fog, in place of that behind it.
-    added: Spectrum<N>,
 }
 
 impl<'a, const N: usize> FoggySky<'a, N> {
@@ -85,7 +78,7 @@ impl<'a, const N: usize> FoggySky<'a, N> {
         // Checked before anything is computed.
         Converter::<N>::new(view, channels)?;
         let surroundings = Surroundings {
-            top: TopLight::of(&top_view(view, layers, ground)?),
+            top: Arc::new(TopLight::of(&top_view(view, layers, ground)?)),
             clear: Arc::new(view.table(table)),
         };
         Self::among(view, channels, layers, ground, scattering, &surroundings)
@@ -103,7 +96,7 @@ impl<'a, const N: usize> FoggySky<'a, N> {
         scattering: Scattering,
     ) -> Result<Vec<Self>, OutdoorsError> {
         let surroundings = Surroundings {
-            top: TopLight::of(&top_view(view, layers, ground)?),
+            top: Arc::new(TopLight::of(&top_view(view, layers, ground)?)),
             clear: Arc::new(view.table(TableChannels::Spectral)),
         };
         (0..view.sky().grid().len())
@@ -124,18 +117,51 @@ impl<'a, const N: usize> FoggySky<'a, N> {
         surroundings: &Surroundings,
     ) -> Result<Self, OutdoorsError> {
         let converter = Converter::new(view, channels)?;
-        let light = surroundings.top.on_fog(view, &converter, scattering);
+        let top = surroundings.top.clone();
+        let light = top.on_fog(view, &converter, scattering);
         let wavelengths_nm = converter.wavelengths_nm();
         let fog = Fog::at_wavelengths_nm(layers, ground, light, scattering, wavelengths_nm)?;
         Ok(Self {
             clear: surroundings.clear.clone(),
             first: converter.used().start,
-            aerial: AerialPerspective::new(view, channels, f64::INFINITY)?,
+            aerial: Arc::new(AerialPerspective::new(view, channels, f64::INFINITY)?),
+            top,
             eye_height_m: view.radius_m() - view.bounds_m().0 + ground.height_m,
             ground_share: light::share_on_ground(&fog, layers, &wavelengths_nm),
             fog,
-            converter,
+            converter: Arc::new(converter),
             view: view.clone(),
+        })
+    }
+
+    /// Another fog in the same sky, over the same ground: what does not depend on the fog is shared, and so is the light on
+    /// it where it reaches as high.
+    ///
+    /// # Errors
+    /// [`OutdoorsError`] for a fog that is none.
+    pub fn with_fog(
+        &self,
+        layers: &[Layer<N>],
+        scattering: Scattering,
+    ) -> Result<Self, OutdoorsError> {
+        let ground = *self.fog.ground();
+        let above = top_view(&self.view, layers, ground)?;
+        let top = match self.top.radius_m() == above.radius_m() {
+            true => self.top.clone(),
+            false => Arc::new(TopLight::of(&above)),
+        };
+        let light = top.on_fog(&self.view, &self.converter, scattering);
+        let wavelengths_nm = self.converter.wavelengths_nm();
+        let fog = Fog::at_wavelengths_nm(layers, ground, light, scattering, wavelengths_nm)?;
+        Ok(Self {
+            view: self.view.clone(),
+            converter: self.converter.clone(),
+            clear: self.clear.clone(),
+            aerial: self.aerial.clone(),
+            top,
+            ground_share: light::share_on_ground(&fog, layers, &wavelengths_nm),
+            fog,
+            ..*self
         })
     }
 
@@ -167,11 +193,7 @@ impl<'a, const N: usize> FoggySky<'a, N> {
     #[inline]
     pub fn optics(&self, direction: DVec3, distance_m: f64) -> PathOptics<N> {
         let air = self.aerial.optics(direction, distance_m);
-        let veil = self.veil(direction, distance_m);
-        PathOptics {
-            transmittance: air.transmittance * veil.transmittance,
-            path_radiance: veil.added.mul_acc(veil.transmittance, air.path_radiance),
-        }
+        self.over_clear(direction, distance_m).then(air)
     }
 
     /// Radiance along the unit vector `direction`: sky or ground, seen through the fog, without the sun's disc.
@@ -197,15 +219,13 @@ impl<'a, const N: usize> FoggySky<'a, N> {
     #[inline]
     pub fn before(&self, direction: DVec3, clear: Spectrum<N>) -> Spectrum<N> {
         let Some(end_m) = self.aerial.ground_distance_m(direction) else {
-            let veil = self.veil(direction, f64::INFINITY);
-            return veil.added.mul_acc(veil.transmittance, clear);
+            return self.over_clear(direction, f64::INFINITY).apply(clear);
         };
         // What of the clear picture is the ground's own light, dimmed by the air.
         let air = self.aerial.optics(direction, end_m).path_radiance;
         let ground = (clear - air).max_scalar(0.0);
         let behind = clear - ground + ground * self.ground_share;
-        let veil = self.veil(direction, end_m);
-        veil.added.mul_acc(veil.transmittance, behind)
+        self.over_clear(direction, end_m).apply(behind)
     }
 
     /// Radiance of the sun's disc in a direction, dimmed by air and fog; zero beside it. (It allocates: for pictures
@@ -238,6 +258,9 @@ impl<'a, const N: usize> FoggySky<'a, N> {
         line
     }
 
+    /// What the fog does to the light of a point at `distance_m` (infinite: of the sky) that has come through the clear air
+    /// already: a picture of the scene without fog goes through it. [`FoggySky::optics`] has the air, too.
+    ///
     /// With `T_a`, `S_a` of the air up to a distance `s`, and `T_f`, `S_f` of the fog, in small steps one after the other,
     ///
     /// ```text
@@ -246,9 +269,9 @@ impl<'a, const N: usize> FoggySky<'a, N> {
     ///
     /// by parts, where `<f>` is the mean of `f(s)` over the light that the fog scatters away, `int f dT_f / (T_f - 1)`, by
     /// Gauss's rule. The second mean should be over `dS_f`: the same where the fog's source function varies little. The
-    /// first term is left to the caller.
+    /// first term is that of the light which has come through the air; the others are the path radiance here.
     #[inline]
-    fn veil(&self, direction: DVec3, distance_m: f64) -> Veil<N> {
+    pub fn over_clear(&self, direction: DVec3, distance_m: f64) -> PathOptics<N> {
         let line = self.line(direction, distance_m);
         let cos_sun = match &self.fog.light().sun {
             Some(sun) => direction.dot(sun.direction),
@@ -271,9 +294,9 @@ impl<'a, const N: usize> FoggySky<'a, N> {
             None => dimming = Spectrum::ONE,
         }
         let opacity = Spectrum::ONE - fog.transmittance;
-        Veil {
+        PathOptics {
             transmittance: fog.transmittance,
-            added: (fog.path_radiance * dimming).mul_acc(opacity, before),
+            path_radiance: (fog.path_radiance * dimming).mul_acc(opacity, before),
         }
     }
 }

@@ -14,6 +14,8 @@ const HIGHEST_M: f64 = 100e3;
 
 /// The light of a sky at the top of a fog, at every wavelength of its grid.
 pub(super) struct TopLight {
+    /// Distance of the top from the planet's centre, m.
+    radius_m: f64,
     /// Of the sun's disc on a surface that faces it, W m^-2 nm^-1.
     sun_irradiance: Vec<f32>,
     /// Mean radiance of all directions, W m^-2 sr^-1 nm^-1: half of sky, half of ground, each as its irradiance of a level
@@ -30,10 +32,16 @@ impl TopLight {
         let (down, up) = (table.irradiance(DVec3::Y), table.irradiance(-DVec3::Y));
         let mean = |(down, up): (&f32, &f32)| (0.5 * f64::from(down + up) / PI) as f32;
         Self {
+            radius_m: top.radius_m(),
             sun_irradiance: top.sun_irradiance(),
             mean_radiance: down.iter().zip(&up).map(mean).collect(),
             sky_radiance: down.iter().map(|e| (f64::from(*e) / PI) as f32).collect(),
         }
+    }
+
+    /// Distance of the top from the planet's centre, m.
+    pub fn radius_m(&self) -> f64 {
+        self.radius_m
     }
 
     /// In lanes, as a fog wants it: many scatterings start from the sky alone, as the ground's light is solved for.

@@ -8,7 +8,8 @@ mod plan;
 mod record;
 mod work;
 
-use crate::args::OverlayArgs;
+use super::light::{LightSource, SolvedSky};
+use crate::args::{OverlayArgs, overlay_vary};
 use crate::error::CliError;
 use crate::interrupt;
 use crate::report::{self, seconds};
@@ -36,6 +37,11 @@ pub fn is_asked_for(args: &OverlayArgs) -> Result<bool, CliError> {
 /// [`CliError`]; pictures already made stay.
 pub fn run(args: &OverlayArgs) -> Result<(), CliError> {
     let plan = Plan::new(args)?;
+    let solved = match overlay_vary::changes_the_sky(&args.batch.vary) {
+        true => None,
+        false => SolvedSky::of(args)?,
+    };
+    let light = LightSource::new(solved.as_ref());
     let path = match &args.batch.manifest {
         Some(path) => path.clone(),
         None => plan.folder.join("manifest.jsonl"),
@@ -52,7 +58,7 @@ pub fn run(args: &OverlayArgs) -> Result<(), CliError> {
     let begun = Instant::now();
     let outcome = {
         let _writing = interrupt::start_writing()?;
-        let outcome = work::run(args, &plan, &manifest, &tasks);
+        let outcome = work::run(args, &light, &plan, &manifest, &tasks);
         manifest.finish()?;
         outcome
     };

@@ -1,8 +1,9 @@
 //! What a manifest says of a picture.
 
-use super::super::picture::Subject;
+use super::super::picture::{Fogged, Subject};
 use super::inputs::Input;
 use crate::args::{ModelArg, OverlayArgs};
+use crate::atmosphere::contrast;
 use crate::error::CliError;
 use airlight::fog::visibility::extinction_per_m;
 use serde::Serialize;
@@ -66,34 +67,34 @@ impl<'a> Which<'a> {
     }
 
     /// What is said of it once it is made, with these options.
-    ///
-    /// # Errors
-    /// [`CliError::Usage`] where the options make no camera.
     pub fn made(
         &'a self,
         options: &'a OverlayArgs,
         subject: &Subject,
-    ) -> Result<impl Serialize + 'a, CliError> {
-        let camera = subject.camera(options)?;
+        fogged: &Fogged<'_>,
+    ) -> impl Serialize + 'a {
         let size = subject.picture.size;
-        Ok(Made {
+        Made {
             which: self,
             options,
             seed: (!options.batch.vary.is_empty()).then(|| options.batch.seed.unwrap_or_default()),
             extinction_per_m: match options.model {
                 ModelArg::Exp2 | ModelArg::Linear => None,
-                _ => Some(extinction_per_m(options.visibility_m, options.contrast())),
+                _ => Some(extinction_per_m(
+                    options.visibility_m,
+                    contrast(&options.contrast),
+                )),
             },
-            ambient_rgb: subject.ambient(options).0,
-            ambient_from: subject.ambient_from,
+            ambient_rgb: fogged.level.colour.0,
+            ambient_from: fogged.level.how,
             width: size.width(),
             height: size.height(),
-            focal_lengths_px: camera.focal_px(),
-            axis_px: camera.principal_px(),
+            focal_lengths_px: fogged.camera.focal_px(),
+            axis_px: fogged.camera.principal_px(),
             unknown_depths: subject.depth.holes,
             infinite_depths: subject.depth.infinite,
             airlight: VERSION,
-        })
+        }
     }
 
     /// What is said of it where it cannot be made.

@@ -1,9 +1,10 @@
 //! The threads of a batch: each reads a picture, lays fog over it, writes it, and takes the next.
 
+use super::super::light::{LightSource, SolvedSky};
 use super::super::picture::{self, Subject};
 use super::record::Which;
 use super::{Input, Manifest, PathBuf, Plan, make_folder};
-use crate::args::OverlayArgs;
+use crate::args::{OverlayArgs, overlay_vary};
 use crate::error::CliError;
 use crate::interrupt;
 use crate::progress::PicturesBar;
@@ -33,7 +34,13 @@ pub struct Outcome {
 
 /// Makes all pictures, as many at a time as there are to be threads. A picture that cannot be read or fogged is a failure of
 /// its own; where one cannot be written, or the user stops, all end.
-pub fn run(args: &OverlayArgs, plan: &Plan, manifest: &Manifest, tasks: &[Task<'_>]) -> Outcome {
+pub fn run(
+    args: &OverlayArgs,
+    light: &LightSource<'_>,
+    plan: &Plan,
+    manifest: &Manifest,
+    tasks: &[Task<'_>],
+) -> Outcome {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let jobs = args
         .batch
@@ -43,6 +50,7 @@ pub fn run(args: &OverlayArgs, plan: &Plan, manifest: &Manifest, tasks: &[Task<'
     let count = tasks.iter().map(|task| task.variants.len() as u64).sum();
     let batch = Batch {
         args,
+        light,
         plan,
         manifest,
         bar: PicturesBar::new(count),
@@ -97,15 +105,16 @@ fn pieces<'a>(tasks: &[Task<'a>], jobs: usize) -> Vec<Task<'a>> {
         .collect()
 }
 
-struct Batch<'a> {
+struct Batch<'a, 's> {
     args: &'a OverlayArgs,
+    light: &'a LightSource<'s>,
     plan: &'a Plan,
     manifest: &'a Manifest,
     bar: PicturesBar,
     outcome: Mutex<Outcome>,
 }
 
-impl Batch<'_> {
+impl Batch<'_, '_> {
     fn outcome(&self) -> std::sync::MutexGuard<'_, Outcome> {
         self.outcome.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -169,6 +178,25 @@ impl Batch<'_> {
         options: &OverlayArgs,
         path: &PathBuf,
     ) -> Result<(), CliError> {
+        // A sky of its own where what varies changes the sky.
+        if overlay_vary::changes_the_sky(&self.args.batch.vary) {
+            let solved = SolvedSky::of(options)?;
+            let light = LightSource::new(solved.as_ref());
+            return self.write_one(&light, subject, input, variant, options, path);
+        }
+        self.write_one(self.light, subject, input, variant, options, path)
+    }
+
+    fn write_one(
+        &self,
+        light: &LightSource<'_>,
+        subject: &Subject,
+        input: &Input,
+        variant: u32,
+        options: &OverlayArgs,
+        path: &PathBuf,
+    ) -> Result<(), CliError> {
+        let fogged = subject.fogged(options, light)?;
         let name = self.manifest.name_of(path);
         let which = Which::new(input, variant, &name);
         make_folder(path.parent())?;
@@ -183,8 +211,8 @@ impl Batch<'_> {
             _ => {}
         }
         self.manifest
-            .add(&name, false, &which.made(options, subject)?)?;
-        subject.write_fogged(options, path, picture::format_of(options, path)?)?;
+            .add(&name, false, &which.made(options, subject, &fogged))?;
+        subject.write(&fogged, options, path, picture::format_of(options, path)?)?;
         Ok(())
     }
 

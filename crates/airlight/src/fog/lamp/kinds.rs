@@ -61,7 +61,13 @@ impl<const N: usize> Lamp<N> {
             Self::Sphere(lamp) => (1.0, distance - lamp.radius_m),
         };
         let line = Line::new(point.y, towards.y, leg, murk.ground_radius_m);
-        let depth = murk.matter.extinction_per_m * murk.profile.column(&line) as f32;
+        let own = murk.matter.extinction_per_m * murk.profile.column(&line) as f32;
+        let depth = murk.others.iter().fold(own, |sum, other| {
+            sum.scale_acc(
+                other.matter.extinction_per_m,
+                other.profile.column(&line) as f32,
+            )
+        });
         self.intensity() * depth.exp_neg() * (part / (distance * distance)) as f32
     }
 }

@@ -106,7 +106,11 @@ impl<const N: usize> Lamps<N> {
         }
         let murk = haze.murk;
         match lamp {
-            Lamp::Point(_) if haze.isotropic && *murk.profile == Profile::Uniform => {
+            Lamp::Point(_)
+                if haze.isotropic
+                    && *murk.profile == Profile::Uniform
+                    && murk.others.is_empty() =>
+            {
                 let extinction = murk.matter.extinction_per_m;
                 evenly(&ray.passage, extinction, &self.nodes)
                     * haze.scattering_per_m

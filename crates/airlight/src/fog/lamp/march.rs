@@ -25,10 +25,12 @@ const OUTWARDS: f64 = 4.0;
 pub(super) struct Haze<'a, const N: usize> {
     pub(super) murk: &'a Murk<'a, N>,
     pub(super) scattering_per_m: Spectrum<N>,
-    /// The largest extinction of any lane, 1/m.
+    /// The largest extinction of any lane, 1/m; of all layers where the air is even.
     pub(super) thickest_per_m: f64,
     /// The smallest above 0.
     pub(super) thinnest_per_m: f64,
+    /// Whether all layers are the same everywhere.
+    even: bool,
     /// `tan(Theta / 2)` over which the phase function falls off from its forward peak: `(1 - g) / (1 + g)` of the
     /// Henyey-Greenstein function with the same peak.
     peak: f64,
@@ -40,18 +42,25 @@ impl<'a, const N: usize> Haze<'a, N> {
     /// Nothing where no lane scatters.
     pub(super) fn new(murk: &'a Murk<'a, N>) -> Option<Self> {
         let matter = murk.matter;
-        let thickest = f64::from(matter.extinction_per_m.max_element());
-        let thinnest = matter
-            .extinction_per_m
-            .0
+        let own = matter.extinction_per_m;
+        let even = [murk.profile]
+            .into_iter()
+            .chain(murk.others.iter().map(|other| &other.profile))
+            .all(|profile| *profile == Profile::Uniform);
+        let others = match even {
+            true => murk.others,
+            false => &[],
+        };
+        let all = others
             .iter()
-            .fold(f32::INFINITY, |m, &v| if v > 0.0 && v < m { v } else { m });
+            .fold(own, |all, o| all + o.matter.extinction_per_m);
         let isotropic = matter.phase == crate::optics::PhaseFunction::Isotropic;
-        (N > 0 && thickest > 0.0).then(|| Self {
+        (N > 0 && own.max_element() > 0.0).then(|| Self {
             murk,
             scattering_per_m: matter.scattering_per_m(),
-            thickest_per_m: thickest,
-            thinnest_per_m: f64::from(thinnest),
+            thickest_per_m: f64::from(all.max_element()),
+            thinnest_per_m: thinnest(all),
+            even,
             peak: match isotropic {
                 true => 1.0,
                 false => width(4.0 * PI * matter.phase.evaluate(1.0, murk.wavelengths_nm[N / 2])),
@@ -59,6 +68,12 @@ impl<'a, const N: usize> Haze<'a, N> {
             isotropic,
         })
     }
+}
+
+/// The smallest extinction above 0 of any lane.
+fn thinnest<const N: usize>(extinction_per_m: Spectrum<N>) -> f64 {
+    let smaller = |least: f32, v: f32| if v > 0.0 && v < least { v } else { least };
+    f64::from(extinction_per_m.0.into_iter().fold(f32::INFINITY, smaller))
 }
 
 /// `(1 - g) / (1 + g)` of the Henyey-Greenstein function that is `peak / (4 pi)` forward: `peak = (1 + g) / (1 - g)^2`.
@@ -132,9 +147,12 @@ impl<'a, const N: usize> Ray<'a, N> {
             cuts.keep(outer);
             cuts.add(inner);
         }
-        if *haze.murk.profile != Profile::Uniform {
+        if !haze.even {
             let closest = -self.passage.start_m;
             cuts.add((closest, closest));
+        }
+        for other in haze.murk.others {
+            cuts.dimmed_by(&other.profile, &self.line);
         }
         let mut sum = Spectrum::ZERO;
         cuts.visit(|from, to| self.panel(from, to, nodes, &mut sum));
@@ -150,9 +168,7 @@ impl<'a, const N: usize> Ray<'a, N> {
         let murk = haze.murk;
         let part = self.passage.part(from, to);
         let (end, rate) = self.spent(&part, from, nodes.spent());
-        let outwards = *murk.profile != Profile::Uniform
-            && part.start_m + part.length_m <= 0.0
-            && rate * end < OUTWARDS;
+        let outwards = !haze.even && part.start_m + part.length_m <= 0.0 && rate * end < OUTWARDS;
         let (anchor, origin, sign, end) = match outwards {
             false => (part, from, 1.0, end),
             true => {
@@ -190,18 +206,22 @@ impl<'a, const N: usize> Ray<'a, N> {
                 }
             }
             weight *= murk.profile.density(self.line.height_at(t));
-            let depth = haze.murk.matter.extinction_per_m * self.way_m(t, r, leg) as f32;
+            let mut depth =
+                murk.matter.extinction_per_m * self.way_m(murk.profile, t, r, leg) as f32;
+            for other in murk.others {
+                let way_m = self.way_m(&other.profile, t, r, leg);
+                depth = depth.scale_acc(other.matter.extinction_per_m, way_m as f32);
+            }
             let cos = (-u / r).clamp(-1.0, 1.0);
             let phase = murk.matter.phase_lanes(cos, murk.wavelengths_nm);
             *sum = sum.scale_acc(phase * depth.exp_neg(), weight as f32);
         });
     }
 
-    /// The fog on the way from the eye to the point `t` on and from there to the lamp, `r` away (its surface `leg`), m of
-    /// density 1.
+    /// The fog of a profile on the way from the eye to the point `t` on and from there to the lamp, `r` away (its surface
+    /// `leg`), m of density 1.
     #[inline]
-    fn way_m(&self, t: f64, r: f64, leg: f64) -> f64 {
-        let profile = self.haze.murk.profile;
+    fn way_m(&self, profile: &Profile, t: f64, r: f64, leg: f64) -> f64 {
         if *profile == Profile::Uniform {
             return t + leg;
         }
@@ -226,16 +246,20 @@ impl<'a, const N: usize> Ray<'a, N> {
     fn spent(&self, part: &Passage, from: f64, depth: f64) -> (f64, f64) {
         let haze = self.haze;
         let end = part.excess_m();
-        if *haze.murk.profile == Profile::Uniform {
+        if haze.even {
             return (end.min(depth / haze.thinnest_per_m), haze.thickest_per_m);
         }
         let way = |excess: f64| {
             let t = part.place_m(excess);
             let r = part.distance_m(t);
-            self.way_m(from + t, r, r)
+            let own = haze.thinnest_per_m * self.way_m(haze.murk.profile, from + t, r, r);
+            haze.murk.others.iter().fold(own, |sum, other| {
+                let way_m = self.way_m(&other.profile, from + t, r, r);
+                sum + thinnest(other.matter.extinction_per_m).min(1e30) * way_m
+            })
         };
         let start = way(0.0);
-        let passed = |excess: f64| (way(excess) - start) * haze.thinnest_per_m;
+        let passed = |excess: f64| way(excess) - start;
         let density = haze.murk.profile.density(self.line.height_at(from));
         let mut reach = end.min(2.0 * depth / (haze.thinnest_per_m * density));
         if reach.is_infinite() {

@@ -1,6 +1,6 @@
 //! What surrounds lamps and eye, and where one looks.
 
-use crate::fog::matter::Matter;
+use crate::fog::matter::{Layer, Matter};
 use crate::fog::profile::Profile;
 use glam::DVec3;
 
@@ -11,6 +11,9 @@ pub struct Murk<'a, const N: usize> {
     pub matter: &'a Matter<N>,
     /// How it thins with height; checked by [`Profile::validate`].
     pub profile: &'a Profile,
+    /// Other layers in the same air: they dim the light, too. What they scatter is that of murks of their own, with this
+    /// fog among the others: [`super::Lamps::path_radiance`] of all of them adds up.
+    pub others: &'a [Layer<N>],
     /// Wavelength of each lane, nm; only phase functions that depend on it look at it.
     pub wavelengths_nm: &'a [f64; N],
     /// Radius of the ground, m; infinite over flat ground. The ground touches height 0 under the eye (or under the point

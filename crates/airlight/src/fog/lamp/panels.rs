@@ -9,12 +9,16 @@ const LEVELS: [f64; 3] = [3.0, 10.0, 40.0];
 /// The optical depth from the eye after which nothing is seen.
 const DARK: f64 = 90.0;
 
+/// Cuts that are kept: of a fog with a beam in it at most 12, of each layer besides at most 6; more are left out, at the cost
+/// of some accuracy.
+const PLACES: usize = 40;
+
 /// Distances along a line, rising, between which panels lie.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cuts {
     first: f64,
     last: f64,
-    within: [f64; 16],
+    within: [f64; PLACES],
     count: usize,
 }
 
@@ -28,7 +32,7 @@ impl Cuts {
         let mut cuts = Self {
             first: 0.0,
             last: line.length_m,
-            within: [0.0; 16],
+            within: [0.0; PLACES],
             count: 0,
         };
         match *profile {
@@ -66,6 +70,30 @@ impl Cuts {
         cuts
     }
 
+    /// Cuts where another layer, which dims the light, has a kink, and at heights where it has thinned out.
+    pub(super) fn dimmed_by(&mut self, profile: &Profile, line: &Line) {
+        let (base_m, levels) = match *profile {
+            Profile::Uniform => return,
+            Profile::Slab { top_height_m } => (top_height_m, None),
+            Profile::Clamped {
+                base_height_m,
+                scale_height_m,
+            } => (
+                line.lowest_height_m().max(base_height_m),
+                Some(scale_height_m),
+            ),
+            Profile::Exponential { scale_height_m, .. } => {
+                (line.lowest_height_m(), Some(scale_height_m))
+            }
+        };
+        self.add(line.below(base_m));
+        if let Some(scale_height_m) = levels {
+            for level in &LEVELS[..2] {
+                self.add(line.below(base_m + level * scale_height_m));
+            }
+        }
+    }
+
     /// Cuts at the levels above the densest point.
     fn stratify(&mut self, line: &Line, densest_height_m: f64, scale_height_m: f64) {
         let below = |level: f64| line.below(densest_height_m + level * scale_height_m);
@@ -86,7 +114,7 @@ impl Cuts {
     /// Cuts at two distances.
     pub(super) fn add(&mut self, (first, last): (f64, f64)) {
         for at in [first, last] {
-            if at.is_finite() {
+            if at.is_finite() && self.count < PLACES {
                 self.within[self.count] = at;
                 self.count += 1;
             }

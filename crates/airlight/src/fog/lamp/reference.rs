@@ -122,15 +122,20 @@ pub fn path_radiance<const N: usize>(lamp: &Lamp<N>, murk: &Murk<N>, sight: &Sig
             bend_per_m: bend * (1.0 - towards.y * towards.y).max(0.0),
             length_m: leg,
         };
-        let way = murk.profile.column(&Line {
-            length_m: t,
-            ..line
-        }) + match *murk.profile {
-            Profile::Uniform => leg,
-            _ => murk.profile.column(&to_lamp),
+        let way = |profile: &Profile| {
+            profile.column(&Line {
+                length_m: t,
+                ..line
+            }) + match *profile {
+                Profile::Uniform => leg,
+                _ => profile.column(&to_lamp),
+            }
         };
+        let others = murk.others.iter();
+        let others = others.map(|o| f64::from(o.matter.extinction_per_m[0]) * way(&o.profile));
+        let depth = extinction * way(murk.profile) + others.sum::<f64>();
         let phase = matter.phase.evaluate(-u / r, murk.wavelengths_nm[0]);
-        murk.profile.density(height) * part * phase * (-extinction * way).exp() / (r * r)
+        murk.profile.density(height) * part * phase * (-depth).exp() / (r * r)
     });
     let scattering = f64::from(matter.scattering_per_m()[0]);
     scattering * f64::from(lamp.intensity()[0]) * integral
@@ -139,11 +144,14 @@ pub fn path_radiance<const N: usize>(lamp: &Lamp<N>, murk: &Murk<N>, sight: &Sig
 /// Where density or the lamp's intensity has a kink, or fog is densest.
 fn edges<const N: usize>(lamp: &Lamp<N>, murk: &Murk<N>, sight: &Sight, line: &Line) -> Vec<f64> {
     let mut edges = Vec::new();
-    match *murk.profile {
-        Profile::Clamped { base_height_m, .. } => edges.push(line.below(base_height_m)),
-        Profile::Slab { top_height_m } => edges.push(line.below(top_height_m)),
-        Profile::Exponential { .. } => edges.push((-0.5 * line.climb / line.bend_per_m, 0.0)),
-        Profile::Uniform => {}
+    let others = murk.others.iter().map(|other| &other.profile);
+    for profile in others.chain([murk.profile]) {
+        match *profile {
+            Profile::Clamped { base_height_m, .. } => edges.push(line.below(base_height_m)),
+            Profile::Slab { top_height_m } => edges.push(line.below(top_height_m)),
+            Profile::Exponential { .. } => edges.push((-0.5 * line.climb / line.bend_per_m, 0.0)),
+            Profile::Uniform => {}
+        }
     }
     if let Lamp::Spot(spot) = lamp {
         let passage = Passage::new(

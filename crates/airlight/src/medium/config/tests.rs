@@ -103,10 +103,14 @@ fn aerosol_keeps_what_is_not_overridden() {
     assert!(
         (got.constituent("aerosol").unwrap().extinction_per_m(550.0)
             + clear.ground_extinction_per_m
-            - 3.912e-4)
+            - 2.9957e-4)
             .abs()
             < 1e-7
     );
+    let two = read("aerosol.visibility_m = 10e3\naerosol.contrast = 0.02");
+    let extinction = |air: &Atmosphere| air.constituent("aerosol").unwrap().extinction_per_m(550.0);
+    let more = (0.05f64 / 0.02).ln() / 10e3;
+    assert!((extinction(&two) - extinction(&got) - more).abs() < 1e-9);
     // Mars keeps its dust's spectral albedo when there is more of it.
     let (mars, got) = (
         preset("mars").unwrap(),
@@ -325,6 +329,8 @@ fn faults_between_values_are_found() {
     ] {
         assert_eq!(*refuse(text).problem, ConfigProblem::Aerosol(want));
     }
+    let contrast = refuse("aerosol.visibility_m = 1e4\naerosol.contrast = 0.1");
+    assert_eq!(contrast.key, "aerosol.contrast");
     let far = refuse("aerosol.visibility_m = 1e6");
     assert!(matches!(
         *far.problem,

@@ -19,6 +19,7 @@ fn murk<'a>(matter: &'a Matter<3>, profile: &'a Profile) -> Murk<'a, 3> {
     Murk {
         matter,
         profile,
+        others: &[],
         wavelengths_nm: &WAVELENGTHS_NM,
         ground_radius_m: f64::INFINITY,
     }

@@ -1,7 +1,8 @@
 use super::super::reference;
 use super::super::{PointLamp, SphereLamp, SpotLamp};
 use super::*;
-use crate::fog::matter::Matter;
+use crate::fog::droplets;
+use crate::fog::matter::{Layer, Matter};
 use crate::optics::PhaseFunction;
 
 const EARTH_M: f64 = 6.371e6;
@@ -39,6 +40,7 @@ fn worst_in_uniform_fog(phase: &PhaseFunction, nodes: usize) -> (f64, String) {
                     let murk = Murk {
                         matter: &matter,
                         profile: &Profile::Uniform,
+                        others: &[],
                         wavelengths_nm: &[550.0],
                         ground_radius_m: f64::INFINITY,
                     };
@@ -125,6 +127,7 @@ fn in_thinning_fog(visit: &mut dyn FnMut(&Murk<1>, &Lamp<1>, &Sight)) {
                     let murk = Murk {
                         matter: &matter,
                         profile: &profile,
+                        others: &[],
                         wavelengths_nm: &[550.0],
                         ground_radius_m,
                     };
@@ -237,6 +240,7 @@ fn beams_and_balls_match_quadrature() {
             let murk = Murk {
                 matter: &matter,
                 profile,
+                others: &[],
                 wavelengths_nm: &[550.0],
                 ground_radius_m: f64::INFINITY,
             };
@@ -293,6 +297,7 @@ fn lanes_of_different_extinction_share_nodes() {
             let murk = Murk {
                 matter: &all,
                 profile: &Profile::Uniform,
+                others: &[],
                 wavelengths_nm: &[450.0, 500.0, 550.0, 600.0],
                 ground_radius_m: f64::INFINITY,
             };
@@ -305,6 +310,7 @@ fn lanes_of_different_extinction_share_nodes() {
                 let murk = Murk {
                     matter: &alone,
                     profile: &Profile::Uniform,
+                    others: &[],
                     wavelengths_nm: &[550.0],
                     ground_radius_m: f64::INFINITY,
                 };
@@ -321,4 +327,88 @@ fn lanes_of_different_extinction_share_nodes() {
             }
         }
     }
+}
+
+#[test]
+fn the_narrow_peak_of_drops_costs_some_accuracy() {
+    for (diameter_um, limit) in [(5.0, 1e-3), (10.0, 1e-3), (20.0, 1.5e-3), (50.0, 2e-3)] {
+        let (off, place) = worst_in_uniform_fog(&droplets::phase(diameter_um), 12);
+        println!("{diameter_um} um: {off:.1e}");
+        assert!(off < limit, "{diameter_um} um: {off:e} at {place}");
+    }
+}
+
+/// Every pair of profiles of very different heights: one scatters, both dim. Visits relative errors.
+fn among_other_layers(nodes: usize, visit: &mut dyn FnMut(f64, String)) {
+    let profiles = [
+        Profile::Uniform,
+        Profile::Slab { top_height_m: 7.0 },
+        Profile::Exponential {
+            reference_height_m: 0.0,
+            scale_height_m: 4.0,
+        },
+        Profile::Clamped {
+            base_height_m: 3.0,
+            scale_height_m: 60.0,
+        },
+    ];
+    for profile in &profiles {
+        for other in &profiles {
+            for [own, besides] in [[0.002, 0.05], [0.05, 0.05], [0.05, 0.002]] {
+                let matter = matter(own, hg(0.8));
+                let others = [Layer {
+                    profile: *other,
+                    matter: self::matter(besides, hg(0.8)),
+                }];
+                let murk = Murk {
+                    matter: &matter,
+                    profile,
+                    others: &others,
+                    wavelengths_nm: &[550.0],
+                    ground_radius_m: f64::INFINITY,
+                };
+                for lamp in [[0.3, 5.0, -30.0], [-8.0, 25.0, -60.0], [40.0, 3.0, 20.0]] {
+                    for climb in [-0.02, 0.0, 0.1, 0.5] {
+                        for length_m in [25.0, 60.0, f64::INFINITY] {
+                            let eye_m = if climb < 0.0 { 12.0 } else { 1.6 };
+                            let sight = Sight {
+                                eye: DVec3::new(0.0, eye_m, 0.0),
+                                direction: DVec3::new(0.05, climb, -1.0).normalize(),
+                                length_m: if climb < 0.0 {
+                                    length_m.min(500.0)
+                                } else {
+                                    length_m
+                                },
+                            };
+                            let lamp = point(DVec3::from_array(lamp));
+                            let exact = reference::path_radiance(&lamp, &murk, &sight);
+                            let got = march(&lamp, &murk, &sight, nodes);
+                            if exact > 1e-15 {
+                                let off = (got / exact - 1.0).abs();
+                                visit(
+                                    off,
+                                    format!(
+                                        "{profile:?} {own} with {other:?} {besides}: {sight:?}"
+                                    ),
+                                );
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn other_layers_dim_the_light() {
+    let (mut count, mut worst) = (0, (0.0, String::new()));
+    among_other_layers(12, &mut |off, place| {
+        count += 1;
+        if off > worst.0 {
+            worst = (off, place);
+        }
+    });
+    assert!(count > 1500, "{count}");
+    assert!(worst.0 < 5e-6, "{:e} at {}", worst.0, worst.1);
 }

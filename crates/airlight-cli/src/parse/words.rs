@@ -1,0 +1,46 @@
+//! Values made of words `KEY=VALUE`.
+
+/// Words `KEY=VALUE`, each to be taken once.
+pub struct Words<'a>(Vec<(&'a str, &'a str)>);
+
+impl<'a> Words<'a> {
+    /// Splits a text at its spaces.
+    ///
+    /// # Errors
+    /// For what is no `KEY=VALUE`, and for a key that is unknown or comes twice.
+    pub fn new(text: &'a str, keys: &[&str]) -> Result<Self, String> {
+        let mut words = Vec::new();
+        for word in text.split_whitespace() {
+            let (key, value) = word
+                .split_once('=')
+                .ok_or_else(|| format!("must be words KEY=VALUE, got \"{word}\""))?;
+            if !keys.contains(&key) {
+                return Err(format!("knows no {key}: its words are {}", keys.join(", ")));
+            }
+            if words.iter().any(|(known, _)| *known == key) {
+                return Err(format!("says {key} twice"));
+            }
+            words.push((key, value));
+        }
+        Ok(Self(words))
+    }
+
+    /// The value of a key, read by `parse`.
+    ///
+    /// # Errors
+    /// What `parse` says, with the key.
+    pub fn take<T>(
+        &mut self,
+        key: &str,
+        parse: impl FnOnce(&str) -> Result<T, String>,
+    ) -> Result<Option<T>, String> {
+        let Some(at) = self.0.iter().position(|(known, _)| *known == key) else {
+            return Ok(None);
+        };
+        let (_, value) = self.0.swap_remove(at);
+        match parse(value) {
+            Ok(value) => Ok(Some(value)),
+            Err(error) => Err(format!("{key} {error}")),
+        }
+    }
+}

@@ -1,0 +1,70 @@
+//! Lamps in the fog over a picture.
+
+use airlight::fog::lamp::{Lamp, LampSettings, Lamps, Murk, Sight};
+use airlight::fog::{FogError, Ground, Layer};
+use airlight::spectrum::Spectrum;
+use glam::DVec3;
+
+/// Phase functions of fog's drops are grey, so that any wavelength will do, nm.
+const WAVELENGTHS_NM: [f64; 3] = [550.0; 3];
+
+/// The light that fog scatters out of lamps' into lines of sight from a camera above the origin.
+///
+/// Light is scattered once. What the lamps light besides fog, and the lamps themselves, the picture shows or does not; fog
+/// dims either as it dims all of it.
+#[derive(Clone, Debug)]
+pub struct Glow {
+    lamps: Lamps<3>,
+    /// Each layer with the others, which dim its light.
+    layers: Vec<(Layer<3>, Vec<Layer<3>>)>,
+    ground: Ground,
+}
+
+impl Glow {
+    /// Lamps (metres east, up and south of the point at height 0 under the camera; intensities in the picture's unit times
+    /// m^2) in layers of fog.
+    ///
+    /// # Errors
+    /// [`FogError`] for a layer that is none.
+    pub fn new(lamps: Vec<Lamp<3>>, layers: &[Layer<3>], ground: Ground) -> Result<Self, FogError> {
+        for layer in layers {
+            layer.matter.validate()?;
+            layer.profile.validate()?;
+        }
+        let with_others = |(i, layer): (usize, &Layer<3>)| {
+            let others = [&layers[..i], &layers[i + 1..]].concat();
+            (layer.clone(), others)
+        };
+        Ok(Self {
+            lamps: Lamps::new(lamps, LampSettings::default())?,
+            layers: layers.iter().enumerate().map(with_others).collect(),
+            ground,
+        })
+    }
+
+    /// What they add to a line of sight of a length (m; may be infinite) from an eye at a height (m).
+    pub fn path_radiance(
+        &self,
+        eye_height_m: f64,
+        direction: DVec3,
+        distance_m: f64,
+    ) -> Spectrum<3> {
+        let sight = Sight {
+            eye: DVec3::Y * eye_height_m,
+            direction,
+            length_m: distance_m,
+        };
+        self.layers
+            .iter()
+            .fold(Spectrum::ZERO, |sum, (layer, others)| {
+                let murk = Murk {
+                    matter: &layer.matter,
+                    profile: &layer.profile,
+                    others,
+                    wavelengths_nm: &WAVELENGTHS_NM,
+                    ground_radius_m: self.ground.radius_m,
+                };
+                sum + self.lamps.path_radiance(&murk, &sight)
+            })
+    }
+}
