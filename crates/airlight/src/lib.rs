@@ -22,6 +22,7 @@ pub mod optics;
 pub mod outdoors;
 pub mod path;
 mod quadrature;
+mod random;
 pub mod sky;
 pub mod spectrum;
 

@@ -5,5 +5,5 @@ pub mod phase;
 pub mod rayleigh;
 mod tabulated;
 
-pub use phase::{Depolarization, PhaseError, PhaseFunction};
+pub use phase::{Depolarization, PhaseError, PhaseFunction, PhaseSampler};
 pub use tabulated::TabulatedPhase;

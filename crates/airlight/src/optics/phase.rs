@@ -2,6 +2,10 @@
 //!
 //! All are densities over the sphere, sr^-1, whose integral is 1; the cosine is 1 for light that goes straight on.
 
+mod sample;
+
+pub use sample::PhaseSampler;
+
 use super::rayleigh;
 use super::tabulated::TabulatedPhase;
 use std::f64::consts::PI;

@@ -89,6 +89,11 @@ impl TabulatedPhase {
         &self.wavelengths_nm
     }
 
+    /// The angles of the table, rad.
+    pub fn angles_rad(&self) -> &[f64] {
+        &self.angles_rad
+    }
+
     /// The phase function, sr^-1, at the cosine of the scattering angle.
     pub fn evaluate(&self, cos_angle: f64, wavelength_nm: f64) -> f64 {
         let mu = cos_angle.clamp(-1.0, 1.0);

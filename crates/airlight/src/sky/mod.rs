@@ -30,6 +30,7 @@ mod fan;
 pub mod field;
 pub mod harmonics;
 pub mod march;
+pub mod monte_carlo;
 pub mod orders;
 pub mod quadrature;
 pub mod ray;

@@ -2,7 +2,7 @@ use super::*;
 use crate::quadrature::integrate;
 
 /// All kinds, with parameters that try them.
-fn kinds() -> Vec<PhaseFunction> {
+pub(super) fn kinds() -> Vec<PhaseFunction> {
     let angles: Vec<f64> = (0..=90).map(|i| 2.0 * f64::from(i)).collect();
     let peaked = |g: f64| {
         let of = move |a: &f64| 7.0 * henyey_greenstein(g, a.to_radians().cos());

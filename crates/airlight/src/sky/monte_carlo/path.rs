@@ -1,0 +1,438 @@
+//! One random path from the eye into the air, and the sunlight that it finds.
+//!
+//! A path goes through vertices `x1, x2, ...`; at each the light that comes straight from the sun is added to the order
+//! of scattering that it belongs to. Every lane sees the same path. Its geometry is drawn for one lane, the hero, and
+//! weighed by what the mean over all possible heroes would have drawn it with (the balance heuristic: Wilkie, Nawaz,
+//! Droske, Weidlich & Hanika, Comput. Graph. Forum 33(4), 123, 2014), so no lane's weight is ever more than N times what its own
+//! paths would have.
+
+use super::chord::{Chord, End, HalfLine};
+use super::lanes::{self, Lanes, PerScatterer};
+use super::layers::Layers;
+use super::sun::SunShape;
+use crate::light::SunDisc;
+use crate::random::Random;
+use crate::sky::ray::Ray;
+use crate::sky::shell::MAX_CONSTITUENTS;
+use crate::spectrum::Spectrum;
+use glam::DVec3;
+use std::f64::consts::PI;
+
+/// Orders of scattering told apart: one to four, and all beyond.
+pub const ORDERS: usize = 5;
+/// Light found in each order, per unit solar irradiance, 1/sr.
+pub type ByOrder<const N: usize> = [Spectrum<N>; ORDERS];
+
+/// With this probability a new direction is drawn about the sun instead of about the way so far.
+const TOWARDS_SUN: f64 = 0.2;
+/// With this probability a path that runs partly in the planet's shadow is scattered in its lit part.
+const IN_LIGHT: f64 = 0.5;
+/// Paths that carry less than this share of what they carried at the first vertex may be ended.
+const FAINT: f32 = 0.3;
+
+/// The air and the sun that paths run through.
+pub struct World<'a, const N: usize> {
+    /// Where the air is.
+    pub layers: &'a Layers,
+    /// What it does.
+    pub lanes: &'a Lanes<N>,
+    /// Unit vector to the middle of the sun.
+    pub sun: DVec3,
+    /// Its disc.
+    pub disc: &'a SunDisc,
+    /// Whether the disc is sampled.
+    pub shape: SunShape,
+}
+
+/// A path as far as it has come.
+struct Path<const N: usize> {
+    place: DVec3,
+    direction: DVec3,
+    /// What a photon found here is worth in each lane: the product of all that the air does to it, over the mean of
+    /// the densities with which the heroes draw this path.
+    worth: Spectrum<N>,
+    /// Density with which each hero draws this path, over their mean.
+    drawn: Spectrum<N>,
+    /// Orders of scattering behind it.
+    order: usize,
+    /// About what the light at the next vertex may be worth, over that of a path that is not scattered towards the sun.
+    promise: f32,
+    /// Its worth at the first vertex.
+    first_worth: f32,
+}
+
+impl<const N: usize> Path<N> {
+    /// Goes on by a step that is worth `worth` and that the heroes draw with the densities `drawn`.
+    #[inline(always)]
+    fn step(&mut self, worth: Spectrum<N>, drawn: Spectrum<N>) {
+        let drawn = self.drawn * drawn;
+        let mean = drawn.0.iter().sum::<f32>() / N as f32;
+        let scale = 1.0 / mean;
+        self.worth = self.worth * worth * scale;
+        self.drawn = drawn * scale;
+    }
+
+    /// Russian roulette among paths of little promise: those left carry what the others would have.
+    #[inline(always)]
+    fn survives(&mut self, random: &mut Random) -> bool {
+        if self.order == 1 {
+            self.first_worth = self.worth.max_element();
+        }
+        let survival = self.promise / (FAINT * self.first_worth);
+        if survival >= 1.0 {
+            return true;
+        }
+        // False also where the worth is no number.
+        let lives = (random.unit() as f32) < survival;
+        if lives {
+            self.worth = self.worth * (1.0 / survival);
+        }
+        lives
+    }
+}
+
+/// What happened on a straight way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Event {
+    /// Scattered, in this layer.
+    Air,
+    /// Met the ground.
+    Ground,
+    /// Nothing to meet.
+    None,
+}
+
+impl<const N: usize> World<'_, N> {
+    /// Follows a path drawn for the lane `hero` from inside the air. `first`, even in `(0, 1)`, says where it is
+    /// scattered first; `chord` is scratch space.
+    #[inline(always)]
+    pub fn follow(
+        &self,
+        place: DVec3,
+        direction: DVec3,
+        hero: usize,
+        first: f64,
+        random: &mut Random,
+        chord: &mut Chord,
+    ) -> ByOrder<N> {
+        let mut found = [Spectrum::ZERO; ORDERS];
+        let mut path = Path {
+            place,
+            direction,
+            worth: Spectrum::ONE,
+            drawn: Spectrum::ONE,
+            order: 0,
+            promise: 0.0,
+            first_worth: 0.0,
+        };
+        let mut choice = first;
+        loop {
+            match self.advance(&mut path, hero, choice, random, chord) {
+                Event::Air => {
+                    if !self.scatter(&mut path, hero, random, &mut found) {
+                        return found;
+                    }
+                }
+                Event::Ground => self.reflect(&mut path, random, &mut found),
+                Event::None => return found,
+            }
+            if !path.survives(random) {
+                return found;
+            }
+            choice = random.unit();
+        }
+    }
+
+    /// From the place along the direction to the next vertex. Where the way ends in space a collision is forced.
+    #[inline(always)]
+    fn advance(
+        &self,
+        path: &mut Path<N>,
+        hero: usize,
+        choice: f64,
+        random: &mut Random,
+        chord: &mut Chord,
+    ) -> Event {
+        let layers = self.layers;
+        let line = HalfLine::new(path.place, path.direction);
+        let end = chord.cross(layers, line);
+        let whole_depth = self.lanes.extinction(&chord.columns);
+        let absorbed = lanes::absorbed(whole_depth);
+        let mut choice = choice;
+        let mut collides = Spectrum::ONE;
+        if end == End::Ground {
+            let hit = 1.0 - absorbed[hero] as f64;
+            if choice < hit {
+                let passed = self.passed(chord, chord.end(), random);
+                path.step(passed, Spectrum::ONE - absorbed);
+                path.place += path.direction * (chord.end() - line.start);
+                return Event::Ground;
+            }
+            choice = (choice - hit) / (1.0 - hit);
+            collides = absorbed;
+        }
+        if absorbed[hero] <= 0.0 {
+            return Event::None;
+        }
+        let stretches = self.lit_stretches(path, chord, line);
+        let (t, share) = stretches.draw(self, chord, hero, choice, &absorbed);
+        let columns = chord.columns_to(layers, t);
+        let layer = layers.layer(chord.layer_at(t));
+        let stand_in = layer.densities_of(layer.coordinate(line.tangent + t * t));
+        let drawn =
+            self.lanes.extinction(&stand_in) * self.lanes.transmittance(&columns) * share * collides;
+        path.step(self.passed(chord, t, random), drawn);
+        path.place += path.direction * (t - line.start);
+        Event::Air
+    }
+
+    /// Transmittance from the start of a chord to `t`, without bias: that of the stand-in, and now and then a look at
+    /// what it leaves out (residual ratio tracking: Novak, Selle & Jarosz, ACM Trans. Graph. 33(6), 179, 2014).
+    #[inline(always)]
+    fn passed(&self, chord: &Chord, t: f64, random: &mut Random) -> Spectrum<N> {
+        let mut passed = self.lanes.transmittance(&chord.columns_to(self.layers, t));
+        chord.residual(self.layers, t, random, |square, layer| {
+            passed = passed * self.residual_weight(square, layer);
+        });
+        passed
+    }
+
+    /// `1 - (extinction - stand-in) / residual` at a place.
+    fn residual_weight(&self, square: f64, layer: usize) -> Spectrum<N> {
+        let truth = self.layers.densities_at(square.sqrt());
+        let layer = self.layers.layer(layer);
+        let stand_in = layer.densities_of(layer.coordinate(square));
+        let mut difference = [0.0; MAX_CONSTITUENTS];
+        for (d, (truth, stand_in)) in difference.iter_mut().zip(truth.iter().zip(stand_in)) {
+            *d = truth - stand_in;
+        }
+        Spectrum::ONE - self.lanes.extinction(&difference) * (1.0 / layer.residual_per_m) as f32
+    }
+
+    /// Adds the sun's light at a vertex in the air and draws a new direction; whether the path goes on.
+    #[inline(always)]
+    fn scatter(
+        &self,
+        path: &mut Path<N>,
+        hero: usize,
+        random: &mut Random,
+        found: &mut ByOrder<N>,
+    ) -> bool {
+        let densities = self.layers.densities_at(path.place.length());
+        let scattering = self.lanes.scattering(&densities);
+        let sun = self.shape.draw(self.sun, self.disc, random);
+        if let Some(light) = self.sunlight(path.place, sun, random) {
+            let phases = self.lanes.phases(path.direction.dot(sun).clamp(-1.0, 1.0));
+            let scattered = lanes::phased(&scattering, &phases);
+            found[path.order.min(ORDERS - 1)] += path.worth * scattered * light;
+        }
+        let whole = lanes::sum(&scattering);
+        if whole[hero] <= 0.0 {
+            return false;
+        }
+        let axis = match random.unit() < TOWARDS_SUN {
+            true => self.sun,
+            false => path.direction,
+        };
+        let cosine = self.lanes.sample(&scattering, hero, random);
+        let next = about(axis, cosine, random.unit());
+        let onward = lanes::phased(&scattering, &self.phases_between(path.direction, next));
+        let sunward = lanes::phased(&scattering, &self.phases_between(self.sun, next));
+        let (onward_share, sunward_share) = ((1.0 - TOWARDS_SUN) as f32, TOWARDS_SUN as f32);
+        let norm = whole.max_scalar(f32::MIN_POSITIVE);
+        let drawn = (onward * onward_share + sunward * sunward_share) / norm;
+        path.step(onward, drawn);
+        path.direction = next;
+        path.order += 1;
+        // A path towards the sun will find more light than others.
+        let isotropic = (0.25 / PI) as f32;
+        path.promise = path.worth.max_element() * (sunward / norm).max_element().max(isotropic) / isotropic;
+        true
+    }
+
+    #[inline(always)]
+    fn phases_between(&self, a: DVec3, b: DVec3) -> PerScatterer<N> {
+        self.lanes.phases(a.dot(b).clamp(-1.0, 1.0))
+    }
+
+    /// Adds the sun's light at a vertex on the ground and draws a new direction, as Lambert's law has it.
+    #[inline(always)]
+    fn reflect(&self, path: &mut Path<N>, random: &mut Random, found: &mut ByOrder<N>) {
+        let up = path.place.normalize();
+        // Back on the ground exactly, and above it in the arithmetic of the next way.
+        path.place = up * self.layers.edge(0).sqrt();
+        path.worth = path.worth * self.lanes.ground_albedo;
+        let sun = self.shape.draw(self.sun, self.disc, random);
+        let height = up.dot(sun);
+        if height > 0.0
+            && let Some(light) = self.sunlight(path.place, sun, random)
+        {
+            found[path.order.min(ORDERS - 1)] += path.worth * light * (height / PI) as f32;
+        }
+        path.direction = about(up, random.unit().sqrt(), random.unit());
+        path.order += 1;
+        path.promise = path.worth.max_element();
+    }
+
+    /// Sunlight that arrives from the direction `sun`, per unit irradiance; `None` in the planet's shadow.
+    #[inline(always)]
+    fn sunlight(&self, place: DVec3, sun: DVec3, random: &mut Random) -> Option<Spectrum<N>> {
+        let line = HalfLine::new(place, sun);
+        if line.meets_ground(self.layers) {
+            return None;
+        }
+        let (columns, residual) = line.to_space(self.layers);
+        let mut light = self.lanes.transmittance(&columns);
+        let first = -random.unit().ln();
+        if first < residual {
+            line.residual_places(self.layers, first, random, |square, layer| {
+                light = light * self.residual_weight(square, layer);
+            });
+        }
+        Some(self.shape.limb(light, self.sun, sun, self.disc, &self.lanes.wavelengths_nm))
+    }
+
+    /// The stretches of a chord that the sun shines on, where it is partly in shadow.
+    #[inline(always)]
+    fn lit_stretches(&self, path: &Path<N>, chord: &Chord, line: HalfLine) -> Lit<N> {
+        let ray = Ray::new(path.place, path.direction, self.sun);
+        let ground = self.layers.edge(0).sqrt();
+        let mut cuts = [line.start, chord.end(), chord.end(), chord.end()];
+        let mut count = 1;
+        for edge in ray.shadow_edges(ground).into_iter().flatten() {
+            let t = line.start + edge;
+            if t > line.start && t < chord.end() {
+                cuts[count] = t;
+                count += 1;
+            }
+        }
+        if count == 1 {
+            return Lit::default();
+        }
+        if count == 3 && cuts[1] > cuts[2] {
+            cuts.swap(1, 2);
+        }
+        let mut lit = Lit::default();
+        for k in 0..count {
+            let middle = 0.5 * (cuts[k] + cuts[k + 1]) - line.start;
+            let here = ray.advanced(middle);
+            if !crate::sky::ray::in_shadow(here.radius_m, here.mu_sun, ground) {
+                let before = chord.columns_to(self.layers, cuts[k]);
+                let until = chord.columns_to(self.layers, cuts[k + 1]);
+                let mut between = [0.0; MAX_CONSTITUENTS];
+                for (b, (u, v)) in between.iter_mut().zip(until.iter().zip(&before)) {
+                    *b = (u - v).max(0.0);
+                }
+                lit.stretches[lit.count] = Stretch {
+                    from: cuts[k],
+                    to: cuts[k + 1],
+                    absorbed: self.lanes.transmittance(&before)
+                        * lanes::absorbed(self.lanes.extinction(&between)),
+                };
+                lit.count += 1;
+            }
+        }
+        lit
+    }
+}
+
+/// A stretch in the light, and how much of each lane is taken out of the line on it.
+#[derive(Clone, Copy, Debug)]
+struct Stretch<const N: usize> {
+    from: f64,
+    to: f64,
+    absorbed: Spectrum<N>,
+}
+
+/// The lit stretches of a line that is partly in shadow; none of a line that is not.
+#[derive(Clone, Copy, Debug)]
+struct Lit<const N: usize> {
+    stretches: [Stretch<N>; 2],
+    count: usize,
+}
+
+impl<const N: usize> Default for Lit<N> {
+    fn default() -> Self {
+        Self {
+            stretches: [Stretch {
+                from: 0.0,
+                to: 0.0,
+                absorbed: Spectrum::ZERO,
+            }; 2],
+            count: 0,
+        }
+    }
+}
+
+impl<const N: usize> Lit<N> {
+    /// Draws where to be scattered for the lane `hero`; the factor of `extinction * transmittance` in the density with
+    /// which each lane draws that place.
+    #[inline(always)]
+    fn draw(
+        &self,
+        world: &World<'_, N>,
+        chord: &Chord,
+        hero: usize,
+        choice: f64,
+        absorbed: &Spectrum<N>,
+    ) -> (f64, Spectrum<N>) {
+        let lit = &self.stretches[..self.count];
+        let lit_absorbed = lit
+            .iter()
+            .fold(Spectrum::ZERO, |sum, stretch| sum + stretch.absorbed);
+        let chance = lit_absorbed.map(|lit| if lit > 0.0 { IN_LIGHT as f32 } else { 0.0 });
+        let extinction = world.lanes.extinction_of(hero);
+        let depth_to = |t: f64| -> f64 {
+            let columns = chord.columns_to(world.layers, t);
+            extinction.iter().zip(columns).map(|(e, c)| e * c).sum()
+        };
+        // Where the share `choice` of what is taken out between two places is taken out.
+        let place = |from: f64, to: f64, choice: f64| {
+            let before = depth_to(from);
+            let share = choice * (before - depth_to(to)).exp_m1();
+            chord
+                .at_depth(world.layers, extinction, before - share.ln_1p())
+                .clamp(from, to)
+        };
+        let mut choice = choice;
+        let t = if choice < f64::from(chance[hero]) {
+            choice /= f64::from(chance[hero]);
+            let mut picked = &lit[0];
+            let first = f64::from(picked.absorbed[hero] / lit_absorbed[hero]);
+            if lit.len() > 1 && choice >= first {
+                picked = &lit[1];
+                choice = (choice - first) / (1.0 - first);
+            } else if first > 0.0 {
+                choice /= first;
+            }
+            place(picked.from, picked.to, choice)
+        } else {
+            choice = (choice - f64::from(chance[hero])) / f64::from(1.0 - chance[hero]);
+            place(chord.start(), chord.end(), choice)
+        };
+        let in_light = lit
+            .iter()
+            .any(|stretch| t >= stretch.from && t <= stretch.to);
+        let share = Spectrum::from_fn(|i| {
+            let everywhere = match absorbed[i] > 0.0 {
+                true => (1.0 - chance[i]) / absorbed[i],
+                false => 0.0,
+            };
+            let there = match in_light && chance[i] > 0.0 {
+                true => chance[i] / lit_absorbed[i],
+                false => 0.0,
+            };
+            everywhere + there
+        });
+        (t, share)
+    }
+}
+
+/// The unit vector at the angle of `cosine` from `axis`, turned about it by `turn` of a full turn.
+#[inline(always)]
+fn about(axis: DVec3, cosine: f64, turn: f64) -> DVec3 {
+    let (across, up) = axis.any_orthonormal_pair();
+    let sine = ((1.0 - cosine) * (1.0 + cosine)).max(0.0).sqrt();
+    let (sin, cos) = (2.0 * PI * turn).sin_cos();
+    (across * (sine * cos) + up * (sine * sin) + axis * cosine).normalize()
+}

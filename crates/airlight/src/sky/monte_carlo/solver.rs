@@ -1,0 +1,310 @@
+//! The door in.
+
+use super::chord::Chord;
+use super::estimate::{Estimate, Sample, Tally};
+use super::lanes::Lanes;
+use super::layers::Layers;
+use super::path::{ORDERS, World};
+use super::sun::SunShape;
+use crate::medium::Atmosphere;
+use crate::random::Random;
+use crate::sky::SkyError;
+use crate::sky::ray::Ray;
+use crate::sky::shell::{MAX_CONSTITUENTS, PerConstituent};
+use crate::sky::vector::vectorized;
+use crate::spectrum::WavelengthGrid;
+use glam::DVec3;
+use rayon::prelude::*;
+
+/// Paths of a bundle: what one stream of random numbers serves. Its first collisions are spread evenly, so that
+/// bundles differ less than paths would; the error is told from the spread among bundles.
+const BUNDLE: usize = 64;
+
+/// How long to go on, and how.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MonteCarloSettings {
+    /// Paths for each line of sight; rounded up to whole bundles of 64, at least two.
+    pub paths: u64,
+    /// Another seed gives an independent estimate; the same one the same bits on any number of threads.
+    pub seed: u64,
+    /// Whether the sun is a point or a disc.
+    pub sun: SunShape,
+}
+
+impl Default for MonteCarloSettings {
+    fn default() -> Self {
+        Self {
+            paths: 16_384,
+            seed: 1,
+            sun: SunShape::Point,
+        }
+    }
+}
+
+/// An atmosphere ready to be looked into; shared freely between threads.
+#[derive(Clone, Debug)]
+pub struct MonteCarlo {
+    atmosphere: Atmosphere,
+    grid: WavelengthGrid,
+    settings: MonteCarloSettings,
+    layers: Layers,
+    blocks: Vec<Block>,
+}
+
+/// Wavelengths that share their paths.
+#[derive(Clone, Debug)]
+enum Block {
+    Four(usize, Box<Lanes<4>>),
+    Eight(usize, Box<Lanes<8>>),
+    Sixteen(usize, Box<Lanes<16>>),
+}
+
+/// An eye and a sun.
+#[derive(Clone, Copy, Debug)]
+struct Line {
+    place: DVec3,
+    direction: DVec3,
+    sun: DVec3,
+    /// Chooses the streams of random numbers.
+    subject: u64,
+}
+
+impl MonteCarlo {
+    /// Prepares `atmosphere` at the wavelengths of `grid` (whose solar spectrum is replaced by the atmosphere's own).
+    ///
+    /// # Errors
+    /// [`SkyError`] for an atmosphere that fails its own validation or has too many constituents.
+    pub fn new(
+        atmosphere: &Atmosphere,
+        grid: &WavelengthGrid,
+        settings: MonteCarloSettings,
+    ) -> Result<Self, SkyError> {
+        atmosphere.validate()?;
+        if atmosphere.constituents.len() > MAX_CONSTITUENTS {
+            return Err(SkyError::TooManyConstituents(atmosphere.constituents.len()));
+        }
+        let grid = grid.clone().with_solar(&atmosphere.solar_irradiance);
+        let extinctions: Vec<PerConstituent> = grid
+            .wavelengths_nm()
+            .iter()
+            .map(|&nm| {
+                let mut all = [0.0; MAX_CONSTITUENTS];
+                for (value, part) in all.iter_mut().zip(&atmosphere.constituents) {
+                    *value = part.extinction_per_m(nm);
+                }
+                all
+            })
+            .collect();
+        Ok(Self {
+            layers: Layers::new(atmosphere, &extinctions),
+            blocks: grid
+                .wavelengths_nm()
+                .chunks(16)
+                .map(|chunk| Block::new(atmosphere, chunk))
+                .collect(),
+            atmosphere: atmosphere.clone(),
+            grid,
+            settings,
+        })
+    }
+
+    /// The atmosphere looked into.
+    pub fn atmosphere(&self) -> &Atmosphere {
+        &self.atmosphere
+    }
+
+    /// The wavelengths, with this atmosphere's sun.
+    pub fn grid(&self) -> &WavelengthGrid {
+        &self.grid
+    }
+
+    /// How long it goes on.
+    pub fn settings(&self) -> &MonteCarloSettings {
+        &self.settings
+    }
+
+    /// Radiance that arrives at `eye_altitude_m` (m; held at the ground below it) along `view`, when the sun stands in
+    /// the direction `sun` at the planet's mean distance from it (unit vectors in world axes, [`crate::axes`]).
+    pub fn radiance(&self, eye_altitude_m: f64, sun: DVec3, view: DVec3) -> Estimate {
+        let bundles = self.settings.paths.div_ceil(BUNDLE as u64).max(2);
+        let mut tally = Tally::new(self.grid.len());
+        self.add_bundles(&mut tally, bundles, eye_altitude_m, sun, view);
+        self.estimate(&tally)
+    }
+
+    /// Goes on until the standard error of the worst wavelength (of those brighter than 1e-3 of the brightest) is
+    /// below `relative_error` of its mean, or `most_paths` are followed.
+    pub fn radiance_within(
+        &self,
+        relative_error: f64,
+        most_paths: u64,
+        eye_altitude_m: f64,
+        sun: DVec3,
+        view: DVec3,
+    ) -> Estimate {
+        let mut tally = Tally::new(self.grid.len());
+        let mut bundles = 32;
+        loop {
+            self.add_bundles(&mut tally, bundles, eye_altitude_m, sun, view);
+            let estimate = self.estimate(&tally);
+            if estimate.worst_relative_error() <= relative_error || estimate.paths >= most_paths {
+                return estimate;
+            }
+            // Half as many again.
+            bundles = (tally.count() / 2).min((most_paths - estimate.paths).div_ceil(BUNDLE as u64));
+        }
+    }
+
+    fn estimate(&self, tally: &Tally) -> Estimate {
+        tally.estimate(self.grid.solar_irradiance(), tally.count() * BUNDLE as u64)
+    }
+
+    /// Adds the next `bundles` bundles of a line of sight to its tally, in their order.
+    fn add_bundles(
+        &self,
+        tally: &mut Tally,
+        bundles: u64,
+        eye_altitude_m: f64,
+        sun: DVec3,
+        view: DVec3,
+    ) {
+        let Some(line) = self.line(eye_altitude_m, sun, view) else {
+            let nothing = std::array::from_fn(|_| vec![0.0; self.grid.len()]);
+            (0..bundles).for_each(|_| tally.add(&nothing));
+            return;
+        };
+        let first = tally.count();
+        let samples: Vec<Sample> = (first..first + bundles)
+            .into_par_iter()
+            .map(|bundle| self.bundle(&line, bundle))
+            .collect();
+        samples.iter().for_each(|sample| tally.add(sample));
+    }
+
+    /// The line of sight from where it enters the air; `None` where it does not.
+    fn line(&self, eye_altitude_m: f64, sun: DVec3, view: DVec3) -> Option<Line> {
+        let (ground, top) = self.layers.bounds();
+        let radius_m = (self.atmosphere.planet.radius_m + eye_altitude_m).max(ground.sqrt());
+        let (sun, direction) = (sun.normalize(), view.normalize());
+        let mut place = DVec3::Y * radius_m;
+        if radius_m * radius_m > top {
+            let (enters, leaves) = Ray::new(place, direction, sun).crossings(top.sqrt())?;
+            if leaves <= 0.0 || enters >= leaves {
+                return None;
+            }
+            place += direction * enters;
+        }
+        Some(Line {
+            place,
+            direction,
+            sun,
+            subject: subject(&[place, direction, sun]),
+        })
+    }
+
+    /// Mean over the paths of a bundle, per unit solar irradiance.
+    fn bundle(&self, line: &Line, number: u64) -> Sample {
+        let mut sample: Sample = std::array::from_fn(|_| Vec::with_capacity(self.grid.len()));
+        for (index, block) in self.blocks.iter().enumerate() {
+            let mut random = Random::new(
+                self.settings.seed,
+                line.subject.wrapping_add(index as u64),
+                number,
+            );
+            match block {
+                Block::Four(used, lanes) => {
+                    self.block_bundle(lanes, *used, line, &mut random, &mut sample)
+                }
+                Block::Eight(used, lanes) => {
+                    self.block_bundle(lanes, *used, line, &mut random, &mut sample)
+                }
+                Block::Sixteen(used, lanes) => {
+                    self.block_bundle(lanes, *used, line, &mut random, &mut sample)
+                }
+            }
+        }
+        sample
+    }
+
+    fn block_bundle<const N: usize>(
+        &self,
+        lanes: &Lanes<N>,
+        used: usize,
+        line: &Line,
+        random: &mut Random,
+        sample: &mut Sample,
+    ) {
+        let world = World {
+            layers: &self.layers,
+            lanes,
+            sun: line.sun,
+            disc: &self.atmosphere.sun,
+            shape: self.settings.sun,
+        };
+        let mut chord = Chord::default();
+        let mut sums = [[0.0f64; N]; ORDERS];
+        // Every lane is the hero of as many paths, and the first collisions of all are spread evenly. All are shifted alike at
+        // random: else each hero would always draw from the same parts of the unit interval.
+        let strata = BUNDLE / N;
+        let shift = random.unit();
+        for path in 0..BUNDLE {
+            let (hero, stratum) = (path % N, path / N);
+            let spread = (stratum * N + (hero * 5 + stratum) % N) as f64;
+            let first = (shift + (spread + random.unit()) / (strata * N) as f64).fract();
+            let found = vectorized(
+                #[inline(always)]
+                || world.follow(line.place, line.direction, hero, first, random, &mut chord),
+            );
+            for (sum, found) in sums.iter_mut().zip(&found) {
+                for (sum, found) in sum.iter_mut().zip(found.0) {
+                    *sum += f64::from(found);
+                }
+            }
+        }
+        for (order, sum) in sample.iter_mut().zip(&sums) {
+            order.extend(sum[..used].iter().map(|sum| sum / BUNDLE as f64));
+        }
+    }
+}
+
+impl Block {
+    /// The last wavelength fills the lanes left over.
+    fn new(atmosphere: &Atmosphere, wavelengths_nm: &[f64]) -> Self {
+        fn lanes<const N: usize>(atmosphere: &Atmosphere, nm: &[f64]) -> Box<Lanes<N>> {
+            let padded = std::array::from_fn(|lane| nm[lane.min(nm.len() - 1)]);
+            Box::new(Lanes::new(atmosphere, padded))
+        }
+        let used = wavelengths_nm.len();
+        match used {
+            0..=4 => Self::Four(used, lanes(atmosphere, wavelengths_nm)),
+            5..=8 => Self::Eight(used, lanes(atmosphere, wavelengths_nm)),
+            _ => Self::Sixteen(used, lanes(atmosphere, wavelengths_nm)),
+        }
+    }
+}
+
+impl Estimate {
+    /// The largest standard error over its mean, among wavelengths brighter than 1e-3 of the brightest; 0 of darkness.
+    pub fn worst_relative_error(&self) -> f64 {
+        let brightest = self.mean.iter().copied().fold(0.0, f64::max);
+        self.mean
+            .iter()
+            .zip(&self.standard_error)
+            .filter(|(mean, _)| **mean > 1e-3 * brightest)
+            .map(|(mean, error)| error / mean)
+            .fold(0.0, f64::max)
+    }
+}
+
+/// A number that differs from line to line: FNV-1a over the bits (Fowler, Noll & Vo), so that the noise of two lines
+/// of sight is independent.
+fn subject(vectors: &[DVec3]) -> u64 {
+    vectors
+        .iter()
+        .flat_map(|v| v.to_array())
+        .flat_map(|x| x.to_bits().to_le_bytes())
+        .fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+            (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+        })
+}
+
