@@ -25,6 +25,7 @@ mod quadrature;
 mod random;
 pub mod sky;
 pub mod spectrum;
+mod vector;
 
 /// The example of the README, compiled and run as a test.
 #[cfg(doctest)]

@@ -40,7 +40,10 @@ mod tests {
             assert!(draws.iter().all(|x| *x > 0.0 && *x < 1.0));
             let mean = draws.iter().sum::<f64>() / draws.len() as f64;
             // Four standard errors.
-            assert!((mean - 0.5).abs() < 4.0 * (1.0f64 / 12.0 / 20_000.0).sqrt(), "{mean}");
+            assert!(
+                (mean - 0.5).abs() < 4.0 * (1.0f64 / 12.0 / 20_000.0).sqrt(),
+                "{mean}"
+            );
             assert!(!first.contains(&draws[0]));
             first.push(draws[0]);
             assert_eq!(Random::new(seed, subject, run).unit(), draws[0]);

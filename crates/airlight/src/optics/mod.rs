@@ -1,9 +1,12 @@
 //! What one particle does to light.
 
+mod index;
+pub mod mie;
 pub mod ozone;
 pub mod phase;
 pub mod rayleigh;
 mod tabulated;
 
+pub use index::RefractiveIndex;
 pub use phase::{Depolarization, PhaseError, PhaseFunction, PhaseSampler};
 pub use tabulated::TabulatedPhase;

@@ -1,8 +1,11 @@
 //! Phase functions given as tables.
 
+mod moments;
+mod sample;
+
 use super::phase::PhaseError;
 use crate::quadrature::gauss_legendre;
-use std::f64::consts::PI;
+use std::sync::LazyLock;
 
 /// A phase function given at angles from 0 to 180 degrees and at one or more wavelengths.
 ///
@@ -17,10 +20,17 @@ pub struct TabulatedPhase {
     /// `ln p` and its slope by angle, wavelength by wavelength.
     log_values: Vec<f64>,
     slopes: Vec<f64>,
+    /// The part of the light that is scattered by less than each angle, wavelength by wavelength.
+    cumulative: Vec<f64>,
 }
 
-/// Points of the Gauss-Legendre rule used in each panel.
+/// Points of the Gauss-Legendre rule used in each stretch.
 const PANEL_POINTS: usize = 12;
+static PANEL_RULE: LazyLock<([f64; PANEL_POINTS], [f64; PANEL_POINTS])> = LazyLock::new(|| {
+    let (nodes, weights) = gauss_legendre(PANEL_POINTS);
+    let array = |values: Vec<f64>| std::array::from_fn(|i| values[i]);
+    (array(nodes), array(weights))
+});
 
 impl TabulatedPhase {
     /// Takes `values[w * angles + a]` at wavelength `w` and angle `a`, in any common unit.
@@ -65,7 +75,7 @@ impl TabulatedPhase {
             });
         }
         let angles_rad: Vec<f64> = angles_deg.iter().map(|a| a.to_radians()).collect();
-        let mut log_values: Vec<f64> = values.iter().map(|v| v.ln()).collect();
+        let log_values: Vec<f64> = values.iter().map(|v| v.ln()).collect();
         let mut slopes = Vec::with_capacity(values.len());
         for row in log_values.chunks(angles) {
             slopes.extend(monotone_slopes(&angles_rad, row));
@@ -73,15 +83,29 @@ impl TabulatedPhase {
         let mut table = Self {
             wavelengths_nm,
             angles_rad,
-            log_values: log_values.clone(),
+            log_values,
             slopes,
+            cumulative: Vec::new(),
         };
-        for (w, row) in log_values.chunks_mut(angles).enumerate() {
-            let integral: f64 = table.moments_of_row(w, 1)[0];
-            row.iter_mut().for_each(|v| *v -= integral.ln());
-        }
-        table.log_values = log_values;
+        table.normalize();
         Ok(table)
+    }
+
+    /// Scales every row to an integral of 1 and keeps its running integral.
+    fn normalize(&mut self) {
+        let angles = self.angles_rad.len();
+        for row in 0..self.wavelengths_nm.len() {
+            let mut running = vec![0.0];
+            let mut sum = 0.0;
+            for interval in 0..angles - 1 {
+                sum += self.mass(row, interval, self.angles_rad[interval + 1]);
+                running.push(sum);
+            }
+            self.cumulative
+                .extend(running.iter().map(|part| part / sum));
+            let logs = &mut self.log_values[row * angles..(row + 1) * angles];
+            logs.iter_mut().for_each(|log| *log -= sum.ln());
+        }
     }
 
     /// The wavelengths of the table, nm.
@@ -112,18 +136,6 @@ impl TabulatedPhase {
         }
     }
 
-    /// Legendre moments, see [`super::PhaseFunction::legendre_moments`].
-    pub fn legendre_moments(&self, count: usize, wavelength_nm: f64) -> Vec<f64> {
-        let (row, t) = self.between(wavelength_nm);
-        let mut moments = self.moments_of_row(row, count);
-        if t > 0.0 {
-            for (moment, other) in moments.iter_mut().zip(self.moments_of_row(row + 1, count)) {
-                *moment = *moment * (1.0 - t) + other * t;
-            }
-        }
-        moments
-    }
-
     /// The row at or below a wavelength, and how far it is on the way to the next.
     fn between(&self, wavelength_nm: f64) -> (usize, f64) {
         let above = self.wavelengths_nm.partition_point(|&w| w <= wavelength_nm);
@@ -136,51 +148,67 @@ impl TabulatedPhase {
 
     fn at_row(&self, row: usize, interval: usize, angle: f64) -> f64 {
         let at = row * self.angles_rad.len() + interval;
-        let width = self.angles_rad[interval + 1] - self.angles_rad[interval];
-        let t = (angle - self.angles_rad[interval]) / width;
-        let (y0, y1) = (self.log_values[at], self.log_values[at + 1]);
-        let (m0, m1) = (self.slopes[at] * width, self.slopes[at + 1] * width);
-        let u = 1.0 - t;
-        (y0 * u * u * (1.0 + 2.0 * t) + m0 * t * u * u + y1 * t * t * (3.0 - 2.0 * t)
-            - m1 * t * t * u)
-            .exp()
+        cubic(
+            [self.angles_rad[interval], self.angles_rad[interval + 1]],
+            [self.log_values[at], self.log_values[at + 1]],
+            [self.slopes[at], self.slopes[at + 1]],
+            angle,
+        )
+        .exp()
     }
 
-    fn moments_of_row(&self, row: usize, count: usize) -> Vec<f64> {
-        let (nodes, weights) = gauss_legendre(PANEL_POINTS);
-        let mut moments = vec![0.0; count];
-        for interval in 0..self.angles_rad.len() - 1 {
-            let (low, high) = (self.angles_rad[interval], self.angles_rad[interval + 1]);
-            // No panel turns P_l by more than about a quarter, or ln p by more than about 2.
-            let at = row * self.angles_rad.len() + interval;
-            let rise = (self.log_values[at + 1] - self.log_values[at]).abs();
-            let panels = ((high - low) * count as f64 / 1.6)
-                .max(rise / 2.0)
-                .max((high - low) / 0.4)
-                .ceil();
-            let width = (high - low) / panels;
-            for panel in 0..panels as usize {
-                let start = low + width * panel as f64;
-                for (node, weight) in nodes.iter().zip(&weights) {
-                    let angle = start + 0.5 * width * (1.0 + node);
-                    let (sin, mu) = angle.sin_cos();
-                    let p = self.at_row(row, interval, angle) * weight * PI * width * sin;
-                    add_legendre(&mut moments, mu, p);
-                }
-            }
+    /// Where the rule's points lie in stretches of an interval up to an angle, and what weight `2 pi sin(angle) d angle` they
+    /// bear. No stretch is wider than `widest`, and over none does `ln p` rise by more than about 2.
+    #[inline(always)]
+    fn stretches(
+        &self,
+        row: usize,
+        interval: usize,
+        to: f64,
+        widest: f64,
+        mut visit: impl FnMut(&[f64; PANEL_POINTS], &[f64; PANEL_POINTS]),
+    ) {
+        let low = self.angles_rad[interval];
+        let at = row * self.angles_rad.len() + interval;
+        let rise = (self.log_values[at + 1] - self.log_values[at]).abs();
+        let count = ((to - low) / widest).max(rise / 2.0).ceil().max(1.0);
+        let width = (to - low) / count;
+        let (nodes, weights) = &*PANEL_RULE;
+        for k in 0..count as usize {
+            let start = low + width * k as f64;
+            let angles = nodes.map(|node| start + 0.5 * width * (1.0 + node));
+            let measures = std::array::from_fn(|i| {
+                weights[i] * std::f64::consts::PI * width * angles[i].sin()
+            });
+            visit(&angles, &measures);
         }
-        moments
     }
 }
 
-/// Adds `p * P_l(mu)` to each moment.
-fn add_legendre(moments: &mut [f64], mu: f64, p: f64) {
-    let (mut before, mut now) = (0.0, 1.0);
-    for (l, moment) in moments.iter_mut().enumerate() {
-        *moment += p * now;
-        let x = l as f64;
-        (before, now) = (now, ((2.0 * x + 1.0) * mu * now - x * before) / (x + 1.0));
-    }
+/// `ln p` at points among samples (both rising), as a table would have it.
+pub(super) fn between_samples(angles: &[f64], logs: &[f64], points: &[f64]) -> Vec<f64> {
+    let slopes = monotone_slopes(angles, logs);
+    let at = |&point: &f64| {
+        let above = angles.partition_point(|&a| a <= point);
+        let i = above.clamp(1, angles.len() - 1) - 1;
+        cubic(
+            [angles[i], angles[i + 1]],
+            [logs[i], logs[i + 1]],
+            [slopes[i], slopes[i + 1]],
+            point,
+        )
+    };
+    points.iter().map(at).collect()
+}
+
+/// The cubic of given values and slopes at two places.
+#[inline]
+fn cubic([x0, x1]: [f64; 2], [y0, y1]: [f64; 2], slopes: [f64; 2], x: f64) -> f64 {
+    let width = x1 - x0;
+    let t = (x - x0) / width;
+    let u = 1.0 - t;
+    let (m0, m1) = (slopes[0] * width, slopes[1] * width);
+    y0 * u * u * (1.0 + 2.0 * t) + m0 * t * u * u + y1 * t * t * (3.0 - 2.0 * t) - m1 * t * t * u
 }
 
 /// Slopes of the monotone piecewise cubic through the points: zero at local extremes, else the weighted harmonic mean
@@ -207,6 +235,7 @@ fn monotone_slopes(x: &[f64], y: &[f64]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::PI;
 
     #[test]
     fn a_smooth_function_is_met_between_its_samples() {

@@ -8,10 +8,10 @@ use super::orders::{self, Diffuse};
 use super::ray::Ray;
 use super::shell::Shell;
 use super::trace::{Tracer, ground_irradiance};
-use super::vector::vectorized;
 use super::{Scattering, SkyError};
 use crate::medium::Atmosphere;
 use crate::spectrum::Spectrum;
+use crate::vector::vectorized;
 use rayon::prelude::*;
 use std::sync::Arc;
 

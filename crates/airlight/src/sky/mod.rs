@@ -40,7 +40,6 @@ mod stops;
 mod table;
 mod tabulate;
 pub mod trace;
-mod vector;
 mod view;
 
 pub use coverage::SunCoverage;

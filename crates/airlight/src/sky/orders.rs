@@ -13,8 +13,8 @@ use super::harmonics::{Harmonics, legendre};
 use super::march::Marcher;
 use super::quadrature::GaussRule;
 use super::trace::sun_on_ground;
-use super::vector::vectorized;
 use crate::spectrum::Spectrum;
+use crate::vector::vectorized;
 use rayon::prelude::*;
 use std::f64::consts::PI;
 

@@ -8,8 +8,8 @@
 use super::cubic;
 use super::quadrature::GaussRule;
 use super::tabulate::Peaked;
-use super::vector::vectorized;
 use crate::spectrum::RgbSpace;
+use crate::vector::vectorized;
 use glam::DVec3;
 use std::f64::consts::PI;
 

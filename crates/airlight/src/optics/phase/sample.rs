@@ -3,12 +3,11 @@
 
 use super::{Depolarization, PhaseFunction};
 use crate::optics::TabulatedPhase;
-use std::f64::consts::PI;
 
 /// A phase function at one wavelength, ready to draw cosines of scattering angles from.
 ///
-/// Isotropic, Rayleigh and Henyey-Greenstein by inverting their distributions in closed form; Cornette-Shanks, Draine
-/// and tables by rejection from a density that lies above them, which is exact as well.
+/// Isotropic, Rayleigh and Henyey-Greenstein by inverting their distributions in closed form, tables by inverting theirs
+/// (to 1e-9); Cornette-Shanks and Draine by rejection from a density that lies above them, which is exact as well.
 #[derive(Clone, Debug)]
 pub enum PhaseSampler {
     /// The same in all directions.
@@ -27,29 +26,10 @@ pub enum PhaseSampler {
         /// Weight of the cosine squared.
         alpha: f64,
     },
-    /// A table.
-    Table(TableSampler),
+    /// A table, and the wavelength, nm.
+    Table(TabulatedPhase, f64),
     /// A mixture: running sums of the weights, and the parts.
     Mixture(Vec<(f64, PhaseSampler)>),
-}
-
-/// A table under stairs: bins of the cosine in each of which the phase function lies below a constant.
-#[derive(Clone, Debug)]
-pub struct TableSampler {
-    phase: TabulatedPhase,
-    wavelength_nm: f64,
-    bins: Vec<Stair>,
-}
-
-/// One stair.
-#[derive(Clone, Copy, Debug)]
-struct Stair {
-    /// The smaller and the larger cosine.
-    cosines: [f64; 2],
-    /// What the phase function does not exceed in it, 1/sr.
-    most: f64,
-    /// Area of all stairs up to the end of this one.
-    area: f64,
 }
 
 impl PhaseSampler {
@@ -66,9 +46,7 @@ impl PhaseSampler {
                 g: *g,
                 alpha: *alpha,
             },
-            PhaseFunction::Tabulated(table) => {
-                Self::Table(TableSampler::new(table.clone(), wavelength_nm))
-            }
+            PhaseFunction::Tabulated(table) => Self::Table(table.clone(), wavelength_nm),
             PhaseFunction::Mixture(parts) => {
                 let mut running = 0.0;
                 Self::Mixture(
@@ -110,7 +88,7 @@ impl PhaseSampler {
                     return mu;
                 }
             },
-            Self::Table(table) => table.sample(random),
+            Self::Table(table, wavelength_nm) => table.sample(random(), *wavelength_nm),
             Self::Mixture(parts) => {
                 let last = parts.len() - 1;
                 let choice = random() * parts[last].0;
@@ -130,95 +108,13 @@ fn henyey_greenstein(g: f64, xi: f64) -> f64 {
     (numerator / (2.0 * d * d)).clamp(-1.0, 1.0)
 }
 
-/// The wavelengths of the table that are blended at one, each with its share.
-fn rows_around(phase: &TabulatedPhase, wavelength_nm: f64) -> Vec<(f64, f64)> {
-    let rows = phase.wavelengths_nm();
-    let above = rows.partition_point(|&nm| nm <= wavelength_nm);
-    match (above.checked_sub(1).map(|i| rows[i]), rows.get(above)) {
-        (Some(low), Some(&high)) => {
-            let share = (wavelength_nm - low) / (high - low);
-            vec![(1.0 - share, low), (share, high)]
-        }
-        (Some(only), None) => vec![(1.0, only)],
-        (None, first) => first.iter().map(|&&nm| (1.0, nm)).collect(),
-    }
-}
-
-impl TableSampler {
-    /// Between two angles of the table `ln p` is monotone at each wavelength, so in any piece of such an interval the
-    /// larger end bounds it. Pieces are cut until the ends differ by less than a fifth.
-    fn new(phase: TabulatedPhase, wavelength_nm: f64) -> Self {
-        const MOST_PIECES: f64 = 64.0;
-        let rows = rows_around(&phase, wavelength_nm);
-        // What no wavelength of the blend exceeds at a cosine and the one next to it.
-        let bound = |from: f64, to: f64| -> f64 {
-            rows.iter()
-                .map(|&(share, nm)| {
-                    share * phase.evaluate(from, nm).max(phase.evaluate(to, nm))
-                })
-                .sum()
-        };
-        let mut bins = Vec::new();
-        let mut area = 0.0;
-        for ends in phase.angles_rad().windows(2) {
-            let [high, low] = [ends[0].cos(), ends[1].cos()];
-            let rise = rows
-                .iter()
-                .map(|&(_, nm)| (phase.evaluate(low, nm) / phase.evaluate(high, nm)).ln().abs())
-                .fold(0.0, f64::max);
-            let pieces = (rise / 0.2).ceil().clamp(1.0, MOST_PIECES);
-            for piece in (0..pieces as u32).rev() {
-                // Pieces are even in the angle, as the table is.
-                let cosine = |k: f64| (ends[0] + (ends[1] - ends[0]) * k / pieces).cos();
-                let cosines = [cosine(f64::from(piece) + 1.0), cosine(f64::from(piece))];
-                // A little above, for rounding.
-                let most = bound(cosines[0], cosines[1]) * (1.0 + 1e-9);
-                bins.push(Stair {
-                    cosines,
-                    most,
-                    area: most * (cosines[1] - cosines[0]),
-                });
-            }
-        }
-        for bin in &mut bins {
-            area += bin.area;
-            bin.area = area;
-        }
-        Self {
-            phase,
-            wavelength_nm,
-            bins,
-        }
-    }
-
-    fn sample(&self, random: &mut impl FnMut() -> f64) -> f64 {
-        let last = self.bins.len() - 1;
-        loop {
-            let choice = random() * self.bins[last].area;
-            let bin = self.bins[self
-                .bins
-                .partition_point(|bin| bin.area <= choice)
-                .min(last)];
-            let mu = bin.cosines[0] + random() * (bin.cosines[1] - bin.cosines[0]);
-            if random() * bin.most < self.phase.evaluate(mu, self.wavelength_nm) {
-                return mu;
-            }
-        }
-    }
-
-    /// The share of drawn cosines that are kept.
-    #[cfg(test)]
-    fn acceptance(&self) -> f64 {
-        0.5 / PI / self.bins[self.bins.len() - 1].area
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::tests::kinds;
     use super::*;
     use crate::quadrature::integrate;
     use crate::random::Random;
+    use std::f64::consts::PI;
 
     /// Legendre moments of what is drawn are those of the function, and the cosines fall into bins as often as its
     /// integral says: chi squared over 40 bins, 99.99 % limit of 39 degrees of freedom.
@@ -250,9 +146,11 @@ mod tests {
                 let chi: f64 = (0..BINS)
                     .map(|bin| {
                         let edge = |k: usize| 2.0 * k as f64 / BINS as f64 - 1.0;
-                        let share = 2.0 * PI * integrate(16, edge(bin), edge(bin + 1), &breaks, |mu| {
-                            phase.evaluate(mu, nm)
-                        });
+                        let share = 2.0
+                            * PI
+                            * integrate(16, edge(bin), edge(bin + 1), &breaks, |mu| {
+                                phase.evaluate(mu, nm)
+                            });
                         let expected = share * DRAWS as f64;
                         (counts[bin] - expected).powi(2) / expected
                     })
@@ -263,17 +161,11 @@ mod tests {
                     let got = got / DRAWS as f64;
                     // No Legendre polynomial exceeds 1.
                     let sigma = (1.0 / DRAWS as f64).sqrt();
-                    assert!((got - want).abs() < 4.5 * sigma, "{phase:?}: {got} for {want}");
+                    assert!(
+                        (got - want).abs() < 4.5 * sigma,
+                        "{phase:?}: {got} for {want}"
+                    );
                 }
-            }
-        }
-    }
-
-    #[test]
-    fn tables_keep_most_of_what_they_draw() {
-        for phase in kinds() {
-            if let PhaseSampler::Table(table) = PhaseSampler::new(&phase, 520.0) {
-                assert!((0.85..1.0).contains(&table.acceptance()), "{}", table.acceptance());
             }
         }
     }

@@ -87,7 +87,7 @@ impl HalfLine {
 
     /// The stand-in's columns to space, and the residual depth; for a line that does not meet the ground.
     #[inline(always)]
-    pub fn to_space(&self, layers: &Layers) -> (PerConstituent, f64) {
+    pub fn to_space(self, layers: &Layers) -> (PerConstituent, f64) {
         let mut columns = [0.0; MAX_CONSTITUENTS];
         let mut residual = 0.0;
         self.walk(layers, |layer, from, to| {
@@ -184,7 +184,10 @@ impl Chord {
         let piece = &self.pieces[self.piece_at(t)];
         let layer = layers.layer(piece.layer);
         let to = t.clamp(piece.from, piece.to);
-        let more = layer.columns(layer.moments(self.tangent, piece.from, to), MAX_CONSTITUENTS);
+        let more = layer.columns(
+            layer.moments(self.tangent, piece.from, to),
+            MAX_CONSTITUENTS,
+        );
         let mut columns = piece.before;
         for (column, more) in columns.iter_mut().zip(more) {
             *column += more;

@@ -135,6 +135,9 @@ mod tests {
         assert!((estimate.standard_error[0] - 4.0 * (variance / 4.0).sqrt()).abs() < 1e-12);
         assert!((estimate.orders[1].mean[0] - 2.0 * mean).abs() < 1e-12);
         assert_eq!(estimate.orders[2].mean[0], 0.0);
-        assert_eq!(Tally::new(1).estimate(&[1.0], 0).standard_error[0], f64::INFINITY);
+        assert_eq!(
+            Tally::new(1).estimate(&[1.0], 0).standard_error[0],
+            f64::INFINITY
+        );
     }
 }

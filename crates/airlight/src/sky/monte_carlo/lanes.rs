@@ -156,12 +156,7 @@ impl<const N: usize> Lanes<N> {
 
     /// Draws the cosine of a scattering angle as `scattering` shares it among constituents in `lane`.
     #[inline(always)]
-    pub fn sample(
-        &self,
-        scattering: &PerScatterer<N>,
-        lane: usize,
-        random: &mut Random,
-    ) -> f64 {
+    pub fn sample(&self, scattering: &PerScatterer<N>, lane: usize, random: &mut Random) -> f64 {
         let whole: f32 = scattering.iter().map(|s| s[lane]).sum();
         let mut left = random.unit() as f32 * whole;
         let mut last = 0;
@@ -197,9 +192,7 @@ pub fn absorbed<const N: usize>(depth: Spectrum<N>) -> Spectrum<N> {
 /// The sum over constituents.
 #[inline(always)]
 pub fn sum<const N: usize>(parts: &PerScatterer<N>) -> Spectrum<N> {
-    parts
-        .iter()
-        .fold(Spectrum::ZERO, |sum, part| sum + *part)
+    parts.iter().fold(Spectrum::ZERO, |sum, part| sum + *part)
 }
 
 /// The sum over constituents of scattering times phase function.

@@ -132,7 +132,7 @@ impl Layers {
     }
 
     /// Number of constituents.
-    #[inline(always)]
+    #[cfg(test)]
     pub fn constituents(&self) -> usize {
         self.densities.len()
     }

@@ -179,8 +179,10 @@ impl<const N: usize> World<'_, N> {
         let columns = chord.columns_to(layers, t);
         let layer = layers.layer(chord.layer_at(t));
         let stand_in = layer.densities_of(layer.coordinate(line.tangent + t * t));
-        let drawn =
-            self.lanes.extinction(&stand_in) * self.lanes.transmittance(&columns) * share * collides;
+        let drawn = self.lanes.extinction(&stand_in)
+            * self.lanes.transmittance(&columns)
+            * share
+            * collides;
         path.step(self.passed(chord, t, random), drawn);
         path.place += path.direction * (t - line.start);
         Event::Air
@@ -192,7 +194,7 @@ impl<const N: usize> World<'_, N> {
     fn passed(&self, chord: &Chord, t: f64, random: &mut Random) -> Spectrum<N> {
         let mut passed = self.lanes.transmittance(&chord.columns_to(self.layers, t));
         chord.residual(self.layers, t, random, |square, layer| {
-            passed = passed * self.residual_weight(square, layer);
+            passed *= self.residual_weight(square, layer);
         });
         passed
     }
@@ -246,7 +248,8 @@ impl<const N: usize> World<'_, N> {
         path.order += 1;
         // A path towards the sun will find more light than others.
         let isotropic = (0.25 / PI) as f32;
-        path.promise = path.worth.max_element() * (sunward / norm).max_element().max(isotropic) / isotropic;
+        path.promise =
+            path.worth.max_element() * (sunward / norm).max_element().max(isotropic) / isotropic;
         true
     }
 
@@ -261,7 +264,7 @@ impl<const N: usize> World<'_, N> {
         let up = path.place.normalize();
         // Back on the ground exactly, and above it in the arithmetic of the next way.
         path.place = up * self.layers.edge(0).sqrt();
-        path.worth = path.worth * self.lanes.ground_albedo;
+        path.worth *= self.lanes.ground_albedo;
         let sun = self.shape.draw(self.sun, self.disc, random);
         let height = up.dot(sun);
         if height > 0.0
@@ -286,10 +289,13 @@ impl<const N: usize> World<'_, N> {
         let first = -random.unit().ln();
         if first < residual {
             line.residual_places(self.layers, first, random, |square, layer| {
-                light = light * self.residual_weight(square, layer);
+                light *= self.residual_weight(square, layer);
             });
         }
-        Some(self.shape.limb(light, self.sun, sun, self.disc, &self.lanes.wavelengths_nm))
+        Some(
+            self.shape
+                .limb(light, self.sun, sun, self.disc, &self.lanes.wavelengths_nm),
+        )
     }
 
     /// The stretches of a chord that the sun shines on, where it is partly in shadow.

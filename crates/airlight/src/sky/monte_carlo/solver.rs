@@ -11,8 +11,8 @@ use crate::random::Random;
 use crate::sky::SkyError;
 use crate::sky::ray::Ray;
 use crate::sky::shell::{MAX_CONSTITUENTS, PerConstituent};
-use crate::sky::vector::vectorized;
 use crate::spectrum::WavelengthGrid;
+use crate::vector::vectorized;
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -151,7 +151,8 @@ impl MonteCarlo {
                 return estimate;
             }
             // Half as many again.
-            bundles = (tally.count() / 2).min((most_paths - estimate.paths).div_ceil(BUNDLE as u64));
+            bundles =
+                (tally.count() / 2).min((most_paths - estimate.paths).div_ceil(BUNDLE as u64));
         }
     }
 
@@ -307,4 +308,3 @@ fn subject(vectors: &[DVec3]) -> u64 {
             (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
         })
 }
-

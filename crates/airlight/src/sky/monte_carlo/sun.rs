@@ -47,7 +47,11 @@ impl SunShape {
         match self {
             Self::Point => light,
             Self::Disc => {
-                let angle = sun.cross(drawn).length().asin().min(disc.angular_radius_rad);
+                let angle = sun
+                    .cross(drawn)
+                    .length()
+                    .asin()
+                    .min(disc.angular_radius_rad);
                 let whole = disc.solid_angle_sr();
                 Spectrum::from_fn(|i| {
                     let darkened = disc.radiance_per_irradiance(angle, wavelengths_nm[i]) * whole;
