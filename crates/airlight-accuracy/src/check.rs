@@ -9,6 +9,8 @@ use std::fmt;
 pub enum Suite {
     /// Skies against a Monte Carlo, SASKTRAN2 and libRadtran, from tables.
     Tables,
+    /// Skies by day and in twilight against Airlight's own Monte Carlo.
+    MonteCarlo,
     /// Other models of the sky beside ours: how far apart, not who is right.
     Peers,
     /// The sky measured on 27 May 2013.
@@ -17,12 +19,13 @@ pub enum Suite {
 
 impl Suite {
     /// All of them.
-    pub const ALL: [Self; 3] = [Self::Tables, Self::Peers, Self::Measured];
+    pub const ALL: [Self; 4] = [Self::Tables, Self::MonteCarlo, Self::Peers, Self::Measured];
 
     /// Its name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Tables => "tables",
+            Self::MonteCarlo => "monte-carlo",
             Self::Peers => "peers",
             Self::Measured => "measured",
         }
@@ -32,6 +35,7 @@ impl Suite {
     pub fn title(self) -> &'static str {
         match self {
             Self::Tables => "Skies against tables of other solvers",
+            Self::MonteCarlo => "Skies by day and in twilight against Airlight's Monte Carlo",
             Self::Peers => "Other models of the sky beside ours (how far apart, not who is right)",
             Self::Measured => "The sky measured at Ithaca on 27 May 2013",
         }

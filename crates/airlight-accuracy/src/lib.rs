@@ -14,6 +14,7 @@ pub mod skies;
 pub mod solved;
 pub mod table;
 
+use airlight::sky::SkySettings;
 pub use check::{At, Check, Row, Statistics, Suite, Unit};
 
 /// Makes all checks of the suites, in the order of [`Suite::ALL`].
@@ -22,6 +23,7 @@ pub fn run(suites: &[Suite]) -> Vec<Check> {
     wanted
         .flat_map(|suite| match suite {
             Suite::Tables => skies::checks(),
+            Suite::MonteCarlo => skies::against_truth(&SkySettings::default()),
             Suite::Peers => skies::peers(),
             Suite::Measured => measured::checks(),
         })

@@ -29,6 +29,11 @@ impl RowsBar {
         self.bar.set_message(what);
     }
 
+    /// So much more is done.
+    pub fn advance(&self, rows: u64) {
+        self.bar.inc(rows);
+    }
+
     /// A file of so many rows is whole.
     pub fn file_done(&self, rows: u64) {
         let before = self.before.fetch_add(rows, Ordering::Relaxed);

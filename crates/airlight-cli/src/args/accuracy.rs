@@ -9,6 +9,8 @@ use std::path::PathBuf;
 pub enum SuiteArg {
     /// Skies against a Monte Carlo, SASKTRAN2 and libRadtran, from tables.
     Tables,
+    /// Skies by day and in twilight against Airlight's own Monte Carlo.
+    MonteCarlo,
     /// Other models of the sky beside ours.
     Peers,
     /// The sky measured on 27 May 2013, beside what published models make of it.
@@ -19,6 +21,7 @@ impl From<SuiteArg> for Suite {
     fn from(arg: SuiteArg) -> Self {
         match arg {
             SuiteArg::Tables => Self::Tables,
+            SuiteArg::MonteCarlo => Self::MonteCarlo,
             SuiteArg::Peers => Self::Peers,
             SuiteArg::Measured => Self::Measured,
         }

@@ -1,6 +1,8 @@
 //! Options that say what the air is and how its light is solved for.
 
+use crate::error::CliError;
 use crate::{atmosphere, parse};
+use airlight::sky::monte_carlo::{MonteCarloSettings, SunShape};
 use clap::{Args, ValueEnum};
 
 /// Which light is computed.
@@ -10,6 +12,15 @@ pub enum ScatteringArg {
     All,
     /// Sunlight scattered once, and the ground lit by the sun alone.
     Single,
+}
+
+/// How light is solved for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum SolverArg {
+    /// Successive orders of scattering on the sphere: the fast solver, without noise.
+    Orders,
+    /// Random paths: no approximation, slow, with noise whose size is told.
+    MonteCarlo,
 }
 
 /// What the air is and how its light is solved for.
@@ -46,7 +57,38 @@ pub struct AirArgs {
     /// Which light is computed
     #[arg(long, value_enum, default_value_t = ScatteringArg::All)]
     pub scattering: ScatteringArg,
+    /// How light is solved for
+    #[arg(long, value_enum, default_value_t = SolverArg::Orders)]
+    pub solver: SolverArg,
+    /// Random paths for each pixel [default: 256] or view [default: 65536]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(128..=1_000_000_000_000))]
+    pub paths: Option<u64>,
+    /// Seed of the random paths: the same seed gives the same picture, another one other noise [default: 1]
+    #[arg(long, value_name = "N")]
+    pub seed: Option<u64>,
     /// Threads to compute with [default: one for each processor]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
     pub threads: Option<u32>,
+}
+
+impl AirArgs {
+    /// The Monte Carlo's settings, `paths` where nothing is said; `None` where another solver is asked for.
+    ///
+    /// # Errors
+    /// [`CliError::Usage`] for its options without it.
+    pub fn monte_carlo(&self, paths: u64) -> Result<Option<MonteCarloSettings>, CliError> {
+        match self.solver {
+            SolverArg::MonteCarlo => Ok(Some(MonteCarloSettings {
+                paths: self.paths.unwrap_or(paths),
+                seed: self.seed.unwrap_or(1),
+                sun: SunShape::Disc,
+            })),
+            SolverArg::Orders if self.paths.is_some() || self.seed.is_some() => {
+                Err(CliError::usage(
+                    "--paths and --seed are for random paths: give --solver monte-carlo as well",
+                ))
+            }
+            SolverArg::Orders => Ok(None),
+        }
+    }
 }

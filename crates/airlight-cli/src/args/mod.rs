@@ -12,7 +12,7 @@ mod place;
 mod probe;
 
 pub use accuracy::{AccuracyArgs, ReportArg};
-pub use air::{AirArgs, ScatteringArg};
+pub use air::{AirArgs, ScatteringArg, SolverArg};
 pub use fog::FogArgs;
 pub use overlay::{DepthKindArg, HolesArg, ModelArg, OverlayArgs};
 pub use overlay_light::{AirArg, LampArg, LampKind, LampPlace, LayerShape, OverlayLightArgs};
@@ -87,6 +87,9 @@ pub struct SkyArgs {
     /// Say nothing on standard output
     #[arg(short, long, help_heading = "Files")]
     pub quiet: bool,
+    /// With --solver monte-carlo: write the standard error of each pixel's colour as well, into NAME.noise.exr
+    #[arg(long, requires = "output", help_heading = "Files")]
+    pub noise_map: bool,
     #[command(flatten)]
     pub place: PlaceArgs,
     #[command(flatten)]
@@ -127,6 +130,8 @@ Examples:
       --projection fisheye -o day.png
   Ground fog at sunrise, seen from a hill 60 m high:
     airlight sky --sun-elevation 2 --fog-visibility-m 150 --fog-top-m 40 --altitude-m 60 --projection perspective -o fog.png
+  The same sky by random paths, with the noise of each pixel in a file of its own:
+    airlight sky --sun-elevation 3 --solver monte-carlo --paths 1024 --size 512x256 --noise-map -o truth.exr
   From a height of 400 km, from Mars:
     airlight sky --sun-elevation 20 --altitude-m 400e3 --projection perspective --camera-elevation -15 -o iss.png
     airlight sky --atmosphere mars --sun-elevation 5 --projection perspective -o mars.png";

@@ -1,6 +1,6 @@
 //! The light that fog over a picture is in: the picture's own, or that of a solved sky at the picture's level.
 
-use crate::args::{AirArg, AirArgs, OverlayArgs, PlaceArgs, ScatteringArg};
+use crate::args::{AirArg, AirArgs, OverlayArgs, PlaceArgs, ScatteringArg, SolverArg};
 use crate::error::CliError;
 use crate::parse;
 use crate::scene::{Scene, Sun};
@@ -52,6 +52,9 @@ impl SolvedSky {
             ground_altitude_m: light.ground_altitude_m,
             wavelengths: "standard".to_owned(),
             scattering: ScatteringArg::All,
+            solver: SolverArg::Orders,
+            paths: None,
+            seed: None,
             threads: None,
         };
         let scene = Scene::new(&place, &air)?;

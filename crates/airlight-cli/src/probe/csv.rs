@@ -9,11 +9,18 @@ const HEADER: &str = "view,azimuth_deg,elevation_deg,distance_m,meets_ground,sun
     luminance_cd_m2,x_cd_m2,y_cd_m2,z_cd_m2,red_cd_m2,green_cd_m2,blue_cd_m2,\
     sun_azimuth_deg,sun_elevation_deg,sun_irradiance_outside_w_m2_nm,sun_irradiance_normal_w_m2_nm,\
     sun_irradiance_horizontal_w_m2_nm,sky_irradiance_horizontal_w_m2_nm,sun_illuminance_normal_lx,\
-    sun_illuminance_horizontal_lx,sky_illuminance_horizontal_lx\n";
+    sun_illuminance_horizontal_lx,sky_illuminance_horizontal_lx";
+/// Columns after them where light was solved for by random paths as well.
+const MONTE_CARLO_HEADER: &str =
+    ",monte_carlo_radiance_w_m2_sr_nm,monte_carlo_standard_error_w_m2_sr_nm";
 
 /// The whole text.
 pub fn text(answer: &Answer) -> String {
     let mut text = HEADER.to_owned();
+    if answer.views.iter().any(|view| view.monte_carlo.is_some()) {
+        text.push_str(MONTE_CARLO_HEADER);
+    }
+    text.push('\n');
     for (number, view) in (1..).zip(&answer.views) {
         for lane in 0..answer.wavelengths_nm.len() {
             line(&mut text, answer, number, view, lane);
@@ -47,7 +54,7 @@ fn line(text: &mut String, answer: &Answer, number: usize, view: &ViewLight, lan
         view.transmittance[lane],
         view.luminance_cd_m2
     );
-    let _ = writeln!(
+    let _ = write!(
         text,
         "{},{},{},{},{},{},{},{},{}",
         sun.azimuth_deg,
@@ -60,4 +67,12 @@ fn line(text: &mut String, answer: &Answer, number: usize, view: &ViewLight, lan
         sun.illuminance_horizontal_lx,
         sky.illuminance_horizontal_lx
     );
+    if let Some(found) = &view.monte_carlo {
+        let _ = write!(
+            text,
+            ",{},{}",
+            found.radiance_w_m2_sr_nm[lane], found.standard_error_w_m2_sr_nm[lane]
+        );
+    }
+    text.push('\n');
 }

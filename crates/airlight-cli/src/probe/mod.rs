@@ -11,10 +11,15 @@ mod views;
 use crate::args::{FormatArg, ProbeArgs};
 use crate::error::CliError;
 use crate::interrupt;
+use crate::progress::Busy;
 use crate::report;
 use crate::scene::Scene;
+use airlight::sky::monte_carlo::MonteCarlo;
 use airlight_render::output::AtomicFile;
 use values::Answer;
+
+/// Paths for each view where nothing is said.
+const PATHS: u64 = 65_536;
 
 /// Runs the command.
 ///
@@ -28,6 +33,14 @@ pub fn run(args: &ProbeArgs) -> Result<(), CliError> {
             "CSV has a line for each view: give --view AZ,EL or --views FILE.csv",
         ));
     }
+    let settings = args.air.monte_carlo(PATHS)?;
+    if settings.is_some()
+        && (args.distance_m.is_some() || views.iter().any(|v| v.distance_m.is_some()))
+    {
+        return Err(CliError::usage(
+            "--solver monte-carlo looks to the ground or to space: leave out --distance-m and the column distance_m",
+        ));
+    }
     let scene = Scene::new(&args.place, &args.air)?;
     if let Some(path) = &args.output {
         let _writing = interrupt::start_writing()?;
@@ -35,7 +48,12 @@ pub fn run(args: &ProbeArgs) -> Result<(), CliError> {
     }
     let sun = scene.sun.at(None)?;
     let (sky, _) = scene.prepare(scene.near(&sun))?;
-    let answer = Answer::new(args, &scene, &sky, &sun, &views);
+    let paths = settings
+        .map(|settings| MonteCarlo::new(&scene.atmosphere, &scene.grid, settings))
+        .transpose()?;
+    let busy = Busy::with("computing");
+    let answer = Answer::new(args, &scene, (&sky, paths.as_ref()), &sun, &views);
+    drop(busy);
     let text = match args.format {
         FormatArg::Json => json::text(&answer)?,
         FormatArg::Csv => csv::text(&answer),

@@ -72,13 +72,24 @@ fn one(answer: &Answer, view: &ViewLight) -> String {
         short(view.luminance_cd_m2),
         answer.color_space,
     );
-    let columns = [
+    let mut columns = vec![
         ("all", &view.radiance_w_m2_sr_nm),
         ("single", &view.radiance_single_w_m2_sr_nm),
         ("multiple", &view.radiance_multiple_w_m2_sr_nm),
         ("ground", &view.radiance_ground_w_m2_sr_nm),
         ("transmittance", &view.transmittance),
     ];
+    let found = view.monte_carlo.as_ref().map(|found| {
+        [&found.radiance_w_m2_sr_nm, &found.standard_error_w_m2_sr_nm].map(|values| {
+            values
+                .iter()
+                .map(|&value| value as f32)
+                .collect::<Vec<f32>>()
+        })
+    });
+    if let Some([mean, error]) = &found {
+        columns.extend([("random paths", mean), ("std. error", error)]);
+    }
     lines(&mut text, &answer.wavelengths_nm, &columns);
     text
 }

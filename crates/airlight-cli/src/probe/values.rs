@@ -5,6 +5,7 @@ use crate::args::ProbeArgs;
 use crate::scene::{Scene, Sun};
 use crate::sky::{SOFTWARE, space_name, space_of};
 use airlight::axes;
+use airlight::sky::monte_carlo::{MonteCarlo, ORDERS};
 use airlight::sky::{LineOfSight, Sky, TableChannels, View};
 use airlight::spectrum::RgbSpace;
 use glam::DVec3;
@@ -114,11 +115,35 @@ pub struct ViewLight {
     pub rgb_cd_m2: [f64; 3],
     /// Luminance: Y.
     pub luminance_cd_m2: f64,
+    /// The same light by random paths, where asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub monte_carlo: Option<PathsLight>,
+}
+
+/// The light along one direction by random paths.
+#[derive(Debug, Serialize)]
+pub struct PathsLight {
+    /// Number of paths.
+    pub paths: u64,
+    /// All that arrives.
+    pub radiance_w_m2_sr_nm: Vec<f64>,
+    /// Standard error of it.
+    pub standard_error_w_m2_sr_nm: Vec<f64>,
+    /// Of it, light scattered or reflected once, twice, three and four times, and more often.
+    pub radiance_by_order_w_m2_sr_nm: [Vec<f64>; ORDERS],
+    /// CIE 1931 XYZ.
+    pub xyz_cd_m2: [f64; 3],
 }
 
 impl Answer {
-    /// Computes all of it.
-    pub fn new(args: &ProbeArgs, scene: &Scene, sky: &Sky, sun: &Sun, views: &[AskedView]) -> Self {
+    /// Computes all of it; by random paths too, where there is a Monte Carlo.
+    pub fn new(
+        args: &ProbeArgs,
+        scene: &Scene,
+        (sky, paths): (&Sky, Option<&MonteCarlo>),
+        sun: &Sun,
+        views: &[AskedView],
+    ) -> Self {
         let view = scene.view(sky, sun);
         let space = space_of(args.color_space);
         let place = scene.sun.place();
@@ -140,7 +165,11 @@ impl Answer {
             sky: sky_light(&view),
             views: views
                 .par_iter()
-                .map(|asked| view_light(&view, asked, space))
+                .map(|asked| ViewLight {
+                    monte_carlo: paths
+                        .map(|paths| paths_light(&view, paths, scene.eye_altitude_m, asked)),
+                    ..view_light(&view, asked, space)
+                })
                 .collect(),
         }
     }
@@ -191,5 +220,29 @@ fn view_light(view: &View<'_>, asked: &AskedView, space: RgbSpace) -> ViewLight 
         xyz_cd_m2: xyz,
         rgb_cd_m2: space.from_xyz(xyz),
         luminance_cd_m2: xyz[1],
+        monte_carlo: None,
+    }
+}
+
+fn paths_light(
+    view: &View<'_>,
+    paths: &MonteCarlo,
+    eye_altitude_m: f64,
+    asked: &AskedView,
+) -> PathsLight {
+    let direction = axes::direction(asked.azimuth_deg, asked.elevation_deg);
+    let found = paths.radiance(eye_altitude_m, view.sun(), direction);
+    // The Monte Carlo's sun is at its mean distance.
+    let solar = view.solar_irradiance();
+    let nearness = f64::from(solar[0]) / paths.grid().solar_irradiance()[0];
+    let scaled = |values: &[f64]| values.iter().map(|v| nearness * v).collect::<Vec<f64>>();
+    let radiance = scaled(&found.mean);
+    let single: Vec<f32> = radiance.iter().map(|&v| v as f32).collect();
+    PathsLight {
+        paths: found.paths,
+        standard_error_w_m2_sr_nm: scaled(&found.standard_error),
+        radiance_by_order_w_m2_sr_nm: found.orders.map(|order| scaled(&order.mean)),
+        xyz_cd_m2: paths.grid().to_xyz(&single),
+        radiance_w_m2_sr_nm: radiance,
     }
 }

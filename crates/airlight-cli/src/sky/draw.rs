@@ -5,7 +5,7 @@ use super::disc::Disc;
 use super::fog::Fog;
 use super::layout::{Layout, PictureFile};
 use super::rows::{Layer, SkyRows};
-use super::{exposure, facts};
+use super::{exposure, facts, monte_carlo};
 use crate::args::{CompressionArg, PrecisionArg, SkyArgs, SunDiscArg};
 use crate::error::CliError;
 use crate::interrupt::STOP;
@@ -20,7 +20,9 @@ use airlight_render::output::jpeg::JpegOptions;
 use airlight_render::output::png::{PngDepth, PngOptions};
 use airlight_render::output::{AtomicFile, Written, spectral};
 use airlight_render::tone::{ToneCurve, ToneMapper};
-use airlight_render::{Control, Frame, PictureFormat, PictureOptions, RowSource, write_picture};
+use airlight_render::{
+    Control, Frame, PictureFormat, PictureOptions, Progress, RowSource, write_picture,
+};
 use glam::DVec3;
 use std::path::Path;
 use std::sync::Arc;
@@ -99,6 +101,16 @@ impl<'a> Shot<'a> {
         })
     }
 
+    /// The eye and the sun.
+    pub fn view(&self) -> &View<'a> {
+        &self.view
+    }
+
+    /// Weights of wavelengths in RGB.
+    pub fn weights(&self) -> &RgbWeights {
+        &self.weights
+    }
+
     /// Whether a direction points to the ground.
     pub fn is_below_horizon(&self, direction: DVec3) -> bool {
         direction.y.clamp(-1.0, 1.0).asin() < self.table.horizon_elevation_rad()
@@ -152,24 +164,39 @@ impl Drawing<'_> {
         files: &[PictureFile],
         bar: &RowsBar,
     ) -> Result<Vec<Written>, CliError> {
-        let tone = match self.layout.format {
-            Some(PictureFormat::Png | PictureFormat::Jpeg) => exposure::tone(self, shot)?,
-            _ => ToneMapper::new(1.0, ToneCurve::Clip)?,
-        };
+        if let Some(settings) = self.args.air.monte_carlo(monte_carlo::PATHS)? {
+            return monte_carlo::write(self, shot, files, settings, bar);
+        }
+        let tone = self.tone(shot)?;
         let mut written = Vec::with_capacity(files.len());
         for file in files {
-            written.push(self.write_file(shot, file, &tone, bar)?);
+            written.push(self.write_file(shot, file, (None, &tone), bar)?);
             bar.file_done(u64::from(file.frame.size().height()));
         }
         Ok(written)
     }
 
-    fn write_file(
+    /// The tone mapper of the files' format.
+    ///
+    /// # Errors
+    /// [`CliError`] for an exposure that is none.
+    pub fn tone(&self, shot: &Shot<'_>) -> Result<ToneMapper, CliError> {
+        match self.layout.format {
+            Some(PictureFormat::Png | PictureFormat::Jpeg) => exposure::tone(self, shot),
+            _ => Ok(ToneMapper::new(1.0, ToneCurve::Clip)?),
+        }
+    }
+
+    /// Writes a file; with the sky that another solver has made, where there is one.
+    ///
+    /// # Errors
+    /// [`CliError`]: what failed.
+    pub fn write_file(
         &self,
         shot: &Shot<'_>,
         file: &PictureFile,
-        tone: &ToneMapper,
-        bar: &RowsBar,
+        (solved, tone): (Option<&[f32]>, &ToneMapper),
+        progress: &dyn Progress,
     ) -> Result<Written, CliError> {
         let linear = self.layout.format.is_some_and(PictureFormat::is_linear);
         let scale = if linear {
@@ -177,8 +204,10 @@ impl Drawing<'_> {
         } else {
             1.0
         };
-        let rows = self.rows(shot, &file.frame, file.layer, scale);
-        let control = Control::cancelled_by(&STOP).reporting_to(bar);
+        let rows = self
+            .rows(shot, &file.frame, file.layer, scale)
+            .with_solved(solved);
+        let control = Control::cancelled_by(&STOP).reporting_to(progress);
         let options = self.options(shot, file);
         let size = file.frame.size();
         Ok(match &self.channels.spectral {
@@ -195,7 +224,8 @@ impl Drawing<'_> {
         })
     }
 
-    fn options(&self, shot: &Shot<'_>, file: &PictureFile) -> PictureOptions {
+    /// How a file is written.
+    pub fn options(&self, shot: &Shot<'_>, file: &PictureFile) -> PictureOptions {
         let args = &self.args.picture;
         PictureOptions {
             exr: ExrOptions {

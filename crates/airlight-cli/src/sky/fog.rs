@@ -115,7 +115,12 @@ fn cover<const N: usize>(sky: &FoggySky<'_, N>, direction: DVec3, values: &mut [
         .for_each(|(value, seen)| *value = seen);
 }
 
-/// The fog of the options.
+/// The fog of the options, if any.
+pub fn layer_of<const N: usize>(args: &FogArgs) -> Option<Layer<N>> {
+    args.fog_visibility_m
+        .map(|visibility_m| layer(args, visibility_m))
+}
+
 fn layer<const N: usize>(args: &FogArgs, visibility_m: f64) -> Layer<N> {
     let profile = match args.fog_top_m {
         Some(top_height_m) => Profile::Slab { top_height_m },

@@ -145,7 +145,7 @@ fn name(path: &Path) -> String {
 }
 
 /// The same name with a word before its ending: `sky.sun.exr` of `sky.exr`.
-fn tagged(path: &Path, tag: &str) -> PathBuf {
+pub fn tagged(path: &Path, tag: &str) -> PathBuf {
     let name = path
         .file_name()
         .unwrap_or_default()

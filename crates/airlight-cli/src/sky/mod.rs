@@ -5,6 +5,7 @@
 //! - [`fog`]: fog before the sky.
 //! - [`layout`]: which files a picture consists of and where each looks.
 //! - [`facts`]: what the files say about themselves; [`exposure`]: how bright PNG, JPEG and preview are.
+//! - [`monte_carlo`]: pictures by random paths.
 //! - [`draw`]: one moment into files; [`preview`]: onto the terminal; [`sequence`]: many moments.
 
 mod channels;
@@ -14,6 +15,7 @@ mod exposure;
 mod facts;
 mod fog;
 mod layout;
+mod monte_carlo;
 mod preview;
 mod rows;
 mod sequence;
@@ -41,6 +43,7 @@ pub fn run(args: &SkyArgs) -> Result<(), CliError> {
     crate::scene::use_threads(args.air.threads)?;
     let preview = preview::wanted(args)?;
     let scene = Scene::new(&args.place, &args.air)?;
+    monte_carlo::check(args)?;
     let first = scene.sun.at(None)?;
     let layout = Layout::new(args, &first)?;
     let channels = Channels::new(&args.picture, layout.is_spectral(), &scene)?;

@@ -31,6 +31,8 @@ pub struct SkyRows<'a> {
     /// For projections whose columns keep their azimuth.
     columns: Option<SkyColumns>,
     scale: f32,
+    /// Values of all pixels in the table's channels, where another solver has made them.
+    solved: Option<&'a [f32]>,
     /// How far a pixel's corners lie from its middle at most (rad), with some to spare.
     pixel_reach: f64,
 }
@@ -58,8 +60,14 @@ impl<'a> SkyRows<'a> {
             rows: frame.rows(),
             columns: columns(frame, table, sun),
             scale,
+            solved: None,
             pixel_reach: pixel_reach(frame),
         }
+    }
+
+    /// With the sky that another solver has made, row after row in the table's channels, instead of the table's.
+    pub fn with_solved(self, solved: Option<&'a [f32]>) -> Self {
+        Self { solved, ..self }
     }
 
     fn frame(&self) -> &Frame {
@@ -176,7 +184,12 @@ impl RowSource for SkyRows<'_> {
         if self.draws_sky {
             let n = self.table.channels();
             let mut values = vec![0.0; width * n];
-            self.sample_row(y, &directions, &mut values);
+            match self.solved {
+                Some(solved) => {
+                    values.copy_from_slice(&solved[y as usize * width * n..][..width * n])
+                }
+                None => self.sample_row(y, &directions, &mut values),
+            }
             for (values, pixel) in values
                 .chunks_exact(n)
                 .zip(out.chunks_exact_mut(self.channels()))

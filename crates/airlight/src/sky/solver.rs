@@ -48,7 +48,7 @@ impl Default for SkySettings {
                 first: Directions {
                     zenith_nodes: [7, 5, 8],
                     azimuths: 12,
-                    panel_nodes: 2,
+                    panel_nodes: 3,
                 },
                 later: Directions {
                     zenith_nodes: [4, 4, 5],

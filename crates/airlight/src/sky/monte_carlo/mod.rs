@@ -28,7 +28,7 @@ mod path;
 mod solver;
 mod sun;
 
-pub use estimate::{Estimate, Measured};
+pub use estimate::{Estimate, Measured, Sample};
 pub use path::ORDERS;
-pub use solver::{MonteCarlo, MonteCarloSettings};
+pub use solver::{BUNDLE, MonteCarlo, MonteCarloSettings};
 pub use sun::SunShape;

@@ -27,6 +27,8 @@ pub type ByOrder<const N: usize> = [Spectrum<N>; ORDERS];
 const TOWARDS_SUN: f64 = 0.2;
 /// With this probability a path that runs partly in the planet's shadow is scattered in its lit part.
 const IN_LIGHT: f64 = 0.5;
+/// A lit part of which less than this share arrives is not looked for: single precision could not tell its density.
+const FARTHEST: f32 = 1e-24;
 /// Paths that carry less than this share of what they carried at the first vertex may be ended.
 const FAINT: f32 = 0.3;
 
@@ -386,7 +388,7 @@ impl<const N: usize> Lit<N> {
         let lit_absorbed = lit
             .iter()
             .fold(Spectrum::ZERO, |sum, stretch| sum + stretch.absorbed);
-        let chance = lit_absorbed.map(|lit| if lit > 0.0 { IN_LIGHT as f32 } else { 0.0 });
+        let chance = lit_absorbed.map(|lit| if lit > FARTHEST { IN_LIGHT as f32 } else { 0.0 });
         let extinction = world.lanes.extinction_of(hero);
         let depth_to = |t: f64| -> f64 {
             let columns = chord.columns_to(world.layers, t);

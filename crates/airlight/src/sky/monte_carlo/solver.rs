@@ -18,7 +18,7 @@ use rayon::prelude::*;
 
 /// Paths of a bundle: what one stream of random numbers serves. Its first collisions are spread evenly, so that
 /// bundles differ less than paths would; the error is told from the spread among bundles.
-const BUNDLE: usize = 64;
+pub const BUNDLE: usize = 64;
 
 /// How long to go on, and how.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -130,6 +130,22 @@ impl MonteCarlo {
         let mut tally = Tally::new(self.grid.len());
         self.add_bundles(&mut tally, bundles, eye_altitude_m, sun, view);
         self.estimate(&tally)
+    }
+
+    /// What one bundle of paths (64 of them) finds, by order of scattering and wavelength, W m^-2 sr^-1 nm^-1: for
+    /// statistics of one's own. Bundles of different numbers or views are independent; the mean over bundles is
+    /// [`MonteCarlo::radiance`].
+    pub fn sample(&self, eye_altitude_m: f64, sun: DVec3, view: DVec3, bundle: u64) -> Sample {
+        let Some(line) = self.line(eye_altitude_m, sun, view) else {
+            return std::array::from_fn(|_| vec![0.0; self.grid.len()]);
+        };
+        let mut sample = self.bundle(&line, bundle);
+        for order in &mut sample {
+            for (value, solar) in order.iter_mut().zip(self.grid.solar_irradiance()) {
+                *value *= solar;
+            }
+        }
+        sample
     }
 
     /// Goes on until the standard error of the worst wavelength (of those brighter than 1e-3 of the brightest) is

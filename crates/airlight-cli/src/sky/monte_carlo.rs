@@ -1,0 +1,336 @@
+//! Pictures by random paths: in passes, each of as many paths as all before it, so that there is a whole picture soon
+//! and a better one later. Ctrl-C leaves that of the last pass.
+
+use super::draw::{Drawing, Shot};
+use super::layout::{PictureFile, tagged};
+use super::rows::Layer;
+use crate::args::{FogArgs, ScatteringArg, SkyArgs, SolverArg};
+use crate::error::CliError;
+use crate::interrupt::STOP;
+use crate::progress::RowsBar;
+use crate::report;
+use airlight::medium::{AltitudeTable, Atmosphere, Constituent, DensityProfile, Interpolation};
+use airlight::sky::monte_carlo::{BUNDLE, MonteCarlo, MonteCarloSettings, ORDERS};
+use airlight::spectrum::SpectralCurve;
+use airlight_render::output::Written;
+use airlight_render::rows::StoredRows;
+use airlight_render::{Control, Frame, Progress, write_picture};
+use glam::DVec3;
+use rayon::prelude::*;
+use std::sync::atomic::Ordering;
+
+/// Paths for each pixel where nothing is said.
+pub const PATHS: u64 = 256;
+/// Bundles of the first pass: two are the fewest that have a spread.
+const FIRST_PASS: u64 = 2;
+
+/// Refuses options that do not go together.
+///
+/// # Errors
+/// [`CliError::Usage`]: which.
+pub fn check(args: &SkyArgs) -> Result<(), CliError> {
+    args.air.monte_carlo(PATHS)?;
+    let random = args.air.solver == SolverArg::MonteCarlo;
+    match (random, args.noise_map, &args.output) {
+        (false, true, _) => Err(CliError::usage(
+            "--noise-map is for random paths: give --solver monte-carlo as well",
+        )),
+        (true, _, None) => Err(CliError::usage(
+            "--solver monte-carlo draws into a file: give --output (the preview in the terminal is by the fast solver)",
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// Sums over the bundles of paths of each pixel.
+struct Canvas {
+    frame: Frame,
+    channels: usize,
+    /// In the channels of a table.
+    sums: Vec<f64>,
+    colours: Vec<Colour>,
+    bundles: u64,
+}
+
+/// Sums of red, green and blue, and of their squares.
+#[derive(Clone, Copy, Default)]
+struct Colour {
+    sum: [f64; 3],
+    square: [f64; 3],
+}
+
+/// What follows the paths of a picture.
+struct Painter<'a> {
+    solver: MonteCarlo,
+    weights: &'a [[f32; 3]],
+    /// Whether the channels are wavelengths.
+    spectral: bool,
+    eye_altitude_m: f64,
+    sun: DVec3,
+    /// The square of the planet's mean distance from the sun over the present one.
+    nearness: f64,
+    orders: usize,
+}
+
+/// Draws the files pass by pass; each pass writes them anew.
+///
+/// # Errors
+/// [`CliError`]: what failed; files written before stay.
+pub fn write(
+    drawing: &Drawing<'_>,
+    shot: &Shot<'_>,
+    files: &[PictureFile],
+    settings: MonteCarloSettings,
+    bar: &RowsBar,
+) -> Result<Vec<Written>, CliError> {
+    let painter = Painter::new(drawing, shot, settings)?;
+    let tone = drawing.tone(shot)?;
+    let channels = match painter.spectral {
+        true => painter.weights.len(),
+        false => 3,
+    };
+    let mut canvases: Vec<Option<Canvas>> = files
+        .iter()
+        .map(|file| (file.layer != Layer::Disc).then(|| Canvas::new(file.frame, channels)))
+        .collect();
+    let goal = settings.paths.div_ceil(BUNDLE as u64).max(FIRST_PASS);
+    let mut done = 0;
+    loop {
+        let until = (2 * done).clamp(FIRST_PASS, goal);
+        let rows: u64 = files
+            .iter()
+            .map(|file| u64::from(file.frame.size().height()))
+            .sum();
+        let pass = RowsBar::new(rows);
+        pass.say(format!(
+            "{} of {} paths a pixel",
+            until * BUNDLE as u64,
+            goal * BUNDLE as u64
+        ));
+        let mut written = Vec::with_capacity(files.len());
+        for (file, canvas) in files.iter().zip(&mut canvases) {
+            if let Some(canvas) = canvas {
+                painter.paint(canvas, until, &pass)?;
+            }
+            let solved = canvas.as_ref().map(Canvas::means);
+            written.push(drawing.write_file(shot, file, (solved.as_deref(), &tone), &Silent)?);
+            if let Some(canvas) = canvas.as_ref().filter(|_| drawing.args.noise_map) {
+                canvas.write_noise(drawing, shot, file)?;
+            }
+        }
+        done = until;
+        if done == goal {
+            bar.file_done(rows);
+            say_noise(drawing, canvases.iter().flatten());
+            return Ok(written);
+        }
+    }
+}
+
+/// Nobody hears: writing is short beside the paths.
+struct Silent;
+
+impl Progress for Silent {
+    fn rows_written(&self, _done: u32, _total: u32) {}
+}
+
+fn say_noise<'a>(drawing: &Drawing<'_>, canvases: impl Iterator<Item = &'a Canvas>) {
+    let (mut sum, mut count) = (0.0, 0.0);
+    for canvas in canvases {
+        for colour in &canvas.colours {
+            let (mean, error) = canvas.moments(colour, 1);
+            if mean > 0.0 {
+                sum += (error / mean).powi(2);
+                count += 1.0;
+            }
+        }
+    }
+    if !drawing.args.quiet && count > 0.0 {
+        report::note(&format!(
+            "standard error of a pixel's green: {:.2} % (root mean square over the picture)",
+            100.0 * f64::sqrt(sum / count)
+        ));
+    }
+}
+
+impl Canvas {
+    fn new(frame: Frame, channels: usize) -> Self {
+        let pixels = frame.size().width() as usize * frame.size().height() as usize;
+        Self {
+            frame,
+            channels,
+            sums: vec![0.0; pixels * channels],
+            colours: vec![Colour::default(); pixels],
+            bundles: 0,
+        }
+    }
+
+    /// The picture as far as it is known.
+    fn means(&self) -> Vec<f32> {
+        let count = self.bundles.max(1) as f64;
+        self.sums.iter().map(|sum| (sum / count) as f32).collect()
+    }
+
+    /// Mean and standard error of a component of a colour.
+    fn moments(&self, colour: &Colour, component: usize) -> (f64, f64) {
+        let n = self.bundles as f64;
+        let mean = colour.sum[component] / n;
+        let variance = (colour.square[component] - n * mean * mean) / (n - 1.0);
+        (mean, (variance.max(0.0) / n).sqrt())
+    }
+
+    fn write_noise(
+        &self,
+        drawing: &Drawing<'_>,
+        shot: &Shot<'_>,
+        file: &PictureFile,
+    ) -> Result<(), CliError> {
+        let size = self.frame.size();
+        let scale = drawing.args.picture.scale as f32;
+        let error = |colour, component| scale * self.moments(colour, component).1 as f32;
+        let samples = self
+            .colours
+            .iter()
+            .flat_map(|colour| [0, 1, 2].map(|component| error(colour, component)))
+            .collect();
+        let rows = StoredRows::new(size.width(), 3, samples)?;
+        let path = tagged(&file.path, "noise").with_extension("exr");
+        let options = drawing.options(shot, file);
+        let control = Control::cancelled_by(&STOP);
+        write_picture(&path, size, &rows, &drawing.tone(shot)?, &options, control)?;
+        Ok(())
+    }
+}
+
+impl<'a> Painter<'a> {
+    fn new(
+        drawing: &Drawing<'_>,
+        shot: &'a Shot<'_>,
+        settings: MonteCarloSettings,
+    ) -> Result<Self, CliError> {
+        let scene = drawing.scene;
+        let air = with_fog(&scene.atmosphere, &drawing.args.fog)?;
+        Ok(Self {
+            solver: MonteCarlo::new(&air, &scene.grid, settings)?,
+            weights: shot.weights(),
+            spectral: drawing.channels.spectral.is_some(),
+            eye_altitude_m: scene.eye_altitude_m,
+            sun: shot.view().sun(),
+            nearness: shot.sun.distance_ratio.powi(-2),
+            orders: match drawing.args.air.scattering {
+                ScatteringArg::All => ORDERS,
+                ScatteringArg::Single => 1,
+            },
+        })
+    }
+
+    /// Follows the paths of the bundles up to `until`.
+    fn paint(&self, canvas: &mut Canvas, until: u64, bar: &RowsBar) -> Result<(), CliError> {
+        let (from, channels) = (canvas.bundles, canvas.channels);
+        let width = canvas.frame.size().width() as usize;
+        let frame = canvas.frame;
+        canvas
+            .sums
+            .par_chunks_mut(width * channels)
+            .zip(canvas.colours.par_chunks_mut(width))
+            .enumerate()
+            .try_for_each(|(y, (sums, colours))| {
+                for (x, (sums, colour)) in sums.chunks_mut(channels).zip(colours).enumerate() {
+                    if STOP.load(Ordering::Relaxed) {
+                        return Err(CliError::Interrupted);
+                    }
+                    for bundle in from..until {
+                        let [u, v] = spread(bundle);
+                        if let Some(view) = frame.direction(x as f64 + u, y as f64 + v) {
+                            self.add(view, bundle, sums, colour);
+                        }
+                    }
+                }
+                bar.advance(1);
+                Ok(())
+            })?;
+        canvas.bundles = until;
+        Ok(())
+    }
+
+    /// Adds a bundle of paths along a direction to a pixel.
+    fn add(&self, view: DVec3, bundle: u64, sums: &mut [f64], colour: &mut Colour) {
+        let sample = self
+            .solver
+            .sample(self.eye_altitude_m, self.sun, view, bundle);
+        let mut rgb = [0.0; 3];
+        for (lane, weight) in self.weights.iter().enumerate() {
+            let orders = sample[..self.orders].iter();
+            let radiance = self.nearness * orders.map(|order| order[lane]).sum::<f64>();
+            if self.spectral {
+                sums[lane] += radiance;
+            }
+            for (c, w) in rgb.iter_mut().zip(weight) {
+                *c += f64::from(*w) * radiance;
+            }
+        }
+        if !self.spectral {
+            sums.iter_mut().zip(rgb).for_each(|(sum, c)| *sum += c);
+        }
+        for (component, value) in rgb.into_iter().enumerate() {
+            colour.sum[component] += value;
+            colour.square[component] += value * value;
+        }
+    }
+}
+
+/// Where in a pixel a bundle looks: the two-dimensional sequence of M. Roberts (2018), which fills the square evenly
+/// whatever the number of points.
+fn spread(bundle: u64) -> [f64; 2] {
+    const STEPS: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_3];
+    STEPS.map(|step| (0.5 + bundle as f64 * step).fract())
+}
+
+/// The air with the fog of the options among its constituents.
+fn with_fog(air: &Atmosphere, args: &FogArgs) -> Result<Atmosphere, CliError> {
+    let mut air = air.clone();
+    let Some(fog) = super::fog::layer_of::<1>(args) else {
+        return Ok(air);
+    };
+    let ground_m = air.planet.ground_altitude_m;
+    air.constituents.push(Constituent {
+        name: "fog".into(),
+        density: density(fog.profile, ground_m)?,
+        scattering_per_m: SpectralCurve::Constant(f64::from(fog.matter.scattering_per_m()[0])),
+        absorption_per_m: SpectralCurve::Constant(0.0),
+        phase: fog.matter.phase,
+    });
+    Ok(air)
+}
+
+/// A fog's profile by altitude.
+fn density(profile: airlight::fog::Profile, ground_m: f64) -> Result<DensityProfile, CliError> {
+    use airlight::fog::Profile;
+    /// Scale heights after which nothing is left that could be seen.
+    const LAST: f64 = 12.0;
+    match profile {
+        Profile::Slab { top_height_m } => Ok(DensityProfile::Layer {
+            bottom_m: ground_m - 1.0,
+            top_m: ground_m + top_height_m,
+        }),
+        Profile::Clamped {
+            base_height_m,
+            scale_height_m,
+        } => {
+            let top_m = ground_m + base_height_m + LAST * scale_height_m;
+            let (altitudes, densities) = match base_height_m > 0.0 {
+                true => (
+                    vec![ground_m, ground_m + base_height_m, top_m],
+                    vec![1.0, 1.0, (-LAST).exp()],
+                ),
+                false => (vec![ground_m, top_m], vec![1.0, (-LAST).exp()]),
+            };
+            AltitudeTable::new(altitudes, densities, Interpolation::LogLinear)
+                .map(DensityProfile::Tabulated)
+                .map_err(|error| CliError::usage(format!("the fog: {error}")))
+        }
+        _ => Err(CliError::usage(
+            "--solver monte-carlo knows fog with --fog-top-m or a scale height",
+        )),
+    }
+}
