@@ -13,7 +13,7 @@ mod probe;
 
 pub use accuracy::{AccuracyArgs, ReportArg};
 pub use air::{AirArgs, ScatteringArg};
-pub use fog::FogArgs;
+pub use fog::{DropletsArg, FogArgs, in_words as droplets_in_words};
 pub use overlay::{DepthKindArg, HolesArg, ModelArg, OverlayArgs};
 pub use overlay_light::{AirArg, LampArg, LampKind, LampPlace, LayerShape, OverlayLightArgs};
 pub use overlay_vary::Variation;

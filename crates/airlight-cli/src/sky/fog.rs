@@ -1,11 +1,12 @@
 //! Fog before the sky of a picture.
 
-use crate::args::FogArgs;
+use crate::args::{FogArgs, droplets_in_words};
 use crate::error::CliError;
 use crate::report::short;
-use airlight::fog::droplets::Droplets;
+use airlight::fog::droplets::DropletKind;
 use airlight::fog::visibility::{Contrast, extinction_per_m};
-use airlight::fog::{Layer, Profile, Scattering};
+use airlight::fog::{Layer, Matter, Profile, Scattering};
+use airlight::optics::mie::MieError;
 use airlight::outdoors::{Channels, FoggySky};
 use airlight::sky::{SkyTable, TableChannels, View};
 use airlight::spectrum::Spectrum;
@@ -42,13 +43,17 @@ impl<'a> Fog<'a> {
         };
         Ok(Some(match channels {
             TableChannels::Rgb(space) => {
-                let (channels, layers) = (Channels::Rgb(space), [layer(args, visibility_m)]);
-                let sky = FoggySky::new(view, channels, &layers, ground, scattering)?;
+                let layer = layer(args, visibility_m, |kind, per_m| kind.in_rgb(per_m, space))?;
+                let channels = Channels::Rgb(space);
+                let sky = FoggySky::new(view, channels, &[layer], ground, scattering)?;
                 Self::Rgb(Box::new(sky))
             }
             TableChannels::Spectral => {
-                let layers = [layer(args, visibility_m)];
-                Self::Spectral(FoggySky::spectral(view, &layers, ground, scattering)?)
+                let layers = |nm: &[f64; PIECE]| -> Result<_, CliError> {
+                    let drops = |kind: DropletKind, per_m| kind.at_wavelengths(per_m, nm);
+                    Ok(vec![layer(args, visibility_m, drops)?])
+                };
+                Self::Spectral(FoggySky::spectral(view, layers, ground, scattering)?)
             }
         }))
     }
@@ -115,8 +120,12 @@ fn cover<const N: usize>(sky: &FoggySky<'_, N>, direction: DVec3, values: &mut [
         .for_each(|(value, seen)| *value = seen);
 }
 
-/// The fog of the options.
-fn layer<const N: usize>(args: &FogArgs, visibility_m: f64) -> Layer<N> {
+/// The fog of the options, of drops in the lanes of the picture.
+fn layer<const N: usize>(
+    args: &FogArgs,
+    visibility_m: f64,
+    drops: impl Fn(DropletKind, f64) -> Result<Matter<N>, MieError>,
+) -> Result<Layer<N>, CliError> {
     let profile = match args.fog_top_m {
         Some(top_height_m) => Profile::Slab { top_height_m },
         None => Profile::Clamped {
@@ -125,8 +134,8 @@ fn layer<const N: usize>(args: &FogArgs, visibility_m: f64) -> Layer<N> {
         },
     };
     let extinction = extinction_per_m(visibility_m, Contrast::FivePercent);
-    let matter = Droplets::from(args.fog_droplets).matter(extinction);
-    Layer { profile, matter }
+    let matter = drops(args.fog_droplets.0, extinction)?;
+    Ok(Layer { profile, matter })
 }
 
 /// The fog of the options in words.
@@ -143,10 +152,11 @@ pub fn in_words(args: &FogArgs) -> Option<String> {
             format!("scale height {} m{from}", short(scale_m))
         }
     };
-    let diameter_um = Droplets::from(args.fog_droplets).diameter_um();
+    let kind = args.fog_droplets.0;
     Some(format!(
-        "visibility {} m, {height}, droplets of {} um",
+        "visibility {} m, {height}, droplets {} ({})",
         short(visibility_m),
-        short(diameter_um)
+        kind.name(),
+        droplets_in_words(kind)
     ))
 }

@@ -187,6 +187,22 @@ impl SizeDistribution {
         below(range_um[1]) - below(range_um[0])
     }
 
+    /// The most frequent radius, micrometres: `r_m exp(-ln^2 sigma)` for the lognormal distribution (within its range).
+    pub fn mode_radius_um(&self) -> f64 {
+        match *self {
+            Self::Monodisperse { radius_um } => radius_um,
+            Self::ModifiedGamma { mode_radius_um, .. } => mode_radius_um,
+            Self::LogNormal {
+                median_radius_um,
+                geometric_deviation,
+                range_um: [least, most],
+            } => {
+                let mode_um = median_radius_um * (-geometric_deviation.ln().powi(2)).exp();
+                mode_um.clamp(least, most)
+            }
+        }
+    }
+
     /// Effective radius `<r^3> / <r^2>`, micrometres (Hansen & Travis 1974, eq. 2.53).
     pub fn effective_radius_um(&self) -> f64 {
         self.mean_power(3.0) / self.mean_power(2.0)
