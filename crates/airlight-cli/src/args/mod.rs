@@ -9,6 +9,7 @@ mod overlay_light;
 pub mod overlay_vary;
 mod picture;
 mod place;
+mod plot;
 mod probe;
 
 pub use accuracy::{AccuracyArgs, ReportArg};
@@ -21,6 +22,7 @@ pub use picture::{
     ColorSpaceArg, CompressionArg, PictureArgs, PrecisionArg, ProjectionArg, SunDiscArg, ToneArg,
 };
 pub use place::PlaceArgs;
+pub use plot::{EfficiencyPlotArgs, Index, PhasePlotArgs, PlotArgs, PlotWhat};
 pub use probe::{FormatArg, ProbeArgs};
 
 use clap::{Args, Parser, Subcommand};
@@ -62,6 +64,8 @@ pub enum Command {
     Probe(Box<ProbeArgs>),
     /// Tell how right the solvers are, beside measurement and other people's codes.
     Accuracy(AccuracyArgs),
+    /// Plot what particles do to light: phase functions, efficiencies; as SVG.
+    Plot(PlotArgs),
     /// List the atmospheres that can be asked for by name, or tell what one is made of.
     Atmospheres(AtmospheresArgs),
 }
