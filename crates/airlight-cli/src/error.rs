@@ -2,6 +2,7 @@
 
 use airlight::light::ephemeris::EphemerisError;
 use airlight::medium::{AerosolError, AtmosphereError, UnknownPreset};
+use airlight::optics::mie::MieError;
 use airlight::outdoors::OutdoorsError;
 use airlight::sky::SkyError;
 use airlight::spectrum::GridError;
@@ -88,6 +89,7 @@ refusals!(
     AtmosphereError,
     EphemerisError,
     GridError,
+    MieError,
     OutdoorsError,
     SkyError,
     UnknownPreset

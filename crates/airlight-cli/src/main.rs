@@ -5,7 +5,7 @@
 //! - [`args`]: every option of every command.
 //! - [`interrupt`], [`progress`], [`report`]: Ctrl-C, bars on standard error, text on standard output.
 //! - [`atmosphere`], [`scene`], [`light`]: what is asked for, from options to the solver; sums over the sky.
-//! - [`sky`], [`fog`], [`probe`] and [`accuracy`]: the commands.
+//! - [`sky`], [`fog`], [`probe`], [`accuracy`] and [`plot`]: the commands.
 
 mod accuracy;
 mod args;
@@ -16,6 +16,7 @@ mod interrupt;
 mod light;
 mod moment;
 mod parse;
+mod plot;
 mod probe;
 mod progress;
 mod report;
@@ -48,6 +49,7 @@ fn run(cli: &Cli) -> Result<(), CliError> {
         Command::Fog(args) => fog::run(args),
         Command::Probe(args) => probe::run(args),
         Command::Accuracy(args) => accuracy::run(args),
+        Command::Plot(args) => plot::run(args),
         Command::Atmospheres(args) => atmosphere::list(args),
     }
 }

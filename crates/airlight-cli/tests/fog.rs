@@ -269,7 +269,7 @@ fn a_sky_is_drawn_through_fog_or_refused() {
             "cannot be used with",
         ),
         (
-            "--fog-visibility-m 9 --fog-droplets rain",
+            "--fog-visibility-m 9 --fog-droplets soup",
             "possible values",
         ),
     ] {

@@ -1,23 +1,9 @@
 //! Plots of a report, as SVG.
 
+use crate::chart::{COLOURS, Drawn, FONT, SIZE, draw, labels};
 use crate::check::{Check, Unit};
 use crate::measured::Published;
 use plotters::prelude::*;
-
-type Drawn = Result<String, Box<dyn std::error::Error>>;
-
-const SIZE: (u32, u32) = (960, 420);
-const FONT: &str = "system-ui,sans-serif";
-/// Told apart without red and green (after Okabe & Ito 2008).
-const COLOURS: [RGBColor; 7] = [
-    RGBColor(0, 114, 178),
-    RGBColor(213, 94, 0),
-    RGBColor(0, 158, 115),
-    RGBColor(204, 121, 167),
-    RGBColor(230, 159, 0),
-    RGBColor(86, 180, 233),
-    RGBColor(90, 90, 90),
-];
 
 /// Errors of some checks of one unit over the zenith angle of the view, or over the angle from the sun; a colour for each
 /// name that `group` gives.
@@ -41,7 +27,7 @@ pub fn errors(checks: &[Check], by_angle_from_sun: bool, group: fn(&Check) -> &s
         true => (180.0, "angle from the sun, degrees"),
         false => (90.0, "zenith angle of the view, degrees"),
     };
-    draw(|root| {
+    draw(SIZE, |root| {
         let mut chart = ChartBuilder::on(root)
             .margin(12)
             .x_label_area_size(44)
@@ -97,7 +83,7 @@ pub fn models(ours: &[Check], published: &[Published]) -> Drawn {
         bars.len() as f64,
         bars.iter().map(|b| b.1).fold(0.0, f64::max),
     );
-    draw(|root| {
+    draw(SIZE, |root| {
         let mut chart = ChartBuilder::on(root)
             .margin(12)
             .x_label_area_size(44)
@@ -151,7 +137,7 @@ pub fn spectra(checks: &[Check]) -> Drawn {
     let ends = values().fold((f64::INFINITY, 0.0f64), |(low, high), r| {
         (low.min(r.at.wavelength_nm), high.max(r.at.wavelength_nm))
     });
-    draw(|root| {
+    draw(SIZE, |root| {
         let mut chart = ChartBuilder::on(root)
             .margin(12)
             .x_label_area_size(44)
@@ -186,35 +172,4 @@ pub fn spectra(checks: &[Check]) -> Drawn {
         labels(&mut chart)?;
         Ok(())
     })
-}
-
-type Chart<'a, 'b> = ChartContext<
-    'a,
-    SVGBackend<'b>,
-    Cartesian2d<plotters::coord::types::RangedCoordf64, plotters::coord::types::RangedCoordf64>,
->;
-
-/// Names of colours, top right.
-fn labels<'a>(chart: &mut Chart<'a, 'a>) -> Result<(), Box<dyn std::error::Error>> {
-    chart
-        .configure_series_labels()
-        .background_style(WHITE.mix(0.85))
-        .label_font((FONT, 13))
-        .position(SeriesLabelPosition::UpperRight)
-        .draw()?;
-    Ok(())
-}
-
-type Area<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
-
-/// An SVG on white.
-fn draw(content: impl FnOnce(&Area<'_>) -> Result<(), Box<dyn std::error::Error>>) -> Drawn {
-    let mut svg = String::new();
-    {
-        let root = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
-        root.fill(&WHITE).map_err(|error| error.to_string())?;
-        content(&root)?;
-        root.present().map_err(|error| error.to_string())?;
-    }
-    Ok(svg)
 }

@@ -1,31 +1,69 @@
 //! Options that say what fog lies in the air.
 
 use crate::parse;
-use airlight::fog::droplets::Droplets;
+use crate::report::short;
+use airlight::fog::droplets::DropletKind;
+use airlight::optics::mie::droplets::Drops;
+use clap::builder::PossibleValue;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
+use std::sync::LazyLock;
 
 /// Kinds of fog by their drops.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum DropletsArg {
-    /// Young fog over land, smog: 5 micrometres.
-    Fine,
-    /// Radiation fog: 10 micrometres.
-    Radiation,
-    /// Advection fog, sea fog: 20 micrometres.
-    Advection,
-    /// Drizzling fog: 40 micrometres.
-    Coarse,
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct DropletsArg(pub DropletKind);
+
+impl ValueEnum for DropletsArg {
+    fn value_variants<'a>() -> &'a [Self] {
+        static ALL: LazyLock<Vec<DropletsArg>> = LazyLock::new(|| {
+            DropletKind::all()
+                .map(|(_, kind)| DropletsArg(kind))
+                .collect()
+        });
+        &ALL
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        let value = PossibleValue::new(self.0.name()).help(in_words(self.0));
+        Some(match self.0 {
+            DropletKind::Published(Drops::ModerateRadiationFog) => value.alias("mist"),
+            _ => value,
+        })
+    }
 }
 
-impl From<DropletsArg> for Droplets {
-    fn from(arg: DropletsArg) -> Self {
-        match arg {
-            DropletsArg::Fine => Self::Fine,
-            DropletsArg::Radiation => Self::Radiation,
-            DropletsArg::Advection => Self::Advection,
-            DropletsArg::Coarse => Self::Coarse,
+impl DropletsArg {
+    /// Drops by their name.
+    ///
+    /// # Errors
+    /// What names there are.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        Self::from_str(text, false).map_err(|_| {
+            let names: Vec<&str> = DropletKind::all().map(|(name, _)| name).collect();
+            format!("knows no {text}: there are {}", names.join(", "))
+        })
+    }
+}
+
+impl Serialize for DropletsArg {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.0.name())
+    }
+}
+
+/// Drops in words, by their size.
+pub fn in_words(kind: DropletKind) -> String {
+    match kind {
+        DropletKind::Analytic(droplets) => {
+            format!("grey, of {} um diameter", short(droplets.diameter_um()))
+        }
+        DropletKind::Published(drops) => {
+            let sizes = drops.sizes();
+            format!(
+                "Lorenz-Mie theory, mode radius {} um, effective radius {} um",
+                short(sizes.mode_radius_um()),
+                short(sizes.effective_radius_um())
+            )
         }
     }
 }
@@ -48,6 +86,6 @@ pub struct FogArgs {
     #[arg(long, value_name = "M", value_parser = parse::not_negative, requires = "fog_visibility_m")]
     pub fog_base_m: Option<f64>,
     /// Drops that the fog consists of
-    #[arg(long, value_enum, value_name = "KIND", default_value_t = DropletsArg::Radiation)]
+    #[arg(long, value_enum, value_name = "KIND", default_value_t)]
     pub fog_droplets: DropletsArg,
 }

@@ -9,11 +9,12 @@ mod overlay_light;
 pub mod overlay_vary;
 mod picture;
 mod place;
+mod plot;
 mod probe;
 
 pub use accuracy::{AccuracyArgs, ReportArg};
 pub use air::{AirArgs, ScatteringArg, SolverArg};
-pub use fog::FogArgs;
+pub use fog::{DropletsArg, FogArgs, in_words as droplets_in_words};
 pub use overlay::{DepthKindArg, HolesArg, ModelArg, OverlayArgs};
 pub use overlay_light::{AirArg, LampArg, LampKind, LampPlace, LayerShape, OverlayLightArgs};
 pub use overlay_vary::Variation;
@@ -21,6 +22,7 @@ pub use picture::{
     ColorSpaceArg, CompressionArg, PictureArgs, PrecisionArg, ProjectionArg, SunDiscArg, ToneArg,
 };
 pub use place::PlaceArgs;
+pub use plot::{EfficiencyPlotArgs, Index, PhasePlotArgs, PlotArgs, PlotWhat};
 pub use probe::{FormatArg, ProbeArgs};
 
 use clap::{Args, Parser, Subcommand};
@@ -62,6 +64,8 @@ pub enum Command {
     Probe(Box<ProbeArgs>),
     /// Tell how right the solvers are, beside measurement and other people's codes.
     Accuracy(AccuracyArgs),
+    /// Plot what particles do to light: phase functions, efficiencies; as SVG.
+    Plot(PlotArgs),
     /// List the atmospheres that can be asked for by name, or tell what one is made of.
     Atmospheres(AtmospheresArgs),
 }

@@ -152,7 +152,7 @@ pub struct OverlayArgs {
     #[arg(long, value_name = "M", value_parser = parse::length_m, default_value_t = 50.0, help_heading = "Fog")]
     pub top_m: f64,
     /// Drops that it consists of
-    #[arg(long, value_enum, default_value_t = DropletsArg::Radiation, help_heading = "Fog")]
+    #[arg(long, value_enum, default_value_t, help_heading = "Fog")]
     pub droplets: DropletsArg,
 
     /// Colour of the light that the fog is in, linear, in the picture's units [default: estimated from the picture]

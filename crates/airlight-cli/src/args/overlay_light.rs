@@ -21,7 +21,7 @@ pub struct OverlayLightArgs {
     /// A layer of fog more, as in 'visibility=500 scale-height=20': may be given many times
     ///
     /// Words KEY=VALUE: visibility (m, as --visibility-m); scale-height (m: thins to 1/e), base (m: from there on) or top
-    /// (m: nothing above); droplets (fine, radiation, advection, coarse). With neither scale-height nor top it is the same
+    /// (m: nothing above); droplets (as --droplets). With neither scale-height nor top it is the same
     /// everywhere.
     #[arg(long, value_name = "WORDS", value_parser = LayerArg::parse, help_heading = "Fog")]
     pub layer: Vec<LayerArg>,
@@ -107,7 +107,7 @@ impl LayerArg {
         let scale_height_m = words.take("scale-height", parse::length_m)?;
         let base_m = words.take("base", parse::number)?;
         let top_m = words.take("top", parse::length_m)?;
-        let droplets = words.take("droplets", |text| DropletsArg::from_str(text, false))?;
+        let droplets = words.take("droplets", DropletsArg::parse)?;
         let shape = match (scale_height_m, base_m, top_m) {
             (None, None, None) => LayerShape::Uniform,
             (Some(scale_height_m), None, None) => LayerShape::Height { scale_height_m },
@@ -127,7 +127,7 @@ impl LayerArg {
         Ok(Self {
             visibility_m,
             shape,
-            droplets: droplets.unwrap_or(DropletsArg::Radiation),
+            droplets: droplets.unwrap_or_default(),
         })
     }
 }
@@ -298,7 +298,10 @@ mod tests {
             ("visibility=NaN", "above 0"),
             ("visibility=5 base=3", "scale-height"),
             ("visibility=5 top=3 scale-height=3", "even below"),
-            ("visibility=5 droplets=rain", "droplets"),
+            (
+                "visibility=5 droplets=soup",
+                "droplets knows no soup: there are fine,",
+            ),
             ("visibility=5 visibility=6", "twice"),
             ("visibility=5 colour=red", "colour"),
             ("visibility", "KEY=VALUE"),

@@ -9,6 +9,7 @@ use airlight::axes;
 use airlight::fog::visibility::extinction_per_m;
 use airlight::fog::{Fog, Ground, Layer, Light, Scattering, Sun, legacy};
 use airlight::spectrum::Spectrum;
+use airlight::spectrum::rgb::DOMINANT_NM;
 use airlight_render::overlay::{Body, Glow, Veil};
 use std::f32::consts::PI;
 
@@ -24,7 +25,7 @@ pub fn veil<'a>(
     source: &LightSource<'a>,
     shown: &Shown<'_>,
 ) -> Result<(Veil<'a>, Level), CliError> {
-    let Some(layers) = layers::of(args) else {
+    let Some(layers) = layers::of(args)? else {
         refuse_with_looks(args)?;
         return Ok((look(args, shown.ambient.colour), shown.ambient));
     };
@@ -79,8 +80,14 @@ fn alone<'a>(
         ambient,
         ground_albedo: Spectrum::splat(args.ground_albedo.unwrap_or(GROUND_ALBEDO) as f32),
     };
-    let fog = Fog::new(layers, Ground::FLAT, light, Scattering::Multiple)
-        .map_err(|error| CliError::usage(error.to_string()))?;
+    let fog = Fog::at_wavelengths_nm(
+        layers,
+        Ground::FLAT,
+        light,
+        Scattering::Multiple,
+        DOMINANT_NM,
+    )
+    .map_err(|error| CliError::usage(error.to_string()))?;
     Ok(Body::Alone(Box::new(fog)))
 }
 

@@ -1,13 +1,18 @@
 //! Fog before the sky of a picture.
 
-use crate::args::FogArgs;
+use crate::args::{FogArgs, droplets_in_words};
 use crate::error::CliError;
 use crate::report::short;
-use airlight::fog::droplets::Droplets;
+use airlight::fog::droplets::DropletKind;
 use airlight::fog::visibility::{Contrast, extinction_per_m};
-use airlight::fog::{Layer, Profile, Scattering};
+use airlight::fog::{Layer, Matter, Profile, Scattering};
+use airlight::medium::{AltitudeTable, Constituent, DensityProfile, Interpolation};
+use airlight::optics::PhaseFunction;
+use airlight::optics::mie::BulkOptics;
+use airlight::optics::mie::MieError;
 use airlight::outdoors::{Channels, FoggySky};
 use airlight::sky::{SkyTable, TableChannels, View};
+use airlight::spectrum::SpectralCurve;
 use airlight::spectrum::Spectrum;
 use glam::DVec3;
 use std::sync::Arc;
@@ -42,13 +47,17 @@ impl<'a> Fog<'a> {
         };
         Ok(Some(match channels {
             TableChannels::Rgb(space) => {
-                let (channels, layers) = (Channels::Rgb(space), [layer(args, visibility_m)]);
-                let sky = FoggySky::new(view, channels, &layers, ground, scattering)?;
+                let layer = layer(args, visibility_m, |kind, per_m| kind.in_rgb(per_m, space))?;
+                let channels = Channels::Rgb(space);
+                let sky = FoggySky::new(view, channels, &[layer], ground, scattering)?;
                 Self::Rgb(Box::new(sky))
             }
             TableChannels::Spectral => {
-                let layers = [layer(args, visibility_m)];
-                Self::Spectral(FoggySky::spectral(view, &layers, ground, scattering)?)
+                let layers = |nm: &[f64; PIECE]| -> Result<_, CliError> {
+                    let drops = |kind: DropletKind, per_m| kind.at_wavelengths(per_m, nm);
+                    Ok(vec![layer(args, visibility_m, drops)?])
+                };
+                Self::Spectral(FoggySky::spectral(view, layers, ground, scattering)?)
             }
         }))
     }
@@ -115,23 +124,104 @@ fn cover<const N: usize>(sky: &FoggySky<'_, N>, direction: DVec3, values: &mut [
         .for_each(|(value, seen)| *value = seen);
 }
 
-/// The fog of the options, if any.
-pub fn layer_of<const N: usize>(args: &FogArgs) -> Option<Layer<N>> {
-    args.fog_visibility_m
-        .map(|visibility_m| layer(args, visibility_m))
+/// The fog of the options, of drops in the lanes of the picture.
+fn layer<const N: usize>(
+    args: &FogArgs,
+    visibility_m: f64,
+    drops: impl Fn(DropletKind, f64) -> Result<Matter<N>, MieError>,
+) -> Result<Layer<N>, CliError> {
+    let extinction = extinction_per_m(visibility_m, Contrast::FivePercent);
+    let matter = drops(args.fog_droplets.0, extinction)?;
+    let profile = profile(args);
+    Ok(Layer { profile, matter })
 }
 
-fn layer<const N: usize>(args: &FogArgs, visibility_m: f64) -> Layer<N> {
-    let profile = match args.fog_top_m {
+fn profile(args: &FogArgs) -> Profile {
+    match args.fog_top_m {
         Some(top_height_m) => Profile::Slab { top_height_m },
         None => Profile::Clamped {
             base_height_m: args.fog_base_m.unwrap_or(0.0),
             scale_height_m: args.fog_scale_height_m.unwrap_or(SCALE_HEIGHT_M),
         },
+    }
+}
+
+/// The fog of the options as a constituent of the air over a ground at an altitude (m), known at wavelengths (nm, rising);
+/// `None` without fog.
+///
+/// # Errors
+/// [`CliError::Usage`] for a fog that is none.
+pub fn constituent(
+    args: &FogArgs,
+    ground_m: f64,
+    wavelengths_nm: &[f64],
+) -> Result<Option<Constituent>, CliError> {
+    let Some(visibility_m) = args.fog_visibility_m else {
+        return Ok(None);
     };
     let extinction = extinction_per_m(visibility_m, Contrast::FivePercent);
-    let matter = Droplets::from(args.fog_droplets).matter(extinction);
-    Layer { profile, matter }
+    let (scattering_per_m, absorption_per_m, phase) = match args.fog_droplets.0 {
+        DropletKind::Analytic(drops) => (
+            SpectralCurve::Constant(extinction),
+            SpectralCurve::Constant(0.0),
+            drops.phase(),
+        ),
+        DropletKind::Published(drops) => {
+            let table = drops.table(wavelengths_nm)?;
+            let number = extinction / table.green.extinction_um2();
+            let curve = |of: &dyn Fn(&BulkOptics) -> f64| {
+                let values = table.bulk.iter().map(|bulk| number * of(bulk)).collect();
+                SpectralCurve::table(wavelengths_nm.to_vec(), values)
+                    .map_err(|error| CliError::usage(format!("the fog: {error}")))
+            };
+            (
+                curve(&|bulk| bulk.scattering_um2)?,
+                curve(&|bulk| bulk.absorption_um2)?,
+                PhaseFunction::Tabulated(table.phase.clone()),
+            )
+        }
+    };
+    Ok(Some(Constituent {
+        name: "fog".into(),
+        density: density(profile(args), ground_m)?,
+        scattering_per_m,
+        absorption_per_m,
+        phase,
+    }))
+}
+
+/// A fog's profile by altitude.
+fn density(profile: Profile, ground_m: f64) -> Result<DensityProfile, CliError> {
+    /// Scale heights after which nothing is left that could be seen.
+    const LAST: f64 = 12.0;
+    let (base_height_m, scale_height_m) = match profile {
+        Profile::Clamped {
+            base_height_m,
+            scale_height_m,
+        } => (base_height_m, scale_height_m),
+        Profile::Slab { top_height_m } => {
+            return Ok(DensityProfile::Layer {
+                bottom_m: ground_m - 1.0,
+                top_m: ground_m + top_height_m,
+            });
+        }
+        _ => {
+            return Err(CliError::usage(
+                "fog before the sky has a top or a scale height",
+            ));
+        }
+    };
+    let top_m = ground_m + base_height_m + LAST * scale_height_m;
+    let (altitudes, densities) = match base_height_m > 0.0 {
+        true => (
+            vec![ground_m, ground_m + base_height_m, top_m],
+            vec![1.0, 1.0, (-LAST).exp()],
+        ),
+        false => (vec![ground_m, top_m], vec![1.0, (-LAST).exp()]),
+    };
+    AltitudeTable::new(altitudes, densities, Interpolation::LogLinear)
+        .map(DensityProfile::Tabulated)
+        .map_err(|error| CliError::usage(format!("the fog: {error}")))
 }
 
 /// The fog of the options in words.
@@ -148,10 +238,11 @@ pub fn in_words(args: &FogArgs) -> Option<String> {
             format!("scale height {} m{from}", short(scale_m))
         }
     };
-    let diameter_um = Droplets::from(args.fog_droplets).diameter_um();
+    let kind = args.fog_droplets.0;
     Some(format!(
-        "visibility {} m, {height}, droplets of {} um",
+        "visibility {} m, {height}, droplets {} ({})",
         short(visibility_m),
-        short(diameter_um)
+        kind.name(),
+        droplets_in_words(kind)
     ))
 }

@@ -2,16 +2,15 @@
 //! and a better one later. Ctrl-C leaves that of the last pass.
 
 use super::draw::{Drawing, Shot};
+use super::fog;
 use super::layout::{PictureFile, tagged};
 use super::rows::Layer;
-use crate::args::{FogArgs, ScatteringArg, SkyArgs, SolverArg};
+use crate::args::{ScatteringArg, SkyArgs, SolverArg};
 use crate::error::CliError;
 use crate::interrupt::STOP;
 use crate::progress::RowsBar;
 use crate::report;
-use airlight::medium::{AltitudeTable, Atmosphere, Constituent, DensityProfile, Interpolation};
 use airlight::sky::monte_carlo::{BUNDLE, MonteCarlo, MonteCarloSettings, ORDERS};
-use airlight::spectrum::SpectralCurve;
 use airlight_render::output::Written;
 use airlight_render::rows::StoredRows;
 use airlight_render::{Control, Frame, Progress, write_picture};
@@ -209,7 +208,11 @@ impl<'a> Painter<'a> {
         settings: MonteCarloSettings,
     ) -> Result<Self, CliError> {
         let scene = drawing.scene;
-        let air = with_fog(&scene.atmosphere, &drawing.args.fog)?;
+        let mut air = scene.atmosphere.clone();
+        let wavelengths = scene.grid.wavelengths_nm();
+        let ground_m = air.planet.ground_altitude_m;
+        let fog = fog::constituent(&drawing.args.fog, ground_m, wavelengths)?;
+        air.constituents.extend(fog);
         Ok(Self {
             solver: MonteCarlo::new(&air, &scene.grid, settings)?,
             weights: shot.weights(),
@@ -284,53 +287,4 @@ impl<'a> Painter<'a> {
 fn spread(bundle: u64) -> [f64; 2] {
     const STEPS: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_3];
     STEPS.map(|step| (0.5 + bundle as f64 * step).fract())
-}
-
-/// The air with the fog of the options among its constituents.
-fn with_fog(air: &Atmosphere, args: &FogArgs) -> Result<Atmosphere, CliError> {
-    let mut air = air.clone();
-    let Some(fog) = super::fog::layer_of::<1>(args) else {
-        return Ok(air);
-    };
-    let ground_m = air.planet.ground_altitude_m;
-    air.constituents.push(Constituent {
-        name: "fog".into(),
-        density: density(fog.profile, ground_m)?,
-        scattering_per_m: SpectralCurve::Constant(f64::from(fog.matter.scattering_per_m()[0])),
-        absorption_per_m: SpectralCurve::Constant(0.0),
-        phase: fog.matter.phase,
-    });
-    Ok(air)
-}
-
-/// A fog's profile by altitude.
-fn density(profile: airlight::fog::Profile, ground_m: f64) -> Result<DensityProfile, CliError> {
-    use airlight::fog::Profile;
-    /// Scale heights after which nothing is left that could be seen.
-    const LAST: f64 = 12.0;
-    match profile {
-        Profile::Slab { top_height_m } => Ok(DensityProfile::Layer {
-            bottom_m: ground_m - 1.0,
-            top_m: ground_m + top_height_m,
-        }),
-        Profile::Clamped {
-            base_height_m,
-            scale_height_m,
-        } => {
-            let top_m = ground_m + base_height_m + LAST * scale_height_m;
-            let (altitudes, densities) = match base_height_m > 0.0 {
-                true => (
-                    vec![ground_m, ground_m + base_height_m, top_m],
-                    vec![1.0, 1.0, (-LAST).exp()],
-                ),
-                false => (vec![ground_m, top_m], vec![1.0, (-LAST).exp()]),
-            };
-            AltitudeTable::new(altitudes, densities, Interpolation::LogLinear)
-                .map(DensityProfile::Tabulated)
-                .map_err(|error| CliError::usage(format!("the fog: {error}")))
-        }
-        _ => Err(CliError::usage(
-            "--solver monte-carlo knows fog with --fog-top-m or a scale height",
-        )),
-    }
 }

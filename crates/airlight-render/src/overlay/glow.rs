@@ -3,10 +3,8 @@
 use airlight::fog::lamp::{Lamp, LampSettings, Lamps, Murk, Sight};
 use airlight::fog::{FogError, Ground, Layer};
 use airlight::spectrum::Spectrum;
+use airlight::spectrum::rgb::DOMINANT_NM;
 use glam::DVec3;
-
-/// Phase functions of fog's drops are grey, so that any wavelength will do, nm.
-const WAVELENGTHS_NM: [f64; 3] = [550.0; 3];
 
 /// The light that fog scatters out of lamps' into lines of sight from a camera above the origin.
 ///
@@ -61,7 +59,7 @@ impl Glow {
                     matter: &layer.matter,
                     profile: &layer.profile,
                     others,
-                    wavelengths_nm: &WAVELENGTHS_NM,
+                    wavelengths_nm: &DOMINANT_NM,
                     ground_radius_m: self.ground.radius_m,
                 };
                 sum + self.lamps.path_radiance(&murk, &sight)

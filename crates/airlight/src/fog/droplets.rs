@@ -1,8 +1,11 @@
-//! Water droplets: how fog scatters, by the diameter of its drops.
+//! Water droplets: how fog scatters, by the diameter of its drops or as Lorenz-Mie theory says of published ones.
 
 use super::matter::Matter;
 use crate::optics::PhaseFunction;
-use crate::spectrum::Spectrum;
+use crate::optics::mie::droplets::Drops;
+use crate::optics::mie::{BulkOptics, DropTable, MieError};
+use crate::spectrum::rgb::DOMINANT_NM;
+use crate::spectrum::{RgbSpace, Spectrum};
 
 /// The diameters (micrometres) for which [`phase`] was fitted.
 pub const DIAMETERS_UM: std::ops::RangeInclusive<f64> = 5.0..=50.0;
@@ -72,9 +75,160 @@ impl Droplets {
     }
 }
 
+/// Drops of any kind, by name: analytic and grey, or published sizes by Lorenz-Mie theory, with bows, glories and coronas.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum DropletKind {
+    /// The analytic phase function of one diameter.
+    Analytic(Droplets),
+    /// Published sizes.
+    Published(Drops),
+}
+
+impl Default for DropletKind {
+    fn default() -> Self {
+        Self::Analytic(Droplets::default())
+    }
+}
+
+impl From<Droplets> for DropletKind {
+    fn from(droplets: Droplets) -> Self {
+        Self::Analytic(droplets)
+    }
+}
+
+impl From<Drops> for DropletKind {
+    fn from(drops: Drops) -> Self {
+        Self::Published(drops)
+    }
+}
+
+impl DropletKind {
+    /// All kinds with their names.
+    pub fn all() -> impl Iterator<Item = (&'static str, Self)> {
+        let analytic = Droplets::ALL.map(|(name, kind)| (name, kind.into()));
+        let published = Drops::ALL.map(|(name, kind)| (name, kind.into()));
+        analytic.into_iter().chain(published)
+    }
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        Self::all()
+            .find(|(_, kind)| *kind == self)
+            .map_or("", |(name, _)| name)
+    }
+
+    /// Fog of such drops at wavelengths (nm, in any order), by its extinction at 550 nm (1/m), the wavelength that
+    /// visibility is meant at. Published drops take and absorb at each wavelength as they do; their tables are built once
+    /// ([`Drops::table`]).
+    ///
+    /// # Errors
+    /// [`MieError`] for wavelengths that are none.
+    pub fn at_wavelengths<const N: usize>(
+        self,
+        extinction_per_m: f64,
+        wavelengths_nm: &[f64; N],
+    ) -> Result<Matter<N>, MieError> {
+        let drops = match self {
+            Self::Analytic(droplets) => return Ok(droplets.matter(extinction_per_m)),
+            Self::Published(drops) => drops,
+        };
+        let mut rising = wavelengths_nm.to_vec();
+        rising.sort_by(f64::total_cmp);
+        rising.dedup();
+        let table = drops.table(&rising)?;
+        Ok(matter(&table, extinction_per_m, |lane| {
+            wavelengths_nm[lane]
+        }))
+    }
+
+    /// The same in red, green and blue: phase functions by channel are taken at [`DOMINANT_NM`].
+    ///
+    /// # Errors
+    /// As [`DropletKind::at_wavelengths`].
+    pub fn in_rgb(self, extinction_per_m: f64, space: RgbSpace) -> Result<Matter<3>, MieError> {
+        match self {
+            Self::Analytic(droplets) => Ok(droplets.matter(extinction_per_m)),
+            Self::Published(drops) => {
+                let table = drops.rgb_table(space)?;
+                Ok(matter(&table, extinction_per_m, |lane| DOMINANT_NM[lane]))
+            }
+        }
+    }
+}
+
+/// Drops of a table, by their extinction at 550 nm (1/m), with the wavelength of each lane, which the table has.
+fn matter<const N: usize>(
+    table: &DropTable,
+    extinction_per_m: f64,
+    wavelength_nm: impl Fn(usize) -> f64,
+) -> Matter<N> {
+    let number = extinction_per_m / table.green.extinction_um2();
+    let lanes = |of: &dyn Fn(&BulkOptics) -> f64| {
+        Spectrum::from_fn(|lane| {
+            let nm = wavelength_nm(lane);
+            let at = table.bulk.partition_point(|bulk| bulk.wavelength_nm < nm);
+            of(&table.bulk[at.min(table.bulk.len() - 1)]) as f32
+        })
+    };
+    Matter {
+        extinction_per_m: lanes(&|bulk| number * bulk.extinction_um2()),
+        single_scattering_albedo: lanes(&BulkOptics::single_scattering_albedo),
+        phase: PhaseFunction::Tabulated(table.phase.clone()),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Mist, whose table is soon built: visibility means 550 nm; in RGB it is the mean of what the wavelengths say.
+    #[test]
+    fn published_drops_take_light_by_wavelength() {
+        let mist = DropletKind::from(Drops::HazeH);
+        let green = mist.at_wavelengths(0.01, &[550.0]).unwrap();
+        assert!((green.extinction_per_m[0] / 0.01 - 1.0).abs() < 1e-6);
+        let matter = mist.at_wavelengths(0.01, &[650.0, 450.0, 450.0]).unwrap();
+        matter.validate().unwrap();
+        let [red, blue, again] = matter.extinction_per_m.0;
+        assert!(
+            red < 0.0095 && blue > 0.0105 && again == blue,
+            "{red} {blue}"
+        );
+        assert!(matter.single_scattering_albedo[0] > 0.9999);
+        let rgb = mist.in_rgb(0.01, RgbSpace::Srgb).unwrap();
+        rgb.validate().unwrap();
+        let [red, green, blue] = rgb.extinction_per_m.0;
+        assert!(red < green && green < blue, "{red} {green} {blue}");
+        assert!((green / 0.01 - 1.0).abs() < 0.02, "{green}");
+        // Red and blue through the eyes of sRGB lie within what the wavelengths of their bands scatter.
+        let at = |nm: f64, mu: f64| {
+            let single = mist.at_wavelengths(0.01, &[nm]).unwrap();
+            single.phase.evaluate(mu, nm)
+        };
+        for mu in [-1.0, -0.5, 0.5, 0.99] {
+            let p = rgb.phase_lanes(mu, &DOMINANT_NM);
+            for (lane, [from, to]) in [(0, [570.0, 680.0]), (2, [420.0, 490.0])] {
+                let ends = [at(from, mu), at(to, mu)];
+                let (low, high) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
+                let got = f64::from(p[lane]);
+                assert!(
+                    got > 0.98 * low && got < 1.02 * high,
+                    "{mu} {lane}: {got} {ends:?}"
+                );
+            }
+        }
+        assert!(mist.at_wavelengths(0.01, &[f64::NAN]).is_err());
+    }
+
+    #[test]
+    fn every_kind_has_a_name_of_its_own() {
+        let names: std::collections::BTreeSet<_> =
+            DropletKind::all().map(|(name, _)| name).collect();
+        assert_eq!(names.len(), DropletKind::all().count());
+        for (name, kind) in DropletKind::all() {
+            assert_eq!(kind.name(), name);
+        }
+    }
 
     /// Lorenz-Mie theory gives large water drops a mean cosine of 0.85 to 0.88 in the visible (Hu & Stamnes 1993).
     #[test]

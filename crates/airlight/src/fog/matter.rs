@@ -115,10 +115,16 @@ impl<const N: usize> Matter<N> {
     /// The phase function at a cosine of the scattering angle in every lane, 1/sr.
     #[inline]
     pub fn phase_lanes(&self, cos_angle: f64, wavelengths_nm: &[f64; N]) -> Spectrum<N> {
-        if self.phase.depends_on_wavelength() {
-            Spectrum::from_fn(|lane| self.phase.evaluate(cos_angle, wavelengths_nm[lane]) as f32)
-        } else {
-            Spectrum::splat(self.phase.evaluate(cos_angle, 550.0) as f32)
+        match &self.phase {
+            PhaseFunction::Tabulated(table) => Spectrum(
+                table
+                    .evaluate_all(cos_angle, wavelengths_nm)
+                    .map(|p| p as f32),
+            ),
+            phase if phase.depends_on_wavelength() => {
+                Spectrum::from_fn(|lane| phase.evaluate(cos_angle, wavelengths_nm[lane]) as f32)
+            }
+            phase => Spectrum::splat(phase.evaluate(cos_angle, 550.0) as f32),
         }
     }
 }

@@ -5,7 +5,7 @@ mod sample;
 
 use super::phase::PhaseError;
 use crate::quadrature::gauss_legendre;
-use std::sync::LazyLock;
+use std::sync::{Arc, LazyLock};
 
 /// A phase function given at angles from 0 to 180 degrees and at one or more wavelengths.
 ///
@@ -13,15 +13,17 @@ use std::sync::LazyLock;
 /// 0 at both ends, about which every phase function is even), so a peak of many decades stays smooth and nothing overshoots. Between wavelengths `p` is
 /// linear, which keeps its integral 1; beyond the first and last wavelength it is constant. Each wavelength is scaled
 /// at construction so that the integral over the sphere is 1 (to 1e-12).
+///
+/// A clone shares the table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TabulatedPhase {
-    wavelengths_nm: Vec<f64>,
-    angles_rad: Vec<f64>,
+    wavelengths_nm: Arc<[f64]>,
+    angles_rad: Arc<[f64]>,
     /// `ln p` and its slope by angle, wavelength by wavelength.
-    log_values: Vec<f64>,
-    slopes: Vec<f64>,
+    log_values: Arc<[f64]>,
+    slopes: Arc<[f64]>,
     /// The part of the light that is scattered by less than each angle, wavelength by wavelength.
-    cumulative: Vec<f64>,
+    cumulative: Arc<[f64]>,
 }
 
 /// Points of the Gauss-Legendre rule used in each stretch.
@@ -81,11 +83,11 @@ impl TabulatedPhase {
             slopes.extend(monotone_slopes(&angles_rad, row));
         }
         let mut table = Self {
-            wavelengths_nm,
-            angles_rad,
-            log_values,
-            slopes,
-            cumulative: Vec::new(),
+            wavelengths_nm: wavelengths_nm.into(),
+            angles_rad: angles_rad.into(),
+            log_values: log_values.into(),
+            slopes: slopes.into(),
+            cumulative: Arc::new([]),
         };
         table.normalize();
         Ok(table)
@@ -94,6 +96,8 @@ impl TabulatedPhase {
     /// Scales every row to an integral of 1 and keeps its running integral.
     fn normalize(&mut self) {
         let angles = self.angles_rad.len();
+        let mut log_values = self.log_values.to_vec();
+        let mut cumulative = Vec::with_capacity(log_values.len());
         for row in 0..self.wavelengths_nm.len() {
             let mut running = vec![0.0];
             let mut sum = 0.0;
@@ -101,11 +105,12 @@ impl TabulatedPhase {
                 sum += self.mass(row, interval, self.angles_rad[interval + 1]);
                 running.push(sum);
             }
-            self.cumulative
-                .extend(running.iter().map(|part| part / sum));
-            let logs = &mut self.log_values[row * angles..(row + 1) * angles];
+            cumulative.extend(running.iter().map(|part| part / sum));
+            let logs = &mut log_values[row * angles..(row + 1) * angles];
             logs.iter_mut().for_each(|log| *log -= sum.ln());
         }
+        self.log_values = log_values.into();
+        self.cumulative = cumulative.into();
     }
 
     /// The wavelengths of the table, nm.
@@ -120,14 +125,30 @@ impl TabulatedPhase {
 
     /// The phase function, sr^-1, at the cosine of the scattering angle.
     pub fn evaluate(&self, cos_angle: f64, wavelength_nm: f64) -> f64 {
+        self.at_place(self.place(cos_angle), wavelength_nm)
+    }
+
+    /// The same at several wavelengths: the angle is looked up once.
+    #[inline]
+    pub fn evaluate_all<const N: usize>(
+        &self,
+        cos_angle: f64,
+        wavelengths_nm: &[f64; N],
+    ) -> [f64; N] {
+        let place = self.place(cos_angle);
+        wavelengths_nm.map(|nm| self.at_place(place, nm))
+    }
+
+    /// The scattering angle and the interval that it lies in.
+    fn place(&self, cos_angle: f64) -> (usize, f64) {
         let mu = cos_angle.clamp(-1.0, 1.0);
         // Keeps the digits that acos loses near both ends.
         let angle = ((1.0 - mu) * (1.0 + mu)).sqrt().atan2(mu);
-        let interval = self
-            .angles_rad
-            .partition_point(|&a| a <= angle)
-            .clamp(1, self.angles_rad.len() - 1)
-            - 1;
+        let above = self.angles_rad.partition_point(|&a| a <= angle);
+        (above.clamp(1, self.angles_rad.len() - 1) - 1, angle)
+    }
+
+    fn at_place(&self, (interval, angle): (usize, f64), wavelength_nm: f64) -> f64 {
         let (row, t) = self.between(wavelength_nm);
         let near = self.at_row(row, interval, angle);
         match t {

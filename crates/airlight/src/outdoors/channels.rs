@@ -2,7 +2,7 @@
 
 use super::error::OutdoorsError;
 use crate::sky::{TableChannels, View, channel_weights};
-use crate::spectrum::{RgbSpace, Spectrum};
+use crate::spectrum::{RgbSpace, Spectrum, rgb};
 use std::ops::Range;
 
 /// What the N lanes are.
@@ -71,7 +71,7 @@ impl<const N: usize> Converter<N> {
                 Ok(Self {
                     way: Way::Summed { weights, shares },
                     used: 0..last + 1,
-                    wavelengths_nm: std::array::from_fn(|lane| RGB_NM[lane]),
+                    wavelengths_nm: std::array::from_fn(|lane| rgb::DOMINANT_NM[lane]),
                 })
             }
             Channels::Wavelengths { first } if first > last => Err(OutdoorsError::Wavelengths {
@@ -136,9 +136,6 @@ impl<const N: usize> Converter<N> {
         }
     }
 }
-
-/// Dominant wavelengths of red, green and blue, nm.
-const RGB_NM: [f64; 3] = [612.0, 549.0, 465.0];
 
 fn summed<const N: usize>(weights: &[[f64; N]], values: impl Iterator<Item = f64>) -> [f64; N] {
     let mut lanes = [0.0; N];

@@ -84,28 +84,40 @@ impl<'a, const N: usize> FoggySky<'a, N> {
         Self::among(view, channels, layers, ground, scattering, &surroundings)
     }
 
-    /// The same at every wavelength of the sky's grid, N in a piece (lanes beyond the last wavelength repeat it), for fog
-    /// that is the same in each piece.
+    /// The same at every wavelength of the sky's grid, N in a piece (lanes beyond the last wavelength repeat it). `layers`
+    /// are those at the wavelengths (nm) of a piece; they are to reach as high in each.
     ///
     /// # Errors
-    /// [`OutdoorsError`] for a fog that is none.
-    pub fn spectral(
+    /// [`OutdoorsError`] for a fog that is none, and what `layers` refuses.
+    pub fn spectral<E: From<OutdoorsError>>(
         view: &View<'a>,
-        layers: &[Layer<N>],
+        layers: impl Fn(&[f64; N]) -> Result<Vec<Layer<N>>, E>,
         ground: Ground,
         scattering: Scattering,
-    ) -> Result<Vec<Self>, OutdoorsError> {
-        let surroundings = Surroundings {
-            top: Arc::new(TopLight::of(&top_view(view, layers, ground)?)),
-            clear: Arc::new(view.table(TableChannels::Spectral)),
-        };
-        (0..view.sky().grid().len())
-            .step_by(N.max(1))
-            .map(|first| {
-                let channels = Channels::Wavelengths { first };
-                Self::among(view, channels, layers, ground, scattering, &surroundings)
-            })
-            .collect()
+    ) -> Result<Vec<Self>, E> {
+        let mut surroundings = None;
+        let mut pieces = Vec::new();
+        for first in (0..view.sky().grid().len()).step_by(N.max(1)) {
+            let channels = Channels::Wavelengths { first };
+            let wavelengths_nm = Converter::<N>::new(view, channels)?.wavelengths_nm();
+            let layers = layers(&wavelengths_nm)?;
+            let surroundings = match &surroundings {
+                Some(known) => known,
+                None => surroundings.insert(Surroundings {
+                    top: Arc::new(TopLight::of(&top_view(view, &layers, ground)?)),
+                    clear: Arc::new(view.table(TableChannels::Spectral)),
+                }),
+            };
+            pieces.push(Self::among(
+                view,
+                channels,
+                &layers,
+                ground,
+                scattering,
+                surroundings,
+            )?);
+        }
+        Ok(pieces)
     }
 
     fn among(

@@ -9,6 +9,10 @@
 /// A 3 by 3 matrix, row by row.
 pub type Matrix3 = [[f64; 3]; 3];
 
+/// Wavelengths (nm) that stand for red, green and blue where something is asked for by wavelength: the dominant ones of
+/// sRGB's primaries.
+pub const DOMINANT_NM: [f64; 3] = [612.0, 549.0, 465.0];
+
 /// A linear RGB colour space.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub enum RgbSpace {

@@ -7,18 +7,20 @@
 //!
 //! From the ground up: `recurrence` (Riccati-Bessel functions), [`Sphere`] (coefficients, efficiencies), `angular`
 //! (amplitudes at many angles at once), [`SizeDistribution`], [`Particles`] (many spheres of one kind: coefficients and
-//! phase functions in bulk), [`droplets`] (published fogs and clouds).
+//! phase functions in bulk), [`droplets`] (published fogs and clouds), [`DropTable`] (their tables, built once).
 
 mod angles;
 mod angular;
 pub mod droplets;
 mod particles;
 mod recurrence;
+mod shared;
 mod sizes;
 mod sphere;
 
 pub use num_complex::Complex64;
 pub use particles::{BulkOptics, Particles};
+pub use shared::DropTable;
 pub use sizes::{SizeDistribution, SizeNode};
 pub use sphere::{Efficiencies, ScatteringMatrix, Sphere};
 

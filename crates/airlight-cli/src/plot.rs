@@ -1,0 +1,151 @@
+//! `airlight plot`: what particles do to light, drawn as SVG.
+
+use crate::args::{DropletsArg, EfficiencyPlotArgs, Index, PhasePlotArgs, PlotArgs, PlotWhat};
+use crate::error::CliError;
+use crate::progress::Busy;
+use crate::report;
+use airlight::optics::RefractiveIndex;
+use airlight::optics::mie::{Complex64, MieError, Particles, SizeDistribution, Sphere};
+use airlight_accuracy::chart::{self, Axis, Curve};
+use std::f64::consts::{PI, TAU};
+
+/// Effective variance of the sizes over which the oscillations of single spheres are smoothed.
+const VARIANCE: f64 = 0.1;
+
+/// Runs the command.
+///
+/// # Errors
+/// [`CliError`]: what was wrong with the options, or the file.
+pub fn run(args: &PlotArgs) -> Result<(), CliError> {
+    let output = match &args.what {
+        PlotWhat::Phase(args) => &args.output,
+        PlotWhat::Efficiency(args) => &args.output,
+    };
+    if output.extension().and_then(|ending| ending.to_str()) != Some("svg") {
+        return Err(CliError::usage("--output must end in .svg"));
+    }
+    let drawn = match &args.what {
+        PlotWhat::Phase(args) => phase(args)?,
+        PlotWhat::Efficiency(args) => efficiency(args)?,
+    };
+    let svg = drawn.map_err(|error| CliError::failure(format!("cannot draw: {error}")))?;
+    report::write(output, &svg)
+}
+
+/// Phase functions, or the patterns around single spheres.
+fn phase(args: &PhasePlotArgs) -> Result<chart::Drawn, CliError> {
+    if args.droplets.is_empty() && args.size_parameter.is_empty() {
+        return Err(CliError::usage(
+            "say whose phase function: --droplets KIND,... or --size-parameter X,...",
+        ));
+    }
+    let busy = Busy::with("summing over spheres");
+    let mut curves = Vec::new();
+    for &droplets in &args.droplets {
+        for &nm in &args.wavelength_nm {
+            curves.push(of_drops(droplets, nm)?);
+        }
+    }
+    for &x in &args.size_parameter {
+        curves.push(of_sphere(x, args.index, args.polar)?);
+    }
+    drop(busy);
+    if args.polar {
+        return Ok(chart::around(&curves));
+    }
+    let degrees = |points: &mut Vec<(f64, f64)>| {
+        points.truncate(points.len() / 2 + 1);
+        points.iter_mut().for_each(|p| p.0 = p.0.to_degrees());
+    };
+    curves
+        .iter_mut()
+        .for_each(|curve| degrees(&mut curve.points));
+    let x = Axis {
+        name: "scattering angle, degrees".to_owned(),
+        by_powers: false,
+    };
+    let y = Axis {
+        name: "phase function, 1/sr".to_owned(),
+        by_powers: true,
+    };
+    Ok(chart::curves(&x, &y, &curves))
+}
+
+/// Angles all the way round (rad), in steps that resolve features of a width.
+fn angles(width: f64) -> Vec<f64> {
+    let half = ((PI / width).ceil() as usize).clamp(360, 7200);
+    (0..=2 * half)
+        .map(|i| PI * i as f64 / half as f64)
+        .collect()
+}
+
+fn of_drops(DropletsArg(kind): DropletsArg, nm: f64) -> Result<Curve, CliError> {
+    let matter = kind.at_wavelengths(1.0, &[nm])?;
+    let point = |angle: f64| (angle, matter.phase.evaluate(angle.cos(), nm));
+    Ok(Curve {
+        name: format!("{}, {nm} nm", kind.name()),
+        points: angles(PI / 1800.0).into_iter().map(point).collect(),
+    })
+}
+
+/// The phase function of a sphere, or how strongly it scatters each way, `(|S_1|^2 + |S_2|^2) / 2`: the differential
+/// cross-section times the squared wave number.
+fn of_sphere(x: f64, index: Index, pattern: bool) -> Result<Curve, CliError> {
+    let sphere = Sphere::new(x, Complex64::new(index.real, index.imaginary))?;
+    let value = |angle: f64| match pattern {
+        true => {
+            let [s1, s2] = sphere.amplitudes(angle.cos());
+            0.5 * (s1.norm_sqr() + s2.norm_sqr())
+        }
+        false => sphere.phase(angle.cos()),
+    };
+    let angles = angles(0.3 / x);
+    Ok(Curve {
+        name: match pattern {
+            true => format!("size parameter {x}, by (|S1|^2 + |S2|^2) / 2"),
+            false => format!("size parameter {x}"),
+        },
+        points: angles
+            .into_iter()
+            .map(|angle| (angle, value(angle)))
+            .collect(),
+    })
+}
+
+/// Efficiencies of single spheres, and the mean over sizes.
+fn efficiency(args: &EfficiencyPlotArgs) -> Result<chart::Drawn, CliError> {
+    const STEPS: usize = 2500;
+    const SMOOTH_STEPS: usize = 120;
+    let index = Complex64::new(args.index.real, args.index.imaginary);
+    let to = args.to;
+    let places = |steps: usize| (1..=steps).map(move |i| to * i as f64 / steps as f64);
+    let single = |x: f64| Ok((x, Sphere::new(x, index)?.efficiencies().scattering));
+    let of_many = |x: f64| {
+        // Wavelengths of 2 pi micrometres: radii are size parameters.
+        let sizes = SizeDistribution::gamma(x, VARIANCE);
+        let particles = Particles::new(RefractiveIndex::constant(index), sizes)?;
+        let bulk = particles.bulk(1e3 * TAU)?;
+        Ok((x, bulk.scattering_um2 / (PI * sizes.mean_power(2.0))))
+    };
+    let single: Result<Vec<_>, MieError> = places(STEPS).map(single).collect();
+    let of_many: Result<Vec<_>, MieError> = places(SMOOTH_STEPS).map(of_many).collect();
+    let curves = [
+        Curve {
+            name: "one size".to_owned(),
+            points: single?,
+        },
+        Curve {
+            name: format!("gamma distribution, effective variance {VARIANCE}, by effective radius"),
+            points: of_many?,
+        },
+    ];
+    let x = Axis {
+        name: "size parameter 2 pi r / wavelength".to_owned(),
+        by_powers: false,
+    };
+    let y = Axis {
+        name: "scattering efficiency".to_owned(),
+        by_powers: false,
+    };
+    Ok(chart::curves(&x, &y, &curves))
+}

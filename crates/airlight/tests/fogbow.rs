@@ -1,0 +1,88 @@
+//! The fogbow and the glory, seen from above a fog with the sun behind.
+
+use airlight::axes::direction;
+use airlight::fog::droplets::DropletKind;
+use airlight::fog::{Layer, Profile, Scattering};
+use airlight::medium::presets;
+use airlight::optics::mie::droplets::Drops;
+use airlight::outdoors::{Channels, FoggySky};
+use airlight::sky::{Sky, SkySettings, SunCoverage};
+use airlight::spectrum::{RgbSpace, WavelengthGrid};
+
+const SUN_DEG: f64 = 32.0;
+const EYE_M: f64 = 150.0;
+const EXTINCTION_PER_M: f64 = 0.03;
+const PROFILE: Profile = Profile::Slab {
+    top_height_m: 100.0,
+};
+
+type Seen = Result<Vec<[[f64; 3]; 2]>, Box<dyn std::error::Error>>;
+
+/// Linear sRGB by the angle from the point opposite to the sun (degrees, level with it or below), solved in red, green and
+/// blue, and wavelength by wavelength.
+fn seen(drops: Drops, angles: &[f64]) -> Seen {
+    let settings = SkySettings {
+        suns: SunCoverage::near(SUN_DEG, EYE_M),
+        ..Default::default()
+    };
+    let air = presets::preset("average").unwrap();
+    let sky = Sky::prepare(&air, &WavelengthGrid::standard(), &settings).unwrap();
+    let view = sky.view(EYE_M, direction(180.0, SUN_DEG));
+    let ground = FoggySky::<3>::round_ground(&view);
+    let kind = DropletKind::from(drops);
+    let space = RgbSpace::Srgb;
+    let matter = kind.in_rgb(EXTINCTION_PER_M, space)?;
+    let layer = Layer {
+        profile: PROFILE,
+        matter,
+    };
+    let many = Scattering::Multiple;
+    let rgb = FoggySky::new(&view, Channels::Rgb(space), &[layer], ground, many)?;
+    let layers = |nm: &[f64; 16]| {
+        let matter = kind.at_wavelengths(EXTINCTION_PER_M, nm)?;
+        Ok::<_, Box<dyn std::error::Error>>(vec![Layer {
+            profile: PROFILE,
+            matter,
+        }])
+    };
+    let spectral = FoggySky::spectral(&view, layers, ground, many)?;
+    assert_eq!(spectral.len(), 1);
+    let look = |&angle: &f64| {
+        let towards = direction(0.0, -SUN_DEG - angle);
+        let few = rgb.sky(towards).0.map(f64::from);
+        let all = sky.grid().to_xyz(&spectral[0].sky(towards).0);
+        [few, space.from_xyz(all)]
+    };
+    Ok(angles.iter().map(look).collect())
+}
+
+/// White within a few percent, brightest 36 to 41 degrees from the point opposite to the sun, which has a glory; red,
+/// green and blue tell of it what 16 wavelengths do.
+#[test]
+fn bow_and_glory_stand_in_the_fog() {
+    let angles: Vec<f64> = (0..=58).map(f64::from).collect();
+    let seen = seen(Drops::ModerateAdvectionFog, &angles).unwrap();
+    let green = |degrees: usize| seen[degrees][1][1];
+    let bow = (30..50)
+        .max_by(|&a, &b| green(a).total_cmp(&green(b)))
+        .unwrap();
+    let over = |a: usize, b: usize| green(a) / green(b);
+    let [inside, outside, glory] = [over(bow, 28), over(bow, 50), over(0, 8)];
+    println!(
+        "bow at {bow} degrees: {inside:.2} of inside, {outside:.2} of outside; glory {glory:.2}"
+    );
+    assert!((36..=41).contains(&bow), "{bow}");
+    assert!(inside > 1.1 && outside > 1.4 && glory > 1.6);
+    let mut worst = 0.0f64;
+    for (degrees, [few, all]) in seen.iter().enumerate() {
+        for channel in 0..3 {
+            let error = few[channel] / all[channel] - 1.0;
+            worst = worst.max(error.abs());
+            // Colour against that of the fog between bow and glory.
+            let tint = all[channel] / all[1] * seen[20][1][1] / seen[20][1][channel];
+            assert!((0.8..1.25).contains(&tint), "{degrees} {channel}: {tint}");
+        }
+    }
+    println!("RGB against 16 wavelengths, worst: {:.2} %", 100.0 * worst);
+    assert!(worst < 0.04, "{worst}");
+}
