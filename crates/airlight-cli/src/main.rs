@@ -8,6 +8,7 @@
 //! - [`sky`], [`fog`], [`probe`] and [`accuracy`]: the commands.
 
 mod accuracy;
+mod aerosol;
 mod args;
 mod atmosphere;
 mod error;

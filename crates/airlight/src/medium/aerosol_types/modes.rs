@@ -8,6 +8,10 @@ use std::sync::{Arc, Mutex, PoisonError};
 pub(super) const WAVELENGTHS_NM: [f64; 11] = [
     350.0, 400.0, 450.0, 500.0, 550.0, 600.0, 650.0, 700.0, 750.0, 800.0, 850.0,
 ];
+/// Steps over the sizes, in those of fog's drops, and the tolerance of `ln p` that angles are chosen by: see the error that
+/// [`super::AerosolMixture::constituent`] states.
+const WIDER: f64 = 10.0;
+const TOLERANCE: f64 = 0.03;
 /// So many modes are remembered, the latest first.
 const MOST_REMEMBERED: usize = 48;
 
@@ -52,7 +56,7 @@ impl Mode {
             return Ok(Arc::clone(optics));
         }
         // Not under the lock: others may want another mode meanwhile.
-        let (phase, bulk) = particles.table(&WAVELENGTHS_NM)?;
+        let (phase, bulk) = particles.broad_table(&WAVELENGTHS_NM, WIDER, TOLERANCE)?;
         let optics = Arc::new(ModeOptics { phase, bulk });
         let mut known = known();
         known.insert(0, (particles, Arc::clone(&optics)));
