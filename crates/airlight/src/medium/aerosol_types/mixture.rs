@@ -95,18 +95,15 @@ impl AerosolMixture {
         if let Some(&(share, _)) = parts.iter().find(|part| wrong(part.0)) {
             return Err(AerosolTypeError::Share(share));
         }
-        // Halved, so that no sum of finite shares overflows.
-        let sum: f64 = parts
-            .iter()
-            .map(|part| 0.5 * part.0 / parts.len() as f64)
-            .sum();
-        let scale = 0.5 / (sum * parts.len() as f64);
+        // Over the largest, so that no sum of finite shares overflows.
+        let most = parts.iter().fold(0.0, |most: f64, part| most.max(part.0));
+        let sum: f64 = parts.iter().map(|part| part.0 / most).sum();
         match parts.is_empty() {
             true => Err(AerosolTypeError::Empty),
             false => Ok(Self {
                 parts: parts
                     .into_iter()
-                    .map(|(s, part)| (s * scale, part))
+                    .map(|(share, part)| (share / most / sum, part))
                     .collect(),
                 relative_humidity,
             }),

@@ -8,6 +8,9 @@ use std::f64::consts::PI;
 /// Optical depth at 440 nm that the sizes are stated for: in the middle of what was measured.
 const OPTICAL_DEPTH_440: f64 = 0.5;
 
+/// The largest radius that the inversions hold, micrometres.
+const LARGEST_UM: f64 = 15.0;
+
 /// Smoke of one region: O. Dubovik et al., *Variability of absorption and optical properties of key aerosol types observed in
 /// worldwide locations*, J. Atmos. Sci. 59, 590, 2002, table 1. Two lognormal distributions of volume, one refractive index
 /// for both and for all wavelengths. It is the mean of the whole column of ambient air, so there is no humidity to choose.
@@ -49,6 +52,11 @@ impl Smoke {
             let median_um = radius_um * (-3.0 * deviation * deviation).exp();
             let sizes = SizeDistribution::log_normal(median_um, deviation.exp());
             let mean_volume_um3 = 4.0 / 3.0 * PI * sizes.mean_power(3.0);
+            let sizes = SizeDistribution::LogNormal {
+                median_radius_um: median_um,
+                geometric_deviation: deviation.exp(),
+                range_um: [0.0, LARGEST_UM],
+            };
             Mode {
                 // volume is in micrometres of height: 1 um^3/um^2 over 1 m is 1e6 um^3 in a cm^3.
                 number_per_cm3: 1e6 * volume / mean_volume_um3,

@@ -118,8 +118,8 @@ fn dry_types_are_as_another_program_has_them() {
 }
 
 /// Dubovik et al. 2002, table 1, at 440, 670, 870 and 1020 nm. Means over many inversions of four numbers that depend on each
-/// other need not fit together: albedos come out within 0.02 at 440 nm and 670 nm and up to 0.035 too low beyond, mean
-/// cosines up to 0.035 too low.
+/// other need not fit together: albedos come out up to 0.015 too low at 440 nm and 670 nm and 0.035 beyond, mean cosines up
+/// to 0.03 and 0.05.
 #[test]
 fn smoke_does_what_was_measured() {
     for (smoke, albedos, cosines) in [
@@ -152,9 +152,19 @@ fn smoke_does_what_was_measured() {
                 scattered / taken - albedos[i],
                 forward / scattered - cosines[i],
             );
-            let least = if i < 2 { -0.02 } else { -0.035 };
-            assert!((least..0.006).contains(&albedo), "{smoke:?} {nm}: {albedo}");
-            assert!((-0.05..0.006).contains(&cosine), "{smoke:?} {nm}: {cosine}");
+            let least = if i < 2 {
+                [-0.015, -0.03]
+            } else {
+                [-0.036, -0.051]
+            };
+            assert!(
+                (least[0]..0.006).contains(&albedo),
+                "{smoke:?} {nm}: {albedo}"
+            );
+            assert!(
+                (least[1]..0.006).contains(&cosine),
+                "{smoke:?} {nm}: {cosine}"
+            );
             // The volumes are stated for an optical depth of 0.5 at 440 nm.
             if i == 0 {
                 let depth = 1e-6 * taken;
@@ -201,17 +211,24 @@ fn mixtures_are_sums() {
             .constituent(load, place, clear(), 0.0, TOP)
             .unwrap()
     });
-    for nm in [360.0, 450.0, 550.0, 777.0] {
+    // Exact where Mie's theory was summed; between, power laws of sums are not sums of power laws.
+    for (nm, most) in [
+        (350.0, 1e-9),
+        (375.0, 2e-3),
+        (550.0, 1e-9),
+        (750.0, 1e-9),
+        (775.0, 2e-3),
+    ] {
         let sum = 0.75 * a.extinction_per_m(nm) + 0.25 * b.extinction_per_m(nm);
         assert!(
-            (mixed.extinction_per_m(nm) / sum - 1.0).abs() < 2e-4,
+            (mixed.extinction_per_m(nm) / sum - 1.0).abs() < most,
             "{nm}"
         );
         let (sa, sb) = (
             0.75 * a.scattering_per_m.at(nm),
             0.25 * b.scattering_per_m.at(nm),
         );
-        assert!((mixed.scattering_per_m.at(nm) / (sa + sb) - 1.0).abs() < 2e-4);
+        assert!((mixed.scattering_per_m.at(nm) / (sa + sb) - 1.0).abs() < most);
     }
     for cos in [-1.0, -0.5, 0.3, 0.9, 0.999, 1.0] {
         let nm = 550.0;
