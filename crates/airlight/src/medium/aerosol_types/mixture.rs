@@ -3,6 +3,7 @@
 use super::modes::{Mode, Optics, WAVELENGTHS_NM};
 use super::{AerosolType, Component, layer};
 use crate::medium::aerosol::{AerosolError, AerosolLoad, REFERENCE_NM, extinction_at_density_1};
+use crate::medium::presets::earth::EARTH_TOP_M;
 use crate::medium::{ClearAir, Constituent, DensityProfile};
 use crate::optics::PhaseFunction;
 use crate::optics::mie::MieError;
@@ -28,7 +29,7 @@ pub struct AerosolMixture {
 /// What an aerosol does to light at 550 nm, in bulk.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AerosolSummary {
-    /// Extinction at the ground as published, m^-1; of smoke and of mixtures that which an optical depth of 1 makes.
+    /// Extinction at the ground as published (of a mixture the mean by shares), m^-1.
     pub extinction_per_m: f64,
     /// Scattering over extinction.
     pub single_scattering_albedo: f64,
@@ -128,8 +129,8 @@ impl AerosolMixture {
     pub fn profile(&self, ground_altitude_m: f64) -> DensityProfile {
         let most = self.parts.iter().max_by(|a, b| a.0.total_cmp(&b.0));
         match most.map(|part| part.1) {
-            Some(Ingredient::Type(kind)) => kind.profile(ground_altitude_m),
-            _ => layer(ground_altitude_m, 8e3, 2e3),
+            Some(part) => part.profile(ground_altitude_m),
+            None => layer(ground_altitude_m, 8e3, 2e3),
         }
     }
 
@@ -142,33 +143,28 @@ impl AerosolMixture {
         let mut depth = 0.0;
         for &(share, part) in &self.parts {
             let optics = Optics::of(&part.modes(self.relative_humidity))?;
-            let column_m = match part {
-                // Numbers of smoke are those of a column.
-                Ingredient::Type(AerosolType::Biomass(_)) => 1.0,
-                Ingredient::Type(kind) => kind.profile(0.0).column_m(0.0, 100e3),
-                Ingredient::Component(_) => layer(0.0, 8e3, 2e3).column_m(0.0, 100e3),
-            };
+            let column_m = part.profile(0.0).column_m(0.0, EARTH_TOP_M);
             depth += share * column_m * optics.extinction_per_m(reference());
         }
         Ok(depth)
     }
 
-    /// The modes of all parts, in numbers that make the extinction at 550 nm what is published for one type alone, and 1/m
-    /// for several.
+    /// The modes of all parts: numbers as published for one part alone, for several such that each makes its share of the
+    /// extinction, and all together the mean of what each is published with.
     fn modes(&self) -> Result<Vec<Mode>, AerosolTypeError> {
-        if let [(_, part)] = self.parts[..] {
-            return Ok(part.modes(self.relative_humidity));
-        }
         let mut all = Vec::new();
+        let mut whole_per_m = 0.0;
         for &(share, part) in &self.parts {
-            let mut modes = part.modes(self.relative_humidity);
-            let factor = share / Optics::of(&modes)?.extinction_per_m(reference());
-            modes
-                .iter_mut()
-                .for_each(|mode| mode.number_per_cm3 *= factor);
-            all.append(&mut modes);
+            let modes = part.modes(self.relative_humidity);
+            let extinction_per_m = Optics::of(&modes)?.extinction_per_m(reference());
+            whole_per_m += share * extinction_per_m;
+            let factor = share / extinction_per_m;
+            all.extend(modes.into_iter().map(|mode| mode.times(factor)));
         }
-        Ok(all)
+        Ok(all
+            .into_iter()
+            .map(|mode| mode.times(whole_per_m))
+            .collect())
     }
 
     /// The bulk of it.
@@ -231,6 +227,14 @@ impl Ingredient {
         match self {
             Self::Type(kind) => kind.modes(relative_humidity),
             Self::Component(component) => vec![component.mode(relative_humidity, 1.0)],
+        }
+    }
+
+    /// Where it is over ground of an altitude, m.
+    fn profile(self, ground_altitude_m: f64) -> DensityProfile {
+        match self {
+            Self::Type(kind) => kind.profile(ground_altitude_m),
+            Self::Component(_) => layer(ground_altitude_m, 8e3, 2e3),
         }
     }
 

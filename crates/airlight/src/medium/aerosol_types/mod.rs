@@ -21,6 +21,7 @@ pub use mixture::{AerosolMixture, AerosolSummary, AerosolTypeError, Ingredient};
 pub use smoke::Smoke;
 
 use super::nearest::nearest;
+use super::presets::earth::EARTH_TOP_M;
 use super::{DensityProfile, Interpolation};
 use modes::Mode;
 
@@ -201,7 +202,11 @@ impl AerosolType {
     /// What it is made of at a relative humidity.
     fn modes(self, relative_humidity: f64) -> Vec<Mode> {
         match self {
-            Self::Biomass(smoke) => smoke.modes(),
+            Self::Biomass(smoke) => {
+                let column_m = self.profile(0.0).column_m(0.0, EARTH_TOP_M);
+                let modes = smoke.modes().into_iter();
+                modes.map(|mode| mode.times(1.0 / column_m)).collect()
+            }
             _ => {
                 let of = |&(part, number): &(Component, f64)| part.mode(relative_humidity, number);
                 self.components().iter().map(of).collect()

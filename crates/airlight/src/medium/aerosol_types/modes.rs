@@ -47,6 +47,15 @@ struct ModeOptics {
 }
 
 impl Mode {
+    /// More or fewer of it.
+    pub fn times(self, factor: f64) -> Self {
+        let number_per_cm3 = factor * self.number_per_cm3;
+        Self {
+            number_per_cm3,
+            ..self
+        }
+    }
+
     /// Its optics, computed once for each process.
     fn optics(&self) -> Result<Arc<ModeOptics>, MieError> {
         static KNOWN: Mutex<Vec<(Particles, Arc<ModeOptics>)>> = Mutex::new(Vec::new());
