@@ -5,9 +5,9 @@
 //! grow in moist air, and three smokes ([`Smoke`]). [`AerosolMixture`] is one of them at a humidity, or several by their
 //! shares, and makes the constituent "aerosol" of an atmosphere. All follows from Lorenz-Mie theory ([`crate::optics::mie`]).
 //!
-//! **Limits.** All particles are spheres. Desert dust is not: spheres of its size scatter up to some three times too
-//! little around 120 degrees and too much straight back (Koepke, Gasteiger & Hess, Atmos. Chem. Phys. 15, 5947, 2015); its
-//! extinction and albedo suffer little. Optics are computed every 50 nm from 350 to 850 nm.
+//! **Limits.** All particles are spheres. Grains of desert dust are not: they scatter more to the side and less straight back
+//! than spheres do (Koepke, Gasteiger & Hess, Atmos. Chem. Phys. 15, 5947, 2015); the albedo of spheroids is within 0.005.
+//! Optics are computed every 50 nm from 350 to 850 nm; beyond, coefficients stay as they are there.
 
 mod material;
 mod mixture;
