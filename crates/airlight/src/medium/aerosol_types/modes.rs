@@ -8,8 +8,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 pub(super) const WAVELENGTHS_NM: [f64; 11] = [
     350.0, 400.0, 450.0, 500.0, 550.0, 600.0, 650.0, 700.0, 750.0, 800.0, 850.0,
 ];
-/// Steps over the sizes, in those of fog's drops, and the tolerance of `ln p` that angles are chosen by: see the error that
-/// [`super::AerosolMixture::constituent`] states.
+/// Steps over the sizes, in those of fog's drops, and the tolerance of `ln p` that angles are chosen by. Against the finest
+/// steps the phase functions of types differ by less than 1 % within 20 degrees and 4 % anywhere, scattering by less than 1e-3
+/// (test `quick_sums_are_good_enough`).
 const WIDER: f64 = 10.0;
 const TOLERANCE: f64 = 0.03;
 /// So many modes are remembered, the latest first.
