@@ -1,11 +1,15 @@
 //! Atmospheres by name, from files, and with what the options change.
 
+use crate::aerosol;
 use crate::args::{AirArgs, AtmospheresArgs};
 use crate::error::CliError;
 use crate::report;
 use airlight::medium::presets::earth::{EARTH_RADIUS_M, Earth};
 use airlight::medium::visibility::Contrast;
-use airlight::medium::{AerosolLoad, Atmosphere, Constituent, config, gases, preset, preset_names};
+use airlight::medium::{
+    AerosolLoad, AerosolMixture, AerosolType, Atmosphere, Constituent, config, gases, preset,
+    preset_names,
+};
 use airlight::spectrum::SpectralCurve;
 use std::fmt::Write;
 use std::path::Path;
@@ -63,8 +67,12 @@ pub fn build(args: &AirArgs, eye_altitude_m: f64) -> Result<Atmosphere, CliError
         require_earth(&air, "--ozone-du")?;
         put(&mut air, gases::ozone(column_du));
     }
-    if let Some((option, load)) = haze(args) {
-        set_haze(&mut air, option, load)?;
+    match (&args.aerosol, haze(args)) {
+        (Some(types), amount) => {
+            set_type(&mut air, &aerosol::mixture(types, args.humidity)?, amount)?;
+        }
+        (None, Some((option, load))) => set_haze(&mut air, option, load)?,
+        (None, None) => {}
     }
     air.validate()?;
     Ok(air)
@@ -110,6 +118,22 @@ fn haze(args: &AirArgs) -> Option<(&'static str, AerosolLoad)> {
         )
     });
     depth.or(turbidity).or(visibility)
+}
+
+/// Replaces the haze by one of a type, as much of it as asked for or else as published.
+fn set_type(
+    air: &mut Atmosphere,
+    mixture: &AerosolMixture,
+    amount: Option<(&'static str, AerosolLoad)>,
+) -> Result<(), CliError> {
+    require_earth(air, "--aerosol")?;
+    let (option, load) = amount.map_or(("--aerosol", None), |(option, load)| (option, Some(load)));
+    let (ground, top) = (air.planet.ground_altitude_m, air.planet.top_altitude_m);
+    let part = mixture
+        .constituent(load, None, air.clear_air(), ground, top)
+        .map_err(|error| CliError::usage(format!("{option}: {error}")))?;
+    put(air, part);
+    Ok(())
 }
 
 /// Scales the haze there is to the amount asked for, or adds a continental haze where there is none.
@@ -167,6 +191,9 @@ fn put(air: &mut Atmosphere, part: Constituent) {
 /// As [`named`], and where standard output cannot be written.
 pub fn list(args: &AtmospheresArgs) -> Result<(), CliError> {
     if let Some(name) = &args.atmosphere {
+        if let Ok(kind) = AerosolType::named(name) {
+            return report::print(&aerosol::describe(kind)?);
+        }
         return report::print(&describe(&named(name)?));
     }
     let width = preset_names()
@@ -176,7 +203,7 @@ pub fn list(args: &AtmospheresArgs) -> Result<(), CliError> {
     let lines: String = preset_names()
         .map(|(name, what)| format!("{name:width$}  {what}\n"))
         .collect();
-    report::print(&lines)
+    report::print(&(lines + &aerosol::list()))
 }
 
 /// What an atmosphere is made of.
@@ -236,6 +263,26 @@ mod tests {
         };
         assert!(set_haze(&mut air, "--visibility-m", endless).is_err());
         assert!(set_haze(&mut air, "--turbidity", AerosolLoad::Turbidity(0.5)).is_err());
+    }
+
+    #[test]
+    fn types_come_out_as_asked() {
+        let mut air = named("average").unwrap();
+        let desert = aerosol::mixture("desert", None).unwrap();
+        let asked = ("--aod-550", AerosolLoad::OpticalDepth550(0.4));
+        set_type(&mut air, &desert, Some(asked)).unwrap();
+        let depth = |air: &Atmosphere| {
+            let part = air.constituent("aerosol").unwrap();
+            part.optical_depth(0.0, air.planet.top_altitude_m, 550.0)
+        };
+        assert!((depth(&air) - 0.4).abs() < 1e-9);
+        set_type(&mut air, &desert, None).unwrap();
+        assert!((depth(&air) - 0.275).abs() < 2e-3, "{}", depth(&air));
+        let wrong = Some(("--turbidity", AerosolLoad::Turbidity(0.5)));
+        let refused = set_type(&mut air, &desert, wrong).unwrap_err();
+        assert!(matches!(refused, CliError::Usage(s) if s.starts_with("--turbidity: ")));
+        let mut mars = named("mars").unwrap();
+        assert!(set_type(&mut mars, &desert, None).is_err());
     }
 
     #[test]

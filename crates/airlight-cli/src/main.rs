@@ -8,6 +8,7 @@
 //! - [`sky`], [`fog`], [`probe`], [`accuracy`] and [`plot`]: the commands.
 
 mod accuracy;
+mod aerosol;
 mod args;
 mod atmosphere;
 mod error;

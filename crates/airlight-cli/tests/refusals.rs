@@ -87,6 +87,22 @@ fn bad_use_of_sky() {
             "sky --sun-elevation 30 --atmosphere mars --ozone-du 300 -o a.exr",
             "Earth",
         ),
+        (
+            "sky --sun-elevation 30 --aerosol dessert -o a.exr",
+            "did you mean \"desert\"",
+        ),
+        (
+            "sky --sun-elevation 30 --aerosol urban --humidity 80 -o a.exr",
+            "0.8 is 80 %",
+        ),
+        (
+            "sky --sun-elevation 30 --humidity 0.5 -o a.exr",
+            "--aerosol",
+        ),
+        (
+            "sky --sun-elevation 30 --aerosol desert --atmosphere mars -o a.exr",
+            "Earth",
+        ),
         ("sky --sun-elevation 30 --aod-550 -1 -o a.exr", "--aod-550"),
         (
             "sky --sun-elevation 30 --aod-550 0.1 --turbidity 2 -o a.exr",
@@ -296,5 +312,7 @@ fn help_and_lists_name_what_there_is() {
     assert!(succeed(&folder, "--version").starts_with("airlight "));
     let list = succeed(&folder, "atmospheres");
     assert!(list.lines().count() > 8 && list.contains("average"));
+    assert!(list.contains("maritime-clean") && list.contains("biomass-savanna"));
+    assert!(succeed(&folder, "atmospheres desert").contains("humidity  0.8"));
     assert!(succeed(&folder, "atmospheres mars").contains("optical depth"));
 }

@@ -14,8 +14,9 @@ fn blocks<'a>(text: &'a str, language: &str) -> Vec<&'a str> {
 #[test]
 fn atmospheres_of_the_book_are_read() {
     let chapter = include_str!("../../../docs/src/atmosphere.md");
-    let examples = blocks(chapter, "toml");
-    assert!(examples.len() >= 4, "{}", examples.len());
+    let types = include_str!("../../../docs/src/aerosols.md");
+    let examples = [blocks(chapter, "toml"), blocks(types, "toml")].concat();
+    assert!(examples.len() >= 6, "{}", examples.len());
     for example in examples {
         let air = config::from_toml(example).unwrap_or_else(|error| panic!("{error}\n{example}"));
         assert!(!air.constituents.is_empty(), "{example}");

@@ -1,7 +1,7 @@
 //! Options that say what the air is and how its light is solved for.
 
 use crate::error::CliError;
-use crate::{atmosphere, parse};
+use crate::{aerosol, atmosphere, parse};
 use airlight::sky::monte_carlo::{MonteCarloSettings, SunShape};
 use clap::{Args, ValueEnum};
 
@@ -30,6 +30,12 @@ pub struct AirArgs {
     /// The atmosphere: a name (see --help or `airlight atmospheres`) or a TOML file
     #[arg(long, value_name = "NAME|FILE.toml", default_value = "average", long_help = atmosphere::option_help())]
     pub atmosphere: String,
+    /// Haze of a published type (see --help or `airlight atmospheres`), or a mixture: urban:0.7,desert:0.3
+    #[arg(long, value_name = "TYPE", long_help = aerosol::option_help())]
+    pub aerosol: Option<String>,
+    /// Relative humidity that the particles of --aerosol have grown in, 0 to 0.99 [default: 0.8]
+    #[arg(long, value_name = "SHARE", value_parser = parse::number, requires = "aerosol")]
+    pub humidity: Option<f64>,
     /// Optical depth of the haze (aerosol) at 550 nm: 0.05 clear, 0.12 average, 0.35 hazy
     #[arg(long, value_name = "DEPTH", value_parser = parse::not_negative, group = "haze")]
     pub aod_550: Option<f64>,

@@ -66,14 +66,14 @@ pub enum Command {
     Accuracy(AccuracyArgs),
     /// Plot what particles do to light: phase functions, efficiencies; as SVG.
     Plot(PlotArgs),
-    /// List the atmospheres that can be asked for by name, or tell what one is made of.
+    /// List the atmospheres and types of haze that can be asked for by name, or tell what one is made of.
     Atmospheres(AtmospheresArgs),
 }
 
 /// Options of `airlight atmospheres`.
 #[derive(Debug, Args)]
 pub struct AtmospheresArgs {
-    /// An atmosphere to describe: its name, or a TOML file
+    /// An atmosphere or a type of haze to describe: its name, or a TOML file
     #[arg(value_name = "NAME|FILE.toml")]
     pub atmosphere: Option<String>,
 }

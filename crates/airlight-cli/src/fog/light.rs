@@ -43,6 +43,8 @@ impl SolvedSky {
         };
         let air = AirArgs {
             atmosphere: light.atmosphere.clone(),
+            aerosol: None,
+            humidity: None,
             aod_550: light.aod_550,
             turbidity: None,
             visibility_m: None,

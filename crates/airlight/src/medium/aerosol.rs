@@ -144,20 +144,15 @@ impl AngstromAerosol {
             return Err(AerosolError::AngstromExponent(exponent));
         }
         self.phase.validate()?;
-        let column_m = self.density.column_m(ground_altitude_m, top_altitude_m);
-        if !(column_m.is_finite() && column_m > 0.0) {
-            return Err(AerosolError::EmptyProfile);
-        }
-        let at_ground = self.density.at(ground_altitude_m);
-        let depth = match self.load {
-            // A layer aloft has no extinction at the ground that visibility could set.
-            AerosolLoad::Visibility { .. } if at_ground <= 0.0 => {
-                return Err(AerosolError::EmptyProfile);
-            }
-            load => load.optical_depth_550(clear, column_m / at_ground)?,
-        };
+        let extinction_per_m = extinction_at_density_1(
+            self.load,
+            &self.density,
+            clear,
+            ground_altitude_m,
+            top_altitude_m,
+        )?;
         let extinction = SpectralCurve::PowerLaw {
-            value_at_550_nm: depth / column_m,
+            value_at_550_nm: extinction_per_m,
             exponent,
         };
         let (scattering_per_m, absorption_per_m) = self.split(extinction)?;
@@ -201,6 +196,29 @@ impl AngstromAerosol {
             _ => Err(AerosolError::SingleScatteringAlbedo(f64::NAN)),
         }
     }
+}
+
+/// Extinction (1/m) at 550 nm and relative density 1 of so much aerosol in a profile between two altitudes, m.
+pub(super) fn extinction_at_density_1(
+    load: AerosolLoad,
+    density: &DensityProfile,
+    clear: ClearAir,
+    ground_altitude_m: f64,
+    top_altitude_m: f64,
+) -> Result<f64, AerosolError> {
+    let column_m = density.column_m(ground_altitude_m, top_altitude_m);
+    if !(column_m.is_finite() && column_m > 0.0) {
+        return Err(AerosolError::EmptyProfile);
+    }
+    let at_ground = density.at(ground_altitude_m);
+    let depth = match load {
+        // A layer aloft has no extinction at the ground that visibility could set.
+        AerosolLoad::Visibility { .. } if at_ground <= 0.0 => {
+            return Err(AerosolError::EmptyProfile);
+        }
+        load => load.optical_depth_550(clear, column_m / at_ground)?,
+    };
+    Ok(depth / column_m)
 }
 
 /// The phase function of a continental aerosol: three Henyey-Greenstein lobes fitted to the mean of five AERONET

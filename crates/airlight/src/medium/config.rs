@@ -34,7 +34,9 @@
 //! | `sun.irradiance_w_m2_nm`, `.irradiance_factor` | *spectrum* at the top of the atmosphere; factor on it |
 //! | `rayleigh.pressure_pa` | sea-level pressure; scales the base's molecules, or adds the Earth's where it has none |
 //! | `ozone.column_du` | replaces the base's ozone by the measured cross-section and mid-latitude profile, of this column |
-//! | `aerosol.aod_550`, `.turbidity` or `.visibility_m` | one of three ways to say how much ([`AerosolLoad`]) |
+//! | `aerosol.type`, `.relative_humidity` | a published kind ([`crate::medium::AerosolType`]) in air of a humidity from 0 to 0.99 |
+//! | `aerosol.mixture` | instead of `type`: list of `{ type, share }` or `{ component, share }`, shares of the extinction |
+//! | `aerosol.aod_550`, `.turbidity` or `.visibility_m` | one of three ways to say how much ([`crate::medium::AerosolLoad`]) |
 //! | `aerosol.contrast` | which contrast visibility means: 0.05 (if absent) or 0.02 |
 //! | `aerosol.angstrom_exponent`, `.single_scattering_albedo` | exponent of the extinction; *spectrum* in `[0, 1]` |
 //! | `aerosol.scale_height_m` or `.density` | how it thins out with altitude; *density* |
@@ -49,21 +51,21 @@
 //! `"cornette-shanks"` (`g`), `"draine"` (`g`, `alpha`), `"continental"`, `"mixture"`
 //! (`parts = [{ weight, kind, ... }, ...]`) or `"table"` (`angles_deg`, `wavelengths_nm`, `values` wavelength by wavelength).
 
+mod aerosol;
 mod error;
 mod parts;
 mod reader;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod type_tests;
 
 pub use error::{ConfigError, ConfigProblem};
 
-use super::aerosol::{AerosolLoad, AngstromAerosol, continental_phase};
 use super::presets::{self, earth};
-use super::visibility::Contrast;
-use super::{Atmosphere, AtmosphereError, Constituent, DensityProfile, gases};
+use super::{Atmosphere, AtmosphereError, Constituent, gases};
 use crate::light::LimbDarkening;
 use crate::optics::{PhaseFunction, rayleigh::STANDARD_PRESSURE_PA};
-use crate::spectrum::SpectralCurve;
 use reader::Section;
 use toml::de::DeTable;
 
@@ -151,7 +153,7 @@ pub fn from_toml_table(
         }
     }
     if let Some(section) = root.section("aerosol")? {
-        aerosol(&section, &mut atmosphere)?;
+        aerosol::aerosol(&section, &mut atmosphere)?;
     }
     for section in root.sections("constituent")? {
         put(&mut atmosphere, parts::constituent(&section)?);
@@ -263,138 +265,6 @@ fn molecules(
         None => put(atmosphere, gases::air(pressure_pa)),
     }
     Ok(())
-}
-
-fn aerosol(section: &Section<'_>, atmosphere: &mut Atmosphere) -> Result<(), ConfigError> {
-    section.check_keys(&[
-        "aod_550",
-        "turbidity",
-        "visibility_m",
-        "contrast",
-        "angstrom_exponent",
-        "single_scattering_albedo",
-        "scale_height_m",
-        "density",
-        "phase",
-    ])?;
-    let (ground, top) = (
-        atmosphere.planet.ground_altitude_m,
-        atmosphere.planet.top_altitude_m,
-    );
-    let old = atmosphere.constituent("aerosol").cloned();
-    let old_depth = old
-        .as_ref()
-        .map_or(0.0, |part| part.optical_depth(ground, top, 550.0));
-    let loads = ["aod_550", "turbidity", "visibility_m"];
-    let contrast = section.number("contrast", "0.05 or 0.02", |c| c == 0.05 || c == 0.02)?;
-    let contrast = match contrast {
-        Some(0.02) => Contrast::TwoPercent,
-        _ => Contrast::FivePercent,
-    };
-    let mut load = None;
-    for key in loads {
-        let Some(value) = section.number(key, "a number", |_| true)? else {
-            continue;
-        };
-        if let Some((first, _)) = load {
-            return Err(section.error(key, ConfigProblem::Conflict { with: first }));
-        }
-        let kind = match key {
-            "aod_550" => AerosolLoad::OpticalDepth550(value),
-            "turbidity" => AerosolLoad::Turbidity(value),
-            _ => AerosolLoad::Visibility {
-                range_m: value,
-                contrast,
-            },
-        };
-        load = Some((key, kind));
-    }
-    let exponent = section.number("angstrom_exponent", "between -4 and 8", |x| {
-        (-4.0..=8.0).contains(&x)
-    })?;
-    let albedo = parts::spectrum(section, "single_scattering_albedo", 1.0)?;
-    let density = match (
-        section.positive("scale_height_m")?,
-        parts::density(section, "density")?,
-    ) {
-        (Some(_), Some(_)) => {
-            return Err(section.error(
-                "density",
-                ConfigProblem::Conflict {
-                    with: "scale_height_m",
-                },
-            ));
-        }
-        (Some(scale_height_m), None) => Some(DensityProfile::Exponential { scale_height_m }),
-        (None, given) => given,
-    };
-    let phase = parts::phase(section, "phase", old.as_ref().map(|part| &part.phase))?;
-    if old.is_none() && load.is_none() {
-        return Err(section.missing(
-            "aod_550",
-            "the base has no aerosol: say how much with aod_550, turbidity or visibility_m",
-        ));
-    }
-    let usual = earth::Earth::with_aerosol(old_depth).aerosol;
-    let rebuilt = AngstromAerosol {
-        load: load.map_or(AerosolLoad::OpticalDepth550(old_depth), |(_, load)| load),
-        angstrom_exponent: exponent.unwrap_or_else(|| match &old {
-            Some(part) => exponent_of(part).unwrap_or(usual.angstrom_exponent),
-            None => usual.angstrom_exponent,
-        }),
-        single_scattering_albedo: albedo.clone().unwrap_or_else(|| match &old {
-            Some(part) => albedo_of(part),
-            None => usual.single_scattering_albedo,
-        }),
-        density: density.unwrap_or_else(|| {
-            old.as_ref()
-                .map_or(usual.density, |part| part.density.clone())
-        }),
-        phase: phase.unwrap_or_else(|| {
-            old.as_ref()
-                .map_or_else(continental_phase, |part| part.phase.clone())
-        }),
-    };
-    let mut part = rebuilt
-        .constituent(atmosphere.clear_air(), ground, top)
-        .map_err(|error| {
-            let key = load.map_or("phase", |(key, _)| key);
-            section.error(key, ConfigProblem::Aerosol(error))
-        })?;
-    // Where only the amount, the place or the direction changes, the base's own spectra stay, scaled.
-    if let (Some(old), None, None) = (old, exponent, albedo) {
-        let factor = part.extinction_per_m(550.0) / old.extinction_per_m(550.0);
-        if factor.is_finite() {
-            part.scattering_per_m = old.scattering_per_m.scaled(factor);
-            part.absorption_per_m = old.absorption_per_m.scaled(factor);
-        }
-    }
-    put(atmosphere, part);
-    Ok(())
-}
-
-/// The Angstrom exponent of a constituent's extinction between 440 and 880 nm.
-fn exponent_of(part: &Constituent) -> Option<f64> {
-    let ratio = part.extinction_per_m(440.0) / part.extinction_per_m(880.0);
-    (ratio.is_finite() && ratio > 0.0).then(|| ratio.log2())
-}
-
-/// The single-scattering albedo of a constituent: constant where it is, else every 2 nm.
-fn albedo_of(part: &Constituent) -> SpectralCurve {
-    let at = |nm: f64| match part.extinction_per_m(nm) {
-        extinction if extinction > 0.0 => {
-            (part.scattering_per_m.at(nm) / extinction).clamp(0.0, 1.0)
-        }
-        _ => 1.0,
-    };
-    let wavelengths: Vec<f64> = (125..=550).map(|i| 2.0 * f64::from(i)).collect();
-    let values: Vec<f64> = wavelengths.iter().map(|&nm| at(nm)).collect();
-    match values.iter().all(|v| (v - values[0]).abs() < 1e-9) {
-        true => SpectralCurve::Constant(values[0]),
-        false => {
-            SpectralCurve::table(wavelengths, values).unwrap_or(SpectralCurve::Constant(at(550.0)))
-        }
-    }
 }
 
 /// The phase function that parameters without a kind belong to.

@@ -1,6 +1,7 @@
 //! What fills the air and where.
 
 pub mod aerosol;
+pub mod aerosol_types;
 mod atmosphere;
 pub mod config;
 mod density;
@@ -11,6 +12,7 @@ mod standard_air;
 pub mod visibility;
 
 pub use aerosol::{AerosolError, AerosolLoad, AngstromAerosol, ClearAir};
+pub use aerosol_types::{AerosolMixture, AerosolType, AerosolTypeError};
 pub use atmosphere::{Atmosphere, AtmosphereError, Constituent, Planet};
 pub use density::{AltitudeTable, DensityError, DensityProfile, Interpolation};
 pub use presets::{UnknownPreset, preset, preset_names, reference};

@@ -1,6 +1,6 @@
 //! What can be wrong with a written atmosphere.
 
-use crate::medium::{AerosolError, AtmosphereError, DensityError};
+use crate::medium::{AerosolError, AerosolTypeError, AtmosphereError, DensityError};
 use crate::optics::PhaseError;
 use crate::spectrum::CurveError;
 
@@ -69,6 +69,15 @@ pub enum ConfigProblem {
         /// The other key.
         with: &'static str,
     },
+    /// A key that says nothing without another.
+    #[error("says nothing without {with}")]
+    Needs {
+        /// The other key.
+        with: &'static str,
+    },
+    /// Humidity of particles that take up no water.
+    #[error("makes no difference to these particles, which take up no water: leave it out")]
+    Dry,
     /// A table of samples is refused.
     #[error("{0}")]
     Curve(CurveError),
@@ -81,6 +90,9 @@ pub enum ConfigProblem {
     /// An aerosol is refused.
     #[error("{0}")]
     Aerosol(AerosolError),
+    /// An aerosol of a type is refused.
+    #[error("{0}")]
+    AerosolType(AerosolTypeError),
     /// The whole is refused.
     #[error("{0}")]
     Atmosphere(AtmosphereError),

@@ -2,12 +2,12 @@ use super::*;
 use crate::medium::{AerosolError, DensityError, preset};
 use crate::optics::PhaseError;
 
-fn read(text: &str) -> Atmosphere {
+pub(super) fn read(text: &str) -> Atmosphere {
     from_toml(text).unwrap_or_else(|error| panic!("{text}\n{error}"))
 }
 
 /// The error of a text, which must also read well: one line that names the key.
-fn refuse(text: &str) -> ConfigError {
+pub(super) fn refuse(text: &str) -> ConfigError {
     let error = from_toml(text).expect_err(text);
     let message = error.to_string();
     assert!(

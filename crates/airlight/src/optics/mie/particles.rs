@@ -157,6 +157,27 @@ impl Particles {
         &self,
         wavelengths_nm: &[f64],
     ) -> Result<(TabulatedPhase, Vec<BulkOptics>), MieError> {
+        self.table_in(wavelengths_nm, STEPS, TOLERANCE)
+    }
+
+    /// As [`Particles::table`], but quicker, for broad distributions, whose sizes blur each other's resonances: with steps
+    /// over the sizes that are `wider` times as wide, and angles as far apart as another tolerance of `ln p` lets them be.
+    pub(crate) fn broad_table(
+        &self,
+        wavelengths_nm: &[f64],
+        wider: f64,
+        tolerance: f64,
+    ) -> Result<(TabulatedPhase, Vec<BulkOptics>), MieError> {
+        let size = wider * STEPS.size;
+        self.table_in(wavelengths_nm, Steps { size, ..STEPS }, tolerance)
+    }
+
+    fn table_in(
+        &self,
+        wavelengths_nm: &[f64],
+        steps: Steps,
+        tolerance: f64,
+    ) -> Result<(TabulatedPhase, Vec<BulkOptics>), MieError> {
         let mut angles: Vec<f64> = Vec::new();
         let phase = |prepared: &Prepared, angles: &[f64]| {
             let cosines: Vec<f64> = angles.iter().map(|a| a.cos()).collect();
@@ -166,15 +187,15 @@ impl Particles {
         let radius_um = self.sizes.mean_power(6.0).powf(1.0 / 6.0);
         if let [first, .., last] | [first @ last] = wavelengths_nm {
             for nm in [first, last] {
-                let prepared = self.prepare(*nm, STEPS)?;
+                let prepared = self.prepare(*nm, steps)?;
                 let x = TAU * 1e3 * radius_um / nm;
-                angles = adapt(x, &angles, TOLERANCE, |angles| phase(&prepared, angles));
+                angles = adapt(x, &angles, tolerance, |angles| phase(&prepared, angles));
             }
         }
         let mut values = Vec::with_capacity(angles.len() * wavelengths_nm.len());
         let mut bulk = Vec::with_capacity(wavelengths_nm.len());
         for &nm in wavelengths_nm {
-            let prepared = self.prepare(nm, STEPS)?;
+            let prepared = self.prepare(nm, steps)?;
             values.extend::<Vec<f64>>(phase(&prepared, &angles));
             bulk.push(self.bulk_of(nm, &prepared));
         }
