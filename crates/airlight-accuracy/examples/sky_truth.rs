@@ -7,9 +7,9 @@
 //! Takes some minutes for an atmosphere on two cores. The same on any machine and any number of threads.
 
 use airlight::axes::direction;
-use airlight::medium;
 use airlight::sky::monte_carlo::{MonteCarlo, MonteCarloSettings};
 use airlight::spectrum::WavelengthGrid;
+use airlight_accuracy::skies::truth_air;
 
 /// Sun's elevation, the standard error aimed at (part of the mean), and paths at most.
 const SUNS: [(f64, f64, u64); 8] = [
@@ -41,7 +41,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let grid = WavelengthGrid::from_wavelengths_nm(wavelengths.to_vec())?;
     println!("config,sun_zenith_deg,view_zenith_deg,rel_azimuth_deg,channel,L,SE");
     for name in &names {
-        let air = medium::preset(name)?;
+        let air = truth_air(name).ok_or("atmospheres: presets, and desert")?;
         let sky = MonteCarlo::new(&air, &grid, MonteCarloSettings::default())?;
         for (elevation, error, most) in SUNS {
             for (view, azimuth) in VIEWS {

@@ -1,6 +1,6 @@
 //! What is looked at, from where, under which sun: from options to a prepared sky.
 
-use crate::args::{AirArgs, PlaceArgs, ScatteringArg};
+use crate::args::{AirArgs, PlaceArgs, QualityArg, ScatteringArg};
 use crate::atmosphere;
 use crate::error::CliError;
 use crate::moment::Moment;
@@ -24,6 +24,7 @@ pub struct Scene {
     /// How the sun is found.
     pub sun: SunSource,
     scattering: Scattering,
+    quality: QualityArg,
 }
 
 /// How the sun is found.
@@ -131,6 +132,7 @@ impl Scene {
             eye_altitude_m,
             sun,
             scattering,
+            quality: air.quality,
         })
     }
 
@@ -144,7 +146,10 @@ impl Scene {
         let settings = SkySettings {
             suns,
             scattering: self.scattering,
-            ..SkySettings::default()
+            ..match self.quality {
+                QualityArg::Standard => SkySettings::default(),
+                QualityArg::Fine => SkySettings::fine(),
+            }
         };
         let sky = Sky::prepare(&self.atmosphere, &self.grid, &settings)?;
         Ok((sky, start.elapsed()))

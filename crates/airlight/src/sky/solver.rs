@@ -63,6 +63,19 @@ impl Default for SkySettings {
 }
 
 impl SkySettings {
+    /// The same for hazy air and low suns: twice the altitudes, more directions and moments; takes some five times as long.
+    pub fn fine() -> Self {
+        let mut settings = Self {
+            altitudes: 40,
+            ..Self::default()
+        };
+        let orders = &mut settings.orders;
+        (orders.degree, orders.peak_degree, orders.rescattered_degree) = (12, 14, 8);
+        orders.later.zenith_nodes = [8, 8, 10];
+        orders.later.panel_nodes = 3;
+        settings
+    }
+
     /// Checks what the solver relies on.
     ///
     /// # Errors
