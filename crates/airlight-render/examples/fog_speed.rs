@@ -15,6 +15,7 @@ use airlight_render::overlay::{Body, Channels, Overlay, Veil, estimate_ambient};
 use airlight_render::rows::{RowFn, StoredRows};
 use airlight_render::tone::ToneMapper;
 use airlight_render::{Control, Intrinsics, RenderError, RowSource, Size, write_picture};
+use glam::DVec3;
 use std::error::Error;
 use std::hint::black_box;
 use std::path::{Path, PathBuf};
@@ -145,9 +146,16 @@ fn measure(folder: &Path, ending: &str, scale: f64) -> Result<(), RenderError> {
     for (name, profile, sun) in fogs() {
         let make = || Veil::Fog(Body::Alone(Box::new(fog(profile, sun, ambient))), None);
         let veil = timed(&format!("{name}: prepare"), make);
-        let overlay = Overlay::new(&picture, &depth, &camera, 1.6, &veil, Channels::Picture)?;
-        let rows = timed(&format!("{name}: fog"), || rows(&picture, &overlay));
+        // Made anew each time, as its table is filled while it is looked at.
+        let overlay = || Overlay::new(&picture, &depth, &camera, 1.6, &veil, Channels::Picture);
+        let rows = timed(&format!("{name}: fog"), || Ok(rows(&picture, &overlay()?)))?;
         even.get_or_insert(rows);
+        if profile != Profile::Uniform {
+            let fog = fog(profile, sun, ambient);
+            timed(&format!("{name}: line by line"), || {
+                line_by_line(&fog, &depth, &camera)
+            });
+        }
     }
     let veil = Veil::Encoded(0.05, ambient);
     let overlay = Overlay::new(&picture, &depth, &camera, 1.6, &veil, Channels::Picture)?;
@@ -188,6 +196,22 @@ fn fog(profile: Profile, sun_elevation_deg: Option<f64>, ambient: Spectrum<3>) -
     let matter = Droplets::Radiation.matter(extinction);
     let layers = [Layer { profile, matter }];
     Fog::new(&layers, Ground::FLAT, light, Scattering::Multiple).expect("a fog of sound numbers")
+}
+
+/// What it would take without a table.
+fn line_by_line(fog: &Fog<3>, depth: &DepthMap, camera: &Intrinsics) -> f32 {
+    let width = depth.size.width() as usize;
+    let mut directions = vec![DVec3::ZERO; width];
+    let mut lengths = vec![0.0; width];
+    let mut sum = 0.0;
+    for (y, metres) in (0..).zip(depth.metres.chunks_exact(width)) {
+        camera.fill(y, &mut directions, &mut lengths);
+        for ((&z, direction), length) in metres.iter().zip(&directions).zip(&lengths) {
+            let optics = fog.along(1.6, *direction, f64::from(z) * length);
+            sum += optics.path_radiance[0] + optics.transmittance[0];
+        }
+    }
+    sum
 }
 
 fn rows(picture: &Picture, overlay: &Overlay<'_>) -> Vec<f32> {

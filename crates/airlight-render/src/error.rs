@@ -115,7 +115,7 @@ pub enum RenderError {
     /// Depth below 0, where a mistake of sign is likelier than a hole.
     #[error(
         "`{path}` has negative depth in {count} of its pixels, the first at x {x}, y {y}: {value}. Depth must grow away from \
-         the camera; where negative numbers mean that nothing is known, say so",
+         the camera; where negative numbers mean that nothing is known, 0 should stand",
         path = .path.display()
     )]
     NegativeDepth {

@@ -16,15 +16,14 @@ use crate::{Intrinsics, RenderError, RowSource};
 use airlight::path::PathOptics;
 use airlight::spectrum::Spectrum;
 use glam::DVec3;
+use veil::Seen;
 
 /// A picture, its depth, its camera, and a veil over it.
-#[derive(Clone, Copy)]
 pub struct Overlay<'a> {
     picture: &'a Picture,
     depth: &'a DepthMap,
     camera: &'a Intrinsics,
-    eye_height_m: f64,
-    veil: &'a Veil<'a>,
+    seen: Seen<'a>,
     channels: Channels,
 }
 
@@ -87,8 +86,7 @@ impl<'a> Overlay<'a> {
             picture,
             depth,
             camera,
-            eye_height_m,
-            veil,
+            seen: Seen::from_height(veil, eye_height_m),
             channels,
         })
     }
@@ -102,11 +100,11 @@ impl<'a> Overlay<'a> {
 
     /// A pixel's colour seen through the fog, and the opacity that its colour is multiplied by: fog scatters before what is
     /// there only.
-    fn seen(&self, optics: &PathOptics<3>, colour: Spectrum<3>, opacity: f32) -> Spectrum<3> {
+    fn through(&self, optics: &PathOptics<3>, colour: Spectrum<3>, opacity: f32) -> Spectrum<3> {
         if self.picture.reference == LightReference::Display || opacity == 1.0 {
-            self.veil.apply(optics, colour)
+            self.seen.apply(optics, colour)
         } else if opacity > 0.0 {
-            self.veil.apply(optics, colour / opacity) * opacity
+            self.seen.apply(optics, colour / opacity) * opacity
         } else {
             colour * optics.transmittance
         }
@@ -133,9 +131,9 @@ impl RowSource for Overlay<'_> {
                     DepthKind::Z => lengths[i],
                     DepthKind::Ray => 1.0,
                 };
-            let optics = self.veil.optics(self.eye_height_m, directions[i], distance);
+            let optics = self.seen.optics(directions[i], distance);
             let opacity = self.picture.alpha.as_ref().map(|alpha| alpha[pixel]);
-            let seen = self.seen(&optics, colour, opacity.unwrap_or(1.0));
+            let seen = self.through(&optics, colour, opacity.unwrap_or(1.0));
             out[..3].copy_from_slice(&seen.0);
             if self.channels == Channels::Layers {
                 out[3..6].copy_from_slice(&optics.transmittance.0);

@@ -1,13 +1,13 @@
 //! What lies between camera and scene.
 
 use super::glow::Glow;
-use airlight::fog::{Fog, legacy};
+use airlight::fog::{Fog, FogTable, legacy};
 use airlight::outdoors::FoggySky;
 use airlight::path::PathOptics;
 use airlight::spectrum::Spectrum;
 use airlight::spectrum::rgb::{srgb_decode, srgb_encode};
 use glam::DVec3;
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 /// What lies between camera and scene.
 #[derive(Clone)]
@@ -48,6 +48,69 @@ pub enum AirBefore {
     Missing,
 }
 
+/// A veil as seen from a height: quickly, for the pixels of a picture.
+pub(super) struct Seen<'a> {
+    veil: &'a Veil<'a>,
+    eye_height_m: f64,
+    /// A fog alone, tabulated.
+    table: Option<FogTable<'a, 3>>,
+}
+
+impl<'a> Seen<'a> {
+    /// Seen from a height (m).
+    pub fn from_height(veil: &'a Veil<'a>, eye_height_m: f64) -> Self {
+        let table = match veil {
+            Veil::Fog(Body::Alone(fog), _) => Some(FogTable::new(fog, eye_height_m)),
+            _ => None,
+        };
+        Self {
+            veil,
+            eye_height_m,
+            table,
+        }
+    }
+
+    /// What it does up to a distance (m; infinite: the sky) in a direction.
+    pub fn optics(&self, direction: DVec3, distance_m: f64) -> PathOptics<3> {
+        match self.veil {
+            Veil::Fog(body, glow) => {
+                let mut optics = match &self.table {
+                    Some(table) => table.along(direction, distance_m),
+                    None => body.optics(self.eye_height_m, direction, distance_m),
+                };
+                if let Some(glow) = glow {
+                    let (height_m, direction) = (self.eye_height_m, direction);
+                    optics.path_radiance += glow.path_radiance(height_m, direction, distance_m);
+                }
+                optics
+            }
+            Veil::ExponentialSquared(density, colour) => {
+                legacy::exponential_squared(*density, distance_m, *colour)
+            }
+            Veil::Linear(start, end, colour) => legacy::linear(*start, *end, distance_m, *colour),
+            Veil::Encoded(extinction, colour) => {
+                let transmittance = (-extinction * distance_m).exp() as f32;
+                PathOptics {
+                    transmittance: Spectrum::splat(transmittance),
+                    path_radiance: *colour * (1.0 - transmittance),
+                }
+            }
+        }
+    }
+
+    /// A colour seen through it.
+    pub fn apply(&self, optics: &PathOptics<3>, colour: Spectrum<3>) -> Spectrum<3> {
+        let Veil::Encoded(_, fog) = self.veil else {
+            return optics.apply(colour);
+        };
+        let part = optics.transmittance[0];
+        if part == 1.0 {
+            return colour;
+        }
+        Spectrum::from_fn(|i| decode(encode(colour[i]) * part + encode(fog[i]) * (1.0 - part)))
+    }
+}
+
 impl Body<'_> {
     fn optics(&self, eye_height_m: f64, direction: DVec3, distance_m: f64) -> PathOptics<3> {
         match self {
@@ -72,43 +135,62 @@ impl Body<'_> {
     }
 }
 
-impl Veil<'_> {
-    /// What it does up to a distance (m; infinite: the sky) in a direction from an eye at a height (m).
-    pub fn optics(&self, eye_height_m: f64, direction: DVec3, distance_m: f64) -> PathOptics<3> {
-        match self {
-            Self::Fog(body, glow) => {
-                let mut optics = body.optics(eye_height_m, direction, distance_m);
-                if let Some(glow) = glow {
-                    optics.path_radiance += glow.path_radiance(eye_height_m, direction, distance_m);
-                }
-                optics
-            }
-            Self::ExponentialSquared(density, colour) => {
-                legacy::exponential_squared(*density, distance_m, *colour)
-            }
-            Self::Linear(start, end, colour) => legacy::linear(*start, *end, distance_m, *colour),
-            Self::Encoded(extinction, colour) => {
-                let transmittance = (-extinction * distance_m).exp() as f32;
-                PathOptics {
-                    transmittance: Spectrum::splat(transmittance),
-                    path_radiance: *colour * (1.0 - transmittance),
-                }
-            }
-        }
-    }
+/// Steps of the tables of the sRGB curve.
+const STEPS: usize = 4096;
 
-    /// A colour seen through it.
-    pub(super) fn apply(&self, optics: &PathOptics<3>, colour: Spectrum<3>) -> Spectrum<3> {
-        let Self::Encoded(_, fog) = self else {
-            return optics.apply(colour);
-        };
-        let part = f64::from(optics.transmittance[0]);
-        if part == 1.0 {
-            return colour;
+/// The sRGB signal of the square of each step.
+static SIGNALS: LazyLock<Vec<f32>> = LazyLock::new(|| {
+    let step = |k| f64::from(k) / STEPS as f64;
+    (0..=STEPS as u32)
+        .map(|k| srgb_encode(step(k).powi(2)) as f32)
+        .collect()
+});
+
+/// The linear value of each step.
+static LINEAR: LazyLock<Vec<f32>> = LazyLock::new(|| {
+    let step = |k| f64::from(k) / STEPS as f64;
+    (0..=STEPS as u32)
+        .map(|k| srgb_decode(step(k)) as f32)
+        .collect()
+});
+
+/// [`srgb_encode`] to 1e-6.
+fn encode(linear: f32) -> f32 {
+    match linear {
+        0.004..=1.0 => between(&SIGNALS, linear.sqrt()),
+        _ => srgb_encode(f64::from(linear)) as f32,
+    }
+}
+
+/// [`srgb_decode`] to 1e-6.
+fn decode(signal: f32) -> f32 {
+    match signal {
+        0.0..=1.0 => between(&LINEAR, signal),
+        _ => srgb_decode(f64::from(signal)) as f32,
+    }
+}
+
+/// A table from 0 to 1 at a place.
+#[inline]
+fn between(table: &[f32], place: f32) -> f32 {
+    let x = place * STEPS as f32;
+    let k = (x as usize).min(STEPS - 1);
+    let part = x - k as f32;
+    table[k] + part * (table[k + 1] - table[k])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tables_of_the_curve_are_the_curve() {
+        for k in -100..=20_000 {
+            let x = k as f32 / 17_000.0;
+            let (signal, linear) = (srgb_encode(f64::from(x)), srgb_decode(f64::from(x)));
+            assert!((f64::from(encode(x)) - signal).abs() < 1e-6, "{x}");
+            assert!((f64::from(decode(x)) - linear).abs() < 1e-6, "{x}");
         }
-        Spectrum::from_fn(|i| {
-            let of = |value: f32| srgb_encode(f64::from(value));
-            srgb_decode(of(colour[i]) * part + of(fog[i]) * (1.0 - part)) as f32
-        })
+        assert!(encode(f32::NAN).is_nan() && encode(f32::INFINITY) == f32::INFINITY);
     }
 }

@@ -55,5 +55,5 @@ pub use crate::medium::visibility;
 pub use light::{Ground, Light, Scattering, Sun};
 pub use line::Line;
 pub use matter::{FogError, Layer, Matter};
-pub use model::Fog;
+pub use model::{Fog, FogTable};
 pub use profile::{Profile, ProfileError};

@@ -230,7 +230,7 @@ impl<const N: usize> Fog<N> {
         };
         let (smooth, peaked) = (through(near.smooth_depth), through(near.peaked_depth));
         let most = smooth.max_element().max(peaked.max_element());
-        if most < 1e-7 {
+        if most < 1e-7 * depth.max_element().min(1.0) {
             return path;
         }
         let (beyond, boundary) = self.beyond(field, line);
@@ -343,6 +343,9 @@ impl Towards {
         }
     }
 }
+
+mod table;
+pub use table::FogTable;
 
 #[cfg(test)]
 mod tests;

@@ -295,8 +295,25 @@ fn a_line_may_be_cut_anywhere() {
             matter: molecules(3e-4),
         },
     ];
+    let alone = |profile| {
+        vec![Layer {
+            profile,
+            matter: droplets(0.02),
+        }]
+    };
+    let (uniform, slab) = (
+        alone(Profile::Uniform),
+        alone(Profile::Slab { top_height_m: 50.0 }),
+    );
+    let clamped = alone(Profile::Clamped {
+        base_height_m: 45.0,
+        scale_height_m: 9.0,
+    });
     for (layers, ground, tolerance) in [
         (&one, Ground::FLAT, 1e-5),
+        (&uniform, Ground::FLAT, 1e-5),
+        (&slab, Ground::FLAT, 1e-5),
+        (&clamped, Ground::FLAT, 1e-5),
         (&two, Ground::FLAT, 1e-3),
         (&one, EARTH, 1e-3),
     ] {
@@ -318,7 +335,8 @@ fn a_line_may_be_cut_anywhere() {
                             (of(&joined)[lane], of(&whole)[lane])
                         };
                         for (a, b) in [pair(|p| p.transmittance), pair(|p| p.path_radiance)] {
-                            assert!((a / b - 1.0).abs() < tolerance, "{climb} {cut}: {a} {b}");
+                            // Of a line above the fog both are 0.
+                            assert!((a - b).abs() <= tolerance * b, "{climb} {cut}: {a} {b}");
                         }
                     }
                 }
@@ -339,6 +357,10 @@ fn fog_that_loses_nothing_is_invisible_in_light_that_is_the_same_everywhere() {
     for profile in [
         Profile::Uniform,
         Profile::Slab { top_height_m: 30.0 },
+        Profile::Clamped {
+            base_height_m: 20.0,
+            scale_height_m: 5.0,
+        },
         Profile::Exponential {
             reference_height_m: 0.0,
             scale_height_m: 60.0,
@@ -408,6 +430,53 @@ fn transmittance_keeps_between_nothing_and_all_and_falls_with_distance() {
                 before = optics.transmittance;
             }
         }
+    }
+}
+
+/// The closed form in f64, for one wavelength: the sun's own way through exponential fog included (ERRATA's extension).
+#[test]
+fn sunlight_in_exponential_fog_is_exact_in_f64() {
+    use crate::fog::scatter;
+    for scale_height_m in [1e-2, 1.0, 50.0, 1e4, 1e7] {
+        let profile = Profile::Exponential {
+            reference_height_m: 0.0,
+            scale_height_m,
+        };
+        let mut tested = 0;
+        for (climb, sine, length_m, depth) in [0.0, 1e-9, -1e-9, 0.02, 0.5, -0.5, 1.0, -1.0]
+            .into_iter()
+            .flat_map(|climb| [0.01, 0.5, 1.0].map(|sine| (climb, sine)))
+            .flat_map(|(climb, sine)| [1e-6, 1.0, 1e3, 1e7].map(|l| (climb, sine, l)))
+            .flat_map(|(c, s, l)| [1e-6, 0.3, 8.0].map(|depth| (c, s, l, depth)))
+        {
+            // An extinction that leaves this vertical optical depth above the eye.
+            let extinction = depth / scale_height_m;
+            let line = Line::flat(0.0, climb, length_m);
+            let along = extinction * profile.column(&line);
+            let near = depth / sine;
+            if along > 40.0 || near > 100.0 || climb * length_m < -3.0 * scale_height_m {
+                continue;
+            }
+            tested += 1;
+            let got = scatter::once(near, along * (1.0 - climb / sine), along);
+            // Steps that crowd to both ends.
+            let mut breaks: Vec<f64> = (0..60)
+                .map(|k| length_m * 0.6f64.powi(k))
+                .flat_map(|step| [step, length_m - step])
+                .collect();
+            breaks.sort_by(f64::total_cmp);
+            let exact = integrate_by(&gauss_legendre(16), 0.0, length_m, &breaks, |s| {
+                let height = line.height_at(s);
+                let seen = extinction * profile.column(&line.part(0.0, s));
+                let lit = extinction * profile.column_above(height) / sine;
+                extinction * profile.density(height) * (-seen - lit).exp()
+            });
+            assert!(
+                (got - exact).abs() < 1e-6 * exact + 1e-280,
+                "{scale_height_m} {climb} {sine} {length_m} {depth}: {got:e} {exact:e}"
+            );
+        }
+        assert!(tested > 60, "{tested}");
     }
 }
 

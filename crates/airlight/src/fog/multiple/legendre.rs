@@ -36,8 +36,23 @@ static FACTORS: LazyLock<[(f64, f64); COUNT]> = LazyLock::new(|| {
 /// `sqrt((l - m)! / (l + m)!) P_l^m(mu)` for all pairs, without the sign `(-1)^m`.
 #[inline]
 pub fn evaluate(mu: f64) -> [f64; COUNT] {
+    with_sine(mu, (1.0 - mu * mu).max(0.0).sqrt())
+}
+
+/// [`evaluate`] of the pairs of one `m`, over the `m`-th power of the sine of the polar angle: polynomials of `mu`, without
+/// a root at the poles. All others are 0.
+pub fn of_mode(mu: f64, m: usize) -> [f32; COUNT] {
+    let all = with_sine(mu, 1.0);
+    let mut values = [0.0; COUNT];
+    for l in m..STREAMS {
+        values[index(l, m)] = all[index(l, m)] as f32;
+    }
+    values
+}
+
+#[inline(always)]
+fn with_sine(mu: f64, sine: f64) -> [f64; COUNT] {
     let factors = &*FACTORS;
-    let sine = (1.0 - mu * mu).max(0.0).sqrt();
     let mut values = [0.0; COUNT];
     let mut diagonal = 1.0;
     for m in 0..STREAMS {

@@ -12,5 +12,5 @@ mod ordinates;
 mod peak;
 
 pub(super) use field::{DirectionWeights, Field, Reduced};
-pub(super) use legendre::{STREAMS, in_direction};
+pub(super) use legendre::{STREAMS, in_direction, of_mode};
 pub(super) use peak::Peak;

@@ -1,0 +1,149 @@
+//! Light scattered many times in fog, against the Monte Carlo on the sphere: a method that shares nothing with the fog's but
+//! the phase functions.
+
+use airlight::axes::direction;
+use airlight::fog::{Fog, Ground, Layer, Light, Matter, Profile, Scattering, Sun, droplets};
+use airlight::light::SunDisc;
+use airlight::medium::{Atmosphere, Constituent, DensityProfile, Planet};
+use airlight::optics::PhaseFunction;
+use airlight::sky::monte_carlo::{MonteCarlo, MonteCarloSettings};
+use airlight::spectrum::{SpectralCurve, Spectrum, WavelengthGrid};
+use std::f32::consts::PI;
+
+/// Height of the fog's top, m.
+const TOP_M: f64 = 100.0;
+/// Height of the eye, m.
+const EYE_M: f64 = 2.0;
+const GROUND_ALBEDO: f64 = 0.2;
+/// Azimuth of the sun, degrees.
+const SUN_DEG: f64 = 180.0;
+
+/// A slab of fog of a vertical optical depth that absorbs nothing.
+struct Scene {
+    depth: f64,
+    phase: PhaseFunction,
+    sun_elevation_deg: f64,
+}
+
+impl Scene {
+    fn extinction_per_m(&self) -> f64 {
+        self.depth / TOP_M
+    }
+
+    /// The fog, over ground as round as the Earth.
+    fn fog(&self) -> Fog<1> {
+        let matter = Matter {
+            extinction_per_m: Spectrum([self.extinction_per_m() as f32]),
+            single_scattering_albedo: Spectrum::ONE,
+            phase: self.phase.clone(),
+        };
+        let light = Light {
+            sun: Some(Sun {
+                direction: direction(SUN_DEG, self.sun_elevation_deg),
+                irradiance: Spectrum::ONE,
+            }),
+            ambient: Spectrum::ZERO,
+            ground_albedo: Spectrum([GROUND_ALBEDO as f32]),
+        };
+        let profile = Profile::Slab {
+            top_height_m: TOP_M,
+        };
+        let layers = [Layer { profile, matter }];
+        Fog::new(&layers, Ground::EARTH, light, Scattering::Multiple).unwrap()
+    }
+
+    /// The same as the only air of a planet.
+    fn planet(&self) -> MonteCarlo {
+        let air = Atmosphere {
+            name: "fog".to_owned(),
+            planet: Planet {
+                radius_m: Ground::EARTH.radius_m,
+                top_altitude_m: TOP_M,
+                ground_altitude_m: 0.0,
+                ground_albedo: SpectralCurve::Constant(GROUND_ALBEDO),
+            },
+            constituents: vec![Constituent {
+                name: "drops".to_owned(),
+                density: DensityProfile::Layer {
+                    bottom_m: 0.0,
+                    top_m: TOP_M,
+                },
+                scattering_per_m: SpectralCurve::Constant(self.extinction_per_m()),
+                absorption_per_m: SpectralCurve::Constant(0.0),
+                phase: self.phase.clone(),
+            }],
+            solar_irradiance: SpectralCurve::Constant(1.0),
+            sun: SunDisc::default(),
+        };
+        let grid = WavelengthGrid::from_wavelengths_nm(vec![550.0]).unwrap();
+        MonteCarlo::new(&air, &grid, MonteCarloSettings::default()).unwrap()
+    }
+}
+
+/// Azimuths from the sun's and elevations looked to, degrees. The last three are level, or nearly.
+const VIEWS: [(f64, f64); 9] = [
+    (0.0, 90.0),
+    (60.0, 45.0),
+    (180.0, 20.0),
+    (40.0, 5.0),
+    (120.0, 5.0),
+    (180.0, -3.0),
+    (90.0, 1.0),
+    (30.0, 0.0),
+    (90.0, 0.0),
+];
+const SLANT: usize = 6;
+
+/// Errors in percent of the radiance, ground included, in each view.
+fn errors(scene: &Scene) -> Vec<f64> {
+    let (fog, planet) = (scene.fog(), scene.planet());
+    let ground = fog.ground_irradiance().unwrap()[0] * GROUND_ALBEDO as f32 / PI;
+    let mut errors = Vec::new();
+    for (azimuth, elevation) in VIEWS {
+        let view = direction(SUN_DEG + azimuth, elevation);
+        let sun = direction(SUN_DEG, scene.sun_elevation_deg);
+        let truth = planet.radiance_within(2e-3, 1 << 22, EYE_M, sun, view);
+        let (length_m, behind) = match elevation < 0.0 {
+            // Over such a length the ground falls away by less than a part in 1000 of the eye's height.
+            true => (EYE_M / -view.y, ground),
+            false => (f64::INFINITY, 0.0),
+        };
+        let seen = fog.along(EYE_M, view, length_m).apply(Spectrum([behind]))[0];
+        let mean = truth.mean[0];
+        let noise = 100.0 * truth.standard_error[0] / mean;
+        let error = 100.0 * (f64::from(seen) / mean - 1.0);
+        println!("    {azimuth:4} {elevation:4}: {mean:.4e} +- {noise:.2} %, off by {error:6.2} %");
+        assert!(noise < 1.0, "the Monte Carlo is too noisy: {noise} %");
+        // What the noise may hide is no error of the fog's.
+        errors.push((error.abs() - 3.0 * noise).max(0.0));
+    }
+    errors
+}
+
+/// What the book's chapter on fog states.
+#[test]
+#[ignore = "some minutes of random paths"]
+fn many_scatterings_are_those_of_the_monte_carlo() {
+    let drops = droplets::phase(10.0);
+    let peaked = PhaseFunction::HenyeyGreenstein { g: 0.8 };
+    // Optical depth, and bounds in percent of lines that rise or fall, and of level ones.
+    let (thin, middling, thick) = ((0.05, 7.0, 35.0), (0.5, 5.0, 15.0), (3.0, 3.0, 3.0));
+    for (name, phase, sun_elevation_deg, fogs) in [
+        ("g 0.8", &peaked, 30.0, &[thin, middling, thick][..]),
+        ("g 0.8", &peaked, 5.0, &[thin, middling, thick]),
+        ("drops of 10 um", &drops, 30.0, &[thin, middling]),
+    ] {
+        for &(depth, slant, level) in fogs {
+            println!("{name}, sun {sun_elevation_deg}, optical depth {depth}");
+            let errors = errors(&Scene {
+                depth,
+                phase: phase.clone(),
+                sun_elevation_deg,
+            });
+            let worst = |errors: &[f64]| errors.iter().copied().fold(0.0, f64::max);
+            let (slants, levels) = errors.split_at(SLANT);
+            assert!(worst(slants) < slant, "{slants:.2?}");
+            assert!(worst(levels) < level, "{levels:.2?}");
+        }
+    }
+}
