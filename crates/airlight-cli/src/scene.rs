@@ -1,6 +1,6 @@
 //! What is looked at, from where, under which sun: from options to a prepared sky.
 
-use crate::args::{AirArgs, PlaceArgs, QualityArg, ScatteringArg};
+use crate::args::{AirArgs, EffortArg, PlaceArgs, ScatteringArg};
 use crate::atmosphere;
 use crate::error::CliError;
 use crate::moment::Moment;
@@ -24,7 +24,7 @@ pub struct Scene {
     /// How the sun is found.
     pub sun: SunSource,
     scattering: Scattering,
-    quality: QualityArg,
+    effort: EffortArg,
 }
 
 /// How the sun is found.
@@ -132,7 +132,7 @@ impl Scene {
             eye_altitude_m,
             sun,
             scattering,
-            quality: air.quality,
+            effort: air.effort,
         })
     }
 
@@ -146,9 +146,9 @@ impl Scene {
         let settings = SkySettings {
             suns,
             scattering: self.scattering,
-            ..match self.quality {
-                QualityArg::Standard => SkySettings::default(),
-                QualityArg::Fine => SkySettings::fine(),
+            ..match self.effort {
+                EffortArg::Standard => SkySettings::default(),
+                EffortArg::Fine => SkySettings::fine(),
             }
         };
         let sky = Sky::prepare(&self.atmosphere, &self.grid, &settings)?;

@@ -25,7 +25,7 @@ pub enum SolverArg {
 
 /// How finely the orders of scattering are solved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum QualityArg {
+pub enum EffortArg {
     /// Within 1 % in clear air, 3 % in haze.
     Standard,
     /// Twice the heights, more directions and moments.
@@ -76,8 +76,8 @@ pub struct AirArgs {
     #[arg(long, value_enum, default_value_t = SolverArg::Orders)]
     pub solver: SolverArg,
     /// How finely --solver orders solves: fine is within 1 % in haze and under low suns too, and takes five times as long
-    #[arg(long, value_enum, default_value_t = QualityArg::Standard)]
-    pub quality: QualityArg,
+    #[arg(long, value_enum, default_value_t = EffortArg::Standard)]
+    pub effort: EffortArg,
     /// Random paths for each pixel [default: 256] or view [default: 65536]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(128..=1_000_000_000_000))]
     pub paths: Option<u64>,

@@ -13,7 +13,7 @@ mod plot;
 mod probe;
 
 pub use accuracy::{AccuracyArgs, ReportArg};
-pub use air::{AirArgs, QualityArg, ScatteringArg, SolverArg};
+pub use air::{AirArgs, EffortArg, ScatteringArg, SolverArg};
 pub use fog::{DropletsArg, FogArgs, in_words as droplets_in_words};
 pub use overlay::{DepthKindArg, HolesArg, ModelArg, OverlayArgs};
 pub use overlay_light::{AirArg, LampArg, LampKind, LampPlace, LayerShape, OverlayLightArgs};

@@ -1,6 +1,6 @@
 //! The light that fog over a picture is in: the picture's own, or that of a solved sky at the picture's level.
 
-use crate::args::{AirArg, AirArgs, OverlayArgs, PlaceArgs, QualityArg, ScatteringArg, SolverArg};
+use crate::args::{AirArg, AirArgs, EffortArg, OverlayArgs, PlaceArgs, ScatteringArg, SolverArg};
 use crate::error::CliError;
 use crate::parse;
 use crate::scene::{Scene, Sun};
@@ -55,7 +55,7 @@ impl SolvedSky {
             wavelengths: "standard".to_owned(),
             scattering: ScatteringArg::All,
             solver: SolverArg::Orders,
-            quality: QualityArg::Standard,
+            effort: EffortArg::Standard,
             paths: None,
             seed: None,
             threads: None,
