@@ -75,6 +75,22 @@ fn stopped_while_solving() {
 }
 
 #[test]
+fn random_paths_leave_the_picture_of_the_last_pass() {
+    let folder = Folder::new();
+    let words = "sky --sun-elevation 30 --wavelengths rgb --size 8x4 --solver monte-carlo --paths 1000000000 -o a.exr";
+    let child = spawn(&folder, words);
+    let start = Instant::now();
+    while !folder.file("a.exr").exists() {
+        assert!(start.elapsed() < Duration::from_secs(240));
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    let (code, error) = stop(child, Signal::SIGINT);
+    assert_eq!(code, Some(130), "{error}");
+    assert_eq!(folder.names(), ["a.exr"]);
+    assert_eq!(common::Exr::read(&folder.file("a.exr")).width, 8);
+}
+
+#[test]
 fn a_stopped_sequence_keeps_its_whole_frames_and_goes_on() {
     let folder = Folder::new();
     let words = "sky --wavelengths rgb --scattering single --at 50,10 --when 2026-06-21T10:00:00Z --until +2h \
