@@ -44,22 +44,20 @@ fn skies_agree_with_the_monte_carlo_down_to_deep_twilight() {
     assert!(checks.iter().all(|check| check.rows.len() == 27));
 }
 
-/// 1 % by day and 3 % in twilight, whatever the haze.
+/// 1 % by day and 3 % in twilight in clear air and haze; in desert dust 1 % with the sun at 3 degrees or more, 4 % below.
 #[test]
 #[ignore = "the finest settings solved 24 times"]
 fn fine_settings_agree_with_the_monte_carlo() {
     for mut check in skies::against_truth(&SkySettings::fine()) {
         print(&check);
         let by_day = check.rows[0].at.sun_zenith_deg < 90.0;
-        check.limit = Some(if by_day { 1.0 } else { 3.0 });
-        println!(
-            "  {}",
-            if check.holds() {
-                "holds"
-            } else {
-                "does not hold"
-            }
-        );
+        let dust = check.what.contains("desert") && check.rows[0].at.sun_zenith_deg > 88.0;
+        check.limit = Some(match (dust, by_day) {
+            (true, _) => 4.0,
+            (false, true) => 1.0,
+            (false, false) => 3.0,
+        });
+        assert!(check.holds(), "{}: {:?}", check.what, check.broken());
     }
 }
 

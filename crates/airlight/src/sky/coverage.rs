@@ -26,6 +26,18 @@ impl SunCoverage {
         }
     }
 
+    /// Whether suns are among them from which only thin air is lit.
+    pub(super) fn are_low(self) -> bool {
+        /// Where the light of panels that end too low begins to be missed, degrees.
+        const LOW_DEG: f64 = 8.0;
+        match self {
+            Self::Near {
+                sun_elevation_deg, ..
+            } => sun_elevation_deg < LOW_DEG,
+            Self::All => true,
+        }
+    }
+
     /// Zenith angles of the sun, increasing (degrees), at which the light inside the air is solved for.
     pub(super) fn sun_zeniths_deg(self, ground_radius_m: f64, top_radius_m: f64) -> Vec<f64> {
         let Self::Near {

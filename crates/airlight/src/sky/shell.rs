@@ -28,11 +28,11 @@ pub struct Shell {
 }
 
 impl Shell {
-    /// Works out panels and column tables of `atmosphere`.
+    /// Works out panels and column tables of `atmosphere`; for suns so low that thin air sheds the light, or not.
     ///
     /// # Errors
     /// [`SkyError::TooManyConstituents`] above [`MAX_CONSTITUENTS`].
-    pub fn new(atmosphere: &Atmosphere) -> Result<Self, SkyError> {
+    pub fn new(atmosphere: &Atmosphere, low_sun: bool) -> Result<Self, SkyError> {
         let planet = &atmosphere.planet;
         if atmosphere.constituents.len() > MAX_CONSTITUENTS {
             return Err(SkyError::TooManyConstituents(atmosphere.constituents.len()));
@@ -52,7 +52,7 @@ impl Shell {
             })
             .collect();
         let (bottom, top) = (planet.ground_altitude_m, planet.top_altitude_m);
-        let panel_radii_m = panel_altitudes_m(&densities, &scatters, bottom, top)
+        let panel_radii_m = panel_altitudes_m(&densities, &scatters, (bottom, top), low_sun)
             .into_iter()
             .map(|altitude| planet.radius_m + altitude)
             .collect();
@@ -203,15 +203,16 @@ pub struct Stretch {
 fn panel_altitudes_m(
     densities: &[DensityProfile],
     scatters: &[bool],
-    bottom: f64,
-    top: f64,
+    (bottom, top): (f64, f64),
+    low_sun: bool,
 ) -> Vec<f64> {
     const PANEL_DECAY: f64 = 1.7;
     const SAMPLES: usize = 4000;
     let altitude = |i: usize| bottom + (top - bottom) * (i as f64 / SAMPLES as f64).powi(2);
     // Below this share of its peak a constituent no longer asks for panels of its own. In twilight all light comes from
-    // thin air above the planet's shadow: with 3e-3 instead of 1e-5 the sky is 8 % off with the sun at -2 degrees, 20 % at -6.
-    let least = |scatters: bool| if scatters { 1e-5 } else { 0.1 };
+    // thin air above the planet's shadow: with 3e-3 the sky is 1 % off with the sun at 2 degrees, 8 % at -2, 20 % at -6.
+    let thinnest = if low_sun { 1e-5 } else { 3e-3 };
+    let least = |scatters: bool| if scatters { thinnest } else { 0.1 };
     let floors: Vec<f64> = densities
         .iter()
         .zip(scatters)

@@ -48,7 +48,7 @@ impl Default for SkySettings {
                 first: Directions {
                     zenith_nodes: [7, 5, 8],
                     azimuths: 12,
-                    panel_nodes: 3,
+                    panel_nodes: 2,
                 },
                 later: Directions {
                     zenith_nodes: [4, 4, 5],
@@ -70,9 +70,9 @@ impl SkySettings {
             ..Self::default()
         };
         let orders = &mut settings.orders;
-        (orders.degree, orders.peak_degree, orders.rescattered_degree) = (12, 14, 8);
+        (orders.degree, orders.peak_degree, orders.rescattered_degree) = (12, 12, 8);
         orders.later.zenith_nodes = [8, 8, 10];
-        orders.later.panel_nodes = 3;
+        (orders.first.panel_nodes, orders.later.panel_nodes) = (3, 3);
         settings
     }
 
@@ -163,7 +163,7 @@ impl Sky {
     ) -> Result<Self, SkyError> {
         settings.validate()?;
         atmosphere.validate()?;
-        let shell = Arc::new(Shell::new(atmosphere)?);
+        let shell = Arc::new(Shell::new(atmosphere, settings.suns.are_low())?);
         let grid = grid.clone().with_solar(&atmosphere.solar_irradiance);
         let blocks = block::solve(atmosphere, &shell, grid.wavelengths_nm(), settings)?;
         Ok(Self {
