@@ -131,5 +131,5 @@ fn two_monte_carlos_differ_by_noise() {
 #[test]
 #[ignore = "minutes: all directions with many paths"]
 fn two_monte_carlos_differ_by_noise_everywhere() {
-    hold(1, 65_536, 1000);
+    hold(1, 65_536, 912);
 }

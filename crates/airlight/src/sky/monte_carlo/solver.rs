@@ -149,7 +149,9 @@ impl MonteCarlo {
     }
 
     /// Goes on until the standard error of the worst wavelength (of those brighter than 1e-3 of the brightest) is
-    /// below `relative_error` of its mean, or `most_paths` are followed.
+    /// below `relative_error` of its mean, or `most_paths` are followed. Where few paths carry much of the light (a narrow
+    /// peak seen by way of the ground, deep twilight) it can stop before it has met one: the error told is too small then,
+    /// and a fixed number of paths ([`MonteCarlo::radiance`]) is safer.
     pub fn radiance_within(
         &self,
         relative_error: f64,
