@@ -17,13 +17,7 @@ Sources
 
 import sys
 
-
-def write(path, header, rows):
-    with open(path, "w", encoding="ascii", newline="\n") as out:
-        for line in header:
-            out.write(f"# {line}\n")
-        for row in rows:
-            out.write(" ".join(row) + "\n")
+from embedded_table import write
 
 
 def solar(source, path):

@@ -43,6 +43,15 @@ fn wait_for_part(folder: &Folder) {
     }
 }
 
+/// Waits until a file is there, whole.
+fn wait_for_file(folder: &Folder, name: &str) {
+    let start = Instant::now();
+    while !folder.file(name).exists() {
+        assert!(start.elapsed() < Duration::from_secs(240));
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
 #[test]
 fn stopped_while_writing() {
     let words =
@@ -79,11 +88,7 @@ fn random_paths_leave_the_picture_of_the_last_pass() {
     let folder = Folder::new();
     let words = "sky --sun-elevation 30 --wavelengths rgb --size 8x4 --solver monte-carlo --paths 1000000000 -o a.exr";
     let child = spawn(&folder, words);
-    let start = Instant::now();
-    while !folder.file("a.exr").exists() {
-        assert!(start.elapsed() < Duration::from_secs(240));
-        std::thread::sleep(Duration::from_millis(5));
-    }
+    wait_for_file(&folder, "a.exr");
     let (code, error) = stop(child, Signal::SIGINT);
     assert_eq!(code, Some(130), "{error}");
     assert_eq!(folder.names(), ["a.exr"]);
@@ -96,11 +101,7 @@ fn a_stopped_sequence_keeps_its_whole_frames_and_goes_on() {
     let words = "sky --wavelengths rgb --scattering single --at 50,10 --when 2026-06-21T10:00:00Z --until +2h \
                  --every 1h --size 512x256 -o a.png";
     let child = spawn(&folder, &words.replace("512x256", "8192x4096"));
-    let start = Instant::now();
-    while !folder.file("a.0001.png").exists() {
-        assert!(start.elapsed() < Duration::from_secs(240));
-        std::thread::sleep(Duration::from_millis(5));
-    }
+    wait_for_file(&folder, "a.0001.png");
     let (code, error) = stop(child, Signal::SIGINT);
     assert_eq!(code, Some(130), "{error}");
     let names = folder.names();

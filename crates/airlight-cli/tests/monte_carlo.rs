@@ -125,6 +125,10 @@ fn what_does_not_go_together_is_refused() {
             "128",
         ),
         (
+            "sky --sun-elevation 5 --wavelengths rgb --solver monte-carlo --size 20000x20000 -o a.png",
+            "--size",
+        ),
+        (
             "probe --sun-elevation 5 --solver monte-carlo --view 0,5 --distance-m 100",
             "--distance-m",
         ),

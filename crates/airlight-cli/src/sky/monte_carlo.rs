@@ -88,6 +88,7 @@ pub fn write(
         true => painter.weights.len(),
         false => 3,
     };
+    check_memory(files, channels)?;
     let mut canvases: Vec<Option<Canvas>> = files
         .iter()
         .map(|file| (file.layer != Layer::Disc).then(|| Canvas::new(file.frame, channels)))
@@ -123,6 +124,24 @@ pub fn write(
             say_noise(drawing, canvases.iter().flatten());
             return Ok(written);
         }
+    }
+}
+
+/// Refuses pictures too large to be kept while they are drawn.
+fn check_memory(files: &[PictureFile], channels: usize) -> Result<(), CliError> {
+    const MOST_GB: f64 = 8.0;
+    let drawn = files.iter().filter(|file| file.layer != Layer::Disc);
+    let pixels: f64 = drawn
+        .map(|file| f64::from(file.frame.size().width()) * f64::from(file.frame.size().height()))
+        .sum();
+    let bytes = size_of::<Colour>() + channels * size_of::<f64>();
+    let need_gb = 1e-9 * pixels * bytes as f64;
+    match need_gb <= MOST_GB {
+        true => Ok(()),
+        false => Err(CliError::usage(format!(
+            "pictures by random paths are kept in memory while they are drawn: this one takes {need_gb:.0} GB, and at most \
+             {MOST_GB} are taken; give a smaller --size"
+        ))),
     }
 }
 
