@@ -9,6 +9,7 @@ use airlight::sky::SkySettings;
 
 /// A table of skies made by one solver.
 struct Source {
+    suite: Suite,
     text: &'static str,
     against: &'static str,
     /// What it may itself be off by on top of our claim, percent.
@@ -27,6 +28,7 @@ const MONTE_CARLO: [Source; 3] = [
 
 const fn monte_carlo(text: &'static str) -> Source {
     Source {
+        suite: Suite::Tables,
         text,
         against: "Monte Carlo on the sphere",
         own_error: 0.0,
@@ -44,6 +46,7 @@ const TRUTH: [Source; 3] = [
 
 const fn truth(text: &'static str, claims: [f64; 2]) -> Source {
     Source {
+        suite: Suite::MonteCarlo,
         text,
         against: "Airlight's Monte Carlo",
         own_error: 0.0,
@@ -61,6 +64,7 @@ const SASKTRAN: [Source; 3] = [
 
 const fn sasktran(text: &'static str, own_error: f64) -> Source {
     Source {
+        suite: Suite::Tables,
         text,
         against: "SASKTRAN2",
         own_error,
@@ -72,16 +76,6 @@ const fn sasktran(text: &'static str, own_error: f64) -> Source {
 /// Plane-parallel: compared where neither sun nor view is farther than 75 degrees from the zenith.
 const LIBRADTRAN: &str = include_str!("../data/libradtran_fixed.csv");
 const PEERS: &str = include_str!("../data/csm_sky_radiance_10wl.csv");
-
-impl Source {
-    /// Which comparisons it belongs to.
-    fn suite(&self) -> Suite {
-        match self.against == TRUTH[0].against {
-            true => Suite::MonteCarlo,
-            false => Suite::Tables,
-        }
-    }
-}
 
 /// What a row of a table says: which atmosphere, and which light.
 struct Case {
@@ -127,7 +121,7 @@ impl Case {
 }
 
 /// An atmosphere of the tables, and the three wavelengths at which its coefficients are those of their columns, nm.
-fn atmosphere(name: &str) -> (Atmosphere, [f64; 3]) {
+pub fn atmosphere(name: &str) -> (Atmosphere, [f64; 3]) {
     match name {
         "a0.0" => (reference::rayleigh(0.0), [440.0, 550.0, 680.0]),
         "a0.3" => (reference::rayleigh(0.3), [440.0, 550.0, 680.0]),
@@ -159,7 +153,7 @@ pub fn truth_air(name: &str) -> Option<Atmosphere> {
 }
 
 /// The wavelength of a channel, by its number in [`atmosphere`].
-fn lane(channel: &str) -> usize {
+pub fn lane(channel: &str) -> usize {
     match channel.trim_start_matches("L_").trim_start_matches("beta") {
         "33.1e-6" | "440" | "442.25" => 0,
         "13.5e-6" | "550" | "548" => 1,
@@ -218,7 +212,7 @@ fn against(source: &Source, settings: &SkySettings) -> Vec<Check> {
                 "all orders"
             };
             let check = Check {
-                suite: source.suite(),
+                suite: source.suite,
                 what: format!(
                     "{light}, {}, sun zenith {}",
                     case.atmosphere, case.sun_zenith_deg

@@ -1,9 +1,9 @@
 //! Airlight's Monte Carlo against that of others: two codes, one physics, so what differs must be noise.
 
 use airlight::axes::direction;
-use airlight::medium::{Atmosphere, reference};
 use airlight::sky::monte_carlo::{Estimate, MonteCarlo, MonteCarloSettings};
 use airlight::spectrum::WavelengthGrid;
+use airlight_accuracy::skies::{atmosphere, lane};
 use airlight_accuracy::table::{Line, Table};
 
 const TABLES: [&str; 3] = [
@@ -11,26 +11,6 @@ const TABLES: [&str; 3] = [
     include_str!("../data/mc_sphere_earth_demo.csv"),
     include_str!("../data/mc_sphere_csm.csv"),
 ];
-
-/// An atmosphere of the tables with its wavelengths and the names of its channels.
-fn air(config: &str) -> (Atmosphere, [f64; 3], [&'static str; 3]) {
-    let rayleigh = ["33.1e-6", "13.5e-6", "5.8e-6"];
-    match config {
-        "a0.0" => (reference::rayleigh(0.0), [440.0, 550.0, 680.0], rayleigh),
-        "a0.3" => (reference::rayleigh(0.3), [440.0, 550.0, 680.0], rayleigh),
-        "earth_demo" => (
-            reference::earth_demo(),
-            [440.0, 550.0, 680.0],
-            ["440", "550", "680"],
-        ),
-        "csm" => (
-            reference::csm(),
-            [442.25, 548.0, 677.25],
-            ["442.25", "548", "677.25"],
-        ),
-        other => panic!("a table speaks of an atmosphere '{other}'"),
-    }
-}
 
 /// A line's sun and view.
 fn angles(line: &Line<'_>) -> [f64; 3] {
@@ -50,7 +30,7 @@ fn deviations(stride: usize, paths: u64) -> (Vec<f64>, Vec<f64>) {
         for line in &lines {
             let config = line.text("config");
             if solver.as_ref().is_none_or(|(name, _)| *name != config) {
-                let (air, wavelengths, _) = air(config);
+                let (air, wavelengths) = atmosphere(config);
                 let grid = WavelengthGrid::from_wavelengths_nm(wavelengths.to_vec()).unwrap();
                 let settings = MonteCarloSettings {
                     paths,
@@ -74,11 +54,8 @@ fn deviations(stride: usize, paths: u64) -> (Vec<f64>, Vec<f64>) {
                 looked = Some((at, sky.radiance(0.0, sun, view)));
             }
             let Some((_, found)) = &looked else { continue };
-            let (air, wavelengths, channels) = air(config);
-            let lane = channels
-                .iter()
-                .position(|name| *name == line.text("channel"))
-                .unwrap();
+            let (air, wavelengths) = atmosphere(config);
+            let lane = lane(line.text("channel"));
             let solar =
                 air.solar_irradiance.at(wavelengths[lane]) / sky.grid().solar_irradiance()[lane];
             let ours = found.mean[lane] * solar;

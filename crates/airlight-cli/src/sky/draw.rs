@@ -20,9 +20,7 @@ use airlight_render::output::jpeg::JpegOptions;
 use airlight_render::output::png::{PngDepth, PngOptions};
 use airlight_render::output::{AtomicFile, Written, spectral};
 use airlight_render::tone::{ToneCurve, ToneMapper};
-use airlight_render::{
-    Control, Frame, PictureFormat, PictureOptions, Progress, RowSource, write_picture,
-};
+use airlight_render::{Control, Frame, PictureFormat, PictureOptions, RowSource, write_picture};
 use glam::DVec3;
 use std::path::Path;
 use std::sync::Arc;
@@ -168,9 +166,10 @@ impl Drawing<'_> {
             return monte_carlo::write(self, shot, files, settings, bar);
         }
         let tone = self.tone(shot)?;
+        let control = Control::cancelled_by(&STOP).reporting_to(bar);
         let mut written = Vec::with_capacity(files.len());
         for file in files {
-            written.push(self.write_file(shot, file, (None, &tone), bar)?);
+            written.push(self.write_file(shot, file, (None, &tone), control)?);
             bar.file_done(u64::from(file.frame.size().height()));
         }
         Ok(written)
@@ -196,7 +195,7 @@ impl Drawing<'_> {
         shot: &Shot<'_>,
         file: &PictureFile,
         (solved, tone): (Option<&[f32]>, &ToneMapper),
-        progress: &dyn Progress,
+        control: Control<'_>,
     ) -> Result<Written, CliError> {
         let linear = self.layout.format.is_some_and(PictureFormat::is_linear);
         let scale = if linear {
@@ -207,7 +206,6 @@ impl Drawing<'_> {
         let rows = self
             .rows(shot, &file.frame, file.layer, scale)
             .with_solved(solved);
-        let control = Control::cancelled_by(&STOP).reporting_to(progress);
         let options = self.options(shot, file);
         let size = file.frame.size();
         Ok(match &self.channels.spectral {

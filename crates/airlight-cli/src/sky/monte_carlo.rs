@@ -13,7 +13,8 @@ use crate::report;
 use airlight::sky::monte_carlo::{BUNDLE, MonteCarlo, MonteCarloSettings, ORDERS};
 use airlight_render::output::Written;
 use airlight_render::rows::StoredRows;
-use airlight_render::{Control, Frame, Progress, write_picture};
+use airlight_render::tone::ToneMapper;
+use airlight_render::{Control, Frame, write_picture};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::sync::atomic::Ordering;
@@ -84,6 +85,8 @@ pub fn write(
 ) -> Result<Vec<Written>, CliError> {
     let painter = Painter::new(drawing, shot, settings)?;
     let tone = drawing.tone(shot)?;
+    // Writing is short beside the paths: its progress is not told.
+    let control = Control::cancelled_by(&STOP);
     let channels = match painter.spectral {
         true => painter.weights.len(),
         false => 3,
@@ -113,9 +116,9 @@ pub fn write(
                 painter.paint(canvas, until, &pass)?;
             }
             let solved = canvas.as_ref().map(Canvas::means);
-            written.push(drawing.write_file(shot, file, (solved.as_deref(), &tone), &Silent)?);
+            written.push(drawing.write_file(shot, file, (solved.as_deref(), &tone), control)?);
             if let Some(canvas) = canvas.as_ref().filter(|_| drawing.args.noise_map) {
-                canvas.write_noise(drawing, shot, file)?;
+                canvas.write_noise(drawing, shot, file, &tone)?;
             }
         }
         done = until;
@@ -143,13 +146,6 @@ fn check_memory(files: &[PictureFile], channels: usize) -> Result<(), CliError> 
              {MOST_GB} are taken; give a smaller --size"
         ))),
     }
-}
-
-/// Nobody hears: writing is short beside the paths.
-struct Silent;
-
-impl Progress for Silent {
-    fn rows_written(&self, _done: u32, _total: u32) {}
 }
 
 fn say_noise<'a>(drawing: &Drawing<'_>, canvases: impl Iterator<Item = &'a Canvas>) {
@@ -202,6 +198,7 @@ impl Canvas {
         drawing: &Drawing<'_>,
         shot: &Shot<'_>,
         file: &PictureFile,
+        tone: &ToneMapper,
     ) -> Result<(), CliError> {
         let size = self.frame.size();
         let scale = drawing.args.picture.scale as f32;
@@ -215,7 +212,7 @@ impl Canvas {
         let path = tagged(&file.path, "noise").with_extension("exr");
         let options = drawing.options(shot, file);
         let control = Control::cancelled_by(&STOP);
-        write_picture(&path, size, &rows, &drawing.tone(shot)?, &options, control)?;
+        write_picture(&path, size, &rows, tone, &options, control)?;
         Ok(())
     }
 }
