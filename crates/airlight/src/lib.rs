@@ -13,8 +13,10 @@
 //! - [`fog`]: closed forms of fog, and lamps in it.
 //! - [`sky`]: the solver for a spherical, multiply scattering atmosphere.
 //! - [`outdoors`]: one lighting of sky, air, fog and ground.
+//! - [`classic`]: published models of the sky, as printed and as corrected.
 
 pub mod axes;
+pub mod classic;
 pub mod fog;
 pub mod light;
 pub mod medium;

@@ -1,0 +1,34 @@
+//! Published models of the sky, each as it was printed and as it is corrected, behind one interface.
+//!
+//! The paper or article behind a model is named in its module, with the numbers of its equations, its errata and what
+//! it differs by from the solver of [`crate::sky`].
+
+use glam::DVec3;
+
+/// A published model of the sky, ready to answer for one eye and one sun.
+///
+/// Colours are CIE 1931 XYZ with `Y` in cd/m^2. Directions are unit vectors that point away from the eye
+/// ([`crate::axes`]). Models without a ground say what they have below the horizon in their own documentation.
+pub trait ClassicSky: Send + Sync {
+    /// Light of the sky along a direction, without the sun's disc.
+    fn sky_xyz(&self, direction: DVec3) -> [f64; 3];
+
+    /// Light of the sun's disc along a direction, dimmed by the air in between; black beside the disc.
+    fn disc_xyz(&self, direction: DVec3) -> [f64; 3];
+
+    /// Light of the sky along one direction after another, for models that reuse what neighbours had: the same as
+    /// [`Self::sky_xyz`] within the tolerance that such a model states.
+    fn walk(&self) -> Box<dyn FnMut(DVec3) -> [f64; 3] + '_> {
+        Box::new(|direction| self.sky_xyz(direction))
+    }
+
+    /// Wavelengths (nm) of the model's spectra; none for models that know colours only.
+    fn wavelengths_nm(&self) -> &[f64] {
+        &[]
+    }
+
+    /// Spectral radiance of the sky (W m^-2 sr^-1 nm^-1) along a direction, at [`Self::wavelengths_nm`].
+    fn sky_spectrum(&self, _direction: DVec3) -> Vec<f64> {
+        Vec::new()
+    }
+}
