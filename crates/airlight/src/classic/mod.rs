@@ -3,6 +3,8 @@
 //! The paper or article behind a model is named in its module, with the numbers of its equations, its errata and what
 //! it differs by from the solver of [`crate::sky`].
 
+pub mod klassen1987;
+
 use glam::DVec3;
 
 /// A published model of the sky, ready to answer for one eye and one sun.
