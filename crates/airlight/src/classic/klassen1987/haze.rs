@@ -33,18 +33,7 @@ pub(super) struct HazeTables {
 impl HazeTables {
     /// The tables of checked settings.
     pub fn new(settings: &Klassen1987Settings) -> Result<Self, Klassen1987Error> {
-        let (extinction, albedo, phase) = match &settings.haze {
-            Haze::Drops(drops) => drop_optics(*drops)?,
-            Haze::Given {
-                extinction,
-                single_scattering_albedo,
-                phase,
-            } => (
-                extinction.clone(),
-                single_scattering_albedo.clone(),
-                phase.clone(),
-            ),
-        };
+        let (extinction, albedo, phase) = settings.haze.optics()?;
         let at_reference = extinction.at(REFERENCE_NM);
         let mut extinction_per_m = Lanes::ZERO;
         let mut scattering_per_m = Vec::with_capacity(extinction_per_m.0.len());
@@ -107,8 +96,26 @@ fn in_range(got: f64, most: f64, what: &'static str) -> Result<f64, Klassen1987E
     }
 }
 
+impl Haze {
+    /// Extinction to any scale, single-scattering albedo and phase function.
+    pub(super) fn optics(&self) -> Result<Optics, MieError> {
+        match self {
+            Self::Drops(drops) => drop_optics(*drops),
+            Self::Given {
+                extinction,
+                single_scattering_albedo,
+                phase,
+            } => Ok((
+                extinction.clone(),
+                single_scattering_albedo.clone(),
+                phase.clone(),
+            )),
+        }
+    }
+}
+
 /// Extinction, albedo and phase function.
-type Optics = (SpectralCurve, SpectralCurve, PhaseFunction);
+pub(super) type Optics = (SpectralCurve, SpectralCurve, PhaseFunction);
 
 /// Those of water drops: built once in a process, and kept.
 fn drop_optics(drops: Drops) -> Result<Optics, MieError> {

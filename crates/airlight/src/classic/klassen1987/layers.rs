@@ -1,8 +1,8 @@
 //! The two layers that stand for an atmosphere.
 
-use super::settings::{Haze, Klassen1987Settings, scatters};
+use super::settings::{Haze, Klassen1987Error, Klassen1987Settings, scatters};
 use crate::medium::aerosol::REFERENCE_NM;
-use crate::medium::{Atmosphere, Constituent, Planet};
+use crate::medium::{Atmosphere, Constituent, DensityProfile, Planet};
 use crate::optics::PhaseFunction;
 use crate::spectrum::SpectralCurve;
 
@@ -45,6 +45,33 @@ impl Klassen1987Settings {
         settings.haze_extinction_per_m = of_haze.optical_depth / thickness_m;
         settings.haze = together(&haze, &atmosphere.planet);
         settings
+    }
+
+    /// The atmosphere that these settings speak of, for the solver: the clear air, as dense as asked for, with the haze as a
+    /// layer of even density. Phase functions are the particles'.
+    ///
+    /// # Errors
+    /// [`Klassen1987Error`] for a number out of its domain.
+    pub fn atmosphere(&self) -> Result<Atmosphere, Klassen1987Error> {
+        self.validate()?;
+        let mut atmosphere = self.dense_clear_air();
+        let (extinction, albedo, phase) = self.haze.optics()?;
+        let scale = self.haze_extinction_per_m / extinction.at(REFERENCE_NM);
+        let ground_m = atmosphere.planet.ground_altitude_m;
+        atmosphere.constituents.push(Constituent {
+            name: "aerosol".into(),
+            density: DensityProfile::Layer {
+                bottom_m: ground_m,
+                top_m: ground_m + self.haze_thickness_m,
+            },
+            scattering_per_m: sampled(|nm| scale * extinction.at(nm) * albedo.at(nm)),
+            absorption_per_m: sampled(|nm| {
+                scale * extinction.at(nm) * (1.0 - albedo.at(nm)).max(0.0)
+            }),
+            phase,
+        });
+        atmosphere.validate()?;
+        Ok(atmosphere)
     }
 }
 

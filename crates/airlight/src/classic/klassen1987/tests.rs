@@ -214,6 +214,24 @@ fn layers_keep_optical_depths() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
+/// There and back: the layers of an atmosphere of layers are those.
+#[test]
+fn an_atmosphere_of_layers_has_those_layers() -> Outcome {
+    let settings = Klassen1987Settings {
+        haze_extinction_per_m: 2e-4,
+        haze_thickness_m: 1.2e3,
+        ..plain()
+    };
+    let again = Klassen1987Settings::of(&settings.atmosphere()?);
+    assert!((again.haze_extinction_per_m / 2e-4 - 1.0).abs() < 1e-6);
+    assert!((again.haze_thickness_m / 1.2e3 - 1.0).abs() < 1e-6);
+    assert_eq!(
+        again.clear_air.constituents,
+        settings.clear_air.constituents
+    );
+    Ok(())
+}
+
 /// A picture with coherence against one without: sRGB codes of 8 bits differ by 1 at most.
 #[test]
 fn coherence() -> Outcome {
