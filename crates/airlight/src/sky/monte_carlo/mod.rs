@@ -18,12 +18,15 @@
 //! ```
 //!
 //! Inside, from the ground up: `layers` (the air in layers in which columns are polynomials), `chord` (a straight way
-//! through them), `lanes` (coefficients by wavelength), `sun`, `path` (a random path), `estimate` (mean and error).
+//! through them), `lanes` (coefficients by wavelength), `sun`, `lit` (the part of a line outside the planet's shadow), `path` (a random
+//! path), `estimate` (mean and error), `solver` (the door in), `finite` (lines that end at a distance).
 
 mod chord;
 mod estimate;
+mod finite;
 mod lanes;
 mod layers;
+mod lit;
 mod path;
 mod solver;
 mod sun;

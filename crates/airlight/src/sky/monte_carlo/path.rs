@@ -9,6 +9,7 @@
 use super::chord::{Chord, End, HalfLine};
 use super::lanes::{self, Lanes, PerScatterer};
 use super::layers::Layers;
+use super::lit::{Lit, Stretch};
 use super::sun::SunShape;
 use crate::light::SunDisc;
 use crate::random::Random;
@@ -25,10 +26,6 @@ pub type ByOrder<const N: usize> = [Spectrum<N>; ORDERS];
 
 /// With this probability a new direction is drawn about the sun instead of about the way so far.
 const TOWARDS_SUN: f64 = 0.2;
-/// With this probability a path that runs partly in the planet's shadow is scattered in its lit part.
-const IN_LIGHT: f64 = 0.5;
-/// A lit part of which less than this share arrives is not looked for: single precision could not tell its density.
-const FARTHEST: f32 = 1e-24;
 /// Paths that carry less than this share of what they carried at the first vertex may be ended.
 const FAINT: f32 = 0.3;
 
@@ -44,6 +41,17 @@ pub struct World<'a, const N: usize> {
     pub disc: &'a SunDisc,
     /// Whether the disc is sampled.
     pub shape: SunShape,
+}
+
+/// A line of sight.
+#[derive(Clone, Copy, Debug)]
+pub struct Line {
+    /// Where it begins, inside the air: m from the planet's centre.
+    pub place: DVec3,
+    /// Unit vector along it.
+    pub direction: DVec3,
+    /// How far it goes, m: only the air up to there is seen. Else, to the ground, which is seen, or to space.
+    pub reach_m: Option<f64>,
 }
 
 /// A path as far as it has come.
@@ -105,13 +113,12 @@ enum Event {
 }
 
 impl<const N: usize> World<'_, N> {
-    /// Follows a path drawn for the lane `hero` from inside the air. `first`, even in `(0, 1)`, says where it is
+    /// Follows a path drawn for the lane `hero` along a line of sight. `first`, even in `(0, 1)`, says where it is
     /// scattered first; `chord` is scratch space.
     #[inline(always)]
     pub fn follow(
         &self,
-        place: DVec3,
-        direction: DVec3,
+        line: &Line,
         hero: usize,
         first: f64,
         random: &mut Random,
@@ -119,8 +126,8 @@ impl<const N: usize> World<'_, N> {
     ) -> ByOrder<N> {
         let mut found = [Spectrum::ZERO; ORDERS];
         let mut path = Path {
-            place,
-            direction,
+            place: line.place,
+            direction: line.direction,
             worth: Spectrum::ONE,
             drawn: Spectrum::ONE,
             order: 0,
@@ -128,8 +135,9 @@ impl<const N: usize> World<'_, N> {
             first_worth: 0.0,
         };
         let mut choice = first;
+        let mut reach_m = line.reach_m;
         loop {
-            match self.advance(&mut path, hero, choice, random, chord) {
+            match self.advance(&mut path, hero, choice, reach_m, random, chord) {
                 Event::Air => {
                     if !self.scatter(&mut path, hero, random, &mut found) {
                         return found;
@@ -142,22 +150,29 @@ impl<const N: usize> World<'_, N> {
                 return found;
             }
             choice = random.unit();
+            reach_m = None;
         }
     }
 
-    /// From the place along the direction to the next vertex. Where the way ends in space a collision is forced.
+    /// From the place along the direction to the next vertex. Where there is nothing to meet at the end of the way, in
+    /// space or at the distance `reach_m`, a collision is forced.
     #[inline(always)]
     fn advance(
         &self,
         path: &mut Path<N>,
         hero: usize,
         choice: f64,
+        reach_m: Option<f64>,
         random: &mut Random,
         chord: &mut Chord,
     ) -> Event {
         let layers = self.layers;
         let line = HalfLine::new(path.place, path.direction);
-        let end = chord.cross(layers, line);
+        let mut end = chord.cross(layers, line);
+        if let Some(reach_m) = reach_m {
+            chord.cut(layers, line.start + reach_m);
+            end = End::Space;
+        }
         let whole_depth = self.lanes.extinction(&chord.columns);
         let absorbed = lanes::absorbed(whole_depth);
         let mut choice = choice;
@@ -341,98 +356,6 @@ impl<const N: usize> World<'_, N> {
             }
         }
         lit
-    }
-}
-
-/// A stretch in the light, and how much of each lane is taken out of the line on it.
-#[derive(Clone, Copy, Debug)]
-struct Stretch<const N: usize> {
-    from: f64,
-    to: f64,
-    absorbed: Spectrum<N>,
-}
-
-/// The lit stretches of a line that is partly in shadow; none of a line that is not.
-#[derive(Clone, Copy, Debug)]
-struct Lit<const N: usize> {
-    stretches: [Stretch<N>; 2],
-    count: usize,
-}
-
-impl<const N: usize> Default for Lit<N> {
-    fn default() -> Self {
-        Self {
-            stretches: [Stretch {
-                from: 0.0,
-                to: 0.0,
-                absorbed: Spectrum::ZERO,
-            }; 2],
-            count: 0,
-        }
-    }
-}
-
-impl<const N: usize> Lit<N> {
-    /// Draws where to be scattered for the lane `hero`; the factor of `extinction * transmittance` in the density with
-    /// which each lane draws that place.
-    #[inline(always)]
-    fn draw(
-        &self,
-        world: &World<'_, N>,
-        chord: &Chord,
-        hero: usize,
-        choice: f64,
-        absorbed: &Spectrum<N>,
-    ) -> (f64, Spectrum<N>) {
-        let lit = &self.stretches[..self.count];
-        let lit_absorbed = lit
-            .iter()
-            .fold(Spectrum::ZERO, |sum, stretch| sum + stretch.absorbed);
-        let chance = lit_absorbed.map(|lit| if lit > FARTHEST { IN_LIGHT as f32 } else { 0.0 });
-        let extinction = world.lanes.extinction_of(hero);
-        let depth_to = |t: f64| -> f64 {
-            let columns = chord.columns_to(world.layers, t);
-            extinction.iter().zip(columns).map(|(e, c)| e * c).sum()
-        };
-        // Where the share `choice` of what is taken out between two places is taken out.
-        let place = |from: f64, to: f64, choice: f64| {
-            let before = depth_to(from);
-            let share = choice * (before - depth_to(to)).exp_m1();
-            chord
-                .at_depth(world.layers, extinction, before - share.ln_1p())
-                .clamp(from, to)
-        };
-        let mut choice = choice;
-        let t = if choice < f64::from(chance[hero]) {
-            choice /= f64::from(chance[hero]);
-            let mut picked = &lit[0];
-            let first = f64::from(picked.absorbed[hero] / lit_absorbed[hero]);
-            if lit.len() > 1 && choice >= first {
-                picked = &lit[1];
-                choice = (choice - first) / (1.0 - first);
-            } else if first > 0.0 {
-                choice /= first;
-            }
-            place(picked.from, picked.to, choice)
-        } else {
-            choice = (choice - f64::from(chance[hero])) / f64::from(1.0 - chance[hero]);
-            place(chord.start(), chord.end(), choice)
-        };
-        let in_light = lit
-            .iter()
-            .any(|stretch| t >= stretch.from && t <= stretch.to);
-        let share = Spectrum::from_fn(|i| {
-            let everywhere = match absorbed[i] > 0.0 {
-                true => (1.0 - chance[i]) / absorbed[i],
-                false => 0.0,
-            };
-            let there = match in_light && chance[i] > 0.0 {
-                true => chance[i] / lit_absorbed[i],
-                false => 0.0,
-            };
-            everywhere + there
-        });
-        (t, share)
     }
 }
 
