@@ -13,6 +13,7 @@ mod args;
 mod atmosphere;
 mod error;
 mod fog;
+mod foggy_air;
 mod interrupt;
 mod light;
 mod moment;

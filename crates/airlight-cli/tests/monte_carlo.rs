@@ -108,6 +108,39 @@ fn a_probe_tells_both_and_the_error() {
     );
 }
 
+/// What the air adds before a thing, and before the ground where the line ends there.
+#[test]
+fn a_probe_may_end_at_a_distance() {
+    let folder = Folder::new();
+    let words = "--sun-elevation 30 --wavelengths 440,550,680 --solver monte-carlo --paths 32768";
+    for (line, ground) in [
+        ("--view 90,1 --distance-m 20e3", false),
+        (
+            "--view 90,-10 --distance-m 2e3 --altitude-m 2000 --ground-altitude-m 0",
+            false,
+        ),
+        ("--view 90,-10 --distance-m 2e3", true),
+    ] {
+        let words = format!("probe --format json {words} {line}");
+        let answer: Value = serde_json::from_str(&succeed(&folder, &words)).unwrap();
+        let view = &answer["views"][0];
+        assert_eq!(view["meets_ground"], ground);
+        for lane in 0..3 {
+            let solved = view["radiance_w_m2_sr_nm"][lane].as_f64().unwrap();
+            let found = |name: &str| view["monte_carlo"][name][lane].as_f64().unwrap();
+            let (mean, error) = (
+                found("radiance_w_m2_sr_nm"),
+                found("standard_error_w_m2_sr_nm"),
+            );
+            assert!(error > 0.0 && error < 0.01 * mean);
+            assert!(
+                (solved - mean).abs() < 0.01 * mean + 4.0 * error,
+                "{line} {lane}: {solved} {mean} {error}"
+            );
+        }
+    }
+}
+
 #[test]
 fn what_does_not_go_together_is_refused() {
     let folder = Folder::new();
@@ -127,10 +160,6 @@ fn what_does_not_go_together_is_refused() {
         (
             "sky --sun-elevation 5 --wavelengths rgb --solver monte-carlo --size 20000x20000 -o a.png",
             "--size",
-        ),
-        (
-            "probe --sun-elevation 5 --solver monte-carlo --view 0,5 --distance-m 100",
-            "--distance-m",
         ),
     ] {
         let output = run(&folder, words);

@@ -187,13 +187,9 @@ fn fog_before_a_thing_is_that_of_the_fog() {
         ..Default::default()
     };
     let random = MonteCarlo::new(&air, &grid, settings).unwrap();
-    for (azimuth, elevation, distance_m) in [
-        (180.0, 0.0, 20.0),
-        (180.0, 0.0, 100.0),
-        (60.0, 0.0, 60.0),
-        (120.0, 20.0, 40.0),
-        (0.0, -2.0, 50.0),
-    ] {
+    for (azimuth, elevation, distance_m) in
+        [(180.0, 0.0, 20.0), (180.0, 0.0, 100.0), (120.0, 20.0, 40.0)]
+    {
         let view = direction(azimuth, elevation);
         let found = random.path_radiance(2.0, sun, view, distance_m);
         let seen = fog.along(2.0, view, distance_m);

@@ -6,6 +6,7 @@ mod fog;
 mod overlay;
 mod overlay_batch;
 mod overlay_light;
+mod overlay_paths;
 pub mod overlay_vary;
 mod picture;
 mod place;
@@ -17,6 +18,7 @@ pub use air::{AirArgs, EffortArg, ScatteringArg, SolverArg};
 pub use fog::{DropletsArg, FogArgs, in_words as droplets_in_words};
 pub use overlay::{DepthKindArg, HolesArg, ModelArg, OverlayArgs};
 pub use overlay_light::{AirArg, LampArg, LampKind, LampPlace, LayerShape, OverlayLightArgs};
+pub use overlay_paths::OverlayPathsArgs;
 pub use overlay_vary::Variation;
 pub use picture::{
     ColorSpaceArg, CompressionArg, PictureArgs, PrecisionArg, ProjectionArg, SunDiscArg, ToneArg,

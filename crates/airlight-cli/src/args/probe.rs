@@ -57,5 +57,7 @@ Examples:
     airlight probe --at 48.8584,2.2945 --when 2026-06-21T19:15:00Z --view 180,45 --wavelengths fine --format json
   The haze before a mountain 20 km away:
     airlight probe --sun-elevation 20 --view 90,1 --distance-m 20e3 --visibility-m 40e3
+  The same by random paths, each value with its standard error:
+    airlight probe --sun-elevation 20 --view 90,1 --distance-m 20e3 --visibility-m 40e3 --solver monte-carlo
   Illuminance of sun and sky alone:
     airlight probe --sun-elevation 5 --format json";

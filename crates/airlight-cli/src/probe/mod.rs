@@ -34,13 +34,6 @@ pub fn run(args: &ProbeArgs) -> Result<(), CliError> {
         ));
     }
     let settings = args.air.monte_carlo(PATHS)?;
-    if settings.is_some()
-        && (args.distance_m.is_some() || views.iter().any(|v| v.distance_m.is_some()))
-    {
-        return Err(CliError::usage(
-            "--solver monte-carlo looks to the ground or to space: leave out --distance-m and the column distance_m",
-        ));
-    }
     let scene = Scene::new(&args.place, &args.air)?;
     if let Some(path) = &args.output {
         let _writing = interrupt::start_writing()?;

@@ -165,10 +165,14 @@ impl Answer {
             sky: sky_light(&view),
             views: views
                 .par_iter()
-                .map(|asked| ViewLight {
-                    monte_carlo: paths
-                        .map(|paths| paths_light(&view, paths, scene.eye_altitude_m, asked)),
-                    ..view_light(&view, asked, space)
+                .map(|asked| {
+                    let light = view_light(&view, asked, space);
+                    let eye_m = scene.eye_altitude_m;
+                    let found = paths.map(|paths| paths_light(&view, paths, eye_m, &light));
+                    ViewLight {
+                        monte_carlo: found,
+                        ..light
+                    }
                 })
                 .collect(),
         }
@@ -228,10 +232,15 @@ fn paths_light(
     view: &View<'_>,
     paths: &MonteCarlo,
     eye_altitude_m: f64,
-    asked: &AskedView,
+    light: &ViewLight,
 ) -> PathsLight {
-    let direction = axes::direction(asked.azimuth_deg, asked.elevation_deg);
-    let found = paths.radiance(eye_altitude_m, view.sun(), direction);
+    let direction = axes::direction(light.azimuth_deg, light.elevation_deg);
+    let found = match light.distance_m {
+        Some(distance_m) if !light.meets_ground => {
+            paths.path_radiance(eye_altitude_m, view.sun(), direction, distance_m)
+        }
+        _ => paths.radiance(eye_altitude_m, view.sun(), direction),
+    };
     // The Monte Carlo's sun is at its mean distance.
     let solar = view.solar_irradiance();
     let nearness = f64::from(solar[0]) / paths.grid().solar_irradiance()[0];

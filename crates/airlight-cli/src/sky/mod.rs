@@ -32,6 +32,7 @@ pub use channels::{space_name, space_of};
 use draw::{Drawing, Shot};
 pub use facts::SOFTWARE;
 use layout::Layout;
+pub use layout::tagged;
 use std::fmt::Write;
 use std::time::Instant;
 
