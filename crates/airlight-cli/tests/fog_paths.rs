@@ -21,7 +21,7 @@ fn hedge(folder: &Folder) {
     fs::write(folder.file("depth.pfm"), pfm).unwrap();
 }
 
-const FOG: &str = "fog dark.exr --depth depth.pfm -q --sky-light --sun-elevation 25 --sun-azimuth 100 --visibility-m 60 \
+const FOG: &str = "fog dark.exr --depth depth.pfm -q --sky-light --sun-elevation 25 --sun-azimuth 200 --visibility-m 60 \
     --model slab --top-m 60 --radiance-scale 1e-4 --layers";
 
 /// The path radiance is that of the fast solution, as far as its noise and the errors that the fast one states allow: 3 % in
@@ -44,7 +44,7 @@ fn two_solvers_lay_one_fog() {
         let values = fast[name].iter().zip(&paths[name]).zip(&noise["G"]);
         let (mut squares, mut sums) = (0.0, [0.0; 2]);
         for ((fast, paths), error) in values {
-            assert!(*error > 0.0 && *error < 0.2 * paths, "{error} of {paths}");
+            assert!(*error > 0.0 && *error < 0.3 * paths, "{error} of {paths}");
             let off = f64::from(fast - paths);
             squares += (off / f64::from(*error).hypot(0.03 * f64::from(*paths))).powi(2);
             sums[0] += f64::from(*fast);

@@ -10,6 +10,7 @@ use super::chord::{Chord, End, HalfLine};
 use super::lanes::{self, Lanes, PerScatterer};
 use super::layers::Layers;
 use super::lit::{Lit, Stretch};
+use super::stokes::Polarisation;
 use super::sun::SunShape;
 use crate::light::SunDisc;
 use crate::random::Random;
@@ -116,13 +117,14 @@ impl<const N: usize> World<'_, N> {
     /// Follows a path drawn for the lane `hero` along a line of sight. `first`, even in `(0, 1)`, says where it is
     /// scattered first; `chord` is scratch space.
     #[inline(always)]
-    pub fn follow(
+    pub fn follow<P: Polarisation<N>>(
         &self,
         line: &Line,
         hero: usize,
         first: f64,
         random: &mut Random,
         chord: &mut Chord,
+        polarisation: &mut P,
     ) -> ByOrder<N> {
         let mut found = [Spectrum::ZERO; ORDERS];
         let mut path = Path {
@@ -139,11 +141,11 @@ impl<const N: usize> World<'_, N> {
         loop {
             match self.advance(&mut path, hero, choice, reach_m, random, chord) {
                 Event::Air => {
-                    if !self.scatter(&mut path, hero, random, &mut found) {
+                    if !self.scatter(&mut path, hero, random, &mut found, polarisation) {
                         return found;
                     }
                 }
-                Event::Ground => self.reflect(&mut path, random, &mut found),
+                Event::Ground => self.reflect(&mut path, random, &mut found, polarisation),
                 Event::None => return found,
             }
             if !path.survives(random) {
@@ -230,12 +232,13 @@ impl<const N: usize> World<'_, N> {
 
     /// Adds the sun's light at a vertex in the air and draws a new direction; whether the path goes on.
     #[inline(always)]
-    fn scatter(
+    fn scatter<P: Polarisation<N>>(
         &self,
         path: &mut Path<N>,
         hero: usize,
         random: &mut Random,
         found: &mut ByOrder<N>,
+        polarisation: &mut P,
     ) -> bool {
         let densities = self.layers.densities_at(path.place.length());
         let scattering = self.lanes.scattering(&densities);
@@ -243,7 +246,10 @@ impl<const N: usize> World<'_, N> {
         if let Some(light) = self.sunlight(path.place, sun, random) {
             let phases = self.lanes.phases(path.direction.dot(sun).clamp(-1.0, 1.0));
             let scattered = lanes::phased(&scattering, &phases);
-            found[path.order.min(ORDERS - 1)] += path.worth * scattered * light;
+            let light = path.worth * scattered * light;
+            found[path.order.min(ORDERS - 1)] += light;
+            let ways = [path.direction, sun];
+            polarisation.sunlight(self.lanes, ways, [&scattering, &phases], light);
         }
         let whole = lanes::sum(&scattering);
         if whole[hero] <= 0.0 {
@@ -255,12 +261,15 @@ impl<const N: usize> World<'_, N> {
         };
         let cosine = self.lanes.sample(&scattering, hero, random);
         let next = about(axis, cosine, random.unit());
-        let onward = lanes::phased(&scattering, &self.phases_between(path.direction, next));
+        let phases = self.phases_between(path.direction, next);
+        let onward = lanes::phased(&scattering, &phases);
         let sunward = lanes::phased(&scattering, &self.phases_between(self.sun, next));
         let (onward_share, sunward_share) = ((1.0 - TOWARDS_SUN) as f32, TOWARDS_SUN as f32);
         let norm = whole.max_scalar(f32::MIN_POSITIVE);
         let drawn = (onward * onward_share + sunward * sunward_share) / norm;
         path.step(onward, drawn);
+        let ways = [path.direction, next];
+        polarisation.scattered(self.lanes, ways, [&scattering, &phases]);
         path.direction = next;
         path.order += 1;
         // A path towards the sun will find more light than others.
@@ -277,7 +286,13 @@ impl<const N: usize> World<'_, N> {
 
     /// Adds the sun's light at a vertex on the ground and draws a new direction, as Lambert's law has it.
     #[inline(always)]
-    fn reflect(&self, path: &mut Path<N>, random: &mut Random, found: &mut ByOrder<N>) {
+    fn reflect<P: Polarisation<N>>(
+        &self,
+        path: &mut Path<N>,
+        random: &mut Random,
+        found: &mut ByOrder<N>,
+        polarisation: &mut P,
+    ) {
         let up = path.place.normalize();
         // Back on the ground exactly, and above it in the arithmetic of the next way.
         path.place = up * self.layers.edge(0).sqrt();
@@ -287,8 +302,11 @@ impl<const N: usize> World<'_, N> {
         if height > 0.0
             && let Some(light) = self.sunlight(path.place, sun, random)
         {
-            found[path.order.min(ORDERS - 1)] += path.worth * light * (height / PI) as f32;
+            let light = path.worth * light * (height / PI) as f32;
+            found[path.order.min(ORDERS - 1)] += light;
+            polarisation.sunlight_by_ground(light);
         }
+        polarisation.reflected();
         path.direction = about(up, random.unit().sqrt(), random.unit());
         path.order += 1;
         path.promise = path.worth.max_element();

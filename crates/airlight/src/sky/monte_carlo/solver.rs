@@ -5,6 +5,7 @@ use super::estimate::{Estimate, Sample, Tally};
 use super::lanes::Lanes;
 use super::layers::Layers;
 use super::path::{Line, ORDERS, World};
+use super::stokes::{Polarisation, Scalar};
 use super::sun::SunShape;
 use crate::medium::Atmosphere;
 use crate::random::Random;
@@ -241,7 +242,17 @@ impl MonteCarlo {
 
     /// Mean over the paths of a bundle, per unit solar irradiance.
     fn bundle(&self, scene: &Scene, number: u64) -> Sample {
-        let mut sample: Sample = std::array::from_fn(|_| Vec::with_capacity(self.grid.len()));
+        self.bundle_of::<Scalar, Scalar, Scalar>(scene, number).0
+    }
+
+    /// The same with what is carried beside it by 4, 8 and 16 lanes; and `I`, `Q`, `U`, where that is anything.
+    pub(super) fn bundle_of<A: Polarisation<4>, B: Polarisation<8>, C: Polarisation<16>>(
+        &self,
+        scene: &Scene,
+        number: u64,
+    ) -> (Sample, [Vec<f64>; 3]) {
+        let empty = |_| Vec::with_capacity(self.grid.len());
+        let mut sample = (std::array::from_fn(empty), std::array::from_fn(empty));
         for (index, block) in self.blocks.iter().enumerate() {
             let mut random = Random::new(
                 self.settings.seed,
@@ -250,26 +261,26 @@ impl MonteCarlo {
             );
             match block {
                 Block::Four(used, lanes) => {
-                    self.block_bundle(lanes, *used, scene, &mut random, &mut sample)
+                    self.block_bundle::<4, A>(lanes, *used, scene, &mut random, &mut sample)
                 }
                 Block::Eight(used, lanes) => {
-                    self.block_bundle(lanes, *used, scene, &mut random, &mut sample)
+                    self.block_bundle::<8, B>(lanes, *used, scene, &mut random, &mut sample)
                 }
                 Block::Sixteen(used, lanes) => {
-                    self.block_bundle(lanes, *used, scene, &mut random, &mut sample)
+                    self.block_bundle::<16, C>(lanes, *used, scene, &mut random, &mut sample)
                 }
             }
         }
         sample
     }
 
-    fn block_bundle<const N: usize>(
+    fn block_bundle<const N: usize, P: Polarisation<N>>(
         &self,
         lanes: &Lanes<N>,
         used: usize,
         scene: &Scene,
         random: &mut Random,
-        sample: &mut Sample,
+        (sample, stokes): &mut (Sample, [Vec<f64>; 3]),
     ) {
         let world = World {
             layers: &self.layers,
@@ -280,6 +291,7 @@ impl MonteCarlo {
         };
         let mut chord = Chord::default();
         let mut sums = [[0.0f64; N]; ORDERS];
+        let mut stokes_sums = [[0.0f64; N]; 3];
         // Every lane is the hero of as many paths, and the first collisions of all are spread evenly. All are shifted alike at
         // random: else each hero would always draw from the same parts of the unit interval.
         let strata = BUNDLE / N;
@@ -288,10 +300,18 @@ impl MonteCarlo {
             let (hero, stratum) = (path % N, path / N);
             let spread = (stratum * N + (hero * 5 + stratum) % N) as f64;
             let first = (shift + (spread + random.unit()) / (strata * N) as f64).fract();
+            let mut carried = P::begin(scene.line.direction);
             let found = vectorized(
                 #[inline(always)]
-                || world.follow(&scene.line, hero, first, random, &mut chord),
+                || world.follow(&scene.line, hero, first, random, &mut chord, &mut carried),
             );
+            if P::CARRIED {
+                for (sum, found) in stokes_sums.iter_mut().zip(carried.found()) {
+                    for (sum, found) in sum.iter_mut().zip(found.0) {
+                        *sum += f64::from(found);
+                    }
+                }
+            }
             for (sum, found) in sums.iter_mut().zip(&found) {
                 for (sum, found) in sum.iter_mut().zip(found.0) {
                     *sum += f64::from(found);
@@ -300,6 +320,11 @@ impl MonteCarlo {
         }
         for (order, sum) in sample.iter_mut().zip(&sums) {
             order.extend(sum[..used].iter().map(|sum| sum / BUNDLE as f64));
+        }
+        if P::CARRIED {
+            for (part, sum) in stokes.iter_mut().zip(&stokes_sums) {
+                part.extend(sum[..used].iter().map(|sum| sum / BUNDLE as f64));
+            }
         }
     }
 }
