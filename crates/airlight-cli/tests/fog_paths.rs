@@ -21,11 +21,11 @@ fn hedge(folder: &Folder) {
     fs::write(folder.file("depth.pfm"), pfm).unwrap();
 }
 
-const FOG: &str = "fog dark.exr --depth depth.pfm -q --sky-light --sun-elevation 25 --sun-azimuth 200 --visibility-m 60 \
-    --model slab --top-m 60 --radiance-scale 1e-4 --layers";
+const FOG: &str = "fog dark.exr --depth depth.pfm -q --sky-light --sun-elevation 25 --sun-azimuth 200 --visibility-m 200 \
+    --model slab --top-m 40 --droplets fine --radiance-scale 1e-4 --layers";
 
-/// The path radiance is that of the fast solution, as far as its noise and the errors that the fast one states allow: 3 % in
-/// thick fog.
+/// The path radiance is that of the fast solution, as far as its noise and the errors that the fast one states allow: 5 to 15
+/// % along lines as level as these in fog of an optical depth of 0.6.
 #[test]
 fn two_solvers_lay_one_fog() {
     let folder = Folder::new();
@@ -46,7 +46,7 @@ fn two_solvers_lay_one_fog() {
         for ((fast, paths), error) in values {
             assert!(*error > 0.0 && *error < 0.3 * paths, "{error} of {paths}");
             let off = f64::from(fast - paths);
-            squares += (off / f64::from(*error).hypot(0.03 * f64::from(*paths))).powi(2);
+            squares += (off / f64::from(*error).hypot(0.1 * f64::from(*paths))).powi(2);
             sums[0] += f64::from(*fast);
             sums[1] += f64::from(*paths);
         }
@@ -56,7 +56,7 @@ fn two_solvers_lay_one_fog() {
             "{air}: {}",
             (squares / count).sqrt()
         );
-        assert!((sums[0] / sums[1] - 1.0).abs() < 0.03, "{air}: {sums:?}");
+        assert!((sums[0] / sums[1] - 1.0).abs() < 0.05, "{air}: {sums:?}");
         // What the fog lets through is no matter of chance.
         assert_eq!(fast["transmittance.G"], paths["transmittance.G"]);
         // The picture is made of its layers.
