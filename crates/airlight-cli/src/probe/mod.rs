@@ -34,6 +34,11 @@ pub fn run(args: &ProbeArgs) -> Result<(), CliError> {
         ));
     }
     let settings = args.air.monte_carlo(PATHS)?;
+    if args.polarisation && settings.is_none() {
+        return Err(CliError::usage(
+            "--polarisation is for random paths, the other solver's light is scalar: give --solver monte-carlo as well",
+        ));
+    }
     let scene = Scene::new(&args.place, &args.air)?;
     if let Some(path) = &args.output {
         let _writing = interrupt::start_writing()?;

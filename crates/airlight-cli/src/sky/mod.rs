@@ -5,7 +5,7 @@
 //! - [`fog`]: fog before the sky.
 //! - [`layout`]: which files a picture consists of and where each looks.
 //! - [`facts`]: what the files say about themselves; [`exposure`]: how bright PNG, JPEG and preview are.
-//! - [`monte_carlo`]: pictures by random paths.
+//! - [`monte_carlo`]: pictures by random paths; [`polarisation`]: what is told of it beside them.
 //! - [`draw`]: one moment into files; [`preview`]: onto the terminal; [`sequence`]: many moments.
 
 mod channels;
@@ -16,6 +16,7 @@ mod facts;
 mod fog;
 mod layout;
 mod monte_carlo;
+mod polarisation;
 mod preview;
 mod rows;
 mod sequence;
