@@ -22,7 +22,7 @@ fn hedge(folder: &Folder) {
 }
 
 const FOG: &str = "fog dark.exr --depth depth.pfm -q --sky-light --sun-elevation 25 --sun-azimuth 200 --visibility-m 200 \
-    --model slab --top-m 40 --droplets fine --radiance-scale 1e-4 --layers";
+    --model slab --top-m 40 --eye-height-m 20 --droplets fine --radiance-scale 1e-4 --layers";
 
 /// The path radiance is that of the fast solution, as far as its noise and the errors that the fast one states allow: 5 to 15
 /// % along lines as level as these in fog of an optical depth of 0.6.
@@ -64,6 +64,25 @@ fn two_solvers_lay_one_fog() {
         let made = 0.02 * paths["transmittance.R"][5] + paths["path_radiance.R"][5];
         assert!((seen - made).abs() < 1e-5 * seen);
     }
+}
+
+/// A thing under the level ground is as deep in fog as its depth says: paths do not reach it, but it is not left out.
+#[test]
+fn things_under_the_ground_are_in_fog_too() {
+    let folder = Folder::new();
+    hedge(&folder);
+    let low = FOG.replace("--eye-height-m 20", "--eye-height-m 1.6");
+    succeed(&folder, &format!("{low} -o fast.exr"));
+    succeed(
+        &folder,
+        &format!("{low} --solver monte-carlo --paths 1024 -o paths.exr"),
+    );
+    let [fast, paths] =
+        ["fast.exr", "paths.exr"].map(|name| Exr::read(&folder.file(name)).channels);
+    // The lowest two rows: 40 m, and the ground 5 to 8 m away.
+    let sum = |values: &[f32]| values[6 * SIZE.0..].iter().sum::<f32>();
+    let ratio = sum(&paths["path_radiance.G"]) / sum(&fast["path_radiance.G"]);
+    assert!((0.7..1.1).contains(&ratio), "{ratio}");
 }
 
 #[test]

@@ -46,6 +46,8 @@ struct Colour {
     square: [f64; 3],
     /// What is taken off the mean.
     drawn: [f64; 3],
+    /// Factor for what of the line lies under the ground.
+    further: [f64; 3],
 }
 
 impl<'a> Painter<'a> {
@@ -180,6 +182,7 @@ impl<'a> Painter<'a> {
     ) {
         if bundles.start == 0 {
             colour.drawn = self.drawn(direction, distance_m);
+            colour.further = self.further(direction, distance_m);
         }
         for bundle in bundles {
             let sample = self.solver.sample_path(
@@ -215,6 +218,26 @@ impl<'a> Painter<'a> {
             .map(|v| self.radiance_scale * f64::from(v))
     }
 
+    /// Path radiance over that up to the ground. Paths end there, but by its depth a thing may lie under it, on a slope or
+    /// before a camera that is not as level as its options: what is scattered for each part of the opacity is taken to go on
+    /// the same.
+    fn further(&self, direction: DVec3, distance_m: f64) -> [f64; 3] {
+        let opacity = |distance_m: f64| {
+            let optics = self.sky.optics(direction, distance_m);
+            optics.transmittance.0.map(|t| f64::from(1.0 - t))
+        };
+        match self.sky.aerial().ground_distance_m(direction) {
+            Some(ground_m) if ground_m < distance_m => {
+                let (whole, above) = (opacity(distance_m), opacity(ground_m));
+                std::array::from_fn(|i| match above[i] > 0.0 {
+                    true => whole[i] / above[i],
+                    false => 1.0,
+                })
+            }
+            _ => [1.0; 3],
+        }
+    }
+
     /// How noisy the picture is, in a line.
     fn noise(&self, means: &[f32], errors: &[f32]) -> String {
         let squares = |values: &[f32]| -> f64 {
@@ -232,13 +255,13 @@ impl<'a> Painter<'a> {
 impl Colour {
     /// Path radiance over what is drawn already.
     fn mean(&self, lane: usize, bundles: u64) -> f64 {
-        self.sum[lane] / bundles as f64 - self.drawn[lane]
+        self.further[lane] * self.sum[lane] / bundles as f64 - self.drawn[lane]
     }
 
     fn standard_error(&self, lane: usize, bundles: u64) -> f64 {
         let n = bundles as f64;
         let mean = self.sum[lane] / n;
         let variance = (self.square[lane] - n * mean * mean) / (n - 1.0);
-        (variance.max(0.0) / n).sqrt()
+        self.further[lane] * (variance.max(0.0) / n).sqrt()
     }
 }
