@@ -21,11 +21,10 @@ fn hedge(folder: &Folder) {
     fs::write(folder.file("depth.pfm"), pfm).unwrap();
 }
 
-const FOG: &str = "fog dark.exr --depth depth.pfm -q --sky-light --sun-elevation 25 --sun-azimuth 200 --visibility-m 200 \
-    --model slab --top-m 40 --eye-height-m 20 --droplets fine --radiance-scale 1e-4 --layers";
+const FOG: &str = "fog dark.exr --depth depth.pfm -q --sky-light --sun-elevation 25 --sun-azimuth 200 --visibility-m 60 \
+    --model slab --top-m 60 --eye-height-m 20 --droplets fine --radiance-scale 1e-4 --layers";
 
-/// The path radiance is that of the fast solution, as far as its noise and the errors that the fast one states allow: 5 to 15
-/// % along lines as level as these in fog of an optical depth of 0.6.
+/// The path radiance is that of the fast solution, which states 3 % in fog as thick as this (an optical depth of 3).
 #[test]
 fn two_solvers_lay_one_fog() {
     let folder = Folder::new();
@@ -35,28 +34,23 @@ fn two_solvers_lay_one_fog() {
         succeed(
             &folder,
             &format!(
-                "{FOG} --air {air} --solver monte-carlo --paths 4096 --noise-map -o paths.exr"
+                "{FOG} --air {air} --solver monte-carlo --paths 2048 --noise-map -o paths.exr"
             ),
         );
         let [fast, paths, noise] = ["fast.exr", "paths.exr", "paths.noise.exr"]
             .map(|name| Exr::read(&folder.file(name)).channels);
         let name = "path_radiance.G";
         let values = fast[name].iter().zip(&paths[name]).zip(&noise["G"]);
-        let (mut squares, mut sums) = (0.0, [0.0; 2]);
+        let (mut sums, mut squares) = ([0.0; 2], 0.0);
         for ((fast, paths), error) in values {
-            assert!(*error > 0.0 && *error < 0.3 * paths, "{error} of {paths}");
-            let off = f64::from(fast - paths);
-            squares += (off / f64::from(*error).hypot(0.1 * f64::from(*paths))).powi(2);
+            assert!(*error > 0.0 && *error < *paths, "{error} of {paths}");
             sums[0] += f64::from(*fast);
             sums[1] += f64::from(*paths);
+            squares += f64::from(*error).powi(2);
         }
-        let count = (SIZE.0 * SIZE.1) as f64;
-        assert!(
-            (squares / count).sqrt() < 1.5,
-            "{air}: {}",
-            (squares / count).sqrt()
-        );
-        assert!((sums[0] / sums[1] - 1.0).abs() < 0.05, "{air}: {sums:?}");
+        let (off, noise) = (sums[0] / sums[1] - 1.0, squares.sqrt() / sums[1]);
+        assert!(noise < 0.03, "{noise}");
+        assert!(off.abs() < 0.03 + 3.0 * noise, "{air}: {off} +- {noise}");
         // What the fog lets through is no matter of chance.
         assert_eq!(fast["transmittance.G"], paths["transmittance.G"]);
         // The picture is made of its layers.
