@@ -44,7 +44,7 @@ pub struct PolarisedEstimate {
 
 impl MonteCarlo {
     /// As [`MonteCarlo::radiance`], or with a distance (m) [`MonteCarlo::path_radiance`], with the polarisation of light; it
-    /// takes about twice as long.
+    /// takes a third longer where molecules alone polarise.
     ///
     /// Molecules and spheres known by Lorenz-Mie theory polarise what they scatter
     /// ([`crate::optics::PhaseFunction::matrix_ratios`]); constituents of which a phase function is all that is known, and the ground,
