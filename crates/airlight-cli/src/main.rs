@@ -16,6 +16,7 @@ mod classic;
 mod compare;
 mod error;
 mod fog;
+mod foggy_air;
 mod grid;
 mod interrupt;
 mod light;

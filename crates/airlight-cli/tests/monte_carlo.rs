@@ -108,12 +108,92 @@ fn a_probe_tells_both_and_the_error() {
     );
 }
 
+/// What the air adds before a thing, and before the ground where the line ends there.
+#[test]
+fn a_probe_may_end_at_a_distance() {
+    let folder = Folder::new();
+    let words = "--sun-elevation 30 --wavelengths 440,550,680 --solver monte-carlo --paths 32768";
+    for (line, ground) in [
+        ("--view 90,1 --distance-m 20e3", false),
+        (
+            "--view 90,-10 --distance-m 2e3 --altitude-m 2000 --ground-altitude-m 0",
+            false,
+        ),
+        ("--view 90,-10 --distance-m 2e3", true),
+    ] {
+        let words = format!("probe --format json {words} {line}");
+        let answer: Value = serde_json::from_str(&succeed(&folder, &words)).unwrap();
+        let view = &answer["views"][0];
+        assert_eq!(view["meets_ground"], ground);
+        for lane in 0..3 {
+            let solved = view["radiance_w_m2_sr_nm"][lane].as_f64().unwrap();
+            let found = |name: &str| view["monte_carlo"][name][lane].as_f64().unwrap();
+            let (mean, error) = (
+                found("radiance_w_m2_sr_nm"),
+                found("standard_error_w_m2_sr_nm"),
+            );
+            assert!(error > 0.0 && error < 0.01 * mean);
+            assert!(
+                (solved - mean).abs() < 0.01 * mean + 4.0 * error,
+                "{line} {lane}: {solved} {mean} {error}"
+            );
+        }
+    }
+}
+
+/// At a right angle from the sun in its vertical plane light is polarised across that plane: level.
+#[test]
+fn polarisation_is_told() {
+    let folder = Folder::new();
+    let words = "--sun-elevation 20 --sun-azimuth 180 --view 0,70 --wavelengths 440,650 --solver monte-carlo --paths 8192 \
+                 --polarisation";
+    let answer: Value =
+        serde_json::from_str(&succeed(&folder, &format!("probe --format json {words}"))).unwrap();
+    let found = &answer["views"][0]["monte_carlo"];
+    for lane in 0..2 {
+        let of = |name: &str| found["polarisation"][name][lane].as_f64().unwrap();
+        assert!((0.3..0.9).contains(&of("degree")));
+        assert!((of("angle_deg") - 90.0).abs() < 4.0 * of("angle_standard_error_deg"));
+        let q = of("stokes_q_w_m2_sr_nm");
+        assert!(q < 0.0 && (-q / of("stokes_i_w_m2_sr_nm") / of("degree") - 1.0).abs() < 0.01);
+        // Scalar light is off by percents at most.
+        let scalar = found["radiance_w_m2_sr_nm"][lane].as_f64().unwrap();
+        assert!((of("stokes_i_w_m2_sr_nm") / scalar - 1.0).abs() < 0.08);
+    }
+    let csv = succeed(&folder, &format!("probe --format csv {words}"));
+    let widths: Vec<usize> = csv.lines().map(|line| line.split(',').count()).collect();
+    assert!(widths.len() == 3 && widths.iter().all(|width| *width == widths[0]));
+    let table = succeed(&folder, &format!("probe {words}"));
+    assert!(table.contains("degree") && table.contains("angle, deg"));
+    let sky = "sky -q --sun-elevation 20 --sun-azimuth 180 --sun-disc out --wavelengths rgb --solver monte-carlo \
+               --polarisation --projection perspective --fov 20 --camera-azimuth 0 --camera-elevation 70 --size 8x6";
+    succeed(&folder, &format!("{sky} --paths 256 -o sky.exr"));
+    let names = folder.names();
+    assert_eq!(names, ["sky.exr", "sky.polarisation.exr"]);
+    let told = Exr::read(&folder.file("sky.polarisation.exr")).channels;
+    let mean = |name: &str| told[name].iter().sum::<f32>() / 48.0;
+    assert!((0.4..0.9).contains(&mean("degree")), "{}", mean("degree"));
+    assert!((mean("angle_deg") - 90.0).abs() < 10.0 && mean("Q_over_I") < -0.4);
+}
+
 #[test]
 fn what_does_not_go_together_is_refused() {
     let folder = Folder::new();
     for (words, said) in [
         (
             "sky --sun-elevation 5 --paths 256 -o a.exr",
+            "--solver monte-carlo",
+        ),
+        (
+            "sky --sun-elevation 5 --polarisation -o a.exr",
+            "--solver monte-carlo",
+        ),
+        (
+            "sky --sun-elevation 5 --solver monte-carlo --scattering single --polarisation -o a.exr",
+            "--scattering single",
+        ),
+        (
+            "probe --sun-elevation 5 --view 0,5 --polarisation",
             "--solver monte-carlo",
         ),
         (
@@ -127,10 +207,6 @@ fn what_does_not_go_together_is_refused() {
         (
             "sky --sun-elevation 5 --wavelengths rgb --solver monte-carlo --size 20000x20000 -o a.png",
             "--size",
-        ),
-        (
-            "probe --sun-elevation 5 --solver monte-carlo --view 0,5 --distance-m 100",
-            "--distance-m",
         ),
     ] {
         let output = run(&folder, words);

@@ -113,6 +113,7 @@ impl CompareArgs {
             preview: false,
             quiet: true,
             noise_map: false,
+            polarisation: false,
             place: self.place.clone(),
             sequence: super::SequenceArgs {
                 until: None,

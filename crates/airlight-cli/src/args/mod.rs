@@ -9,6 +9,7 @@ mod grid;
 mod overlay;
 mod overlay_batch;
 mod overlay_light;
+mod overlay_paths;
 pub mod overlay_vary;
 mod picture;
 mod place;
@@ -23,6 +24,7 @@ pub use fog::{DropletsArg, FogArgs, in_words as droplets_in_words};
 pub use grid::GridArgs;
 pub use overlay::{DepthKindArg, HolesArg, ModelArg, OverlayArgs};
 pub use overlay_light::{AirArg, LampArg, LampKind, LampPlace, LayerShape, OverlayLightArgs};
+pub use overlay_paths::OverlayPathsArgs;
 pub use overlay_vary::Variation;
 pub use picture::{
     ColorSpaceArg, CompressionArg, PictureArgs, PrecisionArg, ProjectionArg, SunDiscArg, ToneArg,
@@ -104,6 +106,9 @@ pub struct SkyArgs {
     /// With --solver monte-carlo: write the standard error of each pixel's colour as well, into NAME.noise.exr
     #[arg(long, requires = "output", help_heading = "Files")]
     pub noise_map: bool,
+    /// With --solver monte-carlo: follow the polarisation of light, and write its degree and angle into NAME.polarisation.exr
+    #[arg(long, requires = "output", help_heading = "Files")]
+    pub polarisation: bool,
     #[command(flatten)]
     pub place: PlaceArgs,
     #[command(flatten)]
@@ -148,6 +153,8 @@ Examples:
     airlight sky --sun-elevation 2 --fog-visibility-m 150 --fog-top-m 40 --altitude-m 60 --projection perspective -o fog.png
   The same sky by random paths, with the noise of each pixel in a file of its own:
     airlight sky --sun-elevation 3 --solver monte-carlo --paths 1024 --size 512x256 --noise-map -o truth.exr
+  With its polarisation: how much, and the angle from the vertical, anticlockwise as the eye sees it:
+    airlight sky --sun-elevation 10 --solver monte-carlo --polarisation --projection fisheye --size 256x256 -o blue.exr
   From a height of 400 km, from Mars:
     airlight sky --sun-elevation 20 --altitude-m 400e3 --projection perspective --camera-elevation -15 -o iss.png
     airlight sky --atmosphere mars --sun-elevation 5 --projection perspective -o mars.png";

@@ -183,6 +183,9 @@ pub struct OverlayArgs {
     #[command(flatten)]
     #[serde(flatten)]
     pub light: super::OverlayLightArgs,
+    #[command(flatten)]
+    #[serde(skip)]
+    pub random: super::OverlayPathsArgs,
 }
 
 const EXAMPLES: &str = "\
@@ -198,6 +201,9 @@ Examples:
     airlight fog photo.png --depth depth_mm.png --depth-scale 0.001 --visibility-m 12 --lamp 'pixel=120,80 intensity=3,2.5,2' \
       -o fogged.png
     airlight fog render.exr --visibility-m 400 --model height --sky-light --sun-elevation 20 -o fogged.exr
+  The same by random paths, with the noise of each pixel in a file of its own (small pictures: it is slow):
+    airlight fog small.exr --visibility-m 400 --model height --sky-light --sun-elevation 20 --solver monte-carlo \\
+      --paths 512 --noise-map -o fogged.exr
   Every picture of a folder, with the depth of the same name:
     airlight fog rgb/ --depth depth/ --depth-scale 0.001 --visibility-m 80 -o foggy/
   Training data: what * stands for links colour, depth and output; three fogs for each picture, told in foggy/manifest.jsonl:

@@ -15,8 +15,9 @@ pub struct BatchArgs {
     /// So many pictures of each: {variant} in --output is the number, else _v0001 before the ending
     #[arg(long, value_name = "N", requires = "vary")]
     pub variants: Option<NonZeroU32>,
-    /// What is drawn follows from this number, the picture's name and the number of the variant [default: 0]
-    #[arg(long, value_name = "N", requires = "vary")]
+    /// What is drawn follows from this number, the picture's name and the number of the variant [default: 0]; so does the
+    /// noise of random paths [default: 1]
+    #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
     /// A line of JSON for each picture goes there [default: manifest.jsonl beside the outputs]
     #[arg(long, value_name = "FILE")]

@@ -32,6 +32,9 @@ pub struct ProbeArgs {
     /// to space]
     #[arg(long, value_name = "M", value_parser = parse::length_m, help_heading = "Directions")]
     pub distance_m: Option<f64>,
+    /// With --solver monte-carlo: tell the polarisation of the light as well
+    #[arg(long, help_heading = "Directions")]
+    pub polarisation: bool,
     /// How the numbers are written
     #[arg(long, value_enum, default_value_t = FormatArg::Table, help_heading = "Output")]
     pub format: FormatArg,
@@ -57,5 +60,9 @@ Examples:
     airlight probe --at 48.8584,2.2945 --when 2026-06-21T19:15:00Z --view 180,45 --wavelengths fine --format json
   The haze before a mountain 20 km away:
     airlight probe --sun-elevation 20 --view 90,1 --distance-m 20e3 --visibility-m 40e3
+  The same by random paths, each value with its standard error:
+    airlight probe --sun-elevation 20 --view 90,1 --distance-m 20e3 --visibility-m 40e3 --solver monte-carlo
+  How much of the sky's light is polarised a right angle from the sun, and in which plane:
+    airlight probe --sun-elevation 20 --view 0,70 --solver monte-carlo --polarisation
   Illuminance of sun and sky alone:
     airlight probe --sun-elevation 5 --format json";

@@ -3,6 +3,7 @@
 use crate::args::{DropletsArg, LayerShape, ModelArg, OverlayArgs};
 use crate::atmosphere::contrast;
 use crate::error::CliError;
+use crate::foggy_air::FogInAir;
 use airlight::fog::visibility::extinction_per_m;
 use airlight::fog::{Layer, Profile};
 use airlight::spectrum::RgbSpace;
@@ -12,6 +13,25 @@ use airlight::spectrum::RgbSpace;
 /// # Errors
 /// [`CliError::Usage`] for drops that are none.
 pub fn of(args: &OverlayArgs) -> Result<Option<Vec<Layer<3>>>, CliError> {
+    let Some(layers) = in_air(args) else {
+        return Ok(None);
+    };
+    let layer = |fog: FogInAir| -> Result<Layer<3>, CliError> {
+        let matter = fog.droplets.in_rgb(fog.extinction_per_m, RgbSpace::Srgb)?;
+        Ok(Layer {
+            profile: fog.profile,
+            matter,
+        })
+    };
+    layers
+        .into_iter()
+        .map(layer)
+        .collect::<Result<_, _>>()
+        .map(Some)
+}
+
+/// The same before their optics are worked out.
+pub fn in_air(args: &OverlayArgs) -> Option<Vec<FogInAir>> {
     let scale_height_m = args.scale_height_m;
     let shape = match args.model {
         ModelArg::Uniform => LayerShape::Uniform,
@@ -21,20 +41,17 @@ pub fn of(args: &OverlayArgs) -> Result<Option<Vec<Layer<3>>>, CliError> {
             scale_height_m,
         },
         ModelArg::Slab => LayerShape::Slab { top_m: args.top_m },
-        ModelArg::Exp2 | ModelArg::Linear | ModelArg::FoggyCityscapes => return Ok(None),
+        ModelArg::Exp2 | ModelArg::Linear | ModelArg::FoggyCityscapes => return None,
     };
-    let layer = |shape, visibility_m, droplets: DropletsArg| -> Result<Layer<3>, CliError> {
-        let extinction = extinction_per_m(visibility_m, contrast(&args.contrast));
-        Ok(Layer {
-            profile: profile(shape),
-            matter: droplets.0.in_rgb(extinction, RgbSpace::Srgb)?,
-        })
+    let layer = |shape, visibility_m, droplets: DropletsArg| FogInAir {
+        profile: profile(shape),
+        droplets: droplets.0,
+        extinction_per_m: extinction_per_m(visibility_m, contrast(&args.contrast)),
     };
     let first = layer(shape, args.visibility_m, args.droplets);
     let more = args.light.layer.iter();
     let more = more.map(|more| layer(more.shape, more.visibility_m, more.droplets));
-    let all: Result<Vec<_>, _> = std::iter::once(first).chain(more).collect();
-    all.map(Some)
+    Some(std::iter::once(first).chain(more).collect())
 }
 
 fn profile(shape: LayerShape) -> Profile {

@@ -65,6 +65,16 @@ impl SolvedSky {
         let (sky, _) = scene.prepare(scene.near(&sun))?;
         Ok(Some(Self { scene, sky, sun }))
     }
+
+    /// The air, and where the eye is in it.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// Where the sun stands.
+    pub fn sun(&self) -> &Sun {
+        &self.sun
+    }
 }
 
 /// Where fog gets its light from: prepared once, shared by all pictures.

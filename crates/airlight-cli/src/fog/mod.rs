@@ -4,6 +4,7 @@ mod batch;
 mod lamps;
 mod layers;
 mod light;
+mod paths;
 mod picture;
 mod veil;
 
@@ -11,7 +12,9 @@ use crate::args::OverlayArgs;
 use crate::error::CliError;
 use crate::interrupt;
 use crate::report::{self, bytes};
+use airlight::sky::monte_carlo::MonteCarloSettings;
 use light::{LightSource, SolvedSky};
+use paths::Painter;
 use picture::Subject;
 use std::path::Path;
 
@@ -26,13 +29,18 @@ pub fn run(args: &OverlayArgs) -> Result<(), CliError> {
         ..args.clone()
     };
     picture::check(args)?;
-    match batch::is_asked_for(args)? {
-        true => batch::run(args),
-        false => one(args),
+    let random = args.random.settings(args.batch.seed)?;
+    match (batch::is_asked_for(args)?, random) {
+        (true, Some(_)) => Err(CliError::usage(
+            "--solver monte-carlo takes one picture at a time: leave out --solver, or give COLOUR, --depth and --output each \
+             the name of a file, without options for many pictures",
+        )),
+        (true, None) => batch::run(args),
+        (false, random) => one(args, random),
     }
 }
 
-fn one(args: &OverlayArgs) -> Result<(), CliError> {
+fn one(args: &OverlayArgs, random: Option<MonteCarloSettings>) -> Result<(), CliError> {
     let format = picture::format_of(args, &args.output)?;
     let depth = args.depth.as_ref().unwrap_or(&args.colour);
     for input in [&args.colour, depth] {
@@ -43,8 +51,18 @@ fn one(args: &OverlayArgs) -> Result<(), CliError> {
     let subject = Subject::read(args, &args.colour, depth, format)?;
     let solved = SolvedSky::of(args)?;
     let fogged = subject.fogged(args, &LightSource::new(solved.as_ref()))?;
+    let painter = match (random, &solved) {
+        (Some(settings), Some(solved)) => Some(Painter::new(args, solved, &fogged, settings)?),
+        _ => None,
+    };
     let writing = interrupt::start_writing()?;
-    let written = subject.write(&fogged, args, &args.output, format)?;
+    let (written, noise) = match &painter {
+        Some(painter) => painter.write(args, &subject, &fogged, format)?,
+        None => (
+            subject.write(&fogged, args, &args.output, format)?,
+            String::new(),
+        ),
+    };
     drop(writing);
     if args.quiet {
         return Ok(());
@@ -53,7 +71,7 @@ fn one(args: &OverlayArgs) -> Result<(), CliError> {
     let [red, green, blue] = fogged.level.colour.0;
     report::print(&format!(
         "{}: {} x {}, {}\n  visibility    {} m ({} of contrast)\n  light         {red:.4} {green:.4} {blue:.4} ({})\n  \
-         depth         {} pixels unknown, {} infinitely far\n",
+         depth         {} pixels unknown, {} infinitely far\n{noise}",
         args.output.display(),
         size.width(),
         size.height(),

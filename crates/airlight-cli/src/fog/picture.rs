@@ -12,7 +12,7 @@ use airlight_render::input::{
     read_picture,
 };
 use airlight_render::output::{PictureFormat, PictureOptions, Written, exr, png, write_picture};
-use airlight_render::overlay::{Channels, Overlay, Veil};
+use airlight_render::overlay::{Body, Channels, Overlay, Veil};
 use airlight_render::tone::ToneMapper;
 use std::path::Path;
 
@@ -42,6 +42,17 @@ pub fn check(args: &OverlayArgs) -> Result<(), CliError> {
         return Err(CliError::usage(
             "the sun must stand above the horizon to shine on fog: give --sun-elevation above 0, or leave it out for \
              fog in even light; --sky-light knows twilight",
+        ));
+    }
+    let random = args.random.settings(args.batch.seed)?.is_some();
+    if random && !args.light.sky_light {
+        return Err(CliError::usage(
+            "--solver monte-carlo follows sunlight through fog and air: give --sky-light as well",
+        ));
+    }
+    if args.batch.seed.is_some() && !random && args.batch.vary.is_empty() {
+        return Err(CliError::usage(
+            "--seed is for what is drawn at random: give --vary or --solver monte-carlo as well",
         ));
     }
     depth_options(args).map(drop)
@@ -161,19 +172,55 @@ impl Subject {
         output: &Path,
         format: PictureFormat,
     ) -> Result<Written, CliError> {
+        let overlay = self.overlay(fogged, args)?;
+        self.write_overlay(&overlay, args, output, format)
+    }
+
+    /// Picture, depth and fog put together.
+    ///
+    /// # Errors
+    /// [`CliError`] where they do not go together.
+    pub fn overlay<'o>(
+        &'o self,
+        fogged: &'o Fogged<'_>,
+        args: &OverlayArgs,
+    ) -> Result<Overlay<'o>, CliError> {
         let channels = match args.layers {
             true => Channels::Layers,
             false => Channels::Picture,
         };
-        let overlay = Overlay::new(
+        Ok(Overlay::new(
             &self.picture,
             &self.depth,
             &fogged.camera,
             args.eye_height_m,
             &fogged.veil,
             channels,
-        )?;
-        write(args, format, &self.picture, &overlay, output)
+        )?)
+    }
+
+    /// As [`Subject::write`], of what is put together already.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn write_overlay(
+        &self,
+        overlay: &Overlay<'_>,
+        args: &OverlayArgs,
+        output: &Path,
+        format: PictureFormat,
+    ) -> Result<Written, CliError> {
+        write(args, format, &self.picture, overlay, output)
+    }
+}
+
+impl Fogged<'_> {
+    /// The fog; nothing for a look.
+    pub fn body(&self) -> Option<&Body<'_>> {
+        match &self.veil {
+            Veil::Fog(body, _) => Some(body),
+            _ => None,
+        }
     }
 }
 

@@ -13,12 +13,22 @@ const HEADER: &str = "view,azimuth_deg,elevation_deg,distance_m,meets_ground,sun
 /// Columns after them where light was solved for by random paths as well.
 const MONTE_CARLO_HEADER: &str =
     ",monte_carlo_radiance_w_m2_sr_nm,monte_carlo_standard_error_w_m2_sr_nm";
+/// And after those where its polarisation was asked for.
+const POLARISATION_HEADER: &str = ",stokes_i_w_m2_sr_nm,stokes_q_w_m2_sr_nm,stokes_u_w_m2_sr_nm,degree_of_polarisation,\
+    degree_standard_error,angle_of_polarisation_deg,angle_standard_error_deg";
 
 /// The whole text.
 pub fn text(answer: &Answer) -> String {
     let mut text = HEADER.to_owned();
     if answer.views.iter().any(|view| view.monte_carlo.is_some()) {
         text.push_str(MONTE_CARLO_HEADER);
+    }
+    let polarised = |view: &ViewLight| {
+        let found = view.monte_carlo.as_ref();
+        found.is_some_and(|found| found.polarisation.is_some())
+    };
+    if answer.views.iter().any(polarised) {
+        text.push_str(POLARISATION_HEADER);
     }
     text.push('\n');
     for (number, view) in (1..).zip(&answer.views) {
@@ -73,6 +83,20 @@ fn line(text: &mut String, answer: &Answer, number: usize, view: &ViewLight, lan
             ",{},{}",
             found.radiance_w_m2_sr_nm[lane], found.standard_error_w_m2_sr_nm[lane]
         );
+        if let Some(found) = &found.polarisation {
+            let values = [
+                &found.stokes_i_w_m2_sr_nm,
+                &found.stokes_q_w_m2_sr_nm,
+                &found.stokes_u_w_m2_sr_nm,
+                &found.degree,
+                &found.degree_standard_error,
+                &found.angle_deg,
+                &found.angle_standard_error_deg,
+            ];
+            for values in values {
+                let _ = write!(text, ",{}", values[lane]);
+            }
+        }
     }
     text.push('\n');
 }

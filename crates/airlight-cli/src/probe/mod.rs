@@ -34,11 +34,9 @@ pub fn run(args: &ProbeArgs) -> Result<(), CliError> {
         ));
     }
     let settings = args.air.monte_carlo(PATHS)?;
-    if settings.is_some()
-        && (args.distance_m.is_some() || views.iter().any(|v| v.distance_m.is_some()))
-    {
+    if args.polarisation && settings.is_none() {
         return Err(CliError::usage(
-            "--solver monte-carlo looks to the ground or to space: leave out --distance-m and the column distance_m",
+            "--polarisation is for random paths, the other solver's light is scalar: give --solver monte-carlo as well",
         ));
     }
     if args.air.solver.is_classic() {

@@ -79,17 +79,21 @@ fn one(answer: &Answer, view: &ViewLight) -> String {
         ("ground", &view.radiance_ground_w_m2_sr_nm),
         ("transmittance", &view.transmittance),
     ];
-    let found = view.monte_carlo.as_ref().map(|found| {
-        [&found.radiance_w_m2_sr_nm, &found.standard_error_w_m2_sr_nm].map(|values| {
-            values
-                .iter()
-                .map(|&value| value as f32)
-                .collect::<Vec<f32>>()
-        })
-    });
-    if let Some([mean, error]) = &found {
-        columns.extend([("random paths", mean), ("std. error", error)]);
+    let single = |values: &[f64]| -> Vec<f32> { values.iter().map(|&v| v as f32).collect() };
+    let found = view.monte_carlo.as_ref();
+    let mut more = Vec::new();
+    if let Some(found) = found {
+        more.push(("random paths", single(&found.radiance_w_m2_sr_nm)));
+        more.push(("std. error", single(&found.standard_error_w_m2_sr_nm)));
     }
+    if let Some(found) = found.and_then(|found| found.polarisation.as_ref()) {
+        more.push(("polarised", single(&found.stokes_i_w_m2_sr_nm)));
+        more.push(("degree", single(&found.degree)));
+        more.push(("std. error", single(&found.degree_standard_error)));
+        more.push(("angle, deg", single(&found.angle_deg)));
+        more.push(("std. error", single(&found.angle_standard_error_deg)));
+    }
+    columns.extend(more.iter().map(|(name, values)| (*name, values)));
     lines(&mut text, &answer.wavelengths_nm, &columns);
     text
 }

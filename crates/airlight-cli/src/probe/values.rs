@@ -133,6 +133,35 @@ pub struct PathsLight {
     pub radiance_by_order_w_m2_sr_nm: [Vec<f64>; ORDERS],
     /// CIE 1931 XYZ.
     pub xyz_cd_m2: [f64; 3],
+    /// With its polarisation, where asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub polarisation: Option<PolarisedLight>,
+}
+
+/// Polarised light along one direction by random paths. `Q` is positive in the vertical plane through the line of sight; angles
+/// are from there, anticlockwise as the eye sees it.
+#[derive(Debug, Serialize)]
+pub struct PolarisedLight {
+    /// Radiance, the first Stokes parameter.
+    pub stokes_i_w_m2_sr_nm: Vec<f64>,
+    /// Second.
+    pub stokes_q_w_m2_sr_nm: Vec<f64>,
+    /// Third.
+    pub stokes_u_w_m2_sr_nm: Vec<f64>,
+    /// Standard error of the first.
+    pub standard_error_i_w_m2_sr_nm: Vec<f64>,
+    /// Standard error of the second.
+    pub standard_error_q_w_m2_sr_nm: Vec<f64>,
+    /// Standard error of the third.
+    pub standard_error_u_w_m2_sr_nm: Vec<f64>,
+    /// Degree of linear polarisation.
+    pub degree: Vec<f64>,
+    /// Standard error of it.
+    pub degree_standard_error: Vec<f64>,
+    /// Angle of the plane of polarisation.
+    pub angle_deg: Vec<f64>,
+    /// Standard error of it.
+    pub angle_standard_error_deg: Vec<f64>,
 }
 
 impl Answer {
@@ -165,10 +194,16 @@ impl Answer {
             sky: sky_light(&view),
             views: views
                 .par_iter()
-                .map(|asked| ViewLight {
-                    monte_carlo: paths
-                        .map(|paths| paths_light(&view, paths, scene.eye_altitude_m, asked)),
-                    ..view_light(&view, asked, space)
+                .map(|asked| {
+                    let light = view_light(&view, asked, space);
+                    let eye_m = scene.eye_altitude_m;
+                    let polarised = args.polarisation;
+                    let found =
+                        paths.map(|paths| paths_light(&view, paths, eye_m, &light, polarised));
+                    ViewLight {
+                        monte_carlo: found,
+                        ..light
+                    }
                 })
                 .collect(),
         }
@@ -228,10 +263,24 @@ fn paths_light(
     view: &View<'_>,
     paths: &MonteCarlo,
     eye_altitude_m: f64,
-    asked: &AskedView,
+    light: &ViewLight,
+    polarised: bool,
 ) -> PathsLight {
-    let direction = axes::direction(asked.azimuth_deg, asked.elevation_deg);
-    let found = paths.radiance(eye_altitude_m, view.sun(), direction);
+    let direction = axes::direction(light.azimuth_deg, light.elevation_deg);
+    let sun = view.sun();
+    // Where the line ends on the ground, that is seen.
+    let distance_m = light.distance_m.filter(|_| !light.meets_ground);
+    let (found, polarised) = match (polarised, distance_m) {
+        (true, _) => {
+            let found = paths.polarised(eye_altitude_m, sun, direction, distance_m);
+            (found.scalar.clone(), Some(found))
+        }
+        (false, Some(distance_m)) => {
+            let found = paths.path_radiance(eye_altitude_m, sun, direction, distance_m);
+            (found, None)
+        }
+        (false, None) => (paths.radiance(eye_altitude_m, sun, direction), None),
+    };
     // The Monte Carlo's sun is at its mean distance.
     let solar = view.solar_irradiance();
     let nearness = f64::from(solar[0]) / paths.grid().solar_irradiance()[0];
@@ -244,5 +293,17 @@ fn paths_light(
         radiance_by_order_w_m2_sr_nm: found.orders.map(|order| scaled(&order.mean)),
         xyz_cd_m2: paths.grid().to_xyz(&single),
         radiance_w_m2_sr_nm: radiance,
+        polarisation: polarised.map(|found| PolarisedLight {
+            stokes_i_w_m2_sr_nm: scaled(&found.intensity.mean),
+            stokes_q_w_m2_sr_nm: scaled(&found.q.mean),
+            stokes_u_w_m2_sr_nm: scaled(&found.u.mean),
+            standard_error_i_w_m2_sr_nm: scaled(&found.intensity.standard_error),
+            standard_error_q_w_m2_sr_nm: scaled(&found.q.standard_error),
+            standard_error_u_w_m2_sr_nm: scaled(&found.u.standard_error),
+            degree: found.degree.mean,
+            degree_standard_error: found.degree.standard_error,
+            angle_deg: found.angle_deg.mean,
+            angle_standard_error_deg: found.angle_deg.standard_error,
+        }),
     }
 }

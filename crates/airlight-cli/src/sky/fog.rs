@@ -2,17 +2,15 @@
 
 use crate::args::{FogArgs, droplets_in_words};
 use crate::error::CliError;
+use crate::foggy_air::FogInAir;
 use crate::report::short;
 use airlight::fog::droplets::DropletKind;
 use airlight::fog::visibility::{Contrast, extinction_per_m};
 use airlight::fog::{Layer, Matter, Profile, Scattering};
-use airlight::medium::{AltitudeTable, Constituent, DensityProfile, Interpolation};
-use airlight::optics::PhaseFunction;
-use airlight::optics::mie::BulkOptics;
+use airlight::medium::Constituent;
 use airlight::optics::mie::MieError;
 use airlight::outdoors::{Channels, FoggySky};
 use airlight::sky::{SkyTable, TableChannels, View};
-use airlight::spectrum::SpectralCurve;
 use airlight::spectrum::Spectrum;
 use glam::DVec3;
 use std::sync::Arc;
@@ -159,69 +157,12 @@ pub fn constituent(
     let Some(visibility_m) = args.fog_visibility_m else {
         return Ok(None);
     };
-    let extinction = extinction_per_m(visibility_m, Contrast::FivePercent);
-    let (scattering_per_m, absorption_per_m, phase) = match args.fog_droplets.0 {
-        DropletKind::Analytic(drops) => (
-            SpectralCurve::Constant(extinction),
-            SpectralCurve::Constant(0.0),
-            drops.phase(),
-        ),
-        DropletKind::Published(drops) => {
-            let table = drops.table(wavelengths_nm)?;
-            let number = extinction / table.green.extinction_um2();
-            let curve = |of: &dyn Fn(&BulkOptics) -> f64| {
-                let values = table.bulk.iter().map(|bulk| number * of(bulk)).collect();
-                SpectralCurve::table(wavelengths_nm.to_vec(), values)
-                    .map_err(|error| CliError::usage(format!("the fog: {error}")))
-            };
-            (
-                curve(&|bulk| bulk.scattering_um2)?,
-                curve(&|bulk| bulk.absorption_um2)?,
-                PhaseFunction::Tabulated(table.phase.clone()),
-            )
-        }
+    let fog = FogInAir {
+        profile: profile(args),
+        droplets: args.fog_droplets.0,
+        extinction_per_m: extinction_per_m(visibility_m, Contrast::FivePercent),
     };
-    Ok(Some(Constituent {
-        name: "fog".into(),
-        density: density(profile(args), ground_m)?,
-        scattering_per_m,
-        absorption_per_m,
-        phase,
-    }))
-}
-
-/// A fog's profile by altitude.
-fn density(profile: Profile, ground_m: f64) -> Result<DensityProfile, CliError> {
-    /// Scale heights after which nothing is left that could be seen.
-    const LAST: f64 = 12.0;
-    let (base_height_m, scale_height_m) = match profile {
-        Profile::Clamped {
-            base_height_m,
-            scale_height_m,
-        } => (base_height_m, scale_height_m),
-        Profile::Slab { top_height_m } => {
-            return Ok(DensityProfile::Layer {
-                bottom_m: ground_m - 1.0,
-                top_m: ground_m + top_height_m,
-            });
-        }
-        _ => {
-            return Err(CliError::usage(
-                "fog before the sky has a top or a scale height",
-            ));
-        }
-    };
-    let top_m = ground_m + base_height_m + LAST * scale_height_m;
-    let (altitudes, densities) = match base_height_m > 0.0 {
-        true => (
-            vec![ground_m, ground_m + base_height_m, top_m],
-            vec![1.0, 1.0, (-LAST).exp()],
-        ),
-        false => (vec![ground_m, top_m], vec![1.0, (-LAST).exp()]),
-    };
-    AltitudeTable::new(altitudes, densities, Interpolation::LogLinear)
-        .map(DensityProfile::Tabulated)
-        .map_err(|error| CliError::usage(format!("the fog: {error}")))
+    fog.constituent(ground_m, wavelengths_nm).map(Some)
 }
 
 /// The fog of the options in words.

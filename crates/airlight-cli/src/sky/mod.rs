@@ -5,8 +5,10 @@
 //! - [`fog`]: fog before the sky.
 //! - [`layout`]: which files a picture consists of and where each looks.
 //! - [`facts`]: what the files say about themselves; [`exposure`]: how bright PNG, JPEG and preview are.
-//! - [`monte_carlo`]: pictures by random paths; [`classic`]: pictures by published models.
-//! - [`still`]: a picture in memory; [`draw`]: one moment into files; [`preview`]: onto the terminal; [`sequence`]: many moments.
+//! - [`monte_carlo`]: pictures by random paths; [`polarisation`]: what is told of it beside them; [`classic`]: pictures by
+//!   published models.
+//! - [`still`]: a picture in memory; [`draw`]: one moment into files; [`preview`]: onto the terminal; [`sequence`]: many
+//!   moments.
 
 mod channels;
 mod classic;
@@ -17,6 +19,7 @@ mod facts;
 mod fog;
 mod layout;
 mod monte_carlo;
+mod polarisation;
 mod preview;
 mod rows;
 mod sequence;
@@ -35,6 +38,7 @@ use draw::{Drawing, Prepared, Shot};
 pub use exposure::curve as tone_curve;
 pub use facts::SOFTWARE;
 use layout::Layout;
+pub use layout::tagged;
 use std::fmt::Write;
 use std::time::Instant;
 pub use still::Still;

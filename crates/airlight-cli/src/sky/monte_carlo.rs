@@ -4,6 +4,7 @@
 use super::draw::{Drawing, Shot};
 use super::fog;
 use super::layout::{PictureFile, tagged};
+use super::polarisation::{self, PixelStokes};
 use super::rows::Layer;
 use crate::args::{ScatteringArg, SkyArgs, SolverArg};
 use crate::error::CliError;
@@ -31,6 +32,16 @@ const FIRST_PASS: u64 = 2;
 pub fn check(args: &SkyArgs) -> Result<(), CliError> {
     args.air.monte_carlo(PATHS)?;
     let random = args.air.solver == SolverArg::MonteCarlo;
+    if args.polarisation && !random {
+        return Err(CliError::usage(
+            "--polarisation is for random paths, the other solver's light is scalar: give --solver monte-carlo as well",
+        ));
+    }
+    if args.polarisation && args.air.scattering == ScatteringArg::Single {
+        return Err(CliError::usage(
+            "--polarisation is that of all light: leave out --scattering single",
+        ));
+    }
     match (random, args.noise_map, &args.output) {
         (false, true, _) => Err(CliError::usage(
             "--noise-map is for random paths: give --solver monte-carlo as well",
@@ -49,6 +60,8 @@ struct Canvas {
     /// In the channels of a table.
     sums: Vec<f64>,
     colours: Vec<Colour>,
+    /// Where asked for; else empty.
+    stokes: Vec<PixelStokes>,
     bundles: u64,
 }
 
@@ -70,6 +83,7 @@ struct Painter<'a> {
     /// The square of the planet's mean distance from the sun over the present one.
     nearness: f64,
     orders: usize,
+    polarised: bool,
 }
 
 /// Draws the files pass by pass; each pass writes them anew.
@@ -94,7 +108,10 @@ pub fn write(
     check_memory(files, channels)?;
     let mut canvases: Vec<Option<Canvas>> = files
         .iter()
-        .map(|file| (file.layer != Layer::Disc).then(|| Canvas::new(file.frame, channels)))
+        .map(|file| {
+            (file.layer != Layer::Disc)
+                .then(|| Canvas::new(file.frame, channels, painter.polarised))
+        })
         .collect();
     let goal = settings.paths.div_ceil(BUNDLE as u64).max(FIRST_PASS);
     let mut done = 0;
@@ -120,6 +137,9 @@ pub fn write(
             if let Some(canvas) = canvas.as_ref().filter(|_| drawing.args.noise_map) {
                 canvas.write_noise(drawing, shot, file, &tone)?;
             }
+            if let Some(canvas) = canvas.as_ref().filter(|_| painter.polarised) {
+                polarisation::write(&file.path, canvas.frame.size(), &canvas.stokes)?;
+            }
         }
         done = until;
         if done == goal {
@@ -141,7 +161,7 @@ pub fn means(
     settings: MonteCarloSettings,
 ) -> Result<Vec<f32>, CliError> {
     let painter = Painter::new(drawing, shot, settings)?;
-    let mut canvas = Canvas::new(frame, 3);
+    let mut canvas = Canvas::new(frame, 3, false);
     let bar = RowsBar::new(u64::from(frame.size().height()));
     bar.say("following random paths".to_owned());
     let bundles = settings.paths.div_ceil(BUNDLE as u64).max(FIRST_PASS);
@@ -187,13 +207,14 @@ fn say_noise<'a>(drawing: &Drawing<'_>, canvases: impl Iterator<Item = &'a Canva
 }
 
 impl Canvas {
-    fn new(frame: Frame, channels: usize) -> Self {
+    fn new(frame: Frame, channels: usize, polarised: bool) -> Self {
         let pixels = frame.size().width() as usize * frame.size().height() as usize;
         Self {
             frame,
             channels,
             sums: vec![0.0; pixels * channels],
             colours: vec![Colour::default(); pixels],
+            stokes: vec![PixelStokes::default(); if polarised { pixels } else { 0 }],
             bundles: 0,
         }
     }
@@ -259,6 +280,7 @@ impl<'a> Painter<'a> {
                 ScatteringArg::All => ORDERS,
                 ScatteringArg::Single => 1,
             },
+            polarised: drawing.args.polarisation,
         })
     }
 
@@ -267,12 +289,16 @@ impl<'a> Painter<'a> {
         let (from, channels) = (canvas.bundles, canvas.channels);
         let width = canvas.frame.size().width() as usize;
         let frame = canvas.frame;
+        // One row each, none where there is none.
+        let mut stokes: Vec<&mut [PixelStokes]> = canvas.stokes.chunks_mut(width).collect();
+        stokes.resize_with(frame.size().height() as usize, Default::default);
         canvas
             .sums
             .par_chunks_mut(width * channels)
             .zip(canvas.colours.par_chunks_mut(width))
+            .zip(stokes)
             .enumerate()
-            .try_for_each(|(y, (sums, colours))| {
+            .try_for_each(|(y, ((sums, colours), stokes))| {
                 for (x, (sums, colour)) in sums.chunks_mut(channels).zip(colours).enumerate() {
                     if STOP.load(Ordering::Relaxed) {
                         return Err(CliError::Interrupted);
@@ -280,7 +306,7 @@ impl<'a> Painter<'a> {
                     for bundle in from..until {
                         let [u, v] = spread(bundle);
                         if let Some(view) = frame.direction(x as f64 + u, y as f64 + v) {
-                            self.add(view, bundle, sums, colour);
+                            self.add(view, bundle, sums, colour, stokes.get_mut(x));
                         }
                     }
                 }
@@ -292,14 +318,18 @@ impl<'a> Painter<'a> {
     }
 
     /// Adds a bundle of paths along a direction to a pixel.
-    fn add(&self, view: DVec3, bundle: u64, sums: &mut [f64], colour: &mut Colour) {
-        let sample = self
-            .solver
-            .sample(self.eye_altitude_m, self.sun, view, bundle);
+    fn add(
+        &self,
+        view: DVec3,
+        bundle: u64,
+        sums: &mut [f64],
+        colour: &mut Colour,
+        stokes: Option<&mut PixelStokes>,
+    ) {
+        let found = self.sample(view, bundle, stokes);
         let mut rgb = [0.0; 3];
         for (lane, weight) in self.weights.iter().enumerate() {
-            let orders = sample[..self.orders].iter();
-            let radiance = self.nearness * orders.map(|order| order[lane]).sum::<f64>();
+            let radiance = self.nearness * found[lane];
             if self.spectral {
                 sums[lane] += radiance;
             }
@@ -313,6 +343,27 @@ impl<'a> Painter<'a> {
         for (component, value) in rgb.into_iter().enumerate() {
             colour.sum[component] += value;
             colour.square[component] += value * value;
+        }
+    }
+}
+
+impl Painter<'_> {
+    /// Radiance at each wavelength by a bundle of paths; with its polarisation, where that is asked for.
+    fn sample(&self, view: DVec3, bundle: u64, stokes: Option<&mut PixelStokes>) -> Vec<f64> {
+        let (eye_m, sun) = (self.eye_altitude_m, self.sun);
+        match stokes {
+            Some(stokes) => {
+                let sample = self.solver.sample_polarised(eye_m, sun, view, None, bundle);
+                let weights = self.solver.grid().xyz_weights().iter().map(|w| w[1]);
+                stokes.add(&sample, weights);
+                let [intensity, _, _] = sample.stokes;
+                intensity
+            }
+            None => {
+                let sample = self.solver.sample(eye_m, sun, view, bundle);
+                let of = |lane: usize| sample[..self.orders].iter().map(|order| order[lane]).sum();
+                (0..self.weights.len()).map(of).collect()
+            }
         }
     }
 }

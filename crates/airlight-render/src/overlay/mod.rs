@@ -25,6 +25,8 @@ pub struct Overlay<'a> {
     camera: &'a Intrinsics,
     seen: Seen<'a>,
     channels: Channels,
+    /// Path radiance of the fog in each pixel, where it is known already.
+    given: Option<&'a [f32]>,
 }
 
 /// What a row of an [`Overlay`] holds for each pixel.
@@ -88,7 +90,45 @@ impl<'a> Overlay<'a> {
             camera,
             seen: Seen::from_height(veil, eye_height_m),
             channels,
+            given: None,
         })
+    }
+
+    /// The same with the path radiance of its fog made elsewhere: red, green and blue of each pixel, row after row, in the
+    /// picture's unit. Lamps add to it; looks take no notice of it.
+    ///
+    /// # Errors
+    /// [`RenderError::Setting`] where it is not of the picture's size.
+    pub fn with_path_radiance(self, given: &'a [f32]) -> Result<Self, RenderError> {
+        match given.len() == self.picture.rgb.len() {
+            true => Ok(Self {
+                given: Some(given),
+                ..self
+            }),
+            false => Err(RenderError::Setting {
+                what: "the number of path radiances",
+                got: given.len().to_string(),
+                right: "three for each pixel of the picture",
+            }),
+        }
+    }
+
+    /// Where the pixels of row `y` look, and how far things are there, m (infinite: the sky).
+    pub fn lines(&self, y: u32) -> Vec<(DVec3, f64)> {
+        let width = self.picture.size.width() as usize;
+        let mut directions = vec![DVec3::ZERO; width];
+        let mut lengths = vec![1.0; width];
+        self.camera.fill(y, &mut directions, &mut lengths);
+        let depths = &self.depth.metres[y as usize * width..][..width];
+        let distance = |(depth, length): (&f32, &f64)| {
+            let factor = match self.depth.kind {
+                DepthKind::Z => *length,
+                DepthKind::Ray => 1.0,
+            };
+            f64::from(*depth) * factor
+        };
+        let distances = depths.iter().zip(&lengths).map(distance);
+        directions.into_iter().zip(distances).collect()
     }
 
     /// EXR names of the channels: opacity comes last, where the picture has it.
@@ -117,21 +157,16 @@ impl RowSource for Overlay<'_> {
     }
 
     fn fill_row(&self, y: u32, out: &mut [f32]) {
-        let width = self.picture.size.width() as usize;
-        let mut directions = vec![DVec3::ZERO; width];
-        let mut lengths = vec![1.0; width];
-        self.camera.fill(y, &mut directions, &mut lengths);
-        let first = y as usize * width;
-        for (i, out) in out.chunks_exact_mut(self.channels()).enumerate() {
+        let first = y as usize * self.picture.size.width() as usize;
+        let lines = self.lines(y);
+        let pixels = out.chunks_exact_mut(self.channels()).zip(lines);
+        for (i, (out, (direction, distance))) in pixels.enumerate() {
             let pixel = first + i;
             let rgb = &self.picture.rgb[3 * pixel..3 * pixel + 3];
             let colour = Spectrum([rgb[0], rgb[1], rgb[2]]);
-            let distance = f64::from(self.depth.metres[pixel])
-                * match self.depth.kind {
-                    DepthKind::Z => lengths[i],
-                    DepthKind::Ray => 1.0,
-                };
-            let optics = self.seen.optics(directions[i], distance);
+            let given = self.given.map(|given| &given[3 * pixel..3 * pixel + 3]);
+            let given = given.map(|rgb| Spectrum([rgb[0], rgb[1], rgb[2]]));
+            let optics = self.seen.optics(direction, distance, given);
             let opacity = self.picture.alpha.as_ref().map(|alpha| alpha[pixel]);
             let seen = self.through(&optics, colour, opacity.unwrap_or(1.0));
             out[..3].copy_from_slice(&seen.0);

@@ -70,14 +70,21 @@ impl<'a> Seen<'a> {
         }
     }
 
-    /// What it does up to a distance (m; infinite: the sky) in a direction.
-    pub fn optics(&self, direction: DVec3, distance_m: f64) -> PathOptics<3> {
+    /// What it does up to a distance (m; infinite: the sky) in a direction, with the path radiance of fog where that is
+    /// given.
+    pub fn optics(
+        &self,
+        direction: DVec3,
+        distance_m: f64,
+        given: Option<Spectrum<3>>,
+    ) -> PathOptics<3> {
         match self.veil {
             Veil::Fog(body, glow) => {
                 let mut optics = match &self.table {
                     Some(table) => table.along(direction, distance_m),
                     None => body.optics(self.eye_height_m, direction, distance_m),
                 };
+                optics.path_radiance = given.unwrap_or(optics.path_radiance);
                 if let Some(glow) = glow {
                     let (height_m, direction) = (self.eye_height_m, direction);
                     optics.path_radiance += glow.path_radiance(height_m, direction, distance_m);

@@ -4,9 +4,11 @@ mod index;
 pub mod mie;
 pub mod ozone;
 pub mod phase;
+mod polarisation;
 pub mod rayleigh;
 mod tabulated;
 
 pub use index::RefractiveIndex;
 pub use phase::{Depolarization, PhaseError, PhaseFunction, PhaseSampler};
+pub use polarisation::MatrixRatios;
 pub use tabulated::TabulatedPhase;

@@ -124,6 +124,16 @@ pub enum PhaseError {
         /// Number of values given.
         got: usize,
     },
+    /// An element of a scattering matrix that none has.
+    #[error(
+        "elements of a scattering matrix over the phase function must lie in [-1, 1]: of entry {index} one is {value}"
+    )]
+    Matrix {
+        /// Which entry, counted from 0, wavelength by wavelength.
+        index: usize,
+        /// Its value.
+        value: f64,
+    },
     /// A value that is not positive and finite.
     #[error("tabulated values must be positive and finite: entry {index} is {value}")]
     Value {

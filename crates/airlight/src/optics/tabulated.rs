@@ -1,5 +1,6 @@
 //! Phase functions given as tables.
 
+mod matrix;
 mod moments;
 mod sample;
 
@@ -24,6 +25,8 @@ pub struct TabulatedPhase {
     slopes: Arc<[f64]>,
     /// The part of the light that is scattered by less than each angle, wavelength by wavelength.
     cumulative: Arc<[f64]>,
+    /// `f12`, `f33` and `f34` of spheres over the phase function by angle, wavelength by wavelength, where they are known.
+    matrix: Option<Arc<[[f32; 3]]>>,
 }
 
 /// Points of the Gauss-Legendre rule used in each stretch.
@@ -88,6 +91,7 @@ impl TabulatedPhase {
             log_values: log_values.into(),
             slopes: slopes.into(),
             cumulative: Arc::new([]),
+            matrix: None,
         };
         table.normalize();
         Ok(table)

@@ -116,19 +116,24 @@ impl Optics {
         let last = angles.len() - 1;
         angles[last] = 180.0;
         let mut values = Vec::with_capacity(angles.len() * WAVELENGTHS_NM.len());
+        let mut ratios = Vec::with_capacity(values.capacity());
         for (i, &nm) in WAVELENGTHS_NM.iter().enumerate() {
-            values.extend(angles.iter().map(|a| {
-                let cos = a.to_radians().cos();
-                let part = |(scattered, part): &(Vec<f64>, Arc<ModeOptics>)| {
-                    scattered[i] * part.phase.evaluate(cos, nm)
-                };
-                self.parts.iter().map(part).sum::<f64>()
-            }));
+            for angle in &angles {
+                let cos = angle.to_radians().cos();
+                let (mut whole, mut matrix) = (0.0, [0.0; 3]);
+                for (scattered, part) in &self.parts {
+                    let share = scattered[i] * part.phase.evaluate(cos, nm);
+                    let of = part.phase.matrix_ratios(cos, nm);
+                    whole += share;
+                    for (sum, ratio) in matrix.iter_mut().zip([of.f12, of.f33, of.f34]) {
+                        *sum += share * ratio;
+                    }
+                }
+                values.push(whole);
+                ratios.push(matrix.map(|sum| sum / whole));
+            }
         }
-        Ok(TabulatedPhase::new(
-            angles,
-            WAVELENGTHS_NM.to_vec(),
-            values,
-        )?)
+        let table = TabulatedPhase::new(angles, WAVELENGTHS_NM.to_vec(), values)?;
+        Ok(table.with_matrix(&ratios)?)
     }
 }

@@ -146,7 +146,8 @@ impl Particles {
         Ok(self.prepare(wavelength_nm, STEPS)?.matrices(cosines))
     }
 
-    /// The phase function as a table at these wavelengths (nm, rising), and what else is known of each.
+    /// The phase function as a table at these wavelengths (nm, rising) with the rest of the scattering matrix, and what else
+    /// is known of each.
     ///
     /// The angles are chosen by the phase functions of the shortest and the longest wavelength, so that forward peak,
     /// bows and glory are kept: the table's error between its angles is below 0.5 %.
@@ -179,9 +180,12 @@ impl Particles {
         tolerance: f64,
     ) -> Result<(TabulatedPhase, Vec<BulkOptics>), MieError> {
         let mut angles: Vec<f64> = Vec::new();
-        let phase = |prepared: &Prepared, angles: &[f64]| {
+        let matrices = |prepared: &Prepared, angles: &[f64]| {
             let cosines: Vec<f64> = angles.iter().map(|a| a.cos()).collect();
-            let matrices = prepared.matrices(&cosines);
+            prepared.matrices(&cosines)
+        };
+        let phase = |prepared: &Prepared, angles: &[f64]| {
+            let matrices = matrices(prepared, angles);
             matrices.into_iter().map(|matrix| matrix.f11).collect()
         };
         let radius_um = self.sizes.mean_power(6.0).powf(1.0 / 6.0);
@@ -193,10 +197,14 @@ impl Particles {
             }
         }
         let mut values = Vec::with_capacity(angles.len() * wavelengths_nm.len());
+        let mut ratios = Vec::with_capacity(values.capacity());
         let mut bulk = Vec::with_capacity(wavelengths_nm.len());
         for &nm in wavelengths_nm {
             let prepared = self.prepare(nm, steps)?;
-            values.extend::<Vec<f64>>(phase(&prepared, &angles));
+            for matrix in matrices(&prepared, &angles) {
+                values.push(matrix.f11);
+                ratios.push([matrix.f12, matrix.f33, matrix.f34].map(|f| f / matrix.f11));
+            }
             bulk.push(self.bulk_of(nm, &prepared));
         }
         let degrees = |angle: &f64| match *angle == PI {
@@ -205,7 +213,7 @@ impl Particles {
         };
         let angles_deg = angles.iter().map(degrees).collect();
         let table = TabulatedPhase::new(angles_deg, wavelengths_nm.to_vec(), values)?;
-        Ok((table, bulk))
+        Ok((table.with_matrix(&ratios)?, bulk))
     }
 
     /// The coefficients of spheres of all sizes.

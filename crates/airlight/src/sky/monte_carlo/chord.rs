@@ -1,6 +1,7 @@
 //! A straight way through the layers: what lies on it, where to stop on it, and how much light passes.
 
 use super::layers::Layers;
+use crate::quadrature::gauss_legendre;
 use crate::random::Random;
 use crate::sky::shell::{MAX_CONSTITUENTS, PerConstituent};
 use glam::DVec3;
@@ -10,7 +11,7 @@ use glam::DVec3;
 pub enum End {
     /// On the ground.
     Ground,
-    /// Beyond the air.
+    /// Beyond the air, or wherever there is nothing to meet.
     Space,
 }
 
@@ -152,6 +153,38 @@ impl Chord {
         self.columns = columns;
         self.residual = residual;
         end
+    }
+
+    /// Ends it at `until`, if it goes so far.
+    #[cold]
+    pub fn cut(&mut self, layers: &Layers, until: f64) {
+        if self.pieces.is_empty() || until >= self.end() {
+            return;
+        }
+        let last = self.piece_at(until);
+        self.columns = self.columns_to(layers, until);
+        self.pieces.truncate(last + 1);
+        let piece = &mut self.pieces[last];
+        piece.to = until.max(piece.from);
+        let rate = layers.layer(piece.layer).residual_per_m;
+        self.residual = piece.residual_before + rate * (piece.to - piece.from);
+    }
+
+    /// Columns of the true densities from the start to the end, by Gauss's rule of 8 points in each layer.
+    pub fn true_columns(&self, layers: &Layers) -> PerConstituent {
+        let (nodes, weights) = gauss_legendre(8);
+        let mut columns = [0.0; MAX_CONSTITUENTS];
+        for piece in &self.pieces {
+            let (middle, half) = (0.5 * (piece.from + piece.to), 0.5 * (piece.to - piece.from));
+            for (node, weight) in nodes.iter().zip(&weights) {
+                let t = middle + half * node;
+                let densities = layers.densities_at((self.tangent + t * t).sqrt());
+                for (column, density) in columns.iter_mut().zip(densities) {
+                    *column += half * weight * density;
+                }
+            }
+        }
+        columns
     }
 
     /// Where it starts.

@@ -1,7 +1,9 @@
 //! The air's coefficients at the N wavelengths of one block of lanes.
 
 use crate::medium::Atmosphere;
-use crate::optics::{PhaseFunction, PhaseSampler};
+#[cfg(doc)]
+use crate::optics::Depolarization;
+use crate::optics::{MatrixRatios, PhaseFunction, PhaseSampler};
 use crate::random::Random;
 use crate::sky::shell::{MAX_CONSTITUENTS, PerConstituent};
 use crate::spectrum::Spectrum;
@@ -25,10 +27,28 @@ pub struct Lanes<const N: usize> {
     pub ground_albedo: Spectrum<N>,
 }
 
+/// Elements of a scattering matrix over the phase function in all lanes, as [`MatrixRatios`] has them.
+#[derive(Clone, Copy, Debug)]
+pub struct Ratios<const N: usize> {
+    /// Natural light to polarised.
+    pub f12: Spectrum<N>,
+    /// Polarised in or across the plane.
+    pub f22: Spectrum<N>,
+    /// At 45 degrees.
+    pub f33: Spectrum<N>,
+    /// Circular to linear.
+    pub f34: Spectrum<N>,
+    /// Circular.
+    pub f44: Spectrum<N>,
+}
+
 /// A phase function in all lanes.
 #[derive(Clone, Debug)]
 struct Phase<const N: usize> {
     function: PhaseFunction,
+    /// Of molecules, what [`Depolarization::polarised_shares`] says.
+    molecules: Option<[Spectrum<N>; 2]>,
+    polarises: bool,
     shape: Shape<N>,
     /// One for all lanes, or one a lane.
     samplers: Vec<PhaseSampler>,
@@ -57,8 +77,16 @@ impl<const N: usize> Phase<N> {
             }
             _ => (Shape::ByLane, N),
         };
+        let molecules = match function {
+            PhaseFunction::Rayleigh(kind) => Some([0, 1].map(|i| {
+                Spectrum::from_fn(|lane| kind.polarised_shares(wavelengths_nm[lane])[i] as f32)
+            })),
+            _ => None,
+        };
         Self {
             function: function.clone(),
+            molecules,
+            polarises: function.knows_polarisation(),
             shape,
             samplers: wavelengths_nm[..samplers]
                 .iter()
@@ -76,6 +104,56 @@ impl<const N: usize> Phase<N> {
                 Spectrum::from_fn(|i| self.function.evaluate(mu, wavelengths_nm[i]) as f32)
             }
         }
+    }
+}
+
+impl<const N: usize> Ratios<N> {
+    /// No polarisation.
+    pub const NONE: Self = Self {
+        f12: Spectrum::ZERO,
+        f22: Spectrum::ZERO,
+        f33: Spectrum::ZERO,
+        f34: Spectrum::ZERO,
+        f44: Spectrum::ZERO,
+    };
+
+    /// Of molecules (Hansen & Travis 1974, eq. 2.15), with the shares of [`Depolarization::polarised_shares`].
+    #[inline(always)]
+    fn of_molecules([share, circular]: [Spectrum<N>; 2], mu: f32) -> Self {
+        let even = share * (0.75 * (1.0 + mu * mu));
+        let whole = even + (Spectrum::ONE - share);
+        let f33 = share * (1.5 * mu) / whole;
+        Self {
+            f12: share * (0.75 * (mu * mu - 1.0)) / whole,
+            f22: even / whole,
+            f33,
+            f34: Spectrum::ZERO,
+            f44: circular * f33,
+        }
+    }
+
+    /// One lane after the other.
+    fn by_lane(of: impl Fn(usize) -> MatrixRatios) -> Self {
+        let mut all = Self::NONE;
+        for lane in 0..N {
+            let one = of(lane);
+            all.f12[lane] = one.f12 as f32;
+            all.f22[lane] = one.f22 as f32;
+            all.f33[lane] = one.f33 as f32;
+            all.f34[lane] = one.f34 as f32;
+            all.f44[lane] = one.f44 as f32;
+        }
+        all
+    }
+
+    /// Adds another, times factors.
+    #[inline(always)]
+    fn add(&mut self, other: &Self, share: Spectrum<N>) {
+        self.f12 = self.f12.mul_acc(other.f12, share);
+        self.f22 = self.f22.mul_acc(other.f22, share);
+        self.f33 = self.f33.mul_acc(other.f33, share);
+        self.f34 = self.f34.mul_acc(other.f34, share);
+        self.f44 = self.f44.mul_acc(other.f44, share);
     }
 }
 
@@ -152,6 +230,34 @@ impl<const N: usize> Lanes<N> {
             }
         }
         out
+    }
+
+    /// The scattering matrix of all constituents over their phase function, where they scatter so much with these phase
+    /// functions at the cosine `mu`.
+    #[inline(always)]
+    pub fn ratios(
+        &self,
+        scattering: &PerScatterer<N>,
+        phases: &PerScatterer<N>,
+        mu: f64,
+    ) -> Ratios<N> {
+        let mut sum = Ratios::NONE;
+        let whole = phased(scattering, phases).max_scalar(f32::MIN_POSITIVE);
+        for (c, phase) in self.phases.iter().enumerate() {
+            if !phase.polarises || scattering[c].max_element() <= 0.0 {
+                continue;
+            }
+            let ratios = match phase.molecules {
+                Some(shares) => Ratios::of_molecules(shares, mu as f32),
+                None => {
+                    let at =
+                        |lane: usize| phase.function.matrix_ratios(mu, self.wavelengths_nm[lane]);
+                    Ratios::by_lane(at)
+                }
+            };
+            sum.add(&ratios, scattering[c] * phases[c] / whole);
+        }
+        sum
     }
 
     /// Draws the cosine of a scattering angle as `scattering` shares it among constituents in `lane`.

@@ -18,17 +18,24 @@
 //! ```
 //!
 //! Inside, from the ground up: `layers` (the air in layers in which columns are polynomials), `chord` (a straight way
-//! through them), `lanes` (coefficients by wavelength), `sun`, `path` (a random path), `estimate` (mean and error).
+//! through them), `lanes` (coefficients by wavelength), `sun`, `lit` (the part of a line outside the planet's shadow), `path` (a random
+//! path), `estimate` (mean and error), `solver` (the door in), `finite` (lines that end at a distance),
+//! `stokes` (what a path carries of polarisation), `polarised` (the door to that).
 
 mod chord;
 mod estimate;
+mod finite;
 mod lanes;
 mod layers;
+mod lit;
 mod path;
+mod polarised;
 mod solver;
+mod stokes;
 mod sun;
 
 pub use estimate::{Estimate, Measured, Sample};
 pub use path::ORDERS;
+pub use polarised::{PolarisedEstimate, PolarisedSample};
 pub use solver::{BUNDLE, MonteCarlo, MonteCarloSettings};
 pub use sun::SunShape;

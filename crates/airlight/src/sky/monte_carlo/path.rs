@@ -9,6 +9,8 @@
 use super::chord::{Chord, End, HalfLine};
 use super::lanes::{self, Lanes, PerScatterer};
 use super::layers::Layers;
+use super::lit::{Lit, Stretch};
+use super::stokes::Polarisation;
 use super::sun::SunShape;
 use crate::light::SunDisc;
 use crate::random::Random;
@@ -25,10 +27,6 @@ pub type ByOrder<const N: usize> = [Spectrum<N>; ORDERS];
 
 /// With this probability a new direction is drawn about the sun instead of about the way so far.
 const TOWARDS_SUN: f64 = 0.2;
-/// With this probability a path that runs partly in the planet's shadow is scattered in its lit part.
-const IN_LIGHT: f64 = 0.5;
-/// A lit part of which less than this share arrives is not looked for: single precision could not tell its density.
-const FARTHEST: f32 = 1e-24;
 /// Paths that carry less than this share of what they carried at the first vertex may be ended.
 const FAINT: f32 = 0.3;
 
@@ -44,6 +42,17 @@ pub struct World<'a, const N: usize> {
     pub disc: &'a SunDisc,
     /// Whether the disc is sampled.
     pub shape: SunShape,
+}
+
+/// A line of sight.
+#[derive(Clone, Copy, Debug)]
+pub struct Line {
+    /// Where it begins, inside the air: m from the planet's centre.
+    pub place: DVec3,
+    /// Unit vector along it.
+    pub direction: DVec3,
+    /// How far it goes, m: only the air up to there is seen. Else, to the ground, which is seen, or to space.
+    pub reach_m: Option<f64>,
 }
 
 /// A path as far as it has come.
@@ -105,22 +114,22 @@ enum Event {
 }
 
 impl<const N: usize> World<'_, N> {
-    /// Follows a path drawn for the lane `hero` from inside the air. `first`, even in `(0, 1)`, says where it is
+    /// Follows a path drawn for the lane `hero` along a line of sight. `first`, even in `(0, 1)`, says where it is
     /// scattered first; `chord` is scratch space.
     #[inline(always)]
-    pub fn follow(
+    pub fn follow<P: Polarisation<N>>(
         &self,
-        place: DVec3,
-        direction: DVec3,
+        line: &Line,
         hero: usize,
         first: f64,
         random: &mut Random,
         chord: &mut Chord,
+        polarisation: &mut P,
     ) -> ByOrder<N> {
         let mut found = [Spectrum::ZERO; ORDERS];
         let mut path = Path {
-            place,
-            direction,
+            place: line.place,
+            direction: line.direction,
             worth: Spectrum::ONE,
             drawn: Spectrum::ONE,
             order: 0,
@@ -128,36 +137,44 @@ impl<const N: usize> World<'_, N> {
             first_worth: 0.0,
         };
         let mut choice = first;
+        let mut reach_m = line.reach_m;
         loop {
-            match self.advance(&mut path, hero, choice, random, chord) {
+            match self.advance(&mut path, hero, choice, reach_m, random, chord) {
                 Event::Air => {
-                    if !self.scatter(&mut path, hero, random, &mut found) {
+                    if !self.scatter(&mut path, hero, random, &mut found, polarisation) {
                         return found;
                     }
                 }
-                Event::Ground => self.reflect(&mut path, random, &mut found),
+                Event::Ground => self.reflect(&mut path, random, &mut found, polarisation),
                 Event::None => return found,
             }
             if !path.survives(random) {
                 return found;
             }
             choice = random.unit();
+            reach_m = None;
         }
     }
 
-    /// From the place along the direction to the next vertex. Where the way ends in space a collision is forced.
+    /// From the place along the direction to the next vertex. Where there is nothing to meet at the end of the way, in
+    /// space or at the distance `reach_m`, a collision is forced.
     #[inline(always)]
     fn advance(
         &self,
         path: &mut Path<N>,
         hero: usize,
         choice: f64,
+        reach_m: Option<f64>,
         random: &mut Random,
         chord: &mut Chord,
     ) -> Event {
         let layers = self.layers;
         let line = HalfLine::new(path.place, path.direction);
-        let end = chord.cross(layers, line);
+        let mut end = chord.cross(layers, line);
+        if let Some(reach_m) = reach_m {
+            chord.cut(layers, line.start + reach_m);
+            end = End::Space;
+        }
         let whole_depth = self.lanes.extinction(&chord.columns);
         let absorbed = lanes::absorbed(whole_depth);
         let mut choice = choice;
@@ -215,12 +232,13 @@ impl<const N: usize> World<'_, N> {
 
     /// Adds the sun's light at a vertex in the air and draws a new direction; whether the path goes on.
     #[inline(always)]
-    fn scatter(
+    fn scatter<P: Polarisation<N>>(
         &self,
         path: &mut Path<N>,
         hero: usize,
         random: &mut Random,
         found: &mut ByOrder<N>,
+        polarisation: &mut P,
     ) -> bool {
         let densities = self.layers.densities_at(path.place.length());
         let scattering = self.lanes.scattering(&densities);
@@ -228,7 +246,10 @@ impl<const N: usize> World<'_, N> {
         if let Some(light) = self.sunlight(path.place, sun, random) {
             let phases = self.lanes.phases(path.direction.dot(sun).clamp(-1.0, 1.0));
             let scattered = lanes::phased(&scattering, &phases);
-            found[path.order.min(ORDERS - 1)] += path.worth * scattered * light;
+            let light = path.worth * scattered * light;
+            found[path.order.min(ORDERS - 1)] += light;
+            let ways = [path.direction, sun];
+            polarisation.sunlight(self.lanes, ways, [&scattering, &phases], light);
         }
         let whole = lanes::sum(&scattering);
         if whole[hero] <= 0.0 {
@@ -240,12 +261,15 @@ impl<const N: usize> World<'_, N> {
         };
         let cosine = self.lanes.sample(&scattering, hero, random);
         let next = about(axis, cosine, random.unit());
-        let onward = lanes::phased(&scattering, &self.phases_between(path.direction, next));
+        let phases = self.phases_between(path.direction, next);
+        let onward = lanes::phased(&scattering, &phases);
         let sunward = lanes::phased(&scattering, &self.phases_between(self.sun, next));
         let (onward_share, sunward_share) = ((1.0 - TOWARDS_SUN) as f32, TOWARDS_SUN as f32);
         let norm = whole.max_scalar(f32::MIN_POSITIVE);
         let drawn = (onward * onward_share + sunward * sunward_share) / norm;
         path.step(onward, drawn);
+        let ways = [path.direction, next];
+        polarisation.scattered(self.lanes, ways, [&scattering, &phases]);
         path.direction = next;
         path.order += 1;
         // A path towards the sun will find more light than others.
@@ -262,7 +286,13 @@ impl<const N: usize> World<'_, N> {
 
     /// Adds the sun's light at a vertex on the ground and draws a new direction, as Lambert's law has it.
     #[inline(always)]
-    fn reflect(&self, path: &mut Path<N>, random: &mut Random, found: &mut ByOrder<N>) {
+    fn reflect<P: Polarisation<N>>(
+        &self,
+        path: &mut Path<N>,
+        random: &mut Random,
+        found: &mut ByOrder<N>,
+        polarisation: &mut P,
+    ) {
         let up = path.place.normalize();
         // Back on the ground exactly, and above it in the arithmetic of the next way.
         path.place = up * self.layers.edge(0).sqrt();
@@ -272,8 +302,11 @@ impl<const N: usize> World<'_, N> {
         if height > 0.0
             && let Some(light) = self.sunlight(path.place, sun, random)
         {
-            found[path.order.min(ORDERS - 1)] += path.worth * light * (height / PI) as f32;
+            let light = path.worth * light * (height / PI) as f32;
+            found[path.order.min(ORDERS - 1)] += light;
+            polarisation.sunlight_by_ground(light);
         }
+        polarisation.reflected();
         path.direction = about(up, random.unit().sqrt(), random.unit());
         path.order += 1;
         path.promise = path.worth.max_element();
@@ -341,98 +374,6 @@ impl<const N: usize> World<'_, N> {
             }
         }
         lit
-    }
-}
-
-/// A stretch in the light, and how much of each lane is taken out of the line on it.
-#[derive(Clone, Copy, Debug)]
-struct Stretch<const N: usize> {
-    from: f64,
-    to: f64,
-    absorbed: Spectrum<N>,
-}
-
-/// The lit stretches of a line that is partly in shadow; none of a line that is not.
-#[derive(Clone, Copy, Debug)]
-struct Lit<const N: usize> {
-    stretches: [Stretch<N>; 2],
-    count: usize,
-}
-
-impl<const N: usize> Default for Lit<N> {
-    fn default() -> Self {
-        Self {
-            stretches: [Stretch {
-                from: 0.0,
-                to: 0.0,
-                absorbed: Spectrum::ZERO,
-            }; 2],
-            count: 0,
-        }
-    }
-}
-
-impl<const N: usize> Lit<N> {
-    /// Draws where to be scattered for the lane `hero`; the factor of `extinction * transmittance` in the density with
-    /// which each lane draws that place.
-    #[inline(always)]
-    fn draw(
-        &self,
-        world: &World<'_, N>,
-        chord: &Chord,
-        hero: usize,
-        choice: f64,
-        absorbed: &Spectrum<N>,
-    ) -> (f64, Spectrum<N>) {
-        let lit = &self.stretches[..self.count];
-        let lit_absorbed = lit
-            .iter()
-            .fold(Spectrum::ZERO, |sum, stretch| sum + stretch.absorbed);
-        let chance = lit_absorbed.map(|lit| if lit > FARTHEST { IN_LIGHT as f32 } else { 0.0 });
-        let extinction = world.lanes.extinction_of(hero);
-        let depth_to = |t: f64| -> f64 {
-            let columns = chord.columns_to(world.layers, t);
-            extinction.iter().zip(columns).map(|(e, c)| e * c).sum()
-        };
-        // Where the share `choice` of what is taken out between two places is taken out.
-        let place = |from: f64, to: f64, choice: f64| {
-            let before = depth_to(from);
-            let share = choice * (before - depth_to(to)).exp_m1();
-            chord
-                .at_depth(world.layers, extinction, before - share.ln_1p())
-                .clamp(from, to)
-        };
-        let mut choice = choice;
-        let t = if choice < f64::from(chance[hero]) {
-            choice /= f64::from(chance[hero]);
-            let mut picked = &lit[0];
-            let first = f64::from(picked.absorbed[hero] / lit_absorbed[hero]);
-            if lit.len() > 1 && choice >= first {
-                picked = &lit[1];
-                choice = (choice - first) / (1.0 - first);
-            } else if first > 0.0 {
-                choice /= first;
-            }
-            place(picked.from, picked.to, choice)
-        } else {
-            choice = (choice - f64::from(chance[hero])) / f64::from(1.0 - chance[hero]);
-            place(chord.start(), chord.end(), choice)
-        };
-        let in_light = lit
-            .iter()
-            .any(|stretch| t >= stretch.from && t <= stretch.to);
-        let share = Spectrum::from_fn(|i| {
-            let everywhere = match absorbed[i] > 0.0 {
-                true => (1.0 - chance[i]) / absorbed[i],
-                false => 0.0,
-            };
-            let there = match in_light && chance[i] > 0.0 {
-                true => chance[i] / lit_absorbed[i],
-                false => 0.0,
-            };
-            everywhere + there
-        });
-        (t, share)
     }
 }
 

@@ -4,7 +4,8 @@ use super::chord::Chord;
 use super::estimate::{Estimate, Sample, Tally};
 use super::lanes::Lanes;
 use super::layers::Layers;
-use super::path::{ORDERS, World};
+use super::path::{Line, ORDERS, World};
+use super::stokes::{Polarisation, Scalar};
 use super::sun::SunShape;
 use crate::medium::Atmosphere;
 use crate::random::Random;
@@ -47,7 +48,7 @@ pub struct MonteCarlo {
     atmosphere: Atmosphere,
     grid: WavelengthGrid,
     settings: MonteCarloSettings,
-    layers: Layers,
+    pub(super) layers: Layers,
     blocks: Vec<Block>,
 }
 
@@ -59,11 +60,10 @@ enum Block {
     Sixteen(usize, Box<Lanes<16>>),
 }
 
-/// An eye and a sun.
+/// A line of sight under a sun.
 #[derive(Clone, Copy, Debug)]
-struct Line {
-    place: DVec3,
-    direction: DVec3,
+pub(super) struct Scene {
+    pub line: Line,
     sun: DVec3,
     /// Chooses the streams of random numbers.
     subject: u64,
@@ -126,26 +126,14 @@ impl MonteCarlo {
     /// Radiance that arrives at `eye_altitude_m` (m; held at the ground below it) along `view`, when the sun stands in
     /// the direction `sun` at the planet's mean distance from it (unit vectors in world axes, [`crate::axes`]).
     pub fn radiance(&self, eye_altitude_m: f64, sun: DVec3, view: DVec3) -> Estimate {
-        let bundles = self.settings.paths.div_ceil(BUNDLE as u64).max(2);
-        let mut tally = Tally::new(self.grid.len());
-        self.add_bundles(&mut tally, bundles, eye_altitude_m, sun, view);
-        self.estimate(&tally)
+        self.mean_over_paths(self.scene(eye_altitude_m, sun, view, None))
     }
 
     /// What one bundle of paths (64 of them) finds, by order of scattering and wavelength, W m^-2 sr^-1 nm^-1: for
     /// statistics of one's own. Bundles of different numbers or views are independent; the mean over bundles is
     /// [`MonteCarlo::radiance`].
     pub fn sample(&self, eye_altitude_m: f64, sun: DVec3, view: DVec3, bundle: u64) -> Sample {
-        let Some(line) = self.line(eye_altitude_m, sun, view) else {
-            return std::array::from_fn(|_| vec![0.0; self.grid.len()]);
-        };
-        let mut sample = self.bundle(&line, bundle);
-        for order in &mut sample {
-            for (value, solar) in order.iter_mut().zip(self.grid.solar_irradiance()) {
-                *value *= solar;
-            }
-        }
-        sample
+        self.sunlit_bundle(self.scene(eye_altitude_m, sun, view, None), bundle)
     }
 
     /// Goes on until the standard error of the worst wavelength (of those brighter than 1e-3 of the brightest) is
@@ -160,10 +148,11 @@ impl MonteCarlo {
         sun: DVec3,
         view: DVec3,
     ) -> Estimate {
+        let scene = self.scene(eye_altitude_m, sun, view, None);
         let mut tally = Tally::new(self.grid.len());
         let mut bundles = 32;
         loop {
-            self.add_bundles(&mut tally, bundles, eye_altitude_m, sun, view);
+            self.add_bundles(&mut tally, bundles, scene);
             let estimate = self.estimate(&tally);
             if estimate.worst_relative_error() <= relative_error || estimate.paths >= most_paths {
                 return estimate;
@@ -178,16 +167,31 @@ impl MonteCarlo {
         tally.estimate(self.grid.solar_irradiance(), tally.count() * BUNDLE as u64)
     }
 
+    /// The mean over as many paths as the settings say; nothing arrives where there is no air.
+    pub(super) fn mean_over_paths(&self, scene: Option<Scene>) -> Estimate {
+        let bundles = self.settings.paths.div_ceil(BUNDLE as u64).max(2);
+        let mut tally = Tally::new(self.grid.len());
+        self.add_bundles(&mut tally, bundles, scene);
+        self.estimate(&tally)
+    }
+
+    /// A bundle in the light of this atmosphere's sun.
+    pub(super) fn sunlit_bundle(&self, scene: Option<Scene>, bundle: u64) -> Sample {
+        let Some(scene) = scene else {
+            return std::array::from_fn(|_| vec![0.0; self.grid.len()]);
+        };
+        let mut sample = self.bundle(&scene, bundle);
+        for order in &mut sample {
+            for (value, solar) in order.iter_mut().zip(self.grid.solar_irradiance()) {
+                *value *= solar;
+            }
+        }
+        sample
+    }
+
     /// Adds the next `bundles` bundles of a line of sight to its tally, in their order.
-    fn add_bundles(
-        &self,
-        tally: &mut Tally,
-        bundles: u64,
-        eye_altitude_m: f64,
-        sun: DVec3,
-        view: DVec3,
-    ) {
-        let Some(line) = self.line(eye_altitude_m, sun, view) else {
+    fn add_bundles(&self, tally: &mut Tally, bundles: u64, scene: Option<Scene>) {
+        let Some(scene) = scene else {
             let nothing = std::array::from_fn(|_| vec![0.0; self.grid.len()]);
             (0..bundles).for_each(|_| tally.add(&nothing));
             return;
@@ -195,73 +199,99 @@ impl MonteCarlo {
         let first = tally.count();
         let samples: Vec<Sample> = (first..first + bundles)
             .into_par_iter()
-            .map(|bundle| self.bundle(&line, bundle))
+            .map(|bundle| self.bundle(&scene, bundle))
             .collect();
         samples.iter().for_each(|sample| tally.add(sample));
     }
 
-    /// The line of sight from where it enters the air; `None` where it does not.
-    fn line(&self, eye_altitude_m: f64, sun: DVec3, view: DVec3) -> Option<Line> {
+    /// The line of sight from where it enters the air, at most `reach_m` long (from the eye); `None` where it does not.
+    pub(super) fn scene(
+        &self,
+        eye_altitude_m: f64,
+        sun: DVec3,
+        view: DVec3,
+        reach_m: Option<f64>,
+    ) -> Option<Scene> {
         let (ground, top) = self.layers.bounds();
         let radius_m = (self.atmosphere.planet.radius_m + eye_altitude_m).max(ground.sqrt());
         let (sun, direction) = (sun.normalize(), view.normalize());
         let mut place = DVec3::Y * radius_m;
+        let mut reach_m = reach_m;
         if radius_m * radius_m > top {
             let (enters, leaves) = Ray::new(place, direction, sun).crossings(top.sqrt())?;
             if leaves <= 0.0 || enters >= leaves {
                 return None;
             }
             place += direction * enters;
+            reach_m = reach_m.map(|reach_m| reach_m - enters);
         }
-        Some(Line {
-            place,
-            direction,
+        if reach_m.is_some_and(|reach_m| reach_m.is_nan() || reach_m <= 0.0) {
+            return None;
+        }
+        let vectors = [place, direction, sun, DVec3::splat(reach_m.unwrap_or(0.0))];
+        Some(Scene {
+            line: Line {
+                place,
+                direction,
+                reach_m,
+            },
             sun,
-            subject: subject(&[place, direction, sun]),
+            subject: subject(&vectors[..if reach_m.is_some() { 4 } else { 3 }]),
         })
     }
 
     /// Mean over the paths of a bundle, per unit solar irradiance.
-    fn bundle(&self, line: &Line, number: u64) -> Sample {
-        let mut sample: Sample = std::array::from_fn(|_| Vec::with_capacity(self.grid.len()));
+    fn bundle(&self, scene: &Scene, number: u64) -> Sample {
+        self.bundle_of::<Scalar, Scalar, Scalar>(scene, number).0
+    }
+
+    /// The same with what is carried beside it by 4, 8 and 16 lanes; and `I`, `Q`, `U`, where that is anything.
+    pub(super) fn bundle_of<A: Polarisation<4>, B: Polarisation<8>, C: Polarisation<16>>(
+        &self,
+        scene: &Scene,
+        number: u64,
+    ) -> (Sample, [Vec<f64>; 3]) {
+        let empty = |_| Vec::with_capacity(self.grid.len());
+        let mut sample = (std::array::from_fn(empty), std::array::from_fn(empty));
         for (index, block) in self.blocks.iter().enumerate() {
             let mut random = Random::new(
                 self.settings.seed,
-                line.subject.wrapping_add(index as u64),
+                scene.subject.wrapping_add(index as u64),
                 number,
             );
             match block {
                 Block::Four(used, lanes) => {
-                    self.block_bundle(lanes, *used, line, &mut random, &mut sample)
+                    self.block_bundle::<4, A>(lanes, *used, scene, &mut random, &mut sample)
                 }
                 Block::Eight(used, lanes) => {
-                    self.block_bundle(lanes, *used, line, &mut random, &mut sample)
+                    self.block_bundle::<8, B>(lanes, *used, scene, &mut random, &mut sample)
                 }
                 Block::Sixteen(used, lanes) => {
-                    self.block_bundle(lanes, *used, line, &mut random, &mut sample)
+                    self.block_bundle::<16, C>(lanes, *used, scene, &mut random, &mut sample)
                 }
             }
         }
         sample
     }
 
-    fn block_bundle<const N: usize>(
+    fn block_bundle<const N: usize, P: Polarisation<N>>(
         &self,
         lanes: &Lanes<N>,
         used: usize,
-        line: &Line,
+        scene: &Scene,
         random: &mut Random,
-        sample: &mut Sample,
+        (sample, stokes): &mut (Sample, [Vec<f64>; 3]),
     ) {
         let world = World {
             layers: &self.layers,
             lanes,
-            sun: line.sun,
+            sun: scene.sun,
             disc: &self.atmosphere.sun,
             shape: self.settings.sun,
         };
         let mut chord = Chord::default();
         let mut sums = [[0.0f64; N]; ORDERS];
+        let mut stokes_sums = [[0.0f64; N]; 3];
         // Every lane is the hero of as many paths, and the first collisions of all are spread evenly. All are shifted alike at
         // random: else each hero would always draw from the same parts of the unit interval.
         let strata = BUNDLE / N;
@@ -270,10 +300,18 @@ impl MonteCarlo {
             let (hero, stratum) = (path % N, path / N);
             let spread = (stratum * N + (hero * 5 + stratum) % N) as f64;
             let first = (shift + (spread + random.unit()) / (strata * N) as f64).fract();
+            let mut carried = P::begin(scene.line.direction);
             let found = vectorized(
                 #[inline(always)]
-                || world.follow(line.place, line.direction, hero, first, random, &mut chord),
+                || world.follow(&scene.line, hero, first, random, &mut chord, &mut carried),
             );
+            if P::CARRIED {
+                for (sum, found) in stokes_sums.iter_mut().zip(carried.found()) {
+                    for (sum, found) in sum.iter_mut().zip(found.0) {
+                        *sum += f64::from(found);
+                    }
+                }
+            }
             for (sum, found) in sums.iter_mut().zip(&found) {
                 for (sum, found) in sum.iter_mut().zip(found.0) {
                     *sum += f64::from(found);
@@ -282,6 +320,11 @@ impl MonteCarlo {
         }
         for (order, sum) in sample.iter_mut().zip(&sums) {
             order.extend(sum[..used].iter().map(|sum| sum / BUNDLE as f64));
+        }
+        if P::CARRIED {
+            for (part, sum) in stokes.iter_mut().zip(&stokes_sums) {
+                part.extend(sum[..used].iter().map(|sum| sum / BUNDLE as f64));
+            }
         }
     }
 }

@@ -1,0 +1,202 @@
+//! What scattering does to the polarisation of light.
+//!
+//! The scattering matrix of particles that have no side of their own, in frames whose first axis lies in the scattering plane
+//! (Hansen & Travis, Space Sci. Rev. 16, 527, 1974, eqs. 2.12 to 2.16; Bohren & Huffman, sec. 3.3):
+//!
+//! ```text
+//! F11 F12  0    0
+//! F12 F22  0    0          F11 is the phase function;
+//!  0   0   F33  F34        for spheres F22 = F11 and F44 = F33
+//!  0   0  -F34  F44
+//! ```
+
+use super::phase::{Depolarization, PhaseFunction};
+
+/// Elements of the scattering matrix over its first, the phase function.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MatrixRatios {
+    /// Natural light to linear polarisation: `-f12` is the degree of polarisation of natural light scattered once, positive
+    /// across the scattering plane.
+    pub f12: f64,
+    /// Linear polarisation in or across the plane, to itself.
+    pub f22: f64,
+    /// Linear polarisation at 45 degrees, to itself.
+    pub f33: f64,
+    /// Circular to linear polarisation at 45 degrees.
+    pub f34: f64,
+    /// Circular polarisation to itself.
+    pub f44: f64,
+}
+
+impl MatrixRatios {
+    /// Light scattered without polarisation.
+    pub const NONE: Self = Self {
+        f12: 0.0,
+        f22: 0.0,
+        f33: 0.0,
+        f34: 0.0,
+        f44: 0.0,
+    };
+
+    /// The sum with another, times a factor.
+    pub(super) fn plus(self, other: Self, factor: f64) -> Self {
+        Self {
+            f12: self.f12 + factor * other.f12,
+            f22: self.f22 + factor * other.f22,
+            f33: self.f33 + factor * other.f33,
+            f34: self.f34 + factor * other.f34,
+            f44: self.f44 + factor * other.f44,
+        }
+    }
+}
+
+impl Depolarization {
+    /// The part of the scattered light that isotropic molecules would scatter (`Delta`; the rest has no polarisation and no
+    /// direction), and that of it in which circular polarisation is kept (`Delta'`): Hansen & Travis, eq. 2.16.
+    pub fn polarised_shares(self, wavelength_nm: f64) -> [f64; 2] {
+        let ratio = self.ratio(wavelength_nm);
+        [
+            (1.0 - ratio) / (1.0 + 0.5 * ratio),
+            (1.0 - 2.0 * ratio) / (1.0 - ratio),
+        ]
+    }
+}
+
+impl PhaseFunction {
+    /// The scattering matrix over the phase function, at the cosine of the scattering angle.
+    ///
+    /// Known for molecules (Hansen & Travis, eq. 2.15) and for tables of spheres by Lorenz-Mie theory ([`super::mie`]).
+    /// Where a phase function is all that is known (Henyey-Greenstein and its like, measured tables) light is taken to be
+    /// scattered without polarisation: true of none, least of small particles.
+    pub fn matrix_ratios(&self, cos_angle: f64, wavelength_nm: f64) -> MatrixRatios {
+        match self {
+            Self::Rayleigh(depolarization) => {
+                rayleigh(depolarization.polarised_shares(wavelength_nm), cos_angle)
+            }
+            Self::Tabulated(table) => table.matrix_ratios(cos_angle, wavelength_nm),
+            Self::Mixture(parts) => {
+                let mut sum = MatrixRatios::NONE;
+                let mut whole = 0.0;
+                for (weight, part) in parts {
+                    let share = weight * part.evaluate(cos_angle, wavelength_nm);
+                    sum = sum.plus(part.matrix_ratios(cos_angle, wavelength_nm), share);
+                    whole += share;
+                }
+                MatrixRatios::NONE.plus(sum, 1.0 / whole)
+            }
+            Self::Isotropic
+            | Self::HenyeyGreenstein { .. }
+            | Self::CornetteShanks { .. }
+            | Self::Draine { .. } => MatrixRatios::NONE,
+        }
+    }
+
+    /// Whether more than the phase function is known.
+    pub fn knows_polarisation(&self) -> bool {
+        match self {
+            Self::Rayleigh(_) => true,
+            Self::Tabulated(table) => table.has_matrix(),
+            Self::Mixture(parts) => parts.iter().any(|(_, part)| part.knows_polarisation()),
+            _ => false,
+        }
+    }
+}
+
+fn rayleigh([share, circular]: [f64; 2], mu: f64) -> MatrixRatios {
+    let even = 0.75 * share * (1.0 + mu * mu);
+    let whole = even + 1.0 - share;
+    let turned = 1.5 * share * mu / whole;
+    MatrixRatios {
+        f12: -0.75 * share * (1.0 - mu * mu) / whole,
+        f22: even / whole,
+        f33: turned,
+        f34: 0.0,
+        f44: circular * turned,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::optics::mie::{Particles, SizeDistribution, Sphere};
+    use crate::optics::{RefractiveIndex, TabulatedPhase};
+    use num_complex::Complex64;
+
+    /// Light scattered at right angles by molecules: isotropic ones polarise it wholly, others leave
+    /// `(1 - rho) / (1 + rho)`, as the ratio is defined.
+    #[test]
+    fn molecules_polarise_as_their_ratio_says() {
+        for rho in [0.0, 0.03, 0.2] {
+            let phase = PhaseFunction::rayleigh(rho).unwrap();
+            let at = |mu| phase.matrix_ratios(mu, 550.0);
+            assert!((at(0.0).f12 + (1.0 - rho) / (1.0 + rho)).abs() < 1e-12);
+            assert!(at(1.0).f12.abs() < 1e-12 && (at(1.0).f22 - at(1.0).f33).abs() < 1e-12);
+            assert!((at(-1.0).f22 + at(-1.0).f33).abs() < 1e-12);
+        }
+        let ideal = PhaseFunction::rayleigh(0.0).unwrap();
+        for mu in [-0.8f64, 0.1, 0.6] {
+            let degree = (1.0 - mu * mu) / (1.0 + mu * mu);
+            assert!((ideal.matrix_ratios(mu, 550.0).f12 + degree).abs() < 1e-12);
+            assert!((ideal.matrix_ratios(mu, 550.0).f22 - 1.0).abs() < 1e-12);
+        }
+    }
+
+    /// A sphere far smaller than the wavelength is an isotropic molecule.
+    #[test]
+    fn small_spheres_are_molecules() {
+        let sphere = Sphere::new(1e-3, Complex64::new(1.33, 0.0)).unwrap();
+        let molecule = PhaseFunction::rayleigh(0.0).unwrap();
+        for mu in [-1.0, -0.4, 0.2, 0.9] {
+            let (matrix, ratios) = (sphere.matrix(mu), molecule.matrix_ratios(mu, 550.0));
+            assert!((matrix.f12 / matrix.f11 - ratios.f12).abs() < 1e-5);
+            assert!((matrix.f33 / matrix.f11 - ratios.f33).abs() < 1e-5);
+            assert!((matrix.f34 / matrix.f11).abs() < 1e-5);
+        }
+    }
+
+    /// A table of spheres holds what they do to polarisation, between its angles too.
+    #[test]
+    fn tables_of_spheres_hold_the_whole_matrix() {
+        let sizes = SizeDistribution::log_normal(0.15, 1.6);
+        let index = RefractiveIndex::constant(Complex64::new(1.45, 0.01));
+        let particles = Particles::new(index, sizes).unwrap();
+        let (table, _) = particles.table(&[450.0, 600.0]).unwrap();
+        let cosines: Vec<f64> = (0..40)
+            .map(|i| (0.08 * f64::from(i) + 0.005).cos())
+            .collect();
+        let exact = particles.matrices(600.0, &cosines).unwrap();
+        for (mu, exact) in cosines.iter().zip(exact) {
+            let got = table.matrix_ratios(*mu, 600.0);
+            for (got, want) in [
+                (got.f12, exact.f12),
+                (got.f33, exact.f33),
+                (got.f34, exact.f34),
+                (got.f22, exact.f11),
+                (got.f44, exact.f33),
+            ] {
+                assert!(
+                    (got - want / exact.f11).abs() < 5e-3,
+                    "{mu}: {got} {exact:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_known_by_its_phase_function_alone_does_not_polarise() {
+        let lobe = PhaseFunction::HenyeyGreenstein { g: 0.6 };
+        assert!(!lobe.knows_polarisation());
+        let plain = TabulatedPhase::new(vec![0.0, 180.0], vec![550.0], vec![1.0; 2]).unwrap();
+        let plain = PhaseFunction::Tabulated(plain);
+        assert!(!plain.knows_polarisation());
+        assert_eq!(plain.matrix_ratios(0.3, 550.0), MatrixRatios::NONE);
+        let half = vec![
+            (0.5, PhaseFunction::rayleigh(0.0).unwrap()),
+            (0.5, PhaseFunction::Isotropic),
+        ];
+        let half = PhaseFunction::mixture(half).unwrap();
+        // At right angles 3/4 of what scatters alike in all directions.
+        let degree = -half.matrix_ratios(0.0, 550.0).f12;
+        assert!((degree - 0.75 / 1.75).abs() < 1e-12, "{degree}");
+    }
+}

@@ -1,0 +1,98 @@
+//! The scattering matrix of spheres beside their phase function.
+
+use super::{PhaseError, TabulatedPhase};
+use crate::optics::MatrixRatios;
+
+impl TabulatedPhase {
+    /// The same with what spheres do to polarisation: `f12`, `f33` and `f34` over the phase function, at each angle and
+    /// wavelength of the table in its order. Between them the ratios are linear in the angle.
+    ///
+    /// # Errors
+    /// [`PhaseError::Length`] where their number is wrong, [`PhaseError::Matrix`] where one is not in `[-1, 1]`.
+    pub fn with_matrix(self, ratios: &[[f64; 3]]) -> Result<Self, PhaseError> {
+        if ratios.len() != self.log_values.len() {
+            return Err(PhaseError::Length {
+                wavelengths: self.wavelengths_nm.len(),
+                angles: self.angles_rad.len(),
+                got: ratios.len(),
+            });
+        }
+        // Single precision in the sums over spheres may lie beyond the ends by as much.
+        let right = |v: &f64| v.abs() <= 1.0 + 1e-4;
+        for (index, all) in ratios.iter().enumerate() {
+            if let Some(&value) = all.iter().find(|v| !right(v)) {
+                return Err(PhaseError::Matrix { index, value });
+            }
+        }
+        let stored = ratios
+            .iter()
+            .map(|all| all.map(|v| v.clamp(-1.0, 1.0) as f32));
+        Ok(Self {
+            matrix: Some(stored.collect()),
+            ..self
+        })
+    }
+
+    /// Whether it has the whole matrix.
+    pub fn has_matrix(&self) -> bool {
+        self.matrix.is_some()
+    }
+
+    /// The scattering matrix over the phase function, at the cosine of the scattering angle: of spheres, where the table
+    /// has it; else light is scattered without polarisation.
+    pub fn matrix_ratios(&self, cos_angle: f64, wavelength_nm: f64) -> MatrixRatios {
+        let Some(matrix) = &self.matrix else {
+            return MatrixRatios::NONE;
+        };
+        let (interval, angle) = self.place(cos_angle);
+        let (row, t) = self.between(wavelength_nm);
+        let [low, high] = [self.angles_rad[interval], self.angles_rad[interval + 1]];
+        let part = ((angle - low) / (high - low)) as f32;
+        let of = |row: usize| -> [f64; 3] {
+            let at = row * self.angles_rad.len() + interval;
+            let (near, far) = (matrix[at], matrix[at + 1]);
+            std::array::from_fn(|i| f64::from(near[i] + part * (far[i] - near[i])))
+        };
+        let [f12, f33, f34] = match t {
+            0.0 => of(row),
+            _ => {
+                // The elements are linear between wavelengths, as the phase function is.
+                let near = (1.0 - t) * self.at_row(row, interval, angle);
+                let far = t * self.at_row(row + 1, interval, angle);
+                let share = far / (near + far);
+                let (near, far) = (of(row), of(row + 1));
+                std::array::from_fn(|i| near[i] + share * (far[i] - near[i]))
+            }
+        };
+        MatrixRatios {
+            f12,
+            f22: 1.0,
+            f33,
+            f34,
+            f44: f33,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn matrices_that_cannot_be_are_refused() {
+        let table = || TabulatedPhase::new(vec![0.0, 180.0], vec![550.0], vec![1.0; 2]).unwrap();
+        assert!(matches!(
+            table().with_matrix(&[[0.0; 3]; 3]),
+            Err(PhaseError::Length { got: 3, .. })
+        ));
+        for wrong in [1.1, -2.0, f64::NAN] {
+            assert!(matches!(
+                table().with_matrix(&[[0.0; 3], [0.0, wrong, 0.0]]),
+                Err(PhaseError::Matrix { index: 1, .. })
+            ));
+        }
+        let half = table().with_matrix(&[[0.0; 3], [-1.0, 0.5, 0.0]]).unwrap();
+        let middle = half.matrix_ratios(0.0, 550.0);
+        assert!((middle.f12 + 0.5).abs() < 1e-6 && (middle.f44 - 0.25).abs() < 1e-6);
+    }
+}
