@@ -166,7 +166,7 @@ fn polarisation_is_told() {
     let table = succeed(&folder, &format!("probe {words}"));
     assert!(table.contains("degree") && table.contains("angle, deg"));
     let sky = "sky -q --sun-elevation 20 --sun-azimuth 180 --sun-disc out --wavelengths rgb --solver monte-carlo \
-               --polarisation --projection perspective --fov 20 --camera-azimuth 0 --camera-elevation 70 --size 8x6";
+               --polarisation --projection perspective --fov 2 --camera-azimuth 0 --camera-elevation 70 --size 8x6";
     succeed(&folder, &format!("{sky} --paths 256 -o sky.exr"));
     let names = folder.names();
     assert_eq!(names, ["sky.exr", "sky.polarisation.exr"]);
