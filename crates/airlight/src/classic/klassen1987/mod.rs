@@ -231,6 +231,14 @@ fn f64s(lanes: &Lanes) -> Vec<f64> {
 }
 
 impl ClassicSky for Klassen1987 {
+    fn sun(&self) -> DVec3 {
+        self.sun
+    }
+
+    fn disc_edge_rad(&self) -> f64 {
+        self.disc.angular_radius_rad
+    }
+
     fn sky_xyz(&self, direction: DVec3) -> [f64; 3] {
         let (sin_elevation, cos_sun) = self.angles(direction);
         self.xyz_along(sin_elevation, cos_sun, &mut Simpson::new(0.0))
