@@ -29,6 +29,22 @@ fn bad_use_of_sky() {
     std::fs::write(folder.file("binary.toml"), [0xff, 0xfe, 0x00]).unwrap();
     for (words, part) in [
         ("sky -o a.exr", "--sun-elevation"),
+        (
+            "sky --sun-elevation 30 --haze-thickness-m 500 -o a.exr",
+            "--solver klassen1987",
+        ),
+        (
+            "sky --solver klassen1987 --sun-elevation -2 -o a.exr",
+            "at the horizon or above",
+        ),
+        (
+            "sky --solver klassen1987 --sun-elevation 2 --altitude-m 9000 -o a.exr",
+            "from the ground",
+        ),
+        (
+            "sky --solver klassen1987 --sun-elevation 2 --haze-thickness-m 9e4 -o a.exr",
+            "must not reach above",
+        ),
         ("sky --sun-elevation 30", "--output"),
         ("sky --sun-elevation NaN -o a.exr", "-90 to 90"),
         ("sky --sun-elevation 91 -o a.exr", "-90 to 90"),

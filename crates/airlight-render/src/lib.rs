@@ -8,6 +8,7 @@
 //! - [`error`]: what can go wrong, in sentences.
 //! - [`frame`]: projections: from pixels to view directions and back.
 //! - [`rows`]: where pixels come from; stopping and following a long write.
+//! - [`enlarge`]: small pictures made large by splines.
 //! - [`tone`]: from linear light to what a display shows: exposure, tone curves, dither.
 //! - [`output`]: picture files: OpenEXR (RGB and spectral), Radiance HDR, PNG, JPEG.
 //! - [`input`]: pictures and depth maps read from files.
@@ -15,6 +16,7 @@
 //! - [`terminal`]: a small picture as coloured text.
 //! - [`sequence`]: many pictures: file names, time steps, taking up where an earlier run stopped.
 
+pub mod enlarge;
 pub mod error;
 pub mod frame;
 pub mod input;

@@ -1,6 +1,6 @@
 //! Options of published models of the sky.
 
-use super::SolverArg;
+use super::{KlassenArgs, SolverArg};
 use crate::error::CliError;
 use clap::{Args, ValueEnum};
 
@@ -20,6 +20,8 @@ pub struct ClassicArgs {
     /// Which form of a published model [default: corrected]
     #[arg(long, value_enum)]
     pub variant: Option<VariantArg>,
+    #[command(flatten)]
+    pub klassen: KlassenArgs,
 }
 
 impl ClassicArgs {
@@ -28,6 +30,12 @@ impl ClassicArgs {
     /// # Errors
     /// [`CliError::Usage`]: which.
     pub fn check(&self, solver: SolverArg) -> Result<(), CliError> {
+        if self.klassen.given() && solver != SolverArg::Klassen1987 {
+            return Err(CliError::usage(
+                "--haze-extinction-per-m, --haze-thickness-m, --wet-haze, --air-density, --air-thickness-m and --base-blue are \
+                 for one published model: give --solver klassen1987 as well",
+            ));
+        }
         match (solver.is_classic(), self.variant) {
             (false, Some(_)) => Err(CliError::usage(
                 "--variant is for published models: give --solver with the name of one",

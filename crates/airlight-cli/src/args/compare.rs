@@ -1,7 +1,7 @@
 //! Options of `airlight compare`.
 
 use super::{AirArgs, ClassicArgs, EffortArg, FogArgs, PictureArgs, PlaceArgs, ScatteringArg};
-use super::{SkyArgs, SolverArg, VariantArg};
+use super::{KlassenArgs, SkyArgs, SolverArg, VariantArg};
 use crate::parse;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -131,6 +131,9 @@ impl CompareArgs {
         sky.air.solver = by.solver;
         if by.solver != SolverArg::MonteCarlo {
             (sky.air.paths, sky.air.seed) = (None, None);
+        }
+        if by.solver != SolverArg::Klassen1987 {
+            sky.classic.klassen = KlassenArgs::default();
         }
         match by.form {
             Form::Default => {}

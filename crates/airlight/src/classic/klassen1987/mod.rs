@@ -26,7 +26,8 @@
 //! Wavelengths: 33 at 10 nm as in section 8, 380 to 700 nm (the paper gives the number and the step; these are the ends that
 //! lie about the visible range).
 //!
-//! The model has no light below the horizon; there it shows the horizon's. It has no twilight, no ozone in the sun's
+//! The model has no light below the horizon; there it shows the horizon's
+//! ([`ClassicSky::has_ground`]: no). It has no twilight, no ozone in the sun's
 //! colour, no haze that is lit by haze. How far it is from the solver: the book's chapter.
 
 mod blue;
