@@ -3,6 +3,11 @@
 //! The paper or article behind a model is named in its module, with the numbers of its equations, its errata and what
 //! it differs by from the solver of [`crate::sky`].
 
+mod lut;
+pub mod single_scattering;
+
+pub use lut::MultipleScatteringSettings;
+
 use glam::DVec3;
 
 /// A published model of the sky, ready to answer for one eye and one sun.
