@@ -4,6 +4,7 @@
 //! it differs by from the solver of [`crate::sky`].
 
 mod lut;
+pub mod preetham;
 pub mod single_scattering;
 
 pub use lut::MultipleScatteringSettings;
