@@ -3,6 +3,8 @@
 //! The paper or article behind a model is named in its module, with the numbers of its equations, its errata and what
 //! it differs by from the solver of [`crate::sky`].
 
+#[cfg(feature = "hosek-wilkie")]
+pub mod hosek_wilkie;
 mod lut;
 pub mod preetham;
 pub mod single_scattering;
