@@ -3,6 +3,7 @@
 //! The paper or article behind a model is named in its module, with the numbers of its equations, its errata and what
 //! it differs by from the solver of [`crate::sky`].
 
+pub mod four_orders;
 pub mod hillaire2020;
 #[cfg(feature = "hosek-wilkie")]
 pub mod hosek_wilkie;
