@@ -7,7 +7,6 @@
 //! [`solved`] (a sky solved for a table's wavelengths), [`skies`] (against tables of skies), [`measured`] (against the
 //! measured sky), [`report`].
 
-pub mod chart;
 pub mod check;
 pub mod measured;
 pub mod report;

@@ -4,15 +4,19 @@
 //! - [`error`]: why a command ends, and its exit code; [`parse`]: values on the command line; [`moment`]: times.
 //! - [`args`]: every option of every command.
 //! - [`interrupt`], [`progress`], [`report`]: Ctrl-C, bars on standard error, text on standard output.
-//! - [`atmosphere`], [`scene`], [`light`]: what is asked for, from options to the solver; sums over the sky.
-//! - [`sky`], [`fog`], [`probe`], [`accuracy`] and [`plot`]: the commands.
+//! - [`atmosphere`], [`scene`], [`classic`], [`light`]: what is asked for, from options to the solver or the published
+//!   model; sums over the sky.
+//! - [`sky`], [`fog`], [`probe`], [`compare`], [`grid`], [`accuracy`] and [`plot`]: the commands.
 
 mod accuracy;
 mod aerosol;
 mod args;
 mod atmosphere;
+mod classic;
+mod compare;
 mod error;
 mod fog;
+mod grid;
 mod interrupt;
 mod light;
 mod moment;
@@ -49,6 +53,8 @@ fn run(cli: &Cli) -> Result<(), CliError> {
         Command::Sky(args) => sky::run(args),
         Command::Fog(args) => fog::run(args),
         Command::Probe(args) => probe::run(args),
+        Command::Compare(args) => compare::run(args),
+        Command::Grid(args) => grid::run(args),
         Command::Accuracy(args) => accuracy::run(args),
         Command::Plot(args) => plot::run(args),
         Command::Atmospheres(args) => atmosphere::list(args),

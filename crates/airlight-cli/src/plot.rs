@@ -6,7 +6,9 @@ use crate::progress::Busy;
 use crate::report;
 use airlight::optics::RefractiveIndex;
 use airlight::optics::mie::{Complex64, MieError, Particles, SizeDistribution, Sphere};
-use airlight_accuracy::chart::{self, Axis, Curve};
+use airlight_chart::around::around;
+use airlight_chart::curves::curves as over;
+use airlight_chart::{Axis, Curve, Drawn};
 use std::f64::consts::{PI, TAU};
 
 /// Effective variance of the sizes over which the oscillations of single spheres are smoothed.
@@ -33,7 +35,7 @@ pub fn run(args: &PlotArgs) -> Result<(), CliError> {
 }
 
 /// Phase functions, or the patterns around single spheres.
-fn phase(args: &PhasePlotArgs) -> Result<chart::Drawn, CliError> {
+fn phase(args: &PhasePlotArgs) -> Result<Drawn, CliError> {
     if args.droplets.is_empty() && args.size_parameter.is_empty() {
         return Err(CliError::usage(
             "say whose phase function: --droplets KIND,... or --size-parameter X,...",
@@ -51,7 +53,7 @@ fn phase(args: &PhasePlotArgs) -> Result<chart::Drawn, CliError> {
     }
     drop(busy);
     if args.polar {
-        return Ok(chart::around(&curves));
+        return Ok(around(&curves));
     }
     let degrees = |points: &mut Vec<(f64, f64)>| {
         points.truncate(points.len() / 2 + 1);
@@ -60,15 +62,9 @@ fn phase(args: &PhasePlotArgs) -> Result<chart::Drawn, CliError> {
     curves
         .iter_mut()
         .for_each(|curve| degrees(&mut curve.points));
-    let x = Axis {
-        name: "scattering angle, degrees".to_owned(),
-        by_powers: false,
-    };
-    let y = Axis {
-        name: "phase function, 1/sr".to_owned(),
-        by_powers: true,
-    };
-    Ok(chart::curves(&x, &y, &curves))
+    let x = Axis::even("scattering angle, degrees");
+    let y = Axis::powers("phase function, 1/sr");
+    Ok(over(&x, &y, &curves))
 }
 
 /// Angles all the way round (rad), in steps that resolve features of a width.
@@ -113,7 +109,7 @@ fn of_sphere(x: f64, index: Index, pattern: bool) -> Result<Curve, CliError> {
 }
 
 /// Efficiencies of single spheres, and the mean over sizes.
-fn efficiency(args: &EfficiencyPlotArgs) -> Result<chart::Drawn, CliError> {
+fn efficiency(args: &EfficiencyPlotArgs) -> Result<Drawn, CliError> {
     const STEPS: usize = 2500;
     const SMOOTH_STEPS: usize = 120;
     let index = Complex64::new(args.index.real, args.index.imaginary);
@@ -139,13 +135,7 @@ fn efficiency(args: &EfficiencyPlotArgs) -> Result<chart::Drawn, CliError> {
             points: of_many?,
         },
     ];
-    let x = Axis {
-        name: "size parameter 2 pi r / wavelength".to_owned(),
-        by_powers: false,
-    };
-    let y = Axis {
-        name: "scattering efficiency".to_owned(),
-        by_powers: false,
-    };
-    Ok(chart::curves(&x, &y, &curves))
+    let x = Axis::even("size parameter 2 pi r / wavelength");
+    let y = Axis::even("scattering efficiency");
+    Ok(over(&x, &y, &curves))
 }

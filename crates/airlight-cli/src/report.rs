@@ -18,14 +18,14 @@ pub fn print(text: &str) -> Result<(), CliError> {
         .map_err(|error| CliError::from_stdout(&error))
 }
 
-/// Writes a text to a file, which appears whole or not at all.
+/// Writes a text or bytes to a file, which appears whole or not at all.
 ///
 /// # Errors
 /// [`CliError`] where the file cannot be written.
-pub fn write(path: &Path, text: &str) -> Result<(), CliError> {
+pub fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<(), CliError> {
     let _writing = interrupt::start_writing()?;
     let file = AtomicFile::create(path)?;
-    file.file().write_all(text.as_bytes()).map_err(|error| {
+    file.file().write_all(content.as_ref()).map_err(|error| {
         CliError::failure(format!("cannot write `{}`: {error}", path.display()))
     })?;
     Ok(file.commit()?)

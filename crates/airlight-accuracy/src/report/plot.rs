@@ -1,8 +1,9 @@
 //! Plots of a report, as SVG.
 
-use crate::chart::{COLOURS, Drawn, FONT, SIZE, draw, labels};
 use crate::check::{Check, Unit};
 use crate::measured::Published;
+use airlight_chart::Drawn;
+use airlight_chart::svg::{COLOURS, FONT, SIZE, draw, labels};
 use plotters::prelude::*;
 
 /// Errors of some checks of one unit over the zenith angle of the view, or over the angle from the sun; a colour for each

@@ -21,6 +21,28 @@ pub enum SolverArg {
     Orders,
     /// Random paths: no approximation, slow, with noise whose size is told.
     MonteCarlo,
+    /// Klassen 1987: two layers of haze and air, sunlight scattered once by the haze, before a blue sky.
+    #[value(name = "klassen1987")]
+    Klassen1987,
+    /// Preetham, Shirley & Smits 1999: a formula by turbidity, for the sun above the horizon.
+    Preetham,
+    /// Bruneton & Neyret 2008: the first four orders of scattering.
+    #[value(name = "bruneton2008")]
+    Bruneton2008,
+    /// Hosek & Wilkie 2012: a formula by turbidity and ground albedo (in builds with the feature hosek-wilkie).
+    HosekWilkie,
+    /// Hillaire 2020: few steps and two small tables, in the air of --atmosphere.
+    #[value(name = "hillaire2020")]
+    Hillaire2020,
+    /// The sky article: sunlight scattered once, in its own air, and the steps beyond it (--variant).
+    SingleScattering,
+}
+
+impl SolverArg {
+    /// Whether it is a published model of the sky.
+    pub fn is_classic(self) -> bool {
+        !matches!(self, Self::Orders | Self::MonteCarlo)
+    }
 }
 
 /// How finely the orders of scattering are solved.
@@ -33,7 +55,7 @@ pub enum EffortArg {
 }
 
 /// What the air is and how its light is solved for.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Air")]
 pub struct AirArgs {
     /// The atmosphere: a name (see --help or `airlight atmospheres`) or a TOML file
@@ -101,12 +123,10 @@ impl AirArgs {
                 seed: self.seed.unwrap_or(1),
                 sun: SunShape::Disc,
             })),
-            SolverArg::Orders if self.paths.is_some() || self.seed.is_some() => {
-                Err(CliError::usage(
-                    "--paths and --seed are for random paths: give --solver monte-carlo as well",
-                ))
-            }
-            SolverArg::Orders => Ok(None),
+            _ if self.paths.is_some() || self.seed.is_some() => Err(CliError::usage(
+                "--paths and --seed are for random paths: give --solver monte-carlo as well",
+            )),
+            _ => Ok(None),
         }
     }
 }

@@ -69,7 +69,7 @@ pub fn in_words(kind: DropletKind) -> String {
 }
 
 /// What fog lies in the air. Heights are above the ground.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Fog")]
 pub struct FogArgs {
     /// Fog in which one sees this far where it is thickest, m: the distance at which 5 % of contrast is left

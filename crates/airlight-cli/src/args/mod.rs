@@ -2,7 +2,10 @@
 
 mod accuracy;
 mod air;
+mod classic;
+mod compare;
 mod fog;
+mod grid;
 mod overlay;
 mod overlay_batch;
 mod overlay_light;
@@ -14,7 +17,10 @@ mod probe;
 
 pub use accuracy::{AccuracyArgs, ReportArg};
 pub use air::{AirArgs, EffortArg, ScatteringArg, SolverArg};
+pub use classic::{ClassicArgs, SunlightArg, VariantArg};
+pub use compare::{CompareArgs, StatisticsArg};
 pub use fog::{DropletsArg, FogArgs, in_words as droplets_in_words};
+pub use grid::GridArgs;
 pub use overlay::{DepthKindArg, HolesArg, ModelArg, OverlayArgs};
 pub use overlay_light::{AirArg, LampArg, LampKind, LampPlace, LayerShape, OverlayLightArgs};
 pub use overlay_vary::Variation;
@@ -62,9 +68,13 @@ pub enum Command {
     Fog(Box<OverlayArgs>),
     /// Tell the spectral radiance of the sky along given directions, and the light of sun and sky, in numbers.
     Probe(Box<ProbeArgs>),
+    /// Draw one sky by two solvers side by side, with maps and statistics of the difference.
+    Compare(Box<CompareArgs>),
+    /// Draw a board of skies that a TOML file describes.
+    Grid(GridArgs),
     /// Tell how right the solvers are, beside measurement and other people's codes.
     Accuracy(AccuracyArgs),
-    /// Plot what particles do to light: phase functions, efficiencies; as SVG.
+    /// Plot curves and maps, as SVG or PNG: phase functions, efficiencies, spectra, transmittance, fog.
     Plot(PlotArgs),
     /// List the atmospheres and types of haze that can be asked for by name, or tell what one is made of.
     Atmospheres(AtmospheresArgs),
@@ -79,7 +89,7 @@ pub struct AtmospheresArgs {
 }
 
 /// Options of `airlight sky`.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 #[command(allow_negative_numbers = true, after_help = SKY_EXAMPLES)]
 pub struct SkyArgs {
     /// File to write; its ending says the format: .exr, .hdr, .png, .jpg, or .spectral.exr
@@ -103,11 +113,13 @@ pub struct SkyArgs {
     #[command(flatten)]
     pub air: AirArgs,
     #[command(flatten)]
+    pub classic: ClassicArgs,
+    #[command(flatten)]
     pub fog: FogArgs,
 }
 
 /// Many pictures over a span of time.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Sequences")]
 pub struct SequenceArgs {
     /// Draw a sequence from --when until this time, or for a span of time after it: +6h

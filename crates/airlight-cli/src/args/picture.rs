@@ -69,7 +69,7 @@ pub enum ToneArg {
 }
 
 /// How a picture is laid out and stored.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Picture")]
 pub struct PictureArgs {
     /// How directions are laid out

@@ -4,7 +4,7 @@ use crate::parse::{self, LatLon};
 use clap::{ArgAction, Args};
 
 /// Where the eye is and where the sun stands.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Place and sun")]
 pub struct PlaceArgs {
     /// Place on the Earth: latitude,longitude in degrees, north and east positive

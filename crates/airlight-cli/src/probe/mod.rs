@@ -41,6 +41,11 @@ pub fn run(args: &ProbeArgs) -> Result<(), CliError> {
             "--solver monte-carlo looks to the ground or to space: leave out --distance-m and the column distance_m",
         ));
     }
+    if args.air.solver.is_classic() {
+        return Err(CliError::usage(
+            "published models are for pictures: give probe --solver orders or monte-carlo",
+        ));
+    }
     let scene = Scene::new(&args.place, &args.air)?;
     if let Some(path) = &args.output {
         let _writing = interrupt::start_writing()?;

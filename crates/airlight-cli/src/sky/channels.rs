@@ -3,8 +3,8 @@
 use crate::args::{ColorSpaceArg, PictureArgs};
 use crate::error::CliError;
 use crate::scene::Scene;
-use airlight::sky::{Sky, TableChannels};
-use airlight::spectrum::{RgbSpace, rgb};
+use airlight::sky::TableChannels;
+use airlight::spectrum::{RgbSpace, WavelengthGrid, rgb};
 use airlight_render::output::Chromaticities;
 use airlight_render::output::spectral::SpectralLayout;
 
@@ -44,19 +44,18 @@ impl Channels {
     }
 
     /// Luminance, cd/m^2, of a table's channels.
-    pub fn luminance(&self, sky: &Sky, table_values: &[f32]) -> f64 {
+    pub fn luminance(&self, grid: &WavelengthGrid, table_values: &[f32]) -> f64 {
         match (self.spectral.is_some(), table_values) {
-            (true, spectrum) => sky.grid().to_xyz(spectrum)[1],
+            (true, spectrum) => grid.to_xyz(spectrum)[1],
             (false, &[r, g, b]) => self.space.luminance([r, g, b].map(f64::from)),
             (false, _) => 0.0,
         }
     }
 
     /// How radiances become RGB.
-    pub fn rgb_weights(&self, sky: &Sky) -> RgbWeights {
+    pub fn rgb_weights(&self, grid: &WavelengthGrid) -> RgbWeights {
         let from_xyz = self.space.from_xyz_matrix();
-        sky.grid()
-            .xyz_weights()
+        grid.xyz_weights()
             .iter()
             .map(|&w| rgb::apply(&from_xyz, w).map(|v| v as f32))
             .collect()

@@ -7,9 +7,12 @@
 //! angle. The sum of radiance times solid angle over all pixels is then the disc's irradiance to 0.3 %.
 
 use super::channels::RgbWeights;
+use airlight::classic::ClassicSky;
 use airlight::sky::View;
+use airlight::spectrum::rgb;
 use airlight_render::Frame;
 use glam::DVec3;
+use std::sync::Arc;
 
 /// Elevations and cosines on the sun at which the disc's radiance is tabulated.
 const ELEVATIONS: usize = 129;
@@ -17,16 +20,29 @@ const COSINES: usize = 65;
 /// Most halvings of a pixel.
 const DEEPEST: u32 = 48;
 
-/// The disc's radiance by elevation and by distance from its centre.
+/// The disc of the sun.
 pub struct Disc {
     sun: DVec3,
     radius_rad: f64,
     channels: usize,
     horizon_rad: f64,
-    /// Lowest and highest elevation of the table, rad.
+    radiance: Radiance,
+}
+
+/// The disc's radiance.
+enum Radiance {
+    /// By elevation and by distance from its centre.
+    Table(Table),
+    /// As a published model has it; with what makes RGB of XYZ.
+    Classic(Arc<dyn ClassicSky>, [[f64; 3]; 3]),
+}
+
+struct Table {
+    /// Lowest and highest elevation, rad.
     range: (f64, f64),
+    channels: usize,
     /// `[elevation][cosine][channel]`.
-    table: Vec<f32>,
+    values: Vec<f32>,
 }
 
 /// A part of a pixel, in the picture's coordinates.
@@ -57,77 +73,51 @@ impl Disc {
             return None;
         }
         let channels = 3 + if spectral { weights.len() } else { 0 };
-        let mut disc = Self {
+        let table = Table::new(view, (lowest, highest), weights, spectral, fog);
+        Some(Self {
             sun,
             radius_rad,
             channels,
             horizon_rad,
-            range: (lowest, highest),
-            table: Vec::new(),
-        };
-        disc.tabulate(view, weights, spectral, fog);
-        Some(disc)
+            radiance: Radiance::Table(table),
+        })
     }
 
-    fn tabulate(
-        &mut self,
-        view: &View<'_>,
-        weights: &RgbWeights,
-        spectral: bool,
-        fog: impl Fn(DVec3) -> f32,
+    /// The disc of a published model, in RGB; `None` where it lies below the horizontal.
+    pub fn of_classic(model: Arc<dyn ClassicSky>, rgb_from_xyz: [[f64; 3]; 3]) -> Option<Self> {
+        let (sun, radius_rad) = (model.sun(), model.disc_edge_rad());
+        (elevation(sun) + radius_rad > 0.0).then(|| Self {
+            sun,
+            radius_rad,
+            channels: 3,
+            horizon_rad: 0.0,
+            radiance: Radiance::Classic(model, rgb_from_xyz),
+        })
+    }
+
+    /// Adds the disc to a row of pixels that look along `directions`; values are `scale` times the radiance. A pixel's
+    /// corners lie no further than `pixel_reach` (rad) from its middle.
+    pub fn add_row(
+        &self,
+        (frame, y): (&Frame, u32),
+        directions: &[DVec3],
+        (pixel_reach, scale): (f64, f32),
+        out: &mut [f32],
     ) {
-        let irradiance = view.solar_irradiance();
-        let wavelengths = view.sky().grid().wavelengths_nm();
-        let azimuth = airlight::axes::azimuth_deg(self.sun);
-        // Radiance per irradiance at each cosine, wavelength by wavelength.
-        let shape: Vec<Vec<f64>> = (0..COSINES)
-            .map(|m| {
-                let mu = m as f64 / (COSINES - 1) as f64;
-                // A hair's breadth inside the limb, beyond which there is nothing.
-                let angle = (self.radius_rad.sin() * (1.0 - mu * mu).sqrt() * (1.0 - 1e-12)).asin();
-                wavelengths
-                    .iter()
-                    .map(|&nm| view.disc().radiance_per_irradiance(angle, nm))
-                    .collect()
-            })
-            .collect();
-        self.table.reserve(ELEVATIONS * COSINES * self.channels);
-        for k in 0..ELEVATIONS {
-            let part = k as f64 / (ELEVATIONS - 1) as f64;
-            let elevation = self.range.0 + (self.range.1 - self.range.0) * part;
-            let direction = airlight::axes::direction(azimuth, elevation.to_degrees());
-            let transmittance = view.transmittance_to_space(direction);
-            let fog = fog(direction);
-            for row in &shape {
-                let arriving = |lane: usize| {
-                    (f64::from(irradiance[lane] * transmittance[lane] * fog) * row[lane]) as f32
-                };
-                let mut sum = [0.0f32; 3];
-                for (lane, weight) in weights.iter().enumerate() {
-                    for (sum, w) in sum.iter_mut().zip(weight) {
-                        *sum += w * arriving(lane);
-                    }
-                }
-                self.table.extend(sum);
-                if spectral {
-                    self.table.extend((0..weights.len()).map(arriving));
-                }
+        let reach = self.radius_rad + pixel_reach;
+        let nearest = if reach < 3.0 { reach.cos() } else { -2.0 };
+        for ((i, direction), pixel) in (0..)
+            .zip(directions)
+            .zip(out.chunks_exact_mut(self.channels))
+        {
+            if *direction != DVec3::ZERO && direction.dot(self.sun) >= nearest {
+                self.add_pixel(frame, (i, y), scale, pixel);
             }
         }
     }
 
-    /// Unit vector towards the sun.
-    pub fn sun(&self) -> DVec3 {
-        self.sun
-    }
-
-    /// Half the angle that the disc spans, rad.
-    pub fn radius_rad(&self) -> f64 {
-        self.radius_rad
-    }
-
     /// Adds the mean radiance over pixel `(i, j)` to `out`, `factor` times.
-    pub fn add_pixel(&self, frame: &Frame, (i, j): (u32, u32), factor: f32, out: &mut [f32]) {
+    fn add_pixel(&self, frame: &Frame, (i, j): (u32, u32), factor: f32, out: &mut [f32]) {
         let solid_angle = frame.pixel_solid_angle(i, j);
         if solid_angle <= 0.0 {
             return;
@@ -226,7 +216,81 @@ impl Disc {
         if s >= 1.0 || elevation < self.horizon_rad {
             return;
         }
-        let mu = ((1.0 - s) * (1.0 + s)).sqrt();
+        match &self.radiance {
+            Radiance::Table(table) => {
+                let mu = ((1.0 - s) * (1.0 + s)).sqrt();
+                table.add(elevation, mu, area, sum);
+            }
+            Radiance::Classic(model, rgb_from_xyz) => {
+                let rgb = rgb::apply(rgb_from_xyz, model.disc_xyz(direction));
+                sum.iter_mut()
+                    .zip(rgb)
+                    .for_each(|(sum, c)| *sum += area * c);
+            }
+        }
+    }
+}
+
+impl Table {
+    fn new(
+        view: &View<'_>,
+        range: (f64, f64),
+        weights: &RgbWeights,
+        spectral: bool,
+        fog: impl Fn(DVec3) -> f32,
+    ) -> Self {
+        let sun = view.sun();
+        let channels = 3 + if spectral { weights.len() } else { 0 };
+        let mut values = Vec::new();
+        let irradiance = view.solar_irradiance();
+        let wavelengths = view.sky().grid().wavelengths_nm();
+        let azimuth = airlight::axes::azimuth_deg(sun);
+        // Radiance per irradiance at each cosine, wavelength by wavelength.
+        let shape: Vec<Vec<f64>> = (0..COSINES)
+            .map(|m| {
+                let mu = m as f64 / (COSINES - 1) as f64;
+                // A hair's breadth inside the limb, beyond which there is nothing.
+                let angle =
+                    (view.disc().angular_radius_rad.sin() * (1.0 - mu * mu).sqrt() * (1.0 - 1e-12))
+                        .asin();
+                wavelengths
+                    .iter()
+                    .map(|&nm| view.disc().radiance_per_irradiance(angle, nm))
+                    .collect()
+            })
+            .collect();
+        values.reserve(ELEVATIONS * COSINES * channels);
+        for k in 0..ELEVATIONS {
+            let part = k as f64 / (ELEVATIONS - 1) as f64;
+            let elevation = range.0 + (range.1 - range.0) * part;
+            let direction = airlight::axes::direction(azimuth, elevation.to_degrees());
+            let transmittance = view.transmittance_to_space(direction);
+            let fog = fog(direction);
+            for row in &shape {
+                let arriving = |lane: usize| {
+                    (f64::from(irradiance[lane] * transmittance[lane] * fog) * row[lane]) as f32
+                };
+                let mut sum = [0.0f32; 3];
+                for (lane, weight) in weights.iter().enumerate() {
+                    for (sum, w) in sum.iter_mut().zip(weight) {
+                        *sum += w * arriving(lane);
+                    }
+                }
+                values.extend(sum);
+                if spectral {
+                    values.extend((0..weights.len()).map(arriving));
+                }
+            }
+        }
+        Self {
+            range,
+            channels,
+            values,
+        }
+    }
+
+    /// Adds the radiance at an elevation and a cosine on the sun, `area` times.
+    fn add(&self, elevation: f64, mu: f64, area: f64, sum: &mut [f64]) {
         let (k, u) = place(
             (elevation - self.range.0) / (self.range.1 - self.range.0),
             ELEVATIONS,
@@ -237,7 +301,7 @@ impl Disc {
                 let start = ((k + dk) * COSINES + m + dm) * self.channels;
                 for (sum, value) in sum
                     .iter_mut()
-                    .zip(&self.table[start..start + self.channels])
+                    .zip(&self.values[start..start + self.channels])
                 {
                     *sum += wk * wm * area * f64::from(*value);
                 }

@@ -1,6 +1,7 @@
 //! One moment into files.
 
 use super::channels::{Channels, RgbWeights};
+use super::classic::{self, ClassicRows};
 use super::disc::Disc;
 use super::fog::Fog;
 use super::layout::{Layout, PictureFile};
@@ -14,7 +15,8 @@ use crate::moment::Moment;
 use crate::progress::RowsBar;
 use crate::report;
 use crate::scene::{Scene, Sun};
-use airlight::sky::{Sky, SkyTable, View};
+use airlight::classic::ClassicSky;
+use airlight::sky::{Sky, SkyTable, SunCoverage};
 use airlight_render::output::exr::{ExrCompression, ExrOptions, ExrSample};
 use airlight_render::output::jpeg::JpegOptions;
 use airlight_render::output::png::{PngDepth, PngOptions};
@@ -24,6 +26,7 @@ use airlight_render::{Control, Frame, PictureFormat, PictureOptions, RowSource, 
 use glam::DVec3;
 use std::path::Path;
 use std::sync::Arc;
+use std::time::Duration;
 
 /// What is drawn and how.
 pub struct Drawing<'a> {
@@ -37,6 +40,28 @@ pub struct Drawing<'a> {
     pub channels: &'a Channels,
 }
 
+/// What is made ready once for all moments.
+pub enum Prepared {
+    /// The light inside the air.
+    Solved(Box<Sky>),
+    /// Nothing: a published model answers for each moment on its own.
+    Classic,
+}
+
+impl Prepared {
+    /// Solves for the light under these suns, where the solver asked for needs it; tells how long it took.
+    ///
+    /// # Errors
+    /// As [`Scene::prepare`].
+    pub fn new(drawing: &Drawing<'_>, suns: SunCoverage) -> Result<(Self, Duration), CliError> {
+        if drawing.args.air.solver.is_classic() {
+            return Ok((Self::Classic, Duration::ZERO));
+        }
+        let (sky, time) = drawing.scene.prepare(suns)?;
+        Ok((Self::Solved(Box::new(sky)), time))
+    }
+}
+
 /// One moment, tabulated.
 pub struct Shot<'a> {
     /// Where the sun stands.
@@ -45,38 +70,60 @@ pub struct Shot<'a> {
     pub time: Option<Moment>,
     /// Light at the eye.
     pub light: Illuminances,
-    view: View<'a>,
-    table: Arc<SkyTable>,
-    fog: Option<Fog<'a>>,
+    source: Source<'a>,
     disc: Option<Disc>,
     weights: RgbWeights,
+}
+
+/// Where a shot's light comes from.
+enum Source<'a> {
+    /// The solver, tabulated, and the fog before it.
+    Solved {
+        table: Arc<SkyTable>,
+        fog: Option<Fog<'a>>,
+    },
+    /// A published model.
+    Classic(Arc<dyn ClassicSky>),
 }
 
 impl<'a> Shot<'a> {
     /// Tabulates the sky under a sun, and the fog before it.
     ///
     /// # Errors
-    /// [`CliError::Usage`] for a fog that is none.
+    /// [`CliError::Usage`] for a fog that is none, or what a published model refuses.
     pub fn new(
+        drawing: &Drawing<'_>,
+        prepared: &'a Prepared,
+        sun: &Sun,
+        time: Option<Moment>,
+    ) -> Result<Self, CliError> {
+        match prepared {
+            Prepared::Solved(sky) => Self::solved(drawing, sky, sun, time),
+            Prepared::Classic => Self::classic(drawing, sun, time),
+        }
+    }
+
+    fn solved(
         drawing: &Drawing<'_>,
         sky: &'a Sky,
         sun: &Sun,
         time: Option<Moment>,
     ) -> Result<Self, CliError> {
         let channels = drawing.channels;
+        let grid = &drawing.scene.grid;
         let view = drawing.scene.view(sky, sun);
         let fog = Fog::new(&drawing.args.fog, &view, channels.table())?;
         let table = match &fog {
             Some(fog) => fog.clear(),
             None => Arc::new(view.table(channels.table())),
         };
-        let luminance = |values: &[f32]| channels.luminance(sky, values);
+        let luminance = |values: &[f32]| channels.luminance(grid, values);
         let mut light = Illuminances::of(&view, &table, luminance);
         if let Some(fog) = &fog {
             let left = f64::from(fog.transmittance(view.sun()));
             light = light.through(left, fog.horizontal_lx(luminance));
         }
-        let weights = channels.rgb_weights(sky);
+        let weights = channels.rgb_weights(grid);
         let disc = match drawing.args.picture.sun_disc {
             SunDiscArg::Out => None,
             _ => Disc::new(
@@ -91,17 +138,28 @@ impl<'a> Shot<'a> {
             sun: *sun,
             time,
             light,
-            view,
-            table,
-            fog,
+            source: Source::Solved { table, fog },
             disc,
             weights,
         })
     }
 
-    /// The eye and the sun.
-    pub fn view(&self) -> &View<'a> {
-        &self.view
+    fn classic(drawing: &Drawing<'_>, sun: &Sun, time: Option<Moment>) -> Result<Self, CliError> {
+        let model =
+            crate::classic::model(&drawing.args.air, &drawing.args.classic, drawing.scene, sun)?;
+        let channels = drawing.channels;
+        let disc = match drawing.args.picture.sun_disc {
+            SunDiscArg::Out => None,
+            _ => Disc::of_classic(model.clone(), channels.space.from_xyz_matrix()),
+        };
+        Ok(Self {
+            sun: *sun,
+            time,
+            light: classic::illuminances(model.as_ref()),
+            source: Source::Classic(model),
+            disc,
+            weights: channels.rgb_weights(&drawing.scene.grid),
+        })
     }
 
     /// Weights of wavelengths in RGB.
@@ -111,7 +169,11 @@ impl<'a> Shot<'a> {
 
     /// Whether a direction points to the ground.
     pub fn is_below_horizon(&self, direction: DVec3) -> bool {
-        direction.y.clamp(-1.0, 1.0).asin() < self.table.horizon_elevation_rad()
+        let horizon_rad = match &self.source {
+            Source::Solved { table, .. } => table.horizon_elevation_rad(),
+            Source::Classic(_) => 0.0,
+        };
+        direction.y.clamp(-1.0, 1.0).asin() < horizon_rad
     }
 }
 
@@ -132,24 +194,35 @@ impl Drawing<'_> {
         Ok(())
     }
 
-    /// The rows of a frame.
+    /// The rows of a frame; with the sky that another solver has made, where there is one.
     pub fn rows<'s>(
         &self,
         shot: &'s Shot<'_>,
         frame: &Frame,
-        layer: Layer,
-        scale: f32,
-    ) -> SkyRows<'s> {
-        let spectral = self.layout.is_spectral().then_some(&shot.weights);
-        SkyRows::new(
-            frame,
-            layer,
-            (&shot.table, shot.fog.as_ref()),
-            shot.disc.as_ref(),
-            spectral,
-            shot.view.sun(),
-            scale,
-        )
+        (layer, scale): (Layer, f32),
+        solved: Option<&'s [f32]>,
+    ) -> Box<dyn RowSource + 's> {
+        let disc = shot.disc.as_ref();
+        match &shot.source {
+            Source::Solved { table, fog } => {
+                let spectral = self.layout.is_spectral().then_some(&shot.weights);
+                let sky = (table.as_ref(), fog.as_ref());
+                let sun = shot.sun.direction();
+                let rows = SkyRows::new(frame, layer, sky, disc, spectral, sun, scale);
+                Box::new(rows.with_solved(solved))
+            }
+            Source::Classic(model) => {
+                let space = self.channels.space;
+                Box::new(ClassicRows::new(
+                    frame,
+                    layer,
+                    model.as_ref(),
+                    disc,
+                    space,
+                    scale,
+                ))
+            }
+        }
     }
 
     /// Writes the files of a shot.
@@ -203,9 +276,7 @@ impl Drawing<'_> {
         } else {
             1.0
         };
-        let rows = self
-            .rows(shot, &file.frame, file.layer, scale)
-            .with_solved(solved);
+        let rows = self.rows(shot, &file.frame, (file.layer, scale), solved);
         let options = self.options(shot, file);
         let size = file.frame.size();
         Ok(match &self.channels.spectral {
@@ -213,12 +284,12 @@ impl Drawing<'_> {
                 &file.path,
                 size,
                 layout,
-                &rows,
+                rows.as_ref(),
                 &options.exr,
                 &options.metadata,
                 control,
             )?,
-            None => write_picture(&file.path, size, &rows, tone, &options, control)?,
+            None => write_picture(&file.path, size, rows.as_ref(), tone, &options, control)?,
         })
     }
 

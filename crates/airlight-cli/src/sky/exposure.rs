@@ -46,8 +46,8 @@ pub fn of(drawing: &Drawing<'_>, shot: &Shot<'_>) -> Result<Exposure, CliError> 
         return Ok(exposure);
     }
     let frame = drawing.layout.overview(METERED_WIDTH)?;
-    let rows = drawing.rows(shot, &frame, Layer::Sky, 1.0);
-    let pixels = super::draw::stored(&rows, &frame);
+    let rows = drawing.rows(shot, &frame, (Layer::Sky, 1.0), None);
+    let pixels = super::draw::stored(rows.as_ref(), &frame);
     let mut samples = Vec::with_capacity(pixels.len());
     let (mut lit_sky, mut lit) = (0.0f64, 0.0f64);
     for (index, rgb) in (0..).zip(&pixels) {
@@ -80,9 +80,14 @@ pub fn of(drawing: &Drawing<'_>, shot: &Shot<'_>) -> Result<Exposure, CliError> 
 /// # Errors
 /// As [`of`].
 pub fn tone(drawing: &Drawing<'_>, shot: &Shot<'_>) -> Result<ToneMapper, CliError> {
-    let curve = match drawing.args.picture.tone {
+    let curve = curve(&drawing.args.picture);
+    Ok(ToneMapper::new(of(drawing, shot)?.factor() as f32, curve)?)
+}
+
+/// The tone curve of the options.
+pub fn curve(args: &PictureArgs) -> ToneCurve {
+    match args.tone {
         ToneArg::Filmic => ToneCurve::Filmic(FilmicSettings::default()),
         ToneArg::Clip => ToneCurve::Clip,
-    };
-    Ok(ToneMapper::new(of(drawing, shot)?.factor() as f32, curve)?)
+    }
 }

@@ -112,6 +112,11 @@ impl Layout {
         files
     }
 
+    /// The frame of a picture that has one.
+    pub fn only_frame(&self) -> Frame {
+        self.frames[0].1
+    }
+
     /// The picture in small, at most so many pixels wide; for a cube, the whole sphere.
     ///
     /// # Errors

@@ -5,10 +5,11 @@
 //! - [`fog`]: fog before the sky.
 //! - [`layout`]: which files a picture consists of and where each looks.
 //! - [`facts`]: what the files say about themselves; [`exposure`]: how bright PNG, JPEG and preview are.
-//! - [`monte_carlo`]: pictures by random paths.
-//! - [`draw`]: one moment into files; [`preview`]: onto the terminal; [`sequence`]: many moments.
+//! - [`monte_carlo`]: pictures by random paths; [`classic`]: pictures by published models.
+//! - [`still`]: a picture in memory; [`draw`]: one moment into files; [`preview`]: onto the terminal; [`sequence`]: many moments.
 
 mod channels;
+mod classic;
 mod disc;
 mod draw;
 mod exposure;
@@ -19,6 +20,7 @@ mod monte_carlo;
 mod preview;
 mod rows;
 mod sequence;
+mod still;
 
 use crate::args::SkyArgs;
 use crate::error::CliError;
@@ -29,11 +31,13 @@ use crate::report::{self, bytes, seconds, short};
 use crate::scene::{Scene, Sun};
 use channels::Channels;
 pub use channels::{space_name, space_of};
-use draw::{Drawing, Shot};
+use draw::{Drawing, Prepared, Shot};
+pub use exposure::curve as tone_curve;
 pub use facts::SOFTWARE;
 use layout::Layout;
 use std::fmt::Write;
 use std::time::Instant;
+pub use still::Still;
 
 /// Runs the command.
 ///
@@ -44,6 +48,7 @@ pub fn run(args: &SkyArgs) -> Result<(), CliError> {
     let preview = preview::wanted(args)?;
     let scene = Scene::new(&args.place, &args.air)?;
     monte_carlo::check(args)?;
+    classic::check(args)?;
     let first = scene.sun.at(None)?;
     let layout = Layout::new(args, &first)?;
     let channels = Channels::new(&args.picture, layout.is_spectral(), &scene)?;
@@ -66,9 +71,9 @@ fn single(
 ) -> Result<(), CliError> {
     let scene = drawing.scene;
     drawing.check(drawing.layout.output.as_deref())?;
-    let (sky, solving) = scene.prepare(scene.near(sun))?;
+    let (prepared, solving) = Prepared::new(drawing, scene.near(sun))?;
     let start = Instant::now();
-    let shot = Shot::new(drawing, &sky, sun, scene.sun.start())?;
+    let shot = Shot::new(drawing, &prepared, sun, scene.sun.start())?;
     if let Some(terminal) = preview {
         report::print(&preview::text(drawing, &shot, terminal)?)?;
     }

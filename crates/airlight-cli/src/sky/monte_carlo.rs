@@ -130,6 +130,25 @@ pub fn write(
     }
 }
 
+/// One frame in memory, in the channels of a table.
+///
+/// # Errors
+/// [`CliError`]: what failed.
+pub fn means(
+    drawing: &Drawing<'_>,
+    shot: &Shot<'_>,
+    frame: Frame,
+    settings: MonteCarloSettings,
+) -> Result<Vec<f32>, CliError> {
+    let painter = Painter::new(drawing, shot, settings)?;
+    let mut canvas = Canvas::new(frame, 3);
+    let bar = RowsBar::new(u64::from(frame.size().height()));
+    bar.say("following random paths".to_owned());
+    let bundles = settings.paths.div_ceil(BUNDLE as u64).max(FIRST_PASS);
+    painter.paint(&mut canvas, bundles, &bar)?;
+    Ok(canvas.means())
+}
+
 /// Refuses pictures too large to be kept while they are drawn.
 fn check_memory(files: &[PictureFile], channels: usize) -> Result<(), CliError> {
     const MOST_GB: f64 = 8.0;
@@ -234,7 +253,7 @@ impl<'a> Painter<'a> {
             weights: shot.weights(),
             spectral: drawing.channels.spectral.is_some(),
             eye_altitude_m: scene.eye_altitude_m,
-            sun: shot.view().sun(),
+            sun: shot.sun.direction(),
             nearness: shot.sun.distance_ratio.powi(-2),
             orders: match drawing.args.air.scattering {
                 ScatteringArg::All => ORDERS,

@@ -71,10 +71,10 @@ pub fn text(
         &RgbSpace::Srgb.from_xyz_matrix(),
         &drawing.channels.space.to_xyz_matrix(),
     );
-    let rows = drawing.rows(shot, &frame, drawing.layout.main_layer(), 1.0);
+    let rows = drawing.rows(shot, &frame, (drawing.layout.main_layer(), 1.0), None);
     let width = frame.size().width() as usize;
     let mut bytes = Vec::new();
-    for (y, row) in (0..).zip(stored(&rows, &frame).chunks_exact(width)) {
+    for (y, row) in (0..).zip(stored(rows.as_ref(), &frame).chunks_exact(width)) {
         let linear: Vec<f32> = row
             .iter()
             .flat_map(|p| rgb::apply(&to_srgb, p.map(f64::from)).map(|v| v as f32))

@@ -158,17 +158,6 @@ impl<'a> SkyRows<'a> {
             }
         }
     }
-
-    fn add_disc(&self, disc: &Disc, y: u32, directions: &[DVec3], out: &mut [f32]) {
-        let reach = disc.radius_rad() + self.pixel_reach;
-        let nearest = if reach < 3.0 { reach.cos() } else { -2.0 };
-        let channels = self.channels();
-        for ((i, direction), pixel) in (0..).zip(directions).zip(out.chunks_exact_mut(channels)) {
-            if *direction != DVec3::ZERO && direction.dot(disc.sun()) >= nearest {
-                disc.add_pixel(self.frame(), (i, y), self.scale, pixel);
-            }
-        }
-    }
 }
 
 impl RowSource for SkyRows<'_> {
@@ -198,7 +187,12 @@ impl RowSource for SkyRows<'_> {
             }
         }
         if let Some(disc) = self.disc {
-            self.add_disc(disc, y, &directions, out);
+            disc.add_row(
+                (self.frame(), y),
+                &directions,
+                (self.pixel_reach, self.scale),
+                out,
+            );
         }
     }
 }
@@ -217,7 +211,7 @@ fn columns(frame: &Frame, table: &SkyTable, sun: DVec3) -> Option<SkyColumns> {
 }
 
 /// The greatest angle from a pixel's middle to its corners, looked for at 33 by 33 pixels, and half as much again.
-fn pixel_reach(frame: &Frame) -> f64 {
+pub fn pixel_reach(frame: &Frame) -> f64 {
     const STEPS: u32 = 32;
     let size = frame.size();
     if size.width() < 8 || size.height() < 8 {

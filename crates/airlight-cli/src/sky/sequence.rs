@@ -1,6 +1,6 @@
 //! Many moments: a sky prepared once, a picture for each, those already there left as they are.
 
-use super::draw::{Drawing, Shot};
+use super::draw::{Drawing, Prepared, Shot};
 use super::layout::PictureFile;
 use super::preview;
 use crate::error::CliError;
@@ -120,13 +120,13 @@ fn make(
         [only] => scene.near(&scene.sun.at(Some(only.time))?),
         _ => SunCoverage::All,
     };
-    let (sky, _) = scene.prepare(suns)?;
+    let (prepared, _) = Prepared::new(drawing, suns)?;
     let bar = RowsBar::new(missing.iter().map(Frame::rows).sum());
     let mut written: Vec<Written> = Vec::new();
     for frame in missing {
         bar.say(format!("frame {} of {total}", frame.number));
         let sun = scene.sun.at(Some(frame.time))?;
-        let shot = Shot::new(drawing, &sky, &sun, Some(frame.time))?;
+        let shot = Shot::new(drawing, &prepared, &sun, Some(frame.time))?;
         if let Some(terminal) = preview {
             report::print(&preview::text(drawing, &shot, terminal)?)?;
         }

@@ -23,7 +23,7 @@ impl FourOrders {
     /// the sun in a direction.
     ///
     /// # Errors
-    /// [`SkyError`] for an atmosphere that the solver refuses, and for fewer than 2 orders.
+    /// [`SkyError`] for an atmosphere that the solver refuses, for fewer than 2 orders, and for a sun without a direction.
     pub fn new(
         atmosphere: &Atmosphere,
         grid: &WavelengthGrid,
@@ -34,6 +34,9 @@ impl FourOrders {
         if orders < 2 {
             return Err(SkyError::Setting("orders of scattering: at least 2"));
         }
+        let sun = sun_direction.try_normalize().ok_or(SkyError::Setting(
+            "the sun's direction: finite and not zero",
+        ))?;
         let mut settings = settings.clone();
         // The field inside holds the orders but the last, which the line of sight adds.
         settings.orders.max_orders = orders - 1;
@@ -42,7 +45,7 @@ impl FourOrders {
         Ok(Self {
             sky: Sky::prepare(atmosphere, grid, &settings)?,
             eye_altitude_m,
-            sun: sun_direction,
+            sun,
         })
     }
 
@@ -53,6 +56,14 @@ impl FourOrders {
 }
 
 impl ClassicSky for FourOrders {
+    fn sun(&self) -> DVec3 {
+        self.sun
+    }
+
+    fn disc_edge_rad(&self) -> f64 {
+        self.sky.atmosphere().sun.angular_radius_rad
+    }
+
     fn sky_xyz(&self, direction: DVec3) -> [f64; 3] {
         self.sky
             .grid()
@@ -129,10 +140,12 @@ mod tests {
     }
 
     #[test]
-    fn a_sky_of_one_order_is_refused() {
+    fn bad_numbers_are_refused() {
         let (air, grid) = (reference::earth_demo(), WavelengthGrid::rgb());
         let settings = SkySettings::default();
         let refused = FourOrders::new(&air, &grid, (0.0, DVec3::Y), 1, &settings);
         assert!(matches!(refused, Err(SkyError::Setting(_))));
+        let nowhere = FourOrders::new(&air, &grid, (0.0, DVec3::ZERO), 4, &settings);
+        assert!(matches!(nowhere, Err(SkyError::Setting(_))));
     }
 }

@@ -235,6 +235,14 @@ impl Hillaire2020 {
 }
 
 impl ClassicSky for Hillaire2020 {
+    fn sun(&self) -> DVec3 {
+        self.sun
+    }
+
+    fn disc_edge_rad(&self) -> f64 {
+        self.disc.angular_radius_rad
+    }
+
     fn sky_xyz(&self, direction: DVec3) -> [f64; 3] {
         self.grid.to_xyz(&self.radiance(direction))
     }

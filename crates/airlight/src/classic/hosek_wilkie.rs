@@ -81,6 +81,10 @@ impl HosekWilkie {
 }
 
 impl ClassicSky for HosekWilkie {
+    fn sun(&self) -> DVec3 {
+        self.sun
+    }
+
     /// Black below the horizon.
     fn sky_xyz(&self, direction: DVec3) -> [f64; 3] {
         if direction.y < 0.0 {

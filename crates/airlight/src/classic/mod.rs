@@ -7,6 +7,7 @@ pub mod four_orders;
 pub mod hillaire2020;
 #[cfg(feature = "hosek-wilkie")]
 pub mod hosek_wilkie;
+pub mod klassen1987;
 mod lut;
 pub mod preetham;
 pub mod single_scattering;
@@ -20,6 +21,14 @@ use glam::DVec3;
 /// Colours are CIE 1931 XYZ with `Y` in cd/m^2. Directions are unit vectors that point away from the eye
 /// ([`crate::axes`]). Models without a ground say what they have below the horizon in their own documentation.
 pub trait ClassicSky: Send + Sync {
+    /// Unit vector towards the sun's centre.
+    fn sun(&self) -> DVec3;
+
+    /// Angle from the sun's centre beyond which there is no light of its disc, rad.
+    fn disc_edge_rad(&self) -> f64 {
+        crate::light::SunDisc::default().angular_radius_rad
+    }
+
     /// Light of the sky along a direction, without the sun's disc.
     fn sky_xyz(&self, direction: DVec3) -> [f64; 3];
 

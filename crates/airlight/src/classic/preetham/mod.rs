@@ -146,6 +146,10 @@ fn zenith(turbidity: f64, sun_zenith_rad: f64) -> [f64; 3] {
 }
 
 impl ClassicSky for Preetham {
+    fn sun(&self) -> DVec3 {
+        self.sun
+    }
+
     /// Black below the horizon.
     fn sky_xyz(&self, direction: DVec3) -> [f64; 3] {
         if direction.y <= 0.0 {

@@ -160,6 +160,15 @@ impl SkyArticle {
 }
 
 impl ClassicSky for SkyArticle {
+    fn sun(&self) -> DVec3 {
+        self.sun
+    }
+
+    /// Where the smooth edge ends.
+    fn disc_edge_rad(&self) -> f64 {
+        (0.5 * constants::SUN_WIDTH_DEG).to_radians() * constants::SUN_EDGE[1]
+    }
+
     /// Black where the printed shader gives no number.
     fn sky_xyz(&self, direction: DVec3) -> [f64; 3] {
         self.xyz(self.luminance(direction))

@@ -1,0 +1,94 @@
+//! A picture in memory instead of in a file.
+
+use super::channels::Channels;
+use super::draw::{Drawing, Prepared, Shot, stored};
+use super::layout::Layout;
+use super::{classic, exposure, monte_carlo};
+use crate::args::{ProjectionArg, SkyArgs};
+use crate::error::CliError;
+use crate::light::Illuminances;
+use crate::scene::{Scene, Sun};
+use airlight::spectrum::RgbSpace;
+use airlight_render::Frame;
+use airlight_render::tone::ToneMapper;
+use std::time::{Duration, Instant};
+
+/// A picture in memory.
+pub struct Still {
+    /// Where its pixels look.
+    pub frame: Frame,
+    /// Their RGB space.
+    pub space: RgbSpace,
+    /// Linear, cd/m^2, row after row.
+    pub rgb: Vec<[f32; 3]>,
+    /// The sun.
+    pub sun: Sun,
+    /// Light at the eye.
+    pub light: Illuminances,
+    /// How it is shown.
+    pub tone: ToneMapper,
+    /// How long it took, to solve and to draw.
+    pub time: Duration,
+}
+
+impl Still {
+    /// Draws what the options of `airlight sky` say.
+    ///
+    /// # Errors
+    /// [`CliError`]: what was wrong with the options, or what failed.
+    pub fn new(args: &SkyArgs) -> Result<Self, CliError> {
+        if args.picture.projection == ProjectionArg::Cube {
+            return Err(CliError::usage(
+                "--projection cube is six pictures: give equirectangular, fisheye or perspective",
+            ));
+        }
+        let start = Instant::now();
+        let scene = Scene::new(&args.place, &args.air)?;
+        let settings = args.air.monte_carlo(monte_carlo::PATHS)?;
+        classic::check(args)?;
+        let sun = scene.sun.at(None)?;
+        let layout = Layout::new(args, &sun)?;
+        let channels = Channels::new(&args.picture, layout.is_spectral(), &scene)?;
+        let drawing = Drawing {
+            args,
+            scene: &scene,
+            layout: &layout,
+            channels: &channels,
+        };
+        let (prepared, _) = Prepared::new(&drawing, scene.near(&sun))?;
+        let shot = Shot::new(&drawing, &prepared, &sun, scene.sun.start())?;
+        let frame = layout.only_frame();
+        let solved = match settings {
+            Some(settings) => Some(monte_carlo::means(&drawing, &shot, frame, settings)?),
+            None => None,
+        };
+        let rows = drawing.rows(&shot, &frame, (layout.main_layer(), 1.0), solved.as_deref());
+        Ok(Self {
+            frame,
+            space: channels.space,
+            rgb: stored(rows.as_ref(), &frame),
+            sun,
+            light: shot.light,
+            tone: exposure::tone(&drawing, &shot)?,
+            time: start.elapsed(),
+        })
+    }
+
+    /// As a display shows it, three bytes a pixel.
+    pub fn displayed(&self, tone: &ToneMapper) -> airlight_chart::raster::Picture {
+        let size = self.frame.size();
+        let width = size.width() as usize;
+        let mut rgb = vec![0; 3 * self.rgb.len()];
+        for ((y, row), out) in (0..)
+            .zip(self.rgb.chunks_exact(width))
+            .zip(rgb.chunks_exact_mut(3 * width))
+        {
+            tone.row_to_u8(y, row.as_flattened(), out);
+        }
+        airlight_chart::raster::Picture {
+            width: size.width(),
+            height: size.height(),
+            rgb,
+        }
+    }
+}

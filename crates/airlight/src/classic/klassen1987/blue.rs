@@ -1,0 +1,93 @@
+//! The sky behind the haze.
+
+use super::settings::{BaseBlue, Klassen1987Error, Klassen1987Settings};
+use super::{Lanes, to_xyz, wavelengths_nm};
+use crate::axes;
+use crate::sky::{Sky, SkySettings, SkyTable, SunCoverage, TableChannels};
+use crate::spectrum::WavelengthGrid;
+use glam::DVec3;
+use std::f64::consts::FRAC_PI_2;
+
+/// Light behind the haze, W m^-2 sr^-1 nm^-1.
+pub(super) enum Blue {
+    /// The same everywhere.
+    Constant(Lanes),
+    /// By direction; the table's sun stands in the south.
+    Table(Box<SkyTable>, f64),
+}
+
+impl Blue {
+    /// The blue of checked settings under a sun of an elevation (rad).
+    pub fn new(
+        settings: &Klassen1987Settings,
+        grid: &WavelengthGrid,
+        sun_elevation: f64,
+    ) -> Result<Self, Klassen1987Error> {
+        match settings.base_blue {
+            BaseBlue::Constant {
+                noon_luminance_cd_m2,
+            } => {
+                let scattered = |density: f64| {
+                    let mut lanes = Lanes::ZERO;
+                    for (lane, nm) in wavelengths_nm().enumerate() {
+                        let depth =
+                            density * settings.air_thickness_m * settings.air_extinction_per_m(nm)
+                                / settings.air_density;
+                        lanes.0[lane] = (-(-depth).exp_m1() * grid.solar_irradiance()[lane]) as f32;
+                    }
+                    lanes
+                };
+                let brightness = 0.01 + 0.99 * sun_elevation.sin();
+                let unit = noon_luminance_cd_m2 / to_xyz(grid, &scattered(1.0))[1];
+                Ok(Self::Constant(
+                    scattered(settings.air_density) * (unit * brightness) as f32,
+                ))
+            }
+            BaseBlue::Solver => {
+                let air = settings.dense_clear_air();
+                let ground_m = air.planet.ground_altitude_m;
+                let sun_deg = sun_elevation.to_degrees();
+                let sky = Sky::prepare(
+                    &air,
+                    grid,
+                    &SkySettings {
+                        suns: SunCoverage::near(sun_deg, ground_m),
+                        ..SkySettings::default()
+                    },
+                )?;
+                let view = sky.view(ground_m, axes::direction(180.0, sun_deg));
+                let table = view.table(TableChannels::Spectral);
+                Ok(Self::Table(Box::new(table), sun_elevation))
+            }
+        }
+    }
+
+    /// The light behind the haze along a line of sight.
+    pub fn along(&self, sin_elevation: f64, cos_sun: f64) -> Lanes {
+        match self {
+            Self::Constant(lanes) => *lanes,
+            Self::Table(table, sun_elevation) => {
+                let elevation = sin_elevation.clamp(0.0, 1.0).asin();
+                let azimuth = azimuth_from_sun(elevation, *sun_elevation, cos_sun);
+                let (sin, cos) = elevation.sin_cos();
+                // The sun stands in the south, +z.
+                let direction = DVec3::new(cos * azimuth.sin(), sin, cos * azimuth.cos());
+                let mut lanes = Lanes::ZERO;
+                table.sample(direction, &mut lanes.0);
+                lanes
+            }
+        }
+    }
+}
+
+/// Azimuth from the sun's (rad, 0 to pi) of a direction of this elevation at this angle from the sun; the nearest there is.
+fn azimuth_from_sun(elevation: f64, sun_elevation: f64, cos_sun: f64) -> f64 {
+    let across = elevation.cos() * sun_elevation.cos();
+    match across > 1e-12 {
+        true => {
+            let cos = (cos_sun - elevation.sin() * sun_elevation.sin()) / across;
+            cos.clamp(-1.0, 1.0).acos()
+        }
+        false => FRAC_PI_2,
+    }
+}

@@ -1,0 +1,135 @@
+//! Adaptive Simpson quadrature over all wavelengths at once, with a memory (section 8).
+
+use super::Lanes;
+
+/// Relative error aimed at, of each wavelength (or of [`DIM`] times the brightest); 16 times as much where the integrand jumps.
+const TOLERANCE: f32 = 1e-4;
+/// Halvings at most: where the planet's shadow cuts the line, the integrand jumps.
+const DEEPEST: u32 = 18;
+/// Wavelengths darker than this part of the brightest count as if they were as bright: at sunset nothing blue is left.
+const DIM: f32 = 1e-3;
+
+/// An integrator that remembers its last integral.
+#[derive(Clone, Debug)]
+pub(super) struct Simpson {
+    /// First estimates that differ by no more than this part mean the same integral; 0 to integrate each anew.
+    alike: f32,
+    /// First estimate and result.
+    last: Option<(Lanes, Lanes)>,
+}
+
+impl Simpson {
+    /// `alike`: how far first estimates may differ (relative) for the previous result to be returned again.
+    pub fn new(alike: f32) -> Self {
+        Self { alike, last: None }
+    }
+
+    /// The integral over `[0, 1]`, or the previous one where Simpson's rule on the whole interval gives nearly what it gave
+    /// then.
+    pub fn integrate(&mut self, f: impl Fn(f64) -> Lanes) -> Lanes {
+        let ends = [f(0.0), f(0.5), f(1.0)];
+        let first = rule(&ends, 1.0);
+        if let Some((known, result)) = &self.last
+            && close(known, &first, self.alike)
+        {
+            return *result;
+        }
+        let mut result = Lanes::ZERO;
+        halve(&f, (0.0, 1.0), &ends, &first, &mut result, DEEPEST);
+        self.last = Some((first, result));
+        result
+    }
+}
+
+/// Adds to `sum` two halves in place of `whole`, and further halves until they agree to 15 times the tolerance, with
+/// Richardson's correction. The tolerance is a part of what has been summed so far or of the panel itself: integrands
+/// here are brightest near the eye, where the sum begins.
+fn halve(
+    f: &impl Fn(f64) -> Lanes,
+    (from, to): (f64, f64),
+    values: &[Lanes; 3],
+    whole: &Lanes,
+    sum: &mut Lanes,
+    depth: u32,
+) {
+    let width = to - from;
+    let middle = from + 0.5 * width;
+    let inner = [f(from + 0.25 * width), f(from + 0.75 * width)];
+    let left = [values[0], inner[0], values[1]];
+    let right = [values[1], inner[1], values[2]];
+    let (a, b) = (rule(&left, 0.5 * width), rule(&right, 0.5 * width));
+    let both = a + b;
+    let floor = DIM * sum.max_element().max(both.max_element());
+    let done = (0..both.0.len()).all(|i| {
+        let measure = both.0[i].max(sum.0[i]).max(floor);
+        (both.0[i] - whole.0[i]).abs() <= 15.0 * TOLERANCE * measure
+    });
+    if done || depth == 0 {
+        *sum += both.scale_acc(both - *whole, 1.0 / 15.0);
+        return;
+    }
+    halve(f, (from, middle), &left, &a, sum, depth - 1);
+    halve(f, (middle, to), &right, &b, sum, depth - 1);
+}
+
+/// Simpson's rule on three values.
+fn rule(values: &[Lanes; 3], width: f64) -> Lanes {
+    (values[0] + values[1] * 4.0 + values[2]) * (width / 6.0) as f32
+}
+
+/// Whether all wavelengths agree.
+fn close(a: &Lanes, b: &Lanes, part: f32) -> bool {
+    let floor = DIM * b.max_element();
+    part > 0.0 && (0..a.0.len()).all(|i| (a.0[i] - b.0[i]).abs() <= part * b.0[i].max(floor))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::cell::Cell;
+
+    #[test]
+    fn exponentials_of_any_depth_are_integrated() {
+        for deepest in [0.1f64, 3.0, 30.0, 300.0] {
+            let rate = |i: usize| deepest * (i as f64 + 1.0) / 33.0;
+            let got =
+                Simpson::new(0.0).integrate(|x| Lanes::from_fn(|i| (-rate(i) * x).exp() as f32));
+            for i in 0..33 {
+                let want = -(-rate(i)).exp_m1() / rate(i);
+                let error = f64::from(got.0[i]) / want - 1.0;
+                assert!(error.abs() < 3e-4, "{deepest}, lane {i}: {error}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_jump_ends_the_halving() {
+        let evaluations = Cell::new(0);
+        let got = Simpson::new(0.0).integrate(|x| {
+            evaluations.set(evaluations.get() + 1);
+            Lanes::splat(if x < 0.3 { 1.0 } else { 0.0 })
+        });
+        // 15 times the tolerance, and Richardson's fifteenth.
+        let error = (got.0[0] / 0.3 - 1.0).abs();
+        assert!(error < 16.0 * TOLERANCE, "{error}");
+        assert!(evaluations.get() < 100, "{evaluations:?}");
+    }
+
+    #[test]
+    fn the_previous_result_comes_again_for_nearly_the_same() {
+        let mut simpson = Simpson::new(1e-3);
+        let evaluations = Cell::new(0);
+        let of = |rate: f64| {
+            let evaluations = &evaluations;
+            move |x: f64| {
+                evaluations.set(evaluations.get() + 1);
+                Lanes::splat((-rate * x).exp() as f32)
+            }
+        };
+        let first = simpson.integrate(of(1.0));
+        let before = evaluations.get();
+        assert_eq!(simpson.integrate(of(1.001)), first);
+        assert_eq!(evaluations.get(), before + 3);
+        assert_ne!(simpson.integrate(of(1.1)), first);
+    }
+}
