@@ -7,7 +7,7 @@ use crate::error::CliError;
 use crate::light::Illuminances;
 use airlight::axes;
 use airlight::classic::ClassicSky;
-use airlight::spectrum::{RgbSpace, rgb};
+use airlight::spectrum::{RgbSpace, SpectralCurve, rgb};
 use airlight_render::frame::FrameRows;
 use airlight_render::{Frame, RowSource};
 use glam::DVec3;
@@ -36,53 +36,94 @@ pub fn check(args: &SkyArgs) -> Result<(), CliError> {
     Ok(())
 }
 
-/// Light of sun and sky at the eye. The sky's is summed over bands of equal height and equal turns about the sun's
-/// azimuth: within 1 % where haze does not crowd the light about the sun.
-pub fn illuminances(model: &dyn ClassicSky) -> Illuminances {
-    const BANDS: usize = 48;
-    const TURNS: usize = 96;
-    let azimuth_deg = axes::azimuth_deg(model.sun());
-    let band = |i: usize| {
-        // Equal parts of sin^2: each weighs the same on the horizontal.
-        let elevation_deg = ((i as f64 + 0.5) / BANDS as f64).sqrt().asin().to_degrees();
-        let at = |j: usize| azimuth_deg + 360.0 * (j as f64 + 0.5) / TURNS as f64;
-        let mut walk = model.walk();
-        (0..TURNS)
-            .map(|j| walk(axes::direction(at(j), elevation_deg))[1])
-            .sum::<f64>()
-    };
-    let sum: f64 = (0..BANDS).into_par_iter().map(band).sum();
-    let sun_normal_lx = disc_lx(model);
-    Illuminances {
-        sun_normal_lx,
-        sun_horizontal_lx: sun_normal_lx * model.sun().y.max(0.0),
-        sky_horizontal_lx: PI * sum / (BANDS * TURNS) as f64,
+/// What a published model sheds on surfaces at the eye, in XYZ (lx).
+#[derive(Clone, Copy, Debug)]
+pub struct Shed {
+    /// Of the sun's disc, facing it.
+    sun_normal: [f64; 3],
+    /// Of the sky, on the horizontal.
+    sky_horizontal: [f64; 3],
+    /// Sine of the sun's elevation, or 0.
+    sin_sun: f64,
+}
+
+impl Shed {
+    /// Sums over sun and sky. The sky's sum is over bands of equal weight and equal turns about the sun's azimuth: within
+    /// 1 % where haze does not crowd the light about the sun.
+    pub fn of(model: &dyn ClassicSky) -> Self {
+        const BANDS: usize = 48;
+        const TURNS: usize = 96;
+        let azimuth_deg = axes::azimuth_deg(model.sun());
+        let band = |i: usize| {
+            // Equal parts of sin^2: each weighs the same on the horizontal.
+            let elevation = ((i as f64 + 0.5) / BANDS as f64).sqrt().asin();
+            let at = |j: usize| azimuth_deg + 360.0 * (j as f64 + 0.5) / TURNS as f64;
+            (0..TURNS).fold([0.0; 3], |sum, j| {
+                let direction = axes::direction(at(j), elevation.to_degrees());
+                plus(sum, model.sky_xyz(direction))
+            })
+        };
+        let bands: Vec<_> = (0..BANDS).into_par_iter().map(band).collect();
+        let sum = bands.into_iter().fold([0.0; 3], plus);
+        Self {
+            sun_normal: disc(model),
+            sky_horizontal: sum.map(|v| PI * v / (BANDS * TURNS) as f64),
+            sin_sun: model.sun().y.max(0.0),
+        }
+    }
+
+    /// As illuminances.
+    pub fn illuminances(&self) -> Illuminances {
+        Illuminances {
+            sun_normal_lx: self.sun_normal[1],
+            sun_horizontal_lx: self.sun_normal[1] * self.sin_sun,
+            sky_horizontal_lx: self.sky_horizontal[1],
+        }
+    }
+
+    /// The light (XYZ, cd/m^2) of a ground that reflects it evenly. Its albedo is taken at the wavelengths that the sRGB
+    /// primaries look like: exact for grey ground.
+    pub fn ground_xyz(&self, albedo: &SpectralCurve) -> [f64; 3] {
+        const PRIMARIES_NM: [f64; 3] = [611.0, 549.0, 464.0];
+        let horizontal = plus(
+            self.sky_horizontal,
+            self.sun_normal.map(|v| v * self.sin_sun),
+        );
+        let rgb = RgbSpace::Srgb.from_xyz(horizontal);
+        let reflected = [0, 1, 2].map(|i| albedo.at(PRIMARIES_NM[i]) * rgb[i] / PI);
+        rgb::apply(&RgbSpace::Srgb.to_xyz_matrix(), reflected)
     }
 }
 
+fn plus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+}
+
 /// The disc's illuminance facing it, from rings of equal area.
-fn disc_lx(model: &dyn ClassicSky) -> f64 {
+fn disc(model: &dyn ClassicSky) -> [f64; 3] {
     const RINGS: usize = 64;
     const SPOKES: usize = 32;
     let sun = model.sun();
     let across = sun.any_orthonormal_vector();
     let along = sun.cross(across);
     let edge = model.disc_edge_rad().sin();
-    let mut sum = 0.0;
+    let mut sum = [0.0; 3];
     for i in 0..RINGS {
         let s = edge * ((i as f64 + 0.5) / RINGS as f64).sqrt();
         for j in 0..SPOKES {
             let (sin, cos) = (TAU * (j as f64 + 0.5) / SPOKES as f64).sin_cos();
             let direction = sun * (1.0 - s * s).sqrt() + (across * cos + along * sin) * s;
-            sum += model.disc_xyz(direction)[1];
+            sum = plus(sum, model.disc_xyz(direction));
         }
     }
-    PI * edge * edge * sum / (RINGS * SPOKES) as f64
+    sum.map(|v| PI * edge * edge * v / (RINGS * SPOKES) as f64)
 }
 
 /// A published model in one frame, row by row.
 pub struct ClassicRows<'a> {
     model: &'a dyn ClassicSky,
+    /// What lies below the horizontal (XYZ), where the model has nothing there.
+    ground: Option<[f64; 3]>,
     disc: Option<&'a Disc>,
     draws_sky: bool,
     rows: FrameRows,
@@ -96,13 +137,14 @@ impl<'a> ClassicRows<'a> {
     pub fn new(
         frame: &Frame,
         layer: Layer,
-        model: &'a dyn ClassicSky,
+        (model, ground): (&'a dyn ClassicSky, [f64; 3]),
         disc: Option<&'a Disc>,
         space: RgbSpace,
         scale: f32,
     ) -> Self {
         Self {
             model,
+            ground: (!model.has_ground()).then_some(ground),
             disc: disc.filter(|_| layer != Layer::Sky),
             draws_sky: layer != Layer::Disc,
             rows: frame.rows(),
@@ -127,7 +169,11 @@ impl RowSource for ClassicRows<'_> {
             let mut walk = self.model.walk();
             for (&direction, pixel) in directions.iter().zip(out.chunks_exact_mut(3)) {
                 if direction != DVec3::ZERO {
-                    let rgb = rgb::apply(&self.rgb_from_xyz, walk(direction));
+                    let xyz = match self.ground {
+                        Some(ground) if direction.y < 0.0 => ground,
+                        _ => walk(direction),
+                    };
+                    let rgb = rgb::apply(&self.rgb_from_xyz, xyz);
                     let values = rgb.map(|c| c as f32 * self.scale);
                     pixel.copy_from_slice(&values);
                 }

@@ -1,7 +1,7 @@
 //! One moment into files.
 
 use super::channels::{Channels, RgbWeights};
-use super::classic::{self, ClassicRows};
+use super::classic::{ClassicRows, Shed};
 use super::disc::Disc;
 use super::fog::Fog;
 use super::layout::{Layout, PictureFile};
@@ -83,7 +83,11 @@ enum Source<'a> {
         fog: Option<Fog<'a>>,
     },
     /// A published model.
-    Classic(Arc<dyn ClassicSky>),
+    Classic {
+        model: Arc<dyn ClassicSky>,
+        /// The ground that it lights, XYZ.
+        ground: [f64; 3],
+    },
 }
 
 impl<'a> Shot<'a> {
@@ -148,6 +152,8 @@ impl<'a> Shot<'a> {
         let model =
             crate::classic::model(&drawing.args.air, &drawing.args.classic, drawing.scene, sun)?;
         let channels = drawing.channels;
+        let shed = Shed::of(model.as_ref());
+        let ground = shed.ground_xyz(&drawing.scene.atmosphere.planet.ground_albedo);
         let disc = match drawing.args.picture.sun_disc {
             SunDiscArg::Out => None,
             _ => Disc::of_classic(model.clone(), channels.space.from_xyz_matrix()),
@@ -155,8 +161,8 @@ impl<'a> Shot<'a> {
         Ok(Self {
             sun: *sun,
             time,
-            light: classic::illuminances(model.as_ref()),
-            source: Source::Classic(model),
+            light: shed.illuminances(),
+            source: Source::Classic { model, ground },
             disc,
             weights: channels.rgb_weights(&drawing.scene.grid),
         })
@@ -171,7 +177,7 @@ impl<'a> Shot<'a> {
     pub fn is_below_horizon(&self, direction: DVec3) -> bool {
         let horizon_rad = match &self.source {
             Source::Solved { table, .. } => table.horizon_elevation_rad(),
-            Source::Classic(_) => 0.0,
+            Source::Classic { .. } => 0.0,
         };
         direction.y.clamp(-1.0, 1.0).asin() < horizon_rad
     }
@@ -211,12 +217,12 @@ impl Drawing<'_> {
                 let rows = SkyRows::new(frame, layer, sky, disc, spectral, sun, scale);
                 Box::new(rows.with_solved(solved))
             }
-            Source::Classic(model) => {
+            Source::Classic { model, ground } => {
                 let space = self.channels.space;
                 Box::new(ClassicRows::new(
                     frame,
                     layer,
-                    model.as_ref(),
+                    (model.as_ref(), *ground),
                     disc,
                     space,
                     scale,

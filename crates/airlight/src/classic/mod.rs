@@ -19,7 +19,7 @@ use glam::DVec3;
 /// A published model of the sky, ready to answer for one eye and one sun.
 ///
 /// Colours are CIE 1931 XYZ with `Y` in cd/m^2. Directions are unit vectors that point away from the eye
-/// ([`crate::axes`]). Models without a ground say what they have below the horizon in their own documentation.
+/// ([`crate::axes`]).
 pub trait ClassicSky: Send + Sync {
     /// Unit vector towards the sun's centre.
     fn sun(&self) -> DVec3;
@@ -27,6 +27,12 @@ pub trait ClassicSky: Send + Sync {
     /// Angle from the sun's centre beyond which there is no light of its disc, rad.
     fn disc_edge_rad(&self) -> f64 {
         crate::light::SunDisc::default().angular_radius_rad
+    }
+
+    /// Whether what it says below the horizon is light of its own ground and the air before it. Models without leave the
+    /// ground to whoever draws.
+    fn has_ground(&self) -> bool {
+        false
     }
 
     /// Light of the sky along a direction, without the sun's disc.
