@@ -64,6 +64,10 @@ impl ClassicSky for FourOrders {
         self.sky.atmosphere().sun.angular_radius_rad
     }
 
+    fn has_ground(&self) -> bool {
+        true
+    }
+
     fn sky_xyz(&self, direction: DVec3) -> [f64; 3] {
         self.sky
             .grid()

@@ -243,6 +243,10 @@ impl ClassicSky for Hillaire2020 {
         self.disc.angular_radius_rad
     }
 
+    fn has_ground(&self) -> bool {
+        true
+    }
+
     fn sky_xyz(&self, direction: DVec3) -> [f64; 3] {
         self.grid.to_xyz(&self.radiance(direction))
     }
