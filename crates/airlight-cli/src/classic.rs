@@ -1,10 +1,22 @@
 //! Published models of the sky, made from the options.
 
-use crate::args::{AirArgs, ClassicArgs, SolverArg, VariantArg};
+use crate::args::{
+    AirArgs, ClassicArgs, EffortArg, ScatteringArg, SolverArg, SunlightArg, VariantArg,
+};
 use crate::error::CliError;
 use crate::scene::{Scene, Sun};
 use airlight::classic::ClassicSky;
-use airlight::classic::klassen1987::{Klassen1987, Klassen1987Error, Klassen1987Settings};
+use airlight::classic::four_orders::FourOrders;
+use airlight::classic::hillaire2020::{self, Hillaire2020};
+use airlight::classic::klassen1987::{Klassen1987, Klassen1987Settings};
+use airlight::classic::preetham::Preetham;
+use airlight::classic::single_scattering::{
+    self, SkyArticle, Sunlight, Variant, ZENITH_ILLUMINANCE_LX,
+};
+use airlight::medium::Atmosphere;
+use airlight::medium::aerosol::turbidity_of_optical_depth;
+use airlight::sky::SkySettings;
+use std::fmt::Display;
 use std::sync::Arc;
 
 /// The model asked for, under a sun.
@@ -18,12 +30,47 @@ pub fn model(
     sun: &Sun,
 ) -> Result<Arc<dyn ClassicSky>, CliError> {
     let direction = sun.direction();
+    let eye_altitude_m = scene.eye_altitude_m;
     Ok(match air.solver {
         SolverArg::Klassen1987 => {
-            let refuse =
-                |error: Klassen1987Error| CliError::usage(format!("--solver klassen1987: {error}"));
             let settings = klassen(args, scene, sun)?;
-            Arc::new(Klassen1987::new(&settings, direction).map_err(refuse)?)
+            Arc::new(Klassen1987::new(&settings, direction).map_err(refused_by("klassen1987"))?)
+        }
+        SolverArg::SingleScattering => {
+            let settings = article_settings(args, eye_altitude_m);
+            let refused = refused_by("single-scattering");
+            Arc::new(SkyArticle::new(&settings, direction).map_err(refused)?)
+        }
+        SolverArg::Preetham => {
+            let turbidity = turbidity(&scene.atmosphere);
+            Arc::new(Preetham::new(turbidity, direction).map_err(refused_by("preetham"))?)
+        }
+        SolverArg::HosekWilkie => hosek_wilkie(scene, sun)?,
+        SolverArg::Hillaire2020 => {
+            let mut settings = hillaire2020::Settings::default();
+            if air.scattering == ScatteringArg::Single {
+                settings.multiple = None;
+            }
+            let sky = Hillaire2020::with_settings(
+                &scene.atmosphere,
+                &scene.grid,
+                eye_altitude_m,
+                direction,
+                &settings,
+            );
+            Arc::new(sky.map_err(refused_by("hillaire2020"))?)
+        }
+        SolverArg::Bruneton2008 => {
+            let settings = SkySettings {
+                suns: scene.near(sun),
+                ..match air.effort {
+                    EffortArg::Standard => SkySettings::default(),
+                    EffortArg::Fine => SkySettings::fine(),
+                }
+            };
+            let eye_and_sun = (eye_altitude_m, direction);
+            let sky = FourOrders::new(&scene.atmosphere, &scene.grid, eye_and_sun, 4, &settings);
+            Arc::new(sky.map_err(refused_by("bruneton2008"))?)
         }
         SolverArg::Orders | SolverArg::MonteCarlo => {
             return Err(CliError::failure("this solver is no published model"));
@@ -56,4 +103,55 @@ fn klassen(args: &ClassicArgs, scene: &Scene, sun: &Sun) -> Result<Klassen1987Se
     }
     args.klassen.apply(&mut settings);
     Ok(settings)
+}
+
+/// What a model says of numbers that it refuses.
+fn refused_by<E: Display>(solver: &'static str) -> impl Fn(E) -> CliError {
+    move |error| CliError::usage(format!("--solver {solver}: {error}"))
+}
+
+fn article_settings(args: &ClassicArgs, eye_altitude_m: f64) -> single_scattering::Settings {
+    single_scattering::Settings {
+        variant: match args.variant {
+            Some(VariantArg::Printed) => Variant::Printed,
+            Some(VariantArg::PrintedF64) => Variant::PrintedF64,
+            Some(VariantArg::Table) => Variant::Table,
+            Some(VariantArg::Multiple) => Variant::Multiple,
+            Some(VariantArg::Corrected) | None => Variant::Converged,
+        },
+        sunlight: match args.sunlight {
+            Some(SunlightArg::Measured) => Sunlight::SolarSpectrum,
+            Some(SunlightArg::White) | None => {
+                Sunlight::WhiteAtZenith(args.zenith_lux.unwrap_or(ZENITH_ILLUMINANCE_LX))
+            }
+        },
+        eye_altitude_m,
+    }
+}
+
+/// The turbidity of an air: optical depth of molecules and haze over that of molecules, at 550 nm.
+fn turbidity(air: &Atmosphere) -> f64 {
+    let planet = &air.planet;
+    let depth = air.constituent("aerosol").map_or(0.0, |haze| {
+        haze.optical_depth(planet.ground_altitude_m, planet.top_altitude_m, 550.0)
+    });
+    turbidity_of_optical_depth(depth, air.clear_air())
+}
+
+#[cfg(feature = "hosek-wilkie")]
+fn hosek_wilkie(scene: &Scene, sun: &Sun) -> Result<Arc<dyn ClassicSky>, CliError> {
+    use airlight::classic::hosek_wilkie::HosekWilkie;
+    use airlight::spectrum::rgb::DOMINANT_NM;
+
+    let air = &scene.atmosphere;
+    let albedo = DOMINANT_NM.map(|nm| air.planet.ground_albedo.at(nm));
+    let sky = HosekWilkie::new(turbidity(air), albedo, sun.direction());
+    Ok(Arc::new(sky.map_err(refused_by("hosek-wilkie"))?))
+}
+
+#[cfg(not(feature = "hosek-wilkie"))]
+fn hosek_wilkie(_: &Scene, _: &Sun) -> Result<Arc<dyn ClassicSky>, CliError> {
+    Err(CliError::usage(
+        "--solver hosek-wilkie is not in this build: build airlight-cli with --features hosek-wilkie",
+    ))
 }

@@ -24,6 +24,18 @@ pub enum SolverArg {
     /// Klassen 1987: two layers of haze and air, sunlight scattered once by the haze, before a blue sky.
     #[value(name = "klassen1987")]
     Klassen1987,
+    /// Preetham, Shirley & Smits 1999: a formula by turbidity, for the sun above the horizon.
+    Preetham,
+    /// Bruneton & Neyret 2008: the first four orders of scattering.
+    #[value(name = "bruneton2008")]
+    Bruneton2008,
+    /// Hosek & Wilkie 2012: a formula by turbidity and ground albedo (in builds with the feature hosek-wilkie).
+    HosekWilkie,
+    /// Hillaire 2020: few steps and two small tables, in the air of --atmosphere.
+    #[value(name = "hillaire2020")]
+    Hillaire2020,
+    /// The sky article: sunlight scattered once, in its own air, and the steps beyond it (--variant).
+    SingleScattering,
 }
 
 impl SolverArg {

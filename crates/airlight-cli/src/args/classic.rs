@@ -2,6 +2,7 @@
 
 use super::{KlassenArgs, SolverArg};
 use crate::error::CliError;
+use crate::parse;
 use clap::{Args, ValueEnum};
 
 /// Which form of a published model.
@@ -11,6 +12,39 @@ pub enum VariantArg {
     Printed,
     /// With its mistakes mended.
     Corrected,
+    /// single-scattering: as published, in f64 where the shader has f32.
+    #[value(name = "printed-f64")]
+    PrintedF64,
+    /// single-scattering: the ways to the sun from a table.
+    Table,
+    /// single-scattering: with light scattered more than once.
+    Multiple,
+}
+
+impl VariantArg {
+    /// The forms that a solver has.
+    fn of(solver: SolverArg) -> &'static [Self] {
+        match solver {
+            SolverArg::Klassen1987 => &[Self::Printed, Self::Corrected],
+            SolverArg::SingleScattering => &[
+                Self::Printed,
+                Self::PrintedF64,
+                Self::Corrected,
+                Self::Table,
+                Self::Multiple,
+            ],
+            _ => &[],
+        }
+    }
+}
+
+/// The colour of the sun of the sky article.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum SunlightArg {
+    /// White on the ground when it stands in the zenith, as printed.
+    White,
+    /// As bright and as coloured as measured outside the air.
+    Measured,
 }
 
 /// Options of published models of the sky.
@@ -20,6 +54,12 @@ pub struct ClassicArgs {
     /// Which form of a published model [default: corrected]
     #[arg(long, value_enum)]
     pub variant: Option<VariantArg>,
+    /// single-scattering: the colour of the sun [default: white]
+    #[arg(long, value_enum)]
+    pub sunlight: Option<SunlightArg>,
+    /// single-scattering: illuminance by a white sun in the zenith, lx; 6.2832 for colours about 1 [default: 120000]
+    #[arg(long, value_name = "LX", value_parser = parse::positive)]
+    pub zenith_lux: Option<f64>,
     #[command(flatten)]
     pub klassen: KlassenArgs,
 }
@@ -36,11 +76,72 @@ impl ClassicArgs {
                  for one published model: give --solver klassen1987 as well",
             ));
         }
-        match (solver.is_classic(), self.variant) {
-            (false, Some(_)) => Err(CliError::usage(
-                "--variant is for published models: give --solver with the name of one",
-            )),
-            _ => Ok(()),
+        if let Some(variant) = self.variant {
+            let known = VariantArg::of(solver);
+            if !solver.is_classic() {
+                return Err(CliError::usage(
+                    "--variant is for published models: give --solver with the name of one",
+                ));
+            }
+            if !known.contains(&variant) {
+                return Err(CliError::usage(format!(
+                    "--variant: --solver {} has {}",
+                    name(&solver),
+                    match known {
+                        [] => "one form only: leave --variant out".to_owned(),
+                        known => known.iter().map(name).collect::<Vec<_>>().join(", "),
+                    }
+                )));
+            }
         }
+        if solver != SolverArg::SingleScattering
+            && (self.sunlight.is_some() || self.zenith_lux.is_some())
+        {
+            return Err(CliError::usage(
+                "--sunlight and --zenith-lux are for --solver single-scattering",
+            ));
+        }
+        if self.sunlight == Some(SunlightArg::Measured) && self.zenith_lux.is_some() {
+            return Err(CliError::usage(
+                "--zenith-lux is for a white sun: leave it out, or give --sunlight white",
+            ));
+        }
+        Ok(())
+    }
+}
+
+/// A value as it is written on the command line.
+fn name(value: &impl ValueEnum) -> String {
+    value
+        .to_possible_value()
+        .map_or_else(String::new, |value| value.get_name().to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn options_are_for_solvers_that_know_them() {
+        let args = |variant, sunlight, zenith_lux| ClassicArgs {
+            variant,
+            sunlight,
+            zenith_lux,
+            klassen: KlassenArgs::default(),
+        };
+        let refused = |args: ClassicArgs, solver| {
+            let error = args.check(solver).unwrap_err();
+            error.sentence().unwrap_or_default().to_owned()
+        };
+        let table = args(Some(VariantArg::Table), None, None);
+        assert_eq!(table.check(SolverArg::SingleScattering), Ok(()));
+        assert!(refused(table.clone(), SolverArg::Klassen1987).contains("printed, corrected"));
+        assert!(refused(table.clone(), SolverArg::Preetham).contains("one form only"));
+        assert!(refused(table, SolverArg::Orders).contains("--solver"));
+        let white = args(None, Some(SunlightArg::White), Some(3.0));
+        assert_eq!(white.check(SolverArg::SingleScattering), Ok(()));
+        assert!(refused(white, SolverArg::Hillaire2020).contains("single-scattering"));
+        let both = args(None, Some(SunlightArg::Measured), Some(1e5));
+        assert!(refused(both, SolverArg::SingleScattering).contains("white sun"));
     }
 }

@@ -19,7 +19,7 @@ mod probe;
 
 pub use accuracy::{AccuracyArgs, ReportArg};
 pub use air::{AirArgs, EffortArg, ScatteringArg, SolverArg};
-pub use classic::{ClassicArgs, VariantArg};
+pub use classic::{ClassicArgs, SunlightArg, VariantArg};
 pub use compare::{CompareArgs, StatisticsArg};
 pub use fog::{DropletsArg, FogArgs, in_words as droplets_in_words};
 pub use grid::GridArgs;

@@ -3,7 +3,16 @@
 //! The paper or article behind a model is named in its module, with the numbers of its equations, its errata and what
 //! it differs by from the solver of [`crate::sky`].
 
+pub mod four_orders;
+pub mod hillaire2020;
+#[cfg(feature = "hosek-wilkie")]
+pub mod hosek_wilkie;
 pub mod klassen1987;
+mod lut;
+pub mod preetham;
+pub mod single_scattering;
+
+pub use lut::MultipleScatteringSettings;
 
 use glam::DVec3;
 
