@@ -42,6 +42,7 @@ pub fn map(
         let (plot, scale) = root.split_horizontally(SIZE.0 - SCALE);
         let mut chart = ChartBuilder::on(&plot)
             .margin(12)
+            .margin_top(34)
             .x_label_area_size(44)
             .y_label_area_size(72)
             .build_cartesian_2d(left..right, low..high)?;
@@ -102,7 +103,7 @@ pub fn map(
         }
         root.draw(&Text::new(
             quantity.to_owned(),
-            ((SIZE.0 - SCALE) as i32 - 30, 10),
+            ((SIZE.0 - SCALE) as i32 - 70, 10),
             (FONT, 14),
         ))?;
         Ok(())

@@ -32,6 +32,40 @@ fn phase_functions_and_efficiencies_are_plotted() {
 }
 
 #[test]
+fn light_air_and_fog_are_plotted() {
+    let folder = Folder::new();
+    for (words, said) in [
+        (
+            "plot spectrum --sun-elevation 20 --wavelengths fast -o a.svg",
+            "irradiance",
+        ),
+        (
+            "plot spectrum --sun-elevation 20 --wavelengths fast --view 0,90 -o a.svg",
+            "elevation 90",
+        ),
+        (
+            "plot transmittance --sun-elevation 20 --wavelengths fast -o a.svg",
+            "angle 89",
+        ),
+        (
+            "plot transmittance --sun-elevation 20 --wavelengths fast --map -o a.svg",
+            "zenith",
+        ),
+        ("plot fog-profile --top-m 80 -o a.svg", "top at 80 m"),
+        ("plot split-sum -o a.svg", "split sum"),
+    ] {
+        assert_eq!(succeed(&folder, words), "");
+        let svg = written(&folder, "a.svg");
+        assert!(svg.contains(said), "{words}");
+        assert!(!svg.contains("NaN") && !svg.contains("inf"), "{words}");
+    }
+    succeed(&folder, "plot split-sum -o a.png");
+    let picture = image::open(folder.file("a.png")).unwrap().into_rgb8();
+    let colours: std::collections::HashSet<_> = picture.pixels().collect();
+    assert!(colours.len() > 50, "{}", colours.len());
+}
+
+#[test]
 fn plots_of_nothing_are_refused() {
     let folder = Folder::new();
     for (words, sentence) in [
@@ -47,7 +81,16 @@ fn plots_of_nothing_are_refused() {
             "plot phase --droplets rain --wavelength-nm 1e-9 -o a.svg",
             "size parameter",
         ),
-        ("plot efficiency -o a.png", ".svg"),
+        ("plot efficiency -o a.gif", ".svg"),
+        (
+            "plot transmittance --sun-elevation 9 --zenith-deg 91 -o a.svg",
+            "zenith angle",
+        ),
+        (
+            "plot spectrum --sun-elevation 9 --solver monte-carlo -o a.svg",
+            "leave out --solver",
+        ),
+        ("plot spectrum -o a.svg", "--sun-elevation"),
         ("plot efficiency --to nan -o a.svg", "above 0"),
     ] {
         let output = run(&folder, words);

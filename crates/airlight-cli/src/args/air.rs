@@ -112,6 +112,20 @@ pub struct AirArgs {
 }
 
 impl AirArgs {
+    /// Refuses any solver but the fast one.
+    ///
+    /// # Errors
+    /// [`CliError::Usage`] where another is asked for.
+    pub fn refuse_other_solvers(&self, command: &str) -> Result<(), CliError> {
+        self.monte_carlo(1)?;
+        match self.solver {
+            SolverArg::Orders => Ok(()),
+            _ => Err(CliError::usage(format!(
+                "{command} solves by orders of scattering: leave out --solver"
+            ))),
+        }
+    }
+
     /// The Monte Carlo's settings, `paths` where nothing is said; `None` where another solver is asked for.
     ///
     /// # Errors

@@ -32,7 +32,10 @@ pub use picture::{
     ColorSpaceArg, CompressionArg, PictureArgs, PrecisionArg, ProjectionArg, SunDiscArg, ToneArg,
 };
 pub use place::PlaceArgs;
-pub use plot::{EfficiencyPlotArgs, Index, PhasePlotArgs, PlotArgs, PlotWhat};
+pub use plot::{
+    EfficiencyPlotArgs, FogProfilePlotArgs, Index, PhasePlotArgs, PlotArgs, PlotWhat,
+    SpectrumPlotArgs, SplitSumPlotArgs, TransmittancePlotArgs,
+};
 pub use probe::{FormatArg, ProbeArgs};
 
 use clap::{Args, Parser, Subcommand};

@@ -1,7 +1,8 @@
 //! Options of `airlight plot`.
 
 use super::fog::DropletsArg;
-use crate::parse;
+use super::{AirArgs, PlaceArgs};
+use crate::parse::{self, AzEl};
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
 
@@ -21,12 +22,95 @@ pub enum PlotWhat {
     Phase(PhasePlotArgs),
     /// Scattering efficiency of spheres against the size parameter, single and in a spread of sizes.
     Efficiency(EfficiencyPlotArgs),
+    /// Spectra of the sky along directions, or of sunlight and skylight.
+    Spectrum(Box<SpectrumPlotArgs>),
+    /// Transmittance of the air against wavelength, for zenith angles or as a map over them.
+    Transmittance(Box<TransmittancePlotArgs>),
+    /// Extinction of fog against height.
+    FogProfile(FogProfilePlotArgs),
+    /// Error of the split-sum approximation, as a map.
+    SplitSum(SplitSumPlotArgs),
+}
+
+/// Options of `airlight plot spectrum`.
+#[derive(Debug, Args)]
+#[command(allow_negative_numbers = true)]
+pub struct SpectrumPlotArgs {
+    /// File to write: .svg or .png
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
+    /// A direction to look in: azimuth,elevation in degrees; may be given many times [default: irradiances instead]
+    #[arg(long, value_name = "AZ,EL", value_parser = parse::az_el, allow_hyphen_values = true)]
+    pub view: Vec<AzEl>,
+    #[command(flatten)]
+    pub place: PlaceArgs,
+    #[command(flatten)]
+    pub air: AirArgs,
+}
+
+/// Options of `airlight plot transmittance`.
+#[derive(Debug, Args)]
+#[command(allow_negative_numbers = true)]
+pub struct TransmittancePlotArgs {
+    /// File to write: .svg or .png
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
+    /// Zenith angles, degrees
+    #[arg(long, value_name = "DEG,...", value_delimiter = ',', value_parser = zenith_deg, default_values_t = [0.0, 60.0, 75.0, 85.0, 89.0])]
+    pub zenith_deg: Vec<f64>,
+    /// A map over wavelength and all zenith angles instead of curves
+    #[arg(long, conflicts_with = "zenith_deg")]
+    pub map: bool,
+    #[command(flatten)]
+    pub place: PlaceArgs,
+    #[command(flatten)]
+    pub air: AirArgs,
+}
+
+/// Options of `airlight plot fog-profile`.
+#[derive(Debug, Args)]
+pub struct FogProfilePlotArgs {
+    /// File to write: .svg or .png
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
+    /// How far one sees where the fog is thickest, m: the distance at which 5 % of contrast is left
+    #[arg(long, value_name = "M", value_parser = parse::length_m, default_value_t = 200.0)]
+    pub visibility_m: f64,
+    /// Top of the even slab, m
+    #[arg(long, value_name = "M", value_parser = parse::length_m, default_value_t = 100.0)]
+    pub top_m: f64,
+    /// Height over which the others thin to 1/e, m
+    #[arg(long, value_name = "M", value_parser = parse::length_m, default_value_t = 50.0)]
+    pub scale_height_m: f64,
+    /// Height from which on the last thins, m
+    #[arg(long, value_name = "M", value_parser = parse::not_negative, default_value_t = 50.0)]
+    pub base_m: f64,
+    /// Greatest height shown, m [default: as the profiles need]
+    #[arg(long, value_name = "M", value_parser = parse::length_m)]
+    pub to_m: Option<f64>,
+}
+
+/// Options of `airlight plot split-sum`.
+#[derive(Debug, Args)]
+pub struct SplitSumPlotArgs {
+    /// File to write: .svg or .png
+    #[arg(short, long, value_name = "FILE")]
+    pub output: PathBuf,
+}
+
+fn zenith_deg(text: &str) -> Result<f64, String> {
+    match parse::not_negative(text)? {
+        deg if deg <= 90.0 => Ok(deg),
+        deg => Err(format!(
+            "must be a zenith angle from 0 to 90 degrees, got {deg}"
+        )),
+    }
 }
 
 /// Options of `airlight plot phase`.
 #[derive(Debug, Args)]
 pub struct PhasePlotArgs {
-    /// File to write: .svg
+    /// File to write: .svg or .png
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
     /// Drops of fog, as `airlight fog --droplets` has them
@@ -49,7 +133,7 @@ pub struct PhasePlotArgs {
 /// Options of `airlight plot efficiency`.
 #[derive(Debug, Args)]
 pub struct EfficiencyPlotArgs {
-    /// File to write: .svg
+    /// File to write: .svg or .png
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
     /// Refractive index: n, or n,k where they absorb
@@ -83,7 +167,11 @@ Examples:
     airlight plot phase --polar --size-parameter 0.2,1,2,4,6,10 -o angular.svg
     airlight plot efficiency -o efficiency.svg
   Bow and glory of two fogs:
-    airlight plot phase --droplets heavy-radiation-fog,moderate-advection-fog --wavelength-nm 450,650 -o fogs.svg";
+    airlight plot phase --droplets heavy-radiation-fog,moderate-advection-fog --wavelength-nm 450,650 -o fogs.svg
+  Sunlight and skylight of a low sun; the sky in two directions; the air's transmittance as a map:
+    airlight plot spectrum --sun-elevation 5 --wavelengths fine -o light.svg
+    airlight plot spectrum --sun-elevation 30 --wavelengths fine --view 0,90 --view 180,5 -o sky.png
+    airlight plot transmittance --sun-elevation 30 --wavelengths fine --map -o transmittance.png";
 
 #[cfg(test)]
 mod tests {

@@ -1,9 +1,8 @@
-//! `airlight plot`: what particles do to light, drawn as SVG.
+//! What particles do to light: phase functions and efficiencies.
 
-use crate::args::{DropletsArg, EfficiencyPlotArgs, Index, PhasePlotArgs, PlotArgs, PlotWhat};
+use crate::args::{DropletsArg, EfficiencyPlotArgs, Index, PhasePlotArgs};
 use crate::error::CliError;
 use crate::progress::Busy;
-use crate::report;
 use airlight::optics::RefractiveIndex;
 use airlight::optics::mie::{Complex64, MieError, Particles, SizeDistribution, Sphere};
 use airlight_chart::around::around;
@@ -14,28 +13,11 @@ use std::f64::consts::{PI, TAU};
 /// Effective variance of the sizes over which the oscillations of single spheres are smoothed.
 const VARIANCE: f64 = 0.1;
 
-/// Runs the command.
+/// Phase functions, or the patterns around single spheres.
 ///
 /// # Errors
-/// [`CliError`]: what was wrong with the options, or the file.
-pub fn run(args: &PlotArgs) -> Result<(), CliError> {
-    let output = match &args.what {
-        PlotWhat::Phase(args) => &args.output,
-        PlotWhat::Efficiency(args) => &args.output,
-    };
-    if output.extension().and_then(|ending| ending.to_str()) != Some("svg") {
-        return Err(CliError::usage("--output must end in .svg"));
-    }
-    let drawn = match &args.what {
-        PlotWhat::Phase(args) => phase(args)?,
-        PlotWhat::Efficiency(args) => efficiency(args)?,
-    };
-    let svg = drawn.map_err(|error| CliError::failure(format!("cannot draw: {error}")))?;
-    report::write(output, &svg)
-}
-
-/// Phase functions, or the patterns around single spheres.
-fn phase(args: &PhasePlotArgs) -> Result<Drawn, CliError> {
+/// [`CliError`] where nothing was asked for, or particles are refused.
+pub fn phase(args: &PhasePlotArgs) -> Result<Drawn, CliError> {
     if args.droplets.is_empty() && args.size_parameter.is_empty() {
         return Err(CliError::usage(
             "say whose phase function: --droplets KIND,... or --size-parameter X,...",
@@ -109,7 +91,10 @@ fn of_sphere(x: f64, index: Index, pattern: bool) -> Result<Curve, CliError> {
 }
 
 /// Efficiencies of single spheres, and the mean over sizes.
-fn efficiency(args: &EfficiencyPlotArgs) -> Result<Drawn, CliError> {
+///
+/// # Errors
+/// [`CliError`] where particles are refused.
+pub fn efficiency(args: &EfficiencyPlotArgs) -> Result<Drawn, CliError> {
     const STEPS: usize = 2500;
     const SMOOTH_STEPS: usize = 120;
     let index = Complex64::new(args.index.real, args.index.imaginary);

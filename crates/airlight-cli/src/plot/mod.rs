@@ -1,0 +1,53 @@
+//! `airlight plot`: curves and maps, as SVG or PNG.
+//!
+//! [`particles`]: phase functions and efficiencies; [`air`]: spectra and transmittance; [`fog`]: profiles, and the error of
+//! the split sum.
+
+mod air;
+mod fog;
+mod particles;
+
+use crate::args::{PlotArgs, PlotWhat};
+use crate::error::CliError;
+use crate::report;
+use airlight_chart::raster::Picture;
+
+/// Pixels of a PNG for each of the drawing's.
+const PNG_SCALE: f32 = 2.0;
+
+/// Runs the command.
+///
+/// # Errors
+/// [`CliError`]: what was wrong with the options, or the file.
+pub fn run(args: &PlotArgs) -> Result<(), CliError> {
+    let output = match &args.what {
+        PlotWhat::Phase(args) => &args.output,
+        PlotWhat::Efficiency(args) => &args.output,
+        PlotWhat::Spectrum(args) => &args.output,
+        PlotWhat::Transmittance(args) => &args.output,
+        PlotWhat::FogProfile(args) => &args.output,
+        PlotWhat::SplitSum(args) => &args.output,
+    };
+    let png = match output.extension().and_then(|ending| ending.to_str()) {
+        Some("svg") => false,
+        Some("png") => true,
+        _ => return Err(CliError::usage("--output must end in .svg or .png")),
+    };
+    let drawn = match &args.what {
+        PlotWhat::Phase(args) => particles::phase(args)?,
+        PlotWhat::Efficiency(args) => particles::efficiency(args)?,
+        PlotWhat::Spectrum(args) => air::spectrum(args)?,
+        PlotWhat::Transmittance(args) => air::transmittance(args)?,
+        PlotWhat::FogProfile(args) => fog::profile(args)?,
+        PlotWhat::SplitSum(args) => fog::split_sum(args),
+    };
+    let failed = |error| CliError::failure(format!("cannot draw: {error}"));
+    let svg = drawn.map_err(failed)?;
+    match png {
+        false => report::write(output, &svg),
+        true => {
+            let picture = Picture::of_svg(&svg, PNG_SCALE).and_then(|picture| picture.png());
+            report::write(output, picture.map_err(failed)?)
+        }
+    }
+}
