@@ -3,7 +3,7 @@
 //! Each comparison is a [`Check`]: rows of a value of ours beside a reference, with the place they belong to. [`run`] makes
 //! all checks of some [`Suite`]s; [`report`] writes them.
 //!
-//! Rooms, each importing only from those above it: [`chart`] (SVG), [`check`] (rows and their statistics), [`table`] (the embedded tables),
+//! Rooms, each importing only from those above it: [`check`] (rows and their statistics), [`table`] (the embedded tables),
 //! [`solved`] (a sky solved for a table's wavelengths), [`skies`] (against tables of skies), [`measured`] (against the
 //! measured sky), [`report`].
 
