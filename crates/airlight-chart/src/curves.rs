@@ -1,7 +1,7 @@
 //! Curves over an axis.
 
 use crate::axis::{Axis, Curve};
-use crate::svg::{COLOURS, Drawn, FONT, SIZE, draw, labels};
+use crate::svg::{COLOURS, Drawn, SIZE, axes, draw, labels};
 use plotters::prelude::*;
 
 /// Curves over an axis. An even axis upwards begins at 0, or at the least value below it.
@@ -26,18 +26,7 @@ pub fn curves(x: &Axis, y: &Axis, curves: &[Curve]) -> Drawn {
             .x_label_area_size(44)
             .y_label_area_size(72)
             .build_cartesian_2d(left..right, low..high)?;
-        chart
-            .configure_mesh()
-            .light_line_style(TRANSPARENT)
-            .bold_line_style(BLACK.mix(0.12))
-            .x_labels(10)
-            .x_desc(&x.name)
-            .x_label_formatter(&|place| x.label(*place))
-            .y_desc(&y.name)
-            .y_label_formatter(&|place| y.label(*place))
-            .label_style((FONT, 14))
-            .axis_desc_style((FONT, 15))
-            .draw()?;
+        axes(&mut chart, (x, y), true)?;
         for (index, curve) in curves.iter().enumerate() {
             let colour = COLOURS[index % COLOURS.len()];
             let line = curve

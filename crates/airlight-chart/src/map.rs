@@ -2,7 +2,7 @@
 
 use crate::axis::Axis;
 use crate::ramp::Ramp;
-use crate::svg::{Drawn, FONT, draw};
+use crate::svg::{Drawn, FONT, axes, draw};
 use plotters::prelude::*;
 
 /// Size of a map, pixels.
@@ -68,17 +68,7 @@ pub fn map(
                     .map(|ends| PathElement::new(ends.to_vec(), style)),
             )?;
         }
-        chart
-            .configure_mesh()
-            .disable_mesh()
-            .x_labels(10)
-            .x_desc(&x.name)
-            .x_label_formatter(&|place| x.label(*place))
-            .y_desc(&y.name)
-            .y_label_formatter(&|place| y.label(*place))
-            .label_style((FONT, 14))
-            .axis_desc_style((FONT, 15))
-            .draw()?;
+        axes(&mut chart, (x, y), false)?;
         let bar = ramp.ends;
         let mut chart = ChartBuilder::on(&scale)
             .margin(12)

@@ -1,5 +1,6 @@
 //! The canvas that charts are drawn on.
 
+use crate::axis::Axis;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 
@@ -27,6 +28,31 @@ pub type Chart<'a, 'b> =
 
 /// A part of the canvas.
 pub type Area<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
+
+/// Draws both axes, with faint lines across the chart or without.
+///
+/// # Errors
+/// Where they could not be drawn.
+pub fn axes<'a>(
+    chart: &mut Chart<'a, 'a>,
+    (x, y): (&Axis, &Axis),
+    lines: bool,
+) -> Result<(), Box<dyn std::error::Error>> {
+    let line = BLACK.mix(if lines { 0.12 } else { 0.0 });
+    chart
+        .configure_mesh()
+        .light_line_style(TRANSPARENT)
+        .bold_line_style(line)
+        .x_labels(10)
+        .x_desc(&x.name)
+        .x_label_formatter(&|place| x.label(*place))
+        .y_desc(&y.name)
+        .y_label_formatter(&|place| y.label(*place))
+        .label_style((FONT, 14))
+        .axis_desc_style((FONT, 15))
+        .draw()?;
+    Ok(())
+}
 
 /// Writes the names of the colours into a chart, top right.
 ///

@@ -6,7 +6,6 @@ use crate::progress::Busy;
 use crate::report;
 use airlight_accuracy::report::{html, json, text};
 use airlight_accuracy::{Check, Suite, run as make};
-use airlight_render::output::AtomicFile;
 
 /// Runs the command.
 ///
@@ -20,8 +19,7 @@ pub fn run(args: &AccuracyArgs) -> Result<(), CliError> {
         ));
     }
     if let Some(path) = &args.output {
-        // Told before anything is computed.
-        AtomicFile::create(path)?;
+        report::check_writable(path)?;
     }
     let suites: Vec<Suite> = match args.suites.as_slice() {
         [] => Suite::ALL.to_vec(),

@@ -34,9 +34,7 @@ struct Plan {
 /// # Errors
 /// [`CliError`]: what was wrong with the file, or what failed.
 pub fn run(args: &GridArgs) -> Result<(), CliError> {
-    if args.output.extension().is_none_or(|ending| ending != "png") {
-        return Err(CliError::usage("--output must end in .png"));
-    }
+    report::check_png(&args.output)?;
     let name = args.file.display().to_string();
     let text = std::fs::read_to_string(&args.file)
         .map_err(|error| CliError::usage(format!("cannot read `{name}`: {error}")))?;
@@ -60,11 +58,7 @@ pub fn run(args: &GridArgs) -> Result<(), CliError> {
         panels,
         notes: Vec::new(),
     };
-    let png = board
-        .draw()
-        .and_then(|picture| picture.png())
-        .map_err(|error| CliError::failure(format!("cannot draw: {error}")))?;
-    report::write(&args.output, png)
+    report::write_board(&args.output, &board)
 }
 
 impl Plan {

@@ -6,6 +6,7 @@
 //! - [`interrupt`], [`progress`], [`report`]: Ctrl-C, bars on standard error, text on standard output.
 //! - [`atmosphere`], [`scene`], [`classic`], [`light`]: what is asked for, from options to the solver or the published
 //!   model; sums over the sky.
+//! - [`foggy_air`], [`passes`]: fog for random paths, and their passes over a picture.
 //! - [`sky`], [`fog`], [`probe`], [`compare`], [`grid`], [`accuracy`] and [`plot`]: the commands.
 
 mod accuracy;
@@ -22,6 +23,7 @@ mod interrupt;
 mod light;
 mod moment;
 mod parse;
+mod passes;
 mod plot;
 mod probe;
 mod progress;

@@ -2,6 +2,7 @@
 
 use crate::error::CliError;
 use crate::interrupt;
+use airlight_chart::board::Board;
 use airlight_render::output::AtomicFile;
 use std::io::Write;
 use std::path::Path;
@@ -29,6 +30,39 @@ pub fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<(), CliError> {
         CliError::failure(format!("cannot write `{}`: {error}", path.display()))
     })?;
     Ok(file.commit()?)
+}
+
+/// Refuses a file that cannot be made: told before anything is computed.
+///
+/// # Errors
+/// [`CliError`] where it cannot be written.
+pub fn check_writable(path: &Path) -> Result<(), CliError> {
+    let _writing = interrupt::start_writing()?;
+    AtomicFile::create(path)?;
+    Ok(())
+}
+
+/// Refuses a name that does not end in .png, and a file that cannot be made.
+///
+/// # Errors
+/// [`CliError`]: which.
+pub fn check_png(path: &Path) -> Result<(), CliError> {
+    if path.extension().is_none_or(|ending| ending != "png") {
+        return Err(CliError::usage("--output must end in .png"));
+    }
+    check_writable(path)
+}
+
+/// Writes a board of pictures as PNG.
+///
+/// # Errors
+/// [`CliError`] where it is larger than memory, or the file cannot be written.
+pub fn write_board(path: &Path, board: &Board) -> Result<(), CliError> {
+    let png = board
+        .draw()
+        .and_then(|picture| picture.png())
+        .map_err(|error| CliError::failure(format!("cannot draw: {error}")))?;
+    write(path, png)
 }
 
 /// Writes a remark to standard error; where that is gone there is nobody to read it.

@@ -53,11 +53,7 @@ pub fn run(args: &CompareArgs) -> Result<(), CliError> {
     };
     if let Some(output) = &args.output {
         let board = board(args, (&first, &second), &difference, &statistics)?;
-        let png = board
-            .draw()
-            .and_then(|picture| picture.png())
-            .map_err(|error| CliError::failure(format!("cannot draw: {error}")))?;
-        report::write(output, png)?;
+        report::write_board(output, &board)?;
     }
     let text = match args.format {
         StatisticsArg::Table => format!(
@@ -91,11 +87,7 @@ fn check(args: &CompareArgs) -> Result<(), CliError> {
             "skies are compared in luminance and colour: leave out --spectral",
         ));
     }
-    let ending = |path: &std::path::PathBuf| path.extension().is_some_and(|e| e == "png");
-    if args.output.as_ref().is_some_and(|path| !ending(path)) {
-        return Err(CliError::usage("--output must end in .png"));
-    }
-    Ok(())
+    args.output.as_deref().map_or(Ok(()), report::check_png)
 }
 
 /// Both pictures under one exposure, and the maps.

@@ -7,7 +7,7 @@ use super::picture::{Fogged, Subject};
 use crate::args::OverlayArgs;
 use crate::error::CliError;
 use crate::interrupt::STOP;
-use crate::progress::RowsBar;
+use crate::passes::{self, Colour};
 use crate::sky::tagged;
 use airlight::outdoors::FoggySky;
 use airlight::sky::monte_carlo::{BUNDLE, MonteCarlo, MonteCarloSettings};
@@ -21,9 +21,6 @@ use glam::DVec3;
 use rayon::prelude::*;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
-
-/// Bundles of the first pass: two are the fewest that have a spread.
-const FIRST_PASS: u64 = 2;
 
 /// What follows the paths of a picture.
 pub struct Painter<'a> {
@@ -39,11 +36,10 @@ pub struct Painter<'a> {
     goal: u64,
 }
 
-/// Sums over the bundles of paths of a pixel, and of their squares.
+/// A pixel.
 #[derive(Clone, Copy, Default)]
-struct Colour {
-    sum: [f64; 3],
-    square: [f64; 3],
+struct Pixel {
+    colour: Colour,
     /// What is taken off the mean.
     drawn: [f64; 3],
     /// Factor for what of the line lies under the ground.
@@ -96,7 +92,7 @@ impl<'a> Painter<'a> {
             sky: sky.clone(),
             radiance_scale: f64::from(*radiance_scale),
             air: *air,
-            goal: settings.paths.div_ceil(BUNDLE as u64).max(FIRST_PASS),
+            goal: passes::goal(&settings),
         })
     }
 
@@ -113,16 +109,11 @@ impl<'a> Painter<'a> {
     ) -> Result<(Written, String), CliError> {
         let size = subject.picture.size;
         let (width, height) = (size.width() as usize, size.height());
-        let mut colours = vec![Colour::default(); width * height as usize];
+        let mut colours = vec![Pixel::default(); width * height as usize];
         let mut done = 0;
         loop {
-            let until = (2 * done).clamp(FIRST_PASS, self.goal);
-            let bar = RowsBar::new(u64::from(height));
-            bar.say(format!(
-                "{} of {} paths a pixel",
-                until * BUNDLE as u64,
-                self.goal * BUNDLE as u64
-            ));
+            let until = passes::next(done, self.goal);
+            let bar = passes::bar(u64::from(height), until, self.goal);
             let overlay = subject.overlay(fogged, args)?;
             colours
                 .par_chunks_mut(width)
@@ -138,16 +129,16 @@ impl<'a> Painter<'a> {
                     Ok(())
                 })?;
             done = until;
-            let of = |value: &dyn Fn(&Colour, usize) -> f64| -> Vec<f32> {
+            let of = |value: &dyn Fn(&Pixel, usize) -> f64| -> Vec<f32> {
                 let pixels = colours.iter();
                 pixels
                     .flat_map(|colour| [0, 1, 2].map(|lane| value(colour, lane) as f32))
                     .collect()
             };
-            let means = of(&|colour, lane| colour.mean(lane, done));
+            let means = of(&|pixel, lane| pixel.mean(lane, done));
             let overlay = overlay.with_path_radiance(&means)?;
             let written = subject.write_overlay(&overlay, args, &args.output, format)?;
-            let errors = of(&|colour, lane| colour.standard_error(lane, done));
+            let errors = of(&|pixel, lane| pixel.standard_error(lane, done));
             if args.random.noise_map {
                 let path = tagged(&args.output, "noise").with_extension("exr");
                 let rows = StoredRows::new(size.width(), 3, errors.clone())?;
@@ -176,13 +167,13 @@ impl<'a> Painter<'a> {
     /// Follows more bundles of paths along a line of sight of a direction and a length, m.
     fn paint(
         &self,
-        colour: &mut Colour,
+        pixel: &mut Pixel,
         (direction, distance_m): (DVec3, f64),
         bundles: std::ops::Range<u64>,
     ) {
         if bundles.start == 0 {
-            colour.drawn = self.drawn(direction, distance_m);
-            colour.further = self.further(direction, distance_m);
+            pixel.drawn = self.drawn(direction, distance_m);
+            pixel.further = self.further(direction, distance_m);
         }
         for bundle in bundles {
             let sample = self.solver.sample_path(
@@ -199,10 +190,7 @@ impl<'a> Painter<'a> {
                     *c += w * radiance;
                 }
             }
-            for (lane, value) in rgb.into_iter().enumerate() {
-                colour.sum[lane] += value;
-                colour.square[lane] += value * value;
-            }
+            pixel.colour.add(rgb);
         }
     }
 
@@ -252,16 +240,13 @@ impl<'a> Painter<'a> {
     }
 }
 
-impl Colour {
+impl Pixel {
     /// Path radiance over what is drawn already.
     fn mean(&self, lane: usize, bundles: u64) -> f64 {
-        self.further[lane] * self.sum[lane] / bundles as f64 - self.drawn[lane]
+        self.further[lane] * self.colour.moments(lane, bundles).0 - self.drawn[lane]
     }
 
     fn standard_error(&self, lane: usize, bundles: u64) -> f64 {
-        let n = bundles as f64;
-        let mean = self.sum[lane] / n;
-        let variance = (self.square[lane] - n * mean * mean) / (n - 1.0);
-        self.further[lane] * (variance.max(0.0) / n).sqrt()
+        self.further[lane] * self.colour.moments(lane, bundles).1
     }
 }

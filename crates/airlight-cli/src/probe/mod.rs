@@ -10,12 +10,10 @@ mod views;
 
 use crate::args::{FormatArg, ProbeArgs};
 use crate::error::CliError;
-use crate::interrupt;
 use crate::progress::Busy;
 use crate::report;
 use crate::scene::Scene;
 use airlight::sky::monte_carlo::MonteCarlo;
-use airlight_render::output::AtomicFile;
 use values::Answer;
 
 /// Paths for each view where nothing is said.
@@ -46,8 +44,7 @@ pub fn run(args: &ProbeArgs) -> Result<(), CliError> {
     }
     let scene = Scene::new(&args.place, &args.air)?;
     if let Some(path) = &args.output {
-        let _writing = interrupt::start_writing()?;
-        AtomicFile::create(path)?;
+        report::check_writable(path)?;
     }
     let sun = scene.sun.at(None)?;
     let (sky, _) = scene.prepare(scene.near(&sun))?;

@@ -7,6 +7,7 @@ use crate::error::CliError;
 use crate::light::Illuminances;
 use airlight::axes;
 use airlight::classic::ClassicSky;
+use airlight::spectrum::rgb::DOMINANT_NM;
 use airlight::spectrum::{RgbSpace, SpectralCurve, rgb};
 use airlight_render::frame::FrameRows;
 use airlight_render::{Frame, RowSource};
@@ -84,13 +85,12 @@ impl Shed {
     /// The light (XYZ, cd/m^2) of a ground that reflects it evenly. Its albedo is taken at the wavelengths that the sRGB
     /// primaries look like: exact for grey ground.
     pub fn ground_xyz(&self, albedo: &SpectralCurve) -> [f64; 3] {
-        const PRIMARIES_NM: [f64; 3] = [611.0, 549.0, 464.0];
         let horizontal = plus(
             self.sky_horizontal,
             self.sun_normal.map(|v| v * self.sin_sun),
         );
         let rgb = RgbSpace::Srgb.from_xyz(horizontal);
-        let reflected = [0, 1, 2].map(|i| albedo.at(PRIMARIES_NM[i]) * rgb[i] / PI);
+        let reflected = [0, 1, 2].map(|i| albedo.at(DOMINANT_NM[i]) * rgb[i] / PI);
         rgb::apply(&RgbSpace::Srgb.to_xyz_matrix(), reflected)
     }
 }

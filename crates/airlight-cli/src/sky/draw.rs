@@ -1,7 +1,7 @@
 //! One moment into files.
 
 use super::channels::{Channels, RgbWeights};
-use super::classic::{ClassicRows, Shed};
+use super::classic::{self, ClassicRows, Shed};
 use super::disc::Disc;
 use super::fog::Fog;
 use super::layout::{Layout, PictureFile};
@@ -20,7 +20,7 @@ use airlight::sky::{Sky, SkyTable, SunCoverage};
 use airlight_render::output::exr::{ExrCompression, ExrOptions, ExrSample};
 use airlight_render::output::jpeg::JpegOptions;
 use airlight_render::output::png::{PngDepth, PngOptions};
-use airlight_render::output::{AtomicFile, Written, spectral};
+use airlight_render::output::{Written, spectral};
 use airlight_render::tone::{ToneCurve, ToneMapper};
 use airlight_render::{Control, Frame, PictureFormat, PictureOptions, RowSource, write_picture};
 use glam::DVec3;
@@ -38,6 +38,47 @@ pub struct Drawing<'a> {
     pub layout: &'a Layout,
     /// Values of a pixel.
     pub channels: &'a Channels,
+}
+
+/// What the options come to: what a [`Drawing`] borrows.
+pub struct Setup {
+    /// Air, eye and sun.
+    pub scene: Scene,
+    /// The sun at the start.
+    pub first: Sun,
+    layout: Layout,
+    channels: Channels,
+}
+
+impl Setup {
+    /// Puts the options together.
+    ///
+    /// # Errors
+    /// [`CliError`] where they do not fit together or a file cannot be read.
+    pub fn new(args: &SkyArgs) -> Result<Self, CliError> {
+        let scene = Scene::new(&args.place, &args.air)?;
+        args.air.monte_carlo(monte_carlo::PATHS)?;
+        classic::check(args)?;
+        let first = scene.sun.at(None)?;
+        let layout = Layout::new(args, &first)?;
+        let channels = Channels::new(&args.picture, layout.is_spectral(), &scene)?;
+        Ok(Self {
+            scene,
+            first,
+            layout,
+            channels,
+        })
+    }
+
+    /// What is drawn and how.
+    pub fn drawing<'a>(&'a self, args: &'a SkyArgs) -> Drawing<'a> {
+        Drawing {
+            args,
+            scene: &self.scene,
+            layout: &self.layout,
+            channels: &self.channels,
+        }
+    }
 }
 
 /// What is made ready once for all moments.
@@ -194,8 +235,7 @@ impl Drawing<'_> {
             .map(|path| self.layout.files(path))
             .unwrap_or_default()
         {
-            let _writing = crate::interrupt::start_writing()?;
-            AtomicFile::create(&file.path)?;
+            report::check_writable(&file.path)?;
         }
         Ok(())
     }

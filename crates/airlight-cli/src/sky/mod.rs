@@ -31,13 +31,11 @@ use crate::interrupt;
 use crate::light::Illuminances;
 use crate::progress::RowsBar;
 use crate::report::{self, bytes, seconds, short};
-use crate::scene::{Scene, Sun};
-use channels::Channels;
+use crate::scene::Sun;
 pub use channels::{space_name, space_of};
-use draw::{Drawing, Prepared, Shot};
+use draw::{Drawing, Prepared, Setup, Shot};
 pub use exposure::curve as tone_curve;
 pub use facts::SOFTWARE;
-use layout::Layout;
 pub use layout::tagged;
 use std::fmt::Write;
 use std::time::Instant;
@@ -50,21 +48,12 @@ pub use still::Still;
 pub fn run(args: &SkyArgs) -> Result<(), CliError> {
     crate::scene::use_threads(args.air.threads)?;
     let preview = preview::wanted(args)?;
-    let scene = Scene::new(&args.place, &args.air)?;
+    let setup = Setup::new(args)?;
     monte_carlo::check(args)?;
-    classic::check(args)?;
-    let first = scene.sun.at(None)?;
-    let layout = Layout::new(args, &first)?;
-    let channels = Channels::new(&args.picture, layout.is_spectral(), &scene)?;
-    let drawing = Drawing {
-        args,
-        scene: &scene,
-        layout: &layout,
-        channels: &channels,
-    };
+    let drawing = setup.drawing(args);
     match &args.sequence.until {
         Some(until) => sequence::run(&drawing, until, preview),
-        None => single(&drawing, &first, preview),
+        None => single(&drawing, &setup.first, preview),
     }
 }
 

@@ -9,9 +9,10 @@ use super::rows::Layer;
 use crate::args::{ScatteringArg, SkyArgs, SolverArg};
 use crate::error::CliError;
 use crate::interrupt::STOP;
+use crate::passes::{self, Colour};
 use crate::progress::RowsBar;
 use crate::report;
-use airlight::sky::monte_carlo::{BUNDLE, MonteCarlo, MonteCarloSettings, ORDERS};
+use airlight::sky::monte_carlo::{MonteCarlo, MonteCarloSettings, ORDERS};
 use airlight_render::output::Written;
 use airlight_render::rows::StoredRows;
 use airlight_render::tone::ToneMapper;
@@ -22,8 +23,6 @@ use std::sync::atomic::Ordering;
 
 /// Paths for each pixel where nothing is said.
 pub const PATHS: u64 = 256;
-/// Bundles of the first pass: two are the fewest that have a spread.
-const FIRST_PASS: u64 = 2;
 
 /// Refuses options that do not go together.
 ///
@@ -63,13 +62,6 @@ struct Canvas {
     /// Where asked for; else empty.
     stokes: Vec<PixelStokes>,
     bundles: u64,
-}
-
-/// Sums of red, green and blue, and of their squares.
-#[derive(Clone, Copy, Default)]
-struct Colour {
-    sum: [f64; 3],
-    square: [f64; 3],
 }
 
 /// What follows the paths of a picture.
@@ -113,20 +105,15 @@ pub fn write(
                 .then(|| Canvas::new(file.frame, channels, painter.polarised))
         })
         .collect();
-    let goal = settings.paths.div_ceil(BUNDLE as u64).max(FIRST_PASS);
+    let goal = passes::goal(&settings);
     let mut done = 0;
     loop {
-        let until = (2 * done).clamp(FIRST_PASS, goal);
+        let until = passes::next(done, goal);
         let rows: u64 = files
             .iter()
             .map(|file| u64::from(file.frame.size().height()))
             .sum();
-        let pass = RowsBar::new(rows);
-        pass.say(format!(
-            "{} of {} paths a pixel",
-            until * BUNDLE as u64,
-            goal * BUNDLE as u64
-        ));
+        let pass = passes::bar(rows, until, goal);
         let mut written = Vec::with_capacity(files.len());
         for (file, canvas) in files.iter().zip(&mut canvases) {
             if let Some(canvas) = canvas {
@@ -164,8 +151,7 @@ pub fn means(
     let mut canvas = Canvas::new(frame, 3, false);
     let bar = RowsBar::new(u64::from(frame.size().height()));
     bar.say("following random paths".to_owned());
-    let bundles = settings.paths.div_ceil(BUNDLE as u64).max(FIRST_PASS);
-    painter.paint(&mut canvas, bundles, &bar)?;
+    painter.paint(&mut canvas, passes::goal(&settings), &bar)?;
     Ok(canvas.means())
 }
 
@@ -191,7 +177,7 @@ fn say_noise<'a>(drawing: &Drawing<'_>, canvases: impl Iterator<Item = &'a Canva
     let (mut sum, mut count) = (0.0, 0.0);
     for canvas in canvases {
         for colour in &canvas.colours {
-            let (mean, error) = canvas.moments(colour, 1);
+            let (mean, error) = colour.moments(1, canvas.bundles);
             if mean > 0.0 {
                 sum += (error / mean).powi(2);
                 count += 1.0;
@@ -225,14 +211,6 @@ impl Canvas {
         self.sums.iter().map(|sum| (sum / count) as f32).collect()
     }
 
-    /// Mean and standard error of a component of a colour.
-    fn moments(&self, colour: &Colour, component: usize) -> (f64, f64) {
-        let n = self.bundles as f64;
-        let mean = colour.sum[component] / n;
-        let variance = (colour.square[component] - n * mean * mean) / (n - 1.0);
-        (mean, (variance.max(0.0) / n).sqrt())
-    }
-
     fn write_noise(
         &self,
         drawing: &Drawing<'_>,
@@ -242,7 +220,8 @@ impl Canvas {
     ) -> Result<(), CliError> {
         let size = self.frame.size();
         let scale = drawing.args.picture.scale as f32;
-        let error = |colour, component| scale * self.moments(colour, component).1 as f32;
+        let error =
+            |colour: &Colour, component| scale * colour.moments(component, self.bundles).1 as f32;
         let samples = self
             .colours
             .iter()
@@ -340,10 +319,7 @@ impl<'a> Painter<'a> {
         if !self.spectral {
             sums.iter_mut().zip(rgb).for_each(|(sum, c)| *sum += c);
         }
-        for (component, value) in rgb.into_iter().enumerate() {
-            colour.sum[component] += value;
-            colour.square[component] += value * value;
-        }
+        colour.add(rgb);
     }
 }
 

@@ -1,13 +1,11 @@
 //! A picture in memory instead of in a file.
 
-use super::channels::Channels;
-use super::draw::{Drawing, Prepared, Shot, stored};
-use super::layout::Layout;
-use super::{classic, exposure, monte_carlo};
+use super::draw::{Prepared, Setup, Shot, stored};
+use super::{exposure, monte_carlo};
 use crate::args::{ProjectionArg, SkyArgs};
 use crate::error::CliError;
 use crate::light::Illuminances;
-use crate::scene::{Scene, Sun};
+use crate::scene::Sun;
 use airlight::spectrum::RgbSpace;
 use airlight_render::Frame;
 use airlight_render::tone::ToneMapper;
@@ -43,29 +41,20 @@ impl Still {
             ));
         }
         let start = Instant::now();
-        let scene = Scene::new(&args.place, &args.air)?;
-        let settings = args.air.monte_carlo(monte_carlo::PATHS)?;
-        classic::check(args)?;
-        let sun = scene.sun.at(None)?;
-        let layout = Layout::new(args, &sun)?;
-        let channels = Channels::new(&args.picture, layout.is_spectral(), &scene)?;
-        let drawing = Drawing {
-            args,
-            scene: &scene,
-            layout: &layout,
-            channels: &channels,
-        };
+        let setup = Setup::new(args)?;
+        let drawing = setup.drawing(args);
+        let (sun, scene, layout) = (setup.first, drawing.scene, drawing.layout);
         let (prepared, _) = Prepared::new(&drawing, scene.near(&sun))?;
         let shot = Shot::new(&drawing, &prepared, &sun, scene.sun.start())?;
         let frame = layout.only_frame();
-        let solved = match settings {
+        let solved = match args.air.monte_carlo(monte_carlo::PATHS)? {
             Some(settings) => Some(monte_carlo::means(&drawing, &shot, frame, settings)?),
             None => None,
         };
         let rows = drawing.rows(&shot, &frame, (layout.main_layer(), 1.0), solved.as_deref());
         Ok(Self {
             frame,
-            space: channels.space,
+            space: drawing.channels.space,
             rgb: stored(rows.as_ref(), &frame),
             sun,
             light: shot.light,
