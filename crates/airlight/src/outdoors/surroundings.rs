@@ -1,0 +1,118 @@
+//! Light from all around on surfaces of any slant.
+
+use crate::axes;
+use crate::spectrum::Spectrum;
+use glam::DVec3;
+use rayon::prelude::*;
+use std::f64::consts::{PI, TAU};
+
+/// Normals tabulated from the nadir to the zenith, and round.
+const ROWS: usize = 25;
+const COLUMNS: usize = 36;
+/// Bands of equal solid angle that radiance is taken in, and directions in each.
+const BANDS: usize = 64;
+const AROUND: usize = 128;
+
+/// The irradiance that everything around a place but the sun's disc sheds on surfaces there, by their normal.
+///
+/// A table of 25 by 36 normals, bilinear. Between normals it is within 1 % of the sum over all directions, and that sum
+/// within 0.5 % of the irradiance where radiance is smooth over 3 degrees (tests); the glow of fog within a degree of the sun is
+/// not resolved.
+#[derive(Clone, Debug)]
+pub struct Surroundings<const N: usize> {
+    /// `[row][column]`, W m^-2 nm^-1 (or the unit of the radiance times sr).
+    irradiance: Vec<Spectrum<N>>,
+}
+
+impl<const N: usize> Surroundings<N> {
+    /// Sums the radiance that arrives from each direction (unit vectors away from the place).
+    pub fn of(radiance: impl Fn(DVec3) -> Spectrum<N> + Sync) -> Self {
+        let directions = directions();
+        let arriving: Vec<Spectrum<N>> = directions.par_iter().map(|d| radiance(*d)).collect();
+        let weight = (4.0 * PI / directions.len() as f64) as f32;
+        let on = |normal: DVec3| {
+            let sum =
+                directions
+                    .iter()
+                    .zip(&arriving)
+                    .fold(Spectrum::ZERO, |sum, (direction, light)| {
+                        sum.scale_acc(*light, direction.dot(normal).max(0.0) as f32)
+                    });
+            sum * weight
+        };
+        let irradiance = (0..ROWS * COLUMNS)
+            .into_par_iter()
+            .map(|i| {
+                let elevation_deg = 180.0 * (i / COLUMNS) as f64 / (ROWS - 1) as f64 - 90.0;
+                let azimuth_deg = 360.0 * (i % COLUMNS) as f64 / COLUMNS as f64;
+                on(axes::direction(azimuth_deg, elevation_deg))
+            })
+            .collect();
+        Self { irradiance }
+    }
+
+    /// Irradiance of a surface with this unit normal.
+    pub fn irradiance(&self, normal: DVec3) -> Spectrum<N> {
+        let row = (axes::elevation_deg(normal) + 90.0) / 180.0 * (ROWS - 1) as f64;
+        let column = axes::azimuth_deg(normal) / 360.0 * COLUMNS as f64;
+        let (above, left) = ((row as usize).min(ROWS - 2), column as usize % COLUMNS);
+        let (down, right) = ((row - above as f64) as f32, column.fract() as f32);
+        let at = |row: usize, column: usize| self.irradiance[row * COLUMNS + column % COLUMNS];
+        let line = |row| at(row, left) * (1.0 - right) + at(row, left + 1) * right;
+        line(above) * (1.0 - down) + line(above + 1) * down
+    }
+}
+
+/// Directions of equal solid angle all over the sphere; each band is turned against its neighbours.
+fn directions() -> Vec<DVec3> {
+    let golden = 0.5 * (5f64.sqrt() - 1.0);
+    let one = |i: usize| {
+        let (band, place) = (i / AROUND, i % AROUND);
+        let up = 2.0 * (band as f64 + 0.5) / BANDS as f64 - 1.0;
+        let (sin, cos) =
+            (TAU * ((place as f64 + 0.5) / AROUND as f64 + golden * band as f64)).sin_cos();
+        let level = (1.0 - up * up).sqrt();
+        DVec3::new(level * sin, up, -level * cos)
+    };
+    (0..BANDS * AROUND).map(one).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn normals() -> impl Iterator<Item = DVec3> {
+        (0..200).map(|i| axes::direction(137.5 * f64::from(i), 0.9 * f64::from(i) - 89.5))
+    }
+
+    #[test]
+    fn even_light_sheds_pi_times_its_radiance_on_every_surface() {
+        let even = Surroundings::of(|_| Spectrum([2.0f32]));
+        for normal in normals() {
+            let ratio = f64::from(even.irradiance(normal)[0]) / (2.0 * PI);
+            assert!((ratio - 1.0).abs() < 2e-3, "{normal}: {ratio}");
+        }
+    }
+
+    #[test]
+    fn a_bright_sky_over_black_ground_falls_off_with_the_slant() {
+        let sky = Surroundings::of(|d| Spectrum([if d.y > 0.0 { 1.0f32 } else { 0.0 }]));
+        for normal in normals() {
+            let exact = 0.5 * PI * (1.0 + normal.y);
+            let got = f64::from(sky.irradiance(normal)[0]);
+            assert!((got - exact).abs() < 0.01 * PI, "{normal}: {got} {exact}");
+        }
+    }
+
+    #[test]
+    fn a_bright_side_lights_what_faces_it() {
+        // Radiance 1 + s . d, with the exact irradiance pi + 2 pi / 3 s . n.
+        let side = axes::direction(60.0, 20.0);
+        let sky = Surroundings::of(|d| Spectrum([(1.0 + side.dot(d)) as f32]));
+        for normal in normals() {
+            let exact = PI + 2.0 * PI / 3.0 * side.dot(normal);
+            let got = f64::from(sky.irradiance(normal)[0]);
+            assert!((got / exact - 1.0).abs() < 0.01, "{normal}: {got} {exact}");
+        }
+    }
+}
