@@ -4,7 +4,6 @@ use super::shape::Shape;
 use super::surface::{Checker, Gloss, Surface};
 use super::{Object, Objects};
 use airlight::spectrum::SpectralCurve;
-use airlight::spectrum::rgb::DOMINANT_NM;
 use glam::DVec3;
 use serde::Deserialize;
 
@@ -296,19 +295,65 @@ impl Reading<'_> {
         }
         match given {
             Reflectance::Grey(value) => Ok(SpectralCurve::Constant(*value)),
-            Reflectance::Rgb([r, g, b]) => {
-                let [red, green, blue] = DOMINANT_NM;
-                Ok(
-                    SpectralCurve::table(vec![blue, green, red], vec![*b, *g, *r])
-                        .expect("the wavelengths of red, green and blue fall"),
-                )
-            }
+            Reflectance::Rgb(rgb) => Ok(of_rgb(*rgb)),
             Reflectance::Spectrum {
                 wavelengths_nm,
                 values,
             } => SpectralCurve::table(wavelengths_nm.clone(), values.clone()).map_err(|error| {
                 self.wrong("reflectance", "wavelengths_nm with as many values", error)
             }),
+        }
+    }
+}
+
+/// Blue up to 480 nm, green from 500 to 580, red from 600 on: the reflectance that turns sunlight into a linear sRGB colour, from
+/// 0 to 1 for every such colour. (Of steps at multiples of 5 nm, these are the only ones for which it stays there.)
+fn of_rgb(rgb: [f64; 3]) -> SpectralCurve {
+    // The inverse of what the three bands under the sun outside the air look like, over the sun.
+    const BANDS: [[f64; 3]; 3] = [
+        [0.995_718, 0.002_690, 0.001_592],
+        [0.009_911, 0.959_431, 0.030_658],
+        [0.021_212, 0.039_191, 0.939_597],
+    ];
+    let band = |k: usize| (0..3).map(|c| BANDS[k][c] * rgb[c]).sum::<f64>();
+    let (red, green, blue) = (band(0), band(1), band(2));
+    SpectralCurve::table(
+        vec![480.0, 500.0, 580.0, 600.0],
+        vec![blue, green, green, red],
+    )
+    .expect("four wavelengths rise")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use airlight::spectrum::{RgbSpace, WavelengthGrid};
+
+    #[test]
+    fn colours_come_out_as_they_are_given() {
+        let grid = WavelengthGrid::one_nanometre();
+        let seen = |curve: &SpectralCurve| {
+            let pairs = grid.wavelengths_nm().iter().zip(grid.solar_irradiance());
+            let light: Vec<f32> = pairs
+                .map(|(nm, sun)| (sun * curve.at(*nm)) as f32)
+                .collect();
+            RgbSpace::Srgb.from_xyz(grid.to_xyz(&light))
+        };
+        let white = seen(&SpectralCurve::Constant(1.0));
+        for number in 0..27 {
+            let part = |k: u32| f64::from(number / 3u32.pow(k) % 3) / 2.0;
+            let rgb = [part(0), part(1), part(2)];
+            let curve = of_rgb(rgb);
+            for nm in [400.0, 490.0, 540.0, 590.0, 650.0] {
+                assert!((-1e-6..=1.0 + 1e-6).contains(&curve.at(nm)), "{rgb:?} {nm}");
+            }
+            let got = seen(&curve);
+            for c in 0..3 {
+                assert!(
+                    (got[c] / white[c] - rgb[c]).abs() < 2e-3,
+                    "{rgb:?}: {got:?} {white:?}"
+                );
+            }
         }
     }
 }

@@ -10,7 +10,7 @@ pub mod shape;
 pub mod surface;
 
 use glam::DVec3;
-use shape::Shape;
+use shape::{Met, Shape};
 use surface::Surface;
 
 /// A straight line from a point.
@@ -61,12 +61,18 @@ const OFF: f64 = 1e-7;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Objects {
     objects: Vec<Object>,
+    /// A ball about each: its middle, and its radius squared.
+    balls: Vec<(DVec3, f64)>,
 }
 
 impl Objects {
     /// Takes checked things.
     pub fn new(objects: Vec<Object>) -> Self {
-        Self { objects }
+        let balls = objects.iter().map(|object| object.shape.ball());
+        Self {
+            balls: balls.map(|(middle, r)| (middle, r * r)).collect(),
+            objects,
+        }
     }
 
     /// All of them.
@@ -82,9 +88,8 @@ impl Objects {
 
     /// The first thing that a ray meets.
     pub fn hit(&self, ray: &Ray) -> Option<Hit<'_>> {
-        let (index, met) = (0..)
-            .zip(&self.objects)
-            .filter_map(|(index, object)| Some((index, object.shape.meet(ray)?)))
+        let (index, met) = self
+            .met(ray)
             .min_by(|(_, a), (_, b)| a.distance_m.total_cmp(&b.distance_m))?;
         let facing = met.normal.dot(ray.direction) <= 0.0;
         Some(Hit {
@@ -103,9 +108,20 @@ impl Objects {
             origin: hit.point + off_m * hit.normal,
             direction: to_light,
         };
-        self.objects
-            .iter()
-            .any(|object| object.shape.meet(&ray).is_some())
+        self.met(&ray).next().is_some()
+    }
+
+    /// All things that a ray meets.
+    fn met<'s>(&'s self, ray: &'s Ray) -> impl Iterator<Item = (usize, Met)> + 's {
+        let near = |(middle, squared): &(DVec3, f64)| {
+            let to = middle - ray.origin;
+            let along = to.dot(ray.direction);
+            to.length_squared() - along * along <= *squared
+        };
+        (0..)
+            .zip(self.objects.iter().zip(&self.balls))
+            .filter(move |(_, (_, ball))| near(ball))
+            .filter_map(|(index, (object, _))| Some((index, object.shape.meet(ray)?)))
     }
 }
 

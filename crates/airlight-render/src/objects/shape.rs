@@ -60,6 +60,28 @@ impl Shape {
         }
     }
 
+    /// The middle and the radius of a ball about it, m; of ground, an endless one.
+    pub fn ball(&self) -> (DVec3, f64) {
+        match *self {
+            Self::Ground { .. } => (DVec3::ZERO, f64::INFINITY),
+            Self::Sphere { centre, radius_m } => (centre, radius_m),
+            Self::Block { base, half_m, .. } => {
+                let half_height_m = 0.5 * half_m.y;
+                let radius_m = half_m.with_y(half_height_m).length();
+                (base + half_height_m * DVec3::Y, radius_m)
+            }
+            Self::Frustum {
+                base,
+                radius_m,
+                top_radius_m,
+                height_m,
+            } => {
+                let middle = base + 0.5 * height_m * DVec3::Y;
+                (middle, (0.5 * height_m).hypot(radius_m.max(top_radius_m)))
+            }
+        }
+    }
+
     /// The nearest point of its surface on a ray.
     pub fn meet(&self, ray: &Ray) -> Option<Met> {
         match *self {

@@ -84,6 +84,7 @@ fn rays() -> impl Iterator<Item = Ray> {
 fn rays_meet_solids_where_a_march_does() {
     for shape in shapes() {
         let mut met = 0;
+        let (middle, radius_m) = shape.ball();
         for ray in rays() {
             let steps = (1..6000).map(|i| 0.005 * f64::from(i));
             let marched = steps.clone().find(|t| inside(&shape, ray.at(*t)));
@@ -101,6 +102,7 @@ fn rays_meet_solids_where_a_march_does() {
                     );
                     // The normal points out.
                     let p = ray.at(hit.distance_m);
+                    assert!(p.distance(middle) < radius_m + 1e-9, "{shape:?} {p}");
                     assert!(!inside(&shape, p + 1e-4 * n), "{shape:?} {p} {n}");
                 }
                 (None, None) => {}

@@ -93,9 +93,7 @@ impl<'a> Things<'a> {
                     Fog::Rgb(sky) => Some(sky.as_ref()),
                     Fog::Spectral(_) => None,
                 }),
-                reflectances: reflectances(objects, |curve| {
-                    in_rgb(curve, view.sky().grid(), channels.space)
-                }),
+                reflectances: reflectances(objects, |curve| in_rgb(curve, channels.space)),
                 shadows,
             }),
             Fog::Spectral(pieces) => {
@@ -148,11 +146,11 @@ impl<'a> Things<'a> {
                     ground: in_space(space, ground),
                     space,
                 };
-                let around = vec![(0.0, Surroundings::of(|d| air.around(d)))];
+                let around = vec![(0.0, Surroundings::of(air.sun(), |d| air.around(d)))];
                 Box::new(Lit {
                     air: Box::new(air),
                     around,
-                    reflectances: reflectances(objects, |curve| in_rgb(curve, &scene.grid, space)),
+                    reflectances: reflectances(objects, |curve| in_rgb(curve, space)),
                     shadows,
                 })
             }
@@ -185,7 +183,7 @@ where
     near.iter()
         .filter_map(|(height_m, fog)| {
             let sky = of(fog)?;
-            Some((*height_m, Surroundings::of(|d| sky.sky(d))))
+            Some((*height_m, Surroundings::of(sky.sun(), |d| sky.sky(d))))
         })
         .collect()
 }
@@ -201,7 +199,10 @@ fn of_1987<'a>(
         .into_iter()
         .map(|height_m| {
             let there = scene.at_height_m(height_m);
-            (height_m, Surroundings::of(|d| there.around(d)))
+            (
+                height_m,
+                Surroundings::of(Outdoors::sun(&there), |d| there.around(d)),
+            )
         })
         .collect();
     Lit {

@@ -51,39 +51,26 @@ impl<'a> ObjectRows<'a> {
     /// Puts what of a pixel is covered over what is there.
     fn cover(&self, (i, j): (u32, u32), pixel: &mut [f32], scratch: &mut Scratch) {
         let across = self.frame.pixel_solid_angle(i, j).sqrt();
-        let mut met = 0;
-        scratch.sum.fill(0.0);
+        let mut sights = Vec::new();
         for k in 0..SUBPIXELS * SUBPIXELS {
             let at = |n: u32, k: u32| f64::from(n) + (f64::from(k) + 0.5) / f64::from(SUBPIXELS);
             let place = (at(i, k % SUBPIXELS), at(j, k / SUBPIXELS));
             let Some(direction) = self.frame.direction(place.0, place.1) else {
                 continue;
             };
-            let Some(sight) = self.things.look(direction, across / f64::from(SUBPIXELS)) else {
-                continue;
-            };
-            met += 1;
-            if self.draws_things {
-                let things = self.things;
-                things
-                    .paint
-                    .paint(&things.objects, &sight, &mut scratch.values);
-                for (sum, value) in scratch.sum.iter_mut().zip(&scratch.values) {
-                    *sum += value;
-                }
-            }
+            sights.extend(self.things.look(direction, across / f64::from(SUBPIXELS)));
         }
-        if met == 0 {
+        if sights.is_empty() {
             return;
         }
         let all = (SUBPIXELS * SUBPIXELS) as f32;
-        let open = 1.0 - met as f32 / all;
-        put(
-            &scratch.sum,
-            self.spectral,
-            self.scale / all,
-            &mut scratch.pixel,
-        );
+        let open = 1.0 - sights.len() as f32 / all;
+        if self.draws_things {
+            let things = self.things;
+            let sum = &mut scratch.sum;
+            things.paint.paint(&things.objects, &sights, sum);
+            put(sum, self.spectral, self.scale / all, &mut scratch.pixel);
+        }
         for (value, covered) in pixel.iter_mut().zip(&scratch.pixel) {
             *value = open * *value + covered;
         }
@@ -92,9 +79,7 @@ impl<'a> ObjectRows<'a> {
 
 /// Room for the values of a pixel.
 struct Scratch {
-    /// Of a line of sight, in the channels of a table.
-    values: Vec<f32>,
-    /// Over all lines of sight.
+    /// Over all lines of sight, in the channels of a table.
     sum: Vec<f32>,
     /// In the picture's channels.
     pixel: Vec<f32>,
@@ -109,7 +94,6 @@ impl RowSource for ObjectRows<'_> {
         self.sky.fill_row(y, out);
         let channels = self.spectral.map_or(3, Vec::len);
         let mut scratch = Scratch {
-            values: vec![0.0; channels],
             sum: vec![0.0; channels],
             pixel: vec![0.0; self.channels()],
         };

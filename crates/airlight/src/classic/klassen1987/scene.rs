@@ -114,7 +114,8 @@ impl Klassen1987Scene {
         };
         let level = |irradiance: Lanes| irradiance * scene.model.sin_sun as f32;
         if foggy && axes::elevation_deg(scene.model.sun) < SUNSET_DEG {
-            let sky = Surroundings::of(|d| scene.sky_alone(d)).irradiance(DVec3::Y);
+            let sky =
+                Surroundings::of(scene.model.sun, |d| scene.sky_alone(d)).irradiance(DVec3::Y);
             scene.evening = Some((level(scene.slab.irradiance_at_top()) + sky) / PI);
         }
         // The ground is lit by what is over it: itself black for that.
@@ -122,7 +123,7 @@ impl Klassen1987Scene {
             eye_height_m: 0.0,
             ..scene.clone()
         };
-        let even = Surroundings::of(|d| on_ground.around(d)).irradiance(DVec3::Y);
+        let even = Surroundings::of(scene.model.sun, |d| on_ground.around(d)).irradiance(DVec3::Y);
         scene.ground = (level(scene.sunlight(0.0)) + even) * albedo / PI;
         Ok(scene)
     }
