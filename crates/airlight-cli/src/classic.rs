@@ -1,4 +1,8 @@
-//! Published models of the sky, made from the options.
+//! Published models of the sky, made from the options; [`lit`](mod@lit): over the ground that they light.
+
+mod lit;
+
+pub use lit::{Lit, disc};
 
 use crate::args::{
     AirArgs, ClassicArgs, EffortArg, ScatteringArg, SolverArg, SunlightArg, VariantArg,
@@ -19,11 +23,16 @@ use airlight::sky::SkySettings;
 use std::fmt::Display;
 use std::sync::Arc;
 
-/// The model asked for, under a sun.
+/// The model asked for, under a sun and over the scene's ground.
 ///
 /// # Errors
 /// [`CliError::Usage`] for what the model refuses.
-pub fn model(
+pub fn lit(air: &AirArgs, args: &ClassicArgs, scene: &Scene, sun: &Sun) -> Result<Lit, CliError> {
+    let model = model(air, args, scene, sun)?;
+    Ok(Lit::new(model, &scene.atmosphere.planet.ground_albedo))
+}
+
+fn model(
     air: &AirArgs,
     args: &ClassicArgs,
     scene: &Scene,
@@ -52,7 +61,7 @@ pub fn model(
                 settings.multiple = None;
             }
             let sky = Hillaire2020::with_settings(
-                &scene.atmosphere,
+                &at_sun_distance(&scene.atmosphere, sun),
                 &scene.grid,
                 eye_altitude_m,
                 direction,
@@ -69,7 +78,8 @@ pub fn model(
                 }
             };
             let eye_and_sun = (eye_altitude_m, direction);
-            let sky = FourOrders::new(&scene.atmosphere, &scene.grid, eye_and_sun, 4, &settings);
+            let atmosphere = at_sun_distance(&scene.atmosphere, sun);
+            let sky = FourOrders::new(&atmosphere, &scene.grid, eye_and_sun, 4, &settings);
             Arc::new(sky.map_err(refused_by("bruneton2008"))?)
         }
         SolverArg::Orders | SolverArg::MonteCarlo => {
@@ -94,15 +104,21 @@ fn klassen(args: &ClassicArgs, scene: &Scene, sun: &Sun) -> Result<Klassen1987Se
         bits_per_channel: BITS,
         ..Klassen1987Settings::of(&scene.atmosphere)
     };
-    let air = &mut settings.clear_air;
-    let ratio = sun.distance_ratio;
-    air.solar_irradiance = air.solar_irradiance.clone().scaled(1.0 / (ratio * ratio));
-    air.sun.angular_radius_rad = (air.sun.angular_radius_rad.sin() / ratio).asin();
+    settings.clear_air = at_sun_distance(&settings.clear_air, sun);
     if args.variant == Some(VariantArg::Printed) {
         settings = settings.printed();
     }
     args.klassen.apply(&mut settings);
     Ok(settings)
+}
+
+/// The air of a planet as far from the sun as it is: irradiance falls by the square, the disc shrinks.
+fn at_sun_distance(air: &Atmosphere, sun: &Sun) -> Atmosphere {
+    let mut air = air.clone();
+    let ratio = sun.distance_ratio;
+    air.solar_irradiance = air.solar_irradiance.scaled(1.0 / (ratio * ratio));
+    air.sun.angular_radius_rad = (air.sun.angular_radius_rad.sin() / ratio).asin();
+    air
 }
 
 /// What a model says of numbers that it refuses.

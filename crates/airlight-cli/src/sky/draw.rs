@@ -1,13 +1,14 @@
 //! One moment into files.
 
 use super::channels::{Channels, RgbWeights};
-use super::classic::{self, ClassicRows, Shed};
+use super::classic::{self, ClassicRows};
 use super::disc::Disc;
 use super::fog::Fog;
 use super::layout::{Layout, PictureFile};
 use super::rows::{Layer, SkyRows};
 use super::{exposure, facts, monte_carlo};
 use crate::args::{CompressionArg, PrecisionArg, SkyArgs, SunDiscArg};
+use crate::classic::Lit;
 use crate::error::CliError;
 use crate::interrupt::STOP;
 use crate::light::Illuminances;
@@ -15,7 +16,6 @@ use crate::moment::Moment;
 use crate::progress::RowsBar;
 use crate::report;
 use crate::scene::{Scene, Sun};
-use airlight::classic::ClassicSky;
 use airlight::sky::{Sky, SkyTable, SunCoverage};
 use airlight_render::output::exr::{ExrCompression, ExrOptions, ExrSample};
 use airlight_render::output::jpeg::JpegOptions;
@@ -58,9 +58,9 @@ impl Setup {
     pub fn new(args: &SkyArgs) -> Result<Self, CliError> {
         let scene = Scene::new(&args.place, &args.air)?;
         args.air.monte_carlo(monte_carlo::PATHS)?;
-        classic::check(args)?;
         let first = scene.sun.at(None)?;
         let layout = Layout::new(args, &first)?;
+        classic::check(args, layout.is_spectral())?;
         let channels = Channels::new(&args.picture, layout.is_spectral(), &scene)?;
         Ok(Self {
             scene,
@@ -124,11 +124,7 @@ enum Source<'a> {
         fog: Option<Fog<'a>>,
     },
     /// A published model.
-    Classic {
-        model: Arc<dyn ClassicSky>,
-        /// The ground that it lights, XYZ.
-        ground: [f64; 3],
-    },
+    Classic(Box<Lit>),
 }
 
 impl<'a> Shot<'a> {
@@ -190,20 +186,21 @@ impl<'a> Shot<'a> {
     }
 
     fn classic(drawing: &Drawing<'_>, sun: &Sun, time: Option<Moment>) -> Result<Self, CliError> {
-        let model =
-            crate::classic::model(&drawing.args.air, &drawing.args.classic, drawing.scene, sun)?;
+        let args = drawing.args;
+        let lit = crate::classic::lit(&args.air, &args.classic, drawing.scene, sun)?;
         let channels = drawing.channels;
-        let shed = Shed::of(model.as_ref());
-        let ground = shed.ground_xyz(&drawing.scene.atmosphere.planet.ground_albedo);
-        let disc = match drawing.args.picture.sun_disc {
+        let disc = match args.picture.sun_disc {
             SunDiscArg::Out => None,
-            _ => Disc::of_classic(model.clone(), channels.space.from_xyz_matrix()),
+            _ => {
+                let to_rgb = channels.space.from_xyz_matrix();
+                Disc::of_classic(lit.model.clone(), to_rgb, channels.spectral.is_some())
+            }
         };
         Ok(Self {
             sun: *sun,
             time,
-            light: shed.illuminances(),
-            source: Source::Classic { model, ground },
+            light: lit.illuminances(),
+            source: Source::Classic(Box::new(lit)),
             disc,
             weights: channels.rgb_weights(&drawing.scene.grid),
         })
@@ -218,7 +215,7 @@ impl<'a> Shot<'a> {
     pub fn is_below_horizon(&self, direction: DVec3) -> bool {
         let horizon_rad = match &self.source {
             Source::Solved { table, .. } => table.horizon_elevation_rad(),
-            Source::Classic { .. } => 0.0,
+            Source::Classic(_) => 0.0,
         };
         direction.y.clamp(-1.0, 1.0).asin() < horizon_rad
     }
@@ -257,15 +254,11 @@ impl Drawing<'_> {
                 let rows = SkyRows::new(frame, layer, sky, disc, spectral, sun, scale);
                 Box::new(rows.with_solved(solved))
             }
-            Source::Classic { model, ground } => {
-                let space = self.channels.space;
+            Source::Classic(lit) => {
+                let (spectral, space) = (self.layout.is_spectral(), self.channels.space);
+                let light = (lit.as_ref(), disc);
                 Box::new(ClassicRows::new(
-                    frame,
-                    layer,
-                    (model.as_ref(), *ground),
-                    disc,
-                    space,
-                    scale,
+                    frame, layer, light, spectral, space, scale,
                 ))
             }
         }
