@@ -1,7 +1,12 @@
-//! Published models of the sky, made from the options.
+//! Published models of the sky, made from the options; [`lit`](mod@lit): over the ground that they light.
+
+mod lit;
+
+pub use lit::{Light, Lit, disc};
 
 use crate::args::{
-    ClassicArgs, EffortArg, FogArgs, ScatteringArg, SkyArgs, SolverArg, SunlightArg, VariantArg,
+    AirArgs, ClassicArgs, EffortArg, FogArgs, ScatteringArg, SkyArgs, SolverArg, SunlightArg,
+    VariantArg,
 };
 use crate::error::CliError;
 use crate::scene::{Scene, Sun};
@@ -21,35 +26,39 @@ use airlight::sky::SkySettings;
 use std::fmt::Display;
 use std::sync::Arc;
 
-/// A published model under a sun.
-pub struct Model {
-    /// Its sky, with the fog before it that it knows.
-    pub sky: Arc<dyn ClassicSky>,
-    /// The same with what it takes to light things, of the model of 1987 where there are fog or things.
-    pub scene1987: Option<Arc<Klassen1987Scene>>,
-}
-
-/// The model asked for, under a sun.
+/// The model asked for, under a sun and over the scene's ground.
 ///
 /// # Errors
 /// [`CliError::Usage`] for what the model refuses.
-pub fn model(args: &SkyArgs, scene: &Scene, sun: &Sun) -> Result<Model, CliError> {
-    let whole = args.fog.fog_visibility_m.is_some() || args.things.objects.is_some();
-    if args.air.solver == SolverArg::Klassen1987 && whole {
-        let scene1987 = Arc::new(scene_of_1987(args, scene, sun)?);
-        return Ok(Model {
-            sky: scene1987.clone(),
-            scene1987: Some(scene1987),
-        });
-    }
-    Ok(Model {
-        sky: sky(args, scene, sun)?,
-        scene1987: None,
-    })
+pub fn lit(air: &AirArgs, args: &ClassicArgs, scene: &Scene, sun: &Sun) -> Result<Lit, CliError> {
+    let model = model(air, args, scene, sun)?;
+    Ok(Lit::new(model, &scene.atmosphere.planet.ground_albedo))
 }
 
-fn sky(args: &SkyArgs, scene: &Scene, sun: &Sun) -> Result<Arc<dyn ClassicSky>, CliError> {
-    let (air, args) = (&args.air, &args.classic);
+/// The same for a picture. Where that has fog or things before the sky of 1987, with what it takes to light them.
+///
+/// # Errors
+/// [`CliError::Usage`] for what the model refuses.
+pub fn lit_in_picture(
+    args: &SkyArgs,
+    scene: &Scene,
+    sun: &Sun,
+) -> Result<(Lit, Option<Arc<Klassen1987Scene>>), CliError> {
+    let whole = args.fog.fog_visibility_m.is_some() || args.things.objects.is_some();
+    if args.air.solver != SolverArg::Klassen1987 || !whole {
+        return Ok((lit(&args.air, &args.classic, scene, sun)?, None));
+    }
+    let scene1987 = Arc::new(scene_of_1987(args, scene, sun)?);
+    let albedo = &scene.atmosphere.planet.ground_albedo;
+    Ok((Lit::new(scene1987.clone(), albedo), Some(scene1987)))
+}
+
+fn model(
+    air: &AirArgs,
+    args: &ClassicArgs,
+    scene: &Scene,
+    sun: &Sun,
+) -> Result<Arc<dyn ClassicSky>, CliError> {
     let direction = sun.direction();
     let eye_altitude_m = scene.eye_altitude_m;
     Ok(match air.solver {
@@ -78,7 +87,7 @@ fn sky(args: &SkyArgs, scene: &Scene, sun: &Sun) -> Result<Arc<dyn ClassicSky>, 
                 settings.multiple = None;
             }
             let sky = Hillaire2020::with_settings(
-                &scene.atmosphere,
+                &at_sun_distance(&scene.atmosphere, sun),
                 &scene.grid,
                 eye_altitude_m,
                 direction,
@@ -95,7 +104,8 @@ fn sky(args: &SkyArgs, scene: &Scene, sun: &Sun) -> Result<Arc<dyn ClassicSky>, 
                 }
             };
             let eye_and_sun = (eye_altitude_m, direction);
-            let sky = FourOrders::new(&scene.atmosphere, &scene.grid, eye_and_sun, 4, &settings);
+            let atmosphere = at_sun_distance(&scene.atmosphere, sun);
+            let sky = FourOrders::new(&atmosphere, &scene.grid, eye_and_sun, 4, &settings);
             Arc::new(sky.map_err(refused_by("bruneton2008"))?)
         }
         SolverArg::Orders | SolverArg::MonteCarlo => {
@@ -151,15 +161,21 @@ fn klassen(args: &ClassicArgs, scene: &Scene, sun: &Sun) -> Klassen1987Settings 
         bits_per_channel: BITS,
         ..Klassen1987Settings::of(&scene.atmosphere)
     };
-    let air = &mut settings.clear_air;
-    let ratio = sun.distance_ratio;
-    air.solar_irradiance = air.solar_irradiance.clone().scaled(1.0 / (ratio * ratio));
-    air.sun.angular_radius_rad = (air.sun.angular_radius_rad.sin() / ratio).asin();
+    settings.clear_air = at_sun_distance(&settings.clear_air, sun);
     if args.variant == Some(VariantArg::Printed) {
         settings = settings.printed();
     }
     args.klassen.apply(&mut settings);
     settings
+}
+
+/// The air of a planet as far from the sun as it is: irradiance falls by the square, the disc shrinks.
+fn at_sun_distance(air: &Atmosphere, sun: &Sun) -> Atmosphere {
+    let mut air = air.clone();
+    let ratio = sun.distance_ratio;
+    air.solar_irradiance = air.solar_irradiance.scaled(1.0 / (ratio * ratio));
+    air.sun.angular_radius_rad = (air.sun.angular_radius_rad.sin() / ratio).asin();
+    air
 }
 
 /// What a model says of numbers that it refuses.

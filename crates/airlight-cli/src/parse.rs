@@ -31,6 +31,13 @@ pub struct PixelSize {
     pub height: u32,
 }
 
+/// A value of a list as it is written on the command line.
+pub fn name(value: &impl clap::ValueEnum) -> String {
+    value
+        .to_possible_value()
+        .map_or_else(String::new, |value| value.get_name().to_owned())
+}
+
 /// A finite number.
 pub fn number(text: &str) -> Result<f64, String> {
     within(text, "a number", f64::is_finite)

@@ -1,12 +1,13 @@
 //! What is looked at, from where, under which sun: from options to a prepared sky.
 
-use crate::args::{AirArgs, EffortArg, PlaceArgs, ScatteringArg};
+use crate::args::{AirArgs, EffortArg, PlaceArgs, ScatteringArg, SolverArg};
 use crate::atmosphere;
 use crate::error::CliError;
 use crate::moment::Moment;
 use crate::parse::LatLon;
 use crate::progress::Busy;
 use airlight::axes;
+use airlight::classic::klassen1987;
 use airlight::light::ephemeris::{Place, RefractingAir, sun_position};
 use airlight::medium::Atmosphere;
 use airlight::sky::{Scattering, Sky, SkySettings, SunCoverage, View};
@@ -120,8 +121,13 @@ impl Scene {
         let sun = sun_source(place, &atmosphere, eye_altitude_m)?;
         // Told at once where the time is out of range.
         sun.at(None)?;
-        let grid = WavelengthGrid::by_name(&air.wavelengths)
+        let asked = WavelengthGrid::by_name(&air.wavelengths)
             .map_err(|error| CliError::usage(format!("--wavelengths: {error}")))?;
+        let grid = match air.solver {
+            // It has its own.
+            SolverArg::Klassen1987 => klassen1987::wavelength_grid(),
+            _ => asked,
+        };
         let scattering = match air.scattering {
             ScatteringArg::All => Scattering::All,
             ScatteringArg::Single => Scattering::Single,

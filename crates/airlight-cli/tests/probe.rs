@@ -196,3 +196,165 @@ fn extremes_are_answered_with_numbers() {
         );
     }
 }
+
+#[test]
+fn the_sky_article_is_told_as_it_was_printed() {
+    let folder = Folder::new();
+    // Its constants, its eye height of 1 m; colours are all that it knows.
+    let words = "--solver single-scattering --variant printed --sun-elevation 45 --eye-height-m 1 --view 180,45";
+    let answer = json(&folder, words);
+    assert_eq!(answer["solver"], "single-scattering");
+    assert_eq!(answer["variant"], "printed");
+    assert_eq!(answer["scattering"], "single");
+    assert!(answer["atmosphere"].is_null());
+    let view = &answer["views"][0];
+    for (told, printed) in list(view, "rgb_cd_m2").iter().zip([3652.0, 4655.0, 7169.0]) {
+        assert!((told - printed).abs() < 1.0, "{told} {printed}");
+    }
+    assert_eq!(list(&answer, "wavelengths_nm"), [0.0; 0]);
+    assert_eq!(list(view, "radiance_w_m2_sr_nm"), [0.0; 0]);
+    assert!(view["transmittance"].is_null() && view["radiance_single_w_m2_sr_nm"].is_null());
+    assert!(number(&answer["sun"], "illuminance_normal_lx") > 1e5);
+    let converged = json(&folder, &words.replace("printed", "corrected"));
+    for (told, right) in list(&converged["views"][0], "rgb_cd_m2")
+        .iter()
+        .zip([10878.0, 11659.0, 13903.0])
+    {
+        assert!((told / right - 1.0).abs() < 1e-3, "{told} {right}");
+    }
+    let table = succeed(&folder, &format!("probe {words}"));
+    assert!(table.contains("single-scattering, printed; it knows colours, and no spectra"));
+    let csv = succeed(&folder, &format!("probe --format csv {words}"));
+    let lines: Vec<Vec<&str>> = csv.lines().map(|line| line.split(',').collect()).collect();
+    assert_eq!(lines.len(), 2);
+    assert_eq!(lines[0].len(), lines[1].len());
+    assert!(lines[0].ends_with(&["solver", "variant"]));
+    assert!(lines[1].ends_with(&["single-scattering", "printed"]));
+}
+
+#[test]
+fn spectra_of_1987_make_its_colours_and_its_light() {
+    let folder = Folder::new();
+    let words = "--solver klassen1987 --sun-elevation 30 --view 180,10 --view 0,60 --view 90,-20";
+    let answer = json(&folder, words);
+    let nm = list(&answer, "wavelengths_nm");
+    assert_eq!((nm.len(), nm[0], nm[32]), (33, 380.0, 700.0));
+    let grid = airlight::classic::klassen1987::wavelength_grid();
+    let colour = |spectrum: Vec<f64>| {
+        let lanes: Vec<f32> = spectrum.iter().map(|&v| v as f32).collect();
+        grid.to_xyz(&lanes)
+    };
+    for view in answer["views"].as_array().unwrap() {
+        let told = list(view, "xyz_cd_m2");
+        for (a, b) in colour(list(view, "radiance_w_m2_sr_nm")).iter().zip(told) {
+            assert!((a / b - 1.0).abs() < 1e-6, "{a} {b}");
+        }
+    }
+    assert_eq!(answer["views"][2]["meets_ground"], true);
+    let (sun, sky) = (&answer["sun"], &answer["sky"]);
+    for (value, irradiance, illuminance) in [
+        (sun, "irradiance_normal_w_m2_nm", "illuminance_normal_lx"),
+        (
+            sun,
+            "irradiance_horizontal_w_m2_nm",
+            "illuminance_horizontal_lx",
+        ),
+        (
+            sky,
+            "irradiance_horizontal_w_m2_nm",
+            "illuminance_horizontal_lx",
+        ),
+    ] {
+        let lx = colour(list(value, irradiance))[1];
+        assert!((lx / number(value, illuminance) - 1.0).abs() < 1e-6);
+    }
+    let outside = list(sun, "irradiance_outside_w_m2_nm");
+    let here = list(sun, "irradiance_normal_w_m2_nm");
+    assert!(here.iter().zip(outside).all(|(e, o)| *e > 0.0 && *e < o));
+}
+
+#[test]
+fn models_with_lines_tell_their_parts() {
+    let folder = Folder::new();
+    for solver in ["hillaire2020", "bruneton2008"] {
+        let words = format!(
+            "--solver {solver} --wavelengths rgb --sun-elevation 30 --view 180,2 --view 0,-30 --view 90,1"
+        );
+        let whole = json(&folder, &words);
+        for view in whole["views"].as_array().unwrap() {
+            let parts = ["single", "multiple", "ground"]
+                .map(|part| list(view, &format!("radiance_{part}_w_m2_sr_nm")));
+            for (lane, all) in list(view, "radiance_w_m2_sr_nm").into_iter().enumerate() {
+                let sum: f64 = parts.iter().map(|part| part[lane]).sum();
+                assert!((all / sum - 1.0).abs() < 1e-5);
+            }
+        }
+        assert_eq!(whole["views"][1]["meets_ground"], true);
+        // The air before a thing: less than all of it, and it lets through more.
+        let near = json(&folder, &format!("{words} --distance-m 20e3"));
+        let (near, far) = (&near["views"][2], &whole["views"][2]);
+        let lists = |key| list(near, key).into_iter().zip(list(far, key));
+        assert!(lists("radiance_w_m2_sr_nm").all(|(n, f)| n > 0.0 && n < f));
+        assert!(lists("transmittance").all(|(n, f)| n > f && n < 1.0));
+    }
+    // As often as asked: once.
+    let words =
+        "--solver hillaire2020 --scattering single --wavelengths rgb --sun-elevation 30 --view 0,9";
+    let once = json(&folder, words);
+    assert_eq!(once["scattering"], "single");
+    assert_eq!(
+        list(&once["views"][0], "radiance_multiple_w_m2_sr_nm"),
+        [0.0; 3]
+    );
+}
+
+#[test]
+fn the_suns_distance_dims_models_with_spectra() {
+    let folder = Folder::new();
+    let january = "--at 0,0 --when 2026-01-03T12:00:00Z --wavelengths rgb --view 0,60";
+    let ours = json(&folder, january);
+    for solver in ["klassen1987", "hillaire2020", "bruneton2008"] {
+        let answer = json(&folder, &format!("{january} --solver {solver}"));
+        let sun = &answer["sun"];
+        let outside = list(sun, "irradiance_outside_w_m2_nm");
+        let at = usize::from(solver == "klassen1987") * 6;
+        let right = list(&ours["sun"], "irradiance_outside_w_m2_nm")[0];
+        // 440 nm, of means over more or less of the spectrum.
+        assert!((outside[at] / right - 1.0).abs() < 0.05, "{solver}");
+        assert!(
+            (number(sun, "angular_radius_deg") / number(&ours["sun"], "angular_radius_deg") - 1.0)
+                .abs()
+                < 1e-9
+        );
+    }
+}
+
+#[test]
+fn models_refuse_what_they_cannot_tell() {
+    let folder = Folder::new();
+    std::fs::write(
+        folder.file("v.csv"),
+        "azimuth_deg,elevation_deg,distance_m\n10,20,\n30,1,5000\n",
+    )
+    .unwrap();
+    for (words, part) in [
+        ("klassen1987 --view 0,9 --distance-m 50", "hillaire2020"),
+        ("preetham --views v.csv", "distance_m in --views"),
+        ("preetham --variant printed --view 0,9", "one form only"),
+        ("orders --variant printed --view 0,9", "published models"),
+        ("preetham --polarisation --view 0,9", "monte-carlo"),
+        ("preetham --turbidity 1.2 --view 0,9", "from 2 to 10"),
+        (
+            "klassen1987 --altitude-m 5000 --view 0,9",
+            "from the ground",
+        ),
+    ] {
+        let output = run(
+            &folder,
+            &format!("probe --sun-elevation 20 --solver {words}"),
+        );
+        let error = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{words}: {error}");
+        assert!(error.contains(part), "{words}: {error}");
+    }
+}

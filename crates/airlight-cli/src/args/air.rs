@@ -1,6 +1,7 @@
 //! Options that say what the air is and how its light is solved for.
 
 use crate::error::CliError;
+use crate::parse::name;
 use crate::{aerosol, atmosphere, parse};
 use airlight::sky::monte_carlo::{MonteCarloSettings, SunShape};
 use clap::{Args, ValueEnum};
@@ -42,6 +43,32 @@ impl SolverArg {
     /// Whether it is a published model of the sky.
     pub fn is_classic(self) -> bool {
         !matches!(self, Self::Orders | Self::MonteCarlo)
+    }
+
+    /// Whether it finds spectra, and not colours only.
+    pub fn has_spectra(self) -> bool {
+        !matches!(
+            self,
+            Self::Preetham | Self::HosekWilkie | Self::SingleScattering
+        )
+    }
+
+    /// Whether it knows what light is scattered before a thing at a distance.
+    pub fn has_distances(self) -> bool {
+        self.has_spectra() && self != Self::Klassen1987
+    }
+
+    /// Its name on the command line.
+    pub fn name(self) -> String {
+        name(&self)
+    }
+
+    /// The names of all that something holds for.
+    pub fn names(holds: fn(Self) -> bool) -> String {
+        let all = Self::value_variants()
+            .iter()
+            .filter(|solver| holds(**solver));
+        all.map(name).collect::<Vec<_>>().join(", ")
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::{KlassenArgs, SolverArg};
 use crate::error::CliError;
-use crate::parse;
+use crate::parse::{self, name};
 use clap::{Args, ValueEnum};
 
 /// Which form of a published model.
@@ -65,6 +65,12 @@ pub struct ClassicArgs {
 }
 
 impl ClassicArgs {
+    /// The form of a solver that has several.
+    pub fn variant_of(&self, solver: SolverArg) -> Option<VariantArg> {
+        let known = VariantArg::of(solver);
+        (!known.is_empty()).then(|| self.variant.unwrap_or(VariantArg::Corrected))
+    }
+
     /// Refuses options that the solver asked for does not know.
     ///
     /// # Errors
@@ -108,13 +114,6 @@ impl ClassicArgs {
         }
         Ok(())
     }
-}
-
-/// A value as it is written on the command line.
-fn name(value: &impl ValueEnum) -> String {
-    value
-        .to_possible_value()
-        .map_or_else(String::new, |value| value.get_name().to_owned())
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Options of `airlight probe`.
 
-use super::{AirArgs, ColorSpaceArg, PlaceArgs};
+use super::{AirArgs, ClassicArgs, ColorSpaceArg, PlaceArgs};
 use crate::parse::{self, AzEl};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -48,6 +48,8 @@ pub struct ProbeArgs {
     pub place: PlaceArgs,
     #[command(flatten)]
     pub air: AirArgs,
+    #[command(flatten)]
+    pub classic: ClassicArgs,
 }
 
 const EXAMPLES: &str = "\
@@ -64,5 +66,8 @@ Examples:
     airlight probe --sun-elevation 20 --view 90,1 --distance-m 20e3 --visibility-m 40e3 --solver monte-carlo
   How much of the sky's light is polarised a right angle from the sun, and in which plane:
     airlight probe --sun-elevation 20 --view 0,70 --solver monte-carlo --polarisation
+  What a shader and a model of 1987 say of that sky (the first in colours only, the second at wavelengths of its own):
+    airlight probe --sun-elevation 20 --view 0,70 --solver single-scattering --variant printed
+    airlight probe --sun-elevation 20 --view 0,70 --solver klassen1987
   Illuminance of sun and sky alone:
     airlight probe --sun-elevation 5 --format json";

@@ -1,4 +1,5 @@
-//! A probe's answer as CSV: a line for each view and wavelength, each of which stands by itself.
+//! A probe's answer as CSV: a line for each view and wavelength, each of which stands by itself. Of a model without spectra, a line
+//! for each view.
 
 use super::values::{Answer, ViewLight};
 use std::fmt::Write;
@@ -17,6 +18,9 @@ const MONTE_CARLO_HEADER: &str =
 const POLARISATION_HEADER: &str = ",stokes_i_w_m2_sr_nm,stokes_q_w_m2_sr_nm,stokes_u_w_m2_sr_nm,degree_of_polarisation,\
     degree_standard_error,angle_of_polarisation_deg,angle_standard_error_deg";
 
+/// Columns after all others where a published model answers.
+const MODEL_HEADER: &str = ",solver,variant";
+
 /// The whole text.
 pub fn text(answer: &Answer) -> String {
     let mut text = HEADER.to_owned();
@@ -30,18 +34,34 @@ pub fn text(answer: &Answer) -> String {
     if answer.views.iter().any(polarised) {
         text.push_str(POLARISATION_HEADER);
     }
+    let model = match answer.is_of_model {
+        true => {
+            text.push_str(MODEL_HEADER);
+            let variant = answer.variant.as_deref().unwrap_or_default();
+            format!(",{},{variant}", answer.solver)
+        }
+        false => String::new(),
+    };
     text.push('\n');
     for (number, view) in (1..).zip(&answer.views) {
-        for lane in 0..answer.wavelengths_nm.len() {
+        for lane in 0..answer.wavelengths_nm.len().max(1) {
             line(&mut text, answer, number, view, lane);
+            text.push_str(&model);
+            text.push('\n');
         }
     }
     text
 }
 
+/// The value of a wavelength; empty where there is none.
+fn at<T: ToString>(values: &[T], lane: usize) -> String {
+    values.get(lane).map_or(String::new(), T::to_string)
+}
+
 fn line(text: &mut String, answer: &Answer, number: usize, view: &ViewLight, lane: usize) {
     let (sun, sky) = (&answer.sun, &answer.sky);
     let distance = view.distance_m.map_or(String::new(), |m| m.to_string());
+    let part = |values: &Option<Vec<f32>>| at(values.as_deref().unwrap_or_default(), lane);
     let [x, y, z] = view.xyz_cd_m2;
     let [r, g, b] = view.rgb_cd_m2;
     // Writing to a string cannot fail.
@@ -52,16 +72,16 @@ fn line(text: &mut String, answer: &Answer, number: usize, view: &ViewLight, lan
         view.elevation_deg,
         view.meets_ground,
         view.sun_angle_deg,
-        answer.wavelengths_nm[lane]
+        at(&answer.wavelengths_nm, lane)
     );
     let _ = write!(
         text,
         "{},{},{},{},{},{},{x},{y},{z},{r},{g},{b},",
-        view.radiance_w_m2_sr_nm[lane],
-        view.radiance_single_w_m2_sr_nm[lane],
-        view.radiance_multiple_w_m2_sr_nm[lane],
-        view.radiance_ground_w_m2_sr_nm[lane],
-        view.transmittance[lane],
+        at(&view.radiance_w_m2_sr_nm, lane),
+        part(&view.radiance_single_w_m2_sr_nm),
+        part(&view.radiance_multiple_w_m2_sr_nm),
+        part(&view.radiance_ground_w_m2_sr_nm),
+        part(&view.transmittance),
         view.luminance_cd_m2
     );
     let _ = write!(
@@ -69,10 +89,10 @@ fn line(text: &mut String, answer: &Answer, number: usize, view: &ViewLight, lan
         "{},{},{},{},{},{},{},{},{}",
         sun.azimuth_deg,
         sun.elevation_deg,
-        sun.irradiance_outside_w_m2_nm[lane],
-        sun.irradiance_normal_w_m2_nm[lane],
-        sun.irradiance_horizontal_w_m2_nm[lane],
-        sky.irradiance_horizontal_w_m2_nm[lane],
+        at(&sun.irradiance_outside_w_m2_nm, lane),
+        at(&sun.irradiance_normal_w_m2_nm, lane),
+        at(&sun.irradiance_horizontal_w_m2_nm, lane),
+        at(&sky.irradiance_horizontal_w_m2_nm, lane),
         sun.illuminance_normal_lx,
         sun.illuminance_horizontal_lx,
         sky.illuminance_horizontal_lx
@@ -98,5 +118,4 @@ fn line(text: &mut String, answer: &Answer, number: usize, view: &ViewLight, lan
             }
         }
     }
-    text.push('\n');
 }

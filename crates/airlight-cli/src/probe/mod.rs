@@ -1,9 +1,11 @@
 //! `airlight probe`: the light along given directions, in numbers.
 //!
-//! [`views`] reads the directions, [`values`] holds what is told of them; [`json`], [`csv`] and [`table`] write it.
+//! [`views`] reads the directions, [`values`] holds what is told of them, [`model`] what published models tell; [`json`], [`csv`]
+//! and [`table`] write it.
 
 mod csv;
 mod json;
+mod model;
 mod table;
 mod values;
 mod views;
@@ -13,8 +15,9 @@ use crate::error::CliError;
 use crate::progress::Busy;
 use crate::report;
 use crate::scene::Scene;
-use airlight::sky::monte_carlo::MonteCarlo;
+use airlight::sky::monte_carlo::{MonteCarlo, MonteCarloSettings};
 use values::Answer;
+use views::AskedView;
 
 /// Paths for each view where nothing is said.
 const PATHS: u64 = 65_536;
@@ -37,23 +40,16 @@ pub fn run(args: &ProbeArgs) -> Result<(), CliError> {
             "--polarisation is for random paths, the other solver's light is scalar: give --solver monte-carlo as well",
         ));
     }
-    if args.air.solver.is_classic() {
-        return Err(CliError::usage(
-            "published models are for pictures: give probe --solver orders or monte-carlo",
-        ));
-    }
+    args.classic.check(args.air.solver)?;
+    model::check(args, &views)?;
     let scene = Scene::new(&args.place, &args.air)?;
     if let Some(path) = &args.output {
         report::check_writable(path)?;
     }
-    let sun = scene.sun.at(None)?;
-    let (sky, _) = scene.prepare(scene.near(&sun))?;
-    let paths = settings
-        .map(|settings| MonteCarlo::new(&scene.atmosphere, &scene.grid, settings))
-        .transpose()?;
-    let busy = Busy::with("computing");
-    let answer = Answer::new(args, &scene, (&sky, paths.as_ref()), &sun, &views);
-    drop(busy);
+    let answer = match args.air.solver.is_classic() {
+        true => model::answer(args, &scene, &views)?,
+        false => solved(args, &scene, settings, &views)?,
+    };
     let text = match args.format {
         FormatArg::Json => json::text(&answer)?,
         FormatArg::Csv => csv::text(&answer),
@@ -63,4 +59,26 @@ pub fn run(args: &ProbeArgs) -> Result<(), CliError> {
         Some(path) => report::write(path, &text),
         None => report::print(&text),
     }
+}
+
+/// What the solver answers, and random paths beside it where there are settings for them.
+fn solved(
+    args: &ProbeArgs,
+    scene: &Scene,
+    settings: Option<MonteCarloSettings>,
+    views: &[AskedView],
+) -> Result<Answer, CliError> {
+    let sun = scene.sun.at(None)?;
+    let (sky, _) = scene.prepare(scene.near(&sun))?;
+    let paths = settings
+        .map(|settings| MonteCarlo::new(&scene.atmosphere, &scene.grid, settings))
+        .transpose()?;
+    let _busy = Busy::with("computing");
+    Ok(Answer::new(
+        args,
+        scene,
+        (&sky, paths.as_ref()),
+        &sun,
+        views,
+    ))
 }

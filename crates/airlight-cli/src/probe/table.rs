@@ -18,9 +18,12 @@ fn head(answer: &Answer) -> String {
     let (observer, sun) = (&answer.observer, &answer.sun);
     let mut text = format!(
         "air           {}, eye at {} m\n",
-        answer.atmosphere,
+        answer.atmosphere.as_deref().unwrap_or("the model's own"),
         short(observer.altitude_m)
     );
+    if answer.is_of_model {
+        text.push_str(&model(answer));
+    }
     if let (Some(latitude), Some(longitude), Some(time)) = (
         observer.latitude_deg,
         observer.longitude_deg,
@@ -42,7 +45,7 @@ fn head(answer: &Answer) -> String {
         short(sun.illuminance_horizontal_lx),
         short(answer.sky.illuminance_horizontal_lx)
     );
-    if answer.views.is_empty() {
+    if answer.views.is_empty() && !answer.wavelengths_nm.is_empty() {
         let columns = [
             ("outside", &sun.irradiance_outside_w_m2_nm),
             ("sun, facing", &sun.irradiance_normal_w_m2_nm),
@@ -55,6 +58,17 @@ fn head(answer: &Answer) -> String {
     text
 }
 
+/// Which published model, and whether it has spectra.
+fn model(answer: &Answer) -> String {
+    let variant = answer.variant.as_ref();
+    let variant = variant.map_or(String::new(), |variant| format!(", {variant}"));
+    let spectra = match answer.wavelengths_nm.is_empty() {
+        true => "; it knows colours, and no spectra",
+        false => "",
+    };
+    format!("model         {}{variant}{spectra}\n", answer.solver)
+}
+
 fn one(answer: &Answer, view: &ViewLight) -> String {
     let end = match (view.distance_m, view.meets_ground) {
         (_, true) => "to the ground".to_owned(),
@@ -65,20 +79,26 @@ fn one(answer: &Answer, view: &ViewLight) -> String {
     let [x, y, z] = view.xyz_cd_m2.map(short);
     let mut text = format!(
         "azimuth {} deg, elevation {} deg, {end}, {:.3} deg from the sun\nluminance {} cd/m^2; XYZ {x} {y} {z}; {} {r} {g} \
-         {b} cd/m^2\nradiance, W m^-2 sr^-1 nm^-1\n",
+         {b} cd/m^2\n",
         view.azimuth_deg,
         view.elevation_deg,
         view.sun_angle_deg,
         short(view.luminance_cd_m2),
         answer.color_space,
     );
-    let mut columns = vec![
-        ("all", &view.radiance_w_m2_sr_nm),
+    if answer.wavelengths_nm.is_empty() {
+        return text;
+    }
+    text.push_str("radiance, W m^-2 sr^-1 nm^-1\n");
+    let mut columns = vec![("all", &view.radiance_w_m2_sr_nm)];
+    let parts = [
         ("single", &view.radiance_single_w_m2_sr_nm),
         ("multiple", &view.radiance_multiple_w_m2_sr_nm),
         ("ground", &view.radiance_ground_w_m2_sr_nm),
         ("transmittance", &view.transmittance),
     ];
+    let told = parts.into_iter();
+    columns.extend(told.filter_map(|(name, values)| Some((name, values.as_ref()?))));
     let single = |values: &[f64]| -> Vec<f32> { values.iter().map(|&v| v as f32).collect() };
     let found = view.monte_carlo.as_ref();
     let mut more = Vec::new();

@@ -12,6 +12,9 @@ use glam::DVec3;
 use rayon::prelude::*;
 use serde::Serialize;
 
+/// Name and version of the format.
+pub const FORMAT: &str = "airlight-probe/1";
+
 /// The whole answer.
 #[derive(Debug, Serialize)]
 pub struct Answer {
@@ -19,10 +22,18 @@ pub struct Answer {
     pub format: &'static str,
     /// Program and version.
     pub program: &'static str,
-    /// Name of the atmosphere.
-    pub atmosphere: String,
-    /// `all` or `single`.
-    pub scattering: &'static str,
+    /// Name of the atmosphere; none where a published model has its own.
+    pub atmosphere: Option<String>,
+    /// `all` or `single`; none where a published model has neither.
+    pub scattering: Option<&'static str>,
+    /// How light was solved for.
+    pub solver: String,
+    /// Whether that is a published model.
+    #[serde(skip)]
+    pub is_of_model: bool,
+    /// Which form of it, where it has several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub variant: Option<String>,
     /// The RGB space.
     pub color_space: &'static str,
     /// Wavelengths of every list.
@@ -101,14 +112,14 @@ pub struct ViewLight {
     pub sun_angle_deg: f64,
     /// All that arrives.
     pub radiance_w_m2_sr_nm: Vec<f32>,
-    /// Of it, light scattered once on the way.
-    pub radiance_single_w_m2_sr_nm: Vec<f32>,
+    /// Of it, light scattered once on the way. The parts are none where a published model does not tell them.
+    pub radiance_single_w_m2_sr_nm: Option<Vec<f32>>,
     /// Light scattered or reflected more than once.
-    pub radiance_multiple_w_m2_sr_nm: Vec<f32>,
+    pub radiance_multiple_w_m2_sr_nm: Option<Vec<f32>>,
     /// Light of the ground.
-    pub radiance_ground_w_m2_sr_nm: Vec<f32>,
+    pub radiance_ground_w_m2_sr_nm: Option<Vec<f32>>,
     /// Transmittance to the end of the line.
-    pub transmittance: Vec<f32>,
+    pub transmittance: Option<Vec<f32>>,
     /// CIE 1931 XYZ.
     pub xyz_cd_m2: [f64; 3],
     /// Linear red, green and blue.
@@ -175,21 +186,17 @@ impl Answer {
     ) -> Self {
         let view = scene.view(sky, sun);
         let space = space_of(args.color_space);
-        let place = scene.sun.place();
         Self {
-            format: "airlight-probe/1",
+            format: FORMAT,
             program: SOFTWARE,
-            atmosphere: scene.atmosphere.name.clone(),
-            scattering: scene.scattering_name(),
+            atmosphere: Some(scene.atmosphere.name.clone()),
+            scattering: Some(scene.scattering_name()),
+            solver: args.air.solver.name(),
+            is_of_model: false,
+            variant: None,
             color_space: space_name(space),
             wavelengths_nm: sky.grid().wavelengths_nm().to_vec(),
-            observer: Observer {
-                latitude_deg: place.map(|place| place.latitude_deg),
-                longitude_deg: place.map(|place| place.longitude_deg),
-                altitude_m: scene.eye_altitude_m,
-                ground_altitude_m: scene.atmosphere.planet.ground_altitude_m,
-                time_utc: scene.sun.start().map(|time| time.utc()),
-            },
+            observer: Observer::of(scene),
             sun: sun_light(&view, sun),
             sky: sky_light(&view),
             views: views
@@ -206,6 +213,20 @@ impl Answer {
                     }
                 })
                 .collect(),
+        }
+    }
+}
+
+impl Observer {
+    /// Of a scene.
+    pub fn of(scene: &Scene) -> Self {
+        let place = scene.sun.place();
+        Self {
+            latitude_deg: place.map(|place| place.latitude_deg),
+            longitude_deg: place.map(|place| place.longitude_deg),
+            altitude_m: scene.eye_altitude_m,
+            ground_altitude_m: scene.atmosphere.planet.ground_altitude_m,
+            time_utc: scene.sun.start().map(|time| time.utc()),
         }
     }
 }
@@ -248,10 +269,10 @@ fn view_light(view: &View<'_>, asked: &AskedView, space: RgbSpace) -> ViewLight 
         meets_ground: line.meets_ground,
         sun_angle_deg: direction.angle_between(view.sun()).to_degrees(),
         radiance_w_m2_sr_nm: radiance,
-        radiance_single_w_m2_sr_nm: line.single,
-        radiance_multiple_w_m2_sr_nm: line.multiple,
-        radiance_ground_w_m2_sr_nm: line.ground,
-        transmittance: line.transmittance,
+        radiance_single_w_m2_sr_nm: Some(line.single),
+        radiance_multiple_w_m2_sr_nm: Some(line.multiple),
+        radiance_ground_w_m2_sr_nm: Some(line.ground),
+        transmittance: Some(line.transmittance),
         xyz_cd_m2: xyz,
         rgb_cd_m2: space.from_xyz(xyz),
         luminance_cd_m2: xyz[1],

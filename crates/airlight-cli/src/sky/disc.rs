@@ -7,6 +7,7 @@
 //! angle. The sum of radiance times solid angle over all pixels is then the disc's irradiance to 0.3 %.
 
 use super::channels::RgbWeights;
+use crate::classic;
 use airlight::classic::ClassicSky;
 use airlight::sky::View;
 use airlight::spectrum::rgb;
@@ -83,13 +84,23 @@ impl Disc {
         })
     }
 
-    /// The disc of a published model, in RGB; `None` where it lies below the horizontal.
-    pub fn of_classic(model: Arc<dyn ClassicSky>, rgb_from_xyz: [[f64; 3]; 3]) -> Option<Self> {
+    /// The disc of a published model, in RGB and, where `spectral`, radiances at its wavelengths; `None` where it lies below
+    /// the horizontal.
+    pub fn of_classic(
+        model: Arc<dyn ClassicSky>,
+        rgb_from_xyz: [[f64; 3]; 3],
+        spectral: bool,
+    ) -> Option<Self> {
         let (sun, radius_rad) = (model.sun(), model.disc_edge_rad());
+        let lanes = if spectral {
+            model.wavelengths_nm().len()
+        } else {
+            0
+        };
         (elevation(sun) + radius_rad > 0.0).then(|| Self {
             sun,
             radius_rad,
-            channels: 3,
+            channels: 3 + lanes,
             horizon_rad: 0.0,
             radiance: Radiance::Classic(model, rgb_from_xyz),
         })
@@ -222,10 +233,13 @@ impl Disc {
                 table.add(elevation, mu, area, sum);
             }
             Radiance::Classic(model, rgb_from_xyz) => {
-                let rgb = rgb::apply(rgb_from_xyz, model.disc_xyz(direction));
+                let light = classic::disc(model.as_ref(), direction);
+                let rgb = rgb::apply(rgb_from_xyz, light.xyz);
+                // A picture without spectrum has channels for the first three only.
+                let values = rgb.into_iter().chain(light.spectrum);
                 sum.iter_mut()
-                    .zip(rgb)
-                    .for_each(|(sum, c)| *sum += area * c);
+                    .zip(values)
+                    .for_each(|(sum, v)| *sum += area * v);
             }
         }
     }

@@ -1,7 +1,7 @@
 //! One moment into files.
 
 use super::channels::{Channels, RgbWeights};
-use super::classic::{self, ClassicRows, Shed};
+use super::classic::{self, ClassicRows};
 use super::disc::Disc;
 use super::fog::Fog;
 use super::layout::{Layout, PictureFile};
@@ -9,6 +9,7 @@ use super::objects::{self, ObjectRows, Things};
 use super::rows::{Layer, SkyRows};
 use super::{exposure, facts, monte_carlo};
 use crate::args::{CompressionArg, PrecisionArg, SkyArgs, SunDiscArg};
+use crate::classic::Lit;
 use crate::error::CliError;
 use crate::interrupt::STOP;
 use crate::light::Illuminances;
@@ -16,7 +17,6 @@ use crate::moment::Moment;
 use crate::progress::RowsBar;
 use crate::report;
 use crate::scene::{Scene, Sun};
-use airlight::classic::ClassicSky;
 use airlight::sky::{Sky, SkyTable, SunCoverage};
 use airlight_render::objects::Objects;
 use airlight_render::output::exr::{ExrCompression, ExrOptions, ExrSample};
@@ -63,9 +63,9 @@ impl Setup {
     pub fn new(args: &SkyArgs) -> Result<Self, CliError> {
         let scene = Scene::new(&args.place, &args.air)?;
         args.air.monte_carlo(monte_carlo::PATHS)?;
-        classic::check(args)?;
         let first = scene.sun.at(None)?;
         let layout = Layout::new(args, &first)?;
+        classic::check(args, layout.is_spectral())?;
         let channels = Channels::new(&args.picture, layout.is_spectral(), &scene)?;
         Ok(Self {
             scene,
@@ -132,11 +132,7 @@ enum Source<'a> {
         fog: Option<Fog<'a>>,
     },
     /// A published model.
-    Classic {
-        model: Arc<dyn ClassicSky>,
-        /// The ground that it lights, XYZ.
-        ground: [f64; 3],
-    },
+    Classic(Arc<Lit>),
 }
 
 impl<'a> Shot<'a> {
@@ -203,36 +199,27 @@ impl<'a> Shot<'a> {
     }
 
     fn classic(drawing: &Drawing<'_>, sun: &Sun, time: Option<Moment>) -> Result<Self, CliError> {
-        let found = crate::classic::model(drawing.args, drawing.scene, sun)?;
-        let model = found.sky.clone();
+        let args = drawing.args;
+        let (lit, scene1987) = crate::classic::lit_in_picture(args, drawing.scene, sun)?;
+        let lit = Arc::new(lit);
         let channels = drawing.channels;
-        let shed = Shed::of(model.as_ref());
-        let ground = shed.ground_xyz(&drawing.scene.atmosphere.planet.ground_albedo);
-        let disc = match drawing.args.picture.sun_disc {
+        let disc = match args.picture.sun_disc {
             SunDiscArg::Out => None,
-            _ => Disc::of_classic(model.clone(), channels.space.from_xyz_matrix()),
+            _ => {
+                let to_rgb = channels.space.from_xyz_matrix();
+                Disc::of_classic(lit.model.clone(), to_rgb, channels.spectral.is_some())
+            }
         };
-        let grid = match &found.scene1987 {
-            Some(scene) => scene.model().grid(),
-            None => &drawing.scene.grid,
-        };
-        let weights = channels.rgb_weights(grid);
-        let things = drawing.objects.map(|objects| {
-            let picture = (drawing.args, channels);
-            Things::classic(
-                objects,
-                picture,
-                drawing.scene,
-                &found,
-                (ground, &shed),
-                &weights,
-            )
+        let weights = channels.rgb_weights(&drawing.scene.grid);
+        let things = drawing.objects.map(|objects| match &scene1987 {
+            Some(scene) => Things::of_1987(objects, (args, channels), scene, &weights),
+            None => Things::classic(objects, (args, channels), drawing.scene, &lit),
         });
         Ok(Self {
             sun: *sun,
             time,
-            light: shed.illuminances(),
-            source: Source::Classic { model, ground },
+            light: lit.illuminances(),
+            source: Source::Classic(lit),
             disc,
             weights,
             things,
@@ -248,7 +235,7 @@ impl<'a> Shot<'a> {
     pub fn is_below_horizon(&self, direction: DVec3) -> bool {
         let horizon_rad = match &self.source {
             Source::Solved { table, .. } => table.horizon_elevation_rad(),
-            Source::Classic { .. } => 0.0,
+            Source::Classic(_) => 0.0,
         };
         direction.y.clamp(-1.0, 1.0).asin() < horizon_rad
     }
@@ -309,15 +296,11 @@ impl Drawing<'_> {
                 let rows = SkyRows::new(frame, layer, sky, disc, spectral, sun, scale);
                 Box::new(rows.with_solved(solved))
             }
-            Source::Classic { model, ground } => {
-                let space = self.channels.space;
+            Source::Classic(lit) => {
+                let (spectral, space) = (self.layout.is_spectral(), self.channels.space);
+                let light = (lit.as_ref(), disc);
                 Box::new(ClassicRows::new(
-                    frame,
-                    layer,
-                    (model.as_ref(), *ground),
-                    disc,
-                    space,
-                    scale,
+                    frame, layer, light, spectral, space, scale,
                 ))
             }
         }

@@ -7,7 +7,7 @@
 
 use super::ClassicSky;
 use crate::medium::Atmosphere;
-use crate::sky::{Sky, SkyError, SkySettings, View};
+use crate::sky::{LineOfSight, Sky, SkyError, SkySettings, View};
 use crate::spectrum::WavelengthGrid;
 use glam::DVec3;
 
@@ -80,13 +80,22 @@ impl ClassicSky for FourOrders {
             .to_xyz(&self.view().sun_disc_radiance(direction))
     }
 
-    fn wavelengths_nm(&self) -> &[f64] {
-        self.sky.grid().wavelengths_nm()
+    fn grid(&self) -> Option<&WavelengthGrid> {
+        Some(self.sky.grid())
     }
 
     fn sky_spectrum(&self, direction: DVec3) -> Vec<f64> {
         let line = self.view().along(direction, None);
         line.radiance().into_iter().map(f64::from).collect()
+    }
+
+    fn disc_spectrum(&self, direction: DVec3) -> Vec<f64> {
+        let disc = self.view().sun_disc_radiance(direction);
+        disc.into_iter().map(f64::from).collect()
+    }
+
+    fn line(&self, direction: DVec3, limit_m: Option<f64>) -> Option<LineOfSight> {
+        Some(self.view().along(direction, limit_m))
     }
 }
 

@@ -16,6 +16,7 @@ use super::lut::{
 };
 use crate::light::SunDisc;
 use crate::medium::{Atmosphere, AtmosphereError};
+use crate::sky::LineOfSight;
 use crate::sky::ray::Ray;
 use crate::spectrum::WavelengthGrid;
 use glam::DVec3;
@@ -162,17 +163,36 @@ impl Hillaire2020 {
 
     /// Spectral radiance along a unit vector, W m^-2 sr^-1 nm^-1: the sky, or the air before the ground and the ground.
     pub fn radiance(&self, direction: DVec3) -> Vec<f32> {
+        self.along(direction, None).radiance()
+    }
+
+    /// The light along a unit vector over at most `limit_m` metres (to the ground or to space if `None`), in its parts. A
+    /// shorter line is marched in as many steps.
+    pub fn along(&self, direction: DVec3, limit_m: Option<f64>) -> LineOfSight {
         let lanes = self.air.lanes();
-        let mut sum = vec![0.0f32; lanes];
-        let ray = Ray::new(self.eye, direction, self.sun);
-        let Some((start, end, on_ground)) = self.air.stretch_m(&ray) else {
-            return sum;
+        let dark = || vec![0.0f32; lanes];
+        let mut line = LineOfSight {
+            transmittance: vec![1.0; lanes],
+            single: dark(),
+            multiple: dark(),
+            ground: dark(),
+            meets_ground: false,
         };
+        let ray = Ray::new(self.eye, direction, self.sun);
+        let limit_m = limit_m.unwrap_or(f64::INFINITY);
+        let Some((start, end, on_ground)) = self.air.stretch_m(&ray) else {
+            return line;
+        };
+        if limit_m <= start {
+            return line;
+        }
+        line.meets_ground = on_ground && end <= limit_m;
         let scattered = self.air.scattered(ray.nu);
-        let (mut sunlight, mut psi) = (vec![0.0f32; lanes], vec![0.0f32; lanes]);
-        let through = self
+        let (mut sunlight, mut psi) = (dark(), dark());
+        let stretch = (start, end.min(limit_m));
+        line.transmittance = self
             .air
-            .march(&ray, (start, end), (self.steps, STEP_POWER), |step| {
+            .march(&ray, stretch, (self.steps, STEP_POWER), |step| {
                 let here = &step.here;
                 self.air.sunlight(
                     &self.transmittance,
@@ -190,21 +210,19 @@ impl Hillaire2020 {
                         .zip(&scattered)
                         .map(|(&density, s)| density as f32 * s[lane])
                         .sum();
-                    let source = once * sunlight[lane] + step.scattering_per_m[lane] * psi[lane];
-                    sum[lane] += step.weight_m[lane] * source;
+                    let weight = step.weight_m[lane] * self.solar[lane];
+                    line.single[lane] += weight * once * sunlight[lane];
+                    line.multiple[lane] += weight * step.scattering_per_m[lane] * psi[lane];
                 }
             });
-        if on_ground {
+        if line.meets_ground {
             self.air
                 .ground_radiance(&self.transmittance, ray.advanced(end).mu_sun, &mut sunlight);
             for lane in 0..lanes {
-                sum[lane] += through[lane] * sunlight[lane];
+                line.ground[lane] = line.transmittance[lane] * sunlight[lane] * self.solar[lane];
             }
         }
-        for (sum, e) in sum.iter_mut().zip(&self.solar) {
-            *sum *= e;
-        }
-        sum
+        line
     }
 
     /// Spectral radiance of the sun's disc as it arrives along a unit vector, W m^-2 sr^-1 nm^-1.
@@ -255,16 +273,25 @@ impl ClassicSky for Hillaire2020 {
         self.grid.to_xyz(&self.disc_radiance(direction))
     }
 
-    fn wavelengths_nm(&self) -> &[f64] {
-        self.grid.wavelengths_nm()
+    fn grid(&self) -> Option<&WavelengthGrid> {
+        Some(&self.grid)
     }
 
     fn sky_spectrum(&self, direction: DVec3) -> Vec<f64> {
-        self.radiance(direction)
-            .into_iter()
-            .map(f64::from)
-            .collect()
+        f64s(self.radiance(direction))
     }
+
+    fn disc_spectrum(&self, direction: DVec3) -> Vec<f64> {
+        f64s(self.disc_radiance(direction))
+    }
+
+    fn line(&self, direction: DVec3, limit_m: Option<f64>) -> Option<LineOfSight> {
+        Some(self.along(direction, limit_m))
+    }
+}
+
+fn f64s(light: Vec<f32>) -> Vec<f64> {
+    light.into_iter().map(f64::from).collect()
 }
 
 #[cfg(test)]

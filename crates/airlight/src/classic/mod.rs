@@ -14,6 +14,8 @@ pub mod single_scattering;
 
 pub use lut::MultipleScatteringSettings;
 
+use crate::sky::LineOfSight;
+use crate::spectrum::WavelengthGrid;
 use glam::DVec3;
 
 /// A published model of the sky, ready to answer for one eye and one sun.
@@ -47,13 +49,30 @@ pub trait ClassicSky: Send + Sync {
         Box::new(|direction| self.sky_xyz(direction))
     }
 
-    /// Wavelengths (nm) of the model's spectra; none for models that know colours only.
-    fn wavelengths_nm(&self) -> &[f64] {
-        &[]
+    /// Wavelengths of the model's spectra, with the sun that lights them; none for models that know colours only.
+    fn grid(&self) -> Option<&WavelengthGrid> {
+        None
     }
 
-    /// Spectral radiance of the sky (W m^-2 sr^-1 nm^-1) along a direction, at [`Self::wavelengths_nm`].
+    /// The same in nm; empty for models that know colours only.
+    fn wavelengths_nm(&self) -> &[f64] {
+        self.grid().map_or(&[], WavelengthGrid::wavelengths_nm)
+    }
+
+    /// Spectral radiance of the sky (W m^-2 sr^-1 nm^-1) along a direction, at [`Self::wavelengths_nm`]: that whose colour is
+    /// [`Self::sky_xyz`].
     fn sky_spectrum(&self, _direction: DVec3) -> Vec<f64> {
         Vec::new()
+    }
+
+    /// The same of the sun's disc, [`Self::disc_xyz`].
+    fn disc_spectrum(&self, _direction: DVec3) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// The light along a direction over at most `limit_m` metres (to the ground or to space if `None`) in its parts, at
+    /// [`Self::wavelengths_nm`]; `None` for models that do not say where on the line it is scattered, nor how often.
+    fn line(&self, _direction: DVec3, _limit_m: Option<f64>) -> Option<LineOfSight> {
+        None
     }
 }

@@ -36,7 +36,7 @@ pub trait Paint: Sync {
 }
 
 /// Things in the light of one solver, in N lanes.
-pub struct Lit<'a, const N: usize> {
+pub struct LitThings<'a, const N: usize> {
     /// Sun, and what lies between eye and things.
     pub air: Box<dyn Outdoors<N> + 'a>,
     /// Light from around at heights (m), rising: one or more.
@@ -47,7 +47,7 @@ pub struct Lit<'a, const N: usize> {
     pub shadows: bool,
 }
 
-impl<const N: usize> Lit<'_, N> {
+impl<const N: usize> LitThings<'_, N> {
     /// The sum of radiances along lines of sight that meet things. The air is reckoned once for those that end side by side.
     fn radiance(&self, objects: &Objects, sights: &[Sight<'_>]) -> Spectrum<N> {
         sights
@@ -131,14 +131,14 @@ impl<const N: usize> Lit<'_, N> {
     }
 }
 
-impl Paint for Lit<'_, 3> {
+impl Paint for LitThings<'_, 3> {
     fn paint(&self, objects: &Objects, sights: &[Sight<'_>], values: &mut [f32]) {
         values.copy_from_slice(&self.radiance(objects, sights).0);
     }
 }
 
 /// Wavelength after wavelength, so many in a piece; lanes beyond the last repeat it.
-pub struct Pieces<'a, const N: usize>(pub Vec<Lit<'a, N>>);
+pub struct Pieces<'a, const N: usize>(pub Vec<LitThings<'a, N>>);
 
 impl<const N: usize> Paint for Pieces<'_, N> {
     fn paint(&self, objects: &Objects, sights: &[Sight<'_>], values: &mut [f32]) {
@@ -152,7 +152,7 @@ impl<const N: usize> Paint for Pieces<'_, N> {
 /// The wavelengths of the model of 1987, in red, green and blue.
 pub struct Summed<'a> {
     /// The light.
-    pub lit: Lit<'a, WAVELENGTHS>,
+    pub lit: LitThings<'a, WAVELENGTHS>,
     /// Weights of each wavelength.
     pub weights: Vec<[f32; 3]>,
 }

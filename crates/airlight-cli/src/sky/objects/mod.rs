@@ -9,21 +9,19 @@ mod rows;
 pub use rows::{ObjectRows, write_depth};
 
 use super::channels::{Channels, RgbWeights};
-use super::classic::Shed;
 use super::fog::{Fog, PIECE};
 use crate::args::{SkyArgs, SolverArg};
-use crate::classic::Model;
+use crate::classic;
 use crate::error::CliError;
 use crate::scene::Scene;
-use airlight::classic::ClassicSky;
 use airlight::classic::klassen1987::{Klassen1987, Klassen1987Scene};
 use airlight::outdoors::{FoggySky, Outdoors, Surroundings};
 use airlight::path::PathOptics;
 use airlight::sky::View;
-use airlight::spectrum::{RgbSpace, Spectrum};
+use airlight::spectrum::Spectrum;
 use airlight_render::objects::Objects;
 use glam::DVec3;
-use lit::{Lit, Paint, Pieces, Summed, in_rgb, reflectances};
+use lit::{LitThings, Paint, Pieces, Summed, in_rgb, reflectances};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -87,7 +85,7 @@ impl<'a> Things<'a> {
             .collect::<Result<Vec<_>, CliError>>()?;
         let shadows = shadows(args);
         let paint: Box<dyn Paint + 'a> = match air {
-            Fog::Rgb(air) => Box::new(Lit {
+            Fog::Rgb(air) => Box::new(LitThings {
                 air,
                 around: around(&near, |fog| match fog {
                     Fog::Rgb(sky) => Some(sky.as_ref()),
@@ -98,7 +96,7 @@ impl<'a> Things<'a> {
             }),
             Fog::Spectral(pieces) => {
                 let nm = view.sky().grid().wavelengths_nm();
-                let lit = |(number, air): (usize, FoggySky<'a, PIECE>)| Lit::<'a, PIECE> {
+                let lit = |(number, air): (usize, FoggySky<'a, PIECE>)| LitThings::<'a, PIECE> {
                     air: Box::new(air),
                     around: around(&near, |fog| match fog {
                         Fog::Spectral(pieces) => pieces.get(number),
@@ -122,43 +120,80 @@ impl<'a> Things<'a> {
         })
     }
 
-    /// In the light of a published model.
+    /// In the light of a published model other than that of 1987.
     pub fn classic(
         objects: &Arc<Objects>,
         (args, channels): (&SkyArgs, &Channels),
         scene: &Scene,
-        model: &Model,
-        (ground, shed): ([f64; 3], &Shed),
-        weights: &RgbWeights,
+        model: &Arc<classic::Lit>,
     ) -> Self {
         let shadows = shadows(args);
-        let ground_m = scene.atmosphere.planet.ground_altitude_m;
-        let paint: Box<dyn Paint + 'a> = match &model.scene1987 {
-            Some(scene) => Box::new(Summed {
-                lit: of_1987(objects, scene, args.fog.fog_visibility_m.is_some(), shadows),
-                weights: weights.clone(),
-            }),
+        let paint: Box<dyn Paint + 'a> = match channels.spectral {
             None => {
                 let space = channels.space;
-                let air = Airless {
-                    model: model.sky.clone(),
-                    sunlight: in_space(space, shed.sun_normal()),
-                    ground: in_space(space, ground),
-                    space,
+                let lanes = move |light: &classic::Light| {
+                    Spectrum(space.from_xyz(light.xyz).map(|v| v.max(0.0) as f32))
                 };
-                let around = vec![(0.0, Surroundings::of(air.sun(), |d| air.around(d)))];
-                Box::new(Lit {
-                    air: Box::new(air),
-                    around,
-                    reflectances: reflectances(objects, |curve| in_rgb(curve, space)),
-                    shadows,
-                })
+                let reflectances = reflectances(objects, |curve| in_rgb(curve, space));
+                Box::new(airless(model, lanes, reflectances, shadows))
+            }
+            Some(_) => {
+                let nm = model.model.wavelengths_nm();
+                let piece = |number: usize| {
+                    let place =
+                        move |lane: usize, count: usize| (number * PIECE + lane).min(count - 1);
+                    let lanes = move |light: &classic::Light| -> Spectrum<PIECE> {
+                        let values = &light.spectrum;
+                        Spectrum::from_fn(|lane| values[place(lane, values.len())] as f32)
+                    };
+                    let reflectances = reflectances(objects, |curve| {
+                        Spectrum::from_fn(|lane| curve.at(nm[place(lane, nm.len())]) as f32)
+                    });
+                    airless(model, lanes, reflectances, shadows)
+                };
+                Box::new(Pieces((0..nm.len().div_ceil(PIECE)).map(piece).collect()))
             }
         };
+        let ground_m = scene.atmosphere.planet.ground_altitude_m;
         Self {
             objects: objects.clone(),
             paint,
             eye: DVec3::Y * (scene.eye_altitude_m - ground_m),
+        }
+    }
+
+    /// In the light of the model of 1987, and in its fog.
+    pub fn of_1987(
+        objects: &Arc<Objects>,
+        (args, channels): (&SkyArgs, &Channels),
+        scene: &Klassen1987Scene,
+        weights: &RgbWeights,
+    ) -> Self {
+        let around = heights_m(objects, args.fog.fog_visibility_m.is_some())
+            .into_iter()
+            .map(|height_m| {
+                let there = scene.at_height_m(height_m);
+                let sun = Outdoors::sun(&there);
+                (height_m, Surroundings::of(sun, |d| there.around(d)))
+            })
+            .collect();
+        let nm = Klassen1987::wavelengths();
+        let lit = LitThings {
+            air: Box::new(scene.clone()),
+            around,
+            reflectances: reflectances(objects, |curve| Spectrum(nm.map(|nm| curve.at(nm) as f32))),
+            shadows: shadows(args),
+        };
+        Self {
+            objects: objects.clone(),
+            paint: match channels.spectral {
+                Some(_) => Box::new(Pieces(vec![lit])),
+                None => Box::new(Summed {
+                    lit,
+                    weights: weights.clone(),
+                }),
+            },
+            eye: DVec3::Y * scene.eye_height_m(),
         }
     }
 }
@@ -188,60 +223,47 @@ where
         .collect()
 }
 
-fn of_1987<'a>(
-    objects: &Objects,
-    scene: &Klassen1987Scene,
-    foggy: bool,
+/// Things in the light of a model that says nothing of the air before them: none is drawn. `lanes` are those of its light.
+fn airless<'a, const N: usize>(
+    model: &Arc<classic::Lit>,
+    lanes: impl Fn(&classic::Light) -> Spectrum<N> + Sync + 'a,
+    reflectances: Vec<[Spectrum<N>; 2]>,
     shadows: bool,
-) -> Lit<'a, { airlight::classic::klassen1987::WAVELENGTHS }> {
-    let nm = Klassen1987::wavelengths();
-    let around = heights_m(objects, foggy)
-        .into_iter()
-        .map(|height_m| {
-            let there = scene.at_height_m(height_m);
-            (
-                height_m,
-                Surroundings::of(Outdoors::sun(&there), |d| there.around(d)),
-            )
-        })
-        .collect();
-    Lit {
-        air: Box::new(scene.clone()),
-        around,
-        reflectances: reflectances(objects, |curve| Spectrum(nm.map(|nm| curve.at(nm) as f32))),
+) -> LitThings<'a, N> {
+    let air = Airless {
+        sunlight: lanes(&model.sun_normal),
+        model: model.clone(),
+        lanes,
+    };
+    LitThings {
+        around: vec![(0.0, Surroundings::of(air.sun(), |d| air.around(d)))],
+        air: Box::new(air),
+        reflectances,
         shadows,
     }
 }
 
-fn in_space(space: RgbSpace, xyz: [f64; 3]) -> Spectrum<3> {
-    Spectrum(space.from_xyz(xyz).map(|v| v.max(0.0) as f32))
+/// A published model without air before things.
+struct Airless<const N: usize, F> {
+    model: Arc<classic::Lit>,
+    sunlight: Spectrum<N>,
+    lanes: F,
 }
 
-/// A published model of the sky that says nothing of the air before things: none is drawn.
-struct Airless {
-    model: Arc<dyn ClassicSky>,
-    sunlight: Spectrum<3>,
-    ground: Spectrum<3>,
-    space: RgbSpace,
-}
-
-impl Outdoors<3> for Airless {
+impl<const N: usize, F: Fn(&classic::Light) -> Spectrum<N> + Sync> Outdoors<N> for Airless<N, F> {
     fn sun(&self) -> DVec3 {
-        self.model.sun()
+        self.model.model.sun()
     }
 
-    fn sunlight(&self, _height_m: f64) -> Spectrum<3> {
+    fn sunlight(&self, _height_m: f64) -> Spectrum<N> {
         self.sunlight
     }
 
-    fn before(&self, _direction: DVec3, _distance_m: f64) -> PathOptics<3> {
+    fn before(&self, _direction: DVec3, _distance_m: f64) -> PathOptics<N> {
         PathOptics::CLEAR
     }
 
-    fn around(&self, direction: DVec3) -> Spectrum<3> {
-        match direction.y < 0.0 && !self.model.has_ground() {
-            true => self.ground,
-            false => in_space(self.space, self.model.sky_xyz(direction)),
-        }
+    fn around(&self, direction: DVec3) -> Spectrum<N> {
+        (self.lanes)(&self.model.along(direction))
     }
 }

@@ -99,6 +99,35 @@ fn colours_and_spectra_agree_and_the_sun_sets() {
 }
 
 #[test]
+fn lines_end_where_they_are_told_to() {
+    let (air, grid) = (reference::earth_demo(), WavelengthGrid::rgb());
+    let sky = Hillaire2020::new(&air, &grid, 2.0, sun(20.0)).unwrap();
+    let solver = Sky::prepare(&air, &grid, &SkySettings::default()).unwrap();
+    let view = solver.view(2.0, sun(20.0));
+    let close = |a: &[f32], b: &[f32], most: f32| {
+        let worst = a.iter().zip(b).map(|(a, b)| (a / b - 1.0).abs());
+        worst.fold(0.0, f32::max) < most
+    };
+    for (elevation, limit_m) in [(1.0, 2e4), (-5.0, 10.0), (30.0, 3e3)] {
+        let direction = axes::direction(90.0, elevation);
+        let (got, right) = (
+            sky.along(direction, Some(limit_m)),
+            view.along(direction, Some(limit_m)),
+        );
+        assert!(!got.meets_ground && got.ground == [0.0; 3]);
+        assert!(close(&got.transmittance, &right.transmittance, 1e-3));
+        assert!(close(&got.single, &right.single, 5e-3));
+        let whole = sky.along(direction, None).multiple;
+        let mut parts = got.multiple.iter().zip(&whole);
+        assert!(parts.all(|(part, whole)| *part > 0.0 && part < whole));
+    }
+    // Longer than the way to the ground: the ground.
+    let down = axes::direction(90.0, -30.0);
+    let (all, far) = (sky.along(down, None), sky.along(down, Some(1e9)));
+    assert!(all.meets_ground && all == far);
+}
+
+#[test]
 fn it_can_be_looked_at_from_space() {
     let air = reference::earth_demo();
     let sky = Hillaire2020::new(&air, &WavelengthGrid::rgb(), 400e3, sun(60.0)).unwrap();

@@ -70,6 +70,12 @@ fn wavelengths_nm() -> impl Iterator<Item = f64> {
     (0..WAVELENGTHS).map(|i| FIRST_NM + 10.0 * i as f64)
 }
 
+/// Them as a grid, under the Earth's sun.
+pub fn wavelength_grid() -> WavelengthGrid {
+    WavelengthGrid::from_wavelengths_nm(wavelengths_nm().collect())
+        .expect("the model's wavelengths are in order")
+}
+
 /// `e^-depth`, the transmittance of an optical depth.
 fn exp_neg(depth: Lanes) -> Lanes {
     (depth * -1.0).exp()
@@ -110,9 +116,7 @@ impl Klassen1987 {
         if sun == DVec3::ZERO || elevation_deg < -1e-9 {
             return Err(Klassen1987Error::SunBelowHorizon(elevation_deg));
         }
-        let grid = WavelengthGrid::from_wavelengths_nm(wavelengths_nm().collect())
-            .expect("the model's wavelengths are in order")
-            .with_solar(&settings.clear_air.solar_irradiance);
+        let grid = wavelength_grid().with_solar(&settings.clear_air.solar_irradiance);
         let planet = &settings.clear_air.planet;
         let earth_m = planet.radius_m + planet.ground_altitude_m;
         let mut air_per_m = Lanes::ZERO;
@@ -221,6 +225,19 @@ impl Klassen1987 {
             + self.haze_along(sin_elevation, cos_sun, simpson)
     }
 
+    /// Radiance of the sun's disc along a direction.
+    fn disc_along(&self, direction: DVec3) -> Lanes {
+        let angle = direction.angle_between(self.sun);
+        if direction.y < 0.0 || angle >= self.disc.angular_radius_rad {
+            return Lanes::ZERO;
+        }
+        let mut radiance = self.dimmed_sun(direction.y.min(1.0));
+        for (lane, nm) in wavelengths_nm().enumerate() {
+            radiance.0[lane] *= self.disc.radiance_per_irradiance(angle, nm) as f32;
+        }
+        radiance
+    }
+
     fn xyz_along(&self, sin_elevation: f64, cos_sun: f64, simpson: &mut Simpson) -> [f64; 3] {
         to_xyz(
             &self.grid,
@@ -248,15 +265,7 @@ impl ClassicSky for Klassen1987 {
     }
 
     fn disc_xyz(&self, direction: DVec3) -> [f64; 3] {
-        let angle = direction.angle_between(self.sun);
-        if direction.y < 0.0 || angle >= self.disc.angular_radius_rad {
-            return [0.0; 3];
-        }
-        let mut radiance = self.dimmed_sun(direction.y.min(1.0));
-        for (lane, nm) in wavelengths_nm().enumerate() {
-            radiance.0[lane] *= self.disc.radiance_per_irradiance(angle, nm) as f32;
-        }
-        to_xyz(&self.grid, &radiance)
+        to_xyz(&self.grid, &self.disc_along(direction))
     }
 
     /// Within one step of a picture of [`Klassen1987Settings::bits_per_channel`] (test `coherence`), as long as
@@ -273,12 +282,16 @@ impl ClassicSky for Klassen1987 {
         })
     }
 
-    fn wavelengths_nm(&self) -> &[f64] {
-        self.grid.wavelengths_nm()
+    fn grid(&self) -> Option<&WavelengthGrid> {
+        Some(&self.grid)
     }
 
     fn sky_spectrum(&self, direction: DVec3) -> Vec<f64> {
         let (sin_elevation, cos_sun) = self.angles(direction);
         f64s(&self.radiance_along(sin_elevation, cos_sun, &mut Simpson::new(0.0)))
+    }
+
+    fn disc_spectrum(&self, direction: DVec3) -> Vec<f64> {
+        f64s(&self.disc_along(direction))
     }
 }

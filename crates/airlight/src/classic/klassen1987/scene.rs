@@ -21,7 +21,7 @@ use crate::fog::slab1987::{Slab1987, SunDepth};
 use crate::optics::{Depolarization, PhaseFunction};
 use crate::outdoors::{Outdoors, Surroundings};
 use crate::path::PathOptics;
-use crate::spectrum::Spectrum;
+use crate::spectrum::{Spectrum, WavelengthGrid};
 use glam::DVec3;
 use std::f32::consts::PI;
 use std::sync::Arc;
@@ -133,6 +133,20 @@ impl Klassen1987Scene {
         Self {
             eye_height_m,
             ..self.clone()
+        }
+    }
+
+    /// The eye's height, m.
+    pub fn eye_height_m(&self) -> f64 {
+        self.eye_height_m
+    }
+
+    /// The sun's disc, dimmed by the fog.
+    fn disc_along(&self, direction: DVec3) -> Lanes {
+        let disc = self.model.disc_along(direction);
+        match self.foggy {
+            true => self.fog_on(direction, FARTHEST_M).transmittance * disc,
+            false => disc,
         }
     }
 
@@ -269,14 +283,8 @@ impl ClassicSky for Klassen1987Scene {
         to_xyz(&self.model.grid, &self.around(direction))
     }
 
-    /// The fog dims the disc evenly: its transmittance in the middle of the visible.
     fn disc_xyz(&self, direction: DVec3) -> [f64; 3] {
-        let through = match self.foggy {
-            true => self.fog_on(direction, FARTHEST_M).transmittance,
-            false => Lanes::ONE,
-        };
-        let middle = f64::from(through[WAVELENGTHS / 2]);
-        self.model.disc_xyz(direction).map(|v| middle * v)
+        to_xyz(&self.model.grid, &self.disc_along(direction))
     }
 
     /// Within one step of a picture of the model's bits where the sky is seen without fog; with fog, as [`Self::sky_xyz`], but for integrals
@@ -295,12 +303,16 @@ impl ClassicSky for Klassen1987Scene {
         })
     }
 
-    fn wavelengths_nm(&self) -> &[f64] {
-        self.model.grid.wavelengths_nm()
+    fn grid(&self) -> Option<&WavelengthGrid> {
+        Some(&self.model.grid)
     }
 
     fn sky_spectrum(&self, direction: DVec3) -> Vec<f64> {
         super::f64s(&self.around(direction))
+    }
+
+    fn disc_spectrum(&self, direction: DVec3) -> Vec<f64> {
+        super::f64s(&self.disc_along(direction))
     }
 }
 

@@ -237,6 +237,23 @@ fn an_atmosphere_of_layers_has_those_layers() -> Outcome {
     Ok(())
 }
 
+#[test]
+fn the_discs_spectrum_makes_its_colour() -> Outcome {
+    let model = Klassen1987::new(&plain(), direction(180.0, 30.0))?;
+    let sun = model.sun();
+    let lanes: Vec<f32> = model.disc_spectrum(sun).iter().map(|&v| v as f32).collect();
+    assert_eq!(lanes.len(), WAVELENGTHS);
+    assert_eq!(model.grid().to_xyz(&lanes), model.disc_xyz(sun));
+    // At its centre the disc is brighter than its mean, which is irradiance over solid angle.
+    let solid_angle = std::f64::consts::PI * model.disc_edge_rad().sin().powi(2);
+    for (centre, irradiance) in lanes.iter().zip(model.sun_irradiance()) {
+        let ratio = f64::from(*centre) * solid_angle / irradiance;
+        assert!((1.0..2.0).contains(&ratio), "{ratio}");
+    }
+    assert_eq!(model.disc_spectrum(-sun), [0.0; WAVELENGTHS]);
+    Ok(())
+}
+
 /// A picture with coherence against one without: sRGB codes of 8 bits differ by 1 at most.
 #[test]
 fn coherence() -> Outcome {
