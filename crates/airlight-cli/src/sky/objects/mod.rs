@@ -17,7 +17,7 @@ use crate::scene::Scene;
 use airlight::classic::klassen1987::{Klassen1987, Klassen1987Scene};
 use airlight::outdoors::{FoggySky, Outdoors, Surroundings};
 use airlight::path::PathOptics;
-use airlight::sky::View;
+use airlight::sky::{SkyTable, View};
 use airlight::spectrum::Spectrum;
 use airlight_render::objects::Objects;
 use glam::DVec3;
@@ -74,23 +74,18 @@ impl<'a> Things<'a> {
         let planet = &view.sky().atmosphere().planet;
         let ground_m = planet.ground_altitude_m;
         let air = Fog::or_clear(&args.fog, view, channels.table())?;
-        let heights_m = heights_m(objects, args.fog.fog_visibility_m.is_some());
-        let near = heights_m
+        let near = heights_m(objects, args.fog.fog_visibility_m.is_some())
             .into_iter()
             .map(|height_m| {
                 let there = view.at_altitude(ground_m + height_m);
-                let air = Fog::or_clear(&args.fog, &there, channels.table())?;
-                Ok((height_m, air))
+                Ok((height_m, Seen::from(args, &there, channels)?))
             })
             .collect::<Result<Vec<_>, CliError>>()?;
         let shadows = shadows(args);
         let paint: Box<dyn Paint + 'a> = match air {
             Fog::Rgb(air) => Box::new(LitThings {
                 air,
-                around: around(&near, |fog| match fog {
-                    Fog::Rgb(sky) => Some(sky.as_ref()),
-                    Fog::Spectral(_) => None,
-                }),
+                around: around(&near, view.sun(), 0),
                 reflectances: reflectances(objects, |curve| in_rgb(curve, channels.space)),
                 shadows,
             }),
@@ -98,10 +93,7 @@ impl<'a> Things<'a> {
                 let nm = view.sky().grid().wavelengths_nm();
                 let lit = |(number, air): (usize, FoggySky<'a, PIECE>)| LitThings::<'a, PIECE> {
                     air: Box::new(air),
-                    around: around(&near, |fog| match fog {
-                        Fog::Spectral(pieces) => pieces.get(number),
-                        Fog::Rgb(_) => None,
-                    }),
+                    around: around(&near, view.sun(), number * PIECE),
                     reflectances: reflectances(objects, |curve| {
                         Spectrum::from_fn(|lane| {
                             let place = (number * PIECE + lane).min(nm.len() - 1);
@@ -207,20 +199,48 @@ fn heights_m(objects: &Objects, foggy: bool) -> Vec<f64> {
     }
 }
 
-/// The light around at heights.
-fn around<'a, 'f, const N: usize>(
-    near: &'f [(f64, Fog<'a>)],
-    of: impl Fn(&'f Fog<'a>) -> Option<&'f FoggySky<'a, N>>,
-) -> Vec<(f64, Surroundings<N>)>
-where
-    'a: 'f,
-{
-    near.iter()
-        .filter_map(|(height_m, fog)| {
-            let sky = of(fog)?;
-            Some((*height_m, Surroundings::of(sky.sun(), |d| sky.sky(d))))
+/// A sky as it is seen from a height, and the fog before it.
+struct Seen<'a> {
+    clear: Arc<SkyTable>,
+    fog: Option<Fog<'a>>,
+}
+
+impl<'a> Seen<'a> {
+    fn from(args: &SkyArgs, there: &View<'a>, channels: &Channels) -> Result<Self, CliError> {
+        let fog = Fog::new(&args.fog, there, channels.table())?;
+        Ok(Self {
+            clear: match &fog {
+                Some(fog) => fog.clear(),
+                None => Arc::new(there.table(channels.table())),
+            },
+            fog,
         })
-        .collect()
+    }
+
+    fn along(&self, direction: DVec3, values: &mut [f32]) {
+        self.clear.sample(direction, values);
+        if let Some(fog) = &self.fog {
+            fog.cover(direction, values);
+        }
+    }
+}
+
+/// The light around at heights, in lanes from the channel `first` on; lanes beyond the last repeat it.
+fn around<const N: usize>(
+    near: &[(f64, Seen<'_>)],
+    sun: DVec3,
+    first: usize,
+) -> Vec<(f64, Surroundings<N>)> {
+    let at = |(height_m, seen): &(f64, Seen<'_>)| {
+        let channels = seen.clear.channels();
+        let surroundings = Surroundings::of(sun, |direction| {
+            let mut values = vec![0.0; channels];
+            seen.along(direction, &mut values);
+            Spectrum::from_fn(|lane| values[(first + lane).min(channels - 1)])
+        });
+        (*height_m, surroundings)
+    };
+    near.iter().map(at).collect()
 }
 
 /// Things in the light of a model that says nothing of the air before them: none is drawn. `lanes` are those of its light.
