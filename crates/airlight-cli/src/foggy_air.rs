@@ -36,6 +36,11 @@ impl FogInAir {
                 SpectralCurve::Constant(0.0),
                 drops.phase(),
             ),
+            DropletKind::Isotropic => (
+                SpectralCurve::Constant(extinction),
+                SpectralCurve::Constant(0.0),
+                PhaseFunction::Isotropic,
+            ),
             DropletKind::Published(drops) => {
                 let table = drops.table(wavelengths_nm)?;
                 let number = extinction / table.green.extinction_um2();

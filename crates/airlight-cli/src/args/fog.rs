@@ -2,6 +2,7 @@
 
 use crate::parse;
 use crate::report::short;
+use airlight::fog::Scattering;
 use airlight::fog::droplets::DropletKind;
 use airlight::optics::mie::droplets::Drops;
 use clap::builder::PossibleValue;
@@ -57,6 +58,9 @@ pub fn in_words(kind: DropletKind) -> String {
         DropletKind::Analytic(droplets) => {
             format!("grey, of {} um diameter", short(droplets.diameter_um()))
         }
+        DropletKind::Isotropic => {
+            "grey, the same in all directions: no drops do so, published models do".to_owned()
+        }
         DropletKind::Published(drops) => {
             let sizes = drops.sizes();
             format!(
@@ -64,6 +68,39 @@ pub fn in_words(kind: DropletKind) -> String {
                 short(sizes.mode_radius_um()),
                 short(sizes.effective_radius_um())
             )
+        }
+    }
+}
+
+/// Which light fog scatters.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum FogScatteringArg {
+    /// Any number of times, between sky, sun and ground.
+    #[default]
+    All,
+    /// Once: sunlight after its way through the fog, ambient light as if the fog did not dim it.
+    Single,
+    /// Once, and the fog does not dim the sun: Ishiyama's height fog as printed.
+    Undimmed,
+}
+
+impl FogScatteringArg {
+    /// In the fog's words.
+    pub fn scattering(self) -> Scattering {
+        match self {
+            Self::All => Scattering::Multiple,
+            Self::Single => Scattering::Single,
+            Self::Undimmed => Scattering::Undimmed,
+        }
+    }
+
+    /// In words, where it is not all light.
+    pub fn in_words(self) -> Option<&'static str> {
+        match self {
+            Self::All => None,
+            Self::Single => Some("light scattered once"),
+            Self::Undimmed => Some("light scattered once, the sun not dimmed"),
         }
     }
 }
@@ -88,4 +125,7 @@ pub struct FogArgs {
     /// Drops that the fog consists of
     #[arg(long, value_enum, value_name = "KIND", default_value_t)]
     pub fog_droplets: DropletsArg,
+    /// Which light the fog scatters
+    #[arg(long, value_enum, value_name = "WHICH", default_value_t)]
+    pub fog_scattering: FogScatteringArg,
 }

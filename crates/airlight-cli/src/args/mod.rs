@@ -22,12 +22,14 @@ pub use accuracy::{AccuracyArgs, ReportArg};
 pub use air::{AirArgs, EffortArg, ScatteringArg, SolverArg};
 pub use classic::{ClassicArgs, SunlightArg, VariantArg};
 pub use compare::{CompareArgs, StatisticsArg};
-pub use fog::{DropletsArg, FogArgs, in_words as droplets_in_words};
+pub use fog::{DropletsArg, FogArgs, FogScatteringArg, in_words as droplets_in_words};
 pub use grid::GridArgs;
 pub use klassen::KlassenArgs;
 pub use objects::ObjectArgs;
 pub use overlay::{DepthKindArg, HolesArg, ModelArg, OverlayArgs};
-pub use overlay_light::{AirArg, LampArg, LampKind, LampPlace, LayerShape, OverlayLightArgs};
+pub use overlay_light::{
+    AirArg, LampArg, LampFormArg, LampKind, LampPlace, LayerShape, OverlayLightArgs,
+};
 pub use overlay_paths::OverlayPathsArgs;
 pub use overlay_vary::Variation;
 pub use picture::{

@@ -1,6 +1,6 @@
 //! Options of `airlight fog`.
 
-use super::fog::DropletsArg;
+use super::fog::{DropletsArg, FogScatteringArg};
 use super::overlay_batch::BatchArgs;
 use crate::parse;
 use clap::{Args, ValueEnum};
@@ -17,6 +17,8 @@ pub enum ModelArg {
     Height,
     /// The same up to --base-height-m, thinning above.
     Clamped,
+    /// Thinning from --base-height-m as clamped does, and as much thicker below it: the fog note's formula as printed.
+    Unclamped,
     /// The same up to --top-m, nothing above.
     Slab,
     /// Exponential-squared, a look.
@@ -142,10 +144,10 @@ pub struct OverlayArgs {
     /// How it thins with height
     #[arg(long, value_enum, default_value_t = ModelArg::Uniform, help_heading = "Fog")]
     pub model: ModelArg,
-    /// Height over which it thins to 1/e, m (height, clamped)
+    /// Height over which it thins to 1/e, m (height, clamped, unclamped)
     #[arg(long, value_name = "M", value_parser = parse::length_m, default_value_t = 30.0, help_heading = "Fog")]
     pub scale_height_m: f64,
-    /// Height from which on it thins, m (clamped)
+    /// Height from which on it thins, m (clamped), or where it is as thick as told (unclamped)
     #[arg(long, value_name = "M", value_parser = parse::number, default_value_t = 0.0, help_heading = "Fog")]
     pub base_height_m: f64,
     /// Height of its top, m (slab)
@@ -154,6 +156,15 @@ pub struct OverlayArgs {
     /// Drops that it consists of
     #[arg(long, value_enum, default_value_t, help_heading = "Fog")]
     pub droplets: DropletsArg,
+    /// Which light it scatters; the same in even fog (uniform), which counts as lit evenly
+    #[arg(
+        long,
+        value_enum,
+        value_name = "WHICH",
+        default_value_t,
+        help_heading = "Fog"
+    )]
+    pub scattering: FogScatteringArg,
 
     /// Colour of the light that the fog is in, linear, in the picture's units [default: estimated from the picture]
     #[arg(
@@ -197,6 +208,11 @@ Examples:
       --camera-elevation -7 --layers -o fogged.exr
   What Foggy Cityscapes would have made of it:
     airlight fog photo.png --depth depth_mm.png --depth-scale 0.001 --visibility-m 12 --model foggy-cityscapes -o fogged.png
+  Ishiyama's height fog as printed, whose sun shines through it undimmed:
+    airlight fog render.exr --visibility-m 400 --model height --sun-elevation 20 --scattering undimmed -o fogged.exr
+  A lamp as the fog note prints it, which takes light away where the lamp is passed:
+    airlight fog photo.png --depth depth_mm.png --depth-scale 0.001 --visibility-m 12 --droplets isotropic \\
+      --lamp 'pixel=120,80 distance=3 intensity=3,2.5,2' --lamp-form printed -o printed.png
   A street lamp in it, and light from the sky solver on ground fog:
     airlight fog photo.png --depth depth_mm.png --depth-scale 0.001 --visibility-m 12 --lamp 'pixel=120,80 intensity=3,2.5,2' \
       -o fogged.png

@@ -2,6 +2,7 @@
 
 use super::fog::DropletsArg;
 use crate::parse::{self, LatLon, words::Words};
+use airlight::fog::lamp::LampForm;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 
@@ -13,6 +14,33 @@ pub enum AirArg {
     Drawn,
     /// It is left out, as in many a rendered picture: it is added.
     Missing,
+}
+
+/// How the light of lamps that fog scatters is worked out.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, ValueEnum)]
+#[serde(rename_all = "kebab-case")]
+pub enum LampFormArg {
+    /// Dimmed by the fog from the lamp and to the eye, in any fog (Sun et al. 2005 in even fog).
+    #[default]
+    Exact,
+    /// Opacity of the line of sight times the mean of its source: the fog note's split sum.
+    SplitSum,
+    /// Not dimmed by the fog; the fog note's with the right angle and unit.
+    NoExtinction,
+    /// As the fog note prints it, too bright by 40, and negative where the lamp is passed.
+    Printed,
+}
+
+impl LampFormArg {
+    /// In the lamps' words.
+    pub fn form(self) -> LampForm {
+        match self {
+            Self::Exact => LampForm::Exact,
+            Self::SplitSum => LampForm::SplitSum,
+            Self::NoExtinction => LampForm::NoExtinction,
+            Self::Printed => LampForm::Printed,
+        }
+    }
 }
 
 /// Light and layers.
@@ -37,6 +65,15 @@ pub struct OverlayLightArgs {
     /// outer [default: 40] degrees off its axis.
     #[arg(long, value_name = "WORDS", value_parser = LampArg::parse, help_heading = "Light")]
     pub lamp: Vec<LampArg>,
+    /// How the light of lamps is worked out; all but exact are for --model uniform --droplets isotropic and point lamps
+    #[arg(
+        long,
+        value_enum,
+        value_name = "FORM",
+        default_value_t,
+        help_heading = "Light"
+    )]
+    pub lamp_form: LampFormArg,
 
     /// Light the fog by the sun and the sky that the solver finds for --sun-elevation, or for --at and --when
     #[arg(long, help_heading = "Light", conflicts_with = "sun_strength")]
@@ -91,6 +128,8 @@ pub enum LayerShape {
     Height { scale_height_m: f64 },
     /// The same up to a height, and exponentially above.
     Clamped { base_m: f64, scale_height_m: f64 },
+    /// Exponentially, above the height and below it.
+    Unclamped { base_m: f64, scale_height_m: f64 },
     /// The same up to a height, and nothing above.
     Slab { top_m: f64 },
 }

@@ -249,6 +249,14 @@ impl Variation {
         }
     }
 
+    /// The drops that it draws from, where it is of the drops.
+    pub fn droplets(&self) -> Option<&[DropletsArg]> {
+        match &self.draw {
+            Draw::Droplets(droplets) => Some(droplets),
+            _ => None,
+        }
+    }
+
     /// Sets the option to what `part`, from 0 to 1 (exclusive), of the way through its range or list says.
     pub fn set(&self, args: &mut OverlayArgs, part: f64) {
         match &self.draw {

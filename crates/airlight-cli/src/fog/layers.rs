@@ -40,6 +40,10 @@ pub fn in_air(args: &OverlayArgs) -> Option<Vec<FogInAir>> {
             base_m: args.base_height_m,
             scale_height_m,
         },
+        ModelArg::Unclamped => LayerShape::Unclamped {
+            base_m: args.base_height_m,
+            scale_height_m,
+        },
         ModelArg::Slab => LayerShape::Slab { top_m: args.top_m },
         ModelArg::Exp2 | ModelArg::Linear | ModelArg::FoggyCityscapes => return None,
     };
@@ -66,6 +70,13 @@ fn profile(shape: LayerShape) -> Profile {
             scale_height_m,
         } => Profile::Clamped {
             base_height_m: base_m,
+            scale_height_m,
+        },
+        LayerShape::Unclamped {
+            base_m,
+            scale_height_m,
+        } => Profile::Exponential {
+            reference_height_m: base_m,
             scale_height_m,
         },
         LayerShape::Slab { top_m } => Profile::Slab {

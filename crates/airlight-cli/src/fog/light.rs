@@ -80,6 +80,7 @@ impl SolvedSky {
 /// Where fog gets its light from: prepared once, shared by all pictures.
 pub struct LightSource<'a> {
     solved: Option<&'a SolvedSky>,
+    scattering: Scattering,
     /// The last foggy sky: another fog in it costs little, and the same one nothing.
     last: Mutex<Option<(Vec<Layer<3>>, Arc<FoggySky<'a, 3>>)>>,
 }
@@ -102,10 +103,11 @@ pub struct Shown<'p> {
 }
 
 impl<'a> LightSource<'a> {
-    /// Light of a solved sky, or of the pictures themselves.
-    pub fn new(solved: Option<&'a SolvedSky>) -> Self {
+    /// Light of a solved sky, or of the pictures themselves; fog scatters which of it the options say.
+    pub fn new(solved: Option<&'a SolvedSky>, args: &OverlayArgs) -> Self {
         Self {
             solved,
+            scattering: args.scattering.scattering(),
             last: Mutex::new(None),
         }
     }
@@ -120,7 +122,7 @@ impl<'a> LightSource<'a> {
         };
         if layers.iter().any(|layer| layer.profile == Profile::Uniform) {
             return Err(CliError::usage(
-                "--sky-light shines on fog from above, so fog needs an upper end: choose --model height, clamped or slab, and \
+                "--sky-light shines on fog from above, so fog needs an upper end: choose --model height, clamped, unclamped or slab, and \
                  give each --layer scale-height or top",
             ));
         }
@@ -131,12 +133,12 @@ impl<'a> LightSource<'a> {
             .clone();
         let foggy = match last {
             Some((known, sky)) if known == layers => return Ok(Some(sky)),
-            Some((_, sky)) => sky.with_fog(layers, Scattering::Multiple)?,
+            Some((_, sky)) => sky.with_fog(layers, self.scattering)?,
             None => {
                 let view = solved.scene.view(&solved.sky, &solved.sun);
                 let ground = FoggySky::<3>::round_ground(&view);
                 let channels = Channels::Rgb(RgbSpace::Srgb);
-                FoggySky::new(&view, channels, layers, ground, Scattering::Multiple)?
+                FoggySky::new(&view, channels, layers, ground, self.scattering)?
             }
         };
         let foggy = Arc::new(foggy);

@@ -1,6 +1,7 @@
 //! `airlight fog`: fog laid over pictures that exist.
 
 mod batch;
+mod forms;
 mod lamps;
 mod layers;
 mod light;
@@ -50,7 +51,7 @@ fn one(args: &OverlayArgs, random: Option<MonteCarloSettings>) -> Result<(), Cli
     }
     let subject = Subject::read(args, &args.colour, depth, format)?;
     let solved = SolvedSky::of(args)?;
-    let fogged = subject.fogged(args, &LightSource::new(solved.as_ref()))?;
+    let fogged = subject.fogged(args, &LightSource::new(solved.as_ref(), args))?;
     let painter = match (random, &solved) {
         (Some(settings), Some(solved)) => Some(Painter::new(args, solved, &fogged, settings)?),
         _ => None,

@@ -1,7 +1,7 @@
 //! One picture: read, fogged, written.
 
 use super::light::{self, Level, LightSource, Shown};
-use super::veil;
+use super::{forms, veil};
 use crate::args::{DepthKindArg, HolesArg, OverlayArgs};
 use crate::error::CliError;
 use crate::interrupt;
@@ -55,6 +55,7 @@ pub fn check(args: &OverlayArgs) -> Result<(), CliError> {
             "--seed is for what is drawn at random: give --vary or --solver monte-carlo as well",
         ));
     }
+    forms::check(args, random)?;
     depth_options(args).map(drop)
 }
 

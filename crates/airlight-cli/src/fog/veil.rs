@@ -2,12 +2,12 @@
 
 use super::light::{self, Level, LightSource, Shown};
 use super::{lamps, layers};
-use crate::args::{ModelArg, OverlayArgs};
+use crate::args::{FogScatteringArg, ModelArg, OverlayArgs};
 use crate::atmosphere::contrast;
 use crate::error::CliError;
 use airlight::axes;
 use airlight::fog::visibility::extinction_per_m;
-use airlight::fog::{Fog, Ground, Layer, Light, Scattering, Sun, legacy};
+use airlight::fog::{Fog, Ground, Layer, Light, Sun, legacy};
 use airlight::spectrum::Spectrum;
 use airlight::spectrum::rgb::DOMINANT_NM;
 use airlight_render::overlay::{Body, Glow, Veil};
@@ -43,12 +43,13 @@ fn refuse_with_looks(args: &OverlayArgs) -> Result<(), CliError> {
         (!args.light.lamp.is_empty(), "--lamp"),
         (!args.light.layer.is_empty(), "--layer"),
         (args.light.sky_light, "--sky-light"),
+        (args.scattering != FogScatteringArg::All, "--scattering"),
     ];
     match given.iter().find(|(given, _)| *given) {
         None => Ok(()),
         Some((_, option)) => Err(CliError::usage(format!(
             "{option} is for fog that scatters light: the looks exp2, linear and foggy-cityscapes are one colour; choose \
-             --model uniform, height, clamped or slab"
+             --model uniform, height, clamped, unclamped or slab"
         ))),
     }
 }
@@ -84,7 +85,7 @@ fn alone<'a>(
         layers,
         Ground::FLAT,
         light,
-        Scattering::Multiple,
+        args.scattering.scattering(),
         DOMINANT_NM,
     )
     .map_err(|error| CliError::usage(error.to_string()))?;
@@ -112,6 +113,7 @@ fn glow(
         args.eye_height_m,
     )?;
     Glow::new(lamps, layers, ground)
+        .and_then(|glow| glow.by(args.light.lamp_form.form()))
         .map(Some)
         .map_err(|error| CliError::usage(error.to_string()))
 }

@@ -2,7 +2,7 @@
 
 use super::disc::Disc;
 use super::rows::{Layer, pixel_reach};
-use crate::args::{SkyArgs, SolverArg};
+use crate::args::{FogScatteringArg, SkyArgs, SolverArg};
 use crate::classic::Lit;
 use crate::error::CliError;
 use airlight::spectrum::{RgbSpace, rgb};
@@ -31,6 +31,11 @@ pub fn check(args: &SkyArgs, spectral: bool) -> Result<(), CliError> {
         return Err(CliError::usage(
             "of the published models of the sky klassen1987 alone knows fog: leave out the options --fog-..., or give --solver \
              orders",
+        ));
+    }
+    if args.fog.fog_scattering == FogScatteringArg::Undimmed {
+        return Err(CliError::usage(
+            "the fog of 1987 scatters light once, and dims the sun: leave out --fog-scattering undimmed, or give --solver orders",
         ));
     }
     Ok(())

@@ -6,7 +6,7 @@ use crate::foggy_air::FogInAir;
 use crate::report::short;
 use airlight::fog::droplets::DropletKind;
 use airlight::fog::visibility::{Contrast, extinction_per_m};
-use airlight::fog::{Layer, Matter, Profile, Scattering};
+use airlight::fog::{Layer, Matter, Profile};
 use airlight::medium::Constituent;
 use airlight::optics::mie::MieError;
 use airlight::outdoors::{Channels, FoggySky};
@@ -54,7 +54,7 @@ impl<'a> Fog<'a> {
         channels: TableChannels,
     ) -> Result<Self, CliError> {
         let ground = FoggySky::<3>::round_ground(view);
-        let scattering = Scattering::Multiple;
+        let scattering = args.fog_scattering.scattering();
         Ok(match channels {
             TableChannels::Rgb(space) => {
                 let layers = layers(args, |kind, per_m| kind.in_rgb(per_m, space))?;
@@ -192,10 +192,12 @@ pub fn in_words(args: &FogArgs) -> Option<String> {
         }
     };
     let kind = args.fog_droplets.0;
+    let scattering = args.fog_scattering.in_words();
     Some(format!(
-        "visibility {} m, {height}, droplets {} ({})",
+        "visibility {} m, {height}, droplets {} ({}){}",
         short(visibility_m),
         kind.name(),
-        droplets_in_words(kind)
+        droplets_in_words(kind),
+        scattering.map_or(String::new(), |words| format!("; {words}"))
     ))
 }

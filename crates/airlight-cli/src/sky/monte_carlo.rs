@@ -6,7 +6,7 @@ use super::fog;
 use super::layout::{PictureFile, tagged};
 use super::polarisation::{self, PixelStokes};
 use super::rows::Layer;
-use crate::args::{ScatteringArg, SkyArgs, SolverArg};
+use crate::args::{FogScatteringArg, ScatteringArg, SkyArgs, SolverArg};
 use crate::error::CliError;
 use crate::interrupt::STOP;
 use crate::passes::{self, Colour};
@@ -39,6 +39,11 @@ pub fn check(args: &SkyArgs) -> Result<(), CliError> {
     if args.polarisation && args.air.scattering == ScatteringArg::Single {
         return Err(CliError::usage(
             "--polarisation is that of all light: leave out --scattering single",
+        ));
+    }
+    if random && args.fog.fog_scattering != FogScatteringArg::All {
+        return Err(CliError::usage(
+            "random paths scatter in fog as often as it happens: leave out --fog-scattering, or give --solver orders",
         ));
     }
     match (random, args.noise_map, &args.output) {

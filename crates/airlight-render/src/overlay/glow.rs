@@ -1,6 +1,6 @@
 //! Lamps in the fog over a picture.
 
-use airlight::fog::lamp::{Lamp, LampSettings, Lamps, Murk, Sight};
+use airlight::fog::lamp::{Lamp, LampForm, LampSettings, Lamps, Murk, Passage, Sight};
 use airlight::fog::{FogError, Ground, Layer};
 use airlight::spectrum::Spectrum;
 use airlight::spectrum::rgb::DOMINANT_NM;
@@ -16,6 +16,7 @@ pub struct Glow {
     /// Each layer with the others, which dim its light.
     layers: Vec<(Layer<3>, Vec<Layer<3>>)>,
     ground: Ground,
+    form: LampForm,
 }
 
 impl Glow {
@@ -37,7 +38,18 @@ impl Glow {
             lamps: Lamps::new(lamps, LampSettings::default())?,
             layers: layers.iter().enumerate().map(with_others).collect(),
             ground,
+            form: LampForm::Exact,
         })
+    }
+
+    /// The same by another form of their light.
+    ///
+    /// # Errors
+    /// [`FogError::LampForm`] where that does not hold for these lamps and layers.
+    pub fn by(self, form: LampForm) -> Result<Self, FogError> {
+        let layers: Vec<Layer<3>> = self.layers.iter().map(|(layer, _)| layer.clone()).collect();
+        form.check(self.lamps.lamps(), &layers)?;
+        Ok(Self { form, ..self })
     }
 
     /// What they add to a line of sight of a length (m; may be infinite) from an eye at a height (m).
@@ -52,6 +64,9 @@ impl Glow {
             direction,
             length_m: distance_m,
         };
+        if self.form != LampForm::Exact {
+            return self.by_form(&sight);
+        }
         self.layers
             .iter()
             .fold(Spectrum::ZERO, |sum, (layer, others)| {
@@ -64,5 +79,19 @@ impl Glow {
                 };
                 sum + self.lamps.path_radiance(&murk, &sight)
             })
+    }
+
+    /// By a form that holds in the layer that there is.
+    fn by_form(&self, sight: &Sight) -> Spectrum<3> {
+        let mut sum = Spectrum::ZERO;
+        for (layer, _) in &self.layers {
+            for lamp in self.lamps.lamps() {
+                let (position, radius_m) = (lamp.position(), lamp.radius_m());
+                let (eye, direction) = (sight.eye, sight.direction);
+                let passage = Passage::new(eye, direction, sight.length_m, position, radius_m);
+                sum += self.form.path_radiance(layer, &passage, lamp.intensity());
+            }
+        }
+        sum
     }
 }

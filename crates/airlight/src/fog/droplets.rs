@@ -75,11 +75,14 @@ impl Droplets {
     }
 }
 
-/// Drops of any kind, by name: analytic and grey, or published sizes by Lorenz-Mie theory, with bows, glories and coronas.
+/// Drops of any kind, by name: analytic and grey, or published sizes by Lorenz-Mie theory, with bows, glories and coronas; or
+/// none, to compare with models of fog that scatters equally in all directions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum DropletKind {
     /// The analytic phase function of one diameter.
     Analytic(Droplets),
+    /// Grey, scattering equally in all directions, as the fog note has it. No drops do.
+    Isotropic,
     /// Published sizes.
     Published(Drops),
 }
@@ -107,7 +110,8 @@ impl DropletKind {
     pub fn all() -> impl Iterator<Item = (&'static str, Self)> {
         let analytic = Droplets::ALL.map(|(name, kind)| (name, kind.into()));
         let published = Drops::ALL.map(|(name, kind)| (name, kind.into()));
-        analytic.into_iter().chain(published)
+        let isotropic = [("isotropic", Self::Isotropic)];
+        analytic.into_iter().chain(isotropic).chain(published)
     }
 
     /// Its name.
@@ -130,6 +134,7 @@ impl DropletKind {
     ) -> Result<Matter<N>, MieError> {
         let drops = match self {
             Self::Analytic(droplets) => return Ok(droplets.matter(extinction_per_m)),
+            Self::Isotropic => return Ok(isotropic(extinction_per_m)),
             Self::Published(drops) => drops,
         };
         let mut rising = wavelengths_nm.to_vec();
@@ -148,11 +153,21 @@ impl DropletKind {
     pub fn in_rgb(self, extinction_per_m: f64, space: RgbSpace) -> Result<Matter<3>, MieError> {
         match self {
             Self::Analytic(droplets) => Ok(droplets.matter(extinction_per_m)),
+            Self::Isotropic => Ok(isotropic(extinction_per_m)),
             Self::Published(drops) => {
                 let table = drops.rgb_table(space)?;
                 Ok(matter(&table, extinction_per_m, |lane| DOMINANT_NM[lane]))
             }
         }
+    }
+}
+
+/// Fog that scatters equally in all directions, and does not absorb.
+fn isotropic<const N: usize>(extinction_per_m: f64) -> Matter<N> {
+    Matter {
+        extinction_per_m: Spectrum::splat(extinction_per_m as f32),
+        single_scattering_albedo: Spectrum::ONE,
+        phase: PhaseFunction::Isotropic,
     }
 }
 

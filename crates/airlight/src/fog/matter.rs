@@ -63,6 +63,15 @@ pub enum FogError {
         /// What would be right.
         right: &'static str,
     },
+    /// A form of a lamp's light does not hold for what there is.
+    #[error(
+        "this form of a lamp's light is for point lamps in one layer of uniform fog that scatters equally in all directions, \
+         not for {what}"
+    )]
+    LampForm {
+        /// What there is.
+        what: &'static str,
+    },
     /// The phase function is refused.
     #[error(transparent)]
     Phase(#[from] PhaseError),

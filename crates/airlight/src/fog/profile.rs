@@ -7,14 +7,16 @@ use super::line::Line;
 pub enum Profile {
     /// The same everywhere, without an upper end.
     Uniform,
-    /// `e^-((y - reference) / H)`: exponential height fog (Ishiyama 2018, eq. 7 with reference 0).
+    /// `e^-((y - reference) / H)`: exponential height fog (Ishiyama 2018, eq. 7 with reference 0). With the base as the
+    /// reference it is what the note's formula says of any line, above the base or not.
     Exponential {
         /// Height at which the density is 1, m.
         reference_height_m: f64,
         /// Height over which it falls to 1/e, m.
         scale_height_m: f64,
     },
-    /// 1 up to the base, `e^-((y - base) / H)` above it: the note's `e^-(f max(0, y - h0))` with falloff `f = 1 / H`.
+    /// 1 up to the base, `e^-((y - base) / H)` above it: the note's `e^-(f max(0, y - h0))` with falloff `f = 1 / H`. (The
+    /// note's formula for it holds for lines wholly above the base; here lines are cut there.)
     Clamped {
         /// Height up to which the density is 1, m.
         base_height_m: f64,

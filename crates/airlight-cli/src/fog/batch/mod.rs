@@ -41,7 +41,7 @@ pub fn run(args: &OverlayArgs) -> Result<(), CliError> {
         true => None,
         false => SolvedSky::of(args)?,
     };
-    let light = LightSource::new(solved.as_ref());
+    let light = LightSource::new(solved.as_ref(), args);
     let path = match &args.batch.manifest {
         Some(path) => path.clone(),
         None => plan.folder.join("manifest.jsonl"),

@@ -161,8 +161,11 @@ fn check_variation(args: &OverlayArgs) -> Result<(), CliError> {
     let models = args.batch.vary.iter().find_map(Variation::models);
     let models = models.unwrap_or(&own);
     let of_models = [
-        ("scale-height", &[ModelArg::Height, ModelArg::Clamped][..]),
-        ("base-height", &[ModelArg::Clamped]),
+        (
+            "scale-height",
+            &[ModelArg::Height, ModelArg::Clamped, ModelArg::Unclamped][..],
+        ),
+        ("base-height", &[ModelArg::Clamped, ModelArg::Unclamped]),
         ("top", &[ModelArg::Slab]),
     ];
     for (name, its) in of_models {

@@ -53,6 +53,9 @@ struct Failed<'a> {
     airlight: &'static str,
 }
 
+/// Options that lines of older versions do not mention, and what those pictures were made with.
+const LATER: [(&str, &str); 2] = [("scattering", "all"), ("lamp_form", "exact")];
+
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 impl<'a> Which<'a> {
@@ -107,7 +110,7 @@ impl<'a> Which<'a> {
     }
 
     /// How a line differs from what would be made now, as `visibility_m was 50, is 60`; empty where it does not. What the
-    /// line does not mention is taken to be the same.
+    /// line does not mention is taken to be the same, but for options that came later.
     ///
     /// # Errors
     /// [`CliError::Failure`] where the options cannot be put into JSON.
@@ -123,10 +126,15 @@ impl<'a> Which<'a> {
             now.extend(of_input);
         }
         let now = now.as_object().cloned().unwrap_or_default();
+        let later = |name: &str| LATER.iter().find(|(later, _)| *later == name);
+        let was = |name: &String| match line.get(name) {
+            Some(was) => Some(was.clone()),
+            None => later(name).map(|(_, was)| Value::from(*was)),
+        };
         Ok(now
             .iter()
-            .filter_map(|(name, is)| Some((name, line.get(name)?, is)))
-            .filter(|(_, was, is)| was != is)
+            .filter_map(|(name, is)| Some((name, was(name)?, is)))
+            .filter(|(_, was, is)| was != *is)
             .map(|(name, was, is)| format!("{name} was {was}, is {is}"))
             .collect())
     }

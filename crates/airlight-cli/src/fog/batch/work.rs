@@ -181,7 +181,7 @@ impl Batch<'_, '_> {
         // A sky of its own where what varies changes the sky.
         if overlay_vary::changes_the_sky(&self.args.batch.vary) {
             let solved = SolvedSky::of(options)?;
-            let light = LightSource::new(solved.as_ref());
+            let light = LightSource::new(solved.as_ref(), options);
             return self.write_one(&light, subject, input, variant, options, path);
         }
         self.write_one(self.light, subject, input, variant, options, path)

@@ -10,6 +10,8 @@
 //! - [`Lamp::illumination`]: what reaches a surface.
 //! - [`airlight_without_extinction`], [`airlight_isotropic`]: closed forms for uniform fog that scatters evenly, exact in
 //!   f64; [`airlight_isotropic_lanes`] the same for all lanes at once. They need only the geometry, a [`Passage`].
+//! - [`LampForm`]: those, the split sum ([`airlight_split_sum`]) and the fog note's own form ([`airlight_printed`]), to choose
+//!   from.
 //!
 //! Derivation, measured errors and speed: `docs/src/lamps.md`.
 
@@ -17,6 +19,7 @@ mod airlight_integral;
 mod check;
 mod exponential_integral;
 mod fast;
+mod forms;
 mod kinds;
 mod lamps;
 mod march;
@@ -25,18 +28,23 @@ mod nodes;
 mod panels;
 mod passage;
 mod point;
+mod printed;
 #[cfg(test)]
 mod reference;
 mod sphere;
+mod split_sum;
 mod spot;
 
 pub use airlight_integral::{airlight_isotropic, airlight_without_extinction};
 pub use fast::{CubeRoot, airlight_isotropic_lanes};
+pub use forms::LampForm;
 pub use kinds::Lamp;
 pub use lamps::{LampSettings, Lamps};
 pub use murk::{Murk, Sight};
 pub use nodes::Nodes;
 pub use passage::Passage;
 pub use point::PointLamp;
+pub use printed::airlight_printed;
 pub use sphere::SphereLamp;
+pub use split_sum::airlight_split_sum;
 pub use spot::SpotLamp;

@@ -125,3 +125,39 @@ fn falloff_runs_from_endless_to_sharp() {
     assert!(Profile::from_falloff(f64::NAN, 1.0).is_err());
     assert!(Profile::from_falloff(0.0, f64::NAN).is_err());
 }
+
+/// The fog note's optical depth, `a / (f (c - p)_y) d e^-(f (p_y - h0)) (1 - e^-(f (c - p)_y))`, is that of density without the
+/// `max(0, ...)` that the note puts into it: right wholly above the base, too large below.
+#[test]
+fn the_notes_formula_is_of_unclamped_fog() {
+    let (h0, falloff) = (20.0, 1.0 / 30.0);
+    let printed = |p: f64, c: f64, d: f64| {
+        let rise = falloff * (c - p);
+        d / rise * (-falloff * (p - h0)).exp() * (1.0 - (-rise).exp())
+    };
+    let (unclamped, clamped) = (
+        Profile::Exponential {
+            reference_height_m: h0,
+            scale_height_m: 1.0 / falloff,
+        },
+        Profile::from_falloff(h0, falloff).unwrap(),
+    );
+    let mut too_much = Vec::new();
+    for (p, c, d) in [
+        (25.0, 60.0, 100.0),
+        (90.0, 22.0, 400.0),
+        (0.0, 60.0, 100.0),
+        (-40.0, 10.0, 300.0),
+    ] {
+        let printed = printed(p, c, d);
+        // From the camera to the surface.
+        let line = Line::flat(c, (p - c) / d, d);
+        assert!((unclamped.column(&line) / printed - 1.0).abs() < 1e-12);
+        assert!((clamped.column(&line) / by_quadrature(&clamped, &line, d) - 1.0).abs() < 1e-9);
+        too_much.push(printed / clamped.column(&line));
+    }
+    let right = [1.0, 1.0, 1.2003, 3.5961];
+    for (got, right) in too_much.iter().zip(right) {
+        assert!((got - right).abs() < 1e-3, "{too_much:?}");
+    }
+}
