@@ -1,5 +1,6 @@
 //! The solver's skies of some aerosol types beside the Monte Carlo's, as the book shows them (`scripts/book`):
-//! `cargo run --release -p airlight --example aerosol_types`. Some minutes.
+//! `cargo run --release -p airlight --example aerosol_types`. Some minutes. A number behind it is taken for
+//! `SkySettings::orders.peak_degree`.
 
 use airlight::axes;
 use airlight::medium::aerosol_types::AerosolType;
@@ -11,6 +12,8 @@ use std::error::Error;
 
 /// Solver over Monte Carlo less 1, from the least to the most of 440, 550 and 680 nm.
 fn main() -> Result<(), Box<dyn Error>> {
+    let peak_degree = std::env::args().nth(1).map(|text| text.parse());
+    let peak_degree = peak_degree.transpose()?;
     println!(
         "| type, optical depth | sun | 5 degrees above the sun | 60 degrees up, towards the sun | 20 degrees up, across | 5 degrees up, opposite |"
     );
@@ -30,10 +33,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         air.constituents.push(part);
         let truth = MonteCarlo::new(&air, &grid, MonteCarloSettings::default())?;
         for sun_elevation in [30.0, 4.0] {
-            let settings = SkySettings {
+            let mut settings = SkySettings {
                 suns: SunCoverage::near(sun_elevation, 0.0),
                 ..Default::default()
             };
+            settings.orders.peak_degree = peak_degree.unwrap_or(settings.orders.peak_degree);
             let sky = Sky::prepare(&air, &grid, &settings)?;
             let sun = axes::direction(180.0, sun_elevation);
             let view = sky.view(2.0, sun);
@@ -53,11 +57,22 @@ fn main() -> Result<(), Box<dyn Error>> {
                     (least, most) = (least.min(error), most.max(error));
                     noise = noise.max(100.0 * want.standard_error[i] / want.mean[i]);
                 }
-                print!(" {least:+.1} to {most:+.1} % |");
+                match [least, most].map(percent) {
+                    [least, most] if least == most => print!(" {least} % |"),
+                    [least, most] => print!(" {least} to {most} % |"),
+                }
             }
             println!();
         }
     }
     println!("standard error of the Monte Carlo at most {noise:.2} %");
     Ok(())
+}
+
+/// With its sign, where it has one.
+fn percent(value: f64) -> String {
+    match value.abs() < 0.05 {
+        true => "0.0".to_owned(),
+        false => format!("{value:+.1}"),
+    }
 }
