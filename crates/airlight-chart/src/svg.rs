@@ -54,16 +54,19 @@ pub fn axes<'a>(
     Ok(())
 }
 
-/// Writes the names of the colours into a chart, top right.
+/// Writes the names of the colours into a corner of a chart.
 ///
 /// # Errors
 /// Where they could not be drawn.
-pub fn labels<'a>(chart: &mut Chart<'a, 'a>) -> Result<(), Box<dyn std::error::Error>> {
+pub fn labels<'a>(
+    chart: &mut Chart<'a, 'a>,
+    corner: SeriesLabelPosition,
+) -> Result<(), Box<dyn std::error::Error>> {
     chart
         .configure_series_labels()
         .background_style(WHITE.mix(0.85))
         .label_font((FONT, 13))
-        .position(SeriesLabelPosition::UpperRight)
+        .position(corner)
         .draw()?;
     Ok(())
 }

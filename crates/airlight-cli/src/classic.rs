@@ -1,40 +1,66 @@
 //! Published models of the sky, made from the options.
 
 use crate::args::{
-    AirArgs, ClassicArgs, EffortArg, ScatteringArg, SolverArg, SunlightArg, VariantArg,
+    ClassicArgs, EffortArg, FogArgs, ScatteringArg, SkyArgs, SolverArg, SunlightArg, VariantArg,
 };
 use crate::error::CliError;
 use crate::scene::{Scene, Sun};
 use airlight::classic::ClassicSky;
 use airlight::classic::four_orders::FourOrders;
 use airlight::classic::hillaire2020::{self, Hillaire2020};
-use airlight::classic::klassen1987::{Klassen1987, Klassen1987Settings};
+use airlight::classic::klassen1987::{Fog1987, Klassen1987, Klassen1987Scene, Klassen1987Settings};
 use airlight::classic::preetham::Preetham;
 use airlight::classic::single_scattering::{
     self, SkyArticle, Sunlight, Variant, ZENITH_ILLUMINANCE_LX,
 };
+use airlight::fog::slab1987::SunDepth;
+use airlight::fog::visibility::{Contrast, extinction_per_m};
 use airlight::medium::Atmosphere;
 use airlight::medium::aerosol::turbidity_of_optical_depth;
 use airlight::sky::SkySettings;
 use std::fmt::Display;
 use std::sync::Arc;
 
+/// A published model under a sun.
+pub struct Model {
+    /// Its sky, with the fog before it that it knows.
+    pub sky: Arc<dyn ClassicSky>,
+    /// The same with what it takes to light things, of the model of 1987 where there are fog or things.
+    pub scene1987: Option<Arc<Klassen1987Scene>>,
+}
+
 /// The model asked for, under a sun.
 ///
 /// # Errors
 /// [`CliError::Usage`] for what the model refuses.
-pub fn model(
-    air: &AirArgs,
-    args: &ClassicArgs,
-    scene: &Scene,
-    sun: &Sun,
-) -> Result<Arc<dyn ClassicSky>, CliError> {
+pub fn model(args: &SkyArgs, scene: &Scene, sun: &Sun) -> Result<Model, CliError> {
+    let whole = args.fog.fog_visibility_m.is_some() || args.things.objects.is_some();
+    if args.air.solver == SolverArg::Klassen1987 && whole {
+        let scene1987 = Arc::new(scene_of_1987(args, scene, sun)?);
+        return Ok(Model {
+            sky: scene1987.clone(),
+            scene1987: Some(scene1987),
+        });
+    }
+    Ok(Model {
+        sky: sky(args, scene, sun)?,
+        scene1987: None,
+    })
+}
+
+fn sky(args: &SkyArgs, scene: &Scene, sun: &Sun) -> Result<Arc<dyn ClassicSky>, CliError> {
+    let (air, args) = (&args.air, &args.classic);
     let direction = sun.direction();
     let eye_altitude_m = scene.eye_altitude_m;
     Ok(match air.solver {
         SolverArg::Klassen1987 => {
-            let settings = klassen(args, scene, sun)?;
-            Arc::new(Klassen1987::new(&settings, direction).map_err(refused_by("klassen1987"))?)
+            if scene.eye_altitude_m > scene.atmosphere.planet.ground_altitude_m + ON_THE_GROUND_M {
+                return Err(CliError::usage(
+                    "--solver klassen1987 looks from the ground, but into a fog or at things: leave out --altitude-m and \
+                     --eye-height-m, or give --fog-visibility-m or --objects",
+                ));
+            }
+            Arc::new(of_1987(args, scene, sun)?)
         }
         SolverArg::SingleScattering => {
             let settings = article_settings(args, eye_altitude_m);
@@ -83,13 +109,44 @@ const BITS: u32 = 12;
 /// How far above the ground an eye may be whose height a model leaves out, m.
 const ON_THE_GROUND_M: f64 = 100.0;
 
-/// The layers of 1987 that stand for the scene's air, with what the options change.
-fn klassen(args: &ClassicArgs, scene: &Scene, sun: &Sun) -> Result<Klassen1987Settings, CliError> {
-    if scene.eye_altitude_m > scene.atmosphere.planet.ground_altitude_m + ON_THE_GROUND_M {
+/// The sun and the sky of 1987.
+fn of_1987(args: &ClassicArgs, scene: &Scene, sun: &Sun) -> Result<Klassen1987, CliError> {
+    let settings = klassen(args, scene, sun);
+    Klassen1987::new(&settings, sun.direction()).map_err(refused_by("klassen1987"))
+}
+
+/// The same with fog, ground and an eye at any height.
+fn scene_of_1987(args: &SkyArgs, scene: &Scene, sun: &Sun) -> Result<Klassen1987Scene, CliError> {
+    let model = Arc::new(of_1987(&args.classic, scene, sun)?);
+    let depth = match args.classic.variant {
+        Some(VariantArg::Printed) => SunDepth::Printed,
+        _ => SunDepth::Exact,
+    };
+    let eye_m = scene.eye_altitude_m - scene.atmosphere.planet.ground_altitude_m;
+    let fog = fog_of_1987(&args.fog)?;
+    Klassen1987Scene::new(model, eye_m, fog, depth).map_err(refused_by("klassen1987"))
+}
+
+/// The fog of the options, which must be a slab.
+fn fog_of_1987(args: &FogArgs) -> Result<Option<Fog1987>, CliError> {
+    let Some(visibility_m) = args.fog_visibility_m else {
+        return Ok(None);
+    };
+    let Some(top_m) = args.fog_top_m else {
         return Err(CliError::usage(
-            "--solver klassen1987 looks from the ground: leave out --altitude-m and --eye-height-m",
+            "the fog of --solver klassen1987 is even up to a height: say with --fog-top-m up to which",
         ));
-    }
+    };
+    let extinction = extinction_per_m(visibility_m, Contrast::FivePercent);
+    let drops = args.fog_droplets.0;
+    Ok(Some(Fog1987 {
+        top_m,
+        droplets: drops.at_wavelengths(extinction, &Klassen1987::wavelengths())?,
+    }))
+}
+
+/// The layers of 1987 that stand for the scene's air, with what the options change.
+fn klassen(args: &ClassicArgs, scene: &Scene, sun: &Sun) -> Klassen1987Settings {
     let mut settings = Klassen1987Settings {
         bits_per_channel: BITS,
         ..Klassen1987Settings::of(&scene.atmosphere)
@@ -102,7 +159,7 @@ fn klassen(args: &ClassicArgs, scene: &Scene, sun: &Sun) -> Result<Klassen1987Se
         settings = settings.printed();
     }
     args.klassen.apply(&mut settings);
-    Ok(settings)
+    settings
 }
 
 /// What a model says of numbers that it refuses.

@@ -13,6 +13,7 @@
 //! - [`output`]: picture files: OpenEXR (RGB and spectral), Radiance HDR, PNG, JPEG.
 //! - [`input`]: pictures and depth maps read from files.
 //! - [`overlay`]: fog laid over a picture and its depth.
+//! - [`objects`]: simple solids and what they are made of, met by rays.
 //! - [`terminal`]: a small picture as coloured text.
 //! - [`sequence`]: many pictures: file names, time steps, taking up where an earlier run stopped.
 
@@ -20,6 +21,7 @@ pub mod enlarge;
 pub mod error;
 pub mod frame;
 pub mod input;
+pub mod objects;
 pub mod output;
 pub mod overlay;
 pub mod rows;

@@ -63,7 +63,7 @@ pub fn errors(checks: &[Check], by_angle_from_sun: bool, group: fn(&Check) -> &s
                 .label(*name)
                 .legend(move |(x, y)| Circle::new((x + 6, y), 4, colour.filled()));
         }
-        labels(&mut chart)?;
+        labels(&mut chart, SeriesLabelPosition::UpperRight)?;
         Ok(())
     })
 }
@@ -170,7 +170,7 @@ pub fn spectra(checks: &[Check]) -> Drawn {
                 dots.map(|row| Circle::new((at(row), row.reference), 3, colour.filled())),
             )?;
         }
-        labels(&mut chart)?;
+        labels(&mut chart, SeriesLabelPosition::UpperRight)?;
         Ok(())
     })
 }

@@ -1,7 +1,7 @@
 //! Options of `airlight compare`.
 
 use super::{AirArgs, ClassicArgs, EffortArg, FogArgs, PictureArgs, PlaceArgs, ScatteringArg};
-use super::{KlassenArgs, SkyArgs, SolverArg, VariantArg};
+use super::{KlassenArgs, ObjectArgs, SkyArgs, SolverArg, VariantArg};
 use crate::parse;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -48,6 +48,9 @@ pub struct CompareArgs {
     pub classic: ClassicArgs,
     #[command(flatten)]
     pub fog: FogArgs,
+    /// Solids that a TOML file describes, lit and seen by both
+    #[arg(long, value_name = "FILE.toml", help_heading = "Things")]
+    pub objects: Option<PathBuf>,
 }
 
 /// A solver and its form.
@@ -127,6 +130,10 @@ impl CompareArgs {
             air: self.air.clone(),
             classic: self.classic.clone(),
             fog: self.fog.clone(),
+            things: ObjectArgs {
+                objects: self.objects.clone(),
+                ..ObjectArgs::default()
+            },
         };
         sky.air.solver = by.solver;
         if by.solver != SolverArg::MonteCarlo {

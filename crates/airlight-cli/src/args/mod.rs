@@ -7,6 +7,7 @@ mod compare;
 mod fog;
 mod grid;
 mod klassen;
+mod objects;
 mod overlay;
 mod overlay_batch;
 mod overlay_light;
@@ -24,6 +25,7 @@ pub use compare::{CompareArgs, StatisticsArg};
 pub use fog::{DropletsArg, FogArgs, in_words as droplets_in_words};
 pub use grid::GridArgs;
 pub use klassen::KlassenArgs;
+pub use objects::ObjectArgs;
 pub use overlay::{DepthKindArg, HolesArg, ModelArg, OverlayArgs};
 pub use overlay_light::{AirArg, LampArg, LampKind, LampPlace, LayerShape, OverlayLightArgs};
 pub use overlay_paths::OverlayPathsArgs;
@@ -126,6 +128,8 @@ pub struct SkyArgs {
     pub classic: ClassicArgs,
     #[command(flatten)]
     pub fog: FogArgs,
+    #[command(flatten)]
+    pub things: ObjectArgs,
 }
 
 /// Many pictures over a span of time.

@@ -34,7 +34,7 @@ pub enum PlotWhat {
 
 /// Options of `airlight plot spectrum`.
 #[derive(Debug, Args)]
-#[command(allow_negative_numbers = true)]
+#[command(allow_negative_numbers = true, mut_arg("wavelengths", |arg| arg.default_value("fine")))]
 pub struct SpectrumPlotArgs {
     /// File to write: .svg or .png
     #[arg(short, long, value_name = "FILE")]
@@ -48,9 +48,9 @@ pub struct SpectrumPlotArgs {
     pub air: AirArgs,
 }
 
-/// Options of `airlight plot transmittance`.
+/// Options of `airlight plot transmittance`. The sun is of no account.
 #[derive(Debug, Args)]
-#[command(allow_negative_numbers = true)]
+#[command(allow_negative_numbers = true, mut_arg("wavelengths", |arg| arg.default_value("fine")))]
 pub struct TransmittancePlotArgs {
     /// File to write: .svg or .png
     #[arg(short, long, value_name = "FILE")]

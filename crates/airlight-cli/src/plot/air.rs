@@ -1,6 +1,6 @@
 //! Light and transmittance of the air by wavelength.
 
-use crate::args::{SpectrumPlotArgs, TransmittancePlotArgs};
+use crate::args::{AirArgs, PlaceArgs, ScatteringArg, SpectrumPlotArgs, TransmittancePlotArgs};
 use crate::error::CliError;
 use crate::scene::Scene;
 use airlight::axes;
@@ -63,7 +63,19 @@ pub fn spectrum(args: &SpectrumPlotArgs) -> Result<Drawn, CliError> {
 /// # Errors
 /// [`CliError`] for options that do not fit together.
 pub fn transmittance(args: &TransmittancePlotArgs) -> Result<Drawn, CliError> {
-    let scene = Scene::new(&args.place, &args.air)?;
+    // Whatever sun: it is the air alone that counts.
+    let place = PlaceArgs {
+        sun_elevation: args
+            .place
+            .sun_elevation
+            .or(args.place.at.is_none().then_some(45.0)),
+        ..args.place.clone()
+    };
+    let air = AirArgs {
+        scattering: ScatteringArg::Single,
+        ..args.air.clone()
+    };
+    let scene = Scene::new(&place, &air)?;
     args.air.refuse_other_solvers("airlight plot")?;
     let sun = scene.sun.at(None)?;
     let (sky, _) = scene.prepare(scene.near(&sun))?;

@@ -2,7 +2,7 @@
 
 use super::disc::Disc;
 use super::rows::{Layer, pixel_reach};
-use crate::args::SkyArgs;
+use crate::args::{SkyArgs, SolverArg};
 use crate::error::CliError;
 use crate::light::Illuminances;
 use airlight::axes;
@@ -29,9 +29,10 @@ pub fn check(args: &SkyArgs) -> Result<(), CliError> {
             "published models are drawn in colours: leave out --spectral, or give --solver orders or monte-carlo",
         ));
     }
-    if args.fog.fog_visibility_m.is_some() {
+    if args.fog.fog_visibility_m.is_some() && args.air.solver != SolverArg::Klassen1987 {
         return Err(CliError::usage(
-            "published models of the sky know no fog: leave out the options --fog-..., or give --solver orders",
+            "of the published models of the sky klassen1987 alone knows fog: leave out the options --fog-..., or give --solver \
+             orders",
         ));
     }
     Ok(())
@@ -71,6 +72,11 @@ impl Shed {
             sky_horizontal: sum.map(|v| PI * v / (BANDS * TURNS) as f64),
             sin_sun: model.sun().y.max(0.0),
         }
+    }
+
+    /// Of the sun's disc, facing it, in XYZ (lx).
+    pub fn sun_normal(&self) -> [f64; 3] {
+        self.sun_normal
     }
 
     /// As illuminances.

@@ -5,6 +5,7 @@ use super::classic::{self, ClassicRows, Shed};
 use super::disc::Disc;
 use super::fog::Fog;
 use super::layout::{Layout, PictureFile};
+use super::objects::{self, ObjectRows, Things};
 use super::rows::{Layer, SkyRows};
 use super::{exposure, facts, monte_carlo};
 use crate::args::{CompressionArg, PrecisionArg, SkyArgs, SunDiscArg};
@@ -17,6 +18,7 @@ use crate::report;
 use crate::scene::{Scene, Sun};
 use airlight::classic::ClassicSky;
 use airlight::sky::{Sky, SkyTable, SunCoverage};
+use airlight_render::objects::Objects;
 use airlight_render::output::exr::{ExrCompression, ExrOptions, ExrSample};
 use airlight_render::output::jpeg::JpegOptions;
 use airlight_render::output::png::{PngDepth, PngOptions};
@@ -38,6 +40,8 @@ pub struct Drawing<'a> {
     pub layout: &'a Layout,
     /// Values of a pixel.
     pub channels: &'a Channels,
+    /// Things before the sky.
+    pub objects: Option<&'a Arc<Objects>>,
 }
 
 /// What the options come to: what a [`Drawing`] borrows.
@@ -48,6 +52,7 @@ pub struct Setup {
     pub first: Sun,
     layout: Layout,
     channels: Channels,
+    objects: Option<Arc<Objects>>,
 }
 
 impl Setup {
@@ -67,6 +72,7 @@ impl Setup {
             first,
             layout,
             channels,
+            objects: objects::read(args)?,
         })
     }
 
@@ -77,6 +83,7 @@ impl Setup {
             scene: &self.scene,
             layout: &self.layout,
             channels: &self.channels,
+            objects: self.objects.as_ref(),
         }
     }
 }
@@ -114,6 +121,7 @@ pub struct Shot<'a> {
     source: Source<'a>,
     disc: Option<Disc>,
     weights: RgbWeights,
+    things: Option<Things<'a>>,
 }
 
 /// Where a shot's light comes from.
@@ -179,6 +187,10 @@ impl<'a> Shot<'a> {
                 |direction| fog.as_ref().map_or(1.0, |fog| fog.transmittance(direction)),
             ),
         };
+        let things = drawing
+            .objects
+            .map(|objects| Things::solved(objects, (drawing.args, channels), &view))
+            .transpose()?;
         Ok(Self {
             sun: *sun,
             time,
@@ -186,12 +198,13 @@ impl<'a> Shot<'a> {
             source: Source::Solved { table, fog },
             disc,
             weights,
+            things,
         })
     }
 
     fn classic(drawing: &Drawing<'_>, sun: &Sun, time: Option<Moment>) -> Result<Self, CliError> {
-        let model =
-            crate::classic::model(&drawing.args.air, &drawing.args.classic, drawing.scene, sun)?;
+        let found = crate::classic::model(drawing.args, drawing.scene, sun)?;
+        let model = found.sky.clone();
         let channels = drawing.channels;
         let shed = Shed::of(model.as_ref());
         let ground = shed.ground_xyz(&drawing.scene.atmosphere.planet.ground_albedo);
@@ -199,13 +212,30 @@ impl<'a> Shot<'a> {
             SunDiscArg::Out => None,
             _ => Disc::of_classic(model.clone(), channels.space.from_xyz_matrix()),
         };
+        let grid = match &found.scene1987 {
+            Some(scene) => scene.model().grid(),
+            None => &drawing.scene.grid,
+        };
+        let weights = channels.rgb_weights(grid);
+        let things = drawing.objects.map(|objects| {
+            let picture = (drawing.args, channels);
+            Things::classic(
+                objects,
+                picture,
+                drawing.scene,
+                &found,
+                (ground, &shed),
+                &weights,
+            )
+        });
         Ok(Self {
             sun: *sun,
             time,
             light: shed.illuminances(),
             source: Source::Classic { model, ground },
             disc,
-            weights: channels.rgb_weights(&drawing.scene.grid),
+            weights,
+            things,
         })
     }
 
@@ -242,6 +272,28 @@ impl Drawing<'_> {
 
     /// The rows of a frame; with the sky that another solver has made, where there is one.
     pub fn rows<'s>(
+        &self,
+        shot: &'s Shot<'_>,
+        frame: &Frame,
+        (layer, scale): (Layer, f32),
+        solved: Option<&'s [f32]>,
+    ) -> Box<dyn RowSource + 's> {
+        let sky = self.sky_rows(shot, frame, (layer, scale), solved);
+        let Some(things) = &shot.things else {
+            return sky;
+        };
+        let spectral = self.layout.is_spectral().then_some(&shot.weights);
+        Box::new(ObjectRows::new(
+            sky,
+            things,
+            (frame, layer),
+            spectral,
+            scale,
+        ))
+    }
+
+    /// The same without the things before the sky.
+    fn sky_rows<'s>(
         &self,
         shot: &'s Shot<'_>,
         frame: &Frame,
@@ -288,10 +340,18 @@ impl Drawing<'_> {
         let control = Control::cancelled_by(&STOP).reporting_to(bar);
         let mut written = Vec::with_capacity(files.len());
         for file in files {
+            if let Some(things) = shot.things.as_ref().filter(|_| self.writes_depth(file)) {
+                objects::write_depth(things, file)?;
+            }
             written.push(self.write_file(shot, file, (None, &tone), control)?);
             bar.file_done(u64::from(file.frame.size().height()));
         }
         Ok(written)
+    }
+
+    /// Whether the depth of things is asked for beside a file: once where the sun's disc has a file of its own.
+    fn writes_depth(&self, file: &PictureFile) -> bool {
+        self.args.things.depth_map && file.layer != Layer::Disc
     }
 
     /// The tone mapper of the files' format.

@@ -16,7 +16,7 @@ use glam::DVec3;
 use std::sync::Arc;
 
 /// Wavelengths in a piece of a spectrum.
-const PIECE: usize = 16;
+pub const PIECE: usize = 16;
 /// Height over which fog thins where nothing is said, m.
 const SCALE_HEIGHT_M: f64 = 50.0;
 
@@ -38,26 +38,36 @@ impl<'a> Fog<'a> {
         view: &View<'a>,
         channels: TableChannels,
     ) -> Result<Option<Self>, CliError> {
+        match args.fog_visibility_m {
+            None => Ok(None),
+            Some(_) => Self::or_clear(args, view, channels).map(Some),
+        }
+    }
+
+    /// The same, with air alone where the options ask for no fog.
+    ///
+    /// # Errors
+    /// As [`Fog::new`].
+    pub fn or_clear(
+        args: &FogArgs,
+        view: &View<'a>,
+        channels: TableChannels,
+    ) -> Result<Self, CliError> {
         let ground = FoggySky::<3>::round_ground(view);
         let scattering = Scattering::Multiple;
-        let Some(visibility_m) = args.fog_visibility_m else {
-            return Ok(None);
-        };
-        Ok(Some(match channels {
+        Ok(match channels {
             TableChannels::Rgb(space) => {
-                let layer = layer(args, visibility_m, |kind, per_m| kind.in_rgb(per_m, space))?;
+                let layers = layers(args, |kind, per_m| kind.in_rgb(per_m, space))?;
                 let channels = Channels::Rgb(space);
-                let sky = FoggySky::new(view, channels, &[layer], ground, scattering)?;
+                let sky = FoggySky::new(view, channels, &layers, ground, scattering)?;
                 Self::Rgb(Box::new(sky))
             }
             TableChannels::Spectral => {
-                let layers = |nm: &[f64; PIECE]| -> Result<_, CliError> {
-                    let drops = |kind: DropletKind, per_m| kind.at_wavelengths(per_m, nm);
-                    Ok(vec![layer(args, visibility_m, drops)?])
-                };
+                let layers =
+                    |nm: &[f64; PIECE]| layers(args, |kind, per_m| kind.at_wavelengths(per_m, nm));
                 Self::Spectral(FoggySky::spectral(view, layers, ground, scattering)?)
             }
-        }))
+        })
     }
 
     /// The sky without the fog.
@@ -122,16 +132,18 @@ fn cover<const N: usize>(sky: &FoggySky<'_, N>, direction: DVec3, values: &mut [
         .for_each(|(value, seen)| *value = seen);
 }
 
-/// The fog of the options, of drops in the lanes of the picture.
-fn layer<const N: usize>(
+/// The fog of the options, of drops in the lanes of the picture; no layer without fog.
+fn layers<const N: usize>(
     args: &FogArgs,
-    visibility_m: f64,
     drops: impl Fn(DropletKind, f64) -> Result<Matter<N>, MieError>,
-) -> Result<Layer<N>, CliError> {
+) -> Result<Vec<Layer<N>>, CliError> {
+    let Some(visibility_m) = args.fog_visibility_m else {
+        return Ok(Vec::new());
+    };
     let extinction = extinction_per_m(visibility_m, Contrast::FivePercent);
     let matter = drops(args.fog_droplets.0, extinction)?;
     let profile = profile(args);
-    Ok(Layer { profile, matter })
+    Ok(vec![Layer { profile, matter }])
 }
 
 fn profile(args: &FogArgs) -> Profile {

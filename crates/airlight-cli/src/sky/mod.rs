@@ -5,6 +5,7 @@
 //! - [`fog`]: fog before the sky.
 //! - [`layout`]: which files a picture consists of and where each looks.
 //! - [`facts`]: what the files say about themselves; [`exposure`]: how bright PNG, JPEG and preview are.
+//! - [`objects`]: things before the sky.
 //! - [`monte_carlo`]: pictures by random paths; [`polarisation`]: what is told of it beside them; [`classic`]: pictures by
 //!   published models.
 //! - [`still`]: a picture in memory; [`draw`]: one moment into files; [`preview`]: onto the terminal; [`sequence`]: many
@@ -19,6 +20,7 @@ mod facts;
 mod fog;
 mod layout;
 mod monte_carlo;
+mod objects;
 mod polarisation;
 mod preview;
 mod rows;

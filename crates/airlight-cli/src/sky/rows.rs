@@ -138,23 +138,23 @@ impl<'a> SkyRows<'a> {
             }
         }
     }
+}
 
-    /// From a table's values to a pixel's.
-    fn put(&self, values: &[f32], pixel: &mut [f32]) {
-        match self.spectral {
-            None => pixel
-                .iter_mut()
-                .zip(values)
-                .for_each(|(p, v)| *p = v * self.scale),
-            Some(weights) => {
-                let (rgb, spectrum) = pixel.split_at_mut(3);
-                rgb.fill(0.0);
-                for ((value, weight), radiance) in values.iter().zip(weights).zip(spectrum) {
-                    *radiance = value * self.scale;
-                    rgb.iter_mut()
-                        .zip(weight)
-                        .for_each(|(c, w)| *c += w * *radiance);
-                }
+/// From a table's values to a pixel's, which are RGB, or with weights RGB and then the values themselves.
+pub fn put(values: &[f32], weights: Option<&RgbWeights>, scale: f32, pixel: &mut [f32]) {
+    match weights {
+        None => pixel
+            .iter_mut()
+            .zip(values)
+            .for_each(|(p, v)| *p = v * scale),
+        Some(weights) => {
+            let (rgb, spectrum) = pixel.split_at_mut(3);
+            rgb.fill(0.0);
+            for ((value, weight), radiance) in values.iter().zip(weights).zip(spectrum) {
+                *radiance = value * scale;
+                rgb.iter_mut()
+                    .zip(weight)
+                    .for_each(|(c, w)| *c += w * *radiance);
             }
         }
     }
@@ -183,7 +183,7 @@ impl RowSource for SkyRows<'_> {
                 .chunks_exact(n)
                 .zip(out.chunks_exact_mut(self.channels()))
             {
-                self.put(values, pixel);
+                put(values, self.spectral, self.scale, pixel);
             }
         }
         if let Some(disc) = self.disc {

@@ -190,6 +190,11 @@ impl<'a, const N: usize> FoggySky<'a, N> {
         &self.fog
     }
 
+    /// Unit vector towards the sun.
+    pub(super) fn sun_direction(&self) -> DVec3 {
+        self.view.sun()
+    }
+
     /// The clear air.
     pub fn aerial(&self) -> &AerialPerspective<N> {
         &self.aerial

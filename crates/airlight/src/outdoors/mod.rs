@@ -3,6 +3,8 @@
 //! - [`AerialPerspective`]: what clear air does between the eye and things at any distance.
 //! - [`FoggySky`]: a sky with fog in it: the light of the sky falls on the fog, air and fog lie along every line in their
 //!   true order, and what is far away goes over into the drawn sky.
+//! - [`Surroundings`]: what all of that sheds on surfaces.
+//! - [`Outdoors`]: what a solver must tell to light things and to show them through the air.
 //!
 //! [`channels`](Channels) says what the N lanes of both are.
 
@@ -12,9 +14,13 @@ mod channels;
 mod error;
 mod foggy;
 mod light;
+mod lit;
 mod places;
+mod surroundings;
 
 pub use aerial::AerialPerspective;
 pub use channels::Channels;
 pub use error::OutdoorsError;
 pub use foggy::FoggySky;
+pub use lit::Outdoors;
+pub use surroundings::Surroundings;

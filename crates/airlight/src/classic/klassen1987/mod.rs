@@ -1,5 +1,5 @@
 //! Klassen, "Modeling the Effect of the Atmosphere on Light", ACM Transactions on Graphics 6(3), 215-237, July 1987: the
-//! colours of sun and sky (sections 2 to 8, eqs. 1 to 33). Its fog is [`crate::fog::slab1987`].
+//! colours of sun and sky (sections 2 to 8, eqs. 1 to 33); [`Klassen1987Scene`] adds its naturally lit fog (sections 9 to 12).
 //!
 //! The air is two spherical shells on the ground at `R_E`: molecules and haze up to `R_H`, molecules alone up to `R_A`,
 //! both as dense everywhere as at the ground; `R_A` is lowered so that the air's column is right. Sunlight is dimmed on
@@ -37,12 +37,14 @@ mod errata;
 mod geometry;
 mod haze;
 mod layers;
+mod scene;
 mod settings;
 mod simpson;
 #[cfg(test)]
 mod tests;
 
 pub use geometry::{HazePath, SunRay};
+pub use scene::{Fog1987, Klassen1987Scene, SUNSET_DEG};
 pub use settings::{BaseBlue, Haze, HazePhase, Klassen1987Error, Klassen1987Settings};
 
 use super::ClassicSky;

@@ -1,6 +1,7 @@
 //! What the model is told, and what it refuses.
 
 use super::geometry::{HazePath, SunRay};
+use crate::fog::FogError;
 use crate::medium::aerosol::REFERENCE_NM;
 use crate::medium::presets::earth::Earth;
 use crate::medium::{Atmosphere, AtmosphereError, Constituent};
@@ -138,6 +139,9 @@ pub enum Klassen1987Error {
     /// The clear air cannot be solved for.
     #[error(transparent)]
     Sky(#[from] SkyError),
+    /// The fog's drops are refused.
+    #[error(transparent)]
+    Fog(#[from] FogError),
 }
 
 impl Default for Klassen1987Settings {

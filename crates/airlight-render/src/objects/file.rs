@@ -1,0 +1,359 @@
+//! Things from TOML: the format is in the book's chapter on pictures.
+
+use super::shape::Shape;
+use super::surface::{Checker, Gloss, Surface};
+use super::{Object, Objects};
+use airlight::spectrum::SpectralCurve;
+use glam::DVec3;
+use serde::Deserialize;
+
+/// Most things of a file.
+const MOST: usize = 10_000;
+
+/// Why a text describes no things.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ObjectsError {
+    /// It is not TOML, or not of this format; the sentence tells line and column.
+    #[error("{0}")]
+    Text(String),
+    /// A thing cannot be.
+    #[error("object {number}{name}: {what} must be {right}, got {got}")]
+    Value {
+        /// Which, counted from 1.
+        number: usize,
+        /// Its shape in brackets.
+        name: String,
+        /// What of it.
+        what: &'static str,
+        /// What would be right.
+        right: &'static str,
+        /// What was given.
+        got: String,
+    },
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    #[serde(default)]
+    object: Vec<Described>,
+}
+
+#[derive(Clone, Copy, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum Kind {
+    Ground,
+    Sphere,
+    Block,
+    Cylinder,
+    Cone,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Described {
+    shape: Kind,
+    at_m: Option<[f64; 3]>,
+    radius_m: Option<f64>,
+    height_m: Option<f64>,
+    size_m: Option<[f64; 3]>,
+    turn_deg: Option<f64>,
+    #[serde(default = "grey")]
+    reflectance: Reflectance,
+    checker: Option<DescribedChecker>,
+    gloss: Option<DescribedGloss>,
+    repeat: Option<Repeat>,
+}
+
+fn grey() -> Reflectance {
+    Reflectance::Grey(0.5)
+}
+
+/// A reflectance: grey, red with green and blue, or by wavelength.
+#[derive(Clone, Deserialize)]
+#[serde(untagged)]
+enum Reflectance {
+    Grey(f64),
+    Rgb([f64; 3]),
+    Spectrum {
+        wavelengths_nm: Vec<f64>,
+        values: Vec<f64>,
+    },
+}
+
+#[derive(Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct DescribedChecker {
+    size_m: f64,
+    reflectance: Reflectance,
+}
+
+#[derive(Clone, Copy, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct DescribedGloss {
+    roughness: f64,
+    #[serde(default = "glass")]
+    index: f64,
+}
+
+fn glass() -> f64 {
+    1.5
+}
+
+#[derive(Clone, Copy, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Repeat {
+    count: usize,
+    step_m: [f64; 3],
+}
+
+impl Objects {
+    /// Reads a text.
+    ///
+    /// # Errors
+    /// [`ObjectsError`]: what is wrong with it, and where.
+    pub fn from_toml(text: &str) -> Result<Self, ObjectsError> {
+        let file: File = toml::from_str(text)
+            .map_err(|error| ObjectsError::Text(error.to_string().trim_end().to_owned()))?;
+        let mut objects = Vec::new();
+        for (number, described) in (1..).zip(&file.object) {
+            let made = Reading { number, described }.objects()?;
+            objects.extend(made);
+            if objects.len() > MOST {
+                return Err(ObjectsError::Text(format!(
+                    "there are more than {MOST} objects: object {number} and its repetitions are too many"
+                )));
+            }
+        }
+        match objects.is_empty() {
+            true => Err(ObjectsError::Text(
+                "there is no object: write [[object]] with a shape".to_owned(),
+            )),
+            false => Ok(Self::new(objects)),
+        }
+    }
+}
+
+/// One thing of a file.
+struct Reading<'a> {
+    number: usize,
+    described: &'a Described,
+}
+
+impl Reading<'_> {
+    fn wrong(&self, what: &'static str, right: &'static str, got: impl ToString) -> ObjectsError {
+        let name = match self.described.shape {
+            Kind::Ground => " (ground)",
+            Kind::Sphere => " (sphere)",
+            Kind::Block => " (block)",
+            Kind::Cylinder => " (cylinder)",
+            Kind::Cone => " (cone)",
+        };
+        ObjectsError::Value {
+            number: self.number,
+            name: name.to_owned(),
+            what,
+            right,
+            got: got.to_string(),
+        }
+    }
+
+    /// The thing and its repetitions.
+    fn objects(&self) -> Result<Vec<Object>, ObjectsError> {
+        let surface = self.surface()?;
+        let repeat = self.described.repeat.unwrap_or(Repeat {
+            count: 1,
+            step_m: [0.0; 3],
+        });
+        if !(1..=MOST).contains(&repeat.count) {
+            return Err(self.wrong("repeat.count", "from 1 to 10000", repeat.count));
+        }
+        let step = self.place("repeat.step_m", repeat.step_m)?;
+        (0..repeat.count)
+            .map(|k| {
+                Ok(Object {
+                    shape: self.shape(k as f64 * step)?,
+                    surface: surface.clone(),
+                })
+            })
+            .collect()
+    }
+
+    fn shape(&self, moved: DVec3) -> Result<Shape, ObjectsError> {
+        let d = self.described;
+        self.only_known()?;
+        let at = self.place("at_m", d.at_m.unwrap_or_default())? + moved;
+        let needed = "given, above 0 and up to 1e6";
+        let length = |what, given: Option<f64>| match given {
+            Some(m) if m > 0.0 && m <= 1e6 => Ok(m),
+            Some(m) => Err(self.wrong(what, needed, m)),
+            None => Err(self.wrong(what, needed, "nothing")),
+        };
+        Ok(match d.shape {
+            Kind::Ground => Shape::Ground { height_m: at.y },
+            Kind::Sphere => Shape::Sphere {
+                centre: at,
+                radius_m: length("radius_m", d.radius_m)?,
+            },
+            Kind::Block => {
+                let size = d.size_m.map(|size| size.map(Some)).unwrap_or_default();
+                let [east, up, south] = size.map(|m| length("size_m", m));
+                let turn_deg = d.turn_deg.unwrap_or(0.0);
+                if !turn_deg.is_finite() {
+                    return Err(self.wrong("turn_deg", "a number of degrees", turn_deg));
+                }
+                Shape::Block {
+                    base: at,
+                    half_m: DVec3::new(0.5 * east?, up?, 0.5 * south?),
+                    turn: turn_deg.to_radians().sin_cos(),
+                }
+            }
+            Kind::Cylinder | Kind::Cone => {
+                let radius_m = length("radius_m", d.radius_m)?;
+                Shape::Frustum {
+                    base: at,
+                    radius_m,
+                    top_radius_m: match d.shape {
+                        Kind::Cone => 0.0,
+                        _ => radius_m,
+                    },
+                    height_m: length("height_m", d.height_m)?,
+                }
+            }
+        })
+    }
+
+    /// Refuses measures that the shape does not have.
+    fn only_known(&self) -> Result<(), ObjectsError> {
+        let d = self.described;
+        let has = |radius, height, size| (radius, height, size);
+        let (radius, height, size) = match d.shape {
+            Kind::Ground => has(false, false, false),
+            Kind::Sphere => has(true, false, false),
+            Kind::Block => has(false, false, true),
+            Kind::Cylinder | Kind::Cone => has(true, true, false),
+        };
+        let left_out = "left out for this shape";
+        for (what, known, given) in [
+            ("radius_m", radius, d.radius_m.is_some()),
+            ("height_m", height, d.height_m.is_some()),
+            ("size_m", size, d.size_m.is_some()),
+            ("turn_deg", size, d.turn_deg.is_some()),
+        ] {
+            if given && !known {
+                return Err(self.wrong(what, left_out, "a value"));
+            }
+        }
+        Ok(())
+    }
+
+    fn place(&self, what: &'static str, at: [f64; 3]) -> Result<DVec3, ObjectsError> {
+        match at.iter().find(|m| !(m.is_finite() && m.abs() <= 1e6)) {
+            None => Ok(DVec3::from_array(at)),
+            Some(m) => Err(self.wrong(what, "[east, up, south], each within 1e6", m)),
+        }
+    }
+
+    fn surface(&self) -> Result<Surface, ObjectsError> {
+        let d = self.described;
+        let checker = d.checker.clone().map(|checker| {
+            let size_m = checker.size_m;
+            match size_m > 0.0 && size_m <= 1e6 {
+                true => Ok(Checker {
+                    size_m,
+                    reflectance: self.reflectance(&checker.reflectance)?,
+                }),
+                false => Err(self.wrong("checker.size_m", "above 0 and up to 1e6", size_m)),
+            }
+        });
+        if let Some(gloss) = d.gloss {
+            if !(0.02..=1.0).contains(&gloss.roughness) {
+                return Err(self.wrong("gloss.roughness", "from 0.02 to 1", gloss.roughness));
+            }
+            if !(1.01..=10.0).contains(&gloss.index) {
+                return Err(self.wrong("gloss.index", "from 1.01 to 10", gloss.index));
+            }
+        }
+        Ok(Surface {
+            reflectance: self.reflectance(&d.reflectance)?,
+            checker: checker.transpose()?,
+            gloss: d.gloss.map(|gloss| Gloss {
+                roughness: gloss.roughness,
+                index: gloss.index,
+            }),
+        })
+    }
+
+    fn reflectance(&self, given: &Reflectance) -> Result<SpectralCurve, ObjectsError> {
+        let values: &[f64] = match given {
+            Reflectance::Grey(value) => std::slice::from_ref(value),
+            Reflectance::Rgb(rgb) => rgb,
+            Reflectance::Spectrum { values, .. } => values,
+        };
+        if let Some(value) = values.iter().find(|v| !(0.0..=1.0).contains(*v)) {
+            return Err(self.wrong("reflectance", "from 0 to 1", value));
+        }
+        match given {
+            Reflectance::Grey(value) => Ok(SpectralCurve::Constant(*value)),
+            Reflectance::Rgb(rgb) => Ok(of_rgb(*rgb)),
+            Reflectance::Spectrum {
+                wavelengths_nm,
+                values,
+            } => SpectralCurve::table(wavelengths_nm.clone(), values.clone()).map_err(|error| {
+                self.wrong("reflectance", "wavelengths_nm with as many values", error)
+            }),
+        }
+    }
+}
+
+/// Blue up to 480 nm, green from 500 to 580, red from 600 on: the reflectance that turns sunlight into a linear sRGB colour, from
+/// 0 to 1 for every such colour. (Of steps at multiples of 5 nm, these are the only ones for which it stays there.)
+fn of_rgb(rgb: [f64; 3]) -> SpectralCurve {
+    // The inverse of what the three bands under the sun outside the air look like, over the sun.
+    const BANDS: [[f64; 3]; 3] = [
+        [0.995_718, 0.002_690, 0.001_592],
+        [0.009_911, 0.959_431, 0.030_658],
+        [0.021_212, 0.039_191, 0.939_597],
+    ];
+    let band = |k: usize| (0..3).map(|c| BANDS[k][c] * rgb[c]).sum::<f64>();
+    let (red, green, blue) = (band(0), band(1), band(2));
+    SpectralCurve::table(
+        vec![480.0, 500.0, 580.0, 600.0],
+        vec![blue, green, green, red],
+    )
+    .expect("four wavelengths rise")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use airlight::spectrum::{RgbSpace, WavelengthGrid};
+
+    #[test]
+    fn colours_come_out_as_they_are_given() {
+        let grid = WavelengthGrid::one_nanometre();
+        let seen = |curve: &SpectralCurve| {
+            let pairs = grid.wavelengths_nm().iter().zip(grid.solar_irradiance());
+            let light: Vec<f32> = pairs
+                .map(|(nm, sun)| (sun * curve.at(*nm)) as f32)
+                .collect();
+            RgbSpace::Srgb.from_xyz(grid.to_xyz(&light))
+        };
+        let white = seen(&SpectralCurve::Constant(1.0));
+        for number in 0..27 {
+            let part = |k: u32| f64::from(number / 3u32.pow(k) % 3) / 2.0;
+            let rgb = [part(0), part(1), part(2)];
+            let curve = of_rgb(rgb);
+            for nm in [400.0, 490.0, 540.0, 590.0, 650.0] {
+                assert!((-1e-6..=1.0 + 1e-6).contains(&curve.at(nm)), "{rgb:?} {nm}");
+            }
+            let got = seen(&curve);
+            for c in 0..3 {
+                assert!(
+                    (got[c] / white[c] - rgb[c]).abs() < 2e-3,
+                    "{rgb:?}: {got:?} {white:?}"
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,340 @@
+use super::shape::Shape;
+use super::surface::{Arriving, Checker, Gloss, Surface, fresnel};
+use super::{Object, Objects, Ray};
+use airlight::axes;
+use airlight::spectrum::{SpectralCurve, Spectrum};
+use glam::DVec3;
+use std::f64::consts::PI;
+
+fn shapes() -> [Shape; 5] {
+    let frustum = |top_radius_m| Shape::Frustum {
+        base: DVec3::new(1.0, 0.5, -10.0),
+        radius_m: 2.0,
+        top_radius_m,
+        height_m: 3.0,
+    };
+    [
+        Shape::Sphere {
+            centre: DVec3::new(0.5, 2.0, -9.0),
+            radius_m: 1.5,
+        },
+        Shape::Block {
+            base: DVec3::new(0.0, 0.5, -10.0),
+            half_m: DVec3::new(1.0, 3.0, 2.0),
+            turn: 0.6f64.sin_cos(),
+        },
+        frustum(2.0),
+        frustum(0.0),
+        frustum(3.0),
+    ]
+}
+
+/// Whether a point lies inside: the implicit form of each solid.
+fn inside(shape: &Shape, p: DVec3) -> bool {
+    match *shape {
+        Shape::Ground { height_m } => p.y < height_m,
+        Shape::Sphere { centre, radius_m } => p.distance(centre) < radius_m,
+        Shape::Block {
+            base,
+            half_m,
+            turn: (sin, cos),
+        } => {
+            let q = p - base;
+            let (x, z) = (cos * q.x + sin * q.z, cos * q.z - sin * q.x);
+            x.abs() < half_m.x && z.abs() < half_m.z && (0.0..half_m.y).contains(&q.y)
+        }
+        Shape::Frustum {
+            base,
+            radius_m,
+            top_radius_m,
+            height_m,
+        } => {
+            let q = p - base;
+            let radius = radius_m + (top_radius_m - radius_m) * q.y / height_m;
+            (0.0..height_m).contains(&q.y) && q.x.hypot(q.z) < radius
+        }
+    }
+}
+
+/// Rays from all sides, some along the axes.
+fn rays() -> impl Iterator<Item = Ray> {
+    let slanted = (0..4000).map(|i| {
+        let i = f64::from(i);
+        let at = DVec3::new(
+            4.0 * (0.7 * i).sin(),
+            2.0 + 3.0 * (1.3 * i).sin(),
+            -10.0 + 4.0 * (2.1 * i).cos(),
+        );
+        let direction = axes::direction(137.5 * i, 80.0 * (0.37 * i).sin());
+        Ray {
+            origin: at - 12.0 * direction,
+            direction,
+        }
+    });
+    let straight = [DVec3::X, DVec3::Y, DVec3::Z].into_iter().flat_map(|axis| {
+        [axis, -axis].map(|direction| Ray {
+            origin: DVec3::new(0.3, 1.7, -9.6) - 20.0 * direction,
+            direction,
+        })
+    });
+    slanted.chain(straight)
+}
+
+#[test]
+fn rays_meet_solids_where_a_march_does() {
+    for shape in shapes() {
+        let mut met = 0;
+        let (middle, radius_m) = shape.ball();
+        for ray in rays() {
+            let steps = (1..6000).map(|i| 0.005 * f64::from(i));
+            let marched = steps.clone().find(|t| inside(&shape, ray.at(*t)));
+            match (shape.meet(&ray), marched) {
+                (Some(hit), Some(t)) => {
+                    met += 1;
+                    assert!(
+                        (hit.distance_m - t).abs() < 0.006,
+                        "{shape:?} {ray:?}: {hit:?} {t}"
+                    );
+                    let n = hit.normal;
+                    assert!(
+                        (n.length() - 1.0).abs() < 1e-9 && n.dot(ray.direction) <= 1e-9,
+                        "{n}"
+                    );
+                    // The normal points out.
+                    let p = ray.at(hit.distance_m);
+                    assert!(p.distance(middle) < radius_m + 1e-9, "{shape:?} {p}");
+                    assert!(!inside(&shape, p + 1e-4 * n), "{shape:?} {p} {n}");
+                }
+                (None, None) => {}
+                // Corners that are thinner than a step.
+                (Some(hit), None) => {
+                    let through = (0..100)
+                        .filter(|i| inside(&shape, ray.at(hit.distance_m + 1e-4 * f64::from(*i))));
+                    assert!(through.count() < 60, "{shape:?} {ray:?} {hit:?}");
+                }
+                (None, Some(t)) => panic!("{shape:?} {ray:?} missed what lies at {t}"),
+            }
+        }
+        assert!(met > 200, "{shape:?}: {met}");
+    }
+}
+
+#[test]
+fn a_ray_from_inside_meets_the_far_side() {
+    for shape in shapes() {
+        let origin = DVec3::new(0.5, 1.8, -9.6);
+        assert!(inside(&shape, origin), "{shape:?}");
+        for direction in [DVec3::X, -DVec3::Z, axes::direction(40.0, 60.0)] {
+            let hit = shape.meet(&Ray { origin, direction }).unwrap();
+            assert!(
+                hit.normal.dot(direction) > 0.0 && hit.distance_m < 5.0,
+                "{shape:?} {hit:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_nearest_thing_is_seen_and_shadows_what_is_behind() {
+    let text = "[[object]]\nshape = \"ground\"\n\n[[object]]\nshape = \"sphere\"\nat_m = [0, 1, -10]\nradius_m = 1\n";
+    let objects = Objects::from_toml(text).unwrap();
+    let look = |azimuth, elevation| Ray {
+        origin: DVec3::new(0.0, 1.0, 0.0),
+        direction: axes::direction(azimuth, elevation),
+    };
+    let ball = objects.hit(&look(0.0, 0.0)).unwrap();
+    assert!((ball.distance_m - 9.0).abs() < 1e-12 && ball.index == 1);
+    let ground = objects.hit(&look(180.0, -45.0)).unwrap();
+    assert!((ground.normal - DVec3::Y).length() < 1e-12 && ground.index == 0);
+    assert!(objects.hit(&look(90.0, 10.0)).is_none());
+    // Under the ball it is dark, in front of it not; no point is in its own shadow.
+    let under = objects
+        .hit(&Ray {
+            origin: DVec3::new(0.0, 0.5, -8.0),
+            direction: axes::direction(0.0, -20.0),
+        })
+        .unwrap();
+    assert!(objects.shadowed(&under, DVec3::Y) && !objects.shadowed(&ball, DVec3::Z));
+    for i in 0..100 {
+        let hit = objects.hit(&look(0.05 * f64::from(i) - 2.5, 0.0)).unwrap();
+        assert!(!objects.shadowed(&hit, hit.normal));
+    }
+    assert_eq!(objects.top_m(), 2.0);
+}
+
+#[test]
+fn what_is_wrong_with_a_file_is_told() {
+    for (text, said) in [
+        ("", "no object"),
+        ("[[object]]\nshape = \"cube\"", "unknown variant `cube`"),
+        (
+            "[[object]]\nshape = \"sphere\"\nradius = 2",
+            "unknown field `radius`",
+        ),
+        (
+            "[[object]]\nshape = \"sphere\"",
+            "object 1 (sphere): radius_m must be given",
+        ),
+        ("[[object]]\nshape = \"sphere\"\nradius_m = nan", "radius_m"),
+        (
+            "[[object]]\nshape = \"ground\"\nradius_m = 2",
+            "radius_m must be left out",
+        ),
+        (
+            "[[object]]\nshape = \"ground\"\nreflectance = 1.5",
+            "reflectance must be from 0 to 1",
+        ),
+        (
+            "[[object]]\nshape = \"ground\"\nreflectance = { wavelengths_nm = [500, 400], values = [0, 1] }",
+            "reflectance",
+        ),
+        (
+            "[[object]]\nshape = \"cone\"\nradius_m = 1\nheight_m = -2",
+            "height_m",
+        ),
+        (
+            "[[object]]\nshape = \"block\"\nsize_m = [1, 0, 1]",
+            "size_m",
+        ),
+        ("[[object]]\nshape = \"ground\"\nat_m = [0, inf, 0]", "at_m"),
+        (
+            "[[object]]\nshape = \"ground\"\ngloss = { roughness = 0 }",
+            "gloss.roughness",
+        ),
+        (
+            "[[object]]\nshape = \"ground\"\nchecker = { size_m = 0, reflectance = 0.1 }",
+            "checker.size_m",
+        ),
+        (
+            "[[object]]\nshape = \"sphere\"\nradius_m = 1\nrepeat = { count = 20000, step_m = [1, 0, 0] }",
+            "repeat.count",
+        ),
+    ] {
+        let error = Objects::from_toml(text).unwrap_err().to_string();
+        assert!(error.contains(said), "{text}: {error}");
+    }
+}
+
+fn surface(gloss: Option<Gloss>) -> Surface {
+    Surface {
+        reflectance: SpectralCurve::Constant(0.5),
+        checker: None,
+        gloss,
+    }
+}
+
+#[test]
+fn squares_are_sharp_near_by_and_grey_far_away() {
+    let tiles = Surface {
+        checker: Some(Checker {
+            size_m: 2.0,
+            reflectance: SpectralCurve::Constant(0.0),
+        }),
+        ..surface(None)
+    };
+    let share = |x, z, footprint| {
+        let point = DVec3::new(x, -1e-3, z);
+        tiles.checker_share(point, DVec3::new(footprint, 1e-9, footprint))
+    };
+    assert_eq!(
+        [share(1.0, 1.0, 1e-3), share(3.0, 1.0, 1e-3)]
+            .map(|s| (s * 1e4).round() / 1e4)
+            .iter()
+            .sum::<f32>(),
+        1.0
+    );
+    assert_eq!(share(1.0, 1.0, 1e-3), share(3.0, 3.0, 1e-3));
+    assert!((share(0.3, 17.0, 200.0) - 0.5).abs() < 0.02);
+    for i in 0..1000 {
+        let share = share(
+            0.37 * f64::from(i),
+            0.11 * f64::from(i),
+            0.01 * f64::from(i),
+        );
+        assert!((-1e-5..=1.00001).contains(&share), "{share}");
+    }
+}
+
+#[test]
+fn an_even_world_is_not_outshone() {
+    // Under light that is the same from everywhere no surface sends more than arrives (a white furnace), a black matt one nothing.
+    let even = Arriving {
+        sun: DVec3::Y,
+        sunlight: Spectrum([0.0f32]),
+        even: Spectrum([PI as f32]),
+        mirrored: Spectrum([1.0]),
+    };
+    for gloss in [
+        None,
+        Some(Gloss {
+            roughness: 0.2,
+            index: 1.5,
+        }),
+    ] {
+        for elevation_deg in [90.0, 40.0, 10.0, 1.0] {
+            let to_eye = axes::direction(0.0, elevation_deg);
+            let at = |reflectance| {
+                surface(gloss).radiance(Spectrum([reflectance]), &even, (DVec3::Y, to_eye))[0]
+            };
+            assert!(
+                at(1.0) <= 1.0 + 1e-6 && at(1.0) > 0.8,
+                "{gloss:?} {elevation_deg}: {}",
+                at(1.0)
+            );
+            assert!(at(0.0) >= 0.0);
+        }
+    }
+}
+
+#[test]
+fn facets_mirror_no_more_than_falls_on_them_and_both_ways_alike() {
+    for roughness in [0.1, 0.3, 0.6] {
+        let gloss = Gloss {
+            roughness,
+            index: 1.5,
+        };
+        // All facets together show the surface its own area: int D (n.h) = 1.
+        let mut facets = 0.0;
+        let mut sent = 0.0;
+        let sun = axes::direction(0.0, 50.0);
+        let (n, m) = (600, 400);
+        for i in 0..n {
+            // Equal parts of solid angle.
+            let up = (f64::from(i) + 0.5) / f64::from(n);
+            for j in 0..m {
+                let azimuth = 360.0 * (f64::from(j) + 0.5) / f64::from(m);
+                let direction = axes::direction(azimuth, up.asin().to_degrees());
+                let weight = 2.0 * PI / f64::from(n * m);
+                // Mirrored at incidence and exitance alike F D G / (4 v) with v = l = h: D.
+                let d = 4.0 * up * gloss.mirrored_sun(DVec3::Y, direction, direction)
+                    / fresnel(1.0, 1.5)
+                    / (2.0 * up * up).min(1.0);
+                facets += weight * up * d;
+                sent += weight * up * gloss.mirrored_sun(DVec3::Y, direction, sun);
+            }
+        }
+        assert!((facets - 1.0).abs() < 0.01, "{roughness}: {facets}");
+        assert!(sent > 0.0 && sent < sun.y, "{roughness}: {sent}");
+        let (a, b) = (axes::direction(20.0, 30.0), axes::direction(190.0, 50.0));
+        let there = gloss.mirrored_sun(DVec3::Y, a, b) / b.y;
+        let back = gloss.mirrored_sun(DVec3::Y, b, a) / a.y;
+        assert!((there / back - 1.0).abs() < 1e-12, "{there} {back}");
+    }
+    assert!((fresnel(1.0, 1.5) - 0.04).abs() < 1e-12 && (fresnel(0.0, 1.5) - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn a_thing_repeats_along_its_step() {
+    let text = "[[object]]\nshape = \"cylinder\"\nat_m = [1, 0, -5]\nradius_m = 0.2\nheight_m = 4\n\
+        repeat = { count = 3, step_m = [0, 0, -10] }\n";
+    let objects = Objects::from_toml(text).unwrap();
+    let places: Vec<f64> = objects
+        .all()
+        .iter()
+        .map(|Object { shape, .. }| match shape {
+            Shape::Frustum { base, .. } => base.z,
+            other => panic!("{other:?}"),
+        })
+        .collect();
+    assert_eq!(places, [-5.0, -15.0, -25.0]);
+}
