@@ -64,23 +64,45 @@ fn speed() -> Result<(), Klassen1987Error> {
         "| pixels | 1987, s | µs a pixel | printed, s | µs a pixel | without coherence | corrected, s | µs a pixel | without coherence |"
     );
     println!("|---|---|---|---|---|---|---|---|---|");
-    for (sun, elevation_deg, paper_s) in [
-        ("noon: ", 60.0, [153, 60, 25, 11, 5, 3]),
-        ("sunset: ", 1.0, [654, 309, 144, 64, 31, 13]),
+    // The paper's seconds and microseconds a pixel.
+    for (sun, elevation_deg, paper) in [
+        (
+            "noon: ",
+            60.0,
+            [
+                (153, 1167),
+                (60, 1831),
+                (25, 3015),
+                (11, 5225),
+                (5, 10547),
+                (3, 20313),
+            ],
+        ),
+        (
+            "sunset: ",
+            1.0,
+            [
+                (654, 4990),
+                (309, 9430),
+                (144, 17578),
+                (64, 31250),
+                (31, 61328),
+                (13, 101_563),
+            ],
+        ),
     ] {
         let toward = direction(180.0, elevation_deg);
         let forms = [
             Klassen1987Settings::default().printed(),
             Klassen1987Settings::default(),
         ];
-        for (row, paper_s) in paper_s.into_iter().enumerate() {
+        for (row, (paper_s, paper_us)) in paper.into_iter().enumerate() {
             let width = 512 >> row;
             let count = width * width / 2;
             let a_pixel = |seconds: f64| 1e6 * seconds / f64::from(count);
             print!(
-                "| {}{count} | {paper_s} | {:.0} |",
+                "| {}{count} | {paper_s} | {paper_us} |",
                 if row == 0 { sun } else { "" },
-                a_pixel(f64::from(paper_s))
             );
             for settings in &forms {
                 // Once before, so that what all models share is there; then a model of its own, so that its cells are part of
