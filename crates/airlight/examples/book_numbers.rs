@@ -1,22 +1,40 @@
-//! Prints the numbers that the book states about the air and the sun: `cargo run --release --example book_numbers -p airlight`.
+//! Prints the numbers that the book states about the air and the sun, its tables as it shows them (`scripts/book`):
+//! `cargo run --release --example book_numbers -p airlight`; with the word `molecules`, `hazes` or `earth` only that table.
 
 use airlight::light::{self, Place, RefractingAir};
 use airlight::medium::aerosol::{turbidity_of_optical_depth, visibility_of_extinction_m};
 use airlight::medium::{gases, preset, preset_names};
 use airlight::optics::rayleigh;
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
-    molecules();
-    haze()?;
-    presets()?;
-    sun()
+type Fallible = Result<(), Box<dyn std::error::Error>>;
+
+fn main() -> Fallible {
+    match std::env::args().nth(1).as_deref() {
+        None => {
+            molecules();
+            hazes()?;
+            earth()?;
+            presets()?;
+            sun()
+        }
+        Some("molecules") => {
+            molecules();
+            Ok(())
+        }
+        Some("hazes") => hazes(),
+        Some("earth") => earth(),
+        Some(other) => {
+            Err(format!("there is no `{other}`: there are molecules, hazes, earth").into())
+        }
+    }
 }
 
-/// Cross-sections and vertical optical depths of the standard atmosphere.
+/// Cross-sections and vertical optical depths of the standard atmosphere; ozone of 300 Dobson units.
 fn molecules() {
     println!(
-        "nm, cross-section m^2, King factor, depolarization, Rayleigh optical depth, ozone optical depth (300 DU)"
+        "| λ, nm | cross-section, m² | F | depolarisation | Rayleigh optical depth | ozone optical depth |"
     );
+    println!("|---|---|---|---|---|---|");
     let (air, ozone) = (
         gases::air(rayleigh::STANDARD_PRESSURE_PA),
         gases::ozone(300.0),
@@ -26,7 +44,7 @@ fn molecules() {
     ] {
         let king = rayleigh::king_factor(nm, rayleigh::CO2_PPM);
         println!(
-            "{nm}, {:.4e}, {king:.4}, {:.4}, {:.4}, {:.4}",
+            "| {nm} | {:.3e} | {king:.4} | {:.4} | {:.4} | {:.4} |",
             rayleigh::cross_section_m2(nm, rayleigh::CO2_PPM),
             rayleigh::depolarization_of_king_factor(king),
             air.optical_depth(0.0, 100e3, nm),
@@ -36,28 +54,59 @@ fn molecules() {
 }
 
 /// The three ways to state the same haze.
-fn haze() -> Result<(), Box<dyn std::error::Error>> {
-    println!("\natmosphere, optical depth of aerosol at 550 nm, turbidity, visibility km");
+fn hazes() -> Fallible {
+    println!("| preset | optical depth | turbidity | visibility |\n|---|---|---|---|");
+    let km = |extinction, clear| visibility_of_extinction_m(extinction, clear) / 1e3;
+    let clear = preset("clear")?.clear_air();
+    println!("| no aerosol | 0 | 1 | {:.0} km |", km(0.0, clear));
     for name in ["clear", "average", "hazy"] {
         let air = preset(name)?;
         let aerosol = air.constituent("aerosol").ok_or("no aerosol")?;
         let depth = aerosol.optical_depth(0.0, air.planet.top_altitude_m, 550.0);
         println!(
-            "{name}, {depth:.3}, {:.2}, {:.1}",
+            "| `{name}` | {depth:.2} | {:.2} | {:.0} km |",
             turbidity_of_optical_depth(depth, air.clear_air()),
-            visibility_of_extinction_m(aerosol.extinction_per_m(550.0), air.clear_air()) / 1e3,
+            km(aerosol.extinction_per_m(550.0), air.clear_air()),
         );
     }
-    let clear = preset("clear")?.clear_air();
-    println!(
-        "no aerosol, 0, 1, {:.1}",
-        visibility_of_extinction_m(0.0, clear) / 1e3
-    );
+    Ok(())
+}
+
+/// What the presets of the Earth are made of.
+fn earth() -> Fallible {
+    println!("| constituent | optical depth at 440 / 550 / 680 nm | what |\n|---|---|---|");
+    for (preset_name, part_name, what) in [
+        (
+            "clear",
+            "rayleigh",
+            "dry air, 1013.25 hPa, standard-air profile, [depolarised](particles.md#phase-functions)",
+        ),
+        ("clear", "ozone", "300 Dobson units"),
+        (
+            "clear",
+            "aerosol",
+            "Ångström exponent 1.3, albedo 0.95, scale height 1.5 km, continental phase function",
+        ),
+        ("average", "aerosol", "the same, more of it"),
+        ("hazy", "aerosol", "single-scattering albedo 0.93"),
+    ] {
+        let air = preset(preset_name)?;
+        let part = air.constituent(part_name).ok_or("no such constituent")?;
+        let depths = [440.0, 550.0, 680.0].map(|nm| {
+            let depth = part.optical_depth(0.0, air.planet.top_altitude_m, nm);
+            format!("{depth:.4}")
+        });
+        let of = match part_name {
+            "aerosol" => format!(", `{preset_name}`"),
+            _ => String::new(),
+        };
+        println!("| `{part_name}`{of} | {} | {what} |", depths.join(" / "));
+    }
     Ok(())
 }
 
 /// What each atmosphere is made of.
-fn presets() -> Result<(), Box<dyn std::error::Error>> {
+fn presets() -> Fallible {
     for (name, _) in preset_names() {
         let air = preset(name)?;
         let planet = &air.planet;
@@ -94,7 +143,7 @@ fn presets() -> Result<(), Box<dyn std::error::Error>> {
 }
 
 /// The sun over Paris at midsummer, and how far the air lifts it.
-fn sun() -> Result<(), Box<dyn std::error::Error>> {
+fn sun() -> Fallible {
     let paris = Place {
         latitude_deg: 48.8584,
         longitude_deg: 2.2945,

@@ -1,60 +1,110 @@
-//! Where the short cuts of fog hold: the tables of the book's chapter on fog.
+//! Where the short cuts of fog hold: tables of the book's chapters on fog and on lamps, as it shows them (`scripts/book`).
 //!
-//! `cargo run --release -p airlight --example fog_study`
+//! `cargo run --release -p airlight --example fog_study`; with the word `split-sum`, `lamp`, `dimming` or `extinction` only
+//! that one.
 
 use airlight::axes::direction;
+use airlight::fog::lamp::{Passage, airlight_isotropic, airlight_without_extinction};
 use airlight::fog::{
     Fog, Ground, Layer, Light, Profile, Scattering, Sun, approximation, droplets::Droplets,
 };
+use airlight::medium::visibility::{Contrast, extinction_per_m, visibility_m};
 use airlight::spectrum::Spectrum;
+use std::error::Error;
 
-fn main() {
-    split_sum_map();
-    lamp_beside_the_line();
-    sun_undimmed();
+const TABLES: [(&str, fn()); 4] = [
+    ("split-sum", split_sum_map),
+    ("lamp", lamp_beside_the_line),
+    ("dimming", sun_undimmed),
+    ("extinction", lamp_without_extinction),
+];
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let only = std::env::args().nth(1);
+    let wanted = |name: &str| only.as_deref().is_none_or(|only| only == name);
+    if !TABLES.iter().any(|(name, _)| wanted(name)) {
+        let names = TABLES.map(|(name, _)| name).join(", ");
+        return Err(format!("there are {names}").into());
+    }
+    for (name, table) in TABLES.iter().filter(|(name, _)| wanted(name)) {
+        println!("{name}");
+        table();
+    }
+    Ok(())
 }
 
-/// Error of the split sum for sources that change exponentially along the line.
-fn split_sum_map() {
-    let rates = [-0.9, -0.5, -0.2, -0.05, 0.05, 0.2, 0.5, 1.0, 2.0, 5.0];
-    println!("Split sum against exact, percent: source e^-(k t), t the optical depth from the eye");
-    print!("{:>8}", "tau \\ k");
-    rates.iter().for_each(|k| print!("{k:>8}"));
-    println!();
-    for tau in [0.1, 0.2, 0.5, 1.0, 2.0, 4.0, 8.0] {
-        print!("{tau:>8}");
-        for k in rates {
-            print!("{:>8.1}", 100.0 * approximation::split_sum_error(tau, k));
-        }
-        println!();
+/// A number in two digits, or more where it has more before the point; at most `most` behind it.
+fn short(v: f64, most: i32) -> String {
+    let before = v.abs().max(1e-9).log10().floor() as i32;
+    let text = format!("{v:.0$}", (1 - before).clamp(0, most) as usize);
+    match text.trim_start_matches('-').parse() {
+        Ok(0.0) => text.trim_start_matches('-').to_owned(),
+        _ => text,
     }
 }
 
-/// Error of the split sum and of leaving out extinction, for a lamp beside the line of sight.
+/// Error of the split sum, percent, for sources that change as `e^-(k t)` with the optical depth t from the eye.
+fn split_sum_map() {
+    let rates = [-0.9, -0.5, -0.2, 0.2, 0.5, 1.0, 2.0, 5.0];
+    println!("| τ \\ k | {} |", rates.map(|k| k.to_string()).join(" | "));
+    println!("|---|---|---|---|---|---|---|---|---|");
+    for tau in [0.1, 0.5, 1.0, 2.0, 4.0, 8.0] {
+        let errors = rates.map(|k| short(100.0 * approximation::split_sum_error(tau, k), 1));
+        println!("| {tau} | {} |", errors.join(" | "));
+    }
+}
+
+/// Error of the split sum and of leaving out extinction, for a lamp halfway along the line of sight and h lengths of the line
+/// to its side.
 fn lamp_beside_the_line() {
+    println!("| τ | h | split sum | no extinction |\n|---|---|---|---|");
+    for (tau, aside) in [
+        (0.1, 0.1),
+        (0.5, 0.1),
+        (1.0, 0.01),
+        (1.0, 0.1),
+        (1.0, 0.5),
+        (3.0, 0.1),
+        (3.0, 0.5),
+    ] {
+        // A line of length 1 with extinction tau; source e^-(tau r) / r^2 but for constants.
+        let source = |s: f64| {
+            let r2 = (s - 0.5).powi(2) + aside * aside;
+            (-tau * r2.sqrt()).exp() / r2
+        };
+        let exact = mean(aside, |s| source(s) * (-tau * s).exp());
+        let split = mean(aside, source) * -f64::exp_m1(-tau) / tau;
+        let none = mean(aside, |s| 1.0 / ((s - 0.5).powi(2) + aside * aside));
+        println!(
+            "| {tau} | {aside} | {} % | {:.0} % |",
+            short(100.0 * (split / exact - 1.0), 1),
+            100.0 * (none / exact - 1.0)
+        );
+    }
+}
+
+/// How much too bright the glow of a lamp is without extinction: 5 m ahead and 1 m beside a line of 20 m.
+fn lamp_without_extinction() {
     println!(
-        "\nLamp halfway along the line, h to its side (in lengths of the line): percent against exact"
+        "| extinction, 1/m | visibility (5 %) | without extinction it is too bright by |\n|---|---|---|"
     );
-    println!(
-        "{:>8}{:>8}{:>14}{:>16}",
-        "tau", "h", "split sum", "no extinction"
-    );
-    for tau in [0.1, 0.5, 1.0, 3.0] {
-        for aside in [0.01, 0.1, 0.5, 2.0] {
-            // A line of length 1 with extinction tau; source e^-(tau r) / r^2 but for constants.
-            let source = |s: f64| {
-                let r2 = (s - 0.5).powi(2) + aside * aside;
-                (-tau * r2.sqrt()).exp() / r2
-            };
-            let exact = mean(aside, |s| source(s) * (-tau * s).exp());
-            let split = mean(aside, source) * -f64::exp_m1(-tau) / tau;
-            let none = mean(aside, |s| 1.0 / ((s - 0.5).powi(2) + aside * aside));
-            println!(
-                "{tau:>8}{aside:>8}{:>14.1}{:>16.0}",
-                100.0 * (split / exact - 1.0),
-                100.0 * (none / exact - 1.0)
-            );
-        }
+    let passage = Passage {
+        nearest_m: 1.0,
+        start_m: -5.0,
+        length_m: 20.0,
+    };
+    let five = Contrast::FivePercent;
+    for extinction in [
+        extinction_per_m(100.0, five),
+        0.27,
+        extinction_per_m(10.0, five),
+    ] {
+        let ratio =
+            airlight_without_extinction(&passage) / airlight_isotropic(&passage, extinction);
+        println!(
+            "| {extinction:.2} | {:.0} m | {ratio:.2} |",
+            visibility_m(extinction, five)
+        );
     }
 }
 
@@ -73,19 +123,14 @@ fn mean(aside: f64, f: impl Fn(f64) -> f64) -> f64 {
         / f64::from(STEPS)
 }
 
-/// Ishiyama's model as printed against the same with the sun's own way through the fog.
+/// Ishiyama's model as printed against the same with the sun's own way through the fog: path radiance of sunlight without its
+/// dimming in the fog over that with it. Height fog, scale height 50 m, visibility at the ground as given, a level line of
+/// 150 m, the eye at 2 m, away from the sun.
 fn sun_undimmed() {
-    println!(
-        "\nHeight fog, scale height 50 m, visibility at the ground as given, 150 m level line, eye at 2 m, away from the sun:"
-    );
-    println!("path radiance of sunlight without its dimming in the fog over that with it");
-    print!("{:>14}", "visibility m");
+    println!("| visibility | sun 5° | 15° | 30° | 60° | 90° |\n|---|---|---|---|---|---|");
     let suns = [5.0, 15.0, 30.0, 60.0, 90.0];
-    suns.iter()
-        .for_each(|e| print!("{:>9}", format!("sun {e}")));
-    println!();
     for visibility in [5000.0, 1000.0, 300.0, 100.0] {
-        print!("{visibility:>14}");
+        print!("| {visibility} m |");
         for elevation in suns {
             let path = |scattering| {
                 let layer: Layer<1> = Layer {
@@ -107,11 +152,13 @@ fn sun_undimmed() {
                 fog.along(2.0, direction(180.0, 0.0), 150.0).path_radiance[0]
             };
             let ratio = path(Scattering::Undimmed) / path(Scattering::Single);
-            let text = match ratio < 1e3 {
-                true => format!("{ratio:.2}"),
-                false => "> 1000".to_owned(),
+            let text = match ratio {
+                1e3.. => "> 1000".to_owned(),
+                1e2.. => format!("{ratio:.0}"),
+                1e1.. => format!("{ratio:.1}"),
+                _ => format!("{ratio:.2}"),
             };
-            print!("{text:>9}");
+            print!(" {text} |");
         }
         println!();
     }

@@ -1,6 +1,6 @@
 //! Prints the numbers of the book's chapter on the sky of 1987: `cargo run --release -p airlight --example klassen1987`.
-//! With the word `path`, `blue`,
-//! `error`, `coherence` or `speed` only that part.
+//! With the word `path`, `blue`, `error`, `coherence` or `speed` only that part. What the book shows is printed as it shows it
+//! (`scripts/book`).
 
 use airlight::axes::direction;
 use airlight::classic::ClassicSky;
@@ -14,27 +14,35 @@ use airlight::spectrum::rgb::{apply, srgb_encode};
 use airlight::spectrum::{RgbSpace, WavelengthGrid};
 use glam::DVec3;
 use std::collections::HashSet;
+use std::error::Error;
 use std::time::Instant;
 
-fn main() -> Result<(), Klassen1987Error> {
-    let part = std::env::args().nth(1);
-    let wanted = |name: &str| part.as_deref().is_none_or(|part| part == name);
-    if wanted("path") {
-        path()?;
+type Part = fn() -> Result<(), Klassen1987Error>;
+
+const PARTS: [(&str, Part); 5] = [
+    ("path", path),
+    ("blue", blue),
+    ("error", error),
+    ("coherence", coherence),
+    ("speed", speed),
+];
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let only = std::env::args().nth(1);
+    let wanted = |name: &str| only.as_deref().is_none_or(|only| only == name);
+    if !PARTS.iter().any(|(name, _)| wanted(name)) {
+        return Err(format!("there is {}", PARTS.map(|(name, _)| name).join(", ")).into());
     }
-    if wanted("blue") {
-        blue()?;
-    }
-    if wanted("error") {
-        error()?;
-    }
-    if wanted("coherence") {
-        coherence()?;
-    }
-    if wanted("speed") {
-        speed()?;
+    for (_, part) in PARTS.iter().filter(|(name, _)| wanted(name)) {
+        part()?;
     }
     Ok(())
+}
+
+/// A number in two digits, or more where it has more before the point.
+fn short(v: f64) -> String {
+    let before = v.abs().log10().floor() as i32;
+    format!("{v:.0$}", (1 - before).clamp(0, 4) as usize)
 }
 
 /// Where the pixels of a picture look: 100 degrees across, 50 high, its lower edge on the horizon, the sun's side in the
@@ -50,20 +58,57 @@ fn pixels(width: u32) -> impl Iterator<Item = DVec3> {
     })
 }
 
-/// Table I: seconds for a picture on one thread, colours remembered and not.
+/// Table I: seconds for a picture on one thread, colours remembered and not, beside the paper's.
 fn speed() -> Result<(), Klassen1987Error> {
-    println!("table I: sun, variant, pixels, s, ns a pixel, s without coherence, ns a pixel");
-    for (sun, elevation_deg) in [("noon", 60.0), ("sunset", 1.0)] {
-        for (variant, settings) in [
-            ("printed", Klassen1987Settings::default().printed()),
-            ("corrected", Klassen1987Settings::default()),
-        ] {
-            let toward = direction(180.0, elevation_deg);
-            Klassen1987::new(&settings, toward)?;
-            for width in [512, 256, 128, 64, 32, 16] {
-                let count = width * width / 2;
-                // A model of its own, so that its cells are part of the time.
-                let model = Klassen1987::new(&settings, toward)?;
+    println!(
+        "| pixels | 1987, s | µs a pixel | printed, s | µs a pixel | without coherence | corrected, s | µs a pixel | without coherence |"
+    );
+    println!("|---|---|---|---|---|---|---|---|---|");
+    // The paper's seconds and microseconds a pixel.
+    for (sun, elevation_deg, paper) in [
+        (
+            "noon: ",
+            60.0,
+            [
+                (153, 1167),
+                (60, 1831),
+                (25, 3015),
+                (11, 5225),
+                (5, 10547),
+                (3, 20313),
+            ],
+        ),
+        (
+            "sunset: ",
+            1.0,
+            [
+                (654, 4990),
+                (309, 9430),
+                (144, 17578),
+                (64, 31250),
+                (31, 61328),
+                (13, 101_563),
+            ],
+        ),
+    ] {
+        let toward = direction(180.0, elevation_deg);
+        let forms = [
+            Klassen1987Settings::default().printed(),
+            Klassen1987Settings::default(),
+        ];
+        for (row, (paper_s, paper_us)) in paper.into_iter().enumerate() {
+            let width = 512 >> row;
+            let count = width * width / 2;
+            let a_pixel = |seconds: f64| 1e6 * seconds / f64::from(count);
+            print!(
+                "| {}{count} | {paper_s} | {paper_us} |",
+                if row == 0 { sun } else { "" },
+            );
+            for settings in &forms {
+                // Once before, so that what all models share is there; then a model of its own, so that its cells are part of
+                // the time.
+                Klassen1987::new(settings, toward)?;
+                let model = Klassen1987::new(settings, toward)?;
                 let start = Instant::now();
                 let mut walk = model.walk();
                 let sum: f64 = pixels(width).map(|look| walk(look)[1]).sum();
@@ -72,12 +117,14 @@ fn speed() -> Result<(), Klassen1987Error> {
                 let plain: f64 = pixels(width).map(|look| model.sky_xyz(look)[1]).sum();
                 let without_s = start.elapsed().as_secs_f64();
                 assert!((sum / plain - 1.0).abs() < 0.01);
-                println!(
-                    "{sun}, {variant}, {count}, {with_s:.5}, {:.0}, {without_s:.5}, {:.0}",
-                    1e9 * with_s / f64::from(count),
-                    1e9 * without_s / f64::from(count),
+                print!(
+                    " {} | {} | {} |",
+                    short(with_s),
+                    short(a_pixel(with_s)),
+                    short(a_pixel(without_s))
                 );
             }
+            println!();
         }
     }
     Ok(())
@@ -114,8 +161,9 @@ fn sky_directions(sun: DVec3) -> Vec<DVec3> {
 
 /// The paper's blue beside the solver's clear sky: mean luminance and colour.
 fn blue() -> Result<(), Klassen1987Error> {
-    println!("clear sky: sun, mean luminance of the solver, of the paper's blue, x y, x y");
-    for sun_deg in [0.0, 1.0, 2.0, 5.0, 10.0, 20.0, 40.0, 60.0, 90.0] {
+    println!("| sun | solver, cd/m² | x, y | paper's blue, cd/m² | x, y |");
+    println!("|---|---|---|---|---|");
+    for sun_deg in [90.0, 40.0, 20.0, 5.0, 0.0] {
         let sun = direction(180.0, sun_deg);
         let clear = Klassen1987Settings {
             haze_extinction_per_m: 0.0,
@@ -132,12 +180,15 @@ fn blue() -> Result<(), Klassen1987Error> {
             Ok(sum)
         };
         let (ours, paper) = (mean(&clear)?, mean(&clear.clone().printed())?);
-        let xy = |c: [f64; 3]| [c[0], c[1]].map(|v| v / c.iter().sum::<f64>());
+        let xy = |c: [f64; 3]| {
+            let sum: f64 = c.iter().sum();
+            format!("{:.3}, {:.3}", c[0] / sum, c[1] / sum)
+        };
         println!(
-            "{sun_deg}, {:.0}, {:.0}, {:.3?}, {:.3?}",
+            "| {sun_deg}° | {:.0} | {} | {:.0} | {} |",
             ours[1],
-            paper[1],
             xy(ours),
+            paper[1],
             xy(paper)
         );
     }
@@ -146,10 +197,8 @@ fn blue() -> Result<(), Klassen1987Error> {
 
 /// The model against the solver in its own layers of haze, and in an average day's air.
 fn error() -> Result<(), Klassen1987Error> {
-    println!(
-        "against the solver: air, sun, variant, mean luminance %, rms luminance %, mean CIEDE2000, the same at equal \
-         luminance, sun's irradiance %, its CIEDE2000 at equal luminance"
-    );
+    println!("| air | sun | form | mean | rms | CIEDE2000 | colour alone | sun |");
+    println!("|---|---|---|---|---|---|---|---|");
     let layers = Klassen1987Settings::default();
     let average = presets::earth::average();
     for (air, atmosphere, settings) in [
@@ -160,8 +209,10 @@ fn error() -> Result<(), Klassen1987Error> {
             Klassen1987Settings::of(&average),
         ),
     ] {
+        let mut air = air;
         for sun_deg in [1.0, 5.0, 20.0, 60.0] {
             let sun = direction(180.0, sun_deg);
+            let mut sun_text = format!("{sun_deg}°");
             let solved = SkySettings {
                 suns: SunCoverage::near(sun_deg, 0.0),
                 ..SkySettings::default()
@@ -184,9 +235,12 @@ fn error() -> Result<(), Klassen1987Error> {
                 let [bias, rms, seen, colour] = differences(&colours, &truth);
                 let got_sun = model.grid().to_xyz(&sunlight);
                 println!(
-                    "{air}, {sun_deg}, {variant}, {bias:.1}, {rms:.1}, {seen:.1}, {colour:.1}, {:.1}, {:.1}",
+                    "| {} | {} | {variant} | {bias:+.0} % | {rms:.0} % | {} | {} | {:+.0} % |",
+                    std::mem::take(&mut air),
+                    std::mem::take(&mut sun_text),
+                    short(seen),
+                    short(colour),
                     100.0 * (got_sun[1] / true_sun[1] - 1.0),
-                    ciede2000(lab(got_sun, got_sun[1]), lab(true_sun, true_sun[1])),
                 );
             }
         }

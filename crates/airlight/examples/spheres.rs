@@ -1,39 +1,86 @@
-//! Prints the numbers of the book's chapter on spheres: `cargo run --release -p airlight --example spheres`.
+//! Prints the numbers of the book's chapter on spheres, as it shows them (`scripts/book`):
+//! `cargo run --release -p airlight --example spheres` for what published drops do to light; with `times` behind it, how long
+//! their tables take.
 
 use airlight::optics::mie::droplets::Drops;
 use airlight::optics::mie::{MieError, Particles};
 use airlight::spectrum::{RgbSpace, WavelengthGrid};
+use std::error::Error;
 use std::time::Instant;
 
-fn main() -> Result<(), MieError> {
-    presets()
+fn main() -> Result<(), Box<dyn Error>> {
+    match std::env::args().nth(1).as_deref() {
+        None => Ok(drops()?),
+        Some("times") => Ok(times()?),
+        Some(other) => Err(format!("there is no `{other}`: leave it out, or say `times`").into()),
+    }
 }
 
-/// Published drops at 550 nm, and how long their tables take.
-fn presets() -> Result<(), MieError> {
+/// What kind it is besides its name, and who published it.
+fn source(drops: Drops) -> (&'static str, &'static str) {
+    match drops {
+        Drops::HeavyAdvectionFog => ("", "Shettle and Fenn 1979, fog 1"),
+        Drops::ModerateAdvectionFog => ("", "fog 2"),
+        Drops::HeavyRadiationFog => ("", "fog 3"),
+        Drops::ModerateRadiationFog => (", `mist`", "fog 4"),
+        Drops::CloudC1 => ("", "Deirmendjian 1969, table 4"),
+        Drops::CloudC2 => (", makes coronas", "the same"),
+        Drops::CloudC3 => (", mother of pearl", "the same"),
+        Drops::HazeM | Drops::HazeL | Drops::HazeH => ("", "the same"),
+        Drops::Rain => (", 1 mm an hour", "Feingold and Levin 1986"),
+    }
+}
+
+/// A radius in so many digits that all that are published show.
+fn radius(um: f64) -> String {
+    match um < 9.95 && (um - um.round()).abs() > 1e-9 {
+        true => format!("{um:.2}"),
+        false => format!("{um:.0}"),
+    }
+}
+
+/// Published drops at 550 nm.
+fn drops() -> Result<(), MieError> {
     println!(
-        "kind, mode radius um, effective radius um, effective variance, extinction 1/m for 1 g/m^3, asymmetry, \
-         extinction at 450 and 650 nm over that at 550, angles, s for 16 wavelengths, s for RGB after that"
+        "| name | source | mode radius, µm | effective radius, µm | variance | extinction of 1 g/m³, 1/m | mean cosine | extinction at 450 and 650 nm over 550 nm |"
     );
-    let grid = WavelengthGrid::standard();
+    println!("|---|---|---|---|---|---|---|---|");
     for (name, drops) in Drops::ALL {
         let sizes = drops.sizes();
         let water = Particles::water(sizes)?;
         let green = water.bulk(550.0)?;
         let [blue, red] = [water.bulk(450.0)?, water.bulk(650.0)?]
             .map(|other| other.extinction_um2() / green.extinction_um2());
+        let extinction = green.extinction_per_m_by_mass(1.0, 1.0);
+        let (remark, source) = source(drops);
+        println!(
+            "| `{name}`{remark} | {source} | {} | {} | {:.3} | {} | {:.4} | {blue:.3}, {red:.3} |",
+            radius(sizes.mode_radius_um()),
+            radius(sizes.effective_radius_um()),
+            sizes.effective_variance(),
+            match extinction < 1.0 {
+                true => format!("{extinction:.4}"),
+                false => format!("{extinction:.2}"),
+            },
+            green.asymmetry,
+        );
+    }
+    Ok(())
+}
+
+/// How long tables take, the first time they are asked for.
+fn times() -> Result<(), MieError> {
+    println!("| name | angles | 16 wavelengths, s | RGB after that, s |");
+    println!("|---|---|---|---|");
+    let grid = WavelengthGrid::standard();
+    for (name, drops) in Drops::ALL {
         let start = Instant::now();
         let table = drops.table(grid.wavelengths_nm())?;
         let spectral_s = start.elapsed().as_secs_f64();
         let start = Instant::now();
         drops.rgb_table(RgbSpace::Srgb)?;
         println!(
-            "{name}, {:.3}, {:.3}, {:.3}, {:.4}, {:.4}, {blue:.3}, {red:.3}, {}, {spectral_s:.2}, {:.3}",
-            sizes.mode_radius_um(),
-            sizes.effective_radius_um(),
-            sizes.effective_variance(),
-            green.extinction_per_m_by_mass(1.0, 1.0),
-            green.asymmetry,
+            "| `{name}` | {} | {spectral_s:.1} | {:.2} |",
             table.phase.angles_rad().len(),
             start.elapsed().as_secs_f64(),
         );

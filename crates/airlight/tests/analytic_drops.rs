@@ -54,10 +54,18 @@ const STATED: [(f64, [f64; 2], f64, [f64; 5]); 5] = [
 
 #[test]
 fn the_analytic_function_is_as_near_to_theory_as_the_book_says() {
-    println!("um: misplaced, of it beyond 20 degrees; mean cosine; at 0, 10, 90, 142, 180 degrees");
+    println!(
+        "\n| diameter, µm | light sent elsewhere | of it beyond 20° | mean cosine | at 0° | 10° | 90° | bow, 142° | 180° |"
+    );
+    println!("|---|---|---|---|---|---|---|---|---|");
     for (diameter_um, stated, stated_cosines, stated_ratios) in STATED {
         let (misplaced, cosines, ratios) = compare(diameter_um);
-        println!("{diameter_um}: {misplaced:.3?}; {cosines:+.4}; {ratios:.2?}");
+        let [all, wide] = misplaced.map(|share| 100.0 * share);
+        let [forward, aside @ ..] = ratios;
+        println!(
+            "| {diameter_um} | {all:.1} % | {wide:.1} % | {cosines:+.3} | {forward:.1} | {} |",
+            aside.map(|ratio| format!("{ratio:.2}")).join(" | ")
+        );
         for (got, stated) in misplaced.into_iter().zip(stated) {
             assert!((got - stated).abs() < 2e-3, "{diameter_um}: {got}");
         }

@@ -1,63 +1,69 @@
 //! The sky article's shader and the steps beyond it.
 
-use crate::measure::{Errors, SUNS_DEG, fan, seconds_a_line, sun};
+use crate::Fallible;
+use crate::measure::{Errors, SUNS_DEG, fan, head, ratio, seconds_a_line, sun};
 use airlight::classic::single_scattering::{Settings, SkyArticle, Variant};
 use airlight::medium::presets::published;
 use airlight::sky::{Scattering, Sky, SkySettings, View};
 use airlight::spectrum::WavelengthGrid;
 use glam::DVec3;
 
-const VARIANTS: [Variant; 5] = [
-    Variant::Printed,
-    Variant::PrintedF64,
-    Variant::Converged,
-    Variant::Table,
-    Variant::Multiple,
+const VARIANTS: [(&str, Variant); 5] = [
+    ("printed", Variant::Printed),
+    ("printed, f64", Variant::PrintedF64),
+    ("converged", Variant::Converged),
+    ("table", Variant::Table),
+    ("multiple", Variant::Multiple),
 ];
 
-/// Prints errors against our solver, and speeds.
-///
-/// # Errors
-/// None with these settings.
-pub fn print() -> Result<(), Box<dyn std::error::Error>> {
-    println!(
-        "The sky article on its own air: rms (worst) percent of a channel, time a line of sight"
-    );
+/// Errors against our solver's light scattered once, percent of a channel.
+pub fn once() -> Fallible {
+    against(
+        Scattering::Single,
+        &["printed", "printed, f64", "converged", "table"],
+    )
+}
+
+/// Errors against all orders of our solver.
+pub fn all() -> Fallible {
+    against(
+        Scattering::All,
+        &["printed", "converged", "table", "multiple"],
+    )
+}
+
+fn against(scattering: Scattering, names: &[&str]) -> Fallible {
+    head(" ");
+    let settings = SkySettings {
+        scattering,
+        ..SkySettings::fine()
+    };
     let air = published::sky_article();
-    for scattering in [Scattering::Single, Scattering::All] {
-        let settings = SkySettings {
-            scattering,
-            ..SkySettings::fine()
-        };
-        let truth = Sky::prepare(&air, &WavelengthGrid::rgb(), &settings)?;
-        println!("\nagainst our solver, {scattering:?}; suns {SUNS_DEG:?}");
-        for variant in VARIANTS {
-            let mut row = format!("  {:11}", format!("{variant:?}"));
-            for sun_deg in SUNS_DEG {
-                let sky = article(variant, sun_deg)?;
-                row += &format!(" | {}", errors(&sky, &truth.view(1.0, sun(sun_deg))));
-            }
-            println!("{row}");
+    let truth = Sky::prepare(&air, &WavelengthGrid::rgb(), &settings)?;
+    for (name, variant) in VARIANTS.into_iter().filter(|(n, _)| names.contains(n)) {
+        print!("| {name} |");
+        for sun_deg in SUNS_DEG {
+            let sky = article(variant, sun_deg)?;
+            print!(" {} |", errors(&sky, &truth.view(1.0, sun(sun_deg))));
         }
+        println!();
     }
-    println!(
-        "\ntime a line, in printed f32 ones ({} ns here)",
-        (1e9 * time(Variant::Printed)?).round()
-    );
-    for variant in VARIANTS {
-        println!(
-            "  {:11} {:.2}",
-            format!("{variant:?}"),
-            time(variant)? / time(Variant::Printed)?
-        );
+    Ok(())
+}
+
+/// Times of a line of sight, in those of the printed shader.
+pub fn times() -> Fallible {
+    let printed_s = time(Variant::Printed)?;
+    println!("| | time |\n|---|---|");
+    println!("| printed | 1 ({:.1} µs) |", 1e6 * printed_s);
+    for (name, variant) in VARIANTS.into_iter().skip(1) {
+        println!("| {name} | {} |", ratio(time(variant)? / printed_s));
     }
+    let air = published::sky_article();
     let solver = Sky::prepare(&air, &WavelengthGrid::rgb(), &SkySettings::default())?;
     let view = solver.view(1.0, sun(30.0));
     let ours = seconds_a_line(|d| view.along(d, None));
-    println!(
-        "  our solver, all orders, 3 wavelengths {:.2}",
-        ours / time(Variant::Printed)?
-    );
+    println!("| our solver, all orders | {} |", ratio(ours / printed_s));
     Ok(())
 }
 

@@ -52,10 +52,29 @@ impl Errors {
 
 impl std::fmt::Display for Errors {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let digits = |v: f64| if v.abs() < 0.1 { 3 } else { 1 };
+        let digits = |v: f64| match v.abs() {
+            9.95.. => 0,
+            0.995.. => 1,
+            0.0995.. => 2,
+            _ => 3,
+        };
         let (rms, worst) = (digits(self.rms), digits(self.worst));
         write!(f, "{:.rms$} ({:+.worst$})", self.rms, self.worst)
     }
+}
+
+/// A ratio of times: two digits, or more where it has more before the point.
+pub fn ratio(v: f64) -> String {
+    let before = v.abs().max(1e-9).log10().floor() as i32;
+    format!("{v:.0$}", (1 - before).max(0) as usize)
+}
+
+/// The head of a table over [`SUNS_DEG`].
+pub fn head(columns: &str) {
+    let suns = SUNS_DEG.map(|sun| format!("{sun}°")).join(" | ");
+    println!("|{columns} | sun {suns} |");
+    let count = columns.split('|').count() + SUNS_DEG.len();
+    println!("|{}", "---|".repeat(count));
 }
 
 /// Seconds that a line of sight takes, on average over the fan: the fastest of many rounds.

@@ -1,6 +1,6 @@
 //! Preetham, Hosek and Wilkie, Hillaire, and four orders.
 
-use crate::measure::{Errors, SUNS_DEG, fan, seconds_a_line, sun};
+use crate::measure::{Errors, SUNS_DEG, fan, head, ratio, seconds_a_line, sun};
 use airlight::classic::ClassicSky;
 use airlight::classic::four_orders::FourOrders;
 use airlight::classic::hillaire2020::Hillaire2020;
@@ -14,46 +14,70 @@ use std::time::Instant;
 
 type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 
-/// Prints errors of Y and Z against our solver, the zenith at dusk, and speeds.
-///
-/// # Errors
-/// None with these settings.
-pub fn print() -> Fallible<()> {
-    for name in ["clear", "average", "hazy"] {
-        let air = preset(name)?;
-        let turbidity = turbidity(&air)?;
-        println!(
-            "\nEarth, {name}, turbidity {turbidity:.2}: rms (worst) percent of Y, then of Z; suns {SUNS_DEG:?}"
-        );
-        let grid = WavelengthGrid::standard();
-        let truth = Sky::prepare(&air, &grid, &SkySettings::default())?;
-        for model in MODELS {
-            let (mut luminance, mut blue) = (format!("  {model:14} Y"), format!("  {:14} Z", ""));
-            for sun_deg in SUNS_DEG {
-                let sky = sky(model, &air, turbidity, sun_deg)?;
-                let view = truth.view(2.0, sun(sun_deg));
-                let both: Vec<_> = fan()
-                    .into_iter()
-                    .map(|d| (sky.sky_xyz(d), grid.to_xyz(&view.along(d, None).radiance())))
-                    .collect();
-                let of = |i: usize| Errors::of(both.iter().map(|(got, want)| (got[i], want[i])));
-                luminance += &format!(" | {}", of(1));
-                blue += &format!(" | {}", of(2));
-            }
-            println!("{luminance}\n{blue}");
-        }
+/// Names, as the program has them and as the book writes them.
+const MODELS: &[(&str, &str)] = &[
+    ("preetham", "Preetham"),
+    #[cfg(feature = "hosek-wilkie")]
+    ("hosek-wilkie", "Hosek and Wilkie"),
+    ("hillaire2020", "Hillaire"),
+    ("four orders", "four orders"),
+];
+
+/// Errors of Y and of Z against our solver in average haze, percent.
+pub fn average() -> Fallible<()> {
+    head(" | ");
+    let air = preset("average")?;
+    let truth = Sky::prepare(&air, &WavelengthGrid::standard(), &SkySettings::default())?;
+    for (model, name) in MODELS {
+        let [luminance, blue] = errors(model, &air, &truth)?;
+        println!("| {name} | Y | {luminance} |");
+        println!("| | Z | {blue} |");
     }
-    dusk()?;
-    speeds()
+    Ok(())
 }
 
-const MODELS: &[&str] = &[
-    "preetham",
-    #[cfg(feature = "hosek-wilkie")]
-    "hosek-wilkie",
-    "hillaire2020",
-    "four orders",
-];
+/// Errors of Y in clear air and in haze. Preetham's model begins at a turbidity of 2.
+pub fn luminance() -> Fallible<()> {
+    head(" | air");
+    let mut airs = Vec::new();
+    for name in ["clear", "hazy"] {
+        let air = preset(name)?;
+        let truth = Sky::prepare(&air, &WavelengthGrid::standard(), &SkySettings::default())?;
+        airs.push((name, air, truth));
+    }
+    for (model, name) in MODELS {
+        let mut name = *name;
+        for (air_name, air, truth) in &airs {
+            let turbidity = turbidity(air)?;
+            if *model != "preetham" || turbidity >= 2.0 {
+                let [luminance, _] = errors(model, air, truth)?;
+                let name = std::mem::take(&mut name);
+                println!("| {name} | {air_name} ({turbidity:.2}) | {luminance} |");
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Cells of errors of Y and of Z, under each sun.
+fn errors(model: &str, air: &Atmosphere, truth: &Sky) -> Fallible<[String; 2]> {
+    let turbidity = turbidity(air)?;
+    let mut cells = [Vec::new(), Vec::new()];
+    for sun_deg in SUNS_DEG {
+        let sky = sky(model, air, turbidity, sun_deg)?;
+        let view = truth.view(2.0, sun(sun_deg));
+        let pair = |d| {
+            let line = view.along(d, None).radiance();
+            (sky.sky_xyz(d), truth.grid().to_xyz(&line))
+        };
+        let both: Vec<_> = fan().into_iter().map(pair).collect();
+        for (cells, i) in cells.iter_mut().zip([1, 2]) {
+            let of = Errors::of(both.iter().map(|(got, want)| (got[i], want[i])));
+            cells.push(of.to_string());
+        }
+    }
+    Ok(cells.map(|cells| cells.join(" | ")))
+}
 
 fn sky(
     model: &str,
@@ -89,24 +113,32 @@ fn turbidity(air: &Atmosphere) -> Fallible<f64> {
     Ok(turbidity_of_optical_depth(depth, air.clear_air()))
 }
 
-/// How the zenith fades.
-fn dusk() -> Fallible<()> {
+/// How the luminance of the zenith fades, cd/m^2.
+pub fn zenith() -> Fallible<()> {
     const SUNS_DEG: [f64; 5] = [10.0, 2.0, 0.0, -3.0, -6.0];
     let air = preset("average")?;
     let grid = WavelengthGrid::standard();
     let truth = Sky::prepare(&air, &grid, &SkySettings::default())?;
-    println!("\nzenith luminance, cd/m^2, suns {SUNS_DEG:?}");
+    let suns = SUNS_DEG.map(|sun| format!("{sun}°")).join(" | ");
+    println!("| sun | {suns} |\n|---|---|---|---|---|---|");
     let row = |name: &str, of: &dyn Fn(f64) -> Option<f64>| {
-        let values = SUNS_DEG.map(|s| of(s).map_or("none".into(), |y| format!("{y:.1}")));
-        println!("  {name:14} {}", values.join(" | "));
+        let cell = |y: f64| {
+            if y < 100.0 {
+                format!("{y:.1}")
+            } else {
+                format!("{y:.0}")
+            }
+        };
+        let values = SUNS_DEG.map(|sun| of(sun).map_or(String::new(), cell));
+        println!("| {name} | {} |", values.join(" | "));
     };
     row("our solver", &|sun_deg| {
         let line = truth.view(2.0, sun(sun_deg)).along(DVec3::Y, None);
         Some(grid.to_xyz(&line.radiance())[1])
     });
     let turbidity = turbidity(&air)?;
-    for model in MODELS {
-        row(model, &|sun_deg| {
+    for (model, name) in MODELS {
+        row(name, &|sun_deg| {
             let sky = sky(model, &air, turbidity, sun_deg).ok()?;
             Some(sky.sky_xyz(DVec3::Y)[1])
         });
@@ -114,7 +146,8 @@ fn dusk() -> Fallible<()> {
     Ok(())
 }
 
-fn speeds() -> Fallible<()> {
+/// Times to prepare and of a line of sight, in our solver's; 16 wavelengths.
+pub fn times() -> Fallible<()> {
     let air = preset("average")?;
     let turbidity = turbidity(&air)?;
     let grid = WavelengthGrid::standard();
@@ -131,12 +164,12 @@ fn speeds() -> Fallible<()> {
     let solved = solved.ok_or("not solved")?;
     let view = solved.view(2.0, sun(30.0));
     let ours = seconds_a_line(|d| grid.to_xyz(&view.along(d, None).radiance()));
+    println!("| | to prepare | a line of sight |\n|---|---|---|");
     println!(
-        "\n16 wavelengths: time to prepare and a line of sight, in our solver's ({:.0} ms, {:.1} us here)",
-        1e3 * solving,
+        "| our solver, all suns | 1 ({solving:.1} s) | 1 ({:.0} µs) |",
         1e6 * ours
     );
-    for model in MODELS {
+    for (model, name) in MODELS {
         let mut made = None;
         let making = timed(&mut || {
             made = Some(sky(model, &air, turbidity, 30.0)?);
@@ -144,7 +177,11 @@ fn speeds() -> Fallible<()> {
         })?;
         let made = made.ok_or("not made")?;
         let line = seconds_a_line(|d| made.sky_xyz(d));
-        println!("  {model:14} {:.4} {:.4}", making / solving, line / ours);
+        println!(
+            "| {name} | {} | {} |",
+            ratio(making / solving),
+            ratio(line / ours)
+        );
     }
     Ok(())
 }

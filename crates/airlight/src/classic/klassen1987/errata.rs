@@ -34,7 +34,7 @@ fn integral(sun_deg: f64, elevation_deg: f64, path: HazePath) -> f64 {
     sum * length_m / f64::from(steps)
 }
 
-/// What is stated of eq. 27: its integral (29) against that over the way itself.
+/// What is stated of eq. 27: its integral (29) against that over the way itself. Prints the book's table with `--nocapture`.
 #[test]
 fn path_linear_in_radius() {
     let error = |sun, elevation| {
@@ -43,6 +43,14 @@ fn path_linear_in_radius() {
                 / integral(sun, elevation, HazePath::Exact)
                 - 1.0)
     };
+    println!("\n| line of sight | sun 2° | sun 20° | sun 60° |\n|---|---|---|---|");
+    for elevation in [0.0, 1.0, 2.0, 5.0, 10.0, 20.0] {
+        let cells = [2.0, 20.0, 60.0].map(|sun| match error(sun, elevation) {
+            error if error.abs() < 0.05 => "0.0 %".to_owned(),
+            error => format!("{error:+.1} %"),
+        });
+        println!("| {elevation}° | {} |", cells.join(" | "));
+    }
     for (sun, elevation, percent) in [
         (2.0, 1.0, -9.2),
         (20.0, 1.0, -16.4),

@@ -1,5 +1,5 @@
 use super::super::reference;
-use super::super::{PointLamp, SphereLamp, SpotLamp};
+use super::super::{LampSettings, PointLamp, SphereLamp, SpotLamp};
 use super::*;
 use crate::fog::droplets;
 use crate::fog::matter::{Layer, Matter};
@@ -85,14 +85,26 @@ fn uniform_fog_of_any_phase_function_converges_in_a_few_nodes() {
     }
 }
 
+/// A number of nodes, in bold where it is the default.
+fn row_of(nodes: usize) -> String {
+    match nodes == LampSettings::default().nodes {
+        true => format!("| **{nodes}** |"),
+        false => format!("| {nodes} |"),
+    }
+}
+
 #[test]
 #[ignore = "prints the table of the book"]
 fn print_convergence_in_uniform_fog() {
-    for g in [0.0, 0.5, 0.8, 0.9, 0.95, -0.3, -0.7] {
-        for nodes in [4, 6, 8, 10, 12, 16, 24] {
-            let (off, place) = worst_in_uniform_fog(&hg(g), nodes);
-            println!("g {g}, {nodes} nodes: {off:.1e} at {place}");
+    println!("\n| nodes | g = 0 | 0.5 | 0.8 | 0.9 | 0.95 | -0.3 | -0.7 |");
+    println!("|---|---|---|---|---|---|---|---|");
+    for nodes in [4, 6, 8, 10, 12, 16, 24] {
+        let mut row = row_of(nodes);
+        for g in [0.0, 0.5, 0.8, 0.9, 0.95, -0.3, -0.7] {
+            let (off, _) = worst_in_uniform_fog(&hg(g), nodes);
+            row += &format!(" {off:.1e} |");
         }
+        println!("{row}");
     }
 }
 
@@ -197,16 +209,21 @@ fn thinning_fog_converges() {
 #[test]
 #[ignore = "prints the table of the book"]
 fn print_convergence_in_thinning_fog() {
+    println!(
+        "\n| nodes a panel | median | 90 % below | 99 % below | worst |\n|---|---|---|---|---|"
+    );
+    let mut lines = 0;
     for nodes in [6, 8, 12, 16, 24] {
         let errors = errors_in_thinning_fog(nodes, 1);
         let [half, most, nearly] = [0.5, 0.9, 0.99].map(|share| below(&errors, share));
-        let (worst, place) = errors.last().expect("lines");
+        let (worst, _) = errors.last().expect("lines");
         println!(
-            "{nodes} nodes, {} lines: median {half:.1e}, 90 % {most:.1e}, 99 % {nearly:.1e}, \
-             worst {worst:.1e} at {place}",
-            errors.len()
+            "{} {half:.1e} | {most:.1e} | {nearly:.1e} | {worst:.1e} |",
+            row_of(nodes)
         );
+        lines = errors.len();
     }
+    println!("{lines} lines");
 }
 
 #[test]
