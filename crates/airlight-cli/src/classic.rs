@@ -59,18 +59,11 @@ fn model(
     scene: &Scene,
     sun: &Sun,
 ) -> Result<Arc<dyn ClassicSky>, CliError> {
+    refuse_unknown(air, scene)?;
     let direction = sun.direction();
     let eye_altitude_m = scene.eye_altitude_m;
     Ok(match air.solver {
-        SolverArg::Klassen1987 => {
-            if scene.eye_altitude_m > scene.atmosphere.planet.ground_altitude_m + ON_THE_GROUND_M {
-                return Err(CliError::usage(
-                    "--solver klassen1987 looks from the ground, but into a fog or at things: leave out --altitude-m and \
-                     --eye-height-m, or give --fog-visibility-m or --objects",
-                ));
-            }
-            Arc::new(of_1987(args, scene, sun)?)
-        }
+        SolverArg::Klassen1987 => Arc::new(of_1987(args, scene, sun)?),
         SolverArg::SingleScattering => {
             let settings = article_settings(args, eye_altitude_m);
             let refused = refused_by("single-scattering");
@@ -112,6 +105,29 @@ fn model(
             return Err(CliError::failure("this solver is no published model"));
         }
     })
+}
+
+/// Refuses what a model leaves out, and would draw wrongly without a word.
+fn refuse_unknown(air: &AirArgs, scene: &Scene) -> Result<(), CliError> {
+    let name = air.solver.name();
+    let height_m = scene.eye_altitude_m - scene.atmosphere.planet.ground_altitude_m;
+    match air.solver {
+        SolverArg::Klassen1987 if height_m > ON_THE_GROUND_M => Err(CliError::usage(
+            "--solver klassen1987 looks from the ground, but into a fog or at things: leave out --altitude-m and --eye-height-m, \
+             or give --fog-visibility-m or --objects",
+        )),
+        SolverArg::Preetham | SolverArg::HosekWilkie if height_m > ON_THE_GROUND_M => {
+            Err(CliError::usage(format!(
+                "--solver {name} looks from the ground: leave out --altitude-m and --eye-height-m"
+            )))
+        }
+        SolverArg::Hillaire2020 => Ok(()),
+        _ if air.scattering == ScatteringArg::Single => Err(CliError::usage(format!(
+            "--scattering single is for --solver orders, monte-carlo and hillaire2020: leave it out for {name}, which has orders of \
+             its own"
+        ))),
+        _ => Ok(()),
+    }
 }
 
 /// Bits that the model of 1987 remembers colours for: files may hold more than 8, and are exposed later.

@@ -39,6 +39,8 @@ fn models_refuse_what_they_do_not_know() {
     for (options, part) in [
         ("preetham --turbidity 1.3", "from 2 to 10"),
         ("preetham --variant printed", "one form only"),
+        ("preetham --altitude-m 3000", "looks from the ground"),
+        ("bruneton2008 --scattering single", "orders of its own"),
         ("single-scattering --altitude-m 80e3", "60 000 m"),
         ("hillaire2020 --zenith-lux 6.28", "single-scattering"),
         ("preetham --spectral", "hillaire2020"),

@@ -1,23 +1,18 @@
 //! One moment into files.
 
-use super::channels::{Channels, RgbWeights};
+use super::channels::Channels;
 use super::classic::{self, ClassicRows};
-use super::disc::Disc;
-use super::fog::Fog;
 use super::layout::{Layout, PictureFile};
-use super::objects::{self, ObjectRows, Things};
+use super::objects::{self, ObjectRows};
 use super::rows::{Layer, SkyRows};
+use super::shot::{Shot, Source};
 use super::{exposure, facts, monte_carlo};
-use crate::args::{CompressionArg, PrecisionArg, SkyArgs, SunDiscArg};
-use crate::classic::Lit;
+use crate::args::{CompressionArg, PrecisionArg, SkyArgs};
 use crate::error::CliError;
 use crate::interrupt::STOP;
-use crate::light::Illuminances;
-use crate::moment::Moment;
 use crate::progress::RowsBar;
 use crate::report;
 use crate::scene::{Scene, Sun};
-use airlight::sky::{Sky, SkyTable, SunCoverage};
 use airlight_render::objects::Objects;
 use airlight_render::output::exr::{ExrCompression, ExrOptions, ExrSample};
 use airlight_render::output::jpeg::JpegOptions;
@@ -25,10 +20,8 @@ use airlight_render::output::png::{PngDepth, PngOptions};
 use airlight_render::output::{Written, spectral};
 use airlight_render::tone::{ToneCurve, ToneMapper};
 use airlight_render::{Control, Frame, PictureFormat, PictureOptions, RowSource, write_picture};
-use glam::DVec3;
 use std::path::Path;
 use std::sync::Arc;
-use std::time::Duration;
 
 /// What is drawn and how.
 pub struct Drawing<'a> {
@@ -88,159 +81,6 @@ impl Setup {
     }
 }
 
-/// What is made ready once for all moments.
-pub enum Prepared {
-    /// The light inside the air.
-    Solved(Box<Sky>),
-    /// Nothing: a published model answers for each moment on its own.
-    Classic,
-}
-
-impl Prepared {
-    /// Solves for the light under these suns, where the solver asked for needs it; tells how long it took.
-    ///
-    /// # Errors
-    /// As [`Scene::prepare`].
-    pub fn new(drawing: &Drawing<'_>, suns: SunCoverage) -> Result<(Self, Duration), CliError> {
-        if drawing.args.air.solver.is_classic() {
-            return Ok((Self::Classic, Duration::ZERO));
-        }
-        let (sky, time) = drawing.scene.prepare(suns)?;
-        Ok((Self::Solved(Box::new(sky)), time))
-    }
-}
-
-/// One moment, tabulated.
-pub struct Shot<'a> {
-    /// Where the sun stands.
-    pub sun: Sun,
-    /// When.
-    pub time: Option<Moment>,
-    /// Light at the eye.
-    pub light: Illuminances,
-    source: Source<'a>,
-    disc: Option<Disc>,
-    weights: RgbWeights,
-    things: Option<Things<'a>>,
-}
-
-/// Where a shot's light comes from.
-enum Source<'a> {
-    /// The solver, tabulated, and the fog before it.
-    Solved {
-        table: Arc<SkyTable>,
-        fog: Option<Fog<'a>>,
-    },
-    /// A published model.
-    Classic(Arc<Lit>),
-}
-
-impl<'a> Shot<'a> {
-    /// Tabulates the sky under a sun, and the fog before it.
-    ///
-    /// # Errors
-    /// [`CliError::Usage`] for a fog that is none, or what a published model refuses.
-    pub fn new(
-        drawing: &Drawing<'_>,
-        prepared: &'a Prepared,
-        sun: &Sun,
-        time: Option<Moment>,
-    ) -> Result<Self, CliError> {
-        match prepared {
-            Prepared::Solved(sky) => Self::solved(drawing, sky, sun, time),
-            Prepared::Classic => Self::classic(drawing, sun, time),
-        }
-    }
-
-    fn solved(
-        drawing: &Drawing<'_>,
-        sky: &'a Sky,
-        sun: &Sun,
-        time: Option<Moment>,
-    ) -> Result<Self, CliError> {
-        let channels = drawing.channels;
-        let grid = &drawing.scene.grid;
-        let view = drawing.scene.view(sky, sun);
-        let fog = Fog::new(&drawing.args.fog, &view, channels.table())?;
-        let table = match &fog {
-            Some(fog) => fog.clear(),
-            None => Arc::new(view.table(channels.table())),
-        };
-        let luminance = |values: &[f32]| channels.luminance(grid, values);
-        let mut light = Illuminances::of(&view, &table, luminance);
-        if let Some(fog) = &fog {
-            let left = f64::from(fog.transmittance(view.sun()));
-            light = light.through(left, fog.horizontal_lx(luminance));
-        }
-        let weights = channels.rgb_weights(grid);
-        let disc = match drawing.args.picture.sun_disc {
-            SunDiscArg::Out => None,
-            _ => Disc::new(
-                &view,
-                table.horizon_elevation_rad(),
-                &weights,
-                channels.spectral.is_some(),
-                |direction| fog.as_ref().map_or(1.0, |fog| fog.transmittance(direction)),
-            ),
-        };
-        let things = drawing
-            .objects
-            .map(|objects| Things::solved(objects, (drawing.args, channels), &view))
-            .transpose()?;
-        Ok(Self {
-            sun: *sun,
-            time,
-            light,
-            source: Source::Solved { table, fog },
-            disc,
-            weights,
-            things,
-        })
-    }
-
-    fn classic(drawing: &Drawing<'_>, sun: &Sun, time: Option<Moment>) -> Result<Self, CliError> {
-        let args = drawing.args;
-        let (lit, scene1987) = crate::classic::lit_in_picture(args, drawing.scene, sun)?;
-        let lit = Arc::new(lit);
-        let channels = drawing.channels;
-        let disc = match args.picture.sun_disc {
-            SunDiscArg::Out => None,
-            _ => {
-                let to_rgb = channels.space.from_xyz_matrix();
-                Disc::of_classic(lit.model.clone(), to_rgb, channels.spectral.is_some())
-            }
-        };
-        let weights = channels.rgb_weights(&drawing.scene.grid);
-        let things = drawing.objects.map(|objects| match &scene1987 {
-            Some(scene) => Things::of_1987(objects, (args, channels), scene, &weights),
-            None => Things::classic(objects, (args, channels), drawing.scene, &lit),
-        });
-        Ok(Self {
-            sun: *sun,
-            time,
-            light: lit.illuminances(),
-            source: Source::Classic(lit),
-            disc,
-            weights,
-            things,
-        })
-    }
-
-    /// Weights of wavelengths in RGB.
-    pub fn weights(&self) -> &RgbWeights {
-        &self.weights
-    }
-
-    /// Whether a direction points to the ground.
-    pub fn is_below_horizon(&self, direction: DVec3) -> bool {
-        let horizon_rad = match &self.source {
-            Source::Solved { table, .. } => table.horizon_elevation_rad(),
-            Source::Classic(_) => 0.0,
-        };
-        direction.y.clamp(-1.0, 1.0).asin() < horizon_rad
-    }
-}
-
 impl Drawing<'_> {
     /// Refuses what would fail after all has been computed: an exposure that is none, files that cannot be made.
     ///
@@ -269,7 +109,7 @@ impl Drawing<'_> {
         let Some(things) = &shot.things else {
             return sky;
         };
-        let spectral = self.layout.is_spectral().then_some(&shot.weights);
+        let spectral = self.layout.is_spectral().then_some(shot.weights());
         Box::new(ObjectRows::new(
             sky,
             things,
@@ -290,7 +130,7 @@ impl Drawing<'_> {
         let disc = shot.disc.as_ref();
         match &shot.source {
             Source::Solved { table, fog } => {
-                let spectral = self.layout.is_spectral().then_some(&shot.weights);
+                let spectral = self.layout.is_spectral().then_some(shot.weights());
                 let sky = (table.as_ref(), fog.as_ref());
                 let sun = shot.sun.direction();
                 let rows = SkyRows::new(frame, layer, sky, disc, spectral, sun, scale);

@@ -1,7 +1,8 @@
 //! How bright PNG, JPEG and preview are.
 
-use super::draw::{Drawing, Shot};
+use super::draw::Drawing;
 use super::rows::Layer;
+use super::shot::Shot;
 use crate::args::{PictureArgs, ToneArg};
 use crate::error::CliError;
 use airlight_render::tone::{Exposure, FilmicSettings, Metering, ToneCurve, ToneMapper};

@@ -1,7 +1,8 @@
 //! What picture files say about themselves.
 
-use super::draw::{Drawing, Shot};
+use super::draw::Drawing;
 use super::rows::Layer;
+use super::shot::Shot;
 use crate::report::short;
 use airlight_render::PictureFormat;
 use airlight_render::output::Metadata;

@@ -8,7 +8,7 @@
 //! - [`objects`]: things before the sky.
 //! - [`monte_carlo`]: pictures by random paths; [`polarisation`]: what is told of it beside them; [`classic`]: pictures by
 //!   published models.
-//! - [`still`]: a picture in memory; [`draw`]: one moment into files; [`preview`]: onto the terminal; [`sequence`]: many
+//! - [`shot`]: one moment, made ready; [`still`]: a picture in memory; [`draw`]: one moment into files; [`preview`]: onto the terminal; [`sequence`]: many
 //!   moments.
 
 mod channels;
@@ -25,6 +25,7 @@ mod polarisation;
 mod preview;
 mod rows;
 mod sequence;
+mod shot;
 mod still;
 
 use crate::args::SkyArgs;
@@ -35,10 +36,11 @@ use crate::progress::RowsBar;
 use crate::report::{self, bytes, seconds, short};
 use crate::scene::Sun;
 pub use channels::{space_name, space_of};
-use draw::{Drawing, Prepared, Setup, Shot};
+use draw::{Drawing, Setup};
 pub use exposure::curve as tone_curve;
 pub use facts::SOFTWARE;
 pub use layout::tagged;
+use shot::{Prepared, Shot};
 use std::fmt::Write;
 use std::time::Instant;
 pub use still::Still;

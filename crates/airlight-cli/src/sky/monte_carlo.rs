@@ -1,11 +1,12 @@
 //! Pictures by random paths: in passes, each of as many paths as all before it, so that there is a whole picture soon
 //! and a better one later. Ctrl-C leaves that of the last pass.
 
-use super::draw::{Drawing, Shot};
+use super::draw::Drawing;
 use super::fog;
 use super::layout::{PictureFile, tagged};
 use super::polarisation::{self, PixelStokes};
 use super::rows::Layer;
+use super::shot::Shot;
 use crate::args::{FogScatteringArg, ScatteringArg, SkyArgs, SolverArg};
 use crate::error::CliError;
 use crate::interrupt::STOP;

@@ -1,7 +1,8 @@
 //! The picture on the terminal, as coloured half blocks.
 
-use super::draw::{Drawing, Shot, stored};
+use super::draw::{Drawing, stored};
 use super::exposure;
+use super::shot::Shot;
 use crate::args::SkyArgs;
 use crate::error::CliError;
 use airlight::spectrum::{RgbSpace, rgb};

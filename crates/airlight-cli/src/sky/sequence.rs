@@ -1,8 +1,9 @@
 //! Many moments: a sky prepared once, a picture for each, those already there left as they are.
 
-use super::draw::{Drawing, Prepared, Shot};
+use super::draw::Drawing;
 use super::layout::PictureFile;
 use super::preview;
+use super::shot::{Prepared, Shot};
 use crate::error::CliError;
 use crate::interrupt;
 use crate::moment::Moment;

@@ -1,6 +1,7 @@
 //! A picture in memory instead of in a file.
 
-use super::draw::{Prepared, Setup, Shot, stored};
+use super::draw::{Setup, stored};
+use super::shot::{Prepared, Shot};
 use super::{exposure, monte_carlo};
 use crate::args::{ProjectionArg, SkyArgs};
 use crate::error::CliError;
