@@ -79,24 +79,7 @@ impl Klassen1987Scene {
             fog.droplets.validate()?;
         }
         let foggy = fog.is_some();
-        let top_m = fog.as_ref().map_or(0.0, |fog| fog.top_m);
-        let slab = Slab1987 {
-            fog_top_m: top_m,
-            // The sun's light is that at the top already.
-            air_top_m: top_m,
-            fog: match fog {
-                Some(fog) => fog.droplets,
-                None => model.haze_at_ground()?,
-            },
-            air: Matter {
-                extinction_per_m: model.air_per_m,
-                single_scattering_albedo: Lanes::ONE,
-                phase: PhaseFunction::Rayleigh(Depolarization::None),
-            },
-            sun_irradiance: model.dimmed_sun(model.sin_sun),
-            sin_sun: model.sin_sun.max(1e-6),
-            wavelengths_nm: Klassen1987::wavelengths(),
-        };
+        let slab = slab(&model, fog)?;
         let planet_albedo = &model.settings.clear_air.planet.ground_albedo;
         let albedo = Spectrum(slab.wavelengths_nm.map(|nm| planet_albedo.at(nm) as f32));
         let mut scene = Self {
@@ -203,6 +186,31 @@ impl Klassen1987Scene {
             ),
         }
     }
+}
+
+/// The fog under the light at its top, `I_t`; without fog, the haze and the air at the ground in the sun there.
+fn slab(
+    model: &Klassen1987,
+    fog: Option<Fog1987>,
+) -> Result<Slab1987<WAVELENGTHS>, Klassen1987Error> {
+    let top_m = fog.as_ref().map_or(0.0, |fog| fog.top_m);
+    Ok(Slab1987 {
+        fog_top_m: top_m,
+        // The sun's light is that at the top already.
+        air_top_m: top_m,
+        fog: match fog {
+            Some(fog) => fog.droplets,
+            None => model.haze_at_ground()?,
+        },
+        air: Matter {
+            extinction_per_m: model.air_per_m,
+            single_scattering_albedo: Lanes::ONE,
+            phase: PhaseFunction::Rayleigh(Depolarization::None),
+        },
+        sun_irradiance: model.dimmed_sun(model.sin_sun),
+        sin_sun: model.sin_sun.max(1e-6),
+        wavelengths_nm: Klassen1987::wavelengths(),
+    })
 }
 
 impl Klassen1987 {
