@@ -30,10 +30,15 @@ pub struct Board {
 }
 
 const MARGIN: u32 = 16;
-const HEADING: u32 = 34;
+const HEADING: u32 = 28;
 const TITLE: u32 = 26;
 const SCALE: u32 = 40;
 const LINE: u32 = 20;
+/// Sizes of letters, pixels.
+const HEADING_SIZE: u32 = 20;
+const NOTE_SIZE: u32 = 14;
+/// Width of a letter over its size, with some to spare.
+const WIDE: f64 = 0.58;
 
 /// Where things are put.
 struct Layout {
@@ -42,6 +47,9 @@ struct Layout {
     size: (u32, u32),
     top: u32,
     scales: bool,
+    /// Lines of the heading and of the notes, none wider than the board.
+    heading: Vec<String>,
+    notes: Vec<String>,
 }
 
 impl Board {
@@ -58,16 +66,24 @@ impl Board {
             most(|p| p.width) + MARGIN,
             TITLE + most(|p| p.height) + below + MARGIN / 2,
         );
-        let top = MARGIN + if self.heading.is_empty() { 0 } else { HEADING };
+        let width = MARGIN + columns * cell.0;
+        let heading = wrapped(&self.heading, width - 2 * MARGIN, HEADING_SIZE);
+        let notes = self.notes.iter();
+        let notes: Vec<String> = notes
+            .flat_map(|note| wrapped(note, width - 2 * MARGIN, NOTE_SIZE))
+            .collect();
+        let top = MARGIN + HEADING * heading.len() as u32 + if heading.is_empty() { 0 } else { 6 };
         Layout {
             columns,
             cell,
             size: (
-                MARGIN + columns * cell.0,
-                top + rows * cell.1 + LINE * self.notes.len() as u32 + MARGIN,
+                width,
+                top + rows * cell.1 + LINE * notes.len() as u32 + MARGIN,
             ),
             top,
             scales,
+            heading,
+            notes,
         }
     }
 
@@ -106,7 +122,15 @@ impl Board {
                 escaped(text)
             );
         };
-        text(MARGIN, MARGIN + 18, 20, &self.heading, "start");
+        for (row, line) in (0..).zip(&layout.heading) {
+            text(
+                MARGIN,
+                MARGIN + 18 + HEADING * row,
+                HEADING_SIZE,
+                line,
+                "start",
+            );
+        }
         for (index, panel) in self.panels.iter().enumerate() {
             let (left, top) = corner(index);
             text(left, top + TITLE - 8, 15, &panel.title, "start");
@@ -119,9 +143,9 @@ impl Board {
                 text(right, below, 13, &number(ramp.ends.1), "end");
             }
         }
-        let notes = height - MARGIN - LINE * self.notes.len() as u32;
-        for (row, note) in (1..).zip(&self.notes) {
-            text(MARGIN, notes + LINE * row, 14, note, "start");
+        let notes = height - MARGIN - LINE * layout.notes.len() as u32;
+        for (row, note) in (1..).zip(&layout.notes) {
+            text(MARGIN, notes + LINE * row, NOTE_SIZE, note, "start");
         }
         if layout.scales {
             for (index, panel) in self.panels.iter().enumerate() {
@@ -139,6 +163,22 @@ impl Board {
         svg.push_str("</svg>");
         svg
     }
+}
+
+/// A text in lines of at most so many pixels, broken between words; no line where there is no text.
+fn wrapped(text: &str, width: u32, size: u32) -> Vec<String> {
+    let most = (f64::from(width) / (WIDE * f64::from(size))) as usize;
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if line.chars().count() + 1 + word.chars().count() <= most => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
 }
 
 /// A strip of a ramp's colours.
@@ -175,6 +215,19 @@ mod tests {
             },
             scale: Some((Ramp::both_ways(5.0), "%".to_owned())),
         }
+    }
+
+    #[test]
+    fn long_lines_are_broken_between_words() {
+        assert_eq!(wrapped("", 100, 14), Vec::<String>::new());
+        let text = "one two three four five six seven eight nine ten";
+        let lines = wrapped(text, 120, 14);
+        assert!(
+            lines.len() > 2 && lines.iter().all(|line| line.len() <= 14),
+            "{lines:?}"
+        );
+        assert_eq!(lines.join(" "), text);
+        assert_eq!(wrapped("unbreakable", 20, 14), ["unbreakable"]);
     }
 
     #[test]
