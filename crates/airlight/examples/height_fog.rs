@@ -1,0 +1,253 @@
+//! Tables of the book's chapter on height fog (Ishiyama 2018), as it shows them (`scripts/book`).
+//!
+//! `cargo run --release -p airlight --example height_fog`; with the word `level`, `closed` or `solved` only that one.
+
+use airlight::axes::direction;
+use airlight::fog::{
+    Fog, Ground, Layer, Light, Line, Matter, Profile, Scattering, Sun, droplets::Droplets, scatter,
+};
+use airlight::medium::visibility::{Contrast, extinction_per_m};
+use airlight::optics::PhaseFunction;
+use airlight::spectrum::Spectrum;
+use std::error::Error;
+use std::f64::consts::PI;
+
+const TABLES: [(&str, fn()); 3] = [
+    ("level", level_lines),
+    ("closed", closed_forms),
+    ("solved", against_all_orders),
+];
+
+/// Scale height of all fogs here, m; the eye is 2 m high unless told otherwise.
+const SCALE_M: f64 = 50.0;
+const EYE_M: f64 = 2.0;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let only = std::env::args().nth(1);
+    let wanted = |name: &str| only.as_deref().is_none_or(|only| only == name);
+    if !TABLES.iter().any(|(name, _)| wanted(name)) {
+        let names = TABLES.map(|(name, _)| name).join(", ");
+        return Err(format!("there are {names}").into());
+    }
+    for (name, table) in TABLES.iter().filter(|(name, _)| wanted(name)) {
+        println!("{name}");
+        table();
+    }
+    Ok(())
+}
+
+/// The optical depth of (23) as printed, in f32: light goes from the background, which is `length_m` away, to the eye.
+fn printed_depth(extinction_per_m: f32, climb: f32, length_m: f32) -> f32 {
+    let scale = SCALE_M as f32;
+    let y0 = EYE_M as f32 + climb * length_m;
+    let omega = -climb;
+    scale / omega
+        * extinction_per_m
+        * (-y0 / scale).exp()
+        * (1.0 - (-omega * length_m / scale).exp())
+}
+
+/// Error of (23) as printed in f32, and of the profile's column.
+fn level_lines() {
+    println!("| line | as printed, f32 | here |\n|---|---|---|");
+    let profile = exponential();
+    for (elevation, length_m) in [
+        (10.0f64, 150.0),
+        (1.0, 150.0),
+        (0.1, 150.0),
+        (0.01, 150.0),
+        (0.001, 150.0),
+        (0.0, 150.0),
+        (60.0, 5000.0),
+        (60.0, 5400.0),
+        (60.0, 6500.0),
+    ] {
+        let climb = elevation.to_radians().sin();
+        let line = Line::flat(EYE_M, climb, length_m);
+        let right = integral(length_m, |s| profile.density(line.height_at(s)));
+        let here = profile.column(&line);
+        let printed = printed_depth(1.0, climb as f32, length_m as f32);
+        println!(
+            "| {elevation}° up, {length_m} m | {} | {} |",
+            error(f64::from(printed), right),
+            error(here, right)
+        );
+    }
+}
+
+/// Sunlight scattered once, for each unit of irradiance and of phase function: one line by the closed form of the errata, by
+/// the divided difference, by `Fog` in f32, and by quadrature.
+fn closed_forms() {
+    println!(
+        "| visibility | line | closed form with C, f64 | divided difference, f64 | `Fog`, f32 |\n|---|---|---|---|---|"
+    );
+    let sine_sun = 15f64.to_radians().sin();
+    for (visibility_m, eye_m, elevation, length_m) in [
+        (300.0, EYE_M, 5.0f64, 150.0),
+        (300.0, EYE_M, 1e-3, 150.0),
+        (300.0, EYE_M, 0.0, 150.0),
+        (300.0, EYE_M, 15.0, 150.0),
+        (300.0, 40.0, -10.0, 230.0),
+        (300.0, EYE_M, 60.0, 2000.0),
+        (30.0, EYE_M, 5.0, 150.0),
+        (30.0, EYE_M, 0.3, 150.0),
+    ] {
+        let extinction = extinction_of(visibility_m);
+        let climb = elevation.to_radians().sin();
+        let line = Line::flat(eye_m, climb, length_m);
+        let profile = exponential();
+        let to_sun = |height_m: f64| extinction * profile.column_above(height_m) / sine_sun;
+        let right = integral(length_m, |s| {
+            let depth = extinction * profile.column(&line.part(0.0, s));
+            let height = line.height_at(s);
+            extinction * profile.density(height) * (-depth - to_sun(height)).exp()
+        });
+
+        // Ishiyama's letters, with C.
+        let (y0, omega) = (line.end_height_m(), -climb);
+        let a = omega / SCALE_M;
+        let b = extinction * (-y0 / SCALE_M).exp();
+        let c = extinction * SCALE_M * (-y0 / SCALE_M).exp() / sine_sun;
+        let u = (-a * length_m).exp();
+        let k = b / a + c;
+        let with_c =
+            extinction * (-y0 / SCALE_M).exp() * (b / a * u).exp() * ((-k * u).exp() - (-k).exp())
+                / (a * k);
+
+        let along = extinction * profile.column(&line);
+        let divided = scatter::once(to_sun(eye_m), along * (1.0 - climb / sine_sun), along);
+
+        let matter = Matter {
+            extinction_per_m: Spectrum([extinction as f32]),
+            single_scattering_albedo: Spectrum::ONE,
+            phase: PhaseFunction::Isotropic,
+        };
+        let light = Light {
+            sun: Some(Sun {
+                direction: direction(0.0, 15.0),
+                irradiance: Spectrum::splat(4.0 * PI as f32),
+            }),
+            ambient: Spectrum::ZERO,
+            ground_albedo: Spectrum::ZERO,
+        };
+        let layer = Layer { profile, matter };
+        let fog: Fog<1> =
+            Fog::new(&[layer], Ground::FLAT, light, Scattering::Single).expect("a fog");
+        let here = fog.along(eye_m, direction(120.0, elevation), length_m);
+        println!(
+            "| {visibility_m} m | from {eye_m} m, {}, {length_m} m | {} | {} | {} |",
+            match elevation {
+                0.0 => "level".to_owned(),
+                15.0 => "15° up as the sun".to_owned(),
+                e if e < 0.0 => format!("{}° down", -e),
+                e => format!("{e}° up"),
+            },
+            error(with_c, right),
+            error(divided, right),
+            error(f64::from(here.path_radiance[0]), right)
+        );
+    }
+}
+
+/// What the two single forms make of a line of 150 m, 20 degrees up (nearer to the level the solver itself errs by more), against
+/// light scattered any number of times, percent.
+fn against_all_orders() {
+    // The sky's light on the level over that of the sun on a surface that faces it: `airlight probe --sun-elevation`, lux.
+    const SKY_OVER_SUN: [(f64, f32); 4] = [
+        (5.0, 4334.0 / 11312.0),
+        (15.0, 9787.0 / 53377.0),
+        (30.0, 13720.0 / 82380.0),
+        (60.0, 16938.0 / 100771.0),
+    ];
+    println!("| visibility | looking | sun 5° | 15° | 30° | 60° |\n|---|---|---|---|---|---|");
+    for visibility_m in [5000.0, 1000.0, 300.0, 100.0] {
+        for (looking, azimuth) in [
+            ("towards the sun", 0.0),
+            ("60° aside", 60.0),
+            ("away from it", 180.0),
+        ] {
+            let cells = SKY_OVER_SUN.map(|(elevation, sky)| {
+                let of = |scattering| {
+                    let fog = lit_fog(visibility_m, elevation, sky, scattering);
+                    let line = fog.along(EYE_M, direction(azimuth, 20.0), 150.0);
+                    f64::from(line.path_radiance[0])
+                };
+                let all = of(Scattering::Multiple);
+                let [undimmed, single] = [Scattering::Undimmed, Scattering::Single]
+                    .map(|scattering| signed(100.0 * (of(scattering) / all - 1.0)));
+                format!("{undimmed} / {single}")
+            });
+            println!("| {visibility_m} m | {looking} | {} |", cells.join(" | "));
+        }
+    }
+}
+
+fn exponential() -> Profile {
+    Profile::Exponential {
+        reference_height_m: 0.0,
+        scale_height_m: SCALE_M,
+    }
+}
+
+fn extinction_of(visibility_m: f64) -> f64 {
+    extinction_per_m(visibility_m, Contrast::FivePercent)
+}
+
+/// Height fog of drops of 10 micrometres under a sun in the north and an even sky, ground of albedo 0.2.
+fn lit_fog(visibility_m: f64, sun_deg: f64, sky_over_sun: f32, scattering: Scattering) -> Fog<1> {
+    let layer = Layer {
+        profile: exponential(),
+        matter: Droplets::Radiation.matter(extinction_of(visibility_m)),
+    };
+    let light = Light {
+        sun: Some(Sun {
+            direction: direction(0.0, sun_deg),
+            irradiance: Spectrum::ONE,
+        }),
+        ambient: Spectrum::splat(sky_over_sun / PI as f32),
+        ground_albedo: Spectrum::splat(0.2),
+    };
+    Fog::new(&[layer], Ground::FLAT, light, scattering).expect("a fog of ordinary numbers")
+}
+
+/// `int_0^length f ds`: Gauss's rule with five points in stretches that grow from the eye on.
+fn integral(length_m: f64, f: impl Fn(f64) -> f64) -> f64 {
+    const RULE: [(f64, f64); 3] = [
+        (0.0, 0.568_888_888_888_888_9),
+        (0.538_469_310_105_683_1, 0.478_628_670_499_366_47),
+        (0.906_179_845_938_664, 0.236_926_885_056_189_08),
+    ];
+    const STRETCHES: u32 = 4000;
+    let edges: Vec<f64> = (0..=STRETCHES)
+        .map(|k| length_m * (f64::from(k) / f64::from(STRETCHES)).powi(2))
+        .collect();
+    edges
+        .windows(2)
+        .map(|edge| {
+            let (middle, half) = (0.5 * (edge[0] + edge[1]), 0.5 * (edge[1] - edge[0]));
+            let sides = RULE.iter().map(|&(x, w)| match x {
+                0.0 => w * f(middle),
+                _ => w * (f(middle - half * x) + f(middle + half * x)),
+            });
+            half * sides.sum::<f64>()
+        })
+        .sum()
+}
+
+/// A relative error in one digit; rounding, or no number.
+fn error(got: f64, right: f64) -> String {
+    match (got / right - 1.0).abs() {
+        e if e.is_nan() => "no number".to_owned(),
+        f64::INFINITY => "infinite".to_owned(),
+        e if e < 1e-12 => "< 1e-12".to_owned(),
+        e => format!("{e:.0e}"),
+    }
+}
+
+/// Percent with a sign and two figures or so.
+fn signed(percent: f64) -> String {
+    match percent.abs() {
+        p if p < 9.95 => format!("{percent:+.1} %"),
+        _ => format!("{percent:+.0} %"),
+    }
+}
