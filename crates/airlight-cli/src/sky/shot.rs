@@ -28,7 +28,7 @@ impl Prepared {
     /// Solves for the light under these suns, where the solver asked for needs it; tells how long it took.
     ///
     /// # Errors
-    /// As [`Scene::prepare`].
+    /// As [`crate::scene::Scene::prepare`].
     pub fn new(drawing: &Drawing<'_>, suns: SunCoverage) -> Result<(Self, Duration), CliError> {
         if drawing.args.air.solver.is_classic() {
             return Ok((Self::Classic, Duration::ZERO));

@@ -1,6 +1,6 @@
 //! Things before the sky: simple solids, what they are made of, and where rays meet them.
 //!
-//! - [`shape`]: solids; [`surface`]: how they reflect; [`file`]: reading both from TOML.
+//! - [`shape`]: solids; [`surface`]: how they reflect; [`mod@file`]: reading both from TOML.
 //! - [`Objects`]: all things of a scene, and the first that a ray meets.
 //!
 //! Positions are in metres east, up and south of the point of the ground under the eye.
