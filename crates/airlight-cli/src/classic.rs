@@ -48,6 +48,7 @@ pub fn lit_in_picture(
     if args.air.solver != SolverArg::Klassen1987 || !whole {
         return Ok((lit(&args.air, &args.classic, scene, sun)?, None));
     }
+    refuse_scattering(&args.air)?;
     let scene1987 = Arc::new(scene_of_1987(args, scene, sun)?);
     let albedo = &scene.atmosphere.planet.ground_albedo;
     Ok((Lit::new(scene1987.clone(), albedo), Some(scene1987)))
@@ -59,7 +60,8 @@ fn model(
     scene: &Scene,
     sun: &Sun,
 ) -> Result<Arc<dyn ClassicSky>, CliError> {
-    refuse_unknown(air, scene)?;
+    refuse_scattering(air)?;
+    refuse_height(air, scene)?;
     let direction = sun.direction();
     let eye_altitude_m = scene.eye_altitude_m;
     Ok(match air.solver {
@@ -107,8 +109,8 @@ fn model(
     })
 }
 
-/// Refuses what a model leaves out, and would draw wrongly without a word.
-fn refuse_unknown(air: &AirArgs, scene: &Scene) -> Result<(), CliError> {
+/// Refuses a height that a model leaves out, and would draw wrongly without a word.
+fn refuse_height(air: &AirArgs, scene: &Scene) -> Result<(), CliError> {
     let name = air.solver.name();
     let height_m = scene.eye_altitude_m - scene.atmosphere.planet.ground_altitude_m;
     match air.solver {
@@ -121,10 +123,18 @@ fn refuse_unknown(air: &AirArgs, scene: &Scene) -> Result<(), CliError> {
                 "--solver {name} looks from the ground: leave out --altitude-m and --eye-height-m"
             )))
         }
+        _ => Ok(()),
+    }
+}
+
+/// Refuses single scattering of a model that has no say in it.
+fn refuse_scattering(air: &AirArgs) -> Result<(), CliError> {
+    match air.solver {
         SolverArg::Hillaire2020 => Ok(()),
-        _ if air.scattering == ScatteringArg::Single => Err(CliError::usage(format!(
-            "--scattering single is for --solver orders, monte-carlo and hillaire2020: leave it out for {name}, which has orders of \
-             its own"
+        solver if air.scattering == ScatteringArg::Single => Err(CliError::usage(format!(
+            "--scattering single is for --solver orders, monte-carlo and hillaire2020: leave it out for {}, which has orders of \
+             its own",
+            solver.name()
         ))),
         _ => Ok(()),
     }

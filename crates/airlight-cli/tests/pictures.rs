@@ -3,7 +3,7 @@
 mod common;
 
 use airlight_render::{Camera, CubeFace, Fisheye, Frame, Projection, Size};
-use common::{Exr, Folder, number_after, run, succeed};
+use common::{Exr, Folder, number_after, run, succeed, views_of};
 use image::GenericImageView;
 
 /// Options that solve quickly.
@@ -141,17 +141,7 @@ fn pixel_table_and_probe_agree() {
     );
     let frame = equirectangular(64, 32);
     let pixels = [(10, 3), (40, 14), (57, 13), (5, 20), (31, 8)];
-    let views: String = pixels
-        .iter()
-        .map(|&(x, y)| {
-            let direction = frame.pixel_direction(x, y).unwrap();
-            let (azimuth, elevation) = (
-                airlight::axes::azimuth_deg(direction),
-                airlight::axes::elevation_deg(direction),
-            );
-            format!(" --view {azimuth},{elevation}")
-        })
-        .collect();
+    let views = views_of(&frame, &pixels);
     let json = succeed(&folder, &format!("probe {sun} --format json {views}"));
     let answer: serde_json::Value = serde_json::from_str(&json).unwrap();
     for (view, &(x, y)) in answer["views"].as_array().unwrap().iter().zip(&pixels) {

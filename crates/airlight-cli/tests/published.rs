@@ -4,7 +4,7 @@ mod common;
 
 use airlight_render::output::spectral::channel_name;
 use airlight_render::{Frame, Projection};
-use common::{Exr, Folder, run, succeed};
+use common::{Exr, Folder, run, succeed, views_of};
 use serde_json::Value;
 
 const SKY: &str = "sky --sun-elevation 20 --size 16x8 --wavelengths rgb";
@@ -103,17 +103,7 @@ fn pixels_are_what_the_probe_tells() {
             Exr::read(&folder.file("a.spectral.exr"))
         });
         let pixels = [(0, 0), (7, 2), (12, 3), (3, 6)];
-        let views: String = pixels
-            .iter()
-            .map(|&(x, y)| {
-                let direction = frame.pixel_direction(x, y).unwrap();
-                let (azimuth, elevation) = (
-                    airlight::axes::azimuth_deg(direction),
-                    airlight::axes::elevation_deg(direction),
-                );
-                format!(" --view {azimuth},{elevation}")
-            })
-            .collect();
+        let views = views_of(&frame, &pixels);
         let answer = probe(&folder, &format!("{sun}{views}"));
         let nm = list(&answer["wavelengths_nm"]);
         assert_eq!(nm.len(), lanes, "{solver}");

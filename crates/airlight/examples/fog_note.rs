@@ -2,28 +2,21 @@
 //!
 //! `cargo run --release -p airlight --example fog_note`; with the word `lamp`, `base` or `speed` only that one.
 
+mod common;
+
 use airlight::fog::lamp::{LampForm, Nodes, Passage, airlight_isotropic_lanes};
 use airlight::fog::{Line, Profile};
 use airlight::medium::visibility::{Contrast, extinction_per_m};
+use common::Table;
 use std::error::Error;
 use std::f64::consts::PI;
 use std::hint::black_box;
 use std::time::Instant;
 
-const TABLES: [(&str, fn()); 3] = [("lamp", lamp_forms), ("base", base), ("speed", speed)];
+const TABLES: [Table; 3] = [("lamp", lamp_forms), ("base", base), ("speed", speed)];
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let only = std::env::args().nth(1);
-    let wanted = |name: &str| only.as_deref().is_none_or(|only| only == name);
-    if !TABLES.iter().any(|(name, _)| wanted(name)) {
-        let names = TABLES.map(|(name, _)| name).join(", ");
-        return Err(format!("there are {names}").into());
-    }
-    for (name, table) in TABLES.iter().filter(|(name, _)| wanted(name)) {
-        println!("{name}");
-        table();
-    }
-    Ok(())
+    common::print(&TABLES)
 }
 
 /// The light of a lamp by each form over the exact one: b = -5, c = 26, d = 20, and the same with the lamp 5 m behind the

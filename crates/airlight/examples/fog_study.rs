@@ -3,6 +3,8 @@
 //! `cargo run --release -p airlight --example fog_study`; with the word `split-sum`, `lamp`, `dimming` or `extinction` only
 //! that one.
 
+mod common;
+
 use airlight::axes::direction;
 use airlight::fog::lamp::{Passage, airlight_isotropic, airlight_without_extinction};
 use airlight::fog::{
@@ -10,9 +12,10 @@ use airlight::fog::{
 };
 use airlight::medium::visibility::{Contrast, extinction_per_m, visibility_m};
 use airlight::spectrum::Spectrum;
+use common::Table;
 use std::error::Error;
 
-const TABLES: [(&str, fn()); 4] = [
+const TABLES: [Table; 4] = [
     ("split-sum", split_sum_map),
     ("lamp", lamp_beside_the_line),
     ("dimming", sun_undimmed),
@@ -20,17 +23,7 @@ const TABLES: [(&str, fn()); 4] = [
 ];
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let only = std::env::args().nth(1);
-    let wanted = |name: &str| only.as_deref().is_none_or(|only| only == name);
-    if !TABLES.iter().any(|(name, _)| wanted(name)) {
-        let names = TABLES.map(|(name, _)| name).join(", ");
-        return Err(format!("there are {names}").into());
-    }
-    for (name, table) in TABLES.iter().filter(|(name, _)| wanted(name)) {
-        println!("{name}");
-        table();
-    }
-    Ok(())
+    common::print(&TABLES)
 }
 
 /// A number in two digits, or more where it has more before the point; at most `most` behind it.

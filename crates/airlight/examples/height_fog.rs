@@ -2,6 +2,8 @@
 //!
 //! `cargo run --release -p airlight --example height_fog`; with the word `level`, `closed` or `solved` only that one.
 
+mod common;
+
 use airlight::axes::direction;
 use airlight::fog::{
     Fog, Ground, Layer, Light, Line, Matter, Profile, Scattering, Sun, droplets::Droplets, scatter,
@@ -9,10 +11,11 @@ use airlight::fog::{
 use airlight::medium::visibility::{Contrast, extinction_per_m};
 use airlight::optics::PhaseFunction;
 use airlight::spectrum::Spectrum;
+use common::Table;
 use std::error::Error;
 use std::f64::consts::PI;
 
-const TABLES: [(&str, fn()); 3] = [
+const TABLES: [Table; 3] = [
     ("level", level_lines),
     ("closed", closed_forms),
     ("solved", against_all_orders),
@@ -23,17 +26,7 @@ const SCALE_M: f64 = 50.0;
 const EYE_M: f64 = 2.0;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let only = std::env::args().nth(1);
-    let wanted = |name: &str| only.as_deref().is_none_or(|only| only == name);
-    if !TABLES.iter().any(|(name, _)| wanted(name)) {
-        let names = TABLES.map(|(name, _)| name).join(", ");
-        return Err(format!("there are {names}").into());
-    }
-    for (name, table) in TABLES.iter().filter(|(name, _)| wanted(name)) {
-        println!("{name}");
-        table();
-    }
-    Ok(())
+    common::print(&TABLES)
 }
 
 /// The optical depth of (23) as printed, in f32: light goes from the background, which is `length_m` away, to the eye.

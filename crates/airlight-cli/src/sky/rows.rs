@@ -37,8 +37,10 @@ pub struct SkyRows<'a> {
     pixel_reach: f64,
 }
 
-/// Points across a pixel that the horizon runs through, whose mean it gets.
+/// Points across a pixel that an edge runs through, whose mean it gets.
 const SUBPIXELS: u32 = 4;
+/// Points of such a pixel.
+pub const POINTS: u32 = SUBPIXELS * SUBPIXELS;
 
 impl<'a> SkyRows<'a> {
     /// Rows of `frame`, of a table and the fog before it; values are `scale` times those of the table.
@@ -90,18 +92,12 @@ impl<'a> SkyRows<'a> {
         }
         let mut sum = vec![0.0; values.len()];
         let mut count = 0.0f32;
-        for k in 0..SUBPIXELS * SUBPIXELS {
-            let at = |n: u32, k: u32| f64::from(n) + (f64::from(k) + 0.5) / f64::from(SUBPIXELS);
-            if let Some(direction) = self
-                .frame()
-                .direction(at(i, k % SUBPIXELS), at(j, k / SUBPIXELS))
-            {
-                self.at(direction, values);
-                count += 1.0;
-                sum.iter_mut()
-                    .zip(values.iter())
-                    .for_each(|(sum, value)| *sum += value);
-            }
+        for direction in directions_within(self.frame(), (i, j)) {
+            self.at(direction, values);
+            count += 1.0;
+            sum.iter_mut()
+                .zip(values.iter())
+                .for_each(|(sum, value)| *sum += value);
         }
         values
             .iter_mut()
@@ -138,6 +134,12 @@ impl<'a> SkyRows<'a> {
             }
         }
     }
+}
+
+/// Directions at even points of a pixel, row by row; none where nothing is seen.
+pub fn directions_within(frame: &Frame, (i, j): (u32, u32)) -> impl Iterator<Item = DVec3> {
+    let at = |n: u32, k: u32| f64::from(n) + (f64::from(k) + 0.5) / f64::from(SUBPIXELS);
+    (0..POINTS).filter_map(move |k| frame.direction(at(i, k % SUBPIXELS), at(j, k / SUBPIXELS)))
 }
 
 /// From a table's values to a pixel's, which are RGB, or with weights RGB and then the values themselves.

@@ -155,3 +155,14 @@ impl Exr {
         sum
     }
 }
+
+/// Options of the probe that ask for the directions of pixels.
+pub fn views_of(frame: &airlight_render::Frame, pixels: &[(u32, u32)]) -> String {
+    let view = |&(x, y): &(u32, u32)| {
+        let direction = frame.pixel_direction(x, y).unwrap();
+        let azimuth = airlight::axes::azimuth_deg(direction);
+        let elevation = airlight::axes::elevation_deg(direction);
+        format!(" --view {azimuth},{elevation}")
+    };
+    pixels.iter().map(view).collect()
+}

@@ -185,17 +185,33 @@ pub fn reflectances<const N: usize>(
 /// Reflectance in red, green and blue: the colour of sunlight reflected over that of sunlight. Exact under the sun outside the
 /// air, and for greys under any light; a strong red in the light of a sun 20 degrees high is off by 4 % (the test
 /// `spectral_things_sum_to_their_colour`).
-pub fn in_rgb(curve: &SpectralCurve, space: RgbSpace) -> Spectrum<3> {
+pub fn in_rgb(space: RgbSpace) -> impl Fn(&SpectralCurve) -> Spectrum<3> {
     let grid = WavelengthGrid::one_nanometre();
-    let colour = |reflectance: &dyn Fn(f64) -> f64| {
+    let colour = move |curve: &SpectralCurve| {
         let light: Vec<f32> = grid
             .wavelengths_nm()
             .iter()
             .zip(grid.solar_irradiance())
-            .map(|(nm, sun)| (sun * reflectance(*nm)) as f32)
+            .map(|(nm, sun)| (sun * curve.at(*nm)) as f32)
             .collect();
         space.from_xyz(grid.to_xyz(&light))
     };
-    let (lit, white) = (colour(&|nm| curve.at(nm)), colour(&|_| 1.0));
-    Spectrum::from_fn(|lane| (lit[lane] / white[lane]).max(0.0) as f32)
+    let white = colour(&SpectralCurve::Constant(1.0));
+    move |curve| {
+        let lit = colour(curve);
+        Spectrum::from_fn(|lane| (lit[lane] / white[lane]).max(0.0) as f32)
+    }
+}
+
+/// Reflectance at wavelengths (nm) from the place `first` on; lanes beyond the last repeat it.
+pub fn at_wavelengths<const N: usize>(
+    nm: &[f64],
+    first: usize,
+) -> impl Fn(&SpectralCurve) -> Spectrum<N> {
+    move |curve| Spectrum::from_fn(|lane| curve.at(nm[place(first + lane, nm.len())]) as f32)
+}
+
+/// The place of a lane among so many: the last for lanes beyond it.
+pub fn place(lane: usize, count: usize) -> usize {
+    lane.min(count - 1)
 }

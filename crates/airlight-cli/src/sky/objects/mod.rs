@@ -21,7 +21,7 @@ use airlight::sky::{SkyTable, View};
 use airlight::spectrum::Spectrum;
 use airlight_render::objects::Objects;
 use glam::DVec3;
-use lit::{LitThings, Paint, Pieces, Summed, in_rgb, reflectances};
+use lit::{LitThings, Paint, Pieces, Summed, at_wavelengths, in_rgb, place, reflectances};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -86,7 +86,7 @@ impl<'a> Things<'a> {
             Fog::Rgb(air) => Box::new(LitThings {
                 air,
                 around: around(&near, view.sun(), 0),
-                reflectances: reflectances(objects, |curve| in_rgb(curve, channels.space)),
+                reflectances: reflectances(objects, in_rgb(channels.space)),
                 shadows,
             }),
             Fog::Spectral(pieces) => {
@@ -94,12 +94,7 @@ impl<'a> Things<'a> {
                 let lit = |(number, air): (usize, FoggySky<'a, PIECE>)| LitThings::<'a, PIECE> {
                     air: Box::new(air),
                     around: around(&near, view.sun(), number * PIECE),
-                    reflectances: reflectances(objects, |curve| {
-                        Spectrum::from_fn(|lane| {
-                            let place = (number * PIECE + lane).min(nm.len() - 1);
-                            curve.at(nm[place]) as f32
-                        })
-                    }),
+                    reflectances: reflectances(objects, at_wavelengths(nm, number * PIECE)),
                     shadows,
                 };
                 Box::new(Pieces(pieces.into_iter().enumerate().map(lit).collect()))
@@ -126,21 +121,18 @@ impl<'a> Things<'a> {
                 let lanes = move |light: &classic::Light| {
                     Spectrum(space.from_xyz(light.xyz).map(|v| v.max(0.0) as f32))
                 };
-                let reflectances = reflectances(objects, |curve| in_rgb(curve, space));
+                let reflectances = reflectances(objects, in_rgb(space));
                 Box::new(airless(model, lanes, reflectances, shadows))
             }
             Some(_) => {
                 let nm = model.model.wavelengths_nm();
                 let piece = |number: usize| {
-                    let place =
-                        move |lane: usize, count: usize| (number * PIECE + lane).min(count - 1);
+                    let first = number * PIECE;
                     let lanes = move |light: &classic::Light| -> Spectrum<PIECE> {
                         let values = &light.spectrum;
-                        Spectrum::from_fn(|lane| values[place(lane, values.len())] as f32)
+                        Spectrum::from_fn(|lane| values[place(first + lane, values.len())] as f32)
                     };
-                    let reflectances = reflectances(objects, |curve| {
-                        Spectrum::from_fn(|lane| curve.at(nm[place(lane, nm.len())]) as f32)
-                    });
+                    let reflectances = reflectances(objects, at_wavelengths(nm, first));
                     airless(model, lanes, reflectances, shadows)
                 };
                 Box::new(Pieces((0..nm.len().div_ceil(PIECE)).map(piece).collect()))
@@ -173,7 +165,7 @@ impl<'a> Things<'a> {
         let lit = LitThings {
             air: Box::new(scene.clone()),
             around,
-            reflectances: reflectances(objects, |curve| Spectrum(nm.map(|nm| curve.at(nm) as f32))),
+            reflectances: reflectances(objects, at_wavelengths(&nm, 0)),
             shadows: shadows(args),
         };
         Self {
@@ -236,7 +228,7 @@ fn around<const N: usize>(
         let surroundings = Surroundings::of(sun, |direction| {
             let mut values = vec![0.0; channels];
             seen.along(direction, &mut values);
-            Spectrum::from_fn(|lane| values[(first + lane).min(channels - 1)])
+            Spectrum::from_fn(|lane| values[place(first + lane, channels)])
         });
         (*height_m, surroundings)
     };

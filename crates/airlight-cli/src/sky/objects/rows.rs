@@ -2,7 +2,7 @@
 
 use super::super::channels::RgbWeights;
 use super::super::layout::{PictureFile, tagged};
-use super::super::rows::{Layer, put};
+use super::super::rows::{Layer, POINTS, directions_within, put};
 use super::Things;
 use super::lit::Sight;
 use crate::error::CliError;
@@ -14,9 +14,6 @@ use airlight_render::output::exr::{self, ExrOptions, ExrSample};
 use airlight_render::rows::RowFn;
 use airlight_render::{Control, Frame, Projection, RowSource};
 use glam::DVec3;
-
-/// Lines of sight across a pixel.
-const SUBPIXELS: u32 = 4;
 
 /// A picture of things before the picture of a sky.
 pub struct ObjectRows<'a> {
@@ -51,19 +48,14 @@ impl<'a> ObjectRows<'a> {
     /// Puts what of a pixel is covered over what is there.
     fn cover(&self, (i, j): (u32, u32), pixel: &mut [f32], scratch: &mut Scratch) {
         let across = self.frame.pixel_solid_angle(i, j).sqrt();
-        let mut sights = Vec::new();
-        for k in 0..SUBPIXELS * SUBPIXELS {
-            let at = |n: u32, k: u32| f64::from(n) + (f64::from(k) + 0.5) / f64::from(SUBPIXELS);
-            let place = (at(i, k % SUBPIXELS), at(j, k / SUBPIXELS));
-            let Some(direction) = self.frame.direction(place.0, place.1) else {
-                continue;
-            };
-            sights.extend(self.things.look(direction, across / f64::from(SUBPIXELS)));
-        }
+        let width = across / f64::from(POINTS).sqrt();
+        let sights: Vec<Sight<'_>> = directions_within(&self.frame, (i, j))
+            .filter_map(|direction| self.things.look(direction, width))
+            .collect();
         if sights.is_empty() {
             return;
         }
-        let all = (SUBPIXELS * SUBPIXELS) as f32;
+        let all = POINTS as f32;
         let open = 1.0 - sights.len() as f32 / all;
         if self.draws_things {
             let things = self.things;
