@@ -5,7 +5,7 @@
 
 FOLDER holds the refractive indices of the data base OPAC as text files, as they come with MOPSMAP 1.0 (folder `data/`;
 `refr_mineral` lies in `misc/paper_examples/`): columns wavelength (micrometres), n, k. The tables go to
-crates/airlight/data/medium/.
+crates/airlight/data/atmosphere/.
 
 Sources
   OPAC     M. Hess, P. Koepke & I. Schult, Optical Properties of Aerosols and Clouds: The Software Package OPAC, Bull. Amer.

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Writes the tables of atmospheres that the crate `airlight` embeds (plain Python, no packages).
 
-    python3 scripts/medium_tables.py csm csm_atmosphere_parameters.csv data/medium/csm_atmosphere.txt
-    python3 scripts/medium_tables.py mars-dust                         data/medium/mars_dust_phase.txt
+    python3 scripts/medium_tables.py csm csm_atmosphere_parameters.csv data/atmosphere/csm_atmosphere.txt
+    python3 scripts/medium_tables.py mars-dust                         data/atmosphere/mars_dust_phase.txt
 
 (output paths relative to crates/airlight/)
 

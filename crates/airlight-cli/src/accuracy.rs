@@ -4,8 +4,8 @@ use crate::args::{AccuracyArgs, ReportArg};
 use crate::error::CliError;
 use crate::progress::Busy;
 use crate::report;
-use airlight_accuracy::report::{html, json, text};
-use airlight_accuracy::{Check, Suite, run as make};
+use airlight_validation::report::{html, json, text};
+use airlight_validation::{Check, Suite, run as make};
 
 /// Runs the command.
 ///

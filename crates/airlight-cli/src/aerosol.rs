@@ -2,8 +2,8 @@
 
 use crate::error::CliError;
 use crate::report;
-use airlight::medium::aerosol_types::Ingredient;
-use airlight::medium::{AerosolMixture, AerosolType, AerosolTypeError};
+use airlight::atmosphere::aerosol_types::Ingredient;
+use airlight::atmosphere::{AerosolMixture, AerosolType, AerosolTypeError};
 use std::fmt::Write;
 
 /// The help of `--aerosol`: every type with its description.

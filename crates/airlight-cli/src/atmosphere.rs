@@ -4,9 +4,9 @@ use crate::aerosol;
 use crate::args::{AirArgs, AtmospheresArgs};
 use crate::error::CliError;
 use crate::report;
-use airlight::medium::presets::earth::{EARTH_RADIUS_M, Earth};
-use airlight::medium::visibility::Contrast;
-use airlight::medium::{
+use airlight::atmosphere::presets::earth::{EARTH_RADIUS_M, Earth};
+use airlight::atmosphere::visibility::Contrast;
+use airlight::atmosphere::{
     AerosolLoad, AerosolMixture, AerosolType, Atmosphere, Constituent, config, gases, preset,
     preset_names,
 };

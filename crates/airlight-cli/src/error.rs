@@ -1,12 +1,12 @@
 //! Why a command ends before its time, and with which exit code.
 
-use airlight::light::ephemeris::EphemerisError;
-use airlight::medium::{AerosolError, AtmosphereError, UnknownPreset};
+use airlight::atmosphere::{AerosolError, AtmosphereError, UnknownPreset};
 use airlight::optics::mie::MieError;
-use airlight::outdoors::OutdoorsError;
+use airlight::scene::SceneError;
 use airlight::sky::SkyError;
 use airlight::spectrum::GridError;
-use airlight_render::RenderError;
+use airlight::sun::position::EphemerisError;
+use airlight_image::ImageError;
 use std::io;
 
 /// Why a command ends before its time.
@@ -61,13 +61,13 @@ impl CliError {
     }
 }
 
-impl From<RenderError> for CliError {
-    fn from(error: RenderError) -> Self {
+impl From<ImageError> for CliError {
+    fn from(error: ImageError) -> Self {
         match error {
-            RenderError::Cancelled => Self::Interrupted,
-            RenderError::Size { .. }
-            | RenderError::Setting { .. }
-            | RenderError::UnknownFormat { .. } => Self::usage(error.to_string()),
+            ImageError::Cancelled => Self::Interrupted,
+            ImageError::Size { .. }
+            | ImageError::Setting { .. }
+            | ImageError::UnknownFormat { .. } => Self::usage(error.to_string()),
             _ => Self::failure(error.to_string()),
         }
     }
@@ -90,7 +90,7 @@ refusals!(
     EphemerisError,
     GridError,
     MieError,
-    OutdoorsError,
+    SceneError,
     SkyError,
     UnknownPreset
 );
@@ -101,17 +101,17 @@ mod tests {
 
     #[test]
     fn codes_tell_bad_use_from_failure() {
-        let size = RenderError::Size {
+        let size = ImageError::Size {
             width: 0,
             height: 0,
         };
         assert_eq!(CliError::from(size).exit_code(), 2);
-        let missing = RenderError::NoFolder {
+        let missing = ImageError::NoFolder {
             path: "a/b".into(),
             folder: "a".into(),
         };
         assert_eq!(CliError::from(missing).exit_code(), 1);
-        assert_eq!(CliError::from(RenderError::Cancelled).exit_code(), 130);
+        assert_eq!(CliError::from(ImageError::Cancelled).exit_code(), 130);
         let pipe = io::Error::from(io::ErrorKind::BrokenPipe);
         assert_eq!(CliError::from_stdout(&pipe), CliError::ReaderGone);
         assert_eq!(CliError::ReaderGone.exit_code(), 0);

@@ -1,9 +1,9 @@
 //! Fog as a constituent of the air, for random paths.
 
 use crate::error::CliError;
+use airlight::atmosphere::{AltitudeTable, Constituent, DensityProfile, Interpolation};
 use airlight::fog::Profile;
 use airlight::fog::droplets::DropletKind;
-use airlight::medium::{AltitudeTable, Constituent, DensityProfile, Interpolation};
 use airlight::optics::PhaseFunction;
 use airlight::optics::mie::BulkOptics;
 use airlight::spectrum::SpectralCurve;

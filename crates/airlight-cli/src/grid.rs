@@ -4,8 +4,8 @@ use crate::args::{GridArgs, SkyArgs};
 use crate::error::CliError;
 use crate::progress::PicturesBar;
 use crate::report;
-use crate::sky::Still;
-use airlight_chart::board::{Board, Panel};
+use crate::sky::RenderedImage;
+use airlight_plot::contact_sheet::{ContactSheet, Panel};
 use clap::Parser;
 use std::path::Path;
 use toml::{Table, Value};
@@ -43,16 +43,16 @@ pub fn run(args: &GridArgs) -> Result<(), CliError> {
     let bar = PicturesBar::new(plan.cells.len() as u64);
     let mut panels = Vec::with_capacity(plan.cells.len());
     for (label, sky) in &plan.cells {
-        let still = Still::new(sky)?;
+        let image = RenderedImage::new(sky)?;
         panels.push(Panel {
             title: label.clone(),
-            picture: still.displayed(&still.tone),
+            picture: image.displayed(&image.tone),
             scale: None,
         });
         bar.one_more();
     }
     drop(bar);
-    let board = Board {
+    let board = ContactSheet {
         heading: plan.title,
         columns: plan.columns,
         panels,

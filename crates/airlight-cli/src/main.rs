@@ -4,7 +4,7 @@
 //! - [`error`]: why a command ends, and its exit code; [`parse`]: values on the command line; [`moment`]: times.
 //! - [`args`]: every option of every command.
 //! - [`interrupt`], [`progress`], [`report`]: Ctrl-C, bars on standard error, text on standard output.
-//! - [`atmosphere`], [`scene`], [`classic`], [`light`]: what is asked for, from options to the solver or the published
+//! - [`atmosphere`], [`scene`], [`models`], [`illuminance`]: what is asked for, from options to the solver or the published
 //!   model; sums over the sky.
 //! - [`foggy_air`], [`passes`]: fog for random paths, and their passes over a picture.
 //! - [`sky`], [`fog`], [`probe`], [`compare`], [`grid`], [`accuracy`] and [`plot`]: the commands.
@@ -13,14 +13,14 @@ mod accuracy;
 mod aerosol;
 mod args;
 mod atmosphere;
-mod classic;
 mod compare;
 mod error;
 mod fog;
 mod foggy_air;
 mod grid;
+mod illuminance;
 mod interrupt;
-mod light;
+mod models;
 mod moment;
 mod parse;
 mod passes;

@@ -1,6 +1,6 @@
 //! Moments: seconds since 1970 and the zone they were given in.
 
-use airlight::light::ephemeris;
+use airlight::sun::position;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 /// A moment.
@@ -26,7 +26,7 @@ impl Moment {
         if text.trim().eq_ignore_ascii_case("now") {
             return Ok(Self::now());
         }
-        let unix_s = ephemeris::parse_time(text).map_err(|e| format!("{e}; or write now"))?;
+        let unix_s = position::parse_time(text).map_err(|e| format!("{e}; or write now"))?;
         Ok(Self {
             unix_s,
             offset_s: offset_s(text.trim()),

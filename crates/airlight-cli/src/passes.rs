@@ -1,7 +1,7 @@
 //! Random paths pass by pass, each of as many as all before it; and the sums that tell how far they scatter.
 
 use crate::progress::RowsBar;
-use airlight::sky::monte_carlo::{BUNDLE, MonteCarloSettings};
+use airlight::monte_carlo::{BUNDLE, MonteCarloSettings};
 
 /// Bundles of the first pass: two are the fewest that have a spread.
 const FIRST: u64 = 2;

@@ -1,6 +1,6 @@
 //! Bars on standard error, shown only where that is a terminal.
 
-use airlight_render::Progress;
+use airlight_image::Progress;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;

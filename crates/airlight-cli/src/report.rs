@@ -2,8 +2,8 @@
 
 use crate::error::CliError;
 use crate::interrupt;
-use airlight_chart::board::Board;
-use airlight_render::output::AtomicFile;
+use airlight_image::output::AtomicFile;
+use airlight_plot::contact_sheet::ContactSheet;
 use std::io::Write;
 use std::path::Path;
 use std::time::Duration;
@@ -57,7 +57,7 @@ pub fn check_png(path: &Path) -> Result<(), CliError> {
 ///
 /// # Errors
 /// [`CliError`] where it is larger than memory, or the file cannot be written.
-pub fn write_board(path: &Path, board: &Board) -> Result<(), CliError> {
+pub fn write_board(path: &Path, board: &ContactSheet) -> Result<(), CliError> {
     let png = board
         .draw()
         .and_then(|picture| picture.png())

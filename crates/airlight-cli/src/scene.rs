@@ -6,12 +6,12 @@ use crate::error::CliError;
 use crate::moment::Moment;
 use crate::parse::LatLon;
 use crate::progress::Busy;
+use airlight::atmosphere::Atmosphere;
 use airlight::axes;
-use airlight::classic::klassen1987;
-use airlight::light::ephemeris::{Place, RefractingAir, sun_position};
-use airlight::medium::Atmosphere;
+use airlight::models::klassen1987;
 use airlight::sky::{Scattering, Sky, SkySettings, SunCoverage, View};
 use airlight::spectrum::WavelengthGrid;
+use airlight::sun::position::{Place, RefractingAir, sun_position};
 use std::time::{Duration, Instant};
 
 /// Where the eye is, what the air is and how the sun is found.
@@ -32,7 +32,7 @@ pub struct Scene {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SunSource {
     /// It was told.
-    Told(Sun),
+    Explicit(Sun),
     /// From place and time.
     Ephemeris {
         /// Where on the Earth.
@@ -66,7 +66,7 @@ impl SunSource {
     /// [`CliError::Usage`] where the moment is out of the ephemeris' range.
     pub fn at(&self, moment: Option<Moment>) -> Result<Sun, CliError> {
         let (place, start, altitude_m, refraction) = match *self {
-            Self::Told(sun) => return Ok(sun),
+            Self::Explicit(sun) => return Ok(sun),
             Self::Ephemeris {
                 place,
                 start,
@@ -95,7 +95,7 @@ impl SunSource {
     /// The moment shown or begun with.
     pub fn start(&self) -> Option<Moment> {
         match self {
-            Self::Told(_) => None,
+            Self::Explicit(_) => None,
             Self::Ephemeris { start, .. } => Some(*start),
         }
     }
@@ -103,7 +103,7 @@ impl SunSource {
     /// The place on the Earth.
     pub fn place(&self) -> Option<LatLon> {
         match self {
-            Self::Told(_) => None,
+            Self::Explicit(_) => None,
             Self::Ephemeris { place, .. } => Some(*place),
         }
     }
@@ -206,7 +206,7 @@ fn sun_source(
     eye_altitude_m: f64,
 ) -> Result<SunSource, CliError> {
     if let Some(elevation_deg) = args.sun_elevation {
-        return Ok(SunSource::Told(Sun {
+        return Ok(SunSource::Explicit(Sun {
             azimuth_deg: args.sun_azimuth.unwrap_or(180.0).rem_euclid(360.0),
             elevation_deg,
             geometric_elevation_deg: None,

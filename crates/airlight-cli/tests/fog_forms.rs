@@ -2,7 +2,7 @@
 
 mod common;
 
-use airlight::fog::lamp::{LampForm, Passage};
+use airlight::fog::lights::{LightForm, LightRayGeometry};
 use common::batch::{WORDS, bytes, manifest, pictures};
 use common::{Exr, Folder, command, run, succeed};
 use glam::DVec3;
@@ -107,14 +107,14 @@ fn lamps_shine_as_their_form_says() {
     let focal_px = 16.0 / 30f64.to_radians().tan();
     let along = DVec3::new((20.5 - 16.0) / focal_px, (12.0 - 8.5) / focal_px, -1.0);
     let (eye, lamp) = (DVec3::Y * 1.6, DVec3::new(1.0, 2.0, -4.0));
-    let passage = Passage::new(eye, along.normalize(), 10.0 * along.length(), lamp, 1e-3);
+    let passage = LightRayGeometry::new(eye, along.normalize(), 10.0 * along.length(), lamp, 1e-3);
     let extinction = 20f64.recip() * -0.05f64.ln();
     let words = "at=1,2,-4 intensity=2,1,0.5 radius=0.001";
     for (name, form) in [
-        ("exact", LampForm::Exact),
-        ("split-sum", LampForm::SplitSum),
-        ("no-extinction", LampForm::NoExtinction),
-        ("printed", LampForm::Printed),
+        ("exact", LightForm::Exact),
+        ("split-sum", LightForm::SplitSum),
+        ("no-extinction", LightForm::NoExtinction),
+        ("printed", LightForm::Printed),
     ] {
         let more = ["--lamp", words, "--lamp-form", name];
         let picture = made(&folder, "--ambient 0,0,0", &more);

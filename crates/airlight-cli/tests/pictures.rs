@@ -2,7 +2,7 @@
 
 mod common;
 
-use airlight_render::{Camera, CubeFace, Fisheye, Frame, Projection, Size};
+use airlight_image::{Camera, CubeFace, Fisheye, Frame, Projection, Size};
 use common::{Exr, Folder, number_after, run, succeed, views_of};
 use image::GenericImageView;
 
@@ -161,7 +161,7 @@ fn pixel_table_and_probe_agree() {
             .iter()
             .enumerate()
         {
-            let name = airlight_render::output::spectral::channel_name(nm.as_f64().unwrap());
+            let name = airlight_image::output::spectral::channel_name(nm.as_f64().unwrap());
             let value = spectral.channels[&name][(y * 64 + x) as usize];
             close(value, &view["radiance_w_m2_sr_nm"][lane], &name);
         }

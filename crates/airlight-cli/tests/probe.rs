@@ -239,7 +239,7 @@ fn spectra_of_1987_make_its_colours_and_its_light() {
     let answer = json(&folder, words);
     let nm = list(&answer, "wavelengths_nm");
     assert_eq!((nm.len(), nm[0], nm[32]), (33, 380.0, 700.0));
-    let grid = airlight::classic::klassen1987::wavelength_grid();
+    let grid = airlight::models::klassen1987::wavelength_grid();
     let colour = |spectrum: Vec<f64>| {
         let lanes: Vec<f32> = spectrum.iter().map(|&v| v as f32).collect();
         grid.to_xyz(&lanes)

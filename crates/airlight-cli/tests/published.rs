@@ -2,8 +2,8 @@
 
 mod common;
 
-use airlight_render::output::spectral::channel_name;
-use airlight_render::{Frame, Projection};
+use airlight_image::output::spectral::channel_name;
+use airlight_image::{Frame, Projection};
 use common::{Exr, Folder, run, succeed, views_of};
 use serde_json::Value;
 

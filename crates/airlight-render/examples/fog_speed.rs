@@ -6,15 +6,15 @@
 use airlight::axes;
 use airlight::fog::droplets::Droplets;
 use airlight::fog::visibility::{Contrast, extinction_per_m};
-use airlight::fog::{Fog, Ground, Layer, Light, Profile, Scattering, Sun};
+use airlight::fog::{DirectionalLight, Fog, FogLighting, FogScattering, Ground, Layer, Profile};
 use airlight::spectrum::Spectrum;
-use airlight_render::input::{DepthMap, DepthOptions, Picture, read_depth, read_picture};
-use airlight_render::output::exr::{ExrOptions, ExrSample};
-use airlight_render::output::{Metadata, PictureOptions, exr, png};
-use airlight_render::overlay::{Body, Channels, Overlay, Veil, estimate_ambient};
-use airlight_render::rows::{RowFn, StoredRows};
-use airlight_render::tone::ToneMapper;
-use airlight_render::{Control, Intrinsics, RenderError, RowSource, Size, write_picture};
+use airlight_image::input::{DepthMap, DepthOptions, Picture, read_depth, read_picture};
+use airlight_image::output::exr::{ExrOptions, ExrSample};
+use airlight_image::output::{Metadata, PictureOptions, exr, png};
+use airlight_image::rows::{RowFn, StoredRows};
+use airlight_image::tone::ToneMapper;
+use airlight_image::{Control, ImageError, Intrinsics, RowSource, Size, write_picture};
+use airlight_render::overlay::{Channels, FogOverlay, FogSource, Overlay, estimate_ambient};
 use glam::DVec3;
 use std::error::Error;
 use std::hint::black_box;
@@ -121,7 +121,7 @@ fn timed<T>(name: &str, work: impl Fn() -> T) -> T {
     result.expect("five runs")
 }
 
-fn measure(folder: &Path, ending: &str, scale: f64) -> Result<(), RenderError> {
+fn measure(folder: &Path, ending: &str, scale: f64) -> Result<(), ImageError> {
     println!("{ending}, one thread, a megapixel:");
     let file = |place: &str| folder.join(format!("{place}/0001.{ending}"));
     let picture = timed("read colour", || read_picture(&file("rgb"), None))?;
@@ -144,10 +144,10 @@ fn measure(folder: &Path, ending: &str, scale: f64) -> Result<(), RenderError> {
     let camera = Intrinsics::from_horizontal_fov(picture.size, 60.0)?;
     let mut even = None;
     for (name, profile, sun) in fogs() {
-        let make = || Veil::Fog(Body::Alone(Box::new(fog(profile, sun, ambient))), None);
-        let veil = timed(&format!("{name}: prepare"), make);
+        let make = || FogOverlay::Fog(FogSource::Alone(Box::new(fog(profile, sun, ambient))), None);
+        let overlay = timed(&format!("{name}: prepare"), make);
         // Made anew each time, as its table is filled while it is looked at.
-        let overlay = || Overlay::new(&picture, &depth, &camera, 1.6, &veil, Channels::Picture);
+        let overlay = || Overlay::new(&picture, &depth, &camera, 1.6, &overlay, Channels::Picture);
         let rows = timed(&format!("{name}: fog"), || Ok(rows(&picture, &overlay()?)))?;
         even.get_or_insert(rows);
         if profile != Profile::Uniform {
@@ -157,8 +157,8 @@ fn measure(folder: &Path, ending: &str, scale: f64) -> Result<(), RenderError> {
             });
         }
     }
-    let veil = Veil::Encoded(0.05, ambient);
-    let overlay = Overlay::new(&picture, &depth, &camera, 1.6, &veil, Channels::Picture)?;
+    let overlay = FogOverlay::Encoded(0.05, ambient);
+    let overlay = Overlay::new(&picture, &depth, &camera, 1.6, &overlay, Channels::Picture)?;
     timed("foggy-cityscapes: fog", || rows(&picture, &overlay));
     let stored = StoredRows::new(SIZE.0, 3, even.unwrap_or_default())?;
     let tone = ToneMapper::as_displayed();
@@ -184,8 +184,8 @@ fn fogs() -> [(&'static str, Profile, Option<f64>); 4] {
 }
 
 fn fog(profile: Profile, sun_elevation_deg: Option<f64>, ambient: Spectrum<3>) -> Fog<3> {
-    let light = Light {
-        sun: sun_elevation_deg.map(|elevation| Sun {
+    let light = FogLighting {
+        sun: sun_elevation_deg.map(|elevation| DirectionalLight {
             direction: axes::direction(180.0, elevation),
             irradiance: ambient * 9.0,
         }),
@@ -193,9 +193,9 @@ fn fog(profile: Profile, sun_elevation_deg: Option<f64>, ambient: Spectrum<3>) -
         ground_albedo: Spectrum::splat(0.2),
     };
     let extinction = extinction_per_m(80.0, Contrast::FivePercent);
-    let matter = Droplets::Radiation.matter(extinction);
-    let layers = [Layer { profile, matter }];
-    Fog::new(&layers, Ground::FLAT, light, Scattering::Multiple).expect("a fog of sound numbers")
+    let medium = Droplets::Radiation.medium(extinction);
+    let layers = [Layer { profile, medium }];
+    Fog::new(&layers, Ground::FLAT, light, FogScattering::Multiple).expect("a fog of sound numbers")
 }
 
 /// What it would take without a table.

@@ -3,7 +3,9 @@
 //! `cargo bench -p airlight --bench fog`
 
 use airlight::axes::direction;
-use airlight::fog::{Fog, Ground, Layer, Light, Profile, Scattering, Sun, droplets::Droplets};
+use airlight::fog::{
+    DirectionalLight, Fog, FogLighting, FogScattering, Ground, Layer, Profile, droplets::Droplets,
+};
 use airlight::spectrum::Spectrum;
 use divan::{Bencher, black_box};
 use glam::DVec3;
@@ -29,16 +31,16 @@ fn profile(name: &str) -> Profile {
     }
 }
 
-fn fog<const N: usize>(names: &[&str], ground: Ground, scattering: Scattering) -> Fog<N> {
+fn fog<const N: usize>(names: &[&str], ground: Ground, scattering: FogScattering) -> Fog<N> {
     let layers: Vec<Layer<N>> = names
         .iter()
         .map(|name| Layer {
             profile: profile(name),
-            matter: Droplets::Radiation.matter(0.02),
+            medium: Droplets::Radiation.medium(0.02),
         })
         .collect();
-    let light = Light {
-        sun: Some(Sun {
+    let light = FogLighting {
+        sun: Some(DirectionalLight {
             direction: direction(100.0, 20.0),
             irradiance: Spectrum::splat(1e5),
         }),
@@ -71,14 +73,14 @@ fn walk<const N: usize>(bencher: Bencher, fog: &Fog<N>) {
 
 #[divan::bench(args = ["uniform", "exponential", "clamped", "slab"])]
 fn one_profile_rgb(bencher: Bencher, name: &str) {
-    walk::<3>(bencher, &fog(&[name], Ground::FLAT, Scattering::Single));
+    walk::<3>(bencher, &fog(&[name], Ground::FLAT, FogScattering::Single));
 }
 
 #[divan::bench]
 fn one_profile_16_wavelengths(bencher: Bencher) {
     walk::<16>(
         bencher,
-        &fog(&["exponential"], Ground::FLAT, Scattering::Single),
+        &fog(&["exponential"], Ground::FLAT, FogScattering::Single),
     );
 }
 
@@ -86,7 +88,7 @@ fn one_profile_16_wavelengths(bencher: Bencher) {
 fn round_ground_rgb(bencher: Bencher) {
     walk::<3>(
         bencher,
-        &fog(&["exponential"], Ground::EARTH, Scattering::Single),
+        &fog(&["exponential"], Ground::EARTH, FogScattering::Single),
     );
 }
 
@@ -94,30 +96,37 @@ fn round_ground_rgb(bencher: Bencher) {
 fn two_profiles_rgb(bencher: Bencher) {
     walk::<3>(
         bencher,
-        &fog(&["exponential", "slab"], Ground::FLAT, Scattering::Single),
+        &fog(
+            &["exponential", "slab"],
+            Ground::FLAT,
+            FogScattering::Single,
+        ),
     );
 }
 
 #[divan::bench(args = ["exponential", "clamped", "slab"])]
 fn many_scatterings_rgb(bencher: Bencher, name: &str) {
-    walk::<3>(bencher, &fog(&[name], Ground::FLAT, Scattering::Multiple));
+    walk::<3>(
+        bencher,
+        &fog(&[name], Ground::FLAT, FogScattering::Multiple),
+    );
 }
 
 #[divan::bench]
 fn many_scatterings_16_wavelengths(bencher: Bencher) {
     walk::<16>(
         bencher,
-        &fog(&["exponential"], Ground::FLAT, Scattering::Multiple),
+        &fog(&["exponential"], Ground::FLAT, FogScattering::Multiple),
     );
 }
 
 /// Solving for the light inside: once for a fog and its sun.
 #[divan::bench]
 fn solving_rgb() -> Fog<3> {
-    fog(&["exponential"], Ground::FLAT, Scattering::Multiple)
+    fog(&["exponential"], Ground::FLAT, FogScattering::Multiple)
 }
 
 #[divan::bench]
 fn solving_16_wavelengths() -> Fog<16> {
-    fog(&["exponential"], Ground::FLAT, Scattering::Multiple)
+    fog(&["exponential"], Ground::FLAT, FogScattering::Multiple)
 }

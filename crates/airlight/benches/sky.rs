@@ -2,8 +2,8 @@
 //!
 //! The picture is the one of the README: 2048 x 1024 directions of the whole sphere, default wavelengths, linear sRGB.
 
+use airlight::atmosphere::{Atmosphere, presets};
 use airlight::axes::direction;
-use airlight::medium::{Atmosphere, presets};
 use airlight::sky::{Scattering, Sky, SkySettings, SkyTable, SunCoverage, TableChannels, View};
 use airlight::spectrum::{RgbSpace, WavelengthGrid};
 use divan::{Bencher, black_box};

@@ -2,10 +2,10 @@
 //! `cargo run --release -p airlight --example aerosol_types`. Some minutes. A number behind it is taken for
 //! `SkySettings::orders.peak_degree`.
 
+use airlight::atmosphere::aerosol_types::AerosolType;
+use airlight::atmosphere::{AerosolLoad, AerosolMixture, preset};
 use airlight::axes;
-use airlight::medium::aerosol_types::AerosolType;
-use airlight::medium::{AerosolLoad, AerosolMixture, preset};
-use airlight::sky::monte_carlo::{MonteCarlo, MonteCarloSettings};
+use airlight::monte_carlo::{MonteCarlo, MonteCarloSettings};
 use airlight::sky::{Sky, SkySettings, SunCoverage};
 use airlight::spectrum::WavelengthGrid;
 use std::error::Error;

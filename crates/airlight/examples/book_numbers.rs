@@ -1,10 +1,10 @@
 //! Prints the numbers that the book states about the air and the sun, its tables as it shows them (`scripts/book`):
 //! `cargo run --release --example book_numbers -p airlight`; with the word `molecules`, `hazes` or `earth` only that table.
 
-use airlight::light::{self, Place, RefractingAir};
-use airlight::medium::aerosol::{turbidity_of_optical_depth, visibility_of_extinction_m};
-use airlight::medium::{gases, preset, preset_names};
+use airlight::atmosphere::aerosol::{turbidity_of_optical_depth, visibility_of_extinction_m};
+use airlight::atmosphere::{gases, preset, preset_names};
 use airlight::optics::rayleigh;
+use airlight::sun::{self, Place, RefractingAir};
 
 type Fallible = Result<(), Box<dyn std::error::Error>>;
 
@@ -149,8 +149,8 @@ fn sun() -> Fallible {
         longitude_deg: 2.2945,
         altitude_m: 0.0,
     };
-    let time = light::ephemeris::parse_time("2026-06-21T21:15:00+02:00")?;
-    let sun = light::sun_position(time, paris, Some(RefractingAir::STANDARD))?;
+    let time = sun::position::parse_time("2026-06-21T21:15:00+02:00")?;
+    let sun = sun::sun_position(time, paris, Some(RefractingAir::STANDARD))?;
     println!("\nParis, 2026-06-21T21:15:00+02:00: {sun:?}");
     Ok(())
 }

@@ -4,9 +4,9 @@
 
 mod common;
 
-use airlight::fog::lamp::{LampForm, Nodes, Passage, airlight_isotropic_lanes};
-use airlight::fog::{Line, Profile};
-use airlight::medium::visibility::{Contrast, extinction_per_m};
+use airlight::atmosphere::visibility::{Contrast, extinction_per_m};
+use airlight::fog::lights::{LightForm, LightRayGeometry, Nodes, airlight_isotropic_lanes};
+use airlight::fog::{Profile, RaySegment};
 use common::Table;
 use std::error::Error;
 use std::f64::consts::PI;
@@ -29,7 +29,7 @@ fn lamp_forms() {
         ("5 m ahead, passed", -5.0),
         ("25 m ahead, not reached", -25.0),
     ] {
-        let passage = Passage {
+        let passage = LightRayGeometry {
             nearest_m: 1.0,
             start_m,
             length_m: 20.0,
@@ -40,16 +40,16 @@ fn lamp_forms() {
             0.1,
             0.27,
         ] {
-            let exact = LampForm::Exact.airlight(&passage, extinction);
-            let ratio = |form: LampForm| form.airlight(&passage, extinction) / exact;
-            let printed = ratio(LampForm::Printed);
+            let exact = LightForm::Exact.airlight(&passage, extinction);
+            let ratio = |form: LightForm| form.airlight(&passage, extinction) / exact;
+            let printed = ratio(LightForm::Printed);
             println!(
                 "| {lamp} | {} | {} | {} | {} | {} |",
                 (extinction * 1e3).round() / 1e3,
                 figures(printed),
                 figures(printed / (4.0 * PI * PI)),
-                figures(ratio(LampForm::NoExtinction)),
-                figures(ratio(LampForm::SplitSum))
+                figures(ratio(LightForm::NoExtinction)),
+                figures(ratio(LightForm::SplitSum))
             );
         }
     }
@@ -77,7 +77,7 @@ fn base() {
         (2.0, 2.0, 150.0),
         (10.0, -40.0, 300.0),
     ] {
-        let line = Line::flat(from_m, (to_m - from_m) / length_m, length_m);
+        let line = RaySegment::flat(from_m, (to_m - from_m) / length_m, length_m);
         let definition = integral(&line, BASE_M, |height_m| {
             (-(height_m - BASE_M).max(0.0) / SCALE_M).exp()
         });
@@ -94,7 +94,7 @@ fn base() {
 }
 
 /// `int density ds` along a line by Simpson's rule, cut at the base.
-fn integral(line: &Line, base_m: f64, density: impl Fn(f64) -> f64) -> f64 {
+fn integral(line: &RaySegment, base_m: f64, density: impl Fn(f64) -> f64) -> f64 {
     const STEPS: u32 = 2000;
     let (first, last) = line.below(base_m);
     [(0.0, first), (first, last), (last, line.length_m)]
@@ -112,13 +112,13 @@ fn integral(line: &Line, base_m: f64, density: impl Fn(f64) -> f64) -> f64 {
 /// What a line past a lamp costs, in units of the printed form.
 fn speed() {
     const LINES: u32 = 50_000;
-    let time = |form: &dyn Fn(&Passage) -> f64| {
+    let time = |form: &dyn Fn(&LightRayGeometry) -> f64| {
         let once = || {
             let start = Instant::now();
             let sum: f64 = (0..LINES)
                 .map(|k| {
                     let part = f64::from(k) / f64::from(LINES);
-                    form(&Passage {
+                    form(&LightRayGeometry {
                         nearest_m: 0.1 + 4.0 * part,
                         start_m: -20.0 + 25.0 * (7.0 * part).fract(),
                         length_m: 20.0 + 40.0 * part,
@@ -132,19 +132,19 @@ fn speed() {
         times.sort_by(f64::total_cmp);
         times[4]
     };
-    let of = |form: LampForm| time(&|passage| form.airlight(passage, black_box(0.03)));
-    let printed = of(LampForm::Printed);
+    let of = |form: LightForm| time(&|passage| form.airlight(passage, black_box(0.03)));
+    let printed = of(LightForm::Printed);
     let nodes = Nodes::new(12);
     println!("| form | time |\n|---|---|");
     for (name, seconds) in [
         ("printed", printed),
-        ("no extinction", of(LampForm::NoExtinction)),
-        ("split sum", of(LampForm::SplitSum)),
+        ("no extinction", of(LightForm::NoExtinction)),
+        ("split sum", of(LightForm::SplitSum)),
         (
             "exact, by 12 nodes",
             time(&|passage| airlight_isotropic_lanes(passage, black_box(0.03), &nodes)),
         ),
-        ("exact, closed form", of(LampForm::Exact)),
+        ("exact, closed form", of(LightForm::Exact)),
     ] {
         println!("| {name} | {:.1} |", seconds / printed);
     }

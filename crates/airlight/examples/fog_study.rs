@@ -5,12 +5,13 @@
 
 mod common;
 
+use airlight::atmosphere::visibility::{Contrast, extinction_per_m, visibility_m};
 use airlight::axes::direction;
-use airlight::fog::lamp::{Passage, airlight_isotropic, airlight_without_extinction};
+use airlight::fog::lights::{LightRayGeometry, airlight_isotropic, airlight_without_extinction};
 use airlight::fog::{
-    Fog, Ground, Layer, Light, Profile, Scattering, Sun, approximation, droplets::Droplets,
+    DirectionalLight, Fog, FogLighting, FogScattering, Ground, Layer, Profile, approximation,
+    droplets::Droplets,
 };
-use airlight::medium::visibility::{Contrast, extinction_per_m, visibility_m};
 use airlight::spectrum::Spectrum;
 use common::Table;
 use std::error::Error;
@@ -81,7 +82,7 @@ fn lamp_without_extinction() {
     println!(
         "| extinction, 1/m | visibility (5 %) | without extinction it is too bright by |\n|---|---|---|"
     );
-    let passage = Passage {
+    let passage = LightRayGeometry {
         nearest_m: 1.0,
         start_m: -5.0,
         length_m: 20.0,
@@ -131,10 +132,10 @@ fn sun_undimmed() {
                         reference_height_m: 0.0,
                         scale_height_m: 50.0,
                     },
-                    matter: Droplets::Radiation.matter(3.0 / visibility),
+                    medium: Droplets::Radiation.medium(3.0 / visibility),
                 };
-                let light = Light {
-                    sun: Some(Sun {
+                let light = FogLighting {
+                    sun: Some(DirectionalLight {
                         direction: direction(0.0, elevation),
                         irradiance: Spectrum::ONE,
                     }),
@@ -144,7 +145,7 @@ fn sun_undimmed() {
                 let fog = Fog::new(&[layer], Ground::FLAT, light, scattering).expect("a fog");
                 fog.along(2.0, direction(180.0, 0.0), 150.0).path_radiance[0]
             };
-            let ratio = path(Scattering::Undimmed) / path(Scattering::Single);
+            let ratio = path(FogScattering::Undimmed) / path(FogScattering::Single);
             let text = match ratio {
                 1e3.. => "> 1000".to_owned(),
                 1e2.. => format!("{ratio:.0}"),

@@ -4,11 +4,12 @@
 
 mod common;
 
+use airlight::atmosphere::visibility::{Contrast, extinction_per_m};
 use airlight::axes::direction;
 use airlight::fog::{
-    Fog, Ground, Layer, Light, Line, Matter, Profile, Scattering, Sun, droplets::Droplets, scatter,
+    DirectionalLight, Fog, FogLighting, FogScattering, Ground, Layer, Medium, Profile, RaySegment,
+    droplets::Droplets, scatter,
 };
-use airlight::medium::visibility::{Contrast, extinction_per_m};
 use airlight::optics::PhaseFunction;
 use airlight::spectrum::Spectrum;
 use common::Table;
@@ -56,7 +57,7 @@ fn level_lines() {
         (60.0, 6500.0),
     ] {
         let climb = elevation.to_radians().sin();
-        let line = Line::flat(EYE_M, climb, length_m);
+        let line = RaySegment::flat(EYE_M, climb, length_m);
         let right = integral(length_m, |s| profile.density(line.height_at(s)));
         let here = profile.column(&line);
         let printed = printed_depth(1.0, climb as f32, length_m as f32);
@@ -87,7 +88,7 @@ fn closed_forms() {
     ] {
         let extinction = extinction_of(visibility_m);
         let climb = elevation.to_radians().sin();
-        let line = Line::flat(eye_m, climb, length_m);
+        let line = RaySegment::flat(eye_m, climb, length_m);
         let profile = exponential();
         let to_sun = |height_m: f64| extinction * profile.column_above(height_m) / sine_sun;
         let right = integral(length_m, |s| {
@@ -110,22 +111,22 @@ fn closed_forms() {
         let along = extinction * profile.column(&line);
         let divided = scatter::once(to_sun(eye_m), along * (1.0 - climb / sine_sun), along);
 
-        let matter = Matter {
+        let medium = Medium {
             extinction_per_m: Spectrum([extinction as f32]),
             single_scattering_albedo: Spectrum::ONE,
             phase: PhaseFunction::Isotropic,
         };
-        let light = Light {
-            sun: Some(Sun {
+        let light = FogLighting {
+            sun: Some(DirectionalLight {
                 direction: direction(0.0, 15.0),
                 irradiance: Spectrum::splat(4.0 * PI as f32),
             }),
             ambient: Spectrum::ZERO,
             ground_albedo: Spectrum::ZERO,
         };
-        let layer = Layer { profile, matter };
+        let layer = Layer { profile, medium };
         let fog: Fog<1> =
-            Fog::new(&[layer], Ground::FLAT, light, Scattering::Single).expect("a fog");
+            Fog::new(&[layer], Ground::FLAT, light, FogScattering::Single).expect("a fog");
         let here = fog.along(eye_m, direction(120.0, elevation), length_m);
         println!(
             "| {visibility_m} m | from {eye_m} m, {}, {length_m} m | {} | {} | {} |",
@@ -165,8 +166,8 @@ fn against_all_orders() {
                     let line = fog.along(EYE_M, direction(azimuth, 20.0), 150.0);
                     f64::from(line.path_radiance[0])
                 };
-                let all = of(Scattering::Multiple);
-                let [undimmed, single] = [Scattering::Undimmed, Scattering::Single]
+                let all = of(FogScattering::Multiple);
+                let [undimmed, single] = [FogScattering::Undimmed, FogScattering::Single]
                     .map(|scattering| signed(100.0 * (of(scattering) / all - 1.0)));
                 format!("{undimmed} / {single}")
             });
@@ -187,13 +188,18 @@ fn extinction_of(visibility_m: f64) -> f64 {
 }
 
 /// Height fog of drops of 10 micrometres under a sun in the north and an even sky, ground of albedo 0.2.
-fn lit_fog(visibility_m: f64, sun_deg: f64, sky_over_sun: f32, scattering: Scattering) -> Fog<1> {
+fn lit_fog(
+    visibility_m: f64,
+    sun_deg: f64,
+    sky_over_sun: f32,
+    scattering: FogScattering,
+) -> Fog<1> {
     let layer = Layer {
         profile: exponential(),
-        matter: Droplets::Radiation.matter(extinction_of(visibility_m)),
+        medium: Droplets::Radiation.medium(extinction_of(visibility_m)),
     };
-    let light = Light {
-        sun: Some(Sun {
+    let light = FogLighting {
+        sun: Some(DirectionalLight {
             direction: direction(0.0, sun_deg),
             irradiance: Spectrum::ONE,
         }),

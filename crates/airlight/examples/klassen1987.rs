@@ -2,12 +2,10 @@
 //! With the word `path`, `blue`, `error`, `coherence` or `speed` only that part. What the book shows is printed as it shows it
 //! (`scripts/book`).
 
+use airlight::atmosphere::presets;
 use airlight::axes::direction;
-use airlight::classic::ClassicSky;
-use airlight::classic::klassen1987::{
-    BaseBlue, Klassen1987, Klassen1987Error, Klassen1987Settings,
-};
-use airlight::medium::presets;
+use airlight::models::PublishedModel;
+use airlight::models::klassen1987::{BaseBlue, Klassen1987, Klassen1987Error, Klassen1987Settings};
 use airlight::sky::{Sky, SkySettings, SunCoverage};
 use airlight::spectrum::difference::{D65_WHITE, ciede2000, xyz_to_lab};
 use airlight::spectrum::rgb::{apply, srgb_encode};

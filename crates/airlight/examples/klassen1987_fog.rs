@@ -4,9 +4,11 @@
 
 use airlight::axes;
 use airlight::fog::droplets::Droplets;
-use airlight::fog::slab1987::{Slab1987, SunDepth};
 use airlight::fog::visibility::{Contrast, extinction_per_m};
-use airlight::fog::{Fog, Ground, Layer, Light, Matter, Profile, Scattering, Sun};
+use airlight::fog::{
+    DirectionalLight, Fog, FogLighting, FogScattering, Ground, Layer, Medium, Profile,
+};
+use airlight::models::klassen1987::fog::{Slab1987, SunDepth};
 use airlight::optics::{Depolarization, PhaseFunction};
 use airlight::spectrum::Spectrum;
 use std::f64::consts::PI;
@@ -176,8 +178,8 @@ fn slab(visibility_m: f64) -> Slab1987<1> {
     Slab1987 {
         fog_top_m: TOP_M,
         air_top_m: TOP_M,
-        fog: Droplets::Radiation.matter(extinction(visibility_m)),
-        air: Matter {
+        fog: Droplets::Radiation.medium(extinction(visibility_m)),
+        air: Medium {
             extinction_per_m: Spectrum([1.2e-5]),
             single_scattering_albedo: Spectrum::ONE,
             phase: PhaseFunction::Rayleigh(Depolarization::None),
@@ -194,17 +196,17 @@ fn fog(visibility_m: f64) -> Fog<1> {
         profile: Profile::Slab {
             top_height_m: TOP_M,
         },
-        matter: Droplets::Radiation.matter(extinction(visibility_m)),
+        medium: Droplets::Radiation.medium(extinction(visibility_m)),
     };
-    let light = Light {
-        sun: Some(Sun {
+    let light = FogLighting {
+        sun: Some(DirectionalLight {
             direction: sun(),
             irradiance: Spectrum::ONE,
         }),
         ambient: Spectrum([SKY_OVER_SUN / PI as f32]),
         ground_albedo: Spectrum([0.2]),
     };
-    Fog::new(&[layer], Ground::FLAT, light, Scattering::Multiple)
+    Fog::new(&[layer], Ground::FLAT, light, FogScattering::Multiple)
         .expect("a fog of ordinary numbers")
 }
 

@@ -2,11 +2,11 @@
 
 use airlight::sky::{Sky, SkySettings, SunCoverage};
 use airlight::spectrum::{RgbSpace, WavelengthGrid};
-use airlight::{axes, medium};
+use airlight::{atmosphere, axes};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // Solve for the light inside the air, for a sun 10 degrees high seen from the ground.
-    let air = medium::preset("average")?;
+    let air = atmosphere::preset("average")?;
     let settings = SkySettings {
         suns: SunCoverage::near(10.0, 0.0),
         ..Default::default()

@@ -15,19 +15,18 @@
 //! - [`outdoors`]: one lighting of sky, air, fog and ground.
 //! - [`classic`]: published models of the sky, as printed and as corrected.
 
+pub mod atmosphere;
 pub mod axes;
-pub mod classic;
 pub mod fog;
-pub mod light;
-pub mod medium;
+mod math;
+pub mod models;
+pub mod monte_carlo;
 pub mod optics;
-pub mod outdoors;
-pub mod path;
-mod quadrature;
-mod random;
+pub mod scene;
 pub mod sky;
 pub mod spectrum;
-mod vector;
+pub mod sun;
+pub mod transfer;
 
 /// The example of the README, compiled and run as a test.
 #[cfg(doctest)]

@@ -1,11 +1,11 @@
 //! Aerial perspective from its table against the line of sight itself.
 
+use airlight::atmosphere::presets;
 use airlight::axes::direction;
-use airlight::medium::presets;
-use airlight::outdoors::{AerialPerspective, Channels};
-use airlight::path::PathOptics;
+use airlight::scene::{AerialPerspective, Channels};
 use airlight::sky::{Sky, SkySettings, SunCoverage, View};
 use airlight::spectrum::{RgbSpace, WavelengthGrid};
+use airlight::transfer::PathOptics;
 use glam::DVec3;
 
 fn sky(preset: &str, grid: &WavelengthGrid, sun_deg: f64, altitude_m: f64) -> Sky {

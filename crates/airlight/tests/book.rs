@@ -1,6 +1,6 @@
 //! What the book shows must work.
 
-use airlight::medium::config;
+use airlight::atmosphere::config;
 
 /// The fenced blocks of a language in a Markdown text.
 fn blocks<'a>(text: &'a str, language: &str) -> Vec<&'a str> {

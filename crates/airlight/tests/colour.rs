@@ -1,7 +1,7 @@
 //! What the default wavelengths cost in the colour of solved skies.
 
+use airlight::atmosphere::presets;
 use airlight::axes::direction;
-use airlight::medium::presets;
 use airlight::sky::{Sky, SkySettings, SunCoverage};
 use airlight::spectrum::WavelengthGrid;
 use airlight::spectrum::difference::{D65_WHITE, ciede2000, xyz_to_lab};

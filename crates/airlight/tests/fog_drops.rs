@@ -3,7 +3,9 @@
 
 use airlight::axes::direction;
 use airlight::fog::droplets::DropletKind;
-use airlight::fog::{Fog, Ground, Layer, Light, Matter, Profile, Scattering, Sun};
+use airlight::fog::{
+    DirectionalLight, Fog, FogLighting, FogScattering, Ground, Layer, Medium, Profile,
+};
 use airlight::optics::mie::droplets::Drops;
 use airlight::optics::{PhaseFunction, TabulatedPhase};
 use airlight::spectrum::Spectrum;
@@ -14,15 +16,15 @@ const NM: f64 = 550.0;
 const TOP_M: f64 = 100.0;
 
 /// A slab of an optical depth over black ground, lit by a sun of unit irradiance.
-fn fog(matter: &Matter<1>, sun: DVec3, scattering: Scattering) -> Fog<1> {
+fn fog(medium: &Medium<1>, sun: DVec3, scattering: FogScattering) -> Fog<1> {
     let layer = Layer {
         profile: Profile::Slab {
             top_height_m: TOP_M,
         },
-        matter: matter.clone(),
+        medium: medium.clone(),
     };
-    let light = Light {
-        sun: Some(Sun {
+    let light = FogLighting {
+        sun: Some(DirectionalLight {
             direction: sun,
             irradiance: Spectrum::ONE,
         }),
@@ -114,32 +116,32 @@ fn scattered_again(slab: &Slab<'_>, view: DVec3, paths: u64) -> (f64, f64) {
 }
 
 /// A line of sight: azimuth and elevation, degrees. The sun stands at 180, 40.
-type Sight = (f64, f64);
+type ViewRay = (f64, f64);
 
 /// From the ground up, 10 to 80 degrees from the sun.
-const UP: [Sight; 4] = [(180.0, 30.0), (180.0, 65.0), (90.0, 50.0), (0.0, 60.0)];
+const UP: [ViewRay; 4] = [(180.0, 30.0), (180.0, 65.0), (90.0, 50.0), (0.0, 60.0)];
 /// From the top down: to the point opposite to the sun and in its glory.
-const GLORY: [Sight; 2] = [(0.0, -40.0), (0.0, -43.0)];
+const GLORY: [ViewRay; 2] = [(0.0, -40.0), (0.0, -43.0)];
 /// In the bow, and beside it.
-const DOWN: [Sight; 3] = [(0.0, -79.0), (60.0, -60.0), (180.0, -50.0)];
+const DOWN: [ViewRay; 3] = [(0.0, -79.0), (60.0, -60.0), (180.0, -50.0)];
 
 /// Our error, and the standard error of the paths that it is measured against, as parts of the radiance.
-fn errors(drops: Drops, tau: f64, sights: &[Sight], paths: u64) -> Vec<[f64; 2]> {
-    let matter = DropletKind::from(drops)
+fn errors(drops: Drops, tau: f64, sights: &[ViewRay], paths: u64) -> Vec<[f64; 2]> {
+    let medium = DropletKind::from(drops)
         .at_wavelengths(tau / TOP_M, &[NM])
         .unwrap();
-    let PhaseFunction::Tabulated(phase) = matter.phase.clone() else {
+    let PhaseFunction::Tabulated(phase) = medium.phase.clone() else {
         panic!("{drops:?} is no table")
     };
     let sun = direction(180.0, 40.0);
-    let many = fog(&matter, sun, Scattering::Multiple);
-    let once = fog(&matter, sun, Scattering::Single);
+    let many = fog(&medium, sun, FogScattering::Multiple);
+    let once = fog(&medium, sun, FogScattering::Single);
     let slab = Slab {
         phase: &phase,
         tau,
         sun,
     };
-    let error = |&(azimuth, elevation): &Sight| {
+    let error = |&(azimuth, elevation): &ViewRay| {
         let view = direction(azimuth, elevation);
         let (height, length) = match view.y > 0.0 {
             true => (0.0, f64::INFINITY),

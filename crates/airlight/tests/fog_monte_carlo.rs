@@ -1,13 +1,15 @@
 //! Light scattered many times in fog, against the Monte Carlo on the sphere: a method that shares nothing with the fog's but
 //! the phase functions.
 
+use airlight::atmosphere::{Atmosphere, Constituent, DensityProfile, Planet};
 use airlight::axes::direction;
-use airlight::fog::{Fog, Ground, Layer, Light, Matter, Profile, Scattering, Sun, droplets};
-use airlight::light::SunDisc;
-use airlight::medium::{Atmosphere, Constituent, DensityProfile, Planet};
+use airlight::fog::{
+    DirectionalLight, Fog, FogLighting, FogScattering, Ground, Layer, Medium, Profile, droplets,
+};
+use airlight::monte_carlo::{MonteCarlo, MonteCarloSettings};
 use airlight::optics::PhaseFunction;
-use airlight::sky::monte_carlo::{MonteCarlo, MonteCarloSettings};
 use airlight::spectrum::{SpectralCurve, Spectrum, WavelengthGrid};
+use airlight::sun::SunDisc;
 use std::f32::consts::PI;
 
 /// Height of the fog's top, m.
@@ -32,13 +34,13 @@ impl Scene {
 
     /// The fog, over ground as round as the Earth.
     fn fog(&self) -> Fog<1> {
-        let matter = Matter {
+        let medium = Medium {
             extinction_per_m: Spectrum([self.extinction_per_m() as f32]),
             single_scattering_albedo: Spectrum::ONE,
             phase: self.phase.clone(),
         };
-        let light = Light {
-            sun: Some(Sun {
+        let light = FogLighting {
+            sun: Some(DirectionalLight {
                 direction: direction(SUN_DEG, self.sun_elevation_deg),
                 irradiance: Spectrum::ONE,
             }),
@@ -48,8 +50,8 @@ impl Scene {
         let profile = Profile::Slab {
             top_height_m: TOP_M,
         };
-        let layers = [Layer { profile, matter }];
-        Fog::new(&layers, Ground::EARTH, light, Scattering::Multiple).unwrap()
+        let layers = [Layer { profile, medium }];
+        Fog::new(&layers, Ground::EARTH, light, FogScattering::Multiple).unwrap()
     }
 
     /// The same as the only air of a planet.

@@ -2,7 +2,9 @@
 //! tracing, with standard errors) and PythonicDISORT. `data/README.md` says where the tables come from.
 
 use airlight::axes::direction;
-use airlight::fog::{Fog, Ground, Layer, Light, Matter, Profile, Scattering, Sun, droplets};
+use airlight::fog::{
+    DirectionalLight, Fog, FogLighting, FogScattering, Ground, Layer, Medium, Profile, droplets,
+};
 use airlight::optics::PhaseFunction;
 use airlight::spectrum::Spectrum;
 use glam::DVec3;
@@ -35,23 +37,23 @@ struct Scene {
 }
 
 impl Scene {
-    fn fog(self, scattering: Scattering) -> Fog<1> {
-        let sun = self.sun_zenith_deg.map(|zenith| Sun {
+    fn fog(self, scattering: FogScattering) -> Fog<1> {
+        let sun = self.sun_zenith_deg.map(|zenith| DirectionalLight {
             direction: direction(0.0, 90.0 - zenith),
             irradiance: Spectrum::ONE,
         });
-        let light = Light {
+        let light = FogLighting {
             sun,
             ambient: Spectrum([if sun.is_some() { 0.0 } else { 1.0 }]),
             ground_albedo: Spectrum([self.ground_albedo as f32]),
         };
-        let matter = Matter {
+        let medium = Medium {
             extinction_per_m: Spectrum([(self.depth / 100.0) as f32]),
             single_scattering_albedo: Spectrum([self.single_scattering_albedo as f32]),
             phase: self.phase,
         };
         let profile = self.profile;
-        let layers = [Layer { profile, matter }];
+        let layers = [Layer { profile, medium }];
         Fog::new(&layers, Ground::FLAT, light, scattering).unwrap()
     }
 }
@@ -67,7 +69,7 @@ fn to_the_edge(fog: &Fog<1>, above: f64, view: DVec3) -> f64 {
 }
 
 /// One row of Mitsuba's table: the line of sight from the ground through all of the fog.
-fn whole_line(row: &[&str], scattering: Scattering) -> f64 {
+fn whole_line(row: &[&str], scattering: FogScattering) -> f64 {
     let number = |column: usize| row[column].parse::<f64>().unwrap();
     let (profile, depth) = match row[0] {
         "slab" => (SLAB, number(3)),
@@ -96,7 +98,7 @@ fn whole_line(row: &[&str], scattering: Scattering) -> f64 {
 #[test]
 fn single_scattering_matches_the_closed_form_and_mitsuba() {
     for row in rows(include_str!("data/mitsuba_fog_checks.csv")) {
-        let got = whole_line(&row, Scattering::Single);
+        let got = whole_line(&row, FogScattering::Single);
         let number = |column: usize| row[column].parse::<f64>().unwrap();
         let (closed, mitsuba, error) = (number(7), number(8), number(9));
         assert!((got / closed - 1.0).abs() < 1e-6, "{row:?}: {got}");
@@ -130,7 +132,7 @@ fn slabs() -> Vec<Compared> {
                 sun_zenith_deg,
                 ground_albedo: number(4),
             }
-            .fog(Scattering::Multiple);
+            .fog(FogScattering::Multiple);
             let view = direction(number(7), 90.0 - number(6));
             let sun = sun_zenith_deg.map(|zenith| direction(0.0, 90.0 - zenith));
             let ground = fog.ground_irradiance().unwrap()[0];
@@ -245,7 +247,7 @@ fn nearly_level() -> [Vec<f64>; 2] {
             sun_zenith_deg: Some(sun_zenith),
             ground_albedo: 0.2,
         }
-        .fog(Scattering::Multiple);
+        .fog(FogScattering::Multiple);
         let length = match length > 1e8 {
             true => f64::INFINITY,
             false => length / tau * 100.0,
@@ -278,7 +280,7 @@ fn droplets_of_ten() -> Vec<f64> {
             sun_zenith_deg: Some(sun_zenith),
             ground_albedo: 0.2,
         }
-        .fog(Scattering::Multiple);
+        .fog(FogScattering::Multiple);
         let ground = f64::from(fog.ground_irradiance().unwrap()[0]);
         assert!(
             (ground / irradiance - 1.0).abs() < 2e-3,
@@ -293,7 +295,7 @@ fn droplets_of_ten() -> Vec<f64> {
 #[test]
 fn light_scattered_many_times_matches_path_tracing() {
     for row in rows(include_str!("data/mitsuba_fog_checks.csv")) {
-        let got = whole_line(&row, Scattering::Multiple);
+        let got = whole_line(&row, FogScattering::Multiple);
         let number = |column: usize| row[column].parse::<f64>().unwrap();
         let (mitsuba, error) = (number(11), number(12));
         println!(
@@ -307,7 +309,7 @@ fn light_scattered_many_times_matches_path_tracing() {
         );
     }
     for row in rows(include_str!("data/disort_vs_mitsuba.csv")) {
-        let got = whole_line(&row, Scattering::Multiple);
+        let got = whole_line(&row, FogScattering::Multiple);
         let disort: f64 = row[7].parse().unwrap();
         assert!((got / disort - 1.0).abs() < 0.01, "{row:?}: {got}");
     }

@@ -1,11 +1,11 @@
 //! The fogbow and the glory, seen from above a fog with the sun behind.
 
+use airlight::atmosphere::presets;
 use airlight::axes::direction;
 use airlight::fog::droplets::DropletKind;
-use airlight::fog::{Layer, Profile, Scattering};
-use airlight::medium::presets;
+use airlight::fog::{FogScattering, Layer, Profile};
 use airlight::optics::mie::droplets::Drops;
-use airlight::outdoors::{Channels, FoggySky};
+use airlight::scene::{Channels, FoggySky};
 use airlight::sky::{Sky, SkySettings, SunCoverage};
 use airlight::spectrum::{RgbSpace, WavelengthGrid};
 
@@ -31,18 +31,18 @@ fn seen(drops: Drops, angles: &[f64]) -> Seen {
     let ground = FoggySky::<3>::round_ground(&view);
     let kind = DropletKind::from(drops);
     let space = RgbSpace::Srgb;
-    let matter = kind.in_rgb(EXTINCTION_PER_M, space)?;
+    let medium = kind.in_rgb(EXTINCTION_PER_M, space)?;
     let layer = Layer {
         profile: PROFILE,
-        matter,
+        medium,
     };
-    let many = Scattering::Multiple;
+    let many = FogScattering::Multiple;
     let rgb = FoggySky::new(&view, Channels::Rgb(space), &[layer], ground, many)?;
     let layers = |nm: &[f64; 16]| {
-        let matter = kind.at_wavelengths(EXTINCTION_PER_M, nm)?;
+        let medium = kind.at_wavelengths(EXTINCTION_PER_M, nm)?;
         Ok::<_, Box<dyn std::error::Error>>(vec![Layer {
             profile: PROFILE,
-            matter,
+            medium,
         }])
     };
     let spectral = FoggySky::spectral(&view, layers, ground, many)?;

@@ -1,14 +1,14 @@
 //! Sky and fog together: order of the layers, seams, limits.
 
+use airlight::atmosphere::presets;
 use airlight::axes::direction;
 use airlight::fog::droplets::Droplets;
 use airlight::fog::visibility::{Contrast, extinction_per_m};
-use airlight::fog::{Ground, Layer, Line, Matter, Profile, Scattering};
-use airlight::medium::presets;
-use airlight::outdoors::{Channels, FoggySky};
-use airlight::path::PathOptics;
+use airlight::fog::{FogScattering, Ground, Layer, Medium, Profile, RaySegment};
+use airlight::scene::{Channels, FoggySky};
 use airlight::sky::{Sky, SkySettings, SunCoverage, View};
 use airlight::spectrum::{RgbSpace, Spectrum, WavelengthGrid};
+use airlight::transfer::PathOptics;
 use glam::DVec3;
 
 fn sky(preset: &str, sun_deg: f64, altitude_m: f64) -> Sky {
@@ -23,7 +23,7 @@ fn sky(preset: &str, sun_deg: f64, altitude_m: f64) -> Sky {
 fn layer(visibility_m: f64, profile: Profile) -> Layer<3> {
     Layer {
         profile,
-        matter: Droplets::Radiation.matter(extinction_per_m(visibility_m, Contrast::FivePercent)),
+        medium: Droplets::Radiation.medium(extinction_per_m(visibility_m, Contrast::FivePercent)),
     }
 }
 
@@ -44,7 +44,7 @@ fn foggy<'a>(view: &View<'a>, layer: Layer<3>, ground: Ground) -> FoggySky<'a, 3
         Channels::SPECTRAL,
         &[layer],
         ground,
-        Scattering::Single,
+        FogScattering::Single,
     )
     .unwrap()
 }
@@ -59,7 +59,7 @@ fn sliced(
     const SLICES: usize = 500;
     let ground = foggy.fog().ground();
     let eye_m = view.radius_m() - view.sky().atmosphere().planet.radius_m;
-    let line = Line::new(eye_m, towards.y, length_m, ground.radius_m);
+    let line = RaySegment::new(eye_m, towards.y, length_m, ground.radius_m);
     let cos_sun = towards.dot(view.sun());
     let mut whole = PathOptics::CLEAR;
     let mut before = PathOptics::<3>::CLEAR;
@@ -207,9 +207,9 @@ fn without_fog_far_things_go_over_into_the_drawn_sky() {
     let sky = sky("average", 25.0, 0.0);
     let none = Layer {
         profile: thinning(50.0),
-        matter: Matter {
+        medium: Medium {
             extinction_per_m: Spectrum::ZERO,
-            ..layer(200.0, thinning(50.0)).matter
+            ..layer(200.0, thinning(50.0)).medium
         },
     };
     let mut before = 0.0;
@@ -271,7 +271,7 @@ fn thick_fog_takes_its_own_colour() {
         Channels::Rgb(space),
         &[layer(300.0, thinning(100.0))],
         ground,
-        Scattering::Single,
+        FogScattering::Single,
     )
     .unwrap();
     let spectral = self::foggy(&view, layer(300.0, thinning(100.0)), ground);
@@ -311,8 +311,8 @@ fn the_ground_under_fog_is_lit_through_it() {
         f64::from(through[1] / (clear.ground[1] / clear.transmittance[1]))
     };
     for visibility_m in [50.0, 400.0, 1e5] {
-        let [solved, estimated] =
-            [Scattering::Multiple, Scattering::Single].map(|orders| share(visibility_m, orders));
+        let [solved, estimated] = [FogScattering::Multiple, FogScattering::Single]
+            .map(|orders| share(visibility_m, orders));
         println!(
             "visibility {visibility_m} m: ground's light {solved:.3}, by two streams {estimated:.3}"
         );
@@ -330,7 +330,7 @@ fn another_fog_in_the_same_sky_is_as_if_made_anew() {
     let ground = FoggySky::<3>::round_ground(&view);
     let new = |layers: &[Layer<3>]| {
         let channels = Channels::Rgb(RgbSpace::Srgb);
-        FoggySky::new(&view, channels, layers, ground, Scattering::Multiple).unwrap()
+        FoggySky::new(&view, channels, layers, ground, FogScattering::Multiple).unwrap()
     };
     let first = new(&[layer(300.0, slab(40.0))]);
     // As high, and higher.
@@ -338,7 +338,7 @@ fn another_fog_in_the_same_sky_is_as_if_made_anew() {
         let other = [other];
         let (anew, changed) = (
             new(&other),
-            first.with_fog(&other, Scattering::Multiple).unwrap(),
+            first.with_fog(&other, FogScattering::Multiple).unwrap(),
         );
         for (azimuth, elevation, distance_m) in [
             (100.0, 1.0, f64::INFINITY),
@@ -359,7 +359,7 @@ fn another_fog_in_the_same_sky_is_as_if_made_anew() {
     }
     assert!(
         first
-            .with_fog(&[layer(-1.0, slab(4.0))], Scattering::Multiple)
+            .with_fog(&[layer(-1.0, slab(4.0))], FogScattering::Multiple)
             .is_err()
     );
 }

@@ -1,13 +1,15 @@
 //! Random paths along lines of sight that end at a distance.
 
+use airlight::atmosphere::{Atmosphere, Constituent, DensityProfile, Planet, preset};
 use airlight::axes::direction;
-use airlight::fog::{Fog, Ground, Layer, Light, Matter, Profile, Scattering, Sun};
-use airlight::light::SunDisc;
-use airlight::medium::{Atmosphere, Constituent, DensityProfile, Planet, preset};
+use airlight::fog::{
+    DirectionalLight, Fog, FogLighting, FogScattering, Ground, Layer, Medium, Profile,
+};
+use airlight::monte_carlo::{Estimate, MonteCarlo, MonteCarloSettings};
 use airlight::optics::PhaseFunction;
-use airlight::sky::monte_carlo::{Estimate, MonteCarlo, MonteCarloSettings};
 use airlight::sky::{Sky, SkySettings};
 use airlight::spectrum::{SpectralCurve, Spectrum, WavelengthGrid};
+use airlight::sun::SunDisc;
 use glam::{DQuat, DVec3};
 
 fn solver(air: &Atmosphere, paths: u64) -> MonteCarlo {
@@ -145,21 +147,21 @@ fn fog_before_a_thing_is_that_of_the_fog() {
         profile: Profile::Slab {
             top_height_m: TOP_M,
         },
-        matter: Matter {
+        medium: Medium {
             extinction_per_m: Spectrum([extinction_per_m as f32]),
             single_scattering_albedo: Spectrum::ONE,
             phase: phase.clone(),
         },
     }];
-    let light = Light {
-        sun: Some(Sun {
+    let light = FogLighting {
+        sun: Some(DirectionalLight {
             direction: sun,
             irradiance: Spectrum::ONE,
         }),
         ambient: Spectrum::ZERO,
         ground_albedo: Spectrum([0.2]),
     };
-    let fog = Fog::new(&layers, Ground::EARTH, light, Scattering::Multiple).unwrap();
+    let fog = Fog::new(&layers, Ground::EARTH, light, FogScattering::Multiple).unwrap();
     let air = Atmosphere {
         name: "fog".to_owned(),
         planet: Planet {

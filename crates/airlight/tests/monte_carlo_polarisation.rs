@@ -1,13 +1,13 @@
 //! Random paths with their polarisation.
 
+use airlight::atmosphere::{Atmosphere, Constituent, DensityProfile, Planet, preset, reference};
 use airlight::axes::direction;
-use airlight::light::SunDisc;
-use airlight::medium::{Atmosphere, Constituent, DensityProfile, Planet, preset, reference};
+use airlight::monte_carlo::{MonteCarlo, MonteCarloSettings, PolarisedEstimate};
 use airlight::optics::mie::Particles;
 use airlight::optics::mie::droplets::Drops;
 use airlight::optics::{PhaseFunction, RefractiveIndex};
-use airlight::sky::monte_carlo::{MonteCarlo, MonteCarloSettings, PolarisedEstimate};
 use airlight::spectrum::{SpectralCurve, WavelengthGrid};
+use airlight::sun::SunDisc;
 use glam::DVec3;
 use num_complex::Complex64;
 use std::f64::consts::PI;

@@ -1,7 +1,7 @@
 //! Laws that every prepared sky obeys, whatever the numbers.
 
+use airlight::atmosphere::{presets, reference};
 use airlight::axes::direction;
-use airlight::medium::{presets, reference};
 use airlight::sky::{LineOfSight, Scattering, Sky, SkySettings, SunCoverage, TableChannels};
 use airlight::spectrum::{RgbSpace, WavelengthGrid};
 use glam::DVec3;

@@ -3,7 +3,7 @@
 use crate::error::CliError;
 use crate::parse::name;
 use crate::{aerosol, atmosphere, parse};
-use airlight::sky::monte_carlo::{MonteCarloSettings, SunShape};
+use airlight::monte_carlo::{MonteCarloSettings, SunShape};
 use clap::{Args, ValueEnum};
 
 /// Which light is computed.
@@ -41,7 +41,7 @@ pub enum SolverArg {
 
 impl SolverArg {
     /// Whether it is a published model of the sky.
-    pub fn is_classic(self) -> bool {
+    pub fn is_published_model(self) -> bool {
         !matches!(self, Self::Orders | Self::MonteCarlo)
     }
 

@@ -1,6 +1,6 @@
 //! Options of `airlight compare`.
 
-use super::{AirArgs, ClassicArgs, EffortArg, FogArgs, PictureArgs, PlaceArgs, ScatteringArg};
+use super::{AirArgs, EffortArg, FogArgs, ModelArgs, PictureArgs, PlaceArgs, ScatteringArg};
 use super::{KlassenArgs, ObjectArgs, SkyArgs, SolverArg, VariantArg};
 use crate::parse;
 use clap::{Args, ValueEnum};
@@ -45,7 +45,7 @@ pub struct CompareArgs {
     #[command(flatten)]
     pub air: AirArgs,
     #[command(flatten)]
-    pub classic: ClassicArgs,
+    pub model: ModelArgs,
     #[command(flatten)]
     pub fog: FogArgs,
     /// Solids that a TOML file describes, lit and seen by both
@@ -81,7 +81,7 @@ impl SolverSpec {
                 .collect();
             format!("knows no solver {name}: there are {}", names.join(", "))
         })?;
-        let form = match (solver.is_classic(), form) {
+        let form = match (solver.is_published_model(), form) {
             (_, "") => Form::Default,
             (true, form) => Form::Variant(
                 VariantArg::from_str(form, true)
@@ -128,9 +128,9 @@ impl CompareArgs {
                 ..self.picture.clone()
             },
             air: self.air.clone(),
-            classic: self.classic.clone(),
+            model: self.model.clone(),
             fog: self.fog.clone(),
-            things: ObjectArgs {
+            objects: ObjectArgs {
                 objects: self.objects.clone(),
                 ..ObjectArgs::default()
             },
@@ -140,13 +140,13 @@ impl CompareArgs {
             (sky.air.paths, sky.air.seed) = (None, None);
         }
         if by.solver != SolverArg::Klassen1987 {
-            sky.classic.klassen = KlassenArgs::default();
+            sky.model.klassen = KlassenArgs::default();
         }
         match by.form {
             Form::Default => {}
             Form::Single => sky.air.scattering = ScatteringArg::Single,
             Form::Fine => sky.air.effort = EffortArg::Fine,
-            Form::Variant(variant) => sky.classic.variant = Some(variant),
+            Form::Variant(variant) => sky.model.variant = Some(variant),
         }
         sky
     }

@@ -2,7 +2,7 @@
 
 use crate::parse;
 use crate::report::short;
-use airlight::fog::Scattering;
+use airlight::fog::FogScattering;
 use airlight::fog::droplets::DropletKind;
 use airlight::optics::mie::droplets::Drops;
 use clap::builder::PossibleValue;
@@ -87,11 +87,11 @@ pub enum FogScatteringArg {
 
 impl FogScatteringArg {
     /// In the fog's words.
-    pub fn scattering(self) -> Scattering {
+    pub fn scattering(self) -> FogScattering {
         match self {
-            Self::All => Scattering::Multiple,
-            Self::Single => Scattering::Single,
-            Self::Undimmed => Scattering::Undimmed,
+            Self::All => FogScattering::Multiple,
+            Self::Single => FogScattering::Single,
+            Self::Undimmed => FogScattering::Undimmed,
         }
     }
 

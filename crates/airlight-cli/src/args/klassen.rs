@@ -1,7 +1,7 @@
 //! Options of the model of 1987.
 
 use crate::parse;
-use airlight::classic::klassen1987::{BaseBlue, Haze, Klassen1987Settings};
+use airlight::models::klassen1987::{BaseBlue, Haze, Klassen1987Settings};
 use airlight::optics::mie::droplets::Drops;
 use clap::{Args, ValueEnum};
 

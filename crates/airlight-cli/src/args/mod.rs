@@ -2,11 +2,11 @@
 
 mod accuracy;
 mod air;
-mod classic;
 mod compare;
 mod fog;
 mod grid;
 mod klassen;
+mod models;
 mod objects;
 mod overlay;
 mod overlay_batch;
@@ -20,15 +20,15 @@ mod probe;
 
 pub use accuracy::{AccuracyArgs, ReportArg};
 pub use air::{AirArgs, EffortArg, ScatteringArg, SolverArg};
-pub use classic::{ClassicArgs, SunlightArg, VariantArg};
 pub use compare::{CompareArgs, StatisticsArg};
 pub use fog::{DropletsArg, FogArgs, FogScatteringArg, in_words as droplets_in_words};
 pub use grid::GridArgs;
 pub use klassen::KlassenArgs;
+pub use models::{ModelArgs, SunlightArg, VariantArg};
 pub use objects::ObjectArgs;
 pub use overlay::{DepthKindArg, HolesArg, ModelArg, OverlayArgs};
 pub use overlay_light::{
-    AirArg, LampArg, LampFormArg, LampKind, LampPlace, LayerShape, OverlayLightArgs,
+    AirArg, LayerShape, LightArg, LightFormArg, LightKind, LightPlace, OverlayLightArgs,
 };
 pub use overlay_paths::OverlayPathsArgs;
 pub use overlay_vary::Variation;
@@ -127,11 +127,11 @@ pub struct SkyArgs {
     #[command(flatten)]
     pub air: AirArgs,
     #[command(flatten)]
-    pub classic: ClassicArgs,
+    pub model: ModelArgs,
     #[command(flatten)]
     pub fog: FogArgs,
     #[command(flatten)]
-    pub things: ObjectArgs,
+    pub objects: ObjectArgs,
 }
 
 /// Many pictures over a span of time.

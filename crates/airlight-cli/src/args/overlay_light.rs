@@ -2,7 +2,7 @@
 
 use super::fog::DropletsArg;
 use crate::parse::{self, LatLon, words::Words};
-use airlight::fog::lamp::LampForm;
+use airlight::fog::lights::LightForm;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 
@@ -19,7 +19,7 @@ pub enum AirArg {
 /// How the light of lamps that fog scatters is worked out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, ValueEnum)]
 #[serde(rename_all = "kebab-case")]
-pub enum LampFormArg {
+pub enum LightFormArg {
     /// Dimmed by the fog from the lamp and to the eye, in any fog (Sun et al. 2005 in even fog).
     #[default]
     Exact,
@@ -31,14 +31,14 @@ pub enum LampFormArg {
     Printed,
 }
 
-impl LampFormArg {
+impl LightFormArg {
     /// In the lamps' words.
-    pub fn form(self) -> LampForm {
+    pub fn form(self) -> LightForm {
         match self {
-            Self::Exact => LampForm::Exact,
-            Self::SplitSum => LampForm::SplitSum,
-            Self::NoExtinction => LampForm::NoExtinction,
-            Self::Printed => LampForm::Printed,
+            Self::Exact => LightForm::Exact,
+            Self::SplitSum => LightForm::SplitSum,
+            Self::NoExtinction => LightForm::NoExtinction,
+            Self::Printed => LightForm::Printed,
         }
     }
 }
@@ -63,8 +63,8 @@ pub struct OverlayLightArgs {
     /// size; of a point or spot, no line of sight passes closer [default: a quarter of a pixel]. A spot shines to azimuth
     /// and elevation (degrees) [default: straight down], with all its intensity up to inner [default: 20] and none from
     /// outer [default: 40] degrees off its axis.
-    #[arg(long, value_name = "WORDS", value_parser = LampArg::parse, help_heading = "Light")]
-    pub lamp: Vec<LampArg>,
+    #[arg(long, value_name = "WORDS", value_parser = LightArg::parse, help_heading = "Light")]
+    pub lamp: Vec<LightArg>,
     /// How the light of lamps is worked out; all but exact are for --model uniform --droplets isotropic and point lamps
     #[arg(
         long,
@@ -73,7 +73,7 @@ pub struct OverlayLightArgs {
         default_value_t,
         help_heading = "Light"
     )]
-    pub lamp_form: LampFormArg,
+    pub lamp_form: LightFormArg,
 
     /// Light the fog by the sun and the sky that the solver finds for --sun-elevation, or for --at and --when
     #[arg(long, help_heading = "Light", conflicts_with = "sun_strength")]
@@ -173,21 +173,21 @@ impl LayerArg {
 
 /// A lamp.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct LampArg {
+pub struct LightArg {
     /// Where it is.
-    pub place: LampPlace,
+    pub place: LightPlace,
     /// Radiant intensity in the picture's unit times m^2.
     pub intensity: [f64; 3],
     /// Its size, m.
     pub radius_m: Option<f64>,
     /// What shines how.
-    pub kind: LampKind,
+    pub kind: LightKind,
 }
 
 /// Where a lamp is.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum LampPlace {
+pub enum LightPlace {
     /// Metres east, up and south of the ground under the camera.
     At([f64; 3]),
     /// On the ray of a pixel, so many metres away; else where the picture's surface is.
@@ -201,7 +201,7 @@ pub enum LampPlace {
 /// What shines how.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum LampKind {
+pub enum LightKind {
     /// Equally in all directions.
     Point,
     /// Into a cone; degrees.
@@ -215,7 +215,7 @@ pub enum LampKind {
     Sphere,
 }
 
-impl LampArg {
+impl LightArg {
     fn parse(text: &str) -> Result<Self, String> {
         const KEYS: [&str; 10] = [
             "pixel",
@@ -235,8 +235,8 @@ impl LampArg {
             words.take("at", parse::three_coordinates)?,
             words.take("distance", parse::length_m)?,
         ) {
-            (Some((x, y)), None, distance_m) => LampPlace::Pixel { x, y, distance_m },
-            (None, Some(at), None) => LampPlace::At(at),
+            (Some((x, y)), None, distance_m) => LightPlace::Pixel { x, y, distance_m },
+            (None, Some(at), None) => LightPlace::At(at),
             (None, Some(_), Some(_)) => {
                 return Err("distance goes with pixel=X,Y, not with at".to_owned());
             }
@@ -276,11 +276,11 @@ impl LampArg {
             Some("sphere") if radius_m.is_none() => {
                 return Err("a sphere needs radius=METRES".to_owned());
             }
-            None | Some("point") => LampKind::Point,
-            Some("sphere") => LampKind::Sphere,
+            None | Some("point") => LightKind::Point,
+            Some("sphere") => LightKind::Sphere,
             Some("spot") => {
                 let outer = outer.unwrap_or_else(|| inner.map_or(40.0, |inner| inner.max(40.0)));
-                LampKind::Spot {
+                LightKind::Spot {
                     azimuth: azimuth.unwrap_or(0.0),
                     elevation: elevation.unwrap_or(-90.0),
                     inner: inner.unwrap_or(20.0_f64.min(outer)),
@@ -352,11 +352,11 @@ mod tests {
 
     #[test]
     fn lamps_are_what_their_words_say() {
-        let lamp = LampArg::parse("pixel=3,4 intensity=2").unwrap();
-        assert_eq!((lamp.intensity, lamp.kind), ([2.0; 3], LampKind::Point));
-        let spot = LampArg::parse("at=1,2,-5 intensity=0,1,2 kind=spot outer=10").unwrap();
-        assert_eq!(spot.place, LampPlace::At([1.0, 2.0, -5.0]));
-        let LampKind::Spot {
+        let lamp = LightArg::parse("pixel=3,4 intensity=2").unwrap();
+        assert_eq!((lamp.intensity, lamp.kind), ([2.0; 3], LightKind::Point));
+        let spot = LightArg::parse("at=1,2,-5 intensity=0,1,2 kind=spot outer=10").unwrap();
+        assert_eq!(spot.place, LightPlace::At([1.0, 2.0, -5.0]));
+        let LightKind::Spot {
             inner,
             outer,
             elevation,
@@ -383,7 +383,7 @@ mod tests {
             ("at=1,2,3 intensity=1 kind=spot outer=95", "from 0 to 90"),
             ("at=1,2,3 intensity=1 radius=0", "above 0"),
         ] {
-            let error = LampArg::parse(text).unwrap_err();
+            let error = LightArg::parse(text).unwrap_err();
             assert!(error.contains(sentence), "{text}: {error}");
         }
     }

@@ -1,7 +1,7 @@
 //! Options of `airlight fog` for random paths.
 
 use crate::error::CliError;
-use airlight::sky::monte_carlo::{MonteCarloSettings, SunShape};
+use airlight::monte_carlo::{MonteCarloSettings, SunShape};
 use clap::{Args, ValueEnum};
 
 /// Paths for each pixel where nothing is said.

@@ -1,6 +1,6 @@
 //! Options of `airlight probe`.
 
-use super::{AirArgs, ClassicArgs, ColorSpaceArg, PlaceArgs};
+use super::{AirArgs, ColorSpaceArg, ModelArgs, PlaceArgs};
 use crate::parse::{self, AzEl};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -49,7 +49,7 @@ pub struct ProbeArgs {
     #[command(flatten)]
     pub air: AirArgs,
     #[command(flatten)]
-    pub classic: ClassicArgs,
+    pub model: ModelArgs,
 }
 
 const EXAMPLES: &str = "\

@@ -7,11 +7,11 @@ mod statistics;
 use crate::args::{CompareArgs, SolverArg, StatisticsArg};
 use crate::error::CliError;
 use crate::report::{self, seconds};
-use crate::sky::Still;
-use airlight_chart::board::{Board, Panel};
-use airlight_chart::ramp::Ramp;
-use airlight_chart::raster::Picture;
-use airlight_render::tone::ToneMapper;
+use crate::sky::RenderedImage;
+use airlight_image::tone::ToneMapper;
+use airlight_plot::contact_sheet::{ContactSheet, Panel};
+use airlight_plot::ramp::Ramp;
+use airlight_plot::raster::Picture;
 use statistics::{Difference, Spread, Statistics};
 
 /// Runs the command.
@@ -21,8 +21,8 @@ use statistics::{Difference, Spread, Statistics};
 pub fn run(args: &CompareArgs) -> Result<(), CliError> {
     check(args)?;
     crate::scene::use_threads(args.air.threads)?;
-    let first = Still::new(&args.sky(&args.first))?;
-    let second = Still::new(&args.sky(&args.second))?;
+    let first = RenderedImage::new(&args.sky(&args.first))?;
+    let second = RenderedImage::new(&args.sky(&args.second))?;
     let scale = match args.same_light {
         true => first.light.sky_horizontal_lx / second.light.sky_horizontal_lx,
         false => 1.0,
@@ -93,10 +93,10 @@ fn check(args: &CompareArgs) -> Result<(), CliError> {
 /// Both pictures under one exposure, and the maps.
 fn board(
     args: &CompareArgs,
-    (first, second): (&Still, &Still),
+    (first, second): (&RenderedImage, &RenderedImage),
     difference: &Difference,
     statistics: &Statistics,
-) -> Result<Board, CliError> {
+) -> Result<ContactSheet, CliError> {
     let scaled = ToneMapper::new(
         (f64::from(first.tone.exposure()) * statistics.second_scaled_by) as f32,
         crate::sky::tone_curve(&args.picture),
@@ -131,7 +131,7 @@ fn board(
         picture,
         scale: None,
     };
-    Ok(Board {
+    Ok(ContactSheet {
         heading: format!(
             "{} beside {}, sun at {:.2} degrees",
             args.second.name, args.first.name, first.sun.elevation_deg

@@ -1,7 +1,7 @@
 //! How much two skies differ, direction by direction and in sum.
 
 use crate::report::short;
-use crate::sky::Still;
+use crate::sky::RenderedImage;
 use airlight::axes;
 use airlight::spectrum::difference::{ciede2000, xyz_to_lab};
 use airlight::spectrum::rgb;
@@ -54,7 +54,7 @@ pub struct Spread {
 
 impl Difference {
     /// Of `second`, `scale` times, from `first`.
-    pub fn new(first: &Still, second: &Still, scale: f64) -> Self {
+    pub fn new(first: &RenderedImage, second: &RenderedImage, scale: f64) -> Self {
         let to_xyz = first.space.to_xyz_matrix();
         let exposure = f64::from(first.tone.exposure());
         let white = rgb::apply(&to_xyz, [1.0; 3]);
@@ -77,19 +77,19 @@ impl Difference {
 
 impl Spread {
     /// Of the values of a picture's pixels above the horizon; `None` where it shows none.
-    pub fn new(still: &Still, values: &[f64]) -> Option<Self> {
-        let (width, height) = (still.frame.size().width(), still.frame.size().height());
+    pub fn new(image: &RenderedImage, values: &[f64]) -> Option<Self> {
+        let (width, height) = (image.frame.size().width(), image.frame.size().height());
         let pixels = (0..height).flat_map(|j| (0..width).map(move |i| (i, j)));
         let mut sky: Vec<(f64, f64, [f64; 2])> = pixels
             .zip(values)
             .filter_map(|((i, j), &value)| {
-                let direction = still.frame.pixel_direction(i, j)?;
+                let direction = image.frame.pixel_direction(i, j)?;
                 let above = direction.y > 0.0 && value.is_finite();
                 let at = [
                     axes::azimuth_deg(direction),
                     direction.y.asin().to_degrees(),
                 ];
-                above.then(|| (value, still.frame.pixel_solid_angle(i, j), at))
+                above.then(|| (value, image.frame.pixel_solid_angle(i, j), at))
             })
             .collect();
         let whole: f64 = sky.iter().map(|pixel| pixel.1).sum();

@@ -1,7 +1,7 @@
 //! What the forms that fog has been given in print go with.
 
 use crate::args::{
-    DropletsArg, FogScatteringArg, LampFormArg, LampKind, ModelArg, OverlayArgs, Variation,
+    DropletsArg, FogScatteringArg, LightFormArg, LightKind, ModelArg, OverlayArgs, Variation,
 };
 use crate::error::CliError;
 use airlight::fog::droplets::DropletKind;
@@ -17,7 +17,7 @@ pub fn check(args: &OverlayArgs, random: bool) -> Result<(), CliError> {
         ));
     }
     match args.light.lamp_form {
-        LampFormArg::Exact => Ok(()),
+        LightFormArg::Exact => Ok(()),
         form => lamp_form(args, &crate::parse::name(&form)),
     }
 }
@@ -41,7 +41,7 @@ fn lamp_form(args: &OverlayArgs, form: &str) -> Result<(), CliError> {
         "it holds in one layer of fog: leave out --layer"
     } else if droplets.iter().any(|kind| *kind != isotropic) {
         "it holds in fog that scatters equally in all directions: give --droplets isotropic"
-    } else if light.lamp.iter().any(|lamp| lamp.kind != LampKind::Point) {
+    } else if light.lamp.iter().any(|lamp| lamp.kind != LightKind::Point) {
         "it holds for lamps that shine equally in all directions: give each --lamp kind=point"
     } else {
         return Ok(());

@@ -17,10 +17,10 @@ pub fn of(args: &OverlayArgs) -> Result<Option<Vec<Layer<3>>>, CliError> {
         return Ok(None);
     };
     let layer = |fog: FogInAir| -> Result<Layer<3>, CliError> {
-        let matter = fog.droplets.in_rgb(fog.extinction_per_m, RgbSpace::Srgb)?;
+        let medium = fog.droplets.in_rgb(fog.extinction_per_m, RgbSpace::Srgb)?;
         Ok(Layer {
             profile: fog.profile,
-            matter,
+            medium,
         })
     };
     layers

@@ -4,13 +4,15 @@ use crate::args::{AirArg, AirArgs, EffortArg, OverlayArgs, PlaceArgs, Scattering
 use crate::error::CliError;
 use crate::parse;
 use crate::scene::{Scene, Sun};
-use airlight::fog::{Layer, Light, Profile, Scattering};
-use airlight::outdoors::{Channels, FoggySky};
+use airlight::fog::{FogLighting, FogScattering, Layer, Profile};
+use airlight::scene::{Channels, FoggySky};
 use airlight::sky::Sky;
 use airlight::spectrum::{RgbSpace, Spectrum};
-use airlight_render::frame::Intrinsics;
-use airlight_render::input::{DepthMap, Picture};
-use airlight_render::overlay::{AirBefore, Ambient, Body, estimate_ambient, horizon_pixels};
+use airlight_image::frame::Intrinsics;
+use airlight_image::input::{DepthMap, Picture};
+use airlight_render::overlay::{
+    Ambient, ExistingAerial, FogSource, estimate_ambient, horizon_pixels,
+};
 use glam::DVec3;
 use std::f32::consts::PI;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -80,7 +82,7 @@ impl SolvedSky {
 /// Where fog gets its light from: prepared once, shared by all pictures.
 pub struct LightSource<'a> {
     solved: Option<&'a SolvedSky>,
-    scattering: Scattering,
+    scattering: FogScattering,
     /// The last foggy sky: another fog in it costs little, and the same one nothing.
     last: Mutex<Option<(Vec<Layer<3>>, Arc<FoggySky<'a, 3>>)>>,
 }
@@ -179,7 +181,7 @@ pub fn at_level<'a>(
     args: &OverlayArgs,
     sky: Arc<FoggySky<'a, 3>>,
     shown: &Shown<'_>,
-) -> Result<(Body<'a>, Level), CliError> {
+) -> Result<(FogSource<'a>, Level), CliError> {
     let white = white_surface(sky.fog().light());
     let stated = shown.picture.white_luminance_cd_m2.map(|white| 1.0 / white);
     let (scale, how) = match (args.light.radiance_scale, stated) {
@@ -204,12 +206,12 @@ pub fn at_level<'a>(
              cd/m^2",
         ));
     }
-    let body = Body::Sky {
+    let body = FogSource::Sky {
         sky,
         radiance_scale: scale,
         air: match args.light.air {
-            AirArg::Drawn => AirBefore::Drawn,
-            AirArg::Missing => AirBefore::Missing,
+            AirArg::Drawn => ExistingAerial::Drawn,
+            AirArg::Missing => ExistingAerial::Missing,
         },
     };
     let colour = white * scale;
@@ -217,7 +219,7 @@ pub fn at_level<'a>(
 }
 
 /// Radiance of a white level surface in the light at a fog's top.
-fn white_surface(light: &Light<3>) -> Spectrum<3> {
+fn white_surface(light: &FogLighting<3>) -> Spectrum<3> {
     let sun = light.sun.map_or(Spectrum::ZERO, |sun| {
         sun.irradiance * (sun.direction.y.max(0.0) as f32 / PI)
     });

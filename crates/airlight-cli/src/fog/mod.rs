@@ -2,18 +2,18 @@
 
 mod batch;
 mod forms;
-mod lamps;
 mod layers;
 mod light;
+mod lights;
+mod overlay;
 mod paths;
 mod picture;
-mod veil;
 
 use crate::args::OverlayArgs;
 use crate::error::CliError;
 use crate::interrupt;
 use crate::report::{self, bytes};
-use airlight::sky::monte_carlo::MonteCarloSettings;
+use airlight::monte_carlo::MonteCarloSettings;
 use light::{LightSource, SolvedSky};
 use paths::Painter;
 use picture::Subject;

@@ -9,14 +9,14 @@ use crate::error::CliError;
 use crate::interrupt::STOP;
 use crate::passes::{self, Colour};
 use crate::sky::tagged;
-use airlight::outdoors::FoggySky;
-use airlight::sky::monte_carlo::{BUNDLE, MonteCarlo, MonteCarloSettings};
+use airlight::monte_carlo::{BUNDLE, MonteCarlo, MonteCarloSettings};
+use airlight::scene::FoggySky;
 use airlight::spectrum::{RgbSpace, WavelengthGrid, rgb};
-use airlight_render::Control;
-use airlight_render::output::exr::{self, ExrOptions, ExrSample};
-use airlight_render::output::{Metadata, PictureFormat, Written};
-use airlight_render::overlay::{AirBefore, Body};
-use airlight_render::rows::StoredRows;
+use airlight_image::Control;
+use airlight_image::output::exr::{self, ExrOptions, ExrSample};
+use airlight_image::output::{Metadata, PictureFormat, Written};
+use airlight_image::rows::StoredRows;
+use airlight_render::overlay::{ExistingAerial, FogSource};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -32,7 +32,7 @@ pub struct Painter<'a> {
     /// The fast solution: what the fog lets through, and the clear air that a picture has already.
     sky: Arc<FoggySky<'a, 3>>,
     radiance_scale: f64,
-    air: AirBefore,
+    air: ExistingAerial,
     goal: u64,
 }
 
@@ -59,7 +59,7 @@ impl<'a> Painter<'a> {
     ) -> Result<Self, CliError> {
         let (
             Some(layers),
-            Some(Body::Sky {
+            Some(FogSource::Sky {
                 sky,
                 radiance_scale,
                 air,
@@ -196,7 +196,7 @@ impl<'a> Painter<'a> {
 
     /// What of the path radiance is in the picture already: that of the clear air, as far as the fog lets it through.
     fn drawn(&self, direction: DVec3, distance_m: f64) -> [f64; 3] {
-        if self.air == AirBefore::Missing && distance_m < f64::INFINITY {
+        if self.air == ExistingAerial::Missing && distance_m < f64::INFINITY {
             return [0.0; 3];
         }
         let fog = self.sky.over_clear(direction, distance_m).transmittance;

@@ -1,19 +1,19 @@
 //! One picture: read, fogged, written.
 
 use super::light::{self, Level, LightSource, Shown};
-use super::{forms, veil};
+use super::{forms, overlay};
 use crate::args::{DepthKindArg, HolesArg, OverlayArgs};
 use crate::error::CliError;
 use crate::interrupt;
-use airlight_render::Control;
-use airlight_render::frame::{Intrinsics, PixelCentres};
-use airlight_render::input::{
+use airlight_image::Control;
+use airlight_image::frame::{Intrinsics, PixelCentres};
+use airlight_image::input::{
     DepthMap, DepthMeaning, DepthOptions, LightReference, Picture, SampleBits, Unknown, read_depth,
     read_picture,
 };
-use airlight_render::output::{PictureFormat, PictureOptions, Written, exr, png, write_picture};
-use airlight_render::overlay::{Body, Channels, Overlay, Veil};
-use airlight_render::tone::ToneMapper;
+use airlight_image::output::{PictureFormat, PictureOptions, Written, exr, png, write_picture};
+use airlight_image::tone::ToneMapper;
+use airlight_render::overlay::{Channels, FogOverlay, FogSource, Overlay};
 use std::path::Path;
 
 /// A picture and its depth in memory.
@@ -27,7 +27,7 @@ pub struct Subject {
 /// The fog of some options over a picture.
 pub struct Fogged<'a> {
     pub camera: Intrinsics,
-    veil: Veil<'a>,
+    overlay: FogOverlay<'a>,
     /// The light that the fog is in.
     pub level: Level,
 }
@@ -154,10 +154,10 @@ impl Subject {
             camera: &camera,
             ambient,
         };
-        let (veil, level) = veil::veil(args, source, &shown)?;
+        let (overlay, level) = overlay::overlay(args, source, &shown)?;
         Ok(Fogged {
             camera,
-            veil,
+            overlay,
             level,
         })
     }
@@ -195,7 +195,7 @@ impl Subject {
             &self.depth,
             &fogged.camera,
             args.eye_height_m,
-            &fogged.veil,
+            &fogged.overlay,
             channels,
         )?)
     }
@@ -217,9 +217,9 @@ impl Subject {
 
 impl Fogged<'_> {
     /// The fog; nothing for a look.
-    pub fn body(&self) -> Option<&Body<'_>> {
-        match &self.veil {
-            Veil::Fog(body, _) => Some(body),
+    pub fn body(&self) -> Option<&FogSource<'_>> {
+        match &self.overlay {
+            FogOverlay::Fog(body, _) => Some(body),
             _ => None,
         }
     }

@@ -5,10 +5,10 @@ use crate::error::CliError;
 use crate::scene::Scene;
 use airlight::axes;
 use airlight::sky::TableChannels;
-use airlight_chart::curves::curves;
-use airlight_chart::map::{Grid, map};
-use airlight_chart::ramp::Ramp;
-use airlight_chart::{Axis, Curve, Drawn};
+use airlight_plot::curves::curves;
+use airlight_plot::map::{Grid, map};
+use airlight_plot::ramp::Ramp;
+use airlight_plot::{Axis, Curve, Drawn};
 use glam::DVec3;
 
 fn wavelength() -> Axis {

@@ -5,10 +5,10 @@ use crate::error::CliError;
 use airlight::fog::Profile;
 use airlight::fog::approximation::split_sum_error;
 use airlight::fog::visibility::{Contrast, extinction_per_m};
-use airlight_chart::curves::curves;
-use airlight_chart::map::{Grid, map};
-use airlight_chart::ramp::Ramp;
-use airlight_chart::{Axis, Curve, Drawn};
+use airlight_plot::curves::curves;
+use airlight_plot::map::{Grid, map};
+use airlight_plot::ramp::Ramp;
+use airlight_plot::{Axis, Curve, Drawn};
 
 /// Extinction by height of an even slab, an exponential fog and one that is even up to a base.
 ///

@@ -10,7 +10,7 @@ mod particles;
 use crate::args::{PlotArgs, PlotWhat};
 use crate::error::CliError;
 use crate::report;
-use airlight_chart::raster::Picture;
+use airlight_plot::raster::Picture;
 
 /// Pixels of a PNG for each of the drawing's.
 const PNG_SCALE: f32 = 2.0;

@@ -5,9 +5,9 @@ use crate::error::CliError;
 use crate::progress::Busy;
 use airlight::optics::RefractiveIndex;
 use airlight::optics::mie::{Complex64, MieError, Particles, SizeDistribution, Sphere};
-use airlight_chart::around::around;
-use airlight_chart::curves::curves as over;
-use airlight_chart::{Axis, Curve, Drawn};
+use airlight_plot::curves::curves as over;
+use airlight_plot::polar::polar_plot;
+use airlight_plot::{Axis, Curve, Drawn};
 use std::f64::consts::{PI, TAU};
 
 /// Effective variance of the sizes over which the oscillations of single spheres are smoothed.
@@ -35,7 +35,7 @@ pub fn phase(args: &PhasePlotArgs) -> Result<Drawn, CliError> {
     }
     drop(busy);
     if args.polar {
-        return Ok(around(&curves));
+        return Ok(polar_plot(&curves));
     }
     let degrees = |points: &mut Vec<(f64, f64)>| {
         points.truncate(points.len() / 2 + 1);
@@ -58,8 +58,8 @@ fn angles(width: f64) -> Vec<f64> {
 }
 
 fn of_drops(DropletsArg(kind): DropletsArg, nm: f64) -> Result<Curve, CliError> {
-    let matter = kind.at_wavelengths(1.0, &[nm])?;
-    let point = |angle: f64| (angle, matter.phase.evaluate(angle.cos(), nm));
+    let medium = kind.at_wavelengths(1.0, &[nm])?;
+    let point = |angle: f64| (angle, medium.phase.evaluate(angle.cos(), nm));
     Ok(Curve {
         name: format!("{}, {nm} nm", kind.name()),
         points: angles(PI / 1800.0).into_iter().map(point).collect(),

@@ -15,7 +15,7 @@ use crate::error::CliError;
 use crate::progress::Busy;
 use crate::report;
 use crate::scene::Scene;
-use airlight::sky::monte_carlo::{MonteCarlo, MonteCarloSettings};
+use airlight::monte_carlo::{MonteCarlo, MonteCarloSettings};
 use values::Answer;
 use views::AskedView;
 
@@ -40,13 +40,13 @@ pub fn run(args: &ProbeArgs) -> Result<(), CliError> {
             "--polarisation is for random paths, the other solver's light is scalar: give --solver monte-carlo as well",
         ));
     }
-    args.classic.check(args.air.solver)?;
+    args.model.check(args.air.solver)?;
     model::check(args, &views)?;
     let scene = Scene::new(&args.place, &args.air)?;
     if let Some(path) = &args.output {
         report::check_writable(path)?;
     }
-    let answer = match args.air.solver.is_classic() {
+    let answer = match args.air.solver.is_published_model() {
         true => model::answer(args, &scene, &views)?,
         false => solved(args, &scene, settings, &views)?,
     };

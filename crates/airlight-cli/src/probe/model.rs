@@ -4,8 +4,8 @@
 use super::values::{Answer, FORMAT, Observer, SkyLight, SunLight, ViewLight};
 use super::views::AskedView;
 use crate::args::{ProbeArgs, SolverArg, VariantArg};
-use crate::classic::Lit;
 use crate::error::CliError;
+use crate::models::Lit;
 use crate::progress::Busy;
 use crate::scene::{Scene, Sun};
 use crate::sky::{SOFTWARE, space_name, space_of};
@@ -38,9 +38,9 @@ pub fn check(args: &ProbeArgs, views: &[AskedView]) -> Result<(), CliError> {
 pub fn answer(args: &ProbeArgs, scene: &Scene, views: &[AskedView]) -> Result<Answer, CliError> {
     let _busy = Busy::with("computing");
     let sun = scene.sun.at(None)?;
-    let lit = crate::classic::lit(&args.air, &args.classic, scene, &sun)?;
+    let lit = crate::models::lit(&args.air, &args.model, scene, &sun)?;
     let solver = args.air.solver;
-    let variant = args.classic.variant_of(solver);
+    let variant = args.model.variant_of(solver);
     let space = space_of(args.color_space);
     Ok(Answer {
         format: FORMAT,

@@ -5,7 +5,7 @@ use crate::args::ProbeArgs;
 use crate::scene::{Scene, Sun};
 use crate::sky::{SOFTWARE, space_name, space_of};
 use airlight::axes;
-use airlight::sky::monte_carlo::{MonteCarlo, ORDERS};
+use airlight::monte_carlo::{MonteCarlo, ORDERS};
 use airlight::sky::{LineOfSight, Sky, TableChannels, View};
 use airlight::spectrum::RgbSpace;
 use glam::DVec3;

@@ -5,8 +5,8 @@ use crate::error::CliError;
 use crate::scene::Scene;
 use airlight::sky::TableChannels;
 use airlight::spectrum::{RgbSpace, WavelengthGrid, rgb};
-use airlight_render::output::Chromaticities;
-use airlight_render::output::spectral::SpectralLayout;
+use airlight_image::output::Chromaticities;
+use airlight_image::output::spectral::SpectralLayout;
 
 /// The values of a pixel: red, green, blue, and for spectral pictures the radiance at each wavelength after them.
 pub struct Channels {

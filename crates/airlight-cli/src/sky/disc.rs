@@ -7,11 +7,11 @@
 //! angle. The sum of radiance times solid angle over all pixels is then the disc's irradiance to 0.3 %.
 
 use super::channels::RgbWeights;
-use crate::classic;
-use airlight::classic::ClassicSky;
+use crate::models;
+use airlight::models::PublishedModel;
 use airlight::sky::View;
 use airlight::spectrum::rgb;
-use airlight_render::Frame;
+use airlight_image::Frame;
 use glam::DVec3;
 use std::sync::Arc;
 
@@ -35,7 +35,7 @@ enum Radiance {
     /// By elevation and by distance from its centre.
     Table(Table),
     /// As a published model has it; with what makes RGB of XYZ.
-    Classic(Arc<dyn ClassicSky>, [[f64; 3]; 3]),
+    Classic(Arc<dyn PublishedModel>, [[f64; 3]; 3]),
 }
 
 struct Table {
@@ -87,7 +87,7 @@ impl Disc {
     /// The disc of a published model, in RGB and, where `spectral`, radiances at its wavelengths; `None` where it lies below
     /// the horizontal.
     pub fn of_classic(
-        model: Arc<dyn ClassicSky>,
+        model: Arc<dyn PublishedModel>,
         rgb_from_xyz: [[f64; 3]; 3],
         spectral: bool,
     ) -> Option<Self> {
@@ -233,7 +233,7 @@ impl Disc {
                 table.add(elevation, mu, area, sum);
             }
             Radiance::Classic(model, rgb_from_xyz) => {
-                let light = classic::disc(model.as_ref(), direction);
+                let light = models::disc(model.as_ref(), direction);
                 let rgb = rgb::apply(rgb_from_xyz, light.xyz);
                 // A picture without spectrum has channels for the first three only.
                 let values = rgb.into_iter().chain(light.spectrum);

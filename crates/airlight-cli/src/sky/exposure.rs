@@ -1,11 +1,11 @@
 //! How bright PNG, JPEG and preview are.
 
-use super::draw::Drawing;
+use super::prepared_frame::PreparedFrame;
+use super::renderer::Renderer;
 use super::rows::Layer;
-use super::shot::Shot;
 use crate::args::{PictureArgs, ToneArg};
 use crate::error::CliError;
-use airlight_render::tone::{Exposure, FilmicSettings, Metering, ToneCurve, ToneMapper};
+use airlight_image::tone::{Exposure, FilmicSettings, Metering, ToneCurve, ToneMapper};
 
 /// Columns of the small picture that is metered.
 const METERED_WIDTH: u32 = 96;
@@ -41,22 +41,22 @@ pub fn fixed(args: &PictureArgs) -> Result<Option<Exposure>, CliError> {
 ///
 /// # Errors
 /// As [`fixed`].
-pub fn of(drawing: &Drawing<'_>, shot: &Shot<'_>) -> Result<Exposure, CliError> {
-    let args = &drawing.args.picture;
+pub fn of(renderer: &Renderer<'_>, prepared: &PreparedFrame<'_>) -> Result<Exposure, CliError> {
+    let args = &renderer.args.picture;
     if let Some(exposure) = fixed(args)? {
         return Ok(exposure);
     }
-    let frame = drawing.layout.overview(METERED_WIDTH)?;
-    let rows = drawing.rows(shot, &frame, (Layer::Sky, 1.0), None);
-    let pixels = super::draw::stored(rows.as_ref(), &frame);
+    let frame = renderer.layout.overview(METERED_WIDTH)?;
+    let rows = renderer.rows(prepared, &frame, (Layer::Sky, 1.0), None);
+    let pixels = super::renderer::stored(rows.as_ref(), &frame);
     let mut samples = Vec::with_capacity(pixels.len());
     let (mut lit_sky, mut lit) = (0.0f64, 0.0f64);
     for (index, rgb) in (0..).zip(&pixels) {
         let (i, j) = (index % frame.size().width(), index / frame.size().width());
-        let luminance = drawing.channels.space.luminance(rgb.map(f64::from));
+        let luminance = renderer.channels.space.luminance(rgb.map(f64::from));
         let below = frame
             .pixel_direction(i, j)
-            .is_some_and(|direction| shot.is_below_horizon(direction));
+            .is_some_and(|direction| prepared.is_below_horizon(direction));
         let share = if below { GROUND_SHARE } else { 1.0 };
         let weight = share * frame.pixel_solid_angle(i, j);
         samples.push((luminance as f32, weight as f32));
@@ -80,9 +80,12 @@ pub fn of(drawing: &Drawing<'_>, shot: &Shot<'_>) -> Result<Exposure, CliError> 
 ///
 /// # Errors
 /// As [`of`].
-pub fn tone(drawing: &Drawing<'_>, shot: &Shot<'_>) -> Result<ToneMapper, CliError> {
-    let curve = curve(&drawing.args.picture);
-    Ok(ToneMapper::new(of(drawing, shot)?.factor() as f32, curve)?)
+pub fn tone(renderer: &Renderer<'_>, prepared: &PreparedFrame<'_>) -> Result<ToneMapper, CliError> {
+    let curve = curve(&renderer.args.picture);
+    Ok(ToneMapper::new(
+        of(renderer, prepared)?.factor() as f32,
+        curve,
+    )?)
 }
 
 /// The tone curve of the options.

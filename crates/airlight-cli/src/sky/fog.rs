@@ -4,12 +4,12 @@ use crate::args::{FogArgs, droplets_in_words};
 use crate::error::CliError;
 use crate::foggy_air::FogInAir;
 use crate::report::short;
+use airlight::atmosphere::Constituent;
 use airlight::fog::droplets::DropletKind;
 use airlight::fog::visibility::{Contrast, extinction_per_m};
-use airlight::fog::{Layer, Matter, Profile};
-use airlight::medium::Constituent;
+use airlight::fog::{Layer, Medium, Profile};
 use airlight::optics::mie::MieError;
-use airlight::outdoors::{Channels, FoggySky};
+use airlight::scene::{Channels, FoggySky};
 use airlight::sky::{SkyTable, TableChannels, View};
 use airlight::spectrum::Spectrum;
 use glam::DVec3;
@@ -135,15 +135,15 @@ fn cover<const N: usize>(sky: &FoggySky<'_, N>, direction: DVec3, values: &mut [
 /// The fog of the options, of drops in the lanes of the picture; no layer without fog.
 fn layers<const N: usize>(
     args: &FogArgs,
-    drops: impl Fn(DropletKind, f64) -> Result<Matter<N>, MieError>,
+    drops: impl Fn(DropletKind, f64) -> Result<Medium<N>, MieError>,
 ) -> Result<Vec<Layer<N>>, CliError> {
     let Some(visibility_m) = args.fog_visibility_m else {
         return Ok(Vec::new());
     };
     let extinction = extinction_per_m(visibility_m, Contrast::FivePercent);
-    let matter = drops(args.fog_droplets.0, extinction)?;
+    let medium = drops(args.fog_droplets.0, extinction)?;
     let profile = profile(args);
-    Ok(vec![Layer { profile, matter }])
+    Ok(vec![Layer { profile, medium }])
 }
 
 fn profile(args: &FogArgs) -> Profile {

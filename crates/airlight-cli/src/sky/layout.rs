@@ -5,7 +5,7 @@ use crate::args::{PictureArgs, ProjectionArg, SkyArgs, SunDiscArg};
 use crate::error::CliError;
 use crate::parse::PixelSize;
 use crate::scene::Sun;
-use airlight_render::{Camera, CubeFace, Fisheye, Frame, PictureFormat, Projection, Size};
+use airlight_image::{Camera, CubeFace, Fisheye, Frame, PictureFormat, Projection, Size};
 use std::path::{Path, PathBuf};
 
 /// The ending of spectral EXR files.

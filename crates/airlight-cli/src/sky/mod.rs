@@ -4,46 +4,46 @@
 //! - [`disc`]: the sun's disc in a picture, exact in irradiance at every size; [`rows`]: sky and disc, row by row.
 //! - [`fog`]: fog before the sky.
 //! - [`layout`]: which files a picture consists of and where each looks.
-//! - [`facts`]: what the files say about themselves; [`exposure`]: how bright PNG, JPEG and preview are.
+//! - [`metadata`]: what the files say about themselves; [`exposure`]: how bright PNG, JPEG and preview are.
 //! - [`objects`]: things before the sky.
 //! - [`monte_carlo`]: pictures by random paths; [`polarisation`]: what is told of it beside them; [`classic`]: pictures by
 //!   published models.
-//! - [`shot`]: one moment, made ready; [`still`]: a picture in memory; [`draw`]: one moment into files; [`preview`]: onto the terminal; [`sequence`]: many
+//! - [`prepared`]: one moment, made ready; [`image`]: a picture in memory; [`draw`]: one moment into files; [`preview`]: onto the terminal; [`sequence`]: many
 //!   moments.
 
 mod channels;
-mod classic;
 mod disc;
-mod draw;
 mod exposure;
-mod facts;
 mod fog;
 mod layout;
+mod metadata;
+mod models;
 mod monte_carlo;
 mod objects;
 mod polarisation;
+mod prepared_frame;
 mod preview;
+mod rendered_image;
+mod renderer;
 mod rows;
 mod sequence;
-mod shot;
-mod still;
 
 use crate::args::SkyArgs;
 use crate::error::CliError;
+use crate::illuminance::Illuminances;
 use crate::interrupt;
-use crate::light::Illuminances;
 use crate::progress::RowsBar;
 use crate::report::{self, bytes, seconds, short};
 use crate::scene::Sun;
 pub use channels::{space_name, space_of};
-use draw::{Drawing, Setup};
 pub use exposure::curve as tone_curve;
-pub use facts::SOFTWARE;
 pub use layout::tagged;
-use shot::{Prepared, Shot};
+pub use metadata::SOFTWARE;
+use prepared_frame::{Prepared, PreparedFrame};
+pub use rendered_image::RenderedImage;
+use renderer::{Renderer, Setup};
 use std::fmt::Write;
 use std::time::Instant;
-pub use still::Still;
 
 /// Runs the command.
 ///
@@ -54,29 +54,29 @@ pub fn run(args: &SkyArgs) -> Result<(), CliError> {
     let preview = preview::wanted(args)?;
     let setup = Setup::new(args)?;
     monte_carlo::check(args)?;
-    let drawing = setup.drawing(args);
+    let renderer = setup.renderer(args);
     match &args.sequence.until {
-        Some(until) => sequence::run(&drawing, until, preview),
-        None => single(&drawing, &setup.first, preview),
+        Some(until) => sequence::run(&renderer, until, preview),
+        None => single(&renderer, &setup.first, preview),
     }
 }
 
 fn single(
-    drawing: &Drawing<'_>,
+    renderer: &Renderer<'_>,
     sun: &Sun,
     preview: Option<preview::Terminal>,
 ) -> Result<(), CliError> {
-    let scene = drawing.scene;
-    drawing.check(drawing.layout.output.as_deref())?;
-    let (prepared, solving) = Prepared::new(drawing, scene.near(sun))?;
+    let scene = renderer.scene;
+    renderer.check(renderer.layout.output.as_deref())?;
+    let (prepared, solving) = Prepared::new(renderer, scene.near(sun))?;
     let start = Instant::now();
-    let shot = Shot::new(drawing, &prepared, sun, scene.sun.start())?;
+    let prepared = PreparedFrame::new(renderer, &prepared, sun, scene.sun.start())?;
     if let Some(terminal) = preview {
-        report::print(&preview::text(drawing, &shot, terminal)?)?;
+        report::print(&preview::text(renderer, &prepared, terminal)?)?;
     }
     let mut text = String::new();
-    if let Some(path) = &drawing.layout.output {
-        let files = drawing.layout.files(path);
+    if let Some(path) = &renderer.layout.output {
+        let files = renderer.layout.files(path);
         let rows = files
             .iter()
             .map(|file| u64::from(file.frame.size().height()))
@@ -84,7 +84,7 @@ fn single(
         let bar = RowsBar::new(rows);
         bar.say("drawing".to_owned());
         let writing = interrupt::start_writing()?;
-        let written = drawing.write(&shot, &files, &bar)?;
+        let written = renderer.write(&prepared, &files, &bar)?;
         drop(writing);
         drop(bar);
         for (file, written) in files.iter().zip(&written) {
@@ -96,16 +96,16 @@ fn single(
                 file.path.display(),
                 size.width(),
                 size.height(),
-                drawing.kind(),
+                renderer.kind(),
                 bytes(written.bytes)
             );
         }
-        drawing.warn_of_clipping(&written);
+        renderer.warn_of_clipping(&written);
     }
-    if drawing.args.quiet {
+    if renderer.args.quiet {
         return Ok(());
     }
-    text.push_str(&said(drawing, sun, &shot.light));
+    text.push_str(&said(renderer, sun, &prepared.light));
     let _ = writeln!(
         text,
         "  time          {} to solve, {} to draw",
@@ -116,8 +116,8 @@ fn single(
 }
 
 /// Sun and light in words.
-fn said(drawing: &Drawing<'_>, sun: &Sun, light: &Illuminances) -> String {
-    let scene = drawing.scene;
+fn said(renderer: &Renderer<'_>, sun: &Sun, light: &Illuminances) -> String {
+    let scene = renderer.scene;
     let mut text = String::new();
     if let (Some(place), Some(time)) = (scene.sun.place(), scene.sun.start()) {
         let _ = writeln!(
@@ -150,7 +150,7 @@ fn said(drawing: &Drawing<'_>, sun: &Sun, light: &Illuminances) -> String {
         scene.atmosphere.name,
         short(scene.eye_altitude_m)
     );
-    if let Some(fog) = fog::in_words(&drawing.args.fog) {
+    if let Some(fog) = fog::in_words(&renderer.args.fog) {
         let _ = writeln!(text, "  fog           {fog}");
     }
     text

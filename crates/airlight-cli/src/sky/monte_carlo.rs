@@ -1,23 +1,23 @@
 //! Pictures by random paths: in passes, each of as many paths as all before it, so that there is a whole picture soon
 //! and a better one later. Ctrl-C leaves that of the last pass.
 
-use super::draw::Drawing;
 use super::fog;
 use super::layout::{PictureFile, tagged};
 use super::polarisation::{self, PixelStokes};
+use super::prepared_frame::PreparedFrame;
+use super::renderer::Renderer;
 use super::rows::Layer;
-use super::shot::Shot;
 use crate::args::{FogScatteringArg, ScatteringArg, SkyArgs, SolverArg};
 use crate::error::CliError;
 use crate::interrupt::STOP;
 use crate::passes::{self, Colour};
 use crate::progress::RowsBar;
 use crate::report;
-use airlight::sky::monte_carlo::{MonteCarlo, MonteCarloSettings, ORDERS};
-use airlight_render::output::Written;
-use airlight_render::rows::StoredRows;
-use airlight_render::tone::ToneMapper;
-use airlight_render::{Control, Frame, write_picture};
+use airlight::monte_carlo::{MonteCarlo, MonteCarloSettings, ORDERS};
+use airlight_image::output::Written;
+use airlight_image::rows::StoredRows;
+use airlight_image::tone::ToneMapper;
+use airlight_image::{Control, Frame, write_picture};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::sync::atomic::Ordering;
@@ -89,14 +89,14 @@ struct Painter<'a> {
 /// # Errors
 /// [`CliError`]: what failed; files written before stay.
 pub fn write(
-    drawing: &Drawing<'_>,
-    shot: &Shot<'_>,
+    renderer: &Renderer<'_>,
+    prepared: &PreparedFrame<'_>,
     files: &[PictureFile],
     settings: MonteCarloSettings,
     bar: &RowsBar,
 ) -> Result<Vec<Written>, CliError> {
-    let painter = Painter::new(drawing, shot, settings)?;
-    let tone = drawing.tone(shot)?;
+    let painter = Painter::new(renderer, prepared, settings)?;
+    let tone = renderer.tone(prepared)?;
     // Writing is short beside the paths: its progress is not told.
     let control = Control::cancelled_by(&STOP);
     let channels = match painter.spectral {
@@ -126,9 +126,14 @@ pub fn write(
                 painter.paint(canvas, until, &pass)?;
             }
             let solved = canvas.as_ref().map(Canvas::means);
-            written.push(drawing.write_file(shot, file, (solved.as_deref(), &tone), control)?);
-            if let Some(canvas) = canvas.as_ref().filter(|_| drawing.args.noise_map) {
-                canvas.write_noise(drawing, shot, file, &tone)?;
+            written.push(renderer.write_file(
+                prepared,
+                file,
+                (solved.as_deref(), &tone),
+                control,
+            )?);
+            if let Some(canvas) = canvas.as_ref().filter(|_| renderer.args.noise_map) {
+                canvas.write_noise(renderer, prepared, file, &tone)?;
             }
             if let Some(canvas) = canvas.as_ref().filter(|_| painter.polarised) {
                 polarisation::write(&file.path, canvas.frame.size(), &canvas.stokes)?;
@@ -137,7 +142,7 @@ pub fn write(
         done = until;
         if done == goal {
             bar.file_done(rows);
-            say_noise(drawing, canvases.iter().flatten());
+            say_noise(renderer, canvases.iter().flatten());
             return Ok(written);
         }
     }
@@ -148,12 +153,12 @@ pub fn write(
 /// # Errors
 /// [`CliError`]: what failed.
 pub fn means(
-    drawing: &Drawing<'_>,
-    shot: &Shot<'_>,
+    renderer: &Renderer<'_>,
+    prepared: &PreparedFrame<'_>,
     frame: Frame,
     settings: MonteCarloSettings,
 ) -> Result<Vec<f32>, CliError> {
-    let painter = Painter::new(drawing, shot, settings)?;
+    let painter = Painter::new(renderer, prepared, settings)?;
     let mut canvas = Canvas::new(frame, 3, false);
     let bar = RowsBar::new(u64::from(frame.size().height()));
     bar.say("following random paths".to_owned());
@@ -179,7 +184,7 @@ fn check_memory(files: &[PictureFile], channels: usize) -> Result<(), CliError> 
     }
 }
 
-fn say_noise<'a>(drawing: &Drawing<'_>, canvases: impl Iterator<Item = &'a Canvas>) {
+fn say_noise<'a>(renderer: &Renderer<'_>, canvases: impl Iterator<Item = &'a Canvas>) {
     let (mut sum, mut count) = (0.0, 0.0);
     for canvas in canvases {
         for colour in &canvas.colours {
@@ -190,7 +195,7 @@ fn say_noise<'a>(drawing: &Drawing<'_>, canvases: impl Iterator<Item = &'a Canva
             }
         }
     }
-    if !drawing.args.quiet && count > 0.0 {
+    if !renderer.args.quiet && count > 0.0 {
         report::note(&format!(
             "standard error of a pixel's green: {:.2} % (root mean square over the picture)",
             100.0 * f64::sqrt(sum / count)
@@ -219,13 +224,13 @@ impl Canvas {
 
     fn write_noise(
         &self,
-        drawing: &Drawing<'_>,
-        shot: &Shot<'_>,
+        renderer: &Renderer<'_>,
+        prepared: &PreparedFrame<'_>,
         file: &PictureFile,
         tone: &ToneMapper,
     ) -> Result<(), CliError> {
         let size = self.frame.size();
-        let scale = drawing.args.picture.scale as f32;
+        let scale = renderer.args.picture.scale as f32;
         let error =
             |colour: &Colour, component| scale * colour.moments(component, self.bundles).1 as f32;
         let samples = self
@@ -235,7 +240,7 @@ impl Canvas {
             .collect();
         let rows = StoredRows::new(size.width(), 3, samples)?;
         let path = tagged(&file.path, "noise").with_extension("exr");
-        let options = drawing.options(shot, file);
+        let options = renderer.options(prepared, file);
         let control = Control::cancelled_by(&STOP);
         write_picture(&path, size, &rows, tone, &options, control)?;
         Ok(())
@@ -244,28 +249,28 @@ impl Canvas {
 
 impl<'a> Painter<'a> {
     fn new(
-        drawing: &Drawing<'_>,
-        shot: &'a Shot<'_>,
+        renderer: &Renderer<'_>,
+        prepared: &'a PreparedFrame<'_>,
         settings: MonteCarloSettings,
     ) -> Result<Self, CliError> {
-        let scene = drawing.scene;
+        let scene = renderer.scene;
         let mut air = scene.atmosphere.clone();
         let wavelengths = scene.grid.wavelengths_nm();
         let ground_m = air.planet.ground_altitude_m;
-        let fog = fog::constituent(&drawing.args.fog, ground_m, wavelengths)?;
+        let fog = fog::constituent(&renderer.args.fog, ground_m, wavelengths)?;
         air.constituents.extend(fog);
         Ok(Self {
             solver: MonteCarlo::new(&air, &scene.grid, settings)?,
-            weights: shot.weights(),
-            spectral: drawing.channels.spectral.is_some(),
+            weights: prepared.weights(),
+            spectral: renderer.channels.spectral.is_some(),
             eye_altitude_m: scene.eye_altitude_m,
-            sun: shot.sun.direction(),
-            nearness: shot.sun.distance_ratio.powi(-2),
-            orders: match drawing.args.air.scattering {
+            sun: prepared.sun.direction(),
+            nearness: prepared.sun.distance_ratio.powi(-2),
+            orders: match renderer.args.air.scattering {
                 ScatteringArg::All => ORDERS,
                 ScatteringArg::Single => 1,
             },
-            polarised: drawing.args.polarisation,
+            polarised: renderer.args.polarisation,
         })
     }
 

@@ -3,11 +3,11 @@
 use super::layout::tagged;
 use crate::error::CliError;
 use crate::interrupt::STOP;
-use airlight::sky::monte_carlo::PolarisedSample;
-use airlight_render::output::Metadata;
-use airlight_render::output::exr::{self, ExrOptions, ExrSample};
-use airlight_render::rows::StoredRows;
-use airlight_render::{Control, Size};
+use airlight::monte_carlo::PolarisedSample;
+use airlight_image::output::Metadata;
+use airlight_image::output::exr::{self, ExrOptions, ExrSample};
+use airlight_image::rows::StoredRows;
+use airlight_image::{Control, Size};
 use std::path::Path;
 
 /// Channels of the file.

@@ -1,12 +1,12 @@
 //! The picture on the terminal, as coloured half blocks.
 
-use super::draw::{Drawing, stored};
 use super::exposure;
-use super::shot::Shot;
+use super::prepared_frame::PreparedFrame;
+use super::renderer::{Renderer, stored};
 use crate::args::SkyArgs;
 use crate::error::CliError;
 use airlight::spectrum::{RgbSpace, rgb};
-use airlight_render::terminal::{TerminalColor, half_blocks};
+use airlight_image::terminal::{TerminalColor, half_blocks};
 use std::io::IsTerminal;
 
 /// A terminal that shows colours.
@@ -55,24 +55,24 @@ pub fn wanted(args: &SkyArgs) -> Result<Option<Terminal>, CliError> {
 /// # Errors
 /// As [`exposure::tone`].
 pub fn text(
-    drawing: &Drawing<'_>,
-    shot: &Shot<'_>,
+    renderer: &Renderer<'_>,
+    prepared: &PreparedFrame<'_>,
     terminal: Terminal,
 ) -> Result<String, CliError> {
     let mut columns = u32::from(terminal.columns).clamp(8, 256);
-    let mut frame = drawing.layout.overview(columns)?;
+    let mut frame = renderer.layout.overview(columns)?;
     // Two pixels a line, and room for the report.
     let most = 2 * u32::from(terminal.lines.saturating_sub(8)).max(8);
     if frame.size().height() > most {
         columns = (columns * most / frame.size().height()).max(8);
-        frame = drawing.layout.overview(columns)?;
+        frame = renderer.layout.overview(columns)?;
     }
-    let tone = exposure::tone(drawing, shot)?;
+    let tone = exposure::tone(renderer, prepared)?;
     let to_srgb = rgb::multiply(
         &RgbSpace::Srgb.from_xyz_matrix(),
-        &drawing.channels.space.to_xyz_matrix(),
+        &renderer.channels.space.to_xyz_matrix(),
     );
-    let rows = drawing.rows(shot, &frame, (drawing.layout.main_layer(), 1.0), None);
+    let rows = renderer.rows(prepared, &frame, (renderer.layout.main_layer(), 1.0), None);
     let width = frame.size().width() as usize;
     let mut bytes = Vec::new();
     for (y, row) in (0..).zip(stored(rows.as_ref(), &frame).chunks_exact(width)) {

@@ -4,8 +4,8 @@ use super::channels::RgbWeights;
 use super::disc::Disc;
 use super::fog::Fog;
 use airlight::sky::{SkyColumns, SkyTable};
-use airlight_render::frame::FrameRows;
-use airlight_render::{Frame, Projection, RowSource};
+use airlight_image::frame::FrameRows;
+use airlight_image::{Frame, Projection, RowSource};
 use glam::DVec3;
 
 /// What of the light is drawn.

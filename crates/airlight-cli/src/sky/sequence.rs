@@ -1,16 +1,16 @@
 //! Many moments: a sky prepared once, a picture for each, those already there left as they are.
 
-use super::draw::Drawing;
 use super::layout::PictureFile;
+use super::prepared_frame::{Prepared, PreparedFrame};
 use super::preview;
-use super::shot::{Prepared, Shot};
+use super::renderer::Renderer;
 use crate::error::CliError;
 use crate::interrupt;
 use crate::moment::Moment;
 use crate::progress::RowsBar;
 use crate::report::{self, seconds};
 use airlight::sky::SunCoverage;
-use airlight_render::output::Written;
+use airlight_image::output::Written;
 use airlight_render::sequence::{FramePattern, SequencePlan};
 use std::path::Path;
 use std::time::Instant;
@@ -27,18 +27,18 @@ struct Frame {
 /// # Errors
 /// [`CliError`]; frames already made stay.
 pub fn run(
-    drawing: &Drawing<'_>,
+    renderer: &Renderer<'_>,
     until: &str,
     preview: Option<preview::Terminal>,
 ) -> Result<(), CliError> {
-    let (output, plan, start) = planned(drawing, until)?;
+    let (output, plan, start) = planned(renderer, until)?;
     let pattern = FramePattern::new(output);
     let frames: Vec<Frame> = plan
         .frames()
         .map(|step| Frame {
             number: step.number,
             time: start.at(step.time_s as f64),
-            files: drawing
+            files: renderer
                 .layout
                 .files(&pattern.path(step.number, step.time_s)),
         })
@@ -46,20 +46,20 @@ pub fn run(
     let total = frames.len();
     let missing: Vec<Frame> = frames
         .into_iter()
-        .filter(|frame| drawing.args.sequence.overwrite || !frame.is_whole())
+        .filter(|frame| renderer.args.sequence.overwrite || !frame.is_whole())
         .collect();
     let begun = Instant::now();
     if let Some(first) = missing.first() {
-        drawing.check(
+        renderer.check(
             first
                 .files
                 .last()
                 .map(|_| pattern.path(first.number, first.time.unix_s as i64))
                 .as_deref(),
         )?;
-        make(drawing, &missing, total, preview)?;
+        make(renderer, &missing, total, preview)?;
     }
-    if drawing.args.quiet {
+    if renderer.args.quiet {
         return Ok(());
     }
     let there = total - missing.len();
@@ -71,22 +71,22 @@ pub fn run(
         "{}: {} of {total} frames made{skipped}, {}\n  time          {}\n",
         output.display(),
         missing.len(),
-        drawing.kind(),
+        renderer.kind(),
         seconds(begun.elapsed())
     ))
 }
 
 /// Where to write, the frames, and when they begin.
 fn planned<'a>(
-    drawing: &Drawing<'a>,
+    renderer: &Renderer<'a>,
     until: &str,
 ) -> Result<(&'a Path, SequencePlan, Moment), CliError> {
-    let Some(output) = drawing.args.output.as_deref() else {
+    let Some(output) = renderer.args.output.as_deref() else {
         return Err(CliError::usage(
             "--until draws files: say with --output what to call them",
         ));
     };
-    let Some(start) = drawing.scene.sun.start() else {
+    let Some(start) = renderer.scene.sun.start() else {
         return Err(CliError::usage(
             "--until needs a sun that moves: give --at and --when instead of --sun-elevation",
         ));
@@ -97,7 +97,7 @@ fn planned<'a>(
         Some(span) => start.unix_s + crate::parse::span_s(span).map_err(refuse)? as f64,
         None => Moment::parse(until).map_err(refuse)?.unix_s,
     };
-    let every = drawing.args.sequence.every.unwrap_or(1);
+    let every = renderer.args.sequence.every.unwrap_or(1);
     if end < start.unix_s {
         return Err(refuse(format!(
             "{until} lies before --when {}: it must be later",
@@ -106,36 +106,36 @@ fn planned<'a>(
     }
     let plan = SequencePlan::new(start.unix_s as i64, end.floor() as i64, every)?;
     // Told before anything is computed.
-    drawing.scene.sun.at(Some(start.at(end)))?;
+    renderer.scene.sun.at(Some(start.at(end)))?;
     Ok((output, plan, start))
 }
 
 fn make(
-    drawing: &Drawing<'_>,
+    renderer: &Renderer<'_>,
     missing: &[Frame],
     total: usize,
     preview: Option<preview::Terminal>,
 ) -> Result<(), CliError> {
-    let scene = drawing.scene;
+    let scene = renderer.scene;
     let suns = match missing {
         [only] => scene.near(&scene.sun.at(Some(only.time))?),
         _ => SunCoverage::All,
     };
-    let (prepared, _) = Prepared::new(drawing, suns)?;
+    let (prepared, _) = Prepared::new(renderer, suns)?;
     let bar = RowsBar::new(missing.iter().map(Frame::rows).sum());
     let mut written: Vec<Written> = Vec::new();
     for frame in missing {
         bar.say(format!("frame {} of {total}", frame.number));
         let sun = scene.sun.at(Some(frame.time))?;
-        let shot = Shot::new(drawing, &prepared, &sun, Some(frame.time))?;
+        let prepared = PreparedFrame::new(renderer, &prepared, &sun, Some(frame.time))?;
         if let Some(terminal) = preview {
-            report::print(&preview::text(drawing, &shot, terminal)?)?;
+            report::print(&preview::text(renderer, &prepared, terminal)?)?;
         }
         let _writing = interrupt::start_writing()?;
-        written.extend(drawing.write(&shot, &frame.files, &bar)?);
+        written.extend(renderer.write(&prepared, &frame.files, &bar)?);
     }
     drop(bar);
-    drawing.warn_of_clipping(&written);
+    renderer.warn_of_clipping(&written);
     Ok(())
 }
 

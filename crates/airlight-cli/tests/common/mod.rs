@@ -143,7 +143,7 @@ impl Exr {
     }
 
     /// Sum over the pixels of luminance, solid angle and a weight of the direction.
-    pub fn sum(&self, frame: &airlight_render::Frame, weight: impl Fn(glam::DVec3) -> f64) -> f64 {
+    pub fn sum(&self, frame: &airlight_image::Frame, weight: impl Fn(glam::DVec3) -> f64) -> f64 {
         let mut sum = 0.0;
         for y in 0..self.height {
             for x in 0..self.width {
@@ -157,7 +157,7 @@ impl Exr {
 }
 
 /// Options of the probe that ask for the directions of pixels.
-pub fn views_of(frame: &airlight_render::Frame, pixels: &[(u32, u32)]) -> String {
+pub fn views_of(frame: &airlight_image::Frame, pixels: &[(u32, u32)]) -> String {
     let view = |&(x, y): &(u32, u32)| {
         let direction = frame.pixel_direction(x, y).unwrap();
         let azimuth = airlight::axes::azimuth_deg(direction);

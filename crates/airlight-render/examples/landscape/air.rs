@@ -2,7 +2,7 @@
 
 use crate::light::rgb;
 use airlight::sky::View;
-use airlight_render::Frame;
+use airlight_image::Frame;
 use glam::DVec3;
 
 /// Pixels between tabulated lines of sight.

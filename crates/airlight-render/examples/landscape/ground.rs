@@ -29,7 +29,7 @@ pub struct Ground {
 }
 
 /// What light meets at a point of the ground.
-pub struct Matter {
+pub struct Medium {
     /// Unit vector away from the surface.
     pub normal: DVec3,
     /// Reflected part of light in linear sRGB.
@@ -96,7 +96,7 @@ impl Ground {
     }
 
     /// What is found where a look meets the surface.
-    pub fn matter(&self, x: f64, z: f64, footprint: f64) -> Matter {
+    pub fn medium(&self, x: f64, z: f64, footprint: f64) -> Medium {
         let reach = (0.6 * footprint).max(0.25);
         let at = |dx: f64, dz: f64| self.surface(x + dx * reach, z + dz * reach, footprint);
         let normal = DVec3::new(
@@ -133,7 +133,7 @@ impl Ground {
         let depth = (crown.height / MEAN_CROWN).min(1.0);
         let between = 1.0 - density * (1.0 - (0.35 + 0.65 * depth));
         let grown = step(0.15, 0.5, density);
-        Matter {
+        Medium {
             normal: normal.normalize(),
             albedo: open.lerp(leaves, grown),
             open_to_sky: self.sky.linear(x, z)

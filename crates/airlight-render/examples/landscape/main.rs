@@ -15,11 +15,11 @@ mod scene;
 mod terrain;
 
 use airlight::{
-    axes, medium,
+    atmosphere, axes,
     sky::{Sky, SkySettings, SunCoverage},
     spectrum::WavelengthGrid,
 };
-use airlight_render::{
+use airlight_image::{
     Camera, Control, Frame, PictureOptions, Projection, Size,
     output::{
         Chromaticities, Metadata,
@@ -62,7 +62,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         suns: SunCoverage::near(options.sun_elevation, altitude),
         ..Default::default()
     };
-    let air = medium::preset(&options.atmosphere)?;
+    let air = atmosphere::preset(&options.atmosphere)?;
     let sky = Sky::prepare(&air, &WavelengthGrid::standard(), &settings)?;
     let view = sky.view(altitude, sun);
     let light = light::Light::new(&view, HEIGHTS.map(|h| (h, sky.view(h, sun))));

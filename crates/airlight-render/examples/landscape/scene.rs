@@ -7,7 +7,7 @@ use crate::{
     march::{self, Ray, Relief},
     noise,
 };
-use airlight_render::Frame;
+use airlight_image::Frame;
 use glam::DVec3;
 
 /// How far the eye looks for ground, metres.
@@ -125,20 +125,20 @@ impl Scene {
     /// The luminance of a point of the ground, cd/m^2.
     fn reflected(&self, point: DVec3, footprint: f64, chance: [f64; 2]) -> DVec3 {
         let [east, south] = self.eye;
-        let matter = self
+        let medium = self
             .ground
-            .matter(point.x + east, point.z + south, footprint);
+            .medium(point.x + east, point.z + south, footprint);
         let sun = self.point_of_sun(chance);
-        let slant = matter.normal.dot(sun);
+        let slant = medium.normal.dot(sun);
         let sunlit = if slant > 0.0 && !self.shadowed(point, footprint, sun) {
-            slant * matter.open_to_sun * self.light.sun_illuminance(march::altitude(point))
+            slant * medium.open_to_sun * self.light.sun_illuminance(march::altitude(point))
         } else {
             DVec3::ZERO
         };
         // What the mountains hide of the sky they make up for by half of what they would reflect.
-        let sky = self.light.sky_illuminance(matter.normal)
-            * (matter.open_to_sky + (1.0 - matter.open_to_sky) * 0.5 * matter.albedo);
-        matter.albedo / std::f64::consts::PI * (sunlit + sky)
+        let sky = self.light.sky_illuminance(medium.normal)
+            * (medium.open_to_sky + (1.0 - medium.open_to_sky) * 0.5 * medium.albedo);
+        medium.albedo / std::f64::consts::PI * (sunlit + sky)
     }
 
     fn shadowed(&self, point: DVec3, footprint: f64, sun: DVec3) -> bool {

@@ -1,7 +1,7 @@
 //! The colour of thick fog, estimated from a picture.
 
-use crate::input::{DepthMap, Picture};
 use airlight::spectrum::Spectrum;
+use airlight_image::input::{DepthMap, Picture};
 
 /// How an estimate came about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,29 +1,29 @@
 //! Fog laid over a picture that exists: colour and depth in, the fogged picture and its layers out.
 //!
-//! From the ground up: the light that a picture shows fog to be in ([`estimate_ambient`]); lamps ([`Glow`]); what lies
-//! between camera and scene ([`Veil`]); both put together, row by row ([`Overlay`]).
+//! From the ground up: the light that a picture shows fog to be in ([`estimate_ambient`]); lamps ([`LightGlow`]); what lies
+//! between camera and scene ([`FogOverlay`]); both put together, row by row ([`Overlay`]).
 
 mod ambient;
-mod glow;
-mod veil;
+mod fog_overlay;
+mod light_glow;
 
 pub use ambient::{Ambient, estimate_ambient, horizon_pixels};
-pub use glow::Glow;
-pub use veil::{AirBefore, Body, Veil};
+pub use fog_overlay::{ExistingAerial, FogOverlay, FogSource};
+pub use light_glow::LightGlow;
 
-use crate::input::{DepthKind, DepthMap, LightReference, Picture};
-use crate::{Intrinsics, RenderError, RowSource};
-use airlight::path::PathOptics;
 use airlight::spectrum::Spectrum;
+use airlight::transfer::PathOptics;
+use airlight_image::input::{DepthKind, DepthMap, LightReference, Picture};
+use airlight_image::{ImageError, Intrinsics, RowSource};
+use fog_overlay::FogSampler;
 use glam::DVec3;
-use veil::Seen;
 
 /// A picture, its depth, its camera, and a veil over it.
 pub struct Overlay<'a> {
     picture: &'a Picture,
     depth: &'a DepthMap,
     camera: &'a Intrinsics,
-    seen: Seen<'a>,
+    seen: FogSampler<'a>,
     channels: Channels,
     /// Path radiance of the fog in each pixel, where it is known already.
     given: Option<&'a [f32]>,
@@ -66,19 +66,19 @@ impl<'a> Overlay<'a> {
     /// Puts them together; `eye_height_m` is the camera's height above the zero of the fog's heights.
     ///
     /// # Errors
-    /// [`RenderError::SizesDiffer`] where picture and depth differ in size, [`RenderError::Setting`] where the camera is
+    /// [`ImageError::SizesDiffer`] where picture and depth differ in size, [`ImageError::Setting`] where the camera is
     /// of another.
     pub fn new(
         picture: &'a Picture,
         depth: &'a DepthMap,
         camera: &'a Intrinsics,
         eye_height_m: f64,
-        veil: &'a Veil<'a>,
+        overlay: &'a FogOverlay<'a>,
         channels: Channels,
-    ) -> Result<Self, RenderError> {
+    ) -> Result<Self, ImageError> {
         depth.check_against(picture)?;
         if camera.size() != picture.size {
-            return Err(RenderError::Setting {
+            return Err(ImageError::Setting {
                 what: "the size of the camera's picture",
                 got: format!("{} x {}", camera.size().width(), camera.size().height()),
                 right: "that of the picture",
@@ -88,24 +88,24 @@ impl<'a> Overlay<'a> {
             picture,
             depth,
             camera,
-            seen: Seen::from_height(veil, eye_height_m),
+            seen: FogSampler::from_height(overlay, eye_height_m),
             channels,
             given: None,
         })
     }
 
     /// The same with the path radiance of its fog made elsewhere: red, green and blue of each pixel, row after row, in the
-    /// picture's unit. Lamps add to it; looks take no notice of it.
+    /// picture's unit. LightSet add to it; looks take no notice of it.
     ///
     /// # Errors
-    /// [`RenderError::Setting`] where it is not of the picture's size.
-    pub fn with_path_radiance(self, given: &'a [f32]) -> Result<Self, RenderError> {
+    /// [`ImageError::Setting`] where it is not of the picture's size.
+    pub fn with_path_radiance(self, given: &'a [f32]) -> Result<Self, ImageError> {
         match given.len() == self.picture.rgb.len() {
             true => Ok(Self {
                 given: Some(given),
                 ..self
             }),
-            false => Err(RenderError::Setting {
+            false => Err(ImageError::Setting {
                 what: "the number of path radiances",
                 got: given.len().to_string(),
                 right: "three for each pixel of the picture",

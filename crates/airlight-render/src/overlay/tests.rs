@@ -1,8 +1,8 @@
 use super::*;
-use crate::Size;
-use crate::input::{LightReference, SampleBits};
-use airlight::fog::{Fog, Ground, Layer, Light, Matter, Profile, Scattering};
+use airlight::fog::{Fog, FogLighting, FogScattering, Ground, Layer, Medium, Profile};
 use airlight::optics::PhaseFunction;
+use airlight_image::Size;
+use airlight_image::input::{LightReference, SampleBits};
 
 fn picture(width: u32, height: u32, rgb: impl Fn(u32, u32) -> [f32; 3]) -> Picture {
     let size = Size::new(width, height).unwrap();
@@ -32,23 +32,23 @@ fn depth(width: u32, height: u32, metres: impl Fn(u32, u32) -> f32) -> DepthMap 
     }
 }
 
-fn uniform(extinction: f32, ambient: [f32; 3]) -> Veil<'static> {
-    let matter = Matter {
+fn uniform(extinction: f32, ambient: [f32; 3]) -> FogOverlay<'static> {
+    let medium = Medium {
         extinction_per_m: Spectrum::splat(extinction),
         single_scattering_albedo: Spectrum::ONE,
         phase: PhaseFunction::Isotropic,
     };
-    let light = Light {
+    let light = FogLighting {
         sun: None,
         ambient: Spectrum(ambient),
         ground_albedo: Spectrum::ZERO,
     };
     let layers = [Layer {
         profile: Profile::Uniform,
-        matter,
+        medium,
     }];
-    let fog = Fog::new(&layers, Ground::FLAT, light, Scattering::Single).unwrap();
-    Veil::Fog(Body::Alone(Box::new(fog)), None)
+    let fog = Fog::new(&layers, Ground::FLAT, light, FogScattering::Single).unwrap();
+    FogOverlay::Fog(FogSource::Alone(Box::new(fog)), None)
 }
 
 #[test]
@@ -58,8 +58,8 @@ fn depth_along_the_axis_becomes_distance_along_the_ray() {
         depth(9, 5, |_, _| 10.0),
     );
     let camera = Intrinsics::from_horizontal_fov(picture.size, 90.0).unwrap();
-    let veil = uniform(0.05, [0.8, 0.8, 0.9]);
-    let overlay = Overlay::new(&picture, &depth, &camera, 1.6, &veil, Channels::Layers).unwrap();
+    let overlay = uniform(0.05, [0.8, 0.8, 0.9]);
+    let overlay = Overlay::new(&picture, &depth, &camera, 1.6, &overlay, Channels::Layers).unwrap();
     let mut row = vec![0.0; 9 * overlay.channels()];
     overlay.fill_row(2, &mut row);
     for i in 0..9u32 {
@@ -80,10 +80,10 @@ fn sky_in_thick_fog_is_the_ambient_and_encoded_blending_is_another_thing() {
     let camera = Intrinsics::from_horizontal_fov(picture.size, 60.0).unwrap();
     let colour = Spectrum([0.8; 3]);
     let light = uniform(0.03, colour.0);
-    let encoded = Veil::Encoded(0.03, colour);
-    let shown = |veil: &Veil, y: u32| {
+    let encoded = FogOverlay::Encoded(0.03, colour);
+    let shown = |overlay: &FogOverlay, y: u32| {
         let overlay =
-            Overlay::new(&picture, &depth, &camera, 1.6, veil, Channels::Picture).unwrap();
+            Overlay::new(&picture, &depth, &camera, 1.6, overlay, Channels::Picture).unwrap();
         let mut row = vec![0.0; 12];
         overlay.fill_row(y, &mut row);
         row[4]
@@ -122,12 +122,12 @@ fn fog_lies_before_what_is_there_only() {
     half.alpha = Some(vec![1.0, 0.5, 0.0]);
     let depth = depth(3, 1, |_, _| 20.0);
     let camera = Intrinsics::from_horizontal_fov(half.size, 1.0).unwrap();
-    for veil in [
+    for overlay in [
         uniform(0.03, [0.8; 3]),
-        Veil::Encoded(0.03, Spectrum([0.8; 3])),
+        FogOverlay::Encoded(0.03, Spectrum([0.8; 3])),
     ] {
         for channels in [Channels::Picture, Channels::Layers] {
-            let overlay = Overlay::new(&half, &depth, &camera, 1.6, &veil, channels).unwrap();
+            let overlay = Overlay::new(&half, &depth, &camera, 1.6, &overlay, channels).unwrap();
             let names = overlay.channel_names();
             assert_eq!(names.len(), overlay.channels());
             assert_eq!(names.last(), Some(&"A"));
@@ -189,44 +189,44 @@ fn the_ambient_takes_no_notice_of_sun_cloud_and_edges() {
 
 #[test]
 fn a_lamp_glows_before_what_is_there() {
-    use airlight::fog::lamp::{Lamp, Passage, PointLamp, airlight_isotropic};
+    use airlight::fog::lights::{Light, LightRayGeometry, PointLight, airlight_isotropic};
     let (picture, depth) = (
         picture(9, 5, |_, _| [0.0; 3]),
         depth(9, 5, |x, _| if x < 4 { 6.0 } else { f32::INFINITY }),
     );
     let camera = Intrinsics::from_horizontal_fov(picture.size, 60.0).unwrap();
-    let matter = Matter {
+    let medium = Medium {
         extinction_per_m: Spectrum::splat(0.05),
         single_scattering_albedo: Spectrum::splat(0.8),
         phase: PhaseFunction::Isotropic,
     };
     // Half of the fog in each of two layers.
-    let mut half = matter.clone();
+    let mut half = medium.clone();
     half.extinction_per_m = Spectrum::splat(0.025);
-    let layer = |matter| Layer {
+    let layer = |medium| Layer {
         profile: Profile::Uniform,
-        matter,
+        medium,
     };
-    let (whole, halves) = (layer(matter), [layer(half.clone()), layer(half)]);
+    let (whole, halves) = (layer(medium), [layer(half.clone()), layer(half)]);
     let at = DVec3::new(-1.0, 2.5, -5.0);
-    let lamp = PointLamp::new(at, Spectrum([3.0, 2.0, 1.0]), 0.01).unwrap();
-    let light = Light {
+    let lamp = PointLight::new(at, Spectrum([3.0, 2.0, 1.0]), 0.01).unwrap();
+    let light = FogLighting {
         sun: None,
         ambient: Spectrum::ZERO,
         ground_albedo: Spectrum::ZERO,
     };
     for layers in [&[whole][..], &halves[..]] {
-        let fog = Fog::new(layers, Ground::FLAT, light, Scattering::Single).unwrap();
-        let glow = Glow::new(vec![Lamp::Point(lamp)], layers, Ground::FLAT).unwrap();
-        let veil = Veil::Fog(Body::Alone(Box::new(fog)), Some(glow));
+        let fog = Fog::new(layers, Ground::FLAT, light, FogScattering::Single).unwrap();
+        let light_glow = LightGlow::new(vec![Light::Point(lamp)], layers, Ground::FLAT).unwrap();
+        let overlay = FogOverlay::Fog(FogSource::Alone(Box::new(fog)), Some(light_glow));
         let overlay =
-            Overlay::new(&picture, &depth, &camera, 1.6, &veil, Channels::Picture).unwrap();
+            Overlay::new(&picture, &depth, &camera, 1.6, &overlay, Channels::Picture).unwrap();
         let mut row = vec![0.0; 27];
         overlay.fill_row(1, &mut row);
         for x in 0..9 {
             let (direction, length) = (camera.pixel_direction(x, 1), camera.ray_length_per_z(x, 1));
             let length_m = if x < 4 { 6.0 * length } else { f64::INFINITY };
-            let passage = Passage::new(DVec3::Y * 1.6, direction, length_m, at, 0.01);
+            let passage = LightRayGeometry::new(DVec3::Y * 1.6, direction, length_m, at, 0.01);
             let exact = 0.05 * 0.8 * airlight_isotropic(&passage, 0.05);
             let seen = &row[3 * x as usize..][..3];
             for (lane, intensity) in [3.0, 2.0, 1.0].into_iter().enumerate() {

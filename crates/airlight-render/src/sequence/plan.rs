@@ -1,7 +1,7 @@
 //! Which frames a sequence has, and the loop over those still missing.
 
 use super::FramePattern;
-use crate::{Control, RenderError};
+use airlight_image::{Control, ImageError};
 use std::path::{Path, PathBuf};
 
 /// Evenly spaced moments, from the first to the last inclusive.
@@ -28,10 +28,10 @@ impl SequencePlan {
     /// Moments `start_s`, `start_s + every_s` and so on, none after `until_s` (seconds since 1970-01-01T00:00:00Z).
     ///
     /// # Errors
-    /// [`RenderError::Setting`] where `every_s` is not positive, `until_s` lies before `start_s`, or there would be
+    /// [`ImageError::Setting`] where `every_s` is not positive, `until_s` lies before `start_s`, or there would be
     /// more than a million frames.
-    pub fn new(start_s: i64, until_s: i64, every_s: i64) -> Result<Self, RenderError> {
-        let refuse = |what, got: String, right| Err(RenderError::Setting { what, got, right });
+    pub fn new(start_s: i64, until_s: i64, every_s: i64) -> Result<Self, ImageError> {
+        let refuse = |what, got: String, right| Err(ImageError::Setting { what, got, right });
         if every_s <= 0 {
             return refuse(
                 "the step of a sequence",
@@ -114,7 +114,7 @@ pub struct SequenceReport {
 /// Files are only ever whole, so one that exists and is not empty counts as done; with `overwrite`, all are made.
 ///
 /// # Errors
-/// The first error of `make`, or [`RenderError::Cancelled`] between frames once the caller has asked to stop. Frames
+/// The first error of `make`, or [`ImageError::Cancelled`] between frames once the caller has asked to stop. Frames
 /// already made stay.
 pub fn run(
     plan: &SequencePlan,
@@ -122,8 +122,8 @@ pub fn run(
     overwrite: bool,
     control: Control<'_>,
     progress: &mut dyn SequenceProgress,
-    mut make: impl FnMut(FrameStep, &Path) -> Result<(), RenderError>,
-) -> Result<SequenceReport, RenderError> {
+    mut make: impl FnMut(FrameStep, &Path) -> Result<(), ImageError>,
+) -> Result<SequenceReport, ImageError> {
     let mut report = SequenceReport::default();
     for frame in plan.frames() {
         control.check()?;

@@ -2,8 +2,8 @@
 
 use crate::Fallible;
 use crate::measure::{Errors, SUNS_DEG, fan, head, ratio, seconds_a_line, sun};
-use airlight::classic::single_scattering::{Settings, SkyArticle, Variant};
-use airlight::medium::presets::published;
+use airlight::atmosphere::presets::published;
+use airlight::models::single_scattering::{Settings, SkyArticle, Variant};
 use airlight::sky::{Scattering, Sky, SkySettings, View};
 use airlight::spectrum::WavelengthGrid;
 use glam::DVec3;

@@ -1,12 +1,12 @@
 //! Preetham, Hosek and Wilkie, Hillaire, and four orders.
 
 use crate::measure::{Errors, SUNS_DEG, fan, head, ratio, seconds_a_line, sun};
-use airlight::classic::ClassicSky;
-use airlight::classic::four_orders::FourOrders;
-use airlight::classic::hillaire2020::Hillaire2020;
-use airlight::classic::preetham::Preetham;
-use airlight::medium::aerosol::turbidity_of_optical_depth;
-use airlight::medium::{Atmosphere, preset};
+use airlight::atmosphere::aerosol::turbidity_of_optical_depth;
+use airlight::atmosphere::{Atmosphere, preset};
+use airlight::models::PublishedModel;
+use airlight::models::four_orders::FourOrders;
+use airlight::models::hillaire2020::Hillaire2020;
+use airlight::models::preetham::Preetham;
 use airlight::sky::{Sky, SkySettings};
 use airlight::spectrum::WavelengthGrid;
 use glam::DVec3;
@@ -84,7 +84,7 @@ fn sky(
     air: &Atmosphere,
     turbidity: f64,
     sun_deg: f64,
-) -> Fallible<Box<dyn ClassicSky>> {
+) -> Fallible<Box<dyn PublishedModel>> {
     let grid = WavelengthGrid::standard();
     Ok(match model {
         "preetham" => Box::new(Preetham::new(turbidity.max(2.0), sun(sun_deg))?),
@@ -92,7 +92,7 @@ fn sky(
         "hosek-wilkie" => {
             let albedo = [612.0, 549.0, 465.0].map(|nm| air.planet.ground_albedo.at(nm));
             let model =
-                airlight::classic::hosek_wilkie::HosekWilkie::new(turbidity, albedo, sun(sun_deg))?;
+                airlight::models::hosek_wilkie::HosekWilkie::new(turbidity, albedo, sun(sun_deg))?;
             Box::new(model)
         }
         "hillaire2020" => Box::new(Hillaire2020::new(air, &grid, 2.0, sun(sun_deg))?),

@@ -6,8 +6,8 @@
 
 use super::lanes::Lanes;
 use super::scatter;
-use crate::path::PathOptics;
 use crate::spectrum::Spectrum;
+use crate::transfer::PathOptics;
 
 /// Constant source: `S = (1 - T) J`. Exact where `J` is the same all along the line, as in exponential fog lit evenly.
 pub fn constant_source<const N: usize>(
@@ -51,7 +51,7 @@ pub fn split_sum_error(tau: f64, k: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::quadrature::integrate;
+    use crate::math::quadrature::integrate;
 
     #[test]
     fn both_are_exact_for_a_constant_source() {

@@ -1,6 +1,6 @@
 //! Water droplets: how fog scatters, by the diameter of its drops or as Lorenz-Mie theory says of published ones.
 
-use super::matter::Matter;
+use super::layer::Medium;
 use crate::optics::PhaseFunction;
 use crate::optics::mie::droplets::Drops;
 use crate::optics::mie::{BulkOptics, DropTable, MieError};
@@ -66,8 +66,8 @@ impl Droplets {
     }
 
     /// Fog of such drops: an extinction (1/m) the same at all wavelengths, and no absorption.
-    pub fn matter<const N: usize>(self, extinction_per_m: f64) -> Matter<N> {
-        Matter {
+    pub fn medium<const N: usize>(self, extinction_per_m: f64) -> Medium<N> {
+        Medium {
             extinction_per_m: Spectrum::splat(extinction_per_m as f32),
             single_scattering_albedo: Spectrum::ONE,
             phase: self.phase(),
@@ -131,9 +131,9 @@ impl DropletKind {
         self,
         extinction_per_m: f64,
         wavelengths_nm: &[f64; N],
-    ) -> Result<Matter<N>, MieError> {
+    ) -> Result<Medium<N>, MieError> {
         let drops = match self {
-            Self::Analytic(droplets) => return Ok(droplets.matter(extinction_per_m)),
+            Self::Analytic(droplets) => return Ok(droplets.medium(extinction_per_m)),
             Self::Isotropic => return Ok(isotropic(extinction_per_m)),
             Self::Published(drops) => drops,
         };
@@ -141,7 +141,7 @@ impl DropletKind {
         rising.sort_by(f64::total_cmp);
         rising.dedup();
         let table = drops.table(&rising)?;
-        Ok(matter(&table, extinction_per_m, |lane| {
+        Ok(medium(&table, extinction_per_m, |lane| {
             wavelengths_nm[lane]
         }))
     }
@@ -150,21 +150,21 @@ impl DropletKind {
     ///
     /// # Errors
     /// As [`DropletKind::at_wavelengths`].
-    pub fn in_rgb(self, extinction_per_m: f64, space: RgbSpace) -> Result<Matter<3>, MieError> {
+    pub fn in_rgb(self, extinction_per_m: f64, space: RgbSpace) -> Result<Medium<3>, MieError> {
         match self {
-            Self::Analytic(droplets) => Ok(droplets.matter(extinction_per_m)),
+            Self::Analytic(droplets) => Ok(droplets.medium(extinction_per_m)),
             Self::Isotropic => Ok(isotropic(extinction_per_m)),
             Self::Published(drops) => {
                 let table = drops.rgb_table(space)?;
-                Ok(matter(&table, extinction_per_m, |lane| DOMINANT_NM[lane]))
+                Ok(medium(&table, extinction_per_m, |lane| DOMINANT_NM[lane]))
             }
         }
     }
 }
 
 /// Fog that scatters equally in all directions, and does not absorb.
-fn isotropic<const N: usize>(extinction_per_m: f64) -> Matter<N> {
-    Matter {
+fn isotropic<const N: usize>(extinction_per_m: f64) -> Medium<N> {
+    Medium {
         extinction_per_m: Spectrum::splat(extinction_per_m as f32),
         single_scattering_albedo: Spectrum::ONE,
         phase: PhaseFunction::Isotropic,
@@ -172,11 +172,11 @@ fn isotropic<const N: usize>(extinction_per_m: f64) -> Matter<N> {
 }
 
 /// Drops of a table, by their extinction at 550 nm (1/m), with the wavelength of each lane, which the table has.
-fn matter<const N: usize>(
+fn medium<const N: usize>(
     table: &DropTable,
     extinction_per_m: f64,
     wavelength_nm: impl Fn(usize) -> f64,
-) -> Matter<N> {
+) -> Medium<N> {
     let number = extinction_per_m / table.green.extinction_um2();
     let lanes = |of: &dyn Fn(&BulkOptics) -> f64| {
         Spectrum::from_fn(|lane| {
@@ -185,7 +185,7 @@ fn matter<const N: usize>(
             of(&table.bulk[at.min(table.bulk.len() - 1)]) as f32
         })
     };
-    Matter {
+    Medium {
         extinction_per_m: lanes(&|bulk| number * bulk.extinction_um2()),
         single_scattering_albedo: lanes(&BulkOptics::single_scattering_albedo),
         phase: PhaseFunction::Tabulated(table.phase.clone()),
@@ -202,14 +202,14 @@ mod tests {
         let mist = DropletKind::from(Drops::HazeH);
         let green = mist.at_wavelengths(0.01, &[550.0]).unwrap();
         assert!((green.extinction_per_m[0] / 0.01 - 1.0).abs() < 1e-6);
-        let matter = mist.at_wavelengths(0.01, &[650.0, 450.0, 450.0]).unwrap();
-        matter.validate().unwrap();
-        let [red, blue, again] = matter.extinction_per_m.0;
+        let medium = mist.at_wavelengths(0.01, &[650.0, 450.0, 450.0]).unwrap();
+        medium.validate().unwrap();
+        let [red, blue, again] = medium.extinction_per_m.0;
         assert!(
             red < 0.0095 && blue > 0.0105 && again == blue,
             "{red} {blue}"
         );
-        assert!(matter.single_scattering_albedo[0] > 0.9999);
+        assert!(medium.single_scattering_albedo[0] > 0.9999);
         let rgb = mist.in_rgb(0.01, RgbSpace::Srgb).unwrap();
         rgb.validate().unwrap();
         let [red, green, blue] = rgb.extinction_per_m.0;

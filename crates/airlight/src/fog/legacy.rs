@@ -3,8 +3,8 @@
 //! Both take a fog colour and the distance. Neither composes: two stretches in a row are not the stretch they make up, as
 //! no medium attenuates like this. They are here because pictures and games were made with them.
 
-use crate::path::PathOptics;
 use crate::spectrum::Spectrum;
+use crate::transfer::PathOptics;
 
 /// Exponential-squared fog: `T = e^-(density d)^2`.
 pub fn exponential_squared<const N: usize>(

@@ -1,11 +1,11 @@
 //! Fog: what it does to light, in closed form or nearly.
 //!
-//! Each model yields [`PathOptics`](crate::path::PathOptics) for a stretch of a line, on RGB or any spectral grid. The book's
+//! Each model yields [`PathOptics`](crate::transfer::PathOptics) for a stretch of a line, on RGB or any spectral grid. The book's
 //! chapters on fog and on lamps derive what is here.
 //!
 //! ```
 //! use airlight::axes::direction;
-//! use airlight::fog::{Fog, Ground, Layer, Light, Profile, Scattering, Sun};
+//! use airlight::fog::{Fog, Ground, DirectionalLight, FogLighting, FogScattering, Layer, Profile};
 //! use airlight::fog::{droplets::Droplets, visibility::{Contrast, extinction_per_m}};
 //! use airlight::spectrum::Spectrum;
 //!
@@ -29,31 +29,30 @@
 //! # Ok::<(), airlight::fog::FogError>(())
 //! ```
 //!
-//! From the ground up: [`line`](mod@line) and [`profile`] (how much fog lies along a line); [`matter`] and [`droplets`];
+//! From the ground up: [`line`](mod@line) and [`profile`] (how much fog lies along a line); [`medium`] and [`droplets`];
 //! [`lanes`] and [`scatter`] (the formulas); light and ground; the fog itself ([`Fog`]) with light scattered once and many
 //! times; [`lamp`]s; and beside it [`slab1987`], [`legacy`] looks, [`approximation`]s.
 
 pub mod approximation;
 pub mod droplets;
-pub mod lamp;
+mod height_breakpoints;
 pub mod lanes;
+pub mod layer;
 pub mod legacy;
-mod levels;
-mod light;
-pub mod line;
-pub mod matter;
+mod lighting;
+pub mod lights;
+mod merged_layers;
 mod model;
 mod multiple;
-mod once;
 pub mod profile;
+pub mod ray_segment;
 pub mod scatter;
-pub mod slab1987;
-mod strata;
-mod walk;
+mod single_scattering;
+mod split_at_heights;
 
-pub use crate::medium::visibility;
-pub use light::{Ground, Light, Scattering, Sun};
-pub use line::Line;
-pub use matter::{FogError, Layer, Matter};
+pub use crate::atmosphere::visibility;
+pub use layer::{FogError, Layer, Medium};
+pub use lighting::{DirectionalLight, FogLighting, FogScattering, Ground};
 pub use model::{Fog, FogTable};
 pub use profile::{Profile, ProfileError};
+pub use ray_segment::RaySegment;

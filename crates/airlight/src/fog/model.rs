@@ -1,16 +1,16 @@
 //! A fog: layers of matter, lit by sun and sky, and what they do along any line.
 
+use super::height_breakpoints;
 use super::lanes::Lanes;
-use super::levels;
-use super::light::{Ground, Light, Scattering};
-use super::line::Line;
-use super::matter::{FogError, Layer};
+use super::layer::{FogError, Layer};
+use super::lighting::{FogLighting, FogScattering, Ground};
+use super::merged_layers::{MergedLayer, merge_layers};
 use super::multiple::{self, DirectionWeights, Field};
-use super::once::Once;
 use super::profile::Profile;
-use super::strata::{Stratum, gather};
-use crate::path::PathOptics;
+use super::ray_segment::RaySegment;
+use super::single_scattering::SingleScattering;
 use crate::spectrum::Spectrum;
+use crate::transfer::PathOptics;
 use glam::DVec3;
 
 /// The most that a column or an optical depth counts for: far beyond opaque, far from f32's end.
@@ -22,16 +22,16 @@ pub(super) const OPAQUE: f64 = 1e25;
 /// Any number of layers; those with the same [`Profile`] are merged. Over flat ground a fog of one profile is solved in
 /// closed form: transmittance (Ishiyama 2018, eqs. 14 and 23), ambient light (eq. 21) and sunlight with its own way through
 /// the fog ([`super::scatter`]), at the rounding of f32. Several profiles, and round ground, are walked from level to level: the
-/// same closed forms between levels. With [`Scattering::Multiple`] the diffuse light inside is solved for when the fog is
+/// same closed forms between levels. With [`FogScattering::Multiple`] the diffuse light inside is solved for when the fog is
 /// made, and added.
 #[derive(Clone, Debug)]
 pub struct Fog<const N: usize> {
-    strata: Vec<Stratum<N>>,
+    layers: Vec<MergedLayer<N>>,
     ground: Ground,
-    light: Light<N>,
-    scattering: Scattering,
+    light: FogLighting<N>,
+    scattering: FogScattering,
     /// Heights between which the walk need not look, rising, m.
-    levels_m: Vec<f64>,
+    breakpoints_m: Vec<f64>,
     /// Diffuse light; none for single scattering, and for fog that has no upper end.
     field: Option<Field<N>>,
 }
@@ -44,8 +44,8 @@ impl<const N: usize> Fog<N> {
     pub fn new(
         layers: &[Layer<N>],
         ground: Ground,
-        light: Light<N>,
-        scattering: Scattering,
+        light: FogLighting<N>,
+        scattering: FogScattering,
     ) -> Result<Self, FogError> {
         Self::at_wavelengths_nm(layers, ground, light, scattering, [550.0; N])
     }
@@ -57,23 +57,23 @@ impl<const N: usize> Fog<N> {
     pub fn at_wavelengths_nm(
         layers: &[Layer<N>],
         ground: Ground,
-        light: Light<N>,
-        scattering: Scattering,
+        light: FogLighting<N>,
+        scattering: FogScattering,
         wavelengths_nm: [f64; N],
     ) -> Result<Self, FogError> {
         ground.validate()?;
         light.validate()?;
-        let strata = gather(layers, scattering, wavelengths_nm)?;
-        let profiles: Vec<Profile> = strata.iter().map(|s| s.profile).collect();
+        let layers = merge_layers(layers, scattering, wavelengths_nm)?;
+        let profiles: Vec<Profile> = layers.iter().map(|s| s.profile).collect();
         let mut fog = Self {
-            levels_m: levels::between(&profiles, ground.height_m),
-            strata,
+            breakpoints_m: height_breakpoints::between(&profiles, ground.height_m),
+            layers,
             ground,
             light,
             scattering,
             field: None,
         };
-        if scattering == Scattering::Multiple {
+        if scattering == FogScattering::Multiple {
             fog.field = fog.solve();
         }
         Ok(fog)
@@ -81,7 +81,11 @@ impl<const N: usize> Fog<N> {
 
     /// The diffuse light inside.
     fn solve(&self) -> Option<Field<N>> {
-        let reduced: Vec<_> = self.strata.iter().filter_map(Stratum::reduced).collect();
+        let reduced: Vec<_> = self
+            .layers
+            .iter()
+            .filter_map(MergedLayer::reduced)
+            .collect();
         if reduced.is_empty() {
             return None;
         }
@@ -92,7 +96,7 @@ impl<const N: usize> Fog<N> {
     }
 
     /// The light that it is in.
-    pub fn light(&self) -> &Light<N> {
+    pub fn light(&self) -> &FogLighting<N> {
         &self.light
     }
 
@@ -109,10 +113,10 @@ impl<const N: usize> Fog<N> {
 
     /// Extinction at a height, 1/m.
     pub fn extinction_at(&self, height_m: f64) -> Spectrum<N> {
-        self.strata.iter().fold(Spectrum::ZERO, |sum, stratum| {
+        self.layers.iter().fold(Spectrum::ZERO, |sum, layer| {
             sum.scale_acc(
-                stratum.extinction_per_m,
-                stratum.profile.density(height_m) as f32,
+                layer.extinction_per_m,
+                layer.profile.density(height_m) as f32,
             )
         })
     }
@@ -121,7 +125,7 @@ impl<const N: usize> Fog<N> {
     /// unit direction `direction`.
     #[inline]
     pub fn along(&self, eye_height_m: f64, direction: DVec3, length_m: f64) -> PathOptics<N> {
-        let line = Line::new(eye_height_m, direction.y, length_m, self.ground.radius_m);
+        let line = RaySegment::new(eye_height_m, direction.y, length_m, self.ground.radius_m);
         let cos_sun = match &self.light.sun {
             Some(sun) => direction.dot(sun.direction),
             None => 0.0,
@@ -131,25 +135,25 @@ impl<const N: usize> Fog<N> {
 
     /// Transmittance along a line: in closed form whatever the layers, over flat and round ground.
     #[inline]
-    pub fn transmittance(&self, line: &Line) -> Spectrum<N> {
+    pub fn transmittance(&self, line: &RaySegment) -> Spectrum<N> {
         self.optical_depth(line).exp_neg()
     }
 
     /// Optical depth along a line (held at 1e25).
     #[inline]
-    pub fn optical_depth(&self, line: &Line) -> Spectrum<N> {
-        self.depth_of(line, &|stratum| stratum.extinction_per_m)
+    pub fn optical_depth(&self, line: &RaySegment) -> Spectrum<N> {
+        self.depth_of(line, &|layer| layer.extinction_per_m)
     }
 
     #[inline]
     fn depth_of(
         &self,
-        line: &Line,
-        extinction: &impl Fn(&Stratum<N>) -> Spectrum<N>,
+        line: &RaySegment,
+        extinction: &impl Fn(&MergedLayer<N>) -> Spectrum<N>,
     ) -> Spectrum<N> {
-        self.strata.iter().fold(Spectrum::ZERO, |sum, stratum| {
-            let column = stratum.profile.column(line).min(OPAQUE);
-            sum.scale_acc(extinction(stratum), column as f32)
+        self.layers.iter().fold(Spectrum::ZERO, |sum, layer| {
+            let column = layer.profile.column(line).min(OPAQUE);
+            sum.scale_acc(extinction(layer), column as f32)
         })
     }
 
@@ -160,13 +164,13 @@ impl<const N: usize> Fog<N> {
     /// 0.5 degrees high or more; 0.02 % up to 10 km). Measured over scale heights from 10 m to 8 km, lines from level to
     /// vertical. Error of multiple scattering: see the book's chapter on fog.
     #[inline]
-    pub fn along_line(&self, line: &Line, cos_sun: f64) -> PathOptics<N> {
-        if self.strata.is_empty() {
+    pub fn along_line(&self, line: &RaySegment, cos_sun: f64) -> PathOptics<N> {
+        if self.layers.is_empty() {
             return PathOptics::CLEAR;
         }
         let depth = self.optical_depth(line);
         let path_radiance = match &self.field {
-            Some(field) => self.scattered_often(field, line, cos_sun, depth),
+            Some(field) => self.multiple_scattering(field, line, cos_sun, depth),
             None => {
                 let (sunlit, even) = self
                     .once(|s| s.extinction_per_m, |s| s.towards_eye(cos_sun))
@@ -190,17 +194,17 @@ impl<const N: usize> Fog<N> {
 
     /// Sunlight scattered once, dimmed by an extinction of each stratum, with a strength of each stratum towards the eye.
     #[inline]
-    fn once<'a, X, S>(&'a self, extinction: X, towards_eye: S) -> Once<'a, N, X, S>
+    fn once<'a, X, S>(&'a self, extinction: X, towards_eye: S) -> SingleScattering<'a, N, X, S>
     where
-        X: Fn(&Stratum<N>) -> Spectrum<N>,
-        S: Fn(&Stratum<N>) -> Spectrum<N>,
+        X: Fn(&MergedLayer<N>) -> Spectrum<N>,
+        S: Fn(&MergedLayer<N>) -> Spectrum<N>,
     {
-        Once {
-            strata: &self.strata,
-            levels_m: &self.levels_m,
+        SingleScattering {
+            layers: &self.layers,
+            breakpoints_m: &self.breakpoints_m,
             ground: &self.ground,
             sine_sun: self.light.sun.map(|sun| sun.direction.y),
-            dimmed: self.scattering != Scattering::Undimmed,
+            dimmed: self.scattering != FogScattering::Undimmed,
             extinction,
             towards_eye,
         }
@@ -213,14 +217,14 @@ impl<const N: usize> Fog<N> {
     /// into the line. The path radiance of a segment is what is left of it without what arrives unscattered from the
     /// segment's far end: `S = I(near) - T I(far)`, which composes at any cut, and vanishes where light is the same
     /// everywhere. It is added up from terms that do not cancel.
-    fn scattered_often(
+    fn multiple_scattering(
         &self,
         field: &Field<N>,
-        line: &Line,
+        line: &RaySegment,
         cos_sun: f64,
         depth: Spectrum<N>,
     ) -> Spectrum<N> {
-        let towards = Towards::new(self, line.climb, cos_sun);
+        let towards = Towards::new(self, line.sin_elevation, cos_sun);
         let near = self.part(field, line, &towards);
         let path = near.smooth + near.peaked;
         // What passes through with the peak, and not without.
@@ -243,7 +247,7 @@ impl<const N: usize> Fog<N> {
     }
 
     /// The line from the end of `line` to the edge of the fog, if there is any left, and the radiance there.
-    fn beyond(&self, field: &Field<N>, line: &Line) -> (Option<Line>, Spectrum<N>) {
+    fn beyond(&self, field: &Field<N>, line: &RaySegment) -> (Option<RaySegment>, Spectrum<N>) {
         if line.length_m == f64::INFINITY {
             return (None, self.light.ambient);
         }
@@ -260,16 +264,16 @@ impl<const N: usize> Fog<N> {
     }
 
     /// What is scattered into one line, by what it is dimmed.
-    fn part(&self, field: &Field<N>, line: &Line, towards: &Towards) -> Part<N> {
+    fn part(&self, field: &Field<N>, line: &RaySegment, towards: &Towards) -> Part<N> {
         let cos_sun = towards.cos_sun;
-        let endless = |s: &Stratum<N>| match s.profile {
+        let endless = |s: &MergedLayer<N>| match s.profile {
             Profile::Uniform => s.scattering_per_m,
             _ => Spectrum::ZERO,
         };
-        let reduced = |s: &Stratum<N>| s.reduced_extinction_per_m;
-        let residual = |s: &Stratum<N>| s.residual_extinction(cos_sun);
+        let reduced = |s: &MergedLayer<N>| s.reduced_extinction_per_m;
+        let residual = |s: &MergedLayer<N>| s.residual_extinction(cos_sun);
         let of_endless = self
-            .strata
+            .layers
             .iter()
             .fold(Spectrum::ZERO, |sum, s| match s.profile {
                 Profile::Uniform => sum + s.extinction_per_m,
@@ -288,7 +292,8 @@ impl<const N: usize> Fog<N> {
             .along(line, &endless);
         smooth += even * self.light.ambient + sunlit * self.sunlight();
         if in_peak {
-            let beyond = |s: &Stratum<N>| s.towards_eye(cos_sun) - s.smooth_towards_eye(cos_sun);
+            let beyond =
+                |s: &MergedLayer<N>| s.towards_eye(cos_sun) - s.smooth_towards_eye(cos_sun);
             let (sunlit, _) = self.once(residual, beyond).along(line, &|_| Spectrum::ZERO);
             peaked = sunlit * self.sunlight();
             peaked_depth = self.depth_of(line, &residual);
@@ -319,27 +324,27 @@ struct Towards {
 }
 
 impl Towards {
-    fn new<const N: usize>(fog: &Fog<N>, climb: f64, cos_sun: f64) -> Self {
-        let climb = climb.clamp(-1.0, 1.0);
+    fn new<const N: usize>(fog: &Fog<N>, sin_elevation: f64, cos_sun: f64) -> Self {
+        let sin_elevation = sin_elevation.clamp(-1.0, 1.0);
         let Some(sun) = &fog.light.sun else {
             return Self {
                 cos_sun,
-                weights: multiple::in_direction(climb, 1.0),
+                weights: multiple::in_direction(sin_elevation, 1.0),
                 in_peak: false,
             };
         };
         let sine = sun.direction.y;
-        let across = ((1.0 - climb * climb) * (1.0 - sine * sine))
+        let across = ((1.0 - sin_elevation * sin_elevation) * (1.0 - sine * sine))
             .max(0.0)
             .sqrt();
         let cos_azimuth = match across > 1e-9 {
-            true => ((cos_sun - climb * sine) / across).clamp(-1.0, 1.0),
+            true => ((cos_sun - sin_elevation * sine) / across).clamp(-1.0, 1.0),
             false => 1.0,
         };
         Self {
             cos_sun,
-            weights: multiple::in_direction(climb, cos_azimuth),
-            in_peak: fog.strata.iter().any(|s| s.in_peak(cos_sun)),
+            weights: multiple::in_direction(sin_elevation, cos_azimuth),
+            in_peak: fog.layers.iter().any(|s| s.in_peak(cos_sun)),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! How fog thins with height, and how much of it lies along a line.
 
-use super::line::Line;
+use super::ray_segment::RaySegment;
 
 /// Density against height, relative to the density that a fog's coefficients are stated for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -131,7 +131,7 @@ impl Profile {
 
     /// Density integrated along a line, m: relative error below 1e-12 for lines of any length, height and slope.
     #[inline]
-    pub fn column(&self, line: &Line) -> f64 {
+    pub fn column(&self, line: &RaySegment) -> f64 {
         match *self {
             Self::Uniform => line.length_m,
             Self::Slab { top_height_m } => {
@@ -166,12 +166,12 @@ impl Profile {
 
 /// The integral of `e^-((y - reference) / scale)` along a line.
 #[inline]
-fn thinning(line: &Line, reference_height_m: f64, scale_height_m: f64) -> f64 {
-    let steep = line.climb / scale_height_m;
-    let bend = line.bend_per_m / scale_height_m;
+fn thinning(line: &RaySegment, reference_height_m: f64, scale_height_m: f64) -> f64 {
+    let steep = line.sin_elevation / scale_height_m;
+    let curvature = line.curvature_per_m / scale_height_m;
     let start = (line.height_m - reference_height_m) / scale_height_m;
     let length = line.length_m;
-    if bend == 0.0 && length.is_finite() {
+    if curvature == 0.0 && length.is_finite() {
         // Flat ground: from the denser end, so that nothing overflows before it must.
         let rise = steep * length;
         let densest = start + rise.min(0.0);
@@ -183,23 +183,23 @@ fn thinning(line: &Line, reference_height_m: f64, scale_height_m: f64) -> f64 {
         };
         return (-densest).exp() * length * mean;
     }
-    if bend == 0.0 {
+    if curvature == 0.0 {
         return match steep > 0.0 {
             true => (-start).exp() / steep,
             false => f64::INFINITY,
         };
     }
     // Round ground: a parabola in the exponent, walked away from its lowest point on either side.
-    let lowest = -0.5 * steep / bend;
-    let exponent_at = |s: f64| start + s * (steep + s * bend);
+    let lowest = -0.5 * steep / curvature;
+    let exponent_at = |s: f64| start + s * (steep + s * curvature);
     let column = if lowest <= 0.0 {
-        (-start).exp() * falling(steep, bend, length)
+        (-start).exp() * falling(steep, curvature, length)
     } else if lowest >= length {
-        let back = -(steep + 2.0 * bend * length);
-        (-exponent_at(length)).exp() * falling(back, bend, length)
+        let back = -(steep + 2.0 * curvature * length);
+        (-exponent_at(length)).exp() * falling(back, curvature, length)
     } else {
         (-exponent_at(lowest)).exp()
-            * (falling(0.0, bend, lowest) + falling(0.0, bend, length - lowest))
+            * (falling(0.0, curvature, lowest) + falling(0.0, curvature, length - lowest))
     };
     column.min(f64::MAX)
 }

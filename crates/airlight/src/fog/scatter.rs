@@ -47,7 +47,7 @@ pub fn linear_source_mean<L: Lanes>(along: L) -> (L, L) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::quadrature::{gauss_legendre, integrate_by};
+    use crate::math::quadrature::{gauss_legendre, integrate_by};
     use crate::spectrum::Spectrum;
 
     /// `int_0^tau f(t) e^-t dt` by quadrature in stretches that crowd to both ends.

@@ -5,7 +5,7 @@ mod moments;
 mod sample;
 
 use super::phase::PhaseError;
-use crate::quadrature::gauss_legendre;
+use crate::math::quadrature::gauss_legendre;
 use std::sync::{Arc, LazyLock};
 
 /// A phase function given at angles from 0 to 180 degrees and at one or more wavelengths.

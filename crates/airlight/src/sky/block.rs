@@ -1,17 +1,17 @@
 //! Wavelengths in blocks of as many lanes as vector instructions like, behind one interface.
 
 use super::SkySettings;
-use super::air::Air;
-use super::fan::{Fan, Path, Scratch};
 use super::field::FieldGrid;
 use super::orders::{self, Diffuse};
-use super::ray::Ray;
-use super::shell::Shell;
+use super::ray_bundle::{Path, RayBundle, Scratch};
 use super::trace::{Tracer, ground_irradiance};
 use super::{Scattering, SkyError};
-use crate::medium::Atmosphere;
+use crate::atmosphere::Atmosphere;
+use crate::math::simd::vectorized;
 use crate::spectrum::Spectrum;
-use crate::vector::vectorized;
+use crate::transfer::air::Air;
+use crate::transfer::ray::Ray;
+use crate::transfer::shell::Shell;
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -77,7 +77,7 @@ pub trait Block: Send + Sync {
 pub struct TableRow {
     /// Distance of the eye from the planet's centre, m, and cosine of the zenith angle.
     pub start: (f64, f64),
-    pub fan: Fan,
+    pub bundle: RayBundle,
     /// For each peaked constituent, its phase function along each ray, the same for all blocks of wavelengths: what
     /// the pixels of a picture will be multiplied by.
     pub phases: Vec<Vec<f32>>,
@@ -183,10 +183,15 @@ impl<const N: usize> Block for Solved<N> {
         stops
             .iter()
             .map(|stop| {
-                let mut parts = vec![stop.path.rest; 1 + peaked.len()];
+                let mut parts = vec![stop.path.multiple_scatter; 1 + peaked.len()];
                 parts[1..].fill(Spectrum::ZERO);
-                for (s, unphased) in self.air.scatterers.iter().zip(&stop.path.unphased) {
-                    let phased = *unphased * s.phase(&self.air, ray.nu);
+                for (s, single_scatter_without_phase) in self
+                    .air
+                    .scatterers
+                    .iter()
+                    .zip(&stop.path.single_scatter_without_phase)
+                {
+                    let phased = *single_scatter_without_phase * s.phase(&self.air, ray.nu);
                     match peaked.iter().position(|&(c, _)| c == s.constituent) {
                         None => parts[0] += phased,
                         Some(place) => parts[1 + place] = phased / peaked[place].1,
@@ -244,7 +249,7 @@ impl<const N: usize> Block for Solved<N> {
             .iter()
             .map(|row| Spectrum::from_fn(|lane| if lane < self.lanes { row[lane] } else { 0.0 }))
             .collect();
-        let stride = width * rows[0].fan.len();
+        let stride = width * rows[0].bundle.len();
         out.par_chunks_mut(stride).zip(rows).for_each(|(out, row)| {
             vectorized(
                 #[inline(always)]
@@ -262,30 +267,34 @@ impl<const N: usize> Block for Solved<N> {
 /// Light along the rays of a row.
 struct RowLight<const N: usize> {
     /// Sunlight scattered once, without phase function, `[scatterer][ray]`.
-    unphased: Vec<Spectrum<N>>,
+    single_scatter_without_phase: Vec<Spectrum<N>>,
     /// All other light.
-    rest: Vec<Spectrum<N>>,
+    multiple_scatter: Vec<Spectrum<N>>,
 }
 
 impl<const N: usize> Solved<N> {
     #[inline(always)]
     fn row_light(&self, row: &TableRow) -> RowLight<N> {
-        let (air, diffuse, rays) = (&self.air, self.diffuse.as_ref(), row.fan.len());
+        let (air, diffuse, rays) = (&self.air, self.diffuse.as_ref(), row.bundle.len());
         let mut light = RowLight {
-            unphased: Vec::new(),
-            rest: vec![Spectrum::ZERO; rays],
+            single_scatter_without_phase: Vec::new(),
+            multiple_scatter: vec![Spectrum::ZERO; rays],
         };
         let grid = diffuse.map(|d| &d.field.grid);
         let degree = diffuse.map_or(0, |d| d.field.basis.degree());
         // The air that dims light on its way: see `trace`.
         let dimming = diffuse.map_or(air, |d| &d.air);
         let path = Path::new(dimming, grid, &Tracer::marcher(air), row.start, degree);
-        if path.is_lit(air, &row.fan) {
-            path.carry_sunlight(dimming, &row.fan, &mut light.unphased);
+        if path.is_lit(air, &row.bundle) {
+            path.accumulate_sunlight(
+                dimming,
+                &row.bundle,
+                &mut light.single_scatter_without_phase,
+            );
             for (s, sums) in air
                 .scatterers
                 .iter()
-                .zip(light.unphased.chunks_exact_mut(rays))
+                .zip(light.single_scatter_without_phase.chunks_exact_mut(rays))
             {
                 for sum in sums {
                     *sum *= s.whole_scattering;
@@ -293,21 +302,28 @@ impl<const N: usize> Solved<N> {
             }
             if let Some(Diffuse { field, .. }) = diffuse {
                 let scratch = &mut Scratch::default();
-                path.carry_scattered(field, &field.basis, &row.fan, scratch, &mut light.rest);
+                path.accumulate_scattered(
+                    field,
+                    &field.basis,
+                    &row.bundle,
+                    scratch,
+                    &mut light.multiple_scatter,
+                );
             }
             let irradiance = |mu_sun| ground_irradiance(air, diffuse, mu_sun);
-            path.carry_ground(air, &row.fan, irradiance, &mut light.rest);
+            path.accumulate_ground(air, &row.bundle, irradiance, &mut light.multiple_scatter);
         } else {
             // The planet's shadow ends somewhere else on each ray.
             let mut tracer = self.tracer();
             light
-                .unphased
+                .single_scatter_without_phase
                 .resize(air.scatterers.len() * rays, Spectrum::ZERO);
             for slot in 0..rays {
-                let one = tracer.arriving(&row.fan.ray(row.start, slot));
-                light.rest[slot] = one.rest;
+                let one = tracer.arriving(&row.bundle.ray(row.start, slot));
+                light.multiple_scatter[slot] = one.multiple_scatter;
                 for s in 0..air.scatterers.len() {
-                    light.unphased[s * rays + slot] = one.unphased[s];
+                    light.single_scatter_without_phase[s * rays + slot] =
+                        one.single_scatter_without_phase[s];
                 }
             }
         }
@@ -325,14 +341,15 @@ impl<const N: usize> Solved<N> {
         cell: &mut [f32],
     ) {
         let channels = weights.len();
-        let mut smooth = light.rest[slot];
+        let mut smooth = light.multiple_scatter[slot];
         for (place, s) in self.air.scatterers.iter().enumerate() {
-            let unphased = light.unphased[place * light.rest.len() + slot];
-            let phase = s.phase(&self.air, row.fan.nu[slot]);
+            let single_scatter_without_phase =
+                light.single_scatter_without_phase[place * light.multiple_scatter.len() + slot];
+            let phase = s.phase(&self.air, row.bundle.nu[slot]);
             match peaked.iter().position(|&c| c == s.constituent) {
-                None => smooth = smooth.mul_acc(unphased, phase),
+                None => smooth = smooth.mul_acc(single_scatter_without_phase, phase),
                 Some(part) => {
-                    let value = unphased * phase / row.phases[part][slot];
+                    let value = single_scatter_without_phase * phase / row.phases[part][slot];
                     add_channels(
                         &mut cell[(1 + part) * channels..][..channels],
                         weights,

@@ -1,10 +1,10 @@
 //! The angular moments of the light inside the atmosphere, on a grid of altitudes and sun angles.
 
-use super::air::Air;
 use super::harmonics::Harmonics;
-use super::ray::Ray;
-use super::shell::{PerConstituent, Shell};
 use crate::spectrum::Spectrum;
+use crate::transfer::air::Air;
+use crate::transfer::ray::Ray;
+use crate::transfer::shell::{PerConstituent, Shell};
 
 /// Where the field is known: altitudes and cosines of the sun's zenith angle.
 #[derive(Clone, Debug)]

@@ -182,7 +182,7 @@ pub fn legendre(x: f64, out: &mut [f64]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sky::quadrature::GaussRule;
+    use crate::math::gauss_rule::GaussRule;
     use std::f64::consts::PI;
 
     #[test]

@@ -5,7 +5,7 @@
 //! every direction at the cost of a table look-up, for pictures.
 //!
 //! ```
-//! use airlight::{axes, medium::reference, sky::{Sky, SkySettings, SunCoverage}, spectrum::WavelengthGrid};
+//! use airlight::{axes, atmosphere::reference, sky::{Sky, SkySettings, SunCoverage}, spectrum::WavelengthGrid};
 //!
 //! let settings = SkySettings { suns: SunCoverage::near(30.0, 0.0), ..Default::default() };
 //! let sky = Sky::prepare(&reference::earth_demo(), &WavelengthGrid::fast(), &settings)?;
@@ -16,30 +16,21 @@
 //! # Ok::<(), airlight::sky::SkyError>(())
 //! ```
 //!
-//! Inside, from the ground up: [`ray`] (lines, spheres, shadows), [`quadrature`], [`shell`] (the geometry of an
-//! atmosphere) with its [`columns`], [`march`] (walking along a ray), [`air`] (an atmosphere at N wavelengths),
-//! [`harmonics`] and [`field`] (the light inside the air), `fan` (rays that share their way), [`orders`] (solving for the
-//! light), [`trace`] (light along a line), `stops` (the same, kept on the way), `table` (all directions of a view).
+//! The geometry is that of [`crate::transfer`]; `field` and `harmonics` hold the light inside the air, `ray_bundle` rays
+//! that share their path, `orders` the solver, `trace` the light along a ray, `samples_along_ray` the same at distances on
+//! the way, `table` all directions of a view.
 
-pub mod air;
 mod block;
-pub mod columns;
 mod coverage;
-pub(crate) mod cubic;
-mod fan;
-pub mod field;
-pub mod harmonics;
-pub mod march;
-pub mod monte_carlo;
-pub mod orders;
-pub mod quadrature;
-pub mod ray;
-pub mod shell;
+mod field;
+mod harmonics;
+mod orders;
+mod ray_bundle;
+mod samples_along_ray;
 mod solver;
-mod stops;
 mod table;
 mod tabulate;
-pub mod trace;
+mod trace;
 mod view;
 
 pub use coverage::SunCoverage;

@@ -6,15 +6,15 @@
 //! constituent's own phase function. Rays, transmittances and quadrature nodes depend only on the height of the start
 //! and its zenith angle: they are worked out once and serve every sun angle, azimuth and order.
 
-use super::air::Air;
-use super::fan::{Fan, Path, Scratch};
 use super::field::{FieldGrid, RadianceField};
 use super::harmonics::{Harmonics, legendre};
-use super::march::Marcher;
-use super::quadrature::GaussRule;
+use super::ray_bundle::{Path, RayBundle, Scratch};
 use super::trace::sun_on_ground;
+use crate::math::gauss_rule::GaussRule;
+use crate::math::simd::vectorized;
 use crate::spectrum::Spectrum;
-use crate::vector::vectorized;
+use crate::transfer::air::Air;
+use crate::transfer::march::Marcher;
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
@@ -229,22 +229,22 @@ impl<'a, const N: usize> Transport<'a, N> {
         let air = self.air;
         self.gather(
             #[inline(always)]
-            |path, fan, work| {
-                path.carry_sunlight(air, fan, &mut work.unphased);
+            |path, bundle, work| {
+                path.accumulate_sunlight(air, bundle, &mut work.single_scatter_without_phase);
                 let mut p = [0.0; Harmonics::MAX_DEGREE + 1];
                 let p = &mut p[..=self.basis.degree()];
                 for (slot, light) in work.light.iter_mut().enumerate() {
-                    legendre(fan.nu[slot], p);
+                    legendre(bundle.nu[slot], p);
                     for (place, s) in air.scatterers.iter().enumerate() {
                         *light = light.mul_acc(
-                            work.unphased[place * fan.len() + slot],
+                            work.single_scatter_without_phase[place * bundle.len() + slot],
                             s.scattering * s.truncated_phase(p),
                         );
                     }
                 }
-                path.carry_ground(
+                path.accumulate_ground(
                     air,
-                    fan,
+                    bundle,
                     |mu_sun| sun_on_ground(air, mu_sun),
                     &mut work.light,
                 );
@@ -256,17 +256,17 @@ impl<'a, const N: usize> Transport<'a, N> {
     fn next_order(&self, field: &RadianceField<N>) -> Order<N> {
         self.gather(
             #[inline(always)]
-            |path, fan, work| {
-                path.carry_scattered(
+            |path, bundle, work| {
+                path.accumulate_scattered(
                     field,
                     &self.rescattered,
-                    fan,
+                    bundle,
                     &mut work.scratch,
                     &mut work.light,
                 );
-                path.carry_ground(
+                path.accumulate_ground(
                     self.air,
-                    fan,
+                    bundle,
                     |mu_sun| field.ground_irradiance(mu_sun),
                     &mut work.light,
                 );
@@ -276,28 +276,28 @@ impl<'a, const N: usize> Transport<'a, N> {
 
     /// The rays that leave a height under a zenith angle: every azimuth for every sun cosine.
     #[inline(always)]
-    fn fan(&self, mu: f64) -> Fan {
+    fn bundle(&self, mu: f64) -> RayBundle {
         let sin = ((1.0 - mu) * (1.0 + mu)).max(0.0).sqrt();
-        let mut fan = Fan::default();
+        let mut bundle = RayBundle::default();
         for &mu_sun in &self.grid.sun_cosines {
             let sin_sun = ((1.0 - mu_sun) * (1.0 + mu_sun)).max(0.0).sqrt();
             for &cos_azimuth in &self.azimuth_cosines {
-                fan.push(mu_sun, mu * mu_sun + sin * sin_sun * cos_azimuth);
+                bundle.push(mu_sun, mu * mu_sun + sin * sin_sun * cos_azimuth);
             }
         }
-        fan
+        bundle
     }
 
-    /// Lets `carry` find the light that arrives along the rays of each path, and gathers it into moments and ground
+    /// Lets `accumulate` find the light that arrives along the rays of each path, and gathers it into moments and ground
     /// irradiances.
-    fn gather(&self, carry: impl Fn(&Path<N>, &Fan, &mut Work<N>) + Sync) -> Order<N> {
+    fn gather(&self, accumulate: impl Fn(&Path<N>, &RayBundle, &mut Work<N>) + Sync) -> Order<N> {
         let rows: Vec<(Vec<Spectrum<N>>, Vec<Spectrum<N>>)> = self
             .paths
             .par_iter()
             .map(|paths| {
                 vectorized(
                     #[inline(always)]
-                    || self.gather_row(paths, &carry),
+                    || self.gather_row(paths, &accumulate),
                 )
             })
             .collect();
@@ -314,7 +314,7 @@ impl<'a, const N: usize> Transport<'a, N> {
     fn gather_row(
         &self,
         paths: &[(Path<N>, f64)],
-        carry: &impl Fn(&Path<N>, &Fan, &mut Work<N>),
+        accumulate: &impl Fn(&Path<N>, &RayBundle, &mut Work<N>),
     ) -> (Vec<Spectrum<N>>, Vec<Spectrum<N>>) {
         let (suns, azimuths, count) = (
             self.grid.sun_cosines.len(),
@@ -329,10 +329,10 @@ impl<'a, const N: usize> Transport<'a, N> {
         };
         let mut y = [0.0f32; Harmonics::MAX_COUNT];
         for (path, solid_weight) in paths {
-            let fan = self.fan(path.mu);
+            let bundle = self.bundle(path.mu);
             work.light.fill(Spectrum::ZERO);
-            // Not `carry(..)`: a call through the reference would not be inlined into the vector code.
-            (*carry)(path, &fan, &mut work);
+            // Not `accumulate(..)`: a call through the reference would not be inlined into the vector code.
+            (*accumulate)(path, &bundle, &mut work);
             let w = solid_weight * 2.0 * PI / azimuths as f64;
             let sin = ((1.0 - path.mu) * (1.0 + path.mu)).max(0.0).sqrt();
             for (slot, light) in work.light.iter().enumerate() {
@@ -358,7 +358,7 @@ impl<'a, const N: usize> Transport<'a, N> {
 struct Work<const N: usize> {
     /// Light arriving along each ray.
     light: Vec<Spectrum<N>>,
-    unphased: Vec<Spectrum<N>>,
+    single_scatter_without_phase: Vec<Spectrum<N>>,
     scratch: Scratch<N>,
 }
 

@@ -4,10 +4,10 @@ use super::block::{self, Block};
 use super::coverage::SunCoverage;
 use super::harmonics::Harmonics;
 use super::orders::{Directions, OrderSettings};
-use super::shell::{MAX_CONSTITUENTS, Shell};
 use super::view::View;
-use crate::medium::{Atmosphere, AtmosphereError};
+use crate::atmosphere::{Atmosphere, AtmosphereError};
 use crate::spectrum::WavelengthGrid;
+use crate::transfer::shell::{MAX_CONSTITUENTS, Shell};
 use glam::DVec3;
 use std::sync::Arc;
 

@@ -5,11 +5,11 @@
 //! light scattered once by a constituent with a peaked phase function is stored without it, and the phase function is
 //! applied for each pixel.
 
-use super::cubic;
-use super::quadrature::GaussRule;
 use super::tabulate::Peaked;
+use crate::math::cubic;
+use crate::math::gauss_rule::GaussRule;
+use crate::math::simd::vectorized;
 use crate::spectrum::RgbSpace;
-use crate::vector::vectorized;
 use glam::DVec3;
 use std::f64::consts::PI;
 

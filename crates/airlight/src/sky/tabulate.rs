@@ -1,12 +1,12 @@
 //! Filling the table of a view.
 
 use super::block::{ChannelMatrix, TableRow};
-use super::fan::Fan;
+use super::ray_bundle::RayBundle;
 use super::table::{
     AZIMUTHS, Half, PHASE_SAMPLES, ROWS_ABOVE, ROWS_BELOW, SkyTable, TableChannels,
 };
 use super::view::View;
-use crate::medium::Constituent;
+use crate::atmosphere::Constituent;
 use crate::spectrum::{WavelengthGrid, rgb};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -131,16 +131,17 @@ fn half_rows(
             let x = row as f64 / (rows - 1) as f64;
             // The horizon itself is a jump: start a hair's breadth from it.
             let (mu, cos_elevation) = (horizon + span * (x * x).max(1e-9)).sin_cos();
-            let mut fan = Fan::default();
+            let mut bundle = RayBundle::default();
             for azimuth in 0..=AZIMUTHS {
                 let cos_azimuth = (PI * azimuth as f64 / AZIMUTHS as f64).cos();
-                fan.push(
+                bundle.push(
                     mu_sun,
                     (mu * mu_sun + cos_elevation * sin_sun * cos_azimuth).clamp(-1.0, 1.0),
                 );
             }
             let phase_of = |&c: &usize| {
-                fan.nu
+                bundle
+                    .nu
                     .iter()
                     .map(|&nu| first_block.peaked_phase(c, nu) as f32)
                     .collect()
@@ -148,7 +149,7 @@ fn half_rows(
             let phases = peaked.iter().map(phase_of).collect();
             TableRow {
                 start: (view.radius_m(), mu),
-                fan,
+                bundle,
                 phases,
             }
         })

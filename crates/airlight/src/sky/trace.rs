@@ -13,13 +13,13 @@
 //!
 //! which composes exactly: splitting the stretch does not change it.
 
-use super::air::Air;
 use super::harmonics::Harmonics;
-use super::march::{Marcher, Node};
 use super::orders::Diffuse;
-use super::ray::Ray;
-use super::shell::MAX_CONSTITUENTS;
 use crate::spectrum::Spectrum;
+use crate::transfer::air::Air;
+use crate::transfer::march::{Marcher, Node};
+use crate::transfer::ray::Ray;
+use crate::transfer::shell::MAX_CONSTITUENTS;
 use std::ops::ControlFlow;
 
 /// What a line of sight brings, per unit solar irradiance (1/sr).
@@ -41,9 +41,9 @@ pub struct Light<const N: usize> {
 #[derive(Clone, Copy, Debug)]
 pub struct Arriving<const N: usize> {
     /// Sunlight, by the scatterer that sent it here, before its phase function is applied (no unit).
-    pub unphased: [Spectrum<N>; MAX_CONSTITUENTS],
+    pub single_scatter_without_phase: [Spectrum<N>; MAX_CONSTITUENTS],
     /// Light scattered or reflected before, and that of the ground.
-    pub rest: Spectrum<N>,
+    pub multiple_scatter: Spectrum<N>,
 }
 
 /// Follows lines of sight through air lit by the sun and by a solved field.
@@ -159,9 +159,14 @@ impl<'a, const N: usize> Tracer<'a, N> {
     /// All light along `ray` to its very end, summed.
     fn radiance(&mut self, ray: &Ray) -> Spectrum<N> {
         let arriving = self.arriving(ray);
-        let mut sum = arriving.rest;
-        for (s, unphased) in self.air.scatterers.iter().zip(&arriving.unphased) {
-            sum = sum.mul_acc(*unphased, s.phase(self.air, ray.nu));
+        let mut sum = arriving.multiple_scatter;
+        for (s, single_scatter_without_phase) in self
+            .air
+            .scatterers
+            .iter()
+            .zip(&arriving.single_scatter_without_phase)
+        {
+            sum = sum.mul_acc(*single_scatter_without_phase, s.phase(self.air, ray.nu));
         }
         sum
     }
@@ -171,8 +176,8 @@ impl<'a, const N: usize> Tracer<'a, N> {
     pub fn arriving(&mut self, ray: &Ray) -> Arriving<N> {
         let (air, dimming) = (self.air, self.dimming);
         let mut light = Arriving {
-            unphased: [Spectrum::ZERO; MAX_CONSTITUENTS],
-            rest: Spectrum::ZERO,
+            single_scatter_without_phase: [Spectrum::ZERO; MAX_CONSTITUENTS],
+            multiple_scatter: Spectrum::ZERO,
         };
         let Some(stretch) = air.shell.stretch(ray, f64::INFINITY) else {
             return light;
@@ -202,14 +207,18 @@ impl<'a, const N: usize> Tracer<'a, N> {
             },
         );
         self.edges = edges;
-        for (s, sum) in air.scatterers.iter().zip(&mut light.unphased) {
+        for (s, sum) in air
+            .scatterers
+            .iter()
+            .zip(&mut light.single_scatter_without_phase)
+        {
             *sum *= s.whole_scattering;
         }
         if stretch.meets_ground {
             let irradiance =
                 ground_irradiance(air, self.diffuse, ray.advanced(stretch.end_m).mu_sun);
-            light.rest = light
-                .rest
+            light.multiple_scatter = light
+                .multiple_scatter
                 .mul_acc(dimming.transmittance(&columns), air.reflected(irradiance));
         }
         light
@@ -225,14 +234,19 @@ impl<'a, const N: usize> Tracer<'a, N> {
         y: &mut [f32],
         light: &mut Arriving<N>,
     ) {
-        light.rest = light.rest.mul_acc(weight, self.source(node, y));
+        light.multiple_scatter = light.multiple_scatter.mul_acc(weight, self.source(node, y));
         if node.lit {
             let to_sun = self
                 .air
                 .shell
                 .columns_to_space_m(node.here.radius_m, node.here.mu_sun);
             let sunlight = weight * self.dimming.transmittance(&to_sun);
-            for (s, sum) in self.air.scatterers.iter().zip(&mut light.unphased) {
+            for (s, sum) in self
+                .air
+                .scatterers
+                .iter()
+                .zip(&mut light.single_scatter_without_phase)
+            {
                 *sum = sum.scale_acc(sunlight, node.densities[s.constituent] as f32);
             }
         }

@@ -1,13 +1,13 @@
 //! Looking out from one place under one sun.
 
 use super::block::{BlockLight, StopLight};
-use super::ray::Ray;
 use super::solver::Sky;
 use super::table::{SkyTable, TableChannels};
 use super::tabulate::Peaked;
-use crate::light::SunDisc;
-use crate::path::PathOptics;
 use crate::spectrum::Spectrum;
+use crate::sun::SunDisc;
+use crate::transfer::PathOptics;
+use crate::transfer::ray::Ray;
 use glam::DVec3;
 use std::ops::Range;
 

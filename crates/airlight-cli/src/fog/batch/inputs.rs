@@ -4,7 +4,7 @@ use super::pattern::{Match, Pattern};
 use crate::args::OverlayArgs;
 use crate::error::CliError;
 use crate::report;
-use airlight_render::output::PictureFormat;
+use airlight_image::output::PictureFormat;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 

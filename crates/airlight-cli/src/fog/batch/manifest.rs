@@ -4,7 +4,7 @@
 //! off is dropped. At the end of a run the lines are sorted, and those whose picture is not there are left out.
 
 use crate::error::CliError;
-use airlight_render::output::AtomicFile;
+use airlight_image::output::AtomicFile;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
@@ -25,11 +25,11 @@ pub struct Manifest {
 struct Lines {
     file: File,
     end: u64,
-    of_output: BTreeMap<String, Line>,
+    of_output: BTreeMap<String, RaySegment>,
 }
 
 #[derive(Clone, Copy)]
-struct Line {
+struct RaySegment {
     start: u64,
     length: u64,
     /// Its picture could not be made.
@@ -119,7 +119,7 @@ impl Manifest {
         let mut text = serde_json::to_vec(record).map_err(|error| failed(error.into()))?;
         text.push(b'\n');
         let mut lines = self.lines.lock().unwrap_or_else(PoisonError::into_inner);
-        let line = Line {
+        let line = RaySegment {
             start: lines.end,
             length: text.len() as u64,
             is_failure,
@@ -193,7 +193,7 @@ impl Lines {
                         path.display()
                     ))
                 })?;
-                let line = Line {
+                let line = RaySegment {
                     start: self.end,
                     length,
                     is_failure: key.error.is_some(),
@@ -216,7 +216,7 @@ impl Lines {
         self.file.set_len(self.end).map_err(failed)
     }
 
-    fn bytes(&mut self, line: Line) -> io::Result<Vec<u8>> {
+    fn bytes(&mut self, line: RaySegment) -> io::Result<Vec<u8>> {
         let mut bytes = vec![0; line.length as usize];
         self.file.seek(SeekFrom::Start(line.start))?;
         self.file.read_exact(&mut bytes)?;

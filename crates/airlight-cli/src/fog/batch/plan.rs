@@ -6,7 +6,7 @@ use super::pattern::Pattern;
 use crate::args::{ModelArg, OverlayArgs, Variation};
 use crate::error::CliError;
 use crate::fog::{picture, written_over};
-use airlight_render::output::PictureFormat;
+use airlight_image::output::PictureFormat;
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 

@@ -1,7 +1,7 @@
 //! Things in the light of one solver.
 
-use airlight::classic::klassen1987::WAVELENGTHS;
-use airlight::outdoors::{Outdoors, Surroundings};
+use airlight::models::klassen1987::WAVELENGTHS;
+use airlight::scene::{IrradianceMap, SceneLighting};
 use airlight::spectrum::{RgbSpace, SpectralCurve, Spectrum, WavelengthGrid};
 use airlight_render::objects::surface::Arriving;
 use airlight_render::objects::{Hit, Objects};
@@ -9,7 +9,7 @@ use glam::DVec3;
 use std::f32::consts::PI;
 
 /// What a line of sight meets.
-pub struct Sight<'a> {
+pub struct ViewRay<'a> {
     /// Which thing, and where.
     pub hit: Hit<'a>,
     /// Unit vector away from the eye.
@@ -21,7 +21,7 @@ pub struct Sight<'a> {
 /// Lines of sight end side by side where their lengths differ by less than this part.
 const BESIDE: f64 = 0.05;
 
-impl Sight<'_> {
+impl ViewRay<'_> {
     /// Whether both end on the same thing, about equally far away.
     fn ends_beside(&self, other: &Self) -> bool {
         let (a, b) = (self.hit.distance_m, other.hit.distance_m);
@@ -30,17 +30,17 @@ impl Sight<'_> {
 }
 
 /// Light of things in the channels of a picture.
-pub trait Paint: Sync {
+pub trait Shader: Sync {
     /// The sum of the light along the lines of sight of a pixel, which all meet things, with what the air before them does.
-    fn paint(&self, objects: &Objects, sights: &[Sight<'_>], values: &mut [f32]);
+    fn paint(&self, objects: &Objects, sights: &[ViewRay<'_>], values: &mut [f32]);
 }
 
 /// Things in the light of one solver, in N lanes.
 pub struct LitThings<'a, const N: usize> {
     /// Sun, and what lies between eye and things.
-    pub air: Box<dyn Outdoors<N> + 'a>,
+    pub air: Box<dyn SceneLighting<N> + 'a>,
     /// Light from around at heights (m), rising: one or more.
-    pub around: Vec<(f64, Surroundings<N>)>,
+    pub around: Vec<(f64, IrradianceMap<N>)>,
     /// Reflectance of each thing, and of its checker.
     pub reflectances: Vec<[Spectrum<N>; 2]>,
     /// Whether things shade each other.
@@ -49,7 +49,7 @@ pub struct LitThings<'a, const N: usize> {
 
 impl<const N: usize> LitThings<'_, N> {
     /// The sum of radiances along lines of sight that meet things. The air is reckoned once for those that end side by side.
-    fn radiance(&self, objects: &Objects, sights: &[Sight<'_>]) -> Spectrum<N> {
+    fn radiance(&self, objects: &Objects, sights: &[ViewRay<'_>]) -> Spectrum<N> {
         sights
             .chunk_by(|a, b| a.ends_beside(b))
             .fold(Spectrum::ZERO, |sum, beside| {
@@ -71,10 +71,10 @@ impl<const N: usize> LitThings<'_, N> {
     fn reflected(
         &self,
         objects: &Objects,
-        sight: &Sight<'_>,
+        sight: &ViewRay<'_>,
         sunlight: Spectrum<N>,
     ) -> Spectrum<N> {
-        let Sight { hit, direction, .. } = sight;
+        let ViewRay { hit, direction, .. } = sight;
         let sun = self.air.sun();
         let dark = hit.normal.dot(sun) <= 0.0 || self.shadows && objects.shadowed(hit, sun);
         let height_m = hit.point.y;
@@ -95,8 +95,8 @@ impl<const N: usize> LitThings<'_, N> {
             .radiance(self.reflectance(sight), &arriving, faces)
     }
 
-    fn reflectance(&self, sight: &Sight<'_>) -> Spectrum<N> {
-        let Sight { hit, direction, .. } = sight;
+    fn reflectance(&self, sight: &ViewRay<'_>) -> Spectrum<N> {
+        let ViewRay { hit, direction, .. } = sight;
         let [own, other] = self.reflectances[hit.index];
         let Some(checker) = &hit.surface.checker else {
             return own;
@@ -131,8 +131,8 @@ impl<const N: usize> LitThings<'_, N> {
     }
 }
 
-impl Paint for LitThings<'_, 3> {
-    fn paint(&self, objects: &Objects, sights: &[Sight<'_>], values: &mut [f32]) {
+impl Shader for LitThings<'_, 3> {
+    fn paint(&self, objects: &Objects, sights: &[ViewRay<'_>], values: &mut [f32]) {
         values.copy_from_slice(&self.radiance(objects, sights).0);
     }
 }
@@ -140,8 +140,8 @@ impl Paint for LitThings<'_, 3> {
 /// Wavelength after wavelength, so many in a piece; lanes beyond the last repeat it.
 pub struct Pieces<'a, const N: usize>(pub Vec<LitThings<'a, N>>);
 
-impl<const N: usize> Paint for Pieces<'_, N> {
-    fn paint(&self, objects: &Objects, sights: &[Sight<'_>], values: &mut [f32]) {
+impl<const N: usize> Shader for Pieces<'_, N> {
+    fn paint(&self, objects: &Objects, sights: &[ViewRay<'_>], values: &mut [f32]) {
         for (lit, values) in self.0.iter().zip(values.chunks_mut(N)) {
             let light = lit.radiance(objects, sights);
             values.copy_from_slice(&light.0[..values.len()]);
@@ -157,8 +157,8 @@ pub struct Summed<'a> {
     pub weights: Vec<[f32; 3]>,
 }
 
-impl Paint for Summed<'_> {
-    fn paint(&self, objects: &Objects, sights: &[Sight<'_>], values: &mut [f32]) {
+impl Shader for Summed<'_> {
+    fn paint(&self, objects: &Objects, sights: &[ViewRay<'_>], values: &mut [f32]) {
         let light = self.lit.radiance(objects, sights);
         values.fill(0.0);
         for (radiance, weights) in light.0.iter().zip(&self.weights) {

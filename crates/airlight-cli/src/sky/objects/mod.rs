@@ -1,7 +1,7 @@
 //! Things before the sky, in the light of whatever solver draws it.
 //!
 //! - [`lit`]: their light, and what the air before them does; [`rows`]: sky and things, row by row, and their depth.
-//! - [`Things`]: both made ready from the options.
+//! - [`LitScene`]: both made ready from the options.
 
 mod lit;
 mod rows;
@@ -11,24 +11,24 @@ pub use rows::{ObjectRows, write_depth};
 use super::channels::{Channels, RgbWeights};
 use super::fog::{Fog, PIECE};
 use crate::args::{SkyArgs, SolverArg};
-use crate::classic;
 use crate::error::CliError;
+use crate::models;
 use crate::scene::Scene;
-use airlight::classic::klassen1987::{Klassen1987, Klassen1987Scene};
-use airlight::outdoors::{FoggySky, Outdoors, Surroundings};
-use airlight::path::PathOptics;
+use airlight::models::klassen1987::{Klassen1987, Klassen1987Scene};
+use airlight::scene::{FoggySky, IrradianceMap, SceneLighting};
 use airlight::sky::{SkyTable, View};
 use airlight::spectrum::Spectrum;
+use airlight::transfer::PathOptics;
 use airlight_render::objects::Objects;
 use glam::DVec3;
-use lit::{LitThings, Paint, Pieces, Summed, at_wavelengths, in_rgb, place, reflectances};
+use lit::{LitThings, Pieces, Shader, Summed, at_wavelengths, in_rgb, place, reflectances};
 use std::path::Path;
 use std::sync::Arc;
 
 /// Things with the light on them.
-pub struct Things<'a> {
+pub struct LitScene<'a> {
     objects: Arc<Objects>,
-    paint: Box<dyn Paint + 'a>,
+    paint: Box<dyn Shader + 'a>,
     eye: DVec3,
 }
 
@@ -37,7 +37,7 @@ pub struct Things<'a> {
 /// # Errors
 /// [`CliError`] for a file that cannot be read or describes none, and for a solver that knows none.
 pub fn read(args: &SkyArgs) -> Result<Option<Arc<Objects>>, CliError> {
-    let Some(path) = &args.things.objects else {
+    let Some(path) = &args.objects.objects else {
         return Ok(None);
     };
     if args.air.solver == SolverArg::MonteCarlo {
@@ -58,10 +58,10 @@ fn load(path: &Path) -> Result<Objects, CliError> {
 
 /// Whether things shade each other.
 fn shadows(args: &SkyArgs) -> bool {
-    !args.things.no_shadows
+    !args.objects.no_shadows
 }
 
-impl<'a> Things<'a> {
+impl<'a> LitScene<'a> {
     /// In the light of the solver's sky, and of the fog in it.
     ///
     /// # Errors
@@ -82,7 +82,7 @@ impl<'a> Things<'a> {
             })
             .collect::<Result<Vec<_>, CliError>>()?;
         let shadows = shadows(args);
-        let paint: Box<dyn Paint + 'a> = match air {
+        let paint: Box<dyn Shader + 'a> = match air {
             Fog::Rgb(air) => Box::new(LitThings {
                 air,
                 around: around(&near, view.sun(), 0),
@@ -112,13 +112,13 @@ impl<'a> Things<'a> {
         objects: &Arc<Objects>,
         (args, channels): (&SkyArgs, &Channels),
         scene: &Scene,
-        model: &Arc<classic::Lit>,
+        model: &Arc<models::Lit>,
     ) -> Self {
         let shadows = shadows(args);
-        let paint: Box<dyn Paint + 'a> = match channels.spectral {
+        let paint: Box<dyn Shader + 'a> = match channels.spectral {
             None => {
                 let space = channels.space;
-                let lanes = move |light: &classic::Light| {
+                let lanes = move |light: &models::Light| {
                     Spectrum(space.from_xyz(light.xyz).map(|v| v.max(0.0) as f32))
                 };
                 let reflectances = reflectances(objects, in_rgb(space));
@@ -128,7 +128,7 @@ impl<'a> Things<'a> {
                 let nm = model.model.wavelengths_nm();
                 let piece = |number: usize| {
                     let first = number * PIECE;
-                    let lanes = move |light: &classic::Light| -> Spectrum<PIECE> {
+                    let lanes = move |light: &models::Light| -> Spectrum<PIECE> {
                         let values = &light.spectrum;
                         Spectrum::from_fn(|lane| values[place(first + lane, values.len())] as f32)
                     };
@@ -157,8 +157,8 @@ impl<'a> Things<'a> {
             .into_iter()
             .map(|height_m| {
                 let there = scene.at_height_m(height_m);
-                let sun = Outdoors::sun(&there);
-                (height_m, Surroundings::of(sun, |d| there.around(d)))
+                let sun = SceneLighting::sun(&there);
+                (height_m, IrradianceMap::of(sun, |d| there.around(d)))
             })
             .collect();
         let nm = Klassen1987::wavelengths();
@@ -222,10 +222,10 @@ fn around<const N: usize>(
     near: &[(f64, Seen<'_>)],
     sun: DVec3,
     first: usize,
-) -> Vec<(f64, Surroundings<N>)> {
+) -> Vec<(f64, IrradianceMap<N>)> {
     let at = |(height_m, seen): &(f64, Seen<'_>)| {
         let channels = seen.clear.channels();
-        let surroundings = Surroundings::of(sun, |direction| {
+        let surroundings = IrradianceMap::of(sun, |direction| {
             let mut values = vec![0.0; channels];
             seen.along(direction, &mut values);
             Spectrum::from_fn(|lane| values[place(first + lane, channels)])
@@ -237,8 +237,8 @@ fn around<const N: usize>(
 
 /// Things in the light of a model that says nothing of the air before them: none is drawn. `lanes` are those of its light.
 fn airless<'a, const N: usize>(
-    model: &Arc<classic::Lit>,
-    lanes: impl Fn(&classic::Light) -> Spectrum<N> + Sync + 'a,
+    model: &Arc<models::Lit>,
+    lanes: impl Fn(&models::Light) -> Spectrum<N> + Sync + 'a,
     reflectances: Vec<[Spectrum<N>; 2]>,
     shadows: bool,
 ) -> LitThings<'a, N> {
@@ -248,7 +248,7 @@ fn airless<'a, const N: usize>(
         lanes,
     };
     LitThings {
-        around: vec![(0.0, Surroundings::of(air.sun(), |d| air.around(d)))],
+        around: vec![(0.0, IrradianceMap::of(air.sun(), |d| air.around(d)))],
         air: Box::new(air),
         reflectances,
         shadows,
@@ -257,12 +257,14 @@ fn airless<'a, const N: usize>(
 
 /// A published model without air before things.
 struct Airless<const N: usize, F> {
-    model: Arc<classic::Lit>,
+    model: Arc<models::Lit>,
     sunlight: Spectrum<N>,
     lanes: F,
 }
 
-impl<const N: usize, F: Fn(&classic::Light) -> Spectrum<N> + Sync> Outdoors<N> for Airless<N, F> {
+impl<const N: usize, F: Fn(&models::Light) -> Spectrum<N> + Sync> SceneLighting<N>
+    for Airless<N, F>
+{
     fn sun(&self) -> DVec3 {
         self.model.model.sun()
     }

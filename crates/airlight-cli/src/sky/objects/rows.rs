@@ -3,22 +3,22 @@
 use super::super::channels::RgbWeights;
 use super::super::layout::{PictureFile, tagged};
 use super::super::rows::{Layer, POINTS, directions_within, put};
-use super::Things;
-use super::lit::Sight;
+use super::LitScene;
+use super::lit::ViewRay;
 use crate::error::CliError;
 use crate::interrupt::STOP;
-use airlight_render::frame::FrameRows;
+use airlight_image::frame::FrameRows;
+use airlight_image::output::Metadata;
+use airlight_image::output::exr::{self, ExrOptions, ExrSample};
+use airlight_image::rows::RowFn;
+use airlight_image::{Control, Frame, Projection, RowSource};
 use airlight_render::objects::Ray;
-use airlight_render::output::Metadata;
-use airlight_render::output::exr::{self, ExrOptions, ExrSample};
-use airlight_render::rows::RowFn;
-use airlight_render::{Control, Frame, Projection, RowSource};
 use glam::DVec3;
 
 /// A picture of things before the picture of a sky.
 pub struct ObjectRows<'a> {
     sky: Box<dyn RowSource + 'a>,
-    things: &'a Things<'a>,
+    objects: &'a LitScene<'a>,
     draws_things: bool,
     frame: Frame,
     /// Weights of wavelengths in RGB, for pictures with a channel a wavelength.
@@ -30,14 +30,14 @@ impl<'a> ObjectRows<'a> {
     /// Things before `sky`; values are `scale` times those of radiance or luminance.
     pub fn new(
         sky: Box<dyn RowSource + 'a>,
-        things: &'a Things<'a>,
+        objects: &'a LitScene<'a>,
         (frame, layer): (&Frame, Layer),
         spectral: Option<&'a RgbWeights>,
         scale: f32,
     ) -> Self {
         Self {
             sky,
-            things,
+            objects,
             draws_things: layer != Layer::Disc,
             frame: *frame,
             spectral,
@@ -49,8 +49,8 @@ impl<'a> ObjectRows<'a> {
     fn cover(&self, (i, j): (u32, u32), pixel: &mut [f32], scratch: &mut Scratch) {
         let across = self.frame.pixel_solid_angle(i, j).sqrt();
         let width = across / f64::from(POINTS).sqrt();
-        let sights: Vec<Sight<'_>> = directions_within(&self.frame, (i, j))
-            .filter_map(|direction| self.things.look(direction, width))
+        let sights: Vec<ViewRay<'_>> = directions_within(&self.frame, (i, j))
+            .filter_map(|direction| self.objects.look(direction, width))
             .collect();
         if sights.is_empty() {
             return;
@@ -58,9 +58,9 @@ impl<'a> ObjectRows<'a> {
         let all = POINTS as f32;
         let open = 1.0 - sights.len() as f32 / all;
         if self.draws_things {
-            let things = self.things;
+            let objects = self.objects;
             let sum = &mut scratch.sum;
-            things.paint.paint(&things.objects, &sights, sum);
+            objects.paint.paint(&objects.objects, &sights, sum);
             put(sum, self.spectral, self.scale / all, &mut scratch.pixel);
         }
         for (value, covered) in pixel.iter_mut().zip(&scratch.pixel) {
@@ -95,14 +95,14 @@ impl RowSource for ObjectRows<'_> {
     }
 }
 
-impl Things<'_> {
+impl LitScene<'_> {
     /// What a line of sight meets.
-    fn look(&self, direction: DVec3, width: f64) -> Option<Sight<'_>> {
+    fn look(&self, direction: DVec3, width: f64) -> Option<ViewRay<'_>> {
         let ray = Ray {
             origin: self.eye,
             direction,
         };
-        self.objects.hit(&ray).map(|hit| Sight {
+        self.objects.hit(&ray).map(|hit| ViewRay {
             hit,
             direction,
             width,
@@ -115,7 +115,7 @@ impl Things<'_> {
 ///
 /// # Errors
 /// [`CliError`] where it cannot be written.
-pub fn write_depth(things: &Things<'_>, file: &PictureFile) -> Result<(), CliError> {
+pub fn write_depth(objects: &LitScene<'_>, file: &PictureFile) -> Result<(), CliError> {
     let rows: FrameRows = file.frame.rows();
     let size = file.frame.size();
     let centre = file.frame.direction(
@@ -132,7 +132,7 @@ pub fn write_depth(things: &Things<'_>, file: &PictureFile) -> Result<(), CliErr
         for (depth, direction) in out.iter_mut().zip(directions) {
             let met = match direction == DVec3::ZERO {
                 true => None,
-                false => things.look(direction, 0.0),
+                false => objects.look(direction, 0.0),
             };
             *depth = met.map_or(f32::INFINITY, |sight| {
                 let along = axis.map_or(1.0, |axis| direction.dot(axis));

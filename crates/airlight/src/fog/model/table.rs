@@ -7,11 +7,11 @@ use self::place::{NEAREST, NODES, Place, Row, SHARES, Side, mean, opacity, third
 use self::rays::{Rays, distance_of};
 use super::{Fog, OPAQUE};
 use crate::fog::lanes::Lanes;
-use crate::fog::line::Line;
+use crate::fog::merged_layers::MergedLayer;
 use crate::fog::multiple::{Field, STREAMS};
-use crate::fog::strata::Stratum;
-use crate::path::PathOptics;
+use crate::fog::ray_segment::RaySegment;
 use crate::spectrum::Spectrum;
+use crate::transfer::PathOptics;
 use glam::DVec3;
 
 /// The logarithm of what counts as dark.
@@ -37,7 +37,7 @@ pub struct FogTable<'a, const N: usize> {
 
 #[derive(Debug)]
 struct Table<'a, const N: usize> {
-    stratum: &'a Stratum<N>,
+    layer: &'a MergedLayer<N>,
     field: &'a Field<N>,
     /// Downwards and upwards.
     sides: [Side<N>; 2],
@@ -61,7 +61,7 @@ impl<'a, const N: usize> FogTable<'a, N> {
     /// The fog as seen from a height (m).
     pub fn new(fog: &'a Fog<N>, eye_height_m: f64) -> Self {
         let table = match &fog.field {
-            Some(field) if fog.ground.is_flat() && fog.strata.len() == 1 => {
+            Some(field) if fog.ground.is_flat() && fog.layers.len() == 1 => {
                 Some(Table::new(fog, field, eye_height_m))
             }
             _ => None,
@@ -82,7 +82,7 @@ impl<'a, const N: usize> FogTable<'a, N> {
         let fog = self.fog;
         let sun = table.sun.as_ref();
         let cos_sun = sun.map_or(0.0, |sun| direction.dot(sun.direction));
-        let line = Line::flat(self.eye_height_m, direction.y, length_m);
+        let line = RaySegment::flat(self.eye_height_m, direction.y, length_m);
         let depth = fog.optical_depth(&line);
         let opacity = opacity(depth, table.is_grey);
         let mut path_radiance = Spectrum::ZERO;
@@ -112,8 +112,8 @@ impl<'a, const N: usize> FogTable<'a, N> {
 
     /// One elevation at all distances.
     fn row(&self, table: &Table<'_, N>, side: &Side<N>, row: usize) -> Row<N> {
-        let climb = side.sign * side.climbs[row];
-        let line = Line::flat(self.eye_height_m, climb, f64::INFINITY);
+        let sin_elevation = side.sign * side.climbs[row];
+        let line = RaySegment::flat(self.eye_height_m, sin_elevation, f64::INFINITY);
         let lengths_m = self.lengths_m(side, &line);
         let ground = match side.sign < 0.0 {
             true => NODES - 1,
@@ -170,12 +170,12 @@ impl<'a, const N: usize> FogTable<'a, N> {
     }
 
     /// The distances of the nodes: by opacity.
-    fn lengths_m(&self, side: &Side<N>, line: &Line) -> Vec<f64> {
+    fn lengths_m(&self, side: &Side<N>, line: &RaySegment) -> Vec<f64> {
         let opacity = |length_m: f64| {
             let depth = self.fog.optical_depth(&line.part(0.0, length_m));
             mean(depth * depth.mean_transmittance())
         };
-        let end = side.end(line.climb.abs());
+        let end = side.end(line.sin_elevation.abs());
         let nearest = NEAREST * if end > 0.0 { end } else { 1.0 };
         let left = |node: usize| 1.0 - node as f32 / (NODES - 1) as f32;
         let mut lengths_m = vec![0.0];
@@ -184,7 +184,7 @@ impl<'a, const N: usize> FogTable<'a, N> {
             let from = lengths_m[lengths_m.len() - 1];
             let at = match (node == NODES - 1, side.sign > 0.0) {
                 (true, true) => f64::INFINITY,
-                (true, false) => (self.above_ground_m() / -line.climb).max(from),
+                (true, false) => (self.above_ground_m() / -line.sin_elevation).max(from),
                 _ => distance_of(&opacity, (end * fraction).max(nearest), from),
             };
             lengths_m.push(at);
@@ -209,25 +209,25 @@ impl<'a, const N: usize> FogTable<'a, N> {
 impl<'a, const N: usize> Table<'a, N> {
     fn new(fog: &'a Fog<N>, field: &'a Field<N>, eye_height_m: f64) -> Self {
         let sun = fog.light.sun.filter(|sun| sun.direction.y > 0.0);
-        let stratum = &fog.strata[0];
-        let column_m = stratum.profile.column_above(eye_height_m).min(OPAQUE);
-        let above = stratum.extinction_per_m * column_m as f32;
-        let under = Line::flat(
+        let layer = &fog.layers[0];
+        let column_m = layer.profile.column_above(eye_height_m).min(OPAQUE);
+        let above = layer.extinction_per_m * column_m as f32;
+        let under = RaySegment::flat(
             eye_height_m,
             -1.0,
             (eye_height_m - fog.ground.height_m).max(0.0),
         );
-        let extinction = stratum.extinction_per_m;
+        let extinction = layer.extinction_per_m;
         let is_grey = extinction.0.iter().all(|&lane| lane == extinction[0]);
         Self {
-            stratum,
+            layer,
             field,
             is_grey,
             sides: [
                 Side::new(-1.0, fog.optical_depth(&under), is_grey),
                 Side::new(1.0, above, is_grey),
             ],
-            most_of_peak: most_of_peak(stratum),
+            most_of_peak: most_of_peak(layer),
             sun: sun.map(|sun| SunSide {
                 irradiance: sun.irradiance,
                 direction: sun.direction,
@@ -253,32 +253,32 @@ impl<'a, const N: usize> Table<'a, N> {
     /// Sunlight scattered once, for a unit of irradiance and of opacity.
     #[inline]
     fn sunlit(&self, cos_sun: f64, place: &Place, rows: &[&Row<N>; 4]) -> Spectrum<N> {
-        let stratum = self.stratum;
+        let layer = self.layer;
         let beam = |k: usize| place.sum_of(rows, |row, node| row.sunlit[node][k]);
-        let (whole, once) = (stratum.towards_eye(cos_sun), beam(0).exp());
-        if !stratum.in_peak(cos_sun) {
+        let (whole, once) = (layer.towards_eye(cos_sun), beam(0).exp());
+        if !layer.in_peak(cos_sun) {
             return whole * once;
         }
         // All lanes take the same four of the nodes.
-        let at = part_of_peak(stratum, cos_sun).map(|share| self.place_of_share(share));
+        let at = part_of_peak(layer, cos_sun).map(|share| self.place_of_share(share));
         let first = (mean(at) as usize).clamp(1, SHARES - 3) - 1;
         let logarithms: [Spectrum<N>; 4] = std::array::from_fn(|k| beam(first + k));
         let logarithm = Spectrum::from_fn(|lane| {
             let weights = third_degree(at[lane] - first as f32);
             (0..4).map(|k| weights[k] * logarithms[k][lane]).sum()
         });
-        let beyond = whole - stratum.smooth_towards_eye(cos_sun);
+        let beyond = whole - layer.smooth_towards_eye(cos_sun);
         whole * once + beyond * (logarithm.exp() - once)
     }
 }
 
 /// What of the forward peak counts as scattered at an angle to the sun.
 #[inline]
-fn part_of_peak<const N: usize>(stratum: &Stratum<N>, cos_sun: f64) -> Spectrum<N> {
-    let reduced = stratum.reduced_extinction_per_m;
+fn part_of_peak<const N: usize>(layer: &MergedLayer<N>, cos_sun: f64) -> Spectrum<N> {
+    let reduced = layer.reduced_extinction_per_m;
     let (part, whole) = (
-        stratum.residual_extinction(cos_sun) - reduced,
-        stratum.extinction_per_m - reduced,
+        layer.residual_extinction(cos_sun) - reduced,
+        layer.extinction_per_m - reduced,
     );
     Spectrum::from_fn(|lane| match whole[lane] > 0.0 {
         true => part[lane] / whole[lane],
@@ -287,10 +287,10 @@ fn part_of_peak<const N: usize>(stratum: &Stratum<N>, cos_sun: f64) -> Spectrum<
 }
 
 /// The largest of it at any angle and in any lane.
-fn most_of_peak<const N: usize>(stratum: &Stratum<N>) -> f32 {
+fn most_of_peak<const N: usize>(layer: &MergedLayer<N>) -> f32 {
     let cosines = (0..=200).map(|k| 1.0 - 2.0 * (f64::from(k) / 200.0).powi(4));
     cosines
-        .map(|cosine| part_of_peak(stratum, cosine).max_element())
+        .map(|cosine| part_of_peak(layer, cosine).max_element())
         .fold(0.0, f32::max)
 }
 

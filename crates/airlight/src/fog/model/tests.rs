@@ -1,32 +1,32 @@
 use super::*;
 use crate::axes;
-use crate::fog::{Matter, Sun};
+use crate::fog::{DirectionalLight, Medium};
+use crate::math::quadrature::{gauss_legendre, integrate_by};
 use crate::optics::{Depolarization, PhaseFunction};
-use crate::quadrature::{gauss_legendre, integrate_by};
 
 const EARTH: Ground = Ground::EARTH;
 
-fn matter(extinction_per_m: [f32; 3], albedo: f32, phase: PhaseFunction) -> Matter<3> {
-    Matter {
+fn medium(extinction_per_m: [f32; 3], albedo: f32, phase: PhaseFunction) -> Medium<3> {
+    Medium {
         extinction_per_m: Spectrum(extinction_per_m),
         single_scattering_albedo: Spectrum::splat(albedo),
         phase,
     }
 }
 
-fn droplets(extinction: f32) -> Matter<3> {
+fn droplets(extinction: f32) -> Medium<3> {
     let e = [extinction, 1.1 * extinction, 1.2 * extinction];
-    matter(e, 0.95, PhaseFunction::HenyeyGreenstein { g: 0.8 })
+    medium(e, 0.95, PhaseFunction::HenyeyGreenstein { g: 0.8 })
 }
 
-fn molecules(extinction: f32) -> Matter<3> {
+fn molecules(extinction: f32) -> Medium<3> {
     let e = [0.2 * extinction, 0.5 * extinction, extinction];
-    matter(e, 1.0, PhaseFunction::Rayleigh(Depolarization::None))
+    medium(e, 1.0, PhaseFunction::Rayleigh(Depolarization::None))
 }
 
-fn light(sun_elevation_deg: f64) -> Light<3> {
-    Light {
-        sun: Some(Sun {
+fn light(sun_elevation_deg: f64) -> FogLighting<3> {
+    FogLighting {
+        sun: Some(DirectionalLight {
             direction: axes::direction(120.0, sun_elevation_deg),
             irradiance: Spectrum([1.5, 1.8, 1.9]),
         }),
@@ -39,15 +39,15 @@ fn light(sun_elevation_deg: f64) -> Light<3> {
 fn by_quadrature(
     layers: &[Layer<3>],
     ground: Ground,
-    light: &Light<3>,
-    scattering: Scattering,
-    line: &Line,
+    light: &FogLighting<3>,
+    scattering: FogScattering,
+    line: &RaySegment,
     cos_sun: f64,
     lane: usize,
 ) -> (f64, f64) {
     let sine = light.sun.unwrap().direction.y;
-    let depth = |line: &Line| -> f64 {
-        let of = |l: &Layer<3>| f64::from(l.matter.extinction_per_m[lane]) * l.profile.column(line);
+    let depth = |line: &RaySegment| -> f64 {
+        let of = |l: &Layer<3>| f64::from(l.medium.extinction_per_m[lane]) * l.profile.column(line);
         layers.iter().map(of).sum()
     };
     // Stop where nothing is left to see.
@@ -62,7 +62,7 @@ fn by_quadrature(
             [step, end - step]
         })
         .collect();
-    let lowest = -0.5 * line.climb / line.bend_per_m;
+    let lowest = -0.5 * line.sin_elevation / line.curvature_per_m;
     let mut kinks = vec![lowest];
     for layer in layers {
         let edge = match layer.profile {
@@ -83,37 +83,42 @@ fn by_quadrature(
     breaks.sort_by(f64::total_cmp);
     let path = integrate_by(&rule, 0.0, end, &breaks, |s| {
         let height = line.height_at(s);
-        let to_sun = Line::new(height, sine, f64::INFINITY, ground.radius_m);
-        let sunlit = if ground.blocks(&to_sun) && scattering != Scattering::Undimmed {
+        let to_sun = RaySegment::new(height, sine, f64::INFINITY, ground.radius_m);
+        let sunlit = if ground.blocks(&to_sun) && scattering != FogScattering::Undimmed {
             0.0
-        } else if scattering == Scattering::Undimmed {
+        } else if scattering == FogScattering::Undimmed {
             1.0
         } else {
             let solid = layers.iter().filter(|l| l.profile != Profile::Uniform);
             let of = |l: &Layer<3>| {
-                f64::from(l.matter.extinction_per_m[lane]) * l.profile.column(&to_sun)
+                f64::from(l.medium.extinction_per_m[lane]) * l.profile.column(&to_sun)
             };
             (-solid.map(of).sum::<f64>()).exp()
         };
         let mut source = 0.0;
         for layer in layers {
-            let scattered = f64::from(layer.matter.scattering_per_m()[lane]);
+            let scattered = f64::from(layer.medium.scattering_per_m()[lane]);
             source += scattered
                 * layer.profile.density(height)
                 * (f64::from(light.ambient[lane])
                     + f64::from(light.sun.unwrap().irradiance[lane])
                         * sunlit
-                        * layer.matter.phase.evaluate(cos_sun, 550.0));
+                        * layer.medium.phase.evaluate(cos_sun, 550.0));
         }
         source * (-depth(&line.part(0.0, s))).exp()
     });
     (depth(line), path)
 }
 
-fn worst_error(layers: &[Layer<3>], ground: Ground, lines: &[Line], elevations: &[f64]) -> f64 {
+fn worst_error(
+    layers: &[Layer<3>],
+    ground: Ground,
+    lines: &[RaySegment],
+    elevations: &[f64],
+) -> f64 {
     let mut worst = 0.0f64;
     for &elevation in elevations {
-        for scattering in [Scattering::Undimmed, Scattering::Single] {
+        for scattering in [FogScattering::Undimmed, FogScattering::Single] {
             let light = light(elevation);
             let fog = Fog::new(layers, ground, light, scattering).unwrap();
             for line in lines {
@@ -145,15 +150,15 @@ fn worst_error(layers: &[Layer<3>], ground: Ground, lines: &[Line], elevations: 
 }
 
 /// Lines that stay above `floor_m`.
-fn lines(ground: Ground, floor_m: f64, heights: &[f64], lengths: &[f64]) -> Vec<Line> {
+fn lines(ground: Ground, floor_m: f64, heights: &[f64], lengths: &[f64]) -> Vec<RaySegment> {
     let mut lines = Vec::new();
     for &height in heights {
-        for climb in [
+        for sin_elevation in [
             0.0, 1e-7, -1e-7, 1e-3, -1e-3, 0.05, -0.05, 0.5, -0.5, 1.0, -1.0,
         ] {
             for &length in lengths {
-                let line = Line::new(height, climb, length, ground.radius_m);
-                let lowest = (-0.5 * climb / line.bend_per_m).clamp(0.0, length);
+                let line = RaySegment::new(height, sin_elevation, length, ground.radius_m);
+                let lowest = (-0.5 * sin_elevation / line.curvature_per_m).clamp(0.0, length);
                 let lowest = if lowest.is_nan() { 0.0 } else { lowest };
                 if line.end_height_m().min(line.height_at(lowest)) >= floor_m {
                     lines.push(line);
@@ -185,11 +190,11 @@ fn one_profile_over_flat_ground_is_exact() {
                 let layers = [
                     Layer {
                         profile,
-                        matter: droplets(extinction),
+                        medium: droplets(extinction),
                     },
                     Layer {
                         profile,
-                        matter: molecules(0.3 * extinction),
+                        medium: molecules(0.3 * extinction),
                     },
                 ];
                 // A fog so deep that the sun cannot be seen at all leaves f32's range.
@@ -223,40 +228,40 @@ fn several_profiles_and_round_ground_err_as_stated() {
     let fogs: [Vec<Layer<3>>; 4] = [
         vec![Layer {
             profile: exponential(1200.0),
-            matter: droplets(1e-4),
+            medium: droplets(1e-4),
         }],
         vec![
             Layer {
                 profile: exponential(50.0),
-                matter: droplets(0.02),
+                medium: droplets(0.02),
             },
             Layer {
                 profile: exponential(1200.0),
-                matter: droplets(2e-4),
+                medium: droplets(2e-4),
             },
             Layer {
                 profile: exponential(8000.0),
-                matter: molecules(3e-5),
+                medium: molecules(3e-5),
             },
         ],
         vec![
             Layer {
                 profile: valley,
-                matter: droplets(0.03),
+                medium: droplets(0.03),
             },
             Layer {
                 profile: exponential(2000.0),
-                matter: droplets(1e-4),
+                medium: droplets(1e-4),
             },
         ],
         vec![
             Layer {
                 profile: slab,
-                matter: droplets(0.01),
+                medium: droplets(0.01),
             },
             Layer {
                 profile: exponential(15.0),
-                matter: droplets(0.02),
+                medium: droplets(0.02),
             },
         ],
     ];
@@ -283,22 +288,22 @@ fn a_line_may_be_cut_anywhere() {
     };
     let one = vec![Layer {
         profile: exponential(40.0),
-        matter: droplets(0.02),
+        medium: droplets(0.02),
     }];
     let two = vec![
         Layer {
             profile: Profile::Slab { top_height_m: 25.0 },
-            matter: droplets(0.02),
+            medium: droplets(0.02),
         },
         Layer {
             profile: exponential(900.0),
-            matter: molecules(3e-4),
+            medium: molecules(3e-4),
         },
     ];
     let alone = |profile| {
         vec![Layer {
             profile,
-            matter: droplets(0.02),
+            medium: droplets(0.02),
         }]
     };
     let (uniform, slab) = (
@@ -318,13 +323,13 @@ fn a_line_may_be_cut_anywhere() {
         (&one, EARTH, 1e-3),
     ] {
         for scattering in [
-            Scattering::Undimmed,
-            Scattering::Single,
-            Scattering::Multiple,
+            FogScattering::Undimmed,
+            FogScattering::Single,
+            FogScattering::Multiple,
         ] {
             let fog = Fog::new(layers, ground, light(20.0), scattering).unwrap();
-            for climb in [0.0, 1e-3, -1e-3, 0.3, -0.3] {
-                let line = Line::new(60.0, climb, 180.0, ground.radius_m);
+            for sin_elevation in [0.0, 1e-3, -1e-3, 0.3, -0.3] {
+                let line = RaySegment::new(60.0, sin_elevation, 180.0, ground.radius_m);
                 let whole = fog.along_line(&line, 0.4);
                 for cut in [1e-3, 1.0, 45.0, 179.9] {
                     let near = fog.along_line(&line.part(0.0, cut), 0.4);
@@ -336,7 +341,10 @@ fn a_line_may_be_cut_anywhere() {
                         };
                         for (a, b) in [pair(|p| p.transmittance), pair(|p| p.path_radiance)] {
                             // Of a line above the fog both are 0.
-                            assert!((a - b).abs() <= tolerance * b, "{climb} {cut}: {a} {b}");
+                            assert!(
+                                (a - b).abs() <= tolerance * b,
+                                "{sin_elevation} {cut}: {a} {b}"
+                            );
                         }
                     }
                 }
@@ -349,7 +357,7 @@ fn a_line_may_be_cut_anywhere() {
 fn fog_that_loses_nothing_is_invisible_in_light_that_is_the_same_everywhere() {
     let mut clear = droplets(0.01);
     clear.single_scattering_albedo = Spectrum::ONE;
-    let everywhere = Light {
+    let everywhere = FogLighting {
         sun: None,
         ambient: Spectrum([0.3, 0.4, 0.5]),
         ground_albedo: Spectrum::ONE,
@@ -368,10 +376,10 @@ fn fog_that_loses_nothing_is_invisible_in_light_that_is_the_same_everywhere() {
     ] {
         let layers = [Layer {
             profile,
-            matter: clear.clone(),
+            medium: clear.clone(),
         }];
         for ground in [Ground::FLAT, EARTH] {
-            for scattering in [Scattering::Single, Scattering::Multiple] {
+            for scattering in [FogScattering::Single, FogScattering::Multiple] {
                 let fog = Fog::new(&layers, ground, everywhere, scattering).unwrap();
                 for line in lines(
                     ground,
@@ -407,17 +415,17 @@ fn transmittance_keeps_between_nothing_and_all_and_falls_with_distance() {
         let fog = Fog::new(
             &[Layer {
                 profile,
-                matter: droplets(0.05),
+                medium: droplets(0.05),
             }],
             EARTH,
             light(10.0),
-            Scattering::Single,
+            FogScattering::Single,
         )
         .unwrap();
-        for climb in [0.0, 0.2, -1e-2, 1.0] {
+        for sin_elevation in [0.0, 0.2, -1e-2, 1.0] {
             let mut before = Spectrum::ONE;
             for k in -20..48 {
-                let line = Line::new(40.0, climb, 1.4f64.powi(k), EARTH.radius_m);
+                let line = RaySegment::new(40.0, sin_elevation, 1.4f64.powi(k), EARTH.radius_m);
                 let optics = fog.along_line(&line, 0.9);
                 for lane in 0..3 {
                     let t = optics.transmittance[lane];
@@ -443,22 +451,24 @@ fn sunlight_in_exponential_fog_is_exact_in_f64() {
             scale_height_m,
         };
         let mut tested = 0;
-        for (climb, sine, length_m, depth) in [0.0, 1e-9, -1e-9, 0.02, 0.5, -0.5, 1.0, -1.0]
+        for (sin_elevation, sine, length_m, depth) in [0.0, 1e-9, -1e-9, 0.02, 0.5, -0.5, 1.0, -1.0]
             .into_iter()
-            .flat_map(|climb| [0.01, 0.5, 1.0].map(|sine| (climb, sine)))
-            .flat_map(|(climb, sine)| [1e-6, 1.0, 1e3, 1e7].map(|l| (climb, sine, l)))
+            .flat_map(|sin_elevation| [0.01, 0.5, 1.0].map(|sine| (sin_elevation, sine)))
+            .flat_map(|(sin_elevation, sine)| {
+                [1e-6, 1.0, 1e3, 1e7].map(|l| (sin_elevation, sine, l))
+            })
             .flat_map(|(c, s, l)| [1e-6, 0.3, 8.0].map(|depth| (c, s, l, depth)))
         {
             // An extinction that leaves this vertical optical depth above the eye.
             let extinction = depth / scale_height_m;
-            let line = Line::flat(0.0, climb, length_m);
+            let line = RaySegment::flat(0.0, sin_elevation, length_m);
             let along = extinction * profile.column(&line);
             let near = depth / sine;
-            if along > 40.0 || near > 100.0 || climb * length_m < -3.0 * scale_height_m {
+            if along > 40.0 || near > 100.0 || sin_elevation * length_m < -3.0 * scale_height_m {
                 continue;
             }
             tested += 1;
-            let got = scatter::once(near, along * (1.0 - climb / sine), along);
+            let got = scatter::once(near, along * (1.0 - sin_elevation / sine), along);
             // Steps that crowd to both ends.
             let mut breaks: Vec<f64> = (0..60)
                 .map(|k| length_m * 0.6f64.powi(k))
@@ -473,7 +483,7 @@ fn sunlight_in_exponential_fog_is_exact_in_f64() {
             });
             assert!(
                 (got - exact).abs() < 1e-6 * exact + 1e-280,
-                "{scale_height_m} {climb} {sine} {length_m} {depth}: {got:e} {exact:e}"
+                "{scale_height_m} {sin_elevation} {sine} {length_m} {depth}: {got:e} {exact:e}"
             );
         }
         assert!(tested > 60, "{tested}");
@@ -482,21 +492,21 @@ fn sunlight_in_exponential_fog_is_exact_in_f64() {
 
 #[test]
 fn bad_numbers_are_refused_at_the_door() {
-    let layer = |m: Matter<3>| {
+    let layer = |m: Medium<3>| {
         [Layer {
             profile: Profile::Uniform,
-            matter: m,
+            medium: m,
         }]
     };
     let refused = |layers: &[Layer<3>], ground, light| {
-        Fog::new(layers, ground, light, Scattering::Single)
+        Fog::new(layers, ground, light, FogScattering::Single)
             .unwrap_err()
             .to_string()
     };
     let phase = || PhaseFunction::Isotropic;
-    let good = matter([0.1; 3], 1.0, phase());
+    let good = medium([0.1; 3], 1.0, phase());
     let error = refused(
-        &layer(matter([0.1, f32::NAN, 0.1], 1.0, phase())),
+        &layer(medium([0.1, f32::NAN, 0.1], 1.0, phase())),
         Ground::FLAT,
         light(5.0),
     );
@@ -505,7 +515,7 @@ fn bad_numbers_are_refused_at_the_door() {
         "{error}"
     );
     let error = refused(
-        &layer(matter([0.1; 3], 1.5, phase())),
+        &layer(medium([0.1; 3], 1.5, phase())),
         Ground::FLAT,
         light(5.0),
     );
@@ -530,12 +540,12 @@ fn in_thin_fog_many_scatterings_are_one() {
             reference_height_m: 0.0,
             scale_height_m: 30.0,
         },
-        matter: droplets(1e-6),
+        medium: droplets(1e-6),
     }];
     let mut black = light(25.0);
     black.ground_albedo = Spectrum::ZERO;
     black.ambient = Spectrum::ZERO;
-    let [one, many] = [Scattering::Single, Scattering::Multiple]
+    let [one, many] = [FogScattering::Single, FogScattering::Multiple]
         .map(|scattering| Fog::new(&layers, Ground::FLAT, black, scattering).unwrap());
     for (azimuth, elevation) in [(120.0, 25.0), (120.0, 40.0), (300.0, 3.0), (10.0, 90.0)] {
         let view = axes::direction(azimuth, elevation);
@@ -553,9 +563,9 @@ fn thick_fog_is_not_dark() {
         profile: Profile::Slab {
             top_height_m: 100.0,
         },
-        matter: white,
+        medium: white,
     }];
-    let [one, many] = [Scattering::Single, Scattering::Multiple]
+    let [one, many] = [FogScattering::Single, FogScattering::Multiple]
         .map(|scattering| Fog::new(&layers, Ground::FLAT, light(40.0), scattering).unwrap());
     let level = |fog: &Fog<3>| {
         fog.along(1.7, axes::direction(200.0, 5.0), 500.0)
@@ -576,12 +586,12 @@ fn thick_fog_is_not_dark() {
                 reference_height_m: 0.0,
                 scale_height_m: 20.0,
             },
-            matter: Matter {
+            medium: Medium {
                 phase: crate::fog::droplets::phase(12.0),
                 ..droplets(extinction)
             },
         }];
-        let fog = Fog::new(&layers, Ground::FLAT, light(8.0), Scattering::Multiple).unwrap();
+        let fog = Fog::new(&layers, Ground::FLAT, light(8.0), FogScattering::Multiple).unwrap();
         for k in 0..400 {
             let k = f64::from(k);
             let view = axes::direction(0.9 * k, -20.0 + 0.27 * k);

@@ -4,10 +4,10 @@ use super::heights::{self, Weighted};
 use super::legendre::{self, COUNT, STREAMS};
 use super::ordinates::{self, Boundary, Cell};
 use crate::fog::lanes::Lanes;
-use crate::fog::light::{Ground, Light};
-use crate::fog::line::Line;
+use crate::fog::lighting::{FogLighting, Ground};
 use crate::fog::profile::Profile;
-use crate::fog::{scatter, walk};
+use crate::fog::ray_segment::RaySegment;
+use crate::fog::{scatter, split_at_heights::split_at_heights};
 use crate::spectrum::Spectrum;
 use std::f64::consts::PI;
 
@@ -30,7 +30,7 @@ pub type DirectionWeights = [f32; COUNT];
 /// The source function of diffuse light, by height and direction, and the light on the ground.
 #[derive(Clone, Debug)]
 pub struct Field<const N: usize> {
-    strata: Vec<Reduced<N>>,
+    layers: Vec<Reduced<N>>,
     /// For interpolation within a layer.
     weighted: Vec<Weighted>,
     heights_m: Vec<f64>,
@@ -50,12 +50,12 @@ impl<const N: usize> Field<N> {
     /// Solves for the light in these layers. `sun_depth(height)` is the reduced optical depth to the sun, huge where the
     /// ground is in the way.
     pub fn solve(
-        strata: Vec<Reduced<N>>,
+        layers: Vec<Reduced<N>>,
         ground: &Ground,
-        light: &Light<N>,
+        light: &FogLighting<N>,
         sun_depth: impl Fn(f64) -> Spectrum<N>,
     ) -> Self {
-        let weighted: Vec<Weighted> = strata
+        let weighted: Vec<Weighted> = layers
             .iter()
             .map(|s| {
                 let sum: f32 = s.extinction_per_m.0.iter().sum();
@@ -67,14 +67,14 @@ impl<const N: usize> Field<N> {
             .iter()
             .map(|&height| heights::depth_above(&weighted, height))
             .collect();
-        let column_m = |&height: &f64| strata[0].profile.column_above(height);
+        let column_m = |&height: &f64| layers[0].profile.column_above(height);
         let columns_m = heights_m.iter().map(column_m).collect();
         let mut field = Self {
             columns_m,
             sources: vec![[[Spectrum::ZERO; COUNT]; 2]; heights_m.len() - 1],
             ground_radiance: Spectrum::ZERO,
             ground_irradiance: Spectrum::ZERO,
-            strata,
+            layers,
             weighted,
             heights_m,
             depths,
@@ -86,7 +86,7 @@ impl<const N: usize> Field<N> {
         field
     }
 
-    fn solve_lane(&mut self, lane: usize, light: &Light<N>, sun_depths: &[Spectrum<N>]) {
+    fn solve_lane(&mut self, lane: usize, light: &FogLighting<N>, sun_depths: &[Spectrum<N>]) {
         let (sine_sun, irradiance) = match &light.sun {
             Some(sun) => (sun.direction.y, f64::from(sun.irradiance[lane])),
             None => (1.0, 0.0),
@@ -148,10 +148,12 @@ impl<const N: usize> Field<N> {
     fn cell(&self, k: usize, lane: usize) -> Cell {
         let (low, high) = (self.heights_m[k], self.heights_m[k + 1]);
         let mut cell = Cell::default();
-        for stratum in &self.strata {
-            let column = stratum.profile.column(&Line::flat(low, 1.0, high - low));
-            cell.extinction += f64::from(stratum.extinction_per_m[lane]) * column;
-            for (sum, scattering) in cell.scattering.iter_mut().zip(&stratum.scattering_per_m) {
+        for layer in &self.layers {
+            let column = layer
+                .profile
+                .column(&RaySegment::flat(low, 1.0, high - low));
+            cell.extinction += f64::from(layer.extinction_per_m[lane]) * column;
+            for (sum, scattering) in cell.scattering.iter_mut().zip(&layer.scattering_per_m) {
                 *sum += f64::from(scattering[lane]) * column;
             }
         }
@@ -162,26 +164,26 @@ impl<const N: usize> Field<N> {
     /// that of matter without an upper end, which the field does not hold).
     pub fn scattered(
         &self,
-        line: &Line,
+        line: &RaySegment,
         weights: &DirectionWeights,
         endless: Spectrum<N>,
     ) -> Spectrum<N> {
-        if let [stratum] = &self.strata[..]
-            && line.bend_per_m == 0.0
-            && line.climb.abs() > 1e-3
+        if let [layer] = &self.layers[..]
+            && line.curvature_per_m == 0.0
+            && line.sin_elevation.abs() > 1e-3
             && endless == Spectrum::ZERO
         {
-            return self.scattered_in_one(stratum, line, weights);
+            return self.scattered_in_one(layer, line, weights);
         }
         let mut path = Spectrum::ZERO;
         let mut before = Spectrum::ZERO;
-        walk::parts(line, &self.heights_m, |part| {
+        split_at_heights(line, &self.heights_m, |part| {
             let inside = part.height_at(0.5 * part.length_m.min(1e9));
             let above = self.heights_m.partition_point(|&height| height <= inside);
             let k = above.clamp(1, self.sources.len()) - 1;
-            let along = self.strata.iter().fold(Spectrum::ZERO, |sum, stratum| {
-                let column = stratum.profile.column(part).min(1e25);
-                sum.scale_acc(stratum.extinction_per_m, column as f32)
+            let along = self.layers.iter().fold(Spectrum::ZERO, |sum, layer| {
+                let column = layer.profile.column(part).min(1e25);
+                sum.scale_acc(layer.extinction_per_m, column as f32)
             });
             let near = self.source(k, part.height_m, weights);
             let far = self.source(k, part.end_height_m(), weights);
@@ -198,12 +200,12 @@ impl<const N: usize> Field<N> {
     /// it evenly, and the source function is linear in it from one height to the next.
     fn scattered_in_one(
         &self,
-        stratum: &Reduced<N>,
-        line: &Line,
+        layer: &Reduced<N>,
+        line: &RaySegment,
         weights: &DirectionWeights,
     ) -> Spectrum<N> {
-        let column_m = |height_m: f64| stratum.profile.column_above(height_m).min(1e25);
-        let per_m = stratum.extinction_per_m * (1.0 / line.climb.abs()) as f32;
+        let column_m = |height_m: f64| layer.profile.column_above(height_m).min(1e25);
+        let per_m = layer.extinction_per_m * (1.0 / line.sin_elevation.abs()) as f32;
         let (from, to) = (column_m(line.height_m), column_m(line.end_height_m()));
         // Columns fall with height: count heights whose column is above that of the start.
         let above = self.columns_m.partition_point(|&column| column > from);
@@ -219,7 +221,7 @@ impl<const N: usize> Field<N> {
         let mut before = Spectrum::ZERO;
         let mut column = from;
         let mut source = between(above.clamp(1, last), from);
-        let rises = line.climb > 0.0;
+        let rises = line.sin_elevation > 0.0;
         let mut next = if rises { above } else { above.wrapping_sub(1) };
         loop {
             // Up to the next height or the end of the line, whichever comes first.

@@ -6,7 +6,7 @@
 //! grows; then from the top down. Between two heights the equation of transfer is differenced at the middle.
 
 use super::legendre::{self, COUNT, STREAMS};
-use crate::quadrature::gauss_legendre;
+use crate::math::quadrature::gauss_legendre;
 use std::f64::consts::PI;
 
 /// Polar angles in one hemisphere.

@@ -1,13 +1,13 @@
 use super::*;
-use crate::quadrature::{gauss_legendre, integrate_by};
+use crate::math::quadrature::{gauss_legendre, integrate_by};
 
 const EARTH_M: f64 = 6.371e6;
 
 /// The column by brute force: Gauss's rule in many stretches that shrink towards every point where density changes fast.
-fn by_quadrature(profile: &Profile, line: &Line, length_m: f64) -> f64 {
+fn by_quadrature(profile: &Profile, line: &RaySegment, length_m: f64) -> f64 {
     let rule = gauss_legendre(24);
     let mut breaks = Vec::new();
-    let lowest = -0.5 * line.climb / line.bend_per_m;
+    let lowest = -0.5 * line.sin_elevation / line.curvature_per_m;
     let mut centres = vec![0.0, length_m];
     if lowest.is_finite() && lowest > 0.0 && lowest < length_m {
         centres.push(lowest);
@@ -53,14 +53,15 @@ fn columns_match_quadrature_from_micrometres_to_the_far_side_of_the_world() {
     for radius in [f64::INFINITY, EARTH_M] {
         for scale in [0.1, 7.0, 300.0, 8e3, 1e7] {
             for profile in profiles(scale) {
-                for climb in [
+                for sin_elevation in [
                     0.0, 1e-12, -1e-12, 1e-6, -1e-6, -1e-3, 1e-3, 0.02, -0.02, 0.5, -0.5, 1.0, -1.0,
                 ] {
                     for length in [1e-6, 1e-2, 1.0, 63.0, 1e3, 1e5, 1e7] {
                         for height in [0.0, 1.7, 20.0, 500.0] {
-                            let line = Line::new(height, climb, length, radius);
+                            let line = RaySegment::new(height, sin_elevation, length, radius);
                             // Deep below ground density means nothing, and overflows.
-                            let dip = (-0.5 * line.climb / line.bend_per_m).clamp(0.0, length);
+                            let dip = (-0.5 * line.sin_elevation / line.curvature_per_m)
+                                .clamp(0.0, length);
                             let dip = if dip.is_nan() { 0.0 } else { dip };
                             if line.end_height_m().min(line.height_at(dip)) < -50.0 * scale {
                                 continue;
@@ -85,22 +86,22 @@ fn columns_without_end() {
         reference_height_m: 0.0,
         scale_height_m: 100.0,
     };
-    assert!((fog.column(&Line::flat(0.0, 0.1, f64::INFINITY)) - 1000.0).abs() < 1e-9);
+    assert!((fog.column(&RaySegment::flat(0.0, 0.1, f64::INFINITY)) - 1000.0).abs() < 1e-9);
     assert_eq!(
-        fog.column(&Line::flat(0.0, 0.0, f64::INFINITY)),
+        fog.column(&RaySegment::flat(0.0, 0.0, f64::INFINITY)),
         f64::INFINITY
     );
     assert_eq!(
-        fog.column(&Line::flat(0.0, -0.1, f64::INFINITY)),
+        fog.column(&RaySegment::flat(0.0, -0.1, f64::INFINITY)),
         f64::INFINITY
     );
     // Over round ground a horizontal line leaves the fog: H sqrt(pi R / 2 H).
-    let column = fog.column(&Line::new(0.0, 0.0, f64::INFINITY, EARTH_M));
+    let column = fog.column(&RaySegment::new(0.0, 0.0, f64::INFINITY, EARTH_M));
     let chapman = 100.0 * (std::f64::consts::PI * EARTH_M / 200.0).sqrt();
     assert!((column / chapman - 1.0).abs() < 1e-12, "{column} {chapman}");
     for profile in profiles(50.0) {
         let above = profile.column_above(10.0);
-        let column = profile.column(&Line::flat(10.0, 0.25, f64::INFINITY));
+        let column = profile.column(&RaySegment::flat(10.0, 0.25, f64::INFINITY));
         assert!(
             column == above * 4.0 || (column / above / 4.0 - 1.0).abs() < 1e-12,
             "{profile:?}"
@@ -118,7 +119,7 @@ fn falloff_runs_from_endless_to_sharp() {
     let gentle = Profile::from_falloff(5.0, 1e-9).unwrap();
     let steep = Profile::from_falloff(5.0, 1e9).unwrap();
     let slab = Profile::Slab { top_height_m: 5.0 };
-    let line = Line::flat(1.0, 0.3, 200.0);
+    let line = RaySegment::flat(1.0, 0.3, 200.0);
     assert!((gentle.column(&line) / 200.0 - 1.0).abs() < 1e-7);
     assert!((steep.column(&line) / slab.column(&line) - 1.0).abs() < 1e-7);
     assert!(Profile::from_falloff(5.0, -1.0).is_err());
@@ -151,7 +152,7 @@ fn the_notes_formula_is_of_unclamped_fog() {
     ] {
         let printed = printed(p, c, d);
         // From the camera to the surface.
-        let line = Line::flat(c, (p - c) / d, d);
+        let line = RaySegment::flat(c, (p - c) / d, d);
         assert!((unclamped.column(&line) / printed - 1.0).abs() < 1e-12);
         assert!((clamped.column(&line) / by_quadrature(&clamped, &line, d) - 1.0).abs() < 1e-9);
         too_much.push(printed / clamped.column(&line));

@@ -5,8 +5,8 @@ use super::angular::{Angles, LANES, Pair, pairs};
 use super::sizes::{FEWEST_SIZES, Steps};
 use super::sphere::{Coefficients, ScatteringMatrix, check_index};
 use super::{LARGEST_SIZE_PARAMETER, MieError, SizeDistribution, SizeNode};
+use crate::math::simd::vectorized;
 use crate::optics::{RefractiveIndex, TabulatedPhase};
-use crate::vector::vectorized;
 use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 

@@ -112,8 +112,8 @@ fn henyey_greenstein(g: f64, xi: f64) -> f64 {
 mod tests {
     use super::super::tests::kinds;
     use super::*;
-    use crate::quadrature::integrate;
-    use crate::random::Random;
+    use crate::math::quadrature::integrate;
+    use crate::math::random::Random;
     use std::f64::consts::PI;
 
     /// Legendre moments of what is drawn are those of the function, and the cosines fall into bins as often as its

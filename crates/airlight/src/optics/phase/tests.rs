@@ -1,5 +1,5 @@
 use super::*;
-use crate::quadrature::integrate;
+use crate::math::quadrature::integrate;
 
 /// All kinds, with parameters that try them.
 pub(super) fn kinds() -> Vec<PhaseFunction> {

@@ -1,7 +1,7 @@
 //! Legendre moments of tables.
 
 use super::{PANEL_POINTS, TabulatedPhase};
-use crate::vector::vectorized;
+use crate::math::simd::vectorized;
 
 impl TabulatedPhase {
     /// Legendre moments, see [`crate::optics::PhaseFunction::legendre_moments`].

@@ -117,20 +117,20 @@ impl<const N: usize> Side<N> {
             climbs: Vec::new(),
             rows: std::iter::repeat_with(OnceLock::new).take(ROWS).collect(),
         };
-        side.climbs = (0..ROWS).map(|row| side.climb_at(row)).collect();
+        side.climbs = (0..ROWS).map(|row| side.sin_elevation_at(row)).collect();
         side
     }
 
     /// Where a climb (without its sign) lies among the rows.
     #[inline]
-    pub fn row_of(&self, climb: f64) -> f32 {
-        let logarithm = (1.0 + climb / self.even_to) as f32;
+    pub fn row_of(&self, sin_elevation: f64) -> f32 {
+        let logarithm = (1.0 + sin_elevation / self.even_to) as f32;
         let logarithm = logarithm.ln() * self.per_logarithm;
-        (ROWS - 1) as f32 * (LOGARITHMIC * logarithm + (1.0 - LOGARITHMIC) * climb as f32)
+        (ROWS - 1) as f32 * (LOGARITHMIC * logarithm + (1.0 - LOGARITHMIC) * sin_elevation as f32)
     }
 
     /// The inverse: by halving.
-    pub fn climb_at(&self, row: usize) -> f64 {
+    pub fn sin_elevation_at(&self, row: usize) -> f64 {
         let row = if row == 0 { 1e-3 } else { row as f32 };
         let (mut low, mut high) = (0.0, 1.0);
         for _ in 0..60 {
@@ -146,14 +146,14 @@ impl<const N: usize> Side<N> {
 
     /// Opacity to space or to the ground.
     #[inline]
-    pub fn end(&self, climb: f64) -> f32 {
-        let per_climb = 1.0 / climb.max(1e-20) as f32;
+    pub fn end(&self, sin_elevation: f64) -> f32 {
+        let per_climb = 1.0 / sin_elevation.max(1e-20) as f32;
         mean(opacity(self.depth * per_climb, self.is_grey))
     }
 
     #[inline]
-    pub fn place(&self, climb: f64, seen: f32) -> Place {
-        let end = self.end(climb);
+    pub fn place(&self, sin_elevation: f64, seen: f32) -> Place {
+        let end = self.end(sin_elevation);
         let even = |part: f32| 1.0 - (1.0 - part).max(0.0).sqrt().sqrt();
         let steps = (NODES - 1) as f32;
         let along = if seen < end || self.sign > 0.0 {
@@ -167,7 +167,7 @@ impl<const N: usize> Side<N> {
         let last = if self.sign > 0.0 { 1.0 } else { 2.0 } * steps - 1.0;
         let node = along.min(last).floor();
         let far = (along - node).clamp(0.0, 1.0);
-        let row = self.row_of(climb);
+        let row = self.row_of(sin_elevation);
         let first = (row as usize).clamp(1, ROWS - 3) - 1;
         let weights = third_degree(row - first as f32);
         Place {

@@ -3,16 +3,16 @@
 use super::Table;
 use crate::fog::Fog;
 use crate::fog::lanes::Lanes;
-use crate::fog::line::Line;
+use crate::fog::merged_layers::MergedLayer;
 use crate::fog::multiple;
-use crate::fog::strata::Stratum;
+use crate::fog::ray_segment::RaySegment;
 use crate::spectrum::Spectrum;
 
 /// Lines of one elevation up to each of their distances.
 pub(super) struct Rays<'a, const N: usize> {
     pub fog: &'a Fog<N>,
     pub table: &'a Table<'a, N>,
-    pub line: Line,
+    pub line: RaySegment,
     pub lengths_m: &'a [f64],
     /// The distance that ends on the ground; none of lines that rise.
     pub ground: usize,
@@ -20,11 +20,11 @@ pub(super) struct Rays<'a, const N: usize> {
 
 impl<const N: usize> Rays<'_, N> {
     /// Path radiance of light scattered many times, of one azimuth mode over the cosine of the elevation to its power: what
-    /// [`Fog::along`] adds up in one direction ([`Fog::scattered_often`]).
+    /// [`Fog::along`] adds up in one direction ([`Fog::multiple_scattering`]).
     pub fn diffuse(&self, mode: usize) -> Vec<Spectrum<N>> {
         let field = self.table.field;
-        let weights = multiple::of_mode(self.line.climb, mode);
-        let scattered = |part: &Line| field.scattered(part, &weights, Spectrum::ZERO);
+        let weights = multiple::of_mode(self.line.sin_elevation, mode);
+        let scattered = |part: &RaySegment| field.scattered(part, &weights, Spectrum::ZERO);
         let (sky, ground) = match mode {
             0 => (self.fog.light.ambient, field.ground_radiance),
             _ => (Spectrum::ZERO, Spectrum::ZERO),
@@ -36,12 +36,12 @@ impl<const N: usize> Rays<'_, N> {
     /// of the peak counts as scattered.
     pub fn sunlit(&self, index: usize) -> Vec<Spectrum<N>> {
         let share = self.table.share(index);
-        let extinction = |s: &Stratum<N>| {
+        let extinction = |s: &MergedLayer<N>| {
             let reduced = s.reduced_extinction_per_m;
             reduced.scale_acc(s.extinction_per_m - reduced, share)
         };
         let once = self.fog.once(extinction, |_| Spectrum::ONE);
-        let scattered = |part: &Line| once.along(part, &|_| Spectrum::ZERO).0;
+        let scattered = |part: &RaySegment| once.along(part, &|_| Spectrum::ZERO).0;
         self.to_each(extinction, scattered, Spectrum::ZERO, Spectrum::ZERO)
     }
 
@@ -49,13 +49,13 @@ impl<const N: usize> Rays<'_, N> {
     /// an extinction on its way: the light at the eye less the light at the far end that passes unscattered.
     pub fn to_each(
         &self,
-        extinction: impl Fn(&Stratum<N>) -> Spectrum<N>,
-        scattered: impl Fn(&Line) -> Spectrum<N>,
+        extinction: impl Fn(&MergedLayer<N>) -> Spectrum<N>,
+        scattered: impl Fn(&RaySegment) -> Spectrum<N>,
         sky: Spectrum<N>,
         ground: Spectrum<N>,
     ) -> Vec<Spectrum<N>> {
         let starts = std::iter::once(&0.0).chain(self.lengths_m);
-        let parts: Vec<Line> = starts
+        let parts: Vec<RaySegment> = starts
             .zip(self.lengths_m)
             .map(|(&from, &to)| self.line.part(from, to.max(from)))
             .collect();
@@ -67,7 +67,14 @@ impl<const N: usize> Rays<'_, N> {
             })
             .collect();
         // Light at each distance that comes from beyond it.
-        let mut arriving = vec![if self.line.climb < 0.0 { ground } else { sky }; parts.len()];
+        let mut arriving = vec![
+            if self.line.sin_elevation < 0.0 {
+                ground
+            } else {
+                sky
+            };
+            parts.len()
+        ];
         for k in (0..parts.len() - 1).rev().filter(|&k| k < self.ground) {
             let (light, depth) = parts[k + 1];
             arriving[k] = light + depth.exp_neg() * arriving[k + 1];

@@ -1,13 +1,15 @@
 use super::*;
 use crate::axes;
-use crate::fog::{Ground, Layer, Light, Matter, Profile, Scattering, Sun, droplets};
+use crate::fog::{
+    DirectionalLight, FogLighting, FogScattering, Ground, Layer, Medium, Profile, droplets,
+};
 use crate::optics::PhaseFunction;
 
 /// Fog of a height, or up to one, with an extinction at the ground (1/m).
 fn layer(profile: Profile, extinction_per_m: f32, phase: PhaseFunction) -> Layer<3> {
     Layer {
         profile,
-        matter: Matter {
+        medium: Medium {
             extinction_per_m: Spectrum([1.0, 1.1, 1.3].map(|part| part * extinction_per_m)),
             single_scattering_albedo: Spectrum([1.0, 0.99, 0.95]),
             phase,
@@ -16,15 +18,15 @@ fn layer(profile: Profile, extinction_per_m: f32, phase: PhaseFunction) -> Layer
 }
 
 fn fog(layers: &[Layer<3>], sun_elevation_deg: Option<f64>) -> Fog<3> {
-    let light = Light {
-        sun: sun_elevation_deg.map(|elevation| Sun {
+    let light = FogLighting {
+        sun: sun_elevation_deg.map(|elevation| DirectionalLight {
             direction: axes::direction(150.0, elevation),
             irradiance: Spectrum([3.0, 2.5, 2.0]),
         }),
         ambient: Spectrum([0.2, 0.25, 0.4]),
         ground_albedo: Spectrum([0.1, 0.2, 0.3]),
     };
-    Fog::new(layers, Ground::FLAT, light, Scattering::Multiple).unwrap()
+    Fog::new(layers, Ground::FLAT, light, FogScattering::Multiple).unwrap()
 }
 
 /// Relative errors of the path radiance along lines from a height in all directions and to all distances.
@@ -89,7 +91,7 @@ fn a_table_is_the_fog_itself() {
         for extinction in [1e-4, 0.004, 0.04, 0.3] {
             let mut layers = [layer(profile, extinction, phase.clone())];
             if extinction == 0.04 {
-                layers[0].matter.extinction_per_m = Spectrum::splat(extinction);
+                layers[0].medium.extinction_per_m = Spectrum::splat(extinction);
             }
             for sun in [None, Some(30.0), Some(4.0)] {
                 for eye in [1.6, 15.0, 60.0] {
@@ -128,13 +130,13 @@ fn what_is_not_tabulated_is_the_fog_itself() {
 #[test]
 fn white_light_stays_white_in_a_table() {
     let mut clear = layer(EXPONENTIAL(60.0), 0.01, droplets::phase(10.0));
-    clear.matter.single_scattering_albedo = Spectrum::ONE;
-    let everywhere = Light {
+    clear.medium.single_scattering_albedo = Spectrum::ONE;
+    let everywhere = FogLighting {
         sun: None,
         ambient: Spectrum([0.3, 0.4, 0.5]),
         ground_albedo: Spectrum::ONE,
     };
-    let fog = Fog::new(&[clear], Ground::FLAT, everywhere, Scattering::Multiple).unwrap();
+    let fog = Fog::new(&[clear], Ground::FLAT, everywhere, FogScattering::Multiple).unwrap();
     let table = FogTable::new(&fog, 5.0);
     for k in 0..400 {
         let k = f64::from(k);

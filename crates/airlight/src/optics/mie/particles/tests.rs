@@ -1,6 +1,6 @@
 use super::*;
+use crate::math::quadrature::gauss_legendre;
 use crate::optics::mie::{Complex64, Sphere};
-use crate::quadrature::gauss_legendre;
 
 fn drops(radius_um: f64) -> Particles {
     Particles::water(SizeDistribution::gamma(radius_um, 0.1)).unwrap()

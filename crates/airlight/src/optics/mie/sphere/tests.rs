@@ -1,6 +1,6 @@
 use super::*;
+use crate::math::quadrature::gauss_legendre;
 use crate::optics::{Depolarization, PhaseFunction};
-use crate::quadrature::gauss_legendre;
 
 /// Rows of a table of the tests whose first field is `source`.
 fn rows(text: &str, source: &str) -> Vec<Vec<f64>> {

@@ -1,0 +1,198 @@
+//! A real camera as a calibration describes it: focal length and principal point in pixels.
+
+use super::{
+    Camera, Size,
+    lens::View,
+    projection::{azimuth, demand, elevation},
+};
+use crate::ImageError;
+use glam::DVec3;
+
+/// Where a calibration puts the coordinates of a pixel.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum PixelCentres {
+    /// The centre of pixel `(i, j)` is at `(i + 0.5, j + 0.5)`, as everywhere in [`crate::frame`].
+    #[default]
+    Halves,
+    /// It is at `(i, j)`, as OpenCV and most data sets (Middlebury, KITTI) have it.
+    Whole,
+}
+
+/// A pinhole camera with square or oblong pixels whose axis may pass anywhere through the picture, looking north and
+/// level unless told otherwise.
+///
+/// Depth along the axis (z-depth) times [`Intrinsics::ray_length_per_z`] is the distance along the ray of a pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Intrinsics {
+    size: Size,
+    focal_px: (f64, f64),
+    principal_px: (f64, f64),
+    view: View,
+}
+
+impl Intrinsics {
+    /// A camera for pictures of this size, from focal length across and down and from the point where its axis meets
+    /// the picture (right, down), all in pixels.
+    ///
+    /// # Errors
+    /// [`ImageError::Setting`] where a focal length is not above 0, or a number is not finite or beyond 1e9.
+    pub fn new(
+        size: Size,
+        focal_px: (f64, f64),
+        principal_px: (f64, f64),
+        centres: PixelCentres,
+    ) -> Result<Self, ImageError> {
+        for focal in [focal_px.0, focal_px.1] {
+            demand(
+                (1e-3..=1e9).contains(&focal),
+                "the focal length in pixels",
+                focal,
+                "between 0.001 and 1e9",
+            )?;
+        }
+        for principal in [principal_px.0, principal_px.1] {
+            demand(
+                principal.abs() <= 1e9,
+                "the principal point in pixels",
+                principal,
+                "a finite number within 1e9",
+            )?;
+        }
+        let shift = match centres {
+            PixelCentres::Halves => 0.0,
+            PixelCentres::Whole => 0.5,
+        };
+        Ok(Self {
+            size,
+            focal_px,
+            principal_px: (principal_px.0 + shift, principal_px.1 + shift),
+            view: View::new(0.0, 0.0, 0.0),
+        })
+    }
+
+    /// A camera with square pixels and its axis through the middle, from the angle between the left and the right edge
+    /// in degrees.
+    ///
+    /// # Errors
+    /// [`ImageError::Setting`] where the angle is not above 0 and below 180.
+    pub fn from_horizontal_fov(size: Size, degrees: f64) -> Result<Self, ImageError> {
+        Self::across(size, f64::from(size.width()), degrees)
+    }
+
+    /// The same from the angle between the top and the bottom edge.
+    ///
+    /// # Errors
+    /// [`ImageError::Setting`] where the angle is not above 0 and below 180.
+    pub fn from_vertical_fov(size: Size, degrees: f64) -> Result<Self, ImageError> {
+        Self::across(size, f64::from(size.height()), degrees)
+    }
+
+    /// What [`Camera`] sees in a picture of this size.
+    ///
+    /// # Errors
+    /// [`ImageError::Setting`] where one of its angles is out of range.
+    pub fn of_camera(camera: &Camera, size: Size) -> Result<Self, ImageError> {
+        Self::from_vertical_fov(size, camera.vertical_fov_deg)?.looking(
+            camera.azimuth_deg,
+            camera.elevation_deg,
+            camera.roll_deg,
+        )
+    }
+
+    fn across(size: Size, side: f64, degrees: f64) -> Result<Self, ImageError> {
+        demand(
+            degrees > 0.0 && degrees < 180.0,
+            "the camera's field of view in degrees",
+            degrees,
+            "above 0 and below 180",
+        )?;
+        let focal = side / 2.0 / (degrees.to_radians() / 2.0).tan();
+        let middle = (
+            f64::from(size.width()) / 2.0,
+            f64::from(size.height()) / 2.0,
+        );
+        Self::new(size, (focal, focal), middle, PixelCentres::Halves)
+    }
+
+    /// The same camera with its axis turned to an azimuth (degrees clockwise from north) and an elevation above the
+    /// horizon (degrees), and rolled about it (degrees, clockwise as seen by the photographer).
+    ///
+    /// # Errors
+    /// [`ImageError::Setting`] where an angle is not finite or the elevation outside `[-90, 90]`.
+    pub fn looking(
+        self,
+        azimuth_deg: f64,
+        elevation_deg: f64,
+        roll_deg: f64,
+    ) -> Result<Self, ImageError> {
+        azimuth(azimuth_deg)?;
+        elevation(elevation_deg)?;
+        demand(
+            roll_deg.is_finite(),
+            "the roll in degrees",
+            roll_deg,
+            "a finite number",
+        )?;
+        Ok(Self {
+            view: View::new(azimuth_deg, elevation_deg, roll_deg),
+            ..self
+        })
+    }
+
+    /// Width and height in pixels.
+    pub fn size(&self) -> Size {
+        self.size
+    }
+
+    /// Focal length across and down in pixels.
+    pub fn focal_px(&self) -> (f64, f64) {
+        self.focal_px
+    }
+
+    /// Where the axis meets the picture, pixels to the right and down from its upper left corner.
+    pub fn principal_px(&self) -> (f64, f64) {
+        self.principal_px
+    }
+
+    /// The direction along the axis, a unit vector in the axes of [`airlight::axes`].
+    pub fn axis(&self) -> DVec3 {
+        self.view.forward
+    }
+
+    /// The direction seen at the centre of pixel `(i, j)`: a unit vector in the axes of [`airlight::axes`].
+    pub fn pixel_direction(&self, i: u32, j: u32) -> DVec3 {
+        self.ray(i, self.y(j)).0
+    }
+
+    /// Distance along the ray of pixel `(i, j)` for each metre along the axis: 1 or more.
+    pub fn ray_length_per_z(&self, i: u32, j: u32) -> f64 {
+        self.ray(i, self.y(j)).1
+    }
+
+    /// Cosine of the angle between the ray of pixel `(i, j)` and the axis: above 0, at most 1.
+    pub fn cos_to_axis(&self, i: u32, j: u32) -> f64 {
+        1.0 / self.ray_length_per_z(i, j)
+    }
+
+    /// Writes the directions at the centres of row `j` and their lengths for each metre along the axis (each slice at
+    /// most one row long), bit for bit those of [`Intrinsics::pixel_direction`] and [`Intrinsics::ray_length_per_z`].
+    pub fn fill(&self, j: u32, directions: &mut [DVec3], lengths: &mut [f64]) {
+        let y = self.y(j);
+        for (i, (direction, length)) in directions.iter_mut().zip(lengths).enumerate() {
+            (*direction, *length) = self.ray(i as u32, y);
+        }
+    }
+
+    /// Up per forward at the middle of row `j`.
+    fn y(&self, j: u32) -> f64 {
+        (self.principal_px.1 - (f64::from(j) + 0.5)) / self.focal_px.1
+    }
+
+    #[inline(always)]
+    fn ray(&self, i: u32, y: f64) -> (DVec3, f64) {
+        let x = (f64::from(i) + 0.5 - self.principal_px.0) / self.focal_px.0;
+        let length = (1.0 + x * x + y * y).sqrt();
+        let ray = self.view.forward + self.view.right * x + self.view.up * y;
+        (ray / length, length)
+    }
+}

@@ -1,0 +1,201 @@
+//! Where pixels look: projections between the picture plane and view directions.
+//!
+//! Pixel coordinates are continuous: x to the right from 0 to the width, y down from 0 to the height; the centre of
+//! pixel `(i, j)` is at `(i + 0.5, j + 0.5)`. Directions are unit vectors in the world axes of [`airlight::axes`]
+//! (x east, y up, z south).
+
+mod intrinsics;
+mod lens;
+mod projection;
+mod solid_angle;
+
+pub use intrinsics::{Intrinsics, PixelCentres};
+pub use projection::{Camera, CubeFace, Fisheye, Projection};
+
+use crate::ImageError;
+use glam::DVec3;
+use lens::Lens;
+
+/// Width and height of a picture in pixels, each in `1..=65536`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Size {
+    width: u32,
+    height: u32,
+}
+
+impl Size {
+    /// The largest width and height.
+    pub const MAX: u32 = 65536;
+
+    /// Checks width and height.
+    ///
+    /// # Errors
+    /// [`ImageError::Size`] where one is 0 or above 65536.
+    pub fn new(width: u32, height: u32) -> Result<Self, ImageError> {
+        let fits = |n| (1..=Self::MAX).contains(&n);
+        if fits(width) && fits(height) {
+            Ok(Self { width, height })
+        } else {
+            Err(ImageError::Size { width, height })
+        }
+    }
+
+    /// Pixels in a row.
+    pub fn width(self) -> u32 {
+        self.width
+    }
+
+    /// Rows.
+    pub fn height(self) -> u32 {
+        self.height
+    }
+}
+
+/// A projection laid over a grid of pixels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    projection: Projection,
+    size: Size,
+    lens: Lens,
+}
+
+impl Frame {
+    /// Checks and takes a projection and a size in pixels.
+    ///
+    /// # Errors
+    /// [`ImageError::Size`], or [`ImageError::Setting`] where an angle is not finite or out of range, or a cube face
+    /// is not square.
+    pub fn new(projection: Projection, width: u32, height: u32) -> Result<Self, ImageError> {
+        let size = Size::new(width, height)?;
+        projection.check(size)?;
+        Ok(Self {
+            projection,
+            size,
+            lens: Lens::new(&projection, size),
+        })
+    }
+
+    /// The whole sphere, twice as wide as high, with north in the middle.
+    ///
+    /// # Errors
+    /// [`ImageError::Size`] where `height` is not in `1..=32768`.
+    pub fn equirectangular(height: u32) -> Result<Self, ImageError> {
+        Self::new(
+            Projection::Equirectangular {
+                center_azimuth_deg: 0.0,
+            },
+            height.saturating_mul(2),
+            height,
+        )
+    }
+
+    /// The same view in few pixels, for a preview or for metering: `longest_side` at most, each side at least 1.
+    pub fn preview(&self, longest_side: u32) -> Self {
+        let (width, height) = (self.size.width, self.size.height);
+        let longest = width.max(height);
+        let side = longest_side.clamp(1, longest);
+        let scaled = |n: u32| {
+            let n = u64::from(n) * u64::from(side) + u64::from(longest) / 2;
+            (n / u64::from(longest)).max(1) as u32
+        };
+        let size = Size {
+            width: scaled(width),
+            height: scaled(height),
+        };
+        Self {
+            projection: self.projection,
+            size,
+            lens: Lens::new(&self.projection, size),
+        }
+    }
+
+    /// What was given.
+    pub fn projection(&self) -> &Projection {
+        &self.projection
+    }
+
+    /// Width and height in pixels.
+    pub fn size(&self) -> Size {
+        self.size
+    }
+
+    /// The direction seen at continuous pixel coordinates; `None` outside the picture, outside the circle of a
+    /// fisheye, and for numbers that are not finite.
+    pub fn direction(&self, px: f64, py: f64) -> Option<DVec3> {
+        let inside = (0.0..=f64::from(self.size.width)).contains(&px)
+            && (0.0..=f64::from(self.size.height)).contains(&py);
+        inside.then(|| self.lens.direction(px, py)).flatten()
+    }
+
+    /// The direction seen at the centre of pixel `(i, j)`; `None` as in [`Frame::direction`].
+    pub fn pixel_direction(&self, i: u32, j: u32) -> Option<DVec3> {
+        self.direction(f64::from(i) + 0.5, f64::from(j) + 0.5)
+    }
+
+    /// Where a direction (of any length above 0) lies in the picture; `None` where the picture does not show it.
+    pub fn pixel_of(&self, direction: DVec3) -> Option<(f64, f64)> {
+        let unit = direction.try_normalize()?;
+        let (px, py) = self.lens.pixel_of(unit)?;
+        // A direction at the very edge may land a rounding error beyond it.
+        let (w, h) = (f64::from(self.size.width), f64::from(self.size.height));
+        let slack = 1e-9;
+        let inside = px >= -slack * w
+            && px <= w * (1.0 + slack)
+            && py >= -slack * h
+            && py <= h * (1.0 + slack);
+        inside.then(|| (px.clamp(0.0, w), py.clamp(0.0, h)))
+    }
+
+    /// The solid angle of pixel `(i, j)` in steradians; 0 outside the picture or a fisheye's circle. Exact but for the
+    /// fisheye (relative error below 1e-9 for pixels wholly inside the circle of a picture of 64 or more pixels; a
+    /// pixel cut by the circle counts by the part of its 9 sample points that lie inside).
+    pub fn pixel_solid_angle(&self, i: u32, j: u32) -> f64 {
+        if i >= self.size.width || j >= self.size.height {
+            return 0.0;
+        }
+        self.lens.solid_angle(i, j)
+    }
+
+    /// Prepared to give the directions of whole rows: bit for bit those of [`Frame::pixel_direction`], without its
+    /// trigonometry for each pixel where the projection allows.
+    pub fn rows(&self) -> FrameRows {
+        FrameRows {
+            frame: *self,
+            columns: self.lens.columns(self.size.width),
+        }
+    }
+}
+
+/// The directions of whole rows: see [`Frame::rows`].
+#[derive(Clone, Debug)]
+pub struct FrameRows {
+    frame: Frame,
+    /// Sine and cosine of the azimuth of each column; empty where columns have none.
+    columns: Vec<(f64, f64)>,
+}
+
+impl FrameRows {
+    /// The frame.
+    pub fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    /// Writes the directions at the centres of row `j` to `out` (at most one row long); the zero vector where nothing
+    /// is seen.
+    pub fn fill(&self, j: u32, out: &mut [DVec3]) {
+        let py = f64::from(j) + 0.5;
+        if self.columns.is_empty() {
+            for (i, direction) in out.iter_mut().enumerate() {
+                *direction = self
+                    .frame
+                    .direction(i as f64 + 0.5, py)
+                    .unwrap_or(DVec3::ZERO);
+            }
+        } else {
+            let (sin, cos) = self.frame.lens.elevation(py).sin_cos();
+            for (direction, &azimuth) in out.iter_mut().zip(&self.columns) {
+                *direction = lens::from_sines(azimuth, (sin, cos));
+            }
+        }
+    }
+}

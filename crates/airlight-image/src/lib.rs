@@ -1,0 +1,30 @@
+//! Picture and depth files, projections, exposure and tone curves.
+//!
+//! A picture is a [`frame::Frame`], which maps pixels to view directions, and a [`rows::RowSource`], which provides
+//! their values. Writers ask for rows in any order and from many threads, hold only a few bands of the picture at a
+//! time, and leave either a complete file or none.
+//!
+//! # Modules, each importing only from those above it
+//! - [`error`]: error type.
+//! - [`frame`]: projections, from pixels to view directions and back.
+//! - [`rows`]: row sources; cancellation and progress of a long write.
+//! - [`enlarge`]: upsampling by cubic splines.
+//! - [`tone`]: exposure, tone curves, dither: from linear light to display values.
+//! - [`output`]: picture writers: OpenEXR (RGB and spectral), Radiance HDR, PNG, JPEG.
+//! - [`input`]: picture and depth readers.
+//! - [`terminal`]: previews in a terminal.
+
+pub mod enlarge;
+pub mod error;
+pub mod frame;
+pub mod input;
+pub mod output;
+pub mod rows;
+pub mod terminal;
+pub mod tone;
+
+pub use error::ImageError;
+pub use frame::{Camera, CubeFace, Fisheye, Frame, Intrinsics, Projection, Size};
+pub use input::{DepthMap, DepthOptions, Picture, read_depth, read_picture};
+pub use output::{PictureFormat, PictureOptions, write_picture};
+pub use rows::{Control, Progress, RowSource};

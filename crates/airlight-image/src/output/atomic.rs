@@ -1,0 +1,113 @@
+//! A file that appears whole or not at all.
+
+use crate::ImageError;
+use std::{
+    fs::{self, File, OpenOptions},
+    io::ErrorKind,
+    path::{Path, PathBuf},
+    sync::atomic::{AtomicU64, Ordering},
+};
+
+/// A file written under another name beside its target and moved there by [`AtomicFile::commit`]; dropped without
+/// that, on an error or a panic, it removes itself and the target stays as it was.
+#[derive(Debug)]
+pub struct AtomicFile {
+    target: PathBuf,
+    temporary: PathBuf,
+    /// `None` once committed.
+    file: Option<File>,
+}
+
+impl AtomicFile {
+    /// Opens a new file beside `target`.
+    ///
+    /// # Errors
+    /// [`ImageError`] where the target names no file, is a folder, its folder is missing, or the system refuses.
+    pub fn create(target: &Path) -> Result<Self, ImageError> {
+        let refuse = |reason| ImageError::Target {
+            path: target.to_owned(),
+            reason,
+        };
+        let name = target
+            .file_name()
+            .ok_or_else(|| refuse("the path names no file"))?;
+        if target.is_dir() {
+            return Err(refuse("it is a folder"));
+        }
+        let folder = match target.parent() {
+            Some(folder) if !folder.as_os_str().is_empty() => folder,
+            _ => Path::new("."),
+        };
+        if !folder.is_dir() {
+            return Err(ImageError::NoFolder {
+                path: target.to_owned(),
+                folder: folder.to_owned(),
+            });
+        }
+        // Names differ within a process by a count and between processes by their number; what an earlier, killed
+        // process of the same number left behind is passed over.
+        static COUNT: AtomicU64 = AtomicU64::new(0);
+        for _ in 0..1000 {
+            let count = COUNT.fetch_add(1, Ordering::Relaxed);
+            let mut hidden = std::ffi::OsString::from(".");
+            hidden.push(name);
+            hidden.push(format!(".{}-{count}.part", std::process::id()));
+            let temporary = folder.join(hidden);
+            match OpenOptions::new()
+                .read(true)
+                .write(true)
+                .create_new(true)
+                .open(&temporary)
+            {
+                Ok(file) => {
+                    return Ok(Self {
+                        target: target.to_owned(),
+                        temporary,
+                        file: Some(file),
+                    });
+                }
+                Err(e) if e.kind() == ErrorKind::AlreadyExists => continue,
+                Err(source) => {
+                    return Err(ImageError::File {
+                        action: "create",
+                        path: target.to_owned(),
+                        source,
+                    });
+                }
+            }
+        }
+        Err(refuse(
+            "too many unfinished files of earlier runs lie beside it",
+        ))
+    }
+
+    /// The open file.
+    pub fn file(&self) -> &File {
+        // Taken only by `commit`, which consumes the value.
+        self.file.as_ref().expect("open until committed")
+    }
+
+    /// Closes the file and moves it to its target, replacing what was there.
+    ///
+    /// # Errors
+    /// [`ImageError::File`] where the system refuses; the file is then removed.
+    pub fn commit(mut self) -> Result<(), ImageError> {
+        self.file = None;
+        fs::rename(&self.temporary, &self.target).map_err(|source| {
+            let _ = fs::remove_file(&self.temporary);
+            ImageError::File {
+                action: "move the finished file to",
+                path: self.target.clone(),
+                source,
+            }
+        })
+    }
+}
+
+impl Drop for AtomicFile {
+    fn drop(&mut self) {
+        if self.file.take().is_some() {
+            let _ = fs::remove_file(&self.temporary);
+        }
+    }
+}

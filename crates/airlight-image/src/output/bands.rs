@@ -1,0 +1,113 @@
+//! The loop under every writer: bands made in parallel, written in order, few in memory.
+
+use crate::{Control, ImageError, RowSource, Size};
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// Rows `start..end` of each band of a picture.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bands {
+    size: Size,
+    rows: u32,
+}
+
+/// Bytes of a band's rows as the source fills them that a writer aims for.
+const BAND_BYTES: usize = 4 << 20;
+
+/// Bytes that the bands being made at a time may take: it bounds a writer's memory however many threads there are.
+const HELD_BYTES: usize = 64 << 20;
+
+impl Bands {
+    /// Bands of `rows` rows.
+    pub(super) fn of_rows(size: Size, rows: u32) -> Self {
+        Self {
+            size,
+            rows: rows.max(1),
+        }
+    }
+
+    /// Bands of about [`BAND_BYTES`], a multiple of `multiple` rows each, for rows of `channels` floats.
+    pub(super) fn for_channels(size: Size, channels: usize, multiple: u32) -> Self {
+        let row_bytes = size.width() as usize * channels * 4;
+        let rows = (BAND_BYTES / row_bytes.max(1)).clamp(1, 256) as u32;
+        Self::of_rows(size, rows.div_ceil(multiple) * multiple)
+    }
+
+    pub(super) fn count(self) -> u32 {
+        self.size.height().div_ceil(self.rows)
+    }
+
+    pub(super) fn rows(self, band: u32) -> Range<u32> {
+        let start = band * self.rows;
+        start..(start + self.rows).min(self.size.height())
+    }
+
+    /// Makes every band by `make(band)` in parallel and hands them in order to `write`, which works while the next ones
+    /// are made. `band_bytes` is about what one band takes in memory while it is made; once made it is taken to need much
+    /// less.
+    pub(super) fn run<T: Send>(
+        self,
+        band_bytes: usize,
+        control: Control<'_>,
+        make: impl Fn(u32) -> Result<T, ImageError> + Sync,
+        mut write: impl FnMut(u32, T) -> Result<(), ImageError> + Send,
+    ) -> Result<(), ImageError> {
+        let threads = rayon::current_num_threads();
+        let batch = (HELD_BYTES / band_bytes.max(1)).clamp(1, threads * 4) as u32;
+        let height = self.size.height();
+        let mut made: Vec<T> = Vec::new();
+        let mut first = 0;
+        let mut next = 0;
+        loop {
+            let ahead = next..(next + batch).min(self.count());
+            let (coming, written) = rayon::join(
+                || {
+                    ahead
+                        .clone()
+                        .into_par_iter()
+                        .with_max_len(1)
+                        .map(|band| {
+                            control.check()?;
+                            make(band)
+                        })
+                        .collect::<Result<Vec<T>, ImageError>>()
+                },
+                || {
+                    for (band, item) in (first..).zip(made.drain(..)) {
+                        control.check()?;
+                        write(band, item)?;
+                        control.report(self.rows(band).end, height);
+                    }
+                    Ok(())
+                },
+            );
+            written?;
+            made = coming?;
+            if made.is_empty() {
+                return Ok(());
+            }
+            first = ahead.start;
+            next = ahead.end;
+        }
+    }
+}
+
+/// Rows of a source, one at a time, in a buffer that is kept.
+pub(super) struct RowBuffer<'a> {
+    source: &'a dyn RowSource,
+    row: Vec<f32>,
+}
+
+impl<'a> RowBuffer<'a> {
+    pub(super) fn new(source: &'a dyn RowSource, size: Size) -> Self {
+        Self {
+            source,
+            row: vec![0.0; size.width() as usize * source.channels()],
+        }
+    }
+
+    pub(super) fn row(&mut self, y: u32) -> &[f32] {
+        self.source.fill_row(y, &mut self.row);
+        &self.row
+    }
+}

@@ -1,0 +1,191 @@
+//! Radiance RGBE files: three 8-bit mantissas and a shared exponent, about 1 percent steps, run-length encoded.
+//!
+//! Mantissas are rounded to nearest for readers that take them as they are (most do), so values come back within 0.4
+//! percent of the largest component. Radiance's own programs add half a step on reading.
+
+use super::{
+    Metadata, Written,
+    bands::{Bands, RowBuffer},
+    expect_channels, into_file,
+};
+use crate::{Control, ImageError, RowSource, Size};
+use std::{io::Write, path::Path};
+
+const FORMAT: &str = "Radiance HDR";
+
+/// The largest value RGBE holds: mantissa 255 with the highest exponent.
+const LARGEST: f32 = 255.0 * 6.646_14e35;
+
+/// Writes linear RGB rows to a file.
+///
+/// # Errors
+/// [`ImageError`]; the target is then as before.
+pub fn write(
+    path: &Path,
+    size: Size,
+    source: &dyn RowSource,
+    metadata: &Metadata,
+    control: Control<'_>,
+) -> Result<Written, ImageError> {
+    into_file(path, control, |out| {
+        encode(out, size, source, metadata, control)
+    })
+}
+
+/// Writes linear RGB rows to a stream. [`Written::bytes`] is left 0.
+///
+/// # Errors
+/// [`ImageError`] where the source has not three channels, the stream fails, or the caller asks to stop.
+pub fn encode<W: Write + Send>(
+    out: &mut W,
+    size: Size,
+    source: &dyn RowSource,
+    metadata: &Metadata,
+    control: Control<'_>,
+) -> Result<Written, ImageError> {
+    expect_channels(FORMAT, source, 3)?;
+    let failed = |source| ImageError::Stream {
+        format: FORMAT,
+        source,
+    };
+    out.write_all(header(size, metadata).as_bytes())
+        .map_err(failed)?;
+    let bands = Bands::for_channels(size, 3, 1);
+    let mut written = Written::default();
+    let width = size.width() as usize;
+    bands.run(
+        width * 16 * bands.rows(0).len(),
+        control,
+        |band| {
+            let mut rows = RowBuffer::new(source, size);
+            let mut bytes = Vec::with_capacity(width * 4 * bands.rows(band).len());
+            let mut counts = Written::default();
+            let mut pixels = vec![[0; 4]; width];
+            for y in bands.rows(band) {
+                let row = rows.row(y).as_chunks::<3>().0;
+                for (pixel, rgb) in pixels.iter_mut().zip(row) {
+                    *pixel = rgbe(*rgb, &mut counts);
+                }
+                scan_line(&pixels, &mut bytes);
+            }
+            Ok((bytes, counts))
+        },
+        |_, (bytes, counts)| {
+            written.clamped_samples += counts.clamped_samples;
+            written.nan_samples += counts.nan_samples;
+            out.write_all(&bytes).map_err(failed)
+        },
+    )?;
+    Ok(written)
+}
+
+fn header(size: Size, metadata: &Metadata) -> String {
+    let mut text = String::from("#?RADIANCE\n");
+    for (name, value) in metadata.as_texts() {
+        // One line each; an `=` in the name would split it elsewhere.
+        let clean = |text: &str| text.replace(['\n', '\r', '\0'], " ");
+        let name = clean(&name).to_ascii_uppercase().replace([' ', '='], "_");
+        text.push_str(&format!("# {name}={}\n", clean(&value)));
+    }
+    if let Some(c) = metadata.chromaticities {
+        text.push_str(&format!(
+            "PRIMARIES={} {} {} {} {} {} {} {}\n",
+            c.red[0],
+            c.red[1],
+            c.green[0],
+            c.green[1],
+            c.blue[0],
+            c.blue[1],
+            c.white[0],
+            c.white[1]
+        ));
+    }
+    text.push_str(&format!(
+        "FORMAT=32-bit_rle_rgbe\n\n-Y {} +X {}\n",
+        size.height(),
+        size.width()
+    ));
+    text
+}
+
+/// Mantissas and exponent of a colour. Negative values, which RGBE cannot hold, become 0.
+#[inline]
+fn rgbe(rgb: [f32; 3], counts: &mut Written) -> [u8; 4] {
+    let rgb = rgb.map(|v| {
+        if v.is_nan() {
+            counts.nan_samples += 1;
+            0.0
+        } else if !(0.0..=LARGEST).contains(&v) {
+            counts.clamped_samples += 1;
+            v.clamp(0.0, LARGEST)
+        } else {
+            v
+        }
+    });
+    let most = rgb[0].max(rgb[1]).max(rgb[2]);
+    if most < 1e-37 {
+        return [0; 4];
+    }
+    // most = m * 2^exponent with m in [1/2, 1).
+    let mut exponent = (most.to_bits() >> 23) as i32 - 126;
+    // Rounding up to 256 takes the next exponent.
+    if most * power_of_two(8 - exponent) >= 255.5 {
+        exponent += 1;
+    }
+    let scale = power_of_two(8 - exponent);
+    let [r, g, b] = rgb.map(|v| (v * scale + 0.5) as u8);
+    [r, g, b, (exponent + 128).clamp(0, 255) as u8]
+}
+
+/// 2^n, for normal results.
+#[inline]
+fn power_of_two(n: i32) -> f32 {
+    f32::from_bits(((n + 127).clamp(1, 254) as u32) << 23)
+}
+
+/// Appends a scan line: run-length encoded by component where the format allows its width, else plain.
+fn scan_line(pixels: &[[u8; 4]], out: &mut Vec<u8>) {
+    let width = pixels.len();
+    if !(8..=0x7fff).contains(&width) {
+        out.extend_from_slice(pixels.as_flattened());
+        return;
+    }
+    out.extend_from_slice(&[2, 2, (width >> 8) as u8, width as u8]);
+    let mut component = vec![0; width];
+    for c in 0..4 {
+        for (value, pixel) in component.iter_mut().zip(pixels) {
+            *value = pixel[c];
+        }
+        run_lengths(&component, out);
+    }
+}
+
+/// Runs as `128 + length, value` (length 2 to 127), other bytes as `length, values` (length 1 to 128).
+fn run_lengths(values: &[u8], out: &mut Vec<u8>) {
+    // Shorter runs cost more than they save.
+    const WORTHWHILE: usize = 4;
+    let mut at = 0;
+    let mut loose = 0;
+    let flush = |from: usize, to: usize, out: &mut Vec<u8>| {
+        for part in values[from..to].chunks(128) {
+            out.push(part.len() as u8);
+            out.extend_from_slice(part);
+        }
+    };
+    while at < values.len() {
+        let run = values[at..]
+            .iter()
+            .take(127)
+            .take_while(|&&v| v == values[at])
+            .count();
+        if run >= WORTHWHILE {
+            flush(loose, at, out);
+            out.extend_from_slice(&[128 + run as u8, values[at]]);
+            at += run;
+            loose = at;
+        } else {
+            at += run;
+        }
+    }
+    flush(loose, at, out);
+}

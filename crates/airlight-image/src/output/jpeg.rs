@@ -1,0 +1,316 @@
+//! JPEG files: baseline, 8 bits, sRGB by convention. Rows are tone mapped in parallel; one thread encodes.
+
+use super::{
+    Metadata, Written,
+    bands::{Bands, RowBuffer},
+    expect_channels, into_file,
+};
+use crate::{Control, ImageError, RowSource, Size, tone::ToneMapper};
+use jpeg_encoder::{Encoder, EncodingError, ImageBuffer, JpegColorType, SamplingFactor};
+use std::{
+    cell::RefCell,
+    io::{self, Write},
+    path::Path,
+    sync::{
+        atomic::{AtomicBool, Ordering},
+        mpsc::{Receiver, sync_channel},
+    },
+    thread,
+};
+
+const FORMAT: &str = "JPEG";
+
+/// Settings of JPEG files.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct JpegOptions {
+    /// 1 (smallest) to 100 (best). From 90 up colour is kept at full resolution, below at half.
+    pub quality: u8,
+}
+
+impl Default for JpegOptions {
+    fn default() -> Self {
+        Self { quality: 92 }
+    }
+}
+
+/// Writes linear RGB rows, as `tone` shows them, to a file.
+///
+/// # Errors
+/// [`ImageError`]; the target is then as before.
+pub fn write(
+    path: &Path,
+    size: Size,
+    source: &dyn RowSource,
+    tone: &ToneMapper,
+    options: &JpegOptions,
+    metadata: &Metadata,
+    control: Control<'_>,
+) -> Result<Written, ImageError> {
+    into_file(path, control, |out| {
+        encode(out, size, source, tone, options, metadata, control)
+    })
+}
+
+/// Writes linear RGB rows, as `tone` shows them, to a stream. [`Written::bytes`] is left 0.
+///
+/// # Errors
+/// [`ImageError`] where the source has not three channels, a side is above 65535, the quality is out of range, the
+/// stream fails, or the caller asks to stop.
+pub fn encode<W: Write + Send>(
+    out: &mut W,
+    size: Size,
+    source: &dyn RowSource,
+    tone: &ToneMapper,
+    options: &JpegOptions,
+    metadata: &Metadata,
+    control: Control<'_>,
+) -> Result<Written, ImageError> {
+    expect_channels(FORMAT, source, 3)?;
+    if !(1..=100).contains(&options.quality) {
+        return Err(ImageError::Setting {
+            what: "the JPEG quality",
+            got: options.quality.to_string(),
+            right: "1 to 100",
+        });
+    }
+    let side = |n: u32| {
+        u16::try_from(n).map_err(|_| ImageError::Encode {
+            format: FORMAT,
+            reason: format!("a side of {n} pixels is above 65535; PNG and EXR take it"),
+        })
+    };
+    let (width, height) = (side(size.width())?, side(size.height())?);
+    let stopped = AtomicBool::new(false);
+    let (sender, receiver) = sync_channel(1);
+    thread::scope(|scope| {
+        let encoder = scope.spawn(|| {
+            let stream = Stoppable {
+                out,
+                stopped: &stopped,
+            };
+            let buffer = IncomingRows {
+                width,
+                height,
+                incoming: receiver,
+                band: RefCell::default(),
+                stopped: &stopped,
+            };
+            run_encoder(stream, buffer, options, metadata)
+        });
+        // The sender moves into the closure and is dropped with it, so the encoder never waits in vain.
+        let fed = Bands::for_channels(size, 3, 16).run(
+            size.width() as usize * 3 * 64,
+            control,
+            |band| {
+                Ok(planar_band(
+                    source,
+                    tone,
+                    size,
+                    Bands::for_channels(size, 3, 16),
+                    band,
+                ))
+            },
+            {
+                let sender = sender;
+                move |_, band| sender.send(band).map_err(|_| ImageError::Cancelled)
+            },
+        );
+        if fed.is_err() {
+            stopped.store(true, Ordering::Relaxed);
+        }
+        let encoded = encoder.join().unwrap_or_else(|_| {
+            Err(ImageError::Encode {
+                format: FORMAT,
+                reason: "the encoder failed".to_owned(),
+            })
+        });
+        // Where the encoder failed by itself, its reason is the one to report, not that nobody took the rows.
+        match (fed, control.check()) {
+            (Ok(()), _) => encoded,
+            (Err(_), Err(cancelled)) => Err(cancelled),
+            (Err(ImageError::Cancelled), Ok(())) => encoded,
+            (Err(other), Ok(())) => Err(other),
+        }
+    })?;
+    Ok(Written::default())
+}
+
+fn run_encoder<W: Write>(
+    stream: Stoppable<'_, W>,
+    buffer: IncomingRows<'_>,
+    options: &JpegOptions,
+    metadata: &Metadata,
+) -> Result<(), ImageError> {
+    let mut encoder = Encoder::new(stream, options.quality);
+    encoder.set_sampling_factor(if options.quality >= 90 {
+        SamplingFactor::F_1_1
+    } else {
+        SamplingFactor::F_2_2
+    });
+    let failed = |error| match error {
+        EncodingError::IoError(source) => ImageError::Stream {
+            format: FORMAT,
+            source,
+        },
+        other => ImageError::Encode {
+            format: FORMAT,
+            reason: other.to_string(),
+        },
+    };
+    encoder.add_exif_metadata(&exif(metadata)).map_err(failed)?;
+    encoder.encode_image(buffer).map_err(failed)
+}
+
+/// Luma and the two chromas of a band, each row after row.
+type PlanarBand = [Vec<u8>; 3];
+
+fn planar_band(
+    source: &dyn RowSource,
+    tone: &ToneMapper,
+    size: Size,
+    bands: Bands,
+    band: u32,
+) -> PlanarBand {
+    let width = size.width() as usize;
+    let mut rows = RowBuffer::new(source, size);
+    let mut rgb = vec![0u8; width * 3];
+    let count = width * bands.rows(band).len();
+    let mut planes: PlanarBand = std::array::from_fn(|_| Vec::with_capacity(count));
+    for y in bands.rows(band) {
+        tone.row_to_u8(y, rows.row(y), &mut rgb);
+        for pixel in rgb.as_chunks::<3>().0 {
+            let (luma, blue, red) = jpeg_encoder::rgb_to_ycbcr(pixel[0], pixel[1], pixel[2]);
+            planes[0].push(luma);
+            planes[1].push(blue);
+            planes[2].push(red);
+        }
+    }
+    planes
+}
+
+/// Hands the encoder rows as they come; it asks for them from top to bottom, for the last one perhaps again.
+struct IncomingRows<'a> {
+    width: u16,
+    height: u16,
+    incoming: Receiver<PlanarBand>,
+    /// The band being read and the number of its first row.
+    band: RefCell<(PlanarBand, usize)>,
+    stopped: &'a AtomicBool,
+}
+
+impl ImageBuffer for IncomingRows<'_> {
+    fn get_jpeg_color_type(&self) -> JpegColorType {
+        JpegColorType::Ycbcr
+    }
+
+    fn width(&self) -> u16 {
+        self.width
+    }
+
+    fn height(&self) -> u16 {
+        self.height
+    }
+
+    fn fill_buffers(&self, y: u16, buffers: &mut [Vec<u8>; 4]) {
+        let width = usize::from(self.width);
+        let mut band = self.band.borrow_mut();
+        while usize::from(y) >= band.1 + band.0[0].len() / width {
+            let first = band.1 + band.0[0].len() / width;
+            match self.incoming.recv() {
+                Ok(next) => *band = (next, first),
+                Err(_) => {
+                    // Nothing more comes: end the encoding at its next write.
+                    self.stopped.store(true, Ordering::Relaxed);
+                    for buffer in &mut buffers[..3] {
+                        buffer.resize(buffer.len() + width, 0);
+                    }
+                    return;
+                }
+            }
+        }
+        let start = (usize::from(y) - band.1) * width;
+        for (buffer, plane) in buffers.iter_mut().zip(&band.0) {
+            buffer.extend_from_slice(&plane[start..start + width]);
+        }
+    }
+}
+
+/// A stream that fails once told to stop: the only way out of the encoder.
+struct Stoppable<'a, W> {
+    out: &'a mut W,
+    stopped: &'a AtomicBool,
+}
+
+impl<W: Write> Write for Stoppable<'_, W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if self.stopped.load(Ordering::Relaxed) {
+            return Err(io::Error::other("stopped"));
+        }
+        self.out.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.out.flush()
+    }
+}
+
+/// A minimal Exif block (TIFF structure, little endian): software, description, and that the colours are sRGB.
+fn exif(metadata: &Metadata) -> Vec<u8> {
+    const ASCII: u16 = 2;
+    const SHORT: u16 = 3;
+    const LONG: u16 = 4;
+    const HEADER: usize = 8;
+    let description: String = metadata
+        .as_texts()
+        .iter()
+        .filter(|(name, _)| name != "Software")
+        .map(|(name, text)| format!("{name}: {text}"))
+        .collect::<Vec<_>>()
+        .join("; ");
+    let ascii = |text: &str| {
+        let mut bytes: Vec<u8> = text
+            .chars()
+            .map(|c| {
+                if c.is_ascii() && c != '\0' {
+                    c as u8
+                } else {
+                    b'?'
+                }
+            })
+            .take(8000)
+            .collect();
+        bytes.push(0);
+        // Texts of 4 bytes or fewer would be stored in the entry itself.
+        while bytes.len() < 5 {
+            bytes.push(0);
+        }
+        bytes
+    };
+    let texts = [
+        (0x010eu16, ascii(&description)),
+        (0x0131, ascii(metadata.software.as_deref().unwrap_or(""))),
+    ];
+    let directory = HEADER + 2 + 3 * 12 + 4;
+    let sub_directory = directory + 2 + 12 + 4;
+    let mut bytes = Vec::from(*b"II*\0\x08\0\0\0\x03\0");
+    let entry = |bytes: &mut Vec<u8>, tag: u16, kind: u16, count: usize, value: usize| {
+        bytes.extend_from_slice(&tag.to_le_bytes());
+        bytes.extend_from_slice(&kind.to_le_bytes());
+        bytes.extend_from_slice(&(count as u32).to_le_bytes());
+        bytes.extend_from_slice(&(value as u32).to_le_bytes());
+    };
+    let mut at = sub_directory;
+    for (tag, text) in &texts {
+        entry(&mut bytes, *tag, ASCII, text.len(), at);
+        at += text.len();
+    }
+    entry(&mut bytes, 0x8769, LONG, 1, directory);
+    bytes.extend_from_slice(&[0; 4]);
+    bytes.extend_from_slice(&1u16.to_le_bytes());
+    entry(&mut bytes, 0xa001, SHORT, 1, 1);
+    bytes.extend_from_slice(&[0; 4]);
+    for (_, text) in texts {
+        bytes.extend_from_slice(&text);
+    }
+    bytes
+}

@@ -1,0 +1,140 @@
+//! How bright a picture is made: by a camera's exposure value, or metered from the scene.
+
+use super::MIDDLE_GREY;
+use crate::ImageError;
+
+/// The factor that brings linear light to display scale.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Exposure {
+    factor: f64,
+}
+
+impl Exposure {
+    /// Multiplies linear values by `factor`.
+    ///
+    /// # Errors
+    /// [`ImageError::Setting`] where it is negative or not finite.
+    pub fn factor_of(factor: f64) -> Result<Self, ImageError> {
+        if factor.is_finite() && factor >= 0.0 && (factor as f32).is_finite() {
+            Ok(Self { factor })
+        } else {
+            Err(ImageError::Setting {
+                what: "the exposure (a factor)",
+                got: factor.to_string(),
+                right: "a finite number, 0 or above",
+            })
+        }
+    }
+
+    /// A camera's exposure value at ISO 100, for linear values in cd/m^2: the luminance `1.2 * 2^ev100` saturates the
+    /// sensor (ISO 12232, saturation-based speed, lens transmittance 0.65) and becomes 1.
+    ///
+    /// # Errors
+    /// [`ImageError::Setting`] where `ev100` is outside `[-40, 60]`.
+    pub fn from_ev100(ev100: f64) -> Result<Self, ImageError> {
+        if (-40.0..=60.0).contains(&ev100) {
+            Ok(Self {
+                factor: 1.0 / (1.2 * ev100.exp2()),
+            })
+        } else {
+            Err(ImageError::Setting {
+                what: "the exposure value (EV at ISO 100)",
+                got: ev100.to_string(),
+                right: "between -40 and 60",
+            })
+        }
+    }
+
+    /// Metered from luminances, such as those of a coarse grid of pixels of the picture: brings their typical value to
+    /// the metering's key. `None` where nothing is lit or the key is negative or not a number.
+    ///
+    /// `samples` are pairs of luminance and weight (solid angle, or 1): not-a-number, infinite and non-positive
+    /// luminances and weights do not count. The typical value is the weighted mean logarithm of what lies between two
+    /// percentiles, so that a sun's disc or a black ground leaves it alone. The result does not depend on the order of
+    /// the samples but by rounding.
+    pub fn metered(samples: &[(f32, f32)], metering: Metering) -> Option<Self> {
+        let typical = metering.typical_luminance(samples)?;
+        let factor = metering.key * metering.compensation_stops.exp2() / typical;
+        Self::factor_of(factor).ok()
+    }
+
+    /// The factor.
+    pub fn factor(self) -> f64 {
+        self.factor
+    }
+
+    /// The exposure value at ISO 100 that does the same, for linear values in cd/m^2.
+    pub fn ev100(self) -> f64 {
+        -(1.2 * self.factor).log2()
+    }
+
+    /// Brighter by so many stops (darker where negative).
+    ///
+    /// # Errors
+    /// [`ImageError::Setting`] where the result is out of range.
+    pub fn brighter_by(self, stops: f64) -> Result<Self, ImageError> {
+        Self::factor_of(self.factor * stops.exp2())
+    }
+}
+
+/// How [`Exposure::metered`] judges a scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Metering {
+    /// Value that the typical luminance is brought to: middle grey by default.
+    pub key: f64,
+    /// The darkest part of the picture left out, 0 to 1.
+    pub low_percentile: f64,
+    /// The part of the picture below which luminances count, 0 to 1.
+    pub high_percentile: f64,
+    /// Stops by which the result is made brighter.
+    pub compensation_stops: f64,
+}
+
+impl Default for Metering {
+    fn default() -> Self {
+        Self {
+            key: MIDDLE_GREY,
+            low_percentile: 0.1,
+            high_percentile: 0.95,
+            compensation_stops: 0.0,
+        }
+    }
+}
+
+impl Metering {
+    /// The weighted geometric mean of the luminances between the percentiles; `None` where nothing is lit.
+    pub fn typical_luminance(&self, samples: &[(f32, f32)]) -> Option<f64> {
+        let counts = |v: f32| v.is_finite() && v > 0.0;
+        let mut lit: Vec<(f32, f32)> = samples
+            .iter()
+            .copied()
+            .filter(|&(luminance, weight)| counts(luminance) && counts(weight))
+            .collect();
+        lit.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        let total: f64 = lit.iter().map(|&(_, weight)| f64::from(weight)).sum();
+        let low = self.low_percentile.clamp(0.0, 1.0) * total;
+        let high = (self.high_percentile.clamp(0.0, 1.0) * total).max(low);
+        let (mut passed, mut sum, mut weights) = (0.0, 0.0, 0.0);
+        for &(luminance, weight) in &lit {
+            let next = passed + f64::from(weight);
+            let share = next.min(high) - passed.max(low);
+            if share > 0.0 {
+                sum += share * f64::from(luminance).ln();
+                weights += share;
+            }
+            passed = next;
+        }
+        if weights > 0.0 {
+            Some((sum / weights).exp())
+        } else {
+            // Percentiles that leave nothing between them: the one luminance there.
+            let mut passed = 0.0;
+            lit.iter()
+                .find(|&&(_, weight)| {
+                    passed += f64::from(weight);
+                    passed >= low
+                })
+                .map(|&(luminance, _)| f64::from(luminance))
+        }
+    }
+}

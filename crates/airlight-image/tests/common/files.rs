@@ -1,0 +1,177 @@
+//! Files made in memory for the tests of reading.
+
+use super::Folder;
+use airlight_image::{DepthMap, DepthOptions, ImageError, read_depth};
+use exr::prelude::*;
+use std::io::Cursor;
+
+/// A part of an EXR file: its name, place and size, channels.
+pub struct Part {
+    pub name: Option<&'static str>,
+    pub position: (i32, i32),
+    pub size: (usize, usize),
+    pub channels: Vec<(&'static str, FlatSamples)>,
+    pub compression: Compression,
+    pub tile: Option<usize>,
+}
+
+impl Part {
+    pub fn new(size: (usize, usize), channels: Vec<(&'static str, FlatSamples)>) -> Self {
+        Self {
+            name: None,
+            position: (0, 0),
+            size,
+            channels,
+            compression: Compression::ZIP16,
+            tile: None,
+        }
+    }
+
+    pub fn named(self, name: &'static str) -> Self {
+        Self {
+            name: Some(name),
+            ..self
+        }
+    }
+}
+
+/// An EXR file whose display window has this upper left corner and size.
+pub fn exr_file(window: (i32, i32, usize, usize), parts: Vec<Part>) -> Vec<u8> {
+    let layers: Vec<Layer<AnyChannels<FlatSamples>>> = parts
+        .into_iter()
+        .map(|part| {
+            let list = part
+                .channels
+                .into_iter()
+                .map(|(name, samples)| AnyChannel::new(name, samples))
+                .collect();
+            let attributes = LayerAttributes {
+                layer_name: part.name.map(Text::from),
+                layer_position: Vec2(part.position.0, part.position.1),
+                ..LayerAttributes::default()
+            };
+            let encoding = Encoding {
+                compression: part.compression,
+                blocks: match part.tile {
+                    Some(side) => Blocks::Tiles(Vec2(side, side)),
+                    None => Blocks::ScanLines,
+                },
+                line_order: LineOrder::Increasing,
+            };
+            Layer::new(part.size, attributes, encoding, AnyChannels::sort(list))
+        })
+        .collect();
+    let (x, y, width, height) = window;
+    let mut attributes = ImageAttributes::new(IntegerBounds::new(Vec2(x, y), Vec2(width, height)));
+    attributes.chromaticities = Some(exr::meta::attribute::Chromaticities {
+        red: Vec2(0.7, 0.3),
+        green: Vec2(0.2, 0.8),
+        blue: Vec2(0.1, 0.05),
+        white: Vec2(0.3127, 0.329),
+    });
+    let mut bytes = Cursor::new(Vec::new());
+    Image {
+        attributes,
+        layer_data: layers.into_iter().collect::<Layers<_>>(),
+    }
+    .write()
+    .non_parallel()
+    .to_buffered(&mut bytes)
+    .unwrap();
+    bytes.into_inner()
+}
+
+/// A PNG file; `also` sets what else it says.
+pub fn png_file(
+    (width, height): (u32, u32),
+    color: png::ColorType,
+    depth: png::BitDepth,
+    data: &[u8],
+    also: impl FnOnce(&mut png::Encoder<'_, &mut Vec<u8>>),
+) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, width, height);
+    encoder.set_color(color);
+    encoder.set_depth(depth);
+    also(&mut encoder);
+    let mut writer = encoder.write_header().unwrap();
+    writer.write_image_data(data).unwrap();
+    writer.finish().unwrap();
+    bytes
+}
+
+/// Grey of 16 bits.
+pub fn grey_16(size: (u32, u32), values: &[u16]) -> Vec<u8> {
+    let data: Vec<u8> = values.iter().flat_map(|v| v.to_be_bytes()).collect();
+    let (color, depth) = (png::ColorType::Grayscale, png::BitDepth::Sixteen);
+    png_file(size, color, depth, &data, |_| {})
+}
+
+/// An NPY file of a version, of whatever the words say.
+pub fn npy_file(version: u8, descr: &str, fortran: bool, shape: &str, data: &[u8]) -> Vec<u8> {
+    let order = if fortran { "True" } else { "False" };
+    let mut header = format!("{{'descr': {descr}, 'fortran_order': {order}, 'shape': {shape}, }}");
+    while (header.len() + 12) % 64 != 63 {
+        header.push(' ');
+    }
+    header.push('\n');
+    let mut bytes = b"\x93NUMPY".to_vec();
+    bytes.extend([version, 0]);
+    if version == 1 {
+        bytes.extend((header.len() as u16).to_le_bytes());
+    } else {
+        bytes.extend((header.len() as u32).to_le_bytes());
+    }
+    bytes.extend(header.as_bytes());
+    bytes.extend(data);
+    bytes
+}
+
+/// A PFM file; `rows` from the top.
+pub fn pfm_file((width, height): (usize, usize), little: bool, rows: &[f32]) -> Vec<u8> {
+    let order = if little { "-0.003922" } else { "1.0" };
+    let mut bytes = format!("Pf\n{width} {height}\n{order}\n").into_bytes();
+    for row in rows.chunks(width).rev() {
+        for v in row {
+            bytes.extend(if little {
+                v.to_le_bytes()
+            } else {
+                v.to_be_bytes()
+            });
+        }
+    }
+    bytes
+}
+
+/// A JPEG file of a smooth picture.
+pub fn jpeg_file(size: (u16, u16), color: jpeg_encoder::ColorType, progressive: bool) -> Vec<u8> {
+    let each = match color {
+        jpeg_encoder::ColorType::Luma => 1,
+        jpeg_encoder::ColorType::Rgb => 3,
+        _ => 4,
+    };
+    let mut data = Vec::new();
+    for y in 0..size.1 {
+        for x in 0..size.0 {
+            for c in 0..each {
+                data.push((x * 3 + y * 2 + c * 40).min(255) as u8);
+            }
+        }
+    }
+    let mut bytes = Vec::new();
+    let mut encoder = jpeg_encoder::Encoder::new(&mut bytes, 95);
+    encoder.set_progressive(progressive);
+    encoder.encode(&data, size.0, size.1, color).unwrap();
+    bytes
+}
+
+/// The depth map in `bytes`, by way of a file.
+pub fn read_as(
+    folder: &Folder,
+    bytes: &[u8],
+    options: &DepthOptions,
+) -> std::result::Result<DepthMap, ImageError> {
+    let path = folder.0.join("depth.bin");
+    std::fs::write(&path, bytes).unwrap();
+    read_depth(&path, options)
+}

@@ -1,0 +1,77 @@
+//! Wide pictures do not need memory for all their rows. By itself in its file, so that no other test adds to the peak.
+
+use airlight_image::{
+    Control, PictureOptions, Size,
+    output::{
+        Metadata,
+        exr::{ExrOptions, ExrSample},
+        spectral::{self, SpectralLayout},
+    },
+    rows::RowFn,
+    tone::{ToneCurve, ToneMapper},
+    write_picture,
+};
+
+/// Peak memory of this process in bytes, where the system tells.
+fn peak_memory() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status
+        .lines()
+        .find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kilobytes: u64 = line.trim().trim_end_matches(" kB").parse().ok()?;
+    Some(kilobytes * 1024)
+}
+
+#[test]
+#[ignore = "takes a while: 16384 pixels wide, every format, 32 threads"]
+fn wide_pictures_fit_in_little_memory() {
+    let folder = std::env::temp_dir().join(format!("airlight-memory-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let rows = |channels| {
+        RowFn::new(channels, |y, out: &mut [f32]| {
+            // Grainy, so that little is gained by packing.
+            let mut state = y.wrapping_mul(0x9e37_79b9) | 1;
+            for value in out {
+                state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                *value = 0.1 + (state >> 8) as f32 * 1e-8;
+            }
+        })
+    };
+    let tone = ToneMapper::new(1.0, ToneCurve::default()).unwrap();
+    let float = ExrOptions {
+        sample: ExrSample::Float,
+        ..ExrOptions::default()
+    };
+    let options = PictureOptions {
+        exr: float,
+        ..PictureOptions::default()
+    };
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(32)
+        .build()
+        .unwrap();
+    pool.install(|| {
+        let size = Size::new(16384, 1024).unwrap();
+        for ending in ["png", "jpg", "hdr", "exr"] {
+            let path = folder.join(format!("wide.{ending}"));
+            write_picture(&path, size, &rows(3), &tone, &options, Control::default()).unwrap();
+            println!("{ending}: peak {:?}", peak_memory());
+        }
+        let wavelengths: Vec<f64> = (0..40).map(|i| 380.0 + 10.0 * f64::from(i)).collect();
+        spectral::write(
+            &folder.join("spectral.exr"),
+            Size::new(16384, 128).unwrap(),
+            &SpectralLayout::new(&wavelengths).unwrap(),
+            &rows(43),
+            &float,
+            &Metadata::default(),
+            Control::default(),
+        )
+        .unwrap();
+        println!("spectral: peak {:?}", peak_memory());
+    });
+    std::fs::remove_dir_all(folder).unwrap();
+    if let Some(peak) = peak_memory() {
+        assert!(peak < 300 << 20, "{} MiB", peak >> 20);
+    }
+}

@@ -1,0 +1,252 @@
+//! Files that appear whole or not at all, errors that say why, progress, and the same bytes on every run.
+
+mod common;
+
+use airlight_image::{
+    Control, ImageError, PictureFormat, PictureOptions, Progress, RowSource, Size,
+    output::{
+        Metadata, Written,
+        exr::{self, ExrOptions},
+        hdr,
+        jpeg::{self, JpegOptions},
+        png::{self, PngOptions},
+    },
+    rows::RowFn,
+    write_picture,
+};
+use common::{Folder, full_metadata, size, sky, tone};
+use std::{
+    fs,
+    io::Cursor,
+    path::Path,
+    sync::{
+        Mutex,
+        atomic::{AtomicBool, Ordering},
+    },
+};
+
+fn write_to(path: &Path, size: Size, source: &dyn RowSource) -> Result<Written, ImageError> {
+    write_picture(
+        path,
+        size,
+        source,
+        &tone(),
+        &PictureOptions::default(),
+        Control::default(),
+    )
+}
+
+#[test]
+fn the_ending_names_the_format() {
+    let folder = Folder::new("ending");
+    let size = size(40, 20);
+    for ending in ["exr", "hdr", "png", "jpg", "JPEG", "PNG"] {
+        let path = folder.0.join(format!("sky.{ending}"));
+        let written = write_to(&path, size, &sky(size, 3)).unwrap();
+        assert_eq!(fs::metadata(&path).unwrap().len(), written.bytes);
+        assert!(written.bytes > 100);
+        // Again, over the first.
+        write_to(&path, size, &sky(size, 3)).unwrap();
+    }
+    assert_eq!(folder.files().len(), 6);
+    assert_eq!(
+        PictureFormat::from_path(Path::new("a.b.Hdr")).unwrap(),
+        PictureFormat::Hdr
+    );
+    let error = PictureFormat::from_path(Path::new("sky.tif"))
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.contains("sky.tif") && error.contains(".exr") && error.contains("`.tif`"),
+        "{error}"
+    );
+    let error = PictureFormat::from_path(Path::new("sky"))
+        .unwrap_err()
+        .to_string();
+    assert!(error.contains("no ending"), "{error}");
+}
+
+#[test]
+fn a_bad_path_is_named_with_the_reason() {
+    let folder = Folder::new("paths");
+    let size = size(40, 20);
+    let missing = folder.0.join("none").join("sky.png");
+    let error = write_to(&missing, size, &sky(size, 3))
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.contains("none") && error.contains("no folder"),
+        "{error}"
+    );
+    fs::create_dir(folder.0.join("folder.png")).unwrap();
+    let error = write_to(&folder.0.join("folder.png"), size, &sky(size, 3)).unwrap_err();
+    assert!(error.to_string().contains("it is a folder"), "{error}");
+    let error = write_to(&folder.0.join("sky.exr"), size, &sky(size, 4)).unwrap_err();
+    assert!(error.to_string().contains('4'), "{error}");
+    assert_eq!(folder.files(), ["folder.png"]);
+}
+
+#[test]
+fn a_stopped_write_leaves_nothing() {
+    let folder = Folder::new("stopped");
+    let size = size(1000, 3000);
+    for ending in ["exr", "hdr", "png", "jpg"] {
+        let path = folder.0.join(format!("sky.{ending}"));
+        fs::write(&path, "before").unwrap();
+        let cancel = AtomicBool::new(false);
+        let inner = sky(size, 3);
+        let source = RowFn::new(3, |y, out: &mut [f32]| {
+            if y == 1500 {
+                cancel.store(true, Ordering::Relaxed);
+            }
+            inner.fill_row(y, out);
+        });
+        let error = write_picture(
+            &path,
+            size,
+            &source,
+            &tone(),
+            &PictureOptions::default(),
+            Control::cancelled_by(&cancel),
+        )
+        .unwrap_err();
+        assert!(error.is_cancelled(), "{ending}: {error}");
+        assert_eq!(fs::read(&path).unwrap(), b"before");
+    }
+    assert_eq!(folder.files().len(), 4);
+}
+
+#[test]
+fn a_panicking_source_leaves_nothing() {
+    let folder = Folder::new("panic");
+    let size = size(200, 100);
+    for ending in ["exr", "hdr", "png", "jpg"] {
+        let path = folder.0.join(format!("sky.{ending}"));
+        let source = RowFn::new(3, |y, out: &mut [f32]| {
+            assert!(y < 50, "the source gives up");
+            out.fill(0.5);
+        });
+        let outcome = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
+            write_to(&path, size, &source)
+        }));
+        assert!(outcome.is_err());
+    }
+    assert!(folder.files().is_empty(), "{:?}", folder.files());
+}
+
+#[test]
+fn a_full_disk_is_reported() {
+    struct Full(usize);
+    impl std::io::Write for Full {
+        fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+            if self.0 < bytes.len() {
+                return Err(std::io::Error::other("the disk is full"));
+            }
+            self.0 -= bytes.len();
+            Ok(bytes.len())
+        }
+        fn flush(&mut self) -> std::io::Result<()> {
+            Ok(())
+        }
+    }
+    let size = size(500, 2000);
+    let source = sky(size, 3);
+    for room in [0, 10, 5000] {
+        let metadata = Metadata::default();
+        let control = Control::default();
+        for outcome in [
+            hdr::encode(&mut Full(room), size, &source, &metadata, control),
+            png::encode(
+                &mut Full(room),
+                size,
+                &source,
+                &tone(),
+                &PngOptions::default(),
+                &metadata,
+                control,
+            ),
+            jpeg::encode(
+                &mut Full(room),
+                size,
+                &source,
+                &tone(),
+                &JpegOptions::default(),
+                &metadata,
+                control,
+            ),
+        ] {
+            let error = outcome.unwrap_err().at(Path::new("sky.x")).to_string();
+            assert!(
+                error.contains("disk is full") && error.contains("sky.x"),
+                "{error}"
+            );
+        }
+    }
+}
+
+#[test]
+fn progress_is_told_in_order_and_to_the_end() {
+    #[derive(Default)]
+    struct Heard(Mutex<Vec<u32>>);
+    impl Progress for Heard {
+        fn rows_written(&self, done: u32, total: u32) {
+            assert_eq!(total, 1000);
+            self.0.lock().unwrap().push(done);
+        }
+    }
+    let folder = Folder::new("progress");
+    let size = size(500, 1000);
+    for ending in ["exr", "hdr", "png", "jpg"] {
+        let heard = Heard::default();
+        write_picture(
+            &folder.0.join(format!("sky.{ending}")),
+            size,
+            &sky(size, 3),
+            &tone(),
+            &PictureOptions::default(),
+            Control::default().reporting_to(&heard),
+        )
+        .unwrap();
+        let rows = heard.0.into_inner().unwrap();
+        assert!(rows.is_sorted() && rows.len() > 2, "{rows:?}");
+        assert_eq!(rows.last(), Some(&1000));
+    }
+}
+
+#[test]
+fn the_same_rows_make_the_same_file() {
+    let size = size(700, 400);
+    let make = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
+        pool.install(|| {
+            let mut out = Cursor::new(Vec::new());
+            exr::encode(
+                &mut out,
+                size,
+                &["R", "G", "B"],
+                &sky(size, 3),
+                &ExrOptions::default(),
+                &full_metadata(),
+                Control::default(),
+            )
+            .unwrap();
+            let mut png = Vec::new();
+            png::encode(
+                &mut png,
+                size,
+                &sky(size, 3),
+                &tone(),
+                &PngOptions::default(),
+                &full_metadata(),
+                Control::default(),
+            )
+            .unwrap();
+            (out.into_inner(), png)
+        })
+    };
+    let (one, four) = (make(1), make(4));
+    assert!(one == four);
+}

@@ -1,0 +1,249 @@
+//! Depth maps: what their numbers mean, and how holes are filled.
+
+mod common;
+
+use airlight_image::{
+    DepthOptions, ImageError,
+    input::{DepthKind, DepthMeaning, Unknown, read_depth, read_picture},
+};
+use common::{Folder, files::*, size};
+
+fn options() -> DepthOptions {
+    DepthOptions::default()
+}
+
+const INF: f32 = f32::INFINITY;
+
+#[test]
+fn each_number_means_what_the_table_says() {
+    let folder = Folder::new("depth-numbers");
+    let mut bits = options();
+    let mut read = |meaning, unknown, values: &[f32]| {
+        bits = DepthOptions {
+            meaning,
+            unknown,
+            ..options()
+        };
+        read_as(&folder, &pfm_file((values.len(), 1), true, values), &bits)
+    };
+    let odd = [2.0, f32::NAN, 0.0, -0.0, INF, 1e10, 2e9, 3.4e38];
+    for meaning in [DepthMeaning::ZDepth, DepthMeaning::RayDistance] {
+        let map = read(meaning, Unknown::Clear, &odd).unwrap();
+        assert_eq!(map.metres, [2.0, 0.0, 0.0, 0.0, INF, INF, INF, INF]);
+        assert_eq!((map.holes, map.infinite), (3, 4));
+        assert_eq!(
+            map.kind == DepthKind::Ray,
+            meaning == DepthMeaning::RayDistance
+        );
+        let map = read(meaning, Unknown::Far, &odd).unwrap();
+        assert_eq!(map.metres, [2.0, INF, INF, INF, INF, INF, INF, INF]);
+    }
+    let stereo = DepthMeaning::Disparity {
+        focal_length_px: 1000.0,
+        baseline_m: 0.2,
+        offset_px: 10.0,
+    };
+    let values = [30.0, 0.0, INF, f32::NAN, -10.0, -20.0, -5.0];
+    let map = read(stereo, Unknown::Clear, &values).unwrap();
+    assert_eq!(map.metres, [5.0, 0.0, 0.0, 0.0, INF, INF, 40.0]);
+    assert_eq!((map.holes, map.infinite, map.kind), (3, 2, DepthKind::Z));
+    let values = [0.5, 0.0, -0.0, f32::NAN, INF, 1e-12];
+    let map = read(DepthMeaning::Inverse, Unknown::Clear, &values).unwrap();
+    assert_eq!(map.metres, [2.0, INF, INF, 0.0, 0.0, INF]);
+    for meaning in [DepthMeaning::ZDepth, DepthMeaning::Inverse, stereo] {
+        let error = read(meaning, Unknown::Fill, &[f32::NAN; 4])
+            .unwrap_err()
+            .to_string();
+        assert!(error.contains("all its 4 pixels are holes"), "{error}");
+    }
+}
+
+#[test]
+fn scale_and_sky() {
+    let folder = Folder::new("depth-scale");
+    let read = |options: &DepthOptions, values: &[u16]| {
+        let size = (values.len() as u32, 1);
+        read_as(&folder, &grey_16(size, values), options).unwrap()
+    };
+    let far = DepthOptions {
+        scale: 0.01,
+        far_from_m: Some(600.0),
+        ..options()
+    };
+    let map = read(&far, &[100, 59_999, 60_000, 65_535]);
+    assert_eq!(map.metres, [1.0, 599.99, INF, INF]);
+    assert_eq!(map.infinite, 2);
+    // KITTI: disparity in 1/256 pixels.
+    let kitti = DepthOptions {
+        meaning: DepthMeaning::Disparity {
+            focal_length_px: 721.5,
+            baseline_m: 0.54,
+            offset_px: 0.0,
+        },
+        scale: 1.0 / 256.0,
+        ..options()
+    };
+    let map = read(&kitti, &[256, 25_600]);
+    assert!((map.metres[0] - 389.61).abs() < 1e-3);
+    assert!((map.metres[1] - 3.8961).abs() < 1e-5);
+    let inverse = DepthOptions {
+        meaning: DepthMeaning::Inverse,
+        scale: 0.25,
+        ..options()
+    };
+    assert_eq!(read(&inverse, &[0, 1, 8]).metres, [INF, 4.0, 0.5]);
+}
+
+#[test]
+fn negative_depth_is_an_error_that_names_its_pixel() {
+    let folder = Folder::new("depth-negative");
+    let mut values = vec![1.0f32; 200 * 150];
+    values[120 * 200 + 7] = -2.5;
+    values[130 * 200] = f32::NEG_INFINITY;
+    let bytes = pfm_file((200, 150), true, &values);
+    for meaning in [
+        DepthMeaning::ZDepth,
+        DepthMeaning::RayDistance,
+        DepthMeaning::Inverse,
+    ] {
+        let mut options = DepthOptions {
+            meaning,
+            ..options()
+        };
+        let error = read_as(&folder, &bytes, &options).unwrap_err();
+        let ImageError::NegativeDepth {
+            count, x, y, value, ..
+        } = error
+        else {
+            panic!("{error}");
+        };
+        assert_eq!((count, x, y, value), (2, 7, 120, -2.5));
+        let text = error.to_string();
+        assert!(
+            text.contains("in 2 of its pixels, the first at x 7, y 120: -2.5"),
+            "{text}"
+        );
+        options.negative_is_unknown = true;
+        let map = read_as(&folder, &bytes, &options).unwrap();
+        assert_eq!((map.holes, map.metres[120 * 200 + 7]), (2, 1.0));
+    }
+}
+
+#[test]
+fn options_out_of_range_are_refused() {
+    let folder = Folder::new("depth-options");
+    let png = grey_16((1, 1), &[5]);
+    let stereo = |focal_length_px, baseline_m, offset_px| DepthMeaning::Disparity {
+        focal_length_px,
+        baseline_m,
+        offset_px,
+    };
+    for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        for options in [
+            DepthOptions {
+                scale: bad,
+                ..options()
+            },
+            DepthOptions {
+                far_from_m: Some(bad),
+                ..options()
+            },
+            DepthOptions {
+                meaning: stereo(bad, 1.0, 0.0),
+                ..options()
+            },
+            DepthOptions {
+                meaning: stereo(1.0, bad, 0.0),
+                ..options()
+            },
+            DepthOptions {
+                meaning: stereo(1.0, 1.0, f64::NAN),
+                ..options()
+            },
+        ] {
+            let result = read_as(&folder, &png, &options);
+            assert!(
+                matches!(result, Err(ImageError::Setting { .. })),
+                "{options:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn holes_are_filled_from_behind() {
+    let folder = Folder::new("depth-fill");
+    let o = f32::NAN;
+    let fill = |width: usize, values: &[f32]| {
+        let height = values.len() / width;
+        let map = read_as(
+            &folder,
+            &pfm_file((width, height), true, values),
+            &options(),
+        )
+        .unwrap();
+        assert!(map.metres.iter().all(|v| *v > 0.0));
+        map.metres
+    };
+    // Between a near and a far thing, the far one; at the edges what is there; the sky is farthest.
+    assert_eq!(fill(5, &[2.0, o, o, 9.0, o]), [2.0, 9.0, 9.0, 9.0, 9.0]);
+    assert_eq!(fill(5, &[o, 9.0, o, o, 2.0]), [9.0, 9.0, 9.0, 9.0, 2.0]);
+    assert_eq!(fill(4, &[INF, o, o, 2.0]), [INF, INF, INF, 2.0]);
+    // On one surface, straight in 1/z, as a floor seen at a slant is.
+    let floor = |x: usize| 1.0 / (0.2 + 0.002 * x as f32);
+    let mut row: Vec<f32> = (0..10).map(floor).collect();
+    row[4..8].fill(o);
+    for (x, v) in fill(10, &row).into_iter().enumerate() {
+        assert!((v / floor(x) - 1.0).abs() < 1e-6, "{x}: {v}");
+    }
+    // Rows of which nothing is known take the farther of those above and below.
+    let rows = [1.0, 8.0, o, o, o, o, 3.0, 2.0];
+    assert_eq!(fill(2, &rows), [1.0, 8.0, 3.0, 8.0, 3.0, 8.0, 3.0, 2.0]);
+    assert_eq!(fill(2, &[o, o, 3.0, 2.0]), [3.0, 2.0, 3.0, 2.0]);
+    assert_eq!(fill(2, &[3.0, 2.0, o, o]), [3.0, 2.0, 3.0, 2.0]);
+    // One row whose far side is wrongly near makes no streak.
+    let mut streak = [4.0, o, o, 1.0].repeat(9);
+    streak[4 * 4] = 1.5;
+    let filled = fill(4, &streak);
+    for y in 0..9 {
+        assert_eq!(filled[y * 4 + 1..y * 4 + 3], [4.0, 4.0], "{y}");
+    }
+    // What is known stays.
+    assert_eq!(filled[16], 1.5);
+}
+
+#[test]
+fn maps_and_pictures_must_be_as_large() {
+    let folder = Folder::new("depth-size");
+    let map = read_as(&folder, &grey_16((2, 3), &[5; 6]), &options()).unwrap();
+    let path = folder.0.join("colour.png");
+    let check = |width: u32, height: u32| {
+        let values = vec![9; (width * height) as usize];
+        std::fs::write(&path, grey_16((width, height), &values)).unwrap();
+        map.check_against(&read_picture(&path, None).unwrap())
+    };
+    check(2, 3).unwrap();
+    let error = check(3, 2).unwrap_err().to_string();
+    assert!(
+        error.contains("2 x 3") && error.contains("3 x 2"),
+        "{error}"
+    );
+}
+
+#[test]
+fn a_measured_map_is_filled() {
+    // Tail lamp and bench of the motorcycle, 96 x 64 pixels: tests/data/README.md.
+    let path = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/tests/data/motorcycle_depth_mm.png"
+    );
+    let options = DepthOptions {
+        scale: 0.001,
+        ..options()
+    };
+    let map = read_depth(path.as_ref(), &options).unwrap();
+    assert_eq!((map.size, map.infinite), (size(96, 64), 0));
+    assert!(map.holes > 300, "{}", map.holes);
+    // The room ends 6 m away, the lamp begins at 2 m.
+    assert!(map.metres.iter().all(|z| (1.5..7.0).contains(z)));
+}

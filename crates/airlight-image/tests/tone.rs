@@ -1,0 +1,275 @@
+//! Exposure, tone curve, dither.
+
+use airlight_image::tone::{
+    Exposure, FilmicSettings, Metering, ToneCurve, ToneMapper, dither::RowDither, srgb,
+};
+
+fn filmic() -> ToneMapper {
+    ToneMapper::new(1.0, ToneCurve::default()).unwrap()
+}
+
+#[test]
+fn middle_grey_comes_out_as_it_went_in() {
+    for (exposure, scene) in [(1.0, 0.18), (0.001, 180.0), (1e6, 0.18e-6)] {
+        let shown = ToneMapper::new(exposure, ToneCurve::default())
+            .unwrap()
+            .map([scene; 3]);
+        for v in shown {
+            assert!((f64::from(v) - srgb::encode(0.18)).abs() < 1e-3, "{v}");
+        }
+    }
+}
+
+#[test]
+fn the_curve_runs_from_black_to_white_without_turning() {
+    let tone = filmic();
+    assert_eq!(tone.map([0.0; 3]), [0.0; 3]);
+    assert_eq!(tone.map([0.18 * 2f32.powf(6.6); 3]), [1.0; 3]);
+    let mut last = 0.0;
+    for i in 0..200_000 {
+        let v = 1e-5 * (1.0 + 1e-4f32).powi(i);
+        let shown = tone.map([v; 3]);
+        assert!(shown[1] >= last, "falls at {v}");
+        assert!(shown[1] - last < 1e-3, "jumps at {v}");
+        assert!((shown[0] - shown[1]).abs() < 1e-6 && (shown[2] - shown[1]).abs() < 1e-6);
+        last = shown[1];
+    }
+    // More of one component never darkens the whole.
+    let brightness = |rgb: [f32; 3]| {
+        let shown = tone.map(rgb).map(|v| srgb::decode(f64::from(v)) as f32);
+        srgb::luminance(shown)
+    };
+    for c in 0..3 {
+        let mut last = 0.0;
+        for i in 0..2000 {
+            let mut rgb = [0.05, 0.1, 0.2];
+            rgb[c] += 1e-3 * 1.01f32.powi(i);
+            let now = brightness(rgb);
+            assert!(
+                now >= last - 1e-5,
+                "component {c} step {i}: {now} below {last}"
+            );
+            last = now;
+        }
+    }
+}
+
+#[test]
+fn no_input_gives_nonsense() {
+    let odd = [
+        f32::NAN,
+        f32::INFINITY,
+        f32::NEG_INFINITY,
+        -1.0,
+        -1e30,
+        1e38,
+        -0.0,
+        0.0,
+        1e-40,
+        0.18,
+        5.0,
+    ];
+    for curve in [ToneCurve::default(), ToneCurve::Clip] {
+        for exposure in [0.0, 1e-30, 1.0, 1e30] {
+            let tone = ToneMapper::new(exposure, curve).unwrap();
+            for r in odd {
+                for g in odd {
+                    for b in odd {
+                        for v in tone.map([r, g, b]) {
+                            assert!((0.0..=1.0).contains(&v), "{v} from {r} {g} {b}");
+                        }
+                    }
+                }
+            }
+        }
+    }
+    assert!(ToneMapper::new(f32::NAN, ToneCurve::Clip).is_err());
+    assert!(ToneMapper::new(-1.0, ToneCurve::Clip).is_err());
+    let flat = FilmicSettings {
+        slope: 0.5,
+        ..FilmicSettings::default()
+    };
+    assert!(ToneMapper::new(1.0, ToneCurve::Filmic(flat)).is_err());
+}
+
+/// Hue angle in degrees of an sRGB colour, in the plane of a*, b* of Oklab-like opponents (linear light, cube roots).
+fn hue_deg(encoded: [f32; 3]) -> f64 {
+    let [r, g, b] = encoded.map(|v| srgb::decode(f64::from(v)));
+    let l = (0.412_22 * r + 0.536_33 * g + 0.051_45 * b).cbrt();
+    let m = (0.211_90 * r + 0.680_70 * g + 0.107_40 * b).cbrt();
+    let s = (0.088_30 * r + 0.281_72 * g + 0.629_98 * b).cbrt();
+    let (x, y) = (
+        1.977_998 * l - 2.428_592 * m + 0.450_594 * s,
+        0.025_904 * l + 0.782_772 * m - 0.808_676 * s,
+    );
+    y.atan2(x).to_degrees()
+}
+
+/// The largest change of hue from that of the dim colour, over the stops at which colour is left to see.
+fn hue_drift(tone: &ToneMapper, rgb: [f32; 3]) -> f64 {
+    let start = hue_deg(tone.map(rgb.map(|v| v * 0.05)));
+    (0..100)
+        .map(|i| tone.map(rgb.map(|v| v * 0.05 * 2f32.powf(i as f32 * 0.1))))
+        .filter(|shown| {
+            let most = shown.iter().copied().fold(0.0, f32::max);
+            most - shown.iter().copied().fold(1.0, f32::min) > 0.1
+        })
+        .map(|shown| ((hue_deg(shown) - start + 540.0).rem_euclid(360.0) - 180.0).abs())
+        .fold(0.0, f64::max)
+}
+
+#[test]
+fn bright_colours_keep_their_hue_better_than_when_cut_off() {
+    let clip = ToneMapper::new(1.0, ToneCurve::Clip).unwrap();
+    for (name, rgb, most) in [
+        ("sunset orange", [1.0, 0.35, 0.05], 30.0),
+        ("deep sky blue", [0.05, 0.25, 1.0], 30.0),
+        ("sky blue", [0.2, 0.4, 1.0], 20.0),
+    ] {
+        let (ours, cut) = (hue_drift(&filmic(), rgb), hue_drift(&clip, rgb));
+        println!("{name}: filmic {ours:.1} deg, cut off {cut:.1} deg");
+        assert!(ours < most, "{name}: hue drifts by {ours} degrees");
+        assert!(ours < cut, "{name}: {ours} degrees, cut off {cut}");
+    }
+    // Pure primaries end in white.
+    for rgb in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] {
+        let shown = filmic().map(rgb.map(|v: f32| v * 1e4));
+        assert!(shown.iter().all(|&v| v > 0.99), "{shown:?}");
+    }
+}
+
+#[test]
+fn colours_near_middle_grey_keep_their_saturation() {
+    let tone = filmic();
+    let rgb = [0.12f32, 0.18, 0.30];
+    let shown = tone.map(rgb).map(|v| srgb::decode(f64::from(v)));
+    for (got, want) in shown.iter().zip(rgb) {
+        assert!((got / f64::from(want) - 1.0).abs() < 0.1, "{shown:?}");
+    }
+}
+
+#[test]
+fn colours_outside_the_gamut_keep_their_luminance() {
+    let tone = ToneMapper::new(1.0, ToneCurve::default()).unwrap();
+    // Slightly negative blue: close to the same colour with none.
+    let a = tone.map([0.5, 0.2, -0.001]);
+    let b = tone.map([0.5, 0.2, 0.0]);
+    for c in 0..3 {
+        assert!((a[c] - b[c]).abs() < 0.02, "{a:?} against {b:?}");
+    }
+    assert_eq!(tone.map([-1.0, -1.0, -1.0]), [0.0; 3]);
+}
+
+#[test]
+fn the_table_agrees_with_the_formula() {
+    let clip = ToneMapper::new(1.0, ToneCurve::Clip).unwrap();
+    let mut worst: f64 = 0.0;
+    for i in 0..=100_000 {
+        let v = i as f32 / 100_000.0;
+        let got = f64::from(clip.map([v; 3])[0]);
+        worst = worst.max((got - srgb::encode(f64::from(v))).abs());
+    }
+    assert!(worst < 2e-6, "{worst}");
+}
+
+#[test]
+fn dither_is_balanced_and_the_same_every_time() {
+    let (mut sum, mut squares, mut next_to) = ([0.0; 3], [0.0; 3], 0.0);
+    let (rows, columns) = (200, 1000);
+    for y in 0..rows {
+        let mut row = RowDither::new(y);
+        let mut before = 0.0;
+        for _ in 0..columns {
+            let noise = row.next_pixels::<1>().map(|[v]| v);
+            for c in 0..3 {
+                assert!(noise[c].abs() < 1.0);
+                sum[c] += f64::from(noise[c]);
+                squares[c] += f64::from(noise[c]).powi(2);
+            }
+            next_to += before * f64::from(noise[0]);
+            before = f64::from(noise[0]);
+        }
+    }
+    let count = f64::from(rows * columns);
+    for c in 0..3 {
+        assert!((sum[c] / count).abs() < 1e-3);
+        assert!((squares[c] / count - 1.0 / 6.0).abs() < 2e-3);
+    }
+    // Neighbours lean to opposite sides: the noise is fine-grained.
+    assert!((next_to / count + 1.0 / 12.0).abs() < 2e-3);
+    // However many are asked for at a time.
+    let many = RowDither::new(7).next_pixels::<5>();
+    let mut one = RowDither::new(7);
+    for i in 0..5 {
+        assert_eq!(one.next_pixels::<1>(), many.map(|plane| [plane[i]]));
+    }
+}
+
+#[test]
+fn dither_keeps_the_mean_between_two_steps() {
+    let tone = ToneMapper::new(1.0, ToneCurve::Clip).unwrap();
+    let level = 100.3;
+    let linear = srgb::decode(level / 255.0) as f32;
+    let row = vec![linear; 3 * 100_000];
+    let mut out = vec![0u8; row.len()];
+    tone.row_to_u8(5, &row, &mut out);
+    let mean = out.iter().map(|&v| f64::from(v)).sum::<f64>() / out.len() as f64;
+    assert!((mean - level).abs() < 0.01, "{mean}");
+    tone.with_dither(false).row_to_u8(5, &row, &mut out);
+    assert!(out.iter().all(|&v| v == 100));
+    // Black and white stay clean.
+    let tone = ToneMapper::new(1.0, ToneCurve::Clip).unwrap();
+    for (linear, want) in [(0.0, 0), (1.0, 255), (7.0, 255)] {
+        tone.row_to_u8(5, &vec![linear; 3000], &mut out[..3000]);
+        assert!(out[..3000].iter().all(|&v| v == want));
+    }
+}
+
+#[test]
+fn exposure_values_are_those_of_the_standard() {
+    let exposure = Exposure::from_ev100(15.0).unwrap();
+    assert!((exposure.factor() * 1.2 * 32768.0 - 1.0).abs() < 1e-12);
+    assert!((exposure.ev100() - 15.0).abs() < 1e-12);
+    assert!((exposure.brighter_by(2.0).unwrap().ev100() - 13.0).abs() < 1e-12);
+    assert!(Exposure::from_ev100(f64::NAN).is_err());
+    assert!(Exposure::from_ev100(1e9).is_err());
+    assert!(Exposure::factor_of(f64::INFINITY).is_err());
+}
+
+#[test]
+fn metering_leaves_the_sun_alone() {
+    let sky: Vec<(f32, f32)> = (0..1000).map(|i| (2000.0 + i as f32 * 4.0, 1.0)).collect();
+    let metering = Metering::default();
+    let plain = Exposure::metered(&sky, metering).unwrap();
+    let typical = metering.typical_luminance(&sky).unwrap();
+    assert!((3000.0..5000.0).contains(&typical), "{typical}");
+    assert!((plain.factor() * typical - 0.18).abs() < 1e-9);
+    let mut with_sun = sky.clone();
+    with_sun.extend([(1.6e9, 1.0); 10]);
+    with_sun.extend([
+        (f32::NAN, 1.0),
+        (f32::INFINITY, 1.0),
+        (-3.0, 1.0),
+        (0.0, 1.0),
+        (1.0, 0.0),
+        (1.0, f32::NAN),
+    ]);
+    with_sun.reverse();
+    let sunny = Exposure::metered(&with_sun, metering).unwrap();
+    assert!((sunny.factor() / plain.factor()).log2().abs() < 0.02);
+    let up = Metering {
+        compensation_stops: 1.0,
+        ..metering
+    };
+    let brighter = Exposure::metered(&sky, up).unwrap();
+    assert!((brighter.factor() / plain.factor() - 2.0).abs() < 1e-9);
+    assert!(Exposure::metered(&[], metering).is_none());
+    assert!(Exposure::metered(&[(0.0, 1.0), (f32::NAN, 1.0)], metering).is_none());
+    assert!(Exposure::metered(&[(5.0, 1.0)], metering).is_some());
+    let empty_range = Metering {
+        low_percentile: 0.9,
+        high_percentile: 0.1,
+        ..metering
+    };
+    assert!(empty_range.typical_luminance(&sky).is_some());
+}

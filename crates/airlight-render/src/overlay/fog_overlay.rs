@@ -1,0 +1,206 @@
+//! What lies between camera and scene.
+
+use super::light_glow::LightGlow;
+use airlight::fog::{Fog, FogTable, legacy};
+use airlight::scene::FoggySky;
+use airlight::spectrum::Spectrum;
+use airlight::spectrum::rgb::{srgb_decode, srgb_encode};
+use airlight::transfer::PathOptics;
+use glam::DVec3;
+use std::sync::{Arc, LazyLock};
+
+/// What lies between camera and scene.
+#[derive(Clone)]
+pub enum FogOverlay<'a> {
+    /// A fog, and the lamps in it.
+    Fog(FogSource<'a>, Option<LightGlow>),
+    /// Exponential-squared fog, a look: density (1/m) and colour.
+    ExponentialSquared(f64, Spectrum<3>),
+    /// Linear fog, a look: where it starts and ends (m), and colour.
+    Linear(f64, f64, Spectrum<3>),
+    /// Foggy Cityscapes (Sakaridis et al. 2018): uniform fog of an extinction (1/m) and one colour, blended in encoded
+    /// (sRGB) values instead of light.
+    Encoded(f64, Spectrum<3>),
+}
+
+/// A fog and the light of the day that it is in.
+#[derive(Clone)]
+pub enum FogSource<'a> {
+    /// A fog in a light of its own.
+    Alone(Box<Fog<3>>),
+    /// A fog in a solved sky.
+    Sky {
+        /// Both, with the eye at the camera's height.
+        sky: Arc<FoggySky<'a, 3>>,
+        /// Units of the picture in one cd/m^2.
+        radiance_scale: f32,
+        /// Whether the picture has the air.
+        air: ExistingAerial,
+    },
+}
+
+/// Whether a picture shows the clear air before its things.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ExistingAerial {
+    /// It does.
+    Drawn,
+    /// It does not, but before its sky: the air is added.
+    Missing,
+}
+
+/// A veil as seen from a height: quickly, for the pixels of a picture.
+pub(super) struct FogSampler<'a> {
+    overlay: &'a FogOverlay<'a>,
+    eye_height_m: f64,
+    /// A fog alone, tabulated.
+    table: Option<FogTable<'a, 3>>,
+}
+
+impl<'a> FogSampler<'a> {
+    /// Seen from a height (m).
+    pub fn from_height(overlay: &'a FogOverlay<'a>, eye_height_m: f64) -> Self {
+        let table = match overlay {
+            FogOverlay::Fog(FogSource::Alone(fog), _) => Some(FogTable::new(fog, eye_height_m)),
+            _ => None,
+        };
+        Self {
+            overlay,
+            eye_height_m,
+            table,
+        }
+    }
+
+    /// What it does up to a distance (m; infinite: the sky) in a direction, with the path radiance of fog where that is
+    /// given.
+    pub fn optics(
+        &self,
+        direction: DVec3,
+        distance_m: f64,
+        given: Option<Spectrum<3>>,
+    ) -> PathOptics<3> {
+        match self.overlay {
+            FogOverlay::Fog(body, light_glow) => {
+                let mut optics = match &self.table {
+                    Some(table) => table.along(direction, distance_m),
+                    None => body.optics(self.eye_height_m, direction, distance_m),
+                };
+                optics.path_radiance = given.unwrap_or(optics.path_radiance);
+                if let Some(light_glow) = light_glow {
+                    let (height_m, direction) = (self.eye_height_m, direction);
+                    optics.path_radiance +=
+                        light_glow.path_radiance(height_m, direction, distance_m);
+                }
+                optics
+            }
+            FogOverlay::ExponentialSquared(density, colour) => {
+                legacy::exponential_squared(*density, distance_m, *colour)
+            }
+            FogOverlay::Linear(start, end, colour) => {
+                legacy::linear(*start, *end, distance_m, *colour)
+            }
+            FogOverlay::Encoded(extinction, colour) => {
+                let transmittance = (-extinction * distance_m).exp() as f32;
+                PathOptics {
+                    transmittance: Spectrum::splat(transmittance),
+                    path_radiance: *colour * (1.0 - transmittance),
+                }
+            }
+        }
+    }
+
+    /// A colour seen through it.
+    pub fn apply(&self, optics: &PathOptics<3>, colour: Spectrum<3>) -> Spectrum<3> {
+        let FogOverlay::Encoded(_, fog) = self.overlay else {
+            return optics.apply(colour);
+        };
+        let part = optics.transmittance[0];
+        if part == 1.0 {
+            return colour;
+        }
+        Spectrum::from_fn(|i| decode(encode(colour[i]) * part + encode(fog[i]) * (1.0 - part)))
+    }
+}
+
+impl FogSource<'_> {
+    fn optics(&self, eye_height_m: f64, direction: DVec3, distance_m: f64) -> PathOptics<3> {
+        match self {
+            Self::Alone(fog) => fog.along(eye_height_m, direction, distance_m),
+            Self::Sky {
+                sky,
+                radiance_scale,
+                air,
+            } => {
+                let optics = match air {
+                    ExistingAerial::Missing if distance_m < f64::INFINITY => {
+                        sky.optics(direction, distance_m)
+                    }
+                    _ => sky.over_clear(direction, distance_m),
+                };
+                PathOptics {
+                    path_radiance: optics.path_radiance * *radiance_scale,
+                    ..optics
+                }
+            }
+        }
+    }
+}
+
+/// Steps of the tables of the sRGB curve.
+const STEPS: usize = 4096;
+
+/// The sRGB signal of the square of each step.
+static SIGNALS: LazyLock<Vec<f32>> = LazyLock::new(|| {
+    let step = |k| f64::from(k) / STEPS as f64;
+    (0..=STEPS as u32)
+        .map(|k| srgb_encode(step(k).powi(2)) as f32)
+        .collect()
+});
+
+/// The linear value of each step.
+static LINEAR: LazyLock<Vec<f32>> = LazyLock::new(|| {
+    let step = |k| f64::from(k) / STEPS as f64;
+    (0..=STEPS as u32)
+        .map(|k| srgb_decode(step(k)) as f32)
+        .collect()
+});
+
+/// [`srgb_encode`] to 1e-6.
+fn encode(linear: f32) -> f32 {
+    match linear {
+        0.004..=1.0 => between(&SIGNALS, linear.sqrt()),
+        _ => srgb_encode(f64::from(linear)) as f32,
+    }
+}
+
+/// [`srgb_decode`] to 1e-6.
+fn decode(signal: f32) -> f32 {
+    match signal {
+        0.0..=1.0 => between(&LINEAR, signal),
+        _ => srgb_decode(f64::from(signal)) as f32,
+    }
+}
+
+/// A table from 0 to 1 at a place.
+#[inline]
+fn between(table: &[f32], place: f32) -> f32 {
+    let x = place * STEPS as f32;
+    let k = (x as usize).min(STEPS - 1);
+    let part = x - k as f32;
+    table[k] + part * (table[k + 1] - table[k])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tables_of_the_curve_are_the_curve() {
+        for k in -100..=20_000 {
+            let x = k as f32 / 17_000.0;
+            let (signal, linear) = (srgb_encode(f64::from(x)), srgb_decode(f64::from(x)));
+            assert!((f64::from(encode(x)) - signal).abs() < 1e-6, "{x}");
+            assert!((f64::from(decode(x)) - linear).abs() < 1e-6, "{x}");
+        }
+        assert!(encode(f32::NAN).is_nan() && encode(f32::INFINITY) == f32::INFINITY);
+    }
+}

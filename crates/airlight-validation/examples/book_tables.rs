@@ -1,0 +1,166 @@
+//! The tables of the book's chapter on accuracy, as it shows them (`scripts/book`):
+//!
+//! ```sh
+//! cargo run --release -p airlight-validation --example book_tables -- tables
+//! ```
+//!
+//! `tables` (other solvers), `twilight` (Airlight's Monte Carlo, with the fine settings as well: some minutes), `measured` (the
+//! measured sky) and `fit` (what was fitted to it).
+
+use airlight::sky::SkySettings;
+use airlight_validation::check::Statistics;
+use airlight_validation::measured::{self, FOLDS};
+use airlight_validation::{Check, Suite, run, skies};
+use std::error::Error;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    match std::env::args().nth(1).as_deref() {
+        Some("tables") => tables(),
+        Some("twilight") => twilight(),
+        Some("measured") => measured(),
+        Some("fit") => {
+            fit();
+            Ok(())
+        }
+        _ => Err("say which table: tables, twilight, measured, fit".into()),
+    }
+}
+
+/// What a check comes to; each has rows.
+fn statistics(check: &Check) -> Result<Statistics, Box<dyn Error>> {
+    Ok(check.statistics().ok_or("a check without rows")?)
+}
+
+/// The sun's zenith angle of a check of one sun, degrees.
+fn sun_zenith_deg(check: &Check) -> f64 {
+    check.rows.first().map_or(0.0, |row| row.at.sun_zenith_deg)
+}
+
+/// Every table of other solvers, atmosphere and sun.
+fn tables() -> Result<(), Box<dyn Error>> {
+    println!("| against | atmosphere | sun zenith | views | mean | rms | worst |");
+    println!("|---|---|---|---|---|---|---|");
+    let checks = run(&[Suite::Tables]);
+    let mut rows = Vec::new();
+    // Flat libRadtran makes no claim.
+    for check in checks.iter().filter(|check| check.limit.is_some()) {
+        let mut parts = check.what.split(", ");
+        let light = match parts.next() {
+            Some("scattered once") => "single scattering",
+            _ => "all orders",
+        };
+        let against = match check.against.as_str() {
+            "Monte Carlo on the sphere" => "Monte Carlo",
+            other => other,
+        };
+        let air = match parts.next() {
+            Some("a0.0") => "rayleigh, albedo 0",
+            Some("a0.3") => "rayleigh, albedo 0.3",
+            Some("earth_demo") => "earth-demo",
+            other => other.ok_or("a check without an atmosphere")?,
+        };
+        let s = statistics(check)?;
+        let sun = sun_zenith_deg(check);
+        let order = (format!("{light}, {against}"), air.to_owned(), sun as u32);
+        let row = format!(
+            "| {light}, {against} | {air} | {sun}° | {} | {:+.2} % | {:.2} % | {:.2} % |",
+            s.count,
+            s.mean,
+            s.rms,
+            s.worst.abs()
+        );
+        rows.push((order, row));
+    }
+    rows.sort();
+    for (_, row) in rows {
+        println!("{row}");
+    }
+    Ok(())
+}
+
+/// Rms and worst error against Airlight's own Monte Carlo, each air with the usual settings and the fine ones.
+fn twilight() -> Result<(), Box<dyn Error>> {
+    println!("| sun | clear | clear, fine | hazy | hazy, fine | desert | desert, fine |");
+    println!("|---|---|---|---|---|---|---|");
+    let usual = skies::against_truth(&SkySettings::default());
+    let fine = skies::against_truth(&SkySettings::fine());
+    let mut suns: Vec<f64> = usual.iter().map(sun_zenith_deg).collect();
+    suns.sort_by(f64::total_cmp);
+    suns.dedup();
+    for sun in suns {
+        print!("| {}° |", 90.0 - sun);
+        for air in ["clear", "hazy", "desert"] {
+            for checks in [&usual, &fine] {
+                let of = |check: &&Check| {
+                    check.what.contains(&format!(", {air},")) && sun_zenith_deg(check) == sun
+                };
+                let check = checks.iter().find(of).ok_or("a table lacks a sun")?;
+                let s = statistics(check)?;
+                print!(" {:.1}, {:.1} |", s.rms, s.worst.abs());
+            }
+        }
+        println!();
+    }
+    Ok(())
+}
+
+/// Ours and published models beside the measured sky.
+fn measured() -> Result<(), Box<dyn Error>> {
+    println!("| what | rms, mW m⁻² sr⁻¹ nm⁻¹, these 8 scans | all 15 |\n|---|---|---|");
+    let checks = run(&[Suite::Measured]);
+    let [published_air, of_the_day, ..] = checks.as_slice() else {
+        return Err("the measured sky lacks a check".into());
+    };
+    let (csm, day) = (statistics(published_air)?.rms, statistics(of_the_day)?.rms);
+    let mut rows = vec![
+        (
+            day,
+            format!("**Airlight, air of the day** | **{day:.1}** |"),
+        ),
+        (
+            csm,
+            format!("Airlight, the air that those models were run with (`csm`) | {csm:.1} |"),
+        ),
+    ];
+    for model in measured::published() {
+        // The best run of each, and what was mended.
+        let name = match model.model.as_str() {
+            "bruneton, 10wl" => "Bruneton (10 wavelengths)",
+            "libradtran, 40wl" => "libRadtran (40)",
+            "libradtran, 40wl_libradtran_fixed" => "libRadtran, its interface mended (40)",
+            "haber, 10wl" => "Haber (10)",
+            "nishita96, 40wl" => "Nishita 1996 (40)",
+            "hosek, 40wl" => "Hosek (40)",
+            "preetham, 40wl" => "Preetham (40)",
+            _ => continue,
+        };
+        let (ours, all) = (model.rmse, model.rmse_all_scans);
+        rows.push((ours, format!("{name} | {ours:.1} | {all:.1}")));
+    }
+    rows.sort_by(|a, b| a.0.total_cmp(&b.0));
+    for (_, row) in rows {
+        println!("| {row} |");
+    }
+    Ok(())
+}
+
+/// What was fitted to each half of the scans.
+fn fit() {
+    println!(
+        "| fitted to | optical depth at 550 nm | Ångström exponent | single-scattering albedo |"
+    );
+    println!("|---|---|---|---|");
+    for fold in &FOLDS {
+        let scans = fold.fitted.map(|time| {
+            let (hour, minute) = time.split_at(2);
+            format!("{}:{minute}", hour.trim_start_matches('0'))
+        });
+        println!(
+            "| {} | {:.4} | {:.3} | {:.3} |",
+            scans.join(", "),
+            fold.aerosol.optical_depth_550,
+            fold.aerosol.angstrom_exponent,
+            fold.aerosol.single_scattering_albedo
+        );
+    }
+}

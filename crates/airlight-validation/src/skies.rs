@@ -1,0 +1,335 @@
+//! Skies against tables of other solvers.
+
+use crate::check::{Check, Row, Suite, Unit};
+use crate::solved::Solved;
+use crate::table::{Line, Table};
+use airlight::atmosphere::aerosol_types::AerosolType;
+use airlight::atmosphere::{self, AerosolLoad, AerosolMixture, Atmosphere, reference};
+use airlight::sky::SkySettings;
+
+/// A table of skies made by one solver.
+struct Source {
+    suite: Suite,
+    text: &'static str,
+    against: &'static str,
+    /// What it may itself be off by on top of our claim, percent.
+    own_error: f64,
+    /// The sun's zenith angle up to which the first of `claims` holds, and beyond which the second, degrees.
+    low_sun_deg: f64,
+    /// What no direction may be off by, all orders, percent.
+    claims: [f64; 2],
+}
+
+const MONTE_CARLO: [Source; 3] = [
+    monte_carlo(include_str!("../data/mc_sphere_rayleigh.csv")),
+    monte_carlo(include_str!("../data/mc_sphere_earth_demo.csv")),
+    monte_carlo(include_str!("../data/mc_sphere_csm.csv")),
+];
+
+const fn monte_carlo(text: &'static str) -> Source {
+    Source {
+        suite: Suite::Tables,
+        text,
+        against: "Monte Carlo on the sphere",
+        own_error: 0.0,
+        low_sun_deg: 80.0,
+        claims: [1.0, 2.0],
+    }
+}
+
+/// Airlight's own Monte Carlo, which other tests hold to the tables of others; by the example `sky_truth`.
+const TRUTH: [Source; 3] = [
+    truth(include_str!("../data/mc_airlight_clear.csv"), [1.0, 3.0]),
+    truth(include_str!("../data/mc_airlight_hazy.csv"), [2.5, 3.5]),
+    truth(include_str!("../data/mc_airlight_desert.csv"), [2.5, 7.0]),
+];
+
+const fn truth(text: &'static str, claims: [f64; 2]) -> Source {
+    Source {
+        suite: Suite::MonteCarlo,
+        text,
+        against: "Airlight's Monte Carlo",
+        own_error: 0.0,
+        low_sun_deg: 88.0,
+        claims,
+    }
+}
+
+/// It agrees with the Monte Carlo to 0.3 % (95th percentile; csm 1.1 %).
+const SASKTRAN: [Source; 3] = [
+    sasktran(include_str!("../data/sasktran2_rayleigh_sphere.csv"), 0.3),
+    sasktran(include_str!("../data/sasktran2_earth_demo.csv"), 0.3),
+    sasktran(include_str!("../data/sasktran2_csm.csv"), 1.1),
+];
+
+const fn sasktran(text: &'static str, own_error: f64) -> Source {
+    Source {
+        suite: Suite::Tables,
+        text,
+        against: "SASKTRAN2",
+        own_error,
+        low_sun_deg: 80.0,
+        claims: [1.0, 2.0],
+    }
+}
+
+/// Plane-parallel: compared where neither sun nor view is farther than 75 degrees from the zenith.
+const LIBRADTRAN: &str = include_str!("../data/libradtran_fixed.csv");
+const PEERS: &str = include_str!("../data/csm_sky_radiance_10wl.csv");
+
+/// What a row of a table says: which atmosphere, and which light.
+struct Case {
+    atmosphere: &'static str,
+    single: bool,
+    sun_zenith_deg: f64,
+}
+
+impl Case {
+    fn of(line: Line<'_>, source: &Source) -> Self {
+        let config = match line.has("ground_albedo") {
+            // One table counts its atmospheres by the ground's albedo.
+            true => line.text("ground_albedo"),
+            false => line.text("config"),
+        };
+        Self {
+            atmosphere: match config {
+                "0" | "0.0" => "a0.0",
+                "0.3" => "a0.3",
+                other => other,
+            },
+            single: source.against == "SASKTRAN2" && line.text("mode") == "single",
+            sun_zenith_deg: line.number("sun_zenith_deg"),
+        }
+    }
+
+    fn is(&self, other: &Self) -> bool {
+        self.atmosphere == other.atmosphere
+            && self.single == other.single
+            && self.sun_zenith_deg == other.sun_zenith_deg
+    }
+
+    /// What no direction may be off by: 0.2 % for light scattered once; for all orders what is claimed, and what the
+    /// source is off by itself.
+    fn limit(&self, source: &Source) -> f64 {
+        let [high, low] = source.claims;
+        match (self.single, self.sun_zenith_deg <= source.low_sun_deg) {
+            (true, _) => 0.2,
+            (false, true) => high + source.own_error,
+            (false, false) => low + source.own_error,
+        }
+    }
+}
+
+/// An atmosphere of the tables, and the three wavelengths at which its coefficients are those of their columns, nm.
+pub fn atmosphere(name: &str) -> (Atmosphere, [f64; 3]) {
+    match name {
+        "a0.0" => (reference::rayleigh(0.0), [440.0, 550.0, 680.0]),
+        "a0.3" => (reference::rayleigh(0.3), [440.0, 550.0, 680.0]),
+        "earth_demo" => (reference::earth_demo(), [440.0, 550.0, 680.0]),
+        "csm" => (reference::csm(), [442.25, 548.0, 677.25]),
+        other => match truth_air(other) {
+            Some(air) => (air, [440.0, 550.0, 680.0]),
+            None => panic!("an embedded table speaks of an atmosphere '{other}'"),
+        },
+    }
+}
+
+/// The atmospheres of the tables of Airlight's Monte Carlo: presets, and `desert`, desert dust after OPAC with an optical
+/// depth of 0.3 at 550 nm instead of the haze of `average`.
+pub fn truth_air(name: &str) -> Option<Atmosphere> {
+    if name != "desert" {
+        return atmosphere::preset(name).ok();
+    }
+    let mut air = atmosphere::preset("average").ok()?;
+    let (ground, top) = (air.planet.ground_altitude_m, air.planet.top_altitude_m);
+    let load = Some(AerosolLoad::OpticalDepth550(0.3));
+    let dust = AerosolMixture::of(AerosolType::Desert, AerosolMixture::USUAL_HUMIDITY).ok()?;
+    let dust = dust
+        .constituent(load, None, air.clear_air(), ground, top)
+        .ok()?;
+    air.constituents.retain(|part| part.name != "aerosol");
+    air.constituents.push(dust);
+    Some(air)
+}
+
+/// The wavelength of a channel, by its number in [`atmosphere`].
+pub fn lane(channel: &str) -> usize {
+    match channel.trim_start_matches("L_").trim_start_matches("beta") {
+        "33.1e-6" | "440" | "442.25" => 0,
+        "13.5e-6" | "550" | "548" => 1,
+        "5.8e-6" | "680" | "677.25" => 2,
+        other => panic!("an embedded table speaks of a channel '{other}'"),
+    }
+}
+
+fn light_of(single: bool) -> &'static str {
+    match single {
+        true => "scattered once",
+        false => "all orders",
+    }
+}
+
+/// All checks of the suite of tables.
+pub fn checks() -> Vec<Check> {
+    let mut all = against_monte_carlo(&SkySettings::default());
+    for source in &SASKTRAN {
+        all.extend(against(source, &SkySettings::default()));
+    }
+    all.push(against_libradtran());
+    all
+}
+
+/// By day and in twilight against Airlight's own Monte Carlo.
+pub fn against_truth(settings: &SkySettings) -> Vec<Check> {
+    let tables = TRUTH.iter();
+    tables
+        .flat_map(|source| against(source, settings))
+        .collect()
+}
+
+/// All orders against the Monte Carlo of others, solved with these settings.
+pub fn against_monte_carlo(settings: &SkySettings) -> Vec<Check> {
+    let tables = MONTE_CARLO.iter();
+    tables
+        .flat_map(|source| against(source, settings))
+        .collect()
+}
+
+/// A check for each atmosphere, sun and kind of light of a table.
+fn against(source: &Source, settings: &SkySettings) -> Vec<Check> {
+    let table = Table::new(source.text);
+    let mut checks: Vec<(Case, Solved, Check)> = Vec::new();
+    for line in table.lines() {
+        let case = Case::of(line, source);
+        let found = checks.iter().position(|(other, ..)| other.is(&case));
+        let index = found.unwrap_or_else(|| {
+            let (air, wavelengths) = atmosphere(case.atmosphere);
+            let solved = Solved::new(&air, &wavelengths, case.sun_zenith_deg, settings)
+                .expect("the atmospheres of the tables can be solved");
+            let light = if case.single {
+                "scattered once"
+            } else {
+                "all orders"
+            };
+            let check = Check {
+                suite: source.suite,
+                what: format!(
+                    "{light}, {}, sun zenith {}",
+                    case.atmosphere, case.sun_zenith_deg
+                ),
+                against: source.against.into(),
+                unit: Unit::Percent,
+                limit: Some(case.limit(source)),
+                limit_of_rms: None,
+                rows: Vec::new(),
+            };
+            checks.push((case, solved, check));
+            checks.len() - 1
+        });
+        let (case, solved, check) = &mut checks[index];
+        add_rows(&mut check.rows, &table, line, solved, case.single);
+    }
+    checks.into_iter().map(|(.., check)| check).collect()
+}
+
+/// The values of a line: one with its standard error, or one a wavelength.
+fn add_rows(rows: &mut Vec<Row>, table: &Table, line: Line<'_>, solved: &Solved, single: bool) {
+    let (view, azimuth) = (
+        line.number("view_zenith_deg"),
+        line.number("rel_azimuth_deg"),
+    );
+    let light = solved.look(view, azimuth);
+    let ours = if single { &light.single } else { &light.all };
+    let mut add = |lane: usize, reference, standard_error| {
+        rows.push(Row {
+            at: solved.at(view, azimuth, lane),
+            ours: ours[lane],
+            reference,
+            standard_error,
+        })
+    };
+    if line.has("SE") {
+        add(
+            lane(line.text("channel")),
+            line.number("L"),
+            line.number("SE"),
+        );
+    } else {
+        for (column, name) in table.columns_from("L_") {
+            add(lane(name), line.at(column), 0.0);
+        }
+    }
+}
+
+fn against_libradtran() -> Check {
+    const FLAT_EARTH_DEG: f64 = 75.0;
+    let rows = csm_rows(LIBRADTRAN, false, |line| {
+        line.number("sun_zenith_deg") <= FLAT_EARTH_DEG
+            && line.number("view_zenith_deg") <= FLAT_EARTH_DEG
+    });
+    Check {
+        suite: Suite::Tables,
+        what: "all orders, csm, sun and view within 75 degrees of the zenith".into(),
+        against: "libRadtran 2.0.2, flat".into(),
+        unit: Unit::Percent,
+        limit: None,
+        limit_of_rms: None,
+        rows,
+    }
+}
+
+/// The other models of the comparison of clear-sky models on the same air.
+pub fn peers() -> Vec<Check> {
+    let table = Table::new(PEERS);
+    let mut models: Vec<&str> = table.lines().map(|line| line.text("model")).collect();
+    models.dedup();
+    let check = |model: &&str| {
+        // Bruneton's model without its light scattered more than once.
+        let single = model.ends_with("_ss");
+        Check {
+            suite: Suite::Peers,
+            what: format!("{}, csm", light_of(single)),
+            against: format!("{model}, as in clear-sky-models"),
+            unit: Unit::Percent,
+            limit: None,
+            limit_of_rms: None,
+            rows: csm_rows(PEERS, single, |line| line.text("model") == *model),
+        }
+    };
+    models.iter().map(check).collect()
+}
+
+/// Rows of a table of the atmosphere `csm` by wavelength.
+fn csm_rows(text: &'static str, single: bool, wanted: impl Fn(&Line<'_>) -> bool) -> Vec<Row> {
+    let table = Table::new(text);
+    let columns = table.radiance_columns();
+    let wavelengths: Vec<f64> = columns.iter().map(|(_, nm)| *nm).collect();
+    let air = reference::csm();
+    let mut solved: Vec<Solved> = Vec::new();
+    let mut rows = Vec::new();
+    for line in table.lines().filter(wanted) {
+        let sun = line.number("sun_zenith_deg");
+        let found = solved.iter().position(|s| s.sun_zenith_deg() == sun);
+        let index = found.unwrap_or_else(|| {
+            let sky = Solved::new(&air, &wavelengths, sun, &SkySettings::default());
+            solved.push(sky.expect("the reference atmosphere can be solved"));
+            solved.len() - 1
+        });
+        let (view, azimuth) = (
+            line.number("view_zenith_deg"),
+            line.number("rel_azimuth_deg"),
+        );
+        let light = solved[index].look(view, azimuth);
+        rows.extend(columns.iter().enumerate().map(|(lane, (column, _))| Row {
+            at: solved[index].at(view, azimuth, lane),
+            ours: if single {
+                light.single[lane]
+            } else {
+                light.all[lane]
+            },
+            reference: line.at(*column),
+            standard_error: 0.0,
+        }));
+    }
+    rows
+}

@@ -1,0 +1,103 @@
+//! A sky solved for at the wavelengths of a table, asked in a table's angles.
+
+use crate::check::At;
+use airlight::atmosphere::Atmosphere;
+use airlight::axes::direction;
+use airlight::sky::{Sky, SkyError, SkySettings, SunCoverage};
+use airlight::spectrum::WavelengthGrid;
+
+/// One atmosphere under one sun, seen from the ground.
+pub struct Solved {
+    sky: Sky,
+    wavelengths_nm: Vec<f64>,
+    /// Solar irradiance at each wavelength itself, where the solver's own is a mean about it, W m^-2 nm^-1.
+    solar: Vec<f64>,
+    sun_zenith_deg: f64,
+    /// Distance of the sun over its mean.
+    sun_distance: f64,
+}
+
+impl Solved {
+    /// Solves for one sun.
+    ///
+    /// # Errors
+    /// [`SkyError`] for an atmosphere or settings that the solver refuses.
+    pub fn new(
+        air: &Atmosphere,
+        wavelengths_nm: &[f64],
+        sun_zenith_deg: f64,
+        settings: &SkySettings,
+    ) -> Result<Self, SkyError> {
+        let grid = WavelengthGrid::from_wavelengths_nm(wavelengths_nm.to_vec())
+            .map_err(|_| SkyError::Setting("wavelengths: rising, from 300 to 900 nm"))?;
+        let suns = SunCoverage::near(90.0 - sun_zenith_deg, 0.0);
+        let settings = SkySettings {
+            suns,
+            ..settings.clone()
+        };
+        Ok(Self {
+            sky: Sky::prepare(air, &grid, &settings)?,
+            wavelengths_nm: wavelengths_nm.to_vec(),
+            solar: wavelengths_nm
+                .iter()
+                .map(|&nm| air.solar_irradiance.at(nm))
+                .collect(),
+            sun_zenith_deg,
+            sun_distance: 1.0,
+        })
+    }
+
+    /// The same under a sun at this many times its mean distance.
+    pub fn at_sun_distance(self, sun_distance: f64) -> Self {
+        Self {
+            sun_distance,
+            ..self
+        }
+    }
+
+    /// Sun's angle from the zenith, degrees.
+    pub fn sun_zenith_deg(&self) -> f64 {
+        self.sun_zenith_deg
+    }
+
+    /// The light from a direction.
+    pub fn look(&self, view_zenith_deg: f64, relative_azimuth_deg: f64) -> Light {
+        let view = self
+            .sky
+            .view(0.0, direction(0.0, 90.0 - self.sun_zenith_deg));
+        let towards = direction(relative_azimuth_deg, 90.0 - view_zenith_deg);
+        let line = view.along(towards, None);
+        let scale: Vec<f64> = self
+            .solar
+            .iter()
+            .zip(view.solar_irradiance())
+            .map(|(at, mean)| at / f64::from(mean) / self.sun_distance.powi(2))
+            .collect();
+        let scaled = |light: &[f32]| {
+            let lanes = light.iter().zip(&scale);
+            lanes.map(|(&l, s)| f64::from(l) * s).collect()
+        };
+        Light {
+            single: scaled(&line.single),
+            all: scaled(&line.radiance()),
+        }
+    }
+
+    /// Which value that of a wavelength is.
+    pub fn at(&self, view_zenith_deg: f64, relative_azimuth_deg: f64, lane: usize) -> At {
+        At {
+            sun_zenith_deg: self.sun_zenith_deg,
+            view_zenith_deg,
+            relative_azimuth_deg,
+            wavelength_nm: self.wavelengths_nm[lane],
+        }
+    }
+}
+
+/// Radiance from a direction at each wavelength, W m^-2 sr^-1 nm^-1.
+pub struct Light {
+    /// Sunlight scattered once.
+    pub single: Vec<f64>,
+    /// All of it.
+    pub all: Vec<f64>,
+}

@@ -1,0 +1,280 @@
+//! Types and components mixed, and the constituent they make.
+
+use super::modes::{Mode, Optics, WAVELENGTHS_NM};
+use super::{AerosolType, Component, layer};
+use crate::atmosphere::aerosol::{
+    AerosolError, AerosolLoad, REFERENCE_NM, extinction_at_density_1,
+};
+use crate::atmosphere::presets::earth::EARTH_TOP_M;
+use crate::atmosphere::{ClearAir, Constituent, DensityProfile};
+use crate::optics::PhaseFunction;
+use crate::optics::mie::MieError;
+use crate::spectrum::{CurveError, SpectralCurve};
+
+/// One thing that a mixture holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Ingredient {
+    /// A type, itself a mixture.
+    Type(AerosolType),
+    /// A single component of OPAC.
+    Component(Component),
+}
+
+/// Types and components mixed by their shares of the extinction at 550 nm, in air of a relative humidity.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AerosolMixture {
+    /// Shares, which sum to 1.
+    parts: Vec<(f64, Ingredient)>,
+    relative_humidity: f64,
+}
+
+/// What an aerosol does to light at 550 nm, in bulk.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AerosolSummary {
+    /// Extinction at the ground as published (of a mixture the mean by shares), m^-1.
+    pub extinction_per_m: f64,
+    /// Scattering over extinction.
+    pub single_scattering_albedo: f64,
+    /// Mean cosine of the scattering angle.
+    pub asymmetry: f64,
+    /// Angstrom exponent of the extinction from 350 to 500 nm.
+    pub angstrom_350_500: f64,
+    /// The same from 500 to 800 nm.
+    pub angstrom_500_800: f64,
+}
+
+/// Why words and numbers do not make an aerosol of a type.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum AerosolTypeError {
+    /// There is no type of that name.
+    #[error("there is no aerosol type called \"{name}\"{}; there are: {}", hint(*nearest), AerosolType::ALL.map(|known| known.0).join(", "))]
+    UnknownType {
+        /// The name asked for.
+        name: String,
+        /// The name it may have been meant to be.
+        nearest: Option<&'static str>,
+    },
+    /// The humidity is out of range.
+    #[error("relative humidity must lie between 0 and 0.99 (0.8 is 80 %), got {0}")]
+    Humidity(f64),
+    /// A share is not positive.
+    #[error("the shares of a mixture must be finite and above 0, got {0}")]
+    Share(f64),
+    /// Nothing is mixed.
+    #[error("a mixture needs at least one part")]
+    Empty,
+    /// The particles are refused.
+    #[error("{0}")]
+    Mie(#[from] MieError),
+    /// The amount or the place is refused.
+    #[error("{0}")]
+    Aerosol(#[from] AerosolError),
+    /// A spectrum is refused.
+    #[error("{0}")]
+    Curve(#[from] CurveError),
+}
+
+fn hint(nearest: Option<&str>) -> String {
+    nearest.map_or(String::new(), |near| format!(" (did you mean \"{near}\"?)"))
+}
+
+impl AerosolMixture {
+    /// The humidity where none is given: that of OPAC's tables.
+    pub const USUAL_HUMIDITY: f64 = 0.8;
+
+    /// Mixes parts by their shares of the extinction at 550 nm, which are scaled to sum to 1, in air of a relative humidity
+    /// (0 to 0.99).
+    ///
+    /// # Errors
+    /// [`AerosolTypeError`] where there are no parts, a share is not positive or the humidity is out of range.
+    pub fn new(
+        parts: Vec<(f64, Ingredient)>,
+        relative_humidity: f64,
+    ) -> Result<Self, AerosolTypeError> {
+        if !(0.0..=0.99).contains(&relative_humidity) {
+            return Err(AerosolTypeError::Humidity(relative_humidity));
+        }
+        let wrong = |share: f64| !(share.is_finite() && share > 0.0);
+        if let Some(&(share, _)) = parts.iter().find(|part| wrong(part.0)) {
+            return Err(AerosolTypeError::Share(share));
+        }
+        // Over the largest, so that no sum of finite shares overflows.
+        let most = parts.iter().fold(0.0, |most: f64, part| most.max(part.0));
+        let sum: f64 = parts.iter().map(|part| part.0 / most).sum();
+        match parts.is_empty() {
+            true => Err(AerosolTypeError::Empty),
+            false => Ok(Self {
+                parts: parts
+                    .into_iter()
+                    .map(|(share, part)| (share / most / sum, part))
+                    .collect(),
+                relative_humidity,
+            }),
+        }
+    }
+
+    /// One type alone.
+    ///
+    /// # Errors
+    /// [`AerosolTypeError::Humidity`] where it is out of range.
+    pub fn of(kind: AerosolType, relative_humidity: f64) -> Result<Self, AerosolTypeError> {
+        Self::new(vec![(1.0, Ingredient::Type(kind))], relative_humidity)
+    }
+
+    /// Whether the humidity of the air makes a difference.
+    pub fn grows(&self) -> bool {
+        self.parts.iter().any(|&(_, part)| part.grows())
+    }
+
+    /// Where it is over ground of an altitude (m): where the part with the largest share is ([`AerosolType::profile`]; a
+    /// component alone as continental aerosol).
+    pub fn profile(&self, ground_altitude_m: f64) -> DensityProfile {
+        let most = self.parts.iter().max_by(|a, b| a.0.total_cmp(&b.0));
+        match most.map(|part| part.1) {
+            Some(part) => part.profile(ground_altitude_m),
+            None => layer(ground_altitude_m, 8e3, 2e3),
+        }
+    }
+
+    /// How much there is as published: OPAC's numbers of particles at this humidity, for smoke an optical depth of 0.5 at
+    /// 440 nm. Each part counts by its share.
+    ///
+    /// # Errors
+    /// [`AerosolTypeError::Mie`] where the particles are refused.
+    pub fn usual_optical_depth_550(&self) -> Result<f64, AerosolTypeError> {
+        let mut depth = 0.0;
+        for &(share, part) in &self.parts {
+            let optics = Optics::of(&part.modes(self.relative_humidity))?;
+            let column_m = part.profile(0.0).column_m(0.0, EARTH_TOP_M);
+            depth += share * column_m * optics.extinction_per_m(reference());
+        }
+        Ok(depth)
+    }
+
+    /// The modes of all parts: numbers as published for one part alone, for several such that each makes its share of the
+    /// extinction, and all together the mean of what each is published with.
+    fn modes(&self) -> Result<Vec<Mode>, AerosolTypeError> {
+        let mut all = Vec::new();
+        let mut whole_per_m = 0.0;
+        for &(share, part) in &self.parts {
+            let modes = part.modes(self.relative_humidity);
+            let extinction_per_m = Optics::of(&modes)?.extinction_per_m(reference());
+            whole_per_m += share * extinction_per_m;
+            let factor = share / extinction_per_m;
+            all.extend(modes.into_iter().map(|mode| mode.times(factor)));
+        }
+        Ok(all
+            .into_iter()
+            .map(|mode| mode.times(whole_per_m))
+            .collect())
+    }
+
+    /// The bulk of it.
+    ///
+    /// # Errors
+    /// [`AerosolTypeError::Mie`] where the particles are refused.
+    pub fn summary(&self) -> Result<AerosolSummary, AerosolTypeError> {
+        let optics = Optics::of(&self.modes()?)?;
+        let at = |nm: f64| WAVELENGTHS_NM.iter().position(|&w| w == nm).unwrap_or(0);
+        let exponent = |short: f64, long: f64| {
+            let ratio = optics.extinction_per_m(at(short)) / optics.extinction_per_m(at(long));
+            ratio.ln() / (long / short).ln()
+        };
+        let extinction_per_m = optics.extinction_per_m(reference());
+        Ok(AerosolSummary {
+            extinction_per_m,
+            single_scattering_albedo: optics.scattering_per_m[reference()] / extinction_per_m,
+            asymmetry: optics.asymmetry[reference()],
+            angstrom_350_500: exponent(350.0, 500.0),
+            angstrom_500_800: exponent(500.0, 800.0),
+        })
+    }
+
+    /// The constituent "aerosol" of an atmosphere between two altitudes (m), so much of it (as published, where that is not
+    /// said) and where `density` says (else its own profile).
+    ///
+    /// Coefficients are power laws between the wavelengths that Mie's theory was summed at, tabulated every 5 nm.
+    ///
+    /// # Errors
+    /// [`AerosolTypeError`] where the amount or the place is refused.
+    pub fn constituent(
+        &self,
+        load: Option<AerosolLoad>,
+        density: Option<DensityProfile>,
+        clear: ClearAir,
+        ground_altitude_m: f64,
+        top_altitude_m: f64,
+    ) -> Result<Constituent, AerosolTypeError> {
+        let load = match load {
+            Some(load) => load,
+            None => AerosolLoad::OpticalDepth550(self.usual_optical_depth_550()?),
+        };
+        let density = density.unwrap_or_else(|| self.profile(ground_altitude_m));
+        let extinction_per_m =
+            extinction_at_density_1(load, &density, clear, ground_altitude_m, top_altitude_m)?;
+        let optics = Optics::of(&self.modes()?)?;
+        let scale = extinction_per_m / optics.extinction_per_m(reference());
+        Ok(Constituent {
+            name: "aerosol".into(),
+            density,
+            scattering_per_m: curve(&optics.scattering_per_m, scale)?,
+            absorption_per_m: curve(&optics.absorption_per_m, scale)?,
+            phase: PhaseFunction::Tabulated(optics.phase()?),
+        })
+    }
+}
+
+impl Ingredient {
+    fn modes(self, relative_humidity: f64) -> Vec<Mode> {
+        match self {
+            Self::Type(kind) => kind.modes(relative_humidity),
+            Self::Component(component) => vec![component.mode(relative_humidity, 1.0)],
+        }
+    }
+
+    /// Where it is over ground of an altitude, m.
+    fn profile(self, ground_altitude_m: f64) -> DensityProfile {
+        match self {
+            Self::Type(kind) => kind.profile(ground_altitude_m),
+            Self::Component(_) => layer(ground_altitude_m, 8e3, 2e3),
+        }
+    }
+
+    fn grows(self) -> bool {
+        match self {
+            Self::Type(kind) => kind.components().iter().any(|part| part.0.grows()),
+            Self::Component(component) => component.grows(),
+        }
+    }
+}
+
+impl Optics {
+    fn extinction_per_m(&self, i: usize) -> f64 {
+        self.scattering_per_m[i] + self.absorption_per_m[i]
+    }
+}
+
+/// Which of the wavelengths is 550 nm.
+fn reference() -> usize {
+    WAVELENGTHS_NM
+        .iter()
+        .position(|&nm| nm == REFERENCE_NM)
+        .unwrap_or(0)
+}
+
+/// Positive values at [`WAVELENGTHS_NM`] times a factor, joined by power laws that are sampled every 5 nm.
+fn curve(values: &[f64], scale: f64) -> Result<SpectralCurve, CurveError> {
+    let mut wavelengths = Vec::new();
+    let mut samples = Vec::new();
+    for (w, v) in WAVELENGTHS_NM.windows(2).zip(values.windows(2)) {
+        let exponent = (v[1] / v[0]).ln() / (w[1] / w[0]).ln();
+        for step in 0..10 {
+            let nm = w[0] + 0.1 * f64::from(step) * (w[1] - w[0]);
+            wavelengths.push(nm);
+            samples.push(scale * v[0] * (nm / w[0]).powf(exponent));
+        }
+    }
+    wavelengths.push(WAVELENGTHS_NM[WAVELENGTHS_NM.len() - 1]);
+    samples.push(scale * values[values.len() - 1]);
+    SpectralCurve::table(wavelengths, samples)
+}

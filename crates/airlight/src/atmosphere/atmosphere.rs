@@ -1,0 +1,298 @@
+//! A planet's air: what it is made of, what lies under it and what shines on it.
+
+use super::aerosol::ClearAir;
+use super::density::{DensityError, DensityProfile};
+use crate::optics::{PhaseError, PhaseFunction};
+use crate::spectrum::SpectralCurve;
+use crate::sun::{SunDisc, SunError};
+
+/// The solid ball under the air.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Planet {
+    /// Radius from which altitudes are counted, m.
+    pub radius_m: f64,
+    /// Altitude above which there is no air, m.
+    pub top_altitude_m: f64,
+    /// Altitude of the ground that blocks and reflects light, m.
+    pub ground_altitude_m: f64,
+    /// Lambertian albedo of the ground, in `[0, 1]`.
+    pub ground_albedo: SpectralCurve,
+}
+
+/// One thing in the air.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Constituent {
+    /// What it is called.
+    pub name: String,
+    /// Its density relative to that of its coefficients.
+    pub density: DensityProfile,
+    /// Scattering coefficient at relative density 1, m^-1.
+    pub scattering_per_m: SpectralCurve,
+    /// Absorption coefficient at relative density 1, m^-1.
+    pub absorption_per_m: SpectralCurve,
+    /// Where the scattered light goes.
+    pub phase: PhaseFunction,
+}
+
+/// A planet, its air and its sun.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Atmosphere {
+    /// What it is called.
+    pub name: String,
+    /// The ball under the air.
+    pub planet: Planet,
+    /// What the air holds.
+    pub constituents: Vec<Constituent>,
+    /// Solar irradiance at the top of the atmosphere on a surface that faces the sun, at the planet's mean distance,
+    /// W m^-2 nm^-1.
+    pub solar_irradiance: SpectralCurve,
+    /// The sun's disc.
+    pub sun: SunDisc,
+}
+
+/// Why numbers do not make an atmosphere.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum AtmosphereError {
+    /// A length of the planet is out of its domain.
+    #[error("planet.{field} must be {expected}, got {value}")]
+    Planet {
+        /// Which field.
+        field: &'static str,
+        /// What would be right.
+        expected: &'static str,
+        /// What was given.
+        value: f64,
+    },
+    /// A spectrum takes a value out of its domain.
+    #[error("{what} must be {expected}, but is {value} at {wavelength_nm} nm")]
+    Spectrum {
+        /// Which spectrum.
+        what: String,
+        /// What would be right.
+        expected: &'static str,
+        /// The value found.
+        value: f64,
+        /// Where it was found, nm.
+        wavelength_nm: f64,
+    },
+    /// A constituent's density profile is refused.
+    #[error("constituent \"{constituent}\": {error}")]
+    Density {
+        /// Its name.
+        constituent: String,
+        /// Why.
+        error: DensityError,
+    },
+    /// A constituent's phase function is refused.
+    #[error("constituent \"{constituent}\": {error}")]
+    Phase {
+        /// Its name.
+        constituent: String,
+        /// Why.
+        error: PhaseError,
+    },
+    /// The sun's disc is refused.
+    #[error("{0}")]
+    Sun(#[from] SunError),
+}
+
+impl Atmosphere {
+    /// Checks and takes the parts.
+    ///
+    /// # Errors
+    /// [`AtmosphereError`], see [`Atmosphere::validate`].
+    pub fn new(
+        name: impl Into<String>,
+        planet: Planet,
+        constituents: Vec<Constituent>,
+        solar_irradiance: SpectralCurve,
+        sun: SunDisc,
+    ) -> Result<Self, AtmosphereError> {
+        let atmosphere = Self {
+            name: name.into(),
+            planet,
+            constituents,
+            solar_irradiance,
+            sun,
+        };
+        atmosphere.validate()?;
+        Ok(atmosphere)
+    }
+
+    /// Checks what a solver relies on: finite lengths in order, albedo in `[0, 1]`, coefficients and irradiance finite
+    /// and not negative, densities, phase functions and sun in their domains. Spectra are looked at every 10 nm from
+    /// 250 to 1100 nm, and at each sample of a table.
+    ///
+    /// # Errors
+    /// The first fault found.
+    pub fn validate(&self) -> Result<(), AtmosphereError> {
+        let planet = &self.planet;
+        let check = |ok: bool, field, expected, value| match ok {
+            true => Ok(()),
+            false => Err(AtmosphereError::Planet {
+                field,
+                expected,
+                value,
+            }),
+        };
+        let radius = planet.radius_m;
+        check(
+            radius.is_finite() && radius > 0.0,
+            "radius_m",
+            "positive and finite",
+            radius,
+        )?;
+        let ground = planet.ground_altitude_m;
+        check(
+            ground.is_finite() && ground > -radius,
+            "ground_altitude_m",
+            "finite and above the planet's centre",
+            ground,
+        )?;
+        let top = planet.top_altitude_m;
+        check(
+            top.is_finite() && top > ground,
+            "top_altitude_m",
+            "finite and above the ground",
+            top,
+        )?;
+        check_curve(&planet.ground_albedo, "planet.ground_albedo", 1.0)?;
+        check_curve(&self.solar_irradiance, "solar irradiance", f64::INFINITY)?;
+        for part in &self.constituents {
+            part.density
+                .validate()
+                .map_err(|error| AtmosphereError::Density {
+                    constituent: part.name.clone(),
+                    error,
+                })?;
+            part.phase
+                .validate()
+                .map_err(|error| AtmosphereError::Phase {
+                    constituent: part.name.clone(),
+                    error,
+                })?;
+            let name = &part.name;
+            check_curve(
+                &part.scattering_per_m,
+                &format!("scattering of \"{name}\""),
+                f64::INFINITY,
+            )?;
+            check_curve(
+                &part.absorption_per_m,
+                &format!("absorption of \"{name}\""),
+                f64::INFINITY,
+            )?;
+        }
+        self.sun.validate()?;
+        Ok(())
+    }
+
+    /// Scattering coefficient at an altitude (m), m^-1.
+    pub fn scattering_per_m(&self, altitude_m: f64, wavelength_nm: f64) -> f64 {
+        let of = |part: &Constituent| {
+            part.density.at(altitude_m) * part.scattering_per_m.at(wavelength_nm)
+        };
+        self.constituents.iter().map(of).sum()
+    }
+
+    /// Extinction coefficient at an altitude (m), m^-1.
+    pub fn extinction_per_m(&self, altitude_m: f64, wavelength_nm: f64) -> f64 {
+        let of =
+            |part: &Constituent| part.density.at(altitude_m) * part.extinction_per_m(wavelength_nm);
+        self.constituents.iter().map(of).sum()
+    }
+
+    /// Optical depth of the vertical path from the ground to the top.
+    pub fn vertical_optical_depth(&self, wavelength_nm: f64) -> f64 {
+        let (ground, top) = (self.planet.ground_altitude_m, self.planet.top_altitude_m);
+        let of = |part: &Constituent| {
+            part.density.column_m(ground, top) * part.extinction_per_m(wavelength_nm)
+        };
+        self.constituents.iter().map(of).sum()
+    }
+
+    /// The altitudes of kinks and jumps of all densities strictly between ground and top, rising, m.
+    pub fn breakpoints_m(&self) -> Vec<f64> {
+        let (ground, top) = (self.planet.ground_altitude_m, self.planet.top_altitude_m);
+        let mut all: Vec<f64> = self
+            .constituents
+            .iter()
+            .flat_map(|part| part.density.breakpoints_m())
+            .filter(|&z| z > ground && z < top)
+            .collect();
+        all.sort_by(f64::total_cmp);
+        all.dedup();
+        all
+    }
+
+    /// What turbidity and visibility are stated relative to: the scattering of the constituent "rayleigh" at 550 nm
+    /// (none where there is no such constituent).
+    pub fn clear_air(&self) -> ClearAir {
+        let (ground, top) = (self.planet.ground_altitude_m, self.planet.top_altitude_m);
+        let molecules = || {
+            self.constituents
+                .iter()
+                .filter(|part| part.name == "rayleigh")
+        };
+        let at_550 = |part: &Constituent| part.scattering_per_m.at(550.0);
+        ClearAir {
+            optical_depth_550: molecules()
+                .map(|m| at_550(m) * m.density.column_m(ground, top))
+                .sum(),
+            ground_extinction_per_m: molecules().map(|m| at_550(m) * m.density.at(ground)).sum(),
+        }
+    }
+
+    /// The constituent of a name.
+    pub fn constituent(&self, name: &str) -> Option<&Constituent> {
+        self.constituents.iter().find(|part| part.name == name)
+    }
+}
+
+impl Constituent {
+    /// Extinction coefficient at relative density 1, m^-1.
+    pub fn extinction_per_m(&self, wavelength_nm: f64) -> f64 {
+        self.scattering_per_m.at(wavelength_nm) + self.absorption_per_m.at(wavelength_nm)
+    }
+
+    /// Optical depth of the vertical path between two altitudes, m.
+    pub fn optical_depth(
+        &self,
+        from_altitude_m: f64,
+        top_altitude_m: f64,
+        wavelength_nm: f64,
+    ) -> f64 {
+        self.density.column_m(from_altitude_m, top_altitude_m)
+            * self.extinction_per_m(wavelength_nm)
+    }
+}
+
+/// Every value where it is looked at lies in `[0, most]` and is finite.
+fn check_curve(curve: &SpectralCurve, what: &str, most: f64) -> Result<(), AtmosphereError> {
+    let expected = match most == 1.0 {
+        true => "in [0, 1]",
+        false => "finite and not negative",
+    };
+    let mut wavelengths: Vec<f64> = (25..=110).map(|i| 10.0 * f64::from(i)).collect();
+    samples_of(curve, &mut wavelengths);
+    for wavelength_nm in wavelengths {
+        let value = curve.at(wavelength_nm);
+        if !(value.is_finite() && value >= 0.0 && value <= most) {
+            return Err(AtmosphereError::Spectrum {
+                what: what.to_owned(),
+                expected,
+                value,
+                wavelength_nm,
+            });
+        }
+    }
+    Ok(())
+}
+
+fn samples_of(curve: &SpectralCurve, into: &mut Vec<f64>) {
+    match curve {
+        SpectralCurve::Table(table) => into.extend_from_slice(table.abscissae()),
+        SpectralCurve::Scaled(_, curve) => samples_of(curve, into),
+        _ => {}
+    }
+}

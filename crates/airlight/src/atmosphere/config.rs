@@ -1,0 +1,278 @@
+//! Atmospheres written down: a TOML text that names a preset and overrides what differs.
+//!
+//! ```
+//! let air = airlight::atmosphere::config::from_toml(
+//!     r#"
+//!     base = "clear"
+//!     [planet]
+//!     ground_albedo = 0.2
+//!     [ozone]
+//!     column_du = 350
+//!     [aerosol]
+//!     visibility_m = 23e3
+//!     phase = { kind = "draine", g = 0.6, alpha = 0.5 }
+//!     [[constituent]]
+//!     name = "smoke"
+//!     density = { kind = "layer", bottom_m = 2000, top_m = 2500 }
+//!     scattering_per_m = { at_550_nm = 4e-5, angstrom_exponent = 1.8 }
+//!     absorption_per_m = 1e-5
+//!     phase = { kind = "henyey-greenstein", g = 0.6 }
+//!     "#,
+//! )?;
+//! assert_eq!(air.constituents.len(), 4);
+//! # Ok::<(), airlight::atmosphere::config::ConfigError>(())
+//! ```
+//!
+//! | key | meaning |
+//! |---|---|
+//! | `name` | what the atmosphere is called; else the base's name |
+//! | `base` | a preset ([`crate::atmosphere::preset_names`]), or `"none"`: the Earth without air. `"average"` where absent |
+//! | `remove` | list of constituents of the base to leave out |
+//! | `planet.radius_m`, `.top_altitude_m`, `.ground_altitude_m` | lengths in metres |
+//! | `planet.ground_albedo` | *spectrum* in `[0, 1]` |
+//! | `sun.angular_radius_deg`, `.limb_darkening` | `"neckel"`, `"power-law"` or `"uniform"` |
+//! | `sun.irradiance_w_m2_nm`, `.irradiance_factor` | *spectrum* at the top of the atmosphere; factor on it |
+//! | `rayleigh.pressure_pa` | sea-level pressure; scales the base's molecules, or adds the Earth's where it has none |
+//! | `ozone.column_du` | replaces the base's ozone by the measured cross-section and mid-latitude profile, of this column |
+//! | `aerosol.type`, `.relative_humidity` | a published kind ([`crate::atmosphere::AerosolType`]) in air of a humidity from 0 to 0.99 |
+//! | `aerosol.mixture` | instead of `type`: list of `{ type, share }` or `{ component, share }`, shares of the extinction |
+//! | `aerosol.aod_550`, `.turbidity` or `.visibility_m` | one of three ways to say how much ([`crate::atmosphere::AerosolLoad`]) |
+//! | `aerosol.contrast` | which contrast visibility means: 0.05 (if absent) or 0.02 |
+//! | `aerosol.angstrom_exponent`, `.single_scattering_albedo` | exponent of the extinction; *spectrum* in `[0, 1]` |
+//! | `aerosol.scale_height_m` or `.density` | how it thins out with altitude; *density* |
+//! | `aerosol.phase` | *phase*; `kind` may be left out to change the parameters the base has |
+//! | `[[constituent]]` | `name`, `density`, `scattering_per_m`, `absorption_per_m`, `phase`; replaces one of the same name |
+//!
+//! A *spectrum* is a number, `{ wavelengths_nm = [...], values = [...] }` or `{ at_550_nm = ..., angstrom_exponent = ... }`.
+//! A *density* is `{ kind = "exponential", scale_height_m }`, `{ kind = "layer", bottom_m, top_m }`,
+//! `{ kind = "tent", bottom_m, peak_m, top_m }`, `{ kind = "standard-air" }` or
+//! `{ kind = "table", altitudes_m, densities, interpolation = "linear" | "log-linear" }`.
+//! A *phase* is `{ kind = "isotropic" }`, `"rayleigh"` (optional `depolarization_ratio`), `"henyey-greenstein"` or
+//! `"cornette-shanks"` (`g`), `"draine"` (`g`, `alpha`), `"continental"`, `"mixture"`
+//! (`parts = [{ weight, kind, ... }, ...]`) or `"table"` (`angles_deg`, `wavelengths_nm`, `values` wavelength by wavelength).
+
+mod aerosol;
+mod error;
+mod parts;
+mod reader;
+#[cfg(test)]
+mod tests;
+#[cfg(test)]
+mod type_tests;
+
+pub use error::{ConfigError, ConfigProblem};
+
+use super::presets::{self, earth};
+use super::{Atmosphere, AtmosphereError, Constituent, gases};
+use crate::optics::{PhaseFunction, rayleigh::STANDARD_PRESSURE_PA};
+use crate::sun::LimbDarkening;
+use reader::Section;
+use toml::de::DeTable;
+
+/// The base that a text without `base` starts from.
+const DEFAULT_BASE: &str = "average";
+/// The base that has no air.
+const NO_AIR: &str = "none";
+
+/// Reads an atmosphere from TOML.
+///
+/// # Errors
+/// [`ConfigError`]: what is wrong, where, and what would be right.
+pub fn from_toml(text: &str) -> Result<Atmosphere, ConfigError> {
+    let table = DeTable::parse(text).map_err(|error| {
+        let at = error.span().map_or(0, |span| span.start);
+        ConfigError::at(
+            text,
+            at,
+            String::new(),
+            ConfigProblem::Syntax(error.message().to_owned()),
+        )
+    })?;
+    from_toml_table(text, table.get_ref(), "")
+}
+
+/// Reads an atmosphere from a table inside a larger TOML text; `path` is what its keys are called in messages
+/// (`"atmosphere"`, or nothing for the whole text).
+///
+/// # Errors
+/// As [`from_toml`].
+pub fn from_toml_table(
+    text: &str,
+    table: &DeTable<'_>,
+    path: &str,
+) -> Result<Atmosphere, ConfigError> {
+    let root = Section::new(text, table, path.to_owned());
+    root.check_keys(&[
+        "name",
+        "base",
+        "remove",
+        "planet",
+        "sun",
+        "rayleigh",
+        "ozone",
+        "aerosol",
+        "constituent",
+    ])?;
+    let base = root.text("base")?.unwrap_or(DEFAULT_BASE);
+    let mut atmosphere = match base {
+        NO_AIR => earth::airless(NO_AIR),
+        name => presets::preset(name).map_err(|_| {
+            let names = presets::preset_names()
+                .map(|preset| preset.0)
+                .chain([NO_AIR]);
+            root.unknown("base", "base", name, names.collect())
+        })?,
+    };
+    if let Some(name) = root.text("name")? {
+        atmosphere.name = name.to_owned();
+    }
+    for name in root.texts("remove")?.unwrap_or_default() {
+        let names: Vec<&str> = atmosphere
+            .constituents
+            .iter()
+            .map(|part| part.name.as_str())
+            .collect();
+        if !names.contains(&name) {
+            return Err(root.unknown("remove", "constituent", name, names));
+        }
+        atmosphere.constituents.retain(|part| part.name != name);
+    }
+    if let Some(section) = root.section("planet")? {
+        planet(&section, &mut atmosphere)?;
+    }
+    if let Some(section) = root.section("sun")? {
+        sun(&section, &mut atmosphere)?;
+    }
+    if let Some(section) = root.section("rayleigh")? {
+        molecules(&section, base, &mut atmosphere)?;
+    }
+    if let Some(section) = root.section("ozone")? {
+        section.check_keys(&["column_du"])?;
+        if let Some(column_du) = section.not_negative("column_du")? {
+            put(&mut atmosphere, gases::ozone(column_du));
+        }
+    }
+    if let Some(section) = root.section("aerosol")? {
+        aerosol::aerosol(&section, &mut atmosphere)?;
+    }
+    for section in root.sections("constituent")? {
+        put(&mut atmosphere, parts::constituent(&section)?);
+    }
+    // Each value has been looked at where it stands; this is for what only shows together.
+    atmosphere.validate().map_err(|error| {
+        let key = match error {
+            AtmosphereError::Planet { .. } => "planet",
+            AtmosphereError::Sun(_) => "sun",
+            _ => "base",
+        };
+        root.error(key, ConfigProblem::Atmosphere(error))
+    })?;
+    Ok(atmosphere)
+}
+
+/// Replaces the constituent of the same name, or adds one.
+fn put(atmosphere: &mut Atmosphere, part: Constituent) {
+    match atmosphere
+        .constituents
+        .iter_mut()
+        .find(|old| old.name == part.name)
+    {
+        Some(old) => *old = part,
+        None => atmosphere.constituents.push(part),
+    }
+}
+
+fn planet(section: &Section<'_>, atmosphere: &mut Atmosphere) -> Result<(), ConfigError> {
+    section.check_keys(&[
+        "radius_m",
+        "top_altitude_m",
+        "ground_altitude_m",
+        "ground_albedo",
+    ])?;
+    let planet = &mut atmosphere.planet;
+    if let Some(radius_m) = section.positive("radius_m")? {
+        planet.radius_m = radius_m;
+    }
+    if let Some(top_m) = section.positive("top_altitude_m")? {
+        planet.top_altitude_m = top_m;
+    }
+    if let Some(ground_m) =
+        section.number("ground_altitude_m", "a finite number", f64::is_finite)?
+    {
+        planet.ground_altitude_m = ground_m;
+    }
+    if let Some(albedo) = parts::spectrum(section, "ground_albedo", 1.0)? {
+        planet.ground_albedo = albedo;
+    }
+    Ok(())
+}
+
+fn sun(section: &Section<'_>, atmosphere: &mut Atmosphere) -> Result<(), ConfigError> {
+    section.check_keys(&[
+        "angular_radius_deg",
+        "limb_darkening",
+        "irradiance_w_m2_nm",
+        "irradiance_factor",
+    ])?;
+    let below_90 = |deg: f64| deg > 0.0 && deg < 90.0;
+    if let Some(deg) = section.number("angular_radius_deg", "above 0 and below 90", below_90)? {
+        atmosphere.sun.angular_radius_rad = deg.to_radians();
+    }
+    if let Some(name) = section.text("limb_darkening")? {
+        atmosphere.sun.limb_darkening = match name {
+            "neckel" => LimbDarkening::Neckel,
+            "power-law" => LimbDarkening::PowerLaw,
+            "uniform" => LimbDarkening::Uniform,
+            _ => {
+                let names = vec!["neckel", "power-law", "uniform"];
+                return Err(section.unknown("limb_darkening", "limb darkening", name, names));
+            }
+        };
+    }
+    if let Some(irradiance) = parts::spectrum(section, "irradiance_w_m2_nm", f64::INFINITY)? {
+        atmosphere.solar_irradiance = irradiance;
+    }
+    if let Some(factor) = section.not_negative("irradiance_factor")? {
+        atmosphere.solar_irradiance = atmosphere.solar_irradiance.clone().scaled(factor);
+    }
+    Ok(())
+}
+
+fn molecules(
+    section: &Section<'_>,
+    base: &str,
+    atmosphere: &mut Atmosphere,
+) -> Result<(), ConfigError> {
+    section.check_keys(&["pressure_pa"])?;
+    let Some(pressure_pa) = section.not_negative("pressure_pa")? else {
+        return Ok(());
+    };
+    let base_pressure_pa = match base {
+        "mars" => presets::mars::MARS_PRESSURE_PA,
+        _ => STANDARD_PRESSURE_PA,
+    };
+    match atmosphere
+        .constituents
+        .iter_mut()
+        .find(|part| part.name == "rayleigh")
+    {
+        Some(part) => {
+            part.scattering_per_m = part
+                .scattering_per_m
+                .clone()
+                .scaled(pressure_pa / base_pressure_pa);
+        }
+        None => put(atmosphere, gases::air(pressure_pa)),
+    }
+    Ok(())
+}
+
+/// The phase function that parameters without a kind belong to.
+fn kind_of(phase: &PhaseFunction) -> Option<&'static str> {
+    match phase {
+        PhaseFunction::HenyeyGreenstein { .. } => Some("henyey-greenstein"),
+        PhaseFunction::CornetteShanks { .. } => Some("cornette-shanks"),
+        PhaseFunction::Draine { .. } => Some("draine"),
+        _ => None,
+    }
+}

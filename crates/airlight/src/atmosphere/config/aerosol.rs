@@ -1,0 +1,255 @@
+//! The section `[aerosol]`.
+
+use super::error::{ConfigError, ConfigProblem};
+use super::parts;
+use super::put;
+use super::reader::Section;
+use crate::atmosphere::aerosol::{AerosolLoad, AngstromAerosol, continental_phase};
+use crate::atmosphere::aerosol_types::{
+    AerosolMixture, AerosolType, AerosolTypeError, Component, Ingredient,
+};
+use crate::atmosphere::presets::earth;
+use crate::atmosphere::visibility::Contrast;
+use crate::atmosphere::{Atmosphere, Constituent, DensityProfile};
+use crate::spectrum::SpectralCurve;
+
+/// Changes the aerosol of an atmosphere, or gives it one.
+pub(super) fn aerosol(
+    section: &Section<'_>,
+    atmosphere: &mut Atmosphere,
+) -> Result<(), ConfigError> {
+    section.check_keys(&[
+        "type",
+        "mixture",
+        "relative_humidity",
+        "aod_550",
+        "turbidity",
+        "visibility_m",
+        "contrast",
+        "angstrom_exponent",
+        "single_scattering_albedo",
+        "scale_height_m",
+        "density",
+        "phase",
+    ])?;
+    match section.has("type") || section.has("mixture") {
+        true => of_a_type(section, atmosphere),
+        false if section.has("relative_humidity") => Err(section.error(
+            "relative_humidity",
+            ConfigProblem::Needs {
+                with: "type or mixture",
+            },
+        )),
+        false => after_angstrom(section, atmosphere),
+    }
+}
+
+/// Keys that say how much there is, and what is said.
+fn load(section: &Section<'_>) -> Result<Option<(&'static str, AerosolLoad)>, ConfigError> {
+    let contrast = section.number("contrast", "0.05 or 0.02", |c| c == 0.05 || c == 0.02)?;
+    let contrast = match contrast {
+        Some(0.02) => Contrast::TwoPercent,
+        _ => Contrast::FivePercent,
+    };
+    let mut load = None;
+    for key in ["aod_550", "turbidity", "visibility_m"] {
+        let Some(value) = section.number(key, "a number", |_| true)? else {
+            continue;
+        };
+        if let Some((first, _)) = load {
+            return Err(section.error(key, ConfigProblem::Conflict { with: first }));
+        }
+        let kind = match key {
+            "aod_550" => AerosolLoad::OpticalDepth550(value),
+            "turbidity" => AerosolLoad::Turbidity(value),
+            _ => AerosolLoad::Visibility {
+                range_m: value,
+                contrast,
+            },
+        };
+        load = Some((key, kind));
+    }
+    Ok(load)
+}
+
+/// Where it is, if that is said.
+fn density(section: &Section<'_>) -> Result<Option<DensityProfile>, ConfigError> {
+    match (
+        section.positive("scale_height_m")?,
+        parts::density(section, "density")?,
+    ) {
+        (Some(_), Some(_)) => {
+            let with = "scale_height_m";
+            Err(section.error("density", ConfigProblem::Conflict { with }))
+        }
+        (Some(scale_height_m), None) => Ok(Some(DensityProfile::Exponential { scale_height_m })),
+        (None, given) => Ok(given),
+    }
+}
+
+/// An aerosol of a published type, or a mixture of several.
+fn of_a_type(section: &Section<'_>, atmosphere: &mut Atmosphere) -> Result<(), ConfigError> {
+    let (own, other) = match section.has("type") {
+        true => ("type", "mixture"),
+        false => ("mixture", "type"),
+    };
+    for key in [
+        other,
+        "angstrom_exponent",
+        "single_scattering_albedo",
+        "phase",
+    ] {
+        if section.has(key) {
+            return Err(section.error(key, ConfigProblem::Conflict { with: own }));
+        }
+    }
+    let humidity = section.number("relative_humidity", "between 0 and 0.99", |h| {
+        (0.0..=0.99).contains(&h)
+    })?;
+    let parts = match own {
+        "type" => vec![(1.0, Ingredient::Type(named_type(section)?))],
+        _ => mixed(section)?,
+    };
+    let said = |error| {
+        let key = match error {
+            AerosolTypeError::Aerosol(_) => load(section).ok().flatten().map_or(own, |load| load.0),
+            _ => own,
+        };
+        section.error(key, ConfigProblem::AerosolType(error))
+    };
+    let mixture = AerosolMixture::new(parts, humidity.unwrap_or(AerosolMixture::USUAL_HUMIDITY))
+        .map_err(said)?;
+    if humidity.is_some() && !mixture.grows() {
+        return Err(section.error("relative_humidity", ConfigProblem::Dry));
+    }
+    let part = mixture.constituent(
+        load(section)?.map(|load| load.1),
+        density(section)?,
+        atmosphere.clear_air(),
+        atmosphere.planet.ground_altitude_m,
+        atmosphere.planet.top_altitude_m,
+    );
+    put(atmosphere, part.map_err(said)?);
+    Ok(())
+}
+
+fn named_type(section: &Section<'_>) -> Result<AerosolType, ConfigError> {
+    let name = section
+        .text("type")?
+        .ok_or_else(|| section.missing("type", "the name of an aerosol type"))?;
+    AerosolType::named(name).map_err(|_| {
+        let names = AerosolType::ALL.map(|known| known.0).to_vec();
+        section.unknown("type", "aerosol type", name, names)
+    })
+}
+
+/// The parts of a mixture with their shares.
+fn mixed(section: &Section<'_>) -> Result<Vec<(f64, Ingredient)>, ConfigError> {
+    let mut parts = Vec::new();
+    for part in section.sections("mixture")? {
+        part.check_keys(&["type", "component", "share"])?;
+        let share = part
+            .positive("share")?
+            .ok_or_else(|| part.missing("share", "the part of the extinction at 550 nm"))?;
+        let ingredient = match (part.has("type"), part.text("component")?) {
+            (true, Some(_)) => {
+                return Err(part.error("component", ConfigProblem::Conflict { with: "type" }));
+            }
+            (false, Some(name)) => match Component::ALL.iter().find(|known| known.0 == name) {
+                Some(known) => Ingredient::Component(known.1),
+                None => {
+                    let names = Component::ALL.map(|known| known.0).to_vec();
+                    return Err(part.unknown("component", "aerosol component", name, names));
+                }
+            },
+            (_, None) => Ingredient::Type(named_type(&part)?),
+        };
+        parts.push((share, ingredient));
+    }
+    Ok(parts)
+}
+
+/// An aerosol whose extinction follows Angstrom's law, from what the base has.
+fn after_angstrom(section: &Section<'_>, atmosphere: &mut Atmosphere) -> Result<(), ConfigError> {
+    let (ground, top) = (
+        atmosphere.planet.ground_altitude_m,
+        atmosphere.planet.top_altitude_m,
+    );
+    let old = atmosphere.constituent("aerosol").cloned();
+    let old_depth = old
+        .as_ref()
+        .map_or(0.0, |part| part.optical_depth(ground, top, 550.0));
+    let load = load(section)?;
+    let exponent = section.number("angstrom_exponent", "between -4 and 8", |x| {
+        (-4.0..=8.0).contains(&x)
+    })?;
+    let albedo = parts::spectrum(section, "single_scattering_albedo", 1.0)?;
+    let density = density(section)?;
+    let phase = parts::phase(section, "phase", old.as_ref().map(|part| &part.phase))?;
+    if old.is_none() && load.is_none() {
+        return Err(section.missing(
+            "aod_550",
+            "the base has no aerosol: say how much with aod_550, turbidity or visibility_m",
+        ));
+    }
+    let usual = earth::Earth::with_aerosol(old_depth).aerosol;
+    let rebuilt = AngstromAerosol {
+        load: load.map_or(AerosolLoad::OpticalDepth550(old_depth), |(_, load)| load),
+        angstrom_exponent: exponent.unwrap_or_else(|| match &old {
+            Some(part) => exponent_of(part).unwrap_or(usual.angstrom_exponent),
+            None => usual.angstrom_exponent,
+        }),
+        single_scattering_albedo: albedo.clone().unwrap_or_else(|| match &old {
+            Some(part) => albedo_of(part),
+            None => usual.single_scattering_albedo,
+        }),
+        density: density.unwrap_or_else(|| {
+            old.as_ref()
+                .map_or(usual.density, |part| part.density.clone())
+        }),
+        phase: phase.unwrap_or_else(|| {
+            old.as_ref()
+                .map_or_else(continental_phase, |part| part.phase.clone())
+        }),
+    };
+    let mut part = rebuilt
+        .constituent(atmosphere.clear_air(), ground, top)
+        .map_err(|error| {
+            let key = load.map_or("phase", |(key, _)| key);
+            section.error(key, ConfigProblem::Aerosol(error))
+        })?;
+    // Where only the amount, the place or the direction changes, the base's own spectra stay, scaled.
+    if let (Some(old), None, None) = (old, exponent, albedo) {
+        let factor = part.extinction_per_m(550.0) / old.extinction_per_m(550.0);
+        if factor.is_finite() {
+            part.scattering_per_m = old.scattering_per_m.scaled(factor);
+            part.absorption_per_m = old.absorption_per_m.scaled(factor);
+        }
+    }
+    put(atmosphere, part);
+    Ok(())
+}
+
+/// The Angstrom exponent of a constituent's extinction between 440 and 880 nm.
+fn exponent_of(part: &Constituent) -> Option<f64> {
+    let ratio = part.extinction_per_m(440.0) / part.extinction_per_m(880.0);
+    (ratio.is_finite() && ratio > 0.0).then(|| ratio.log2())
+}
+
+/// The single-scattering albedo of a constituent: constant where it is, else every 2 nm.
+fn albedo_of(part: &Constituent) -> SpectralCurve {
+    let at = |nm: f64| match part.extinction_per_m(nm) {
+        extinction if extinction > 0.0 => {
+            (part.scattering_per_m.at(nm) / extinction).clamp(0.0, 1.0)
+        }
+        _ => 1.0,
+    };
+    let wavelengths: Vec<f64> = (125..=550).map(|i| 2.0 * f64::from(i)).collect();
+    let values: Vec<f64> = wavelengths.iter().map(|&nm| at(nm)).collect();
+    match values.iter().all(|v| (v - values[0]).abs() < 1e-9) {
+        true => SpectralCurve::Constant(values[0]),
+        false => {
+            SpectralCurve::table(wavelengths, values).unwrap_or(SpectralCurve::Constant(at(550.0)))
+        }
+    }
+}

@@ -1,0 +1,251 @@
+//! Reading values out of a table, with errors that know where they are.
+
+use super::error::{ConfigError, ConfigProblem};
+use crate::atmosphere::nearest::nearest;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// A table of the text, and what it is called.
+pub(super) struct Section<'a> {
+    text: &'a str,
+    table: &'a DeTable<'a>,
+    path: String,
+    start: usize,
+}
+
+impl<'a> Section<'a> {
+    /// The outermost table.
+    pub fn new(text: &'a str, table: &'a DeTable<'a>, path: String) -> Self {
+        let start = table.keys().map(|key| key.span().start).min().unwrap_or(0);
+        Self {
+            text,
+            table,
+            path,
+            start,
+        }
+    }
+
+    fn called(&self, key: &str) -> String {
+        match self.path.is_empty() {
+            true => key.to_owned(),
+            false => format!("{}.{key}", self.path),
+        }
+    }
+
+    fn get(&self, key: &str) -> Option<&'a Spanned<DeValue<'a>>> {
+        self.table
+            .iter()
+            .find(|(name, _)| name.get_ref() == key)
+            .map(|(_, value)| value)
+    }
+
+    /// Whether the key is there.
+    pub fn has(&self, key: &str) -> bool {
+        self.get(key).is_some()
+    }
+
+    /// An error about a key: at its value, or where the table begins.
+    pub fn error(&self, key: &str, problem: ConfigProblem) -> ConfigError {
+        let at = self.get(key).map_or(self.start, |value| value.span().start);
+        ConfigError::at(self.text, at, self.called(key), problem)
+    }
+
+    /// An error about a key that is not there.
+    pub fn missing(&self, key: &str, why: &'static str) -> ConfigError {
+        self.error(key, ConfigProblem::Missing(why))
+    }
+
+    /// An error about a name that does not exist.
+    pub fn unknown(
+        &self,
+        key: &str,
+        what: &'static str,
+        got: &str,
+        valid: Vec<&str>,
+    ) -> ConfigError {
+        let problem = ConfigProblem::UnknownName {
+            what,
+            got: got.to_owned(),
+            nearest: nearest(got, valid.iter().copied()).map(str::to_owned),
+            valid: valid.into_iter().map(str::to_owned).collect(),
+        };
+        self.error(key, problem)
+    }
+
+    fn wrong_type(&self, key: &str, expected: &'static str, got: &DeValue<'_>) -> ConfigError {
+        let got = got.type_str();
+        self.error(key, ConfigProblem::WrongType { expected, got })
+    }
+
+    /// Refuses keys that are not among these.
+    pub fn check_keys(&self, valid: &[&str]) -> Result<(), ConfigError> {
+        let unknown = self
+            .table
+            .keys()
+            .filter(|name| !valid.contains(&name.get_ref().as_ref()))
+            .min_by_key(|name| name.span().start);
+        match unknown {
+            None => Ok(()),
+            Some(name) => {
+                let problem = ConfigProblem::UnknownKey {
+                    nearest: nearest(name.get_ref(), valid.iter().copied()).map(str::to_owned),
+                    valid: valid.iter().map(|key| (*key).to_owned()).collect(),
+                };
+                Err(ConfigError::at(
+                    self.text,
+                    name.span().start,
+                    self.called(name.get_ref()),
+                    problem,
+                ))
+            }
+        }
+    }
+
+    /// A number in its domain.
+    pub fn number(
+        &self,
+        key: &str,
+        expected: &'static str,
+        allowed: impl Fn(f64) -> bool,
+    ) -> Result<Option<f64>, ConfigError> {
+        let Some(value) = self.get(key) else {
+            return Ok(None);
+        };
+        let got = number(value.get_ref())
+            .ok_or_else(|| self.wrong_type(key, "a number", value.get_ref()))?;
+        match allowed(got) {
+            true => Ok(Some(got)),
+            false => Err(self.error(key, ConfigProblem::OutOfRange { expected, got })),
+        }
+    }
+
+    /// A finite number above 0.
+    pub fn positive(&self, key: &str) -> Result<Option<f64>, ConfigError> {
+        self.number(key, "a finite number above 0", |x| x.is_finite() && x > 0.0)
+    }
+
+    /// A finite number not below 0.
+    pub fn not_negative(&self, key: &str) -> Result<Option<f64>, ConfigError> {
+        self.number(key, "a finite number not below 0", |x| {
+            x.is_finite() && x >= 0.0
+        })
+    }
+
+    /// A number that must be there.
+    pub fn required(&self, key: &str) -> Result<f64, ConfigError> {
+        let finite = self.number(key, "a finite number", f64::is_finite)?;
+        finite.ok_or_else(|| self.missing(key, "a number is needed here"))
+    }
+
+    /// A text.
+    pub fn text(&self, key: &str) -> Result<Option<&'a str>, ConfigError> {
+        match self.get(key) {
+            None => Ok(None),
+            Some(value) => match value.get_ref().as_str() {
+                Some(text) => Ok(Some(text)),
+                None => Err(self.wrong_type(key, "a text in quotes", value.get_ref())),
+            },
+        }
+    }
+
+    /// A list of texts.
+    pub fn texts(&self, key: &str) -> Result<Option<Vec<&'a str>>, ConfigError> {
+        let Some(value) = self.get(key) else {
+            return Ok(None);
+        };
+        let list = value.get_ref().as_array();
+        let texts = list.and_then(|list| list.iter().map(|item| item.get_ref().as_str()).collect());
+        texts
+            .map(Some)
+            .ok_or_else(|| self.wrong_type(key, "a list of texts", value.get_ref()))
+    }
+
+    /// A list of numbers; lists inside it are laid end to end.
+    pub fn numbers(&self, key: &str) -> Result<Option<Vec<f64>>, ConfigError> {
+        let Some(value) = self.get(key) else {
+            return Ok(None);
+        };
+        let mut numbers = Vec::new();
+        let list = value.get_ref().as_array();
+        let list =
+            list.ok_or_else(|| self.wrong_type(key, "a list of numbers", value.get_ref()))?;
+        for item in list.iter() {
+            match item.get_ref() {
+                DeValue::Array(inner) => {
+                    for item in inner.iter() {
+                        numbers.push(self.item(key, item)?);
+                    }
+                }
+                _ => numbers.push(self.item(key, item)?),
+            }
+        }
+        Ok(Some(numbers))
+    }
+
+    fn item(&self, key: &str, item: &Spanned<DeValue<'_>>) -> Result<f64, ConfigError> {
+        number(item.get_ref()).ok_or_else(|| {
+            let problem = ConfigProblem::WrongType {
+                expected: "a number",
+                got: item.get_ref().type_str(),
+            };
+            ConfigError::at(self.text, item.span().start, self.called(key), problem)
+        })
+    }
+
+    /// A list of numbers that must be there.
+    pub fn required_numbers(&self, key: &str) -> Result<Vec<f64>, ConfigError> {
+        self.numbers(key)?
+            .ok_or_else(|| self.missing(key, "a list of numbers is needed here"))
+    }
+
+    /// Whether the value is a table.
+    pub fn is_section(&self, key: &str) -> bool {
+        self.get(key)
+            .is_some_and(|value| value.get_ref().is_table())
+    }
+
+    /// A table inside this one.
+    pub fn section(&self, key: &str) -> Result<Option<Section<'a>>, ConfigError> {
+        match self.get(key) {
+            None => Ok(None),
+            Some(value) => match self.inner(self.called(key), value) {
+                Some(section) => Ok(Some(section)),
+                None => Err(self.wrong_type(key, "a table", value.get_ref())),
+            },
+        }
+    }
+
+    /// A list of tables inside this one; empty where the key is absent.
+    pub fn sections(&self, key: &str) -> Result<Vec<Section<'a>>, ConfigError> {
+        let Some(value) = self.get(key) else {
+            return Ok(vec![]);
+        };
+        let list = value
+            .get_ref()
+            .as_array()
+            .map(|list| list.iter().enumerate());
+        let inner = |(i, item)| self.inner(format!("{}[{i}]", self.called(key)), item);
+        let sections = list.and_then(|mut list| list.by_ref().map(inner).collect());
+        sections.ok_or_else(|| self.wrong_type(key, "a list of tables", value.get_ref()))
+    }
+
+    fn inner(&self, path: String, value: &'a Spanned<DeValue<'a>>) -> Option<Section<'a>> {
+        Some(Section {
+            text: self.text,
+            table: value.get_ref().as_table()?,
+            path,
+            start: value.span().start,
+        })
+    }
+}
+
+/// An integer or a float.
+fn number(value: &DeValue<'_>) -> Option<f64> {
+    match value {
+        DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix())
+            .ok()
+            .map(|i| i as f64),
+        DeValue::Float(float) => float.as_str().parse().ok(),
+        _ => None,
+    }
+}

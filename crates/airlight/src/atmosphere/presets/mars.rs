@@ -1,0 +1,185 @@
+//! Mars: thin carbon dioxide and suspended dust.
+
+use super::fixed_table;
+use crate::atmosphere::{Atmosphere, Constituent, DensityProfile, Planet};
+use crate::optics::rayleigh::number_density_per_m3;
+use crate::optics::{Depolarization, PhaseFunction, TabulatedPhase};
+use crate::spectrum::{SpectralCurve, embedded_table, solar};
+use crate::sun::SunDisc;
+use std::f64::consts::PI;
+
+/// Mean distance of Mars from the sun, AU.
+pub const MARS_DISTANCE_AU: f64 = 1.5237;
+/// Scale height of gas and dust, m.
+const SCALE_HEIGHT_M: f64 = 11.1e3;
+/// Mean surface pressure (Pa) and a mean temperature of the lower air (K).
+pub(in crate::atmosphere) const MARS_PRESSURE_PA: f64 = 610.0;
+const TEMPERATURE_K: f64 = 210.0;
+/// Vertical optical depth of the dust at 880 nm: between the clear season (0.3 to 0.4) and the dusty one (1.25 and
+/// more) seen from the ground (Lemmon et al., Icarus 251, 96, 2015; Chen-Chen et al., Icarus 319, 43, 2019).
+const DUST_DEPTH_880: f64 = 0.5;
+
+/// Scattering cross-section of a carbon dioxide molecule, m^2: refractive index of Bideau-Mehu et al. (Opt. Commun. 9,
+/// 432, 1973) at 273.15 K and 101325 Pa, King factor `1.1364 + 25.3e-12 nu^2` (nu in cm^-1) of Sneep & Ubachs (J. Quant.
+/// Spectrosc. Radiat. Transfer 92, 293, 2005). Within 0.5 % of measurements at 532 and 660 nm.
+pub fn carbon_dioxide_cross_section_m2(wavelength_nm: f64) -> f64 {
+    let s2 = (1e3 / wavelength_nm).powi(2);
+    let refractivity = 6.99100e-2 / (166.175 - s2)
+        + 1.44720e-3 / (79.609 - s2)
+        + 6.42941e-5 / (56.3064 - s2)
+        + 5.21306e-5 / (46.0196 - s2)
+        + 1.46847e-6 / (0.058_473_8 - s2);
+    let n = 1.0 + refractivity;
+    let molecules = number_density_per_m3(101_325.0, 273.15);
+    let lambda = wavelength_nm * 1e-9;
+    let lorentz = refractivity * (n + 1.0) / (n * n + 2.0);
+    24.0 * PI.powi(3) * (lorentz / (molecules * lambda * lambda)).powi(2) * (1.1364 + 2.53e-3 * s2)
+}
+
+/// Mars on a moderately dusty day.
+///
+/// - Radius 3389.5 km; gas and dust with a scale height of 11.1 km (dust 11 to 19 km at three sites, Lemmon et al. 2015).
+/// - Gas: carbon dioxide at 610 Pa and 210 K, 2.8 % less for the lighter gases mixed in; optical depth 0.0065 at 440 nm.
+/// - Dust: optical depth 0.5 at 880 nm, nearly grey (exponent -0.09, Lemmon et al. 2024); single-scattering albedo 0.73
+///   at 388 nm rising to 0.98 at 700 nm (Wolff et al., J. Geophys. Res. 114, E00D04, 2009), which makes the sky
+///   butterscotch; phase function by wavelength with a diffraction peak that is narrower and higher in the blue, which
+///   makes the glow round the low sun blue (Ehlers et al., Appl. Opt. 53, 1808, 2014). At 650 nm it lies within 15 % of
+///   the sky measurements of Chen-Chen et al. (Icarus 330, 16, 2019) from 0 to 150 degrees.
+/// - Ground: rounded albedo of bright, dusty regions (0.07 at 440 nm, 0.29 at 680 nm); good to some 20 %.
+/// - Sun: the Earth's spectrum over 1.5237^2, and a disc smaller by that factor.
+pub fn mars() -> Atmosphere {
+    let density = DensityProfile::Exponential {
+        scale_height_m: SCALE_HEIGHT_M,
+    };
+    let top_m = 120e3;
+    let molecules = 0.972 * number_density_per_m3(MARS_PRESSURE_PA, TEMPERATURE_K);
+    let gas: Vec<(f64, f64)> = (50..=220)
+        .map(|i| 5.0 * f64::from(i))
+        .map(|nm| (nm, molecules * carbon_dioxide_cross_section_m2(nm)))
+        .collect();
+    let column_m = density.column_m(0.0, top_m);
+    let extinction = |nm: f64| DUST_DEPTH_880 * (nm / 880.0).powf(0.09) / column_m;
+    let albedo = fixed_table(&[
+        (388.0, 0.730),
+        (440.0, 0.777),
+        (550.0, 0.888),
+        (650.0, 0.967),
+        (700.0, 0.977),
+        (800.0, 0.980),
+    ]);
+    let dust = |of: &dyn Fn(f64) -> f64| {
+        let samples = (30..=110)
+            .map(|i| 10.0 * f64::from(i))
+            .map(|nm| (nm, of(albedo.at(nm)) * extinction(nm)));
+        fixed_table(&samples.collect::<Vec<_>>())
+    };
+    let distance = MARS_DISTANCE_AU;
+    Atmosphere {
+        name: "mars".into(),
+        planet: Planet {
+            radius_m: 3_389.5e3,
+            top_altitude_m: top_m,
+            ground_altitude_m: 0.0,
+            ground_albedo: fixed_table(&[
+                (400.0, 0.06),
+                (440.0, 0.07),
+                (500.0, 0.10),
+                (550.0, 0.15),
+                (600.0, 0.24),
+                (680.0, 0.29),
+                (750.0, 0.31),
+            ]),
+        },
+        constituents: vec![
+            Constituent {
+                name: "rayleigh".into(),
+                density: density.clone(),
+                scattering_per_m: fixed_table(&gas),
+                absorption_per_m: SpectralCurve::Constant(0.0),
+                // From the King factor at 550 nm.
+                phase: PhaseFunction::Rayleigh(Depolarization::Factor(0.079)),
+            },
+            Constituent {
+                name: "aerosol".into(),
+                density,
+                scattering_per_m: dust(&|albedo| albedo),
+                absorption_per_m: dust(&|albedo| 1.0 - albedo),
+                phase: PhaseFunction::Tabulated(dust_phase()),
+            },
+        ],
+        solar_irradiance: SpectralCurve::Table(solar::extraterrestrial().clone())
+            .scaled(distance.powi(-2)),
+        sun: SunDisc::at_distance_au(distance).unwrap_or_default(),
+    }
+}
+
+fn dust_phase() -> TabulatedPhase {
+    let rows = embedded_table::<7>(include_str!("../../../data/atmosphere/mars_dust_phase.txt"));
+    let values = (1..7)
+        .flat_map(|w| rows.iter().map(move |row| row[w]))
+        .collect();
+    let wavelengths = vec![388.0, 440.0, 550.0, 650.0, 700.0, 800.0];
+    TabulatedPhase::new(rows.iter().map(|row| row[0]).collect(), wavelengths, values)
+        .expect("the embedded table of dust is in order")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn carbon_dioxide_scatters_as_measured() {
+        // He et al., Atmos. Chem. Phys. 21, 14927, 2021: 13.32e-31 m^2 at 532 nm, 5.516e-31 m^2 at 660 nm.
+        for (nm, measured) in [(532.0, 13.32e-31), (660.0, 5.516e-31)] {
+            let got = carbon_dioxide_cross_section_m2(nm);
+            assert!((got / measured - 1.0).abs() < 6e-3, "{nm}: {got}");
+        }
+        let gas = mars()
+            .constituent("rayleigh")
+            .unwrap()
+            .optical_depth(0.0, 120e3, 440.0);
+        assert!((gas / 0.0065 - 1.0).abs() < 0.03, "{gas}");
+    }
+
+    #[test]
+    fn dust_glows_blue_round_the_sun_and_yellow_elsewhere() {
+        let dust = mars().constituent("aerosol").unwrap().clone();
+        let scattered = |degrees: f64, nm: f64| {
+            dust.scattering_per_m.at(nm) * dust.phase.evaluate(degrees.to_radians().cos(), nm)
+        };
+        assert!(scattered(2.0, 440.0) > 1.4 * scattered(2.0, 650.0));
+        for degrees in [10.0, 30.0, 60.0, 90.0, 150.0] {
+            assert!(
+                scattered(degrees, 440.0) < 0.8 * scattered(degrees, 650.0),
+                "{degrees}"
+            );
+            assert!(
+                scattered(degrees, 550.0) < scattered(degrees, 650.0),
+                "{degrees}"
+            );
+        }
+        // The asymmetries the table is made for.
+        for (nm, g) in [
+            (440.0, 0.766),
+            (550.0, 0.693),
+            (650.0, 0.684),
+            (700.0, 0.711),
+        ] {
+            assert!(
+                (dust.phase.asymmetry(nm) - g).abs() < 2e-3,
+                "{nm}: {}",
+                dust.phase.asymmetry(nm)
+            );
+        }
+        let fit = |mu: f64| {
+            let hg = |g: f64| (1.0 - g * g) / (4.0 * PI * (1.0 + g * g - 2.0 * g * mu).powf(1.5));
+            0.743 * hg(0.889) + 0.257 * hg(0.094)
+        };
+        for degrees in 0..=150 {
+            let mu = f64::from(degrees).to_radians().cos();
+            let ratio = dust.phase.evaluate(mu, 650.0) / fit(mu);
+            assert!((ratio - 1.0).abs() < 0.16, "{degrees} degrees: {ratio}");
+        }
+        assert!((dust.optical_depth(0.0, 120e3, 880.0) / 0.5 - 1.0).abs() < 1e-3);
+    }
+}

@@ -1,0 +1,438 @@
+use super::super::reference;
+use super::super::{LightSettings, PointLight, SphereLight, SpotLight};
+use super::*;
+use crate::fog::droplets;
+use crate::fog::layer::{Layer, Medium};
+use crate::optics::PhaseFunction;
+
+const EARTH_M: f64 = 6.371e6;
+
+fn particles(extinction: f32, phase: PhaseFunction) -> Medium<1> {
+    Medium {
+        extinction_per_m: Spectrum([extinction]),
+        single_scattering_albedo: Spectrum([0.9]),
+        phase,
+    }
+}
+
+fn hg(g: f64) -> PhaseFunction {
+    PhaseFunction::henyey_greenstein(g).expect("a phase function")
+}
+
+fn point(position: DVec3) -> Light<1> {
+    Light::Point(PointLight::new(position, Spectrum([1.0]), 1e-3).expect("a light"))
+}
+
+/// The quadrature itself, not the closed form.
+fn march(
+    light: &Light<1>,
+    medium: &ParticipatingMedium<1>,
+    view_ray: &ViewRay,
+    nodes: usize,
+) -> f64 {
+    let haze = Haze::new(medium).expect("some fog");
+    f64::from(Ray::new(light, &haze, view_ray).path_radiance(&Nodes::new(nodes))[0])
+}
+
+/// The worst relative error, and where, of the march over lines that pass lights `nearest` m away, in uniform fog.
+fn worst_in_uniform_fog(phase: &PhaseFunction, nodes: usize) -> (f64, String) {
+    let mut worst = (0.0, String::new());
+    for nearest in [0.002, 0.1, 1.0, 12.0, 300.0, 1e4] {
+        for start in [-1e4, -300.0, -20.0, -1.0, 0.0, 0.5, 40.0, 3e3] {
+            for length in [0.1, 10.0, 35.0, 1e3, f64::INFINITY] {
+                for extinction in [1e-5f32, 1e-3, 0.03, 0.3, 3.0] {
+                    let particles = particles(extinction, phase.clone());
+                    let medium = ParticipatingMedium {
+                        medium: &particles,
+                        profile: &Profile::Uniform,
+                        others: &[],
+                        wavelengths_nm: &[550.0],
+                        ground_radius_m: f64::INFINITY,
+                    };
+                    let light = point(DVec3::new(nearest, 0.0, 0.0));
+                    let view_ray = ViewRay {
+                        eye: DVec3::new(0.0, 0.0, start),
+                        direction: DVec3::Z,
+                        length_m: length,
+                    };
+                    let depth = f64::from(extinction) * nearest.hypot(start);
+                    if depth > 60.0 {
+                        continue;
+                    }
+                    let exact = reference::path_radiance(&light, &medium, &view_ray);
+                    let off = (march(&light, &medium, &view_ray, nodes) / exact - 1.0).abs();
+                    if off > worst.0 {
+                        worst = (
+                            off,
+                            format!(
+                                "nearest {nearest}, start {start}, length {length}, {extinction}/m"
+                            ),
+                        );
+                    }
+                }
+            }
+        }
+    }
+    worst
+}
+
+#[test]
+fn uniform_fog_of_any_phase_function_converges_in_a_few_nodes() {
+    for (g, limit) in [
+        (0.0, 1e-5),
+        (0.5, 1e-5),
+        (0.9, 1e-5),
+        (0.95, 1e-5),
+        (-0.5, 2e-5),
+    ] {
+        let (off, place) = worst_in_uniform_fog(&hg(g), 12);
+        assert!(off < limit, "g {g}: {off:e} at {place}");
+    }
+}
+
+/// A number of nodes, in bold where it is the default.
+fn row_of(nodes: usize) -> String {
+    match nodes == LightSettings::default().nodes {
+        true => format!("| **{nodes}** |"),
+        false => format!("| {nodes} |"),
+    }
+}
+
+#[test]
+#[ignore = "prints the table of the book"]
+fn print_convergence_in_uniform_fog() {
+    println!("\n| nodes | g = 0 | 0.5 | 0.8 | 0.9 | 0.95 | -0.3 | -0.7 |");
+    println!("|---|---|---|---|---|---|---|---|");
+    for nodes in [4, 6, 8, 10, 12, 16, 24] {
+        let mut row = row_of(nodes);
+        for g in [0.0, 0.5, 0.8, 0.9, 0.95, -0.3, -0.7] {
+            let (off, _) = worst_in_uniform_fog(&hg(g), nodes);
+            row += &format!(" {off:.1e} |");
+        }
+        println!("{row}");
+    }
+}
+
+/// LightSet and lines in fog that thins with height, a few hundred of each kind.
+fn in_thinning_fog(visit: &mut dyn FnMut(&ParticipatingMedium<1>, &Light<1>, &ViewRay)) {
+    let profiles = |scale_height_m| {
+        [
+            Profile::Exponential {
+                reference_height_m: 0.0,
+                scale_height_m,
+            },
+            Profile::Clamped {
+                base_height_m: 6.0,
+                scale_height_m,
+            },
+            Profile::Slab {
+                top_height_m: 2.0 * scale_height_m,
+            },
+        ]
+    };
+    let lights = [
+        DVec3::new(0.3, 5.0, -30.0),
+        DVec3::new(-8.0, 25.0, -60.0),
+        DVec3::new(400.0, 3.0, -900.0),
+        DVec3::new(0.0, 300.0, 5.0),
+    ];
+    for ground_radius_m in [f64::INFINITY, EARTH_M] {
+        for profile in [3.0, 40.0, 1200.0].into_iter().flat_map(profiles) {
+            for extinction in [1e-3f32, 0.02, 0.5] {
+                for g in [0.0, 0.8] {
+                    let particles = particles(extinction, hg(g));
+                    let medium = ParticipatingMedium {
+                        medium: &particles,
+                        profile: &profile,
+                        others: &[],
+                        wavelengths_nm: &[550.0],
+                        ground_radius_m,
+                    };
+                    for light in lights.map(point) {
+                        for (height, sin_elevation, length_m) in [
+                            (1.7, 0.0, 50.0),
+                            (1.7, 0.0, f64::INFINITY),
+                            (1.7, 0.1, f64::INFINITY),
+                            (1.7, 0.9, f64::INFINITY),
+                            (1.7, 0.03, 2000.0),
+                            (90.0, -0.4, 220.0),
+                            (90.0, -0.05, 1799.0),
+                            (1500.0, -0.9, 1665.0),
+                            (1500.0, -1e-3, 1e5),
+                        ] {
+                            let level = f64::sqrt(1.0 - sin_elevation * sin_elevation);
+                            let view_ray = ViewRay {
+                                eye: DVec3::new(0.0, height, 0.0),
+                                direction: DVec3::new(0.05 * level, sin_elevation, -level)
+                                    .normalize(),
+                                length_m,
+                            };
+                            visit(&medium, &light, &view_ray);
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Relative errors over every `stride`-th of those lines, rising; what is dimmed by e^-30 or more is left out.
+fn errors_in_thinning_fog(nodes: usize, stride: usize) -> Vec<(f64, String)> {
+    let mut all = Vec::new();
+    let mut count = 0;
+    in_thinning_fog(&mut |medium, light, view_ray| {
+        count += 1;
+        if count % stride != 0 {
+            return;
+        }
+        let exact = reference::path_radiance(light, medium, view_ray);
+        let near = (light.position() - view_ray.eye).length();
+        if exact > 1e-13 * f64::from(medium.medium.extinction_per_m[0]) / near {
+            let off = (march(light, medium, view_ray, nodes) / exact - 1.0).abs();
+            all.push((off, format!("{medium:?} {light:?} {view_ray:?}")));
+        }
+    });
+    all.sort_by(|a, b| a.0.total_cmp(&b.0));
+    all
+}
+
+/// The error that a share of the lines stays below.
+fn below(errors: &[(f64, String)], share: f64) -> f64 {
+    errors[((errors.len() - 1) as f64 * share) as usize].0
+}
+
+#[test]
+fn thinning_fog_converges() {
+    let errors = errors_in_thinning_fog(12, 11);
+    assert!(errors.len() > 200);
+    let (worst, place) = errors.last().expect("lines");
+    assert!(below(&errors, 0.5) < 3e-7);
+    assert!(below(&errors, 0.9) < 1e-6, "{:e}", below(&errors, 0.9));
+    assert!(below(&errors, 0.98) < 1e-4, "{:e}", below(&errors, 0.98));
+    assert!(*worst < 0.01, "{worst:e} at {place}");
+}
+
+#[test]
+#[ignore = "prints the table of the book"]
+fn print_convergence_in_thinning_fog() {
+    println!(
+        "\n| nodes a panel | median | 90 % below | 99 % below | worst |\n|---|---|---|---|---|"
+    );
+    let mut lines = 0;
+    for nodes in [6, 8, 12, 16, 24] {
+        let errors = errors_in_thinning_fog(nodes, 1);
+        let [half, most, nearly] = [0.5, 0.9, 0.99].map(|share| below(&errors, share));
+        let (worst, _) = errors.last().expect("lines");
+        println!(
+            "{} {half:.1e} | {most:.1e} | {nearly:.1e} | {worst:.1e} |",
+            row_of(nodes)
+        );
+        lines = errors.len();
+    }
+    println!("{lines} lines");
+}
+
+#[test]
+fn beams_and_balls_match_quadrature() {
+    let profiles = [
+        Profile::Uniform,
+        Profile::Clamped {
+            base_height_m: 2.0,
+            scale_height_m: 3.0,
+        },
+    ];
+    let position = DVec3::new(0.4, 6.0, -20.0);
+    let one = Spectrum([1.0]);
+    let mut lights = Vec::new();
+    for axis in [DVec3::NEG_Y, DVec3::new(0.2, -0.3, 0.9), DVec3::NEG_Z] {
+        for (inner, outer) in [(0.0, 0.5), (0.3, 0.31), (0.4, 0.4), (0.7, 1.5)] {
+            lights.push(Light::Spot(
+                SpotLight::new(position, axis, one, inner, outer, 0.01).expect("a light"),
+            ));
+        }
+    }
+    for radius in [0.05, 0.5, 3.0] {
+        lights.push(Light::Sphere(
+            SphereLight::new(position, radius, one).expect("a light"),
+        ));
+    }
+    let mut lit = 0;
+    for profile in &profiles {
+        for extinction in [1e-3, 0.1] {
+            let particles = particles(extinction, hg(0.7));
+            let medium = ParticipatingMedium {
+                medium: &particles,
+                profile,
+                others: &[],
+                wavelengths_nm: &[550.0],
+                ground_radius_m: f64::INFINITY,
+            };
+            for light in &lights {
+                for aim in [
+                    DVec3::new(0.2, 2.0, -18.0),
+                    DVec3::new(0.4, 5.0, -20.0),
+                    DVec3::new(0.4, 5.9, -20.0),
+                    DVec3::new(-5.0, 6.0, -30.0),
+                    DVec3::new(3.0, 1.6, 10.0),
+                ] {
+                    for length_m in [15.0, 60.0, f64::INFINITY] {
+                        let eye = DVec3::new(0.0, 1.6, 0.0);
+                        let view_ray = ViewRay {
+                            eye,
+                            direction: (aim - eye).normalize(),
+                            length_m,
+                        };
+                        let exact = reference::path_radiance(light, &medium, &view_ray);
+                        let got = march(light, &medium, &view_ray, 12);
+                        lit += usize::from(exact > 0.0);
+                        // A ball's scalar irradiance has a square root's edge where the line touches it.
+                        let limit = match light {
+                            Light::Sphere(_) => 2e-3,
+                            _ => 1e-4,
+                        };
+                        assert!(
+                            (got - exact).abs() <= limit * exact,
+                            "{light:?} {medium:?} {view_ray:?}: {got:e} against {exact:e}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+    assert!(lit > 150, "{lit}");
+}
+
+#[test]
+fn lanes_of_different_extinction_share_nodes() {
+    for spread in [1.0f32, 4.0, 16.0, 64.0] {
+        for (near, limit) in [(0.01, 2e-5), (1.0, 2e-5), (200.0, 2e-5)] {
+            let all = Medium {
+                extinction_per_m: Spectrum([0.02, 0.02 * spread.sqrt(), 0.02 * spread, 0.0]),
+                single_scattering_albedo: Spectrum::ONE,
+                phase: hg(0.8),
+            };
+            let light = DVec3::new(near, 0.0, -20.0);
+            let view_ray = ViewRay {
+                eye: DVec3::ZERO,
+                direction: DVec3::NEG_Z,
+                length_m: 100.0,
+            };
+            let medium = ParticipatingMedium {
+                medium: &all,
+                profile: &Profile::Uniform,
+                others: &[],
+                wavelengths_nm: &[450.0, 500.0, 550.0, 600.0],
+                ground_radius_m: f64::INFINITY,
+            };
+            let lamp4 = PointLight::new(light, Spectrum::<4>::ONE, 1e-3).expect("a light");
+            let haze = Haze::new(&medium).expect("fog");
+            let got =
+                Ray::new(&Light::Point(lamp4), &haze, &view_ray).path_radiance(&Nodes::new(12));
+            assert_eq!(got[3], 0.0);
+            for lane in 0..3 {
+                let alone = particles(all.extinction_per_m[lane], hg(0.8));
+                let medium = ParticipatingMedium {
+                    medium: &alone,
+                    profile: &Profile::Uniform,
+                    others: &[],
+                    wavelengths_nm: &[550.0],
+                    ground_radius_m: f64::INFINITY,
+                };
+                let exact = reference::path_radiance(&point(light), &medium, &view_ray) / 0.9;
+                if exact < 1e-30 {
+                    continue;
+                }
+                let off = (f64::from(got[lane]) / exact - 1.0).abs();
+                let limit = if spread > 20.0 { 2e-3 } else { limit };
+                assert!(
+                    off < limit,
+                    "spread {spread}, lane {lane}, {near} m: {off:e}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn the_narrow_peak_of_drops_costs_some_accuracy() {
+    for (diameter_um, limit) in [(5.0, 1e-3), (10.0, 1e-3), (20.0, 1.5e-3), (50.0, 2e-3)] {
+        let (off, place) = worst_in_uniform_fog(&droplets::phase(diameter_um), 12);
+        println!("{diameter_um} um: {off:.1e}");
+        assert!(off < limit, "{diameter_um} um: {off:e} at {place}");
+    }
+}
+
+/// Every pair of profiles of very different heights: one scatters, both dim. Visits relative errors.
+fn among_other_layers(nodes: usize, visit: &mut dyn FnMut(f64, String)) {
+    let profiles = [
+        Profile::Uniform,
+        Profile::Slab { top_height_m: 7.0 },
+        Profile::Exponential {
+            reference_height_m: 0.0,
+            scale_height_m: 4.0,
+        },
+        Profile::Clamped {
+            base_height_m: 3.0,
+            scale_height_m: 60.0,
+        },
+    ];
+    for profile in &profiles {
+        for other in &profiles {
+            for [own, besides] in [[0.002, 0.05], [0.05, 0.05], [0.05, 0.002]] {
+                let particles = particles(own, hg(0.8));
+                let others = [Layer {
+                    profile: *other,
+                    medium: self::particles(besides, hg(0.8)),
+                }];
+                let medium = ParticipatingMedium {
+                    medium: &particles,
+                    profile,
+                    others: &others,
+                    wavelengths_nm: &[550.0],
+                    ground_radius_m: f64::INFINITY,
+                };
+                for light in [[0.3, 5.0, -30.0], [-8.0, 25.0, -60.0], [40.0, 3.0, 20.0]] {
+                    for sin_elevation in [-0.02, 0.0, 0.1, 0.5] {
+                        for length_m in [25.0, 60.0, f64::INFINITY] {
+                            let eye_m = if sin_elevation < 0.0 { 12.0 } else { 1.6 };
+                            let view_ray = ViewRay {
+                                eye: DVec3::new(0.0, eye_m, 0.0),
+                                direction: DVec3::new(0.05, sin_elevation, -1.0).normalize(),
+                                length_m: if sin_elevation < 0.0 {
+                                    length_m.min(500.0)
+                                } else {
+                                    length_m
+                                },
+                            };
+                            let light = point(DVec3::from_array(light));
+                            let exact = reference::path_radiance(&light, &medium, &view_ray);
+                            let got = march(&light, &medium, &view_ray, nodes);
+                            if exact > 1e-15 {
+                                let off = (got / exact - 1.0).abs();
+                                visit(
+                                    off,
+                                    format!(
+                                        "{profile:?} {own} with {other:?} {besides}: {view_ray:?}"
+                                    ),
+                                );
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn other_layers_dim_the_light() {
+    let (mut count, mut worst) = (0, (0.0, String::new()));
+    among_other_layers(12, &mut |off, place| {
+        count += 1;
+        if off > worst.0 {
+            worst = (off, place);
+        }
+    });
+    assert!(count > 1500, "{count}");
+    assert!(worst.0 < 5e-6, "{:e} at {}", worst.0, worst.1);
+}

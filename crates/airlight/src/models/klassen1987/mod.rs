@@ -1,0 +1,298 @@
+//! Klassen, "Modeling the Effect of the Atmosphere on Light", ACM Transactions on Graphics 6(3), 215-237, July 1987: the
+//! colours of sun and sky (sections 2 to 8, eqs. 1 to 33); [`Klassen1987Scene`] adds its naturally lit fog (sections 9 to 12).
+//!
+//! The air is two spherical shells on the ground at `R_E`: molecules and haze up to `R_H`, molecules alone up to `R_A`,
+//! both as dense everywhere as at the ground; `R_A` is lowered so that the air's column is right. Sunlight is dimmed on
+//! `d_1` through air and `d_2` through haze, scattered once by the haze, and dimmed on `d_3` to the eye:
+//!
+//! ```text
+//! haze(psi, theta) = I_0 beta_sc(psi) int_0^l_max exp(-beta_m d_1 - (beta_m + beta_p)(d_2 + d_3)) dl         (23)
+//! sky = blue (1 - O) + haze,   O = 1 - exp(-beta_p l_max)                                                      (31)
+//! sun = I_0 exp(-beta_m (d_1 + d_2) - beta_p d_2)                                                              (13), (22)
+//! ```
+//!
+//! # As printed and as corrected
+//! - (1): `1 - g^2` for `(1 - g)^2`, and `1 / (4 pi)` ([`HazePhase`]).
+//! - The text lets `beta_sc` absorb a factor `sin psi`, for light that falls on a line at an angle. Radiance has none: a
+//!   beam that meets a tube of sight aslant puts less light on each metre of its side, by `sin psi`, but stays inside for
+//!   longer, by `1 / sin psi`; a volume scatters `E beta` whichever way it is lit. With the factor the aureole would have a
+//!   dark hole where the sun stands, and no figure asks for it, so it is left out in both forms.
+//! - (13), (22): the exponents lack their minus signs; (27): `l = l_max (r - R_E) / (R_H - R_E)`, which changes nothing,
+//!   since only (28) is used.
+//! - (27) to (29) take the way along the line to be linear in the radius: [`HazePath`].
+//! - (20), (24), (25) take the sun to stand equally high over every sphere: [`SunRay`].
+//! - The blue is one constant colour, by eye: [`BaseBlue`].
+//!
+//! Wavelengths: 33 at 10 nm as in section 8, 380 to 700 nm (the paper gives the number and the step; these are the ends that
+//! lie about the visible range).
+//!
+//! The model has no light below the horizon; there it shows the horizon's
+//! ([`PublishedModel::has_ground`]: no). It has no twilight, no ozone in the sun's
+//! colour, no haze that is lit by haze. How far it is from the solver: the book's chapter.
+
+mod blue;
+mod coherence;
+#[cfg(test)]
+mod errata;
+pub mod fog;
+mod geometry;
+mod haze;
+mod layers;
+mod scene;
+mod settings;
+mod simpson;
+#[cfg(test)]
+mod tests;
+
+pub use geometry::{HazePath, SunRay};
+pub use scene::{Fog1987, Klassen1987Scene, SUNSET_DEG};
+pub use settings::{BaseBlue, Haze, HazePhase, Klassen1987Error, Klassen1987Settings};
+
+use super::PublishedModel;
+use crate::axes;
+use crate::spectrum::{Spectrum, WavelengthGrid};
+use crate::sun::SunDisc;
+use blue::Blue;
+use coherence::{Cells, Walker};
+use geometry::{RaySegment, Spheres};
+use glam::DVec3;
+use haze::HazeTables;
+use simpson::Simpson;
+use std::sync::OnceLock;
+
+/// Wavelengths of the model.
+pub const WAVELENGTHS: usize = 33;
+/// The first of them, nm; the others follow every 10 nm up to 700 nm.
+pub const FIRST_NM: f64 = 380.0;
+
+type Lanes = Spectrum<WAVELENGTHS>;
+
+fn wavelengths_nm() -> impl Iterator<Item = f64> {
+    (0..WAVELENGTHS).map(|i| FIRST_NM + 10.0 * i as f64)
+}
+
+/// Them as a grid, under the Earth's sun.
+pub fn wavelength_grid() -> WavelengthGrid {
+    WavelengthGrid::from_wavelengths_nm(wavelengths_nm().collect())
+        .expect("the model's wavelengths are in order")
+}
+
+/// `e^-depth`, the transmittance of an optical depth.
+fn exp_neg(depth: Lanes) -> Lanes {
+    (depth * -1.0).exp()
+}
+
+fn to_xyz(grid: &WavelengthGrid, radiance: &Lanes) -> [f64; 3] {
+    grid.to_xyz(&radiance.0)
+}
+
+/// The sun and the sky of 1987 under one sun.
+pub struct Klassen1987 {
+    settings: Klassen1987Settings,
+    grid: WavelengthGrid,
+    spheres: Spheres,
+    sun: DVec3,
+    sin_sun: f64,
+    disc: SunDisc,
+    /// Solar irradiance outside the air, `I_0`, W m^-2 nm^-1.
+    sunlight: Lanes,
+    /// `beta_m`, m^-1.
+    air_per_m: Lanes,
+    haze: HazeTables,
+    blue: Blue,
+    cells: OnceLock<Cells>,
+}
+
+impl Klassen1987 {
+    /// The model for an eye on the ground and a sun in the direction of a unit vector ([`crate::axes`]), at the horizon or
+    /// above. With [`BaseBlue::Solver`] the clear air is solved for first (about a second).
+    ///
+    /// # Errors
+    /// [`Klassen1987Error`] for a setting out of its domain and for a sun below the horizon.
+    pub fn new(settings: &Klassen1987Settings, sun: DVec3) -> Result<Self, Klassen1987Error> {
+        settings.validate()?;
+        let sun = sun.normalize_or_zero();
+        let elevation_deg = axes::elevation_deg(sun);
+        // As much below as rounding makes of 0.
+        if sun == DVec3::ZERO || elevation_deg < -1e-9 {
+            return Err(Klassen1987Error::SunBelowHorizon(elevation_deg));
+        }
+        let grid = wavelength_grid().with_solar(&settings.clear_air.solar_irradiance);
+        let planet = &settings.clear_air.planet;
+        let earth_m = planet.radius_m + planet.ground_altitude_m;
+        let mut air_per_m = Lanes::ZERO;
+        for (lane, nm) in wavelengths_nm().enumerate() {
+            air_per_m.0[lane] = settings.air_extinction_per_m(nm) as f32;
+        }
+        let sin_sun = sun.y.max(0.0);
+        Ok(Self {
+            spheres: Spheres {
+                earth_m,
+                haze_m: earth_m + settings.haze_thickness_m,
+                air_m: earth_m + settings.air_thickness_m,
+            },
+            sun,
+            sin_sun,
+            disc: settings.clear_air.sun.clone(),
+            sunlight: Lanes::from_fn(|i| grid.solar_irradiance()[i] as f32),
+            air_per_m,
+            haze: HazeTables::new(settings)?,
+            blue: Blue::new(settings, &grid, sin_sun.asin())?,
+            cells: OnceLock::new(),
+            settings: settings.clone(),
+            grid,
+        })
+    }
+
+    /// The settings it was made of.
+    pub fn settings(&self) -> &Klassen1987Settings {
+        &self.settings
+    }
+
+    /// The wavelengths with the sun that lights them.
+    pub fn grid(&self) -> &WavelengthGrid {
+        &self.grid
+    }
+
+    /// Irradiance of the sun on a surface that faces it, at the eye, W m^-2 nm^-1 (eq. 22).
+    pub fn sun_irradiance(&self) -> Vec<f64> {
+        f64s(&self.dimmed_sun(self.sin_sun))
+    }
+
+    /// Light of the haze alone, W m^-2 sr^-1 nm^-1 (eq. 23 or 29).
+    pub fn haze_spectrum(&self, direction: DVec3) -> Vec<f64> {
+        let (sin_elevation, cos_sun) = self.angles(direction);
+        f64s(&self.haze_along(sin_elevation, cos_sun, &mut Simpson::new(0.0)))
+    }
+
+    /// Opacity of the haze to what lies behind it (eq. 31).
+    pub fn opacity(&self, direction: DVec3) -> Vec<f64> {
+        let (sin_elevation, _) = self.angles(direction);
+        let clear = self.haze_transmittance(sin_elevation);
+        clear.0.iter().map(|&t| 1.0 - f64::from(t)).collect()
+    }
+
+    /// `I_0` dimmed along `d_1` and `d_2` (eqs. 20 to 22, 13).
+    fn dimmed_sun(&self, sin_elevation: f64) -> Lanes {
+        let lengths = self
+            .spheres
+            .sun_lengths(sin_elevation, self.settings.sun_ray);
+        let air_m = (lengths.air_m + lengths.haze_m) as f32;
+        let depth = self.air_per_m * air_m + self.haze.extinction_per_m * lengths.haze_m as f32;
+        self.sunlight * exp_neg(depth)
+    }
+
+    /// Sine of the elevation, held at the horizon, and cosine of the angle to the sun.
+    fn angles(&self, direction: DVec3) -> (f64, f64) {
+        let level = match direction.y < 0.0 {
+            true => DVec3::new(direction.x, 0.0, direction.z).normalize_or(DVec3::X),
+            false => direction,
+        };
+        (level.y.min(1.0), level.dot(self.sun).clamp(-1.0, 1.0))
+    }
+
+    fn haze_transmittance(&self, sin_elevation: f64) -> Lanes {
+        let length_m = self.spheres.haze_length_m(sin_elevation);
+        exp_neg(self.haze.extinction_per_m * length_m as f32)
+    }
+
+    /// Eq. 23, or eqs. 27 to 29.
+    fn haze_along(&self, sin_elevation: f64, cos_sun: f64, simpson: &mut Simpson) -> Lanes {
+        let line = RaySegment {
+            sin_elevation,
+            sin_sun: self.sin_sun,
+            cos_sun,
+        };
+        let length_m = self.spheres.haze_length_m(sin_elevation);
+        let (path, ray) = (self.settings.path, self.settings.sun_ray);
+        let both_per_m = self.air_per_m + self.haze.extinction_per_m;
+        let integral =
+            simpson.integrate(
+                |x| match self.spheres.lengths(&line, length_m, x, path, ray) {
+                    Some(lengths) => {
+                        let depth = self.air_per_m * lengths.air_m as f32
+                            + both_per_m * lengths.haze_m as f32;
+                        exp_neg(depth) * length_m as f32
+                    }
+                    None => Lanes::ZERO,
+                },
+            );
+        self.sunlight * self.haze.scattered(cos_sun) * integral
+    }
+
+    fn radiance_along(&self, sin_elevation: f64, cos_sun: f64, simpson: &mut Simpson) -> Lanes {
+        let behind = self.blue.along(sin_elevation, cos_sun);
+        behind * self.haze_transmittance(sin_elevation)
+            + self.haze_along(sin_elevation, cos_sun, simpson)
+    }
+
+    /// Radiance of the sun's disc along a direction.
+    fn disc_along(&self, direction: DVec3) -> Lanes {
+        let angle = direction.angle_between(self.sun);
+        if direction.y < 0.0 || angle >= self.disc.angular_radius_rad {
+            return Lanes::ZERO;
+        }
+        let mut radiance = self.dimmed_sun(direction.y.min(1.0));
+        for (lane, nm) in wavelengths_nm().enumerate() {
+            radiance.0[lane] *= self.disc.radiance_per_irradiance(angle, nm) as f32;
+        }
+        radiance
+    }
+
+    fn xyz_along(&self, sin_elevation: f64, cos_sun: f64, simpson: &mut Simpson) -> [f64; 3] {
+        to_xyz(
+            &self.grid,
+            &self.radiance_along(sin_elevation, cos_sun, simpson),
+        )
+    }
+}
+
+fn f64s(lanes: &Lanes) -> Vec<f64> {
+    lanes.0.iter().map(|&v| f64::from(v)).collect()
+}
+
+impl PublishedModel for Klassen1987 {
+    fn sun(&self) -> DVec3 {
+        self.sun
+    }
+
+    fn disc_edge_rad(&self) -> f64 {
+        self.disc.angular_radius_rad
+    }
+
+    fn sky_xyz(&self, direction: DVec3) -> [f64; 3] {
+        let (sin_elevation, cos_sun) = self.angles(direction);
+        self.xyz_along(sin_elevation, cos_sun, &mut Simpson::new(0.0))
+    }
+
+    fn disc_xyz(&self, direction: DVec3) -> [f64; 3] {
+        to_xyz(&self.grid, &self.disc_along(direction))
+    }
+
+    /// Within one step of a picture of [`Klassen1987Settings::bits_per_channel`] (test `coherence`), as long as
+    /// no channel is exposed to more than 8 times white.
+    fn walk(&self) -> Box<dyn FnMut(DVec3) -> [f64; 3] + '_> {
+        let bits = self.settings.bits_per_channel;
+        let cells = self.cells.get_or_init(|| Cells::new(self, bits));
+        // An eighth of a step of the picture.
+        let alike = 0.125 * 2.4 / 1.055 / (2f32.powi(bits as i32) - 1.0);
+        let mut walker = Walker::new(self, cells, alike);
+        Box::new(move |direction| {
+            let (sin_elevation, cos_sun) = self.angles(direction);
+            walker.xyz(sin_elevation, cos_sun)
+        })
+    }
+
+    fn grid(&self) -> Option<&WavelengthGrid> {
+        Some(&self.grid)
+    }
+
+    fn sky_spectrum(&self, direction: DVec3) -> Vec<f64> {
+        let (sin_elevation, cos_sun) = self.angles(direction);
+        f64s(&self.radiance_along(sin_elevation, cos_sun, &mut Simpson::new(0.0)))
+    }
+
+    fn disc_spectrum(&self, direction: DVec3) -> Vec<f64> {
+        f64s(&self.disc_along(direction))
+    }
+}

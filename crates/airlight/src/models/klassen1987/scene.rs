@@ -1,0 +1,329 @@
+//! Naturally lit fog under the sun and sky of 1987 (sections 9 to 12, eqs. 34 to 47), and things in it.
+//!
+//! What the paper says of the slab alone is [`Slab1987`]; here it is lit by this model's sun, and seen before this model's
+//! sky. As section 12 has it, the light that strikes the fog, `I_t`, is the sun's colour at the ground without the fog (eq. 22):
+//! then only the fog itself, some tens of metres, is taken to lie on flat ground, and flat is good to 1 % down to a sun of
+//! 1 degree (test `flat_ground_is_good_to_a_percent`); with eqs. 37 and 44 the paper's own bound is 15 degrees.
+//!
+//! Where the paper leaves things open:
+//! - The ambient term `A` of eqs. 36 to 47 has no value. Here it is what the surface reflects of all that the model itself sees
+//!   around ([`crate::scene::IrradianceMap`]): sky, fog component, ground.
+//! - With the sun at the horizon the fog has one colour, that of direct sunlight (section 11.2), of no stated brightness. Here it
+//!   is the light that falls on the level, of sun and sky, sent evenly into all directions; below [`SUNSET_DEG`].
+//! - Without fog there are haze and air before things (eq. 45), and things are lit by `I_t`.
+
+use super::{HazePhase, Klassen1987, Klassen1987Error, Lanes, Simpson, WAVELENGTHS};
+use super::{to_xyz, wavelengths_nm};
+use crate::axes;
+use crate::fog::Medium;
+use crate::models::PublishedModel;
+use crate::models::klassen1987::fog::{Slab1987, SunDepth};
+use crate::optics::{Depolarization, PhaseFunction};
+use crate::scene::{IrradianceMap, SceneLighting};
+use crate::spectrum::{Spectrum, WavelengthGrid};
+use crate::transfer::PathOptics;
+use glam::DVec3;
+use std::f32::consts::PI;
+use std::sync::Arc;
+
+/// Elevation of the sun below which the fog has one colour, degrees: where flat ground errs by more than 1 % for a fog of 50 m.
+pub const SUNSET_DEG: f64 = 1.0;
+/// Length of a line without end, m: nothing shines through so much fog.
+const FARTHEST_M: f64 = 1e9;
+
+/// Sun, sky, fog and ground of 1987, seen by an eye at a height.
+#[derive(Clone)]
+pub struct Klassen1987Scene {
+    model: Arc<Klassen1987>,
+    eye_height_m: f64,
+    depth: SunDepth,
+    /// The fog with the light on it; without fog, haze and air at the ground.
+    slab: Slab1987<WAVELENGTHS>,
+    foggy: bool,
+    /// Light of the level ground where no thing is, W m^-2 sr^-1 nm^-1.
+    ground: Lanes,
+    /// The fog's colour at sunset.
+    evening: Option<Lanes>,
+}
+
+/// A fog of 1987.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fog1987 {
+    /// Height of its top, `R_H - R_E`, m.
+    pub top_m: f64,
+    /// Droplets at the model's wavelengths ([`Klassen1987::wavelengths`]).
+    pub droplets: Medium<WAVELENGTHS>,
+}
+
+impl Klassen1987Scene {
+    /// An eye so high above the ground (m, not below 0), with fog or without; `depth` says how the sun's way through the fog is
+    /// reckoned.
+    ///
+    /// # Errors
+    /// [`Klassen1987Error`] for a number out of its domain.
+    pub fn new(
+        model: Arc<Klassen1987>,
+        eye_height_m: f64,
+        fog: Option<Fog1987>,
+        depth: SunDepth,
+    ) -> Result<Self, Klassen1987Error> {
+        let number = |what, right, got: f64, fits: bool| match fits {
+            true => Ok(()),
+            false => Err(Klassen1987Error::Number { what, right, got }),
+        };
+        let fits = (0.0..=1e6).contains(&eye_height_m);
+        number("the eye's height (m)", "from 0 to 1e6", eye_height_m, fits)?;
+        if let Some(fog) = &fog {
+            let fits = (1e-3..=1e5).contains(&fog.top_m);
+            number("the fog's top (m)", "from 0.001 to 1e5", fog.top_m, fits)?;
+            fog.droplets.validate()?;
+        }
+        let foggy = fog.is_some();
+        let slab = slab(&model, fog)?;
+        let planet_albedo = &model.settings.clear_air.planet.ground_albedo;
+        let albedo = Spectrum(slab.wavelengths_nm.map(|nm| planet_albedo.at(nm) as f32));
+        let mut scene = Self {
+            eye_height_m,
+            depth: match foggy {
+                true => depth,
+                // Nothing lies above: the light is the same all along.
+                false => SunDepth::Printed,
+            },
+            slab,
+            foggy,
+            ground: Lanes::ZERO,
+            evening: None,
+            model,
+        };
+        let level = |irradiance: Lanes| irradiance * scene.model.sin_sun as f32;
+        if foggy && axes::elevation_deg(scene.model.sun) < SUNSET_DEG {
+            let sky =
+                IrradianceMap::of(scene.model.sun, |d| scene.sky_alone(d)).irradiance(DVec3::Y);
+            scene.evening = Some((level(scene.slab.irradiance_at_top()) + sky) / PI);
+        }
+        // The ground is lit by what is over it: itself black for that.
+        let on_ground = Self {
+            eye_height_m: 0.0,
+            ..scene.clone()
+        };
+        let even = IrradianceMap::of(scene.model.sun, |d| on_ground.around(d)).irradiance(DVec3::Y);
+        scene.ground = (level(scene.sunlight(0.0)) + even) * albedo / PI;
+        Ok(scene)
+    }
+
+    /// The same from another height, m.
+    pub fn at_height_m(&self, eye_height_m: f64) -> Self {
+        Self {
+            eye_height_m,
+            ..self.clone()
+        }
+    }
+
+    /// The eye's height, m.
+    pub fn eye_height_m(&self) -> f64 {
+        self.eye_height_m
+    }
+
+    /// The sun's disc, dimmed by the fog.
+    fn disc_along(&self, direction: DVec3) -> Lanes {
+        let disc = self.model.disc_along(direction);
+        match self.foggy {
+            true => self.fog_on(direction, FARTHEST_M).transmittance * disc,
+            false => disc,
+        }
+    }
+
+    /// The model behind.
+    pub fn model(&self) -> &Klassen1987 {
+        &self.model
+    }
+
+    /// The sky without fog, W m^-2 sr^-1 nm^-1; black below the horizon.
+    fn sky_alone(&self, direction: DVec3) -> Lanes {
+        match direction.y < 0.0 {
+            true => Lanes::ZERO,
+            false => self.behind(direction, &mut Simpson::new(0.0)),
+        }
+    }
+
+    /// What lies behind the fog: sky, or the level ground.
+    fn behind(&self, direction: DVec3, simpson: &mut Simpson) -> Lanes {
+        if direction.y < 0.0 {
+            return self.ground;
+        }
+        let (sin_elevation, cos_sun) = self.model.angles(direction);
+        self.model.radiance_along(sin_elevation, cos_sun, simpson)
+    }
+
+    fn seen(&self, direction: DVec3, simpson: &mut Simpson) -> Lanes {
+        let behind = self.behind(direction, simpson);
+        if direction.y < 0.0 {
+            let ground_m = (self.eye_height_m / -direction.y).min(FARTHEST_M);
+            return self.before(direction, ground_m).apply(behind);
+        }
+        match self.foggy {
+            true => self.fog_on(direction, FARTHEST_M).apply(behind),
+            false => behind,
+        }
+    }
+
+    /// The fog alone on a line from the eye.
+    fn fog_on(&self, direction: DVec3, length_m: f64) -> PathOptics<WAVELENGTHS> {
+        let line = crate::fog::RaySegment::flat(self.eye_height_m, direction.y, length_m);
+        let (enters, leaves) = line.below(self.slab.fog_top_m);
+        if enters >= leaves {
+            return PathOptics::CLEAR;
+        }
+        let length_m = leaves - enters;
+        match self.evening {
+            Some(colour) => self.slab.in_fog_at_sunset(length_m, colour),
+            None => self.slab.in_fog(
+                line.height_at(enters).min(self.slab.fog_top_m),
+                direction.y,
+                length_m,
+                direction.dot(self.model.sun),
+                self.depth,
+            ),
+        }
+    }
+}
+
+/// The fog under the light at its top, `I_t`; without fog, the haze and the air at the ground in the sun there.
+fn slab(
+    model: &Klassen1987,
+    fog: Option<Fog1987>,
+) -> Result<Slab1987<WAVELENGTHS>, Klassen1987Error> {
+    let top_m = fog.as_ref().map_or(0.0, |fog| fog.top_m);
+    Ok(Slab1987 {
+        fog_top_m: top_m,
+        // The sun's light is that at the top already.
+        air_top_m: top_m,
+        fog: match fog {
+            Some(fog) => fog.droplets,
+            None => model.haze_at_ground()?,
+        },
+        air: Medium {
+            extinction_per_m: model.air_per_m,
+            single_scattering_albedo: Lanes::ONE,
+            phase: PhaseFunction::Rayleigh(Depolarization::None),
+        },
+        sun_irradiance: model.dimmed_sun(model.sin_sun),
+        sin_sun: model.sin_sun.max(1e-6),
+        wavelengths_nm: Klassen1987::wavelengths(),
+    })
+}
+
+impl Klassen1987 {
+    /// The model's wavelengths, nm.
+    pub fn wavelengths() -> [f64; WAVELENGTHS] {
+        let mut nm = wavelengths_nm();
+        std::array::from_fn(|_| nm.next().unwrap_or(f64::NAN))
+    }
+
+    /// The haze as matter.
+    fn haze_at_ground(&self) -> Result<Medium<WAVELENGTHS>, Klassen1987Error> {
+        let (_, albedo, phase) = self.settings.haze.optics()?;
+        Ok(Medium {
+            extinction_per_m: self.haze.extinction_per_m,
+            single_scattering_albedo: Spectrum(
+                Self::wavelengths().map(|nm| albedo.at(nm).clamp(0.0, 1.0) as f32),
+            ),
+            phase: match self.settings.phase {
+                HazePhase::Particles => phase,
+                HazePhase::HenyeyGreenstein { g } | HazePhase::Printed { g } => {
+                    PhaseFunction::HenyeyGreenstein { g }
+                }
+            },
+        })
+    }
+}
+
+impl SceneLighting<WAVELENGTHS> for Klassen1987Scene {
+    fn sun(&self) -> DVec3 {
+        self.model.sun
+    }
+
+    /// Eqs. 34, 36 and 38 under `I_t`.
+    fn sunlight(&self, height_m: f64) -> Lanes {
+        match (self.foggy, self.evening) {
+            (false, _) => self.slab.irradiance_at_top(),
+            (true, None) => self.slab.irradiance_at(height_m),
+            // Section 11.2: all of it is scattered out of the beam.
+            (true, Some(_)) if height_m < self.slab.fog_top_m => Lanes::ZERO,
+            (true, Some(_)) => self.slab.irradiance_at_top(),
+        }
+    }
+
+    /// The air above the fog and the fog (eqs. 39 to 46); without fog, haze and air.
+    fn before(&self, direction: DVec3, distance_m: f64) -> PathOptics<WAVELENGTHS> {
+        let cos_sun = direction.dot(self.model.sun);
+        let (eye_m, sin_elevation) = (self.eye_height_m, direction.y);
+        match self.foggy {
+            false => self
+                .slab
+                .in_fog(eye_m, sin_elevation, distance_m, cos_sun, self.depth),
+            true if self.evening.is_none() => {
+                self.slab
+                    .along(eye_m, sin_elevation, distance_m, cos_sun, self.depth)
+            }
+            true => self.fog_on(direction, distance_m),
+        }
+    }
+
+    fn around(&self, direction: DVec3) -> Lanes {
+        self.seen(direction, &mut Simpson::new(0.0))
+    }
+}
+
+impl PublishedModel for Klassen1987Scene {
+    fn sun(&self) -> DVec3 {
+        self.model.sun
+    }
+
+    fn disc_edge_rad(&self) -> f64 {
+        self.model.disc_edge_rad()
+    }
+
+    fn has_ground(&self) -> bool {
+        true
+    }
+
+    fn sky_xyz(&self, direction: DVec3) -> [f64; 3] {
+        to_xyz(&self.model.grid, &self.around(direction))
+    }
+
+    fn disc_xyz(&self, direction: DVec3) -> [f64; 3] {
+        to_xyz(&self.model.grid, &self.disc_along(direction))
+    }
+
+    /// Within one step of a picture of the model's bits where the sky is seen without fog; with fog, as [`Self::sky_xyz`], but for integrals
+    /// that begin alike.
+    fn walk(&self) -> Box<dyn FnMut(DVec3) -> [f64; 3] + '_> {
+        if self.foggy {
+            let mut simpson = Simpson::new(1e-3);
+            return Box::new(move |direction| {
+                to_xyz(&self.model.grid, &self.seen(direction, &mut simpson))
+            });
+        }
+        let mut sky = self.model.walk();
+        Box::new(move |direction| match direction.y < 0.0 {
+            true => self.sky_xyz(direction),
+            false => sky(direction),
+        })
+    }
+
+    fn grid(&self) -> Option<&WavelengthGrid> {
+        Some(&self.model.grid)
+    }
+
+    fn sky_spectrum(&self, direction: DVec3) -> Vec<f64> {
+        super::f64s(&self.around(direction))
+    }
+
+    fn disc_spectrum(&self, direction: DVec3) -> Vec<f64> {
+        super::f64s(&self.disc_along(direction))
+    }
+}
+
+#[cfg(test)]
+mod tests;

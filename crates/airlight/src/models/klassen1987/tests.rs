@@ -1,0 +1,355 @@
+//! The model against its errata, its limits and itself.
+
+use super::errata::{EARTH_M, SPHERES};
+use super::*;
+use crate::atmosphere::preset;
+use crate::axes::direction;
+use crate::spectrum::RgbSpace;
+use crate::spectrum::rgb::{apply, srgb_encode};
+
+type Outcome = Result<(), Klassen1987Error>;
+
+#[test]
+fn straight_rays_and_level_shells_agree_overhead() {
+    // With sun and line overhead nothing is slanted: both forms are the closed integral.
+    let line = RaySegment {
+        sin_elevation: 1.0,
+        sin_sun: 1.0,
+        cos_sun: 1.0,
+    };
+    for path in [HazePath::LinearInRadius, HazePath::Exact] {
+        for ray in [SunRay::Printed, SunRay::Exact] {
+            for x in [0.0, 0.25, 1.0] {
+                let got = SPHERES.lengths(&line, 2e3, x, path, ray).unwrap();
+                assert!((got.air_m - 6.4e3).abs() < 1e-6, "{got:?}");
+                assert!((got.haze_m - 2e3).abs() < 1e-6, "{got:?}");
+            }
+        }
+    }
+}
+
+/// Eq. 19 against the cosine theorem, and at both ends of its range.
+#[test]
+fn lengths_end_on_the_sphere() {
+    for sin in [0.0, 1e-9, 0.1, 0.7, 1.0, -0.01] {
+        let y = geometry::outward_m(EARTH_M, EARTH_M + 2e3, sin);
+        let r2 = EARTH_M * EARTH_M + y * y + 2.0 * EARTH_M * y * sin;
+        assert!((r2.sqrt() - EARTH_M - 2e3).abs() < 1e-6, "{sin}");
+        assert!(y > 0.0);
+    }
+    assert_eq!(geometry::outward_m(EARTH_M, EARTH_M, 0.5), 0.0);
+    assert_eq!(geometry::outward_m(EARTH_M, EARTH_M, 0.0), 0.0);
+}
+
+/// The planet's shadow: under a sun on the horizon, a level line away from it sees haze whose sun has set.
+#[test]
+fn the_planet_shades_what_lies_behind_the_horizon() {
+    let line = RaySegment {
+        sin_elevation: 0.0,
+        sin_sun: 0.0,
+        cos_sun: -1.0,
+    };
+    let at = |x| SPHERES.lengths(&line, 150e3, x, HazePath::Exact, SunRay::Exact);
+    assert!(at(0.0).is_some() && at(0.5).is_some());
+    let dark = RaySegment {
+        sin_sun: -1e-3,
+        ..line
+    };
+    assert!(
+        SPHERES
+            .lengths(&dark, 150e3, 0.0, HazePath::Exact, SunRay::Exact)
+            .is_none()
+    );
+}
+
+fn paper() -> Klassen1987Settings {
+    Klassen1987Settings::default().printed()
+}
+
+fn plain() -> Klassen1987Settings {
+    Klassen1987Settings {
+        base_blue: BaseBlue::PAPER,
+        ..Klassen1987Settings::default()
+    }
+}
+
+/// Thin haze over a black sky: radiance is `I_0 beta_sc l` within its optical depth.
+#[test]
+fn thin_haze_scatters_in_proportion() -> Outcome {
+    let settings = Klassen1987Settings {
+        haze_extinction_per_m: 1e-10,
+        air_density: 1e-6,
+        phase: HazePhase::HenyeyGreenstein { g: 0.7 },
+        ..plain()
+    };
+    let model = Klassen1987::new(&settings, direction(180.0, 40.0))?;
+    let look = direction(90.0, 30.0);
+    let cos = look.dot(direction(180.0, 40.0));
+    let phase = crate::optics::PhaseFunction::HenyeyGreenstein { g: 0.7 }.evaluate(cos, 550.0);
+    // The lane of 550 nm; 2 km of haze seen 30 degrees up, on a ball.
+    let want = model.grid().solar_irradiance()[17] * 1e-10 * phase * 3997.2;
+    let got = model.haze_spectrum(look)[17];
+    assert!((got / want - 1.0).abs() < 1e-3, "{got} {want}");
+    assert!((model.opacity(look)[17] / (1e-10 * 3997.2) - 1.0).abs() < 0.3);
+    Ok(())
+}
+
+/// Eq. 22 with its signs: a lower sun is dimmer and redder, never brighter than outside the air.
+#[test]
+fn the_sun_reddens_as_it_sets() -> Outcome {
+    for settings in [paper(), plain()] {
+        let mut before: Option<Vec<f64>> = None;
+        for elevation in [90.0, 40.0, 10.0, 3.0, 0.0] {
+            let model = Klassen1987::new(&settings, direction(180.0, elevation))?;
+            let sun = model.sun_irradiance();
+            let outside = model.grid().solar_irradiance();
+            assert!(sun.iter().zip(outside).all(|(l, e)| *l > 0.0 && l < e));
+            if let Some(before) = before {
+                assert!(sun.iter().zip(&before).all(|(l, b)| l < b));
+                assert!(sun[5] / before[5] < sun[30] / before[30]);
+            }
+            before = Some(sun);
+        }
+    }
+    Ok(())
+}
+
+/// The blue behind no haze is the sky; behind much haze it is gone.
+#[test]
+fn haze_covers_the_blue() -> Outcome {
+    let with = |haze_extinction_per_m| {
+        let settings = Klassen1987Settings {
+            haze_extinction_per_m,
+            ..plain()
+        };
+        Klassen1987::new(&settings, direction(180.0, 40.0))
+    };
+    let clear = with(0.0)?;
+    let up = direction(0.0, 60.0);
+    assert_eq!(clear.sky_xyz(up), clear.sky_xyz(direction(33.0, 2.0)));
+    let noon = Klassen1987::new(
+        &Klassen1987Settings {
+            haze_extinction_per_m: 0.0,
+            ..plain()
+        },
+        direction(0.0, 90.0),
+    )?;
+    assert!((noon.sky_xyz(up)[1] / 3000.0 - 1.0).abs() < 1e-4);
+    let sunset = Klassen1987::new(
+        &Klassen1987Settings {
+            haze_extinction_per_m: 0.0,
+            ..plain()
+        },
+        direction(0.0, 0.0),
+    )?;
+    assert!((sunset.sky_xyz(up)[1] / 30.0 - 1.0).abs() < 1e-4);
+    let dense = with(1e-2)?;
+    assert!(dense.opacity(up).iter().all(|&o| o > 0.999_99));
+    Ok(())
+}
+
+/// The solver's blue behind no haze is the solver's sky.
+#[test]
+fn the_solvers_blue_is_the_solvers() -> Result<(), Box<dyn std::error::Error>> {
+    use crate::sky::{Sky, SkySettings, SunCoverage};
+    let sun = direction(180.0, 20.0);
+    let settings = Klassen1987Settings {
+        haze_extinction_per_m: 0.0,
+        ..Klassen1987Settings::default()
+    };
+    let model = Klassen1987::new(&settings, sun)?;
+    let sky = Sky::prepare(
+        &settings.clear_air,
+        model.grid(),
+        &SkySettings {
+            suns: SunCoverage::near(20.0, 0.0),
+            ..SkySettings::default()
+        },
+    )?;
+    let view = sky.view(0.0, sun);
+    for (azimuth, elevation) in [(180.0, 60.0), (90.0, 5.0), (250.0, 20.0), (0.0, 45.0)] {
+        let look = direction(azimuth, elevation);
+        let want = view.along(look, None).path_radiance();
+        for (got, want) in model.sky_spectrum(look).iter().zip(&want) {
+            assert!(
+                (got / f64::from(*want) - 1.0).abs() < 5e-3,
+                "{azimuth} {elevation}: {got} {want}"
+            );
+        }
+    }
+    Ok(())
+}
+
+/// Layers of an atmosphere keep its optical depths.
+#[test]
+fn layers_keep_optical_depths() -> Result<(), Box<dyn std::error::Error>> {
+    for name in ["clear", "hazy", "mars", "bruneton"] {
+        let atmosphere = preset(name)?;
+        let settings = Klassen1987Settings::of(&atmosphere);
+        let model = Klassen1987::new(&settings.clone().printed(), direction(180.0, 30.0))?;
+        let haze: f64 = atmosphere
+            .constituents
+            .iter()
+            .filter(|part| part.name != "rayleigh" && part.scattering_per_m.at(550.0) > 0.0)
+            .map(|part| part.optical_depth(0.0, atmosphere.planet.top_altitude_m, 550.0))
+            .sum();
+        let got = settings.haze_extinction_per_m * settings.haze_thickness_m;
+        assert!((got / haze - 1.0).abs() < 1e-6, "{name}: {got} {haze}");
+        let lane = f64::from(model.haze.extinction_per_m.0[17]);
+        assert!(
+            (lane / settings.haze_extinction_per_m - 1.0).abs() < 1e-5,
+            "{name}"
+        );
+        let air = atmosphere.clear_air().optical_depth_550;
+        let got = f64::from(model.air_per_m.0[17]) * settings.air_thickness_m;
+        assert!((got / air - 1.0).abs() < 1e-5, "{name}: {got} {air}");
+    }
+    let clear = Klassen1987Settings::of(&preset("clear")?);
+    assert!((clear.haze_thickness_m / 1.5e3 - 1.0).abs() < 1e-3);
+    assert!(
+        (8.3e3..8.6e3).contains(&clear.air_thickness_m),
+        "{}",
+        clear.air_thickness_m
+    );
+    Ok(())
+}
+
+/// There and back: the layers of an atmosphere of layers are those.
+#[test]
+fn an_atmosphere_of_layers_has_those_layers() -> Outcome {
+    let settings = Klassen1987Settings {
+        haze_extinction_per_m: 2e-4,
+        haze_thickness_m: 1.2e3,
+        ..plain()
+    };
+    let again = Klassen1987Settings::of(&settings.atmosphere()?);
+    assert!((again.haze_extinction_per_m / 2e-4 - 1.0).abs() < 1e-6);
+    assert!((again.haze_thickness_m / 1.2e3 - 1.0).abs() < 1e-6);
+    let names = |air: &crate::atmosphere::Atmosphere| -> Vec<String> {
+        air.constituents
+            .iter()
+            .map(|part| part.name.clone())
+            .collect()
+    };
+    assert_eq!(names(&again.clear_air), ["rayleigh", "ozone"]);
+    let same = |nm| again.air_extinction_per_m(nm) == settings.air_extinction_per_m(nm);
+    assert!(wavelengths_nm().all(same));
+    Ok(())
+}
+
+#[test]
+fn the_discs_spectrum_makes_its_colour() -> Outcome {
+    let model = Klassen1987::new(&plain(), direction(180.0, 30.0))?;
+    let sun = model.sun();
+    let lanes: Vec<f32> = model.disc_spectrum(sun).iter().map(|&v| v as f32).collect();
+    assert_eq!(lanes.len(), WAVELENGTHS);
+    assert_eq!(model.grid().to_xyz(&lanes), model.disc_xyz(sun));
+    // At its centre the disc is brighter than its mean, which is irradiance over solid angle.
+    let solid_angle = std::f64::consts::PI * model.disc_edge_rad().sin().powi(2);
+    for (centre, irradiance) in lanes.iter().zip(model.sun_irradiance()) {
+        let ratio = f64::from(*centre) * solid_angle / irradiance;
+        assert!((1.0..2.0).contains(&ratio), "{ratio}");
+    }
+    assert_eq!(model.disc_spectrum(-sun), [0.0; WAVELENGTHS]);
+    Ok(())
+}
+
+/// A picture with coherence against one without: sRGB codes of 8 bits differ by 1 at most.
+#[test]
+fn coherence() -> Outcome {
+    let from_xyz = RgbSpace::Srgb.from_xyz_matrix();
+    let (width, height) = (96, 64);
+    for settings in [plain(), paper(), Klassen1987Settings::default()] {
+        for sun_deg in [0.5, 10.0, 60.0] {
+            let model = Klassen1987::new(&settings, direction(180.0, sun_deg))?;
+            let mut walk = model.walk();
+            let looks: Vec<DVec3> = (0..width * height)
+                .map(|i| {
+                    let (x, y) = (i % width, i / width);
+                    // About the sun's side of the sky, down to the horizon.
+                    direction(
+                        120.0 + 120.0 * f64::from(x) / f64::from(width),
+                        50.0 * f64::from(y) / f64::from(height),
+                    )
+                })
+                .collect();
+            let plain: Vec<[f64; 3]> = looks
+                .iter()
+                .map(|&look| apply(&from_xyz, model.sky_xyz(look)))
+                .collect();
+            let walked: Vec<[f64; 3]> = looks
+                .iter()
+                .map(|&look| apply(&from_xyz, walk(look)))
+                .collect();
+            // White where a tenth of the picture would be brighter.
+            let mut green: Vec<f64> = plain.iter().map(|rgb| rgb[1]).collect();
+            green.sort_by(f64::total_cmp);
+            let white = green[green.len() * 9 / 10];
+            let code = |v: f64| (255.0 * srgb_encode((v / white).clamp(0.0, 1.0))).round();
+            let (mut worst, mut differing) = (0.0f64, 0);
+            for (a, b) in plain.iter().zip(&walked) {
+                for (a, b) in a.iter().zip(b) {
+                    let step = (code(*a) - code(*b)).abs();
+                    worst = worst.max(step);
+                    differing += i32::from(step > 0.0);
+                }
+            }
+            assert!(worst <= 1.0, "sun {sun_deg}: {worst} codes");
+            assert!(differing > 0, "nothing was reused");
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn numbers_out_of_range_are_refused() {
+    type Change = fn(&mut Klassen1987Settings);
+    let changes: [Change; 8] = [
+        |s| s.haze_extinction_per_m = -1e-6,
+        |s| s.haze_thickness_m = 0.0,
+        |s| s.haze_thickness_m = 9e3,
+        |s| s.air_density = f64::NAN,
+        |s| s.air_thickness_m = f64::INFINITY,
+        |s| s.bits_per_channel = 3,
+        |s| s.phase = HazePhase::Printed { g: 1.0 },
+        |s| s.clear_air.constituents.clear(),
+    ];
+    let sun = direction(180.0, 30.0);
+    for change in changes {
+        let mut settings = plain();
+        assert_eq!(settings.validate(), Ok(()));
+        change(&mut settings);
+        assert!(Klassen1987::new(&settings, sun).is_err(), "{settings:?}");
+    }
+    for below in [direction(0.0, -1.0), DVec3::ZERO, DVec3::NAN] {
+        assert!(Klassen1987::new(&plain(), below).is_err());
+    }
+}
+
+/// Every direction of the sphere has a finite colour that is not below black; below the horizon it is the horizon's.
+#[test]
+fn every_direction_has_a_colour() -> Outcome {
+    for settings in [paper(), plain()] {
+        for sun_deg in [0.0, 45.0, 90.0] {
+            let model = Klassen1987::new(&settings, direction(77.0, sun_deg))?;
+            let mut walk = model.walk();
+            for azimuth in [0.0, 77.0, 257.0] {
+                for elevation in [-90.0, -3.0, 0.0, 1e-7, 0.2, 45.0, 90.0] {
+                    let look = direction(azimuth, elevation);
+                    for xyz in [model.sky_xyz(look), walk(look), model.disc_xyz(look)] {
+                        assert!(xyz.iter().all(|v| v.is_finite() && *v >= 0.0), "{xyz:?}");
+                    }
+                }
+            }
+            assert_eq!(
+                model.sky_xyz(direction(10.0, -20.0)),
+                model.sky_xyz(DVec3::new(
+                    direction(10.0, 0.0).x,
+                    0.0,
+                    direction(10.0, 0.0).z
+                )),
+            );
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,204 @@
+//! An atmosphere sampled at wavelengths, and marching through it.
+
+use super::TransmittanceTable;
+use crate::atmosphere::{Atmosphere, DensityProfile};
+use crate::optics::PhaseFunction;
+use crate::transfer::ray::{Ray, in_shadow};
+
+/// An atmosphere at some wavelengths; every list has one entry for each of them.
+pub struct AirLanes {
+    wavelengths_nm: Vec<f64>,
+    planet_radius_m: f64,
+    ground_radius_m: f64,
+    top_radius_m: f64,
+    ground_albedo: Vec<f32>,
+    parts: Vec<Part>,
+}
+
+struct Part {
+    density: DensityProfile,
+    scattering_per_m: Vec<f32>,
+    extinction_per_m: Vec<f32>,
+    phase: PhaseFunction,
+}
+
+/// A step of a march.
+pub struct Step<'a> {
+    /// The ray as seen from the middle of the step.
+    pub here: Ray,
+    /// Relative densities of the constituents there.
+    pub densities: &'a [f64],
+    /// Scattering coefficients there, 1/m.
+    pub scattering_per_m: &'a [f32],
+    /// What a source of 1 per metre, even over the step, brings to the start, m.
+    pub weight_m: &'a [f32],
+}
+
+impl AirLanes {
+    /// Samples `atmosphere` at wavelengths (nm, in any order).
+    pub fn new(atmosphere: &Atmosphere, wavelengths_nm: &[f64]) -> Self {
+        let planet = &atmosphere.planet;
+        let sample =
+            |f: &dyn Fn(f64) -> f64| wavelengths_nm.iter().map(|&nm| f(nm) as f32).collect();
+        let parts = atmosphere
+            .constituents
+            .iter()
+            .map(|part| Part {
+                density: part.density.clone(),
+                scattering_per_m: sample(&|nm| part.scattering_per_m.at(nm)),
+                extinction_per_m: sample(&|nm| part.extinction_per_m(nm)),
+                phase: part.phase.clone(),
+            })
+            .collect();
+        Self {
+            wavelengths_nm: wavelengths_nm.to_vec(),
+            planet_radius_m: planet.radius_m,
+            ground_radius_m: planet.radius_m + planet.ground_altitude_m,
+            top_radius_m: planet.radius_m + planet.top_altitude_m,
+            ground_albedo: sample(&|nm| planet.ground_albedo.at(nm)),
+            parts,
+        }
+    }
+
+    /// How many wavelengths.
+    pub fn lanes(&self) -> usize {
+        self.wavelengths_nm.len()
+    }
+
+    /// Radii of the ground and of the top of the air, m.
+    pub fn bounds_m(&self) -> (f64, f64) {
+        (self.ground_radius_m, self.top_radius_m)
+    }
+
+    /// Radius from which altitudes are counted, m.
+    pub fn planet_radius_m(&self) -> f64 {
+        self.planet_radius_m
+    }
+
+    /// What each constituent scatters out of sunlight into a direction at density 1, `[constituent][wavelength]`,
+    /// 1/(m sr); `nu` is the cosine of the angle to the sun.
+    pub fn scattered(&self, nu: f64) -> Vec<Vec<f32>> {
+        let of = |part: &Part| {
+            let lanes = part.scattering_per_m.iter().zip(&self.wavelengths_nm);
+            lanes
+                .map(|(s, &nm)| s * part.phase.evaluate(nu, nm) as f32)
+                .collect()
+        };
+        self.parts.iter().map(of).collect()
+    }
+
+    /// The stretch of a ray that lies in the air, m, and whether it ends on the ground; none where it passes outside.
+    pub fn stretch_m(&self, ray: &Ray) -> Option<(f64, f64, bool)> {
+        let (near, far) = ray.crossings(self.top_radius_m)?;
+        if far <= 0.0 {
+            return None;
+        }
+        let ground = ray.distance_to_ground(self.ground_radius_m);
+        Some((near.max(0.0), ground.unwrap_or(far), ground.is_some()))
+    }
+
+    /// Walks from `start_m` to `end_m` in `steps` steps, each as dense as in its middle; step k of n begins at
+    /// `(k / n)^power` of the way. Within a step the source is held and extinction integrated exactly. Returns the
+    /// transmittances.
+    pub fn march(
+        &self,
+        ray: &Ray,
+        (start_m, end_m): (f64, f64),
+        (steps, power): (usize, f64),
+        mut visit: impl FnMut(&Step<'_>),
+    ) -> Vec<f32> {
+        let lanes = self.lanes();
+        let mut throughput = vec![1.0f32; lanes];
+        let (mut scattering, mut weight) = (vec![0.0f32; lanes], vec![0.0f32; lanes]);
+        let mut extinction = vec![0.0f32; lanes];
+        let mut densities = vec![0.0; self.parts.len()];
+        let edge = |k: usize| start_m + (end_m - start_m) * (k as f64 / steps as f64).powf(power);
+        for k in 0..steps {
+            let (from, to) = (edge(k), edge(k + 1));
+            let middle = 0.5 * (from + to);
+            let altitude = ray.radius_m - self.planet_radius_m + ray.climb_at(middle);
+            scattering.fill(0.0);
+            extinction.fill(0.0);
+            for (part, density) in self.parts.iter().zip(&mut densities) {
+                *density = part.density.at(altitude);
+                let d = *density as f32;
+                for lane in 0..lanes {
+                    scattering[lane] += d * part.scattering_per_m[lane];
+                    extinction[lane] += d * part.extinction_per_m[lane];
+                }
+            }
+            let dt = (to - from) as f32;
+            for lane in 0..lanes {
+                let tau = extinction[lane] * dt;
+                let lost = -(-tau).exp_m1();
+                // (1 - e^-tau) / sigma_t; dt where nothing is lost.
+                let mean = if tau > 1e-6 {
+                    lost / extinction[lane]
+                } else {
+                    dt
+                };
+                weight[lane] = throughput[lane] * mean;
+                throughput[lane] *= 1.0 - lost;
+            }
+            visit(&Step {
+                here: ray.advanced(middle),
+                densities: &densities,
+                scattering_per_m: &scattering,
+                weight_m: &weight,
+            });
+        }
+        throughput
+    }
+
+    /// Transmittance table of `size` (zenith angles, heights), each ray marched in `steps` even steps.
+    pub fn transmittance_table(&self, size: [usize; 2], steps: usize) -> TransmittanceTable {
+        TransmittanceTable::new(self.bounds_m(), size, self.lanes(), |radius_m, mu, out| {
+            let ray = Ray {
+                radius_m,
+                mu,
+                mu_sun: 0.0,
+                nu: 0.0,
+            };
+            let end_m = ray.crossings(self.top_radius_m).map_or(0.0, |(_, far)| far);
+            out.fill(0.0);
+            let step = end_m / steps as f64;
+            for k in 0..steps {
+                let altitude =
+                    ray.radius_m - self.planet_radius_m + ray.climb_at((k as f64 + 0.5) * step);
+                for part in &self.parts {
+                    let column = (part.density.at(altitude) * step) as f32;
+                    for (tau, sigma) in out.iter_mut().zip(&part.extinction_per_m) {
+                        *tau += column * sigma;
+                    }
+                }
+            }
+        })
+    }
+
+    /// Sunlight at a place by the table, 0 in the planet's shadow.
+    pub fn sunlight(
+        &self,
+        table: &TransmittanceTable,
+        radius_m: f64,
+        mu_sun: f64,
+        out: &mut [f32],
+    ) {
+        if in_shadow(radius_m, mu_sun, self.ground_radius_m) {
+            out.fill(0.0);
+        } else {
+            table.look_up(radius_m, mu_sun, out);
+        }
+    }
+
+    /// Radiance of the sunlit ground per unit irradiance, where the sun stands at the zenith cosine `mu_sun`, into `out`.
+    pub fn ground_radiance(&self, table: &TransmittanceTable, mu_sun: f64, out: &mut [f32]) {
+        if mu_sun <= 0.0 {
+            out.fill(0.0);
+            return;
+        }
+        table.look_up(self.ground_radius_m, mu_sun, out);
+        for (o, albedo) in out.iter_mut().zip(&self.ground_albedo) {
+            *o *= albedo * (mu_sun * std::f64::consts::FRAC_1_PI) as f32;
+        }
+    }
+}

@@ -1,0 +1,141 @@
+//! Light scattered twice or more, as if scattered evenly in all directions.
+//!
+//! S. Hillaire, "A Scalable and Production Ready Sky and Atmosphere Rendering Technique", Computer Graphics Forum 39(4),
+//! 2020, section 5.5: light of the second order with an isotropic phase function (eqs. 5 and 6), the part of it
+//! that the surroundings send back each further time (eqs. 7 and 8), and the geometric series of all later orders
+//! (eqs. 9 and 10).
+
+use super::{AirLanes, TransmittanceTable, corners};
+use crate::transfer::ray::Ray;
+use rayon::prelude::*;
+use std::f64::consts::PI;
+
+/// How finely the table is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MultipleScatteringSettings {
+    /// Sun angles and heights, at least 2 of each.
+    pub size: [usize; 2],
+    /// Directions: the square root of their number, at least 1.
+    pub root_of_directions: usize,
+    /// Steps on each ray, at least 1.
+    pub steps: usize,
+}
+
+impl Default for MultipleScatteringSettings {
+    /// The paper's (table 2): 32 x 32, 64 directions, 20 steps.
+    fn default() -> Self {
+        Self {
+            size: [32, 32],
+            root_of_directions: 8,
+            steps: 20,
+        }
+    }
+}
+
+/// `Psi_ms` by the sun's zenith cosine and height.
+pub struct MultipleScatteringTable {
+    ground_radius_m: f64,
+    top_radius_m: f64,
+    size: [usize; 2],
+    lanes: usize,
+    values: Vec<f32>,
+}
+
+impl MultipleScatteringTable {
+    /// Fills the table for an air and its transmittance.
+    pub fn new(
+        air: &AirLanes,
+        transmittance: &TransmittanceTable,
+        settings: &MultipleScatteringSettings,
+    ) -> Self {
+        let (ground_radius_m, top_radius_m) = air.bounds_m();
+        let size = settings.size;
+        let lanes = air.lanes();
+        let mut values = vec![0.0; size[0] * size[1] * lanes];
+        values
+            .par_chunks_exact_mut(lanes)
+            .enumerate()
+            .for_each(|(index, out)| {
+                let mu_sun = 2.0 * (index % size[0]) as f64 / (size[0] - 1) as f64 - 1.0;
+                let height = (index / size[0]) as f64 / (size[1] - 1) as f64;
+                let radius_m = ground_radius_m + height * (top_radius_m - ground_radius_m);
+                psi(air, transmittance, settings, (radius_m, mu_sun), out);
+            });
+        Self {
+            ground_radius_m,
+            top_radius_m,
+            size,
+            lanes,
+            values,
+        }
+    }
+
+    /// `Psi_ms` at a place, per unit solar irradiance, sr^-1, into `out`.
+    pub fn look_up(&self, radius_m: f64, mu_sun: f64, out: &mut [f32]) {
+        let height = (radius_m - self.ground_radius_m) / (self.top_radius_m - self.ground_radius_m);
+        out.fill(0.0);
+        for (index, weight) in corners((0.5 + 0.5 * mu_sun, height), self.size) {
+            let sample = &self.values[index * self.lanes..][..self.lanes];
+            for (o, s) in out.iter_mut().zip(sample) {
+                *o += weight * s;
+            }
+        }
+    }
+}
+
+/// `Psi_ms = L_2nd / (1 - f_ms)` at one place (eq. 10).
+fn psi(
+    air: &AirLanes,
+    transmittance: &TransmittanceTable,
+    settings: &MultipleScatteringSettings,
+    (radius_m, mu_sun): (f64, f64),
+    out: &mut [f32],
+) {
+    let lanes = air.lanes();
+    let root = settings.root_of_directions;
+    let isotropic = (0.25 / PI) as f32;
+    let sin_sun = (1.0 - mu_sun * mu_sun).max(0.0).sqrt();
+    let (mut second, mut returned) = (vec![0.0f32; lanes], vec![0.0f32; lanes]);
+    let mut sunlight = vec![0.0f32; lanes];
+    for i in 0..root {
+        // Even over the sphere.
+        let mu = 1.0 - 2.0 * (i as f64 + 0.5) / root as f64;
+        let sine = (1.0 - mu * mu).sqrt();
+        for j in 0..root {
+            let azimuth = 2.0 * PI * (j as f64 + 0.5) / root as f64;
+            let nu = mu * mu_sun + sine * sin_sun * azimuth.cos();
+            let ray = Ray {
+                radius_m,
+                mu,
+                mu_sun,
+                nu,
+            };
+            let Some((start, end, on_ground)) = air.stretch_m(&ray) else {
+                continue;
+            };
+            let through = air.march(&ray, (start, end), (settings.steps, 1.0), |step| {
+                air.sunlight(
+                    transmittance,
+                    step.here.radius_m,
+                    step.here.mu_sun,
+                    &mut sunlight,
+                );
+                for lane in 0..lanes {
+                    let scattered = step.scattering_per_m[lane] * step.weight_m[lane];
+                    second[lane] += scattered * sunlight[lane] * isotropic;
+                    returned[lane] += scattered;
+                }
+            });
+            if on_ground {
+                air.ground_radiance(transmittance, ray.advanced(end).mu_sun, &mut sunlight);
+                for lane in 0..lanes {
+                    second[lane] += through[lane] * sunlight[lane];
+                }
+            }
+        }
+    }
+    let share = 1.0 / (root * root) as f32;
+    for lane in 0..lanes {
+        out[lane] = second[lane] * share / (1.0 - returned[lane] * share);
+    }
+}

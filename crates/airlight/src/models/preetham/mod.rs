@@ -1,0 +1,248 @@
+//! The sky of Preetham, Shirley and Smits: "A Practical Analytic Model for Daylight", SIGGRAPH 1999.
+//!
+//! Luminance and chromaticity each follow Perez' formula (eq. 3) between the zenith's value and the horizon, with five
+//! coefficients that are linear in turbidity (appendix A.2); the sun is dimmed by Iqbal's formulas for molecules, haze,
+//! ozone, mixed gases and water (appendix A.1).
+//!
+//! Fitted to Nishita's model with turbidities from 2 to 6 and suns above the horizon. Where it fails:
+//! - There is nothing below the horizon: black here.
+//! - It has no twilight. The zenith's luminance at sunset is still 2000 cd/m^2, and hardly falls after it; where the formula
+//!   falls below 0 it is held there.
+//! - Towards clear air the formula is a quotient of nothings: `1 + A e^B`, by which the sky is divided, is 0.17 at
+//!   turbidity 2, 0.03 at 1.7 and 0 near 1.6, so that all but the zenith shines without bound. Turbidities from 2 to 10
+//!   are taken.
+//! - By day it is up to three times as bright as our solver, mostly near the horizon: the book has the figures.
+
+mod sun;
+
+use super::PublishedModel;
+use glam::DVec3;
+use std::f64::consts::PI;
+pub(super) use sun::DimmedSun;
+pub use sun::transmittance;
+
+/// Coefficients A to E of luminance Y: factor of the turbidity, and constant.
+const PEREZ_Y: [[f64; 2]; 5] = [
+    [0.1787, -1.4630],
+    [-0.3554, 0.4275],
+    [-0.0227, 5.3251],
+    [0.1206, -2.5771],
+    [-0.0670, 0.3703],
+];
+/// The same of chromaticity x.
+const PEREZ_CHROMA_X: [[f64; 2]; 5] = [
+    [-0.0193, -0.2592],
+    [-0.0665, 0.0008],
+    [-0.0004, 0.2125],
+    [-0.0641, -0.8989],
+    [-0.0033, 0.0452],
+];
+/// The same of chromaticity y.
+const PEREZ_CHROMA_Y: [[f64; 2]; 5] = [
+    [-0.0167, -0.2608],
+    [-0.0950, 0.0092],
+    [-0.0079, 0.2102],
+    [-0.0441, -1.6537],
+    [-0.0109, 0.0529],
+];
+/// The zenith's chromaticity x: rows for the square of the turbidity, the turbidity and 1; columns for the cube of the
+/// sun's zenith angle, its square, the angle and 1.
+const ZENITH_CHROMA_X: [[f64; 4]; 3] = [
+    [0.00166, -0.00375, 0.00209, 0.0],
+    [-0.02903, 0.06377, -0.03202, 0.00394],
+    [0.11693, -0.21196, 0.06052, 0.25886],
+];
+/// The same of y.
+const ZENITH_CHROMA_Y: [[f64; 4]; 3] = [
+    [0.00275, -0.00610, 0.00317, 0.0],
+    [-0.04214, 0.08970, -0.04153, 0.00516],
+    [0.15346, -0.26756, 0.06670, 0.26688],
+];
+
+/// Why numbers do not make a sky.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum PreethamError {
+    /// The turbidity is out of range.
+    #[error("the turbidity must be from 2 to 10 (the model is fitted to 2 to 6), got {0}")]
+    Turbidity(f64),
+    /// The sun has no direction.
+    #[error("the sun's direction must be finite and not zero, got {0}")]
+    Sun(DVec3),
+}
+
+/// The sky over an eye on the ground, for one turbidity and one sun.
+pub struct Preetham {
+    sun: DVec3,
+    /// Of Y, x and y.
+    perez: [Perez; 3],
+    /// Y (cd/m^2), x and y in the zenith.
+    zenith: [f64; 3],
+    disc: DimmedSun,
+}
+
+/// Perez' formula with its coefficients, over its value in the zenith.
+struct Perez {
+    coefficients: [f64; 5],
+    in_zenith: f64,
+}
+
+impl Perez {
+    fn new(table: &[[f64; 2]; 5], turbidity: f64, sun_zenith_rad: f64) -> Self {
+        let mut perez = Self {
+            coefficients: table.map(|[slope, constant]| slope * turbidity + constant),
+            in_zenith: 1.0,
+        };
+        perez.in_zenith = perez.at(1.0, sun_zenith_rad, sun_zenith_rad.cos());
+        perez
+    }
+
+    /// `F(theta, gamma) / F(0, theta_s)` (eqs. 3 and 4).
+    fn at(&self, cos_zenith: f64, gamma_rad: f64, cos_gamma: f64) -> f64 {
+        let [a, b, c, d, e] = self.coefficients;
+        let gradation = 1.0 + a * (b / cos_zenith).exp();
+        let scattering = 1.0 + c * (d * gamma_rad).exp() + e * cos_gamma * cos_gamma;
+        gradation * scattering / self.in_zenith
+    }
+}
+
+impl Preetham {
+    /// The sky of a turbidity (from 2 to 10) with the sun in a direction.
+    ///
+    /// # Errors
+    /// [`PreethamError`] for numbers out of their domain.
+    pub fn new(turbidity: f64, sun_direction: DVec3) -> Result<Self, PreethamError> {
+        if !(2.0..=10.0).contains(&turbidity) {
+            return Err(PreethamError::Turbidity(turbidity));
+        }
+        let sun = sun_direction
+            .try_normalize()
+            .ok_or(PreethamError::Sun(sun_direction))?;
+        let sun_zenith_rad = sun.angle_between(DVec3::Y);
+        let tables = [&PEREZ_Y, &PEREZ_CHROMA_X, &PEREZ_CHROMA_Y];
+        Ok(Self {
+            sun,
+            perez: tables.map(|table| Perez::new(table, turbidity, sun_zenith_rad)),
+            zenith: zenith(turbidity, sun_zenith_rad),
+            disc: DimmedSun::new(turbidity, sun),
+        })
+    }
+}
+
+/// Luminance (cd/m^2) and chromaticities x, y of the zenith (appendix A.2).
+fn zenith(turbidity: f64, sun_zenith_rad: f64) -> [f64; 3] {
+    let chi = (4.0 / 9.0 - turbidity / 120.0) * (PI - 2.0 * sun_zenith_rad);
+    let luminance = (4.0453 * turbidity - 4.9710) * chi.tan() - 0.2155 * turbidity + 2.4192;
+    let angles = [3, 2, 1, 0].map(|power| sun_zenith_rad.powi(power));
+    let chroma = |table: &[[f64; 4]; 3]| -> f64 {
+        let rows = table.iter().zip([turbidity * turbidity, turbidity, 1.0]);
+        rows.map(|(row, t)| t * row.iter().zip(angles).map(|(c, a)| c * a).sum::<f64>())
+            .sum()
+    };
+    [
+        (1000.0 * luminance).max(0.0),
+        chroma(&ZENITH_CHROMA_X),
+        chroma(&ZENITH_CHROMA_Y),
+    ]
+}
+
+impl PublishedModel for Preetham {
+    fn sun(&self) -> DVec3 {
+        self.sun
+    }
+
+    /// Black below the horizon.
+    fn sky_xyz(&self, direction: DVec3) -> [f64; 3] {
+        if direction.y <= 0.0 {
+            return [0.0; 3];
+        }
+        let gamma_rad = direction.angle_between(self.sun);
+        let cos_gamma = direction.dot(self.sun);
+        let [luminance, x, y] = std::array::from_fn(|i| {
+            self.zenith[i] * self.perez[i].at(direction.y, gamma_rad, cos_gamma)
+        });
+        [x / y * luminance, luminance, (1.0 - x - y) / y * luminance]
+    }
+
+    /// The limb-darkened disc of our own sun, dimmed by the paper's formulas ([`transmittance`]) for its centre.
+    fn disc_xyz(&self, direction: DVec3) -> [f64; 3] {
+        self.disc.xyz(direction)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::axes;
+
+    fn sky(turbidity: f64, sun_deg: f64) -> Preetham {
+        Preetham::new(turbidity, axes::direction(180.0, sun_deg)).unwrap()
+    }
+
+    #[test]
+    fn the_zenith_has_the_values_of_its_polynomials() {
+        // By hand, turbidity 2, sun in the zenith: chi = (4/9 - 1/60) pi.
+        let chi: f64 = 0.427_777_777_8 * PI;
+        let want = 1000.0 * (3.1196 * chi.tan() - 0.431 + 2.4192);
+        let [luminance, x, y] = zenith(2.0, 0.0);
+        assert!((luminance / want - 1.0).abs() < 1e-9, "{luminance} {want}");
+        assert!((x - (2.0 * 0.00394 + 0.25886)).abs() < 1e-12);
+        assert!((y - (2.0 * 0.00516 + 0.26688)).abs() < 1e-12);
+        // Sun at the horizon: theta^k of pi / 2, turbidity 3.
+        let [luminance, x, y] = zenith(3.0, 0.5 * PI);
+        assert!((luminance - 1772.7).abs() < 1e-6, "{luminance}");
+        assert!(
+            (x - 0.28373).abs() < 1e-5 && (y - 0.30531).abs() < 1e-5,
+            "{x} {y}"
+        );
+    }
+
+    #[test]
+    fn the_zenith_of_the_sky_is_the_zeniths_value() {
+        for (turbidity, sun_deg) in [(2.0, 60.0), (3.0, 20.0), (6.0, 5.0)] {
+            let sky = sky(turbidity, sun_deg);
+            let [x, y, z] = sky.sky_xyz(DVec3::Y);
+            let [luminance, cx, cy] = zenith(turbidity, (90.0f64 - sun_deg).to_radians());
+            assert!((y / luminance - 1.0).abs() < 1e-9);
+            assert!((x / (x + y + z) - cx).abs() < 1e-9 && (y / (x + y + z) - cy).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn the_sky_is_blue_and_brighter_near_the_sun() {
+        let sky = sky(2.5, 40.0);
+        let at = |azimuth, elevation| sky.sky_xyz(axes::direction(azimuth, elevation));
+        assert!(at(0.0, 60.0)[2] > 1.3 * at(0.0, 60.0)[0]);
+        assert!(at(180.0, 35.0)[1] > 3.0 * at(0.0, 60.0)[1]);
+        // The horizon is continuous and black below.
+        let (low, lower) = (at(90.0, 0.1)[1], at(90.0, 0.01)[1]);
+        assert!((low / lower - 1.0).abs() < 0.01 && lower > 0.0);
+        assert_eq!(at(90.0, -0.01), [0.0; 3]);
+    }
+
+    #[test]
+    fn dusk_is_too_bright_as_documented() {
+        let sky = sky(2.0, 0.0);
+        let luminance = sky.sky_xyz(DVec3::Y)[1];
+        assert!((luminance - 1988.2).abs() < 0.1, "{luminance}");
+    }
+
+    #[test]
+    fn the_suns_disc_is_dimmed_and_reddened() {
+        let disc = |sun_deg| sky(2.5, sun_deg).disc_xyz(axes::direction(180.0, sun_deg));
+        let (high, low) = (disc(60.0), disc(5.0));
+        assert!(high[1] > 1.2e9 && high[1] < 2.2e9, "{high:?}");
+        assert!(low[1] < 0.5 * high[1] && low[0] / low[2] > 2.0 * high[0] / high[2]);
+        assert_eq!(disc(-2.0), [0.0; 3]);
+        assert_eq!(sky(2.5, 60.0).disc_xyz(DVec3::Y), [0.0; 3]);
+    }
+
+    #[test]
+    fn bad_numbers_are_refused() {
+        for turbidity in [1.9, 10.5, f64::NAN] {
+            let error = Preetham::new(turbidity, DVec3::Y).err().unwrap();
+            assert!(matches!(error, PreethamError::Turbidity(_)));
+            assert!(error.to_string().contains("from 2 to 10"));
+        }
+        assert!(Preetham::new(3.0, DVec3::ZERO).is_err());
+    }
+}

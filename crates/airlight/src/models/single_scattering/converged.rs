@@ -1,0 +1,166 @@
+//! The same integrals with nodes where they matter, the planet in its place, and the two steps beyond.
+
+use super::constants as c;
+use super::nodes::{self, Columns};
+use super::printed::smoothstep;
+use super::{Settings, Variant};
+use crate::atmosphere::presets::published;
+use crate::math::gauss_rule::GaussRule;
+use crate::models::lut::{
+    AirLanes, MultipleScatteringSettings, MultipleScatteringTable, TransmittanceTable,
+};
+use crate::optics::PhaseFunction;
+use crate::transfer::ray::{Ray, in_shadow};
+use glam::DVec3;
+use std::f64::consts::PI;
+
+/// Nodes on each stretch of the line of sight.
+pub const VIEW_NODES: usize = 12;
+/// Nodes on each way to the sun.
+pub const SUN_NODES: usize = 10;
+/// Zenith angles and heights of the transmittance table.
+pub const TABLE_SIZE: [usize; 2] = [256, 64];
+/// The wavelengths that stand for red, green and blue in the preset of the article.
+const CHANNELS_NM: [f64; 3] = [680.0, 550.0, 440.0];
+
+/// The article's sky, converged.
+pub struct Converged {
+    eye_altitude_m: f64,
+    view_rule: GaussRule,
+    sun_rule: GaussRule,
+    /// Illuminances outside the air, facing the sun.
+    illuminance: [f64; 3],
+    transmittance: Option<TransmittanceTable>,
+    multiple: Option<MultipleScatteringTable>,
+}
+
+impl Converged {
+    /// Prepares the tables that the variant takes.
+    pub fn new(variant: Variant, settings: &Settings) -> Self {
+        Self::with_nodes(variant, settings, (VIEW_NODES, SUN_NODES))
+    }
+
+    /// The same with other numbers of nodes, on the line of sight and on the ways to the sun.
+    pub fn with_nodes(variant: Variant, settings: &Settings, nodes: (usize, usize)) -> Self {
+        let rules = (GaussRule::new(nodes.0), GaussRule::new(nodes.1));
+        let transmittance = matches!(variant, Variant::Table | Variant::Multiple).then(|| {
+            TransmittanceTable::new(
+                (c::PLANET_RADIUS_M, c::TOP_RADIUS_M),
+                TABLE_SIZE,
+                3,
+                |radius_m, mu, out| {
+                    let depths = optical_depths(nodes::columns_to_space(&rules.1, radius_m, mu));
+                    for (out, depth) in out.iter_mut().zip(depths) {
+                        *out = depth as f32;
+                    }
+                },
+            )
+        });
+        let multiple = match (&transmittance, variant) {
+            (Some(table), Variant::Multiple) => {
+                let air = AirLanes::new(&published::sky_article(), &CHANNELS_NM);
+                let settings = MultipleScatteringSettings::default();
+                Some(MultipleScatteringTable::new(&air, table, &settings))
+            }
+            _ => None,
+        };
+        Self {
+            eye_altitude_m: settings.eye_altitude_m,
+            view_rule: rules.0,
+            sun_rule: rules.1,
+            illuminance: settings.sunlight.illuminance_outside(),
+            transmittance,
+            multiple,
+        }
+    }
+
+    /// Light scattered into a direction.
+    pub fn luminance(&self, direction: DVec3, sun: DVec3) -> [f64; 3] {
+        let ray = self.ray(direction, sun);
+        let (end_m, _) = end_of(&ray);
+        let rayleigh = rayleigh_phase(ray.nu);
+        let mie = PhaseFunction::HenyeyGreenstein { g: c::MIE_G }.evaluate(ray.nu, 550.0);
+        let mut sum = [0.0; 3];
+        nodes::walk(&self.view_rule, &ray, end_m, |node| {
+            let way = optical_depths(node.columns).map(|tau| (-tau).exp());
+            let sunlight = self.sunlight(&node.here);
+            let mut psi = [0.0f32; 3];
+            if let Some(table) = &self.multiple {
+                table.look_up(node.here.radius_m, node.here.mu_sun, &mut psi);
+            }
+            let scatters = c::MIE_PER_MEGAMETRE * 1e-6 * node.densities[1];
+            for i in 0..3 {
+                let air = c::RAYLEIGH_PER_MEGAMETRE[i] * 1e-6 * node.densities[0];
+                let once = sunlight[i] * (air * rayleigh + scatters * mie);
+                let more = f64::from(psi[i]) * (air + scatters);
+                sum[i] += node.dt * way[i] * (once + more);
+            }
+        });
+        [0, 1, 2].map(|i| sum[i] * self.illuminance[i])
+    }
+
+    /// The sun's disc as it arrives; black where the planet hides it.
+    pub fn disc(&self, direction: DVec3, sun: DVec3) -> [f64; 3] {
+        let radius = (0.5 * c::SUN_WIDTH_DEG).to_radians();
+        let [inner, outer] = c::SUN_EDGE.map(|edge| radius * edge);
+        let disc = 1.0 - smoothstep(inner, outer, direction.angle_between(sun));
+        let ray = self.ray(direction, sun);
+        let (_, on_ground) = end_of(&ray);
+        if disc == 0.0 || on_ground {
+            return [0.0; 3];
+        }
+        let depths = optical_depths(nodes::columns_to_space(
+            &self.sun_rule,
+            ray.radius_m,
+            ray.mu,
+        ));
+        let solid_angle = 2.0 * PI * (1.0 - radius.cos());
+        [0, 1, 2].map(|i| disc * self.illuminance[i] / solid_angle * (-depths[i]).exp())
+    }
+
+    /// What of the sunlight reaches a place.
+    fn sunlight(&self, here: &Ray) -> [f64; 3] {
+        if in_shadow(here.radius_m, here.mu_sun, c::PLANET_RADIUS_M) {
+            return [0.0; 3];
+        }
+        match &self.transmittance {
+            Some(table) => {
+                let mut light = [0.0f32; 3];
+                table.look_up(here.radius_m, here.mu_sun, &mut light);
+                light.map(f64::from)
+            }
+            None => optical_depths(nodes::columns_to_space(
+                &self.sun_rule,
+                here.radius_m,
+                here.mu_sun,
+            ))
+            .map(|tau| (-tau).exp()),
+        }
+    }
+
+    fn ray(&self, direction: DVec3, sun: DVec3) -> Ray {
+        let eye = DVec3::Y * (c::PLANET_RADIUS_M + self.eye_altitude_m);
+        Ray::new(eye, direction, sun)
+    }
+}
+
+/// Where a ray that starts in the air ends, m, and whether that is on the ground.
+fn end_of(ray: &Ray) -> (f64, bool) {
+    match ray.distance_to_ground(c::PLANET_RADIUS_M) {
+        Some(end_m) => (end_m, true),
+        None => (
+            ray.crossings(c::TOP_RADIUS_M).map_or(0.0, |(_, far)| far),
+            false,
+        ),
+    }
+}
+
+/// Optical depths of columns of the two densities.
+pub fn optical_depths([air, haze]: Columns) -> [f64; 3] {
+    let haze = c::MIE_EXTINCTION * c::MIE_PER_MEGAMETRE * 1e-6 * haze;
+    [0, 1, 2].map(|i| (c::RAYLEIGH_PER_MEGAMETRE[i] * 1e-6 + c::OZONE[i] * 0.06e-5) * air + haze)
+}
+
+fn rayleigh_phase(mu: f64) -> f64 {
+    3.0 / (16.0 * PI) * (1.0 + mu * mu)
+}

@@ -1,0 +1,140 @@
+//! Well-placed nodes on a ray through air that thins exponentially.
+//!
+//! From the point of a stretch that lies lowest the air thins as `exp(-climb / H)`, and light is lost within a mean free
+//! path: both are smooth over the logarithm of the distance. So a stretch is mapped by `d = c (e^(k s) - 1)`,
+//! `d` the distance from its lowest point and `c` the shorter of the way on which the ray climbs the haze's scale height
+//! and a mean free path, and gets one Gauss-Legendre rule over `s`.
+
+use super::constants as c;
+use crate::math::gauss_rule::GaussRule;
+use crate::transfer::ray::Ray;
+
+/// No longer than this are steps next to the densest point, m: a mean free path of blue light at sea level.
+const MEAN_FREE_PATH_M: f64 = 15e3;
+
+/// Lengths of columns of sea-level density: of what thins with 8 km, and of haze, m.
+pub type Columns = [f64; 2];
+
+/// A node on the line of sight.
+pub struct Node {
+    /// The ray as seen from here.
+    pub here: Ray,
+    /// Quadrature weight, m.
+    pub dt: f64,
+    /// Relative densities here.
+    pub densities: [f64; 2],
+    /// Columns between the eye and here.
+    pub columns: Columns,
+}
+
+/// Relative densities at a height.
+pub fn densities(altitude_m: f64) -> [f64; 2] {
+    [c::RAYLEIGH_SCALE_HEIGHT_M, c::MIE_SCALE_HEIGHT_M].map(|h| (-altitude_m / h).exp())
+}
+
+/// The map of a stretch of `length` whose lowest point starts a ray of zenith cosine `mu >= 0` at `radius_m`: its
+/// `c` and `k`.
+fn log_map(radius_m: f64, mu: f64, length: f64) -> (f64, f64) {
+    let (b, h) = (radius_m * mu, c::MIE_SCALE_HEIGHT_M);
+    let climb = h * (2.0 * radius_m + h) / (b + (b * b + h * (2.0 * radius_m + h)).sqrt());
+    let scale = climb.min(MEAN_FREE_PATH_M);
+    (scale, (length / scale).ln_1p())
+}
+
+/// Columns from `radius_m` to space along a ray that climbs (`mu >= 0`).
+pub fn columns_up(rule: &GaussRule, radius_m: f64, mu: f64) -> Columns {
+    let ray = Ray {
+        radius_m,
+        mu,
+        mu_sun: 0.0,
+        nu: 0.0,
+    };
+    let Some((_, length)) = ray.crossings(c::TOP_RADIUS_M) else {
+        return [0.0; 2];
+    };
+    let (scale, k) = log_map(radius_m, mu, length);
+    let mut columns = [0.0; 2];
+    for (&s, &w) in rule.nodes.iter().zip(&rule.weights) {
+        let stretch = (k * s).exp();
+        let altitude = radius_m - c::PLANET_RADIUS_M + ray.climb_at(scale * (stretch - 1.0));
+        let dt = w * scale * k * stretch;
+        for (column, density) in columns.iter_mut().zip(densities(altitude)) {
+            *column += dt * density;
+        }
+    }
+    columns
+}
+
+/// Columns from `radius_m` to space along a ray that misses the ground.
+pub fn columns_to_space(rule: &GaussRule, radius_m: f64, mu: f64) -> Columns {
+    if mu >= 0.0 {
+        return columns_up(rule, radius_m, mu);
+    }
+    let tangent = radius_m * ((1.0 - mu) * (1.0 + mu)).sqrt();
+    let (whole, behind) = (
+        columns_up(rule, tangent, 0.0),
+        columns_up(rule, radius_m, -mu),
+    );
+    [0, 1].map(|i| 2.0 * whole[i] - behind[i])
+}
+
+/// Calls `visit` with the nodes of the line of sight, eye to `end_m`; returns the columns of all of it. The line is cut where it is
+/// lowest and where it crosses the edge of the planet's shadow.
+pub fn walk(rule: &GaussRule, ray: &Ray, end_m: f64, mut visit: impl FnMut(&Node)) -> Columns {
+    let closest = ray.closest_approach_m();
+    let mut edges = vec![0.0];
+    let [first, second] = ray.shadow_edges(c::PLANET_RADIUS_M);
+    for t in [Some(closest), first, second].into_iter().flatten() {
+        if t > 0.0 && t < end_m {
+            edges.push(t);
+        }
+    }
+    edges.push(end_m);
+    edges.sort_by(f64::total_cmp);
+    let mut before = [0.0; 2];
+    let count = rule.nodes.len();
+    let mut nodes: Vec<Node> = Vec::with_capacity(count);
+    for edge in edges.windows(2) {
+        let (from, to) = (edge[0], edge[1]);
+        let climbs = 0.5 * (from + to) >= closest;
+        let low = ray.advanced(if climbs { from } else { to });
+        let (scale, k) = log_map(low.radius_m, low.mu.abs(), to - from);
+        nodes.clear();
+        for &s in &rule.nodes {
+            let stretch = (k * s).exp();
+            let d = scale * (stretch - 1.0);
+            let t = if climbs { from + d } else { to - d };
+            let altitude = ray.radius_m - c::PLANET_RADIUS_M + ray.climb_at(t);
+            nodes.push(Node {
+                here: ray.advanced(t),
+                // Times the weight below.
+                dt: scale * k * stretch,
+                densities: densities(altitude),
+                columns: [0.0; 2],
+            });
+        }
+        let whole: Columns = [0, 1].map(|i| {
+            let terms = nodes.iter().zip(&rule.weights);
+            terms.map(|(n, w)| w * n.dt * n.densities[i]).sum()
+        });
+        for at in 0..count {
+            for i in 0..2 {
+                let low_to_here: f64 = (0..count)
+                    .map(|j| rule.running[at][j] * nodes[j].dt * nodes[j].densities[i])
+                    .sum();
+                nodes[at].columns[i] = before[i]
+                    + if climbs {
+                        low_to_here
+                    } else {
+                        whole[i] - low_to_here
+                    };
+            }
+        }
+        for (node, w) in nodes.iter_mut().zip(&rule.weights) {
+            node.dt *= w;
+            visit(node);
+        }
+        before = [0, 1].map(|i| before[i] + whole[i]);
+    }
+    before
+}

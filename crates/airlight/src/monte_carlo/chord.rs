@@ -1,0 +1,312 @@
+//! A straight way through the layers: what lies on it, where to stop on it, and how much light passes.
+
+use super::layers::Layers;
+use crate::math::quadrature::gauss_legendre;
+use crate::math::random::Random;
+use crate::transfer::shell::{MAX_CONSTITUENTS, PerConstituent};
+use glam::DVec3;
+
+/// How a straight way ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// On the ground.
+    Ground,
+    /// Beyond the air, or wherever there is nothing to meet.
+    Space,
+}
+
+/// A half line in the coordinate `t` that is 0 where it comes closest to the planet's centre: the squared distance from
+/// there is `tangent + t^2`.
+#[derive(Clone, Copy, Debug)]
+pub struct HalfLine {
+    /// Squared distance of the closest point from the centre, m^2.
+    pub tangent: f64,
+    /// Where it starts, m.
+    pub start: f64,
+}
+
+/// What a half line crosses.
+#[derive(Clone, Debug, Default)]
+pub struct Chord {
+    tangent: f64,
+    pieces: Vec<Piece>,
+    /// Columns of the whole chord.
+    pub columns: PerConstituent,
+    residual: f64,
+}
+
+/// A stretch within one layer.
+#[derive(Clone, Copy, Debug)]
+struct Piece {
+    layer: usize,
+    from: f64,
+    to: f64,
+    /// Columns before it.
+    before: PerConstituent,
+    /// Residual depth before it.
+    residual_before: f64,
+}
+
+impl HalfLine {
+    /// From a place (m, from the planet's centre) along a unit vector.
+    #[inline(always)]
+    pub fn new(place: DVec3, direction: DVec3) -> Self {
+        Self {
+            tangent: place.cross(direction).length_squared(),
+            start: place.dot(direction),
+        }
+    }
+
+    /// Whether the planet is in the way.
+    #[inline(always)]
+    pub fn meets_ground(&self, layers: &Layers) -> bool {
+        self.start < 0.0 && self.tangent < layers.edge(0)
+    }
+
+    /// Calls `visit(layer, from, to)` for each stretch, from inside the air until ground or space.
+    #[inline(always)]
+    fn walk(&self, layers: &Layers, mut visit: impl FnMut(usize, f64, f64)) -> End {
+        let mut t = self.start;
+        let mut layer = layers.at(self.tangent + t * t);
+        loop {
+            let falls = t < 0.0 && self.tangent < layers.edge(layer);
+            let edge = layers.edge(if falls { layer } else { layer + 1 });
+            let reach = (edge - self.tangent).max(0.0).sqrt();
+            let to = if falls { -reach } else { reach };
+            if to > t {
+                visit(layer, t, to);
+                t = to;
+            }
+            match falls {
+                true if layer == 0 => return End::Ground,
+                true => layer -= 1,
+                false if layer == layers.last() => return End::Space,
+                false => layer += 1,
+            }
+        }
+    }
+
+    /// The stand-in's columns to space, and the residual depth; for a line that does not meet the ground.
+    #[inline(always)]
+    pub fn to_space(self, layers: &Layers) -> (PerConstituent, f64) {
+        let mut columns = [0.0; MAX_CONSTITUENTS];
+        let mut residual = 0.0;
+        self.walk(layers, |layer, from, to| {
+            let layer = layers.layer(layer);
+            let more = layer.columns(layer.moments(self.tangent, from, to), MAX_CONSTITUENTS);
+            for (column, more) in columns.iter_mut().zip(more) {
+                *column += more;
+            }
+            residual += layer.residual_per_m * (to - from);
+        });
+        (columns, residual)
+    }
+
+    /// Calls `at(squared radius, layer)` where what the stand-in leaves out is looked at on the way to space: a Poisson
+    /// process of the density `residual_per_m`, whose first event lies at the residual depth `first`.
+    #[cold]
+    pub fn residual_places(
+        &self,
+        layers: &Layers,
+        first: f64,
+        random: &mut Random,
+        mut at: impl FnMut(f64, usize),
+    ) {
+        let mut left = first;
+        self.walk(layers, |layer, from, to| {
+            let rate = layers.layer(layer).residual_per_m;
+            let mut t = from;
+            while rate * (to - t) > left {
+                t += left / rate;
+                at(self.tangent + t * t, layer);
+                left = -random.unit().ln();
+            }
+            left -= rate * (to - t);
+        });
+    }
+}
+
+impl Chord {
+    /// Crosses the layers along a half line that starts inside the air.
+    #[inline(always)]
+    pub fn cross(&mut self, layers: &Layers, line: HalfLine) -> End {
+        self.tangent = line.tangent;
+        self.pieces.clear();
+        let mut columns = [0.0; MAX_CONSTITUENTS];
+        let mut residual = 0.0;
+        let pieces = &mut self.pieces;
+        let end = line.walk(layers, |layer, from, to| {
+            pieces.push(Piece {
+                layer,
+                from,
+                to,
+                before: columns,
+                residual_before: residual,
+            });
+            let layer = layers.layer(layer);
+            let more = layer.columns(layer.moments(line.tangent, from, to), MAX_CONSTITUENTS);
+            for (column, more) in columns.iter_mut().zip(more) {
+                *column += more;
+            }
+            residual += layer.residual_per_m * (to - from);
+        });
+        self.columns = columns;
+        self.residual = residual;
+        end
+    }
+
+    /// Ends it at `until`, if it goes so far.
+    #[cold]
+    pub fn cut(&mut self, layers: &Layers, until: f64) {
+        if self.pieces.is_empty() || until >= self.end() {
+            return;
+        }
+        let last = self.piece_at(until);
+        self.columns = self.columns_to(layers, until);
+        self.pieces.truncate(last + 1);
+        let piece = &mut self.pieces[last];
+        piece.to = until.max(piece.from);
+        let rate = layers.layer(piece.layer).residual_per_m;
+        self.residual = piece.residual_before + rate * (piece.to - piece.from);
+    }
+
+    /// Columns of the true densities from the start to the end, by Gauss's rule of 8 points in each layer.
+    pub fn true_columns(&self, layers: &Layers) -> PerConstituent {
+        let (nodes, weights) = gauss_legendre(8);
+        let mut columns = [0.0; MAX_CONSTITUENTS];
+        for piece in &self.pieces {
+            let (middle, half) = (0.5 * (piece.from + piece.to), 0.5 * (piece.to - piece.from));
+            for (node, weight) in nodes.iter().zip(&weights) {
+                let t = middle + half * node;
+                let densities = layers.densities_at((self.tangent + t * t).sqrt());
+                for (column, density) in columns.iter_mut().zip(densities) {
+                    *column += half * weight * density;
+                }
+            }
+        }
+        columns
+    }
+
+    /// Where it starts.
+    pub fn start(&self) -> f64 {
+        self.pieces.first().map_or(0.0, |piece| piece.from)
+    }
+
+    /// Where it ends.
+    pub fn end(&self) -> f64 {
+        self.pieces.last().map_or(0.0, |piece| piece.to)
+    }
+
+    /// The layer at `t`.
+    #[inline(always)]
+    pub fn layer_at(&self, t: f64) -> usize {
+        self.pieces[self.piece_at(t)].layer
+    }
+
+    #[inline(always)]
+    fn piece_at(&self, t: f64) -> usize {
+        self.pieces
+            .partition_point(|piece| piece.from <= t)
+            .clamp(1, self.pieces.len())
+            - 1
+    }
+
+    /// Columns from the start to `t`.
+    #[inline(always)]
+    pub fn columns_to(&self, layers: &Layers, t: f64) -> PerConstituent {
+        let piece = &self.pieces[self.piece_at(t)];
+        let layer = layers.layer(piece.layer);
+        let to = t.clamp(piece.from, piece.to);
+        let more = layer.columns(
+            layer.moments(self.tangent, piece.from, to),
+            MAX_CONSTITUENTS,
+        );
+        let mut columns = piece.before;
+        for (column, more) in columns.iter_mut().zip(more) {
+            *column += more;
+        }
+        columns
+    }
+
+    /// Where the stand-in's optical depth from the start is `depth`, for constituents of the extinctions given (1/m at
+    /// density 1): Newton's method, kept inside its bracket, on a polynomial of degree 5, to rounding.
+    pub fn at_depth(&self, layers: &Layers, extinction: &PerConstituent, depth: f64) -> f64 {
+        let of = |columns: &PerConstituent| -> f64 {
+            extinction.iter().zip(columns).map(|(e, c)| e * c).sum()
+        };
+        let piece = self
+            .pieces
+            .partition_point(|piece| of(&piece.before) <= depth)
+            .max(1)
+            - 1;
+        let piece = &self.pieces[piece];
+        let layer = layers.layer(piece.layer);
+        let mut parabola = [0.0; 3];
+        for (e, p) in extinction.iter().zip(&layer.parabolas) {
+            for (sum, p) in parabola.iter_mut().zip(p) {
+                *sum += e * p;
+            }
+        }
+        let target = depth - of(&piece.before);
+        let depth_to = |t: f64| -> f64 {
+            let moments = layer.moments(self.tangent, piece.from, t);
+            parabola.iter().zip(moments).map(|(p, m)| p * m).sum()
+        };
+        let rate = |t: f64| {
+            let x = layer.coordinate(self.tangent + t * t);
+            parabola[0] + x * (parabola[1] + x * parabola[2])
+        };
+        let (mut low, mut high) = (piece.from, piece.to);
+        let whole = depth_to(high);
+        let mut t = match whole > 0.0 {
+            true => low + (high - low) * (target / whole).clamp(0.0, 1.0),
+            false => return high,
+        };
+        for _ in 0..60 {
+            let miss = depth_to(t) - target;
+            if miss > 0.0 {
+                high = t;
+            } else {
+                low = t;
+            }
+            let newton = t - miss / rate(t);
+            let next = match newton > low && newton < high {
+                true => newton,
+                false => 0.5 * (low + high),
+            };
+            let step = (next - t).abs();
+            t = next;
+            if step <= 1e-9 * (piece.to - piece.from) {
+                break;
+            }
+        }
+        t
+    }
+
+    /// As [`HalfLine::residual_places`], from the start until `until`: most often nowhere.
+    #[inline(always)]
+    pub fn residual(
+        &self,
+        layers: &Layers,
+        until: f64,
+        random: &mut Random,
+        mut at: impl FnMut(f64, usize),
+    ) {
+        let mut next = -random.unit().ln();
+        if next > self.residual {
+            return;
+        }
+        for piece in &self.pieces {
+            let rate = layers.layer(piece.layer).residual_per_m;
+            let to = piece.to.min(until);
+            while piece.residual_before + rate * (to - piece.from) > next {
+                let t = piece.from + (next - piece.residual_before) / rate;
+                at(self.tangent + t * t, piece.layer);
+                next -= random.unit().ln();
+            }
+            if piece.to >= until {
+                return;
+            }
+        }
+    }
+}

@@ -1,0 +1,315 @@
+//! The air's coefficients at the N wavelengths of one block of lanes.
+
+use crate::atmosphere::Atmosphere;
+use crate::math::random::Random;
+#[cfg(doc)]
+use crate::optics::Depolarization;
+use crate::optics::{MatrixRatios, PhaseFunction, PhaseSampler};
+use crate::spectrum::Spectrum;
+use crate::transfer::shell::{MAX_CONSTITUENTS, PerConstituent};
+
+/// One value a constituent in each lane.
+pub type PerScatterer<const N: usize> = [Spectrum<N>; MAX_CONSTITUENTS];
+
+/// What the constituents do to light at N wavelengths.
+#[derive(Clone, Debug)]
+pub struct Lanes<const N: usize> {
+    /// The wavelengths, nm.
+    pub wavelengths_nm: [f64; N],
+    /// Extinction of each constituent at density 1, 1/m.
+    extinction: Vec<Spectrum<N>>,
+    /// The same, lane by lane.
+    extinction_of_lane: [PerConstituent; N],
+    /// Scattering of each constituent at density 1, 1/m.
+    scattering: Vec<Spectrum<N>>,
+    phases: Vec<Phase<N>>,
+    /// Lambertian albedo of the ground.
+    pub ground_albedo: Spectrum<N>,
+}
+
+/// Elements of a scattering matrix over the phase function in all lanes, as [`MatrixRatios`] has them.
+#[derive(Clone, Copy, Debug)]
+pub struct Ratios<const N: usize> {
+    /// Natural light to polarised.
+    pub f12: Spectrum<N>,
+    /// Polarised in or across the plane.
+    pub f22: Spectrum<N>,
+    /// At 45 degrees.
+    pub f33: Spectrum<N>,
+    /// Circular to linear.
+    pub f34: Spectrum<N>,
+    /// Circular.
+    pub f44: Spectrum<N>,
+}
+
+/// A phase function in all lanes.
+#[derive(Clone, Debug)]
+struct Phase<const N: usize> {
+    function: PhaseFunction,
+    /// Of molecules, what [`Depolarization::polarised_shares`] says.
+    molecules: Option<[Spectrum<N>; 2]>,
+    polarises: bool,
+    shape: Shape<N>,
+    /// One for all lanes, or one a lane.
+    samplers: Vec<PhaseSampler>,
+}
+
+/// How a phase function depends on the lane.
+#[derive(Clone, Debug)]
+enum Shape<const N: usize> {
+    /// Not at all.
+    Same,
+    /// `a + b mu^2`.
+    Square(Spectrum<N>, Spectrum<N>),
+    /// Somehow.
+    ByLane,
+}
+
+impl<const N: usize> Phase<N> {
+    fn new(function: &PhaseFunction, wavelengths_nm: &[f64; N]) -> Self {
+        let at = |mu: f64, nm: f64| function.evaluate(mu, nm);
+        let (shape, samplers) = match (function, function.depends_on_wavelength()) {
+            (_, false) => (Shape::Same, 1),
+            (PhaseFunction::Rayleigh(_), true) => {
+                let constant = Spectrum::from_fn(|i| at(0.0, wavelengths_nm[i]) as f32);
+                let ends = Spectrum::from_fn(|i| at(1.0, wavelengths_nm[i]) as f32);
+                (Shape::Square(constant, ends - constant), N)
+            }
+            _ => (Shape::ByLane, N),
+        };
+        let molecules = match function {
+            PhaseFunction::Rayleigh(kind) => Some([0, 1].map(|i| {
+                Spectrum::from_fn(|lane| kind.polarised_shares(wavelengths_nm[lane])[i] as f32)
+            })),
+            _ => None,
+        };
+        Self {
+            function: function.clone(),
+            molecules,
+            polarises: function.knows_polarisation(),
+            shape,
+            samplers: wavelengths_nm[..samplers]
+                .iter()
+                .map(|&nm| PhaseSampler::new(function, nm))
+                .collect(),
+        }
+    }
+
+    #[inline(always)]
+    fn evaluate(&self, mu: f64, wavelengths_nm: &[f64; N]) -> Spectrum<N> {
+        match &self.shape {
+            Shape::Same => Spectrum::splat(self.function.evaluate(mu, wavelengths_nm[0]) as f32),
+            Shape::Square(constant, square) => constant.scale_acc(*square, (mu * mu) as f32),
+            Shape::ByLane => {
+                Spectrum::from_fn(|i| self.function.evaluate(mu, wavelengths_nm[i]) as f32)
+            }
+        }
+    }
+}
+
+impl<const N: usize> Ratios<N> {
+    /// No polarisation.
+    pub const NONE: Self = Self {
+        f12: Spectrum::ZERO,
+        f22: Spectrum::ZERO,
+        f33: Spectrum::ZERO,
+        f34: Spectrum::ZERO,
+        f44: Spectrum::ZERO,
+    };
+
+    /// Of molecules (Hansen & Travis 1974, eq. 2.15), with the shares of [`Depolarization::polarised_shares`].
+    #[inline(always)]
+    fn of_molecules([share, circular]: [Spectrum<N>; 2], mu: f32) -> Self {
+        let even = share * (0.75 * (1.0 + mu * mu));
+        let whole = even + (Spectrum::ONE - share);
+        let f33 = share * (1.5 * mu) / whole;
+        Self {
+            f12: share * (0.75 * (mu * mu - 1.0)) / whole,
+            f22: even / whole,
+            f33,
+            f34: Spectrum::ZERO,
+            f44: circular * f33,
+        }
+    }
+
+    /// One lane after the other.
+    fn by_lane(of: impl Fn(usize) -> MatrixRatios) -> Self {
+        let mut all = Self::NONE;
+        for lane in 0..N {
+            let one = of(lane);
+            all.f12[lane] = one.f12 as f32;
+            all.f22[lane] = one.f22 as f32;
+            all.f33[lane] = one.f33 as f32;
+            all.f34[lane] = one.f34 as f32;
+            all.f44[lane] = one.f44 as f32;
+        }
+        all
+    }
+
+    /// Adds another, times factors.
+    #[inline(always)]
+    fn add(&mut self, other: &Self, share: Spectrum<N>) {
+        self.f12 = self.f12.mul_acc(other.f12, share);
+        self.f22 = self.f22.mul_acc(other.f22, share);
+        self.f33 = self.f33.mul_acc(other.f33, share);
+        self.f34 = self.f34.mul_acc(other.f34, share);
+        self.f44 = self.f44.mul_acc(other.f44, share);
+    }
+}
+
+impl<const N: usize> Lanes<N> {
+    /// Samples `atmosphere` at N wavelengths.
+    pub fn new(atmosphere: &Atmosphere, wavelengths_nm: [f64; N]) -> Self {
+        let sample =
+            |f: &dyn Fn(f64) -> f64| Spectrum::from_fn(|lane| f(wavelengths_nm[lane]) as f32);
+        let parts = &atmosphere.constituents;
+        let mut extinction_of_lane = [[0.0; MAX_CONSTITUENTS]; N];
+        for (all, &nm) in extinction_of_lane.iter_mut().zip(&wavelengths_nm) {
+            for (value, part) in all.iter_mut().zip(parts) {
+                *value = part.extinction_per_m(nm);
+            }
+        }
+        Self {
+            wavelengths_nm,
+            extinction: parts
+                .iter()
+                .map(|part| sample(&|nm| part.extinction_per_m(nm)))
+                .collect(),
+            extinction_of_lane,
+            scattering: parts
+                .iter()
+                .map(|part| sample(&|nm| part.scattering_per_m.at(nm)))
+                .collect(),
+            phases: parts
+                .iter()
+                .map(|part| Phase::new(&part.phase, &wavelengths_nm))
+                .collect(),
+            ground_albedo: sample(&|nm| atmosphere.planet.ground_albedo.at(nm)),
+        }
+    }
+
+    /// Extinction of each constituent in one lane, 1/m at density 1.
+    #[inline(always)]
+    pub fn extinction_of(&self, lane: usize) -> &PerConstituent {
+        &self.extinction_of_lane[lane]
+    }
+
+    /// Optical depth of columns; extinction of densities.
+    #[inline(always)]
+    pub fn extinction(&self, columns: &PerConstituent) -> Spectrum<N> {
+        let mut depth = Spectrum::ZERO;
+        for (extinction, &column) in self.extinction.iter().zip(columns) {
+            depth = depth.scale_acc(*extinction, column as f32);
+        }
+        depth
+    }
+
+    /// Transmittance through columns.
+    #[inline(always)]
+    pub fn transmittance(&self, columns: &PerConstituent) -> Spectrum<N> {
+        (Spectrum::ZERO - self.extinction(columns)).exp()
+    }
+
+    /// Scattering of each constituent at the densities given, 1/m.
+    #[inline(always)]
+    pub fn scattering(&self, densities: &PerConstituent) -> PerScatterer<N> {
+        let mut out = [Spectrum::ZERO; MAX_CONSTITUENTS];
+        for ((out, scattering), &density) in out.iter_mut().zip(&self.scattering).zip(densities) {
+            *out = *scattering * density as f32;
+        }
+        out
+    }
+
+    /// Phase function of each constituent that scatters, 1/sr.
+    #[inline(always)]
+    pub fn phases(&self, mu: f64) -> PerScatterer<N> {
+        let mut out = [Spectrum::ZERO; MAX_CONSTITUENTS];
+        for ((out, phase), scattering) in out.iter_mut().zip(&self.phases).zip(&self.scattering) {
+            if scattering.max_element() > 0.0 {
+                *out = phase.evaluate(mu, &self.wavelengths_nm);
+            }
+        }
+        out
+    }
+
+    /// The scattering matrix of all constituents over their phase function, where they scatter so much with these phase
+    /// functions at the cosine `mu`.
+    #[inline(always)]
+    pub fn ratios(
+        &self,
+        scattering: &PerScatterer<N>,
+        phases: &PerScatterer<N>,
+        mu: f64,
+    ) -> Ratios<N> {
+        let mut sum = Ratios::NONE;
+        let whole = phased(scattering, phases).max_scalar(f32::MIN_POSITIVE);
+        for (c, phase) in self.phases.iter().enumerate() {
+            if !phase.polarises || scattering[c].max_element() <= 0.0 {
+                continue;
+            }
+            let ratios = match phase.molecules {
+                Some(shares) => Ratios::of_molecules(shares, mu as f32),
+                None => {
+                    let at =
+                        |lane: usize| phase.function.matrix_ratios(mu, self.wavelengths_nm[lane]);
+                    Ratios::by_lane(at)
+                }
+            };
+            sum.add(&ratios, scattering[c] * phases[c] / whole);
+        }
+        sum
+    }
+
+    /// Draws the cosine of a scattering angle as `scattering` shares it among constituents in `lane`.
+    #[inline(always)]
+    pub fn sample(&self, scattering: &PerScatterer<N>, lane: usize, random: &mut Random) -> f64 {
+        let whole: f32 = scattering.iter().map(|s| s[lane]).sum();
+        let mut left = random.unit() as f32 * whole;
+        let mut last = 0;
+        for (c, s) in scattering.iter().enumerate().take(self.phases.len()) {
+            if s[lane] > 0.0 {
+                last = c;
+                left -= s[lane];
+                if left <= 0.0 {
+                    break;
+                }
+            }
+        }
+        let samplers = &self.phases[last].samplers;
+        samplers[lane.min(samplers.len() - 1)].sample(&mut || random.unit())
+    }
+}
+
+/// `1 - exp(-depth)` in every lane without its cancellation.
+#[inline(always)]
+pub fn absorbed<const N: usize>(depth: Spectrum<N>) -> Spectrum<N> {
+    let passed = (Spectrum::ZERO - depth).exp();
+    Spectrum::from_fn(|i| {
+        let x = depth[i];
+        // Beyond the fifth power it is below 1e-8 of the sum.
+        let series = x
+            * (1.0
+                - x * (0.5
+                    - x * (1.0 / 6.0 - x * (1.0 / 24.0 - x * (1.0 / 120.0 - x * (1.0 / 720.0))))));
+        if x < 0.1 { series } else { 1.0 - passed[i] }
+    })
+}
+
+/// The sum over constituents.
+#[inline(always)]
+pub fn sum<const N: usize>(parts: &PerScatterer<N>) -> Spectrum<N> {
+    parts.iter().fold(Spectrum::ZERO, |sum, part| sum + *part)
+}
+
+/// The sum over constituents of scattering times phase function.
+#[inline(always)]
+pub fn phased<const N: usize>(
+    scattering: &PerScatterer<N>,
+    phases: &PerScatterer<N>,
+) -> Spectrum<N> {
+    let mut sum = Spectrum::ZERO;
+    for (s, p) in scattering.iter().zip(phases) {
+        sum = sum.mul_acc(*s, *p);
+    }
+    sum
+}

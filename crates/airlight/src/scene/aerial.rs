@@ -1,0 +1,290 @@
+//! Aerial perspective: clear air between the eye and things.
+
+use super::aerial_fill;
+use super::channels::{Channels, Converter};
+use super::error::SceneError;
+use crate::fog::lanes::Lanes;
+use crate::math::cubic;
+use crate::sky::{Peaked, View};
+use crate::spectrum::Spectrum;
+use crate::transfer::PathOptics;
+use glam::DVec3;
+
+/// Rows from the horizon to the zenith and to the nadir.
+pub(super) const ROWS: [usize; 2] = [40, 32];
+/// Nodes in azimuth from the opposite of the sun's to the sun's.
+pub(super) const AZIMUTHS: usize = 16;
+/// Nodes along a line.
+pub(super) const DISTANCES: usize = 64;
+
+/// What the air does between the eye of a [`View`] and any point, at the cost of a table look-up.
+///
+/// Two quantities are kept that hardly vary: the mean extinction up to a distance, `tau / d`, and the mean source
+/// function, `S / (1 - T)`: the radiance that the path radiance tends to. Both by elevation (crowding towards the horizon
+/// on either side, where they jump) and distance (crowding towards the eye), the latter also by azimuth from the sun's and
+/// for each scatterer with a peaked phase function without it: that is applied at look-up.
+///
+/// Error of the path radiance against [`View::along`], random lines: with the sun 5 to 40 degrees high and an eye up to
+/// 1 km, median 0.014 % or less, 99 % below 0.26 %, worst 0.53 %; an eye at 10 km 0.96 %, at 400 km 4.8 %; twilight at -4
+/// degrees 2.5 %, at -8 degrees 15 % (median 0.007 %). Transmittance: worst 0.005. The ignored test `errors_of_aerial_perspective` of
+/// `tests/aerial.rs` prints them.
+#[derive(Clone)]
+pub struct AerialPerspective<const N: usize> {
+    pub(super) sun: DVec3,
+    pub(super) sun_azimuth: DVec3,
+    pub(super) eye: Eye,
+    pub(super) above: Half,
+    pub(super) below: Half,
+    /// For each peaked scatterer, its phase function at even steps of the sine of half the scattering angle.
+    pub(super) phases: Vec<Vec<f32>>,
+}
+
+/// Where the eye is, and where the air ends.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Eye {
+    pub radius_m: f64,
+    pub ground_radius_m: f64,
+    pub top_radius_m: f64,
+    pub horizon_elevation: f64,
+    pub horizon_sine: f64,
+    pub limit_m: f64,
+}
+
+/// The part of the table on one side of the horizon.
+#[derive(Clone)]
+pub(super) struct Half {
+    pub below: bool,
+    /// Signed angle from the horizon to the last row, rad.
+    pub span: f64,
+    pub rows: usize,
+    /// Mean extinction, 1/m: `[row][distance][lane]`.
+    pub extinction: Vec<f32>,
+    /// Mean source function: `[row][azimuth][distance][part][lane]`.
+    pub source: Vec<f32>,
+}
+
+/// Lanes in steps of which they are loaded.
+const STEP: usize = 4;
+
+impl<const N: usize> AerialPerspective<N> {
+    /// Tabulates what lies between a view's eye and points up to `limit_m` away (m; infinite: to space), in all
+    /// directions. Points that are farther count as at the limit, points beyond the ground as on it.
+    ///
+    /// # Errors
+    /// [`SceneError`] where N lanes cannot be these channels, or for a limit that is no distance.
+    pub fn new(view: &View<'_>, channels: Channels, limit_m: f64) -> Result<Self, SceneError> {
+        if limit_m.is_nan() || limit_m <= 0.0 {
+            return Err(SceneError::Distance(limit_m));
+        }
+        let converter = Converter::new(view, channels)?;
+        Ok(aerial_fill::tabulated(view, &converter, limit_m))
+    }
+
+    /// What the air does to the light of a point at `distance_m` along the unit vector `direction`.
+    #[inline]
+    pub fn optics(&self, direction: DVec3, distance_m: f64) -> PathOptics<N> {
+        let horizontal = (direction.x * direction.x + direction.z * direction.z).sqrt();
+        let elevation = direction.y.atan2(horizontal);
+        let half = match direction.y >= self.eye.horizon_sine {
+            true => &self.above,
+            false => &self.below,
+        };
+        let depth = (elevation - self.eye.horizon_elevation) / half.span;
+        let (start_m, end_m) = self.eye.span_m(direction.y, half.below);
+        let length_m = distance_m.min(end_m) - start_m;
+        if depth > 1.0 + 1e-12 || length_m <= 0.0 {
+            return PathOptics::CLEAR;
+        }
+        let cos_azimuth = if horizontal > 0.0 {
+            (direction.x * self.sun_azimuth.x + direction.z * self.sun_azimuth.z) / horizontal
+        } else {
+            1.0
+        };
+        let place = Place {
+            row: cubic(depth.clamp(0.0, 1.0).sqrt(), half.rows),
+            azimuth: cubic(0.5 + 0.5 * cos_azimuth.clamp(-1.0, 1.0), AZIMUTHS),
+            distance: along(length_m / (end_m - start_m)),
+        };
+        let along = self.extinction(half, &place) * length_m as f32;
+        let source = self.source(half, &place, 0.5 * direction.distance(self.sun));
+        PathOptics {
+            transmittance: along.exp_neg(),
+            path_radiance: source * along * along.mean_transmittance(),
+        }
+    }
+
+    /// Distance to the ground along a unit vector, m; `None` above the horizon.
+    #[inline]
+    pub fn ground_distance_m(&self, direction: DVec3) -> Option<f64> {
+        let below = direction.y < self.eye.horizon_sine;
+        below.then(|| self.eye.span_m(direction.y, true).1)
+    }
+
+    /// Where the line of sight ends, m: at the ground, the end of the air, or the limit.
+    #[inline]
+    pub(super) fn end_m(&self, direction: DVec3) -> f64 {
+        let below = direction.y < self.eye.horizon_sine;
+        self.eye.span_m(direction.y, below).1
+    }
+
+    #[inline(always)]
+    fn extinction(&self, half: &Half, place: &Place) -> Spectrum<N> {
+        let width = N.next_multiple_of(STEP);
+        let (row, distance) = (&place.row, &place.distance);
+        let mut lanes = Spectrum::ZERO;
+        for first in (0..N).step_by(STEP) {
+            let mut sum = [0.0f32; STEP];
+            for (i, wr) in row.1.iter().enumerate() {
+                let line = (row.0 + i) * DISTANCES + distance.0;
+                let cells = &half.extinction[line * width..][..2 * width];
+                for (k, wd) in distance.1.iter().enumerate() {
+                    let values = &cells[k * width + first..][..STEP];
+                    for (sum, value) in sum.iter_mut().zip(values) {
+                        *sum += wr * wd * value;
+                    }
+                }
+            }
+            put(&mut lanes, first, &sum, 1.0);
+        }
+        lanes
+    }
+
+    #[inline(always)]
+    fn source(&self, half: &Half, place: &Place, half_sine: f64) -> Spectrum<N> {
+        let width = N.next_multiple_of(STEP);
+        let parts = 1 + self.phases.len();
+        // Cells that stay in registers, for the usual numbers of lanes and peaked scatterers.
+        match width * parts {
+            4 => self.phased(&half.cell::<4>(place, 0, 4), half_sine),
+            8 => self.phased(&half.cell::<8>(place, 0, 8), half_sine),
+            16 => self.phased(&half.cell::<16>(place, 0, 16), half_sine),
+            32 => self.phased(&half.cell::<32>(place, 0, 32), half_sine),
+            wide => {
+                let mut lanes = Spectrum::ZERO;
+                for part in 0..parts {
+                    let phase = self.phase(part, half_sine);
+                    for first in (0..N).step_by(STEP) {
+                        let values = half.cell::<STEP>(place, part * width + first, wide);
+                        put(&mut lanes, first, &values, phase);
+                    }
+                }
+                lanes
+            }
+        }
+    }
+
+    /// Applies the phase functions and adds up the parts of a cell.
+    #[inline(always)]
+    fn phased(&self, cell: &[f32], half_sine: f64) -> Spectrum<N> {
+        let mut lanes = Spectrum::ZERO;
+        for (part, values) in cell.chunks_exact(N.next_multiple_of(STEP)).enumerate() {
+            put(&mut lanes, 0, values, self.phase(part, half_sine));
+        }
+        lanes
+    }
+
+    #[inline(always)]
+    fn phase(&self, part: usize, half_sine: f64) -> f32 {
+        match part {
+            0 => 1.0,
+            _ => Peaked::sampled(&self.phases[part - 1], half_sine),
+        }
+    }
+}
+
+impl Half {
+    /// W values of a cell of `width`, from `first` on, interpolated.
+    #[inline(always)]
+    fn cell<const W: usize>(&self, place: &Place, first: usize, width: usize) -> [f32; W] {
+        let mut sum = [0.0f32; W];
+        for (i, wr) in place.row.1.iter().enumerate() {
+            for (j, wa) in place.azimuth.1.iter().enumerate() {
+                let line = (place.row.0 + i) * AZIMUTHS + place.azimuth.0 + j;
+                let start = (line * DISTANCES + place.distance.0) * width + first;
+                let w = wr * wa;
+                for (k, wd) in place.distance.1.iter().enumerate() {
+                    let values = &self.source[start + k * width..][..W];
+                    let w = w * wd;
+                    for (sum, value) in sum.iter_mut().zip(values) {
+                        *sum += w * value;
+                    }
+                }
+            }
+        }
+        sum
+    }
+}
+
+impl Eye {
+    /// Where a line of sight runs through air, m from the eye, at most to the limit; `meets_ground` where it ends there.
+    #[inline(always)]
+    pub fn span_m(&self, sin_elevation: f64, meets_ground: bool) -> (f64, f64) {
+        // Roots of t^2 + 2 b t + c = 0, without cancellation: the smaller root is c over the larger.
+        let b = self.radius_m * sin_elevation;
+        let c = |sphere: f64| (self.radius_m - sphere) * (self.radius_m + sphere);
+        let outside = c(self.top_radius_m);
+        let root = (b * b - outside).max(0.0).sqrt();
+        let start = if outside > 0.0 {
+            outside / (root - b)
+        } else {
+            0.0
+        };
+        let end = if meets_ground {
+            let c = c(self.ground_radius_m);
+            c / ((b * b - c).max(0.0).sqrt() - b)
+        } else if b > 0.0 {
+            -outside / (root + b)
+        } else {
+            root - b
+        };
+        (start, end.min(self.limit_m).max(start))
+    }
+}
+
+/// Part of a line in which node `x` in `[0, 1]` lies: nodes crowd towards the eye.
+#[inline(always)]
+pub(super) fn part_of(x: f64) -> f64 {
+    x * x
+}
+
+/// Inverse of [`part_of`].
+#[inline(always)]
+fn coordinate_of(part: f64) -> f64 {
+    part.sqrt()
+}
+
+/// First node and weights at `x` in `[0, 1]`.
+#[inline(always)]
+fn cubic(x: f64, count: usize) -> (usize, [f32; 4]) {
+    let (first, weights) = cubic::among(x, count);
+    (first, weights.map(|w| w as f32))
+}
+
+/// First node and weights of a straight line in distance, at a part of the line's length.
+#[inline(always)]
+fn along(part: f64) -> (usize, [f32; 2]) {
+    const STEPS: f64 = (DISTANCES - 1) as f64;
+    let part = part.clamp(0.0, 1.0);
+    let below = ((coordinate_of(part) * STEPS) as usize).min(DISTANCES - 2);
+    let (near, far) = (
+        part_of(below as f64 / STEPS),
+        part_of((below + 1) as f64 / STEPS),
+    );
+    let beyond = ((part - near) / (far - near)) as f32;
+    (below, [1.0 - beyond, beyond])
+}
+
+/// First nodes and weights in the three directions of the table.
+struct Place {
+    row: (usize, [f32; 4]),
+    azimuth: (usize, [f32; 4]),
+    distance: (usize, [f32; 2]),
+}
+
+/// Adds up to [`STEP`] lanes from `first` on.
+#[inline(always)]
+fn put<const N: usize>(lanes: &mut Spectrum<N>, first: usize, values: &[f32], factor: f32) {
+    for (lane, value) in lanes.0[first..].iter_mut().zip(values) {
+        *lane += factor * value;
+    }
+}

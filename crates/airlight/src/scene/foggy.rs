@@ -1,0 +1,319 @@
+//! A sky with fog in it.
+
+use super::aerial::AerialPerspective;
+use super::channels::{Channels, Converter};
+use super::error::SceneError;
+use super::light::{self, TopLight};
+use super::places;
+use crate::fog::{Fog, FogLighting, FogScattering, Ground, Layer, RaySegment};
+use crate::sky::{SkyTable, TableChannels, View};
+use crate::spectrum::Spectrum;
+use crate::transfer::PathOptics;
+use glam::DVec3;
+use std::sync::Arc;
+
+/// A sky with fog in it: sunlight and skylight fall on the fog, air and fog lie along every line in their true order, the
+/// ground is dimmed, and what is far away goes over into the drawn sky.
+///
+/// The fog's share of a line is [`Fog`]'s, with its errors. What this adds: fog and air in the right order, against lines
+/// cut into 500 slices median 0.04 % of the path radiance, 90 % below 0.22 %, worst 1.3 % in haze that fills the lower
+/// kilometre and 0.6 % elsewhere (the test `fog_and_air_lie_in_their_order`); the table of [`AerialPerspective`]. The
+/// ground under the fog is lit as the fog's own solution says, or by a two-stream estimate where light is scattered once only.
+/// Left out: the shadow of the fog on the air in and under it, which matters where fog is hardly thicker than air; the fog's own
+/// light on the air above it.
+pub struct FoggySky<'a, const N: usize> {
+    view: View<'a>,
+    converter: Arc<Converter<N>>,
+    clear: Arc<SkyTable>,
+    /// The table's first channel that is a lane.
+    first: usize,
+    aerial: Arc<AerialPerspective<N>>,
+    top: Arc<TopLight>,
+    fog: Fog<N>,
+    eye_height_m: f64,
+    /// Irradiance of the ground over that without fog.
+    ground_share: Spectrum<N>,
+}
+
+/// What is the same for all pieces of a spectrum.
+struct IrradianceMap {
+    top: Arc<TopLight>,
+    clear: Arc<SkyTable>,
+}
+
+/// The view from the top of a fog, straight above or below that of the eye; the fog is checked.
+fn top_view<'a, const N: usize>(
+    view: &View<'a>,
+    layers: &[Layer<N>],
+    ground: Ground,
+) -> Result<View<'a>, SceneError> {
+    let unlit = FogLighting {
+        sun: None,
+        ambient: Spectrum::ZERO,
+        ground_albedo: Spectrum::ZERO,
+    };
+    // Any fault of the layers shows without solving for light.
+    Fog::new(layers, ground, unlit, FogScattering::Single)?;
+    let ground_m = view.sky().atmosphere().planet.ground_altitude_m;
+    Ok(view.at_altitude(ground_m + light::top_m(layers, &ground) - ground.height_m))
+}
+
+impl<'a, const N: usize> FoggySky<'a, N> {
+    /// Fog under the sky of a view. Heights of `layers` and of `ground` are to one zero; the eye stands as high above
+    /// the fog's ground as the view's eye above its own. See [`FoggySky::round_ground`].
+    ///
+    /// # Errors
+    /// [`SceneError`] where N lanes cannot be these channels, or for a fog that is none.
+    pub fn new(
+        view: &View<'a>,
+        channels: Channels,
+        layers: &[Layer<N>],
+        ground: Ground,
+        scattering: FogScattering,
+    ) -> Result<Self, SceneError> {
+        let table = match channels {
+            Channels::Rgb(space) => TableChannels::Rgb(space),
+            Channels::Wavelengths { .. } => TableChannels::Spectral,
+        };
+        // Checked before anything is computed.
+        Converter::<N>::new(view, channels)?;
+        let surroundings = IrradianceMap {
+            top: Arc::new(TopLight::of(&top_view(view, layers, ground)?)),
+            clear: Arc::new(view.table(table)),
+        };
+        Self::among(view, channels, layers, ground, scattering, &surroundings)
+    }
+
+    /// The same at every wavelength of the sky's grid, N in a piece (lanes beyond the last wavelength repeat it). `layers`
+    /// are those at the wavelengths (nm) of a piece; they are to reach as high in each.
+    ///
+    /// # Errors
+    /// [`SceneError`] for a fog that is none, and what `layers` refuses.
+    pub fn spectral<E: From<SceneError>>(
+        view: &View<'a>,
+        layers: impl Fn(&[f64; N]) -> Result<Vec<Layer<N>>, E>,
+        ground: Ground,
+        scattering: FogScattering,
+    ) -> Result<Vec<Self>, E> {
+        let mut surroundings = None;
+        let mut pieces = Vec::new();
+        for first in (0..view.sky().grid().len()).step_by(N.max(1)) {
+            let channels = Channels::Wavelengths { first };
+            let wavelengths_nm = Converter::<N>::new(view, channels)?.wavelengths_nm();
+            let layers = layers(&wavelengths_nm)?;
+            let surroundings = match &surroundings {
+                Some(known) => known,
+                None => surroundings.insert(IrradianceMap {
+                    top: Arc::new(TopLight::of(&top_view(view, &layers, ground)?)),
+                    clear: Arc::new(view.table(TableChannels::Spectral)),
+                }),
+            };
+            pieces.push(Self::among(
+                view,
+                channels,
+                &layers,
+                ground,
+                scattering,
+                surroundings,
+            )?);
+        }
+        Ok(pieces)
+    }
+
+    fn among(
+        view: &View<'a>,
+        channels: Channels,
+        layers: &[Layer<N>],
+        ground: Ground,
+        scattering: FogScattering,
+        surroundings: &IrradianceMap,
+    ) -> Result<Self, SceneError> {
+        let converter = Converter::new(view, channels)?;
+        let top = surroundings.top.clone();
+        let light = top.on_fog(view, &converter, scattering);
+        let wavelengths_nm = converter.wavelengths_nm();
+        let fog = Fog::at_wavelengths_nm(layers, ground, light, scattering, wavelengths_nm)?;
+        Ok(Self {
+            clear: surroundings.clear.clone(),
+            first: converter.used().start,
+            aerial: Arc::new(AerialPerspective::new(view, channels, f64::INFINITY)?),
+            top,
+            eye_height_m: view.radius_m() - view.bounds_m().0 + ground.height_m,
+            ground_share: light::share_on_ground(&fog, layers, &wavelengths_nm),
+            fog,
+            converter: Arc::new(converter),
+            view: view.clone(),
+        })
+    }
+
+    /// Another fog in the same sky, over the same ground: what does not depend on the fog is shared, and so is the light on
+    /// it where it reaches as high.
+    ///
+    /// # Errors
+    /// [`SceneError`] for a fog that is none.
+    pub fn with_fog(
+        &self,
+        layers: &[Layer<N>],
+        scattering: FogScattering,
+    ) -> Result<Self, SceneError> {
+        let ground = *self.fog.ground();
+        let above = top_view(&self.view, layers, ground)?;
+        let top = match self.top.radius_m() == above.radius_m() {
+            true => self.top.clone(),
+            false => Arc::new(TopLight::of(&above)),
+        };
+        let light = top.on_fog(&self.view, &self.converter, scattering);
+        let wavelengths_nm = self.converter.wavelengths_nm();
+        let fog = Fog::at_wavelengths_nm(layers, ground, light, scattering, wavelengths_nm)?;
+        Ok(Self {
+            view: self.view.clone(),
+            converter: self.converter.clone(),
+            clear: self.clear.clone(),
+            aerial: self.aerial.clone(),
+            top,
+            ground_share: light::share_on_ground(&fog, layers, &wavelengths_nm),
+            fog,
+            ..*self
+        })
+    }
+
+    /// The ground of a view's planet, as round as it is, at height 0.
+    pub fn round_ground(view: &View<'_>) -> Ground {
+        Ground {
+            height_m: 0.0,
+            radius_m: view.bounds_m().0,
+        }
+    }
+
+    /// The fog, in the light of this sky.
+    pub fn fog(&self) -> &Fog<N> {
+        &self.fog
+    }
+
+    /// Unit vector towards the sun.
+    pub(super) fn sun_direction(&self) -> DVec3 {
+        self.view.sun()
+    }
+
+    /// The clear air.
+    pub fn aerial(&self) -> &AerialPerspective<N> {
+        &self.aerial
+    }
+
+    /// The sky without the fog.
+    pub fn clear(&self) -> &Arc<SkyTable> {
+        &self.clear
+    }
+
+    /// What fog and air together do to the light of a point at `distance_m` along the unit vector `direction` (infinite:
+    /// of space).
+    #[inline]
+    pub fn optics(&self, direction: DVec3, distance_m: f64) -> PathOptics<N> {
+        let air = self.aerial.optics(direction, distance_m);
+        self.over_clear(direction, distance_m).then(air)
+    }
+
+    /// Radiance along the unit vector `direction`: sky or ground, seen through the fog, without the sun's disc.
+    #[inline]
+    pub fn sky(&self, direction: DVec3) -> Spectrum<N> {
+        const FEW: usize = 64;
+        let mut few = [0.0f32; FEW];
+        let mut many = Vec::new();
+        let values = match self.clear.channels() {
+            count @ ..=FEW => &mut few[..count],
+            count => {
+                many.resize(count, 0.0);
+                &mut many[..]
+            }
+        };
+        self.clear.sample(direction, values);
+        let last = values.len() - 1;
+        let clear = Spectrum::from_fn(|lane| values[(self.first + lane).min(last)]);
+        self.before(direction, clear)
+    }
+
+    /// The same where the radiance without fog is known already.
+    #[inline]
+    pub fn before(&self, direction: DVec3, clear: Spectrum<N>) -> Spectrum<N> {
+        let Some(end_m) = self.aerial.ground_distance_m(direction) else {
+            return self.over_clear(direction, f64::INFINITY).apply(clear);
+        };
+        // What of the clear picture is the ground's own light, dimmed by the air.
+        let air = self.aerial.optics(direction, end_m).path_radiance;
+        let ground = (clear - air).max_scalar(0.0);
+        let behind = clear - ground + ground * self.ground_share;
+        self.over_clear(direction, end_m).apply(behind)
+    }
+
+    /// Radiance of the sun's disc in a direction, dimmed by air and fog; zero beside it. (It allocates: for pictures
+    /// dim a tabulated disc by [`FoggySky::fog_transmittance`].)
+    pub fn sun_disc(&self, direction: DVec3) -> Spectrum<N> {
+        let radiance = self.view.sun_disc_radiance(direction);
+        let disc = self
+            .converter
+            .light(&radiance, &self.view.solar_irradiance());
+        disc * self.fog_transmittance(direction)
+    }
+
+    /// Transmittance of the fog alone, to the ground or to space.
+    #[inline]
+    pub fn fog_transmittance(&self, direction: DVec3) -> Spectrum<N> {
+        let far = self.aerial.ground_distance_m(direction);
+        let line = self.line(direction, far.unwrap_or(f64::INFINITY));
+        self.fog.transmittance(&line)
+    }
+
+    /// The line of sight as the fog sees it: it ends on the fog's ground, too.
+    #[inline]
+    fn line(&self, direction: DVec3, distance_m: f64) -> RaySegment {
+        let ground = self.fog.ground();
+        let mut line = RaySegment::new(self.eye_height_m, direction.y, distance_m, ground.radius_m);
+        if ground.is_flat() && direction.y < 0.0 {
+            let height_m = (self.eye_height_m - ground.height_m).max(0.0);
+            line.length_m = line.length_m.min(height_m / -direction.y);
+        }
+        line
+    }
+
+    /// What the fog does to the light of a point at `distance_m` (infinite: of the sky) that has come through the clear air
+    /// already: a picture of the scene without fog goes through it. [`FoggySky::optics`] has the air, too.
+    ///
+    /// With `T_a`, `S_a` of the air up to a distance `s`, and `T_f`, `S_f` of the fog, in small steps one after the other,
+    ///
+    /// ```text
+    /// S = int T_f dS_a + int T_a dS_f = T_f S_a(d) + (1 - T_f) <S_a> + <T_a> S_f
+    /// ```
+    ///
+    /// by parts, where `<f>` is the mean of `f(s)` over the light that the fog scatters away, `int f dT_f / (T_f - 1)`, by
+    /// Gauss's rule. The second mean should be over `dS_f`: the same where the fog's source function varies little. The
+    /// first term is that of the light which has come through the air; the others are the path radiance here.
+    #[inline]
+    pub fn over_clear(&self, direction: DVec3, distance_m: f64) -> PathOptics<N> {
+        let line = self.line(direction, distance_m);
+        let cos_sun = match &self.fog.light().sun {
+            Some(sun) => direction.dot(sun.direction),
+            None => 0.0,
+        };
+        let fog = self.fog.along_line(&line, cos_sun);
+        let inside = RaySegment {
+            length_m: line.length_m.min(self.aerial.end_m(direction)),
+            ..line
+        };
+        let (mut dimming, mut before) = (Spectrum::ZERO, Spectrum::ZERO);
+        match places::of(&self.fog, &inside) {
+            Some(places) => {
+                for (at_m, weight) in places {
+                    let air = self.aerial.optics(direction, at_m);
+                    dimming = dimming.scale_acc(air.transmittance, weight as f32);
+                    before = before.scale_acc(air.path_radiance, weight as f32);
+                }
+            }
+            None => dimming = Spectrum::ONE,
+        }
+        let opacity = Spectrum::ONE - fog.transmittance;
+        PathOptics {
+            transmittance: fog.transmittance,
+            path_radiance: (fog.path_radiance * dimming).mul_acc(opacity, before),
+        }
+    }
+}

@@ -1,0 +1,174 @@
+//! The light that a sky sheds on a fog, and what of it reaches the ground under the fog.
+
+use super::channels::Converter;
+use crate::fog::{DirectionalLight, Fog, FogLighting, FogScattering, Ground, Layer};
+use crate::sky::{TableChannels, View};
+use crate::spectrum::Spectrum;
+use glam::DVec3;
+use std::f64::consts::PI;
+
+/// The part of a fog's vertical column that may lie above its "top".
+const ABOVE_TOP: f64 = 0.01;
+/// How far up the top is looked for, m.
+const HIGHEST_M: f64 = 100e3;
+
+/// The light of a sky at the top of a fog, at every wavelength of its grid.
+pub(super) struct TopLight {
+    /// Distance of the top from the planet's centre, m.
+    radius_m: f64,
+    /// Of the sun's disc on a surface that faces it, W m^-2 nm^-1.
+    sun_irradiance: Vec<f32>,
+    /// Mean radiance of all directions, W m^-2 sr^-1 nm^-1: half of sky, half of ground, each as its irradiance of a level
+    /// surface over pi.
+    mean_radiance: Vec<f32>,
+    /// Mean radiance of the sky, W m^-2 sr^-1 nm^-1: its irradiance of a level surface over pi.
+    sky_radiance: Vec<f32>,
+}
+
+impl TopLight {
+    /// As seen from the fog's top.
+    pub fn of(top: &View<'_>) -> Self {
+        let table = top.table(TableChannels::Spectral);
+        let (down, up) = (table.irradiance(DVec3::Y), table.irradiance(-DVec3::Y));
+        let mean = |(down, up): (&f32, &f32)| (0.5 * f64::from(down + up) / PI) as f32;
+        Self {
+            radius_m: top.radius_m(),
+            sun_irradiance: top.sun_irradiance(),
+            mean_radiance: down.iter().zip(&up).map(mean).collect(),
+            sky_radiance: down.iter().map(|e| (f64::from(*e) / PI) as f32).collect(),
+        }
+    }
+
+    /// Distance of the top from the planet's centre, m.
+    pub fn radius_m(&self) -> f64 {
+        self.radius_m
+    }
+
+    /// In lanes, as a fog wants it: many scatterings start from the sky alone, as the ground's light is solved for.
+    pub fn on_fog<const N: usize>(
+        &self,
+        view: &View<'_>,
+        to: &Converter<N>,
+        scattering: FogScattering,
+    ) -> FogLighting<N> {
+        let even = match scattering {
+            FogScattering::Multiple => &self.sky_radiance,
+            _ => &self.mean_radiance,
+        };
+        let albedo = &view.sky().atmosphere().planet.ground_albedo;
+        let albedo = to.wavelengths_nm().map(|nm| albedo.at(nm) as f32);
+        let solar = view.solar_irradiance();
+        let irradiance = to.light(&self.sun_irradiance, &solar);
+        let shines = irradiance.max_element() > 0.0;
+        FogLighting {
+            sun: shines.then_some(DirectionalLight {
+                direction: view.sun(),
+                irradiance,
+            }),
+            ambient: to.light(even, &solar),
+            ground_albedo: Spectrum(albedo),
+        }
+    }
+}
+
+/// Height above which only 1 % of the fog's vertical column lies, m; the ground's for a fog without an upper end.
+pub(super) fn top_m<const N: usize>(layers: &[Layer<N>], ground: &Ground) -> f64 {
+    let above = |height_m: f64| -> f64 {
+        let column = |layer: &Layer<N>| {
+            let column = layer.profile.column_above(height_m);
+            let extinction = layer.medium.extinction_per_m.max_element();
+            if column.is_finite() {
+                column * f64::from(extinction)
+            } else {
+                0.0
+            }
+        };
+        layers.iter().map(column).sum()
+    };
+    let whole = above(ground.height_m);
+    let (mut low, mut high) = (ground.height_m, ground.height_m + HIGHEST_M);
+    if whole <= 0.0 || !whole.is_finite() {
+        return low;
+    }
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        match above(middle) > ABOVE_TOP * whole {
+            true => low = middle,
+            false => high = middle,
+        }
+    }
+    high
+}
+
+/// The irradiance of the ground under a fog over that without it.
+///
+/// Where the fog's light is solved for, that solution says it. Else light that falls on the fog comes through by two-stream theory (Meador & Weaver 1980, quadrature: their table 1), and
+/// what the ground reflects comes back from the fog's underside: `t / (1 - albedo r)`. The slant of the sunlight is left
+/// out. It tends to 1 for thin fog, and to 1 for any fog over a white ground.
+pub(super) fn share_on_ground<const N: usize>(
+    fog: &Fog<N>,
+    layers: &[Layer<N>],
+    wavelengths_nm: &[f64; N],
+) -> Spectrum<N> {
+    let (ground, light) = (fog.ground(), fog.light());
+    if let Some(through) = fog.ground_irradiance() {
+        let level = |sun: &DirectionalLight<N>| sun.irradiance * sun.direction.y.max(0.0) as f32;
+        let sun = light.sun.as_ref().map_or(Spectrum::ZERO, level);
+        let without = sun + light.ambient * std::f32::consts::PI;
+        return Spectrum::from_fn(|lane| match without[lane] > 0.0 {
+            true => through[lane] / without[lane],
+            false => 1.0,
+        });
+    }
+    Spectrum::from_fn(|lane| {
+        let (mut depth, mut scattered, mut forward) = (0.0, 0.0, 0.0);
+        for layer in layers {
+            let column = layer.profile.column_above(ground.height_m);
+            // A fog without an upper end would let no light in: it counts as lit from within.
+            if column.is_finite() {
+                let tau = column * f64::from(layer.medium.extinction_per_m[lane]);
+                let albedo = f64::from(layer.medium.single_scattering_albedo[lane]);
+                depth += tau;
+                scattered += tau * albedo;
+                forward += tau * albedo * layer.medium.phase.asymmetry(wavelengths_nm[lane]);
+            }
+        }
+        let (t, r) = two_streams(depth, scattered, forward);
+        (t / (1.0 - f64::from(light.ground_albedo[lane]) * r)) as f32
+    })
+}
+
+/// Transmittance and reflectance of a layer for diffuse light, by its optical depth, how much of that scatters, and that
+/// times the mean cosine.
+fn two_streams(depth: f64, scattered: f64, forward: f64) -> (f64, f64) {
+    let root3 = 3f64.sqrt();
+    // gamma_1 tau and gamma_2 tau.
+    let loss = root3 * (depth - 0.5 * (scattered + forward));
+    let back = root3 * 0.5 * (scattered - forward);
+    let k = ((loss - back) * (loss + back)).max(0.0).sqrt();
+    if k < 1e-6 * loss.max(1e-30) || k < 1e-9 {
+        return (1.0 / (1.0 + loss), back / (1.0 + loss));
+    }
+    let fall = (-2.0 * k).exp();
+    let below = (k + loss) + (k - loss) * fall;
+    (2.0 * k * (-k).exp() / below, back * (1.0 - fall) / below)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_streams_keep_what_is_not_absorbed() {
+        for tau in [1e-6, 0.1, 3.0, 80.0] {
+            let (t, r) = two_streams(tau, tau, 0.85 * tau);
+            assert!((t + r - 1.0).abs() < 1e-9, "{tau}: {t} {r}");
+            // A little absorption changes a little.
+            let (t2, r2) = two_streams(tau, tau * (1.0 - 1e-6), 0.85 * tau);
+            assert!((t2 / t - 1.0).abs() < 0.02 && t2 + r2 < 1.0);
+        }
+        let (t, r) = two_streams(2.0, 0.0, 0.0);
+        assert!((t - (-2.0 * 3f64.sqrt()).exp()).abs() < 1e-12 && r == 0.0);
+        assert_eq!(two_streams(0.0, 0.0, 0.0), (1.0, 0.0));
+    }
+}

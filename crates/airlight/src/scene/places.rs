@@ -1,0 +1,75 @@
+//! Where on a line of sight a fog does its work.
+
+use crate::fog::{Fog, RaySegment};
+
+/// Gauss-Legendre nodes and weights on `[0, 1]`.
+const RULE: [(f64, f64); 3] = [
+    (0.112_701_665_379_258_3, 5.0 / 18.0),
+    (0.5, 8.0 / 18.0),
+    (0.887_298_334_620_741_7, 5.0 / 18.0),
+];
+/// How far a place may be off, in the logarithm of the optical depth up to it.
+const TOLERANCE: f64 = 5e-3;
+
+/// Number of places.
+pub(super) const PLACES: usize = RULE.len();
+
+/// Distances (m) at which the fog on a line of finite length has scattered away the parts of what it scatters away in all
+/// at which Gauss's rule wants to be evaluated, and their weights: the mean of any smooth `f(s)` over the light lost,
+/// `int f(s) dT / (T - 1)`, is the sum of weights times `f`. Judged by the fog's middle lane; nothing where the fog is
+/// thinner than `1e-5`.
+#[inline]
+pub(super) fn of<const N: usize>(fog: &Fog<N>, line: &RaySegment) -> Option<[(f64, f64); PLACES]> {
+    let lane = N / 2;
+    let depth_to = |s: f64| {
+        let part = RaySegment {
+            length_m: s,
+            ..*line
+        };
+        f64::from(fog.optical_depth(&part)[lane])
+    };
+    let whole = depth_to(line.length_m);
+    if whole < 1e-5 {
+        return None;
+    }
+    let lost = -(-whole).exp_m1();
+    let extinction = |s: f64| f64::from(fog.extinction_at(line.height_at(s))[lane]);
+    let mut from = (0.0, 0.0);
+    Some(RULE.map(|(part, weight)| {
+        let wanted = -(-part * lost).ln_1p();
+        let s = place(&depth_to, &extinction, from, (line.length_m, whole), wanted);
+        from = (s, wanted * (1.0 - 2.0 * TOLERANCE));
+        (s, weight)
+    }))
+}
+
+/// The distance at which the optical depth reaches `wanted`, between two (distance, depth): Newton's steps in the
+/// logarithm of the depth, which are exact at once in fog of even density (from the eye) and in fog that thickens
+/// exponentially; halvings where they lead astray.
+#[inline]
+fn place(
+    depth_to: &impl Fn(f64) -> f64,
+    extinction: &impl Fn(f64) -> f64,
+    mut low: (f64, f64),
+    mut high: (f64, f64),
+    wanted: f64,
+) -> f64 {
+    let near = extinction(low.0);
+    let mut s = low.0 + (wanted - low.1) / near;
+    for _ in 0..24 {
+        if !(s > low.0 && s < high.0) {
+            s = 0.5 * (low.0 + high.0);
+        }
+        let depth = depth_to(s);
+        let off = (depth / wanted).ln();
+        if off.abs() < TOLERANCE {
+            break;
+        }
+        match off < 0.0 {
+            true => low = (s, depth),
+            false => high = (s, depth),
+        }
+        s -= off * depth / extinction(s);
+    }
+    s
+}

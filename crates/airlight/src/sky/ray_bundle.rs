@@ -1,0 +1,314 @@
+//! Rays that share their starting height and zenith angle, and the light that they carry.
+//!
+//! In a spherically symmetric atmosphere such rays pass the same heights at the same distances through the same air:
+//! quadrature nodes, transmittances to the eye, altitude interpolations are worked out once, in a [`Path`], for the
+//! whole [`RayBundle`]. Only what depends on where the sun stands is left for each ray, and it is kept in arrays over the
+//! rays, which the compiler turns into vector code.
+
+use super::field::{FieldGrid, Place, RadianceField, scattering_moment};
+use super::harmonics::Harmonics;
+use crate::spectrum::Spectrum;
+use crate::transfer::air::Air;
+use crate::transfer::march::Marcher;
+use crate::transfer::ray::{Ray, in_shadow};
+use crate::transfer::shell::PerConstituent;
+use std::ops::ControlFlow;
+
+/// What the rays of a fan have in common: where they run, and what the air does to light on the way.
+pub struct Path<const N: usize> {
+    /// Distance of the start from the planet's centre, m.
+    pub radius_m: f64,
+    /// Cosine of the zenith angle at the start.
+    pub mu: f64,
+    nodes: Vec<PathNode<N>>,
+    /// Distance to the ground and transmittance up to it, where the rays end there.
+    ground: Option<(f64, Spectrum<N>)>,
+}
+
+/// A quadrature node of a [`Path`].
+struct PathNode<const N: usize> {
+    t: f64,
+    radius_m: f64,
+    mu: f32,
+    densities: PerConstituent,
+    place: Place,
+    /// Transmittance from the start times the length that the node stands for, m.
+    weight: Spectrum<N>,
+    /// `weight` times the scattering coefficients' l-th phase moments.
+    source_weights: Vec<Spectrum<N>>,
+}
+
+/// The rays of one path: for each, where the sun stands at its start.
+#[derive(Clone, Debug, Default)]
+pub struct RayBundle {
+    /// Cosine between the sun and the zenith at the start.
+    pub mu_sun: Vec<f64>,
+    /// Cosine between the ray and the sun.
+    pub nu: Vec<f64>,
+}
+
+impl RayBundle {
+    /// Number of rays.
+    #[inline(always)]
+    pub fn len(&self) -> usize {
+        self.nu.len()
+    }
+
+    /// Adds a ray.
+    #[inline(always)]
+    pub fn push(&mut self, mu_sun: f64, nu: f64) {
+        self.mu_sun.push(mu_sun);
+        self.nu.push(nu);
+    }
+
+    /// One of the rays.
+    #[inline(always)]
+    pub fn ray(&self, (radius_m, mu): (f64, f64), slot: usize) -> Ray {
+        Ray {
+            radius_m,
+            mu,
+            mu_sun: self.mu_sun[slot],
+            nu: self.nu[slot],
+        }
+    }
+}
+
+/// Reused arrays over the rays of a fan.
+#[derive(Default)]
+pub struct Scratch<const N: usize> {
+    mu_sun: Vec<f32>,
+    toward_sun: Vec<f32>,
+    below: Vec<u32>,
+    fraction: Vec<f32>,
+    azimuthal: [Vec<f32>; 3],
+    /// Basis functions, `[harmonic][ray]`.
+    y: Vec<f32>,
+    /// The field at a node's altitude, `[sun][harmonic]`.
+    row: Vec<Spectrum<N>>,
+}
+
+impl<const N: usize> Path<N> {
+    /// Walks from `radius_m` along `mu`, over all the air in the way.
+    #[inline(always)]
+    pub fn new(
+        air: &Air<N>,
+        grid: Option<&FieldGrid>,
+        marcher: &Marcher,
+        (radius_m, mu): (f64, f64),
+        degree: usize,
+    ) -> Self {
+        let mut path = Self {
+            radius_m,
+            mu,
+            nodes: Vec::new(),
+            ground: None,
+        };
+        // The sun in the zenith casts no shadow across the ray: the panels serve all sun angles.
+        let ray = Ray {
+            radius_m,
+            mu,
+            mu_sun: 1.0,
+            nu: mu,
+        };
+        let Some(stretch) = air.shell.stretch(&ray, f64::INFINITY) else {
+            return path;
+        };
+        let columns = marcher.walk(
+            &air.shell,
+            &ray,
+            (stretch.start_m, stretch.end_m),
+            &mut Vec::new(),
+            #[inline(always)]
+            |nodes| {
+                let mut brightest = 0.0f32;
+                for node in nodes {
+                    let transmittance = air.transmittance(&node.columns_m);
+                    brightest = brightest.max(transmittance.max_element());
+                    let weight = transmittance * node.dt as f32;
+                    let radius_m = node.here.radius_m;
+                    path.nodes.push(PathNode {
+                        t: node.t,
+                        radius_m,
+                        mu: node.here.mu as f32,
+                        densities: node.densities,
+                        place: grid.map_or(
+                            Place {
+                                below: 0,
+                                fraction: 0.0,
+                            },
+                            |g| g.place_of_radius(radius_m),
+                        ),
+                        weight,
+                        source_weights: (0..=degree)
+                            .map(|l| weight * scattering_moment(air, &node.densities, l))
+                            .collect(),
+                    });
+                }
+                if brightest < 1e-7 {
+                    ControlFlow::Break(())
+                } else {
+                    ControlFlow::Continue(())
+                }
+            },
+        );
+        if stretch.meets_ground {
+            path.ground = Some((stretch.end_m, air.transmittance(&columns)));
+        }
+        path
+    }
+
+    /// Whether the sun is above the planet's limb at every node of every ray.
+    #[inline(always)]
+    pub fn is_lit(&self, air: &Air<N>, bundle: &RayBundle) -> bool {
+        let ground_radius_m = air.shell.ground_radius_m;
+        self.nodes.iter().all(|node| {
+            (0..bundle.len()).all(|slot| {
+                let mu_sun = (self.radius_m * bundle.mu_sun[slot] + node.t * bundle.nu[slot])
+                    / node.radius_m;
+                !in_shadow(node.radius_m, mu_sun, ground_radius_m)
+            })
+        })
+    }
+
+    /// Sunlight scattered for the first time into each ray, per unit scattering coefficient and before phase functions
+    /// are applied: `[scatterer][ray]` into `out`.
+    #[inline(always)]
+    pub fn accumulate_sunlight(
+        &self,
+        air: &Air<N>,
+        bundle: &RayBundle,
+        out: &mut Vec<Spectrum<N>>,
+    ) {
+        let shell = &air.shell;
+        out.clear();
+        out.resize(air.scatterers.len() * bundle.len(), Spectrum::ZERO);
+        for node in &self.nodes {
+            let columns = shell.columns_at(node.radius_m);
+            for slot in 0..bundle.len() {
+                let mu_sun = (self.radius_m * bundle.mu_sun[slot] + node.t * bundle.nu[slot])
+                    / node.radius_m;
+                let depth = if mu_sun >= 0.0 {
+                    air.optical_depth_f32(&columns.to_space_m(mu_sun as f32))
+                } else if in_shadow(node.radius_m, mu_sun, shell.ground_radius_m) {
+                    continue;
+                } else {
+                    air.optical_depth(&shell.columns_to_space_m(node.radius_m, mu_sun))
+                };
+                let arriving = node.weight * (Spectrum::ZERO - depth).exp();
+                for (place, s) in air.scatterers.iter().enumerate() {
+                    let sum = &mut out[place * bundle.len() + slot];
+                    *sum = sum.scale_acc(arriving, node.densities[s.constituent] as f32);
+                }
+            }
+        }
+    }
+
+    /// Adds to each ray the light of `field` that is scattered into it; `basis` is the field's, or its low degrees.
+    #[inline(always)]
+    pub fn accumulate_scattered(
+        &self,
+        field: &RadianceField<N>,
+        basis: &Harmonics,
+        bundle: &RayBundle,
+        scratch: &mut Scratch<N>,
+        out: &mut [Spectrum<N>],
+    ) {
+        let (rays, count) = (bundle.len(), basis.count());
+        scratch.resize(rays, count);
+        for node in &self.nodes {
+            field.at_radius(node.place, count, &mut scratch.row);
+            scratch.locate(&field.grid, self, node, bundle);
+            basis.evaluate_fan(
+                node.mu,
+                &scratch.toward_sun,
+                &mut scratch.azimuthal,
+                &mut scratch.y,
+            );
+            for (slot, out) in out.iter_mut().enumerate() {
+                let below = scratch.below[slot] as usize * count;
+                let (a, b) = scratch.row[below..below + 2 * count].split_at(count);
+                let (wa, wb) = (1.0 - scratch.fraction[slot], scratch.fraction[slot]);
+                let mut sum = node.source_weights[0] * scratch.y[slot];
+                for (l, weight) in node.source_weights.iter().enumerate().skip(1) {
+                    let mut degree = Spectrum::ZERO;
+                    for k in basis.span(l) {
+                        let y = scratch.y[k * rays + slot];
+                        degree = degree.scale_acc(a[k], wa * y).scale_acc(b[k], wb * y);
+                    }
+                    sum = sum.mul_acc(*weight, degree);
+                }
+                let intensity = (a[0] * wa + b[0] * wb).exp();
+                *out = out.mul_acc(sum.max_scalar(0.0), intensity);
+            }
+        }
+    }
+
+    /// Adds to each ray what of the ground's radiance arrives, when the ground receives the irradiance
+    /// `irradiance(sun cosine)`.
+    #[inline(always)]
+    pub fn accumulate_ground(
+        &self,
+        air: &Air<N>,
+        bundle: &RayBundle,
+        irradiance: impl Fn(f64) -> Spectrum<N>,
+        out: &mut [Spectrum<N>],
+    ) {
+        let Some((t, transmittance)) = self.ground else {
+            return;
+        };
+        for (slot, out) in out.iter_mut().enumerate() {
+            let mu_sun = bundle
+                .ray((self.radius_m, self.mu), slot)
+                .advanced(t)
+                .mu_sun;
+            *out = out.mul_acc(transmittance, air.reflected(irradiance(mu_sun)));
+        }
+    }
+}
+
+impl<const N: usize> Scratch<N> {
+    #[inline(always)]
+    fn resize(&mut self, rays: usize, harmonics: usize) {
+        for list in [&mut self.mu_sun, &mut self.toward_sun, &mut self.fraction] {
+            list.resize(rays, 0.0);
+        }
+        for list in &mut self.azimuthal {
+            list.resize(rays, 0.0);
+        }
+        self.below.resize(rays, 0);
+        self.y.resize(rays * harmonics, 0.0);
+    }
+
+    /// Works out, for every ray, where the sun stands as seen from `node`, and between which suns of the grid.
+    #[inline(always)]
+    fn locate(&mut self, grid: &FieldGrid, path: &Path<N>, node: &PathNode<N>, bundle: &RayBundle) {
+        let rays = bundle.len();
+        let (mu_suns, towards) = (&mut self.mu_sun[..rays], &mut self.toward_sun[..rays]);
+        let (nus, starts) = (&bundle.nu[..rays], &bundle.mu_sun[..rays]);
+        let inverse = 1.0 / node.radius_m;
+        let sin = (1.0 - node.mu * node.mu).max(0.0).sqrt();
+        for slot in 0..rays {
+            let mu_sun = ((path.radius_m * starts[slot] + node.t * nus[slot]) * inverse) as f32;
+            let sin_sun = (1.0 - mu_sun * mu_sun).max(1e-9).sqrt();
+            let toward = (nus[slot] as f32 - node.mu * mu_sun) / sin_sun;
+            mu_suns[slot] = mu_sun;
+            towards[slot] = toward.max(-sin).min(sin);
+        }
+        let nodes = &grid.sun_cosines;
+        let (below, fraction) = (&mut self.below[..rays], &mut self.fraction[..rays]);
+        below.fill(0);
+        for &cosine in &nodes[1..nodes.len() - 1] {
+            let cosine = cosine as f32;
+            for slot in 0..rays {
+                below[slot] += u32::from(mu_suns[slot] >= cosine);
+            }
+        }
+        for slot in 0..rays {
+            let (a, b) = (
+                nodes[below[slot] as usize] as f32,
+                nodes[below[slot] as usize + 1] as f32,
+            );
+            fraction[slot] = ((mu_suns[slot] - a) / (b - a)).clamp(0.0, 1.0);
+        }
+    }
+}

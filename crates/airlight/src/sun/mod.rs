@@ -1,0 +1,7 @@
+//! What shines.
+
+pub mod disc;
+pub mod position;
+
+pub use disc::{LimbDarkening, SunDisc, SunError};
+pub use position::{EphemerisError, Place, RefractingAir, SunPosition, sun_position};

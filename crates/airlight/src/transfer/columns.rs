@@ -1,0 +1,175 @@
+//! Slant columns from any point to space: how much of each constituent lies on the way to the sun.
+//!
+//! Integrated once on a grid of altitudes and zenith angles, the same for all wavelengths. What is stored is the
+//! inverse air mass `N(r, 1) / N(r, mu)`: close to `mu` high in the sky and smooth down to the horizon, so that
+//! third-degree interpolation keeps the columns to about 1e-4 (see the test).
+
+use crate::math::cubic;
+use crate::math::gauss_rule::GaussRule;
+use crate::transfer::shell::{MAX_CONSTITUENTS, PerConstituent, Shell};
+use rayon::prelude::*;
+
+/// Altitudes of the table, evenly spaced in [`Shell::altitude_coordinate`].
+const ALTITUDES: usize = 64;
+/// Zenith angles of the table, evenly spaced in `sqrt(mu)`: dense at the horizon.
+const ANGLES: usize = 64;
+/// Nodes of the finer table of vertical columns.
+const VERTICAL: usize = 1024;
+
+/// Vertical columns and inverse air masses of every constituent.
+#[derive(Clone, Debug, Default)]
+pub struct ColumnTable {
+    /// At even steps of the altitude coordinate: the vertical column and its slope in that coordinate.
+    vertical: Vec<[PerConstituent; 2]>,
+    /// `[altitude][angle]`, angles running fastest.
+    inverse_air_mass: Vec<[f32; MAX_CONSTITUENTS]>,
+}
+
+/// The table at one altitude.
+pub struct ColumnRow {
+    vertical: [f32; MAX_CONSTITUENTS],
+    inverse_air_mass: [[f32; MAX_CONSTITUENTS]; ANGLES],
+}
+
+impl ColumnRow {
+    /// Columns from this altitude along `mu >= 0` to the top, in metres of density 1.
+    #[inline(always)]
+    pub fn to_space_m(&self, mu: f32) -> [f32; MAX_CONSTITUENTS] {
+        let (first, weights) = cubic::among(f64::from(mu.sqrt()), ANGLES);
+        let mut inverse = [0.0f32; MAX_CONSTITUENTS];
+        for (entry, w) in self.inverse_air_mass[first..first + 4].iter().zip(weights) {
+            for c in 0..MAX_CONSTITUENTS {
+                inverse[c] += w as f32 * entry[c];
+            }
+        }
+        let mut columns = self.vertical;
+        for c in 0..MAX_CONSTITUENTS {
+            columns[c] /= if inverse[c] > 1e-6 { inverse[c] } else { 1e-6 };
+        }
+        columns
+    }
+}
+
+impl ColumnTable {
+    pub(super) fn new(shell: &Shell) -> Self {
+        let vertical = (0..VERTICAL)
+            .map(|i| {
+                let x = i as f64 / (VERTICAL - 1) as f64;
+                let radius_m = shell.radius_of_coordinate(x);
+                let stretch = 2.0 * x * shell.thickness_m();
+                [
+                    shell.vertical_columns_m(radius_m),
+                    shell
+                        .densities_at(radius_m)
+                        .map(|density| -density * stretch),
+                ]
+            })
+            .collect();
+        let rule = GaussRule::new(4);
+        let rows: Vec<Vec<[f32; MAX_CONSTITUENTS]>> = (0..ALTITUDES)
+            .into_par_iter()
+            .map(|i| {
+                let radius_m = shell.radius_of_coordinate(i as f64 / (ALTITUDES - 1) as f64);
+                let zenith = shell.integrate_columns_m(radius_m, 1.0, &rule);
+                (0..ANGLES)
+                    .map(|j| {
+                        let mu = (j as f64 / (ANGLES - 1) as f64).powi(2);
+                        let slant = shell.integrate_columns_m(radius_m, mu, &rule);
+                        std::array::from_fn(|c| (zenith[c] / slant[c]) as f32)
+                    })
+                    .collect()
+            })
+            .collect();
+        let mut inverse_air_mass = rows.concat();
+        // Where nothing of a constituent lies above, its air mass means nothing: carry the one below upwards, so that
+        // interpolation just beneath stays smooth.
+        let mut below = [[1.0f32; MAX_CONSTITUENTS]; ANGLES];
+        for row in inverse_air_mass.chunks_exact_mut(ANGLES) {
+            for (entry, below) in row
+                .as_flattened_mut()
+                .iter_mut()
+                .zip(below.as_flattened_mut())
+            {
+                if entry.is_finite() {
+                    *below = *entry;
+                } else {
+                    *entry = *below;
+                }
+            }
+        }
+        Self {
+            vertical,
+            inverse_air_mass,
+        }
+    }
+
+    /// Columns from `radius_m` along `mu` to the top, in metres of density 1. A ray that starts downwards passes its
+    /// lowest point first: `N = 2 N(tangent, 0) - N(r, -mu)`.
+    #[inline(always)]
+    pub(super) fn to_space_m(&self, shell: &Shell, radius_m: f64, mu: f64) -> PerConstituent {
+        if mu >= 0.0 {
+            return self.upward_m(shell, radius_m, mu);
+        }
+        let tangent = (radius_m * (1.0 - mu * mu).max(0.0).sqrt()).max(shell.ground_radius_m);
+        let beyond = self.upward_m(shell, tangent, 0.0);
+        let above = self.upward_m(shell, radius_m, -mu);
+        std::array::from_fn(|c| (2.0 * beyond[c] - above[c]).max(0.0))
+    }
+
+    #[inline(always)]
+    fn upward_m(&self, shell: &Shell, radius_m: f64, mu: f64) -> PerConstituent {
+        let x = shell.altitude_coordinate(radius_m);
+        let vertical = self.vertical_m(x);
+        let (row, row_weights) = cubic::among(x, ALTITUDES);
+        let (column, column_weights) = cubic::among(mu.sqrt(), ANGLES);
+        let mut inverse = [0.0f32; MAX_CONSTITUENTS];
+        for (i, wi) in row_weights.iter().enumerate() {
+            let entries = &self.inverse_air_mass[(row + i) * ANGLES + column..][..4];
+            for (entry, wj) in entries.iter().zip(&column_weights) {
+                let w = (wi * wj) as f32;
+                for c in 0..MAX_CONSTITUENTS {
+                    inverse[c] += w * entry[c];
+                }
+            }
+        }
+        let mut columns = vertical;
+        for c in 0..MAX_CONSTITUENTS {
+            columns[c] /= f64::from(if inverse[c] > 1e-6 { inverse[c] } else { 1e-6 });
+        }
+        columns
+    }
+
+    /// The table at one altitude, for many zenith angles.
+    #[inline(always)]
+    pub(super) fn at(&self, shell: &Shell, radius_m: f64) -> ColumnRow {
+        let x = shell.altitude_coordinate(radius_m);
+        let (first, weights) = cubic::among(x, ALTITUDES);
+        let mut row = ColumnRow {
+            vertical: self.vertical_m(x).map(|column| column as f32),
+            inverse_air_mass: [[0.0; MAX_CONSTITUENTS]; ANGLES],
+        };
+        for (i, w) in weights.iter().enumerate() {
+            let entries = &self.inverse_air_mass[(first + i) * ANGLES..][..ANGLES];
+            for (sum, entry) in row.inverse_air_mass.iter_mut().zip(entries) {
+                for c in 0..MAX_CONSTITUENTS {
+                    sum[c] += *w as f32 * entry[c];
+                }
+            }
+        }
+        row
+    }
+
+    /// Hermite interpolation of the vertical columns, whose slopes (the densities) are known.
+    #[inline(always)]
+    fn vertical_m(&self, x: f64) -> PerConstituent {
+        let position = x * (VERTICAL - 1) as f64;
+        let below = (position as usize).min(VERTICAL - 2);
+        let t = position - below as f64;
+        let step = 1.0 / (VERTICAL - 1) as f64;
+        let u = 1.0 - t;
+        let (h0, h1) = (u * u * (1.0 + 2.0 * t), t * t * (1.0 + 2.0 * u));
+        let (s0, s1) = (u * u * t * step, -t * t * u * step);
+        let ([v0, d0], [v1, d1]) = (&self.vertical[below], &self.vertical[below + 1]);
+        std::array::from_fn(|c| (h0 * v0[c] + h1 * v1[c] + s0 * d0[c] + s1 * d1[c]).max(0.0))
+    }
+}

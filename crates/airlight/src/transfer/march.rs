@@ -1,0 +1,164 @@
+//! Walking along a ray in panels small enough for a Gauss rule.
+
+use crate::math::gauss_rule::GaussRule;
+use crate::transfer::ray::{Ray, in_shadow};
+use crate::transfer::shell::{MAX_CONSTITUENTS, PerConstituent, Shell};
+use std::ops::ControlFlow;
+
+/// The largest number of nodes in a panel.
+const MAX_NODES: usize = 4;
+
+/// A point on the way.
+#[derive(Clone, Copy, Debug)]
+pub struct Node {
+    /// Distance from the eye, m.
+    pub t: f64,
+    /// Quadrature weight, m.
+    pub dt: f64,
+    /// The ray as seen from here.
+    pub here: Ray,
+    /// Relative densities here.
+    pub densities: PerConstituent,
+    /// Columns between the eye and here, m.
+    pub columns_m: PerConstituent,
+    /// Whether the sun is above the planet's limb here.
+    pub lit: bool,
+}
+
+impl Default for Node {
+    fn default() -> Self {
+        Self {
+            t: 0.0,
+            dt: 0.0,
+            here: Ray {
+                radius_m: 1.0,
+                mu: 1.0,
+                mu_sun: 1.0,
+                nu: 1.0,
+            },
+            densities: [0.0; MAX_CONSTITUENTS],
+            columns_m: [0.0; MAX_CONSTITUENTS],
+            lit: true,
+        }
+    }
+}
+
+/// How finely to walk.
+#[derive(Clone, Debug)]
+pub struct Marcher {
+    rule: GaussRule,
+    /// No panel is optically thicker than this in its thickest lane.
+    max_panel_depth: f64,
+    /// For each constituent the largest extinction over the wavelengths, 1/m at density 1.
+    max_extinction_per_m: PerConstituent,
+}
+
+impl Marcher {
+    /// Panels of at most `max_panel_depth` optical depth, each with `nodes` nodes (1 to 4).
+    pub fn new(nodes: usize, max_panel_depth: f64, max_extinction_per_m: PerConstituent) -> Self {
+        assert!((1..=MAX_NODES).contains(&nodes));
+        Self {
+            rule: GaussRule::new(nodes),
+            max_panel_depth,
+            max_extinction_per_m,
+        }
+    }
+
+    /// Calls `visit` with the nodes of each panel in turn, from `start_m` to `end_m`, until it breaks; returns the
+    /// columns from the start to where it stopped. `edges` is scratch space.
+    #[inline(always)]
+    pub fn walk(
+        &self,
+        shell: &Shell,
+        ray: &Ray,
+        (start_m, end_m): (f64, f64),
+        edges: &mut Vec<f64>,
+        mut visit: impl FnMut(&[Node]) -> ControlFlow<()>,
+    ) -> PerConstituent {
+        panel_edges(shell, ray, start_m, end_m, edges);
+        let count = shell.constituents();
+        let mut columns = [0.0; MAX_CONSTITUENTS];
+        let mut nodes = [Node::default(); MAX_NODES];
+        let nodes = &mut nodes[..self.rule.nodes.len()];
+        for window in edges.windows(2) {
+            let pieces = self.pieces(shell, ray, window[0], window[1]);
+            let length = (window[1] - window[0]) / pieces as f64;
+            for piece in 0..pieces {
+                let from = window[0] + piece as f64 * length;
+                for (node, (t, dt)) in nodes.iter_mut().zip(self.rule.on(from, from + length)) {
+                    let here = ray.advanced(t);
+                    *node = Node {
+                        t,
+                        dt,
+                        here,
+                        densities: shell.densities_at(here.radius_m),
+                        columns_m: columns,
+                        lit: !in_shadow(here.radius_m, here.mu_sun, shell.ground_radius_m),
+                    };
+                }
+                for k in 0..nodes.len() {
+                    for c in 0..count {
+                        let inside: f64 = (0..nodes.len())
+                            .map(|j| self.rule.running[k][j] * nodes[j].densities[c])
+                            .sum();
+                        nodes[k].columns_m[c] += length * inside;
+                    }
+                }
+                for node in nodes.iter() {
+                    for (column, density) in columns.iter_mut().zip(&node.densities) {
+                        *column += node.dt * density;
+                    }
+                }
+                if visit(nodes).is_break() {
+                    return columns;
+                }
+            }
+        }
+        columns
+    }
+
+    /// Into how many pieces a panel must be cut to be optically thin enough.
+    #[inline(always)]
+    fn pieces(&self, shell: &Shell, ray: &Ray, from: f64, to: f64) -> usize {
+        let extinction = |t: f64| -> f64 {
+            let densities = shell.densities_at(ray.radius_at(t));
+            (0..shell.constituents())
+                .map(|c| densities[c] * self.max_extinction_per_m[c])
+                .sum()
+        };
+        let mean = (extinction(from) + 4.0 * extinction(0.5 * (from + to)) + extinction(to)) / 6.0;
+        ((mean * (to - from) / self.max_panel_depth).ceil() as usize).clamp(1, 512)
+    }
+}
+
+/// Fills `edges` with the distances in `[start_m, end_m]`, both included and increasing, where a density has a kink or
+/// has changed enough, where the ray is lowest, and where it crosses the edge of the planet's shadow.
+#[inline(always)]
+fn panel_edges(shell: &Shell, ray: &Ray, start_m: f64, end_m: f64, edges: &mut Vec<f64>) {
+    edges.clear();
+    edges.push(start_m);
+    let mut add = |t: f64| {
+        if t > start_m && t < end_m {
+            edges.push(t);
+        }
+    };
+    let closest = ray.closest_approach_m();
+    let tangent = ray.tangent_radius_m();
+    add(closest);
+    for &radius in &shell.panel_radii_m {
+        if radius > tangent {
+            let half_chord = ((radius - tangent) * (radius + tangent)).sqrt();
+            add(closest - half_chord);
+            add(closest + half_chord);
+        }
+    }
+    for edge in ray
+        .shadow_edges(shell.ground_radius_m)
+        .into_iter()
+        .flatten()
+    {
+        add(edge);
+    }
+    edges.push(end_m);
+    edges.sort_unstable_by(f64::total_cmp);
+}
