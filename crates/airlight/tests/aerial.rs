@@ -2,7 +2,7 @@
 
 use airlight::atmosphere::presets;
 use airlight::axes::direction;
-use airlight::scene::{AerialPerspective, Channels};
+use airlight::scene::{AerialPerspective, LaneChannels};
 use airlight::sky::{Sky, SkySettings, SunCoverage, View};
 use airlight::spectrum::{RgbSpace, WavelengthGrid};
 use airlight::transfer::PathOptics;
@@ -129,14 +129,14 @@ fn the_table_is_the_line_of_sight() {
         let sky = sky("average", &WavelengthGrid::rgb(), sun_deg, altitude_m);
         let view = sky.view(altitude_m, direction(180.0, sun_deg));
         let lines = lines(view.sun(), -1.0, limit_m.min(1e6), 400);
-        let table = AerialPerspective::<3>::new(&view, Channels::SPECTRAL, limit_m).unwrap();
+        let table = AerialPerspective::<3>::new(&view, LaneChannels::SPECTRAL, limit_m).unwrap();
         let (path, dimming) = errors(&table, &lines, |d, m| spectral(&view, d, m));
         assert!(path[path.len() * 99 / 100].0 < at_99, "{sun_deg}: {path:?}");
         assert!(path[path.len() - 1].0 < worst, "{sun_deg}: {path:?}");
         assert!(dimming[dimming.len() - 1] < 5e-3);
         // The same in colour.
         let space = RgbSpace::Rec2020;
-        let table = AerialPerspective::<3>::new(&view, Channels::Rgb(space), limit_m).unwrap();
+        let table = AerialPerspective::<3>::new(&view, LaneChannels::Rgb(space), limit_m).unwrap();
         let (path, dimming) = errors(&table, &lines, |d, m| rgb(&view, space, d, m));
         assert!(path[path.len() * 99 / 100].0 < at_99, "{sun_deg}: {path:?}");
         assert!(dimming[dimming.len() - 1] < 1e-2, "{sun_deg}");
@@ -147,7 +147,7 @@ fn the_table_is_the_line_of_sight() {
 fn points_beyond_ground_and_limit_are_held_there() {
     let sky = sky("average", &WavelengthGrid::rgb(), 30.0, 2.0);
     let view = sky.view(2.0, direction(90.0, 30.0));
-    let table = AerialPerspective::<3>::new(&view, Channels::SPECTRAL, 50e3).unwrap();
+    let table = AerialPerspective::<3>::new(&view, LaneChannels::SPECTRAL, 50e3).unwrap();
     for (elevation, far) in [(-10.0, 100.0), (-0.5, 5e3), (5.0, 50e3), (90.0, 50e3)] {
         let line = direction(33.0, elevation);
         assert_eq!(
@@ -158,10 +158,10 @@ fn points_beyond_ground_and_limit_are_held_there() {
         assert_eq!(table.optics(line, 0.0), PathOptics::CLEAR);
     }
     for limit in [0.0, -1.0, f64::NAN] {
-        assert!(AerialPerspective::<3>::new(&view, Channels::SPECTRAL, limit).is_err());
+        assert!(AerialPerspective::<3>::new(&view, LaneChannels::SPECTRAL, limit).is_err());
     }
-    assert!(AerialPerspective::<4>::new(&view, Channels::Rgb(RgbSpace::Srgb), 1e5).is_err());
-    let beyond = Channels::Wavelengths { first: 3 };
+    assert!(AerialPerspective::<4>::new(&view, LaneChannels::Rgb(RgbSpace::Srgb), 1e5).is_err());
+    let beyond = LaneChannels::Wavelengths { first: 3 };
     assert!(AerialPerspective::<3>::new(&view, beyond, 1e5).is_err());
 }
 
@@ -184,7 +184,7 @@ fn errors_of_aerial_perspective() {
         let sky = sky(preset, &WavelengthGrid::standard(), sun_deg, altitude_m);
         let view = sky.view(altitude_m, direction(180.0, sun_deg));
         let begun = std::time::Instant::now();
-        let table = AerialPerspective::<16>::new(&view, Channels::SPECTRAL, limit_m).unwrap();
+        let table = AerialPerspective::<16>::new(&view, LaneChannels::SPECTRAL, limit_m).unwrap();
         let built = begun.elapsed();
         let ratio: f64 = 6371e3 / (6371e3 + altitude_m);
         let horizon_deg = -ratio.acos().to_degrees();
@@ -210,9 +210,10 @@ fn errors_of_aerial_perspective() {
     let sky = sky("average", &WavelengthGrid::standard(), 20.0, 2.0);
     let view = sky.view(2.0, direction(180.0, 20.0));
     let begun = std::time::Instant::now();
-    let table = AerialPerspective::<3>::new(&view, Channels::Rgb(RgbSpace::Srgb), 100e3).unwrap();
+    let table =
+        AerialPerspective::<3>::new(&view, LaneChannels::Rgb(RgbSpace::Srgb), 100e3).unwrap();
     let built = begun.elapsed();
-    let spectral = AerialPerspective::<16>::new(&view, Channels::SPECTRAL, 100e3).unwrap();
+    let spectral = AerialPerspective::<16>::new(&view, LaneChannels::SPECTRAL, 100e3).unwrap();
     let lines = lines(view.sun(), 0.0, 100e3, 100_000);
     let mut sum = 0.0;
     let mut fastest = [f64::INFINITY; 2];

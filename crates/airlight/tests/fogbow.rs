@@ -5,7 +5,7 @@ use airlight::axes::direction;
 use airlight::fog::droplets::DropletKind;
 use airlight::fog::{FogScattering, Layer, Profile};
 use airlight::optics::mie::droplets::Drops;
-use airlight::scene::{Channels, FoggySky};
+use airlight::scene::{FoggySky, LaneChannels};
 use airlight::sky::{Sky, SkySettings, SunCoverage};
 use airlight::spectrum::{RgbSpace, WavelengthGrid};
 
@@ -37,7 +37,7 @@ fn seen(drops: Drops, angles: &[f64]) -> Seen {
         medium,
     };
     let many = FogScattering::Multiple;
-    let rgb = FoggySky::new(&view, Channels::Rgb(space), &[layer], ground, many)?;
+    let rgb = FoggySky::new(&view, LaneChannels::Rgb(space), &[layer], ground, many)?;
     let layers = |nm: &[f64; 16]| {
         let medium = kind.at_wavelengths(EXTINCTION_PER_M, nm)?;
         Ok::<_, Box<dyn std::error::Error>>(vec![Layer {

@@ -5,7 +5,7 @@ use airlight::axes::direction;
 use airlight::fog::droplets::Droplets;
 use airlight::fog::visibility::{Contrast, extinction_per_m};
 use airlight::fog::{FogScattering, Ground, Layer, Medium, Profile, RaySegment};
-use airlight::scene::{Channels, FoggySky};
+use airlight::scene::{FoggySky, LaneChannels};
 use airlight::sky::{Sky, SkySettings, SunCoverage, View};
 use airlight::spectrum::{RgbSpace, Spectrum, WavelengthGrid};
 use airlight::transfer::PathOptics;
@@ -41,7 +41,7 @@ fn slab(top_height_m: f64) -> Profile {
 fn foggy<'a>(view: &View<'a>, layer: Layer<3>, ground: Ground) -> FoggySky<'a, 3> {
     FoggySky::new(
         view,
-        Channels::SPECTRAL,
+        LaneChannels::SPECTRAL,
         &[layer],
         ground,
         FogScattering::Single,
@@ -268,7 +268,7 @@ fn thick_fog_takes_its_own_colour() {
     let space = RgbSpace::Srgb;
     let coloured = FoggySky::<3>::new(
         &view,
-        Channels::Rgb(space),
+        LaneChannels::Rgb(space),
         &[layer(300.0, thinning(100.0))],
         ground,
         FogScattering::Single,
@@ -295,7 +295,7 @@ fn the_ground_under_fog_is_lit_through_it() {
     let ground = FoggySky::<3>::round_ground(&view);
     let share = |visibility_m: f64, scattering| {
         let fog = [layer(visibility_m, slab(100.0))];
-        let foggy = FoggySky::new(&view, Channels::SPECTRAL, &fog, ground, scattering).unwrap();
+        let foggy = FoggySky::new(&view, LaneChannels::SPECTRAL, &fog, ground, scattering).unwrap();
         if let Some(irradiance) = foggy.fog().ground_irradiance() {
             // The ground as the fog has it, seen through fog and air.
             let lit = irradiance * albedo / std::f32::consts::PI;
@@ -329,7 +329,7 @@ fn another_fog_in_the_same_sky_is_as_if_made_anew() {
     let view = sky.view(30.0, direction(120.0, 20.0));
     let ground = FoggySky::<3>::round_ground(&view);
     let new = |layers: &[Layer<3>]| {
-        let channels = Channels::Rgb(RgbSpace::Srgb);
+        let channels = LaneChannels::Rgb(RgbSpace::Srgb);
         FoggySky::new(&view, channels, layers, ground, FogScattering::Multiple).unwrap()
     };
     let first = new(&[layer(300.0, slab(40.0))]);

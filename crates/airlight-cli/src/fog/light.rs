@@ -5,7 +5,7 @@ use crate::error::CliError;
 use crate::parse;
 use crate::scene::{Scene, Sun};
 use airlight::fog::{FogLighting, FogScattering, Layer, Profile};
-use airlight::scene::{Channels, FoggySky};
+use airlight::scene::{FoggySky, LaneChannels};
 use airlight::sky::Sky;
 use airlight::spectrum::{RgbSpace, Spectrum};
 use airlight_image::frame::Intrinsics;
@@ -139,7 +139,7 @@ impl<'a> LightSource<'a> {
             None => {
                 let view = solved.scene.view(&solved.sky, &solved.sun);
                 let ground = FoggySky::<3>::round_ground(&view);
-                let channels = Channels::Rgb(RgbSpace::Srgb);
+                let channels = LaneChannels::Rgb(RgbSpace::Srgb);
                 FoggySky::new(&view, channels, layers, ground, self.scattering)?
             }
         };

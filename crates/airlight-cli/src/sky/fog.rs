@@ -9,7 +9,7 @@ use airlight::fog::droplets::DropletKind;
 use airlight::fog::visibility::{Contrast, extinction_per_m};
 use airlight::fog::{Layer, Medium, Profile};
 use airlight::optics::mie::MieError;
-use airlight::scene::{Channels, FoggySky};
+use airlight::scene::{FoggySky, LaneChannels};
 use airlight::sky::{SkyTable, TableChannels, View};
 use airlight::spectrum::Spectrum;
 use glam::DVec3;
@@ -58,7 +58,7 @@ impl<'a> Fog<'a> {
         Ok(match channels {
             TableChannels::Rgb(space) => {
                 let layers = layers(args, |kind, per_m| kind.in_rgb(per_m, space))?;
-                let channels = Channels::Rgb(space);
+                let channels = LaneChannels::Rgb(space);
                 let sky = FoggySky::new(view, channels, &layers, ground, scattering)?;
                 Self::Rgb(Box::new(sky))
             }

@@ -1,8 +1,8 @@
 //! Aerial perspective: clear air between the eye and things.
 
 use super::aerial_fill;
-use super::channels::{Channels, Converter};
 use super::error::SceneError;
+use super::lane_channels::{Converter, LaneChannels};
 use crate::fog::lanes::Lanes;
 use crate::math::cubic;
 use crate::sky::{Peaked, View};
@@ -72,7 +72,7 @@ impl<const N: usize> AerialPerspective<N> {
     ///
     /// # Errors
     /// [`SceneError`] where N lanes cannot be these channels, or for a limit that is no distance.
-    pub fn new(view: &View<'_>, channels: Channels, limit_m: f64) -> Result<Self, SceneError> {
+    pub fn new(view: &View<'_>, channels: LaneChannels, limit_m: f64) -> Result<Self, SceneError> {
         if limit_m.is_nan() || limit_m <= 0.0 {
             return Err(SceneError::Distance(limit_m));
         }

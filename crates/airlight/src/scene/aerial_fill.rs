@@ -1,7 +1,7 @@
 //! Filling the table of aerial perspective.
 
 use super::aerial::{AZIMUTHS, AerialPerspective, DISTANCES, Eye, Half, ROWS, part_of};
-use super::channels::Converter;
+use super::lane_channels::Converter;
 use crate::sky::{Peaked, View};
 use glam::DVec3;
 use rayon::prelude::*;

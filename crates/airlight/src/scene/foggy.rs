@@ -1,8 +1,8 @@
 //! A sky with fog in it.
 
 use super::aerial::AerialPerspective;
-use super::channels::{Channels, Converter};
 use super::error::SceneError;
+use super::lane_channels::{Converter, LaneChannels};
 use super::light::{self, TopLight};
 use super::places;
 use crate::fog::{Fog, FogLighting, FogScattering, Ground, Layer, RaySegment};
@@ -66,14 +66,14 @@ impl<'a, const N: usize> FoggySky<'a, N> {
     /// [`SceneError`] where N lanes cannot be these channels, or for a fog that is none.
     pub fn new(
         view: &View<'a>,
-        channels: Channels,
+        channels: LaneChannels,
         layers: &[Layer<N>],
         ground: Ground,
         scattering: FogScattering,
     ) -> Result<Self, SceneError> {
         let table = match channels {
-            Channels::Rgb(space) => TableChannels::Rgb(space),
-            Channels::Wavelengths { .. } => TableChannels::Spectral,
+            LaneChannels::Rgb(space) => TableChannels::Rgb(space),
+            LaneChannels::Wavelengths { .. } => TableChannels::Spectral,
         };
         // Checked before anything is computed.
         Converter::<N>::new(view, channels)?;
@@ -98,7 +98,7 @@ impl<'a, const N: usize> FoggySky<'a, N> {
         let mut surroundings = None;
         let mut pieces = Vec::new();
         for first in (0..view.sky().grid().len()).step_by(N.max(1)) {
-            let channels = Channels::Wavelengths { first };
+            let channels = LaneChannels::Wavelengths { first };
             let wavelengths_nm = Converter::<N>::new(view, channels)?.wavelengths_nm();
             let layers = layers(&wavelengths_nm)?;
             let surroundings = match &surroundings {
@@ -122,7 +122,7 @@ impl<'a, const N: usize> FoggySky<'a, N> {
 
     fn among(
         view: &View<'a>,
-        channels: Channels,
+        channels: LaneChannels,
         layers: &[Layer<N>],
         ground: Ground,
         scattering: FogScattering,

@@ -1,6 +1,6 @@
 //! The light that a sky sheds on a fog, and what of it reaches the ground under the fog.
 
-use super::channels::Converter;
+use super::lane_channels::Converter;
 use crate::fog::{DirectionalLight, Fog, FogLighting, FogScattering, Ground, Layer};
 use crate::sky::{TableChannels, View};
 use crate::spectrum::Spectrum;

@@ -7,7 +7,7 @@ use std::ops::Range;
 
 /// What the N lanes are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Channels {
+pub enum LaneChannels {
     /// Linear red, green and blue, N = 3: radiances are converted from spectra, (1, 1, 1) being 1 cd/m^2 of the space's
     /// white (irradiances: 1 lx). A transmittance is the channel of sunlight that has come through the air over the same
     /// channel of sunlight outside it: exact for a background as white as the sun, good for greys, wrong by a few percent
@@ -21,7 +21,7 @@ pub enum Channels {
     },
 }
 
-impl Channels {
+impl LaneChannels {
     /// All wavelengths of a grid of N.
     pub const SPECTRAL: Self = Self::Wavelengths { first: 0 };
 }
@@ -52,13 +52,13 @@ impl<const N: usize> Converter<N> {
     ///
     /// # Errors
     /// [`SceneError`] where N lanes cannot be these channels.
-    pub fn new(view: &View<'_>, channels: Channels) -> Result<Self, SceneError> {
+    pub fn new(view: &View<'_>, channels: LaneChannels) -> Result<Self, SceneError> {
         let grid = view.sky().grid();
         let solar = view.solar_irradiance();
         let last = grid.len() - 1;
         match channels {
-            Channels::Rgb(_) if N != 3 => Err(SceneError::RgbLanes(N)),
-            Channels::Rgb(space) => {
+            LaneChannels::Rgb(_) if N != 3 => Err(SceneError::RgbLanes(N)),
+            LaneChannels::Rgb(space) => {
                 let rows = channel_weights(grid, &solar, TableChannels::Rgb(space));
                 let weight = |nm: usize| std::array::from_fn(|lane| f64::from(rows[lane][nm]));
                 let weights: Vec<[f64; N]> = (0..=last).map(weight).collect();
@@ -74,11 +74,11 @@ impl<const N: usize> Converter<N> {
                     wavelengths_nm: std::array::from_fn(|lane| rgb::DOMINANT_NM[lane]),
                 })
             }
-            Channels::Wavelengths { first } if first > last => Err(SceneError::Wavelengths {
+            LaneChannels::Wavelengths { first } if first > last => Err(SceneError::Wavelengths {
                 first,
                 available: grid.len(),
             }),
-            Channels::Wavelengths { first } => {
+            LaneChannels::Wavelengths { first } => {
                 let place = |lane: usize| (first + lane).min(last);
                 Ok(Self {
                     way: Way::Picked(std::array::from_fn(|lane| {
