@@ -6,7 +6,7 @@
 //! - [`interrupt`], [`progress`], [`report`]: Ctrl-C, bars on standard error, text on standard output.
 //! - [`atmosphere`], [`scene`], [`models`], [`illuminance`]: what is asked for, from options to the solver or the published
 //!   model; sums over the sky.
-//! - [`foggy_air`], [`passes`]: fog for random paths, and their passes over a picture.
+//! - [`foggy_air`]: fog for random paths.
 //! - [`sky`], [`fog`], [`probe`], [`compare`], [`grid`], [`accuracy`] and [`plot`]: the commands.
 
 mod accuracy;
@@ -23,7 +23,6 @@ mod interrupt;
 mod models;
 mod moment;
 mod parse;
-mod passes;
 mod plot;
 mod probe;
 mod progress;

@@ -1,5 +1,6 @@
 //! Bars on standard error, shown only where that is a terminal.
 
+use airlight::monte_carlo::BUNDLE;
 use airlight_image::Progress;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -22,6 +23,17 @@ impl RowsBar {
             bar,
             before: AtomicU64::new(0),
         }
+    }
+
+    /// A bar for a pass over the rows of a picture, up to a number of bundles of paths a pixel.
+    pub fn for_pass(rows: u64, until: u64, goal: u64) -> Self {
+        let bar = Self::new(rows);
+        bar.say(format!(
+            "{} of {} paths a pixel",
+            until * BUNDLE as u64,
+            goal * BUNDLE as u64
+        ));
+        bar
     }
 
     /// Says what is being made now.

@@ -7,8 +7,7 @@ use super::picture::{Fogged, Subject};
 use crate::args::OverlayArgs;
 use crate::error::CliError;
 use crate::interrupt::STOP;
-use crate::passes::{self, Colour};
-use crate::sky::tagged;
+use crate::progress::RowsBar;
 use airlight::monte_carlo::{BUNDLE, MonteCarlo, MonteCarloSettings};
 use airlight::scene::FoggySky;
 use airlight::spectrum::{RgbSpace, WavelengthGrid, rgb};
@@ -16,7 +15,9 @@ use airlight_image::Control;
 use airlight_image::output::exr::{self, ExrOptions, ExrSample};
 use airlight_image::output::{Metadata, PictureFormat, Written};
 use airlight_image::rows::StoredRows;
+use airlight_render::canvas::{ColorMoments, Passes};
 use airlight_render::overlay::{ExistingAerial, FogSource};
+use airlight_render::pixels::tagged_path;
 use glam::DVec3;
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -33,13 +34,13 @@ pub struct Painter<'a> {
     sky: Arc<FoggySky<'a, 3>>,
     radiance_scale: f64,
     air: ExistingAerial,
-    goal: u64,
+    passes: Passes,
 }
 
 /// A pixel.
 #[derive(Clone, Copy, Default)]
 struct Pixel {
-    colour: Colour,
+    colour: ColorMoments,
     /// What is taken off the mean.
     drawn: [f64; 3],
     /// Factor for what of the line lies under the ground.
@@ -92,7 +93,7 @@ impl<'a> Painter<'a> {
             sky: sky.clone(),
             radiance_scale: f64::from(*radiance_scale),
             air: *air,
-            goal: passes::goal(&settings),
+            passes: Passes::new(settings.paths),
         })
     }
 
@@ -110,10 +111,11 @@ impl<'a> Painter<'a> {
         let size = subject.picture.size;
         let (width, height) = (size.width() as usize, size.height());
         let mut colours = vec![Pixel::default(); width * height as usize];
-        let mut done = 0;
-        loop {
-            let until = passes::next(done, self.goal);
-            let bar = passes::bar(u64::from(height), until, self.goal);
+        let goal = self.passes.goal();
+        let mut last = (Written::default(), String::new());
+        for bundles in self.passes {
+            let done = bundles.end;
+            let bar = RowsBar::for_pass(u64::from(height), done, goal);
             let overlay = subject.overlay(fogged, args)?;
             colours
                 .par_chunks_mut(width)
@@ -123,12 +125,11 @@ impl<'a> Painter<'a> {
                         if STOP.load(Ordering::Relaxed) {
                             return Err(CliError::Interrupted);
                         }
-                        self.paint(colour, line, done..until);
+                        self.paint(colour, line, bundles.clone());
                     }
                     bar.advance(1);
                     Ok(())
                 })?;
-            done = until;
             let of = |value: &dyn Fn(&Pixel, usize) -> f64| -> Vec<f32> {
                 let pixels = colours.iter();
                 pixels
@@ -140,7 +141,7 @@ impl<'a> Painter<'a> {
             let written = subject.write_overlay(&overlay, args, &args.output, format)?;
             let errors = of(&|pixel, lane| pixel.standard_error(lane, done));
             if args.random.noise_map {
-                let path = tagged(&args.output, "noise").with_extension("exr");
+                let path = tagged_path(&args.output, "noise").with_extension("exr");
                 let rows = StoredRows::new(size.width(), 3, errors.clone())?;
                 let options = ExrOptions {
                     sample: ExrSample::Float,
@@ -158,10 +159,9 @@ impl<'a> Painter<'a> {
                     control,
                 )?;
             }
-            if done == self.goal {
-                return Ok((written, self.noise(&means, &errors)));
-            }
+            last = (written, self.noise(&means, &errors));
         }
+        Ok(last)
     }
 
     /// Follows more bundles of paths along a line of sight of a direction and a length, m.
@@ -235,7 +235,7 @@ impl<'a> Painter<'a> {
         format!(
             "  noise         {:.2} % of the fog's green (root mean square over the picture), {} paths a pixel\n",
             100.0 * (squares(errors) / squares(means).max(f64::MIN_POSITIVE)).sqrt(),
-            self.goal * BUNDLE as u64
+            self.passes.goal() * BUNDLE as u64
         )
     }
 }

@@ -6,10 +6,8 @@ use crate::error::CliError;
 use crate::parse::PixelSize;
 use crate::scene::Sun;
 use airlight_image::{Camera, CubeFace, Fisheye, Frame, PictureFormat, Projection, Size};
+use airlight_render::pixels::{is_spectral_path, tagged_path};
 use std::path::{Path, PathBuf};
-
-/// The ending of spectral EXR files.
-const SPECTRAL: &str = ".spectral.exr";
 
 /// Where files go and what each shows.
 pub struct Layout {
@@ -50,7 +48,7 @@ impl Layout {
             || args
                 .output
                 .as_deref()
-                .is_some_and(|path| name(path).ends_with(SPECTRAL));
+                .is_some_and(|path| is_spectral_path(path));
         if spectral && format != Some(PictureFormat::Exr) {
             return Err(CliError::usage(
                 "--spectral is for OpenEXR files: give --output a name that ends in .exr",
@@ -101,7 +99,7 @@ impl Layout {
                 let path = [*part, *face]
                     .into_iter()
                     .flatten()
-                    .fold(path.to_owned(), |path, tag| tagged(&path, tag));
+                    .fold(path.to_owned(), |path, tag| tagged_path(&path, tag));
                 files.push(PictureFile {
                     path,
                     frame: *frame,
@@ -141,27 +139,6 @@ impl Layout {
             .clamp(1.0, 4096.0);
         Ok(Frame::new(projection, across.max(1), down as u32)?)
     }
-}
-
-fn name(path: &Path) -> String {
-    path.file_name().map_or(String::new(), |name| {
-        name.to_string_lossy().to_ascii_lowercase()
-    })
-}
-
-/// The same name with a word before its ending: `sky.sun.exr` of `sky.exr`.
-pub fn tagged(path: &Path, tag: &str) -> PathBuf {
-    let name = path
-        .file_name()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .into_owned();
-    let ending = match name.to_ascii_lowercase().ends_with(SPECTRAL) {
-        true => SPECTRAL.len(),
-        false => name.rfind('.').map_or(0, |at| name.len() - at),
-    };
-    let (stem, ending) = name.split_at(name.len() - ending);
-    path.with_file_name(format!("{stem}.{tag}{ending}"))
 }
 
 fn frames(args: &PictureArgs, sun: &Sun) -> Result<Vec<(Option<&'static str>, Frame)>, CliError> {
@@ -244,21 +221,4 @@ fn refuse_what_does_not_apply(args: &PictureArgs) -> Result<(), CliError> {
         }
     }
     Ok(())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn words_go_before_the_ending() {
-        for (path, tagged_path) in [
-            ("a/sky.exr", "a/sky.sun.exr"),
-            ("sky.0001.exr", "sky.0001.sun.exr"),
-            ("x.spectral.exr", "x.sun.spectral.exr"),
-            ("sky", "sky.sun"),
-        ] {
-            assert_eq!(tagged(Path::new(path), "sun"), Path::new(tagged_path));
-        }
-    }
 }

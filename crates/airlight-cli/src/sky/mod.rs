@@ -37,7 +37,6 @@ use crate::report::{self, bytes, seconds, short};
 use crate::scene::Sun;
 pub use channels::{space_name, space_of};
 pub use exposure::curve as tone_curve;
-pub use layout::tagged;
 pub use metadata::SOFTWARE;
 use prepared_frame::{Prepared, PreparedFrame};
 pub use rendered_image::RenderedImage;

@@ -1,13 +1,14 @@
 //! Pictures by published models.
 
 use super::disc::Disc;
-use super::rows::{Layer, pixel_reach};
+use super::rows::Layer;
 use crate::args::{FogScatteringArg, SkyArgs, SolverArg};
 use crate::error::CliError;
 use crate::models::Lit;
 use airlight::spectrum::{RgbSpace, rgb};
 use airlight_image::frame::FrameRows;
 use airlight_image::{Frame, RowSource};
+use airlight_render::pixels::pixel_reach;
 use glam::DVec3;
 
 /// Refuses options that published models do not know.

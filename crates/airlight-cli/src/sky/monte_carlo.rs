@@ -2,15 +2,14 @@
 //! and a better one later. Ctrl-C leaves that of the last pass.
 
 use super::fog;
-use super::layout::{PictureFile, tagged};
-use super::polarisation::{self, PixelStokes};
+use super::layout::PictureFile;
+use super::polarisation;
 use super::prepared_frame::PreparedFrame;
 use super::renderer::Renderer;
 use super::rows::Layer;
 use crate::args::{FogScatteringArg, ScatteringArg, SkyArgs, SolverArg};
 use crate::error::CliError;
 use crate::interrupt::STOP;
-use crate::passes::{self, Colour};
 use crate::progress::RowsBar;
 use crate::report;
 use airlight::monte_carlo::{MonteCarlo, MonteCarloSettings, ORDERS};
@@ -18,6 +17,8 @@ use airlight_image::output::Written;
 use airlight_image::rows::StoredRows;
 use airlight_image::tone::ToneMapper;
 use airlight_image::{Control, Frame, write_picture};
+use airlight_render::canvas::{ColorMoments, Passes, PixelStokes, pixel_offset};
+use airlight_render::pixels::tagged_path;
 use glam::DVec3;
 use rayon::prelude::*;
 use std::sync::atomic::Ordering;
@@ -64,7 +65,7 @@ struct Canvas {
     channels: usize,
     /// In the channels of a table.
     sums: Vec<f64>,
-    colours: Vec<Colour>,
+    colours: Vec<ColorMoments>,
     /// Where asked for; else empty.
     stokes: Vec<PixelStokes>,
     bundles: u64,
@@ -111,16 +112,17 @@ pub fn write(
                 .then(|| Canvas::new(file.frame, channels, painter.polarised))
         })
         .collect();
-    let goal = passes::goal(&settings);
-    let mut done = 0;
-    loop {
-        let until = passes::next(done, goal);
+    let passes = Passes::new(settings.paths);
+    let goal = passes.goal();
+    let mut written = Vec::new();
+    for bundles in passes {
+        let until = bundles.end;
         let rows: u64 = files
             .iter()
             .map(|file| u64::from(file.frame.size().height()))
             .sum();
-        let pass = passes::bar(rows, until, goal);
-        let mut written = Vec::with_capacity(files.len());
+        let pass = RowsBar::for_pass(rows, until, goal);
+        written.clear();
         for (file, canvas) in files.iter().zip(&mut canvases) {
             if let Some(canvas) = canvas {
                 painter.paint(canvas, until, &pass)?;
@@ -139,13 +141,12 @@ pub fn write(
                 polarisation::write(&file.path, canvas.frame.size(), &canvas.stokes)?;
             }
         }
-        done = until;
-        if done == goal {
+        if until == goal {
             bar.file_done(rows);
-            say_noise(renderer, canvases.iter().flatten());
-            return Ok(written);
         }
     }
+    say_noise(renderer, canvases.iter().flatten());
+    Ok(written)
 }
 
 /// One frame in memory, in the channels of a table.
@@ -162,7 +163,7 @@ pub fn means(
     let mut canvas = Canvas::new(frame, 3, false);
     let bar = RowsBar::new(u64::from(frame.size().height()));
     bar.say("following random paths".to_owned());
-    painter.paint(&mut canvas, passes::goal(&settings), &bar)?;
+    painter.paint(&mut canvas, Passes::new(settings.paths).goal(), &bar)?;
     Ok(canvas.means())
 }
 
@@ -173,7 +174,7 @@ fn check_memory(files: &[PictureFile], channels: usize) -> Result<(), CliError> 
     let pixels: f64 = drawn
         .map(|file| f64::from(file.frame.size().width()) * f64::from(file.frame.size().height()))
         .sum();
-    let bytes = size_of::<Colour>() + channels * size_of::<f64>();
+    let bytes = size_of::<ColorMoments>() + channels * size_of::<f64>();
     let need_gb = 1e-9 * pixels * bytes as f64;
     match need_gb <= MOST_GB {
         true => Ok(()),
@@ -210,7 +211,7 @@ impl Canvas {
             frame,
             channels,
             sums: vec![0.0; pixels * channels],
-            colours: vec![Colour::default(); pixels],
+            colours: vec![ColorMoments::default(); pixels],
             stokes: vec![PixelStokes::default(); if polarised { pixels } else { 0 }],
             bundles: 0,
         }
@@ -231,15 +232,16 @@ impl Canvas {
     ) -> Result<(), CliError> {
         let size = self.frame.size();
         let scale = renderer.args.picture.scale as f32;
-        let error =
-            |colour: &Colour, component| scale * colour.moments(component, self.bundles).1 as f32;
+        let error = |colour: &ColorMoments, component| {
+            scale * colour.moments(component, self.bundles).1 as f32
+        };
         let samples = self
             .colours
             .iter()
             .flat_map(|colour| [0, 1, 2].map(|component| error(colour, component)))
             .collect();
         let rows = StoredRows::new(size.width(), 3, samples)?;
-        let path = tagged(&file.path, "noise").with_extension("exr");
+        let path = tagged_path(&file.path, "noise").with_extension("exr");
         let options = renderer.options(prepared, file);
         let control = Control::cancelled_by(&STOP);
         write_picture(&path, size, &rows, tone, &options, control)?;
@@ -294,7 +296,7 @@ impl<'a> Painter<'a> {
                         return Err(CliError::Interrupted);
                     }
                     for bundle in from..until {
-                        let [u, v] = spread(bundle);
+                        let [u, v] = pixel_offset(bundle);
                         if let Some(view) = frame.direction(x as f64 + u, y as f64 + v) {
                             self.add(view, bundle, sums, colour, stokes.get_mut(x));
                         }
@@ -313,7 +315,7 @@ impl<'a> Painter<'a> {
         view: DVec3,
         bundle: u64,
         sums: &mut [f64],
-        colour: &mut Colour,
+        colour: &mut ColorMoments,
         stokes: Option<&mut PixelStokes>,
     ) {
         let found = self.sample(view, bundle, stokes);
@@ -353,11 +355,4 @@ impl Painter<'_> {
             }
         }
     }
-}
-
-/// Where in a pixel a bundle looks: the two-dimensional sequence of M. Roberts (2018), which fills the square evenly
-/// whatever the number of points.
-fn spread(bundle: u64) -> [f64; 2] {
-    const STEPS: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_3];
-    STEPS.map(|step| (0.5 + bundle as f64 * step).fract())
 }

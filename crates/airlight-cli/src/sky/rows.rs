@@ -6,6 +6,7 @@ use super::fog::Fog;
 use airlight::sky::{SkyColumns, SkyTable};
 use airlight_image::frame::FrameRows;
 use airlight_image::{Frame, Projection, RowSource};
+use airlight_render::pixels::{directions_within, pixel_reach};
 use glam::DVec3;
 
 /// What of the light is drawn.
@@ -36,11 +37,6 @@ pub struct SkyRows<'a> {
     /// How far a pixel's corners lie from its middle at most (rad), with some to spare.
     pixel_reach: f64,
 }
-
-/// Points across a pixel that an edge runs through, whose mean it gets.
-const SUBPIXELS: u32 = 4;
-/// Points of such a pixel.
-pub const POINTS: u32 = SUBPIXELS * SUBPIXELS;
 
 impl<'a> SkyRows<'a> {
     /// Rows of `frame`, of a table and the fog before it; values are `scale` times those of the table.
@@ -136,12 +132,6 @@ impl<'a> SkyRows<'a> {
     }
 }
 
-/// Directions at even points of a pixel, row by row; none where nothing is seen.
-pub fn directions_within(frame: &Frame, (i, j): (u32, u32)) -> impl Iterator<Item = DVec3> {
-    let at = |n: u32, k: u32| f64::from(n) + (f64::from(k) + 0.5) / f64::from(SUBPIXELS);
-    (0..POINTS).filter_map(move |k| frame.direction(at(i, k % SUBPIXELS), at(j, k / SUBPIXELS)))
-}
-
 /// From a table's values to a pixel's, which are RGB, or with weights RGB and then the values themselves.
 pub fn put(values: &[f32], weights: Option<&RgbWeights>, scale: f32, pixel: &mut [f32]) {
     match weights {
@@ -210,33 +200,4 @@ fn columns(frame: &Frame, table: &SkyTable, sun: DVec3) -> Option<SkyColumns> {
         (center_azimuth_deg - sun_azimuth + 360.0 * turn).to_radians()
     });
     Some(table.columns(azimuths))
-}
-
-/// The greatest angle from a pixel's middle to its corners, looked for at 33 by 33 pixels, and half as much again.
-pub fn pixel_reach(frame: &Frame) -> f64 {
-    const STEPS: u32 = 32;
-    let size = frame.size();
-    if size.width() < 8 || size.height() < 8 {
-        // Pixels so large may bulge beyond their corners.
-        return std::f64::consts::PI;
-    }
-    let mut most = 0.0f64;
-    for k in 0..=STEPS {
-        for l in 0..=STEPS {
-            let pick = |n: u32, k: u32| (u64::from(n - 1) * u64::from(k) / u64::from(STEPS)) as u32;
-            let (i, j) = (
-                f64::from(pick(size.width(), k)),
-                f64::from(pick(size.height(), l)),
-            );
-            let Some(centre) = frame.direction(i + 0.5, j + 0.5) else {
-                continue;
-            };
-            for (dx, dy) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)] {
-                if let Some(corner) = frame.direction(i + dx, j + dy) {
-                    most = most.max(corner.angle_between(centre));
-                }
-            }
-        }
-    }
-    1.5 * most
 }

@@ -1,8 +1,8 @@
 //! Sky and things, row by row, and their depth.
 
 use super::super::channels::RgbWeights;
-use super::super::layout::{PictureFile, tagged};
-use super::super::rows::{Layer, POINTS, directions_within, put};
+use super::super::layout::PictureFile;
+use super::super::rows::{Layer, put};
 use super::LitScene;
 use super::lit::ViewRay;
 use crate::error::CliError;
@@ -13,6 +13,7 @@ use airlight_image::output::exr::{self, ExrOptions, ExrSample};
 use airlight_image::rows::RowFn;
 use airlight_image::{Control, Frame, Projection, RowSource};
 use airlight_render::objects::Ray;
+use airlight_render::pixels::{POINTS, directions_within, tagged_path};
 use glam::DVec3;
 
 /// A picture of things before the picture of a sky.
@@ -146,7 +147,7 @@ pub fn write_depth(objects: &LitScene<'_>, file: &PictureFile) -> Result<(), Cli
     };
     let metadata = Metadata::default().with_frame(&file.frame);
     exr::write(
-        &tagged(&file.path, "depth").with_extension("exr"),
+        &tagged_path(&file.path, "depth").with_extension("exr"),
         size,
         &[name],
         &depths,

@@ -1,0 +1,12 @@
+//! Pictures by Monte Carlo: sums over bundles of paths, pixel by pixel and pass by pass.
+//!
+//! - [`Passes`]: how many bundles each pass adds; [`pixel_offset`]: where in a pixel a bundle looks.
+//! - [`ColorMoments`]: mean and standard error of a pixel; [`PixelStokes`]: its polarisation.
+
+mod moments;
+mod passes;
+mod stokes;
+
+pub use moments::ColorMoments;
+pub use passes::{Passes, pixel_offset};
+pub use stokes::{POLARIZATION_CHANNELS, PixelStokes};
