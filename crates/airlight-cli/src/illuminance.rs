@@ -16,7 +16,7 @@ pub struct Illuminances {
 
 impl Illuminances {
     /// Of a view; `luminance` makes cd/m^2 of the table's channels.
-    pub fn of(view: &View<'_>, table: &SkyTable, luminance: impl Fn(&[f32]) -> f64) -> Self {
+    pub fn of(view: &View, table: &SkyTable, luminance: impl Fn(&[f32]) -> f64) -> Self {
         let sun_normal_lx = view.sky().grid().to_xyz(&view.sun_irradiance())[1];
         Self {
             sun_normal_lx,

@@ -175,7 +175,7 @@ impl Scene {
     }
 
     /// What is seen under a sun.
-    pub fn view<'a>(&self, sky: &'a Sky, sun: &Sun) -> View<'a> {
+    pub fn view<'a>(&self, sky: &'a Sky, sun: &Sun) -> View {
         sky.view(self.eye_altitude_m, sun.direction())
             .at_sun_distance(sun.distance_ratio)
     }

@@ -38,7 +38,7 @@ fn standard(elevation_deg: f64) -> Sky {
     )
 }
 
-fn view(sky: &Sky, elevation_deg: f64) -> View<'_> {
+fn view(sky: &Sky, elevation_deg: f64) -> View {
     sky.view(2.0, direction(180.0, elevation_deg))
 }
 

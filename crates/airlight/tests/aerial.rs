@@ -88,11 +88,7 @@ fn errors<const N: usize>(
     (path, dimming)
 }
 
-fn spectral<const N: usize>(
-    view: &View<'_>,
-    direction: DVec3,
-    distance: f64,
-) -> ([f64; N], [f64; N]) {
+fn spectral<const N: usize>(view: &View, direction: DVec3, distance: f64) -> ([f64; N], [f64; N]) {
     let optics = view.along(direction, Some(distance)).optics::<N>().unwrap();
     (
         optics.transmittance.0.map(f64::from),
@@ -101,7 +97,7 @@ fn spectral<const N: usize>(
 }
 
 /// By colour: path radiance as seen, transmittance of sunlight.
-fn rgb(view: &View<'_>, space: RgbSpace, direction: DVec3, distance: f64) -> ([f64; 3], [f64; 3]) {
+fn rgb(view: &View, space: RgbSpace, direction: DVec3, distance: f64) -> ([f64; 3], [f64; 3]) {
     let sight = view.along(direction, Some(distance));
     let grid = view.sky().grid();
     let solar = view.solar_irradiance();

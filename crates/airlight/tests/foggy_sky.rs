@@ -38,7 +38,7 @@ fn slab(top_height_m: f64) -> Profile {
     Profile::Slab { top_height_m }
 }
 
-fn foggy<'a>(view: &View<'a>, layer: Layer<3>, ground: Ground) -> FoggySky<'a, 3> {
+fn foggy<'a>(view: &View, layer: Layer<3>, ground: Ground) -> FoggySky<3> {
     FoggySky::new(
         view,
         LaneChannels::SPECTRAL,
@@ -50,12 +50,7 @@ fn foggy<'a>(view: &View<'a>, layer: Layer<3>, ground: Ground) -> FoggySky<'a, 3
 }
 
 /// Fog and air of a line cut into thin slices, one after the other.
-fn sliced(
-    view: &View<'_>,
-    foggy: &FoggySky<'_, 3>,
-    towards: DVec3,
-    length_m: f64,
-) -> PathOptics<3> {
+fn sliced(view: &View, foggy: &FoggySky<3>, towards: DVec3, length_m: f64) -> PathOptics<3> {
     const SLICES: usize = 500;
     let ground = foggy.fog().ground();
     let eye_m = view.radius_m() - view.sky().atmosphere().planet.radius_m;

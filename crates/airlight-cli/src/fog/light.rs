@@ -84,7 +84,7 @@ pub struct LightSource<'a> {
     solved: Option<&'a SolvedSky>,
     scattering: FogScattering,
     /// The last foggy sky: another fog in it costs little, and the same one nothing.
-    last: Mutex<Option<(Vec<Layer<3>>, Arc<FoggySky<'a, 3>>)>>,
+    last: Mutex<Option<(Vec<Layer<3>>, Arc<FoggySky<3>>)>>,
 }
 
 /// How bright a picture says the light is, and how it says so.
@@ -118,7 +118,7 @@ impl<'a> LightSource<'a> {
     ///
     /// # Errors
     /// [`CliError::Usage`] for a fog that is none.
-    pub fn foggy(&self, layers: &[Layer<3>]) -> Result<Option<Arc<FoggySky<'a, 3>>>, CliError> {
+    pub fn foggy(&self, layers: &[Layer<3>]) -> Result<Option<Arc<FoggySky<3>>>, CliError> {
         let Some(solved) = self.solved else {
             return Ok(None);
         };
@@ -177,11 +177,11 @@ pub fn ambient(args: &OverlayArgs, picture: &Picture, depth: &DepthMap) -> Resul
 ///
 /// # Errors
 /// [`CliError::Usage`] where `--ambient` does not say a colour, or nothing says how bright the light is.
-pub fn at_level<'a>(
+pub fn at_level(
     args: &OverlayArgs,
-    sky: Arc<FoggySky<'a, 3>>,
+    sky: Arc<FoggySky<3>>,
     shown: &Shown<'_>,
-) -> Result<(FogSource<'a>, Level), CliError> {
+) -> Result<(FogSource, Level), CliError> {
     let white = white_surface(sky.fog().light());
     let stated = shown.picture.white_luminance_cd_m2.map(|white| 1.0 / white);
     let (scale, how) = match (args.light.radiance_scale, stated) {
@@ -227,7 +227,7 @@ fn white_surface(light: &FogLighting<3>) -> Spectrum<3> {
 }
 
 /// How bright the picture's sky near the horizon is over the solved one.
-fn shown_over_solved(args: &OverlayArgs, sky: &FoggySky<'_, 3>, shown: &Shown<'_>) -> Option<f32> {
+fn shown_over_solved(args: &OverlayArgs, sky: &FoggySky<3>, shown: &Shown<'_>) -> Option<f32> {
     if args.ambient != "auto" {
         return None;
     }
@@ -249,7 +249,7 @@ fn shown_over_solved(args: &OverlayArgs, sky: &FoggySky<'_, 3>, shown: &Shown<'_
     (scale.is_finite() && scale > 0.0).then_some(scale)
 }
 
-fn clear(sky: &FoggySky<'_, 3>, direction: DVec3) -> Spectrum<3> {
+fn clear(sky: &FoggySky<3>, direction: DVec3) -> Spectrum<3> {
     let mut rgb = [0.0; 3];
     sky.clear().sample(direction, &mut rgb);
     Spectrum(rgb)

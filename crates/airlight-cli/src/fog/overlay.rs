@@ -20,11 +20,11 @@ const GROUND_ALBEDO: f64 = 0.2;
 ///
 /// # Errors
 /// [`CliError::Usage`] for options that do not fit together, and for a fog or a lamp that is none.
-pub fn overlay<'a>(
+pub fn overlay(
     args: &OverlayArgs,
-    source: &LightSource<'a>,
+    source: &LightSource<'_>,
     shown: &Shown<'_>,
-) -> Result<(FogOverlay<'a>, Level), CliError> {
+) -> Result<(FogOverlay, Level), CliError> {
     let Some(layers) = layers::of(args)? else {
         refuse_with_looks(args)?;
         return Ok((look(args, shown.ambient.colour), shown.ambient));
@@ -54,7 +54,7 @@ fn refuse_with_looks(args: &OverlayArgs) -> Result<(), CliError> {
     }
 }
 
-fn look<'a>(args: &OverlayArgs, ambient: Spectrum<3>) -> FogOverlay<'a> {
+fn look(args: &OverlayArgs, ambient: Spectrum<3>) -> FogOverlay {
     let (visibility_m, contrast) = (args.visibility_m, contrast(&args.contrast));
     match args.model {
         ModelArg::Exp2 => {
@@ -67,11 +67,11 @@ fn look<'a>(args: &OverlayArgs, ambient: Spectrum<3>) -> FogOverlay<'a> {
 }
 
 /// Fog in ambient light, and in the sun's of the options.
-fn alone<'a>(
+fn alone(
     args: &OverlayArgs,
     layers: &[Layer<3>],
     ambient: Spectrum<3>,
-) -> Result<FogSource<'a>, CliError> {
+) -> Result<FogSource, CliError> {
     let sun = args.sun_elevation.map(|elevation| DirectionalLight {
         direction: axes::direction(args.sun_azimuth, elevation),
         irradiance: ambient * (PI * args.sun_strength as f32),
@@ -96,7 +96,7 @@ fn alone<'a>(
 fn light_glow(
     args: &OverlayArgs,
     layers: &[Layer<3>],
-    body: &FogSource<'_>,
+    body: &FogSource,
     shown: &Shown<'_>,
 ) -> Result<Option<LightGlow>, CliError> {
     if args.light.lamp.is_empty() {

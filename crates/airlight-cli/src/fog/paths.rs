@@ -24,14 +24,14 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
 /// What follows the paths of a picture.
-pub struct Painter<'a> {
+pub struct Painter {
     solver: MonteCarlo,
     /// Red, green and blue of the radiance at each wavelength, in the picture's unit.
     weights: Vec<[f64; 3]>,
     eye_altitude_m: f64,
     sun: DVec3,
     /// The fast solution: what the fog lets through, and the clear air that a picture has already.
-    sky: Arc<FoggySky<'a, 3>>,
+    sky: Arc<FoggySky<3>>,
     radiance_scale: f64,
     air: ExistingAerial,
     passes: Passes,
@@ -47,7 +47,7 @@ struct Pixel {
     further: [f64; 3],
 }
 
-impl<'a> Painter<'a> {
+impl Painter {
     /// The fog of the options as part of the air of a solved sky.
     ///
     /// # Errors
@@ -55,7 +55,7 @@ impl<'a> Painter<'a> {
     pub fn new(
         args: &OverlayArgs,
         solved: &SolvedSky,
-        fogged: &'a Fogged<'_>,
+        fogged: &Fogged,
         settings: MonteCarloSettings,
     ) -> Result<Self, CliError> {
         let (
@@ -105,7 +105,7 @@ impl<'a> Painter<'a> {
         &self,
         args: &OverlayArgs,
         subject: &Subject,
-        fogged: &Fogged<'_>,
+        fogged: &Fogged,
         format: PictureFormat,
     ) -> Result<(Written, String), CliError> {
         let size = subject.picture.size;

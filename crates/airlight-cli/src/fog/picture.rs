@@ -25,9 +25,9 @@ pub struct Subject {
 }
 
 /// The fog of some options over a picture.
-pub struct Fogged<'a> {
+pub struct Fogged {
     pub camera: Intrinsics,
-    overlay: FogOverlay<'a>,
+    overlay: FogOverlay,
     /// The light that the fog is in.
     pub level: Level,
 }
@@ -142,7 +142,7 @@ impl Subject {
         &self,
         args: &OverlayArgs,
         source: &LightSource<'a>,
-    ) -> Result<Fogged<'a>, CliError> {
+    ) -> Result<Fogged, CliError> {
         let camera = self.camera(args)?;
         let ambient = Level {
             colour: self.ambient.colour * args.ambient_scale as f32,
@@ -168,7 +168,7 @@ impl Subject {
     /// [`CliError`]; nothing is left at `output`, or what was there before.
     pub fn write(
         &self,
-        fogged: &Fogged<'_>,
+        fogged: &Fogged,
         args: &OverlayArgs,
         output: &Path,
         format: PictureFormat,
@@ -183,7 +183,7 @@ impl Subject {
     /// [`CliError`] where they do not go together.
     pub fn overlay<'o>(
         &'o self,
-        fogged: &'o Fogged<'_>,
+        fogged: &'o Fogged,
         args: &OverlayArgs,
     ) -> Result<Overlay<'o>, CliError> {
         let channels = match args.layers {
@@ -215,9 +215,9 @@ impl Subject {
     }
 }
 
-impl Fogged<'_> {
+impl Fogged {
     /// The fog; nothing for a look.
-    pub fn body(&self) -> Option<&FogSource<'_>> {
+    pub fn body(&self) -> Option<&FogSource> {
         match &self.overlay {
             FogOverlay::Fog(body, _) => Some(body),
             _ => None,

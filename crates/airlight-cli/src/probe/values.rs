@@ -231,7 +231,7 @@ impl Observer {
     }
 }
 
-fn sun_light(view: &View<'_>, sun: &Sun) -> SunLight {
+fn sun_light(view: &View, sun: &Sun) -> SunLight {
     let normal = view.sun_irradiance();
     let cosine = view.sun().y.max(0.0);
     let illuminance = view.sky().grid().to_xyz(&normal)[1];
@@ -249,7 +249,7 @@ fn sun_light(view: &View<'_>, sun: &Sun) -> SunLight {
     }
 }
 
-fn sky_light(view: &View<'_>) -> SkyLight {
+fn sky_light(view: &View) -> SkyLight {
     let irradiance = view.table(TableChannels::Spectral).irradiance(DVec3::Y);
     SkyLight {
         illuminance_horizontal_lx: view.sky().grid().to_xyz(&irradiance)[1],
@@ -257,7 +257,7 @@ fn sky_light(view: &View<'_>) -> SkyLight {
     }
 }
 
-fn view_light(view: &View<'_>, asked: &AskedView, space: RgbSpace) -> ViewLight {
+fn view_light(view: &View, asked: &AskedView, space: RgbSpace) -> ViewLight {
     let direction = axes::direction(asked.azimuth_deg, asked.elevation_deg);
     let line: LineOfSight = view.along(direction, asked.distance_m);
     let radiance = line.radiance();
@@ -281,7 +281,7 @@ fn view_light(view: &View<'_>, asked: &AskedView, space: RgbSpace) -> ViewLight 
 }
 
 fn paths_light(
-    view: &View<'_>,
+    view: &View,
     paths: &MonteCarlo,
     eye_altitude_m: f64,
     light: &ViewLight,

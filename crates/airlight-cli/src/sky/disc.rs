@@ -59,7 +59,7 @@ impl Disc {
     /// of it. `fog` is the transmittance of what lies before it besides the air. With `weights` the channels are RGB, or
     /// RGB and then radiances where `spectral`.
     pub fn new(
-        view: &View<'_>,
+        view: &View,
         horizon_rad: f64,
         weights: &RgbWeights,
         spectral: bool,
@@ -247,7 +247,7 @@ impl Disc {
 
 impl Table {
     fn new(
-        view: &View<'_>,
+        view: &View,
         range: (f64, f64),
         weights: &RgbWeights,
         spectral: bool,

@@ -41,7 +41,7 @@ pub fn fixed(args: &PictureArgs) -> Result<Option<Exposure>, CliError> {
 ///
 /// # Errors
 /// As [`fixed`].
-pub fn of(renderer: &Renderer<'_>, prepared: &PreparedFrame<'_>) -> Result<Exposure, CliError> {
+pub fn of(renderer: &Renderer<'_>, prepared: &PreparedFrame) -> Result<Exposure, CliError> {
     let args = &renderer.args.picture;
     if let Some(exposure) = fixed(args)? {
         return Ok(exposure);
@@ -80,7 +80,7 @@ pub fn of(renderer: &Renderer<'_>, prepared: &PreparedFrame<'_>) -> Result<Expos
 ///
 /// # Errors
 /// As [`of`].
-pub fn tone(renderer: &Renderer<'_>, prepared: &PreparedFrame<'_>) -> Result<ToneMapper, CliError> {
+pub fn tone(renderer: &Renderer<'_>, prepared: &PreparedFrame) -> Result<ToneMapper, CliError> {
     let curve = curve(&renderer.args.picture);
     Ok(ToneMapper::new(
         of(renderer, prepared)?.factor() as f32,

@@ -21,21 +21,21 @@ pub const PIECE: usize = 16;
 const SCALE_HEIGHT_M: f64 = 50.0;
 
 /// A sky with fog in it, in the channels of a picture.
-pub enum Fog<'a> {
+pub enum Fog {
     /// Red, green and blue.
-    Rgb(Box<FoggySky<'a, 3>>),
+    Rgb(Box<FoggySky<3>>),
     /// All wavelengths, one piece after the other.
-    Spectral(Vec<FoggySky<'a, PIECE>>),
+    Spectral(Vec<FoggySky<PIECE>>),
 }
 
-impl<'a> Fog<'a> {
+impl Fog {
     /// As the options say, under the sky of a view; `None` without fog.
     ///
     /// # Errors
     /// [`CliError::Usage`] for a fog that is none.
     pub fn new(
         args: &FogArgs,
-        view: &View<'a>,
+        view: &View,
         channels: TableChannels,
     ) -> Result<Option<Self>, CliError> {
         match args.fog_visibility_m {
@@ -50,7 +50,7 @@ impl<'a> Fog<'a> {
     /// As [`Fog::new`].
     pub fn or_clear(
         args: &FogArgs,
-        view: &View<'a>,
+        view: &View,
         channels: TableChannels,
     ) -> Result<Self, CliError> {
         let ground = FoggySky::<3>::round_ground(view);
@@ -123,7 +123,7 @@ impl<'a> Fog<'a> {
 }
 
 #[inline]
-fn cover<const N: usize>(sky: &FoggySky<'_, N>, direction: DVec3, values: &mut [f32]) {
+fn cover<const N: usize>(sky: &FoggySky<N>, direction: DVec3, values: &mut [f32]) {
     let last = values.len() - 1;
     let seen = sky.before(direction, Spectrum::from_fn(|lane| values[lane.min(last)]));
     values

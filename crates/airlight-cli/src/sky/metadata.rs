@@ -11,7 +11,7 @@ use airlight_image::output::Metadata;
 pub const SOFTWARE: &str = concat!("airlight ", env!("CARGO_PKG_VERSION"));
 
 /// The facts of one file.
-pub fn of(renderer: &Renderer<'_>, prepared: &PreparedFrame<'_>, layer: Layer) -> Metadata {
+pub fn of(renderer: &Renderer<'_>, prepared: &PreparedFrame, layer: Layer) -> Metadata {
     let scene = renderer.scene;
     let place = scene.sun.place();
     let linear = renderer.layout.format.is_none_or(PictureFormat::is_linear);

@@ -91,7 +91,7 @@ struct Painter<'a> {
 /// [`CliError`]: what failed; files written before stay.
 pub fn write(
     renderer: &Renderer<'_>,
-    prepared: &PreparedFrame<'_>,
+    prepared: &PreparedFrame,
     files: &[PictureFile],
     settings: MonteCarloSettings,
     bar: &RowsBar,
@@ -155,7 +155,7 @@ pub fn write(
 /// [`CliError`]: what failed.
 pub fn means(
     renderer: &Renderer<'_>,
-    prepared: &PreparedFrame<'_>,
+    prepared: &PreparedFrame,
     frame: Frame,
     settings: MonteCarloSettings,
 ) -> Result<Vec<f32>, CliError> {
@@ -226,7 +226,7 @@ impl Canvas {
     fn write_noise(
         &self,
         renderer: &Renderer<'_>,
-        prepared: &PreparedFrame<'_>,
+        prepared: &PreparedFrame,
         file: &PictureFile,
         tone: &ToneMapper,
     ) -> Result<(), CliError> {
@@ -252,7 +252,7 @@ impl Canvas {
 impl<'a> Painter<'a> {
     fn new(
         renderer: &Renderer<'_>,
-        prepared: &'a PreparedFrame<'_>,
+        prepared: &'a PreparedFrame,
         settings: MonteCarloSettings,
     ) -> Result<Self, CliError> {
         let scene = renderer.scene;

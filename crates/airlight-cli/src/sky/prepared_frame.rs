@@ -39,7 +39,7 @@ impl Prepared {
 }
 
 /// One moment, tabulated.
-pub struct PreparedFrame<'a> {
+pub struct PreparedFrame {
     /// Where the sun stands.
     pub sun: Sun,
     /// When.
@@ -47,28 +47,28 @@ pub struct PreparedFrame<'a> {
     /// Light at the eye.
     pub light: Illuminances,
     /// Where it comes from.
-    pub source: Source<'a>,
+    pub source: Source,
     /// The sun's disc, where it is drawn and seen.
     pub disc: Option<Disc>,
     /// Things before the sky.
-    pub objects: Option<LitScene<'a>>,
+    pub objects: Option<LitScene>,
     weights: RgbWeights,
 }
 
 /// Where a shot's light comes from.
-pub enum Source<'a> {
+pub enum Source {
     /// The solver.
     Solved {
         /// Its sky, tabulated.
         table: Arc<SkyTable>,
         /// The fog before it.
-        fog: Option<Fog<'a>>,
+        fog: Option<Fog>,
     },
     /// A published model.
     Model(Arc<Lit>),
 }
 
-impl<'a> PreparedFrame<'a> {
+impl<'a> PreparedFrame {
     /// Tabulates the sky under a sun, and the fog before it.
     ///
     /// # Errors

@@ -56,7 +56,7 @@ pub fn wanted(args: &SkyArgs) -> Result<Option<Terminal>, CliError> {
 /// As [`exposure::tone`].
 pub fn text(
     renderer: &Renderer<'_>,
-    prepared: &PreparedFrame<'_>,
+    prepared: &PreparedFrame,
     terminal: Terminal,
 ) -> Result<String, CliError> {
     let mut columns = u32::from(terminal.columns).clamp(8, 256);

@@ -100,7 +100,7 @@ impl Renderer<'_> {
     /// The rows of a frame; with the sky that another solver has made, where there is one.
     pub fn rows<'s>(
         &self,
-        prepared: &'s PreparedFrame<'_>,
+        prepared: &'s PreparedFrame,
         frame: &Frame,
         (layer, scale): (Layer, f32),
         solved: Option<&'s [f32]>,
@@ -122,7 +122,7 @@ impl Renderer<'_> {
     /// The same without the things before the sky.
     fn sky_rows<'s>(
         &self,
-        prepared: &'s PreparedFrame<'_>,
+        prepared: &'s PreparedFrame,
         frame: &Frame,
         (layer, scale): (Layer, f32),
         solved: Option<&'s [f32]>,
@@ -150,7 +150,7 @@ impl Renderer<'_> {
     /// [`CliError`]: what failed; files before it are whole, and nothing is left of it.
     pub fn write(
         &self,
-        prepared: &PreparedFrame<'_>,
+        prepared: &PreparedFrame,
         files: &[PictureFile],
         bar: &RowsBar,
     ) -> Result<Vec<Written>, CliError> {
@@ -183,7 +183,7 @@ impl Renderer<'_> {
     ///
     /// # Errors
     /// [`CliError`] for an exposure that is none.
-    pub fn tone(&self, prepared: &PreparedFrame<'_>) -> Result<ToneMapper, CliError> {
+    pub fn tone(&self, prepared: &PreparedFrame) -> Result<ToneMapper, CliError> {
         match self.layout.format {
             Some(PictureFormat::Png | PictureFormat::Jpeg) => exposure::tone(self, prepared),
             _ => Ok(ToneMapper::new(1.0, ToneCurve::Clip)?),
@@ -196,7 +196,7 @@ impl Renderer<'_> {
     /// [`CliError`]: what failed.
     pub fn write_file(
         &self,
-        prepared: &PreparedFrame<'_>,
+        prepared: &PreparedFrame,
         file: &PictureFile,
         (solved, tone): (Option<&[f32]>, &ToneMapper),
         control: Control<'_>,
@@ -225,7 +225,7 @@ impl Renderer<'_> {
     }
 
     /// How a file is written.
-    pub fn options(&self, prepared: &PreparedFrame<'_>, file: &PictureFile) -> PictureOptions {
+    pub fn options(&self, prepared: &PreparedFrame, file: &PictureFile) -> PictureOptions {
         let args = &self.args.picture;
         PictureOptions {
             exr: ExrOptions {

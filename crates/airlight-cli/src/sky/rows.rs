@@ -23,7 +23,7 @@ pub enum Layer {
 /// One moment's sky in one frame.
 pub struct SkyRows<'a> {
     table: &'a SkyTable,
-    fog: Option<&'a Fog<'a>>,
+    fog: Option<&'a Fog>,
     disc: Option<&'a Disc>,
     /// Weights of wavelengths in RGB, for a table of spectra.
     spectral: Option<&'a RgbWeights>,
@@ -43,7 +43,7 @@ impl<'a> SkyRows<'a> {
     pub fn new(
         frame: &Frame,
         layer: Layer,
-        (table, fog): (&'a SkyTable, Option<&'a Fog<'a>>),
+        (table, fog): (&'a SkyTable, Option<&'a Fog>),
         disc: Option<&'a Disc>,
         spectral: Option<&'a RgbWeights>,
         sun: DVec3,

@@ -21,7 +21,7 @@ pub struct Air {
 
 impl Air {
     /// Tabulates lines of sight of up to `farthest` metres over the frame.
-    pub fn new(view: &View<'_>, frame: &Frame, farthest: f64) -> Self {
+    pub fn new(view: &View, frame: &Frame, farthest: f64) -> Self {
         use rayon::prelude::*;
         let size = frame.size();
         let columns = size.width().div_ceil(STEP) as usize + 1;

@@ -29,7 +29,7 @@ const AZIMUTHS: usize = 24;
 impl Light {
     /// Tabulates the light of a view; `ends` are the lowest and highest ground's
     /// heights and the views from there.
-    pub fn new(view: &View<'_>, ends: [(f64, View<'_>); 2]) -> Self {
+    pub fn new(view: &View, ends: [(f64, View); 2]) -> Self {
         use rayon::prelude::*;
         let sky = view.table(TableChannels::Rgb(RgbSpace::Srgb));
         let illuminance = (0..ELEVATIONS * AZIMUTHS)
@@ -83,6 +83,6 @@ impl Light {
 }
 
 /// Linear sRGB of a spectrum on the grid of the view's sky.
-pub fn rgb(view: &View<'_>, spectrum: &[f32]) -> DVec3 {
+pub fn rgb(view: &View, spectrum: &[f32]) -> DVec3 {
     DVec3::from_array(RgbSpace::Srgb.from_xyz(view.sky().grid().to_xyz(spectrum)))
 }

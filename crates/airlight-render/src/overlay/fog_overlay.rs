@@ -11,9 +11,9 @@ use std::sync::{Arc, LazyLock};
 
 /// What lies between camera and scene.
 #[derive(Clone)]
-pub enum FogOverlay<'a> {
+pub enum FogOverlay {
     /// A fog, and the lamps in it.
-    Fog(FogSource<'a>, Option<LightGlow>),
+    Fog(FogSource, Option<LightGlow>),
     /// Exponential-squared fog, a look: density (1/m) and colour.
     ExponentialSquared(f64, Spectrum<3>),
     /// Linear fog, a look: where it starts and ends (m), and colour.
@@ -25,13 +25,13 @@ pub enum FogOverlay<'a> {
 
 /// A fog and the light of the day that it is in.
 #[derive(Clone)]
-pub enum FogSource<'a> {
+pub enum FogSource {
     /// A fog in a light of its own.
     Alone(Box<Fog<3>>),
     /// A fog in a solved sky.
     Sky {
         /// Both, with the eye at the camera's height.
-        sky: Arc<FoggySky<'a, 3>>,
+        sky: Arc<FoggySky<3>>,
         /// Units of the picture in one cd/m^2.
         radiance_scale: f32,
         /// Whether the picture has the air.
@@ -50,7 +50,7 @@ pub enum ExistingAerial {
 
 /// A veil as seen from a height: quickly, for the pixels of a picture.
 pub(super) struct FogSampler<'a> {
-    overlay: &'a FogOverlay<'a>,
+    overlay: &'a FogOverlay,
     eye_height_m: f64,
     /// A fog alone, tabulated.
     table: Option<FogTable<'a, 3>>,
@@ -58,7 +58,7 @@ pub(super) struct FogSampler<'a> {
 
 impl<'a> FogSampler<'a> {
     /// Seen from a height (m).
-    pub fn from_height(overlay: &'a FogOverlay<'a>, eye_height_m: f64) -> Self {
+    pub fn from_height(overlay: &'a FogOverlay, eye_height_m: f64) -> Self {
         let table = match overlay {
             FogOverlay::Fog(FogSource::Alone(fog), _) => Some(FogTable::new(fog, eye_height_m)),
             _ => None,
@@ -121,7 +121,7 @@ impl<'a> FogSampler<'a> {
     }
 }
 
-impl FogSource<'_> {
+impl FogSource {
     fn optics(&self, eye_height_m: f64, direction: DVec3, distance_m: f64) -> PathOptics<3> {
         match self {
             Self::Alone(fog) => fog.along(eye_height_m, direction, distance_m),

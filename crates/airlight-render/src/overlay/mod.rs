@@ -73,7 +73,7 @@ impl<'a> Overlay<'a> {
         depth: &'a DepthMap,
         camera: &'a Intrinsics,
         eye_height_m: f64,
-        overlay: &'a FogOverlay<'a>,
+        overlay: &'a FogOverlay,
         channels: Channels,
     ) -> Result<Self, ImageError> {
         depth.check_against(picture)?;

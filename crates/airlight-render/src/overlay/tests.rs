@@ -32,7 +32,7 @@ fn depth(width: u32, height: u32, metres: impl Fn(u32, u32) -> f32) -> DepthMap 
     }
 }
 
-fn uniform(extinction: f32, ambient: [f32; 3]) -> FogOverlay<'static> {
+fn uniform(extinction: f32, ambient: [f32; 3]) -> FogOverlay {
     let medium = Medium {
         extinction_per_m: Spectrum::splat(extinction),
         single_scattering_albedo: Spectrum::ONE,

@@ -81,7 +81,7 @@ fn time(variant: Variant) -> Result<f64, Box<dyn std::error::Error>> {
 }
 
 /// All channels of the fan.
-fn errors(sky: &SkyArticle, view: &View<'_>) -> Errors {
+fn errors(sky: &SkyArticle, view: &View) -> Errors {
     // The solver's lanes are blue, green, red, under a sun of its own.
     let outside = Settings::default().sunlight.illuminance_outside();
     let solar = view.solar_irradiance();

@@ -50,7 +50,7 @@ impl FourOrders {
     }
 
     /// The solver's view.
-    fn view(&self) -> View<'_> {
+    fn view(&self) -> View {
         self.sky.view(self.eye_altitude_m, self.sun)
     }
 }

@@ -72,7 +72,7 @@ impl<const N: usize> AerialPerspective<N> {
     ///
     /// # Errors
     /// [`SceneError`] where N lanes cannot be these channels, or for a limit that is no distance.
-    pub fn new(view: &View<'_>, channels: LaneChannels, limit_m: f64) -> Result<Self, SceneError> {
+    pub fn new(view: &View, channels: LaneChannels, limit_m: f64) -> Result<Self, SceneError> {
         if limit_m.is_nan() || limit_m <= 0.0 {
             return Err(SceneError::Distance(limit_m));
         }

@@ -14,7 +14,7 @@ const OPAQUE: f64 = 1e-6;
 
 /// The table of a view, in the lanes of `converter`.
 pub(super) fn tabulated<const N: usize>(
-    view: &View<'_>,
+    view: &View,
     converter: &Converter<N>,
     limit_m: f64,
 ) -> AerialPerspective<N> {
@@ -82,7 +82,7 @@ pub(super) fn tabulated<const N: usize>(
 
 /// One row: mean extinctions by distance, and mean source functions by azimuth and distance.
 fn row_of<const N: usize>(
-    view: &View<'_>,
+    view: &View,
     converter: &Converter<N>,
     peaked: &Peaked,
     eye: &Eye,

@@ -21,8 +21,8 @@ use std::sync::Arc;
 /// ground under the fog is lit as the fog's own solution says, or by a two-stream estimate where light is scattered once only.
 /// Left out: the shadow of the fog on the air in and under it, which matters where fog is hardly thicker than air; the fog's own
 /// light on the air above it.
-pub struct FoggySky<'a, const N: usize> {
-    view: View<'a>,
+pub struct FoggySky<const N: usize> {
+    view: View,
     converter: Arc<Converter<N>>,
     clear: Arc<SkyTable>,
     /// The table's first channel that is a lane.
@@ -42,11 +42,11 @@ struct IrradianceMap {
 }
 
 /// The view from the top of a fog, straight above or below that of the eye; the fog is checked.
-fn top_view<'a, const N: usize>(
-    view: &View<'a>,
+fn top_view<const N: usize>(
+    view: &View,
     layers: &[Layer<N>],
     ground: Ground,
-) -> Result<View<'a>, SceneError> {
+) -> Result<View, SceneError> {
     let unlit = FogLighting {
         sun: None,
         ambient: Spectrum::ZERO,
@@ -58,14 +58,14 @@ fn top_view<'a, const N: usize>(
     Ok(view.at_altitude(ground_m + light::top_m(layers, &ground) - ground.height_m))
 }
 
-impl<'a, const N: usize> FoggySky<'a, N> {
+impl<const N: usize> FoggySky<N> {
     /// Fog under the sky of a view. Heights of `layers` and of `ground` are to one zero; the eye stands as high above
     /// the fog's ground as the view's eye above its own. See [`FoggySky::round_ground`].
     ///
     /// # Errors
     /// [`SceneError`] where N lanes cannot be these channels, or for a fog that is none.
     pub fn new(
-        view: &View<'a>,
+        view: &View,
         channels: LaneChannels,
         layers: &[Layer<N>],
         ground: Ground,
@@ -90,7 +90,7 @@ impl<'a, const N: usize> FoggySky<'a, N> {
     /// # Errors
     /// [`SceneError`] for a fog that is none, and what `layers` refuses.
     pub fn spectral<E: From<SceneError>>(
-        view: &View<'a>,
+        view: &View,
         layers: impl Fn(&[f64; N]) -> Result<Vec<Layer<N>>, E>,
         ground: Ground,
         scattering: FogScattering,
@@ -121,7 +121,7 @@ impl<'a, const N: usize> FoggySky<'a, N> {
     }
 
     fn among(
-        view: &View<'a>,
+        view: &View,
         channels: LaneChannels,
         layers: &[Layer<N>],
         ground: Ground,
@@ -178,7 +178,7 @@ impl<'a, const N: usize> FoggySky<'a, N> {
     }
 
     /// The ground of a view's planet, as round as it is, at height 0.
-    pub fn round_ground(view: &View<'_>) -> Ground {
+    pub fn round_ground(view: &View) -> Ground {
         Ground {
             height_m: 0.0,
             radius_m: view.bounds_m().0,

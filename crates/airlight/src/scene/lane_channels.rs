@@ -52,7 +52,7 @@ impl<const N: usize> Converter<N> {
     ///
     /// # Errors
     /// [`SceneError`] where N lanes cannot be these channels.
-    pub fn new(view: &View<'_>, channels: LaneChannels) -> Result<Self, SceneError> {
+    pub fn new(view: &View, channels: LaneChannels) -> Result<Self, SceneError> {
         let grid = view.sky().grid();
         let solar = view.solar_irradiance();
         let last = grid.len() - 1;

@@ -27,7 +27,7 @@ pub(super) struct TopLight {
 
 impl TopLight {
     /// As seen from the fog's top.
-    pub fn of(top: &View<'_>) -> Self {
+    pub fn of(top: &View) -> Self {
         let table = top.table(TableChannels::Spectral);
         let (down, up) = (table.irradiance(DVec3::Y), table.irradiance(-DVec3::Y));
         let mean = |(down, up): (&f32, &f32)| (0.5 * f64::from(down + up) / PI) as f32;
@@ -47,7 +47,7 @@ impl TopLight {
     /// In lanes, as a fog wants it: many scatterings start from the sky alone, as the ground's light is solved for.
     pub fn on_fog<const N: usize>(
         &self,
-        view: &View<'_>,
+        view: &View,
         to: &Converter<N>,
         scattering: FogScattering,
     ) -> FogLighting<N> {

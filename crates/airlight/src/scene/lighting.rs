@@ -24,7 +24,7 @@ pub trait SceneLighting<const N: usize>: Sync {
     fn around(&self, direction: DVec3) -> Spectrum<N>;
 }
 
-impl<const N: usize> SceneLighting<N> for FoggySky<'_, N> {
+impl<const N: usize> SceneLighting<N> for FoggySky<N> {
     fn sun(&self) -> DVec3 {
         self.sun_direction()
     }

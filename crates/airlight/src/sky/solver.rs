@@ -9,6 +9,7 @@ use crate::atmosphere::{Atmosphere, AtmosphereError};
 use crate::spectrum::WavelengthGrid;
 use crate::transfer::shell::{MAX_CONSTITUENTS, Shell};
 use glam::DVec3;
+use std::fmt;
 use std::sync::Arc;
 
 /// Which light is computed.
@@ -141,12 +142,26 @@ pub enum SkyError {
     Atmosphere(#[from] AtmosphereError),
 }
 
-/// An atmosphere's light, solved for at the wavelengths of a grid; shared freely between threads.
-pub struct Sky {
+/// The solved light inside an atmosphere at the wavelengths of a grid: a handle that is cheap to clone and to share
+/// between threads.
+#[derive(Clone)]
+pub struct Sky(Arc<Solution>);
+
+/// What all clones of a [`Sky`] share.
+struct Solution {
     atmosphere: Atmosphere,
     grid: WavelengthGrid,
     shell: Arc<Shell>,
-    pub(super) blocks: Vec<Box<dyn Block>>,
+    blocks: Vec<Box<dyn Block>>,
+}
+
+impl fmt::Debug for Sky {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Sky")
+            .field("atmosphere", &self.0.atmosphere.name)
+            .field("wavelengths", &self.0.grid.len())
+            .finish_non_exhaustive()
+    }
 }
 
 impl Sky {
@@ -166,31 +181,36 @@ impl Sky {
         let shell = Arc::new(Shell::new(atmosphere, settings.suns.are_low())?);
         let grid = grid.clone().with_solar(&atmosphere.solar_irradiance);
         let blocks = block::solve(atmosphere, &shell, grid.wavelengths_nm(), settings)?;
-        Ok(Self {
+        Ok(Self(Arc::new(Solution {
             atmosphere: atmosphere.clone(),
             grid,
             shell,
             blocks,
-        })
+        })))
     }
 
     /// The atmosphere solved for.
     pub fn atmosphere(&self) -> &Atmosphere {
-        &self.atmosphere
+        &self.0.atmosphere
     }
 
     /// The wavelengths solved for, with this atmosphere's sun.
     pub fn grid(&self) -> &WavelengthGrid {
-        &self.grid
+        &self.0.grid
     }
 
     pub(super) fn shell(&self) -> &Shell {
-        &self.shell
+        &self.0.shell
+    }
+
+    /// The wavelengths in blocks of lanes.
+    pub(super) fn blocks(&self) -> &[Box<dyn Block>] {
+        &self.0.blocks
     }
 
     /// What is seen from `altitude_m` (m; held at the ground below it) when the sun stands in the direction of the unit
     /// vector `sun` (world axes: [`crate::axes`]), at the planet's mean distance from it.
-    pub fn view(&self, altitude_m: f64, sun: DVec3) -> View<'_> {
+    pub fn view(&self, altitude_m: f64, sun: DVec3) -> View {
         View::new(self, altitude_m, sun)
     }
 }

@@ -12,7 +12,7 @@ use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 impl SkyTable {
-    pub(super) fn new(view: &View<'_>, channels: TableChannels) -> Self {
+    pub(super) fn new(view: &View, channels: TableChannels) -> Self {
         let sky = view.sky();
         let shell = sky.shell();
         let radius_m = view.radius_m();
@@ -30,7 +30,7 @@ impl SkyTable {
         let half = |span: f64, rows: usize| {
             let table_rows = half_rows(view, &peaked.constituents, horizon_elevation, span, rows);
             let mut values = vec![0.0; rows * (AZIMUTHS + 1) * width];
-            for (block, matrix) in sky.blocks.iter().zip(&matrices) {
+            for (block, matrix) in sky.blocks().iter().zip(&matrices) {
                 block.fill(
                     &table_rows,
                     matrix,
@@ -70,7 +70,7 @@ pub(crate) struct Peaked {
 
 impl Peaked {
     /// Those of a view's air.
-    pub fn of(view: &View<'_>) -> Self {
+    pub fn of(view: &View) -> Self {
         let wavelengths = view.sky().grid().wavelengths_nm();
         let scatters = |c: &Constituent| {
             wavelengths
@@ -87,7 +87,7 @@ impl Peaked {
             .filter(|(_, c)| scatters(c) && peaked(c))
             .map(|(place, _)| place)
             .collect();
-        let block = &view.sky().blocks[0];
+        let block = &view.sky().blocks()[0];
         let phases = constituents
             .iter()
             .map(|&constituent| {
@@ -116,14 +116,8 @@ impl Peaked {
 }
 
 /// The rays of one half of the table.
-fn half_rows(
-    view: &View<'_>,
-    peaked: &[usize],
-    horizon: f64,
-    span: f64,
-    rows: usize,
-) -> Vec<TableRow> {
-    let first_block = &view.sky().blocks[0];
+fn half_rows(view: &View, peaked: &[usize], horizon: f64, span: f64, rows: usize) -> Vec<TableRow> {
+    let first_block = &view.sky().blocks()[0];
     let mu_sun = view.ray(view.sun()).mu;
     let sin_sun = ((1.0 - mu_sun) * (1.0 + mu_sun)).max(0.0).sqrt();
     (0..rows)
@@ -191,11 +185,11 @@ pub(crate) fn channel_weights(
 }
 
 /// For each block of wavelengths, the weights that turn its lanes into the table's channels.
-fn channel_matrices(view: &View<'_>, channels: TableChannels) -> Vec<ChannelMatrix> {
+fn channel_matrices(view: &View, channels: TableChannels) -> Vec<ChannelMatrix> {
     let rows = channel_weights(view.sky().grid(), &view.solar_irradiance(), channels);
     let mut first = 0;
     view.sky()
-        .blocks
+        .blocks()
         .iter()
         .map(|block| {
             let lanes = first..first + block.lanes();

@@ -12,9 +12,9 @@ use glam::DVec3;
 use std::ops::Range;
 
 /// A prepared sky seen from one altitude under one sun.
-#[derive(Clone)]
-pub struct View<'a> {
-    sky: &'a Sky,
+#[derive(Clone, Debug)]
+pub struct View {
+    sky: Sky,
     position: DVec3,
     sun: DVec3,
     /// Solar irradiance here over that at the planet's mean distance.
@@ -66,11 +66,11 @@ impl LineOfSight {
     }
 }
 
-impl<'a> View<'a> {
-    pub(super) fn new(sky: &'a Sky, altitude_m: f64, sun: DVec3) -> Self {
+impl View {
+    pub(super) fn new(sky: &Sky, altitude_m: f64, sun: DVec3) -> Self {
         let radius_m = (sky.shell().planet_radius_m + altitude_m).max(sky.shell().ground_radius_m);
         Self {
-            sky,
+            sky: sky.clone(),
             position: DVec3::Y * radius_m,
             sun: sun.normalize(),
             irradiance_scale: 1.0,
@@ -89,7 +89,7 @@ impl<'a> View<'a> {
 
     /// The same sun seen from another altitude (m; held at the ground below it), straight above or below.
     pub fn at_altitude(&self, altitude_m: f64) -> Self {
-        let place = Self::new(self.sky, altitude_m, self.sun);
+        let place = Self::new(&self.sky, altitude_m, self.sun);
         Self {
             position: place.position,
             ..self.clone()
@@ -97,8 +97,8 @@ impl<'a> View<'a> {
     }
 
     /// The sky that is looked at.
-    pub fn sky(&self) -> &'a Sky {
-        self.sky
+    pub fn sky(&self) -> &Sky {
+        &self.sky
     }
 
     /// Unit vector towards the sun.
@@ -136,7 +136,7 @@ impl<'a> View<'a> {
         let ray = self.ray(direction.normalize());
         let blocks: Vec<BlockLight> = self
             .sky
-            .blocks
+            .blocks()
             .iter()
             .map(|b| b.trace(&ray, limit_m.unwrap_or(f64::INFINITY)))
             .collect();
@@ -183,7 +183,7 @@ impl<'a> View<'a> {
         };
         let mut all = vec![nothing; stops_m.len()];
         let mut first = 0;
-        for block in &self.sky.blocks {
+        for block in self.sky.blocks() {
             let lanes = first..first + block.lanes();
             first = lanes.end;
             if lanes.start >= used.end || lanes.end <= used.start {
@@ -215,7 +215,7 @@ impl<'a> View<'a> {
     pub fn transmittance_to_space(&self, direction: DVec3) -> Vec<f32> {
         let ray = self.ray(direction.normalize());
         self.sky
-            .blocks
+            .blocks()
             .iter()
             .flat_map(|b| b.transmittance_to_space(ray.radius_m, ray.mu))
             .collect()

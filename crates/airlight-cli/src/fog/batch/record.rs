@@ -74,7 +74,7 @@ impl<'a> Which<'a> {
         &'a self,
         options: &'a OverlayArgs,
         subject: &Subject,
-        fogged: &Fogged<'_>,
+        fogged: &Fogged,
     ) -> impl Serialize + 'a {
         let size = subject.picture.size;
         Made {

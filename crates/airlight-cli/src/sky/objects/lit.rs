@@ -36,9 +36,9 @@ pub trait Shader: Sync {
 }
 
 /// Things in the light of one solver, in N lanes.
-pub struct LitThings<'a, const N: usize> {
+pub struct LitThings<const N: usize> {
     /// Sun, and what lies between eye and things.
-    pub air: Box<dyn SceneLighting<N> + 'a>,
+    pub air: Box<dyn SceneLighting<N>>,
     /// Light from around at heights (m), rising: one or more.
     pub around: Vec<(f64, IrradianceMap<N>)>,
     /// Reflectance of each thing, and of its checker.
@@ -47,7 +47,7 @@ pub struct LitThings<'a, const N: usize> {
     pub shadows: bool,
 }
 
-impl<const N: usize> LitThings<'_, N> {
+impl<const N: usize> LitThings<N> {
     /// The sum of radiances along lines of sight that meet things. The air is reckoned once for those that end side by side.
     fn radiance(&self, objects: &Objects, sights: &[ViewRay<'_>]) -> Spectrum<N> {
         sights
@@ -131,16 +131,16 @@ impl<const N: usize> LitThings<'_, N> {
     }
 }
 
-impl Shader for LitThings<'_, 3> {
+impl Shader for LitThings<3> {
     fn paint(&self, objects: &Objects, sights: &[ViewRay<'_>], values: &mut [f32]) {
         values.copy_from_slice(&self.radiance(objects, sights).0);
     }
 }
 
 /// Wavelength after wavelength, so many in a piece; lanes beyond the last repeat it.
-pub struct Pieces<'a, const N: usize>(pub Vec<LitThings<'a, N>>);
+pub struct Pieces<const N: usize>(pub Vec<LitThings<N>>);
 
-impl<const N: usize> Shader for Pieces<'_, N> {
+impl<const N: usize> Shader for Pieces<N> {
     fn paint(&self, objects: &Objects, sights: &[ViewRay<'_>], values: &mut [f32]) {
         for (lit, values) in self.0.iter().zip(values.chunks_mut(N)) {
             let light = lit.radiance(objects, sights);
@@ -150,14 +150,14 @@ impl<const N: usize> Shader for Pieces<'_, N> {
 }
 
 /// The wavelengths of the model of 1987, in red, green and blue.
-pub struct Summed<'a> {
+pub struct Summed {
     /// The light.
-    pub lit: LitThings<'a, WAVELENGTHS>,
+    pub lit: LitThings<WAVELENGTHS>,
     /// Weights of each wavelength.
     pub weights: Vec<[f32; 3]>,
 }
 
-impl Shader for Summed<'_> {
+impl Shader for Summed {
     fn paint(&self, objects: &Objects, sights: &[ViewRay<'_>], values: &mut [f32]) {
         let light = self.lit.radiance(objects, sights);
         values.fill(0.0);

@@ -26,9 +26,9 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// Things with the light on them.
-pub struct LitScene<'a> {
+pub struct LitScene {
     objects: Arc<Objects>,
-    paint: Box<dyn Shader + 'a>,
+    paint: Box<dyn Shader>,
     eye: DVec3,
 }
 
@@ -61,7 +61,7 @@ fn shadows(args: &SkyArgs) -> bool {
     !args.objects.no_shadows
 }
 
-impl<'a> LitScene<'a> {
+impl LitScene {
     /// In the light of the solver's sky, and of the fog in it.
     ///
     /// # Errors
@@ -69,7 +69,7 @@ impl<'a> LitScene<'a> {
     pub fn solved(
         objects: &Arc<Objects>,
         (args, channels): (&SkyArgs, &Channels),
-        view: &View<'a>,
+        view: &View,
     ) -> Result<Self, CliError> {
         let planet = &view.sky().atmosphere().planet;
         let ground_m = planet.ground_altitude_m;
@@ -82,7 +82,7 @@ impl<'a> LitScene<'a> {
             })
             .collect::<Result<Vec<_>, CliError>>()?;
         let shadows = shadows(args);
-        let paint: Box<dyn Shader + 'a> = match air {
+        let paint: Box<dyn Shader> = match air {
             Fog::Rgb(air) => Box::new(LitThings {
                 air,
                 around: around(&near, view.sun(), 0),
@@ -91,7 +91,7 @@ impl<'a> LitScene<'a> {
             }),
             Fog::Spectral(pieces) => {
                 let nm = view.sky().grid().wavelengths_nm();
-                let lit = |(number, air): (usize, FoggySky<'a, PIECE>)| LitThings::<'a, PIECE> {
+                let lit = |(number, air): (usize, FoggySky<PIECE>)| LitThings::<PIECE> {
                     air: Box::new(air),
                     around: around(&near, view.sun(), number * PIECE),
                     reflectances: reflectances(objects, at_wavelengths(nm, number * PIECE)),
@@ -115,7 +115,7 @@ impl<'a> LitScene<'a> {
         model: &Arc<models::Lit>,
     ) -> Self {
         let shadows = shadows(args);
-        let paint: Box<dyn Shader + 'a> = match channels.spectral {
+        let paint: Box<dyn Shader> = match channels.spectral {
             None => {
                 let space = channels.space;
                 let lanes = move |light: &models::Light| {
@@ -192,13 +192,13 @@ fn heights_m(objects: &Objects, foggy: bool) -> Vec<f64> {
 }
 
 /// A sky as it is seen from a height, and the fog before it.
-struct Seen<'a> {
+struct Seen {
     clear: Arc<SkyTable>,
-    fog: Option<Fog<'a>>,
+    fog: Option<Fog>,
 }
 
-impl<'a> Seen<'a> {
-    fn from(args: &SkyArgs, there: &View<'a>, channels: &Channels) -> Result<Self, CliError> {
+impl Seen {
+    fn from(args: &SkyArgs, there: &View, channels: &Channels) -> Result<Self, CliError> {
         let fog = Fog::new(&args.fog, there, channels.table())?;
         Ok(Self {
             clear: match &fog {
@@ -219,11 +219,11 @@ impl<'a> Seen<'a> {
 
 /// The light around at heights, in lanes from the channel `first` on; lanes beyond the last repeat it.
 fn around<const N: usize>(
-    near: &[(f64, Seen<'_>)],
+    near: &[(f64, Seen)],
     sun: DVec3,
     first: usize,
 ) -> Vec<(f64, IrradianceMap<N>)> {
-    let at = |(height_m, seen): &(f64, Seen<'_>)| {
+    let at = |(height_m, seen): &(f64, Seen)| {
         let channels = seen.clear.channels();
         let surroundings = IrradianceMap::of(sun, |direction| {
             let mut values = vec![0.0; channels];
@@ -236,12 +236,12 @@ fn around<const N: usize>(
 }
 
 /// Things in the light of a model that says nothing of the air before them: none is drawn. `lanes` are those of its light.
-fn airless<'a, const N: usize>(
+fn airless<const N: usize>(
     model: &Arc<models::Lit>,
-    lanes: impl Fn(&models::Light) -> Spectrum<N> + Sync + 'a,
+    lanes: impl Fn(&models::Light) -> Spectrum<N> + Sync + 'static,
     reflectances: Vec<[Spectrum<N>; 2]>,
     shadows: bool,
-) -> LitThings<'a, N> {
+) -> LitThings<N> {
     let air = Airless {
         sunlight: lanes(&model.sun_normal),
         model: model.clone(),

@@ -19,7 +19,7 @@ use glam::DVec3;
 /// A picture of things before the picture of a sky.
 pub struct ObjectRows<'a> {
     sky: Box<dyn RowSource + 'a>,
-    objects: &'a LitScene<'a>,
+    objects: &'a LitScene,
     draws_things: bool,
     frame: Frame,
     /// Weights of wavelengths in RGB, for pictures with a channel a wavelength.
@@ -31,7 +31,7 @@ impl<'a> ObjectRows<'a> {
     /// Things before `sky`; values are `scale` times those of radiance or luminance.
     pub fn new(
         sky: Box<dyn RowSource + 'a>,
-        objects: &'a LitScene<'a>,
+        objects: &'a LitScene,
         (frame, layer): (&Frame, Layer),
         spectral: Option<&'a RgbWeights>,
         scale: f32,
@@ -96,7 +96,7 @@ impl RowSource for ObjectRows<'_> {
     }
 }
 
-impl LitScene<'_> {
+impl LitScene {
     /// What a line of sight meets.
     fn look(&self, direction: DVec3, width: f64) -> Option<ViewRay<'_>> {
         let ray = Ray {
@@ -116,7 +116,7 @@ impl LitScene<'_> {
 ///
 /// # Errors
 /// [`CliError`] where it cannot be written.
-pub fn write_depth(objects: &LitScene<'_>, file: &PictureFile) -> Result<(), CliError> {
+pub fn write_depth(objects: &LitScene, file: &PictureFile) -> Result<(), CliError> {
     let rows: FrameRows = file.frame.rows();
     let size = file.frame.size();
     let centre = file.frame.direction(
