@@ -93,9 +93,12 @@ impl RowSource for StoredRows {
     }
 }
 
-/// Hears how far a picture has come.
+/// Is told how far a picture has come.
 pub trait Progress: Sync {
-    /// `done` of `total` rows are written. Called in order, from whichever thread writes.
+    /// A stage of the work begins: what is done, in a few words, and how many rows it has (0: not known).
+    fn stage(&self, _what: &str, _rows: u64) {}
+
+    /// `done` of `total` rows are finished. Called from the threads that finish them.
     fn rows_written(&self, done: u32, total: u32);
 }
 
@@ -125,6 +128,13 @@ impl<'a> Control<'a> {
         }
     }
 
+    /// Reports that a stage of the work begins: see [`Progress::stage`].
+    pub fn stage(&self, what: &str, rows: u64) {
+        if let Some(progress) = self.progress {
+            progress.stage(what, rows);
+        }
+    }
+
     /// [`ImageError::Cancelled`] once the caller has asked to stop.
     pub fn check(&self) -> Result<(), ImageError> {
         match self.cancel {
@@ -133,7 +143,8 @@ impl<'a> Control<'a> {
         }
     }
 
-    pub(crate) fn report(&self, done: u32, total: u32) {
+    /// Reports that `done` of `total` rows are finished.
+    pub fn report(&self, done: u32, total: u32) {
         if let Some(progress) = self.progress {
             progress.rows_written(done, total);
         }

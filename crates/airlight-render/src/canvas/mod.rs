@@ -1,12 +1,15 @@
 //! Pictures by Monte Carlo: sums over bundles of paths, pixel by pixel and pass by pass.
 //!
 //! - [`Passes`]: how many bundles each pass adds; [`pixel_offset`]: where in a pixel a bundle looks.
-//! - [`ColorMoments`]: mean and standard error of a pixel; [`PixelStokes`]: its polarisation.
+//! - [`ColorMoments`]: mean and standard error of a pixel.
+//! - [`Canvas`]: all pixels of a picture, with maps of their noise and polarisation.
 
 mod moments;
 mod passes;
+mod picture;
 mod stokes;
 
 pub use moments::ColorMoments;
 pub use passes::{Passes, pixel_offset};
+pub use picture::{Canvas, POLARISATION_CHANNELS};
 pub use stokes::{POLARIZATION_CHANNELS, PixelStokes};

@@ -1,13 +1,19 @@
 //! Things before the sky: simple solids, what they are made of, and where rays meet them.
 //!
 //! - [`shape`]: solids; [`surface`]: how they reflect; [`mod@file`]: reading both from TOML.
-//! - [`Objects`]: all things of a scene, and the first that a ray meets.
+//! - [`Objects`]: all objects of a scene, and the first that a ray meets; [`LitObjects`]: the same in the light of a view.
+//! - [`ObjectRows`], [`write_depth`]: pictures of them.
 //!
 //! Positions are in metres east, up and south of the point of the ground under the eye.
 
 pub mod file;
+mod lit;
+mod rows;
 pub mod shape;
 pub mod surface;
+
+pub use lit::{LitObjects, Scratch, ViewRay};
+pub use rows::{ObjectRows, write_depth};
 
 use glam::DVec3;
 use shape::{Met, Shape};

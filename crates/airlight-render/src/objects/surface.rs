@@ -5,7 +5,7 @@
 //! `e^-(tan^2 a / m^2) / (m^2 cos^4 a)`, reflects four times too much; here it is `F D G / (4 (n.l)(n.v))` with that over pi
 //! (Walter et al. 2007, eqs. 20 and 25), which a smooth surface turns into a mirror.
 
-use airlight::spectrum::{SpectralCurve, Spectrum};
+use airlight::spectrum::SpectralCurve;
 use glam::DVec3;
 use std::f64::consts::PI;
 
@@ -38,17 +38,22 @@ pub struct Gloss {
     pub index: f64,
 }
 
-/// Light that falls on a surface, in N lanes.
-#[derive(Clone, Copy, Debug)]
-pub struct Arriving<const N: usize> {
-    /// Unit vector towards the sun.
-    pub sun: DVec3,
-    /// Irradiance of the sun on a surface that faces it; 0 in shadow.
-    pub sunlight: Spectrum<N>,
-    /// Irradiance of all else on this surface.
-    pub even: Spectrum<N>,
-    /// Radiance of all else around the direction that a mirror would send to the eye.
-    pub mirrored: Spectrum<N>,
+/// How much of the light that arrives at a surface goes to the eye. With the diffuse reflectance `r`, the sun's irradiance
+/// `E` of a surface that faces it, the irradiance `A` of all else and the radiance `M` of all else around the mirrored ray,
+///
+/// ```text
+/// L = r / pi (sun E + ambient A) + sun_mirrored E + mirrored M
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shading {
+    /// Of the sun, diffusely.
+    pub sun: f32,
+    /// Of all else, diffusely.
+    pub ambient: f32,
+    /// Of the sun, mirrored, 1/sr.
+    pub sun_mirrored: f32,
+    /// Of all else, mirrored.
+    pub mirrored: f32,
 }
 
 impl Surface {
@@ -70,28 +75,28 @@ impl Surface {
         (0.5 - 0.5 * wave(0) * wave(1) * wave(2)) as f32
     }
 
-    /// Radiance towards the eye of light on a surface of diffuse reflectance `reflectance` there; `normal` on the eye's side,
-    /// `to_eye` a unit vector.
-    pub fn radiance<const N: usize>(
-        &self,
-        reflectance: Spectrum<N>,
-        light: &Arriving<N>,
-        (normal, to_eye): (DVec3, DVec3),
-    ) -> Spectrum<N> {
-        let slant = normal.dot(light.sun).max(0.0);
-        let diffuse = reflectance * (light.sunlight * slant as f32 + light.even) / PI as f32;
+    /// How it reflects light of the sun (at the unit vector `to_sun`) and of all else towards the eye (at `to_eye`); `normal`
+    /// is on the eye's side.
+    pub fn shading(&self, normal: DVec3, to_eye: DVec3, to_sun: DVec3) -> Shading {
+        let slant = normal.dot(to_sun).max(0.0);
         let Some(gloss) = &self.gloss else {
-            return diffuse;
+            return Shading {
+                sun: slant as f32,
+                ambient: 1.0,
+                sun_mirrored: 0.0,
+                mirrored: 0.0,
+            };
         };
         let facing = normal.dot(to_eye).max(1e-4);
         let seen = fresnel(facing, gloss.index);
         // What the coat mirrors does not reach the matter under it, on the way in and out.
-        let through = |cosine: f64| (1.0 - fresnel(cosine, gloss.index)) as f32;
-        let under = reflectance / PI as f32
-            * (light.sunlight * (slant as f32 * through(slant)) + light.even * through(0.5));
-        under * (1.0 - seen as f32)
-            + light.sunlight * gloss.mirrored_sun(normal, to_eye, light.sun) as f32
-            + light.mirrored * seen as f32
+        let through = |cosine: f64| (1.0 - seen) * (1.0 - fresnel(cosine, gloss.index));
+        Shading {
+            sun: (slant * through(slant)) as f32,
+            ambient: through(0.5) as f32,
+            sun_mirrored: gloss.mirrored_sun(normal, to_eye, to_sun) as f32,
+            mirrored: seen as f32,
+        }
     }
 }
 

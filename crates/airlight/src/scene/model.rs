@@ -98,6 +98,12 @@ pub trait RadianceView: Debug + Send + Sync + 'static {
         0.0
     }
 
+    /// Whether pictures average over pixels that the horizon runs through. Published models are drawn as they were
+    /// published, by the direction of a pixel's centre.
+    fn averages_horizon(&self) -> bool {
+        false
+    }
+
     /// Radiance of sky, air, fog and ground without the sun's disc. Directions that are neighbours in a picture belong in
     /// one call: some models reuse what a neighbour needed, within the tolerance that they state.
     fn radiance(&self, directions: &[DVec3], out: &mut [f32]);

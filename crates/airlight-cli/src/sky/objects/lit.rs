@@ -3,7 +3,6 @@
 use airlight::models::klassen1987::WAVELENGTHS;
 use airlight::scene::{IrradianceMap, SceneLighting};
 use airlight::spectrum::{RgbSpace, SpectralCurve, Spectrum, WavelengthGrid};
-use airlight_render::objects::surface::Arriving;
 use airlight_render::objects::{Hit, Objects};
 use glam::DVec3;
 use std::f32::consts::PI;
@@ -78,21 +77,19 @@ impl<const N: usize> LitThings<N> {
         let sun = self.air.sun();
         let dark = hit.normal.dot(sun) <= 0.0 || self.shadows && objects.shadowed(hit, sun);
         let height_m = hit.point.y;
-        let arriving = Arriving {
-            sun,
-            sunlight: if dark { Spectrum::ZERO } else { sunlight },
-            even: self.even(height_m, hit.normal),
-            mirrored: match hit.surface.gloss {
-                None => Spectrum::ZERO,
-                Some(_) => {
-                    let mirror = direction - 2.0 * direction.dot(hit.normal) * hit.normal;
-                    self.even(height_m, mirror) / PI
-                }
-            },
+        let shading = hit.surface.shading(hit.normal, -*direction, sun);
+        let sunlight = if dark { Spectrum::ZERO } else { sunlight };
+        let mirrored = match hit.surface.gloss {
+            None => Spectrum::ZERO,
+            Some(_) => {
+                let mirror = direction - 2.0 * direction.dot(hit.normal) * hit.normal;
+                self.even(height_m, mirror) / PI
+            }
         };
-        let faces = (hit.normal, -*direction);
-        hit.surface
-            .radiance(self.reflectance(sight), &arriving, faces)
+        let diffuse = sunlight * shading.sun + self.even(height_m, hit.normal) * shading.ambient;
+        self.reflectance(sight) / PI * diffuse
+            + sunlight * shading.sun_mirrored
+            + mirrored * shading.mirrored
     }
 
     fn reflectance(&self, sight: &ViewRay<'_>) -> Spectrum<N> {

@@ -1,0 +1,30 @@
+//! Light of sun and sky on surfaces at the eye.
+
+use airlight::scene::RadianceView;
+use glam::DVec3;
+
+/// Illuminances at the eye, lx.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Illuminances {
+    /// Of the sun's disc on a surface that faces it.
+    pub sun_normal_lx: f64,
+    /// Of the sun's disc on a horizontal surface.
+    pub sun_horizontal_lx: f64,
+    /// Of the sky on a horizontal surface, without the sun's disc.
+    pub sky_horizontal_lx: f64,
+}
+
+impl Illuminances {
+    /// The illuminances of a view.
+    pub fn of(view: &dyn RadianceView) -> Self {
+        let mut values = vec![0.0; view.channel_count()];
+        view.sun_irradiance(&mut values);
+        let sun_normal_lx = view.luminance(&values);
+        view.irradiance(&[DVec3::Y], &mut values);
+        Self {
+            sun_normal_lx,
+            sun_horizontal_lx: sun_normal_lx * view.sun().y.max(0.0),
+            sky_horizontal_lx: view.luminance(&values),
+        }
+    }
+}

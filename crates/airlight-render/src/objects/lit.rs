@@ -1,0 +1,267 @@
+//! Objects in the light of a view.
+
+use super::{Hit, Object, Objects, Ray};
+use crate::channels::{RgbWeights, rgb_weights};
+use airlight::scene::{Channels, RadianceView};
+use airlight::spectrum::{RgbSpace, SpectralCurve, WavelengthGrid};
+use glam::DVec3;
+use std::f32::consts::PI;
+use std::sync::Arc;
+
+/// A ray from the eye that meets an object.
+#[derive(Clone, Copy, Debug)]
+pub struct ViewRay<'a> {
+    /// Which object, and where.
+    pub hit: Hit<'a>,
+    /// Unit vector away from the eye.
+    pub direction: DVec3,
+    /// Width of the part of the picture that the ray stands for, at a distance of 1.
+    pub width: f64,
+}
+
+/// Rays end side by side where their lengths differ by less than this part.
+const BESIDE: f64 = 0.05;
+
+impl ViewRay<'_> {
+    /// Whether both end on the same object, about equally far away.
+    fn ends_beside(&self, other: &Self) -> bool {
+        let (a, b) = (self.hit.distance_m, other.hit.distance_m);
+        self.hit.index == other.hit.index && (a - b).abs() < BESIDE * a.min(b)
+    }
+}
+
+/// Objects in the light of a view. They stand about the point of the ground under its eye.
+#[derive(Clone, Debug)]
+pub struct LitObjects {
+    objects: Arc<Objects>,
+    eye: DVec3,
+    view: Arc<dyn RadianceView>,
+    /// Views from heights (m) above the ground, rising, one or more: their irradiance is that of objects there.
+    around: Vec<(f64, Arc<dyn RadianceView>)>,
+    /// Reflectances of each object and of its checker, in the channels of the views.
+    reflectances: Vec<[Vec<f32>; 2]>,
+    /// Where the views are spectral and the picture is not: weights of their wavelengths.
+    weights: Option<RgbWeights>,
+    shadows: bool,
+}
+
+impl LitObjects {
+    /// Objects in the light of `view`, whose eye is `eye_height_m` above the ground; `around` are views from heights (m)
+    /// above the ground, rising and at least one, in the same channels. Pictures are in `space`.
+    pub fn new(
+        objects: Arc<Objects>,
+        (eye_height_m, view): (f64, Arc<dyn RadianceView>),
+        around: Vec<(f64, Arc<dyn RadianceView>)>,
+        shadows: bool,
+    ) -> Self {
+        let reflectances = match (view.channels(), view.grid()) {
+            (Channels::Rgb(space), _) => reflectances(&objects, reflectance_in_rgb(space)),
+            (Channels::Spectral, grid) => {
+                let nm = grid.map_or(&[][..], WavelengthGrid::wavelengths_nm);
+                reflectances(&objects, |curve| {
+                    nm.iter().map(|&nm| curve.at(nm) as f32).collect()
+                })
+            }
+        };
+        Self {
+            objects,
+            eye: DVec3::Y * eye_height_m,
+            view,
+            around,
+            reflectances,
+            weights: None,
+            shadows,
+        }
+    }
+
+    /// The same with the light summed to colours of an RGB space, where the views are spectral.
+    pub fn in_rgb(mut self, space: RgbSpace) -> Self {
+        self.weights = self.view.grid().map(|grid| rgb_weights(grid, space));
+        self
+    }
+
+    /// The first object along a ray from the eye, which stands for a part of the picture of this width at a distance of 1.
+    pub fn hit(&self, direction: DVec3, width: f64) -> Option<ViewRay<'_>> {
+        let ray = Ray {
+            origin: self.eye,
+            direction,
+        };
+        self.objects.hit(&ray).map(|hit| ViewRay {
+            hit,
+            direction,
+            width,
+        })
+    }
+
+    /// Room for the values of a pixel.
+    pub fn scratch(&self) -> Scratch {
+        let values = || vec![0.0; self.view.channel_count()];
+        Scratch {
+            sum: values(),
+            light: values(),
+            sunlight: values(),
+            ambient: values(),
+            mirrored: values(),
+            other: values(),
+            transmittance: values(),
+            path_radiance: values(),
+        }
+    }
+
+    /// The sum of the radiances along the rays of a pixel, which all meet objects, through the air before them.
+    pub fn radiance<'s>(&self, rays: &[ViewRay<'_>], scratch: &'s mut Scratch) -> &'s [f32] {
+        scratch.sum.fill(0.0);
+        // The air is computed once for rays that end side by side.
+        for beside in rays.chunk_by(|a, b| a.ends_beside(b)) {
+            let count = beside.len() as f64;
+            let mean = |of: fn(&Hit<'_>) -> f64| {
+                beside.iter().map(|ray| of(&ray.hit)).sum::<f64>() / count
+            };
+            self.view
+                .sunlight(mean(|hit| hit.point.y), &mut scratch.sunlight);
+            scratch.light.fill(0.0);
+            for ray in beside {
+                self.add_reflected(ray, scratch);
+            }
+            self.view.path(
+                beside[beside.len() / 2].direction,
+                mean(|hit| hit.distance_m),
+                &mut scratch.transmittance,
+                &mut scratch.path_radiance,
+            );
+            for (lane, sum) in scratch.sum.iter_mut().enumerate() {
+                *sum += scratch.transmittance[lane] * scratch.light[lane]
+                    + scratch.path_radiance[lane] * count as f32;
+            }
+        }
+        if let Some(weights) = &self.weights {
+            scratch.light.fill(0.0);
+            for (radiance, weights) in scratch.sum.iter().zip(weights) {
+                for (color, weight) in scratch.light.iter_mut().zip(weights) {
+                    *color += weight * radiance;
+                }
+            }
+            return &scratch.light[..3];
+        }
+        &scratch.sum
+    }
+
+    /// Adds the radiance that a surface sends to the eye.
+    fn add_reflected(&self, ray: &ViewRay<'_>, scratch: &mut Scratch) {
+        let ViewRay { hit, direction, .. } = ray;
+        let sun = self.view.sun();
+        let shading = hit.surface.shading(hit.normal, -*direction, sun);
+        let dark = hit.normal.dot(sun) <= 0.0 || self.shadows && self.objects.shadowed(hit, sun);
+        let (sun, sun_mirrored) = match dark {
+            true => (0.0, 0.0),
+            false => (shading.sun, shading.sun_mirrored),
+        };
+        let height_m = hit.point.y;
+        let Scratch {
+            light,
+            sunlight,
+            ambient,
+            mirrored,
+            other,
+            ..
+        } = scratch;
+        self.ambient(height_m, hit.normal, ambient, other);
+        if hit.surface.gloss.is_some() {
+            let mirror = direction - 2.0 * direction.dot(hit.normal) * hit.normal;
+            self.ambient(height_m, mirror, mirrored, other);
+        }
+        let share = checker_share(ray);
+        let [own, checker] = &self.reflectances[hit.index];
+        for lane in 0..light.len() {
+            let reflectance = own[lane] * (1.0 - share) + checker[lane] * share;
+            let diffuse = sunlight[lane] * sun + ambient[lane] * shading.ambient;
+            light[lane] += reflectance / PI * diffuse
+                + sunlight[lane] * sun_mirrored
+                + mirrored[lane] / PI * shading.mirrored;
+        }
+    }
+
+    /// Irradiance of everything but the sun's disc on a surface at a height.
+    fn ambient(&self, height_m: f64, normal: DVec3, out: &mut [f32], other: &mut [f32]) {
+        let above = self
+            .around
+            .iter()
+            .position(|(at_m, _)| *at_m >= height_m)
+            .unwrap_or(self.around.len() - 1);
+        let below = above.saturating_sub(1);
+        let (low, high) = (&self.around[below], &self.around[above]);
+        high.1.irradiance(&[normal], out);
+        let span_m = high.0 - low.0;
+        if span_m > 0.0 {
+            let t = ((height_m - low.0) / span_m).clamp(0.0, 1.0) as f32;
+            low.1.irradiance(&[normal], other);
+            for (high, low) in out.iter_mut().zip(other) {
+                *high = *low * (1.0 - t) + *high * t;
+            }
+        }
+    }
+}
+
+/// Room for the values of a pixel, one a channel of the views.
+#[derive(Clone, Debug)]
+pub struct Scratch {
+    sum: Vec<f32>,
+    light: Vec<f32>,
+    sunlight: Vec<f32>,
+    ambient: Vec<f32>,
+    mirrored: Vec<f32>,
+    other: Vec<f32>,
+    transmittance: Vec<f32>,
+    path_radiance: Vec<f32>,
+}
+
+/// How much of the checker's own reflectance a ray meets, 0 to 1.
+fn checker_share(ray: &ViewRay<'_>) -> f32 {
+    let ViewRay { hit, direction, .. } = ray;
+    let Some(checker) = &hit.surface.checker else {
+        return 0.0;
+    };
+    // The footprint is long where the ray grazes the surface, and has no extent across it.
+    let across = ray.width * hit.distance_m;
+    let slant = hit.normal.dot(*direction).abs().max(1e-6);
+    let footprint =
+        (DVec3::ONE + direction.abs() / slant) * across * (DVec3::ONE - hit.normal * hit.normal);
+    // Just inside, as squares begin on the surface of a block.
+    let inside = hit.point - 1e-3 * checker.size_m * hit.normal;
+    hit.surface.checker_share(inside, footprint)
+}
+
+/// Reflectances of objects and of their checkers, by how a curve becomes channels.
+fn reflectances(
+    objects: &Objects,
+    channels: impl Fn(&SpectralCurve) -> Vec<f32>,
+) -> Vec<[Vec<f32>; 2]> {
+    let of = |object: &Object| {
+        let own = &object.surface.reflectance;
+        let other = object.surface.checker.as_ref().map(|c| &c.reflectance);
+        [channels(own), channels(other.unwrap_or(own))]
+    };
+    objects.all().iter().map(of).collect()
+}
+
+/// Reflectance in red, green and blue: the colour of reflected sunlight over that of sunlight. Exact under the sun outside
+/// the air, and for greys under any light; a strong red in the light of a sun 20 degrees high is off by 4 %.
+fn reflectance_in_rgb(space: RgbSpace) -> impl Fn(&SpectralCurve) -> Vec<f32> {
+    let grid = WavelengthGrid::one_nanometre();
+    let color = move |curve: &SpectralCurve| {
+        let light: Vec<f32> = grid
+            .wavelengths_nm()
+            .iter()
+            .zip(grid.solar_irradiance())
+            .map(|(nm, sun)| (sun * curve.at(*nm)) as f32)
+            .collect();
+        space.from_xyz(grid.to_xyz(&light))
+    };
+    let white = color(&SpectralCurve::Constant(1.0));
+    move |curve| {
+        let lit = color(curve);
+        (0..3)
+            .map(|lane| (lit[lane] / white[lane]).max(0.0) as f32)
+            .collect()
+    }
+}

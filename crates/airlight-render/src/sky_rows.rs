@@ -1,0 +1,213 @@
+//! Sky and sun's disc, row by row.
+
+use crate::channels::PixelChannels;
+use crate::pixels::{directions_within, pixel_reach};
+use crate::sun_disc::SunDiscImage;
+use airlight::scene::{RadianceView, RowSampler};
+use airlight_image::frame::FrameRows;
+use airlight_image::{Frame, Projection, RowSource};
+use glam::DVec3;
+
+/// Which part of the light is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Layer {
+    /// Sky, objects and the sun's disc.
+    All,
+    /// Sky and objects without the disc.
+    Sky,
+    /// The disc alone.
+    Disc,
+}
+
+/// Where the radiance of the sky comes from.
+#[derive(Clone, Copy, Debug)]
+pub enum SkyValues<'a> {
+    /// A view, which is asked for each direction.
+    View(&'a dyn RadianceView),
+    /// The values of all pixels in the channels of a view, row after row.
+    Stored(&'a [f32]),
+}
+
+/// The sky of one moment in one frame.
+#[derive(Debug)]
+pub struct SkyRows<'a> {
+    sky: Option<SkyValues<'a>>,
+    sampler: Option<Box<dyn RowSampler>>,
+    disc: Option<&'a SunDiscImage>,
+    channels: &'a PixelChannels,
+    rows: FrameRows,
+    scale: f32,
+    pixel_reach: f64,
+}
+
+impl<'a> SkyRows<'a> {
+    /// Rows of a layer of `frame`; values are `scale` times radiance or luminance.
+    pub fn new(
+        frame: &Frame,
+        layer: Layer,
+        (sky, disc): (SkyValues<'a>, Option<&'a SunDiscImage>),
+        channels: &'a PixelChannels,
+        scale: f32,
+    ) -> Self {
+        let sky = (layer != Layer::Disc).then_some(sky);
+        Self {
+            sampler: match sky {
+                Some(SkyValues::View(view)) => row_sampler(frame, view),
+                _ => None,
+            },
+            sky,
+            disc: disc.filter(|_| layer != Layer::Sky),
+            channels,
+            rows: frame.rows(),
+            scale,
+            pixel_reach: pixel_reach(frame),
+        }
+    }
+
+    /// Radiance of a row in the channels of the view.
+    fn sample_row(
+        &self,
+        view: &dyn RadianceView,
+        y: u32,
+        directions: &[DVec3],
+        values: &mut [f32],
+    ) {
+        let at_horizon = |direction: DVec3| {
+            let height = direction.y.clamp(-1.0, 1.0).asin() - view.horizon_elevation_rad();
+            view.averages_horizon() && height.abs() < self.pixel_reach
+        };
+        match (&self.sampler, directions.first()) {
+            (Some(sampler), Some(&first)) if !at_horizon(first) => {
+                sampler.sample_row(directions, values);
+            }
+            _ => {
+                view.radiance(directions, values);
+                let pixels = values.chunks_exact_mut(view.channel_count());
+                for ((i, &direction), values) in (0..).zip(directions).zip(pixels) {
+                    if direction != DVec3::ZERO && at_horizon(direction) {
+                        self.average_pixel(view, (i, y), values);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The mean over a pixel that the horizon runs through.
+    fn average_pixel(&self, view: &dyn RadianceView, pixel: (u32, u32), values: &mut [f32]) {
+        let directions: Vec<DVec3> = directions_within(self.rows.frame(), pixel).collect();
+        let count = values.len();
+        let mut radiance = vec![0.0; directions.len() * count];
+        view.radiance(&directions, &mut radiance);
+        values.fill(0.0);
+        for sample in radiance.chunks_exact(count) {
+            values.iter_mut().zip(sample).for_each(|(sum, v)| *sum += v);
+        }
+        let points = directions.len().max(1) as f32;
+        values.iter_mut().for_each(|sum| *sum /= points);
+    }
+}
+
+impl RowSource for SkyRows<'_> {
+    fn channels(&self) -> usize {
+        self.channels.count()
+    }
+
+    fn fill_row(&self, y: u32, out: &mut [f32]) {
+        let frame = self.rows.frame();
+        let width = frame.size().width() as usize;
+        let mut directions = vec![DVec3::ZERO; width];
+        self.rows.fill(y, &mut directions);
+        out.fill(0.0);
+        let count = self.channels.view_count();
+        let put = |values: &[f32], out: &mut [f32]| {
+            let pixels = out.chunks_exact_mut(self.channels.count());
+            for (values, pixel) in values.chunks_exact(count).zip(pixels) {
+                self.channels.add(values, self.scale, pixel);
+            }
+        };
+        match self.sky {
+            None => {}
+            Some(SkyValues::Stored(values)) => {
+                put(&values[y as usize * width * count..][..width * count], out);
+            }
+            Some(SkyValues::View(view)) => {
+                let mut values = vec![0.0; width * count];
+                self.sample_row(view, y, &directions, &mut values);
+                put(&values, out);
+            }
+        }
+        if let Some(disc) = self.disc {
+            let reach_and_scale = (self.pixel_reach, self.scale);
+            disc.add_row((frame, y), &directions, reach_and_scale, self.channels, out);
+        }
+    }
+}
+
+/// The faster way for projections whose columns keep their azimuth.
+fn row_sampler(frame: &Frame, view: &dyn RadianceView) -> Option<Box<dyn RowSampler>> {
+    let Projection::Equirectangular { center_azimuth_deg } = *frame.projection() else {
+        return None;
+    };
+    let width = f64::from(frame.size().width());
+    let azimuth = |i: u32| {
+        let turn = (f64::from(i) + 0.5) / width - 0.5;
+        (center_azimuth_deg + 360.0 * turn).to_radians()
+    };
+    let azimuths: Vec<f64> = (0..frame.size().width()).map(azimuth).collect();
+    view.row_sampler(&azimuths)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_view::TestView;
+    use airlight::axes;
+    use airlight::spectrum::RgbSpace;
+    use airlight_image::Fisheye;
+
+    fn row(frame: &Frame, sky: SkyValues<'_>, layer: Layer, y: u32) -> Vec<f32> {
+        let channels = PixelChannels::rgb(RgbSpace::Srgb);
+        let rows = SkyRows::new(frame, layer, (sky, None), &channels, 2.0);
+        let mut out = vec![f32::NAN; 3 * frame.size().width() as usize];
+        rows.fill_row(y, &mut out);
+        out
+    }
+
+    #[test]
+    fn pixels_on_the_horizon_are_means_of_sky_and_ground() {
+        let view = TestView::with_sun(axes::direction(0.0, 30.0));
+        let frame = Frame::new(
+            Projection::Equirectangular {
+                center_azimuth_deg: 0.0,
+            },
+            18,
+            9,
+        )
+        .unwrap();
+        let green = |y| row(&frame, SkyValues::View(&view), Layer::All, y)[1];
+        assert_eq!(
+            [green(0), green(8)],
+            [2.0 * TestView::SKY, 2.0 * TestView::GROUND]
+        );
+        assert_eq!(green(4), TestView::SKY + TestView::GROUND);
+    }
+
+    #[test]
+    fn nothing_is_drawn_beside_a_fisheyes_circle_nor_of_a_disc_that_is_hidden() {
+        let view = TestView::with_sun(axes::direction(0.0, 30.0));
+        let frame = Frame::new(Projection::AngularFisheye(Fisheye::ALL_SKY), 9, 9).unwrap();
+        let first = row(&frame, SkyValues::View(&view), Layer::All, 0);
+        assert_eq!(first[..3], [0.0; 3]);
+        assert!(first[3 * 4] > 0.0);
+        let disc = row(&frame, SkyValues::View(&view), Layer::Disc, 4);
+        assert!(disc.iter().all(|v| *v == 0.0));
+    }
+
+    #[test]
+    fn stored_values_are_drawn_instead_of_the_view() {
+        let frame = Frame::equirectangular(2).unwrap();
+        let stored: Vec<f32> = (0..3 * 4 * 2).map(|i| i as f32).collect();
+        let second = row(&frame, SkyValues::Stored(&stored), Layer::Sky, 1);
+        assert_eq!(second[..3], [24.0, 26.0, 28.0]);
+    }
+}

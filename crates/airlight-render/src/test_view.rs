@@ -1,0 +1,161 @@
+//! A view for tests: an even sky over even ground, and an even sun.
+
+use airlight::axes;
+use airlight::monte_carlo::{Estimate, PolarisedEstimate};
+use airlight::scene::{Channels, RadianceSampler, RadianceView};
+use airlight::spectrum::{RgbSpace, WavelengthGrid};
+use airlight::sun::SunDisc;
+use glam::DVec3;
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+/// An even sky over even ground without air, and a sun that is as bright at its limb as in its middle; linear sRGB.
+#[derive(Clone, Debug)]
+pub struct TestView {
+    sun: DVec3,
+    disc: SunDisc,
+}
+
+impl TestView {
+    /// Radiance of the sky.
+    pub const SKY: f32 = 1000.0;
+    /// Radiance of the ground.
+    pub const GROUND: f32 = 200.0;
+    /// Radiance of the sun's disc.
+    pub const SUN: f32 = 1e9;
+    /// Light scattered in by a metre of air before objects.
+    pub const AIR_PER_M: f32 = 0.5;
+
+    /// Under a sun in a direction.
+    pub fn with_sun(sun: DVec3) -> Self {
+        Self {
+            sun,
+            disc: SunDisc::default(),
+        }
+    }
+
+    /// Irradiance, facing the sun, of the part of the disc that the horizon does not hide.
+    pub fn disc_irradiance_above_horizon(&self) -> f64 {
+        let radius = self.disc.angular_radius_rad;
+        // The visible part of the radius from the centre down, and the area of the segment below it.
+        let down = (axes::elevation_deg(self.sun).to_radians() / radius).clamp(-1.0, 1.0);
+        let hidden = (down.acos() - down * (1.0 - down * down).sqrt()) / PI;
+        f64::from(Self::SUN) * PI * radius.sin().powi(2) * (1.0 - hidden)
+    }
+
+    fn each(directions: &[DVec3], out: &mut [f32], value: impl Fn(DVec3) -> f32) {
+        for (&direction, out) in directions.iter().zip(out.chunks_exact_mut(3)) {
+            out.fill(match direction == DVec3::ZERO {
+                true => 0.0,
+                false => value(direction),
+            });
+        }
+    }
+}
+
+impl RadianceView for TestView {
+    fn channels(&self) -> Channels {
+        Channels::Rgb(RgbSpace::Srgb)
+    }
+
+    fn grid(&self) -> Option<&WavelengthGrid> {
+        None
+    }
+
+    fn sun(&self) -> DVec3 {
+        self.sun
+    }
+
+    fn disc(&self) -> &SunDisc {
+        &self.disc
+    }
+
+    fn averages_horizon(&self) -> bool {
+        true
+    }
+
+    fn radiance(&self, directions: &[DVec3], out: &mut [f32]) {
+        Self::each(directions, out, |d| match d.y < 0.0 {
+            true => Self::GROUND,
+            false => Self::SKY,
+        });
+    }
+
+    fn sun_disc(&self, directions: &[DVec3], out: &mut [f32]) {
+        Self::each(directions, out, |d| {
+            match d.y >= 0.0 && d.angle_between(self.sun) < self.disc.angular_radius_rad {
+                true => Self::SUN,
+                false => 0.0,
+            }
+        });
+    }
+
+    fn irradiance(&self, normals: &[DVec3], out: &mut [f32]) {
+        Self::each(normals, out, |n| {
+            let up = 0.5 + 0.5 * n.y as f32;
+            PI as f32 * (up * Self::SKY + (1.0 - up) * Self::GROUND)
+        });
+    }
+
+    fn sun_irradiance(&self, out: &mut [f32]) {
+        out.fill(self.disc_irradiance_above_horizon() as f32);
+    }
+
+    fn sunlight(&self, _height_m: f64, out: &mut [f32]) {
+        self.sun_irradiance(out);
+    }
+
+    fn path(
+        &self,
+        _direction: DVec3,
+        distance_m: f64,
+        transmittance: &mut [f32],
+        path_radiance: &mut [f32],
+    ) {
+        transmittance.fill(1.0);
+        path_radiance.fill(Self::AIR_PER_M * distance_m as f32);
+    }
+}
+
+/// Bundles of radiance 0 and 2 by turns, half of it polarised level.
+#[derive(Clone, Copy, Debug)]
+pub struct TestSampler;
+
+impl RadianceSampler for TestSampler {
+    fn paths_per_bundle(&self) -> u64 {
+        64
+    }
+
+    fn paths(&self) -> u64 {
+        512
+    }
+
+    fn add_bundle(&self, _direction: DVec3, bundle: u64, sum: &mut [f64]) {
+        sum.iter_mut()
+            .for_each(|sum| *sum += (2 * (bundle % 2)) as f64);
+    }
+
+    fn add_polarised_bundle(
+        &self,
+        direction: DVec3,
+        bundle: u64,
+        sum: &mut [f64],
+        stokes: &mut [f64; 3],
+    ) {
+        self.add_bundle(direction, bundle, sum);
+        stokes[0] += 2.0;
+        stokes[1] -= 1.0;
+    }
+
+    fn estimate(&self, _direction: DVec3, _limit_m: Option<f64>) -> Estimate {
+        unreachable!("pictures add bundles")
+    }
+
+    fn polarised_estimate(&self, _direction: DVec3, _limit_m: Option<f64>) -> PolarisedEstimate {
+        unreachable!("pictures add bundles")
+    }
+
+    fn preview(&self) -> Arc<dyn RadianceView> {
+        Arc::new(TestView::with_sun(DVec3::Y))
+    }
+}
