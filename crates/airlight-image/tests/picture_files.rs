@@ -40,7 +40,12 @@ fn write_to(path: &Path, size: Size, source: &dyn RowSource) -> Result<Written, 
 fn the_ending_names_the_format() {
     let folder = Folder::new("ending");
     let size = size(40, 20);
-    for ending in ["exr", "hdr", "png", "jpg", "JPEG", "PNG"] {
+    let endings = PictureFormat::ALL.iter().flat_map(|f| f.endings());
+    let endings: Vec<String> = endings
+        .map(|ending| (*ending).to_owned())
+        .chain(["JPEG".to_owned(), "PNG".to_owned()])
+        .collect();
+    for ending in &endings {
         let path = folder.0.join(format!("sky.{ending}"));
         let written = write_to(&path, size, &sky(size, 3)).unwrap();
         assert_eq!(fs::metadata(&path).unwrap().len(), written.bytes);
@@ -48,10 +53,10 @@ fn the_ending_names_the_format() {
         // Again, over the first.
         write_to(&path, size, &sky(size, 3)).unwrap();
     }
-    assert_eq!(folder.files().len(), 6);
+    assert_eq!(folder.files().len(), endings.len());
     assert_eq!(
         PictureFormat::from_path(Path::new("a.b.Hdr")).unwrap(),
-        PictureFormat::Hdr
+        PictureFormat::HDR
     );
     let error = PictureFormat::from_path(Path::new("sky.tif"))
         .unwrap_err()

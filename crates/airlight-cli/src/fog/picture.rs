@@ -65,7 +65,7 @@ pub fn check(args: &OverlayArgs) -> Result<(), CliError> {
 /// [`CliError::Usage`] where it does not.
 pub fn format_of(args: &OverlayArgs, output: &Path) -> Result<PictureFormat, CliError> {
     let format = PictureFormat::from_path(output)?;
-    if args.layers && format != PictureFormat::Exr {
+    if args.layers && !format.holds_channels() {
         return Err(CliError::usage(
             "--layers needs an OpenEXR file to go to: give --output a name that ends in .exr",
         ));
@@ -85,13 +85,10 @@ impl Subject {
         format: PictureFormat,
     ) -> Result<Self, CliError> {
         let mut picture = read_picture(colour, None)?;
-        if matches!(format, PictureFormat::Jpeg | PictureFormat::Hdr) {
-            // These formats hold no opacity.
+        if !format.holds_alpha() {
             picture.alpha = None;
         }
-        if (format == PictureFormat::Exr || format == PictureFormat::Hdr)
-            != (picture.reference == LightReference::Scene)
-        {
+        if format.is_linear() != (picture.reference == LightReference::Scene) {
             return Err(CliError::usage(format!(
                 "`{}` holds {}, and so must the output: give --output a name that ends in {}",
                 colour.display(),
@@ -283,12 +280,12 @@ fn write(
         ..Default::default()
     };
     let size = picture.size;
-    Ok(match format {
-        PictureFormat::Exr => {
+    Ok(match format.holds_channels() {
+        true => {
             let (names, metadata) = (overlay.channel_names(), &options.metadata);
             exr::write(path, size, &names, overlay, &options.exr, metadata, control)?
         }
-        _ => {
+        false => {
             let tone = ToneMapper::as_displayed();
             write_picture(path, size, overlay, &tone, &options, control)?
         }

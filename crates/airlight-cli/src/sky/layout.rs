@@ -49,7 +49,7 @@ impl Layout {
                 .output
                 .as_deref()
                 .is_some_and(|path| is_spectral_path(path));
-        if spectral && format != Some(PictureFormat::Exr) {
+        if spectral && format != Some(PictureFormat::EXR) {
             return Err(CliError::usage(
                 "--spectral is for OpenEXR files: give --output a name that ends in .exr",
             ));

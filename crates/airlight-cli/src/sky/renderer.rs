@@ -185,7 +185,7 @@ impl Renderer<'_> {
     /// [`CliError`] for an exposure that is none.
     pub fn tone(&self, prepared: &PreparedFrame) -> Result<ToneMapper, CliError> {
         match self.layout.format {
-            Some(PictureFormat::Png | PictureFormat::Jpeg) => exposure::tone(self, prepared),
+            Some(format) if !format.is_linear() => exposure::tone(self, prepared),
             _ => Ok(ToneMapper::new(1.0, ToneCurve::Clip)?),
         }
     }
@@ -226,6 +226,13 @@ impl Renderer<'_> {
 
     /// How a file is written.
     pub fn options(&self, prepared: &PreparedFrame, file: &PictureFile) -> PictureOptions {
+        PictureOptions {
+            metadata: metadata::of(self, prepared, file.layer).with_frame(&file.frame),
+            ..self.options_without_metadata()
+        }
+    }
+
+    fn options_without_metadata(&self) -> PictureOptions {
         let args = &self.args.picture;
         PictureOptions {
             exr: ExrOptions {
@@ -252,7 +259,7 @@ impl Renderer<'_> {
             jpeg: JpegOptions {
                 quality: args.quality,
             },
-            metadata: metadata::of(self, prepared, file.layer).with_frame(&file.frame),
+            ..PictureOptions::default()
         }
     }
 
@@ -265,13 +272,9 @@ impl Renderer<'_> {
             Fisheye => "fisheye",
             Perspective => "perspective",
         };
-        let format = match (self.layout.format, self.args.picture.precision) {
-            (Some(PictureFormat::Exr), PrecisionArg::Float) => "float EXR",
-            (Some(PictureFormat::Exr), PrecisionArg::Half) => "half EXR",
-            (Some(PictureFormat::Hdr), _) => "Radiance HDR",
-            (Some(PictureFormat::Png), _) => "PNG",
-            (Some(PictureFormat::Jpeg), _) => "JPEG",
-            (None, _) => "picture",
+        let format = match self.layout.format {
+            Some(format) => format.describe(&self.options_without_metadata()),
+            None => "picture".to_owned(),
         };
         match &self.channels.spectral {
             Some(_) => format!(
@@ -286,15 +289,14 @@ impl Renderer<'_> {
     pub fn warn_of_clipping(&self, written: &[Written]) {
         let clamped: u64 = written.iter().map(|w| w.clamped_samples).sum();
         let nans: u64 = written.iter().map(|w| w.nan_samples).sum();
-        match self.layout.format {
-            Some(PictureFormat::Exr) if clamped > 0 => report::note(&format!(
-                "{clamped} samples were brighter than half precision holds (65504) and are cut off there: --precision \
-                 float keeps them, --scale 1e-5 makes them fit, --sun-disc separate or out keeps the sun apart"
-            )),
-            Some(PictureFormat::Hdr) if clamped > 0 => report::note(&format!(
-                "{clamped} samples lay below 0, for colours outside the RGB space, which HDR cannot hold: they are 0"
-            )),
-            _ => {}
+        if let Some(format) = self.layout.format.filter(|_| clamped > 0) {
+            let hint = match format.holds_channels() {
+                true => {
+                    ": --precision float keeps them, --scale 1e-5 makes them fit, --sun-disc separate or out keeps the sun apart"
+                }
+                false => "",
+            };
+            report::note(&format!("{clamped} samples {}{hint}", format.clamping()));
         }
         if nans > 0 {
             report::note(&format!(

@@ -1,7 +1,7 @@
 //! OpenEXR files: linear, any channels, half or single precision, scan lines in blocks that are compressed in parallel.
 
 use super::{
-    Metadata, Written,
+    FormatEntry, Metadata, Written,
     bands::{Bands, RowBuffer},
     deflate::{Deflater, End},
     exr_header,
@@ -27,6 +27,31 @@ use std::{
 };
 
 pub(super) const FORMAT: &str = "OpenEXR";
+
+/// The format of this file's writer.
+pub(super) static ENTRY: FormatEntry = FormatEntry {
+    name: FORMAT,
+    endings: &["exr"],
+    is_linear: true,
+    holds_alpha: true,
+    holds_channels: true,
+    clamping: "were brighter than half precision holds (65504) and are cut off there",
+    describe: |options| match options.exr.sample {
+        ExrSample::Float => "float EXR".to_owned(),
+        ExrSample::Half => "half EXR".to_owned(),
+    },
+    write: |path, rgb, options, control| {
+        write(
+            path,
+            rgb.size,
+            &["R", "G", "B"],
+            rgb.source,
+            &options.exr,
+            &options.metadata,
+            control,
+        )
+    },
+};
 
 /// Effort of zip, 0 to 9: from here up files shrink by a few percent only, for half as much time again.
 const ZIP_LEVEL: u8 = 2;

@@ -4,7 +4,7 @@
 //! percent of the largest component. Radiance's own programs add half a step on reading.
 
 use super::{
-    Metadata, Written,
+    FormatEntry, Metadata, Written,
     bands::{Bands, RowBuffer},
     expect_channels, into_file,
 };
@@ -12,6 +12,20 @@ use crate::{Control, ImageError, RowSource, Size};
 use std::{io::Write, path::Path};
 
 const FORMAT: &str = "Radiance HDR";
+
+/// The format of this file's writer.
+pub(super) static ENTRY: FormatEntry = FormatEntry {
+    name: FORMAT,
+    endings: &["hdr", "pic"],
+    is_linear: true,
+    holds_alpha: false,
+    holds_channels: false,
+    clamping: "lay below 0, for colours outside the RGB space, which HDR cannot hold: they are 0",
+    describe: |_| FORMAT.to_owned(),
+    write: |path, rgb, options, control| {
+        write(path, rgb.size, rgb.source, &options.metadata, control)
+    },
+};
 
 /// The largest value RGBE holds: mantissa 255 with the highest exponent.
 const LARGEST: f32 = 255.0 * 6.646_14e35;

@@ -1,7 +1,7 @@
 //! JPEG files: baseline, 8 bits, sRGB by convention. Rows are tone mapped in parallel; one thread encodes.
 
 use super::{
-    Metadata, Written,
+    FormatEntry, Metadata, Written,
     bands::{Bands, RowBuffer},
     expect_channels, into_file,
 };
@@ -19,6 +19,23 @@ use std::{
 };
 
 const FORMAT: &str = "JPEG";
+
+/// The format of this file's writer.
+pub(super) static ENTRY: FormatEntry = FormatEntry {
+    name: FORMAT,
+    endings: &["jpg", "jpeg"],
+    is_linear: false,
+    holds_alpha: false,
+    holds_channels: false,
+    clamping: "",
+    describe: |_| FORMAT.to_owned(),
+    write: |path, rgb, options, control| {
+        let (jpeg, metadata) = (&options.jpeg, &options.metadata);
+        write(
+            path, rgb.size, rgb.source, rgb.tone, jpeg, metadata, control,
+        )
+    },
+};
 
 /// Settings of JPEG files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

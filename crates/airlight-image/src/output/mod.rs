@@ -1,4 +1,4 @@
-//! Picture files: OpenEXR (RGB and spectral), Radiance HDR, PNG, JPEG.
+//! Picture files: OpenEXR (RGB and spectral), Radiance HDR, PNG, JPEG; [`PictureFormat`] lists them.
 //!
 //! Every writer computes rows in parallel in bands, holds few bands at a time, polls for cancellation, and writes
 //! beside its target: the target appears whole or not at all.
@@ -25,28 +25,46 @@ use std::{
     path::Path,
 };
 
-/// Formats a picture can be written in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum PictureFormat {
-    /// OpenEXR: linear, half or single precision.
-    Exr,
-    /// Radiance RGBE: linear, 8 bits and a shared exponent.
-    Hdr,
-    /// PNG: sRGB, 8 or 16 bits.
-    Png,
-    /// JPEG: sRGB, 8 bits, lossy.
-    Jpeg,
+/// What a format is and how it is written: one in the file of each writer, all of them listed in [`PictureFormat::ALL`].
+struct FormatEntry {
+    name: &'static str,
+    /// Endings of file names in small letters, the usual one first.
+    endings: &'static [&'static str],
+    /// Linear light, without tone mapping.
+    is_linear: bool,
+    holds_alpha: bool,
+    /// Channels of any number and name besides red, green and blue.
+    holds_channels: bool,
+    /// What the writer did to samples that the format cannot hold; empty where there are none such.
+    clamping: &'static str,
+    /// The name with the settings that matter.
+    describe: fn(&PictureOptions) -> String,
+    /// Writes rows of red, green and blue.
+    write: fn(&Path, &Rgb<'_>, &PictureOptions, Control<'_>) -> Result<Written, ImageError>,
 }
 
+/// Rows of linear red, green and blue, and what makes display values of them.
+struct Rgb<'a> {
+    size: Size,
+    source: &'a dyn RowSource,
+    tone: &'a ToneMapper,
+}
+
+/// A format that pictures can be written in.
+#[derive(Clone, Copy)]
+pub struct PictureFormat(&'static FormatEntry);
+
 impl PictureFormat {
-    const ENDINGS: [(&'static str, Self); 6] = [
-        ("exr", Self::Exr),
-        ("hdr", Self::Hdr),
-        ("pic", Self::Hdr),
-        ("png", Self::Png),
-        ("jpg", Self::Jpeg),
-        ("jpeg", Self::Jpeg),
-    ];
+    /// OpenEXR: linear, half or single precision.
+    pub const EXR: Self = Self(&exr::ENTRY);
+    /// Radiance RGBE: linear, 8 bits and a shared exponent.
+    pub const HDR: Self = Self(&hdr::ENTRY);
+    /// PNG: sRGB, 8 or 16 bits.
+    pub const PNG: Self = Self(&png::ENTRY);
+    /// JPEG: sRGB, 8 bits, lossy.
+    pub const JPEG: Self = Self(&jpeg::ENTRY);
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::EXR, Self::HDR, Self::PNG, Self::JPEG];
 
     /// The format that a file's ending names, in large or small letters.
     ///
@@ -55,27 +73,71 @@ impl PictureFormat {
     pub fn from_path(path: &Path) -> Result<Self, ImageError> {
         let ending = path.extension().map(|e| e.to_string_lossy().into_owned());
         let lower = ending.as_deref().unwrap_or("").to_ascii_lowercase();
-        Self::ENDINGS
-            .iter()
-            .find(|(known, _)| *known == lower)
-            .map(|&(_, format)| format)
+        Self::ALL
+            .into_iter()
+            .find(|format| format.endings().contains(&lower.as_str()))
             .ok_or_else(|| ImageError::UnknownFormat {
                 path: path.to_owned(),
                 ending: match ending {
                     Some(ending) => format!("`.{ending}` is not one it knows"),
                     None => "it has no ending".to_owned(),
                 },
-                known: Self::ENDINGS
+                known: Self::ALL
                     .iter()
-                    .map(|(known, _)| format!(".{known}"))
+                    .flat_map(|format| format.endings())
+                    .map(|known| format!(".{known}"))
                     .collect::<Vec<_>>()
                     .join(", "),
             })
     }
 
-    /// True for formats that hold linear light and need no tone mapping.
+    /// Its name: "OpenEXR".
+    pub fn name(self) -> &'static str {
+        self.0.name
+    }
+
+    /// Its name with the settings that matter: "float EXR".
+    pub fn describe(self, options: &PictureOptions) -> String {
+        (self.0.describe)(options)
+    }
+
+    /// Endings of file names, the usual one first.
+    pub fn endings(self) -> &'static [&'static str] {
+        self.0.endings
+    }
+
+    /// Whether it holds linear light and needs no tone mapping.
     pub fn is_linear(self) -> bool {
-        matches!(self, Self::Exr | Self::Hdr)
+        self.0.is_linear
+    }
+
+    /// Whether it holds opacity.
+    pub fn holds_alpha(self) -> bool {
+        self.0.holds_alpha
+    }
+
+    /// Whether it holds channels of any number and name: spectra, depth, layers.
+    pub fn holds_channels(self) -> bool {
+        self.0.holds_channels
+    }
+
+    /// What its writer did to the samples of [`Written::clamped_samples`], to follow their number.
+    pub fn clamping(self) -> &'static str {
+        self.0.clamping
+    }
+}
+
+impl PartialEq for PictureFormat {
+    fn eq(&self, other: &Self) -> bool {
+        self.0.name == other.0.name
+    }
+}
+
+impl Eq for PictureFormat {}
+
+impl std::fmt::Debug for PictureFormat {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.0.name)
     }
 }
 
@@ -117,23 +179,8 @@ pub fn write_picture(
     options: &PictureOptions,
     control: Control<'_>,
 ) -> Result<Written, ImageError> {
-    let metadata = &options.metadata;
-    match PictureFormat::from_path(path)? {
-        PictureFormat::Exr => exr::write(
-            path,
-            size,
-            &["R", "G", "B"],
-            source,
-            &options.exr,
-            metadata,
-            control,
-        ),
-        PictureFormat::Hdr => hdr::write(path, size, source, metadata, control),
-        PictureFormat::Png => png::write(path, size, source, tone, &options.png, metadata, control),
-        PictureFormat::Jpeg => {
-            jpeg::write(path, size, source, tone, &options.jpeg, metadata, control)
-        }
-    }
+    let rgb = Rgb { size, source, tone };
+    (PictureFormat::from_path(path)?.0.write)(path, &rgb, options, control)
 }
 
 /// Runs an encoder into a file beside `path`, then moves it there.

@@ -2,7 +2,7 @@
 //! stream.
 
 use super::{
-    Metadata, Written,
+    FormatEntry, Metadata, Written,
     bands::{Bands, RowBuffer},
     deflate::{Adler32, Deflater, End},
     expect_channels, into_file, png_filter,
@@ -12,6 +12,21 @@ use png::{BitDepth, ColorType, chunk};
 use std::{io::Write, path::Path};
 
 const FORMAT: &str = "PNG";
+
+/// The format of this file's writer.
+pub(super) static ENTRY: FormatEntry = FormatEntry {
+    name: FORMAT,
+    endings: &["png"],
+    is_linear: false,
+    holds_alpha: true,
+    holds_channels: false,
+    clamping: "",
+    describe: |_| FORMAT.to_owned(),
+    write: |path, rgb, options, control| {
+        let (png, metadata) = (&options.png, &options.metadata);
+        write(path, rgb.size, rgb.source, rgb.tone, png, metadata, control)
+    },
+};
 
 /// Bits of a component.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
