@@ -1,8 +1,7 @@
 //! How dense a constituent is at an altitude, relative to the density its coefficients are stated for.
 
 use super::standard_air;
-use crate::math::quadrature::{gauss_legendre, integrate_by};
-use std::sync::LazyLock;
+use crate::math::quadrature::FixedRule;
 
 /// Relative density as a function of the altitude above the planet's radius, m.
 #[derive(Clone, Debug, PartialEq)]
@@ -198,9 +197,9 @@ impl DensityProfile {
                 ramp(a.max(*bottom_m), b.min(*peak_m)) + ramp(a.max(*peak_m), b.min(*top_m))
             }
             Self::StandardAir1976 => {
-                static RULE: LazyLock<(Vec<f64>, Vec<f64>)> = LazyLock::new(|| gauss_legendre(16));
+                static RULE: FixedRule<16> = FixedRule::fixed();
                 let kinks: Vec<f64> = standard_air::kinks_m().collect();
-                integrate_by(&RULE, a, b, &kinks, |z| self.at(z))
+                RULE.integrate_between(a, b, &kinks, |z| self.at(z))
             }
             Self::Tabulated(table) => table.column(a, b),
             Self::Sum(parts) => parts

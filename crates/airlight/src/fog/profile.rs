@@ -1,6 +1,7 @@
 //! How fog thins with height, and how much of it lies along a line.
 
 use super::ray_segment::RaySegment;
+use crate::math::quadrature::FixedRule;
 
 /// Density against height, relative to the density that a fog's coefficients are stated for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -207,10 +208,11 @@ fn thinning(line: &RaySegment, reference_height_m: f64, scale_height_m: f64) -> 
 /// `int_0^length e^-(a s + b s^2) ds` for `a >= 0`, `b > 0`: by the scaled complementary error function, or by Gauss's
 /// rule where its two values would nearly cancel.
 fn falling(a: f64, b: f64, length: f64) -> f64 {
+    static RULE: FixedRule<8> = FixedRule::fixed();
     const HALF_SQRT_PI: f64 = 0.886_226_925_452_758;
     let fall = length * (a + b * length);
     if fall < 0.5 {
-        return gauss8(length, |s| (-s * (a + b * s)).exp());
+        return RULE.integrate(0.0, length, |s| (-s * (a + b * s)).exp());
     }
     let root = b.sqrt();
     let near = 0.5 * a / root;
@@ -234,21 +236,6 @@ fn scaled_erfc(z: f64) -> f64 {
         let w = 0.5 / (z * z);
         (1.0 - w * (1.0 - 3.0 * w * (1.0 - 5.0 * w * (1.0 - 7.0 * w)))) / (z * SQRT_PI)
     }
-}
-
-/// Gauss-Legendre quadrature with 8 points from 0 to `length`.
-fn gauss8(length: f64, f: impl Fn(f64) -> f64) -> f64 {
-    const RULE: [(f64, f64); 4] = [
-        (0.183_434_642_495_649_8, 0.362_683_783_378_362),
-        (0.525_532_409_916_329, 0.313_706_645_877_887_3),
-        (0.796_666_477_413_626_7, 0.222_381_034_453_374_48),
-        (0.960_289_856_497_536_3, 0.101_228_536_290_376_26),
-    ];
-    let half = 0.5 * length;
-    RULE.iter()
-        .map(|&(x, w)| w * (f(half * (1.0 - x)) + f(half * (1.0 + x))))
-        .sum::<f64>()
-        * half
 }
 
 #[cfg(test)]

@@ -47,7 +47,7 @@ pub fn linear_source_mean<L: Lanes>(along: L) -> (L, L) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::quadrature::{gauss_legendre, integrate_by};
+    use crate::math::quadrature::GaussRule;
     use crate::spectrum::Spectrum;
 
     /// `int_0^tau f(t) e^-t dt` by quadrature in stretches that crowd to both ends.
@@ -60,7 +60,7 @@ mod tests {
             .collect();
         let mut breaks = breaks;
         breaks.sort_by(f64::total_cmp);
-        integrate_by(&gauss_legendre(16), 0.0, tau, &breaks, f)
+        GaussRule::new(16).integrate_between(0.0, tau, &breaks, f)
     }
 
     #[test]

@@ -1,7 +1,10 @@
-//! Interpolation, quadrature, random numbers and vector dispatch: mathematics without physics.
+//! Mathematics without physics: interpolation, quadrature, polynomials, random numbers, vector instructions.
 
-pub(crate) mod cubic;
-pub(crate) mod gauss_rule;
+pub(crate) mod interpolation;
+pub(crate) mod legendre;
 pub(crate) mod quadrature;
 pub(crate) mod random;
+pub(crate) mod real;
 pub(crate) mod simd;
+pub(crate) mod simpson;
+pub(crate) mod spline;

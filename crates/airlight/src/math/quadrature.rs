@@ -1,81 +1,176 @@
-//! Numerical integration used by several rooms.
+//! Gauss-Legendre quadrature.
 
 use std::f64::consts::PI;
 
-/// Nodes and weights of the Gauss-Legendre rule of `count` points on `[-1, 1]`, nodes rising: Newton's method on `P_n`
-/// from Tricomi's first guess. Exact to about 1e-15 up to some hundreds of points.
-pub(crate) fn gauss_legendre(count: usize) -> (Vec<f64>, Vec<f64>) {
-    let n = count as f64;
-    let mut nodes = vec![0.0; count];
-    let mut weights = vec![0.0; count];
-    for i in 0..count.div_ceil(2) {
-        let mut x = (1.0 - (n - 1.0) / (8.0 * n * n * n))
-            * (PI * (4.0 * i as f64 + 3.0) / (4.0 * n + 2.0)).cos();
-        let mut slope = 1.0;
-        for _ in 0..20 {
-            let (mut before, mut now) = (1.0, x);
-            for k in 2..=count {
-                let k = k as f64;
-                (before, now) = (now, ((2.0 * k - 1.0) * x * now - (k - 1.0) * before) / k);
-            }
-            slope = n * (x * now - before) / (x * x - 1.0);
-            let step = now / slope;
-            x -= step;
-            if step.abs() < 1e-15 {
-                break;
-            }
+/// A Gauss-Legendre rule on `[0, 1]`: (node, weight) pairs, nodes increasing, weights adding up to 1. Exact for polynomials of
+/// degree below twice the number of nodes. A [`FixedRule`] where the number of nodes is a constant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GaussRule<S = Vec<(f64, f64)>> {
+    pairs: S,
+}
+
+/// A rule computed when the crate is compiled.
+pub type FixedRule<const N: usize> = GaussRule<[(f64, f64); N]>;
+
+impl GaussRule {
+    /// The rule with `count` (one or more) nodes, by Newton's method from Tricomi's first guess; good to about 1e-15 up to some
+    /// hundreds of nodes.
+    pub fn new(count: usize) -> Self {
+        let mut pairs = vec![(0.5, 0.0); count];
+        for i in 0..count.div_ceil(2) {
+            let angle = PI * (4.0 * i as f64 + 3.0) / (4.0 * count as f64 + 2.0);
+            let (x, w) = legendre_root(i, count, tricomi(count, angle.cos()));
+            pairs[i] = (0.5 - 0.5 * x, 0.5 * w);
+            pairs[count - 1 - i] = (0.5 + 0.5 * x, 0.5 * w);
         }
-        if 2 * i + 1 == count {
-            x = 0.0;
-        }
-        let weight = 2.0 / ((1.0 - x * x) * slope * slope);
-        (nodes[count - 1 - i], weights[count - 1 - i]) = (x, weight);
-        (nodes[i], weights[i]) = (-x, weight);
+        Self { pairs }
     }
-    (nodes, weights)
 }
 
-/// [`integrate_by`] with a rule of `points` made for it.
-#[cfg(test)]
-pub(crate) fn integrate(
-    points: usize,
-    from: f64,
-    to: f64,
-    breaks: &[f64],
-    f: impl Fn(f64) -> f64,
-) -> f64 {
-    integrate_by(&gauss_legendre(points), from, to, breaks, f)
+impl<const N: usize> FixedRule<N> {
+    /// The rule with N (one or more) nodes, for constants.
+    pub const fn fixed() -> Self {
+        let mut pairs = [(0.5, 0.0); N];
+        let mut i = 0;
+        while i < N.div_ceil(2) {
+            let angle = PI * (4.0 * i as f64 + 3.0) / (4.0 * N as f64 + 2.0);
+            let (x, w) = legendre_root(i, N, tricomi(N, near_cosine(angle)));
+            pairs[i] = (0.5 - 0.5 * x, 0.5 * w);
+            pairs[N - 1 - i] = (0.5 + 0.5 * x, 0.5 * w);
+            i += 1;
+        }
+        Self { pairs }
+    }
+
+    /// The (node, weight) pairs.
+    pub const fn pairs(&self) -> &[(f64, f64); N] {
+        &self.pairs
+    }
 }
 
-/// Integral of `f` from `from` to `to`: one Gauss-Legendre rule in each stretch between `breaks`.
-pub(crate) fn integrate_by(
-    rule: &(Vec<f64>, Vec<f64>),
-    from: f64,
-    to: f64,
-    breaks: &[f64],
-    f: impl Fn(f64) -> f64,
-) -> f64 {
-    let (nodes, weights) = rule;
-    let mut edges: Vec<f64> = breaks
-        .iter()
-        .copied()
-        .filter(|&b| b > from && b < to)
-        .collect();
-    edges.push(from);
-    edges.push(to);
-    edges.sort_by(f64::total_cmp);
-    edges
-        .windows(2)
-        .map(|edge| {
-            let half = 0.5 * (edge[1] - edge[0]);
-            let sum: f64 = nodes
-                .iter()
-                .zip(weights)
-                .map(|(x, w)| w * f(edge[0] + half * (1.0 + x)))
-                .sum();
-            half * sum
-        })
-        .sum()
+impl<S: AsRef<[(f64, f64)]>> GaussRule<S> {
+    /// Number of nodes.
+    #[inline(always)]
+    pub fn len(&self) -> usize {
+        self.pairs.as_ref().len()
+    }
+
+    /// Node and weight of each point on `[0, 1]`.
+    #[inline(always)]
+    pub fn iter(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
+        self.pairs.as_ref().iter().copied()
+    }
+
+    /// Nodes and weights of this rule on `[from, to]`.
+    #[inline(always)]
+    pub fn on(&self, from: f64, to: f64) -> impl Iterator<Item = (f64, f64)> + '_ {
+        let length = to - from;
+        self.iter()
+            .map(move |(x, w)| (from + x * length, w * length))
+    }
+
+    /// Integral of `f` from `from` to `to`.
+    #[inline(always)]
+    pub fn integrate(&self, from: f64, to: f64, f: impl Fn(f64) -> f64) -> f64 {
+        let length = to - from;
+        let sum: f64 = self.iter().map(|(x, w)| w * f(from + x * length)).sum();
+        sum * length
+    }
+
+    /// Integral of `f` from `from` to `to` by this rule in each interval between those of `breaks` that lie inside.
+    pub fn integrate_between(
+        &self,
+        from: f64,
+        to: f64,
+        breaks: &[f64],
+        f: impl Fn(f64) -> f64,
+    ) -> f64 {
+        let inside = breaks.iter().copied().filter(|&b| b > from && b < to);
+        let mut edges: Vec<f64> = inside.chain([from, to]).collect();
+        edges.sort_by(f64::total_cmp);
+        edges
+            .windows(2)
+            .map(|edge| self.integrate(edge[0], edge[1], &f))
+            .sum()
+    }
+}
+
+/// A rule with the weights of the running integral up to each of its nodes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RunningRule {
+    /// The rule itself.
+    pub rule: GaussRule,
+    /// Entry `[k][j]` is the weight of the integrand at node `j` in the integral from 0 to node `k`. Exact for polynomials of
+    /// degree below the number of nodes.
+    pub running: Vec<Vec<f64>>,
+}
+
+impl RunningRule {
+    /// The rule with `count` (one or more) nodes.
+    pub fn new(count: usize) -> Self {
+        let rule = GaussRule::new(count);
+        let pairs = &rule.pairs;
+        // The polynomial that is 1 at node j and 0 at the others.
+        let cardinal = |j: usize, x: f64| -> f64 {
+            (0..pairs.len())
+                .filter(|&k| k != j)
+                .map(|k| (x - pairs[k].0) / (pairs[j].0 - pairs[k].0))
+                .product()
+        };
+        let up_to = |end: f64| -> Vec<f64> {
+            (0..pairs.len())
+                .map(|j| {
+                    let terms = pairs.iter();
+                    terms.map(|&(x, w)| w * end * cardinal(j, x * end)).sum()
+                })
+                .collect()
+        };
+        let running = pairs.iter().map(|&(end, _)| up_to(end)).collect();
+        Self { rule, running }
+    }
+}
+
+/// Tricomi's guess at a root of `P_n`, from `cos(pi (4 i + 3) / (4 n + 2))`.
+const fn tricomi(count: usize, cosine: f64) -> f64 {
+    let n = count as f64;
+    (1.0 - (n - 1.0) / (8.0 * n * n * n)) * cosine
+}
+
+/// The `i`-th largest root of `P_count` and its weight in an integral over `[-1, 1]`, by Newton's method.
+const fn legendre_root(i: usize, count: usize, guess: f64) -> (f64, f64) {
+    let n = count as f64;
+    let mut x = guess;
+    let mut slope = 1.0;
+    let mut round = 0;
+    while round < 20 {
+        let (mut before, mut now) = (1.0, x);
+        let mut k = 2;
+        while k <= count {
+            let degree = k as f64;
+            (before, now) = (
+                now,
+                ((2.0 * degree - 1.0) * x * now - (degree - 1.0) * before) / degree,
+            );
+            k += 1;
+        }
+        slope = n * (x * now - before) / (x * x - 1.0);
+        let step = now / slope;
+        x -= step;
+        if step.abs() < 1e-15 {
+            break;
+        }
+        round += 1;
+    }
+    if 2 * i + 1 == count {
+        x = 0.0;
+    }
+    (x, 2.0 / ((1.0 - x * x) * slope * slope))
+}
+
+/// The cosine of an angle in `[0, pi / 2]` to 1e-6, where the library's is not to be had: a start for Newton's method.
+const fn near_cosine(angle: f64) -> f64 {
+    let x = angle * angle;
+    1.0 - x / 2.0 * (1.0 - x / 12.0 * (1.0 - x / 30.0 * (1.0 - x / 56.0 * (1.0 - x / 90.0))))
 }
 
 #[cfg(test)]
@@ -84,31 +179,56 @@ mod tests {
 
     #[test]
     fn rules_are_exact_for_polynomials_up_to_their_degree() {
-        for count in [1usize, 2, 3, 8, 12, 33] {
-            let (nodes, weights) = gauss_legendre(count);
+        for count in [1usize, 2, 3, 8, 12, 20, 33] {
+            let rule = GaussRule::new(count);
+            assert_eq!(rule.len(), count);
             for degree in 0..2 * count as i32 {
-                let sum: f64 = nodes
-                    .iter()
-                    .zip(&weights)
-                    .map(|(x, w)| w * x.powi(degree))
-                    .sum();
-                let want = if degree % 2 == 0 {
-                    2.0 / (degree as f64 + 1.0)
-                } else {
-                    0.0
-                };
+                let (got, want) = (
+                    rule.integrate(-1.0, 2.0, |x| x.powi(degree)),
+                    (2f64.powi(degree + 1) - (-1f64).powi(degree + 1)) / f64::from(degree + 1),
+                );
                 assert!(
-                    (sum - want).abs() < 1e-14,
-                    "{count} points, degree {degree}: {sum}"
+                    (got - want).abs() < 1e-13 * 2f64.powi(degree),
+                    "{count} points, degree {degree}: {got}"
                 );
             }
-            assert!(nodes.windows(2).all(|w| w[0] < w[1]));
+            let nodes: Vec<f64> = rule.iter().map(|(x, _)| x).collect();
+            assert!(nodes.windows(2).all(|pair| pair[0] < pair[1]));
         }
+    }
+
+    #[test]
+    fn rules_of_compile_time_are_those_of_run_time() {
+        fn differ<const N: usize>() {
+            let (fixed, rule) = (FixedRule::<N>::fixed(), GaussRule::new(N));
+            for ((x, w), (x2, w2)) in fixed.iter().zip(rule.iter()) {
+                assert!((x - x2).abs() < 3e-16 && (w - w2).abs() < 1e-15, "{N}");
+            }
+        }
+        differ::<1>();
+        differ::<3>();
+        differ::<8>();
+        differ::<16>();
+        differ::<33>();
     }
 
     #[test]
     fn breaks_split_the_interval() {
         let jump = |x: f64| if x < 0.3 { 1.0 } else { 5.0 };
-        assert!((integrate(3, 0.0, 1.0, &[0.3, 7.0], jump) - 3.8).abs() < 1e-14);
+        let got = GaussRule::new(3).integrate_between(0.0, 1.0, &[0.3, 7.0], jump);
+        assert!((got - 3.8).abs() < 1e-14);
+    }
+
+    #[test]
+    fn running_integrals_are_exact_below_the_number_of_nodes() {
+        let RunningRule { rule, running } = RunningRule::new(4);
+        for degree in 0..4 {
+            for ((end, _), row) in rule.iter().zip(&running) {
+                let terms = row.iter().zip(rule.iter());
+                let got: f64 = terms.map(|(w, (x, _))| w * x.powi(degree)).sum();
+                let want = end.powi(degree + 1) / f64::from(degree + 1);
+                assert!((got - want).abs() < 1e-13);
+            }
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! A straight way through the layers: what lies on it, where to stop on it, and how much light passes.
 
 use super::layers::Layers;
-use crate::math::quadrature::gauss_legendre;
+use crate::math::quadrature::FixedRule;
 use crate::math::random::Random;
 use crate::transfer::shell::{MAX_CONSTITUENTS, PerConstituent};
 use glam::DVec3;
@@ -172,15 +172,13 @@ impl Chord {
 
     /// Columns of the true densities from the start to the end, by Gauss's rule of 8 points in each layer.
     pub fn true_columns(&self, layers: &Layers) -> PerConstituent {
-        let (nodes, weights) = gauss_legendre(8);
+        static RULE: FixedRule<8> = FixedRule::fixed();
         let mut columns = [0.0; MAX_CONSTITUENTS];
         for piece in &self.pieces {
-            let (middle, half) = (0.5 * (piece.from + piece.to), 0.5 * (piece.to - piece.from));
-            for (node, weight) in nodes.iter().zip(&weights) {
-                let t = middle + half * node;
+            for (t, weight) in RULE.on(piece.from, piece.to) {
                 let densities = layers.densities_at((self.tangent + t * t).sqrt());
                 for (column, density) in columns.iter_mut().zip(densities) {
-                    *column += half * weight * density;
+                    *column += weight * density;
                 }
             }
         }

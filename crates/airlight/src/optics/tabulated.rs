@@ -5,8 +5,9 @@ mod moments;
 mod sample;
 
 use super::phase::PhaseError;
-use crate::math::quadrature::gauss_legendre;
-use std::sync::{Arc, LazyLock};
+use crate::math::interpolation::{Place, hermite, interval_of, lerp, monotone_slopes};
+use crate::math::quadrature::FixedRule;
+use std::sync::Arc;
 
 /// A phase function given at angles from 0 to 180 degrees and at one or more wavelengths.
 ///
@@ -31,11 +32,7 @@ pub struct TabulatedPhase {
 
 /// Points of the Gauss-Legendre rule used in each stretch.
 const PANEL_POINTS: usize = 12;
-static PANEL_RULE: LazyLock<([f64; PANEL_POINTS], [f64; PANEL_POINTS])> = LazyLock::new(|| {
-    let (nodes, weights) = gauss_legendre(PANEL_POINTS);
-    let array = |values: Vec<f64>| std::array::from_fn(|i| values[i]);
-    (array(nodes), array(weights))
-});
+static PANEL_RULE: FixedRule<PANEL_POINTS> = FixedRule::fixed();
 
 impl TabulatedPhase {
     /// Takes `values[w * angles + a]` at wavelength `w` and angle `a`, in any common unit.
@@ -148,8 +145,7 @@ impl TabulatedPhase {
         let mu = cos_angle.clamp(-1.0, 1.0);
         // Keeps the digits that acos loses near both ends.
         let angle = ((1.0 - mu) * (1.0 + mu)).sqrt().atan2(mu);
-        let above = self.angles_rad.partition_point(|&a| a <= angle);
-        (above.clamp(1, self.angles_rad.len() - 1) - 1, angle)
+        (interval_of(&self.angles_rad, angle), angle)
     }
 
     fn at_place(&self, (interval, angle): (usize, f64), wavelength_nm: f64) -> f64 {
@@ -157,26 +153,28 @@ impl TabulatedPhase {
         let near = self.at_row(row, interval, angle);
         match t {
             0.0 => near,
-            _ => near * (1.0 - t) + self.at_row(row + 1, interval, angle) * t,
+            _ => lerp(near, self.at_row(row + 1, interval, angle), t),
         }
     }
 
     /// The row at or below a wavelength, and how far it is on the way to the next.
     fn between(&self, wavelength_nm: f64) -> (usize, f64) {
-        let above = self.wavelengths_nm.partition_point(|&w| w <= wavelength_nm);
-        if above == 0 || above == self.wavelengths_nm.len() {
-            return (above.saturating_sub(1), 0.0);
+        let last = self.wavelengths_nm.len() - 1;
+        if last == 0 || wavelength_nm >= self.wavelengths_nm[last] {
+            return (last, 0.0);
         }
-        let (low, high) = (self.wavelengths_nm[above - 1], self.wavelengths_nm[above]);
-        (above - 1, (wavelength_nm - low) / (high - low))
+        let place = Place::among(&self.wavelengths_nm, wavelength_nm);
+        (place.below, place.fraction)
     }
 
     fn at_row(&self, row: usize, interval: usize, angle: f64) -> f64 {
-        let at = row * self.angles_rad.len() + interval;
-        cubic(
-            [self.angles_rad[interval], self.angles_rad[interval + 1]],
-            [self.log_values[at], self.log_values[at + 1]],
-            [self.slopes[at], self.slopes[at + 1]],
+        let count = self.angles_rad.len();
+        let row = row * count..(row + 1) * count;
+        hermite(
+            &self.angles_rad,
+            &self.log_values[row.clone()],
+            &self.slopes[row],
+            interval,
             angle,
         )
         .exp()
@@ -198,12 +196,12 @@ impl TabulatedPhase {
         let rise = (self.log_values[at + 1] - self.log_values[at]).abs();
         let count = ((to - low) / widest).max(rise / 2.0).ceil().max(1.0);
         let width = (to - low) / count;
-        let (nodes, weights) = &*PANEL_RULE;
+        let rule = PANEL_RULE.pairs();
         for k in 0..count as usize {
             let start = low + width * k as f64;
-            let angles = nodes.map(|node| start + 0.5 * width * (1.0 + node));
+            let angles = rule.map(|(node, _)| start + width * node);
             let measures = std::array::from_fn(|i| {
-                weights[i] * std::f64::consts::PI * width * angles[i].sin()
+                rule[i].1 * std::f64::consts::TAU * width * angles[i].sin()
             });
             visit(&angles, &measures);
         }
@@ -213,48 +211,8 @@ impl TabulatedPhase {
 /// `ln p` at points among samples (both rising), as a table would have it.
 pub(super) fn between_samples(angles: &[f64], logs: &[f64], points: &[f64]) -> Vec<f64> {
     let slopes = monotone_slopes(angles, logs);
-    let at = |&point: &f64| {
-        let above = angles.partition_point(|&a| a <= point);
-        let i = above.clamp(1, angles.len() - 1) - 1;
-        cubic(
-            [angles[i], angles[i + 1]],
-            [logs[i], logs[i + 1]],
-            [slopes[i], slopes[i + 1]],
-            point,
-        )
-    };
+    let at = |&point: &f64| hermite(angles, logs, &slopes, interval_of(angles, point), point);
     points.iter().map(at).collect()
-}
-
-/// The cubic of given values and slopes at two places.
-#[inline]
-fn cubic([x0, x1]: [f64; 2], [y0, y1]: [f64; 2], slopes: [f64; 2], x: f64) -> f64 {
-    let width = x1 - x0;
-    let t = (x - x0) / width;
-    let u = 1.0 - t;
-    let (m0, m1) = (slopes[0] * width, slopes[1] * width);
-    y0 * u * u * (1.0 + 2.0 * t) + m0 * t * u * u + y1 * t * t * (3.0 - 2.0 * t) - m1 * t * t * u
-}
-
-/// Slopes of the monotone piecewise cubic through the points: zero at local extremes, else the weighted harmonic mean
-/// of the neighbouring secants (Fritsch & Butland 1984).
-fn monotone_slopes(x: &[f64], y: &[f64]) -> Vec<f64> {
-    let last = x.len() - 1;
-    let secant = |i: usize| (y[i + 1] - y[i]) / (x[i + 1] - x[i]);
-    (0..=last)
-        .map(|i| {
-            if i == 0 || i == last {
-                return 0.0;
-            }
-            let (left, right) = (secant(i - 1), secant(i));
-            if left * right <= 0.0 {
-                return 0.0;
-            }
-            let (h0, h1) = (x[i] - x[i - 1], x[i + 1] - x[i]);
-            let (w0, w1) = (2.0 * h1 + h0, h1 + 2.0 * h0);
-            (w0 + w1) / (w0 / left + w1 / right)
-        })
-        .collect()
 }
 
 #[cfg(test)]

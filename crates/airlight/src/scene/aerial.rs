@@ -4,7 +4,7 @@ use super::aerial_fill;
 use super::error::SceneError;
 use super::lane_channels::{Converter, LaneChannels};
 use crate::fog::lanes::Lanes;
-use crate::math::cubic;
+use crate::math::interpolation::{Place as AxisPlace, cubic_f32};
 use crate::sky::{Peaked, View};
 use crate::spectrum::Spectrum;
 use crate::transfer::PathOptics;
@@ -101,8 +101,8 @@ impl<const N: usize> AerialPerspective<N> {
             1.0
         };
         let place = Place {
-            row: cubic(depth.clamp(0.0, 1.0).sqrt(), half.rows),
-            azimuth: cubic(0.5 + 0.5 * cos_azimuth.clamp(-1.0, 1.0), AZIMUTHS),
+            row: cubic_f32(depth.clamp(0.0, 1.0).sqrt(), half.rows),
+            azimuth: cubic_f32(0.5 + 0.5 * cos_azimuth.clamp(-1.0, 1.0), AZIMUTHS),
             distance: along(length_m / (end_m - start_m)),
         };
         let along = self.extinction(half, &place) * length_m as f32;
@@ -253,19 +253,12 @@ fn coordinate_of(part: f64) -> f64 {
     part.sqrt()
 }
 
-/// First node and weights at `x` in `[0, 1]`.
-#[inline(always)]
-fn cubic(x: f64, count: usize) -> (usize, [f32; 4]) {
-    let (first, weights) = cubic::among(x, count);
-    (first, weights.map(|w| w as f32))
-}
-
 /// First node and weights of a straight line in distance, at a part of the line's length.
 #[inline(always)]
 fn along(part: f64) -> (usize, [f32; 2]) {
     const STEPS: f64 = (DISTANCES - 1) as f64;
     let part = part.clamp(0.0, 1.0);
-    let below = ((coordinate_of(part) * STEPS) as usize).min(DISTANCES - 2);
+    let below = AxisPlace::evenly(coordinate_of(part), DISTANCES).below;
     let (near, far) = (
         part_of(below as f64 / STEPS),
         part_of((below + 1) as f64 / STEPS),

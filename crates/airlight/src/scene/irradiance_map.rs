@@ -1,6 +1,7 @@
 //! Light from all around on surfaces of any slant.
 
 use crate::axes;
+use crate::math::interpolation::{Place, lerp};
 use crate::spectrum::Spectrum;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -55,13 +56,13 @@ impl<const N: usize> IrradianceMap<N> {
 
     /// Irradiance of a surface with this unit normal.
     pub fn irradiance(&self, normal: DVec3) -> Spectrum<N> {
-        let row = (axes::elevation_deg(normal) + 90.0) / 180.0 * (ROWS - 1) as f64;
+        let row = Place::evenly((axes::elevation_deg(normal) + 90.0) / 180.0, ROWS);
         let column = axes::azimuth_deg(normal) / 360.0 * COLUMNS as f64;
-        let (above, left) = ((row as usize).min(ROWS - 2), column as usize % COLUMNS);
-        let (down, right) = ((row - above as f64) as f32, column.fract() as f32);
+        let (above, left) = (row.below, column as usize % COLUMNS);
+        let (down, right) = (row.fraction as f32, column.fract() as f32);
         let at = |row: usize, column: usize| self.irradiance[row * COLUMNS + column % COLUMNS];
-        let line = |row| at(row, left) * (1.0 - right) + at(row, left + 1) * right;
-        line(above) * (1.0 - down) + line(above + 1) * down
+        let line = |row| lerp(at(row, left), at(row, left + 1), right);
+        lerp(line(above), line(above + 1), down)
     }
 }
 

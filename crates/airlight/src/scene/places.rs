@@ -1,18 +1,15 @@
 //! Where on a line of sight a fog does its work.
 
 use crate::fog::{Fog, RaySegment};
+use crate::math::quadrature::FixedRule;
 
 /// Gauss-Legendre nodes and weights on `[0, 1]`.
-const RULE: [(f64, f64); 3] = [
-    (0.112_701_665_379_258_3, 5.0 / 18.0),
-    (0.5, 8.0 / 18.0),
-    (0.887_298_334_620_741_7, 5.0 / 18.0),
-];
+static RULE: FixedRule<3> = FixedRule::fixed();
 /// How far a place may be off, in the logarithm of the optical depth up to it.
 const TOLERANCE: f64 = 5e-3;
 
 /// Number of places.
-pub(super) const PLACES: usize = RULE.len();
+pub(super) const PLACES: usize = RULE.pairs().len();
 
 /// Distances (m) at which the fog on a line of finite length has scattered away the parts of what it scatters away in all
 /// at which Gauss's rule wants to be evaluated, and their weights: the mean of any smooth `f(s)` over the light lost,
@@ -35,7 +32,7 @@ pub(super) fn of<const N: usize>(fog: &Fog<N>, line: &RaySegment) -> Option<[(f6
     let lost = -(-whole).exp_m1();
     let extinction = |s: f64| f64::from(fog.extinction_at(line.height_at(s))[lane]);
     let mut from = (0.0, 0.0);
-    Some(RULE.map(|(part, weight)| {
+    Some(RULE.pairs().map(|(part, weight)| {
         let wanted = -(-part * lost).ln_1p();
         let s = place(&depth_to, &extinction, from, (line.length_m, whole), wanted);
         from = (s, wanted * (1.0 - 2.0 * TOLERANCE));

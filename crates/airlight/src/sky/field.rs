@@ -1,6 +1,7 @@
 //! The angular moments of the light inside the atmosphere, on a grid of altitudes and sun angles.
 
 use super::harmonics::Harmonics;
+use crate::math::interpolation::{Place, lerp};
 use crate::spectrum::Spectrum;
 use crate::transfer::air::Air;
 use crate::transfer::ray::Ray;
@@ -13,29 +14,6 @@ pub struct FieldGrid {
     pub radii_m: Vec<f64>,
     /// Increasing cosines of the sun's zenith angle.
     pub sun_cosines: Vec<f64>,
-}
-
-/// A place on an axis of the grid: between nodes `below` and `below + 1`, at `fraction` of the way.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place {
-    /// The node below.
-    pub below: usize,
-    /// From 0 (at `below`) to 1 (at the next).
-    pub fraction: f32,
-}
-
-/// Where `x` lies among increasing `nodes` (at least two); held at the ends.
-#[inline(always)]
-fn place(nodes: &[f64], x: f64) -> Place {
-    let below = nodes
-        .partition_point(|&node| node <= x)
-        .clamp(1, nodes.len() - 1)
-        - 1;
-    let fraction = (x - nodes[below]) / (nodes[below + 1] - nodes[below]);
-    Place {
-        below,
-        fraction: fraction.clamp(0.0, 1.0) as f32,
-    }
 }
 
 impl FieldGrid {
@@ -55,13 +33,13 @@ impl FieldGrid {
     /// Place of a distance from the planet's centre.
     #[inline(always)]
     pub fn place_of_radius(&self, radius_m: f64) -> Place {
-        place(&self.radii_m, radius_m)
+        Place::among(&self.radii_m, radius_m)
     }
 
     /// Place of a sun cosine.
     #[inline(always)]
     pub fn place_of_sun(&self, mu_sun: f64) -> Place {
-        place(&self.sun_cosines, mu_sun)
+        Place::among(&self.sun_cosines, mu_sun)
     }
 }
 
@@ -156,7 +134,7 @@ impl<const N: usize> RadianceField<N> {
             self.ground_irradiance[at.below],
             self.ground_irradiance[at.below + 1],
         );
-        (a * (1.0 - at.fraction) + b * at.fraction).exp()
+        lerp(a, b, at.fraction as f32).exp()
     }
 
     /// Interpolates the stored form of the first `count` moments in altitude, for all sun cosines: `[sun][harmonic]`
@@ -164,10 +142,11 @@ impl<const N: usize> RadianceField<N> {
     #[inline(always)]
     pub fn at_radius(&self, at: Place, count: usize, out: &mut Vec<Spectrum<N>>) {
         out.clear();
+        let fraction = at.fraction as f32;
         for sun in 0..self.grid.sun_cosines.len() {
             let (below, above) = (self.point(at.below, sun), self.point(at.below + 1, sun));
             for (a, b) in below[..count].iter().zip(&above[..count]) {
-                out.push(*a * (1.0 - at.fraction) + *b * at.fraction);
+                out.push(lerp(*a, *b, fraction));
             }
         }
     }
@@ -190,7 +169,7 @@ impl<const N: usize> RadianceField<N> {
             self.point(radius.below + 1, sun.below),
             self.point(radius.below + 1, sun.below + 1),
         ];
-        let (fr, fs) = (radius.fraction, sun.fraction);
+        let (fr, fs) = (radius.fraction as f32, sun.fraction as f32);
         let weights = [
             (1.0 - fr) * (1.0 - fs),
             (1.0 - fr) * fs,

@@ -164,25 +164,11 @@ impl Harmonics {
     }
 }
 
-/// `P_l(x)` for `l` below `out.len()`.
-#[inline(always)]
-pub fn legendre(x: f64, out: &mut [f64]) {
-    for l in 0..out.len() {
-        out[l] = match l {
-            0 => 1.0,
-            1 => x,
-            _ => {
-                let n = l as f64;
-                ((2.0 * n - 1.0) * x * out[l - 1] - (n - 1.0) * out[l - 2]) / n
-            }
-        };
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::gauss_rule::GaussRule;
+    use crate::math::legendre::legendre;
+    use crate::math::quadrature::GaussRule;
     use std::f64::consts::PI;
 
     #[test]

@@ -7,10 +7,11 @@
 //! and its zenith angle: they are worked out once and serve every sun angle, azimuth and order.
 
 use super::field::{FieldGrid, RadianceField};
-use super::harmonics::{Harmonics, legendre};
+use super::harmonics::Harmonics;
 use super::ray_bundle::{Path, RayBundle, Scratch};
 use super::trace::sun_on_ground;
-use crate::math::gauss_rule::GaussRule;
+use crate::math::legendre::legendre;
+use crate::math::quadrature::GaussRule;
 use crate::math::simd::vectorized;
 use crate::spectrum::Spectrum;
 use crate::transfer::air::Air;

@@ -5,8 +5,9 @@
 //! whole [`RayBundle`]. Only what depends on where the sun stands is left for each ray, and it is kept in arrays over the
 //! rays, which the compiler turns into vector code.
 
-use super::field::{FieldGrid, Place, RadianceField, scattering_moment};
+use super::field::{FieldGrid, RadianceField, scattering_moment};
 use super::harmonics::Harmonics;
+use crate::math::interpolation::Place;
 use crate::spectrum::Spectrum;
 use crate::transfer::air::Air;
 use crate::transfer::march::Marcher;

@@ -6,8 +6,8 @@
 //! applied for each pixel.
 
 use super::tabulate::Peaked;
-use crate::math::cubic;
-use crate::math::gauss_rule::GaussRule;
+use crate::math::interpolation::{cubic_f32, cubic_mirrored};
+use crate::math::quadrature::GaussRule;
 use crate::math::simd::vectorized;
 use crate::spectrum::RgbSpace;
 use glam::DVec3;
@@ -90,7 +90,7 @@ impl SkyTable {
         } else {
             1.0
         };
-        let (nodes, weights) = cubic_mirrored(cos_azimuth.clamp(-1.0, 1.0).acos() / PI);
+        let (nodes, weights) = cubic_mirrored(cos_azimuth.clamp(-1.0, 1.0).acos() / PI, AZIMUTHS);
         let half_sine = 0.5 * direction.distance(self.sun);
         match self.place(elevation) {
             Some((half, row)) => self.interpolate(half, row, &nodes, &weights, half_sine, out),
@@ -103,7 +103,7 @@ impl SkyTable {
         let columns = azimuths_rad
             .map(|azimuth| {
                 let (sin, cos) = azimuth.sin_cos();
-                let (nodes, weights) = cubic_mirrored(sin.abs().atan2(cos) / PI);
+                let (nodes, weights) = cubic_mirrored(sin.abs().atan2(cos) / PI, AZIMUTHS);
                 Column {
                     nodes,
                     weights,
@@ -139,7 +139,7 @@ impl SkyTable {
     #[inline(always)]
     fn line(&self, half: &Half, row: f64) -> Vec<f32> {
         let stride = (AZIMUTHS + 1) * self.width;
-        let (first, weights) = row_cubic(row, half.rows);
+        let (first, weights) = cubic_f32(row, half.rows);
         let mut line = vec![0.0f32; stride];
         for (i, w) in weights.iter().enumerate() {
             let values = &half.values[(first + i) * stride..][..stride];
@@ -260,7 +260,7 @@ impl SkyTable {
         out: &mut [f32],
     ) {
         let stride = (AZIMUTHS + 1) * self.width;
-        let (first_row, row_weights) = row_cubic(row, half.rows);
+        let (first_row, row_weights) = cubic_f32(row, half.rows);
         // Four values at a time stay in one register over all sixteen cells.
         let mut small = [0.0f32; SMALL_WIDTH];
         let mut large = Vec::new();
@@ -302,30 +302,4 @@ impl SkyTable {
             }
         }
     }
-}
-
-/// First row and weights at the row coordinate `x` in `[0, 1]`.
-#[inline(always)]
-fn row_cubic(x: f64, rows: usize) -> (usize, [f32; 4]) {
-    let (first, weights) = cubic::among(x, rows);
-    (first, weights.map(|w| w as f32))
-}
-
-/// The same in azimuth, where the table is its own mirror image beyond both ends.
-#[inline(always)]
-fn cubic_mirrored(x: f64) -> ([usize; 4], [f32; 4]) {
-    let position = x * AZIMUTHS as f64;
-    let first = (position as isize).min(AZIMUTHS as isize - 1) - 1;
-    let nodes = std::array::from_fn(|k| {
-        let node = (first + k as isize).unsigned_abs();
-        if node > AZIMUTHS {
-            2 * AZIMUTHS - node
-        } else {
-            node
-        }
-    });
-    (
-        nodes,
-        cubic::weights(position - first as f64).map(|w| w as f32),
-    )
 }

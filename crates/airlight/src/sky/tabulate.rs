@@ -7,6 +7,7 @@ use super::table::{
 };
 use super::view::View;
 use crate::atmosphere::Constituent;
+use crate::math::interpolation::Place;
 use crate::spectrum::{WavelengthGrid, rgb};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -108,10 +109,7 @@ impl Peaked {
     /// The phase function of a sampled list at the sine of half the scattering angle.
     #[inline(always)]
     pub fn sampled(phase: &[f32], half_sine: f64) -> f32 {
-        let position = (half_sine * PHASE_SAMPLES as f64).clamp(0.0, PHASE_SAMPLES as f64 - 1e-6);
-        let below = position as usize;
-        let fraction = (position - below as f64) as f32;
-        phase[below] * (1.0 - fraction) + phase[below + 1] * fraction
+        Place::evenly(half_sine, PHASE_SAMPLES + 1).value_in_f32(phase)
     }
 }
 

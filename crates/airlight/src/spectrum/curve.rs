@@ -1,5 +1,7 @@
 //! A quantity as a function of wavelength, before it is sampled on a grid.
 
+use crate::math::interpolation::piecewise_linear;
+
 /// A quantity that depends on wavelength.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SpectralCurve {
@@ -113,16 +115,7 @@ impl SampledCurve {
 
     /// The value at `x`.
     pub fn at(&self, x: f64) -> f64 {
-        let above = self.abscissae.partition_point(|&a| a <= x);
-        if above == 0 {
-            return self.values[0];
-        }
-        if above == self.abscissae.len() {
-            return self.values[above - 1];
-        }
-        let (x0, x1) = (self.abscissae[above - 1], self.abscissae[above]);
-        let t = (x - x0) / (x1 - x0);
-        self.values[above - 1] * (1.0 - t) + self.values[above] * t
+        piecewise_linear(&self.abscissae, &self.values, x)
     }
 
     /// Where the samples lie.

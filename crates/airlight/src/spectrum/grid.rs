@@ -30,8 +30,13 @@
 
 use super::SpectralCurve;
 use super::cie::{self, LUMINOUS_EFFICACY_LM_PER_W};
-use super::quadrature::{local_means, product_weights};
 use super::solar;
+use crate::math::spline::{local_means, product_weights};
+
+/// Step of integrals over wavelength, nm: the finest step of the solar and observer tables.
+const STEP_NM: f64 = 0.5;
+/// Widest reach of the mean solar irradiance about a node, nm.
+const WIDEST_MEAN_NM: f64 = 20.0;
 
 /// Wavelengths in nm, strictly increasing, each with its solar irradiance and its weights in XYZ.
 #[derive(Clone, Debug, PartialEq)]
@@ -192,9 +197,9 @@ impl WavelengthGrid {
     fn with_sun(wavelengths_nm: Vec<f64>, sun: impl Fn(f64) -> f64) -> Self {
         let range = (cie::FIRST_NM, cie::LAST_NM);
         let observer = |nm| cie::color_matching(nm).map(|v| v * LUMINOUS_EFFICACY_LM_PER_W);
-        let smooth_xyz_weights = product_weights(&wavelengths_nm, range, observer);
-        let solar_irradiance = local_means(&wavelengths_nm, &sun);
-        let mut xyz_weights = product_weights(&wavelengths_nm, range, |nm| {
+        let smooth_xyz_weights = product_weights(&wavelengths_nm, range, STEP_NM, observer);
+        let solar_irradiance = local_means(&wavelengths_nm, WIDEST_MEAN_NM, &sun);
+        let mut xyz_weights = product_weights(&wavelengths_nm, range, STEP_NM, |nm| {
             let e = sun(nm);
             observer(nm).map(|v| v * e)
         });

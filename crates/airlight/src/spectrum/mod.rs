@@ -13,7 +13,6 @@ mod curve;
 pub mod difference;
 pub mod grid;
 mod lanes;
-mod quadrature;
 pub mod rgb;
 pub mod solar;
 mod table;

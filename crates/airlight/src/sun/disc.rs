@@ -1,5 +1,6 @@
 //! The sun's disc: how large it is and how its radiance falls towards the limb.
 
+use crate::math::interpolation::lerp;
 use std::f64::consts::PI;
 
 /// The sun's radius, m (nominal, IAU 2015 resolution B3).
@@ -51,7 +52,7 @@ pub fn limb_exponent(wavelength_nm: f64) -> f64 {
         ultraviolet(um)
     } else {
         let t = (um - 0.372) / (0.416 - 0.372);
-        ultraviolet(0.372) * (1.0 - t) + visible(0.416) * t
+        lerp(ultraviolet(0.372), visible(0.416), t)
     }
 }
 
@@ -95,7 +96,7 @@ pub fn limb_polynomial(wavelength_nm: f64) -> [f64; 6] {
             at(VIOLET, 385.0),
             (nm - 373.0) / 12.0,
         );
-        std::array::from_fn(|k| low[k] * (1.0 - t) + high[k] * t)
+        std::array::from_fn(|k| lerp(low[k], high[k], t))
     }
 }
 
@@ -191,7 +192,7 @@ impl Default for SunDisc {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::quadrature::integrate;
+    use crate::math::quadrature::GaussRule;
 
     #[test]
     fn the_disc_gives_the_irradiance() {
@@ -207,7 +208,7 @@ mod tests {
                 };
                 for nm in [330.0, 400.0, 550.0, 1000.0] {
                     // angle = radius (1 - t^4): nodes crowd at the limb, where mu^alpha has its root.
-                    let sum = integrate(64, 0.0, 1.0, &[], |t| {
+                    let sum = GaussRule::new(64).integrate(0.0, 1.0, |t| {
                         let angle = angular_radius_rad * (1.0 - t.powi(4));
                         let ring = 2.0
                             * PI

@@ -4,8 +4,8 @@
 //! inverse air mass `N(r, 1) / N(r, mu)`: close to `mu` high in the sky and smooth down to the horizon, so that
 //! third-degree interpolation keeps the columns to about 1e-4 (see the test).
 
-use crate::math::cubic;
-use crate::math::gauss_rule::GaussRule;
+use crate::math::interpolation::{Place, cubic, hermite_weights};
+use crate::math::quadrature::FixedRule;
 use crate::transfer::shell::{MAX_CONSTITUENTS, PerConstituent, Shell};
 use rayon::prelude::*;
 
@@ -15,6 +15,8 @@ const ALTITUDES: usize = 64;
 const ANGLES: usize = 64;
 /// Nodes of the finer table of vertical columns.
 const VERTICAL: usize = 1024;
+/// Nodes on each panel of a ray.
+static RULE: FixedRule<4> = FixedRule::fixed();
 
 /// Vertical columns and inverse air masses of every constituent.
 #[derive(Clone, Debug, Default)]
@@ -35,7 +37,7 @@ impl ColumnRow {
     /// Columns from this altitude along `mu >= 0` to the top, in metres of density 1.
     #[inline(always)]
     pub fn to_space_m(&self, mu: f32) -> [f32; MAX_CONSTITUENTS] {
-        let (first, weights) = cubic::among(f64::from(mu.sqrt()), ANGLES);
+        let (first, weights) = cubic(f64::from(mu.sqrt()), ANGLES);
         let mut inverse = [0.0f32; MAX_CONSTITUENTS];
         for (entry, w) in self.inverse_air_mass[first..first + 4].iter().zip(weights) {
             for c in 0..MAX_CONSTITUENTS {
@@ -65,16 +67,15 @@ impl ColumnTable {
                 ]
             })
             .collect();
-        let rule = GaussRule::new(4);
         let rows: Vec<Vec<[f32; MAX_CONSTITUENTS]>> = (0..ALTITUDES)
             .into_par_iter()
             .map(|i| {
                 let radius_m = shell.radius_of_coordinate(i as f64 / (ALTITUDES - 1) as f64);
-                let zenith = shell.integrate_columns_m(radius_m, 1.0, &rule);
+                let zenith = shell.integrate_columns_m(radius_m, 1.0, &RULE);
                 (0..ANGLES)
                     .map(|j| {
                         let mu = (j as f64 / (ANGLES - 1) as f64).powi(2);
-                        let slant = shell.integrate_columns_m(radius_m, mu, &rule);
+                        let slant = shell.integrate_columns_m(radius_m, mu, &RULE);
                         std::array::from_fn(|c| (zenith[c] / slant[c]) as f32)
                     })
                     .collect()
@@ -120,8 +121,8 @@ impl ColumnTable {
     fn upward_m(&self, shell: &Shell, radius_m: f64, mu: f64) -> PerConstituent {
         let x = shell.altitude_coordinate(radius_m);
         let vertical = self.vertical_m(x);
-        let (row, row_weights) = cubic::among(x, ALTITUDES);
-        let (column, column_weights) = cubic::among(mu.sqrt(), ANGLES);
+        let (row, row_weights) = cubic(x, ALTITUDES);
+        let (column, column_weights) = cubic(mu.sqrt(), ANGLES);
         let mut inverse = [0.0f32; MAX_CONSTITUENTS];
         for (i, wi) in row_weights.iter().enumerate() {
             let entries = &self.inverse_air_mass[(row + i) * ANGLES + column..][..4];
@@ -143,7 +144,7 @@ impl ColumnTable {
     #[inline(always)]
     pub(super) fn at(&self, shell: &Shell, radius_m: f64) -> ColumnRow {
         let x = shell.altitude_coordinate(radius_m);
-        let (first, weights) = cubic::among(x, ALTITUDES);
+        let (first, weights) = cubic(x, ALTITUDES);
         let mut row = ColumnRow {
             vertical: self.vertical_m(x).map(|column| column as f32),
             inverse_air_mass: [[0.0; MAX_CONSTITUENTS]; ANGLES],
@@ -162,13 +163,9 @@ impl ColumnTable {
     /// Hermite interpolation of the vertical columns, whose slopes (the densities) are known.
     #[inline(always)]
     fn vertical_m(&self, x: f64) -> PerConstituent {
-        let position = x * (VERTICAL - 1) as f64;
-        let below = (position as usize).min(VERTICAL - 2);
-        let t = position - below as f64;
-        let step = 1.0 / (VERTICAL - 1) as f64;
-        let u = 1.0 - t;
-        let (h0, h1) = (u * u * (1.0 + 2.0 * t), t * t * (1.0 + 2.0 * u));
-        let (s0, s1) = (u * u * t * step, -t * t * u * step);
+        let Place { below, fraction } = Place::evenly(x, VERTICAL);
+        let ([h0, h1], slopes) = hermite_weights(fraction);
+        let [s0, s1] = slopes.map(|s| s * (1.0 / (VERTICAL - 1) as f64));
         let ([v0, d0], [v1, d1]) = (&self.vertical[below], &self.vertical[below + 1]);
         std::array::from_fn(|c| (h0 * v0[c] + h1 * v1[c] + s0 * d0[c] + s1 * d1[c]).max(0.0))
     }

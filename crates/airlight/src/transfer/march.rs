@@ -1,6 +1,6 @@
 //! Walking along a ray in panels small enough for a Gauss rule.
 
-use crate::math::gauss_rule::GaussRule;
+use crate::math::quadrature::RunningRule;
 use crate::transfer::ray::{Ray, in_shadow};
 use crate::transfer::shell::{MAX_CONSTITUENTS, PerConstituent, Shell};
 use std::ops::ControlFlow;
@@ -46,7 +46,7 @@ impl Default for Node {
 /// How finely to walk.
 #[derive(Clone, Debug)]
 pub struct Marcher {
-    rule: GaussRule,
+    rule: RunningRule,
     /// No panel is optically thicker than this in its thickest lane.
     max_panel_depth: f64,
     /// For each constituent the largest extinction over the wavelengths, 1/m at density 1.
@@ -58,7 +58,7 @@ impl Marcher {
     pub fn new(nodes: usize, max_panel_depth: f64, max_extinction_per_m: PerConstituent) -> Self {
         assert!((1..=MAX_NODES).contains(&nodes));
         Self {
-            rule: GaussRule::new(nodes),
+            rule: RunningRule::new(nodes),
             max_panel_depth,
             max_extinction_per_m,
         }
@@ -78,14 +78,15 @@ impl Marcher {
         panel_edges(shell, ray, start_m, end_m, edges);
         let count = shell.constituents();
         let mut columns = [0.0; MAX_CONSTITUENTS];
+        let RunningRule { rule, running } = &self.rule;
         let mut nodes = [Node::default(); MAX_NODES];
-        let nodes = &mut nodes[..self.rule.nodes.len()];
+        let nodes = &mut nodes[..rule.len()];
         for window in edges.windows(2) {
             let pieces = self.pieces(shell, ray, window[0], window[1]);
             let length = (window[1] - window[0]) / pieces as f64;
             for piece in 0..pieces {
                 let from = window[0] + piece as f64 * length;
-                for (node, (t, dt)) in nodes.iter_mut().zip(self.rule.on(from, from + length)) {
+                for (node, (t, dt)) in nodes.iter_mut().zip(rule.on(from, from + length)) {
                     let here = ray.advanced(t);
                     *node = Node {
                         t,
@@ -99,7 +100,7 @@ impl Marcher {
                 for k in 0..nodes.len() {
                     for c in 0..count {
                         let inside: f64 = (0..nodes.len())
-                            .map(|j| self.rule.running[k][j] * nodes[j].densities[c])
+                            .map(|j| running[k][j] * nodes[j].densities[c])
                             .sum();
                         nodes[k].columns_m[c] += length * inside;
                     }

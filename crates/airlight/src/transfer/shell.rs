@@ -1,7 +1,7 @@
 //! The geometry of an atmosphere: what does not depend on wavelength, worked out once for all of them.
 
 use crate::atmosphere::{Atmosphere, DensityProfile};
-use crate::math::gauss_rule::GaussRule;
+use crate::math::quadrature::FixedRule;
 use crate::sky::SkyError;
 use crate::transfer::columns::{ColumnRow, ColumnTable};
 use crate::transfer::ray::Ray;
@@ -158,7 +158,7 @@ impl Shell {
         &self,
         radius_m: f64,
         mu: f64,
-        rule: &GaussRule,
+        rule: &FixedRule<4>,
     ) -> PerConstituent {
         let ray = Ray {
             radius_m,

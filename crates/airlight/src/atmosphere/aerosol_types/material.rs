@@ -1,5 +1,6 @@
 //! What OPAC's aerosols are made of: components, their sizes, their refractive indices, their growth in moist air.
 
+use crate::math::interpolation::{interval_by_key, lerp};
 use crate::optics::RefractiveIndex;
 use crate::optics::mie::SizeDistribution;
 use crate::spectrum::embedded_table;
@@ -94,13 +95,10 @@ impl Component {
         let odds = |a: f64| a / (1.0 - a);
         let taken_up = |row: &[f64; 4]| (row[column].powi(3) - 1.0) / odds(row[0]);
         let wet = &GROWTH[1..];
-        let last = wet.len() - 1;
-        let above = wet
-            .partition_point(|row| row[0] <= relative_humidity)
-            .clamp(1, last);
-        let (low, high) = (&wet[above - 1], &wet[above]);
+        let below = interval_by_key(wet, relative_humidity, |row| row[0]);
+        let (low, high) = (&wet[below], &wet[below + 1]);
         let t = ((relative_humidity - low[0]) / (high[0] - low[0])).clamp(0.0, 1.0);
-        let kappa = taken_up(low) * (1.0 - t) + taken_up(high) * t;
+        let kappa = lerp(taken_up(low), taken_up(high), t);
         (1.0 + kappa * odds(relative_humidity)).cbrt()
     }
 

@@ -5,6 +5,7 @@
 
 use super::exponential_integral::scaled;
 use super::geometry::LightRayGeometry;
+use crate::math::quadrature::FixedRule;
 use std::f64::consts::{LN_2, PI};
 
 /// Without extinction: `theta / (4 pi h)`, with the angle `theta` under which the lamp sees the line (after Macklin 2010,
@@ -58,24 +59,12 @@ fn endless(x: f64, w: f64) -> f64 {
 /// Gauss-Legendre in the angle: 16 points leave less than 1e-16 where the singularity at a right angle is at least a whole
 /// interval away and the optical depth at most ln 2.
 fn short(x: f64, first: f64, angle: f64) -> f64 {
-    const RULE: [(f64, f64); 8] = [
-        (0.095_012_509_837_637_44, 0.189_450_610_455_068_5),
-        (0.281_603_550_779_258_9, 0.182_603_415_044_923_6),
-        (0.458_016_777_657_227_4, 0.169_156_519_395_002_54),
-        (0.617_876_244_402_643_7, 0.149_595_988_816_576_73),
-        (0.755_404_408_355_003, 0.124_628_971_255_533_87),
-        (0.865_631_202_387_831_7, 0.095_158_511_682_492_78),
-        (0.944_575_023_073_232_6, 0.062_253_523_938_647_89),
-        (0.989_400_934_991_649_9, 0.027_152_459_411_754_095),
-    ];
-    let half = 0.5 * angle;
-    let at = |place: f64| {
-        let tan = (half * (1.0 + place)).tan();
+    static RULE: FixedRule<16> = FixedRule::fixed();
+    RULE.integrate(0.0, angle, |part| {
+        let tan = part.tan();
         let rise = tan * (1.0 + first * first) / (1.0 - first * tan);
         (-x * rise).exp()
-    };
-    let sum: f64 = RULE.iter().map(|&(p, w)| w * (at(p) + at(-p))).sum();
-    half * sum
+    })
 }
 
 #[cfg(test)]

@@ -1,24 +1,18 @@
 //! Where the integrals along a line are sampled.
 
-use crate::math::quadrature::gauss_legendre;
+use crate::math::quadrature::GaussRule;
 
 /// A Gauss-Legendre rule on `[0, 1]`, made once.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Nodes {
-    /// Place and weight.
-    rule: Vec<(f64, f64)>,
+    rule: GaussRule,
 }
 
 impl Nodes {
     /// A rule of `count` nodes; at least 1.
     pub fn new(count: usize) -> Self {
-        let (places, weights) = gauss_legendre(count.max(1));
         Self {
-            rule: places
-                .iter()
-                .zip(&weights)
-                .map(|(x, w)| (0.5 + 0.5 * x, 0.5 * w))
-                .collect(),
+            rule: GaussRule::new(count.max(1)),
         }
     }
 
@@ -30,7 +24,7 @@ impl Nodes {
     /// Place and weight of each node.
     #[inline]
     pub(super) fn iter(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
-        self.rule.iter().copied()
+        self.rule.iter()
     }
 
     /// The optical depth after which an integral is cut off: what is left out, `e^-depth`, is less than what the rule is
@@ -50,7 +44,7 @@ impl Nodes {
         let covered = 1.0 / (1.0 + inverse);
         let last = (inverse * covered).cbrt();
         let span = covered / (1.0 + last + last * last);
-        for &(place, weight) in &self.rule {
+        for (place, weight) in self.rule.iter() {
             let z = span * place;
             let q = 1.0 - z;
             let p = q * q * q;

@@ -4,7 +4,7 @@ use super::geometry::LightRayGeometry;
 use super::{Light, ParticipatingMedium, ViewRay};
 use crate::fog::profile::Profile;
 use crate::fog::ray_segment::RaySegment;
-use crate::math::quadrature::{gauss_legendre, integrate_by};
+use crate::math::quadrature::GaussRule;
 use std::f64::consts::PI;
 
 /// `e = t + r - r_0` without cancellation, where the distance from the point closest to the lamp is `u`.
@@ -28,7 +28,6 @@ pub fn along(geometry: &LightRayGeometry, more: &[f64], f: impl Fn(f64, f64) -> 
         false => 0.0,
     };
     let (first, last) = (-origin, length - origin);
-    let rule = gauss_legendre(24);
     let mut breaks = Vec::new();
     let more = more.iter().map(|t| t - origin);
     for centre in [first, last, passed - origin].into_iter().chain(more) {
@@ -41,7 +40,7 @@ pub fn along(geometry: &LightRayGeometry, more: &[f64], f: impl Fn(f64, f64) -> 
     breaks.sort_by(f64::total_cmp);
     // Stretches shorter than rounding are none.
     breaks.dedup_by(|b, a| (*b - *a).abs() <= 1e-14 * b.abs());
-    integrate_by(&rule, first, last, &breaks, |s| {
+    GaussRule::new(24).integrate_between(first, last, &breaks, |s| {
         f(s + origin, s + (origin - passed))
     })
 }

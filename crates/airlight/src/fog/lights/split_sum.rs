@@ -59,7 +59,7 @@ mod tests {
     use super::super::{airlight_isotropic, airlight_without_extinction};
     use super::*;
     use crate::fog::approximation;
-    use crate::math::quadrature::integrate;
+    use crate::math::quadrature::GaussRule;
     use crate::spectrum::Spectrum;
 
     fn geometry(nearest_m: f64, start_m: f64, length_m: f64) -> LightRayGeometry {
@@ -86,9 +86,9 @@ mod tests {
                 let geometry = geometry(h, start, length);
                 // Even in the angle under which the lamp sees the line.
                 let (from, to) = ((start / h).atan(), ((start + length) / h).atan());
-                let mean = integrate(3000, from, to, &[], |angle| {
-                    (-sigma * h / angle.cos()).exp()
-                }) / (4.0 * PI * h * length);
+                let mean = GaussRule::new(3000)
+                    .integrate(from, to, |angle| (-sigma * h / angle.cos()).exp())
+                    / (4.0 * PI * h * length);
                 let opacity = (sigma * length).mean_transmittance() * length;
                 let got = airlight_split_sum(&geometry, sigma);
                 assert!(

@@ -3,13 +3,14 @@
 mod place;
 mod rays;
 
-use self::place::{NEAREST, NODES, Place, Row, SHARES, Side, mean, opacity, third_degree};
+use self::place::{NEAREST, NODES, Place, Row, SHARES, Side, mean, opacity};
 use self::rays::{Rays, distance_of};
 use super::{Fog, OPAQUE};
 use crate::fog::lanes::Lanes;
 use crate::fog::merged_layers::MergedLayer;
 use crate::fog::multiple::{Field, STREAMS};
 use crate::fog::ray_segment::RaySegment;
+use crate::math::interpolation::cubic_weights;
 use crate::spectrum::Spectrum;
 use crate::transfer::PathOptics;
 use glam::DVec3;
@@ -264,7 +265,7 @@ impl<'a, const N: usize> Table<'a, N> {
         let first = (mean(at) as usize).clamp(1, SHARES - 3) - 1;
         let logarithms: [Spectrum<N>; 4] = std::array::from_fn(|k| beam(first + k));
         let logarithm = Spectrum::from_fn(|lane| {
-            let weights = third_degree(at[lane] - first as f32);
+            let weights = cubic_weights(at[lane] - first as f32);
             (0..4).map(|k| weights[k] * logarithms[k][lane]).sum()
         });
         let beyond = whole - layer.smooth_towards_eye(cos_sun);

@@ -1,7 +1,7 @@
 use super::*;
 use crate::axes;
 use crate::fog::{DirectionalLight, Medium};
-use crate::math::quadrature::{gauss_legendre, integrate_by};
+use crate::math::quadrature::GaussRule;
 use crate::optics::{Depolarization, PhaseFunction};
 
 const EARTH: Ground = Ground::EARTH;
@@ -55,7 +55,7 @@ fn by_quadrature(
     while depth(&line.part(0.0, end)) > 60.0 {
         end *= 0.8;
     }
-    let rule = gauss_legendre(12);
+    let rule = GaussRule::new(12);
     let mut breaks: Vec<f64> = (0..45)
         .flat_map(|k| {
             let step = end * 0.55f64.powi(k);
@@ -81,7 +81,7 @@ fn by_quadrature(
         }
     }
     breaks.sort_by(f64::total_cmp);
-    let path = integrate_by(&rule, 0.0, end, &breaks, |s| {
+    let path = rule.integrate_between(0.0, end, &breaks, |s| {
         let height = line.height_at(s);
         let to_sun = RaySegment::new(height, sine, f64::INFINITY, ground.radius_m);
         let sunlit = if ground.blocks(&to_sun) && scattering != FogScattering::Undimmed {
@@ -475,7 +475,7 @@ fn sunlight_in_exponential_fog_is_exact_in_f64() {
                 .flat_map(|step| [step, length_m - step])
                 .collect();
             breaks.sort_by(f64::total_cmp);
-            let exact = integrate_by(&gauss_legendre(16), 0.0, length_m, &breaks, |s| {
+            let exact = GaussRule::new(16).integrate_between(0.0, length_m, &breaks, |s| {
                 let height = line.height_at(s);
                 let seen = extinction * profile.column(&line.part(0.0, s));
                 let lit = extinction * profile.column_above(height) / sine;

@@ -8,6 +8,7 @@ use crate::fog::lighting::{FogLighting, Ground};
 use crate::fog::profile::Profile;
 use crate::fog::ray_segment::RaySegment;
 use crate::fog::{scatter, split_at_heights::split_at_heights};
+use crate::math::interpolation::{interval_of, lerp};
 use crate::spectrum::Spectrum;
 use std::f64::consts::PI;
 
@@ -179,8 +180,7 @@ impl<const N: usize> Field<N> {
         let mut before = Spectrum::ZERO;
         split_at_heights(line, &self.heights_m, |part| {
             let inside = part.height_at(0.5 * part.length_m.min(1e9));
-            let above = self.heights_m.partition_point(|&height| height <= inside);
-            let k = above.clamp(1, self.sources.len()) - 1;
+            let k = interval_of(&self.heights_m, inside);
             let along = self.layers.iter().fold(Spectrum::ZERO, |sum, layer| {
                 let column = layer.profile.column(part).min(1e25);
                 sum.scale_acc(layer.extinction_per_m, column as f32)
@@ -215,7 +215,7 @@ impl<const N: usize> Field<N> {
             // In the layer below height `k`, held at the ends.
             let (low, high) = (self.columns_m[k - 1], self.columns_m[k]);
             let up = ((low - column) / (low - high)).clamp(0.0, 1.0) as f32;
-            node(k - 1) * (1.0 - up) + node(k) * up
+            lerp(node(k - 1), node(k), up)
         };
         let mut path = Spectrum::ZERO;
         let mut before = Spectrum::ZERO;

@@ -6,7 +6,7 @@
 //! grows; then from the top down. Between two heights the equation of transfer is differenced at the middle.
 
 use super::legendre::{self, COUNT, STREAMS};
-use crate::math::quadrature::gauss_legendre;
+use crate::math::quadrature::FixedRule;
 use std::f64::consts::PI;
 
 /// Polar angles in one hemisphere.
@@ -55,11 +55,11 @@ struct Angles {
 
 impl Angles {
     fn new() -> Self {
-        let (nodes, weights) = gauss_legendre(HALF);
-        let cosine = std::array::from_fn(|i| 0.5 * (nodes[i] + 1.0));
+        static RULE: FixedRule<HALF> = FixedRule::fixed();
+        let cosine = RULE.pairs().map(|(cosine, _)| cosine);
         Self {
             cosine,
-            weight: std::array::from_fn(|i| 0.5 * weights[i]),
+            weight: RULE.pairs().map(|(_, weight)| weight),
             down: cosine.map(legendre::evaluate),
         }
     }

@@ -10,8 +10,9 @@
 //! scatterings, made an extinction.
 
 use super::legendre::STREAMS;
+use crate::math::interpolation::Place;
+use crate::math::legendre::legendre_series;
 use crate::optics::PhaseFunction;
-use std::f64::consts::PI;
 
 /// Moments summed for the self-convolved phase function.
 const MOMENTS: usize = 800;
@@ -48,7 +49,8 @@ impl Peak {
             return peak;
         }
         let squared: Vec<f64> = chi.iter().map(|c| c * c).collect();
-        let residual = |mu: f64| phase.evaluate(mu, wavelength_nm) - series(&chi[..STREAMS], mu);
+        let residual =
+            |mu: f64| phase.evaluate(mu, wavelength_nm) - legendre_series(&chi[..STREAMS], mu);
         // The residual's first zero, from the sun outwards.
         let cosine = |half_sine: f64| 1.0 - 2.0 * half_sine * half_sine;
         let step = 1.0 / 512.0;
@@ -61,7 +63,7 @@ impl Peak {
                 let mu = cosine(peak.edge * k as f64 / ENTRIES as f64);
                 let (once, twice) = (
                     residual(mu),
-                    series(&squared, mu) - series(&squared[..STREAMS], mu),
+                    legendre_series(&squared, mu) - legendre_series(&squared[..STREAMS], mu),
                 );
                 match once > 0.0 {
                     true => (0.5 * twice / once).clamp(0.0, fraction) as f32,
@@ -75,7 +77,7 @@ impl Peak {
     /// The phase function's part below [`STREAMS`] moments, 1/sr.
     #[inline]
     pub fn smooth(&self, mu: f64) -> f64 {
-        series(&self.moments, mu)
+        legendre_series(&self.moments, mu)
     }
 
     /// Whether the residual is to be dimmed in its own way at an angle.
@@ -91,23 +93,8 @@ impl Peak {
         if half_sine >= self.edge {
             return self.fraction as f32;
         }
-        let x = half_sine / self.edge * ENTRIES as f64;
-        let k = (x as usize).min(ENTRIES - 1);
-        let w = (x - k as f64) as f32;
-        self.table[k] * (1.0 - w) + self.table[k + 1] * w
+        Place::evenly(half_sine / self.edge, ENTRIES + 1).value_in_f32(&self.table)
     }
-}
-
-/// `sum over l of (2 l + 1) / (4 pi) chi_l P_l(mu)`.
-fn series(chi: &[f64], mu: f64) -> f64 {
-    let (mut before, mut now) = (0.0, 1.0);
-    let mut sum = 0.0;
-    for (l, chi) in chi.iter().enumerate() {
-        let l = l as f64;
-        sum += (2.0 * l + 1.0) * chi * now;
-        (before, now) = (now, ((2.0 * l + 1.0) * mu * now - l * before) / (l + 1.0));
-    }
-    sum / (4.0 * PI)
 }
 
 #[cfg(test)]
@@ -123,7 +110,7 @@ mod tests {
         assert!((peak.fraction - g.powi(STREAMS as i32)).abs() < 1e-12);
         let low = |x: f64, mu: f64| {
             let chi: Vec<f64> = (0..STREAMS).map(|l| x.powi(l as i32)).collect();
-            series(&chi, mu)
+            legendre_series(&chi, mu)
         };
         for mu in [1.0, 0.999, 0.99] {
             let q = phase.evaluate(mu, 550.0) - low(g, mu);

@@ -1,11 +1,10 @@
 use super::*;
-use crate::math::quadrature::{gauss_legendre, integrate_by};
+use crate::math::quadrature::GaussRule;
 
 const EARTH_M: f64 = 6.371e6;
 
 /// The column by brute force: Gauss's rule in many stretches that shrink towards every point where density changes fast.
 fn by_quadrature(profile: &Profile, line: &RaySegment, length_m: f64) -> f64 {
-    let rule = gauss_legendre(24);
     let mut breaks = Vec::new();
     let lowest = -0.5 * line.sin_elevation / line.curvature_per_m;
     let mut centres = vec![0.0, length_m];
@@ -28,7 +27,7 @@ fn by_quadrature(profile: &Profile, line: &RaySegment, length_m: f64) -> f64 {
         }
     }
     breaks.sort_by(f64::total_cmp);
-    integrate_by(&rule, 0.0, length_m, &breaks, |s| {
+    GaussRule::new(24).integrate_between(0.0, length_m, &breaks, |s| {
         profile.density(line.height_at(s))
     })
 }

@@ -16,6 +16,7 @@
 
 use super::Klassen1987;
 use super::simpson::Simpson;
+use crate::math::interpolation::Place;
 use crate::spectrum::RgbSpace;
 use std::collections::HashMap;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -63,20 +64,15 @@ impl Axis {
     }
 
     fn cell(&self, angle: f64) -> u32 {
-        let last = self.passed.len() - 1;
-        let place = (angle / self.span).clamp(0.0, 1.0).sqrt() * last as f64;
-        let below = (place as usize).min(last - 1);
-        let t = place - below as f64;
-        (self.passed[below] * (1.0 - t) + self.passed[below + 1] * t) as u32
+        let part = (angle / self.span).clamp(0.0, 1.0);
+        Place::evenly(part.sqrt(), self.passed.len()).value_in(&self.passed) as u32
     }
 
     fn middle(&self, cell: u32) -> f64 {
         let last = self.passed.len() - 1;
         let passed = (f64::from(cell) + 0.5).min(self.passed[last]);
-        let above = self.passed.partition_point(|&p| p <= passed).clamp(1, last);
-        let (low, high) = (self.passed[above - 1], self.passed[above]);
-        let place = (above - 1) as f64 + ((passed - low) / (high - low)).clamp(0.0, 1.0);
-        self.span * (place / last as f64).powi(2)
+        let Place { below, fraction } = Place::among(&self.passed, passed);
+        self.span * ((below as f64 + fraction) / last as f64).powi(2)
     }
 }
 

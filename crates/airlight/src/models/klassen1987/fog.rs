@@ -159,7 +159,7 @@ impl<const N: usize> Slab1987<N> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::quadrature::integrate;
+    use crate::math::quadrature::GaussRule;
     use crate::optics::{Depolarization, PhaseFunction};
 
     fn scene() -> Slab1987<3> {
@@ -194,14 +194,15 @@ mod tests {
                 let air = f64::from(scene.air.extinction_per_m[lane]);
                 let phase = fog * scene.fog.phase.evaluate(cos_sun, 550.0)
                     + air * scene.air.phase.evaluate(cos_sun, 550.0);
-                let integral = integrate(24, 0.0, length, &[30.0, 90.0], |d3| {
-                    let d1 = (8400.0 - 100.0) / 0.6;
-                    let d2 = match depth {
-                        SunDepth::Printed => 100.0 / 0.6,
-                        SunDepth::Exact => (100.0 - (eye + sin_elevation * d3)) / 0.6,
-                    };
-                    (-air * d1 - (d2 + d3) * (air + fog)).exp()
-                });
+                let integral =
+                    GaussRule::new(24).integrate_between(0.0, length, &[30.0, 90.0], |d3| {
+                        let d1 = (8400.0 - 100.0) / 0.6;
+                        let d2 = match depth {
+                            SunDepth::Printed => 100.0 / 0.6,
+                            SunDepth::Exact => (100.0 - (eye + sin_elevation * d3)) / 0.6,
+                        };
+                        (-air * d1 - (d2 + d3) * (air + fog)).exp()
+                    });
                 let exact = f64::from(scene.sun_irradiance[lane]) * phase * integral;
                 let path = f64::from(got.path_radiance[lane]);
                 assert!(

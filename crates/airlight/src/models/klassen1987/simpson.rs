@@ -1,6 +1,7 @@
 //! Adaptive Simpson quadrature over all wavelengths at once, with a memory (section 8).
 
 use super::Lanes;
+use crate::math::simpson::{adaptive_simpson, simpson};
 
 /// Relative error aimed at, of each wavelength (or of [`DIM`] times the brightest); 16 times as much where the integrand jumps.
 const TOLERANCE: f32 = 1e-4;
@@ -28,53 +29,35 @@ impl Simpson {
     /// then.
     pub fn integrate(&mut self, f: impl Fn(f64) -> Lanes) -> Lanes {
         let ends = [f(0.0), f(0.5), f(1.0)];
-        let first = rule(&ends, 1.0);
+        let first = simpson(&ends, 1.0);
         if let Some((known, result)) = &self.last
             && close(known, &first, self.alike)
         {
             return *result;
         }
         let mut result = Lanes::ZERO;
-        halve(&f, (0.0, 1.0), &ends, &first, &mut result, DEEPEST);
+        adaptive_simpson(
+            &f,
+            (0.0, 1.0),
+            &ends,
+            &first,
+            &mut result,
+            DEEPEST,
+            &accurate,
+        );
         self.last = Some((first, result));
         result
     }
 }
 
-/// Adds to `sum` two halves in place of `whole`, and further halves until they agree to 15 times the tolerance, with
-/// Richardson's correction. The tolerance is a part of what has been summed so far or of the panel itself: integrands
-/// here are brightest near the eye, where the sum begins.
-fn halve(
-    f: &impl Fn(f64) -> Lanes,
-    (from, to): (f64, f64),
-    values: &[Lanes; 3],
-    whole: &Lanes,
-    sum: &mut Lanes,
-    depth: u32,
-) {
-    let width = to - from;
-    let middle = from + 0.5 * width;
-    let inner = [f(from + 0.25 * width), f(from + 0.75 * width)];
-    let left = [values[0], inner[0], values[1]];
-    let right = [values[1], inner[1], values[2]];
-    let (a, b) = (rule(&left, 0.5 * width), rule(&right, 0.5 * width));
-    let both = a + b;
+/// Whether Simpson's rule on two halves agrees with that on the whole to 15 times the tolerance, a part of what has been summed
+/// so far or of the panel itself: integrands here are brightest near the eye, where the sum begins.
+fn accurate(both: &Lanes, whole: &Lanes, sum: &Lanes) -> bool {
     let floor = DIM * sum.max_element().max(both.max_element());
-    let done = (0..both.0.len()).all(|i| {
+    (0..both.0.len()).all(|i| {
         let measure = both.0[i].max(sum.0[i]).max(floor);
         (both.0[i] - whole.0[i]).abs() <= 15.0 * TOLERANCE * measure
-    });
-    if done || depth == 0 {
-        *sum += both.scale_acc(both - *whole, 1.0 / 15.0);
-        return;
-    }
-    halve(f, (from, middle), &left, &a, sum, depth - 1);
-    halve(f, (middle, to), &right, &b, sum, depth - 1);
-}
-
-/// Simpson's rule on three values.
-fn rule(values: &[Lanes; 3], width: f64) -> Lanes {
-    (values[0] + values[1] * 4.0 + values[2]) * (width / 6.0) as f32
+    })
 }
 
 /// Whether all wavelengths agree.

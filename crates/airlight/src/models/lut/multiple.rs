@@ -5,7 +5,8 @@
 //! that the surroundings send back each further time (eqs. 7 and 8), and the geometric series of all later orders
 //! (eqs. 9 and 10).
 
-use super::{AirLanes, TransmittanceTable, corners};
+use super::{AirLanes, TransmittanceTable};
+use crate::math::interpolation::bilinear;
 use crate::transfer::ray::Ray;
 use rayon::prelude::*;
 use std::f64::consts::PI;
@@ -74,7 +75,7 @@ impl MultipleScatteringTable {
     pub fn look_up(&self, radius_m: f64, mu_sun: f64, out: &mut [f32]) {
         let height = (radius_m - self.ground_radius_m) / (self.top_radius_m - self.ground_radius_m);
         out.fill(0.0);
-        for (index, weight) in corners((0.5 + 0.5 * mu_sun, height), self.size) {
+        for (index, weight) in bilinear(0.5 + 0.5 * mu_sun, height, self.size) {
             let sample = &self.values[index * self.lanes..][..self.lanes];
             for (o, s) in out.iter_mut().zip(sample) {
                 *o += weight * s;

@@ -1,6 +1,6 @@
 //! Transmittance to space by height and zenith angle.
 
-use super::corners;
+use crate::math::interpolation::bilinear;
 use rayon::prelude::*;
 
 /// Transmittance from any height in any direction to the top of the air, for several wavelengths at once.
@@ -51,7 +51,8 @@ impl TransmittanceTable {
     /// misses the ground, into `out`.
     pub fn look_up(&self, radius_m: f64, mu: f64, out: &mut [f32]) {
         out.fill(0.0);
-        for (index, weight) in corners(self.coordinates(radius_m, mu), self.size) {
+        let (u, v) = self.coordinates(radius_m, mu);
+        for (index, weight) in bilinear(u, v, self.size) {
             let sample = &self.values[index * self.lanes..][..self.lanes];
             for (o, s) in out.iter_mut().zip(sample) {
                 *o += weight * s;

@@ -1,6 +1,7 @@
 //! How the air of a turbidity dims the sun: Preetham, Shirley and Smits 1999, appendix A.1, after Iqbal, "An Introduction
 //! to Solar Radiation", 1983.
 
+use crate::math::interpolation::{interval_by_key, lerp};
 use crate::spectrum::WavelengthGrid;
 use crate::sun::SunDisc;
 use glam::DVec3;
@@ -104,12 +105,12 @@ fn optical_mass(sun_zenith_rad: f64) -> Option<f64> {
 
 /// A table's value, linear between entries, 0 beyond them.
 fn between(table: &[(f64, f64)], x: f64) -> f64 {
-    let above = table.partition_point(|&(at, _)| at <= x);
-    if above == 0 || above == table.len() {
+    if x < table[0].0 || x >= table[table.len() - 1].0 {
         return 0.0;
     }
-    let ((x0, y0), (x1, y1)) = (table[above - 1], table[above]);
-    y0 + (y1 - y0) * (x - x0) / (x1 - x0)
+    let below = interval_by_key(table, x, |entry| entry.0);
+    let ((x0, y0), (x1, y1)) = (table[below], table[below + 1]);
+    lerp(y0, y1, (x - x0) / (x1 - x0))
 }
 
 #[cfg(test)]

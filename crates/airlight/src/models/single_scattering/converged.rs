@@ -5,7 +5,7 @@ use super::nodes::{self, Columns};
 use super::printed::smoothstep;
 use super::{Settings, Variant};
 use crate::atmosphere::presets::published;
-use crate::math::gauss_rule::GaussRule;
+use crate::math::quadrature::{GaussRule, RunningRule};
 use crate::models::lut::{
     AirLanes, MultipleScatteringSettings, MultipleScatteringTable, TransmittanceTable,
 };
@@ -26,7 +26,7 @@ const CHANNELS_NM: [f64; 3] = [680.0, 550.0, 440.0];
 /// The article's sky, converged.
 pub struct Converged {
     eye_altitude_m: f64,
-    view_rule: GaussRule,
+    view_rule: RunningRule,
     sun_rule: GaussRule,
     /// Illuminances outside the air, facing the sun.
     illuminance: [f64; 3],
@@ -42,7 +42,7 @@ impl Converged {
 
     /// The same with other numbers of nodes, on the line of sight and on the ways to the sun.
     pub fn with_nodes(variant: Variant, settings: &Settings, nodes: (usize, usize)) -> Self {
-        let rules = (GaussRule::new(nodes.0), GaussRule::new(nodes.1));
+        let rules = (RunningRule::new(nodes.0), GaussRule::new(nodes.1));
         let transmittance = matches!(variant, Variant::Table | Variant::Multiple).then(|| {
             TransmittanceTable::new(
                 (c::PLANET_RADIUS_M, c::TOP_RADIUS_M),

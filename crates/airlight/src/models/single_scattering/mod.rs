@@ -19,10 +19,10 @@ mod constants;
 mod converged;
 mod nodes;
 mod printed;
-mod real;
 mod sunlight;
 #[cfg(test)]
 mod tests;
+mod vec3;
 
 use crate::models::PublishedModel;
 use crate::spectrum::RgbSpace;

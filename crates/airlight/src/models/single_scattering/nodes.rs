@@ -6,7 +6,7 @@
 //! and a mean free path, and gets one Gauss-Legendre rule over `s`.
 
 use super::constants as c;
-use crate::math::gauss_rule::GaussRule;
+use crate::math::quadrature::{GaussRule, RunningRule};
 use crate::transfer::ray::Ray;
 
 /// No longer than this are steps next to the densest point, m: a mean free path of blue light at sea level.
@@ -54,7 +54,7 @@ pub fn columns_up(rule: &GaussRule, radius_m: f64, mu: f64) -> Columns {
     };
     let (scale, k) = log_map(radius_m, mu, length);
     let mut columns = [0.0; 2];
-    for (&s, &w) in rule.nodes.iter().zip(&rule.weights) {
+    for (s, w) in rule.iter() {
         let stretch = (k * s).exp();
         let altitude = radius_m - c::PLANET_RADIUS_M + ray.climb_at(scale * (stretch - 1.0));
         let dt = w * scale * k * stretch;
@@ -80,7 +80,12 @@ pub fn columns_to_space(rule: &GaussRule, radius_m: f64, mu: f64) -> Columns {
 
 /// Calls `visit` with the nodes of the line of sight, eye to `end_m`; returns the columns of all of it. The line is cut where it is
 /// lowest and where it crosses the edge of the planet's shadow.
-pub fn walk(rule: &GaussRule, ray: &Ray, end_m: f64, mut visit: impl FnMut(&Node)) -> Columns {
+pub fn walk(
+    RunningRule { rule, running }: &RunningRule,
+    ray: &Ray,
+    end_m: f64,
+    mut visit: impl FnMut(&Node),
+) -> Columns {
     let closest = ray.closest_approach_m();
     let mut edges = vec![0.0];
     let [first, second] = ray.shadow_edges(c::PLANET_RADIUS_M);
@@ -92,7 +97,7 @@ pub fn walk(rule: &GaussRule, ray: &Ray, end_m: f64, mut visit: impl FnMut(&Node
     edges.push(end_m);
     edges.sort_by(f64::total_cmp);
     let mut before = [0.0; 2];
-    let count = rule.nodes.len();
+    let count = rule.len();
     let mut nodes: Vec<Node> = Vec::with_capacity(count);
     for edge in edges.windows(2) {
         let (from, to) = (edge[0], edge[1]);
@@ -100,7 +105,7 @@ pub fn walk(rule: &GaussRule, ray: &Ray, end_m: f64, mut visit: impl FnMut(&Node
         let low = ray.advanced(if climbs { from } else { to });
         let (scale, k) = log_map(low.radius_m, low.mu.abs(), to - from);
         nodes.clear();
-        for &s in &rule.nodes {
+        for (s, _) in rule.iter() {
             let stretch = (k * s).exp();
             let d = scale * (stretch - 1.0);
             let t = if climbs { from + d } else { to - d };
@@ -114,13 +119,13 @@ pub fn walk(rule: &GaussRule, ray: &Ray, end_m: f64, mut visit: impl FnMut(&Node
             });
         }
         let whole: Columns = [0, 1].map(|i| {
-            let terms = nodes.iter().zip(&rule.weights);
-            terms.map(|(n, w)| w * n.dt * n.densities[i]).sum()
+            let terms = nodes.iter().zip(rule.iter());
+            terms.map(|(n, (_, w))| w * n.dt * n.densities[i]).sum()
         });
         for at in 0..count {
             for i in 0..2 {
                 let low_to_here: f64 = (0..count)
-                    .map(|j| rule.running[at][j] * nodes[j].dt * nodes[j].densities[i])
+                    .map(|j| running[at][j] * nodes[j].dt * nodes[j].densities[i])
                     .sum();
                 nodes[at].columns[i] = before[i]
                     + if climbs {
@@ -130,7 +135,7 @@ pub fn walk(rule: &GaussRule, ray: &Ray, end_m: f64, mut visit: impl FnMut(&Node
                     };
             }
         }
-        for (node, w) in nodes.iter_mut().zip(&rule.weights) {
+        for (node, (_, w)) in nodes.iter_mut().zip(rule.iter()) {
             node.dt *= w;
             visit(node);
         }

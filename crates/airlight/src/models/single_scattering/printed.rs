@@ -1,8 +1,9 @@
 //! The shader as it is printed, operation by operation: 8 midpoint steps on every ray, no planet in the way.
 
 use super::constants as c;
-use super::real::{Real, Vec3};
 use super::sunlight::{Sunlight, solar_rgb};
+use super::vec3::Vec3;
+use crate::math::real::Real;
 
 /// The shader with its constants folded.
 pub struct Printed<F> {

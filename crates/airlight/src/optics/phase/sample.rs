@@ -112,7 +112,7 @@ fn henyey_greenstein(g: f64, xi: f64) -> f64 {
 mod tests {
     use super::super::tests::kinds;
     use super::*;
-    use crate::math::quadrature::integrate;
+    use crate::math::quadrature::GaussRule;
     use crate::math::random::Random;
     use std::f64::consts::PI;
 
@@ -148,9 +148,12 @@ mod tests {
                         let edge = |k: usize| 2.0 * k as f64 / BINS as f64 - 1.0;
                         let share = 2.0
                             * PI
-                            * integrate(16, edge(bin), edge(bin + 1), &breaks, |mu| {
-                                phase.evaluate(mu, nm)
-                            });
+                            * GaussRule::new(16).integrate_between(
+                                edge(bin),
+                                edge(bin + 1),
+                                &breaks,
+                                |mu| phase.evaluate(mu, nm),
+                            );
                         let expected = share * DRAWS as f64;
                         (counts[bin] - expected).powi(2) / expected
                     })

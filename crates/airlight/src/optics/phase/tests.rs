@@ -1,5 +1,5 @@
 use super::*;
-use crate::math::quadrature::integrate;
+use crate::math::quadrature::GaussRule;
 
 /// All kinds, with parameters that try them.
 pub(super) fn kinds() -> Vec<PhaseFunction> {
@@ -37,7 +37,7 @@ fn moment(phase: &PhaseFunction, l: usize, nm: f64) -> f64 {
         .map(|i| (0.5 * f64::from(i)).to_radians().cos())
         .collect();
     2.0 * PI
-        * integrate(16, -1.0, 1.0, &breaks, |mu| {
+        * GaussRule::new(16).integrate_between(-1.0, 1.0, &breaks, |mu| {
             let (mut before, mut now) = (0.0, 1.0);
             for k in 0..l {
                 let x = k as f64;

@@ -1,6 +1,7 @@
 //! Legendre moments of tables.
 
 use super::{PANEL_POINTS, TabulatedPhase};
+use crate::math::interpolation::lerp;
 use crate::math::simd::vectorized;
 
 impl TabulatedPhase {
@@ -10,7 +11,7 @@ impl TabulatedPhase {
         let mut moments = self.moments_of_row(row, count);
         if t > 0.0 {
             for (moment, other) in moments.iter_mut().zip(self.moments_of_row(row + 1, count)) {
-                *moment = *moment * (1.0 - t) + other * t;
+                *moment = lerp(*moment, other, t);
             }
         }
         moments

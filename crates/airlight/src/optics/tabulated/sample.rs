@@ -1,6 +1,7 @@
 //! Drawing directions from tables.
 
 use super::TabulatedPhase;
+use crate::math::interpolation::interval_of;
 
 /// Newton steps at most; two or three do.
 const STEPS: usize = 30;
@@ -25,10 +26,7 @@ impl TabulatedPhase {
     fn sample_row(&self, row: usize, share: f64) -> f64 {
         let count = self.angles_rad.len();
         let running = &self.cumulative[row * count..(row + 1) * count];
-        let interval = running
-            .partition_point(|&part| part <= share)
-            .clamp(1, count - 1)
-            - 1;
+        let interval = interval_of(running, share);
         let wanted = share - running[interval];
         let whole = running[interval + 1] - running[interval];
         let (mut low, mut high) = (self.angles_rad[interval], self.angles_rad[interval + 1]);
@@ -74,6 +72,7 @@ impl TabulatedPhase {
 
 #[cfg(test)]
 mod tests {
+    use super::interval_of;
     use crate::optics::{PhaseFunction, TabulatedPhase};
 
     /// Two wavelengths: a peak of six decades, and a bow.
@@ -102,8 +101,7 @@ mod tests {
                 assert!(mu <= before, "{share}");
                 before = mu;
                 let angle = mu.acos();
-                let interval = table.angles_rad().partition_point(|&a| a <= angle);
-                let interval = interval.clamp(1, count - 1) - 1;
+                let interval = interval_of(table.angles_rad(), angle);
                 let within =
                     table.cumulative[row * count + interval] + table.mass(row, interval, angle);
                 assert!((within - share).abs() < 1e-7, "{nm} {share}: {within}");

@@ -263,8 +263,8 @@ fn light_from_all_sides_adds_up() {
     // Scalar irradiance, at distance D, of all light scattered once: sigma I int dV / (4 pi r^2 s^2), r from the light,
     // s from the eye: pi^3 / D times sigma I / (4 pi).
     let eye = DVec3::new(0.0, 0.0, 7.0);
-    let rule = crate::math::quadrature::gauss_legendre(64);
-    let sum = crate::math::quadrature::integrate_by(&rule, 0.0, PI, &[0.01, 0.1], |angle| {
+    let rule = crate::math::quadrature::GaussRule::new(64);
+    let sum = rule.integrate_between(0.0, PI, &[0.01, 0.1], |angle| {
         let direction = DVec3::new(angle.sin(), 0.0, -angle.cos());
         let line = ViewRay {
             eye,

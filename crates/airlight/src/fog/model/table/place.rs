@@ -3,6 +3,7 @@
 use super::SunSide;
 use crate::fog::lanes::Lanes;
 use crate::fog::multiple::STREAMS;
+use crate::math::interpolation::cubic_weights;
 use crate::spectrum::Spectrum;
 use glam::DVec3;
 use std::sync::OnceLock;
@@ -169,25 +170,13 @@ impl<const N: usize> Side<N> {
         let far = (along - node).clamp(0.0, 1.0);
         let row = self.row_of(sin_elevation);
         let first = (row as usize).clamp(1, ROWS - 3) - 1;
-        let weights = third_degree(row - first as f32);
+        let weights = cubic_weights(row - first as f32);
         Place {
             row: first,
             node: node as usize,
             weights: weights.map(|w| [w * (1.0 - far), w * far]),
         }
     }
-}
-
-/// Lagrange's weights of values at 0, 1, 2 and 3.
-#[inline]
-pub(super) fn third_degree(x: f32) -> [f32; 4] {
-    let [a, b, c, d] = [x, x - 1.0, x - 2.0, x - 3.0];
-    [
-        -b * c * d / 6.0,
-        0.5 * a * c * d,
-        -0.5 * a * b * d,
-        a * b * c / 6.0,
-    ]
 }
 
 /// `1 - e^-depth`, exact where it is small.

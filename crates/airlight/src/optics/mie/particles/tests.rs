@@ -1,5 +1,5 @@
 use super::*;
-use crate::math::quadrature::gauss_legendre;
+use crate::math::quadrature::GaussRule;
 use crate::optics::mie::{Complex64, Sphere};
 
 fn drops(radius_um: f64) -> Particles {
@@ -131,7 +131,7 @@ fn tables_keep_peak_bow_and_glory() {
 #[test]
 fn the_integral_is_one() {
     let particles = Particles::water(SizeDistribution::gamma(1.0, 0.1)).unwrap();
-    let (nodes, weights) = gauss_legendre(200);
+    let (nodes, weights): (Vec<f64>, Vec<f64>) = GaussRule::new(200).on(-1.0, 1.0).unzip();
     let matrices = particles.matrices(550.0, &nodes).unwrap();
     let parts = matrices
         .iter()

@@ -1,5 +1,5 @@
 use super::*;
-use crate::math::quadrature::gauss_legendre;
+use crate::math::quadrature::GaussRule;
 use crate::optics::{Depolarization, PhaseFunction};
 
 /// Rows of a table of the tests whose first field is `source`.
@@ -192,10 +192,9 @@ fn laws_hold_between_amplitudes_and_efficiencies() {
         );
         assert!((q.scattering + q.absorption - q.extinction).abs() < 1e-14 * q.extinction);
         // A polynomial of degree 2 N in the cosine.
-        let (nodes, weights) = gauss_legendre(terms(x) + 2);
         let (mut whole, mut mean) = (0.0, 0.0);
-        for (mu, weight) in nodes.iter().zip(weights) {
-            let matrix = sphere.matrix(*mu);
+        for (mu, weight) in GaussRule::new(terms(x) + 2).on(-1.0, 1.0) {
+            let matrix = sphere.matrix(mu);
             whole += 2.0 * PI * weight * matrix.f11;
             mean += 2.0 * PI * weight * matrix.f11 * mu;
             let squares = matrix.f12.powi(2) + matrix.f33.powi(2) + matrix.f34.powi(2);

@@ -1,20 +1,18 @@
-//! Integrals over wavelength of a smooth response, known only at the nodes of a grid, times a kernel that is not smooth.
-
-/// Step of the integrals over wavelength, nm: the finest step of the solar and observer tables.
-const STEP_NM: f64 = 0.5;
+//! Integrals of a smooth function, known only at some nodes, times a kernel that is not smooth.
 
 /// Fewest nodes joined by a spline; fewer are joined by straight lines.
 const SPLINE_NODES: usize = 5;
 
-/// Weights `w_k` such that `sum_k w_k r(node_k)` is the integral over `first_nm..=last_nm` of `kernel(l) r(l)`, with r
-/// interpolated between the nodes: by the natural cubic spline from 5 nodes on, by straight lines below, and held
-/// constant beyond the end nodes. Trapezoidal rule in steps of 0.5 nm.
+/// Weights `w_k` such that `sum_k w_k r(node_k)` is the integral over `first..=last` of `kernel(x) r(x)`, with r interpolated
+/// between the nodes: by the natural cubic spline from 5 nodes on, by straight lines below, and held constant beyond the end
+/// nodes. Trapezoidal rule in steps of `step`.
 ///
-/// Straight lines give weights of the kernel's sign, which a spline through 3 or 4 nodes does not. `nodes` must be
-/// strictly increasing and not empty.
-pub(super) fn product_weights(
+/// Straight lines give weights of the kernel's sign, which a spline through 3 or 4 nodes does not. `nodes` must be strictly
+/// increasing and not empty.
+pub fn product_weights(
     nodes: &[f64],
-    (first_nm, last_nm): (f64, f64),
+    (first, last): (f64, f64),
+    step: f64,
     kernel: impl Fn(f64) -> [f64; 3],
 ) -> Vec<[f64; 3]> {
     let n = nodes.len();
@@ -23,18 +21,18 @@ pub(super) fn product_weights(
     // each, and only then turn those of m_k into more of those of r_k.
     let mut values = vec![[0.0; 3]; n];
     let mut curvatures = vec![[0.0; 3]; n];
-    let steps = ((last_nm - first_nm) / STEP_NM).round() as usize;
-    for step in 0..=steps {
-        let nm = first_nm + step as f64 * STEP_NM;
-        let end = if step == 0 || step == steps { 0.5 } else { 1.0 };
-        let k = kernel(nm).map(|v| v * STEP_NM * end);
-        let above = nodes.partition_point(|&node| node <= nm);
+    let steps = ((last - first) / step).round() as usize;
+    for i in 0..=steps {
+        let x = first + i as f64 * step;
+        let end = if i == 0 || i == steps { 0.5 } else { 1.0 };
+        let k = kernel(x).map(|v| v * step * end);
+        let above = nodes.partition_point(|&node| node <= x);
         if above == 0 || above == n {
             add(&mut values[above.min(n - 1)], k, 1.0);
             continue;
         }
         let h = nodes[above] - nodes[above - 1];
-        let t = (nm - nodes[above - 1]) / h;
+        let t = (x - nodes[above - 1]) / h;
         let s = 1.0 - t;
         add(&mut values[above - 1], k, s);
         add(&mut values[above], k, t);
@@ -86,10 +84,9 @@ fn absorb_curvatures(nodes: &[f64], values: &mut [[f64; 3]], mut c: Vec<[f64; 3]
     }
 }
 
-/// Mean of `curve` about each node: weighted by a triangle, symmetric about the node, that reaches half-way to the
-/// nearer neighbour but no further than 20 nm. A lone node takes 20 nm.
-pub(super) fn local_means(nodes: &[f64], curve: impl Fn(f64) -> f64) -> Vec<f64> {
-    const WIDEST_NM: f64 = 20.0;
+/// Mean of `curve` about each node: weighted by a triangle, symmetric about the node, that reaches half-way to the nearer
+/// neighbour but no further than `widest`. A lone node takes `widest`.
+pub fn local_means(nodes: &[f64], widest: f64, curve: impl Fn(f64) -> f64) -> Vec<f64> {
     const INTERVALS: i32 = 80;
     (0..nodes.len())
         .map(|k| {
@@ -97,7 +94,7 @@ pub(super) fn local_means(nodes: &[f64], curve: impl Fn(f64) -> f64) -> Vec<f64>
                 .checked_sub(1)
                 .map_or(f64::INFINITY, |b| nodes[k] - nodes[b]);
             let above = nodes.get(k + 1).map_or(f64::INFINITY, |a| a - nodes[k]);
-            let reach = (below.min(above) / 2.0).min(WIDEST_NM);
+            let reach = (below.min(above) / 2.0).min(widest);
             let (mut sum, mut total) = (0.0, 0.0);
             for j in -INTERVALS..=INTERVALS {
                 let offset = j as f64 / INTERVALS as f64;
@@ -114,6 +111,7 @@ pub(super) fn local_means(nodes: &[f64], curve: impl Fn(f64) -> f64) -> Vec<f64>
 mod tests {
     use super::*;
 
+    const STEP: f64 = 0.5;
     const NODES: [f64; 7] = [370.0, 400.0, 437.5, 505.0, 560.0, 633.0, 810.0];
 
     fn kernel(nm: f64) -> [f64; 3] {
@@ -123,9 +121,9 @@ mod tests {
     fn integral(f: impl Fn(f64) -> f64) -> [f64; 3] {
         let mut sum = [0.0; 3];
         for step in 0..=940 {
-            let nm = 360.0 + step as f64 * STEP_NM;
+            let nm = 360.0 + step as f64 * STEP;
             let end = if step % 940 == 0 { 0.5 } else { 1.0 };
-            add(&mut sum, kernel(nm), f(nm) * end * STEP_NM);
+            add(&mut sum, kernel(nm), f(nm) * end * STEP);
         }
         sum
     }
@@ -143,7 +141,7 @@ mod tests {
         let mut sum = [0.0; 3];
         for (&node, w) in nodes
             .iter()
-            .zip(product_weights(nodes, (360.0, 830.0), kernel))
+            .zip(product_weights(nodes, (360.0, 830.0), STEP, kernel))
         {
             add(&mut sum, w, r(node));
         }
@@ -186,15 +184,17 @@ mod tests {
 
     #[test]
     fn local_means_keep_straight_lines_and_stay_within_their_reach() {
-        let means = local_means(&NODES, |nm| 2.0 * nm);
+        let means = local_means(&NODES, 20.0, |nm| 2.0 * nm);
         for (mean, node) in means.iter().zip(NODES) {
             assert!((mean - 2.0 * node).abs() < 1e-9);
         }
         // Half-way from 400 to 370 is 385.
         assert_eq!(
-            local_means(&NODES, |nm| if nm < 385.0 { 1.0 } else { 0.0 })[1],
+            local_means(&NODES, 20.0, |nm| if nm < 385.0 { 1.0 } else { 0.0 })[1],
             0.0
         );
-        assert!((local_means(&[500.0], |nm| (nm - 500.0).abs())[0] - 20.0 / 3.0).abs() < 0.01);
+        assert!(
+            (local_means(&[500.0], 20.0, |nm| (nm - 500.0).abs())[0] - 20.0 / 3.0).abs() < 0.01
+        );
     }
 }

@@ -1,0 +1,69 @@
+//! [`Real`]: formulas written once for `f32` and `f64`.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// A floating point number of either width.
+pub(crate) trait Real:
+    Copy
+    + PartialOrd
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + Send
+    + Sync
+{
+    /// The nearest number of this width.
+    fn of(value: f64) -> Self;
+    /// The same in `f64`.
+    fn to_f64(self) -> f64;
+    /// Square root.
+    fn sqrt(self) -> Self;
+    /// Exponential.
+    fn exp(self) -> Self;
+    /// Cosine.
+    fn cos(self) -> Self;
+    /// Arc cosine.
+    fn acos(self) -> Self;
+    /// Power.
+    fn pow(self, exponent: Self) -> Self;
+}
+
+macro_rules! real {
+    ($float:ty) => {
+        impl Real for $float {
+            #[inline(always)]
+            fn of(value: f64) -> Self {
+                value as $float
+            }
+            #[inline(always)]
+            fn to_f64(self) -> f64 {
+                self.into()
+            }
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                self.sqrt()
+            }
+            #[inline(always)]
+            fn exp(self) -> Self {
+                self.exp()
+            }
+            #[inline(always)]
+            fn cos(self) -> Self {
+                self.cos()
+            }
+            #[inline(always)]
+            fn acos(self) -> Self {
+                self.acos()
+            }
+            #[inline(always)]
+            fn pow(self, exponent: Self) -> Self {
+                self.powf(exponent)
+            }
+        }
+    };
+}
+
+real!(f32);
+real!(f64);
