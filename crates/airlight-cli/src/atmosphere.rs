@@ -7,8 +7,8 @@ use crate::report;
 use airlight::atmosphere::presets::earth::{EARTH_RADIUS_M, Earth};
 use airlight::atmosphere::visibility::Contrast;
 use airlight::atmosphere::{
-    AerosolLoad, AerosolMixture, AerosolType, Atmosphere, Constituent, config, gases, preset,
-    preset_names,
+    AerosolLoad, AerosolMixture, AerosolType, Atmosphere, Constituent, ConstituentKind, config,
+    gases, preset, preset_names,
 };
 use airlight::spectrum::SpectralCurve;
 use std::fmt::Write;
@@ -141,7 +141,7 @@ fn set_haze(air: &mut Atmosphere, option: &str, load: AerosolLoad) -> Result<(),
     let (ground, top) = (air.planet.ground_altitude_m, air.planet.top_altitude_m);
     let said = |error: &dyn std::fmt::Display| CliError::usage(format!("{option}: {error}"));
     let old = air
-        .constituent("aerosol")
+        .constituent(&ConstituentKind::Aerosol)
         .filter(|old| old.optical_depth(ground, top, 550.0) > 0.0)
         .cloned();
     let part = match old {
@@ -178,7 +178,7 @@ fn put(air: &mut Atmosphere, part: Constituent) {
     match air
         .constituents
         .iter_mut()
-        .find(|old| old.name == part.name)
+        .find(|old| old.kind == part.kind)
     {
         Some(old) => *old = part,
         None => air.constituents.push(part),
@@ -231,7 +231,7 @@ fn describe(air: &Atmosphere) -> String {
         let _ = writeln!(
             text,
             "  {:13} vertical optical depth {} at 550 nm, of which scattering {}",
-            part.name,
+            part.kind.name(),
             report::short(depth),
             report::short(depth * albedo)
         );
@@ -249,11 +249,10 @@ mod tests {
             let mut air = named(name).unwrap();
             let asked = AerosolLoad::OpticalDepth550(0.4);
             set_haze(&mut air, "--aod-550", asked).unwrap();
-            let depth = air.constituent("aerosol").unwrap().optical_depth(
-                0.0,
-                air.planet.top_altitude_m,
-                550.0,
-            );
+            let depth = air
+                .constituent(&ConstituentKind::Aerosol)
+                .unwrap()
+                .optical_depth(0.0, air.planet.top_altitude_m, 550.0);
             assert!((depth - 0.4).abs() < 1e-9, "{name}: {depth}");
         }
         let mut air = named("average").unwrap();
@@ -272,7 +271,7 @@ mod tests {
         let asked = ("--aod-550", AerosolLoad::OpticalDepth550(0.4));
         set_type(&mut air, &desert, Some(asked)).unwrap();
         let depth = |air: &Atmosphere| {
-            let part = air.constituent("aerosol").unwrap();
+            let part = air.constituent(&ConstituentKind::Aerosol).unwrap();
             part.optical_depth(0.0, air.planet.top_altitude_m, 550.0)
         };
         assert!((depth(&air) - 0.4).abs() < 1e-9);

@@ -10,8 +10,8 @@ use crate::args::{
 };
 use crate::error::CliError;
 use crate::scene::{Scene, Sun};
-use airlight::atmosphere::Atmosphere;
 use airlight::atmosphere::aerosol::turbidity_of_optical_depth;
+use airlight::atmosphere::{Atmosphere, ConstituentKind};
 use airlight::fog::visibility::{Contrast, extinction_per_m};
 use airlight::models::PublishedModel;
 use airlight::models::four_orders::FourOrders;
@@ -231,9 +231,11 @@ fn article_settings(args: &ModelArgs, eye_altitude_m: f64) -> single_scattering:
 /// The turbidity of an air: optical depth of molecules and haze over that of molecules, at 550 nm.
 fn turbidity(air: &Atmosphere) -> f64 {
     let planet = &air.planet;
-    let depth = air.constituent("aerosol").map_or(0.0, |haze| {
-        haze.optical_depth(planet.ground_altitude_m, planet.top_altitude_m, 550.0)
-    });
+    let depth = air
+        .constituent(&ConstituentKind::Aerosol)
+        .map_or(0.0, |haze| {
+            haze.optical_depth(planet.ground_altitude_m, planet.top_altitude_m, 550.0)
+        });
     turbidity_of_optical_depth(depth, air.clear_air())
 }
 

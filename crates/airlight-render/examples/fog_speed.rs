@@ -6,7 +6,9 @@
 use airlight::axes;
 use airlight::fog::droplets::Droplets;
 use airlight::fog::visibility::{Contrast, extinction_per_m};
-use airlight::fog::{DirectionalLight, Fog, FogLighting, FogScattering, Ground, Layer, Profile};
+use airlight::fog::{
+    DensityProfile, DirectionalLight, Fog, FogLighting, FogScattering, Ground, Layer,
+};
 use airlight::spectrum::Spectrum;
 use airlight_image::input::{DepthMap, DepthOptions, Picture, read_depth, read_picture};
 use airlight_image::output::exr::{ExrOptions, ExrSample};
@@ -144,14 +146,15 @@ fn measure(folder: &Path, ending: &str, scale: f64) -> Result<(), ImageError> {
     let camera = Intrinsics::from_horizontal_fov(picture.size, 60.0)?;
     let mut even = None;
     for (name, profile, sun) in fogs() {
-        let make = || FogOverlay::Fog(FogSource::Alone(Box::new(fog(profile, sun, ambient))), None);
+        let alone = || fog(profile.clone(), sun, ambient);
+        let make = || FogOverlay::Fog(FogSource::Alone(Box::new(alone())), None);
         let overlay = timed(&format!("{name}: prepare"), make);
         // Made anew each time, as its table is filled while it is looked at.
         let overlay = || Overlay::new(&picture, &depth, &camera, 1.6, &overlay, Channels::Picture);
         let rows = timed(&format!("{name}: fog"), || Ok(rows(&picture, &overlay()?)))?;
         even.get_or_insert(rows);
-        if profile != Profile::Uniform {
-            let fog = fog(profile, sun, ambient);
+        if !profile.is_uniform() {
+            let fog = alone();
             timed(&format!("{name}: line by line"), || {
                 line_by_line(&fog, &depth, &camera)
             });
@@ -170,20 +173,17 @@ fn measure(folder: &Path, ending: &str, scale: f64) -> Result<(), ImageError> {
     Ok(())
 }
 
-fn fogs() -> [(&'static str, Profile, Option<f64>); 4] {
-    let thinning = Profile::Exponential {
-        reference_height_m: 0.0,
-        scale_height_m: 30.0,
-    };
+fn fogs() -> [(&'static str, DensityProfile, Option<f64>); 4] {
+    const HEIGHT: DensityProfile = DensityProfile::exponential(30.0);
     [
-        ("uniform", Profile::Uniform, None),
-        ("uniform, sun", Profile::Uniform, Some(30.0)),
-        ("height", thinning, None),
-        ("height, sun", thinning, Some(30.0)),
+        ("uniform", DensityProfile::Uniform, None),
+        ("uniform, sun", DensityProfile::Uniform, Some(30.0)),
+        ("height", HEIGHT, None),
+        ("height, sun", HEIGHT, Some(30.0)),
     ]
 }
 
-fn fog(profile: Profile, sun_elevation_deg: Option<f64>, ambient: Spectrum<3>) -> Fog<3> {
+fn fog(profile: DensityProfile, sun_elevation_deg: Option<f64>, ambient: Spectrum<3>) -> Fog<3> {
     let light = FogLighting {
         sun: sun_elevation_deg.map(|elevation| DirectionalLight {
             direction: axes::direction(180.0, elevation),

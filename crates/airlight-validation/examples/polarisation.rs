@@ -5,7 +5,7 @@
 //! ```
 
 use airlight::atmosphere::aerosol_types::AerosolType;
-use airlight::atmosphere::{AerosolLoad, AerosolMixture, Atmosphere, preset};
+use airlight::atmosphere::{AerosolLoad, AerosolMixture, Atmosphere, ConstituentKind, preset};
 use airlight::axes::direction;
 use airlight::monte_carlo::{MonteCarlo, MonteCarloSettings, PolarisedEstimate};
 use airlight::spectrum::WavelengthGrid;
@@ -46,7 +46,9 @@ fn main() -> Result<(), Box<dyn Error>> {
 /// `hazy` with continental particles by Lorenz-Mie theory instead of its haze, of the same optical depth.
 fn continental() -> Result<Atmosphere, Box<dyn Error>> {
     let mut air = preset("hazy")?;
-    let haze = air.constituent("aerosol").ok_or("no aerosol")?;
+    let haze = air
+        .constituent(&ConstituentKind::Aerosol)
+        .ok_or("no aerosol")?;
     let density = Some(haze.density.clone());
     let mixture = AerosolMixture::of(
         AerosolType::ContinentalAverage,
@@ -55,7 +57,8 @@ fn continental() -> Result<Atmosphere, Box<dyn Error>> {
     let load = Some(AerosolLoad::OpticalDepth550(0.35));
     let (ground, top) = (air.planet.ground_altitude_m, air.planet.top_altitude_m);
     let particles = mixture.constituent(load, density, air.clear_air(), ground, top)?;
-    air.constituents.retain(|part| part.name != "aerosol");
+    air.constituents
+        .retain(|part| part.kind != ConstituentKind::Aerosol);
     air.constituents.push(particles);
     Ok(air)
 }

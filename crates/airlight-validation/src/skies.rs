@@ -4,7 +4,9 @@ use crate::check::{Check, Row, Suite, Unit};
 use crate::solved::Solved;
 use crate::table::{Line, Table};
 use airlight::atmosphere::aerosol_types::AerosolType;
-use airlight::atmosphere::{self, AerosolLoad, AerosolMixture, Atmosphere, reference};
+use airlight::atmosphere::{
+    self, AerosolLoad, AerosolMixture, Atmosphere, ConstituentKind, reference,
+};
 use airlight::sky::SkySettings;
 
 /// A table of skies made by one solver.
@@ -147,7 +149,8 @@ pub fn truth_air(name: &str) -> Option<Atmosphere> {
     let dust = dust
         .constituent(load, None, air.clear_air(), ground, top)
         .ok()?;
-    air.constituents.retain(|part| part.name != "aerosol");
+    air.constituents
+        .retain(|part| part.kind != ConstituentKind::Aerosol);
     air.constituents.push(dust);
     Some(air)
 }

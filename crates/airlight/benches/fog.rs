@@ -4,7 +4,8 @@
 
 use airlight::axes::direction;
 use airlight::fog::{
-    DirectionalLight, Fog, FogLighting, FogScattering, Ground, Layer, Profile, droplets::Droplets,
+    DensityProfile, DirectionalLight, Fog, FogLighting, FogScattering, Ground, Layer,
+    droplets::Droplets,
 };
 use airlight::spectrum::Spectrum;
 use divan::{Bencher, black_box};
@@ -16,15 +17,15 @@ fn main() {
 
 const THOUSAND: usize = 1000;
 
-fn profile(name: &str) -> Profile {
+fn profile(name: &str) -> DensityProfile {
     match name {
-        "uniform" => Profile::Uniform,
-        "slab" => Profile::Slab { top_height_m: 40.0 },
-        "clamped" => Profile::Clamped {
+        "uniform" => DensityProfile::Uniform,
+        "slab" => DensityProfile::slab(40.0),
+        "clamped" => DensityProfile::Clamped {
             base_height_m: 10.0,
             scale_height_m: 20.0,
         },
-        _ => Profile::Exponential {
+        _ => DensityProfile::Exponential {
             reference_height_m: 0.0,
             scale_height_m: 30.0,
         },

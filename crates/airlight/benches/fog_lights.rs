@@ -1,13 +1,13 @@
 //! How long a line of sight past a lamp in fog takes: `cargo bench -p airlight --bench fog_lamps`. Every bench visits 64 lines
 //! and counts them as items: the time of one is the printed time over 64.
 
+use airlight::atmosphere::DensityProfile;
 use airlight::fog::layer::Medium;
 use airlight::fog::lights::{
     Light, LightRayGeometry, LightSet, LightSettings, Nodes, ParticipatingMedium, PointLight,
     SphereLight, SpotLight, ViewRay, airlight_isotropic, airlight_isotropic_lanes,
     airlight_without_extinction,
 };
-use airlight::fog::profile::Profile;
 use airlight::optics::PhaseFunction;
 use airlight::spectrum::Spectrum;
 use divan::counter::ItemsCount;
@@ -91,7 +91,7 @@ fn over_sights<const N: usize>(
     bencher: Bencher,
     light: Light<N>,
     g: f64,
-    profile: Profile,
+    profile: DensityProfile,
     nodes: usize,
     ground_radius_m: f64,
 ) {
@@ -136,14 +136,21 @@ fn bulb<const N: usize>() -> Light<N> {
     Light::Sphere(SphereLight::new(LAMP, 0.2, Spectrum::ONE).expect("a lamp"))
 }
 
-const HEIGHT_FOG: Profile = Profile::Exponential {
+const HEIGHT_FOG: DensityProfile = DensityProfile::Exponential {
     reference_height_m: 0.0,
     scale_height_m: 10.0,
 };
 
 #[divan::bench(consts = [3, 16])]
 fn isotropic_lamps<const N: usize>(bencher: Bencher) {
-    over_sights::<N>(bencher, point(), 0.0, Profile::Uniform, 12, f64::INFINITY);
+    over_sights::<N>(
+        bencher,
+        point(),
+        0.0,
+        DensityProfile::Uniform,
+        12,
+        f64::INFINITY,
+    );
 }
 
 #[divan::bench(args = [8, 12], consts = [3, 16])]
@@ -152,7 +159,7 @@ fn forward_085_uniform<const N: usize>(bencher: Bencher, nodes: usize) {
         bencher,
         point(),
         0.85,
-        Profile::Uniform,
+        DensityProfile::Uniform,
         nodes,
         f64::INFINITY,
     );
@@ -170,7 +177,14 @@ fn forward_085_height_fog_round_ground<const N: usize>(bencher: Bencher) {
 
 #[divan::bench(consts = [3, 16])]
 fn spot_uniform<const N: usize>(bencher: Bencher) {
-    over_sights::<N>(bencher, spot(), 0.85, Profile::Uniform, 12, f64::INFINITY);
+    over_sights::<N>(
+        bencher,
+        spot(),
+        0.85,
+        DensityProfile::Uniform,
+        12,
+        f64::INFINITY,
+    );
 }
 
 #[divan::bench(consts = [3])]
@@ -180,5 +194,12 @@ fn spot_height_fog<const N: usize>(bencher: Bencher) {
 
 #[divan::bench(consts = [3])]
 fn bulb_uniform<const N: usize>(bencher: Bencher) {
-    over_sights::<N>(bencher, bulb(), 0.85, Profile::Uniform, 12, f64::INFINITY);
+    over_sights::<N>(
+        bencher,
+        bulb(),
+        0.85,
+        DensityProfile::Uniform,
+        12,
+        f64::INFINITY,
+    );
 }

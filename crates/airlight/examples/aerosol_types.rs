@@ -3,7 +3,7 @@
 //! `SkySettings::orders.peak_degree`.
 
 use airlight::atmosphere::aerosol_types::AerosolType;
-use airlight::atmosphere::{AerosolLoad, AerosolMixture, preset};
+use airlight::atmosphere::{AerosolLoad, AerosolMixture, ConstituentKind, preset};
 use airlight::axes;
 use airlight::monte_carlo::{MonteCarlo, MonteCarloSettings};
 use airlight::sky::{Sky, SkySettings, SunCoverage};
@@ -29,7 +29,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         let load = Some(AerosolLoad::OpticalDepth550(depth));
         let mixture = AerosolMixture::of(kind, 0.8)?;
         let part = mixture.constituent(load, None, air.clear_air(), 0.0, 100e3)?;
-        air.constituents.retain(|old| old.name != "aerosol");
+        air.constituents
+            .retain(|old| old.kind != ConstituentKind::Aerosol);
         air.constituents.push(part);
         let truth = MonteCarlo::new(&air, &grid, MonteCarloSettings::default())?;
         for sun_elevation in [30.0, 4.0] {

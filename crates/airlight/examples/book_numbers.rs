@@ -2,7 +2,7 @@
 //! `cargo run --release --example book_numbers -p airlight`; with the word `molecules`, `hazes` or `earth` only that table.
 
 use airlight::atmosphere::aerosol::{turbidity_of_optical_depth, visibility_of_extinction_m};
-use airlight::atmosphere::{gases, preset, preset_names};
+use airlight::atmosphere::{ConstituentKind, gases, preset, preset_names};
 use airlight::optics::rayleigh;
 use airlight::sun::{self, Place, RefractingAir};
 
@@ -61,7 +61,9 @@ fn hazes() -> Fallible {
     println!("| no aerosol | 0 | 1 | {:.0} km |", km(0.0, clear));
     for name in ["clear", "average", "hazy"] {
         let air = preset(name)?;
-        let aerosol = air.constituent("aerosol").ok_or("no aerosol")?;
+        let aerosol = air
+            .constituent(&ConstituentKind::Aerosol)
+            .ok_or("no aerosol")?;
         let depth = aerosol.optical_depth(0.0, air.planet.top_altitude_m, 550.0);
         println!(
             "| `{name}` | {depth:.2} | {:.2} | {:.0} km |",
@@ -91,7 +93,9 @@ fn earth() -> Fallible {
         ("hazy", "aerosol", "single-scattering albedo 0.93"),
     ] {
         let air = preset(preset_name)?;
-        let part = air.constituent(part_name).ok_or("no such constituent")?;
+        let part = air
+            .constituent(&part_name.into())
+            .ok_or("no such constituent")?;
         let depths = [440.0, 550.0, 680.0].map(|nm| {
             let depth = part.optical_depth(0.0, air.planet.top_altitude_m, nm);
             format!("{depth:.4}")
@@ -130,7 +134,7 @@ fn presets() -> Fallible {
             let extinction = part.extinction_per_m(550.0);
             println!(
                 "  {}: optical depth {:.4} / {:.4} / {:.4}, single-scattering albedo {:.3}, mean cosine {:.3}",
-                part.name,
+                part.kind,
                 depth(440.0),
                 depth(550.0),
                 depth(680.0),

@@ -6,7 +6,7 @@ mod common;
 
 use airlight::atmosphere::visibility::{Contrast, extinction_per_m};
 use airlight::fog::lights::{LightForm, LightRayGeometry, Nodes, airlight_isotropic_lanes};
-use airlight::fog::{Profile, RaySegment};
+use airlight::fog::{DensityProfile, RaySegment};
 use common::Table;
 use std::error::Error;
 use std::f64::consts::PI;
@@ -59,11 +59,11 @@ fn lamp_forms() {
 fn base() {
     const BASE_M: f64 = 20.0;
     const SCALE_M: f64 = 30.0;
-    let printed = Profile::Exponential {
+    let printed = DensityProfile::Exponential {
         reference_height_m: BASE_M,
         scale_height_m: SCALE_M,
     };
-    let clamped = Profile::Clamped {
+    let clamped = DensityProfile::Clamped {
         base_height_m: BASE_M,
         scale_height_m: SCALE_M,
     };
@@ -81,10 +81,10 @@ fn base() {
         let definition = integral(&line, BASE_M, |height_m| {
             (-(height_m - BASE_M).max(0.0) / SCALE_M).exp()
         });
-        let error = (clamped.column(&line) / definition - 1.0).abs();
+        let error = (clamped.column_along_m(&line) / definition - 1.0).abs();
         println!(
             "| {from_m} m | {to_m} m | {length_m} m | {:.2} | {} |",
-            printed.column(&line) / definition,
+            printed.column_along_m(&line) / definition,
             match error < 1e-12 {
                 true => "< 1e-12".to_owned(),
                 false => format!("{error:.0e}"),

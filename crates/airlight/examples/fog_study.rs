@@ -9,8 +9,8 @@ use airlight::atmosphere::visibility::{Contrast, extinction_per_m, visibility_m}
 use airlight::axes::direction;
 use airlight::fog::lights::{LightRayGeometry, airlight_isotropic, airlight_without_extinction};
 use airlight::fog::{
-    DirectionalLight, Fog, FogLighting, FogScattering, Ground, Layer, Profile, approximation,
-    droplets::Droplets,
+    DensityProfile, DirectionalLight, Fog, FogLighting, FogScattering, Ground, Layer,
+    approximation, droplets::Droplets,
 };
 use airlight::spectrum::Spectrum;
 use common::Table;
@@ -128,7 +128,7 @@ fn sun_undimmed() {
         for elevation in suns {
             let path = |scattering| {
                 let layer: Layer<1> = Layer {
-                    profile: Profile::Exponential {
+                    profile: DensityProfile::Exponential {
                         reference_height_m: 0.0,
                         scale_height_m: 50.0,
                     },

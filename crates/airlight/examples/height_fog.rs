@@ -7,8 +7,8 @@ mod common;
 use airlight::atmosphere::visibility::{Contrast, extinction_per_m};
 use airlight::axes::direction;
 use airlight::fog::{
-    DirectionalLight, Fog, FogLighting, FogScattering, Ground, Layer, Medium, Profile, RaySegment,
-    droplets::Droplets, scatter,
+    DensityProfile, DirectionalLight, Fog, FogLighting, FogScattering, Ground, Layer, Medium,
+    RaySegment, droplets::Droplets, scatter,
 };
 use airlight::optics::PhaseFunction;
 use airlight::spectrum::Spectrum;
@@ -58,8 +58,8 @@ fn level_lines() {
     ] {
         let climb = elevation.to_radians().sin();
         let line = RaySegment::flat(EYE_M, climb, length_m);
-        let right = integral(length_m, |s| profile.density(line.height_at(s)));
-        let here = profile.column(&line);
+        let right = integral(length_m, |s| profile.at(line.height_at(s)));
+        let here = profile.column_along_m(&line);
         let printed = printed_depth(1.0, climb as f32, length_m as f32);
         println!(
             "| {elevation}° up, {length_m} m | {} | {} |",
@@ -90,11 +90,11 @@ fn closed_forms() {
         let climb = elevation.to_radians().sin();
         let line = RaySegment::flat(eye_m, climb, length_m);
         let profile = exponential();
-        let to_sun = |height_m: f64| extinction * profile.column_above(height_m) / sine_sun;
+        let to_sun = |height_m: f64| extinction * profile.column_above_m(height_m) / sine_sun;
         let right = integral(length_m, |s| {
-            let depth = extinction * profile.column(&line.part(0.0, s));
+            let depth = extinction * profile.column_along_m(&line.part(0.0, s));
             let height = line.height_at(s);
-            extinction * profile.density(height) * (-depth - to_sun(height)).exp()
+            extinction * profile.at(height) * (-depth - to_sun(height)).exp()
         });
 
         // Ishiyama's letters, with C.
@@ -108,7 +108,7 @@ fn closed_forms() {
             extinction * (-y0 / SCALE_M).exp() * (b / a * u).exp() * ((-k * u).exp() - (-k).exp())
                 / (a * k);
 
-        let along = extinction * profile.column(&line);
+        let along = extinction * profile.column_along_m(&line);
         let divided = scatter::once(to_sun(eye_m), along * (1.0 - climb / sine_sun), along);
 
         let medium = Medium {
@@ -176,8 +176,8 @@ fn against_all_orders() {
     }
 }
 
-fn exponential() -> Profile {
-    Profile::Exponential {
+fn exponential() -> DensityProfile {
+    DensityProfile::Exponential {
         reference_height_m: 0.0,
         scale_height_m: SCALE_M,
     }

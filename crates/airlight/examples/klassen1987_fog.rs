@@ -6,7 +6,7 @@ use airlight::axes;
 use airlight::fog::droplets::Droplets;
 use airlight::fog::visibility::{Contrast, extinction_per_m};
 use airlight::fog::{
-    DirectionalLight, Fog, FogLighting, FogScattering, Ground, Layer, Medium, Profile,
+    DensityProfile, DirectionalLight, Fog, FogLighting, FogScattering, Ground, Layer, Medium,
 };
 use airlight::models::klassen1987::fog::{Slab1987, SunDepth};
 use airlight::optics::{Depolarization, PhaseFunction};
@@ -193,9 +193,7 @@ fn slab(visibility_m: f64) -> Slab1987<1> {
 /// The same fog, solved for; the sky adds its light.
 fn fog(visibility_m: f64) -> Fog<1> {
     let layer = Layer {
-        profile: Profile::Slab {
-            top_height_m: TOP_M,
-        },
+        profile: DensityProfile::slab(TOP_M),
         medium: Droplets::Radiation.medium(extinction(visibility_m)),
     };
     let light = FogLighting {

@@ -4,7 +4,7 @@
 use airlight::axes::direction;
 use airlight::fog::droplets::DropletKind;
 use airlight::fog::{
-    DirectionalLight, Fog, FogLighting, FogScattering, Ground, Layer, Medium, Profile,
+    DensityProfile, DirectionalLight, Fog, FogLighting, FogScattering, Ground, Layer, Medium,
 };
 use airlight::optics::mie::droplets::Drops;
 use airlight::optics::{PhaseFunction, TabulatedPhase};
@@ -18,9 +18,7 @@ const TOP_M: f64 = 100.0;
 /// A slab of an optical depth over black ground, lit by a sun of unit irradiance.
 fn fog(medium: &Medium<1>, sun: DVec3, scattering: FogScattering) -> Fog<1> {
     let layer = Layer {
-        profile: Profile::Slab {
-            top_height_m: TOP_M,
-        },
+        profile: DensityProfile::slab(TOP_M),
         medium: medium.clone(),
     };
     let light = FogLighting {

@@ -1,10 +1,10 @@
 //! Light scattered many times in fog, against the Monte Carlo on the sphere: a method that shares nothing with the fog's but
 //! the phase functions.
 
-use airlight::atmosphere::{Atmosphere, Constituent, DensityProfile, Planet};
+use airlight::atmosphere::{Atmosphere, Constituent, ConstituentKind, DensityProfile, Planet};
 use airlight::axes::direction;
 use airlight::fog::{
-    DirectionalLight, Fog, FogLighting, FogScattering, Ground, Layer, Medium, Profile, droplets,
+    DirectionalLight, Fog, FogLighting, FogScattering, Ground, Layer, Medium, droplets,
 };
 use airlight::monte_carlo::{MonteCarlo, MonteCarloSettings};
 use airlight::optics::PhaseFunction;
@@ -47,9 +47,7 @@ impl Scene {
             ambient: Spectrum::ZERO,
             ground_albedo: Spectrum([GROUND_ALBEDO as f32]),
         };
-        let profile = Profile::Slab {
-            top_height_m: TOP_M,
-        };
+        let profile = DensityProfile::slab(TOP_M);
         let layers = [Layer { profile, medium }];
         Fog::new(&layers, Ground::EARTH, light, FogScattering::Multiple).unwrap()
     }
@@ -65,7 +63,7 @@ impl Scene {
                 ground_albedo: SpectralCurve::Constant(GROUND_ALBEDO),
             },
             constituents: vec![Constituent {
-                name: "drops".to_owned(),
+                kind: ConstituentKind::Fog,
                 density: DensityProfile::Layer {
                     bottom_m: 0.0,
                     top_m: TOP_M,

@@ -3,7 +3,8 @@
 
 use airlight::axes::direction;
 use airlight::fog::{
-    DirectionalLight, Fog, FogLighting, FogScattering, Ground, Layer, Medium, Profile, droplets,
+    DensityProfile, DirectionalLight, Fog, FogLighting, FogScattering, Ground, Layer, Medium,
+    droplets,
 };
 use airlight::optics::PhaseFunction;
 use airlight::spectrum::Spectrum;
@@ -20,13 +21,11 @@ fn numbers<const N: usize>(table: &'static str) -> impl Iterator<Item = [f64; N]
     rows(table).map(|row| std::array::from_fn(|column| row[column].parse().unwrap()))
 }
 
-const SLAB: Profile = Profile::Slab {
-    top_height_m: 100.0,
-};
+const SLAB: DensityProfile = DensityProfile::slab(100.0);
 
 /// Fog 100 m high over flat ground.
 struct Scene {
-    profile: Profile,
+    profile: DensityProfile,
     /// Optical depth, vertical.
     depth: f64,
     single_scattering_albedo: f64,
@@ -74,7 +73,7 @@ fn whole_line(row: &[&str], scattering: FogScattering) -> f64 {
     let (profile, depth) = match row[0] {
         "slab" => (SLAB, number(3)),
         "expfog" => {
-            let profile = Profile::Exponential {
+            let profile = DensityProfile::Exponential {
                 reference_height_m: 0.0,
                 scale_height_m: 100.0,
             };

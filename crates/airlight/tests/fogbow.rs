@@ -3,7 +3,7 @@
 use airlight::atmosphere::presets;
 use airlight::axes::direction;
 use airlight::fog::droplets::DropletKind;
-use airlight::fog::{FogScattering, Layer, Profile};
+use airlight::fog::{DensityProfile, FogScattering, Layer};
 use airlight::optics::mie::droplets::Drops;
 use airlight::scene::{FoggySky, LaneChannels};
 use airlight::sky::{Sky, SkySettings, SunCoverage};
@@ -12,9 +12,7 @@ use airlight::spectrum::{RgbSpace, WavelengthGrid};
 const SUN_DEG: f64 = 32.0;
 const EYE_M: f64 = 150.0;
 const EXTINCTION_PER_M: f64 = 0.03;
-const PROFILE: Profile = Profile::Slab {
-    top_height_m: 100.0,
-};
+const PROFILE: DensityProfile = DensityProfile::slab(100.0);
 
 type Seen = Result<Vec<[[f64; 3]; 2]>, Box<dyn std::error::Error>>;
 

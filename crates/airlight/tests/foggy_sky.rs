@@ -4,7 +4,7 @@ use airlight::atmosphere::presets;
 use airlight::axes::direction;
 use airlight::fog::droplets::Droplets;
 use airlight::fog::visibility::{Contrast, extinction_per_m};
-use airlight::fog::{FogScattering, Ground, Layer, Medium, Profile, RaySegment};
+use airlight::fog::{DensityProfile, FogScattering, Ground, Layer, Medium, RaySegment};
 use airlight::scene::{FoggySky, LaneChannels};
 use airlight::sky::{Sky, SkySettings, SunCoverage, View};
 use airlight::spectrum::{RgbSpace, Spectrum, WavelengthGrid};
@@ -20,22 +20,22 @@ fn sky(preset: &str, sun_deg: f64, altitude_m: f64) -> Sky {
     Sky::prepare(&air, &WavelengthGrid::rgb(), &settings).unwrap()
 }
 
-fn layer(visibility_m: f64, profile: Profile) -> Layer<3> {
+fn layer(visibility_m: f64, profile: DensityProfile) -> Layer<3> {
     Layer {
         profile,
         medium: Droplets::Radiation.medium(extinction_per_m(visibility_m, Contrast::FivePercent)),
     }
 }
 
-fn thinning(scale_height_m: f64) -> Profile {
-    Profile::Exponential {
+fn thinning(scale_height_m: f64) -> DensityProfile {
+    DensityProfile::Exponential {
         reference_height_m: 0.0,
         scale_height_m,
     }
 }
 
-fn slab(top_height_m: f64) -> Profile {
-    Profile::Slab { top_height_m }
+fn slab(top_height_m: f64) -> DensityProfile {
+    DensityProfile::slab(top_height_m)
 }
 
 fn foggy<'a>(view: &View, layer: Layer<3>, ground: Ground) -> FoggySky<3> {
@@ -181,7 +181,7 @@ fn there_is_no_seam_at_the_horizon() {
         let view = sky.view(eye_m, direction(180.0, 25.0));
         for ground in [Ground::FLAT, FoggySky::<3>::round_ground(&view)] {
             for profile in [thinning(50.0), slab(60.0)] {
-                let foggy = foggy(&view, layer(200.0, profile), ground);
+                let foggy = foggy(&view, layer(200.0, profile.clone()), ground);
                 for azimuth in [0.0, 90.0, 175.0] {
                     let at = |k: i32| foggy.sky(direction(azimuth, f64::from(k) * 1e-3));
                     for k in -400..100 {

@@ -1,10 +1,10 @@
 //! Random paths along lines of sight that end at a distance.
 
-use airlight::atmosphere::{Atmosphere, Constituent, DensityProfile, Planet, preset};
-use airlight::axes::direction;
-use airlight::fog::{
-    DirectionalLight, Fog, FogLighting, FogScattering, Ground, Layer, Medium, Profile,
+use airlight::atmosphere::{
+    Atmosphere, Constituent, ConstituentKind, DensityProfile, Planet, preset,
 };
+use airlight::axes::direction;
+use airlight::fog::{DirectionalLight, Fog, FogLighting, FogScattering, Ground, Layer, Medium};
 use airlight::monte_carlo::{Estimate, MonteCarlo, MonteCarloSettings};
 use airlight::optics::PhaseFunction;
 use airlight::sky::{Sky, SkySettings};
@@ -144,9 +144,7 @@ fn fog_before_a_thing_is_that_of_the_fog() {
     let phase = PhaseFunction::HenyeyGreenstein { g: 0.8 };
     let (extinction_per_m, sun) = (0.03, direction(180.0, 30.0));
     let layers = [Layer {
-        profile: Profile::Slab {
-            top_height_m: TOP_M,
-        },
+        profile: DensityProfile::slab(TOP_M),
         medium: Medium {
             extinction_per_m: Spectrum([extinction_per_m as f32]),
             single_scattering_albedo: Spectrum::ONE,
@@ -171,7 +169,7 @@ fn fog_before_a_thing_is_that_of_the_fog() {
             ground_albedo: SpectralCurve::Constant(0.2),
         },
         constituents: vec![Constituent {
-            name: "drops".to_owned(),
+            kind: ConstituentKind::Fog,
             density: DensityProfile::Layer {
                 bottom_m: 0.0,
                 top_m: TOP_M,

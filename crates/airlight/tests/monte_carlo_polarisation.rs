@@ -1,6 +1,8 @@
 //! Random paths with their polarisation.
 
-use airlight::atmosphere::{Atmosphere, Constituent, DensityProfile, Planet, preset, reference};
+use airlight::atmosphere::{
+    Atmosphere, Constituent, ConstituentKind, DensityProfile, Planet, preset, reference,
+};
 use airlight::axes::direction;
 use airlight::monte_carlo::{MonteCarlo, MonteCarloSettings, PolarisedEstimate};
 use airlight::optics::mie::Particles;
@@ -33,7 +35,7 @@ fn layers(parts: &[(f64, f64, f64, PhaseFunction)], ground_albedo: f64) -> Atmos
         constituents: parts
             .iter()
             .map(|(bottom_m, top_m, optical_depth, phase)| Constituent {
-                name: "air".to_owned(),
+                kind: ConstituentKind::Fog,
                 density: DensityProfile::Layer {
                     bottom_m: *bottom_m,
                     top_m: *top_m,

@@ -5,7 +5,7 @@ use crate::atmosphere::contrast;
 use crate::error::CliError;
 use crate::foggy_air::FogInAir;
 use airlight::fog::visibility::extinction_per_m;
-use airlight::fog::{Layer, Profile};
+use airlight::fog::{DensityProfile, Layer};
 use airlight::spectrum::RgbSpace;
 
 /// The layer of the simple options, then those of `--layer`; nothing for a look, which is no layer.
@@ -58,29 +58,27 @@ pub fn in_air(args: &OverlayArgs) -> Option<Vec<FogInAir>> {
     Some(std::iter::once(first).chain(more).collect())
 }
 
-fn profile(shape: LayerShape) -> Profile {
+fn profile(shape: LayerShape) -> DensityProfile {
     match shape {
-        LayerShape::Uniform => Profile::Uniform,
-        LayerShape::Height { scale_height_m } => Profile::Exponential {
+        LayerShape::Uniform => DensityProfile::Uniform,
+        LayerShape::Height { scale_height_m } => DensityProfile::Exponential {
             reference_height_m: 0.0,
             scale_height_m,
         },
         LayerShape::Clamped {
             base_m,
             scale_height_m,
-        } => Profile::Clamped {
+        } => DensityProfile::Clamped {
             base_height_m: base_m,
             scale_height_m,
         },
         LayerShape::Unclamped {
             base_m,
             scale_height_m,
-        } => Profile::Exponential {
+        } => DensityProfile::Exponential {
             reference_height_m: base_m,
             scale_height_m,
         },
-        LayerShape::Slab { top_m } => Profile::Slab {
-            top_height_m: top_m,
-        },
+        LayerShape::Slab { top_m } => DensityProfile::slab(top_m),
     }
 }

@@ -4,7 +4,7 @@ use crate::args::{AirArg, AirArgs, EffortArg, OverlayArgs, PlaceArgs, Scattering
 use crate::error::CliError;
 use crate::parse;
 use crate::scene::{Scene, Sun};
-use airlight::fog::{FogLighting, FogScattering, Layer, Profile};
+use airlight::fog::{DensityProfile, FogLighting, FogScattering, Layer};
 use airlight::scene::{FoggySky, LaneChannels};
 use airlight::sky::Sky;
 use airlight::spectrum::{RgbSpace, Spectrum};
@@ -122,7 +122,10 @@ impl<'a> LightSource<'a> {
         let Some(solved) = self.solved else {
             return Ok(None);
         };
-        if layers.iter().any(|layer| layer.profile == Profile::Uniform) {
+        if layers
+            .iter()
+            .any(|layer| layer.profile == DensityProfile::Uniform)
+        {
             return Err(CliError::usage(
                 "--sky-light shines on fog from above, so fog needs an upper end: choose --model height, clamped, unclamped or slab, and \
                  give each --layer scale-height or top",

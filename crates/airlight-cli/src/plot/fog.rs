@@ -2,7 +2,7 @@
 
 use crate::args::{FogProfilePlotArgs, SplitSumPlotArgs};
 use crate::error::CliError;
-use airlight::fog::Profile;
+use airlight::fog::DensityProfile;
 use airlight::fog::approximation::split_sum_error;
 use airlight::fog::visibility::{Contrast, extinction_per_m};
 use airlight_plot::curves::curves;
@@ -21,13 +21,11 @@ pub fn profile(args: &FogProfilePlotArgs) -> Result<Drawn, CliError> {
     let profiles = [
         (
             format!("slab, top at {} m", args.top_m),
-            Profile::Slab {
-                top_height_m: args.top_m,
-            },
+            DensityProfile::slab(args.top_m),
         ),
         (
             format!("exponential, scale height {scale_height_m} m"),
-            Profile::Exponential {
+            DensityProfile::Exponential {
                 reference_height_m: 0.0,
                 scale_height_m,
             },
@@ -37,7 +35,7 @@ pub fn profile(args: &FogProfilePlotArgs) -> Result<Drawn, CliError> {
                 "exponential above {} m, scale height {scale_height_m} m",
                 args.base_m
             ),
-            Profile::Clamped {
+            DensityProfile::Clamped {
                 base_height_m: args.base_m,
                 scale_height_m,
             },
@@ -55,7 +53,7 @@ pub fn profile(args: &FogProfilePlotArgs) -> Result<Drawn, CliError> {
         all.push(Curve {
             name,
             points: (0..=STEPS)
-                .map(|i| (height(i), 1e3 * extinction * profile.density(height(i))))
+                .map(|i| (height(i), 1e3 * extinction * profile.at(height(i))))
                 .collect(),
         });
     }

@@ -7,7 +7,7 @@ use crate::report::short;
 use airlight::atmosphere::Constituent;
 use airlight::fog::droplets::DropletKind;
 use airlight::fog::visibility::{Contrast, extinction_per_m};
-use airlight::fog::{Layer, Medium, Profile};
+use airlight::fog::{DensityProfile, Layer, Medium};
 use airlight::optics::mie::MieError;
 use airlight::scene::{FoggySky, LaneChannels};
 use airlight::sky::{SkyTable, TableChannels, View};
@@ -146,10 +146,10 @@ fn layers<const N: usize>(
     Ok(vec![Layer { profile, medium }])
 }
 
-fn profile(args: &FogArgs) -> Profile {
+fn profile(args: &FogArgs) -> DensityProfile {
     match args.fog_top_m {
-        Some(top_height_m) => Profile::Slab { top_height_m },
-        None => Profile::Clamped {
+        Some(top_height_m) => DensityProfile::slab(top_height_m),
+        None => DensityProfile::Clamped {
             base_height_m: args.fog_base_m.unwrap_or(0.0),
             scale_height_m: args.fog_scale_height_m.unwrap_or(SCALE_HEIGHT_M),
         },

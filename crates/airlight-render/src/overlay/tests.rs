@@ -1,5 +1,5 @@
 use super::*;
-use airlight::fog::{Fog, FogLighting, FogScattering, Ground, Layer, Medium, Profile};
+use airlight::fog::{DensityProfile, Fog, FogLighting, FogScattering, Ground, Layer, Medium};
 use airlight::optics::PhaseFunction;
 use airlight_image::Size;
 use airlight_image::input::{LightReference, SampleBits};
@@ -44,7 +44,7 @@ fn uniform(extinction: f32, ambient: [f32; 3]) -> FogOverlay {
         ground_albedo: Spectrum::ZERO,
     };
     let layers = [Layer {
-        profile: Profile::Uniform,
+        profile: DensityProfile::Uniform,
         medium,
     }];
     let fog = Fog::new(&layers, Ground::FLAT, light, FogScattering::Single).unwrap();
@@ -204,7 +204,7 @@ fn a_lamp_glows_before_what_is_there() {
     let mut half = medium.clone();
     half.extinction_per_m = Spectrum::splat(0.025);
     let layer = |medium| Layer {
-        profile: Profile::Uniform,
+        profile: DensityProfile::Uniform,
         medium,
     };
     let (whole, halves) = (layer(medium), [layer(half.clone()), layer(half)]);

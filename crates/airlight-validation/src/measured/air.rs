@@ -72,9 +72,7 @@ pub fn air_of_the_day(aerosol: &Aerosol) -> Atmosphere {
             load: AerosolLoad::OpticalDepth550(aerosol.optical_depth_550),
             angstrom_exponent: aerosol.angstrom_exponent,
             single_scattering_albedo: SpectralCurve::Constant(aerosol.single_scattering_albedo),
-            density: DensityProfile::Exponential {
-                scale_height_m: 1.5e3,
-            },
+            density: DensityProfile::exponential(1.5e3),
             phase: aeronet_phase(),
         },
         ground_albedo: reference::csm().planet.ground_albedo,

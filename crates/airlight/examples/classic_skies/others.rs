@@ -2,7 +2,7 @@
 
 use crate::measure::{Errors, SUNS_DEG, fan, head, ratio, seconds_a_line, sun};
 use airlight::atmosphere::aerosol::turbidity_of_optical_depth;
-use airlight::atmosphere::{Atmosphere, preset};
+use airlight::atmosphere::{Atmosphere, ConstituentKind, preset};
 use airlight::models::PublishedModel;
 use airlight::models::four_orders::FourOrders;
 use airlight::models::hillaire2020::Hillaire2020;
@@ -108,7 +108,9 @@ fn sky(
 
 /// As the models take it: optical depth of air and haze over that of air, at 550 nm.
 fn turbidity(air: &Atmosphere) -> Fallible<f64> {
-    let aerosol = air.constituent("aerosol").ok_or("no aerosol")?;
+    let aerosol = air
+        .constituent(&ConstituentKind::Aerosol)
+        .ok_or("no aerosol")?;
     let depth = aerosol.optical_depth(0.0, air.planet.top_altitude_m, 550.0);
     Ok(turbidity_of_optical_depth(depth, air.clear_air()))
 }

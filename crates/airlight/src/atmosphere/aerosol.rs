@@ -1,7 +1,7 @@
 //! Haze: an aerosol after Angstrom's law, set by optical depth, turbidity or visibility.
 
 use super::visibility::{self, Contrast};
-use super::{Constituent, DensityProfile};
+use super::{Constituent, ConstituentKind, DensityProfile};
 use crate::optics::{PhaseError, PhaseFunction};
 use crate::spectrum::{SampledCurve, SpectralCurve};
 
@@ -157,7 +157,7 @@ impl AngstromAerosol {
         };
         let (scattering_per_m, absorption_per_m) = self.split(extinction)?;
         Ok(Constituent {
-            name: "aerosol".into(),
+            kind: ConstituentKind::Aerosol,
             density: self.density.clone(),
             scattering_per_m,
             absorption_per_m,
@@ -261,9 +261,7 @@ mod tests {
             load,
             angstrom_exponent: 1.3,
             single_scattering_albedo: SpectralCurve::Constant(0.9),
-            density: DensityProfile::Exponential {
-                scale_height_m: 1.5e3,
-            },
+            density: DensityProfile::exponential(1.5e3),
             phase: continental_phase(),
         }
     }

@@ -5,6 +5,7 @@ use super::density::{DensityError, DensityProfile};
 use crate::optics::{PhaseError, PhaseFunction};
 use crate::spectrum::SpectralCurve;
 use crate::sun::{SunDisc, SunError};
+use std::fmt;
 
 /// The solid ball under the air.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,18 +20,34 @@ pub struct Planet {
     pub ground_albedo: SpectralCurve,
 }
 
-/// One thing in the air.
+/// What a constituent is: at most one of each kind in an atmosphere file, which replaces that of its base.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum ConstituentKind {
+    /// Molecules that scatter: "rayleigh". Turbidity and visibility are relative to them ([`Atmosphere::clear_air`]).
+    Molecules,
+    /// Ozone: "ozone".
+    Ozone,
+    /// Haze or dust: "aerosol".
+    Aerosol,
+    /// A layer of fog: "fog".
+    Fog,
+    /// Any other, by its own name.
+    Other(String),
+}
+
+/// A constituent of the air: molecules, aerosol, a fog layer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Constituent {
-    /// What it is called.
-    pub name: String,
-    /// Its density relative to that of its coefficients.
+    /// What it is.
+    pub kind: ConstituentKind,
+    /// Density relative to the density of the coefficients.
     pub density: DensityProfile,
     /// Scattering coefficient at relative density 1, m^-1.
     pub scattering_per_m: SpectralCurve,
     /// Absorption coefficient at relative density 1, m^-1.
     pub absorption_per_m: SpectralCurve,
-    /// Where the scattered light goes.
+    /// Phase function.
     pub phase: PhaseFunction,
 }
 
@@ -162,16 +179,16 @@ impl Atmosphere {
             part.density
                 .validate()
                 .map_err(|error| AtmosphereError::Density {
-                    constituent: part.name.clone(),
+                    constituent: part.kind.to_string(),
                     error,
                 })?;
             part.phase
                 .validate()
                 .map_err(|error| AtmosphereError::Phase {
-                    constituent: part.name.clone(),
+                    constituent: part.kind.to_string(),
                     error,
                 })?;
-            let name = &part.name;
+            let name = &part.kind;
             check_curve(
                 &part.scattering_per_m,
                 &format!("scattering of \"{name}\""),
@@ -225,14 +242,13 @@ impl Atmosphere {
         all
     }
 
-    /// What turbidity and visibility are stated relative to: the scattering of the constituent "rayleigh" at 550 nm
-    /// (none where there is no such constituent).
+    /// What turbidity and visibility are stated relative to: the scattering of the molecules at 550 nm, 0 without molecules.
     pub fn clear_air(&self) -> ClearAir {
         let (ground, top) = (self.planet.ground_altitude_m, self.planet.top_altitude_m);
         let molecules = || {
             self.constituents
                 .iter()
-                .filter(|part| part.name == "rayleigh")
+                .filter(|part| part.kind == ConstituentKind::Molecules)
         };
         let at_550 = |part: &Constituent| part.scattering_per_m.at(550.0);
         ClearAir {
@@ -243,9 +259,39 @@ impl Atmosphere {
         }
     }
 
-    /// The constituent of a name.
-    pub fn constituent(&self, name: &str) -> Option<&Constituent> {
-        self.constituents.iter().find(|part| part.name == name)
+    /// The first constituent of a kind.
+    pub fn constituent(&self, kind: &ConstituentKind) -> Option<&Constituent> {
+        self.constituents.iter().find(|part| part.kind == *kind)
+    }
+}
+
+impl ConstituentKind {
+    /// Its name in atmosphere files.
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Molecules => "rayleigh",
+            Self::Ozone => "ozone",
+            Self::Aerosol => "aerosol",
+            Self::Fog => "fog",
+            Self::Other(name) => name,
+        }
+    }
+}
+
+impl From<&str> for ConstituentKind {
+    /// The kind of a name in an atmosphere file.
+    fn from(name: &str) -> Self {
+        let known = [Self::Molecules, Self::Ozone, Self::Aerosol, Self::Fog];
+        known
+            .into_iter()
+            .find(|kind| kind.name() == name)
+            .unwrap_or_else(|| Self::Other(name.to_owned()))
+    }
+}
+
+impl fmt::Display for ConstituentKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
     }
 }
 
@@ -253,6 +299,15 @@ impl Constituent {
     /// Extinction coefficient at relative density 1, m^-1.
     pub fn extinction_per_m(&self, wavelength_nm: f64) -> f64 {
         self.scattering_per_m.at(wavelength_nm) + self.absorption_per_m.at(wavelength_nm)
+    }
+
+    /// The same constituent with every height raised by `by_m`: from heights above a ground to altitudes. `None` where the
+    /// density is tied to sea level ([`DensityProfile::raised`]).
+    pub fn raised(&self, by_m: f64) -> Option<Self> {
+        Some(Self {
+            density: self.density.raised(by_m)?,
+            ..self.clone()
+        })
     }
 
     /// Optical depth of the vertical path between two altitudes, m.

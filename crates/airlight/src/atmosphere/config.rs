@@ -44,8 +44,9 @@
 //! | `[[constituent]]` | `name`, `density`, `scattering_per_m`, `absorption_per_m`, `phase`; replaces one of the same name |
 //!
 //! A *spectrum* is a number, `{ wavelengths_nm = [...], values = [...] }` or `{ at_550_nm = ..., angstrom_exponent = ... }`.
-//! A *density* is `{ kind = "exponential", scale_height_m }`, `{ kind = "layer", bottom_m, top_m }`,
-//! `{ kind = "tent", bottom_m, peak_m, top_m }`, `{ kind = "standard-air" }` or
+//! A *density* is `{ kind = "exponential", scale_height_m }` (optional `reference_height_m`),
+//! `{ kind = "clamped", base_height_m, scale_height_m }`, `{ kind = "layer", top_m }` (optional `bottom_m`),
+//! `{ kind = "tent", bottom_m, peak_m, top_m }`, `{ kind = "uniform" }`, `{ kind = "standard-air" }` or
 //! `{ kind = "table", altitudes_m, densities, interpolation = "linear" | "log-linear" }`.
 //! A *phase* is `{ kind = "isotropic" }`, `"rayleigh"` (optional `depolarization_ratio`), `"henyey-greenstein"` or
 //! `"cornette-shanks"` (`g`), `"draine"` (`g`, `alpha`), `"continental"`, `"mixture"`
@@ -63,7 +64,7 @@ mod type_tests;
 pub use error::{ConfigError, ConfigProblem};
 
 use super::presets::{self, earth};
-use super::{Atmosphere, AtmosphereError, Constituent, gases};
+use super::{Atmosphere, AtmosphereError, Constituent, ConstituentKind, gases};
 use crate::optics::{PhaseFunction, rayleigh::STANDARD_PRESSURE_PA};
 use crate::sun::LimbDarkening;
 use reader::Section;
@@ -130,12 +131,13 @@ pub fn from_toml_table(
         let names: Vec<&str> = atmosphere
             .constituents
             .iter()
-            .map(|part| part.name.as_str())
+            .map(|part| part.kind.name())
             .collect();
         if !names.contains(&name) {
             return Err(root.unknown("remove", "constituent", name, names));
         }
-        atmosphere.constituents.retain(|part| part.name != name);
+        let kind = ConstituentKind::from(name);
+        atmosphere.constituents.retain(|part| part.kind != kind);
     }
     if let Some(section) = root.section("planet")? {
         planet(&section, &mut atmosphere)?;
@@ -170,12 +172,12 @@ pub fn from_toml_table(
     Ok(atmosphere)
 }
 
-/// Replaces the constituent of the same name, or adds one.
+/// Replaces the constituent of the same kind, or adds one.
 fn put(atmosphere: &mut Atmosphere, part: Constituent) {
     match atmosphere
         .constituents
         .iter_mut()
-        .find(|old| old.name == part.name)
+        .find(|old| old.kind == part.kind)
     {
         Some(old) => *old = part,
         None => atmosphere.constituents.push(part),
@@ -254,7 +256,7 @@ fn molecules(
     match atmosphere
         .constituents
         .iter_mut()
-        .find(|part| part.name == "rayleigh")
+        .find(|part| part.kind == ConstituentKind::Molecules)
     {
         Some(part) => {
             part.scattering_per_m = part

@@ -1,70 +1,88 @@
-//! How dense a constituent is at an altitude, relative to the density its coefficients are stated for.
+//! Density against height: one set of profiles for all constituents, from molecules to fog.
+//!
+//! Heights are altitudes above the planet's radius in an [`Atmosphere`](super::Atmosphere), and heights above the scene's
+//! zero in a fog. Every behaviour of a profile is one `match` in this file; everything else that depends on the shape of a
+//! profile works on its [`HeightStructure`].
 
+mod column;
+mod table;
+
+pub use table::{AltitudeTable, Interpolation};
+
+use super::ray_segment::RaySegment;
 use super::standard_air;
 use crate::math::quadrature::FixedRule;
 
-/// Relative density as a function of the altitude above the planet's radius, m.
+/// Density relative to the density that the coefficients of a constituent are stated for, as a function of height.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum DensityProfile {
-    /// `exp(-altitude / H)`; goes on rising below altitude 0.
+    /// 1 at all heights. In fog: without an upper end.
+    Uniform,
+    /// `e^-((height - reference) / H)` at all heights: exponential height fog (Ishiyama 2018, eq. 7 with reference 0).
     Exponential {
-        /// Height in which the density falls by e, m, positive.
+        /// Height at which the density is 1, m.
+        reference_height_m: f64,
+        /// Height `H` over which the density falls by a factor e, m, above 0.
+        scale_height_m: f64,
+    },
+    /// 1 up to the base, `e^-((height - base) / H)` above it: the fog note's `e^-(f max(0, y - h0))` with falloff `f = 1 / H`.
+    Clamped {
+        /// Height up to which the density is 1, m.
+        base_height_m: f64,
+        /// Height `H` over which the density falls by a factor e above the base, m, above 0.
         scale_height_m: f64,
     },
     /// 1 from `bottom_m` up to `top_m`, 0 elsewhere.
     Layer {
-        /// Lower edge, m.
+        /// Lower edge, m; minus infinity for a layer without one ([`DensityProfile::slab`]).
         bottom_m: f64,
         /// Upper edge, m.
         top_m: f64,
     },
-    /// Rises linearly from 0 at `bottom_m` to 1 at `peak_m`, falls to 0 at `top_m`; 0 elsewhere.
+    /// Rises linearly from 0 at `bottom_m` to 1 at `peak_m`, falls linearly to 0 at `top_m`; 0 elsewhere.
     Tent {
-        /// Where it begins, m.
+        /// Lower edge, m.
         bottom_m: f64,
-        /// Where it is 1, m.
+        /// Height of density 1, m.
         peak_m: f64,
-        /// Where it ends, m.
+        /// Upper edge, m.
         top_m: f64,
     },
     /// Number density of air in the U.S. Standard Atmosphere 1976, 1 at sea level, by the standard's layer formulas
     /// (to 1e-4 of its tables up to 86 km; from there to 100 km one exponential, within 1 %).
     StandardAir1976,
-    /// Given at altitudes: the first value below the first altitude, **0 above the last**.
+    /// Tabulated by altitude: the first value below the first altitude, **0 above the last**.
     Tabulated(AltitudeTable),
     /// A sum of profiles, each with its factor.
     Sum(Vec<(f64, DensityProfile)>),
 }
 
-/// How a table goes from one sample to the next.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Interpolation {
-    /// Straight lines.
-    Linear,
-    /// Straight lines in the logarithm; linear next to a sample that is 0.
-    LogLinear,
-}
-
-/// Densities at strictly rising altitudes.
-#[derive(Clone, Debug, PartialEq)]
-pub struct AltitudeTable {
-    altitudes_m: Vec<f64>,
-    densities: Vec<f64>,
-    interpolation: Interpolation,
-}
-
 /// Why numbers do not make a density profile.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum DensityError {
     /// A scale height that is not positive and finite.
-    #[error("a scale height must be positive and finite, got {0} m")]
+    #[error(
+        "scale height: expected a finite number of metres above 0, got {0}; try a layer for a sharp top, or a uniform profile"
+    )]
     ScaleHeight(f64),
+    /// A height that is not finite.
+    #[error("{which}: expected a finite number of metres, got {got_m}")]
+    Height {
+        /// Which height.
+        which: &'static str,
+        /// Its value, m.
+        got_m: f64,
+    },
     /// Edges out of order, or not finite.
-    #[error("the altitudes of a layer must be finite and rise from bottom to top, got {0:?} m")]
+    #[error(
+        "edges of a layer: expected finite heights (m) that rise from bottom to top, got {0:?}"
+    )]
     Edges(Vec<f64>),
     /// Altitudes of a table not strictly increasing, or fewer than two.
     #[error(
-        "a table needs two or more finite, strictly rising altitudes: entry {index} is {value} m"
+        "altitudes of a table: expected two or more finite, strictly rising numbers (m), got {value} at index {index}"
     )]
     Altitudes {
         /// Which entry, counted from 0.
@@ -73,7 +91,9 @@ pub enum DensityError {
         value: f64,
     },
     /// Not one density for each altitude.
-    #[error("a table of {altitudes} altitudes needs as many densities, got {densities}")]
+    #[error(
+        "densities of a table: expected one for each of {altitudes} altitudes, got {densities}"
+    )]
     Length {
         /// Number of altitudes.
         altitudes: usize,
@@ -81,7 +101,9 @@ pub enum DensityError {
         densities: usize,
     },
     /// A density or factor that is negative or not finite.
-    #[error("densities and factors must be finite and not negative: entry {index} is {value}")]
+    #[error(
+        "densities and factors: expected finite numbers not below 0, got {value} at index {index}"
+    )]
     Negative {
         /// Which entry, counted from 0.
         index: usize,
@@ -90,8 +112,77 @@ pub enum DensityError {
     },
 }
 
+/// Where a profile changes with height: what quadrature over height or along a ray has to resolve.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct HeightStructure {
+    /// Heights of kinks and jumps, rising, m.
+    pub kinks_m: Vec<f64>,
+    /// Exponential decays with height.
+    pub decays: Vec<Decay>,
+    /// Other intervals of height, rising, in which the density varies smoothly by less than a factor e or linearly, m.
+    pub ramps_m: Vec<[f64; 2]>,
+    /// Height above which the density is 0, m; infinite where there is none.
+    pub top_m: f64,
+}
+
+/// An exponential decay with height.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Decay {
+    /// Height from which on the density decays, m; minus infinity where it does at all heights.
+    pub from_m: f64,
+    /// Height at which the density is 1, m.
+    pub reference_height_m: f64,
+    /// Height over which it falls by a factor e, m.
+    pub scale_height_m: f64,
+}
+
+impl HeightStructure {
+    /// Kinks at which no exponential decay begins, m.
+    pub fn other_kinks_m(&self) -> impl Iterator<Item = f64> + '_ {
+        let begins = |kink: &f64| self.decays.iter().any(|decay| decay.from_m == *kink);
+        self.kinks_m
+            .iter()
+            .copied()
+            .filter(move |kink| !begins(kink))
+    }
+}
+
 impl DensityProfile {
-    /// A table of densities. See [`DensityProfile::Tabulated`] for what holds beyond its ends.
+    /// `e^-(height / H)`.
+    pub const fn exponential(scale_height_m: f64) -> Self {
+        Self::Exponential {
+            reference_height_m: 0.0,
+            scale_height_m,
+        }
+    }
+
+    /// 1 below `top_m`, 0 above: a [`DensityProfile::Layer`] without a lower edge, as the fog of Klassen 1987.
+    pub const fn slab(top_m: f64) -> Self {
+        Self::Layer {
+            bottom_m: f64::NEG_INFINITY,
+            top_m,
+        }
+    }
+
+    /// The clamped profile of a falloff (1/m) instead of a scale height: uniform for 0, a slab for infinity.
+    ///
+    /// # Errors
+    /// [`DensityError`] for a falloff below 0 or not a number, or a base that is not finite.
+    pub fn from_falloff(base_height_m: f64, falloff_per_m: f64) -> Result<Self, DensityError> {
+        let profile = if falloff_per_m == 0.0 {
+            Self::Uniform
+        } else if falloff_per_m == f64::INFINITY {
+            Self::slab(base_height_m)
+        } else {
+            Self::Clamped {
+                base_height_m,
+                scale_height_m: 1.0 / falloff_per_m,
+            }
+        };
+        profile.validate().map(|()| profile)
+    }
+
+    /// A table of densities by altitude (m).
     ///
     /// # Errors
     /// As [`AltitudeTable::new`].
@@ -103,32 +194,52 @@ impl DensityProfile {
         AltitudeTable::new(altitudes_m, densities, interpolation).map(Self::Tabulated)
     }
 
+    /// Whether the density is the same at all heights.
+    #[inline]
+    pub fn is_uniform(&self) -> bool {
+        matches!(self, Self::Uniform)
+    }
+
     /// Checks the parameters.
     ///
     /// # Errors
-    /// The first one that is out of its domain.
+    /// [`DensityError`] for the first parameter outside its domain.
     pub fn validate(&self) -> Result<(), DensityError> {
+        let scale = |scale_height_m: f64| match scale_height_m.is_finite() && scale_height_m > 0.0 {
+            true => Ok(()),
+            false => Err(DensityError::ScaleHeight(scale_height_m)),
+        };
+        let height = |which, got_m: f64| match got_m.is_finite() {
+            true => Ok(()),
+            false => Err(DensityError::Height { which, got_m }),
+        };
         let rising = |edges: &[f64]| match edges.iter().all(|e| e.is_finite())
             && edges.windows(2).all(|w| w[0] <= w[1])
         {
             true => Ok(()),
             false => Err(DensityError::Edges(edges.to_vec())),
         };
-        match self {
-            Self::Exponential { scale_height_m } => {
-                match scale_height_m.is_finite() && *scale_height_m > 0.0 {
-                    true => Ok(()),
-                    false => Err(DensityError::ScaleHeight(*scale_height_m)),
-                }
-            }
-            Self::Layer { bottom_m, top_m } => rising(&[*bottom_m, *top_m]),
+        match *self {
+            Self::Uniform | Self::StandardAir1976 | Self::Tabulated(_) => Ok(()),
+            Self::Exponential {
+                reference_height_m,
+                scale_height_m,
+            } => height("reference height", reference_height_m).and(scale(scale_height_m)),
+            Self::Clamped {
+                base_height_m,
+                scale_height_m,
+            } => height("base height", base_height_m).and(scale(scale_height_m)),
+            Self::Layer {
+                bottom_m: f64::NEG_INFINITY,
+                top_m,
+            } => height("top height", top_m),
+            Self::Layer { bottom_m, top_m } => rising(&[bottom_m, top_m]),
             Self::Tent {
                 bottom_m,
                 peak_m,
                 top_m,
-            } => rising(&[*bottom_m, *peak_m, *top_m]),
-            Self::StandardAir1976 | Self::Tabulated(_) => Ok(()),
-            Self::Sum(parts) => {
+            } => rising(&[bottom_m, peak_m, top_m]),
+            Self::Sum(ref parts) => {
                 for (index, (factor, part)) in parts.iter().enumerate() {
                     if !(factor.is_finite() && *factor >= 0.0) {
                         return Err(DensityError::Negative {
@@ -143,224 +254,300 @@ impl DensityProfile {
         }
     }
 
-    /// The relative density at an altitude, m.
-    pub fn at(&self, altitude_m: f64) -> f64 {
-        let z = altitude_m;
-        match self {
-            Self::Exponential { scale_height_m } => (-z / scale_height_m).exp(),
-            Self::Layer { bottom_m, top_m } => match z >= *bottom_m && z < *top_m {
-                true => 1.0,
-                false => 0.0,
-            },
+    /// The relative density at a height, m.
+    #[inline]
+    pub fn at(&self, height_m: f64) -> f64 {
+        let z = height_m;
+        match *self {
+            Self::Uniform => 1.0,
+            Self::Exponential {
+                reference_height_m,
+                scale_height_m,
+            } => (-(z - reference_height_m) / scale_height_m).exp(),
+            Self::Clamped {
+                base_height_m,
+                scale_height_m,
+            } => (-(z - base_height_m).max(0.0) / scale_height_m).exp(),
+            Self::Layer { bottom_m, top_m } => f64::from(z >= bottom_m && z < top_m),
             Self::Tent {
                 bottom_m,
                 peak_m,
                 top_m,
             } => {
-                if z <= *bottom_m || z >= *top_m {
+                if z <= bottom_m || z >= top_m {
                     // A tent whose peak is its edge is 1 there.
-                    if z == *peak_m { 1.0 } else { 0.0 }
-                } else if z < *peak_m {
+                    f64::from(z == peak_m)
+                } else if z < peak_m {
                     (z - bottom_m) / (peak_m - bottom_m)
                 } else {
                     (top_m - z) / (top_m - peak_m)
                 }
             }
             Self::StandardAir1976 => standard_air::relative_density(z),
-            Self::Tabulated(table) => table.at(z),
-            Self::Sum(parts) => parts.iter().map(|(factor, part)| factor * part.at(z)).sum(),
+            Self::Tabulated(ref table) => table.at(z),
+            Self::Sum(ref parts) => parts.iter().map(|(factor, part)| factor * part.at(z)).sum(),
         }
     }
 
-    /// Integral of the relative density over altitude, m: the length of a column of density 1 that holds as much.
-    /// 0 where the top is not above the start. Closed forms; the standard atmosphere by quadrature to 1e-10.
-    pub fn column_m(&self, from_altitude_m: f64, top_altitude_m: f64) -> f64 {
-        let (a, b) = (from_altitude_m, top_altitude_m);
+    /// Upper bound of the density at and above a height, m.
+    pub fn max_above(&self, height_m: f64) -> f64 {
+        let z = height_m;
+        match *self {
+            Self::Uniform
+            | Self::Exponential { .. }
+            | Self::Clamped { .. }
+            | Self::StandardAir1976 => self.at(z),
+            Self::Layer { top_m, .. } => f64::from(z < top_m),
+            Self::Tent { peak_m, .. } => self.at(z.max(peak_m)),
+            Self::Tabulated(ref table) => {
+                let samples = table.altitudes_m().iter().zip(table.densities());
+                samples
+                    .filter(|(altitude, _)| **altitude > z)
+                    .fold(table.at(z), |most, (_, density)| most.max(*density))
+            }
+            Self::Sum(ref parts) => parts
+                .iter()
+                .map(|(factor, part)| factor * part.max_above(z))
+                .sum(),
+        }
+    }
+
+    /// Integral of the density over height, m: the length of a column of density 1 that holds as much. 0 where the top is
+    /// not above the start. Closed forms; the standard atmosphere by quadrature to 1e-10.
+    pub fn column_m(&self, from_height_m: f64, top_height_m: f64) -> f64 {
+        let (a, b) = (from_height_m, top_height_m);
         if b <= a || a.is_nan() || b.is_nan() {
             return 0.0;
         }
-        match self {
-            Self::Exponential { scale_height_m: h } => {
-                -h * (-a / h).exp() * (-(b - a) / h).exp_m1()
+        match *self {
+            Self::Uniform => b - a,
+            Self::Exponential {
+                reference_height_m,
+                scale_height_m: h,
+            } => -h * (-(a - reference_height_m) / h).exp() * (-(b - a) / h).exp_m1(),
+            Self::Clamped {
+                base_height_m,
+                scale_height_m: h,
+            } => {
+                let (from, to) = (a.max(base_height_m), b.max(base_height_m));
+                let falling = match to > from {
+                    true => -h * (-(from - base_height_m) / h).exp() * (-(to - from) / h).exp_m1(),
+                    false => 0.0,
+                };
+                (b.min(base_height_m) - a).max(0.0) + falling
             }
-            Self::Layer { bottom_m, top_m } => (b.min(*top_m) - a.max(*bottom_m)).max(0.0),
+            Self::Layer { bottom_m, top_m } => (b.min(top_m) - a.max(bottom_m)).max(0.0),
             Self::Tent {
                 bottom_m,
                 peak_m,
                 top_m,
             } => {
                 let ramp = |from: f64, to: f64| match to > from {
-                    // Mean density of a linear stretch is the density at its middle.
+                    // The mean density of a linear ramp is the density at its middle.
                     true => (to - from) * self.at(0.5 * (from + to)),
                     false => 0.0,
                 };
-                ramp(a.max(*bottom_m), b.min(*peak_m)) + ramp(a.max(*peak_m), b.min(*top_m))
+                ramp(a.max(bottom_m), b.min(peak_m)) + ramp(a.max(peak_m), b.min(top_m))
             }
             Self::StandardAir1976 => {
                 static RULE: FixedRule<16> = FixedRule::fixed();
                 let kinks: Vec<f64> = standard_air::kinks_m().collect();
-                RULE.integrate_between(a, b, &kinks, |z| self.at(z))
+                let end = b.min(standard_air::END_M).max(a);
+                RULE.integrate_between(a, end, &kinks, |z| self.at(z))
             }
-            Self::Tabulated(table) => table.column(a, b),
-            Self::Sum(parts) => parts
+            Self::Tabulated(ref table) => table.column_m(a, b),
+            Self::Sum(ref parts) => parts
                 .iter()
                 .map(|(factor, part)| factor * part.column_m(a, b))
                 .sum(),
         }
     }
 
-    /// Altitudes at which the profile has a kink or a jump, m, rising: edges for quadrature panels. Of the standard
-    /// atmosphere only the tropopause.
-    pub fn breakpoints_m(&self) -> Vec<f64> {
-        let mut all = match self {
-            Self::Exponential { .. } => vec![],
-            Self::Layer { bottom_m, top_m } => vec![*bottom_m, *top_m],
+    /// Integral of the density from a height (m) straight up, m; infinite for [`DensityProfile::Uniform`].
+    #[inline]
+    pub fn column_above_m(&self, height_m: f64) -> f64 {
+        match *self {
+            Self::Uniform => f64::INFINITY,
+            Self::Exponential { scale_height_m, .. } => scale_height_m * self.at(height_m),
+            Self::Clamped {
+                base_height_m,
+                scale_height_m,
+            } => (base_height_m - height_m).max(0.0) + scale_height_m * self.at(height_m),
+            _ => self.column_m(height_m, f64::INFINITY),
+        }
+    }
+
+    /// Integral of the density along a ray, m. Closed forms with a relative error below 1e-12 for rays of any length, height
+    /// and slope; for tents, tables and the standard atmosphere Gauss-Legendre quadrature to 1e-9.
+    #[inline]
+    pub fn column_along_m(&self, ray: &RaySegment) -> f64 {
+        match *self {
+            Self::Uniform => ray.length_m,
+            Self::Exponential {
+                reference_height_m,
+                scale_height_m,
+            } => column::exponential(ray, reference_height_m, scale_height_m),
+            Self::Clamped {
+                base_height_m,
+                scale_height_m,
+            } => column::clamped(ray, base_height_m, scale_height_m),
+            Self::Layer { bottom_m, top_m } => column::layer(ray, bottom_m, top_m),
+            Self::Tent { .. } | Self::StandardAir1976 | Self::Tabulated(_) => {
+                column::by_quadrature(self, ray)
+            }
+            Self::Sum(ref parts) => parts
+                .iter()
+                .map(|(factor, part)| factor * part.column_along_m(ray))
+                .sum(),
+        }
+    }
+
+    /// The profiles that this one is the sum of, with their factors: sums of sums are resolved.
+    pub(crate) fn terms(&self) -> Vec<(f64, &Self)> {
+        match self {
+            Self::Sum(parts) => {
+                let terms = parts.iter().flat_map(|(factor, part)| {
+                    let terms = part.terms().into_iter();
+                    terms.map(move |(inner, profile)| (factor * inner, profile))
+                });
+                terms.collect()
+            }
+            _ => vec![(1.0, self)],
+        }
+    }
+
+    /// Where the profile changes with height.
+    pub(crate) fn structure(&self) -> HeightStructure {
+        let smooth = HeightStructure {
+            kinks_m: Vec::new(),
+            decays: Vec::new(),
+            ramps_m: Vec::new(),
+            top_m: f64::INFINITY,
+        };
+        let decay = |from_m, reference_height_m, scale_height_m| {
+            vec![Decay {
+                from_m,
+                reference_height_m,
+                scale_height_m,
+            }]
+        };
+        match *self {
+            Self::Uniform => smooth,
+            Self::Exponential {
+                reference_height_m,
+                scale_height_m,
+            } => HeightStructure {
+                decays: decay(f64::NEG_INFINITY, reference_height_m, scale_height_m),
+                ..smooth
+            },
+            Self::Clamped {
+                base_height_m,
+                scale_height_m,
+            } => HeightStructure {
+                kinks_m: vec![base_height_m],
+                decays: decay(base_height_m, base_height_m, scale_height_m),
+                ..smooth
+            },
+            Self::Layer { bottom_m, top_m } => HeightStructure {
+                kinks_m: [bottom_m, top_m]
+                    .into_iter()
+                    .filter(|z| z.is_finite())
+                    .collect(),
+                top_m,
+                ..smooth
+            },
             Self::Tent {
                 bottom_m,
                 peak_m,
                 top_m,
-            } => vec![*bottom_m, *peak_m, *top_m],
-            // The other kinks change the slope by less than 10 %: not worth a panel edge each.
-            Self::StandardAir1976 => standard_air::kinks_m().skip(1).take(1).collect(),
-            Self::Tabulated(table) => table.altitudes_m.clone(),
-            Self::Sum(parts) => parts
-                .iter()
-                .flat_map(|(_, part)| part.breakpoints_m())
-                .collect(),
-        };
-        all.sort_by(f64::total_cmp);
+            } => HeightStructure {
+                kinks_m: vec![bottom_m, peak_m, top_m],
+                ramps_m: vec![[bottom_m, peak_m], [peak_m, top_m]],
+                top_m,
+                ..smooth
+            },
+            Self::StandardAir1976 => HeightStructure {
+                // The other kinks change the slope by less than 10 %: not worth a panel edge each.
+                kinks_m: standard_air::kinks_m().skip(1).take(1).collect(),
+                ramps_m: standard_air::ramps_m(),
+                top_m: standard_air::END_M,
+                ..smooth
+            },
+            Self::Tabulated(ref table) => HeightStructure {
+                kinks_m: table.altitudes_m().to_vec(),
+                ramps_m: table.ramps_m(),
+                top_m: table.altitudes_m()[table.altitudes_m().len() - 1],
+                ..smooth
+            },
+            Self::Sum(ref parts) => {
+                let mut sum = HeightStructure {
+                    top_m: f64::NEG_INFINITY,
+                    ..smooth
+                };
+                for (_, part) in parts {
+                    let part = part.structure();
+                    sum.kinks_m.extend(part.kinks_m);
+                    sum.decays.extend(part.decays);
+                    sum.ramps_m.extend(part.ramps_m);
+                    sum.top_m = sum.top_m.max(part.top_m);
+                }
+                sum.kinks_m.sort_by(f64::total_cmp);
+                sum.kinks_m.dedup();
+                sum.ramps_m.sort_by(|a, b| a[0].total_cmp(&b[0]));
+                sum
+            }
+        }
+    }
+
+    /// Heights at which the profile has a kink or a jump, m, rising: edges for quadrature panels. Of the standard
+    /// atmosphere only the tropopause.
+    pub fn breakpoints_m(&self) -> Vec<f64> {
+        let mut all = self.structure().kinks_m;
         all.dedup();
         all
     }
 
-    /// The smallest height over which the profile changes much, m: a bound for the width of quadrature panels between
-    /// breakpoints (the scale height of an exponential, the width of a layer).
-    pub fn scale_m(&self) -> f64 {
-        match self {
-            Self::Exponential { scale_height_m } => *scale_height_m,
-            Self::Layer { bottom_m, top_m } => top_m - bottom_m,
+    /// The same profile with every height raised by `by_m`: from heights above a ground to altitudes. `None` for
+    /// [`DensityProfile::StandardAir1976`], which is tied to sea level.
+    pub fn raised(&self, by_m: f64) -> Option<Self> {
+        Some(match *self {
+            Self::Uniform => Self::Uniform,
+            Self::Exponential {
+                reference_height_m,
+                scale_height_m,
+            } => Self::Exponential {
+                reference_height_m: reference_height_m + by_m,
+                scale_height_m,
+            },
+            Self::Clamped {
+                base_height_m,
+                scale_height_m,
+            } => Self::Clamped {
+                base_height_m: base_height_m + by_m,
+                scale_height_m,
+            },
+            Self::Layer { bottom_m, top_m } => Self::Layer {
+                bottom_m: bottom_m + by_m,
+                top_m: top_m + by_m,
+            },
             Self::Tent {
-                bottom_m, top_m, ..
-            } => 0.5 * (top_m - bottom_m),
-            Self::StandardAir1976 => 6000.0,
-            Self::Tabulated(table) => table.scale_m(),
-            Self::Sum(parts) => parts
-                .iter()
-                .map(|(_, part)| part.scale_m())
-                .fold(f64::INFINITY, f64::min),
-        }
-    }
-}
-
-impl AltitudeTable {
-    /// Checks and takes the samples.
-    ///
-    /// # Errors
-    /// [`DensityError`] where altitudes do not rise, the lengths differ or a density is negative or not finite.
-    pub fn new(
-        altitudes_m: Vec<f64>,
-        densities: Vec<f64>,
-        interpolation: Interpolation,
-    ) -> Result<Self, DensityError> {
-        if altitudes_m.len() < 2 {
-            return Err(DensityError::Altitudes {
-                index: altitudes_m.len(),
-                value: f64::NAN,
-            });
-        }
-        for (index, &value) in altitudes_m.iter().enumerate() {
-            if !value.is_finite() || (index > 0 && value <= altitudes_m[index - 1]) {
-                return Err(DensityError::Altitudes { index, value });
-            }
-        }
-        if altitudes_m.len() != densities.len() {
-            return Err(DensityError::Length {
-                altitudes: altitudes_m.len(),
-                densities: densities.len(),
-            });
-        }
-        if let Some(index) = densities.iter().position(|d| !(d.is_finite() && *d >= 0.0)) {
-            return Err(DensityError::Negative {
-                index,
-                value: densities[index],
-            });
-        }
-        Ok(Self {
-            altitudes_m,
-            densities,
-            interpolation,
+                bottom_m,
+                peak_m,
+                top_m,
+            } => Self::Tent {
+                bottom_m: bottom_m + by_m,
+                peak_m: peak_m + by_m,
+                top_m: top_m + by_m,
+            },
+            Self::StandardAir1976 => return None,
+            Self::Tabulated(ref table) => Self::Tabulated(table.raised(by_m)),
+            Self::Sum(ref parts) => Self::Sum(
+                parts
+                    .iter()
+                    .map(|(factor, part)| Some((*factor, part.raised(by_m)?)))
+                    .collect::<Option<_>>()?,
+            ),
         })
-    }
-
-    /// Where the samples lie, m.
-    pub fn altitudes_m(&self) -> &[f64] {
-        &self.altitudes_m
-    }
-
-    /// The samples.
-    pub fn densities(&self) -> &[f64] {
-        &self.densities
-    }
-
-    fn at(&self, z: f64) -> f64 {
-        let above = self.altitudes_m.partition_point(|&a| a <= z);
-        let last = self.altitudes_m.len() - 1;
-        if above == 0 {
-            return self.densities[0];
-        }
-        if above > last {
-            return if z == self.altitudes_m[last] {
-                self.densities[last]
-            } else {
-                0.0
-            };
-        }
-        let (z0, z1) = (self.altitudes_m[above - 1], self.altitudes_m[above]);
-        let (d0, d1) = (self.densities[above - 1], self.densities[above]);
-        let t = (z - z0) / (z1 - z0);
-        match self.is_log(d0, d1) {
-            true => d0 * (t * (d1 / d0).ln()).exp(),
-            false => d0 * (1.0 - t) + d1 * t,
-        }
-    }
-
-    fn is_log(&self, d0: f64, d1: f64) -> bool {
-        self.interpolation == Interpolation::LogLinear && d0 > 0.0 && d1 > 0.0
-    }
-
-    fn column(&self, from: f64, to: f64) -> f64 {
-        let last = self.altitudes_m.len() - 1;
-        let mut sum = (self.altitudes_m[0].min(to) - from).max(0.0) * self.densities[0];
-        for i in 0..last {
-            let (a, b) = (
-                self.altitudes_m[i].max(from),
-                self.altitudes_m[i + 1].min(to),
-            );
-            if b <= a {
-                continue;
-            }
-            let (d0, d1) = (self.densities[i], self.densities[i + 1]);
-            let width = self.altitudes_m[i + 1] - self.altitudes_m[i];
-            sum += match self.is_log(d0, d1) {
-                true => {
-                    let x = (d1 / d0).ln() * (b - a) / width;
-                    let mean = if x.abs() < 1e-12 { 1.0 } else { x.exp_m1() / x };
-                    let start = d0 * ((a - self.altitudes_m[i]) / width * (d1 / d0).ln()).exp();
-                    (b - a) * start * mean
-                }
-                false => (b - a) * (d0 + (d1 - d0) * (0.5 * (a + b) - self.altitudes_m[i]) / width),
-            };
-        }
-        sum
-    }
-
-    fn scale_m(&self) -> f64 {
-        let span = self.altitudes_m[self.altitudes_m.len() - 1] - self.altitudes_m[0];
-        let samples = self.altitudes_m.windows(2).zip(self.densities.windows(2));
-        samples
-            .filter(|(_, d)| self.is_log(d[0], d[1]) && d[0] != d[1])
-            .map(|(z, d)| (z[1] - z[0]) / (d[1] / d[0]).ln().abs())
-            .fold(span, f64::min)
     }
 }
 

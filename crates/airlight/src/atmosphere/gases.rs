@@ -1,6 +1,6 @@
 //! The gases of the Earth's air: molecules that scatter, ozone that absorbs.
 
-use super::{Constituent, DensityProfile, Interpolation};
+use super::{Constituent, ConstituentKind, DensityProfile, Interpolation};
 use crate::optics::ozone::{self, DOBSON_UNIT_M2};
 use crate::optics::{Depolarization, PhaseFunction, rayleigh};
 use crate::spectrum::SpectralCurve;
@@ -26,7 +26,7 @@ pub fn air(sea_level_pressure_pa: f64) -> Constituent {
         })
         .unzip();
     Constituent {
-        name: "rayleigh".into(),
+        kind: ConstituentKind::Molecules,
         density: DensityProfile::StandardAir1976,
         scattering_per_m: SpectralCurve::table(wavelengths, values)
             .unwrap_or(SpectralCurve::Constant(0.0)),
@@ -67,7 +67,7 @@ pub fn ozone(column_du: f64) -> Constituent {
     let density = ozone_profile();
     let peak_per_m3 = column_du * DOBSON_UNIT_M2 / density.column_m(0.0, 80e3);
     Constituent {
-        name: "ozone".into(),
+        kind: ConstituentKind::Ozone,
         density,
         scattering_per_m: SpectralCurve::Constant(0.0),
         absorption_per_m: SpectralCurve::Table(ozone::curve().clone()).scaled(peak_per_m3),

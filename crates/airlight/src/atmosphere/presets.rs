@@ -125,6 +125,7 @@ fn fixed_table(samples: &[(f64, f64)]) -> SpectralCurve {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::atmosphere::ConstituentKind;
 
     #[test]
     fn every_preset_is_valid_and_bears_its_name() {
@@ -158,7 +159,7 @@ mod tests {
         for (name, aerosol) in [("clear", 0.05), ("average", 0.12), ("hazy", 0.35)] {
             let earth = preset(name).unwrap();
             let ozone = earth
-                .constituent("ozone")
+                .constituent(&ConstituentKind::Ozone)
                 .unwrap()
                 .optical_depth(0.0, 100e3, 550.0);
             let depth = earth.vertical_optical_depth(550.0);

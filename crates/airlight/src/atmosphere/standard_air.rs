@@ -81,6 +81,29 @@ pub(super) fn kinks_m() -> impl Iterator<Item = f64> {
         .chain([HOMOPAUSE_M])
 }
 
+/// Altitude above which the density counts as 0 where a profile must end: 25 scale heights above the homopause, m.
+pub(super) const END_M: f64 = HOMOPAUSE_M + 25.0 * UPPER_SCALE_HEIGHT_M;
+
+/// Intervals of altitude from 5 km below sea level to [`END_M`] in each of which the density is smooth and falls by less than
+/// a factor e, m.
+pub(super) fn ramps_m() -> Vec<[f64; 2]> {
+    const DEPTH_M: f64 = -5e3;
+    const WIDEST_M: f64 = 3e3;
+    let edges: Vec<f64> = [DEPTH_M]
+        .into_iter()
+        .chain(kinks_m())
+        .chain([END_M])
+        .collect();
+    edges
+        .windows(2)
+        .flat_map(|w| {
+            let count = ((w[1] - w[0]) / WIDEST_M).ceil();
+            let edge = move |i: u32| w[0] + (w[1] - w[0]) * f64::from(i) / count;
+            (0..count as u32).map(move |i| [edge(i), edge(i + 1)])
+        })
+        .collect()
+}
+
 /// Number density of air at sea level in the standard atmosphere, m^-3.
 #[cfg(test)]
 const SEA_LEVEL_DENSITY_PER_M3: f64 = 101_325.0 / (BOLTZMANN_J_PER_K * 288.15);

@@ -1,6 +1,6 @@
 //! What hangs in the air, at N wavelengths.
 
-use super::profile::{Profile, ProfileError};
+use crate::atmosphere::{DensityError, DensityProfile};
 use crate::optics::{PhaseError, PhaseFunction};
 use crate::spectrum::Spectrum;
 
@@ -19,7 +19,7 @@ pub struct Medium<const N: usize> {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layer<const N: usize> {
     /// Density against height.
-    pub profile: Profile,
+    pub profile: DensityProfile,
     /// What it is made of.
     pub medium: Medium<N>,
 }
@@ -75,9 +75,9 @@ pub enum FogError {
     /// The phase function is refused.
     #[error(transparent)]
     Phase(#[from] PhaseError),
-    /// The profile is refused.
+    /// The density profile is refused.
     #[error(transparent)]
-    Profile(#[from] ProfileError),
+    Density(#[from] DensityError),
 }
 
 /// Light must be finite and not below 0 in every lane.

@@ -1,7 +1,7 @@
 //! What shines on a fog, and the ground under it.
 
 use super::layer::{FogError, check_light};
-use super::ray_segment::RaySegment;
+use crate::atmosphere::RaySegment;
 use crate::spectrum::Spectrum;
 use glam::DVec3;
 

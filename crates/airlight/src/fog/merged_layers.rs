@@ -3,13 +3,13 @@
 use super::layer::{FogError, Layer, Medium};
 use super::lighting::FogScattering;
 use super::multiple::{Peak, Reduced, STREAMS};
-use super::profile::Profile;
+use crate::atmosphere::DensityProfile;
 use crate::spectrum::Spectrum;
 
 /// All matter that shares one profile.
 #[derive(Clone, Debug)]
 pub(super) struct MergedLayer<const N: usize> {
-    pub profile: Profile,
+    pub profile: DensityProfile,
     pub extinction_per_m: Spectrum<N>,
     pub scattering_per_m: Spectrum<N>,
     /// Extinction without the forward peak.
@@ -38,8 +38,17 @@ pub(super) fn merge_layers<const N: usize>(
     let mut merged: Vec<MergedLayer<N>> = Vec::new();
     for layer in layers {
         layer.validate()?;
-        let medium = &layer.medium;
-        let peaks = if scattering != FogScattering::Multiple || layer.profile == Profile::Uniform {
+    }
+    let terms = layers.iter().flat_map(|layer| {
+        let terms = layer.profile.terms().into_iter();
+        terms.map(move |(factor, profile)| (factor, profile, &layer.medium))
+    });
+    for (factor, profile, medium) in terms {
+        let medium = Medium {
+            extinction_per_m: medium.extinction_per_m * factor as f32,
+            ..medium.clone()
+        };
+        let peaks = if scattering != FogScattering::Multiple || profile.is_uniform() {
             Vec::new()
         } else if medium.phase.depends_on_wavelength() {
             let peak = |&nm: &f64| Peak::new(&medium.phase, nm);
@@ -47,15 +56,10 @@ pub(super) fn merge_layers<const N: usize>(
         } else {
             vec![Peak::new(&medium.phase, wavelengths_nm[0])]
         };
-        let part = Part {
-            medium: medium.clone(),
-            wavelengths_nm,
-            peaks,
-        };
-        let index = merged.iter().position(|m| m.profile == layer.profile);
+        let index = merged.iter().position(|m| m.profile == *profile);
         let index = index.unwrap_or_else(|| {
             merged.push(MergedLayer {
-                profile: layer.profile,
+                profile: profile.clone(),
                 extinction_per_m: Spectrum::ZERO,
                 scattering_per_m: Spectrum::ZERO,
                 reduced_extinction_per_m: Spectrum::ZERO,
@@ -67,8 +71,12 @@ pub(super) fn merge_layers<const N: usize>(
         into.extinction_per_m += medium.extinction_per_m;
         into.scattering_per_m += medium.scattering_per_m();
         into.reduced_extinction_per_m += medium.extinction_per_m
-            - medium.scattering_per_m() * lanes(&part.peaks, |peak| peak.fraction as f32);
-        into.parts.push(part);
+            - medium.scattering_per_m() * lanes(&peaks, |peak| peak.fraction as f32);
+        into.parts.push(Part {
+            medium,
+            wavelengths_nm,
+            peaks,
+        });
     }
     Ok(merged)
 }
@@ -104,8 +112,8 @@ impl<const N: usize> MergedLayer<N> {
 
     /// What the solver needs; none of a fog without an upper end.
     pub fn reduced(&self) -> Option<Reduced<N>> {
-        (self.profile != Profile::Uniform).then(|| Reduced {
-            profile: self.profile,
+        (!self.profile.is_uniform()).then(|| Reduced {
+            profile: self.profile.clone(),
             extinction_per_m: self.reduced_extinction_per_m,
             scattering_per_m: std::array::from_fn::<_, STREAMS, _>(|l| {
                 self.sum(|part| lanes(&part.peaks, |p| (p.moments[l] - p.fraction) as f32))

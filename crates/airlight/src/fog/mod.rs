@@ -5,14 +5,14 @@
 //!
 //! ```
 //! use airlight::axes::direction;
-//! use airlight::fog::{Fog, Ground, DirectionalLight, FogLighting, FogScattering, Layer, Profile};
+//! use airlight::fog::{Fog, Ground, DirectionalLight, FogLighting, FogScattering, Layer, DensityProfile};
 //! use airlight::fog::{droplets::Droplets, visibility::{Contrast, extinction_per_m}};
 //! use airlight::spectrum::Spectrum;
 //!
 //! // Radiation fog 30 m deep, 200 m of visibility, under a morning sun.
 //! let fog = Fog::new(
 //!     &[Layer {
-//!         profile: Profile::Exponential { reference_height_m: 0.0, scale_height_m: 30.0 },
+//!         profile: DensityProfile::Exponential { reference_height_m: 0.0, scale_height_m: 30.0 },
 //!         matter: Droplets::Radiation.matter(extinction_per_m(200.0, Contrast::FivePercent)),
 //!     }],
 //!     Ground::EARTH,
@@ -44,15 +44,11 @@ pub mod lights;
 mod merged_layers;
 mod model;
 mod multiple;
-pub mod profile;
-pub mod ray_segment;
 pub mod scatter;
 mod single_scattering;
 mod split_at_heights;
 
-pub use crate::atmosphere::visibility;
+pub use crate::atmosphere::{DensityError, DensityProfile, RaySegment, visibility};
 pub use layer::{FogError, Layer, Medium};
 pub use lighting::{DirectionalLight, FogLighting, FogScattering, Ground};
 pub use model::{Fog, FogTable};
-pub use profile::{Profile, ProfileError};
-pub use ray_segment::RaySegment;

@@ -6,9 +6,8 @@ use super::layer::{FogError, Layer};
 use super::lighting::{FogLighting, FogScattering, Ground};
 use super::merged_layers::{MergedLayer, merge_layers};
 use super::multiple::{self, DirectionWeights, Field};
-use super::profile::Profile;
-use super::ray_segment::RaySegment;
 use super::single_scattering::SingleScattering;
+use crate::atmosphere::RaySegment;
 use crate::spectrum::Spectrum;
 use crate::transfer::PathOptics;
 use glam::DVec3;
@@ -19,7 +18,7 @@ pub(super) const OPAQUE: f64 = 1e25;
 /// Fog at N wavelengths (or, with N = 3, in red, green and blue), ready to be looked through. Nothing is allocated while
 /// it is.
 ///
-/// Any number of layers; those with the same [`Profile`] are merged. Over flat ground a fog of one profile is solved in
+/// Any number of layers; those with the same [`DensityProfile`] are merged. Over flat ground a fog of one profile is solved in
 /// closed form: transmittance (Ishiyama 2018, eqs. 14 and 23), ambient light (eq. 21) and sunlight with its own way through
 /// the fog ([`super::scatter`]), at the rounding of f32. Several profiles, and round ground, are walked from level to level: the
 /// same closed forms between levels. With [`FogScattering::Multiple`] the diffuse light inside is solved for when the fog is
@@ -64,7 +63,7 @@ impl<const N: usize> Fog<N> {
         ground.validate()?;
         light.validate()?;
         let layers = merge_layers(layers, scattering, wavelengths_nm)?;
-        let profiles: Vec<Profile> = layers.iter().map(|s| s.profile).collect();
+        let profiles: Vec<_> = layers.iter().map(|s| s.profile.structure()).collect();
         let mut fog = Self {
             breakpoints_m: height_breakpoints::between(&profiles, ground.height_m),
             layers,
@@ -114,10 +113,7 @@ impl<const N: usize> Fog<N> {
     /// Extinction at a height, 1/m.
     pub fn extinction_at(&self, height_m: f64) -> Spectrum<N> {
         self.layers.iter().fold(Spectrum::ZERO, |sum, layer| {
-            sum.scale_acc(
-                layer.extinction_per_m,
-                layer.profile.density(height_m) as f32,
-            )
+            sum.scale_acc(layer.extinction_per_m, layer.profile.at(height_m) as f32)
         })
     }
 
@@ -152,7 +148,7 @@ impl<const N: usize> Fog<N> {
         extinction: &impl Fn(&MergedLayer<N>) -> Spectrum<N>,
     ) -> Spectrum<N> {
         self.layers.iter().fold(Spectrum::ZERO, |sum, layer| {
-            let column = layer.profile.column(line).min(OPAQUE);
+            let column = layer.profile.column_along_m(line).min(OPAQUE);
             sum.scale_acc(extinction(layer), column as f32)
         })
     }
@@ -266,19 +262,14 @@ impl<const N: usize> Fog<N> {
     /// What is scattered into one line, by what it is dimmed.
     fn part(&self, field: &Field<N>, line: &RaySegment, towards: &Towards) -> Part<N> {
         let cos_sun = towards.cos_sun;
-        let endless = |s: &MergedLayer<N>| match s.profile {
-            Profile::Uniform => s.scattering_per_m,
-            _ => Spectrum::ZERO,
+        let endless = |s: &MergedLayer<N>| match s.profile.is_uniform() {
+            true => s.scattering_per_m,
+            false => Spectrum::ZERO,
         };
         let reduced = |s: &MergedLayer<N>| s.reduced_extinction_per_m;
         let residual = |s: &MergedLayer<N>| s.residual_extinction(cos_sun);
-        let of_endless = self
-            .layers
-            .iter()
-            .fold(Spectrum::ZERO, |sum, s| match s.profile {
-                Profile::Uniform => sum + s.extinction_per_m,
-                _ => sum,
-            });
+        let uniform = self.layers.iter().filter(|s| s.profile.is_uniform());
+        let of_endless = uniform.fold(Spectrum::ZERO, |sum, s| sum + s.extinction_per_m);
         let mut smooth = field.scattered(line, &towards.weights, of_endless);
         let smooth_depth = self.depth_of(line, &reduced);
         let (mut peaked, mut peaked_depth) = (Spectrum::ZERO, smooth_depth);

@@ -4,9 +4,8 @@ use super::lanes::Lanes;
 use super::lighting::Ground;
 use super::merged_layers::MergedLayer;
 use super::model::OPAQUE;
-use super::profile::Profile;
-use super::ray_segment::RaySegment;
 use super::{scatter, split_at_heights::split_at_heights};
+use crate::atmosphere::RaySegment;
 use crate::spectrum::Spectrum;
 
 /// What is scattered once, for a sun of unit irradiance.
@@ -52,19 +51,19 @@ where
         even: Spectrum<N>,
     ) -> (Spectrum<N>, Spectrum<N>) {
         let extinction = (self.extinction)(layer);
-        let column = layer.profile.column(line).min(OPAQUE);
+        let column = layer.profile.column_along_m(line).min(OPAQUE);
         let along = extinction * column as f32;
         // Stated for each metre of column, as extinction may be 0.
         let opacity = along.mean_transmittance() * column as f32;
         let Some(sine) = self.sine_sun else {
             return (Spectrum::ZERO, even * opacity);
         };
-        let arriving = if !self.dimmed || layer.profile == Profile::Uniform {
+        let arriving = if !self.dimmed || layer.profile.is_uniform() {
             opacity
         } else if sine <= 0.0 {
             Spectrum::ZERO
         } else {
-            let near = layer.profile.column_above(line.height_m) / sine;
+            let near = layer.profile.column_above_m(line.height_m) / sine;
             let near = extinction * near.min(OPAQUE) as f32;
             let growth = along * (1.0 - line.sin_elevation / sine) as f32;
             scatter::mean_once(near, growth) * column as f32
@@ -86,7 +85,7 @@ where
             let mut ambient = Spectrum::ZERO;
             let mut direct = Spectrum::ZERO;
             for layer in self.layers {
-                let column = layer.profile.column(part).min(OPAQUE) as f32;
+                let column = layer.profile.column_along_m(part).min(OPAQUE) as f32;
                 along = along.scale_acc((self.extinction)(layer), column);
                 ambient = ambient.scale_acc(even(layer), column);
                 direct = direct.scale_acc((self.towards_eye)(layer), column);
@@ -122,9 +121,9 @@ where
         }
         self.layers
             .iter()
-            .filter(|layer| layer.profile != Profile::Uniform)
+            .filter(|layer| !layer.profile.is_uniform())
             .fold(Spectrum::ZERO, |sum, layer| {
-                let column = layer.profile.column(&line).min(OPAQUE);
+                let column = layer.profile.column_along_m(&line).min(OPAQUE);
                 sum.scale_acc((self.extinction)(layer), column as f32)
             })
     }

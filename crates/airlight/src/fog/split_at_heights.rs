@@ -1,6 +1,6 @@
 //! Walking along a line from height to height.
 
-use super::ray_segment::RaySegment;
+use crate::atmosphere::RaySegment;
 
 /// Calls `visit` with the parts into which the rising `breakpoints_m` cut a line, from its start on, until it says `false`.
 /// A line over round ground is also cut at its lowest point, so that each part only climbs or only falls.

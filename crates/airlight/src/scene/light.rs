@@ -75,7 +75,7 @@ impl TopLight {
 pub(super) fn top_m<const N: usize>(layers: &[Layer<N>], ground: &Ground) -> f64 {
     let above = |height_m: f64| -> f64 {
         let column = |layer: &Layer<N>| {
-            let column = layer.profile.column_above(height_m);
+            let column = layer.profile.column_above_m(height_m);
             let extinction = layer.medium.extinction_per_m.max_element();
             if column.is_finite() {
                 column * f64::from(extinction)
@@ -123,7 +123,7 @@ pub(super) fn share_on_ground<const N: usize>(
     Spectrum::from_fn(|lane| {
         let (mut depth, mut scattered, mut forward) = (0.0, 0.0, 0.0);
         for layer in layers {
-            let column = layer.profile.column_above(ground.height_m);
+            let column = layer.profile.column_above_m(ground.height_m);
             // A fog without an upper end would let no light in: it counts as lit from within.
             if column.is_finite() {
                 let tau = column * f64::from(layer.medium.extinction_per_m[lane]);

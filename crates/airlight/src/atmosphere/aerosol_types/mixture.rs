@@ -6,7 +6,7 @@ use crate::atmosphere::aerosol::{
     AerosolError, AerosolLoad, REFERENCE_NM, extinction_at_density_1,
 };
 use crate::atmosphere::presets::earth::EARTH_TOP_M;
-use crate::atmosphere::{ClearAir, Constituent, DensityProfile};
+use crate::atmosphere::{ClearAir, Constituent, ConstituentKind, DensityProfile};
 use crate::optics::PhaseFunction;
 use crate::optics::mie::MieError;
 use crate::spectrum::{CurveError, SpectralCurve};
@@ -215,7 +215,7 @@ impl AerosolMixture {
         let optics = Optics::of(&self.modes()?)?;
         let scale = extinction_per_m / optics.extinction_per_m(reference());
         Ok(Constituent {
-            name: "aerosol".into(),
+            kind: ConstituentKind::Aerosol,
             density,
             scattering_per_m: curve(&optics.scattering_per_m, scale)?,
             absorption_per_m: curve(&optics.absorption_per_m, scale)?,

@@ -233,5 +233,5 @@ fn layer(ground_altitude_m: f64, scale_height_m: f64, top_m: f64) -> DensityProf
         Interpolation::LogLinear,
     )
     // Only a ground altitude that no atmosphere takes can bring this about; it is refused there.
-    .unwrap_or(DensityProfile::Exponential { scale_height_m })
+    .unwrap_or(DensityProfile::exponential(scale_height_m))
 }

@@ -10,7 +10,7 @@ use crate::atmosphere::aerosol_types::{
 };
 use crate::atmosphere::presets::earth;
 use crate::atmosphere::visibility::Contrast;
-use crate::atmosphere::{Atmosphere, Constituent, DensityProfile};
+use crate::atmosphere::{Atmosphere, Constituent, ConstituentKind, DensityProfile};
 use crate::spectrum::SpectralCurve;
 
 /// Changes the aerosol of an atmosphere, or gives it one.
@@ -82,7 +82,7 @@ fn density(section: &Section<'_>) -> Result<Option<DensityProfile>, ConfigError>
             let with = "scale_height_m";
             Err(section.error("density", ConfigProblem::Conflict { with }))
         }
-        (Some(scale_height_m), None) => Ok(Some(DensityProfile::Exponential { scale_height_m })),
+        (Some(scale_height_m), None) => Ok(Some(DensityProfile::exponential(scale_height_m))),
         (None, given) => Ok(given),
     }
 }
@@ -175,7 +175,7 @@ fn after_angstrom(section: &Section<'_>, atmosphere: &mut Atmosphere) -> Result<
         atmosphere.planet.ground_altitude_m,
         atmosphere.planet.top_altitude_m,
     );
-    let old = atmosphere.constituent("aerosol").cloned();
+    let old = atmosphere.constituent(&ConstituentKind::Aerosol).cloned();
     let old_depth = old
         .as_ref()
         .map_or(0.0, |part| part.optical_depth(ground, top, 550.0));

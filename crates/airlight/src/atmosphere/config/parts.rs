@@ -64,24 +64,44 @@ pub(super) fn density(
     let Some(inner) = section.section(key)? else {
         return Ok(None);
     };
-    let kinds = ["exponential", "layer", "tent", "standard-air", "table"];
+    let kinds = [
+        "uniform",
+        "exponential",
+        "clamped",
+        "layer",
+        "tent",
+        "standard-air",
+        "table",
+    ];
     let kind = inner.text("kind")?.ok_or_else(|| {
         inner.missing(
             "kind",
-            "one of exponential, layer, tent, standard-air, table",
+            "one of uniform, exponential, clamped, layer, tent, standard-air, table",
         )
     })?;
     let profile = match kind {
+        "uniform" => {
+            inner.check_keys(&["kind"])?;
+            DensityProfile::Uniform
+        }
         "exponential" => {
-            inner.check_keys(&["kind", "scale_height_m"])?;
+            inner.check_keys(&["kind", "scale_height_m", "reference_height_m"])?;
             DensityProfile::Exponential {
+                scale_height_m: inner.required("scale_height_m")?,
+                reference_height_m: inner.finite("reference_height_m")?.unwrap_or(0.0),
+            }
+        }
+        "clamped" => {
+            inner.check_keys(&["kind", "base_height_m", "scale_height_m"])?;
+            DensityProfile::Clamped {
+                base_height_m: inner.required("base_height_m")?,
                 scale_height_m: inner.required("scale_height_m")?,
             }
         }
         "layer" => {
             inner.check_keys(&["kind", "bottom_m", "top_m"])?;
             DensityProfile::Layer {
-                bottom_m: inner.required("bottom_m")?,
+                bottom_m: inner.finite("bottom_m")?.unwrap_or(f64::NEG_INFINITY),
                 top_m: inner.required("top_m")?,
             }
         }
@@ -270,7 +290,7 @@ pub(super) fn constituent(section: &Section<'_>) -> Result<Constituent, ConfigEr
         return Err(section.missing("phase", "what scatters needs a phase function"));
     }
     Ok(Constituent {
-        name: name.to_owned(),
+        kind: name.into(),
         density: density(section, "density")?.ok_or_else(|| {
             section.missing("density", "how the constituent thins out with altitude")
         })?,

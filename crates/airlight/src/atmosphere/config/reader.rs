@@ -131,10 +131,15 @@ impl<'a> Section<'a> {
         })
     }
 
+    /// A finite number.
+    pub fn finite(&self, key: &str) -> Result<Option<f64>, ConfigError> {
+        self.number(key, "a finite number", f64::is_finite)
+    }
+
     /// A number that must be there.
     pub fn required(&self, key: &str) -> Result<f64, ConfigError> {
-        let finite = self.number(key, "a finite number", f64::is_finite)?;
-        finite.ok_or_else(|| self.missing(key, "a number is needed here"))
+        self.finite(key)?
+            .ok_or_else(|| self.missing(key, "a number is needed here"))
     }
 
     /// A text.

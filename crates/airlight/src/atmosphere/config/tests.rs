@@ -1,5 +1,5 @@
 use super::*;
-use crate::atmosphere::{AerosolError, DensityError, preset};
+use crate::atmosphere::{AerosolError, DensityError, DensityProfile, preset};
 use crate::optics::PhaseError;
 
 pub(super) fn read(text: &str) -> Atmosphere {
@@ -45,7 +45,7 @@ fn fields_are_overridden_one_by_one() {
         ),
         (-100.0, 0.25)
     );
-    assert!(got.constituent("ozone").is_none());
+    assert!(got.constituent(&ConstituentKind::Ozone).is_none());
     assert!((got.sun.angular_radius_rad.to_degrees() - 0.3).abs() < 1e-12);
     assert_eq!(got.sun.limb_darkening, LimbDarkening::Uniform);
     assert_eq!(
@@ -53,20 +53,20 @@ fn fields_are_overridden_one_by_one() {
         0.5 * base.solar_irradiance.at(550.0)
     );
     let air = |a: &Atmosphere| {
-        a.constituent("rayleigh")
+        a.constituent(&ConstituentKind::Molecules)
             .unwrap()
             .scattering_per_m
             .at(550.0)
     };
     assert!((air(&got) / air(&base) - 90.0 / 101.325).abs() < 1e-12);
     let ozone = read("ozone.column_du = 450")
-        .constituent("ozone")
+        .constituent(&ConstituentKind::Ozone)
         .unwrap()
         .absorption_per_m
         .at(600.0);
     let usual = preset("average")
         .unwrap()
-        .constituent("ozone")
+        .constituent(&ConstituentKind::Ozone)
         .unwrap()
         .absorption_per_m
         .at(600.0);
@@ -76,7 +76,7 @@ fn fields_are_overridden_one_by_one() {
 #[test]
 fn aerosol_keeps_what_is_not_overridden() {
     let depth = |a: &Atmosphere, nm| {
-        a.constituent("aerosol")
+        a.constituent(&ConstituentKind::Aerosol)
             .unwrap()
             .optical_depth(0.0, 100e3, nm)
     };
@@ -86,29 +86,35 @@ fn aerosol_keeps_what_is_not_overridden() {
     let got = read("base = \"hazy\"\naerosol.angstrom_exponent = 0.5");
     assert!((depth(&got, 550.0) - 0.35).abs() < 1e-12);
     assert!((depth(&got, 440.0) / depth(&got, 880.0) - 2f64.sqrt()).abs() < 1e-12);
-    let aerosol = got.constituent("aerosol").unwrap();
+    let aerosol = got.constituent(&ConstituentKind::Aerosol).unwrap();
     assert!(
         (aerosol.scattering_per_m.at(470.0) / aerosol.extinction_per_m(470.0) - 0.93).abs() < 1e-9
     );
     let got = read("base = \"hazy\"\naerosol.scale_height_m = 3000");
     assert!((depth(&got, 550.0) - 0.35).abs() < 1e-12);
     assert_eq!(
-        got.constituent("aerosol").unwrap().density.scale_m(),
-        3000.0
+        got.constituent(&ConstituentKind::Aerosol).unwrap().density,
+        DensityProfile::exponential(3000.0)
     );
     let got = read("aerosol.turbidity = 2.5");
     let clear = got.clear_air();
     assert!((depth(&got, 550.0) / (1.5 * clear.optical_depth_550) - 1.0).abs() < 1e-12);
     let got = read("aerosol.visibility_m = 10e3");
     assert!(
-        (got.constituent("aerosol").unwrap().extinction_per_m(550.0)
+        (got.constituent(&ConstituentKind::Aerosol)
+            .unwrap()
+            .extinction_per_m(550.0)
             + clear.ground_extinction_per_m
             - 2.9957e-4)
             .abs()
             < 1e-7
     );
     let two = read("aerosol.visibility_m = 10e3\naerosol.contrast = 0.02");
-    let extinction = |air: &Atmosphere| air.constituent("aerosol").unwrap().extinction_per_m(550.0);
+    let extinction = |air: &Atmosphere| {
+        air.constituent(&ConstituentKind::Aerosol)
+            .unwrap()
+            .extinction_per_m(550.0)
+    };
     let more = (0.05f64 / 0.02).ln() / 10e3;
     assert!((extinction(&two) - extinction(&got) - more).abs() < 1e-9);
     // Mars keeps its dust's spectral albedo when there is more of it.
@@ -117,7 +123,7 @@ fn aerosol_keeps_what_is_not_overridden() {
         read("base = \"mars\"\naerosol.aod_550 = 1.5"),
     );
     let albedo = |a: &Atmosphere, nm| {
-        let dust = a.constituent("aerosol").unwrap();
+        let dust = a.constituent(&ConstituentKind::Aerosol).unwrap();
         dust.scattering_per_m.at(nm) / dust.extinction_per_m(nm)
     };
     for nm in [400.0, 500.0, 700.0] {
@@ -131,7 +137,13 @@ fn aerosol_keeps_what_is_not_overridden() {
 
 #[test]
 fn phase_parameters_may_stand_alone() {
-    let phase = |text: &str| read(text).constituent("aerosol").unwrap().phase.clone();
+    let phase = |text: &str| {
+        read(text)
+            .constituent(&ConstituentKind::Aerosol)
+            .unwrap()
+            .phase
+            .clone()
+    };
     assert_eq!(
         phase("base = \"bruneton\"\naerosol.phase.g = 0.7"),
         PhaseFunction::CornetteShanks { g: 0.7 }
@@ -169,7 +181,7 @@ fn constituents_can_be_written_out() {
     assert_eq!(got.constituents.len(), 2);
     assert!((got.extinction_per_m(1e3, 550.0) - 1e-5 - 2.2e-5 * 0.5f64.powf(0.2)).abs() < 1e-12);
     assert_eq!(
-        got.constituent("soot").unwrap().phase,
+        got.constituent(&"soot".into()).unwrap().phase,
         PhaseFunction::Isotropic
     );
     let replaced = read(
@@ -178,7 +190,7 @@ fn constituents_can_be_written_out() {
     assert_eq!(replaced.constituents.len(), 3);
     assert_eq!(
         replaced
-            .constituent("ozone")
+            .constituent(&ConstituentKind::Ozone)
             .unwrap()
             .absorption_per_m
             .at(600.0),

@@ -12,21 +12,19 @@ fn types_are_what_the_library_makes_of_them() {
     let load = Some(AerosolLoad::OpticalDepth550(0.3));
     let clear = got.clear_air();
     let want = mixture.constituent(load, None, clear, 0.0, 100e3).unwrap();
-    assert_eq!(got.constituent("aerosol"), Some(&want));
+    assert_eq!(got.constituent(&ConstituentKind::Aerosol), Some(&want));
     // At 80 % and as much as published, where nothing is said.
     let usual = read("aerosol.type = \"urban\"");
     let mixture = AerosolMixture::of(AerosolType::Urban, 0.8).unwrap();
     let want = mixture.constituent(None, None, clear, 0.0, 100e3).unwrap();
-    assert_eq!(usual.constituent("aerosol"), Some(&want));
+    assert_eq!(usual.constituent(&ConstituentKind::Aerosol), Some(&want));
     let placed = read("aerosol = { type = \"urban\", visibility_m = 10e3, scale_height_m = 900 }");
-    let part = placed.constituent("aerosol").unwrap();
+    let part = placed.constituent(&ConstituentKind::Aerosol).unwrap();
     let whole = part.extinction_per_m(550.0) + clear.ground_extinction_per_m;
     assert!(((-whole * 10e3).exp() / 0.05 - 1.0).abs() < 1e-9);
     assert_eq!(
         part.density,
-        crate::atmosphere::DensityProfile::Exponential {
-            scale_height_m: 900.0
-        }
+        crate::atmosphere::DensityProfile::exponential(900.0)
     );
 }
 
@@ -50,7 +48,7 @@ fn mixtures_are_read() {
     let want = mixture
         .constituent(load, None, got.clear_air(), 0.0, 100e3)
         .unwrap();
-    assert_eq!(got.constituent("aerosol"), Some(&want));
+    assert_eq!(got.constituent(&ConstituentKind::Aerosol), Some(&want));
 }
 
 #[test]

@@ -37,9 +37,7 @@ impl Earth {
                 load: AerosolLoad::OpticalDepth550(optical_depth_550),
                 angstrom_exponent: 1.3,
                 single_scattering_albedo: SpectralCurve::Constant(0.95),
-                density: DensityProfile::Exponential {
-                    scale_height_m: 1.5e3,
-                },
+                density: DensityProfile::exponential(1.5e3),
                 phase: continental_phase(),
             },
             ground_albedo: grass_and_soil(),

@@ -1,7 +1,7 @@
 //! Mars: thin carbon dioxide and suspended dust.
 
 use super::fixed_table;
-use crate::atmosphere::{Atmosphere, Constituent, DensityProfile, Planet};
+use crate::atmosphere::{Atmosphere, Constituent, ConstituentKind, DensityProfile, Planet};
 use crate::optics::rayleigh::number_density_per_m3;
 use crate::optics::{Depolarization, PhaseFunction, TabulatedPhase};
 use crate::spectrum::{SpectralCurve, embedded_table, solar};
@@ -48,9 +48,7 @@ pub fn carbon_dioxide_cross_section_m2(wavelength_nm: f64) -> f64 {
 /// - Ground: rounded albedo of bright, dusty regions (0.07 at 440 nm, 0.29 at 680 nm); good to some 20 %.
 /// - Sun: the Earth's spectrum over 1.5237^2, and a disc smaller by that factor.
 pub fn mars() -> Atmosphere {
-    let density = DensityProfile::Exponential {
-        scale_height_m: SCALE_HEIGHT_M,
-    };
+    let density = DensityProfile::exponential(SCALE_HEIGHT_M);
     let top_m = 120e3;
     let molecules = 0.972 * number_density_per_m3(MARS_PRESSURE_PA, TEMPERATURE_K);
     let gas: Vec<(f64, f64)> = (50..=220)
@@ -92,7 +90,7 @@ pub fn mars() -> Atmosphere {
         },
         constituents: vec![
             Constituent {
-                name: "rayleigh".into(),
+                kind: ConstituentKind::Molecules,
                 density: density.clone(),
                 scattering_per_m: fixed_table(&gas),
                 absorption_per_m: SpectralCurve::Constant(0.0),
@@ -100,7 +98,7 @@ pub fn mars() -> Atmosphere {
                 phase: PhaseFunction::Rayleigh(Depolarization::Factor(0.079)),
             },
             Constituent {
-                name: "aerosol".into(),
+                kind: ConstituentKind::Aerosol,
                 density,
                 scattering_per_m: dust(&|albedo| albedo),
                 absorption_per_m: dust(&|albedo| 1.0 - albedo),
@@ -135,7 +133,7 @@ mod tests {
             assert!((got / measured - 1.0).abs() < 6e-3, "{nm}: {got}");
         }
         let gas = mars()
-            .constituent("rayleigh")
+            .constituent(&ConstituentKind::Molecules)
             .unwrap()
             .optical_depth(0.0, 120e3, 440.0);
         assert!((gas / 0.0065 - 1.0).abs() < 0.03, "{gas}");
@@ -143,7 +141,10 @@ mod tests {
 
     #[test]
     fn dust_glows_blue_round_the_sun_and_yellow_elsewhere() {
-        let dust = mars().constituent("aerosol").unwrap().clone();
+        let dust = mars()
+            .constituent(&ConstituentKind::Aerosol)
+            .unwrap()
+            .clone();
         let scattered = |degrees: f64, nm: f64| {
             dust.scattering_per_m.at(nm) * dust.phase.evaluate(degrees.to_radians().cos(), nm)
         };

@@ -1,7 +1,7 @@
 //! Atmospheres of published sky models, with the constants printed there.
 
 use super::{fixed_table, reference};
-use crate::atmosphere::{Atmosphere, Constituent, DensityProfile, Planet};
+use crate::atmosphere::{Atmosphere, Constituent, ConstituentKind, DensityProfile, Planet};
 use crate::optics::{Depolarization, PhaseFunction};
 use crate::spectrum::{SpectralCurve, embedded_table, solar};
 use crate::sun::{LimbDarkening, SunDisc};
@@ -17,10 +17,6 @@ fn rgb([red, green, blue]: [f64; 3], factor: f64) -> SpectralCurve {
     ])
 }
 
-fn exponential(scale_height_m: f64) -> DensityProfile {
-    DensityProfile::Exponential { scale_height_m }
-}
-
 /// The constants of the article "Sky and Atmosphere rendering: A physical approach", as printed: Rayleigh (5.8, 13.5,
 /// 33.1)e-6 per m with 8 km, Mie 21e-6 per m with 1.2 km, extinction 1.11 times that, Henyey-Greenstein g = 0.76, and an
 /// absorption (3.426, 8.298, 0.356) x 0.06e-5 per m that it calls ozone and gives the Rayleigh profile. Planet 6360 km,
@@ -30,9 +26,9 @@ fn exponential(scale_height_m: f64) -> DensityProfile {
 /// W m^-2 nm^-1 there, over the zenith transmittance from its eye 1 m up. Uniform disc, 0.53 degrees across.
 pub fn sky_article() -> Atmosphere {
     let mie = 21e-6;
-    let part = |name: &str, height, scattering_per_m, absorption_per_m, phase| Constituent {
-        name: name.into(),
-        density: exponential(height),
+    let part = |kind, height, scattering_per_m, absorption_per_m, phase| Constituent {
+        kind,
+        density: DensityProfile::exponential(height),
         scattering_per_m,
         absorption_per_m,
         phase,
@@ -47,21 +43,21 @@ pub fn sky_article() -> Atmosphere {
         },
         constituents: vec![
             part(
-                "rayleigh",
+                ConstituentKind::Molecules,
                 8e3,
                 rgb([5.8, 13.5, 33.1], 1e-6),
                 ZERO,
                 PhaseFunction::Rayleigh(Depolarization::None),
             ),
             part(
-                "aerosol",
+                ConstituentKind::Aerosol,
                 1.2e3,
                 SpectralCurve::Constant(mie),
                 SpectralCurve::Constant(0.11 * mie),
                 PhaseFunction::HenyeyGreenstein { g: 0.76 },
             ),
             part(
-                "ozone",
+                ConstituentKind::Ozone,
                 8e3,
                 ZERO,
                 rgb([3.426, 8.298, 0.356], 0.06e-5),
@@ -100,7 +96,7 @@ pub fn bruneton() -> Atmosphere {
     for part in atmosphere
         .constituents
         .iter_mut()
-        .filter(|part| part.name == "ozone")
+        .filter(|part| part.kind == ConstituentKind::Ozone)
     {
         part.absorption_per_m = column(2).scaled(300.0 * 2.687e20 / 15e3);
     }
@@ -118,8 +114,8 @@ pub fn bruneton() -> Atmosphere {
 ///
 /// The table leaves ground albedo and sun open: 0.3 and the measured solar spectrum here.
 pub fn hillaire() -> Atmosphere {
-    let part = |name: &str, density, scattering_per_m, absorption_per_m, phase| Constituent {
-        name: name.into(),
+    let part = |kind, density, scattering_per_m, absorption_per_m, phase| Constituent {
+        kind,
         density,
         scattering_per_m,
         absorption_per_m,
@@ -135,21 +131,21 @@ pub fn hillaire() -> Atmosphere {
         },
         constituents: vec![
             part(
-                "rayleigh",
-                exponential(8e3),
+                ConstituentKind::Molecules,
+                DensityProfile::exponential(8e3),
                 rgb([5.802, 13.558, 33.1], 1e-6),
                 ZERO,
                 PhaseFunction::Rayleigh(Depolarization::None),
             ),
             part(
-                "aerosol",
-                exponential(1.2e3),
+                ConstituentKind::Aerosol,
+                DensityProfile::exponential(1.2e3),
                 SpectralCurve::Constant(3.996e-6),
                 SpectralCurve::Constant(4.40e-6),
                 PhaseFunction::CornetteShanks { g: 0.8 },
             ),
             part(
-                "ozone",
+                ConstituentKind::Ozone,
                 DensityProfile::Tent {
                     bottom_m: 10e3,
                     peak_m: 25e3,
@@ -182,7 +178,7 @@ mod tests {
             .map(|nm| cie::color_matching(f64::from(nm))[1])
             .sum();
         assert!((683.002 * 1.6442 * v / 120e3 - 1.0).abs() < 1e-3, "{v}");
-        let aerosol = atmosphere.constituent("aerosol").unwrap();
+        let aerosol = atmosphere.constituent(&ConstituentKind::Aerosol).unwrap();
         assert!((aerosol.extinction_per_m(550.0) / 21e-6 - 1.11).abs() < 1e-12);
     }
 
@@ -200,7 +196,10 @@ mod tests {
 
     #[test]
     fn hillaires_ozone_is_that_of_300_dobson_units() {
-        let ozone = hillaire().constituent("ozone").unwrap().clone();
+        let ozone = hillaire()
+            .constituent(&ConstituentKind::Ozone)
+            .unwrap()
+            .clone();
         let depth = ozone.optical_depth(0.0, 100e3, 550.0);
         assert!(
             (depth / (300.0 * 2.687e20 * 3.5e-25) - 1.0).abs() < 1e-3,

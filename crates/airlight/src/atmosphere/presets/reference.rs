@@ -3,7 +3,7 @@
 //! Earth radius 6360 km, top at 60 km, scale heights 8 km (molecules) and 1.2 km (aerosol) in all.
 
 use super::fixed_table;
-use crate::atmosphere::{Atmosphere, Constituent, DensityProfile, Planet};
+use crate::atmosphere::{Atmosphere, Constituent, ConstituentKind, DensityProfile, Planet};
 use crate::optics::{Depolarization, PhaseFunction};
 use crate::spectrum::{SpectralCurve, embedded_table};
 use crate::sun::SunDisc;
@@ -21,10 +21,8 @@ fn planet(ground_albedo: SpectralCurve) -> Planet {
 
 fn molecules(scattering_per_m: SpectralCurve) -> Constituent {
     Constituent {
-        name: "rayleigh".into(),
-        density: DensityProfile::Exponential {
-            scale_height_m: 8e3,
-        },
+        kind: ConstituentKind::Molecules,
+        density: DensityProfile::exponential(8e3),
         scattering_per_m,
         absorption_per_m: ZERO,
         phase: PhaseFunction::Rayleigh(Depolarization::None),
@@ -37,10 +35,8 @@ fn aerosol(
     g: f64,
 ) -> Constituent {
     Constituent {
-        name: "aerosol".into(),
-        density: DensityProfile::Exponential {
-            scale_height_m: 1.2e3,
-        },
+        kind: ConstituentKind::Aerosol,
+        density: DensityProfile::exponential(1.2e3),
         scattering_per_m,
         absorption_per_m,
         phase: PhaseFunction::CornetteShanks { g },
@@ -74,7 +70,7 @@ pub fn earth_demo() -> Atmosphere {
     let cross_sections_m2 =
         fixed_table(&[(440.0, 1.582e-26), (550.0, 3.5e-25), (680.0, 1.209e-25)]);
     let ozone = Constituent {
-        name: "ozone".into(),
+        kind: ConstituentKind::Ozone,
         density: DensityProfile::Tent {
             bottom_m: 10e3,
             peak_m: 25e3,
@@ -138,13 +134,19 @@ mod tests {
     #[test]
     fn optical_depths_are_those_stated() {
         let demo = earth_demo();
-        let part =
-            |name: &str, nm: f64| demo.constituent(name).unwrap().optical_depth(0.0, 60e3, nm);
-        assert!((part("aerosol", 550.0) / 5.328e-3 - 1.0).abs() < 1e-12);
-        assert!((part("ozone", 550.0) / (300.0 * 2.687e20 * 3.5e-25) - 1.0).abs() < 1e-12);
+        let part = |kind, nm: f64| {
+            demo.constituent(&kind)
+                .unwrap()
+                .optical_depth(0.0, 60e3, nm)
+        };
+        assert!((part(ConstituentKind::Aerosol, 550.0) / 5.328e-3 - 1.0).abs() < 1e-12);
+        assert!(
+            (part(ConstituentKind::Ozone, 550.0) / (300.0 * 2.687e20 * 3.5e-25) - 1.0).abs()
+                < 1e-12
+        );
         assert!(
             (demo
-                .constituent("rayleigh")
+                .constituent(&ConstituentKind::Molecules)
                 .unwrap()
                 .scattering_per_m
                 .at(680.0)
@@ -155,7 +157,7 @@ mod tests {
         );
         let csm = csm();
         let depth = csm
-            .constituent("aerosol")
+            .constituent(&ConstituentKind::Aerosol)
             .unwrap()
             .optical_depth(0.0, 60e3, 360.0);
         assert!(

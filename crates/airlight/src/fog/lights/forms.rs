@@ -5,7 +5,6 @@ use super::printed::airlight_printed;
 use super::split_sum::airlight_split_sum;
 use super::{Light, airlight_isotropic, airlight_without_extinction};
 use crate::fog::layer::{FogError, Layer};
-use crate::fog::profile::Profile;
 use crate::optics::PhaseFunction;
 use crate::spectrum::Spectrum;
 
@@ -59,7 +58,7 @@ impl LightForm {
     ) -> Result<(), FogError> {
         let what = match layers {
             _ if self == Self::Exact => return Ok(()),
-            [layer] if layer.profile != Profile::Uniform => "fog that thins with height",
+            [layer] if !layer.profile.is_uniform() => "fog that thins with height",
             [layer] if layer.medium.phase != PhaseFunction::Isotropic => {
                 "fog that scatters more in some directions"
             }
@@ -76,6 +75,7 @@ impl LightForm {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::atmosphere::DensityProfile;
     use crate::fog::droplets::DropletKind;
     use crate::fog::lights::{
         LightSet, LightSettings, ParticipatingMedium, PointLight, SphereLight, ViewRay,
@@ -83,7 +83,7 @@ mod tests {
     use crate::spectrum::rgb::DOMINANT_NM;
     use glam::DVec3;
 
-    fn layer(profile: Profile, droplets: &str) -> Layer<3> {
+    fn layer(profile: DensityProfile, droplets: &str) -> Layer<3> {
         let (_, kind) = DropletKind::all()
             .find(|(name, _)| *name == droplets)
             .unwrap();
@@ -95,7 +95,7 @@ mod tests {
 
     #[test]
     fn the_exact_form_is_that_of_lamps() {
-        let even = layer(Profile::Uniform, "isotropic");
+        let even = layer(DensityProfile::Uniform, "isotropic");
         let intensity = Spectrum([3.0, 2.0, 1.0]);
         let light = PointLight::new(DVec3::new(1.0, 0.0, -5.0), intensity, 0.01).unwrap();
         let view_ray = ViewRay {
@@ -130,9 +130,9 @@ mod tests {
     fn forms_refuse_what_they_do_not_hold_for() {
         let point = Light::Point(PointLight::new(DVec3::ZERO, Spectrum::ONE, 0.1).unwrap());
         let ball = Light::Sphere(SphereLight::new(DVec3::ZERO, 0.1, Spectrum::ONE).unwrap());
-        let even = layer(Profile::Uniform, "isotropic");
-        let forward = layer(Profile::Uniform, "radiation");
-        let slab = layer(Profile::Slab { top_height_m: 9.0 }, "isotropic");
+        let even = layer(DensityProfile::Uniform, "isotropic");
+        let forward = layer(DensityProfile::Uniform, "radiation");
+        let slab = layer(DensityProfile::slab(9.0), "isotropic");
         for form in [
             LightForm::SplitSum,
             LightForm::NoExtinction,

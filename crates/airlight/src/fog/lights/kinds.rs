@@ -2,8 +2,8 @@
 
 use super::medium::ParticipatingMedium;
 use super::{PointLight, SphereLight, SpotLight};
+use crate::atmosphere::RaySegment;
 use crate::fog::lanes::Lanes;
-use crate::fog::ray_segment::RaySegment;
 use crate::spectrum::Spectrum;
 use glam::DVec3;
 
@@ -61,11 +61,11 @@ impl<const N: usize> Light<N> {
             Self::Sphere(light) => (1.0, distance - light.radius_m),
         };
         let line = RaySegment::new(point.y, towards.y, leg, medium.ground_radius_m);
-        let own = medium.medium.extinction_per_m * medium.profile.column(&line) as f32;
+        let own = medium.medium.extinction_per_m * medium.profile.column_along_m(&line) as f32;
         let depth = medium.others.iter().fold(own, |sum, other| {
             sum.scale_acc(
                 other.medium.extinction_per_m,
-                other.profile.column(&line) as f32,
+                other.profile.column_along_m(&line) as f32,
             )
         });
         self.intensity() * depth.exp_neg() * (part / (distance * distance)) as f32

@@ -8,7 +8,6 @@ use super::nodes::Nodes;
 use super::{Light, check};
 use crate::fog::lanes::Lanes;
 use crate::fog::layer::FogError;
-use crate::fog::profile::Profile;
 use crate::spectrum::Spectrum;
 use glam::DVec3;
 
@@ -111,9 +110,7 @@ impl<const N: usize> LightSet<N> {
         let medium = haze.medium;
         match light {
             Light::Point(_)
-                if haze.isotropic
-                    && *medium.profile == Profile::Uniform
-                    && medium.others.is_empty() =>
+                if haze.isotropic && medium.profile.is_uniform() && medium.others.is_empty() =>
             {
                 let extinction = medium.medium.extinction_per_m;
                 evenly(&ray.geometry, extinction, &self.nodes)
@@ -151,14 +148,14 @@ fn bound<const N: usize>(ray: &Ray<N>, haze: &Haze<N>) -> f32 {
             .max_element()
     });
     let mut light = haze.scattering_per_m * ray.intensity;
-    let density = match *medium.profile {
-        Profile::Uniform => {
+    let density = match medium.profile.is_uniform() {
+        true => {
             let between = (ray.geometry.distance_m(0.0) - 2.0 * ray.geometry.nearest_m).max(0.0);
             let depth = medium.medium.extinction_per_m * between as f32;
             light *= depth.exp_neg();
             1.0
         }
-        _ => medium.profile.density(ray.line.lowest_height_m()),
+        false => medium.profile.max_above(ray.line.lowest_height_m()),
     };
     // 4: twice for a ball's closeness, twice for its line moved out to its radius.
     let glow = 4.0 * density * ray.geometry.angle() / ray.geometry.nearest_m;

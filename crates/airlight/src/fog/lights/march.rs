@@ -7,9 +7,9 @@ use super::panels::Cuts;
 use super::sphere::closeness;
 use super::spot::Beam;
 use super::{Light, ViewRay};
+use crate::atmosphere::RaySegment;
+use crate::atmosphere::{DensityProfile, HeightStructure};
 use crate::fog::lanes::Lanes;
-use crate::fog::profile::Profile;
-use crate::fog::ray_segment::RaySegment;
 use crate::spectrum::Spectrum;
 use glam::DVec3;
 use std::f64::consts::PI;
@@ -21,9 +21,12 @@ const STRIDE: f64 = 12.0;
 const OUTWARDS: f64 = 4.0;
 
 /// What of the fog is the same for all lamps and lines.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Haze<'a, const N: usize> {
     pub(super) medium: &'a ParticipatingMedium<'a, N>,
+    /// How the fog changes with height, and each other layer.
+    structure: HeightStructure,
+    others: Vec<HeightStructure>,
     pub(super) scattering_per_m: Spectrum<N>,
     /// The largest extinction of any lane, 1/m; of all layers where the air is even.
     pub(super) thickest_per_m: f64,
@@ -46,7 +49,7 @@ impl<'a, const N: usize> Haze<'a, N> {
         let even = [medium.profile]
             .into_iter()
             .chain(medium.others.iter().map(|other| &other.profile))
-            .all(|profile| *profile == Profile::Uniform);
+            .all(|profile| profile.is_uniform());
         let others = match even {
             true => medium.others,
             false => &[],
@@ -57,6 +60,12 @@ impl<'a, const N: usize> Haze<'a, N> {
         let isotropic = own_medium.phase == crate::optics::PhaseFunction::Isotropic;
         (N > 0 && own.max_element() > 0.0).then(|| Self {
             medium,
+            structure: medium.profile.structure(),
+            others: medium
+                .others
+                .iter()
+                .map(|o| o.profile.structure())
+                .collect(),
             scattering_per_m: own_medium.scattering_per_m(),
             thickest_per_m: f64::from(all.max_element()),
             thinnest_per_m: thinnest(all),
@@ -144,7 +153,8 @@ impl<'a, const N: usize> Ray<'a, N> {
     /// Path radiance: the sum over all panels.
     pub(super) fn path_radiance(&self, nodes: &Nodes) -> Spectrum<N> {
         let haze = self.haze;
-        let mut cuts = Cuts::of(haze.medium.profile, &self.line, haze.thinnest_per_m);
+        let density = haze.medium.profile.at(self.line.height_m);
+        let mut cuts = Cuts::of(&haze.structure, density, &self.line, haze.thinnest_per_m);
         if let Emission::Beam(beam) = &self.emission {
             let [outer, inner] = beam.lit(&self.geometry);
             cuts.keep(outer);
@@ -154,8 +164,8 @@ impl<'a, const N: usize> Ray<'a, N> {
             let closest = -self.geometry.start_m;
             cuts.add((closest, closest));
         }
-        for other in haze.medium.others {
-            cuts.dimmed_by(&other.profile, &self.line);
+        for other in &haze.others {
+            cuts.dimmed_by(other, &self.line);
         }
         let mut sum = Spectrum::ZERO;
         cuts.visit(|from, to| self.panel(from, to, nodes, &mut sum));
@@ -208,7 +218,7 @@ impl<'a, const N: usize> Ray<'a, N> {
                     weight *= closeness(*radius_m, r);
                 }
             }
-            weight *= medium.profile.density(self.line.height_at(t));
+            weight *= medium.profile.at(self.line.height_at(t));
             let mut depth =
                 medium.medium.extinction_per_m * self.way_m(medium.profile, t, r, leg) as f32;
             for other in medium.others {
@@ -224,8 +234,8 @@ impl<'a, const N: usize> Ray<'a, N> {
     /// The fog of a profile on the way from the eye to the point `t` on and from there to the lamp, `r` away (its surface
     /// `leg`), m of density 1.
     #[inline]
-    fn way_m(&self, profile: &Profile, t: f64, r: f64, leg: f64) -> f64 {
-        if *profile == Profile::Uniform {
+    fn way_m(&self, profile: &DensityProfile, t: f64, r: f64, leg: f64) -> f64 {
+        if profile.is_uniform() {
             return t + leg;
         }
         let view_ray = RaySegment {
@@ -241,7 +251,7 @@ impl<'a, const N: usize> Ray<'a, N> {
             curvature_per_m: curvature * (1.0 - towards.y * towards.y).max(0.0),
             length_m: leg,
         };
-        profile.column(&view_ray) + profile.column(&to_light)
+        profile.column_along_m(&view_ray) + profile.column_along_m(&to_light)
     }
 
     /// The excess at which a panel ends or the light of every lane is spent, and the largest optical depth that a metre of
@@ -263,7 +273,7 @@ impl<'a, const N: usize> Ray<'a, N> {
         };
         let start = way(0.0);
         let passed = |excess: f64| way(excess) - start;
-        let density = haze.medium.profile.density(self.line.height_at(from));
+        let density = haze.medium.profile.at(self.line.height_at(from));
         let mut reach = end.min(2.0 * depth / (haze.thinnest_per_m * density));
         if reach.is_infinite() {
             return (end, 0.0);

@@ -1,7 +1,7 @@
 //! What surrounds lamps and eye, and where one looks.
 
+use crate::atmosphere::DensityProfile;
 use crate::fog::layer::{Layer, Medium};
-use crate::fog::profile::Profile;
 use glam::DVec3;
 
 /// The fog around lamps: it borrows what the caller has.
@@ -9,8 +9,8 @@ use glam::DVec3;
 pub struct ParticipatingMedium<'a, const N: usize> {
     /// What hangs in the air; checked by [`Medium::validate`].
     pub medium: &'a Medium<N>,
-    /// How it thins with height; checked by [`Profile::validate`].
-    pub profile: &'a Profile,
+    /// How it thins with height; checked by [`DensityProfile::validate`].
+    pub profile: &'a DensityProfile,
     /// Other layers in the same air: they dim the light, too. What they scatter is that of murks of their own, with this
     /// fog among the others: [`super::LightSet::path_radiance`] of all of them adds up.
     pub others: &'a [Layer<N>],

@@ -1,7 +1,7 @@
 //! Where a line is cut into panels, so that fog and light are smooth in each.
 
-use crate::fog::profile::Profile;
-use crate::fog::ray_segment::RaySegment;
+use crate::atmosphere::RaySegment;
+use crate::atmosphere::{Decay, HeightStructure};
 
 /// Heights above a line's densest point, in scale heights, at which it is cut; there is no fog to speak of above the last.
 const LEVELS: [f64; 3] = [3.0, 10.0, 40.0];
@@ -23,80 +23,63 @@ pub(super) struct Cuts {
 }
 
 impl Cuts {
-    /// All of a line, whose fog thins as `profile`; `thinnest_per_m` is the smallest extinction above 0 of any lane.
+    /// The whole ray; `density` is that of the fog at its start, `thinnest_per_m` the smallest extinction above 0 of any lane.
     ///
-    /// It is cut where density has a kink, and at a few heights above its densest point: however far away the lamp is, the
-    /// part of a line that lies in dense fog gets nodes of its own. What lies 40 scale heights above that point, or behind
-    /// an optical depth of 90, is left out.
-    pub(super) fn of(profile: &Profile, line: &RaySegment, thinnest_per_m: f64) -> Self {
+    /// It is cut where density has a kink, and at a few heights above its densest point: however far away the light is, the
+    /// part of a ray that lies in dense fog gets nodes of its own. What lies above the fog's top or 40 scale heights above its
+    /// densest point, or behind an optical depth of 90, is left out.
+    pub(super) fn of(
+        fog: &HeightStructure,
+        density: f64,
+        line: &RaySegment,
+        thinnest_per_m: f64,
+    ) -> Self {
         let mut cuts = Self {
             first: 0.0,
             last: line.length_m,
             within: [0.0; PLACES],
             count: 0,
         };
-        match *profile {
-            Profile::Uniform => {}
-            Profile::Slab { top_height_m } => cuts.keep(line.below(top_height_m)),
-            Profile::Clamped {
-                base_height_m,
-                scale_height_m,
-            } => {
-                cuts.add(line.below(base_height_m));
-                cuts.stratify(
-                    line,
-                    line.lowest_height_m().max(base_height_m),
-                    scale_height_m,
-                );
-            }
-            Profile::Exponential {
-                reference_height_m,
-                scale_height_m,
-            } => {
-                let mut floor = line.lowest_height_m();
-                if line.sin_elevation < 0.0 {
-                    // The fog in which even a steady descent has left DARK behind it.
-                    let density = profile.density(line.height_m)
-                        + DARK * -line.sin_elevation / (thinnest_per_m * scale_height_m);
-                    let dark = reference_height_m - scale_height_m * density.ln();
-                    if dark > floor {
-                        cuts.keep((0.0, line.below(dark).0));
-                        floor = dark;
-                    }
+        for &kink in &fog.kinks_m {
+            cuts.add(line.below(kink));
+        }
+        if fog.top_m.is_finite() {
+            cuts.keep(line.below(fog.top_m));
+        }
+        for decay in &fog.decays {
+            let mut floor = line.lowest_height_m().max(decay.from_m);
+            if decay.from_m == f64::NEG_INFINITY && line.sin_elevation < 0.0 {
+                // The fog in which even a steady descent has left DARK behind it.
+                let density =
+                    density + DARK * -line.sin_elevation / (thinnest_per_m * decay.scale_height_m);
+                let dark = decay.reference_height_m - decay.scale_height_m * density.ln();
+                if dark > floor {
+                    cuts.keep((0.0, line.below(dark).0));
+                    floor = dark;
                 }
-                cuts.stratify(line, floor, scale_height_m);
             }
+            cuts.stratify(line, floor, decay);
         }
         cuts
     }
 
     /// Cuts where another layer, which dims the light, has a kink, and at heights where it has thinned out.
-    pub(super) fn dimmed_by(&mut self, profile: &Profile, line: &RaySegment) {
-        let (base_m, levels) = match *profile {
-            Profile::Uniform => return,
-            Profile::Slab { top_height_m } => (top_height_m, None),
-            Profile::Clamped {
-                base_height_m,
-                scale_height_m,
-            } => (
-                line.lowest_height_m().max(base_height_m),
-                Some(scale_height_m),
-            ),
-            Profile::Exponential { scale_height_m, .. } => {
-                (line.lowest_height_m(), Some(scale_height_m))
-            }
-        };
-        self.add(line.below(base_m));
-        if let Some(scale_height_m) = levels {
+    pub(super) fn dimmed_by(&mut self, layer: &HeightStructure, line: &RaySegment) {
+        for kink in layer.other_kinks_m() {
+            self.add(line.below(kink));
+        }
+        for decay in &layer.decays {
+            let base_m = line.lowest_height_m().max(decay.from_m);
+            self.add(line.below(base_m));
             for level in &LEVELS[..2] {
-                self.add(line.below(base_m + level * scale_height_m));
+                self.add(line.below(base_m + level * decay.scale_height_m));
             }
         }
     }
 
     /// Cuts at the levels above the densest point.
-    fn stratify(&mut self, line: &RaySegment, densest_height_m: f64, scale_height_m: f64) {
-        let below = |level: f64| line.below(densest_height_m + level * scale_height_m);
+    fn stratify(&mut self, line: &RaySegment, densest_height_m: f64, decay: &Decay) {
+        let below = |level: f64| line.below(densest_height_m + level * decay.scale_height_m);
         for level in LEVELS {
             self.add(below(level));
         }
@@ -142,47 +125,49 @@ impl Cuts {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::atmosphere::DensityProfile;
 
-    fn panels(profile: Profile, line: RaySegment) -> Vec<(f64, f64)> {
+    fn panels(profile: &DensityProfile, line: RaySegment) -> Vec<(f64, f64)> {
         let mut all = Vec::new();
-        Cuts::of(&profile, &line, 0.01).visit(|from, to| all.push((from, to)));
+        let density = profile.at(line.height_m);
+        Cuts::of(&profile.structure(), density, &line, 0.01).visit(|from, to| all.push((from, to)));
         all
     }
 
     #[test]
     fn a_slab_is_all_there_is_of_its_fog() {
-        let slab = Profile::Slab { top_height_m: 10.0 };
+        let slab = DensityProfile::slab(10.0);
         let up = RaySegment::flat(2.0, 0.5, f64::INFINITY);
-        assert_eq!(panels(slab, up), [(0.0, 16.0)]);
+        assert_eq!(panels(&slab, up), [(0.0, 16.0)]);
         let above = RaySegment::flat(12.0, 0.5, f64::INFINITY);
-        assert_eq!(panels(slab, above), []);
+        assert_eq!(panels(&slab, above), []);
     }
 
     #[test]
     fn thinning_fog_is_cut_at_its_levels_and_its_base() {
-        let profile = Profile::Clamped {
+        let profile = DensityProfile::Clamped {
             base_height_m: 10.0,
             scale_height_m: 1.0,
         };
         let up = RaySegment::flat(0.0, 1.0, f64::INFINITY);
         assert_eq!(
-            panels(profile, up),
+            panels(&profile, up),
             [(0.0, 10.0), (10.0, 13.0), (13.0, 20.0), (20.0, 50.0)]
         );
         let level = RaySegment::flat(12.0, 0.0, f64::INFINITY);
-        assert_eq!(panels(profile, level), [(0.0, f64::INFINITY)]);
+        assert_eq!(panels(&profile, level), [(0.0, f64::INFINITY)]);
     }
 
     #[test]
     fn a_descent_into_ever_denser_fog_ends() {
-        let profile = Profile::Exponential {
+        let profile = DensityProfile::Exponential {
             reference_height_m: 0.0,
             scale_height_m: 10.0,
         };
         let down = RaySegment::flat(200.0, -0.7, f64::INFINITY);
-        let all = panels(profile, down);
+        let all = panels(&profile, down);
         let end = all.last().unwrap().1;
-        let depth = 0.01 * profile.column(&RaySegment::flat(200.0, -0.7, end));
+        let depth = 0.01 * profile.column_along_m(&RaySegment::flat(200.0, -0.7, end));
         assert!((depth / DARK - 1.0).abs() < 1e-9, "{depth}");
         assert!(all.len() >= 3);
     }

@@ -2,8 +2,7 @@
 
 use super::geometry::LightRayGeometry;
 use super::{Light, ParticipatingMedium, ViewRay};
-use crate::fog::profile::Profile;
-use crate::fog::ray_segment::RaySegment;
+use crate::atmosphere::{DensityProfile, RaySegment};
 use crate::math::quadrature::GaussRule;
 use std::f64::consts::PI;
 
@@ -125,20 +124,20 @@ pub fn path_radiance<const N: usize>(
             curvature_per_m: curvature * (1.0 - towards.y * towards.y).max(0.0),
             length_m: leg,
         };
-        let way = |profile: &Profile| {
-            profile.column(&RaySegment {
+        let way = |profile: &DensityProfile| {
+            profile.column_along_m(&RaySegment {
                 length_m: t,
                 ..line
-            }) + match *profile {
-                Profile::Uniform => leg,
-                _ => profile.column(&to_light),
+            }) + match profile.is_uniform() {
+                true => leg,
+                false => profile.column_along_m(&to_light),
             }
         };
         let others = medium.others.iter();
         let others = others.map(|o| f64::from(o.medium.extinction_per_m[0]) * way(&o.profile));
         let depth = extinction * way(medium.profile) + others.sum::<f64>();
         let phase = own_medium.phase.evaluate(-u / r, medium.wavelengths_nm[0]);
-        medium.profile.density(height) * part * phase * (-depth).exp() / (r * r)
+        medium.profile.at(height) * part * phase * (-depth).exp() / (r * r)
     });
     let scattering = f64::from(own_medium.scattering_per_m()[0]);
     scattering * f64::from(light.intensity()[0]) * integral
@@ -154,13 +153,10 @@ fn edges<const N: usize>(
     let mut edges = Vec::new();
     let others = medium.others.iter().map(|other| &other.profile);
     for profile in others.chain([medium.profile]) {
-        match *profile {
-            Profile::Clamped { base_height_m, .. } => edges.push(line.below(base_height_m)),
-            Profile::Slab { top_height_m } => edges.push(line.below(top_height_m)),
-            Profile::Exponential { .. } => {
-                edges.push((-0.5 * line.sin_elevation / line.curvature_per_m, 0.0))
-            }
-            Profile::Uniform => {}
+        let structure = profile.structure();
+        edges.extend(structure.kinks_m.iter().map(|&kink| line.below(kink)));
+        if !structure.decays.is_empty() {
+            edges.push((-0.5 * line.sin_elevation / line.curvature_per_m, 0.0));
         }
     }
     if let Light::Spot(spot) = light {

@@ -6,10 +6,10 @@ mod rays;
 use self::place::{NEAREST, NODES, Place, Row, SHARES, Side, mean, opacity};
 use self::rays::{Rays, distance_of};
 use super::{Fog, OPAQUE};
+use crate::atmosphere::RaySegment;
 use crate::fog::lanes::Lanes;
 use crate::fog::merged_layers::MergedLayer;
 use crate::fog::multiple::{Field, STREAMS};
-use crate::fog::ray_segment::RaySegment;
 use crate::math::interpolation::cubic_weights;
 use crate::spectrum::Spectrum;
 use crate::transfer::PathOptics;
@@ -211,7 +211,7 @@ impl<'a, const N: usize> Table<'a, N> {
     fn new(fog: &'a Fog<N>, field: &'a Field<N>, eye_height_m: f64) -> Self {
         let sun = fog.light.sun.filter(|sun| sun.direction.y > 0.0);
         let layer = &fog.layers[0];
-        let column_m = layer.profile.column_above(eye_height_m).min(OPAQUE);
+        let column_m = layer.profile.column_above_m(eye_height_m).min(OPAQUE);
         let above = layer.extinction_per_m * column_m as f32;
         let under = RaySegment::flat(
             eye_height_m,

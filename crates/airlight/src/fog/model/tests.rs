@@ -1,4 +1,5 @@
 use super::*;
+use crate::atmosphere::DensityProfile;
 use crate::axes;
 use crate::fog::{DirectionalLight, Medium};
 use crate::math::quadrature::GaussRule;
@@ -47,7 +48,9 @@ fn by_quadrature(
 ) -> (f64, f64) {
     let sine = light.sun.unwrap().direction.y;
     let depth = |line: &RaySegment| -> f64 {
-        let of = |l: &Layer<3>| f64::from(l.medium.extinction_per_m[lane]) * l.profile.column(line);
+        let of = |l: &Layer<3>| {
+            f64::from(l.medium.extinction_per_m[lane]) * l.profile.column_along_m(line)
+        };
         layers.iter().map(of).sum()
     };
     // Stop where nothing is left to see.
@@ -65,13 +68,10 @@ fn by_quadrature(
     let lowest = -0.5 * line.sin_elevation / line.curvature_per_m;
     let mut kinks = vec![lowest];
     for layer in layers {
-        let edge = match layer.profile {
-            Profile::Clamped { base_height_m, .. } => base_height_m,
-            Profile::Slab { top_height_m } => top_height_m,
-            _ => continue,
-        };
-        let (a, b) = line.below(edge);
-        kinks.extend([a, b]);
+        for edge in layer.profile.breakpoints_m() {
+            let (a, b) = line.below(edge);
+            kinks.extend([a, b]);
+        }
     }
     for kink in kinks.into_iter().filter(|k| k.is_finite()) {
         breaks.push(kink);
@@ -89,9 +89,11 @@ fn by_quadrature(
         } else if scattering == FogScattering::Undimmed {
             1.0
         } else {
-            let solid = layers.iter().filter(|l| l.profile != Profile::Uniform);
+            let solid = layers
+                .iter()
+                .filter(|l| l.profile != DensityProfile::Uniform);
             let of = |l: &Layer<3>| {
-                f64::from(l.medium.extinction_per_m[lane]) * l.profile.column(&to_sun)
+                f64::from(l.medium.extinction_per_m[lane]) * l.profile.column_along_m(&to_sun)
             };
             (-solid.map(of).sum::<f64>()).exp()
         };
@@ -99,7 +101,7 @@ fn by_quadrature(
         for layer in layers {
             let scattered = f64::from(layer.medium.scattering_per_m()[lane]);
             source += scattered
-                * layer.profile.density(height)
+                * layer.profile.at(height)
                 * (f64::from(light.ambient[lane])
                     + f64::from(light.sun.unwrap().irradiance[lane])
                         * sunlit
@@ -172,34 +174,34 @@ fn lines(ground: Ground, floor_m: f64, heights: &[f64], lengths: &[f64]) -> Vec<
 #[test]
 fn one_profile_over_flat_ground_is_exact() {
     for scale in [1e-2, 1.0, 30.0, 1e3, 1e5, 1e7] {
-        let exponential = Profile::Exponential {
+        let exponential = DensityProfile::Exponential {
             reference_height_m: 0.0,
             scale_height_m: scale,
         };
-        let clamped = Profile::Clamped {
+        let clamped = DensityProfile::Clamped {
             base_height_m: 12.0,
             scale_height_m: scale,
         };
         for profile in [
             exponential,
             clamped,
-            Profile::Slab { top_height_m: 40.0 },
-            Profile::Uniform,
+            DensityProfile::slab(40.0),
+            DensityProfile::Uniform,
         ] {
             for extinction in [1e-6, 0.01, 1.0] {
                 let layers = [
                     Layer {
-                        profile,
+                        profile: profile.clone(),
                         medium: droplets(extinction),
                     },
                     Layer {
-                        profile,
+                        profile: profile.clone(),
                         medium: molecules(0.3 * extinction),
                     },
                 ];
                 // A fog so deep that the sun cannot be seen at all leaves f32's range.
-                if extinction as f64 * profile.column_above(0.0) > 10.0
-                    && profile != Profile::Uniform
+                if extinction as f64 * profile.column_above_m(0.0) > 10.0
+                    && profile != DensityProfile::Uniform
                 {
                     continue;
                 }
@@ -216,15 +218,15 @@ fn one_profile_over_flat_ground_is_exact() {
 /// What the doc comment of [`Fog::along_line`] states.
 #[test]
 fn several_profiles_and_round_ground_err_as_stated() {
-    let exponential = |scale_height_m| Profile::Exponential {
+    let exponential = |scale_height_m| DensityProfile::Exponential {
         reference_height_m: 0.0,
         scale_height_m,
     };
-    let valley = Profile::Clamped {
+    let valley = DensityProfile::Clamped {
         base_height_m: 30.0,
         scale_height_m: 10.0,
     };
-    let slab = Profile::Slab { top_height_m: 80.0 };
+    let slab = DensityProfile::slab(80.0);
     let fogs: [Vec<Layer<3>>; 4] = [
         vec![Layer {
             profile: exponential(1200.0),
@@ -282,7 +284,7 @@ fn several_profiles_and_round_ground_err_as_stated() {
 
 #[test]
 fn a_line_may_be_cut_anywhere() {
-    let exponential = |scale_height_m| Profile::Exponential {
+    let exponential = |scale_height_m| DensityProfile::Exponential {
         reference_height_m: 0.0,
         scale_height_m,
     };
@@ -292,7 +294,7 @@ fn a_line_may_be_cut_anywhere() {
     }];
     let two = vec![
         Layer {
-            profile: Profile::Slab { top_height_m: 25.0 },
+            profile: DensityProfile::slab(25.0),
             medium: droplets(0.02),
         },
         Layer {
@@ -307,10 +309,10 @@ fn a_line_may_be_cut_anywhere() {
         }]
     };
     let (uniform, slab) = (
-        alone(Profile::Uniform),
-        alone(Profile::Slab { top_height_m: 50.0 }),
+        alone(DensityProfile::Uniform),
+        alone(DensityProfile::slab(50.0)),
     );
-    let clamped = alone(Profile::Clamped {
+    let clamped = alone(DensityProfile::Clamped {
         base_height_m: 45.0,
         scale_height_m: 9.0,
     });
@@ -363,19 +365,19 @@ fn fog_that_loses_nothing_is_invisible_in_light_that_is_the_same_everywhere() {
         ground_albedo: Spectrum::ONE,
     };
     for profile in [
-        Profile::Uniform,
-        Profile::Slab { top_height_m: 30.0 },
-        Profile::Clamped {
+        DensityProfile::Uniform,
+        DensityProfile::slab(30.0),
+        DensityProfile::Clamped {
             base_height_m: 20.0,
             scale_height_m: 5.0,
         },
-        Profile::Exponential {
+        DensityProfile::Exponential {
             reference_height_m: 0.0,
             scale_height_m: 60.0,
         },
     ] {
         let layers = [Layer {
-            profile,
+            profile: profile.clone(),
             medium: clear.clone(),
         }];
         for ground in [Ground::FLAT, EARTH] {
@@ -402,19 +404,19 @@ fn fog_that_loses_nothing_is_invisible_in_light_that_is_the_same_everywhere() {
 #[test]
 fn transmittance_keeps_between_nothing_and_all_and_falls_with_distance() {
     for profile in [
-        Profile::Uniform,
-        Profile::Clamped {
+        DensityProfile::Uniform,
+        DensityProfile::Clamped {
             base_height_m: 5.0,
             scale_height_m: 20.0,
         },
-        Profile::Exponential {
+        DensityProfile::Exponential {
             reference_height_m: 0.0,
             scale_height_m: 0.5,
         },
     ] {
         let fog = Fog::new(
             &[Layer {
-                profile,
+                profile: profile.clone(),
                 medium: droplets(0.05),
             }],
             EARTH,
@@ -446,7 +448,7 @@ fn transmittance_keeps_between_nothing_and_all_and_falls_with_distance() {
 fn sunlight_in_exponential_fog_is_exact_in_f64() {
     use crate::fog::scatter;
     for scale_height_m in [1e-2, 1.0, 50.0, 1e4, 1e7] {
-        let profile = Profile::Exponential {
+        let profile = DensityProfile::Exponential {
             reference_height_m: 0.0,
             scale_height_m,
         };
@@ -462,7 +464,7 @@ fn sunlight_in_exponential_fog_is_exact_in_f64() {
             // An extinction that leaves this vertical optical depth above the eye.
             let extinction = depth / scale_height_m;
             let line = RaySegment::flat(0.0, sin_elevation, length_m);
-            let along = extinction * profile.column(&line);
+            let along = extinction * profile.column_along_m(&line);
             let near = depth / sine;
             if along > 40.0 || near > 100.0 || sin_elevation * length_m < -3.0 * scale_height_m {
                 continue;
@@ -477,9 +479,9 @@ fn sunlight_in_exponential_fog_is_exact_in_f64() {
             breaks.sort_by(f64::total_cmp);
             let exact = GaussRule::new(16).integrate_between(0.0, length_m, &breaks, |s| {
                 let height = line.height_at(s);
-                let seen = extinction * profile.column(&line.part(0.0, s));
-                let lit = extinction * profile.column_above(height) / sine;
-                extinction * profile.density(height) * (-seen - lit).exp()
+                let seen = extinction * profile.column_along_m(&line.part(0.0, s));
+                let lit = extinction * profile.column_above_m(height) / sine;
+                extinction * profile.at(height) * (-seen - lit).exp()
             });
             assert!(
                 (got - exact).abs() < 1e-6 * exact + 1e-280,
@@ -494,7 +496,7 @@ fn sunlight_in_exponential_fog_is_exact_in_f64() {
 fn bad_numbers_are_refused_at_the_door() {
     let layer = |m: Medium<3>| {
         [Layer {
-            profile: Profile::Uniform,
+            profile: DensityProfile::Uniform,
             medium: m,
         }]
     };
@@ -536,7 +538,7 @@ fn bad_numbers_are_refused_at_the_door() {
 #[test]
 fn in_thin_fog_many_scatterings_are_one() {
     let layers = [Layer {
-        profile: Profile::Exponential {
+        profile: DensityProfile::Exponential {
             reference_height_m: 0.0,
             scale_height_m: 30.0,
         },
@@ -560,9 +562,7 @@ fn thick_fog_is_not_dark() {
     let mut white = droplets(0.3);
     white.single_scattering_albedo = Spectrum::ONE;
     let layers = [Layer {
-        profile: Profile::Slab {
-            top_height_m: 100.0,
-        },
+        profile: DensityProfile::slab(100.0),
         medium: white,
     }];
     let [one, many] = [FogScattering::Single, FogScattering::Multiple]
@@ -582,7 +582,7 @@ fn thick_fog_is_not_dark() {
     // Nothing below 0 anywhere, near the sun and away from it, in thick and in thin fog.
     for extinction in [1e-4, 0.01, 1.0] {
         let layers = [Layer {
-            profile: Profile::Exponential {
+            profile: DensityProfile::Exponential {
                 reference_height_m: 0.0,
                 scale_height_m: 20.0,
             },

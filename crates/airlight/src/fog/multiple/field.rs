@@ -3,10 +3,10 @@
 use super::heights::{self, Weighted};
 use super::legendre::{self, COUNT, STREAMS};
 use super::ordinates::{self, Boundary, Cell};
+use crate::atmosphere::DensityProfile;
+use crate::atmosphere::RaySegment;
 use crate::fog::lanes::Lanes;
 use crate::fog::lighting::{FogLighting, Ground};
-use crate::fog::profile::Profile;
-use crate::fog::ray_segment::RaySegment;
 use crate::fog::{scatter, split_at_heights::split_at_heights};
 use crate::math::interpolation::{interval_of, lerp};
 use crate::spectrum::Spectrum;
@@ -18,7 +18,7 @@ const THINNEST: f64 = 0.05;
 /// A profile with what the solver needs of its matter: extinction and scattering without the forward peak.
 #[derive(Clone, Debug)]
 pub struct Reduced<const N: usize> {
-    pub profile: Profile,
+    pub profile: DensityProfile,
     /// Extinction without the peak, 1/m.
     pub extinction_per_m: Spectrum<N>,
     /// Scattering times its Legendre moments without the peak, 1/m.
@@ -60,7 +60,7 @@ impl<const N: usize> Field<N> {
             .iter()
             .map(|s| {
                 let sum: f32 = s.extinction_per_m.0.iter().sum();
-                (s.profile, f64::from(sum) / N as f64)
+                (s.profile.clone(), f64::from(sum) / N as f64)
             })
             .collect();
         let heights_m = heights::between(&weighted, ground.height_m);
@@ -68,7 +68,7 @@ impl<const N: usize> Field<N> {
             .iter()
             .map(|&height| heights::depth_above(&weighted, height))
             .collect();
-        let column_m = |&height: &f64| layers[0].profile.column_above(height);
+        let column_m = |&height: &f64| layers[0].profile.column_above_m(height);
         let columns_m = heights_m.iter().map(column_m).collect();
         let mut field = Self {
             columns_m,
@@ -152,7 +152,7 @@ impl<const N: usize> Field<N> {
         for layer in &self.layers {
             let column = layer
                 .profile
-                .column(&RaySegment::flat(low, 1.0, high - low));
+                .column_along_m(&RaySegment::flat(low, 1.0, high - low));
             cell.extinction += f64::from(layer.extinction_per_m[lane]) * column;
             for (sum, scattering) in cell.scattering.iter_mut().zip(&layer.scattering_per_m) {
                 *sum += f64::from(scattering[lane]) * column;
@@ -182,7 +182,7 @@ impl<const N: usize> Field<N> {
             let inside = part.height_at(0.5 * part.length_m.min(1e9));
             let k = interval_of(&self.heights_m, inside);
             let along = self.layers.iter().fold(Spectrum::ZERO, |sum, layer| {
-                let column = layer.profile.column(part).min(1e25);
+                let column = layer.profile.column_along_m(part).min(1e25);
                 sum.scale_acc(layer.extinction_per_m, column as f32)
             });
             let near = self.source(k, part.height_m, weights);
@@ -204,7 +204,7 @@ impl<const N: usize> Field<N> {
         line: &RaySegment,
         weights: &DirectionWeights,
     ) -> Spectrum<N> {
-        let column_m = |height_m: f64| layer.profile.column_above(height_m).min(1e25);
+        let column_m = |height_m: f64| layer.profile.column_above_m(height_m).min(1e25);
         let per_m = layer.extinction_per_m * (1.0 / line.sin_elevation.abs()) as f32;
         let (from, to) = (column_m(line.height_m), column_m(line.end_height_m()));
         // Columns fall with height: count heights whose column is above that of the start.
@@ -214,7 +214,10 @@ impl<const N: usize> Field<N> {
         let between = |k: usize, column: f64| {
             // In the layer below height `k`, held at the ends.
             let (low, high) = (self.columns_m[k - 1], self.columns_m[k]);
-            let up = ((low - column) / (low - high)).clamp(0.0, 1.0) as f32;
+            let up = match low > high {
+                true => ((low - column) / (low - high)).clamp(0.0, 1.0) as f32,
+                false => 0.0,
+            };
             lerp(node(k - 1), node(k), up)
         };
         let mut path = Spectrum::ZERO;
@@ -273,7 +276,12 @@ impl<const N: usize> Field<N> {
             return sum(1);
         }
         let depth = heights::depth_above(&self.weighted, height_m);
-        let up = (self.depths[k] - depth) / (self.depths[k] - self.depths[k + 1]);
+        let whole = self.depths[k] - self.depths[k + 1];
+        // Between heights without fog the source function is 0 at both.
+        let up = match whole > 0.0 {
+            true => (self.depths[k] - depth) / whole,
+            false => 0.0,
+        };
         sum(0) * (1.0 - up) as f32 + sum(1) * up as f32
     }
 }

@@ -1,15 +1,15 @@
 //! Heights at which the light inside a fog is solved for.
 
-use crate::fog::profile::Profile;
+use crate::atmosphere::DensityProfile;
 
 /// A profile and the mean of its reduced extinction over wavelengths, 1/m.
-pub type Weighted = (Profile, f64);
+pub type Weighted = (DensityProfile, f64);
 
 /// Optical depth above a height, by mean extinction.
 pub fn depth_above(layers: &[Weighted], height_m: f64) -> f64 {
     layers
         .iter()
-        .map(|(profile, extinction)| extinction * profile.column_above(height_m))
+        .map(|(profile, extinction)| extinction * profile.column_above_m(height_m))
         .sum()
 }
 
@@ -27,14 +27,8 @@ pub fn between(layers: &[Weighted], ground_m: f64) -> Vec<f64> {
         .filter(|&height| height < top_m)
         .collect();
     for (profile, _) in layers {
-        let edge = match *profile {
-            Profile::Clamped { base_height_m, .. } => base_height_m,
-            Profile::Slab { top_height_m } => top_height_m,
-            _ => continue,
-        };
-        if edge > ground_m && edge < top_m {
-            heights.push(edge);
-        }
+        let kinks = profile.breakpoints_m().into_iter();
+        heights.extend(kinks.filter(|&kink| kink > ground_m && kink < top_m));
     }
     heights.extend([ground_m, top_m]);
     heights.sort_by(f64::total_cmp);
@@ -92,15 +86,15 @@ mod tests {
 
     #[test]
     fn heights_rise_from_the_ground_and_step_finely_where_light_enters() {
-        let exponential = Profile::Exponential {
+        let exponential = DensityProfile::Exponential {
             reference_height_m: 0.0,
             scale_height_m: 50.0,
         };
-        let slab = Profile::Slab { top_height_m: 30.0 };
+        let slab = DensityProfile::slab(30.0);
         for layers in [
-            vec![(exponential, 0.02)],
-            vec![(slab, 1.0)],
-            vec![(slab, 1e-4), (exponential, 1e-3)],
+            vec![(exponential.clone(), 0.02)],
+            vec![(slab.clone(), 1.0)],
+            vec![(slab, 1e-4), (exponential.clone(), 1e-3)],
             vec![(exponential, 10.0)],
         ] {
             let heights = between(&layers, 5.0);

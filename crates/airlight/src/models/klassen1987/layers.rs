@@ -2,7 +2,7 @@
 
 use super::settings::{Haze, Klassen1987Error, Klassen1987Settings, scatters};
 use crate::atmosphere::aerosol::REFERENCE_NM;
-use crate::atmosphere::{Atmosphere, Constituent, DensityProfile, Planet};
+use crate::atmosphere::{Atmosphere, Constituent, ConstituentKind, DensityProfile, Planet};
 use crate::optics::PhaseFunction;
 use crate::spectrum::SpectralCurve;
 
@@ -18,7 +18,7 @@ impl Klassen1987Settings {
             .constituents
             .iter()
             .cloned()
-            .partition(|part| scatters(part) && part.name != "rayleigh");
+            .partition(|part| scatters(part) && part.kind != ConstituentKind::Molecules);
         let clear_air = Atmosphere {
             constituents: clear,
             ..atmosphere.clone()
@@ -59,7 +59,7 @@ impl Klassen1987Settings {
         let scale = self.haze_extinction_per_m / extinction.at(REFERENCE_NM);
         let ground_m = atmosphere.planet.ground_altitude_m;
         atmosphere.constituents.push(Constituent {
-            name: "aerosol".into(),
+            kind: ConstituentKind::Aerosol,
             density: DensityProfile::Layer {
                 bottom_m: ground_m,
                 top_m: ground_m + self.haze_thickness_m,

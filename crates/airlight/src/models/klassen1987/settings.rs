@@ -3,7 +3,7 @@
 use super::geometry::{HazePath, SunRay};
 use crate::atmosphere::aerosol::REFERENCE_NM;
 use crate::atmosphere::presets::earth::Earth;
-use crate::atmosphere::{Atmosphere, AtmosphereError, Constituent};
+use crate::atmosphere::{Atmosphere, AtmosphereError, Constituent, ConstituentKind};
 use crate::fog::FogError;
 use crate::optics::mie::MieError;
 use crate::optics::mie::droplets::Drops;
@@ -151,7 +151,9 @@ impl Default for Klassen1987Settings {
         let mut clear_air = Earth::with_aerosol(0.0)
             .atmosphere("clear air")
             .expect("the numbers of this file are in their domains");
-        clear_air.constituents.retain(|part| part.name != "aerosol");
+        clear_air
+            .constituents
+            .retain(|part| part.kind != ConstituentKind::Aerosol);
         Self {
             clear_air,
             air_density: 1.0,

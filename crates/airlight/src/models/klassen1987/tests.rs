@@ -2,7 +2,7 @@
 
 use super::errata::{EARTH_M, SPHERES};
 use super::*;
-use crate::atmosphere::preset;
+use crate::atmosphere::{ConstituentKind, preset};
 use crate::axes::direction;
 use crate::spectrum::RgbSpace;
 use crate::spectrum::rgb::{apply, srgb_encode};
@@ -190,7 +190,9 @@ fn layers_keep_optical_depths() -> Result<(), Box<dyn std::error::Error>> {
         let haze: f64 = atmosphere
             .constituents
             .iter()
-            .filter(|part| part.name != "rayleigh" && part.scattering_per_m.at(550.0) > 0.0)
+            .filter(|part| {
+                part.kind != ConstituentKind::Molecules && part.scattering_per_m.at(550.0) > 0.0
+            })
             .map(|part| part.optical_depth(0.0, atmosphere.planet.top_altitude_m, 550.0))
             .sum();
         let got = settings.haze_extinction_per_m * settings.haze_thickness_m;
@@ -228,7 +230,7 @@ fn an_atmosphere_of_layers_has_those_layers() -> Outcome {
     let names = |air: &crate::atmosphere::Atmosphere| -> Vec<String> {
         air.constituents
             .iter()
-            .map(|part| part.name.clone())
+            .map(|part| part.kind.to_string())
             .collect()
     };
     assert_eq!(names(&again.clear_air), ["rayleigh", "ozone"]);

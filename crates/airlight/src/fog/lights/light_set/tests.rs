@@ -1,7 +1,8 @@
 use super::super::{PointLight, SphereLight, SpotLight};
 use super::*;
+use crate::atmosphere::DensityProfile;
+use crate::atmosphere::RaySegment;
 use crate::fog::layer::Medium;
-use crate::fog::ray_segment::RaySegment;
 use crate::optics::PhaseFunction;
 use std::f64::consts::PI;
 
@@ -15,7 +16,7 @@ fn particles(phase: PhaseFunction) -> Medium<3> {
     }
 }
 
-fn medium<'a>(particles: &'a Medium<3>, profile: &'a Profile) -> ParticipatingMedium<'a, 3> {
+fn medium<'a>(particles: &'a Medium<3>, profile: &'a DensityProfile) -> ParticipatingMedium<'a, 3> {
     ParticipatingMedium {
         medium: particles,
         profile,
@@ -60,18 +61,18 @@ fn phases() -> [PhaseFunction; 2] {
     ]
 }
 
-fn profiles() -> [Profile; 4] {
+fn profiles() -> [DensityProfile; 4] {
     [
-        Profile::Uniform,
-        Profile::Exponential {
+        DensityProfile::Uniform,
+        DensityProfile::Exponential {
             reference_height_m: 0.0,
             scale_height_m: 12.0,
         },
-        Profile::Clamped {
+        DensityProfile::Clamped {
             base_height_m: 3.0,
             scale_height_m: 4.0,
         },
-        Profile::Slab { top_height_m: 4.5 },
+        DensityProfile::slab(4.5),
     ]
 }
 
@@ -104,7 +105,7 @@ fn near_and_far_compose_to_the_whole() {
                         },
                     );
                     let line = RaySegment::flat(1.7, whole.direction.y, split);
-                    let depth = particles.extinction_per_m * profile.column(&line) as f32;
+                    let depth = particles.extinction_per_m * profile.column_along_m(&line) as f32;
                     let both = near + depth.exp_neg() * far;
                     for lane in 0..3 {
                         assert!(
@@ -121,7 +122,7 @@ fn near_and_far_compose_to_the_whole() {
 #[test]
 fn the_short_way_for_even_uniform_fog_is_the_long_way() {
     let particles = particles(PhaseFunction::Isotropic);
-    let medium = medium(&particles, &Profile::Uniform);
+    let medium = medium(&particles, &DensityProfile::Uniform);
     let lights = street();
     let haze = Haze::new(&medium).unwrap();
     for direction in DIRECTIONS {
@@ -186,7 +187,7 @@ fn an_eye_at_the_lamp_sees_half_a_turn_over_its_radius() {
         single_scattering_albedo: Spectrum::ONE,
         phase: PhaseFunction::Isotropic,
     };
-    let medium = medium(&thin, &Profile::Uniform);
+    let medium = medium(&thin, &DensityProfile::Uniform);
     let at = DVec3::new(0.0, 3.0, 0.0);
     let light = PointLight::new(at, Spectrum::ONE, 0.1).unwrap();
     let lights = LightSet::new(vec![Light::Point(light)], LightSettings::default()).unwrap();
@@ -209,7 +210,7 @@ fn an_eye_at_the_lamp_sees_half_a_turn_over_its_radius() {
 fn a_line_ends_at_the_bulb() {
     let lights = street();
     let particles = particles(PhaseFunction::Isotropic);
-    let medium = medium(&particles, &Profile::Uniform);
+    let medium = medium(&particles, &DensityProfile::Uniform);
     let bulb = DVec3::new(0.0, 4.0, -40.0);
     let eye = DVec3::new(0.0, 1.7, 0.0);
     let (distance, radiance) = lights.hit(eye, (bulb - eye).normalize()).expect("a bulb");
@@ -257,7 +258,7 @@ fn light_from_all_sides_adds_up() {
         single_scattering_albedo: Spectrum::ONE,
         phase: PhaseFunction::Isotropic,
     };
-    let medium = medium(&thin, &Profile::Uniform);
+    let medium = medium(&thin, &DensityProfile::Uniform);
     let light = PointLight::new(DVec3::ZERO, Spectrum::ONE, 1e-9).unwrap();
     let lights = LightSet::new(vec![Light::Point(light)], LightSettings::default()).unwrap();
     // Scalar irradiance, at distance D, of all light scattered once: sigma I int dV / (4 pi r^2 s^2), r from the light,
@@ -282,17 +283,17 @@ fn surfaces_are_lit_through_the_fog() {
     let particles = particles(PhaseFunction::Isotropic);
     let lights = street();
     let point = DVec3::new(2.0, 0.0, -15.0);
-    let lit = lights.lights()[0].illumination(&medium(&particles, &Profile::Uniform), point);
+    let lit = lights.lights()[0].illumination(&medium(&particles, &DensityProfile::Uniform), point);
     let want = 120.0 / 25.0 * (-0.02f64 * 5.0).exp();
     assert!((f64::from(lit[0]) / want - 1.0).abs() < 1e-6);
     // Only the metre and a half between 3 and 4.5 m of the slab is crossed from above; all else is clear.
-    let slab = Profile::Slab { top_height_m: 4.5 };
+    let slab = DensityProfile::slab(4.5);
     let lit =
         lights.lights()[0].illumination(&medium(&particles, &slab), DVec3::new(2.0, 3.0, -15.0));
     let want = 120.0 / 4.0 * (-0.02f64 * 1.5).exp();
     assert!((f64::from(lit[0]) / want - 1.0).abs() < 1e-6);
     // Beside the cone it is dark; at a ball's surface the irradiance is pi times the radiance.
-    let medium = medium(&particles, &Profile::Uniform);
+    let medium = medium(&particles, &DensityProfile::Uniform);
     let beside = lights.lights()[1].illumination(&medium, DVec3::new(-3.0, 6.5, -30.0));
     assert_eq!(beside, Spectrum::ZERO);
     let close = lights.lights()[2].illumination(&medium, DVec3::new(0.0, 3.6, -40.0));

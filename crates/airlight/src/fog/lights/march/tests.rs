@@ -44,7 +44,7 @@ fn worst_in_uniform_fog(phase: &PhaseFunction, nodes: usize) -> (f64, String) {
                     let particles = particles(extinction, phase.clone());
                     let medium = ParticipatingMedium {
                         medium: &particles,
-                        profile: &Profile::Uniform,
+                        profile: &DensityProfile::Uniform,
                         others: &[],
                         wavelengths_nm: &[550.0],
                         ground_radius_m: f64::INFINITY,
@@ -117,17 +117,15 @@ fn print_convergence_in_uniform_fog() {
 fn in_thinning_fog(visit: &mut dyn FnMut(&ParticipatingMedium<1>, &Light<1>, &ViewRay)) {
     let profiles = |scale_height_m| {
         [
-            Profile::Exponential {
+            DensityProfile::Exponential {
                 reference_height_m: 0.0,
                 scale_height_m,
             },
-            Profile::Clamped {
+            DensityProfile::Clamped {
                 base_height_m: 6.0,
                 scale_height_m,
             },
-            Profile::Slab {
-                top_height_m: 2.0 * scale_height_m,
-            },
+            DensityProfile::slab(2.0 * scale_height_m),
         ]
     };
     let lights = [
@@ -235,8 +233,8 @@ fn print_convergence_in_thinning_fog() {
 #[test]
 fn beams_and_balls_match_quadrature() {
     let profiles = [
-        Profile::Uniform,
-        Profile::Clamped {
+        DensityProfile::Uniform,
+        DensityProfile::Clamped {
             base_height_m: 2.0,
             scale_height_m: 3.0,
         },
@@ -319,7 +317,7 @@ fn lanes_of_different_extinction_share_nodes() {
             };
             let medium = ParticipatingMedium {
                 medium: &all,
-                profile: &Profile::Uniform,
+                profile: &DensityProfile::Uniform,
                 others: &[],
                 wavelengths_nm: &[450.0, 500.0, 550.0, 600.0],
                 ground_radius_m: f64::INFINITY,
@@ -333,7 +331,7 @@ fn lanes_of_different_extinction_share_nodes() {
                 let alone = particles(all.extinction_per_m[lane], hg(0.8));
                 let medium = ParticipatingMedium {
                     medium: &alone,
-                    profile: &Profile::Uniform,
+                    profile: &DensityProfile::Uniform,
                     others: &[],
                     wavelengths_nm: &[550.0],
                     ground_radius_m: f64::INFINITY,
@@ -365,13 +363,13 @@ fn the_narrow_peak_of_drops_costs_some_accuracy() {
 /// Every pair of profiles of very different heights: one scatters, both dim. Visits relative errors.
 fn among_other_layers(nodes: usize, visit: &mut dyn FnMut(f64, String)) {
     let profiles = [
-        Profile::Uniform,
-        Profile::Slab { top_height_m: 7.0 },
-        Profile::Exponential {
+        DensityProfile::Uniform,
+        DensityProfile::slab(7.0),
+        DensityProfile::Exponential {
             reference_height_m: 0.0,
             scale_height_m: 4.0,
         },
-        Profile::Clamped {
+        DensityProfile::Clamped {
             base_height_m: 3.0,
             scale_height_m: 60.0,
         },
@@ -381,7 +379,7 @@ fn among_other_layers(nodes: usize, visit: &mut dyn FnMut(f64, String)) {
             for [own, besides] in [[0.002, 0.05], [0.05, 0.05], [0.05, 0.002]] {
                 let particles = particles(own, hg(0.8));
                 let others = [Layer {
-                    profile: *other,
+                    profile: other.clone(),
                     medium: self::particles(besides, hg(0.8)),
                 }];
                 let medium = ParticipatingMedium {

@@ -1,11 +1,11 @@
 //! What fog does along lines of one elevation: a row of a table.
 
 use super::Table;
+use crate::atmosphere::RaySegment;
 use crate::fog::Fog;
 use crate::fog::lanes::Lanes;
 use crate::fog::merged_layers::MergedLayer;
 use crate::fog::multiple;
-use crate::fog::ray_segment::RaySegment;
 use crate::spectrum::Spectrum;
 
 /// Lines of one elevation up to each of their distances.

@@ -1,12 +1,12 @@
 use super::*;
 use crate::axes;
 use crate::fog::{
-    DirectionalLight, FogLighting, FogScattering, Ground, Layer, Medium, Profile, droplets,
+    DensityProfile, DirectionalLight, FogLighting, FogScattering, Ground, Layer, Medium, droplets,
 };
 use crate::optics::PhaseFunction;
 
 /// Fog of a height, or up to one, with an extinction at the ground (1/m).
-fn layer(profile: Profile, extinction_per_m: f32, phase: PhaseFunction) -> Layer<3> {
+fn layer(profile: DensityProfile, extinction_per_m: f32, phase: PhaseFunction) -> Layer<3> {
     Layer {
         profile,
         medium: Medium {
@@ -67,15 +67,15 @@ fn errors(fog: &Fog<3>, eye_height_m: f64) -> Vec<(f32, String)> {
     errors
 }
 
-const EXPONENTIAL: fn(f64) -> Profile = |scale_height_m| Profile::Exponential {
+const EXPONENTIAL: fn(f64) -> DensityProfile = |scale_height_m| DensityProfile::Exponential {
     reference_height_m: 0.0,
     scale_height_m,
 };
-const CLAMPED: Profile = Profile::Clamped {
+const CLAMPED: DensityProfile = DensityProfile::Clamped {
     base_height_m: 12.0,
     scale_height_m: 8.0,
 };
-const SLAB: Profile = Profile::Slab { top_height_m: 20.0 };
+const SLAB: DensityProfile = DensityProfile::slab(20.0);
 
 #[test]
 fn a_table_is_the_fog_itself() {
@@ -89,7 +89,7 @@ fn a_table_is_the_fog_itself() {
         (SLAB, &drops),
     ] {
         for extinction in [1e-4, 0.004, 0.04, 0.3] {
-            let mut layers = [layer(profile, extinction, phase.clone())];
+            let mut layers = [layer(profile.clone(), extinction, phase.clone())];
             if extinction == 0.04 {
                 layers[0].medium.extinction_per_m = Spectrum::splat(extinction);
             }

@@ -1,23 +1,23 @@
-//! A stretch of a straight line, as fog sees it: only its height counts.
+//! A segment of a straight ray in terms of the height above the ground.
 
-/// A straight line from a point, over flat or round ground.
+/// A segment of a straight ray over flat or round ground, described by its height alone.
 ///
-/// Over round ground the height after `s` metres is `height + sin_elevation s + (1 - sin_elevation^2) s^2 / (2 R)`: the sphere to second
-/// order, wrong by less than `s^3 sin_elevation / (2 R^2)` (8 m after 100 km at an elevation of 1 degree).
+/// Over round ground the height after `s` metres is `height + sin_elevation s + (1 - sin_elevation^2) s^2 / (2 R)`: the
+/// sphere to second order, with an error below `s^3 sin_elevation / (2 R^2)` (8 m after 100 km at an elevation of 1 degree).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RaySegment {
-    /// Height of its start, m.
+    /// Height of the start, m.
     pub height_m: f64,
-    /// Sine of its elevation at the start: metres of height gained in a metre at first.
+    /// Sine of the elevation at the start: the slope of the height there.
     pub sin_elevation: f64,
-    /// Half the curvature under the line, 1/m: `(1 - sin_elevation^2) / (2 R)`, 0 over flat ground.
+    /// Half the second derivative of the height, 1/m: `(1 - sin_elevation^2) / (2 R)`, 0 over flat ground.
     pub curvature_per_m: f64,
-    /// Its length, m; may be infinite.
+    /// Length, m; may be infinite.
     pub length_m: f64,
 }
 
 impl RaySegment {
-    /// A line over ground of radius `ground_radius_m` (infinite: flat).
+    /// A segment over ground of radius `ground_radius_m` (infinite: flat).
     #[inline]
     pub fn new(height_m: f64, sin_elevation: f64, length_m: f64, ground_radius_m: f64) -> Self {
         Self {
@@ -28,7 +28,7 @@ impl RaySegment {
         }
     }
 
-    /// A line over flat ground.
+    /// A segment over flat ground.
     #[inline]
     pub fn flat(height_m: f64, sin_elevation: f64, length_m: f64) -> Self {
         Self {
@@ -45,13 +45,13 @@ impl RaySegment {
         self.height_m + s * (self.sin_elevation + s * self.curvature_per_m)
     }
 
-    /// The sine of the elevation after `s` metres (for lines short against the ground's radius).
+    /// Sine of the elevation after `s` metres, for segments much shorter than the ground's radius.
     #[inline]
     pub fn sin_elevation_at(&self, s: f64) -> f64 {
         self.sin_elevation + 2.0 * s * self.curvature_per_m
     }
 
-    /// Height of the far end; infinite or minus infinity for a line without end.
+    /// Height of the far end, m; plus or minus infinity for an infinite segment that is not level.
     #[inline]
     pub fn end_height_m(&self) -> f64 {
         if self.length_m.is_finite() {
@@ -65,7 +65,7 @@ impl RaySegment {
         }
     }
 
-    /// The part from `from_m` to `to_m`, as a line of its own.
+    /// The part from `from_m` to `to_m`, as a segment that starts there.
     #[inline]
     pub fn part(&self, from_m: f64, to_m: f64) -> Self {
         Self {
@@ -76,14 +76,14 @@ impl RaySegment {
         }
     }
 
-    /// The distance of its lowest point, where that lies between its ends.
+    /// Distance to the lowest point, m, where it lies between the ends.
     #[inline]
     pub fn dip_m(&self) -> Option<f64> {
         let dip = -0.5 * self.sin_elevation / self.curvature_per_m;
         (dip > 0.0 && dip < self.length_m).then_some(dip)
     }
 
-    /// The lowest height it reaches, m; minus infinity where it goes down without end.
+    /// Lowest height, m; minus infinity for an infinite segment that descends over flat ground.
     #[inline]
     pub fn lowest_height_m(&self) -> f64 {
         match self.dip_m() {
@@ -92,14 +92,14 @@ impl RaySegment {
         }
     }
 
-    /// Where the line is below `height_m`: the distances of entry and exit, which are equal where it never is. (It is
-    /// one stretch, as height along a line is convex.)
+    /// Distances between which the segment is below `height_m`; equal where it never is. One interval is enough, as the
+    /// height along a ray is convex.
     #[inline]
     pub fn below(&self, height_m: f64) -> (f64, f64) {
         let nowhere = (0.0, 0.0);
         let above = self.height_m - height_m;
         let (first, last) = if self.curvature_per_m > 0.0 {
-            // Roots of bend s^2 + climb s + above, without cancellation.
+            // Roots of curvature s^2 + sin_elevation s + above, without cancellation.
             let discriminant =
                 self.sin_elevation * self.sin_elevation - 4.0 * self.curvature_per_m * above;
             if discriminant <= 0.0 {
@@ -128,20 +128,20 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_line_over_round_ground_dips_and_rises() {
+    fn a_ray_over_round_ground_dips_and_rises() {
         let radius = 6.371e6;
-        let line = RaySegment::new(10.0, -1e-3, 50e3, radius);
-        let (first, last) = line.below(9.0);
+        let ray = RaySegment::new(10.0, -1e-3, 50e3, radius);
+        let (first, last) = ray.below(9.0);
         assert!(first > 0.0 && last > first && last < 50e3);
         for s in [first, last] {
             assert!(
-                (line.height_at(s) - 9.0).abs() < 1e-9,
+                (ray.height_at(s) - 9.0).abs() < 1e-9,
                 "{}",
-                line.height_at(s)
+                ray.height_at(s)
             );
         }
-        assert_eq!(line.below(5.0), (0.0, 0.0));
-        assert_eq!(line.below(100.0).0, 0.0);
+        assert_eq!(ray.below(5.0), (0.0, 0.0));
+        assert_eq!(ray.below(100.0).0, 0.0);
         // Against the sphere itself.
         let exact = |s: f64| {
             let up = radius + 10.0;
@@ -149,13 +149,13 @@ mod tests {
         };
         for s in [100.0, 1e4, 5e4] {
             assert!(
-                (line.height_at(s) - exact(s)).abs() < 1e-3 + s.powi(3) * 1e-3 / radius / radius
+                (ray.height_at(s) - exact(s)).abs() < 1e-3 + s.powi(3) * 1e-3 / radius / radius
             );
         }
     }
 
     #[test]
-    fn flat_lines_cross_a_height_once_or_never() {
+    fn rays_over_flat_ground_cross_a_height_once_or_never() {
         assert_eq!(RaySegment::flat(5.0, 0.5, 100.0).below(10.0), (0.0, 10.0));
         assert_eq!(
             RaySegment::flat(15.0, -0.5, 100.0).below(10.0),
@@ -167,12 +167,12 @@ mod tests {
     }
 
     #[test]
-    fn a_part_of_a_line_and_its_lowest_point_lie_on_it() {
-        let line = RaySegment::new(10.0, -1e-3, 50e3, 6.371e6);
-        assert!((line.dip_m().unwrap() / 6371.0 - 1.0).abs() < 1e-5);
-        assert!((line.lowest_height_m() - line.height_at(6371.0)).abs() < 1e-6);
+    fn a_part_of_a_segment_and_its_lowest_point_lie_on_it() {
+        let ray = RaySegment::new(10.0, -1e-3, 50e3, 6.371e6);
+        assert!((ray.dip_m().unwrap() / 6371.0 - 1.0).abs() < 1e-5);
+        assert!((ray.lowest_height_m() - ray.height_at(6371.0)).abs() < 1e-6);
         assert_eq!(RaySegment::flat(5.0, -0.1, 20.0).lowest_height_m(), 3.0);
-        let part = line.part(1e3, 2e4);
-        assert!((part.height_at(500.0) - line.height_at(1.5e3)).abs() < 1e-9);
+        let part = ray.part(1e3, 2e4);
+        assert!((part.height_at(500.0) - ray.height_at(1.5e3)).abs() < 1e-9);
     }
 }
