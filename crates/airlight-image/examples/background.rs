@@ -1,5 +1,5 @@
 //! Backgrounds kept in less: sizes of a sky packed by run lengths, and errors of skies computed small and enlarged by
-//! splines, as the book shows them (`scripts/book`): `cargo run --release -p airlight-render --example background`. With the
+//! splines, as the book shows them (`scripts/book`): `cargo run --release -p airlight-image --example background`. With the
 //! word `runs` or `splines` only that part.
 
 use airlight::axes::direction;

@@ -1,6 +1,6 @@
 //! Measures writers on a large picture: seconds, megapixels a second, file size, peak memory (where the system tells).
 //!
-//! `cargo run --release -p airlight-render --example big_picture -- FOLDER [HEIGHT] [FORMAT...]`, where a format is
+//! `cargo run --release -p airlight-image --example big_picture -- FOLDER [HEIGHT] [FORMAT...]`, where a format is
 //! `png`, `png16`, `jpg`, `hdr`, `exr`, `exr-float`, `exr-piz` or `spectral`. The width is twice the height (default
 //! 8192).
 

@@ -1,4 +1,4 @@
-//! Makes a picture to look at of an EXR file in cd/m^2: `cargo run --release -p airlight-render --example develop -- IN.exr
+//! Makes a picture to look at of an EXR file in cd/m^2: `cargo run --release -p airlight-image --example develop -- IN.exr
 //! OUT.png [EV100]`. Without an exposure value it is metered.
 
 use airlight_image::{

@@ -1,4 +1,4 @@
-//! Puts pictures side by side: `cargo run --release -p airlight-render --example strip -- OUT.png ROWS IN.png ...` keeps the
+//! Puts pictures side by side: `cargo run --release -p airlight-image --example strip -- OUT.png ROWS IN.png ...` keeps the
 //! upper ROWS rows of each (0: all). 16-bit pictures are rounded to 8 bits without dither, which makes small files.
 
 use image::{ImageReader, RgbImage, imageops};

@@ -5,7 +5,8 @@
 //! ```
 //!
 //! `tables` (other solvers), `twilight` (Airlight's Monte Carlo, with the fine settings as well: some minutes), `measured` (the
-//! measured sky) and `fit` (what was fitted to it).
+//! measured sky) and `fit` (what was fitted to it); `settings` prints the errors against Monte Carlo with one setting of the
+//! solver changed at a time, which the chapter on the solver quotes.
 
 use airlight::sky::SkySettings;
 use airlight_validation::check::Statistics;
@@ -22,7 +23,11 @@ fn main() -> Result<(), Box<dyn Error>> {
             fit();
             Ok(())
         }
-        _ => Err("say which table: tables, twilight, measured, fit".into()),
+        Some("settings") => {
+            settings();
+            Ok(())
+        }
+        _ => Err("expected the name of a table: tables, twilight, measured, fit, settings".into()),
     }
 }
 
@@ -161,6 +166,51 @@ fn fit() {
             fold.aerosol.optical_depth_550,
             fold.aerosol.angstrom_exponent,
             fold.aerosol.single_scattering_albedo
+        );
+    }
+}
+
+/// Rms error against Monte Carlo with one setting changed.
+fn settings() {
+    println!("| setting | sun zenith 80° or less | above 80° |\n|---|---|---|");
+    type Change = fn(&mut SkySettings);
+    let changes: [(&str, Change); 10] = [
+        ("default", |_| ()),
+        ("altitudes 12", |s| s.altitudes = 12),
+        ("altitudes 40", |s| s.altitudes = 40),
+        ("degree 5, peak degree 6", |s| {
+            (s.orders.degree, s.orders.peak_degree) = (5, 6)
+        }),
+        ("degree 12, peak degree 14", |s| {
+            (s.orders.degree, s.orders.peak_degree) = (12, 14)
+        }),
+        ("rescattered degree 2", |s| s.orders.rescattered_degree = 2),
+        ("rescattered degree 8", |s| s.orders.rescattered_degree = 8),
+        ("first order 4 + 3 + 4 zenith angles", |s| {
+            s.orders.first.zenith_nodes = [4, 3, 4]
+        }),
+        ("later orders 8 + 8 + 10 zenith angles", |s| {
+            s.orders.later.zenith_nodes = [8, 8, 10]
+        }),
+        ("tolerance 0.001", |s| s.orders.tolerance = 0.001),
+    ];
+    for (name, change) in changes {
+        let mut settings = SkySettings::default();
+        change(&mut settings);
+        let checks = skies::against_monte_carlo(&settings);
+        let rms = |wanted: fn(f64) -> bool| {
+            let squares: Vec<f64> = checks
+                .iter()
+                .flat_map(|check| check.rows.iter().map(|row| (row, check.error(row))))
+                .filter(|(row, _)| wanted(row.at.sun_zenith_deg))
+                .map(|(_, error)| error * error)
+                .collect();
+            (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
+        };
+        println!(
+            "| {name} | {:.2} % | {:.2} % |",
+            rms(|sun| sun <= 80.0),
+            rms(|sun| sun > 80.0)
         );
     }
 }

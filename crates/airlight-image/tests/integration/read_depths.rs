@@ -1,12 +1,10 @@
 //! Depth maps: what their numbers mean, and how holes are filled.
 
-mod common;
-
+use crate::common::{Folder, files::*, size};
 use airlight_image::{
     DepthOptions, ImageError,
     input::{DepthKind, DepthMeaning, Unknown, read_depth, read_picture},
 };
-use common::{Folder, files::*, size};
 
 fn options() -> DepthOptions {
     DepthOptions::default()
@@ -232,7 +230,7 @@ fn maps_and_pictures_must_be_as_large() {
 
 #[test]
 fn a_measured_map_is_filled() {
-    // Tail lamp and bench of the motorcycle, 96 x 64 pixels: tests/data/README.md.
+    // Tail lamp and bench of the motorcycle, 96 x 64 pixels: data/README.md.
     let path = concat!(
         env!("CARGO_MANIFEST_DIR"),
         "/tests/data/motorcycle_depth_mm.png"

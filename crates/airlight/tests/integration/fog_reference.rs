@@ -96,7 +96,7 @@ fn whole_line(row: &[&str], scattering: FogScattering) -> f64 {
 
 #[test]
 fn single_scattering_matches_the_closed_form_and_mitsuba() {
-    for row in rows(include_str!("data/mitsuba_fog_checks.csv")) {
+    for row in rows(include_str!("../data/mitsuba_fog_checks.csv")) {
         let got = whole_line(&row, FogScattering::Single);
         let number = |column: usize| row[column].parse::<f64>().unwrap();
         let (closed, mitsuba, error) = (number(7), number(8), number(9));
@@ -117,7 +117,7 @@ struct Compared {
 
 /// `ours / theirs - 1` for every row of the table of slabs.
 fn slabs() -> Vec<Compared> {
-    rows(include_str!("data/fog_slabs_disort.csv"))
+    rows(include_str!("../data/fog_slabs_disort.csv"))
         .map(|row| {
             let number = |column: usize| row[column].parse::<f64>().unwrap();
             let (g, tau) = (number(1), number(2));
@@ -236,7 +236,7 @@ fn light_scattered_many_times_matches_the_slabs() {
 /// along the horizon. Asymmetry 0.7, and 0.85.
 fn nearly_level() -> [Vec<f64>; 2] {
     let mut errors = [Vec::new(), Vec::new()];
-    for row in numbers::<7>(include_str!("data/fog_level_disort.csv")) {
+    for row in numbers::<7>(include_str!("../data/fog_level_disort.csv")) {
         let [g, tau, sun_zenith, zenith, azimuth, length, scattered] = row;
         let fog = Scene {
             profile: SLAB,
@@ -260,7 +260,7 @@ fn nearly_level() -> [Vec<f64>; 2] {
 
 /// The phase function of real fog has a far sharper peak than Henyey-Greenstein's.
 fn droplets_of_ten() -> Vec<f64> {
-    let rows = numbers::<7>(include_str!("data/fog_droplets_disort.csv"));
+    let rows = numbers::<7>(include_str!("../data/fog_droplets_disort.csv"));
     let error = |row: [f64; 7]| {
         let [
             tau,
@@ -293,7 +293,7 @@ fn droplets_of_ten() -> Vec<f64> {
 /// Mitsuba and PythonicDISORT on the same four scenes.
 #[test]
 fn light_scattered_many_times_matches_path_tracing() {
-    for row in rows(include_str!("data/mitsuba_fog_checks.csv")) {
+    for row in rows(include_str!("../data/mitsuba_fog_checks.csv")) {
         let got = whole_line(&row, FogScattering::Multiple);
         let number = |column: usize| row[column].parse::<f64>().unwrap();
         let (mitsuba, error) = (number(11), number(12));
@@ -307,7 +307,7 @@ fn light_scattered_many_times_matches_path_tracing() {
             "{row:?}: {got}"
         );
     }
-    for row in rows(include_str!("data/disort_vs_mitsuba.csv")) {
+    for row in rows(include_str!("../data/disort_vs_mitsuba.csv")) {
         let got = whole_line(&row, FogScattering::Multiple);
         let disort: f64 = row[7].parse().unwrap();
         assert!((got / disort - 1.0).abs() < 0.01, "{row:?}: {got}");

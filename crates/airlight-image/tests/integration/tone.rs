@@ -92,52 +92,6 @@ fn no_input_gives_nonsense() {
     assert!(ToneMapper::new(1.0, ToneCurve::Filmic(flat)).is_err());
 }
 
-/// Hue angle in degrees of an sRGB colour, in the plane of a*, b* of Oklab-like opponents (linear light, cube roots).
-fn hue_deg(encoded: [f32; 3]) -> f64 {
-    let [r, g, b] = encoded.map(|v| srgb::decode(f64::from(v)));
-    let l = (0.412_22 * r + 0.536_33 * g + 0.051_45 * b).cbrt();
-    let m = (0.211_90 * r + 0.680_70 * g + 0.107_40 * b).cbrt();
-    let s = (0.088_30 * r + 0.281_72 * g + 0.629_98 * b).cbrt();
-    let (x, y) = (
-        1.977_998 * l - 2.428_592 * m + 0.450_594 * s,
-        0.025_904 * l + 0.782_772 * m - 0.808_676 * s,
-    );
-    y.atan2(x).to_degrees()
-}
-
-/// The largest change of hue from that of the dim colour, over the stops at which colour is left to see.
-fn hue_drift(tone: &ToneMapper, rgb: [f32; 3]) -> f64 {
-    let start = hue_deg(tone.map(rgb.map(|v| v * 0.05)));
-    (0..100)
-        .map(|i| tone.map(rgb.map(|v| v * 0.05 * 2f32.powf(i as f32 * 0.1))))
-        .filter(|shown| {
-            let most = shown.iter().copied().fold(0.0, f32::max);
-            most - shown.iter().copied().fold(1.0, f32::min) > 0.1
-        })
-        .map(|shown| ((hue_deg(shown) - start + 540.0).rem_euclid(360.0) - 180.0).abs())
-        .fold(0.0, f64::max)
-}
-
-#[test]
-fn bright_colours_keep_their_hue_better_than_when_cut_off() {
-    let clip = ToneMapper::new(1.0, ToneCurve::Clip).unwrap();
-    for (name, rgb, most) in [
-        ("sunset orange", [1.0, 0.35, 0.05], 30.0),
-        ("deep sky blue", [0.05, 0.25, 1.0], 30.0),
-        ("sky blue", [0.2, 0.4, 1.0], 20.0),
-    ] {
-        let (ours, cut) = (hue_drift(&filmic(), rgb), hue_drift(&clip, rgb));
-        println!("{name}: filmic {ours:.1} deg, cut off {cut:.1} deg");
-        assert!(ours < most, "{name}: hue drifts by {ours} degrees");
-        assert!(ours < cut, "{name}: {ours} degrees, cut off {cut}");
-    }
-    // Pure primaries end in white.
-    for rgb in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] {
-        let shown = filmic().map(rgb.map(|v: f32| v * 1e4));
-        assert!(shown.iter().all(|&v| v > 0.99), "{shown:?}");
-    }
-}
-
 #[test]
 fn colours_near_middle_grey_keep_their_saturation() {
     let tone = filmic();
@@ -272,4 +226,57 @@ fn metering_leaves_the_sun_alone() {
         ..metering
     };
     assert!(empty_range.typical_luminance(&sky).is_some());
+}
+
+#[test]
+fn bright_primaries_end_in_white() {
+    for rgb in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] {
+        let shown = filmic().map(rgb.map(|v: f32| v * 1e4));
+        assert!(shown.iter().all(|&v| v > 0.99), "{shown:?}");
+    }
+}
+
+mod guards {
+    use super::*;
+
+    /// Hue angle in degrees of an sRGB colour, in the plane of a*, b* of Oklab-like opponents (linear light, cube roots).
+    fn hue_deg(encoded: [f32; 3]) -> f64 {
+        let [r, g, b] = encoded.map(|v| srgb::decode(f64::from(v)));
+        let l = (0.412_22 * r + 0.536_33 * g + 0.051_45 * b).cbrt();
+        let m = (0.211_90 * r + 0.680_70 * g + 0.107_40 * b).cbrt();
+        let s = (0.088_30 * r + 0.281_72 * g + 0.629_98 * b).cbrt();
+        let (x, y) = (
+            1.977_998 * l - 2.428_592 * m + 0.450_594 * s,
+            0.025_904 * l + 0.782_772 * m - 0.808_676 * s,
+        );
+        y.atan2(x).to_degrees()
+    }
+
+    /// The largest change of hue from that of the dim colour, over the stops at which colour is left to see.
+    fn hue_drift(tone: &ToneMapper, rgb: [f32; 3]) -> f64 {
+        let start = hue_deg(tone.map(rgb.map(|v| v * 0.05)));
+        (0..100)
+            .map(|i| tone.map(rgb.map(|v| v * 0.05 * 2f32.powf(i as f32 * 0.1))))
+            .filter(|shown| {
+                let most = shown.iter().copied().fold(0.0, f32::max);
+                most - shown.iter().copied().fold(1.0, f32::min) > 0.1
+            })
+            .map(|shown| ((hue_deg(shown) - start + 540.0).rem_euclid(360.0) - 180.0).abs())
+            .fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn bright_colours_keep_their_hue_better_than_when_cut_off() {
+        let clip = ToneMapper::new(1.0, ToneCurve::Clip).unwrap();
+        for (name, rgb, most) in [
+            ("sunset orange", [1.0, 0.35, 0.05], 30.0),
+            ("deep sky blue", [0.05, 0.25, 1.0], 30.0),
+            ("sky blue", [0.2, 0.4, 1.0], 20.0),
+        ] {
+            let (ours, cut) = (hue_drift(&filmic(), rgb), hue_drift(&clip, rgb));
+            println!("{name}: filmic {ours:.1} deg, cut off {cut:.1} deg");
+            assert!(ours < most, "{name}: hue drifts by {ours} degrees");
+            assert!(ours < cut, "{name}: {ours} degrees, cut off {cut}");
+        }
+    }
 }

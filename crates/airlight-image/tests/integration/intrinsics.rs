@@ -1,9 +1,7 @@
 //! Cameras by focal length and principal point.
 
-mod common;
-
+use crate::common::size;
 use airlight_image::{Camera, Frame, ImageError, Intrinsics, Projection, frame::PixelCentres};
-use common::size;
 use glam::DVec3;
 
 #[test]

@@ -13,8 +13,8 @@ fn blocks<'a>(text: &'a str, language: &str) -> Vec<&'a str> {
 
 #[test]
 fn atmospheres_of_the_book_are_read() {
-    let chapter = include_str!("../../../docs/src/atmosphere.md");
-    let types = include_str!("../../../docs/src/aerosols.md");
+    let chapter = include_str!("../../../../docs/src/atmosphere.md");
+    let types = include_str!("../../../../docs/src/aerosols.md");
     let examples = [blocks(chapter, "toml"), blocks(types, "toml")].concat();
     assert!(examples.len() >= 6, "{}", examples.len());
     for example in examples {

@@ -1,23 +1,11 @@
 //! Laws that every prepared sky obeys, whatever the numbers.
 
+use crate::common::sky;
 use airlight::atmosphere::{presets, reference};
 use airlight::axes::direction;
 use airlight::sky::{LineOfSight, Scattering, Sky, SkySettings, SunCoverage, TableChannels};
 use airlight::spectrum::{RgbSpace, WavelengthGrid};
 use glam::DVec3;
-
-fn prepare(preset: &str, suns: SunCoverage) -> Sky {
-    let settings = SkySettings {
-        suns,
-        ..Default::default()
-    };
-    Sky::prepare(
-        &presets::preset(preset).unwrap(),
-        &WavelengthGrid::rgb(),
-        &settings,
-    )
-    .unwrap()
-}
 
 fn relative_difference(a: &[f32], b: &[f32]) -> f32 {
     a.iter()
@@ -29,7 +17,7 @@ fn relative_difference(a: &[f32], b: &[f32]) -> f32 {
 #[test]
 fn a_line_of_sight_may_be_split_anywhere() {
     // Level on a ray that climbs: from the split on, the second half is seen from higher up under a turned sky.
-    let sky = prepare("average", SunCoverage::near(12.0, 0.0));
+    let sky = sky("average", SunCoverage::near(12.0, 0.0));
     let (sun, eye) = (direction(180.0, 12.0), direction(170.0, 3.0));
     let near_view = sky.view(100.0, sun);
     for (split_m, length_m) in [(10.0, 2e3), (5e3, 40e3), (60e3, 61e3), (1e3, 2e5)] {
@@ -62,7 +50,7 @@ fn a_line_of_sight_may_be_split_anywhere() {
 
 #[test]
 fn transmittance_lies_between_nothing_and_all_and_falls_with_distance() {
-    let sky = prepare("hazy", SunCoverage::near(30.0, 0.0));
+    let sky = sky("hazy", SunCoverage::near(30.0, 0.0));
     let view = sky.view(2.0, direction(90.0, 30.0));
     for elevation in [-30.0, -1.0, 0.0, 0.5, 10.0, 90.0] {
         let mut last = vec![1.0; 3];
@@ -81,7 +69,7 @@ fn transmittance_lies_between_nothing_and_all_and_falls_with_distance() {
 
 #[test]
 fn a_short_path_scatters_in_proportion_to_its_length() {
-    let sky = prepare("clear", SunCoverage::near(40.0, 0.0));
+    let sky = sky("clear", SunCoverage::near(40.0, 0.0));
     let view = sky.view(500.0, direction(0.0, 40.0));
     let metre = view.along(direction(60.0, 5.0), Some(1.0)).path_radiance();
     let millimetre = view.along(direction(60.0, 5.0), Some(1e-3)).path_radiance();
@@ -91,104 +79,9 @@ fn a_short_path_scatters_in_proportion_to_its_length() {
 }
 
 #[test]
-fn preparing_for_one_sun_or_for_all_is_the_same() {
-    let all = prepare("average", SunCoverage::All);
-    for (elevation, allowed) in [
-        (50.0, 0.01),
-        (5.0, 0.01),
-        (-1.0, 0.02),
-        (-5.0, 0.02),
-        (-9.0, 0.04),
-        (-14.0, 0.08),
-    ] {
-        let near = prepare("average", SunCoverage::near(elevation, 0.0));
-        let sun = direction(180.0, elevation);
-        for eye in [
-            direction(180.0, 1.0),
-            direction(180.0, 20.0),
-            direction(0.0, 10.0),
-            direction(0.0, 90.0),
-        ] {
-            let a = all.view(0.0, sun).along(eye, None).radiance();
-            let b = near.view(0.0, sun).along(eye, None).radiance();
-            let difference = relative_difference(&a, &b);
-            assert!(
-                difference < allowed,
-                "sun {elevation}, {eye}: {difference} {a:?} {b:?}"
-            );
-        }
-    }
-}
-
-#[test]
-fn a_table_gives_what_tracing_gives() {
-    for (preset, altitude, elevation) in [
-        ("average", 0.0, 40.0),
-        ("clear", 0.0, 2.0),
-        ("clear", 0.0, -5.0),
-        ("average", 11e3, 15.0),
-        ("mars", 0.0, 20.0),
-    ] {
-        let sky = prepare(preset, SunCoverage::near(elevation, altitude));
-        let view = sky.view(altitude, direction(200.0, elevation));
-        let table = view.table(TableChannels::Spectral);
-        let azimuths: Vec<f64> = vec![0.0, 17.0, 62.0, 118.0, 180.0];
-        let columns = table.columns(azimuths.iter().map(|a| (a - 200.0f64).to_radians()));
-        let horizon = table.horizon_elevation_rad().to_degrees();
-        for above in [-60.0, -5.0, -0.5, 0.05, 0.5, 3.0, 20.0, 70.0] {
-            let mut row = vec![0.0; 3 * azimuths.len()];
-            table.sample_row((horizon + above).to_radians(), &columns, &mut row);
-            for (azimuth, in_row) in azimuths.iter().zip(row.chunks_exact(3)) {
-                let eye = direction(*azimuth, horizon + above);
-                let mut sampled = [0.0f32; 3];
-                table.sample(eye, &mut sampled);
-                let traced = view.along(eye, None).radiance();
-                let difference = relative_difference(&sampled, &traced);
-                assert!(
-                    difference < 0.01,
-                    "{preset} {elevation} {azimuth} {above}: {sampled:?} {traced:?}"
-                );
-                assert!(
-                    relative_difference(in_row, &sampled) < 1e-3,
-                    "{in_row:?} {sampled:?}"
-                );
-            }
-        }
-    }
-}
-
-#[test]
-fn a_table_of_many_wavelengths_gives_what_tracing_gives() {
-    // More than one block of lanes, and dust whose phase function depends on wavelength.
-    let grid =
-        WavelengthGrid::from_wavelengths_nm((0..20).map(|i| 400.0 + 17.0 * f64::from(i)).collect())
-            .unwrap();
-    let settings = SkySettings {
-        suns: SunCoverage::near(25.0, 0.0),
-        ..Default::default()
-    };
-    let sky = Sky::prepare(&presets::preset("mars").unwrap(), &grid, &settings).unwrap();
-    let view = sky.view(0.0, direction(120.0, 25.0));
-    let table = view.table(TableChannels::Spectral);
-    for eye in [
-        direction(118.0, 26.0),
-        direction(100.0, 5.0),
-        direction(300.0, 60.0),
-    ] {
-        let mut sampled = [0.0f32; 20];
-        table.sample(eye, &mut sampled);
-        let traced = view.along(eye, None).radiance();
-        assert!(
-            relative_difference(&sampled, &traced) < 0.01,
-            "{sampled:?} {traced:?}"
-        );
-    }
-}
-
-#[test]
 fn the_sky_on_the_ground_adds_up_to_what_the_solver_says_the_ground_receives() {
     // The ground's own radiance tells how much light it receives: albedo / pi times sun and sky.
-    let sky = prepare("average", SunCoverage::near(35.0, 0.0));
+    let sky = sky("average", SunCoverage::near(35.0, 0.0));
     let view = sky.view(0.0, direction(180.0, 35.0));
     let sky_irradiance = view.table(TableChannels::Spectral).irradiance(DVec3::Y);
     let sun_irradiance = view.sun_irradiance();
@@ -214,7 +107,7 @@ fn no_place_and_no_sun_gives_anything_but_finite_light() {
                 &SkySettings::default(),
             )
             .unwrap(),
-            name => prepare(name, SunCoverage::All),
+            name => sky(name, SunCoverage::All),
         };
         for altitude in [-500.0, 0.0, 1.0, 9e3, 59.9e3, 100e3, 400e3, 4e7] {
             for sun_elevation in [-90.0, -18.0, -0.3, 0.0, 30.0, 90.0] {
@@ -246,7 +139,7 @@ fn no_place_and_no_sun_gives_anything_but_finite_light() {
 
 #[test]
 fn twilight_only_gets_darker() {
-    let sky = prepare("clear", SunCoverage::All);
+    let sky = sky("clear", SunCoverage::All);
     let mut last = f32::INFINITY;
     for step in 0..=60 {
         let elevation = 3.0 - 0.35 * f64::from(step);
@@ -285,7 +178,7 @@ fn every_number_of_threads_gives_the_same_bits() {
             .build()
             .unwrap()
             .install(|| {
-                let sky = prepare("average", SunCoverage::near(8.0, 0.0));
+                let sky = sky("average", SunCoverage::near(8.0, 0.0));
                 let table = sky
                     .view(0.0, direction(45.0, 8.0))
                     .table(TableChannels::Rgb(RgbSpace::Srgb));
@@ -295,4 +188,105 @@ fn every_number_of_threads_gives_the_same_bits() {
             })
     };
     assert_eq!(picture(1), picture(3));
+}
+
+/// Tables and coverage of suns beside the field that they are made from.
+mod guards {
+    use super::*;
+
+    #[test]
+    fn preparing_for_one_sun_or_for_all_is_the_same() {
+        let all = sky("average", SunCoverage::All);
+        for (elevation, allowed) in [
+            (50.0, 0.01),
+            (5.0, 0.01),
+            (-1.0, 0.02),
+            (-5.0, 0.02),
+            (-9.0, 0.04),
+            (-14.0, 0.08),
+        ] {
+            let near = sky("average", SunCoverage::near(elevation, 0.0));
+            let sun = direction(180.0, elevation);
+            for eye in [
+                direction(180.0, 1.0),
+                direction(180.0, 20.0),
+                direction(0.0, 10.0),
+                direction(0.0, 90.0),
+            ] {
+                let a = all.view(0.0, sun).along(eye, None).radiance();
+                let b = near.view(0.0, sun).along(eye, None).radiance();
+                let difference = relative_difference(&a, &b);
+                assert!(
+                    difference < allowed,
+                    "sun {elevation}, {eye}: {difference} {a:?} {b:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_table_gives_what_tracing_gives() {
+        for (preset, altitude, elevation) in [
+            ("average", 0.0, 40.0),
+            ("clear", 0.0, 2.0),
+            ("clear", 0.0, -5.0),
+            ("average", 11e3, 15.0),
+            ("mars", 0.0, 20.0),
+        ] {
+            let sky = sky(preset, SunCoverage::near(elevation, altitude));
+            let view = sky.view(altitude, direction(200.0, elevation));
+            let table = view.table(TableChannels::Spectral);
+            let azimuths: Vec<f64> = vec![0.0, 17.0, 62.0, 118.0, 180.0];
+            let columns = table.columns(azimuths.iter().map(|a| (a - 200.0f64).to_radians()));
+            let horizon = table.horizon_elevation_rad().to_degrees();
+            for above in [-60.0, -5.0, -0.5, 0.05, 0.5, 3.0, 20.0, 70.0] {
+                let mut row = vec![0.0; 3 * azimuths.len()];
+                table.sample_row((horizon + above).to_radians(), &columns, &mut row);
+                for (azimuth, in_row) in azimuths.iter().zip(row.chunks_exact(3)) {
+                    let eye = direction(*azimuth, horizon + above);
+                    let mut sampled = [0.0f32; 3];
+                    table.sample(eye, &mut sampled);
+                    let traced = view.along(eye, None).radiance();
+                    let difference = relative_difference(&sampled, &traced);
+                    assert!(
+                        difference < 0.01,
+                        "{preset} {elevation} {azimuth} {above}: {sampled:?} {traced:?}"
+                    );
+                    assert!(
+                        relative_difference(in_row, &sampled) < 1e-3,
+                        "{in_row:?} {sampled:?}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_table_of_many_wavelengths_gives_what_tracing_gives() {
+        // More than one block of lanes, and dust whose phase function depends on wavelength.
+        let grid = WavelengthGrid::from_wavelengths_nm(
+            (0..20).map(|i| 400.0 + 17.0 * f64::from(i)).collect(),
+        )
+        .unwrap();
+        let settings = SkySettings {
+            suns: SunCoverage::near(25.0, 0.0),
+            ..Default::default()
+        };
+        let sky = Sky::prepare(&presets::preset("mars").unwrap(), &grid, &settings).unwrap();
+        let view = sky.view(0.0, direction(120.0, 25.0));
+        let table = view.table(TableChannels::Spectral);
+        for eye in [
+            direction(118.0, 26.0),
+            direction(100.0, 5.0),
+            direction(300.0, 60.0),
+        ] {
+            let mut sampled = [0.0f32; 20];
+            table.sample(eye, &mut sampled);
+            let traced = view.along(eye, None).radiance();
+            assert!(
+                relative_difference(&sampled, &traced) < 0.01,
+                "{sampled:?} {traced:?}"
+            );
+        }
+    }
 }

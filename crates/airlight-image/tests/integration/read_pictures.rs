@@ -1,7 +1,6 @@
 //! Pictures read from files.
 
-mod common;
-
+use crate::common::{Folder, files::*, size};
 use airlight_image::{
     Control, ImageError, Picture, PictureOptions,
     input::{LightReference, SampleBits, read_picture},
@@ -10,7 +9,6 @@ use airlight_image::{
     tone::{ToneMapper, srgb},
     write_picture,
 };
-use common::{Folder, files::*, size};
 use png::{BitDepth, ColorType};
 
 fn read_as(folder: &Folder, bytes: &[u8], layer: Option<&str>) -> Result<Picture, ImageError> {

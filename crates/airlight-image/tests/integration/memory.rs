@@ -1,4 +1,4 @@
-//! Wide pictures do not need memory for all their rows. By itself in its file, so that no other test adds to the peak.
+//! Wide pictures do not need memory for all their rows.
 
 use airlight_image::{
     Control, PictureOptions, Size,
@@ -11,6 +11,7 @@ use airlight_image::{
     tone::{ToneCurve, ToneMapper},
     write_picture,
 };
+use std::process::Command;
 
 /// Peak memory of this process in bytes, where the system tells.
 fn peak_memory() -> Option<u64> {
@@ -25,6 +26,18 @@ fn peak_memory() -> Option<u64> {
 #[test]
 #[ignore = "takes a while: 16384 pixels wide, every format, 32 threads"]
 fn wide_pictures_fit_in_little_memory() {
+    // In a process of its own, so that no other test adds to the peak.
+    const ALONE: &str = "AIRLIGHT_MEMORY_TEST_IS_ALONE";
+    if std::env::var_os(ALONE).is_none() {
+        let status = Command::new(std::env::current_exe().unwrap())
+            .args(["memory::wide_pictures_fit_in_little_memory", "--exact"])
+            .args(["--ignored", "--nocapture"])
+            .env(ALONE, "1")
+            .status()
+            .unwrap();
+        assert!(status.success());
+        return;
+    }
     let folder = std::env::temp_dir().join(format!("airlight-memory-{}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();
     let rows = |channels| {

@@ -7,9 +7,9 @@ use airlight_validation::skies::{atmosphere, lane};
 use airlight_validation::table::{Line, Table};
 
 const TABLES: [&str; 3] = [
-    include_str!("../data/mc_sphere_rayleigh.csv"),
-    include_str!("../data/mc_sphere_earth_demo.csv"),
-    include_str!("../data/mc_sphere_csm.csv"),
+    include_str!("../../data/mc_sphere_rayleigh.csv"),
+    include_str!("../../data/mc_sphere_earth_demo.csv"),
+    include_str!("../../data/mc_sphere_csm.csv"),
 ];
 
 /// A line's sun and view.

@@ -1,7 +1,6 @@
 //! Files that appear whole or not at all, errors that say why, progress, and the same bytes on every run.
 
-mod common;
-
+use crate::common::{Folder, full_metadata, size, sky, tone};
 use airlight_image::{
     Control, ImageError, PictureFormat, PictureOptions, Progress, RowSource, Size,
     output::{
@@ -14,7 +13,6 @@ use airlight_image::{
     rows::RowFn,
     write_picture,
 };
-use common::{Folder, full_metadata, size, sky, tone};
 use std::{
     fs,
     io::Cursor,

@@ -1,12 +1,10 @@
 //! The formats of depth maps.
 
-mod common;
-
+use crate::common::{Folder, files::*, size};
 use airlight_image::{
     DepthOptions, ImageError,
     input::{DepthKind, SampleBits},
 };
-use common::{Folder, files::*, size};
 use exr::prelude::{FlatSamples, f16};
 use png::{BitDepth, ColorType};
 

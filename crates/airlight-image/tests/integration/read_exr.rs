@@ -1,12 +1,10 @@
 //! OpenEXR pictures: kinds of samples and compression, windows, layers and parts.
 
-mod common;
-
+use crate::common::{Folder, files::*, size};
 use airlight_image::{
     ImageError, Picture,
     input::{LightReference, SampleBits, read_picture},
 };
-use common::{Folder, files::*, size};
 use exr::prelude::{Compression, FlatSamples, f16};
 
 fn read_as(folder: &Folder, bytes: &[u8], layer: Option<&str>) -> Result<Picture, ImageError> {

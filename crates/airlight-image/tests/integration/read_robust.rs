@@ -1,12 +1,10 @@
 //! Whatever a file holds, reading it ends in a picture, a depth map or an error, never in a panic.
 
-mod common;
-
+use crate::common::{Folder, files::*};
 use airlight_image::{
     DepthOptions, ImageError,
     input::{Unknown, read_depth, read_picture},
 };
-use common::{Folder, files::*};
 use exr::prelude::{Compression, FlatSamples, f16};
 use png::{BitDepth, ColorType};
 use std::path::Path;

@@ -1,0 +1,15 @@
+//! Picture and depth files, written and read back by decoders and encoders of others.
+
+mod common;
+mod frames;
+mod intrinsics;
+mod memory;
+mod picture_files;
+mod pictures;
+mod read_depth_files;
+mod read_depths;
+mod read_exr;
+mod read_pictures;
+mod read_robust;
+mod terminal;
+mod tone;

@@ -1,0 +1,110 @@
+//! The limits that the accuracy report states. Run with `--nocapture` for the errors.
+
+use airlight::sky::SkySettings;
+use airlight_validation::{Check, Suite, measured, run, skies};
+
+fn print(check: &Check) {
+    let s = check.statistics().expect("a check has rows");
+    println!(
+        "{} | {}: {} values, mean {:+.2} {unit}, rms {:.2}, worst {:+.2} at {}",
+        check.what,
+        check.against,
+        s.count,
+        s.mean,
+        s.rms,
+        s.worst,
+        s.worst_at,
+        unit = check.unit
+    );
+}
+
+fn hold(suite: Suite) -> Vec<Check> {
+    let checks = run(&[suite]);
+    for check in &checks {
+        print(check);
+        assert!(check.holds(), "{}: {:?}", check.what, check.broken());
+    }
+    checks
+}
+
+#[test]
+fn skies_agree_with_other_solvers() {
+    let checks = hold(Suite::Tables);
+    // Every table, atmosphere and sun: a check that vanished would hold as well.
+    assert_eq!(checks.iter().filter(|c| c.limit.is_some()).count(), 23);
+    let libradtran = checks.iter().find(|c| c.against.starts_with("libRadtran"));
+    let s = libradtran.and_then(Check::statistics).unwrap();
+    assert!(s.rms < 1.5 && s.count > 1000, "{s:?}");
+}
+
+#[test]
+fn skies_agree_with_the_monte_carlo_down_to_deep_twilight() {
+    let checks = hold(Suite::MonteCarlo);
+    assert_eq!(checks.len(), 24);
+    assert!(checks.iter().all(|check| check.rows.len() == 27));
+}
+
+/// 1 % by day and 3 % in twilight in clear air and haze; in desert dust 1 % with the sun at 3 degrees or more, 4 % below.
+#[test]
+#[ignore = "the finest settings solved 24 times"]
+fn fine_settings_agree_with_the_monte_carlo() {
+    for mut check in skies::against_truth(&SkySettings::fine()) {
+        print(&check);
+        let by_day = check.rows[0].at.sun_zenith_deg < 90.0;
+        let dust = check.what.contains("desert") && check.rows[0].at.sun_zenith_deg > 88.0;
+        check.limit = Some(match (dust, by_day) {
+            (true, _) => 4.0,
+            (false, true) => 1.0,
+            (false, false) => 3.0,
+        });
+        assert!(check.holds(), "{}: {:?}", check.what, check.broken());
+    }
+}
+
+#[test]
+fn the_air_of_the_day_is_nearer_the_measured_sky_than_every_published_model() {
+    let checks = hold(Suite::Measured);
+    let real = checks[1].statistics().unwrap();
+    assert_eq!(real.count, 8 * 81 * 31);
+    let best = &measured::published()[0];
+    assert!(real.rms < best.rmse, "{} against {best:?}", real.rms);
+    // The published air, solved right, is as far from the sky as libRadtran's solution of it.
+    let csm = checks[0].statistics().unwrap();
+    let flat = measured::published()
+        .into_iter()
+        .find(|p| p.model == "libradtran, 40wl_libradtran_fixed")
+        .unwrap();
+    assert!(
+        (csm.rms / flat.rmse - 1.0).abs() < 0.03,
+        "{} {flat:?}",
+        csm.rms
+    );
+}
+
+mod guards {
+    use super::*;
+
+    #[test]
+    fn the_embedded_fit_is_what_fitting_gives() {
+        let (wavelengths, scans) = measured::scans();
+        let fold = &measured::FOLDS[1];
+        let fitted: Vec<_> = scans
+            .iter()
+            .filter(|scan| fold.fitted.contains(&scan.time))
+            .collect();
+        // Started from where it ended, it stays there.
+        let (again, _) = measured::fit::fit(fold.aerosol, &wavelengths, &fitted);
+        let near = |a: f64, b: f64| (a / b - 1.0).abs() < 0.02;
+        assert!(
+            near(again.optical_depth_550, fold.aerosol.optical_depth_550)
+                && near(again.angstrom_exponent, fold.aerosol.angstrom_exponent)
+                && near(
+                    again.single_scattering_albedo,
+                    fold.aerosol.single_scattering_albedo
+                ),
+            "{again:?}"
+        );
+        let scored = |time| fold.fitted.contains(&time) != fold.scored.contains(&time);
+        assert!(scans.iter().all(|scan| scored(scan.time)));
+    }
+}

@@ -1,0 +1,18 @@
+//! Tests of several modules of the crate: whole skies, fog in them, paths of light.
+//!
+//! A test is a claim, compared with something outside this crate's own results, unless it stands in a module `guards`
+//! (CONTRIBUTING.md, "Tests").
+
+mod aerial;
+mod analytic_drops;
+mod book;
+mod colour;
+mod common;
+mod fog_drops;
+mod fog_monte_carlo;
+mod fog_reference;
+mod fogbow;
+mod foggy_sky;
+mod monte_carlo_lines;
+mod monte_carlo_polarisation;
+mod sky_laws;
