@@ -54,9 +54,9 @@ impl RowsBar {
 }
 
 impl Progress for RowsBar {
-    fn rows_written(&self, done: u32, _total: u32) {
+    fn advanced(&self, done: u64, _total: u64) {
         self.bar
-            .set_position(self.before.load(Ordering::Relaxed) + u64::from(done));
+            .set_position(self.before.load(Ordering::Relaxed) + done);
     }
 }
 

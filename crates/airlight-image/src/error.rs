@@ -1,6 +1,7 @@
 //! What can go wrong, in sentences that say what, where, and what would be right.
 
 use crate::Size;
+use airlight::Cancelled;
 use std::{io, path::PathBuf};
 
 /// Why a picture could not be set up, written or read.
@@ -141,9 +142,15 @@ pub enum ImageError {
         /// Of the picture.
         picture: Size,
     },
-    /// The caller asked to stop; nothing was left behind.
-    #[error("stopped as asked; no file was left behind")]
+    /// The caller cancelled; nothing was left behind.
+    #[error("cancelled; no file was left behind")]
     Cancelled,
+}
+
+impl From<Cancelled> for ImageError {
+    fn from(_: Cancelled) -> Self {
+        Self::Cancelled
+    }
 }
 
 impl ImageError {
@@ -159,7 +166,7 @@ impl ImageError {
         }
     }
 
-    /// True where the caller asked to stop.
+    /// True where the caller cancelled.
     pub fn is_cancelled(&self) -> bool {
         matches!(self, Self::Cancelled)
     }

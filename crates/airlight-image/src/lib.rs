@@ -7,7 +7,7 @@
 //! # Modules, each importing only from those above it
 //! - [`error`]: error type.
 //! - [`frame`]: projections, from pixels to view directions and back.
-//! - [`rows`]: row sources; cancellation and progress of a long write.
+//! - [`rows`]: row sources.
 //! - [`enlarge`]: upsampling by cubic splines.
 //! - [`tone`]: exposure, tone curves, dither: from linear light to display values.
 //! - [`output`]: picture writers: OpenEXR (RGB and spectral), Radiance HDR, PNG, JPEG.
@@ -23,8 +23,9 @@ pub mod rows;
 pub mod terminal;
 pub mod tone;
 
+pub use airlight::{Control, Progress};
 pub use error::ImageError;
 pub use frame::{Camera, CubeFace, Fisheye, Frame, Intrinsics, Projection, Size};
 pub use input::{DepthMap, DepthOptions, Picture, read_depth, read_picture};
 pub use output::{PictureFormat, PictureOptions, write_picture};
-pub use rows::{Control, Progress, RowSource};
+pub use rows::RowSource;

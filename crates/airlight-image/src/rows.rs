@@ -1,6 +1,4 @@
-//! Where pixels come from, and how a long write is followed and stopped.
-
-use std::sync::atomic::{AtomicBool, Ordering};
+//! Where pixels come from.
 
 use crate::ImageError;
 
@@ -90,72 +88,5 @@ impl RowSource for StoredRows {
             let n = row.min(out.len());
             out[..n].copy_from_slice(&samples[..n]);
         }
-    }
-}
-
-/// Is told how far a picture has come.
-pub trait Progress: Sync {
-    /// A stage of the work begins: what is done, in a few words, and how many rows it has (0: not known).
-    fn stage(&self, _what: &str, _rows: u64) {}
-
-    /// `done` of `total` rows are finished. Called from the threads that finish them.
-    fn rows_written(&self, done: u32, total: u32);
-}
-
-/// How the caller follows and stops a write. The default does neither.
-#[derive(Clone, Copy, Default)]
-pub struct Control<'a> {
-    /// Once true, the write ends with [`ImageError::Cancelled`] and leaves no file.
-    pub cancel: Option<&'a AtomicBool>,
-    /// Told as rows are written.
-    pub progress: Option<&'a dyn Progress>,
-}
-
-impl<'a> Control<'a> {
-    /// Stops when `cancel` becomes true.
-    pub fn cancelled_by(cancel: &'a AtomicBool) -> Self {
-        Self {
-            cancel: Some(cancel),
-            progress: None,
-        }
-    }
-
-    /// The same, reporting to `progress`.
-    pub fn reporting_to(self, progress: &'a dyn Progress) -> Self {
-        Self {
-            progress: Some(progress),
-            ..self
-        }
-    }
-
-    /// Reports that a stage of the work begins: see [`Progress::stage`].
-    pub fn stage(&self, what: &str, rows: u64) {
-        if let Some(progress) = self.progress {
-            progress.stage(what, rows);
-        }
-    }
-
-    /// [`ImageError::Cancelled`] once the caller has asked to stop.
-    pub fn check(&self) -> Result<(), ImageError> {
-        match self.cancel {
-            Some(cancel) if cancel.load(Ordering::Relaxed) => Err(ImageError::Cancelled),
-            _ => Ok(()),
-        }
-    }
-
-    /// Reports that `done` of `total` rows are finished.
-    pub fn report(&self, done: u32, total: u32) {
-        if let Some(progress) = self.progress {
-            progress.rows_written(done, total);
-        }
-    }
-}
-
-impl std::fmt::Debug for Control<'_> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Control")
-            .field("cancel", &self.cancel)
-            .field("progress", &self.progress.is_some())
-            .finish()
     }
 }

@@ -151,7 +151,9 @@ fn measure(folder: &Path, ending: &str, scale: f64) -> Result<(), ImageError> {
         let overlay = timed(&format!("{name}: prepare"), make);
         // Made anew each time, as its table is filled while it is looked at.
         let overlay = || Overlay::new(&picture, &depth, &camera, 1.6, &overlay, Channels::Picture);
-        let rows = timed(&format!("{name}: fog"), || Ok(rows(&picture, &overlay()?)))?;
+        let rows = timed(&format!("{name}: fog"), || {
+            overlay().map(|overlay| rows(&picture, &overlay))
+        })?;
         even.get_or_insert(rows);
         if !profile.is_uniform() {
             let fog = alone();

@@ -17,6 +17,7 @@
 
 pub mod atmosphere;
 pub mod axes;
+mod control;
 pub mod fog;
 mod math;
 pub mod models;
@@ -27,6 +28,8 @@ pub mod sky;
 pub mod spectrum;
 pub mod sun;
 pub mod transfer;
+
+pub use control::{Cancelled, Control, Progress};
 
 /// The example of the README, compiled and run as a test.
 #[cfg(doctest)]

@@ -54,7 +54,7 @@ impl Bands {
     ) -> Result<(), ImageError> {
         let threads = rayon::current_num_threads();
         let batch = (HELD_BYTES / band_bytes.max(1)).clamp(1, threads * 4) as u32;
-        let height = self.size.height();
+        let height = u64::from(self.size.height());
         let mut made: Vec<T> = Vec::new();
         let mut first = 0;
         let mut next = 0;
@@ -76,9 +76,9 @@ impl Bands {
                     for (band, item) in (first..).zip(made.drain(..)) {
                         control.check()?;
                         write(band, item)?;
-                        control.report(self.rows(band).end, height);
+                        control.report(u64::from(self.rows(band).end), height);
                     }
-                    Ok(())
+                    Ok::<(), ImageError>(())
                 },
             );
             written?;

@@ -144,7 +144,7 @@ pub fn encode<W: Write + Send>(
         // Where the encoder failed by itself, its reason is the one to report, not that nobody took the rows.
         match (fed, control.check()) {
             (Ok(()), _) => encoded,
-            (Err(_), Err(cancelled)) => Err(cancelled),
+            (Err(_), Err(cancelled)) => Err(cancelled.into()),
             (Err(ImageError::Cancelled), Ok(())) => encoded,
             (Err(other), Ok(())) => Err(other),
         }

@@ -190,9 +190,9 @@ fn a_full_disk_is_reported() {
 #[test]
 fn progress_is_told_in_order_and_to_the_end() {
     #[derive(Default)]
-    struct Heard(Mutex<Vec<u32>>);
+    struct Heard(Mutex<Vec<u64>>);
     impl Progress for Heard {
-        fn rows_written(&self, done: u32, total: u32) {
+        fn advanced(&self, done: u64, total: u64) {
             assert_eq!(total, 1000);
             self.0.lock().unwrap().push(done);
         }

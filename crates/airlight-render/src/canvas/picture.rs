@@ -8,7 +8,7 @@ use airlight_image::rows::StoredRows;
 use airlight_image::{Control, Frame, ImageError, Size};
 use rayon::prelude::*;
 use std::ops::Range;
-use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Channels of a polarisation map: degree and angle of linear polarisation, and `Q` and `U` over `I`.
 pub const POLARISATION_CHANNELS: [&str; 4] = ["degree", "angle_deg", "Q_over_I", "U_over_I"];
@@ -87,7 +87,7 @@ impl Canvas {
         // One row each, empty where polarisation is not followed.
         let mut stokes: Vec<&mut [[f64; 3]]> = self.stokes.chunks_mut(width).collect();
         stokes.resize_with(height as usize, Default::default);
-        let done = AtomicU32::new(0);
+        let done = AtomicU64::new(0);
         self.sums
             .par_chunks_mut(width * count)
             .zip(self.colors.par_chunks_mut(width))
@@ -113,11 +113,12 @@ impl Canvas {
                         color.add(channels.to_rgb(&found));
                     }
                 }
-                control.report(done.fetch_add(1, Ordering::Relaxed) + 1, height);
-                Ok(())
+                let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+                control.report(done, u64::from(height));
+                Ok::<(), ImageError>(())
             })?;
         self.bundles = bundles.end;
-        Ok(())
+        Ok::<(), ImageError>(())
     }
 
     /// The picture so far, in the channels of a view.

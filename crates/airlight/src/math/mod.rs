@@ -2,6 +2,7 @@
 
 pub(crate) mod interpolation;
 pub(crate) mod legendre;
+pub(crate) mod parallel;
 pub(crate) mod quadrature;
 pub(crate) mod random;
 pub(crate) mod real;

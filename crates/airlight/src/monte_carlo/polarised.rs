@@ -3,8 +3,8 @@
 use super::estimate::{Estimate, Measured, Sample, Tally};
 use super::solver::{BUNDLE, MonteCarlo, Scene};
 use super::stokes::Stokes;
+use crate::math::parallel;
 use glam::DVec3;
-use rayon::prelude::*;
 
 /// What the paths of a bundle found, one value a wavelength, W m^-2 sr^-1 nm^-1.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,10 +58,9 @@ impl MonteCarlo {
     ) -> PolarisedEstimate {
         let bundles = self.settings().paths.div_ceil(BUNDLE as u64).max(2);
         let scene = self.scene(eye_altitude_m, sun, view, distance_m);
-        let samples: Vec<PolarisedSample> = (0..bundles)
-            .into_par_iter()
-            .map(|bundle| self.polarised_bundle(scene, bundle))
-            .collect();
+        let samples = parallel::map(bundles as usize, |bundle| {
+            self.polarised_bundle(scene, bundle as u64)
+        });
         PolarisedEstimate::of(&samples, self.grid().len())
     }
 

@@ -8,6 +8,7 @@ use super::path::{Line, ORDERS, PathScene};
 use super::stokes::{Polarisation, Scalar};
 use super::sun::SunShape;
 use crate::atmosphere::Atmosphere;
+use crate::math::parallel;
 use crate::math::random::Random;
 use crate::math::simd::vectorized;
 use crate::sky::SkyError;
@@ -15,7 +16,6 @@ use crate::spectrum::WavelengthGrid;
 use crate::transfer::ray::Ray;
 use crate::transfer::shell::{MAX_CONSTITUENTS, PerConstituent};
 use glam::DVec3;
-use rayon::prelude::*;
 
 /// Paths of a bundle: what one stream of random numbers serves. Its first collisions are spread evenly, so that
 /// bundles differ less than paths would; the error is told from the spread among bundles.
@@ -197,10 +197,9 @@ impl MonteCarlo {
             return;
         };
         let first = tally.count();
-        let samples: Vec<Sample> = (first..first + bundles)
-            .into_par_iter()
-            .map(|bundle| self.bundle(&scene, bundle))
-            .collect();
+        let samples = parallel::map(bundles as usize, |bundle| {
+            self.bundle(&scene, first + bundle as u64)
+        });
         samples.iter().for_each(|sample| tally.add(sample));
     }
 

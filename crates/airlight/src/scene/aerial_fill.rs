@@ -2,9 +2,9 @@
 
 use super::aerial::{AZIMUTHS, AerialPerspective, DISTANCES, Eye, Half, ROWS, part_of};
 use super::lane_channels::Converter;
+use crate::math::parallel;
 use crate::sky::{Peaked, View};
 use glam::DVec3;
-use rayon::prelude::*;
 use std::f64::consts::FRAC_PI_2;
 
 /// Where the first node lies, in steps of the coordinate: at the eye itself there is no air to take the mean of.
@@ -45,22 +45,19 @@ pub(super) fn tabulated<const N: usize>(
     let half = |below: bool| {
         let span = if below { -FRAC_PI_2 } else { ceiling } - eye.horizon_elevation;
         let rows = ROWS[usize::from(below)];
-        let filled: Vec<(Vec<f32>, Vec<f32>)> = (0..rows)
-            .into_par_iter()
-            .map(|row| {
-                let x = row as f64 / (rows - 1) as f64;
-                // The horizon itself is a jump: start a hair's breadth from it.
-                let elevation = eye.horizon_elevation + span * (x * x).max(1e-9);
-                row_of(
-                    view,
-                    converter,
-                    &peaked,
-                    &eye,
-                    sun_azimuth,
-                    (elevation, below),
-                )
-            })
-            .collect();
+        let filled = parallel::map(rows, |row| {
+            let x = row as f64 / (rows - 1) as f64;
+            // The horizon itself is a jump: start a hair's breadth from it.
+            let elevation = eye.horizon_elevation + span * (x * x).max(1e-9);
+            row_of(
+                view,
+                converter,
+                &peaked,
+                &eye,
+                sun_azimuth,
+                (elevation, below),
+            )
+        });
         let (extinction, source): (Vec<_>, Vec<_>) = filled.into_iter().unzip();
         Half {
             below,

@@ -2,9 +2,9 @@
 
 use crate::axes;
 use crate::math::interpolation::{Place, lerp};
+use crate::math::parallel;
 use crate::spectrum::Spectrum;
 use glam::DVec3;
-use rayon::prelude::*;
 use std::f64::consts::TAU;
 
 /// Normals tabulated from the nadir to the zenith, and round.
@@ -32,10 +32,11 @@ impl<const N: usize> IrradianceMap<N> {
     /// Sums the radiance that arrives from each direction (unit vectors away from the place); about `sun`, a unit vector, it may
     /// rise steeply.
     pub fn of(sun: DVec3, radiance: impl Fn(DVec3) -> Spectrum<N> + Sync) -> Self {
-        let arriving: Vec<(DVec3, Spectrum<N>)> = directions(sun)
-            .into_par_iter()
-            .map(|(direction, solid_angle)| (direction, radiance(direction) * solid_angle as f32))
-            .collect();
+        let directions = directions(sun);
+        let arriving = parallel::map(directions.len(), |i| {
+            let (direction, solid_angle) = directions[i];
+            (direction, radiance(direction) * solid_angle as f32)
+        });
         let on = |normal: DVec3| {
             arriving
                 .iter()
@@ -43,14 +44,11 @@ impl<const N: usize> IrradianceMap<N> {
                     sum.scale_acc(*light, direction.dot(normal).max(0.0) as f32)
                 })
         };
-        let irradiance = (0..ROWS * COLUMNS)
-            .into_par_iter()
-            .map(|i| {
-                let elevation_deg = 180.0 * (i / COLUMNS) as f64 / (ROWS - 1) as f64 - 90.0;
-                let azimuth_deg = 360.0 * (i % COLUMNS) as f64 / COLUMNS as f64;
-                on(axes::direction(azimuth_deg, elevation_deg))
-            })
-            .collect();
+        let irradiance = parallel::map(ROWS * COLUMNS, |i| {
+            let elevation_deg = 180.0 * (i / COLUMNS) as f64 / (ROWS - 1) as f64 - 90.0;
+            let azimuth_deg = 360.0 * (i % COLUMNS) as f64 / COLUMNS as f64;
+            on(axes::direction(azimuth_deg, elevation_deg))
+        });
         Self { irradiance }
     }
 

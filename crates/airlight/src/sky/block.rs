@@ -1,18 +1,19 @@
 //! Wavelengths in blocks of as many lanes as vector instructions like, behind one interface.
 
+use super::Scattering;
 use super::SkySettings;
 use super::field::FieldGrid;
 use super::orders::{self, Diffuse};
 use super::ray_bundle::{Path, RayBundle, Scratch};
 use super::trace::{Tracer, ground_irradiance};
-use super::{Scattering, SkyError};
 use crate::atmosphere::Atmosphere;
+use crate::control::{Cancelled, Control};
+use crate::math::parallel;
 use crate::math::simd::vectorized;
 use crate::spectrum::Spectrum;
 use crate::transfer::air::Air;
 use crate::transfer::ray::Ray;
 use crate::transfer::shell::Shell;
-use rayon::prelude::*;
 use std::sync::Arc;
 
 /// What a line of sight brings at the wavelengths of a block, per unit solar irradiance.
@@ -84,32 +85,44 @@ pub struct TableRow {
 }
 
 /// Solves for all `wavelengths_nm` in blocks of fitting width.
+///
+/// # Errors
+/// [`Cancelled`] soon after the caller has cancelled.
 pub fn solve(
     atmosphere: &Atmosphere,
     shell: &Arc<Shell>,
     wavelengths_nm: &[f64],
     settings: &SkySettings,
-) -> Result<Vec<Box<dyn Block>>, SkyError> {
-    match wavelengths_nm.len() {
-        0..=4 => Ok(vec![Solved::<4>::boxed(
-            atmosphere,
-            shell,
-            wavelengths_nm,
-            settings,
-        )]),
-        5..=8 => Ok(vec![Solved::<8>::boxed(
-            atmosphere,
-            shell,
-            wavelengths_nm,
-            settings,
-        )]),
-        _ => Ok(wavelengths_nm
-            .chunks(16)
-            .map(|chunk| match chunk.len() {
-                0..=8 => Solved::<8>::boxed(atmosphere, shell, chunk, settings),
-                _ => Solved::<16>::boxed(atmosphere, shell, chunk, settings),
-            })
-            .collect()),
+    control: Control<'_>,
+) -> Result<Vec<Box<dyn Block>>, Cancelled> {
+    let count = wavelengths_nm.len().div_ceil(16);
+    let solved = wavelengths_nm.chunks(16).enumerate().map(|(place, chunk)| {
+        let share = Share {
+            control,
+            place,
+            count,
+        };
+        match chunk.len() {
+            0..=4 if count == 1 => Solved::<4>::boxed(atmosphere, shell, chunk, settings, share),
+            0..=8 => Solved::<8>::boxed(atmosphere, shell, chunk, settings, share),
+            _ => Solved::<16>::boxed(atmosphere, shell, chunk, settings, share),
+        }
+    });
+    solved.collect()
+}
+
+/// The part of one block in the progress of all.
+struct Share<'a> {
+    control: Control<'a>,
+    place: usize,
+    count: usize,
+}
+
+impl Share<'_> {
+    /// Reports that a fraction of the block is done, in permille of a block.
+    fn report(&self, fraction: f64) {
+        let done = 1000 * self.place as u64 + (1000.0 * fraction) as u64;
+        self.control.report(done, 1000 * self.count as u64);
     }
 }
 
@@ -126,7 +139,8 @@ impl<const N: usize> Solved<N> {
         shell: &Arc<Shell>,
         wavelengths_nm: &[f64],
         settings: &SkySettings,
-    ) -> Box<dyn Block> {
+        share: Share<'_>,
+    ) -> Result<Box<dyn Block>, Cancelled> {
         let lanes = wavelengths_nm.len();
         let padded = std::array::from_fn(|lane| wavelengths_nm[lane.min(lanes - 1)]);
         let air = Air::<N>::new(
@@ -135,19 +149,22 @@ impl<const N: usize> Solved<N> {
             padded,
             settings.orders.peak_degree,
         );
-        let diffuse =
-            (settings.scattering == Scattering::All && !air.scatterers.is_empty()).then(|| {
-                let zeniths = settings
-                    .suns
-                    .sun_zeniths_deg(shell.ground_radius_m, shell.top_radius_m);
-                let grid = FieldGrid::new(&air, settings.altitudes, &zeniths);
-                orders::solve(&air, grid, &settings.orders)
-            });
-        Box::new(Self {
+        let mut diffuse = None;
+        if settings.scattering == Scattering::All && !air.scatterers.is_empty() {
+            let zeniths = settings
+                .suns
+                .sun_zeniths_deg(shell.ground_radius_m, shell.top_radius_m);
+            let grid = FieldGrid::new(&air, settings.altitudes, &zeniths);
+            let report = |fraction| share.report(fraction);
+            let solved = orders::solve(&air, grid, &settings.orders, share.control, report)?;
+            diffuse = Some(solved);
+        }
+        share.report(1.0);
+        Ok(Box::new(Self {
             air,
             diffuse,
             lanes,
-        })
+        }))
     }
 
     fn tracer(&self) -> Tracer<'_, N> {
@@ -250,7 +267,8 @@ impl<const N: usize> Block for Solved<N> {
             .map(|row| Spectrum::from_fn(|lane| if lane < self.lanes { row[lane] } else { 0.0 }))
             .collect();
         let stride = width * rows[0].bundle.len();
-        out.par_chunks_mut(stride).zip(rows).for_each(|(out, row)| {
+        parallel::for_each_chunk(out, stride, |index, out| {
+            let row = &rows[index];
             vectorized(
                 #[inline(always)]
                 || {

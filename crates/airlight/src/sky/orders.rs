@@ -10,13 +10,14 @@ use super::field::{FieldGrid, RadianceField};
 use super::harmonics::Harmonics;
 use super::ray_bundle::{Path, RayBundle, Scratch};
 use super::trace::sun_on_ground;
+use crate::control::{Cancelled, Control};
 use crate::math::legendre::legendre;
+use crate::math::parallel;
 use crate::math::quadrature::GaussRule;
 use crate::math::simd::vectorized;
 use crate::spectrum::Spectrum;
 use crate::transfer::air::Air;
 use crate::transfer::march::Marcher;
-use rayon::prelude::*;
 use std::f64::consts::PI;
 
 /// How finely the orders are solved.
@@ -61,25 +62,33 @@ pub struct Diffuse<const N: usize> {
     pub air: Air<N>,
 }
 
-/// Solves for all light scattered or reflected at least once.
+/// Solves for all light scattered or reflected at least once; `report` gets the fraction of the work that is done.
+///
+/// # Errors
+/// [`Cancelled`] soon after the caller has cancelled.
 pub fn solve<const N: usize>(
     real_air: &Air<N>,
     grid: FieldGrid,
     settings: &OrderSettings,
-) -> Diffuse<N> {
+    control: Control<'_>,
+    report: impl Fn(f64),
+) -> Result<Diffuse<N>, Cancelled> {
+    // About what is done after the first order, and after the paths of later ones are known.
+    const FIRST: f64 = 0.2;
+    const PATHS: f64 = 0.3;
     let air = real_air.without_forward_peaks(settings.peak_degree);
     let basis = Harmonics::new(settings.degree);
-    let mut sum = Transport::new(&air, &grid, &basis, 0, &settings.first).first_order();
-    let transport = Transport::new(
-        &air,
-        &grid,
-        &basis,
-        settings.rescattered_degree,
-        &settings.later,
-    );
+    let transport =
+        |degree, directions| Transport::new((&air, &grid, &basis), degree, directions, control);
+    let mut sum = transport(0, &settings.first)?.first_order()?;
+    report(FIRST);
+    let transport = transport(settings.rescattered_degree, &settings.later)?;
+    report(PATHS);
     let mut order = sum.clone();
+    // What is still to be added falls by a nearly constant factor with each order.
+    let mut converged = 0.0f64;
     for _ in 2..=settings.max_orders {
-        let next = transport.next_order(&order.field(&grid, &basis));
+        let next = transport.next_order(&order.field(&grid, &basis))?;
         let growth = sum.add(&next);
         let ratio = next.ratio_to(&order);
         order = next;
@@ -87,9 +96,11 @@ pub fn solve<const N: usize>(
             sum.add_geometric_tail(&order, &ratio);
             break;
         }
+        converged = converged.max(f64::from(growth.ln() / settings.tolerance.ln()));
+        report(PATHS + (1.0 - PATHS) * converged.min(1.0));
     }
     let field = sum.field(&grid, &basis);
-    Diffuse { field, air }
+    Ok(Diffuse { field, air })
 }
 
 /// One order of light, or a sum of orders: moments `[radius][sun][harmonic]` and ground irradiances `[sun]`.
@@ -174,59 +185,47 @@ struct Transport<'a, const N: usize> {
     /// For each height, the paths that leave it, with their weights in an integral over the zenith angle's cosine.
     paths: Vec<Vec<(Path<N>, f64)>>,
     azimuth_cosines: Vec<f64>,
+    control: Control<'a>,
 }
 
 impl<'a, const N: usize> Transport<'a, N> {
     fn new(
-        air: &'a Air<N>,
-        grid: &'a FieldGrid,
-        basis: &'a Harmonics,
+        (air, grid, basis): (&'a Air<N>, &'a FieldGrid, &'a Harmonics),
         rescattered_degree: usize,
         directions: &Directions,
-    ) -> Self {
+        control: Control<'a>,
+    ) -> Result<Self, Cancelled> {
         let marcher = Marcher::new(directions.panel_nodes, 2.0, air.max_extinction_per_m());
-        let paths = grid
-            .radii_m
-            .par_iter()
-            .map(|&radius_m| {
-                vectorized(
-                    #[inline(always)]
-                    || {
-                        zenith_rule(air, radius_m, directions)
-                            .into_iter()
-                            .map(|(mu, w)| {
-                                (
-                                    Path::new(
-                                        air,
-                                        Some(grid),
-                                        &marcher,
-                                        (radius_m, mu),
-                                        rescattered_degree,
-                                    ),
-                                    w,
-                                )
-                            })
-                            .collect()
-                    },
-                )
-            })
-            .collect();
+        let paths = parallel::try_map(grid.radii_m.len(), |row| {
+            control.check()?;
+            let radius_m = grid.radii_m[row];
+            let degree = rescattered_degree;
+            Ok(vectorized(
+                #[inline(always)]
+                || {
+                    let rule = zenith_rule(air, radius_m, directions).into_iter();
+                    let path = |mu| Path::new(air, Some(grid), &marcher, (radius_m, mu), degree);
+                    rule.map(|(mu, w)| (path(mu), w)).collect()
+                },
+            ))
+        })?;
         let azimuths = directions.azimuths;
         let azimuth_cosines = (0..azimuths)
             .map(|k| (PI * (k as f64 + 0.5) / azimuths as f64).cos())
             .collect();
-        Self {
+        Ok(Self {
             air,
             grid,
             basis,
             rescattered: Harmonics::new(rescattered_degree),
             paths,
             azimuth_cosines,
-        }
+            control,
+        })
     }
 
     /// Light that has been scattered, or reflected by the ground, exactly once.
-    fn first_order(&self) -> Order<N> {
+    fn first_order(&self) -> Result<Order<N>, Cancelled> {
         let air = self.air;
         self.gather(
             #[inline(always)]
@@ -254,7 +253,7 @@ impl<'a, const N: usize> Transport<'a, N> {
     }
 
     /// What becomes of the light `field` when it is scattered or reflected once more.
-    fn next_order(&self, field: &RadianceField<N>) -> Order<N> {
+    fn next_order(&self, field: &RadianceField<N>) -> Result<Order<N>, Cancelled> {
         self.gather(
             #[inline(always)]
             |path, bundle, work| {
@@ -291,23 +290,23 @@ impl<'a, const N: usize> Transport<'a, N> {
 
     /// Lets `accumulate` find the light that arrives along the rays of each path, and gathers it into moments and ground
     /// irradiances.
-    fn gather(&self, accumulate: impl Fn(&Path<N>, &RayBundle, &mut Work<N>) + Sync) -> Order<N> {
-        let rows: Vec<(Vec<Spectrum<N>>, Vec<Spectrum<N>>)> = self
-            .paths
-            .par_iter()
-            .map(|paths| {
-                vectorized(
-                    #[inline(always)]
-                    || self.gather_row(paths, &accumulate),
-                )
-            })
-            .collect();
+    fn gather(
+        &self,
+        accumulate: impl Fn(&Path<N>, &RayBundle, &mut Work<N>) + Send + Sync,
+    ) -> Result<Order<N>, Cancelled> {
+        let rows = parallel::try_map(self.paths.len(), |row| {
+            self.control.check()?;
+            Ok(vectorized(
+                #[inline(always)]
+                || self.gather_row(&self.paths[row], &accumulate),
+            ))
+        })?;
         let ground = rows[0].1.clone();
-        Order {
+        Ok(Order {
             count: self.basis.count(),
             moments: rows.into_iter().flat_map(|(moments, _)| moments).collect(),
             ground,
-        }
+        })
     }
 
     /// Moments, `[sun][harmonic]`, and downward irradiances, `[sun]`, at one height.

@@ -6,6 +6,7 @@ use super::harmonics::Harmonics;
 use super::orders::{Directions, OrderSettings};
 use super::view::View;
 use crate::atmosphere::{Atmosphere, AtmosphereError};
+use crate::control::{Cancelled, Control};
 use crate::spectrum::WavelengthGrid;
 use crate::transfer::shell::{MAX_CONSTITUENTS, Shell};
 use glam::DVec3;
@@ -140,6 +141,9 @@ pub enum SkyError {
     /// The atmosphere itself is refused.
     #[error(transparent)]
     Atmosphere(#[from] AtmosphereError),
+    /// The caller cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }
 
 /// The solved light inside an atmosphere at the wavelengths of a grid: a handle that is cheap to clone and to share
@@ -176,11 +180,25 @@ impl Sky {
         grid: &WavelengthGrid,
         settings: &SkySettings,
     ) -> Result<Self, SkyError> {
+        Self::prepare_with(atmosphere, grid, settings, Control::default())
+    }
+
+    /// [`Sky::prepare`], followed and cancelled through `control`. Progress is in permille of each block of 16 wavelengths;
+    /// within a block it is an estimate.
+    ///
+    /// # Errors
+    /// As [`Sky::prepare`]; [`SkyError::Cancelled`] within milliseconds of being cancelled.
+    pub fn prepare_with(
+        atmosphere: &Atmosphere,
+        grid: &WavelengthGrid,
+        settings: &SkySettings,
+        control: Control<'_>,
+    ) -> Result<Self, SkyError> {
         settings.validate()?;
         atmosphere.validate()?;
         let shell = Arc::new(Shell::new(atmosphere, settings.suns.are_low())?);
         let grid = grid.clone().with_solar(&atmosphere.solar_irradiance);
-        let blocks = block::solve(atmosphere, &shell, grid.wavelengths_nm(), settings)?;
+        let blocks = block::solve(atmosphere, &shell, grid.wavelengths_nm(), settings, control)?;
         Ok(Self(Arc::new(Solution {
             atmosphere: atmosphere.clone(),
             grid,
@@ -218,6 +236,10 @@ impl Sky {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::atmosphere::reference;
+    use crate::control::Progress;
+    use std::sync::Mutex;
+    use std::sync::atomic::{AtomicBool, Ordering};
 
     #[test]
     fn settings_out_of_range_are_refused() {
@@ -239,6 +261,58 @@ mod tests {
                 matches!(settings.validate(), Err(SkyError::Setting(_))),
                 "{settings:?}"
             );
+        }
+    }
+    /// Records the progress it gets, and cancels at a number of reports.
+    struct Recorder {
+        reports: Mutex<Vec<(u64, u64)>>,
+        cancel: AtomicBool,
+        at: usize,
+    }
+
+    impl Progress for Recorder {
+        fn advanced(&self, done: u64, total: u64) {
+            let mut reports = self.reports.lock().unwrap();
+            reports.push((done, total));
+            self.cancel
+                .store(reports.len() >= self.at, Ordering::Relaxed);
+        }
+    }
+
+    fn recorded(at: usize) -> (Result<Sky, SkyError>, Vec<(u64, u64)>) {
+        let recorder = Recorder {
+            reports: Mutex::default(),
+            cancel: AtomicBool::new(false),
+            at,
+        };
+        let control = Control::cancelled_by(&recorder.cancel).reporting_to(&recorder);
+        let settings = SkySettings {
+            suns: SunCoverage::near(20.0, 0.0),
+            altitudes: 6,
+            ..Default::default()
+        };
+        let nm = (0..20).map(|k| 400.0 + 15.0 * f64::from(k)).collect();
+        let grid = WavelengthGrid::from_wavelengths_nm(nm).unwrap();
+        let sky = Sky::prepare_with(&reference::earth_demo(), &grid, &settings, control);
+        (sky, recorder.reports.into_inner().unwrap())
+    }
+
+    #[test]
+    fn progress_rises_to_its_total() {
+        let (sky, reports) = recorded(usize::MAX);
+        assert!(sky.is_ok());
+        assert!(reports.len() > 6, "{reports:?}");
+        assert!(reports.is_sorted(), "{reports:?}");
+        assert!(reports.iter().all(|&(_, total)| total == 2000));
+        assert_eq!(reports.last(), Some(&(2000, 2000)));
+    }
+
+    #[test]
+    fn cancelling_ends_preparation_at_any_stage() {
+        for at in [1, 2, 3, 5] {
+            let (sky, reports) = recorded(at);
+            assert!(matches!(sky, Err(SkyError::Cancelled(_))), "{at}");
+            assert_eq!(reports.len(), at, "nothing was done after {at} reports");
         }
     }
 }

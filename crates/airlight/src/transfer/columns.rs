@@ -5,9 +5,9 @@
 //! third-degree interpolation keeps the columns to about 1e-4 (see the test).
 
 use crate::math::interpolation::{Place, cubic, hermite_weights};
+use crate::math::parallel;
 use crate::math::quadrature::FixedRule;
 use crate::transfer::shell::{MAX_CONSTITUENTS, PerConstituent, Shell};
-use rayon::prelude::*;
 
 /// Altitudes of the table, evenly spaced in [`Shell::altitude_coordinate`].
 const ALTITUDES: usize = 64;
@@ -67,20 +67,17 @@ impl ColumnTable {
                 ]
             })
             .collect();
-        let rows: Vec<Vec<[f32; MAX_CONSTITUENTS]>> = (0..ALTITUDES)
-            .into_par_iter()
-            .map(|i| {
-                let radius_m = shell.radius_of_coordinate(i as f64 / (ALTITUDES - 1) as f64);
-                let zenith = shell.integrate_columns_m(radius_m, 1.0, &RULE);
-                (0..ANGLES)
-                    .map(|j| {
-                        let mu = (j as f64 / (ANGLES - 1) as f64).powi(2);
-                        let slant = shell.integrate_columns_m(radius_m, mu, &RULE);
-                        std::array::from_fn(|c| (zenith[c] / slant[c]) as f32)
-                    })
-                    .collect()
-            })
-            .collect();
+        let rows: Vec<Vec<[f32; MAX_CONSTITUENTS]>> = parallel::map(ALTITUDES, |i| {
+            let radius_m = shell.radius_of_coordinate(i as f64 / (ALTITUDES - 1) as f64);
+            let zenith = shell.integrate_columns_m(radius_m, 1.0, &RULE);
+            (0..ANGLES)
+                .map(|j| {
+                    let mu = (j as f64 / (ANGLES - 1) as f64).powi(2);
+                    let slant = shell.integrate_columns_m(radius_m, mu, &RULE);
+                    std::array::from_fn(|c| (zenith[c] / slant[c]) as f32)
+                })
+                .collect()
+        });
         let mut inverse_air_mass = rows.concat();
         // Where nothing of a constituent lies above, its air mass means nothing: carry the one below upwards, so that
         // interpolation just beneath stays smooth.

@@ -7,8 +7,8 @@
 
 use super::{AirLanes, TransmittanceTable};
 use crate::math::interpolation::bilinear;
+use crate::math::parallel;
 use crate::transfer::ray::Ray;
-use rayon::prelude::*;
 use std::f64::consts::PI;
 
 /// How finely the table is made.
@@ -53,15 +53,12 @@ impl MultipleScatteringTable {
         let size = settings.size;
         let lanes = air.lanes();
         let mut values = vec![0.0; size[0] * size[1] * lanes];
-        values
-            .par_chunks_exact_mut(lanes)
-            .enumerate()
-            .for_each(|(index, out)| {
-                let mu_sun = 2.0 * (index % size[0]) as f64 / (size[0] - 1) as f64 - 1.0;
-                let height = (index / size[0]) as f64 / (size[1] - 1) as f64;
-                let radius_m = ground_radius_m + height * (top_radius_m - ground_radius_m);
-                psi(air, transmittance, settings, (radius_m, mu_sun), out);
-            });
+        parallel::for_each_chunk(&mut values, lanes, |index, out| {
+            let mu_sun = 2.0 * (index % size[0]) as f64 / (size[0] - 1) as f64 - 1.0;
+            let height = (index / size[0]) as f64 / (size[1] - 1) as f64;
+            let radius_m = ground_radius_m + height * (top_radius_m - ground_radius_m);
+            psi(air, transmittance, settings, (radius_m, mu_sun), out);
+        });
         Self {
             ground_radius_m,
             top_radius_m,

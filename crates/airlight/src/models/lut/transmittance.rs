@@ -1,7 +1,7 @@
 //! Transmittance to space by height and zenith angle.
 
 use crate::math::interpolation::bilinear;
-use rayon::prelude::*;
+use crate::math::parallel;
 
 /// Transmittance from any height in any direction to the top of the air, for several wavelengths at once.
 ///
@@ -33,16 +33,13 @@ impl TransmittanceTable {
             values: Vec::new(),
         };
         let mut values = vec![0.0; size[0] * size[1] * lanes];
-        values
-            .par_chunks_exact_mut(lanes)
-            .enumerate()
-            .for_each(|(index, out)| {
-                let u = (index % size[0]) as f64 / (size[0] - 1) as f64;
-                let v = (index / size[0]) as f64 / (size[1] - 1) as f64;
-                let (radius_m, mu) = table.ray_at(u, v);
-                depth(radius_m, mu, out);
-                out.iter_mut().for_each(|tau| *tau = (-*tau).exp());
-            });
+        parallel::for_each_chunk(&mut values, lanes, |index, out| {
+            let u = (index % size[0]) as f64 / (size[0] - 1) as f64;
+            let v = (index / size[0]) as f64 / (size[1] - 1) as f64;
+            let (radius_m, mu) = table.ray_at(u, v);
+            depth(radius_m, mu, out);
+            out.iter_mut().for_each(|tau| *tau = (-*tau).exp());
+        });
         table.values = values;
         table
     }

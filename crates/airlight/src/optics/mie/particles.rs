@@ -5,9 +5,9 @@ use super::angular::{Angles, LANES, Pair, pairs};
 use super::sizes::{FEWEST_SIZES, Steps};
 use super::sphere::{Coefficients, ScatteringMatrix, check_index};
 use super::{LARGEST_SIZE_PARAMETER, MieError, SizeDistribution, SizeNode};
+use crate::math::parallel;
 use crate::math::simd::vectorized;
 use crate::optics::{RefractiveIndex, TabulatedPhase};
-use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 
 /// Steps of the sums over sizes.
@@ -232,24 +232,21 @@ impl Particles {
         // Neighbours in size share the room for their functions.
         /// Share of a size, what it scatters, absorbs and sends straight on, and its coefficients.
         type Sized = (f64, [f64; 3], Vec<Pair>);
-        let parts: Vec<Vec<Sized>> = nodes
-            .par_chunks(16)
-            .map(|nodes| {
-                let mut coefficients = Coefficients::default();
-                let sphere = |node: &SizeNode| {
-                    coefficients.fill(size_per_um * node.radius_um, index);
-                    let sums = [
-                        coefficients.scattered,
-                        coefficients.absorbed,
-                        coefficients.forward(),
-                    ];
-                    // Scaled to scatter as much as any other, whatever its size.
-                    let factor = coefficients.scattered.sqrt().recip();
-                    (node.share, sums, pairs(&coefficients, factor).collect())
-                };
-                nodes.iter().map(sphere).collect()
-            })
-            .collect();
+        let parts: Vec<Vec<Sized>> = parallel::map_chunks(&nodes, 16, |nodes| {
+            let mut coefficients = Coefficients::default();
+            let sphere = |node: &SizeNode| {
+                coefficients.fill(size_per_um * node.radius_um, index);
+                let sums = [
+                    coefficients.scattered,
+                    coefficients.absorbed,
+                    coefficients.forward(),
+                ];
+                // Scaled to scatter as much as any other, whatever its size.
+                let factor = coefficients.scattered.sqrt().recip();
+                (node.share, sums, pairs(&coefficients, factor).collect())
+            };
+            nodes.iter().map(sphere).collect()
+        });
         let mut prepared = Prepared {
             sizes: Vec::with_capacity(nodes.len()),
             pairs: Vec::new(),
@@ -289,14 +286,11 @@ impl Particles {
 impl Prepared {
     fn matrices(&self, cosines: &[f64]) -> Vec<ScatteringMatrix> {
         let scale = 0.5 / (PI * self.scattered);
-        let blocks: Vec<[ScatteringMatrix; LANES]> = cosines
-            .par_chunks(LANES)
-            .map(|cosines| {
-                let last = cosines[cosines.len() - 1];
-                let padded = std::array::from_fn(|lane| *cosines.get(lane).unwrap_or(&last));
-                self.block(&Angles::new(&padded, self.most_terms))
-            })
-            .collect();
+        let blocks = parallel::map_chunks(cosines, LANES, |cosines| {
+            let last = cosines[cosines.len() - 1];
+            let padded = std::array::from_fn(|lane| *cosines.get(lane).unwrap_or(&last));
+            self.block(&Angles::new(&padded, self.most_terms))
+        });
         let all = blocks.into_iter().flatten().take(cosines.len());
         all.map(|matrix| matrix.scaled(scale)).collect()
     }

@@ -1,0 +1,80 @@
+//! Loops whose turns do not depend on each other: on all threads with the feature `parallel`, one after the other without.
+//! Results keep their order, so that both give the same bits.
+
+#[cfg(feature = "parallel")]
+use rayon::prelude::*;
+
+/// `f(0)` to `f(count - 1)`.
+pub(crate) fn map<T: Send>(count: usize, f: impl Fn(usize) -> T + Send + Sync) -> Vec<T> {
+    #[cfg(feature = "parallel")]
+    return (0..count).into_par_iter().map(f).collect();
+    #[cfg(not(feature = "parallel"))]
+    (0..count).map(f).collect()
+}
+
+/// `f(0)` to `f(count - 1)`, or an error of one of them.
+///
+/// # Errors
+/// As `f`.
+pub(crate) fn try_map<T: Send, E: Send>(
+    count: usize,
+    f: impl Fn(usize) -> Result<T, E> + Send + Sync,
+) -> Result<Vec<T>, E> {
+    #[cfg(feature = "parallel")]
+    return (0..count).into_par_iter().map(f).collect();
+    #[cfg(not(feature = "parallel"))]
+    (0..count).map(f).collect()
+}
+
+/// Calls `f(index, chunk)` for each chunk of `size` values; the last may be shorter.
+pub(crate) fn for_each_chunk<T: Send>(
+    values: &mut [T],
+    size: usize,
+    f: impl Fn(usize, &mut [T]) + Send + Sync,
+) {
+    #[cfg(feature = "parallel")]
+    values
+        .par_chunks_mut(size)
+        .enumerate()
+        .for_each(|(index, chunk)| f(index, chunk));
+    #[cfg(not(feature = "parallel"))]
+    for (index, chunk) in values.chunks_mut(size).enumerate() {
+        f(index, chunk);
+    }
+}
+
+/// `f` of each chunk of `size` values; the last may be shorter.
+pub(crate) fn map_chunks<S: Sync, T: Send>(
+    values: &[S],
+    size: usize,
+    f: impl Fn(&[S]) -> T + Send + Sync,
+) -> Vec<T> {
+    map(values.len().div_ceil(size), |index| {
+        let first = index * size;
+        f(&values[first..values.len().min(first + size)])
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_turn_is_taken_once_and_in_its_place() {
+        for count in [0usize, 1, 7, 1000] {
+            let squares: Vec<usize> = (0..count).map(|i| i * i).collect();
+            assert_eq!(map(count, |i| i * i), squares);
+            assert_eq!(try_map(count, |i| Ok::<_, ()>(i * i)), Ok(squares.clone()));
+            let mut values = vec![0; count];
+            for_each_chunk(&mut values, 3, |index, chunk| {
+                for (k, value) in chunk.iter_mut().enumerate() {
+                    *value += (3 * index + k) * (3 * index + k);
+                }
+            });
+            assert_eq!(values, squares);
+            let sums: Vec<usize> = squares.chunks(4).map(|c| c.iter().sum()).collect();
+            assert_eq!(map_chunks(&squares, 4, |c| c.iter().sum::<usize>()), sums);
+        }
+        assert_eq!(try_map(9, |i| if i == 5 { Err(i) } else { Ok(i) }), Err(5));
+    }
+}
