@@ -1,9 +1,9 @@
-//! The one place that says how world axes and compass angles correspond.
+//! Conversion between unit vectors in world axes and compass angles.
 
 use glam::DVec3;
 
-/// Unit vector of a direction given by its azimuth (degrees clockwise from north) and elevation (degrees above the
-/// horizon): x east, y up, z south.
+/// Unit vector in world axes (x east, y up, z south) of the direction at `azimuth_deg`, clockwise from north, and
+/// `elevation_deg`, above the horizon.
 pub fn direction(azimuth_deg: f64, elevation_deg: f64) -> DVec3 {
     let (sin_azimuth, cos_azimuth) = azimuth_deg.to_radians().sin_cos();
     let (sin_elevation, cos_elevation) = elevation_deg.to_radians().sin_cos();
@@ -36,14 +36,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn compass_points_lie_where_the_convention_says() {
+    fn compass_points_map_to_world_axes() {
         assert!(direction(0.0, 0.0).distance(-DVec3::Z) < 1e-15);
         assert!(direction(90.0, 0.0).distance(DVec3::X) < 1e-15);
         assert!(direction(0.0, 90.0).distance(DVec3::Y) < 1e-15);
     }
 
     #[test]
-    fn angles_survive_the_way_there_and_back() {
+    fn angles_round_trip() {
         for azimuth in [0.0, 33.0, 179.0, 180.0, 271.5, 359.0] {
             for elevation in [-89.0, -10.0, 0.0, 0.01, 45.0, 89.0] {
                 let v = direction(azimuth, elevation);

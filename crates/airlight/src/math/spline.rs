@@ -1,14 +1,14 @@
-//! Integrals of a smooth function, known only at some nodes, times a kernel that is not smooth.
+//! Quadrature weights for the product of a smooth function, known at some nodes, and a kernel that is not smooth.
 
-/// Fewest nodes joined by a spline; fewer are joined by straight lines.
+/// Smallest number of nodes for a spline; fewer are interpolated linearly.
 const SPLINE_NODES: usize = 5;
 
-/// Weights `w_k` such that `sum_k w_k r(node_k)` is the integral over `first..=last` of `kernel(x) r(x)`, with r interpolated
-/// between the nodes: by the natural cubic spline from 5 nodes on, by straight lines below, and held constant beyond the end
-/// nodes. Trapezoidal rule in steps of `step`.
+/// Weights `w_k` such that `sum_k w_k r(node_k)` is the integral over `first..=last` of `kernel(x) r(x)`, with `r`
+/// interpolated between the nodes (natural cubic spline from 5 nodes on, linearly below) and constant beyond the end nodes.
+/// Trapezoidal rule in steps of `step`.
 ///
-/// Straight lines give weights of the kernel's sign, which a spline through 3 or 4 nodes does not. `nodes` must be strictly
-/// increasing and not empty.
+/// Linear interpolation gives weights with the kernel's sign; a spline through 3 or 4 nodes does not. `nodes` must be
+/// strictly increasing and not empty.
 pub fn product_weights(
     nodes: &[f64],
     (first, last): (f64, f64),
@@ -17,8 +17,8 @@ pub fn product_weights(
 ) -> Vec<[f64; 3]> {
     let n = nodes.len();
     let spline = n >= SPLINE_NODES;
-    // The interpolant is linear in the values r_k and in the second derivatives m_k; gather the integrals that multiply
-    // each, and only then turn those of m_k into more of those of r_k.
+    // The interpolant is linear in the values r_k and in the second derivatives m_k: accumulate the integrals that multiply
+    // each, then express those of m_k through the r_k.
     let mut values = vec![[0.0; 3]; n];
     let mut curvatures = vec![[0.0; 3]; n];
     let steps = ((last - first) / step).round() as usize;
@@ -53,12 +53,14 @@ fn add(sum: &mut [f64; 3], term: [f64; 3], factor: f64) {
     }
 }
 
+/// Adds the weights of the second derivatives to those of the values.
+///
 /// The second derivatives of the natural spline are `m = A^-1 B r` with A symmetric and tridiagonal, so
-/// `c . m = (B^T A^-1 c) . r`: one tridiagonal solve for the weights of all nodes.
+/// `c . m = (B^T A^-1 c) . r`: one tridiagonal solve gives the weights of all nodes.
 fn absorb_curvatures(nodes: &[f64], values: &mut [[f64; 3]], mut c: Vec<[f64; 3]>) {
     let last = nodes.len() - 1;
     let h: Vec<f64> = nodes.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    // Elimination over the inner nodes 1..last; the end nodes have no second derivative.
+    // Elimination over the inner nodes 1..last; the second derivative is 0 at the end nodes.
     let mut diagonal = vec![0.0; last];
     for i in 1..last {
         diagonal[i] = 2.0 * (h[i - 1] + h[i]);
@@ -84,9 +86,9 @@ fn absorb_curvatures(nodes: &[f64], values: &mut [[f64; 3]], mut c: Vec<[f64; 3]
     }
 }
 
-/// Mean of `curve` about each node: weighted by a triangle, symmetric about the node, that reaches half-way to the nearer
-/// neighbour but no further than `widest`. A lone node takes `widest`.
-pub fn local_means(nodes: &[f64], widest: f64, curve: impl Fn(f64) -> f64) -> Vec<f64> {
+/// Mean of `curve` about each node, weighted by a symmetric triangle that extends half-way to the nearer neighbour, at most
+/// `max_half_width`. A single node uses `max_half_width`.
+pub fn local_means(nodes: &[f64], max_half_width: f64, curve: impl Fn(f64) -> f64) -> Vec<f64> {
     const INTERVALS: i32 = 80;
     (0..nodes.len())
         .map(|k| {
@@ -94,12 +96,12 @@ pub fn local_means(nodes: &[f64], widest: f64, curve: impl Fn(f64) -> f64) -> Ve
                 .checked_sub(1)
                 .map_or(f64::INFINITY, |b| nodes[k] - nodes[b]);
             let above = nodes.get(k + 1).map_or(f64::INFINITY, |a| a - nodes[k]);
-            let reach = (below.min(above) / 2.0).min(widest);
+            let half_width = (below.min(above) / 2.0).min(max_half_width);
             let (mut sum, mut total) = (0.0, 0.0);
             for j in -INTERVALS..=INTERVALS {
                 let offset = j as f64 / INTERVALS as f64;
                 let weight = 1.0 - offset.abs();
-                sum += weight * curve(nodes[k] + offset * reach);
+                sum += weight * curve(nodes[k] + offset * half_width);
                 total += weight;
             }
             sum / total
@@ -149,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn straight_lines_are_integrated_exactly_by_every_kind() {
+    fn linear_responses_are_integrated_exactly() {
         for nodes in [&NODES[2..3], &NODES[2..5], &NODES[1..6], &NODES[..]] {
             let (first, last) = (nodes[0], nodes[nodes.len() - 1]);
             let line = |nm: f64| 3.0 - nm.clamp(first, last) / 400.0;
@@ -158,16 +160,16 @@ mod tests {
     }
 
     #[test]
-    fn weights_are_the_integrals_of_the_natural_spline() {
-        // Second derivatives by relaxation of the spline's own equations: slow, plain and independent of the adjoint.
+    fn weights_integrate_the_natural_spline() {
+        // Second derivatives by relaxation of the spline equations: slow, but independent of the adjoint solve.
         let r = |nm: f64| (nm / 90.0).sin() + 2.0;
         let y: Vec<f64> = NODES.iter().map(|&x| r(x)).collect();
         let mut m = [0.0; 7];
         for _ in 0..400 {
             for i in 1..6 {
                 let (a, b) = (NODES[i] - NODES[i - 1], NODES[i + 1] - NODES[i]);
-                let bend = 6.0 * ((y[i + 1] - y[i]) / b - (y[i] - y[i - 1]) / a);
-                m[i] = (bend - a * m[i - 1] - b * m[i + 1]) / (2.0 * (a + b));
+                let rhs = 6.0 * ((y[i + 1] - y[i]) / b - (y[i] - y[i - 1]) / a);
+                m[i] = (rhs - a * m[i - 1] - b * m[i + 1]) / (2.0 * (a + b));
             }
         }
         let spline = |nm: f64| {
@@ -183,12 +185,12 @@ mod tests {
     }
 
     #[test]
-    fn local_means_keep_straight_lines_and_stay_within_their_reach() {
+    fn local_means_preserve_linear_functions_and_stay_local() {
         let means = local_means(&NODES, 20.0, |nm| 2.0 * nm);
         for (mean, node) in means.iter().zip(NODES) {
             assert!((mean - 2.0 * node).abs() < 1e-9);
         }
-        // Half-way from 400 to 370 is 385.
+        // Half-way between 370 and 400 is 385.
         assert_eq!(
             local_means(&NODES, 20.0, |nm| if nm < 385.0 { 1.0 } else { 0.0 })[1],
             0.0

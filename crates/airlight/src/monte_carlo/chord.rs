@@ -1,4 +1,4 @@
-//! A straight way through the layers: what lies on it, where to stop on it, and how much light passes.
+//! Straight rays through the layers: their segments, columns, and sampling of distances along them.
 
 use super::layers::Layers;
 use crate::math::quadrature::FixedRule;
@@ -6,49 +6,49 @@ use crate::math::random::Random;
 use crate::transfer::shell::{MAX_CONSTITUENTS, PerConstituent};
 use glam::DVec3;
 
-/// How a straight way ends.
+/// How a ray ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
-    /// On the ground.
+    /// At the ground.
     Ground,
-    /// Beyond the air, or wherever there is nothing to meet.
+    /// Above the atmosphere, or at a distance where nothing is hit.
     Space,
 }
 
-/// A half line in the coordinate `t` that is 0 where it comes closest to the planet's centre: the squared distance from
-/// there is `tangent + t^2`.
+/// A ray in the coordinate `t` that is 0 at the point closest to the planet's centre: the squared radius is
+/// `tangent + t^2`.
 #[derive(Clone, Copy, Debug)]
 pub struct HalfLine {
-    /// Squared distance of the closest point from the centre, m^2.
+    /// Squared radius of the closest point, m^2.
     pub tangent: f64,
-    /// Where it starts, m.
+    /// Coordinate of the origin, m.
     pub start: f64,
 }
 
-/// What a half line crosses.
+/// A ray traced through the layers.
 #[derive(Clone, Debug, Default)]
 pub struct Chord {
     tangent: f64,
     pieces: Vec<Piece>,
-    /// Columns of the whole chord.
+    /// Columns over the whole chord.
     pub columns: PerConstituent,
     residual: f64,
 }
 
-/// A stretch within one layer.
+/// The part of a chord within one layer.
 #[derive(Clone, Copy, Debug)]
 struct Piece {
     layer: usize,
     from: f64,
     to: f64,
-    /// Columns before it.
+    /// Columns from the start of the chord to `from`.
     before: PerConstituent,
-    /// Residual depth before it.
+    /// Residual optical depth from the start of the chord to `from`.
     residual_before: f64,
 }
 
 impl HalfLine {
-    /// From a place (m, from the planet's centre) along a unit vector.
+    /// Ray from a position (m, relative to the planet's centre) along a unit vector.
     #[inline(always)]
     pub fn new(place: DVec3, direction: DVec3) -> Self {
         Self {
@@ -57,27 +57,27 @@ impl HalfLine {
         }
     }
 
-    /// Whether the planet is in the way.
+    /// True if the ray hits the planet.
     #[inline(always)]
     pub fn meets_ground(&self, layers: &Layers) -> bool {
         self.start < 0.0 && self.tangent < layers.edge(0)
     }
 
-    /// Calls `visit(layer, from, to)` for each stretch, from inside the air until ground or space.
+    /// Calls `visit(layer, from, to)` for each segment, from the origin inside the atmosphere to the ground or space.
     #[inline(always)]
-    fn walk(&self, layers: &Layers, mut visit: impl FnMut(usize, f64, f64)) -> End {
+    fn for_each_segment(&self, layers: &Layers, mut visit: impl FnMut(usize, f64, f64)) -> End {
         let mut t = self.start;
         let mut layer = layers.at(self.tangent + t * t);
         loop {
-            let falls = t < 0.0 && self.tangent < layers.edge(layer);
-            let edge = layers.edge(if falls { layer } else { layer + 1 });
+            let descends = t < 0.0 && self.tangent < layers.edge(layer);
+            let edge = layers.edge(if descends { layer } else { layer + 1 });
             let reach = (edge - self.tangent).max(0.0).sqrt();
-            let to = if falls { -reach } else { reach };
+            let to = if descends { -reach } else { reach };
             if to > t {
                 visit(layer, t, to);
                 t = to;
             }
-            match falls {
+            match descends {
                 true if layer == 0 => return End::Ground,
                 true => layer -= 1,
                 false if layer == layers.last() => return End::Space,
@@ -86,12 +86,12 @@ impl HalfLine {
         }
     }
 
-    /// The stand-in's columns to space, and the residual depth; for a line that does not meet the ground.
+    /// Columns of the control medium to space, and the residual optical depth; for a ray that does not hit the ground.
     #[inline(always)]
     pub fn to_space(self, layers: &Layers) -> (PerConstituent, f64) {
         let mut columns = [0.0; MAX_CONSTITUENTS];
         let mut residual = 0.0;
-        self.walk(layers, |layer, from, to| {
+        self.for_each_segment(layers, |layer, from, to| {
             let layer = layers.layer(layer);
             let more = layer.columns(layer.moments(self.tangent, from, to), MAX_CONSTITUENTS);
             for (column, more) in columns.iter_mut().zip(more) {
@@ -102,8 +102,8 @@ impl HalfLine {
         (columns, residual)
     }
 
-    /// Calls `at(squared radius, layer)` where what the stand-in leaves out is looked at on the way to space: a Poisson
-    /// process of the density `residual_per_m`, whose first event lies at the residual depth `first`.
+    /// Calls `at(squared radius, layer)` at the residual collisions on the way to space: a Poisson process with the rate
+    /// `residual_per_m`, whose first event is at the residual optical depth `first`.
     #[cold]
     pub fn residual_places(
         &self,
@@ -112,22 +112,22 @@ impl HalfLine {
         random: &mut Random,
         mut at: impl FnMut(f64, usize),
     ) {
-        let mut left = first;
-        self.walk(layers, |layer, from, to| {
+        let mut remaining = first;
+        self.for_each_segment(layers, |layer, from, to| {
             let rate = layers.layer(layer).residual_per_m;
             let mut t = from;
-            while rate * (to - t) > left {
-                t += left / rate;
+            while rate * (to - t) > remaining {
+                t += remaining / rate;
                 at(self.tangent + t * t, layer);
-                left = -random.unit().ln();
+                remaining = -random.unit().ln();
             }
-            left -= rate * (to - t);
+            remaining -= rate * (to - t);
         });
     }
 }
 
 impl Chord {
-    /// Crosses the layers along a half line that starts inside the air.
+    /// Traces a ray that starts inside the atmosphere.
     #[inline(always)]
     pub fn cross(&mut self, layers: &Layers, line: HalfLine) -> End {
         self.tangent = line.tangent;
@@ -135,7 +135,7 @@ impl Chord {
         let mut columns = [0.0; MAX_CONSTITUENTS];
         let mut residual = 0.0;
         let pieces = &mut self.pieces;
-        let end = line.walk(layers, |layer, from, to| {
+        let end = line.for_each_segment(layers, |layer, from, to| {
             pieces.push(Piece {
                 layer,
                 from,
@@ -155,7 +155,7 @@ impl Chord {
         end
     }
 
-    /// Ends it at `until`, if it goes so far.
+    /// Shortens the chord to end at `until`, if it extends further.
     #[cold]
     pub fn cut(&mut self, layers: &Layers, until: f64) {
         if self.pieces.is_empty() || until >= self.end() {
@@ -170,7 +170,7 @@ impl Chord {
         self.residual = piece.residual_before + rate * (piece.to - piece.from);
     }
 
-    /// Columns of the true densities from the start to the end, by Gauss's rule of 8 points in each layer.
+    /// Columns of the true densities over the chord, by an 8-point Gauss rule in each layer.
     pub fn true_columns(&self, layers: &Layers) -> PerConstituent {
         static RULE: FixedRule<8> = FixedRule::fixed();
         let mut columns = [0.0; MAX_CONSTITUENTS];
@@ -185,17 +185,17 @@ impl Chord {
         columns
     }
 
-    /// Where it starts.
+    /// Coordinate of the start, m.
     pub fn start(&self) -> f64 {
         self.pieces.first().map_or(0.0, |piece| piece.from)
     }
 
-    /// Where it ends.
+    /// Coordinate of the end, m.
     pub fn end(&self) -> f64 {
         self.pieces.last().map_or(0.0, |piece| piece.to)
     }
 
-    /// The layer at `t`.
+    /// Index of the layer at `t`.
     #[inline(always)]
     pub fn layer_at(&self, t: f64) -> usize {
         self.pieces[self.piece_at(t)].layer
@@ -209,7 +209,7 @@ impl Chord {
             - 1
     }
 
-    /// Columns from the start to `t`.
+    /// Columns of the control medium from the start to `t`.
     #[inline(always)]
     pub fn columns_to(&self, layers: &Layers, t: f64) -> PerConstituent {
         let piece = &self.pieces[self.piece_at(t)];
@@ -226,8 +226,8 @@ impl Chord {
         columns
     }
 
-    /// Where the stand-in's optical depth from the start is `depth`, for constituents of the extinctions given (1/m at
-    /// density 1): Newton's method, kept inside its bracket, on a polynomial of degree 5, to rounding.
+    /// Coordinate at which the optical depth of the control medium from the start is `depth`, for the extinction of each
+    /// constituent in 1/m at density 1: bracketed Newton iteration on a polynomial of degree 5, to rounding.
     pub fn at_depth(&self, layers: &Layers, extinction: &PerConstituent, depth: f64) -> f64 {
         let of = |columns: &PerConstituent| -> f64 {
             extinction.iter().zip(columns).map(|(e, c)| e * c).sum()
@@ -261,13 +261,13 @@ impl Chord {
             false => return high,
         };
         for _ in 0..60 {
-            let miss = depth_to(t) - target;
-            if miss > 0.0 {
+            let excess = depth_to(t) - target;
+            if excess > 0.0 {
                 high = t;
             } else {
                 low = t;
             }
-            let newton = t - miss / rate(t);
+            let newton = t - excess / rate(t);
             let next = match newton > low && newton < high {
                 true => newton,
                 false => 0.5 * (low + high),
@@ -281,7 +281,7 @@ impl Chord {
         t
     }
 
-    /// As [`HalfLine::residual_places`], from the start until `until`: most often nowhere.
+    /// As [`HalfLine::residual_places`], from the start to `until`. Residual collisions are rare.
     #[inline(always)]
     pub fn residual(
         &self,

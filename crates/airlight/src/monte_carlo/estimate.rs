@@ -1,15 +1,15 @@
-//! Means, and how far they may be off.
+//! Means of Monte Carlo samples and their standard errors.
 
 use super::path::ORDERS;
 
-/// What the paths of a bundle found: one value for each order and wavelength.
+/// Mean over the paths of a bundle: one value for each order and wavelength.
 pub type Sample = [Vec<f64>; ORDERS];
 
-/// Runs of independent samples, gathered: mean and spread of each order, and of their sum, at each wavelength.
+/// Accumulated independent samples: mean and variance of each order, and of their sum, at each wavelength.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tally {
     count: u64,
-    /// The orders, and last their sum.
+    /// The orders, then their sum.
     parts: [Vec<Moments>; ORDERS + 1],
 }
 
@@ -35,7 +35,7 @@ impl Moments {
     }
 }
 
-/// A value at each wavelength of a grid, and its standard error.
+/// A value at each wavelength of a grid, with its standard error.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Measured {
     /// Mean over all paths.
@@ -44,22 +44,22 @@ pub struct Measured {
     pub standard_error: Vec<f64>,
 }
 
-/// Radiance along a line of sight, W m^-2 sr^-1 nm^-1, one value a wavelength of the grid; without the sun's own disc.
+/// Radiance along a view ray, W m^-2 sr^-1 nm^-1, at each wavelength of the grid, without the direct light of the sun's disc.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Estimate {
     /// Mean over all paths.
     pub mean: Vec<f64>,
-    /// Standard error of the mean, from the spread among independent bundles of paths. The mean is within twice that of
-    /// the truth 19 times in 20.
+    /// Standard error of the mean, from the spread of independent bundles of paths. The mean is within two standard errors of
+    /// the true value in 95 % of cases.
     pub standard_error: Vec<f64>,
-    /// The part of light scattered or reflected once, twice, three and four times, and more often.
+    /// Light scattered or reflected once, twice, three and four times, and five times or more.
     pub orders: [Measured; ORDERS],
-    /// Paths followed.
+    /// Number of paths.
     pub paths: u64,
 }
 
 impl Tally {
-    /// Nothing yet, at so many wavelengths.
+    /// An empty tally for a number of wavelengths.
     pub fn new(wavelengths: usize) -> Self {
         Self {
             count: 0,
@@ -86,7 +86,7 @@ impl Tally {
         self.count
     }
 
-    /// Means and standard errors; `factors` (one a wavelength) on all of them.
+    /// Means and standard errors, multiplied by `factors`, one for each wavelength.
     pub(super) fn estimate(&self, factors: &[f64], paths: u64) -> Estimate {
         let measured = |part: usize| {
             let of = |value: &dyn Fn(&Moments) -> f64| -> Vec<f64> {
@@ -119,7 +119,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn means_and_errors_are_those_of_the_textbook() {
+    fn means_and_standard_errors_match_the_definition() {
         let mut tally = Tally::new(1);
         let values = [1.0, 4.0, 2.0, 7.0];
         for value in values {
@@ -130,7 +130,7 @@ mod tests {
         let estimate = tally.estimate(&[2.0], 4);
         let mean = values.iter().sum::<f64>() / 4.0;
         let variance = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / 3.0;
-        // Two orders of the same, times the factor.
+        // Two equal orders, times the factor.
         assert!((estimate.mean[0] - 4.0 * mean).abs() < 1e-12);
         assert!((estimate.standard_error[0] - 4.0 * (variance / 4.0).sqrt()).abs() < 1e-12);
         assert!((estimate.orders[1].mean[0] - 2.0 * mean).abs() < 1e-12);

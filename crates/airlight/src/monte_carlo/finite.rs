@@ -1,4 +1,4 @@
-//! Lines of sight that end at a distance: what the air adds before a thing there, and what it leaves of its light.
+//! View rays that end at a distance: path radiance and transmittance.
 
 use super::chord::{Chord, HalfLine};
 use super::estimate::{Estimate, Sample};
@@ -6,12 +6,11 @@ use super::solver::MonteCarlo;
 use glam::DVec3;
 
 impl MonteCarlo {
-    /// Path radiance: light that the air scatters into the line of sight within `distance_m` of the eye (m; infinite: up to
-    /// space), all orders, that of the ground's light too. What lies at the end is not seen, neither a thing nor the ground,
-    /// where the line ends at the latest. With [`MonteCarlo::transmittance`] `T` and this `S`, a thing of the radiance `L` is seen as
-    /// `T L + S`.
+    /// Path radiance: light of all orders, including light reflected by the ground, scattered into the view ray within
+    /// `distance_m` of the eye (m; infinity for a ray to space). The radiance of what lies at the end, an object or the ground,
+    /// is not included. With [`MonteCarlo::transmittance`] `T` and this `S`, an object of radiance `L` appears as `T L + S`.
     ///
-    /// Everything else as [`MonteCarlo::radiance`] has it; nothing is scattered into a distance that is not above 0.
+    /// Parameters as for [`MonteCarlo::radiance`]; 0 if the distance is not above 0.
     pub fn path_radiance(
         &self,
         eye_altitude_m: f64,
@@ -22,7 +21,7 @@ impl MonteCarlo {
         self.mean_over_paths(self.scene(eye_altitude_m, sun, view, Some(distance_m)))
     }
 
-    /// What one bundle of paths finds of it: as [`MonteCarlo::sample`] of the whole line.
+    /// Path radiance from one bundle of paths, as [`MonteCarlo::sample`] for the whole ray.
     pub fn sample_path(
         &self,
         eye_altitude_m: f64,
@@ -35,11 +34,11 @@ impl MonteCarlo {
         self.sunlit_bundle(scene, bundle)
     }
 
-    /// Transmittance at each wavelength of the grid from the eye to `distance_m` along `view` (infinite: to space), or to the
-    /// ground where that is nearer. No random numbers: Gauss's rule, to 1e-6 of the optical depth.
+    /// Transmittance at each wavelength of the grid from the eye to `distance_m` along `view` (infinity: to space), or to the
+    /// ground if that is nearer. Deterministic: Gauss quadrature, to 1e-6 of the optical depth.
     pub fn transmittance(&self, eye_altitude_m: f64, view: DVec3, distance_m: f64) -> Vec<f64> {
         let grid = self.grid().wavelengths_nm();
-        // Any sun does.
+        // The transmittance does not depend on the sun.
         let Some(scene) = self.scene(eye_altitude_m, DVec3::Y, view, Some(distance_m)) else {
             return vec![1.0; grid.len()];
         };

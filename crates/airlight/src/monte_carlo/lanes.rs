@@ -1,4 +1,4 @@
-//! The air's coefficients at the N wavelengths of one block of lanes.
+//! Optical coefficients of the air at the N wavelengths of a block of lanes.
 
 use crate::atmosphere::Atmosphere;
 use crate::math::random::Random;
@@ -8,17 +8,17 @@ use crate::optics::{MatrixRatios, PhaseFunction, PhaseSampler};
 use crate::spectrum::Spectrum;
 use crate::transfer::shell::{MAX_CONSTITUENTS, PerConstituent};
 
-/// One value a constituent in each lane.
+/// One spectrum for each constituent.
 pub type PerScatterer<const N: usize> = [Spectrum<N>; MAX_CONSTITUENTS];
 
-/// What the constituents do to light at N wavelengths.
+/// Optical coefficients of the constituents at N wavelengths.
 #[derive(Clone, Debug)]
 pub struct Lanes<const N: usize> {
-    /// The wavelengths, nm.
+    /// Wavelength of each lane, nm.
     pub wavelengths_nm: [f64; N],
     /// Extinction of each constituent at density 1, 1/m.
     extinction: Vec<Spectrum<N>>,
-    /// The same, lane by lane.
+    /// Extinction as above, lane by lane.
     extinction_of_lane: [PerConstituent; N],
     /// Scattering of each constituent at density 1, 1/m.
     scattering: Vec<Spectrum<N>>,
@@ -27,18 +27,18 @@ pub struct Lanes<const N: usize> {
     pub ground_albedo: Spectrum<N>,
 }
 
-/// Elements of a scattering matrix over the phase function in all lanes, as [`MatrixRatios`] has them.
+/// Elements of a scattering matrix relative to the phase function in all lanes, as [`MatrixRatios`].
 #[derive(Clone, Copy, Debug)]
 pub struct Ratios<const N: usize> {
-    /// Natural light to polarised.
+    /// Natural light to linear polarisation.
     pub f12: Spectrum<N>,
-    /// Polarised in or across the plane.
+    /// Linear polarisation parallel or perpendicular to the scattering plane, to itself.
     pub f22: Spectrum<N>,
-    /// At 45 degrees.
+    /// Linear polarisation at 45 degrees, to itself.
     pub f33: Spectrum<N>,
-    /// Circular to linear.
+    /// Circular to linear polarisation at 45 degrees.
     pub f34: Spectrum<N>,
-    /// Circular.
+    /// Circular polarisation to itself.
     pub f44: Spectrum<N>,
 }
 
@@ -46,22 +46,22 @@ pub struct Ratios<const N: usize> {
 #[derive(Clone, Debug)]
 struct Phase<const N: usize> {
     function: PhaseFunction,
-    /// Of molecules, what [`Depolarization::polarised_shares`] says.
+    /// For molecules, [`Depolarization::polarised_shares`].
     molecules: Option<[Spectrum<N>; 2]>,
     polarises: bool,
     shape: Shape<N>,
-    /// One for all lanes, or one a lane.
+    /// One sampler for all lanes, or one for each lane.
     samplers: Vec<PhaseSampler>,
 }
 
-/// How a phase function depends on the lane.
+/// Dependence of a phase function on the lane.
 #[derive(Clone, Debug)]
 enum Shape<const N: usize> {
-    /// Not at all.
+    /// The same in all lanes.
     Same,
     /// `a + b mu^2`.
     Square(Spectrum<N>, Spectrum<N>),
-    /// Somehow.
+    /// An arbitrary function in each lane.
     ByLane,
 }
 
@@ -108,7 +108,7 @@ impl<const N: usize> Phase<N> {
 }
 
 impl<const N: usize> Ratios<N> {
-    /// No polarisation.
+    /// Scattering that removes all polarisation.
     pub const NONE: Self = Self {
         f12: Spectrum::ZERO,
         f22: Spectrum::ZERO,
@@ -117,7 +117,7 @@ impl<const N: usize> Ratios<N> {
         f44: Spectrum::ZERO,
     };
 
-    /// Of molecules (Hansen & Travis 1974, eq. 2.15), with the shares of [`Depolarization::polarised_shares`].
+    /// Matrix of molecules (Hansen & Travis 1974, eq. 2.15) with the values of [`Depolarization::polarised_shares`].
     #[inline(always)]
     fn of_molecules([share, circular]: [Spectrum<N>; 2], mu: f32) -> Self {
         let even = share * (0.75 * (1.0 + mu * mu));
@@ -132,7 +132,7 @@ impl<const N: usize> Ratios<N> {
         }
     }
 
-    /// One lane after the other.
+    /// Gathers the lanes.
     fn by_lane(of: impl Fn(usize) -> MatrixRatios) -> Self {
         let mut all = Self::NONE;
         for lane in 0..N {
@@ -146,7 +146,7 @@ impl<const N: usize> Ratios<N> {
         all
     }
 
-    /// Adds another, times factors.
+    /// Adds `share * other`.
     #[inline(always)]
     fn add(&mut self, other: &Self, share: Spectrum<N>) {
         self.f12 = self.f12.mul_acc(other.f12, share);
@@ -194,7 +194,7 @@ impl<const N: usize> Lanes<N> {
         &self.extinction_of_lane[lane]
     }
 
-    /// Optical depth of columns; extinction of densities.
+    /// Optical depth of columns, or extinction coefficient (1/m) of densities.
     #[inline(always)]
     pub fn extinction(&self, columns: &PerConstituent) -> Spectrum<N> {
         let mut depth = Spectrum::ZERO;
@@ -210,7 +210,7 @@ impl<const N: usize> Lanes<N> {
         (Spectrum::ZERO - self.extinction(columns)).exp()
     }
 
-    /// Scattering of each constituent at the densities given, 1/m.
+    /// Scattering coefficient of each constituent at the given densities, 1/m.
     #[inline(always)]
     pub fn scattering(&self, densities: &PerConstituent) -> PerScatterer<N> {
         let mut out = [Spectrum::ZERO; MAX_CONSTITUENTS];
@@ -220,7 +220,7 @@ impl<const N: usize> Lanes<N> {
         out
     }
 
-    /// Phase function of each constituent that scatters, 1/sr.
+    /// Phase function of each scattering constituent, 1/sr.
     #[inline(always)]
     pub fn phases(&self, mu: f64) -> PerScatterer<N> {
         let mut out = [Spectrum::ZERO; MAX_CONSTITUENTS];
@@ -232,8 +232,8 @@ impl<const N: usize> Lanes<N> {
         out
     }
 
-    /// The scattering matrix of all constituents over their phase function, where they scatter so much with these phase
-    /// functions at the cosine `mu`.
+    /// Scattering matrix of the mixture of all constituents relative to its phase function, at the cosine `mu`, for the
+    /// scattering coefficients and phase functions of the constituents.
     #[inline(always)]
     pub fn ratios(
         &self,
@@ -260,17 +260,18 @@ impl<const N: usize> Lanes<N> {
         sum
     }
 
-    /// Draws the cosine of a scattering angle as `scattering` shares it among constituents in `lane`.
+    /// Draws the cosine of a scattering angle in `lane`: selects a constituent by its scattering coefficient, then samples its
+    /// phase function.
     #[inline(always)]
     pub fn sample(&self, scattering: &PerScatterer<N>, lane: usize, random: &mut Random) -> f64 {
         let whole: f32 = scattering.iter().map(|s| s[lane]).sum();
-        let mut left = random.unit() as f32 * whole;
+        let mut remaining = random.unit() as f32 * whole;
         let mut last = 0;
         for (c, s) in scattering.iter().enumerate().take(self.phases.len()) {
             if s[lane] > 0.0 {
                 last = c;
-                left -= s[lane];
-                if left <= 0.0 {
+                remaining -= s[lane];
+                if remaining <= 0.0 {
                     break;
                 }
             }
@@ -280,28 +281,32 @@ impl<const N: usize> Lanes<N> {
     }
 }
 
-/// `1 - exp(-depth)` in every lane without its cancellation.
+/// `1 - exp(-depth)` in each lane without cancellation.
 #[inline(always)]
 pub fn absorbed<const N: usize>(depth: Spectrum<N>) -> Spectrum<N> {
-    let passed = (Spectrum::ZERO - depth).exp();
+    let transmittance = (Spectrum::ZERO - depth).exp();
     Spectrum::from_fn(|i| {
         let x = depth[i];
-        // Beyond the fifth power it is below 1e-8 of the sum.
+        // The next term of the series is below 1e-8 of the sum.
         let series = x
             * (1.0
                 - x * (0.5
                     - x * (1.0 / 6.0 - x * (1.0 / 24.0 - x * (1.0 / 120.0 - x * (1.0 / 720.0))))));
-        if x < 0.1 { series } else { 1.0 - passed[i] }
+        if x < 0.1 {
+            series
+        } else {
+            1.0 - transmittance[i]
+        }
     })
 }
 
-/// The sum over constituents.
+/// Sum over the constituents.
 #[inline(always)]
 pub fn sum<const N: usize>(parts: &PerScatterer<N>) -> Spectrum<N> {
     parts.iter().fold(Spectrum::ZERO, |sum, part| sum + *part)
 }
 
-/// The sum over constituents of scattering times phase function.
+/// Sum over the constituents of scattering coefficient times phase function.
 #[inline(always)]
 pub fn phased<const N: usize>(
     scattering: &PerScatterer<N>,

@@ -1,27 +1,27 @@
-//! A stand-in for the air whose columns along straight lines are exact polynomials.
+//! The control medium: a layered approximation of the air whose columns along straight rays are exact polynomials.
 //!
-//! The shell is cut into layers in each of which every density is a parabola in the square of the distance from the
-//! planet's centre. That square is a parabola in the distance along any straight line, so columns need no quadrature.
-//! The stand-in only says where to look: what it leaves out of the true densities is made up for, without bias, by
+//! The atmosphere is divided into layers in each of which every density is a parabola in the squared radius. The squared
+//! radius is a parabola in the distance along a ray, so columns need no quadrature. Distances are sampled in the control
+//! medium; its difference from the true densities is corrected without bias by residual tracking,
 //! [`super::chord::Chord::residual`].
 
 use crate::atmosphere::{Atmosphere, DensityProfile};
 use crate::transfer::shell::{MAX_CONSTITUENTS, PerConstituent};
 
-/// Layers are cut until what the parabolas leave out is less than this share of the extinction.
-const LEFT_OUT: f64 = 1e-3;
-/// Layers are not cut below this thickness, m.
-const THINNEST_M: f64 = 1.0;
-/// Points at which a layer's parabolas are held against the densities.
+/// Layers are halved until the relative error of the extinction is below this.
+const TOLERANCE: f64 = 1e-3;
+/// Thickness below which layers are not halved, m.
+const MIN_THICKNESS_M: f64 = 1.0;
+/// Number of points at which the parabolas of a layer are compared with the densities.
 const CHECKS: usize = 16;
 
-/// The air in layers.
+/// The layered control medium.
 #[derive(Clone, Debug)]
 pub struct Layers {
     /// Radius of altitude 0, m.
     planet_radius_m: f64,
     densities: Vec<DensityProfile>,
-    /// Squared radii of the edges, rising: one more than there are layers.
+    /// Squared radii of the layers' boundaries, increasing: one more than there are layers.
     edges: Vec<f64>,
     layers: Vec<Layer>,
 }
@@ -29,17 +29,18 @@ pub struct Layers {
 /// One layer.
 #[derive(Clone, Copy, Debug)]
 pub struct Layer {
-    /// Squared radius of the middle, and half the width in the squared radius.
+    /// Centre and half-width of the layer in squared radius, m^2.
     middle: f64,
     half: f64,
     /// `density = a + b x + c x^2`, `x = (r^2 - middle) / half`.
     pub parabolas: [[f64; 3]; MAX_CONSTITUENTS],
-    /// What the extinction of no wavelength differs by from that of the parabolas, 1/m.
+    /// Bound on the difference between the true extinction and that of the parabolas at any wavelength, 1/m.
     pub residual_per_m: f64,
 }
 
 impl Layers {
-    /// Cuts an atmosphere; `extinctions` are those of each constituent at density 1 (1/m) at every wavelength.
+    /// Divides an atmosphere into layers; `extinctions` holds the extinction of each constituent at density 1 (1/m) for every
+    /// wavelength.
     pub fn new(atmosphere: &Atmosphere, extinctions: &[PerConstituent]) -> Self {
         let planet = &atmosphere.planet;
         let mut layers = Self {
@@ -62,8 +63,8 @@ impl Layers {
     }
 
     fn cut(&mut self, from_m: f64, to_m: f64, extinctions: &[PerConstituent]) {
-        let (layer, left_out) = self.fit(from_m, to_m, extinctions);
-        if left_out > LEFT_OUT && to_m - from_m > THINNEST_M {
+        let (layer, relative_error) = self.fit(from_m, to_m, extinctions);
+        if relative_error > TOLERANCE && to_m - from_m > MIN_THICKNESS_M {
             let middle = 0.5 * (from_m + to_m);
             self.cut(from_m, middle, extinctions);
             self.cut(middle, to_m, extinctions);
@@ -76,8 +77,8 @@ impl Layers {
         }
     }
 
-    /// Parabolas through the three Gauss points, which leave nothing out of the whole to fifth order; and the largest
-    /// share of the extinction that they miss at any wavelength.
+    /// Parabolas through the three Gauss points, whose integrals are exact to fifth order, and their largest relative error of
+    /// the extinction at any wavelength.
     fn fit(&self, from_m: f64, to_m: f64, extinctions: &[PerConstituent]) -> (Layer, f64) {
         let squares = [from_m, to_m].map(|z| (self.planet_radius_m + z).powi(2));
         let mut layer = Layer {
@@ -92,14 +93,14 @@ impl Layers {
         for (c, parabola) in layer.parabolas.iter_mut().enumerate() {
             let [low, middle, high] = values.map(|v| v[c]);
             let slope = 0.5 * (high - low) / node;
-            let bend = (0.5 * (high + low) - middle) / (node * node);
-            *parabola = [middle, slope, bend];
-            // Where it would dip below a tenth of the density a constant stands in.
+            let curvature = (0.5 * (high + low) - middle) / (node * node);
+            *parabola = [middle, slope, curvature];
+            // A constant replaces parabolas that fall below a tenth of the density.
             let least = 0.1 * low.min(middle).min(high);
             let dips = [-1.0, 1.0]
                 .into_iter()
-                .chain((bend != 0.0).then(|| (-0.5 * slope / bend).clamp(-1.0, 1.0)))
-                .any(|x| middle + x * (slope + x * bend) < least);
+                .chain((curvature != 0.0).then(|| (-0.5 * slope / curvature).clamp(-1.0, 1.0)))
+                .any(|x| middle + x * (slope + x * curvature) < least);
             if dips {
                 *parabola = [low.max(middle).max(high), 0.0, 0.0];
             }
@@ -108,14 +109,14 @@ impl Layers {
         for k in 0..CHECKS {
             let x = 2.0 * (k as f64 + 0.5) / CHECKS as f64 - 1.0;
             let truth = self.densities_at(radius(x));
-            let stand_in = layer.densities_of(x);
+            let control = layer.densities_of(x);
             for extinction in extinctions {
                 let (mut missing, mut whole) = (0.0, 0.0);
                 for c in 0..self.densities.len() {
-                    missing += extinction[c] * (truth[c] - stand_in[c]).abs();
+                    missing += extinction[c] * (truth[c] - control[c]).abs();
                     whole += extinction[c] * truth[c];
                 }
-                // Between the points it may be more by as much again.
+                // Twice the sampled error, as a margin between the points.
                 layer.residual_per_m = layer.residual_per_m.max(2.0 * missing);
                 if missing > 0.0 {
                     worst = worst.max(missing / whole);
@@ -137,30 +138,30 @@ impl Layers {
         self.densities.len()
     }
 
-    /// A layer.
+    /// Layer by index.
     #[inline(always)]
     pub fn layer(&self, layer: usize) -> &Layer {
         &self.layers[layer]
     }
 
-    /// Squared radius of an edge: layer `i` lies between the edges `i` and `i + 1`.
+    /// Squared radius of a boundary: layer `i` lies between the boundaries `i` and `i + 1`.
     #[inline(always)]
     pub fn edge(&self, edge: usize) -> f64 {
         self.edges[edge]
     }
 
-    /// Squared radii of the ground and of the top.
+    /// Squared radii of the ground and of the top of the atmosphere.
     pub fn bounds(&self) -> (f64, f64) {
         (self.edges[0], self.edges[self.edges.len() - 1])
     }
 
-    /// Index of the uppermost layer.
+    /// Index of the top layer.
     #[inline(always)]
     pub fn last(&self) -> usize {
         self.layers.len() - 1
     }
 
-    /// The layer at a squared radius; the nearest one outside.
+    /// Layer that contains a squared radius; outside the atmosphere, the nearest layer.
     #[inline(always)]
     pub fn at(&self, square: f64) -> usize {
         self.edges
@@ -169,7 +170,7 @@ impl Layers {
             - 1
     }
 
-    /// The true densities at a distance from the planet's centre, m.
+    /// True densities at a radius in m.
     #[inline(always)]
     pub fn densities_at(&self, radius_m: f64) -> PerConstituent {
         let mut out = [0.0; MAX_CONSTITUENTS];
@@ -181,24 +182,24 @@ impl Layers {
 }
 
 impl Layer {
-    /// The coordinate in which densities are parabolas.
+    /// Coordinate `x` of the parabolas at a squared radius.
     #[inline(always)]
     pub fn coordinate(&self, square: f64) -> f64 {
         (square - self.middle) / self.half
     }
 
-    /// The stand-in's densities.
+    /// Densities of the control medium at `x`.
     #[inline(always)]
     pub fn densities_of(&self, x: f64) -> PerConstituent {
         self.parabolas.map(|[a, b, c]| a + x * (b + x * c))
     }
 
-    /// Length and integrals of `x` and `x^2` along a straight line whose squared radius is `tangent + t^2`, from `from`
-    /// to `to`: what the parabolas' columns are made of.
+    /// Integrals of 1, `x` and `x^2` along a straight ray with squared radius `tangent + t^2`, from `from` to `to`, from which
+    /// [`Self::columns`] computes columns.
     #[inline(always)]
     pub fn moments(&self, tangent: f64, from: f64, to: f64) -> [f64; 3] {
         let (middle, h) = (0.5 * (from + to), 0.5 * (to - from));
-        // About the middle: x = x0 + x1 s + x2 s^2.
+        // About the midpoint: x = x0 + x1 s + x2 s^2.
         let x0 = self.coordinate(tangent + middle * middle);
         let x2 = 1.0 / self.half;
         let x1 = 2.0 * middle * x2;
@@ -211,7 +212,7 @@ impl Layer {
         ]
     }
 
-    /// The columns of those moments, in metres of density 1.
+    /// Columns for these moments, in metres at density 1.
     #[inline(always)]
     pub fn columns(&self, moments: [f64; 3], constituents: usize) -> PerConstituent {
         let mut out = [0.0; MAX_CONSTITUENTS];
@@ -239,9 +240,9 @@ mod tests {
             .to_vec()
     }
 
-    /// The stand-in's vertical optical depth is that of the profiles, and few layers do.
+    /// The vertical optical depth of the control medium matches the profiles, with few layers.
     #[test]
-    fn layers_hold_the_whole_column() {
+    fn layers_preserve_the_vertical_column() {
         for (name, _) in preset_names() {
             let air = preset(name).unwrap();
             let extinctions = extinctions(&air);

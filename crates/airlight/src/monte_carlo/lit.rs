@@ -1,38 +1,38 @@
-//! The lit part of a line that runs partly in the planet's shadow, and where to be scattered on such a line.
+//! Sampling of collisions on rays that are partly in the planet's shadow.
 
 use super::chord::Chord;
 use super::path::PathScene;
 use crate::spectrum::Spectrum;
 
-/// With this probability a path that runs partly in the planet's shadow is scattered in its lit part.
-const IN_LIGHT: f64 = 0.5;
-/// A lit part of which less than this share arrives is not looked for: single precision could not tell its density.
-const FARTHEST: f32 = 1e-24;
+/// Probability of sampling the collision in the sunlit part of a ray that is partly in shadow.
+const LIT_PROBABILITY: f64 = 0.5;
+/// Smallest sampled absorption of the sunlit part: below it single precision cannot resolve the density.
+const MIN_ABSORPTION: f32 = 1e-24;
 
-/// A stretch in the light, and how much of each lane is taken out of the line on it.
+/// A sunlit segment of a ray.
 #[derive(Clone, Copy, Debug)]
-pub struct Stretch<const N: usize> {
-    /// Where it begins.
+pub struct LitSegment<const N: usize> {
+    /// Coordinate of its start, m.
     pub from: f64,
-    /// Where it ends.
+    /// Coordinate of its end, m.
     pub to: f64,
-    /// What is taken out on it, of what the line began with.
+    /// Fraction of the light at the start of the ray that is lost on the segment.
     pub absorbed: Spectrum<N>,
 }
 
-/// The lit stretches of a line that is partly in shadow; none of a line that is not.
+/// Sunlit segments of a ray that is partly in shadow; empty for other rays.
 #[derive(Clone, Copy, Debug)]
 pub struct Lit<const N: usize> {
-    /// The first [`Lit::count`] of them.
-    pub stretches: [Stretch<N>; 2],
-    /// How many there are.
+    /// The segments, of which [`Lit::count`] are valid.
+    pub segments: [LitSegment<N>; 2],
+    /// Number of segments.
     pub count: usize,
 }
 
 impl<const N: usize> Default for Lit<N> {
     fn default() -> Self {
         Self {
-            stretches: [Stretch {
+            segments: [LitSegment {
                 from: 0.0,
                 to: 0.0,
                 absorbed: Spectrum::ZERO,
@@ -43,8 +43,8 @@ impl<const N: usize> Default for Lit<N> {
 }
 
 impl<const N: usize> Lit<N> {
-    /// Draws where to be scattered for the lane `hero`; the factor of `extinction * transmittance` in the density with
-    /// which each lane draws that place.
+    /// Draws the coordinate of a collision for the lane `hero`. Also returns, for each lane, the factor of
+    /// `extinction * transmittance` in its probability density.
     #[inline(always)]
     pub fn draw(
         &self,
@@ -54,18 +54,24 @@ impl<const N: usize> Lit<N> {
         choice: f64,
         absorbed: &Spectrum<N>,
     ) -> (f64, Spectrum<N>) {
-        let lit = &self.stretches[..self.count];
+        let lit = &self.segments[..self.count];
         let lit_absorbed = lit
             .iter()
-            .fold(Spectrum::ZERO, |sum, stretch| sum + stretch.absorbed);
-        let chance = lit_absorbed.map(|lit| if lit > FARTHEST { IN_LIGHT as f32 } else { 0.0 });
+            .fold(Spectrum::ZERO, |sum, segment| sum + segment.absorbed);
+        let chance = lit_absorbed.map(|lit| {
+            if lit > MIN_ABSORPTION {
+                LIT_PROBABILITY as f32
+            } else {
+                0.0
+            }
+        });
         let extinction = scene.lanes.extinction_of(hero);
         let depth_to = |t: f64| -> f64 {
             let columns = chord.columns_to(scene.layers, t);
             extinction.iter().zip(columns).map(|(e, c)| e * c).sum()
         };
-        // Where the share `choice` of what is taken out between two places is taken out.
-        let place = |from: f64, to: f64, choice: f64| {
+        // Coordinate between two points by which the fraction `choice` of the light lost between them is lost.
+        let sample_between = |from: f64, to: f64, choice: f64| {
             let before = depth_to(from);
             let share = choice * (before - depth_to(to)).exp_m1();
             chord
@@ -83,14 +89,14 @@ impl<const N: usize> Lit<N> {
             } else if first > 0.0 {
                 choice /= first;
             }
-            place(picked.from, picked.to, choice)
+            sample_between(picked.from, picked.to, choice)
         } else {
             choice = (choice - f64::from(chance[hero])) / f64::from(1.0 - chance[hero]);
-            place(chord.start(), chord.end(), choice)
+            sample_between(chord.start(), chord.end(), choice)
         };
         let in_light = lit
             .iter()
-            .any(|stretch| t >= stretch.from && t <= stretch.to);
+            .any(|segment| t >= segment.from && t <= segment.to);
         let share = Spectrum::from_fn(|i| {
             let everywhere = match absorbed[i] > 0.0 {
                 true => (1.0 - chance[i]) / absorbed[i],

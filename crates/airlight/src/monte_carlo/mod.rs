@@ -1,8 +1,8 @@
-//! Light in a spherical atmosphere by Monte Carlo: no approximation, only noise, and the noise is told.
+//! Monte Carlo path tracing of a spherical atmosphere: unbiased, with a standard error for every result.
 //!
-//! Random paths go backwards from the eye through air and ground; at each of their vertices the light that comes
-//! straight from the sun is added. The mean over paths is the radiance, whatever their number: only its standard error
-//! depends on that. The book's chapter "Monte Carlo" derives it.
+//! Paths are traced backwards from the eye through air and ground, with next-event estimation of sunlight at each vertex.
+//! The mean over paths is the radiance for any number of paths; only its standard error depends on the number. The book's
+//! chapter "Monte Carlo" derives the method.
 //!
 //! ```
 //! use airlight::{axes, atmosphere, monte_carlo::{MonteCarlo, MonteCarloSettings}, spectrum::WavelengthGrid};
@@ -17,10 +17,10 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Inside, from the ground up: `layers` (the air in layers in which columns are polynomials), `chord` (a straight way
-//! through them), `lanes` (coefficients by wavelength), `sun`, `lit` (the part of a line outside the planet's shadow), `path` (a random
-//! path), `estimate` (mean and error), `solver` (the door in), `finite` (lines that end at a distance),
-//! `stokes` (what a path carries of polarisation), `polarised` (the door to that).
+//! Modules: `layers` (the layered control medium), `chord` (a straight ray through the layers), `lanes` (optical
+//! coefficients by wavelength), `sun`, `lit` (sampling of rays partly in the planet's shadow), `path` (path tracing),
+//! `estimate` (mean and standard error), `solver` ([`MonteCarlo`]), `finite` (rays that end at a distance), `stokes`
+//! (polarisation along a path), `polarised` (polarised radiance).
 
 mod chord;
 mod estimate;

@@ -1,15 +1,14 @@
-//! One random path from the eye into the air, and the sunlight that it finds.
+//! Path tracing from the eye with next-event estimation of sunlight.
 //!
-//! A path goes through vertices `x1, x2, ...`; at each the light that comes straight from the sun is added to the order
-//! of scattering that it belongs to. Every lane sees the same path. Its geometry is drawn for one lane, the hero, and
-//! weighed by what the mean over all possible heroes would have drawn it with (the balance heuristic: Wilkie, Nawaz,
-//! Droske, Weidlich & Hanika, Comput. Graph. Forum 33(4), 123, 2014), so no lane's weight is ever more than N times what its own
-//! paths would have.
+//! A path has vertices `x1, x2, ...`; at each, direct sunlight is added to its order of scattering. All lanes share the
+//! path. Its geometry is drawn for one lane, the hero wavelength, and weighted by the mean of the densities of all possible
+//! heroes (the balance heuristic: Wilkie, Nawaz, Droske, Weidlich & Hanika, Comput. Graph. Forum 33(4), 123, 2014), so
+//! that no lane's weight exceeds N times that of its own paths.
 
 use super::chord::{Chord, End, HalfLine};
 use super::lanes::{self, Lanes, PerScatterer};
 use super::layers::Layers;
-use super::lit::{Lit, Stretch};
+use super::lit::{Lit, LitSegment};
 use super::stokes::Polarisation;
 use super::sun::SunShape;
 use crate::math::random::Random;
@@ -20,102 +19,102 @@ use crate::transfer::shell::MAX_CONSTITUENTS;
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// Orders of scattering told apart: one to four, and all beyond.
+/// Number of separate orders of scattering: one to four, and all higher ones together.
 pub const ORDERS: usize = 5;
-/// Light found in each order, per unit solar irradiance, 1/sr.
+/// Radiance of each order per unit solar irradiance, 1/sr.
 pub type ByOrder<const N: usize> = [Spectrum<N>; ORDERS];
 
-/// With this probability a new direction is drawn about the sun instead of about the way so far.
+/// Probability of sampling a new direction about the sun instead of about the current direction.
 const TOWARDS_SUN: f64 = 0.2;
-/// Paths that carry less than this share of what they carried at the first vertex may be ended.
+/// Russian roulette applies to paths whose expected contribution is below this fraction of that at the first vertex.
 const ROULETTE_THRESHOLD: f32 = 0.3;
 
-/// The air and the sun that paths run through.
+/// Atmosphere and sun for path tracing.
 pub struct PathScene<'a, const N: usize> {
-    /// Where the air is.
+    /// Densities by layer.
     pub layers: &'a Layers,
-    /// What it does.
+    /// Optical coefficients.
     pub lanes: &'a Lanes<N>,
-    /// Unit vector to the middle of the sun.
+    /// Unit vector to the centre of the sun.
     pub sun: DVec3,
-    /// Its disc.
+    /// Disc of the sun.
     pub disc: &'a SunDisc,
-    /// Whether the disc is sampled.
+    /// Whether the disc is sampled, or the sun is a point.
     pub shape: SunShape,
 }
 
-/// A line of sight.
+/// A view ray.
 #[derive(Clone, Copy, Debug)]
 pub struct Line {
-    /// Where it begins, inside the air: m from the planet's centre.
+    /// Origin inside the atmosphere, m from the planet's centre.
     pub place: DVec3,
-    /// Unit vector along it.
+    /// Unit vector along the ray.
     pub direction: DVec3,
-    /// How far it goes, m: only the air up to there is seen. Else, to the ground, which is seen, or to space.
+    /// Length in m, for path radiance up to there. `None`: to the ground, whose light is included, or to space.
     pub reach_m: Option<f64>,
 }
 
-/// A path as far as it has come.
+/// State of a path.
 struct Path<const N: usize> {
     place: DVec3,
     direction: DVec3,
-    /// What a photon found here is worth in each lane: the product of all that the air does to it, over the mean of
+    /// Throughput of each lane: the product of the scattering, reflection and transmittance factors, divided by the mean of
     /// the densities with which the heroes draw this path.
     throughput: Spectrum<N>,
-    /// Density with which each hero draws this path, over their mean.
-    drawn: Spectrum<N>,
-    /// Orders of scattering behind it.
+    /// Density with which each hero draws this path, divided by their mean.
+    pdf: Spectrum<N>,
+    /// Number of scatterings and reflections so far.
     order: usize,
-    /// About what the light at the next vertex may be worth, over that of a path that is not scattered towards the sun.
-    pdf: f32,
-    /// Its worth at the first vertex.
+    /// Estimated contribution of the next vertex, relative to a path that is not scattered towards the sun.
+    expected_contribution: f32,
+    /// Throughput at the first vertex.
     first_throughput: f32,
 }
 
 impl<const N: usize> Path<N> {
-    /// Goes on by a step that is worth `throughput` and that the heroes draw with the densities `drawn`.
+    /// Extends the path by a step with a throughput factor and the density `pdf` of each hero.
     #[inline(always)]
-    fn step(&mut self, throughput: Spectrum<N>, drawn: Spectrum<N>) {
-        let drawn = self.drawn * drawn;
-        let mean = drawn.0.iter().sum::<f32>() / N as f32;
+    fn step(&mut self, throughput: Spectrum<N>, pdf: Spectrum<N>) {
+        let pdf = self.pdf * pdf;
+        let mean = pdf.0.iter().sum::<f32>() / N as f32;
         let scale = 1.0 / mean;
         self.throughput = self.throughput * throughput * scale;
-        self.drawn = drawn * scale;
+        self.pdf = pdf * scale;
     }
 
-    /// Russian roulette among paths of little promise: those left carry what the others would have.
+    /// Russian roulette: terminates paths with a small expected contribution and reweights the survivors.
     #[inline(always)]
     fn survives(&mut self, random: &mut Random) -> bool {
         if self.order == 1 {
             self.first_throughput = self.throughput.max_element();
         }
-        let survival = self.pdf / (ROULETTE_THRESHOLD * self.first_throughput);
+        let survival = self.expected_contribution / (ROULETTE_THRESHOLD * self.first_throughput);
         if survival >= 1.0 {
             return true;
         }
-        // False also where the worth is no number.
-        let lives = (random.unit() as f32) < survival;
-        if lives {
+        // False also if the throughput is NaN.
+        let survives = (random.unit() as f32) < survival;
+        if survives {
             self.throughput = self.throughput * (1.0 / survival);
         }
-        lives
+        survives
     }
 }
 
-/// What happened on a straight way.
+/// End of a path segment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Event {
-    /// Scattered, in this layer.
+    /// Collision in the air.
     Air,
-    /// Met the ground.
+    /// Hit on the ground.
     Ground,
-    /// Nothing to meet.
+    /// No collision.
     None,
 }
 
 impl<const N: usize> PathScene<'_, N> {
-    /// Follows a path drawn for the lane `hero` along a line of sight. `first`, even in `(0, 1)`, says where it is
-    /// scattered first; `chord` is scratch space.
+    /// Traces a path along a view ray for the lane `hero`. `first`, uniform in `(0, 1)`, samples the first collision; `chord`
+    /// is scratch memory.
     #[inline(always)]
     pub fn follow<P: Polarisation<N>>(
         &self,
@@ -131,9 +130,9 @@ impl<const N: usize> PathScene<'_, N> {
             place: line.place,
             direction: line.direction,
             throughput: Spectrum::ONE,
-            drawn: Spectrum::ONE,
+            pdf: Spectrum::ONE,
             order: 0,
-            pdf: 0.0,
+            expected_contribution: 0.0,
             first_throughput: 0.0,
         };
         let mut choice = first;
@@ -156,8 +155,7 @@ impl<const N: usize> PathScene<'_, N> {
         }
     }
 
-    /// From the place along the direction to the next vertex. Where there is nothing to meet at the end of the way, in
-    /// space or at the distance `reach_m`, a collision is forced.
+    /// Advances the path to the next vertex. If the segment ends in space or at the distance `reach_m`, a collision is forced.
     #[inline(always)]
     fn advance(
         &self,
@@ -180,57 +178,55 @@ impl<const N: usize> PathScene<'_, N> {
         let mut choice = choice;
         let mut collides = Spectrum::ONE;
         if end == End::Ground {
-            let hit = 1.0 - absorbed[hero] as f64;
-            if choice < hit {
-                let passed = self.passed(chord, chord.end(), random);
-                path.step(passed, Spectrum::ONE - absorbed);
+            let hit_probability = 1.0 - absorbed[hero] as f64;
+            if choice < hit_probability {
+                let transmittance = self.transmittance_to(chord, chord.end(), random);
+                path.step(transmittance, Spectrum::ONE - absorbed);
                 path.place += path.direction * (chord.end() - line.start);
                 return Event::Ground;
             }
-            choice = (choice - hit) / (1.0 - hit);
+            choice = (choice - hit_probability) / (1.0 - hit_probability);
             collides = absorbed;
         }
         if absorbed[hero] <= 0.0 {
             return Event::None;
         }
-        let stretches = self.lit_stretches(path, chord, line);
-        let (t, share) = stretches.draw(self, chord, hero, choice, &absorbed);
+        let lit = self.lit_segments(path, chord, line);
+        let (t, share) = lit.draw(self, chord, hero, choice, &absorbed);
         let columns = chord.columns_to(layers, t);
         let layer = layers.layer(chord.layer_at(t));
-        let stand_in = layer.densities_of(layer.coordinate(line.tangent + t * t));
-        let drawn = self.lanes.extinction(&stand_in)
-            * self.lanes.transmittance(&columns)
-            * share
-            * collides;
-        path.step(self.passed(chord, t, random), drawn);
+        let control = layer.densities_of(layer.coordinate(line.tangent + t * t));
+        let pdf =
+            self.lanes.extinction(&control) * self.lanes.transmittance(&columns) * share * collides;
+        path.step(self.transmittance_to(chord, t, random), pdf);
         path.place += path.direction * (t - line.start);
         Event::Air
     }
 
-    /// Transmittance from the start of a chord to `t`, without bias: that of the stand-in, and now and then a look at
-    /// what it leaves out (residual ratio tracking: Novak, Selle & Jarosz, ACM Trans. Graph. 33(6), 179, 2014).
+    /// Unbiased estimate of the transmittance from the start of a chord to `t`: that of the control medium, corrected at
+    /// residual collisions (residual ratio tracking: Novak, Selle & Jarosz, ACM Trans. Graph. 33(6), 179, 2014).
     #[inline(always)]
-    fn passed(&self, chord: &Chord, t: f64, random: &mut Random) -> Spectrum<N> {
-        let mut passed = self.lanes.transmittance(&chord.columns_to(self.layers, t));
+    fn transmittance_to(&self, chord: &Chord, t: f64, random: &mut Random) -> Spectrum<N> {
+        let mut transmittance = self.lanes.transmittance(&chord.columns_to(self.layers, t));
         chord.residual(self.layers, t, random, |square, layer| {
-            passed *= self.residual_weight(square, layer);
+            transmittance *= self.residual_weight(square, layer);
         });
-        passed
+        transmittance
     }
 
-    /// `1 - (extinction - stand-in) / residual` at a place.
+    /// Weight `1 - (extinction - control extinction) / residual` of a residual collision at a squared radius.
     fn residual_weight(&self, square: f64, layer: usize) -> Spectrum<N> {
         let truth = self.layers.densities_at(square.sqrt());
         let layer = self.layers.layer(layer);
-        let stand_in = layer.densities_of(layer.coordinate(square));
+        let control = layer.densities_of(layer.coordinate(square));
         let mut difference = [0.0; MAX_CONSTITUENTS];
-        for (d, (truth, stand_in)) in difference.iter_mut().zip(truth.iter().zip(stand_in)) {
-            *d = truth - stand_in;
+        for (d, (truth, control)) in difference.iter_mut().zip(truth.iter().zip(control)) {
+            *d = truth - control;
         }
         Spectrum::ONE - self.lanes.extinction(&difference) * (1.0 / layer.residual_per_m) as f32
     }
 
-    /// Adds the sun's light at a vertex in the air and draws a new direction; whether the path goes on.
+    /// Adds direct sunlight at a vertex in the air and samples a new direction; false if the path ends.
     #[inline(always)]
     fn scatter<P: Polarisation<N>>(
         &self,
@@ -248,8 +244,8 @@ impl<const N: usize> PathScene<'_, N> {
             let scattered = lanes::phased(&scattering, &phases);
             let light = path.throughput * scattered * light;
             found[path.order.min(ORDERS - 1)] += light;
-            let ways = [path.direction, sun];
-            polarisation.sunlight(self.lanes, ways, [&scattering, &phases], light);
+            let directions = [path.direction, sun];
+            polarisation.sunlight(self.lanes, directions, [&scattering, &phases], light);
         }
         let whole = lanes::sum(&scattering);
         if whole[hero] <= 0.0 {
@@ -260,21 +256,22 @@ impl<const N: usize> PathScene<'_, N> {
             false => path.direction,
         };
         let cosine = self.lanes.sample(&scattering, hero, random);
-        let next = about(axis, cosine, random.unit());
+        let next = direction_about(axis, cosine, random.unit());
         let phases = self.phases_between(path.direction, next);
         let onward = lanes::phased(&scattering, &phases);
         let sunward = lanes::phased(&scattering, &self.phases_between(self.sun, next));
         let (onward_share, sunward_share) = ((1.0 - TOWARDS_SUN) as f32, TOWARDS_SUN as f32);
         let norm = whole.max_scalar(f32::MIN_POSITIVE);
-        let drawn = (onward * onward_share + sunward * sunward_share) / norm;
-        path.step(onward, drawn);
-        let ways = [path.direction, next];
-        polarisation.scattered(self.lanes, ways, [&scattering, &phases]);
+        let pdf = (onward * onward_share + sunward * sunward_share) / norm;
+        path.step(onward, pdf);
+        let directions = [path.direction, next];
+        polarisation.scattered(self.lanes, directions, [&scattering, &phases]);
         path.direction = next;
         path.order += 1;
         // A path towards the sun will find more light than others.
         let isotropic = (0.25 / PI) as f32;
-        path.pdf = path.throughput.max_element() * (sunward / norm).max_element().max(isotropic)
+        path.expected_contribution = path.throughput.max_element()
+            * (sunward / norm).max_element().max(isotropic)
             / isotropic;
         true
     }
@@ -284,7 +281,7 @@ impl<const N: usize> PathScene<'_, N> {
         self.lanes.phases(a.dot(b).clamp(-1.0, 1.0))
     }
 
-    /// Adds the sun's light at a vertex on the ground and draws a new direction, as Lambert's law has it.
+    /// Adds direct sunlight at a vertex on the ground and samples a cosine-distributed direction.
     #[inline(always)]
     fn reflect<P: Polarisation<N>>(
         &self,
@@ -294,7 +291,7 @@ impl<const N: usize> PathScene<'_, N> {
         polarisation: &mut P,
     ) {
         let up = path.place.normalize();
-        // Back on the ground exactly, and above it in the arithmetic of the next way.
+        // Projects the vertex onto the ground, so that rounding does not place it below.
         path.place = up * self.layers.edge(0).sqrt();
         path.throughput *= self.lanes.ground_albedo;
         let sun = self.shape.draw(self.sun, self.disc, random);
@@ -307,12 +304,12 @@ impl<const N: usize> PathScene<'_, N> {
             polarisation.sunlight_by_ground(light);
         }
         polarisation.reflected();
-        path.direction = about(up, random.unit().sqrt(), random.unit());
+        path.direction = direction_about(up, random.unit().sqrt(), random.unit());
         path.order += 1;
-        path.pdf = path.throughput.max_element();
+        path.expected_contribution = path.throughput.max_element();
     }
 
-    /// Sunlight that arrives from the direction `sun`, per unit irradiance; `None` in the planet's shadow.
+    /// Direct sunlight from the direction `sun`, per unit irradiance; `None` in the planet's shadow.
     #[inline(always)]
     fn sunlight(&self, place: DVec3, sun: DVec3, random: &mut Random) -> Option<Spectrum<N>> {
         let line = HalfLine::new(place, sun);
@@ -333,9 +330,9 @@ impl<const N: usize> PathScene<'_, N> {
         )
     }
 
-    /// The stretches of a chord that the sun shines on, where it is partly in shadow.
+    /// Sunlit segments of a chord that is partly in shadow.
     #[inline(always)]
-    fn lit_stretches(&self, path: &Path<N>, chord: &Chord, line: HalfLine) -> Lit<N> {
+    fn lit_segments(&self, path: &Path<N>, chord: &Chord, line: HalfLine) -> Lit<N> {
         let ray = Ray::new(path.place, path.direction, self.sun);
         let ground = self.layers.edge(0).sqrt();
         let mut cuts = [line.start, chord.end(), chord.end(), chord.end()];
@@ -364,7 +361,7 @@ impl<const N: usize> PathScene<'_, N> {
                 for (b, (u, v)) in between.iter_mut().zip(until.iter().zip(&before)) {
                     *b = (u - v).max(0.0);
                 }
-                lit.stretches[lit.count] = Stretch {
+                lit.segments[lit.count] = LitSegment {
                     from: cuts[k],
                     to: cuts[k + 1],
                     absorbed: self.lanes.transmittance(&before)
@@ -377,9 +374,9 @@ impl<const N: usize> PathScene<'_, N> {
     }
 }
 
-/// The unit vector at the angle of `cosine` from `axis`, turned about it by `turn` of a full turn.
+/// Unit vector at an angle from `axis` with the given cosine, rotated about it by the fraction `turn` of a full turn.
 #[inline(always)]
-fn about(axis: DVec3, cosine: f64, turn: f64) -> DVec3 {
+fn direction_about(axis: DVec3, cosine: f64, turn: f64) -> DVec3 {
     let (across, up) = axis.any_orthonormal_pair();
     let sine = ((1.0 - cosine) * (1.0 + cosine)).max(0.0).sqrt();
     let (sin, cos) = (2.0 * PI * turn).sin_cos();

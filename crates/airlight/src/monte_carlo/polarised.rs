@@ -1,4 +1,4 @@
-//! Light with its polarisation.
+//! Polarised radiance.
 
 use super::estimate::{Estimate, Measured, Sample, Tally};
 use super::solver::{BUNDLE, MonteCarlo, Scene};
@@ -6,49 +6,51 @@ use super::stokes::Stokes;
 use crate::math::parallel;
 use glam::DVec3;
 
-/// What the paths of a bundle found, one value a wavelength, W m^-2 sr^-1 nm^-1.
+/// Mean over the paths of a bundle, at each wavelength, W m^-2 sr^-1 nm^-1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PolarisedSample {
-    /// As if light were scalar, by order of scattering.
+    /// Radiance with scalar light transport, by order of scattering.
     pub scalar: Sample,
     /// Stokes parameters `I`, `Q` and `U`.
     pub stokes: [Vec<f64>; 3],
 }
 
-/// Stokes parameters along a line of sight, W m^-2 sr^-1 nm^-1, one value a wavelength of the grid; without the sun's own disc.
+/// Stokes parameters along a view ray, W m^-2 sr^-1 nm^-1, at each wavelength of the grid, without the direct light of the
+/// sun's disc.
 ///
-/// `Q` is positive for light polarised in the vertical plane through the line of sight (where the line is vertical, in that of
-/// north and south), `U` for light polarised at 45 degrees from there, anticlockwise as the eye sees it. Circular polarisation
-/// is followed, as it turns into linear, but not told: it is far weaker.
+/// `Q` is positive for light polarised in the vertical plane through the view ray (for a vertical ray, in the north-south
+/// plane), `U` for light polarised at 45 degrees from there, anticlockwise as seen by the eye. Circular polarisation is
+/// traced, because it turns into linear polarisation, but not returned: it is far weaker.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PolarisedEstimate {
-    /// `I`, the radiance.
+    /// Radiance `I`.
     pub intensity: Measured,
-    /// `Q`.
+    /// Stokes parameter `Q`.
     pub q: Measured,
-    /// `U`.
+    /// Stokes parameter `U`.
     pub u: Measured,
-    /// Degree of linear polarisation, `sqrt(Q^2 + U^2) / I`. Noise makes it too great: by about half its standard error
-    /// squared over itself.
+    /// Degree of linear polarisation, `sqrt(Q^2 + U^2) / I`. Noise biases it upwards by about half its variance divided by the
+    /// degree.
     pub degree: Measured,
-    /// Angle of the plane of polarisation from the vertical plane, anticlockwise as the eye sees it, degrees in `[0, 180)`; of
-    /// no meaning where the degree is not well above its standard error.
+    /// Angle of the plane of polarisation from the vertical plane, anticlockwise as seen by the eye, degrees in `[0, 180)`;
+    /// meaningless unless the degree is well above its standard error.
     pub angle_deg: Measured,
-    /// What polarisation adds to the radiance: `I` less the scalar radiance on the same paths. Known far better than both.
+    /// Effect of polarisation on the radiance: `I` minus the scalar radiance on the same paths, with a much smaller error than
+    /// either.
     pub effect: Measured,
-    /// As if light were scalar, on the same paths: what [`MonteCarlo::radiance`] finds.
+    /// Radiance with scalar light transport on the same paths, as from [`MonteCarlo::radiance`].
     pub scalar: Estimate,
-    /// Paths followed.
+    /// Number of paths.
     pub paths: u64,
 }
 
 impl MonteCarlo {
-    /// As [`MonteCarlo::radiance`], or with a distance (m) [`MonteCarlo::path_radiance`], with the polarisation of light; it
-    /// takes a third longer where molecules alone polarise.
+    /// Polarised radiance along `view`, or polarised path radiance if a distance in m is given; parameters as for
+    /// [`MonteCarlo::radiance`] and [`MonteCarlo::path_radiance`]. Takes a third longer than these if only molecules polarise.
     ///
-    /// Molecules and spheres known by Lorenz-Mie theory polarise what they scatter
-    /// ([`crate::optics::PhaseFunction::matrix_ratios`]); constituents of which a phase function is all that is known, and the ground,
-    /// scatter without polarisation. Sunlight has none.
+    /// Molecules and spheres from Lorenz-Mie theory polarise the light that they scatter
+    /// ([`crate::optics::PhaseFunction::matrix_ratios`]); constituents known only by their phase function, and the ground,
+    /// scatter without polarisation. Sunlight is unpolarised.
     pub fn polarised(
         &self,
         eye_altitude_m: f64,
@@ -64,7 +66,7 @@ impl MonteCarlo {
         PolarisedEstimate::of(&samples, self.grid().len())
     }
 
-    /// What one bundle of paths finds of it: as [`MonteCarlo::sample`].
+    /// Result of one bundle of paths, as [`MonteCarlo::sample`].
     pub fn sample_polarised(
         &self,
         eye_altitude_m: f64,
@@ -97,7 +99,7 @@ impl MonteCarlo {
 }
 
 impl PolarisedEstimate {
-    /// From independent samples. Errors of what is not linear in them are those of its linear part.
+    /// Statistics of independent samples. Standard errors of quantities that are not linear in the samples are first-order.
     fn of(samples: &[PolarisedSample], wavelengths: usize) -> Self {
         let mut tally = Tally::new(wavelengths);
         samples.iter().for_each(|sample| tally.add(&sample.scalar));
@@ -116,10 +118,10 @@ impl PolarisedEstimate {
         let effect = measured(&|s, lane| {
             s.stokes[0][lane] - s.scalar.iter().map(|order| order[lane]).sum::<f64>()
         });
-        let polarised = |lane: usize| q.mean[lane].hypot(u.mean[lane]);
-        let whole = |lane: usize| intensity.mean[lane];
-        // How the degree and the angle of the mean change with a sample.
-        let mut degree = measured(&|s, lane| match (polarised(lane), whole(lane)) {
+        let linear = |lane: usize| q.mean[lane].hypot(u.mean[lane]);
+        let intensity_of = |lane: usize| intensity.mean[lane];
+        // Linearised change of the degree and the angle of the mean with a sample.
+        let mut degree = measured(&|s, lane| match (linear(lane), intensity_of(lane)) {
             (p, i) if p > 0.0 && i > 0.0 => {
                 let along =
                     (q.mean[lane] * s.stokes[1][lane] + u.mean[lane] * s.stokes[2][lane]) / p;
@@ -127,7 +129,7 @@ impl PolarisedEstimate {
             }
             _ => 0.0,
         });
-        let mut angle_deg = measured(&|s, lane| match polarised(lane) {
+        let mut angle_deg = measured(&|s, lane| match linear(lane) {
             p if p > 0.0 => {
                 let across = q.mean[lane] * s.stokes[2][lane] - u.mean[lane] * s.stokes[1][lane];
                 (0.5 * across / (p * p)).to_degrees()
@@ -135,12 +137,12 @@ impl PolarisedEstimate {
             _ => 0.0,
         });
         for lane in 0..wavelengths {
-            degree.mean[lane] = match whole(lane) > 0.0 {
-                true => polarised(lane) / whole(lane),
+            degree.mean[lane] = match intensity_of(lane) > 0.0 {
+                true => linear(lane) / intensity_of(lane),
                 false => 0.0,
             };
             let angle = 0.5 * u.mean[lane].atan2(q.mean[lane]).to_degrees();
-            // A second time for what the first rounds up to 180.
+            // The second `rem_euclid` maps a result of 180, from rounding, to 0.
             angle_deg.mean[lane] = angle.rem_euclid(180.0).rem_euclid(180.0);
         }
         Self {
@@ -156,7 +158,7 @@ impl PolarisedEstimate {
     }
 }
 
-/// Mean and its standard error.
+/// Mean and standard error of the mean.
 fn moments(values: impl Iterator<Item = f64> + Clone) -> (f64, f64) {
     let count = values.clone().count() as f64;
     let mean = values.clone().sum::<f64>() / count;

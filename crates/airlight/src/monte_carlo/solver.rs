@@ -1,4 +1,4 @@
-//! The door in.
+//! The Monte Carlo solver: settings, and radiance along view rays.
 
 use super::chord::Chord;
 use super::estimate::{Estimate, Sample, Tally};
@@ -17,16 +17,16 @@ use crate::transfer::ray::Ray;
 use crate::transfer::shell::{MAX_CONSTITUENTS, PerConstituent};
 use glam::DVec3;
 
-/// Paths of a bundle: what one stream of random numbers serves. Its first collisions are spread evenly, so that
-/// bundles differ less than paths would; the error is told from the spread among bundles.
+/// Number of paths in a bundle, which share one stream of random numbers. Their first collisions are stratified, so bundles
+/// vary less than independent paths; the standard error is computed from the spread among bundles.
 pub const BUNDLE: usize = 64;
 
-/// How long to go on, and how.
+/// Number of paths, random seed and shape of the sun.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MonteCarloSettings {
-    /// Paths for each line of sight; rounded up to whole bundles of 64, at least two.
+    /// Number of paths for each view ray, rounded up to whole bundles of 64, at least two.
     pub paths: u64,
-    /// Another seed gives an independent estimate; the same one the same bits on any number of threads.
+    /// Random seed. Different seeds give independent estimates; equal seeds give the same bits on any number of threads.
     pub seed: u64,
     /// Whether the sun is a point or a disc.
     pub sun: SunShape,
@@ -42,7 +42,7 @@ impl Default for MonteCarloSettings {
     }
 }
 
-/// An atmosphere ready to be looked into; shared freely between threads.
+/// Monte Carlo solver for one atmosphere; can be shared between threads.
 #[derive(Clone, Debug)]
 pub struct MonteCarlo {
     atmosphere: Atmosphere,
@@ -52,7 +52,7 @@ pub struct MonteCarlo {
     blocks: Vec<Block>,
 }
 
-/// Wavelengths that share their paths.
+/// Wavelengths that share paths.
 #[derive(Clone, Debug)]
 enum Block {
     Four(usize, Box<Lanes<4>>),
@@ -60,20 +60,20 @@ enum Block {
     Sixteen(usize, Box<Lanes<16>>),
 }
 
-/// A line of sight under a sun.
+/// A view ray and the direction of the sun.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Scene {
     pub line: Line,
     sun: DVec3,
-    /// Chooses the streams of random numbers.
+    /// Identifies the stream of random numbers.
     stream: u64,
 }
 
 impl MonteCarlo {
-    /// Prepares `atmosphere` at the wavelengths of `grid` (whose solar spectrum is replaced by the atmosphere's own).
+    /// Prepares `atmosphere` at the wavelengths of `grid`, whose solar spectrum is replaced by that of the atmosphere.
     ///
     /// # Errors
-    /// [`SkyError`] for an atmosphere that fails its own validation or has too many constituents.
+    /// [`SkyError`] if the atmosphere is invalid or has too many constituents.
     pub fn new(
         atmosphere: &Atmosphere,
         grid: &WavelengthGrid,
@@ -108,38 +108,38 @@ impl MonteCarlo {
         })
     }
 
-    /// The atmosphere looked into.
+    /// The atmosphere.
     pub fn atmosphere(&self) -> &Atmosphere {
         &self.atmosphere
     }
 
-    /// The wavelengths, with this atmosphere's sun.
+    /// The wavelength grid, with the solar spectrum of the atmosphere.
     pub fn grid(&self) -> &WavelengthGrid {
         &self.grid
     }
 
-    /// How long it goes on.
+    /// The settings.
     pub fn settings(&self) -> &MonteCarloSettings {
         &self.settings
     }
 
-    /// Radiance that arrives at `eye_altitude_m` (m; held at the ground below it) along `view`, when the sun stands in
-    /// the direction `sun` at the planet's mean distance from it (unit vectors in world axes, [`crate::axes`]).
+    /// Radiance at `eye_altitude_m` (m; raised to the ground if below it) along `view`, with the sun in the direction `sun` at
+    /// the planet's mean distance (unit vectors in world axes, [`crate::axes`]).
     pub fn radiance(&self, eye_altitude_m: f64, sun: DVec3, view: DVec3) -> Estimate {
         self.mean_over_paths(self.scene(eye_altitude_m, sun, view, None))
     }
 
-    /// What one bundle of paths (64 of them) finds, by order of scattering and wavelength, W m^-2 sr^-1 nm^-1: for
-    /// statistics of one's own. Bundles of different numbers or views are independent; the mean over bundles is
-    /// [`MonteCarlo::radiance`].
+    /// Mean over one bundle of 64 paths, by order of scattering and wavelength, W m^-2 sr^-1 nm^-1, for custom statistics.
+    /// Bundles of different numbers or view rays are independent; the mean over bundles is [`MonteCarlo::radiance`].
     pub fn sample(&self, eye_altitude_m: f64, sun: DVec3, view: DVec3, bundle: u64) -> Sample {
         self.sunlit_bundle(self.scene(eye_altitude_m, sun, view, None), bundle)
     }
 
-    /// Goes on until the standard error of the worst wavelength (of those brighter than 1e-3 of the brightest) is
-    /// below `relative_error` of its mean, or `most_paths` are followed. Where few paths carry much of the light (a narrow
-    /// peak seen by way of the ground, deep twilight) it can stop before it has met one: the error told is too small then,
-    /// and a fixed number of paths ([`MonteCarlo::radiance`]) is safer.
+    /// Radiance with a relative error: adds paths until the largest relative standard error, over wavelengths brighter than
+    /// 1e-3 of the brightest, is below `relative_error`, or `most_paths` are traced.
+    ///
+    /// Where few paths carry much of the light (a narrow peak reflected by the ground, deep twilight) it can stop before
+    /// finding one of them, with an underestimated error; a fixed number of paths ([`MonteCarlo::radiance`]) is safer there.
     pub fn radiance_within(
         &self,
         relative_error: f64,
@@ -157,7 +157,7 @@ impl MonteCarlo {
             if estimate.worst_relative_error() <= relative_error || estimate.paths >= most_paths {
                 return estimate;
             }
-            // Half as many again.
+            // Increases the number of paths by half.
             bundles =
                 (tally.count() / 2).min((most_paths - estimate.paths).div_ceil(BUNDLE as u64));
         }
@@ -167,7 +167,7 @@ impl MonteCarlo {
         tally.estimate(self.grid.solar_irradiance(), tally.count() * BUNDLE as u64)
     }
 
-    /// The mean over as many paths as the settings say; nothing arrives where there is no air.
+    /// Mean over the number of paths in the settings; 0 for a ray that misses the atmosphere.
     pub(super) fn mean_over_paths(&self, scene: Option<Scene>) -> Estimate {
         let bundles = self.settings.paths.div_ceil(BUNDLE as u64).max(2);
         let mut tally = Tally::new(self.grid.len());
@@ -175,7 +175,7 @@ impl MonteCarlo {
         self.estimate(&tally)
     }
 
-    /// A bundle in the light of this atmosphere's sun.
+    /// Mean over a bundle, multiplied by the solar irradiance.
     pub(super) fn sunlit_bundle(&self, scene: Option<Scene>, bundle: u64) -> Sample {
         let Some(scene) = scene else {
             return std::array::from_fn(|_| vec![0.0; self.grid.len()]);
@@ -189,7 +189,7 @@ impl MonteCarlo {
         sample
     }
 
-    /// Adds the next `bundles` bundles of a line of sight to its tally, in their order.
+    /// Adds the next `bundles` bundles of a view ray to its tally, in order.
     fn add_bundles(&self, tally: &mut Tally, bundles: u64, scene: Option<Scene>) {
         let Some(scene) = scene else {
             let nothing = std::array::from_fn(|_| vec![0.0; self.grid.len()]);
@@ -203,7 +203,7 @@ impl MonteCarlo {
         samples.iter().for_each(|sample| tally.add(sample));
     }
 
-    /// The line of sight from where it enters the air, at most `reach_m` long (from the eye); `None` where it does not.
+    /// View ray from its entry into the atmosphere, at most `reach_m` long from the eye; `None` if it misses the atmosphere.
     pub(super) fn scene(
         &self,
         eye_altitude_m: f64,
@@ -244,7 +244,8 @@ impl MonteCarlo {
         self.bundle_of::<Scalar, Scalar, Scalar>(scene, number).0
     }
 
-    /// The same with what is carried beside it by 4, 8 and 16 lanes; and `I`, `Q`, `U`, where that is anything.
+    /// As [`Self::bundle`], with the polarisation carried by blocks of 4, 8 and 16 lanes; also returns `I`, `Q`, `U` if they are
+    /// carried.
     pub(super) fn bundle_of<A: Polarisation<4>, B: Polarisation<8>, C: Polarisation<16>>(
         &self,
         scene: &Scene,
@@ -291,8 +292,8 @@ impl MonteCarlo {
         let mut chord = Chord::default();
         let mut sums = [[0.0f64; N]; ORDERS];
         let mut stokes_sums = [[0.0f64; N]; 3];
-        // Every lane is the hero of as many paths, and the first collisions of all are spread evenly. All are shifted alike at
-        // random: else each hero would always draw from the same parts of the unit interval.
+        // Each lane is the hero of the same number of paths, and the first collisions of all are stratified. A common random
+        // shift keeps each hero from always sampling the same parts of the unit interval.
         let strata = BUNDLE / N;
         let shift = random.unit();
         for path in 0..BUNDLE {
@@ -329,7 +330,7 @@ impl MonteCarlo {
 }
 
 impl Block {
-    /// The last wavelength fills the lanes left over.
+    /// Unused lanes repeat the last wavelength.
     fn new(atmosphere: &Atmosphere, wavelengths_nm: &[f64]) -> Self {
         fn lanes<const N: usize>(atmosphere: &Atmosphere, nm: &[f64]) -> Box<Lanes<N>> {
             let padded = std::array::from_fn(|lane| nm[lane.min(nm.len() - 1)]);
@@ -345,7 +346,7 @@ impl Block {
 }
 
 impl Estimate {
-    /// The largest standard error over its mean, among wavelengths brighter than 1e-3 of the brightest; 0 of darkness.
+    /// Largest ratio of standard error to mean over wavelengths brighter than 1e-3 of the brightest; 0 if all are 0.
     pub fn worst_relative_error(&self) -> f64 {
         let brightest = self.mean.iter().copied().fold(0.0, f64::max);
         self.mean
@@ -357,8 +358,7 @@ impl Estimate {
     }
 }
 
-/// A number that differs from line to line: FNV-1a over the bits (Fowler, Noll & Vo), so that the noise of two lines
-/// of sight is independent.
+/// Hash of a view ray: FNV-1a over the bits (Fowler, Noll & Vo), so that the noise of different rays is independent.
 fn stream(vectors: &[DVec3]) -> u64 {
     vectors
         .iter()

@@ -1,45 +1,50 @@
-//! What a path carries of polarisation, beside its worth.
+//! Polarisation carried along a path, in addition to its throughput.
 //!
-//! Light is described by the Stokes vector `(I, Q, U, V)` in a frame across its way. A path from the eye carries the product
-//! of the scattering matrices and turns of frames behind it, each over its phase function, whose share is in the path's
-//! worth already: the three rows that make `I`, `Q` and `U` at the eye. Sunlight is natural, so that of what is scattered
-//! last the first column does.
+//! Light is described by the Stokes vector `(I, Q, U, V)` in a frame perpendicular to its direction. A path from the eye
+//! carries the product of the scattering matrices and frame rotations so far. Each matrix is divided by its phase function,
+//! which is already part of the throughput. Only the three rows that yield `I`, `Q` and `U` at the eye are carried. Sunlight
+//! is unpolarised, so only the first column of the last scattering matrix contributes.
 
 use super::lanes::{Lanes, PerScatterer, Ratios};
 use crate::spectrum::Spectrum;
 use glam::DVec3;
 
-/// What follows a path beside its worth.
+/// Polarisation state of a path.
 pub trait Polarisation<const N: usize> {
-    /// Whether anything does.
+    /// False if light is scalar and nothing is carried.
     const CARRIED: bool;
 
-    /// At the eye, looking along a unit vector.
+    /// State at the eye, for a view ray along a unit vector.
     fn begin(view: DVec3) -> Self;
 
-    /// `light` comes from the direction `sun` by being scattered into a path that goes back along `direction`.
+    /// Adds `light` from the direction `sun` (second direction) scattered into the path along the first direction.
     fn sunlight(
         &mut self,
         lanes: &Lanes<N>,
-        ways: [DVec3; 2],
+        directions: [DVec3; 2],
         shares: [&PerScatterer<N>; 2],
         light: Spectrum<N>,
     );
 
-    /// `light` comes from the sun by way of the ground.
+    /// Adds `light` from the sun reflected by the ground.
     fn sunlight_by_ground(&mut self, light: Spectrum<N>);
 
-    /// The path goes on from the first of two directions along the second.
-    fn scattered(&mut self, lanes: &Lanes<N>, ways: [DVec3; 2], shares: [&PerScatterer<N>; 2]);
+    /// Updates the state for scattering from the first of two path directions to the second.
+    fn scattered(
+        &mut self,
+        lanes: &Lanes<N>,
+        directions: [DVec3; 2],
+        shares: [&PerScatterer<N>; 2],
+    );
 
-    /// The path goes on from the ground, whose light has no polarisation.
+    /// Updates the state for reflection by the ground, which depolarises.
     fn reflected(&mut self);
 
-    /// `I`, `Q` and `U` found so far.
+    /// Accumulated `I`, `Q` and `U`.
     fn found(&self) -> [Spectrum<N>; 3];
 }
 
-/// Nothing: light is scalar.
+/// Scalar light: no state.
 pub struct Scalar;
 
 impl<const N: usize> Polarisation<N> for Scalar {
@@ -68,16 +73,16 @@ impl<const N: usize> Polarisation<N> for Scalar {
     }
 }
 
-/// Stokes vectors.
+/// State of polarised light.
 pub struct Stokes<const N: usize> {
-    /// From `I, Q, U, V` of light in the path's frame to `I, Q, U` at the eye.
+    /// Matrix from `I, Q, U, V` of light in the path's frame to `I, Q, U` at the eye.
     rows: [[Spectrum<N>; 4]; 3],
-    /// First axis of the path's frame; the second is `k x axis`, where `k` is where the light goes: against the path.
+    /// First axis of the path's frame; the second is `k x axis`, where `k` is the direction of the light, against the path.
     axis: DVec3,
     found: [Spectrum<N>; 3],
 }
 
-/// The first axis of the eye's frame along a line of sight: up, across the line; north and south where that is vertical.
+/// First axis of the eye's frame for a view ray: up, perpendicular to the ray; north-south for a vertical ray.
 pub fn eye_axis(view: DVec3) -> DVec3 {
     let up = DVec3::Y - view * view.y;
     match up.length_squared() > 1e-18 {
@@ -86,36 +91,36 @@ pub fn eye_axis(view: DVec3) -> DVec3 {
     }
 }
 
-/// A plane of scattering, from the frame of a path to its own.
+/// Scattering plane and the rotation from the path's frame into it.
 struct Plane {
-    /// Unit vector across it, the second axis of its frames.
+    /// Normal of the plane, the second axis of its frames.
     across: DVec3,
-    /// Cosine and sine of twice the angle from its frame to the path's.
-    turn: [f32; 2],
+    /// Cosine and sine of twice the angle from the plane's frame to the path's.
+    rotation: [f32; 2],
 }
 
 impl Plane {
-    /// Light that comes against `to` is scattered against `from`.
+    /// Plane of light that arrives against `to` and is scattered against `from`.
     #[inline(always)]
     fn new(from: DVec3, to: DVec3, axis: DVec3) -> Self {
         let across = to.cross(from);
         let across = match across.length_squared() > 1e-24 {
             true => across.normalize(),
-            // Straight on or back: any plane does.
+            // Forward or backward scattering: any plane contains both directions.
             false => from.any_orthonormal_vector(),
         };
         let (cos, sin) = (-axis.dot(across.cross(from)), axis.dot(across));
         Self {
             across,
-            turn: [(cos * cos - sin * sin) as f32, (2.0 * sin * cos) as f32],
+            rotation: [(cos * cos - sin * sin) as f32, (2.0 * sin * cos) as f32],
         }
     }
 }
 
 impl<const N: usize> Stokes<N> {
-    /// `Q` and `U` of a row, in the frame of a plane of scattering.
+    /// `Q` and `U` of a row, rotated into the frame of a scattering plane.
     #[inline(always)]
-    fn turned(row: &[Spectrum<N>; 4], [cos, sin]: [f32; 2]) -> [Spectrum<N>; 2] {
+    fn rotated(row: &[Spectrum<N>; 4], [cos, sin]: [f32; 2]) -> [Spectrum<N>; 2] {
         [row[1] * cos - row[2] * sin, row[1] * sin + row[2] * cos]
     }
 }
@@ -151,7 +156,7 @@ impl<const N: usize> Polarisation<N> for Stokes<N> {
         let ratios = lanes.ratios(scattering, phases, from.dot(sun).clamp(-1.0, 1.0));
         let plane = Plane::new(from, sun, self.axis);
         for (found, row) in self.found.iter_mut().zip(&self.rows) {
-            let [q, _] = Self::turned(row, plane.turn);
+            let [q, _] = Self::rotated(row, plane.rotation);
             *found += light * row[0].mul_acc(q, ratios.f12);
         }
     }
@@ -179,7 +184,7 @@ impl<const N: usize> Polarisation<N> for Stokes<N> {
         } = lanes.ratios(scattering, phases, from.dot(to).clamp(-1.0, 1.0));
         let plane = Plane::new(from, to, self.axis);
         for row in &mut self.rows {
-            let [q, u] = Self::turned(row, plane.turn);
+            let [q, u] = Self::rotated(row, plane.rotation);
             let (i, v) = (row[0], row[3]);
             *row = [
                 i + q * f12,

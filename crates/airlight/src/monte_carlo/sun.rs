@@ -1,4 +1,4 @@
-//! Where on the sun a ray of sunlight comes from.
+//! Sampling of the sun's disc.
 
 use crate::math::random::Random;
 use crate::spectrum::Spectrum;
@@ -6,35 +6,36 @@ use crate::sun::SunDisc;
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// The sun's shape.
+/// Shape of the sun.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SunShape {
-    /// All light from the middle of the disc: what fast solvers assume.
+    /// All light comes from the centre of the disc, as in the fast solvers.
     #[default]
     Point,
-    /// From all over the disc, darker towards the limb.
+    /// Light comes from the whole disc, with limb darkening.
     Disc,
 }
 
 impl SunShape {
-    /// Draws a direction, evenly over the disc.
+    /// Draws a direction, uniformly over the disc.
     #[inline(always)]
     pub(super) fn draw(self, sun: DVec3, disc: &SunDisc, random: &mut Random) -> DVec3 {
         match self {
             Self::Point => sun,
             Self::Disc => {
-                // Even in the cosine: in 1 - cos = 2 sin^2(radius / 2) * choice, which keeps its digits.
-                let most = 2.0 * (0.5 * disc.angular_radius_rad).sin().powi(2);
-                let fall = most * random.unit();
-                let sine = (fall * (2.0 - fall)).sqrt();
+                // Uniform in the cosine: 1 - cos = 2 sin^2(radius / 2) * choice, without cancellation.
+                let max_one_minus_cos = 2.0 * (0.5 * disc.angular_radius_rad).sin().powi(2);
+                let one_minus_cos = max_one_minus_cos * random.unit();
+                let sine = (one_minus_cos * (2.0 - one_minus_cos)).sqrt();
                 let (sin, cos) = (2.0 * PI * random.unit()).sin_cos();
                 let (across, up) = sun.any_orthonormal_pair();
-                (sun * (1.0 - fall) + across * (sine * cos) + up * (sine * sin)).normalize()
+                (sun * (1.0 - one_minus_cos) + across * (sine * cos) + up * (sine * sin))
+                    .normalize()
             }
         }
     }
 
-    /// Light of the direction drawn: `light`, and what the limb darkens it by.
+    /// `light` multiplied by the limb darkening in the sampled direction.
     #[inline(always)]
     pub(super) fn limb<const N: usize>(
         self,

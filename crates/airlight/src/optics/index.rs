@@ -1,20 +1,20 @@
-//! Refractive indices by wavelength.
+//! Refractive indices as functions of wavelength.
 
 use crate::spectrum::{SpectralCurve, embedded_table};
 use num_complex::Complex64;
 use std::sync::LazyLock;
 
-/// A complex refractive index `n + i k` by wavelength (`k >= 0` absorbs).
+/// Complex refractive index `n + i k` by wavelength, absorbing for `k > 0`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RefractiveIndex {
-    /// `n`.
+    /// Real part `n`.
     pub real: SpectralCurve,
-    /// `k`.
+    /// Imaginary part `k`.
     pub imaginary: SpectralCurve,
 }
 
 impl RefractiveIndex {
-    /// The same at every wavelength.
+    /// An index that does not depend on wavelength.
     pub fn constant(index: Complex64) -> Self {
         Self {
             real: SpectralCurve::Constant(index.re),
@@ -22,11 +22,12 @@ impl RefractiveIndex {
         }
     }
 
-    /// That of liquid water at 10 degrees Celsius, 200 nm to 4000 nm, constant beyond.
+    /// Liquid water at 10 degrees Celsius, 200 nm to 4000 nm, constant beyond.
     ///
-    /// `n` up to 2400 nm by the formulation of the IAPWS (`water_real`), above as given with `k`: Segelstein, *The Complex
-    /// Refractive Index of Water*, M.S. thesis, University of Missouri-Kansas City, 1981. (His `n` falls from 400 nm to 700
-    /// nm half as much again as measured, which would spread the colours of bows; at 2400 nm the two differ by 1e-3.)
+    /// `n` up to 2400 nm is the IAPWS formulation (`water_real`); `n` above and `k` are from Segelstein, *The Complex
+    /// Refractive Index of Water*, M.S. thesis, University of Missouri-Kansas City, 1981. (Segelstein's `n` falls from 400 nm
+    /// to 700 nm half as much again as measured, which would spread the colours of rainbows; at 2400 nm the two sources differ
+    /// by 1e-3.)
     pub fn water() -> Self {
         static WATER: LazyLock<RefractiveIndex> = LazyLock::new(|| {
             let table = embedded_table::<3>(include_str!("../../data/optics/water_index.txt"));
@@ -39,7 +40,7 @@ impl RefractiveIndex {
         WATER.clone()
     }
 
-    /// From rows of an embedded table: wavelength (nm), n, k.
+    /// Index from the rows of an embedded table: wavelength (nm), `n`, `k`.
     pub(crate) fn of_rows(rows: Vec<[f64; 3]>) -> Self {
         let column = |i: usize| rows.iter().map(|row| row[i]).collect::<Vec<_>>();
         let curve = |i| SpectralCurve::table(column(0), column(i));
@@ -49,7 +50,7 @@ impl RefractiveIndex {
         }
     }
 
-    /// At a wavelength, nm.
+    /// Complex index at a wavelength in nm.
     pub fn at(&self, wavelength_nm: f64) -> Complex64 {
         Complex64::new(
             self.real.at(wavelength_nm),
@@ -58,9 +59,11 @@ impl RefractiveIndex {
     }
 }
 
-/// Real refractive index of water (relative to vacuum) at a wavelength (nm, 200 to 1100; useful to 2400), temperature (K)
-/// and density (kg/m^3): IAPWS, *Release on the Refractive Index of Ordinary Water Substance as a Function of Wavelength,
-/// Temperature and Pressure*, R9-97, 1997, eq. 1. Error below 1e-4 in the visible.
+/// Real refractive index of water relative to vacuum, at a wavelength (200 nm to 1100 nm, usable to 2400 nm), temperature
+/// (K) and density (kg/m^3).
+///
+/// IAPWS, *Release on the Refractive Index of Ordinary Water Substance as a Function of Wavelength, Temperature and
+/// Pressure*, R9-97, 1997, eq. 1. Error below 1e-4 in the visible.
 pub fn water_real(wavelength_nm: f64, temperature_k: f64, density_kg_m3: f64) -> f64 {
     const ULTRAVIOLET: f64 = 0.229_202_0;
     const INFRARED: f64 = 5.432_937;
@@ -81,10 +84,10 @@ pub fn water_real(wavelength_nm: f64, temperature_k: f64, density_kg_m3: f64) ->
 mod tests {
     use super::*;
 
-    /// The sodium line at 20 degrees: 1.33299 relative to air, whose index is 1.00027. The hydrogen lines C (656.3 nm) and F
-    /// (486.1 nm): 1.33115 and 1.33712 (CRC Handbook of Chemistry and Physics, index of refraction of water).
+    /// The sodium D line at 20 degrees Celsius: 1.33299 relative to air, whose index is 1.00027. The hydrogen lines C
+    /// (656.3 nm) and F (486.1 nm): 1.33115 and 1.33712 (CRC Handbook of Chemistry and Physics, index of refraction of water).
     #[test]
-    fn water_bends_light_as_measured() {
+    fn refractive_index_of_water_matches_measurements() {
         for (nm, want) in [(589.3, 1.33299), (656.3, 1.33115), (486.1, 1.33712)] {
             let got = water_real(nm, 293.15, 998.2) / 1.00027;
             assert!((got - want).abs() < 1e-4, "{nm}: {got}");
@@ -101,7 +104,7 @@ mod tests {
     #[test]
     fn water_absorbs_red_more_than_blue() {
         let water = RefractiveIndex::water();
-        // Absorption 4 pi k / lambda of 0.2 to 0.3 per metre at 600 nm (Pope & Fry 1997: 0.222).
+        // The absorption coefficient 4 pi k / lambda is 0.2 to 0.3 per metre at 600 nm (Pope & Fry 1997: 0.222).
         let absorption = |nm: f64| 4e9 * std::f64::consts::PI * water.at(nm).im / nm;
         assert!(
             (0.15..0.3).contains(&absorption(600.0)),

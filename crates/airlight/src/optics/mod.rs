@@ -1,4 +1,4 @@
-//! What one particle does to light.
+//! Optical properties of single particles: refractive indices, cross-sections, phase functions, polarisation.
 
 mod index;
 pub mod mie;

@@ -1,24 +1,24 @@
-//! Ozone: what gives the twilight zenith its blue.
+//! Absorption by ozone, which makes the twilight zenith blue.
 
 use crate::spectrum::{SampledCurve, embedded_table};
 use std::sync::LazyLock;
 
-/// Molecules per square metre in one Dobson unit (10 micrometres of the gas at 273.15 K and 101325 Pa).
+/// Molecules per square metre in one Dobson unit (a layer of 10 micrometres of the gas at 273.15 K and 101325 Pa).
 pub const DOBSON_UNIT_M2: f64 = 2.6867e20;
 
-/// Absorption cross-section of an ozone molecule at 233 K, m^2, at a (vacuum) wavelength in nm.
+/// Absorption cross-section of an ozone molecule at 233 K, m^2, at a vacuum wavelength in nm.
 ///
-/// Means over 1 nm, every 1 nm from 300 nm to 900 nm, linear between and constant beyond. 233 K is about the
-/// temperature of the ozone layer. From 193 K to 293 K the same measurement changes by less than 2 % between 480 nm and
-/// 650 nm, where ozone colours the sky; by up to 6 % from 650 nm to 900 nm; by 20 % at 320 nm and by several times its
-/// value about 350 nm. Between 360 nm and 420 nm ozone hardly absorbs and the table is mostly measurement noise.
+/// Means over 1 nm, every 1 nm from 300 nm to 900 nm, linearly interpolated, constant beyond. 233 K is about the
+/// temperature of the ozone layer. From 193 K to 293 K the measured cross-section changes by less than 2 % between 480 nm
+/// and 650 nm, where ozone colours the sky; by up to 6 % from 650 nm to 900 nm; by 20 % at 320 nm; and by several times its
+/// value about 350 nm. Between 360 nm and 420 nm ozone hardly absorbs, and the table is mostly measurement noise.
 ///
 /// Sources: Gorshelev et al., Atmos. Meas. Tech. 7, 609-624, 2014; Serdyuchenko et al., ibid. 625-636.
 pub fn cross_section_m2(nm: f64) -> f64 {
     curve().at(nm)
 }
 
-/// The table behind [`cross_section_m2`]: m^2 over nm.
+/// Table of [`cross_section_m2`]: cross-section in m^2 by wavelength in nm.
 pub fn curve() -> &'static SampledCurve {
     static CURVE: LazyLock<SampledCurve> = LazyLock::new(|| {
         let rows = embedded_table::<2>(include_str!("../../data/optics/ozone_233k.txt"));
@@ -42,9 +42,9 @@ mod tests {
     }
 
     #[test]
-    fn agrees_with_ten_nanometre_means_published_elsewhere() {
-        // The 233 K means over [nm, nm + 10) in E. Bruneton's precomputed atmospheric scattering demo (2017), from an
-        // earlier issue of the same measurement.
+    fn ten_nanometre_means_match_published_values() {
+        // Means at 233 K over [nm, nm + 10) in E. Bruneton's precomputed atmospheric scattering demo (2017), from an earlier
+        // release of the same measurement.
         for (nm, want) in [
             (440, 1.582e-26),
             (500, 1.480e-25),

@@ -1,6 +1,7 @@
-//! Phase functions: where a particle sends the light that it scatters.
+//! Phase functions: the angular distribution of scattered light.
 //!
-//! All are densities over the sphere, sr^-1, whose integral is 1; the cosine is 1 for light that goes straight on.
+//! All are densities over the sphere, sr^-1, with integral 1, as functions of the cosine of the scattering angle, which is
+//! 1 for forward scattering.
 
 mod sample;
 
@@ -10,13 +11,13 @@ use super::rayleigh;
 use super::tabulated::TabulatedPhase;
 use std::f64::consts::PI;
 
-/// A phase function. The checked constructors refuse what the variants cannot mean; [`PhaseFunction::validate`] checks
-/// one built by hand.
+/// A phase function. The constructors check their parameters; [`PhaseFunction::validate`] checks a value built from its
+/// variants.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PhaseFunction {
-    /// The same in all directions: `1 / (4 pi)`.
+    /// Isotropic scattering: `1 / (4 pi)`.
     Isotropic,
-    /// Molecules: `3 / (16 pi (1 + 2 gamma)) (1 + 3 gamma + (1 - gamma) mu^2)`, `gamma = rho / (2 - rho)`
+    /// Rayleigh scattering by molecules: `3 / (16 pi (1 + 2 gamma)) (1 + 3 gamma + (1 - gamma) mu^2)`, `gamma = rho / (2 - rho)`
     /// (Bucholtz, Appl. Opt. 34, 2765, 1995, eqs. 10 and 12).
     Rayleigh(Depolarization),
     /// Henyey & Greenstein (1941): `(1 - g^2) / (4 pi (1 + g^2 - 2 g mu)^(3/2))`, mean cosine `g`.
@@ -29,33 +30,33 @@ pub enum PhaseFunction {
         /// Parameter, `-1 < g < 1`; the mean cosine is `3 g (4 + g^2) / (5 (2 + g^2))`.
         g: f64,
     },
-    /// Draine (Astrophys. J. 598, 1017, 2003, eq. 6): Henyey-Greenstein times `1 + alpha mu^2`, normalised. It is
+    /// Draine (Astrophys. J. 598, 1017, 2003, eq. 6): Henyey-Greenstein times `1 + alpha mu^2`, normalised. Equal to
     /// Henyey-Greenstein for `alpha = 0`, Cornette-Shanks for `alpha = 1`, Rayleigh for `g = 0`, `alpha = 1`.
     Draine {
         /// Parameter, `-1 < g < 1`.
         g: f64,
-        /// Weight of the cosine squared, `>= 0`.
+        /// Weight of the squared cosine, `>= 0`.
         alpha: f64,
     },
-    /// Several, each with its weight; the weights sum to 1.
+    /// A weighted sum of phase functions; the weights sum to 1.
     Mixture(Vec<(f64, PhaseFunction)>),
-    /// Measured or computed, by angle and wavelength.
+    /// A measured or computed table by angle and wavelength.
     Tabulated(TabulatedPhase),
 }
 
-/// How far molecules depart from spheres.
+/// Depolarization of light scattered by anisotropic molecules.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Depolarization {
     /// Isotropic molecules: `3 / (16 pi) (1 + mu^2)`.
     None,
-    /// A depolarization ratio for natural light, in `[0, 6/7)`.
+    /// A constant depolarization ratio for natural light, in `[0, 6/7)`.
     Factor(f64),
-    /// That of dry air, by wavelength, from its King factor ([`rayleigh::king_factor`]).
+    /// The ratio of dry air, by wavelength, from its King factor ([`rayleigh::king_factor`]).
     Air,
 }
 
 impl Depolarization {
-    /// The depolarization ratio `rho_n` at a wavelength.
+    /// Depolarization ratio `rho_n` for natural light at a wavelength in nm.
     pub fn ratio(self, wavelength_nm: f64) -> f64 {
         match self {
             Self::None => 0.0,
@@ -73,79 +74,83 @@ impl Depolarization {
     }
 }
 
-/// Why numbers do not make a phase function.
+/// Error of a phase function's constructor or of [`PhaseFunction::validate`].
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PhaseError {
     /// The asymmetry parameter is out of range.
-    #[error("the asymmetry parameter g must lie strictly between -1 and 1, got {0}")]
+    #[error("expected an asymmetry parameter g strictly between -1 and 1, got {0}")]
     Asymmetry(f64),
     /// Draine's alpha is out of range.
-    #[error("alpha must be finite and not negative, got {0}")]
+    #[error("expected a finite alpha of at least 0, got {0}")]
     Alpha(f64),
     /// The depolarization ratio is out of range.
-    #[error("the depolarization ratio must lie in [0, 6/7), got {0}")]
+    #[error("expected a depolarization ratio in [0, 6/7), got {0}")]
     Depolarization(f64),
     /// A mixture without parts, or with a weight that is negative or not finite.
     #[error(
-        "a mixture needs at least one part, with finite weights not below 0; part {index} has weight {weight}"
+        "expected at least one part in a mixture, with finite weights of at least 0; got the weight {weight} at index {index}"
     )]
     Weight {
-        /// Which part, counted from 0.
+        /// Index of the part, from 0.
         index: usize,
-        /// Its weight (not a number where there are no parts).
+        /// Weight of the part (NaN if there are no parts).
         weight: f64,
     },
-    /// The weights do not sum to 1.
-    #[error("the weights of a mixture must sum to 1, got {0}")]
+    /// The weights of a mixture do not sum to 1.
+    #[error(
+        "expected the weights of a mixture to sum to 1, got {0}; try dividing each by their sum"
+    )]
     WeightSum(f64),
-    /// A table whose angles do not run from 0 to 180 degrees, strictly increasing.
-    #[error("angles must rise strictly from 0 to 180 degrees: entry {index} is {value}")]
+    /// The angles of a table do not increase strictly from 0 to 180 degrees.
+    #[error(
+        "expected angles that increase strictly from 0 to 180 degrees, got {value} at index {index}"
+    )]
     Angles {
-        /// Which entry, counted from 0.
+        /// Index of the angle, from 0.
         index: usize,
-        /// Its angle, degrees.
+        /// The angle, degrees.
         value: f64,
     },
-    /// A table whose wavelengths are not positive and strictly increasing.
-    #[error("wavelengths must be positive and strictly increasing: entry {index} is {value} nm")]
+    /// The wavelengths of a table are not positive or not strictly increasing.
+    #[error("expected positive, strictly increasing wavelengths, got {value} nm at index {index}")]
     Wavelengths {
-        /// Which entry, counted from 0.
+        /// Index of the wavelength, from 0.
         index: usize,
-        /// Its wavelength, nm.
+        /// The wavelength, nm.
         value: f64,
     },
-    /// A table whose number of values is wrong.
-    #[error("a table of {wavelengths} wavelengths and {angles} angles needs {expected} values, got {got}", expected = wavelengths * angles)]
+    /// The number of values differs from the number of wavelengths times the number of angles.
+    #[error("expected {expected} values for {wavelengths} wavelengths and {angles} angles, got {got}", expected = wavelengths * angles)]
     Length {
         /// Number of wavelengths.
         wavelengths: usize,
         /// Number of angles.
         angles: usize,
-        /// Number of values given.
+        /// Number of values.
         got: usize,
     },
-    /// An element of a scattering matrix that none has.
+    /// An element of a scattering matrix is out of range.
     #[error(
-        "elements of a scattering matrix over the phase function must lie in [-1, 1]: of entry {index} one is {value}"
+        "expected elements of the scattering matrix relative to the phase function in [-1, 1], got {value} at index {index}"
     )]
     Matrix {
-        /// Which entry, counted from 0, wavelength by wavelength.
+        /// Index of the entry, from 0, with the angle varying fastest.
         index: usize,
-        /// Its value.
+        /// The element.
         value: f64,
     },
-    /// A value that is not positive and finite.
-    #[error("tabulated values must be positive and finite: entry {index} is {value}")]
+    /// A tabulated value is not positive and finite.
+    #[error("expected positive, finite values, got {value} at index {index}")]
     Value {
-        /// Which entry, counted from 0, wavelength by wavelength.
+        /// Index of the value, from 0, with the angle varying fastest.
         index: usize,
-        /// Its value.
+        /// The value.
         value: f64,
     },
 }
 
 impl PhaseFunction {
-    /// Henyey-Greenstein.
+    /// Henyey-Greenstein phase function with mean cosine `g`.
     ///
     /// # Errors
     /// [`PhaseError::Asymmetry`] unless `-1 < g < 1`.
@@ -153,7 +158,7 @@ impl PhaseFunction {
         Self::HenyeyGreenstein { g }.validated()
     }
 
-    /// Cornette-Shanks.
+    /// Cornette-Shanks phase function with parameter `g`.
     ///
     /// # Errors
     /// [`PhaseError::Asymmetry`] unless `-1 < g < 1`.
@@ -161,7 +166,7 @@ impl PhaseFunction {
         Self::CornetteShanks { g }.validated()
     }
 
-    /// Draine.
+    /// Draine's phase function with parameters `g` and `alpha`.
     ///
     /// # Errors
     /// [`PhaseError::Asymmetry`] unless `-1 < g < 1`, [`PhaseError::Alpha`] unless `alpha >= 0`.
@@ -169,18 +174,19 @@ impl PhaseFunction {
         Self::Draine { g, alpha }.validated()
     }
 
-    /// Rayleigh with a constant depolarization ratio.
+    /// Rayleigh phase function with a constant depolarization ratio.
     ///
     /// # Errors
-    /// [`PhaseError::Depolarization`] unless it lies in `[0, 6/7)`.
+    /// [`PhaseError::Depolarization`] unless the ratio lies in `[0, 6/7)`.
     pub fn rayleigh(depolarization_ratio: f64) -> Result<Self, PhaseError> {
         Self::Rayleigh(Depolarization::Factor(depolarization_ratio)).validated()
     }
 
-    /// A mixture of phase functions.
+    /// Weighted sum of phase functions.
     ///
     /// # Errors
-    /// [`PhaseError::Weight`] or [`PhaseError::WeightSum`] (beyond 1e-9), or what a part is refused for.
+    /// [`PhaseError::Weight`]; [`PhaseError::WeightSum`] if the sum of the weights differs from 1 by more than 1e-9; the error of
+    /// an invalid part.
     pub fn mixture(parts: Vec<(f64, PhaseFunction)>) -> Result<Self, PhaseError> {
         Self::Mixture(parts).validated()
     }
@@ -190,10 +196,10 @@ impl PhaseFunction {
         Ok(self)
     }
 
-    /// Checks the parameters of a phase function built by hand.
+    /// Checks the parameters.
     ///
     /// # Errors
-    /// The first parameter out of its domain.
+    /// The error of the first parameter outside its domain.
     pub fn validate(&self) -> Result<(), PhaseError> {
         let asymmetry = |g: f64| match g.abs() < 1.0 {
             true => Ok(()),
@@ -240,11 +246,11 @@ impl PhaseFunction {
         }
     }
 
-    /// The phase function at the cosine of the scattering angle, in `[-1, 1]`, sr^-1.
+    /// Value in sr^-1 at the cosine of the scattering angle, in `[-1, 1]`.
     ///
-    /// Relative error a few 1e-16 for the closed forms, also near the forward peak as `g` goes to 1: the denominator
-    /// is formed as `(1 - g)^2 + 2 g (1 - mu)`, in which nothing cancels. (What remains is the rounding of the cosine
-    /// itself, 1e-16 in `1 - mu`.)
+    /// The relative error of the closed forms is a few 1e-16, also near the forward peak as `g` approaches 1: the denominator
+    /// is computed as `(1 - g)^2 + 2 g (1 - mu)`, without cancellation. (What remains is the rounding of the cosine itself,
+    /// 1e-16 in `1 - mu`.)
     pub fn evaluate(&self, cos_angle: f64, wavelength_nm: f64) -> f64 {
         match self {
             Self::Isotropic => 0.25 / PI,
@@ -264,11 +270,11 @@ impl PhaseFunction {
         }
     }
 
-    /// The Legendre moments `chi_l`, `l = 0 .. count`, of `p(mu) = sum (2 l + 1) / (4 pi) chi_l P_l(mu)`; `chi_0 = 1`
-    /// and `chi_1` is the mean cosine.
+    /// Legendre moments `chi_l`, `l = 0 .. count`, of `p(mu) = sum (2 l + 1) / (4 pi) chi_l P_l(mu)`; `chi_0 = 1` and `chi_1`
+    /// is the mean cosine.
     ///
-    /// Closed forms, except for tables (Gauss-Legendre quadrature in panels that resolve both the table and `P_l`;
-    /// absolute error below 1e-9).
+    /// Closed forms, except for tables, which use Gauss-Legendre quadrature in panels that resolve both the table and `P_l`
+    /// (absolute error below 1e-9).
     pub fn legendre_moments(&self, count: usize, wavelength_nm: f64) -> Vec<f64> {
         match self {
             Self::Isotropic => (0..count).map(|l| if l == 0 { 1.0 } else { 0.0 }).collect(),
@@ -302,12 +308,12 @@ impl PhaseFunction {
         }
     }
 
-    /// The mean cosine of the scattering angle.
+    /// Mean cosine of the scattering angle.
     pub fn asymmetry(&self, wavelength_nm: f64) -> f64 {
         self.legendre_moments(2, wavelength_nm)[1]
     }
 
-    /// Whether the wavelength makes a difference.
+    /// True if the function depends on wavelength.
     pub fn depends_on_wavelength(&self) -> bool {
         match self {
             Self::Rayleigh(depolarization) => *depolarization == Depolarization::Air,
@@ -318,7 +324,7 @@ impl PhaseFunction {
     }
 }
 
-/// Henyey-Greenstein without cancellation at either peak.
+/// Henyey-Greenstein phase function without cancellation at either peak.
 fn henyey_greenstein(g: f64, mu: f64) -> f64 {
     let a = g.abs();
     let from_peak = 1.0 - mu.clamp(-1.0, 1.0).copysign(mu * g);
@@ -331,7 +337,7 @@ fn draine(g: f64, alpha: f64, mu: f64) -> f64 {
     henyey_greenstein(g, mu) * (1.0 + alpha * mu * mu) / norm
 }
 
-/// Moments of Draine's function: those of Henyey-Greenstein, `g^l`, sent through the recurrence of `mu^2 P_l`.
+/// Legendre moments of Draine's function: those of Henyey-Greenstein, `g^l`, with the recurrence of `mu^2 P_l` applied.
 fn draine_moments(g: f64, alpha: f64, count: usize) -> Vec<f64> {
     let norm = 1.0 + alpha * (1.0 + 2.0 * g * g) / 3.0;
     (0..count)

@@ -1,7 +1,7 @@
-//! What scattering does to the polarisation of light.
+//! Polarisation by scattering.
 //!
-//! The scattering matrix of particles that have no side of their own, in frames whose first axis lies in the scattering plane
-//! (Hansen & Travis, Space Sci. Rev. 16, 527, 1974, eqs. 2.12 to 2.16; Bohren & Huffman, sec. 3.3):
+//! The scattering matrix of particles without a preferred orientation or handedness, in frames whose first axis lies in the
+//! scattering plane (Hansen & Travis, Space Sci. Rev. 16, 527, 1974, eqs. 2.12 to 2.16; Bohren & Huffman, sec. 3.3):
 //!
 //! ```text
 //! F11 F12  0    0
@@ -12,15 +12,15 @@
 
 use super::phase::{Depolarization, PhaseFunction};
 
-/// Elements of the scattering matrix over its first, the phase function.
+/// Elements of the scattering matrix divided by its first element, the phase function.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MatrixRatios {
-    /// Natural light to linear polarisation: `-f12` is the degree of polarisation of natural light scattered once, positive
-    /// across the scattering plane.
+    /// Natural light to linear polarisation: `-f12` is the degree of polarisation of singly scattered natural light, positive
+    /// perpendicular to the scattering plane.
     pub f12: f64,
-    /// Linear polarisation in or across the plane, to itself.
+    /// Linear polarisation parallel or perpendicular to the scattering plane, to itself.
     pub f22: f64,
-    /// Linear polarisation at 45 degrees, to itself.
+    /// Linear polarisation at 45 degrees to the scattering plane, to itself.
     pub f33: f64,
     /// Circular to linear polarisation at 45 degrees.
     pub f34: f64,
@@ -29,7 +29,7 @@ pub struct MatrixRatios {
 }
 
 impl MatrixRatios {
-    /// Light scattered without polarisation.
+    /// Scattering that removes all polarisation.
     pub const NONE: Self = Self {
         f12: 0.0,
         f22: 0.0,
@@ -38,7 +38,7 @@ impl MatrixRatios {
         f44: 0.0,
     };
 
-    /// The sum with another, times a factor.
+    /// `self + factor * other`, element by element.
     pub(super) fn plus(self, other: Self, factor: f64) -> Self {
         Self {
             f12: self.f12 + factor * other.f12,
@@ -51,8 +51,8 @@ impl MatrixRatios {
 }
 
 impl Depolarization {
-    /// The part of the scattered light that isotropic molecules would scatter (`Delta`; the rest has no polarisation and no
-    /// direction), and that of it in which circular polarisation is kept (`Delta'`): Hansen & Travis, eq. 2.16.
+    /// Fraction `Delta` of the scattered light that is scattered as by isotropic molecules (the rest is unpolarised and
+    /// isotropic), and the factor `Delta'` of its circular polarisation: Hansen & Travis, eq. 2.16.
     pub fn polarised_shares(self, wavelength_nm: f64) -> [f64; 2] {
         let ratio = self.ratio(wavelength_nm);
         [
@@ -63,11 +63,11 @@ impl Depolarization {
 }
 
 impl PhaseFunction {
-    /// The scattering matrix over the phase function, at the cosine of the scattering angle.
+    /// Scattering matrix relative to the phase function, at the cosine of the scattering angle.
     ///
     /// Known for molecules (Hansen & Travis, eq. 2.15) and for tables of spheres by Lorenz-Mie theory ([`super::mie`]).
-    /// Where a phase function is all that is known (Henyey-Greenstein and its like, measured tables) light is taken to be
-    /// scattered without polarisation: true of none, least of small particles.
+    /// All other phase functions (Henyey-Greenstein and similar, measured tables) are treated as scattering without
+    /// polarisation, which is an approximation for any particle, and worst for small ones.
     pub fn matrix_ratios(&self, cos_angle: f64, wavelength_nm: f64) -> MatrixRatios {
         match self {
             Self::Rayleigh(depolarization) => {
@@ -91,7 +91,7 @@ impl PhaseFunction {
         }
     }
 
-    /// Whether more than the phase function is known.
+    /// True if the scattering matrix is known beyond the phase function.
     pub fn knows_polarisation(&self) -> bool {
         match self {
             Self::Rayleigh(_) => true,
@@ -105,13 +105,13 @@ impl PhaseFunction {
 fn rayleigh([share, circular]: [f64; 2], mu: f64) -> MatrixRatios {
     let even = 0.75 * share * (1.0 + mu * mu);
     let whole = even + 1.0 - share;
-    let turned = 1.5 * share * mu / whole;
+    let linear = 1.5 * share * mu / whole;
     MatrixRatios {
         f12: -0.75 * share * (1.0 - mu * mu) / whole,
         f22: even / whole,
-        f33: turned,
+        f33: linear,
         f34: 0.0,
-        f44: circular * turned,
+        f44: circular * linear,
     }
 }
 
@@ -122,10 +122,10 @@ mod tests {
     use crate::optics::{RefractiveIndex, TabulatedPhase};
     use num_complex::Complex64;
 
-    /// Light scattered at right angles by molecules: isotropic ones polarise it wholly, others leave
-    /// `(1 - rho) / (1 + rho)`, as the ratio is defined.
+    /// Isotropic molecules fully polarise light scattered at right angles; others to `(1 - rho) / (1 + rho)`, by the definition
+    /// of the ratio.
     #[test]
-    fn molecules_polarise_as_their_ratio_says() {
+    fn polarisation_at_right_angles_follows_the_depolarization_ratio() {
         for rho in [0.0, 0.03, 0.2] {
             let phase = PhaseFunction::rayleigh(rho).unwrap();
             let at = |mu| phase.matrix_ratios(mu, 550.0);
@@ -141,9 +141,9 @@ mod tests {
         }
     }
 
-    /// A sphere far smaller than the wavelength is an isotropic molecule.
+    /// A sphere much smaller than the wavelength scatters as an isotropic molecule.
     #[test]
-    fn small_spheres_are_molecules() {
+    fn small_spheres_scatter_as_molecules() {
         let sphere = Sphere::new(1e-3, Complex64::new(1.33, 0.0)).unwrap();
         let molecule = PhaseFunction::rayleigh(0.0).unwrap();
         for mu in [-1.0, -0.4, 0.2, 0.9] {
@@ -154,9 +154,9 @@ mod tests {
         }
     }
 
-    /// A table of spheres holds what they do to polarisation, between its angles too.
+    /// A table of spheres reproduces their scattering matrix, also between its angles.
     #[test]
-    fn tables_of_spheres_hold_the_whole_matrix() {
+    fn tables_of_spheres_reproduce_the_scattering_matrix() {
         let sizes = SizeDistribution::log_normal(0.15, 1.6);
         let index = RefractiveIndex::constant(Complex64::new(1.45, 0.01));
         let particles = Particles::new(index, sizes).unwrap();
@@ -183,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_known_by_its_phase_function_alone_does_not_polarise() {
+    fn phase_functions_without_a_matrix_do_not_polarise() {
         let lobe = PhaseFunction::HenyeyGreenstein { g: 0.6 };
         assert!(!lobe.knows_polarisation());
         let plain = TabulatedPhase::new(vec![0.0, 180.0], vec![550.0], vec![1.0; 2]).unwrap();
@@ -195,7 +195,7 @@ mod tests {
             (0.5, PhaseFunction::Isotropic),
         ];
         let half = PhaseFunction::mixture(half).unwrap();
-        // At right angles 3/4 of what scatters alike in all directions.
+        // At right angles, 3/4 of the isotropic phase function.
         let degree = -half.matrix_ratios(0.0, 550.0).f12;
         assert!((degree - 0.75 / 1.75).abs() < 1e-12, "{degree}");
     }

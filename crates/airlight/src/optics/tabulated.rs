@@ -1,4 +1,4 @@
-//! Phase functions given as tables.
+//! Tabulated phase functions.
 
 mod matrix;
 mod moments;
@@ -9,37 +9,37 @@ use crate::math::interpolation::{Place, hermite, interval_of, lerp, monotone_slo
 use crate::math::quadrature::FixedRule;
 use std::sync::Arc;
 
-/// A phase function given at angles from 0 to 180 degrees and at one or more wavelengths.
+/// A phase function tabulated at angles from 0 to 180 degrees and at one or more wavelengths.
 ///
-/// Between angles `ln p` follows a monotone cubic (Fritsch & Butland, SIAM J. Sci. Stat. Comput. 5, 300, 1984; slope
-/// 0 at both ends, about which every phase function is even), so a peak of many decades stays smooth and nothing overshoots. Between wavelengths `p` is
-/// linear, which keeps its integral 1; beyond the first and last wavelength it is constant. Each wavelength is scaled
-/// at construction so that the integral over the sphere is 1 (to 1e-12).
+/// Between angles `ln p` follows a monotone cubic (Fritsch & Butland, SIAM J. Sci. Stat. Comput. 5, 300, 1984) with slope
+/// 0 at both ends, about which every phase function is even, so peaks of many decades stay smooth and nothing overshoots.
+/// Between wavelengths `p` is linear, which preserves its integral of 1; beyond the first and last wavelength it is
+/// constant. The constructor scales each wavelength so that the integral over the sphere is 1 (to 1e-12).
 ///
-/// A clone shares the table.
+/// Clones share the table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TabulatedPhase {
     wavelengths_nm: Arc<[f64]>,
     angles_rad: Arc<[f64]>,
-    /// `ln p` and its slope by angle, wavelength by wavelength.
+    /// `ln p` and its slope, with the angle varying fastest.
     log_values: Arc<[f64]>,
     slopes: Arc<[f64]>,
-    /// The part of the light that is scattered by less than each angle, wavelength by wavelength.
+    /// Fraction of the light scattered by less than each angle, with the angle varying fastest.
     cumulative: Arc<[f64]>,
-    /// `f12`, `f33` and `f34` of spheres over the phase function by angle, wavelength by wavelength, where they are known.
+    /// `f12`, `f33` and `f34` of spheres relative to the phase function, with the angle varying fastest, if known.
     matrix: Option<Arc<[[f32; 3]]>>,
 }
 
-/// Points of the Gauss-Legendre rule used in each stretch.
+/// Number of points of the Gauss-Legendre rule in each panel.
 const PANEL_POINTS: usize = 12;
 static PANEL_RULE: FixedRule<PANEL_POINTS> = FixedRule::fixed();
 
 impl TabulatedPhase {
-    /// Takes `values[w * angles + a]` at wavelength `w` and angle `a`, in any common unit.
+    /// Creates a phase function from `values[w * angles + a]` at wavelength `w` and angle `a`, in any common unit.
     ///
     /// # Errors
-    /// [`PhaseError`] where angles do not rise from 0 to 180, wavelengths do not rise, the number of values is wrong or
-    /// one is not positive.
+    /// [`PhaseError`] if the angles do not increase strictly from 0 to 180, the wavelengths are not positive and strictly
+    /// increasing, the number of values is wrong, or a value is not positive and finite.
     pub fn new(
         angles_deg: Vec<f64>,
         wavelengths_nm: Vec<f64>,
@@ -94,7 +94,7 @@ impl TabulatedPhase {
         Ok(table)
     }
 
-    /// Scales every row to an integral of 1 and keeps its running integral.
+    /// Scales each row to an integral of 1 and stores its running integral.
     fn normalize(&mut self) {
         let angles = self.angles_rad.len();
         let mut log_values = self.log_values.to_vec();
@@ -114,22 +114,22 @@ impl TabulatedPhase {
         self.cumulative = cumulative.into();
     }
 
-    /// The wavelengths of the table, nm.
+    /// Wavelengths of the table, nm.
     pub fn wavelengths_nm(&self) -> &[f64] {
         &self.wavelengths_nm
     }
 
-    /// The angles of the table, rad.
+    /// Angles of the table, rad.
     pub fn angles_rad(&self) -> &[f64] {
         &self.angles_rad
     }
 
-    /// The phase function, sr^-1, at the cosine of the scattering angle.
+    /// Value in sr^-1 at the cosine of the scattering angle.
     pub fn evaluate(&self, cos_angle: f64, wavelength_nm: f64) -> f64 {
         self.at_place(self.place(cos_angle), wavelength_nm)
     }
 
-    /// The same at several wavelengths: the angle is looked up once.
+    /// As [`Self::evaluate`] at several wavelengths, with one look-up of the angle.
     #[inline]
     pub fn evaluate_all<const N: usize>(
         &self,
@@ -140,16 +140,16 @@ impl TabulatedPhase {
         wavelengths_nm.map(|nm| self.at_place(place, nm))
     }
 
-    /// The scattering angle and the interval that it lies in.
+    /// Interval of the table and the scattering angle, rad.
     fn place(&self, cos_angle: f64) -> (usize, f64) {
         let mu = cos_angle.clamp(-1.0, 1.0);
-        // Keeps the digits that acos loses near both ends.
+        // More accurate than acos near both ends.
         let angle = ((1.0 - mu) * (1.0 + mu)).sqrt().atan2(mu);
         (interval_of(&self.angles_rad, angle), angle)
     }
 
     fn at_place(&self, (interval, angle): (usize, f64), wavelength_nm: f64) -> f64 {
-        let (row, t) = self.between(wavelength_nm);
+        let (row, t) = self.bracket_wavelength(wavelength_nm);
         let near = self.at_row(row, interval, angle);
         match t {
             0.0 => near,
@@ -157,8 +157,8 @@ impl TabulatedPhase {
         }
     }
 
-    /// The row at or below a wavelength, and how far it is on the way to the next.
-    fn between(&self, wavelength_nm: f64) -> (usize, f64) {
+    /// Row at or below a wavelength, and the interpolation weight of the next row.
+    fn bracket_wavelength(&self, wavelength_nm: f64) -> (usize, f64) {
         let last = self.wavelengths_nm.len() - 1;
         if last == 0 || wavelength_nm >= self.wavelengths_nm[last] {
             return (last, 0.0);
@@ -180,21 +180,21 @@ impl TabulatedPhase {
         .exp()
     }
 
-    /// Where the rule's points lie in stretches of an interval up to an angle, and what weight `2 pi sin(angle) d angle` they
-    /// bear. No stretch is wider than `widest`, and over none does `ln p` rise by more than about 2.
+    /// Calls `visit` with the nodes of the quadrature rule and their weights `2 pi sin(angle) d angle` in panels of an
+    /// interval, up to the angle `to`. No panel is wider than `max_width`, and `ln p` changes by at most about 2 over each.
     #[inline(always)]
-    fn stretches(
+    fn visit_panels(
         &self,
         row: usize,
         interval: usize,
         to: f64,
-        widest: f64,
+        max_width: f64,
         mut visit: impl FnMut(&[f64; PANEL_POINTS], &[f64; PANEL_POINTS]),
     ) {
         let low = self.angles_rad[interval];
         let at = row * self.angles_rad.len() + interval;
         let rise = (self.log_values[at + 1] - self.log_values[at]).abs();
-        let count = ((to - low) / widest).max(rise / 2.0).ceil().max(1.0);
+        let count = ((to - low) / max_width).max(rise / 2.0).ceil().max(1.0);
         let width = (to - low) / count;
         let rule = PANEL_RULE.pairs();
         for k in 0..count as usize {
@@ -208,7 +208,7 @@ impl TabulatedPhase {
     }
 }
 
-/// `ln p` at points among samples (both rising), as a table would have it.
+/// Interpolates `ln p` from increasing sample angles to increasing points, as a table does.
 pub(super) fn between_samples(angles: &[f64], logs: &[f64], points: &[f64]) -> Vec<f64> {
     let slopes = monotone_slopes(angles, logs);
     let at = |&point: &f64| hermite(angles, logs, &slopes, interval_of(angles, point), point);
@@ -221,7 +221,7 @@ mod tests {
     use std::f64::consts::PI;
 
     #[test]
-    fn a_smooth_function_is_met_between_its_samples() {
+    fn smooth_functions_are_interpolated_accurately() {
         // Henyey-Greenstein, g = 0.8, every 2 degrees.
         let g: f64 = 0.8;
         let hg = |a: f64| {
@@ -239,7 +239,7 @@ mod tests {
     }
 
     #[test]
-    fn wavelengths_blend_and_end() {
+    fn values_are_linear_between_wavelengths_and_constant_beyond() {
         let table = TabulatedPhase::new(
             vec![0.0, 90.0, 180.0],
             vec![400.0, 600.0],
@@ -254,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn bad_tables_are_refused() {
+    fn invalid_tables_are_refused() {
         let new = |angles: &[f64], wavelengths: &[f64], values: &[f64]| {
             TabulatedPhase::new(angles.to_vec(), wavelengths.to_vec(), values.to_vec()).unwrap_err()
         };

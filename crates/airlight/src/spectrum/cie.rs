@@ -3,10 +3,9 @@
 use super::table::embedded;
 use std::sync::LazyLock;
 
-/// Luminous efficacy that turns radiometric into photometric quantities, lm/W: `Y = 683.002 * integral L ybar dl` is in
-/// cd/m^2 for L in W m^-2 sr^-1 nm^-1.
+/// Maximum luminous efficacy K_m, lm/W: `Y = 683.002 * integral L ybar dl` is in cd/m^2 for `L` in W m^-2 sr^-1 nm^-1.
 ///
-/// K_m of CIE 018:2019: 683 lm/W at 540 THz, brought to the peak of V(lambda) at 555 nm in air.
+/// From CIE 018:2019: 683 lm/W at 540 THz, converted to the peak of V(lambda) at 555 nm in air.
 pub const LUMINOUS_EFFICACY_LM_PER_W: f64 = 683.002;
 
 /// Shortest wavelength of the tabulated observer, nm.
@@ -14,8 +13,8 @@ pub const FIRST_NM: f64 = 360.0;
 /// Longest wavelength of the tabulated observer, nm.
 pub const LAST_NM: f64 = 830.0;
 
-/// The colour-matching functions (x-bar, y-bar, z-bar) at a wavelength in nm: ISO/CIE 11664-1:2019, tabulated every 1 nm from
-/// 360 nm to 830 nm, linear between, zero outside.
+/// Colour-matching functions (x-bar, y-bar, z-bar) at a wavelength in nm: ISO/CIE 11664-1:2019, tabulated every 1 nm from
+/// 360 nm to 830 nm, linearly interpolated, zero outside.
 pub fn color_matching(nm: f64) -> [f64; 3] {
     static TABLE: LazyLock<Vec<[f64; 3]>> = LazyLock::new(|| {
         embedded::<4>(include_str!("../../data/spectrum/cie_1931_2deg.txt"))
@@ -23,13 +22,13 @@ pub fn color_matching(nm: f64) -> [f64; 3] {
             .map(|[_, x, y, z]| [x, y, z])
             .collect()
     });
-    // The negation also turns away NaN.
+    // The negated test also catches NaN.
     if !(FIRST_NM..=LAST_NM).contains(&nm) {
         return [0.0; 3];
     }
-    let place = nm - FIRST_NM;
-    let row = (place as usize).min(TABLE.len() - 2);
-    let t = place - row as f64;
+    let position = nm - FIRST_NM;
+    let row = (position as usize).min(TABLE.len() - 2);
+    let t = position - row as f64;
     std::array::from_fn(|i| TABLE[row][i] * (1.0 - t) + TABLE[row + 1][i] * t)
 }
 
@@ -57,7 +56,7 @@ mod tests {
     }
 
     #[test]
-    fn equal_energy_light_is_white() {
+    fn equal_energy_stimulus_has_chromaticity_one_third() {
         // The chromaticity of the equal-energy stimulus is 1/3, 1/3, to the 1e-4 of CIE 015.
         let mut sum = [0.0; 3];
         for nm in 360..=830 {

@@ -1,4 +1,4 @@
-//! What a grid costs in colour against 1 nm: the measurement behind the table in [`super::grid`].
+//! Colour error of the wavelength grids against 1 nm: the measurement behind the table in [`super::grid`].
 
 use super::WavelengthGrid;
 use super::difference::{D65_WHITE, ciede2000, xyz_to_lab};
@@ -18,7 +18,7 @@ fn direct(nm: f64, air_mass: f64) -> f64 {
     (-air_mass * (rayleigh(nm) + haze + ozone)).exp()
 }
 
-/// A sky of light scattered once, at the bottom of the air.
+/// Singly scattered sky radiance at the ground, up to a constant factor.
 fn sky(nm: f64, air_mass: f64) -> f64 {
     rayleigh(nm) * direct(nm, air_mass)
 }
@@ -40,12 +40,12 @@ fn cost(grid: &WavelengthGrid, fine: &WavelengthGrid, response: impl Fn(f64) -> 
     ciede2000(lab(xyz(grid, &response)), lab(want))
 }
 
-/// Prints the book's table with `--nocapture`.
+/// Also prints the book's table (shown with `--nocapture`).
 #[test]
-fn grids_keep_the_colour_of_sun_and_sky() {
+fn colour_errors_of_named_grids_stay_within_bounds() {
     let fine = WavelengthGrid::one_nanometre();
     println!("\n| grid | sun at 60° | 10° | 2° |\n|---|---|---|---|");
-    // A quarter above what was measured; what is asked of the standard grid is 0.5.
+    // The measured error plus a quarter; the requirement on the standard grid is 0.5.
     for (name, bound) in [
         ("standard", 0.06),
         ("fast", 0.15),
@@ -66,7 +66,7 @@ fn grids_keep_the_colour_of_sun_and_sky() {
 }
 
 #[test]
-fn standard_grid_stands_hazy_ozone_rich_and_clean_air() {
+fn standard_grid_keeps_colour_over_ozone_haze_and_air_mass() {
     let fine = WavelengthGrid::one_nanometre();
     let grid = WavelengthGrid::standard();
     let mut worst: f64 = 0.0;

@@ -1,15 +1,15 @@
-//! A quantity as a function of wavelength, before it is sampled on a grid.
+//! Quantities as functions of wavelength, before they are sampled on a grid.
 
 use crate::math::interpolation::piecewise_linear;
 
-/// A quantity that depends on wavelength.
+/// A quantity as a function of wavelength.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SpectralCurve {
     /// The same at every wavelength.
     Constant(f64),
     /// Piecewise linear between samples, constant beyond the ends.
     Table(SampledCurve),
-    /// `value_at_550_nm * (wavelength / 550 nm)^(-exponent)`: the Angstrom law, and Rayleigh's with exponent 4.
+    /// `value_at_550_nm * (wavelength / 550 nm)^(-exponent)`: the Angstrom law, or a Rayleigh law with exponent 4.
     PowerLaw {
         /// Value at 550 nm.
         value_at_550_nm: f64,
@@ -21,7 +21,7 @@ pub enum SpectralCurve {
 }
 
 impl SpectralCurve {
-    /// The value at a wavelength in nanometres.
+    /// Value at a wavelength in nm.
     pub fn at(&self, wavelength_nm: f64) -> f64 {
         match self {
             Self::Constant(value) => *value,
@@ -42,25 +42,28 @@ impl SpectralCurve {
         }
     }
 
-    /// A piecewise linear curve. Errors as [`SampledCurve::new`].
+    /// A piecewise linear curve through `values` at `wavelengths_nm`.
+    ///
+    /// # Errors
+    /// As [`SampledCurve::new`].
     pub fn table(wavelengths_nm: Vec<f64>, values: Vec<f64>) -> Result<Self, CurveError> {
         SampledCurve::new(wavelengths_nm, values).map(Self::Table)
     }
 }
 
-/// Samples of a function at strictly increasing abscissae, joined by straight lines and constant beyond the ends.
+/// A piecewise linear function through samples at strictly increasing abscissae, constant beyond the ends.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SampledCurve {
     abscissae: Vec<f64>,
     values: Vec<f64>,
 }
 
-/// Why samples do not make a curve.
+/// Error of [`SampledCurve::new`] and [`SpectralCurve::table`].
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CurveError {
-    /// No samples, or not one value for each abscissa.
+    /// No samples, or different numbers of abscissae and values.
     #[error(
-        "a table needs as many values as abscissae, and at least one: got {abscissae} abscissae and {values} values"
+        "expected as many values as abscissae, and at least one; got {abscissae} abscissae and {values} values"
     )]
     Length {
         /// Number of abscissae.
@@ -68,30 +71,31 @@ pub enum CurveError {
         /// Number of values.
         values: usize,
     },
-    /// Abscissae not strictly increasing, or not finite.
-    #[error("abscissae must be finite and strictly increasing: entry {index} is {value}")]
+    /// An abscissa that is not finite or not above its predecessor.
+    #[error(
+        "expected finite, strictly increasing abscissae; got {value} at index {index}; try sorting the samples"
+    )]
     Order {
-        /// Which entry, counted from 0.
+        /// Index of the abscissa, from 0.
         index: usize,
-        /// Its abscissa.
+        /// Value of the abscissa.
         value: f64,
     },
     /// A value that is not finite.
-    #[error("values must be finite: entry {index} is {value}")]
+    #[error("expected finite values, got {value} at index {index}")]
     Value {
-        /// Which entry, counted from 0.
+        /// Index of the value, from 0.
         index: usize,
-        /// Its value.
+        /// The value that is not finite.
         value: f64,
     },
 }
 
 impl SampledCurve {
-    /// Checks and takes the samples.
+    /// Creates a curve from samples.
     ///
     /// # Errors
-    /// [`CurveError`] where the lengths differ or are 0, an abscissa is not above its predecessor, or a number is not
-    /// finite.
+    /// [`CurveError`] if the lengths differ or are 0, the abscissae are not strictly increasing, or a number is not finite.
     pub fn new(abscissae: Vec<f64>, values: Vec<f64>) -> Result<Self, CurveError> {
         if abscissae.len() != values.len() || abscissae.is_empty() {
             return Err(CurveError::Length {
@@ -113,17 +117,17 @@ impl SampledCurve {
         Ok(Self { abscissae, values })
     }
 
-    /// The value at `x`.
+    /// Interpolated value at `x`.
     pub fn at(&self, x: f64) -> f64 {
         piecewise_linear(&self.abscissae, &self.values, x)
     }
 
-    /// Where the samples lie.
+    /// Abscissae of the samples, strictly increasing.
     pub fn abscissae(&self) -> &[f64] {
         &self.abscissae
     }
 
-    /// The samples.
+    /// Values of the samples, one for each abscissa.
     pub fn values(&self) -> &[f64] {
         &self.values
     }
@@ -149,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn bad_tables_are_refused() {
+    fn invalid_tables_are_refused() {
         assert!(matches!(
             SampledCurve::new(vec![], vec![]),
             Err(CurveError::Length { .. })

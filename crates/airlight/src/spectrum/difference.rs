@@ -1,20 +1,20 @@
-//! How different two colours look: CIELAB and the CIEDE2000 colour difference.
+//! Colour differences: CIELAB and CIEDE2000.
 
 /// XYZ of the CIE standard illuminant D65, 2-degree observer, scaled to Y = 100.
 pub const D65_WHITE: [f64; 3] = [95.047, 100.0, 108.883];
 
-/// CIELAB (L*, a*, b*) of `xyz` against the white `white`, both on the same scale.
+/// CIELAB (L*, a*, b*) of `xyz` relative to `white`, both on the same scale.
 ///
-/// CIE 015:2018, CIE 1976 L*a*b* colour space. Negative XYZ, which no light has but a coarse grid may give, continue
-/// the straight part of the curve.
+/// CIE 015:2018, CIE 1976 L*a*b* colour space. Negative components, which coarse wavelength grids can produce, follow the
+/// linear part of the curve.
 pub fn xyz_to_lab(xyz: [f64; 3], white: [f64; 3]) -> [f64; 3] {
-    const BEND: f64 = 6.0 / 29.0;
+    const DELTA: f64 = 6.0 / 29.0;
     let f: [f64; 3] = std::array::from_fn(|i| {
         let t = xyz[i] / white[i];
-        if t > BEND * BEND * BEND {
+        if t > DELTA * DELTA * DELTA {
             t.cbrt()
         } else {
-            t / (3.0 * BEND * BEND) + 4.0 / 29.0
+            t / (3.0 * DELTA * DELTA) + 4.0 / 29.0
         }
     });
     [
@@ -24,19 +24,19 @@ pub fn xyz_to_lab(xyz: [f64; 3], white: [f64; 3]) -> [f64; 3] {
     ]
 }
 
-/// The CIEDE2000 difference of two CIELAB colours, with all parametric factors 1. One unit is about the least
-/// difference seen side by side.
+/// CIEDE2000 difference of two CIELAB colours, with all parametric factors 1. One unit is about the smallest difference
+/// visible side by side.
 ///
 /// Sharma, Wu, Dalal, The CIEDE2000 color-difference formula: implementation notes, supplementary test data, and
 /// mathematical observations, Color Research & Application 30(1), 21-30, 2005, equations 2 to 22.
 pub fn ciede2000(lab1: [f64; 3], lab2: [f64; 3]) -> f64 {
     let pow7 = |c: f64| c.powi(7) / (c.powi(7) + 25f64.powi(7));
 
-    // Primed chroma and hue: a* stretched near the grey axis.
+    // Chroma and hue with a* rescaled near the neutral axis.
     let mean_chroma = (lab1[1].hypot(lab1[2]) + lab2[1].hypot(lab2[2])) / 2.0;
-    let stretch = 1.5 - 0.5 * pow7(mean_chroma).sqrt();
+    let a_scale = 1.5 - 0.5 * pow7(mean_chroma).sqrt();
     let polar = |lab: [f64; 3]| {
-        let a = lab[1] * stretch;
+        let a = lab[1] * a_scale;
         let hue = if a == 0.0 && lab[2] == 0.0 {
             0.0
         } else {
@@ -47,7 +47,7 @@ pub fn ciede2000(lab1: [f64; 3], lab2: [f64; 3]) -> f64 {
     let ((c1, h1), (c2, h2)) = (polar(lab1), polar(lab2));
     let grey = c1 * c2 == 0.0;
 
-    // Hues exactly opposite are a jump of the formula; the allowance keeps rounding from choosing the side.
+    // The formula jumps where hues are exactly opposite; the margin keeps rounding from choosing the branch.
     const HALF_TURN: f64 = 180.0 + 1e-9;
     let hue_step = match h2 - h1 {
         _ if grey => 0.0,
@@ -80,7 +80,7 @@ pub fn ciede2000(lab1: [f64; 3], lab2: [f64; 3]) -> f64 {
     let r_t = -2.0 * pow7(mean_c).sqrt() * (2.0 * turn).to_radians().sin();
 
     let (l, c, h) = (delta_l / s_l, delta_c / s_c, delta_h / s_h);
-    // The cross term can outweigh rounding only for equal colours, where the sum is 0.
+    // Rounding can make the sum negative only for nearly equal colours.
     (l * l + c * c + h * h + r_t * c * h).max(0.0).sqrt()
 }
 
@@ -159,7 +159,7 @@ mod tests {
     ];
 
     #[test]
-    fn differences_are_those_of_sharma_2005() {
+    fn differences_match_sharma_2005() {
         for (one, two, want) in PAIRS {
             for got in [ciede2000(one, two), ciede2000(two, one)] {
                 assert!(
@@ -171,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn equal_colours_do_not_differ() {
+    fn equal_colours_have_zero_difference() {
         for (one, two, _) in PAIRS {
             assert_eq!(ciede2000(one, one), 0.0);
             assert_eq!(ciede2000(two, two), 0.0);
@@ -186,11 +186,11 @@ mod tests {
                 .iter()
                 .all(|v| v.abs() < 1e-12)
         );
-        // The two branches meet.
+        // The cubic and the linear branch meet.
         let at = |t: f64| xyz_to_lab([1.0, t, 1.0], [1.0; 3])[0];
-        let bend = (6.0f64 / 29.0).powi(3);
-        assert!((at(bend * 1.000_001) - at(bend * 0.999_999)).abs() < 1e-4);
-        // Relation of Y and L*: a mid grey of 18.4187 % has L* 50.
+        let junction = (6.0f64 / 29.0).powi(3);
+        assert!((at(junction * 1.000_001) - at(junction * 0.999_999)).abs() < 1e-4);
+        // A mid grey with Y = 18.4187 % has L* = 50.
         assert!((at(0.184_186_518_5) - 50.0).abs() < 1e-6);
     }
 }

@@ -1,22 +1,22 @@
-//! The wavelengths that transport runs on, and what each of them weighs in colour.
+//! Wavelength grids and their conversion to CIE XYZ.
 //!
 //! # Colour from few wavelengths
-//! The radiance of a sunlit sky is `L(l) = r(l) S(l)`: r, radiance per unit solar irradiance, is smooth in wavelength;
-//! the solar spectrum S, full of absorption lines, and the observer are not. So r alone is interpolated between the
-//! nodes, `r(l) = sum_k r_k phi_k(l)`, and the rough factors are integrated once, at 0.5 nm:
+//! The radiance of a sunlit sky is `L(l) = r(l) S(l)`: r, the radiance per unit solar irradiance, is smooth in wavelength,
+//! whereas the solar spectrum S, full of absorption lines, and the observer are not. So r alone is interpolated between
+//! the nodes, `r(l) = sum_k r_k phi_k(l)`, and the other factors are integrated once, at 0.5 nm:
 //!
 //! ```text
 //! XYZ = sum_k r_k W_k,   W_k = 683 lm/W * integral S(l) cmf(l) phi_k(l) dl
 //! ```
 //!
-//! `phi_k` are the cardinal functions of the natural cubic spline (straight lines with fewer than 5 nodes), constant
+//! `phi_k` are the cardinal functions of the natural cubic spline (linear interpolation with fewer than 5 nodes), constant
 //! beyond the end nodes. A response that does not depend on wavelength therefore gives the sun's own XYZ on any grid.
-//! Radiance at a node is `L_k = r_k E_k` with `E_k` the mean solar irradiance about the node
+//! The radiance at a node is `L_k = r_k E_k`, with `E_k` the mean solar irradiance about the node
 //! ([`WavelengthGrid::solar_irradiance`]), so its weight is `W_k / E_k`.
 //!
-//! # What it costs
-//! CIEDE2000 against 1 nm, direct sunlight and a singly scattered sky through air, ozone (300 DU) and haze (0.1 at
-//! 550 nm), measured by `spectrum::colour_cost`:
+//! # Colour error
+//! CIEDE2000 against 1 nm for direct sunlight and a singly scattered sky through air, ozone (300 DU) and haze (0.1 at
+//! 550 nm), measured by `spectrum::colour_cost`; the direct sun first, then the sky:
 //!
 //! | grid | sun at 60 deg | 10 deg | 2 deg |
 //! |---|---|---|---|
@@ -25,8 +25,7 @@
 //! | `fine` | 0.000, 0.000 | 0.000, 0.000 | 0.000, 0.001 |
 //! | `rgb` | 1.5, 1.3 | 3.3, 7.3 | 9.7, 7.6 |
 //!
-//! (the direct sun first, then the sky). With ozone from 0 to 500 DU, haze from 0 to 0.3 and air masses from 1 to 19.5
-//! the standard grid stays below 0.08.
+//! For ozone from 0 to 500 DU, haze from 0 to 0.3 and air masses from 1 to 19.5 the standard grid stays below 0.08.
 
 use super::SpectralCurve;
 use super::cie::{self, LUMINOUS_EFFICACY_LM_PER_W};
@@ -38,7 +37,7 @@ const STEP_NM: f64 = 0.5;
 /// Widest reach of the mean solar irradiance about a node, nm.
 const WIDEST_MEAN_NM: f64 = 20.0;
 
-/// Wavelengths in nm, strictly increasing, each with its solar irradiance and its weights in XYZ.
+/// Strictly increasing wavelengths in nm, with the solar irradiance and the XYZ weights of each.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WavelengthGrid {
     wavelengths_nm: Vec<f64>,
@@ -47,56 +46,57 @@ pub struct WavelengthGrid {
     smooth_xyz_weights: Vec<[f64; 3]>,
 }
 
-/// Why wavelengths do not make a grid.
+/// Error of [`WavelengthGrid::from_wavelengths_nm`] and [`WavelengthGrid::by_name`].
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum GridError {
     /// No wavelengths.
-    #[error("a wavelength grid needs at least one wavelength")]
+    #[error("expected at least one wavelength, got none")]
     Empty,
-    /// A wavelength outside what the tables cover, or not a number.
-    #[error("wavelength {index} is {nm} nm: it must lie between 300 nm and 900 nm")]
+    /// A wavelength outside the range of the tables, or not a number.
+    #[error("expected wavelengths from 300 nm to 900 nm, got {nm} nm at index {index}")]
     OutOfRange {
-        /// Which entry, counted from 0.
+        /// Index of the wavelength, from 0.
         index: usize,
-        /// Its value, nm.
+        /// The wavelength, nm.
         nm: f64,
     },
-    /// A wavelength not above the one before it.
+    /// A wavelength less than 0.1 nm above its predecessor.
     #[error(
-        "wavelength {index} is {nm} nm after {previous} nm: list wavelengths in increasing order, at least 0.1 nm apart"
+        "expected wavelengths in increasing order, at least 0.1 nm apart; got {nm} nm after {previous} nm at index {index}"
     )]
     Order {
-        /// Which entry, counted from 0.
+        /// Index of the wavelength, from 0.
         index: usize,
-        /// Its value, nm.
+        /// The wavelength, nm.
         nm: f64,
-        /// The entry before it, nm.
+        /// The preceding wavelength, nm.
         previous: f64,
     },
-    /// Neither the name of a grid nor a list of wavelengths.
+    /// A text that is neither the name of a grid nor a list of wavelengths.
     #[error(
-        "no wavelength grid is called '{name}': valid are rgb, fast, standard, fine, 1nm, or wavelengths in nm such as \
-         450,550,650"
+        "expected a wavelength grid, one of rgb, fast, standard, fine, 1nm, or a list of wavelengths in nm such as \
+         450,550,650; got '{name}'"
     )]
     UnknownName {
-        /// What was asked for.
+        /// The text.
         name: String,
     },
 }
 
-/// Names that [`WavelengthGrid::by_name`] knows, besides lists of wavelengths.
+/// Names that [`WavelengthGrid::by_name`] accepts, besides lists of wavelengths.
 pub const GRID_NAMES: [&str; 5] = ["rgb", "fast", "standard", "fine", "1nm"];
 
 /// Shortest wavelength a grid may have, nm.
 pub const SHORTEST_NM: f64 = 300.0;
 /// Longest wavelength a grid may have, nm.
 pub const LONGEST_NM: f64 = 900.0;
-/// Least distance of neighbouring wavelengths, nm.
+/// Smallest distance between neighbouring wavelengths, nm.
 const CLOSEST_NM: f64 = 0.1;
 
-// Found by scripts/choose_wavelengths.py: least CIEDE2000 against 1 nm over direct, singly scattered and twilight-like
-// spectra with air masses 1 to 38, ozone 0 to 450 DU and haze 0.03 to 0.4 at 550 nm, penalising negative weights and
-// crowded nodes; for the standard grid with 360, 765 and 830 nm held so that it spans the observer's range.
+// Found by scripts/choose_wavelengths.py, which minimises the CIEDE2000 difference to 1 nm over direct, singly scattered
+// and twilight-like spectra with air masses 1 to 38, ozone 0 to 450 DU and haze 0.03 to 0.4 at 550 nm, and penalises
+// negative weights and crowded nodes. The nodes 360, 765 and 830 nm of the standard grid are fixed, so that it spans the
+// observer's range.
 const FAST_NM: [f64; 8] = [413.0, 448.0, 483.0, 523.0, 563.0, 596.0, 632.0, 682.0];
 const STANDARD_NM: [f64; 16] = [
     360.0, 398.0, 424.0, 446.0, 466.0, 485.0, 510.0, 539.0, 562.0, 595.0, 612.0, 637.0, 671.0,
@@ -104,41 +104,40 @@ const STANDARD_NM: [f64; 16] = [
 ];
 
 impl WavelengthGrid {
-    /// 440, 550 and 680 nm, the wavelengths of Bruneton's models: for real-time use. Its order is blue, green, red.
+    /// 440, 550 and 680 nm, the wavelengths of Bruneton's models, for real-time use. In order of wavelength: blue, green, red.
     ///
-    /// Straight lines through 3 wavelengths follow no sunset: see the table of the module.
+    /// Linear interpolation through 3 wavelengths does not reproduce a sunset: see the table of the module.
     pub fn rgb() -> Self {
         Self::build(vec![440.0, 550.0, 680.0])
     }
 
-    /// 8 wavelengths from 413 nm to 682 nm: colour almost as good as the standard grid's in half the time.
+    /// 8 wavelengths from 413 nm to 682 nm: colour almost as good as that of the standard grid in half the time.
     pub fn fast() -> Self {
         Self::build(FAST_NM.to_vec())
     }
 
-    /// 16 wavelengths from 360 nm to 830 nm: the default.
+    /// 16 wavelengths from 360 nm to 830 nm, the default.
     pub fn standard() -> Self {
         Self::build(STANDARD_NM.to_vec())
     }
 
-    /// Every 5 nm from 360 nm to 830 nm: 95 wavelengths, for spectra to look at.
+    /// Every 5 nm from 360 nm to 830 nm: 95 wavelengths, for plots of spectra.
     pub fn fine() -> Self {
         Self::build((0..95).map(|i| 360.0 + 5.0 * i as f64).collect())
     }
 
-    /// Every 1 nm from 360 nm to 830 nm: 471 wavelengths, the measure of the others.
+    /// Every 1 nm from 360 nm to 830 nm: 471 wavelengths, the reference for the other grids.
     pub fn one_nanometre() -> Self {
         Self::build((360..=830).map(f64::from).collect())
     }
 
-    /// A grid of the user's own wavelengths in nm: any number, strictly increasing, within 300 nm to 900 nm and at least
-    /// 0.1 nm apart.
+    /// A grid of arbitrary wavelengths in nm: any number, strictly increasing, from 300 nm to 900 nm, at least 0.1 nm apart.
     ///
-    /// Colour takes the response as constant beyond the ends, so good colour wants wavelengths from about 410 nm to
-    /// 680 nm; those beyond 360 nm and 830 nm count only through the interpolation.
+    /// For colour the response is taken as constant beyond the ends, so accurate colour needs wavelengths from about 410 nm
+    /// to 680 nm; wavelengths outside 360 nm to 830 nm contribute to colour only through the interpolation.
     ///
     /// # Errors
-    /// [`GridError`] where there is no wavelength, one is out of range or not a number, or they do not increase.
+    /// [`GridError`] if the list is empty, a wavelength is out of range or not a number, or the order is not increasing.
     pub fn from_wavelengths_nm(nm: Vec<f64>) -> Result<Self, GridError> {
         if nm.is_empty() {
             return Err(GridError::Empty);
@@ -158,11 +157,11 @@ impl WavelengthGrid {
         Ok(Self::build(nm))
     }
 
-    /// The grid of a name, one of [`GRID_NAMES`], or of a list of wavelengths in nm such as `450,550,650`.
+    /// The grid with a name from [`GRID_NAMES`], or of a list of wavelengths in nm such as `450,550,650`.
     ///
     /// # Errors
-    /// [`GridError::UnknownName`] (its text lists what is valid) where `name` is neither; as
-    /// [`Self::from_wavelengths_nm`] for a list.
+    /// [`GridError::UnknownName`], whose text lists the names, if `name` is neither; as [`Self::from_wavelengths_nm`] for a
+    /// list.
     pub fn by_name(name: &str) -> Result<Self, GridError> {
         match name.trim() {
             "rgb" => Ok(Self::rgb()),
@@ -181,11 +180,10 @@ impl WavelengthGrid {
         }
     }
 
-    /// This grid under another sun: `solar` is the extraterrestrial irradiance, W m^-2 nm^-1 at 1 AU over nm, for
-    /// [`Self::solar_irradiance`] and the colour weights.
+    /// This grid with another solar spectrum: `solar` is the extraterrestrial irradiance at 1 AU, W m^-2 nm^-1 by wavelength
+    /// in nm, used by [`Self::solar_irradiance`] and the XYZ weights.
     ///
-    /// It is sampled every 0.5 nm. Negative values count as 0, and a node about which there is no light at all has no
-    /// weight.
+    /// It is sampled every 0.5 nm. Negative values count as 0; a node with no irradiance about it has weight 0.
     pub fn with_solar(self, solar: &SpectralCurve) -> Self {
         Self::with_sun(self.wavelengths_nm, |nm| solar.at(nm).max(0.0))
     }
@@ -214,47 +212,51 @@ impl WavelengthGrid {
         }
     }
 
-    /// The wavelengths, nm, strictly increasing.
+    /// Wavelengths in nm, strictly increasing.
     pub fn wavelengths_nm(&self) -> &[f64] {
         &self.wavelengths_nm
     }
 
-    /// How many wavelengths.
+    /// Number of wavelengths.
     pub fn len(&self) -> usize {
         self.wavelengths_nm.len()
     }
 
-    /// False: a grid has at least one wavelength.
+    /// Always false: a grid has at least one wavelength.
     pub fn is_empty(&self) -> bool {
         self.wavelengths_nm.is_empty()
     }
 
-    /// Extraterrestrial solar irradiance at 1 AU, W m^-2 nm^-1: the mean about each wavelength, weighted by a triangle
-    /// that reaches half-way to the nearer neighbour, and no further than 20 nm.
+    /// Extraterrestrial solar irradiance at 1 AU, W m^-2 nm^-1: the mean about each wavelength, weighted by a triangle that
+    /// extends half-way to the nearer neighbour, at most 20 nm.
     pub fn solar_irradiance(&self) -> &[f64] {
         &self.solar_irradiance
     }
 
-    /// Weights that turn sunlit spectral radiance at the wavelengths, W m^-2 sr^-1 nm^-1, into CIE 1931 XYZ with Y in
+    /// Weights that convert sunlit spectral radiance at the wavelengths, W m^-2 sr^-1 nm^-1, to CIE 1931 XYZ with Y in
     /// cd/m^2: `XYZ = sum_k xyz_weights[k] * L[k]`.
     ///
-    /// They hold for light whose ratio to the sun's is smooth; for other light see [`Self::smooth_xyz_weights`].
+    /// Valid for light whose ratio to sunlight is smooth in wavelength; for other light see [`Self::smooth_xyz_weights`].
     pub fn xyz_weights(&self) -> &[[f64; 3]] {
         &self.xyz_weights
     }
 
-    /// As [`Self::xyz_weights`], for light that is itself smooth in wavelength: incandescent lamps, thermal emission.
+    /// As [`Self::xyz_weights`], for light that is itself smooth in wavelength: incandescent lights, thermal emission.
     pub fn smooth_xyz_weights(&self) -> &[[f64; 3]] {
         &self.smooth_xyz_weights
     }
 
-    /// CIE 1931 XYZ, Y in cd/m^2, of sunlit spectral radiance at the wavelengths, W m^-2 sr^-1 nm^-1 (of irradiance,
-    /// W m^-2 nm^-1: Y in lx).
+    /// CIE 1931 XYZ of sunlit spectral radiance at the wavelengths: Y in cd/m^2 for radiance in W m^-2 sr^-1 nm^-1, in lx for
+    /// irradiance in W m^-2 nm^-1.
     ///
     /// # Panics
-    /// Where there is not one value for each wavelength.
+    /// If the number of values differs from the number of wavelengths.
     pub fn to_xyz(&self, spectral: &[f32]) -> [f64; 3] {
-        assert_eq!(spectral.len(), self.len(), "one value for each wavelength");
+        assert_eq!(
+            spectral.len(),
+            self.len(),
+            "expected one value for each wavelength"
+        );
         let mut xyz = [0.0; 3];
         for (weight, &value) in self.xyz_weights.iter().zip(spectral) {
             for (sum, w) in xyz.iter_mut().zip(weight) {
@@ -282,8 +284,8 @@ mod tests {
     }
 
     #[test]
-    fn a_flat_response_gives_the_suns_own_xyz_on_every_grid() {
-        // The plain 1 nm sum over ASTM G173 by colour-science 0.4.7: 133.1 klx outside the air.
+    fn constant_response_gives_the_xyz_of_the_sun_on_every_grid() {
+        // The plain 1 nm sum over ASTM G173 by colour-science 0.4.7: 133.1 klx outside the atmosphere.
         let want = [129_387.4, 133_100.8, 137_621.5];
         let lists = [
             "440",
@@ -300,7 +302,7 @@ mod tests {
     }
 
     #[test]
-    fn counts_are_what_the_solver_is_built_for() {
+    fn named_grids_have_the_documented_sizes() {
         let sizes = GRID_NAMES.map(|name| WavelengthGrid::by_name(name).unwrap().len());
         assert_eq!(sizes, [3, 8, 16, 95, 471]);
         assert_eq!(WavelengthGrid::default(), WavelengthGrid::standard());
@@ -311,7 +313,7 @@ mod tests {
     }
 
     #[test]
-    fn one_nanometre_is_the_plain_sum() {
+    fn one_nanometre_grid_matches_the_plain_sum() {
         let grid = WavelengthGrid::one_nanometre();
         let response = |nm: f64| (-(nm - 450.0).powi(2) / 9000.0).exp();
         let spectral: Vec<f32> = (0..grid.len())
@@ -336,7 +338,7 @@ mod tests {
             let grid = WavelengthGrid::by_name(name).unwrap();
             assert!(grid.xyz_weights().iter().flatten().all(|&w| w > 0.0));
         }
-        // The spline of the larger grids may dip below 0, by little.
+        // The spline of the larger grids may dip slightly below 0.
         for name in ["fast", "standard"] {
             let grid = WavelengthGrid::by_name(name).unwrap();
             for (w, e) in grid.xyz_weights().iter().zip(grid.solar_irradiance()) {
@@ -348,7 +350,7 @@ mod tests {
     }
 
     #[test]
-    fn another_sun_changes_irradiance_and_leaves_the_response_to_it() {
+    fn another_solar_spectrum_changes_irradiance_and_weights() {
         let grid = WavelengthGrid::standard().with_solar(&SpectralCurve::Constant(2.0));
         assert!(
             grid.solar_irradiance()
@@ -368,7 +370,7 @@ mod tests {
     }
 
     #[test]
-    fn bad_grids_are_refused_with_advice() {
+    fn invalid_grids_are_refused_with_advice() {
         use GridError::*;
         let make = WavelengthGrid::from_wavelengths_nm;
         assert_eq!(make(vec![]), Err(Empty));

@@ -1,11 +1,11 @@
-//! `Spectrum<N>`: N values, one a wavelength, that add and multiply lane by lane.
+//! [`Spectrum`]: a fixed-size array of values, one for each wavelength, with lane-by-lane arithmetic.
 //!
-//! Every operation is a plain loop over a fixed-size array, without branches and without fused multiply-add, so that
-//! the compiler turns it into vector instructions and every machine gets the same bits.
+//! Every operation is a plain loop over a fixed-size array, without branches and without fused multiply-add, so that the
+//! compiler vectorises it and all machines produce the same bits.
 
 use std::ops::{Add, AddAssign, Div, Index, IndexMut, Mul, MulAssign, Sub, SubAssign};
 
-/// N spectral values (or, with N = 3, red, green and blue).
+/// Values at `N` wavelengths (or, with `N = 3`, red, green and blue).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(16))]
 pub struct Spectrum<const N: usize>(pub [f32; N]);
@@ -22,10 +22,10 @@ impl<const N: usize> Spectrum<N> {
         Self([value; N])
     }
 
-    /// `f(lane)` for every lane.
+    /// Spectrum with `f(lane)` in each lane.
     #[inline(always)]
     pub fn from_fn(mut f: impl FnMut(usize) -> f32) -> Self {
-        // A loop, not `array::from_fn`: the compiler leaves calls in the latter, and vector code with it.
+        // A loop, not `array::from_fn`: calls in the latter are not always inlined, which prevents vectorisation.
         let mut lanes = [0.0; N];
         for (i, lane) in lanes.iter_mut().enumerate() {
             *lane = f(i);
@@ -33,69 +33,70 @@ impl<const N: usize> Spectrum<N> {
         Self(lanes)
     }
 
-    /// `f(value)` in every lane.
+    /// Applies `f` to each lane.
     #[inline(always)]
     pub fn map(self, f: impl Fn(f32) -> f32) -> Self {
         Self::from_fn(|i| f(self.0[i]))
     }
 
-    /// `self + a * b`, rounded twice (no fused multiply-add: every machine gives the same bits).
+    /// `self + a * b`, rounded twice: no fused multiply-add, so that all machines produce the same bits.
     #[inline(always)]
     pub fn mul_acc(self, a: Self, b: Self) -> Self {
         Self::from_fn(|i| self.0[i] + a.0[i] * b.0[i])
     }
 
-    /// `self + a * b` with one scalar.
+    /// `self + a * b` with a scalar `b`, rounded twice.
     #[inline(always)]
     pub fn scale_acc(self, a: Self, b: f32) -> Self {
         Self::from_fn(|i| self.0[i] + a.0[i] * b)
     }
 
-    /// `e^x` in every lane: relative error below 3e-7 for -87 < x < 88, clamped outside.
+    /// `e^x` of each lane: relative error below 3e-7 for -87 < x < 88; the argument is clamped to that range.
     #[inline(always)]
     pub fn exp(self) -> Self {
         self.map(exp_lane)
     }
 
-    /// Natural logarithm in every lane: absolute error below 3e-7 + 2e-7 |ln x| for normal positive x.
+    /// Natural logarithm of each lane: absolute error below 3e-7 + 2e-7 |ln x| for normal positive x; smaller arguments are
+    /// clamped to the smallest normal number.
     #[inline(always)]
     pub fn ln(self) -> Self {
         self.map(ln_lane)
     }
 
-    /// Lane-by-lane maximum with a scalar.
+    /// Maximum of each lane and `floor`.
     #[inline(always)]
     pub fn max_scalar(self, floor: f32) -> Self {
         self.map(|v| if v > floor { v } else { floor })
     }
 
-    /// The largest lane.
+    /// Largest lane.
     #[inline(always)]
     pub fn max_element(self) -> f32 {
         self.0.iter().fold(f32::NEG_INFINITY, |m, &v| m.max(v))
     }
 
-    /// The smallest lane.
+    /// Smallest lane.
     #[inline(always)]
     pub fn min_element(self) -> f32 {
         self.0.iter().fold(f32::INFINITY, |m, &v| m.min(v))
     }
 
-    /// True where no lane is infinite or not a number.
+    /// True if all lanes are finite.
     pub fn is_finite(self) -> bool {
         self.0.iter().all(|v| v.is_finite())
     }
 }
 
-/// `e^x` by splitting off the power of two and a degree-6 polynomial on `|r| <= ln(2)/2`; branch-free so that a loop
-/// over lanes becomes vector code.
+/// `e^x` by splitting off the power of two, then a polynomial of degree 6 on `|r| <= ln(2)/2`; branch-free so that loops
+/// over lanes are vectorised.
 #[inline(always)]
 fn exp_lane(x: f32) -> f32 {
     const LN2_HI: f32 = 0.693_359_4;
     const LN2_LO: f32 = -2.121_944_4e-4;
-    // 1.5 * 2^23: adding and subtracting it rounds to the nearest whole number.
+    // 1.5 * 2^23: adding and subtracting it rounds to the nearest integer.
     const ROUND: f32 = 12_582_912.0;
-    // `x.max()` would carry NaN handling that blocks nothing but costs; plain comparisons become min/max instructions.
+    // Plain comparisons compile to min/max instructions; `f32::max` adds NaN handling.
     let x = if x < -87.0 { -87.0 } else { x };
     let x = if x > 88.0 { 88.0 } else { x };
     let shifted = x * std::f32::consts::LOG2_E + ROUND;
@@ -119,7 +120,7 @@ fn exp_lane(x: f32) -> f32 {
     e * scale
 }
 
-/// Natural logarithm by exponent extraction and a polynomial on `[sqrt(1/2), sqrt(2))`.
+/// Natural logarithm by exponent extraction and a polynomial on `[sqrt(1/2), sqrt(2))`; branch-free.
 #[inline(always)]
 fn ln_lane(x: f32) -> f32 {
     // Offset so that the mantissa falls in [sqrt(1/2), sqrt(2)).
@@ -212,7 +213,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn exp_agrees_with_the_library() {
+    fn exp_matches_the_standard_library() {
         let mut x = -86.9f32;
         while x < 87.9 {
             let got = Spectrum([x; 4]).exp()[2] as f64;
@@ -229,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn ln_agrees_with_the_library() {
+    fn ln_matches_the_standard_library() {
         let mut x = 1e-37f32;
         while x < 1e37 {
             let got = Spectrum([x; 4]).ln()[1] as f64;

@@ -1,10 +1,10 @@
-//! Wavelength grids, spectra, the solar spectrum, colour.
+//! Wavelength grids, spectra, the solar spectrum and colour.
 //!
-//! - [`Spectrum`]: the lanes that transport runs on.
-//! - [`WavelengthGrid`]: which wavelengths, the sun's irradiance there, and the way to XYZ ([`grid`]).
-//! - [`SpectralCurve`], [`SampledCurve`]: quantities over wavelength, before they are sampled.
-//! - [`solar`], [`cie`]: the sun outside the air and the standard observer.
-//! - [`rgb`], [`difference`]: linear RGB spaces, and how different two colours look.
+//! - [`Spectrum`]: a fixed number of wavelength lanes, the value type of radiative transfer.
+//! - [`WavelengthGrid`]: the wavelengths, the solar irradiance at each, and the conversion to XYZ ([`grid`]).
+//! - [`SpectralCurve`], [`SampledCurve`]: quantities as functions of wavelength, before they are sampled on a grid.
+//! - [`solar`], [`cie`]: the extraterrestrial solar spectrum and the standard observer.
+//! - [`rgb`], [`difference`]: linear RGB spaces and colour differences.
 
 pub mod cie;
 #[cfg(test)]

@@ -1,16 +1,16 @@
 //! Linear RGB spaces and the sRGB transfer function.
 //!
-//! A space is given by the chromaticities of its primaries and of its white; the matrices follow (SMPTE RP 177-1993).
-//! Conversion is colorimetric and absolute: XYZ goes through the plain primaries matrix and nothing adapts it to
-//! another white, so light of a given XYZ keeps that XYZ in every space. RGB (1, 1, 1) is the space's own white with
-//! Y = 1: an XYZ in cd/m^2 gives an RGB whose luminance is in cd/m^2. Where pictures are to look neutral against another
-//! white (ACEScg's white is near D60), multiply by [`adaptation_matrix`] first.
+//! A space is defined by the chromaticities of its primaries and its white; the matrices follow (SMPTE RP 177-1993).
+//! Conversion is colorimetric and absolute: XYZ goes through the primaries matrix without chromatic adaptation, so light
+//! of a given XYZ keeps that XYZ in every space. RGB (1, 1, 1) is the space's own white with Y = 1: an XYZ in cd/m^2 gives
+//! an RGB whose luminance is in cd/m^2. To make pictures look neutral relative to another white (that of ACEScg is near
+//! D60), multiply by [`adaptation_matrix`] first.
 
-/// A 3 by 3 matrix, row by row.
+/// A 3 by 3 matrix, row-major.
 pub type Matrix3 = [[f64; 3]; 3];
 
-/// Wavelengths (nm) that stand for red, green and blue where something is asked for by wavelength: the dominant ones of
-/// sRGB's primaries.
+/// Wavelengths in nm that represent red, green and blue where a model is evaluated at three wavelengths: the dominant
+/// wavelengths of the sRGB primaries.
 pub const DOMINANT_NM: [f64; 3] = [612.0, 549.0, 465.0];
 
 /// A linear RGB colour space.
@@ -43,12 +43,12 @@ impl RgbSpace {
         }
     }
 
-    /// XYZ of RGB (1, 1, 1): Y is 1.
+    /// XYZ of RGB (1, 1, 1), with Y = 1.
     pub fn white_xyz(self) -> [f64; 3] {
         xy_to_xyz(self.white_point_xy())
     }
 
-    /// The matrix from linear RGB to XYZ: columns are the primaries, each as bright as makes their sum the white.
+    /// Matrix from linear RGB to XYZ: the columns are the primaries, scaled so that they sum to the white.
     pub fn to_xyz_matrix(self) -> Matrix3 {
         let primaries = self.primaries_xy().map(xy_to_xyz);
         let columns: Matrix3 =
@@ -57,33 +57,34 @@ impl RgbSpace {
         columns.map(|row| std::array::from_fn(|column| row[column] * amounts[column]))
     }
 
-    /// The matrix from XYZ to linear RGB.
+    /// Matrix from XYZ to linear RGB.
     pub fn from_xyz_matrix(self) -> Matrix3 {
         invert(&self.to_xyz_matrix())
     }
 
-    /// Linear RGB of an XYZ. Components are negative where the colour lies outside the space's triangle.
+    /// Linear RGB of an XYZ. Components are negative for colours outside the gamut.
     ///
-    /// The matrix is derived anew each time: for a whole picture take [`Self::from_xyz_matrix`] once and [`apply`] it.
+    /// Derives the matrix on each call: to convert a whole picture, [`apply`] the result of [`Self::from_xyz_matrix`].
     pub fn from_xyz(self, xyz: [f64; 3]) -> [f64; 3] {
         apply(&self.from_xyz_matrix(), xyz)
     }
 
-    /// XYZ of a linear RGB.
+    /// XYZ of a linear RGB colour.
     pub fn to_xyz(self, rgb: [f64; 3]) -> [f64; 3] {
         apply(&self.to_xyz_matrix(), rgb)
     }
 
-    /// Luminance Y of a linear RGB, in the unit of its components.
+    /// Luminance Y of a linear RGB colour, in the unit of its components.
     pub fn luminance(self, rgb: [f64; 3]) -> f64 {
         self.to_xyz(rgb)[1]
     }
 }
 
-/// The matrix that carries XYZ seen under one white to the XYZ that looks alike under another (chromaticities x, y).
+/// Chromatic adaptation matrix: maps XYZ under one white to the XYZ of the same appearance under another (chromaticities
+/// x, y).
 ///
 /// The linearised Bradford transform: scaling in its sharpened cone space (Lam 1985, as used by ICC.1:2022 annex E).
-/// The whites' y must not be 0. Equal whites give the identity up to rounding.
+/// The y of both whites must not be 0. Equal whites give the identity up to rounding.
 pub fn adaptation_matrix(from_white_xy: [f64; 2], to_white_xy: [f64; 2]) -> Matrix3 {
     const BRADFORD: Matrix3 = [
         [0.8951, 0.2664, -0.1614],
@@ -97,17 +98,17 @@ pub fn adaptation_matrix(from_white_xy: [f64; 2], to_white_xy: [f64; 2]) -> Matr
     multiply(&invert(&BRADFORD), &scaled)
 }
 
-/// `matrix * vector`.
+/// Product `matrix * vector`.
 pub fn apply(matrix: &Matrix3, vector: [f64; 3]) -> [f64; 3] {
     matrix.map(|row| row[0] * vector[0] + row[1] * vector[1] + row[2] * vector[2])
 }
 
-/// `a * b`.
+/// Matrix product `a * b`.
 pub fn multiply(a: &Matrix3, b: &Matrix3) -> Matrix3 {
     a.map(|row| std::array::from_fn(|j| row[0] * b[0][j] + row[1] * b[1][j] + row[2] * b[2][j]))
 }
 
-/// The sRGB signal of a linear component: IEC 61966-2-1, carried on as an odd function below 0 and unclipped above 1.
+/// sRGB signal of a linear component: IEC 61966-2-1, extended as an odd function below 0 and unclipped above 1.
 pub fn srgb_encode(linear: f64) -> f64 {
     let v = linear.abs();
     let signal = if v <= 0.003_130_8 {
@@ -118,8 +119,8 @@ pub fn srgb_encode(linear: f64) -> f64 {
     signal.copysign(linear)
 }
 
-/// The linear component of an sRGB signal: the inverse of [`srgb_encode`] to 2e-8 (the standard's two branches are
-/// rounded so that they meet only to that).
+/// Linear component of an sRGB signal: the inverse of [`srgb_encode`] to 2e-8, the precision to which the standard's two
+/// branches meet.
 pub fn srgb_decode(signal: f64) -> f64 {
     let v = signal.abs();
     let linear = if v <= 0.040_45 {
@@ -130,12 +131,12 @@ pub fn srgb_decode(signal: f64) -> f64 {
     linear.copysign(signal)
 }
 
-/// XYZ with Y = 1 of a chromaticity.
+/// XYZ of a chromaticity (x, y), with Y = 1.
 fn xy_to_xyz([x, y]: [f64; 2]) -> [f64; 3] {
     [x / y, 1.0, (1.0 - x - y) / y]
 }
 
-/// The inverse by cofactors; used only on matrices known to be regular.
+/// Inverse by cofactors; used only on matrices known to be regular.
 fn invert(m: &Matrix3) -> Matrix3 {
     let cofactor = |r: usize, c: usize| {
         let (r1, r2) = ((r + 1) % 3, (r + 2) % 3);
@@ -161,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn matrices_are_the_published_ones() {
+    fn matrices_match_the_published_ones() {
         // IEC 61966-2-1 prints four decimals, ITU-R BT.2020 four for Y, S-2014-004 ten for AP1.
         let srgb = [
             [0.4124, 0.3576, 0.1805],
@@ -182,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn white_is_one_and_conversion_is_reversible() {
+    fn white_is_one_and_conversion_round_trips() {
         for space in SPACES {
             let white = space.from_xyz(space.white_xyz());
             assert!(white.iter().all(|v| (v - 1.0).abs() < 1e-12), "{white:?}");
@@ -196,7 +197,7 @@ mod tests {
     }
 
     #[test]
-    fn adaptation_carries_white_to_white() {
+    fn adaptation_maps_white_to_white() {
         let (d65, d60) = (
             RgbSpace::Srgb.white_point_xy(),
             RgbSpace::AcesCg.white_point_xy(),
@@ -204,7 +205,7 @@ mod tests {
         let adapted = apply(&adaptation_matrix(d65, d60), RgbSpace::Srgb.white_xyz());
         let rgb = RgbSpace::AcesCg.from_xyz(adapted);
         assert!(rgb.iter().all(|v| (v - 1.0).abs() < 1e-12), "{rgb:?}");
-        // The same change of white by colour-science 0.4.7.
+        // The same adaptation computed by colour-science 0.4.7.
         let patch = apply(&adaptation_matrix(d65, d60), [0.3, 0.5, 0.2]);
         for (got, want) in patch.iter().zip([0.303_968_91, 0.500_384_74, 0.186_391_41]) {
             assert!((got - want).abs() < 1e-8, "{patch:?}");
@@ -216,8 +217,8 @@ mod tests {
     }
 
     #[test]
-    fn transfer_function_is_srgb() {
-        // 8-bit code values of the standard: mid grey and the ends.
+    fn transfer_function_matches_srgb_and_round_trips() {
+        // Mid grey and the ends of the range.
         assert_eq!(srgb_encode(0.0), 0.0);
         assert!((srgb_encode(1.0) - 1.0).abs() < 1e-15);
         assert!((srgb_encode(0.214_041_140_5) - 0.5).abs() < 1e-9);

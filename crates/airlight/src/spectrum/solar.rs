@@ -1,13 +1,13 @@
-//! Sunlight before it meets the air.
+//! Extraterrestrial solar spectrum.
 
 use super::SampledCurve;
 use super::table::embedded;
 use std::sync::LazyLock;
 
-/// Solar spectral irradiance at 1 AU outside the atmosphere, W m^-2 nm^-1 over nm.
+/// Solar spectral irradiance at 1 AU outside the atmosphere, W m^-2 nm^-1 by wavelength in nm.
 ///
-/// The extraterrestrial column of ASTM G173-03, 280 nm to 1000 nm, every 0.5 nm up to 400 nm and every 1 nm beyond;
-/// constant outside. The whole spectrum of that standard carries 1348 W m^-2 up to 4000 nm.
+/// Extraterrestrial column of ASTM G173-03 from 280 nm to 1000 nm, every 0.5 nm up to 400 nm and every 1 nm beyond;
+/// constant outside. The full spectrum of the standard integrates to 1348 W m^-2 up to 4000 nm.
 pub fn extraterrestrial() -> &'static SampledCurve {
     static CURVE: LazyLock<SampledCurve> = LazyLock::new(|| {
         let rows = embedded::<2>(include_str!("../../data/spectrum/solar_astm_g173.txt"));
@@ -22,7 +22,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn table_is_the_standard_one() {
+    fn table_is_astm_g173() {
         let sun = extraterrestrial();
         assert_eq!(sun.abscissae().first(), Some(&280.0));
         assert_eq!(sun.abscissae().last(), Some(&1000.0));
@@ -33,7 +33,7 @@ mod tests {
     }
 
     #[test]
-    fn visible_band_carries_two_fifths_of_the_solar_constant() {
+    fn visible_irradiance_is_657_w_per_m2() {
         let sun = extraterrestrial();
         let visible: f64 = (380..780).map(|nm| sun.at(nm as f64 + 0.5)).sum();
         assert!((visible - 657.0).abs() < 15.0, "{visible} W m^-2");

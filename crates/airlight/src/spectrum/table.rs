@@ -1,9 +1,9 @@
-//! Reads the tables embedded in the crate.
+//! Parser for the tables embedded in the crate.
 
-/// The rows of a table of `N` numbers a line, blank-separated; lines that start with `#` are comments.
+/// Parses a table of `N` blank-separated numbers on each line; lines that start with `#` are comments.
 ///
-/// Only for files compiled into the crate, whose tests read every one of them: a malformed line is a defect of the
-/// build, so it panics and names the line.
+/// # Panics
+/// On a malformed line. Only for files compiled into the crate, all of which are read by tests.
 pub(crate) fn embedded<const N: usize>(text: &str) -> Vec<[f64; N]> {
     text.lines()
         .map(str::trim)
@@ -14,7 +14,9 @@ pub(crate) fn embedded<const N: usize>(text: &str) -> Vec<[f64; N]> {
                 fields
                     .next()
                     .and_then(|field| field.parse().ok())
-                    .unwrap_or_else(|| panic!("an embedded table has the bad line '{line}'"))
+                    .unwrap_or_else(|| {
+                        panic!("expected {N} numbers on a line of an embedded table, got '{line}'")
+                    })
             })
         })
         .collect()

@@ -1,47 +1,47 @@
-//! The sun's disc: how large it is and how its radiance falls towards the limb.
+//! The sun's disc: angular size, limb darkening and radiance.
 
 use crate::math::interpolation::lerp;
 use std::f64::consts::PI;
 
-/// The sun's radius, m (nominal, IAU 2015 resolution B3).
+/// Nominal solar radius, m (IAU 2015 resolution B3).
 pub const SOLAR_RADIUS_M: f64 = 6.957e8;
-/// The astronomical unit, m (IAU 2012).
+/// Astronomical unit, m (IAU 2012).
 pub const ASTRONOMICAL_UNIT_M: f64 = 149_597_870_700.0;
 
-/// The sun as seen from the planet.
+/// The disc of the sun as seen from the planet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SunDisc {
-    /// Half the angle that the disc spans, rad.
+    /// Angular radius, rad.
     pub angular_radius_rad: f64,
-    /// How the radiance falls towards the limb.
+    /// Decrease of the radiance towards the limb.
     pub limb_darkening: LimbDarkening,
 }
 
-/// How the radiance falls from the centre to the limb; `mu` is the cosine of the angle between the line of sight and the
-/// normal of the sun's surface: 1 at the centre, 0 at the limb.
+/// Limb-darkening law: radiance as a function of `mu`, the cosine of the angle between the line of sight and the normal of
+/// the sun's surface, which is 1 at the centre and 0 at the limb.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LimbDarkening {
-    /// The same radiance all over.
+    /// Uniform radiance.
     Uniform,
     /// A polynomial of degree 5 in `mu` by wavelength, fitted to the observed continuum (Neckel, Sol. Phys. 229, 13,
     /// 2005, after Neckel & Labs, Sol. Phys. 153, 91, 1994), see [`limb_polynomial`].
     Neckel,
-    /// `I(mu) = I(1) mu^alpha(lambda)` (Hestroffer & Magnan, Astron. Astrophys. 333, 338, 1998), see
-    /// [`limb_exponent`]: simpler, and within 0.02 of [`LimbDarkening::Neckel`] (of the centre's radiance) for `mu >= 0.4`
-    /// and 0.05 for `mu >= 0.2`, 440 to 1000 nm; at the very limb it goes to 0, which the sun does not.
+    /// `I(mu) = I(1) mu^alpha(lambda)` (Hestroffer & Magnan, Astron. Astrophys. 333, 338, 1998), see [`limb_exponent`].
+    /// Differs from [`LimbDarkening::Neckel`] by less than 0.02 of the central radiance for `mu >= 0.4` and 0.05 for
+    /// `mu >= 0.2`, from 440 to 1000 nm; at the limb it falls to 0, unlike the sun.
     PowerLaw,
 }
 
-/// Why numbers do not make a sun.
+/// Error of [`SunDisc::at_distance_au`] and [`SunDisc::validate`].
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SunError {
     /// The angular radius is out of range.
-    #[error("the sun's angular radius must lie strictly between 0 and pi/2 rad, got {0}")]
+    #[error("expected an angular radius of the sun strictly between 0 and pi/2 rad, got {0}")]
     AngularRadius(f64),
 }
 
-/// The exponent of the limb darkening `mu^alpha`: `-0.023 + 0.292 / lambda` for 416 to 1099 nm and
-/// `-0.507 + 0.441 / lambda` for 303 to 372 nm (lambda in um; Hestroffer & Magnan 1998), linear between, constant beyond.
+/// Exponent `alpha` of the limb darkening `mu^alpha`: `-0.023 + 0.292 / lambda` from 416 to 1099 nm and
+/// `-0.507 + 0.441 / lambda` from 303 to 372 nm (lambda in um; Hestroffer & Magnan 1998), linear between, constant beyond.
 pub fn limb_exponent(wavelength_nm: f64) -> f64 {
     let um = wavelength_nm.clamp(303.0, 1099.0) * 1e-3;
     let visible = |um: f64| -0.023 + 0.292 / um;
@@ -56,10 +56,10 @@ pub fn limb_exponent(wavelength_nm: f64) -> f64 {
     }
 }
 
-/// The coefficients `A_k` of `I(mu) / I(1) = sum of A_k mu^k`, k = 0 to 5 (Neckel 2005, table 2): stated for 303 to 373,
-/// 385 to 422.57 and 422.57 to 1099 nm; linear between 373 and 385 nm, constant beyond. They sum to 1.
+/// Coefficients `A_k` of `I(mu) / I(1) = sum of A_k mu^k`, k = 0 to 5 (Neckel 2005, table 2). The fits cover 303 to 373,
+/// 385 to 422.57 and 422.57 to 1099 nm; linear between 373 and 385 nm, constant beyond. The coefficients sum to 1.
 pub fn limb_polynomial(wavelength_nm: f64) -> [f64; 6] {
-    /// Constant term, factor of `1 / lambda` in `A_0` (and, negated, in `A_1`), factors of `1 / lambda^5`.
+    /// The constant terms, the factor of `1 / lambda` in `A_0` (and, negated, in `A_1`), and the factors of `1 / lambda^5`.
     type Fit = ([f64; 6], f64, [f64; 6]);
     const BELOW_BALMER: Fit = (
         [0.35601, 1.11529, -0.67237, 0.18696, 0.00038, 0.01373],
@@ -100,16 +100,16 @@ pub fn limb_polynomial(wavelength_nm: f64) -> [f64; 6] {
     }
 }
 
-/// Irradiance at a distance from the sun (AU, positive) over that at one astronomical unit.
+/// Solar irradiance at a distance from the sun in AU, relative to that at one AU.
 pub fn irradiance_factor(distance_au: f64) -> f64 {
     1.0 / (distance_au * distance_au)
 }
 
 impl SunDisc {
-    /// The sun, limb darkened, from a distance in astronomical units: `sin(radius) = R / distance`.
+    /// The limb-darkened disc at a distance in astronomical units: `sin(radius) = R / distance`.
     ///
     /// # Errors
-    /// [`SunError::AngularRadius`] for a distance that is not positive and finite, or lies within the sun.
+    /// [`SunError::AngularRadius`] if the distance is not positive and finite, or not larger than the solar radius.
     pub fn at_distance_au(distance_au: f64) -> Result<Self, SunError> {
         let disc = Self {
             angular_radius_rad: (SOLAR_RADIUS_M / (distance_au * ASTRONOMICAL_UNIT_M)).asin(),
@@ -130,22 +130,22 @@ impl SunDisc {
         }
     }
 
-    /// Solid angle of the disc, sr: `4 pi sin^2(radius / 2)`.
+    /// Solid angle, sr: `4 pi sin^2(radius / 2)`.
     pub fn solid_angle_sr(&self) -> f64 {
         4.0 * PI * (0.5 * self.angular_radius_rad).sin().powi(2)
     }
 
-    /// Radiance at an angle (rad) from the disc's centre per irradiance on a surface that faces the centre, sr^-1; 0
-    /// outside the disc.
+    /// Radiance at an angle (rad) from the centre of the disc, divided by the irradiance on a surface that faces the centre,
+    /// sr^-1; 0 outside the disc.
     ///
-    /// With `sin(angle) = sin(radius) sqrt(1 - mu^2)` the irradiance of `mu^k` is `pi sin^2(radius) * 2 / (k + 2)`
-    /// exactly, so the radiance integrates to the irradiance.
+    /// With `sin(angle) = sin(radius) sqrt(1 - mu^2)` the irradiance of `mu^k` is exactly `pi sin^2(radius) * 2 / (k + 2)`, so
+    /// the radiance integrates to the irradiance.
     pub fn radiance_per_irradiance(&self, angle_rad: f64, wavelength_nm: f64) -> f64 {
         self.radiance_of_sine(angle_rad.abs().min(0.5 * PI).sin(), wavelength_nm)
     }
 
-    /// As [`SunDisc::radiance_per_irradiance`], for the cosine of the angle. A cosine is 1e-16 coarse, which near the
-    /// centre of the Earth's sun is an angle of 1e-8 rad.
+    /// As [`SunDisc::radiance_per_irradiance`], for the cosine of the angle. The resolution of the cosine, 1e-16, corresponds
+    /// to 1e-8 rad near the centre of the sun as seen from the Earth.
     pub fn radiance_per_irradiance_at_cos(&self, cos_angle: f64, wavelength_nm: f64) -> f64 {
         match cos_angle > 0.0 {
             true => self.radiance_of_sine(
@@ -180,7 +180,7 @@ impl SunDisc {
 }
 
 impl Default for SunDisc {
-    /// The limb-darkened sun from one astronomical unit: 4.6505e-3 rad, 0.2665 degrees.
+    /// The limb-darkened disc at one astronomical unit: 4.6505e-3 rad, 0.2665 degrees.
     fn default() -> Self {
         Self {
             angular_radius_rad: (SOLAR_RADIUS_M / ASTRONOMICAL_UNIT_M).asin(),
@@ -195,7 +195,7 @@ mod tests {
     use crate::math::quadrature::GaussRule;
 
     #[test]
-    fn the_disc_gives_the_irradiance() {
+    fn radiance_integrates_to_the_irradiance() {
         for limb_darkening in [
             LimbDarkening::Uniform,
             LimbDarkening::Neckel,
@@ -207,7 +207,7 @@ mod tests {
                     limb_darkening,
                 };
                 for nm in [330.0, 400.0, 550.0, 1000.0] {
-                    // angle = radius (1 - t^4): nodes crowd at the limb, where mu^alpha has its root.
+                    // angle = radius (1 - t^4): nodes cluster at the limb, where mu^alpha has its root.
                     let sum = GaussRule::new(64).integrate(0.0, 1.0, |t| {
                         let angle = angular_radius_rad * (1.0 - t.powi(4));
                         let ring = 2.0
@@ -226,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn the_two_laws_of_the_limb_agree() {
+    fn limb_darkening_laws_agree() {
         for nm in [440.0, 550.0, 700.0, 1000.0] {
             let a = limb_polynomial(nm);
             for (mu, most) in [
@@ -250,7 +250,7 @@ mod tests {
     }
 
     #[test]
-    fn the_polynomials_join_stay_positive_and_start_from_one() {
+    fn limb_polynomials_are_continuous_positive_and_normalised() {
         let mut before = limb_polynomial(290.0);
         for i in 2900..11_500 {
             let a = limb_polynomial(0.1 * f64::from(i));
@@ -266,7 +266,7 @@ mod tests {
     }
 
     #[test]
-    fn angles_and_cosines_agree_and_end_at_the_limb() {
+    fn radiance_by_angle_and_by_cosine_agree() {
         let disc = SunDisc::default();
         for part in [0.0f64, 0.3, 0.9, 0.999] {
             let angle = part * disc.angular_radius_rad;
@@ -283,7 +283,7 @@ mod tests {
     }
 
     #[test]
-    fn the_earths_sun_is_half_a_degree_wide() {
+    fn angular_diameter_from_the_earth_is_half_a_degree() {
         let disc = SunDisc::default();
         assert!((disc.angular_radius_rad.to_degrees() - 0.26645).abs() < 1e-4);
         assert!((disc.solid_angle_sr() / 6.794e-5 - 1.0).abs() < 1e-3);

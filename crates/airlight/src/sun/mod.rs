@@ -1,4 +1,4 @@
-//! What shines.
+//! The sun: its position in the sky and its disc.
 
 pub mod disc;
 pub mod position;

@@ -1,114 +1,115 @@
-//! Where the sun stands: time and place to azimuth, elevation and distance.
+//! Solar ephemeris: azimuth, elevation and distance of the sun for a time and a place.
 //!
-//! The position is that of the Solar Position Algorithm (Reda & Andreas, Solar Energy 76, 577, 2004; NREL/TP-560-34302),
-//! good to 0.0003 degrees in the years -2000 to 6000, by the crate `solar-positioning`.
+//! The position is computed with the Solar Position Algorithm (Reda & Andreas, Solar Energy 76, 577, 2004;
+//! NREL/TP-560-34302), accurate to 0.0003 degrees in the years -2000 to 6000, as implemented by the crate
+//! `solar-positioning`.
 
 use crate::axes;
 use glam::DVec3;
 use solar_positioning::time::JulianDate;
 use solar_positioning::{Location, SolarPositions, delta_t};
 
-/// Where one stands.
+/// A location on the Earth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
-    /// Degrees north of the equator, -90 to 90.
+    /// Latitude in degrees, positive north, -90 to 90.
     pub latitude_deg: f64,
-    /// Degrees east of Greenwich, -180 to 180.
+    /// Longitude in degrees, positive east, -180 to 180.
     pub longitude_deg: f64,
-    /// Height above sea level, m.
+    /// Altitude above sea level, m.
     pub altitude_m: f64,
 }
 
-/// The air that bends the sun's light on its way to the eye.
+/// State of the air that refracts sunlight at the observer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RefractingAir {
-    /// Pressure at the eye, Pa.
+    /// Pressure, Pa.
     pub pressure_pa: f64,
-    /// Temperature at the eye, degrees Celsius.
+    /// Temperature, degrees Celsius.
     pub temperature_c: f64,
 }
 
 impl RefractingAir {
-    /// 1013.25 hPa and 15 degrees Celsius.
+    /// Standard air: 1013.25 hPa and 15 degrees Celsius.
     pub const STANDARD: Self = Self {
         pressure_pa: 101_325.0,
         temperature_c: 15.0,
     };
 }
 
-/// Where the sun stands.
+/// Position of the sun in the sky.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SunPosition {
-    /// Degrees clockwise from north, in `[0, 360)`.
+    /// Azimuth in degrees clockwise from north, in `[0, 360)`.
     pub azimuth_deg: f64,
-    /// Degrees above the horizon: as seen through the air where refraction was asked for, else geometric.
+    /// Elevation in degrees above the horizon: apparent if computed with refraction, otherwise geometric.
     pub elevation_deg: f64,
-    /// Degrees above the horizon without refraction.
+    /// Elevation in degrees above the horizon without refraction.
     pub geometric_elevation_deg: f64,
-    /// Distance from the Earth, astronomical units.
+    /// Distance from the Earth, AU.
     pub distance_au: f64,
 }
 
 impl SunPosition {
-    /// Unit vector towards the sun in world axes ([`axes`]).
+    /// Unit vector towards the sun, in world axes ([`axes`]).
     pub fn direction(&self) -> DVec3 {
         axes::direction(self.azimuth_deg, self.elevation_deg)
     }
 }
 
-/// Why a time or a place has no sun.
+/// Error of [`sun_position`] or of parsing a time.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum EphemerisError {
     /// A latitude, longitude or altitude out of range.
-    #[error("{what} must lie between {least} and {most}, got {got}")]
+    #[error("expected {what} from {least} to {most}, got {got}")]
     Range {
-        /// What it is, with its unit.
+        /// The quantity, with its unit.
         what: &'static str,
         /// Smallest value allowed.
         least: f64,
         /// Largest value allowed.
         most: f64,
-        /// The value given.
+        /// The value.
         got: f64,
     },
-    /// A text that is not a time.
+    /// A text in another format than RFC 3339.
     #[error(
-        "\"{0}\" is not a time: write 2013-05-27T16:30:00Z, or with an offset 2013-05-27T12:30:00-04:00"
+        "expected a time such as 2013-05-27T16:30:00Z, or with an offset 2013-05-27T12:30:00-04:00; got \"{0}\""
     )]
     Format(String),
     /// A date or time of day that does not exist.
     #[error("{field} {value} does not exist in {text}")]
     Calendar {
-        /// Which field.
+        /// Name of the field, such as `day`.
         field: &'static str,
-        /// Its value.
+        /// Value of the field.
         value: f64,
-        /// The date or time as given.
+        /// The date or time.
         text: String,
     },
-    /// The algorithm refuses the time.
+    /// The algorithm does not cover the time.
     #[error("no position of the sun: {0}")]
     Algorithm(String),
 }
 
-/// Seconds in a day.
+/// Length of a day, s.
 const DAY_S: f64 = 86_400.0;
 /// Julian date of 1970-01-01T00:00:00Z.
 const UNIX_EPOCH_JD: f64 = 2_440_587.5;
 
-/// Where the sun stands at a time in seconds since 1970-01-01T00:00:00Z (leap seconds not counted), seen from a place
-/// on the Earth, with refraction by the air given or without.
+/// Position of the sun at a time, in seconds since 1970-01-01T00:00:00Z without leap seconds, at a place on the Earth, with
+/// or without atmospheric refraction.
 ///
-/// Terrestrial time is had from the polynomials of Espenak & Meeus; today they are a few seconds off, which moves the sun
-/// by less than 1e-4 degrees.
+/// Terrestrial time is computed from the polynomials of Espenak & Meeus; at present they are a few seconds off, which moves
+/// the sun by less than 1e-4 degrees.
 ///
-/// Refraction is that of the algorithm (its eq. 42, after Bennett and Saemundsson): for standard air 0.48 degrees when
-/// the geometric sun is at the horizon, uncertain by some 0.05 degrees there with the weather and much better above 5 degrees.
-/// Below -0.833 degrees, where the algorithm stops, it fades out as `1 / tan(-elevation)`, so that a sun that sets moves
-/// without a jump.
+/// Refraction follows the algorithm (its eq. 42, after Bennett and Saemundsson): for standard air 0.48 degrees when the
+/// geometric sun is at the horizon, uncertain there by about 0.05 degrees with the weather and much more accurate above
+/// 5 degrees. Below -0.833 degrees, where the algorithm stops, it decays as `1 / tan(-elevation)`, so that the elevation
+/// stays continuous at sunset.
 ///
 /// # Errors
-/// [`EphemerisError`] where a number is out of range or not finite.
+/// [`EphemerisError`] if a number is out of range or not finite.
 pub fn sun_position(
     unix_seconds: f64,
     place: Place,
@@ -119,7 +120,7 @@ pub fn sun_position(
     sun_position_with_lag(unix_seconds, terrestrial_lag_s, place, refraction)
 }
 
-/// As [`sun_position`], with terrestrial time ahead of universal time by a given number of seconds (delta T).
+/// As [`sun_position`], with an explicit difference between terrestrial and universal time (delta T), s.
 ///
 /// # Errors
 /// As [`sun_position`].
@@ -150,27 +151,27 @@ pub fn sun_position_with_lag(
         latitude: place.latitude_deg,
         longitude: place.longitude_deg,
     };
-    let seen = prepared
+    let solved = prepared
         .at(location, place.altitude_m, None)
         .map_err(algorithm)?;
-    let geometric = 90.0 - seen.zenith_angle();
+    let geometric = 90.0 - solved.zenith_angle();
     Ok(SunPosition {
-        azimuth_deg: seen.azimuth().rem_euclid(360.0),
+        azimuth_deg: solved.azimuth().rem_euclid(360.0),
         elevation_deg: geometric + refraction.map_or(0.0, |air| refraction_deg(geometric, air)),
         geometric_elevation_deg: geometric,
         distance_au: prepared.earth_radius_vector().unwrap_or(1.0),
     })
 }
 
-/// How much the air lifts a star of a geometric elevation, degrees (Reda & Andreas 2004, eq. 42).
+/// Refraction at a geometric elevation, degrees (Reda & Andreas 2004, eq. 42).
 fn refraction_deg(geometric_elevation_deg: f64, air: RefractingAir) -> f64 {
-    /// The sun's radius and the refraction at the horizon: where the algorithm stops.
+    /// Minus the sun's radius and the refraction at the horizon, where the algorithm stops.
     const LOWEST_DEG: f64 = -0.833_37;
     let e = geometric_elevation_deg.max(LOWEST_DEG);
     let standard = 1.02 / (60.0 * (e + 10.3 / (e + 5.11)).to_radians().tan());
     let lift = air.pressure_pa / 101_000.0 * (283.0 / (273.0 + air.temperature_c)) * standard;
     match geometric_elevation_deg < LOWEST_DEG {
-        // Cosines keep it going down to 0 at the nadir.
+        // Decays to 0 at the nadir.
         true => {
             let tangent = |deg: f64| deg.to_radians().tan();
             lift * (tangent(LOWEST_DEG) / tangent(geometric_elevation_deg)).max(0.0)
@@ -182,8 +183,8 @@ fn refraction_deg(geometric_elevation_deg: f64, air: RefractingAir) -> f64 {
 /// Seconds since 1970-01-01T00:00:00Z of a date and time of day in UTC (Gregorian calendar, also before 1582).
 ///
 /// # Errors
-/// [`EphemerisError::Calendar`] where the date or time of day does not exist. A second of 60 (leap) is taken as the next
-/// minute's first.
+/// [`EphemerisError::Calendar`] if the date or time of day does not exist. A leap second (60) is taken as the first second
+/// of the next minute.
 pub fn unix_seconds(
     year: i32,
     month: u32,
@@ -227,7 +228,7 @@ pub fn unix_seconds(
 }
 
 /// Seconds since 1970-01-01T00:00:00Z of a text such as `2013-05-27T16:30:00Z` or `2013-05-27T12:30:00.5-04:00`. A time
-/// without offset is refused: it would not say when.
+/// without an offset is ambiguous and refused.
 ///
 /// # Errors
 /// [`EphemerisError::Format`] or [`EphemerisError::Calendar`].
@@ -288,7 +289,7 @@ pub fn parse_time(text: &str) -> Result<f64, EphemerisError> {
     Ok(unix_seconds(year, month, day, hour, minute, second)? - offset_s)
 }
 
-/// A number of exactly `width` decimal digits.
+/// Parses exactly `width` decimal digits.
 fn digits(text: &str, width: usize) -> Option<u32> {
     match text.len() == width && text.bytes().all(|b| b.is_ascii_digit()) {
         true => text.parse().ok(),
@@ -323,7 +324,7 @@ mod tests {
     };
 
     #[test]
-    fn the_published_example_comes_out() {
+    fn position_matches_the_published_example() {
         // Reda & Andreas, NREL/TP-560-34302, table A5.1: delta T 67 s, 820 mbar, 11 degrees Celsius.
         let time = parse_time("2003-10-17T12:30:30-07:00").unwrap();
         let air = RefractingAir {
@@ -342,8 +343,8 @@ mod tests {
     }
 
     #[test]
-    fn the_sun_culminates_overhead_at_the_solstice_tropic() {
-        // 2024-06-20T20:51Z is the solstice; at 12:02 solar time the sun stands over the tropic of Cancer.
+    fn sun_culminates_overhead_at_the_tropic_on_the_solstice() {
+        // 2024-06-20T20:51Z is the solstice; at 12:02 solar time the sun is above the tropic of Cancer.
         let place = Place {
             latitude_deg: 23.436,
             longitude_deg: -132.3,
@@ -357,7 +358,7 @@ mod tests {
     }
 
     #[test]
-    fn refraction_lifts_and_never_jumps() {
+    fn refraction_is_positive_and_continuous() {
         let air = RefractingAir::STANDARD;
         assert!(
             (refraction_deg(0.0, air) - 0.478).abs() < 0.01,
@@ -374,7 +375,7 @@ mod tests {
     }
 
     #[test]
-    fn times_are_read() {
+    fn times_are_parsed() {
         assert_eq!(unix_seconds(1970, 1, 1, 0, 0, 0.0), Ok(0.0));
         assert_eq!(unix_seconds(2000, 2, 29, 12, 0, 0.0), Ok(951_825_600.0));
         assert_eq!(unix_seconds(1900, 1, 1, 0, 0, 0.0), Ok(-2_208_988_800.0));
@@ -393,7 +394,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_time_or_place_is_refused() {
+    fn invalid_times_and_places_are_refused() {
         for text in [
             "",
             "noon",

@@ -1,39 +1,38 @@
-//! Drawing directions from phase functions: exact, so that the density of what is drawn is
-//! [`PhaseFunction::evaluate`] itself.
+//! Exact sampling of directions from phase functions: the density of the samples is [`PhaseFunction::evaluate`].
 
 use super::{Depolarization, PhaseFunction};
 use crate::optics::TabulatedPhase;
 
-/// A phase function at one wavelength, ready to draw cosines of scattering angles from.
+/// Sampler of scattering-angle cosines from a phase function at one wavelength.
 ///
-/// Isotropic, Rayleigh and Henyey-Greenstein by inverting their distributions in closed form, tables by inverting theirs
-/// (to 1e-9); Cornette-Shanks and Draine by rejection from a density that lies above them, which is exact as well.
+/// Isotropic, Rayleigh and Henyey-Greenstein invert their cumulative distributions in closed form, tables numerically (to
+/// 1e-9); Cornette-Shanks and Draine use rejection sampling from Henyey-Greenstein.
 #[derive(Clone, Debug)]
 pub enum PhaseSampler {
-    /// The same in all directions.
+    /// Isotropic scattering.
     Isotropic,
-    /// Molecules: `A` and the largest `B` of `mu^3 + 3 A mu = B`.
+    /// Rayleigh scattering: solves `mu^3 + 3 A mu = B`, where `B` is uniform.
     Rayleigh {
-        /// `(1 + 3 gamma) / (1 - gamma)`.
+        /// The coefficient `A = (1 + 3 gamma) / (1 - gamma)`.
         linear: f64,
-        /// `(4 + 8 gamma) / (1 - gamma)`: the right side at `mu = 1`.
+        /// The largest `B`, at `mu = 1`: `(4 + 8 gamma) / (1 - gamma)`.
         end: f64,
     },
     /// Henyey-Greenstein times `1 + alpha mu^2` (Henyey-Greenstein for `alpha = 0`).
     Draine {
-        /// Its parameter.
+        /// Asymmetry parameter of the Henyey-Greenstein factor.
         g: f64,
-        /// Weight of the cosine squared.
+        /// Weight of the squared cosine.
         alpha: f64,
     },
-    /// A table, and the wavelength, nm.
+    /// A table, and the wavelength in nm.
     Table(TabulatedPhase, f64),
-    /// A mixture: running sums of the weights, and the parts.
+    /// Running sums of the weights of a mixture, and its parts.
     Mixture(Vec<(f64, PhaseSampler)>),
 }
 
 impl PhaseSampler {
-    /// Prepares to draw from `phase` at a wavelength.
+    /// Prepares sampling of `phase` at a wavelength in nm.
     pub fn new(phase: &PhaseFunction, wavelength_nm: f64) -> Self {
         match phase {
             PhaseFunction::Isotropic => Self::Isotropic,
@@ -70,11 +69,11 @@ impl PhaseSampler {
         }
     }
 
-    /// The cosine of a scattering angle, from numbers that `random` draws evenly from `(0, 1)`.
+    /// Draws the cosine of a scattering angle; `random` returns independent uniform numbers in `(0, 1)`.
     pub fn sample(&self, random: &mut impl FnMut() -> f64) -> f64 {
         match self {
             Self::Isotropic => 2.0 * random() - 1.0,
-            // The distribution of (1 + 3 gamma) + (1 - gamma) mu^2 is a cubic with one real root:
+            // The cumulative distribution of (1 + 3 gamma) + (1 - gamma) mu^2 is a cubic with one real root:
             // mu = 2 sqrt(A) sinh(asinh(B / (2 A^(3/2))) / 3).
             Self::Rayleigh { linear, end } => {
                 let right = end * (2.0 * random() - 1.0);
@@ -99,8 +98,8 @@ impl PhaseSampler {
     }
 }
 
-/// The cosine below which Henyey-Greenstein scatters the share `xi`: the inverse of its distribution (Witt, Astrophys.
-/// J. Suppl. 35, 1, 1977), multiplied out so that nothing cancels as `g` goes to 0.
+/// Cosine at which the cumulative distribution of Henyey-Greenstein is `xi` (Witt, Astrophys. J. Suppl. 35, 1, 1977),
+/// expanded so that nothing cancels as `g` goes to 0.
 fn henyey_greenstein(g: f64, xi: f64) -> f64 {
     let s = 2.0 * xi - 1.0;
     let d = 1.0 + g * s;
@@ -116,10 +115,10 @@ mod tests {
     use crate::math::random::Random;
     use std::f64::consts::PI;
 
-    /// Legendre moments of what is drawn are those of the function, and the cosines fall into bins as often as its
-    /// integral says: chi squared over 40 bins, 99.99 % limit of 39 degrees of freedom.
+    /// The Legendre moments of the samples match those of the function, and their histogram over 40 bins matches its integral:
+    /// chi squared within the 99.99 % limit of 39 degrees of freedom.
     #[test]
-    fn what_is_drawn_has_the_density_of_the_function() {
+    fn samples_follow_the_phase_function() {
         const DRAWS: usize = 200_000;
         const BINS: usize = 40;
         let breaks: Vec<f64> = (1..360)
@@ -162,7 +161,7 @@ mod tests {
                 let moments = phase.legendre_moments(5, nm);
                 for (got, want) in sums.iter().zip(&moments[1..]) {
                     let got = got / DRAWS as f64;
-                    // No Legendre polynomial exceeds 1.
+                    // No Legendre polynomial exceeds 1 in magnitude.
                     let sigma = (1.0 / DRAWS as f64).sqrt();
                     assert!(
                         (got - want).abs() < 4.5 * sigma,

@@ -1,7 +1,7 @@
 use super::*;
 use crate::math::quadrature::GaussRule;
 
-/// All kinds, with parameters that try them.
+/// All kinds of phase functions, with demanding parameters.
 pub(super) fn kinds() -> Vec<PhaseFunction> {
     let angles: Vec<f64> = (0..=90).map(|i| 2.0 * f64::from(i)).collect();
     let peaked = |g: f64| {
@@ -31,7 +31,7 @@ pub(super) fn kinds() -> Vec<PhaseFunction> {
     ]
 }
 
-/// `2 pi` times the integral of `p P_l` over the cosine, by panels that crowd at both peaks.
+/// `2 pi` times the integral of `p P_l` over the cosine, in panels that refine towards both peaks.
 fn moment(phase: &PhaseFunction, l: usize, nm: f64) -> f64 {
     let breaks: Vec<f64> = (1..360)
         .map(|i| (0.5 * f64::from(i)).to_radians().cos())
@@ -48,7 +48,7 @@ fn moment(phase: &PhaseFunction, l: usize, nm: f64) -> f64 {
 }
 
 #[test]
-fn all_are_normalised_and_their_moments_are_those_of_quadrature() {
+fn all_kinds_are_normalised_and_moments_match_quadrature() {
     for phase in kinds() {
         for nm in [400.0, 520.0, 700.0] {
             let moments = phase.legendre_moments(12, nm);
@@ -69,7 +69,7 @@ fn all_are_normalised_and_their_moments_are_those_of_quadrature() {
 }
 
 #[test]
-fn moments_sum_to_the_function() {
+fn moments_expand_to_the_function() {
     for phase in kinds()
         .iter()
         .filter(|p| !matches!(p, PhaseFunction::Tabulated(_)))
@@ -92,7 +92,7 @@ fn moments_sum_to_the_function() {
 }
 
 #[test]
-fn draine_contains_the_others() {
+fn draine_reduces_to_the_other_kinds() {
     for mu in [-1.0, -0.5, 0.0, 0.3, 0.999, 1.0] {
         let close = |a: PhaseFunction, b: PhaseFunction| {
             let (a, b) = (a.evaluate(mu, 550.0), b.evaluate(mu, 550.0));
@@ -105,7 +105,7 @@ fn draine_contains_the_others() {
             draine(0.0, 1.0),
             PhaseFunction::Rayleigh(Depolarization::None),
         );
-        // Cornette & Shanks as they print it.
+        // Cornette & Shanks as printed.
         let g = 0.7f64;
         let printed = 3.0 / (8.0 * PI) * (1.0 - g * g) * (1.0 + mu * mu)
             / ((2.0 + g * g) * (1.0 + g * g - 2.0 * g * mu).powf(1.5));
@@ -119,8 +119,8 @@ fn draine_contains_the_others() {
 }
 
 #[test]
-fn sharp_peaks_keep_their_digits() {
-    // At the very peak Henyey-Greenstein is (1 + g) / (4 pi (1 - g)^2).
+fn sharp_peaks_do_not_cancel() {
+    // The peak value of Henyey-Greenstein is (1 + g) / (4 pi (1 - g)^2).
     for exponent in 1..=12 {
         let distance = 10f64.powi(-exponent);
         for g in [1.0 - distance, distance - 1.0] {
@@ -136,7 +136,7 @@ fn sharp_peaks_keep_their_digits() {
 }
 
 #[test]
-fn bad_parameters_are_refused() {
+fn invalid_parameters_are_refused() {
     for g in [1.0, -1.0, 1.5, f64::NAN, f64::INFINITY] {
         assert!(matches!(
             PhaseFunction::henyey_greenstein(g),

@@ -1,14 +1,14 @@
-//! The scattering matrix of spheres beside their phase function.
+//! Scattering matrix of spheres stored with a tabulated phase function.
 
 use super::{PhaseError, TabulatedPhase};
 use crate::optics::MatrixRatios;
 
 impl TabulatedPhase {
-    /// The same with what spheres do to polarisation: `f12`, `f33` and `f34` over the phase function, at each angle and
-    /// wavelength of the table in its order. Between them the ratios are linear in the angle.
+    /// Adds the polarisation of spheres: `f12`, `f33` and `f34` relative to the phase function, in the order of the values of
+    /// [`Self::new`]. Between the angles of the table the ratios are linear in the angle.
     ///
     /// # Errors
-    /// [`PhaseError::Length`] where their number is wrong, [`PhaseError::Matrix`] where one is not in `[-1, 1]`.
+    /// [`PhaseError::Length`] if the number of entries is invalid, [`PhaseError::Matrix`] if an element lies outside `[-1, 1]`.
     pub fn with_matrix(self, ratios: &[[f64; 3]]) -> Result<Self, PhaseError> {
         if ratios.len() != self.log_values.len() {
             return Err(PhaseError::Length {
@@ -17,10 +17,10 @@ impl TabulatedPhase {
                 got: ratios.len(),
             });
         }
-        // Single precision in the sums over spheres may lie beyond the ends by as much.
-        let right = |v: &f64| v.abs() <= 1.0 + 1e-4;
+        // Tolerates the single-precision error of sums over spheres.
+        let in_range = |v: &f64| v.abs() <= 1.0 + 1e-4;
         for (index, all) in ratios.iter().enumerate() {
-            if let Some(&value) = all.iter().find(|v| !right(v)) {
+            if let Some(&value) = all.iter().find(|v| !in_range(v)) {
                 return Err(PhaseError::Matrix { index, value });
             }
         }
@@ -33,19 +33,19 @@ impl TabulatedPhase {
         })
     }
 
-    /// Whether it has the whole matrix.
+    /// True if the table has a scattering matrix.
     pub fn has_matrix(&self) -> bool {
         self.matrix.is_some()
     }
 
-    /// The scattering matrix over the phase function, at the cosine of the scattering angle: of spheres, where the table
-    /// has it; else light is scattered without polarisation.
+    /// Scattering matrix relative to the phase function, at the cosine of the scattering angle; [`MatrixRatios::NONE`] if the
+    /// table has none.
     pub fn matrix_ratios(&self, cos_angle: f64, wavelength_nm: f64) -> MatrixRatios {
         let Some(matrix) = &self.matrix else {
             return MatrixRatios::NONE;
         };
         let (interval, angle) = self.place(cos_angle);
-        let (row, t) = self.between(wavelength_nm);
+        let (row, t) = self.bracket_wavelength(wavelength_nm);
         let [low, high] = [self.angles_rad[interval], self.angles_rad[interval + 1]];
         let part = ((angle - low) / (high - low)) as f32;
         let of = |row: usize| -> [f64; 3] {
@@ -56,7 +56,7 @@ impl TabulatedPhase {
         let [f12, f33, f34] = match t {
             0.0 => of(row),
             _ => {
-                // The elements are linear between wavelengths, as the phase function is.
+                // The matrix elements, not their ratios, are linear between wavelengths, as the phase function is.
                 let near = (1.0 - t) * self.at_row(row, interval, angle);
                 let far = t * self.at_row(row + 1, interval, angle);
                 let share = far / (near + far);
@@ -79,15 +79,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn matrices_that_cannot_be_are_refused() {
+    fn invalid_matrices_are_refused() {
         let table = || TabulatedPhase::new(vec![0.0, 180.0], vec![550.0], vec![1.0; 2]).unwrap();
         assert!(matches!(
             table().with_matrix(&[[0.0; 3]; 3]),
             Err(PhaseError::Length { got: 3, .. })
         ));
-        for wrong in [1.1, -2.0, f64::NAN] {
+        for invalid in [1.1, -2.0, f64::NAN] {
             assert!(matches!(
-                table().with_matrix(&[[0.0; 3], [0.0, wrong, 0.0]]),
+                table().with_matrix(&[[0.0; 3], [0.0, invalid, 0.0]]),
                 Err(PhaseError::Matrix { index: 1, .. })
             ));
         }

@@ -1,4 +1,4 @@
-//! Legendre moments of tables.
+//! Legendre moments of tabulated phase functions.
 
 use super::{PANEL_POINTS, TabulatedPhase};
 use crate::math::interpolation::lerp;
@@ -7,7 +7,7 @@ use crate::math::simd::vectorized;
 impl TabulatedPhase {
     /// Legendre moments, see [`crate::optics::PhaseFunction::legendre_moments`].
     pub fn legendre_moments(&self, count: usize, wavelength_nm: f64) -> Vec<f64> {
-        let (row, t) = self.between(wavelength_nm);
+        let (row, t) = self.bracket_wavelength(wavelength_nm);
         let mut moments = self.moments_of_row(row, count);
         if t > 0.0 {
             for (moment, other) in moments.iter_mut().zip(self.moments_of_row(row + 1, count)) {
@@ -18,12 +18,12 @@ impl TabulatedPhase {
     }
 
     fn moments_of_row(&self, row: usize, count: usize) -> Vec<f64> {
-        // No stretch turns P_l by more than about a quarter.
-        let widest = (1.6 / count as f64).min(0.4);
+        // P_l oscillates by at most about a quarter turn over each panel.
+        let max_width = (1.6 / count as f64).min(0.4);
         let mut moments = vec![0.0; count];
         for interval in 0..self.angles_rad.len() - 1 {
             let to = self.angles_rad[interval + 1];
-            self.stretches(row, interval, to, widest, |angles, measures| {
+            self.visit_panels(row, interval, to, max_width, |angles, measures| {
                 let parts =
                     std::array::from_fn(|i| measures[i] * self.at_row(row, interval, angles[i]));
                 vectorized(

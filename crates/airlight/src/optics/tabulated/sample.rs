@@ -1,21 +1,21 @@
-//! Drawing directions from tables.
+//! Sampling of directions from tabulated phase functions.
 
 use super::TabulatedPhase;
 use crate::math::interpolation::interval_of;
 
-/// Newton steps at most; two or three do.
+/// Maximum number of Newton steps; two or three usually suffice.
 const STEPS: usize = 30;
 
 impl TabulatedPhase {
-    /// The cosine of the scattering angle below which a part `share` (in `[0, 1]`) of the light is scattered, counted from
-    /// straight on: for a share drawn evenly from `[0, 1)`, a direction drawn with the density
+    /// Cosine of the scattering angle below which the fraction `share`, in `[0, 1]`, of the light is scattered, counted from
+    /// the forward direction: for a uniform share in `[0, 1)`, a sample with the density
     /// [`evaluate`](TabulatedPhase::evaluate) over the sphere.
     ///
-    /// Between two wavelengths the share also picks which of them the angle is drawn for, so the density is that of
-    /// `evaluate` there too (not monotone in the share then). The part of the light within the returned angle is the share
-    /// to 1e-9.
+    /// Between two wavelengths the share also selects the wavelength whose distribution is inverted, so that the density is
+    /// that of `evaluate` there too; the cosine is then not monotone in the share. The fraction of the light within the
+    /// returned angle is the share to 1e-9.
     pub fn sample(&self, share: f64, wavelength_nm: f64) -> f64 {
-        let (row, t) = self.between(wavelength_nm);
+        let (row, t) = self.bracket_wavelength(wavelength_nm);
         let share = share.clamp(0.0, 1.0);
         match share < t {
             true => self.sample_row(row + 1, share / t),
@@ -27,20 +27,20 @@ impl TabulatedPhase {
         let count = self.angles_rad.len();
         let running = &self.cumulative[row * count..(row + 1) * count];
         let interval = interval_of(running, share);
-        let wanted = share - running[interval];
+        let target = share - running[interval];
         let whole = running[interval + 1] - running[interval];
         let (mut low, mut high) = (self.angles_rad[interval], self.angles_rad[interval + 1]);
         if whole <= 0.0 {
             return high.cos();
         }
-        // The measure grows with the square of the angle near 0, elsewhere about evenly.
-        let part = (wanted / whole).clamp(0.0, 1.0);
+        // The cumulative distribution grows with the square of the angle near 0, elsewhere about linearly.
+        let part = (target / whole).clamp(0.0, 1.0);
         let mut angle = match interval {
             0 => high * part.sqrt(),
             _ => low + (high - low) * part,
         };
         for _ in 0..STEPS {
-            let excess = self.mass(row, interval, angle) - wanted;
+            let excess = self.mass(row, interval, angle) - target;
             if excess.abs() <= 1e-10 * whole.max(1e-6) {
                 break;
             }
@@ -58,10 +58,10 @@ impl TabulatedPhase {
         angle.cos()
     }
 
-    /// The part of the light that an interval scatters by less than an angle in it.
+    /// Fraction of the light scattered into an interval of the table, up to the angle `to`.
     pub(super) fn mass(&self, row: usize, interval: usize, to: f64) -> f64 {
         let mut sum = 0.0;
-        self.stretches(row, interval, to, 0.4, |angles, measures| {
+        self.visit_panels(row, interval, to, 0.4, |angles, measures| {
             for (angle, measure) in angles.iter().zip(measures) {
                 sum += measure * self.at_row(row, interval, *angle);
             }
@@ -75,7 +75,7 @@ mod tests {
     use super::interval_of;
     use crate::optics::{PhaseFunction, TabulatedPhase};
 
-    /// Two wavelengths: a peak of six decades, and a bow.
+    /// Two wavelengths: a peak of six decades, and a fog bow.
     fn table() -> TabulatedPhase {
         let angles: Vec<f64> = (0..=180).map(f64::from).collect();
         let peak = PhaseFunction::HenyeyGreenstein { g: 0.99 };
@@ -90,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn shares_lie_within_the_angles_drawn_for_them() {
+    fn sampling_inverts_the_cumulative_distribution() {
         let table = table();
         let count = table.angles_rad().len();
         for (row, nm) in [(0, 400.0), (1, 700.0)] {
@@ -110,9 +110,9 @@ mod tests {
         }
     }
 
-    /// The means of `mu` and of `mu^2` over even shares are those of the density, between wavelengths too.
+    /// The means of `mu` and `mu^2` over uniform shares are those of the density, also between wavelengths.
     #[test]
-    fn directions_drawn_have_the_moments_of_the_density() {
+    fn samples_have_the_moments_of_the_density() {
         let table = table();
         for nm in [400.0, 500.0, 650.0, 700.0] {
             let count = 40_000;
@@ -122,7 +122,7 @@ mod tests {
                 first += mu / f64::from(count);
                 second += 0.5 * (3.0 * mu * mu - 1.0) / f64::from(count);
             }
-            // One share more or less for either wavelength: 2.5e-5.
+            // One sample more or less at either wavelength changes the mean by 2.5e-5.
             let moments = table.legendre_moments(3, nm);
             assert!(
                 (first - moments[1]).abs() < 5e-5,
