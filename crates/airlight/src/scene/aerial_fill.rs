@@ -100,7 +100,7 @@ fn row_of<const N: usize>(
         let cos_azimuth = 2.0 * azimuth as f64 / (AZIMUTHS - 1) as f64 - 1.0;
         let sin_azimuth = (1.0 - cos_azimuth * cos_azimuth).sqrt();
         let direction = DVec3::Y * sin + (sun_azimuth * cos_azimuth + across * sin_azimuth) * cos;
-        let stops = view.stops(direction, &stops_m, peaked, &converter.used());
+        let stops = view.samples_along_ray(direction, &stops_m, peaked, &converter.used());
         for (stop, stop_m) in stops.iter().zip(&stops_m) {
             let opacity = converter.opacity(&stop.depth).map(|a| a.min(1.0 - OPAQUE));
             if azimuth == 0 {

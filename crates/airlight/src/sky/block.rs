@@ -1,4 +1,4 @@
-//! Wavelengths in blocks of as many lanes as vector instructions like, behind one interface.
+//! Solutions for blocks of 4, 8 or 16 wavelengths behind a common interface.
 
 use super::Scattering;
 use super::SkySettings;
@@ -16,7 +16,7 @@ use crate::transfer::ray::Ray;
 use crate::transfer::shell::Shell;
 use std::sync::Arc;
 
-/// What a line of sight brings at the wavelengths of a block, per unit solar irradiance.
+/// Light along a view ray at the wavelengths of a block, per unit solar irradiance.
 #[derive(Clone, Debug, Default)]
 pub struct BlockLight {
     pub transmittance: Vec<f32>,
@@ -26,44 +26,47 @@ pub struct BlockLight {
     pub meets_ground: bool,
 }
 
-/// What lies between the eye and a stop on a line, at the wavelengths of a block.
+/// Optical depth and path radiance from the eye to a sample on a view ray, at the wavelengths of a block.
 #[derive(Clone, Debug)]
-pub struct StopLight {
+pub struct SampleLight {
     /// Optical depth.
     pub depth: Vec<f32>,
-    /// Path radiance per unit solar irradiance: first all smooth light, then that of each peaked constituent.
+    /// Path radiance per unit solar irradiance: first the smooth part, then that of each peaked constituent.
     pub path: Vec<Vec<f32>>,
 }
 
-/// How the light of a block's lanes is summed into the channels of a table.
+/// Weights that sum the lanes of a block into the channels of a table.
 #[derive(Clone, Debug)]
 pub struct ChannelMatrix {
     /// `weights[channel][lane]`, solar irradiance included.
     pub weights: Vec<Vec<f32>>,
 }
 
-/// A solved sky at some wavelengths.
+/// A solved sky at some of the wavelengths.
 pub trait Block: Send + Sync {
     /// Number of wavelengths.
     fn lanes(&self) -> usize;
 
-    /// Light along one ray.
+    /// Light along a ray, over at most `limit_m`.
     fn trace(&self, ray: &Ray, limit_m: f64) -> BlockLight;
 
-    /// What lies between the eye and each of the rising distances `stops_m`, for `peaked` constituents without their phase
-    /// function, which is the second of each pair at this ray and will be multiplied with.
-    fn stops(&self, ray: &Ray, stops_m: &[f64], peaked: &[(usize, f32)]) -> Vec<StopLight>;
+    /// Light from the eye to each of the increasing distances `samples_m`. Light singly scattered by the `peaked`
+    /// constituents is returned without the phase function, whose value for this ray is the second entry of each pair.
+    fn samples_along_ray(
+        &self,
+        ray: &Ray,
+        samples_m: &[f64],
+        peaked: &[(usize, f32)],
+    ) -> Vec<SampleLight>;
 
-    /// Transmittance from a point to space along `mu`; 0 where the planet is in the way.
+    /// Transmittance from a point to space along `mu`; 0 if the ray hits the planet.
     fn transmittance_to_space(&self, radius_m: f64, mu: f64) -> Vec<f32>;
 
-    /// Phase function of a scatterer, given by its place among the constituents,
-    /// averaged over the lanes, 1/sr.
+    /// Phase function of a constituent at the cosine `nu`, averaged over the lanes, 1/sr.
     fn peaked_phase(&self, constituent: usize, nu: f64) -> f64;
 
-    /// Adds the light along each ray of `rows` to `out`: for each ray first one value a channel of all smooth light, then
-    /// for each of the `peaked` constituents one value a channel, to be multiplied by the row's phase function;
-    /// `width` values a ray in all.
+    /// Adds the light along each ray of `rows` to `out`. Each ray has `width` values: the smooth light in each channel, then for
+    /// each of the `peaked` constituents its singly scattered light in each channel, without the row's phase function.
     fn fill(
         &self,
         rows: &[TableRow],
@@ -74,20 +77,20 @@ pub trait Block: Send + Sync {
     );
 }
 
-/// Rays of one elevation, in equally many azimuths for each row of a table.
+/// The rays of one table row: one elevation, all azimuths.
 pub struct TableRow {
-    /// Distance of the eye from the planet's centre, m, and cosine of the zenith angle.
+    /// Radius of the eye, m, and cosine of the zenith angle.
     pub start: (f64, f64),
     pub bundle: RayBundle,
-    /// For each peaked constituent, its phase function along each ray, the same for all blocks of wavelengths: what
-    /// the pixels of a picture will be multiplied by.
+    /// Phase function of each peaked constituent along each ray, the same for all blocks, by which the tabulated light is
+    /// divided and each pixel multiplied.
     pub phases: Vec<Vec<f32>>,
 }
 
-/// Solves for all `wavelengths_nm` in blocks of fitting width.
+/// Solves for all `wavelengths_nm` in blocks.
 ///
 /// # Errors
-/// [`Cancelled`] soon after the caller has cancelled.
+/// [`Cancelled`] soon after cancellation.
 pub fn solve(
     atmosphere: &Atmosphere,
     shell: &Arc<Shell>,
@@ -97,7 +100,7 @@ pub fn solve(
 ) -> Result<Vec<Box<dyn Block>>, Cancelled> {
     let count = wavelengths_nm.len().div_ceil(16);
     let solved = wavelengths_nm.chunks(16).enumerate().map(|(place, chunk)| {
-        let share = Share {
+        let share = BlockProgress {
             control,
             place,
             count,
@@ -111,15 +114,15 @@ pub fn solve(
     solved.collect()
 }
 
-/// The part of one block in the progress of all.
-struct Share<'a> {
+/// Reports the progress of one block.
+struct BlockProgress<'a> {
     control: Control<'a>,
     place: usize,
     count: usize,
 }
 
-impl Share<'_> {
-    /// Reports that a fraction of the block is done, in permille of a block.
+impl BlockProgress<'_> {
+    /// Reports the fraction of the block that is done, in permille of a block.
     fn report(&self, fraction: f64) {
         let done = 1000 * self.place as u64 + (1000.0 * fraction) as u64;
         self.control.report(done, 1000 * self.count as u64);
@@ -129,7 +132,7 @@ impl Share<'_> {
 struct Solved<const N: usize> {
     air: Air<N>,
     diffuse: Option<Diffuse<N>>,
-    /// Lanes in use; those beyond repeat the last wavelength.
+    /// Number of lanes in use; unused lanes repeat the last wavelength.
     lanes: usize,
 }
 
@@ -139,7 +142,7 @@ impl<const N: usize> Solved<N> {
         shell: &Arc<Shell>,
         wavelengths_nm: &[f64],
         settings: &SkySettings,
-        share: Share<'_>,
+        share: BlockProgress<'_>,
     ) -> Result<Box<dyn Block>, Cancelled> {
         let lanes = wavelengths_nm.len();
         let padded = std::array::from_fn(|lane| wavelengths_nm[lane.min(lanes - 1)]);
@@ -192,21 +195,26 @@ impl<const N: usize> Block for Solved<N> {
         }
     }
 
-    fn stops(&self, ray: &Ray, stops_m: &[f64], peaked: &[(usize, f32)]) -> Vec<StopLight> {
-        let stops = vectorized(
+    fn samples_along_ray(
+        &self,
+        ray: &Ray,
+        samples_m: &[f64],
+        peaked: &[(usize, f32)],
+    ) -> Vec<SampleLight> {
+        let samples = vectorized(
             #[inline(always)]
-            || self.tracer().stops(ray, stops_m),
+            || self.tracer().samples_along_ray(ray, samples_m),
         );
-        stops
+        samples
             .iter()
-            .map(|stop| {
-                let mut parts = vec![stop.path.multiple_scatter; 1 + peaked.len()];
+            .map(|sample| {
+                let mut parts = vec![sample.path.multiple_scatter; 1 + peaked.len()];
                 parts[1..].fill(Spectrum::ZERO);
                 for (s, single_scatter_without_phase) in self
                     .air
                     .scatterers
                     .iter()
-                    .zip(&stop.path.single_scatter_without_phase)
+                    .zip(&sample.path.single_scatter_without_phase)
                 {
                     let phased = *single_scatter_without_phase * s.phase(&self.air, ray.nu);
                     match peaked.iter().position(|&(c, _)| c == s.constituent) {
@@ -214,8 +222,8 @@ impl<const N: usize> Block for Solved<N> {
                         Some(place) => parts[1 + place] = phased / peaked[place].1,
                     }
                 }
-                StopLight {
-                    depth: self.used(&stop.depth),
+                SampleLight {
+                    depth: self.used(&sample.depth),
                     path: parts.iter().map(|part| self.used(part)).collect(),
                 }
             })
@@ -233,10 +241,10 @@ impl<const N: usize> Block for Solved<N> {
         if ray.distance_to_ground(shell.ground_radius_m).is_some() {
             return vec![0.0; self.lanes];
         }
-        let Some(stretch) = shell.stretch(&ray, f64::INFINITY) else {
+        let Some(segment) = shell.segment(&ray, f64::INFINITY) else {
             return vec![1.0; self.lanes];
         };
-        let entry = ray.advanced(stretch.start_m);
+        let entry = ray.advanced(segment.start_m);
         self.used(
             &self
                 .air
@@ -282,9 +290,9 @@ impl<const N: usize> Block for Solved<N> {
     }
 }
 
-/// Light along the rays of a row.
+/// Light along the rays of a table row.
 struct RowLight<const N: usize> {
-    /// Sunlight scattered once, without phase function, `[scatterer][ray]`.
+    /// Singly scattered sunlight without phase function, `[scatterer][ray]`.
     single_scatter_without_phase: Vec<Spectrum<N>>,
     /// All other light.
     multiple_scatter: Vec<Spectrum<N>>,
@@ -300,7 +308,7 @@ impl<const N: usize> Solved<N> {
         };
         let grid = diffuse.map(|d| &d.field.grid);
         let degree = diffuse.map_or(0, |d| d.field.basis.degree());
-        // The air that dims light on its way: see `trace`.
+        // The air that attenuates light on its way: see `trace`.
         let dimming = diffuse.map_or(air, |d| &d.air);
         let path = Path::new(dimming, grid, &Tracer::marcher(air), row.start, degree);
         if path.is_lit(air, &row.bundle) {
@@ -331,7 +339,7 @@ impl<const N: usize> Solved<N> {
             let irradiance = |mu_sun| ground_irradiance(air, diffuse, mu_sun);
             path.accumulate_ground(air, &row.bundle, irradiance, &mut light.multiple_scatter);
         } else {
-            // The planet's shadow ends somewhere else on each ray.
+            // The planet's shadow ends at a different distance on each ray.
             let mut tracer = self.tracer();
             light
                 .single_scatter_without_phase

@@ -1,24 +1,24 @@
-//! For which heights of the sun a sky is prepared.
+//! Range of sun elevations that a sky is prepared for.
 
-/// The heights of the sun that a prepared sky can be asked about.
+/// The sun elevations and observer altitudes that a prepared sky supports.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SunCoverage {
-    /// One height of the sun, seen from one place: the fastest to prepare.
+    /// One sun elevation and one observer altitude: the fastest to prepare.
     Near {
-        /// Elevation of the sun at the observer's nadir, degrees.
+        /// Elevation of the sun at the observer, degrees.
         sun_elevation_deg: f64,
         /// Altitude of the observer, m.
         observer_altitude_m: f64,
     },
-    /// Every height of the sun and of the observer: for sequences and for views from space.
+    /// All sun elevations and observer altitudes: for sequences and views from space.
     All,
 }
 
-/// Beyond this zenith angle of the sun (degrees) not even the highest air that matters is lit: night.
+/// Zenith angle of the sun beyond which no relevant part of the atmosphere is sunlit, degrees.
 const NIGHT_DEG: f64 = 118.0;
 
 impl SunCoverage {
-    /// [`SunCoverage::Near`] in short.
+    /// Creates [`SunCoverage::Near`].
     pub fn near(sun_elevation_deg: f64, observer_altitude_m: f64) -> Self {
         Self::Near {
             sun_elevation_deg,
@@ -26,9 +26,9 @@ impl SunCoverage {
         }
     }
 
-    /// Whether suns are among them from which only thin air is lit.
-    pub(super) fn are_low(self) -> bool {
-        /// Where the light of panels that end too low begins to be missed, degrees.
+    /// True if the range includes suns low enough that only thin air is sunlit.
+    pub(super) fn includes_low_suns(self) -> bool {
+        /// Elevation below which the default altitude range misses light, degrees.
         const LOW_DEG: f64 = 8.0;
         match self {
             Self::Near {
@@ -38,7 +38,7 @@ impl SunCoverage {
         }
     }
 
-    /// Zenith angles of the sun, increasing (degrees), at which the light inside the air is solved for.
+    /// Zenith angles of the sun at which the light inside the atmosphere is solved for, degrees, increasing.
     pub(super) fn sun_zeniths_deg(self, ground_radius_m: f64, top_radius_m: f64) -> Vec<f64> {
         let Self::Near {
             sun_elevation_deg,
@@ -47,23 +47,24 @@ impl SunCoverage {
         else {
             return all_zeniths_deg();
         };
-        // A line of sight ends below the horizon of the highest air; seen from there the sun stands differently by
-        // as much as the planet's surface has curved on the way.
-        let dip = |radius_m: f64| {
+        // A view ray extends to the horizon of the highest air; there the sun's zenith angle differs by the curvature of the
+        // planet along the way.
+        let horizon_dip = |radius_m: f64| {
             (ground_radius_m / radius_m.max(ground_radius_m))
                 .acos()
                 .to_degrees()
         };
-        let reach = dip(top_radius_m) + dip(ground_radius_m + observer_altitude_m.max(0.0));
-        if reach > 15.0 {
+        let range =
+            horizon_dip(top_radius_m) + horizon_dip(ground_radius_m + observer_altitude_m.max(0.0));
+        if range > 15.0 {
             return all_zeniths_deg();
         }
         let centre = (90.0 - sun_elevation_deg).clamp(0.0, NIGHT_DEG);
-        // In twilight the light comes from air beyond the horizon, where the sun is higher.
-        // The deeper it is, the faster it fades with every degree.
+        // In twilight the light comes from air beyond the horizon, where the sun is higher, and it fades faster with each
+        // degree the deeper the sun is.
         let twilight = centre > 86.0;
-        let lowest = (centre - reach - if twilight { 8.0 } else { 5.0 }).max(0.0);
-        let highest = (centre + reach + 2.0).min(NIGHT_DEG);
+        let lowest = (centre - range - if twilight { 8.0 } else { 5.0 }).max(0.0);
+        let highest = (centre + range + 2.0).min(NIGHT_DEG);
         let mut zeniths = vec![centre];
         for (side, end) in [(-1.0, lowest), (1.0, highest)] {
             let (mut step, growth) = if twilight {
@@ -71,13 +72,13 @@ impl SunCoverage {
             } else {
                 (1.5, 1.5)
             };
-            let mut here = centre;
-            while (here - end) * side < 0.0 {
-                here += side * step;
-                if (here - end) * side > 0.0 || (here - end).abs() < 0.3 * step {
-                    here = end;
+            let mut zenith = centre;
+            while (zenith - end) * side < 0.0 {
+                zenith += side * step;
+                if (zenith - end) * side > 0.0 || (zenith - end).abs() < 0.3 * step {
+                    zenith = end;
                 }
-                zeniths.push(here);
+                zeniths.push(zenith);
                 step *= growth;
             }
         }
@@ -90,19 +91,19 @@ impl SunCoverage {
     }
 }
 
-/// The whole range: coarse where the sun is high, a degree apart through twilight.
+/// Zenith angles over the whole range: coarse for high suns, every degree through twilight.
 fn all_zeniths_deg() -> Vec<f64> {
     let mut zeniths = vec![0.0];
-    let mut here = 0.0;
-    while here < NIGHT_DEG {
-        here += match here {
+    let mut zenith = 0.0;
+    while zenith < NIGHT_DEG {
+        zenith += match zenith {
             z if z < 55.0 => 5.0,
             z if z < 73.0 => 3.0,
             z if z < 83.0 => 2.0,
             z if z < 112.0 => 1.0,
             _ => 2.0,
         };
-        zeniths.push(here);
+        zeniths.push(zenith);
     }
     zeniths
 }
@@ -112,7 +113,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_asked_height_is_a_node_and_the_nodes_span_what_is_seen() {
+    fn requested_elevation_is_a_node_and_nodes_cover_the_visible_range() {
         for elevation in [90.0, 60.0, 10.0, 2.0, -4.0, -18.0] {
             let zeniths = SunCoverage::near(elevation, 0.0).sun_zeniths_deg(6.36e6, 6.46e6);
             assert!(zeniths.contains(&(90.0 - elevation)));
@@ -123,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn from_space_all_heights_of_the_sun_are_seen() {
+    fn views_from_space_cover_all_sun_elevations() {
         assert_eq!(
             SunCoverage::near(30.0, 400e3).sun_zeniths_deg(6.36e6, 6.46e6),
             SunCoverage::All.sun_zeniths_deg(6.36e6, 6.46e6)

@@ -1,4 +1,4 @@
-//! The angular moments of the light inside the atmosphere, on a grid of altitudes and sun angles.
+//! Angular moments of the light inside the atmosphere, on a grid of altitudes and sun zenith angles.
 
 use super::harmonics::Harmonics;
 use crate::math::interpolation::{Place, lerp};
@@ -7,18 +7,18 @@ use crate::transfer::air::Air;
 use crate::transfer::ray::Ray;
 use crate::transfer::shell::{PerConstituent, Shell};
 
-/// Where the field is known: altitudes and cosines of the sun's zenith angle.
+/// Grid of the field: radii and cosines of the sun's zenith angle.
 #[derive(Clone, Debug)]
 pub struct FieldGrid {
-    /// Increasing, from the ground to the top of the atmosphere, m from the planet's centre.
+    /// Radii, increasing from the ground to the top of the atmosphere, m.
     pub radii_m: Vec<f64>,
-    /// Increasing cosines of the sun's zenith angle.
+    /// Cosines of the sun's zenith angle, increasing.
     pub sun_cosines: Vec<f64>,
 }
 
 impl FieldGrid {
-    /// `altitudes` heights, placed where the scatterers and the tables' own altitude coordinate ask for them, and the
-    /// given zenith angles of the sun (degrees, increasing).
+    /// Grid with `altitudes` radii, denser where the scatterers are, and the given zenith angles of the sun (degrees,
+    /// increasing).
     pub fn new<const N: usize>(air: &Air<N>, altitudes: usize, sun_zeniths_deg: &[f64]) -> Self {
         Self {
             radii_m: radii_m(air, altitudes),
@@ -30,20 +30,20 @@ impl FieldGrid {
         }
     }
 
-    /// Place of a distance from the planet's centre.
+    /// Interpolation interval of a radius in m.
     #[inline(always)]
     pub fn place_of_radius(&self, radius_m: f64) -> Place {
         Place::among(&self.radii_m, radius_m)
     }
 
-    /// Place of a sun cosine.
+    /// Interpolation interval of a sun cosine.
     #[inline(always)]
     pub fn place_of_sun(&self, mu_sun: f64) -> Place {
         Place::among(&self.sun_cosines, mu_sun)
     }
 }
 
-/// Heights at even steps of a measure that grows with the column of each scatterer passed and with height itself.
+/// Radii at equal steps of a measure that grows with each scatterer's column below and with altitude.
 fn radii_m<const N: usize>(air: &Air<N>, count: usize) -> Vec<f64> {
     const SAMPLES: usize = 2000;
     let shell: &Shell = &air.shell;
@@ -51,12 +51,12 @@ fn radii_m<const N: usize>(air: &Air<N>, count: usize) -> Vec<f64> {
     let share = 1.0 / air.scatterers.len().max(1) as f64;
     let measure = |x: f64| -> f64 {
         let columns = shell.vertical_columns_m(shell.radius_of_coordinate(x));
-        let passed: f64 = air
+        let below: f64 = air
             .scatterers
             .iter()
             .map(|s| share * (1.0 - columns[s.constituent] / ground[s.constituent].max(1e-30)))
             .sum();
-        passed + x
+        below + x
     };
     let total = measure(1.0);
     let mut radii = vec![shell.ground_radius_m];
@@ -71,28 +71,28 @@ fn radii_m<const N: usize>(air: &Air<N>, count: usize) -> Vec<f64> {
     radii
 }
 
-/// Moments of the radiance, `A_lm = integral of L Y_lm`, at every node of a grid; and the diffuse irradiance of the
-/// ground. All per unit solar irradiance.
+/// Moments of the radiance, `A_lm = integral of L Y_lm`, at each node of a grid, and the diffuse irradiance on the ground,
+/// both per unit solar irradiance.
 ///
-/// `A_00` is kept as its logarithm and the others as ratios to it: light falls by orders of magnitude as the sun goes
-/// down, and its logarithm is what can be interpolated.
+/// `A_00` is stored as its logarithm and the other moments as ratios to it: light falls by orders of magnitude as the sun
+/// sets, so its logarithm is interpolated.
 #[derive(Clone, Debug)]
 pub struct RadianceField<const N: usize> {
-    /// Where the moments are known.
+    /// Grid of the moments.
     pub grid: FieldGrid,
-    /// The basis of the moments.
+    /// Basis functions of the moments.
     pub basis: Harmonics,
     /// `[radius][sun][harmonic]`.
     moments: Vec<Spectrum<N>>,
-    /// Logarithm of the ground's diffuse irradiance at each sun cosine.
+    /// Logarithm of the diffuse irradiance on the ground for each sun cosine.
     ground_irradiance: Vec<Spectrum<N>>,
 }
 
-/// The smallest intensity kept: below it a logarithm would mean nothing.
-const DARKNESS: f32 = 1e-34;
+/// Smallest stored intensity, to keep the logarithm finite.
+const MIN_INTENSITY: f32 = 1e-34;
 
 impl<const N: usize> RadianceField<N> {
-    /// Converts plain moments, `[radius][sun][harmonic]`, and plain ground irradiances.
+    /// Creates a field from moments, `[radius][sun][harmonic]`, and irradiances on the ground, `[sun]`.
     pub fn new(
         grid: FieldGrid,
         basis: Harmonics,
@@ -100,9 +100,9 @@ impl<const N: usize> RadianceField<N> {
         ground: &[Spectrum<N>],
     ) -> Self {
         for point in moments.chunks_exact_mut(basis.count()) {
-            let intensity = point[0].max_scalar(DARKNESS);
+            let intensity = point[0].max_scalar(MIN_INTENSITY);
             for l in 1..=basis.degree() {
-                // No light that is nowhere negative has larger moments; rounding can have, in the dark.
+                // Bound for non-negative radiance; rounding can exceed it where there is almost no light.
                 let limit = ((2 * l + 1) as f32).sqrt();
                 for ratio in &mut point[basis.span(l)] {
                     *ratio = (*ratio / intensity).map(|r| r.clamp(-limit, limit));
@@ -110,7 +110,10 @@ impl<const N: usize> RadianceField<N> {
             }
             point[0] = intensity.ln();
         }
-        let ground_irradiance = ground.iter().map(|e| e.max_scalar(DARKNESS).ln()).collect();
+        let ground_irradiance = ground
+            .iter()
+            .map(|e| e.max_scalar(MIN_INTENSITY).ln())
+            .collect();
         Self {
             grid,
             basis,
@@ -126,7 +129,7 @@ impl<const N: usize> RadianceField<N> {
         &self.moments[start..start + count]
     }
 
-    /// Diffuse irradiance of the ground under the sun cosine `mu_sun`.
+    /// Diffuse irradiance on the ground for the sun cosine `mu_sun`.
     #[inline(always)]
     pub fn ground_irradiance(&self, mu_sun: f64) -> Spectrum<N> {
         let at = self.grid.place_of_sun(mu_sun);
@@ -137,8 +140,8 @@ impl<const N: usize> RadianceField<N> {
         lerp(a, b, at.fraction as f32).exp()
     }
 
-    /// Interpolates the stored form of the first `count` moments in altitude, for all sun cosines: `[sun][harmonic]`
-    /// into `out`.
+    /// Interpolates the stored form of the first `count` moments in radius, for all sun cosines, into `out`:
+    /// `[sun][harmonic]`.
     #[inline(always)]
     pub fn at_radius(&self, at: Place, count: usize, out: &mut Vec<Spectrum<N>>) {
         out.clear();
@@ -151,8 +154,8 @@ impl<const N: usize> RadianceField<N> {
         }
     }
 
-    /// Light scattered towards the eye per metre (times solar irradiance) at a point `here` of a line of sight, from
-    /// light that has been scattered or reflected at least once. `harmonics` are those of the line of sight.
+    /// Source function of multiply scattered light: radiance scattered per metre into a view ray at `here` from light that has
+    /// been scattered or reflected at least once, per unit solar irradiance. `harmonics` are evaluated in the ray's direction.
     #[inline(always)]
     pub fn source(
         &self,
@@ -190,7 +193,7 @@ impl<const N: usize> RadianceField<N> {
             }
             sum = sum.mul_acc(scattering_moment(air, densities, l), degree);
         }
-        // Cut-off harmonics can dip below zero in directions that receive almost nothing.
+        // Truncated harmonics can be negative in directions with almost no light.
         sum.max_scalar(0.0) * log_intensity.exp()
     }
 }

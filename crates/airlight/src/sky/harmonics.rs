@@ -1,9 +1,9 @@
 //! Real spherical harmonics of fields that are mirror-symmetric about the sun's vertical plane.
 //!
-//! Such a field needs only the cosine harmonics `Y_lm(theta, phi)` with `0 <= m <= l`, here orthonormal over the whole
+//! Such fields need only the cosine harmonics `Y_lm(theta, phi)` with `0 <= m <= l`, here orthonormal over the whole
 //! sphere: `Y_lm = N_lm P_lm(cos theta) cos(m phi)`. They are evaluated from `mu = cos(theta)` and
-//! `a = sin(theta) cos(phi)`, both polynomials of the direction's components: no angle is ever computed, and nothing
-//! special happens at the zenith.
+//! `a = sin(theta) cos(phi)`, both polynomials of the direction's components, so no angles are needed and the zenith is not
+//! a special case.
 
 use std::ops::RangeInclusive;
 
@@ -12,12 +12,12 @@ const fn count(l_max: usize) -> usize {
     (l_max + 1) * (l_max + 2) / 2
 }
 
-/// Place of `Y_lm` in a list of harmonics.
+/// Index of `Y_lm` in a list of harmonics.
 const fn index(l: usize, m: usize) -> usize {
     l * (l + 1) / 2 + m
 }
 
-/// Evaluates the harmonics up to a degree: holds normalisations and recurrence coefficients.
+/// Harmonics up to a degree: normalisation and recurrence coefficients.
 #[derive(Clone, Debug)]
 pub struct Harmonics {
     degree: usize,
@@ -28,7 +28,7 @@ pub struct Harmonics {
 }
 
 impl Harmonics {
-    /// Harmonics up to `degree` (at most [`Harmonics::MAX_DEGREE`]).
+    /// Harmonics up to `degree`, at most [`Harmonics::MAX_DEGREE`].
     pub fn new(degree: usize) -> Self {
         assert!(degree <= Self::MAX_DEGREE);
         let mut recurrence = vec![(0.0, 0.0); count(degree)];
@@ -66,9 +66,9 @@ impl Harmonics {
         }
     }
 
-    /// The largest degree.
+    /// Largest supported degree.
     pub const MAX_DEGREE: usize = 16;
-    /// The largest number of harmonics: the size of the arrays that [`Harmonics::evaluate`] fills.
+    /// Largest number of harmonics, the size of arrays for [`Harmonics::evaluate`].
     pub const MAX_COUNT: usize = count(Self::MAX_DEGREE);
 
     /// Number of harmonics.
@@ -77,23 +77,23 @@ impl Harmonics {
         count(self.degree)
     }
 
-    /// The highest degree.
+    /// Highest degree.
     #[inline(always)]
     pub fn degree(&self) -> usize {
         self.degree
     }
 
-    /// Places of the harmonics of degree `l`.
+    /// Indices of the harmonics of degree `l`.
     #[inline(always)]
     pub fn span(&self, l: usize) -> RangeInclusive<usize> {
         index(l, 0)..=index(l, l)
     }
 
-    /// Writes the harmonics in the direction with `mu = cos(theta)` and `toward_sun = sin(theta) cos(phi)`.
+    /// Evaluates the harmonics in the direction with `mu = cos(theta)` and `toward_sun = sin(theta) cos(phi)` into `out`.
     #[inline(always)]
     pub fn evaluate(&self, mu: f32, toward_sun: f32, out: &mut [f32]) {
         let sin2 = (1.0 - mu * mu).max(0.0);
-        // sin^m cos(m phi) by Chebyshev's recurrence.
+        // sin^m cos(m phi) by the Chebyshev recurrence.
         let (mut azimuthal_below, mut azimuthal) = (toward_sun, 1.0f32);
         for m in 0..=self.degree {
             out[index(m, m)] = self.diagonal[m] * azimuthal;
@@ -116,10 +116,10 @@ impl Harmonics {
         }
     }
 
-    /// [`Harmonics::evaluate`] for many rays of the same `mu`: `[function][ray]` into `out`. `scratch` has three
-    /// arrays of one entry a ray.
+    /// Evaluates the harmonics for many rays with the same `mu` into `out`: `[harmonic][ray]`. `scratch` holds three arrays
+    /// with one entry per ray.
     #[inline(always)]
-    pub fn evaluate_fan(
+    pub fn evaluate_bundle(
         &self,
         mu: f32,
         toward_sun: &[f32],
@@ -205,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn the_addition_theorem_holds() {
+    fn harmonics_satisfy_the_addition_theorem() {
         // sum_m Y_lm(a) Y_lm(b) = (2l + 1) / (4 pi) P_l(a.b), for both directions in the sun's plane.
         let harmonics = Harmonics::new(8);
         let (mut ya, mut yb, mut p) = ([0.0; 45], [0.0; 45], [0.0; 9]);

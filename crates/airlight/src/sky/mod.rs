@@ -1,8 +1,8 @@
-//! The solver for a spherical, multiply scattering atmosphere.
+//! Solver for a spherical atmosphere with multiple scattering.
 //!
-//! [`Sky::prepare`] solves once for the light inside the atmosphere; a [`View`] then answers, from any height and under
-//! any sun that was prepared for, what arrives along a line of sight; and a [`SkyTable`] of a view answers the same for
-//! every direction at the cost of a table look-up, for pictures.
+//! [`Sky::prepare`] solves for the light inside the atmosphere once. A [`View`] evaluates the radiance along any view ray
+//! for an observer altitude and a position of the sun within the prepared range. A [`SkyTable`] tabulates a view over all
+//! directions, so that a pixel of a picture costs one table look-up.
 //!
 //! ```
 //! use airlight::{axes, atmosphere::reference, sky::{Sky, SkySettings, SunCoverage}, spectrum::WavelengthGrid};
@@ -16,9 +16,9 @@
 //! # Ok::<(), airlight::sky::SkyError>(())
 //! ```
 //!
-//! The geometry is that of [`crate::transfer`]; `field` and `harmonics` hold the light inside the air, `ray_bundle` rays
-//! that share their path, `orders` the solver, `trace` the light along a ray, `samples_along_ray` the same at distances on
-//! the way, `table` all directions of a view.
+//! The geometry is in [`crate::transfer`]. Modules: `field` and `harmonics` (angular moments of the light inside the
+//! atmosphere), `orders` (successive orders of scattering), `ray_bundle` (rays that share their path), `trace` (light along
+//! one ray), `samples_along_ray` (light at many distances along a ray), `table` (all directions of a view).
 
 mod block;
 mod coverage;

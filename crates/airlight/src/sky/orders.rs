@@ -1,10 +1,9 @@
 //! Successive orders of scattering in spherical geometry.
 //!
-//! The n-th order of light is what order n - 1 becomes when it is scattered, or reflected by the ground, once more.
-//! Each order is carried from place to place along straight rays from the nodes of the grid in a fixed set of
-//! directions, and gathered there into angular moments, from which the next order's source follows with every
-//! constituent's own phase function. Rays, transmittances and quadrature nodes depend only on the height of the start
-//! and its zenith angle: they are worked out once and serve every sun angle, azimuth and order.
+//! The light of order n is the light of order n - 1, scattered or reflected once more. Each order is integrated along
+//! straight rays from the nodes of the grid in a fixed set of directions and projected onto angular moments, from which the
+//! source of the next order follows with each constituent's phase function. Rays, transmittances and quadrature nodes
+//! depend only on the altitude and zenith angle: they are computed once for all sun angles, azimuths and orders.
 
 use super::field::{FieldGrid, RadianceField};
 use super::harmonics::Harmonics;
@@ -20,52 +19,51 @@ use crate::transfer::air::Air;
 use crate::transfer::march::Marcher;
 use std::f64::consts::PI;
 
-/// How finely the orders are solved.
+/// Resolution and convergence of the successive orders.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OrderSettings {
-    /// Degree of the light's angular moments.
+    /// Degree of the angular moments.
     pub degree: usize,
-    /// Degree (at least `degree`) beyond which a phase function's moments count as a forward peak, and what they scatter
-    /// as unscattered: the higher, the better the light just around the sun; the lower, the calmer the rest of the sky
-    /// where the air is thick with forward-scattering dust.
+    /// Degree, at least `degree`, above which the moments of a phase function are treated as a forward peak, and the light in
+    /// it as unscattered. Higher values improve the light near the sun; lower values reduce ringing elsewhere if the air
+    /// contains much forward-scattering dust.
     pub peak_degree: usize,
-    /// Degree (at most `degree`) of the moments that are scattered again while the orders are solved; the light
-    /// that is finally looked at keeps all.
+    /// Degree, at most `degree`, of the moments that are scattered again while solving; the final field keeps all moments.
     pub rescattered_degree: usize,
-    /// Rays that carry light scattered once: it holds the aerosol's forward peak and wants the most directions.
+    /// Directions for singly scattered light, which contains the forward peak of the aerosol and needs the most.
     pub first: Directions,
-    /// Rays that carry every later order: smoother, so fewer of them.
+    /// Directions for all later orders, which are smoother.
     pub later: Directions,
-    /// Orders are added until the next is below this part of the sum.
+    /// Relative contribution of an order to the sum below which the remaining orders are extrapolated.
     pub tolerance: f32,
-    /// Orders never exceed this number.
+    /// Largest number of orders.
     pub max_orders: usize,
 }
 
-/// A set of directions.
+/// Resolution of a set of directions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Directions {
-    /// Number of zenith angles: below the horizon, just above it, and higher up.
+    /// Number of zenith angles below the horizon, just above it, and higher up.
     pub zenith_nodes: [usize; 3],
-    /// Number of azimuths between the sun's and the opposite one.
+    /// Number of azimuths from that of the sun to the opposite one.
     pub azimuths: usize,
-    /// Quadrature nodes in a panel of a ray.
+    /// Number of quadrature nodes in a panel of a ray.
     pub panel_nodes: usize,
 }
 
 /// Light that has been scattered or reflected at least once, other than into a forward peak.
 pub struct Diffuse<const N: usize> {
-    /// Its moments, per unit solar irradiance.
+    /// Moments of the light, per unit solar irradiance.
     pub field: RadianceField<N>,
-    /// The air in which it was solved for: forward peaks count as unscattered. Sunlight dimmed by this air, less
-    /// sunlight dimmed by the real air, is light that forward peaks have scattered, still going the sun's way.
+    /// The air for which the field was solved, without forward peaks. The difference between sunlight attenuated by this air
+    /// and by the real air is light scattered into forward peaks, which keeps the direction of the sun.
     pub air: Air<N>,
 }
 
-/// Solves for all light scattered or reflected at least once; `report` gets the fraction of the work that is done.
+/// Solves for all light scattered or reflected at least once; `report` receives the fraction of the work done.
 ///
 /// # Errors
-/// [`Cancelled`] soon after the caller has cancelled.
+/// [`Cancelled`] soon after cancellation.
 pub fn solve<const N: usize>(
     real_air: &Air<N>,
     grid: FieldGrid,
@@ -73,7 +71,7 @@ pub fn solve<const N: usize>(
     control: Control<'_>,
     report: impl Fn(f64),
 ) -> Result<Diffuse<N>, Cancelled> {
-    // About what is done after the first order, and after the paths of later ones are known.
+    // Approximate progress after the first order, and after the paths of later orders are prepared.
     const FIRST: f64 = 0.2;
     const PATHS: f64 = 0.3;
     let air = real_air.without_forward_peaks(settings.peak_degree);
@@ -85,7 +83,7 @@ pub fn solve<const N: usize>(
     let transport = transport(settings.rescattered_degree, &settings.later)?;
     report(PATHS);
     let mut order = sum.clone();
-    // What is still to be added falls by a nearly constant factor with each order.
+    // The remaining light falls by a nearly constant factor with each order.
     let mut converged = 0.0f64;
     for _ in 2..=settings.max_orders {
         let next = transport.next_order(&order.field(&grid, &basis))?;
@@ -103,17 +101,17 @@ pub fn solve<const N: usize>(
     Ok(Diffuse { field, air })
 }
 
-/// One order of light, or a sum of orders: moments `[radius][sun][harmonic]` and ground irradiances `[sun]`.
+/// Light of one order, or a sum of orders: moments `[radius][sun][harmonic]` and irradiances on the ground `[sun]`.
 #[derive(Clone)]
 struct Order<const N: usize> {
-    /// Moments of each point.
+    /// Number of moments at each grid point.
     count: usize,
     moments: Vec<Spectrum<N>>,
     ground: Vec<Spectrum<N>>,
 }
 
 impl<const N: usize> Order<N> {
-    /// The moments of each point.
+    /// Moments at each grid point.
     fn points(&self) -> impl Iterator<Item = &[Spectrum<N>]> {
         self.moments.chunks_exact(self.count)
     }
@@ -127,7 +125,7 @@ impl<const N: usize> Order<N> {
         )
     }
 
-    /// Adds another order; returns the largest part that it adds to the intensity anywhere.
+    /// Adds another order; returns its largest relative contribution to the intensity at any point.
     fn add(&mut self, other: &Self) -> f32 {
         let mut growth = 0.0f32;
         for (sum, point) in self
@@ -146,7 +144,7 @@ impl<const N: usize> Order<N> {
         growth
     }
 
-    /// Ratio of this order's intensity to the previous one's, at every point.
+    /// Ratio of the intensity of this order to that of the previous one, at each point.
     fn ratio_to(&self, previous: &Self) -> Vec<Spectrum<N>> {
         self.points()
             .zip(previous.points())
@@ -154,7 +152,7 @@ impl<const N: usize> Order<N> {
             .collect()
     }
 
-    /// Adds the orders after `last` as a geometric series: late orders keep their shape and shrink by a constant
+    /// Extrapolates the orders after `last` as a geometric series: late orders keep their shape and decrease by a constant
     /// factor.
     fn add_geometric_tail(&mut self, last: &Self, ratio: &[Spectrum<N>]) {
         let factor = |r: Spectrum<N>| r.map(|r| if r < 0.95 { r / (1.0 - r) } else { 19.0 });
@@ -169,7 +167,7 @@ impl<const N: usize> Order<N> {
                 *a = a.mul_acc(factor(r), *b);
             }
         }
-        // The ground's nodes are the first row of points.
+        // The first row of points is on the ground.
         for ((a, b), &r) in self.ground.iter_mut().zip(&last.ground).zip(ratio) {
             *a = a.mul_acc(factor(r), *b);
         }
@@ -180,9 +178,9 @@ struct Transport<'a, const N: usize> {
     air: &'a Air<N>,
     grid: &'a FieldGrid,
     basis: &'a Harmonics,
-    /// The low degrees of the basis: what is scattered again.
+    /// Harmonics up to the degree that is scattered again.
     rescattered: Harmonics,
-    /// For each height, the paths that leave it, with their weights in an integral over the zenith angle's cosine.
+    /// For each radius, the paths that start there, with their weights in an integral over the cosine of the zenith angle.
     paths: Vec<Vec<(Path<N>, f64)>>,
     azimuth_cosines: Vec<f64>,
     control: Control<'a>,
@@ -224,7 +222,7 @@ impl<'a, const N: usize> Transport<'a, N> {
         })
     }
 
-    /// Light that has been scattered, or reflected by the ground, exactly once.
+    /// Light that has been scattered or reflected exactly once.
     fn first_order(&self) -> Result<Order<N>, Cancelled> {
         let air = self.air;
         self.gather(
@@ -252,7 +250,7 @@ impl<'a, const N: usize> Transport<'a, N> {
         )
     }
 
-    /// What becomes of the light `field` when it is scattered or reflected once more.
+    /// Light of `field`, scattered or reflected once more.
     fn next_order(&self, field: &RadianceField<N>) -> Result<Order<N>, Cancelled> {
         self.gather(
             #[inline(always)]
@@ -274,7 +272,7 @@ impl<'a, const N: usize> Transport<'a, N> {
         )
     }
 
-    /// The rays that leave a height under a zenith angle: every azimuth for every sun cosine.
+    /// Rays with the same start and zenith angle: each azimuth for each sun cosine.
     #[inline(always)]
     fn bundle(&self, mu: f64) -> RayBundle {
         let sin = ((1.0 - mu) * (1.0 + mu)).max(0.0).sqrt();
@@ -288,8 +286,8 @@ impl<'a, const N: usize> Transport<'a, N> {
         bundle
     }
 
-    /// Lets `accumulate` find the light that arrives along the rays of each path, and gathers it into moments and ground
-    /// irradiances.
+    /// Integrates the light along the rays of each path with `accumulate` and projects it onto moments and irradiances on the
+    /// ground.
     fn gather(
         &self,
         accumulate: impl Fn(&Path<N>, &RayBundle, &mut Work<N>) + Send + Sync,
@@ -309,7 +307,7 @@ impl<'a, const N: usize> Transport<'a, N> {
         })
     }
 
-    /// Moments, `[sun][harmonic]`, and downward irradiances, `[sun]`, at one height.
+    /// Moments, `[sun][harmonic]`, and downward irradiances, `[sun]`, at one radius.
     #[inline(always)]
     fn gather_row(
         &self,
@@ -331,12 +329,12 @@ impl<'a, const N: usize> Transport<'a, N> {
         for (path, solid_weight) in paths {
             let bundle = self.bundle(path.mu);
             work.light.fill(Spectrum::ZERO);
-            // Not `accumulate(..)`: a call through the reference would not be inlined into the vector code.
+            // A direct call: one through the reference would not be inlined into the vectorised code.
             (*accumulate)(path, &bundle, &mut work);
             let w = solid_weight * 2.0 * PI / azimuths as f64;
             let sin = ((1.0 - path.mu) * (1.0 + path.mu)).max(0.0).sqrt();
             for (slot, light) in work.light.iter().enumerate() {
-                // What is left of a phase function after the cut can still dip below zero.
+                // A truncated phase function can be slightly negative.
                 let light = light.max_scalar(0.0);
                 let (sun, azimuth) = (slot / azimuths, slot % azimuths);
                 let toward_sun = (sin * self.azimuth_cosines[azimuth]) as f32;
@@ -353,16 +351,16 @@ impl<'a, const N: usize> Transport<'a, N> {
     }
 }
 
-/// Reused arrays of one height's rays.
+/// Reused buffers for the rays of one radius.
 #[derive(Default)]
 struct Work<const N: usize> {
-    /// Light arriving along each ray.
+    /// Light along each ray.
     light: Vec<Spectrum<N>>,
     single_scatter_without_phase: Vec<Spectrum<N>>,
     scratch: Scratch<N>,
 }
 
-/// Cosines of the zenith angle and their weights: Gauss rules below the horizon, in the band just above it where the
+/// Cosines of the zenith angle and quadrature weights: Gauss rules below the horizon, in a band just above it, where the
 /// light changes fastest, and in the rest of the sky.
 fn zenith_rule<const N: usize>(
     air: &Air<N>,

@@ -1,9 +1,8 @@
-//! Rays that share their starting height and zenith angle, and the light that they carry.
+//! Bundles of rays that share their starting radius and zenith angle, and the light along them.
 //!
-//! In a spherically symmetric atmosphere such rays pass the same heights at the same distances through the same air:
-//! quadrature nodes, transmittances to the eye, altitude interpolations are worked out once, in a [`Path`], for the
-//! whole [`RayBundle`]. Only what depends on where the sun stands is left for each ray, and it is kept in arrays over the
-//! rays, which the compiler turns into vector code.
+//! In a spherically symmetric atmosphere such rays cross the same radii at the same distances: quadrature nodes,
+//! transmittances to the eye and radial interpolation are computed once, in a [`Path`], for the whole [`RayBundle`]. What
+//! depends on the sun remains for each ray and is stored in arrays over the rays, so that the compiler vectorises it.
 
 use super::field::{FieldGrid, RadianceField, scattering_moment};
 use super::harmonics::Harmonics;
@@ -15,14 +14,14 @@ use crate::transfer::ray::{Ray, in_shadow};
 use crate::transfer::shell::PerConstituent;
 use std::ops::ControlFlow;
 
-/// What the rays of a fan have in common: where they run, and what the air does to light on the way.
+/// What the rays of a bundle have in common: quadrature nodes, transmittances and densities along the path.
 pub struct Path<const N: usize> {
-    /// Distance of the start from the planet's centre, m.
+    /// Radius of the start, m.
     pub radius_m: f64,
     /// Cosine of the zenith angle at the start.
     pub mu: f64,
     nodes: Vec<PathNode<N>>,
-    /// Distance to the ground and transmittance up to it, where the rays end there.
+    /// Distance to the ground and transmittance to it, if the rays end there.
     ground: Option<(f64, Spectrum<N>)>,
 }
 
@@ -33,18 +32,18 @@ struct PathNode<const N: usize> {
     mu: f32,
     densities: PerConstituent,
     place: Place,
-    /// Transmittance from the start times the length that the node stands for, m.
+    /// Transmittance from the start times the length of the node's interval, m.
     weight: Spectrum<N>,
-    /// `weight` times the scattering coefficients' l-th phase moments.
+    /// `weight` times the l-th phase moment of the scattering coefficients.
     source_weights: Vec<Spectrum<N>>,
 }
 
-/// The rays of one path: for each, where the sun stands at its start.
+/// The rays of one path: the position of the sun at the start for each.
 #[derive(Clone, Debug, Default)]
 pub struct RayBundle {
-    /// Cosine between the sun and the zenith at the start.
+    /// Cosine of the sun's zenith angle at the start.
     pub mu_sun: Vec<f64>,
-    /// Cosine between the ray and the sun.
+    /// Cosine of the angle between the ray and the sun.
     pub nu: Vec<f64>,
 }
 
@@ -62,7 +61,7 @@ impl RayBundle {
         self.nu.push(nu);
     }
 
-    /// One of the rays.
+    /// Ray by index, for the start (radius in m, cosine of the zenith angle).
     #[inline(always)]
     pub fn ray(&self, (radius_m, mu): (f64, f64), slot: usize) -> Ray {
         Ray {
@@ -74,7 +73,7 @@ impl RayBundle {
     }
 }
 
-/// Reused arrays over the rays of a fan.
+/// Reused buffers over the rays of a bundle.
 #[derive(Default)]
 pub struct Scratch<const N: usize> {
     mu_sun: Vec<f32>,
@@ -84,12 +83,12 @@ pub struct Scratch<const N: usize> {
     azimuthal: [Vec<f32>; 3],
     /// Basis functions, `[harmonic][ray]`.
     y: Vec<f32>,
-    /// The field at a node's altitude, `[sun][harmonic]`.
+    /// The field at a node's radius, `[sun][harmonic]`.
     row: Vec<Spectrum<N>>,
 }
 
 impl<const N: usize> Path<N> {
-    /// Walks from `radius_m` along `mu`, over all the air in the way.
+    /// Traces a path from `radius_m` along `mu` through the whole atmosphere.
     #[inline(always)]
     pub fn new(
         air: &Air<N>,
@@ -104,20 +103,20 @@ impl<const N: usize> Path<N> {
             nodes: Vec::new(),
             ground: None,
         };
-        // The sun in the zenith casts no shadow across the ray: the panels serve all sun angles.
+        // With the sun at the zenith no shadow edge crosses the ray, so the panels serve all sun angles.
         let ray = Ray {
             radius_m,
             mu,
             mu_sun: 1.0,
             nu: mu,
         };
-        let Some(stretch) = air.shell.stretch(&ray, f64::INFINITY) else {
+        let Some(segment) = air.shell.segment(&ray, f64::INFINITY) else {
             return path;
         };
         let columns = marcher.walk(
             &air.shell,
             &ray,
-            (stretch.start_m, stretch.end_m),
+            (segment.start_m, segment.end_m),
             &mut Vec::new(),
             #[inline(always)]
             |nodes| {
@@ -152,13 +151,13 @@ impl<const N: usize> Path<N> {
                 }
             },
         );
-        if stretch.meets_ground {
-            path.ground = Some((stretch.end_m, air.transmittance(&columns)));
+        if segment.meets_ground {
+            path.ground = Some((segment.end_m, air.transmittance(&columns)));
         }
         path
     }
 
-    /// Whether the sun is above the planet's limb at every node of every ray.
+    /// True if the sun is above the planet's limb at all nodes of all rays.
     #[inline(always)]
     pub fn is_lit(&self, air: &Air<N>, bundle: &RayBundle) -> bool {
         let ground_radius_m = air.shell.ground_radius_m;
@@ -171,8 +170,8 @@ impl<const N: usize> Path<N> {
         })
     }
 
-    /// Sunlight scattered for the first time into each ray, per unit scattering coefficient and before phase functions
-    /// are applied: `[scatterer][ray]` into `out`.
+    /// Singly scattered sunlight along each ray, per unit scattering coefficient and without phase functions, into `out`:
+    /// `[scatterer][ray]`.
     #[inline(always)]
     pub fn accumulate_sunlight(
         &self,
@@ -204,7 +203,7 @@ impl<const N: usize> Path<N> {
         }
     }
 
-    /// Adds to each ray the light of `field` that is scattered into it; `basis` is the field's, or its low degrees.
+    /// Adds the light of `field` scattered into each ray; `basis` is that of the field, or its low degrees.
     #[inline(always)]
     pub fn accumulate_scattered(
         &self,
@@ -219,7 +218,7 @@ impl<const N: usize> Path<N> {
         for node in &self.nodes {
             field.at_radius(node.place, count, &mut scratch.row);
             scratch.locate(&field.grid, self, node, bundle);
-            basis.evaluate_fan(
+            basis.evaluate_bundle(
                 node.mu,
                 &scratch.toward_sun,
                 &mut scratch.azimuthal,
@@ -244,8 +243,7 @@ impl<const N: usize> Path<N> {
         }
     }
 
-    /// Adds to each ray what of the ground's radiance arrives, when the ground receives the irradiance
-    /// `irradiance(sun cosine)`.
+    /// Adds the attenuated ground radiance to each ray, for the irradiance on the ground `irradiance(sun cosine)`.
     #[inline(always)]
     pub fn accumulate_ground(
         &self,
@@ -280,7 +278,7 @@ impl<const N: usize> Scratch<N> {
         self.y.resize(rays * harmonics, 0.0);
     }
 
-    /// Works out, for every ray, where the sun stands as seen from `node`, and between which suns of the grid.
+    /// Computes for each ray the position of the sun relative to `node` and its interval in the sun cosines of the grid.
     #[inline(always)]
     fn locate(&mut self, grid: &FieldGrid, path: &Path<N>, node: &PathNode<N>, bundle: &RayBundle) {
         let rays = bundle.len();

@@ -1,15 +1,15 @@
-//! Light along a line, kept at many stops on the way: one walk tells what the air does up to each.
+//! Light at many distances along a view ray, from one march along the ray.
 //!
-//! With `P(d)` gathered up to a stop in air without forward peaks, `P(d) = integral of T' J'`, and `L'` all that arrives at
-//! the eye along the whole line in that air, the light behind the stop is `(L' - P) / T'`; the path radiance of
-//! [`super::trace`], `S = P + (T' - T) (L' - P) / T'`, becomes
+//! Let `P(d) = integral of T' J'` be the light accumulated up to a sample in air without forward peaks, and `L'` all light
+//! that reaches the eye along the whole ray in that air. The light from behind the sample is `(L' - P) / T'`, and the path
+//! radiance of [`super::trace`], `S = P + (T' - T) (L' - P) / T'`, becomes
 //!
 //! ```text
 //! S(d) = P(d) T/T' + (1 - T/T') L'
 //! ```
 //!
-//! in which nothing cancels and nothing has to be walked anew for each stop. As S is linear in P and L', it may be kept by
-//! scatterer and without phase functions, like the sky's tables.
+//! without cancellation and without a separate march for each sample. As S is linear in P and L', it can be stored by
+//! scatterer and without phase functions, as in the sky's tables.
 
 use super::harmonics::Harmonics;
 use super::trace::{Arriving, Tracer, ground_irradiance};
@@ -19,106 +19,104 @@ use crate::transfer::ray::Ray;
 use crate::transfer::shell::{MAX_CONSTITUENTS, PerConstituent};
 use std::ops::ControlFlow;
 
-/// What lies between the eye and one stop, per unit solar irradiance (1/sr).
+/// Light from the eye to one sample, per unit solar irradiance (1/sr).
 #[derive(Clone, Copy, Debug)]
-pub struct Stop<const N: usize> {
+pub struct RaySample<const N: usize> {
     /// Optical depth of the real air.
     pub depth: Spectrum<N>,
-    /// Path radiance: sunlight scattered for the first time, by the scatterer that sent it here and before its phase
-    /// function is applied, and all other light.
+    /// Path radiance: singly scattered sunlight by scatterer, without its phase function, and all other light.
     pub path: Arriving<N>,
 }
 
-/// What has been gathered up to a distance.
+/// Columns and light accumulated up to a distance.
 #[derive(Clone, Copy)]
-struct Gathered<const N: usize> {
+struct Accumulated<const N: usize> {
     columns_m: PerConstituent,
-    /// First scattering without its coefficients.
+    /// Light, with single scattering per unit scattering coefficient.
     path: Arriving<N>,
 }
 
-/// Quadrature nodes of a panel: stops are close to each other, so that panels are short.
+/// Number of quadrature nodes in a panel: panels between samples are short.
 const NODES: usize = 3;
 
 impl<const N: usize> Tracer<'_, N> {
-    /// What lies between the eye and each of the rising distances `stops_m`; those beyond the end of the line are held at
-    /// it.
+    /// Light from the eye to each of the increasing distances `samples_m`, which are clamped to the end of the ray.
     #[inline(always)]
-    pub fn stops(&mut self, ray: &Ray, stops_m: &[f64]) -> Vec<Stop<N>> {
-        let mut gathered = Gathered {
+    pub fn samples_along_ray(&mut self, ray: &Ray, samples_m: &[f64]) -> Vec<RaySample<N>> {
+        let mut accumulated = Accumulated {
             columns_m: [0.0; MAX_CONSTITUENTS],
             path: Arriving {
                 single_scatter_without_phase: [Spectrum::ZERO; MAX_CONSTITUENTS],
                 multiple_scatter: Spectrum::ZERO,
             },
         };
-        let Some(stretch) = self.air.shell.stretch(ray, f64::INFINITY) else {
-            return vec![self.stop(&gathered, &gathered.path); stops_m.len()];
+        let Some(segment) = self.air.shell.segment(ray, f64::INFINITY) else {
+            return vec![self.sample(&accumulated, &accumulated.path); samples_m.len()];
         };
         let marcher = Marcher::new(NODES, 2.0, self.air.max_extinction_per_m());
-        let mut from_m = stretch.start_m;
-        let mut all = Vec::with_capacity(stops_m.len());
-        for stop_m in stops_m {
-            let to_m = stop_m.clamp(from_m, stretch.end_m);
+        let mut from_m = segment.start_m;
+        let mut all = Vec::with_capacity(samples_m.len());
+        for sample_m in samples_m {
+            let to_m = sample_m.clamp(from_m, segment.end_m);
             if to_m > from_m {
-                self.gather(&marcher, ray, (from_m, to_m), &mut gathered);
+                self.accumulate(&marcher, ray, (from_m, to_m), &mut accumulated);
             }
             from_m = to_m;
-            all.push(gathered);
+            all.push(accumulated);
         }
-        // Only forward peaks make the light from beyond the stops matter.
+        // The light from beyond the samples matters only with forward peaks.
         if self.diffuse.is_some() {
-            if stretch.end_m > from_m {
-                self.gather(&marcher, ray, (from_m, stretch.end_m), &mut gathered);
+            if segment.end_m > from_m {
+                self.accumulate(&marcher, ray, (from_m, segment.end_m), &mut accumulated);
             }
-            if stretch.meets_ground {
+            if segment.meets_ground {
                 let irradiance =
-                    ground_irradiance(self.air, self.diffuse, ray.advanced(stretch.end_m).mu_sun);
-                let arriving = self.dimming.transmittance(&gathered.columns_m);
-                gathered.path.multiple_scatter = gathered
+                    ground_irradiance(self.air, self.diffuse, ray.advanced(segment.end_m).mu_sun);
+                let arriving = self.dimming.transmittance(&accumulated.columns_m);
+                accumulated.path.multiple_scatter = accumulated
                     .path
                     .multiple_scatter
                     .mul_acc(arriving, self.air.reflected(irradiance));
             }
         }
         all.iter()
-            .map(|one| self.stop(one, &gathered.path))
+            .map(|one| self.sample(one, &accumulated.path))
             .collect()
     }
 
-    /// `S = P T/T' + (1 - T/T') L'`.
+    /// Path radiance `S = P T/T' + (1 - T/T') L'` and optical depth of a sample.
     #[inline(always)]
-    fn stop(&self, gathered: &Gathered<N>, whole: &Arriving<N>) -> Stop<N> {
-        let depth = self.air.optical_depth(&gathered.columns_m);
-        let into_peaks = depth - self.dimming.optical_depth(&gathered.columns_m);
+    fn sample(&self, accumulated: &Accumulated<N>, whole: &Arriving<N>) -> RaySample<N> {
+        let depth = self.air.optical_depth(&accumulated.columns_m);
+        let into_peaks = depth - self.dimming.optical_depth(&accumulated.columns_m);
         let replaced = into_peaks.map(|tau| -(-tau).exp_m1());
-        let mix = |own: Spectrum<N>, whole: Spectrum<N>| own.mul_acc(replaced, whole - own);
-        let (own, whole) = (&gathered.path, whole);
-        let mut path = *own;
-        path.multiple_scatter = mix(own.multiple_scatter, whole.multiple_scatter);
+        let mix = |near: Spectrum<N>, whole: Spectrum<N>| near.mul_acc(replaced, whole - near);
+        let (near, whole) = (&accumulated.path, whole);
+        let mut path = *near;
+        path.multiple_scatter = mix(near.multiple_scatter, whole.multiple_scatter);
         for (s, scatterer) in self.air.scatterers.iter().enumerate() {
             path.single_scatter_without_phase[s] = mix(
-                own.single_scatter_without_phase[s],
+                near.single_scatter_without_phase[s],
                 whole.single_scatter_without_phase[s],
             ) * scatterer.whole_scattering;
         }
-        Stop { depth, path }
+        RaySample { depth, path }
     }
 
-    /// Adds what lies between two distances to what has been gathered up to the first.
+    /// Adds the light between two distances to that accumulated up to the first.
     #[inline(always)]
-    fn gather(
+    fn accumulate(
         &mut self,
         marcher: &Marcher,
         ray: &Ray,
         span: (f64, f64),
-        gathered: &mut Gathered<N>,
+        accumulated: &mut Accumulated<N>,
     ) {
         let dimming = self.dimming;
-        let seen = dimming.transmittance(&gathered.columns_m);
+        let transmittance_before = dimming.transmittance(&accumulated.columns_m);
         let mut y = [0.0f32; Harmonics::MAX_COUNT];
         let mut edges = std::mem::take(&mut self.edges);
-        let path = &mut gathered.path;
+        let path = &mut accumulated.path;
         let columns_m = marcher.walk(
             &self.air.shell,
             ray,
@@ -127,7 +125,8 @@ impl<const N: usize> Tracer<'_, N> {
             #[inline(always)]
             |nodes| {
                 for node in nodes {
-                    let transmittance = seen * dimming.transmittance(&node.columns_m);
+                    let transmittance =
+                        transmittance_before * dimming.transmittance(&node.columns_m);
                     let weight = transmittance * node.dt as f32;
                     self.add(node, weight, &mut y, path);
                 }
@@ -135,7 +134,7 @@ impl<const N: usize> Tracer<'_, N> {
             },
         );
         self.edges = edges;
-        for (sum, column) in gathered.columns_m.iter_mut().zip(columns_m) {
+        for (sum, column) in accumulated.columns_m.iter_mut().zip(columns_m) {
             *sum += column;
         }
     }

@@ -1,4 +1,4 @@
-//! A sky, solved for.
+//! The prepared sky and its settings.
 
 use super::block::{self, Block};
 use super::coverage::SunCoverage;
@@ -13,31 +13,31 @@ use glam::DVec3;
 use std::fmt;
 use std::sync::Arc;
 
-/// Which light is computed.
+/// Orders of scattering that are computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scattering {
-    /// Sunlight scattered once, and the ground lit by the sun alone.
+    /// Sunlight scattered once, and the ground lit by direct sunlight.
     Single,
     /// All orders of scattering and reflection.
     All,
 }
 
-/// How a sky is solved.
+/// Settings of the sky solver.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SkySettings {
-    /// The heights of the sun to prepare for.
+    /// Sun elevations and observer altitudes to prepare for.
     pub suns: SunCoverage,
-    /// Which light is computed.
+    /// Orders of scattering that are computed.
     pub scattering: Scattering,
-    /// Number of altitudes at which the light inside the air is solved for.
+    /// Number of altitudes at which the light inside the atmosphere is solved for, 2 to 200.
     pub altitudes: usize,
-    /// How finely the orders of scattering are solved.
+    /// Resolution and convergence of the orders of scattering.
     pub orders: OrderSettings,
 }
 
 impl Default for SkySettings {
-    /// All orders for every height of the sun, at the accuracy stated in the book: within 1 % of the Monte Carlo
-    /// (sun above 10 degrees), 2 % near the horizon's sun.
+    /// All orders, for all sun elevations, with the accuracy stated in the book: within 1 % of Monte Carlo for the sun above
+    /// 10 degrees, 2 % near the horizon.
     fn default() -> Self {
         Self {
             suns: SunCoverage::All,
@@ -65,7 +65,7 @@ impl Default for SkySettings {
 }
 
 impl SkySettings {
-    /// The same for hazy air and low suns: twice the altitudes, more directions and moments; takes some five times as long.
+    /// Settings for hazy air and low suns: twice the altitudes, more directions and moments; about five times slower.
     pub fn fine() -> Self {
         let mut settings = Self {
             altitudes: 40,
@@ -78,10 +78,10 @@ impl SkySettings {
         settings
     }
 
-    /// Checks what the solver relies on.
+    /// Checks the ranges of all settings.
     ///
     /// # Errors
-    /// [`SkyError::Setting`] for the first setting out of its range.
+    /// [`SkyError::Setting`] for the first setting out of range.
     pub fn validate(&self) -> Result<(), SkyError> {
         let orders = &self.orders;
         let directions = |d: &Directions| {
@@ -97,28 +97,28 @@ impl SkySettings {
             } => sun_elevation_deg.is_finite() && observer_altitude_m.is_finite(),
         };
         let checks = [
-            (finite, "suns: a finite elevation and altitude"),
+            (finite, "a finite elevation and altitude in suns"),
             (
                 (2..=200).contains(&self.altitudes),
-                "altitudes: from 2 to 200",
+                "altitudes from 2 to 200",
             ),
             (
                 orders.degree <= Harmonics::MAX_DEGREE,
-                "orders.degree: at most 16",
+                "orders.degree of at most 16",
             ),
             (
                 orders.peak_degree >= orders.degree && orders.peak_degree <= 64,
-                "orders.peak_degree: from degree to 64",
+                "orders.peak_degree from orders.degree to 64",
             ),
             (
                 orders.rescattered_degree <= orders.degree,
-                "orders.rescattered_degree: at most degree",
+                "orders.rescattered_degree of at most orders.degree",
             ),
             (
                 directions(&orders.first) && directions(&orders.later),
-                "directions: 1 to 64 zenith nodes, 1 to 4 panel nodes, at least 1 azimuth",
+                "1 to 64 zenith nodes, 1 to 4 panel nodes and at least 1 azimuth in orders.first and orders.later",
             ),
-            (orders.tolerance > 0.0, "orders.tolerance: above 0"),
+            (orders.tolerance > 0.0, "an orders.tolerance above 0"),
         ];
         match checks.into_iter().find(|(holds, _)| !holds) {
             Some((_, expected)) => Err(SkyError::Setting(expected)),
@@ -127,31 +127,31 @@ impl SkySettings {
     }
 }
 
-/// Why a sky cannot be prepared.
+/// Error of [`Sky::prepare`].
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SkyError {
-    /// More constituents than the solver handles.
+    /// The atmosphere has more constituents than the solver supports.
     #[error(
-        "the sky solver handles at most {MAX_CONSTITUENTS} constituents: this atmosphere has {0}"
+        "expected at most {MAX_CONSTITUENTS} constituents in an atmosphere, got {0}; try merging some"
     )]
     TooManyConstituents(usize),
-    /// A setting is out of its range; says which, and what would be right.
-    #[error("sky setting out of range; {0}")]
+    /// A setting is out of range; says what is expected.
+    #[error("sky setting out of range: expected {0}")]
     Setting(&'static str),
-    /// The atmosphere itself is refused.
+    /// The atmosphere is invalid.
     #[error(transparent)]
     Atmosphere(#[from] AtmosphereError),
-    /// The caller cancelled.
+    /// The computation was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
 
-/// The solved light inside an atmosphere at the wavelengths of a grid: a handle that is cheap to clone and to share
-/// between threads.
+/// The solved light inside an atmosphere at the wavelengths of a grid. A handle: cheap to clone and to share between
+/// threads.
 #[derive(Clone)]
 pub struct Sky(Arc<Solution>);
 
-/// What all clones of a [`Sky`] share.
+/// State shared by all clones of a [`Sky`].
 struct Solution {
     atmosphere: Atmosphere,
     grid: WavelengthGrid,
@@ -169,12 +169,11 @@ impl fmt::Debug for Sky {
 }
 
 impl Sky {
-    /// Solves for the light inside `atmosphere` at the wavelengths of `grid` (whose solar spectrum is replaced by the
-    /// atmosphere's own).
+    /// Solves for the light inside `atmosphere` at the wavelengths of `grid`, whose solar spectrum is replaced by that of the
+    /// atmosphere.
     ///
     /// # Errors
-    /// [`SkyError`] for settings out of range, and for an atmosphere that fails its own validation or has too many
-    /// constituents.
+    /// [`SkyError`] if a setting is out of range, or the atmosphere is invalid or has too many constituents.
     pub fn prepare(
         atmosphere: &Atmosphere,
         grid: &WavelengthGrid,
@@ -183,11 +182,11 @@ impl Sky {
         Self::prepare_with(atmosphere, grid, settings, Control::default())
     }
 
-    /// [`Sky::prepare`], followed and cancelled through `control`. Progress is in permille of each block of 16 wavelengths;
-    /// within a block it is an estimate.
+    /// As [`Sky::prepare`], with progress and cancellation through `control`. Progress is in permille of each block of 16
+    /// wavelengths, estimated within a block.
     ///
     /// # Errors
-    /// As [`Sky::prepare`]; [`SkyError::Cancelled`] within milliseconds of being cancelled.
+    /// As [`Sky::prepare`]; [`SkyError::Cancelled`] within milliseconds of cancellation.
     pub fn prepare_with(
         atmosphere: &Atmosphere,
         grid: &WavelengthGrid,
@@ -196,7 +195,7 @@ impl Sky {
     ) -> Result<Self, SkyError> {
         settings.validate()?;
         atmosphere.validate()?;
-        let shell = Arc::new(Shell::new(atmosphere, settings.suns.are_low())?);
+        let shell = Arc::new(Shell::new(atmosphere, settings.suns.includes_low_suns())?);
         let grid = grid.clone().with_solar(&atmosphere.solar_irradiance);
         let blocks = block::solve(atmosphere, &shell, grid.wavelengths_nm(), settings, control)?;
         Ok(Self(Arc::new(Solution {
@@ -207,12 +206,12 @@ impl Sky {
         })))
     }
 
-    /// The atmosphere solved for.
+    /// The atmosphere.
     pub fn atmosphere(&self) -> &Atmosphere {
         &self.0.atmosphere
     }
 
-    /// The wavelengths solved for, with this atmosphere's sun.
+    /// The wavelength grid, with the solar spectrum of the atmosphere.
     pub fn grid(&self) -> &WavelengthGrid {
         &self.0.grid
     }
@@ -221,13 +220,13 @@ impl Sky {
         &self.0.shell
     }
 
-    /// The wavelengths in blocks of lanes.
+    /// Solutions for blocks of wavelengths.
     pub(super) fn blocks(&self) -> &[Box<dyn Block>] {
         &self.0.blocks
     }
 
-    /// What is seen from `altitude_m` (m; held at the ground below it) when the sun stands in the direction of the unit
-    /// vector `sun` (world axes: [`crate::axes`]), at the planet's mean distance from it.
+    /// View from `altitude_m` (m; raised to the ground if below it) with the sun in the direction of the unit vector `sun`
+    /// (world axes: [`crate::axes`]), at the planet's mean distance from the sun.
     pub fn view(&self, altitude_m: f64, sun: DVec3) -> View {
         View::new(self, altitude_m, sun)
     }
@@ -263,7 +262,7 @@ mod tests {
             );
         }
     }
-    /// Records the progress it gets, and cancels at a number of reports.
+    /// Records progress and cancels after a number of reports.
     struct Recorder {
         reports: Mutex<Vec<(u64, u64)>>,
         cancel: AtomicBool,

@@ -1,9 +1,8 @@
-//! All directions of one view, tabulated: a picture's pixel costs a table look-up.
+//! Tables of a view's radiance in all directions, for look-up by pixels.
 //!
-//! Two tables, above and below the horizon (where radiance jumps), with rows crowding towards it as the square of an
-//! even coordinate, interpolated with third-degree polynomials. Everything that varies fast is kept out of the tables:
-//! light scattered once by a constituent with a peaked phase function is stored without it, and the phase function is
-//! applied for each pixel.
+//! There are two tables, above and below the horizon, where radiance jumps. Their rows are denser towards it, at the square
+//! of a uniform coordinate, and interpolated with cubics. What varies fast is not tabulated: light singly scattered by a
+//! constituent with a peaked phase function is stored without the phase function, which is applied for each pixel.
 
 use super::tabulate::Peaked;
 use crate::math::interpolation::{cubic_f32, cubic_mirrored};
@@ -13,7 +12,7 @@ use crate::spectrum::RgbSpace;
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// What the channels of a table are.
+/// Channels of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TableChannels {
     /// Linear red, green and blue; luminance in cd/m^2 where (1, 1, 1) is 1 cd/m^2 of the space's white.
@@ -22,33 +21,33 @@ pub enum TableChannels {
     Spectral,
 }
 
-/// Steps in azimuth from the sun's to the opposite one.
+/// Number of azimuth steps from that of the sun to the opposite one.
 pub(super) const AZIMUTHS: usize = 64;
-/// Rows from the horizon to the zenith.
+/// Number of rows from the horizon to the zenith.
 pub(super) const ROWS_ABOVE: usize = 128;
-/// Rows from the horizon to the nadir.
+/// Number of rows from the horizon to the nadir.
 pub(super) const ROWS_BELOW: usize = 96;
-/// Samples of a phase function in the sine of half the scattering angle.
+/// Number of intervals of a sampled phase function, uniform in the sine of half the scattering angle.
 pub(super) const PHASE_SAMPLES: usize = 4096;
 
-/// The widest cell that is interpolated without allocating: 16 wavelengths and three peaked scatterers.
+/// Widest cell that is interpolated without allocation: 16 wavelengths and three peaked scatterers.
 const SMALL_WIDTH: usize = 64;
 
-/// A view's radiance in every direction, without the sun's disc.
+/// Table of a view's radiance in all directions, without the sun's disc.
 pub struct SkyTable {
     pub(super) channels: usize,
-    /// Values in a cell of the table: every channel of every part, padded for vector loads.
+    /// Number of values in a cell: all channels of all parts, padded for vector loads.
     pub(super) width: usize,
     pub(super) sun: DVec3,
     pub(super) sun_azimuth: DVec3,
     pub(super) horizon_elevation: f64,
     pub(super) above: Half,
     pub(super) below: Half,
-    /// For each peaked scatterer, its phase function at even steps of the sine of half the scattering angle.
+    /// Phase function of each peaked scatterer, uniform in the sine of half the scattering angle.
     pub(super) phases: Vec<Vec<f32>>,
 }
 
-/// The part of a table on one side of the horizon.
+/// The table on one side of the horizon.
 pub(super) struct Half {
     /// Signed angle from the horizon to the last row, rad.
     pub(super) span: f64,
@@ -57,7 +56,7 @@ pub(super) struct Half {
     pub(super) values: Vec<f32>,
 }
 
-/// Where the columns of a picture lie in the table: worked out once for pictures whose columns keep their azimuth.
+/// Interpolation weights for the columns of a picture, computed once for pictures whose columns have constant azimuth.
 pub struct SkyColumns {
     columns: Vec<Column>,
 }
@@ -65,7 +64,7 @@ pub struct SkyColumns {
 struct Column {
     nodes: [usize; 4],
     weights: [f32; 4],
-    /// Squared sine of half the angle between this azimuth and the sun's.
+    /// Squared sine of half the azimuth from the sun.
     half_sine2: f64,
 }
 
@@ -75,12 +74,12 @@ impl SkyTable {
         self.channels
     }
 
-    /// Elevation of the horizon, rad (0 on the ground, negative above it).
+    /// Elevation of the horizon, rad: 0 on the ground, negative above it.
     pub fn horizon_elevation_rad(&self) -> f64 {
         self.horizon_elevation
     }
 
-    /// Writes the radiance along the unit vector `direction` into `out`, one value a channel.
+    /// Evaluates the radiance along the unit vector `direction` into `out`, one value per channel.
     #[inline]
     pub fn sample(&self, direction: DVec3, out: &mut [f32]) {
         let horizontal = (direction.x * direction.x + direction.z * direction.z).sqrt();
@@ -98,7 +97,7 @@ impl SkyTable {
         }
     }
 
-    /// Prepares columns of a picture: `azimuths_rad` are measured from the sun's azimuth.
+    /// Prepares the columns of a picture; `azimuths_rad` are relative to the sun's azimuth.
     pub fn columns(&self, azimuths_rad: impl Iterator<Item = f64>) -> SkyColumns {
         let columns = azimuths_rad
             .map(|azimuth| {
@@ -114,8 +113,8 @@ impl SkyTable {
         SkyColumns { columns }
     }
 
-    /// Writes the radiance at one elevation (rad) in every prepared column into `out`, one value a channel and column:
-    /// several times faster than [`SkyTable::sample`].
+    /// Evaluates the radiance at one elevation (rad) in all prepared columns into `out`, one value per channel and column.
+    /// Several times faster than [`SkyTable::sample`].
     pub fn sample_row(&self, elevation_rad: f64, columns: &SkyColumns, out: &mut [f32]) {
         let Some((half, row)) = self.place(elevation_rad) else {
             out.fill(0.0);
@@ -135,7 +134,7 @@ impl SkyTable {
         );
     }
 
-    /// The table interpolated at a row coordinate: every azimuth's cell.
+    /// Interpolates the table to a row coordinate: the cells of all azimuths.
     #[inline(always)]
     fn line(&self, half: &Half, row: f64) -> Vec<f32> {
         let stride = (AZIMUTHS + 1) * self.width;
@@ -150,7 +149,7 @@ impl SkyTable {
         line
     }
 
-    /// Squared sine of half the angle to the sun, as `a + b * column.half_sine2`, on a row of one elevation.
+    /// Coefficients of the squared sine of half the angle to the sun at one elevation: `a + b * column.half_sine2`.
     #[inline(always)]
     fn half_sines2(&self, elevation_rad: f64) -> (f64, f64) {
         let sun_elevation = crate::axes::elevation_deg(self.sun).to_radians();
@@ -158,7 +157,7 @@ impl SkyTable {
         (between * between, elevation_rad.cos() * sun_elevation.cos())
     }
 
-    /// The columns of one row, for cells that stay in registers.
+    /// Evaluates the columns of one row, for cells that fit in registers.
     #[inline(always)]
     fn cells<const W: usize>(
         &self,
@@ -184,7 +183,7 @@ impl SkyTable {
         }
     }
 
-    /// The columns of one row, for cells of any width.
+    /// Evaluates the columns of one row, for cells of any width.
     fn wide_cells(&self, line: &[f32], elevation_rad: f64, columns: &SkyColumns, out: &mut [f32]) {
         let (a, b) = self.half_sines2(elevation_rad);
         let mut cell = vec![0.0f32; self.width];
@@ -206,13 +205,13 @@ impl SkyTable {
         }
     }
 
-    /// Irradiance, one value a channel, of a surface with the unit normal `normal` from all that the table holds: sky
-    /// and ground, without the sun's disc (W m^-2 nm^-1, or lux for RGB channels).
+    /// Irradiance on a surface with the unit normal `normal` from sky and ground, without the sun's disc, one value per channel
+    /// (W m^-2 nm^-1, or lux for RGB channels).
     ///
-    /// A sum over about 25 000 directions, rows crowding towards the horizon as in the table: good to 0.1 % for skies
-    /// whose aureole is wider than a degree.
+    /// A sum over about 25 000 directions, denser towards the horizon as in the table; accurate to 0.1 % for skies whose
+    /// aureole is wider than a degree.
     pub fn irradiance(&self, normal: DVec3) -> Vec<f32> {
-        const AROUND: usize = 256;
+        const AZIMUTH_SAMPLES: usize = 256;
         let rule = GaussRule::new(48);
         let mut sum = vec![0.0f64; self.channels];
         let mut radiance = vec![0.0f32; self.channels];
@@ -220,9 +219,10 @@ impl SkyTable {
             for (x, w) in rule.on(0.0, 1.0) {
                 let elevation = self.horizon_elevation + half.span * x * x;
                 let (sin, cos) = elevation.sin_cos();
-                let solid_angle = w * 2.0 * x * half.span.abs() * cos * 2.0 * PI / AROUND as f64;
-                for k in 0..AROUND {
-                    let (z, x) = (2.0 * PI * (k as f64 + 0.5) / AROUND as f64).sin_cos();
+                let solid_angle =
+                    w * 2.0 * x * half.span.abs() * cos * 2.0 * PI / AZIMUTH_SAMPLES as f64;
+                for k in 0..AZIMUTH_SAMPLES {
+                    let (z, x) = (2.0 * PI * (k as f64 + 0.5) / AZIMUTH_SAMPLES as f64).sin_cos();
                     let direction = DVec3::new(cos * x, sin, cos * z);
                     let cosine = direction.dot(normal);
                     if cosine > 0.0 {
@@ -237,7 +237,7 @@ impl SkyTable {
         sum.into_iter().map(|e| e as f32).collect()
     }
 
-    /// The half of the table that holds an elevation, and the row coordinate in `[0, 1]`; `None` where no air is seen.
+    /// The half of the table that contains an elevation, and the row coordinate in `[0, 1]`; `None` above the atmosphere's limb.
     #[inline(always)]
     fn place(&self, elevation: f64) -> Option<(&Half, f64)> {
         let half = if elevation >= self.horizon_elevation {
@@ -261,7 +261,7 @@ impl SkyTable {
     ) {
         let stride = (AZIMUTHS + 1) * self.width;
         let (first_row, row_weights) = cubic_f32(row, half.rows);
-        // Four values at a time stay in one register over all sixteen cells.
+        // Groups of four values stay in a register over all sixteen cells.
         let mut small = [0.0f32; SMALL_WIDTH];
         let mut large = Vec::new();
         let cell = if self.width <= SMALL_WIDTH {
@@ -287,7 +287,7 @@ impl SkyTable {
         self.combine(cell, half_sine, out);
     }
 
-    /// Applies the phase functions and adds up the parts of a cell.
+    /// Applies the phase functions and sums the parts of a cell.
     #[inline(always)]
     fn combine(&self, cell: &[f32], half_sine: f64, out: &mut [f32]) {
         out[..self.channels].copy_from_slice(&cell[..self.channels]);

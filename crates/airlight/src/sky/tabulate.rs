@@ -1,4 +1,4 @@
-//! Filling the table of a view.
+//! Computation of a view's table.
 
 use super::block::{ChannelMatrix, TableRow};
 use super::ray_bundle::RayBundle;
@@ -18,8 +18,8 @@ impl SkyTable {
         let shell = sky.shell();
         let radius_m = view.radius_m();
         let horizon_elevation = -(shell.ground_radius_m / radius_m).min(1.0).acos();
-        // From outside the air, nothing is seen above the line that grazes its top.
-        let ceiling = if radius_m > shell.top_radius_m {
+        // From outside the atmosphere nothing is visible above its limb.
+        let highest_elevation = if radius_m > shell.top_radius_m {
             -(shell.top_radius_m / radius_m).acos()
         } else {
             FRAC_PI_2
@@ -53,24 +53,24 @@ impl SkyTable {
                 DVec3::X
             },
             horizon_elevation,
-            above: half(ceiling - horizon_elevation, ROWS_ABOVE),
+            above: half(highest_elevation - horizon_elevation, ROWS_ABOVE),
             below: half(-FRAC_PI_2 - horizon_elevation, ROWS_BELOW),
             phases: peaked.phases,
         }
     }
 }
 
-/// The constituents whose phase function is too peaked to be tabulated with the light.
+/// Constituents whose phase function is too peaked to be tabulated with the light.
 pub(crate) struct Peaked {
-    /// Their places among the constituents.
+    /// Indices of the constituents.
     pub constituents: Vec<usize>,
-    /// For each, its phase function (1/sr) at even steps of the sine of half the scattering angle. Blocks of wavelengths
-    /// must agree on what pixels will be multiplied by: the mean over the first one's.
+    /// Phase function of each (1/sr), uniform in the sine of half the scattering angle. The same for all blocks, because pixels
+    /// are multiplied by it: the mean over the lanes of the first block.
     pub phases: Vec<Vec<f32>>,
 }
 
 impl Peaked {
-    /// Those of a view's air.
+    /// Peaked constituents of a view's atmosphere.
     pub fn of(view: &View) -> Self {
         let wavelengths = view.sky().grid().wavelengths_nm();
         let scatters = |c: &Constituent| {
@@ -106,14 +106,14 @@ impl Peaked {
         }
     }
 
-    /// The phase function of a sampled list at the sine of half the scattering angle.
+    /// Interpolates a sampled phase function at the sine of half the scattering angle.
     #[inline(always)]
     pub fn sampled(phase: &[f32], half_sine: f64) -> f32 {
         Place::evenly(half_sine, PHASE_SAMPLES + 1).value_in_f32(phase)
     }
 }
 
-/// The rays of one half of the table.
+/// Rays of one half of the table.
 fn half_rows(view: &View, peaked: &[usize], horizon: f64, span: f64, rows: usize) -> Vec<TableRow> {
     let first_block = &view.sky().blocks()[0];
     let mu_sun = view.ray(view.sun()).mu;
@@ -121,7 +121,7 @@ fn half_rows(view: &View, peaked: &[usize], horizon: f64, span: f64, rows: usize
     (0..rows)
         .map(|row| {
             let x = row as f64 / (rows - 1) as f64;
-            // The horizon itself is a jump: start a hair's breadth from it.
+            // Radiance jumps at the horizon: start slightly off it.
             let (mu, cos_elevation) = (horizon + span * (x * x).max(1e-9)).sin_cos();
             let mut bundle = RayBundle::default();
             for azimuth in 0..=AZIMUTHS {
@@ -148,7 +148,7 @@ fn half_rows(view: &View, peaked: &[usize], horizon: f64, span: f64, rows: usize
         .collect()
 }
 
-/// For each channel the weight of each wavelength's radiance (over solar irradiance where `solar` is that).
+/// For each channel, the weights of the wavelengths, for radiance divided by the solar irradiance `solar`.
 pub(crate) fn channel_weights(
     grid: &WavelengthGrid,
     solar: &[f32],
@@ -182,7 +182,7 @@ pub(crate) fn channel_weights(
     }
 }
 
-/// For each block of wavelengths, the weights that turn its lanes into the table's channels.
+/// For each block of wavelengths, the weights from its lanes to the channels of the table.
 fn channel_matrices(view: &View, channels: TableChannels) -> Vec<ChannelMatrix> {
     let rows = channel_weights(view.sky().grid(), &view.solar_irradiance(), channels);
     let mut first = 0;

@@ -1,17 +1,17 @@
-//! Light along one line of sight.
+//! Light along one view ray.
 //!
-//! Sunlight scattered for the first time is followed with the exact phase functions, everything else comes from the
-//! solved field. As in the field, what goes into a forward peak counts as not scattered at all (delta-M), so all light
-//! on its way to the eye is dimmed by the air without forward peaks, transmittance `T'`; the correction of the first
-//! scattering to the exact phase function is that of Nakajima & Tanaka (J. Quant. Spectrosc. Radiat. Transfer 40, 51,
-//! 1988, their TMS). A background with detail of its own is dimmed by the real transmittance `T`: over a stretch that
-//! ends where the light `L'` arrives from behind, the path radiance is
+//! Singly scattered sunlight is integrated with the exact phase functions; all other light comes from the solved field. As
+//! in the field, light scattered into a forward peak counts as not scattered (delta-M), so all light on its way to the eye
+//! is attenuated by the transmittance `T'` of the air without forward peaks. Using the exact phase function for single
+//! scattering is the TMS correction of Nakajima & Tanaka (J. Quant. Spectrosc. Radiat. Transfer 40, 51, 1988). A background
+//! with its own detail is attenuated by the real transmittance `T`: for a segment at whose end the light `L'` arrives from
+//! behind, the path radiance is
 //!
 //! ```text
 //! S = integral of T' J' + (T' - T) L'
 //! ```
 //!
-//! which composes exactly: splitting the stretch does not change it.
+//! This composes exactly: splitting the segment does not change the result.
 
 use super::harmonics::Harmonics;
 use super::orders::Diffuse;
@@ -22,44 +22,44 @@ use crate::transfer::ray::Ray;
 use crate::transfer::shell::MAX_CONSTITUENTS;
 use std::ops::ControlFlow;
 
-/// What a line of sight brings, per unit solar irradiance (1/sr).
+/// Light along a view ray, per unit solar irradiance (1/sr).
 #[derive(Clone, Copy, Debug)]
 pub struct Light<const N: usize> {
-    /// Transmittance to the end of the line.
+    /// Transmittance to the end of the ray.
     pub transmittance: Spectrum<N>,
-    /// Sunlight scattered once.
+    /// Singly scattered sunlight.
     pub single: Spectrum<N>,
-    /// Light scattered or reflected more than once, its last time on the way.
+    /// Light scattered or reflected more than once, last in the air along the ray.
     pub multiple: Spectrum<N>,
-    /// What of the ground's own radiance arrives, where the line ends on the ground.
+    /// Attenuated ground radiance, if the ray ends on the ground.
     pub ground: Spectrum<N>,
-    /// Whether the line ends on the ground.
+    /// True if the ray ends on the ground.
     pub meets_ground: bool,
 }
 
-/// All light that arrives along a line of sight without end, per unit solar irradiance (1/sr).
+/// All light along an unlimited view ray, per unit solar irradiance (1/sr).
 #[derive(Clone, Copy, Debug)]
 pub struct Arriving<const N: usize> {
-    /// Sunlight, by the scatterer that sent it here, before its phase function is applied (no unit).
+    /// Singly scattered sunlight by scatterer, without its phase function (dimensionless).
     pub single_scatter_without_phase: [Spectrum<N>; MAX_CONSTITUENTS],
-    /// Light scattered or reflected before, and that of the ground.
+    /// All other light, including that of the ground.
     pub multiple_scatter: Spectrum<N>,
 }
 
-/// Follows lines of sight through air lit by the sun and by a solved field.
+/// Integrates light along view rays through air lit by the sun and by a solved field.
 pub struct Tracer<'a, const N: usize> {
     /// The real air.
     pub(super) air: &'a Air<N>,
-    /// The air that dims light on its way: that of the field, or the real one.
+    /// The air that attenuates light on its way: that of the field if there is one, otherwise the real air.
     pub(super) dimming: &'a Air<N>,
-    /// Multiply scattered light, if it is wanted.
+    /// Multiply scattered light; `None` for single scattering.
     pub(super) diffuse: Option<&'a Diffuse<N>>,
     marcher: Marcher,
     pub(super) edges: Vec<f64>,
 }
 
 impl<'a, const N: usize> Tracer<'a, N> {
-    /// A tracer at full accuracy.
+    /// Tracer with the step size for full accuracy.
     pub fn new(air: &'a Air<N>, diffuse: Option<&'a Diffuse<N>>) -> Self {
         Self {
             air,
@@ -70,15 +70,15 @@ impl<'a, const N: usize> Tracer<'a, N> {
         }
     }
 
-    /// Steps of full accuracy.
+    /// Marcher with the step size for full accuracy.
     pub fn marcher(air: &Air<N>) -> Marcher {
         Marcher::new(4, 2.0, air.max_extinction_per_m())
     }
 
-    /// The light along `ray`, over at most `limit_m`.
+    /// Light along `ray`, over at most `limit_m`.
     pub fn trace(&mut self, ray: &Ray, limit_m: f64) -> Light<N> {
         let (air, dimming) = (self.air, self.dimming);
-        let Some(stretch) = air.shell.stretch(ray, limit_m) else {
+        let Some(segment) = air.shell.segment(ray, limit_m) else {
             return Light {
                 transmittance: Spectrum::ONE,
                 single: Spectrum::ZERO,
@@ -95,7 +95,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
         let (mut single, mut path) = (Spectrum::ZERO, Spectrum::ZERO);
         let mut y = [0.0f32; Harmonics::MAX_COUNT];
         let mut edges = std::mem::take(&mut self.edges);
-        let span = (stretch.start_m, stretch.end_m);
+        let span = (segment.start_m, segment.end_m);
         let columns = self
             .marcher
             .walk(&air.shell, ray, span, &mut edges, |nodes| {
@@ -129,18 +129,18 @@ impl<'a, const N: usize> Tracer<'a, N> {
                 }
             });
         self.edges = edges;
-        let end = ray.advanced(stretch.end_m);
-        let ground = match stretch.meets_ground {
+        let end = ray.advanced(segment.end_m);
+        let ground = match segment.meets_ground {
             true => air.reflected(ground_irradiance(air, self.diffuse, end.mu_sun)),
             false => Spectrum::ZERO,
         };
-        let behind = match stretch.meets_ground {
+        let behind = match segment.meets_ground {
             true => ground,
             false if self.diffuse.is_some() => self.radiance(&end),
             false => Spectrum::ZERO,
         };
         let transmittance = air.transmittance(&columns);
-        // T' - T, without cancellation where both are close to 1.
+        // T' - T, without cancellation if both are close to 1.
         let into_peaks = air.optical_depth(&columns) - dimming.optical_depth(&columns);
         let difference = transmittance * into_peaks.map(f32::exp_m1);
         path = path.mul_acc(difference, behind);
@@ -152,11 +152,11 @@ impl<'a, const N: usize> Tracer<'a, N> {
                 None => Spectrum::ZERO,
             },
             ground: transmittance * ground,
-            meets_ground: stretch.meets_ground,
+            meets_ground: segment.meets_ground,
         }
     }
 
-    /// All light along `ray` to its very end, summed.
+    /// Total light along the whole of `ray`.
     fn radiance(&mut self, ray: &Ray) -> Spectrum<N> {
         let arriving = self.arriving(ray);
         let mut sum = arriving.multiple_scatter;
@@ -171,7 +171,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
         sum
     }
 
-    /// All light along `ray` to its very end.
+    /// Light along the whole of `ray`.
     #[inline(always)]
     pub fn arriving(&mut self, ray: &Ray) -> Arriving<N> {
         let (air, dimming) = (self.air, self.dimming);
@@ -179,12 +179,12 @@ impl<'a, const N: usize> Tracer<'a, N> {
             single_scatter_without_phase: [Spectrum::ZERO; MAX_CONSTITUENTS],
             multiple_scatter: Spectrum::ZERO,
         };
-        let Some(stretch) = air.shell.stretch(ray, f64::INFINITY) else {
+        let Some(segment) = air.shell.segment(ray, f64::INFINITY) else {
             return light;
         };
         let mut y = [0.0f32; Harmonics::MAX_COUNT];
         let mut edges = std::mem::take(&mut self.edges);
-        let span = (stretch.start_m, stretch.end_m);
+        let span = (segment.start_m, segment.end_m);
         let columns = self.marcher.walk(
             &air.shell,
             ray,
@@ -214,9 +214,9 @@ impl<'a, const N: usize> Tracer<'a, N> {
         {
             *sum *= s.whole_scattering;
         }
-        if stretch.meets_ground {
+        if segment.meets_ground {
             let irradiance =
-                ground_irradiance(air, self.diffuse, ray.advanced(stretch.end_m).mu_sun);
+                ground_irradiance(air, self.diffuse, ray.advanced(segment.end_m).mu_sun);
             light.multiple_scatter = light
                 .multiple_scatter
                 .mul_acc(dimming.transmittance(&columns), air.reflected(irradiance));
@@ -224,8 +224,8 @@ impl<'a, const N: usize> Tracer<'a, N> {
         light
     }
 
-    /// Adds what a node scatters into the line of sight, of which the part `weight` (times a length) arrives: sunlight
-    /// scattered for the first time by density alone, without scattering coefficients. `y` is scratch space.
+    /// Adds the light scattered into the ray at a node, attenuated by `weight` (which includes the step length). Singly
+    /// scattered sunlight is added per unit scattering coefficient. `y` is scratch space.
     #[inline(always)]
     pub(super) fn add(
         &self,
@@ -252,7 +252,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
         }
     }
 
-    /// Light of the field scattered into the line of sight at a node, per metre. `y` is scratch space.
+    /// Light of the field scattered into the ray at a node, per metre. `y` is scratch space.
     #[inline(always)]
     fn source(&self, node: &Node, y: &mut [f32]) -> Spectrum<N> {
         let Some(Diffuse { field, air }) = self.diffuse else {
@@ -265,7 +265,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
     }
 }
 
-/// Irradiance of the ground where the sun's cosine is `mu_sun`, of sun and sky, per unit solar irradiance.
+/// Irradiance on the ground from sun and sky at the sun cosine `mu_sun`, per unit solar irradiance.
 #[inline(always)]
 pub fn ground_irradiance<const N: usize>(
     air: &Air<N>,
@@ -280,7 +280,7 @@ pub fn ground_irradiance<const N: usize>(
     }
 }
 
-/// Irradiance of the ground where the sun's cosine is `mu_sun`, of the sun alone, per unit solar irradiance.
+/// Irradiance on the ground from the sun alone at the sun cosine `mu_sun`, per unit solar irradiance.
 #[inline(always)]
 pub fn sun_on_ground<const N: usize>(air: &Air<N>, mu_sun: f64) -> Spectrum<N> {
     if mu_sun <= 0.0 {

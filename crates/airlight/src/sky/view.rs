@@ -1,6 +1,6 @@
-//! Looking out from one place under one sun.
+//! View of a prepared sky from one position under one sun.
 
-use super::block::{BlockLight, StopLight};
+use super::block::{BlockLight, SampleLight};
 use super::solver::Sky;
 use super::table::{SkyTable, TableChannels};
 use super::tabulate::Peaked;
@@ -11,35 +11,35 @@ use crate::transfer::ray::Ray;
 use glam::DVec3;
 use std::ops::Range;
 
-/// A prepared sky seen from one altitude under one sun.
+/// A prepared sky seen from one altitude under one position of the sun.
 #[derive(Clone, Debug)]
 pub struct View {
     sky: Sky,
     position: DVec3,
     sun: DVec3,
-    /// Solar irradiance here over that at the planet's mean distance.
+    /// Solar irradiance relative to that at the planet's mean distance.
     irradiance_scale: f64,
     disc: SunDisc,
 }
 
-/// What arrives along a line of sight. Every list has one entry a wavelength of the sky's grid; radiances in
-/// W m^-2 sr^-1 nm^-1. The sun's own disc is not included.
+/// Light along a view ray, without the direct light of the sun's disc. Each list has one entry per wavelength of the sky's
+/// grid; radiances are in W m^-2 sr^-1 nm^-1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LineOfSight {
-    /// Transmittance to the end of the line: the given distance, the ground or space.
+    /// Transmittance to the end of the ray: the given distance, the ground or space.
     pub transmittance: Vec<f32>,
-    /// Sunlight scattered once on the way.
+    /// Singly scattered sunlight.
     pub single: Vec<f32>,
-    /// Light scattered or reflected more than once, its last time on the way.
+    /// Light scattered or reflected more than once, last in the air along the ray.
     pub multiple: Vec<f32>,
-    /// What of the ground's own radiance arrives; zero where the line does not end on the ground.
+    /// Attenuated ground radiance; zero unless the ray ends on the ground.
     pub ground: Vec<f32>,
-    /// Whether the line ends on the ground.
+    /// True if the ray ends on the ground.
     pub meets_ground: bool,
 }
 
 impl LineOfSight {
-    /// Radiance scattered into the line of sight: `single + multiple`.
+    /// Path radiance: `single + multiple`.
     pub fn path_radiance(&self) -> Vec<f32> {
         self.single
             .iter()
@@ -48,7 +48,7 @@ impl LineOfSight {
             .collect()
     }
 
-    /// All that arrives: path radiance and ground.
+    /// Total radiance: path radiance and ground.
     pub fn radiance(&self) -> Vec<f32> {
         self.path_radiance()
             .iter()
@@ -57,7 +57,7 @@ impl LineOfSight {
             .collect()
     }
 
-    /// The affine map of the air on the line, for a grid of N wavelengths; `None` for a grid of another size.
+    /// Path optics of the air along the ray, for a grid of N wavelengths; `None` for a grid of another size.
     pub fn optics<const N: usize>(&self) -> Option<PathOptics<N>> {
         Some(PathOptics {
             transmittance: Spectrum(self.transmittance.as_slice().try_into().ok()?),
@@ -78,8 +78,8 @@ impl View {
         }
     }
 
-    /// The same view with the planet at `ratio` times its mean distance from the sun: irradiance falls by its square,
-    /// the disc shrinks.
+    /// This view with the planet at `ratio` times its mean distance from the sun: scales the irradiance by `1 / ratio^2` and
+    /// the angular size of the disc.
     pub fn at_sun_distance(mut self, ratio: f64) -> Self {
         self.irradiance_scale = 1.0 / (ratio * ratio);
         self.disc.angular_radius_rad =
@@ -87,7 +87,7 @@ impl View {
         self
     }
 
-    /// The same sun seen from another altitude (m; held at the ground below it), straight above or below.
+    /// This view from another altitude (m; raised to the ground if below it), vertically above or below.
     pub fn at_altitude(&self, altitude_m: f64) -> Self {
         let place = Self::new(&self.sky, altitude_m, self.sun);
         Self {
@@ -96,7 +96,7 @@ impl View {
         }
     }
 
-    /// The sky that is looked at.
+    /// The sky.
     pub fn sky(&self) -> &Sky {
         &self.sky
     }
@@ -116,7 +116,7 @@ impl View {
         self.position.y
     }
 
-    /// Solar irradiance outside the atmosphere on a surface that faces the sun, W m^-2 nm^-1.
+    /// Solar irradiance at the top of the atmosphere on a surface that faces the sun, W m^-2 nm^-1.
     pub fn solar_irradiance(&self) -> Vec<f32> {
         self.sky
             .grid()
@@ -130,8 +130,8 @@ impl View {
         Ray::new(self.position, direction, self.sun)
     }
 
-    /// The light along the unit vector `direction`, over at most `limit_m` metres (to the ground or to space if
-    /// `None`).
+    /// Light along the unit vector `direction`, over at most `limit_m` metres; `None` for the whole ray to the ground or to
+    /// space.
     pub fn along(&self, direction: DVec3, limit_m: Option<f64>) -> LineOfSight {
         let ray = self.ray(direction.normalize());
         let blocks: Vec<BlockLight> = self
@@ -159,16 +159,16 @@ impl View {
         }
     }
 
-    /// What lies between the eye and each of the rising distances `stops_m` along a unit vector: for each its optical
-    /// depths, one a wavelength, and path radiance per unit solar irradiance, first of all smooth light and then of each
-    /// peaked constituent without the phase function. Wavelengths whose places are not in `used` may be left at 0.
-    pub(crate) fn stops(
+    /// Light from the eye to each of the increasing distances `samples_m` along a unit vector: optical depths, one per
+    /// wavelength, and path radiance per unit solar irradiance, first the smooth part and then that of each peaked constituent
+    /// without the phase function. Wavelengths whose indices are not in `used` may be left at 0.
+    pub(crate) fn samples_along_ray(
         &self,
         direction: DVec3,
-        stops_m: &[f64],
+        samples_m: &[f64],
         peaked: &Peaked,
         used: &Range<usize>,
-    ) -> Vec<StopLight> {
+    ) -> Vec<SampleLight> {
         let ray = self.ray(direction);
         let half_sine = (0.5 * (1.0 - ray.nu)).max(0.0).sqrt();
         let phases: Vec<(usize, f32)> = peaked
@@ -177,27 +177,31 @@ impl View {
             .zip(&peaked.phases)
             .map(|(&c, phase)| (c, Peaked::sampled(phase, half_sine)))
             .collect();
-        let nothing = StopLight {
+        let nothing = SampleLight {
             depth: Vec::new(),
             path: vec![Vec::new(); 1 + phases.len()],
         };
-        let mut all = vec![nothing; stops_m.len()];
+        let mut all = vec![nothing; samples_m.len()];
         let mut first = 0;
         for block in self.sky.blocks() {
             let lanes = first..first + block.lanes();
             first = lanes.end;
             if lanes.start >= used.end || lanes.end <= used.start {
-                for stop in &mut all {
-                    stop.depth.resize(lanes.end, 0.0);
-                    stop.path
+                for sample in &mut all {
+                    sample.depth.resize(lanes.end, 0.0);
+                    sample
+                        .path
                         .iter_mut()
                         .for_each(|part| part.resize(lanes.end, 0.0));
                 }
                 continue;
             }
-            for (stop, more) in all.iter_mut().zip(block.stops(&ray, stops_m, &phases)) {
-                stop.depth.extend(more.depth);
-                for (part, more) in stop.path.iter_mut().zip(more.path) {
+            for (sample, more) in all
+                .iter_mut()
+                .zip(block.samples_along_ray(&ray, samples_m, &phases))
+            {
+                sample.depth.extend(more.depth);
+                for (part, more) in sample.path.iter_mut().zip(more.path) {
                     part.extend(more);
                 }
             }
@@ -205,13 +209,13 @@ impl View {
         all
     }
 
-    /// Radii of the ground and of the air's top, m.
+    /// Radii of the ground and of the top of the atmosphere, m.
     pub(crate) fn bounds_m(&self) -> (f64, f64) {
         let shell = self.sky.shell();
         (shell.ground_radius_m, shell.top_radius_m)
     }
 
-    /// Transmittance from the eye to space along `direction`; 0 where the planet is in the way.
+    /// Transmittance from the eye to space along `direction`; 0 if the ray hits the planet.
     pub fn transmittance_to_space(&self, direction: DVec3) -> Vec<f32> {
         let ray = self.ray(direction.normalize());
         self.sky
@@ -221,8 +225,8 @@ impl View {
             .collect()
     }
 
-    /// Irradiance of the sun's disc on a surface that faces it, W m^-2 nm^-1: dimmed by the air strip by strip, and
-    /// cut off by the horizon.
+    /// Irradiance of the sun's disc on a surface that faces it, W m^-2 nm^-1: integrated over strips of the disc with their
+    /// transmittances, down to the horizon.
     pub fn sun_irradiance(&self) -> Vec<f32> {
         let radius = self.disc.angular_radius_rad;
         let across = self.sun.cross(DVec3::Y);
@@ -231,7 +235,7 @@ impl View {
         } else {
             DVec3::X
         };
-        // Where the horizon cuts the disc, measured up from its centre.
+        // Height at which the horizon cuts the disc, relative to its centre.
         let ground_radius_m = self.sky.shell().ground_radius_m;
         let horizon = -(ground_radius_m / self.radius_m()).min(1.0).acos();
         let cut = (horizon - self.sun.y.clamp(-1.0, 1.0).asin()).clamp(-radius, radius);
@@ -254,8 +258,8 @@ impl View {
             .collect()
     }
 
-    /// Horizontal strips of the disc from `lowest` (rad, up from its centre) to its upper limb: the height of each, and
-    /// its light at each wavelength before the air dims it, all to one scale.
+    /// Horizontal strips of the disc from `lowest` (rad, relative to its centre) to its upper limb: the height of each and its
+    /// unattenuated light at each wavelength, on a common scale.
     fn disc_strips(&self, lowest: f64) -> Vec<(f64, Vec<f64>)> {
         const STRIPS: u32 = 24;
         const POINTS: u32 = 8;
@@ -280,7 +284,7 @@ impl View {
             .collect()
     }
 
-    /// Radiance of the sun's disc as it arrives along `direction`, W m^-2 sr^-1 nm^-1; zero beside the disc and where
+    /// Radiance of the sun's disc along `direction`, attenuated by the air, W m^-2 sr^-1 nm^-1; zero outside the disc and where
     /// the planet hides it.
     pub fn sun_disc_radiance(&self, direction: DVec3) -> Vec<f32> {
         let direction = direction.normalize();
@@ -297,7 +301,7 @@ impl View {
             .collect()
     }
 
-    /// Tabulates the whole sphere of directions for fast look-up.
+    /// Tabulates the radiance in all directions.
     pub fn table(&self, channels: TableChannels) -> SkyTable {
         SkyTable::new(self, channels)
     }

@@ -115,7 +115,7 @@ impl Shell {
 
     /// The stretch of a ray inside the air, from `t = 0` or the entry to `limit_m`, the ground or the exit; and
     /// whether it ends on the ground. `None` where the ray meets no air.
-    pub fn stretch(&self, ray: &Ray, limit_m: f64) -> Option<Stretch> {
+    pub fn segment(&self, ray: &Ray, limit_m: f64) -> Option<ShellSegment> {
         let (enter, leave) = ray.crossings(self.top_radius_m)?;
         let start = if ray.radius_m > self.top_radius_m {
             enter
@@ -126,12 +126,12 @@ impl Shell {
             return None;
         }
         match ray.distance_to_ground(self.ground_radius_m) {
-            Some(ground) if ground <= limit_m => Some(Stretch {
+            Some(ground) if ground <= limit_m => Some(ShellSegment {
                 start_m: start,
                 end_m: ground,
                 meets_ground: true,
             }),
-            _ => Some(Stretch {
+            _ => Some(ShellSegment {
                 start_m: start,
                 end_m: leave.min(limit_m),
                 meets_ground: false,
@@ -189,7 +189,7 @@ impl Shell {
 
 /// The part of a ray that runs through air.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stretch {
+pub struct ShellSegment {
     /// Where it begins, m from the eye.
     pub start_m: f64,
     /// Where it ends, m from the eye.
