@@ -21,7 +21,6 @@ mod grid;
 mod illuminance;
 mod interrupt;
 mod models;
-mod moment;
 mod parse;
 mod plot;
 mod probe;

@@ -3,7 +3,6 @@
 use crate::args::{AirArgs, EffortArg, PlaceArgs, ScatteringArg, SolverArg};
 use crate::atmosphere;
 use crate::error::CliError;
-use crate::moment::Moment;
 use crate::parse::LatLon;
 use crate::progress::Busy;
 use airlight::atmosphere::Atmosphere;
@@ -11,6 +10,7 @@ use airlight::axes;
 use airlight::models::klassen1987;
 use airlight::sky::{Scattering, Sky, SkySettings, SunCoverage, View};
 use airlight::spectrum::WavelengthGrid;
+use airlight::sun::Moment;
 use airlight::sun::position::{Place, RefractingAir, sun_position};
 use std::time::{Duration, Instant};
 
@@ -82,8 +82,8 @@ impl SunSource {
             altitude_m: altitude_m.clamp(-12e3, 100e3),
         };
         let air = refraction.then(|| standard_air(altitude_m));
-        let found = sun_position(time.unix_s, place, air)
-            .map_err(|error| CliError::usage(format!("the sun at {}: {error}", time.rfc3339())))?;
+        let found = sun_position(time, place, air)
+            .map_err(|error| CliError::usage(format!("the sun at {time}: {error}")))?;
         Ok(Sun {
             azimuth_deg: found.azimuth_deg,
             elevation_deg: found.elevation_deg,
@@ -226,7 +226,8 @@ fn sun_source(
         )));
     }
     let when = args.when.as_deref().unwrap_or("now");
-    let start = Moment::parse(when).map_err(|error| CliError::usage(format!("--when: {error}")))?;
+    let start = Moment::parse(when)
+        .map_err(|error| CliError::usage(format!("--when: {error}; or write now")))?;
     Ok(SunSource::Ephemeris {
         place,
         start,

@@ -61,7 +61,7 @@ fn bad_use_of_sky() {
         ),
         (
             "sky --at 1,2 --when 2026-02-30T00:00:00Z -o a.exr",
-            "day 30 does not exist",
+            "'day' for `2026-02`",
         ),
         (
             "sky --at 1,2 --when 9999-01-01T00:00:00Z -o a.exr",

@@ -153,7 +153,7 @@ fn sun() -> Fallible {
         longitude_deg: 2.2945,
         altitude_m: 0.0,
     };
-    let time = sun::position::parse_time("2026-06-21T21:15:00+02:00")?;
+    let time = "2026-06-21T21:15:00+02:00".parse()?;
     let sun = sun::sun_position(time, paris, Some(RefractingAir::STANDARD))?;
     println!("\nParis, 2026-06-21T21:15:00+02:00: {sun:?}");
     Ok(())

@@ -226,7 +226,7 @@ impl Observer {
             longitude_deg: place.map(|place| place.longitude_deg),
             altitude_m: scene.eye_altitude_m,
             ground_altitude_m: scene.atmosphere.planet.ground_altitude_m,
-            time_utc: scene.sun.start().map(|time| time.utc()),
+            time_utc: scene.sun.start().map(|time| time.utc().to_string()),
         }
     }
 }

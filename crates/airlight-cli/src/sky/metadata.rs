@@ -22,7 +22,7 @@ pub fn of(renderer: &Renderer<'_>, prepared: &PreparedFrame, layer: Layer) -> Me
     let mut metadata = Metadata {
         software: Some(SOFTWARE.to_owned()),
         capture_date: prepared.time.map(|time| time.capture_date()),
-        utc_offset_s: prepared.time.map(|time| time.offset_s as f32),
+        utc_offset_s: prepared.time.map(|time| time.offset_s() as f32),
         latitude_deg: place.map(|place| place.latitude_deg as f32),
         longitude_deg: place.map(|place| place.longitude_deg as f32),
         altitude_m: Some(scene.eye_altitude_m as f32),
@@ -32,7 +32,7 @@ pub fn of(renderer: &Renderer<'_>, prepared: &PreparedFrame, layer: Layer) -> Me
     };
     let mut add = |name: &str, text: String| metadata.texts.push((name.to_owned(), text));
     if let Some(time) = prepared.time {
-        add("time", time.rfc3339());
+        add("time", time.to_string());
     }
     add("atmosphere", scene.atmosphere.name.clone());
     if let Some(fog) = super::fog::in_words(&renderer.args.fog) {

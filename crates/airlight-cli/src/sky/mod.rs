@@ -121,10 +121,8 @@ fn said(renderer: &Renderer<'_>, sun: &Sun, light: &Illuminances) -> String {
     if let (Some(place), Some(time)) = (scene.sun.place(), scene.sun.start()) {
         let _ = writeln!(
             text,
-            "  place, time   latitude {}, longitude {}, {}",
-            place.latitude_deg,
-            place.longitude_deg,
-            time.rfc3339()
+            "  place, time   latitude {}, longitude {}, {time}",
+            place.latitude_deg, place.longitude_deg
         );
     }
     let geometric = match sun.geometric_elevation_deg {

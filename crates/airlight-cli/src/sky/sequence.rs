@@ -6,10 +6,10 @@ use super::preview;
 use super::renderer::Renderer;
 use crate::error::CliError;
 use crate::interrupt;
-use crate::moment::Moment;
 use crate::progress::RowsBar;
 use crate::report::{self, seconds};
 use airlight::sky::SunCoverage;
+use airlight::sun::Moment;
 use airlight_image::output::Written;
 use airlight_render::sequence::{FramePattern, SequencePlan};
 use std::path::Path;
@@ -54,7 +54,7 @@ pub fn run(
             first
                 .files
                 .last()
-                .map(|_| pattern.path(first.number, first.time.unix_s as i64))
+                .map(|_| pattern.path(first.number, first.time.unix_s() as i64))
                 .as_deref(),
         )?;
         make(renderer, &missing, total, preview)?;
@@ -91,20 +91,21 @@ fn planned<'a>(
             "--until needs a sun that moves: give --at and --when instead of --sun-elevation",
         ));
     };
-    let start = start.at(start.unix_s.floor());
+    let start = start.at(start.unix_s().floor());
     let refuse = |error: String| CliError::usage(format!("--until: {error}"));
     let end = match until.trim().strip_prefix('+') {
-        Some(span) => start.unix_s + crate::parse::span_s(span).map_err(refuse)? as f64,
-        None => Moment::parse(until).map_err(refuse)?.unix_s,
+        Some(span) => start.unix_s() + crate::parse::span_s(span).map_err(refuse)? as f64,
+        None => Moment::parse(until)
+            .map_err(|error| refuse(format!("{error}; or write now")))?
+            .unix_s(),
     };
     let every = renderer.args.sequence.every.unwrap_or(1);
-    if end < start.unix_s {
+    if end < start.unix_s() {
         return Err(refuse(format!(
-            "{until} lies before --when {}: it must be later",
-            start.rfc3339()
+            "{until} lies before --when {start}: it must be later"
         )));
     }
-    let plan = SequencePlan::new(start.unix_s as i64, end.floor() as i64, every)?;
+    let plan = SequencePlan::new(start.unix_s() as i64, end.floor() as i64, every)?;
     // Told before anything is computed.
     renderer.scene.sun.at(Some(start.at(end)))?;
     Ok((output, plan, start))

@@ -1,6 +1,5 @@
 //! Many pictures: file names, time steps, taking up where an earlier run stopped.
 
-mod calendar;
 mod pattern;
 mod plan;
 

@@ -1,6 +1,6 @@
 //! File names of the frames of a sequence.
 
-use super::calendar;
+use airlight::sun::Moment;
 use std::path::{Path, PathBuf};
 
 /// How frames are named.
@@ -54,7 +54,7 @@ impl FramePattern {
             .map(|part| match part {
                 Part::Text(text) => text.clone(),
                 Part::Number { digits } => format!("{number:0digits$}"),
-                Part::Time => calendar::basic_utc(time_s),
+                Part::Time => Moment::from_unix_s(time_s as f64).basic_utc(),
             })
             .collect();
         self.folder.join(name)

@@ -1,7 +1,9 @@
-//! The sun: its position in the sky and its disc.
+//! The sun: its disc, its position in the sky, and times to compute that for.
 
 pub mod disc;
+mod moment;
 pub mod position;
 
 pub use disc::{LimbDarkening, SunDisc, SunError};
+pub use moment::{Moment, MomentError};
 pub use position::{EphemerisError, Place, RefractingAir, SunPosition, sun_position};
