@@ -1,12 +1,12 @@
-//! Interpolation in tables: linear, by third-degree Lagrange polynomials, by cubics of known slopes.
+//! Interpolation in tables: linear, bilinear, cubic Lagrange and cubic Hermite.
 //!
-//! A table is looked up in two steps. [`interval_of`] and [`Place`] find where a coordinate lies among its nodes, unevenly or
-//! evenly spaced; [`lerp`], [`cubic_weights`] and [`hermite_weights`] say how the neighbouring values count.
+//! A table look-up has two steps: [`interval_of`] and [`Place`] locate a coordinate among uniform or non-uniform nodes;
+//! [`lerp`], [`cubic_weights`] and [`hermite_weights`] weight the neighbouring values.
 
 use super::real::Real;
 use std::ops::{Add, Mul};
 
-/// `a + t (b - a)`, exact at both ends.
+/// Linear interpolation `a + t (b - a)`, exact at both ends.
 #[inline(always)]
 pub fn lerp<V, T: Real>(a: V, b: V, t: T) -> V
 where
@@ -15,14 +15,14 @@ where
     a * (T::of(1.0) - t) + b * t
 }
 
-/// Index of the lower end of the interval of strictly increasing `nodes` (two or more) that holds `x`; of the first or last
-/// interval for an `x` beyond the ends.
+/// Index of the lower end of the interval of strictly increasing `nodes` (two or more) that contains `x`; the first or last
+/// interval if `x` lies beyond the ends.
 #[inline(always)]
 pub fn interval_of(nodes: &[f64], x: f64) -> usize {
     interval_by_key(nodes, x, |node| *node)
 }
 
-/// [`interval_of`] for entries that hold their node beside other values.
+/// As [`interval_of`], for entries that contain their node, returned by `node`.
 #[inline(always)]
 pub fn interval_by_key<E>(entries: &[E], x: f64, node: impl Fn(&E) -> f64) -> usize {
     entries
@@ -31,8 +31,8 @@ pub fn interval_by_key<E>(entries: &[E], x: f64, node: impl Fn(&E) -> f64) -> us
         - 1
 }
 
-/// The value at `x` of straight lines through points with strictly increasing abscissae (one or more), constant beyond the
-/// ends.
+/// Piecewise linear interpolation at `x` through points with strictly increasing abscissae (one or more), constant beyond
+/// the ends.
 pub fn piecewise_linear(abscissae: &[f64], values: &[f64], x: f64) -> f64 {
     match abscissae {
         [_] => values[0],
@@ -40,17 +40,17 @@ pub fn piecewise_linear(abscissae: &[f64], values: &[f64], x: f64) -> f64 {
     }
 }
 
-/// Where a coordinate lies among nodes: `fraction` of the way from node `below` to the next.
+/// Position of a coordinate among nodes: `fraction` of the way from node `below` to the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
-    /// The node below; never the last one.
+    /// Index of the node below; never the last one.
     pub below: usize,
-    /// From 0 at node `below` to 1 at the next.
+    /// Fraction of the interval, in `[0, 1]`.
     pub fraction: f64,
 }
 
 impl Place {
-    /// Among strictly increasing nodes (two or more), held at the ends.
+    /// Position among strictly increasing nodes (two or more); `x` is clamped to their range.
     #[inline(always)]
     pub fn among(nodes: &[f64], x: f64) -> Self {
         let below = interval_of(nodes, x);
@@ -61,7 +61,7 @@ impl Place {
         }
     }
 
-    /// Among `count` (two or more) evenly spaced nodes, the first at 0 and the last at 1; `x` is held to `[0, 1]`.
+    /// Position among `count` (two or more) uniform nodes from 0 to 1; `x` is clamped to `[0, 1]`.
     #[inline(always)]
     pub fn evenly(x: f64, count: usize) -> Self {
         let position = x.clamp(0.0, 1.0) * (count - 1) as f64;
@@ -72,7 +72,7 @@ impl Place {
         }
     }
 
-    /// Linear interpolation in a list with one value for each node.
+    /// Linear interpolation of a list with one value per node.
     #[inline(always)]
     pub fn value_in(self, values: &[f64]) -> f64 {
         lerp(values[self.below], values[self.below + 1], self.fraction)
@@ -89,8 +89,8 @@ impl Place {
     }
 }
 
-/// Index and bilinear weight of the four samples about a place in a table of `[columns, rows]` stored row by row; `u` runs
-/// along rows and `v` from row to row, both in `[0, 1]`.
+/// Indices and bilinear weights of the four samples around a point in a row-major table of `[columns, rows]`; `u` runs along
+/// rows and `v` across them, both in `[0, 1]`.
 pub fn bilinear(u: f64, v: f64, [columns, rows]: [usize; 2]) -> [(usize, f32); 4] {
     let (across, down) = (Place::evenly(u, columns), Place::evenly(v, rows));
     let (s, t) = (across.fraction as f32, down.fraction as f32);
@@ -103,7 +103,7 @@ pub fn bilinear(u: f64, v: f64, [columns, rows]: [usize; 2]) -> [(usize, f32); 4
     ]
 }
 
-/// Weights of third-degree Lagrange interpolation among four nodes a step apart, at `t` steps from the first.
+/// Weights of cubic Lagrange interpolation among four nodes with spacing 1, at `t` from the first.
 #[inline(always)]
 pub fn cubic_weights<T: Real>(t: T) -> [T; 4] {
     let (a, b, c, d) = (t, t - T::of(1.0), t - T::of(2.0), t - T::of(3.0));
@@ -115,7 +115,7 @@ pub fn cubic_weights<T: Real>(t: T) -> [T; 4] {
     ]
 }
 
-/// First node and weights of third-degree interpolation at `x` in `[0, 1]` among `count` (four or more) evenly spaced nodes.
+/// First node and weights of cubic interpolation at `x` in `[0, 1]` among `count` (four or more) uniform nodes.
 #[inline(always)]
 pub fn cubic(x: f64, count: usize) -> (usize, [f64; 4]) {
     let position = x * (count - 1) as f64;
@@ -123,15 +123,15 @@ pub fn cubic(x: f64, count: usize) -> (usize, [f64; 4]) {
     (first, cubic_weights(position - first as f64))
 }
 
-/// [`cubic`] with weights in single precision.
+/// As [`cubic`], with weights in single precision.
 #[inline(always)]
 pub fn cubic_f32(x: f64, count: usize) -> (usize, [f32; 4]) {
     let (first, weights) = cubic(x, count);
     (first, weights.map(|w| w as f32))
 }
 
-/// Nodes and weights of third-degree interpolation at `x` in `[0, 1]` among nodes 0 to `steps`, in a table that is its own
-/// mirror image beyond both ends.
+/// Nodes and weights of cubic interpolation at `x` in `[0, 1]` among nodes 0 to `steps`, in a table that is mirrored beyond
+/// both ends.
 #[inline(always)]
 pub fn cubic_mirrored(x: f64, steps: usize) -> ([usize; 4], [f32; 4]) {
     let position = x * steps as f64;
@@ -146,8 +146,8 @@ pub fn cubic_mirrored(x: f64, steps: usize) -> ([usize; 4], [f32; 4]) {
     )
 }
 
-/// Weights of the cubic over an interval with known values and slopes at both ends, at the fraction `t` of the way: of the two
-/// values, and of the two slopes per width of the interval.
+/// Weights of Hermite interpolation at the fraction `t` of an interval: of the two values, and of the two slopes times the
+/// width of the interval.
 #[inline(always)]
 pub fn hermite_weights(t: f64) -> ([f64; 2], [f64; 2]) {
     let u = 1.0 - t;
@@ -157,8 +157,8 @@ pub fn hermite_weights(t: f64) -> ([f64; 2], [f64; 2]) {
     )
 }
 
-/// A cubic in every interval between nodes, with continuous slopes ([`monotone_slopes`] makes such slopes), at `x` in the
-/// interval that begins at node `below`.
+/// Piecewise cubic Hermite interpolation at `x`, in the interval that begins at node `below`; [`monotone_slopes`] computes
+/// suitable slopes.
 #[inline]
 pub fn hermite(nodes: &[f64], values: &[f64], slopes: &[f64], below: usize, x: f64) -> f64 {
     let width = nodes[below + 1] - nodes[below];
@@ -169,8 +169,8 @@ pub fn hermite(nodes: &[f64], values: &[f64], slopes: &[f64], below: usize, x: f
         + s1 * (slopes[below + 1] * width)
 }
 
-/// Slopes of the monotone piecewise cubic through points, 0 at the first and last: zero at local extremes, else the weighted
-/// harmonic mean of the neighbouring secants (Fritsch & Butland, SIAM J. Sci. Stat. Comput. 5, 300, 1984).
+/// Slopes of the monotone piecewise cubic through points, 0 at the first and last: zero at local extrema, otherwise the
+/// weighted harmonic mean of the neighbouring secants (Fritsch & Butland, SIAM J. Sci. Stat. Comput. 5, 300, 1984).
 pub fn monotone_slopes(x: &[f64], y: &[f64]) -> Vec<f64> {
     let last = x.len() - 1;
     let secant = |i: usize| (y[i + 1] - y[i]) / (x[i + 1] - x[i]);
@@ -201,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn places_among_uneven_nodes_hold_their_coordinate() {
+    fn positions_among_non_uniform_nodes_reproduce_the_coordinate() {
         for x in [-1.0, -0.2, 0.5, 1.9, 6.999, 7.0] {
             let place = Place::among(&NODES, x);
             assert!((place.value_in(&NODES) - x).abs() < 1e-15, "{place:?}");
@@ -213,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn places_among_even_nodes_hold_their_coordinate() {
+    fn positions_among_uniform_nodes_reproduce_the_coordinate() {
         let values = [0.0, 0.25, 0.5, 0.75, 1.0];
         for x in [0.0, 0.1, 0.25, 0.6, 1.0] {
             assert!((Place::evenly(x, 5).value_in(&values) - x).abs() < 1e-15);
@@ -224,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn straight_lines_end_in_constants() {
+    fn piecewise_linear_is_constant_beyond_the_ends() {
         assert_eq!(piecewise_linear(&[4.0], &[3.0], 99.0), 3.0);
         for (x, y) in [(-5.0, -1.0), (1.25, 1.25), (80.0, 7.0)] {
             assert_eq!(piecewise_linear(&NODES, &NODES, x), y);
@@ -247,7 +247,7 @@ mod tests {
     }
 
     #[test]
-    fn polynomials_of_third_degree_are_reproduced_at_both_ends_and_between() {
+    fn cubic_interpolation_reproduces_cubics() {
         let count = 9;
         for x in [0.0, 0.01, 0.3, 0.5, 0.77, 0.999, 1.0] {
             let (first, weights) = cubic(x, count);
@@ -258,8 +258,8 @@ mod tests {
     }
 
     #[test]
-    fn a_mirrored_table_continues_evenly_beyond_its_ends() {
-        // Cosines over half a turn are their own mirror image.
+    fn mirrored_interpolation_is_even_beyond_the_ends() {
+        // Cosines over half a turn are mirror-symmetric at both ends.
         let steps = 64;
         for x in [0.0, 0.004, 0.5, 0.993, 1.0] {
             let (nodes, weights) = cubic_mirrored(x, steps);
@@ -275,7 +275,7 @@ mod tests {
     }
 
     #[test]
-    fn cubics_of_known_slopes_reproduce_third_degree() {
+    fn hermite_interpolation_reproduces_cubics() {
         let values = NODES.map(cube);
         let slopes = NODES.map(|x| 6.0 * x * x - 2.0 * x + 3.0);
         for x in [-1.0, 0.0, 0.5, 1.3, 5.0, 7.0] {

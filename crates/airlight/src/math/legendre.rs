@@ -1,8 +1,8 @@
-//! Legendre polynomials and series of them.
+//! Legendre polynomials and Legendre series.
 
 use std::f64::consts::PI;
 
-/// `P_l(x)` for `l` below `out.len()`.
+/// Legendre polynomials `P_l(x)` for `l` below `out.len()`.
 #[inline(always)]
 pub fn legendre(x: f64, out: &mut [f64]) {
     for l in 0..out.len() {
@@ -17,7 +17,7 @@ pub fn legendre(x: f64, out: &mut [f64]) {
     }
 }
 
-/// `sum over l of (2 l + 1) / (4 pi) moments[l] P_l(x)`: a phase function (1/sr) from its moments.
+/// Legendre series `sum over l of (2 l + 1) / (4 pi) moments[l] P_l(x)`: a phase function (1/sr) from its moments.
 pub fn legendre_series(moments: &[f64], x: f64) -> f64 {
     let (mut before, mut now) = (0.0, 1.0);
     let mut sum = 0.0;
@@ -34,7 +34,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_series_of_one_moment_is_its_polynomial() {
+    fn series_of_one_moment_is_its_polynomial() {
         for x in [-1.0, -0.3, 0.0, 0.8, 1.0] {
             let mut p = [0.0; 7];
             legendre(x, &mut p);

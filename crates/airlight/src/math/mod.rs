@@ -1,4 +1,4 @@
-//! Mathematics without physics: interpolation, quadrature, polynomials, random numbers, vector instructions.
+//! Mathematics without physics: interpolation, quadrature, polynomials, random numbers, SIMD.
 
 pub(crate) mod interpolation;
 pub(crate) mod legendre;

@@ -1,10 +1,10 @@
-//! Loops whose turns do not depend on each other: on all threads with the feature `parallel`, one after the other without.
-//! Results keep their order, so that both give the same bits.
+//! Loops over independent iterations: on all threads with the feature `parallel`, sequential without it. Results keep their
+//! order, so both give the same bits.
 
 #[cfg(feature = "parallel")]
 use rayon::prelude::*;
 
-/// `f(0)` to `f(count - 1)`.
+/// Results of `f(0)` to `f(count - 1)`.
 pub(crate) fn map<T: Send>(count: usize, f: impl Fn(usize) -> T + Send + Sync) -> Vec<T> {
     #[cfg(feature = "parallel")]
     return (0..count).into_par_iter().map(f).collect();
@@ -12,7 +12,7 @@ pub(crate) fn map<T: Send>(count: usize, f: impl Fn(usize) -> T + Send + Sync) -
     (0..count).map(f).collect()
 }
 
-/// `f(0)` to `f(count - 1)`, or an error of one of them.
+/// Results of `f(0)` to `f(count - 1)`, or the error of one of them.
 ///
 /// # Errors
 /// As `f`.
@@ -26,7 +26,7 @@ pub(crate) fn try_map<T: Send, E: Send>(
     (0..count).map(f).collect()
 }
 
-/// Calls `f(index, chunk)` for each chunk of `size` values; the last may be shorter.
+/// Calls `f(index, chunk)` for each chunk of `size` values; the last chunk may be shorter.
 pub(crate) fn for_each_chunk<T: Send>(
     values: &mut [T],
     size: usize,
@@ -43,7 +43,7 @@ pub(crate) fn for_each_chunk<T: Send>(
     }
 }
 
-/// `f` of each chunk of `size` values; the last may be shorter.
+/// Results of `f` for each chunk of `size` values; the last chunk may be shorter.
 pub(crate) fn map_chunks<S: Sync, T: Send>(
     values: &[S],
     size: usize,
@@ -60,7 +60,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_turn_is_taken_once_and_in_its_place() {
+    fn each_iteration_runs_once_and_in_order() {
         for count in [0usize, 1, 7, 1000] {
             let squares: Vec<usize> = (0..count).map(|i| i * i).collect();
             assert_eq!(map(count, |i| i * i), squares);

@@ -2,19 +2,19 @@
 
 use std::f64::consts::PI;
 
-/// A Gauss-Legendre rule on `[0, 1]`: (node, weight) pairs, nodes increasing, weights adding up to 1. Exact for polynomials of
-/// degree below twice the number of nodes. A [`FixedRule`] where the number of nodes is a constant.
+/// A Gauss-Legendre rule on `[0, 1]`: (node, weight) pairs with increasing nodes and weights that sum to 1. Exact for
+/// polynomials of degree below twice the number of nodes. [`FixedRule`] if the number of nodes is a constant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GaussRule<S = Vec<(f64, f64)>> {
     pairs: S,
 }
 
-/// A rule computed when the crate is compiled.
+/// A rule computed at compile time.
 pub type FixedRule<const N: usize> = GaussRule<[(f64, f64); N]>;
 
 impl GaussRule {
-    /// The rule with `count` (one or more) nodes, by Newton's method from Tricomi's first guess; good to about 1e-15 up to some
-    /// hundreds of nodes.
+    /// Rule with `count` (one or more) nodes, by Newton iteration from Tricomi's initial guess; accurate to about 1e-15 up to a
+    /// few hundred nodes.
     pub fn new(count: usize) -> Self {
         let mut pairs = vec![(0.5, 0.0); count];
         for i in 0..count.div_ceil(2) {
@@ -28,7 +28,7 @@ impl GaussRule {
 }
 
 impl<const N: usize> FixedRule<N> {
-    /// The rule with N (one or more) nodes, for constants.
+    /// Rule with N (one or more) nodes, for constants.
     pub const fn fixed() -> Self {
         let mut pairs = [(0.5, 0.0); N];
         let mut i = 0;
@@ -55,13 +55,13 @@ impl<S: AsRef<[(f64, f64)]>> GaussRule<S> {
         self.pairs.as_ref().len()
     }
 
-    /// Node and weight of each point on `[0, 1]`.
+    /// Nodes and weights on `[0, 1]`.
     #[inline(always)]
     pub fn iter(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
         self.pairs.as_ref().iter().copied()
     }
 
-    /// Nodes and weights of this rule on `[from, to]`.
+    /// Nodes and weights on `[from, to]`.
     #[inline(always)]
     pub fn on(&self, from: f64, to: f64) -> impl Iterator<Item = (f64, f64)> + '_ {
         let length = to - from;
@@ -77,7 +77,7 @@ impl<S: AsRef<[(f64, f64)]>> GaussRule<S> {
         sum * length
     }
 
-    /// Integral of `f` from `from` to `to` by this rule in each interval between those of `breaks` that lie inside.
+    /// Integral of `f` from `from` to `to`, with this rule in each interval between those of `breaks` that lie inside.
     pub fn integrate_between(
         &self,
         from: f64,
@@ -95,22 +95,22 @@ impl<S: AsRef<[(f64, f64)]>> GaussRule<S> {
     }
 }
 
-/// A rule with the weights of the running integral up to each of its nodes.
+/// A Gauss-Legendre rule with the weights of the running integral up to each node.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RunningRule {
-    /// The rule itself.
+    /// The rule.
     pub rule: GaussRule,
-    /// Entry `[k][j]` is the weight of the integrand at node `j` in the integral from 0 to node `k`. Exact for polynomials of
-    /// degree below the number of nodes.
+    /// Weights of the running integral: `[k][j]` is the weight of the integrand at node `j` in the integral from 0 to node `k`.
+    /// Exact for polynomials of degree below the number of nodes.
     pub running: Vec<Vec<f64>>,
 }
 
 impl RunningRule {
-    /// The rule with `count` (one or more) nodes.
+    /// Rule with `count` (one or more) nodes.
     pub fn new(count: usize) -> Self {
         let rule = GaussRule::new(count);
         let pairs = &rule.pairs;
-        // The polynomial that is 1 at node j and 0 at the others.
+        // Lagrange polynomial that is 1 at node j and 0 at the others.
         let cardinal = |j: usize, x: f64| -> f64 {
             (0..pairs.len())
                 .filter(|&k| k != j)
@@ -130,13 +130,13 @@ impl RunningRule {
     }
 }
 
-/// Tricomi's guess at a root of `P_n`, from `cos(pi (4 i + 3) / (4 n + 2))`.
+/// Tricomi's initial guess of a root of `P_n`, from `cos(pi (4 i + 3) / (4 n + 2))`.
 const fn tricomi(count: usize, cosine: f64) -> f64 {
     let n = count as f64;
     (1.0 - (n - 1.0) / (8.0 * n * n * n)) * cosine
 }
 
-/// The `i`-th largest root of `P_count` and its weight in an integral over `[-1, 1]`, by Newton's method.
+/// The `i`-th largest root of `P_count` and its weight in an integral over `[-1, 1]`, by Newton iteration.
 const fn legendre_root(i: usize, count: usize, guess: f64) -> (f64, f64) {
     let n = count as f64;
     let mut x = guess;
@@ -167,7 +167,7 @@ const fn legendre_root(i: usize, count: usize, guess: f64) -> (f64, f64) {
     (x, 2.0 / ((1.0 - x * x) * slope * slope))
 }
 
-/// The cosine of an angle in `[0, pi / 2]` to 1e-6, where the library's is not to be had: a start for Newton's method.
+/// Cosine of an angle in `[0, pi / 2]` to 1e-6 in constant evaluation, where `f64::cos` is not available.
 const fn near_cosine(angle: f64) -> f64 {
     let x = angle * angle;
     1.0 - x / 2.0 * (1.0 - x / 12.0 * (1.0 - x / 30.0 * (1.0 - x / 56.0 * (1.0 - x / 90.0))))
@@ -178,7 +178,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rules_are_exact_for_polynomials_up_to_their_degree() {
+    fn rules_are_exact_for_polynomials_of_their_degree() {
         for count in [1usize, 2, 3, 8, 12, 20, 33] {
             let rule = GaussRule::new(count);
             assert_eq!(rule.len(), count);
@@ -198,7 +198,7 @@ mod tests {
     }
 
     #[test]
-    fn rules_of_compile_time_are_those_of_run_time() {
+    fn compile_time_rules_match_run_time_rules() {
         fn differ<const N: usize>() {
             let (fixed, rule) = (FixedRule::<N>::fixed(), GaussRule::new(N));
             for ((x, w), (x2, w2)) in fixed.iter().zip(rule.iter()) {

@@ -1,8 +1,8 @@
-//! [`Real`]: formulas written once for `f32` and `f64`.
+//! [`Real`]: formulas generic over `f32` and `f64`.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A floating point number of either width.
+/// `f32` or `f64`.
 pub(crate) trait Real:
     Copy
     + PartialOrd
@@ -14,9 +14,9 @@ pub(crate) trait Real:
     + Send
     + Sync
 {
-    /// The nearest number of this width.
+    /// Conversion from `f64`, rounded.
     fn of(value: f64) -> Self;
-    /// The same in `f64`.
+    /// Conversion to `f64`.
     fn to_f64(self) -> f64;
     /// Square root.
     fn sqrt(self) -> Self;

@@ -1,11 +1,11 @@
-//! Running a computation with the widest vector instructions of the machine.
+//! Dispatch to the widest vector instructions of the machine.
 
 use pulp::{Arch, Simd, WithSimd};
 
-/// Runs `work`, compiled once for each vector instruction set and chosen when the program runs.
+/// Runs `work`, compiled for each vector instruction set, with the widest one available at run time.
 ///
-/// The loops inside must be inlined into `work` (`#[inline(always)]`, on closures too) to be compiled for the wider
-/// registers. No instruction set changes the result: nothing is reassociated and nothing is fused.
+/// Loops inside must be inlined into `work` (`#[inline(always)]`, also on closures) to be compiled for the wider registers.
+/// The result does not depend on the instruction set: nothing is reassociated or fused.
 #[inline(always)]
 pub fn vectorized<R>(work: impl FnMut() -> R) -> R {
     struct Work<F>(F);
@@ -13,7 +13,7 @@ pub fn vectorized<R>(work: impl FnMut() -> R) -> R {
         type Output = R;
         #[inline(always)]
         fn with_simd<S: Simd>(mut self, _: S) -> R {
-            // Called as `FnMut`: the `FnOnce` of such a closure is a shim of its own, which is not inlined.
+            // Called through `FnMut`: the `FnOnce` shim of such a closure is not inlined.
             (self.0)()
         }
     }

@@ -1,8 +1,8 @@
-//! Adaptive Simpson quadrature of numbers or of vectors of numbers.
+//! Adaptive Simpson quadrature of scalars and vectors.
 
 use std::ops::{Add, AddAssign, Mul, Sub};
 
-/// Simpson's rule on the values at both ends and the middle of an interval of a width.
+/// Simpson's rule for the values at both ends and the middle of an interval of the given width.
 #[inline]
 pub fn simpson<V>(values: &[V; 3], width: f64) -> V
 where
@@ -11,9 +11,9 @@ where
     (values[0] + values[1] * 4.0 + values[2]) * (width / 6.0) as f32
 }
 
-/// Adds the integral of `f` over `[from, to]` to `sum`. Intervals are halved until `agree(both, whole, sum)` accepts the rule
-/// on two halves against that on the whole, given what has been summed so far, but at most `depth` times; two accepted halves
-/// get Richardson's correction. `values` are those of `f` at both ends and in the middle, `whole` is the rule on them.
+/// Adds the integral of `f` over `[from, to]` to `sum`. Halves intervals, at most `depth` times, until
+/// `agree(both, whole, sum)` accepts the rule on two halves compared with that on the whole, given the sum so far; accepted
+/// halves get Richardson's correction. `values` are those of `f` at both ends and in the middle, `whole` is the rule on them.
 pub fn adaptive_simpson<V>(
     f: &impl Fn(f64) -> V,
     (from, to): (f64, f64),
@@ -45,7 +45,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_peak_is_found_and_smooth_parts_are_left_alone() {
+    fn peaks_are_refined_and_smooth_parts_are_not() {
         let evaluations = std::cell::Cell::new(0);
         let f = |x: f64| {
             evaluations.set(evaluations.get() + 1);

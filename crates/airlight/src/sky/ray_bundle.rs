@@ -113,7 +113,7 @@ impl<const N: usize> Path<N> {
         let Some(segment) = air.shell.segment(&ray, f64::INFINITY) else {
             return path;
         };
-        let columns = marcher.walk(
+        let columns = marcher.march(
             &air.shell,
             &ray,
             (segment.start_m, segment.end_m),

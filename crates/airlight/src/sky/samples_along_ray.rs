@@ -117,7 +117,7 @@ impl<const N: usize> Tracer<'_, N> {
         let mut y = [0.0f32; Harmonics::MAX_COUNT];
         let mut edges = std::mem::take(&mut self.edges);
         let path = &mut accumulated.path;
-        let columns_m = marcher.walk(
+        let columns_m = marcher.march(
             &self.air.shell,
             ray,
             span,

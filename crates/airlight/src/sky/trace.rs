@@ -98,7 +98,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
         let span = (segment.start_m, segment.end_m);
         let columns = self
             .marcher
-            .walk(&air.shell, ray, span, &mut edges, |nodes| {
+            .march(&air.shell, ray, span, &mut edges, |nodes| {
                 let mut brightest = 0.0f32;
                 for node in nodes {
                     let transmittance = dimming.transmittance(&node.columns_m);
@@ -185,7 +185,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
         let mut y = [0.0f32; Harmonics::MAX_COUNT];
         let mut edges = std::mem::take(&mut self.edges);
         let span = (segment.start_m, segment.end_m);
-        let columns = self.marcher.walk(
+        let columns = self.marcher.march(
             &air.shell,
             ray,
             span,

@@ -1,4 +1,4 @@
-//! An atmosphere sampled at the N wavelengths of one block of lanes.
+//! Optical coefficients of an atmosphere at the N wavelengths of a block of lanes.
 
 use crate::atmosphere::Atmosphere;
 use crate::optics::PhaseFunction;
@@ -7,30 +7,30 @@ use crate::transfer::shell::{MAX_CONSTITUENTS, PerConstituent, Shell};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-/// What the constituents do to light at N wavelengths.
+/// Optical coefficients of the constituents at N wavelengths.
 #[derive(Clone, Debug)]
 pub struct Air<const N: usize> {
-    /// The geometry, shared by all blocks of wavelengths.
+    /// Geometry, shared by all blocks of wavelengths.
     pub shell: Arc<Shell>,
     /// Extinction of each constituent at density 1, 1/m.
     extinction: Vec<Spectrum<N>>,
-    /// The constituents that scatter.
+    /// The constituents with scattering.
     pub scatterers: Vec<Scatterer<N>>,
     /// Lambertian reflectance of the ground.
     pub ground_albedo: Spectrum<N>,
     wavelengths_nm: [f64; N],
 }
 
-/// A constituent that scatters.
+/// Scattering coefficients of a constituent.
 #[derive(Clone, Debug)]
 pub struct Scatterer<const N: usize> {
-    /// Its place among the constituents.
+    /// Index of the constituent.
     pub constituent: usize,
-    /// Scattering at density 1, 1/m; without what goes into the forward peak, where that counts as unscattered.
+    /// Scattering at density 1, 1/m; excludes the forward peak if that counts as unscattered.
     pub scattering: Spectrum<N>,
-    /// Scattering at density 1, 1/m, forward peak included: what goes with the exact phase function.
+    /// Scattering at density 1, 1/m, including the forward peak, for use with the exact phase function.
     pub whole_scattering: Spectrum<N>,
-    /// Legendre moments of its phase function, `moments[l]`.
+    /// Legendre moments of the phase function, `moments[l]`.
     pub moments: Vec<Spectrum<N>>,
     phase: PhaseFunction,
 }
@@ -79,9 +79,9 @@ impl<const N: usize> Air<N> {
         }
     }
 
-    /// The same air with the forward peaks of its phase functions counted as no scattering at all (the delta-M method:
-    /// Wiscombe, J. Atmos. Sci. 34, 1408, 1977): with `f` the moment of degree `l_max + 1`, scattering shrinks by
-    /// `1 - f` and the moments become `(chi_l - f) / (1 - f)`: small beyond degree `l_max`.
+    /// This air with the forward peaks of its phase functions treated as unscattered (the delta-M method: Wiscombe, J. Atmos.
+    /// Sci. 34, 1408, 1977): with `f` the moment of degree `l_max + 1`, scattering is multiplied by `1 - f` and the moments
+    /// become `(chi_l - f) / (1 - f)`, which is small beyond degree `l_max`.
     pub fn without_forward_peaks(&self, l_max: usize) -> Self {
         let mut air = self.clone();
         for s in &mut air.scatterers {
@@ -97,7 +97,7 @@ impl<const N: usize> Air<N> {
         air
     }
 
-    /// Optical depth of the given columns.
+    /// Optical depth of columns.
     #[inline(always)]
     pub fn optical_depth(&self, columns_m: &PerConstituent) -> Spectrum<N> {
         let mut depth = Spectrum::ZERO;
@@ -107,7 +107,7 @@ impl<const N: usize> Air<N> {
         depth
     }
 
-    /// [`Air::optical_depth`] of columns in single precision.
+    /// As [`Air::optical_depth`], for columns in single precision.
     #[inline(always)]
     pub fn optical_depth_f32(&self, columns_m: &[f32; MAX_CONSTITUENTS]) -> Spectrum<N> {
         let mut depth = Spectrum::ZERO;
@@ -117,13 +117,13 @@ impl<const N: usize> Air<N> {
         depth
     }
 
-    /// Transmittance through the given columns.
+    /// Transmittance through columns.
     #[inline(always)]
     pub fn transmittance(&self, columns_m: &PerConstituent) -> Spectrum<N> {
         (Spectrum::ZERO - self.optical_depth(columns_m)).exp()
     }
 
-    /// The largest extinction of each constituent over the lanes, 1/m at density 1.
+    /// Largest extinction of each constituent over the lanes, 1/m at density 1.
     pub fn max_extinction_per_m(&self) -> PerConstituent {
         let mut out = [0.0; MAX_CONSTITUENTS];
         for (value, extinction) in out.iter_mut().zip(&self.extinction) {
@@ -132,7 +132,7 @@ impl<const N: usize> Air<N> {
         out
     }
 
-    /// Radiance that the ground sends up when it receives the irradiance `irradiance`.
+    /// Radiance reflected by the ground for the irradiance `irradiance`.
     #[inline(always)]
     pub fn reflected(&self, irradiance: Spectrum<N>) -> Spectrum<N> {
         self.ground_albedo * irradiance * std::f32::consts::FRAC_1_PI
@@ -149,7 +149,7 @@ impl<const N: usize> Scatterer<N> {
         }
     }
 
-    /// The phase function cut off after the degree of `legendre`, whose entries are `P_l(nu)`, 1/sr.
+    /// Phase function truncated after the degree of `legendre`, whose entries are `P_l(nu)`, 1/sr.
     #[inline(always)]
     pub fn truncated_phase(&self, legendre: &[f64]) -> Spectrum<N> {
         let mut sum = Spectrum::ZERO;

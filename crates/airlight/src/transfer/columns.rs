@@ -1,29 +1,29 @@
-//! Slant columns from any point to space: how much of each constituent lies on the way to the sun.
+//! Slant columns of each constituent from any point to space, for transmittance to the sun.
 //!
-//! Integrated once on a grid of altitudes and zenith angles, the same for all wavelengths. What is stored is the
-//! inverse air mass `N(r, 1) / N(r, mu)`: close to `mu` high in the sky and smooth down to the horizon, so that
-//! third-degree interpolation keeps the columns to about 1e-4 (see the test).
+//! Integrated once on a grid of altitudes and zenith angles, for all wavelengths. The table stores the inverse air mass
+//! `N(r, 1) / N(r, mu)`, which is close to `mu` at high elevations and smooth down to the horizon, so that cubic
+//! interpolation is accurate to about 1e-4 (see the test).
 
 use crate::math::interpolation::{Place, cubic, hermite_weights};
 use crate::math::parallel;
 use crate::math::quadrature::FixedRule;
 use crate::transfer::shell::{MAX_CONSTITUENTS, PerConstituent, Shell};
 
-/// Altitudes of the table, evenly spaced in [`Shell::altitude_coordinate`].
+/// Number of altitudes, uniform in [`Shell::altitude_coordinate`].
 const ALTITUDES: usize = 64;
-/// Zenith angles of the table, evenly spaced in `sqrt(mu)`: dense at the horizon.
+/// Number of zenith angles, uniform in `sqrt(mu)`: dense near the horizon.
 const ANGLES: usize = 64;
-/// Nodes of the finer table of vertical columns.
+/// Number of nodes in the finer table of vertical columns.
 const VERTICAL: usize = 1024;
-/// Nodes on each panel of a ray.
+/// Quadrature rule for each panel of a ray.
 static RULE: FixedRule<4> = FixedRule::fixed();
 
-/// Vertical columns and inverse air masses of every constituent.
+/// Vertical columns and inverse air masses of all constituents.
 #[derive(Clone, Debug, Default)]
 pub struct ColumnTable {
-    /// At even steps of the altitude coordinate: the vertical column and its slope in that coordinate.
+    /// Uniform in the altitude coordinate: the vertical column and its slope in that coordinate.
     vertical: Vec<[PerConstituent; 2]>,
-    /// `[altitude][angle]`, angles running fastest.
+    /// `[altitude][angle]`.
     inverse_air_mass: Vec<[f32; MAX_CONSTITUENTS]>,
 }
 
@@ -34,7 +34,7 @@ pub struct ColumnRow {
 }
 
 impl ColumnRow {
-    /// Columns from this altitude along `mu >= 0` to the top, in metres of density 1.
+    /// Columns from this altitude along `mu >= 0` to the top of the atmosphere, in metres at density 1.
     #[inline(always)]
     pub fn to_space_m(&self, mu: f32) -> [f32; MAX_CONSTITUENTS] {
         let (first, weights) = cubic(f64::from(mu.sqrt()), ANGLES);
@@ -79,7 +79,7 @@ impl ColumnTable {
                 .collect()
         });
         let mut inverse_air_mass = rows.concat();
-        // Where nothing of a constituent lies above, its air mass means nothing: carry the one below upwards, so that
+        // Above the last air of a constituent its air mass is undefined: the value below is continued upwards, so that
         // interpolation just beneath stays smooth.
         let mut below = [[1.0f32; MAX_CONSTITUENTS]; ANGLES];
         for row in inverse_air_mass.chunks_exact_mut(ANGLES) {
@@ -101,8 +101,8 @@ impl ColumnTable {
         }
     }
 
-    /// Columns from `radius_m` along `mu` to the top, in metres of density 1. A ray that starts downwards passes its
-    /// lowest point first: `N = 2 N(tangent, 0) - N(r, -mu)`.
+    /// Columns from `radius_m` along `mu` to the top of the atmosphere, in metres at density 1. A descending ray passes its
+    /// lowest point: `N = 2 N(tangent, 0) - N(r, -mu)`.
     #[inline(always)]
     pub(super) fn to_space_m(&self, shell: &Shell, radius_m: f64, mu: f64) -> PerConstituent {
         if mu >= 0.0 {
@@ -137,7 +137,7 @@ impl ColumnTable {
         columns
     }
 
-    /// The table at one altitude, for many zenith angles.
+    /// The table at one altitude, for evaluation at many zenith angles.
     #[inline(always)]
     pub(super) fn at(&self, shell: &Shell, radius_m: f64) -> ColumnRow {
         let x = shell.altitude_coordinate(radius_m);
@@ -157,7 +157,7 @@ impl ColumnTable {
         row
     }
 
-    /// Hermite interpolation of the vertical columns, whose slopes (the densities) are known.
+    /// Hermite interpolation of the vertical columns, with the densities as slopes.
     #[inline(always)]
     fn vertical_m(&self, x: f64) -> PerConstituent {
         let Place { below, fraction } = Place::evenly(x, VERTICAL);

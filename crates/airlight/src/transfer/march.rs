@@ -1,27 +1,27 @@
-//! Walking along a ray in panels small enough for a Gauss rule.
+//! Ray marching in panels with a Gauss rule in each.
 
 use crate::math::quadrature::RunningRule;
 use crate::transfer::ray::{Ray, in_shadow};
 use crate::transfer::shell::{MAX_CONSTITUENTS, PerConstituent, Shell};
 use std::ops::ControlFlow;
 
-/// The largest number of nodes in a panel.
+/// Largest number of nodes in a panel.
 const MAX_NODES: usize = 4;
 
-/// A point on the way.
+/// A quadrature node on a ray.
 #[derive(Clone, Copy, Debug)]
 pub struct Node {
     /// Distance from the eye, m.
     pub t: f64,
     /// Quadrature weight, m.
     pub dt: f64,
-    /// The ray as seen from here.
+    /// The ray relative to this point.
     pub here: Ray,
-    /// Relative densities here.
+    /// Relative densities.
     pub densities: PerConstituent,
-    /// Columns between the eye and here, m.
+    /// Columns from the eye to the node, m.
     pub columns_m: PerConstituent,
-    /// Whether the sun is above the planet's limb here.
+    /// True if the sun is above the planet's limb.
     pub lit: bool,
 }
 
@@ -43,18 +43,18 @@ impl Default for Node {
     }
 }
 
-/// How finely to walk.
+/// Step size and quadrature of a march.
 #[derive(Clone, Debug)]
 pub struct Marcher {
     rule: RunningRule,
-    /// No panel is optically thicker than this in its thickest lane.
+    /// Largest optical depth of a panel in any lane.
     max_panel_depth: f64,
-    /// For each constituent the largest extinction over the wavelengths, 1/m at density 1.
+    /// Largest extinction of each constituent over the wavelengths, 1/m at density 1.
     max_extinction_per_m: PerConstituent,
 }
 
 impl Marcher {
-    /// Panels of at most `max_panel_depth` optical depth, each with `nodes` nodes (1 to 4).
+    /// Marcher with panels of at most `max_panel_depth` optical depth and `nodes` nodes (1 to 4).
     pub fn new(nodes: usize, max_panel_depth: f64, max_extinction_per_m: PerConstituent) -> Self {
         assert!((1..=MAX_NODES).contains(&nodes));
         Self {
@@ -64,10 +64,10 @@ impl Marcher {
         }
     }
 
-    /// Calls `visit` with the nodes of each panel in turn, from `start_m` to `end_m`, until it breaks; returns the
-    /// columns from the start to where it stopped. `edges` is scratch space.
+    /// Calls `visit` with the nodes of each panel from `start_m` to `end_m`, until it breaks; returns the columns up to there.
+    /// `edges` is scratch space.
     #[inline(always)]
-    pub fn walk(
+    pub fn march(
         &self,
         shell: &Shell,
         ray: &Ray,
@@ -118,7 +118,7 @@ impl Marcher {
         columns
     }
 
-    /// Into how many pieces a panel must be cut to be optically thin enough.
+    /// Number of pieces into which a panel is divided to limit its optical depth.
     #[inline(always)]
     fn pieces(&self, shell: &Shell, ray: &Ray, from: f64, to: f64) -> usize {
         let extinction = |t: f64| -> f64 {
@@ -132,8 +132,8 @@ impl Marcher {
     }
 }
 
-/// Fills `edges` with the distances in `[start_m, end_m]`, both included and increasing, where a density has a kink or
-/// has changed enough, where the ray is lowest, and where it crosses the edge of the planet's shadow.
+/// Fills `edges` with increasing distances from `start_m` to `end_m`: where a density has a kink or has changed enough, the
+/// lowest point of the ray, and the edges of the planet's shadow.
 #[inline(always)]
 fn panel_edges(shell: &Shell, ray: &Ray, start_m: f64, end_m: f64, edges: &mut Vec<f64>) {
     edges.clear();

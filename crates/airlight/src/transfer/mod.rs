@@ -1,7 +1,7 @@
 //! Radiative transfer shared by sky, fog, published models and Monte Carlo.
 //!
-//! [`PathOptics`] is the affine map of a ray segment; [`ray`], [`shell`] and [`columns`] are the geometry of a spherical
-//! atmosphere; [`march`] integrates along a ray; [`air`] is an atmosphere at N wavelengths.
+//! [`PathOptics`]: transmittance and path radiance of a ray segment; [`ray`], [`shell`] and [`columns`]: geometry of a
+//! spherical atmosphere; [`march`]: integration along a ray; [`air`]: optical coefficients at N wavelengths.
 
 pub(crate) mod air;
 pub(crate) mod columns;

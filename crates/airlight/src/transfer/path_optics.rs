@@ -1,28 +1,28 @@
-//! The heart: a stretch of air acts on light as an affine map, and maps compose.
+//! Transmittance and path radiance of a ray segment, and their composition.
 
 use crate::spectrum::Spectrum;
 
-/// What a stretch of air does to the radiance `L` behind it: `L' = transmittance * L + path_radiance`.
+/// Transmittance and in-scattered radiance of a ray segment: `L' = transmittance * L + path_radiance` for the radiance `L`
+/// behind it.
 ///
-/// `transmittance` lies in `[0, 1]`; `path_radiance` is the radiance scattered into the line of sight,
-/// in the unit of `L` (W m^-2 sr^-1 nm^-1 for spectra).
+/// `transmittance` lies in `[0, 1]`; `path_radiance` is in the unit of `L` (W m^-2 sr^-1 nm^-1 for spectra).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathOptics<const N: usize> {
-    /// The part of the background's light that arrives.
+    /// Fraction of the background radiance that reaches the eye.
     pub transmittance: Spectrum<N>,
-    /// The light added on the way (airlight).
+    /// Radiance scattered into the ray along the segment.
     pub path_radiance: Spectrum<N>,
 }
 
 impl<const N: usize> PathOptics<N> {
-    /// No air at all: the identity of [`PathOptics::then`].
+    /// No air: the identity of [`PathOptics::then`].
     pub const CLEAR: Self = Self {
         transmittance: Spectrum::ONE,
         path_radiance: Spectrum::ZERO,
     };
 
-    /// The map of this stretch (nearer to the eye) followed by `far` (behind it):
-    /// `T = T_near T_far`, `S = S_near + T_near S_far`.
+    /// Composition of this segment (nearer to the eye) with the segment `far` behind it: `T = T_near T_far`,
+    /// `S = S_near + T_near S_far`.
     #[inline]
     pub fn then(self, far: Self) -> Self {
         Self {
@@ -33,7 +33,7 @@ impl<const N: usize> PathOptics<N> {
         }
     }
 
-    /// The radiance that reaches the eye from `background` behind this stretch.
+    /// Radiance at the eye for the radiance `background` behind the segment.
     #[inline]
     pub fn apply(self, background: Spectrum<N>) -> Spectrum<N> {
         self.path_radiance.mul_acc(self.transmittance, background)
@@ -54,7 +54,7 @@ mod tests {
     };
 
     #[test]
-    fn composing_is_applying_one_after_the_other() {
+    fn composition_equals_successive_application() {
         let background = Spectrum([7.0, 8.0, 9.0]);
         assert_eq!(
             NEAR.then(FAR).apply(background),

@@ -1,24 +1,24 @@
-//! A straight line of sight in the frame of the planet's centre, and where it meets spheres and shadows.
+//! Rays in a spherically symmetric atmosphere: intersections with spheres and the planet's shadow.
 
 use glam::DVec3;
 
-/// A line of sight from a point, reduced to the four numbers that radiative transfer in a spherically symmetric
-/// atmosphere lit by a distant sun depends on.
+/// A ray, reduced to the four numbers that determine radiative transfer along it in a spherically symmetric atmosphere lit by
+/// a distant sun.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
-    /// Distance of the starting point from the planet's centre, m.
+    /// Distance of the origin from the planet's centre, m.
     pub radius_m: f64,
-    /// Cosine between the line of sight and the local zenith.
+    /// Cosine of the angle between the ray and the local zenith.
     pub mu: f64,
-    /// Cosine between the sun and the local zenith.
+    /// Cosine of the angle between the sun and the local zenith.
     pub mu_sun: f64,
-    /// Cosine between the line of sight and the sun.
+    /// Cosine of the angle between the ray and the sun.
     pub nu: f64,
 }
 
 impl Ray {
-    /// The ray from `position` (m, from the planet's centre) along the unit vector `direction`, with the sun in the
-    /// direction of the unit vector `sun`.
+    /// Ray from `position` (m, relative to the planet's centre) along the unit vector `direction`, with the sun in the direction
+    /// of the unit vector `sun`.
     pub fn new(position: DVec3, direction: DVec3, sun: DVec3) -> Self {
         let radius_m = position.length();
         let zenith = position / radius_m;
@@ -30,19 +30,19 @@ impl Ray {
         }
     }
 
-    /// Distance from the planet's centre after travelling `t` metres.
+    /// Distance from the planet's centre at the distance `t`, m.
     #[inline(always)]
     pub fn radius_at(&self, t: f64) -> f64 {
         (self.radius_m * self.radius_m + t * (2.0 * self.radius_m * self.mu + t)).sqrt()
     }
 
-    /// Height gained after `t` metres: `radius_at(t) - radius_m` without its cancellation.
+    /// Change of altitude over the distance `t`, m: `radius_at(t) - radius_m` without cancellation.
     #[inline(always)]
     pub fn climb_at(&self, t: f64) -> f64 {
         t * (2.0 * self.radius_m * self.mu + t) / (self.radius_at(t) + self.radius_m)
     }
 
-    /// The same line of sight as seen from the point `t` metres along it.
+    /// This ray with its origin moved forward by `t` metres.
     #[inline(always)]
     pub fn advanced(&self, t: f64) -> Self {
         let radius_m = self.radius_at(t);
@@ -54,20 +54,20 @@ impl Ray {
         }
     }
 
-    /// Where along the line it comes closest to the planet's centre (negative: behind the start), m.
+    /// Distance to the point closest to the planet's centre, m (negative if behind the origin).
     #[inline(always)]
     pub fn closest_approach_m(&self) -> f64 {
         -self.radius_m * self.mu
     }
 
-    /// The smallest distance of the whole line from the planet's centre, m.
+    /// Smallest distance of the line from the planet's centre, m.
     #[inline(always)]
     pub fn tangent_radius_m(&self) -> f64 {
         self.radius_m * ((1.0 - self.mu) * (1.0 + self.mu)).max(0.0).sqrt()
     }
 
-    /// The two (possibly negative) distances at which the line crosses the sphere of radius `radius_m` about the
-    /// planet's centre, or `None` where it passes outside.
+    /// Distances, possibly negative, at which the line crosses the sphere of radius `radius_m` around the planet's centre; `None`
+    /// if it misses the sphere.
     pub fn crossings(&self, radius_m: f64) -> Option<(f64, f64)> {
         let closest = self.closest_approach_m();
         let tangent = self.tangent_radius_m();
@@ -75,7 +75,7 @@ impl Ray {
             return None;
         }
         let half_chord = ((radius_m - tangent) * (radius_m + tangent)).sqrt();
-        // The product of the two roots is r^2 - R^2: take the small one from it, to keep its digits.
+        // The product of the roots is r^2 - R^2: computing the smaller root from it avoids cancellation.
         let product = (self.radius_m - radius_m) * (self.radius_m + radius_m);
         let (near, far) = if closest >= 0.0 {
             let far = closest + half_chord;
@@ -87,7 +87,7 @@ impl Ray {
         Some((near, far))
     }
 
-    /// Distance to the ground sphere, where the ray starts above it (or on it, looking down) and meets it.
+    /// Distance to the ground sphere; `None` if the ray misses it or starts below it.
     pub fn distance_to_ground(&self, ground_radius_m: f64) -> Option<f64> {
         if self.mu >= 0.0 {
             return None;
@@ -96,8 +96,8 @@ impl Ray {
         Some(near.max(0.0))
     }
 
-    /// The distances at which the line enters and leaves the planet's cylindrical shadow (radius `ground_radius_m`,
-    /// on the side away from the sun), as far as they exist; unordered.
+    /// Distances at which the line enters and leaves the planet's cylindrical shadow (radius `ground_radius_m`, on the side away
+    /// from the sun), if it does; in no particular order.
     pub fn shadow_edges(&self, ground_radius_m: f64) -> [Option<f64>; 2] {
         // |x|^2 - (x.s)^2 = R^2 along x(t): a t^2 + 2 b t + c = 0.
         let a = (1.0 - self.nu) * (1.0 + self.nu);
@@ -115,8 +115,8 @@ impl Ray {
         [behind_planet(q / a), behind_planet(c / q)]
     }
 
-    /// `sin(theta) cos(phi)` of the line of sight in the local frame whose zenith is up and whose azimuth 0 is the
-    /// sun's; 0 where the sun stands in the zenith and azimuth means nothing.
+    /// `sin(theta) cos(phi)` of the ray's direction in the local frame with the zenith up and the sun at azimuth 0; 0 if the sun
+    /// is at the zenith.
     #[inline(always)]
     pub fn toward_sun(&self) -> f64 {
         let sin2 = (1.0 - self.mu) * (1.0 + self.mu);
@@ -129,7 +129,7 @@ impl Ray {
     }
 }
 
-/// True where the planet hides the sun from a point at `radius_m` with sun cosine `mu_sun`.
+/// True if the planet hides the sun from a point at `radius_m` with the sun cosine `mu_sun`.
 #[inline(always)]
 pub fn in_shadow(radius_m: f64, mu_sun: f64, ground_radius_m: f64) -> bool {
     mu_sun < 0.0
@@ -152,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn crossings_keep_their_digits_close_to_the_sphere() {
+    fn crossings_do_not_cancel_close_to_the_sphere() {
         let eye = ray(GROUND + 0.001, -1.0);
         assert!((eye.distance_to_ground(GROUND).unwrap() - 0.001).abs() < 1e-8);
         let up = ray(GROUND, 0.0);
@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn the_climb_is_exact_for_short_steps() {
+    fn altitude_change_is_exact_for_short_steps() {
         let ray = ray(GROUND, 1e-9);
         assert!((ray.climb_at(1.0) - (1e-9 + 0.5 / GROUND)).abs() < 1e-15);
     }

@@ -1,4 +1,4 @@
-//! The geometry of an atmosphere: what does not depend on wavelength, worked out once for all of them.
+//! Geometry of an atmosphere, independent of wavelength.
 
 use crate::atmosphere::{Atmosphere, DensityProfile};
 use crate::math::quadrature::FixedRule;
@@ -6,32 +6,32 @@ use crate::sky::SkyError;
 use crate::transfer::columns::{ColumnRow, ColumnTable};
 use crate::transfer::ray::Ray;
 
-/// The largest number of constituents the solver handles.
+/// Largest number of constituents.
 pub const MAX_CONSTITUENTS: usize = 8;
 
-/// One number for each constituent (relative densities, or columns in metres of density 1); unused places are 0.
+/// One number for each constituent (relative densities, or columns in metres at density 1); unused entries are 0.
 pub type PerConstituent = [f64; MAX_CONSTITUENTS];
 
 /// A spherical shell of air: radii, density profiles, quadrature panels and slant columns.
 #[derive(Clone, Debug)]
 pub struct Shell {
-    /// Radius of altitude 0, m.
+    /// Radius at altitude 0, m.
     pub planet_radius_m: f64,
-    /// Radius of the ground sphere, m.
+    /// Radius of the ground, m.
     pub ground_radius_m: f64,
-    /// Radius beyond which there is no air, m.
+    /// Radius of the top of the atmosphere, m.
     pub top_radius_m: f64,
-    /// Radii between which every density is smooth and changes by a small factor: where quadrature panels end.
+    /// Boundaries of quadrature panels: between them densities are smooth and change by a limited factor.
     pub panel_radii_m: Vec<f64>,
     densities: Vec<DensityProfile>,
     columns: ColumnTable,
 }
 
 impl Shell {
-    /// Works out panels and column tables of `atmosphere`; for suns so low that thin air sheds the light, or not.
+    /// Computes panels and column tables of `atmosphere`; `low_sun` adds panels in thin air, which dominates with a low sun.
     ///
     /// # Errors
-    /// [`SkyError::TooManyConstituents`] above [`MAX_CONSTITUENTS`].
+    /// [`SkyError::TooManyConstituents`] for more than [`MAX_CONSTITUENTS`].
     pub fn new(atmosphere: &Atmosphere, low_sun: bool) -> Result<Self, SkyError> {
         let planet = &atmosphere.planet;
         if atmosphere.constituents.len() > MAX_CONSTITUENTS {
@@ -80,7 +80,7 @@ impl Shell {
         self.top_radius_m - self.ground_radius_m
     }
 
-    /// Relative densities at a distance from the planet's centre.
+    /// Relative densities at a radius.
     #[inline(always)]
     pub fn densities_at(&self, radius_m: f64) -> PerConstituent {
         let mut out = [0.0; MAX_CONSTITUENTS];
@@ -90,7 +90,7 @@ impl Shell {
         out
     }
 
-    /// Vertical columns from a radius to the top, in metres of density 1.
+    /// Vertical columns from a radius to the top, in metres at density 1.
     pub fn vertical_columns_m(&self, radius_m: f64) -> PerConstituent {
         let mut out = [0.0; MAX_CONSTITUENTS];
         let altitude = radius_m - self.planet_radius_m;
@@ -101,20 +101,20 @@ impl Shell {
         out
     }
 
-    /// Columns along a ray from `radius_m` to the top of the atmosphere, for a ray that does not meet the ground.
+    /// Columns from `radius_m` along `mu` to the top of the atmosphere, for a ray that does not hit the ground.
     #[inline(always)]
     pub fn columns_to_space_m(&self, radius_m: f64, mu: f64) -> PerConstituent {
         self.columns.to_space_m(self, radius_m, mu)
     }
 
-    /// The columns to space from one distance from the centre, for many zenith angles.
+    /// Columns to space from one radius, for many zenith angles.
     #[inline(always)]
     pub fn columns_at(&self, radius_m: f64) -> ColumnRow {
         self.columns.at(self, radius_m)
     }
 
-    /// The stretch of a ray inside the air, from `t = 0` or the entry to `limit_m`, the ground or the exit; and
-    /// whether it ends on the ground. `None` where the ray meets no air.
+    /// Segment of a ray inside the atmosphere, from `t = 0` or its entry to `limit_m`, the ground or its exit; `None` if it
+    /// misses the atmosphere.
     pub fn segment(&self, ray: &Ray, limit_m: f64) -> Option<ShellSegment> {
         let (enter, leave) = ray.crossings(self.top_radius_m)?;
         let start = if ray.radius_m > self.top_radius_m {
@@ -139,8 +139,8 @@ impl Shell {
         }
     }
 
-    /// The altitude-like coordinate `sqrt(height above ground / thickness)` in `[0, 1]`, in which tables are evenly
-    /// spaced: fine near the ground, where the air is.
+    /// Altitude coordinate `sqrt(height above ground / thickness)` in `[0, 1]`, in which tables are uniform: dense near the
+    /// ground, where most of the air is.
     #[inline(always)]
     pub fn altitude_coordinate(&self, radius_m: f64) -> f64 {
         ((radius_m - self.ground_radius_m) / self.thickness_m())
@@ -153,7 +153,7 @@ impl Shell {
         self.ground_radius_m + coordinate * coordinate * self.thickness_m()
     }
 
-    /// Direct integration of the columns along an upward ray: what the column table is made of.
+    /// Integrates the columns along an ascending ray, for the column table.
     pub(super) fn integrate_columns_m(
         &self,
         radius_m: f64,
@@ -187,19 +187,19 @@ impl Shell {
     }
 }
 
-/// The part of a ray that runs through air.
+/// The segment of a ray inside the atmosphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShellSegment {
-    /// Where it begins, m from the eye.
+    /// Distance of its start from the eye, m.
     pub start_m: f64,
-    /// Where it ends, m from the eye.
+    /// Distance of its end from the eye, m.
     pub end_m: f64,
-    /// Whether the ground is what ends it.
+    /// True if it ends on the ground.
     pub meets_ground: bool,
 }
 
-/// Altitudes (from `bottom` to `top`, both included) such that between neighbours every density is free of kinks and
-/// changes by less than a factor `e^PANEL_DECAY`, as far as the constituent still matters there.
+/// Altitudes from `bottom` to `top`, both included, between which all densities are free of kinks and, as far as the
+/// constituent contributes, change by less than a factor `e^PANEL_DECAY`.
 fn panel_altitudes_m(
     densities: &[DensityProfile],
     scatters: &[bool],
@@ -209,10 +209,10 @@ fn panel_altitudes_m(
     const PANEL_DECAY: f64 = 1.7;
     const SAMPLES: usize = 4000;
     let altitude = |i: usize| bottom + (top - bottom) * (i as f64 / SAMPLES as f64).powi(2);
-    // Below this share of its peak a constituent no longer asks for panels of its own. In twilight all light comes from
-    // thin air above the planet's shadow: with 3e-3 the sky is 1 % off with the sun at 2 degrees, 8 % at -2, 20 % at -6.
-    let thinnest = if low_sun { 1e-5 } else { 3e-3 };
-    let least = |scatters: bool| if scatters { thinnest } else { 0.1 };
+    // Fraction of its peak below which a constituent needs no panels. In twilight all light comes from thin air above the
+    // planet's shadow: with 3e-3 the sky is off by 1 % with the sun at 2 degrees, 8 % at -2, 20 % at -6.
+    let min_density = if low_sun { 1e-5 } else { 3e-3 };
+    let least = |scatters: bool| if scatters { min_density } else { 0.1 };
     let floors: Vec<f64> = densities
         .iter()
         .zip(scatters)
@@ -267,7 +267,7 @@ fn panel_altitudes_m(
     edges
 }
 
-/// How much a density jumps at an altitude, plus how far its change of slope leads away over an eighth of the shell.
+/// Jump of a density at an altitude, plus the change of its slope times an eighth of the thickness.
 fn sharpness(density: &DensityProfile, altitude_m: f64, thickness_m: f64) -> f64 {
     let step = 1e-6 * thickness_m;
     let [below2, below, above, above2] =

@@ -1,36 +1,36 @@
-//! At which angles a phase function is to be known.
+//! Adaptive selection of the angles of a tabulated phase function.
 
 use crate::optics::tabulated::between_samples;
 use std::f64::consts::PI;
 
-/// No interval is halved more often than this.
-const DEEPEST: usize = 8;
-/// No more intervals are halved once there are this many angles.
-const MOST_ANGLES: usize = 800;
+/// Largest number of times an interval is halved.
+const MAX_DEPTH: usize = 8;
+/// Number of angles above which no more intervals are halved.
+const MAX_ANGLES: usize = 800;
 
-/// Angles (radians, from 0 to pi) to start from: even steps, and geometric ones towards 0 and pi, where the features of
-/// particles of size parameter `x` are `1 / x` wide.
+/// Initial angles (radians, from 0 to pi): uniform steps, and geometric ones towards 0 and pi, where the features of spheres
+/// with size parameter `x` have a width of `1 / x`.
 fn first(x: f64) -> Vec<f64> {
-    const WIDEST: f64 = PI / 45.0;
+    const MAX_STEP: f64 = PI / 45.0;
     const RATIO: f64 = 1.5;
     let mut near = vec![0.0];
-    let mut angle = (0.5 / x).min(WIDEST);
-    while angle * (RATIO - 1.0) < WIDEST {
+    let mut angle = (0.5 / x).min(MAX_STEP);
+    while angle * (RATIO - 1.0) < MAX_STEP {
         near.push(angle);
         angle *= RATIO;
     }
     let start = near[near.len() - 1];
-    let count = ((PI - 2.0 * start) / WIDEST).ceil().max(1.0);
+    let count = ((PI - 2.0 * start) / MAX_STEP).ceil().max(1.0);
     let even = (1..count as usize).map(|i| start + (PI - 2.0 * start) * i as f64 / count);
     let far: Vec<f64> = near.iter().rev().map(|a| PI - a).collect();
     near.into_iter().chain(even).chain(far).collect()
 }
 
-/// A function by angle whose logarithm, interpolated as [`TabulatedPhase`](crate::optics::TabulatedPhase) does, is right to
-/// `tolerance` in the middle of every interval; the middles are then added too. Where that takes more than
-/// [`MOST_ANGLES`], a function is left as noisy as it is.
+/// Angles at which the logarithm of a function, interpolated as [`TabulatedPhase`](crate::optics::TabulatedPhase) does, is
+/// accurate to `tolerance` in the middle of each interval; the midpoints are then added too. If that takes more than
+/// [`MAX_ANGLES`], the tolerance is not reached.
 ///
-/// `known` angles, if any, are those to start from (of another wavelength).
+/// Starts from the angles `known`, for instance of another wavelength, if not empty.
 pub(super) fn adapt(
     x: f64,
     known: &[f64],
@@ -43,12 +43,12 @@ pub(super) fn adapt(
     };
     let mut logs: Vec<f64> = evaluate(&angles).iter().map(|p| p.ln()).collect();
     let mut open = vec![true; angles.len() - 1];
-    for _ in 0..DEEPEST {
+    for _ in 0..MAX_DEPTH {
         let middles: Vec<f64> = (0..open.len())
             .filter(|&i| open[i])
             .map(|i| 0.5 * (angles[i] + angles[i + 1]))
             .collect();
-        if middles.is_empty() || angles.len() > MOST_ANGLES {
+        if middles.is_empty() || angles.len() > MAX_ANGLES {
             break;
         }
         let guesses = between_samples(&angles, &logs, &middles);
@@ -61,10 +61,10 @@ pub(super) fn adapt(
             let halved = open[i].then(|| values.next().zip(guesses.next())).flatten();
             match halved {
                 Some((value, guess)) => {
-                    let wrong = (value - guess).abs() > tolerance;
+                    let inaccurate = (value - guess).abs() > tolerance;
                     next.push(0.5 * (angles[i] + angles[i + 1]));
                     next_logs.push(value);
-                    next_open.extend([wrong, wrong]);
+                    next_open.extend([inaccurate, inaccurate]);
                 }
                 None => next_open.push(false),
             }
@@ -81,7 +81,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_narrow_peak_and_a_ring_are_found() {
+    fn adaptation_resolves_a_narrow_peak_and_a_ring() {
         let f = |a: f64| 1e6 * (-a * a * 4e6).exp() + 1.0 + (-((a - 2.45) / 0.01).powi(2)).exp();
         let evaluate = |angles: &[f64]| angles.iter().map(|&a| f(a)).collect::<Vec<_>>();
         let angles = adapt(1e3, &[], 0.01, evaluate);
@@ -97,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn angles_rise_from_0_to_pi() {
+    fn angles_increase_from_0_to_pi() {
         for x in [1e-3, 0.3, 1.0, 10.0, 1e5] {
             let angles = first(x);
             assert_eq!((angles[0], angles[angles.len() - 1]), (0.0, PI));

@@ -1,25 +1,25 @@
-//! The amplitudes of spheres by angle.
+//! Scattering amplitudes of spheres by angle.
 //!
 //! `S_1 = sum c_n (a_n pi_n + b_n tau_n)`, `S_2 = sum c_n (a_n tau_n + b_n pi_n)` with `c_n = (2 n + 1) / (n (n + 1))` (BH eq.
-//! 4.74). Summed as `S_1 + S_2 = sum c_n (a_n + b_n) (pi_n + tau_n)` and `S_1 - S_2 = sum c_n (a_n - b_n) (pi_n - tau_n)`: half
-//! the work (Wiscombe 1980), and near 0 and 180 degrees, where one of the two vanishes, no digits are lost.
+//! 4.74), summed as `S_1 + S_2 = sum c_n (a_n + b_n) (pi_n + tau_n)` and `S_1 - S_2 = sum c_n (a_n - b_n) (pi_n - tau_n)`: half
+//! the work (Wiscombe 1980), without cancellation near 0 and 180 degrees, where one of the two vanishes.
 
 use super::sphere::{Coefficients, ScatteringMatrix};
 use num_complex::Complex64;
 
-/// Angles summed side by side.
+/// Number of angles summed in parallel.
 pub(super) const LANES: usize = 16;
 type Lanes = [f32; LANES];
 
-/// `c_n (pi_n + tau_n)` and `c_n (pi_n - tau_n)` at some angles, for `n = 1, 2 ..`: the same for spheres of any kind.
+/// `c_n (pi_n + tau_n)` and `c_n (pi_n - tau_n)` at some angles, for `n = 1, 2 ..`, which do not depend on the sphere.
 ///
-/// In single precision, for sums over many spheres: an amplitude is right to about 1e-6 of the largest of its terms.
+/// In single precision, for sums over many spheres: amplitudes are accurate to about 1e-6 of their largest term.
 pub(super) struct Angles(Vec<[Lanes; 2]>);
 
 /// `a_n + b_n` and `a_n - b_n`, real and imaginary parts, times a common factor.
 pub(super) type Pair = [f32; 4];
 
-/// The pairs of every order, times a factor.
+/// The pairs of all orders, times a factor.
 pub(super) fn pairs(coefficients: &Coefficients, factor: f64) -> impl Iterator<Item = Pair> {
     let both = coefficients.a.iter().zip(&coefficients.b);
     both.map(move |(a, b)| {
@@ -29,7 +29,7 @@ pub(super) fn pairs(coefficients: &Coefficients, factor: f64) -> impl Iterator<I
 }
 
 impl Angles {
-    /// At these cosines, for so many terms.
+    /// Computes `terms` orders at the given cosines.
     pub fn new(cosines: &[f64; LANES], terms: usize) -> Self {
         let mut waves = cosines.map(Wave::new);
         let both = |_| {
@@ -42,9 +42,9 @@ impl Angles {
         Self((0..terms).map(both).collect())
     }
 
-    /// Adds the scattering matrix of a sphere, not normalised (`S_11` and so on), at each angle, times `weight`.
+    /// Adds the unnormalised scattering matrix of a sphere (`S_11` etc.) at each angle, times `weight`.
     ///
-    /// Inlined into what runs it with wide vectors.
+    /// Inlined into its caller, which runs it with wide vectors.
     #[inline(always)]
     pub fn add(&self, pairs: &[Pair], weight: f64, into: &mut [ScatteringMatrix; LANES]) {
         let mut sums = [[0.0; LANES]; 4];
@@ -84,7 +84,7 @@ pub(super) fn amplitudes(coefficients: &Coefficients, cos_angle: f64) -> [Comple
     [0.5 * (plus + minus), 0.5 * (plus - minus)]
 }
 
-/// `pi_n` and `tau_n` upwards from `n = 1` (BH eq. 4.47).
+/// Upward recurrence of `pi_n` and `tau_n` from `n = 1` (BH eq. 4.47).
 struct Wave {
     cosine: f64,
     order: f64,
@@ -102,8 +102,8 @@ impl Wave {
         }
     }
 
-    /// `c_n (pi_n + tau_n)` and `c_n (pi_n - tau_n)`, and on to the next order. With `s = mu pi_n` and
-    /// `t = s - pi_(n-1)` it is `tau_n = n t - pi_(n-1)` and `pi_(n+1) = s + (n + 1) / n t`.
+    /// Returns `c_n (pi_n + tau_n)` and `c_n (pi_n - tau_n)` and advances to the next order. With `s = mu pi_n` and
+    /// `t = s - pi_(n-1)`, `tau_n = n t - pi_(n-1)` and `pi_(n+1) = s + (n + 1) / n t`.
     fn next_pair(&mut self) -> [f64; 2] {
         let n = self.order;
         let scaled = self.cosine * self.now;

@@ -1,10 +1,9 @@
-//! Fogs, clouds, hazes and rain as others have published them, by their size distributions.
+//! Published size distributions of fog, cloud, haze and rain drops.
 //!
 //! - D. Deirmendjian, *Electromagnetic Scattering on Spherical Polydispersions*, Elsevier 1969, table 4: hazes M, L, H; clouds
 //!   C.1, C.2, C.3.
 //! - E. P. Shettle & R. W. Fenn, *Models for the Aerosols of the Lower Atmosphere and the Effects of Humidity Variations on
 //!   Their Optical Properties*, AFGL-TR-79-0214, 1979, table 5: heavy and moderate fogs.
-//!
 //! - G. Feingold & Z. Levin, *The lognormal fit to raindrop spectra from frontal convective clouds in Israel*, J. Climate
 //!   Appl. Meteor. 25, 1346, 1986: rain of 1 mm an hour.
 //!
@@ -12,35 +11,35 @@
 
 use super::SizeDistribution;
 
-/// A published distribution of drops.
+/// A published size distribution of drops.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Drops {
-    /// Shettle & Fenn's fog 1, heavy advection fog: mode radius 10 micrometres, 0.37 g of water in a cubic metre.
+    /// Heavy advection fog, Shettle & Fenn's fog 1: mode radius 10 micrometres, 0.37 g of water per cubic metre.
     HeavyAdvectionFog,
-    /// Shettle & Fenn's fog 2, moderate advection fog: 8 micrometres, 0.19 g/m^3.
+    /// Moderate advection fog, Shettle & Fenn's fog 2: mode radius 8 micrometres, 0.19 g/m^3.
     ModerateAdvectionFog,
-    /// Shettle & Fenn's fog 3, heavy radiation fog: 4 micrometres, 0.06 g/m^3.
+    /// Heavy radiation fog, Shettle & Fenn's fog 3: mode radius 4 micrometres, 0.06 g/m^3.
     HeavyRadiationFog,
-    /// Shettle & Fenn's fog 4, moderate radiation fog, and mist: 2 micrometres, 0.02 g/m^3.
+    /// Moderate radiation fog and mist, Shettle & Fenn's fog 4: mode radius 2 micrometres, 0.02 g/m^3.
     ModerateRadiationFog,
-    /// Deirmendjian's cloud C.1, fair-weather cumulus: 4 micrometres.
+    /// Fair-weather cumulus, Deirmendjian's cloud C.1: mode radius 4 micrometres.
     CloudC1,
-    /// Deirmendjian's cloud C.2, which makes coronas: 4 micrometres, narrow.
+    /// Cloud with coronas, Deirmendjian's cloud C.2: mode radius 4 micrometres, narrow.
     CloudC2,
-    /// Deirmendjian's cloud C.3, mother-of-pearl clouds: 2 micrometres, narrow.
+    /// Mother-of-pearl cloud, Deirmendjian's cloud C.3: mode radius 2 micrometres, narrow.
     CloudC3,
-    /// Deirmendjian's haze M, maritime and coastal: 0.05 micrometres.
+    /// Maritime and coastal haze, Deirmendjian's haze M: mode radius 0.05 micrometres.
     HazeM,
-    /// Deirmendjian's haze L, continental: 0.07 micrometres.
+    /// Continental haze, Deirmendjian's haze L: mode radius 0.07 micrometres.
     HazeL,
-    /// Deirmendjian's haze H, high and stratospheric: 0.1 micrometres.
+    /// Stratospheric haze, Deirmendjian's haze H: mode radius 0.1 micrometres.
     HazeH,
-    /// Feingold & Levin's rain of 1 mm an hour: median radius 360 micrometres. Its table takes seconds.
+    /// Rain of 1 mm per hour, Feingold & Levin: median radius 360 micrometres. Computing its table takes seconds.
     Rain,
 }
 
 impl Drops {
-    /// All kinds with their names.
+    /// All distributions with their names.
     pub const ALL: [(&'static str, Self); 11] = [
         ("heavy-advection-fog", Self::HeavyAdvectionFog),
         ("moderate-advection-fog", Self::ModerateAdvectionFog),
@@ -55,7 +54,7 @@ impl Drops {
         ("rain", Self::Rain),
     ];
 
-    /// The sizes.
+    /// The size distribution.
     pub fn sizes(self) -> SizeDistribution {
         let (alpha, gamma, mode_radius_um) = match self {
             Self::HeavyAdvectionFog => (3.0, 1.0, 10.0),
@@ -83,10 +82,10 @@ mod tests {
     use super::*;
     use crate::optics::mie::{MieError, Particles};
 
-    /// Table 5 of Shettle & Fenn: drops in a cubic centimetre, grams of water in a cubic metre, and the parameter
+    /// Table 5 of Shettle & Fenn: drops per cubic centimetre, grams of water per cubic metre, and the parameter
     /// `b = alpha / r_c`; Deirmendjian's `b = alpha / (gamma r_c^gamma)`.
     #[test]
-    fn distributions_hold_the_water_that_was_published() {
+    fn distributions_have_the_published_water_content() {
         for (drops, number, grams, b) in [
             (Drops::HeavyAdvectionFog, 20.0, 0.37, 0.3),
             (Drops::ModerateAdvectionFog, 20.0, 0.19, 0.375),
@@ -111,9 +110,9 @@ mod tests {
         }
     }
 
-    /// Fog of large drops takes twice its geometric cross-section: heavy advection fog of 0.37 g/m^3 hides at 100 m.
+    /// The extinction efficiency of large drops is 2: heavy advection fog of 0.37 g/m^3 has a visibility of 100 m.
     #[test]
-    fn fogs_are_as_thick_as_their_water_makes_them() -> Result<(), MieError> {
+    fn extinction_of_fog_follows_its_water_content() -> Result<(), MieError> {
         let fog = Particles::water(Drops::HeavyAdvectionFog.sizes())?;
         let bulk = fog.bulk(550.0)?;
         let by_mass = bulk.extinction_per_m_by_mass(0.3723, 1.0);
@@ -122,7 +121,7 @@ mod tests {
             (by_mass / by_number - 1.0).abs() < 1e-3,
             "{by_mass} {by_number}"
         );
-        // 3 / (2 r_eff) for each g/m^3, and some percent for the edges.
+        // 3 / (2 r_eff) for each g/m^3, plus a few percent from edge effects.
         let simple = 1.5 * 0.3723 / fog.sizes().effective_radius_um();
         assert!(
             (1.02..1.06).contains(&(by_mass / simple)),

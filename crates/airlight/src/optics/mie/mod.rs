@@ -1,13 +1,13 @@
-//! Lorenz-Mie theory: what a homogeneous sphere of any size and any refractive index does to light.
+//! Lorenz-Mie theory: scattering and absorption by homogeneous spheres of any size and refractive index.
 //!
-//! **Conventions.** Time goes as `e^(-i omega t)`, so that a sphere that absorbs has the index `n + i k`, `k >= 0` (Bohren
-//! & Huffman, *Absorption and Scattering of Light by Small Particles*, 1983; codes after van de Hulst and Wiscombe write
-//! `n - i k`). The index is relative to the air around the sphere. The size parameter is `x = 2 pi r / lambda`, the length of
-//! the sphere's edge in wavelengths. Equation numbers `BH` are those of Bohren & Huffman.
+//! **Conventions.** The time dependence is `e^(-i omega t)`, so an absorbing sphere has the index `n + i k`, `k >= 0` (Bohren
+//! & Huffman, *Absorption and Scattering of Light by Small Particles*, 1983; codes after van de Hulst and Wiscombe use
+//! `n - i k`). The index is relative to the air around the sphere. The size parameter is `x = 2 pi r / lambda`, the
+//! circumference in wavelengths. Equation numbers `BH` are those of Bohren & Huffman.
 //!
-//! From the ground up: `recurrence` (Riccati-Bessel functions), [`Sphere`] (coefficients, efficiencies), `angular`
-//! (amplitudes at many angles at once), [`SizeDistribution`], [`Particles`] (many spheres of one kind: coefficients and
-//! phase functions in bulk), [`droplets`] (published fogs and clouds), [`DropTable`] (their tables, built once).
+//! Modules: `recurrence` (Riccati-Bessel functions), [`Sphere`] (coefficients, efficiencies), `angular` (amplitudes at many
+//! angles), [`SizeDistribution`], [`Particles`] (bulk coefficients and phase functions of many spheres), [`droplets`]
+//! (published fogs and clouds), [`DropTable`] (their tables, cached).
 
 mod angles;
 mod angular;
@@ -24,41 +24,41 @@ pub use shared::DropTable;
 pub use sizes::{SizeDistribution, SizeNode};
 pub use sphere::{Efficiencies, ScatteringMatrix, Sphere};
 
-/// The largest size parameter taken: a drop of 1 cm at 600 nm.
+/// Largest supported size parameter: a drop of 1 cm at 600 nm.
 pub const LARGEST_SIZE_PARAMETER: f64 = 1e5;
-/// The largest modulus of a refractive index taken.
+/// Largest supported modulus of a refractive index.
 pub const LARGEST_INDEX: f64 = 1e3;
 
-/// Why numbers do not make a sphere, or many.
+/// Error of a sphere or a distribution of spheres.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MieError {
     /// The size parameter is out of range.
-    #[error("the size parameter must lie above 0 and not above {LARGEST_SIZE_PARAMETER}, got {0}")]
+    #[error("expected a size parameter above 0 and at most {LARGEST_SIZE_PARAMETER}, got {0}")]
     SizeParameter(f64),
     /// The refractive index is out of range.
     #[error(
-        "the refractive index must be n + i k with n and k not below 0, not 0 and not above {LARGEST_INDEX}, got {real} + i {imaginary}"
+        "expected a refractive index n + i k with n and k of at least 0 and a modulus above 0 and at most {LARGEST_INDEX}, got {real} + i {imaginary}"
     )]
     Index {
-        /// Its real part.
+        /// Real part of the index.
         real: f64,
-        /// Its imaginary part.
+        /// Imaginary part of the index.
         imaginary: f64,
     },
     /// The wavelength is not positive.
-    #[error("the wavelength must be finite and above 0 nm, got {0}")]
+    #[error("expected a finite wavelength above 0 nm, got {0}")]
     Wavelength(f64),
-    /// A number of the size distribution is out of range.
-    #[error("{what} must be {right}, got {got}")]
+    /// A parameter of the size distribution is out of range.
+    #[error("expected {what} to be {right}, got {got}")]
     Sizes {
-        /// Which number, with its unit.
+        /// The parameter, with its unit.
         what: &'static str,
-        /// What was given.
+        /// Value of the parameter.
         got: f64,
-        /// What would be right.
+        /// The valid range.
         right: &'static str,
     },
-    /// The table of the phase function is refused.
+    /// The wavelengths do not make a table of a phase function.
     #[error(transparent)]
     Phase(#[from] super::phase::PhaseError),
 }

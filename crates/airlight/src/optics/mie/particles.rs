@@ -1,8 +1,8 @@
-//! Many spheres of one material: what a cloud of them does to light.
+//! Bulk optical properties of many spheres of one material.
 
 use super::angles::adapt;
 use super::angular::{Angles, LANES, Pair, pairs};
-use super::sizes::{FEWEST_SIZES, Steps};
+use super::sizes::{MIN_SIZES, Steps};
 use super::sphere::{Coefficients, ScatteringMatrix, check_index};
 use super::{LARGEST_SIZE_PARAMETER, MieError, SizeDistribution, SizeNode};
 use crate::math::parallel;
@@ -12,117 +12,116 @@ use std::f64::consts::{PI, TAU};
 
 /// Steps of the sums over sizes.
 ///
-/// A drop of clear water rings at sharp resonances, so the sums converge slowly: the fine steps are for them. Against steps
-/// a fifth as wide the phase function of droplets changes by 0.4 to 0.8 % (root mean square over all angles; 3 % where it
-/// changes most), coefficients and asymmetry by less than 5e-4; of aerosol by less than 1e-5 (test
-/// `sums_over_sizes_converge`).
+/// The sharp resonances of clear water drops make the sums converge slowly and require the fine steps. Compared with steps a
+/// fifth as wide, the phase function of droplets changes by 0.4 to 0.8 % (root mean square over all angles; at most 3 %),
+/// coefficients and asymmetry by less than 5e-4; for aerosol by less than 1e-5 (test `sums_over_sizes_converge`).
 const STEPS: Steps = Steps {
     size: 0.002,
     log: 0.03,
 };
-/// No more terms of Mie's series than this, over all sizes, so that drops of rain take seconds and not hours: their steps
-/// are wider, and what is finer than the fringes of neighbouring sizes is left as noise.
-const MOST_TERMS: f64 = 2e6;
-/// The error aimed at in `ln p` in the middle of the widest intervals that are kept; between the angles of the table, which
-/// lie closer, it is some 5 times less.
+/// Largest number of terms of the Mie series over all sizes. Limits the time for rain to seconds: its steps are wider, and
+/// detail finer than the fringes of neighbouring sizes remains as noise.
+const MAX_TERMS: f64 = 2e6;
+/// Target error of `ln p` in the middle of the widest intervals; between the angles of the table, which are closer, the
+/// error is about 5 times smaller.
 const TOLERANCE: f64 = 0.01;
 
-/// Spheres of one material in a distribution of sizes.
+/// Spheres of one material with a size distribution.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Particles {
     index: RefractiveIndex,
     sizes: SizeDistribution,
 }
 
-/// What spheres do to light of one wavelength, on the mean for one of them.
+/// Mean optical properties of a sphere in a distribution, at one wavelength.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BulkOptics {
     /// Wavelength, nm.
     pub wavelength_nm: f64,
-    /// Scattering cross-section, square micrometres.
+    /// Scattering cross-section, um^2.
     pub scattering_um2: f64,
-    /// Absorption cross-section, square micrometres.
+    /// Absorption cross-section, um^2.
     pub absorption_um2: f64,
     /// Mean cosine of the scattering angle.
     pub asymmetry: f64,
-    /// Mean volume, cubic micrometres.
+    /// Mean volume, um^3.
     pub volume_um3: f64,
 }
 
 impl BulkOptics {
-    /// Extinction cross-section, square micrometres.
+    /// Extinction cross-section, um^2.
     pub fn extinction_um2(&self) -> f64 {
         self.scattering_um2 + self.absorption_um2
     }
 
-    /// Scattering over extinction.
+    /// Single-scattering albedo: scattering divided by extinction.
     pub fn single_scattering_albedo(&self) -> f64 {
         self.scattering_um2 / self.extinction_um2()
     }
 
-    /// Extinction coefficient (1/m) of a number of spheres in a cubic centimetre.
+    /// Extinction coefficient, 1/m, for a number of spheres per cubic centimetre.
     pub fn extinction_per_m(&self, number_per_cm3: f64) -> f64 {
         1e-6 * number_per_cm3 * self.extinction_um2()
     }
 
-    /// Extinction coefficient (1/m) of a mass of spheres in a cubic metre, grams, of a density in grams per cubic
-    /// centimetre: of water droplets (density 1) by the liquid water content.
+    /// Extinction coefficient, 1/m, for a mass of spheres in grams per cubic metre and a material density in grams per cubic
+    /// centimetre. For water droplets (density 1) the mass is the liquid water content.
     pub fn extinction_per_m_by_mass(&self, grams_per_m3: f64, density_g_cm3: f64) -> f64 {
         grams_per_m3 * self.extinction_um2() / (self.volume_um3 * density_g_cm3)
     }
 }
 
-/// Spheres of all sizes at one wavelength.
+/// Coefficients of spheres of all sizes at one wavelength.
 struct Prepared {
-    /// For each size what it scatters and where its coefficients lie in `pairs`.
+    /// For each size, its scattering and the range of its coefficients in `pairs`.
     sizes: Vec<(f64, std::ops::Range<usize>)>,
     pairs: Vec<Pair>,
-    most_terms: usize,
-    /// Means over the number of `sum (2 n + 1) ...`.
+    max_terms: usize,
+    /// Number-weighted means of `sum (2 n + 1) ...`.
     scattered: f64,
     absorbed: f64,
     forward: f64,
 }
 
 impl Particles {
-    /// Spheres of a refractive index (relative to air, taken as 1) and of these sizes.
+    /// Spheres with a refractive index (relative to air, whose index is taken as 1) and a size distribution.
     ///
     /// # Errors
-    /// [`MieError`] where the sizes cannot be, or the index at 550 nm.
+    /// [`MieError`] if the size distribution or the index at 550 nm is invalid.
     pub fn new(index: RefractiveIndex, sizes: SizeDistribution) -> Result<Self, MieError> {
         sizes.validate()?;
         check_index(index.at(550.0))?;
         Ok(Self { index, sizes })
     }
 
-    /// Droplets of pure water.
+    /// Droplets of pure water with a size distribution.
     ///
     /// # Errors
-    /// [`MieError`] where the sizes cannot be.
+    /// [`MieError`] if the size distribution is invalid.
     pub fn water(sizes: SizeDistribution) -> Result<Self, MieError> {
         Self::new(RefractiveIndex::water(), sizes)
     }
 
-    /// The refractive index.
+    /// Refractive index.
     pub fn index(&self) -> &RefractiveIndex {
         &self.index
     }
 
-    /// The sizes.
+    /// Size distribution.
     pub fn sizes(&self) -> &SizeDistribution {
         &self.sizes
     }
 
-    /// Cross-sections and asymmetry at a wavelength.
+    /// Cross-sections and asymmetry at a wavelength in nm.
     ///
     /// # Errors
-    /// [`MieError`] for a wavelength that is not positive, and for spheres that are too large for it.
+    /// [`MieError`] if the wavelength is not positive, or a size parameter is too large.
     pub fn bulk(&self, wavelength_nm: f64) -> Result<BulkOptics, MieError> {
         Ok(self.bulk_of(wavelength_nm, &self.prepare(wavelength_nm, STEPS)?))
     }
 
     fn bulk_of(&self, wavelength_nm: f64, prepared: &Prepared) -> BulkOptics {
-        // pi r^2 2 / x^2, which the radius drops out of.
+        // pi r^2 2 / x^2, in which the radius cancels.
         let wavelength_um = 1e-3 * wavelength_nm;
         let area = wavelength_um * wavelength_um / TAU;
         BulkOptics {
@@ -134,7 +133,7 @@ impl Particles {
         }
     }
 
-    /// The scattering matrix at cosines of the scattering angle; `f11` integrates to 1 over the sphere.
+    /// Scattering matrices at cosines of the scattering angle; `f11` integrates to 1 over the sphere.
     ///
     /// # Errors
     /// As [`Particles::bulk`].
@@ -146,14 +145,13 @@ impl Particles {
         Ok(self.prepare(wavelength_nm, STEPS)?.matrices(cosines))
     }
 
-    /// The phase function as a table at these wavelengths (nm, rising) with the rest of the scattering matrix, and what else
-    /// is known of each.
+    /// Tables of the phase function and scattering matrix at wavelengths (nm, increasing), and the bulk properties at each.
     ///
-    /// The angles are chosen by the phase functions of the shortest and the longest wavelength, so that forward peak,
-    /// bows and glory are kept: the table's error between its angles is below 0.5 %.
+    /// The angles are selected for the phase functions of the shortest and the longest wavelength, so that the forward peak,
+    /// bows and the glory are resolved: the error between the angles is below 0.5 %.
     ///
     /// # Errors
-    /// As [`Particles::bulk`]; [`MieError::Phase`] where the wavelengths do not rise.
+    /// As [`Particles::bulk`]; [`MieError::Phase`] if the wavelengths are not increasing.
     pub fn table(
         &self,
         wavelengths_nm: &[f64],
@@ -161,8 +159,8 @@ impl Particles {
         self.table_in(wavelengths_nm, STEPS, TOLERANCE)
     }
 
-    /// As [`Particles::table`], but quicker, for broad distributions, whose sizes blur each other's resonances: with steps
-    /// over the sizes that are `wider` times as wide, and angles as far apart as another tolerance of `ln p` lets them be.
+    /// As [`Particles::table`], but faster, for broad distributions, which average out resonances: with size steps wider by the
+    /// factor `wider`, and another tolerance of `ln p` for the angles.
     pub(crate) fn broad_table(
         &self,
         wavelengths_nm: &[f64],
@@ -216,7 +214,7 @@ impl Particles {
         Ok((table.with_matrix(&ratios)?, bulk))
     }
 
-    /// The coefficients of spheres of all sizes.
+    /// Computes the coefficients of spheres of all sizes.
     fn prepare(&self, wavelength_nm: f64, steps: Steps) -> Result<Prepared, MieError> {
         if !(wavelength_nm.is_finite() && wavelength_nm > 0.0) {
             return Err(MieError::Wavelength(wavelength_nm));
@@ -229,8 +227,8 @@ impl Particles {
         if largest > LARGEST_SIZE_PARAMETER {
             return Err(MieError::SizeParameter(largest));
         }
-        // Neighbours in size share the room for their functions.
-        /// Share of a size, what it scatters, absorbs and sends straight on, and its coefficients.
+        // Neighbouring sizes share buffers.
+        /// Share of the number; scattering, absorption and forward sums; coefficients.
         type Sized = (f64, [f64; 3], Vec<Pair>);
         let parts: Vec<Vec<Sized>> = parallel::map_chunks(&nodes, 16, |nodes| {
             let mut coefficients = Coefficients::default();
@@ -241,7 +239,7 @@ impl Particles {
                     coefficients.absorbed,
                     coefficients.forward(),
                 ];
-                // Scaled to scatter as much as any other, whatever its size.
+                // Scaled so that all sizes have equal scattering.
                 let factor = coefficients.scattered.sqrt().recip();
                 (node.share, sums, pairs(&coefficients, factor).collect())
             };
@@ -250,7 +248,7 @@ impl Particles {
         let mut prepared = Prepared {
             sizes: Vec::with_capacity(nodes.len()),
             pairs: Vec::new(),
-            most_terms: 0,
+            max_terms: 0,
             scattered: 0.0,
             absorbed: 0.0,
             forward: 0.0,
@@ -259,7 +257,7 @@ impl Particles {
             prepared.scattered += share * scattered;
             prepared.absorbed += share * absorbed;
             prepared.forward += share * forward;
-            prepared.most_terms = prepared.most_terms.max(pairs.len());
+            prepared.max_terms = prepared.max_terms.max(pairs.len());
             let start = prepared.pairs.len();
             prepared.pairs.extend(pairs);
             let range = start..prepared.pairs.len();
@@ -268,17 +266,17 @@ impl Particles {
         Ok(prepared)
     }
 
-    /// Radii, never more than [`MOST_TERMS`] allow.
+    /// Radii of the size distribution, with steps wide enough for [`MAX_TERMS`].
     fn nodes(&self, wavelength_nm: f64, mut steps: Steps) -> Vec<SizeNode> {
         loop {
             let nodes = self.sizes.nodes(steps);
             let radii_um: f64 = nodes.iter().map(|node| node.radius_um).sum();
             let terms = radii_um * TAU * 1e3 / wavelength_nm;
-            if terms <= MOST_TERMS || nodes.len() <= FEWEST_SIZES {
+            if terms <= MAX_TERMS || nodes.len() <= MIN_SIZES {
                 return nodes;
             }
-            steps.size *= 1.05 * terms / MOST_TERMS;
-            steps.log *= 1.05 * terms / MOST_TERMS;
+            steps.size *= 1.05 * terms / MAX_TERMS;
+            steps.log *= 1.05 * terms / MAX_TERMS;
         }
     }
 }
@@ -289,13 +287,13 @@ impl Prepared {
         let blocks = parallel::map_chunks(cosines, LANES, |cosines| {
             let last = cosines[cosines.len() - 1];
             let padded = std::array::from_fn(|lane| *cosines.get(lane).unwrap_or(&last));
-            self.block(&Angles::new(&padded, self.most_terms))
+            self.block(&Angles::new(&padded, self.max_terms))
         });
         let all = blocks.into_iter().flatten().take(cosines.len());
         all.map(|matrix| matrix.scaled(scale)).collect()
     }
 
-    /// Sums over the sizes at a few angles.
+    /// Sums over the sizes at a block of angles.
     fn block(&self, angles: &Angles) -> [ScatteringMatrix; LANES] {
         vectorized(
             #[inline(always)]

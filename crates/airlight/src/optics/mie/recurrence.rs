@@ -1,11 +1,11 @@
-//! Riccati-Bessel functions by the recurrences that are stable for them.
+//! Riccati-Bessel functions by stable recurrences.
 
 use num_complex::Complex64;
 
-/// The number of terms that Mie's series need at a size parameter.
+/// Number of terms of the Mie series for a size parameter.
 ///
-/// Wiscombe (Appl. Opt. 19, 1505, 1980, eq. 6) stops at `x + 4.05 x^(1/3) + 2`, where the coefficients have fallen to
-/// about 1e-8 of the first (1e-14 in intensity); a few more bring amplitudes near directions of cancellation to 1e-12.
+/// Wiscombe (Appl. Opt. 19, 1505, 1980, eq. 6) stops at `x + 4.05 x^(1/3) + 2`, where the coefficients have fallen to about
+/// 1e-8 of the first (1e-14 in intensity); a few more bring amplitudes near directions of cancellation to 1e-12.
 pub(super) fn terms(x: f64) -> usize {
     (x + 6.0 * x.cbrt() + 6.0).ceil() as usize
 }
@@ -14,9 +14,10 @@ pub(super) fn terms(x: f64) -> usize {
 ///
 /// `D_(n-1) = n / z - 1 / (D_n + n / z)`
 ///
-/// from 0 far above both `last` and `|z|`: stable for any complex `z`, where the upward one is not once `|Im z|` grows.
+/// from 0 far above both `last` and `|z|`: stable for any complex `z`, unlike the upward recurrence, which fails as `|Im z|`
+/// grows.
 pub(super) fn log_derivatives(z: Complex64, last: usize, into: &mut Vec<Complex64>) {
-    // From the turning point |z| on, errors fall by e for every |z|^(1/3) terms or faster.
+    // Above the turning point |z|, errors fall by a factor e every |z|^(1/3) terms or faster.
     let modulus = z.norm();
     let start = (modulus + 8.0 * modulus.cbrt()).ceil() as usize;
     let start = start.max(last) + 16;
@@ -35,9 +36,9 @@ pub(super) fn log_derivatives(z: Complex64, last: usize, into: &mut Vec<Complex6
 
 /// `psi_n(x) = x j_n(x)` and `chi_n(x) = -x y_n(x)`, `n = 0 ..= last`.
 ///
-/// `chi` grows beyond the turning point `n = x` and is stable upwards. `psi` falls there: it goes upwards to the turning
-/// point only and on by the ratio `psi_n / psi_(n-1) = 1 / (D_n + n / x)`, so every term keeps its relative accuracy,
-/// however small the sphere.
+/// `chi` grows beyond the turning point `n = x`, so its upward recurrence is stable. `psi` decreases there: it is computed
+/// upwards to the turning point, then by the ratio `psi_n / psi_(n-1) = 1 / (D_n + n / x)`, so all terms keep their relative
+/// accuracy, however small the sphere.
 pub(super) fn riccati_bessel(x: f64, last: usize, psi: &mut Vec<f64>, chi: &mut Vec<f64>) {
     psi.clear();
     chi.clear();
@@ -57,7 +58,7 @@ pub(super) fn riccati_bessel(x: f64, last: usize, psi: &mut Vec<f64>, chi: &mut 
             psi.push(next);
         }
     }
-    // D_n + n / x, downwards from where it is (2 n + 1) / x to rounding.
+    // D_n + n / x downwards, from an order where it equals (2 n + 1) / x to rounding.
     let start = last + 16 + (4.0 * x.cbrt()) as usize;
     let mut ratios = vec![0.0; last + 1];
     let mut sum = (2 * start + 1) as f64 / x;
@@ -76,9 +77,9 @@ pub(super) fn riccati_bessel(x: f64, last: usize, psi: &mut Vec<f64>, chi: &mut 
 mod tests {
     use super::*;
 
-    /// The Wronskian `psi_(n-1) chi_n - psi_n chi_(n-1) = 1` ties both functions at every order.
+    /// The Wronskian `psi_(n-1) chi_n - psi_n chi_(n-1) = 1` relates the two functions at every order.
     #[test]
-    fn both_functions_keep_their_wronskian() {
+    fn psi_and_chi_satisfy_the_wronskian() {
         let (mut psi, mut chi) = (Vec::new(), Vec::new());
         for x in [1e-3, 0.1, 1.0, 3.0, 10.0, 31.4, 100.0, 1e3, 2e4] {
             riccati_bessel(x, terms(x), &mut psi, &mut chi);
@@ -93,9 +94,9 @@ mod tests {
         }
     }
 
-    /// `psi_2(x) = (3 / x^2 - 1) sin x - 3 cos x / x`, whose terms cancel to nothing at small x: `x^3 / 15`.
+    /// `psi_2(x) = (3 / x^2 - 1) sin x - 3 cos x / x`, whose terms cancel at small x, leaving `x^3 / 15`.
     #[test]
-    fn small_arguments_keep_their_digits() {
+    fn small_arguments_keep_relative_accuracy() {
         let (mut psi, mut chi) = (Vec::new(), Vec::new());
         let x: f64 = 1e-3;
         riccati_bessel(x, 3, &mut psi, &mut chi);
@@ -105,7 +106,7 @@ mod tests {
 
     /// `D_0(z) = cot z`.
     #[test]
-    fn the_logarithmic_derivative_ends_in_a_cotangent() {
+    fn logarithmic_derivative_of_order_zero_is_the_cotangent() {
         let mut all = Vec::new();
         for z in [
             Complex64::new(1.33, 0.0),

@@ -1,4 +1,4 @@
-//! Tables of published drops: built once in a process, and shared.
+//! Cached tables of published drop distributions.
 
 use super::droplets::Drops;
 use super::{BulkOptics, MieError, Particles};
@@ -8,28 +8,28 @@ use crate::spectrum::rgb::{self, RgbSpace};
 use std::collections::HashMap;
 use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
-/// What drops of one kind do to light, at several wavelengths or in red, green and blue.
+/// Optical properties of one kind of drops, at several wavelengths or in red, green and blue.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DropTable {
-    /// Where they scatter to.
+    /// Phase function with the scattering matrix.
     pub phase: TabulatedPhase,
-    /// Cross-sections and asymmetry, wavelength by wavelength, rising.
+    /// Cross-sections and asymmetry at each wavelength, in increasing order.
     pub bulk: Vec<BulkOptics>,
-    /// The same at 550 nm, where visibility is meant.
+    /// Cross-sections and asymmetry at 550 nm, the wavelength for which visibility is defined.
     pub green: BulkOptics,
 }
 
-/// Whose table it is.
+/// Key of a cached table.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 enum Key {
-    /// At wavelengths, by their bits.
+    /// Drops and the bits of the wavelengths.
     Wavelengths(Drops, Vec<u64>),
-    /// In red, green and blue.
+    /// Drops and the RGB space.
     Rgb(Drops, RgbSpace),
 }
 
-/// No lock is held while a table is built: whoever builds one waits for other threads, which may want it too. So two
-/// that ask for it first at one moment may both build it; they get the same numbers.
+/// No lock is held while a table is built, because building waits for other threads, which may need the cache too. Two
+/// threads that request the same table at the same time may both build it, with equal results.
 static TABLES: LazyLock<Mutex<HashMap<Key, Arc<DropTable>>>> = LazyLock::new(Mutex::default);
 
 fn shared(
@@ -45,8 +45,8 @@ fn shared(
 }
 
 impl Drops {
-    /// The table at these wavelengths (nm, rising): built once in a process, and kept. Building takes 0.1 to 0.5 s a
-    /// wavelength on two cores, for rain 1.5 s (example `spheres`).
+    /// Table at wavelengths (nm, increasing), built once in a process and cached. Building takes 0.1 to 0.5 s per wavelength on
+    /// two cores, 1.5 s for rain (example `spheres`).
     ///
     /// # Errors
     /// As [`Particles::table`].
@@ -60,10 +60,10 @@ impl Drops {
         })
     }
 
-    /// The table of a linear RGB space in sunlight, at the wavelengths [`rgb::DOMINANT_NM`] in rising order: each channel is
-    /// the mean over the standard grid ([`WavelengthGrid::standard`]), weighted as the channel weighs sunlight (phase
-    /// functions by what is scattered, too). For white sunlight scattered once that is the spectral answer, where three
-    /// single wavelengths would paint bows and glories too gaudy.
+    /// Table for a linear RGB space in sunlight, at the wavelengths [`rgb::DOMINANT_NM`] in increasing order. Each channel is the
+    /// mean over the standard grid ([`WavelengthGrid::standard`]), weighted by the channel's response to sunlight (for phase
+    /// functions, to scattered light). For singly scattered white sunlight this is the spectral result, whereas three single
+    /// wavelengths give bows and glories that are too colourful.
     ///
     /// # Errors
     /// As [`Particles::table`].
@@ -77,7 +77,7 @@ impl Drops {
     }
 }
 
-/// The part of each wavelength in sunlight's blue, green and red.
+/// Weight of each wavelength in the blue, green and red of sunlight.
 fn channel_weights(grid: &WavelengthGrid, space: RgbSpace) -> [Vec<f64>; 3] {
     let from_xyz = space.from_xyz_matrix();
     let sunlight: Vec<[f64; 3]> = grid
@@ -92,10 +92,10 @@ fn channel_weights(grid: &WavelengthGrid, space: RgbSpace) -> [Vec<f64>; 3] {
     })
 }
 
-/// Means over the wavelengths.
+/// Means over the wavelengths in the channels.
 ///
-/// A channel's weights go below 0 where its primary lies inside the spectrum's curve; phase functions differ far less from
-/// wavelength to wavelength than would make such a mean negative, and are held at a thousandth of the plain mean.
+/// A channel has negative weights if its primary lies inside the spectral locus. Phase functions vary too little between
+/// wavelengths to make such a mean negative; they are clamped to a thousandth of the plain mean.
 fn in_channels(
     spectral: &DropTable,
     grid: &WavelengthGrid,

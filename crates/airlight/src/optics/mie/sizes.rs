@@ -1,13 +1,13 @@
-//! How many spheres there are of each size.
+//! Size distributions of spheres.
 
 use super::MieError;
 use libm::{erf, lgamma};
 use std::f64::consts::{PI, SQRT_2};
 
-/// A distribution of radii by number. All are densities over the radius whose integral is 1.
+/// Number distribution of radii, a density with integral 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SizeDistribution {
-    /// All of one size.
+    /// A single radius.
     Monodisperse {
         /// Radius, micrometres.
         radius_um: f64,
@@ -19,7 +19,7 @@ pub enum SizeDistribution {
         alpha: f64,
         /// Power in the exponential, `gamma > 0`.
         gamma: f64,
-        /// The most frequent radius `r_c`, micrometres.
+        /// Mode radius `r_c`, micrometres.
         mode_radius_um: f64,
     },
     /// `n(r) ~ exp(-ln^2(r / r_m) / (2 ln^2 sigma)) / r` between two radii.
@@ -28,26 +28,26 @@ pub enum SizeDistribution {
         median_radius_um: f64,
         /// Geometric standard deviation `sigma > 1`.
         geometric_deviation: f64,
-        /// The smallest and the largest radius, micrometres; 0 and infinity for the whole distribution.
+        /// Smallest and largest radius, micrometres; 0 and infinity for the untruncated distribution.
         range_um: [f64; 2],
     },
 }
 
-/// A radius and the share of the number that it stands for.
+/// A radius and the fraction of the number that it represents.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SizeNode {
     /// Radius, micrometres.
     pub radius_um: f64,
-    /// Share of all spheres; the shares sum to 1.
+    /// Fraction of all spheres; the fractions sum to 1.
     pub share: f64,
 }
 
-/// The fourth moment, which the height of the forward peak is made of, is cut where its density has fallen to this part
-/// of its maximum, and so is the second at the small end.
+/// Sums are truncated where the density of the fourth moment, which determines the forward peak, has fallen to this fraction
+/// of its maximum, and at the small end where that of the second moment has.
 const NEGLIGIBLE: f64 = 1e-8;
 
-/// Radii of any sum over sizes at least.
-pub(super) const FEWEST_SIZES: usize = 16;
+/// Smallest number of radii in a sum over sizes.
+pub(super) const MIN_SIZES: usize = 16;
 
 impl SizeDistribution {
     /// The gamma distribution of Hansen (J. Atmos. Sci. 28, 1400, 1971; Hansen & Travis, Space Sci. Rev. 16, 527, 1974, eq.
@@ -61,7 +61,7 @@ impl SizeDistribution {
         }
     }
 
-    /// The whole lognormal distribution.
+    /// The untruncated lognormal distribution.
     pub fn log_normal(median_radius_um: f64, geometric_deviation: f64) -> Self {
         Self::LogNormal {
             median_radius_um,
@@ -70,10 +70,10 @@ impl SizeDistribution {
         }
     }
 
-    /// Checks every number.
+    /// Checks the parameters.
     ///
     /// # Errors
-    /// [`MieError::Sizes`] for the first that cannot be.
+    /// [`MieError::Sizes`] for the first parameter out of range.
     pub fn validate(&self) -> Result<(), MieError> {
         let check = |what, got: f64, least: f64, right| match got.is_finite() && got > least {
             true => Ok(()),
@@ -140,11 +140,11 @@ impl SizeDistribution {
         }
     }
 
-    /// Mean of the radius to a power (any power that is not too negative), micrometres to that power.
+    /// Mean of a power of the radius, micrometres to that power; negative powers must keep the mean finite.
     ///
     /// Closed forms: `r_c^k (gamma / alpha)^(k / gamma) Gamma((alpha + k + 1) / gamma) / Gamma((alpha + 1) / gamma)` for the
-    /// modified gamma distribution, `r_m^k exp(k^2 ln^2 sigma / 2)` for the whole lognormal one, times the shares of two
-    /// normal distributions for a part of it.
+    /// modified gamma distribution, `r_m^k exp(k^2 ln^2 sigma / 2)` for the untruncated lognormal distribution, times the ratio of
+    /// two normal distributions if it is truncated.
     pub fn mean_power(&self, power: f64) -> f64 {
         match *self {
             Self::Monodisperse { radius_um } => radius_um.powf(power),
@@ -169,7 +169,7 @@ impl SizeDistribution {
         }
     }
 
-    /// The share of the whole lognormal distribution's mean power that lies in the range.
+    /// Fraction of the untruncated lognormal distribution's mean power that lies in the range.
     fn share_of_range(&self, power: f64) -> f64 {
         let Self::LogNormal {
             median_radius_um,
@@ -187,7 +187,7 @@ impl SizeDistribution {
         below(range_um[1]) - below(range_um[0])
     }
 
-    /// The most frequent radius, micrometres: `r_m exp(-ln^2 sigma)` for the lognormal distribution (within its range).
+    /// Mode radius, micrometres; for the lognormal distribution `r_m exp(-ln^2 sigma)`, clamped to its range.
     pub fn mode_radius_um(&self) -> f64 {
         match *self {
             Self::Monodisperse { radius_um } => radius_um,
@@ -214,7 +214,7 @@ impl SizeDistribution {
         self.mean_power(4.0) * self.mean_power(2.0) / (third * third) - 1.0
     }
 
-    /// Mean volume of a sphere, cubic micrometres.
+    /// Mean volume of a sphere, um^3.
     pub fn mean_volume_um3(&self) -> f64 {
         4.0 / 3.0 * PI * self.mean_power(3.0)
     }
@@ -242,7 +242,7 @@ impl SizeDistribution {
         }
     }
 
-    /// Logarithms of the radii between which the spheres lie that matter to light.
+    /// Logarithms of the radii between which spheres contribute to scattering.
     fn log_range(&self) -> [f64; 2] {
         let (center, limits) = match *self {
             Self::Monodisperse { radius_um } => return [radius_um.ln(); 2],
@@ -256,7 +256,7 @@ impl SizeDistribution {
             } => (median_radius_um.ln(), range_um.map(f64::ln)),
         };
         const STEP: f64 = 1.0 / 64.0;
-        // From the highest point of `power * u + log_density(u)`, which is concave, outwards.
+        // Outwards from the maximum of `power * u + log_density(u)`, which is concave.
         let end = |power: f64, direction: f64| {
             let weighted = |u: f64| power * u + self.log_density(u);
             let mut at = center;
@@ -273,9 +273,9 @@ impl SizeDistribution {
         [end(2.0, -1.0).max(limits[0]), end(4.0, 1.0).min(limits[1])]
     }
 
-    /// Radii for sums over the sizes, in steps of at most `size` times the effective radius (far above that, of a share of
-    /// the radius) and of at most `log` in the radius's logarithm. At equal steps of
-    /// `t = ln r / log + (F / size) ln(1 + r / (F r_eff))` the sum of what is smooth converges faster than any power.
+    /// Radii for sums over the sizes, in steps of at most `size` times the effective radius (relative to the radius far above it)
+    /// and of at most `log` in the logarithm of the radius. At equal steps of
+    /// `t = ln r / log + (F / size) ln(1 + r / (F r_eff))` the sum of a smooth function converges faster than any power.
     pub(super) fn nodes(&self, steps: Steps) -> Vec<SizeNode> {
         if let Self::Monodisperse { radius_um } = *self {
             return vec![SizeNode {
@@ -292,7 +292,7 @@ impl SizeDistribution {
             1.0 / steps.log + F / steps.size * r / (scale_um + r)
         };
         let (from, to) = (place(least), place(most));
-        let count = (to - from).ceil().max(FEWEST_SIZES as f64);
+        let count = (to - from).ceil().max(MIN_SIZES as f64);
         let step = (to - from) / count;
         let mut u = least;
         let mut nodes = Vec::with_capacity(count as usize);
@@ -313,7 +313,7 @@ impl SizeDistribution {
         self.scale(nodes)
     }
 
-    /// Scales the shares: of number, by the mean geometric cross-section, as the smallest spheres are left out.
+    /// Normalises the fractions of the number by the mean geometric cross-section, because the smallest spheres are omitted.
     fn scale(&self, mut nodes: Vec<SizeNode>) -> Vec<SizeNode> {
         let sum: f64 = nodes
             .iter()
@@ -325,12 +325,12 @@ impl SizeDistribution {
     }
 }
 
-/// The widest steps of a sum over sizes.
+/// Largest steps of a sum over sizes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Steps {
-    /// In the radius over the effective radius.
+    /// Step of the radius, relative to the effective radius.
     pub size: f64,
-    /// In the logarithm of the radius.
+    /// Step of the logarithm of the radius.
     pub log: f64,
 }
 

@@ -1,4 +1,4 @@
-//! One sphere: Mie's coefficients, and the efficiencies that follow from them.
+//! A single sphere: Mie coefficients, efficiencies and scattering matrix.
 
 use super::recurrence::{log_derivatives, riccati_bessel, terms};
 use super::{LARGEST_INDEX, LARGEST_SIZE_PARAMETER, MieError, angular};
@@ -12,14 +12,14 @@ pub struct Sphere {
     coefficients: Coefficients,
 }
 
-/// Cross-sections over the sphere's geometric one `pi r^2`, and the mean cosine of scattering.
+/// Efficiencies, the cross-sections divided by the geometric cross-section `pi r^2`, and the mean cosine of scattering.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Efficiencies {
-    /// Taken out of the beam: scattering and absorption.
+    /// Extinction: scattering plus absorption.
     pub extinction: f64,
-    /// Scattered.
+    /// Scattering.
     pub scattering: f64,
-    /// Absorbed.
+    /// Absorption.
     pub absorption: f64,
     /// Radar backscattering: `4 pi` times the differential scattering cross-section at 180 degrees.
     pub backscattering: f64,
@@ -27,21 +27,21 @@ pub struct Efficiencies {
     pub asymmetry: f64,
 }
 
-/// The four elements of the scattering matrix of a sphere (BH eq. 4.77), scaled so that `f11` is the phase function.
+/// The four independent elements of a sphere's scattering matrix (BH eq. 4.77), scaled so that `f11` is the phase function.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScatteringMatrix {
     /// Phase function for natural light, sr^-1.
     pub f11: f64,
-    /// Natural light to linear polarisation: `-f12 / f11` is the degree of polarisation, positive across the scattering
+    /// Natural light to linear polarisation: `-f12 / f11` is the degree of polarisation, positive perpendicular to the scattering
     /// plane.
     pub f12: f64,
-    /// Linear polarisation at 45 degrees, and circular, to themselves.
+    /// Linear polarisation at 45 degrees, and circular polarisation, to themselves.
     pub f33: f64,
     /// Circular to linear polarisation at 45 degrees.
     pub f34: f64,
 }
 
-/// Mie's `a_n` and `b_n` (`n = 1, 2 ..` at place 0, 1 ..) and what they sum up to.
+/// Mie's `a_n` and `b_n` (`n = 1, 2 ..` at index 0, 1 ..) and sums over them.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Coefficients {
     pub a: Vec<Complex64>,
@@ -61,12 +61,12 @@ struct Scratch {
 }
 
 impl Coefficients {
-    /// Those of a sphere, in place of what was there. Both numbers must have been checked.
+    /// Computes the coefficients of a sphere, replacing the previous ones. The arguments must have been checked.
     ///
-    /// With `A = D_n(m x) / m + n / x` (BH eq. 4.88), `N = A psi_n - psi_(n-1)` and `M = A chi_n - chi_(n-1)` it is
-    /// `a_n = N / (N - i M)`; `b_n` the same with `B = m D_n(m x) + n / x`. Then `|a|^2 = |N|^2 / |N - i M|^2`, and
-    /// `Re a - |a|^2 = -Im(N M*) / |N - i M|^2 = -Im(A) / |N - i M|^2`, as the Wronskian of `psi` and `chi` is 1.
-    /// Scattering and absorption are thus sums of terms of one sign, and neither drowns in the other.
+    /// With `A = D_n(m x) / m + n / x` (BH eq. 4.88), `N = A psi_n - psi_(n-1)` and `M = A chi_n - chi_(n-1)`,
+    /// `a_n = N / (N - i M)`; likewise `b_n` with `B = m D_n(m x) + n / x`. Then `|a|^2 = |N|^2 / |N - i M|^2`, and
+    /// `Re a - |a|^2 = -Im(N M*) / |N - i M|^2 = -Im(A) / |N - i M|^2`, because the Wronskian of `psi` and `chi` is 1.
+    /// Scattering and absorption are thus sums of terms of one sign, and neither cancels the other.
     pub fn fill(&mut self, x: f64, m: Complex64) {
         let last = terms(x);
         let Scratch {
@@ -100,7 +100,7 @@ impl Coefficients {
         self.absorbed = self.absorbed.max(0.0);
     }
 
-    /// `sum over n` of the interference that makes the mean cosine (BH, sec. 4.5): `g` is twice this over `scattered`.
+    /// Sum over `n` of the interference terms of the mean cosine (BH, sec. 4.5): `g` is twice this divided by `scattered`.
     pub fn forward(&self) -> f64 {
         let (a, b) = (&self.a, &self.b);
         let mut sum = 0.0;
@@ -117,14 +117,14 @@ impl Coefficients {
 }
 
 impl Sphere {
-    /// A sphere of a size parameter (above 0, at most [`LARGEST_SIZE_PARAMETER`]) and of an index `n + i k`.
+    /// Sphere with a size parameter (above 0, at most [`LARGEST_SIZE_PARAMETER`]) and an index `n + i k`.
     ///
-    /// For size parameters from 0.001 to 20000, transparent or absorbing, efficiencies are right to 1e-13 (relative;
-    /// absorption too, however small) and amplitudes to 3e-11 (test `corners_agree_with_sixty_digits`). Work and memory
-    /// grow with the size parameter.
+    /// For size parameters from 0.001 to 20000, transparent or absorbing, efficiencies are accurate to 1e-13 (relative; including
+    /// absorption, however small) and amplitudes to 3e-11 (test `corners_agree_with_sixty_digits`). Time and memory grow with
+    /// the size parameter.
     ///
     /// # Errors
-    /// [`MieError`] for a number out of its domain.
+    /// [`MieError`] if an argument is outside its domain.
     pub fn new(size_parameter: f64, index: Complex64) -> Result<Self, MieError> {
         if !(size_parameter > 0.0 && size_parameter <= LARGEST_SIZE_PARAMETER) {
             return Err(MieError::SizeParameter(size_parameter));
@@ -162,26 +162,26 @@ impl Sphere {
         }
     }
 
-    /// The amplitudes `S_1` (across the scattering plane) and `S_2` (in it) at the cosine of the scattering angle (BH eq.
-    /// 4.74).
+    /// Amplitudes `S_1` (perpendicular to the scattering plane) and `S_2` (parallel to it) at the cosine of the scattering angle
+    /// (BH eq. 4.74).
     pub fn amplitudes(&self, cos_angle: f64) -> [Complex64; 2] {
         angular::amplitudes(&self.coefficients, cos_angle)
     }
 
-    /// The scattering matrix at the cosine of the scattering angle.
+    /// Scattering matrix at the cosine of the scattering angle.
     pub fn matrix(&self, cos_angle: f64) -> ScatteringMatrix {
         let amplitudes = self.amplitudes(cos_angle);
         ScatteringMatrix::of(amplitudes).scaled(0.5 / (PI * self.coefficients.scattered))
     }
 
-    /// The phase function for natural light, sr^-1: its integral over the sphere is 1.
+    /// Phase function for natural light, sr^-1, normalised to 1 over the sphere.
     pub fn phase(&self, cos_angle: f64) -> f64 {
         self.matrix(cos_angle).f11
     }
 }
 
 impl ScatteringMatrix {
-    /// No light.
+    /// The zero matrix.
     pub(super) const ZERO: Self = Self {
         f11: 0.0,
         f12: 0.0,
@@ -189,7 +189,7 @@ impl ScatteringMatrix {
         f34: 0.0,
     };
 
-    /// `S_11, S_12, S_33, S_34` of amplitudes.
+    /// Elements `S_11, S_12, S_33, S_34` for the amplitudes.
     pub(super) fn of([s1, s2]: [Complex64; 2]) -> Self {
         let (across, along) = (s1.norm_sqr(), s2.norm_sqr());
         let mixed = s2 * s1.conj();
@@ -212,7 +212,7 @@ impl ScatteringMatrix {
 }
 
 /// # Errors
-/// [`MieError::Index`] for an index that no sphere of this module has.
+/// [`MieError::Index`] for an unsupported index.
 pub(super) fn check_index(index: Complex64) -> Result<(), MieError> {
     let right = index.re >= 0.0 && index.im >= 0.0 && index.norm() > 0.0;
     match right && index.norm() <= LARGEST_INDEX {

@@ -6,14 +6,14 @@ fn drops(radius_um: f64) -> Particles {
     Particles::water(SizeDistribution::gamma(radius_um, 0.1)).unwrap()
 }
 
-/// Quarter degrees.
+/// Cosines every quarter of a degree.
 fn cosines() -> Vec<f64> {
     (0..=720)
         .map(|i| (0.25 * f64::from(i)).to_radians().cos())
         .collect()
 }
 
-/// Root mean square and worst of `b / a - 1`.
+/// Root mean square and maximum of `b / a - 1`.
 fn difference(a: &[ScatteringMatrix], b: &[ScatteringMatrix]) -> [f64; 2] {
     let errors = a.iter().zip(b).map(|(a, b)| b.f11 / a.f11 - 1.0);
     let (squares, worst) = errors.fold((0.0, 0.0f64), |(sum, worst), e| {
@@ -51,9 +51,9 @@ fn sums_over_sizes_converge() {
     }
 }
 
-/// One size of many is that sphere: the sums in single precision keep six digits.
+/// A monodisperse distribution matches the sphere: sums in single precision keep six digits.
 #[test]
-fn spheres_of_one_size_are_that_sphere() {
+fn monodisperse_spheres_match_a_single_sphere() {
     for (radius_um, index) in [
         (1e-3, Complex64::new(1.5, 0.1)),
         (0.4, Complex64::new(1.75, 0.44)),
@@ -83,9 +83,9 @@ fn spheres_of_one_size_are_that_sphere() {
     }
 }
 
-/// Between its angles, and halfway between its wavelengths, the table is the sum over sizes again.
+/// Between its angles and wavelengths the table matches the sum over sizes.
 #[test]
-fn tables_keep_peak_bow_and_glory() {
+fn tables_resolve_peak_bow_and_glory() {
     let particles = drops(5.0);
     let (table, bulk) = particles.table(&[450.0, 480.0]).unwrap();
     assert!(
@@ -110,9 +110,9 @@ fn tables_keep_peak_bow_and_glory() {
         println!("{nm}: rms {rms:.1e}, worst {worst:.1e}");
         assert!(rms < rms_limit && worst < limit, "{nm}: {rms} {worst}");
     }
-    // The table's own mean cosine.
+    // The mean cosine of the table.
     assert!((table.legendre_moments(2, 450.0)[1] - bulk[0].asymmetry).abs() < 2e-4);
-    // The fogbow about 142 degrees and the glory about the point opposite to the light stand out.
+    // The fogbow near 142 degrees and the glory near 180 degrees stand out.
     let at = |degrees: f64| table.evaluate(degrees.to_radians().cos(), 450.0);
     let bow = (130..155).map(|d| at(f64::from(d))).fold(0.0, f64::max);
     assert!(
@@ -127,9 +127,9 @@ fn tables_keep_peak_bow_and_glory() {
     assert!(glory > 2.0 * at(165.0), "{glory}");
 }
 
-/// The sum over sizes is a phase function without being scaled to one.
+/// The sum over sizes is normalised without rescaling.
 #[test]
-fn the_integral_is_one() {
+fn phase_function_integrates_to_one() {
     let particles = Particles::water(SizeDistribution::gamma(1.0, 0.1)).unwrap();
     let (nodes, weights): (Vec<f64>, Vec<f64>) = GaussRule::new(200).on(-1.0, 1.0).unzip();
     let matrices = particles.matrices(550.0, &nodes).unwrap();
@@ -142,7 +142,7 @@ fn the_integral_is_one() {
 }
 
 #[test]
-fn bad_numbers_are_refused() {
+fn invalid_parameters_are_refused() {
     let fog = drops(5.0);
     assert!(matches!(fog.bulk(0.0), Err(MieError::Wavelength(_))));
     assert!(matches!(fog.bulk(1e-3), Err(MieError::SizeParameter(_))));

@@ -28,7 +28,7 @@ fn all() -> [SizeDistribution; 5] {
 }
 
 #[test]
-fn sums_over_nodes_are_the_closed_moments() {
+fn sums_over_nodes_match_the_closed_moments() {
     for sizes in all() {
         let nodes = sizes.nodes(FINE);
         for power in [2, 3, 4] {
@@ -46,7 +46,7 @@ fn sums_over_nodes_are_the_closed_moments() {
 }
 
 #[test]
-fn hansens_parameters_are_what_they_are_called() {
+fn hansens_parameters_are_effective_radius_and_variance() {
     for (radius, variance) in [(10.0, 0.1), (6.0, 0.02), (0.3, 0.3)] {
         let sizes = SizeDistribution::gamma(radius, variance);
         assert!((sizes.effective_radius_um() / radius - 1.0).abs() < 1e-12);
@@ -62,7 +62,7 @@ fn hansens_parameters_are_what_they_are_called() {
     assert!(one.effective_variance().abs() < 1e-12);
 }
 
-/// Deirmendjian's cloud C.1, `alpha` 6, `gamma` 1, 4 micrometres: effective radius 6, variance 1/9.
+/// Deirmendjian's cloud C.1 (`alpha` 6, `gamma` 1, 4 micrometres) has effective radius 6 and effective variance 1/9.
 #[test]
 fn cloud_c1_has_its_known_effective_size() {
     let c1 = SizeDistribution::ModifiedGamma {
@@ -75,7 +75,7 @@ fn cloud_c1_has_its_known_effective_size() {
 }
 
 #[test]
-fn bad_numbers_are_refused() {
+fn invalid_parameters_are_refused() {
     let bad = [
         SizeDistribution::Monodisperse { radius_um: 0.0 },
         SizeDistribution::gamma(10.0, 0.4),

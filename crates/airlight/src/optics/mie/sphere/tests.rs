@@ -2,7 +2,7 @@ use super::*;
 use crate::math::quadrature::GaussRule;
 use crate::optics::{Depolarization, PhaseFunction};
 
-/// Rows of a table of the tests whose first field is `source`.
+/// Rows of a test table whose first field is `source`.
 fn rows(text: &str, source: &str) -> Vec<Vec<f64>> {
     let fields = text.lines().filter_map(|line| line.strip_prefix(source));
     let numeric = fields.filter(|line| line.starts_with(|c: char| c.is_ascii_digit()));
@@ -14,7 +14,7 @@ fn rows(text: &str, source: &str) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// Against 60-digit arithmetic in hard corners: x from 0.001 to 20000, metals, soot, water that hardly absorbs.
+/// Against 60-digit arithmetic in extreme cases: x from 0.001 to 20000, metals, soot, weakly absorbing water.
 #[test]
 fn corners_agree_with_sixty_digits() {
     let text = include_str!("../../../../tests/data/mie_corners.csv");
@@ -37,7 +37,7 @@ fn corners_agree_with_sixty_digits() {
             q.asymmetry - row[7],
             0.0,
         ];
-        // Amplitudes, relative to the forward one's root, the size of what is summed.
+        // Amplitudes, relative to the square root of the forward intensity, the scale of their terms.
         for (i, angle) in [0.0f64, 60.0, 137.0, 180.0].into_iter().enumerate() {
             let [s1, s2] = sphere.amplitudes(angle.to_radians().cos());
             let at = 8 + 4 * i;
@@ -61,7 +61,7 @@ fn corners_agree_with_sixty_digits() {
     assert!(back < 3e-11 && amplitude < 3e-11);
 }
 
-/// miepython 3.3.0, whose own errors are some 1e-10, and 2e-7 in one place (x = 0.05, a series for small spheres).
+/// miepython 3.3.0, whose own errors are about 1e-10, and 2e-7 in one case (x = 0.05, a series for small spheres).
 #[test]
 fn corners_agree_with_miepython() {
     let text = include_str!("../../../../tests/data/mie_corners.csv");
@@ -78,7 +78,7 @@ fn corners_agree_with_miepython() {
     }
 }
 
-/// Water of index 1.333: efficiencies to 1e-6, phase function to 1e-4 at every whole degree, by miepython.
+/// Water with index 1.333, by miepython: efficiencies to 1e-6, phase function to 1e-4 at every whole degree.
 #[test]
 fn water_agrees_with_the_reference_tables() {
     let text = include_str!("../../../../tests/data/mie_water_n1.333_efficiencies.csv");
@@ -106,21 +106,21 @@ fn water_agrees_with_the_reference_tables() {
     assert!(count == 724 && worst < 1e-4, "{count} {worst}");
 }
 
-/// The program of Bohren & Huffman (1983, appendix A): a sphere of radius 0.525 micrometres and index 1.55 in a medium of
-/// index 1 at 632.8 nm.
+/// Example of Bohren & Huffman (1983, appendix A): a sphere of radius 0.525 micrometres and index 1.55 in a medium of index
+/// 1 at 632.8 nm.
 #[test]
 #[expect(
     clippy::approx_constant,
-    reason = "a printed value that only looks like pi / 4"
+    reason = "a printed value that resembles pi / 4"
 )]
-fn the_example_of_bohren_and_huffman() {
+fn bohren_and_huffmans_example_is_reproduced() {
     let x = 2.0 * PI * 0.525 / 0.6328;
     let sphere = Sphere::new(x, Complex64::new(1.55, 0.0)).unwrap();
     let q = sphere.efficiencies();
     assert!((x - 5.213).abs() < 5e-4);
     assert!((q.scattering - 3.10543).abs() < 1e-5, "{q:?}");
     assert!((q.backscattering - 2.92534).abs() < 1e-5, "{q:?}");
-    // Its table of angles: S11 over that at 0 degrees, polarisation, S33 and S34 over S11, at 9 degrees.
+    // The printed table of angles at 9 degrees: S11 relative to 0 degrees, polarisation, S33 and S34 relative to S11.
     let forward = sphere.matrix(1.0).f11;
     let m = sphere.matrix(9.0f64.to_radians().cos());
     let got = [
@@ -137,13 +137,13 @@ fn the_example_of_bohren_and_huffman() {
     }
 }
 
-/// Large spheres take twice their shadow out of the beam.
+/// The extinction cross-section of large spheres is twice their geometric cross-section.
 #[test]
-fn extinction_goes_to_two() {
+fn extinction_efficiency_of_large_spheres_tends_to_two() {
     for m in [Complex64::new(1.333, 0.0), Complex64::new(1.75, 0.44)] {
         for x in [30.0, 300.0, 3e3, 3e4] {
             let excess = Sphere::new(x, m).unwrap().efficiencies().extinction - 2.0;
-            // 1.99 x^(-2/3) for the edge (Nussenzveig & Wiscombe 1980).
+            // Edge contribution 1.99 x^(-2/3) (Nussenzveig & Wiscombe 1980).
             assert!(
                 excess.abs() < 4.0 * f64::powf(x, -2.0 / 3.0),
                 "{x}: {excess}"
@@ -154,7 +154,7 @@ fn extinction_goes_to_two() {
 
 /// `Q_sca = 8/3 x^4 |K|^2` and `Q_abs = 4 x Im K`, `K = (m^2 - 1) / (m^2 + 2)` (BH eqs. 5.7 and 5.8).
 #[test]
-fn small_spheres_scatter_as_rayleigh_said() {
+fn small_spheres_follow_the_rayleigh_limit() {
     for m in [Complex64::new(1.333, 0.0), Complex64::new(1.75, 0.44)] {
         let x = 1e-3;
         let sphere = Sphere::new(x, m).unwrap();
@@ -172,10 +172,10 @@ fn small_spheres_scatter_as_rayleigh_said() {
     }
 }
 
-/// The amplitude straight on gives the extinction, `Q_ext = 4 Re S(0) / x^2`; the phase function's integral is 1 and its
-/// mean cosine `g`; intensities obey `f11^2 = f12^2 + f33^2 + f34^2`.
+/// The forward amplitude gives the extinction, `Q_ext = 4 Re S(0) / x^2` (optical theorem); the phase function integrates to
+/// 1 with mean cosine `g`; the matrix satisfies `f11^2 = f12^2 + f33^2 + f34^2`.
 #[test]
-fn laws_hold_between_amplitudes_and_efficiencies() {
+fn amplitudes_and_efficiencies_are_consistent() {
     for (x, m) in [
         (0.01, Complex64::new(1.5, 0.1)),
         (3.0, Complex64::new(1.33, 0.0)),
@@ -191,7 +191,7 @@ fn laws_hold_between_amplitudes_and_efficiencies() {
             "{x}"
         );
         assert!((q.scattering + q.absorption - q.extinction).abs() < 1e-14 * q.extinction);
-        // A polynomial of degree 2 N in the cosine.
+        // The integrand is a polynomial of degree 2 N in the cosine.
         let (mut whole, mut mean) = (0.0, 0.0);
         for (mu, weight) in GaussRule::new(terms(x) + 2).on(-1.0, 1.0) {
             let matrix = sphere.matrix(mu);
@@ -208,8 +208,8 @@ fn laws_hold_between_amplitudes_and_efficiencies() {
 }
 
 #[test]
-fn absorption_is_kept_beside_scattering() {
-    // A drop of water takes 4/3 x 4 n k to first order in k: proportional to k down to nothing.
+fn weak_absorption_keeps_relative_accuracy() {
+    // To first order in k, a water drop absorbs 4/3 x 4 n k: proportional to k however small.
     let absorbed = |k: f64| {
         Sphere::new(50.0, Complex64::new(1.333, k))
             .unwrap()
@@ -222,7 +222,7 @@ fn absorption_is_kept_beside_scattering() {
 }
 
 #[test]
-fn bad_numbers_are_refused() {
+fn invalid_parameters_are_refused() {
     let m = Complex64::new(1.33, 0.0);
     for x in [0.0, -1.0, f64::NAN, f64::INFINITY, 2e5] {
         assert!(matches!(Sphere::new(x, m), Err(MieError::SizeParameter(_))));
