@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Writes the tables of aerosol materials that the crate `airlight` embeds (plain Python, no packages).
+"""Write the tables of aerosol materials that the crate `airlight` embeds (standard library only).
 
     python3 scripts/aerosol_tables.py FOLDER
 
-FOLDER holds the refractive indices of the data base OPAC as text files, as they come with MOPSMAP 1.0 (folder `data/`;
-`refr_mineral` lies in `misc/paper_examples/`): columns wavelength (micrometres), n, k. The tables go to
+FOLDER holds the refractive indices of the database OPAC as text files, as distributed with MOPSMAP 1.0 (folder `data/`;
+`refr_mineral` is in `misc/paper_examples/`): columns wavelength (micrometres), n, k. The tables are written to
 crates/airlight/data/atmosphere/.
 
 Sources
@@ -12,11 +12,11 @@ Sources
            Meteor. Soc. 79, 831-844, 1998.
   MOPSMAP  J. Gasteiger & M. Wiegner, MOPSMAP v1.0, Geosci. Model Dev. 11, 2739-2762, 2018.
 
-The growth of particles in moist air follows from the indices: OPAC mixes the solute with water by volume, so that
+The hygroscopic growth follows from the indices: OPAC mixes the solute with water by volume, so that
 
     m(wet) = m(water) + (m(dry) - m(water)) (r_dry / r_wet)^3
 
-with the same ratio at every wavelength. It is taken from k where k of solute and water differ most for their digits.
+with the same ratio at all wavelengths. It is computed from k at the wavelength where the digits of k resolve it best.
 """
 
 import os

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Looks for the wavelengths of the grids `standard` and `fast` of the crate `airlight`.
+"""Optimise the wavelengths of the grids `standard` and `fast` of the crate `airlight`.
 
     python3 scripts/choose_wavelengths.py standard [SEED ...]
     python3 scripts/choose_wavelengths.py fast [SEED ...]
 
-Coordinate descent on whole nanometres from a jittered, even start, one for each seed; without a seed, from the
-wavelengths in use. Prints the cost, the wavelengths, the largest and the root mean square CIEDE2000 up to air mass 19.5,
-and the most negative colour weight as a share of the sun's X, Y and Z. Needs numpy, scipy and colour-science 0.4.7; reads
+Coordinate descent on whole nanometres from a jittered uniform start for each seed; without a seed, from the
+current wavelengths. Prints the cost, the wavelengths, the largest and the root mean square CIEDE2000 up to air mass 19.5,
+and the most negative colour weight relative to the sun's X, Y and Z. Needs numpy, scipy and colour-science 0.4.7; reads
 the tables in crates/airlight/data.
 """
 
@@ -22,7 +22,7 @@ NM = np.arange(360.0, 831.0)
 D65 = np.array([95.047, 100.0, 108.883])
 
 GRIDS = {
-    # wavelengths in use, span of the even start, held ends, least and greatest distance of neighbours
+    # current wavelengths, range of the uniform start, fixed ends, smallest and largest distance between neighbours
     "standard": (
         [360, 398, 424, 446, 466, 485, 510, 539, 562, 595, 612, 637, 671, 716, 765, 830],
         (398, 700), ([360], [765, 830]), (16, 75),
@@ -45,7 +45,7 @@ KERNEL = (
 
 
 def spectra():
-    """Responses to be met, with the air mass of each and whether it belongs to the clear sky of the colour test."""
+    """Target responses, with the air mass of each and whether it belongs to the clear sky of the colour test."""
     air = 0.0973 * (550.0 / NM) ** 4.08
     cross_section = np.interp(NM, ozone_table[:, 0], ozone_table[:, 1])
     for mass in (1.0, 1.15, 2.0, 5.6, 10.0, 19.5, 38.0):
@@ -58,7 +58,7 @@ def spectra():
                 yield direct, mass, clear
                 yield air * direct, mass, clear
                 yield haze * direct, mass, False
-                # Twilight: much of the ozone path lies above most of the air.
+                # Twilight: much of the ozone path is above most of the air.
                 yield air * np.exp(-mass * (0.3 * (air + haze) + ozone)), mass, False
                 yield air * -np.expm1(-mass * (air + haze)) * np.exp(-mass * ozone), mass, False
 

@@ -1,4 +1,4 @@
-"""How the scripts write the tables that the crates embed: lines of a head, each after a `#`, then rows of fields."""
+"""Writer for the tables that the crates embed: header lines, each after a `#`, then rows of fields."""
 
 
 def write(path, header, rows):

@@ -1,7 +1,7 @@
-"""Light inside a slab of fog by PythonicDISORT, and what of it is scattered towards any direction: for the scripts that
-write the reference tables of fog.
+"""Radiance inside a slab of fog by PythonicDISORT and its source function, for the scripts that write the reference tables
+of fog.
 
-Angles in radians; cosines `mu` of directions of view, positive upwards; depths count from the top.
+Angles are in radians; cosines `mu` of view directions are positive upwards; depths are measured from the top.
 """
 
 import numpy as np
@@ -9,10 +9,10 @@ from PythonicDISORT import pydisort
 
 
 class Slab:
-    """A slab solved for: under a sun of unit irradiance, or (sun_zenith None) an even sky of unit radiance."""
+    """A solved slab under a sun of unit irradiance or, if sun_zenith is None, a uniform sky of unit radiance."""
 
     def __init__(self, omega, tau, sun_zenith, albedo, moments, phase, axial=False):
-        """`moments` of the phase function up to the number of streams, which is one less; `phase(cosine)` itself. `axial`:
+        """`moments` are those of the phase function up to the number of streams, `phase(cosine)` is the function; `axial` if
         the light does not depend on azimuth."""
         self.omega, self.tau, self.phase = omega, tau, phase
         self.streams = len(moments) - 1
@@ -45,9 +45,9 @@ class Slab:
         nodes, weights = np.polynomial.legendre.leggauss(streams // 2)
         nodes, weights = (nodes + 1.0) / 2.0, weights / 2.0
         self.angle_weight = weights[np.argmin(np.abs(np.abs(angles)[:, None] - nodes), axis=1)]
-        self.thinning = 1.0 - omega * peak
+        self.depth_scale = 1.0 - omega * peak
         self.truncated = omega * (moments[:-1] - peak) * (2.0 * np.arange(streams) + 1.0) / (4.0 * np.pi)
-        self.cosine = -angles  # of the direction in which light travels, positive downwards
+        self.cosine = -angles  # of the direction of light, positive downwards
 
     def from_sun(self, mu, azimuth):
         """Cosine of the angle between a view and the sun."""
@@ -55,7 +55,7 @@ class Slab:
         return np.clip(mu * self.sun_cosine + across * np.cos(azimuth), -1.0, 1.0)
 
     def source(self, depth, radiance, mu, azimuth):
-        """Light scattered towards a view for each unit of optical depth, from `radiance = field(depth)` and the sun."""
+        """Return the source function in a view direction, per unit optical depth, for `radiance = field(depth)` and the sun."""
         sine, mu_sine = np.sqrt(1.0 - self.cosine**2), np.sqrt(1.0 - mu * mu)
         kernel = 0.0
         for side in (1.0, -1.0):
@@ -63,10 +63,11 @@ class Slab:
             kernel = kernel + np.polynomial.legendre.legval(np.clip(between, -1.0, 1.0), self.truncated)
         source = np.einsum("mp,mtp,m,p->t", kernel, radiance, self.angle_weight, self.azimuth_weight)
         once = self.sun * self.omega * self.phase(self.from_sun(mu, azimuth))
-        return source + once * np.exp(-self.thinning * depth / self.sun_cosine)
+        return source + once * np.exp(-self.depth_scale * depth / self.sun_cosine)
 
     def to_the_edge(self, views):
-        """Radiance scattered into each view (part of tau above the eye, zenith angle, azimuth) up to the edge of the fog."""
+        """Yield the radiance scattered into each view (fraction of tau above the eye, zenith angle, azimuth) up to the edge of the
+        fog."""
         depth, depth_weight = depth_nodes(self.tau)
         radiance = self.field(depth)
         for above, zenith, azimuth in views:
@@ -75,27 +76,27 @@ class Slab:
             path = (above * self.tau - depth) / mu
             ahead = path > 0.0
             weight = np.where(ahead, depth_weight / abs(mu), 0.0)
-            scattered = np.sum(weight * source * np.exp(-self.thinning * np.where(ahead, path, 0.0)))
-            # What the scaling let through of the light from beyond the fog, although it was scattered in it.
+            scattered = np.sum(weight * source * np.exp(-self.depth_scale * np.where(ahead, path, 0.0)))
+            # Light from beyond the fog that delta-M scaling counts as transmitted although it was scattered.
             full = (above * self.tau if mu > 0.0 else (above - 1.0) * self.tau) / mu
             beyond = self.sky if mu > 0.0 else self.albedo * self.irradiance / np.pi
-            yield scattered + (np.exp(-self.thinning * full) - np.exp(-full)) * beyond
+            yield scattered + (np.exp(-self.depth_scale * full) - np.exp(-full)) * beyond
 
 
 def depth_nodes(tau):
-    """Gauss-Legendre nodes and weights in depth, dense at the boundaries and on both sides of the middle."""
-    wanted = [0.0, tau / 2.0, tau]
+    """Return Gauss-Legendre nodes and weights in depth, dense at the boundaries and on both sides of the middle."""
+    edges = [0.0, tau / 2.0, tau]
     offsets = (0.03, 0.1, 0.25, 0.5, 1.0, 2.0, 3.5, 5.0, 7.5, 10.0, 15.0, 20.0, 30.0)
     for start, sign in ((0.0, 1.0), (tau, -1.0), (tau / 2.0, 1.0), (tau / 2.0, -1.0)):
         for offset in offsets:
             edge = start + sign * offset
-            if 0.0 < edge < tau and min(abs(edge - other) for other in wanted) > 1e-3 * min(tau, 10.0):
-                wanted.append(edge)
-    return gauss(np.array(sorted(wanted)))
+            if 0.0 < edge < tau and min(abs(edge - other) for other in edges) > 1e-3 * min(tau, 10.0):
+                edges.append(edge)
+    return gauss(np.array(sorted(edges)))
 
 
 def gauss(edges):
-    """Eight Gauss-Legendre nodes and weights between each two edges."""
+    """Return eight Gauss-Legendre nodes and weights between neighbouring edges."""
     x, w = np.polynomial.legendre.leggauss(8)
     half = np.diff(edges)[:, None] / 2.0
     middle = (edges[:-1, None] + edges[1:, None]) / 2.0

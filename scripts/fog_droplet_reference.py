@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Writes the table of light scattered in fog of droplets that the tests of the crate `airlight` read.
+"""Write the reference table of light scattered in droplet fog for the tests of the crate `airlight`.
 
     pip install numpy PythonicDISORT
     python3 scripts/fog_droplet_reference.py > crates/airlight/tests/data/fog_droplets_disort.csv
 
-As `fog_reference.py`, with the phase function of Jendersie and d'Eon (2023) for droplets of 10 micrometres. Only lines 5
-degrees or more from the sun are kept: nearer, 64 streams do not resolve the diffraction peak.
+As `fog_reference.py`, with the phase function of Jendersie and d'Eon (2023) for droplets of 10 micrometres. Only view rays 5
+degrees or more from the sun are included: nearer ones need more than 64 streams for the diffraction peak.
 """
 
 from importlib.metadata import version

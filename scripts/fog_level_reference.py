@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Writes the table of light scattered into nearly level lines in fog that the tests of the crate `airlight` read.
+"""Write the reference table of light scattered into nearly horizontal view rays in fog for the tests of the crate `airlight`.
 
     pip install numpy PythonicDISORT
     python3 scripts/fog_level_reference.py > crates/airlight/tests/data/fog_level_disort.csv
 
-Five minutes on two processors. As `fog_reference.py`, but for lines of a given optical length near the horizon, along
-which the field inside the fog is evaluated point by point.
+Takes five minutes on two processors. As `fog_reference.py`, for view rays of given optical length near the horizon, along
+which the radiance inside the fog is evaluated point by point.
 """
 
 from importlib.metadata import version
@@ -16,7 +16,7 @@ from fog_disort import Slab, gauss, henyey_greenstein
 from fog_reference import STREAMS
 
 OMEGA, ALBEDO = 0.999999, 0.2
-# View zenith angles, azimuths relative to the sun, optical lengths of the line; from the ground.
+# Zenith angle, azimuth relative to the sun and optical length of each view ray, from the ground.
 VIEWS = [
     (zenith, azimuth, length)
     for zenith in (75.0, 84.0, 88.0, 89.5)
@@ -26,7 +26,7 @@ VIEWS = [
 
 
 def lines(g, tau, sun_zenith):
-    """The radiance scattered into each view's line."""
+    """Yield the radiance scattered into each view ray."""
     moments = g ** np.arange(STREAMS + 1)
     slab = Slab(OMEGA, tau, np.radians(sun_zenith), ALBEDO, moments, lambda cosine: henyey_greenstein(g, cosine))
     for zenith, azimuth, length in VIEWS:
@@ -35,7 +35,7 @@ def lines(g, tau, sun_zenith):
         path, weight = gauss(np.concatenate([[0.0], np.geomspace(end * 1e-3, end, 14)]))
         seen = path < 40.0
         path, weight = path[seen], weight[seen]
-        # The solver takes depths in rising order.
+        # The solver requires increasing depths.
         depth = np.clip(tau - mu * path, 0.0, tau)[::-1]
         source = slab.source(depth, slab.field(depth), mu, np.radians(azimuth))[::-1]
         yield zenith, azimuth, length, np.sum(weight * source * np.exp(-path))

@@ -1,16 +1,16 @@
 #!/usr/bin/env python3
-"""Writes the table of light scattered in plane-parallel fog that the tests of the crate `airlight` read.
+"""Write the reference table of light scattered in plane-parallel fog for the tests of the crate `airlight`.
 
     pip install numpy PythonicDISORT
     python3 scripts/fog_reference.py > crates/airlight/tests/data/fog_slabs_disort.csv
 
-A slab of fog of vertical optical depth tau, single-scattering albedo omega and the Henyey-Greenstein phase function of
-asymmetry g lies over a Lambertian ground. It is lit from above either by the sun (unit irradiance perpendicular to its
+A slab of fog with vertical optical depth tau, single-scattering albedo omega and a Henyey-Greenstein phase function of
+asymmetry g is above a Lambertian ground. It is lit from above either by the sun (unit irradiance perpendicular to its
 beam) or by an isotropic sky of unit radiance. The discrete-ordinate solver PythonicDISORT (delta-M scaling, 48 streams
-and azimuth modes) gives the scattered radiance at its own angles and at any depth. The radiance in the wanted direction is
-then the integral, along the line of sight, of the source that this field makes through the truncated phase function, plus
-the sun's light scattered once by the full phase function (Nakajima and Tanaka's TMS): this needs no interpolation between
-angles. With `--check` the script writes instead by how much the rows change when 64 streams are used.
+and azimuth modes) gives the scattered radiance at its own angles and at any depth. The radiance in a view direction is
+the integral along the view ray of the source of this field with the truncated phase function, plus
+singly scattered sunlight with the full phase function (Nakajima and Tanaka's TMS), without interpolation between
+angles. With `--check` the script prints the difference to 64 streams instead.
 
 In three slabs and an exponential fog the method agrees with PythonicDISORT's own intensities to 4e-6 and 3e-5, and with a
 Monte Carlo (Mitsuba 3.9.1, volpath) within 1.3 of its standard errors of 0.1 to 0.3 %. The white furnace (omega = 1 - 1e-7,
@@ -30,10 +30,10 @@ G = (0.0, 0.7, 0.85)
 TAU = (0.1, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0)
 LIGHT = (0.0, 30.0, 60.0, 80.0, "sky")
 ALBEDO = (0.0, 0.3)
-# One slab in so many of the full grid is kept, and of each about so many views.
+# Every how many slabs of the full grid one is included, and the approximate number of views of each.
 STRIDE = 6
 ROWS_PER_SLAB = 5
-# The observer's place as the part of tau above it, view zenith angle and azimuth relative to the sun (0 = towards it).
+# Fraction of tau above the observer, zenith angle of the view and azimuth relative to the sun (0 = towards it).
 VIEWS = (
     [(1.0, 0.0, 0.0)]
     + [(1.0, zenith, azimuth) for zenith in (30.0, 60.0, 80.0, 85.0) for azimuth in (0.0, 30.0, 90.0, 180.0)]
@@ -44,7 +44,7 @@ VIEWS = (
 
 
 def slab(omega, g, tau, light, albedo, views, streams):
-    """Returns, for each view, the radiance scattered into the line of sight up to the edge of the fog, and the ground's irradiance."""
+    """Return, for each view, the radiance scattered into the ray up to the edge of the fog, and the irradiance on the ground."""
     zenith = None if light == "sky" else np.radians(light)
     moments = np.array([g**order if order else 1.0 for order in range(streams + 1)])
     axial = zenith is None or g == 0.0 or zenith == 0.0
@@ -54,7 +54,7 @@ def slab(omega, g, tau, light, albedo, views, streams):
 
 
 def chosen():
-    """A fixed, well mixed choice of slabs from the grid, and for each a few views that walk through all of them."""
+    """Yield a fixed, well mixed selection of slabs from the grid, each with a few views that cycle through all of them."""
     grid = [
         (omega, g, tau, light, albedo) for omega in OMEGA for g in G for tau in TAU for light in LIGHT for albedo in ALBEDO
     ]
@@ -64,13 +64,13 @@ def chosen():
         views = sorted({(first + 7 * step) % len(VIEWS) for step in range(ROWS_PER_SLAB)})
         light = grid[index][3]
         if light != "sky":
-            # One view straight at the sun.
+            # One view directly at the sun.
             near = VIEWS.index((1.0, light, 0.0))
             views = sorted(set(views) | {near})
         if light == "sky":
             views = [view for view in views if VIEWS[view][2] == 0.0] or [0, 13]
         elif light == 0.0:
-            # All azimuths are the same.
+            # All azimuths are equal.
             views = [view for view in views if VIEWS[view][2] in (0.0, 90.0)]
         yield grid[index], [VIEWS[view] for view in views]
 

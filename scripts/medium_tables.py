@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the tables of atmospheres that the crate `airlight` embeds (plain Python, no packages).
+"""Write the tables of atmospheres that the crate `airlight` embeds (standard library only).
 
     python3 scripts/medium_tables.py csm csm_atmosphere_parameters.csv data/atmosphere/csm_atmosphere.txt
     python3 scripts/medium_tables.py mars-dust                         data/atmosphere/mars_dust_phase.txt
@@ -38,8 +38,8 @@ def csm(source, path):
 
 # Martian dust by wavelength: extinction efficiency, single-scattering albedo, asymmetry parameter for an effective
 # radius of 1.5 um and an effective variance of 0.3 (Wolff et al., J. Geophys. Res. 114, E00D04, 2009, as tabulated for
-# the Mars general circulation model of the LMD: read off at these wavelengths, linear between its nodes; the
-# efficiencies to about 5 %). Below 440 nm the asymmetry is held.
+# the Mars general circulation model of the LMD: interpolated linearly at these wavelengths; the
+# efficiencies to about 5 %). The asymmetry is constant below 440 nm.
 DUST = {
     388.0: (2.50, 0.730, 0.766),
     440.0: (2.55, 0.777, 0.766),
@@ -53,7 +53,7 @@ EFFECTIVE_VARIANCE = 0.3
 
 
 def bessel_j1(x):
-    """J1 by Bessel's integral; the trapezoid rule converges geometrically."""
+    """J1 by Bessel's integral, for which the trapezoidal rule converges geometrically."""
     count = 24 + int(1.5 * x)
     total = 0.0
     for i in range(count):

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Writes the table of Mie efficiencies that the tests of the crate `airlight` read (miepython 3.3.0, mpmath 1.3.0).
+"""Write the reference table of Mie efficiencies for the tests of the crate `airlight` (miepython 3.3.0, mpmath 1.3.0).
 
     python3 scripts/mie_reference.py > crates/airlight/tests/data/mie_corners.csv
 
-Hard corners: spheres far smaller and far larger than the wavelength, metals, soot, water that hardly absorbs. Each sphere by
+Extreme cases: spheres much smaller and much larger than the wavelength, metals, soot, weakly absorbing water. Each sphere by
 `mpmath` with 60 digits, from the plain formulas of Bohren and Huffman (1983, eqs. 4.53, 4.61, 4.62, and sec. 4.5), and by
-miepython beside it. Index n + i k. Amplitudes at 0, 60, 137 and 180 degrees by mpmath.
+miepython. The index is n + i k. Amplitudes at 0, 60, 137 and 180 degrees are by mpmath.
 """
 
 import sys
@@ -39,7 +39,7 @@ ANGLES = (0, 60, 137, 180)
 
 
 def sphere(x, n, k):
-    """Efficiencies and amplitudes in 60 digits."""
+    """Return efficiencies and amplitudes with 60 digits."""
     x, m = mpf(x), mpc(n, k)
     last = int(x + 8 * x ** (mpf(1) / 3) + 12)
     z = m * x
@@ -93,7 +93,7 @@ def sphere(x, n, k):
 def main():
     out = sys.stdout
     out.write(
-        "# Efficiencies and amplitudes of spheres in hard corners, index n + i k: by mpmath with 60 digits, and by miepython\n"
+        "# Efficiencies and amplitudes of spheres in extreme cases, index n + i k: by mpmath with 60 digits, and by miepython\n"
         "# (whose rows end after g). Backscattering over x^2. Made by scripts/mie_reference.py\n"
     )
     names = [f"{s}_{part}_{angle}" for angle in ANGLES for s in ("S1", "S2") for part in ("re", "im")]

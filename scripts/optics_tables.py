@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the tables of refractive indices that the crate `airlight` embeds (plain Python, no packages).
+"""Write the tables of refractive indices that the crate `airlight` embeds (standard library only).
 
     python3 scripts/optics_tables.py water segelstein81_index.txt data/optics/water_index.txt
 

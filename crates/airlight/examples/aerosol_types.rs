@@ -1,5 +1,5 @@
-//! The solver's skies of some aerosol types beside the Monte Carlo's, as the book shows them (`scripts/book`):
-//! `cargo run --release -p airlight --example aerosol_types`. Some minutes. A number behind it is taken for
+//! Prints the book's table of the solver's errors against Monte Carlo for some aerosol types (`scripts/book`):
+//! `cargo run --release -p airlight --example aerosol_types`. Takes some minutes. An optional argument sets
 //! `SkySettings::orders.peak_degree`.
 
 use airlight::atmosphere::aerosol_types::AerosolType;
@@ -10,7 +10,7 @@ use airlight::sky::{Sky, SkySettings, SunCoverage};
 use airlight::spectrum::WavelengthGrid;
 use std::error::Error;
 
-/// Solver over Monte Carlo less 1, from the least to the most of 440, 550 and 680 nm.
+/// Relative difference of the solver to Monte Carlo, from the lowest to the highest of 440, 550 and 680 nm.
 fn main() -> Result<(), Box<dyn Error>> {
     let peak_degree = std::env::args().nth(1).map(|text| text.parse());
     let peak_degree = peak_degree.transpose()?;
@@ -70,7 +70,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// With its sign, where it has one.
+/// Percentage with its sign, unless it rounds to 0.
 fn percent(value: f64) -> String {
     match value.abs() < 0.05 {
         true => "0.0".to_owned(),

@@ -1,5 +1,5 @@
-//! Prints the numbers that the book states about the air and the sun, its tables as it shows them (`scripts/book`):
-//! `cargo run --release --example book_numbers -p airlight`; with the word `molecules`, `hazes` or `earth` only that table.
+//! Prints the book's numbers and tables of the air and the sun (`scripts/book`):
+//! `cargo run --release --example book_numbers -p airlight`; with the argument `molecules`, `hazes` or `earth` only that table.
 
 use airlight::atmosphere::aerosol::{turbidity_of_optical_depth, visibility_of_extinction_m};
 use airlight::atmosphere::{ConstituentKind, gases, preset, preset_names};
@@ -23,9 +23,7 @@ fn main() -> Fallible {
         }
         Some("hazes") => hazes(),
         Some("earth") => earth(),
-        Some(other) => {
-            Err(format!("there is no `{other}`: there are molecules, hazes, earth").into())
-        }
+        Some(other) => Err(format!("expected molecules, hazes or earth, got `{other}`").into()),
     }
 }
 
@@ -53,7 +51,7 @@ fn molecules() {
     }
 }
 
-/// The three ways to state the same haze.
+/// The same hazes as optical depth, turbidity and visibility.
 fn hazes() -> Fallible {
     println!("| preset | optical depth | turbidity | visibility |\n|---|---|---|---|");
     let km = |extinction, clear| visibility_of_extinction_m(extinction, clear) / 1e3;
@@ -74,7 +72,7 @@ fn hazes() -> Fallible {
     Ok(())
 }
 
-/// What the presets of the Earth are made of.
+/// The constituents of the presets of the Earth.
 fn earth() -> Fallible {
     println!("| constituent | optical depth at 440 / 550 / 680 nm | what |\n|---|---|---|");
     for (preset_name, part_name, what) in [
@@ -109,7 +107,7 @@ fn earth() -> Fallible {
     Ok(())
 }
 
-/// What each atmosphere is made of.
+/// The constituents of all presets.
 fn presets() -> Fallible {
     for (name, _) in preset_names() {
         let air = preset(name)?;
@@ -146,7 +144,7 @@ fn presets() -> Fallible {
     Ok(())
 }
 
-/// The sun over Paris at midsummer, and how far the air lifts it.
+/// The position of the sun over Paris at midsummer, with and without refraction.
 fn sun() -> Fallible {
     let paris = Place {
         latitude_deg: 48.8584,

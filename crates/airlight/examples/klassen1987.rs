@@ -1,6 +1,5 @@
-//! Prints the numbers of the book's chapter on the sky of 1987: `cargo run --release -p airlight --example klassen1987`.
-//! With the word `path`, `blue`, `error`, `coherence` or `speed` only that part. What the book shows is printed as it shows it
-//! (`scripts/book`).
+//! Prints the numbers of the book's chapter on the sky of 1987 (`scripts/book`): `cargo run --release -p airlight --example
+//! klassen1987`; with the argument `path`, `blue`, `error`, `coherence` or `speed` only that part.
 
 use airlight::atmosphere::presets;
 use airlight::axes::direction;
@@ -29,7 +28,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let only = std::env::args().nth(1);
     let wanted = |name: &str| only.as_deref().is_none_or(|only| only == name);
     if !PARTS.iter().any(|(name, _)| wanted(name)) {
-        return Err(format!("there is {}", PARTS.map(|(name, _)| name).join(", ")).into());
+        return Err(format!("expected one of {}", PARTS.map(|(name, _)| name).join(", ")).into());
     }
     for (_, part) in PARTS.iter().filter(|(name, _)| wanted(name)) {
         part()?;
@@ -37,14 +36,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// A number in two digits, or more where it has more before the point.
+/// Formats a number with two digits, or more if it has more before the decimal point.
 fn short(v: f64) -> String {
     let before = v.abs().log10().floor() as i32;
     format!("{v:.0$}", (1 - before).clamp(0, 4) as usize)
 }
 
-/// Where the pixels of a picture look: 100 degrees across, 50 high, its lower edge on the horizon, the sun's side in the
-/// middle; twice as wide as high, as in the paper's table I.
+/// Directions of the pixels of a picture: 100 degrees wide, 50 high, lower edge on the horizon, centred on the sun's azimuth;
+/// twice as wide as high, as in the paper's table I.
 fn pixels(width: u32) -> impl Iterator<Item = DVec3> {
     let height = width / 2;
     (0..height).flat_map(move |j| {
@@ -56,13 +55,13 @@ fn pixels(width: u32) -> impl Iterator<Item = DVec3> {
     })
 }
 
-/// Table I: seconds for a picture on one thread, colours remembered and not, beside the paper's.
+/// Table I: seconds for a picture on one thread, with and without coherence, compared with the paper's.
 fn speed() -> Result<(), Klassen1987Error> {
     println!(
         "| pixels | 1987, s | µs a pixel | printed, s | µs a pixel | without coherence | corrected, s | µs a pixel | without coherence |"
     );
     println!("|---|---|---|---|---|---|---|---|---|");
-    // The paper's seconds and microseconds a pixel.
+    // The paper's seconds, and microseconds per pixel.
     for (sun, elevation_deg, paper) in [
         (
             "noon: ",
@@ -103,8 +102,7 @@ fn speed() -> Result<(), Klassen1987Error> {
                 if row == 0 { sun } else { "" },
             );
             for settings in &forms {
-                // Once before, so that what all models share is there; then a model of its own, so that its cells are part of
-                // the time.
+                // A first model initialises the shared tables; the second is timed together with its own cells.
                 Klassen1987::new(settings, toward)?;
                 let model = Klassen1987::new(settings, toward)?;
                 let start = Instant::now();
@@ -128,7 +126,7 @@ fn speed() -> Result<(), Klassen1987Error> {
     Ok(())
 }
 
-/// Eqs. 27 to 29 and 24 against the way itself, in the light of the haze.
+/// Eqs. 24 and 27 to 29 compared with the exact path, in the light of the haze.
 fn path() -> Result<(), Klassen1987Error> {
     println!("haze of eqs. 24 to 29 against the exact one, %: sun, elevation, 450, 550, 650 nm");
     for sun_deg in [2.0, 20.0, 60.0] {
@@ -149,7 +147,7 @@ fn path() -> Result<(), Klassen1987Error> {
     Ok(())
 }
 
-/// Equal parts of the upper half sphere, not nearer to the sun than 2 degrees.
+/// Equal-area directions of the upper hemisphere, at least 2 degrees from the sun.
 fn sky_directions(sun: DVec3) -> Vec<DVec3> {
     let rows = (0..20).map(|i| ((f64::from(i) + 0.5) / 20.0).asin().to_degrees());
     rows.flat_map(|elevation| (0..24).map(move |k| direction(15.0 * f64::from(k) + 7.5, elevation)))
@@ -157,7 +155,7 @@ fn sky_directions(sun: DVec3) -> Vec<DVec3> {
         .collect()
 }
 
-/// The paper's blue beside the solver's clear sky: mean luminance and colour.
+/// The paper's blue compared with the solver's clear sky: mean luminance and colour.
 fn blue() -> Result<(), Klassen1987Error> {
     println!("| sun | solver, cd/m² | x, y | paper's blue, cd/m² | x, y |");
     println!("|---|---|---|---|---|");
@@ -193,7 +191,7 @@ fn blue() -> Result<(), Klassen1987Error> {
     Ok(())
 }
 
-/// The model against the solver in its own layers of haze, and in an average day's air.
+/// The model compared with the solver, in its own layers of haze and in average air.
 fn error() -> Result<(), Klassen1987Error> {
     println!("| air | sun | form | mean | rms | CIEDE2000 | colour alone | sun |");
     println!("|---|---|---|---|---|---|---|---|");
@@ -246,13 +244,13 @@ fn error() -> Result<(), Klassen1987Error> {
     Ok(())
 }
 
-/// CIELAB of a colour, exposed so that this luminance is at half of white.
+/// CIELAB of a colour, exposed so that the luminance `half` is at half of white.
 fn lab(xyz: [f64; 3], half: f64) -> [f64; 3] {
     xyz_to_lab(xyz.map(|v| 50.0 * v / half), D65_WHITE)
 }
 
-/// Mean luminance and its relative error (root mean square) in percent; mean CIEDE2000 with the mean luminance of the truth at
-/// half of white, and with either colour's own there.
+/// Mean luminance and its relative error (root mean square) in percent; mean CIEDE2000 with the mean luminance of the
+/// reference at half of white, and with the luminance of each colour there.
 fn differences(colours: &[[f64; 3]], truth: &[[f64; 3]]) -> [f64; 4] {
     let count = truth.len() as f64;
     let mean = |all: &[[f64; 3]]| all.iter().map(|xyz| xyz[1]).sum::<f64>() / count;
@@ -267,7 +265,7 @@ fn differences(colours: &[[f64; 3]], truth: &[[f64; 3]]) -> [f64; 4] {
     [bias, 100.0 * squares.sqrt(), seen, colour]
 }
 
-/// Pictures of 8 bits walked over with colours remembered, against each pixel computed.
+/// 8-bit pictures with coherence, compared with every pixel computed.
 fn coherence() -> Result<(), Klassen1987Error> {
     let from_xyz = RgbSpace::Srgb.from_xyz_matrix();
     println!(

@@ -1,6 +1,5 @@
-//! Prints the numbers of the book's chapter on spheres, as it shows them (`scripts/book`):
-//! `cargo run --release -p airlight --example spheres` for what published drops do to light; with `times` behind it, how long
-//! their tables take.
+//! Prints the tables of the book's chapter on spheres (`scripts/book`): `cargo run --release -p airlight --example spheres` for
+//! the optical properties of published drop distributions; with the argument `times` for the time to compute their tables.
 
 use airlight::optics::mie::droplets::Drops;
 use airlight::optics::mie::{MieError, Particles};
@@ -12,11 +11,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     match std::env::args().nth(1).as_deref() {
         None => Ok(drops()?),
         Some("times") => Ok(times()?),
-        Some(other) => Err(format!("there is no `{other}`: leave it out, or say `times`").into()),
+        Some(other) => Err(format!("expected no argument or `times`, got `{other}`").into()),
     }
 }
 
-/// What kind it is besides its name, and who published it.
+/// A remark on the distribution, and its source.
 fn source(drops: Drops) -> (&'static str, &'static str) {
     match drops {
         Drops::HeavyAdvectionFog => ("", "Shettle and Fenn 1979, fog 1"),
@@ -31,7 +30,7 @@ fn source(drops: Drops) -> (&'static str, &'static str) {
     }
 }
 
-/// A radius in so many digits that all that are published show.
+/// Formats a radius with the digits that the published values need.
 fn radius(um: f64) -> String {
     match um < 9.95 && (um - um.round()).abs() > 1e-9 {
         true => format!("{um:.2}"),
@@ -39,7 +38,7 @@ fn radius(um: f64) -> String {
     }
 }
 
-/// Published drops at 550 nm.
+/// Published drop distributions at 550 nm.
 fn drops() -> Result<(), MieError> {
     println!(
         "| name | source | mode radius, µm | effective radius, µm | variance | extinction of 1 g/m³, 1/m | mean cosine | extinction at 450 and 650 nm over 550 nm |"
@@ -68,7 +67,7 @@ fn drops() -> Result<(), MieError> {
     Ok(())
 }
 
-/// How long tables take, the first time they are asked for.
+/// Time to compute the tables for the first time.
 fn times() -> Result<(), MieError> {
     println!("| name | angles | 16 wavelengths, s | RGB after that, s |");
     println!("|---|---|---|---|");

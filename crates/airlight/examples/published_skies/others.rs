@@ -1,4 +1,4 @@
-//! Preetham, Hosek and Wilkie, Hillaire, and four orders.
+//! Preetham, Hosek and Wilkie, Hillaire, and four orders of scattering.
 
 use crate::measure::{Errors, SUNS_DEG, fan, head, ratio, seconds_a_line, sun};
 use airlight::atmosphere::aerosol::turbidity_of_optical_depth;
@@ -14,7 +14,7 @@ use std::time::Instant;
 
 type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 
-/// Names, as the program has them and as the book writes them.
+/// Names of the models in the program and in the book.
 const MODELS: &[(&str, &str)] = &[
     ("preetham", "Preetham"),
     #[cfg(feature = "hosek-wilkie")]
@@ -23,7 +23,7 @@ const MODELS: &[(&str, &str)] = &[
     ("four orders", "four orders"),
 ];
 
-/// Errors of Y and of Z against our solver in average haze, percent.
+/// Errors of Y and Z relative to our solver in average haze, percent.
 pub fn average() -> Fallible<()> {
     head(" | ");
     let air = preset("average")?;
@@ -36,7 +36,7 @@ pub fn average() -> Fallible<()> {
     Ok(())
 }
 
-/// Errors of Y in clear air and in haze. Preetham's model begins at a turbidity of 2.
+/// Errors of Y in clear and hazy air. Preetham's model requires a turbidity of at least 2.
 pub fn luminance() -> Fallible<()> {
     head(" | air");
     let mut airs = Vec::new();
@@ -59,7 +59,7 @@ pub fn luminance() -> Fallible<()> {
     Ok(())
 }
 
-/// Cells of errors of Y and of Z, under each sun.
+/// Errors of Y and Z for each position of the sun.
 fn errors(model: &str, air: &Atmosphere, truth: &Sky) -> Fallible<[String; 2]> {
     let turbidity = turbidity(air)?;
     let mut cells = [Vec::new(), Vec::new()];
@@ -106,7 +106,7 @@ fn sky(
     })
 }
 
-/// As the models take it: optical depth of air and haze over that of air, at 550 nm.
+/// Turbidity as defined by the models: optical depth of air and haze relative to that of air, at 550 nm.
 fn turbidity(air: &Atmosphere) -> Fallible<f64> {
     let aerosol = air
         .constituent(&ConstituentKind::Aerosol)
@@ -115,7 +115,7 @@ fn turbidity(air: &Atmosphere) -> Fallible<f64> {
     Ok(turbidity_of_optical_depth(depth, air.clear_air()))
 }
 
-/// How the luminance of the zenith fades, cd/m^2.
+/// Luminance of the zenith for each position of the sun, cd/m^2.
 pub fn zenith() -> Fallible<()> {
     const SUNS_DEG: [f64; 5] = [10.0, 2.0, 0.0, -3.0, -6.0];
     let air = preset("average")?;
@@ -148,7 +148,7 @@ pub fn zenith() -> Fallible<()> {
     Ok(())
 }
 
-/// Times to prepare and of a line of sight, in our solver's; 16 wavelengths.
+/// Times to prepare and per view ray, relative to our solver, for 16 wavelengths.
 pub fn times() -> Fallible<()> {
     let air = preset("average")?;
     let turbidity = turbidity(&air)?;

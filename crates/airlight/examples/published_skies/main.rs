@@ -1,5 +1,5 @@
-//! Published skies beside our solver, with errors and speeds as the book shows them (`scripts/book`):
-//! `cargo run -p airlight --example classic_skies --features hosek-wilkie`; with the name of a table only that one.
+//! Prints the book's tables of published sky models compared with our solver (`scripts/book`):
+//! `cargo run -p airlight --example published_skies --features hosek-wilkie`; with the name of a table only that one.
 
 mod article;
 mod measure;
@@ -23,7 +23,7 @@ fn main() -> Fallible {
     let wanted = |name: &str| only.as_deref().is_none_or(|only| only == name);
     if !TABLES.iter().any(|(name, _)| wanted(name)) {
         let names = TABLES.map(|(name, _)| name).join(", ");
-        return Err(format!("there are {names}").into());
+        return Err(format!("expected one of {names}").into());
     }
     for (name, print) in TABLES.iter().filter(|(name, _)| wanted(name)) {
         println!("{name}");

@@ -1,16 +1,16 @@
-//! A fan of directions, errors over it, and time a call.
+//! Directions, errors and timing for the comparisons.
 
 use airlight::axes;
 use glam::DVec3;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-/// Where the sun stands.
+/// Azimuth of the sun, degrees.
 pub const SUN_AZIMUTH_DEG: f64 = 90.0;
-/// How high it stands.
+/// Elevations of the sun, degrees.
 pub const SUNS_DEG: [f64; 4] = [60.0, 30.0, 10.0, 2.0];
 
-/// Directions above the horizon, 15 degrees and more beside the sun's azimuth.
+/// Directions above the horizon, at least 15 degrees from the sun's azimuth.
 pub fn fan() -> Vec<DVec3> {
     let elevations = [1.0, 2.0, 5.0, 10.0, 20.0, 40.0, 60.0, 80.0];
     let azimuths = [15.0, 60.0, 120.0, 180.0];
@@ -20,19 +20,19 @@ pub fn fan() -> Vec<DVec3> {
         .collect()
 }
 
-/// Unit vector to the sun at a height.
+/// Unit vector to the sun at an elevation.
 pub fn sun(elevation_deg: f64) -> DVec3 {
     axes::direction(SUN_AZIMUTH_DEG, elevation_deg)
 }
 
-/// Root mean square and worst of relative errors, percent.
+/// Root mean square and largest relative error, percent.
 pub struct Errors {
     pub rms: f64,
     pub worst: f64,
 }
 
 impl Errors {
-    /// Of pairs of what is and what should be.
+    /// Errors of pairs of a value and its reference.
     pub fn of(pairs: impl Iterator<Item = (f64, f64)>) -> Self {
         let (mut sum, mut worst, mut count) = (0.0, 0.0f64, 0);
         for (got, want) in pairs {
@@ -63,13 +63,13 @@ impl std::fmt::Display for Errors {
     }
 }
 
-/// A ratio of times: two digits, or more where it has more before the point.
+/// Formats a ratio of times with two digits, or more if it has more before the decimal point.
 pub fn ratio(v: f64) -> String {
     let before = v.abs().max(1e-9).log10().floor() as i32;
     format!("{v:.0$}", (1 - before).max(0) as usize)
 }
 
-/// The head of a table over [`SUNS_DEG`].
+/// Prints the head of a table over [`SUNS_DEG`].
 pub fn head(columns: &str) {
     let suns = SUNS_DEG.map(|sun| format!("{sun}°")).join(" | ");
     println!("|{columns} | sun {suns} |");
@@ -77,7 +77,7 @@ pub fn head(columns: &str) {
     println!("|{}", "---|".repeat(count));
 }
 
-/// Seconds that a line of sight takes, on average over the fan: the fastest of many rounds.
+/// Seconds per view ray, averaged over the fan: the minimum over many rounds.
 pub fn seconds_a_line<T>(mut look: impl FnMut(DVec3) -> T) -> f64 {
     let fan = fan();
     let start = Instant::now();

@@ -1,4 +1,4 @@
-//! The sky article's shader and the steps beyond it.
+//! The sky article's shader and its improvements.
 
 use crate::Fallible;
 use crate::measure::{Errors, SUNS_DEG, fan, head, ratio, seconds_a_line, sun};
@@ -16,7 +16,7 @@ const VARIANTS: [(&str, Variant); 5] = [
     ("multiple", Variant::Multiple),
 ];
 
-/// Errors against our solver's light scattered once, percent of a channel.
+/// Errors relative to our solver's single scattering, percent of a channel.
 pub fn once() -> Fallible {
     against(
         Scattering::Single,
@@ -24,7 +24,7 @@ pub fn once() -> Fallible {
     )
 }
 
-/// Errors against all orders of our solver.
+/// Errors relative to our solver with all orders.
 pub fn all() -> Fallible {
     against(
         Scattering::All,
@@ -51,7 +51,7 @@ fn against(scattering: Scattering, names: &[&str]) -> Fallible {
     Ok(())
 }
 
-/// Times of a line of sight, in those of the printed shader.
+/// Time of a view ray, relative to the printed shader.
 pub fn times() -> Fallible {
     let printed_s = time(Variant::Printed)?;
     println!("| | time |\n|---|---|");
@@ -80,9 +80,9 @@ fn time(variant: Variant) -> Result<f64, Box<dyn std::error::Error>> {
     Ok(seconds_a_line(|d: DVec3| sky.luminance(d)))
 }
 
-/// All channels of the fan.
+/// Errors over all channels and directions of the fan.
 fn errors(sky: &SkyArticle, view: &View) -> Errors {
-    // The solver's lanes are blue, green, red, under a sun of its own.
+    // The solver's lanes are blue, green, red, with its own solar spectrum.
     let outside = Settings::default().sunlight.illuminance_outside();
     let solar = view.solar_irradiance();
     let pairs = fan().into_iter().flat_map(|direction| {
