@@ -43,7 +43,7 @@ fn bad_use_of_sky() {
         ),
         (
             "sky --solver klassen1987 --sun-elevation 2 --haze-thickness-m 9e4 -o a.exr",
-            "must not reach above",
+            "effective top of the air",
         ),
         ("sky --sun-elevation 30", "--output"),
         ("sky --sun-elevation NaN -o a.exr", "-90 to 90"),

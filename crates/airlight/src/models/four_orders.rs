@@ -1,9 +1,10 @@
 //! Four orders of scattering, as in the precomputed skies of Bruneton and Neyret.
 //!
-//! E. Bruneton and F. Neyret, "Precomputed Atmospheric Scattering", Computer Graphics Forum 27(4), 2008, sum light
-//! scattered or reflected up to four times, each order from the one before, into tables. This is not their tables: it is our own solver ([`crate::sky`]) cut off after four orders, on its own quadrature, so that what it differs
-//! by is the later orders alone. (What the solver counts as a forward peak goes on as if unscattered, so that light in
-//! the narrow lobe of haze may have been scattered more often.)
+//! E. Bruneton and F. Neyret, "Precomputed Atmospheric Scattering", Computer Graphics Forum 27(4), 2008, sum light scattered
+//! or reflected up to four times into tables, each order computed from the one before. This model does not use their tables:
+//! it is our own solver ([`crate::sky`]) stopped after four orders, so that it differs from the full solution only by the
+//! later orders. (Light in forward peaks counts as unscattered in the solver, so light in the narrow lobe of haze may have
+//! been scattered more often.)
 
 use super::PublishedModel;
 use crate::atmosphere::Atmosphere;
@@ -11,7 +12,7 @@ use crate::sky::{LineOfSight, Sky, SkyError, SkySettings, View};
 use crate::spectrum::WavelengthGrid;
 use glam::DVec3;
 
-/// The sky of four orders for one eye and one sun.
+/// Sky of four orders of scattering for one eye and one sun.
 pub struct FourOrders {
     sky: Sky,
     eye_altitude_m: f64,
@@ -19,11 +20,11 @@ pub struct FourOrders {
 }
 
 impl FourOrders {
-    /// The first `orders` orders (at least 2; the paper has 4), for an eye at a height (m; held at the ground below it) with
-    /// the sun in a direction.
+    /// Sky of the first `orders` orders (at least 2; 4 in the paper) for an eye at an altitude (m; raised to the ground if below
+    /// it) and a sun direction.
     ///
     /// # Errors
-    /// [`SkyError`] for an atmosphere that the solver refuses, for fewer than 2 orders, and for a sun without a direction.
+    /// [`SkyError`] if the atmosphere is invalid, `orders` is below 2, or the sun's direction is zero or not finite.
     pub fn new(
         atmosphere: &Atmosphere,
         grid: &WavelengthGrid,
@@ -32,15 +33,15 @@ impl FourOrders {
         settings: &SkySettings,
     ) -> Result<Self, SkyError> {
         if orders < 2 {
-            return Err(SkyError::Setting("orders of scattering: at least 2"));
+            return Err(SkyError::Setting("at least 2 orders of scattering"));
         }
-        let sun = sun_direction.try_normalize().ok_or(SkyError::Setting(
-            "the sun's direction: finite and not zero",
-        ))?;
+        let sun = sun_direction
+            .try_normalize()
+            .ok_or(SkyError::Setting("a finite sun direction that is not zero"))?;
         let mut settings = settings.clone();
-        // The field inside holds the orders but the last, which the line of sight adds.
+        // The field holds all orders but the last, which tracing the view ray adds.
         settings.orders.max_orders = orders - 1;
-        // No sum of the rest.
+        // No extrapolation of the remaining orders.
         settings.orders.tolerance = f32::MIN_POSITIVE;
         Ok(Self {
             sky: Sky::prepare(atmosphere, grid, &settings)?,
@@ -49,7 +50,7 @@ impl FourOrders {
         })
     }
 
-    /// The solver's view.
+    /// View of the solver.
     fn view(&self) -> View {
         self.sky.view(self.eye_altitude_m, self.sun)
     }
@@ -105,8 +106,8 @@ mod tests {
     use crate::atmosphere::reference;
     use crate::axes;
 
-    /// Sun zenith, view zenith, azimuth from the sun, then at 680, 550 and 440 nm what orders 1 to 4 give and what all give,
-    /// W m^-2 sr^-1 nm^-1: a Monte Carlo made independently (delta tracking, 0.1 % of noise), Bruneton's Earth.
+    /// Zenith angle of the sun, zenith angle of the view, azimuth from the sun; radiances of orders 1 to 4 and of all orders at
+    /// 680, 550 and 440 nm, W m^-2 sr^-1 nm^-1, from an independent Monte Carlo (delta tracking, 0.1 % noise), Bruneton's Earth.
     const MONTE_CARLO: [([f64; 3], [f64; 3], [f64; 3]); 4] = [
         (
             [30.0, 0.0, 0.0],
@@ -131,7 +132,7 @@ mod tests {
     ];
 
     #[test]
-    fn four_orders_are_four_orders() {
+    fn radiance_matches_four_orders_of_monte_carlo() {
         let (air, grid) = (reference::earth_demo(), WavelengthGrid::rgb());
         for ([sun_zenith, zenith, azimuth], four, all) in MONTE_CARLO {
             let sun = axes::direction(180.0, 90.0 - sun_zenith);
@@ -145,15 +146,15 @@ mod tests {
                     "{sun_zenith} {zenith} {channel}: {error}"
                 );
             }
-            // Blue lacks what the others lack: more than four orders are 1.2 to 2 % of it.
-            let lacks = 1.0 - got[0] / all[2];
+            // Orders above four contribute 1.2 to 2 % in blue.
+            let deficit = 1.0 - got[0] / all[2];
             let should = 1.0 - four[2] / all[2];
-            assert!((lacks - should).abs() < 0.008, "{lacks} {should}");
+            assert!((deficit - should).abs() < 0.008, "{deficit} {should}");
         }
     }
 
     #[test]
-    fn bad_numbers_are_refused() {
+    fn invalid_arguments_are_refused() {
         let (air, grid) = (reference::earth_demo(), WavelengthGrid::rgb());
         let settings = SkySettings::default();
         let refused = FourOrders::new(&air, &grid, (0.0, DVec3::Y), 1, &settings);

@@ -1,14 +1,14 @@
-//! The sky of S. Hillaire: "A Scalable and Production Ready Sky and Atmosphere Rendering Technique", Computer Graphics
-//! Forum 39(4), 2020, on the CPU and at any wavelengths.
+//! S. Hillaire, "A Scalable and Production Ready Sky and Atmosphere Rendering Technique", Computer Graphics Forum 39(4),
+//! 2020, on the CPU at any wavelengths.
 //!
-//! A line of sight is marched in few steps. Sunlight scattered once takes its way through a table of transmittances
-//! (eqs. 1 to 4); light scattered more often is taken to come evenly from all sides and from a geometric series (eqs. 5
-//! to 10), kept in a second table and added at each step (eq. 11). The published engine also keeps the sky itself in a
-//! table of 200 x 100 directions and the air before the scene in another: here each line is marched.
+//! A view ray is marched in few steps. Sunlight is attenuated through a table of transmittances (eqs. 1 to 4); multiple
+//! scattering is assumed isotropic and a geometric series (eqs. 5 to 10), stored in a second table and added at each step
+//! (eq. 11). The published engine also tabulates the sky in 200 x 100 directions and aerial perspective; here each ray is
+//! marched.
 //!
-//! Steps lie closer near the eye, step k of n beginning at `(k / n)^2` of the way, as in the author's published shaders; the
-//! paper says nothing of it. Samples are taken in the middle of steps. The ground is lit by the sun alone, and black to later
-//! orders, as there.
+//! Steps are denser near the eye: step k of n begins at the fraction `(k / n)^2` of the ray, as in the author's published
+//! shaders; the paper does not mention it. Samples are at the midpoints of steps. As there, the ground is lit by direct
+//! sunlight only, and black for later orders.
 
 use super::PublishedModel;
 use super::lut::{
@@ -21,21 +21,21 @@ use crate::sun::SunDisc;
 use crate::transfer::ray::Ray;
 use glam::DVec3;
 
-/// Sizes and steps.
+/// Sizes of the tables and numbers of steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// Zenith angles and heights of the transmittance table, at least 2 of each.
+    /// Zenith angles and altitudes of the transmittance table, at least 2 each.
     pub transmittance_size: [usize; 2],
-    /// Steps on each ray of the transmittance table, at least 1.
+    /// Number of steps along each ray of the transmittance table, at least 1.
     pub transmittance_steps: usize,
-    /// The table of multiple scattering; none for light scattered once.
+    /// Settings of the multiple-scattering table; `None` for single scattering.
     pub multiple: Option<MultipleScatteringSettings>,
-    /// Steps on each line of sight, at least 1.
+    /// Number of steps along each view ray, at least 1.
     pub steps: usize,
 }
 
 impl Default for Settings {
-    /// The paper's (table 2): 256 x 64 transmittances of 40 steps, 32 x 32 of multiple scattering, lines of 30 steps.
+    /// Values of the paper (table 2): 256 x 64 transmittances of 40 steps, 32 x 32 of multiple scattering, 30 steps per ray.
     fn default() -> Self {
         Self {
             transmittance_size: [256, 64],
@@ -46,28 +46,28 @@ impl Default for Settings {
     }
 }
 
-/// Why a sky cannot be made.
+/// Error of [`Hillaire2020::new`].
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum HillaireError {
-    /// The eye is not on or above the ground.
+    /// The eye is below the ground, or its altitude is not finite.
     #[error(
-        "the eye must be at a finite height, not below the ground at {ground_m} m, got {altitude_m} m"
+        "expected a finite altitude of the eye, not below the ground at {ground_m} m, got {altitude_m} m"
     )]
     EyeAltitude {
-        /// What was given, m.
+        /// Altitude of the eye, m.
         altitude_m: f64,
-        /// Where the ground is, m.
+        /// Altitude of the ground, m.
         ground_m: f64,
     },
-    /// The sun has no direction.
-    #[error("the sun's direction must be finite and not zero, got {0}")]
+    /// The sun's direction is zero or not finite.
+    #[error("expected a finite sun direction that is not zero, got {0}")]
     Sun(DVec3),
     /// A size or a number of steps is out of range.
     #[error(
-        "tables need at least 2 entries each way, marches at least 1 step, spheres at least 1 direction"
+        "expected at least 2 entries in each dimension of a table, at least 1 step and at least 1 direction"
     )]
     Settings,
-    /// The atmosphere is refused.
+    /// The atmosphere is invalid.
     #[error(transparent)]
     Atmosphere(#[from] AtmosphereError),
 }
@@ -85,15 +85,15 @@ pub struct Hillaire2020 {
     sun: DVec3,
 }
 
-/// How the steps of a line of sight widen.
+/// Exponent of the step positions along a view ray.
 const STEP_POWER: f64 = 2.0;
 
 impl Hillaire2020 {
-    /// The sky of `atmosphere` at the wavelengths of `grid` (under the atmosphere's own sun), with the paper's sizes, seen
-    /// from a height (m) with the sun in a direction.
+    /// Sky of `atmosphere` at the wavelengths of `grid`, with the atmosphere's solar spectrum and the paper's table sizes, for an
+    /// eye at an altitude (m) and a sun direction.
     ///
     /// # Errors
-    /// [`HillaireError`] for an eye, a sun or an atmosphere out of their domain.
+    /// [`HillaireError`] if an argument is outside its domain.
     pub fn new(
         atmosphere: &Atmosphere,
         grid: &WavelengthGrid,
@@ -109,10 +109,10 @@ impl Hillaire2020 {
         )
     }
 
-    /// The same with other sizes.
+    /// As [`Self::new`], with other settings.
     ///
     /// # Errors
-    /// As [`Self::new`], and for settings out of their range.
+    /// As [`Self::new`], and for settings out of range.
     pub fn with_settings(
         atmosphere: &Atmosphere,
         grid: &WavelengthGrid,
@@ -161,13 +161,13 @@ impl Hillaire2020 {
         })
     }
 
-    /// Spectral radiance along a unit vector, W m^-2 sr^-1 nm^-1: the sky, or the air before the ground and the ground.
+    /// Spectral radiance along a unit vector, W m^-2 sr^-1 nm^-1, including the ground if the ray hits it.
     pub fn radiance(&self, direction: DVec3) -> Vec<f32> {
         self.along(direction, None).radiance()
     }
 
-    /// The light along a unit vector over at most `limit_m` metres (to the ground or to space if `None`), in its parts. A
-    /// shorter line is marched in as many steps.
+    /// Light along a unit vector over at most `limit_m` metres, by parts; `None` for the whole ray to the ground or to space. A
+    /// shorter ray is marched in the same number of steps.
     pub fn along(&self, direction: DVec3, limit_m: Option<f64>) -> LineOfSight {
         let lanes = self.air.lanes();
         let dark = || vec![0.0f32; lanes];
@@ -180,7 +180,7 @@ impl Hillaire2020 {
         };
         let ray = Ray::new(self.eye, direction, self.sun);
         let limit_m = limit_m.unwrap_or(f64::INFINITY);
-        let Some((start, end, on_ground)) = self.air.stretch_m(&ray) else {
+        let Some((start, end, on_ground)) = self.air.segment_m(&ray) else {
             return line;
         };
         if limit_m <= start {
@@ -189,10 +189,10 @@ impl Hillaire2020 {
         line.meets_ground = on_ground && end <= limit_m;
         let scattered = self.air.scattered(ray.nu);
         let (mut sunlight, mut psi) = (dark(), dark());
-        let stretch = (start, end.min(limit_m));
+        let segment = (start, end.min(limit_m));
         line.transmittance = self
             .air
-            .march(&ray, stretch, (self.steps, STEP_POWER), |step| {
+            .march(&ray, segment, (self.steps, STEP_POWER), |step| {
                 let here = &step.here;
                 self.air.sunlight(
                     &self.transmittance,
@@ -225,7 +225,7 @@ impl Hillaire2020 {
         line
     }
 
-    /// Spectral radiance of the sun's disc as it arrives along a unit vector, W m^-2 sr^-1 nm^-1.
+    /// Spectral radiance of the sun's disc along a unit vector, attenuated by the air, W m^-2 sr^-1 nm^-1.
     pub fn disc_radiance(&self, direction: DVec3) -> Vec<f32> {
         let mut light = vec![0.0f32; self.air.lanes()];
         let angle = direction.angle_between(self.sun);
@@ -234,8 +234,8 @@ impl Hillaire2020 {
         if angle >= self.disc.angular_radius_rad || ray.distance_to_ground(ground_m).is_some() {
             return light;
         }
-        // From above the air the line enters at its top, or misses it.
-        let inside = match self.air.stretch_m(&ray) {
+        // From above the atmosphere the ray enters at its top, or misses it.
+        let inside = match self.air.segment_m(&ray) {
             Some((start, _, _)) if ray.radius_m > top_m => Some(ray.advanced(start)),
             Some(_) => Some(ray),
             None => None,

@@ -1,11 +1,11 @@
-//! The sky of Hosek and Wilkie: "An Analytic Model for Full Spectral Sky-Dome Radiance", SIGGRAPH 2012.
+//! L. Hosek and A. Wilkie, "An Analytic Model for Full Spectral Sky-Dome Radiance", SIGGRAPH 2012.
 //!
-//! Their extended Perez formula fitted to path tracing, by turbidity, ground albedo and the sun's height, through the crate
-//! `hw-skymodel`: its RGB data, 683 times which are taken for luminances of linear sRGB in cd/m^2. With the feature
+//! An extended Perez formula fitted to path tracing, by turbidity, ground albedo and elevation of the sun, from the crate
+//! `hw-skymodel`: its RGB data, of which 683 times is taken as luminance of linear sRGB in cd/m^2. Requires the feature
 //! `hosek-wilkie`.
 //!
-//! Limits: turbidity from 1 to 10, sun from the horizon to the zenith, an eye on the ground, nothing below the horizon
-//! (black here), f32. The crate leaves the sun's disc out: it is dimmed by the formulas of [`super::preetham`].
+//! Limits: turbidity from 1 to 10, sun from the horizon to the zenith, an eye on the ground, no light below the horizon
+//! (black here), f32. The crate omits the sun's disc: it is attenuated by the formulas of [`super::preetham`].
 
 use super::PublishedModel;
 use super::preetham::DimmedSun;
@@ -15,26 +15,26 @@ use crate::spectrum::rgb::{Matrix3, apply};
 use glam::DVec3;
 use hw_skymodel::rgb::{Channel, SkyParams, SkyState};
 
-/// What a unit of the crate's data is, cd/m^2: its spectra are in watts.
+/// Luminance of one unit of the crate's data, cd/m^2: its spectra are in watts.
 const LUMENS_PER_WATT: f64 = 683.0;
 
-/// Why numbers do not make a sky.
+/// Error of [`HosekWilkie::new`].
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum HosekWilkieError {
     /// The turbidity is out of range.
-    #[error("the turbidity must be from 1 to 10, got {0}")]
+    #[error("expected a turbidity from 1 to 10, got {0}")]
     Turbidity(f64),
     /// The ground's albedo is out of range.
-    #[error("the ground's albedo must be from 0 to 1 in red, green and blue, got {0:?}")]
+    #[error("expected a ground albedo from 0 to 1 in red, green and blue, got {0:?}")]
     Albedo([f64; 3]),
-    /// The sun is below the horizon, or has no direction.
+    /// The sun is below the horizon, or its direction is zero or not finite.
     #[error(
-        "the model has no sky for a sun below the horizon: its elevation must be from 0 to 90 degrees, got {0}"
+        "expected a sun elevation from 0 to 90 degrees, got {0}; the model has no sky for a sun below the horizon"
     )]
     SunElevation(f64),
 }
 
-/// The sky over an eye on the ground, for one turbidity, one ground and one sun.
+/// The sky above an eye on the ground, for one turbidity, ground albedo and sun direction.
 pub struct HosekWilkie {
     sun: DVec3,
     state: SkyState,
@@ -43,10 +43,10 @@ pub struct HosekWilkie {
 }
 
 impl HosekWilkie {
-    /// The sky of a turbidity (1 to 10) over ground of an albedo (red, green, blue; 0 to 1), with the sun in a direction.
+    /// Sky for a turbidity (1 to 10), a ground albedo (red, green, blue; 0 to 1) and a sun direction.
     ///
     /// # Errors
-    /// [`HosekWilkieError`] for numbers out of their domain.
+    /// [`HosekWilkieError`] if an argument is outside its domain.
     pub fn new(
         turbidity: f64,
         ground_albedo: [f64; 3],
@@ -64,7 +64,7 @@ impl HosekWilkie {
             _ => return Err(HosekWilkieError::SunElevation(elevation_deg)),
         };
         let params = SkyParams {
-            // The zenith in f64 may round to above the crate's in f32.
+            // In f32 the zenith may round to above the crate's limit.
             elevation: (elevation_deg.to_radians() as f32).min(std::f32::consts::FRAC_PI_2),
             turbidity: turbidity as f32,
             albedo: ground_albedo.map(|a| a as f32),
@@ -111,12 +111,12 @@ mod tests {
         HosekWilkie::new(turbidity, [0.1; 3], axes::direction(180.0, sun_deg)).unwrap()
     }
 
-    /// Illuminance of the ground by the sky, lx.
+    /// Illuminance on the ground from the sky, lx.
     fn illuminance(sky: &HosekWilkie) -> f64 {
         let (rings, sectors) = (60, 72);
         let mut sum = 0.0;
         for ring in 0..rings {
-            // Even in the square of the sine: each ring gives the same irradiance.
+            // Uniform in the squared sine: rings of equal irradiance.
             let elevation = ((ring as f64 + 0.5) / rings as f64)
                 .sqrt()
                 .asin()
@@ -130,15 +130,15 @@ mod tests {
     }
 
     #[test]
-    fn the_unit_gives_the_light_of_a_clear_day() {
-        // A clear sky without its sun gives 8 to 20 klx with the sun at 60 degrees.
+    fn illuminance_is_that_of_a_clear_day() {
+        // A clear sky with the sun at 60 degrees gives 8 to 20 klx without direct sunlight.
         let lx = illuminance(&sky(2.5, 60.0));
         assert!((8e3..20e3).contains(&lx), "{lx}");
         assert!(illuminance(&sky(2.5, 5.0)) < 0.5 * lx);
     }
 
     #[test]
-    fn the_sky_is_blue_above_and_black_below() {
+    fn sky_is_blue_above_and_black_below_the_horizon() {
         let sky = sky(2.5, 40.0);
         let zenith = sky.sky_xyz(DVec3::Y);
         assert!(zenith[2] > 1.3 * zenith[0], "{zenith:?}");
@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn bad_numbers_are_refused() {
+    fn invalid_arguments_are_refused() {
         let refuse = |t, a, sun| HosekWilkie::new(t, [a; 3], sun).err().unwrap();
         assert_eq!(refuse(0.5, 0.1, DVec3::Y), HosekWilkieError::Turbidity(0.5));
         assert!(matches!(

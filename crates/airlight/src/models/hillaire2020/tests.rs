@@ -16,7 +16,7 @@ fn fan() -> Vec<DVec3> {
         .collect()
 }
 
-/// The worst difference to our solver over the fan, as a part of it, at each wavelength.
+/// Largest relative difference to our solver over the fan, at each wavelength.
 fn worst(
     air: &Atmosphere,
     scattering: Scattering,
@@ -48,7 +48,7 @@ fn worst(
 }
 
 #[test]
-fn many_steps_of_light_scattered_once_are_the_solvers() {
+fn single_scattering_converges_to_the_solver() {
     let settings = Settings {
         multiple: None,
         steps: 400,
@@ -61,28 +61,28 @@ fn many_steps_of_light_scattered_once_are_the_solvers() {
         &settings,
         &[60.0, 10.0, 2.0],
     );
-    // What is left with a low sun is the table's: transmittances are interpolated as they are.
+    // The remaining difference at low sun comes from the linear interpolation of transmittances.
     for (errors, most) in errors.iter().zip([2e-4, 6e-4, 8e-3]) {
         assert!(errors.iter().all(|e| *e < most), "{errors:?}");
     }
 }
 
 #[test]
-fn the_papers_sizes_are_as_good_as_stated() {
+fn accuracy_with_the_papers_sizes_is_as_stated() {
     let errors = worst(
         &reference::earth_demo(),
         Scattering::All,
         &Settings::default(),
         &[60.0, 10.0, 2.0],
     );
-    // All of it is the blue channel's; red and green stay below 9 %.
+    // The largest errors are in blue; red and green stay below 9 %.
     for (errors, most) in errors.iter().zip([0.055, 0.12, 0.2]) {
         assert!(errors.iter().all(|e| *e < most), "{errors:?}");
     }
 }
 
 #[test]
-fn colours_and_spectra_agree_and_the_sun_sets() {
+fn colours_match_spectra_and_the_sun_sets() {
     let grid = WavelengthGrid::standard();
     let air = reference::earth_demo();
     let sky = Hillaire2020::new(&air, &grid, 2.0, sun(20.0)).unwrap();
@@ -99,7 +99,7 @@ fn colours_and_spectra_agree_and_the_sun_sets() {
 }
 
 #[test]
-fn lines_end_where_they_are_told_to() {
+fn rays_end_at_the_given_distance() {
     let (air, grid) = (reference::earth_demo(), WavelengthGrid::rgb());
     let sky = Hillaire2020::new(&air, &grid, 2.0, sun(20.0)).unwrap();
     let solver = Sky::prepare(&air, &grid, &SkySettings::default()).unwrap();
@@ -121,14 +121,14 @@ fn lines_end_where_they_are_told_to() {
         let mut parts = got.multiple.iter().zip(&whole);
         assert!(parts.all(|(part, whole)| *part > 0.0 && part < whole));
     }
-    // Longer than the way to the ground: the ground.
+    // A limit beyond the ground ends at the ground.
     let down = axes::direction(90.0, -30.0);
     let (all, far) = (sky.along(down, None), sky.along(down, Some(1e9)));
     assert!(all.meets_ground && all == far);
 }
 
 #[test]
-fn it_can_be_looked_at_from_space() {
+fn sky_is_visible_from_space() {
     let air = reference::earth_demo();
     let sky = Hillaire2020::new(&air, &WavelengthGrid::rgb(), 400e3, sun(60.0)).unwrap();
     assert!(sky.radiance(-DVec3::Y).iter().all(|l| *l > 0.0));
@@ -137,7 +137,7 @@ fn it_can_be_looked_at_from_space() {
 }
 
 #[test]
-fn bad_numbers_are_refused() {
+fn invalid_arguments_are_refused() {
     let (air, grid) = (reference::earth_demo(), WavelengthGrid::rgb());
     for altitude in [-1.0, f64::NAN] {
         let error = Hillaire2020::new(&air, &grid, altitude, DVec3::Y)

@@ -8,16 +8,16 @@ use crate::spectrum::WavelengthGrid;
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
 
-/// Light behind the haze, W m^-2 sr^-1 nm^-1.
+/// Radiance behind the haze, W m^-2 sr^-1 nm^-1.
 pub(super) enum Blue {
-    /// The same everywhere.
+    /// The same in all directions.
     Constant(Lanes),
-    /// By direction; the table's sun stands in the south.
+    /// Table by direction, with the sun in the south, and its azimuth-independent solar elevation.
     Table(Box<SkyTable>, f64),
 }
 
 impl Blue {
-    /// The blue of checked settings under a sun of an elevation (rad).
+    /// Blue for checked settings and an elevation of the sun (rad).
     pub fn new(
         settings: &Klassen1987Settings,
         grid: &WavelengthGrid,
@@ -62,7 +62,7 @@ impl Blue {
         }
     }
 
-    /// The light behind the haze along a line of sight.
+    /// Radiance behind the haze along a view ray.
     pub fn along(&self, sin_elevation: f64, cos_sun: f64) -> Lanes {
         match self {
             Self::Constant(lanes) => *lanes,
@@ -70,7 +70,7 @@ impl Blue {
                 let elevation = sin_elevation.clamp(0.0, 1.0).asin();
                 let azimuth = azimuth_from_sun(elevation, *sun_elevation, cos_sun);
                 let (sin, cos) = elevation.sin_cos();
-                // The sun stands in the south, +z.
+                // The sun is in the south, +z.
                 let direction = DVec3::new(cos * azimuth.sin(), sin, cos * azimuth.cos());
                 let mut lanes = Lanes::ZERO;
                 table.sample(direction, &mut lanes.0);
@@ -80,7 +80,7 @@ impl Blue {
     }
 }
 
-/// Azimuth from the sun's (rad, 0 to pi) of a direction of this elevation at this angle from the sun; the nearest there is.
+/// Azimuth from the sun (rad, 0 to pi) of a direction with this elevation and angle from the sun, clamped to valid values.
 fn azimuth_from_sun(elevation: f64, sun_elevation: f64, cos_sun: f64) -> f64 {
     let across = elevation.cos() * sun_elevation.cos();
     match across > 1e-12 {

@@ -1,18 +1,16 @@
-//! Colours that are not computed again: section 8.
+//! Reuse of colours of neighbouring pixels: section 8.
 //!
-//! A colour of the model depends on two angles, the elevation of the line of sight and its angle to the sun. The paper
-//! computes no new colour until the viewing angle has changed by more than a threshold, chosen by the bits of a channel.
-//! Here each angle is cut into cells over which no colour changes by more than `c` steps of the picture, and a colour is
-//! that of the middle of its cell: half a cell away in both angles, it is wrong by `c` steps at most. `c` is below 1, so
-//! that codes differ by 1 at most. The middle of the cell rather than its first pixel, so that it makes no difference which
-//! way a picture is walked.
+//! A colour of the model depends on two angles, the elevation of the view ray and its angle to the sun. The paper computes a
+//! new colour only when the viewing angle has changed by more than a threshold, chosen by the bits of a channel. Here each
+//! angle is divided into cells over which no colour changes by more than `c` steps of the picture, and a colour is that of the
+//! centre of its cell: half a cell away in both angles, with an error of at most `c` steps. `c` is below 1, so codes differ by
+//! at most 1. Using the centre of the cell rather than its first pixel makes the result independent of the order of pixels.
 //!
-//! How much a colour changes in steps of a picture: the sRGB curve is steepest, per relative change, at white, where
-//! `d code = (2^bits - 1) * (1.055 / 2.4) * d ln x`. A channel so dark that it falls on the curve's straight part changes by
-//! `(2^bits - 1) * 12.92 dx`, which is the same for a change `dx` of 0.034 times `d ln x` of white. So the relative change of a
-//! channel, or its change over 0.034 times the brightest channel's, whichever is less, is enough to know while the brightest
-//! channel is not brighter than white. Red sunsets are exposed for their luminance, not for their red: what they leave of
-//! blue is held to the same for channels up to [`OVEREXPOSED`] times white.
+//! Change of a colour in steps of a picture: the sRGB curve is steepest, per relative change, at white, where
+//! `d code = (2^bits - 1) * (1.055 / 2.4) * d ln x`. A dark channel on the linear part of the curve changes by
+//! `(2^bits - 1) * 12.92 dx`, the same as 0.034 times `d ln x` of white. So the smaller of a channel's relative change and its
+//! change divided by 0.034 times the brightest channel is sufficient as long as the brightest channel does not exceed white.
+//! Red sunsets are exposed for luminance, so their red may: the bound holds for channels up to [`OVEREXPOSED`] times white.
 
 use super::Klassen1987;
 use super::simpson::Simpson;
@@ -21,42 +19,41 @@ use crate::spectrum::RgbSpace;
 use std::collections::HashMap;
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Steps of a picture that a cell may span: what is left to 1 is for changes between the nodes and the integrals that are
-/// returned again.
+/// Steps of a picture that a cell may span; the rest to 1 allows for changes between the nodes and for reused integrals.
 const STEPS: f64 = 0.8;
-/// How many times brighter than white a channel may be.
+/// Largest channel value relative to white.
 const OVEREXPOSED: f64 = 8.0;
-/// Slope of the sRGB curve at white against that of its straight part, for a channel so bright.
+/// Slope of the sRGB curve at white relative to that of its linear part, for a channel of that value.
 const DARK: f64 = 1.055 / 2.4 / 12.92 / OVEREXPOSED;
-/// Nodes that changes are measured between.
+/// Number of nodes between which changes are measured.
 const ELEVATIONS: usize = 32;
 const ANGLES: usize = 64;
-/// Colours remembered at most.
-const MOST: usize = 1 << 18;
+/// Largest number of stored colours.
+const MAX_COLOURS: usize = 1 << 18;
 
-/// The cells of both angles.
+/// Cells of both angles.
 pub(super) struct Cells {
     elevation: Axis,
     angle: Axis,
 }
 
-/// One angle from 0 to `span`, by the square root of its part of the span: the cells passed up to each of even steps.
+/// Cells of one angle from 0 to `span`, uniform in the square root of the angle: number of cells up to each node.
 struct Axis {
     span: f64,
-    passed: Vec<f64>,
+    cells_below: Vec<f64>,
 }
 
 impl Axis {
-    /// From the change between neighbouring nodes, in cells.
+    /// Cells from the changes between neighbouring nodes, in cells.
     fn new(span: f64, changes: &[f64]) -> Self {
-        let mut passed = vec![0.0];
+        let mut cells_below = vec![0.0];
         let mut sum = 0.0;
         for change in changes {
-            // A change that is none would leave cells without a middle.
+            // A change of 0 would leave cells without a centre.
             sum += change.max(1e-6);
-            passed.push(sum);
+            cells_below.push(sum);
         }
-        Self { span, passed }
+        Self { span, cells_below }
     }
 
     fn node(span: f64, nodes: usize, i: usize) -> f64 {
@@ -65,22 +62,22 @@ impl Axis {
 
     fn cell(&self, angle: f64) -> u32 {
         let part = (angle / self.span).clamp(0.0, 1.0);
-        Place::evenly(part.sqrt(), self.passed.len()).value_in(&self.passed) as u32
+        Place::evenly(part.sqrt(), self.cells_below.len()).value_in(&self.cells_below) as u32
     }
 
     fn middle(&self, cell: u32) -> f64 {
-        let last = self.passed.len() - 1;
-        let passed = (f64::from(cell) + 0.5).min(self.passed[last]);
-        let Place { below, fraction } = Place::among(&self.passed, passed);
+        let last = self.cells_below.len() - 1;
+        let cells_below = (f64::from(cell) + 0.5).min(self.cells_below[last]);
+        let Place { below, fraction } = Place::among(&self.cells_below, cells_below);
         self.span * ((below as f64 + fraction) / last as f64).powi(2)
     }
 }
 
 impl Cells {
-    /// The cells of a model for pictures of so many bits a channel.
+    /// Cells of a model for pictures with `bits` bits per channel.
     pub fn new(model: &Klassen1987, bits: u32) -> Self {
         let codes = 2f64.powi(bits as i32) - 1.0;
-        let widest = STEPS / (codes * 1.055 / 2.4);
+        let cell_change = STEPS / (codes * 1.055 / 2.4);
         let from_xyz = RgbSpace::Srgb.from_xyz_matrix();
         let mut simpson = Simpson::new(0.0);
         let colours: Vec<Vec<[f64; 3]>> = (0..=ELEVATIONS)
@@ -95,7 +92,8 @@ impl Cells {
                     .collect()
             })
             .collect();
-        let most = |changes: &mut dyn Iterator<Item = f64>| changes.fold(0.0, f64::max) / widest;
+        let most =
+            |changes: &mut dyn Iterator<Item = f64>| changes.fold(0.0, f64::max) / cell_change;
         let by_elevation: Vec<f64> = (0..ELEVATIONS)
             .map(|i| most(&mut (0..=ANGLES).map(|k| change(colours[i][k], colours[i + 1][k]))))
             .collect();
@@ -109,7 +107,7 @@ impl Cells {
     }
 }
 
-/// The change of the channel that changes most: of its logarithm, or against the brightest where it is dark.
+/// Largest change of a channel: of its logarithm, or relative to the brightest channel if it is dark.
 fn change(a: [f64; 3], b: [f64; 3]) -> f64 {
     let brightest = a.into_iter().chain(b).fold(0.0, f64::max);
     let floor = DARK * brightest;
@@ -120,7 +118,7 @@ fn change(a: [f64; 3], b: [f64; 3]) -> f64 {
     }
 }
 
-/// Walks over pixels, computing only colours of cells that were not seen before.
+/// Evaluates pixels one after another, computing only colours of new cells.
 pub(super) struct Walker<'a> {
     model: &'a Klassen1987,
     cells: &'a Cells,
@@ -140,7 +138,7 @@ impl<'a> Walker<'a> {
         }
     }
 
-    /// The colour of the cell of a direction.
+    /// Colour of the cell that contains a direction.
     pub fn xyz(&mut self, sin_elevation: f64, cos_sun: f64) -> [f64; 3] {
         let Cells { elevation, angle } = self.cells;
         let cell = (
@@ -152,7 +150,7 @@ impl<'a> Walker<'a> {
         {
             return xyz;
         }
-        if self.known.len() >= MOST {
+        if self.known.len() >= MAX_COLOURS {
             self.known.clear();
         }
         let (model, simpson) = (self.model, &mut self.simpson);

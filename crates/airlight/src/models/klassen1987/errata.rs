@@ -1,8 +1,8 @@
-//! What is stated of the paper's mistakes, in numbers.
+//! Quantified errors of the paper's approximations.
 
 use super::geometry::{HazePath, RaySegment, Spheres, SunRay};
 
-/// The constants that the errata are stated for.
+/// Constants for which the errata are stated.
 pub(super) const EARTH_M: f64 = 6_371e3;
 pub(super) const SPHERES: Spheres = Spheres {
     earth_m: EARTH_M,
@@ -12,7 +12,7 @@ pub(super) const SPHERES: Spheres = Spheres {
 const AIR_PER_M: f64 = 1.2e-5;
 const HAZE_PER_M: f64 = 5e-5;
 
-/// The integral of eq. 29 with its factor `l_max / (R_H - R_E)`, or of eq. 23, in one wavelength: plain midpoints.
+/// Integral of eq. 29 with its factor `l_max / (R_H - R_E)`, or of eq. 23, at one wavelength, by the midpoint rule.
 fn integral(sun_deg: f64, elevation_deg: f64, path: HazePath) -> f64 {
     let (sun, elevation) = (sun_deg.to_radians(), elevation_deg.to_radians());
     let line = RaySegment {
@@ -34,7 +34,7 @@ fn integral(sun_deg: f64, elevation_deg: f64, path: HazePath) -> f64 {
     sum * length_m / f64::from(steps)
 }
 
-/// What is stated of eq. 27: its integral (29) against that over the way itself. Prints the book's table with `--nocapture`.
+/// Error of eq. 27: its integral (29) compared with that over the exact path. Also prints the book's table (`--nocapture`).
 #[test]
 fn path_linear_in_radius() {
     let error = |sun, elevation| {
@@ -76,7 +76,7 @@ fn path_linear_in_radius() {
     }
 }
 
-/// What is stated of eqs. 20 and 24: `d_1` with the eye's angle against where the ray meets the spheres.
+/// Error of eqs. 20 and 24: `d_1` with the angle at the eye compared with the exact intersections of the ray.
 #[test]
 fn way_above_the_haze() {
     let air = |sun_deg: f64, ray| SPHERES.sun_lengths(sun_deg.to_radians().sin(), ray).air_m;
@@ -95,8 +95,8 @@ fn way_above_the_haze() {
     }
 }
 
-/// The paper: a ray level at the eye crosses the top of the air at 10 degrees. That is right for a top at 100 km, and 3
-/// degrees for the lowered one that the model uses.
+/// The paper: a ray that is horizontal at the eye crosses the top of the air at 10 degrees. This holds for a top at 100 km;
+/// for the lowered top of the model it is 3 degrees.
 #[test]
 fn angles_at_the_arcs() {
     let at_top = |top_m: f64| (EARTH_M / (EARTH_M + top_m)).acos().to_degrees();

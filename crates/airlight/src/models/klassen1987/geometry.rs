@@ -1,6 +1,6 @@
 //! Lengths along rays between concentric spheres (sections 4 to 7, eqs. 14 to 30).
 
-/// Radii of the ground, of the haze's top and of the effective top of the air, m: `R_E <= R_H <= R_A`.
+/// Radii of the ground, the top of the haze and the effective top of the air, m: `R_E <= R_H <= R_A`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Spheres {
     pub earth_m: f64,
@@ -8,30 +8,30 @@ pub(super) struct Spheres {
     pub air_m: f64,
 }
 
-/// Which lengths the haze's integral goes by.
+/// Path lengths in the haze integral.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum HazePath {
-    /// Eqs. 27 to 29, with the offset of 27 as it must be, `l = l_max (r - R_E) / (R_H - R_E)`: the way along the line of
-    /// sight is taken to be linear in the radius. Too dark near the horizon: by 16 % at an elevation of 1 degree, 80 % on the
-    /// horizon; 0.6 % or less from 5 degrees up (test `errata`).
+    /// Eqs. 27 to 29, with the corrected offset of 27, `l = l_max (r - R_E) / (R_H - R_E)`: the distance along the view ray is
+    /// taken as linear in the radius. Too dark near the horizon: by 16 % at an elevation of 1 degree, 80 % on the horizon; 0.6 %
+    /// or less from 5 degrees up (test `errata`).
     LinearInRadius,
-    /// The integral over the way itself.
+    /// The integral over the exact path.
     #[default]
     Exact,
 }
 
-/// How the sun's ray gets to where it is scattered.
+/// Path of sunlight to the point of scattering.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SunRay {
-    /// Eqs. 20, 21, 24 and 25: the ray makes the angle that the sun has over the eye's horizon with every sphere that it
-    /// meets. At sunset the way through the air above the haze comes out 70 % too long (test `errata`).
+    /// Eqs. 20, 21, 24 and 25: the ray crosses each sphere at the elevation that the sun has at the eye. At sunset the path
+    /// through the air above the haze is 70 % too long (test `errata`).
     Printed,
-    /// The straight ray: where it really meets each sphere; where the planet is in its way, there is no light.
+    /// The straight ray with its exact intersections; no light where the planet blocks it.
     #[default]
     Exact,
 }
 
-/// Lengths up to a point where light is scattered, m.
+/// Path lengths of sunlight up to a point of scattering, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Lengths {
     /// `d_1`, through the air above the haze.
@@ -40,25 +40,25 @@ pub(super) struct Lengths {
     pub haze_m: f64,
 }
 
-/// A line of sight from the ground, under a sun.
+/// A view ray from the ground, under a sun.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct RaySegment {
-    /// Sine of its elevation `theta`, from 0 up.
+    /// Sine of its elevation `theta`, at least 0.
     pub sin_elevation: f64,
-    /// Sine of the sun's elevation `phi`, from 0 up.
+    /// Sine of the sun's elevation `phi`, at least 0.
     pub sin_sun: f64,
-    /// Cosine of the scattering angle `psi`, which is the angle to the sun.
+    /// Cosine of the scattering angle `psi`, the angle to the sun.
     pub cos_sun: f64,
 }
 
-/// Eq. 19: from radius `r` along a ray with this sine of its elevation over the sphere there, out to radius `outer`, m.
+/// Eq. 19: length of a ray from radius `r`, with this sine of its elevation there, to radius `outer`, m.
 pub(super) fn outward_m(r: f64, outer: f64, sin_elevation: f64) -> f64 {
-    // R^2 - r^2 cos^2 = (R - r)(R + r) + r^2 sin^2, in which nothing cancels.
+    // R^2 - r^2 cos^2 = (R - r)(R + r) + r^2 sin^2, without cancellation.
     let beyond = ((outer - r) * (outer + r)).max(0.0);
     let along = r * sin_elevation;
     let root = (beyond + along * along).sqrt();
     match along > 0.0 {
-        // sqrt(b + a^2) - a without its cancellation.
+        // sqrt(b + a^2) - a without cancellation.
         true => beyond / (root + along),
         false => root - along,
     }
@@ -70,7 +70,7 @@ impl Spheres {
         outward_m(self.earth_m, self.haze_m, sin_elevation)
     }
 
-    /// `d_1` and `d_2` of the sun as the eye on the ground sees it (eqs. 20 and 21, or the ray's own).
+    /// `d_1` and `d_2` of sunlight to the eye on the ground (eqs. 20 and 21, or exact).
     pub fn sun_lengths(&self, sin_sun: f64, ray: SunRay) -> Lengths {
         let haze_m = outward_m(self.earth_m, self.haze_m, sin_sun);
         let air_m = match ray {
@@ -80,8 +80,8 @@ impl Spheres {
         Lengths { air_m, haze_m }
     }
 
-    /// Lengths up to the point a fraction `x` along what the line has in the haze, whose length is `length_m`; none where
-    /// the planet shades it.
+    /// Path lengths up to the point at the fraction `x` of the view ray's length in the haze, `length_m`; `None` in the planet's
+    /// shadow.
     pub fn lengths(
         &self,
         line: &RaySegment,
@@ -107,7 +107,7 @@ impl Spheres {
                 outward_m(r2.sqrt().min(self.haze_m), self.haze_m, line.sin_sun),
             ),
             SunRay::Exact => {
-                // The point seen from the planet's centre, along the sun's direction.
+                // The point relative to the planet's centre, along the direction of the sun.
                 let towards_sun_m = self.earth_m * line.sin_sun + along_m * line.cos_sun;
                 let across2 = r2 - towards_sun_m * towards_sun_m;
                 if towards_sun_m < 0.0 && across2 < self.earth_m * self.earth_m {

@@ -1,4 +1,4 @@
-//! What the haze does to light at the model's wavelengths: figures 2 and 3 as tables.
+//! Optical properties of the haze at the model's wavelengths: figures 2 and 3 as tables.
 
 use super::settings::{Haze, HazePhase, Klassen1987Error, Klassen1987Settings};
 use super::{Lanes, wavelengths_nm};
@@ -10,19 +10,19 @@ use crate::spectrum::{SampledCurve, SpectralCurve};
 use std::f64::consts::PI;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Samples of the angular scattering function, even in the square root of the angle, so that they crowd in the forward peak.
-/// Between them it is linear: within 0.05 % of the haze's own (test `tables_follow_the_function`).
+/// Number of samples of the angular scattering function, uniform in the square root of the angle and so dense in the forward
+/// peak. Linear interpolation is accurate to 0.05 % (test `tables_follow_the_function`).
 const SAMPLES: usize = 2048;
 
-/// Wavelengths that drops are computed at, nm; smooth in between.
+/// Wavelengths at which drops are computed, nm; interpolated between.
 const MIE_NM: [f64; 9] = [
     380.0, 420.0, 460.0, 500.0, 540.0, 580.0, 620.0, 660.0, 700.0,
 ];
-/// Steps over the sizes in those of fog's drops, and tolerance of `ln p`: hazes are broad.
-const WIDER: f64 = 10.0;
+/// Size steps relative to those of fog drops, and tolerance of `ln p`: hazes are broad distributions.
+const STEP_FACTOR: f64 = 10.0;
 const TOLERANCE: f64 = 0.03;
 
-/// The haze at each wavelength.
+/// Optical properties of the haze at each wavelength.
 pub(super) struct HazeTables {
     /// `beta_p`, m^-1.
     pub extinction_per_m: Lanes,
@@ -31,7 +31,7 @@ pub(super) struct HazeTables {
 }
 
 impl HazeTables {
-    /// The tables of checked settings.
+    /// Tables for checked settings.
     pub fn new(settings: &Klassen1987Settings) -> Result<Self, Klassen1987Error> {
         let (extinction, albedo, phase) = settings.haze.optics()?;
         let at_reference = extinction.at(REFERENCE_NM);
@@ -41,7 +41,7 @@ impl HazeTables {
             let relative = in_range(
                 extinction.at(nm) / at_reference,
                 1e6,
-                "the haze's extinction over that at 550 nm",
+                "the haze's extinction relative to that at 550 nm",
             )?;
             let albedo = in_range(
                 albedo.at(nm),
@@ -97,7 +97,7 @@ fn in_range(got: f64, most: f64, what: &'static str) -> Result<f64, Klassen1987E
 }
 
 impl Haze {
-    /// Extinction to any scale, single-scattering albedo and phase function.
+    /// Extinction on an arbitrary scale, single-scattering albedo and phase function.
     pub(super) fn optics(&self) -> Result<Optics, MieError> {
         match self {
             Self::Drops(drops) => drop_optics(*drops),
@@ -117,7 +117,7 @@ impl Haze {
 /// Extinction, albedo and phase function.
 pub(super) type Optics = (SpectralCurve, SpectralCurve, PhaseFunction);
 
-/// Those of water drops: built once in a process, and kept.
+/// Optical properties of water drops, computed once in a process and cached.
 fn drop_optics(drops: Drops) -> Result<Optics, MieError> {
     type Known = Vec<(Drops, Arc<(TabulatedPhase, Vec<BulkOptics>)>)>;
     static KNOWN: Mutex<Known> = Mutex::new(Vec::new());
@@ -129,8 +129,9 @@ fn drop_optics(drops: Drops) -> Result<Optics, MieError> {
     let table = match kept {
         Some(table) => table,
         None => {
-            // Not under the lock: others may want another kind meanwhile.
-            let table = Particles::water(drops.sizes())?.broad_table(&MIE_NM, WIDER, TOLERANCE)?;
+            // Not under the lock: other threads may need another kind meanwhile.
+            let table =
+                Particles::water(drops.sizes())?.broad_table(&MIE_NM, STEP_FACTOR, TOLERANCE)?;
             let table = Arc::new(table);
             known().push((drops, Arc::clone(&table)));
             table
@@ -170,9 +171,9 @@ mod tests {
         Ok(())
     }
 
-    /// Figure 3: scattering per geometric cross-section falls with wavelength for so small drops, and they absorb nothing.
+    /// Figure 3: scattering efficiency falls with wavelength for such small drops, which do not absorb.
     #[test]
-    fn a_wet_haze_scatters_blue_a_little_more() -> Result<(), MieError> {
+    fn wet_haze_scatters_blue_slightly_more() -> Result<(), MieError> {
         let (extinction, albedo, _) = drop_optics(Drops::HazeL)?;
         let ratio = extinction.at(450.0) / extinction.at(650.0);
         assert!((1.0..2.0).contains(&ratio), "{ratio}");
@@ -180,9 +181,9 @@ mod tests {
         Ok(())
     }
 
-    /// Eq. 1 as printed against the integral that its documentation states.
+    /// Integral of eq. 1 as printed.
     #[test]
-    fn the_printed_function_is_not_normalised() -> Result<(), Klassen1987Error> {
+    fn printed_phase_function_is_not_normalised() -> Result<(), Klassen1987Error> {
         for g in [0.0, 0.5, 0.8] {
             let with = |phase| {
                 HazeTables::new(&Klassen1987Settings {

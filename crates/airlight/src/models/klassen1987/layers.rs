@@ -1,4 +1,4 @@
-//! The two layers that stand for an atmosphere.
+//! Conversion of an atmosphere to the two layers of the model, and back.
 
 use super::settings::{Haze, Klassen1987Error, Klassen1987Settings, scatters};
 use crate::atmosphere::aerosol::REFERENCE_NM;
@@ -7,11 +7,11 @@ use crate::optics::PhaseFunction;
 use crate::spectrum::SpectralCurve;
 
 impl Klassen1987Settings {
-    /// The two layers that stand for an atmosphere.
+    /// Settings for an atmosphere.
     ///
-    /// What scatters and is not called "rayleigh" is haze; the rest is the clear air. Each layer is as dense as its matter
-    /// at the ground, and as thick as makes its vertical optical depth right: the scale height of an exponential profile.
-    /// Haze that there is none of at the ground gets twice its mean height; haze that would reach above the air, the air's.
+    /// Aerosol becomes the haze, everything else the clear air. Each layer has the density of its constituents at the ground and
+    /// the thickness that preserves its vertical optical depth, which is the scale height for an exponential profile. Haze with
+    /// no density at the ground gets twice its mean height; haze that would extend above the air is cut to the air's height.
     /// Both keep their optical depth.
     pub fn of(atmosphere: &Atmosphere) -> Self {
         let (haze, clear): (Vec<_>, Vec<_>) = atmosphere
@@ -43,14 +43,15 @@ impl Klassen1987Settings {
             .min(settings.air_thickness_m);
         settings.haze_thickness_m = thickness_m;
         settings.haze_extinction_per_m = of_haze.optical_depth / thickness_m;
-        settings.haze = together(&haze, &atmosphere.planet);
+        settings.haze = combined(&haze, &atmosphere.planet);
         settings
     }
 
-    /// The atmosphere that these settings speak of, for the solver: the clear air, as dense as asked for, with the haze as a
-    /// layer of even density. Phase functions are the particles'.
+    /// Atmosphere of these settings, for the solver: the clear air with its density, and the haze as a uniform layer. Phase
+    /// functions are those of the particles.
     ///
     /// # Errors
+    /// [`Klassen1987Error`] if a setting is outside its domain.
     /// [`Klassen1987Error`] for a number out of its domain.
     pub fn atmosphere(&self) -> Result<Atmosphere, Klassen1987Error> {
         self.validate()?;
@@ -75,10 +76,10 @@ impl Klassen1987Settings {
     }
 }
 
-/// What constituents amount to at 550 nm.
+/// Combined properties of constituents at 550 nm.
 struct Layer {
     optical_depth: f64,
-    /// Optical depth over extinction at the ground; none where there is none of it.
+    /// Optical depth divided by the extinction at the ground; `None` if that is 0.
     thickness_m: Option<f64>,
     mean_height_m: f64,
 }
@@ -92,7 +93,7 @@ fn layer<'a>(parts: impl Iterator<Item = &'a Constituent>, planet: &Planet) -> L
         let column_m = part.density.column_m(ground_m, top_m);
         depth += extinction * column_m;
         at_ground += extinction * part.density.at(ground_m);
-        // The mean height: integral of what is still above.
+        // The mean height is the integral of the column above.
         let step_m = (top_m - ground_m) / f64::from(HEIGHTS);
         for i in 0..HEIGHTS {
             let height_m = (f64::from(i) + 0.5) * step_m;
@@ -107,8 +108,8 @@ fn layer<'a>(parts: impl Iterator<Item = &'a Constituent>, planet: &Planet) -> L
     }
 }
 
-/// Hazes as one: curves added up by their columns, phase functions mixed by what each scatters at 550 nm.
-fn together(parts: &[Constituent], planet: &Planet) -> Haze {
+/// Combines hazes: curves are summed by column, phase functions mixed by scattering at 550 nm.
+fn combined(parts: &[Constituent], planet: &Planet) -> Haze {
     let column = |part: &Constituent| {
         part.density
             .column_m(planet.ground_altitude_m, planet.top_altitude_m)
@@ -117,7 +118,7 @@ fn together(parts: &[Constituent], planet: &Planet) -> Haze {
         parts.iter().map(|part| column(part) * of(part)).sum()
     };
     let scattered = |nm: f64| sum(&|part| part.scattering_per_m.at(nm));
-    let taken = |nm: f64| sum(&|part| part.extinction_per_m(nm));
+    let extinction = |nm: f64| sum(&|part| part.extinction_per_m(nm));
     let whole = scattered(REFERENCE_NM);
     let share = |part: &Constituent| column(part) * part.scattering_per_m.at(REFERENCE_NM) / whole;
     let phase = match parts {
@@ -130,13 +131,13 @@ fn together(parts: &[Constituent], planet: &Planet) -> Haze {
         ),
     };
     Haze::Given {
-        extinction: sampled(taken),
-        single_scattering_albedo: sampled(|nm| scattered(nm) / taken(nm)),
+        extinction: sampled(extinction),
+        single_scattering_albedo: sampled(|nm| scattered(nm) / extinction(nm)),
         phase,
     }
 }
 
-/// A curve at the model's wavelengths.
+/// Samples a curve at the model's wavelengths.
 fn sampled(curve: impl Fn(f64) -> f64) -> SpectralCurve {
     let nm: Vec<f64> = super::wavelengths_nm().collect();
     let values = nm.iter().map(|&nm| curve(nm)).collect();

@@ -1,9 +1,9 @@
-//! Klassen, "Modeling the Effect of the Atmosphere on Light", ACM Transactions on Graphics 6(3), 215-237, July 1987: the
+//! R. V. Klassen, "Modeling the Effect of the Atmosphere on Light", ACM Transactions on Graphics 6(3), 215-237, July 1987:
 //! colours of sun and sky (sections 2 to 8, eqs. 1 to 33); [`Klassen1987Scene`] adds its naturally lit fog (sections 9 to 12).
 //!
-//! The air is two spherical shells on the ground at `R_E`: molecules and haze up to `R_H`, molecules alone up to `R_A`,
-//! both as dense everywhere as at the ground; `R_A` is lowered so that the air's column is right. Sunlight is dimmed on
-//! `d_1` through air and `d_2` through haze, scattered once by the haze, and dimmed on `d_3` to the eye:
+//! The air consists of two spherical shells above the ground at `R_E`: molecules and haze up to `R_H`, molecules alone up to
+//! `R_A`, both with their density at the ground; `R_A` is lowered to give the air the right column. Sunlight is attenuated on
+//! `d_1` through air and `d_2` through haze, scattered once by the haze, and attenuated on `d_3` to the eye:
 //!
 //! ```text
 //! haze(psi, theta) = I_0 beta_sc(psi) int_0^l_max exp(-beta_m d_1 - (beta_m + beta_p)(d_2 + d_3)) dl         (23)
@@ -13,22 +13,22 @@
 //!
 //! # As printed and as corrected
 //! - (1): `1 - g^2` for `(1 - g)^2`, and `1 / (4 pi)` ([`HazePhase`]).
-//! - The text lets `beta_sc` absorb a factor `sin psi`, for light that falls on a line at an angle. Radiance has none: a
-//!   beam that meets a tube of sight aslant puts less light on each metre of its side, by `sin psi`, but stays inside for
-//!   longer, by `1 / sin psi`; a volume scatters `E beta` whichever way it is lit. With the factor the aureole would have a
-//!   dark hole where the sun stands, and no figure asks for it, so it is left out in both forms.
-//! - (13), (22): the exponents lack their minus signs; (27): `l = l_max (r - R_E) / (R_H - R_E)`, which changes nothing,
-//!   since only (28) is used.
-//! - (27) to (29) take the way along the line to be linear in the radius: [`HazePath`].
-//! - (20), (24), (25) take the sun to stand equally high over every sphere: [`SunRay`].
-//! - The blue is one constant colour, by eye: [`BaseBlue`].
+//! - The text includes a factor `sin psi` in `beta_sc`, for light that crosses a line at an angle. Radiance has no such
+//!   factor: a beam that crosses a view ray obliquely puts less light on each metre of its side, by `sin psi`, but stays
+//!   inside for longer, by `1 / sin psi`; a volume scatters `E beta` for any direction of light. With the factor the aureole
+//!   would have a dark hole at the sun, which no figure shows, so both forms omit it.
+//! - (13), (22): the exponents lack their minus signs; (27): `l = l_max (r - R_E) / (R_H - R_E)`, without effect, because
+//!   only (28) is used.
+//! - (27) to (29) take the distance along the ray as linear in the radius: [`HazePath`].
+//! - (20), (24), (25) take the sun at the same elevation above every sphere: [`SunRay`].
+//! - The blue is one constant colour, chosen by eye: [`BaseBlue`].
 //!
-//! Wavelengths: 33 at 10 nm as in section 8, 380 to 700 nm (the paper gives the number and the step; these are the ends that
-//! lie about the visible range).
+//! Wavelengths: 33 at intervals of 10 nm as in section 8, 380 to 700 nm (the paper gives the number and the interval; these
+//! ends cover the visible range).
 //!
-//! The model has no light below the horizon; there it shows the horizon's
-//! ([`PublishedModel::has_ground`]: no). It has no twilight, no ozone in the sun's
-//! colour, no haze that is lit by haze. How far it is from the solver: the book's chapter.
+//! The model has no light below the horizon; there it repeats the horizon's
+//! ([`PublishedModel::has_ground`] is false). It has no twilight, no ozone in the colour of the
+//! sun, and no multiple scattering. The book's chapter compares it with the solver.
 
 mod blue;
 mod coherence;
@@ -60,9 +60,9 @@ use haze::HazeTables;
 use simpson::Simpson;
 use std::sync::OnceLock;
 
-/// Wavelengths of the model.
+/// Number of wavelengths.
 pub const WAVELENGTHS: usize = 33;
-/// The first of them, nm; the others follow every 10 nm up to 700 nm.
+/// First wavelength, nm; the others follow every 10 nm up to 700 nm.
 pub const FIRST_NM: f64 = 380.0;
 
 type Lanes = Spectrum<WAVELENGTHS>;
@@ -71,13 +71,13 @@ fn wavelengths_nm() -> impl Iterator<Item = f64> {
     (0..WAVELENGTHS).map(|i| FIRST_NM + 10.0 * i as f64)
 }
 
-/// Them as a grid, under the Earth's sun.
+/// The wavelengths as a grid with the Earth's solar spectrum.
 pub fn wavelength_grid() -> WavelengthGrid {
     WavelengthGrid::from_wavelengths_nm(wavelengths_nm().collect())
         .expect("the model's wavelengths are in order")
 }
 
-/// `e^-depth`, the transmittance of an optical depth.
+/// Transmittance `e^-depth` of an optical depth.
 fn exp_neg(depth: Lanes) -> Lanes {
     (depth * -1.0).exp()
 }
@@ -86,7 +86,7 @@ fn to_xyz(grid: &WavelengthGrid, radiance: &Lanes) -> [f64; 3] {
     grid.to_xyz(&radiance.0)
 }
 
-/// The sun and the sky of 1987 under one sun.
+/// Sun and sky of 1987 for one sun direction.
 pub struct Klassen1987 {
     settings: Klassen1987Settings,
     grid: WavelengthGrid,
@@ -94,7 +94,7 @@ pub struct Klassen1987 {
     sun: DVec3,
     sin_sun: f64,
     disc: SunDisc,
-    /// Solar irradiance outside the air, `I_0`, W m^-2 nm^-1.
+    /// Solar irradiance outside the atmosphere, `I_0`, W m^-2 nm^-1.
     sunlight: Lanes,
     /// `beta_m`, m^-1.
     air_per_m: Lanes,
@@ -104,16 +104,16 @@ pub struct Klassen1987 {
 }
 
 impl Klassen1987 {
-    /// The model for an eye on the ground and a sun in the direction of a unit vector ([`crate::axes`]), at the horizon or
-    /// above. With [`BaseBlue::Solver`] the clear air is solved for first (about a second).
+    /// Model for an eye on the ground and a sun in the direction of a unit vector ([`crate::axes`]), at the horizon or above.
+    /// With [`BaseBlue::Solver`] it first solves for the clear air, which takes about a second.
     ///
     /// # Errors
-    /// [`Klassen1987Error`] for a setting out of its domain and for a sun below the horizon.
+    /// [`Klassen1987Error`] if a setting is outside its domain or the sun is below the horizon.
     pub fn new(settings: &Klassen1987Settings, sun: DVec3) -> Result<Self, Klassen1987Error> {
         settings.validate()?;
         let sun = sun.normalize_or_zero();
         let elevation_deg = axes::elevation_deg(sun);
-        // As much below as rounding makes of 0.
+        // Tolerates rounding below 0.
         if sun == DVec3::ZERO || elevation_deg < -1e-9 {
             return Err(Klassen1987Error::SunBelowHorizon(elevation_deg));
         }
@@ -144,36 +144,36 @@ impl Klassen1987 {
         })
     }
 
-    /// The settings it was made of.
+    /// The settings.
     pub fn settings(&self) -> &Klassen1987Settings {
         &self.settings
     }
 
-    /// The wavelengths with the sun that lights them.
+    /// Wavelength grid with the solar spectrum.
     pub fn grid(&self) -> &WavelengthGrid {
         &self.grid
     }
 
-    /// Irradiance of the sun on a surface that faces it, at the eye, W m^-2 nm^-1 (eq. 22).
+    /// Irradiance of the sun at the eye on a surface that faces it, W m^-2 nm^-1 (eq. 22).
     pub fn sun_irradiance(&self) -> Vec<f64> {
-        f64s(&self.dimmed_sun(self.sin_sun))
+        f64s(&self.attenuated_sun(self.sin_sun))
     }
 
-    /// Light of the haze alone, W m^-2 sr^-1 nm^-1 (eq. 23 or 29).
+    /// Radiance of the haze alone, W m^-2 sr^-1 nm^-1 (eq. 23 or 29).
     pub fn haze_spectrum(&self, direction: DVec3) -> Vec<f64> {
         let (sin_elevation, cos_sun) = self.angles(direction);
         f64s(&self.haze_along(sin_elevation, cos_sun, &mut Simpson::new(0.0)))
     }
 
-    /// Opacity of the haze to what lies behind it (eq. 31).
+    /// Opacity of the haze for light behind it (eq. 31).
     pub fn opacity(&self, direction: DVec3) -> Vec<f64> {
         let (sin_elevation, _) = self.angles(direction);
         let clear = self.haze_transmittance(sin_elevation);
         clear.0.iter().map(|&t| 1.0 - f64::from(t)).collect()
     }
 
-    /// `I_0` dimmed along `d_1` and `d_2` (eqs. 20 to 22, 13).
-    fn dimmed_sun(&self, sin_elevation: f64) -> Lanes {
+    /// `I_0` attenuated along `d_1` and `d_2` (eqs. 20 to 22, 13).
+    fn attenuated_sun(&self, sin_elevation: f64) -> Lanes {
         let lengths = self
             .spheres
             .sun_lengths(sin_elevation, self.settings.sun_ray);
@@ -182,7 +182,7 @@ impl Klassen1987 {
         self.sunlight * exp_neg(depth)
     }
 
-    /// Sine of the elevation, held at the horizon, and cosine of the angle to the sun.
+    /// Sine of the elevation, clamped to the horizon, and cosine of the angle to the sun.
     fn angles(&self, direction: DVec3) -> (f64, f64) {
         let level = match direction.y < 0.0 {
             true => DVec3::new(direction.x, 0.0, direction.z).normalize_or(DVec3::X),
@@ -232,7 +232,7 @@ impl Klassen1987 {
         if direction.y < 0.0 || angle >= self.disc.angular_radius_rad {
             return Lanes::ZERO;
         }
-        let mut radiance = self.dimmed_sun(direction.y.min(1.0));
+        let mut radiance = self.attenuated_sun(direction.y.min(1.0));
         for (lane, nm) in wavelengths_nm().enumerate() {
             radiance.0[lane] *= self.disc.radiance_per_irradiance(angle, nm) as f32;
         }
@@ -269,7 +269,7 @@ impl PublishedModel for Klassen1987 {
         to_xyz(&self.grid, &self.disc_along(direction))
     }
 
-    /// Within one step of a picture of [`Klassen1987Settings::bits_per_channel`] (test `coherence`), as long as
+    /// Within one step of a picture of [`Klassen1987Settings::bits_per_channel`] (test `coherence_changes_codes_by_at_most_one`), as long as
     /// no channel is exposed to more than 8 times white.
     fn walk(&self) -> Box<dyn FnMut(DVec3) -> [f64; 3] + '_> {
         let bits = self.settings.bits_per_channel;

@@ -207,7 +207,7 @@ fn slab(
             single_scattering_albedo: Lanes::ONE,
             phase: PhaseFunction::Rayleigh(Depolarization::None),
         },
-        sun_irradiance: model.dimmed_sun(model.sin_sun),
+        sun_irradiance: model.attenuated_sun(model.sin_sun),
         sin_sun: model.sin_sun.max(1e-6),
         wavelengths_nm: Klassen1987::wavelengths(),
     })

@@ -1,4 +1,4 @@
-//! What the model is told, and what it refuses.
+//! Settings of the model, their validation and errors.
 
 use super::geometry::{HazePath, SunRay};
 use crate::atmosphere::aerosol::REFERENCE_NM;
@@ -11,64 +11,64 @@ use crate::optics::{PhaseError, PhaseFunction};
 use crate::sky::SkyError;
 use crate::spectrum::SpectralCurve;
 
-/// Haze and air of the model of 1987. `Default` is the corrected model on the Earth with a moderate haze.
+/// Haze and air of the model. `Default` is the corrected model on the Earth with a moderate haze.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Klassen1987Settings {
-    /// The air without haze: its planet's radius is `R_E`, its molecules' scattering at the ground `beta_m`, its sun
-    /// lights the model, and [`BaseBlue::Solver`] is solved for it.
+    /// The air without haze: its planet's radius is `R_E`, the scattering of its molecules at the ground `beta_m`, its sun lights
+    /// the model, and [`BaseBlue::Solver`] solves for it.
     pub clear_air: Atmosphere,
-    /// Density of the molecules over that of `clear_air`: factor of `beta_m` (figure 10). Above 0.
+    /// Density of the molecules relative to `clear_air`: factor of `beta_m` (figure 10). Above 0.
     pub air_density: f64,
-    /// Height that the air would have if it were as dense everywhere as at the ground, `R_A - R_E`, m. Not below the haze's.
+    /// Thickness of the air at its density at the ground, `R_A - R_E`, m. At least that of the haze.
     pub air_thickness_m: f64,
-    /// Extinction of the haze at 550 nm, `beta_p`, m^-1 (figures 8 and 11). Not below 0.
+    /// Extinction of the haze at 550 nm, `beta_p`, m^-1 (figures 8 and 11). At least 0.
     pub haze_extinction_per_m: f64,
-    /// Height of the haze, `R_H - R_E`, m (figure 9). Above 0.
+    /// Thickness of the haze, `R_H - R_E`, m (figure 9). Above 0.
     pub haze_thickness_m: f64,
-    /// What the haze is made of.
+    /// Particles of the haze.
     pub haze: Haze,
-    /// Where the haze scatters to.
+    /// Phase function of the haze.
     pub phase: HazePhase,
-    /// How the line of sight is integrated along.
+    /// Integration along the view ray.
     pub path: HazePath,
-    /// How the sun's ray gets there.
+    /// Path of sunlight.
     pub sun_ray: SunRay,
     /// The sky behind the haze.
     pub base_blue: BaseBlue,
-    /// Bits of each channel of the pictures that [`PublishedModel::walk`](crate::models::PublishedModel::walk) is for, 4 to 16:
-    /// its colours lie within one step of such a picture.
+    /// Bits per channel of pictures for [`PublishedModel::walk`](crate::models::PublishedModel::walk), 4 to 16: its colours are
+    /// accurate to one step of such a picture.
     pub bits_per_channel: u32,
 }
 
-/// What the haze is made of: how its extinction goes with wavelength, and how much of it is scattering.
+/// Particles of the haze: spectral dependence of extinction, albedo and phase function.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Haze {
-    /// Drops of water of a published kind, by Mie's theory: a wet haze.
+    /// Wet haze: water drops of a published distribution, by Mie theory.
     Drops(Drops),
     /// Any other haze.
     Given {
-        /// Extinction by wavelength, to any scale: only its ratio to that at 550 nm counts.
+        /// Extinction by wavelength, on an arbitrary scale: only its ratio to that at 550 nm matters.
         extinction: SpectralCurve,
-        /// Scattering over extinction.
+        /// Single-scattering albedo by wavelength.
         single_scattering_albedo: SpectralCurve,
-        /// Angular scattering function, normalised.
+        /// Phase function.
         phase: PhaseFunction,
     },
 }
 
-/// Where the haze scatters to, `beta_sc(psi)` over the scattering coefficient.
+/// Phase function of the haze, `beta_sc(psi)` divided by the scattering coefficient.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum HazePhase {
-    /// As its particles do: a table by angle and wavelength, as the paper prefers.
+    /// That of its particles: a table by angle and wavelength, as the paper prefers.
     #[default]
     Particles,
-    /// Eq. 1 as it must be: `(1 - g^2) / (4 pi (1 + g^2 - 2 g cos psi)^(3/2))`, Henyey and Greenstein's.
+    /// Eq. 1, corrected: `(1 - g^2) / (4 pi (1 + g^2 - 2 g cos psi)^(3/2))`, the Henyey-Greenstein function.
     HenyeyGreenstein {
         /// Mean cosine, `-1 < g < 1`.
         g: f64,
     },
-    /// Eq. 1 as printed, `(1 - g)^2 / (1 + g^2 - 2 g cos psi)^(3/2)`: its integral over the sphere is not 1 but
-    /// `4 pi (1 - g) / (1 + g)`, 1.4 for `g = 0.8`, 12.6 for `g = 0`.
+    /// Eq. 1 as printed, `(1 - g)^2 / (1 + g^2 - 2 g cos psi)^(3/2)`, which integrates to `4 pi (1 - g) / (1 + g)` over the
+    /// sphere instead of 1: 1.4 for `g = 0.8`, 12.6 for `g = 0`.
     Printed {
         /// Parameter, `-1 < g < 1`.
         g: f64,
@@ -78,40 +78,40 @@ pub enum HazePhase {
 /// The sky behind the haze.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum BaseBlue {
-    /// One colour all over, as in the paper: sunlight weighted by the part of each wavelength that the molecules scatter
-    /// on a vertical way. Its luminance falls in proportion to the sine of the sun's elevation, to a hundredth at sunset
-    /// (the factor is the paper's, the law between is ours).
+    /// One colour in all directions, as in the paper: sunlight weighted by the fraction of each wavelength that the molecules
+    /// scatter on a vertical path. Its luminance is proportional to the sine of the sun's elevation, down to a hundredth at
+    /// sunset (the factor is the paper's, the law between is ours).
     Constant {
-        /// Luminance under a sun in the zenith and air of density 1, cd/m^2.
+        /// Luminance for a sun at the zenith and air of density 1, cd/m^2.
         noon_luminance_cd_m2: f64,
     },
-    /// The air without haze, solved for ([`crate::sky`]).
+    /// The clear air, solved by [`crate::sky`].
     Solver,
 }
 
 impl BaseBlue {
-    /// The paper's blue with 3000 cd/m^2: about what a clear sky has in the mean under a high sun.
+    /// The paper's blue with 3000 cd/m^2, about the mean of a clear sky under a high sun.
     pub const PAPER: Self = Self::Constant {
         noon_luminance_cd_m2: 3000.0,
     };
 }
 
-/// Why numbers do not make the model of 1987.
+/// Error of [`Klassen1987Settings::validate`] and of the model's constructors.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Klassen1987Error {
-    /// A number out of its domain.
-    #[error("{what} must be {right}, got {got}")]
+    /// An argument is outside its domain.
+    #[error("expected {what} {right}, got {got}")]
     Number {
-        /// Which, with its unit.
+        /// The argument, with its unit.
         what: &'static str,
-        /// What would be right.
+        /// The domain.
         right: &'static str,
-        /// What was given.
+        /// Value of the argument.
         got: f64,
     },
-    /// The haze reaches above the air.
+    /// The haze is thicker than the air.
     #[error(
-        "the haze must not reach above the effective top of the air, {air_m} m: its thickness is {haze_m} m"
+        "expected haze below the effective top of the air at {air_m} m, got a thickness of {haze_m} m"
     )]
     HazeAboveAir {
         /// Thickness of the haze, m.
@@ -121,32 +121,32 @@ pub enum Klassen1987Error {
     },
     /// The sun is below the horizon.
     #[error(
-        "the model of 1987 has no twilight: the sun must be at the horizon or above, got an elevation of {0} degrees"
+        "expected a sun at the horizon or above, got an elevation of {0} degrees; the model of 1987 has no twilight"
     )]
     SunBelowHorizon(f64),
-    /// The clear air has no constituent that scatters.
-    #[error("the clear air has no constituent that scatters light at 550 nm")]
+    /// The clear air has no scattering.
+    #[error("expected clear air with a constituent that scatters light at 550 nm, got none")]
     NoMolecules,
-    /// The clear air is refused.
+    /// The clear air is invalid.
     #[error(transparent)]
     Atmosphere(#[from] AtmosphereError),
-    /// The haze's drops are refused.
+    /// The haze's drops are invalid.
     #[error(transparent)]
     Mie(#[from] MieError),
-    /// The haze's phase function is refused.
+    /// The haze's phase function is invalid.
     #[error(transparent)]
     Phase(#[from] PhaseError),
-    /// The clear air cannot be solved for.
+    /// The clear air cannot be solved.
     #[error(transparent)]
     Sky(#[from] SkyError),
-    /// The fog's drops are refused.
+    /// The fog's drops are invalid.
     #[error(transparent)]
     Fog(#[from] FogError),
 }
 
 impl Default for Klassen1987Settings {
-    /// The corrected model over the Earth: 8.4 km of air, 2 km of wet haze L with an extinction of 5e-5 per m (optical depth
-    /// 0.1; one sees for 50 km), the blue from the solver.
+    /// The corrected model on the Earth: 8.4 km of air, 2 km of wet haze L with an extinction of 5e-5 per m (optical depth 0.1,
+    /// visibility about 50 km), with the blue from the solver.
     fn default() -> Self {
         let mut clear_air = Earth::with_aerosol(0.0)
             .atmosphere("clear air")
@@ -171,7 +171,7 @@ impl Default for Klassen1987Settings {
 }
 
 impl Klassen1987Settings {
-    /// These with the geometry and the blue as printed (signs corrected): eqs. 20 to 31.
+    /// These settings with the geometry and the blue as printed (signs corrected): eqs. 20 to 31.
     pub fn printed(self) -> Self {
         Self {
             path: HazePath::LinearInRadius,
@@ -181,10 +181,10 @@ impl Klassen1987Settings {
         }
     }
 
-    /// Checks every number.
+    /// Checks the settings.
     ///
     /// # Errors
-    /// [`Klassen1987Error`] for the first that is out of its domain.
+    /// [`Klassen1987Error`] for the first setting outside its domain.
     pub fn validate(&self) -> Result<(), Klassen1987Error> {
         let check = |what, got: f64, least: f64, most: f64, right| match got >= least && got <= most
         {
@@ -271,13 +271,13 @@ impl Klassen1987Settings {
         }
     }
 
-    /// Molecules' scattering at the ground, `beta_m`, m^-1.
+    /// Scattering of the molecules at the ground, `beta_m`, m^-1.
     pub(super) fn air_extinction_per_m(&self, wavelength_nm: f64) -> f64 {
         let ground_m = self.clear_air.planet.ground_altitude_m;
         self.air_density * self.clear_air.scattering_per_m(ground_m, wavelength_nm)
     }
 
-    /// The clear air, as dense as it is asked to be.
+    /// The clear air with the density of the settings.
     pub(super) fn dense_clear_air(&self) -> Atmosphere {
         let mut air = self.clear_air.clone();
         for part in air.constituents.iter_mut().filter(|part| scatters(part)) {

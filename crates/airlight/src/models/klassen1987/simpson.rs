@@ -1,32 +1,31 @@
-//! Adaptive Simpson quadrature over all wavelengths at once, with a memory (section 8).
+//! Adaptive Simpson quadrature over all wavelengths, which reuses the previous result (section 8).
 
 use super::Lanes;
 use crate::math::simpson::{adaptive_simpson, simpson};
 
-/// Relative error aimed at, of each wavelength (or of [`DIM`] times the brightest); 16 times as much where the integrand jumps.
+/// Relative tolerance of each wavelength (relative to at least [`DIM`] times the brightest); 16 times that where the integrand jumps.
 const TOLERANCE: f32 = 1e-4;
-/// Halvings at most: where the planet's shadow cuts the line, the integrand jumps.
-const DEEPEST: u32 = 18;
-/// Wavelengths darker than this part of the brightest count as if they were as bright: at sunset nothing blue is left.
+/// Largest number of halvings, reached where the integrand jumps at the edge of the planet's shadow.
+const MAX_DEPTH: u32 = 18;
+/// Smallest value relative to the brightest wavelength for which the tolerance is relative: at sunset blue vanishes.
 const DIM: f32 = 1e-3;
 
-/// An integrator that remembers its last integral.
+/// An integrator that stores its last integral.
 #[derive(Clone, Debug)]
 pub(super) struct Simpson {
-    /// First estimates that differ by no more than this part mean the same integral; 0 to integrate each anew.
+    /// Relative difference of first estimates up to which the previous result is reused; 0 to disable.
     alike: f32,
     /// First estimate and result.
     last: Option<(Lanes, Lanes)>,
 }
 
 impl Simpson {
-    /// `alike`: how far first estimates may differ (relative) for the previous result to be returned again.
+    /// Integrator that reuses the previous result if first estimates differ by at most `alike` (relative).
     pub fn new(alike: f32) -> Self {
         Self { alike, last: None }
     }
 
-    /// The integral over `[0, 1]`, or the previous one where Simpson's rule on the whole interval gives nearly what it gave
-    /// then.
+    /// Integral over `[0, 1]`, or the previous result if Simpson's rule on the whole interval is nearly unchanged.
     pub fn integrate(&mut self, f: impl Fn(f64) -> Lanes) -> Lanes {
         let ends = [f(0.0), f(0.5), f(1.0)];
         let first = simpson(&ends, 1.0);
@@ -42,7 +41,7 @@ impl Simpson {
             &ends,
             &first,
             &mut result,
-            DEEPEST,
+            MAX_DEPTH,
             &accurate,
         );
         self.last = Some((first, result));
@@ -50,8 +49,8 @@ impl Simpson {
     }
 }
 
-/// Whether Simpson's rule on two halves agrees with that on the whole to 15 times the tolerance, a part of what has been summed
-/// so far or of the panel itself: integrands here are brightest near the eye, where the sum begins.
+/// True if Simpson's rule on two halves agrees with that on the whole to 15 times the tolerance, relative to the sum so far or
+/// to the panel itself: integrands here are brightest near the eye, where the sum begins.
 fn accurate(both: &Lanes, whole: &Lanes, sum: &Lanes) -> bool {
     let floor = DIM * sum.max_element().max(both.max_element());
     (0..both.0.len()).all(|i| {
@@ -60,7 +59,7 @@ fn accurate(both: &Lanes, whole: &Lanes, sum: &Lanes) -> bool {
     })
 }
 
-/// Whether all wavelengths agree.
+/// True if all wavelengths agree.
 fn close(a: &Lanes, b: &Lanes, part: f32) -> bool {
     let floor = DIM * b.max_element();
     part > 0.0 && (0..a.0.len()).all(|i| (a.0[i] - b.0[i]).abs() <= part * b.0[i].max(floor))
@@ -72,7 +71,7 @@ mod tests {
     use std::cell::Cell;
 
     #[test]
-    fn exponentials_of_any_depth_are_integrated() {
+    fn exponentials_of_any_depth_are_integrated_accurately() {
         for deepest in [0.1f64, 3.0, 30.0, 300.0] {
             let rate = |i: usize| deepest * (i as f64 + 1.0) / 33.0;
             let got =
@@ -86,20 +85,20 @@ mod tests {
     }
 
     #[test]
-    fn a_jump_ends_the_halving() {
+    fn jumps_stop_at_the_largest_depth() {
         let evaluations = Cell::new(0);
         let got = Simpson::new(0.0).integrate(|x| {
             evaluations.set(evaluations.get() + 1);
             Lanes::splat(if x < 0.3 { 1.0 } else { 0.0 })
         });
-        // 15 times the tolerance, and Richardson's fifteenth.
+        // 15 times the tolerance, and a fifteenth from Richardson's correction.
         let error = (got.0[0] / 0.3 - 1.0).abs();
         assert!(error < 16.0 * TOLERANCE, "{error}");
         assert!(evaluations.get() < 100, "{evaluations:?}");
     }
 
     #[test]
-    fn the_previous_result_comes_again_for_nearly_the_same() {
+    fn previous_result_is_reused_for_nearly_equal_integrands() {
         let mut simpson = Simpson::new(1e-3);
         let evaluations = Cell::new(0);
         let of = |rate: f64| {

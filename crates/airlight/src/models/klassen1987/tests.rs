@@ -1,4 +1,4 @@
-//! The model against its errata, its limits and itself.
+//! Tests of the model against its errata, its limits and itself.
 
 use super::errata::{EARTH_M, SPHERES};
 use super::*;
@@ -10,8 +10,8 @@ use crate::spectrum::rgb::{apply, srgb_encode};
 type Outcome = Result<(), Klassen1987Error>;
 
 #[test]
-fn straight_rays_and_level_shells_agree_overhead() {
-    // With sun and line overhead nothing is slanted: both forms are the closed integral.
+fn both_geometries_agree_overhead() {
+    // With sun and view at the zenith both forms equal the closed integral.
     let line = RaySegment {
         sin_elevation: 1.0,
         sin_sun: 1.0,
@@ -28,9 +28,9 @@ fn straight_rays_and_level_shells_agree_overhead() {
     }
 }
 
-/// Eq. 19 against the cosine theorem, and at both ends of its range.
+/// Eq. 19 compared with the law of cosines, and at both ends of its range.
 #[test]
-fn lengths_end_on_the_sphere() {
+fn path_lengths_end_on_the_sphere() {
     for sin in [0.0, 1e-9, 0.1, 0.7, 1.0, -0.01] {
         let y = geometry::outward_m(EARTH_M, EARTH_M + 2e3, sin);
         let r2 = EARTH_M * EARTH_M + y * y + 2.0 * EARTH_M * y * sin;
@@ -41,9 +41,9 @@ fn lengths_end_on_the_sphere() {
     assert_eq!(geometry::outward_m(EARTH_M, EARTH_M, 0.0), 0.0);
 }
 
-/// The planet's shadow: under a sun on the horizon, a level line away from it sees haze whose sun has set.
+/// With the sun on the horizon, a horizontal ray away from it sees haze in the planet's shadow.
 #[test]
-fn the_planet_shades_what_lies_behind_the_horizon() {
+fn planet_shades_haze_beyond_the_horizon() {
     let line = RaySegment {
         sin_elevation: 0.0,
         sin_sun: 0.0,
@@ -73,9 +73,9 @@ fn plain() -> Klassen1987Settings {
     }
 }
 
-/// Thin haze over a black sky: radiance is `I_0 beta_sc l` within its optical depth.
+/// Thin haze in front of a black sky has radiance `I_0 beta_sc l`, to within its optical depth.
 #[test]
-fn thin_haze_scatters_in_proportion() -> Outcome {
+fn radiance_of_thin_haze_is_linear_in_density() -> Outcome {
     let settings = Klassen1987Settings {
         haze_extinction_per_m: 1e-10,
         air_density: 1e-6,
@@ -86,7 +86,7 @@ fn thin_haze_scatters_in_proportion() -> Outcome {
     let look = direction(90.0, 30.0);
     let cos = look.dot(direction(180.0, 40.0));
     let phase = crate::optics::PhaseFunction::HenyeyGreenstein { g: 0.7 }.evaluate(cos, 550.0);
-    // The lane of 550 nm; 2 km of haze seen 30 degrees up, on a ball.
+    // The lane of 550 nm; 2 km of haze at an elevation of 30 degrees on a sphere.
     let want = model.grid().solar_irradiance()[17] * 1e-10 * phase * 3997.2;
     let got = model.haze_spectrum(look)[17];
     assert!((got / want - 1.0).abs() < 1e-3, "{got} {want}");
@@ -94,9 +94,9 @@ fn thin_haze_scatters_in_proportion() -> Outcome {
     Ok(())
 }
 
-/// Eq. 22 with its signs: a lower sun is dimmer and redder, never brighter than outside the air.
+/// Eq. 22 with its signs: a lower sun is dimmer and redder, and never brighter than outside the atmosphere.
 #[test]
-fn the_sun_reddens_as_it_sets() -> Outcome {
+fn sun_reddens_as_it_sets() -> Outcome {
     for settings in [paper(), plain()] {
         let mut before: Option<Vec<f64>> = None;
         for elevation in [90.0, 40.0, 10.0, 3.0, 0.0] {
@@ -114,9 +114,9 @@ fn the_sun_reddens_as_it_sets() -> Outcome {
     Ok(())
 }
 
-/// The blue behind no haze is the sky; behind much haze it is gone.
+/// Without haze the sky is the blue; dense haze hides it.
 #[test]
-fn haze_covers_the_blue() -> Outcome {
+fn dense_haze_hides_the_blue() -> Outcome {
     let with = |haze_extinction_per_m| {
         let settings = Klassen1987Settings {
             haze_extinction_per_m,
@@ -148,9 +148,9 @@ fn haze_covers_the_blue() -> Outcome {
     Ok(())
 }
 
-/// The solver's blue behind no haze is the solver's sky.
+/// Without haze, the solver's blue equals the solver's sky.
 #[test]
-fn the_solvers_blue_is_the_solvers() -> Result<(), Box<dyn std::error::Error>> {
+fn solver_blue_matches_the_solver() -> Result<(), Box<dyn std::error::Error>> {
     use crate::sky::{Sky, SkySettings, SunCoverage};
     let sun = direction(180.0, 20.0);
     let settings = Klassen1987Settings {
@@ -180,9 +180,9 @@ fn the_solvers_blue_is_the_solvers() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// Layers of an atmosphere keep its optical depths.
+/// Layers preserve the optical depths of an atmosphere.
 #[test]
-fn layers_keep_optical_depths() -> Result<(), Box<dyn std::error::Error>> {
+fn layers_preserve_optical_depths() -> Result<(), Box<dyn std::error::Error>> {
     for name in ["clear", "hazy", "mars", "bruneton"] {
         let atmosphere = preset(name)?;
         let settings = Klassen1987Settings::of(&atmosphere);
@@ -216,9 +216,9 @@ fn layers_keep_optical_depths() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// There and back: the layers of an atmosphere of layers are those.
+/// Converting settings to an atmosphere and back reproduces them.
 #[test]
-fn an_atmosphere_of_layers_has_those_layers() -> Outcome {
+fn layers_round_trip_through_an_atmosphere() -> Outcome {
     let settings = Klassen1987Settings {
         haze_extinction_per_m: 2e-4,
         haze_thickness_m: 1.2e3,
@@ -240,13 +240,13 @@ fn an_atmosphere_of_layers_has_those_layers() -> Outcome {
 }
 
 #[test]
-fn the_discs_spectrum_makes_its_colour() -> Outcome {
+fn disc_spectrum_matches_its_colour() -> Outcome {
     let model = Klassen1987::new(&plain(), direction(180.0, 30.0))?;
     let sun = model.sun();
     let lanes: Vec<f32> = model.disc_spectrum(sun).iter().map(|&v| v as f32).collect();
     assert_eq!(lanes.len(), WAVELENGTHS);
     assert_eq!(model.grid().to_xyz(&lanes), model.disc_xyz(sun));
-    // At its centre the disc is brighter than its mean, which is irradiance over solid angle.
+    // The centre of the disc is brighter than its mean, irradiance divided by solid angle.
     let solid_angle = std::f64::consts::PI * model.disc_edge_rad().sin().powi(2);
     for (centre, irradiance) in lanes.iter().zip(model.sun_irradiance()) {
         let ratio = f64::from(*centre) * solid_angle / irradiance;
@@ -256,9 +256,9 @@ fn the_discs_spectrum_makes_its_colour() -> Outcome {
     Ok(())
 }
 
-/// A picture with coherence against one without: sRGB codes of 8 bits differ by 1 at most.
+/// Pictures with and without coherence: 8-bit sRGB codes differ by at most 1.
 #[test]
-fn coherence() -> Outcome {
+fn coherence_changes_codes_by_at_most_one() -> Outcome {
     let from_xyz = RgbSpace::Srgb.from_xyz_matrix();
     let (width, height) = (96, 64);
     for settings in [plain(), paper(), Klassen1987Settings::default()] {
@@ -268,7 +268,7 @@ fn coherence() -> Outcome {
             let looks: Vec<DVec3> = (0..width * height)
                 .map(|i| {
                     let (x, y) = (i % width, i / width);
-                    // About the sun's side of the sky, down to the horizon.
+                    // The side of the sky towards the sun, down to the horizon.
                     direction(
                         120.0 + 120.0 * f64::from(x) / f64::from(width),
                         50.0 * f64::from(y) / f64::from(height),
@@ -283,7 +283,7 @@ fn coherence() -> Outcome {
                 .iter()
                 .map(|&look| apply(&from_xyz, walk(look)))
                 .collect();
-            // White where a tenth of the picture would be brighter.
+            // Exposed so that a tenth of the picture is above white.
             let mut green: Vec<f64> = plain.iter().map(|rgb| rgb[1]).collect();
             green.sort_by(f64::total_cmp);
             let white = green[green.len() * 9 / 10];
@@ -304,7 +304,7 @@ fn coherence() -> Outcome {
 }
 
 #[test]
-fn numbers_out_of_range_are_refused() {
+fn settings_out_of_range_are_refused() {
     type Change = fn(&mut Klassen1987Settings);
     let changes: [Change; 8] = [
         |s| s.haze_extinction_per_m = -1e-6,
@@ -328,9 +328,9 @@ fn numbers_out_of_range_are_refused() {
     }
 }
 
-/// Every direction of the sphere has a finite colour that is not below black; below the horizon it is the horizon's.
+/// All directions have finite, non-negative colours; below the horizon that of the horizon.
 #[test]
-fn every_direction_has_a_colour() -> Outcome {
+fn all_directions_have_finite_colours() -> Outcome {
     for settings in [paper(), plain()] {
         for sun_deg in [0.0, 45.0, 90.0] {
             let model = Klassen1987::new(&settings, direction(77.0, sun_deg))?;

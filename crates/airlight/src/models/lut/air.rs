@@ -1,11 +1,11 @@
-//! An atmosphere sampled at wavelengths, and marching through it.
+//! Optical coefficients of an atmosphere at any number of wavelengths, and ray marching through it.
 
 use super::TransmittanceTable;
 use crate::atmosphere::{Atmosphere, DensityProfile};
 use crate::optics::PhaseFunction;
 use crate::transfer::ray::{Ray, in_shadow};
 
-/// An atmosphere at some wavelengths; every list has one entry for each of them.
+/// An atmosphere at some wavelengths; all lists have one entry per wavelength.
 pub struct AirLanes {
     wavelengths_nm: Vec<f64>,
     planet_radius_m: f64,
@@ -24,13 +24,13 @@ struct Part {
 
 /// A step of a march.
 pub struct Step<'a> {
-    /// The ray as seen from the middle of the step.
+    /// The ray relative to the midpoint of the step.
     pub here: Ray,
-    /// Relative densities of the constituents there.
+    /// Relative densities of the constituents.
     pub densities: &'a [f64],
-    /// Scattering coefficients there, 1/m.
+    /// Scattering coefficients, 1/m.
     pub scattering_per_m: &'a [f32],
-    /// What a source of 1 per metre, even over the step, brings to the start, m.
+    /// Light at the start of the ray per unit source function, assumed constant over the step, m.
     pub weight_m: &'a [f32],
 }
 
@@ -60,23 +60,23 @@ impl AirLanes {
         }
     }
 
-    /// How many wavelengths.
+    /// Number of wavelengths.
     pub fn lanes(&self) -> usize {
         self.wavelengths_nm.len()
     }
 
-    /// Radii of the ground and of the top of the air, m.
+    /// Radii of the ground and of the top of the atmosphere, m.
     pub fn bounds_m(&self) -> (f64, f64) {
         (self.ground_radius_m, self.top_radius_m)
     }
 
-    /// Radius from which altitudes are counted, m.
+    /// Radius at altitude 0, m.
     pub fn planet_radius_m(&self) -> f64 {
         self.planet_radius_m
     }
 
-    /// What each constituent scatters out of sunlight into a direction at density 1, `[constituent][wavelength]`,
-    /// 1/(m sr); `nu` is the cosine of the angle to the sun.
+    /// Scattering coefficient times phase function of each constituent at density 1, `[constituent][wavelength]`, 1/(m sr);
+    /// `nu` is the cosine of the angle to the sun.
     pub fn scattered(&self, nu: f64) -> Vec<Vec<f32>> {
         let of = |part: &Part| {
             let lanes = part.scattering_per_m.iter().zip(&self.wavelengths_nm);
@@ -87,8 +87,8 @@ impl AirLanes {
         self.parts.iter().map(of).collect()
     }
 
-    /// The stretch of a ray that lies in the air, m, and whether it ends on the ground; none where it passes outside.
-    pub fn stretch_m(&self, ray: &Ray) -> Option<(f64, f64, bool)> {
+    /// Segment of a ray inside the atmosphere, m, and whether it ends on the ground; `None` if it misses the atmosphere.
+    pub fn segment_m(&self, ray: &Ray) -> Option<(f64, f64, bool)> {
         let (near, far) = ray.crossings(self.top_radius_m)?;
         if far <= 0.0 {
             return None;
@@ -97,8 +97,8 @@ impl AirLanes {
         Some((near.max(0.0), ground.unwrap_or(far), ground.is_some()))
     }
 
-    /// Walks from `start_m` to `end_m` in `steps` steps, each as dense as in its middle; step k of n begins at
-    /// `(k / n)^power` of the way. Within a step the source is held and extinction integrated exactly. Returns the
+    /// Marches from `start_m` to `end_m` in `steps` steps with the density of their midpoints; step k of n begins at the fraction
+    /// `(k / n)^power`. Within a step the source function is constant and extinction is integrated exactly. Returns the
     /// transmittances.
     pub fn march(
         &self,
@@ -131,7 +131,7 @@ impl AirLanes {
             for lane in 0..lanes {
                 let tau = extinction[lane] * dt;
                 let lost = -(-tau).exp_m1();
-                // (1 - e^-tau) / sigma_t; dt where nothing is lost.
+                // (1 - e^-tau) / sigma_t, with the limit dt for small tau.
                 let mean = if tau > 1e-6 {
                     lost / extinction[lane]
                 } else {
@@ -150,7 +150,7 @@ impl AirLanes {
         throughput
     }
 
-    /// Transmittance table of `size` (zenith angles, heights), each ray marched in `steps` even steps.
+    /// Transmittance table of `size` (zenith angles, altitudes), each ray marched in `steps` equal steps.
     pub fn transmittance_table(&self, size: [usize; 2], steps: usize) -> TransmittanceTable {
         TransmittanceTable::new(self.bounds_m(), size, self.lanes(), |radius_m, mu, out| {
             let ray = Ray {
@@ -175,7 +175,7 @@ impl AirLanes {
         })
     }
 
-    /// Sunlight at a place by the table, 0 in the planet's shadow.
+    /// Transmittance to the sun from the table; 0 in the planet's shadow.
     pub fn sunlight(
         &self,
         table: &TransmittanceTable,
@@ -190,7 +190,7 @@ impl AirLanes {
         }
     }
 
-    /// Radiance of the sunlit ground per unit irradiance, where the sun stands at the zenith cosine `mu_sun`, into `out`.
+    /// Radiance of the sunlit ground per unit solar irradiance at the sun cosine `mu_sun`, into `out`.
     pub fn ground_radiance(&self, table: &TransmittanceTable, mu_sun: f64, out: &mut [f32]) {
         if mu_sun <= 0.0 {
             out.fill(0.0);

@@ -1,4 +1,4 @@
-//! Look-up tables shared by several published models: transmittance to space, and light scattered many times.
+//! Look-up tables shared by published models: transmittance to space and multiple scattering.
 
 mod air;
 mod multiple;

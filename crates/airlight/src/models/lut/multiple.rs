@@ -1,9 +1,8 @@
-//! Light scattered twice or more, as if scattered evenly in all directions.
+//! Table of multiple scattering, assumed isotropic.
 //!
 //! S. Hillaire, "A Scalable and Production Ready Sky and Atmosphere Rendering Technique", Computer Graphics Forum 39(4),
-//! 2020, section 5.5: light of the second order with an isotropic phase function (eqs. 5 and 6), the part of it
-//! that the surroundings send back each further time (eqs. 7 and 8), and the geometric series of all later orders
-//! (eqs. 9 and 10).
+//! 2020, section 5.5: second-order light with an isotropic phase function (eqs. 5 and 6), the fraction of it that the
+//! surroundings return with each further order (eqs. 7 and 8), and the geometric series of all later orders (eqs. 9 and 10).
 
 use super::{AirLanes, TransmittanceTable};
 use crate::math::interpolation::bilinear;
@@ -11,19 +10,19 @@ use crate::math::parallel;
 use crate::transfer::ray::Ray;
 use std::f64::consts::PI;
 
-/// How finely the table is made.
+/// Resolution of the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MultipleScatteringSettings {
-    /// Sun angles and heights, at least 2 of each.
+    /// Sun angles and altitudes, at least 2 each.
     pub size: [usize; 2],
-    /// Directions: the square root of their number, at least 1.
+    /// Square root of the number of directions, at least 1.
     pub root_of_directions: usize,
-    /// Steps on each ray, at least 1.
+    /// Number of steps along each ray, at least 1.
     pub steps: usize,
 }
 
 impl Default for MultipleScatteringSettings {
-    /// The paper's (table 2): 32 x 32, 64 directions, 20 steps.
+    /// Values of the paper (table 2): 32 x 32, 64 directions, 20 steps.
     fn default() -> Self {
         Self {
             size: [32, 32],
@@ -33,7 +32,7 @@ impl Default for MultipleScatteringSettings {
     }
 }
 
-/// `Psi_ms` by the sun's zenith cosine and height.
+/// `Psi_ms` by cosine of the sun's zenith angle and altitude.
 pub struct MultipleScatteringTable {
     ground_radius_m: f64,
     top_radius_m: f64,
@@ -43,7 +42,7 @@ pub struct MultipleScatteringTable {
 }
 
 impl MultipleScatteringTable {
-    /// Fills the table for an air and its transmittance.
+    /// Computes the table for an atmosphere and its transmittance.
     pub fn new(
         air: &AirLanes,
         transmittance: &TransmittanceTable,
@@ -68,7 +67,7 @@ impl MultipleScatteringTable {
         }
     }
 
-    /// `Psi_ms` at a place, per unit solar irradiance, sr^-1, into `out`.
+    /// Interpolates `Psi_ms` per unit solar irradiance, sr^-1, into `out`.
     pub fn look_up(&self, radius_m: f64, mu_sun: f64, out: &mut [f32]) {
         let height = (radius_m - self.ground_radius_m) / (self.top_radius_m - self.ground_radius_m);
         out.fill(0.0);
@@ -81,7 +80,7 @@ impl MultipleScatteringTable {
     }
 }
 
-/// `Psi_ms = L_2nd / (1 - f_ms)` at one place (eq. 10).
+/// `Psi_ms = L_2nd / (1 - f_ms)` at one point (eq. 10).
 fn psi(
     air: &AirLanes,
     transmittance: &TransmittanceTable,
@@ -96,7 +95,7 @@ fn psi(
     let (mut second, mut returned) = (vec![0.0f32; lanes], vec![0.0f32; lanes]);
     let mut sunlight = vec![0.0f32; lanes];
     for i in 0..root {
-        // Even over the sphere.
+        // Uniform over the sphere.
         let mu = 1.0 - 2.0 * (i as f64 + 0.5) / root as f64;
         let sine = (1.0 - mu * mu).sqrt();
         for j in 0..root {
@@ -108,7 +107,7 @@ fn psi(
                 mu_sun,
                 nu,
             };
-            let Some((start, end, on_ground)) = air.stretch_m(&ray) else {
+            let Some((start, end, on_ground)) = air.segment_m(&ray) else {
                 continue;
             };
             let through = air.march(&ray, (start, end), (settings.steps, 1.0), |step| {

@@ -1,13 +1,13 @@
-//! Transmittance to space by height and zenith angle.
+//! Table of the transmittance to space by altitude and zenith angle.
 
 use crate::math::interpolation::bilinear;
 use crate::math::parallel;
 
-/// Transmittance from any height in any direction to the top of the air, for several wavelengths at once.
+/// Transmittance from any altitude and direction to the top of the atmosphere, for several wavelengths.
 ///
 /// Parametrised as in E. Bruneton, "Precomputed Atmospheric Scattering: a New Implementation" (2017), section on
-/// transmittance: by the distance to the horizon, and by the distance to the top between its least and its greatest
-/// value. Only rays that miss the ground are in the table. Bilinear in between.
+/// transmittance: by the distance to the horizon, and by the distance to the top between its smallest and its largest value.
+/// Covers only rays that miss the ground. Bilinear interpolation.
 pub struct TransmittanceTable {
     ground_radius_m: f64,
     top_radius_m: f64,
@@ -17,8 +17,8 @@ pub struct TransmittanceTable {
 }
 
 impl TransmittanceTable {
-    /// Fills a table of `size` (zenith angles, heights; at least 2 of each): `depth(radius_m, mu, out)` writes the optical
-    /// depths to the top, one for each of the `lanes` wavelengths.
+    /// Computes a table of `size` (zenith angles, altitudes; at least 2 each): `depth(radius_m, mu, out)` writes the optical
+    /// depths to the top at the `lanes` wavelengths.
     pub fn new(
         (ground_radius_m, top_radius_m): (f64, f64),
         size: [usize; 2],
@@ -44,8 +44,8 @@ impl TransmittanceTable {
         table
     }
 
-    /// Transmittance to space from `radius_m` (m, between ground and top) in a direction with zenith cosine `mu` that
-    /// misses the ground, into `out`.
+    /// Interpolates the transmittance to space from `radius_m` (m, between ground and top) in a direction with zenith cosine
+    /// `mu` that misses the ground, into `out`.
     pub fn look_up(&self, radius_m: f64, mu: f64, out: &mut [f32]) {
         out.fill(0.0);
         let (u, v) = self.coordinates(radius_m, mu);
@@ -57,7 +57,7 @@ impl TransmittanceTable {
         }
     }
 
-    /// Half the longest chord: from the horizon of the ground to the top.
+    /// Half of the longest chord: from the horizon of the ground to the top.
     fn longest(&self) -> f64 {
         square_difference(self.top_radius_m, self.ground_radius_m).sqrt()
     }
@@ -69,7 +69,7 @@ impl TransmittanceTable {
         let to_top = {
             let b = r * mu;
             let root = (b * b + square_difference(self.top_radius_m, r)).sqrt();
-            // The root less b without its cancellation.
+            // sqrt(b^2 + c) - b without cancellation.
             if b > 0.0 {
                 square_difference(self.top_radius_m, r) / (root + b)
             } else {
@@ -80,7 +80,7 @@ impl TransmittanceTable {
         ((to_top - least) / (greatest - least), horizon / longest)
     }
 
-    /// The ray at a place of the table: the inverse of [`Self::coordinates`].
+    /// Ray for coordinates of the table: inverse of [`Self::coordinates`].
     fn ray_at(&self, u: f64, v: f64) -> (f64, f64) {
         let longest = self.longest();
         let horizon = v * longest;
@@ -95,7 +95,7 @@ impl TransmittanceTable {
     }
 }
 
-/// `a^2 - b^2`, not below 0.
+/// `a^2 - b^2`, clamped to 0.
 fn square_difference(a: f64, b: f64) -> f64 {
     ((a - b) * (a + b)).max(0.0)
 }
@@ -105,13 +105,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn places_and_rays_are_each_others_inverse() {
+    fn coordinates_round_trip() {
         let table = TransmittanceTable::new((6360e3, 6420e3), [9, 5], 1, |_, _, out| out.fill(0.0));
         for u in [0.0, 0.1, 0.5, 0.99, 1.0] {
             for v in [0.0, 0.2, 0.7, 0.999] {
                 let (r, mu) = table.ray_at(u, v);
                 let (u2, v2) = table.coordinates(r, mu);
-                // Nearly vertical at the top the zenith angle has few digits.
+                // For nearly vertical rays at the top the zenith angle has few significant digits.
                 assert!(
                     (u - u2).abs() < 1e-6 && (v - v2).abs() < 1e-6,
                     "{u} {v}: {u2} {v2}"

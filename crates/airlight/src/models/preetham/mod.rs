@@ -1,16 +1,15 @@
-//! The sky of Preetham, Shirley and Smits: "A Practical Analytic Model for Daylight", SIGGRAPH 1999.
+//! A. J. Preetham, P. Shirley and B. Smits, "A Practical Analytic Model for Daylight", SIGGRAPH 1999.
 //!
-//! Luminance and chromaticity each follow Perez' formula (eq. 3) between the zenith's value and the horizon, with five
-//! coefficients that are linear in turbidity (appendix A.2); the sun is dimmed by Iqbal's formulas for molecules, haze,
-//! ozone, mixed gases and water (appendix A.1).
+//! Luminance and chromaticity each follow Perez' formula (eq. 3) relative to the zenith, with five coefficients that are
+//! linear in turbidity (appendix A.2); the sun is attenuated by Iqbal's formulas for molecules, haze, ozone, mixed gases and
+//! water (appendix A.1).
 //!
-//! Fitted to Nishita's model with turbidities from 2 to 6 and suns above the horizon. Where it fails:
-//! - There is nothing below the horizon: black here.
-//! - It has no twilight. The zenith's luminance at sunset is still 2000 cd/m^2, and hardly falls after it; where the formula
-//!   falls below 0 it is held there.
-//! - Towards clear air the formula is a quotient of nothings: `1 + A e^B`, by which the sky is divided, is 0.17 at
-//!   turbidity 2, 0.03 at 1.7 and 0 near 1.6, so that all but the zenith shines without bound. Turbidities from 2 to 10
-//!   are taken.
+//! Fitted to Nishita's model for turbidities from 2 to 6 and suns above the horizon. Limitations:
+//! - No light below the horizon: black here.
+//! - No twilight. The luminance of the zenith at sunset is still 2000 cd/m^2 and hardly decreases after it; negative values
+//!   of the formula are clamped to 0.
+//! - The formula is singular for clear air: `1 + A e^B`, by which the sky is divided, is 0.17 at turbidity 2, 0.03 at 1.7
+//!   and 0 near 1.6, so that everything but the zenith becomes unboundedly bright. Turbidities from 2 to 10 are accepted.
 //! - By day it is up to three times as bright as our solver, mostly near the horizon: the book has the figures.
 
 mod sun;
@@ -29,7 +28,7 @@ const PEREZ_Y: [[f64; 2]; 5] = [
     [0.1206, -2.5771],
     [-0.0670, 0.3703],
 ];
-/// The same of chromaticity x.
+/// Coefficients of chromaticity x.
 const PEREZ_CHROMA_X: [[f64; 2]; 5] = [
     [-0.0193, -0.2592],
     [-0.0665, 0.0008],
@@ -37,7 +36,7 @@ const PEREZ_CHROMA_X: [[f64; 2]; 5] = [
     [-0.0641, -0.8989],
     [-0.0033, 0.0452],
 ];
-/// The same of chromaticity y.
+/// Coefficients of chromaticity y.
 const PEREZ_CHROMA_Y: [[f64; 2]; 5] = [
     [-0.0167, -0.2608],
     [-0.0950, 0.0092],
@@ -45,42 +44,42 @@ const PEREZ_CHROMA_Y: [[f64; 2]; 5] = [
     [-0.0441, -1.6537],
     [-0.0109, 0.0529],
 ];
-/// The zenith's chromaticity x: rows for the square of the turbidity, the turbidity and 1; columns for the cube of the
-/// sun's zenith angle, its square, the angle and 1.
+/// Chromaticity x of the zenith: rows for the squared turbidity, the turbidity and 1; columns for the cube of the sun's
+/// zenith angle, its square, the angle and 1.
 const ZENITH_CHROMA_X: [[f64; 4]; 3] = [
     [0.00166, -0.00375, 0.00209, 0.0],
     [-0.02903, 0.06377, -0.03202, 0.00394],
     [0.11693, -0.21196, 0.06052, 0.25886],
 ];
-/// The same of y.
+/// Chromaticity y of the zenith, likewise.
 const ZENITH_CHROMA_Y: [[f64; 4]; 3] = [
     [0.00275, -0.00610, 0.00317, 0.0],
     [-0.04214, 0.08970, -0.04153, 0.00516],
     [0.15346, -0.26756, 0.06670, 0.26688],
 ];
 
-/// Why numbers do not make a sky.
+/// Error of [`Preetham::new`].
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum PreethamError {
     /// The turbidity is out of range.
-    #[error("the turbidity must be from 2 to 10 (the model is fitted to 2 to 6), got {0}")]
+    #[error("expected a turbidity from 2 to 10, got {0} (the model is fitted to 2 to 6)")]
     Turbidity(f64),
-    /// The sun has no direction.
-    #[error("the sun's direction must be finite and not zero, got {0}")]
+    /// The sun's direction is zero or not finite.
+    #[error("expected a finite sun direction that is not zero, got {0}")]
     Sun(DVec3),
 }
 
-/// The sky over an eye on the ground, for one turbidity and one sun.
+/// The sky above an eye on the ground, for one turbidity and one sun direction.
 pub struct Preetham {
     sun: DVec3,
-    /// Of Y, x and y.
+    /// Formulas for Y, x and y.
     perez: [Perez; 3],
-    /// Y (cd/m^2), x and y in the zenith.
+    /// Y (cd/m^2), x and y of the zenith.
     zenith: [f64; 3],
     disc: DimmedSun,
 }
 
-/// Perez' formula with its coefficients, over its value in the zenith.
+/// Perez' formula, relative to its value at the zenith.
 struct Perez {
     coefficients: [f64; 5],
     in_zenith: f64,
@@ -106,10 +105,10 @@ impl Perez {
 }
 
 impl Preetham {
-    /// The sky of a turbidity (from 2 to 10) with the sun in a direction.
+    /// Sky for a turbidity (2 to 10) and a sun direction.
     ///
     /// # Errors
-    /// [`PreethamError`] for numbers out of their domain.
+    /// [`PreethamError`] if an argument is outside its domain.
     pub fn new(turbidity: f64, sun_direction: DVec3) -> Result<Self, PreethamError> {
         if !(2.0..=10.0).contains(&turbidity) {
             return Err(PreethamError::Turbidity(turbidity));
@@ -163,7 +162,7 @@ impl PublishedModel for Preetham {
         [x / y * luminance, luminance, (1.0 - x - y) / y * luminance]
     }
 
-    /// The limb-darkened disc of our own sun, dimmed by the paper's formulas ([`transmittance`]) for its centre.
+    /// The limb-darkened disc, attenuated by the paper's formulas ([`transmittance`]) at its centre.
     fn disc_xyz(&self, direction: DVec3) -> [f64; 3] {
         self.disc.xyz(direction)
     }
@@ -179,8 +178,8 @@ mod tests {
     }
 
     #[test]
-    fn the_zenith_has_the_values_of_its_polynomials() {
-        // By hand, turbidity 2, sun in the zenith: chi = (4/9 - 1/60) pi.
+    fn zenith_values_match_hand_computed_polynomials() {
+        // By hand, turbidity 2, sun at the zenith: chi = (4/9 - 1/60) pi.
         let chi: f64 = 0.427_777_777_8 * PI;
         let want = 1000.0 * (3.1196 * chi.tan() - 0.431 + 2.4192);
         let [luminance, x, y] = zenith(2.0, 0.0);
@@ -197,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn the_zenith_of_the_sky_is_the_zeniths_value() {
+    fn sky_at_the_zenith_matches_the_zenith_value() {
         for (turbidity, sun_deg) in [(2.0, 60.0), (3.0, 20.0), (6.0, 5.0)] {
             let sky = sky(turbidity, sun_deg);
             let [x, y, z] = sky.sky_xyz(DVec3::Y);
@@ -208,12 +207,12 @@ mod tests {
     }
 
     #[test]
-    fn the_sky_is_blue_and_brighter_near_the_sun() {
+    fn sky_is_blue_and_brighter_near_the_sun() {
         let sky = sky(2.5, 40.0);
         let at = |azimuth, elevation| sky.sky_xyz(axes::direction(azimuth, elevation));
         assert!(at(0.0, 60.0)[2] > 1.3 * at(0.0, 60.0)[0]);
         assert!(at(180.0, 35.0)[1] > 3.0 * at(0.0, 60.0)[1]);
-        // The horizon is continuous and black below.
+        // Continuous down to the horizon, black below.
         let (low, lower) = (at(90.0, 0.1)[1], at(90.0, 0.01)[1]);
         assert!((low / lower - 1.0).abs() < 0.01 && lower > 0.0);
         assert_eq!(at(90.0, -0.01), [0.0; 3]);
@@ -227,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn the_suns_disc_is_dimmed_and_reddened() {
+    fn disc_is_attenuated_and_reddened() {
         let disc = |sun_deg| sky(2.5, sun_deg).disc_xyz(axes::direction(180.0, sun_deg));
         let (high, low) = (disc(60.0), disc(5.0));
         assert!(high[1] > 1.2e9 && high[1] < 2.2e9, "{high:?}");
@@ -237,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn bad_numbers_are_refused() {
+    fn invalid_arguments_are_refused() {
         for turbidity in [1.9, 10.5, f64::NAN] {
             let error = Preetham::new(turbidity, DVec3::Y).err().unwrap();
             assert!(matches!(error, PreethamError::Turbidity(_)));

@@ -1,5 +1,5 @@
-//! How the air of a turbidity dims the sun: Preetham, Shirley and Smits 1999, appendix A.1, after Iqbal, "An Introduction
-//! to Solar Radiation", 1983.
+//! Attenuation of sunlight for a turbidity: Preetham, Shirley and Smits 1999, appendix A.1, after Iqbal, "An Introduction to
+//! Solar Radiation", 1983.
 
 use crate::math::interpolation::{interval_by_key, lerp};
 use crate::spectrum::WavelengthGrid;
@@ -11,7 +11,7 @@ const OZONE_CM: f64 = 0.35;
 /// Precipitable water, cm.
 const WATER_CM: f64 = 2.0;
 
-/// Absorption by ozone (1/cm) over wavelength (nm), table 2 of the paper.
+/// Absorption by ozone (1/cm) by wavelength (nm), table 2 of the paper.
 #[rustfmt::skip]
 const OZONE: [(f64, f64); 64] = [
     (300.0, 10.0), (305.0, 4.8), (310.0, 2.7), (315.0, 1.35), (320.0, 0.8), (325.0, 0.38), (330.0, 0.16), (335.0, 0.075),
@@ -33,17 +33,17 @@ const WATER: [(f64, f64); 13] = [
     (750.0, 0.001), (760.0, 1e-5), (770.0, 1e-5), (780.0, 6e-4), (790.0, 0.0175), (800.0, 0.036),
 ];
 
-/// Our sun with its limb, dimmed for its centre.
+/// Limb-darkened sun, attenuated at its centre.
 pub struct DimmedSun {
     sun: DVec3,
     disc: SunDisc,
     grid: WavelengthGrid,
-    /// Irradiance on a surface that faces the sun, W m^-2 nm^-1, at the wavelengths of the grid.
+    /// Irradiance on a surface that faces the sun at the wavelengths of the grid, W m^-2 nm^-1.
     irradiance: Vec<f64>,
 }
 
 impl DimmedSun {
-    /// Through air of a turbidity (at least 1), in the direction of a unit vector.
+    /// Sun through air of a turbidity (at least 1), in the direction of a unit vector.
     pub fn new(turbidity: f64, sun: DVec3) -> Self {
         let grid = WavelengthGrid::standard();
         let zenith_rad = sun.angle_between(DVec3::Y);
@@ -61,7 +61,7 @@ impl DimmedSun {
         }
     }
 
-    /// XYZ of the disc along a unit vector, Y in cd/m^2; black beside it and below the horizon.
+    /// XYZ of the disc along a unit vector, Y in cd/m^2; black outside the disc and below the horizon.
     pub fn xyz(&self, direction: DVec3) -> [f64; 3] {
         let angle = direction.angle_between(self.sun);
         if direction.y <= 0.0 || angle >= self.disc.angular_radius_rad {
@@ -77,8 +77,8 @@ impl DimmedSun {
     }
 }
 
-/// What of the sun's light reaches the ground at a wavelength (nm), with the sun at a zenith angle (rad): 0 from 93.8
-/// degrees on, where the air mass formula ends. Tables are linear between their entries and 0 beyond the ends.
+/// Transmittance to the ground at a wavelength (nm) for the sun at a zenith angle (rad); 0 from 93.8 degrees on, where the
+/// air-mass formula ends. Tables are linear between their entries and 0 beyond the ends.
 pub fn transmittance(turbidity: f64, sun_zenith_rad: f64, wavelength_nm: f64) -> f64 {
     let Some(m) = optical_mass(sun_zenith_rad) else {
         return 0.0;
@@ -86,25 +86,25 @@ pub fn transmittance(turbidity: f64, sun_zenith_rad: f64, wavelength_nm: f64) ->
     let um = wavelength_nm * 1e-3;
     let beta = 0.04608 * turbidity - 0.04586;
     let (gases, water) = (
-        between(&GASES, wavelength_nm) * m,
-        between(&WATER, wavelength_nm) * WATER_CM * m,
+        interpolated(&GASES, wavelength_nm) * m,
+        interpolated(&WATER, wavelength_nm) * WATER_CM * m,
     );
     let depth = 0.008735 * um.powf(-4.08) * m
         + beta * um.powf(-1.3) * m
-        + between(&OZONE, wavelength_nm) * OZONE_CM * m
+        + interpolated(&OZONE, wavelength_nm) * OZONE_CM * m
         + 1.41 * gases / (1.0 + 118.93 * gases).powf(0.45)
         + 0.2385 * water / (1.0 + 20.07 * water).powf(0.45);
     (-depth).exp()
 }
 
-/// Relative optical mass (Kasten's formula as the paper has it); none beyond 93.8 degrees.
+/// Relative optical mass (Kasten's formula as in the paper); `None` beyond 93.8 degrees.
 fn optical_mass(sun_zenith_rad: f64) -> Option<f64> {
     let deg = sun_zenith_rad.to_degrees();
     (deg < 93.8).then(|| 1.0 / (sun_zenith_rad.cos() + 0.15 * (93.885 - deg).powf(-1.253)))
 }
 
-/// A table's value, linear between entries, 0 beyond them.
-fn between(table: &[(f64, f64)], x: f64) -> f64 {
+/// Linear interpolation of a table, 0 beyond its ends.
+fn interpolated(table: &[(f64, f64)], x: f64) -> f64 {
     if x < table[0].0 || x >= table[table.len() - 1].0 {
         return 0.0;
     }
@@ -118,7 +118,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn depths_are_those_of_the_formulas() {
+    fn optical_depths_match_the_formulas() {
         // Zenith, 550 nm, turbidity 2: molecules 0.008735 * 0.55^-4.08, haze 0.0463 * 0.55^-1.3, ozone 0.085 * 0.35.
         let m = 1.0 / (1.0 + 0.15 * 93.885f64.powf(-1.253));
         let want = m * (0.008735 * 11.4637 + 0.0463 * 2.17533 + 0.02975);
@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn the_air_mass_is_one_overhead_and_ends_below_the_horizon() {
+    fn air_mass_is_one_overhead_and_ends_below_the_horizon() {
         assert!((optical_mass(0.0).unwrap() - 0.9995).abs() < 1e-4);
         assert!((optical_mass(90f64.to_radians()).unwrap() - 36.5).abs() < 0.2);
         assert_eq!(optical_mass(94f64.to_radians()), None);
@@ -135,12 +135,12 @@ mod tests {
     }
 
     #[test]
-    fn tables_rise_and_end() {
+    fn tables_increase_and_end_in_zero() {
         for table in [&OZONE[..], &GASES, &WATER] {
             assert!(table.windows(2).all(|w| w[0].0 < w[1].0));
         }
-        assert_eq!(between(&OZONE, 299.0), 0.0);
-        assert_eq!(between(&OZONE, 900.0), 0.0);
-        assert!((between(&OZONE, 302.5) - 7.4).abs() < 1e-12);
+        assert_eq!(interpolated(&OZONE, 299.0), 0.0);
+        assert_eq!(interpolated(&OZONE, 900.0), 0.0);
+        assert!((interpolated(&OZONE, 302.5) - 7.4).abs() < 1e-12);
     }
 }

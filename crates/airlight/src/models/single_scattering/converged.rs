@@ -1,4 +1,4 @@
-//! The same integrals with nodes where they matter, the planet in its place, and the two steps beyond.
+//! The article's integrals with converged quadrature, the planet's shadow, and the two further steps of the article.
 
 use super::constants as c;
 use super::nodes::{self, Columns};
@@ -14,13 +14,13 @@ use crate::transfer::ray::{Ray, in_shadow};
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// Nodes on each stretch of the line of sight.
+/// Number of nodes on each segment of the view ray.
 pub const VIEW_NODES: usize = 12;
-/// Nodes on each way to the sun.
+/// Number of nodes on each ray to the sun.
 pub const SUN_NODES: usize = 10;
-/// Zenith angles and heights of the transmittance table.
+/// Zenith angles and altitudes of the transmittance table.
 pub const TABLE_SIZE: [usize; 2] = [256, 64];
-/// The wavelengths that stand for red, green and blue in the preset of the article.
+/// Wavelengths of red, green and blue in the article's preset.
 const CHANNELS_NM: [f64; 3] = [680.0, 550.0, 440.0];
 
 /// The article's sky, converged.
@@ -28,19 +28,19 @@ pub struct Converged {
     eye_altitude_m: f64,
     view_rule: RunningRule,
     sun_rule: GaussRule,
-    /// Illuminances outside the air, facing the sun.
+    /// Illuminances outside the atmosphere, on a surface that faces the sun.
     illuminance: [f64; 3],
     transmittance: Option<TransmittanceTable>,
     multiple: Option<MultipleScatteringTable>,
 }
 
 impl Converged {
-    /// Prepares the tables that the variant takes.
+    /// Prepares the tables of the variant.
     pub fn new(variant: Variant, settings: &Settings) -> Self {
         Self::with_nodes(variant, settings, (VIEW_NODES, SUN_NODES))
     }
 
-    /// The same with other numbers of nodes, on the line of sight and on the ways to the sun.
+    /// As [`Self::new`], with other numbers of nodes on the view ray and on rays to the sun.
     pub fn with_nodes(variant: Variant, settings: &Settings, nodes: (usize, usize)) -> Self {
         let rules = (RunningRule::new(nodes.0), GaussRule::new(nodes.1));
         let transmittance = matches!(variant, Variant::Table | Variant::Multiple).then(|| {
@@ -74,14 +74,14 @@ impl Converged {
         }
     }
 
-    /// Light scattered into a direction.
+    /// Luminances scattered into a direction.
     pub fn luminance(&self, direction: DVec3, sun: DVec3) -> [f64; 3] {
         let ray = self.ray(direction, sun);
         let (end_m, _) = end_of(&ray);
         let rayleigh = rayleigh_phase(ray.nu);
         let mie = PhaseFunction::HenyeyGreenstein { g: c::MIE_G }.evaluate(ray.nu, 550.0);
         let mut sum = [0.0; 3];
-        nodes::walk(&self.view_rule, &ray, end_m, |node| {
+        nodes::march(&self.view_rule, &ray, end_m, |node| {
             let way = optical_depths(node.columns).map(|tau| (-tau).exp());
             let sunlight = self.sunlight(&node.here);
             let mut psi = [0.0f32; 3];
@@ -99,7 +99,7 @@ impl Converged {
         [0, 1, 2].map(|i| sum[i] * self.illuminance[i])
     }
 
-    /// The sun's disc as it arrives; black where the planet hides it.
+    /// Luminances of the sun's disc, attenuated; black where the planet hides it.
     pub fn disc(&self, direction: DVec3, sun: DVec3) -> [f64; 3] {
         let radius = (0.5 * c::SUN_WIDTH_DEG).to_radians();
         let [inner, outer] = c::SUN_EDGE.map(|edge| radius * edge);
@@ -118,7 +118,7 @@ impl Converged {
         [0, 1, 2].map(|i| disc * self.illuminance[i] / solid_angle * (-depths[i]).exp())
     }
 
-    /// What of the sunlight reaches a place.
+    /// Transmittance to the sun from a point.
     fn sunlight(&self, here: &Ray) -> [f64; 3] {
         if in_shadow(here.radius_m, here.mu_sun, c::PLANET_RADIUS_M) {
             return [0.0; 3];
@@ -144,7 +144,7 @@ impl Converged {
     }
 }
 
-/// Where a ray that starts in the air ends, m, and whether that is on the ground.
+/// Distance at which a ray that starts in the atmosphere ends, m, and whether it ends on the ground.
 fn end_of(ray: &Ray) -> (f64, bool) {
     match ray.distance_to_ground(c::PLANET_RADIUS_M) {
         Some(end_m) => (end_m, true),
@@ -155,7 +155,7 @@ fn end_of(ray: &Ray) -> (f64, bool) {
     }
 }
 
-/// Optical depths of columns of the two densities.
+/// Optical depths for columns of the two densities.
 pub fn optical_depths([air, haze]: Columns) -> [f64; 3] {
     let haze = c::MIE_EXTINCTION * c::MIE_PER_MEGAMETRE * 1e-6 * haze;
     [0, 1, 2].map(|i| (c::RAYLEIGH_PER_MEGAMETRE[i] * 1e-6 + c::OZONE[i] * 0.06e-5) * air + haze)

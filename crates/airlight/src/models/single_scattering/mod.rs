@@ -1,19 +1,19 @@
-//! The sky of the article "Sky and Atmosphere rendering: A physical approach": sunlight scattered once.
+//! Sky of the article "Sky and Atmosphere rendering: A physical approach": single scattering.
 //!
-//! Three constants a coefficient, called red, green and blue, and taken for luminances of linear sRGB: colours are those
-//! channels in cd/m^2, sent through [`RgbSpace::Srgb`].
+//! Each coefficient has three constants, named red, green and blue and interpreted as luminances of linear sRGB: the
+//! channels are in cd/m^2 and converted through [`RgbSpace::Srgb`].
 //!
-//! [`Variant`] has the shader as printed and the steps by which the article says one may go on. All keep its coefficients,
-//! also where they are wrong: ozone has the molecules' profile, and a column 41 % too large.
+//! [`Variant`] selects the shader as printed or one of the improvements that the article suggests. All variants keep its
+//! coefficients, including wrong ones: ozone has the profile of molecules, and a column 41 % too large.
 //!
 //! # Errata
-//! - 8 steps of even length are far from enough. Sun at 45 degrees, view at 45 degrees towards its azimuth: 3652, 4655,
-//!   7169 cd/m^2 as printed, 10878, 11659, 13903 converged.
-//! - The planet stops neither view nor sun: the printed rays run on through it, in air that grows denser by e every
-//!   1.2 km, down to numbers that overflow. Here such directions are black.
-//! - The zenith transmittance that makes the sun white takes haze without the factor 1.11 of its extinction: 0.3 % of
-//!   illuminance. Kept in all variants, so that they differ in their integrals alone.
-//! - No light comes from the ground.
+//! - 8 equal steps are far too few. Sun at 45 degrees, view at 45 degrees towards its azimuth: 3652, 4655, 7169 cd/m^2 as
+//!   printed, 10878, 11659, 13903 converged.
+//! - The planet blocks neither view rays nor sunlight: the printed rays continue through it, in air whose density grows by e
+//!   every 1.2 km, until numbers overflow. Here such directions are black.
+//! - The zenith transmittance that makes the sun white omits the factor 1.11 of the extinction by haze: 0.3 % of the
+//!   illuminance. Kept in all variants, so that they differ only in their integrals.
+//! - The ground emits no light.
 
 mod constants;
 mod converged;
@@ -33,39 +33,38 @@ use glam::DVec3;
 use printed::Printed;
 pub use sunlight::Sunlight;
 
-/// How the integrals are done.
+/// Evaluation of the integrals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Variant {
     /// The shader in f32, operation by operation.
     Printed,
     /// The shader in f64.
     PrintedF64,
-    /// 12 well-placed nodes on the line of sight and 10 on each way to the sun, planet and shadow in their place. Against 64
-    /// and 48 nodes: below 1e-4 for suns from 2 degrees up, 0.2 % with the sun on the horizon, 0.1 % down to -4 degrees.
+    /// 12 well-placed nodes on the view ray and 10 on each ray to the sun, with the planet and its shadow. Differs from 64 and
+    /// 48 nodes by less than 1e-4 for suns from 2 degrees up, 0.2 % with the sun on the horizon, 0.1 % down to -4 degrees.
     #[default]
     Converged,
-    /// The same with the ways to the sun from a table of 256 zenith angles and 64 heights (the article's second step). Against
-    /// `Converged`: below 0.03 % with the sun at 60 degrees, 0.12 % at 10, 0.6 % at 2.
+    /// As `Converged`, with transmittances to the sun from a table of 256 zenith angles and 64 altitudes (the article's second
+    /// step). Differs from `Converged` by less than 0.03 % with the sun at 60 degrees, 0.12 % at 10, 0.6 % at 2.
     Table,
-    /// The same with light scattered more than once, from the table of Hillaire 2020 (the article's third step). Against our
-    /// solver the worst channel of the sky is off by 9 % with the sun at 60 degrees, 17 % at 10, 25 % at 2; without it by
-    /// 46, 62 and 95 %.
+    /// As `Table`, with multiple scattering from the table of Hillaire 2020 (the article's third step). Differs from our solver
+    /// in the worst channel of the sky by 9 % with the sun at 60 degrees, 17 % at 10, 25 % at 2; without it by 46, 62 and 95 %.
     Multiple,
 }
 
-/// What the sky is made for.
+/// Settings of [`SkyArticle`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// How the integrals are done.
+    /// Evaluation of the integrals.
     pub variant: Variant,
-    /// The sun's light.
+    /// Sunlight outside the atmosphere.
     pub sunlight: Sunlight,
-    /// Height of the eye, m: from 0 to below 60 km.
+    /// Altitude of the eye, m: from 0 to below 60 km.
     pub eye_altitude_m: f64,
 }
 
 impl Default for Settings {
-    /// Converged, white at the zenith with 120 000 lx, from 1 m.
+    /// Converged, white at the zenith with 120 000 lx, seen from 1 m.
     fn default() -> Self {
         Self {
             variant: Variant::default(),
@@ -75,17 +74,17 @@ impl Default for Settings {
     }
 }
 
-/// Why settings are refused.
+/// Error of [`SkyArticle::new`].
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum SettingsError {
-    /// The eye is not in the air.
-    #[error("the eye must be from 0 to below 60 000 m high, got {0} m")]
+    /// The eye is not inside the atmosphere.
+    #[error("expected an eye altitude from 0 to below 60 000 m, got {0} m")]
     EyeAltitude(f64),
-    /// The illuminance is no light.
-    #[error("the illuminance by the zenith sun must be positive and finite, got {0} lx")]
+    /// The illuminance is not positive and finite.
+    #[error("expected a positive, finite illuminance from the zenith sun, got {0} lx")]
     Illuminance(f64),
-    /// The sun has no direction.
-    #[error("the sun's direction must be finite and not zero, got {0}")]
+    /// The sun's direction is zero or not finite.
+    #[error("expected a finite sun direction that is not zero, got {0}")]
     Sun(DVec3),
 }
 
@@ -103,10 +102,10 @@ enum Model {
 }
 
 impl SkyArticle {
-    /// Prepares a sky with the sun in a direction.
+    /// Sky for a sun direction.
     ///
     /// # Errors
-    /// [`SettingsError`] for numbers out of their domain.
+    /// [`SettingsError`] if an argument is outside its domain.
     pub fn new(settings: &Settings, sun_direction: DVec3) -> Result<Self, SettingsError> {
         let eye = settings.eye_altitude_m;
         if !(0.0..constants::TOP_RADIUS_M - constants::PLANET_RADIUS_M).contains(&eye) {
@@ -132,8 +131,8 @@ impl SkyArticle {
         })
     }
 
-    /// Luminances of the red, green and blue channel of the sky in the direction of a unit vector, cd/m^2, without the
-    /// sun's disc. The printed variants give what the shader gives: not a number for rays deep into the planet.
+    /// Luminances of the red, green and blue channel of the sky along a unit vector, cd/m^2, without the sun's disc. The printed
+    /// variants return what the shader returns: NaN for rays deep into the planet.
     pub fn luminance(&self, direction: DVec3) -> [f64; 3] {
         match &self.model {
             Model::Printed(shader) => shader.luminance(direction.into(), self.sun.into()),
@@ -142,7 +141,7 @@ impl SkyArticle {
         }
     }
 
-    /// The same of the sun's disc, whose edge is smooth from 0.95 to 1.05 of its radius.
+    /// Luminances of the sun's disc, cd/m^2, whose edge is smooth from 0.95 to 1.05 of its radius.
     pub fn disc_luminance(&self, direction: DVec3) -> [f64; 3] {
         match &self.model {
             Model::Printed(shader) => shader.disc(direction.into(), self.sun.into()),
@@ -164,12 +163,12 @@ impl PublishedModel for SkyArticle {
         self.sun
     }
 
-    /// Where the smooth edge ends.
+    /// End of the smooth edge.
     fn disc_edge_rad(&self) -> f64 {
         (0.5 * constants::SUN_WIDTH_DEG).to_radians() * constants::SUN_EDGE[1]
     }
 
-    /// Black where the printed shader gives no number.
+    /// Black where the printed shader returns NaN.
     fn sky_xyz(&self, direction: DVec3) -> [f64; 3] {
         self.xyz(self.luminance(direction))
     }

@@ -1,39 +1,39 @@
-//! Well-placed nodes on a ray through air that thins exponentially.
+//! Quadrature nodes on a ray through exponentially thinning air.
 //!
-//! From the point of a stretch that lies lowest the air thins as `exp(-climb / H)`, and light is lost within a mean free
-//! path: both are smooth over the logarithm of the distance. So a stretch is mapped by `d = c (e^(k s) - 1)`,
-//! `d` the distance from its lowest point and `c` the shorter of the way on which the ray climbs the haze's scale height
-//! and a mean free path, and gets one Gauss-Legendre rule over `s`.
+//! From the lowest point of a segment, density falls as `exp(-climb / H)` and light is lost within a mean free path; both are
+//! smooth functions of the logarithm of the distance. So a segment is mapped by `d = c (e^(k s) - 1)`, with `d` the distance
+//! from its lowest point and `c` the smaller of a mean free path and the distance over which the ray climbs the scale height
+//! of haze, and integrated by one Gauss-Legendre rule over `s`.
 
 use super::constants as c;
 use crate::math::quadrature::{GaussRule, RunningRule};
 use crate::transfer::ray::Ray;
 
-/// No longer than this are steps next to the densest point, m: a mean free path of blue light at sea level.
+/// Largest step next to the densest point, m: a mean free path of blue light at sea level.
 const MEAN_FREE_PATH_M: f64 = 15e3;
 
-/// Lengths of columns of sea-level density: of what thins with 8 km, and of haze, m.
+/// Columns in metres at sea-level density: with a scale height of 8 km, and of haze.
 pub type Columns = [f64; 2];
 
-/// A node on the line of sight.
+/// A quadrature node on the view ray.
 pub struct Node {
-    /// The ray as seen from here.
+    /// The ray relative to this point.
     pub here: Ray,
     /// Quadrature weight, m.
     pub dt: f64,
-    /// Relative densities here.
+    /// Relative densities.
     pub densities: [f64; 2],
-    /// Columns between the eye and here.
+    /// Columns from the eye to the node.
     pub columns: Columns,
 }
 
-/// Relative densities at a height.
+/// Relative densities at an altitude.
 pub fn densities(altitude_m: f64) -> [f64; 2] {
     [c::RAYLEIGH_SCALE_HEIGHT_M, c::MIE_SCALE_HEIGHT_M].map(|h| (-altitude_m / h).exp())
 }
 
-/// The map of a stretch of `length` whose lowest point starts a ray of zenith cosine `mu >= 0` at `radius_m`: its
-/// `c` and `k`.
+/// Parameters `c` and `k` of the map of a segment of `length` that ascends from its lowest point at `radius_m` with zenith
+/// cosine `mu >= 0`.
 fn log_map(radius_m: f64, mu: f64, length: f64) -> (f64, f64) {
     let (b, h) = (radius_m * mu, c::MIE_SCALE_HEIGHT_M);
     let climb = h * (2.0 * radius_m + h) / (b + (b * b + h * (2.0 * radius_m + h)).sqrt());
@@ -41,7 +41,7 @@ fn log_map(radius_m: f64, mu: f64, length: f64) -> (f64, f64) {
     (scale, (length / scale).ln_1p())
 }
 
-/// Columns from `radius_m` to space along a ray that climbs (`mu >= 0`).
+/// Columns from `radius_m` to space along an ascending ray (`mu >= 0`).
 pub fn columns_up(rule: &GaussRule, radius_m: f64, mu: f64) -> Columns {
     let ray = Ray {
         radius_m,
@@ -55,9 +55,9 @@ pub fn columns_up(rule: &GaussRule, radius_m: f64, mu: f64) -> Columns {
     let (scale, k) = log_map(radius_m, mu, length);
     let mut columns = [0.0; 2];
     for (s, w) in rule.iter() {
-        let stretch = (k * s).exp();
-        let altitude = radius_m - c::PLANET_RADIUS_M + ray.climb_at(scale * (stretch - 1.0));
-        let dt = w * scale * k * stretch;
+        let growth = (k * s).exp();
+        let altitude = radius_m - c::PLANET_RADIUS_M + ray.climb_at(scale * (growth - 1.0));
+        let dt = w * scale * k * growth;
         for (column, density) in columns.iter_mut().zip(densities(altitude)) {
             *column += dt * density;
         }
@@ -78,9 +78,9 @@ pub fn columns_to_space(rule: &GaussRule, radius_m: f64, mu: f64) -> Columns {
     [0, 1].map(|i| 2.0 * whole[i] - behind[i])
 }
 
-/// Calls `visit` with the nodes of the line of sight, eye to `end_m`; returns the columns of all of it. The line is cut where it is
-/// lowest and where it crosses the edge of the planet's shadow.
-pub fn walk(
+/// Calls `visit` with the nodes of the view ray from the eye to `end_m`; returns the columns of the whole ray. The ray is
+/// split at its lowest point and at the edges of the planet's shadow.
+pub fn march(
     RunningRule { rule, running }: &RunningRule,
     ray: &Ray,
     end_m: f64,
@@ -106,14 +106,14 @@ pub fn walk(
         let (scale, k) = log_map(low.radius_m, low.mu.abs(), to - from);
         nodes.clear();
         for (s, _) in rule.iter() {
-            let stretch = (k * s).exp();
-            let d = scale * (stretch - 1.0);
+            let growth = (k * s).exp();
+            let d = scale * (growth - 1.0);
             let t = if climbs { from + d } else { to - d };
             let altitude = ray.radius_m - c::PLANET_RADIUS_M + ray.climb_at(t);
             nodes.push(Node {
                 here: ray.advanced(t),
-                // Times the weight below.
-                dt: scale * k * stretch,
+                // Multiplied by the quadrature weight below.
+                dt: scale * k * growth,
                 densities: densities(altitude),
                 columns: [0.0; 2],
             });

@@ -1,11 +1,11 @@
-//! The shader as it is printed, operation by operation: 8 midpoint steps on every ray, no planet in the way.
+//! The shader as printed, operation by operation: 8 midpoint steps on each ray, no planet in the way.
 
 use super::constants as c;
 use super::sunlight::{Sunlight, solar_rgb};
 use super::vec3::Vec3;
 use crate::math::real::Real;
 
-/// The shader with its constants folded.
+/// The shader with its constants evaluated.
 pub struct Printed<F> {
     rayleigh: Vec3<F>,
     mie: Vec3<F>,
@@ -17,9 +17,9 @@ pub struct Printed<F> {
 }
 
 impl<F: Real> Printed<F> {
-    /// For an eye at a height (m) and a sun.
+    /// Shader for an eye at an altitude (m) and sunlight.
     ///
-    /// The zenith transmittance that the illuminance is divided by has haze without the factor 1.11, as printed.
+    /// The zenith transmittance by which the illuminance is divided omits the factor 1.11 of haze, as printed.
     pub fn new(eye_altitude_m: f64, sunlight: Sunlight) -> Self {
         let f = F::of;
         let rayleigh = Vec3::of(c::RAYLEIGH_PER_MEGAMETRE).scaled(f(1e-6));
@@ -58,11 +58,11 @@ impl<F: Real> Printed<F> {
         }
     }
 
-    /// `compute_luminance`: light scattered once into a direction. Not a number where the ray runs so deep into the
-    /// planet that densities overflow.
+    /// `compute_luminance`: singly scattered light along a direction. NaN if the ray runs so deep into the planet that densities
+    /// overflow.
     pub fn luminance(&self, view: [f64; 3], sun: [f64; 3]) -> [f64; 3] {
         let (view, sun) = (Vec3::<F>::of(view), Vec3::<F>::of(sun));
-        let out = self.way_out(view);
+        let out = self.exit_point(view);
         let ds = out.minus(self.origin_view).over(F::of(STEPS));
         let direction = ds.over(ds.length());
         let mut sum = Vec3::of([0.0; 3]);
@@ -76,7 +76,7 @@ impl<F: Real> Printed<F> {
         sum.scaled(ds.length()).0.map(F::to_f64)
     }
 
-    /// `direct_light_from_sun`: the disc, dimmed on the way. The cosine is held at 1, which the shader does not.
+    /// `direct_light_from_sun`: the disc, attenuated. The cosine is clamped to 1, unlike in the shader.
     pub fn disc(&self, view: [f64; 3], sun: [f64; 3]) -> [f64; 3] {
         let (view, sun) = (Vec3::<F>::of(view), Vec3::<F>::of(sun));
         let cosine = view.dot(sun);
@@ -89,13 +89,13 @@ impl<F: Real> Printed<F> {
         let disc = F::of(1.0) - smoothstep(inner, outer, angle);
         self.outer_space
             .scaled(disc)
-            .times(self.transmittance(self.origin_view, self.way_out(view)))
+            .times(self.transmittance(self.origin_view, self.exit_point(view)))
             .0
             .map(F::to_f64)
     }
 
-    /// Where a view ray leaves the air.
-    fn way_out(&self, view: Vec3<F>) -> Vec3<F> {
+    /// Point at which a view ray leaves the atmosphere.
+    fn exit_point(&self, view: Vec3<F>) -> Vec3<F> {
         let distance = leave(self.origin_view, view);
         self.origin_view.plus(view.scaled(distance))
     }

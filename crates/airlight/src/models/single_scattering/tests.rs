@@ -31,7 +31,7 @@ fn fan() -> impl Iterator<Item = DVec3> {
         .flat_map(|e| [0.0, 30.0, 90.0, 180.0].map(|a| axes::direction(SUN_AZIMUTH + a, e)))
 }
 
-/// The largest difference of two skies over some directions, in parts of the second's channel.
+/// Largest difference of two skies over some directions, relative to the second.
 fn worst(
     directions: impl Iterator<Item = DVec3>,
     a: impl Fn(DVec3) -> [f64; 3],
@@ -46,7 +46,7 @@ fn worst(
 }
 
 #[test]
-fn the_shader_gives_what_it_gives() {
+fn printed_shader_reproduces_its_reference_values() {
     for (variant, tolerance) in [(Variant::PrintedF64, 0.5), (Variant::Printed, 0.7)] {
         let got = sky(variant, 45.0).luminance(sun(45.0));
         for (got, want) in got.iter().zip([3652.0, 4655.0, 7169.0]) {
@@ -56,7 +56,7 @@ fn the_shader_gives_what_it_gives() {
 }
 
 #[test]
-fn the_shader_loses_little_to_f32() {
+fn single_precision_changes_little() {
     for elevation in [60.0, 30.0, 10.0, 2.0] {
         let (single, double) = (
             sky(Variant::Printed, elevation),
@@ -65,13 +65,13 @@ fn the_shader_loses_little_to_f32() {
         let error = worst(fan(), |d| single.luminance(d), |d| double.luminance(d));
         assert!(error < 0.002, "{elevation}: {error}");
     }
-    // The sun's solid angle, 1 - cos, has three digits in f32.
+    // The sun's solid angle, from 1 - cos, has three digits in f32.
     let (a, b) = (sky(Variant::Printed, 45.0), sky(Variant::PrintedF64, 45.0));
     let error = a.disc_luminance(sun(45.0))[0] / b.disc_luminance(sun(45.0))[0] - 1.0;
     assert!((error - 0.0025).abs() < 0.001, "{error}");
 }
 
-/// The integral by even steps, as many as it takes.
+/// The integral by equal steps.
 fn by_brute_force(elevation_deg: f64, steps: usize) -> [f64; 3] {
     let ray = Ray::new(
         DVec3::Y * (constants::PLANET_RADIUS_M + 1.0),
@@ -101,7 +101,7 @@ fn by_brute_force(elevation_deg: f64, steps: usize) -> [f64; 3] {
         add(&mut columns, here, 0.5 * dt);
         let densities = nodes::densities(here.radius_m - constants::PLANET_RADIUS_M);
         let depths = converged::optical_depths(whole);
-        // Towards the sun both phase functions are at their forward value.
+        // Towards the sun both phase functions have their forward value.
         let rayleigh = 6.0 / (16.0 * std::f64::consts::PI);
         let mie = 1.76 / (0.24 * 0.24 * 4.0 * std::f64::consts::PI);
         for i in 0..3 {
@@ -114,9 +114,9 @@ fn by_brute_force(elevation_deg: f64, steps: usize) -> [f64; 3] {
 }
 
 #[test]
-fn converged_is_what_many_steps_come_to() {
+fn converged_matches_many_steps() {
     let got = sky(Variant::Converged, 45.0).luminance(sun(45.0));
-    // 1500 midpoint steps are within h^2 of the end: extrapolated from two counts.
+    // Midpoint steps have an error of order h^2: extrapolated from two counts.
     let (coarse, fine) = (by_brute_force(45.0, 750), by_brute_force(45.0, 1500));
     let published = [10_878.0, 11_659.0, 13_903.0];
     for i in 0..3 {
@@ -127,7 +127,7 @@ fn converged_is_what_many_steps_come_to() {
 }
 
 #[test]
-fn few_nodes_do() {
+fn default_nodes_are_accurate() {
     let down = [-60.0, -5.0, -1.0, 0.0].map(|e| axes::direction(SUN_AZIMUTH + 30.0, e));
     for (sun_deg, most) in [
         (60.0, 1e-5),
@@ -155,7 +155,7 @@ fn few_nodes_do() {
 }
 
 #[test]
-fn the_table_costs_little_accuracy() {
+fn table_is_accurate() {
     for (sun_deg, most) in [(60.0, 3e-4), (10.0, 1.2e-3), (2.0, 6e-3)] {
         let (table, converged) = (
             sky(Variant::Table, sun_deg),
@@ -166,7 +166,7 @@ fn the_table_costs_little_accuracy() {
     }
 }
 
-/// Our solver on the article's air: luminance of each channel under the article's sun at a height.
+/// Our solver on the article's atmosphere: luminance of each channel with the article's sunlight at an elevation.
 fn solved(scattering: Scattering) -> impl Fn(f64, DVec3) -> [f64; 3] {
     let solver = SkySettings {
         scattering,
@@ -184,7 +184,7 @@ fn solved(scattering: Scattering) -> impl Fn(f64, DVec3) -> [f64; 3] {
 }
 
 #[test]
-fn converged_is_the_solvers_single_scattering() {
+fn converged_matches_the_solvers_single_scattering() {
     let truth = solved(Scattering::Single);
     for sun_deg in [60.0, 10.0, 2.0] {
         let sky = sky(Variant::Converged, sun_deg);
@@ -194,8 +194,8 @@ fn converged_is_the_solvers_single_scattering() {
 }
 
 #[test]
-fn light_scattered_twice_is_added() {
-    // Measured: the worst of the fan is off by 0.09, 0.17 and 0.25, scattered once by 0.46, 0.62 and 0.95.
+fn multiple_scattering_reduces_the_error() {
+    // Measured: the worst of the fan is off by 0.09, 0.17 and 0.25; with single scattering by 0.46, 0.62 and 0.95.
     let truth = solved(Scattering::All);
     for (sun_deg, most, least) in [(60.0, 0.1, 0.4), (10.0, 0.2, 0.6), (2.0, 0.3, 0.9)] {
         let (once, more) = (
@@ -212,13 +212,13 @@ fn light_scattered_twice_is_added() {
 }
 
 #[test]
-fn the_zenith_sun_is_white() {
+fn zenith_sun_is_white() {
     let radius = (0.5 * constants::SUN_WIDTH_DEG).to_radians();
     let solid_angle = 2.0 * std::f64::consts::PI * (1.0 - radius.cos());
     for variant in [Variant::PrintedF64, Variant::Converged] {
         let disc = sky(variant, 90.0).disc_luminance(DVec3::Y);
         for channel in disc {
-            // Dimmed by 1.11 times the haze, made up for with 1.
+            // Attenuated with 1.11 times the haze, compensated with 1.
             let lx = channel * solid_angle;
             let kept = if variant == Variant::Converged {
                 0.9972
@@ -248,12 +248,12 @@ fn the_zenith_sun_is_white() {
 }
 
 #[test]
-fn the_disc_has_a_smooth_edge_and_sets() {
+fn disc_has_a_smooth_edge_and_sets() {
     for variant in [Variant::Printed, Variant::PrintedF64, Variant::Converged] {
         let sky = sky(variant, 30.0);
         let at = |off: f64| sky.disc_luminance(sun(30.0 + 0.265 * off))[1];
         let centre = at(0.0);
-        // The arc cosine of a number of f32 near 1 is 1 % of the disc's radius coarse.
+        // The arc cosine of an f32 near 1 has a resolution of 1 % of the disc's radius.
         let coarse = if variant == Variant::Printed {
             0.02
         } else {
@@ -274,7 +274,7 @@ fn the_disc_has_a_smooth_edge_and_sets() {
 }
 
 #[test]
-fn no_direction_is_without_a_colour() {
+fn all_directions_have_finite_colours() {
     for variant in [
         Variant::Printed,
         Variant::PrintedF64,
@@ -296,7 +296,7 @@ fn no_direction_is_without_a_colour() {
 }
 
 #[test]
-fn bad_numbers_are_refused() {
+fn invalid_settings_are_refused() {
     let refuse = |settings: Settings, sun| SkyArticle::new(&settings, sun).err().unwrap();
     for eye_altitude_m in [-1.0, 60e3, f64::NAN] {
         let bad = Settings {

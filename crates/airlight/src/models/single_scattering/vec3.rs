@@ -7,17 +7,17 @@ use crate::math::real::Real;
 pub struct Vec3<F>(pub [F; 3]);
 
 impl<F: Real> Vec3<F> {
-    /// Of three numbers in f64.
+    /// Vector of three numbers in f64.
     pub fn of(values: [f64; 3]) -> Self {
         Self(values.map(F::of))
     }
 
-    /// Component by component.
+    /// Applies `f` to each component.
     pub fn map(self, f: impl Fn(F) -> F) -> Self {
         Self(self.0.map(f))
     }
 
-    /// Component by component with another.
+    /// Applies `f` to each pair of components.
     pub fn zip(self, other: Self, f: impl Fn(F, F) -> F) -> Self {
         Self(std::array::from_fn(|i| f(self.0[i], other.0[i])))
     }
