@@ -90,10 +90,53 @@ refusals!(
     EphemerisError,
     GridError,
     MieError,
-    SceneError,
     SkyError,
     UnknownPreset
 );
+
+impl From<SceneError> for CliError {
+    /// In the words of the command line: flags for the keys of a scene.
+    fn from(error: SceneError) -> Self {
+        let mut sentence = error.to_string();
+        if error.key().is_some_and(|key| key.starts_with("sun")) {
+            for (keys, flags) in SUN_FLAGS {
+                sentence = sentence.replace(keys, flags);
+            }
+        }
+        Self::Usage(match error.key() {
+            Some(key) => match sentence.strip_prefix(key) {
+                Some(rest) => format!("{}{rest}", flag(key)),
+                None => sentence,
+            },
+            None => sentence,
+        })
+    }
+}
+
+/// Flags for the keys of the sun that sentences suggest, the longer ones first.
+const SUN_FLAGS: [(&str, &str); 4] = [
+    (
+        "latitude_deg and longitude_deg with time",
+        "--at LAT,LON with --when TIME",
+    ),
+    ("elevation_deg = 10", "--sun-elevation 10"),
+    ("elevation_deg", "--sun-elevation"),
+    ("azimuth_deg", "--sun-azimuth"),
+];
+
+/// The flag that fills in a key of a scene.
+fn flag(key: &str) -> String {
+    match key {
+        "sun" => "--sun-elevation".to_owned(),
+        "sun.time" => "--when".to_owned(),
+        "sun.latitude_deg" => "--at".to_owned(),
+        "air.haze_visibility_m" => "--visibility-m".to_owned(),
+        key => {
+            let name = key.rsplit('.').next().unwrap_or(key);
+            format!("--{}", name.replace('_', "-"))
+        }
+    }
+}
 
 #[cfg(test)]
 mod tests {

@@ -3,12 +3,16 @@
 use super::shape::Shape;
 use super::surface::{Checker, Gloss, Surface};
 use super::{Object, Objects};
+use airlight::scene::{ObjectShape, ObjectSpec, Reflectance, RepeatSpec};
 use airlight::spectrum::SpectralCurve;
 use glam::DVec3;
-use serde::Deserialize;
 
-/// Most things of a file.
+/// Most objects of a scene.
 const MOST: usize = 10_000;
+/// Reflectance where none is given.
+const GREY: Reflectance = Reflectance::Grey(0.5);
+/// Refractive index of a coat where none is given.
+const GLASS: f64 = 1.5;
 
 /// Why a text describes no things.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -32,91 +36,24 @@ pub enum ObjectsError {
     },
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct File {
-    #[serde(default)]
-    object: Vec<Described>,
-}
-
-#[derive(Clone, Copy, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-enum Kind {
-    Ground,
-    Sphere,
-    Block,
-    Cylinder,
-    Cone,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Described {
-    shape: Kind,
-    at_m: Option<[f64; 3]>,
-    radius_m: Option<f64>,
-    height_m: Option<f64>,
-    size_m: Option<[f64; 3]>,
-    turn_deg: Option<f64>,
-    #[serde(default = "grey")]
-    reflectance: Reflectance,
-    checker: Option<DescribedChecker>,
-    gloss: Option<DescribedGloss>,
-    repeat: Option<Repeat>,
-}
-
-fn grey() -> Reflectance {
-    Reflectance::Grey(0.5)
-}
-
-/// A reflectance: grey, red with green and blue, or by wavelength.
-#[derive(Clone, Deserialize)]
-#[serde(untagged)]
-enum Reflectance {
-    Grey(f64),
-    Rgb([f64; 3]),
-    Spectrum {
-        wavelengths_nm: Vec<f64>,
-        values: Vec<f64>,
-    },
-}
-
-#[derive(Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct DescribedChecker {
-    size_m: f64,
-    reflectance: Reflectance,
-}
-
-#[derive(Clone, Copy, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct DescribedGloss {
-    roughness: f64,
-    #[serde(default = "glass")]
-    index: f64,
-}
-
-fn glass() -> f64 {
-    1.5
-}
-
-#[derive(Clone, Copy, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Repeat {
-    count: usize,
-    step_m: [f64; 3],
-}
-
 impl Objects {
     /// Reads a text.
     ///
     /// # Errors
     /// [`ObjectsError`]: what is wrong with it, and where.
     pub fn from_toml(text: &str) -> Result<Self, ObjectsError> {
-        let file: File = toml::from_str(text)
-            .map_err(|error| ObjectsError::Text(error.to_string().trim_end().to_owned()))?;
+        let specs = ObjectSpec::list_from_toml(text)
+            .map_err(|error| ObjectsError::Text(error.to_string()))?;
+        Self::from_specs(&specs)
+    }
+
+    /// Builds the objects of a scene.
+    ///
+    /// # Errors
+    /// [`ObjectsError`]: which is wrong, and what would be right.
+    pub fn from_specs(specs: &[ObjectSpec]) -> Result<Self, ObjectsError> {
         let mut objects = Vec::new();
-        for (number, described) in (1..).zip(&file.object) {
+        for (number, described) in (1..).zip(specs) {
             let made = Reading { number, described }.objects()?;
             objects.extend(made);
             if objects.len() > MOST {
@@ -137,17 +74,17 @@ impl Objects {
 /// One thing of a file.
 struct Reading<'a> {
     number: usize,
-    described: &'a Described,
+    described: &'a ObjectSpec,
 }
 
 impl Reading<'_> {
     fn wrong(&self, what: &'static str, right: &'static str, got: impl ToString) -> ObjectsError {
         let name = match self.described.shape {
-            Kind::Ground => " (ground)",
-            Kind::Sphere => " (sphere)",
-            Kind::Block => " (block)",
-            Kind::Cylinder => " (cylinder)",
-            Kind::Cone => " (cone)",
+            ObjectShape::Ground => " (ground)",
+            ObjectShape::Sphere => " (sphere)",
+            ObjectShape::Block => " (block)",
+            ObjectShape::Cylinder => " (cylinder)",
+            ObjectShape::Cone => " (cone)",
         };
         ObjectsError::Value {
             number: self.number,
@@ -161,7 +98,7 @@ impl Reading<'_> {
     /// The thing and its repetitions.
     fn objects(&self) -> Result<Vec<Object>, ObjectsError> {
         let surface = self.surface()?;
-        let repeat = self.described.repeat.unwrap_or(Repeat {
+        let repeat = self.described.repeat.unwrap_or(RepeatSpec {
             count: 1,
             step_m: [0.0; 3],
         });
@@ -190,12 +127,12 @@ impl Reading<'_> {
             None => Err(self.wrong(what, needed, "nothing")),
         };
         Ok(match d.shape {
-            Kind::Ground => Shape::Ground { height_m: at.y },
-            Kind::Sphere => Shape::Sphere {
+            ObjectShape::Ground => Shape::Ground { height_m: at.y },
+            ObjectShape::Sphere => Shape::Sphere {
                 centre: at,
                 radius_m: length("radius_m", d.radius_m)?,
             },
-            Kind::Block => {
+            ObjectShape::Block => {
                 let size = d.size_m.map(|size| size.map(Some)).unwrap_or_default();
                 let [east, up, south] = size.map(|m| length("size_m", m));
                 let turn_deg = d.turn_deg.unwrap_or(0.0);
@@ -208,13 +145,13 @@ impl Reading<'_> {
                     turn: turn_deg.to_radians().sin_cos(),
                 }
             }
-            Kind::Cylinder | Kind::Cone => {
+            ObjectShape::Cylinder | ObjectShape::Cone => {
                 let radius_m = length("radius_m", d.radius_m)?;
                 Shape::Frustum {
                     base: at,
                     radius_m,
                     top_radius_m: match d.shape {
-                        Kind::Cone => 0.0,
+                        ObjectShape::Cone => 0.0,
                         _ => radius_m,
                     },
                     height_m: length("height_m", d.height_m)?,
@@ -228,10 +165,10 @@ impl Reading<'_> {
         let d = self.described;
         let has = |radius, height, size| (radius, height, size);
         let (radius, height, size) = match d.shape {
-            Kind::Ground => has(false, false, false),
-            Kind::Sphere => has(true, false, false),
-            Kind::Block => has(false, false, true),
-            Kind::Cylinder | Kind::Cone => has(true, true, false),
+            ObjectShape::Ground => has(false, false, false),
+            ObjectShape::Sphere => has(true, false, false),
+            ObjectShape::Block => has(false, false, true),
+            ObjectShape::Cylinder | ObjectShape::Cone => has(true, true, false),
         };
         let left_out = "left out for this shape";
         for (what, known, given) in [
@@ -266,21 +203,22 @@ impl Reading<'_> {
                 false => Err(self.wrong("checker.size_m", "above 0 and up to 1e6", size_m)),
             }
         });
-        if let Some(gloss) = d.gloss {
-            if !(0.02..=1.0).contains(&gloss.roughness) {
-                return Err(self.wrong("gloss.roughness", "from 0.02 to 1", gloss.roughness));
+        let gloss = d.gloss.map(|gloss| Gloss {
+            roughness: gloss.roughness,
+            index: gloss.index.unwrap_or(GLASS),
+        });
+        if let Some(Gloss { roughness, index }) = gloss {
+            if !(0.02..=1.0).contains(&roughness) {
+                return Err(self.wrong("gloss.roughness", "from 0.02 to 1", roughness));
             }
-            if !(1.01..=10.0).contains(&gloss.index) {
-                return Err(self.wrong("gloss.index", "from 1.01 to 10", gloss.index));
+            if !(1.01..=10.0).contains(&index) {
+                return Err(self.wrong("gloss.index", "from 1.01 to 10", index));
             }
         }
         Ok(Surface {
-            reflectance: self.reflectance(&d.reflectance)?,
+            reflectance: self.reflectance(d.reflectance.as_ref().unwrap_or(&GREY))?,
             checker: checker.transpose()?,
-            gloss: d.gloss.map(|gloss| Gloss {
-                roughness: gloss.roughness,
-                index: gloss.index,
-            }),
+            gloss,
         })
     }
 

@@ -263,6 +263,32 @@ impl Atmosphere {
     pub fn constituent(&self, kind: &ConstituentKind) -> Option<&Constituent> {
         self.constituents.iter().find(|part| part.kind == *kind)
     }
+
+    /// Replaces the constituent of the same kind, or adds one.
+    pub fn put(&mut self, part: Constituent) {
+        match self
+            .constituents
+            .iter_mut()
+            .find(|old| old.kind == part.kind)
+        {
+            Some(old) => *old = part,
+            None => self.constituents.push(part),
+        }
+    }
+
+    /// Whether the planet is the Earth, by its size.
+    pub fn is_earth(&self) -> bool {
+        (self.planet.radius_m / super::presets::earth::EARTH_RADIUS_M - 1.0).abs() < 0.02
+    }
+
+    /// The same air at a distance from the sun, over the planet's mean distance: irradiance falls by its square, the disc
+    /// shrinks.
+    pub fn at_sun_distance(&self, ratio: f64) -> Self {
+        let mut air = self.clone();
+        air.solar_irradiance = air.solar_irradiance.scaled(1.0 / (ratio * ratio));
+        air.sun = air.sun.at_distance_ratio(ratio);
+        air
+    }
 }
 
 impl ConstituentKind {

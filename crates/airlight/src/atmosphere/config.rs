@@ -64,7 +64,7 @@ mod type_tests;
 pub use error::{ConfigError, ConfigProblem};
 
 use super::presets::{self, earth};
-use super::{Atmosphere, AtmosphereError, Constituent, ConstituentKind, gases};
+use super::{Atmosphere, AtmosphereError, ConstituentKind, gases};
 use crate::optics::{PhaseFunction, rayleigh::STANDARD_PRESSURE_PA};
 use crate::sun::LimbDarkening;
 use reader::Section;
@@ -151,14 +151,14 @@ pub fn from_toml_table(
     if let Some(section) = root.section("ozone")? {
         section.check_keys(&["column_du"])?;
         if let Some(column_du) = section.not_negative("column_du")? {
-            put(&mut atmosphere, gases::ozone(column_du));
+            atmosphere.put(gases::ozone(column_du));
         }
     }
     if let Some(section) = root.section("aerosol")? {
         aerosol::aerosol(&section, &mut atmosphere)?;
     }
     for section in root.sections("constituent")? {
-        put(&mut atmosphere, parts::constituent(&section)?);
+        atmosphere.put(parts::constituent(&section)?);
     }
     // Each value has been looked at where it stands; this is for what only shows together.
     atmosphere.validate().map_err(|error| {
@@ -170,18 +170,6 @@ pub fn from_toml_table(
         root.error(key, ConfigProblem::Atmosphere(error))
     })?;
     Ok(atmosphere)
-}
-
-/// Replaces the constituent of the same kind, or adds one.
-fn put(atmosphere: &mut Atmosphere, part: Constituent) {
-    match atmosphere
-        .constituents
-        .iter_mut()
-        .find(|old| old.kind == part.kind)
-    {
-        Some(old) => *old = part,
-        None => atmosphere.constituents.push(part),
-    }
 }
 
 fn planet(section: &Section<'_>, atmosphere: &mut Atmosphere) -> Result<(), ConfigError> {
@@ -264,7 +252,7 @@ fn molecules(
                 .clone()
                 .scaled(pressure_pa / base_pressure_pa);
         }
-        None => put(atmosphere, gases::air(pressure_pa)),
+        None => atmosphere.put(gases::air(pressure_pa)),
     }
     Ok(())
 }

@@ -7,7 +7,7 @@ pub mod config;
 mod density;
 pub mod droplets;
 pub mod gases;
-mod nearest;
+pub(crate) mod nearest;
 pub mod presets;
 mod ray_segment;
 mod standard_air;

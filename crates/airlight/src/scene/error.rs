@@ -1,12 +1,49 @@
 //! Why the light of a scene cannot be computed.
 
 use super::Input;
+use crate::atmosphere::config::ConfigError;
+use crate::atmosphere::{AtmosphereError, UnknownPreset};
 use crate::fog::FogError;
+use crate::optics::mie::MieError;
+use crate::sky::SkyError;
 
-/// Why the light of a scene cannot be computed.
+/// Why a scene is refused, or its light cannot be computed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SceneError {
+    /// A value of the scene.
+    #[error("{key}: expected {expected}, got {got}{}", tip(try_instead))]
+    Value {
+        /// Its key in a scene file, such as `air.ozone_du`.
+        key: String,
+        /// What would be right.
+        expected: String,
+        /// What was given.
+        got: String,
+        /// What to try instead; empty where that is plain.
+        try_instead: String,
+    },
+    /// A value of the scene that another part of the library refuses.
+    #[error("{key}: {problem}")]
+    Refused {
+        /// Its key in a scene file.
+        key: String,
+        /// Why.
+        problem: String,
+    },
+    /// A text that is not TOML, or has keys or values that a scene does not have.
+    #[error(transparent)]
+    Toml(#[from] ConfigError),
+    /// A value of a scene file, with its place.
+    #[error("line {line}, column {column}: {error}")]
+    At {
+        /// Line, counted from 1.
+        line: usize,
+        /// Column, counted from 1 in characters.
+        column: usize,
+        /// What is wrong.
+        error: Box<SceneError>,
+    },
     /// An input that the model would ignore.
     #[error(
         "{}: expected a solver that honours {input}, got {model}; try {}",
@@ -52,9 +89,66 @@ pub enum SceneError {
         "the farthest distance must be above 0 m (or infinite: to the end of the air), got {0} m"
     )]
     Distance(f64),
+    /// The atmosphere is refused.
+    #[error(transparent)]
+    Atmosphere(#[from] AtmosphereError),
+    /// There is no atmosphere of that name.
+    #[error("air.atmosphere: {0}; a file must end in .toml")]
+    UnknownAtmosphere(#[from] UnknownPreset),
     /// The fog is refused.
     #[error(transparent)]
     Fog(#[from] FogError),
+    /// The fog's droplets are refused.
+    #[error(transparent)]
+    Droplets(#[from] MieError),
+    /// The solver refuses the scene.
+    #[error(transparent)]
+    Sky(#[from] SkyError),
+}
+
+impl SceneError {
+    /// A value of the scene: its key, what would be right, what was given, and what to try (or nothing).
+    pub(crate) fn value(
+        key: impl Into<String>,
+        expected: impl Into<String>,
+        got: impl Into<String>,
+        try_instead: impl Into<String>,
+    ) -> Self {
+        Self::Value {
+            key: key.into(),
+            expected: expected.into(),
+            got: got.into(),
+            try_instead: try_instead.into(),
+        }
+    }
+
+    /// A value of the scene that another part of the library refuses.
+    pub(crate) fn refused(key: impl Into<String>, problem: impl std::fmt::Display) -> Self {
+        Self::Refused {
+            key: key.into(),
+            problem: problem.to_string(),
+        }
+    }
+
+    /// The key of the scene that is wrong, such as `air.ozone_du`, where it is one.
+    pub fn key(&self) -> Option<&str> {
+        match self {
+            Self::Value { key, .. } | Self::Refused { key, .. } => Some(key),
+            Self::IgnoredInput { input, .. } => Some(input.key()),
+            Self::UnknownVariant { .. } => Some("solver.variant"),
+            Self::UnknownAtmosphere(_) => Some("air.atmosphere"),
+            Self::At { error, .. } => error.key(),
+            _ => None,
+        }
+    }
+}
+
+/// "; try ...", where there is something to try.
+fn tip(try_instead: &str) -> String {
+    match try_instead {
+        "" => String::new(),
+        tip => format!("; try {tip}"),
+    }
 }
 
 /// "a", "a or b", "a, b or c"; `none` where there is no name.

@@ -1,5 +1,7 @@
-//! A scene and the one interface through which its light is requested.
+//! A scene as plain data, and the one interface through which its light is requested.
 //!
+//! - [`Scene`] and its parts: what is there, read from TOML ([`Scene::from_toml`]) or filled in by a program;
+//!   [`Scene::resolve`]: the same in the terms of the physics, a [`ResolvedScene`].
 //! - [`RadianceModel`], [`PreparedModel`], [`RadianceView`]: what every solver and published model implements;
 //!   [`Capabilities`] and [`check_inputs`]: what each honours.
 //! - [`AerialPerspective`]: what clear air does between the eye and objects at any distance.
@@ -12,8 +14,12 @@
 
 mod aerial;
 mod aerial_fill;
+mod air;
 mod capabilities;
+#[cfg(feature = "config")]
+mod document;
 mod error;
+mod fog_layers;
 mod foggy;
 mod irradiance_map;
 mod lane_channels;
@@ -22,11 +28,19 @@ mod lighting;
 mod model;
 mod places;
 mod resolved;
+mod spec;
+mod sun_source;
+#[cfg(all(test, feature = "config"))]
+mod toml_tests;
 
 pub use crate::sky::TableChannels as Channels;
 pub use aerial::AerialPerspective;
+pub use air::aerosol_mixture;
 pub use capabilities::{Capabilities, Input, check_inputs};
+#[cfg(feature = "config")]
+pub use document::SceneDocument;
 pub use error::SceneError;
+pub use fog_layers::{FogLayer, FogLayers};
 pub use foggy::FoggySky;
 pub use irradiance_map::IrradianceMap;
 pub use lane_channels::LaneChannels;
@@ -35,3 +49,11 @@ pub use model::{
     PreparedModel, RadianceModel, RadianceSampler, RadianceView, RowSampler, SunState,
 };
 pub use resolved::ResolvedScene;
+pub use spec::{
+    AirSpec, BaseBlueKind, CameraSpec, CheckerSpec, Effort, Exposure, ExrCompression, FogLayerSpec,
+    FogProfile, FogSpec, GlossSpec, Klassen1987Spec, LightKind, LightSpec, Metered, ObjectShape,
+    ObjectSpec, ObjectsSpec, ObserverSpec, OutputSpec, Projection, Reflectance, RepeatSpec,
+    SCENE_VERSION, SamplePrecision, Scene, SequenceSpec, SolverSpec, SunDiscPlacement, SunSpec,
+    SunlightKind, ToneKind, WetHaze,
+};
+pub use sun_source::{SunAngles, SunSource};

@@ -82,8 +82,7 @@ impl View {
     /// the angular size of the disc.
     pub fn at_sun_distance(mut self, ratio: f64) -> Self {
         self.irradiance_scale = 1.0 / (ratio * ratio);
-        self.disc.angular_radius_rad =
-            (self.sky.atmosphere().sun.angular_radius_rad.sin() / ratio).asin();
+        self.disc = self.sky.atmosphere().sun.at_distance_ratio(ratio);
         self
     }
 

@@ -119,6 +119,14 @@ impl SunDisc {
         Ok(disc)
     }
 
+    /// The same sun from `ratio` times the distance.
+    pub fn at_distance_ratio(&self, ratio: f64) -> Self {
+        Self {
+            angular_radius_rad: (self.angular_radius_rad.sin() / ratio).asin(),
+            ..self.clone()
+        }
+    }
+
     /// Checks the angular radius.
     ///
     /// # Errors

@@ -2,7 +2,6 @@
 
 use super::error::{ConfigError, ConfigProblem};
 use super::parts;
-use super::put;
 use super::reader::Section;
 use crate::atmosphere::aerosol::{AerosolLoad, AngstromAerosol, continental_phase};
 use crate::atmosphere::aerosol_types::{
@@ -129,7 +128,7 @@ fn of_a_type(section: &Section<'_>, atmosphere: &mut Atmosphere) -> Result<(), C
         atmosphere.planet.ground_altitude_m,
         atmosphere.planet.top_altitude_m,
     );
-    put(atmosphere, part.map_err(said)?);
+    atmosphere.put(part.map_err(said)?);
     Ok(())
 }
 
@@ -226,7 +225,7 @@ fn after_angstrom(section: &Section<'_>, atmosphere: &mut Atmosphere) -> Result<
             part.absorption_per_m = old.absorption_per_m.scaled(factor);
         }
     }
-    put(atmosphere, part);
+    atmosphere.put(part);
     Ok(())
 }
 

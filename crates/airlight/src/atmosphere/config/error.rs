@@ -44,6 +44,16 @@ pub enum ConfigProblem {
         /// The names there are.
         valid: Vec<String>,
     },
+    /// A value that is not among those there are.
+    #[error("expected one of {}, got \"{got}\"{}", valid.join(", "), hint(nearest))]
+    UnknownValue {
+        /// The value given.
+        got: String,
+        /// The value it may have been meant to be.
+        nearest: Option<String>,
+        /// The values there are.
+        valid: Vec<String>,
+    },
     /// A value of the wrong type.
     #[error("must be {expected}, got {got}")]
     WrongType {
@@ -106,19 +116,26 @@ fn hint(nearest: &Option<String>) -> String {
 
 impl ConfigError {
     /// An error at a byte of the text.
-    pub(super) fn at(text: &str, byte: usize, key: String, problem: ConfigProblem) -> Self {
+    pub(crate) fn at(text: &str, byte: usize, key: String, problem: ConfigProblem) -> Self {
+        let (line, column) = Self::place(text, byte);
+        Self {
+            line,
+            column,
+            key,
+            problem: Box::new(problem),
+        }
+    }
+
+    /// Line and column of a byte of a text, counted from 1, columns in characters.
+    pub(crate) fn place(text: &str, byte: usize) -> (usize, usize) {
         let mut byte = byte.min(text.len());
         while !text.is_char_boundary(byte) {
             byte -= 1;
         }
         let before = &text[..byte];
         let line_start = before.rfind('\n').map_or(0, |at| at + 1);
-        Self {
-            line: before.matches('\n').count() + 1,
-            column: before[line_start..].chars().count() + 1,
-            key,
-            problem: Box::new(problem),
-        }
+        let column = before[line_start..].chars().count() + 1;
+        (before.matches('\n').count() + 1, column)
     }
 
     fn subject(&self) -> String {

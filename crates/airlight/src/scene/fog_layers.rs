@@ -1,0 +1,134 @@
+//! From the fog of a scene to layers.
+
+use super::{FogLayerSpec, FogProfile, FogSpec, SceneError};
+use crate::atmosphere::visibility::{Contrast, extinction_per_m};
+use crate::atmosphere::{Constituent, DensityProfile};
+use crate::fog::FogScattering;
+use crate::fog::droplets::DropletKind;
+
+/// Scale height where none is set, m.
+const SCALE_HEIGHT_M: f64 = 50.0;
+/// Top of a slab where none is set, m.
+const TOP_M: f64 = 50.0;
+
+/// The fog of a scene: layers with an upper end, and which light they scatter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FogLayers {
+    /// The layers.
+    pub layers: Vec<FogLayer>,
+    /// Which light they scatter.
+    pub scattering: FogScattering,
+}
+
+/// A layer of fog before its droplets are evaluated at wavelengths.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FogLayer {
+    /// How it thins; heights are above the ground.
+    pub profile: DensityProfile,
+    /// Its droplets.
+    pub droplets: DropletKind,
+    /// Extinction at density 1 at 550 nm, 1/m.
+    pub extinction_per_m: f64,
+}
+
+impl FogLayer {
+    /// The layer as a constituent of the air over a ground at an altitude (m), at wavelengths (nm, rising): for Monte Carlo.
+    ///
+    /// # Errors
+    /// [`SceneError`] for a profile or droplets that are refused.
+    pub fn constituent(
+        &self,
+        ground_m: f64,
+        wavelengths_nm: &[f64],
+    ) -> Result<Constituent, SceneError> {
+        self.profile
+            .validate()
+            .map_err(|error| SceneError::refused("fog", error))?;
+        let endless = || {
+            SceneError::value(
+                "fog.profile",
+                "fog with a top or a scale height",
+                "fog without an upper end",
+                "height, clamped, unclamped or slab",
+            )
+        };
+        if self.profile.is_uniform() {
+            return Err(endless());
+        }
+        let profile = self.profile.raised(ground_m).ok_or_else(endless)?;
+        Ok(Constituent::fog(
+            self.extinction_per_m,
+            self.droplets,
+            profile,
+            wavelengths_nm,
+        )?)
+    }
+}
+
+impl FogSpec {
+    /// The layers, with visibilities that mean a contrast.
+    ///
+    /// # Errors
+    /// [`SceneError::Value`] for a layer without a visibility, and for a profile that no sky can shine through.
+    pub fn resolve(&self, contrast: Contrast) -> Result<FogLayers, SceneError> {
+        let layers = self
+            .all_layers()
+            .enumerate()
+            .map(|(i, layer)| match i {
+                0 => layer.resolve("fog", contrast),
+                more => layer.resolve(&format!("fog.layers[{}]", more - 1), contrast),
+            })
+            .collect::<Result<_, _>>()?;
+        Ok(FogLayers {
+            layers,
+            scattering: self.scattering.unwrap_or(FogScattering::Multiple),
+        })
+    }
+}
+
+impl FogLayerSpec {
+    /// The layer that a key of the scene holds, with a visibility that means a contrast.
+    ///
+    /// # Errors
+    /// [`SceneError::Value`] without a visibility, and for a profile that no sky can shine through.
+    pub fn resolve(&self, key: &str, contrast: Contrast) -> Result<FogLayer, SceneError> {
+        let Some(visibility_m) = self.visibility_m else {
+            return Err(SceneError::value(
+                format!("{key}.visibility_m"),
+                "how far one sees where the fog is thickest, m",
+                "none",
+                "visibility_m = 200",
+            ));
+        };
+        let scale_height_m = self.scale_height_m.unwrap_or(SCALE_HEIGHT_M);
+        let base_height_m = self.base_height_m.unwrap_or(0.0);
+        let profile = match self.implied_profile() {
+            FogProfile::Height => DensityProfile::Exponential {
+                reference_height_m: 0.0,
+                scale_height_m,
+            },
+            FogProfile::Clamped => DensityProfile::Clamped {
+                base_height_m,
+                scale_height_m,
+            },
+            FogProfile::Unclamped => DensityProfile::Exponential {
+                reference_height_m: base_height_m,
+                scale_height_m,
+            },
+            FogProfile::Slab => DensityProfile::slab(self.top_m.unwrap_or(TOP_M)),
+            _ => {
+                return Err(SceneError::value(
+                    format!("{key}.profile"),
+                    "fog with an upper end, through which the sky shines",
+                    "fog that is for pictures with depth",
+                    "height, clamped, unclamped or slab",
+                ));
+            }
+        };
+        Ok(FogLayer {
+            profile,
+            droplets: self.droplets.unwrap_or_default(),
+            extinction_per_m: extinction_per_m(visibility_m, contrast),
+        })
+    }
+}

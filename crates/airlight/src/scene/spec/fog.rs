@@ -1,0 +1,111 @@
+//! Fog near the ground.
+
+#[cfg(feature = "serde")]
+use super::named;
+use crate::fog::FogScattering;
+use crate::fog::droplets::DropletKind;
+
+/// How fog thins with height, or which look it has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub enum FogProfile {
+    /// The same everywhere: for pictures with depth, as no sky shines through it.
+    Uniform,
+    /// Thins exponentially from height 0 up, and is thicker below it.
+    Height,
+    /// The same up to the base height, thins exponentially above.
+    Clamped,
+    /// Thins exponentially from the base height up, and is as much thicker below it: Ishiyama's formula as printed.
+    Unclamped,
+    /// The same up to the top, nothing above.
+    Slab,
+    /// Exponential-squared, a look of pictures with depth.
+    Exp2,
+    /// Linear from 0 to the visibility, a look of pictures with depth.
+    Linear,
+    /// Uniform fog blended in encoded values, as the data set Foggy Cityscapes has it.
+    FoggyCityscapes,
+}
+
+/// Fog: one layer, and more of them in `layers`. Heights are above the ground.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct FogSpec {
+    /// Distance at which the scene's contrast is left where the fog is thickest, m, above 0.
+    pub visibility_m: Option<f64>,
+    /// How it thins with height. Default: slab with `top_m`, else clamped.
+    pub profile: Option<FogProfile>,
+    /// Height over which it thins to 1/e, m, above 0. Default: 50.
+    pub scale_height_m: Option<f64>,
+    /// Height from which it thins, m. Default: 0.
+    pub base_height_m: Option<f64>,
+    /// Height of the top of a slab, m, above 0. Default: 50.
+    pub top_m: Option<f64>,
+    /// Droplets by name. Default: radiation.
+    #[cfg_attr(feature = "serde", serde(with = "named"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<String>"))]
+    pub droplets: Option<DropletKind>,
+    /// Which light it scatters: "all" orders, "single", or "undimmed", where the fog does not dim the sun. Default: all.
+    #[cfg_attr(feature = "serde", serde(with = "named"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<String>"))]
+    pub scattering: Option<FogScattering>,
+    /// More layers.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
+    pub layers: Vec<FogLayerSpec>,
+}
+
+/// A layer of fog. Heights are above the ground.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct FogLayerSpec {
+    /// Distance at which the scene's contrast is left where the layer is thickest, m, above 0.
+    pub visibility_m: Option<f64>,
+    /// How it thins with height. Default: slab with `top_m`, else clamped.
+    pub profile: Option<FogProfile>,
+    /// Height over which it thins to 1/e, m, above 0. Default: 50.
+    pub scale_height_m: Option<f64>,
+    /// Height from which it thins, m. Default: 0.
+    pub base_height_m: Option<f64>,
+    /// Height of the top of a slab, m, above 0. Default: 50.
+    pub top_m: Option<f64>,
+    /// Droplets by name. Default: radiation.
+    #[cfg_attr(feature = "serde", serde(with = "named"))]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<String>"))]
+    pub droplets: Option<DropletKind>,
+}
+
+impl FogSpec {
+    /// The first layer without the others.
+    pub fn first_layer(&self) -> FogLayerSpec {
+        FogLayerSpec {
+            visibility_m: self.visibility_m,
+            profile: self.profile,
+            scale_height_m: self.scale_height_m,
+            base_height_m: self.base_height_m,
+            top_m: self.top_m,
+            droplets: self.droplets,
+        }
+    }
+
+    /// All layers.
+    pub fn all_layers(&self) -> impl Iterator<Item = FogLayerSpec> {
+        std::iter::once(self.first_layer()).chain(self.layers.iter().cloned())
+    }
+}
+
+impl FogLayerSpec {
+    /// How it thins with height: as set, or as the heights that are set imply.
+    pub fn implied_profile(&self) -> FogProfile {
+        match (self.profile, self.top_m) {
+            (Some(profile), _) => profile,
+            (None, Some(_)) => FogProfile::Slab,
+            (None, None) => FogProfile::Clamped,
+        }
+    }
+}
