@@ -1,4 +1,4 @@
-//! Fog as a constituent of the air, for Monte Carlo.
+//! Fog of the options as a constituent of the air.
 
 use crate::error::CliError;
 use airlight::atmosphere::{Constituent, DensityProfile};
@@ -16,7 +16,21 @@ pub struct FogInAir {
 }
 
 impl FogInAir {
-    /// The constituent over a ground at an altitude (m), known at wavelengths (nm, rising).
+    /// The constituent, known at wavelengths (nm, rising), with heights from the ground.
+    ///
+    /// # Errors
+    /// [`CliError::Usage`] for a fog that is refused.
+    pub fn layer(&self, wavelengths_nm: &[f64]) -> Result<Constituent, CliError> {
+        let (extinction, density) = (self.extinction_per_m, self.profile.clone());
+        Ok(Constituent::fog(
+            extinction,
+            self.droplets,
+            density,
+            wavelengths_nm,
+        )?)
+    }
+
+    /// The constituent over a ground at an altitude (m), for Monte Carlo.
     ///
     /// # Errors
     /// [`CliError::Usage`] for a fog that has no upper end or is refused.
@@ -33,13 +47,7 @@ impl FogInAir {
         self.profile
             .validate()
             .map_err(|error| CliError::usage(format!("the fog: {error}")))?;
-        let profile = self.profile.raised(ground_m).ok_or_else(endless)?;
-        let (extinction, droplets) = (self.extinction_per_m, self.droplets);
-        Ok(Constituent::fog(
-            extinction,
-            droplets,
-            profile,
-            wavelengths_nm,
-        )?)
+        let layer = self.layer(wavelengths_nm)?;
+        layer.raised(ground_m).ok_or_else(endless)
     }
 }

@@ -11,7 +11,7 @@ use crate::args::{
 use crate::error::CliError;
 use crate::scene::{Scene, Sun};
 use airlight::atmosphere::aerosol::turbidity_of_optical_depth;
-use airlight::atmosphere::{Atmosphere, ConstituentKind};
+use airlight::atmosphere::{Atmosphere, Constituent, ConstituentKind, DensityProfile};
 use airlight::fog::visibility::{Contrast, extinction_per_m};
 use airlight::models::PublishedModel;
 use airlight::models::four_orders::FourOrders;
@@ -177,7 +177,12 @@ fn fog_of_1987(args: &FogArgs) -> Result<Option<Fog1987>, CliError> {
     let drops = args.fog_droplets.0;
     Ok(Some(Fog1987 {
         top_m,
-        droplets: drops.at_wavelengths(extinction, &Klassen1987::wavelengths())?,
+        droplets: Constituent::fog(
+            extinction,
+            drops,
+            DensityProfile::slab(top_m),
+            &Klassen1987::wavelengths(),
+        )?,
     }))
 }
 

@@ -7,7 +7,7 @@ use airlight::axes;
 use airlight::fog::droplets::Droplets;
 use airlight::fog::visibility::{Contrast, extinction_per_m};
 use airlight::fog::{
-    DensityProfile, DirectionalLight, Fog, FogLighting, FogScattering, Ground, Layer,
+    DensityProfile, DirectionalLight, FogLighting, FogScattering, Ground, RgbFog, RgbLayer,
 };
 use airlight::spectrum::Spectrum;
 use airlight_image::input::{DepthMap, DepthOptions, Picture, read_depth, read_picture};
@@ -147,7 +147,7 @@ fn measure(folder: &Path, ending: &str, scale: f64) -> Result<(), ImageError> {
     let mut even = None;
     for (name, profile, sun) in fogs() {
         let alone = || fog(profile.clone(), sun, ambient);
-        let make = || FogOverlay::Fog(FogSource::Alone(Box::new(alone())), None);
+        let make = || FogOverlay::Fog(FogSource::Alone(alone()), None);
         let overlay = timed(&format!("{name}: prepare"), make);
         // Made anew each time, as its table is filled while it is looked at.
         let overlay = || Overlay::new(&picture, &depth, &camera, 1.6, &overlay, Channels::Picture);
@@ -185,23 +185,27 @@ fn fogs() -> [(&'static str, DensityProfile, Option<f64>); 4] {
     ]
 }
 
-fn fog(profile: DensityProfile, sun_elevation_deg: Option<f64>, ambient: Spectrum<3>) -> Fog<3> {
+fn fog(profile: DensityProfile, sun_elevation_deg: Option<f64>, ambient: Spectrum<3>) -> RgbFog {
     let light = FogLighting {
         sun: sun_elevation_deg.map(|elevation| DirectionalLight {
             direction: axes::direction(180.0, elevation),
-            irradiance: ambient * 9.0,
+            irradiance: (ambient * 9.0).0,
         }),
-        ambient,
-        ground_albedo: Spectrum::splat(0.2),
+        ambient: ambient.0,
+        ground_albedo: [0.2; 3],
     };
-    let extinction = extinction_per_m(80.0, Contrast::FivePercent);
-    let medium = Droplets::Radiation.medium(extinction);
-    let layers = [Layer { profile, medium }];
-    Fog::new(&layers, Ground::FLAT, light, FogScattering::Multiple).expect("a fog of sound numbers")
+    let layers = [RgbLayer {
+        density: profile,
+        extinction_per_m: [extinction_per_m(80.0, Contrast::FivePercent) as f32; 3],
+        single_scattering_albedo: [1.0; 3],
+        phase: Droplets::Radiation.phase(),
+    }];
+    RgbFog::new(&layers, Ground::FLAT, &light, FogScattering::Multiple)
+        .expect("a fog of sound numbers")
 }
 
 /// What it would take without a table.
-fn line_by_line(fog: &Fog<3>, depth: &DepthMap, camera: &Intrinsics) -> f32 {
+fn line_by_line(fog: &RgbFog, depth: &DepthMap, camera: &Intrinsics) -> f32 {
     let width = depth.size.width() as usize;
     let mut directions = vec![DVec3::ZERO; width];
     let mut lengths = vec![0.0; width];
@@ -209,7 +213,7 @@ fn line_by_line(fog: &Fog<3>, depth: &DepthMap, camera: &Intrinsics) -> f32 {
     for (y, metres) in (0..).zip(depth.metres.chunks_exact(width)) {
         camera.fill(y, &mut directions, &mut lengths);
         for ((&z, direction), length) in metres.iter().zip(&directions).zip(&lengths) {
-            let optics = fog.along(1.6, *direction, f64::from(z) * length);
+            let optics = fog.path(1.6, *direction, f64::from(z) * length);
             sum += optics.path_radiance[0] + optics.transmittance[0];
         }
     }

@@ -1,13 +1,11 @@
-//! Speed of fog: one line of sight.
+//! Speed of fog: rays through it, and solving for the light inside.
 //!
 //! `cargo bench -p airlight --bench fog`
 
+use airlight::atmosphere::{Constituent, DensityProfile, droplets::Droplets};
 use airlight::axes::direction;
-use airlight::fog::{
-    DensityProfile, DirectionalLight, Fog, FogLighting, FogScattering, Ground, Layer,
-    droplets::Droplets,
-};
-use airlight::spectrum::Spectrum;
+use airlight::fog::{DirectionalLight, Fog, FogLighting, FogScattering, Ground, RgbFog, RgbLayer};
+use airlight::spectrum::{SpectralCurve, WavelengthGrid};
 use divan::{Bencher, black_box};
 use glam::DVec3;
 
@@ -16,6 +14,7 @@ fn main() {
 }
 
 const THOUSAND: usize = 1000;
+const EXTINCTION_PER_M: f64 = 0.02;
 
 fn profile(name: &str) -> DensityProfile {
     match name {
@@ -25,34 +24,51 @@ fn profile(name: &str) -> DensityProfile {
             base_height_m: 10.0,
             scale_height_m: 20.0,
         },
-        _ => DensityProfile::Exponential {
-            reference_height_m: 0.0,
-            scale_height_m: 30.0,
-        },
+        _ => DensityProfile::exponential(30.0),
     }
 }
 
-fn fog<const N: usize>(names: &[&str], ground: Ground, scattering: FogScattering) -> Fog<N> {
-    let layers: Vec<Layer<N>> = names
-        .iter()
-        .map(|name| Layer {
-            profile: profile(name),
-            medium: Droplets::Radiation.medium(0.02),
-        })
-        .collect();
-    let light = FogLighting {
-        sun: Some(DirectionalLight {
-            direction: direction(100.0, 20.0),
-            irradiance: Spectrum::splat(1e5),
-        }),
-        ambient: Spectrum::splat(5e3),
-        ground_albedo: Spectrum::ZERO,
-    };
-    Fog::new(&layers, ground, light, scattering).unwrap()
+fn sun<C>(irradiance: C) -> Option<DirectionalLight<C>> {
+    let direction = direction(100.0, 20.0);
+    Some(DirectionalLight {
+        direction,
+        irradiance,
+    })
 }
 
-/// Lines of a picture: a thousand directions and distances.
-fn lines() -> Vec<(DVec3, f64)> {
+fn rgb(names: &[&str], ground: Ground, scattering: FogScattering) -> RgbFog {
+    let layers: Vec<RgbLayer> = names
+        .iter()
+        .map(|name| RgbLayer {
+            density: profile(name),
+            extinction_per_m: [EXTINCTION_PER_M as f32; 3],
+            single_scattering_albedo: [1.0; 3],
+            phase: Droplets::Radiation.phase(),
+        })
+        .collect();
+    let lighting = FogLighting {
+        sun: sun([1e5; 3]),
+        ambient: [5e3; 3],
+        ground_albedo: [0.0; 3],
+    };
+    RgbFog::new(&layers, ground, &lighting, scattering).unwrap()
+}
+
+/// At the 16 wavelengths of the standard grid.
+fn spectral(scattering: FogScattering) -> Fog {
+    let (drops, height_fog) = (Droplets::Radiation.into(), profile("exponential"));
+    let layer = Constituent::fog(EXTINCTION_PER_M, drops, height_fog, &[]).unwrap();
+    let lighting = FogLighting {
+        sun: sun(SpectralCurve::Constant(1e5)),
+        ambient: SpectralCurve::Constant(5e3),
+        ground_albedo: SpectralCurve::Constant(0.0),
+    };
+    let grid = WavelengthGrid::standard();
+    Fog::new(&[layer], Ground::FLAT, &lighting, scattering, &grid).unwrap()
+}
+
+/// Rays of a picture: a thousand directions and distances.
+fn rays() -> Vec<(DVec3, f64)> {
     (0..THOUSAND)
         .map(|k| {
             let k = k as f64;
@@ -61,73 +77,78 @@ fn lines() -> Vec<(DVec3, f64)> {
         .collect()
 }
 
-fn walk<const N: usize>(bencher: Bencher, fog: &Fog<N>) {
-    let lines = lines();
+fn look_rgb(bencher: Bencher, fog: &RgbFog) {
+    let rays = rays();
     bencher.counter(THOUSAND).bench(|| {
-        let mut sum = Spectrum::ZERO;
-        for &(direction, length) in black_box(&lines) {
-            sum += fog.along(1.7, direction, length).path_radiance;
+        let mut sum = [0.0; 3];
+        for &(direction, distance_m) in black_box(&rays) {
+            let path = fog.path(1.7, direction, distance_m).path_radiance;
+            for (sum, path) in sum.iter_mut().zip(path) {
+                *sum += path;
+            }
         }
         sum
     });
 }
 
+fn look_spectral(bencher: Bencher, fog: &Fog) {
+    let (directions, distances_m): (Vec<_>, Vec<_>) = rays().into_iter().unzip();
+    let values = fog.grid().len() * THOUSAND;
+    let (mut transmittance, mut path_radiance) = (vec![0.0; values], vec![0.0; values]);
+    bencher.counter(THOUSAND).bench_local(|| {
+        fog.paths(
+            1.7,
+            black_box(&directions),
+            &distances_m,
+            &mut transmittance,
+            &mut path_radiance,
+        );
+        path_radiance[values - 1]
+    });
+}
+
 #[divan::bench(args = ["uniform", "exponential", "clamped", "slab"])]
 fn one_profile_rgb(bencher: Bencher, name: &str) {
-    walk::<3>(bencher, &fog(&[name], Ground::FLAT, FogScattering::Single));
+    look_rgb(bencher, &rgb(&[name], Ground::FLAT, FogScattering::Single));
 }
 
 #[divan::bench]
 fn one_profile_16_wavelengths(bencher: Bencher) {
-    walk::<16>(
-        bencher,
-        &fog(&["exponential"], Ground::FLAT, FogScattering::Single),
-    );
+    look_spectral(bencher, &spectral(FogScattering::Single));
 }
 
 #[divan::bench]
 fn round_ground_rgb(bencher: Bencher) {
-    walk::<3>(
-        bencher,
-        &fog(&["exponential"], Ground::EARTH, FogScattering::Single),
-    );
+    let fog = rgb(&["exponential"], Ground::EARTH, FogScattering::Single);
+    look_rgb(bencher, &fog);
 }
 
 #[divan::bench]
 fn two_profiles_rgb(bencher: Bencher) {
-    walk::<3>(
-        bencher,
-        &fog(
-            &["exponential", "slab"],
-            Ground::FLAT,
-            FogScattering::Single,
-        ),
-    );
+    let layers = ["exponential", "slab"];
+    look_rgb(bencher, &rgb(&layers, Ground::FLAT, FogScattering::Single));
 }
 
 #[divan::bench(args = ["exponential", "clamped", "slab"])]
 fn many_scatterings_rgb(bencher: Bencher, name: &str) {
-    walk::<3>(
+    look_rgb(
         bencher,
-        &fog(&[name], Ground::FLAT, FogScattering::Multiple),
+        &rgb(&[name], Ground::FLAT, FogScattering::Multiple),
     );
 }
 
 #[divan::bench]
 fn many_scatterings_16_wavelengths(bencher: Bencher) {
-    walk::<16>(
-        bencher,
-        &fog(&["exponential"], Ground::FLAT, FogScattering::Multiple),
-    );
+    look_spectral(bencher, &spectral(FogScattering::Multiple));
 }
 
 /// Solving for the light inside: once for a fog and its sun.
 #[divan::bench]
-fn solving_rgb() -> Fog<3> {
-    fog(&["exponential"], Ground::FLAT, FogScattering::Multiple)
+fn solving_rgb() -> RgbFog {
+    rgb(&["exponential"], Ground::FLAT, FogScattering::Multiple)
 }
 
 #[divan::bench]
-fn solving_16_wavelengths() -> Fog<16> {
-    fog(&["exponential"], Ground::FLAT, FogScattering::Multiple)
+fn solving_16_wavelengths() -> Fog {
+    spectral(FogScattering::Multiple)
 }

@@ -1,30 +1,29 @@
-//! How long a line of sight past a lamp in fog takes: `cargo bench -p airlight --bench fog_lamps`. Every bench visits 64 lines
-//! and counts them as items: the time of one is the printed time over 64.
+//! Speed of a view ray past a light in fog: `cargo bench -p airlight --bench fog_lights`. Every bench follows 64 rays and counts
+//! them as items: the time of one is the printed time over 64.
 
-use airlight::atmosphere::DensityProfile;
-use airlight::fog::layer::Medium;
+use airlight::atmosphere::{Constituent, ConstituentKind, DensityProfile};
 use airlight::fog::lights::{
-    Light, LightRayGeometry, LightSet, LightSettings, Nodes, ParticipatingMedium, PointLight,
-    SphereLight, SpotLight, ViewRay, airlight_isotropic, airlight_isotropic_lanes,
-    airlight_without_extinction,
+    Light, LightRayGeometry, LightSet, LightSettings, Nodes, PointLight, RgbLightSet, SphereLight,
+    SpotLight, ViewRay, airlight_isotropic, airlight_isotropic_fast, airlight_without_extinction,
 };
+use airlight::fog::{ChannelValues, Ground, RgbLayer};
 use airlight::optics::PhaseFunction;
-use airlight::spectrum::Spectrum;
+use airlight::spectrum::{SpectralCurve, WavelengthGrid};
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use glam::DVec3;
 
-const LINES: usize = 64;
-const LAMP: DVec3 = DVec3::new(1.0, 5.0, -20.0);
+const RAYS: usize = 64;
+const LIGHT: DVec3 = DVec3::new(1.0, 5.0, -20.0);
 const EYE: DVec3 = DVec3::new(0.0, 1.7, 0.0);
 
 fn main() {
     divan::main();
 }
 
-/// Lines that pass the lamp on all sides.
-fn sights() -> Vec<ViewRay> {
-    (0..LINES)
+/// Rays that pass the light on all sides.
+fn view_rays() -> Vec<ViewRay> {
+    (0..RAYS)
         .map(|i| {
             let (x, y) = ((i % 8) as f64, (i / 8) as f64);
             ViewRay {
@@ -36,170 +35,173 @@ fn sights() -> Vec<ViewRay> {
         .collect()
 }
 
-fn passages() -> Vec<LightRayGeometry> {
-    sights()
+fn over_geometries<T>(bencher: Bencher, f: impl Fn(&LightRayGeometry) -> T + Sync) {
+    let geometries: Vec<LightRayGeometry> = view_rays()
         .iter()
-        .map(|view_ray| {
-            LightRayGeometry::new(
-                view_ray.eye,
-                view_ray.direction,
-                view_ray.length_m,
-                LAMP,
-                0.05,
-            )
-        })
-        .collect()
-}
-
-fn over_passages<T>(bencher: Bencher, f: impl Fn(&LightRayGeometry) -> T + Sync) {
-    let passages = passages();
-    bencher.counter(ItemsCount::new(LINES)).bench(|| {
-        for passage in &passages {
-            black_box(f(black_box(passage)));
+        .map(|ray| LightRayGeometry::new(ray.eye, ray.direction, ray.length_m, LIGHT, 0.05))
+        .collect();
+    bencher.counter(ItemsCount::new(RAYS)).bench(|| {
+        for geometry in &geometries {
+            black_box(f(black_box(geometry)));
         }
     });
 }
 
 #[divan::bench]
 fn isotropic_without_extinction(bencher: Bencher) {
-    over_passages(bencher, airlight_without_extinction);
+    over_geometries(bencher, airlight_without_extinction);
 }
 
 #[divan::bench]
 fn isotropic_exact_f64(bencher: Bencher) {
-    over_passages(bencher, |passage| airlight_isotropic(passage, 0.03));
+    over_geometries(bencher, |geometry| airlight_isotropic(geometry, 0.03));
 }
 
 #[divan::bench(args = [8, 12, 20])]
 fn isotropic_fast_f64(bencher: Bencher, nodes: usize) {
     let nodes = Nodes::new(nodes);
-    over_passages(bencher, |passage| {
-        airlight_isotropic_lanes(passage, 0.03, &nodes)
+    over_geometries(bencher, |geometry| {
+        airlight_isotropic_fast(geometry, 0.03, &nodes)
     });
 }
 
-#[divan::bench(args = [8, 12], consts = [3, 4, 16])]
-fn isotropic_fast<const N: usize>(bencher: Bencher, nodes: usize) {
-    let nodes = Nodes::new(nodes);
-    let extinction = Spectrum::<N>::from_fn(|lane| 0.03 + 0.001 * lane as f32);
-    over_passages(bencher, |passage| {
-        airlight_isotropic_lanes(passage, extinction, &nodes)
-    });
+fn phase(g: f64) -> PhaseFunction {
+    match g {
+        0.0 => PhaseFunction::Isotropic,
+        _ => PhaseFunction::henyey_greenstein(g).expect("a phase function"),
+    }
 }
 
-fn over_sights<const N: usize>(
-    bencher: Bencher,
-    light: Light<N>,
-    g: f64,
-    profile: DensityProfile,
-    nodes: usize,
-    ground_radius_m: f64,
-) {
-    let settings = LightSettings {
+fn settings(nodes: usize) -> LightSettings {
+    LightSettings {
         nodes,
         ..Default::default()
+    }
+}
+
+fn over_rays_rgb(
+    bencher: Bencher,
+    light: Light<[f32; 3]>,
+    g: f64,
+    density: DensityProfile,
+    nodes: usize,
+    ground: Ground,
+) {
+    let layer = RgbLayer {
+        density,
+        extinction_per_m: [0.03, 0.031, 0.032],
+        single_scattering_albedo: [1.0; 3],
+        phase: phase(g),
     };
-    let lights = LightSet::new(vec![light], settings).expect("lamps");
-    let medium = Medium {
-        extinction_per_m: Spectrum::from_fn(|lane| 0.03 + 0.001 * lane as f32),
-        single_scattering_albedo: Spectrum::ONE,
-        phase: match g {
-            0.0 => PhaseFunction::Isotropic,
-            _ => PhaseFunction::henyey_greenstein(g).expect("a phase function"),
-        },
-    };
-    let medium = ParticipatingMedium {
-        medium: &medium,
-        profile: &profile,
-        others: &[],
-        wavelengths_nm: &[550.0; N],
-        ground_radius_m,
-    };
-    let sights = sights();
-    bencher.counter(ItemsCount::new(LINES)).bench_local(|| {
-        for view_ray in &sights {
-            black_box(lights.path_radiance(&medium, black_box(view_ray)));
+    let lights = RgbLightSet::new(vec![light], &[layer], ground, settings(nodes)).expect("lights");
+    let rays = view_rays();
+    bencher.counter(ItemsCount::new(RAYS)).bench_local(|| {
+        for ray in &rays {
+            black_box(lights.path_radiance(black_box(ray)));
         }
     });
 }
 
-fn point<const N: usize>() -> Light<N> {
-    Light::Point(PointLight::new(LAMP, Spectrum::ONE, 0.05).expect("a lamp"))
+/// At the 16 wavelengths of the standard grid.
+fn over_rays_spectral(
+    bencher: Bencher,
+    light: Light,
+    g: f64,
+    density: DensityProfile,
+    nodes: usize,
+) {
+    let grid = WavelengthGrid::standard();
+    let nm = grid.wavelengths_nm().to_vec();
+    let extinction = (0..nm.len()).map(|i| 0.03 + 0.001 * i as f64).collect();
+    let layer = Constituent {
+        kind: ConstituentKind::Fog,
+        density,
+        scattering_per_m: SpectralCurve::table(nm, extinction).expect("a curve"),
+        absorption_per_m: SpectralCurve::Constant(0.0),
+        phase: phase(g),
+    };
+    let (layers, settings) = ([layer], settings(nodes));
+    let lights =
+        LightSet::new(vec![light], &layers, Ground::FLAT, settings, &grid).expect("lights");
+    let rays = view_rays();
+    let mut out = vec![0.0; grid.len()];
+    bencher.counter(ItemsCount::new(RAYS)).bench_local(|| {
+        for ray in &rays {
+            lights.path_radiance(black_box(ray), &mut out);
+            black_box(&out);
+        }
+    });
 }
 
-fn spot<const N: usize>() -> Light<N> {
-    let light = SpotLight::new(LAMP, DVec3::NEG_Y, Spectrum::ONE, 0.5, 1.2, 0.05);
-    Light::Spot(light.expect("a lamp"))
+fn point<C: ChannelValues>(intensity: C) -> Light<C> {
+    Light::Point(PointLight::new(LIGHT, intensity, 0.05).expect("a light"))
 }
 
-fn bulb<const N: usize>() -> Light<N> {
-    Light::Sphere(SphereLight::new(LAMP, 0.2, Spectrum::ONE).expect("a lamp"))
+fn spot<C: ChannelValues>(intensity: C) -> Light<C> {
+    let light = SpotLight::new(LIGHT, DVec3::NEG_Y, intensity, 0.5, 1.2, 0.05);
+    Light::Spot(light.expect("a light"))
 }
 
-const HEIGHT_FOG: DensityProfile = DensityProfile::Exponential {
-    reference_height_m: 0.0,
-    scale_height_m: 10.0,
-};
-
-#[divan::bench(consts = [3, 16])]
-fn isotropic_lamps<const N: usize>(bencher: Bencher) {
-    over_sights::<N>(
-        bencher,
-        point(),
-        0.0,
-        DensityProfile::Uniform,
-        12,
-        f64::INFINITY,
-    );
+fn sphere<C: ChannelValues>(radiance: C) -> Light<C> {
+    Light::Sphere(SphereLight::new(LIGHT, 0.2, radiance).expect("a light"))
 }
 
-#[divan::bench(args = [8, 12], consts = [3, 16])]
-fn forward_085_uniform<const N: usize>(bencher: Bencher, nodes: usize) {
-    over_sights::<N>(
-        bencher,
-        point(),
-        0.85,
-        DensityProfile::Uniform,
-        nodes,
-        f64::INFINITY,
-    );
+const RGB: [f32; 3] = [1.0; 3];
+const CURVE: SpectralCurve = SpectralCurve::Constant(1.0);
+const UNIFORM: DensityProfile = DensityProfile::Uniform;
+const HEIGHT_FOG: DensityProfile = DensityProfile::exponential(10.0);
+
+#[divan::bench]
+fn isotropic_uniform_rgb(bencher: Bencher) {
+    over_rays_rgb(bencher, point(RGB), 0.0, UNIFORM, 12, Ground::FLAT);
 }
 
-#[divan::bench(args = [8, 12], consts = [3, 16])]
-fn forward_085_height_fog<const N: usize>(bencher: Bencher, nodes: usize) {
-    over_sights::<N>(bencher, point(), 0.85, HEIGHT_FOG, nodes, f64::INFINITY);
+#[divan::bench]
+fn isotropic_uniform_16(bencher: Bencher) {
+    over_rays_spectral(bencher, point(CURVE), 0.0, UNIFORM, 12);
 }
 
-#[divan::bench(consts = [3])]
-fn forward_085_height_fog_round_ground<const N: usize>(bencher: Bencher) {
-    over_sights::<N>(bencher, point(), 0.85, HEIGHT_FOG, 12, 6.371e6);
+#[divan::bench(args = [8, 12])]
+fn forward_085_uniform_rgb(bencher: Bencher, nodes: usize) {
+    over_rays_rgb(bencher, point(RGB), 0.85, UNIFORM, nodes, Ground::FLAT);
 }
 
-#[divan::bench(consts = [3, 16])]
-fn spot_uniform<const N: usize>(bencher: Bencher) {
-    over_sights::<N>(
-        bencher,
-        spot(),
-        0.85,
-        DensityProfile::Uniform,
-        12,
-        f64::INFINITY,
-    );
+#[divan::bench(args = [8, 12])]
+fn forward_085_uniform_16(bencher: Bencher, nodes: usize) {
+    over_rays_spectral(bencher, point(CURVE), 0.85, UNIFORM, nodes);
 }
 
-#[divan::bench(consts = [3])]
-fn spot_height_fog<const N: usize>(bencher: Bencher) {
-    over_sights::<N>(bencher, spot(), 0.85, HEIGHT_FOG, 12, f64::INFINITY);
+#[divan::bench(args = [8, 12])]
+fn forward_085_height_fog_rgb(bencher: Bencher, nodes: usize) {
+    over_rays_rgb(bencher, point(RGB), 0.85, HEIGHT_FOG, nodes, Ground::FLAT);
 }
 
-#[divan::bench(consts = [3])]
-fn bulb_uniform<const N: usize>(bencher: Bencher) {
-    over_sights::<N>(
-        bencher,
-        bulb(),
-        0.85,
-        DensityProfile::Uniform,
-        12,
-        f64::INFINITY,
-    );
+#[divan::bench(args = [8, 12])]
+fn forward_085_height_fog_16(bencher: Bencher, nodes: usize) {
+    over_rays_spectral(bencher, point(CURVE), 0.85, HEIGHT_FOG, nodes);
+}
+
+#[divan::bench]
+fn forward_085_height_fog_round_ground_rgb(bencher: Bencher) {
+    over_rays_rgb(bencher, point(RGB), 0.85, HEIGHT_FOG, 12, Ground::EARTH);
+}
+
+#[divan::bench]
+fn spot_uniform_rgb(bencher: Bencher) {
+    over_rays_rgb(bencher, spot(RGB), 0.85, UNIFORM, 12, Ground::FLAT);
+}
+
+#[divan::bench]
+fn spot_uniform_16(bencher: Bencher) {
+    over_rays_spectral(bencher, spot(CURVE), 0.85, UNIFORM, 12);
+}
+
+#[divan::bench]
+fn spot_height_fog_rgb(bencher: Bencher) {
+    over_rays_rgb(bencher, spot(RGB), 0.85, HEIGHT_FOG, 12, Ground::FLAT);
+}
+
+#[divan::bench]
+fn sphere_uniform_rgb(bencher: Bencher) {
+    over_rays_rgb(bencher, sphere(RGB), 0.85, UNIFORM, 12, Ground::FLAT);
 }

@@ -5,7 +5,7 @@
 mod common;
 
 use airlight::atmosphere::visibility::{Contrast, extinction_per_m};
-use airlight::fog::lights::{LightForm, LightRayGeometry, Nodes, airlight_isotropic_lanes};
+use airlight::fog::lights::{LightForm, LightRayGeometry, Nodes, airlight_isotropic_fast};
 use airlight::fog::{DensityProfile, RaySegment};
 use common::Table;
 use std::error::Error;
@@ -142,7 +142,7 @@ fn speed() {
         ("split sum", of(LightForm::SplitSum)),
         (
             "exact, by 12 nodes",
-            time(&|passage| airlight_isotropic_lanes(passage, black_box(0.03), &nodes)),
+            time(&|passage| airlight_isotropic_fast(passage, black_box(0.03), &nodes)),
         ),
         ("exact, closed form", of(LightForm::Exact)),
     ] {

@@ -9,10 +9,9 @@ use airlight::atmosphere::visibility::{Contrast, extinction_per_m, visibility_m}
 use airlight::axes::direction;
 use airlight::fog::lights::{LightRayGeometry, airlight_isotropic, airlight_without_extinction};
 use airlight::fog::{
-    DensityProfile, DirectionalLight, Fog, FogLighting, FogScattering, Ground, Layer,
-    approximation, droplets::Droplets,
+    DensityProfile, DirectionalLight, FogLighting, FogScattering, Ground, RgbFog, RgbLayer,
+    droplets::Droplets, split_sum_error,
 };
-use airlight::spectrum::Spectrum;
 use common::Table;
 use std::error::Error;
 
@@ -43,7 +42,7 @@ fn split_sum_map() {
     println!("| τ \\ k | {} |", rates.map(|k| k.to_string()).join(" | "));
     println!("|---|---|---|---|---|---|---|---|---|");
     for tau in [0.1, 0.5, 1.0, 2.0, 4.0, 8.0] {
-        let errors = rates.map(|k| short(100.0 * approximation::split_sum_error(tau, k), 1));
+        let errors = rates.map(|k| short(100.0 * split_sum_error(tau, k), 1));
         println!("| {tau} | {} |", errors.join(" | "));
     }
 }
@@ -127,23 +126,22 @@ fn sun_undimmed() {
         print!("| {visibility} m |");
         for elevation in suns {
             let path = |scattering| {
-                let layer: Layer<1> = Layer {
-                    profile: DensityProfile::Exponential {
-                        reference_height_m: 0.0,
-                        scale_height_m: 50.0,
-                    },
-                    medium: Droplets::Radiation.medium(3.0 / visibility),
+                let layer = RgbLayer {
+                    density: DensityProfile::exponential(50.0),
+                    extinction_per_m: [(3.0 / visibility) as f32; 3],
+                    single_scattering_albedo: [1.0; 3],
+                    phase: Droplets::Radiation.phase(),
                 };
                 let light = FogLighting {
                     sun: Some(DirectionalLight {
                         direction: direction(0.0, elevation),
-                        irradiance: Spectrum::ONE,
+                        irradiance: [1.0; 3],
                     }),
-                    ambient: Spectrum::ZERO,
-                    ground_albedo: Spectrum::ZERO,
+                    ambient: [0.0; 3],
+                    ground_albedo: [0.0; 3],
                 };
-                let fog = Fog::new(&[layer], Ground::FLAT, light, scattering).expect("a fog");
-                fog.along(2.0, direction(180.0, 0.0), 150.0).path_radiance[0]
+                let fog = RgbFog::new(&[layer], Ground::FLAT, &light, scattering).expect("a fog");
+                fog.path(2.0, direction(180.0, 0.0), 150.0).path_radiance[0]
             };
             let ratio = path(FogScattering::Undimmed) / path(FogScattering::Single);
             let text = match ratio {

@@ -7,11 +7,10 @@ mod common;
 use airlight::atmosphere::visibility::{Contrast, extinction_per_m};
 use airlight::axes::direction;
 use airlight::fog::{
-    DensityProfile, DirectionalLight, Fog, FogLighting, FogScattering, Ground, Layer, Medium,
-    RaySegment, droplets::Droplets, scatter,
+    DensityProfile, DirectionalLight, FogLighting, FogScattering, Ground, RaySegment, RgbFog,
+    RgbLayer, droplets::Droplets,
 };
 use airlight::optics::PhaseFunction;
-use airlight::spectrum::Spectrum;
 use common::Table;
 use std::error::Error;
 use std::f64::consts::PI;
@@ -109,25 +108,21 @@ fn closed_forms() {
                 / (a * k);
 
         let along = extinction * profile.column_along_m(&line);
-        let divided = scatter::once(to_sun(eye_m), along * (1.0 - climb / sine_sun), along);
+        let divided = divided_difference(to_sun(eye_m), along * (1.0 - climb / sine_sun), along);
 
-        let medium = Medium {
-            extinction_per_m: Spectrum([extinction as f32]),
-            single_scattering_albedo: Spectrum::ONE,
-            phase: PhaseFunction::Isotropic,
-        };
+        let layer = grey_layer(extinction, PhaseFunction::Isotropic);
         let light = FogLighting {
             sun: Some(DirectionalLight {
                 direction: direction(0.0, 15.0),
-                irradiance: Spectrum::splat(4.0 * PI as f32),
+                irradiance: [4.0 * PI as f32; 3],
             }),
-            ambient: Spectrum::ZERO,
-            ground_albedo: Spectrum::ZERO,
+            ambient: [0.0; 3],
+            ground_albedo: [0.0; 3],
         };
-        let layer = Layer { profile, medium };
-        let fog: Fog<1> =
-            Fog::new(&[layer], Ground::FLAT, light, FogScattering::Single).expect("a fog");
-        let here = fog.along(eye_m, direction(120.0, elevation), length_m);
+        let fog = RgbFog::new(&[layer], Ground::FLAT, &light, FogScattering::Single);
+        let here = fog
+            .expect("a fog")
+            .path(eye_m, direction(120.0, elevation), length_m);
         println!(
             "| {visibility_m} m | from {eye_m} m, {}, {length_m} m | {} | {} | {} |",
             match elevation {
@@ -163,7 +158,7 @@ fn against_all_orders() {
             let cells = SKY_OVER_SUN.map(|(elevation, sky)| {
                 let of = |scattering| {
                     let fog = lit_fog(visibility_m, elevation, sky, scattering);
-                    let line = fog.along(EYE_M, direction(azimuth, 20.0), 150.0);
+                    let line = fog.path(EYE_M, direction(azimuth, 20.0), 150.0);
                     f64::from(line.path_radiance[0])
                 };
                 let all = of(FogScattering::Multiple);
@@ -177,10 +172,28 @@ fn against_all_orders() {
 }
 
 fn exponential() -> DensityProfile {
-    DensityProfile::Exponential {
-        reference_height_m: 0.0,
-        scale_height_m: SCALE_M,
+    DensityProfile::exponential(SCALE_M)
+}
+
+/// Height fog of the same extinction (1/m) in all channels.
+fn grey_layer(extinction_per_m: f64, phase: PhaseFunction) -> RgbLayer {
+    RgbLayer {
+        density: exponential(),
+        extinction_per_m: [extinction_per_m as f32; 3],
+        single_scattering_albedo: [1.0; 3],
+        phase,
     }
+}
+
+/// The divided difference of `e^-x` times the optical depth `along`: sunlight scattered into a line whose exponent grows from
+/// `near` by `growth`.
+fn divided_difference(near: f64, growth: f64, along: f64) -> f64 {
+    let size = growth.abs();
+    let mean = match size < 1e-8 {
+        true => 1.0 - 0.5 * size,
+        false => -(-size).exp_m1() / size,
+    };
+    along * (-(near + growth.min(0.0))).exp() * mean
 }
 
 fn extinction_of(visibility_m: f64) -> f64 {
@@ -193,20 +206,17 @@ fn lit_fog(
     sun_deg: f64,
     sky_over_sun: f32,
     scattering: FogScattering,
-) -> Fog<1> {
-    let layer = Layer {
-        profile: exponential(),
-        medium: Droplets::Radiation.medium(extinction_of(visibility_m)),
-    };
+) -> RgbFog {
+    let layer = grey_layer(extinction_of(visibility_m), Droplets::Radiation.phase());
     let light = FogLighting {
         sun: Some(DirectionalLight {
             direction: direction(0.0, sun_deg),
-            irradiance: Spectrum::ONE,
+            irradiance: [1.0; 3],
         }),
-        ambient: Spectrum::splat(sky_over_sun / PI as f32),
-        ground_albedo: Spectrum::splat(0.2),
+        ambient: [sky_over_sun / PI as f32; 3],
+        ground_albedo: [0.2; 3],
     };
-    Fog::new(&[layer], Ground::FLAT, light, scattering).expect("a fog of ordinary numbers")
+    RgbFog::new(&[layer], Ground::FLAT, &light, scattering).expect("a fog of ordinary numbers")
 }
 
 /// `int_0^length f ds`: Gauss's rule with five points in stretches that grow from the eye on.

@@ -2,15 +2,16 @@
 //!
 //! `cargo run --release -p airlight --example klassen1987_fog -- flat|depth|solved|ambient|speed`
 
+use airlight::atmosphere::{Constituent, ConstituentKind};
 use airlight::axes;
 use airlight::fog::droplets::Droplets;
 use airlight::fog::visibility::{Contrast, extinction_per_m};
 use airlight::fog::{
-    DensityProfile, DirectionalLight, Fog, FogLighting, FogScattering, Ground, Layer, Medium,
+    DensityProfile, DirectionalLight, FogLighting, FogScattering, Ground, RgbFog, RgbLayer,
 };
 use airlight::models::klassen1987::fog::{Slab1987, SunDepth};
 use airlight::optics::{Depolarization, PhaseFunction};
-use airlight::spectrum::Spectrum;
+use airlight::spectrum::{RgbSpace, SpectralCurve, Spectrum};
 use std::f64::consts::PI;
 use std::time::Instant;
 
@@ -102,7 +103,7 @@ fn solved() {
             let direction = axes::direction(azimuth_deg, UP_DEG);
             let cos_sun = direction.dot(sun());
             let of_1987 = slab.along(2.0, direction.y, LINE_M, cos_sun, SunDepth::Exact);
-            let all = fog.along(2.0, direction, LINE_M);
+            let all = fog.path(2.0, direction, LINE_M);
             let ratio = of_1987.path_radiance[0] / all.path_radiance[0];
             signed(100.0 * (f64::from(ratio) - 1.0))
         });
@@ -154,7 +155,7 @@ fn speed() {
     let solved = time(&|climb| {
         let level = (1.0 - climb * climb).sqrt();
         let direction = glam::DVec3::new(0.0, climb, -level);
-        fog.along(2.0, direction, LINE_M).path_radiance[0]
+        fog.path(2.0, direction, LINE_M).path_radiance[0]
     });
     println!("| a line of sight | time |");
     println!("|---|---|");
@@ -174,37 +175,38 @@ fn extinction(visibility_m: f64) -> f64 {
 }
 
 /// The fog of 1987 in green light, under a sun of irradiance 1 at its top.
-fn slab(visibility_m: f64) -> Slab1987<1> {
-    Slab1987 {
-        fog_top_m: TOP_M,
-        air_top_m: TOP_M,
-        fog: Droplets::Radiation.medium(extinction(visibility_m)),
-        air: Medium {
-            extinction_per_m: Spectrum([1.2e-5]),
-            single_scattering_albedo: Spectrum::ONE,
-            phase: PhaseFunction::Rayleigh(Depolarization::None),
-        },
-        sun_irradiance: Spectrum::ONE,
-        sin_sun: sun().y,
-        wavelengths_nm: [550.0],
-    }
+fn slab(visibility_m: f64) -> Slab1987<3> {
+    let air = Constituent {
+        kind: ConstituentKind::Molecules,
+        density: DensityProfile::Uniform,
+        scattering_per_m: SpectralCurve::Constant(1.2e-5),
+        absorption_per_m: SpectralCurve::Constant(0.0),
+        phase: PhaseFunction::Rayleigh(Depolarization::None),
+    };
+    let parts = [&layer(visibility_m), &air];
+    let (heights, sin_sun) = ([TOP_M, TOP_M], sun().y);
+    Slab1987::new(parts, heights, Spectrum::ONE, sin_sun, &[550.0; 3])
+}
+
+/// Fog of drops of 10 micrometres.
+fn layer(visibility_m: f64) -> Constituent {
+    let (drops, slab) = (Droplets::Radiation.into(), DensityProfile::slab(TOP_M));
+    Constituent::fog(extinction(visibility_m), drops, slab, &[]).expect("a fog of grey drops")
 }
 
 /// The same fog, solved for; the sky adds its light.
-fn fog(visibility_m: f64) -> Fog<1> {
-    let layer = Layer {
-        profile: DensityProfile::slab(TOP_M),
-        medium: Droplets::Radiation.medium(extinction(visibility_m)),
-    };
+fn fog(visibility_m: f64) -> RgbFog {
+    let layer = RgbLayer::from_constituent(&layer(visibility_m), RgbSpace::Srgb);
+    let layers = [layer.expect("a fog of grey drops")];
     let light = FogLighting {
         sun: Some(DirectionalLight {
             direction: sun(),
-            irradiance: Spectrum::ONE,
+            irradiance: [1.0; 3],
         }),
-        ambient: Spectrum([SKY_OVER_SUN / PI as f32]),
-        ground_albedo: Spectrum([0.2]),
+        ambient: [SKY_OVER_SUN / PI as f32; 3],
+        ground_albedo: [0.2; 3],
     };
-    Fog::new(&[layer], Ground::FLAT, light, FogScattering::Multiple)
+    RgbFog::new(&layers, Ground::FLAT, &light, FogScattering::Multiple)
         .expect("a fog of ordinary numbers")
 }
 

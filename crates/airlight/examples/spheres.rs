@@ -1,6 +1,8 @@
 //! Prints the tables of the book's chapter on spheres (`scripts/book`): `cargo run --release -p airlight --example spheres` for
 //! the optical properties of published drop distributions; with the argument `times` for the time to compute their tables.
 
+use airlight::atmosphere::{Constituent, DensityProfile};
+use airlight::fog::RgbLayer;
 use airlight::optics::mie::droplets::Drops;
 use airlight::optics::mie::{MieError, Particles};
 use airlight::spectrum::{RgbSpace, WavelengthGrid};
@@ -76,8 +78,10 @@ fn times() -> Result<(), MieError> {
         let start = Instant::now();
         let table = drops.table(grid.wavelengths_nm())?;
         let spectral_s = start.elapsed().as_secs_f64();
+        let slab = DensityProfile::slab(1.0);
+        let layer = Constituent::fog(1.0, drops.into(), slab, grid.wavelengths_nm())?;
         let start = Instant::now();
-        drops.rgb_table(RgbSpace::Srgb)?;
+        RgbLayer::from_constituent(&layer, RgbSpace::Srgb)?;
         println!(
             "| `{name}` | {} | {spectral_s:.1} | {:.2} |",
             table.phase.angles_rad().len(),

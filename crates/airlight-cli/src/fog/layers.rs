@@ -4,30 +4,21 @@ use crate::args::{DropletsArg, LayerShape, ModelArg, OverlayArgs};
 use crate::atmosphere::contrast;
 use crate::error::CliError;
 use crate::foggy_air::FogInAir;
+use airlight::atmosphere::{Constituent, DensityProfile};
 use airlight::fog::visibility::extinction_per_m;
-use airlight::fog::{DensityProfile, Layer};
-use airlight::spectrum::RgbSpace;
+use airlight::spectrum::WavelengthGrid;
 
 /// The layer of the simple options, then those of `--layer`; nothing for a look, which is no layer.
 ///
 /// # Errors
-/// [`CliError::Usage`] for drops that are none.
-pub fn of(args: &OverlayArgs) -> Result<Option<Vec<Layer<3>>>, CliError> {
+/// [`CliError::Usage`] for drops that are refused.
+pub fn of(args: &OverlayArgs) -> Result<Option<Vec<Constituent>>, CliError> {
     let Some(layers) = in_air(args) else {
         return Ok(None);
     };
-    let layer = |fog: FogInAir| -> Result<Layer<3>, CliError> {
-        let medium = fog.droplets.in_rgb(fog.extinction_per_m, RgbSpace::Srgb)?;
-        Ok(Layer {
-            profile: fog.profile,
-            medium,
-        })
-    };
-    layers
-        .into_iter()
-        .map(layer)
-        .collect::<Result<_, _>>()
-        .map(Some)
+    let grid = WavelengthGrid::standard();
+    let layers = layers.iter().map(|fog| fog.layer(grid.wavelengths_nm()));
+    layers.collect::<Result<_, _>>().map(Some)
 }
 
 /// The same before their optics are worked out.

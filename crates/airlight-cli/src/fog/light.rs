@@ -4,7 +4,8 @@ use crate::args::{AirArg, AirArgs, EffortArg, OverlayArgs, PlaceArgs, Scattering
 use crate::error::CliError;
 use crate::parse;
 use crate::scene::{Scene, Sun};
-use airlight::fog::{DensityProfile, FogLighting, FogScattering, Layer};
+use airlight::atmosphere::Constituent;
+use airlight::fog::{FogLighting, FogScattering};
 use airlight::scene::{FoggySky, LaneChannels};
 use airlight::sky::Sky;
 use airlight::spectrum::{RgbSpace, Spectrum};
@@ -84,7 +85,7 @@ pub struct LightSource<'a> {
     solved: Option<&'a SolvedSky>,
     scattering: FogScattering,
     /// The last foggy sky: another fog in it costs little, and the same one nothing.
-    last: Mutex<Option<(Vec<Layer<3>>, Arc<FoggySky<3>>)>>,
+    last: Mutex<Option<(Vec<Constituent>, Arc<FoggySky<3>>)>>,
 }
 
 /// How bright a picture says the light is, and how it says so.
@@ -118,14 +119,11 @@ impl<'a> LightSource<'a> {
     ///
     /// # Errors
     /// [`CliError::Usage`] for a fog that is none.
-    pub fn foggy(&self, layers: &[Layer<3>]) -> Result<Option<Arc<FoggySky<3>>>, CliError> {
+    pub fn foggy(&self, layers: &[Constituent]) -> Result<Option<Arc<FoggySky<3>>>, CliError> {
         let Some(solved) = self.solved else {
             return Ok(None);
         };
-        if layers
-            .iter()
-            .any(|layer| layer.profile == DensityProfile::Uniform)
-        {
+        if layers.iter().any(|layer| layer.density.is_uniform()) {
             return Err(CliError::usage(
                 "--sky-light shines on fog from above, so fog needs an upper end: choose --model height, clamped, unclamped or slab, and \
                  give each --layer scale-height or top",
@@ -185,7 +183,7 @@ pub fn at_level(
     sky: Arc<FoggySky<3>>,
     shown: &Shown<'_>,
 ) -> Result<(FogSource, Level), CliError> {
-    let white = white_surface(sky.fog().light());
+    let white = white_surface(sky.fog_lighting());
     let stated = shown.picture.white_luminance_cd_m2.map(|white| 1.0 / white);
     let (scale, how) = match (args.light.radiance_scale, stated) {
         (Some(scale), _) => (scale as f32, "sky solver, --radiance-scale"),
@@ -222,7 +220,7 @@ pub fn at_level(
 }
 
 /// Radiance of a white level surface in the light at a fog's top.
-fn white_surface(light: &FogLighting<3>) -> Spectrum<3> {
+fn white_surface(light: &FogLighting<Spectrum<3>>) -> Spectrum<3> {
     let sun = light.sun.map_or(Spectrum::ZERO, |sun| {
         sun.irradiance * (sun.direction.y.max(0.0) as f32 / PI)
     });

@@ -4,7 +4,6 @@ use crate::args::{LightArg, LightKind, LightPlace};
 use crate::error::CliError;
 use airlight::axes;
 use airlight::fog::lights::{Light, PointLight, SphereLight, SpotLight};
-use airlight::spectrum::Spectrum;
 use airlight_image::frame::Intrinsics;
 use airlight_image::input::{DepthKind, DepthMap};
 use glam::DVec3;
@@ -26,7 +25,7 @@ pub fn of(
     camera: &Intrinsics,
     depth: &DepthMap,
     eye_height_m: f64,
-) -> Result<Vec<Light<3>>, CliError> {
+) -> Result<Vec<Light<[f32; 3]>>, CliError> {
     let eye = DVec3::Y * eye_height_m;
     words
         .iter()
@@ -40,7 +39,7 @@ fn one(
     camera: &Intrinsics,
     depth: &DepthMap,
     eye: DVec3,
-) -> Result<Light<3>, String> {
+) -> Result<Light<[f32; 3]>, String> {
     let position = match lamp.place {
         LightPlace::At(at) => DVec3::from_array(at),
         LightPlace::Pixel { x, y, distance_m } => {
@@ -53,7 +52,7 @@ fn one(
             eye + distance_m * direction
         }
     };
-    let intensity = Spectrum(lamp.intensity.map(|v| v as f32));
+    let intensity = lamp.intensity.map(|v| v as f32);
     let pixel_m = position.distance(eye) / camera.focal_px().0.max(camera.focal_px().1);
     let radius_m = lamp
         .radius_m
@@ -76,7 +75,8 @@ fn one(
         .map(Light::Spot),
         LightKind::Sphere => {
             let area_m2 = PI * radius_m * radius_m;
-            SphereLight::new(position, radius_m, intensity / area_m2 as f32).map(Light::Sphere)
+            SphereLight::new(position, radius_m, intensity.map(|v| v / area_m2 as f32))
+                .map(Light::Sphere)
         }
     };
     made.map_err(|error| error.to_string())

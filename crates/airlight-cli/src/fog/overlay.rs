@@ -5,12 +5,13 @@ use super::{layers, lights};
 use crate::args::{FogScatteringArg, ModelArg, OverlayArgs};
 use crate::atmosphere::contrast;
 use crate::error::CliError;
+use airlight::atmosphere::Constituent;
 use airlight::axes;
+use airlight::fog::lights::{LightSettings, RgbLightSet};
 use airlight::fog::visibility::extinction_per_m;
-use airlight::fog::{DirectionalLight, Fog, FogLighting, Ground, Layer, legacy};
-use airlight::spectrum::Spectrum;
-use airlight::spectrum::rgb::DOMINANT_NM;
-use airlight_render::overlay::{FogOverlay, FogSource, LightGlow};
+use airlight::fog::{DirectionalLight, FogLighting, Ground, RgbFog, RgbLayer, legacy};
+use airlight::spectrum::{RgbSpace, Spectrum};
+use airlight_render::overlay::{FogOverlay, FogSource};
 use std::f32::consts::PI;
 
 /// Albedo of the ground where nothing is said.
@@ -31,10 +32,13 @@ pub fn overlay(
     };
     let (body, level) = match source.foggy(&layers)? {
         Some(sky) => light::at_level(args, sky, shown)?,
-        None => (alone(args, &layers, shown.ambient.colour)?, shown.ambient),
+        None => (
+            alone(args, &rgb(&layers)?, shown.ambient.colour)?,
+            shown.ambient,
+        ),
     };
-    let light_glow = light_glow(args, &layers, &body, shown)?;
-    Ok((FogOverlay::Fog(body, light_glow), level))
+    let lights = lights_in_fog(args, &layers, &body, shown)?;
+    Ok((FogOverlay::Fog(body, lights), level))
 }
 
 /// Looks have a colour, and nothing shines on them.
@@ -69,42 +73,46 @@ fn look(args: &OverlayArgs, ambient: Spectrum<3>) -> FogOverlay {
 /// Fog in ambient light, and in the sun's of the options.
 fn alone(
     args: &OverlayArgs,
-    layers: &[Layer<3>],
+    layers: &[RgbLayer],
     ambient: Spectrum<3>,
 ) -> Result<FogSource, CliError> {
     let sun = args.sun_elevation.map(|elevation| DirectionalLight {
         direction: axes::direction(args.sun_azimuth, elevation),
-        irradiance: ambient * (PI * args.sun_strength as f32),
+        irradiance: (ambient * (PI * args.sun_strength as f32)).0,
     });
     let light = FogLighting {
         sun,
-        ambient,
-        ground_albedo: Spectrum::splat(args.ground_albedo.unwrap_or(GROUND_ALBEDO) as f32),
+        ambient: ambient.0,
+        ground_albedo: [args.ground_albedo.unwrap_or(GROUND_ALBEDO) as f32; 3],
     };
-    let fog = Fog::at_wavelengths_nm(
-        layers,
-        Ground::FLAT,
-        light,
-        args.scattering.scattering(),
-        DOMINANT_NM,
-    )
-    .map_err(|error| CliError::usage(error.to_string()))?;
-    Ok(FogSource::Alone(Box::new(fog)))
+    RgbFog::new(layers, Ground::FLAT, &light, args.scattering.scattering())
+        .map(FogSource::Alone)
+        .map_err(|error| CliError::usage(error.to_string()))
+}
+
+/// Layers in red, green and blue.
+fn rgb(layers: &[Constituent]) -> Result<Vec<RgbLayer>, CliError> {
+    let layers = layers
+        .iter()
+        .map(|layer| RgbLayer::from_constituent(layer, RgbSpace::Srgb));
+    layers
+        .collect::<Result<_, _>>()
+        .map_err(|error| CliError::usage(error.to_string()))
 }
 
 /// The lamps of the options in the fog.
-fn light_glow(
+fn lights_in_fog(
     args: &OverlayArgs,
-    layers: &[Layer<3>],
+    layers: &[Constituent],
     body: &FogSource,
     shown: &Shown<'_>,
-) -> Result<Option<LightGlow>, CliError> {
+) -> Result<Option<RgbLightSet>, CliError> {
     if args.light.lamp.is_empty() {
         return Ok(None);
     }
     let ground = match body {
         FogSource::Alone(_) => Ground::FLAT,
-        FogSource::Sky { sky, .. } => *sky.fog().ground(),
+        FogSource::Sky { sky, .. } => *sky.ground(),
     };
     let lamps = lights::of(
         &args.light.lamp,
@@ -112,8 +120,11 @@ fn light_glow(
         shown.depth,
         args.eye_height_m,
     )?;
-    LightGlow::new(lamps, layers, ground)
-        .and_then(|light_glow| light_glow.by(args.light.lamp_form.form()))
+    let settings = LightSettings {
+        form: args.light.lamp_form.form(),
+        ..LightSettings::default()
+    };
+    RgbLightSet::new(lamps, &rgb(layers)?, ground, settings)
         .map(Some)
         .map_err(|error| CliError::usage(error.to_string()))
 }

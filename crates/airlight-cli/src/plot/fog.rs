@@ -3,7 +3,7 @@
 use crate::args::{FogProfilePlotArgs, SplitSumPlotArgs};
 use crate::error::CliError;
 use airlight::fog::DensityProfile;
-use airlight::fog::approximation::split_sum_error;
+use airlight::fog::split_sum_error;
 use airlight::fog::visibility::{Contrast, extinction_per_m};
 use airlight_plot::curves::curves;
 use airlight_plot::map::{Grid, map};

@@ -3,6 +3,7 @@
 use crate::args::{DropletsArg, EfficiencyPlotArgs, Index, PhasePlotArgs};
 use crate::error::CliError;
 use crate::progress::Busy;
+use airlight::atmosphere::{Constituent, DensityProfile};
 use airlight::optics::RefractiveIndex;
 use airlight::optics::mie::{Complex64, MieError, Particles, SizeDistribution, Sphere};
 use airlight_plot::curves::curves as over;
@@ -58,8 +59,8 @@ fn angles(width: f64) -> Vec<f64> {
 }
 
 fn of_drops(DropletsArg(kind): DropletsArg, nm: f64) -> Result<Curve, CliError> {
-    let medium = kind.at_wavelengths(1.0, &[nm])?;
-    let point = |angle: f64| (angle, medium.phase.evaluate(angle.cos(), nm));
+    let layer = Constituent::fog(1.0, kind, DensityProfile::Uniform, &[nm])?;
+    let point = |angle: f64| (angle, layer.phase.evaluate(angle.cos(), nm));
     Ok(Curve {
         name: format!("{}, {nm} nm", kind.name()),
         points: angles(PI / 1800.0).into_iter().map(point).collect(),

@@ -5,13 +5,11 @@ use crate::error::CliError;
 use crate::foggy_air::FogInAir;
 use crate::report::short;
 use airlight::atmosphere::Constituent;
-use airlight::fog::droplets::DropletKind;
+use airlight::fog::DensityProfile;
 use airlight::fog::visibility::{Contrast, extinction_per_m};
-use airlight::fog::{DensityProfile, Layer, Medium};
-use airlight::optics::mie::MieError;
 use airlight::scene::{FoggySky, LaneChannels};
 use airlight::sky::{SkyTable, TableChannels, View};
-use airlight::spectrum::Spectrum;
+use airlight::spectrum::{Spectrum, WavelengthGrid};
 use glam::DVec3;
 use std::sync::Arc;
 
@@ -57,15 +55,14 @@ impl Fog {
         let scattering = args.fog_scattering.scattering();
         Ok(match channels {
             TableChannels::Rgb(space) => {
-                let layers = layers(args, |kind, per_m| kind.in_rgb(per_m, space))?;
+                let layers = layers(args, WavelengthGrid::standard().wavelengths_nm())?;
                 let channels = LaneChannels::Rgb(space);
                 let sky = FoggySky::new(view, channels, &layers, ground, scattering)?;
                 Self::Rgb(Box::new(sky))
             }
             TableChannels::Spectral => {
-                let layers =
-                    |nm: &[f64; PIECE]| layers(args, |kind, per_m| kind.at_wavelengths(per_m, nm));
-                Self::Spectral(FoggySky::spectral(view, layers, ground, scattering)?)
+                let layers = layers(args, view.sky().grid().wavelengths_nm())?;
+                Self::Spectral(FoggySky::spectral(view, &layers, ground, scattering)?)
             }
         })
     }
@@ -132,18 +129,20 @@ fn cover<const N: usize>(sky: &FoggySky<N>, direction: DVec3, values: &mut [f32]
         .for_each(|(value, seen)| *value = seen);
 }
 
-/// The fog of the options, of drops in the lanes of the picture; no layer without fog.
-fn layers<const N: usize>(
-    args: &FogArgs,
-    drops: impl Fn(DropletKind, f64) -> Result<Medium<N>, MieError>,
-) -> Result<Vec<Layer<N>>, CliError> {
-    let Some(visibility_m) = args.fog_visibility_m else {
-        return Ok(Vec::new());
-    };
-    let extinction = extinction_per_m(visibility_m, Contrast::FivePercent);
-    let medium = drops(args.fog_droplets.0, extinction)?;
-    let profile = profile(args);
-    Ok(vec![Layer { profile, medium }])
+/// The fog of the options, known at wavelengths (nm, rising); no layer without fog.
+fn layers(args: &FogArgs, wavelengths_nm: &[f64]) -> Result<Vec<Constituent>, CliError> {
+    let layers = in_air(args).into_iter();
+    layers.map(|fog| fog.layer(wavelengths_nm)).collect()
+}
+
+/// The fog of the options before its optics are computed; `None` without fog.
+fn in_air(args: &FogArgs) -> Option<FogInAir> {
+    let visibility_m = args.fog_visibility_m?;
+    Some(FogInAir {
+        profile: profile(args),
+        droplets: args.fog_droplets.0,
+        extinction_per_m: extinction_per_m(visibility_m, Contrast::FivePercent),
+    })
 }
 
 fn profile(args: &FogArgs) -> DensityProfile {
@@ -166,15 +165,9 @@ pub fn constituent(
     ground_m: f64,
     wavelengths_nm: &[f64],
 ) -> Result<Option<Constituent>, CliError> {
-    let Some(visibility_m) = args.fog_visibility_m else {
-        return Ok(None);
-    };
-    let fog = FogInAir {
-        profile: profile(args),
-        droplets: args.fog_droplets.0,
-        extinction_per_m: extinction_per_m(visibility_m, Contrast::FivePercent),
-    };
-    fog.constituent(ground_m, wavelengths_nm).map(Some)
+    let fog = in_air(args);
+    fog.map(|fog| fog.constituent(ground_m, wavelengths_nm))
+        .transpose()
 }
 
 /// The fog of the options in words.

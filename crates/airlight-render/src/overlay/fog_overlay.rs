@@ -1,7 +1,7 @@
 //! What lies between camera and scene.
 
-use super::light_glow::LightGlow;
-use airlight::fog::{Fog, FogTable, legacy};
+use airlight::fog::lights::{RgbLightSet, ViewRay};
+use airlight::fog::{RgbFog, RgbFogTable, legacy};
 use airlight::scene::FoggySky;
 use airlight::spectrum::Spectrum;
 use airlight::spectrum::rgb::{srgb_decode, srgb_encode};
@@ -13,7 +13,7 @@ use std::sync::{Arc, LazyLock};
 #[derive(Clone)]
 pub enum FogOverlay {
     /// A fog, and the lamps in it.
-    Fog(FogSource, Option<LightGlow>),
+    Fog(FogSource, Option<RgbLightSet>),
     /// Exponential-squared fog, a look: density (1/m) and colour.
     ExponentialSquared(f64, Spectrum<3>),
     /// Linear fog, a look: where it starts and ends (m), and colour.
@@ -27,7 +27,7 @@ pub enum FogOverlay {
 #[derive(Clone)]
 pub enum FogSource {
     /// A fog in a light of its own.
-    Alone(Box<Fog<3>>),
+    Alone(RgbFog),
     /// A fog in a solved sky.
     Sky {
         /// Both, with the eye at the camera's height.
@@ -53,14 +53,14 @@ pub(super) struct FogSampler<'a> {
     overlay: &'a FogOverlay,
     eye_height_m: f64,
     /// A fog alone, tabulated.
-    table: Option<FogTable<'a, 3>>,
+    table: Option<RgbFogTable>,
 }
 
 impl<'a> FogSampler<'a> {
     /// Seen from a height (m).
     pub fn from_height(overlay: &'a FogOverlay, eye_height_m: f64) -> Self {
         let table = match overlay {
-            FogOverlay::Fog(FogSource::Alone(fog), _) => Some(FogTable::new(fog, eye_height_m)),
+            FogOverlay::Fog(FogSource::Alone(fog), _) => Some(fog.seen_from(eye_height_m)),
             _ => None,
         };
         Self {
@@ -79,24 +79,27 @@ impl<'a> FogSampler<'a> {
         given: Option<Spectrum<3>>,
     ) -> PathOptics<3> {
         match self.overlay {
-            FogOverlay::Fog(body, light_glow) => {
+            FogOverlay::Fog(body, lights) => {
                 let mut optics = match &self.table {
-                    Some(table) => table.along(direction, distance_m),
+                    Some(table) => table.path(direction, distance_m).into(),
                     None => body.optics(self.eye_height_m, direction, distance_m),
                 };
                 optics.path_radiance = given.unwrap_or(optics.path_radiance);
-                if let Some(light_glow) = light_glow {
-                    let (height_m, direction) = (self.eye_height_m, direction);
-                    optics.path_radiance +=
-                        light_glow.path_radiance(height_m, direction, distance_m);
+                if let Some(lights) = lights {
+                    let glow = lights.path_radiance(&ViewRay {
+                        eye: DVec3::Y * self.eye_height_m,
+                        direction,
+                        length_m: distance_m,
+                    });
+                    optics.path_radiance += Spectrum(glow);
                 }
                 optics
             }
             FogOverlay::ExponentialSquared(density, colour) => {
-                legacy::exponential_squared(*density, distance_m, *colour)
+                legacy::exponential_squared(*density, distance_m, colour.0).into()
             }
             FogOverlay::Linear(start, end, colour) => {
-                legacy::linear(*start, *end, distance_m, *colour)
+                legacy::linear(*start, *end, distance_m, colour.0).into()
             }
             FogOverlay::Encoded(extinction, colour) => {
                 let transmittance = (-extinction * distance_m).exp() as f32;
@@ -124,7 +127,7 @@ impl<'a> FogSampler<'a> {
 impl FogSource {
     fn optics(&self, eye_height_m: f64, direction: DVec3, distance_m: f64) -> PathOptics<3> {
         match self {
-            Self::Alone(fog) => fog.along(eye_height_m, direction, distance_m),
+            Self::Alone(fog) => fog.path(eye_height_m, direction, distance_m).into(),
             Self::Sky {
                 sky,
                 radiance_scale,

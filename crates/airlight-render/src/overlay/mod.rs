@@ -1,15 +1,13 @@
 //! Fog laid over a picture that exists: colour and depth in, the fogged picture and its layers out.
 //!
-//! From the ground up: the light that a picture shows fog to be in ([`estimate_ambient`]); lamps ([`LightGlow`]); what lies
+//! From the ground up: the light that a picture shows fog to be in ([`estimate_ambient`]); lights ([`RgbLightSet`](airlight::fog::lights::RgbLightSet)); what lies
 //! between camera and scene ([`FogOverlay`]); both put together, row by row ([`Overlay`]).
 
 mod ambient;
 mod fog_overlay;
-mod light_glow;
 
 pub use ambient::{Ambient, estimate_ambient, horizon_pixels};
 pub use fog_overlay::{ExistingAerial, FogOverlay, FogSource};
-pub use light_glow::LightGlow;
 
 use airlight::spectrum::Spectrum;
 use airlight::transfer::PathOptics;

@@ -1,5 +1,5 @@
 use super::*;
-use airlight::fog::{DensityProfile, Fog, FogLighting, FogScattering, Ground, Layer, Medium};
+use airlight::fog::{DensityProfile, FogLighting, FogScattering, Ground, RgbFog, RgbLayer};
 use airlight::optics::PhaseFunction;
 use airlight_image::Size;
 use airlight_image::input::{LightReference, SampleBits};
@@ -32,23 +32,27 @@ fn depth(width: u32, height: u32, metres: impl Fn(u32, u32) -> f32) -> DepthMap 
     }
 }
 
-fn uniform(extinction: f32, ambient: [f32; 3]) -> FogOverlay {
-    let medium = Medium {
-        extinction_per_m: Spectrum::splat(extinction),
-        single_scattering_albedo: Spectrum::ONE,
+fn uniform_layer(extinction: f32, albedo: f32) -> RgbLayer {
+    RgbLayer {
+        density: DensityProfile::Uniform,
+        extinction_per_m: [extinction; 3],
+        single_scattering_albedo: [albedo; 3],
         phase: PhaseFunction::Isotropic,
-    };
-    let light = FogLighting {
+    }
+}
+
+fn fog(layers: &[RgbLayer], ambient: [f32; 3]) -> FogSource {
+    let lighting = FogLighting {
         sun: None,
-        ambient: Spectrum(ambient),
-        ground_albedo: Spectrum::ZERO,
+        ambient,
+        ground_albedo: [0.0; 3],
     };
-    let layers = [Layer {
-        profile: DensityProfile::Uniform,
-        medium,
-    }];
-    let fog = Fog::new(&layers, Ground::FLAT, light, FogScattering::Single).unwrap();
-    FogOverlay::Fog(FogSource::Alone(Box::new(fog)), None)
+    let fog = RgbFog::new(layers, Ground::FLAT, &lighting, FogScattering::Single);
+    FogSource::Alone(fog.unwrap())
+}
+
+fn uniform(extinction: f32, ambient: [f32; 3]) -> FogOverlay {
+    FogOverlay::Fog(fog(&[uniform_layer(extinction, 1.0)], ambient), None)
 }
 
 #[test]
@@ -189,36 +193,23 @@ fn the_ambient_takes_no_notice_of_sun_cloud_and_edges() {
 
 #[test]
 fn a_lamp_glows_before_what_is_there() {
-    use airlight::fog::lights::{Light, LightRayGeometry, PointLight, airlight_isotropic};
+    use airlight::fog::lights::{
+        Light, LightRayGeometry, LightSettings, PointLight, RgbLightSet, airlight_isotropic,
+    };
     let (picture, depth) = (
         picture(9, 5, |_, _| [0.0; 3]),
         depth(9, 5, |x, _| if x < 4 { 6.0 } else { f32::INFINITY }),
     );
     let camera = Intrinsics::from_horizontal_fov(picture.size, 60.0).unwrap();
-    let medium = Medium {
-        extinction_per_m: Spectrum::splat(0.05),
-        single_scattering_albedo: Spectrum::splat(0.8),
-        phase: PhaseFunction::Isotropic,
-    };
     // Half of the fog in each of two layers.
-    let mut half = medium.clone();
-    half.extinction_per_m = Spectrum::splat(0.025);
-    let layer = |medium| Layer {
-        profile: DensityProfile::Uniform,
-        medium,
-    };
-    let (whole, halves) = (layer(medium), [layer(half.clone()), layer(half)]);
+    let (whole, half) = (uniform_layer(0.05, 0.8), uniform_layer(0.025, 0.8));
+    let halves = [half.clone(), half];
     let at = DVec3::new(-1.0, 2.5, -5.0);
-    let lamp = PointLight::new(at, Spectrum([3.0, 2.0, 1.0]), 0.01).unwrap();
-    let light = FogLighting {
-        sun: None,
-        ambient: Spectrum::ZERO,
-        ground_albedo: Spectrum::ZERO,
-    };
+    let light = Light::Point(PointLight::new(at, [3.0, 2.0, 1.0], 0.01).unwrap());
     for layers in [&[whole][..], &halves[..]] {
-        let fog = Fog::new(layers, Ground::FLAT, light, FogScattering::Single).unwrap();
-        let light_glow = LightGlow::new(vec![Light::Point(lamp)], layers, Ground::FLAT).unwrap();
-        let overlay = FogOverlay::Fog(FogSource::Alone(Box::new(fog)), Some(light_glow));
+        let settings = LightSettings::default();
+        let lights = RgbLightSet::new(vec![light], layers, Ground::FLAT, settings).unwrap();
+        let overlay = FogOverlay::Fog(fog(layers, [0.0; 3]), Some(lights));
         let overlay =
             Overlay::new(&picture, &depth, &camera, 1.6, &overlay, Channels::Picture).unwrap();
         let mut row = vec![0.0; 27];

@@ -1,150 +1,422 @@
-//! What hangs in the air, at N wavelengths.
+//! Layers of fog: constituents of the air at the wavelengths of N lanes, or in red, green and blue; merged by density profile.
 
-use crate::atmosphere::{DensityError, DensityProfile};
-use crate::optics::{PhaseError, PhaseFunction};
-use crate::spectrum::Spectrum;
+use super::error::FogError;
+use super::lighting::FogScattering;
+use super::multiple::{Peak, Reduced, STREAMS};
+use crate::atmosphere::{Constituent, DensityProfile};
+use crate::optics::{PhaseError, PhaseFunction, TabulatedPhase};
+use crate::spectrum::rgb::{self, DOMINANT_NM};
+use crate::spectrum::{RgbSpace, Spectrum, WavelengthGrid};
 
-/// Droplets, particles or molecules where their density is 1.
+/// A layer of fog in red, green and blue.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Medium<const N: usize> {
-    /// Extinction coefficient, 1/m.
-    pub extinction_per_m: Spectrum<N>,
-    /// The part of the extinction that is scattering, 0 to 1.
-    pub single_scattering_albedo: Spectrum<N>,
-    /// Where it scatters to.
+pub struct RgbLayer {
+    /// Density against height.
+    pub density: DensityProfile,
+    /// Extinction coefficient at density 1, 1/m.
+    pub extinction_per_m: [f32; 3],
+    /// Scattering over extinction, 0 to 1.
+    pub single_scattering_albedo: [f32; 3],
+    /// Phase function; one that depends on wavelength is evaluated at [`DOMINANT_NM`].
     pub phase: PhaseFunction,
 }
 
-/// Matter and how it thins with height.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Layer<const N: usize> {
-    /// Density against height.
-    pub profile: DensityProfile,
-    /// What it is made of.
-    pub medium: Medium<N>,
-}
-
-/// Why numbers do not make a fog.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum FogError {
-    /// Extinction below 0 or not finite.
-    #[error(
-        "the extinction must be finite and not below 0 per metre, got {got_per_m} in lane {lane}"
-    )]
-    Extinction {
-        /// Which wavelength or colour, counted from 0.
-        lane: usize,
-        /// What was given, 1/m.
-        got_per_m: f32,
-    },
-    /// A single-scattering albedo outside 0 to 1.
-    #[error("the single-scattering albedo must lie from 0 to 1, got {got} in lane {lane}")]
-    Albedo {
-        /// Which wavelength or colour, counted from 0.
-        lane: usize,
-        /// What was given.
-        got: f32,
-    },
-    /// Light that is negative or not finite.
-    #[error("{what} must be finite and not below 0, got {got}")]
-    Light {
-        /// Which light.
-        what: &'static str,
-        /// What was given.
-        got: f32,
-    },
-    /// A number of the scene that cannot be.
-    #[error("{what} must be {right}, got {got}")]
-    Number {
-        /// Which number, with its unit.
-        what: &'static str,
-        /// What was given.
-        got: f64,
-        /// What would be right.
-        right: &'static str,
-    },
-    /// A form of a lamp's light does not hold for what there is.
-    #[error(
-        "this form of a lamp's light is for point lamps in one layer of uniform fog that scatters equally in all directions, \
-         not for {what}"
-    )]
-    LightForm {
-        /// What there is.
-        what: &'static str,
-    },
-    /// The phase function is refused.
-    #[error(transparent)]
-    Phase(#[from] PhaseError),
-    /// The density profile is refused.
-    #[error(transparent)]
-    Density(#[from] DensityError),
-}
-
-/// Light must be finite and not below 0 in every lane.
-///
-/// # Errors
-/// [`FogError::Light`] for the first lane that is not.
-pub(super) fn check_light<const N: usize>(
-    what: &'static str,
-    light: Spectrum<N>,
-) -> Result<(), FogError> {
-    match light.0.iter().find(|v| !(v.is_finite() && **v >= 0.0)) {
-        None => Ok(()),
-        Some(&got) => Err(FogError::Light { what, got }),
+impl RgbLayer {
+    /// A constituent in a linear RGB space under sunlight: each channel is the mean over the wavelengths of
+    /// [`WavelengthGrid::standard`], weighted as the channel weighs sunlight; tabulated phase functions by the scattered light,
+    /// too. For white sunlight scattered once that is the spectral result, where three single wavelengths would make bows
+    /// and glories too saturated.
+    ///
+    /// # Errors
+    /// [`PhaseError`] where the mean of a tabulated phase function is not one.
+    pub fn from_constituent(layer: &Constituent, space: RgbSpace) -> Result<Self, PhaseError> {
+        let grid = WavelengthGrid::standard();
+        let nm = grid.wavelengths_nm();
+        let scattering: Vec<f64> = nm.iter().map(|&nm| layer.scattering_per_m.at(nm)).collect();
+        let absorption: Vec<f64> = nm.iter().map(|&nm| layer.absorption_per_m.at(nm)).collect();
+        let weights = channel_weights(&grid, space);
+        let mean = |weights: &[f64], values: &[f64]| -> f64 {
+            weights.iter().zip(values).map(|(w, v)| w * v).sum()
+        };
+        let channels = weights.each_ref().map(|weights| {
+            let scattering = mean(weights, &scattering);
+            (scattering, scattering + mean(weights, &absorption).max(0.0))
+        });
+        Ok(Self {
+            density: layer.density.clone(),
+            extinction_per_m: channels.map(|(_, extinction)| extinction as f32),
+            single_scattering_albedo: channels.map(|(scattering, extinction)| {
+                match extinction > 0.0 {
+                    true => (scattering / extinction) as f32,
+                    false => 1.0,
+                }
+            }),
+            phase: match &layer.phase {
+                PhaseFunction::Tabulated(table) => {
+                    PhaseFunction::Tabulated(in_channels(table, nm, &scattering, &weights)?)
+                }
+                phase => phase.clone(),
+            },
+        })
     }
-}
 
-impl<const N: usize> Medium<N> {
     /// Checks every number.
     ///
     /// # Errors
-    /// The first that cannot be.
+    /// [`FogError`] for the first outside its domain.
     pub fn validate(&self) -> Result<(), FogError> {
-        for lane in 0..N {
-            let extinction = self.extinction_per_m[lane];
+        self.density.validate()?;
+        LayerLanes::<3>::rgb(self).validate()
+    }
+}
+
+/// The part of each wavelength in the red, green and blue of sunlight.
+fn channel_weights(grid: &WavelengthGrid, space: RgbSpace) -> [Vec<f64>; 3] {
+    let from_xyz = space.from_xyz_matrix();
+    let sunlight: Vec<[f64; 3]> = grid
+        .xyz_weights()
+        .iter()
+        .zip(grid.solar_irradiance())
+        .map(|(w, e)| rgb::apply(&from_xyz, w.map(|w| w * e)))
+        .collect();
+    [0, 1, 2].map(|channel| {
+        let whole: f64 = sunlight.iter().map(|rgb| rgb[channel]).sum();
+        sunlight.iter().map(|rgb| rgb[channel] / whole).collect()
+    })
+}
+
+/// Means of a phase function over wavelengths (nm) by channel.
+///
+/// The weights of a channel are negative where its primary lies inside the spectral locus; phase functions vary far too
+/// little with wavelength to make such a mean negative, and are held at a thousandth of the plain mean.
+fn in_channels(
+    table: &TabulatedPhase,
+    wavelengths_nm: &[f64],
+    scattering: &[f64],
+    weights: &[Vec<f64>; 3],
+) -> Result<TabulatedPhase, PhaseError> {
+    let angles = table.angles_rad();
+    let count = wavelengths_nm.len() as f64;
+    let by_angle: Vec<Vec<f64>> = angles
+        .iter()
+        .map(|angle| {
+            let evaluate = |&nm: &f64| table.evaluate(angle.cos(), nm);
+            wavelengths_nm.iter().map(evaluate).collect()
+        })
+        .collect();
+    let mut values = Vec::new();
+    // Tables are in the order of rising wavelength: blue first.
+    for weights in weights.iter().rev() {
+        let whole: f64 = weights.iter().zip(scattering).map(|(w, s)| w * s).sum();
+        for phase in &by_angle {
+            let terms = weights.iter().zip(scattering).zip(phase);
+            let weighted: f64 = terms.map(|((w, s), p)| w * (s * p)).sum::<f64>() / whole;
+            values.push(weighted.max(1e-3 * phase.iter().sum::<f64>() / count));
+        }
+    }
+    let degrees = |(i, angle): (usize, &f64)| match i + 1 == angles.len() {
+        true => 180.0,
+        false => angle.to_degrees(),
+    };
+    let angles_deg = angles.iter().enumerate().map(degrees).collect();
+    let [red, green, blue] = DOMINANT_NM;
+    TabulatedPhase::new(angles_deg, vec![blue, green, red], values)
+}
+
+/// A layer at the wavelengths of N lanes.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct LayerLanes<const N: usize> {
+    pub density: DensityProfile,
+    /// Extinction coefficient at density 1, 1/m.
+    pub extinction_per_m: Spectrum<N>,
+    /// Scattering coefficient at density 1, 1/m.
+    pub scattering_per_m: Spectrum<N>,
+    pub phase: PhaseFunction,
+    /// Wavelength of each lane, nm.
+    pub wavelengths_nm: [f64; N],
+}
+
+impl<const N: usize> LayerLanes<N> {
+    /// A layer in red, green and blue; lanes beyond repeat the last.
+    pub fn rgb(layer: &RgbLayer) -> Self {
+        let lanes = |rgb: &[f32; 3]| Spectrum::from_fn(|lane| rgb[lane.min(2)]);
+        let extinction = lanes(&layer.extinction_per_m);
+        Self {
+            density: layer.density.clone(),
+            extinction_per_m: extinction,
+            scattering_per_m: extinction * lanes(&layer.single_scattering_albedo),
+            phase: layer.phase.clone(),
+            wavelengths_nm: std::array::from_fn(|lane| DOMINANT_NM[lane.min(2)]),
+        }
+    }
+
+    /// A constituent at wavelengths, nm.
+    pub fn new(layer: &Constituent, wavelengths_nm: &[f64; N]) -> Self {
+        let lanes =
+            |of: &dyn Fn(f64) -> f64| Spectrum::from_fn(|lane| of(wavelengths_nm[lane]) as f32);
+        Self {
+            density: layer.density.clone(),
+            extinction_per_m: lanes(&|nm| layer.extinction_per_m(nm)),
+            scattering_per_m: lanes(&|nm| layer.scattering_per_m.at(nm)),
+            phase: layer.phase.clone(),
+            wavelengths_nm: *wavelengths_nm,
+        }
+    }
+
+    /// Checks every number.
+    pub fn validate(&self) -> Result<(), FogError> {
+        for channel in 0..N {
+            let extinction = f64::from(self.extinction_per_m[channel]);
             if !(extinction.is_finite() && extinction >= 0.0) {
                 return Err(FogError::Extinction {
-                    lane,
+                    channel,
                     got_per_m: extinction,
                 });
             }
-            let albedo = self.single_scattering_albedo[lane];
-            if !(0.0..=1.0).contains(&albedo) {
-                return Err(FogError::Albedo { lane, got: albedo });
+            // Half a unit in the last place of either may be rounding.
+            let scattering = f64::from(self.scattering_per_m[channel]);
+            if !(scattering >= 0.0 && scattering <= extinction * (1.0 + 1e-6)) {
+                return Err(FogError::Albedo {
+                    channel,
+                    got: scattering / extinction,
+                });
             }
         }
+        self.density.validate()?;
         Ok(self.phase.validate()?)
-    }
-
-    /// Scattering coefficient, 1/m.
-    pub fn scattering_per_m(&self) -> Spectrum<N> {
-        self.extinction_per_m * self.single_scattering_albedo
     }
 
     /// The phase function at a cosine of the scattering angle in every lane, 1/sr.
     #[inline]
-    pub fn phase_lanes(&self, cos_angle: f64, wavelengths_nm: &[f64; N]) -> Spectrum<N> {
+    pub fn phase_lanes(&self, cos_angle: f64) -> Spectrum<N> {
         match &self.phase {
             PhaseFunction::Tabulated(table) => Spectrum(
                 table
-                    .evaluate_all(cos_angle, wavelengths_nm)
+                    .evaluate_all(cos_angle, &self.wavelengths_nm)
                     .map(|p| p as f32),
             ),
-            phase if phase.depends_on_wavelength() => {
-                Spectrum::from_fn(|lane| phase.evaluate(cos_angle, wavelengths_nm[lane]) as f32)
-            }
+            phase if phase.depends_on_wavelength() => Spectrum::from_fn(|lane| {
+                phase.evaluate(cos_angle, self.wavelengths_nm[lane]) as f32
+            }),
             phase => Spectrum::splat(phase.evaluate(cos_angle, 550.0) as f32),
         }
     }
+
+    /// The layers that this one is the sum of: one for each term of its density.
+    pub fn terms(&self) -> Vec<Self> {
+        let term = |(factor, density): (f64, &DensityProfile)| Self {
+            density: density.clone(),
+            extinction_per_m: self.extinction_per_m * factor as f32,
+            scattering_per_m: self.scattering_per_m * factor as f32,
+            ..self.clone()
+        };
+        self.density.terms().into_iter().map(term).collect()
+    }
 }
 
-impl<const N: usize> Layer<N> {
-    /// Checks every number.
-    ///
-    /// # Errors
-    /// The first that cannot be.
-    pub fn validate(&self) -> Result<(), FogError> {
-        self.profile.validate()?;
-        self.medium.validate()
+/// All constituents that share one density profile.
+#[derive(Clone, Debug)]
+pub(super) struct MergedLayer<const N: usize> {
+    pub density: DensityProfile,
+    pub extinction_per_m: Spectrum<N>,
+    pub scattering_per_m: Spectrum<N>,
+    /// Extinction without the forward peak.
+    pub reduced_extinction_per_m: Spectrum<N>,
+    parts: Vec<Part<N>>,
+}
+
+/// One constituent of a merged layer.
+#[derive(Clone, Debug)]
+struct Part<const N: usize> {
+    layer: LayerLanes<N>,
+    /// Its phase function without the forward peak: one for all lanes, one for each, or none where the peak is kept.
+    peaks: Vec<Peak>,
+}
+
+/// Validates layers and merges those of one density profile.
+///
+/// # Errors
+/// [`FogError`] for the first number outside its domain.
+pub(super) fn merge_layers<const N: usize>(
+    layers: &[LayerLanes<N>],
+    scattering: FogScattering,
+) -> Result<Vec<MergedLayer<N>>, FogError> {
+    for layer in layers {
+        layer.validate()?;
+    }
+    let mut merged: Vec<MergedLayer<N>> = Vec::new();
+    for layer in layers.iter().flat_map(LayerLanes::terms) {
+        let peak = |nm: f64| Peak::new(&layer.phase, nm);
+        let peaks = if scattering != FogScattering::Multiple || layer.density.is_uniform() {
+            Vec::new()
+        } else if layer.phase.depends_on_wavelength() {
+            layer.wavelengths_nm.iter().map(|&nm| peak(nm)).collect()
+        } else {
+            vec![peak(layer.wavelengths_nm[0])]
+        };
+        let index = merged.iter().position(|m| m.density == layer.density);
+        let index = index.unwrap_or_else(|| {
+            merged.push(MergedLayer {
+                density: layer.density.clone(),
+                extinction_per_m: Spectrum::ZERO,
+                scattering_per_m: Spectrum::ZERO,
+                reduced_extinction_per_m: Spectrum::ZERO,
+                parts: Vec::new(),
+            });
+            merged.len() - 1
+        });
+        let into = &mut merged[index];
+        into.extinction_per_m += layer.extinction_per_m;
+        into.scattering_per_m += layer.scattering_per_m;
+        into.reduced_extinction_per_m += layer.extinction_per_m
+            - layer.scattering_per_m * by_lane(&peaks, |peak| peak.fraction as f32);
+        into.parts.push(Part { layer, peaks });
+    }
+    Ok(merged)
+}
+
+impl<const N: usize> MergedLayer<N> {
+    /// `sum over j of sigma_s,j p_j`: sunlight scattered towards the eye, 1/(m sr).
+    #[inline]
+    pub fn towards_eye(&self, cos_sun: f64) -> Spectrum<N> {
+        self.sum(|part| part.layer.phase_lanes(cos_sun))
+    }
+
+    /// The part of [`MergedLayer::towards_eye`] that the solver's moments hold; all of it where peaks are kept.
+    pub fn smooth_towards_eye(&self, cos_sun: f64) -> Spectrum<N> {
+        self.sum(|part| match &part.peaks[..] {
+            [] => part.layer.phase_lanes(cos_sun),
+            peaks => by_lane(peaks, |peak| peak.smooth(cos_sun) as f32),
+        })
+    }
+
+    /// Extinction of light that the residual of the peak scatters, 1/m.
+    #[inline]
+    pub fn residual_extinction(&self, cos_sun: f64) -> Spectrum<N> {
+        let fraction =
+            |part: &Part<N>| by_lane(&part.peaks, |peak| peak.residual_fraction(cos_sun));
+        self.extinction_per_m - self.sum(fraction)
+    }
+
+    /// Whether the residual matters at an angle to the sun.
+    #[inline]
+    pub fn in_peak(&self, cos_sun: f64) -> bool {
+        let mut peaks = self.parts.iter().flat_map(|part| &part.peaks);
+        peaks.any(|peak| peak.in_lobe(cos_sun))
+    }
+
+    /// Input of the solver; `None` for a fog without an upper end.
+    pub fn reduced(&self) -> Option<Reduced<N>> {
+        (!self.density.is_uniform()).then(|| Reduced {
+            density: self.density.clone(),
+            extinction_per_m: self.reduced_extinction_per_m,
+            scattering_per_m: std::array::from_fn::<_, STREAMS, _>(|l| {
+                self.sum(|part| by_lane(&part.peaks, |p| (p.moments[l] - p.fraction) as f32))
+            }),
+        })
+    }
+
+    /// The sum over all constituents of scattering times a factor.
+    #[inline]
+    fn sum(&self, factor: impl Fn(&Part<N>) -> Spectrum<N>) -> Spectrum<N> {
+        self.parts.iter().fold(Spectrum::ZERO, |sum, part| {
+            sum.mul_acc(part.layer.scattering_per_m, factor(part))
+        })
+    }
+}
+
+/// A value of each lane's peak: 0 where none is kept.
+#[inline]
+fn by_lane<const N: usize>(peaks: &[Peak], of: impl Fn(&Peak) -> f32) -> Spectrum<N> {
+    match peaks {
+        [] => Spectrum::ZERO,
+        [peak] => Spectrum::splat(of(peak)),
+        _ => Spectrum::from_fn(|lane| of(&peaks[lane])),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::atmosphere::droplets::DropletKind;
+    use crate::optics::mie::droplets::Drops;
+
+    /// Mist, whose table is quick to compute: visibility is meant at 550 nm, and RGB is the mean over the wavelengths.
+    #[test]
+    fn published_drops_are_means_over_wavelengths() {
+        let mist = |wavelengths_nm: &[f64]| {
+            let slab = DensityProfile::slab(100.0);
+            Constituent::fog(0.01, DropletKind::from(Drops::HazeH), slab, wavelengths_nm).unwrap()
+        };
+        let green = LayerLanes::new(&mist(&[550.0]), &[550.0]);
+        assert!((green.extinction_per_m[0] / 0.01 - 1.0).abs() < 1e-6);
+        let layer = LayerLanes::new(&mist(&[450.0, 650.0]), &[650.0, 450.0, 450.0]);
+        layer.validate().unwrap();
+        let [red, blue, again] = layer.extinction_per_m.0;
+        assert!(
+            red < 0.0095 && blue > 0.0105 && again == blue,
+            "{red} {blue}"
+        );
+        assert!(layer.scattering_per_m[0] > 0.9999 * red);
+        let spectral = mist(WavelengthGrid::standard().wavelengths_nm());
+        let rgb = RgbLayer::from_constituent(&spectral, RgbSpace::Srgb).unwrap();
+        rgb.validate().unwrap();
+        let [red, green, blue] = rgb.extinction_per_m;
+        assert!(red < green && green < blue, "{red} {green} {blue}");
+        assert!((green / 0.01 - 1.0).abs() < 0.02, "{green}");
+        // Red and blue lie within the range of the wavelengths of their bands.
+        let at = |nm: f64, mu: f64| mist(&[nm]).phase.evaluate(mu, nm);
+        for mu in [-1.0, -0.5, 0.5, 0.99] {
+            let p = LayerLanes::<3>::rgb(&rgb).phase_lanes(mu);
+            for (lane, [from, to]) in [(0, [570.0, 680.0]), (2, [420.0, 490.0])] {
+                let ends = [at(from, mu), at(to, mu)];
+                let (low, high) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
+                let got = f64::from(p[lane]);
+                assert!(
+                    got > 0.98 * low && got < 1.02 * high,
+                    "{mu} {lane}: {got} {ends:?}"
+                );
+            }
+        }
+        let slab = DensityProfile::slab(100.0);
+        assert!(Constituent::fog(0.01, Drops::HazeH.into(), slab, &[f64::NAN]).is_err());
+    }
+
+    #[test]
+    fn numbers_outside_their_domain_are_refused() {
+        let good = RgbLayer {
+            density: DensityProfile::slab(50.0),
+            extinction_per_m: [0.01; 3],
+            single_scattering_albedo: [1.0; 3],
+            phase: PhaseFunction::Isotropic,
+        };
+        good.validate().unwrap();
+        let refused = |change: &dyn Fn(&mut RgbLayer)| {
+            let mut layer = good.clone();
+            change(&mut layer);
+            layer.validate().unwrap_err()
+        };
+        assert!(matches!(
+            refused(&|layer| layer.extinction_per_m[1] = -0.1),
+            FogError::Extinction { channel: 1, .. }
+        ));
+        assert!(matches!(
+            refused(&|layer| layer.extinction_per_m[2] = f32::INFINITY),
+            FogError::Extinction { channel: 2, .. }
+        ));
+        for albedo in [1.1, -0.1, f32::NAN] {
+            assert!(matches!(
+                refused(&|layer| layer.single_scattering_albedo[0] = albedo),
+                FogError::Albedo { channel: 0, .. }
+            ));
+        }
+        assert!(matches!(
+            refused(&|layer| layer.density = DensityProfile::exponential(0.0)),
+            FogError::Density(_)
+        ));
+        assert!(matches!(
+            refused(&|layer| layer.phase = PhaseFunction::HenyeyGreenstein { g: 2.0 }),
+            FogError::Phase(_)
+        ));
     }
 }

@@ -1,17 +1,12 @@
-//! Fog factors of older graphics hardware: looks, not physics.
+//! Fog factors of older graphics hardware: of one colour, and not physical.
 //!
-//! Both take a fog colour and the distance. Neither composes: two stretches in a row are not the stretch they make up, as
-//! no medium attenuates like this. They are here because pictures and games were made with them.
+//! They do not compose: two segments in a row are not the segment that they make up, as no medium attenuates like this. They
+//! are for comparison with pictures and games that were made with them.
 
-use crate::spectrum::Spectrum;
-use crate::transfer::PathOptics;
+use crate::transfer::RgbPathOptics;
 
 /// Exponential-squared fog: `T = e^-(density d)^2`.
-pub fn exponential_squared<const N: usize>(
-    density_per_m: f64,
-    distance_m: f64,
-    colour: Spectrum<N>,
-) -> PathOptics<N> {
+pub fn exponential_squared(density_per_m: f64, distance_m: f64, colour: [f32; 3]) -> RgbPathOptics {
     blend((-(density_per_m * distance_m).powi(2)).exp(), colour)
 }
 
@@ -20,14 +15,9 @@ pub fn exponential_squared_density_per_m(visibility_m: f64, contrast: f64) -> f6
     (-contrast.ln()).sqrt() / visibility_m
 }
 
-/// Linear fog: nothing up to `start_m`, all from `end_m`.
-pub fn linear<const N: usize>(
-    start_m: f64,
-    end_m: f64,
-    distance_m: f64,
-    colour: Spectrum<N>,
-) -> PathOptics<N> {
-    // Where both ends coincide the fog is a wall.
+/// Linear fog: clear up to `start_m`, opaque from `end_m`.
+pub fn linear(start_m: f64, end_m: f64, distance_m: f64, colour: [f32; 3]) -> RgbPathOptics {
+    // Where both ends coincide the fog is a step.
     let part = if end_m > start_m {
         ((end_m - distance_m) / (end_m - start_m)).clamp(0.0, 1.0)
     } else {
@@ -36,10 +26,10 @@ pub fn linear<const N: usize>(
     blend(part, colour)
 }
 
-fn blend<const N: usize>(transmittance: f64, colour: Spectrum<N>) -> PathOptics<N> {
-    PathOptics {
-        transmittance: Spectrum::splat(transmittance as f32),
-        path_radiance: colour * (1.0 - transmittance) as f32,
+fn blend(transmittance: f64, colour: [f32; 3]) -> RgbPathOptics {
+    RgbPathOptics {
+        transmittance: [transmittance as f32; 3],
+        path_radiance: colour.map(|value| value * (1.0 - transmittance) as f32),
     }
 }
 
@@ -48,13 +38,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_looks_run_from_clear_to_the_fog_colour() {
-        let colour = Spectrum([0.5, 0.6, 0.7]);
+    fn the_factors_run_from_clear_to_the_fog_colour() {
+        let colour = [0.5, 0.6, 0.7];
         for fog in [
-            |d| exponential_squared(0.01, d, Spectrum([0.5, 0.6, 0.7])),
-            |d| linear(10.0, 500.0, d, Spectrum([0.5, 0.6, 0.7])),
+            |d| exponential_squared(0.01, d, [0.5, 0.6, 0.7]),
+            |d| linear(10.0, 500.0, d, [0.5, 0.6, 0.7]),
         ] {
-            assert_eq!(fog(0.0), PathOptics::CLEAR);
+            assert_eq!(fog(0.0), RgbPathOptics::CLEAR);
             assert_eq!(fog(f64::INFINITY).path_radiance, colour);
             let mut before = 1.0;
             for k in 1..100 {
@@ -66,7 +56,7 @@ mod tests {
         let density = exponential_squared_density_per_m(200.0, 0.05);
         let at = exponential_squared(density, 200.0, colour).transmittance[0];
         assert!((at - 0.05).abs() < 1e-6);
-        assert_eq!(linear(5.0, 5.0, 4.9, colour), PathOptics::CLEAR);
-        assert_eq!(linear(5.0, 5.0, 5.0, colour).transmittance, Spectrum::ZERO);
+        assert_eq!(linear(5.0, 5.0, 4.9, colour), RgbPathOptics::CLEAR);
+        assert_eq!(linear(5.0, 5.0, 5.0, colour).transmittance, [0.0; 3]);
     }
 }

@@ -1,28 +1,94 @@
-//! What shines on a fog, and the ground under it.
+//! The light on a fog, and the ground under it.
 
-use super::layer::{FogError, check_light};
+use super::error::{FogError, check_light};
 use crate::atmosphere::RaySegment;
-use crate::spectrum::Spectrum;
+use crate::spectrum::{SpectralCurve, Spectrum};
 use glam::DVec3;
 
-/// The sun above the fog.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DirectionalLight<const N: usize> {
-    /// Unit vector towards it.
-    pub direction: DVec3,
-    /// Irradiance on a surface that faces it, above the fog (W m^-2 nm^-1, lux, or any unit of one's own).
-    pub irradiance: Spectrum<N>,
+mod sealed {
+    /// The operations behind [`super::ChannelValues`].
+    pub trait Values {
+        /// The first value that is negative or not finite.
+        fn first_invalid(&self) -> Option<f64>;
+        /// The largest value.
+        fn largest(&self) -> f64;
+    }
+}
+pub(super) use sealed::Values;
+
+/// A quantity by wavelength or by channel: a [`SpectralCurve`], or red, green and blue.
+pub trait ChannelValues: Values + Clone + std::fmt::Debug + PartialEq {}
+
+impl ChannelValues for SpectralCurve {}
+impl ChannelValues for [f32; 3] {}
+impl<const N: usize> ChannelValues for Spectrum<N> {}
+
+/// The values of a curve every 10 nm from 300 to 900 nm.
+fn samples(curve: &SpectralCurve) -> impl Iterator<Item = f64> + '_ {
+    (30..=90).map(|i| curve.at(10.0 * f64::from(i)))
 }
 
-/// The light that a fog is in.
+impl Values for SpectralCurve {
+    fn first_invalid(&self) -> Option<f64> {
+        samples(self).find(|v| !(v.is_finite() && *v >= 0.0))
+    }
+
+    fn largest(&self) -> f64 {
+        samples(self).fold(f64::NEG_INFINITY, f64::max)
+    }
+}
+
+impl Values for [f32] {
+    fn first_invalid(&self) -> Option<f64> {
+        let value = self.iter().find(|v| !(v.is_finite() && **v >= 0.0));
+        value.map(|&v| f64::from(v))
+    }
+
+    fn largest(&self) -> f64 {
+        let largest = self.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+        f64::from(largest)
+    }
+}
+
+impl Values for [f32; 3] {
+    fn first_invalid(&self) -> Option<f64> {
+        self[..].first_invalid()
+    }
+
+    fn largest(&self) -> f64 {
+        self[..].largest()
+    }
+}
+
+impl<const N: usize> Values for Spectrum<N> {
+    fn first_invalid(&self) -> Option<f64> {
+        self.0[..].first_invalid()
+    }
+
+    fn largest(&self) -> f64 {
+        self.0[..].largest()
+    }
+}
+
+/// The sun above the fog. `C` is a [`SpectralCurve`], or `[f32; 3]` for red, green and blue.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FogLighting<const N: usize> {
-    /// The sun, if it shines.
-    pub sun: Option<DirectionalLight<N>>,
-    /// Radiance that comes evenly from all sides: the sky's, on average. With [`FogScattering::Multiple`] from above only.
-    pub ambient: Spectrum<N>,
-    /// What the ground sends back of the light on it, 0 to 1; matters with [`FogScattering::Multiple`] only.
-    pub ground_albedo: Spectrum<N>,
+pub struct DirectionalLight<C = SpectralCurve> {
+    /// Unit vector towards it.
+    pub direction: DVec3,
+    /// Irradiance on a surface that faces it, above the fog (W m^-2 nm^-1, lux, or any unit of the caller).
+    pub irradiance: C,
+}
+
+/// The light on a fog. `C` is a [`SpectralCurve`], or `[f32; 3]` for red, green and blue.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FogLighting<C = SpectralCurve> {
+    /// The sun, if it is up.
+    pub sun: Option<DirectionalLight<C>>,
+    /// Radiance that arrives uniformly from all directions: the mean of the sky's. With [`FogScattering::Multiple`] from above
+    /// only.
+    pub ambient: C,
+    /// Lambertian albedo of the ground, 0 to 1; matters with [`FogScattering::Multiple`] only.
+    pub ground_albedo: C,
 }
 
 /// The ground under a fog.
@@ -30,21 +96,22 @@ pub struct FogLighting<const N: usize> {
 pub struct Ground {
     /// Its height, m.
     pub height_m: f64,
-    /// Its radius, m; infinite where it is flat.
+    /// Its radius, m; infinite for flat ground.
     pub radius_m: f64,
 }
 
-/// Which light a fog scatters.
+/// Which orders of scattering a fog has.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum FogScattering {
     /// Sun and ambient light scattered once, neither dimmed by the fog on its way to where it is scattered: Ishiyama's
     /// model as printed. Right for thin fog; too bright in thick.
     Undimmed,
-    /// Sunlight scattered once after its way through the fog; ambient light the same everywhere.
+    /// Sunlight scattered once, dimmed by the fog before; ambient light the same everywhere.
     #[default]
     Single,
-    /// Light scattered any number of times: sun and sky enter at the top, the ground sends back its part. Solved for once
-    /// when the fog is made. A fog without an upper end, which no light could enter, counts as lit evenly by the ambient
+    /// Light scattered any number of times: sun and sky enter at the top, the ground reflects its part. Solved for once
+    /// when the fog is built. A fog without an upper end, which no light could enter, counts as lit uniformly by the ambient
     /// light and by the undimmed sun.
     Multiple,
 }
@@ -68,50 +135,70 @@ impl Ground {
         self.radius_m == f64::INFINITY
     }
 
-    /// Whether an endless line meets it.
+    /// Whether an infinite ray meets it.
     #[inline]
-    pub(super) fn blocks(&self, line: &RaySegment) -> bool {
+    pub(super) fn blocks(&self, ray: &RaySegment) -> bool {
         if self.is_flat() {
-            return line.sin_elevation <= 0.0;
+            return ray.sin_elevation <= 0.0;
         }
-        line.sin_elevation < 0.0 && line.lowest_height_m() < self.height_m
+        ray.sin_elevation < 0.0 && ray.lowest_height_m() < self.height_m
     }
 
     pub(super) fn validate(&self) -> Result<(), FogError> {
-        let number = |what, got: f64, right| Err(FogError::Number { what, got, right });
+        let number = |what, got: f64, expected| {
+            Err(FogError::Number {
+                what,
+                got,
+                expected,
+            })
+        };
         if !self.height_m.is_finite() {
-            return number("the height of the ground, m,", self.height_m, "finite");
+            return number("height of the ground (m)", self.height_m, "a finite number");
         }
         match self.radius_m > 0.0 {
             true => Ok(()),
             false => number(
-                "the radius of the ground, m,",
+                "radius of the ground (m)",
                 self.radius_m,
-                "above 0, or infinite for flat ground",
+                "a number above 0, or infinity for flat ground",
             ),
         }
     }
 }
 
-impl<const N: usize> FogLighting<N> {
+impl<C> FogLighting<C> {
+    /// The same light in other values.
+    pub(crate) fn map<D>(&self, values: impl Fn(&C) -> D) -> FogLighting<D> {
+        FogLighting {
+            sun: self.sun.as_ref().map(|sun| DirectionalLight {
+                direction: sun.direction,
+                irradiance: values(&sun.irradiance),
+            }),
+            ambient: values(&self.ambient),
+            ground_albedo: values(&self.ground_albedo),
+        }
+    }
+}
+
+impl<C: ChannelValues> FogLighting<C> {
     pub(super) fn validate(&self) -> Result<(), FogError> {
-        check_light("ambient light", self.ambient)?;
-        check_light("the albedo of the ground", self.ground_albedo)?;
-        if let Some(&got) = self.ground_albedo.0.iter().find(|&&albedo| albedo > 1.0) {
+        check_light("ambient light", &self.ambient)?;
+        check_light("albedo of the ground", &self.ground_albedo)?;
+        if self.ground_albedo.largest() > 1.0 {
             return Err(FogError::Number {
-                what: "the albedo of the ground",
-                got: f64::from(got),
-                right: "from 0 to 1",
+                what: "albedo of the ground",
+                got: self.ground_albedo.largest(),
+                expected: "numbers from 0 to 1",
             });
         }
         if let Some(sun) = &self.sun {
-            check_light("the sun's irradiance", sun.irradiance)?;
+            check_light("irradiance of the sun", &sun.irradiance)?;
             let length = sun.direction.length();
             if (length - 1.0).abs() > 1e-6 || length.is_nan() {
                 return Err(FogError::Number {
-                    what: "the length of the direction to the sun",
+                    what: "length of the direction to the sun",
                     got: length,
-                    right: "1",
+                    expected: "1; try to normalize it",
                 });
             }
         }

@@ -1,25 +1,25 @@
-//! Sunlight scattered once into a line, and light from all sides: over layers and ground of every kind.
+//! Sunlight scattered once into a ray, and uniform light, for all layers and grounds.
 
-use super::lanes::Lanes;
+use super::closed_forms::{Lanes, mean_dimmed_source};
+use super::fog_lanes::OPAQUE;
+use super::layer::MergedLayer;
 use super::lighting::Ground;
-use super::merged_layers::MergedLayer;
-use super::model::OPAQUE;
-use super::{scatter, split_at_heights::split_at_heights};
+use super::ray_cuts::split_at_heights;
 use crate::atmosphere::RaySegment;
 use crate::spectrum::Spectrum;
 
-/// What is scattered once, for a sun of unit irradiance.
+/// Light scattered once, for a sun of unit irradiance.
 pub(super) struct SingleScattering<'a, const N: usize, X, S> {
     pub layers: &'a [MergedLayer<N>],
     pub breakpoints_m: &'a [f64],
     pub ground: &'a Ground,
     /// Sine of the sun's elevation, if there is a sun.
-    pub sine_sun: Option<f64>,
+    pub sin_sun: Option<f64>,
     /// Whether the fog dims the sun.
     pub dimmed: bool,
-    /// What dims, of each stratum, 1/m.
+    /// The extinction that dims, of each layer, 1/m.
     pub extinction: X,
-    /// What scatters sunlight towards the eye, of each stratum, 1/(m sr).
+    /// Sunlight scattered towards the eye, of each layer, 1/(m sr).
     pub towards_eye: S,
 }
 
@@ -28,17 +28,17 @@ where
     X: Fn(&MergedLayer<N>) -> Spectrum<N>,
     S: Fn(&MergedLayer<N>) -> Spectrum<N>,
 {
-    /// Sunlight scattered into a line, and the same for a source `even` (1/m of each stratum) that nothing dims on its way
-    /// there.
+    /// Sunlight scattered into a ray, and the same for a source `uniform` (1/m of each layer) that nothing dims on its way to
+    /// the ray.
     #[inline]
     pub fn along(
         &self,
-        line: &RaySegment,
-        even: &impl Fn(&MergedLayer<N>) -> Spectrum<N>,
+        ray: &RaySegment,
+        uniform: &impl Fn(&MergedLayer<N>) -> Spectrum<N>,
     ) -> (Spectrum<N>, Spectrum<N>) {
         match self.layers {
-            [layer] if self.ground.is_flat() => self.single_layer(layer, line, even(layer)),
-            _ => self.layered(line, even),
+            [layer] if self.ground.is_flat() => self.single_layer(layer, ray, uniform(layer)),
+            _ => self.layered(ray, uniform),
         }
     }
 
@@ -47,57 +47,57 @@ where
     fn single_layer(
         &self,
         layer: &MergedLayer<N>,
-        line: &RaySegment,
-        even: Spectrum<N>,
+        ray: &RaySegment,
+        uniform: Spectrum<N>,
     ) -> (Spectrum<N>, Spectrum<N>) {
         let extinction = (self.extinction)(layer);
-        let column = layer.profile.column_along_m(line).min(OPAQUE);
+        let column = layer.density.column_along_m(ray).min(OPAQUE);
         let along = extinction * column as f32;
         // Stated for each metre of column, as extinction may be 0.
         let opacity = along.mean_transmittance() * column as f32;
-        let Some(sine) = self.sine_sun else {
-            return (Spectrum::ZERO, even * opacity);
+        let Some(sin_sun) = self.sin_sun else {
+            return (Spectrum::ZERO, uniform * opacity);
         };
-        let arriving = if !self.dimmed || layer.profile.is_uniform() {
+        let arriving = if !self.dimmed || layer.density.is_uniform() {
             opacity
-        } else if sine <= 0.0 {
+        } else if sin_sun <= 0.0 {
             Spectrum::ZERO
         } else {
-            let near = layer.profile.column_above_m(line.height_m) / sine;
+            let near = layer.density.column_above_m(ray.height_m) / sin_sun;
             let near = extinction * near.min(OPAQUE) as f32;
-            let growth = along * (1.0 - line.sin_elevation / sine) as f32;
-            scatter::mean_once(near, growth) * column as f32
+            let growth = along * (1.0 - ray.sin_elevation / sin_sun) as f32;
+            mean_dimmed_source(near, growth) * column as f32
         };
-        ((self.towards_eye)(layer) * arriving, even * opacity)
+        ((self.towards_eye)(layer) * arriving, uniform * opacity)
     }
 
-    /// Several profiles, or round ground: the closed form from level to level.
+    /// Several profiles, or round ground: the closed form from height to height.
     fn layered(
         &self,
-        line: &RaySegment,
-        even: &impl Fn(&MergedLayer<N>) -> Spectrum<N>,
+        ray: &RaySegment,
+        uniform: &impl Fn(&MergedLayer<N>) -> Spectrum<N>,
     ) -> (Spectrum<N>, Spectrum<N>) {
         let mut sunlit = Spectrum::ZERO;
-        let mut evenly = Spectrum::ZERO;
+        let mut from_uniform = Spectrum::ZERO;
         let mut before = Spectrum::ZERO;
-        split_at_heights(line, self.breakpoints_m, |part| {
+        split_at_heights(ray, self.breakpoints_m, |part| {
             let mut along = Spectrum::ZERO;
             let mut ambient = Spectrum::ZERO;
             let mut direct = Spectrum::ZERO;
             for layer in self.layers {
-                let column = layer.profile.column_along_m(part).min(OPAQUE) as f32;
+                let column = layer.density.column_along_m(part).min(OPAQUE) as f32;
                 along = along.scale_acc((self.extinction)(layer), column);
-                ambient = ambient.scale_acc(even(layer), column);
+                ambient = ambient.scale_acc(uniform(layer), column);
                 direct = direct.scale_acc((self.towards_eye)(layer), column);
             }
             let seen = before.exp_neg();
             let opacity = along.mean_transmittance();
-            evenly += seen * ambient * opacity;
-            if let Some(sine) = self.sine_sun {
+            from_uniform += seen * ambient * opacity;
+            if let Some(sin_sun) = self.sin_sun {
                 let arriving = if self.dimmed {
-                    let near = self.depth_to_sun(part.height_m, sine);
-                    let far = self.depth_to_sun(part.end_height_m(), sine);
-                    scatter::mean_once(near, far - near + along)
+                    let near = self.depth_to_sun(part.height_m, sin_sun);
+                    let far = self.depth_to_sun(part.end_height_m(), sin_sun);
+                    mean_dimmed_source(near, far - near + along)
                 } else {
                     opacity
                 };
@@ -106,14 +106,14 @@ where
             before += along;
             before.min_element() < 40.0
         });
-        (sunlit, evenly)
+        (sunlit, from_uniform)
     }
 
     /// Optical depth between a height and the sun; [`OPAQUE`] where the ground is in the way. Layers without an upper end
-    /// are left out: no light would come through them.
-    pub fn depth_to_sun(&self, height_m: f64, sine: f64) -> Spectrum<N> {
-        let line = RaySegment::new(height_m, sine, f64::INFINITY, self.ground.radius_m);
-        if self.ground.blocks(&line) {
+    /// are left out, as no light would come through them.
+    pub fn depth_to_sun(&self, height_m: f64, sin_sun: f64) -> Spectrum<N> {
+        let ray = RaySegment::new(height_m, sin_sun, f64::INFINITY, self.ground.radius_m);
+        if self.ground.blocks(&ray) {
             return Spectrum::splat(OPAQUE as f32);
         }
         if height_m == f64::INFINITY {
@@ -121,9 +121,9 @@ where
         }
         self.layers
             .iter()
-            .filter(|layer| !layer.profile.is_uniform())
+            .filter(|layer| !layer.density.is_uniform())
             .fold(Spectrum::ZERO, |sum, layer| {
-                let column = layer.profile.column_along_m(&line).min(OPAQUE);
+                let column = layer.density.column_along_m(&ray).min(OPAQUE);
                 sum.scale_acc((self.extinction)(layer), column as f32)
             })
     }

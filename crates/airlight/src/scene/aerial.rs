@@ -3,7 +3,7 @@
 use super::aerial_fill;
 use super::error::SceneError;
 use super::lane_channels::{Converter, LaneChannels};
-use crate::fog::lanes::Lanes;
+use crate::fog::Lanes;
 use crate::math::interpolation::{Place as AxisPlace, cubic_f32};
 use crate::sky::{Peaked, View};
 use crate::spectrum::Spectrum;

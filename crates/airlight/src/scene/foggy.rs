@@ -5,7 +5,8 @@ use super::error::SceneError;
 use super::lane_channels::{Converter, LaneChannels};
 use super::light::{self, TopLight};
 use super::places;
-use crate::fog::{Fog, FogLighting, FogScattering, Ground, Layer, RaySegment};
+use crate::atmosphere::{Constituent, RaySegment};
+use crate::fog::{FogLanes, FogLighting, FogScattering, Ground, LayerLanes};
 use crate::sky::{SkyTable, TableChannels, View};
 use crate::spectrum::Spectrum;
 use crate::transfer::PathOptics;
@@ -15,7 +16,7 @@ use std::sync::Arc;
 /// A sky with fog in it: sunlight and skylight fall on the fog, air and fog lie along every line in their true order, the
 /// ground is dimmed, and what is far away goes over into the drawn sky.
 ///
-/// The fog's share of a line is [`Fog`]'s, with its errors. What this adds: fog and air in the right order, against lines
+/// The fog's share of a line is [`Fog`](crate::fog::Fog)'s, with its errors. What this adds: fog and air in the right order, against lines
 /// cut into 500 slices median 0.04 % of the path radiance, 90 % below 0.22 %, worst 1.3 % in haze that fills the lower
 /// kilometre and 0.6 % elsewhere (the test `fog_and_air_lie_in_their_order`); the table of [`AerialPerspective`]. The
 /// ground under the fog is lit as the fog's own solution says, or by a two-stream estimate where light is scattered once only.
@@ -29,7 +30,7 @@ pub struct FoggySky<const N: usize> {
     first: usize,
     aerial: Arc<AerialPerspective<N>>,
     top: Arc<TopLight>,
-    fog: Fog<N>,
+    fog: FogLanes<N>,
     eye_height_m: f64,
     /// Irradiance of the ground over that without fog.
     ground_share: Spectrum<N>,
@@ -44,7 +45,7 @@ struct IrradianceMap {
 /// The view from the top of a fog, straight above or below that of the eye; the fog is checked.
 fn top_view<const N: usize>(
     view: &View,
-    layers: &[Layer<N>],
+    layers: &[LayerLanes<N>],
     ground: Ground,
 ) -> Result<View, SceneError> {
     let unlit = FogLighting {
@@ -53,7 +54,7 @@ fn top_view<const N: usize>(
         ground_albedo: Spectrum::ZERO,
     };
     // Any fault of the layers shows without solving for light.
-    Fog::new(layers, ground, unlit, FogScattering::Single)?;
+    FogLanes::new(layers, ground, unlit, FogScattering::Single, N)?;
     let ground_m = view.sky().atmosphere().planet.ground_altitude_m;
     Ok(view.at_altitude(ground_m + light::top_m(layers, &ground) - ground.height_m))
 }
@@ -67,7 +68,7 @@ impl<const N: usize> FoggySky<N> {
     pub fn new(
         view: &View,
         channels: LaneChannels,
-        layers: &[Layer<N>],
+        layers: &[Constituent],
         ground: Ground,
         scattering: FogScattering,
     ) -> Result<Self, SceneError> {
@@ -76,31 +77,30 @@ impl<const N: usize> FoggySky<N> {
             LaneChannels::Wavelengths { .. } => TableChannels::Spectral,
         };
         // Checked before anything is computed.
-        Converter::<N>::new(view, channels)?;
+        let converter = Converter::<N>::new(view, channels)?;
+        let layers = converter.layers(layers)?;
         let surroundings = IrradianceMap {
-            top: Arc::new(TopLight::of(&top_view(view, layers, ground)?)),
+            top: Arc::new(TopLight::of(&top_view(view, &layers, ground)?)),
             clear: Arc::new(view.table(table)),
         };
-        Self::among(view, channels, layers, ground, scattering, &surroundings)
+        Self::among(view, channels, &layers, ground, scattering, &surroundings)
     }
 
-    /// The same at every wavelength of the sky's grid, N in a piece (lanes beyond the last wavelength repeat it). `layers`
-    /// are those at the wavelengths (nm) of a piece; they are to reach as high in each.
+    /// The same at every wavelength of the sky's grid, N in a piece (lanes beyond the last wavelength repeat it).
     ///
     /// # Errors
-    /// [`SceneError`] for a fog that is none, and what `layers` refuses.
-    pub fn spectral<E: From<SceneError>>(
+    /// [`SceneError`] for layers outside their domain.
+    pub fn spectral(
         view: &View,
-        layers: impl Fn(&[f64; N]) -> Result<Vec<Layer<N>>, E>,
+        layers: &[Constituent],
         ground: Ground,
         scattering: FogScattering,
-    ) -> Result<Vec<Self>, E> {
+    ) -> Result<Vec<Self>, SceneError> {
         let mut surroundings = None;
         let mut pieces = Vec::new();
         for first in (0..view.sky().grid().len()).step_by(N.max(1)) {
             let channels = LaneChannels::Wavelengths { first };
-            let wavelengths_nm = Converter::<N>::new(view, channels)?.wavelengths_nm();
-            let layers = layers(&wavelengths_nm)?;
+            let layers = Converter::<N>::new(view, channels)?.layers(layers)?;
             let surroundings = match &surroundings {
                 Some(known) => known,
                 None => surroundings.insert(IrradianceMap {
@@ -123,7 +123,7 @@ impl<const N: usize> FoggySky<N> {
     fn among(
         view: &View,
         channels: LaneChannels,
-        layers: &[Layer<N>],
+        layers: &[LayerLanes<N>],
         ground: Ground,
         scattering: FogScattering,
         surroundings: &IrradianceMap,
@@ -131,15 +131,14 @@ impl<const N: usize> FoggySky<N> {
         let converter = Converter::new(view, channels)?;
         let top = surroundings.top.clone();
         let light = top.on_fog(view, &converter, scattering);
-        let wavelengths_nm = converter.wavelengths_nm();
-        let fog = Fog::at_wavelengths_nm(layers, ground, light, scattering, wavelengths_nm)?;
+        let fog = FogLanes::new(layers, ground, light, scattering, converter.used().len())?;
         Ok(Self {
             clear: surroundings.clear.clone(),
             first: converter.used().start,
             aerial: Arc::new(AerialPerspective::new(view, channels, f64::INFINITY)?),
             top,
             eye_height_m: view.radius_m() - view.bounds_m().0 + ground.height_m,
-            ground_share: light::share_on_ground(&fog, layers, &wavelengths_nm),
+            ground_share: light::share_on_ground(&fog, layers),
             fog,
             converter: Arc::new(converter),
             view: view.clone(),
@@ -153,25 +152,26 @@ impl<const N: usize> FoggySky<N> {
     /// [`SceneError`] for a fog that is none.
     pub fn with_fog(
         &self,
-        layers: &[Layer<N>],
+        layers: &[Constituent],
         scattering: FogScattering,
     ) -> Result<Self, SceneError> {
         let ground = *self.fog.ground();
-        let above = top_view(&self.view, layers, ground)?;
+        let layers = self.converter.layers(layers)?;
+        let above = top_view(&self.view, &layers, ground)?;
         let top = match self.top.radius_m() == above.radius_m() {
             true => self.top.clone(),
             false => Arc::new(TopLight::of(&above)),
         };
         let light = top.on_fog(&self.view, &self.converter, scattering);
-        let wavelengths_nm = self.converter.wavelengths_nm();
-        let fog = Fog::at_wavelengths_nm(layers, ground, light, scattering, wavelengths_nm)?;
+        let lanes = self.converter.used().len();
+        let fog = FogLanes::new(&layers, ground, light, scattering, lanes)?;
         Ok(Self {
             view: self.view.clone(),
             converter: self.converter.clone(),
             clear: self.clear.clone(),
             aerial: self.aerial.clone(),
             top,
-            ground_share: light::share_on_ground(&fog, layers, &wavelengths_nm),
+            ground_share: light::share_on_ground(&fog, &layers),
             fog,
             ..*self
         })
@@ -186,8 +186,29 @@ impl<const N: usize> FoggySky<N> {
     }
 
     /// The fog, in the light of this sky.
-    pub fn fog(&self) -> &Fog<N> {
+    pub(super) fn fog_lanes(&self) -> &FogLanes<N> {
         &self.fog
+    }
+
+    /// The ground under the fog.
+    pub fn ground(&self) -> &Ground {
+        self.fog.ground()
+    }
+
+    /// The light of this sky on the fog.
+    pub fn fog_lighting(&self) -> &FogLighting<Spectrum<N>> {
+        self.fog.lighting()
+    }
+
+    /// Irradiance of sun and sky on the ground under the fog, all orders of scattering; `None` unless these are solved for.
+    pub fn ground_irradiance(&self) -> Option<Spectrum<N>> {
+        self.fog.ground_irradiance()
+    }
+
+    /// Transmittance and path radiance of the fog alone along a ray; `cos_sun` is the cosine of the angle between its
+    /// direction and the sun's.
+    pub fn fog_path(&self, ray: &RaySegment, cos_sun: f64) -> PathOptics<N> {
+        self.fog.path_along(ray, cos_sun)
     }
 
     /// Unit vector towards the sun.
@@ -290,11 +311,7 @@ impl<const N: usize> FoggySky<N> {
     #[inline]
     pub fn over_clear(&self, direction: DVec3, distance_m: f64) -> PathOptics<N> {
         let line = self.line(direction, distance_m);
-        let cos_sun = match &self.fog.light().sun {
-            Some(sun) => direction.dot(sun.direction),
-            None => 0.0,
-        };
-        let fog = self.fog.along_line(&line, cos_sun);
+        let fog = self.fog.path_along(&line, self.fog.cos_sun(direction));
         let inside = RaySegment {
             length_m: line.length_m.min(self.aerial.end_m(direction)),
             ..line

@@ -1,6 +1,8 @@
 //! What the N lanes are.
 
 use super::error::SceneError;
+use crate::atmosphere::Constituent;
+use crate::fog::{FogError, LayerLanes, RgbLayer};
 use crate::sky::{TableChannels, View, channel_weights};
 use crate::spectrum::{RgbSpace, Spectrum, rgb};
 use std::ops::Range;
@@ -32,6 +34,8 @@ pub(super) struct Converter<const N: usize> {
     /// Which of the grid's wavelengths count.
     used: Range<usize>,
     wavelengths_nm: [f64; N],
+    /// The space of red, green and blue.
+    space: Option<RgbSpace>,
 }
 
 /// How.
@@ -72,6 +76,7 @@ impl<const N: usize> Converter<N> {
                     way: Way::Summed { weights, shares },
                     used: 0..last + 1,
                     wavelengths_nm: std::array::from_fn(|lane| rgb::DOMINANT_NM[lane]),
+                    space: Some(space),
                 })
             }
             LaneChannels::Wavelengths { first } if first > last => Err(SceneError::Wavelengths {
@@ -86,6 +91,7 @@ impl<const N: usize> Converter<N> {
                     })),
                     used: first..(first + N).min(last + 1),
                     wavelengths_nm: std::array::from_fn(|lane| grid.wavelengths_nm()[place(lane)]),
+                    space: None,
                 })
             }
         }
@@ -99,6 +105,21 @@ impl<const N: usize> Converter<N> {
     /// The wavelength of each lane, nm; for red, green and blue, dominant ones.
     pub fn wavelengths_nm(&self) -> [f64; N] {
         self.wavelengths_nm
+    }
+
+    /// Layers of fog in lanes.
+    ///
+    /// # Errors
+    /// [`SceneError`] where the phase function of a layer has no mean in a channel.
+    pub fn layers(&self, layers: &[Constituent]) -> Result<Vec<LayerLanes<N>>, SceneError> {
+        let in_lanes = |layer: &Constituent| match self.space {
+            Some(space) => {
+                let rgb = RgbLayer::from_constituent(layer, space).map_err(FogError::from)?;
+                Ok(LayerLanes::rgb(&rgb))
+            }
+            None => Ok(LayerLanes::new(layer, &self.wavelengths_nm)),
+        };
+        layers.iter().map(in_lanes).collect()
     }
 
     /// Radiance in lanes, of radiance per unit solar irradiance at each wavelength.

@@ -1,7 +1,7 @@
 //! The light that a sky sheds on a fog, and what of it reaches the ground under the fog.
 
 use super::lane_channels::Converter;
-use crate::fog::{DirectionalLight, Fog, FogLighting, FogScattering, Ground, Layer};
+use crate::fog::{DirectionalLight, FogLanes, FogLighting, FogScattering, Ground, LayerLanes};
 use crate::sky::{TableChannels, View};
 use crate::spectrum::Spectrum;
 use glam::DVec3;
@@ -50,7 +50,7 @@ impl TopLight {
         view: &View,
         to: &Converter<N>,
         scattering: FogScattering,
-    ) -> FogLighting<N> {
+    ) -> FogLighting<Spectrum<N>> {
         let even = match scattering {
             FogScattering::Multiple => &self.sky_radiance,
             _ => &self.mean_radiance,
@@ -72,11 +72,11 @@ impl TopLight {
 }
 
 /// Height above which only 1 % of the fog's vertical column lies, m; the ground's for a fog without an upper end.
-pub(super) fn top_m<const N: usize>(layers: &[Layer<N>], ground: &Ground) -> f64 {
+pub(super) fn top_m<const N: usize>(layers: &[LayerLanes<N>], ground: &Ground) -> f64 {
     let above = |height_m: f64| -> f64 {
-        let column = |layer: &Layer<N>| {
-            let column = layer.profile.column_above_m(height_m);
-            let extinction = layer.medium.extinction_per_m.max_element();
+        let column = |layer: &LayerLanes<N>| {
+            let column = layer.density.column_above_m(height_m);
+            let extinction = layer.extinction_per_m.max_element();
             if column.is_finite() {
                 column * f64::from(extinction)
             } else {
@@ -106,13 +106,13 @@ pub(super) fn top_m<const N: usize>(layers: &[Layer<N>], ground: &Ground) -> f64
 /// what the ground reflects comes back from the fog's underside: `t / (1 - albedo r)`. The slant of the sunlight is left
 /// out. It tends to 1 for thin fog, and to 1 for any fog over a white ground.
 pub(super) fn share_on_ground<const N: usize>(
-    fog: &Fog<N>,
-    layers: &[Layer<N>],
-    wavelengths_nm: &[f64; N],
+    fog: &FogLanes<N>,
+    layers: &[LayerLanes<N>],
 ) -> Spectrum<N> {
-    let (ground, light) = (fog.ground(), fog.light());
+    let (ground, light) = (fog.ground(), fog.lighting());
     if let Some(through) = fog.ground_irradiance() {
-        let level = |sun: &DirectionalLight<N>| sun.irradiance * sun.direction.y.max(0.0) as f32;
+        let level =
+            |sun: &DirectionalLight<Spectrum<N>>| sun.irradiance * sun.direction.y.max(0.0) as f32;
         let sun = light.sun.as_ref().map_or(Spectrum::ZERO, level);
         let without = sun + light.ambient * std::f32::consts::PI;
         return Spectrum::from_fn(|lane| match without[lane] > 0.0 {
@@ -123,14 +123,13 @@ pub(super) fn share_on_ground<const N: usize>(
     Spectrum::from_fn(|lane| {
         let (mut depth, mut scattered, mut forward) = (0.0, 0.0, 0.0);
         for layer in layers {
-            let column = layer.profile.column_above_m(ground.height_m);
+            let column = layer.density.column_above_m(ground.height_m);
             // A fog without an upper end would let no light in: it counts as lit from within.
             if column.is_finite() {
-                let tau = column * f64::from(layer.medium.extinction_per_m[lane]);
-                let albedo = f64::from(layer.medium.single_scattering_albedo[lane]);
-                depth += tau;
-                scattered += tau * albedo;
-                forward += tau * albedo * layer.medium.phase.asymmetry(wavelengths_nm[lane]);
+                let tau = column * f64::from(layer.scattering_per_m[lane]);
+                depth += column * f64::from(layer.extinction_per_m[lane]);
+                scattered += tau;
+                forward += tau * layer.phase.asymmetry(layer.wavelengths_nm[lane]);
             }
         }
         let (t, r) = two_streams(depth, scattered, forward);

@@ -1,7 +1,7 @@
 //! What it takes to light things, and to show them through the air.
 
 use super::foggy::FoggySky;
-use crate::fog::RaySegment;
+use crate::atmosphere::RaySegment;
 use crate::spectrum::Spectrum;
 use crate::transfer::PathOptics;
 use glam::DVec3;
@@ -31,8 +31,8 @@ impl<const N: usize> SceneLighting<N> for FoggySky<N> {
 
     /// The sun as it stands over the fog, dimmed by the fog above; the air within the fog is counted as above it.
     fn sunlight(&self, height_m: f64) -> Spectrum<N> {
-        let fog = self.fog();
-        let Some(sun) = &fog.light().sun else {
+        let fog = self.fog_lanes();
+        let Some(sun) = &fog.lighting().sun else {
             return Spectrum::ZERO;
         };
         let up = RaySegment::new(

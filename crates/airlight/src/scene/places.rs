@@ -1,6 +1,7 @@
 //! Where on a line of sight a fog does its work.
 
-use crate::fog::{Fog, RaySegment};
+use crate::atmosphere::RaySegment;
+use crate::fog::FogLanes;
 use crate::math::quadrature::FixedRule;
 
 /// Gauss-Legendre nodes and weights on `[0, 1]`.
@@ -16,7 +17,10 @@ pub(super) const PLACES: usize = RULE.pairs().len();
 /// `int f(s) dT / (T - 1)`, is the sum of weights times `f`. Judged by the fog's middle lane; nothing where the fog is
 /// thinner than `1e-5`.
 #[inline]
-pub(super) fn of<const N: usize>(fog: &Fog<N>, line: &RaySegment) -> Option<[(f64, f64); PLACES]> {
+pub(super) fn of<const N: usize>(
+    fog: &FogLanes<N>,
+    line: &RaySegment,
+) -> Option<[(f64, f64); PLACES]> {
     let lane = N / 2;
     let depth_to = |s: f64| {
         let part = RaySegment {
@@ -30,7 +34,7 @@ pub(super) fn of<const N: usize>(fog: &Fog<N>, line: &RaySegment) -> Option<[(f6
         return None;
     }
     let lost = -(-whole).exp_m1();
-    let extinction = |s: f64| f64::from(fog.extinction_at(line.height_at(s))[lane]);
+    let extinction = |s: f64| f64::from(fog.extinction_per_m(line.height_at(s))[lane]);
     let mut from = (0.0, 0.0);
     Some(RULE.pairs().map(|(part, weight)| {
         let wanted = -(-part * lost).ln_1p();

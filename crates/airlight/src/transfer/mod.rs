@@ -10,4 +10,4 @@ mod path_optics;
 pub(crate) mod ray;
 pub(crate) mod shell;
 
-pub use path_optics::PathOptics;
+pub use path_optics::{PathOptics, RgbPathOptics};

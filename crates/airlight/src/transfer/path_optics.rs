@@ -40,6 +40,55 @@ impl<const N: usize> PathOptics<N> {
     }
 }
 
+/// [`PathOptics`] in red, green and blue.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RgbPathOptics {
+    /// The part of the background's light that arrives.
+    pub transmittance: [f32; 3],
+    /// Radiance scattered into the ray, in the unit of the background's.
+    pub path_radiance: [f32; 3],
+}
+
+impl RgbPathOptics {
+    /// No air: the identity of [`RgbPathOptics::then`].
+    pub const CLEAR: Self = Self {
+        transmittance: [1.0; 3],
+        path_radiance: [0.0; 3],
+    };
+
+    /// The map of this segment (nearer to the eye) followed by `far` (behind it).
+    #[inline]
+    pub fn then(self, far: Self) -> Self {
+        PathOptics::from(self).then(far.into()).into()
+    }
+
+    /// The radiance that reaches the eye from `background` behind this segment.
+    #[inline]
+    pub fn apply(self, background: [f32; 3]) -> [f32; 3] {
+        PathOptics::from(self).apply(Spectrum(background)).0
+    }
+}
+
+impl From<PathOptics<3>> for RgbPathOptics {
+    #[inline]
+    fn from(optics: PathOptics<3>) -> Self {
+        Self {
+            transmittance: optics.transmittance.0,
+            path_radiance: optics.path_radiance.0,
+        }
+    }
+}
+
+impl From<RgbPathOptics> for PathOptics<3> {
+    #[inline]
+    fn from(optics: RgbPathOptics) -> Self {
+        Self {
+            transmittance: Spectrum(optics.transmittance),
+            path_radiance: Spectrum(optics.path_radiance),
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,8 +1,11 @@
-//! Skies that several tests look at.
+//! Skies and fog that several tests look at.
 
-use airlight::atmosphere::presets;
+use airlight::atmosphere::{Constituent, ConstituentKind, DensityProfile, presets};
+use airlight::fog::{DirectionalLight, Fog, FogLighting, FogScattering, Ground};
+use airlight::optics::PhaseFunction;
 use airlight::sky::{Sky, SkySettings, SunCoverage};
-use airlight::spectrum::WavelengthGrid;
+use airlight::spectrum::{SpectralCurve, WavelengthGrid};
+use glam::DVec3;
 
 /// The sky of a preset in red, green and blue.
 pub fn sky(preset: &str, suns: SunCoverage) -> Sky {
@@ -12,4 +15,57 @@ pub fn sky(preset: &str, suns: SunCoverage) -> Sky {
     };
     let air = presets::preset(preset).unwrap();
     Sky::prepare(&air, &WavelengthGrid::rgb(), &settings).unwrap()
+}
+
+/// The wavelength of fog at one wavelength, nm.
+pub const GREEN_NM: f64 = 550.0;
+
+/// A layer of the same extinction (1/m) and single-scattering albedo at all wavelengths.
+pub fn grey_layer(
+    density: DensityProfile,
+    extinction_per_m: f64,
+    albedo: f64,
+    phase: PhaseFunction,
+) -> Constituent {
+    Constituent {
+        kind: ConstituentKind::Fog,
+        density,
+        scattering_per_m: SpectralCurve::Constant(extinction_per_m * albedo),
+        absorption_per_m: SpectralCurve::Constant(extinction_per_m * (1.0 - albedo)),
+        phase,
+    }
+}
+
+/// A layer of fog at one wavelength under a sun of unit irradiance, or else a uniform sky of unit radiance.
+pub fn green_fog(
+    layer: Constituent,
+    ground: Ground,
+    sun: Option<DVec3>,
+    ground_albedo: f64,
+    scattering: FogScattering,
+) -> Fog {
+    let ambient = if sun.is_some() { 0.0 } else { 1.0 };
+    let lighting = FogLighting {
+        sun: sun.map(|direction| DirectionalLight {
+            direction,
+            irradiance: SpectralCurve::Constant(1.0),
+        }),
+        ambient: SpectralCurve::Constant(ambient),
+        ground_albedo: SpectralCurve::Constant(ground_albedo),
+    };
+    let grid = WavelengthGrid::from_wavelengths_nm(vec![GREEN_NM]).unwrap();
+    Fog::new(&[layer], ground, &lighting, scattering, &grid).unwrap()
+}
+
+/// Transmittance and path radiance of fog at one wavelength.
+pub fn green_path(fog: &Fog, eye_height_m: f64, view: DVec3, distance_m: f64) -> [f64; 2] {
+    let (mut transmittance, mut path_radiance) = ([0.0], [0.0]);
+    fog.path(
+        eye_height_m,
+        view,
+        distance_m,
+        &mut transmittance,
+        &mut path_radiance,
+    );
+    [transmittance[0], path_radiance[0]].map(f64::from)
 }

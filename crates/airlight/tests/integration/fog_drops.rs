@@ -1,36 +1,16 @@
 //! Fog of published drops, whose phase functions have diffraction peaks of a degree, bows and glories: the fog's solution
 //! beside paths of light followed one by one with the whole phase function.
 
+use crate::common::{GREEN_NM as NM, green_fog, green_path};
+use airlight::atmosphere::Constituent;
 use airlight::axes::direction;
-use airlight::fog::droplets::DropletKind;
-use airlight::fog::{
-    DensityProfile, DirectionalLight, Fog, FogLighting, FogScattering, Ground, Layer, Medium,
-};
+use airlight::fog::{DensityProfile, Fog, FogScattering, Ground};
 use airlight::optics::mie::droplets::Drops;
 use airlight::optics::{PhaseFunction, TabulatedPhase};
-use airlight::spectrum::Spectrum;
 use glam::DVec3;
 use rayon::prelude::*;
 
-const NM: f64 = 550.0;
 const TOP_M: f64 = 100.0;
-
-/// A slab of an optical depth over black ground, lit by a sun of unit irradiance.
-fn fog(medium: &Medium<1>, sun: DVec3, scattering: FogScattering) -> Fog<1> {
-    let layer = Layer {
-        profile: DensityProfile::slab(TOP_M),
-        medium: medium.clone(),
-    };
-    let light = FogLighting {
-        sun: Some(DirectionalLight {
-            direction: sun,
-            irradiance: Spectrum::ONE,
-        }),
-        ambient: Spectrum::ZERO,
-        ground_albedo: Spectrum::ZERO,
-    };
-    Fog::at_wavelengths_nm(&[layer], Ground::FLAT, light, scattering, [NM]).unwrap()
-}
 
 /// Even numbers in `[0, 1)` (Steele, Lea & Flood, OOPSLA 2014: SplitMix).
 struct Random(u64);
@@ -125,15 +105,15 @@ const DOWN: [ViewRay; 3] = [(0.0, -79.0), (60.0, -60.0), (180.0, -50.0)];
 
 /// Our error, and the standard error of the paths that it is measured against, as parts of the radiance.
 fn errors(drops: Drops, tau: f64, sights: &[ViewRay], paths: u64) -> Vec<[f64; 2]> {
-    let medium = DropletKind::from(drops)
-        .at_wavelengths(tau / TOP_M, &[NM])
-        .unwrap();
-    let PhaseFunction::Tabulated(phase) = medium.phase.clone() else {
+    let slab = DensityProfile::slab(TOP_M);
+    let layer = Constituent::fog(tau / TOP_M, drops.into(), slab, &[NM]).unwrap();
+    let PhaseFunction::Tabulated(phase) = layer.phase.clone() else {
         panic!("{drops:?} is no table")
     };
     let sun = direction(180.0, 40.0);
-    let many = fog(&medium, sun, FogScattering::Multiple);
-    let once = fog(&medium, sun, FogScattering::Single);
+    let fog = |scattering| green_fog(layer.clone(), Ground::FLAT, Some(sun), 0.0, scattering);
+    let many = fog(FogScattering::Multiple);
+    let once = fog(FogScattering::Single);
     let slab = Slab {
         phase: &phase,
         tau,
@@ -145,7 +125,7 @@ fn errors(drops: Drops, tau: f64, sights: &[ViewRay], paths: u64) -> Vec<[f64; 2
             true => (0.0, f64::INFINITY),
             false => (TOP_M, TOP_M / -view.y),
         };
-        let seen = |fog: &Fog<1>| f64::from(fog.along(height, view, length).path_radiance[0]);
+        let seen = |fog: &Fog| green_path(fog, height, view, length)[1];
         let (again, error) = scattered_again(&slab, view, paths);
         let want = seen(&once) + again;
         let [ours, loose] = [seen(&many) / want - 1.0, error / want];

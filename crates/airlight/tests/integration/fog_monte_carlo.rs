@@ -1,14 +1,13 @@
 //! Light scattered many times in fog, against the Monte Carlo on the sphere: a method that shares nothing with the fog's but
 //! the phase functions.
 
+use crate::common::{green_fog, green_path, grey_layer};
 use airlight::atmosphere::{Atmosphere, Constituent, ConstituentKind, DensityProfile, Planet};
 use airlight::axes::direction;
-use airlight::fog::{
-    DirectionalLight, Fog, FogLighting, FogScattering, Ground, Layer, Medium, droplets,
-};
+use airlight::fog::{Fog, FogScattering, Ground, droplets};
 use airlight::monte_carlo::{MonteCarlo, MonteCarloSettings};
 use airlight::optics::PhaseFunction;
-use airlight::spectrum::{SpectralCurve, Spectrum, WavelengthGrid};
+use airlight::spectrum::{SpectralCurve, WavelengthGrid};
 use airlight::sun::SunDisc;
 use std::f32::consts::PI;
 
@@ -33,23 +32,12 @@ impl Scene {
     }
 
     /// The fog, over ground as round as the Earth.
-    fn fog(&self) -> Fog<1> {
-        let medium = Medium {
-            extinction_per_m: Spectrum([self.extinction_per_m() as f32]),
-            single_scattering_albedo: Spectrum::ONE,
-            phase: self.phase.clone(),
-        };
-        let light = FogLighting {
-            sun: Some(DirectionalLight {
-                direction: direction(SUN_DEG, self.sun_elevation_deg),
-                irradiance: Spectrum::ONE,
-            }),
-            ambient: Spectrum::ZERO,
-            ground_albedo: Spectrum([GROUND_ALBEDO as f32]),
-        };
-        let profile = DensityProfile::slab(TOP_M);
-        let layers = [Layer { profile, medium }];
-        Fog::new(&layers, Ground::EARTH, light, FogScattering::Multiple).unwrap()
+    fn fog(&self) -> Fog {
+        let slab = DensityProfile::slab(TOP_M);
+        let layer = grey_layer(slab, self.extinction_per_m(), 1.0, self.phase.clone());
+        let sun = direction(SUN_DEG, self.sun_elevation_deg);
+        let multiple = FogScattering::Multiple;
+        green_fog(layer, Ground::EARTH, Some(sun), GROUND_ALBEDO, multiple)
     }
 
     /// The same as the only air of a planet.
@@ -108,10 +96,11 @@ fn errors(scene: &Scene) -> (Vec<f64>, Vec<f64>) {
             true => (EYE_M / -view.y, ground),
             false => (f64::INFINITY, 0.0),
         };
-        let seen = fog.along(EYE_M, view, length_m).apply(Spectrum([behind]))[0];
+        let [transmittance, path_radiance] = green_path(&fog, EYE_M, view, length_m);
+        let seen = path_radiance + transmittance * f64::from(behind);
         let mean = truth.mean[0];
         let noise = 100.0 * truth.standard_error[0] / mean;
-        let error = 100.0 * (f64::from(seen) / mean - 1.0);
+        let error = 100.0 * (seen / mean - 1.0);
         println!("    {azimuth:4} {elevation:4}: {mean:.4e} +- {noise:.2} %, off by {error:6.2} %");
         assert!(noise < 1.0, "the Monte Carlo is too noisy: {noise} %");
         errors.push(error.abs());

@@ -1,13 +1,10 @@
 //! Fog against outside truth: Henyey-Greenstein slabs and exponential fog under a sun of unit irradiance, by Mitsuba (path
 //! tracing, with standard errors) and PythonicDISORT. `data/README.md` says where the tables come from.
 
+use crate::common::{green_fog, green_path, grey_layer};
 use airlight::axes::direction;
-use airlight::fog::{
-    DensityProfile, DirectionalLight, Fog, FogLighting, FogScattering, Ground, Layer, Medium,
-    droplets,
-};
+use airlight::fog::{DensityProfile, Fog, FogScattering, Ground, droplets};
 use airlight::optics::PhaseFunction;
-use airlight::spectrum::Spectrum;
 use glam::DVec3;
 
 /// The lines of a table without remarks and head, split at the commas.
@@ -36,35 +33,23 @@ struct Scene {
 }
 
 impl Scene {
-    fn fog(self, scattering: FogScattering) -> Fog<1> {
-        let sun = self.sun_zenith_deg.map(|zenith| DirectionalLight {
-            direction: direction(0.0, 90.0 - zenith),
-            irradiance: Spectrum::ONE,
-        });
-        let light = FogLighting {
-            sun,
-            ambient: Spectrum([if sun.is_some() { 0.0 } else { 1.0 }]),
-            ground_albedo: Spectrum([self.ground_albedo as f32]),
-        };
-        let medium = Medium {
-            extinction_per_m: Spectrum([(self.depth / 100.0) as f32]),
-            single_scattering_albedo: Spectrum([self.single_scattering_albedo as f32]),
-            phase: self.phase,
-        };
-        let profile = self.profile;
-        let layers = [Layer { profile, medium }];
-        Fog::new(&layers, Ground::FLAT, light, scattering).unwrap()
+    fn fog(self, scattering: FogScattering) -> Fog {
+        let sun = self.sun_zenith_deg;
+        let sun = sun.map(|zenith| direction(0.0, 90.0 - zenith));
+        let (extinction, albedo) = (self.depth / 100.0, self.single_scattering_albedo);
+        let layer = grey_layer(self.profile, extinction, albedo, self.phase);
+        green_fog(layer, Ground::FLAT, sun, self.ground_albedo, scattering)
     }
 }
 
 /// Path radiance up to the edge of a slab, of which the part `above` lies above the eye.
-fn to_the_edge(fog: &Fog<1>, above: f64, view: DVec3) -> f64 {
+fn to_the_edge(fog: &Fog, above: f64, view: DVec3) -> f64 {
     let height = 100.0 * (1.0 - above);
     let length = match view.y < 0.0 {
         true => height / -view.y,
         false => f64::INFINITY,
     };
-    f64::from(fog.along(height, view, length).path_radiance[0])
+    green_path(fog, height, view, length)[1]
 }
 
 /// One row of Mitsuba's table: the line of sight from the ground through all of the fog.
@@ -252,7 +237,7 @@ fn nearly_level() -> [Vec<f64>; 2] {
             false => length / tau * 100.0,
         };
         let view = direction(azimuth, 90.0 - zenith);
-        let path = f64::from(fog.along(0.0, view, length).path_radiance[0]);
+        let path = green_path(&fog, 0.0, view, length)[1];
         errors[usize::from(g > 0.8)].push(path / scattered - 1.0);
     }
     errors

@@ -1,9 +1,8 @@
 //! The fogbow and the glory, seen from above a fog with the sun behind.
 
-use airlight::atmosphere::presets;
+use airlight::atmosphere::{Constituent, presets};
 use airlight::axes::direction;
-use airlight::fog::droplets::DropletKind;
-use airlight::fog::{DensityProfile, FogScattering, Layer};
+use airlight::fog::{DensityProfile, FogScattering};
 use airlight::optics::mie::droplets::Drops;
 use airlight::scene::{FoggySky, LaneChannels};
 use airlight::sky::{Sky, SkySettings, SunCoverage};
@@ -28,23 +27,17 @@ fn seen(drops: Drops, angles: &[f64]) -> Seen {
     let sky = Sky::prepare(&air, &WavelengthGrid::standard(), &settings).unwrap();
     let view = sky.view(EYE_M, direction(180.0, SUN_DEG));
     let ground = FoggySky::<3>::round_ground(&view);
-    let kind = DropletKind::from(drops);
     let space = RgbSpace::Srgb;
-    let medium = kind.in_rgb(EXTINCTION_PER_M, space)?;
-    let layer = Layer {
-        profile: PROFILE,
-        medium,
-    };
+    let nm = sky.grid().wavelengths_nm();
+    let layers = [Constituent::fog(
+        EXTINCTION_PER_M,
+        drops.into(),
+        PROFILE,
+        nm,
+    )?];
     let many = FogScattering::Multiple;
-    let rgb = FoggySky::new(&view, LaneChannels::Rgb(space), &[layer], ground, many)?;
-    let layers = |nm: &[f64; 16]| {
-        let medium = kind.at_wavelengths(EXTINCTION_PER_M, nm)?;
-        Ok::<_, Box<dyn std::error::Error>>(vec![Layer {
-            profile: PROFILE,
-            medium,
-        }])
-    };
-    let spectral = FoggySky::spectral(&view, layers, ground, many)?;
+    let rgb = FoggySky::new(&view, LaneChannels::Rgb(space), &layers, ground, many)?;
+    let spectral = FoggySky::<16>::spectral(&view, &layers, ground, many)?;
     assert_eq!(spectral.len(), 1);
     let look = |&angle: &f64| {
         let towards = direction(0.0, -SUN_DEG - angle);

@@ -1,35 +1,31 @@
 //! Sky and fog together: order of the layers, seams, limits.
 
 use crate::common::sky;
+use airlight::atmosphere::Constituent;
 use airlight::axes::direction;
 use airlight::fog::droplets::Droplets;
 use airlight::fog::visibility::{Contrast, extinction_per_m};
-use airlight::fog::{DensityProfile, FogScattering, Ground, Layer, Medium, RaySegment};
+use airlight::fog::{DensityProfile, FogScattering, Ground, RaySegment};
 use airlight::scene::{FoggySky, LaneChannels};
 use airlight::sky::{SunCoverage, View};
 use airlight::spectrum::{RgbSpace, Spectrum};
 use airlight::transfer::PathOptics;
 use glam::DVec3;
 
-fn layer(visibility_m: f64, profile: DensityProfile) -> Layer<3> {
-    Layer {
-        profile,
-        medium: Droplets::Radiation.medium(extinction_per_m(visibility_m, Contrast::FivePercent)),
-    }
+fn layer(visibility_m: f64, profile: DensityProfile) -> Constituent {
+    let extinction = extinction_per_m(visibility_m, Contrast::FivePercent);
+    Constituent::fog(extinction, Droplets::Radiation.into(), profile, &[]).unwrap()
 }
 
 fn thinning(scale_height_m: f64) -> DensityProfile {
-    DensityProfile::Exponential {
-        reference_height_m: 0.0,
-        scale_height_m,
-    }
+    DensityProfile::exponential(scale_height_m)
 }
 
-fn slab(top_height_m: f64) -> DensityProfile {
-    DensityProfile::slab(top_height_m)
+fn slab(top_m: f64) -> DensityProfile {
+    DensityProfile::slab(top_m)
 }
 
-fn foggy(view: &View, layer: Layer<3>, ground: Ground) -> FoggySky<3> {
+fn foggy(view: &View, layer: Constituent, ground: Ground) -> FoggySky<3> {
     FoggySky::new(
         view,
         LaneChannels::SPECTRAL,
@@ -45,9 +41,9 @@ fn changing_the_fog_of_a_sky_gives_the_bits_of_a_new_one() {
     let sky = sky("average", SunCoverage::near(20.0, 30.0));
     let view = sky.view(30.0, direction(120.0, 20.0));
     let ground = FoggySky::<3>::round_ground(&view);
-    let new = |layers: &[Layer<3>]| {
+    let new = |layers: &[Constituent]| {
         let channels = LaneChannels::Rgb(RgbSpace::Srgb);
-        FoggySky::new(&view, channels, layers, ground, FogScattering::Multiple).unwrap()
+        FoggySky::<3>::new(&view, channels, layers, ground, FogScattering::Multiple).unwrap()
     };
     let first = new(&[layer(300.0, slab(40.0))]);
     // As high, and higher.
@@ -88,7 +84,7 @@ mod guards {
     /// Fog and air of a line cut into thin slices, one after the other.
     fn sliced(view: &View, foggy: &FoggySky<3>, towards: DVec3, length_m: f64) -> PathOptics<3> {
         const SLICES: usize = 500;
-        let ground = foggy.fog().ground();
+        let ground = foggy.ground();
         let eye_m = view.radius_m() - view.sky().atmosphere().planet.radius_m;
         let line = RaySegment::new(eye_m, towards.y, length_m, ground.radius_m);
         let cos_sun = towards.dot(view.sun());
@@ -97,7 +93,7 @@ mod guards {
         let mut from = 0.0;
         for k in 1..=SLICES {
             let to = length_m * (k as f64 / SLICES as f64).powi(2);
-            let fog = foggy.fog().along_line(&line.part(from, to), cos_sun);
+            let fog = foggy.fog_path(&line.part(from, to), cos_sun);
             let air = view.along(towards, Some(to)).optics::<3>().unwrap();
             let slice = PathOptics {
                 transmittance: air.transmittance / before.transmittance,
@@ -236,13 +232,7 @@ mod guards {
     #[test]
     fn without_fog_far_things_go_over_into_the_drawn_sky() {
         let sky = sky("average", SunCoverage::near(25.0, 0.0));
-        let none = Layer {
-            profile: thinning(50.0),
-            medium: Medium {
-                extinction_per_m: Spectrum::ZERO,
-                ..layer(200.0, thinning(50.0)).medium
-            },
-        };
+        let none = layer(f64::INFINITY, thinning(50.0));
         let mut before = 0.0;
         for eye_m in [2.0, 100.0, 1e3, 4e3, 10e3] {
             let view = sky.view(eye_m, direction(180.0, 25.0));
@@ -286,7 +276,8 @@ mod guards {
         let foggy = foggy(&view, layer(50.0, thinning(100.0)), ground);
         for (azimuth, elevation) in [(0.0, 0.0), (90.0, 20.0), (180.0, 10.0), (30.0, -0.5)] {
             let towards = direction(azimuth, elevation);
-            let alone = foggy.fog().along(2.0, towards, 1e4).path_radiance;
+            let ray = RaySegment::new(2.0, towards.y, 1e4, ground.radius_m);
+            let alone = foggy.fog_path(&ray, towards.dot(view.sun())).path_radiance;
             for seen in [foggy.sky(towards), foggy.optics(towards, 1e4).path_radiance] {
                 for lane in 0..3 {
                     let off = (seen[lane] / alone[lane] - 1.0).abs();
@@ -329,7 +320,7 @@ mod guards {
             let fog = [layer(visibility_m, slab(100.0))];
             let foggy =
                 FoggySky::new(&view, LaneChannels::SPECTRAL, &fog, ground, scattering).unwrap();
-            if let Some(irradiance) = foggy.fog().ground_irradiance() {
+            if let Some(irradiance) = foggy.ground_irradiance() {
                 // The ground as the fog has it, seen through fog and air.
                 let lit = irradiance * albedo / std::f32::consts::PI;
                 let whole = foggy.optics(down, 120.0).apply(lit);

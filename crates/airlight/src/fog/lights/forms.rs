@@ -1,21 +1,43 @@
-//! The forms that a lamp's light in uniform fog has been given.
+//! Forms of the light of a point light in uniform fog: exact, and those of the fog note (after Macklin 2010).
+//!
+//! # The printed form
+//! In uniform fog of the scattering coefficient `sigma`, from the surface `p` towards the camera, `d` away, past a light at
+//! `s` with the intensity `I`:
+//!
+//! ```text
+//! b = (p - s) . v,  c = |p - s|^2,  v = sqrt(c - b^2),  x = (b + d) / v,  y = b / v
+//! S = sigma pi I / v  arctan((x - y) / (1 + x y))
+//! ```
+//!
+//! Its errata:
+//! - The arctangent is off by pi wherever `1 + x y < 0`, which is where the light sees the ray under more than a right angle:
+//!   for b = -5, c = 26, d = 20 it is -0.2640, and should be 2.8776. The path radiance is then negative.
+//! - A light of intensity `I` gives the irradiance `I / r^2`, and the uniform phase function is `1 / (4 pi)`: the source is
+//!   `I / (4 pi r^2)`, not `pi I / r^2`. So all of it is `4 pi^2` = 39.5 times too bright.
+//! - "Transmittance is left out because only single scattering is considered": extinction before and after the scattering is part
+//!   of single scattering.
+//!
+//! [`airlight_without_extinction`] corrects the first two, [`airlight_isotropic`] all three.
 
+use super::closed_form::{airlight_isotropic, airlight_without_extinction};
 use super::geometry::LightRayGeometry;
-use super::printed::airlight_printed;
-use super::split_sum::airlight_split_sum;
-use super::{Light, airlight_isotropic, airlight_without_extinction};
-use crate::fog::layer::{FogError, Layer};
+use super::light::Light;
+use crate::fog::closed_forms::Lanes;
+use crate::fog::error::FogError;
+use crate::fog::layer::LayerLanes;
+use crate::math::quadrature::FixedRule;
 use crate::optics::PhaseFunction;
 use crate::spectrum::Spectrum;
+use std::f64::consts::PI;
 
-/// How the light of a lamp that fog scatters into a line of sight is worked out. All but the first hold for point lamps in
-/// one layer of uniform fog that scatters equally in all directions ([`LightForm::check`]).
+/// The form in which the light of lights that fog scatters into a ray is computed. All but the first hold for point lights in
+/// one layer of uniform fog that scatters equally in all directions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LightForm {
-    /// Dimmed on both legs.
+    /// Dimmed from the light to the fog and from the fog to the eye; for all lights and layers.
     #[default]
     Exact,
-    /// The opacity of the line times the mean of the source on it: [`airlight_split_sum`].
+    /// The opacity of the ray times the mean of the source on it: [`airlight_split_sum`].
     SplitSum,
     /// Not dimmed: [`airlight_without_extinction`].
     NoExtinction,
@@ -24,7 +46,7 @@ pub enum LightForm {
 }
 
 impl LightForm {
-    /// Light of a lamp of unit intensity in fog of unit scattering coefficient, 1/m.
+    /// Light of unit intensity in fog of unit scattering coefficient, 1/m.
     pub fn airlight(self, geometry: &LightRayGeometry, extinction_per_m: f64) -> f64 {
         match self {
             Self::Exact => airlight_isotropic(geometry, extinction_per_m),
@@ -34,89 +56,267 @@ impl LightForm {
         }
     }
 
-    /// What a layer of uniform fog, which scatters equally in all directions, scatters into a line past a lamp.
-    pub fn path_radiance<const N: usize>(
+    /// Light that a layer of uniform fog, which scatters equally in all directions, scatters into a ray past a light.
+    pub(super) fn path_radiance<const N: usize>(
         self,
-        layer: &Layer<N>,
+        layer: &LayerLanes<N>,
         geometry: &LightRayGeometry,
         intensity: Spectrum<N>,
     ) -> Spectrum<N> {
-        let medium = &layer.medium;
-        let extinction = medium.extinction_per_m;
+        let extinction = layer.extinction_per_m;
         let of_lane = |lane: usize| self.airlight(geometry, f64::from(extinction[lane])) as f32;
-        medium.scattering_per_m() * intensity * Spectrum::from_fn(of_lane)
+        layer.scattering_per_m * intensity * Spectrum::from_fn(of_lane)
     }
 
-    /// Refuses lamps and layers that the form does not hold for.
+    /// Refuses lights and layers that the form does not hold for.
     ///
     /// # Errors
-    /// [`FogError::LightForm`]: what there is too much of.
-    pub fn check<const N: usize>(
+    /// [`FogError::LightForm`] with the reason.
+    pub(super) fn check<C, const N: usize>(
         self,
-        lights: &[Light<N>],
-        layers: &[Layer<N>],
+        lights: &[Light<C>],
+        layers: &[LayerLanes<N>],
     ) -> Result<(), FogError> {
-        let what = match layers {
+        let got = match layers {
             _ if self == Self::Exact => return Ok(()),
-            [layer] if !layer.profile.is_uniform() => "fog that thins with height",
-            [layer] if layer.medium.phase != PhaseFunction::Isotropic => {
+            [layer] if !layer.density.is_uniform() => "fog that thins with height",
+            [layer] if layer.phase != PhaseFunction::Isotropic => {
                 "fog that scatters more in some directions"
             }
             [_] => match lights.iter().all(|light| matches!(light, Light::Point(_))) {
                 true => return Ok(()),
-                false => "a lamp that is no point",
+                false => "a light that is no point light",
             },
-            _ => "more or fewer layers than one",
+            _ => "another number of layers",
         };
-        Err(FogError::LightForm { what })
+        Err(FogError::LightForm { got })
     }
+}
+
+/// The printed form, in 1/m: times the light's intensity and the scattering coefficient that is the path radiance. It is the
+/// same from either end of the ray; an infinite ray has the limit, `arctan(1 / y)`.
+#[inline]
+pub fn airlight_printed(geometry: &LightRayGeometry) -> f64 {
+    let v = geometry.nearest_m;
+    let y = geometry.start_m / v;
+    let x = (geometry.start_m + geometry.length_m) / v;
+    let tangent = match x.is_finite() {
+        true => (x - y) / (1.0 + x * y),
+        false => 1.0 / y,
+    };
+    PI / v * tangent.atan()
+}
+
+/// Distance from the point closest to the light up to which the light of an infinite ray is integrated, in `asinh(u / h)`:
+/// beyond is a part of 1e-16 of it.
+const REACH: f64 = 37.0;
+/// Length of a Gauss-Legendre panel in the same coordinate.
+const PANEL: f64 = 2.0;
+
+/// The fog note's split sum, `(1 - T) (1 / d) int J dt` with the light's source `J`, dimmed on its way to the fog, in 1/m: times
+/// the radiant intensity and the scattering coefficient that is the path radiance.
+///
+/// With `u = h sinh s` the integral is `1 / (4 pi h) int e^-(sigma h cosh s) / cosh s ds`, by Gauss-Legendre quadrature:
+/// relative error below 1e-6 up to an optical depth of 10 between light and ray. Against [`airlight_isotropic`] the split sum is
+/// within 5 % up to an optical depth of 1 of the ray for a light halfway along it; for an infinite ray it is 0, as the mean of
+/// the source is.
+pub fn airlight_split_sum(geometry: &LightRayGeometry, extinction_per_m: f64) -> f64 {
+    static RULE: FixedRule<12> = FixedRule::fixed();
+    if extinction_per_m == 0.0 {
+        return airlight_without_extinction(geometry);
+    }
+    let h = geometry.nearest_m;
+    let place = |u: f64| (u / h).asinh().clamp(-REACH, REACH);
+    let (first, last) = (
+        place(geometry.start_m),
+        place(geometry.start_m + geometry.length_m),
+    );
+    let mean_transmittance = (extinction_per_m * geometry.length_m).mean_transmittance();
+    let panels = ((last - first) / PANEL).ceil().max(1.0);
+    let step = (last - first) / panels;
+    let depth = extinction_per_m * h;
+    let at = |s: f64| (-depth * s.cosh()).exp() / s.cosh();
+    let sum: f64 = (0..panels as u32)
+        .map(|k| {
+            let from = first + step * f64::from(k);
+            RULE.integrate(from, from + step, at)
+        })
+        .sum();
+    mean_transmittance * sum / (4.0 * PI * h)
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::{LightSettings, PointLight, RgbLightSet, SphereLight, ViewRay};
     use super::*;
     use crate::atmosphere::DensityProfile;
-    use crate::fog::droplets::DropletKind;
-    use crate::fog::lights::{
-        LightSet, LightSettings, ParticipatingMedium, PointLight, SphereLight, ViewRay,
-    };
-    use crate::spectrum::rgb::DOMINANT_NM;
+    use crate::fog::closed_forms::constant_source;
+    use crate::fog::{Ground, RgbLayer};
+    use crate::math::quadrature::GaussRule;
     use glam::DVec3;
 
-    fn layer(profile: DensityProfile, droplets: &str) -> Layer<3> {
-        let (_, kind) = DropletKind::all()
-            .find(|(name, _)| *name == droplets)
-            .unwrap();
-        Layer {
-            profile,
-            medium: kind.at_wavelengths(0.27, &DOMINANT_NM).unwrap(),
+    fn past(start_m: f64, length_m: f64) -> LightRayGeometry {
+        LightRayGeometry {
+            nearest_m: 1.0,
+            start_m,
+            length_m,
         }
     }
 
     #[test]
-    fn the_exact_form_is_that_of_lamps() {
-        let even = layer(DensityProfile::Uniform, "isotropic");
-        let intensity = Spectrum([3.0, 2.0, 1.0]);
+    fn the_printed_form_is_as_wrong_as_the_errata_say() {
+        // b = -5, c = 26, d = 20.
+        let passed = past(-5.0, 20.0);
+        let printed = airlight_printed(&passed) / PI;
+        assert!((printed + 0.2640).abs() < 5e-5, "{printed}");
+        let right = 4.0 * PI * airlight_without_extinction(&passed);
+        assert!((right - 2.8776).abs() < 5e-5, "{right}");
+        assert!((right - printed - PI).abs() < 1e-12);
+        // The same from the other end.
+        assert!((airlight_printed(&passed.reversed()) / PI - printed).abs() < 1e-12);
+    }
+
+    #[test]
+    fn where_the_light_is_not_passed_only_the_unit_of_the_printed_form_is_wrong() {
+        for (start_m, length_m) in [
+            (-5.0, 4.0),
+            (0.5, 20.0),
+            (3.0, f64::INFINITY),
+            (-0.5, 2.0),
+            (-1.0, 1.9),
+        ] {
+            let geometry = past(start_m, length_m);
+            let ratio = airlight_printed(&geometry) / airlight_without_extinction(&geometry);
+            assert!(
+                (ratio / (4.0 * PI * PI) - 1.0).abs() < 1e-12,
+                "{start_m} {ratio}"
+            );
+        }
+        // Under more than a right angle: below 0, also for an infinite ray.
+        for (start_m, length_m) in [(-1.0, 2.1), (-1.0, f64::INFINITY)] {
+            let printed = airlight_printed(&past(start_m, length_m));
+            assert!(printed < 0.0 && printed.is_finite(), "{start_m} {printed}");
+        }
+        assert_eq!(airlight_printed(&past(-3.0, 0.0)), 0.0);
+    }
+
+    fn geometry(nearest_m: f64, start_m: f64, length_m: f64) -> LightRayGeometry {
+        LightRayGeometry {
+            nearest_m,
+            start_m,
+            length_m,
+        }
+    }
+
+    #[test]
+    fn the_split_sum_is_the_mean_of_the_source_by_quadrature() {
+        for (h, start, length) in [
+            (1.0, -5.0, 20.0),
+            (0.01, -8.0, 9.0),
+            (3.0, 4.0, 30.0),
+            (0.5, -40.0, 30.0),
+            (2.0, -1e-3, 1e-2),
+        ] {
+            for sigma in [0.0, 1e-3, 0.1, 0.27, 1.0] {
+                if sigma * h > 10.0 || sigma * f64::hypot(h, start) > 10.0 {
+                    continue;
+                }
+                let geometry = geometry(h, start, length);
+                // Evenly spaced in the angle under which the light sees the ray.
+                let (from, to) = ((start / h).atan(), ((start + length) / h).atan());
+                let mean = GaussRule::new(3000)
+                    .integrate(from, to, |angle| (-sigma * h / angle.cos()).exp())
+                    / (4.0 * PI * h * length);
+                let opacity = (sigma * length).mean_transmittance() * length;
+                let got = airlight_split_sum(&geometry, sigma);
+                assert!(
+                    (got / (opacity * mean) - 1.0).abs() < 1e-6,
+                    "{geometry:?} {sigma}: {got} {}",
+                    opacity * mean
+                );
+                let source = Spectrum([(mean / sigma) as f32]);
+                let general = constant_source(Spectrum([(sigma * length) as f32]), source);
+                if sigma > 0.0 {
+                    assert!((f64::from(general.path_radiance[0]) / got - 1.0).abs() < 1e-5);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_split_sum_is_good_in_thin_fog_and_bad_in_thick() {
+        // The book's table: a light halfway along the ray, h lengths of it aside; percent.
+        for (tau, h, percent) in [
+            (0.1, 0.1, 0.0),
+            (0.5, 0.1, 0.7),
+            (1.0, 0.01, 4.1),
+            (1.0, 0.1, 3.0),
+            (1.0, 0.5, 0.9),
+            (3.0, 0.1, 31.0),
+            (3.0, 0.5, 11.0),
+        ] {
+            let geometry = geometry(h, -0.5, 1.0);
+            let error = 100.0
+                * (airlight_split_sum(&geometry, tau) / airlight_isotropic(&geometry, tau) - 1.0);
+            let rounding = if percent < 10.0 { 0.06 } else { 0.6 };
+            assert!((error - percent).abs() < rounding, "{tau} {h}: {error}");
+        }
+    }
+
+    #[test]
+    fn the_limits_of_the_split_sum() {
+        let line = geometry(1.0, -5.0, 20.0);
+        let thin = airlight_split_sum(&line, 0.0) / airlight_without_extinction(&line);
+        assert!((thin - 1.0).abs() < 1e-9);
+        let infinite = geometry(1.0, -5.0, f64::INFINITY);
+        assert_eq!(airlight_split_sum(&infinite, 0.1), 0.0);
+        assert_eq!(airlight_split_sum(&geometry(1.0, -5.0, 0.0), 0.1), 0.0);
+        assert_eq!(airlight_split_sum(&line, 1e6), 0.0);
+    }
+
+    fn layer(density: DensityProfile, phase: PhaseFunction) -> RgbLayer {
+        RgbLayer {
+            density,
+            extinction_per_m: [0.27; 3],
+            single_scattering_albedo: [1.0; 3],
+            phase,
+        }
+    }
+
+    /// The set of a light in layers, in one form.
+    fn set(
+        light: Light<[f32; 3]>,
+        layers: &[RgbLayer],
+        form: LightForm,
+    ) -> Result<RgbLightSet, FogError> {
+        let settings = LightSettings {
+            form,
+            ..LightSettings::default()
+        };
+        RgbLightSet::new(vec![light], layers, Ground::FLAT, settings)
+    }
+
+    #[test]
+    fn each_form_is_that_far_from_the_exact_one() {
+        let uniform = layer(DensityProfile::Uniform, PhaseFunction::Isotropic);
+        let intensity = [3.0, 2.0, 1.0];
         let light = PointLight::new(DVec3::new(1.0, 0.0, -5.0), intensity, 0.01).unwrap();
         let view_ray = ViewRay {
             eye: DVec3::ZERO,
             direction: DVec3::NEG_Z,
             length_m: 20.0,
         };
-        let medium = ParticipatingMedium {
-            medium: &even.medium,
-            profile: &even.profile,
-            others: &[],
-            wavelengths_nm: &DOMINANT_NM,
-            ground_radius_m: f64::INFINITY,
+        let of = |form| {
+            let set = set(Light::Point(light), std::slice::from_ref(&uniform), form);
+            set.unwrap().path_radiance(&view_ray)
         };
-        let lights = LightSet::new(vec![Light::Point(light)], LightSettings::default()).unwrap();
-        let right = lights.path_radiance(&medium, &view_ray);
+        let right = of(LightForm::Exact);
         let geometry =
             LightRayGeometry::new(view_ray.eye, view_ray.direction, 20.0, light.position, 0.01);
-        let of = |form: LightForm| form.path_radiance(&even, &geometry, intensity);
+        let lanes = LayerLanes::<3>::rgb(&uniform);
+        let exact = LightForm::Exact.path_radiance(&lanes, &geometry, Spectrum(intensity));
         for lane in 0..3 {
-            assert!((of(LightForm::Exact)[lane] / right[lane] - 1.0).abs() < 1e-5);
+            assert!((exact[lane] / right[lane] - 1.0).abs() < 1e-5);
             // 5.8 times too bright in dense fog.
             let without = of(LightForm::NoExtinction)[lane] / right[lane];
             assert!((without / 5.8 - 1.0).abs() < 3e-3, "{without}");
@@ -127,28 +327,33 @@ mod tests {
     }
 
     #[test]
-    fn forms_refuse_what_they_do_not_hold_for() {
-        let point = Light::Point(PointLight::new(DVec3::ZERO, Spectrum::ONE, 0.1).unwrap());
-        let ball = Light::Sphere(SphereLight::new(DVec3::ZERO, 0.1, Spectrum::ONE).unwrap());
-        let even = layer(DensityProfile::Uniform, "isotropic");
-        let forward = layer(DensityProfile::Uniform, "radiation");
-        let slab = layer(DensityProfile::slab(9.0), "isotropic");
+    fn forms_refuse_lights_and_layers_that_they_do_not_hold_for() {
+        let point = Light::Point(PointLight::new(DVec3::ZERO, [1.0; 3], 0.1).unwrap());
+        let sphere = Light::Sphere(SphereLight::new(DVec3::ZERO, 0.1, [1.0; 3]).unwrap());
+        let uniform = layer(DensityProfile::Uniform, PhaseFunction::Isotropic);
+        let forward = layer(
+            DensityProfile::Uniform,
+            PhaseFunction::HenyeyGreenstein { g: 0.8 },
+        );
+        let slab = layer(DensityProfile::slab(9.0), PhaseFunction::Isotropic);
         for form in [
             LightForm::SplitSum,
             LightForm::NoExtinction,
             LightForm::Printed,
         ] {
-            let refused =
-                |light: &Light<3>, layers: &[Layer<3>]| match form.check(&[*light], layers) {
-                    Err(FogError::LightForm { what }) => what,
+            let refused = |light: Light<[f32; 3]>, layers: &[&RgbLayer]| {
+                let layers: Vec<RgbLayer> = layers.iter().map(|&layer| layer.clone()).collect();
+                match set(light, &layers, form) {
+                    Err(FogError::LightForm { got }) => got,
                     other => panic!("{other:?}"),
-                };
-            assert_eq!(form.check(&[point], std::slice::from_ref(&even)), Ok(()));
-            assert!(refused(&ball, std::slice::from_ref(&even)).contains("no point"));
-            assert!(refused(&point, std::slice::from_ref(&forward)).contains("directions"));
-            assert!(refused(&point, std::slice::from_ref(&slab)).contains("height"));
-            assert!(refused(&point, &[even.clone(), even.clone()]).contains("layers"));
+                }
+            };
+            assert!(set(point, std::slice::from_ref(&uniform), form).is_ok());
+            assert!(refused(sphere, &[&uniform]).contains("no point"));
+            assert!(refused(point, &[&forward]).contains("directions"));
+            assert!(refused(point, &[&slab]).contains("height"));
+            assert!(refused(point, &[&uniform, &uniform]).contains("layers"));
         }
-        assert_eq!(LightForm::Exact.check(&[ball], &[slab, forward]), Ok(()));
+        assert!(set(sphere, &[slab, forward], LightForm::Exact).is_ok());
     }
 }

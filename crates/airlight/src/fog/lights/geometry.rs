@@ -1,31 +1,42 @@
-//! A line of sight as a lamp sees it, and the variable in which the lamp's light along it is smooth.
+//! A view ray past a light, and the variable in which the light along it is smooth.
 
 use glam::DVec3;
 
-/// A stretch of a straight line that passes a lamp.
+/// A view ray.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ViewRay {
+    /// Its start, m; y is the height.
+    pub eye: DVec3,
+    /// Unit vector away from the eye.
+    pub direction: DVec3,
+    /// Its length, m, not below 0; may be infinite.
+    pub length_m: f64,
+}
+
+/// A segment of a straight ray that passes a light.
 ///
-/// With `u` the distance along the line from the point closest to the lamp, the lamp is `r = sqrt(h^2 + u^2)` away.
-/// Everything is expressed by the **excess** `e = t + r - r_0`: how much longer the way eye, point, lamp is for the point
-/// `t` metres on than for the start. With `a = r_0 + u_0` and `w = (e + a) / h = (r + u) / h = tan(Theta / 2)`, where
+/// With `u` the distance along the ray from the point closest to the light, the light is `r = sqrt(h^2 + u^2)` away.
+/// Everything is expressed by the **excess** `e = t + r - r_0`: the length of the path eye, point, light for the point `t` metres
+/// on, minus that for the start. With `a = r_0 + u_0` and `w = (e + a) / h = (r + u) / h = tan(Theta / 2)`, where
 /// `Theta` is the scattering angle (0: the light goes straight on),
 ///
 /// `dt / r^2 = 2 de / (h^2 + (e + a)^2)`, `cos(Theta) = -u / r = (1 - w^2) / (1 + w^2)`.
 ///
-/// That is the equi-angular substitution `u = h tan(theta)`, `Theta = theta + pi/2`, without its tangents, and the way
-/// that light has been dimmed on in uniform fog is `r_0 + e`.
+/// That is the equi-angular substitution `u = h tan(theta)`, `Theta = theta + pi/2`, without its tangents, and the path on
+/// which uniform fog dims the light is `r_0 + e`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightRayGeometry {
-    /// Distance of the lamp from the (endless) line, m, above 0.
+    /// Distance of the light from the (infinite) ray, m, above 0.
     pub nearest_m: f64,
-    /// Where the stretch starts: metres beyond the point closest to the lamp; below 0 while the lamp lies ahead.
+    /// The start of the segment, m beyond the point closest to the light; below 0 where the light lies ahead.
     pub start_m: f64,
-    /// Length of the stretch, m, not below 0; may be infinite.
+    /// Length of the segment, m, not below 0; may be infinite.
     pub length_m: f64,
 }
 
 impl LightRayGeometry {
-    /// The stretch of `length_m` from `eye` in the unit vector `direction` that passes `light`, whose distance from the line
-    /// is not taken below `at_least_m` (above 0): the line is moved out to it, and nothing else changes.
+    /// The segment of `length_m` from `eye` along the unit vector `direction` past a light at `light`, whose distance from the
+    /// ray is not taken below `at_least_m` (above 0): the ray is moved out to it, and nothing else changes.
     #[inline]
     pub fn new(eye: DVec3, direction: DVec3, length_m: f64, light: DVec3, at_least_m: f64) -> Self {
         let to_light = light - eye;
@@ -46,7 +57,7 @@ impl LightRayGeometry {
         }
     }
 
-    /// The same stretch, which must have an end, walked from there.
+    /// The same segment, which must be finite, from its far end.
     #[inline]
     pub fn reversed(&self) -> Self {
         Self {
@@ -55,19 +66,19 @@ impl LightRayGeometry {
         }
     }
 
-    /// Distance from the lamp `t_m` on, m.
+    /// Distance from the light `t_m` on, m.
     #[inline]
     pub fn distance_m(&self, t_m: f64) -> f64 {
         self.distance_at(self.start_m + t_m)
     }
 
-    /// `r` where the point closest to the lamp is `u` back.
+    /// `r` at `u` beyond the point closest to the light.
     #[inline]
     fn distance_at(&self, u: f64) -> f64 {
         (self.nearest_m * self.nearest_m + u * u).sqrt()
     }
 
-    /// `r + u` at a place: without cancellation on either side of the lamp.
+    /// `r + u`, without cancellation on either side of the light.
     #[inline]
     fn ahead(&self, u: f64) -> f64 {
         let r = self.distance_at(u);
@@ -78,13 +89,13 @@ impl LightRayGeometry {
         }
     }
 
-    /// `a = r_0 + u_0`, m: twice the distance to the lamp times the squared sine of half the scattering angle.
+    /// `a = r_0 + u_0`, m: twice the distance to the light times the squared sine of half the scattering angle.
     #[inline]
     pub(super) fn ahead_at_start(&self) -> f64 {
         self.ahead(self.start_m)
     }
 
-    /// The excess at the end, m: `L (a_0 + a_1) / (r_0 + r_1)`; infinite for an endless line.
+    /// The excess at the end, m: `L (a_0 + a_1) / (r_0 + r_1)`; infinite for an infinite ray.
     #[inline]
     pub(super) fn excess_m(&self) -> f64 {
         if self.length_m.is_infinite() {
@@ -95,14 +106,14 @@ impl LightRayGeometry {
             / (self.distance_m(0.0) + self.distance_at(end))
     }
 
-    /// How far along the line an excess is reached, m: `e (e + 2 r_0) / (2 (e + a))`.
+    /// Distance along the ray at which an excess is reached, m: `e (e + 2 r_0) / (2 (e + a))`.
     #[inline]
     pub(super) fn place_m(&self, excess_m: f64) -> f64 {
         0.5 * excess_m * (excess_m + 2.0 * self.distance_m(0.0))
             / (excess_m + self.ahead_at_start())
     }
 
-    /// The angle under which the lamp sees the stretch, radians, 0 to pi: `atan2(h L, h^2 + u_0 u_1)`.
+    /// The angle under which the light sees the segment, radians, 0 to pi: `atan2(h L, h^2 + u_0 u_1)`.
     #[inline]
     pub fn angle(&self) -> f64 {
         let (h, u) = (self.nearest_m, self.start_m);
@@ -128,7 +139,7 @@ mod tests {
                         length_m: length,
                     };
                     let back = geometry.place_m(geometry.excess_m());
-                    // Where the lamp is almost on the line the excess says little of the place before it.
+                    // Where the light is almost on the ray the excess hardly determines the place before it.
                     let loose = 1e-14 + 1e-16 * (geometry.distance_m(length) / h).powi(2).min(1e18);
                     assert!(
                         (back / length - 1.0).abs() < loose,
@@ -140,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn the_angle_is_right_before_at_and_behind_the_lamp() {
+    fn the_angle_is_right_before_at_and_behind_the_light() {
         let seen = |start_m, length_m| {
             LightRayGeometry {
                 nearest_m: 1.0,

@@ -1,131 +1,149 @@
-//! Any lamp, any phase function, any profile: quadrature along the line of sight.
+//! The light of any light, any phase function and any profile: quadrature along the view ray.
 
-use super::geometry::LightRayGeometry;
-use super::medium::ParticipatingMedium;
-use super::nodes::Nodes;
-use super::panels::Cuts;
-use super::sphere::closeness;
-use super::spot::Beam;
-use super::{Light, ViewRay};
-use crate::atmosphere::RaySegment;
-use crate::atmosphere::{DensityProfile, HeightStructure};
-use crate::fog::lanes::Lanes;
+use super::geometry::{LightRayGeometry, ViewRay};
+use super::light::{Light, SpotCone, closeness};
+use crate::atmosphere::{Decay, DensityProfile, HeightStructure, RaySegment};
+use crate::fog::closed_forms::Lanes;
+use crate::fog::layer::LayerLanes;
+use crate::math::quadrature::GaussRule;
+use crate::optics::PhaseFunction;
 use crate::spectrum::Spectrum;
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// The optical depth within a node's scale that Gauss's rule takes in its stride.
+/// The optical depth within a node's scale that the rule integrates well.
 const STRIDE: f64 = 12.0;
 
-/// The optical depth of a panel up to which its nodes may crowd at the lamp's end.
+/// The optical depth of a panel up to which its nodes may crowd at the light's end.
 const OUTWARDS: f64 = 4.0;
 
-/// What of the fog is the same for all lamps and lines.
+/// A layer of fog that scatters light, among others that dim it: the same for all lights and rays.
 #[derive(Clone, Debug)]
-pub(super) struct Haze<'a, const N: usize> {
-    pub(super) medium: &'a ParticipatingMedium<'a, N>,
-    /// How the fog changes with height, and each other layer.
+pub(super) struct ScatteringLayer<const N: usize> {
+    pub(super) layer: LayerLanes<N>,
     structure: HeightStructure,
-    others: Vec<HeightStructure>,
-    pub(super) scattering_per_m: Spectrum<N>,
-    /// The largest extinction of any lane, 1/m; of all layers where the air is even.
-    pub(super) thickest_per_m: f64,
+    pub(super) others: Vec<OtherLayer<N>>,
+    /// Radius of the ground, m. The ground touches height 0 under the eye (or under the point that is lit) and falls away as
+    /// `d^2 / (2 R)` at the distance `d`.
+    pub(super) ground_radius_m: f64,
+    /// The largest extinction of any lane, 1/m; of all layers where all are uniform.
+    most_per_m: f64,
     /// The smallest above 0.
-    pub(super) thinnest_per_m: f64,
-    /// Whether all layers are the same everywhere.
-    even: bool,
+    least_per_m: f64,
+    /// Whether all layers are uniform.
+    uniform: bool,
     /// `tan(Theta / 2)` over which the phase function falls off from its forward peak: `(1 - g) / (1 + g)` of the
     /// Henyey-Greenstein function with the same peak.
     peak: f64,
-    /// Whether it is the same in all directions.
-    pub(super) isotropic: bool,
+    /// Whether the phase function is the same in all directions.
+    isotropic: bool,
 }
 
-impl<'a, const N: usize> Haze<'a, N> {
-    /// Nothing where no lane scatters.
-    pub(super) fn new(medium: &'a ParticipatingMedium<'a, N>) -> Option<Self> {
-        let own_medium = medium.medium;
-        let own = own_medium.extinction_per_m;
-        let even = [medium.profile]
-            .into_iter()
-            .chain(medium.others.iter().map(|other| &other.profile))
-            .all(|profile| profile.is_uniform());
-        let others = match even {
-            true => medium.others,
-            false => &[],
+/// A layer that dims the light that another scatters.
+#[derive(Clone, Debug)]
+pub(super) struct OtherLayer<const N: usize> {
+    pub(super) density: DensityProfile,
+    structure: HeightStructure,
+    pub(super) extinction_per_m: Spectrum<N>,
+    /// The smallest extinction above 0, 1/m.
+    least_per_m: f64,
+}
+
+impl<const N: usize> ScatteringLayer<N> {
+    /// A layer among others; `None` where no lane scatters.
+    pub(super) fn new(
+        layer: LayerLanes<N>,
+        others: &[LayerLanes<N>],
+        ground_radius_m: f64,
+    ) -> Option<Self> {
+        let own = layer.extinction_per_m;
+        let uniform =
+            layer.density.is_uniform() && others.iter().all(|other| other.density.is_uniform());
+        let whole = match uniform {
+            true => others.iter().fold(own, |sum, o| sum + o.extinction_per_m),
+            false => own,
         };
-        let all = others
-            .iter()
-            .fold(own, |all, o| all + o.medium.extinction_per_m);
-        let isotropic = own_medium.phase == crate::optics::PhaseFunction::Isotropic;
-        (N > 0 && own.max_element() > 0.0).then(|| Self {
-            medium,
-            structure: medium.profile.structure(),
-            others: medium
-                .others
+        let isotropic = layer.phase == PhaseFunction::Isotropic;
+        let middle_nm = *layer.wavelengths_nm.get(N / 2)?;
+        (own.max_element() > 0.0).then(|| Self {
+            structure: layer.density.structure(),
+            others: others
                 .iter()
-                .map(|o| o.profile.structure())
+                .map(|other| OtherLayer {
+                    density: other.density.clone(),
+                    structure: other.density.structure(),
+                    extinction_per_m: other.extinction_per_m,
+                    least_per_m: least_above_0(other.extinction_per_m).min(1e30),
+                })
                 .collect(),
-            scattering_per_m: own_medium.scattering_per_m(),
-            thickest_per_m: f64::from(all.max_element()),
-            thinnest_per_m: thinnest(all),
-            even,
+            ground_radius_m,
+            most_per_m: f64::from(whole.max_element()),
+            least_per_m: least_above_0(whole),
+            uniform,
             peak: match isotropic {
                 true => 1.0,
-                false => {
-                    width(4.0 * PI * own_medium.phase.evaluate(1.0, medium.wavelengths_nm[N / 2]))
-                }
+                false => width_of_peak(4.0 * PI * layer.phase.evaluate(1.0, middle_nm)),
             },
             isotropic,
+            layer,
         })
+    }
+
+    /// Whether [`super::closed_form`] holds for point lights: uniform fog alone, with an isotropic phase function.
+    pub(super) fn has_closed_form(&self) -> bool {
+        self.isotropic && self.layer.density.is_uniform() && self.others.is_empty()
     }
 }
 
 /// The smallest extinction above 0 of any lane.
-fn thinnest<const N: usize>(extinction_per_m: Spectrum<N>) -> f64 {
+fn least_above_0<const N: usize>(extinction_per_m: Spectrum<N>) -> f64 {
     let smaller = |least: f32, v: f32| if v > 0.0 && v < least { v } else { least };
     f64::from(extinction_per_m.0.into_iter().fold(f32::INFINITY, smaller))
 }
 
 /// `(1 - g) / (1 + g)` of the Henyey-Greenstein function that is `peak / (4 pi)` forward: `peak = (1 + g) / (1 - g)^2`.
-fn width(peak: f64) -> f64 {
+fn width_of_peak(peak: f64) -> f64 {
     let d = ((1.0 + 8.0 * peak).sqrt() - 1.0) / (2.0 * peak);
     (d / (2.0 - d)).min(1.0)
 }
 
-/// How much of a lamp's intensity reaches a point, besides `1 / r^2`.
+/// The factor of a light's intensity towards a point, besides `1 / r^2`.
 #[derive(Clone, Copy, Debug)]
 enum Emission {
-    Even,
-    Beam(Beam),
-    /// The true distance of the line from the centre, and the radius.
-    Ball {
+    Point,
+    Spot(SpotCone),
+    Sphere {
+        /// The true distance of the ray from the centre, m.
         nearest_m: f64,
         radius_m: f64,
     },
 }
 
-/// A lamp and a line of sight past it.
+/// A view ray past a light in a layer of fog.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Ray<'a, const N: usize> {
-    haze: &'a Haze<'a, N>,
+pub(super) struct LitRay<'a, const N: usize> {
+    fog: &'a ScatteringLayer<N>,
     pub(super) geometry: LightRayGeometry,
-    pub(super) line: RaySegment,
+    pub(super) ray: RaySegment,
     direction: DVec3,
     to_light: DVec3,
     emission: Emission,
     pub(super) intensity: Spectrum<N>,
 }
 
-impl<'a, const N: usize> Ray<'a, N> {
-    pub(super) fn new(light: &Light<N>, haze: &'a Haze<'a, N>, view_ray: &ViewRay) -> Self {
+impl<'a, const N: usize> LitRay<'a, N> {
+    pub(super) fn new(
+        light: &Light<Spectrum<N>>,
+        fog: &'a ScatteringLayer<N>,
+        view_ray: &ViewRay,
+    ) -> Self {
         let ViewRay {
             eye,
             direction,
             mut length_m,
         } = *view_ray;
-        if let Light::Sphere(ball) = light
-            && let Some(hit) = ball.hit(eye, direction)
+        if let Light::Sphere(sphere) = light
+            && let Some(hit) = sphere.hit(eye, direction)
         {
             length_m = length_m.min(hit);
         }
@@ -133,17 +151,17 @@ impl<'a, const N: usize> Ray<'a, N> {
         let geometry =
             LightRayGeometry::new(eye, direction, length_m, light.position(), light.radius_m());
         Self {
-            haze,
+            fog,
             geometry,
-            line: RaySegment::new(eye.y, direction.y, length_m, haze.medium.ground_radius_m),
+            ray: RaySegment::new(eye.y, direction.y, length_m, fog.ground_radius_m),
             direction,
             to_light,
             emission: match light {
-                Light::Point(_) => Emission::Even,
-                Light::Spot(spot) => Emission::Beam(Beam::new(spot, &geometry, eye, direction)),
-                Light::Sphere(ball) => Emission::Ball {
+                Light::Point(_) => Emission::Point,
+                Light::Spot(spot) => Emission::Spot(SpotCone::new(spot, &geometry, eye, direction)),
+                Light::Sphere(sphere) => Emission::Sphere {
                     nearest_m: to_light.cross(direction).length(),
-                    radius_m: ball.radius_m,
+                    radius_m: sphere.radius_m,
                 },
             },
             intensity: light.intensity(),
@@ -152,36 +170,56 @@ impl<'a, const N: usize> Ray<'a, N> {
 
     /// Path radiance: the sum over all panels.
     pub(super) fn path_radiance(&self, nodes: &Nodes) -> Spectrum<N> {
-        let haze = self.haze;
-        let density = haze.medium.profile.at(self.line.height_m);
-        let mut cuts = Cuts::of(&haze.structure, density, &self.line, haze.thinnest_per_m);
-        if let Emission::Beam(beam) = &self.emission {
-            let [outer, inner] = beam.lit(&self.geometry);
+        let fog = self.fog;
+        let density = fog.layer.density.at(self.ray.height_m);
+        let mut cuts = Cuts::of(&fog.structure, density, &self.ray, fog.least_per_m);
+        if let Emission::Spot(cone) = &self.emission {
+            let [outer, inner] = cone.lit(&self.geometry);
             cuts.keep(outer);
             cuts.add(inner);
         }
-        if !haze.even {
+        if !fog.uniform {
             let closest = -self.geometry.start_m;
             cuts.add((closest, closest));
         }
-        for other in &haze.others {
-            cuts.dimmed_by(other, &self.line);
+        for other in &fog.others {
+            cuts.dimmed_by(&other.structure, &self.ray);
         }
         let mut sum = Spectrum::ZERO;
         cuts.visit(|from, to| self.panel(from, to, nodes, &mut sum));
-        sum * haze.scattering_per_m * self.intensity
+        sum * fog.layer.scattering_per_m * self.intensity
     }
 
-    /// Adds what one panel scatters, for an intensity and a scattering coefficient of 1.
+    /// A bound of the path radiance in all lanes: that of the ray's densest fog without extinction, under the larger of the
+    /// phase function's values forward and backward; in uniform fog dimmed between eye and light.
+    pub(super) fn bound(&self) -> f32 {
+        let layer = &self.fog.layer;
+        let [forward, backward] = [1.0, -1.0].map(|cos| layer.phase_lanes(cos).max_element());
+        let mut light = layer.scattering_per_m * self.intensity;
+        let density = match layer.density.is_uniform() {
+            true => {
+                let nearest_m = self.geometry.nearest_m;
+                let between_m = (self.geometry.distance_m(0.0) - 2.0 * nearest_m).max(0.0);
+                let depth = layer.extinction_per_m * between_m as f32;
+                light *= depth.exp_neg();
+                1.0
+            }
+            false => layer.density.max_above(self.ray.lowest_height_m()),
+        };
+        // 4: twice for a sphere's closeness, twice for its ray moved out to its radius.
+        let glow = 4.0 * density * self.geometry.angle() / self.geometry.nearest_m;
+        light.max_element() * forward.max(backward) * glow.min(f64::from(f32::MAX)) as f32
+    }
+
+    /// Adds the light that one panel scatters, for an intensity and a scattering coefficient of 1.
     ///
-    /// Its nodes crowd at its start, or, where it lies before the lamp in fog that is not uniform and not thick, at its end:
-    /// outwards from the lamp they reach ever farther, and density changes with distance, not with the angle.
+    /// Its nodes crowd at its start, or, where it lies before the light in fog that is neither uniform nor thick, at its end:
+    /// away from the light they reach ever farther, and density changes with distance, not with the angle.
     fn panel(&self, from: f64, to: f64, nodes: &Nodes, sum: &mut Spectrum<N>) {
-        let haze = self.haze;
-        let medium = haze.medium;
+        let fog = self.fog;
         let part = self.geometry.part(from, to);
-        let (end, rate) = self.spent(&part, from, nodes.spent());
-        let outwards = !haze.even && part.start_m + part.length_m <= 0.0 && rate * end < OUTWARDS;
+        let (end, rate) = self.dark_excess(&part, from, nodes.spent());
+        let outwards = !fog.uniform && part.start_m + part.length_m <= 0.0 && rate * end < OUTWARDS;
         let (anchor, origin, sign, end) = match outwards {
             false => (part, from, 1.0, end),
             true => {
@@ -193,7 +231,7 @@ impl<'a, const N: usize> Ray<'a, N> {
         let h = anchor.nearest_m;
         let (r0, ahead) = (anchor.distance_m(0.0), anchor.ahead_at_start());
         // The smaller of the scales over which geometry, phase function and extinction change.
-        let peak = if outwards { 1.0 } else { haze.peak };
+        let peak = if outwards { 1.0 } else { fog.peak };
         let rate = if outwards { 0.0 } else { rate };
         let wide = (peak * h).hypot(ahead);
         let scale = wide / (1.0 + (rate * wide / STRIDE).powi(2)).sqrt();
@@ -205,9 +243,9 @@ impl<'a, const N: usize> Ray<'a, N> {
             let mut weight = 2.0 * step / squares;
             let mut leg = r;
             match &self.emission {
-                Emission::Even => {}
-                Emission::Beam(beam) => weight *= beam.falloff(u, r),
-                Emission::Ball {
+                Emission::Point => {}
+                Emission::Spot(cone) => weight *= cone.falloff(u, r),
+                Emission::Sphere {
                     nearest_m,
                     radius_m,
                 } => {
@@ -218,80 +256,248 @@ impl<'a, const N: usize> Ray<'a, N> {
                     weight *= closeness(*radius_m, r);
                 }
             }
-            weight *= medium.profile.at(self.line.height_at(t));
-            let mut depth =
-                medium.medium.extinction_per_m * self.way_m(medium.profile, t, r, leg) as f32;
-            for other in medium.others {
-                let way_m = self.way_m(&other.profile, t, r, leg);
-                depth = depth.scale_acc(other.medium.extinction_per_m, way_m as f32);
+            weight *= fog.layer.density.at(self.ray.height_at(t));
+            let column = self.column_m(&fog.layer.density, t, r, leg);
+            let mut depth = fog.layer.extinction_per_m * column as f32;
+            for other in &fog.others {
+                let column = self.column_m(&other.density, t, r, leg);
+                depth = depth.scale_acc(other.extinction_per_m, column as f32);
             }
             let cos = (-u / r).clamp(-1.0, 1.0);
-            let phase = medium.medium.phase_lanes(cos, medium.wavelengths_nm);
+            let phase = fog.layer.phase_lanes(cos);
             *sum = sum.scale_acc(phase * depth.exp_neg(), weight as f32);
         });
     }
 
-    /// The fog of a profile on the way from the eye to the point `t` on and from there to the lamp, `r` away (its surface
-    /// `leg`), m of density 1.
+    /// Column of a profile from the eye to the point `t` on and from there to the light, `r` away (its surface `leg`), m.
     #[inline]
-    fn way_m(&self, profile: &DensityProfile, t: f64, r: f64, leg: f64) -> f64 {
-        if profile.is_uniform() {
+    fn column_m(&self, density: &DensityProfile, t: f64, r: f64, leg: f64) -> f64 {
+        if density.is_uniform() {
             return t + leg;
         }
         let view_ray = RaySegment {
             length_m: t,
-            ..self.line
+            ..self.ray
         };
         let towards = (self.to_light - t * self.direction) / r;
         let level = t * (towards.x * self.direction.x + towards.z * self.direction.z);
-        let curvature = 0.5 / self.haze.medium.ground_radius_m;
+        let curvature = 0.5 / self.fog.ground_radius_m;
         let to_light = RaySegment {
-            height_m: self.line.height_at(t),
+            height_m: self.ray.height_at(t),
             sin_elevation: towards.y + 2.0 * curvature * level,
             curvature_per_m: curvature * (1.0 - towards.y * towards.y).max(0.0),
             length_m: leg,
         };
-        profile.column_along_m(&view_ray) + profile.column_along_m(&to_light)
+        density.column_along_m(&view_ray) + density.column_along_m(&to_light)
     }
 
-    /// The excess at which a panel ends or the light of every lane is spent, and the largest optical depth that a metre of
-    /// excess adds on average up to there.
-    fn spent(&self, part: &LightRayGeometry, from: f64, depth: f64) -> (f64, f64) {
-        let haze = self.haze;
+    /// The excess at which a panel ends or the light of every lane has been dimmed by `depth`, and the largest optical depth
+    /// that a metre of excess adds on average up to there.
+    fn dark_excess(&self, part: &LightRayGeometry, from: f64, depth: f64) -> (f64, f64) {
+        let fog = self.fog;
         let end = part.excess_m();
-        if haze.even {
-            return (end.min(depth / haze.thinnest_per_m), haze.thickest_per_m);
+        if fog.uniform {
+            return (end.min(depth / fog.least_per_m), fog.most_per_m);
         }
-        let way = |excess: f64| {
+        let depth_at = |excess: f64| {
             let t = part.place_m(excess);
             let r = part.distance_m(t);
-            let own = haze.thinnest_per_m * self.way_m(haze.medium.profile, from + t, r, r);
-            haze.medium.others.iter().fold(own, |sum, other| {
-                let way_m = self.way_m(&other.profile, from + t, r, r);
-                sum + thinnest(other.medium.extinction_per_m).min(1e30) * way_m
+            let own = fog.least_per_m * self.column_m(&fog.layer.density, from + t, r, r);
+            fog.others.iter().fold(own, |sum, other| {
+                sum + other.least_per_m * self.column_m(&other.density, from + t, r, r)
             })
         };
-        let start = way(0.0);
-        let passed = |excess: f64| way(excess) - start;
-        let density = haze.medium.profile.at(self.line.height_at(from));
-        let mut reach = end.min(2.0 * depth / (haze.thinnest_per_m * density));
+        let start = depth_at(0.0);
+        let passed = |excess: f64| depth_at(excess) - start;
+        let density = fog.layer.density.at(self.ray.height_at(from));
+        let mut reach = end.min(2.0 * depth / (fog.least_per_m * density));
         if reach.is_infinite() {
             return (end, 0.0);
         }
-        let mut spent = passed(reach);
+        let mut reached = passed(reach);
         for _ in 0..60 {
-            if spent < depth && reach < end {
+            if reached < depth && reach < end {
                 reach = end.min(2.0 * reach);
-            } else if spent > 2.0 * depth {
+            } else if reached > 2.0 * depth {
                 reach *= 0.5;
             } else {
                 break;
             }
-            spent = passed(reach);
+            reached = passed(reach);
         }
-        // Where only doubling and halving again would do, the longer one stands.
-        let rate = (spent / reach).max(0.0) * (haze.thickest_per_m / haze.thinnest_per_m);
+        // Where doubling and halving would alternate, the longer one is kept.
+        let rate = (reached / reach).max(0.0) * (fog.most_per_m / fog.least_per_m);
         (reach, if rate.is_finite() { rate } else { 0.0 })
+    }
+}
+
+/// A Gauss-Legendre rule for integrals along rays past lights.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Nodes {
+    rule: GaussRule,
+}
+
+impl Nodes {
+    /// A rule of `count` nodes; at least 1.
+    pub fn new(count: usize) -> Self {
+        Self {
+            rule: GaussRule::new(count.max(1)),
+        }
+    }
+
+    /// Number of nodes.
+    pub fn count(&self) -> usize {
+        self.rule.len()
+    }
+
+    /// Node and weight of each point on `[0, 1]`.
+    #[inline]
+    pub(super) fn iter(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
+        self.rule.iter()
+    }
+
+    /// The optical depth after which an integral is cut off: the rest, `e^-depth`, is less than the error of the rule.
+    #[inline]
+    pub(super) fn spent(&self) -> f64 {
+        10.0 + self.count() as f64 / 3.0
+    }
+
+    /// Nodes for `int_0^end f(s) ds` of a function that is smooth over the scale `scale` at 0 and over ever larger ones
+    /// beyond: `s = scale (1 - p) / p` with `p = q^3`, and Gauss's nodes in `q`, from 1 at `s = 0` to 0 at infinity. Calls
+    /// `visit(s, ds)`.
+    #[inline(always)]
+    pub(super) fn visit(&self, scale: f64, end: f64, mut visit: impl FnMut(f64, f64)) {
+        // 0 for an infinite ray.
+        let inverse = scale / end;
+        let covered = 1.0 / (1.0 + inverse);
+        let last = (inverse * covered).cbrt();
+        let span = covered / (1.0 + last + last * last);
+        for (place, weight) in self.rule.iter() {
+            let z = span * place;
+            let q = 1.0 - z;
+            let p = q * q * q;
+            let s = scale * z * (3.0 - 3.0 * z + z * z) / p;
+            visit(s, 3.0 * weight * span * scale / (q * p));
+        }
+    }
+}
+
+/// Heights above a ray's densest point, in scale heights, at which it is cut; above the last the fog is negligible.
+const HEIGHTS: [f64; 3] = [3.0, 10.0, 40.0];
+
+/// The optical depth from the eye beyond which light is negligible.
+const DARK: f64 = 90.0;
+
+/// Number of cuts: of a fog with the cone of a spot light at most 12, of each other layer at most 6; more are left out, at the
+/// cost of some accuracy.
+const MOST_CUTS: usize = 40;
+
+/// Distances along a ray between which panels lie, so that fog and light are smooth in each.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cuts {
+    first: f64,
+    last: f64,
+    within: [f64; MOST_CUTS],
+    count: usize,
+}
+
+impl Cuts {
+    /// The whole ray; `density` is that of the fog at its start, `least_per_m` the smallest extinction above 0 of any lane.
+    ///
+    /// It is cut where density has a kink, and at a few heights above its densest point: however far away the light is, the
+    /// part of a ray that lies in dense fog gets nodes of its own. What lies above the fog's top or 40 scale heights above its
+    /// densest point, or behind an optical depth of 90, is left out.
+    pub(super) fn of(
+        fog: &HeightStructure,
+        density: f64,
+        ray: &RaySegment,
+        least_per_m: f64,
+    ) -> Self {
+        let mut cuts = Self {
+            first: 0.0,
+            last: ray.length_m,
+            within: [0.0; MOST_CUTS],
+            count: 0,
+        };
+        for &kink in &fog.kinks_m {
+            cuts.add(ray.below(kink));
+        }
+        if fog.top_m.is_finite() {
+            cuts.keep(ray.below(fog.top_m));
+        }
+        for decay in &fog.decays {
+            let mut floor = ray.lowest_height_m().max(decay.from_m);
+            if decay.from_m == f64::NEG_INFINITY && ray.sin_elevation < 0.0 {
+                // The density before which even a straight descent has passed an optical depth of DARK.
+                let density =
+                    density + DARK * -ray.sin_elevation / (least_per_m * decay.scale_height_m);
+                let dark = decay.reference_height_m - decay.scale_height_m * density.ln();
+                if dark > floor {
+                    cuts.keep((0.0, ray.below(dark).0));
+                    floor = dark;
+                }
+            }
+            cuts.cut_decay(ray, floor, decay);
+        }
+        cuts
+    }
+
+    /// Cuts where another layer, which dims the light, has a kink, and at heights where it has decayed.
+    pub(super) fn dimmed_by(&mut self, layer: &HeightStructure, ray: &RaySegment) {
+        for kink in layer.other_kinks_m() {
+            self.add(ray.below(kink));
+        }
+        for decay in &layer.decays {
+            let base_m = ray.lowest_height_m().max(decay.from_m);
+            self.add(ray.below(base_m));
+            for height in &HEIGHTS[..2] {
+                self.add(ray.below(base_m + height * decay.scale_height_m));
+            }
+        }
+    }
+
+    /// Cuts at the heights above the densest point.
+    fn cut_decay(&mut self, ray: &RaySegment, densest_height_m: f64, decay: &Decay) {
+        let below = |height: f64| ray.below(densest_height_m + height * decay.scale_height_m);
+        for height in HEIGHTS {
+            self.add(below(height));
+        }
+        if ray.sin_elevation != 0.0 || ray.curvature_per_m != 0.0 {
+            self.keep(below(HEIGHTS[HEIGHTS.len() - 1]));
+        }
+    }
+
+    /// Leaves out all that is not between two distances.
+    pub(super) fn keep(&mut self, (first, last): (f64, f64)) {
+        self.first = self.first.max(first);
+        self.last = self.last.min(last);
+    }
+
+    /// Cuts at two distances.
+    pub(super) fn add(&mut self, (first, last): (f64, f64)) {
+        for at in [first, last] {
+            if at.is_finite() && self.count < MOST_CUTS {
+                self.within[self.count] = at;
+                self.count += 1;
+            }
+        }
+    }
+
+    /// Calls `visit(from, to)` for every panel, nearest first.
+    #[inline]
+    pub(super) fn visit(&mut self, mut visit: impl FnMut(f64, f64)) {
+        let within = &mut self.within[..self.count];
+        within.sort_unstable_by(f64::total_cmp);
+        let mut from = self.first;
+        for &at in within.iter() {
+            if at > from && at < self.last {
+                visit(from, at);
+                from = at;
+            }
+        }
+        if self.last > from {
+            visit(from, self.last);
+        }
     }
 }
 

@@ -1,12 +1,14 @@
-//! Integrals along a line by brute force, for tests.
+//! Integrals along rays by brute force, for tests.
 
-use super::geometry::LightRayGeometry;
-use super::{Light, ParticipatingMedium, ViewRay};
+use super::geometry::{LightRayGeometry, ViewRay};
+use super::light::{Light, SpotCone};
+use super::march::ScatteringLayer;
 use crate::atmosphere::{DensityProfile, RaySegment};
 use crate::math::quadrature::GaussRule;
+use crate::spectrum::Spectrum;
 use std::f64::consts::PI;
 
-/// `e = t + r - r_0` without cancellation, where the distance from the point closest to the lamp is `u`.
+/// `e = t + r - r_0` without cancellation, at `u` beyond the point closest to the light.
 fn excess(geometry: &LightRayGeometry, t: f64, u: f64) -> f64 {
     let h = geometry.nearest_m;
     let ahead = |u: f64| match u < 0.0 {
@@ -16,9 +18,9 @@ fn excess(geometry: &LightRayGeometry, t: f64, u: f64) -> f64 {
     t * (ahead(geometry.start_m) + ahead(u)) / (geometry.distance_m(0.0) + h.hypot(u))
 }
 
-/// The integral along a passage of `f(t, u)`: Gauss's rule of 24 points in stretches that shrink by a quarter towards the
-/// start, the end, the point closest to the lamp and the places `more`. It is counted from the point closest to the lamp
-/// where that is on the way, from the start elsewhere: what is small is not lost beside what is large.
+/// The integral along a ray of `f(t, u)`: Gauss-Legendre with 24 points in intervals that shrink by a quarter towards the start,
+/// the end, the point closest to the light and the places `more`. The coordinate is counted from the point closest to the
+/// light where that is on the ray, from the start elsewhere, so that small terms are not lost beside large ones.
 pub fn along(geometry: &LightRayGeometry, more: &[f64], f: impl Fn(f64, f64) -> f64) -> f64 {
     let length = geometry.length_m.min(1e16);
     let passed = -geometry.start_m;
@@ -37,16 +39,16 @@ pub fn along(geometry: &LightRayGeometry, more: &[f64], f: impl Fn(f64, f64) -> 
         }
     }
     breaks.sort_by(f64::total_cmp);
-    // Stretches shorter than rounding are none.
+    // Intervals shorter than rounding are left out.
     breaks.dedup_by(|b, a| (*b - *a).abs() <= 1e-14 * b.abs());
     GaussRule::new(24).integrate_between(first, last, &breaks, |s| {
         f(s + origin, s + (origin - passed))
     })
 }
 
-/// What [`super::airlight_isotropic`] is, less the dimming over `r_0`.
+/// [`super::airlight_isotropic`] without the dimming over `r_0`.
 pub fn isotropic_beyond(geometry: &LightRayGeometry, extinction: f64) -> f64 {
-    // An endless line is cut after 1e16 m; what is beyond counts only in clear air.
+    // An infinite ray is cut after 1e16 m; the rest counts only in clear air.
     let rest = match geometry.length_m.is_infinite() && extinction == 0.0 {
         true => 1e-16 / (4.0 * PI),
         false => 0.0,
@@ -57,8 +59,8 @@ pub fn isotropic_beyond(geometry: &LightRayGeometry, extinction: f64) -> f64 {
     })
 }
 
-/// Every passage that tests try.
-pub fn passages(nearest: &[f64]) -> impl Iterator<Item = LightRayGeometry> + '_ {
+/// All geometries that tests try.
+pub fn geometries(nearest: &[f64]) -> impl Iterator<Item = LightRayGeometry> + '_ {
     const START: [f64; 13] = [
         -1e7, -1e4, -37.0, -1.0, -1e-3, -1e-6, 0.0, 1e-6, 1e-3, 1.0, 37.0, 1e4, 1e7,
     ];
@@ -74,16 +76,16 @@ pub fn passages(nearest: &[f64]) -> impl Iterator<Item = LightRayGeometry> + '_ 
     })
 }
 
-/// A lamp's light in the first lane of a line of sight: the defining integral, less the clamp where the line passes closer
-/// than the lamp's radius.
+/// The path radiance of a light in the first lane: the defining integral, without the clamp where the ray passes closer than
+/// the light's radius.
 pub fn path_radiance<const N: usize>(
-    light: &Light<N>,
-    medium: &ParticipatingMedium<N>,
+    light: &Light<Spectrum<N>>,
+    fog: &ScatteringLayer<N>,
     view_ray: &ViewRay,
 ) -> f64 {
     let ViewRay { eye, direction, .. } = *view_ray;
     let length = match light {
-        Light::Sphere(ball) => ball
+        Light::Sphere(sphere) => sphere
             .hit(eye, direction)
             .map_or(view_ray.length_m, |hit| hit.min(view_ray.length_m)),
         _ => view_ray.length_m,
@@ -94,10 +96,10 @@ pub fn path_radiance<const N: usize>(
         _ => light.radius_m(),
     };
     let geometry = LightRayGeometry::new(eye, direction, length, light.position(), nearest);
-    let own_medium = medium.medium;
-    let extinction = f64::from(own_medium.extinction_per_m[0]);
-    let line = RaySegment::new(eye.y, direction.y, length, medium.ground_radius_m);
-    let edges = edges(light, medium, view_ray, &line);
+    let own = &fog.layer;
+    let extinction = f64::from(own.extinction_per_m[0]);
+    let ray = RaySegment::new(eye.y, direction.y, length, fog.ground_radius_m);
+    let edges = edges(light, fog, view_ray, &ray);
     let integral = along(&geometry, &edges, |t, u| {
         let r = (geometry.nearest_m * geometry.nearest_m + u * u).sqrt();
         let point = eye + t * direction;
@@ -107,16 +109,16 @@ pub fn path_radiance<const N: usize>(
             Light::Spot(spot) => {
                 let closest = true_nearest.max(1e-300) / geometry.nearest_m;
                 let off = (point - light.position()) / r;
-                assert!(closest > 0.99, "spots are tried off the line");
+                assert!(closest > 0.99, "spots are tried off the ray");
                 (r, spot.falloff(off))
             }
-            Light::Sphere(ball) => {
-                let x = (ball.radius_m / r).powi(2).min(1.0);
-                (r - ball.radius_m, 2.0 / (1.0 + (1.0 - x).sqrt()))
+            Light::Sphere(sphere) => {
+                let x = (sphere.radius_m / r).powi(2).min(1.0);
+                (r - sphere.radius_m, 2.0 / (1.0 + (1.0 - x).sqrt()))
             }
         };
-        let height = line.height_at(t);
-        let curvature = 0.5 / medium.ground_radius_m;
+        let height = ray.height_at(t);
+        let curvature = 0.5 / fog.ground_radius_m;
         let offset = t * (towards.x * direction.x + towards.z * direction.z);
         let to_light = RaySegment {
             height_m: height,
@@ -124,39 +126,37 @@ pub fn path_radiance<const N: usize>(
             curvature_per_m: curvature * (1.0 - towards.y * towards.y).max(0.0),
             length_m: leg,
         };
-        let way = |profile: &DensityProfile| {
-            profile.column_along_m(&RaySegment {
-                length_m: t,
-                ..line
-            }) + match profile.is_uniform() {
-                true => leg,
-                false => profile.column_along_m(&to_light),
-            }
+        let column = |profile: &DensityProfile| {
+            profile.column_along_m(&RaySegment { length_m: t, ..ray })
+                + match profile.is_uniform() {
+                    true => leg,
+                    false => profile.column_along_m(&to_light),
+                }
         };
-        let others = medium.others.iter();
-        let others = others.map(|o| f64::from(o.medium.extinction_per_m[0]) * way(&o.profile));
-        let depth = extinction * way(medium.profile) + others.sum::<f64>();
-        let phase = own_medium.phase.evaluate(-u / r, medium.wavelengths_nm[0]);
-        medium.profile.at(height) * part * phase * (-depth).exp() / (r * r)
+        let others = fog.others.iter();
+        let others = others.map(|o| f64::from(o.extinction_per_m[0]) * column(&o.density));
+        let depth = extinction * column(&own.density) + others.sum::<f64>();
+        let phase = own.phase.evaluate(-u / r, own.wavelengths_nm[0]);
+        own.density.at(height) * part * phase * (-depth).exp() / (r * r)
     });
-    let scattering = f64::from(own_medium.scattering_per_m()[0]);
+    let scattering = f64::from(own.scattering_per_m[0]);
     scattering * f64::from(light.intensity()[0]) * integral
 }
 
-/// Where density or the lamp's intensity has a kink, or fog is densest.
+/// Where density or the light's intensity has a kink, or fog is densest.
 fn edges<const N: usize>(
-    light: &Light<N>,
-    medium: &ParticipatingMedium<N>,
+    light: &Light<Spectrum<N>>,
+    fog: &ScatteringLayer<N>,
     view_ray: &ViewRay,
-    line: &RaySegment,
+    ray: &RaySegment,
 ) -> Vec<f64> {
     let mut edges = Vec::new();
-    let others = medium.others.iter().map(|other| &other.profile);
-    for profile in others.chain([medium.profile]) {
+    let others = fog.others.iter().map(|other| &other.density);
+    for profile in others.chain([&fog.layer.density]) {
         let structure = profile.structure();
-        edges.extend(structure.kinks_m.iter().map(|&kink| line.below(kink)));
+        edges.extend(structure.kinks_m.iter().map(|&kink| ray.below(kink)));
         if !structure.decays.is_empty() {
-            edges.push((-0.5 * line.sin_elevation / line.curvature_per_m, 0.0));
+            edges.push((-0.5 * ray.sin_elevation / ray.curvature_per_m, 0.0));
         }
     }
     if let Light::Spot(spot) = light {
@@ -167,8 +167,8 @@ fn edges<const N: usize>(
             spot.position,
             spot.radius_m,
         );
-        let beam = super::spot::Beam::new(spot, &geometry, view_ray.eye, view_ray.direction);
-        edges.extend(beam.lit(&geometry));
+        let cone = SpotCone::new(spot, &geometry, view_ray.eye, view_ray.direction);
+        edges.extend(cone.lit(&geometry));
     }
     edges
         .into_iter()

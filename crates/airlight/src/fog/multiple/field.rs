@@ -1,31 +1,31 @@
-//! The light inside a fog, solved for once, and what of it is scattered into a line of sight.
+//! The light inside a fog, solved for once, and the part of it that is scattered into a ray.
 
 use super::heights::{self, Weighted};
 use super::legendre::{self, COUNT, STREAMS};
 use super::ordinates::{self, Boundary, Cell};
 use crate::atmosphere::DensityProfile;
 use crate::atmosphere::RaySegment;
-use crate::fog::lanes::Lanes;
+use crate::fog::closed_forms::{Lanes, linear_source_mean, mean_dimmed_source};
 use crate::fog::lighting::{FogLighting, Ground};
-use crate::fog::{scatter, split_at_heights::split_at_heights};
+use crate::fog::ray_cuts::split_at_heights;
 use crate::math::interpolation::{interval_of, lerp};
 use crate::spectrum::Spectrum;
 use std::f64::consts::PI;
 
-/// Optical depth of the layers that the solver steps through.
+/// Optical depth of the cells that the solver steps through.
 const THINNEST: f64 = 0.05;
 
-/// A profile with what the solver needs of its matter: extinction and scattering without the forward peak.
+/// Input of the solver for a density profile: extinction and scattering without the forward peak.
 #[derive(Clone, Debug)]
 pub struct Reduced<const N: usize> {
-    pub profile: DensityProfile,
+    pub density: DensityProfile,
     /// Extinction without the peak, 1/m.
     pub extinction_per_m: Spectrum<N>,
     /// Scattering times its Legendre moments without the peak, 1/m.
     pub scattering_per_m: [Spectrum<N>; STREAMS],
 }
 
-/// What each moment adds in a direction.
+/// The factor of each moment in a direction.
 pub type DirectionWeights = [f32; COUNT];
 
 /// The source function of diffuse light, by height and direction, and the light on the ground.
@@ -49,18 +49,19 @@ pub struct Field<const N: usize> {
 
 impl<const N: usize> Field<N> {
     /// Solves for the light in these layers. `sun_depth(height)` is the reduced optical depth to the sun, huge where the
-    /// ground is in the way.
+    /// ground is in the way. Lanes from `lanes` on repeat the last one before.
     pub fn solve(
         layers: Vec<Reduced<N>>,
         ground: &Ground,
-        light: &FogLighting<N>,
+        light: &FogLighting<Spectrum<N>>,
         sun_depth: impl Fn(f64) -> Spectrum<N>,
+        lanes: usize,
     ) -> Self {
         let weighted: Vec<Weighted> = layers
             .iter()
             .map(|s| {
                 let sum: f32 = s.extinction_per_m.0.iter().sum();
-                (s.profile.clone(), f64::from(sum) / N as f64)
+                (s.density.clone(), f64::from(sum) / N as f64)
             })
             .collect();
         let heights_m = heights::between(&weighted, ground.height_m);
@@ -68,7 +69,7 @@ impl<const N: usize> Field<N> {
             .iter()
             .map(|&height| heights::depth_above(&weighted, height))
             .collect();
-        let column_m = |&height: &f64| layers[0].profile.column_above_m(height);
+        let column_m = |&height: &f64| layers[0].density.column_above_m(height);
         let columns_m = heights_m.iter().map(column_m).collect();
         let mut field = Self {
             columns_m,
@@ -81,14 +82,30 @@ impl<const N: usize> Field<N> {
             depths,
         };
         let sun_depths: Vec<Spectrum<N>> = field.heights_m.iter().map(|&h| sun_depth(h)).collect();
-        for lane in 0..N {
+        for lane in 0..lanes.min(N) {
             field.solve_lane(lane, light, &sun_depths);
+        }
+        for lane in lanes..N {
+            field.copy_lane(lanes - 1, lane);
         }
         field
     }
 
-    fn solve_lane(&mut self, lane: usize, light: &FogLighting<N>, sun_depths: &[Spectrum<N>]) {
-        let (sine_sun, irradiance) = match &light.sun {
+    fn copy_lane(&mut self, from: usize, to: usize) {
+        for moments in self.sources.iter_mut().flatten().flatten() {
+            moments[to] = moments[from];
+        }
+        self.ground_irradiance[to] = self.ground_irradiance[from];
+        self.ground_radiance[to] = self.ground_radiance[from];
+    }
+
+    fn solve_lane(
+        &mut self,
+        lane: usize,
+        light: &FogLighting<Spectrum<N>>,
+        sun_depths: &[Spectrum<N>],
+    ) {
+        let (sin_sun, irradiance) = match &light.sun {
             Some(sun) => (sun.direction.y, f64::from(sun.irradiance[lane])),
             None => (1.0, 0.0),
         };
@@ -96,14 +113,12 @@ impl<const N: usize> Field<N> {
             .map(|k| self.cell(k, lane))
             .collect();
         let boundary = Boundary {
-            sine_sun,
+            sin_sun,
             sky: f64::from(light.ambient[lane]),
             albedo: f64::from(light.ground_albedo[lane]),
-            sun_on_ground: irradiance
-                * sine_sun.max(0.0)
-                * f64::from(sun_depths[0][lane]).exp_neg(),
+            sun_on_ground: irradiance * sin_sun.max(0.0) * f64::from(sun_depths[0][lane]).exp_neg(),
         };
-        // The solver counts from the top, and takes thinner layers than are kept.
+        // The solver counts from the top, and takes thinner cells than are kept.
         let mut thin = Vec::new();
         let mut kept = vec![0];
         for (k, cell) in cells.iter().enumerate().rev() {
@@ -112,7 +127,7 @@ impl<const N: usize> Field<N> {
             let step = (low - high) / parts;
             for part in 0..parts as usize {
                 // The mean over the part of light that falls off exponentially.
-                let sunlight = scatter::mean_once(high + part as f64 * step, step);
+                let sunlight = mean_dimmed_source(high + part as f64 * step, step);
                 thin.push(Cell {
                     extinction: cell.extinction / parts,
                     scattering: cell.scattering.map(|s| s / parts),
@@ -145,13 +160,13 @@ impl<const N: usize> Field<N> {
         self.ground_radiance[lane] = (boundary.albedo * solution.ground_irradiance / PI) as f32;
     }
 
-    /// One wavelength of the layer between two heights.
+    /// One wavelength of the cell between two heights.
     fn cell(&self, k: usize, lane: usize) -> Cell {
         let (low, high) = (self.heights_m[k], self.heights_m[k + 1]);
         let mut cell = Cell::default();
         for layer in &self.layers {
             let column = layer
-                .profile
+                .density
                 .column_along_m(&RaySegment::flat(low, 1.0, high - low));
             cell.extinction += f64::from(layer.extinction_per_m[lane]) * column;
             for (sum, scattering) in cell.scattering.iter_mut().zip(&layer.scattering_per_m) {
@@ -161,34 +176,34 @@ impl<const N: usize> Field<N> {
         cell
     }
 
-    /// Diffuse light scattered into a line, seen through the extinction without peaks of everything on it (`endless` is
-    /// that of matter without an upper end, which the field does not hold).
+    /// Diffuse light scattered into a ray, dimmed by the extinction without peaks of all layers (`uniform` is that of layers
+    /// without an upper end, which the field does not hold).
     pub fn scattered(
         &self,
-        line: &RaySegment,
+        ray: &RaySegment,
         weights: &DirectionWeights,
-        endless: Spectrum<N>,
+        uniform: Spectrum<N>,
     ) -> Spectrum<N> {
         if let [layer] = &self.layers[..]
-            && line.curvature_per_m == 0.0
-            && line.sin_elevation.abs() > 1e-3
-            && endless == Spectrum::ZERO
+            && ray.curvature_per_m == 0.0
+            && ray.sin_elevation.abs() > 1e-3
+            && uniform == Spectrum::ZERO
         {
-            return self.scattered_in_one(layer, line, weights);
+            return self.scattered_in_single_layer(layer, ray, weights);
         }
         let mut path = Spectrum::ZERO;
         let mut before = Spectrum::ZERO;
-        split_at_heights(line, &self.heights_m, |part| {
+        split_at_heights(ray, &self.heights_m, |part| {
             let inside = part.height_at(0.5 * part.length_m.min(1e9));
             let k = interval_of(&self.heights_m, inside);
             let along = self.layers.iter().fold(Spectrum::ZERO, |sum, layer| {
-                let column = layer.profile.column_along_m(part).min(1e25);
+                let column = layer.density.column_along_m(part).min(1e25);
                 sum.scale_acc(layer.extinction_per_m, column as f32)
             });
             let near = self.source(k, part.height_m, weights);
             let far = self.source(k, part.end_height_m(), weights);
-            let whole = along.scale_acc(endless, part.length_m.min(1e25) as f32);
-            let (w_near, w_far) = scatter::linear_source_mean(whole);
+            let whole = along.scale_acc(uniform, part.length_m.min(1e25) as f32);
+            let (w_near, w_far) = linear_source_mean(whole);
             path += before.exp_neg() * along * (w_near * near + w_far * far);
             before += whole;
             before.min_element() < 17.0
@@ -196,23 +211,23 @@ impl<const N: usize> Field<N> {
         path
     }
 
-    /// [`Field::scattered`] in one profile over flat ground, in the vertical column as the measure of height: a line passes
-    /// it evenly, and the source function is linear in it from one height to the next.
-    fn scattered_in_one(
+    /// [`Field::scattered`] in one profile over flat ground, with the vertical column as the coordinate of height: it is linear
+    /// along a ray, and the source function is linear in it from one height to the next.
+    fn scattered_in_single_layer(
         &self,
         layer: &Reduced<N>,
-        line: &RaySegment,
+        ray: &RaySegment,
         weights: &DirectionWeights,
     ) -> Spectrum<N> {
-        let column_m = |height_m: f64| layer.profile.column_above_m(height_m).min(1e25);
-        let per_m = layer.extinction_per_m * (1.0 / line.sin_elevation.abs()) as f32;
-        let (from, to) = (column_m(line.height_m), column_m(line.end_height_m()));
-        // Columns fall with height: count heights whose column is above that of the start.
+        let column_m = |height_m: f64| layer.density.column_above_m(height_m).min(1e25);
+        let per_m = layer.extinction_per_m * (1.0 / ray.sin_elevation.abs()) as f32;
+        let (from, to) = (column_m(ray.height_m), column_m(ray.end_height_m()));
+        // Columns fall with height: count the heights with a larger column than the start.
         let above = self.columns_m.partition_point(|&column| column > from);
         let last = self.columns_m.len() - 1;
         let node = |k: usize| self.at_node(k, weights);
         let between = |k: usize, column: f64| {
-            // In the layer below height `k`, held at the ends.
+            // In the cell below height `k`, clamped to its ends.
             let (low, high) = (self.columns_m[k - 1], self.columns_m[k]);
             let up = match low > high {
                 true => ((low - column) / (low - high)).clamp(0.0, 1.0) as f32,
@@ -224,10 +239,10 @@ impl<const N: usize> Field<N> {
         let mut before = Spectrum::ZERO;
         let mut column = from;
         let mut source = between(above.clamp(1, last), from);
-        let rises = line.sin_elevation > 0.0;
+        let rises = ray.sin_elevation > 0.0;
         let mut next = if rises { above } else { above.wrapping_sub(1) };
         loop {
-            // Up to the next height or the end of the line, whichever comes first.
+            // Up to the next height or the end of the ray, whichever comes first.
             let passes = match self.columns_m.get(next) {
                 Some(&column) => (rises && column > to) || (!rises && column < to),
                 None => false,
@@ -239,7 +254,7 @@ impl<const N: usize> Field<N> {
                 (to, between(k.clamp(1, last), to))
             };
             let along = per_m * (column - until).abs() as f32;
-            let (w_near, w_far) = scatter::linear_source_mean(along);
+            let (w_near, w_far) = linear_source_mean(along);
             path += before.exp_neg() * along * (w_near * source + w_far * far);
             before += along;
             if !passes || before.min_element() > 17.0 {
@@ -254,7 +269,7 @@ impl<const N: usize> Field<N> {
         }
     }
 
-    /// The source function at height `k`, of the layer below it (of the one above it at the ground).
+    /// The source function at height `k`, of the cell below it (of the one above it at the ground).
     #[inline]
     fn at_node(&self, k: usize, weights: &DirectionWeights) -> Spectrum<N> {
         match k {
@@ -263,7 +278,7 @@ impl<const N: usize> Field<N> {
         }
     }
 
-    /// The source function at a height in or beside layer `k`.
+    /// The source function at a height in or beside cell `k`.
     #[inline]
     fn source(&self, k: usize, height_m: f64, weights: &DirectionWeights) -> Spectrum<N> {
         let sum = |end: usize| weighted(&self.sources[k][end], weights);

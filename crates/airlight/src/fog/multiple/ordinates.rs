@@ -30,7 +30,7 @@ pub struct Cell {
 #[derive(Clone, Copy, Debug)]
 pub struct Boundary {
     /// Sine of the sun's elevation.
-    pub sine_sun: f64,
+    pub sin_sun: f64,
     /// Radiance that comes evenly from above.
     pub sky: f64,
     /// Albedo of the Lambertian ground.
@@ -77,7 +77,7 @@ pub fn solve(cells: &[Cell], boundary: &Boundary) -> Solution {
         moments: vec![[0.0; COUNT]; cells.len() + 1],
         ground_irradiance: 0.0,
     };
-    let sun = legendre::evaluate(boundary.sine_sun);
+    let sun = legendre::evaluate(boundary.sin_sun);
     for m in 0..STREAMS {
         let lit = |cell: &Cell| {
             let beam = (m..STREAMS).map(|l| cell.scattering[l] * sun[legendre::index(l, m)]);
@@ -280,7 +280,7 @@ mod tests {
     fn light_that_is_the_same_everywhere_stays_so() {
         for depth in [0.01, 1.0, 100.0] {
             let boundary = Boundary {
-                sine_sun: 0.5,
+                sin_sun: 0.5,
                 sky: 2.0,
                 albedo: 1.0,
                 sun_on_ground: 0.0,
@@ -307,7 +307,7 @@ mod tests {
         }
         let direct = m * f64::exp(-depth / m);
         let boundary = Boundary {
-            sine_sun: m,
+            sin_sun: m,
             sky: 0.0,
             albedo: 0.0,
             sun_on_ground: direct,

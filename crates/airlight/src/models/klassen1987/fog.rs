@@ -4,9 +4,8 @@
 //! 47, with the corrections that the book lists: the sun's way through the fog follows eqs. 37 and 38 everywhere, and the
 //! sign in eq. 47 is minus. Flat ground is good to 1 % for a sun 15 degrees high or more (the paper's figure).
 
-use crate::fog::lanes::Lanes;
-use crate::fog::layer::Medium;
-use crate::fog::scatter;
+use crate::atmosphere::{Constituent, RaySegment};
+use crate::fog::{Lanes, LayerLanes, constant_source, dimmed_source};
 use crate::spectrum::Spectrum;
 use crate::transfer::PathOptics;
 
@@ -28,18 +27,35 @@ pub struct Slab1987<const N: usize> {
     /// Height of the top of an atmosphere as dense everywhere as at the ground, `R_A - R_E`, m (8.4 km).
     pub air_top_m: f64,
     /// Droplets (`beta_p`).
-    pub fog: Medium<N>,
+    pub(super) fog: LayerLanes<N>,
     /// Molecules at the ground's density (`beta_m`).
-    pub air: Medium<N>,
+    pub(super) air: LayerLanes<N>,
     /// Solar irradiance outside the atmosphere on a surface that faces the sun, `I_0`.
     pub sun_irradiance: Spectrum<N>,
     /// Sine of the sun's elevation `phi`, above 0.
     pub sin_sun: f64,
-    /// Wavelength of each lane for the phase functions, nm.
-    pub wavelengths_nm: [f64; N],
 }
 
 impl<const N: usize> Slab1987<N> {
+    /// Fog and air at wavelengths (nm), each as dense everywhere as its coefficients state; heights in m, the sine of the sun's
+    /// elevation above 0.
+    pub fn new(
+        [fog, air]: [&Constituent; 2],
+        [fog_top_m, air_top_m]: [f64; 2],
+        sun_irradiance: Spectrum<N>,
+        sin_sun: f64,
+        wavelengths_nm: &[f64; N],
+    ) -> Self {
+        Self {
+            fog_top_m,
+            air_top_m,
+            fog: LayerLanes::new(fog, wavelengths_nm),
+            air: LayerLanes::new(air, wavelengths_nm),
+            sun_irradiance,
+            sin_sun,
+        }
+    }
+
     /// `B = beta_m + beta_p` (eq. 43), 1/m.
     pub fn extinction_per_m(&self) -> Spectrum<N> {
         self.air.extinction_per_m + self.fog.extinction_per_m
@@ -92,7 +108,7 @@ impl<const N: usize> Slab1987<N> {
                 -sin_elevation / self.sin_sun,
             ),
         };
-        let arriving = scatter::once(
+        let arriving = dimmed_source(
             extinction * near_m as f32,
             along * (1.0 + slope) as f32,
             along,
@@ -108,18 +124,15 @@ impl<const N: usize> Slab1987<N> {
     /// The same with the sun at the horizon: no direct light arrives, and light that has been scattered many times comes
     /// from everywhere with the radiance `colour` (section 11.2).
     pub fn in_fog_at_sunset(&self, length_m: f64, colour: Spectrum<N>) -> PathOptics<N> {
-        crate::fog::approximation::constant_source(
-            self.extinction_per_m() * length_m as f32,
-            colour,
-        )
+        constant_source(self.extinction_per_m() * length_m as f32, colour)
     }
 
     /// The clear air between an eye above the fog and the point where its line enters the top, at the ground's density.
     pub fn air_above(&self, length_m: f64, cos_sun: f64) -> PathOptics<N> {
         let along = self.air.extinction_per_m * length_m as f32;
-        let phase = self.air.phase_lanes(cos_sun, &self.wavelengths_nm);
-        let source = self.irradiance_at_top() * self.air.single_scattering_albedo * phase;
-        crate::fog::approximation::constant_source(along, source)
+        let albedo = self.air.scattering_per_m / self.air.extinction_per_m;
+        let source = self.irradiance_at_top() * albedo * self.air.phase_lanes(cos_sun);
+        constant_source(along, source)
     }
 
     /// Everything between an eye at any height and an object `length_m` away: the air above the fog, then the fog.
@@ -131,7 +144,7 @@ impl<const N: usize> Slab1987<N> {
         cos_sun: f64,
         depth: SunDepth,
     ) -> PathOptics<N> {
-        let line = crate::fog::RaySegment::flat(eye_height_m, sin_elevation, length_m);
+        let line = RaySegment::flat(eye_height_m, sin_elevation, length_m);
         let (enters, leaves) = line.below(self.fog_top_m);
         if enters == leaves {
             return self.air_above(length_m, cos_sun);
@@ -150,8 +163,7 @@ impl<const N: usize> Slab1987<N> {
 
     /// `beta_sc(psi)`: scattering per metre and steradian towards the eye.
     fn scattered(&self, cos_sun: f64) -> Spectrum<N> {
-        let part =
-            |m: &Medium<N>| m.scattering_per_m() * m.phase_lanes(cos_sun, &self.wavelengths_nm);
+        let part = |layer: &LayerLanes<N>| layer.scattering_per_m * layer.phase_lanes(cos_sun);
         part(&self.fog) + part(&self.air)
     }
 }
@@ -159,27 +171,33 @@ impl<const N: usize> Slab1987<N> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::atmosphere::DensityProfile;
     use crate::math::quadrature::GaussRule;
     use crate::optics::{Depolarization, PhaseFunction};
 
     fn scene() -> Slab1987<3> {
+        const NM: [f64; 3] = [680.0, 550.0, 440.0];
+        let layer = |extinction_per_m: [f32; 3], phase| LayerLanes {
+            density: DensityProfile::Uniform,
+            extinction_per_m: Spectrum(extinction_per_m),
+            scattering_per_m: Spectrum(extinction_per_m),
+            phase,
+            wavelengths_nm: NM,
+        };
         Slab1987 {
             fog_top_m: 100.0,
             air_top_m: 8400.0,
             // 15 to 40 per km in the paper.
-            fog: Medium {
-                extinction_per_m: Spectrum([0.020, 0.021, 0.022]),
-                single_scattering_albedo: Spectrum::ONE,
-                phase: PhaseFunction::HenyeyGreenstein { g: 0.8 },
-            },
-            air: Medium {
-                extinction_per_m: Spectrum([5.8e-6, 13.5e-6, 33.1e-6]),
-                single_scattering_albedo: Spectrum::ONE,
-                phase: PhaseFunction::Rayleigh(Depolarization::None),
-            },
+            fog: layer(
+                [0.020, 0.021, 0.022],
+                PhaseFunction::HenyeyGreenstein { g: 0.8 },
+            ),
+            air: layer(
+                [5.8e-6, 13.5e-6, 33.1e-6],
+                PhaseFunction::Rayleigh(Depolarization::None),
+            ),
             sun_irradiance: Spectrum([1.5, 1.8, 1.9]),
             sin_sun: 0.6,
-            wavelengths_nm: [680.0, 550.0, 440.0],
         }
     }
 

@@ -14,8 +14,9 @@
 
 use super::{HazePhase, Klassen1987, Klassen1987Error, Lanes, Simpson, WAVELENGTHS};
 use super::{to_xyz, wavelengths_nm};
+use crate::atmosphere::{Constituent, DensityProfile, RaySegment};
 use crate::axes;
-use crate::fog::Medium;
+use crate::fog::LayerLanes;
 use crate::models::PublishedModel;
 use crate::models::klassen1987::fog::{Slab1987, SunDepth};
 use crate::optics::{Depolarization, PhaseFunction};
@@ -51,8 +52,8 @@ pub struct Klassen1987Scene {
 pub struct Fog1987 {
     /// Height of its top, `R_H - R_E`, m.
     pub top_m: f64,
-    /// Droplets at the model's wavelengths ([`Klassen1987::wavelengths`]).
-    pub droplets: Medium<WAVELENGTHS>,
+    /// Droplets, of which the model takes coefficients and phase function at its wavelengths ([`Klassen1987::wavelengths`]).
+    pub droplets: Constituent,
 }
 
 impl Klassen1987Scene {
@@ -76,12 +77,13 @@ impl Klassen1987Scene {
         if let Some(fog) = &fog {
             let fits = (1e-3..=1e5).contains(&fog.top_m);
             number("the fog's top (m)", "from 0.001 to 1e5", fog.top_m, fits)?;
-            fog.droplets.validate()?;
+            LayerLanes::new(&fog.droplets, &Klassen1987::wavelengths()).validate()?;
         }
         let foggy = fog.is_some();
         let slab = slab(&model, fog)?;
         let planet_albedo = &model.settings.clear_air.planet.ground_albedo;
-        let albedo = Spectrum(slab.wavelengths_nm.map(|nm| planet_albedo.at(nm) as f32));
+        let albedo = Klassen1987::wavelengths().map(|nm| planet_albedo.at(nm) as f32);
+        let albedo = Spectrum(albedo);
         let mut scene = Self {
             eye_height_m,
             depth: match foggy {
@@ -169,7 +171,7 @@ impl Klassen1987Scene {
 
     /// The fog alone on a line from the eye.
     fn fog_on(&self, direction: DVec3, length_m: f64) -> PathOptics<WAVELENGTHS> {
-        let line = crate::fog::RaySegment::flat(self.eye_height_m, direction.y, length_m);
+        let line = RaySegment::flat(self.eye_height_m, direction.y, length_m);
         let (enters, leaves) = line.below(self.slab.fog_top_m);
         if enters >= leaves {
             return PathOptics::CLEAR;
@@ -199,17 +201,18 @@ fn slab(
         // The sun's light is that at the top already.
         air_top_m: top_m,
         fog: match fog {
-            Some(fog) => fog.droplets,
+            Some(fog) => LayerLanes::new(&fog.droplets, &Klassen1987::wavelengths()),
             None => model.haze_at_ground()?,
         },
-        air: Medium {
+        air: LayerLanes {
+            density: DensityProfile::Uniform,
             extinction_per_m: model.air_per_m,
-            single_scattering_albedo: Lanes::ONE,
+            scattering_per_m: model.air_per_m,
             phase: PhaseFunction::Rayleigh(Depolarization::None),
+            wavelengths_nm: Klassen1987::wavelengths(),
         },
         sun_irradiance: model.attenuated_sun(model.sin_sun),
         sin_sun: model.sin_sun.max(1e-6),
-        wavelengths_nm: Klassen1987::wavelengths(),
     })
 }
 
@@ -220,14 +223,15 @@ impl Klassen1987 {
         std::array::from_fn(|_| nm.next().unwrap_or(f64::NAN))
     }
 
-    /// The haze as matter.
-    fn haze_at_ground(&self) -> Result<Medium<WAVELENGTHS>, Klassen1987Error> {
+    /// The haze at the ground.
+    fn haze_at_ground(&self) -> Result<LayerLanes<WAVELENGTHS>, Klassen1987Error> {
         let (_, albedo, phase) = self.settings.haze.optics()?;
-        Ok(Medium {
+        let albedo = Self::wavelengths().map(|nm| albedo.at(nm).clamp(0.0, 1.0) as f32);
+        Ok(LayerLanes {
+            density: DensityProfile::Uniform,
             extinction_per_m: self.haze.extinction_per_m,
-            single_scattering_albedo: Spectrum(
-                Self::wavelengths().map(|nm| albedo.at(nm).clamp(0.0, 1.0) as f32),
-            ),
+            scattering_per_m: self.haze.extinction_per_m * Spectrum(albedo),
+            wavelengths_nm: Self::wavelengths(),
             phase: match self.settings.phase {
                 HazePhase::Particles => phase,
                 HazePhase::HenyeyGreenstein { g } | HazePhase::Printed { g } => {

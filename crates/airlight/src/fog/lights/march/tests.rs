@@ -1,54 +1,55 @@
 use super::super::reference;
 use super::super::{LightSettings, PointLight, SphereLight, SpotLight};
 use super::*;
-use crate::fog::droplets;
-use crate::fog::layer::{Layer, Medium};
-use crate::optics::PhaseFunction;
+use crate::atmosphere::droplets::phase;
 
 const EARTH_M: f64 = 6.371e6;
 
-fn particles(extinction: f32, phase: PhaseFunction) -> Medium<1> {
-    Medium {
-        extinction_per_m: Spectrum([extinction]),
-        single_scattering_albedo: Spectrum([0.9]),
+/// A layer of one lane with a single-scattering albedo of 0.9.
+fn layer(density: DensityProfile, extinction: f32, phase: PhaseFunction) -> LayerLanes<1> {
+    let extinction = Spectrum([extinction]);
+    LayerLanes {
+        density,
+        extinction_per_m: extinction,
+        scattering_per_m: extinction * 0.9,
         phase,
+        wavelengths_nm: [550.0],
     }
+}
+
+fn alone(layer: LayerLanes<1>, ground_radius_m: f64) -> ScatteringLayer<1> {
+    ScatteringLayer::new(layer, &[], ground_radius_m).expect("some fog")
 }
 
 fn hg(g: f64) -> PhaseFunction {
     PhaseFunction::henyey_greenstein(g).expect("a phase function")
 }
 
-fn point(position: DVec3) -> Light<1> {
+fn point(position: DVec3) -> Light<Spectrum<1>> {
     Light::Point(PointLight::new(position, Spectrum([1.0]), 1e-3).expect("a light"))
 }
 
 /// The quadrature itself, not the closed form.
 fn march(
-    light: &Light<1>,
-    medium: &ParticipatingMedium<1>,
+    light: &Light<Spectrum<1>>,
+    fog: &ScatteringLayer<1>,
     view_ray: &ViewRay,
     nodes: usize,
 ) -> f64 {
-    let haze = Haze::new(medium).expect("some fog");
-    f64::from(Ray::new(light, &haze, view_ray).path_radiance(&Nodes::new(nodes))[0])
+    f64::from(LitRay::new(light, fog, view_ray).path_radiance(&Nodes::new(nodes))[0])
 }
 
-/// The worst relative error, and where, of the march over lines that pass lights `nearest` m away, in uniform fog.
+/// The worst relative error, and where, of the quadrature over rays that pass lights `nearest` m away, in uniform fog.
 fn worst_in_uniform_fog(phase: &PhaseFunction, nodes: usize) -> (f64, String) {
     let mut worst = (0.0, String::new());
     for nearest in [0.002, 0.1, 1.0, 12.0, 300.0, 1e4] {
         for start in [-1e4, -300.0, -20.0, -1.0, 0.0, 0.5, 40.0, 3e3] {
             for length in [0.1, 10.0, 35.0, 1e3, f64::INFINITY] {
                 for extinction in [1e-5f32, 1e-3, 0.03, 0.3, 3.0] {
-                    let particles = particles(extinction, phase.clone());
-                    let medium = ParticipatingMedium {
-                        medium: &particles,
-                        profile: &DensityProfile::Uniform,
-                        others: &[],
-                        wavelengths_nm: &[550.0],
-                        ground_radius_m: f64::INFINITY,
-                    };
+                    let fog = alone(
+                        layer(DensityProfile::Uniform, extinction, phase.clone()),
+                        f64::INFINITY,
+                    );
                     let light = point(DVec3::new(nearest, 0.0, 0.0));
                     let view_ray = ViewRay {
                         eye: DVec3::new(0.0, 0.0, start),
@@ -59,8 +60,8 @@ fn worst_in_uniform_fog(phase: &PhaseFunction, nodes: usize) -> (f64, String) {
                     if depth > 60.0 {
                         continue;
                     }
-                    let exact = reference::path_radiance(&light, &medium, &view_ray);
-                    let off = (march(&light, &medium, &view_ray, nodes) / exact - 1.0).abs();
+                    let exact = reference::path_radiance(&light, &fog, &view_ray);
+                    let off = (march(&light, &fog, &view_ray, nodes) / exact - 1.0).abs();
                     if off > worst.0 {
                         worst = (
                             off,
@@ -113,8 +114,8 @@ fn print_convergence_in_uniform_fog() {
     }
 }
 
-/// LightSet and lines in fog that thins with height, a few hundred of each kind.
-fn in_thinning_fog(visit: &mut dyn FnMut(&ParticipatingMedium<1>, &Light<1>, &ViewRay)) {
+/// Lights and rays in fog that thins with height, a few hundred of each kind.
+fn in_thinning_fog(visit: &mut dyn FnMut(&ScatteringLayer<1>, &Light<Spectrum<1>>, &ViewRay)) {
     let profiles = |scale_height_m| {
         [
             DensityProfile::Exponential {
@@ -138,14 +139,7 @@ fn in_thinning_fog(visit: &mut dyn FnMut(&ParticipatingMedium<1>, &Light<1>, &Vi
         for profile in [3.0, 40.0, 1200.0].into_iter().flat_map(profiles) {
             for extinction in [1e-3f32, 0.02, 0.5] {
                 for g in [0.0, 0.8] {
-                    let particles = particles(extinction, hg(g));
-                    let medium = ParticipatingMedium {
-                        medium: &particles,
-                        profile: &profile,
-                        others: &[],
-                        wavelengths_nm: &[550.0],
-                        ground_radius_m,
-                    };
+                    let fog = alone(layer(profile.clone(), extinction, hg(g)), ground_radius_m);
                     for light in lights.map(point) {
                         for (height, sin_elevation, length_m) in [
                             (1.7, 0.0, 50.0),
@@ -165,7 +159,7 @@ fn in_thinning_fog(visit: &mut dyn FnMut(&ParticipatingMedium<1>, &Light<1>, &Vi
                                     .normalize(),
                                 length_m,
                             };
-                            visit(&medium, &light, &view_ray);
+                            visit(&fog, &light, &view_ray);
                         }
                     }
                 }
@@ -174,27 +168,27 @@ fn in_thinning_fog(visit: &mut dyn FnMut(&ParticipatingMedium<1>, &Light<1>, &Vi
     }
 }
 
-/// Relative errors over every `stride`-th of those lines, rising; what is dimmed by e^-30 or more is left out.
+/// Relative errors over every `stride`-th of those rays, rising, without light that is dimmed by e^-30 or more.
 fn errors_in_thinning_fog(nodes: usize, stride: usize) -> Vec<(f64, String)> {
     let mut all = Vec::new();
     let mut count = 0;
-    in_thinning_fog(&mut |medium, light, view_ray| {
+    in_thinning_fog(&mut |fog, light, view_ray| {
         count += 1;
         if count % stride != 0 {
             return;
         }
-        let exact = reference::path_radiance(light, medium, view_ray);
+        let exact = reference::path_radiance(light, fog, view_ray);
         let near = (light.position() - view_ray.eye).length();
-        if exact > 1e-13 * f64::from(medium.medium.extinction_per_m[0]) / near {
-            let off = (march(light, medium, view_ray, nodes) / exact - 1.0).abs();
-            all.push((off, format!("{medium:?} {light:?} {view_ray:?}")));
+        if exact > 1e-13 * f64::from(fog.layer.extinction_per_m[0]) / near {
+            let off = (march(light, fog, view_ray, nodes) / exact - 1.0).abs();
+            all.push((off, format!("{fog:?} {light:?} {view_ray:?}")));
         }
     });
     all.sort_by(|a, b| a.0.total_cmp(&b.0));
     all
 }
 
-/// The error that a share of the lines stays below.
+/// The error that a share of the rays stays below.
 fn below(errors: &[(f64, String)], share: f64) -> f64 {
     errors[((errors.len() - 1) as f64 * share) as usize].0
 }
@@ -231,7 +225,7 @@ fn print_convergence_in_thinning_fog() {
 }
 
 #[test]
-fn beams_and_balls_match_quadrature() {
+fn spots_and_spheres_match_quadrature() {
     let profiles = [
         DensityProfile::Uniform,
         DensityProfile::Clamped {
@@ -257,14 +251,7 @@ fn beams_and_balls_match_quadrature() {
     let mut lit = 0;
     for profile in &profiles {
         for extinction in [1e-3, 0.1] {
-            let particles = particles(extinction, hg(0.7));
-            let medium = ParticipatingMedium {
-                medium: &particles,
-                profile,
-                others: &[],
-                wavelengths_nm: &[550.0],
-                ground_radius_m: f64::INFINITY,
-            };
+            let fog = alone(layer(profile.clone(), extinction, hg(0.7)), f64::INFINITY);
             for light in &lights {
                 for aim in [
                     DVec3::new(0.2, 2.0, -18.0),
@@ -280,17 +267,17 @@ fn beams_and_balls_match_quadrature() {
                             direction: (aim - eye).normalize(),
                             length_m,
                         };
-                        let exact = reference::path_radiance(light, &medium, &view_ray);
-                        let got = march(light, &medium, &view_ray, 12);
+                        let exact = reference::path_radiance(light, &fog, &view_ray);
+                        let got = march(light, &fog, &view_ray, 12);
                         lit += usize::from(exact > 0.0);
-                        // A ball's scalar irradiance has a square root's edge where the line touches it.
+                        // The scalar irradiance of a sphere has a square-root edge where the ray touches it.
                         let limit = match light {
                             Light::Sphere(_) => 2e-3,
                             _ => 1e-4,
                         };
                         assert!(
                             (got - exact).abs() <= limit * exact,
-                            "{light:?} {medium:?} {view_ray:?}: {got:e} against {exact:e}"
+                            "{light:?} {fog:?} {view_ray:?}: {got:e} against {exact:e}"
                         );
                     }
                 }
@@ -304,10 +291,13 @@ fn beams_and_balls_match_quadrature() {
 fn lanes_of_different_extinction_share_nodes() {
     for spread in [1.0f32, 4.0, 16.0, 64.0] {
         for (near, limit) in [(0.01, 2e-5), (1.0, 2e-5), (200.0, 2e-5)] {
-            let all = Medium {
-                extinction_per_m: Spectrum([0.02, 0.02 * spread.sqrt(), 0.02 * spread, 0.0]),
-                single_scattering_albedo: Spectrum::ONE,
+            let extinction = Spectrum([0.02, 0.02 * spread.sqrt(), 0.02 * spread, 0.0]);
+            let all = LayerLanes {
+                density: DensityProfile::Uniform,
+                extinction_per_m: extinction,
+                scattering_per_m: extinction,
                 phase: hg(0.8),
+                wavelengths_nm: [450.0, 500.0, 550.0, 600.0],
             };
             let light = DVec3::new(near, 0.0, -20.0);
             let view_ray = ViewRay {
@@ -315,28 +305,15 @@ fn lanes_of_different_extinction_share_nodes() {
                 direction: DVec3::NEG_Z,
                 length_m: 100.0,
             };
-            let medium = ParticipatingMedium {
-                medium: &all,
-                profile: &DensityProfile::Uniform,
-                others: &[],
-                wavelengths_nm: &[450.0, 500.0, 550.0, 600.0],
-                ground_radius_m: f64::INFINITY,
-            };
-            let lamp4 = PointLight::new(light, Spectrum::<4>::ONE, 1e-3).expect("a light");
-            let haze = Haze::new(&medium).expect("fog");
+            let four = PointLight::new(light, Spectrum::<4>::ONE, 1e-3).expect("a light");
+            let fog = ScatteringLayer::new(all, &[], f64::INFINITY).expect("fog");
             let got =
-                Ray::new(&Light::Point(lamp4), &haze, &view_ray).path_radiance(&Nodes::new(12));
+                LitRay::new(&Light::Point(four), &fog, &view_ray).path_radiance(&Nodes::new(12));
             assert_eq!(got[3], 0.0);
             for lane in 0..3 {
-                let alone = particles(all.extinction_per_m[lane], hg(0.8));
-                let medium = ParticipatingMedium {
-                    medium: &alone,
-                    profile: &DensityProfile::Uniform,
-                    others: &[],
-                    wavelengths_nm: &[550.0],
-                    ground_radius_m: f64::INFINITY,
-                };
-                let exact = reference::path_radiance(&point(light), &medium, &view_ray) / 0.9;
+                let one = layer(DensityProfile::Uniform, extinction[lane], hg(0.8));
+                let fog = alone(one, f64::INFINITY);
+                let exact = reference::path_radiance(&point(light), &fog, &view_ray) / 0.9;
                 if exact < 1e-30 {
                     continue;
                 }
@@ -354,7 +331,7 @@ fn lanes_of_different_extinction_share_nodes() {
 #[test]
 fn the_narrow_peak_of_drops_costs_some_accuracy() {
     for (diameter_um, limit) in [(5.0, 1e-3), (10.0, 1e-3), (20.0, 1.5e-3), (50.0, 2e-3)] {
-        let (off, place) = worst_in_uniform_fog(&droplets::phase(diameter_um), 12);
+        let (off, place) = worst_in_uniform_fog(&phase(diameter_um), 12);
         println!("{diameter_um} um: {off:.1e}");
         assert!(off < limit, "{diameter_um} um: {off:e} at {place}");
     }
@@ -377,18 +354,9 @@ fn among_other_layers(nodes: usize, visit: &mut dyn FnMut(f64, String)) {
     for profile in &profiles {
         for other in &profiles {
             for [own, besides] in [[0.002, 0.05], [0.05, 0.05], [0.05, 0.002]] {
-                let particles = particles(own, hg(0.8));
-                let others = [Layer {
-                    profile: other.clone(),
-                    medium: self::particles(besides, hg(0.8)),
-                }];
-                let medium = ParticipatingMedium {
-                    medium: &particles,
-                    profile,
-                    others: &others,
-                    wavelengths_nm: &[550.0],
-                    ground_radius_m: f64::INFINITY,
-                };
+                let others = [layer(other.clone(), besides, hg(0.8))];
+                let own_layer = layer(profile.clone(), own, hg(0.8));
+                let fog = ScatteringLayer::new(own_layer, &others, f64::INFINITY).expect("fog");
                 for light in [[0.3, 5.0, -30.0], [-8.0, 25.0, -60.0], [40.0, 3.0, 20.0]] {
                     for sin_elevation in [-0.02, 0.0, 0.1, 0.5] {
                         for length_m in [25.0, 60.0, f64::INFINITY] {
@@ -403,8 +371,8 @@ fn among_other_layers(nodes: usize, visit: &mut dyn FnMut(f64, String)) {
                                 },
                             };
                             let light = point(DVec3::from_array(light));
-                            let exact = reference::path_radiance(&light, &medium, &view_ray);
-                            let got = march(&light, &medium, &view_ray, nodes);
+                            let exact = reference::path_radiance(&light, &fog, &view_ray);
+                            let got = march(&light, &fog, &view_ray, nodes);
                             if exact > 1e-15 {
                                 let off = (got / exact - 1.0).abs();
                                 visit(
@@ -433,4 +401,72 @@ fn other_layers_dim_the_light() {
     });
     assert!(count > 1500, "{count}");
     assert!(worst.0 < 5e-6, "{:e} at {}", worst.0, worst.1);
+}
+
+#[test]
+fn functions_that_fall_over_their_scale_are_integrated_well() {
+    let nodes = Nodes::new(12);
+    for scale in [1e-6, 1.0, 1e5] {
+        for end in [1e-9, 1e-3, 1.0, 1e4, 1e12, f64::INFINITY] {
+            let mut sum = 0.0;
+            nodes.visit(scale, end * scale, |s, ds| {
+                sum += ds / (scale * (1.0 + (s / scale).powi(2)));
+            });
+            let exact = end.atan();
+            assert!((sum / exact - 1.0).abs() < 1e-5, "{scale}, {end}: {sum}");
+        }
+    }
+}
+
+fn panels(profile: &DensityProfile, ray: RaySegment) -> Vec<(f64, f64)> {
+    let mut all = Vec::new();
+    let density = profile.at(ray.height_m);
+    Cuts::of(&profile.structure(), density, &ray, 0.01).visit(|from, to| all.push((from, to)));
+    all
+}
+
+#[test]
+fn only_the_part_inside_a_slab_is_kept() {
+    let slab = DensityProfile::slab(10.0);
+    let up = RaySegment::flat(2.0, 0.5, f64::INFINITY);
+    assert_eq!(panels(&slab, up), [(0.0, 16.0)]);
+    let above = RaySegment::flat(12.0, 0.5, f64::INFINITY);
+    assert_eq!(panels(&slab, above), []);
+}
+
+#[test]
+fn decaying_fog_is_cut_at_heights_and_at_its_base() {
+    let profile = DensityProfile::Clamped {
+        base_height_m: 10.0,
+        scale_height_m: 1.0,
+    };
+    let up = RaySegment::flat(0.0, 1.0, f64::INFINITY);
+    assert_eq!(
+        panels(&profile, up),
+        [(0.0, 10.0), (10.0, 13.0), (13.0, 20.0), (20.0, 50.0)]
+    );
+    let level = RaySegment::flat(12.0, 0.0, f64::INFINITY);
+    assert_eq!(panels(&profile, level), [(0.0, f64::INFINITY)]);
+}
+
+#[test]
+fn a_descent_into_ever_denser_fog_ends() {
+    let profile = DensityProfile::Exponential {
+        reference_height_m: 0.0,
+        scale_height_m: 10.0,
+    };
+    let down = RaySegment::flat(200.0, -0.7, f64::INFINITY);
+    let all = panels(&profile, down);
+    let end = all.last().unwrap().1;
+    let depth = 0.01 * profile.column_along_m(&RaySegment::flat(200.0, -0.7, end));
+    assert!((depth / DARK - 1.0).abs() < 1e-9, "{depth}");
+    assert!(all.len() >= 3);
+}
+
+#[test]
+fn a_ray_over_round_ground_is_lowest_where_it_dips() {
+    let ray = RaySegment::new(100.0, -1e-3, 1e5, 6.371e6);
+    let low = ray.lowest_height_m();
+    assert!(low < 100.0 && low > 80.0);
+    assert!(low <= ray.height_at(6371.0) + 1e-9);
 }

@@ -1,7 +1,7 @@
 use super::super::geometry::Spheres;
 use super::super::{Klassen1987Settings, SunRay};
 use super::*;
-use crate::fog::droplets::Droplets;
+use crate::atmosphere::droplets::Droplets;
 
 const TOP_M: f64 = 40.0;
 
@@ -10,7 +10,13 @@ fn scene(sun_deg: f64, eye_m: f64, fog: bool, depth: SunDepth) -> Klassen1987Sce
     let model = Klassen1987::new(&settings, axes::direction(180.0, sun_deg)).unwrap();
     let fog = fog.then(|| Fog1987 {
         top_m: TOP_M,
-        droplets: Droplets::Radiation.medium(0.02),
+        droplets: Constituent::fog(
+            0.02,
+            Droplets::Radiation.into(),
+            DensityProfile::slab(TOP_M),
+            &[],
+        )
+        .unwrap(),
     });
     Klassen1987Scene::new(Arc::new(model), eye_m, fog, depth).unwrap()
 }

@@ -1,31 +1,44 @@
 use super::*;
-use crate::atmosphere::DensityProfile;
+use crate::atmosphere::droplets;
+use crate::atmosphere::{DensityProfile, Interpolation};
 use crate::axes;
-use crate::fog::{DirectionalLight, Medium};
+use crate::fog::{DirectionalLight, RgbLayer};
 use crate::math::quadrature::GaussRule;
 use crate::optics::{Depolarization, PhaseFunction};
 
 const EARTH: Ground = Ground::EARTH;
 
-fn medium(extinction_per_m: [f32; 3], albedo: f32, phase: PhaseFunction) -> Medium<3> {
-    Medium {
-        extinction_per_m: Spectrum(extinction_per_m),
-        single_scattering_albedo: Spectrum::splat(albedo),
+/// Fog of these layers.
+fn lanes(
+    layers: &[RgbLayer],
+    ground: Ground,
+    lighting: FogLighting<Spectrum<3>>,
+    scattering: FogScattering,
+) -> Result<FogLanes<3>, FogError> {
+    let layers: Vec<LayerLanes<3>> = layers.iter().map(LayerLanes::rgb).collect();
+    FogLanes::new(&layers, ground, lighting, scattering, 3)
+}
+
+fn layer(extinction_per_m: [f32; 3], albedo: f32, phase: PhaseFunction) -> RgbLayer {
+    RgbLayer {
+        density: DensityProfile::Uniform,
+        extinction_per_m,
+        single_scattering_albedo: [albedo; 3],
         phase,
     }
 }
 
-fn droplets(extinction: f32) -> Medium<3> {
+fn drops(extinction: f32) -> RgbLayer {
     let e = [extinction, 1.1 * extinction, 1.2 * extinction];
-    medium(e, 0.95, PhaseFunction::HenyeyGreenstein { g: 0.8 })
+    layer(e, 0.95, PhaseFunction::HenyeyGreenstein { g: 0.8 })
 }
 
-fn molecules(extinction: f32) -> Medium<3> {
+fn molecules(extinction: f32) -> RgbLayer {
     let e = [0.2 * extinction, 0.5 * extinction, extinction];
-    medium(e, 1.0, PhaseFunction::Rayleigh(Depolarization::None))
+    layer(e, 1.0, PhaseFunction::Rayleigh(Depolarization::None))
 }
 
-fn light(sun_elevation_deg: f64) -> FogLighting<3> {
+fn light(sun_elevation_deg: f64) -> FogLighting<Spectrum<3>> {
     FogLighting {
         sun: Some(DirectionalLight {
             direction: axes::direction(120.0, sun_elevation_deg),
@@ -38,9 +51,9 @@ fn light(sun_elevation_deg: f64) -> FogLighting<3> {
 
 /// Single scattering along a line by brute force in f64, lane by lane: `(optical depth, path radiance)`.
 fn by_quadrature(
-    layers: &[Layer<3>],
+    layers: &[RgbLayer],
     ground: Ground,
-    light: &FogLighting<3>,
+    light: &FogLighting<Spectrum<3>>,
     scattering: FogScattering,
     line: &RaySegment,
     cos_sun: f64,
@@ -48,9 +61,8 @@ fn by_quadrature(
 ) -> (f64, f64) {
     let sine = light.sun.unwrap().direction.y;
     let depth = |line: &RaySegment| -> f64 {
-        let of = |l: &Layer<3>| {
-            f64::from(l.medium.extinction_per_m[lane]) * l.profile.column_along_m(line)
-        };
+        let of =
+            |l: &RgbLayer| f64::from(l.extinction_per_m[lane]) * l.density.column_along_m(line);
         layers.iter().map(of).sum()
     };
     // Stop where nothing is left to see.
@@ -68,7 +80,7 @@ fn by_quadrature(
     let lowest = -0.5 * line.sin_elevation / line.curvature_per_m;
     let mut kinks = vec![lowest];
     for layer in layers {
-        for edge in layer.profile.breakpoints_m() {
+        for edge in layer.density.breakpoints_m() {
             let (a, b) = line.below(edge);
             kinks.extend([a, b]);
         }
@@ -89,23 +101,22 @@ fn by_quadrature(
         } else if scattering == FogScattering::Undimmed {
             1.0
         } else {
-            let solid = layers
-                .iter()
-                .filter(|l| l.profile != DensityProfile::Uniform);
-            let of = |l: &Layer<3>| {
-                f64::from(l.medium.extinction_per_m[lane]) * l.profile.column_along_m(&to_sun)
+            let solid = layers.iter().filter(|l| !l.density.is_uniform());
+            let of = |l: &RgbLayer| {
+                f64::from(l.extinction_per_m[lane]) * l.density.column_along_m(&to_sun)
             };
             (-solid.map(of).sum::<f64>()).exp()
         };
         let mut source = 0.0;
         for layer in layers {
-            let scattered = f64::from(layer.medium.scattering_per_m()[lane]);
+            let scattered =
+                f64::from(layer.extinction_per_m[lane] * layer.single_scattering_albedo[lane]);
             source += scattered
-                * layer.profile.at(height)
+                * layer.density.at(height)
                 * (f64::from(light.ambient[lane])
                     + f64::from(light.sun.unwrap().irradiance[lane])
                         * sunlit
-                        * layer.medium.phase.evaluate(cos_sun, 550.0));
+                        * layer.phase.evaluate(cos_sun, 550.0));
         }
         source * (-depth(&line.part(0.0, s))).exp()
     });
@@ -113,7 +124,7 @@ fn by_quadrature(
 }
 
 fn worst_error(
-    layers: &[Layer<3>],
+    layers: &[RgbLayer],
     ground: Ground,
     lines: &[RaySegment],
     elevations: &[f64],
@@ -122,9 +133,9 @@ fn worst_error(
     for &elevation in elevations {
         for scattering in [FogScattering::Undimmed, FogScattering::Single] {
             let light = light(elevation);
-            let fog = Fog::new(layers, ground, light, scattering).unwrap();
+            let fog = lanes(layers, ground, light, scattering).unwrap();
             for line in lines {
-                let got = fog.along_line(line, 0.3);
+                let got = fog.path_along(line, 0.3);
                 for lane in [0, 2] {
                     let (depth, path) =
                         by_quadrature(layers, ground, &light, scattering, line, 0.3, lane);
@@ -133,7 +144,7 @@ fn worst_error(
                         (t - (-depth).exp()).abs() < 1e-4 * (-depth).exp() + 1e-37,
                         "T {t} against e^-{depth}: {line:?}"
                     );
-                    // What f32 cannot hold counts as dark.
+                    // Light below the range of f32 counts as dark.
                     let error = (f64::from(got.path_radiance[lane]) - path).abs() / (path + 1e-30);
                     if error > worst {
                         worst = error;
@@ -151,7 +162,7 @@ fn worst_error(
     worst
 }
 
-/// Lines that stay above `floor_m`.
+/// Rays that stay above `floor_m`.
 fn lines(ground: Ground, floor_m: f64, heights: &[f64], lengths: &[f64]) -> Vec<RaySegment> {
     let mut lines = Vec::new();
     for &height in heights {
@@ -190,16 +201,16 @@ fn one_profile_over_flat_ground_is_exact() {
         ] {
             for extinction in [1e-6, 0.01, 1.0] {
                 let layers = [
-                    Layer {
-                        profile: profile.clone(),
-                        medium: droplets(extinction),
+                    RgbLayer {
+                        density: profile.clone(),
+                        ..drops(extinction)
                     },
-                    Layer {
-                        profile: profile.clone(),
-                        medium: molecules(0.3 * extinction),
+                    RgbLayer {
+                        density: profile.clone(),
+                        ..molecules(0.3 * extinction)
                     },
                 ];
-                // A fog so deep that the sun cannot be seen at all leaves f32's range.
+                // Sunlight in fog so deep that the sun is invisible leaves the range of f32.
                 if extinction as f64 * profile.column_above_m(0.0) > 10.0
                     && profile != DensityProfile::Uniform
                 {
@@ -215,7 +226,7 @@ fn one_profile_over_flat_ground_is_exact() {
     }
 }
 
-/// What the doc comment of [`Fog::along_line`] states.
+/// The errors that the doc comment of [`FogLanes::path_along`] states.
 #[test]
 fn several_profiles_and_round_ground_err_as_stated() {
     let exponential = |scale_height_m| DensityProfile::Exponential {
@@ -227,43 +238,43 @@ fn several_profiles_and_round_ground_err_as_stated() {
         scale_height_m: 10.0,
     };
     let slab = DensityProfile::slab(80.0);
-    let fogs: [Vec<Layer<3>>; 4] = [
-        vec![Layer {
-            profile: exponential(1200.0),
-            medium: droplets(1e-4),
+    let fogs: [Vec<RgbLayer>; 4] = [
+        vec![RgbLayer {
+            density: exponential(1200.0),
+            ..drops(1e-4)
         }],
         vec![
-            Layer {
-                profile: exponential(50.0),
-                medium: droplets(0.02),
+            RgbLayer {
+                density: exponential(50.0),
+                ..drops(0.02)
             },
-            Layer {
-                profile: exponential(1200.0),
-                medium: droplets(2e-4),
+            RgbLayer {
+                density: exponential(1200.0),
+                ..drops(2e-4)
             },
-            Layer {
-                profile: exponential(8000.0),
-                medium: molecules(3e-5),
-            },
-        ],
-        vec![
-            Layer {
-                profile: valley,
-                medium: droplets(0.03),
-            },
-            Layer {
-                profile: exponential(2000.0),
-                medium: droplets(1e-4),
+            RgbLayer {
+                density: exponential(8000.0),
+                ..molecules(3e-5)
             },
         ],
         vec![
-            Layer {
-                profile: slab,
-                medium: droplets(0.01),
+            RgbLayer {
+                density: valley,
+                ..drops(0.03)
             },
-            Layer {
-                profile: exponential(15.0),
-                medium: droplets(0.02),
+            RgbLayer {
+                density: exponential(2000.0),
+                ..drops(1e-4)
+            },
+        ],
+        vec![
+            RgbLayer {
+                density: slab,
+                ..drops(0.01)
+            },
+            RgbLayer {
+                density: exponential(15.0),
+                ..drops(0.02)
             },
         ],
     ];
@@ -282,30 +293,90 @@ fn several_profiles_and_round_ground_err_as_stated() {
     }
 }
 
+/// Layers aloft, tents, tables, sums and the standard atmosphere are fog, too.
 #[test]
-fn a_line_may_be_cut_anywhere() {
+fn all_density_profiles_may_be_fog() {
+    let aloft = DensityProfile::Layer {
+        bottom_m: 30.0,
+        top_m: 70.0,
+    };
+    let tent = DensityProfile::Tent {
+        bottom_m: 10.0,
+        peak_m: 50.0,
+        top_m: 120.0,
+    };
+    let heights: Vec<f64> = (0..13).map(|k| 25.0 * f64::from(k)).collect();
+    let decaying = heights.iter().map(|h| (-h / 40.0).exp()).collect();
+    let table = DensityProfile::tabulated(heights, decaying, Interpolation::LogLinear).unwrap();
+    let sum = DensityProfile::Sum(vec![(0.5, aloft.clone()), (2.0, tent.clone())]);
+    for (density, extinction) in [
+        (aloft, 0.02),
+        (tent, 0.02),
+        (table.clone(), 0.02),
+        (sum, 0.01),
+        (DensityProfile::StandardAir1976, 3e-5),
+    ] {
+        let layers = [
+            RgbLayer {
+                density,
+                ..drops(extinction)
+            },
+            RgbLayer {
+                density: DensityProfile::exponential(1500.0),
+                ..molecules(1e-4)
+            },
+        ];
+        for layers in [&layers[..1], &layers[..]] {
+            for ground in [Ground::FLAT, EARTH] {
+                let stated = if ground.is_flat() { 2e-3 } else { 1e-2 };
+                let lines = lines(ground, -1.0, &[0.0, 1.7, 50.0, 400.0], &[5.0, 200.0, 1e4]);
+                let worst = worst_error(layers, ground, &lines, &[5.0, 40.0]);
+                assert!(worst < stated, "{layers:?} {ground:?}: {worst:.2e}");
+            }
+        }
+    }
+    // Solved for, the table of an exponential decay is that decay.
+    let [by_table, by_formula] = [table, DensityProfile::exponential(40.0)].map(|density| {
+        let layers = [RgbLayer {
+            density,
+            ..drops(0.02)
+        }];
+        lanes(&layers, Ground::FLAT, light(30.0), FogScattering::Multiple).unwrap()
+    });
+    for k in 0..200 {
+        let view = axes::direction(3.7 * f64::from(k), -8.0 + 0.49 * f64::from(k));
+        let [a, b] = [&by_table, &by_formula].map(|fog| fog.path(5.0, view, 30.0 * f64::from(k)));
+        for lane in 0..3 {
+            let (a, b) = (a.path_radiance[lane], b.path_radiance[lane]);
+            assert!((a - b).abs() <= 5e-3 * b, "{view}: {a} {b}");
+        }
+    }
+}
+
+#[test]
+fn a_ray_may_be_cut_anywhere() {
     let exponential = |scale_height_m| DensityProfile::Exponential {
         reference_height_m: 0.0,
         scale_height_m,
     };
-    let one = vec![Layer {
-        profile: exponential(40.0),
-        medium: droplets(0.02),
+    let one = vec![RgbLayer {
+        density: exponential(40.0),
+        ..drops(0.02)
     }];
     let two = vec![
-        Layer {
-            profile: DensityProfile::slab(25.0),
-            medium: droplets(0.02),
+        RgbLayer {
+            density: DensityProfile::slab(25.0),
+            ..drops(0.02)
         },
-        Layer {
-            profile: exponential(900.0),
-            medium: molecules(3e-4),
+        RgbLayer {
+            density: exponential(900.0),
+            ..molecules(3e-4)
         },
     ];
     let alone = |profile| {
-        vec![Layer {
-            profile,
-            medium: droplets(0.02),
+        vec![RgbLayer {
+            density: profile,
+            ..drops(0.02)
         }]
     };
     let (uniform, slab) = (
@@ -329,20 +400,20 @@ fn a_line_may_be_cut_anywhere() {
             FogScattering::Single,
             FogScattering::Multiple,
         ] {
-            let fog = Fog::new(layers, ground, light(20.0), scattering).unwrap();
+            let fog = lanes(layers, ground, light(20.0), scattering).unwrap();
             for sin_elevation in [0.0, 1e-3, -1e-3, 0.3, -0.3] {
                 let line = RaySegment::new(60.0, sin_elevation, 180.0, ground.radius_m);
-                let whole = fog.along_line(&line, 0.4);
+                let whole = fog.path_along(&line, 0.4);
                 for cut in [1e-3, 1.0, 45.0, 179.9] {
-                    let near = fog.along_line(&line.part(0.0, cut), 0.4);
-                    let far = fog.along_line(&line.part(cut, 180.0), 0.4);
+                    let near = fog.path_along(&line.part(0.0, cut), 0.4);
+                    let far = fog.path_along(&line.part(cut, 180.0), 0.4);
                     let joined = near.then(far);
                     for lane in 0..3 {
                         let pair = |of: fn(&PathOptics<3>) -> Spectrum<3>| {
                             (of(&joined)[lane], of(&whole)[lane])
                         };
                         for (a, b) in [pair(|p| p.transmittance), pair(|p| p.path_radiance)] {
-                            // Of a line above the fog both are 0.
+                            // Both are 0 along a ray above the fog.
                             assert!(
                                 (a - b).abs() <= tolerance * b,
                                 "{sin_elevation} {cut}: {a} {b}"
@@ -356,9 +427,9 @@ fn a_line_may_be_cut_anywhere() {
 }
 
 #[test]
-fn fog_that_loses_nothing_is_invisible_in_light_that_is_the_same_everywhere() {
-    let mut clear = droplets(0.01);
-    clear.single_scattering_albedo = Spectrum::ONE;
+fn fog_without_absorption_is_invisible_in_light_that_is_the_same_everywhere() {
+    let mut clear = drops(0.01);
+    clear.single_scattering_albedo = [1.0; 3];
     let everywhere = FogLighting {
         sun: None,
         ambient: Spectrum([0.3, 0.4, 0.5]),
@@ -376,20 +447,20 @@ fn fog_that_loses_nothing_is_invisible_in_light_that_is_the_same_everywhere() {
             scale_height_m: 60.0,
         },
     ] {
-        let layers = [Layer {
-            profile: profile.clone(),
-            medium: clear.clone(),
+        let layers = [RgbLayer {
+            density: profile.clone(),
+            ..clear.clone()
         }];
         for ground in [Ground::FLAT, EARTH] {
             for scattering in [FogScattering::Single, FogScattering::Multiple] {
-                let fog = Fog::new(&layers, ground, everywhere, scattering).unwrap();
+                let fog = lanes(&layers, ground, everywhere, scattering).unwrap();
                 for line in lines(
                     ground,
                     -1.0,
                     &[0.0, 5.0, 50.0],
                     &[1e-3, 1.0, 100.0, 1e5, f64::INFINITY],
                 ) {
-                    let seen = fog.along_line(&line, 0.0).apply(everywhere.ambient);
+                    let seen = fog.path_along(&line, 0.0).apply(everywhere.ambient);
                     for lane in 0..3 {
                         let ratio = seen[lane] / everywhere.ambient[lane];
                         // The moments of the diffuse light are kept in f32.
@@ -402,7 +473,7 @@ fn fog_that_loses_nothing_is_invisible_in_light_that_is_the_same_everywhere() {
 }
 
 #[test]
-fn transmittance_keeps_between_nothing_and_all_and_falls_with_distance() {
+fn transmittance_stays_between_0_and_1_and_falls_with_distance() {
     for profile in [
         DensityProfile::Uniform,
         DensityProfile::Clamped {
@@ -414,10 +485,10 @@ fn transmittance_keeps_between_nothing_and_all_and_falls_with_distance() {
             scale_height_m: 0.5,
         },
     ] {
-        let fog = Fog::new(
-            &[Layer {
-                profile: profile.clone(),
-                medium: droplets(0.05),
+        let fog = lanes(
+            &[RgbLayer {
+                density: profile.clone(),
+                ..drops(0.05)
             }],
             EARTH,
             light(10.0),
@@ -428,7 +499,7 @@ fn transmittance_keeps_between_nothing_and_all_and_falls_with_distance() {
             let mut before = Spectrum::ONE;
             for k in -20..48 {
                 let line = RaySegment::new(40.0, sin_elevation, 1.4f64.powi(k), EARTH.radius_m);
-                let optics = fog.along_line(&line, 0.9);
+                let optics = fog.path_along(&line, 0.9);
                 for lane in 0..3 {
                     let t = optics.transmittance[lane];
                     assert!(
@@ -443,10 +514,10 @@ fn transmittance_keeps_between_nothing_and_all_and_falls_with_distance() {
     }
 }
 
-/// The closed form in f64, for one wavelength: the sun's own way through exponential fog included (ERRATA's extension).
+/// The closed form in f64, for one wavelength: sunlight dimmed on its own way through exponential fog included.
 #[test]
 fn sunlight_in_exponential_fog_is_exact_in_f64() {
-    use crate::fog::scatter;
+    use crate::fog::closed_forms::dimmed_source;
     for scale_height_m in [1e-2, 1.0, 50.0, 1e4, 1e7] {
         let profile = DensityProfile::Exponential {
             reference_height_m: 0.0,
@@ -470,8 +541,8 @@ fn sunlight_in_exponential_fog_is_exact_in_f64() {
                 continue;
             }
             tested += 1;
-            let got = scatter::once(near, along * (1.0 - sin_elevation / sine), along);
-            // Steps that crowd to both ends.
+            let got = dimmed_source(near, along * (1.0 - sin_elevation / sine), along);
+            // Steps that shrink towards both ends.
             let mut breaks: Vec<f64> = (0..60)
                 .map(|k| length_m * 0.6f64.powi(k))
                 .flat_map(|step| [step, length_m - step])
@@ -493,82 +564,72 @@ fn sunlight_in_exponential_fog_is_exact_in_f64() {
 }
 
 #[test]
-fn bad_numbers_are_refused_at_the_door() {
-    let layer = |m: Medium<3>| {
-        [Layer {
-            profile: DensityProfile::Uniform,
-            medium: m,
-        }]
-    };
-    let refused = |layers: &[Layer<3>], ground, light| {
-        Fog::new(layers, ground, light, FogScattering::Single)
+fn numbers_outside_their_domain_are_refused() {
+    let refused = |layers: &[RgbLayer], ground, light| {
+        lanes(layers, ground, light, FogScattering::Single)
             .unwrap_err()
             .to_string()
     };
     let phase = || PhaseFunction::Isotropic;
-    let good = medium([0.1; 3], 1.0, phase());
+    let good = layer([0.1; 3], 1.0, phase());
     let error = refused(
-        &layer(medium([0.1, f32::NAN, 0.1], 1.0, phase())),
+        &[layer([0.1, f32::NAN, 0.1], 1.0, phase())],
         Ground::FLAT,
         light(5.0),
     );
     assert!(
-        error.contains("extinction") && error.contains("lane 1"),
+        error.contains("extinction") && error.contains("channel 1"),
         "{error}"
     );
-    let error = refused(
-        &layer(medium([0.1; 3], 1.5, phase())),
-        Ground::FLAT,
-        light(5.0),
-    );
+    let error = refused(&[layer([0.1; 3], 1.5, phase())], Ground::FLAT, light(5.0));
     assert!(error.contains("albedo"), "{error}");
     let flat = Ground {
         radius_m: 0.0,
         ..Ground::FLAT
     };
-    assert!(refused(&layer(good.clone()), flat, light(5.0)).contains("radius"));
+    assert!(refused(&[good.clone()], flat, light(5.0)).contains("radius"));
     let mut dark = light(5.0);
     dark.ambient = Spectrum([-1.0, 0.0, 0.0]);
-    assert!(refused(&layer(good.clone()), Ground::FLAT, dark).contains("ambient"));
+    assert!(refused(&[good.clone()], Ground::FLAT, dark).contains("ambient"));
     let mut long = light(5.0);
     long.sun.as_mut().unwrap().direction *= 2.0;
-    assert!(refused(&layer(good), Ground::FLAT, long).contains("direction"));
+    assert!(refused(&[good], Ground::FLAT, long).contains("direction"));
 }
 
 #[test]
-fn in_thin_fog_many_scatterings_are_one() {
-    let layers = [Layer {
-        profile: DensityProfile::Exponential {
+fn in_thin_fog_multiple_scattering_is_single() {
+    let layers = [RgbLayer {
+        density: DensityProfile::Exponential {
             reference_height_m: 0.0,
             scale_height_m: 30.0,
         },
-        medium: droplets(1e-6),
+        ..drops(1e-6)
     }];
     let mut black = light(25.0);
     black.ground_albedo = Spectrum::ZERO;
     black.ambient = Spectrum::ZERO;
     let [one, many] = [FogScattering::Single, FogScattering::Multiple]
-        .map(|scattering| Fog::new(&layers, Ground::FLAT, black, scattering).unwrap());
+        .map(|scattering| lanes(&layers, Ground::FLAT, black, scattering).unwrap());
     for (azimuth, elevation) in [(120.0, 25.0), (120.0, 40.0), (300.0, 3.0), (10.0, 90.0)] {
         let view = axes::direction(azimuth, elevation);
-        let [a, b] = [&one, &many].map(|fog| fog.along(1.7, view, 2e3).path_radiance[1]);
+        let [a, b] = [&one, &many].map(|fog| fog.path(1.7, view, 2e3).path_radiance[1]);
         assert!((b / a - 1.0).abs() < 2e-3, "{azimuth} {elevation}: {a} {b}");
     }
 }
 
 #[test]
 fn thick_fog_is_not_dark() {
-    // A white cloud 30 optical depths thick sends a good part of the sunlight on; single scattering sends next to none.
-    let mut white = droplets(0.3);
-    white.single_scattering_albedo = Spectrum::ONE;
-    let layers = [Layer {
-        profile: DensityProfile::slab(100.0),
-        medium: white,
+    // A white cloud 30 optical depths thick transmits a good part of the sunlight, by single scattering nearly none.
+    let mut white = drops(0.3);
+    white.single_scattering_albedo = [1.0; 3];
+    let layers = [RgbLayer {
+        density: DensityProfile::slab(100.0),
+        ..white
     }];
     let [one, many] = [FogScattering::Single, FogScattering::Multiple]
-        .map(|scattering| Fog::new(&layers, Ground::FLAT, light(40.0), scattering).unwrap());
-    let level = |fog: &Fog<3>| {
-        fog.along(1.7, axes::direction(200.0, 5.0), 500.0)
+        .map(|scattering| lanes(&layers, Ground::FLAT, light(40.0), scattering).unwrap());
+    let level = |fog: &FogLanes<3>| {
+        fog.path(1.7, axes::direction(200.0, 5.0), 500.0)
             .path_radiance[1]
     };
     assert!(
@@ -581,21 +642,19 @@ fn thick_fog_is_not_dark() {
     assert!((0.15..0.7).contains(&ground), "{ground}");
     // Nothing below 0 anywhere, near the sun and away from it, in thick and in thin fog.
     for extinction in [1e-4, 0.01, 1.0] {
-        let layers = [Layer {
-            profile: DensityProfile::Exponential {
+        let layers = [RgbLayer {
+            density: DensityProfile::Exponential {
                 reference_height_m: 0.0,
                 scale_height_m: 20.0,
             },
-            medium: Medium {
-                phase: crate::fog::droplets::phase(12.0),
-                ..droplets(extinction)
-            },
+            phase: droplets::phase(12.0),
+            ..drops(extinction)
         }];
-        let fog = Fog::new(&layers, Ground::FLAT, light(8.0), FogScattering::Multiple).unwrap();
+        let fog = lanes(&layers, Ground::FLAT, light(8.0), FogScattering::Multiple).unwrap();
         for k in 0..400 {
             let k = f64::from(k);
             let view = axes::direction(0.9 * k, -20.0 + 0.27 * k);
-            let path = fog.along(3.0, view, 1.0 + k * k).path_radiance;
+            let path = fog.path(3.0, view, 1.0 + k * k).path_radiance;
             assert!(
                 path.min_element() >= 0.0 && path.is_finite(),
                 "{extinction} {view}: {path:?}"

@@ -1,11 +1,11 @@
-use super::super::reference::{isotropic_beyond, passages};
+use super::super::reference::{geometries, isotropic_beyond};
 use super::*;
 
-const EVERY_DISTANCE: [f64; 8] = [1e-6, 1e-3, 0.1, 1.0, 8.0, 250.0, 3e4, 1e7];
+const NEAREST: [f64; 8] = [1e-6, 1e-3, 0.1, 1.0, 8.0, 250.0, 3e4, 1e7];
 
 #[test]
 fn without_extinction_it_matches_quadrature_everywhere() {
-    for geometry in passages(&EVERY_DISTANCE) {
+    for geometry in geometries(&NEAREST) {
         let want = isotropic_beyond(&geometry, 0.0);
         let got = airlight_without_extinction(&geometry);
         assert!(
@@ -17,7 +17,7 @@ fn without_extinction_it_matches_quadrature_everywhere() {
 
 #[test]
 fn with_extinction_it_matches_quadrature_everywhere() {
-    for geometry in passages(&EVERY_DISTANCE) {
+    for geometry in geometries(&NEAREST) {
         for extinction in [1e-9, 1e-6, 1e-4, 1e-2, 0.3, 3.0, 1e2] {
             let depth = extinction * geometry.distance_m(0.0);
             if depth > 600.0 {
@@ -34,7 +34,7 @@ fn with_extinction_it_matches_quadrature_everywhere() {
 }
 
 #[test]
-fn a_lamp_passed_on_the_way_has_no_jump_of_pi() {
+fn a_light_passed_on_the_way_has_no_jump_of_pi() {
     // The note's b = -5, c = 26, d = 20, whose arctangent gives -0.2640.
     let geometry = LightRayGeometry {
         nearest_m: 1.0,
@@ -65,8 +65,8 @@ fn leaving_extinction_out_makes_dense_fog_glow_too_much() {
 }
 
 #[test]
-fn thin_fog_ends_in_the_form_without_extinction() {
-    for geometry in passages(&EVERY_DISTANCE) {
+fn thin_fog_tends_to_the_form_without_extinction() {
+    for geometry in geometries(&NEAREST) {
         let without = airlight_without_extinction(&geometry);
         let mut before = f64::INFINITY;
         for extinction in [1e-14, 1e-16, 1e-20, 1e-30, 0.0] {
@@ -83,7 +83,7 @@ fn thin_fog_ends_in_the_form_without_extinction() {
 
 #[test]
 fn near_and_far_compose_to_the_whole() {
-    for geometry in passages(&EVERY_DISTANCE) {
+    for geometry in geometries(&NEAREST) {
         for extinction in [0.0, 1e-6, 0.05, 4.0] {
             let whole = airlight_isotropic(&geometry, extinction);
             if whole < 1e-200 {
@@ -94,7 +94,7 @@ fn near_and_far_compose_to_the_whole() {
                 let near = airlight_isotropic(&geometry.part(0.0, split), extinction);
                 let far = airlight_isotropic(&geometry.part(split, geometry.length_m), extinction);
                 let both = near + (-extinction * split).exp() * far;
-                // Where a part's start is rounded away from the point closest to the lamp nothing better can be said.
+                // Limited by the rounding of a part's start where that is far from the point closest to the light.
                 let rounded = 1e-15 * (split + geometry.start_m.abs()) / geometry.nearest_m;
                 assert!(
                     (both / whole - 1.0).abs() < 1e-12 + 2.0 * rounded,
@@ -102,5 +102,82 @@ fn near_and_far_compose_to_the_whole() {
                 );
             }
         }
+    }
+}
+
+const FAST_NEAREST: [f64; 9] = [1e-6, 1e-3, 0.1, 1.0, 8.0, 250.0, 3e4, 1e6, 1e7];
+
+/// The worst error of the fast form where the optical depth to the light is `depth`; lanes and f64.
+fn worst(count: usize, depth: f64) -> (f64, f64) {
+    let nodes = Nodes::new(count);
+    let (mut worst64, mut worst32) = (0.0f64, 0.0f64);
+    for geometry in geometries(&FAST_NEAREST) {
+        // Rounded to f32, so that both forms get the same number.
+        let lane = (depth / geometry.distance_m(0.0)) as f32;
+        let extinction = f64::from(lane);
+        let exact = airlight_isotropic(&geometry, extinction);
+        let got = airlight_isotropic_lanes(&geometry, extinction, &nodes);
+        worst64 = worst64.max((got / exact - 1.0).abs());
+        let lanes = airlight_isotropic_lanes(&geometry, Spectrum([0.0, lane, 0.0]), &nodes);
+        if exact > 1e-34 {
+            worst32 = worst32.max((f64::from(lanes[1]) / exact - 1.0).abs());
+        }
+    }
+    (worst64, worst32)
+}
+
+/// Prints the book's table with `--nocapture`.
+#[test]
+fn the_fast_form_is_as_good_as_stated() {
+    println!("\n| nodes | f64 | f32 |\n|---|---|---|");
+    for (count, limit) in [
+        (8, 1.25e-4),
+        (10, 2e-5),
+        (12, 5e-6),
+        (16, 1.1e-6),
+        (20, 3.5e-7),
+    ] {
+        let mut all = (0.0f64, 0.0f64);
+        for depth in [
+            1e-6, 1e-4, 1e-3, 0.01, 0.03, 0.1, 0.3, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 80.0, 300.0,
+            600.0,
+        ] {
+            let (in64, in32) = worst(count, depth);
+            all = (all.0.max(in64), all.1.max(in32));
+        }
+        let bold = if count == 12 { "**" } else { "" };
+        println!("| {bold}{count}{bold} | {:.1e} | {:.1e} |", all.0, all.1);
+        assert!(all.0 < limit, "{count}: {all:?}");
+        assert!(all.1 < limit + 2e-6 + 1e-7 * 80.0, "{count}: {all:?}");
+    }
+}
+
+include!("exponential_integral_values.rs");
+
+#[test]
+fn both_parts_agree_with_forty_digits() {
+    for (re, im, want_re, want_im) in VALUES {
+        let got = scaled_exponential_integral(re, im);
+        assert!(
+            (got.0 / want_re - 1.0).abs() < 1e-13,
+            "({re}, {im}): {got:?}"
+        );
+        assert!(
+            (got.1 - want_im).abs() <= 1e-13 * f64::abs(want_im),
+            "({re}, {im}): {got:?}"
+        );
+    }
+}
+
+#[test]
+fn the_two_forms_meet() {
+    for step in 0..=40 {
+        let (sin, cos) = (f64::from(step) / 40.0 * std::f64::consts::FRAC_PI_2).sin_cos();
+        let (a, b) = (
+            series(2.0 * cos, -2.0 * sin),
+            fraction(2.0 * cos, -2.0 * sin),
+        );
+        assert!((a.0 / b.0 - 1.0).abs() < 5e-14, "{step}: {a:?} {b:?}");
+        assert!((a.1 - b.1).abs() <= 5e-14 * b.1, "{step}: {a:?} {b:?}");
     }
 }

@@ -1,0 +1,348 @@
+//! Fog in N lanes: layers lit by sun and sky, and their effect on light along any ray.
+
+use super::closed_forms::Lanes;
+use super::error::FogError;
+use super::layer::{LayerLanes, MergedLayer, merge_layers};
+use super::lighting::{FogLighting, FogScattering, Ground};
+use super::multiple::{self, DirectionWeights, Field};
+use super::ray_cuts::height_breakpoints;
+use super::single_scattering::SingleScattering;
+use crate::atmosphere::RaySegment;
+use crate::spectrum::Spectrum;
+use crate::transfer::PathOptics;
+use glam::DVec3;
+
+/// Bound of columns and optical depths: far beyond opaque, far from the largest f32.
+pub(super) const OPAQUE: f64 = 1e25;
+
+/// Fog in N lanes: wavelengths, or red, green and blue. Queries allocate nothing.
+///
+/// Layers of the same density profile are merged. Over flat ground a fog of one profile is solved in closed form:
+/// transmittance (Ishiyama 2018, eqs. 14 and 23), ambient light (eq. 21) and sunlight dimmed on its own way through the fog
+/// ([`super::closed_forms`]), to the rounding of f32. With several profiles, or over round ground, a ray is cut at
+/// heights, and the same closed forms hold between them. With [`FogScattering::Multiple`] the diffuse light inside is solved
+/// for when the fog is built, and added.
+#[derive(Clone, Debug)]
+pub(crate) struct FogLanes<const N: usize> {
+    pub(super) layers: Vec<MergedLayer<N>>,
+    pub(super) ground: Ground,
+    pub(super) lighting: FogLighting<Spectrum<N>>,
+    scattering: FogScattering,
+    /// Heights at which rays through several layers are cut, rising, m.
+    breakpoints_m: Vec<f64>,
+    /// Diffuse light; `None` for single scattering, and for fog without an upper end.
+    pub(super) field: Option<Field<N>>,
+}
+
+impl<const N: usize> FogLanes<N> {
+    /// Validates layers and light, and solves for the diffuse light. `lanes` of the N are in use; those beyond repeat the last
+    /// of them.
+    ///
+    /// # Errors
+    /// [`FogError`] for the first number outside its domain.
+    pub fn new(
+        layers: &[LayerLanes<N>],
+        ground: Ground,
+        lighting: FogLighting<Spectrum<N>>,
+        scattering: FogScattering,
+        lanes: usize,
+    ) -> Result<Self, FogError> {
+        ground.validate()?;
+        lighting.validate()?;
+        let layers = merge_layers(layers, scattering)?;
+        let structures: Vec<_> = layers.iter().map(|s| s.density.structure()).collect();
+        let mut fog = Self {
+            breakpoints_m: height_breakpoints(&structures, ground.height_m),
+            layers,
+            ground,
+            lighting,
+            scattering,
+            field: None,
+        };
+        if scattering == FogScattering::Multiple {
+            fog.field = fog.solve(lanes);
+        }
+        Ok(fog)
+    }
+
+    /// The diffuse light inside.
+    fn solve(&self, lanes: usize) -> Option<Field<N>> {
+        let reduced: Vec<_> = self
+            .layers
+            .iter()
+            .filter_map(MergedLayer::reduced)
+            .collect();
+        if reduced.is_empty() {
+            return None;
+        }
+        let sin_sun = self.lighting.sun.map_or(1.0, |sun| sun.direction.y);
+        let single = self.single_scattering(|s| s.reduced_extinction_per_m, |_| Spectrum::ZERO);
+        let sun_depth = |height| single.depth_to_sun(height, sin_sun);
+        Some(Field::solve(
+            reduced,
+            &self.ground,
+            &self.lighting,
+            sun_depth,
+            lanes,
+        ))
+    }
+
+    /// The light on it.
+    pub fn lighting(&self) -> &FogLighting<Spectrum<N>> {
+        &self.lighting
+    }
+
+    /// The ground under it.
+    pub fn ground(&self) -> &Ground {
+        &self.ground
+    }
+
+    /// Irradiance of sun and sky on the horizontal ground under the fog, all orders of scattering; `None` unless these are
+    /// solved for.
+    pub fn ground_irradiance(&self) -> Option<Spectrum<N>> {
+        self.field.as_ref().map(|field| field.ground_irradiance)
+    }
+
+    /// Extinction at a height, 1/m.
+    pub fn extinction_per_m(&self, height_m: f64) -> Spectrum<N> {
+        self.layers.iter().fold(Spectrum::ZERO, |sum, layer| {
+            sum.scale_acc(layer.extinction_per_m, layer.density.at(height_m) as f32)
+        })
+    }
+
+    /// Transmittance and path radiance between an eye (m above the zero of heights) and a point `distance_m` away (infinite:
+    /// the sky) along the unit vector `direction`.
+    #[inline]
+    pub fn path(&self, eye_height_m: f64, direction: DVec3, distance_m: f64) -> PathOptics<N> {
+        let ray = RaySegment::new(eye_height_m, direction.y, distance_m, self.ground.radius_m);
+        self.path_along(&ray, self.cos_sun(direction))
+    }
+
+    /// Cosine of the angle between a unit vector and the direction to the sun; 0 without a sun.
+    #[inline]
+    pub fn cos_sun(&self, direction: DVec3) -> f64 {
+        match &self.lighting.sun {
+            Some(sun) => direction.dot(sun.direction),
+            None => 0.0,
+        }
+    }
+
+    /// Transmittance along a ray: in closed form for all layers, over flat and round ground.
+    #[inline]
+    pub fn transmittance(&self, ray: &RaySegment) -> Spectrum<N> {
+        self.optical_depth(ray).exp_neg()
+    }
+
+    /// Optical depth along a ray, at most [`OPAQUE`] for each layer.
+    #[inline]
+    pub fn optical_depth(&self, ray: &RaySegment) -> Spectrum<N> {
+        self.depth_of(ray, &|layer| layer.extinction_per_m)
+    }
+
+    #[inline]
+    pub(super) fn depth_of(
+        &self,
+        ray: &RaySegment,
+        extinction: &impl Fn(&MergedLayer<N>) -> Spectrum<N>,
+    ) -> Spectrum<N> {
+        self.layers.iter().fold(Spectrum::ZERO, |sum, layer| {
+            let column = layer.density.column_along_m(ray).min(OPAQUE);
+            sum.scale_acc(extinction(layer), column as f32)
+        })
+    }
+
+    /// Transmittance and path radiance along a ray; `cos_sun` is the cosine of the angle between its direction and the sun's.
+    ///
+    /// The transmittance is exact. Error of the path radiance against exact single scattering: rounding (below 1e-5) for one
+    /// profile over flat ground; below 0.2 % for several profiles; over round ground below 1 % (rays up to 100 km, a sun
+    /// at least 0.5 degrees high; 0.02 % up to 10 km). Measured over scale heights from 10 m to 8 km and rays from level to
+    /// vertical (test `several_profiles_and_round_ground_err_as_stated`).
+    #[inline]
+    pub fn path_along(&self, ray: &RaySegment, cos_sun: f64) -> PathOptics<N> {
+        if self.layers.is_empty() {
+            return PathOptics::CLEAR;
+        }
+        let depth = self.optical_depth(ray);
+        let path_radiance = match &self.field {
+            Some(field) => self.multiple_scattering(field, ray, cos_sun, depth),
+            None => {
+                let (sunlit, uniform) = self
+                    .single_scattering(|s| s.extinction_per_m, |s| s.towards_eye(cos_sun))
+                    .along(ray, &|s| s.scattering_per_m);
+                uniform * self.lighting.ambient + sunlit * self.sunlight()
+            }
+        };
+        PathOptics {
+            transmittance: depth.exp_neg(),
+            path_radiance,
+        }
+    }
+
+    #[inline]
+    fn sunlight(&self) -> Spectrum<N> {
+        match &self.lighting.sun {
+            Some(sun) => sun.irradiance,
+            None => Spectrum::ZERO,
+        }
+    }
+
+    /// Sunlight scattered once, dimmed by an extinction of each layer, with a strength of each layer towards the eye.
+    #[inline]
+    pub(super) fn single_scattering<'a, X, S>(
+        &'a self,
+        extinction: X,
+        towards_eye: S,
+    ) -> SingleScattering<'a, N, X, S>
+    where
+        X: Fn(&MergedLayer<N>) -> Spectrum<N>,
+        S: Fn(&MergedLayer<N>) -> Spectrum<N>,
+    {
+        SingleScattering {
+            layers: &self.layers,
+            breakpoints_m: &self.breakpoints_m,
+            ground: &self.ground,
+            sin_sun: self.lighting.sun.map(|sun| sun.direction.y),
+            dimmed: self.scattering != FogScattering::Undimmed,
+            extinction,
+            towards_eye,
+        }
+    }
+
+    /// Path radiance of light scattered any number of times.
+    ///
+    /// Inside, light that the forward peak scatters counts as not scattered: the radiance `I` that arrives from the edge of
+    /// the fog is dimmed by less than the whole extinction, and contains the light that the peak scatters into the ray. The
+    /// path radiance of a segment is `I` without the light that arrives unscattered from the segment's far end,
+    /// `S = I(near) - T I(far)`, which composes at any cut, and is `(1 - T) I` where light is the same everywhere. It is
+    /// summed from terms that do not cancel.
+    fn multiple_scattering(
+        &self,
+        field: &Field<N>,
+        ray: &RaySegment,
+        cos_sun: f64,
+        depth: Spectrum<N>,
+    ) -> Spectrum<N> {
+        let towards = Towards::new(self, ray.sin_elevation, cos_sun);
+        let near = self.part(field, ray, &towards);
+        let path = near.smooth + near.peaked;
+        // Light that passes through because the peak counts as not scattered.
+        let through = |reduced: Spectrum<N>| {
+            let rest = (depth - reduced).map(|d| if d > 0.0 { d } else { 0.0 });
+            reduced.exp_neg() * rest * rest.mean_transmittance()
+        };
+        let (smooth, peaked) = (through(near.smooth_depth), through(near.peaked_depth));
+        let most = smooth.max_element().max(peaked.max_element());
+        if most < 1e-7 * depth.max_element().min(1.0) {
+            return path;
+        }
+        let (beyond, boundary) = self.beyond(field, ray);
+        let Some(beyond) = beyond else {
+            return path + smooth * boundary;
+        };
+        let far = self.part(field, &beyond, &towards);
+        let arriving = far.smooth + far.smooth_depth.exp_neg() * boundary;
+        path + smooth * arriving + peaked * far.peaked
+    }
+
+    /// The segment from the end of `ray` to the edge of the fog, if any is left, and the radiance there.
+    fn beyond(&self, field: &Field<N>, ray: &RaySegment) -> (Option<RaySegment>, Spectrum<N>) {
+        if ray.length_m == f64::INFINITY {
+            return (None, self.lighting.ambient);
+        }
+        let mut beyond = ray.part(ray.length_m, f64::INFINITY);
+        let (enters, leaves) = beyond.below(self.ground.height_m);
+        if enters == leaves {
+            return (Some(beyond), self.lighting.ambient);
+        }
+        beyond.length_m = enters;
+        match enters > 0.0 {
+            true => (Some(beyond), field.ground_radiance),
+            false => (None, field.ground_radiance),
+        }
+    }
+
+    /// The light scattered into a ray, by the extinction that dims it.
+    fn part(&self, field: &Field<N>, ray: &RaySegment, towards: &Towards) -> Part<N> {
+        let cos_sun = towards.cos_sun;
+        let uniform_scattering = |s: &MergedLayer<N>| match s.density.is_uniform() {
+            true => s.scattering_per_m,
+            false => Spectrum::ZERO,
+        };
+        let reduced = |s: &MergedLayer<N>| s.reduced_extinction_per_m;
+        let residual = |s: &MergedLayer<N>| s.residual_extinction(cos_sun);
+        let unbounded = self.layers.iter().filter(|s| s.density.is_uniform());
+        let uniform_extinction = unbounded.fold(Spectrum::ZERO, |sum, s| sum + s.extinction_per_m);
+        let mut smooth = field.scattered(ray, &towards.weights, uniform_extinction);
+        let smooth_depth = self.depth_of(ray, &reduced);
+        let (mut peaked, mut peaked_depth) = (Spectrum::ZERO, smooth_depth);
+        // In the peak the residual is dimmed by its own extinction; elsewhere the whole phase function by one.
+        let in_peak = towards.in_peak;
+        let (sunlit, uniform) = self
+            .single_scattering(reduced, |s| match in_peak {
+                true => s.smooth_towards_eye(cos_sun),
+                false => s.towards_eye(cos_sun),
+            })
+            .along(ray, &uniform_scattering);
+        smooth += uniform * self.lighting.ambient + sunlit * self.sunlight();
+        if in_peak {
+            let beyond =
+                |s: &MergedLayer<N>| s.towards_eye(cos_sun) - s.smooth_towards_eye(cos_sun);
+            let (sunlit, _) = self
+                .single_scattering(residual, beyond)
+                .along(ray, &|_| Spectrum::ZERO);
+            peaked = sunlit * self.sunlight();
+            peaked_depth = self.depth_of(ray, &residual);
+        }
+        Part {
+            smooth,
+            peaked,
+            smooth_depth,
+            peaked_depth,
+        }
+    }
+}
+
+/// Light scattered into a ray, dimmed by the extinction without the peak and by the extinction of the residual; and both
+/// optical depths.
+struct Part<const N: usize> {
+    smooth: Spectrum<N>,
+    peaked: Spectrum<N>,
+    smooth_depth: Spectrum<N>,
+    peaked_depth: Spectrum<N>,
+}
+
+/// A direction in the terms of the field.
+struct Towards {
+    cos_sun: f64,
+    weights: DirectionWeights,
+    in_peak: bool,
+}
+
+impl Towards {
+    fn new<const N: usize>(fog: &FogLanes<N>, sin_elevation: f64, cos_sun: f64) -> Self {
+        let sin_elevation = sin_elevation.clamp(-1.0, 1.0);
+        let Some(sun) = &fog.lighting.sun else {
+            return Self {
+                cos_sun,
+                weights: multiple::in_direction(sin_elevation, 1.0),
+                in_peak: false,
+            };
+        };
+        let sin_sun = sun.direction.y;
+        let across = ((1.0 - sin_elevation * sin_elevation) * (1.0 - sin_sun * sin_sun))
+            .max(0.0)
+            .sqrt();
+        let cos_azimuth = match across > 1e-9 {
+            true => ((cos_sun - sin_elevation * sin_sun) / across).clamp(-1.0, 1.0),
+            false => 1.0,
+        };
+        Self {
+            cos_sun,
+            weights: multiple::in_direction(sin_elevation, cos_azimuth),
+            in_peak: fog.layers.iter().any(|s| s.in_peak(cos_sun)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

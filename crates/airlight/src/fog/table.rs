@@ -1,0 +1,613 @@
+//! A fog tabulated for the rays from one height: for pictures.
+
+use super::closed_forms::Lanes;
+use super::fog_lanes::{FogLanes, OPAQUE};
+use super::layer::MergedLayer;
+use super::multiple::{self, Field, STREAMS};
+use crate::atmosphere::RaySegment;
+use crate::math::interpolation::cubic_weights;
+use crate::spectrum::Spectrum;
+use crate::transfer::PathOptics;
+use glam::DVec3;
+use std::sync::{Arc, OnceLock};
+
+/// Elevations on each side of the horizontal.
+const ROWS: usize = 64;
+/// Weight of the logarithm of the sine of the elevation, against the sine itself, in the spacing of rows.
+const LOGARITHMIC: f32 = 0.6;
+/// Distances up to the end of the fog or the ground, and again from there on.
+const NODES: usize = 41;
+/// Shares of the forward peak that count as scattered, at which light in the peak is tabulated.
+const SHARES: usize = 7;
+/// Smallest opacity of a node over the largest: there the source function is that at the eye.
+const NEAREST: f32 = 1e-5;
+
+/// The logarithm of light that counts as dark.
+const DARK: f32 = -80.0;
+
+/// A fog seen from one height: the results of [`FogLanes::path`] for many rays in a fraction of the time.
+///
+/// Transmittance is the fog's own. Of the path radiance `S = (1 - T) J` the mean source function `J` is interpolated, which
+/// is finite and smooth from the eye to infinity. It is the sum of multiply scattered light, tabulated by azimuth mode over
+/// elevation and distance, and of singly scattered sunlight, `p(Theta)` times a function of both (and, within the forward
+/// peak, of the part of the peak that counts as not scattered), so that neither the peak nor the azimuth needs nodes. The
+/// coordinate of distance is opacity, `1 - (1 - x / x_end)^(1/4)`, where `x` is `1 - T` and `x_end` the same up to space or to
+/// the ground.
+///
+/// Error against [`FogLanes::path`]: below 0.3 % of the path radiance (test `a_table_is_the_fog_itself`). Rows of the table are
+/// computed when they are first used, by whichever thread does; the values do not depend on that. Fog of several profiles,
+/// over round ground, or without multiple scattering is not tabulated but evaluated directly.
+#[derive(Debug)]
+pub(crate) struct TableLanes<const N: usize> {
+    fog: Arc<FogLanes<N>>,
+    eye_height_m: f64,
+    table: Option<Table<N>>,
+}
+
+#[derive(Debug)]
+struct Table<const N: usize> {
+    /// Downwards and upwards.
+    sides: [Side<N>; 2],
+    /// Whether all lanes have the same extinction, so that one is enough.
+    is_grey: bool,
+    /// The largest part of the forward peak that counts as scattered at any angle to the sun.
+    largest_share: f32,
+    sun: Option<SunSide<N>>,
+}
+
+/// The sun in the terms of the table.
+#[derive(Debug)]
+struct SunSide<const N: usize> {
+    irradiance: Spectrum<N>,
+    direction: DVec3,
+    /// Its horizontal part, of length 1; 0 for a sun in the zenith.
+    horizontal: DVec3,
+}
+
+impl<const N: usize> TableLanes<N> {
+    /// The fog seen from a height (m).
+    pub fn new(fog: Arc<FogLanes<N>>, eye_height_m: f64) -> Self {
+        let table = (fog.field.is_some() && fog.ground.is_flat() && fog.layers.len() == 1)
+            .then(|| Table::new(&fog, eye_height_m));
+        Self {
+            fog,
+            eye_height_m,
+            table,
+        }
+    }
+
+    /// Transmittance and path radiance between the eye and a point `distance_m` away (infinite: the sky) along the unit vector
+    /// `direction`.
+    #[inline]
+    pub fn path(&self, direction: DVec3, distance_m: f64) -> PathOptics<N> {
+        let fog = &*self.fog;
+        let (Some(table), Some(field)) = (&self.table, &fog.field) else {
+            return fog.path(self.eye_height_m, direction, distance_m);
+        };
+        let sun = table.sun.as_ref();
+        let cos_sun = sun.map_or(0.0, |sun| direction.dot(sun.direction));
+        let ray = RaySegment::flat(self.eye_height_m, direction.y, distance_m);
+        let depth = fog.optical_depth(&ray);
+        let opacity = opacity(depth, table.is_grey);
+        let mut path_radiance = Spectrum::ZERO;
+        let mean_opacity = mean(opacity);
+        if mean_opacity > 0.0 {
+            let side = &table.sides[usize::from(direction.y > 0.0)];
+            let place = side.place(direction.y.abs(), mean_opacity);
+            let rows: [&Row<N>; 4] = std::array::from_fn(|r| {
+                let row = place.row + r;
+                side.rows[row].get_or_init(|| self.row(table, field, side, row))
+            });
+            let mut source = place.interpolate(&rows, |row, node| row.mean[node]);
+            if let Some(sun) = sun {
+                source += place.azimuth_modes(&rows, sun, direction);
+                let sunlit = table.sunlit(&fog.layers[0], cos_sun, &place, &rows);
+                source += sunlit * sun.irradiance;
+            }
+            path_radiance = opacity * source;
+        }
+        PathOptics {
+            transmittance: match table.is_grey {
+                true => Spectrum::splat(Spectrum([depth[0]]).exp_neg()[0]),
+                false => depth.exp_neg(),
+            },
+            path_radiance,
+        }
+    }
+
+    /// One elevation at all distances.
+    fn row(&self, table: &Table<N>, field: &Field<N>, side: &Side<N>, row: usize) -> Row<N> {
+        let sin_elevation = side.sign * side.sin_elevations[row];
+        let ray = RaySegment::flat(self.eye_height_m, sin_elevation, f64::INFINITY);
+        let lengths_m = self.lengths_m(side, &ray);
+        let ground = match side.sign < 0.0 {
+            true => NODES - 1,
+            false => usize::MAX,
+        };
+        let rays = Rays {
+            fog: &self.fog,
+            field,
+            ray,
+            lengths_m: &lengths_m,
+            ground,
+        };
+        let opacities: Vec<Spectrum<N>> = lengths_m
+            .iter()
+            .map(|&length_m| {
+                let depth = self.fog.optical_depth(&ray.part(0.0, length_m));
+                depth * depth.mean_transmittance()
+            })
+            .collect();
+        let per_opacity = |light: Vec<Spectrum<N>>| -> Vec<Spectrum<N>> {
+            let each = light.into_iter().zip(&opacities);
+            each.map(|(light, opacity)| {
+                Spectrum::from_fn(|lane| match opacity[lane] > 0.0 {
+                    true => light[lane] / opacity[lane],
+                    false => 0.0,
+                })
+            })
+            .collect()
+        };
+        let mut values = Row {
+            mean: per_opacity(rays.diffuse(0)),
+            modes: Vec::new(),
+            sunlit: Vec::new(),
+        };
+        if table.sun.is_some() {
+            values.modes = vec![[[0.0; STREAMS]; N]; lengths_m.len()];
+            values.sunlit = vec![[Spectrum::ZERO; SHARES]; lengths_m.len()];
+            for m in 1..STREAMS {
+                let light = per_opacity(rays.diffuse(m));
+                for (by_lane, light) in values.modes.iter_mut().zip(light) {
+                    for (lane, modes) in by_lane.iter_mut().enumerate() {
+                        modes[m] = light[lane];
+                    }
+                }
+            }
+            for k in 0..SHARES {
+                let light = per_opacity(rays.sunlit(table.share(k)));
+                for (sunlit, light) in values.sunlit.iter_mut().zip(light) {
+                    sunlit[k] = light.map(|v| v.max(DARK.exp()).ln());
+                }
+            }
+        }
+        values
+    }
+
+    /// The distances of the nodes, by opacity.
+    fn lengths_m(&self, side: &Side<N>, ray: &RaySegment) -> Vec<f64> {
+        let opacity = |length_m: f64| {
+            let depth = self.fog.optical_depth(&ray.part(0.0, length_m));
+            mean(depth * depth.mean_transmittance())
+        };
+        let end = side.end(ray.sin_elevation.abs());
+        let nearest = NEAREST * if end > 0.0 { end } else { 1.0 };
+        let left = |node: usize| 1.0 - node as f32 / (NODES - 1) as f32;
+        let mut lengths_m = vec![0.0];
+        for node in 0..NODES {
+            let fraction = 1.0 - left(node).powi(4);
+            let from = lengths_m[lengths_m.len() - 1];
+            let at = match (node == NODES - 1, side.sign > 0.0) {
+                (true, true) => f64::INFINITY,
+                (true, false) => (self.above_ground_m() / -ray.sin_elevation).max(from),
+                _ => distance_of(&opacity, (end * fraction).max(nearest), from),
+            };
+            lengths_m.push(at);
+        }
+        if side.sign < 0.0 {
+            for node in 1..NODES {
+                let from = lengths_m[lengths_m.len() - 1];
+                let inverse = (1.0 - left(node)) * (1.0 - end) / (1.0 - end + end.max(NEAREST));
+                let target = end + inverse / (1.0 - inverse) * end.max(NEAREST);
+                lengths_m.push(distance_of(&opacity, target, from));
+            }
+        }
+        lengths_m.remove(0);
+        lengths_m
+    }
+
+    fn above_ground_m(&self) -> f64 {
+        (self.eye_height_m - self.fog.ground.height_m).max(0.0)
+    }
+}
+
+impl<const N: usize> Table<N> {
+    /// An empty table of a fog of one layer over flat ground.
+    fn new(fog: &FogLanes<N>, eye_height_m: f64) -> Self {
+        let sun = fog.lighting.sun.filter(|sun| sun.direction.y > 0.0);
+        let layer = &fog.layers[0];
+        let column_m = layer.density.column_above_m(eye_height_m).min(OPAQUE);
+        let above = layer.extinction_per_m * column_m as f32;
+        let under = RaySegment::flat(
+            eye_height_m,
+            -1.0,
+            (eye_height_m - fog.ground.height_m).max(0.0),
+        );
+        let extinction = layer.extinction_per_m;
+        let is_grey = extinction.0.iter().all(|&lane| lane == extinction[0]);
+        Self {
+            is_grey,
+            sides: [
+                Side::new(-1.0, fog.optical_depth(&under), is_grey),
+                Side::new(1.0, above, is_grey),
+            ],
+            largest_share: largest_share(layer),
+            sun: sun.map(|sun| SunSide {
+                irradiance: sun.irradiance,
+                direction: sun.direction,
+                horizontal: (sun.direction * DVec3::new(1.0, 0.0, 1.0)).normalize_or_zero(),
+            }),
+        }
+    }
+
+    /// The share of the peak at a tabulated index: close together towards the largest, where least of the sunlight is left.
+    fn share(&self, index: usize) -> f32 {
+        let left = 1.0 - index as f32 / (SHARES - 1) as f32;
+        self.largest_share * (1.0 - left * left)
+    }
+
+    /// The inverse: a real index from 0.
+    #[inline]
+    fn index_of_share(&self, share: f32) -> f32 {
+        let part = share / self.largest_share.max(f32::MIN_POSITIVE);
+        (SHARES - 1) as f32 * (1.0 - (1.0 - part).max(0.0).sqrt())
+    }
+
+    /// Sunlight scattered once by a layer, for a unit of irradiance and of opacity.
+    #[inline]
+    fn sunlit(
+        &self,
+        layer: &MergedLayer<N>,
+        cos_sun: f64,
+        place: &Place,
+        rows: &[&Row<N>; 4],
+    ) -> Spectrum<N> {
+        let arriving = |k: usize| place.interpolate(rows, |row, node| row.sunlit[node][k]);
+        let (whole, once) = (layer.towards_eye(cos_sun), arriving(0).exp());
+        if !layer.in_peak(cos_sun) {
+            return whole * once;
+        }
+        // All lanes take the same four of the nodes.
+        let at = share_at(layer, cos_sun).map(|share| self.index_of_share(share));
+        let first = (mean(at) as usize).clamp(1, SHARES - 3) - 1;
+        let logarithms: [Spectrum<N>; 4] = std::array::from_fn(|k| arriving(first + k));
+        let logarithm = Spectrum::from_fn(|lane| {
+            let weights = cubic_weights(at[lane] - first as f32);
+            (0..4).map(|k| weights[k] * logarithms[k][lane]).sum()
+        });
+        let beyond = whole - layer.smooth_towards_eye(cos_sun);
+        whole * once + beyond * (logarithm.exp() - once)
+    }
+}
+
+/// The share of the forward peak that counts as scattered at an angle to the sun.
+#[inline]
+fn share_at<const N: usize>(layer: &MergedLayer<N>, cos_sun: f64) -> Spectrum<N> {
+    let reduced = layer.reduced_extinction_per_m;
+    let (part, whole) = (
+        layer.residual_extinction(cos_sun) - reduced,
+        layer.extinction_per_m - reduced,
+    );
+    Spectrum::from_fn(|lane| match whole[lane] > 0.0 {
+        true => part[lane] / whole[lane],
+        false => 0.0,
+    })
+}
+
+/// The largest share at any angle and in any lane.
+fn largest_share<const N: usize>(layer: &MergedLayer<N>) -> f32 {
+    let cosines = (0..=200).map(|k| 1.0 - 2.0 * (f64::from(k) / 200.0).powi(4));
+    cosines
+        .map(|cosine| share_at(layer, cosine).max_element())
+        .fold(0.0, f32::max)
+}
+
+/// All rays that go up, or all that go down.
+#[derive(Debug)]
+struct Side<const N: usize> {
+    /// -1 or 1.
+    sign: f64,
+    /// Optical depth straight to space or to the ground.
+    depth: Spectrum<N>,
+    is_grey: bool,
+    /// Absolute sine of the elevation up to which rows are evenly spaced; beyond, in a mean of its logarithm and itself.
+    even_to: f64,
+    /// The absolute sine of the elevation of each row; nearly 0 for the first.
+    sin_elevations: Vec<f64>,
+    rows: Vec<OnceLock<Row<N>>>,
+    /// `1 / ln(1 + 1 / even_to)`.
+    per_logarithm: f32,
+}
+
+/// Light for a unit of opacity, along rays of one elevation, at each distance.
+#[derive(Debug)]
+struct Row<const N: usize> {
+    /// Multiply scattered: the mean over azimuth.
+    mean: Vec<Spectrum<N>>,
+    /// Mode `m` in azimuth over the `m`-th power of the cosine of the elevation; 0 for mode 0. Lanes outside, so that modes
+    /// add up in one vector.
+    modes: Vec<[[f32; STREAMS]; N]>,
+    /// The logarithm of singly scattered sunlight, by share of the peak.
+    sunlit: Vec<[Spectrum<N>; SHARES]>,
+}
+
+/// Where a ray lies in a side's table.
+struct Place {
+    row: usize,
+    node: usize,
+    /// Weights of four rows, at the nearer and the farther node.
+    weights: [[f32; 2]; 4],
+}
+
+impl Place {
+    /// An interpolated value of the table.
+    #[inline]
+    fn interpolate<const N: usize>(
+        &self,
+        rows: &[&Row<N>; 4],
+        value: impl Fn(&Row<N>, usize) -> Spectrum<N>,
+    ) -> Spectrum<N> {
+        let mut sum = Spectrum::ZERO;
+        for (row, [near, far]) in rows.iter().zip(self.weights) {
+            sum = sum
+                .scale_acc(value(row, self.node), near)
+                .scale_acc(value(row, self.node + 1), far);
+        }
+        sum
+    }
+
+    /// The azimuth modes above 0, summed in a direction.
+    #[inline]
+    fn azimuth_modes<const N: usize>(
+        &self,
+        rows: &[&Row<N>; 4],
+        sun: &SunSide<N>,
+        direction: DVec3,
+    ) -> Spectrum<N> {
+        let mut sums = [[0.0f32; STREAMS]; N];
+        for (row, [near, far]) in rows.iter().zip(self.weights) {
+            let (from, to) = (&row.modes[self.node], &row.modes[self.node + 1]);
+            for lane in 0..N {
+                for m in 0..STREAMS {
+                    sums[lane][m] += near * from[lane][m] + far * to[lane][m];
+                }
+            }
+        }
+        // c^m cos(m azimuth), where c is the cosine of the elevation.
+        let across = direction.dot(sun.horizontal) as f32;
+        let square = (direction.x * direction.x + direction.z * direction.z) as f32;
+        let mut factors = [0.0, across, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+        let mut before = 1.0;
+        for m in 2..STREAMS {
+            let next = 2.0 * across * factors[m - 1] - square * before;
+            (before, factors[m]) = (factors[m - 1], next);
+        }
+        Spectrum(sums.map(|modes| {
+            let each = modes.iter().zip(&factors);
+            each.map(|(mode, factor)| mode * factor).sum()
+        }))
+    }
+}
+
+impl<const N: usize> Side<N> {
+    fn new(sign: f64, depth: Spectrum<N>, is_grey: bool) -> Self {
+        let even_to = f64::from(0.1 * mean(depth)).clamp(1e-6, 0.05);
+        let mut side = Self {
+            sign,
+            depth,
+            is_grey,
+            even_to,
+            per_logarithm: (1.0 / (1.0 / even_to).ln_1p()) as f32,
+            sin_elevations: Vec::new(),
+            rows: std::iter::repeat_with(OnceLock::new).take(ROWS).collect(),
+        };
+        side.sin_elevations = (0..ROWS).map(|row| side.sin_elevation_at(row)).collect();
+        side
+    }
+
+    /// The real row of an absolute sine of the elevation.
+    #[inline]
+    fn row_of(&self, sin_elevation: f64) -> f32 {
+        let logarithm = (1.0 + sin_elevation / self.even_to) as f32;
+        let logarithm = logarithm.ln() * self.per_logarithm;
+        (ROWS - 1) as f32 * (LOGARITHMIC * logarithm + (1.0 - LOGARITHMIC) * sin_elevation as f32)
+    }
+
+    /// The inverse, by bisection.
+    fn sin_elevation_at(&self, row: usize) -> f64 {
+        let row = if row == 0 { 1e-3 } else { row as f32 };
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if self.row_of(middle) < row {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        high
+    }
+
+    /// Opacity to space or to the ground.
+    #[inline]
+    fn end(&self, sin_elevation: f64) -> f32 {
+        let per_sine = 1.0 / sin_elevation.max(1e-20) as f32;
+        mean(opacity(self.depth * per_sine, self.is_grey))
+    }
+
+    /// Where a ray with this absolute sine of the elevation and this opacity lies.
+    #[inline]
+    fn place(&self, sin_elevation: f64, opacity: f32) -> Place {
+        let end = self.end(sin_elevation);
+        let even = |part: f32| 1.0 - (1.0 - part).max(0.0).sqrt().sqrt();
+        let steps = (NODES - 1) as f32;
+        let along = if opacity < end || self.sign > 0.0 {
+            steps * even(opacity / end)
+        } else {
+            let (nearest, farthest) = (end.max(NEAREST), 1.0 - end);
+            // Evenly spaced in 1 / x.
+            let inverse = |more: f32| more / (more + nearest);
+            steps * (1.0 + inverse(opacity - end) / inverse(farthest.max(f32::MIN_POSITIVE)))
+        };
+        let last = if self.sign > 0.0 { 1.0 } else { 2.0 } * steps - 1.0;
+        let node = along.min(last).floor();
+        let far = (along - node).clamp(0.0, 1.0);
+        let row = self.row_of(sin_elevation);
+        let first = (row as usize).clamp(1, ROWS - 3) - 1;
+        let weights = cubic_weights(row - first as f32);
+        Place {
+            row: first,
+            node: node as usize,
+            weights: weights.map(|w| [w * (1.0 - far), w * far]),
+        }
+    }
+}
+
+/// `1 - e^-depth`, exact where it is small.
+#[inline]
+fn opacity<const N: usize>(depth: Spectrum<N>, is_grey: bool) -> Spectrum<N> {
+    let of = |depth: f32| depth * Spectrum([depth]).mean_transmittance()[0];
+    match is_grey {
+        true => Spectrum::splat(of(depth[0])),
+        false => depth * depth.mean_transmittance(),
+    }
+}
+
+/// The mean of the lanes.
+#[inline]
+fn mean<const N: usize>(lanes: Spectrum<N>) -> f32 {
+    lanes.0.iter().sum::<f32>() / N as f32
+}
+/// Rays of one elevation up to each of their distances.
+struct Rays<'a, const N: usize> {
+    fog: &'a FogLanes<N>,
+    field: &'a Field<N>,
+    ray: RaySegment,
+    lengths_m: &'a [f64],
+    /// Index of the distance that ends on the ground; `usize::MAX` for rays that rise.
+    ground: usize,
+}
+
+impl<const N: usize> Rays<'_, N> {
+    /// Path radiance of multiply scattered light, of one azimuth mode over the cosine of the elevation to its power: the
+    /// terms of [`FogLanes::path`].
+    fn diffuse(&self, mode: usize) -> Vec<Spectrum<N>> {
+        let field = self.field;
+        let weights = multiple::of_mode(self.ray.sin_elevation, mode);
+        let scattered = |part: &RaySegment| field.scattered(part, &weights, Spectrum::ZERO);
+        let (sky, ground) = match mode {
+            0 => (self.fog.lighting.ambient, field.ground_radiance),
+            _ => (Spectrum::ZERO, Spectrum::ZERO),
+        };
+        self.to_each(|s| s.reduced_extinction_per_m, scattered, sky, ground)
+    }
+
+    /// The same of singly scattered sunlight, for a unit of irradiance and of scattering towards the eye, where a share of the
+    /// peak counts as scattered.
+    fn sunlit(&self, share: f32) -> Vec<Spectrum<N>> {
+        let extinction = |s: &MergedLayer<N>| {
+            let reduced = s.reduced_extinction_per_m;
+            reduced.scale_acc(s.extinction_per_m - reduced, share)
+        };
+        let single = self.fog.single_scattering(extinction, |_| Spectrum::ONE);
+        let scattered = |part: &RaySegment| single.along(part, &|_| Spectrum::ZERO).0;
+        self.to_each(extinction, scattered, Spectrum::ZERO, Spectrum::ZERO)
+    }
+
+    /// Path radiance up to each distance, of light that segments scatter and of light that arrives from the sky or the ground,
+    /// dimmed by an extinction: the light at the eye without the light from the far end that passes unscattered.
+    fn to_each(
+        &self,
+        extinction: impl Fn(&MergedLayer<N>) -> Spectrum<N>,
+        scattered: impl Fn(&RaySegment) -> Spectrum<N>,
+        sky: Spectrum<N>,
+        ground: Spectrum<N>,
+    ) -> Vec<Spectrum<N>> {
+        let starts = std::iter::once(&0.0).chain(self.lengths_m);
+        let parts: Vec<RaySegment> = starts
+            .zip(self.lengths_m)
+            .map(|(&from, &to)| self.ray.part(from, to.max(from)))
+            .collect();
+        let parts: Vec<(Spectrum<N>, Spectrum<N>)> = parts
+            .iter()
+            .map(|part| match part.length_m > 0.0 {
+                true => (scattered(part), self.fog.depth_of(part, &extinction)),
+                false => (Spectrum::ZERO, Spectrum::ZERO),
+            })
+            .collect();
+        // Light that arrives at each distance from beyond it.
+        let mut arriving = vec![
+            if self.ray.sin_elevation < 0.0 {
+                ground
+            } else {
+                sky
+            };
+            parts.len()
+        ];
+        for k in (0..parts.len() - 1).rev().filter(|&k| k < self.ground) {
+            let (light, depth) = parts[k + 1];
+            arriving[k] = light + depth.exp_neg() * arriving[k + 1];
+        }
+        let mut near = Spectrum::ZERO;
+        let mut before = Spectrum::ZERO;
+        let each = parts.iter().enumerate().map(|(k, (light, depth))| {
+            near += before.exp_neg() * *light;
+            before += *depth;
+            let whole = self
+                .fog
+                .optical_depth(&self.ray.part(0.0, self.lengths_m[k]));
+            let rest = (whole - before).map(|d| if d > 0.0 { d } else { 0.0 });
+            near + before.exp_neg() * rest * rest.mean_transmittance() * arriving[k]
+        });
+        each.collect()
+    }
+}
+
+/// The distance, beyond `from`, at which a function that rises with it from 0 reaches `target`: by false position (the
+/// Illinois algorithm), to 1e-6 of the target.
+fn distance_of(rising: &impl Fn(f64) -> f32, target: f32, from: f64) -> f64 {
+    let over = |at: f64| f64::from(rising(at) - target);
+    let enough = 1e-6 * f64::from(target);
+    let (mut low, mut below) = (from, over(from));
+    if below >= -enough {
+        return from;
+    }
+    let mut high = (2.0 * from).max(1e-6);
+    let mut above = over(high);
+    while above < 0.0 {
+        if high > 1e12 {
+            return f64::INFINITY;
+        }
+        (low, below) = (high, above);
+        high *= 2.0;
+        above = over(high);
+    }
+    let mut last = 0;
+    for _ in 0..100 {
+        if above <= enough {
+            return high;
+        }
+        let at = ((low * above - high * below) / (above - below)).clamp(low, high);
+        let here = over(at);
+        if here.abs() <= enough || !(low < at && at < high) {
+            return at;
+        }
+        if here > 0.0 {
+            (high, above) = (at, here);
+            if last == 1 {
+                below *= 0.5;
+            }
+            last = 1;
+        } else {
+            (low, below) = (at, here);
+            if last == -1 {
+                above *= 0.5;
+            }
+            last = -1;
+        }
+    }
+    high
+}
+
+#[cfg(test)]
+mod tests;
