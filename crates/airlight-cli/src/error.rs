@@ -7,6 +7,8 @@ use airlight::sky::SkyError;
 use airlight::spectrum::GridError;
 use airlight::sun::position::EphemerisError;
 use airlight_image::ImageError;
+use airlight_render::RenderError;
+use airlight_render::batch::BatchError;
 use std::io;
 
 /// Why a command ends before its time.
@@ -68,6 +70,26 @@ impl From<ImageError> for CliError {
             ImageError::Size { .. }
             | ImageError::Setting { .. }
             | ImageError::UnknownFormat { .. } => Self::usage(error.to_string()),
+            _ => Self::failure(error.to_string()),
+        }
+    }
+}
+
+impl From<RenderError> for CliError {
+    fn from(error: RenderError) -> Self {
+        match (error.is_cancelled(), error.is_refusal()) {
+            (true, _) => Self::Interrupted,
+            (_, true) => Self::usage(error.to_string()),
+            _ => Self::failure(error.to_string()),
+        }
+    }
+}
+
+impl From<BatchError> for CliError {
+    fn from(error: BatchError) -> Self {
+        match (error.is_cancelled(), error.is_refusal()) {
+            (true, _) => Self::Interrupted,
+            (_, true) => Self::usage(error.to_string()),
             _ => Self::failure(error.to_string()),
         }
     }

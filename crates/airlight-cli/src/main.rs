@@ -6,7 +6,6 @@
 //! - [`interrupt`], [`progress`], [`report`]: Ctrl-C, bars on standard error, text on standard output.
 //! - [`atmosphere`], [`scene`], [`models`], [`illuminance`]: what is asked for, from options to the solver or the published
 //!   model; sums over the sky.
-//! - [`foggy_air`]: fog for random paths.
 //! - [`sky`], [`fog`], [`probe`], [`compare`], [`grid`], [`accuracy`] and [`plot`]: the commands.
 
 mod accuracy;
@@ -16,7 +15,6 @@ mod atmosphere;
 mod compare;
 mod error;
 mod fog;
-mod foggy_air;
 mod grid;
 mod illuminance;
 mod interrupt;

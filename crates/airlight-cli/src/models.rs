@@ -5,7 +5,7 @@ mod lit;
 pub use lit::{Light, Lit, disc};
 
 use crate::args::{
-    AirArgs, EffortArg, FogArgs, ModelArgs, ScatteringArg, SkyArgs, SolverArg, SunlightArg,
+    AirArgs, EffortArg, ModelArgs, ScatteringArg, SkyArgs, SkyFogArgs, SolverArg, SunlightArg,
     VariantArg,
 };
 use crate::error::CliError;
@@ -164,7 +164,7 @@ fn scene_of_1987(args: &SkyArgs, scene: &Scene, sun: &Sun) -> Result<Klassen1987
 }
 
 /// The fog of the options, which must be a slab.
-fn fog_of_1987(args: &FogArgs) -> Result<Option<Fog1987>, CliError> {
+fn fog_of_1987(args: &SkyFogArgs) -> Result<Option<Fog1987>, CliError> {
     let Some(visibility_m) = args.fog_visibility_m else {
         return Ok(None);
     };

@@ -38,6 +38,22 @@ pub fn name(value: &impl clap::ValueEnum) -> String {
         .map_or_else(String::new, |value| value.get_name().to_owned())
 }
 
+/// A value of a list by its name.
+pub fn value_of<T: clap::ValueEnum>(text: &str) -> Result<T, String> {
+    T::from_str(text, false).map_err(|_| {
+        let names: Vec<String> = T::value_variants().iter().map(name).collect();
+        format!("got {text}; try {}", names.join(", "))
+    })
+}
+
+/// A contrast that defines visibility: 0.05 or 0.02.
+pub fn contrast(text: &str) -> Result<f64, String> {
+    match f64::from_str(text.trim()) {
+        Ok(value) if value == 0.05 || value == 0.02 => Ok(value),
+        _ => Err("must be 0.05 or 0.02".to_owned()),
+    }
+}
+
 /// A finite number.
 pub fn number(text: &str) -> Result<f64, String> {
     within(text, "a number", f64::is_finite)

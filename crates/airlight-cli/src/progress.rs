@@ -54,6 +54,12 @@ impl RowsBar {
 }
 
 impl Progress for RowsBar {
+    fn stage(&self, what: &str, total: u64) {
+        self.bar.set_message(what.to_owned());
+        self.bar.set_length(total);
+        self.bar.set_position(0);
+    }
+
     fn advanced(&self, done: u64, _total: u64) {
         self.bar
             .set_position(self.before.load(Ordering::Relaxed) + done);
@@ -104,6 +110,12 @@ impl PicturesBar {
     /// One more is done.
     pub fn one_more(&self) {
         self.0.inc(1);
+    }
+}
+
+impl Progress for PicturesBar {
+    fn advanced(&self, done: u64, _total: u64) {
+        self.0.set_position(done);
     }
 }
 

@@ -1,8 +1,8 @@
-//! `airlight fog`, and fog in `airlight sky`, from the outside: what they make, and what they refuse.
+//! `airlight fog` from the outside: flags, files, refusals and exit codes.
 
 mod common;
 
-use common::{Folder, run};
+use common::{Exr, Folder, command, run, succeed};
 use std::path::Path;
 use std::process::Output;
 
@@ -28,125 +28,8 @@ fn refused(folder: &Folder, words: &str, code: i32) -> String {
     text
 }
 
-#[test]
-fn fog_that_is_not_there_leaves_the_picture_as_it_was() {
-    let folder = Folder::new();
-    let words = format!("{} --visibility-m 1e9 -o out.png", motorcycle());
-    assert!(run(&folder, &words).status.success());
-    let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/motorcycle/left.png");
-    assert_eq!(pixels(&folder.file("out.png")), pixels(&scene));
-}
-
-#[test]
-fn each_model_veils_what_is_far() {
-    let folder = Folder::new();
-    for model in [
-        "uniform",
-        "height",
-        "clamped",
-        "slab",
-        "exp2",
-        "linear",
-        "foggy-cityscapes",
-    ] {
-        let words = format!(
-            "{} --visibility-m 6 --model {model} --sun-elevation 30 --ambient 0.6,0.7,0.8 -q -o {model}.png",
-            motorcycle()
-        );
-        let output = run(&folder, &words);
-        assert!(
-            output.status.success(),
-            "{model}: {}",
-            String::from_utf8_lossy(&output.stderr)
-        );
-        let seen = pixels(&folder.file(&format!("{model}.png")));
-        // A dark place at the back of the garage has become light.
-        assert!(
-            seen.get_pixel(15, 60).0[0] > 110,
-            "{model}: {:?}",
-            seen.get_pixel(15, 60)
-        );
-    }
-}
-
-#[test]
-fn what_makes_no_sense_is_refused_and_leaves_nothing() {
-    let folder = Folder::new();
-    let scene = motorcycle();
-    for (more, sentence) in [
-        ("--visibility-m 0 -o a.png", "above 0"),
-        ("--visibility-m -5 -o a.png", "above 0"),
-        ("--visibility-m 5 -o a.exr", ".png or .jpg"),
-        ("--visibility-m 5 -o a.tiff", "Known endings"),
-        ("--visibility-m 5 --layers -o a.png", ".exr"),
-        (
-            "--visibility-m 5 --sun-elevation -3 -o a.png",
-            "above the horizon",
-        ),
-        ("--visibility-m 5 --ambient 1,2 -o a.png", "three numbers"),
-        ("--visibility-m 5 --ambient=-1,2,3 -o a.png", "0 or above"),
-    ] {
-        let text = refused(&folder, &format!("{scene} {more}"), 2);
-        assert!(text.contains(sentence), "{more}: {text}");
-    }
-    let text = refused(
-        &folder,
-        &format!("{scene} --visibility-m 5 -o none/a.png"),
-        1,
-    );
-    assert!(text.contains("there is no folder"), "{text}");
-}
-
-#[test]
-fn files_that_are_not_what_they_should_be_are_refused() {
-    let folder = Folder::new();
-    let small = image::RgbImage::from_pixel(40, 30, image::Rgb([90, 80, 70]));
-    small.save(folder.file("small.png")).unwrap();
-    let depth = |name: &str, width, height| {
-        let depth = image::ImageBuffer::from_pixel(width, height, image::Luma([2000u16]));
-        depth.save(folder.file(name)).unwrap();
-    };
-    depth("depth.png", 40, 30);
-    depth("wide.png", 41, 30);
-    std::fs::write(folder.file("empty.png"), []).unwrap();
-    let whole = std::fs::read(folder.file("depth.png")).unwrap();
-    std::fs::write(folder.file("cut.png"), &whole[..whole.len() / 2]).unwrap();
-    npy(&folder.file("negative.npy"), |pixel| {
-        if pixel == 41 { -1.0 } else { 2.0 }
-    });
-    let try_depth = |name: &str| {
-        refused(
-            &folder,
-            &format!("fog small.png --depth {name} --visibility-m 5 -o out.png"),
-            1,
-        )
-    };
-    for (name, sentence) in [
-        ("missing.png", "missing.png"),
-        ("empty.png", "empty.png"),
-        ("cut.png", "cut.png"),
-        ("wide.png", "41 x 30"),
-        ("small.png", "small.png"),
-        ("negative.npy", "-1"),
-    ] {
-        let text = try_depth(name);
-        assert!(text.contains(sentence), "{name}: {text}");
-    }
-    // Not-a-number is a hole, to be filled.
-    npy(&folder.file("hole.npy"), |pixel| {
-        if pixel == 41 { f32::NAN } else { 2.0 }
-    });
-    let words = "fog small.png --depth hole.npy --visibility-m 5 -o out.png";
-    assert!(run(&folder, words).status.success());
-}
-
-/// Writes 30 rows of 40 numbers.
-fn npy(path: &Path, of: impl Fn(usize) -> f32) {
-    npy_of(path, (30, 40), of);
-}
-
 /// Writes rows of numbers, as many as `shape` says.
-fn npy_of(path: &Path, shape: (usize, usize), of: impl Fn(usize) -> f32) {
+fn npy(path: &Path, shape: (usize, usize), of: impl Fn(usize) -> f32) {
     let mut head = b"\x93NUMPY\x01\x00".to_vec();
     let mut text = format!("{{'descr': '<f4', 'fortran_order': False, 'shape': {shape:?}, }}");
     while !(10 + text.len() + 1).is_multiple_of(64) {
@@ -159,11 +42,10 @@ fn npy_of(path: &Path, shape: (usize, usize), of: impl Fn(usize) -> f32) {
     std::fs::write(path, head).unwrap();
 }
 
-#[test]
-fn layers_make_the_fogged_picture_of_the_clear_one() {
+/// A small picture with opacity, and a depth that grows with each pixel.
+fn small() -> Folder {
     let folder = Folder::new();
-    let (width, height) = (12, 8);
-    exr::prelude::write_rgba_file(folder.file("scene.exr"), width, height, |x, y| {
+    exr::prelude::write_rgba_file(folder.file("scene.exr"), 12, 8, |x, y| {
         let opacity = if x < 6 { 1.0f32 } else { 0.25 };
         (
             opacity * 0.1 * x as f32,
@@ -173,37 +55,59 @@ fn layers_make_the_fogged_picture_of_the_clear_one() {
         )
     })
     .unwrap();
-    npy_of(&folder.file("depth.npy"), (height, width), |pixel| {
+    npy(&folder.file("depth.npy"), (8, 12), |pixel| {
         1.0 + pixel as f32
     });
+    folder
+}
+
+#[test]
+fn fog_of_great_visibility_leaves_the_picture_unchanged() {
+    let folder = Folder::new();
+    let words = format!("{} --visibility-m 1e9 -o out.png", motorcycle());
+    assert!(run(&folder, &words).status.success());
+    let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/motorcycle/left.png");
+    assert_eq!(pixels(&folder.file("out.png")), pixels(&scene));
+}
+
+#[test]
+fn every_profile_hides_what_is_far() {
+    let folder = Folder::new();
+    for profile in [
+        "uniform",
+        "height",
+        "clamped",
+        "unclamped",
+        "slab",
+        "exp2",
+        "linear",
+        "foggy-cityscapes",
+    ] {
+        let words = format!(
+            "{} --visibility-m 6 --fog-profile {profile} --sun-elevation 30 --ambient 0.6,0.7,0.8 -q -o {profile}.png",
+            motorcycle()
+        );
+        assert_eq!(succeed(&folder, &words), "");
+        let seen = pixels(&folder.file(&format!("{profile}.png")));
+        // A dark place at the back of the garage has become bright.
+        assert!(seen.get_pixel(15, 60).0[0] > 110, "{profile}");
+    }
+}
+
+#[test]
+fn layers_composite_to_the_picture_in_fog() {
+    let folder = small();
     let words = "fog scene.exr --depth depth.npy --visibility-m 60 --ambient 0.7,0.8,0.9 --sun-elevation 20 \
-                 --model height --layers -q -o layers.exr";
-    let output = run(&folder, words);
-    assert!(
-        output.status.success(),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
-    let channels = |name: &str| {
-        let image = exr::prelude::read_first_flat_layer_from_file(folder.file(name)).unwrap();
-        let list = image.layer_data.channel_data.list;
-        let one = |c: exr::prelude::AnyChannel<exr::prelude::FlatSamples>| {
-            (
-                c.name.to_string(),
-                c.sample_data.values_as_f32().collect::<Vec<_>>(),
-            )
-        };
-        list.into_iter()
-            .map(one)
-            .collect::<std::collections::BTreeMap<_, _>>()
-    };
-    let (clear, fogged) = (channels("scene.exr"), channels("layers.exr"));
+                 --fog-profile height --layers -q -o layers.exr";
+    succeed(&folder, words);
+    let [clear, fogged] =
+        ["scene.exr", "layers.exr"].map(|name| Exr::read(&folder.file(name)).channels);
     assert_eq!(fogged.len(), 11);
     assert_eq!(fogged["A"], clear["A"]);
     for colour in ["R", "G", "B"] {
         let transmittance = &fogged[&format!("transmittance.{colour}")];
         let path = &fogged[&format!("path_radiance.{colour}")];
-        for pixel in 0..width * height {
+        for pixel in 0..12 * 8 {
             let made =
                 clear[colour][pixel] * transmittance[pixel] + path[pixel] * clear["A"][pixel];
             assert!(
@@ -221,59 +125,198 @@ fn formats_without_opacity_take_pictures_that_have_it() {
     let folder = Folder::new();
     let picture = image::RgbaImage::from_pixel(40, 30, image::Rgba([90, 80, 70, 128]));
     picture.save(folder.file("glass.png")).unwrap();
-    npy(&folder.file("depth.npy"), |_| 2.0);
+    npy(&folder.file("depth.npy"), (30, 40), |_| 2.0);
     for (name, opacity) in [("out.jpg", 255), ("out.png", 128)] {
         let words = format!("fog glass.png --depth depth.npy --visibility-m 5 -q -o {name}");
-        let output = run(&folder, &words);
-        assert!(
-            output.status.success(),
-            "{name}: {}",
-            String::from_utf8_lossy(&output.stderr)
-        );
+        succeed(&folder, &words);
         let seen = image::open(folder.file(name)).unwrap().to_rgba8();
         assert_eq!(seen.get_pixel(3, 3).0[3], opacity, "{name}");
     }
 }
 
 #[test]
-fn a_sky_is_drawn_through_fog_or_refused() {
+fn files_that_are_not_what_they_should_be_are_refused() {
     let folder = Folder::new();
-    let sky = "sky --sun-elevation 20 --wavelengths rgb --size 32x16 -q -o";
-    for (name, fog) in [
-        ("clear.png", ""),
-        (
-            "thinning.png",
-            "--fog-visibility-m 200 --fog-scale-height-m 60",
-        ),
-        (
-            "slab.png",
-            "--fog-visibility-m 200 --fog-top-m 60 --fog-droplets coarse",
-        ),
+    let small = image::RgbImage::from_pixel(40, 30, image::Rgb([90, 80, 70]));
+    small.save(folder.file("small.png")).unwrap();
+    let depth = |name: &str, width, height| {
+        let depth = image::ImageBuffer::from_pixel(width, height, image::Luma([2000u16]));
+        depth.save(folder.file(name)).unwrap();
+    };
+    depth("depth.png", 40, 30);
+    depth("wide.png", 41, 30);
+    std::fs::write(folder.file("empty.png"), []).unwrap();
+    let whole = std::fs::read(folder.file("depth.png")).unwrap();
+    std::fs::write(folder.file("cut.png"), &whole[..whole.len() / 2]).unwrap();
+    let with_one = |value| move |pixel| if pixel == 41 { value } else { 2.0 };
+    npy(&folder.file("negative.npy"), (30, 40), with_one(-1.0));
+    for (name, sentence) in [
+        ("missing.png", "missing.png"),
+        ("empty.png", "empty.png"),
+        ("cut.png", "cut.png"),
+        ("wide.png", "41 x 30"),
+        ("small.png", "small.png"),
+        ("negative.npy", "-1"),
     ] {
-        let output = run(&folder, &format!("{sky} {name} {fog}"));
-        assert!(
-            output.status.success(),
-            "{name}: {}",
-            String::from_utf8_lossy(&output.stderr)
-        );
+        let words = format!("fog small.png --depth {name} --visibility-m 5 -o out.png");
+        let text = refused(&folder, &words, 1);
+        assert!(text.contains(sentence), "{name}: {text}");
     }
-    let [clear, thinning, slab] =
-        ["clear.png", "thinning.png", "slab.png"].map(|name| pixels(&folder.file(name)));
-    assert!(clear != thinning && thinning != slab);
-    for (fog, sentence) in [
-        ("--fog-visibility-m 0", "above 0"),
-        ("--fog-visibility-m nan", "above 0"),
-        ("--fog-top-m 60", "--fog-visibility-m"),
+    // Not-a-number is a hole, which is filled.
+    npy(&folder.file("hole.npy"), (30, 40), with_one(f32::NAN));
+    let words = "fog small.png --depth hole.npy --visibility-m 5 -o out.png";
+    assert!(succeed(&folder, words).contains("1 pixels unknown"));
+}
+
+#[test]
+fn options_that_contradict_are_refused() {
+    let folder = small();
+    let scene = "fog scene.exr --depth depth.npy";
+    let lit = "--sky-light --sun-elevation 5 --fog-profile slab";
+    for (more, sentence) in [
+        ("-o a.exr", "a visibility in the fog"),
+        ("--visibility-m 0 -o a.exr", "above 0"),
+        ("--visibility-m 5 -o a.png", ".exr or .hdr"),
+        ("--visibility-m 5 -o a.tiff", "Known endings"),
+        ("--visibility-m 5 --layers -o a.hdr", ".exr"),
+        ("--visibility-m 5 -o scene.exr", "not an input"),
         (
-            "--fog-visibility-m 9 --fog-top-m 60 --fog-base-m 5",
-            "cannot be used with",
+            "--visibility-m 5 --sun-elevation -3 -o a.exr",
+            "above the horizon",
+        ),
+        ("--visibility-m 5 --ambient 1,2 -o a.exr", "three numbers"),
+        ("--visibility-m 5 --ambient=-1,2,3 -o a.exr", "0 or above"),
+        ("--visibility-m 5 --contrast 0.03 -o a.exr", "0.05 or 0.02"),
+        (
+            "--visibility-m 5 --fog-profile thick -o a.exr",
+            "foggy-cityscapes",
+        ),
+        ("--visibility-m 5 --layer top=4 -o a.exr", "visibility="),
+        (
+            "--visibility-m 5 --light intensity=1 -o a.exr",
+            "position_m",
         ),
         (
-            "--fog-visibility-m 9 --fog-droplets soup",
-            "possible values",
+            "--visibility-m 5 --light-form printed -o a.exr",
+            "expected a light",
         ),
+        ("--visibility-m 5 --sky-light -o a.exr", "upper end"),
+        (
+            "--visibility-m 5 --sky-light --fog-profile slab -o a.exr",
+            "elevation_deg",
+        ),
+        (
+            "--visibility-m 5 --sky-light --sun-elevation 5 --at 1,2 --when now -o a.exr",
+            "cannot be used",
+        ),
+        ("--visibility-m 5 --seed 3 -o a.exr", "--vary"),
+        ("--visibility-m 5 --paths 256 -o a.exr", "monte-carlo"),
+        ("--visibility-m 5 --noise-map -o a.exr", "monte-carlo"),
+        (
+            "--visibility-m 5 --solver monte-carlo -o a.exr",
+            "sky-light",
+        ),
+        (
+            &format!("--visibility-m 5 {lit} --solver monte-carlo --paths 5 -o a.exr"),
+            "128",
+        ),
+        (
+            &format!("--visibility-m 5 {lit} --solver monte-carlo --jobs 1 -o a.exr"),
+            "one picture",
+        ),
+        ("--visibility-m 5 --variants 2 -o a.exr", "--vary"),
+        ("--visibility-m 5 --jobs 0 -o a.exr", "--jobs"),
+        ("--vary fogginess=1..2 -o a.exr", "visibility, scale-height"),
     ] {
-        let text = refused(&folder, &format!("{sky} refused.png {fog}"), 2);
-        assert!(text.contains(sentence), "{fog}: {text}");
+        let text = refused(&folder, &format!("{scene} {more}"), 2);
+        assert!(text.contains(sentence), "{more}: {text}");
     }
+    let words = format!("{scene} --visibility-m 5 -o none/a.exr");
+    let text = refused(&folder, &words, 1);
+    assert!(text.contains("there is no folder"), "{text}");
+}
+
+#[test]
+fn monte_carlo_reports_its_noise() {
+    let folder = small();
+    let words = "fog scene.exr --depth depth.npy --sky-light --sun-elevation 25 --visibility-m 60 --top-m 60 \
+                 --radiance-scale 1e-4 --solver monte-carlo --paths 128 --noise-map -o out.exr";
+    let text = succeed(&folder, words);
+    assert!(text.contains("128 paths a pixel"), "{text}");
+    let [picture, noise] = ["out.exr", "out.noise.exr"].map(|name| Exr::read(&folder.file(name)));
+    assert_eq!((noise.width, noise.height), (picture.width, picture.height));
+    assert!(noise.channels["G"].iter().all(|error| *error > 0.0));
+}
+
+/// A picture is the same by options and by the scene file that they are saved as, and options override the file.
+#[test]
+fn scenes_are_saved_and_read() {
+    let folder = small();
+    let options = "fog scene.exr --depth depth.npy --visibility-m 60 --top-m 4 --eye-height-m 2 --camera-roll 3 \
+                   --ambient 0.7,0.8,0.9 --sun-elevation 20 --droplets fine --fog-scattering single";
+    let words = format!("{options} -o a.exr --save-scene a.toml");
+    let lit = ["--light", "at=0,1,-5 intensity=2"];
+    let layer = ["--layer", "visibility=300 scale-height=5"];
+    let output = command(&folder, &words).args(lit).args(layer).output();
+    assert!(output.unwrap().status.success());
+    let text = std::fs::read_to_string(folder.file("a.toml")).unwrap();
+    for line in [
+        "visibility_m = 60.0",
+        "top_m = 4.0",
+        "[overlay]",
+        "depth.npy",
+    ] {
+        assert!(text.contains(line), "{line}: {text}");
+    }
+    succeed(&folder, "fog --scene a.toml -o b.exr");
+    let [a, b] = ["a.exr", "b.exr"].map(|name| Exr::read(&folder.file(name)).channels);
+    assert_eq!(a, b);
+    succeed(&folder, "fog --scene a.toml --visibility-m 30 -o c.exr");
+    assert_ne!(Exr::read(&folder.file("c.exr")).channels, a);
+    std::fs::write(folder.file("wrong.toml"), "[fog]\nvisibilty_m = 3\n").unwrap();
+    let text = refused(&folder, "fog --scene wrong.toml -o d.exr", 2);
+    assert!(
+        text.contains("line 2") && text.contains("visibility_m"),
+        "{text}"
+    );
+    let text = refused(&folder, "fog --scene none.toml -o d.exr", 1);
+    assert!(text.contains("none.toml"), "{text}");
+}
+
+#[test]
+fn a_batch_is_made_reported_and_resumed() {
+    let folder = Folder::new();
+    std::fs::create_dir(folder.file("rgb")).unwrap();
+    for name in ["a", "b"] {
+        let picture = image::RgbImage::from_pixel(40, 30, image::Rgb([90, 80, 70]));
+        picture
+            .save(folder.file(&format!("rgb/{name}.png")))
+            .unwrap();
+    }
+    npy(&folder.file("depth.npy"), (30, 40), |_| 2.0);
+    let words = "fog rgb/*.png --depth depth.npy -o out/*.png --vary visibility=5..50 --seed 7";
+    let text = succeed(&folder, words);
+    assert!(text.contains("2 of 2 pictures made"), "{text}");
+    let manifest = std::fs::read_to_string(folder.file("out/manifest.jsonl")).unwrap();
+    assert_eq!(manifest.lines().count(), 2);
+    std::fs::remove_file(folder.file("out/b.png")).unwrap();
+    let text = succeed(&folder, words);
+    assert!(
+        text.contains("1 of 2 pictures made, 1 existed already"),
+        "{text}"
+    );
+    let text = refused(&folder, &words.replace("--seed 7", "--seed 8"), 2);
+    assert!(
+        text.contains("fog.visibility_m was ") && text.contains("overwrite"),
+        "{text}"
+    );
+    // One picture fails, the other is made, and the exit code says so.
+    std::fs::write(folder.file("rgb/a.png"), "").unwrap();
+    let output = run(&folder, &format!("{words} --overwrite"));
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{text}");
+    assert!(
+        text.contains("1 pictures failed:") && text.contains("rgb/a.png"),
+        "{text}"
+    );
 }

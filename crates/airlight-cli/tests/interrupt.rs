@@ -138,8 +138,7 @@ fn a_stopped_batch_keeps_its_whole_pictures_and_goes_on() {
             .save(folder.file(&format!("depth/{number}.png")))
             .unwrap();
     }
-    let words =
-        "fog rgb --depth depth --depth-scale 0.01 --model height --vary visibility=5..50 -o out";
+    let words = "fog rgb --depth depth --depth-scale 0.01 --fog-profile height --vary visibility=5..50 -o out";
     let child = spawn(&folder, words);
     let start = Instant::now();
     let made = || -> Vec<String> {

@@ -28,6 +28,19 @@ impl RenderError {
         Self::Setting(sentence.into())
     }
 
+    /// Whether what was requested is refused, so that the same request fails again; otherwise a file or the system failed.
+    pub fn is_refusal(&self) -> bool {
+        match self {
+            Self::Image(error) => matches!(
+                error,
+                ImageError::Size { .. }
+                    | ImageError::Setting { .. }
+                    | ImageError::UnknownFormat { .. }
+            ),
+            _ => true,
+        }
+    }
+
     /// True where the caller asked to stop.
     pub fn is_cancelled(&self) -> bool {
         matches!(self, Self::Image(error) if error.is_cancelled())

@@ -5,10 +5,12 @@
 //! - [`channels`]: from the values of a view to those of a pixel; [`illuminance`], [`exposure`].
 //! - [`sun_disc`], [`sky_rows`]: sky and sun's disc, row by row.
 //! - [`canvas`]: pictures by Monte Carlo, pass by pass.
-//! - [`overlay`]: fog laid over a picture and its depth.
+//! - [`overlay`]: fog over a picture and its depth map.
+//! - [`batch`]: the same over many pictures, with varied settings and a manifest.
 //! - [`objects`]: simple solids and their surfaces, intersected by rays.
 //! - [`sequence`]: many pictures: file names, time steps, resuming an earlier run.
 
+pub mod batch;
 pub mod canvas;
 pub mod channels;
 pub mod error;

@@ -62,6 +62,14 @@ impl<'a> Control<'a> {
         }
     }
 
+    /// The same without reports: for a part of a computation whose progress is reported as a whole.
+    pub fn without_progress(self) -> Self {
+        Self {
+            progress: None,
+            ..self
+        }
+    }
+
     /// Returns an error once the caller has cancelled.
     ///
     /// # Errors

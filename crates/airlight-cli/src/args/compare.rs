@@ -1,6 +1,6 @@
 //! Options of `airlight compare`.
 
-use super::{AirArgs, EffortArg, FogArgs, ModelArgs, PictureArgs, PlaceArgs, ScatteringArg};
+use super::{AirArgs, EffortArg, ModelArgs, PictureArgs, PlaceArgs, ScatteringArg, SkyFogArgs};
 use super::{KlassenArgs, ObjectArgs, SkyArgs, SolverArg, VariantArg};
 use crate::parse;
 use clap::{Args, ValueEnum};
@@ -47,7 +47,7 @@ pub struct CompareArgs {
     #[command(flatten)]
     pub model: ModelArgs,
     #[command(flatten)]
-    pub fog: FogArgs,
+    pub fog: SkyFogArgs,
     /// Solids that a TOML file describes, lit and seen by both
     #[arg(long, value_name = "FILE.toml", help_heading = "Things")]
     pub objects: Option<PathBuf>,

@@ -1,16 +1,38 @@
-//! Options that say what fog lies in the air.
+//! Options that describe fog, the same for every command that draws it.
 
-use crate::parse;
+use crate::parse::{self, words::Words};
 use crate::report::short;
 use airlight::fog::FogScattering;
 use airlight::fog::droplets::DropletKind;
 use airlight::optics::mie::droplets::Drops;
+use airlight::scene::{FogLayerSpec, FogProfile, FogSpec};
 use clap::builder::PossibleValue;
 use clap::{Args, ValueEnum};
-use serde::Serialize;
 use std::sync::LazyLock;
 
-/// Kinds of fog by their drops.
+/// Density of fog against height, or a fog of one colour.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FogProfileArg(pub FogProfile);
+
+impl ValueEnum for FogProfileArg {
+    fn value_variants<'a>() -> &'a [Self] {
+        static ALL: LazyLock<Vec<FogProfileArg>> = LazyLock::new(|| {
+            FogProfile::ALL
+                .map(|(_, profile, _)| FogProfileArg(profile))
+                .to_vec()
+        });
+        &ALL
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        let (name, _, summary) = FogProfile::ALL
+            .into_iter()
+            .find(|(_, profile, _)| *profile == self.0)?;
+        Some(PossibleValue::new(name).help(summary))
+    }
+}
+
+/// Kinds of droplets.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct DropletsArg(pub DropletKind);
 
@@ -33,33 +55,15 @@ impl ValueEnum for DropletsArg {
     }
 }
 
-impl DropletsArg {
-    /// Drops by their name.
-    ///
-    /// # Errors
-    /// What names there are.
-    pub fn parse(text: &str) -> Result<Self, String> {
-        Self::from_str(text, false).map_err(|_| {
-            let names: Vec<&str> = DropletKind::all().map(|(name, _)| name).collect();
-            format!("knows no {text}: there are {}", names.join(", "))
-        })
-    }
-}
-
-impl Serialize for DropletsArg {
-    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.serialize_str(self.0.name())
-    }
-}
-
-/// Drops in words, by their size.
+/// Droplets in words, by their size.
 pub fn in_words(kind: DropletKind) -> String {
     match kind {
         DropletKind::Analytic(droplets) => {
             format!("grey, of {} um diameter", short(droplets.diameter_um()))
         }
         DropletKind::Isotropic => {
-            "grey, the same in all directions: no drops do so, published models do".to_owned()
+            "grey, equal in all directions: the assumption of published models, of no droplets"
+                .to_owned()
         }
         DropletKind::Published(drops) => {
             let sizes = drops.sizes();
@@ -72,21 +76,20 @@ pub fn in_words(kind: DropletKind) -> String {
     }
 }
 
-/// Which light fog scatters.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize)]
-#[serde(rename_all = "kebab-case")]
+/// Light that fog scatters.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum FogScatteringArg {
-    /// Any number of times, between sky, sun and ground.
+    /// All orders of scattering, between sky, sun and ground.
     #[default]
     All,
-    /// Once: sunlight after its way through the fog, ambient light as if the fog did not dim it.
+    /// One order: sunlight dimmed by the fog, ambient light not dimmed.
     Single,
-    /// Once, and the fog does not dim the sun: Ishiyama's height fog as printed.
+    /// One order, with the sun not dimmed: Ishiyama's height fog as printed.
     Undimmed,
 }
 
 impl FogScatteringArg {
-    /// In the fog's words.
+    /// The scattering of a scene's fog.
     pub fn scattering(self) -> FogScattering {
         match self {
             Self::All => FogScattering::Multiple,
@@ -95,7 +98,7 @@ impl FogScatteringArg {
         }
     }
 
-    /// In words, where it is not all light.
+    /// The scattering in words; `None` for all orders.
     pub fn in_words(self) -> Option<&'static str> {
         match self {
             Self::All => None,
@@ -105,27 +108,171 @@ impl FogScatteringArg {
     }
 }
 
-/// What fog lies in the air. Heights are above the ground.
-#[derive(Clone, Debug, Args)]
+/// The contrast of every visibility.
+#[derive(Clone, Debug, Default, Args)]
+pub struct ContrastArgs {
+    /// Contrast that visibility means: 0.05 (meteorological optical range) or 0.02 (Koschmieder's visual range) [default: 0.05]
+    #[arg(long, value_name = "C", value_parser = parse::contrast, help_heading = "Air")]
+    pub contrast: Option<f64>,
+}
+
+/// Fog in the air. Heights are above the ground.
+#[derive(Clone, Debug, Default, Args)]
 #[command(next_help_heading = "Fog")]
 pub struct FogArgs {
-    /// Fog in which one sees this far where it is thickest, m: the distance at which 5 % of contrast is left
+    /// Visibility in the fog where it is densest, m: the distance at which --contrast is left
     #[arg(long, value_name = "M", value_parser = parse::length_m)]
-    pub fog_visibility_m: Option<f64>,
-    /// Height up to which the fog reaches, evenly thick, m
-    #[arg(long, value_name = "M", value_parser = parse::length_m, requires = "fog_visibility_m")]
-    #[arg(conflicts_with_all = ["fog_scale_height_m", "fog_base_m"])]
-    pub fog_top_m: Option<f64>,
-    /// Height over which the fog thins to 1/e, m [default: 50]
-    #[arg(long, value_name = "M", value_parser = parse::length_m, requires = "fog_visibility_m")]
-    pub fog_scale_height_m: Option<f64>,
-    /// Height from which on it thins, m [default: 0]
-    #[arg(long, value_name = "M", value_parser = parse::not_negative, requires = "fog_visibility_m")]
-    pub fog_base_m: Option<f64>,
-    /// Drops that the fog consists of
-    #[arg(long, value_enum, value_name = "KIND", default_value_t)]
-    pub fog_droplets: DropletsArg,
-    /// Which light the fog scatters
-    #[arg(long, value_enum, value_name = "WHICH", default_value_t)]
-    pub fog_scattering: FogScatteringArg,
+    pub visibility_m: Option<f64>,
+    /// Density against height [default: slab with --top-m, else clamped; for `airlight fog` without any height: uniform]
+    #[arg(long, value_enum, value_name = "PROFILE")]
+    pub fog_profile: Option<FogProfileArg>,
+    /// Height over which the density decreases to 1/e, m (height, clamped, unclamped) [default: 50]
+    #[arg(long, value_name = "M", value_parser = parse::length_m)]
+    pub scale_height_m: Option<f64>,
+    /// Height at which the density begins to decrease (clamped) or the visibility is the given one (unclamped), m [default: 0]
+    #[arg(long, value_name = "M", value_parser = parse::number)]
+    pub base_height_m: Option<f64>,
+    /// Height of the top, m (slab) [default: 50]
+    #[arg(long, value_name = "M", value_parser = parse::length_m)]
+    pub top_m: Option<f64>,
+    /// Droplets of the fog [default: radiation]
+    #[arg(long, value_enum, value_name = "KIND")]
+    pub droplets: Option<DropletsArg>,
+    /// Light that the fog scatters; no difference in uniform fog, which counts as evenly lit [default: all]
+    #[arg(long, value_enum, value_name = "WHICH")]
+    pub fog_scattering: Option<FogScatteringArg>,
+    /// One more layer of fog, as in 'visibility=500 scale-height=20'; can be repeated
+    ///
+    /// KEY=VALUE pairs: visibility (m, as --visibility-m); scale-height (m), base (m), top (m), droplets and profile as the
+    /// options of these names. Without profile and heights the layer is uniform, with scale-height alone it is height.
+    #[arg(long, value_name = "LAYER", value_parser = layer)]
+    pub layer: Vec<FogLayerSpec>,
+}
+
+impl FogArgs {
+    /// Sets what was given in a scene's fog, and adds fog to a scene without it if any option was given.
+    pub fn fill(&self, fog: &mut Option<FogSpec>) {
+        let mut filled = fog.clone().unwrap_or_default();
+        let put = |value: &mut Option<f64>, given: Option<f64>| *value = given.or(*value);
+        put(&mut filled.visibility_m, self.visibility_m);
+        put(&mut filled.scale_height_m, self.scale_height_m);
+        put(&mut filled.base_height_m, self.base_height_m);
+        put(&mut filled.top_m, self.top_m);
+        let profile = self.fog_profile.map(|arg| arg.0);
+        filled.profile = profile.or(filled.profile);
+        filled.droplets = self.droplets.map(|kind| kind.0).or(filled.droplets);
+        let scattering = self.fog_scattering.map(FogScatteringArg::scattering);
+        filled.scattering = scattering.or(filled.scattering);
+        if !self.layer.is_empty() {
+            filled.layers = self.layer.clone();
+        }
+        if filled != FogSpec::default() {
+            *fog = Some(filled);
+        }
+    }
+}
+
+/// A layer of fog from KEY=VALUE pairs.
+fn layer(text: &str) -> Result<FogLayerSpec, String> {
+    const KEYS: [&str; 6] = [
+        "visibility",
+        "profile",
+        "scale-height",
+        "base",
+        "top",
+        "droplets",
+    ];
+    let mut words = Words::new(text, &KEYS)?;
+    let visibility_m = words
+        .take("visibility", parse::length_m)?
+        .ok_or("expected visibility=METRES, got none; try visibility=500")?;
+    let profile = words.take("profile", parse::value_of::<FogProfileArg>)?;
+    let scale_height_m = words.take("scale-height", parse::length_m)?;
+    let base_height_m = words.take("base", parse::number)?;
+    let top_m = words.take("top", parse::length_m)?;
+    let droplets = words.take("droplets", parse::value_of::<DropletsArg>)?;
+    let profile = match (profile, scale_height_m, base_height_m, top_m) {
+        (Some(profile), ..) => Some(profile.0),
+        (None, None, None, None) => Some(FogProfile::Uniform),
+        (None, None, Some(_), None) => {
+            return Err(
+                "expected base with scale-height, got base alone; try scale-height=20".to_owned(),
+            );
+        }
+        (None, Some(_), None, None) => Some(FogProfile::Height),
+        (None, None, None, Some(_)) | (None, Some(_), Some(_), None) => None,
+        (None, _, _, Some(_)) => {
+            return Err(
+                "expected top alone, as a layer with a top is uniform below it, got scale-height or base too; try leaving these out"
+                    .to_owned(),
+            );
+        }
+    };
+    Ok(FogLayerSpec {
+        visibility_m: Some(visibility_m),
+        profile,
+        scale_height_m,
+        base_height_m,
+        top_m,
+        droplets: droplets.map(|kind| kind.0),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn layers_are_read_from_their_words() {
+        let profile = |text| layer(text).unwrap().implied_profile();
+        assert_eq!(profile("visibility=200"), FogProfile::Uniform);
+        assert_eq!(profile("top=9  visibility=200"), FogProfile::Slab);
+        assert_eq!(profile("visibility=9 scale-height=5"), FogProfile::Height);
+        let clamped = layer("visibility=5 scale-height=20 base=-3 droplets=fine").unwrap();
+        assert_eq!(clamped.implied_profile(), FogProfile::Clamped);
+        assert_eq!(
+            (clamped.base_height_m, clamped.scale_height_m),
+            (Some(-3.0), Some(20.0))
+        );
+        assert_eq!(
+            profile("visibility=5 scale-height=20 profile=unclamped"),
+            FogProfile::Unclamped
+        );
+        for (text, part) in [
+            ("", "visibility="),
+            ("visibility=0", "above 0"),
+            ("visibility=NaN", "above 0"),
+            ("visibility=5 base=3", "scale-height"),
+            ("visibility=5 top=3 scale-height=3", "top alone"),
+            ("visibility=5 droplets=soup", "got soup; try fine,"),
+            ("visibility=5 profile=thick", "foggy-cityscapes"),
+            ("visibility=5 visibility=6", "twice"),
+            ("visibility=5 colour=red", "colour"),
+            ("visibility", "KEY=VALUE"),
+        ] {
+            let error = layer(text).unwrap_err();
+            assert!(error.contains(part), "{text}: {error}");
+        }
+    }
+
+    #[test]
+    fn options_change_only_what_they_set() {
+        let mut fog = None;
+        FogArgs::default().fill(&mut fog);
+        assert_eq!(fog, None);
+        let args = FogArgs {
+            visibility_m: Some(80.0),
+            droplets: Some(DropletsArg(DropletKind::Isotropic)),
+            ..FogArgs::default()
+        };
+        let mut fog = Some(FogSpec {
+            visibility_m: Some(50.0),
+            top_m: Some(9.0),
+            ..FogSpec::default()
+        });
+        args.fill(&mut fog);
+        let fog = fog.unwrap();
+        assert_eq!((fog.visibility_m, fog.top_m), (Some(80.0), Some(9.0)));
+        assert_eq!(fog.droplets, Some(DropletKind::Isotropic));
+    }
 }

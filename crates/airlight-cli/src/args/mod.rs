@@ -11,27 +11,24 @@ mod objects;
 mod overlay;
 mod overlay_batch;
 mod overlay_light;
-mod overlay_paths;
-pub mod overlay_vary;
+mod overlay_solver;
 mod picture;
 mod place;
 mod plot;
 mod probe;
+mod sky_fog;
 
 pub use accuracy::{AccuracyArgs, ReportArg};
 pub use air::{AirArgs, EffortArg, ScatteringArg, SolverArg};
 pub use compare::{CompareArgs, StatisticsArg};
-pub use fog::{DropletsArg, FogArgs, FogScatteringArg, in_words as droplets_in_words};
+pub use fog::{DropletsArg, FogScatteringArg, in_words as droplets_in_words};
 pub use grid::GridArgs;
 pub use klassen::KlassenArgs;
 pub use models::{ModelArgs, SunlightArg, VariantArg};
 pub use objects::ObjectArgs;
-pub use overlay::{DepthKindArg, HolesArg, ModelArg, OverlayArgs};
-pub use overlay_light::{
-    AirArg, LayerShape, LightArg, LightFormArg, LightKind, LightPlace, OverlayLightArgs,
-};
-pub use overlay_paths::OverlayPathsArgs;
-pub use overlay_vary::Variation;
+pub use overlay::OverlayArgs;
+pub use overlay_light::OverlayLightArgs;
+pub use overlay_solver::OverlaySolverArgs;
 pub use picture::{
     ColorSpaceArg, CompressionArg, PictureArgs, PrecisionArg, ProjectionArg, SunDiscArg, ToneArg,
 };
@@ -41,6 +38,7 @@ pub use plot::{
     SpectrumPlotArgs, SplitSumPlotArgs, TransmittancePlotArgs,
 };
 pub use probe::{FormatArg, ProbeArgs};
+pub use sky_fog::SkyFogArgs;
 
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
@@ -75,7 +73,7 @@ Examples:
 pub enum Command {
     /// Draw the sky: whole sphere, cube faces, fisheye or camera; as EXR, HDR, PNG or JPEG.
     Sky(Box<SkyArgs>),
-    /// Lay fog over pictures that exist, by their depth: one, or whole folders.
+    /// Put fog over existing pictures with depth: one, or whole folders.
     Fog(Box<OverlayArgs>),
     /// Tell the spectral radiance of the sky along given directions, and the light of sun and sky, in numbers.
     Probe(Box<ProbeArgs>),
@@ -129,7 +127,7 @@ pub struct SkyArgs {
     #[command(flatten)]
     pub model: ModelArgs,
     #[command(flatten)]
-    pub fog: FogArgs,
+    pub fog: SkyFogArgs,
     #[command(flatten)]
     pub objects: ObjectArgs,
 }

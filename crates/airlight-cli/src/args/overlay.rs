@@ -1,37 +1,15 @@
 //! Options of `airlight fog`.
 
-use super::fog::{DropletsArg, FogScatteringArg};
+use super::fog::{ContrastArgs, FogArgs};
 use super::overlay_batch::BatchArgs;
+use super::{OverlayLightArgs, OverlaySolverArgs};
 use crate::parse;
+use airlight_render::overlay::{DepthFileKind, DepthHoles, OverlayScene};
 use clap::{Args, ValueEnum};
-use serde::Serialize;
 use std::path::PathBuf;
 
-/// How the fog thins with height, or which look it is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum ModelArg {
-    /// The same everywhere.
-    Uniform,
-    /// Thinning exponentially from height 0.
-    Height,
-    /// The same up to --base-height-m, thinning above.
-    Clamped,
-    /// Thinning from --base-height-m as clamped does, and as much thicker below it: the fog note's formula as printed.
-    Unclamped,
-    /// The same up to --top-m, nothing above.
-    Slab,
-    /// Exponential-squared, a look.
-    Exp2,
-    /// Linear from 0 to the visibility, a look.
-    Linear,
-    /// Uniform fog blended in encoded values, as the data set Foggy Cityscapes has it.
-    FoggyCityscapes,
-}
-
-/// What the numbers of the depth file mean.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
-#[serde(rename_all = "kebab-case")]
+/// Meaning of the numbers in the depth file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum DepthKindArg {
     /// Depth along the camera's axis.
     Z,
@@ -43,160 +21,153 @@ pub enum DepthKindArg {
     Inverse,
 }
 
-/// What becomes of pixels of unknown depth.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
-#[serde(rename_all = "kebab-case")]
+/// Treatment of pixels of unknown depth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum HolesArg {
     /// Filled from their neighbours.
     Fill,
     /// Taken for sky.
     Far,
-    /// Kept clear.
+    /// Kept free of fog.
     Clear,
 }
 
-/// Options of `airlight fog`. Serialized, they are what a picture was made with: all that bears upon it.
-#[derive(Clone, Debug, Args, Serialize)]
+/// Options of `airlight fog`.
+#[derive(Clone, Debug, Args)]
 #[command(allow_negative_numbers = true, after_help = EXAMPLES)]
 pub struct OverlayArgs {
     /// The picture: EXR or HDR (linear), PNG or JPEG (decoded to light, encoded again); many: a folder, or 'rgb/*.png'
-    #[arg(value_name = "COLOUR")]
-    #[serde(skip)]
-    pub colour: PathBuf,
+    #[arg(value_name = "COLOUR", required_unless_present = "scene")]
+    pub colour: Option<PathBuf>,
     /// Its depth: EXR, PNG, NPY or PFM; a folder, or 'depth/*.png' [default: the depth channel of COLOUR, if that is an EXR]
     #[arg(long, value_name = "DEPTH")]
-    #[serde(skip)]
     pub depth: Option<PathBuf>,
     /// File to write: .png, .jpg, .exr or .hdr; a folder, or 'out/*.png'
-    #[arg(short, long, value_name = "FILE")]
-    #[serde(skip)]
-    pub output: PathBuf,
+    #[arg(short, long, value_name = "FILE", required_unless_present = "scene")]
+    pub output: Option<String>,
     /// Write transmittance, path radiance and distance as layers too (.exr)
     #[arg(long)]
     pub layers: bool,
-    /// Say nothing on standard output
+    /// Read a scene file first; other options override it
+    #[arg(long, value_name = "FILE.toml")]
+    pub scene: Option<PathBuf>,
+    /// Write the scene of these options to a file
+    #[arg(long, value_name = "FILE.toml")]
+    pub save_scene: Option<PathBuf>,
+    /// Print nothing on standard output
     #[arg(short, long)]
-    #[serde(skip)]
     pub quiet: bool,
     #[command(flatten)]
-    #[serde(skip)]
     pub batch: BatchArgs,
 
-    /// What the depth means
-    #[arg(long, value_enum, default_value_t = DepthKindArg::Z, help_heading = "Depth")]
-    pub depth_kind: DepthKindArg,
-    /// Metres for each unit of depth: 0.001 for millimetres
-    #[arg(long, value_name = "M", value_parser = parse::positive, default_value_t = 1.0, help_heading = "Depth")]
-    pub depth_scale: f64,
+    /// Meaning of the depth [default: z]
+    #[arg(long, value_enum, value_name = "KIND", help_heading = "Depth")]
+    pub depth_kind: Option<DepthKindArg>,
+    /// Metres for each unit of depth: 0.001 for millimetres [default: 1]
+    #[arg(long, value_name = "M", value_parser = parse::positive, help_heading = "Depth")]
+    pub depth_scale: Option<f64>,
     /// Channel of an EXR depth file
     #[arg(long, value_name = "NAME", help_heading = "Depth")]
     pub depth_channel: Option<String>,
-    /// What becomes of pixels of unknown depth
-    #[arg(long, value_enum, default_value_t = HolesArg::Fill, help_heading = "Depth")]
-    pub holes: HolesArg,
-    /// From this distance on there is sky, m
+    /// Treatment of pixels of unknown depth [default: fill]
+    #[arg(long, value_enum, value_name = "HOW", help_heading = "Depth")]
+    pub holes: Option<HolesArg>,
+    /// Pixels at this distance or beyond are sky, m
     #[arg(long, value_name = "M", value_parser = parse::length_m, help_heading = "Depth")]
     pub far_m: Option<f64>,
     /// Distance between the cameras of a disparity map, m
     #[arg(long, value_name = "M", value_parser = parse::length_m, help_heading = "Depth")]
     pub baseline_m: Option<f64>,
-    /// Offset added to disparities, pixels
-    #[arg(long, value_name = "PX", value_parser = parse::number, default_value_t = 0.0, help_heading = "Depth")]
-    pub disparity_offset_px: f64,
+    /// Offset added to disparities, pixels [default: 0]
+    #[arg(long, value_name = "PX", value_parser = parse::number, help_heading = "Depth")]
+    pub disparity_offset_px: Option<f64>,
 
     /// Field of view from left to right, degrees [default: 60]
     #[arg(long, value_name = "DEG", value_parser = parse::positive, help_heading = "Camera", conflicts_with = "focal_px")]
-    #[serde(rename = "fov_deg")]
     pub fov: Option<f64>,
     /// Focal length, pixels, instead of --fov
     #[arg(long, value_name = "PX", value_parser = parse::positive, help_heading = "Camera")]
     pub focal_px: Option<f64>,
-    /// Where the axis meets the picture, pixels, pixel centres at whole numbers [default: the middle]
-    #[arg(long, value_name = "X,Y", value_parser = parse::two_numbers, help_heading = "Camera", requires = "focal_px")]
+    /// Principal point, pixels, pixel centres at whole numbers [default: the middle]
+    #[arg(long, value_name = "X,Y", value_parser = parse::two_numbers, help_heading = "Camera")]
     pub principal_point: Option<(f64, f64)>,
-    /// Elevation of the axis above the horizon, degrees
-    #[arg(long, value_name = "DEG", value_parser = parse::elevation_deg, default_value_t = 0.0, help_heading = "Camera")]
-    #[serde(rename = "camera_elevation_deg")]
-    pub camera_elevation: f64,
-    /// Azimuth of the axis, degrees clockwise from north
-    #[arg(long, value_name = "DEG", value_parser = parse::number, default_value_t = 0.0, help_heading = "Camera")]
-    #[serde(rename = "camera_azimuth_deg")]
-    pub camera_azimuth: f64,
-    /// Turn about the axis, degrees clockwise
-    #[arg(long, value_name = "DEG", value_parser = parse::number, default_value_t = 0.0, help_heading = "Camera")]
-    #[serde(rename = "camera_roll_deg")]
-    pub camera_roll: f64,
-    /// Height of the eye above the ground, m
-    #[arg(long, value_name = "M", value_parser = parse::length_m, default_value_t = 1.6, help_heading = "Camera")]
-    pub eye_height_m: f64,
+    /// Elevation of the camera's axis above the horizon, degrees [default: 0]
+    #[arg(long, value_name = "DEG", value_parser = parse::elevation_deg, help_heading = "Camera")]
+    pub camera_elevation: Option<f64>,
+    /// Azimuth of the axis, degrees clockwise from north [default: 0]
+    #[arg(long, value_name = "DEG", value_parser = parse::number, help_heading = "Camera")]
+    pub camera_azimuth: Option<f64>,
+    /// Rotation about the axis, degrees clockwise [default: 0]
+    #[arg(long, value_name = "DEG", value_parser = parse::number, help_heading = "Camera")]
+    pub camera_roll: Option<f64>,
+    /// Height of the eye above the ground, m [default: 1.6]
+    #[arg(long, value_name = "M", value_parser = parse::length_m, help_heading = "Camera")]
+    pub eye_height_m: Option<f64>,
 
-    /// Distance at which a contrast of 5 % is left, where the fog is thickest, m
-    #[arg(long = "visibility-m", value_name = "M", value_parser = parse::length_m, help_heading = "Fog")]
-    #[arg(required_unless_present = "vary")]
-    #[serde(skip)]
-    pub given_visibility_m: Option<f64>,
-    /// The visibility of a picture, m: as given, or as drawn.
-    #[arg(skip)]
-    pub visibility_m: f64,
-    /// Contrast that visibility means: 0.05 (meteorological optical range) or 0.02
-    #[arg(long, value_name = "C", default_value = "0.05", value_parser = ["0.05", "0.02"], help_heading = "Fog")]
-    pub contrast: String,
-    /// How it thins with height
-    #[arg(long, value_enum, default_value_t = ModelArg::Uniform, help_heading = "Fog")]
-    pub model: ModelArg,
-    /// Height over which it thins to 1/e, m (height, clamped, unclamped)
-    #[arg(long, value_name = "M", value_parser = parse::length_m, default_value_t = 30.0, help_heading = "Fog")]
-    pub scale_height_m: f64,
-    /// Height from which on it thins, m (clamped), or where it is as thick as told (unclamped)
-    #[arg(long, value_name = "M", value_parser = parse::number, default_value_t = 0.0, help_heading = "Fog")]
-    pub base_height_m: f64,
-    /// Height of its top, m (slab)
-    #[arg(long, value_name = "M", value_parser = parse::length_m, default_value_t = 50.0, help_heading = "Fog")]
-    pub top_m: f64,
-    /// Drops that it consists of
-    #[arg(long, value_enum, default_value_t, help_heading = "Fog")]
-    pub droplets: DropletsArg,
-    /// Which light it scatters; the same in even fog (uniform), which counts as lit evenly
-    #[arg(
-        long,
-        value_enum,
-        value_name = "WHICH",
-        default_value_t,
-        help_heading = "Fog"
-    )]
-    pub scattering: FogScatteringArg,
+    #[command(flatten)]
+    pub fog: FogArgs,
+    #[command(flatten)]
+    pub contrast: ContrastArgs,
+    #[command(flatten)]
+    pub light: OverlayLightArgs,
+    #[command(flatten)]
+    pub solver: OverlaySolverArgs,
+}
 
-    /// Colour of the light that the fog is in, linear, in the picture's units [default: estimated from the picture]
-    #[arg(
-        long,
-        value_name = "auto|R,G,B",
-        default_value = "auto",
-        help_heading = "Light"
-    )]
-    pub ambient: String,
-    /// Factor on that light
-    #[arg(long, value_name = "FACTOR", value_parser = parse::positive, default_value_t = 1.0, help_heading = "Light")]
-    pub ambient_scale: f64,
-    /// Elevation of the sun, degrees [default: no sun]
-    #[arg(long, value_name = "DEG", value_parser = parse::elevation_deg, help_heading = "Light")]
-    #[serde(rename = "sun_elevation_deg")]
-    pub sun_elevation: Option<f64>,
-    /// Azimuth of the sun, degrees clockwise from north
-    #[arg(long, value_name = "DEG", value_parser = parse::number, default_value_t = 180.0, help_heading = "Light", requires = "sun_elevation")]
-    #[serde(rename = "sun_azimuth_deg")]
-    pub sun_azimuth: f64,
-    /// Irradiance facing the sun over that of the ambient light on the level (pi times its radiance)
-    #[arg(long, value_name = "RATIO", value_parser = parse::not_negative, default_value_t = 3.0, help_heading = "Light", requires = "sun_elevation")]
-    pub sun_strength: f64,
-    /// Albedo of the ground under fog that has a top [default: 0.2; that of the atmosphere with --sky-light]
-    #[arg(long, value_name = "ALBEDO", value_parser = parse::fraction, help_heading = "Light")]
-    pub ground_albedo: Option<f64>,
-    #[command(flatten)]
-    #[serde(flatten)]
-    pub light: super::OverlayLightArgs,
-    #[command(flatten)]
-    #[serde(skip)]
-    pub random: super::OverlayPathsArgs,
+impl OverlayArgs {
+    /// Sets what was given in a description.
+    pub fn fill(&self, to: &mut OverlayScene) {
+        let put = |value: &mut Option<f64>, given: Option<f64>| *value = given.or(*value);
+        let overlay = &mut to.overlay;
+        if let Some(colour) = &self.colour {
+            // The depth map of another picture does not belong to this one.
+            (overlay.colour, overlay.depth) = (colour.clone(), None);
+        }
+        overlay.depth = self.depth.clone().or(overlay.depth.take());
+        if let Some(kind) = self.depth_kind {
+            overlay.depth_kind = match kind {
+                DepthKindArg::Z => DepthFileKind::Z,
+                DepthKindArg::Ray => DepthFileKind::Ray,
+                DepthKindArg::Disparity => DepthFileKind::Disparity,
+                DepthKindArg::Inverse => DepthFileKind::Inverse,
+            };
+        }
+        overlay.depth_scale = self.depth_scale.unwrap_or(overlay.depth_scale);
+        overlay.depth_channel = self.depth_channel.clone().or(overlay.depth_channel.take());
+        if let Some(holes) = self.holes {
+            overlay.holes = match holes {
+                HolesArg::Fill => DepthHoles::Fill,
+                HolesArg::Far => DepthHoles::Far,
+                HolesArg::Clear => DepthHoles::Clear,
+            };
+        }
+        put(&mut overlay.far_m, self.far_m);
+        put(&mut overlay.baseline_m, self.baseline_m);
+        let offset_px = self.disparity_offset_px;
+        overlay.disparity_offset_px = offset_px.unwrap_or(overlay.disparity_offset_px);
+        if self.fov.is_some() {
+            (overlay.focal_px, overlay.principal_point_px) = (None, None);
+        }
+        put(&mut overlay.focal_px, self.focal_px);
+        let principal = self.principal_point.map(|(x, y)| [x, y]);
+        overlay.principal_point_px = principal.or(overlay.principal_point_px);
+        overlay.layers |= self.layers;
+
+        let scene = &mut to.scene;
+        scene.output.file = self.output.clone().or(scene.output.file.take());
+        if self.focal_px.is_some() {
+            scene.camera.fov_deg = None;
+        }
+        put(&mut scene.camera.fov_deg, self.fov);
+        put(&mut scene.camera.azimuth_deg, self.camera_azimuth);
+        put(&mut scene.camera.elevation_deg, self.camera_elevation);
+        put(&mut scene.camera.roll_deg, self.camera_roll);
+        put(&mut scene.observer.eye_height_m, self.eye_height_m);
+        put(&mut scene.air.contrast, self.contrast.contrast);
+        self.fog.fill(&mut scene.fog);
+        self.solver.fill(scene);
+        self.light.fill(to);
+    }
 }
 
 const EXAMPLES: &str = "\
@@ -204,28 +175,30 @@ Examples:
   Fog of 12 m visibility over a photograph with depth in millimetres:
     airlight fog photo.png --depth depth_mm.png --depth-scale 0.001 --fov 41 --visibility-m 12 -o fogged.png
   Ground fog in a rendered valley, with layers for a compositor:
-    airlight fog render.exr --visibility-m 400 --model height --scale-height-m 40 --eye-height-m 60 \\
+    airlight fog render.exr --visibility-m 400 --scale-height-m 40 --eye-height-m 60 \\
       --camera-elevation -7 --layers -o fogged.exr
-  What Foggy Cityscapes would have made of it:
-    airlight fog photo.png --depth depth_mm.png --depth-scale 0.001 --visibility-m 12 --model foggy-cityscapes -o fogged.png
-  Ishiyama's height fog as printed, whose sun shines through it undimmed:
-    airlight fog render.exr --visibility-m 400 --model height --sun-elevation 20 --scattering undimmed -o fogged.exr
-  A lamp as the fog note prints it, which takes light away where the lamp is passed:
-    airlight fog photo.png --depth depth_mm.png --depth-scale 0.001 --visibility-m 12 --droplets isotropic \\
-      --lamp 'pixel=120,80 distance=3 intensity=3,2.5,2' --lamp-form printed -o printed.png
-  A street lamp in it, and light from the sky solver on ground fog:
-    airlight fog photo.png --depth depth_mm.png --depth-scale 0.001 --visibility-m 12 --lamp 'pixel=120,80 intensity=3,2.5,2' \
+  The same fog as in Foggy Cityscapes:
+    airlight fog photo.png --depth depth_mm.png --depth-scale 0.001 --visibility-m 12 --fog-profile foggy-cityscapes \\
       -o fogged.png
-    airlight fog render.exr --visibility-m 400 --model height --sky-light --sun-elevation 20 -o fogged.exr
-  The same by random paths, with the noise of each pixel in a file of its own (small pictures: it is slow):
-    airlight fog small.exr --visibility-m 400 --model height --sky-light --sun-elevation 20 --solver monte-carlo \\
+  Ishiyama's height fog as printed, which does not dim the sun:
+    airlight fog render.exr --visibility-m 400 --fog-profile height --sun-elevation 20 --fog-scattering undimmed \\
+      -o fogged.exr
+  A light as the fog note prints it, negative where the view ray passes the light:
+    airlight fog photo.png --depth depth_mm.png --depth-scale 0.001 --visibility-m 12 --droplets isotropic \\
+      --light 'pixel=120,80 distance=3 intensity=3,2.5,2' --light-form printed -o printed.png
+  A street lamp, and ground fog lit by the solved sky:
+    airlight fog photo.png --depth depth_mm.png --depth-scale 0.001 --visibility-m 12 \\
+      --light 'pixel=120,80 intensity=3,2.5,2' -o fogged.png
+    airlight fog render.exr --visibility-m 400 --fog-profile height --sky-light --sun-elevation 20 -o fogged.exr
+  The same by Monte Carlo, with the noise of each pixel in a second file (slow: for small pictures):
+    airlight fog small.exr --visibility-m 400 --fog-profile height --sky-light --sun-elevation 20 --solver monte-carlo \\
       --paths 512 --noise-map -o fogged.exr
-  Every picture of a folder, with the depth of the same name:
+  Every picture of a folder, with the depth map of the same name:
     airlight fog rgb/ --depth depth/ --depth-scale 0.001 --visibility-m 80 -o foggy/
-  Training data: what * stands for links colour, depth and output; three fogs for each picture, told in foggy/manifest.jsonl:
+  Training data: * links colour, depth and output; three fogs for each picture, recorded in foggy/manifest.jsonl:
     airlight fog 'rgb/*_left.png' --depth 'depth/*_depth.png' --depth-scale 0.001 --vary visibility=50..500 \\
       --vary droplets=fine,radiation,advection --variants 3 --seed 1 -o 'foggy/*.png'
 
---vary takes visibility, scale-height, top, eye-height, ambient-scale (drawn so that their logarithms lie evenly), base-height,
-camera-elevation, camera-azimuth, camera-roll, sun-elevation, sun-azimuth, sun-strength, ground-albedo (drawn evenly);
-NAME=log:LOW..HIGH and NAME=uniform:LOW..HIGH say otherwise. model and droplets take lists.";
+--vary draws visibility, scale-height, top, eye-height and ambient-scale evenly in their logarithm, and base-height,
+camera-elevation, camera-azimuth, camera-roll, sun-elevation, sun-azimuth, sun-strength and ground-albedo evenly;
+NAME=log:LOW..HIGH and NAME=uniform:LOW..HIGH choose otherwise. fog-profile and droplets take lists.";

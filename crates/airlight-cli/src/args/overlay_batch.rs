@@ -1,43 +1,43 @@
-//! Options of `airlight fog` that make many pictures of many.
+//! Options of `airlight fog` for many pictures.
 
-use super::overlay_vary::{self, Variation};
+use airlight_render::batch::{BatchSettings, Variation};
 use clap::Args;
 use std::num::NonZeroU32;
 use std::path::PathBuf;
 
-/// Whole folders, variation.
+/// Many pictures.
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Many pictures")]
 pub struct BatchArgs {
-    /// Draw an option anew for each picture: visibility=50..500, model=uniform,height (see below)
-    #[arg(long, value_name = "NAME=LOW..HIGH|A,B", value_parser = overlay_vary::parse)]
+    /// Draw a setting for each picture: visibility=50..500, fog-profile=uniform,height (see below)
+    #[arg(long, value_name = "NAME=LOW..HIGH|A,B")]
     pub vary: Vec<Variation>,
-    /// So many pictures of each: {variant} in --output is the number, else _v0001 before the ending
+    /// Number of pictures of each input: {variant} in --output is the number of a picture, else _v0001 before the ending
     #[arg(long, value_name = "N", requires = "vary")]
     pub variants: Option<NonZeroU32>,
-    /// What is drawn follows from this number, the picture's name and the number of the variant [default: 0]; so does the
-    /// noise of random paths [default: 1]
+    /// Seed of --vary, whose draws depend on it, the picture's name and the variant [default: 0], and of Monte Carlo paths
+    /// [default: 1]
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
-    /// A line of JSON for each picture goes there [default: manifest.jsonl beside the outputs]
+    /// Manifest: a line of JSON for each picture [default: manifest.jsonl beside the outputs]
     #[arg(long, value_name = "FILE")]
     pub manifest: Option<PathBuf>,
-    /// Make pictures anew that are there already; else those are taken as done
+    /// Make existing pictures again; otherwise they are kept
     #[arg(long)]
     pub overwrite: bool,
-    /// Pass over pictures without depth
+    /// Leave out pictures without depth
     #[arg(long)]
     pub skip_unpaired: bool,
-    /// Stop at the first picture that fails; else the others are made
+    /// Stop at the first picture that fails; otherwise the others are made
     #[arg(long)]
     pub fail_fast: bool,
-    /// Threads, and so the most pictures in memory [default: one a core]
+    /// Threads, and the most pictures in memory [default: one a processor]
     #[arg(long, value_name = "N")]
     pub jobs: Option<NonZeroU32>,
 }
 
 impl BatchArgs {
-    /// Whether any of them is given: then a single picture is a batch of one.
+    /// Whether any option is given that only a batch has: a single picture is then a batch of one.
     pub fn is_given(&self) -> bool {
         !self.vary.is_empty()
             || self.manifest.is_some()
@@ -45,5 +45,19 @@ impl BatchArgs {
             || self.overwrite
             || self.skip_unpaired
             || self.fail_fast
+    }
+
+    /// The settings of a batch.
+    pub fn settings(&self) -> BatchSettings {
+        BatchSettings {
+            vary: self.vary.clone(),
+            variants: self.variants,
+            seed: self.seed.unwrap_or_default(),
+            manifest: self.manifest.clone(),
+            overwrite: self.overwrite,
+            skip_unpaired: self.skip_unpaired,
+            fail_fast: self.fail_fast,
+            threads: self.jobs,
+        }
     }
 }

@@ -1,102 +1,157 @@
-//! `airlight fog`: fog laid over pictures that exist.
+//! `airlight fog`: fog over existing pictures.
 
 mod batch;
-mod forms;
-mod layers;
-mod light;
-mod lights;
-mod overlay;
-mod paths;
-mod picture;
 
 use crate::args::OverlayArgs;
+use crate::atmosphere;
 use crate::error::CliError;
-use crate::interrupt;
+use crate::interrupt::{self, STOP};
+use crate::progress::{Busy, RowsBar};
 use crate::report::{self, bytes};
-use airlight::monte_carlo::MonteCarloSettings;
-use light::{LightSource, SolvedSky};
-use paths::Painter;
-use picture::Subject;
+use airlight::fog::visibility::Contrast;
+use airlight_image::Control;
+use airlight_image::output::Written;
+use airlight_render::batch::is_batch;
+use airlight_render::overlay::{MonteCarloFog, OverlayImage, OverlayScene, PreparedOverlay};
 use std::path::Path;
 
 /// Runs the command.
 ///
 /// # Errors
-/// [`CliError`]: what was wrong with the options or the files.
+/// [`CliError`]: what is wrong with the options or the files.
 pub fn run(args: &OverlayArgs) -> Result<(), CliError> {
-    let args = &OverlayArgs {
-        // Where it is not given it varies, and is set for each picture.
-        visibility_m: args.given_visibility_m.unwrap_or_default(),
-        ..args.clone()
+    let mut scene = match &args.scene {
+        None => OverlayScene::default(),
+        Some(path) => read(path)?,
     };
-    picture::check(args)?;
-    let random = args.random.settings(args.batch.seed)?;
-    match (batch::is_asked_for(args)?, random) {
-        (true, Some(_)) => Err(CliError::usage(
-            "--solver monte-carlo takes one picture at a time: leave out --solver, or give COLOUR, --depth and --output each \
-             the name of a file, without options for many pictures",
-        )),
-        (true, None) => batch::run(args),
-        (false, random) => one(args, random),
+    args.fill(&mut scene);
+    let monte_carlo = scene.monte_carlo().is_some();
+    if let Some(seed) = args.batch.seed {
+        if monte_carlo {
+            scene.scene.solver.seed = Some(seed);
+        } else if args.batch.vary.is_empty() {
+            return Err(CliError::usage(
+                "--seed: expected something random, got nothing; try --vary or --solver monte-carlo",
+            ));
+        }
+    }
+    let many = is_batch(&scene.overlay.colour, scene.output()?)? || args.batch.is_given();
+    if many && monte_carlo {
+        return Err(CliError::usage(
+            "--solver monte-carlo: expected one picture, got several or options of --vary and batches; try leaving out \
+             --solver, or one file each for COLOUR, --depth and --output",
+        ));
+    }
+    if !many {
+        scene.check()?;
+    }
+    if let Some(path) = &args.save_scene {
+        report::write(path, scene.to_toml()?)?;
+    }
+    atmosphere::inline_file(&mut scene.scene)?;
+    match many {
+        true => batch::run(args, scene),
+        false => one(args, &scene),
     }
 }
 
-fn one(args: &OverlayArgs, random: Option<MonteCarloSettings>) -> Result<(), CliError> {
-    let format = picture::format_of(args, &args.output)?;
-    let depth = args.depth.as_ref().unwrap_or(&args.colour);
-    for input in [&args.colour, depth] {
-        if same_file(input, &args.output) {
-            return Err(written_over(input));
+/// The description in a scene file.
+fn read(path: &Path) -> Result<OverlayScene, CliError> {
+    let text = std::fs::read_to_string(path).map_err(|error| {
+        CliError::failure(format!(
+            "cannot read the scene `{}`: {error}",
+            path.display()
+        ))
+    })?;
+    OverlayScene::from_toml(&text)
+        .map_err(|error| CliError::usage(format!("`{}`, {error}", path.display())))
+}
+
+fn one(args: &OverlayArgs, scene: &OverlayScene) -> Result<(), CliError> {
+    let output = scene.output()?;
+    let format = scene.overlay.output_format(output)?;
+    let depth = scene.overlay.depth.as_ref();
+    for input in depth.into_iter().chain([&scene.overlay.colour]) {
+        if same_file(input, output) {
+            return Err(CliError::usage(format!(
+                "expected an output that is not an input, got `{}`; try another --output",
+                output.display()
+            )));
         }
     }
-    let subject = Subject::read(args, &args.colour, depth, format)?;
-    let solved = SolvedSky::of(args)?;
-    let fogged = subject.fogged(args, &LightSource::new(solved.as_ref(), args))?;
-    let painter = match (random, &solved) {
-        (Some(settings), Some(solved)) => Some(Painter::new(args, solved, &fogged, settings)?),
-        _ => None,
+    let image = OverlayImage::read(&scene.overlay, format)?;
+    let sky = match scene.overlay.sky_light {
+        true => {
+            let _busy = Busy::with("solving for the light in the air");
+            scene.solve_sky()?
+        }
+        false => None,
     };
+    let prepared = PreparedOverlay::new(scene, &image, sky.as_ref())?;
+    let monte_carlo = prepared.monte_carlo(scene, sky.as_ref())?;
     let writing = interrupt::start_writing()?;
-    let (written, noise) = match &painter {
-        Some(painter) => painter.write(args, &subject, &fogged, format)?,
-        None => (
-            subject.write(&fogged, args, &args.output, format)?,
-            String::new(),
-        ),
+    let control = Control::cancelled_by(&STOP);
+    let (written, noise) = match monte_carlo {
+        None => {
+            let overlay = prepared.overlay(&image)?;
+            let written = image.write(&overlay, output, format, control)?;
+            (written, String::new())
+        }
+        Some(fog) => passes(scene, &image, &prepared, &fog, control)?,
     };
     drop(writing);
     if args.quiet {
         return Ok(());
     }
-    let size = subject.picture.size;
-    let [red, green, blue] = fogged.level.colour.0;
+    let size = image.picture.size;
+    let [red, green, blue] = prepared.level.colour.0;
+    let contrast = match scene.contrast() {
+        Contrast::TwoPercent => "2 %",
+        Contrast::FivePercent => "5 %",
+    };
     report::print(&format!(
-        "{}: {} x {}, {}\n  visibility    {} m ({} of contrast)\n  light         {red:.4} {green:.4} {blue:.4} ({})\n  \
+        "{}: {} x {}, {}\n  visibility    {} m (contrast {contrast})\n  light         {red:.4} {green:.4} {blue:.4} ({})\n  \
          depth         {} pixels unknown, {} infinitely far\n{noise}",
-        args.output.display(),
+        output.display(),
         size.width(),
         size.height(),
         bytes(written.bytes),
-        report::short(args.visibility_m),
-        args.contrast,
-        fogged.level.how,
-        subject.depth.holes,
-        subject.depth.infinite,
+        report::short(scene.visibility_m()?),
+        prepared.level.source,
+        image.depth.holes,
+        image.depth.infinite,
     ))
 }
 
-/// Whether two paths lead to one file that is there.
+/// Writes a picture by Monte Carlo pass by pass; the noise of the last one as a line of the report.
+fn passes(
+    scene: &OverlayScene,
+    image: &OverlayImage,
+    prepared: &PreparedOverlay,
+    fog: &MonteCarloFog,
+    control: Control<'_>,
+) -> Result<(Written, String), CliError> {
+    let (mut written, mut noise) = (Written::default(), String::new());
+    let overlay = prepared.overlay(image)?;
+    let bar = RowsBar::new(0);
+    fog.run(&overlay, control.reporting_to(&bar), |pass| {
+        written = prepared.write_pass(scene, image, pass, control)?;
+        if pass.is_last {
+            noise = format!(
+                "  noise         {:.2} % of the fog's green (root mean square over the picture), {} paths a pixel\n",
+                100.0 * pass.relative_noise(),
+                pass.paths
+            );
+        }
+        Ok(())
+    })?;
+    Ok((written, noise))
+}
+
+/// Whether two paths lead to one existing file.
 fn same_file(a: &Path, b: &Path) -> bool {
     match (a.canonicalize(), b.canonicalize()) {
         (Ok(a), Ok(b)) => a == b,
         _ => false,
     }
-}
-
-/// The refusal of an output that is an input.
-fn written_over(input: &Path) -> CliError {
-    CliError::usage(format!(
-        "`{}` would be written over: give --output another name",
-        input.display()
-    ))
 }

@@ -1,24 +1,27 @@
-//! Values made of words `KEY=VALUE`.
+//! Values made of pairs `KEY=VALUE`.
 
-/// Words `KEY=VALUE`, each to be taken once.
+/// Pairs `KEY=VALUE`, each taken once.
 pub struct Words<'a>(Vec<(&'a str, &'a str)>);
 
 impl<'a> Words<'a> {
     /// Splits a text at its spaces.
     ///
     /// # Errors
-    /// For what is no `KEY=VALUE`, and for a key that is unknown or comes twice.
+    /// For a word that is not `KEY=VALUE`, and for a key that is unknown or repeated.
     pub fn new(text: &'a str, keys: &[&str]) -> Result<Self, String> {
         let mut words = Vec::new();
         for word in text.split_whitespace() {
             let (key, value) = word
                 .split_once('=')
-                .ok_or_else(|| format!("must be words KEY=VALUE, got \"{word}\""))?;
+                .ok_or_else(|| format!("expected KEY=VALUE, got \"{word}\""))?;
             if !keys.contains(&key) {
-                return Err(format!("knows no {key}: its words are {}", keys.join(", ")));
+                return Err(format!(
+                    "expected a known key, got {key}; try {}",
+                    keys.join(", ")
+                ));
             }
             if words.iter().any(|(known, _)| *known == key) {
-                return Err(format!("says {key} twice"));
+                return Err(format!("expected {key} once, got it twice"));
             }
             words.push((key, value));
         }

@@ -1,13 +1,12 @@
 //! Fog before the sky of a picture.
 
-use crate::args::{FogArgs, droplets_in_words};
+use crate::args::{SkyFogArgs, droplets_in_words};
 use crate::error::CliError;
-use crate::foggy_air::FogInAir;
 use crate::report::short;
 use airlight::atmosphere::Constituent;
 use airlight::fog::DensityProfile;
 use airlight::fog::visibility::{Contrast, extinction_per_m};
-use airlight::scene::{FoggySky, LaneChannels};
+use airlight::scene::{FogLayer, FoggySky, LaneChannels};
 use airlight::sky::{SkyTable, TableChannels, View};
 use airlight::spectrum::{Spectrum, WavelengthGrid};
 use glam::DVec3;
@@ -32,7 +31,7 @@ impl Fog {
     /// # Errors
     /// [`CliError::Usage`] for a fog that is none.
     pub fn new(
-        args: &FogArgs,
+        args: &SkyFogArgs,
         view: &View,
         channels: TableChannels,
     ) -> Result<Option<Self>, CliError> {
@@ -47,7 +46,7 @@ impl Fog {
     /// # Errors
     /// As [`Fog::new`].
     pub fn or_clear(
-        args: &FogArgs,
+        args: &SkyFogArgs,
         view: &View,
         channels: TableChannels,
     ) -> Result<Self, CliError> {
@@ -130,22 +129,23 @@ fn cover<const N: usize>(sky: &FoggySky<N>, direction: DVec3, values: &mut [f32]
 }
 
 /// The fog of the options, known at wavelengths (nm, rising); no layer without fog.
-fn layers(args: &FogArgs, wavelengths_nm: &[f64]) -> Result<Vec<Constituent>, CliError> {
+fn layers(args: &SkyFogArgs, wavelengths_nm: &[f64]) -> Result<Vec<Constituent>, CliError> {
     let layers = in_air(args).into_iter();
-    layers.map(|fog| fog.layer(wavelengths_nm)).collect()
+    let layer = |fog: FogLayer| Ok(fog.layer(wavelengths_nm)?);
+    layers.map(layer).collect()
 }
 
 /// The fog of the options before its optics are computed; `None` without fog.
-fn in_air(args: &FogArgs) -> Option<FogInAir> {
+fn in_air(args: &SkyFogArgs) -> Option<FogLayer> {
     let visibility_m = args.fog_visibility_m?;
-    Some(FogInAir {
+    Some(FogLayer {
         profile: profile(args),
         droplets: args.fog_droplets.0,
         extinction_per_m: extinction_per_m(visibility_m, Contrast::FivePercent),
     })
 }
 
-fn profile(args: &FogArgs) -> DensityProfile {
+fn profile(args: &SkyFogArgs) -> DensityProfile {
     match args.fog_top_m {
         Some(top_height_m) => DensityProfile::slab(top_height_m),
         None => DensityProfile::Clamped {
@@ -161,17 +161,18 @@ fn profile(args: &FogArgs) -> DensityProfile {
 /// # Errors
 /// [`CliError::Usage`] for a fog that is none.
 pub fn constituent(
-    args: &FogArgs,
+    args: &SkyFogArgs,
     ground_m: f64,
     wavelengths_nm: &[f64],
 ) -> Result<Option<Constituent>, CliError> {
     let fog = in_air(args);
-    fog.map(|fog| fog.constituent(ground_m, wavelengths_nm))
-        .transpose()
+    Ok(fog
+        .map(|fog| fog.constituent(ground_m, wavelengths_nm))
+        .transpose()?)
 }
 
 /// The fog of the options in words.
-pub fn in_words(args: &FogArgs) -> Option<String> {
+pub fn in_words(args: &SkyFogArgs) -> Option<String> {
     let visibility_m = args.fog_visibility_m?;
     let height = match (args.fog_top_m, args.fog_base_m.unwrap_or(0.0)) {
         (Some(top_m), _) => format!("up to {} m", short(top_m)),

@@ -1,8 +1,5 @@
 //! Running the program, folders that go away, reading what it wrote.
 #![allow(dead_code)]
-
-pub mod batch;
-
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

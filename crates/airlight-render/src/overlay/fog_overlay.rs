@@ -1,4 +1,4 @@
-//! What lies between camera and scene.
+//! The fog between the camera and the objects of a picture.
 
 use airlight::fog::lights::{RgbLightSet, ViewRay};
 use airlight::fog::{RgbFog, RgbFogTable, legacy};
@@ -7,57 +7,60 @@ use airlight::spectrum::Spectrum;
 use airlight::spectrum::rgb::{srgb_decode, srgb_encode};
 use airlight::transfer::PathOptics;
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 use std::sync::{Arc, LazyLock};
 
-/// What lies between camera and scene.
+/// The fog between the camera and the objects of a picture.
 #[derive(Clone)]
 pub enum FogOverlay {
-    /// A fog, and the lamps in it.
+    /// Fog that scatters light, and the lights in it.
     Fog(FogSource, Option<RgbLightSet>),
-    /// Exponential-squared fog, a look: density (1/m) and colour.
+    /// Exponential-squared fog of one colour: density (1/m) and colour.
     ExponentialSquared(f64, Spectrum<3>),
-    /// Linear fog, a look: where it starts and ends (m), and colour.
+    /// Linear fog of one colour: start and end (m), and colour.
     Linear(f64, f64, Spectrum<3>),
     /// Foggy Cityscapes (Sakaridis et al. 2018): uniform fog of an extinction (1/m) and one colour, blended in encoded
     /// (sRGB) values instead of light.
     Encoded(f64, Spectrum<3>),
 }
 
-/// A fog and the light of the day that it is in.
+/// Fog and the daylight that it scatters.
 #[derive(Clone)]
 pub enum FogSource {
-    /// A fog in a light of its own.
+    /// Fog in ambient light and sunlight.
     Alone(RgbFog),
-    /// A fog in a solved sky.
+    /// Fog in a solved sky.
     Sky {
-        /// Both, with the eye at the camera's height.
+        /// Sky and fog, with the eye at the camera's height.
         sky: Arc<FoggySky<3>>,
         /// Units of the picture in one cd/m^2.
         radiance_scale: f32,
-        /// Whether the picture has the air.
+        /// Whether the picture shows the clear air.
         air: ExistingAerial,
     },
 }
 
-/// Whether a picture shows the clear air before its things.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Whether a picture shows the clear air before its objects.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum ExistingAerial {
-    /// It does.
+    /// It does, like every photograph.
+    #[default]
     Drawn,
-    /// It does not, but before its sky: the air is added.
+    /// It does not, like many a rendered picture: the air is added, except before the sky.
     Missing,
 }
 
-/// A veil as seen from a height: quickly, for the pixels of a picture.
+/// A fog overlay from one eye height, tabulated for the pixels of a picture.
 pub(super) struct FogSampler<'a> {
     overlay: &'a FogOverlay,
     eye_height_m: f64,
-    /// A fog alone, tabulated.
+    /// Table of [`FogSource::Alone`].
     table: Option<RgbFogTable>,
 }
 
 impl<'a> FogSampler<'a> {
-    /// Seen from a height (m).
+    /// From an eye height (m).
     pub fn from_height(overlay: &'a FogOverlay, eye_height_m: f64) -> Self {
         let table = match overlay {
             FogOverlay::Fog(FogSource::Alone(fog), _) => Some(fog.seen_from(eye_height_m)),
@@ -70,21 +73,21 @@ impl<'a> FogSampler<'a> {
         }
     }
 
-    /// What it does up to a distance (m; infinite: the sky) in a direction, with the path radiance of fog where that is
-    /// given.
+    /// Transmittance and path radiance up to a distance (m; infinite: the sky) in a direction; `path_radiance` replaces the
+    /// fog's own.
     pub fn optics(
         &self,
         direction: DVec3,
         distance_m: f64,
-        given: Option<Spectrum<3>>,
+        path_radiance: Option<Spectrum<3>>,
     ) -> PathOptics<3> {
         match self.overlay {
-            FogOverlay::Fog(body, lights) => {
+            FogOverlay::Fog(source, lights) => {
                 let mut optics = match &self.table {
                     Some(table) => table.path(direction, distance_m).into(),
-                    None => body.optics(self.eye_height_m, direction, distance_m),
+                    None => source.optics(self.eye_height_m, direction, distance_m),
                 };
-                optics.path_radiance = given.unwrap_or(optics.path_radiance);
+                optics.path_radiance = path_radiance.unwrap_or(optics.path_radiance);
                 if let Some(lights) = lights {
                     let glow = lights.path_radiance(&ViewRay {
                         eye: DVec3::Y * self.eye_height_m,
@@ -111,7 +114,7 @@ impl<'a> FogSampler<'a> {
         }
     }
 
-    /// A colour seen through it.
+    /// A colour through the fog.
     pub fn apply(&self, optics: &PathOptics<3>, colour: Spectrum<3>) -> Spectrum<3> {
         let FogOverlay::Encoded(_, fog) = self.overlay else {
             return optics.apply(colour);
@@ -170,7 +173,7 @@ static LINEAR: LazyLock<Vec<f32>> = LazyLock::new(|| {
 /// [`srgb_encode`] to 1e-6.
 fn encode(linear: f32) -> f32 {
     match linear {
-        0.004..=1.0 => between(&SIGNALS, linear.sqrt()),
+        0.004..=1.0 => interpolate(&SIGNALS, linear.sqrt()),
         _ => srgb_encode(f64::from(linear)) as f32,
     }
 }
@@ -178,15 +181,15 @@ fn encode(linear: f32) -> f32 {
 /// [`srgb_decode`] to 1e-6.
 fn decode(signal: f32) -> f32 {
     match signal {
-        0.0..=1.0 => between(&LINEAR, signal),
+        0.0..=1.0 => interpolate(&LINEAR, signal),
         _ => srgb_decode(f64::from(signal)) as f32,
     }
 }
 
-/// A table from 0 to 1 at a place.
+/// A table over 0 to 1, interpolated linearly.
 #[inline]
-fn between(table: &[f32], place: f32) -> f32 {
-    let x = place * STEPS as f32;
+fn interpolate(table: &[f32], at: f32) -> f32 {
+    let x = at * STEPS as f32;
     let k = (x as usize).min(STEPS - 1);
     let part = x - k as f32;
     table[k] + part * (table[k + 1] - table[k])

@@ -1,38 +1,59 @@
-//! Fog laid over a picture that exists: colour and depth in, the fogged picture and its layers out.
+//! Fog over an existing picture: colour and depth in, the picture in fog and its layers out.
 //!
-//! From the ground up: the light that a picture shows fog to be in ([`estimate_ambient`]); lights ([`RgbLightSet`](airlight::fog::lights::RgbLightSet)); what lies
-//! between camera and scene ([`FogOverlay`]); both put together, row by row ([`Overlay`]).
+//! An [`OverlayScene`] describes a picture: a [`Scene`](airlight::scene::Scene) with its fog, lights, sun and camera, and an
+//! [`OverlaySpec`] with the colour picture, the depth map and the level of the light. From it:
+//!
+//! 1. [`OverlayImage::read`]: picture, depth map and ambient light ([`estimate_ambient`]);
+//! 2. [`SkyLight::solve`], if the solved sky lights the fog;
+//! 3. [`PreparedOverlay::new`]: camera, lights and fog ([`FogOverlay`]);
+//! 4. [`Overlay`]: the rows of the picture in fog, which [`OverlayImage::write`] writes;
+//!    [`MonteCarloFog`] replaces their path radiance by a Monte Carlo estimate.
 
 mod ambient;
 mod fog_overlay;
+mod light_level;
+mod monte_carlo;
+mod overlay_image;
+mod overlay_scene;
+mod place_lights;
+mod prepared_overlay;
+mod sky_light;
+mod spec;
 
 pub use ambient::{Ambient, estimate_ambient, horizon_pixels};
 pub use fog_overlay::{ExistingAerial, FogOverlay, FogSource};
+pub use light_level::{LightLevel, LightLevelSource};
+pub use monte_carlo::{MonteCarloFog, MonteCarloPass};
+pub use overlay_image::OverlayImage;
+pub use overlay_scene::OverlayScene;
+pub use prepared_overlay::PreparedOverlay;
+pub use sky_light::SkyLight;
+pub use spec::{DepthFileKind, DepthHoles, OverlaySpec};
 
 use airlight::spectrum::Spectrum;
 use airlight::transfer::PathOptics;
 use airlight_image::input::{DepthKind, DepthMap, LightReference, Picture};
-use airlight_image::{ImageError, Intrinsics, RowSource};
+use airlight_image::{ImageError, Intrinsics, RowSource, Size};
 use fog_overlay::FogSampler;
 use glam::DVec3;
 
-/// A picture, its depth, its camera, and a veil over it.
+/// Rows of a picture in fog.
 pub struct Overlay<'a> {
     picture: &'a Picture,
     depth: &'a DepthMap,
     camera: &'a Intrinsics,
-    seen: FogSampler<'a>,
+    fog: FogSampler<'a>,
     channels: Channels,
-    /// Path radiance of the fog in each pixel, where it is known already.
-    given: Option<&'a [f32]>,
+    /// Path radiance of the fog in each pixel, if it is computed elsewhere.
+    path_radiance: Option<&'a [f32]>,
 }
 
 /// What a row of an [`Overlay`] holds for each pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Channels {
-    /// Red, green, blue of the fogged picture.
+    /// Red, green and blue of the picture in fog.
     Picture,
-    /// The same; red, green, blue of the transmittance and of the path radiance; distance in metres.
+    /// The same; then red, green and blue of the transmittance and of the path radiance, and the distance in metres.
     Layers,
 }
 
@@ -61,11 +82,10 @@ impl Channels {
 }
 
 impl<'a> Overlay<'a> {
-    /// Puts them together; `eye_height_m` is the camera's height above the zero of the fog's heights.
+    /// A picture and its depth map in fog; `eye_height_m` is the camera's height above the zero of the fog's heights.
     ///
     /// # Errors
-    /// [`ImageError::SizesDiffer`] where picture and depth differ in size, [`ImageError::Setting`] where the camera is
-    /// of another.
+    /// [`ImageError::SizesDiffer`] if picture and depth map differ in size, [`ImageError::Setting`] if the camera's does.
     pub fn new(
         picture: &'a Picture,
         depth: &'a DepthMap,
@@ -86,33 +106,43 @@ impl<'a> Overlay<'a> {
             picture,
             depth,
             camera,
-            seen: FogSampler::from_height(overlay, eye_height_m),
+            fog: FogSampler::from_height(overlay, eye_height_m),
             channels,
-            given: None,
+            path_radiance: None,
         })
     }
 
-    /// The same with the path radiance of its fog made elsewhere: red, green and blue of each pixel, row after row, in the
-    /// picture's unit. LightSet add to it; looks take no notice of it.
+    /// The same with the path radiance of its fog computed elsewhere: red, green and blue of each pixel, row after row, in the
+    /// picture's unit. The light of point, spot and sphere lights is added to it; fog of one colour ignores it.
     ///
     /// # Errors
-    /// [`ImageError::Setting`] where it is not of the picture's size.
-    pub fn with_path_radiance(self, given: &'a [f32]) -> Result<Self, ImageError> {
-        match given.len() == self.picture.rgb.len() {
+    /// [`ImageError::Setting`] if it is not of the picture's size.
+    pub fn with_path_radiance(self, path_radiance: &'a [f32]) -> Result<Self, ImageError> {
+        match path_radiance.len() == self.picture.rgb.len() {
             true => Ok(Self {
-                given: Some(given),
+                path_radiance: Some(path_radiance),
                 ..self
             }),
             false => Err(ImageError::Setting {
                 what: "the number of path radiances",
-                got: given.len().to_string(),
+                got: path_radiance.len().to_string(),
                 right: "three for each pixel of the picture",
             }),
         }
     }
 
-    /// Where the pixels of row `y` look, and how far things are there, m (infinite: the sky).
-    pub fn lines(&self, y: u32) -> Vec<(DVec3, f64)> {
+    /// Size of the picture.
+    pub fn size(&self) -> Size {
+        self.picture.size
+    }
+
+    /// Whether its rows hold [`Channels::Layers`].
+    pub fn has_layers(&self) -> bool {
+        self.channels == Channels::Layers
+    }
+
+    /// Direction of each pixel of row `y`, and the distance of what it shows, m (infinite: the sky).
+    pub fn rays(&self, y: u32) -> Vec<(DVec3, f64)> {
         let width = self.picture.size.width() as usize;
         let mut directions = vec![DVec3::ZERO; width];
         let mut lengths = vec![1.0; width];
@@ -129,20 +159,20 @@ impl<'a> Overlay<'a> {
         directions.into_iter().zip(distances).collect()
     }
 
-    /// EXR names of the channels: opacity comes last, where the picture has it.
+    /// EXR names of the channels; opacity comes last, if the picture has it.
     pub fn channel_names(&self) -> Vec<&'static str> {
         let opacity = self.picture.alpha.as_ref().map(|_| "A");
         let names = self.channels.names().iter().copied();
         names.chain(opacity).collect()
     }
 
-    /// A pixel's colour seen through the fog, and the opacity that its colour is multiplied by: fog scatters before what is
-    /// there only.
+    /// A pixel's colour through the fog. The colours of linear files are multiplied by their opacity, and so is the path
+    /// radiance before them.
     fn through(&self, optics: &PathOptics<3>, colour: Spectrum<3>, opacity: f32) -> Spectrum<3> {
         if self.picture.reference == LightReference::Display || opacity == 1.0 {
-            self.seen.apply(optics, colour)
+            self.fog.apply(optics, colour)
         } else if opacity > 0.0 {
-            self.seen.apply(optics, colour / opacity) * opacity
+            self.fog.apply(optics, colour / opacity) * opacity
         } else {
             colour * optics.transmittance
         }
@@ -156,19 +186,21 @@ impl RowSource for Overlay<'_> {
 
     fn fill_row(&self, y: u32, out: &mut [f32]) {
         let first = y as usize * self.picture.size.width() as usize;
-        let lines = self.lines(y);
-        let pixels = out.chunks_exact_mut(self.channels()).zip(lines);
+        let rays = self.rays(y);
+        let pixels = out.chunks_exact_mut(self.channels()).zip(rays);
         for (i, (out, (direction, distance))) in pixels.enumerate() {
             let pixel = first + i;
             let rgb = &self.picture.rgb[3 * pixel..3 * pixel + 3];
             let colour = Spectrum([rgb[0], rgb[1], rgb[2]]);
-            let given = self.given.map(|given| &given[3 * pixel..3 * pixel + 3]);
-            let given = given.map(|rgb| Spectrum([rgb[0], rgb[1], rgb[2]]));
-            let optics = self.seen.optics(direction, distance, given);
+            let path_radiance = self.path_radiance.map(|all| {
+                let rgb = &all[3 * pixel..3 * pixel + 3];
+                Spectrum([rgb[0], rgb[1], rgb[2]])
+            });
+            let optics = self.fog.optics(direction, distance, path_radiance);
             let opacity = self.picture.alpha.as_ref().map(|alpha| alpha[pixel]);
             let seen = self.through(&optics, colour, opacity.unwrap_or(1.0));
             out[..3].copy_from_slice(&seen.0);
-            if self.channels == Channels::Layers {
+            if self.has_layers() {
                 out[3..6].copy_from_slice(&optics.transmittance.0);
                 out[6..9].copy_from_slice(&optics.path_radiance.0);
                 out[9] = distance as f32;

@@ -1,7 +1,6 @@
 use super::*;
 use airlight::fog::{DensityProfile, FogLighting, FogScattering, Ground, RgbFog, RgbLayer};
 use airlight::optics::PhaseFunction;
-use airlight_image::Size;
 use airlight_image::input::{LightReference, SampleBits};
 
 fn picture(width: u32, height: u32, rgb: impl Fn(u32, u32) -> [f32; 3]) -> Picture {
@@ -192,7 +191,7 @@ fn the_ambient_takes_no_notice_of_sun_cloud_and_edges() {
 }
 
 #[test]
-fn a_lamp_glows_before_what_is_there() {
+fn a_point_light_glows_before_the_objects() {
     use airlight::fog::lights::{
         Light, LightRayGeometry, LightSettings, PointLight, RgbLightSet, airlight_isotropic,
     };
@@ -217,8 +216,8 @@ fn a_lamp_glows_before_what_is_there() {
         for x in 0..9 {
             let (direction, length) = (camera.pixel_direction(x, 1), camera.ray_length_per_z(x, 1));
             let length_m = if x < 4 { 6.0 * length } else { f64::INFINITY };
-            let passage = LightRayGeometry::new(DVec3::Y * 1.6, direction, length_m, at, 0.01);
-            let exact = 0.05 * 0.8 * airlight_isotropic(&passage, 0.05);
+            let geometry = LightRayGeometry::new(DVec3::Y * 1.6, direction, length_m, at, 0.01);
+            let exact = 0.05 * 0.8 * airlight_isotropic(&geometry, 0.05);
             let seen = &row[3 * x as usize..][..3];
             for (lane, intensity) in [3.0, 2.0, 1.0].into_iter().enumerate() {
                 let off = f64::from(seen[lane]) / (intensity * exact) - 1.0;

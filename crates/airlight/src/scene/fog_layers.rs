@@ -32,36 +32,43 @@ pub struct FogLayer {
 }
 
 impl FogLayer {
-    /// The layer as a constituent of the air over a ground at an altitude (m), at wavelengths (nm, rising): for Monte Carlo.
+    /// The layer as a constituent at wavelengths (nm, rising), with heights above the ground.
     ///
     /// # Errors
-    /// [`SceneError`] for a profile or droplets that are refused.
+    /// [`SceneError`] for a profile or droplets that are invalid.
+    pub fn layer(&self, wavelengths_nm: &[f64]) -> Result<Constituent, SceneError> {
+        self.profile
+            .validate()
+            .map_err(|error| SceneError::refused("fog", error))?;
+        Ok(Constituent::fog(
+            self.extinction_per_m,
+            self.droplets,
+            self.profile.clone(),
+            wavelengths_nm,
+        )?)
+    }
+
+    /// The same over a ground at an altitude (m), as a constituent of the air: for Monte Carlo.
+    ///
+    /// # Errors
+    /// [`SceneError`] for a profile without an upper end, and as [`Self::layer`].
     pub fn constituent(
         &self,
         ground_m: f64,
         wavelengths_nm: &[f64],
     ) -> Result<Constituent, SceneError> {
-        self.profile
-            .validate()
-            .map_err(|error| SceneError::refused("fog", error))?;
-        let endless = || {
-            SceneError::value(
-                "fog.profile",
-                "fog with a top or a scale height",
-                "fog without an upper end",
-                "height, clamped, unclamped or slab",
-            )
-        };
-        if self.profile.is_uniform() {
-            return Err(endless());
-        }
-        let profile = self.profile.raised(ground_m).ok_or_else(endless)?;
-        Ok(Constituent::fog(
-            self.extinction_per_m,
-            self.droplets,
-            profile,
-            wavelengths_nm,
-        )?)
+        let layer = self.layer(wavelengths_nm)?;
+        let raised = layer.raised(ground_m);
+        raised
+            .filter(|_| !self.profile.is_uniform())
+            .ok_or_else(|| {
+                SceneError::value(
+                    "fog.profile",
+                    "fog with a top or a scale height",
+                    "fog without an upper end",
+                    "height, clamped, unclamped or slab",
+                )
+            })
     }
 }
 

@@ -33,6 +33,8 @@ use std::f64::consts::PI;
 /// The form in which the light of lights that fog scatters into a ray is computed. All but the first hold for point lights in
 /// one layer of uniform fog that scatters equally in all directions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum LightForm {
     /// Dimmed from the light to the fog and from the fog to the eye; for all lights and layers.
     #[default]
@@ -46,6 +48,16 @@ pub enum LightForm {
 }
 
 impl LightForm {
+    /// Its name in scene files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Exact => "exact",
+            Self::SplitSum => "split-sum",
+            Self::NoExtinction => "no-extinction",
+            Self::Printed => "printed",
+        }
+    }
+
     /// Light of unit intensity in fog of unit scattering coefficient, 1/m.
     pub fn airlight(self, geometry: &LightRayGeometry, extinction_per_m: f64) -> f64 {
         match self {

@@ -29,6 +29,54 @@ pub enum FogProfile {
     FoggyCityscapes,
 }
 
+impl FogProfile {
+    /// All profiles with their names in scene files and summaries for help texts.
+    pub const ALL: [(&'static str, Self, &'static str); 8] = [
+        (
+            "uniform",
+            Self::Uniform,
+            "The same everywhere; for pictures with depth",
+        ),
+        (
+            "height",
+            Self::Height,
+            "Decreases exponentially from height 0 up, and increases below",
+        ),
+        (
+            "clamped",
+            Self::Clamped,
+            "Constant up to the base height, decreases exponentially above",
+        ),
+        (
+            "unclamped",
+            Self::Unclamped,
+            "Decreases exponentially from the base height up and increases below it: the fog note's formula as printed",
+        ),
+        ("slab", Self::Slab, "Constant up to the top, zero above"),
+        (
+            "exp2",
+            Self::Exp2,
+            "Exponential-squared fog of one colour; for pictures with depth",
+        ),
+        (
+            "linear",
+            Self::Linear,
+            "Linear fog of one colour from 0 to the visibility; for pictures with depth",
+        ),
+        (
+            "foggy-cityscapes",
+            Self::FoggyCityscapes,
+            "Uniform fog of one colour blended in encoded values, as in the data set Foggy Cityscapes; for pictures with depth",
+        ),
+    ];
+
+    /// Its name in scene files.
+    pub fn name(self) -> &'static str {
+        let known = Self::ALL.iter().find(|(_, profile, _)| *profile == self);
+        known.map_or("", |(name, ..)| name)
+    }
+}
+
 /// Fog: one layer, and more of them in `layers`. Heights are above the ground.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

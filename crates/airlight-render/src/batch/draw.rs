@@ -1,16 +1,16 @@
-//! Numbers that look drawn at random and follow from names: the same on every machine, whatever else is drawn, in any order.
+//! Pseudo-random numbers that depend on names only: the same on every machine and in any order.
 
-/// A number from 0 (inclusive) to 1 (exclusive) for an option of a variant of a picture: an FNV-1a hash of the four, mixed by
-/// the last step of SplitMix64 (Steele et al. 2014), its upper 53 bits as a fraction.
-pub fn part(seed: u64, picture: &str, variant: u32, option: &str) -> f64 {
-    // Zero bytes end the names, which cannot hold any.
+/// A number from 0 (inclusive) to 1 (exclusive) for a setting of a variant of a picture: an FNV-1a hash of the four arguments,
+/// mixed by the last step of SplitMix64 (Steele et al. 2014), its upper 53 bits as a fraction.
+pub fn fraction(seed: u64, picture: &str, variant: u32, setting: &str) -> f64 {
+    // A zero byte, which no name contains, ends the picture's name.
     let bytes = seed
         .to_le_bytes()
         .into_iter()
         .chain(picture.bytes())
         .chain([0])
         .chain(variant.to_le_bytes())
-        .chain(option.bytes());
+        .chain(setting.bytes());
     let hash = bytes.fold(0xcbf2_9ce4_8422_2325u64, |hash, byte| {
         (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
     });
@@ -30,7 +30,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn splitmix64_is_itself() {
+    fn splitmix64_matches_its_published_values() {
         // The first outputs for seed 1234567, as published with the generator's test vectors.
         let step = 0x9e37_79b9_7f4a_7c15u64;
         for (n, value) in [
@@ -46,7 +46,7 @@ mod tests {
     }
 
     #[test]
-    fn draws_stay_what_they_are() {
+    fn draws_do_not_change_between_versions() {
         for (seed, picture, variant, option, expected) in [
             (0, "0001", 1, "visibility", 0.5924187492576692),
             (0, "0001", 2, "visibility", 0.0998649442159063),
@@ -58,14 +58,14 @@ mod tests {
                 0.1837321651840088,
             ),
         ] {
-            assert_eq!(part(seed, picture, variant, option), expected);
+            assert_eq!(fraction(seed, picture, variant, option), expected);
         }
     }
 
     #[test]
     fn draws_are_even_and_independent() {
         let count = 20_000;
-        let of = |n: u32, option| part(1, &format!("{:05}", n / 4), n % 4, option);
+        let of = |n: u32, option| fraction(1, &format!("{:05}", n / 4), n % 4, option);
         let (mut tenths, mut product) = ([0u32; 10], 0.0);
         for n in 0..count {
             let (a, b) = (of(n, "visibility"), of(n, "top"));

@@ -1,19 +1,19 @@
-//! File names with parts left open: `rgb/*_left.png`, `day/**.exr`.
+//! File name patterns with wildcards: `rgb/*_left.png`, `day/**.exr`.
 
-use crate::error::CliError;
+use super::BatchError;
 use std::path::{Path, PathBuf};
 
-/// A path with `*`, which stands for one character or more of a file's or folder's name, and `**` (or `**/*`), which reaches into
-/// folders as well. What they stand for in a path is its *parts*; the same parts in another pattern name the file that belongs
-/// to it. Folders are separated by `/`.
+/// A path with the wildcards `*`, which matches one character or more of a file's or folder's name, and `**` (or `**/*`), which
+/// matches across folders as well. What they match in a path are its *captures*; the same captures put into another pattern
+/// give the path of the file that belongs to it. Folders are separated by `/`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Pattern {
     text: String,
-    /// Up to the last `/` before the first open part.
+    /// Up to the last `/` before the first wildcard.
     base: PathBuf,
-    /// Patterns of the names of folders and files below.
+    /// Patterns of the folder and file names below the base.
     levels: Vec<Vec<Token>>,
-    /// All that is below.
+    /// Pattern of the whole path below the base.
     whole: Vec<Token>,
 }
 
@@ -26,42 +26,37 @@ enum Token {
     Path,
 }
 
-/// A file that a pattern names.
+/// A file that a pattern matches.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Match {
-    /// What the open parts stand for.
-    pub parts: Vec<String>,
+    /// What the wildcards match, in order.
+    pub captures: Vec<String>,
     /// The file.
     pub path: PathBuf,
 }
 
-/// Folders inside each other that `**` follows.
-const DEEPEST: usize = 64;
+/// Depth of folders to which `**` descends.
+const MAX_DEPTH: usize = 64;
 
 impl Pattern {
-    /// Reads a path as a pattern; `None` where it has no `*`.
+    /// Reads a path as a pattern; `None` if it has no `*`.
     ///
     /// # Errors
-    /// [`CliError::Usage`] where it is not Unicode, or open parts touch.
-    pub fn new(path: &Path) -> Result<Option<Self>, CliError> {
+    /// [`BatchError::NotUnicode`], [`BatchError::AdjacentWildcards`].
+    pub fn new(path: &Path) -> Result<Option<Self>, BatchError> {
         if !path.as_os_str().as_encoded_bytes().contains(&b'*') {
             return Ok(None);
         }
-        let text = path.to_str().ok_or_else(|| {
-            CliError::usage(format!(
-                "`{}` is not Unicode, as a pattern must be",
-                path.display()
-            ))
-        })?;
+        let text = path
+            .to_str()
+            .ok_or_else(|| BatchError::NotUnicode(path.to_owned()))?;
         let text = text.replace(std::path::MAIN_SEPARATOR, "/");
         let open = text.find('*').unwrap_or(0);
         let start = text[..open].rfind('/').map_or(0, |at| at + 1);
         let whole = tokens(&text[start..]);
         let touches = |pair: &[Token]| pair.iter().all(|token| !matches!(token, Token::Text(_)));
         if whole.windows(2).any(touches) {
-            return Err(CliError::usage(format!(
-                "`{text}`: where one * ends and the next begins cannot be told: put text between them, or leave one out"
-            )));
+            return Err(BatchError::AdjacentWildcards(text));
         }
         let levels = text[start..].split('/').map(tokens).collect();
         Ok(Some(Self {
@@ -77,43 +72,63 @@ impl Pattern {
         &self.text
     }
 
-    /// The folder that all its files are in, directly or below; empty where it is the current one.
+    /// The folder that holds all its files, directly or below; empty for the current one.
     pub fn base(&self) -> &Path {
         &self.base
     }
 
-    /// How many parts are open.
-    pub fn open_parts(&self) -> usize {
-        let open = |token: &&Token| !matches!(token, Token::Text(_));
-        self.whole.iter().filter(open).count()
+    /// Number of wildcards.
+    pub fn wildcards(&self) -> usize {
+        let wildcard = |token: &&Token| !matches!(token, Token::Text(_));
+        self.whole.iter().filter(wildcard).count()
     }
 
-    /// The path with these parts, which must be as many as are open.
-    pub fn path(&self, parts: &[String]) -> PathBuf {
-        let mut parts = parts.iter();
+    /// Refuses a number of wildcards other than that of the colour pattern; `role` says what the pattern is for.
+    ///
+    /// # Errors
+    /// [`BatchError::WildcardCount`].
+    pub(super) fn check_wildcards(
+        &self,
+        expected: usize,
+        role: &'static str,
+    ) -> Result<(), BatchError> {
+        match self.wildcards() {
+            got if got == expected => Ok(()),
+            got => Err(BatchError::WildcardCount {
+                role,
+                pattern: self.text.clone(),
+                expected,
+                got,
+            }),
+        }
+    }
+
+    /// The path with captures in place of the wildcards, one each.
+    pub fn path(&self, captures: &[String]) -> PathBuf {
+        let mut captures = captures.iter();
         let below: String = self
             .whole
             .iter()
             .map(|token| match token {
                 Token::Text(text) => text.as_str(),
-                _ => parts.next().map_or("", String::as_str),
+                _ => captures.next().map_or("", String::as_str),
             })
             .collect();
         self.base.join(below)
     }
 
-    /// Whether it names a path, written with the same base.
-    pub fn names(&self, path: &Path) -> bool {
+    /// Whether it matches a path, written with the same base.
+    pub fn matches(&self, path: &Path) -> bool {
         let below = path.strip_prefix(&self.base).ok().and_then(Path::to_str);
         below.is_some_and(|below| matched(&self.whole, below).is_some())
     }
 
-    /// The files that it names, sorted by their parts; hidden ones, and those in hidden folders, are passed over, and `**` does
-    /// not follow links to folders.
+    /// The files that it matches, sorted by their captures, without hidden files and folders; `**` does not follow links to
+    /// folders.
     ///
     /// # Errors
-    /// [`CliError::Failure`] where a folder cannot be read or a name is not Unicode.
-    pub fn files(&self) -> Result<Vec<Match>, CliError> {
+    /// [`BatchError::File`] if a folder cannot be read, [`BatchError::NotUnicode`] for a name in one.
+    pub fn files(&self) -> Result<Vec<Match>, BatchError> {
         let mut found = Vec::new();
         self.walk(&self.base, "", 0, &mut found)?;
         found.sort();
@@ -126,7 +141,7 @@ impl Pattern {
         below: &str,
         depth: usize,
         found: &mut Vec<Match>,
-    ) -> Result<(), CliError> {
+    ) -> Result<(), BatchError> {
         let deep = self
             .levels
             .iter()
@@ -136,10 +151,7 @@ impl Pattern {
         for entry in entries(folder)? {
             let path = folder.join(&entry);
             let Some(name) = entry.to_str() else {
-                return Err(CliError::failure(format!(
-                    "the name of `{}` is not Unicode, and so cannot be matched or told in a manifest: rename it",
-                    path.display()
-                )));
+                return Err(BatchError::NotUnicode(path));
             };
             if name.starts_with('.') {
                 continue;
@@ -147,7 +159,7 @@ impl Pattern {
             let here = format!("{below}{name}");
             if path.is_dir() {
                 let leads = match deep {
-                    true => depth < DEEPEST && !path.is_symlink(),
+                    true => depth < MAX_DEPTH && !path.is_symlink(),
                     false => {
                         depth + 1 < self.levels.len()
                             && matched(&self.levels[depth], name).is_some()
@@ -156,28 +168,27 @@ impl Pattern {
                 if leads {
                     self.walk(&path, &format!("{here}/"), depth + 1, found)?;
                 }
-            } else if let Some(parts) = matched(&self.whole, &here) {
-                found.push(Match { parts, path });
+            } else if let Some(captures) = matched(&self.whole, &here) {
+                found.push(Match { captures, path });
             }
         }
         Ok(())
     }
 }
 
-/// The names of what a folder holds.
+/// Names of the entries of a folder.
 ///
 /// # Errors
-/// [`CliError::Failure`] where it cannot be read.
-fn entries(folder: &Path) -> Result<Vec<std::ffi::OsString>, CliError> {
+/// [`BatchError::File`] if it cannot be read.
+fn entries(folder: &Path) -> Result<Vec<std::ffi::OsString>, BatchError> {
     let read = match folder.as_os_str().is_empty() {
         true => Path::new("."),
         false => folder,
     };
-    let failed = |error: std::io::Error| {
-        CliError::failure(format!(
-            "cannot read the folder `{}`: {error}",
-            read.display()
-        ))
+    let failed = |source: std::io::Error| BatchError::File {
+        action: "read the folder",
+        path: read.to_owned(),
+        source,
     };
     std::fs::read_dir(read)
         .map_err(failed)?
@@ -206,7 +217,7 @@ fn tokens(text: &str) -> Vec<Token> {
     tokens
 }
 
-/// What the open parts stand for in a text; each is as short as it can be.
+/// What the wildcards match in a text, each as short as possible.
 fn matched(tokens: &[Token], text: &str) -> Option<Vec<String>> {
     let Some((first, rest)) = tokens.split_first() else {
         return text.is_empty().then(Vec::new);
@@ -219,9 +230,9 @@ fn matched(tokens: &[Token], text: &str) -> Option<Vec<String>> {
         if *first == Token::Name && c == '/' {
             return None;
         }
-        if let Some(mut parts) = matched(rest, &text[end..]) {
-            parts.insert(0, text[..end].to_owned());
-            return Some(parts);
+        if let Some(mut captures) = matched(rest, &text[end..]) {
+            captures.insert(0, text[..end].to_owned());
+            return Some(captures);
         }
     }
     None
@@ -235,12 +246,12 @@ mod tests {
         Pattern::new(Path::new(text)).unwrap().unwrap()
     }
 
-    fn parts(text: &str, below: &str) -> Option<Vec<String>> {
+    fn captures(text: &str, below: &str) -> Option<Vec<String>> {
         matched(&pattern(text).whole, below)
     }
 
     #[test]
-    fn open_parts_are_found_and_put_elsewhere() {
+    fn captures_are_found_and_put_into_another_pattern() {
         for (text, below, expected) in [
             ("rgb/*.png", "a.png", Some(vec!["a"])),
             ("rgb/*.png", ".png", None),
@@ -253,20 +264,20 @@ mod tests {
             ("*_*.png", "a_b_c.png", Some(vec!["a", "b_c"])),
         ] {
             let expected = expected.map(|list| list.into_iter().map(str::to_owned).collect());
-            assert_eq!(parts(text, below), expected, "{text} {below}");
+            assert_eq!(captures(text, below), expected, "{text} {below}");
         }
         let moved = pattern("out/*/x-*.exr").path(&["12".to_owned(), "é7".to_owned()]);
         assert_eq!(moved, Path::new("out/12/x-é7.exr"));
     }
 
     #[test]
-    fn what_cannot_be_told_apart_is_refused() {
+    fn adjacent_wildcards_are_refused() {
         for text in ["a/***.png", "****", "**/**"] {
             assert!(Pattern::new(Path::new(text)).is_err(), "{text}");
         }
-        assert_eq!(Pattern::new(Path::new("a/b.png")), Ok(None));
+        assert!(Pattern::new(Path::new("a/b.png")).unwrap().is_none());
         assert_eq!(pattern("/a/b*/c*.png").base(), Path::new("/a"));
         assert_eq!(pattern("*.png").base(), Path::new(""));
-        assert_eq!(pattern("a/*/b*").open_parts(), 2);
+        assert_eq!(pattern("a/*/b*").wildcards(), 2);
     }
 }

@@ -1,9 +1,9 @@
-//! The manifest of a batch: a line of JSON for each picture, with all that it was made of.
+//! The manifest of a batch: one line of JSON for each picture, with its settings.
 //!
-//! A line is written before its picture appears, so that after a kill no picture is without its line; a last line that breaks
-//! off is dropped. At the end of a run the lines are sorted, and those whose picture is not there are left out.
+//! A line is written before its picture appears, so that after a kill no picture is without its line; an unfinished last line
+//! is dropped. At the end of a run the lines are sorted, and those without a picture are left out.
 
-use crate::error::CliError;
+use super::BatchError;
 use airlight_image::output::AtomicFile;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
@@ -13,43 +13,54 @@ use std::io::{self, BufRead, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-/// A manifest that this run works on, and no other.
+/// Version of the lines, counted up when keys change their meaning. Lines of version 1 carried no version and held the options
+/// of the command line.
+pub const MANIFEST_VERSION: u32 = 2;
+
+/// A manifest, locked for this run.
+#[derive(Debug)]
 pub struct Manifest {
     path: PathBuf,
-    /// Its folder, absolute: outputs are named from there.
+    /// Its folder, absolute: outputs are named relative to it.
     folder: PathBuf,
     lines: Mutex<Lines>,
 }
 
-/// The lines in the file: where the last one of each output is.
+/// The lines in the file: the last one of each output.
+#[derive(Debug)]
 struct Lines {
     file: File,
     end: u64,
-    of_output: BTreeMap<String, RaySegment>,
+    of_output: BTreeMap<String, Line>,
 }
 
-#[derive(Clone, Copy)]
-struct RaySegment {
+#[derive(Clone, Copy, Debug)]
+struct Line {
     start: u64,
     length: u64,
-    /// Its picture could not be made.
     is_failure: bool,
 }
 
-/// What of a line says which picture it is about.
+/// The keys of a line that identify its picture.
 #[derive(Deserialize)]
 struct Key {
     output: String,
+    #[serde(default = "first_version")]
+    manifest_version: u32,
     error: Option<String>,
 }
 
+fn first_version() -> u32 {
+    1
+}
+
 impl Manifest {
-    /// Opens a manifest or begins one.
+    /// Opens a manifest, or creates one.
     ///
     /// # Errors
-    /// [`CliError::Failure`] where it cannot be read or written, holds something else, or another run works on it.
-    pub fn open(path: &Path) -> Result<Self, CliError> {
-        let failed = |error: io::Error| failure(path, &error);
+    /// [`BatchError`] if it cannot be read or written, is something else or of another version, or another run holds it.
+    pub fn open(path: &Path) -> Result<Self, BatchError> {
+        let failed = |error: io::Error| BatchError::manifest(path, error);
         let file = OpenOptions::new()
             .read(true)
             .write(true)
@@ -58,10 +69,7 @@ impl Manifest {
             .open(path)
             .map_err(failed)?;
         if let Err(TryLockError::WouldBlock) = file.try_lock() {
-            return Err(CliError::failure(format!(
-                "another run is at work on `{}`: wait for it, or give --manifest another name",
-                path.display()
-            )));
+            return Err(BatchError::ManifestLocked(path.to_owned()));
         }
         let folder = std::path::absolute(path).map_err(failed)?;
         let mut lines = Lines {
@@ -77,7 +85,7 @@ impl Manifest {
         })
     }
 
-    /// What an output is called in it: the path from the manifest's folder where it is in there, else the whole path.
+    /// Name of an output in it: the path relative to the manifest's folder if it is inside, else the whole path.
     pub fn name_of(&self, output: &Path) -> String {
         let absolute = std::path::absolute(output).unwrap_or_else(|_| output.to_owned());
         let name = absolute.strip_prefix(&self.folder).unwrap_or(&absolute);
@@ -85,11 +93,11 @@ impl Manifest {
             .replace(std::path::MAIN_SEPARATOR, "/")
     }
 
-    /// The line of an output, unless it tells of a failure.
+    /// The line of an output; `None` if there is none or it records a failure.
     ///
     /// # Errors
-    /// [`CliError::Failure`] where the file cannot be read.
-    pub fn made(&self, output: &str) -> Result<Option<Map<String, Value>>, CliError> {
+    /// [`BatchError::Manifest`] if the file cannot be read.
+    pub fn line(&self, output: &str) -> Result<Option<Map<String, Value>>, BatchError> {
         let mut lines = self.lines.lock().unwrap_or_else(PoisonError::into_inner);
         let Some(line) = lines.of_output.get(output).copied() else {
             return Ok(None);
@@ -97,29 +105,28 @@ impl Manifest {
         if line.is_failure {
             return Ok(None);
         }
-        let bytes = lines
-            .bytes(line)
-            .map_err(|error| failure(&self.path, &error))?;
+        let failed = |error: io::Error| BatchError::manifest(&self.path, error);
+        let bytes = lines.bytes(line).map_err(failed)?;
         serde_json::from_slice(&bytes)
             .map(Some)
-            .map_err(|error| failure(&self.path, &error.into()))
+            .map_err(|error| failed(error.into()))
     }
 
-    /// Adds the line of an output, which takes the place of an earlier one.
+    /// Adds the line of an output, which replaces an earlier one. `record` must begin with the key `output`.
     ///
     /// # Errors
-    /// [`CliError::Failure`] where it cannot be written.
+    /// [`BatchError::Manifest`] if it cannot be written.
     pub fn add(
         &self,
         output: &str,
         is_failure: bool,
         record: &impl Serialize,
-    ) -> Result<(), CliError> {
-        let failed = |error: io::Error| failure(&self.path, &error);
+    ) -> Result<(), BatchError> {
+        let failed = |error: io::Error| BatchError::manifest(&self.path, error);
         let mut text = serde_json::to_vec(record).map_err(|error| failed(error.into()))?;
         text.push(b'\n');
         let mut lines = self.lines.lock().unwrap_or_else(PoisonError::into_inner);
-        let line = RaySegment {
+        let line = Line {
             start: lines.end,
             length: text.len() as u64,
             is_failure,
@@ -134,27 +141,28 @@ impl Manifest {
         Ok(())
     }
 
-    /// Leaves it as it was found: takes it away where it holds nothing.
+    /// Closes it unchanged; an empty file is removed.
     ///
     /// # Errors
-    /// [`CliError::Failure`] where the system refuses.
-    pub fn leave(self) -> Result<(), CliError> {
+    /// [`BatchError::Manifest`] if the operating system refuses.
+    pub fn close(self) -> Result<(), BatchError> {
         let lines = self
             .lines
             .into_inner()
             .unwrap_or_else(PoisonError::into_inner);
         match lines.end {
-            0 => std::fs::remove_file(&self.path).map_err(|error| failure(&self.path, &error)),
+            0 => std::fs::remove_file(&self.path)
+                .map_err(|error| BatchError::manifest(&self.path, error)),
             _ => Ok(()),
         }
     }
 
-    /// Writes it anew: sorted by output, one line each, those of pictures that are not there left out.
+    /// Rewrites it sorted by output, one line each, without lines whose picture does not exist.
     ///
     /// # Errors
-    /// [`CliError`] where it cannot be written; it is then as it was.
-    pub fn finish(self) -> Result<(), CliError> {
-        let failed = |error: io::Error| failure(&self.path, &error);
+    /// [`BatchError`] if it cannot be written; it is then unchanged.
+    pub fn finish(self) -> Result<(), BatchError> {
+        let failed = |error: io::Error| BatchError::manifest(&self.path, error);
         let mut lines = self
             .lines
             .into_inner()
@@ -174,26 +182,36 @@ impl Manifest {
 }
 
 impl Lines {
-    /// Reads which line is whose; cuts off a last one that is not whole.
-    fn read(&mut self, path: &Path) -> Result<(), CliError> {
-        let failed = |error: io::Error| failure(path, &error);
+    /// Reads the position of each output's line; cuts off an unfinished last line.
+    fn read(&mut self, path: &Path) -> Result<(), BatchError> {
+        let failed = |error: io::Error| BatchError::manifest(path, error);
+        let not_ours = |line: usize, reason: String| BatchError::NotAManifest {
+            path: path.to_owned(),
+            line,
+            reason,
+        };
         let mut reader = BufReader::new(&self.file);
         let mut text = Vec::new();
-        for number in 1.. {
+        let mut number = 0;
+        loop {
+            number += 1;
             text.clear();
             let length = reader.read_until(b'\n', &mut text).map_err(failed)? as u64;
             if text.last() != Some(&b'\n') {
                 break;
             }
             if !text.trim_ascii().is_empty() {
-                let key: Key = serde_json::from_slice(&text).map_err(|error| {
-                    CliError::failure(format!(
-                        "line {number} of `{}` is none of a manifest of pictures ({error}): give --manifest another name, or \
-                         move that file away",
-                        path.display()
-                    ))
-                })?;
-                let line = RaySegment {
+                let key: Key = serde_json::from_slice(&text)
+                    .map_err(|error| not_ours(number, error.to_string()))?;
+                if key.manifest_version != MANIFEST_VERSION {
+                    return Err(BatchError::ManifestVersion {
+                        path: path.to_owned(),
+                        line: number,
+                        expected: MANIFEST_VERSION,
+                        got: key.manifest_version,
+                    });
+                }
+                let line = Line {
                     start: self.end,
                     length,
                     is_failure: key.error.is_some(),
@@ -202,21 +220,18 @@ impl Lines {
             }
             self.end += length;
         }
-        // What was to be a line of ours, or somebody's text.
+        // An unfinished line of a manifest, or a text of somebody else's.
         let torn = text.trim_ascii_start();
         if !torn.is_empty()
             && !torn.starts_with(b"{\"output\":")
             && !b"{\"output\":".starts_with(torn)
         {
-            return Err(CliError::failure(format!(
-                "the last line of `{}` is none of a manifest of pictures: give --manifest another name, or move that file away",
-                path.display()
-            )));
+            return Err(not_ours(number, "it has no output".to_owned()));
         }
         self.file.set_len(self.end).map_err(failed)
     }
 
-    fn bytes(&mut self, line: RaySegment) -> io::Result<Vec<u8>> {
+    fn bytes(&mut self, line: Line) -> io::Result<Vec<u8>> {
         let mut bytes = vec![0; line.length as usize];
         self.file.seek(SeekFrom::Start(line.start))?;
         self.file.read_exact(&mut bytes)?;
@@ -224,14 +239,7 @@ impl Lines {
     }
 }
 
-/// Whether a picture is there. They appear whole or not at all.
+/// Whether a picture exists. Pictures appear whole or not at all.
 pub fn is_whole(path: &Path) -> bool {
     std::fs::metadata(path).is_ok_and(|about| about.is_file() && about.len() > 0)
-}
-
-fn failure(path: &Path, error: &io::Error) -> CliError {
-    CliError::failure(format!(
-        "cannot read or write the manifest `{}`: {error}",
-        path.display()
-    ))
 }

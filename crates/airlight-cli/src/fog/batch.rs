@@ -1,0 +1,82 @@
+//! Fog over many pictures: progress and reports.
+
+use crate::args::OverlayArgs;
+use crate::error::CliError;
+use crate::interrupt::{self, STOP};
+use crate::progress::{Busy, PicturesBar};
+use crate::report::{self, seconds};
+use airlight_image::Control;
+use airlight_render::batch::{BatchPlan, FoundInputs, listed};
+use airlight_render::overlay::OverlayScene;
+use std::time::Instant;
+
+/// Makes the pictures of a description whose paths are folders or patterns.
+///
+/// # Errors
+/// [`CliError`]; pictures already made stay.
+pub fn run(args: &OverlayArgs, scene: OverlayScene) -> Result<(), CliError> {
+    let plan = BatchPlan::new(scene, args.batch.settings())?;
+    remarks(plan.found(), args.quiet);
+    let batch = {
+        let _busy = Busy::with("planning");
+        plan.start()?
+    };
+    let begun = Instant::now();
+    let (total, missing) = (plan.pictures().count(), batch.missing());
+    let report = {
+        let _writing = interrupt::start_writing()?;
+        let bar = PicturesBar::new(missing as u64);
+        batch.run(Control::cancelled_by(&STOP).reporting_to(&bar))?
+    };
+    let failures = report.failures.len();
+    if !args.quiet {
+        let mut also = String::new();
+        if total > missing {
+            also = format!(
+                ", {} existed already (--overwrite makes them again)",
+                total - missing
+            );
+        }
+        if failures > 0 {
+            also.push_str(&format!(", {failures} failed"));
+        }
+        let time = begun.elapsed();
+        report::print(&format!(
+            "{}: {} of {total} pictures made{also}\n  manifest      {}\n  time          {}, {} pictures/s\n",
+            plan.scene().output()?.display(),
+            report.made,
+            plan.manifest().display(),
+            seconds(time),
+            report::short(report.made as f64 / time.as_secs_f64().max(1e-9))
+        ))?;
+    }
+    match report.stopped {
+        Some(error) => Err(error.into()),
+        None if failures > 0 => Err(CliError::failure(format!(
+            "{failures} pictures failed:{}",
+            listed(&report.failures)
+        ))),
+        None => Ok(()),
+    }
+}
+
+/// Reports on standard error what was left out, and depth files without a picture.
+fn remarks(found: &FoundInputs, quiet: bool) {
+    let missing = found.without_depth.len();
+    if missing > 0 {
+        report::note(&format!(
+            "{missing} of {} pictures have no depth and are left out:{}",
+            missing + found.inputs.len(),
+            listed(&found.without_depth)
+        ));
+    }
+    if !(found.unused_depths.is_empty() || quiet) {
+        let paths = found.unused_depths.iter();
+        let paths: Vec<String> = paths.map(|path| format!("`{}`", path.display())).collect();
+        report::note(&format!(
+            "{} depth files have no picture:{}",
+            paths.len(),
+            listed(&paths)
+        ));
+    }
+}

@@ -1,0 +1,234 @@
+//! Errors of planning and running a batch.
+
+use crate::RenderError;
+use airlight_image::ImageError;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Why a batch could not be planned, or did not run to its end.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum BatchError {
+    /// A name that a manifest, which is UTF-8, cannot hold.
+    #[error("expected a name in Unicode, got `{path}`; try renaming it", path = .0.display())]
+    NotUnicode(PathBuf),
+    /// A pattern whose wildcards touch, so that a name can be divided between them in several ways.
+    #[error("expected text between the wildcards of a pattern, got `{0}`; try leaving one * out")]
+    AdjacentWildcards(String),
+    /// Patterns that stand for each other in order, with different numbers of wildcards.
+    #[error(
+        "expected as many wildcards (*) in the {role} pattern as in the colour pattern, which has {expected}, got {got} in \
+         `{pattern}`; try one * for each * of the colour pattern"
+    )]
+    WildcardCount {
+        /// `depth` or `output`.
+        role: &'static str,
+        /// The pattern.
+        pattern: String,
+        /// Wildcards of the colour pattern.
+        expected: usize,
+        /// Wildcards of this one.
+        got: usize,
+    },
+    /// A folder or pattern without any picture in it.
+    #[error(
+        "expected pictures, got none in `{path}`; try a folder of .exr, .hdr, .png or .jpg files, or a quoted pattern such as \
+         'rgb/*.png'", path = .0.display()
+    )]
+    NoPictures(PathBuf),
+    /// Two pictures with the same name.
+    #[error(
+        "expected pictures with different names, got `{first}` and `{second}`, both called `{name}`; try a pattern such as \
+         'rgb/*.png' that matches only one of them", first = .first.display(), second = .second.display()
+    )]
+    SameName {
+        /// One of them.
+        first: PathBuf,
+        /// The other.
+        second: PathBuf,
+        /// Their name.
+        name: String,
+    },
+    /// Pictures without a depth map.
+    #[error(
+        "expected a depth map for each of {total} pictures, got none for {}; try skip-unpaired to leave these pictures out:{}",
+        .missing.len(), listed(.missing)
+    )]
+    NoDepth {
+        /// Each picture without depth, and why it has none.
+        missing: Vec<String>,
+        /// Pictures in all.
+        total: usize,
+    },
+    /// One output file for several pictures.
+    #[error(
+        "expected an output for each picture, got one file for all, `{path}`; try a folder, or a pattern such as 'out/*.png'",
+        path = .0.display()
+    )]
+    OneOutput(PathBuf),
+    /// An output that is also an input.
+    #[error("expected an output that is not an input, got `{path}`; try another output name", path = .0.display())]
+    OutputIsInput(PathBuf),
+    /// An output that the colour pattern matches, so that the next run would put fog over fog.
+    #[error(
+        "expected outputs that the colour pattern `{colour}` does not match, got `{output}`, an input of the next run; try \
+         another output folder", output = .output.display(), colour = .colour.display()
+    )]
+    OutputMatchesInput {
+        /// The output.
+        output: PathBuf,
+        /// The colour folder or pattern.
+        colour: PathBuf,
+    },
+    /// Two pictures with the same output.
+    #[error(
+        "expected different outputs, got `{output}` for both `{first}` and `{second}`; try an output pattern that keeps them \
+         apart", first = .first.display(), second = .second.display(), output = .output.display()
+    )]
+    SameOutput {
+        /// One input.
+        first: PathBuf,
+        /// The other input.
+        second: PathBuf,
+        /// The output of both.
+        output: PathBuf,
+    },
+    /// A variation that contradicts the settings or another variation, or changes nothing.
+    #[error("vary {name}: expected {expected}, got {got}; try {advice}")]
+    Variation {
+        /// The varied setting.
+        name: String,
+        /// What is valid.
+        expected: String,
+        /// What was given.
+        got: String,
+        /// What to do.
+        advice: String,
+    },
+    /// Outputs that exist and were made with other settings.
+    #[error(
+        "expected existing pictures to have the same settings, got {} that differ; try overwrite to make them again, or \
+         another output:{}", .0.len(), listed(.0)
+    )]
+    DifferentSettings(Vec<String>),
+    /// Outputs that exist and are not in the manifest.
+    #[error(
+        "expected existing pictures to be in the manifest, got {} that are not; try overwrite to replace them, or another \
+         output:{}", .0.len(), listed(.0)
+    )]
+    NotInManifest(Vec<String>),
+    /// A manifest that cannot be read or written.
+    #[error("cannot read or write the manifest `{path}`: {source}", path = .path.display())]
+    Manifest {
+        /// The manifest.
+        path: PathBuf,
+        /// What the operating system said.
+        source: io::Error,
+    },
+    /// A file that is not a manifest.
+    #[error(
+        "expected a manifest of pictures, got `{path}`, whose line {line} is something else ({reason}); try another manifest \
+         name, or move that file away", path = .path.display()
+    )]
+    NotAManifest {
+        /// The file.
+        path: PathBuf,
+        /// The line, from 1.
+        line: usize,
+        /// Why it is not a manifest's.
+        reason: String,
+    },
+    /// A manifest of an earlier version, whose lines name settings differently.
+    #[error(
+        "expected a manifest of version {expected}, got version {got} in line {line} of `{path}`; try another output folder or \
+         manifest name, or delete that manifest and its pictures", path = .path.display()
+    )]
+    ManifestVersion {
+        /// The manifest.
+        path: PathBuf,
+        /// The line, from 1.
+        line: usize,
+        /// The version that can be resumed.
+        expected: u32,
+        /// The version of the line.
+        got: u32,
+    },
+    /// A manifest that another run holds.
+    #[error(
+        "another run is writing to the manifest `{path}`; try again when it has ended, or another manifest name",
+        path = .0.display()
+    )]
+    ManifestLocked(PathBuf),
+    /// A folder or file that the operating system refuses.
+    #[error("cannot {action} `{path}`: {source}", path = .path.display())]
+    File {
+        /// What was tried, as a verb with its object.
+        action: &'static str,
+        /// On which path.
+        path: PathBuf,
+        /// What the operating system said.
+        source: io::Error,
+    },
+    /// The threads could not be started.
+    #[error("cannot start threads: {0}")]
+    Threads(String),
+    /// The first picture that failed, in a batch that stops there.
+    #[error("stopped at the first failure: {0}")]
+    FirstFailure(String),
+    /// The settings of a picture are refused, or a picture could not be written.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+}
+
+impl From<ImageError> for BatchError {
+    fn from(error: ImageError) -> Self {
+        Self::Render(error.into())
+    }
+}
+
+impl BatchError {
+    /// Whether the request contradicts itself or what exists, so that the same request fails again; otherwise it failed on
+    /// files or on the system.
+    pub fn is_refusal(&self) -> bool {
+        match self {
+            Self::NotUnicode(_)
+            | Self::NoPictures(_)
+            | Self::NoDepth { .. }
+            | Self::Manifest { .. }
+            | Self::NotAManifest { .. }
+            | Self::ManifestVersion { .. }
+            | Self::ManifestLocked(_)
+            | Self::File { .. }
+            | Self::Threads(_)
+            | Self::FirstFailure(_) => false,
+            Self::Render(error) => error.is_refusal(),
+            _ => true,
+        }
+    }
+
+    /// Whether the caller cancelled.
+    pub fn is_cancelled(&self) -> bool {
+        matches!(self, Self::Render(error) if error.is_cancelled())
+    }
+
+    pub(super) fn manifest(path: &Path, source: io::Error) -> Self {
+        Self::Manifest {
+            path: path.to_owned(),
+            source,
+        }
+    }
+}
+
+/// The first ten lines of a list, indented, and the number of the others.
+pub fn listed(lines: &[String]) -> String {
+    const SHOWN: usize = 10;
+    let mut text: String = lines
+        .iter()
+        .take(SHOWN)
+        .map(|line| format!("\n  {line}"))
+        .collect();
+    if lines.len() > SHOWN {
+        text.push_str(&format!("\n  and {} more", lines.len() - SHOWN));
+    }
+    text
+}

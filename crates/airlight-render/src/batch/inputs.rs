@@ -1,0 +1,259 @@
+//! The pictures of a batch, each with its depth map.
+
+use super::{BatchError, Pattern, pattern::Match};
+use airlight_image::output::PictureFormat;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+/// Meaning of a path that is read: one file, or several.
+#[derive(Clone, Debug)]
+pub enum InputPath {
+    /// One file.
+    File(PathBuf),
+    /// All files in a folder, named without their endings.
+    Folder(PathBuf),
+    /// The files that match a pattern.
+    Pattern(Pattern),
+}
+
+impl InputPath {
+    /// Reads a path: an existing folder or file, or else a pattern if it has a `*`.
+    ///
+    /// # Errors
+    /// [`BatchError::NotUnicode`], [`BatchError::AdjacentWildcards`].
+    pub fn new(path: &Path) -> Result<Self, BatchError> {
+        if path.is_dir() {
+            return Ok(Self::Folder(path.to_owned()));
+        }
+        match Pattern::new(path)? {
+            Some(pattern) if !path.is_file() => Ok(Self::Pattern(pattern)),
+            _ => Ok(Self::File(path.to_owned())),
+        }
+    }
+
+    /// Whether it stands for several files.
+    pub fn is_many(&self) -> bool {
+        !matches!(self, Self::File(_))
+    }
+
+    /// Whether a file, existing or not, is one of several that it stands for.
+    pub fn includes(&self, file: &Path) -> bool {
+        match self {
+            Self::File(_) => false,
+            Self::Folder(folder) => file.parent() == Some(folder),
+            Self::Pattern(pattern) => pattern.matches(file),
+        }
+    }
+}
+
+/// A colour picture and its depth map.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Input {
+    /// What the wildcards of the colour pattern match, or the file name without its ending.
+    pub captures: Vec<String>,
+    /// The colour picture.
+    pub colour: PathBuf,
+    /// The depth map; the colour picture itself if that holds a depth channel.
+    pub depth: PathBuf,
+}
+
+impl Input {
+    /// Name of the picture: its captures joined by `/`.
+    pub fn name(&self) -> String {
+        self.captures.join("/")
+    }
+}
+
+/// The result of [`find_inputs`].
+#[derive(Clone, Debug)]
+pub struct FoundInputs {
+    /// Pictures with depth, sorted by their captures; at least one.
+    pub inputs: Vec<Input>,
+    /// Pictures left out because they have no depth, each with the reason.
+    pub without_depth: Vec<String>,
+    /// Depth files that belong to no picture.
+    pub unused_depths: Vec<PathBuf>,
+}
+
+/// Endings of depth files.
+const DEPTH_ENDINGS: [&str; 4] = ["exr", "npy", "pfm", "png"];
+
+/// Finds the pictures of a file, folder or pattern and the depth map of each: in `depth` (a file for all, a folder with files of
+/// the same names, or a pattern), or in the colour files if that is `None`. With `skip_unpaired`, pictures without depth are
+/// left out.
+///
+/// # Errors
+/// [`BatchError`] if there is no picture, two have the same name, or one has no depth and is not to be left out.
+pub fn find_inputs(
+    colour: &Path,
+    depth: Option<&Path>,
+    skip_unpaired: bool,
+) -> Result<FoundInputs, BatchError> {
+    let colours = colours(colour)?;
+    if colours.is_empty() {
+        return Err(BatchError::NoPictures(colour.to_owned()));
+    }
+    if let Some([a, b]) = colours
+        .array_windows()
+        .find(|[a, b]| a.captures == b.captures)
+    {
+        return Err(BatchError::SameName {
+            first: a.path.clone(),
+            second: b.path.clone(),
+            name: a.captures.join("/"),
+        });
+    }
+    let depths = match depth {
+        None => Depths::Inside,
+        Some(path) => Depths::new(path, &colours)?,
+    };
+    let mut inputs = Vec::with_capacity(colours.len());
+    let mut missing = Vec::new();
+    for Match { captures, path } in colours {
+        match depths.of(&captures, &path) {
+            Ok(depth) => inputs.push(Input {
+                captures,
+                colour: path,
+                depth,
+            }),
+            Err(why) => missing.push(format!("`{}`: {why}", path.display())),
+        }
+    }
+    if !missing.is_empty() && (!skip_unpaired || inputs.is_empty()) {
+        let total = missing.len() + inputs.len();
+        return Err(BatchError::NoDepth { missing, total });
+    }
+    Ok(FoundInputs {
+        unused_depths: depths.unused(&inputs),
+        inputs,
+        without_depth: missing,
+    })
+}
+
+fn colours(path: &Path) -> Result<Vec<Match>, BatchError> {
+    Ok(match InputPath::new(path)? {
+        InputPath::Pattern(pattern) => pattern.files()?,
+        InputPath::Folder(folder) => {
+            let mut files = files_within(&folder, "*")?;
+            files.retain(|file| PictureFormat::from_path(&file.path).is_ok());
+            // With the ending, `a-b.png` sorts before `a.png`.
+            files.sort();
+            files
+        }
+        InputPath::File(path) => {
+            let name = path.file_stem().and_then(|stem| stem.to_str());
+            let name = name.ok_or_else(|| BatchError::NotUnicode(path.clone()))?;
+            let captures = vec![name.to_owned()];
+            vec![Match { captures, path }]
+        }
+    })
+}
+
+/// The files of a folder that match a pattern of one wildcard, whose capture loses the file's ending.
+fn files_within(folder: &Path, pattern: &str) -> Result<Vec<Match>, BatchError> {
+    let Some(pattern) = Pattern::new(&folder.join(pattern))? else {
+        return Ok(Vec::new());
+    };
+    let mut files = pattern.files()?;
+    for file in &mut files {
+        for capture in &mut file.captures {
+            let name = capture.rfind('/').map_or(0, |at| at + 1);
+            if let Some(dot) = capture[name..].rfind('.').filter(|&dot| dot > 0) {
+                capture.truncate(name + dot);
+            }
+        }
+    }
+    Ok(files)
+}
+
+/// Where the depth maps are.
+enum Depths {
+    /// In the colour files.
+    Inside,
+    /// In one file, for all.
+    One(PathBuf),
+    /// In a folder, by name.
+    Named(PathBuf, BTreeMap<String, Vec<PathBuf>>),
+    /// In the files of a pattern.
+    Pattern(Pattern),
+}
+
+impl Depths {
+    fn new(path: &Path, colours: &[Match]) -> Result<Self, BatchError> {
+        match InputPath::new(path)? {
+            InputPath::File(path) => Ok(Self::One(path)),
+            InputPath::Folder(folder) => {
+                let name = |colour: &Match| colour.captures.join("/");
+                let pattern = match colours.iter().any(|colour| name(colour).contains('/')) {
+                    true => "**",
+                    false => "*",
+                };
+                let mut named: BTreeMap<String, Vec<PathBuf>> = BTreeMap::new();
+                for file in files_within(&folder, pattern)? {
+                    let ending = file.path.extension().unwrap_or_default();
+                    let ending = ending.to_ascii_lowercase();
+                    if DEPTH_ENDINGS.iter().any(|known| ending == *known) {
+                        named
+                            .entry(file.captures.join("/"))
+                            .or_default()
+                            .push(file.path);
+                    }
+                }
+                Ok(Self::Named(folder, named))
+            }
+            InputPath::Pattern(pattern) => {
+                let expected = colours.first().map_or(0, |colour| colour.captures.len());
+                pattern.check_wildcards(expected, "depth")?;
+                Ok(Self::Pattern(pattern))
+            }
+        }
+    }
+
+    /// The depth map of a picture, or why it has none.
+    fn of(&self, captures: &[String], colour: &Path) -> Result<PathBuf, String> {
+        match self {
+            Self::Inside => Ok(colour.to_owned()),
+            Self::One(path) => Ok(path.clone()),
+            Self::Pattern(pattern) => {
+                let path = pattern.path(captures);
+                match path.is_file() {
+                    true => Ok(path),
+                    false => Err(format!("there is no `{}`", path.display())),
+                }
+            }
+            Self::Named(folder, named) => {
+                let name = captures.join("/");
+                match named.get(&name).map(Vec::as_slice) {
+                    Some([only]) => Ok(only.clone()),
+                    Some([first, second, ..]) => Err(format!(
+                        "`{}` and `{}` could both be its depth; try a pattern such as 'depth/*.png'",
+                        first.display(),
+                        second.display()
+                    )),
+                    _ => Err(format!(
+                        "there is no `{}` with one of the endings {}",
+                        folder.join(name).display(),
+                        DEPTH_ENDINGS.join(", ")
+                    )),
+                }
+            }
+        }
+    }
+
+    /// Depth files that belong to no picture.
+    fn unused(&self, inputs: &[Input]) -> Vec<PathBuf> {
+        let all: Vec<PathBuf> = match self {
+            Self::Inside | Self::One(_) => return Vec::new(),
+            Self::Named(_, named) => named.values().flatten().cloned().collect(),
+            // Only a remark depends on it: a folder that cannot be read does not end the batch.
+            Self::Pattern(pattern) => {
+                let files = pattern.files().unwrap_or_default();
+                files.into_iter().map(|file| file.path).collect()
+            }
+        };
+        let used: BTreeSet<&Path> = inputs.iter().map(|input| input.depth.as_path()).collect();
+        all.into_iter()
+            .filter(|path| !used.contains(path.as_path()))
+            .collect()
+    }
+}

@@ -1,0 +1,25 @@
+//! Fog over many pictures: inputs found by name, varied settings, several pictures at a time, existing ones kept, all recorded in
+//! a manifest.
+//!
+//! 1. [`BatchPlan::new`] finds the inputs of an [`OverlayScene`](crate::overlay::OverlayScene) whose paths are folders or
+//!    [`Pattern`]s, and checks that every picture has an output of its own.
+//! 2. [`BatchPlan::start`] opens the [`Manifest`] and finds the pictures that do not exist yet.
+//! 3. [`BatchRun::run`] makes them.
+
+mod draw;
+mod error;
+mod inputs;
+mod manifest;
+mod pattern;
+mod plan;
+mod record;
+mod run;
+mod vary;
+
+pub use error::{BatchError, listed};
+pub use inputs::{FoundInputs, Input, InputPath, find_inputs};
+pub use manifest::{MANIFEST_VERSION, Manifest};
+pub use pattern::{Match, Pattern};
+pub use plan::{BatchPlan, BatchSettings, is_batch};
+pub use run::{BatchReport, BatchRun};
+pub use vary::{Variation, variation_names};

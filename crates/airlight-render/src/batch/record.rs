@@ -1,0 +1,194 @@
+//! Lines of a manifest.
+
+use super::{BatchError, Input, MANIFEST_VERSION};
+use crate::overlay::{LightLevelSource, OverlayImage, OverlayScene, PreparedOverlay};
+use serde::Serialize;
+use serde_json::{Map, Value};
+
+/// The line of a picture.
+#[derive(Serialize)]
+pub(super) struct Record<'a> {
+    /// Relative to the manifest's folder. The first key, by which a manifest is recognised.
+    output: &'a str,
+    manifest_version: u32,
+    name: String,
+    variant: u32,
+    /// The description of the picture: its settings and files.
+    #[serde(flatten)]
+    scene: &'a OverlayScene,
+    #[serde(flatten)]
+    outcome: Outcome<'a>,
+    airlight: &'static str,
+}
+
+/// What became of the picture.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Outcome<'a> {
+    Made(Facts),
+    Failed { error: &'a str },
+}
+
+/// Values that follow from the description and the files.
+#[derive(Serialize)]
+struct Facts {
+    /// Seed of the varied settings, if any vary.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    seed: Option<u64>,
+    /// Extinction where the fog is densest, 1/m; `None` for profiles without one.
+    extinction_per_m: Option<f64>,
+    ambient_rgb: [f32; 3],
+    ambient_from: LightLevelSource,
+    width: u32,
+    height: u32,
+    /// Focal lengths across and down, pixels.
+    focal_lengths_px: (f64, f64),
+    /// Principal point, pixels from the upper left corner of the picture.
+    principal_point_px: (f64, f64),
+    unknown_depths: u64,
+    infinite_depths: u64,
+}
+
+const AIRLIGHT: &str = env!("CARGO_PKG_VERSION");
+
+impl<'a> Record<'a> {
+    /// Of a picture with these settings that is about to be written.
+    pub fn made(
+        output: &'a str,
+        input: &Input,
+        variant: u32,
+        scene: &'a OverlayScene,
+        seed: Option<u64>,
+        image: &OverlayImage,
+        prepared: &PreparedOverlay,
+    ) -> Self {
+        let size = image.picture.size;
+        let facts = Facts {
+            seed,
+            extinction_per_m: scene.extinction_per_m(),
+            ambient_rgb: prepared.level.colour.0,
+            ambient_from: prepared.level.source,
+            width: size.width(),
+            height: size.height(),
+            focal_lengths_px: prepared.camera.focal_px(),
+            principal_point_px: prepared.camera.principal_px(),
+            unknown_depths: image.depth.holes,
+            infinite_depths: image.depth.infinite,
+        };
+        Self::new(output, input, variant, scene, Outcome::Made(facts))
+    }
+
+    /// Of a picture that failed.
+    pub fn failed(
+        output: &'a str,
+        input: &Input,
+        variant: u32,
+        scene: &'a OverlayScene,
+        error: &'a str,
+    ) -> Self {
+        Self::new(output, input, variant, scene, Outcome::Failed { error })
+    }
+
+    fn new(
+        output: &'a str,
+        input: &Input,
+        variant: u32,
+        scene: &'a OverlayScene,
+        outcome: Outcome<'a>,
+    ) -> Self {
+        Self {
+            output,
+            manifest_version: MANIFEST_VERSION,
+            name: input.name(),
+            variant,
+            scene,
+            outcome,
+            airlight: AIRLIGHT,
+        }
+    }
+}
+
+/// How the settings in a line differ from a description, as `fog.visibility_m was 50.0, is 60.0`; empty if they do not.
+///
+/// # Errors
+/// [`BatchError::Render`] if the description cannot be put into JSON.
+pub(super) fn differences(
+    scene: &OverlayScene,
+    line: &Map<String, Value>,
+) -> Result<Vec<String>, BatchError> {
+    let now = serde_json::to_value(scene).map_err(|error| {
+        crate::RenderError::setting(format!("cannot put the settings into JSON: {error}"))
+    })?;
+    let mut differences = Vec::new();
+    if let Value::Object(now) = &now {
+        compare(None, line, now, &mut differences);
+    }
+    Ok(differences)
+}
+
+/// Adds the differences between two tables; at the top, a line may have keys that are no settings.
+fn compare(
+    path: Option<&str>,
+    was: &Map<String, Value>,
+    is: &Map<String, Value>,
+    differences: &mut Vec<String>,
+) {
+    let inner = was
+        .keys()
+        .filter(|key| path.is_some() && !is.contains_key(*key));
+    for key in is.keys().chain(inner) {
+        let name = match path {
+            Some(path) => format!("{path}.{key}"),
+            None => key.clone(),
+        };
+        let set =
+            |table: &Map<String, Value>| table.get(key).filter(|value| !value.is_null()).cloned();
+        match (set(was), set(is)) {
+            (Some(was), Some(is)) if was == is => {}
+            (Some(Value::Object(was)), Some(Value::Object(is))) => {
+                compare(Some(&name), &was, &is, differences);
+            }
+            (None, None) => {}
+            (was, is) => {
+                let shown = |value: Option<Value>| {
+                    value.map_or_else(|| "not set".to_owned(), |value| value.to_string())
+                };
+                differences.push(format!("{name} was {}, is {}", shown(was), shown(is)));
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn differences_name_each_setting_with_its_table() {
+        let table = |value: Value| value.as_object().cloned().unwrap();
+        let was = table(json!({
+            "output": "a.png", "variant": 1,
+            "fog": {"visibility_m": 8.0, "profile": "height", "layers": [1]},
+            "camera": {"roll_deg": 2.0, "fov_deg": null},
+            "solver": {"paths": null}
+        }));
+        let is = table(json!({
+            "fog": {"visibility_m": 9.0, "profile": "height", "layers": [1, 2]},
+            "camera": {"size": null},
+            "sun": {"elevation_deg": 5.0}
+        }));
+        let mut differences = Vec::new();
+        compare(None, &was, &is, &mut differences);
+        differences.sort();
+        assert_eq!(
+            differences,
+            [
+                "camera.roll_deg was 2.0, is not set",
+                "fog.layers was [1], is [1,2]",
+                "fog.visibility_m was 8.0, is 9.0",
+                "sun was not set, is {\"elevation_deg\":5.0}",
+            ]
+        );
+    }
+}

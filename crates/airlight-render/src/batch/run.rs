@@ -1,0 +1,339 @@
+//! Running a batch: threads that each read a picture, put fog over it, write it and take the next.
+
+use super::record::{Record, differences};
+use super::{BatchError, BatchPlan, Input, Manifest, manifest::is_whole};
+use crate::RenderError;
+use crate::overlay::{OverlayImage, OverlayScene, PreparedOverlay, SkyLight};
+use airlight_image::{Control, ImageError};
+use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// A batch ready to run: its manifest is open, and the pictures that are to be made are known.
+#[derive(Debug)]
+pub struct BatchRun<'a> {
+    plan: &'a BatchPlan,
+    manifest: Manifest,
+    tasks: Vec<Task<'a>>,
+    light: Option<SkyLight>,
+}
+
+/// Result of a batch.
+#[derive(Debug, Default)]
+pub struct BatchReport {
+    /// Pictures made.
+    pub made: usize,
+    /// Pictures that failed, each with the reason.
+    pub failures: Vec<String>,
+    /// Why the remaining pictures were not made, if any remain.
+    pub stopped: Option<BatchError>,
+}
+
+/// Pictures to make of one input.
+#[derive(Clone, Debug)]
+struct Task<'a> {
+    input: &'a Input,
+    variants: Vec<u32>,
+}
+
+impl BatchPlan {
+    /// Opens the manifest, finds the pictures that do not exist yet, and solves the sky if all pictures share one.
+    ///
+    /// # Errors
+    /// [`BatchError`] if the manifest is not usable, a picture exists that has other settings, or the sky cannot be solved;
+    /// the manifest is then unchanged.
+    pub fn start(&self) -> Result<BatchRun<'_>, BatchError> {
+        let light = match self.varies_sky() {
+            true => None,
+            false => self.scene().solve_sky()?,
+        };
+        let path = self.manifest();
+        create_folder(path.parent())?;
+        let manifest = Manifest::open(&path)?;
+        match missing(self, &manifest) {
+            Ok(tasks) => Ok(BatchRun {
+                plan: self,
+                manifest,
+                tasks,
+                light,
+            }),
+            Err(refusal) => {
+                manifest.close()?;
+                Err(refusal)
+            }
+        }
+    }
+}
+
+impl BatchRun<'_> {
+    /// Number of pictures to make.
+    pub fn missing(&self) -> usize {
+        self.tasks.iter().map(|task| task.variants.len()).sum()
+    }
+
+    /// Makes the pictures on several threads until all are made or the caller cancels, and finishes the manifest. Progress is in
+    /// pictures. A picture whose files cannot be read or whose settings are refused fails alone; one that cannot be written
+    /// stops the batch.
+    ///
+    /// # Errors
+    /// [`BatchError`] if the manifest cannot be finished. Other errors are in the report.
+    pub fn run(self, control: Control<'_>) -> Result<BatchReport, BatchError> {
+        let threads = self.plan.settings().threads;
+        let threads = threads.map_or_else(
+            || std::thread::available_parallelism().map_or(1, usize::from),
+            |threads| threads.get() as usize,
+        );
+        let tasks = split(&self.tasks, threads);
+        let worker = Worker {
+            plan: self.plan,
+            manifest: &self.manifest,
+            light: self.light.as_ref(),
+            control,
+            total: self.missing() as u64,
+            report: Mutex::new(BatchReport::default()),
+        };
+        let next = AtomicUsize::new(0);
+        let workers = threads.min(tasks.len());
+        std::thread::scope(|scope| {
+            for index in 0..workers {
+                // With fewer pictures than threads, several threads share a picture.
+                let threads = threads / workers + usize::from(index < threads % workers);
+                let (worker, tasks, next) = (&worker, &tasks, &next);
+                scope.spawn(move || {
+                    // A pool of its own: in a shared pool, a thread that waits for part of its picture would start another
+                    // picture meanwhile, and more pictures than threads would be in memory.
+                    let pool = rayon::ThreadPoolBuilder::new()
+                        .num_threads(threads)
+                        .use_current_thread()
+                        .build();
+                    if let Err(error) = pool {
+                        worker.stop(BatchError::Threads(error.to_string()));
+                    }
+                    while !worker.is_stopped() {
+                        let Some(task) = tasks.get(next.fetch_add(1, Ordering::Relaxed)) else {
+                            return;
+                        };
+                        if let Err(error) = worker.make(task) {
+                            worker.stop(error);
+                        }
+                    }
+                });
+            }
+        });
+        let report = worker
+            .report
+            .into_inner()
+            .unwrap_or_else(PoisonError::into_inner);
+        self.manifest.finish()?;
+        Ok(report)
+    }
+}
+
+/// The pictures that do not exist yet, by input.
+///
+/// # Errors
+/// [`BatchError::DifferentSettings`], [`BatchError::NotInManifest`].
+fn missing<'a>(plan: &'a BatchPlan, manifest: &Manifest) -> Result<Vec<Task<'a>>, BatchError> {
+    let mut tasks: Vec<Task<'a>> = Vec::new();
+    let (mut unknown, mut different) = (Vec::new(), Vec::new());
+    for (input, variant) in plan.pictures() {
+        let output = plan.output(input, variant);
+        if plan.settings().overwrite || !is_whole(&output) {
+            match tasks
+                .last_mut()
+                .filter(|task| std::ptr::eq(task.input, input))
+            {
+                Some(task) => task.variants.push(variant),
+                None => tasks.push(Task {
+                    input,
+                    variants: vec![variant],
+                }),
+            }
+            continue;
+        }
+        let Some(line) = manifest.line(&manifest.name_of(&output))? else {
+            unknown.push(format!("`{}`", output.display()));
+            continue;
+        };
+        let differences = differences(&plan.scene_of(input, variant), &line)?;
+        if !differences.is_empty() {
+            different.push(format!(
+                "`{}`: {}",
+                output.display(),
+                differences.join("; ")
+            ));
+        }
+    }
+    if !different.is_empty() {
+        return Err(BatchError::DifferentSettings(different));
+    }
+    if !unknown.is_empty() {
+        return Err(BatchError::NotInManifest(unknown));
+    }
+    Ok(tasks)
+}
+
+/// Splits tasks so that there is one for each thread, if there are as many pictures.
+fn split<'a>(tasks: &[Task<'a>], threads: usize) -> Vec<Task<'a>> {
+    let parts = threads.div_ceil(tasks.len().max(1));
+    tasks
+        .iter()
+        .flat_map(|task| {
+            let each = task.variants.len().div_ceil(parts);
+            task.variants.chunks(each.max(1)).map(|variants| Task {
+                input: task.input,
+                variants: variants.to_vec(),
+            })
+        })
+        .collect()
+}
+
+struct Worker<'a> {
+    plan: &'a BatchPlan,
+    manifest: &'a Manifest,
+    light: Option<&'a SkyLight>,
+    control: Control<'a>,
+    total: u64,
+    report: Mutex<BatchReport>,
+}
+
+impl Worker<'_> {
+    fn report(&self) -> MutexGuard<'_, BatchReport> {
+        self.report.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn is_stopped(&self) -> bool {
+        if let Err(cancelled) = self.control.check() {
+            self.stop(ImageError::from(cancelled).into());
+        }
+        self.report().stopped.is_some()
+    }
+
+    /// Stops the batch; the first reason is kept.
+    fn stop(&self, error: BatchError) {
+        self.report().stopped.get_or_insert(error);
+    }
+
+    /// Makes the pictures of one input.
+    ///
+    /// # Errors
+    /// [`BatchError`] if the batch is to stop.
+    fn make(&self, task: &Task<'_>) -> Result<(), BatchError> {
+        let Task { input, variants } = task;
+        let Some(first) = variants.first() else {
+            return Ok(());
+        };
+        let format = self
+            .plan
+            .scene()
+            .overlay
+            .output_format(&self.plan.output(input, *first))?;
+        let spec = self.plan.scene_of(input, *first).overlay;
+        let image = match OverlayImage::read(&spec, format) {
+            Ok(image) => image,
+            Err(error) => {
+                return variants
+                    .iter()
+                    .try_for_each(|variant| self.failed(input, *variant, &error));
+            }
+        };
+        for variant in variants {
+            if self.is_stopped() {
+                return Ok(());
+            }
+            let scene = self.plan.scene_of(input, *variant);
+            match self.make_one(&scene, &image, input, *variant) {
+                Ok(()) => {
+                    let mut report = self.report();
+                    report.made += 1;
+                    self.done(&report);
+                }
+                // The settings of this picture are refused.
+                Err(BatchError::Render(error)) if error.is_refusal() => {
+                    self.failed(input, *variant, &error)?;
+                }
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(())
+    }
+
+    fn make_one(
+        &self,
+        scene: &OverlayScene,
+        image: &OverlayImage,
+        input: &Input,
+        variant: u32,
+    ) -> Result<(), BatchError> {
+        let own = match self.plan.varies_sky() {
+            true => scene.solve_sky()?,
+            false => None,
+        };
+        let light = own.as_ref().or(self.light);
+        let prepared = PreparedOverlay::new(scene, image, light)?;
+        let output = &self.plan.output(input, variant);
+        let name = self.manifest.name_of(output);
+        create_folder(output.parent())?;
+        // With the old picture still there, a kill after the new line is written would make it pass for the new one.
+        match std::fs::remove_file(output) {
+            Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
+                return Err(BatchError::File {
+                    action: "overwrite",
+                    path: output.clone(),
+                    source,
+                });
+            }
+            _ => {}
+        }
+        let settings = self.plan.settings();
+        let seed = (!settings.vary.is_empty()).then_some(settings.seed);
+        let record = Record::made(&name, input, variant, scene, seed, image, &prepared);
+        self.manifest.add(&name, false, &record)?;
+        let format = scene.overlay.output_format(output)?;
+        let overlay = prepared.overlay(image)?;
+        image.write(&overlay, output, format, self.control.without_progress())?;
+        Ok(())
+    }
+
+    /// Records a picture that failed.
+    ///
+    /// # Errors
+    /// [`BatchError`] if the batch is to stop.
+    fn failed(&self, input: &Input, variant: u32, error: &RenderError) -> Result<(), BatchError> {
+        if error.is_cancelled() {
+            return Err(ImageError::Cancelled.into());
+        }
+        let why = error.to_string();
+        let scene = self.plan.scene_of(input, variant);
+        let output = &self.plan.output(input, variant);
+        let name = self.manifest.name_of(output);
+        let record = Record::failed(&name, input, variant, &scene, &why);
+        self.manifest.add(&name, true, &record)?;
+        let mut report = self.report();
+        report
+            .failures
+            .push(format!("`{}`: {why}", output.display()));
+        if self.plan.settings().fail_fast {
+            report.stopped.get_or_insert(BatchError::FirstFailure(why));
+        }
+        self.done(&report);
+        Ok(())
+    }
+
+    fn done(&self, report: &BatchReport) {
+        let done = report.made + report.failures.len();
+        self.control.report(done as u64, self.total);
+    }
+}
+
+/// Creates a folder that does not exist.
+fn create_folder(folder: Option<&Path>) -> Result<(), BatchError> {
+    let Some(folder) = folder.filter(|folder| !folder.as_os_str().is_empty()) else {
+        return Ok(());
+    };
+    std::fs::create_dir_all(folder).map_err(|source| BatchError::File {
+        action: "create the folder",
+        path: folder.to_owned(),
+        source,
+    })
+}

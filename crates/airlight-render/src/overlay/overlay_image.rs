@@ -1,0 +1,111 @@
+//! An overlay's picture and depth map in memory: reading and writing.
+
+use super::{LightLevel, Overlay, OverlaySpec};
+use crate::RenderError;
+use airlight_image::Control;
+use airlight_image::input::{
+    DepthMap, LightReference, Picture, SampleBits, read_depth, read_picture,
+};
+use airlight_image::output::{PictureFormat, PictureOptions, Written, exr, png, write_picture};
+use airlight_image::tone::ToneMapper;
+use std::path::Path;
+
+/// A colour picture, its depth map and its ambient light.
+#[derive(Clone, Debug)]
+pub struct OverlayImage {
+    /// The colour picture.
+    pub picture: Picture,
+    /// Its depth map, of the same size.
+    pub depth: DepthMap,
+    /// The ambient light: given or estimated, without the factor of the description.
+    pub ambient: LightLevel,
+}
+
+impl OverlayImage {
+    /// A picture and its depth map in the ambient light of a description, or else as the picture shows it.
+    ///
+    /// # Errors
+    /// [`RenderError`] if their sizes differ.
+    pub fn new(spec: &OverlaySpec, picture: Picture, depth: DepthMap) -> Result<Self, RenderError> {
+        depth.check_against(&picture)?;
+        let ambient = LightLevel::ambient(spec, &picture, &depth);
+        Ok(Self {
+            picture,
+            depth,
+            ambient,
+        })
+    }
+
+    /// Reads the colour picture and depth map of a description, to be written in a format.
+    ///
+    /// # Errors
+    /// [`RenderError`] if one cannot be read, their sizes differ, or the format does not hold the picture's kind of values.
+    pub fn read(spec: &OverlaySpec, format: PictureFormat) -> Result<Self, RenderError> {
+        let mut picture = read_picture(&spec.colour, None)?;
+        if !format.holds_alpha() {
+            picture.alpha = None;
+        }
+        let (values, endings) = match picture.reference {
+            LightReference::Scene => ("linear light", ".exr or .hdr"),
+            LightReference::Display => ("display values", ".png or .jpg"),
+        };
+        if format.is_linear() != (picture.reference == LightReference::Scene) {
+            return Err(RenderError::setting(format!(
+                "expected an output that holds {values}, as `{}` does, got another format; try a name that ends in {endings}",
+                spec.colour.display(),
+            )));
+        }
+        let depth = spec.depth.as_ref().unwrap_or(&spec.colour);
+        let depth = read_depth(depth, &spec.depth_options()?)?;
+        Self::new(spec, picture, depth)
+    }
+
+    /// Writes an overlay of this picture.
+    ///
+    /// # Errors
+    /// [`RenderError`]; `output` is then unchanged.
+    pub fn write(
+        &self,
+        overlay: &Overlay<'_>,
+        output: &Path,
+        format: PictureFormat,
+        control: Control<'_>,
+    ) -> Result<Written, RenderError> {
+        let options = PictureOptions {
+            exr: exr::ExrOptions {
+                sample: match (self.picture.bits, overlay.has_layers()) {
+                    (SampleBits::Half, false) => exr::ExrSample::Half,
+                    _ => exr::ExrSample::Float,
+                },
+                ..Default::default()
+            },
+            png: png::PngOptions {
+                depth: match self.picture.bits {
+                    SampleBits::U8 => png::PngDepth::Eight,
+                    _ => png::PngDepth::Sixteen,
+                },
+                ..Default::default()
+            },
+            ..Default::default()
+        };
+        let size = self.picture.size;
+        Ok(match format.holds_channels() {
+            true => {
+                let (names, metadata) = (overlay.channel_names(), &options.metadata);
+                exr::write(
+                    output,
+                    size,
+                    &names,
+                    overlay,
+                    &options.exr,
+                    metadata,
+                    control,
+                )?
+            }
+            false => {
+                let tone = ToneMapper::as_displayed();
+                write_picture(output, size, overlay, &tone, &options, control)?
+            }
+        })
+    }
+}

@@ -1,0 +1,356 @@
+//! The complete description of a picture in fog.
+
+use super::{OverlaySpec, SkyLight};
+use crate::RenderError;
+use airlight::atmosphere::Constituent;
+use airlight::fog::droplets::DropletKind;
+use airlight::fog::lights::LightForm;
+use airlight::fog::visibility::{Contrast, extinction_per_m};
+use airlight::fog::{DensityProfile, FogScattering};
+use airlight::monte_carlo::{MonteCarloSettings, SunShape};
+use airlight::scene::{
+    FogLayer, FogLayerSpec, FogProfile, FogSpec, LightKind, Scene, SceneDocument, SceneError,
+};
+use airlight::spectrum::WavelengthGrid;
+use airlight_image::frame::Intrinsics;
+use airlight_image::{ImageError, Size};
+use serde::Serialize;
+use std::path::Path;
+use std::sync::LazyLock;
+
+/// Height of the eye above the ground, m, if the description gives none.
+const EYE_HEIGHT_M: f64 = 1.6;
+/// Horizontal field of view, degrees, if the description gives none and no focal length.
+const FOV_DEG: f64 = 60.0;
+/// Solvers in scene files.
+const ORDERS: &str = "orders";
+const MONTE_CARLO: &str = "monte-carlo";
+/// Monte Carlo paths for each pixel, if the description gives none.
+const PATHS: u64 = 256;
+
+/// A picture in fog: a scene with fog, lights, sun, camera and output, and the picture that it is laid over.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct OverlayScene {
+    /// Fog, lights, sun, air, camera, solver and output.
+    #[serde(flatten)]
+    pub scene: Scene,
+    /// Colour picture, depth map and light level.
+    pub overlay: OverlaySpec,
+}
+
+impl OverlayScene {
+    /// Reads a description from TOML: a scene, with colour picture and depth map in the table `[overlay]`.
+    ///
+    /// # Errors
+    /// [`SceneError`]: what is wrong, with line, column, key, and the nearest key that there is.
+    pub fn from_toml(text: &str) -> Result<Self, SceneError> {
+        let document = SceneDocument::new(text)?;
+        Ok(Self {
+            scene: document.scene(&[""], &["overlay"])?,
+            overlay: document.read(&["overlay"], &[])?,
+        })
+    }
+
+    /// The description as TOML: settings that have no value are left out.
+    ///
+    /// # Errors
+    /// [`RenderError::Setting`] for a value that TOML cannot hold, such as a seed beyond 2^63.
+    pub fn to_toml(&self) -> Result<String, RenderError> {
+        toml::to_string(self).map_err(|error| RenderError::setting(format!("scene: {error}")))
+    }
+
+    /// The fog; without any setting if the scene has none.
+    pub fn fog(&self) -> &FogSpec {
+        static NONE: LazyLock<FogSpec> = LazyLock::new(FogSpec::default);
+        self.scene.fog.as_ref().unwrap_or(&NONE)
+    }
+
+    /// The fog, to be changed.
+    pub fn fog_mut(&mut self) -> &mut FogSpec {
+        self.scene.fog.get_or_insert_default()
+    }
+
+    /// How the fog thins with height. Unlike in a sky, fog without a profile and without heights is uniform.
+    pub fn fog_profile(&self) -> FogProfile {
+        let fog = self.fog();
+        match (
+            fog.profile,
+            fog.scale_height_m,
+            fog.base_height_m,
+            fog.top_m,
+        ) {
+            (None, None, None, None) => FogProfile::Uniform,
+            _ => fog.first_layer().implied_profile(),
+        }
+    }
+
+    /// Visibility in the fog where it is densest, m.
+    ///
+    /// # Errors
+    /// [`RenderError::Setting`] if there is none.
+    pub fn visibility_m(&self) -> Result<f64, RenderError> {
+        self.fog().visibility_m.ok_or_else(|| {
+            RenderError::setting(
+                "expected a visibility in the fog, got none; try visibility-m 100, or vary visibility=50..500 in a batch",
+            )
+        })
+    }
+
+    /// Extinction of the fog where it is densest, 1/m; `None` for profiles that have no extinction.
+    pub fn extinction_per_m(&self) -> Option<f64> {
+        match self.fog_profile() {
+            FogProfile::Exp2 | FogProfile::Linear => None,
+            _ => Some(extinction_per_m(self.fog().visibility_m?, self.contrast())),
+        }
+    }
+
+    /// The contrast that visibility means.
+    pub fn contrast(&self) -> Contrast {
+        self.scene.air.visibility_contrast()
+    }
+
+    /// Which light the fog scatters.
+    pub fn fog_scattering(&self) -> FogScattering {
+        self.fog().scattering.unwrap_or(FogScattering::Multiple)
+    }
+
+    /// Height of the eye above the ground, m.
+    pub fn eye_height_m(&self) -> f64 {
+        self.scene.observer.eye_height_m.unwrap_or(EYE_HEIGHT_M)
+    }
+
+    /// The file to write.
+    ///
+    /// # Errors
+    /// [`RenderError::Setting`] if there is none.
+    pub fn output(&self) -> Result<&Path, RenderError> {
+        match &self.scene.output.file {
+            Some(file) => Ok(Path::new(file)),
+            None => Err(RenderError::setting(
+                "expected a file to write, got none; try output fogged.png",
+            )),
+        }
+    }
+
+    /// The layers of the fog; `None` for fog of one colour, which scatters no light.
+    ///
+    /// # Errors
+    /// [`RenderError`] for a layer without visibility.
+    pub fn fog_layers(&self) -> Result<Option<Vec<FogLayer>>, RenderError> {
+        let profile = self.fog_profile();
+        if is_one_colour(profile) {
+            return Ok(None);
+        }
+        self.visibility_m()?;
+        let contrast = self.contrast();
+        let mut first = self.fog().first_layer();
+        first.profile = Some(profile);
+        let layers = std::iter::once(first).chain(self.fog().layers.iter().cloned());
+        let layers = layers.enumerate().map(|(i, layer)| {
+            let key = match i {
+                0 => "fog".to_owned(),
+                more => format!("fog.layers[{}]", more - 1),
+            };
+            fog_layer(&layer, &key, contrast)
+        });
+        Ok(layers.collect::<Result<_, _>>().map(Some)?)
+    }
+
+    /// The same as constituents with heights above the ground.
+    ///
+    /// # Errors
+    /// [`RenderError`] for an invalid layer.
+    pub fn constituents(&self) -> Result<Option<Vec<Constituent>>, RenderError> {
+        let Some(layers) = self.fog_layers()? else {
+            return Ok(None);
+        };
+        let grid = WavelengthGrid::standard();
+        let layers = layers.iter().map(|fog| fog.layer(grid.wavelengths_nm()));
+        Ok(layers.collect::<Result<_, SceneError>>().map(Some)?)
+    }
+
+    /// The camera of a picture of a size.
+    ///
+    /// # Errors
+    /// [`ImageError::Setting`] for numbers out of range.
+    pub fn camera(&self, size: Size) -> Result<Intrinsics, ImageError> {
+        let camera = &self.scene.camera;
+        let fov_deg = camera.fov_deg.unwrap_or(FOV_DEG);
+        self.overlay.camera(size, fov_deg)?.looking(
+            camera.azimuth_deg.unwrap_or(0.0),
+            camera.elevation_deg.unwrap_or(0.0),
+            camera.roll_deg.unwrap_or(0.0),
+        )
+    }
+
+    /// Settings of the Monte Carlo; `None` for the fast solution.
+    pub fn monte_carlo(&self) -> Option<MonteCarloSettings> {
+        let solver = &self.scene.solver;
+        (solver.name.as_deref() == Some(MONTE_CARLO)).then(|| MonteCarloSettings {
+            paths: solver.paths.unwrap_or(PATHS),
+            seed: solver.seed.unwrap_or(1),
+            sun: SunShape::Disc,
+        })
+    }
+
+    /// The solved sky that lights the fog; `None` without sky light.
+    ///
+    /// # Errors
+    /// [`RenderError`] for air, sun or place that are invalid.
+    pub fn solve_sky(&self) -> Result<Option<SkyLight>, RenderError> {
+        if !self.overlay.sky_light {
+            return Ok(None);
+        }
+        SkyLight::solve(&self.sky_scene().resolve()?).map(Some)
+    }
+
+    /// The scene whose sky lights the fog: without the fog, the eye at its height above the ground.
+    fn sky_scene(&self) -> Scene {
+        let mut scene = self.scene.clone();
+        scene.fog = None;
+        let ground_m = scene.air.ground_altitude_m.unwrap_or(0.0);
+        scene.observer.altitude_m = Some(ground_m + self.eye_height_m());
+        scene.observer.eye_height_m = Some(self.eye_height_m());
+        scene
+    }
+
+    /// Refuses a description that no picture could fit, before any file is read.
+    ///
+    /// # Errors
+    /// [`RenderError`]: the first setting that is invalid, contradicts another or would be ignored.
+    pub fn check(&self) -> Result<(), RenderError> {
+        self.scene.validate()?;
+        self.visibility_m()?;
+        self.overlay.depth_options()?;
+        let profile = self.fog_profile();
+        let sky_light = self.overlay.sky_light;
+        let sun_is_down = self.scene.sun.elevation_deg.is_some_and(|deg| deg <= 0.0);
+        if sun_is_down && !sky_light {
+            return Err(RenderError::setting(
+                "sun-elevation: expected a sun above the horizon, which shines on the fog, got one below it; try leaving it out \
+                 for fog in ambient light, or sky-light for twilight",
+            ));
+        }
+        self.check_solver()?;
+        if is_one_colour(profile) {
+            self.check_one_colour()?;
+        }
+        let layers = self.fog_layers()?.unwrap_or_default();
+        if sky_light && layers.iter().any(|layer| layer.profile.is_uniform()) {
+            return Err(SkyLight::needs_top());
+        }
+        self.check_light_form(profile)
+    }
+
+    fn check_solver(&self) -> Result<(), RenderError> {
+        let solver = &self.scene.solver;
+        match solver.name.as_deref() {
+            None | Some(ORDERS) => {
+                for (given, key) in [
+                    (solver.paths.is_some(), "paths"),
+                    (solver.seed.is_some(), "seed"),
+                    (self.scene.output.noise_map == Some(true), "noise-map"),
+                ] {
+                    if given {
+                        return Err(RenderError::setting(format!(
+                            "{key}: expected solver monte-carlo, got the fast one; try solver monte-carlo, or leaving {key} out"
+                        )));
+                    }
+                }
+                Ok(())
+            }
+            Some(MONTE_CARLO) if !self.overlay.sky_light => Err(RenderError::setting(
+                "solver monte-carlo: expected sunlight and skylight to follow through fog and air, got ambient light; try \
+                 sky-light",
+            )),
+            Some(MONTE_CARLO) if self.fog_scattering() != FogScattering::Multiple => {
+                Err(RenderError::setting(
+                    "solver monte-carlo: expected fog-scattering all, as paths scatter any number of times, got another; try \
+                     leaving out fog-scattering, or solver orders",
+                ))
+            }
+            Some(MONTE_CARLO) => Ok(()),
+            Some(other) => Err(RenderError::setting(format!(
+                "solver: expected orders or monte-carlo for fog over a picture, got {other}; try leaving it out"
+            ))),
+        }
+    }
+
+    /// Fog of one colour scatters no light.
+    fn check_one_colour(&self) -> Result<(), RenderError> {
+        let given = [
+            (!self.scene.lights.is_empty(), "light"),
+            (!self.fog().layers.is_empty(), "layer"),
+            (self.overlay.sky_light, "sky-light"),
+            (
+                self.fog_scattering() != FogScattering::Multiple,
+                "fog-scattering",
+            ),
+        ];
+        match given.iter().find(|(given, _)| *given) {
+            None => Ok(()),
+            Some((_, key)) => Err(RenderError::setting(format!(
+                "{key}: expected fog that scatters light, got a profile of one colour; try fog-profile uniform, height, clamped, \
+                 unclamped or slab, not exp2, linear or foggy-cityscapes"
+            ))),
+        }
+    }
+
+    /// The approximate forms of a light hold for point lights in one layer of uniform, isotropic fog.
+    fn check_light_form(&self, profile: FogProfile) -> Result<(), RenderError> {
+        let form = self.overlay.light_form;
+        if form == LightForm::Exact {
+            return Ok(());
+        }
+        let fog = self.fog();
+        let lights = &self.scene.lights;
+        let (expected, got, advice) = if lights.is_empty() {
+            ("a light", "none", "light")
+        } else if profile != FogProfile::Uniform || self.overlay.sky_light {
+            (
+                "uniform fog",
+                "another profile or sky light",
+                "fog-profile uniform without sky-light",
+            )
+        } else if !fog.layers.is_empty() {
+            ("one layer of fog", "several", "leaving out layer")
+        } else if fog.droplets != Some(DropletKind::Isotropic) {
+            (
+                "fog that scatters equally in all directions",
+                "other droplets",
+                "droplets isotropic",
+            )
+        } else if lights.iter().any(|light| light.kind != LightKind::Point) {
+            ("point lights", "another kind", "kind=point for each light")
+        } else {
+            return Ok(());
+        };
+        Err(RenderError::setting(format!(
+            "light-form {}: expected {expected}, got {got}; try {advice}, or leaving out light-form",
+            form.name()
+        )))
+    }
+}
+
+/// A layer; unlike in a sky, it needs no upper end.
+fn fog_layer(layer: &FogLayerSpec, key: &str, contrast: Contrast) -> Result<FogLayer, SceneError> {
+    if layer.implied_profile() != FogProfile::Uniform {
+        return layer.resolve(key, contrast);
+    }
+    let thinning = FogLayerSpec {
+        profile: Some(FogProfile::Height),
+        ..layer.clone()
+    };
+    Ok(FogLayer {
+        profile: DensityProfile::Uniform,
+        ..thinning.resolve(key, contrast)?
+    })
+}
+
+/// Whether fog of a profile has one colour and scatters no light.
+fn is_one_colour(profile: FogProfile) -> bool {
+    matches!(
+        profile,
+        FogProfile::Exp2 | FogProfile::Linear | FogProfile::FoggyCityscapes
+    )
+}

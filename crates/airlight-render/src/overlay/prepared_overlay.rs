@@ -1,0 +1,248 @@
+//! A description over one picture: camera, light level and fog.
+
+use super::light_level::{self, View};
+use super::{
+    Channels, FogOverlay, FogSource, LightLevel, MonteCarloFog, MonteCarloPass, Overlay,
+    OverlayImage, OverlayScene, SkyLight, place_lights,
+};
+use crate::RenderError;
+use crate::pixels::tagged_path;
+use airlight::axes;
+use airlight::fog::lights::{LightSettings, RgbLightSet};
+use airlight::fog::visibility::extinction_per_m;
+use airlight::fog::{DirectionalLight, FogError, FogLighting, Ground, RgbFog, RgbLayer, legacy};
+use airlight::scene::{FogProfile, SceneError};
+use airlight::spectrum::{RgbSpace, Spectrum, WavelengthGrid};
+use airlight_image::Control;
+use airlight_image::frame::Intrinsics;
+use airlight_image::output::exr::{self, ExrOptions, ExrSample};
+use airlight_image::output::{Metadata, Written};
+use airlight_image::rows::StoredRows;
+use std::f32::consts::PI;
+
+/// Albedo of the ground, if the description gives none.
+const GROUND_ALBEDO: f64 = 0.2;
+
+/// The camera and the fog of a description over a picture.
+pub struct PreparedOverlay {
+    /// The camera.
+    pub camera: Intrinsics,
+    /// The light that the fog scatters.
+    pub level: LightLevel,
+    fog: FogOverlay,
+    eye_height_m: f64,
+    channels: Channels,
+}
+
+impl PreparedOverlay {
+    /// Prepares a description for a picture; `sky` is the solved sky that lights the fog, if the description has one.
+    ///
+    /// # Errors
+    /// [`RenderError`] for a description that is invalid or does not fit the picture.
+    pub fn new(
+        scene: &OverlayScene,
+        image: &OverlayImage,
+        sky: Option<&SkyLight>,
+    ) -> Result<Self, RenderError> {
+        let camera = scene.camera(image.picture.size)?;
+        let ambient = LightLevel {
+            colour: image.ambient.colour * scene.overlay.ambient_scale as f32,
+            ..image.ambient
+        };
+        let view = View {
+            picture: &image.picture,
+            depth: &image.depth,
+            camera: &camera,
+            ambient,
+        };
+        let (fog, level) = fog(scene, sky, &view)?;
+        Ok(Self {
+            camera,
+            level,
+            fog,
+            eye_height_m: scene.eye_height_m(),
+            channels: match scene.overlay.layers {
+                true => Channels::Layers,
+                false => Channels::Picture,
+            },
+        })
+    }
+
+    /// The fog; `None` for fog of one colour, which scatters no light.
+    pub fn fog(&self) -> Option<&FogSource> {
+        match &self.fog {
+            FogOverlay::Fog(source, _) => Some(source),
+            _ => None,
+        }
+    }
+
+    /// Rows of the picture in fog.
+    ///
+    /// # Errors
+    /// [`RenderError`] if the picture is of another size.
+    pub fn overlay<'o>(&'o self, image: &'o OverlayImage) -> Result<Overlay<'o>, RenderError> {
+        Ok(Overlay::new(
+            &image.picture,
+            &image.depth,
+            &self.camera,
+            self.eye_height_m,
+            &self.fog,
+            self.channels,
+        )?)
+    }
+
+    /// The Monte Carlo of the description's fog in a solved sky; `None` if the description has another solver.
+    ///
+    /// # Errors
+    /// [`RenderError`] for fog that scatters no light or has no solved sky, and for too many layers.
+    pub fn monte_carlo(
+        &self,
+        scene: &OverlayScene,
+        sky: Option<&SkyLight>,
+    ) -> Result<Option<MonteCarloFog>, RenderError> {
+        let Some(settings) = scene.monte_carlo() else {
+            return Ok(None);
+        };
+        let (Some(source), Some(sky), Some(layers)) = (self.fog(), sky, scene.fog_layers()?) else {
+            return Err(RenderError::setting(
+                "solver monte-carlo: expected fog that scatters the light of a solved sky, got other fog; try sky-light",
+            ));
+        };
+        let mut air = sky.atmosphere().clone();
+        let ground_m = air.planet.ground_altitude_m;
+        let grid = WavelengthGrid::fast();
+        for layer in layers {
+            let part = layer.constituent(ground_m, grid.wavelengths_nm())?;
+            air.constituents.push(part);
+        }
+        let altitude_m = sky.observer_altitude_m();
+        MonteCarloFog::new(source, &air, altitude_m, sky.sun(), settings).map(Some)
+    }
+
+    /// Writes the picture after a pass of the Monte Carlo, and its standard error into `NAME.noise.exr` if the description asks
+    /// for a noise map.
+    ///
+    /// # Errors
+    /// [`RenderError`]; the files are then those of the pass before.
+    pub fn write_pass(
+        &self,
+        scene: &OverlayScene,
+        image: &OverlayImage,
+        pass: &MonteCarloPass,
+        control: Control<'_>,
+    ) -> Result<Written, RenderError> {
+        let output = scene.output()?;
+        let overlay = self
+            .overlay(image)?
+            .with_path_radiance(&pass.path_radiance)?;
+        let format = scene.overlay.output_format(output)?;
+        let written = image.write(&overlay, output, format, control)?;
+        if scene.scene.output.noise_map == Some(true) {
+            let size = image.picture.size;
+            let path = tagged_path(output, "noise").with_extension("exr");
+            let rows = StoredRows::new(size.width(), 3, pass.standard_error.clone())?;
+            let options = ExrOptions {
+                sample: ExrSample::Float,
+                ..ExrOptions::default()
+            };
+            let (names, metadata) = (["R", "G", "B"], Metadata::default());
+            exr::write(&path, size, &names, &rows, &options, &metadata, control)?;
+        }
+        Ok(written)
+    }
+}
+
+/// The fog of a description, and the level of its light.
+fn fog(
+    scene: &OverlayScene,
+    sky: Option<&SkyLight>,
+    view: &View<'_>,
+) -> Result<(FogOverlay, LightLevel), RenderError> {
+    let Some(layers) = scene.constituents()? else {
+        return Ok((one_colour(scene, view.ambient.colour)?, view.ambient));
+    };
+    let rgb = |layer| RgbLayer::from_constituent(layer, RgbSpace::Srgb);
+    let rgb: Result<Vec<RgbLayer>, _> = layers.iter().map(rgb).collect();
+    let rgb = rgb.map_err(|error| SceneError::from(FogError::from(error)))?;
+    let (source, level) = match sky {
+        Some(sky) => {
+            let sky = sky.with_fog(&layers, scene.fog_scattering())?;
+            let (radiance_scale, level) = light_level::radiance_scale(&scene.overlay, &sky, view)?;
+            let source = FogSource::Sky {
+                sky,
+                radiance_scale,
+                air: scene.overlay.air,
+            };
+            (source, level)
+        }
+        None => (alone(scene, &rgb, view.ambient.colour)?, view.ambient),
+    };
+    let lights = lights_in_fog(scene, &rgb, &source, view)?;
+    Ok((FogOverlay::Fog(source, lights), level))
+}
+
+/// Fog of one colour, which scatters no light.
+fn one_colour(scene: &OverlayScene, colour: Spectrum<3>) -> Result<FogOverlay, RenderError> {
+    let (visibility_m, contrast) = (scene.visibility_m()?, scene.contrast());
+    Ok(match scene.fog_profile() {
+        FogProfile::Exp2 => {
+            let density = legacy::exponential_squared_density_per_m(visibility_m, contrast.value());
+            FogOverlay::ExponentialSquared(density, colour)
+        }
+        FogProfile::Linear => FogOverlay::Linear(0.0, visibility_m, colour),
+        _ => FogOverlay::Encoded(extinction_per_m(visibility_m, contrast), colour),
+    })
+}
+
+/// Fog in ambient light and the description's sun.
+fn alone(
+    scene: &OverlayScene,
+    layers: &[RgbLayer],
+    ambient: Spectrum<3>,
+) -> Result<FogSource, RenderError> {
+    let sun = scene.scene.sun.elevation_deg.map(|elevation_deg| {
+        let azimuth_deg = scene.scene.sun.azimuth_deg.unwrap_or(180.0);
+        DirectionalLight {
+            direction: axes::direction(azimuth_deg, elevation_deg),
+            irradiance: (ambient * (PI * scene.overlay.sun_strength as f32)).0,
+        }
+    });
+    let albedo = scene.scene.air.ground_albedo.unwrap_or(GROUND_ALBEDO);
+    let light = FogLighting {
+        sun,
+        ambient: ambient.0,
+        ground_albedo: [albedo as f32; 3],
+    };
+    RgbFog::new(layers, Ground::FLAT, &light, scene.fog_scattering())
+        .map(FogSource::Alone)
+        .map_err(|error| SceneError::from(error).into())
+}
+
+/// The description's lights in the fog.
+fn lights_in_fog(
+    scene: &OverlayScene,
+    layers: &[RgbLayer],
+    source: &FogSource,
+    view: &View<'_>,
+) -> Result<Option<RgbLightSet>, RenderError> {
+    if scene.scene.lights.is_empty() {
+        return Ok(None);
+    }
+    let ground = match source {
+        FogSource::Alone(_) => Ground::FLAT,
+        FogSource::Sky { sky, .. } => *sky.ground(),
+    };
+    let lights = place_lights::place(
+        &scene.scene.lights,
+        view.camera,
+        view.depth,
+        scene.eye_height_m(),
+    )?;
+    let settings = LightSettings {
+        form: scene.overlay.light_form,
+        ..LightSettings::default()
+    };
+    RgbLightSet::new(lights, layers, ground, settings)
+        .map(Some)
+        .map_err(|error| SceneError::from(error).into())
+}

@@ -1,0 +1,123 @@
+//! Fog lit by a solved sky.
+
+use crate::RenderError;
+use airlight::atmosphere::{Atmosphere, Constituent};
+use airlight::fog::FogScattering;
+use airlight::scene::{Effort, FoggySky, LaneChannels, ResolvedScene, SceneError, SunState};
+use airlight::sky::{Scattering, Sky, SkySettings, SunCoverage, View};
+use airlight::spectrum::RgbSpace;
+use std::fmt;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// A solved sky that lights fog: solved once for all pictures with the same air, eye and sun. It keeps the last fog, as another
+/// fog in the same sky costs little, and the same fog nothing.
+pub struct SkyLight {
+    view: View,
+    observer_altitude_m: f64,
+    sun: SunState,
+    last: Mutex<Option<LitFog>>,
+}
+
+#[derive(Clone)]
+struct LitFog {
+    layers: Vec<Constituent>,
+    scattering: FogScattering,
+    sky: Arc<FoggySky<3>>,
+}
+
+impl SkyLight {
+    /// Solves the sky of a scene.
+    ///
+    /// # Errors
+    /// [`RenderError::Scene`] for a sun outside the range of the ephemeris, and an atmosphere that the solver refuses.
+    pub fn solve(scene: &ResolvedScene) -> Result<Self, RenderError> {
+        let sun = scene.sun.at(None)?;
+        let settings = SkySettings {
+            suns: SunCoverage::near(sun.elevation_deg, scene.observer_altitude_m),
+            scattering: scene.solver.scattering.unwrap_or(Scattering::All),
+            ..match scene.solver.effort {
+                Some(Effort::Fine) => SkySettings::fine(),
+                _ => SkySettings::default(),
+            }
+        };
+        let sky =
+            Sky::prepare(&scene.atmosphere, &scene.grid, &settings).map_err(SceneError::from)?;
+        let sun = sun.state();
+        let view = sky.view(scene.observer_altitude_m, sun.direction);
+        Ok(Self {
+            view: view.at_sun_distance(sun.distance_ratio),
+            observer_altitude_m: scene.observer_altitude_m,
+            sun,
+            last: Mutex::new(None),
+        })
+    }
+
+    /// The sky with layers of fog in it.
+    ///
+    /// # Errors
+    /// [`RenderError`] for fog without an upper end, on which no sky can shine, or invalid fog.
+    pub fn with_fog(
+        &self,
+        layers: &[Constituent],
+        scattering: FogScattering,
+    ) -> Result<Arc<FoggySky<3>>, RenderError> {
+        if layers.iter().any(|layer| layer.density.is_uniform()) {
+            return Err(Self::needs_top());
+        }
+        let last = self
+            .last
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .clone();
+        let sky = match last {
+            Some(last) if last.layers == layers && last.scattering == scattering => {
+                return Ok(last.sky);
+            }
+            Some(last) => last.sky.with_fog(layers, scattering)?,
+            None => {
+                let ground = FoggySky::<3>::round_ground(&self.view);
+                let channels = LaneChannels::Rgb(RgbSpace::Srgb);
+                FoggySky::new(&self.view, channels, layers, ground, scattering)?
+            }
+        };
+        let sky = Arc::new(sky);
+        *self.last.lock().unwrap_or_else(PoisonError::into_inner) = Some(LitFog {
+            layers: layers.to_vec(),
+            scattering,
+            sky: sky.clone(),
+        });
+        Ok(sky)
+    }
+
+    /// The refusal of fog without an upper end.
+    pub(super) fn needs_top() -> RenderError {
+        RenderError::setting(
+            "sky-light: expected fog with an upper end, on which the sky shines, got uniform fog; try fog-profile height, \
+             clamped, unclamped or slab, and scale-height or top for each layer",
+        )
+    }
+
+    /// The sun.
+    pub fn sun(&self) -> &SunState {
+        &self.sun
+    }
+
+    /// The clear air.
+    pub fn atmosphere(&self) -> &Atmosphere {
+        self.view.sky().atmosphere()
+    }
+
+    /// Altitude of the eye above sea level, m.
+    pub fn observer_altitude_m(&self) -> f64 {
+        self.observer_altitude_m
+    }
+}
+
+impl fmt::Debug for SkyLight {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("SkyLight")
+            .field("observer_altitude_m", &self.observer_altitude_m)
+            .field("sun", &self.sun)
+            .finish_non_exhaustive()
+    }
+}

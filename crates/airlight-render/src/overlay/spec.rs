@@ -1,0 +1,191 @@
+//! Description of an overlay: its colour picture and depth map, and how bright its light is.
+
+use super::ExistingAerial;
+use crate::RenderError;
+use airlight::fog::lights::LightForm;
+use airlight_image::frame::{Intrinsics, PixelCentres};
+use airlight_image::input::{DepthMeaning, DepthOptions, Unknown};
+use airlight_image::output::PictureFormat;
+use airlight_image::{ImageError, Size};
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+
+/// Meaning of the numbers in a depth file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum DepthFileKind {
+    /// Depth along the camera's axis.
+    #[default]
+    Z,
+    /// Distance along the ray of the pixel.
+    Ray,
+    /// Stereo disparity, pixels: needs a focal length in pixels and a baseline.
+    Disparity,
+    /// One over depth along the camera's axis.
+    Inverse,
+}
+
+/// Treatment of pixels whose depth is unknown.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum DepthHoles {
+    /// Filled from their neighbours.
+    #[default]
+    Fill,
+    /// Taken for sky.
+    Far,
+    /// Kept free of fog.
+    Clear,
+}
+
+/// Colour picture, depth map and light level of an overlay: the table `[overlay]` of a scene file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct OverlaySpec {
+    /// Colour picture: EXR or HDR (linear), PNG or JPEG (decoded to light and encoded again); of a batch, a folder or pattern.
+    pub colour: PathBuf,
+    /// Depth map; `None`: the depth channel of the colour picture.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub depth: Option<PathBuf>,
+    /// Meaning of the depth map's numbers.
+    pub depth_kind: DepthFileKind,
+    /// Metres for each unit of depth (disparity: pixels, inverse: 1/m), above 0.
+    pub depth_scale: f64,
+    /// Channel of an EXR depth file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub depth_channel: Option<String>,
+    /// Treatment of pixels of unknown depth.
+    pub holes: DepthHoles,
+    /// Pixels at this distance or beyond are sky, m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub far_m: Option<f64>,
+    /// Distance between the two cameras of a disparity map, m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub baseline_m: Option<f64>,
+    /// Difference of the principal points of the two cameras, added to disparities, pixels.
+    pub disparity_offset_px: f64,
+    /// Focal length, pixels, instead of a field of view.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub focal_px: Option<f64>,
+    /// Principal point, pixels from the upper left corner with pixel centres at whole numbers; `None`: the middle. Needs
+    /// `focal_px`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub principal_point_px: Option<[f64; 2]>,
+    /// Radiance of the ambient light, linear, in the picture's unit; `None`: estimated from the picture.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ambient: Option<[f64; 3]>,
+    /// Factor on the ambient light, above 0.
+    pub ambient_scale: f64,
+    /// Irradiance facing the sun over the horizontal irradiance of the ambient light (pi times its radiance).
+    pub sun_strength: f64,
+    /// Light the fog by the solved sky and its sun instead of the picture's ambient light.
+    pub sky_light: bool,
+    /// Units of the picture in one cd/m^2 of the solved sky; `None`: as the file states its white, else matched to the picture.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub radiance_scale: Option<f64>,
+    /// Whether the picture shows the clear air before its objects.
+    pub air: ExistingAerial,
+    /// How the light of the scene's lights is computed.
+    pub light_form: LightForm,
+    /// Write transmittance, path radiance and distance as layers too (EXR).
+    pub layers: bool,
+}
+
+impl Default for OverlaySpec {
+    fn default() -> Self {
+        Self {
+            colour: PathBuf::new(),
+            depth: None,
+            depth_kind: DepthFileKind::Z,
+            depth_scale: 1.0,
+            depth_channel: None,
+            holes: DepthHoles::Fill,
+            far_m: None,
+            baseline_m: None,
+            disparity_offset_px: 0.0,
+            focal_px: None,
+            principal_point_px: None,
+            ambient: None,
+            ambient_scale: 1.0,
+            sun_strength: 3.0,
+            sky_light: false,
+            radiance_scale: None,
+            air: ExistingAerial::Drawn,
+            light_form: LightForm::Exact,
+            layers: false,
+        }
+    }
+}
+
+impl OverlaySpec {
+    /// How the depth file is read.
+    ///
+    /// # Errors
+    /// [`RenderError::Setting`] for a disparity map without focal length or baseline.
+    pub fn depth_options(&self) -> Result<DepthOptions, RenderError> {
+        let meaning = match self.depth_kind {
+            DepthFileKind::Z => DepthMeaning::ZDepth,
+            DepthFileKind::Ray => DepthMeaning::RayDistance,
+            DepthFileKind::Inverse => DepthMeaning::Inverse,
+            DepthFileKind::Disparity => match (self.focal_px, self.baseline_m) {
+                (Some(focal_length_px), Some(baseline_m)) => DepthMeaning::Disparity {
+                    focal_length_px,
+                    baseline_m,
+                    offset_px: self.disparity_offset_px,
+                },
+                _ => {
+                    return Err(RenderError::setting(
+                        "depth-kind disparity: expected a focal length in pixels and a baseline, got one or none of them; try \
+                         focal-px with baseline-m",
+                    ));
+                }
+            },
+        };
+        Ok(DepthOptions {
+            meaning,
+            scale: self.depth_scale,
+            channel: self.depth_channel.clone(),
+            unknown: match self.holes {
+                DepthHoles::Fill => Unknown::Fill,
+                DepthHoles::Far => Unknown::Far,
+                DepthHoles::Clear => Unknown::Clear,
+            },
+            far_from_m: self.far_m,
+            negative_is_unknown: false,
+        })
+    }
+
+    /// The format of an output, from its ending.
+    ///
+    /// # Errors
+    /// [`RenderError`] for an unknown ending, or one of a format that cannot hold the layers.
+    pub fn output_format(&self, output: &Path) -> Result<PictureFormat, RenderError> {
+        let format = PictureFormat::from_path(output)?;
+        if self.layers && !format.holds_channels() {
+            return Err(RenderError::setting(format!(
+                "layers: expected an OpenEXR output, got `{}`; try a name that ends in .exr",
+                output.display()
+            )));
+        }
+        Ok(format)
+    }
+
+    /// The camera of a picture of a size, horizontal field of view `fov_deg` where there is no focal length, looking north.
+    ///
+    /// # Errors
+    /// [`ImageError::Setting`] for numbers out of range.
+    pub(super) fn camera(&self, size: Size, fov_deg: f64) -> Result<Intrinsics, ImageError> {
+        let Some(focal) = self.focal_px else {
+            return Intrinsics::from_horizontal_fov(size, fov_deg);
+        };
+        let middle = |n: u32| 0.5 * f64::from(n) - 0.5;
+        let principal = self
+            .principal_point_px
+            .map_or((middle(size.width()), middle(size.height())), |[x, y]| {
+                (x, y)
+            });
+        Intrinsics::new(size, (focal, focal), principal, PixelCentres::Whole)
+    }
+}

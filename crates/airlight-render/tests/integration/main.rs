@@ -1,0 +1,9 @@
+//! Drawing from outside the crate: fog over pictures, batches, sequences.
+
+mod batch;
+mod common;
+mod forms;
+mod lights;
+mod monte_carlo;
+mod sequence;
+mod sky;
