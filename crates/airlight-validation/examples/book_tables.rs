@@ -1,12 +1,12 @@
-//! The tables of the book's chapter on accuracy, as it shows them (`scripts/book`):
+//! Prints the tables of the book's chapter on accuracy (`scripts/book`):
 //!
 //! ```sh
 //! cargo run --release -p airlight-validation --example book_tables -- tables
 //! ```
 //!
-//! `tables` (other solvers), `twilight` (Airlight's Monte Carlo, with the fine settings as well: some minutes), `measured` (the
-//! measured sky) and `fit` (what was fitted to it); `settings` prints the errors against Monte Carlo with one setting of the
-//! solver changed at a time, which the chapter on the solver quotes.
+//! `tables` (other solvers), `twilight` (Airlight's Monte Carlo, also with the fine settings; takes some minutes), `measured`
+//! (the measured sky) and `fit` (the fitted aerosol); `settings` prints the errors against Monte Carlo with one setting of the
+//! solver changed at a time, for the chapter on the solver.
 
 use airlight::sky::SkySettings;
 use airlight_validation::check::Statistics;
@@ -31,27 +31,27 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
 }
 
-/// What a check comes to; each has rows.
+/// Statistics of a check, all of which have rows.
 fn statistics(check: &Check) -> Result<Statistics, Box<dyn Error>> {
     Ok(check.statistics().ok_or("a check without rows")?)
 }
 
-/// The sun's zenith angle of a check of one sun, degrees.
+/// Sun zenith angle of a check with one position of the sun, degrees.
 fn sun_zenith_deg(check: &Check) -> f64 {
     check.rows.first().map_or(0.0, |row| row.at.sun_zenith_deg)
 }
 
-/// Every table of other solvers, atmosphere and sun.
+/// All tables of other solvers, by atmosphere and sun.
 fn tables() -> Result<(), Box<dyn Error>> {
     println!("| against | atmosphere | sun zenith | views | mean | rms | worst |");
     println!("|---|---|---|---|---|---|---|");
     let checks = run(&[Suite::Tables]);
     let mut rows = Vec::new();
-    // Flat libRadtran makes no claim.
+    // The plane-parallel libRadtran makes no claim.
     for check in checks.iter().filter(|check| check.limit.is_some()) {
         let mut parts = check.what.split(", ");
         let light = match parts.next() {
-            Some("scattered once") => "single scattering",
+            Some("single scattering") => "single scattering",
             _ => "all orders",
         };
         let against = match check.against.as_str() {
@@ -83,7 +83,7 @@ fn tables() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Rms and worst error against Airlight's own Monte Carlo, each air with the usual settings and the fine ones.
+/// Rms and worst error against Airlight's Monte Carlo, for each atmosphere with the default and the fine settings.
 fn twilight() -> Result<(), Box<dyn Error>> {
     println!("| sun | clear | clear, fine | hazy | hazy, fine | desert | desert, fine |");
     println!("|---|---|---|---|---|---|---|");
@@ -109,7 +109,7 @@ fn twilight() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Ours and published models beside the measured sky.
+/// Airlight and published models compared with the measured sky.
 fn measured() -> Result<(), Box<dyn Error>> {
     println!("| what | rms, mW m⁻² sr⁻¹ nm⁻¹, these 8 scans | all 15 |\n|---|---|---|");
     let checks = run(&[Suite::Measured]);
@@ -128,11 +128,11 @@ fn measured() -> Result<(), Box<dyn Error>> {
         ),
     ];
     for model in measured::published() {
-        // The best run of each, and what was mended.
+        // The best run of each, and the corrected one.
         let name = match model.model.as_str() {
             "bruneton, 10wl" => "Bruneton (10 wavelengths)",
             "libradtran, 40wl" => "libRadtran (40)",
-            "libradtran, 40wl_libradtran_fixed" => "libRadtran, its interface mended (40)",
+            "libradtran, 40wl_libradtran_fixed" => "libRadtran, with a corrected interface (40)",
             "haber, 10wl" => "Haber (10)",
             "nishita96, 40wl" => "Nishita 1996 (40)",
             "hosek, 40wl" => "Hosek (40)",
@@ -149,7 +149,7 @@ fn measured() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// What was fitted to each half of the scans.
+/// Aerosol fitted to each half of the scans.
 fn fit() {
     println!(
         "| fitted to | optical depth at 550 nm | Ångström exponent | single-scattering albedo |"

@@ -1,4 +1,4 @@
-//! Fits the aerosol of 27 May 2013 to each half of the scans and scores it on the other: the numbers of
+//! Fits the aerosol of 27 May 2013 to each half of the scans and evaluates it on the other: prints the numbers of
 //! `airlight_validation::measured::FOLDS`.
 
 use airlight_validation::measured::{FOLDS, Scan, fit::fit, scans};

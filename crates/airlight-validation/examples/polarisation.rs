@@ -1,4 +1,4 @@
-//! What polarisation adds to the radiance of the sky, by random paths: a table for the book.
+//! Prints the book's table of the effect of polarisation on the radiance of the sky, by Monte Carlo.
 //!
 //! ```sh
 //! cargo run --release -p airlight-validation --example polarisation [PATHS]
@@ -11,7 +11,7 @@ use airlight::monte_carlo::{MonteCarlo, MonteCarloSettings, PolarisedEstimate};
 use airlight::spectrum::WavelengthGrid;
 use std::error::Error;
 
-/// Azimuths from the sun's and elevations looked to, degrees.
+/// View azimuths from the sun and view elevations, degrees.
 const AZIMUTHS_DEG: [f64; 4] = [0.0, 60.0, 120.0, 180.0];
 const ELEVATIONS_DEG: [f64; 4] = [2.0, 10.0, 30.0, 60.0];
 const SUNS_DEG: [f64; 4] = [60.0, 30.0, 5.0, -2.0];
@@ -43,7 +43,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// `hazy` with continental particles by Lorenz-Mie theory instead of its haze, of the same optical depth.
+/// `hazy` with continental particles by Lorenz-Mie theory instead of its haze, with the same optical depth.
 fn continental() -> Result<Atmosphere, Box<dyn Error>> {
     let mut air = preset("hazy")?;
     let haze = air
@@ -117,7 +117,7 @@ fn row(sky: &MonteCarlo, sun_deg: f64) -> String {
     )
 }
 
-/// What polarisation adds to the luminance, percent.
+/// Effect of polarisation on the luminance, percent.
 fn of_luminance(sky: &MonteCarlo, found: &PolarisedEstimate) -> f64 {
     let y = |values: &[f64]| -> f64 {
         let single: Vec<f32> = values.iter().map(|&v| v as f32).collect();

@@ -1,17 +1,17 @@
-//! Makes a table of skies by the Monte Carlo, which the fast solver is held to: `data/mc_airlight_*.csv`.
+//! Computes a table of reference skies by Monte Carlo for the tests of the fast solver: `data/mc_airlight_*.csv`.
 //!
 //! ```sh
 //! cargo run --release -p airlight-validation --example sky_truth -- clear >crates/airlight-validation/data/mc_airlight_clear.csv
 //! ```
 //!
-//! Takes some minutes for an atmosphere on two cores. The same on any machine and any number of threads.
+//! Takes some minutes per atmosphere on two cores. The result is the same on any machine and any number of threads.
 
 use airlight::axes::direction;
 use airlight::monte_carlo::{MonteCarlo, MonteCarloSettings};
 use airlight::spectrum::WavelengthGrid;
 use airlight_validation::skies::truth_air;
 
-/// Sun's elevation, the standard error aimed at (part of the mean), and paths at most.
+/// Sun elevation, target standard error relative to the mean, and largest number of paths.
 const SUNS: [(f64, f64, u64); 8] = [
     (60.0, 0.0015, 400_000),
     (30.0, 0.0015, 400_000),
@@ -22,7 +22,7 @@ const SUNS: [(f64, f64, u64); 8] = [
     (-4.0, 0.006, 2_000_000),
     (-6.0, 0.007, 4_000_000),
 ];
-/// View's elevation and azimuth from the sun's.
+/// Elevation of the view, and its azimuth from the sun.
 const VIEWS: [(f64, f64); 9] = [
     (90.0, 0.0),
     (45.0, 90.0),
@@ -48,7 +48,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 let (sun, view_zenith) = (direction(0.0, elevation), 90.0 - view);
                 let found = sky.radiance_within(error, most, 0.0, sun, direction(azimuth, view));
                 for (lane, nm) in wavelengths.iter().enumerate() {
-                    // Of the solver's mean solar irradiance about a wavelength the table tells that at it.
+                    // Converts from the solver's mean solar irradiance about a wavelength to that at the wavelength.
                     let solar = air.solar_irradiance.at(*nm) / sky.grid().solar_irradiance()[lane];
                     println!(
                         "{name},{},{view_zenith},{azimuth},{nm},{:.6e},{:.2e}",

@@ -1,4 +1,4 @@
-//! A value of ours beside a reference, many times, and what that says.
+//! Comparisons of values with references, and their statistics.
 
 use serde::Serialize;
 use std::fmt;
@@ -7,21 +7,21 @@ use std::fmt;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Suite {
-    /// Skies against a Monte Carlo, SASKTRAN2 and libRadtran, from tables.
+    /// Skies compared with tables of a Monte Carlo, SASKTRAN2 and libRadtran.
     Tables,
-    /// Skies by day and in twilight against Airlight's own Monte Carlo.
+    /// Skies by day and in twilight compared with Airlight's Monte Carlo.
     MonteCarlo,
-    /// Other models of the sky beside ours: how far apart, not who is right.
+    /// Other sky models compared with Airlight: differences, without a reference.
     Peers,
     /// The sky measured on 27 May 2013.
     Measured,
 }
 
 impl Suite {
-    /// All of them.
+    /// All suites.
     pub const ALL: [Self; 4] = [Self::Tables, Self::MonteCarlo, Self::Peers, Self::Measured];
 
-    /// Its name.
+    /// Name on the command line and in reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Tables => "tables",
@@ -31,18 +31,18 @@ impl Suite {
         }
     }
 
-    /// What it is about.
+    /// Title in reports.
     pub fn title(self) -> &'static str {
         match self {
             Self::Tables => "Skies against tables of other solvers",
             Self::MonteCarlo => "Skies by day and in twilight against Airlight's Monte Carlo",
-            Self::Peers => "Other models of the sky beside ours (how far apart, not who is right)",
+            Self::Peers => "Differences to other models of the sky (without a reference)",
             Self::Measured => "The sky measured at Ithaca on 27 May 2013",
         }
     }
 }
 
-/// What an error is counted in.
+/// Unit of errors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Unit {
@@ -61,14 +61,14 @@ impl fmt::Display for Unit {
     }
 }
 
-/// Which value it is: a direction of the sky from the ground, at a wavelength. Degrees; relative azimuth 0 is towards the sun.
+/// Identifies a value: a view direction from the ground and a wavelength. Angles in degrees; relative azimuth 0 is towards the sun.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct At {
-    /// Sun's angle from the zenith, degrees.
+    /// Zenith angle of the sun, degrees.
     pub sun_zenith_deg: f64,
-    /// View's angle from the zenith, degrees.
+    /// Zenith angle of the view, degrees.
     pub view_zenith_deg: f64,
-    /// Azimuth of the view from the sun's, degrees.
+    /// Azimuth of the view relative to the sun, degrees.
     pub relative_azimuth_deg: f64,
     /// Wavelength, nm.
     pub wavelength_nm: f64,
@@ -101,56 +101,56 @@ impl fmt::Display for At {
     }
 }
 
-/// One value of ours beside a reference.
+/// A value and its reference.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Row {
-    /// Which value.
+    /// Direction and wavelength.
     #[serde(flatten)]
     pub at: At,
-    /// Ours.
+    /// Value computed by Airlight.
     pub ours: f64,
-    /// The other.
+    /// Reference value.
     pub reference: f64,
-    /// Standard error of the difference, in the unit of the values: 0 where none is stated.
+    /// Standard error of the difference, in the unit of the values; 0 if not stated.
     pub standard_error: f64,
 }
 
-/// Many values beside one reference.
+/// Comparison of many values with one reference.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Check {
-    /// Family.
+    /// Suite of the check.
     pub suite: Suite,
-    /// What is compared: the light and the air.
+    /// What is compared: light and atmosphere.
     pub what: String,
-    /// With what.
+    /// Name of the reference.
     pub against: String,
-    /// What errors are counted in.
+    /// Unit of errors.
     pub unit: Unit,
-    /// What no row's error may exceed, beyond three standard errors: the claim. None where nothing is claimed.
+    /// Claimed bound on the error of each row, beyond three standard errors; `None` without a claim.
     pub limit: Option<f64>,
-    /// What the root of the mean square may not exceed. None where nothing is claimed of it.
+    /// Claimed bound on the root-mean-square error; `None` without a claim.
     pub limit_of_rms: Option<f64>,
-    /// The values.
+    /// Values and references.
     #[serde(skip)]
     pub rows: Vec<Row>,
 }
 
-/// What the errors of a check come to, in its unit.
+/// Statistics of the errors of a check, in its unit.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Statistics {
     /// Number of values.
     pub count: usize,
     /// Mean error.
     pub mean: f64,
-    /// Root of the mean square.
+    /// Root mean square error.
     pub rms: f64,
-    /// Error that 95 % of the values stay within.
+    /// 95th percentile of the absolute error.
     pub percentile_95: f64,
-    /// Largest error, with its sign.
+    /// Error with the largest absolute value.
     pub worst: f64,
-    /// Where that is.
+    /// Direction and wavelength of the worst error.
     pub worst_at: At,
-    /// Root mean square of the standard errors: noise that is not ours to mend.
+    /// Root mean square of the standard errors: noise of the reference.
     pub noise: f64,
 }
 
@@ -171,7 +171,7 @@ impl Check {
         }
     }
 
-    /// What the errors come to; `None` without rows.
+    /// Statistics of all rows; `None` without rows.
     pub fn statistics(&self) -> Option<Statistics> {
         let worst_row = self
             .rows
@@ -193,18 +193,18 @@ impl Check {
         })
     }
 
-    /// Whether anything is claimed.
+    /// True if the check makes a claim.
     pub fn claims(&self) -> bool {
         self.limit.is_some() || self.limit_of_rms.is_some()
     }
 
-    /// Whether all that is claimed is true.
+    /// True if all claims hold.
     pub fn holds(&self) -> bool {
         let rms = |limit| self.statistics().is_some_and(|s| s.rms <= limit);
         self.broken().is_none() && self.limit_of_rms.is_none_or(rms)
     }
 
-    /// The row that breaks the claim by most, if any does.
+    /// The row that exceeds the claimed bound by most, if any.
     pub fn broken(&self) -> Option<&Row> {
         let limit = self.limit?;
         let excess = |row: &Row| self.error(row).abs() - limit - 3.0 * self.noise(row);
@@ -257,7 +257,7 @@ mod tests {
     }
 
     #[test]
-    fn noise_excuses_and_nonsense_does_not() {
+    fn claims_allow_for_noise_and_reject_nan() {
         assert!(
             check(&[(1.02, 1.0, 0.004)], Unit::Percent)
                 .broken()

@@ -1,11 +1,11 @@
-//! How right Airlight is: its solvers beside measured skies, other people's codes and a Monte Carlo.
+//! Validation of Airlight: its solvers compared with measured skies, other codes and Monte Carlo.
 //!
-//! Each comparison is a [`Check`]: rows of a value of ours beside a reference, with the place they belong to. [`run`] makes
-//! all checks of some [`Suite`]s; [`report`] writes them.
+//! Each comparison is a [`Check`]: rows of a value and its reference, with direction and wavelength. [`run`] performs all
+//! checks of some [`Suite`]s; [`report`] writes them.
 //!
-//! Rooms, each importing only from those above it: [`check`] (rows and their statistics), [`table`] (the embedded tables),
-//! [`solved`] (a sky solved for a table's wavelengths), [`skies`] (against tables of skies), [`measured`] (against the
-//! measured sky), [`report`].
+//! Modules, each importing only from those above it: [`check`] (rows and their statistics), [`table`] (the embedded tables),
+//! [`solved`] (a sky solved at a table's wavelengths), [`skies`] (tables of skies), [`measured`] (the measured sky),
+//! [`report`].
 
 pub mod check;
 pub mod measured;
@@ -17,7 +17,7 @@ pub mod table;
 use airlight::sky::SkySettings;
 pub use check::{At, Check, Row, Statistics, Suite, Unit};
 
-/// Makes all checks of the suites, in the order of [`Suite::ALL`].
+/// Performs all checks of the suites, in the order of [`Suite::ALL`].
 pub fn run(suites: &[Suite]) -> Vec<Check> {
     let wanted = Suite::ALL.into_iter().filter(|s| suites.contains(s));
     wanted

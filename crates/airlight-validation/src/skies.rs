@@ -1,4 +1,4 @@
-//! Skies against tables of other solvers.
+//! Skies compared with tables of other solvers.
 
 use crate::check::{Check, Row, Suite, Unit};
 use crate::solved::Solved;
@@ -9,16 +9,16 @@ use airlight::atmosphere::{
 };
 use airlight::sky::SkySettings;
 
-/// A table of skies made by one solver.
+/// A table of skies computed by one solver.
 struct Source {
     suite: Suite,
     text: &'static str,
     against: &'static str,
-    /// What it may itself be off by on top of our claim, percent.
+    /// Error of the source itself, added to the claim, percent.
     own_error: f64,
-    /// The sun's zenith angle up to which the first of `claims` holds, and beyond which the second, degrees.
+    /// Zenith angle of the sun up to which the first of `claims` applies, degrees; the second applies beyond.
     low_sun_deg: f64,
-    /// What no direction may be off by, all orders, percent.
+    /// Claimed bounds on the error in any direction, all orders, percent.
     claims: [f64; 2],
 }
 
@@ -39,7 +39,7 @@ const fn monte_carlo(text: &'static str) -> Source {
     }
 }
 
-/// Airlight's own Monte Carlo, which other tests hold to the tables of others; by the example `sky_truth`.
+/// Airlight's Monte Carlo, which other tests compare with other codes; computed by the example `sky_truth`.
 const TRUTH: [Source; 3] = [
     truth(include_str!("../data/mc_airlight_clear.csv"), [1.0, 3.0]),
     truth(include_str!("../data/mc_airlight_hazy.csv"), [2.5, 3.5]),
@@ -57,7 +57,7 @@ const fn truth(text: &'static str, claims: [f64; 2]) -> Source {
     }
 }
 
-/// It agrees with the Monte Carlo to 0.3 % (95th percentile; csm 1.1 %).
+/// SASKTRAN2, which agrees with the Monte Carlo to 0.3 % (95th percentile; csm 1.1 %).
 const SASKTRAN: [Source; 3] = [
     sasktran(include_str!("../data/sasktran2_rayleigh_sphere.csv"), 0.3),
     sasktran(include_str!("../data/sasktran2_earth_demo.csv"), 0.3),
@@ -75,11 +75,11 @@ const fn sasktran(text: &'static str, own_error: f64) -> Source {
     }
 }
 
-/// Plane-parallel: compared where neither sun nor view is farther than 75 degrees from the zenith.
+/// libRadtran, plane-parallel: compared only for sun and view within 75 degrees of the zenith.
 const LIBRADTRAN: &str = include_str!("../data/libradtran_fixed.csv");
 const PEERS: &str = include_str!("../data/csm_sky_radiance_10wl.csv");
 
-/// What a row of a table says: which atmosphere, and which light.
+/// The atmosphere and the kind of light of a row.
 struct Case {
     atmosphere: &'static str,
     single: bool,
@@ -89,7 +89,7 @@ struct Case {
 impl Case {
     fn of(line: Line<'_>, source: &Source) -> Self {
         let config = match line.has("ground_albedo") {
-            // One table counts its atmospheres by the ground's albedo.
+            // One table identifies its atmospheres by the ground albedo.
             true => line.text("ground_albedo"),
             false => line.text("config"),
         };
@@ -110,8 +110,7 @@ impl Case {
             && self.sun_zenith_deg == other.sun_zenith_deg
     }
 
-    /// What no direction may be off by: 0.2 % for light scattered once; for all orders what is claimed, and what the
-    /// source is off by itself.
+    /// Claimed bound on the error: 0.2 % for single scattering; for all orders the claim plus the error of the source.
     fn limit(&self, source: &Source) -> f64 {
         let [high, low] = source.claims;
         match (self.single, self.sun_zenith_deg <= source.low_sun_deg) {
@@ -122,7 +121,7 @@ impl Case {
     }
 }
 
-/// An atmosphere of the tables, and the three wavelengths at which its coefficients are those of their columns, nm.
+/// An atmosphere of the tables, and the three wavelengths of its channels, nm.
 pub fn atmosphere(name: &str) -> (Atmosphere, [f64; 3]) {
     match name {
         "a0.0" => (reference::rayleigh(0.0), [440.0, 550.0, 680.0]),
@@ -131,13 +130,13 @@ pub fn atmosphere(name: &str) -> (Atmosphere, [f64; 3]) {
         "csm" => (reference::csm(), [442.25, 548.0, 677.25]),
         other => match truth_air(other) {
             Some(air) => (air, [440.0, 550.0, 680.0]),
-            None => panic!("an embedded table speaks of an atmosphere '{other}'"),
+            None => panic!("expected a known atmosphere in an embedded table, got '{other}'"),
         },
     }
 }
 
-/// The atmospheres of the tables of Airlight's Monte Carlo: presets, and `desert`, desert dust after OPAC with an optical
-/// depth of 0.3 at 550 nm instead of the haze of `average`.
+/// Atmospheres of the tables of Airlight's Monte Carlo: presets, and `desert`, which is `average` with desert dust after OPAC
+/// with an optical depth of 0.3 at 550 nm instead of its haze.
 pub fn truth_air(name: &str) -> Option<Atmosphere> {
     if name != "desert" {
         return atmosphere::preset(name).ok();
@@ -155,19 +154,19 @@ pub fn truth_air(name: &str) -> Option<Atmosphere> {
     Some(air)
 }
 
-/// The wavelength of a channel, by its number in [`atmosphere`].
+/// Index of the wavelength of a channel in [`atmosphere`].
 pub fn lane(channel: &str) -> usize {
     match channel.trim_start_matches("L_").trim_start_matches("beta") {
         "33.1e-6" | "440" | "442.25" => 0,
         "13.5e-6" | "550" | "548" => 1,
         "5.8e-6" | "680" | "677.25" => 2,
-        other => panic!("an embedded table speaks of a channel '{other}'"),
+        other => panic!("expected a known channel in an embedded table, got '{other}'"),
     }
 }
 
 fn light_of(single: bool) -> &'static str {
     match single {
-        true => "scattered once",
+        true => "single scattering",
         false => "all orders",
     }
 }
@@ -182,7 +181,7 @@ pub fn checks() -> Vec<Check> {
     all
 }
 
-/// By day and in twilight against Airlight's own Monte Carlo.
+/// Checks by day and in twilight against Airlight's Monte Carlo.
 pub fn against_truth(settings: &SkySettings) -> Vec<Check> {
     let tables = TRUTH.iter();
     tables
@@ -190,7 +189,7 @@ pub fn against_truth(settings: &SkySettings) -> Vec<Check> {
         .collect()
 }
 
-/// All orders against the Monte Carlo of others, solved with these settings.
+/// Checks of all orders against another Monte Carlo, with these settings.
 pub fn against_monte_carlo(settings: &SkySettings) -> Vec<Check> {
     let tables = MONTE_CARLO.iter();
     tables
@@ -198,7 +197,7 @@ pub fn against_monte_carlo(settings: &SkySettings) -> Vec<Check> {
         .collect()
 }
 
-/// A check for each atmosphere, sun and kind of light of a table.
+/// One check for each atmosphere, sun and kind of light of a table.
 fn against(source: &Source, settings: &SkySettings) -> Vec<Check> {
     let table = Table::new(source.text);
     let mut checks: Vec<(Case, Solved, Check)> = Vec::new();
@@ -210,7 +209,7 @@ fn against(source: &Source, settings: &SkySettings) -> Vec<Check> {
             let solved = Solved::new(&air, &wavelengths, case.sun_zenith_deg, settings)
                 .expect("the atmospheres of the tables can be solved");
             let light = if case.single {
-                "scattered once"
+                "single scattering"
             } else {
                 "all orders"
             };
@@ -235,7 +234,7 @@ fn against(source: &Source, settings: &SkySettings) -> Vec<Check> {
     checks.into_iter().map(|(.., check)| check).collect()
 }
 
-/// The values of a line: one with its standard error, or one a wavelength.
+/// Adds the values of a line: one with its standard error, or one per wavelength.
 fn add_rows(rows: &mut Vec<Row>, table: &Table, line: Line<'_>, solved: &Solved, single: bool) {
     let (view, azimuth) = (
         line.number("view_zenith_deg"),
@@ -281,13 +280,13 @@ fn against_libradtran() -> Check {
     }
 }
 
-/// The other models of the comparison of clear-sky models on the same air.
+/// Other models of the comparison of clear-sky models, with the same atmosphere.
 pub fn peers() -> Vec<Check> {
     let table = Table::new(PEERS);
     let mut models: Vec<&str> = table.lines().map(|line| line.text("model")).collect();
     models.dedup();
     let check = |model: &&str| {
-        // Bruneton's model without its light scattered more than once.
+        // Bruneton's model with single scattering only.
         let single = model.ends_with("_ss");
         Check {
             suite: Suite::Peers,

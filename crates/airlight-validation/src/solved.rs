@@ -1,4 +1,4 @@
-//! A sky solved for at the wavelengths of a table, asked in a table's angles.
+//! A sky solved at the wavelengths of a table and evaluated in its directions.
 
 use crate::check::At;
 use airlight::atmosphere::Atmosphere;
@@ -6,19 +6,19 @@ use airlight::axes::direction;
 use airlight::sky::{Sky, SkyError, SkySettings, SunCoverage};
 use airlight::spectrum::WavelengthGrid;
 
-/// One atmosphere under one sun, seen from the ground.
+/// One atmosphere with one position of the sun, seen from the ground.
 pub struct Solved {
     sky: Sky,
     wavelengths_nm: Vec<f64>,
-    /// Solar irradiance at each wavelength itself, where the solver's own is a mean about it, W m^-2 nm^-1.
+    /// Solar irradiance at the wavelengths, W m^-2 nm^-1; the solver uses means about them.
     solar: Vec<f64>,
     sun_zenith_deg: f64,
-    /// Distance of the sun over its mean.
+    /// Distance of the sun relative to its mean.
     sun_distance: f64,
 }
 
 impl Solved {
-    /// Solves for one sun.
+    /// Solves for one position of the sun.
     ///
     /// # Errors
     /// [`SkyError`] for an atmosphere or settings that the solver refuses.
@@ -29,7 +29,7 @@ impl Solved {
         settings: &SkySettings,
     ) -> Result<Self, SkyError> {
         let grid = WavelengthGrid::from_wavelengths_nm(wavelengths_nm.to_vec())
-            .map_err(|_| SkyError::Setting("wavelengths: rising, from 300 to 900 nm"))?;
+            .map_err(|_| SkyError::Setting("increasing wavelengths from 300 to 900 nm"))?;
         let suns = SunCoverage::near(90.0 - sun_zenith_deg, 0.0);
         let settings = SkySettings {
             suns,
@@ -47,7 +47,7 @@ impl Solved {
         })
     }
 
-    /// The same under a sun at this many times its mean distance.
+    /// This sky with the sun at `sun_distance` times its mean distance.
     pub fn at_sun_distance(self, sun_distance: f64) -> Self {
         Self {
             sun_distance,
@@ -55,12 +55,12 @@ impl Solved {
         }
     }
 
-    /// Sun's angle from the zenith, degrees.
+    /// Zenith angle of the sun, degrees.
     pub fn sun_zenith_deg(&self) -> f64 {
         self.sun_zenith_deg
     }
 
-    /// The light from a direction.
+    /// Radiance in a direction.
     pub fn look(&self, view_zenith_deg: f64, relative_azimuth_deg: f64) -> Light {
         let view = self
             .sky
@@ -83,7 +83,7 @@ impl Solved {
         }
     }
 
-    /// Which value that of a wavelength is.
+    /// Identifies the value at a direction and wavelength.
     pub fn at(&self, view_zenith_deg: f64, relative_azimuth_deg: f64, lane: usize) -> At {
         At {
             sun_zenith_deg: self.sun_zenith_deg,
@@ -94,10 +94,10 @@ impl Solved {
     }
 }
 
-/// Radiance from a direction at each wavelength, W m^-2 sr^-1 nm^-1.
+/// Radiance in a direction at each wavelength, W m^-2 sr^-1 nm^-1.
 pub struct Light {
-    /// Sunlight scattered once.
+    /// Single scattering.
     pub single: Vec<f64>,
-    /// All of it.
+    /// All orders.
     pub all: Vec<f64>,
 }

@@ -1,15 +1,15 @@
-//! The embedded tables: comma-separated, with a head.
+//! Embedded comma-separated tables with a header.
 //!
-//! They are compiled in and read whole by the tests: a malformed one is a defect of the build, so it panics and says where.
+//! They are compiled in and read completely by the tests, so parsing panics with a message on malformed ones.
 
-/// A table of text fields under a head.
+/// A table of text fields with a header.
 pub struct Table {
     head: Vec<&'static str>,
     rows: Vec<Vec<&'static str>>,
 }
 
 impl Table {
-    /// Splits a text.
+    /// Parses a text.
     pub fn new(text: &'static str) -> Self {
         let split = |line: &'static str| line.split(',').collect::<Vec<_>>();
         let mut lines = text.lines().filter(|line| !line.is_empty()).map(split);
@@ -19,7 +19,7 @@ impl Table {
         }
     }
 
-    /// Its lines.
+    /// Lines of the table.
     pub fn lines(&self) -> impl Iterator<Item = Line<'_>> {
         self.rows.iter().map(|fields| Line {
             head: &self.head,
@@ -27,13 +27,13 @@ impl Table {
         })
     }
 
-    /// The columns whose names start so: their numbers and names.
+    /// Indices and names of the columns whose names begin with `start`.
     pub fn columns_from(&self, start: &str) -> impl Iterator<Item = (usize, &'static str)> {
         let columns = self.head.iter().copied().enumerate();
         columns.filter(move |(_, name)| name.starts_with(start))
     }
 
-    /// The columns `L_NM`: their numbers and wavelengths, nm.
+    /// Indices and wavelengths (nm) of the columns `L_NM`.
     pub fn radiance_columns(&self) -> Vec<(usize, f64)> {
         let wavelength = |(column, name): (usize, &str)| (column, parse(&name[2..]));
         self.columns_from("L_").map(wavelength).collect()
@@ -48,30 +48,30 @@ pub struct Line<'a> {
 }
 
 impl Line<'_> {
-    /// Whether its table has a column of this name.
+    /// True if the table has a column of this name.
     pub fn has(&self, name: &str) -> bool {
         self.head.contains(&name)
     }
 
-    /// The text in a column of this name.
+    /// Text in a named column.
     pub fn text(&self, name: &str) -> &'static str {
         let column = self.head.iter().position(|head| *head == name);
         column
             .and_then(|column| self.fields.get(column).copied())
             .unwrap_or_else(|| {
                 panic!(
-                    "an embedded table has no field '{name}' in {:?}",
+                    "expected a field '{name}' in an embedded table, got {:?}",
                     self.fields
                 )
             })
     }
 
-    /// The number in a column of this name.
+    /// Number in a named column.
     pub fn number(&self, name: &str) -> f64 {
         parse(self.text(name))
     }
 
-    /// The number in a column of this number.
+    /// Number in a column by index.
     pub fn at(&self, column: usize) -> f64 {
         parse(self.fields[column])
     }
@@ -79,5 +79,5 @@ impl Line<'_> {
 
 fn parse(text: &str) -> f64 {
     text.parse()
-        .unwrap_or_else(|_| panic!("an embedded table has '{text}' for a number"))
+        .unwrap_or_else(|_| panic!("expected a number in an embedded table, got '{text}'"))
 }

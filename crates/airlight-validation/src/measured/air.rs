@@ -1,36 +1,36 @@
-//! The air of the measured day.
+//! The atmosphere of the measured day.
 
 use airlight::atmosphere::presets::earth::Earth;
 use airlight::atmosphere::{AerosolLoad, AngstromAerosol, Atmosphere, DensityProfile, reference};
 use airlight::optics::{PhaseFunction, TabulatedPhase};
 use airlight::spectrum::{SpectralCurve, solar};
 
-/// What is not known of the day's aerosol but fitted.
+/// The fitted properties of the day's aerosol.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aerosol {
     /// Optical depth at 550 nm.
     pub optical_depth_550: f64,
-    /// Exponent of its law of wavelengths.
+    /// Ångström exponent.
     pub angstrom_exponent: f64,
-    /// Scattering over extinction.
+    /// Single-scattering albedo.
     pub single_scattering_albedo: f64,
 }
 
-/// An aerosol fitted to some scans, and the other scans that it is scored on.
+/// An aerosol fitted to some scans, and the other scans on which it is evaluated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fold {
-    /// Times of the scans fitted to.
+    /// Local times of the fitted scans.
     pub fitted: [&'static str; 4],
-    /// Times of the scans scored.
+    /// Local times of the evaluated scans.
     pub scored: [&'static str; 4],
-    /// What the fit gave: `cargo run --release -p airlight-validation --example fit_measured_sky`.
+    /// The fitted aerosol: `cargo run --release -p airlight-validation --example fit_measured_sky`.
     pub aerosol: Aerosol,
 }
 
 const ONE: [&str; 4] = ["0930", "1030", "1130", "1230"];
 const OTHER: [&str; 4] = ["1000", "1100", "1200", "1330"];
 
-/// Every scan is scored with an aerosol fitted to the other half alone.
+/// Two-fold cross-validation: each scan is evaluated with an aerosol fitted to the other half.
 pub const FOLDS: [Fold; 2] = [
     Fold {
         fitted: ONE,
@@ -52,17 +52,17 @@ pub const FOLDS: [Fold; 2] = [
     },
 ];
 
-/// Height of the place above the sea, m.
+/// Altitude of the site above sea level, m.
 const ALTITUDE_M: f64 = 250.0;
-/// Ozone over 42 degrees north in late May, Dobson units: a climatological figure; 30 more or less change the error by less
-/// than 0.1 mW m^-2 sr^-1 nm^-1.
+/// Ozone column, Dobson units: climatological value for 42 degrees north in late May; a change by 30 changes the error by
+/// less than 0.1 mW m^-2 sr^-1 nm^-1.
 const OZONE_DU: f64 = 340.0;
-/// Full width at half maximum of what the spectroradiometer takes for one wavelength, nm (its maker's figure).
+/// Spectral resolution of the spectroradiometer, full width at half maximum, nm (specified by its manufacturer).
 const RESOLUTION_NM: f64 = 3.0;
 
-/// The Earth's air from first principles with the day's aerosol: the phase function that AERONET's inversions give for the
-/// same day at Egbert, Ontario, 330 km away (level 1.5; PI N. O'Neill, I. Abboud, V. Fioletov), over grass, under a solar
-/// spectrum as blurred as the instrument's.
+/// Atmosphere of the day: the Earth's air from first principles with the aerosol's phase function from AERONET inversions of
+/// the same day at Egbert, Ontario, 330 km away (level 1.5; PI N. O'Neill, I. Abboud, V. Fioletov), over grass, with the solar
+/// spectrum at the resolution of the instrument.
 pub fn air_of_the_day(aerosol: &Aerosol) -> Atmosphere {
     let standard = Earth::with_aerosol(aerosol.optical_depth_550);
     let earth = Earth {
@@ -84,11 +84,11 @@ pub fn air_of_the_day(aerosol: &Aerosol) -> Atmosphere {
     air
 }
 
-/// The mean of the day's five inversions.
+/// Mean of the day's five inversions.
 fn aeronet_phase() -> PhaseFunction {
     let text = include_str!("../../data/aeronet-egbert-2013-05-27.pfn");
     let mut lines = text.lines().skip(3).map(|line| line.split(','));
-    // `ANGLE[NMnm]`, wavelength by wavelength, after date, time and day.
+    // Columns `ANGLE[NMnm]`, wavelength by wavelength, after date, time and day.
     let head: Vec<&str> = lines.next().into_iter().flatten().collect();
     let rows: Vec<Vec<&str>> = lines.map(Iterator::collect).collect();
     let (mut angles, mut wavelengths, mut values) = (Vec::new(), Vec::<f64>::new(), Vec::new());
@@ -114,7 +114,7 @@ fn aeronet_phase() -> PhaseFunction {
     PhaseFunction::Tabulated(table.expect("the embedded inversions make a table"))
 }
 
-/// The solar spectrum through a Gaussian of the instrument's width.
+/// Solar spectrum convolved with a Gaussian of the instrument's resolution.
 fn blurred_sun() -> SpectralCurve {
     const STEP_NM: f64 = 0.25;
     let sun = solar::extraterrestrial();

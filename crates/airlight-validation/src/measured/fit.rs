@@ -1,14 +1,14 @@
-//! Fitting the day's aerosol to scans: damped Gauss-Newton steps in its three numbers.
+//! Fit of the day's aerosol to scans: damped Gauss-Newton iteration in its three parameters.
 
 use super::{Aerosol, SUN_DISTANCE_AU, Scan, air_of_the_day, compare};
 use crate::check::Row;
 
-/// Steps taken at most.
+/// Largest number of steps.
 const STEPS: usize = 12;
-/// Relative change of a number that its derivative is taken over.
+/// Relative step of the numerical derivatives.
 const DIFFERENCE: f64 = 0.01;
 
-/// The aerosol whose skies have the least mean square difference from the scans, and the root of that, mW m^-2 sr^-1 nm^-1.
+/// Aerosol whose skies have the smallest root-mean-square difference from the scans, and that difference in mW m^-2 sr^-1 nm^-1.
 pub fn fit(start: Aerosol, wavelengths_nm: &[f64], scans: &[&Scan]) -> (Aerosol, f64) {
     let residuals = |aerosol: &Aerosol| -> Vec<f64> {
         let air = air_of_the_day(aerosol);
@@ -31,7 +31,7 @@ pub fn fit(start: Aerosol, wavelengths_nm: &[f64], scans: &[&Scan]) -> (Aerosol,
                 .collect::<Vec<f64>>()
         });
         let step = least_squares(&derivatives, &here);
-        // No number changes by more than a quarter at once; albedo stays an albedo.
+        // No parameter changes by more than a quarter in a step; the albedo stays in range.
         let next = scaled(at, step.map(|s| 1.0 - s.clamp(-0.25, 0.25)));
         let there = residuals(&next);
         let gain = mean_square(&here).sqrt() - mean_square(&there).sqrt();
@@ -58,7 +58,8 @@ fn mean_square(values: &[f64]) -> f64 {
     values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64
 }
 
-/// The x for which the sum of `columns[i] x[i]` is nearest to the values: the normal equations by Cramer's rule.
+/// Linear least squares: the `x` for which the sum of `columns[i] x[i]` is nearest to the values, from the normal equations by
+/// Cramer's rule.
 fn least_squares(columns: &[Vec<f64>; 3], values: &[f64]) -> [f64; 3] {
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
     let matrix = [0, 1, 2].map(|i| [0, 1, 2].map(|j| dot(&columns[i], &columns[j])));
@@ -82,7 +83,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_sum_of_columns_is_taken_apart() {
+    fn least_squares_recovers_the_coefficients() {
         let columns = [
             vec![1.0, 2.0, 0.0, 1.0],
             vec![0.0, 1.0, 3.0, -1.0],

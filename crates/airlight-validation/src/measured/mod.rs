@@ -1,9 +1,9 @@
 //! The sky measured at Ithaca, New York, on 27 May 2013: Kider, Knowlton, Newlin, Li & Greenberg, "A framework for the
 //! experimental comparison of solar and skydome illumination", ACM Transactions on Graphics 33(6), 2014.
 //!
-//! 81 directions a scan; eight of the fifteen scans of the clear day; the 31 wavelengths from 360 to 712.5 nm. The metric
-//! is that of E. Bruneton, "A qualitative and quantitative evaluation of 8 clear sky models", IEEE TVCG 23(12), 2017: the
-//! root of the mean square difference over directions and wavelengths, and again over scans, all of one weight.
+//! 81 directions per scan; eight of the fifteen scans of the clear day; the 31 wavelengths from 360 to 712.5 nm. The metric is
+//! that of E. Bruneton, "A qualitative and quantitative evaluation of 8 clear sky models", IEEE TVCG 23(12), 2017: the root
+//! mean square difference over directions and wavelengths, then over scans, with equal weights.
 
 mod air;
 pub mod fit;
@@ -16,19 +16,19 @@ use crate::table::Table;
 use airlight::atmosphere::{Atmosphere, reference};
 use airlight::sky::SkySettings;
 
-/// The longest wavelength that the metric takes, nm.
+/// Longest wavelength in the metric, nm.
 const LONGEST_NM: f64 = 720.0;
-/// Distance of the sun on that day, astronomical units.
+/// Distance of the sun on that day, AU.
 const SUN_DISTANCE_AU: f64 = 1.0131;
 
-/// What was measured from one place within minutes.
+/// A measured scan of the sky, taken within minutes.
 #[derive(Clone, Debug)]
 pub struct Scan {
-    /// Local time, as `0930`.
+    /// Local time, such as `0930`.
     pub time: &'static str,
-    /// Sun's angle from the zenith, degrees.
+    /// Zenith angle of the sun, degrees.
     pub sun_zenith_deg: f64,
-    /// Directions: angle from the zenith and azimuth from the sun's, degrees.
+    /// Directions: zenith angle and azimuth relative to the sun, degrees.
     pub views: Vec<(f64, f64)>,
     /// Radiance of each direction at each wavelength, W m^-2 sr^-1 nm^-1.
     pub radiance: Vec<Vec<f64>>,
@@ -59,7 +59,7 @@ pub fn scans() -> (Vec<f64>, Vec<Scan>) {
     (columns.iter().map(|(_, nm)| *nm).collect(), scans)
 }
 
-/// A model of the sky beside a scan.
+/// Compares a model atmosphere with a scan.
 pub fn compare(
     air: &Atmosphere,
     wavelengths_nm: &[f64],
@@ -94,7 +94,7 @@ pub fn checks() -> Vec<Check> {
     let csm = reference::csm();
     let rows = scans
         .iter()
-        // As in the published comparison, whose sun stands at its mean distance.
+        // As in the published comparison, which used the sun's mean distance.
         .flat_map(|scan| compare(&csm, &wavelengths, scan, 1.0));
     let published_air = check("csm, as published models were run", rows.collect(), None);
     let mut real = Vec::new();
@@ -117,7 +117,7 @@ pub fn checks() -> Vec<Check> {
     all
 }
 
-/// What is claimed is the root of the mean square, not each value.
+/// A check whose claim is the root mean square, not each value.
 fn check(what: &str, rows: Vec<Row>, limit_of_rms: Option<f64>) -> Check {
     Check {
         suite: Suite::Measured,
@@ -130,14 +130,14 @@ fn check(what: &str, rows: Vec<Row>, limit_of_rms: Option<f64>) -> Check {
     }
 }
 
-/// The error of a published model on the same scans, mW m^-2 sr^-1 nm^-1.
+/// Error of a published model on the same scans, mW m^-2 sr^-1 nm^-1.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Published {
-    /// Which model, and at how many wavelengths it was run.
+    /// Name of the model and set of wavelengths.
     pub model: String,
-    /// Root of the mean square over the scans held here.
+    /// Root mean square error over the embedded scans.
     pub rmse: f64,
-    /// The same over all fifteen, as published.
+    /// Root mean square error over all fifteen scans, as published.
     pub rmse_all_scans: f64,
 }
 

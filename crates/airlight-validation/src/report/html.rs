@@ -1,4 +1,4 @@
-//! A page with plots, complete in one file.
+//! HTML report with plots, in one self-contained file.
 
 use super::{by_suite, claim, plot, short};
 use crate::check::{Check, Suite};
@@ -12,19 +12,19 @@ td,th{padding:.25rem .6rem;border-bottom:1px solid #ddd;text-align:right}td:firs
 .no{color:#b00020;font-weight:600}.yes{color:#1b7f3b}.scroll{overflow-x:auto}figure{margin:1.5rem 0}figcaption{font-size:.85rem;color:#555}\
 svg{max-width:100%;height:auto}";
 
-/// The checks as one HTML page without outside parts.
+/// The checks as a self-contained HTML page.
 ///
 /// # Errors
-/// What the plotter says.
+/// Errors of the plotting library.
 pub fn html(checks: &[Check]) -> Result<String, Box<dyn std::error::Error>> {
     let mut out = String::new();
-    let title = "How right Airlight is";
+    let title = "Accuracy of Airlight";
     write!(
         out,
         "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" \
          content=\"width=device-width,initial-scale=1\"><title>{title}</title><style>{STYLE}</style></head><body>\n\
          <h1>{title}</h1>\n<p>Version {}. An error is ours minus the reference, in percent of it or in mW/(m² sr nm); noise is \
-         what the reference's own standard errors come to.</p>\n",
+         the root mean square of the reference's standard errors.</p>\n",
         env!("CARGO_PKG_VERSION")
     )?;
     for suite in by_suite(checks) {

@@ -1,4 +1,4 @@
-//! JSON for programs.
+//! JSON report.
 
 use crate::check::{Check, Row, Statistics};
 use crate::measured::{self, Published};
@@ -10,7 +10,7 @@ struct Report<'a> {
     version: &'static str,
     holds: bool,
     checks: Vec<Entry<'a>>,
-    /// Published models against the measured sky.
+    /// Published models compared with the measured sky.
     published: Vec<Published>,
 }
 
@@ -24,10 +24,10 @@ struct Entry<'a> {
     rows: Option<&'a [Row]>,
 }
 
-/// The checks as one JSON object, format `airlight-validation/1`; with every row where `with_rows`.
+/// The checks as one JSON object, format `airlight-validation/1`; includes all rows if `with_rows`.
 ///
 /// # Errors
-/// What the writer of JSON says; numbers that are none become `null`.
+/// Errors of the JSON writer; numbers that are not finite become `null`.
 pub fn json(checks: &[Check], with_rows: bool) -> Result<String, serde_json::Error> {
     let entry = |check| Entry {
         check,

@@ -1,4 +1,4 @@
-//! Checks written down: as a text, as JSON, as a page with plots.
+//! Reports of checks as text, JSON and HTML with plots.
 
 mod html;
 mod json;
@@ -11,18 +11,18 @@ pub use text::text;
 
 use crate::check::Check;
 
-/// The checks of each suite, in their order.
+/// The checks of each suite, in order.
 fn by_suite(checks: &[Check]) -> impl Iterator<Item = &[Check]> {
     checks.chunk_by(|a, b| a.suite == b.suite)
 }
 
-/// A number with as many decimals as errors need.
+/// Formats a number with a number of decimals suitable for errors.
 fn short(value: f64) -> String {
     let decimals = if value.abs() < 0.095 { 3 } else { 2 };
     format!("{value:.decimals$}")
 }
 
-/// What is claimed of a check, in words.
+/// The claim of a check, in words.
 fn claim(check: &Check) -> String {
     match (check.limit, check.limit_of_rms) {
         (Some(limit), _) => format!("each within {limit} {}", check.unit),

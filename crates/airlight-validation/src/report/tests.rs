@@ -25,7 +25,7 @@ fn checks() -> Vec<Check> {
 }
 
 #[test]
-fn a_broken_claim_is_told_in_every_form() {
+fn broken_claims_appear_in_all_formats() {
     let checks = checks();
     let text = text(&checks);
     assert!(

@@ -1,11 +1,11 @@
-//! A text to read.
+//! Plain-text report.
 
 use super::{by_suite, claim, short};
 use crate::check::{Check, Suite};
 use crate::measured;
 use std::fmt::Write;
 
-/// The checks as a text, a line each and a line for where the worst value is.
+/// The checks as text, with two lines for each.
 pub fn text(checks: &[Check]) -> String {
     let mut out = String::new();
     for suite in by_suite(checks) {

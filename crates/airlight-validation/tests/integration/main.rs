@@ -1,4 +1,4 @@
-//! The claims of the accuracy report, and our Monte Carlo against that of others.
+//! Claims of the accuracy report, and comparison of the Monte Carlo with another code.
 
 mod monte_carlo;
 mod report;

@@ -1,4 +1,4 @@
-//! Airlight's Monte Carlo against that of others: two codes, one physics, so what differs must be noise.
+//! Airlight's Monte Carlo compared with another code: the same physics, so differences must be noise.
 
 use airlight::axes::direction;
 use airlight::monte_carlo::{Estimate, MonteCarlo, MonteCarloSettings};
@@ -12,13 +12,13 @@ const TABLES: [&str; 3] = [
     include_str!("../../data/mc_sphere_csm.csv"),
 ];
 
-/// A line's sun and view.
+/// Angles of the sun and the view of a line.
 fn angles(line: &Line<'_>) -> [f64; 3] {
     ["sun_zenith_deg", "view_zenith_deg", "rel_azimuth_deg"].map(|name| line.number(name))
 }
 
-/// Compares every `stride`-th direction of all tables; ours less theirs over the standard error of the difference, all
-/// orders and the first four apart.
+/// Compares every `stride`-th direction of all tables; differences divided by their standard errors, for all orders and for
+/// each of the first four.
 fn deviations(stride: usize, paths: u64) -> (Vec<f64>, Vec<f64>) {
     let (mut all, mut by_order) = (Vec::new(), Vec::new());
     let mut directions = 0;
@@ -63,7 +63,7 @@ fn deviations(stride: usize, paths: u64) -> (Vec<f64>, Vec<f64>) {
             all.push((ours - line.number("L")) / noise);
             for (order, part) in found.orders[..4].iter().enumerate() {
                 let theirs = line.number(&format!("L_order{}", order + 1));
-                // Their noise in a single order is not told: it is at most that of the sum.
+                // The other code's noise in a single order is not stated: it is at most that of the sum.
                 let noise = (part.standard_error[lane] * solar).hypot(line.number("SE"));
                 by_order.push((part.mean[lane] * solar - theirs) / noise);
             }
@@ -80,8 +80,8 @@ fn worst(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |worst, z| worst.max(z.abs()))
 }
 
-/// Deviations of independent unbiased estimates have a mean square of 1; the three wavelengths of a direction share
-/// their paths, so there are a third as many independent ones.
+/// Deviations of independent unbiased estimates have a mean square of 1; the three wavelengths of a direction share their
+/// paths, so there are a third as many independent ones.
 fn hold(stride: usize, paths: u64, least: usize) {
     let (all, by_order) = deviations(stride, paths);
     let [square, order_square] = [&all, &by_order].map(|z| mean_square(z));
@@ -104,7 +104,7 @@ fn two_monte_carlos_differ_by_noise() {
     hold(17, 8192, 50);
 }
 
-/// Every row of the tables.
+/// All rows of the tables.
 #[test]
 #[ignore = "minutes: all directions with many paths"]
 fn two_monte_carlos_differ_by_noise_everywhere() {

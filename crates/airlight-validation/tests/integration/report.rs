@@ -1,4 +1,4 @@
-//! The limits that the accuracy report states. Run with `--nocapture` for the errors.
+//! Claimed bounds of the accuracy report. Run with `--nocapture` for the errors.
 
 use airlight::sky::SkySettings;
 use airlight_validation::{Check, Suite, measured, run, skies};
@@ -30,7 +30,7 @@ fn hold(suite: Suite) -> Vec<Check> {
 #[test]
 fn skies_agree_with_other_solvers() {
     let checks = hold(Suite::Tables);
-    // Every table, atmosphere and sun: a check that vanished would hold as well.
+    // All tables, atmospheres and suns: a missing check would hold as well.
     assert_eq!(checks.iter().filter(|c| c.limit.is_some()).count(), 23);
     let libradtran = checks.iter().find(|c| c.against.starts_with("libRadtran"));
     let s = libradtran.and_then(Check::statistics).unwrap();
@@ -62,13 +62,13 @@ fn fine_settings_agree_with_the_monte_carlo() {
 }
 
 #[test]
-fn the_air_of_the_day_is_nearer_the_measured_sky_than_every_published_model() {
+fn air_of_the_day_is_closer_to_the_measured_sky_than_published_models() {
     let checks = hold(Suite::Measured);
     let real = checks[1].statistics().unwrap();
     assert_eq!(real.count, 8 * 81 * 31);
     let best = &measured::published()[0];
     assert!(real.rms < best.rmse, "{} against {best:?}", real.rms);
-    // The published air, solved right, is as far from the sky as libRadtran's solution of it.
+    // The published atmosphere, solved correctly, differs from the sky as much as libRadtran's solution of it.
     let csm = checks[0].statistics().unwrap();
     let flat = measured::published()
         .into_iter()
@@ -85,14 +85,14 @@ mod guards {
     use super::*;
 
     #[test]
-    fn the_embedded_fit_is_what_fitting_gives() {
+    fn embedded_fit_is_a_fixed_point_of_the_fit() {
         let (wavelengths, scans) = measured::scans();
         let fold = &measured::FOLDS[1];
         let fitted: Vec<_> = scans
             .iter()
             .filter(|scan| fold.fitted.contains(&scan.time))
             .collect();
-        // Started from where it ended, it stays there.
+        // Started from its result, the fit stays there.
         let (again, _) = measured::fit::fit(fold.aerosol, &wavelengths, &fitted);
         let near = |a: f64, b: f64| (a / b - 1.0).abs() < 0.02;
         assert!(
