@@ -1,11 +1,11 @@
-//! `airlight grid`: a board of skies that a TOML file describes.
+//! `airlight grid`: a contact sheet of skies that a TOML file describes.
 
 use crate::args::{GridArgs, SkyArgs};
 use crate::error::CliError;
 use crate::progress::PicturesBar;
 use crate::report;
 use crate::sky::RenderedImage;
-use airlight_plot::contact_sheet::{ContactSheet, Panel};
+use airlight_plot::{ContactSheet, Panel};
 use clap::Parser;
 use std::path::Path;
 use toml::{Table, Value};
@@ -52,13 +52,13 @@ pub fn run(args: &GridArgs) -> Result<(), CliError> {
         bar.one_more();
     }
     drop(bar);
-    let board = ContactSheet {
+    let sheet = ContactSheet {
         heading: plan.title,
         columns: plan.columns,
         panels,
         notes: Vec::new(),
     };
-    report::write_board(&args.output, &board)
+    report::write_contact_sheet(&args.output, &sheet)
 }
 
 impl Plan {

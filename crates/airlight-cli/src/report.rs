@@ -3,7 +3,7 @@
 use crate::error::CliError;
 use crate::interrupt;
 use airlight_image::output::AtomicFile;
-use airlight_plot::contact_sheet::ContactSheet;
+use airlight_plot::ContactSheet;
 use std::io::Write;
 use std::path::Path;
 use std::time::Duration;
@@ -53,15 +53,15 @@ pub fn check_png(path: &Path) -> Result<(), CliError> {
     check_writable(path)
 }
 
-/// Writes a board of pictures as PNG.
+/// Writes a contact sheet as PNG.
 ///
 /// # Errors
-/// [`CliError`] where it is larger than memory, or the file cannot be written.
-pub fn write_board(path: &Path, board: &ContactSheet) -> Result<(), CliError> {
-    let png = board
+/// [`CliError`] where the sheet does not fit in memory, or the file cannot be written.
+pub fn write_contact_sheet(path: &Path, sheet: &ContactSheet) -> Result<(), CliError> {
+    let png = sheet
         .draw()
-        .and_then(|picture| picture.png())
-        .map_err(|error| CliError::failure(format!("cannot draw: {error}")))?;
+        .and_then(|raster| raster.to_png())
+        .map_err(|error| CliError::failure(error.to_string()))?;
     write(path, png)
 }
 

@@ -3,6 +3,7 @@
 mod common;
 
 use common::{Folder, run, succeed};
+use image::RgbImage;
 
 const SKY: &str = "--sun-elevation 20 --wavelengths fast --size 32x16";
 
@@ -35,28 +36,80 @@ fn random_paths_agree_with_the_fast_solver() {
     assert!(mean.abs() < 2.0, "{mean}");
 }
 
+/// Left edge and top of each place at which a sheet shows a picture.
+fn places(sheet: &RgbImage, picture: &RgbImage) -> Vec<(u32, u32)> {
+    let (width, height) = picture.dimensions();
+    let shows = |&(left, top): &(u32, u32)| {
+        let mut pixels = picture.enumerate_pixels();
+        pixels.all(|(x, y, pixel)| sheet.get_pixel(left + x, top + y) == pixel)
+    };
+    let corners = (0..=sheet.height() - height)
+        .flat_map(|top| (0..=sheet.width() - width).map(move |left| (left, top)));
+    corners.filter(shows).collect()
+}
+
+fn picture(folder: &Folder, name: &str) -> RgbImage {
+    image::open(folder.file(name)).unwrap().into_rgb8()
+}
+
+/// Between panels of a contact sheet, pixels.
+const GAP: u32 = 16;
+
 #[test]
 fn both_pictures_and_the_maps_are_drawn() {
     let folder = Folder::new();
+    succeed(&folder, &format!("sky {SKY} --sun-disc out -q -o sky.png"));
+    succeed(&folder, &format!("compare orders orders {SKY} -o same.png"));
     succeed(
         &folder,
         &format!("compare orders klassen1987 {SKY} -o a.png"),
     );
-    let board = image::open(folder.file("a.png")).unwrap().into_rgb8();
-    assert!(board.width() > 64 && board.height() > 64);
-    let black = board.pixels().filter(|pixel| pixel.0 == [0; 3]).count();
-    assert!(black < board.pixels().len() / 4, "{black}");
+    let sky = picture(&folder, "sky.png");
+    let (width, height) = sky.dimensions();
+    // The same sky twice, and maps of no difference: white (diverging) and dark (sequential).
+    let same = picture(&folder, "same.png");
+    let [first, second] = places(&same, &sky)[..] else {
+        panic!("the sky is not there twice")
+    };
+    assert_eq!(second, (first.0 + width + GAP, first.1));
+    let map_top = (first.1 + height..same.height() - height).find(|&top| {
+        let even = RgbImage::from_pixel(width, height, *same.get_pixel(second.0, top));
+        let dark = same.get_pixel(second.0, top).0.iter().all(|&c| c < 100);
+        dark && places(&same, &even).contains(&(second.0, top))
+    });
+    let map_top = map_top.expect("a map of the colours' difference");
+    let luminance = *same.get_pixel(first.0, map_top);
+    assert!(luminance.0.iter().all(|&c| c > 225), "{luminance:?}");
+    let even = RgbImage::from_pixel(width, height, luminance);
+    assert!(places(&same, &even).contains(&(first.0, map_top)));
+    // Another model: the sky beside another picture, over maps that are not even.
+    let other = picture(&folder, "a.png");
+    assert_eq!(places(&other, &sky), [first]);
+    for left in [first.0, second.0] {
+        let colours: std::collections::HashSet<_> = (0..width)
+            .flat_map(|x| (0..height).map(move |y| (x, y)))
+            .map(|(x, y)| *other.get_pixel(left + x, map_top + y))
+            .collect();
+        assert!(colours.len() > 20, "{}", colours.len());
+    }
 }
 
 #[test]
-fn boards_are_drawn_from_files() {
+fn contact_sheets_are_drawn_from_files() {
     let folder = Folder::new();
     let text = "columns = 2\n[sky]\nwavelengths = \"rgb\"\nsize = \"40x20\"\n\
         [[cell]]\nsun-elevation = 40\n[[cell]]\nsun-elevation = 1\n";
     std::fs::write(folder.file("suns.toml"), text).unwrap();
     succeed(&folder, "grid suns.toml -o suns.png");
-    let board = image::open(folder.file("suns.png")).unwrap();
-    assert!(board.width() > 80);
+    let sheet = picture(&folder, "suns.png");
+    let [high, low] = [40, 1].map(|sun| {
+        let words = format!("sky --sun-elevation {sun} --wavelengths rgb --size 40x20 -q -o a.png");
+        succeed(&folder, &words);
+        let places = places(&sheet, &picture(&folder, "a.png"));
+        assert_eq!(places.len(), 1, "sun at {sun} degrees: {places:?}");
+        places[0]
+    });
+    assert_eq!(low, (high.0 + 40 + GAP, high.1));
 }
 
 #[test]

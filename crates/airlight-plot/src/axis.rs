@@ -1,85 +1,92 @@
-//! What axes show.
+//! Axes of charts, and curves over them.
 
-/// One curve: its name and its points.
+/// A named series of points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
-    /// Its name.
+    /// Name in the legend.
     pub name: String,
-    /// Places and values; around a point: angles (rad) and distances.
+    /// Position on the horizontal axis and value; in a polar plot angle (rad) and distance.
     pub points: Vec<(f64, f64)>,
 }
 
-/// What an axis shows.
+/// Label, scale and range of an axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
-    /// The quantity and its unit.
-    pub name: String,
-    /// Whether it goes by powers of ten; values must then be above 0.
-    pub by_powers: bool,
-    /// Its ends, where they are not those of the values.
-    pub ends: Option<(f64, f64)>,
+    /// Quantity and unit.
+    pub label: String,
+    /// Logarithmic scale; values must be above 0.
+    pub logarithmic: bool,
+    /// First and last value shown; the range of the data where `None`.
+    pub range: Option<(f64, f64)>,
 }
 
 impl Axis {
-    /// An axis in even steps.
-    pub fn even(name: impl Into<String>) -> Self {
+    /// An axis with a linear scale.
+    pub fn linear(label: impl Into<String>) -> Self {
         Self {
-            name: name.into(),
-            by_powers: false,
-            ends: None,
+            label: label.into(),
+            logarithmic: false,
+            range: None,
         }
     }
 
-    /// An axis by powers of ten.
-    pub fn powers(name: impl Into<String>) -> Self {
+    /// An axis with a logarithmic scale and ticks at powers of ten.
+    pub fn logarithmic(label: impl Into<String>) -> Self {
         Self {
-            by_powers: true,
-            ..Self::even(name)
+            logarithmic: true,
+            ..Self::linear(label)
         }
     }
 
-    /// The same from one value to another.
-    pub fn between(self, low: f64, high: f64) -> Self {
+    /// The same axis with a fixed range.
+    pub fn with_range(self, low: f64, high: f64) -> Self {
         Self {
-            ends: Some((low, high)),
+            range: Some((low, high)),
             ..self
         }
     }
 
-    pub(crate) fn place(&self, value: f64) -> f64 {
-        match self.by_powers {
+    /// Position of a value on the axis: the value, or its decimal logarithm.
+    pub(crate) fn position(&self, value: f64) -> f64 {
+        match self.logarithmic {
             true => value.log10(),
             false => value,
         }
     }
 
-    /// Both ends as places: those told, or those of the values.
-    pub(crate) fn ends_of(&self, values: impl Iterator<Item = f64>) -> (f64, f64) {
-        match self.ends {
-            Some((low, high)) => (self.place(low), self.place(high)),
+    /// Positions of both ends: those of the fixed range, or of the finite values.
+    pub(crate) fn extent(&self, values: impl Iterator<Item = f64>) -> (f64, f64) {
+        match self.range {
+            Some((low, high)) => (self.position(low), self.position(high)),
             None => values
-                .map(|value| self.place(value))
-                .filter(|place| place.is_finite())
-                .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), place| {
-                    (low.min(place), high.max(place))
-                }),
+                .map(|value| self.position(value))
+                .filter(|position| position.is_finite())
+                .fold(
+                    (f64::INFINITY, f64::NEG_INFINITY),
+                    |(low, high), position| (low.min(position), high.max(position)),
+                ),
         }
     }
 
-    /// What is written at a place.
-    pub(crate) fn label(&self, place: f64) -> String {
-        match self.by_powers {
-            true if (place - place.round()).abs() > 1e-6 => String::new(),
-            true => power(place.round() as i32),
-            false => ((place * 1e6).round() / 1e6)
-                .to_string()
-                .replace('-', "\u{2212}"),
+    /// Label of a tick at a position; empty between powers of ten.
+    pub(crate) fn tick_label(&self, position: f64) -> String {
+        match self.logarithmic {
+            true if (position - position.round()).abs() > 1e-6 => String::new(),
+            true => power_of_ten(position.round() as i32),
+            false => number(position),
         }
     }
 }
 
-/// A power of ten as one reads it: small powers written out.
-fn power(exponent: i32) -> String {
+/// A number to a millionth, with a minus sign instead of a hyphen.
+pub(crate) fn number(value: f64) -> String {
+    ((value * 1e6).round() / 1e6)
+        .to_string()
+        .replace('-', "\u{2212}")
+}
+
+/// `10^exponent` with a superscript exponent; written out from 0.01 to 1000.
+fn power_of_ten(exponent: i32) -> String {
     const DIGITS: [char; 10] = [
         '\u{2070}', '\u{b9}', '\u{b2}', '\u{b3}', '\u{2074}', '\u{2075}', '\u{2076}', '\u{2077}',
         '\u{2078}', '\u{2079}',
@@ -102,26 +109,26 @@ mod tests {
     use super::*;
 
     #[test]
-    fn powers_are_written_as_powers() {
-        let axis = Axis::powers("x");
-        for (place, text) in [
+    fn logarithmic_ticks_are_powers_of_ten() {
+        let axis = Axis::logarithmic("x");
+        for (position, label) in [
             (0.0, "1"),
             (-2.0, "0.01"),
             (-12.0, "10⁻¹²"),
             (5.0, "10⁵"),
             (0.5, ""),
         ] {
-            assert_eq!(axis.label(place), text);
+            assert_eq!(axis.tick_label(position), label);
         }
-        assert_eq!(Axis::even("x").label(-0.25), "\u{2212}0.25");
+        assert_eq!(Axis::linear("x").tick_label(-0.25), "\u{2212}0.25");
     }
 
     #[test]
-    fn ends_are_those_of_values_or_those_told() {
+    fn the_extent_is_the_range_or_that_of_the_values() {
         let values = || [1.0, 100.0, f64::NAN].into_iter();
-        assert_eq!(Axis::powers("x").ends_of(values()), (0.0, 2.0));
+        assert_eq!(Axis::logarithmic("x").extent(values()), (0.0, 2.0));
         assert_eq!(
-            Axis::even("x").between(0.0, 5.0).ends_of(values()),
+            Axis::linear("x").with_range(0.0, 5.0).extent(values()),
             (0.0, 5.0)
         );
     }

@@ -1,18 +1,24 @@
-//! Charts, maps and boards of pictures.
+//! Charts, heat maps and contact sheets of pictures, as SVG and PNG.
 //!
-//! - [`svg`]: the canvas that all are drawn on; [`raster`]: from SVG to pixels, with a font of its own, so that a chart
-//!   looks the same on every machine.
-//! - [`curves`]: curves over an axis; [`polar`]: curves around a point; [`map`]: values over two axes.
-//! - [`ramp`]: values into colours; [`contact_sheet`]: pictures side by side, with titles and scales.
+//! Charts are SVG texts: [`line_chart`], [`polar_plot`], [`heat_map`], and others drawn with the shared style of [`canvas`].
+//! [`Raster`] turns SVG into pixels with an embedded font, so that a chart looks the same on every machine.
+//! [`ContactSheet`] sets pictures side by side, with titles and colour scales.
 
-pub mod axis;
-pub mod contact_sheet;
-pub mod curves;
-pub mod map;
-pub mod polar;
-pub mod ramp;
-pub mod raster;
-pub mod svg;
+mod axis;
+pub mod canvas;
+mod colormap;
+mod contact_sheet;
+mod error;
+mod heat_map;
+mod line_chart;
+mod polar_plot;
+mod raster;
 
 pub use axis::{Axis, Curve};
-pub use svg::Drawn;
+pub use colormap::Colormap;
+pub use contact_sheet::{ContactSheet, Panel};
+pub use error::PlotError;
+pub use heat_map::{HeatMap, heat_map};
+pub use line_chart::line_chart;
+pub use polar_plot::polar_plot;
+pub use raster::Raster;

@@ -79,7 +79,7 @@ pub enum Command {
     Probe(Box<ProbeArgs>),
     /// Draw one sky by two solvers side by side, with maps and statistics of the difference.
     Compare(Box<CompareArgs>),
-    /// Draw a board of skies that a TOML file describes.
+    /// Draw a contact sheet of skies that a TOML file describes.
     Grid(GridArgs),
     /// Tell how right the solvers are, beside measurement and other people's codes.
     Accuracy(AccuracyArgs),

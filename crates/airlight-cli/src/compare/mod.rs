@@ -1,6 +1,6 @@
 //! `airlight compare`: one scene by two solvers.
 //!
-//! [`statistics`] measures the difference; the board shows both pictures and maps of it.
+//! [`statistics`] measures the difference; the contact sheet shows both pictures and maps of it.
 
 mod statistics;
 
@@ -9,9 +9,7 @@ use crate::error::CliError;
 use crate::report::{self, seconds};
 use crate::sky::RenderedImage;
 use airlight_image::tone::ToneMapper;
-use airlight_plot::contact_sheet::{ContactSheet, Panel};
-use airlight_plot::ramp::Ramp;
-use airlight_plot::raster::Picture;
+use airlight_plot::{Colormap, ContactSheet, Panel, Raster};
 use statistics::{Difference, Spread, Statistics};
 
 /// Runs the command.
@@ -52,8 +50,8 @@ pub fn run(args: &CompareArgs) -> Result<(), CliError> {
         seconds: [first.time.as_secs_f64(), second.time.as_secs_f64()],
     };
     if let Some(output) = &args.output {
-        let board = board(args, (&first, &second), &difference, &statistics)?;
-        report::write_board(output, &board)?;
+        let sheet = contact_sheet(args, (&first, &second), &difference, &statistics)?;
+        report::write_contact_sheet(output, &sheet)?;
     }
     let text = match args.format {
         StatisticsArg::Table => format!(
@@ -91,7 +89,7 @@ fn check(args: &CompareArgs) -> Result<(), CliError> {
 }
 
 /// Both pictures under one exposure, and the maps.
-fn board(
+fn contact_sheet(
     args: &CompareArgs,
     (first, second): (&RenderedImage, &RenderedImage),
     difference: &Difference,
@@ -109,22 +107,22 @@ fn board(
             .find(|&step| step >= most)
             .unwrap_or(500.0)
     };
-    let percent = Ramp::both_ways(
+    let percent = Colormap::diverging(
         args.map_percent
             .unwrap_or_else(|| round(statistics.luminance_percent.within_95)),
     );
-    let colour = Ramp::from_zero(round(statistics.ciede2000.within_95));
-    let map = |title: &str, values: &[f64], (ramp, unit): (Ramp, &str)| Panel {
+    let colour = Colormap::sequential(round(statistics.ciede2000.within_95));
+    let map = |title: &str, values: &[f64], (colormap, unit): (Colormap, &str)| Panel {
         title: title.to_owned(),
-        picture: Picture {
+        picture: Raster {
             width: first.frame.size().width(),
             height: first.frame.size().height(),
             rgb: values
                 .iter()
-                .flat_map(|&value| ramp.colour(value))
+                .flat_map(|&value| colormap.colour(value))
                 .collect(),
         },
-        scale: Some((ramp, unit.to_owned())),
+        scale: Some((colormap, unit.to_owned())),
     };
     let shown = |name: &str, picture| Panel {
         title: name.to_owned(),

@@ -1,25 +1,23 @@
 //! Light and transmittance of the air by wavelength.
 
+use super::Chart;
 use crate::args::{AirArgs, PlaceArgs, ScatteringArg, SpectrumPlotArgs, TransmittancePlotArgs};
 use crate::error::CliError;
 use crate::scene::Scene;
 use airlight::axes;
 use airlight::sky::TableChannels;
-use airlight_plot::curves::curves;
-use airlight_plot::map::{Grid, map};
-use airlight_plot::ramp::Ramp;
-use airlight_plot::{Axis, Curve, Drawn};
+use airlight_plot::{Axis, Colormap, Curve, HeatMap, heat_map, line_chart};
 use glam::DVec3;
 
 fn wavelength() -> Axis {
-    Axis::even("wavelength, nm")
+    Axis::linear("wavelength, nm")
 }
 
 /// Spectral radiance of the sky in directions, or without any the irradiances of sun and sky.
 ///
 /// # Errors
 /// [`CliError`] for options that do not fit together.
-pub fn spectrum(args: &SpectrumPlotArgs) -> Result<Drawn, CliError> {
+pub fn spectrum(args: &SpectrumPlotArgs) -> Result<Chart, CliError> {
     let scene = Scene::new(&args.place, &args.air)?;
     args.air.refuse_other_solvers("airlight plot")?;
     let sun = scene.sun.at(None)?;
@@ -39,8 +37,8 @@ pub fn spectrum(args: &SpectrumPlotArgs) -> Result<Drawn, CliError> {
             ),
             curve("sky, on the horizontal".to_owned(), sky_light),
         ];
-        let y = Axis::even("irradiance, W m\u{207b}\u{b2} nm\u{207b}\u{b9}");
-        return Ok(curves(&wavelength(), &y, &all));
+        let y = Axis::linear("irradiance, W m\u{207b}\u{b2} nm\u{207b}\u{b9}");
+        return Ok(line_chart(&wavelength(), &y, &all));
     }
     let all: Vec<Curve> = args
         .view
@@ -54,15 +52,15 @@ pub fn spectrum(args: &SpectrumPlotArgs) -> Result<Drawn, CliError> {
             curve(name, view.along(direction, None).radiance())
         })
         .collect();
-    let y = Axis::even("radiance, W m\u{207b}\u{b2} sr\u{207b}\u{b9} nm\u{207b}\u{b9}");
-    Ok(curves(&wavelength(), &y, &all))
+    let y = Axis::linear("radiance, W m\u{207b}\u{b2} sr\u{207b}\u{b9} nm\u{207b}\u{b9}");
+    Ok(line_chart(&wavelength(), &y, &all))
 }
 
 /// Transmittance of the air from the eye to space, for zenith angles or as a map over them.
 ///
 /// # Errors
 /// [`CliError`] for options that do not fit together.
-pub fn transmittance(args: &TransmittancePlotArgs) -> Result<Drawn, CliError> {
+pub fn transmittance(args: &TransmittancePlotArgs) -> Result<Chart, CliError> {
     // Whatever sun: it is the air alone that counts.
     let place = PlaceArgs {
         sun_elevation: args
@@ -92,16 +90,16 @@ pub fn transmittance(args: &TransmittancePlotArgs) -> Result<Drawn, CliError> {
         let values = zenith_deg
             .iter()
             .map(|&deg| at(deg).into_iter().map(|p| p.1).collect());
-        let grid = Grid {
+        let data = HeatMap {
             values: values.collect(),
             x: scene.grid.wavelengths_nm().to_vec(),
             y: zenith_deg,
         };
-        let zenith = Axis::even("zenith angle, degrees");
-        return Ok(map(
+        let zenith = Axis::linear("zenith angle, degrees");
+        return Ok(heat_map(
             (&wavelength(), &zenith),
-            &grid,
-            ("transmittance", &Ramp::from_zero(1.0)),
+            &data,
+            ("transmittance", &Colormap::sequential(1.0)),
             &[0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9],
         ));
     }
@@ -113,8 +111,8 @@ pub fn transmittance(args: &TransmittancePlotArgs) -> Result<Drawn, CliError> {
             points: at(deg),
         })
         .collect();
-    let y = Axis::even("transmittance to space").between(0.0, 1.0);
-    Ok(curves(&wavelength(), &y, &all))
+    let y = Axis::linear("transmittance to space").with_range(0.0, 1.0);
+    Ok(line_chart(&wavelength(), &y, &all))
 }
 
 fn points(scene: &Scene, values: Vec<f32>) -> Vec<(f64, f64)> {

@@ -1,20 +1,18 @@
 //! How dense fog is by height, and where the split sum holds.
 
+use super::Chart;
 use crate::args::{FogProfilePlotArgs, SplitSumPlotArgs};
 use crate::error::CliError;
 use airlight::fog::DensityProfile;
 use airlight::fog::split_sum_error;
 use airlight::fog::visibility::{Contrast, extinction_per_m};
-use airlight_plot::curves::curves;
-use airlight_plot::map::{Grid, map};
-use airlight_plot::ramp::Ramp;
-use airlight_plot::{Axis, Curve, Drawn};
+use airlight_plot::{Axis, Colormap, Curve, HeatMap, heat_map, line_chart};
 
 /// Extinction by height of an even slab, an exponential fog and one that is even up to a base.
 ///
 /// # Errors
 /// [`CliError::Usage`] for heights that make no profile.
-pub fn profile(args: &FogProfilePlotArgs) -> Result<Drawn, CliError> {
+pub fn profile(args: &FogProfilePlotArgs) -> Result<Chart, CliError> {
     const STEPS: u32 = 400;
     let extinction = extinction_per_m(args.visibility_m, Contrast::FivePercent);
     let scale_height_m = args.scale_height_m;
@@ -57,13 +55,13 @@ pub fn profile(args: &FogProfilePlotArgs) -> Result<Drawn, CliError> {
                 .collect(),
         });
     }
-    let x = Axis::even("height above the ground, m");
-    let y = Axis::even("extinction coefficient, km\u{207b}\u{b9}");
-    Ok(curves(&x, &y, &all))
+    let x = Axis::linear("height above the ground, m");
+    let y = Axis::linear("extinction coefficient, km\u{207b}\u{b9}");
+    Ok(line_chart(&x, &y, &all))
 }
 
 /// The error of the split sum over optical depth and the fall of the source along it.
-pub fn split_sum(_: &SplitSumPlotArgs) -> Drawn {
+pub fn split_sum(_: &SplitSumPlotArgs) -> Chart {
     const COLUMNS: u32 = 72;
     const ROWS: u32 = 48;
     // From a hundredth to ten; falls from -1 to 1.
@@ -73,7 +71,7 @@ pub fn split_sum(_: &SplitSumPlotArgs) -> Drawn {
     let fall: Vec<f64> = (0..=ROWS)
         .map(|j| -1.0 + 2.0 * f64::from(j) / f64::from(ROWS))
         .collect();
-    let grid = Grid {
+    let data = HeatMap {
         values: fall
             .iter()
             .map(|&k| {
@@ -86,12 +84,13 @@ pub fn split_sum(_: &SplitSumPlotArgs) -> Drawn {
         x: depth,
         y: fall,
     };
-    let x = Axis::powers("optical depth of the line");
-    let y = Axis::even("k: the source falls as exp(\u{2212}k t) with optical depth t from the eye");
-    map(
+    let x = Axis::logarithmic("optical depth of the line");
+    let y =
+        Axis::linear("k: the source falls as exp(\u{2212}k t) with optical depth t from the eye");
+    heat_map(
         (&x, &y),
-        &grid,
-        ("error of the split sum, %", &Ramp::both_ways(50.0)),
+        &data,
+        ("error of the split sum, %", &Colormap::diverging(50.0)),
         &[-20.0, -10.0, -1.0, 1.0, 10.0, 20.0],
     )
 }

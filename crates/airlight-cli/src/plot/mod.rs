@@ -10,10 +10,13 @@ mod particles;
 use crate::args::{PlotArgs, PlotWhat};
 use crate::error::CliError;
 use crate::report;
-use airlight_plot::raster::Picture;
+use airlight_plot::{PlotError, Raster};
 
 /// Pixels of a PNG for each of the drawing's.
 const PNG_SCALE: f32 = 2.0;
+
+/// A chart as SVG, or why it could not be drawn.
+type Chart = Result<String, PlotError>;
 
 /// Runs the command.
 ///
@@ -33,7 +36,7 @@ pub fn run(args: &PlotArgs) -> Result<(), CliError> {
         Some("png") => true,
         _ => return Err(CliError::usage("--output must end in .svg or .png")),
     };
-    let drawn = match &args.what {
+    let chart = match &args.what {
         PlotWhat::Phase(args) => particles::phase(args)?,
         PlotWhat::Efficiency(args) => particles::efficiency(args)?,
         PlotWhat::Spectrum(args) => air::spectrum(args)?,
@@ -41,13 +44,13 @@ pub fn run(args: &PlotArgs) -> Result<(), CliError> {
         PlotWhat::FogProfile(args) => fog::profile(args)?,
         PlotWhat::SplitSum(args) => fog::split_sum(args),
     };
-    let failed = |error| CliError::failure(format!("cannot draw: {error}"));
-    let svg = drawn.map_err(failed)?;
+    let failed = |error: PlotError| CliError::failure(error.to_string());
+    let svg = chart.map_err(failed)?;
     match png {
         false => report::write(output, &svg),
         true => {
-            let picture = Picture::of_svg(&svg, PNG_SCALE).and_then(|picture| picture.png());
-            report::write(output, picture.map_err(failed)?)
+            let png = Raster::from_svg(&svg, PNG_SCALE).and_then(|raster| raster.to_png());
+            report::write(output, png.map_err(failed)?)
         }
     }
 }

@@ -1,14 +1,13 @@
 //! What particles do to light: phase functions and efficiencies.
 
+use super::Chart;
 use crate::args::{DropletsArg, EfficiencyPlotArgs, Index, PhasePlotArgs};
 use crate::error::CliError;
 use crate::progress::Busy;
 use airlight::atmosphere::{Constituent, DensityProfile};
 use airlight::optics::RefractiveIndex;
 use airlight::optics::mie::{Complex64, MieError, Particles, SizeDistribution, Sphere};
-use airlight_plot::curves::curves as over;
-use airlight_plot::polar::polar_plot;
-use airlight_plot::{Axis, Curve, Drawn};
+use airlight_plot::{Axis, Curve, line_chart, polar_plot};
 use std::f64::consts::{PI, TAU};
 
 /// Effective variance of the sizes over which the oscillations of single spheres are smoothed.
@@ -18,7 +17,7 @@ const VARIANCE: f64 = 0.1;
 ///
 /// # Errors
 /// [`CliError`] where nothing was asked for, or particles are refused.
-pub fn phase(args: &PhasePlotArgs) -> Result<Drawn, CliError> {
+pub fn phase(args: &PhasePlotArgs) -> Result<Chart, CliError> {
     if args.droplets.is_empty() && args.size_parameter.is_empty() {
         return Err(CliError::usage(
             "say whose phase function: --droplets KIND,... or --size-parameter X,...",
@@ -45,9 +44,9 @@ pub fn phase(args: &PhasePlotArgs) -> Result<Drawn, CliError> {
     curves
         .iter_mut()
         .for_each(|curve| degrees(&mut curve.points));
-    let x = Axis::even("scattering angle, degrees");
-    let y = Axis::powers("phase function, 1/sr");
-    Ok(over(&x, &y, &curves))
+    let x = Axis::linear("scattering angle, degrees");
+    let y = Axis::logarithmic("phase function, 1/sr");
+    Ok(line_chart(&x, &y, &curves))
 }
 
 /// Angles all the way round (rad), in steps that resolve features of a width.
@@ -95,7 +94,7 @@ fn of_sphere(x: f64, index: Index, pattern: bool) -> Result<Curve, CliError> {
 ///
 /// # Errors
 /// [`CliError`] where particles are refused.
-pub fn efficiency(args: &EfficiencyPlotArgs) -> Result<Drawn, CliError> {
+pub fn efficiency(args: &EfficiencyPlotArgs) -> Result<Chart, CliError> {
     const STEPS: usize = 2500;
     const SMOOTH_STEPS: usize = 120;
     let index = Complex64::new(args.index.real, args.index.imaginary);
@@ -121,7 +120,7 @@ pub fn efficiency(args: &EfficiencyPlotArgs) -> Result<Drawn, CliError> {
             points: of_many?,
         },
     ];
-    let x = Axis::even("size parameter 2 pi r / wavelength");
-    let y = Axis::even("scattering efficiency");
-    Ok(over(&x, &y, &curves))
+    let x = Axis::linear("size parameter 2 pi r / wavelength");
+    let y = Axis::linear("scattering efficiency");
+    Ok(line_chart(&x, &y, &curves))
 }

@@ -70,7 +70,7 @@ impl RenderedImage {
     }
 
     /// As a display shows it, three bytes a pixel.
-    pub fn displayed(&self, tone: &ToneMapper) -> airlight_plot::raster::Picture {
+    pub fn displayed(&self, tone: &ToneMapper) -> airlight_plot::Raster {
         let size = self.frame.size();
         let width = size.width() as usize;
         let mut rgb = vec![0; 3 * self.rgb.len()];
@@ -80,7 +80,7 @@ impl RenderedImage {
         {
             tone.row_to_u8(y, row.as_flattened(), out);
         }
-        airlight_plot::raster::Picture {
+        airlight_plot::Raster {
             width: size.width(),
             height: size.height(),
             rgb,

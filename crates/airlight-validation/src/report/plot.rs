@@ -2,13 +2,17 @@
 
 use crate::check::{Check, Unit};
 use crate::measured::Published;
-use airlight_plot::Drawn;
-use airlight_plot::svg::{COLOURS, FONT, SIZE, draw, labels};
+use airlight_plot::PlotError;
+use airlight_plot::canvas::{COLOURS, FONT, SIZE, draw, draw_legend};
 use plotters::prelude::*;
 
 /// Errors of some checks of one unit over the zenith angle of the view, or over the angle from the sun; a colour for each
 /// name that `group` gives.
-pub fn errors(checks: &[Check], by_angle_from_sun: bool, group: fn(&Check) -> &str) -> Drawn {
+pub fn errors(
+    checks: &[Check],
+    by_angle_from_sun: bool,
+    group: fn(&Check) -> &str,
+) -> Result<String, PlotError> {
     let unit = checks.first().map_or(Unit::Percent, |check| check.unit);
     let place = |row: &crate::Row| match by_angle_from_sun {
         true => row.at.from_sun_deg(),
@@ -63,13 +67,13 @@ pub fn errors(checks: &[Check], by_angle_from_sun: bool, group: fn(&Check) -> &s
                 .label(*name)
                 .legend(move |(x, y)| Circle::new((x + 6, y), 4, colour.filled()));
         }
-        labels(&mut chart, SeriesLabelPosition::UpperRight)?;
+        draw_legend(&mut chart, SeriesLabelPosition::UpperRight)?;
         Ok(())
     })
 }
 
 /// Root mean square errors against the measured sky: ours and published ones.
-pub fn models(ours: &[Check], published: &[Published]) -> Drawn {
+pub fn models(ours: &[Check], published: &[Published]) -> Result<String, PlotError> {
     let mut bars: Vec<(String, f64, bool)> = published
         .iter()
         .map(|model| (model.model.clone(), model.rmse, false))
@@ -116,7 +120,7 @@ pub fn models(ours: &[Check], published: &[Published]) -> Drawn {
 }
 
 /// Spectra of four directions of the first scan of the air of the day.
-pub fn spectra(checks: &[Check]) -> Drawn {
+pub fn spectra(checks: &[Check]) -> Result<String, PlotError> {
     let Some(check) = checks.get(1) else {
         return Ok(String::new());
     };
@@ -170,7 +174,7 @@ pub fn spectra(checks: &[Check]) -> Drawn {
                 dots.map(|row| Circle::new((at(row), row.reference), 3, colour.filled())),
             )?;
         }
-        labels(&mut chart, SeriesLabelPosition::UpperRight)?;
+        draw_legend(&mut chart, SeriesLabelPosition::UpperRight)?;
         Ok(())
     })
 }

@@ -1,21 +1,24 @@
-//! Curves over an axis.
+//! Line charts.
 
-use crate::axis::{Axis, Curve};
-use crate::svg::{COLOURS, Drawn, SIZE, axes, draw, labels};
+use crate::canvas::{COLOURS, SIZE, draw, draw_axes, draw_legend};
+use crate::{Axis, Curve, PlotError};
 use plotters::prelude::*;
 
-/// Curves over an axis. An even axis upwards begins at 0, or at the least value below it.
+/// Draws curves over two axes, as SVG. A linear vertical axis without a range begins at 0, or at the least value below it.
 ///
 /// # Errors
-/// Where there is no value to draw, or the SVG could not be drawn.
-pub fn curves(x: &Axis, y: &Axis, curves: &[Curve]) -> Drawn {
+/// [`PlotError::NoRange`] where the curves span no range of the horizontal axis.
+pub fn line_chart(x: &Axis, y: &Axis, curves: &[Curve]) -> Result<String, PlotError> {
     let points = || curves.iter().flat_map(|curve| &curve.points);
-    let (left, right) = x.ends_of(points().map(|p| p.0));
-    let (low, high) = y.ends_of(points().map(|p| p.1));
+    let (left, right) = x.extent(points().map(|p| p.0));
+    let (low, high) = y.extent(points().map(|p| p.1));
     if !(left < right && low <= high) {
-        return Err("there is nothing to draw: no curve has two places".into());
+        return Err(PlotError::NoRange {
+            expected: "curves with finite values at two or more positions",
+            got: format!("{} points", points().count()),
+        });
     }
-    let (low, high) = match (y.ends, y.by_powers) {
+    let (low, high) = match (y.range, y.logarithmic) {
         (Some(_), _) => (low, high),
         (None, true) => (low.floor(), high.ceil().max(low.floor() + 1.0)),
         (None, false) => (low.min(0.0), 1.1 * high.max(1e-300)),
@@ -26,69 +29,69 @@ pub fn curves(x: &Axis, y: &Axis, curves: &[Curve]) -> Drawn {
             .x_label_area_size(44)
             .y_label_area_size(72)
             .build_cartesian_2d(left..right, low..high)?;
-        axes(&mut chart, (x, y), true)?;
+        draw_axes(&mut chart, (x, y), true)?;
         for (index, curve) in curves.iter().enumerate() {
             let colour = COLOURS[index % COLOURS.len()];
             let line = curve
                 .points
                 .iter()
-                .map(|p| (x.place(p.0), y.place(p.1)))
+                .map(|p| (x.position(p.0), y.position(p.1)))
                 .filter(|p| p.1.is_finite());
             chart
                 .draw_series(LineSeries::new(line, colour.stroke_width(2)))?
                 .label(&curve.name)
                 .legend(move |(x, y)| Circle::new((x + 6, y), 4, colour.filled()));
         }
-        labels(
+        draw_legend(
             &mut chart,
-            emptiest((x, y), ((left, right), (low, high)), curves),
+            emptiest_corner((x, y), ((left, right), (low, high)), curves),
         )
     })
 }
 
-/// The corner in which names hide the least of the curves.
-fn emptiest(
+/// The corner in which the legend hides the least of the curves.
+fn emptiest_corner(
     (x, y): (&Axis, &Axis),
     (across, up): ((f64, f64), (f64, f64)),
     curves: &[Curve],
 ) -> SeriesLabelPosition {
-    /// Points looked at between two of a curve.
-    const BETWEEN: u32 = 16;
-    // Parts of the chart that the names take.
-    let wide = curves
+    /// Samples between two points of a curve.
+    const SAMPLES: u32 = 16;
+    // Estimated size of the legend as a fraction of the chart.
+    let width = curves
         .iter()
         .map(|curve| curve.name.len())
         .max()
         .unwrap_or(0) as f64
         * 0.008
         + 0.04;
-    let tall = 0.055 * curves.len() as f64 + 0.03;
+    let height = 0.055 * curves.len() as f64 + 0.03;
     let part = |value: f64, (low, high): (f64, f64)| (value - low) / (high - low);
-    let places = |curve: &Curve| -> Vec<(f64, f64)> {
-        let places = curve.points.iter();
-        let places = places.map(|p| (part(x.place(p.0), across), part(y.place(p.1), up)));
-        places.filter(|p| p.1.is_finite()).collect()
+    let positions = |curve: &Curve| -> Vec<(f64, f64)> {
+        let points = curve.points.iter();
+        let parts = points.map(|p| (part(x.position(p.0), across), part(y.position(p.1), up)));
+        parts.filter(|p| p.1.is_finite()).collect()
     };
-    let curves: Vec<Vec<(f64, f64)>> = curves.iter().map(places).collect();
+    let curves: Vec<Vec<(f64, f64)>> = curves.iter().map(positions).collect();
     let hidden = |right: bool, top: bool| -> usize {
         let covers = |(x, y): (f64, f64)| {
             let (x, y) = (
                 if right { 1.0 - x } else { x },
                 if top { 1.0 - y } else { y },
             );
-            (0.0..wide).contains(&x) && (0.0..tall).contains(&y)
+            (0.0..width).contains(&x) && (0.0..height).contains(&y)
         };
         let on = |pair: &[(f64, f64)]| {
             let step = |k: u32| {
-                let t = f64::from(k) / f64::from(BETWEEN);
+                let t = f64::from(k) / f64::from(SAMPLES);
                 let mix = |a: f64, b: f64| a + t * (b - a);
                 (mix(pair[0].0, pair[1].0), mix(pair[0].1, pair[1].1))
             };
-            (0..BETWEEN).filter(|k| covers(step(*k))).count()
+            (0..SAMPLES).filter(|k| covers(step(*k))).count()
         };
         curves
             .iter()
-            .flat_map(|places| places.windows(2))
+            .flat_map(|positions| positions.windows(2))
             .map(on)
             .sum()
     };
@@ -108,14 +111,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_stand_where_no_curve_is() {
+    fn the_legend_stands_where_no_curve_is() {
         let falling = |from: f64, to: f64| Curve {
             name: "a curve".to_owned(),
             points: vec![(0.0, from), (1.0, to)],
         };
         let unit = ((0.0, 1.0), (0.0, 1.0));
-        let corner =
-            |curves: &[Curve]| emptiest((&Axis::even("x"), &Axis::even("y")), unit, curves);
+        let corner = |curves: &[Curve]| {
+            emptiest_corner((&Axis::linear("x"), &Axis::linear("y")), unit, curves)
+        };
         let [down, up] = [falling(1.0, 0.0), falling(0.0, 1.0)];
         assert!(matches!(
             corner(std::slice::from_ref(&down)),
@@ -133,9 +137,16 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_told() {
-        let empty = curves(&Axis::even("x"), &Axis::even("y"), &[]);
-        assert!(empty.unwrap_err().to_string().contains("nothing to draw"));
+    fn curves_without_a_range_are_refused() {
+        let (x, y) = (Axis::linear("x"), Axis::linear("y"));
+        let point = Curve {
+            name: "a point".to_owned(),
+            points: vec![(1.0, 2.0)],
+        };
+        for curves in [&[][..], &[point]] {
+            let error = line_chart(&x, &y, curves).unwrap_err();
+            assert!(matches!(error, PlotError::NoRange { .. }), "{error}");
+        }
     }
 
     #[test]
@@ -144,7 +155,8 @@ mod tests {
             name: "a straight line".to_owned(),
             points: vec![(0.0, 1.0), (1.0, 2.0)],
         };
-        let svg = curves(&Axis::even("across, m"), &Axis::powers("up, s"), &[curve]).unwrap();
+        let (x, y) = (Axis::linear("across, m"), Axis::logarithmic("up, s"));
+        let svg = line_chart(&x, &y, &[curve]).unwrap();
         for text in ["a straight line", "across, m", "up, s", "polyline"] {
             assert!(svg.contains(text), "{text}");
         }

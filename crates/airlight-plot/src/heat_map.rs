@@ -1,42 +1,45 @@
-//! Values over two axes, as a map of colours with lines of equal value.
+//! Heat maps: values over two axes as colours, with contour lines.
 
-use crate::axis::Axis;
-use crate::ramp::Ramp;
-use crate::svg::{Drawn, FONT, axes, draw};
+use crate::axis::number;
+use crate::canvas::{FONT, draw, draw_axes};
+use crate::{Axis, Colormap, PlotError};
 use plotters::prelude::*;
 
-/// Size of a map, pixels.
+/// Size of a heat map, pixels.
 const SIZE: (u32, u32) = (820, 520);
-/// Room for the scale at the right.
+/// Width of the colour scale at the right.
 const SCALE: u32 = 130;
 
-/// Values over two axes.
+/// Values on a grid.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Grid {
-    /// Places across, rising.
+pub struct HeatMap {
+    /// Columns: ascending values of the horizontal axis.
     pub x: Vec<f64>,
-    /// Places upwards, rising.
+    /// Rows: ascending values of the vertical axis.
     pub y: Vec<f64>,
-    /// The value at each place, `values[row of y][column of x]`.
+    /// `values[row][column]`.
     pub values: Vec<Vec<f64>>,
 }
 
-/// A map of `grid`; `quantity` names its values and their unit, `levels` are drawn as lines.
+/// Draws values as colours, with a contour line at each of `levels`, as SVG. `quantity` labels the colour scale.
 ///
 /// # Errors
-/// Where there are fewer than two places on an axis, or the SVG could not be drawn.
-pub fn map(
+/// [`PlotError::NoRange`] where an axis has fewer than two values.
+pub fn heat_map(
     (x, y): (&Axis, &Axis),
-    grid: &Grid,
-    (quantity, ramp): (&str, &Ramp),
+    data: &HeatMap,
+    (quantity, colormap): (&str, &Colormap),
     levels: &[f64],
-) -> Drawn {
-    if grid.x.len() < 2 || grid.y.len() < 2 {
-        return Err("there is nothing to draw: a map needs two places on each axis".into());
+) -> Result<String, PlotError> {
+    if data.x.len() < 2 || data.y.len() < 2 {
+        return Err(PlotError::NoRange {
+            expected: "two or more columns and rows",
+            got: format!("{} x {}", data.x.len(), data.y.len()),
+        });
     }
-    let across: Vec<f64> = grid.x.iter().map(|&v| x.place(v)).collect();
-    let up: Vec<f64> = grid.y.iter().map(|&v| y.place(v)).collect();
-    let ends = |places: &[f64]| (places[0], places[places.len() - 1]);
+    let across: Vec<f64> = data.x.iter().map(|&v| x.position(v)).collect();
+    let up: Vec<f64> = data.y.iter().map(|&v| y.position(v)).collect();
+    let ends = |positions: &[f64]| (positions[0], positions[positions.len() - 1]);
     let ((left, right), (low, high)) = (ends(&across), ends(&up));
     draw(SIZE, |root| {
         let (plot, scale) = root.split_horizontally(SIZE.0 - SCALE);
@@ -47,10 +50,10 @@ pub fn map(
             .y_label_area_size(72)
             .build_cartesian_2d(left..right, low..high)?;
         let (columns, rows) = (edges(&across), edges(&up));
-        let cells = grid.values.iter().enumerate().flat_map(|(row, values)| {
+        let cells = data.values.iter().enumerate().flat_map(|(row, values)| {
             let (columns, rows) = (&columns, &rows);
             values.iter().enumerate().map(move |(column, &value)| {
-                let [r, g, b] = ramp.colour(value);
+                let [r, g, b] = colormap.colour(value);
                 let corners = [
                     (columns[column], rows[row]),
                     (columns[column + 1], rows[row + 1]),
@@ -60,7 +63,7 @@ pub fn map(
         });
         chart.draw_series(cells)?;
         for &level in levels {
-            let lines = contour(&across, &up, &grid.values, level);
+            let lines = contour(&across, &up, &data.values, level);
             let style = BLACK.mix(0.75).stroke_width(1);
             chart.draw_series(
                 lines
@@ -68,8 +71,8 @@ pub fn map(
                     .map(|ends| PathElement::new(ends.to_vec(), style)),
             )?;
         }
-        axes(&mut chart, (x, y), false)?;
-        let bar = ramp.ends;
+        draw_axes(&mut chart, (x, y), false)?;
+        let bar = colormap.range;
         let mut chart = ChartBuilder::on(&scale)
             .margin(12)
             .margin_top(34)
@@ -80,7 +83,7 @@ pub fn map(
         const STEPS: usize = 64;
         chart.draw_series((0..STEPS).map(|i| {
             let at = |i: usize| bar.0 + (bar.1 - bar.0) * i as f64 / STEPS as f64;
-            let [r, g, b] = ramp.colour(0.5 * (at(i) + at(i + 1)));
+            let [r, g, b] = colormap.colour(0.5 * (at(i) + at(i + 1)));
             Rectangle::new([(0.0, at(i)), (1.0, at(i + 1))], RGBColor(r, g, b).filled())
         }))?;
         let mut marks: Vec<f64> = levels.to_vec();
@@ -88,7 +91,7 @@ pub fn map(
         marks.retain(|mark| (bar.0..=bar.1).contains(mark));
         for mark in marks {
             let (px, py) = chart.backend_coord(&(1.0, mark));
-            let text = format!("\u{2013} {}", Axis::even("").label(mark));
+            let text = format!("\u{2013} {}", number(mark));
             root.draw(&Text::new(text, (px + 2, py - 8), (FONT, 14)))?;
         }
         root.draw(&Text::new(
@@ -100,25 +103,25 @@ pub fn map(
     })
 }
 
-/// Edges of the cells around places: halfway between neighbours, and the first and last place themselves.
-fn edges(places: &[f64]) -> Vec<f64> {
-    let last = places.len() - 1;
-    (0..=places.len())
+/// Edges of the cells around positions: halfway between neighbours, and the first and last position themselves.
+fn edges(positions: &[f64]) -> Vec<f64> {
+    let last = positions.len() - 1;
+    (0..=positions.len())
         .map(|i| match i {
-            0 => places[0],
-            i if i > last => places[last],
-            i => 0.5 * (places[i - 1] + places[i]),
+            0 => positions[0],
+            i if i > last => positions[last],
+            i => 0.5 * (positions[i - 1] + positions[i]),
         })
         .collect()
 }
 
-/// Pieces of the line on which values between places, taken as straight along the edges, are `level`.
+/// Segments of the contour line of `level`, with values interpolated linearly along the edges of cells (marching squares).
 fn contour(x: &[f64], y: &[f64], values: &[Vec<f64>], level: f64) -> Vec<[(f64, f64); 2]> {
-    let mut pieces = Vec::new();
+    let mut segments = Vec::new();
     for j in 1..y.len() {
         for i in 1..x.len() {
             let corner = |i: usize, j: usize| ((x[i], y[j]), values[j][i] - level);
-            let around = [
+            let corners = [
                 corner(i - 1, j - 1),
                 corner(i, j - 1),
                 corner(i, j),
@@ -126,18 +129,18 @@ fn contour(x: &[f64], y: &[f64], values: &[Vec<f64>], level: f64) -> Vec<[(f64, 
             ];
             let mut crossings = Vec::with_capacity(4);
             for k in 0..4 {
-                let ((a, va), (b, vb)) = (around[k], around[(k + 1) % 4]);
+                let ((a, va), (b, vb)) = (corners[k], corners[(k + 1) % 4]);
                 if (va < 0.0) != (vb < 0.0) && va.is_finite() && vb.is_finite() {
                     let t = va / (va - vb);
                     crossings.push((a.0 + t * (b.0 - a.0), a.1 + t * (b.1 - a.1)));
                 }
             }
             for pair in crossings.chunks_exact(2) {
-                pieces.push([pair[0], pair[1]]);
+                segments.push([pair[0], pair[1]]);
             }
         }
     }
-    pieces
+    segments
 }
 
 #[cfg(test)]
@@ -145,29 +148,36 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lines_lie_where_the_value_is() {
-        let places: Vec<f64> = (0..5).map(f64::from).collect();
+    fn contour_lines_lie_where_the_value_is() {
+        let positions: Vec<f64> = (0..5).map(f64::from).collect();
         let values: Vec<Vec<f64>> = (0..5)
             .map(|j| (0..5).map(|i| f64::from(i + 2 * j)).collect())
             .collect();
-        let pieces = contour(&places, &places, &values, 4.5);
-        assert!(pieces.len() >= 4);
-        for (x, y) in pieces.into_iter().flatten() {
+        let segments = contour(&positions, &positions, &values, 4.5);
+        assert!(segments.len() >= 4);
+        for (x, y) in segments.into_iter().flatten() {
             assert!((x + 2.0 * y - 4.5).abs() < 1e-12, "{x} {y}");
         }
     }
 
     #[test]
-    fn a_map_has_axes_and_a_scale() {
-        let grid = Grid {
+    fn a_heat_map_has_cells_axes_and_a_scale() {
+        let data = HeatMap {
             x: vec![1.0, 10.0],
             y: vec![0.0, 1.0],
             values: vec![vec![0.0, 1.0], vec![2.0, 3.0]],
         };
-        let axes = (&Axis::powers("across, m"), &Axis::even("up, deg"));
-        let svg = map(axes, &grid, ("error, %", &Ramp::from_zero(3.0)), &[1.0]).unwrap();
+        let axes = (&Axis::logarithmic("across, m"), &Axis::linear("up, deg"));
+        let colormap = Colormap::sequential(3.0);
+        let svg = heat_map(axes, &data, ("error, %", &colormap), &[1.0]).unwrap();
         for text in ["across, m", "up, deg", "error, %", "rect"] {
             assert!(svg.contains(text), "{text}");
+        }
+        // Each value has a cell of its colour.
+        for value in [0.0, 1.0, 2.0, 3.0] {
+            let [r, g, b] = colormap.colour(value);
+            let fill = format!("fill=\"#{r:02X}{g:02X}{b:02X}\"");
+            assert!(svg.contains(&fill), "{fill}");
         }
     }
 }

@@ -1,15 +1,16 @@
-//! Curves around a point.
+//! Polar plots.
 
-use crate::axis::Curve;
-use crate::svg::{COLOURS, Drawn, FONT, draw};
+use crate::canvas::{COLOURS, FONT, draw};
+use crate::{Curve, PlotError};
 use plotters::prelude::*;
 use std::f64::consts::PI;
 
-/// Curves around a point, angle 0 to the right: a panel for each, its farthest point at the panel's edge.
+/// Draws each curve in a panel of its own around a point, angle 0 to the right, as SVG. The outer circle is at the largest
+/// distance of the curve.
 ///
 /// # Errors
-/// Where the SVG could not be drawn.
-pub fn polar_plot(curves: &[Curve]) -> Drawn {
+/// [`PlotError::Draw`] where the drawing library fails.
+pub fn polar_plot(curves: &[Curve]) -> Result<String, PlotError> {
     const PANEL: u32 = 320;
     const TITLE: i32 = 40;
     let columns = curves.len().clamp(1, 3);
@@ -22,11 +23,11 @@ pub fn polar_plot(curves: &[Curve]) -> Drawn {
             .zip(curves)
             .enumerate()
         {
-            let most = curve.points.iter().map(|p| p.1).fold(0.0, f64::max);
+            let max = curve.points.iter().map(|p| p.1).fold(0.0, f64::max);
             let middle = PANEL as i32 / 2;
             let reach = f64::from(middle) - 14.0;
-            let place = |(angle, distance): (f64, f64)| {
-                let r = reach * distance / most;
+            let position = |(angle, distance): (f64, f64)| {
+                let r = reach * distance / max;
                 let (x, y) = (r * angle.cos(), -r * angle.sin());
                 (middle + x.round() as i32, TITLE + middle + y.round() as i32)
             };
@@ -35,12 +36,12 @@ pub fn polar_plot(curves: &[Curve]) -> Drawn {
                 let style = BLACK.mix(0.12);
                 panel.draw(&Circle::new((middle, TITLE + middle), radius, style))?;
             }
-            let across = [place((0.0, most)), place((PI, most))];
+            let across = [position((0.0, max)), position((PI, max))];
             panel.draw(&PathElement::new(across.to_vec(), BLACK.mix(0.12)))?;
-            let line: Vec<(i32, i32)> = curve.points.iter().map(|&p| place(p)).collect();
+            let line: Vec<(i32, i32)> = curve.points.iter().map(|&p| position(p)).collect();
             let colour = COLOURS[index % COLOURS.len()];
             panel.draw(&PathElement::new(line, colour.stroke_width(2)))?;
-            let titles = [curve.name.clone(), format!("outer circle: {most:.2e}")];
+            let titles = [curve.name.clone(), format!("outer circle: {max:.2e}")];
             for (row, text) in titles.into_iter().enumerate() {
                 panel.draw(&Text::new(text, (10, 6 + 17 * row as i32), (FONT, 14)))?;
             }
