@@ -98,7 +98,7 @@ pub struct OverlayLightArgs {
     pub light_form: Option<LightFormArg>,
 
     /// Light the fog by the solved sky and its sun (--sun-elevation, or --at and --when) instead of the ambient light
-    #[arg(long, conflicts_with = "sun_strength")]
+    #[arg(long)]
     pub sky_light: bool,
     /// Atmosphere of --sky-light: a name or a TOML file, as for `airlight sky` [default: average]
     #[arg(long, value_name = "NAME|FILE.toml")]
@@ -138,7 +138,7 @@ impl OverlayLightArgs {
             None => {}
         }
         overlay.ambient_scale = self.ambient_scale.unwrap_or(overlay.ambient_scale);
-        overlay.sun_strength = self.sun_strength.unwrap_or(overlay.sun_strength);
+        put(&mut overlay.sun_strength, self.sun_strength);
         overlay.sky_light |= self.sky_light;
         put(&mut overlay.radiance_scale, self.radiance_scale);
         if let Some(air) = self.air {

@@ -215,21 +215,15 @@ fn check_variation(scene: &OverlayScene, vary: &[Variation]) -> Result<(), Batch
             );
         }
     }
-    // Any visibility stands for the drawn ones.
-    let mut base = scene.clone();
-    match (names.contains("visibility"), base.fog().visibility_m) {
-        (true, Some(given)) => {
-            return refuse(
-                "visibility",
-                "a drawn visibility instead of a given one",
-                format!("both, visibility-m {given} too"),
-                "leaving one out",
-            );
-        }
-        (true, None) => base.fog_mut().visibility_m = Some(100.0),
-        (false, _) => {}
+    if let (true, Some(given)) = (names.contains("visibility"), scene.fog().visibility_m) {
+        return refuse(
+            "visibility",
+            "a drawn visibility instead of a given one",
+            format!("both, visibility-m {given} too"),
+            "leaving one out",
+        );
     }
-    let own = [base.fog_profile().name()];
+    let own = [scene.fog_profile().name()];
     let profiles = vary
         .iter()
         .find(|variation| variation.name() == "fog-profile");
@@ -248,9 +242,7 @@ fn check_variation(scene: &OverlayScene, vary: &[Variation]) -> Result<(), Batch
             );
         }
     }
-    if names.contains("sun-elevation") {
-        base.scene.sun.elevation_deg = Some(45.0);
-    } else if scene.scene.sun.elevation_deg.is_none() {
+    if !names.contains("sun-elevation") && scene.scene.sun.elevation_deg.is_none() {
         for name in ["sun-azimuth", "sun-strength"] {
             if names.contains(name) {
                 return refuse(
@@ -262,11 +254,10 @@ fn check_variation(scene: &OverlayScene, vary: &[Variation]) -> Result<(), Batch
             }
         }
     }
-    // The first choices stand for the others while one of them is checked.
+    // Every choice is checked with the first values of the other settings.
+    let mut base = scene.clone();
     for variation in vary {
-        if let Some([first, ..]) = variation.choices() {
-            variation.choose(&mut base, first);
-        }
+        variation.set(&mut base, 0.0);
     }
     for variation in vary {
         for choice in variation.choices().unwrap_or_default() {

@@ -168,7 +168,7 @@ static SETTINGS: [Setting; 15] = [
         s.scene.sun.azimuth_deg = Some(v)
     }),
     even("sun-strength", "", Domain::NotNegative, |s, v| {
-        s.overlay.sun_strength = v
+        s.overlay.sun_strength = Some(v)
     }),
     even("ground-albedo", "", Domain::Fraction, |s, v| {
         s.scene.air.ground_albedo = Some(v)
@@ -244,7 +244,14 @@ impl Variation {
 
     /// Draws the setting for a variant of a picture; the value depends on the arguments and the setting's name only.
     pub fn draw(&self, scene: &mut OverlayScene, seed: u64, picture: &str, variant: u32) {
-        let fraction = super::draw::fraction(seed, picture, variant, self.setting.stream);
+        self.set(
+            scene,
+            super::draw::fraction(seed, picture, variant, self.setting.stream),
+        );
+    }
+
+    /// Sets the setting to the value at a fraction, from 0 to 1 (exclusive), of its range or list.
+    pub(super) fn set(&self, scene: &mut OverlayScene, fraction: f64) {
         match (&self.values, &self.setting.kind) {
             (Values::Range(spacing, low, high), Kind::Number { set, .. }) => {
                 let value = match spacing {

@@ -1,6 +1,6 @@
 //! The complete description of a picture in fog.
 
-use super::{OverlaySpec, SkyLight};
+use super::{ExistingAerial, OverlaySpec, SkyLight};
 use crate::RenderError;
 use airlight::atmosphere::Constituent;
 use airlight::fog::droplets::DropletKind;
@@ -9,7 +9,8 @@ use airlight::fog::visibility::{Contrast, extinction_per_m};
 use airlight::fog::{DensityProfile, FogScattering};
 use airlight::monte_carlo::{MonteCarloSettings, SunShape};
 use airlight::scene::{
-    FogLayer, FogLayerSpec, FogProfile, FogSpec, LightKind, Scene, SceneDocument, SceneError,
+    FogLayer, FogLayerSpec, FogProfile, FogSpec, Input, LightKind, OutputSpec, Projection, Scene,
+    SceneDocument, SceneError,
 };
 use airlight::spectrum::WavelengthGrid;
 use airlight_image::frame::Intrinsics;
@@ -25,6 +26,25 @@ const FOV_DEG: f64 = 60.0;
 /// Solvers in scene files.
 const ORDERS: &str = "orders";
 const MONTE_CARLO: &str = "monte-carlo";
+/// Inputs that change the fog itself.
+const OF_FOG: [Input; 4] = [
+    Input::Fog,
+    Input::FogScattering,
+    Input::Lights,
+    Input::GroundAlbedo,
+];
+/// Inputs that change the solved sky.
+const OF_SKY: [Input; 7] = [
+    Input::Atmosphere,
+    Input::Haze,
+    Input::Ozone,
+    Input::SunDistance,
+    Input::Wavelengths,
+    Input::Scattering,
+    Input::Effort,
+];
+/// Inputs that change the Monte Carlo.
+const OF_MONTE_CARLO: [Input; 2] = [Input::Paths, Input::NoiseMap];
 /// Monte Carlo paths for each pixel, if the description gives none.
 const PATHS: u64 = 256;
 
@@ -232,6 +252,7 @@ impl OverlayScene {
             ));
         }
         self.check_solver()?;
+        self.check_ignored()?;
         if is_one_colour(profile) {
             self.check_one_colour()?;
         }
@@ -245,20 +266,7 @@ impl OverlayScene {
     fn check_solver(&self) -> Result<(), RenderError> {
         let solver = &self.scene.solver;
         match solver.name.as_deref() {
-            None | Some(ORDERS) => {
-                for (given, key) in [
-                    (solver.paths.is_some(), "paths"),
-                    (solver.seed.is_some(), "seed"),
-                    (self.scene.output.noise_map == Some(true), "noise-map"),
-                ] {
-                    if given {
-                        return Err(RenderError::setting(format!(
-                            "{key}: expected solver monte-carlo, got the fast one; try solver monte-carlo, or leaving {key} out"
-                        )));
-                    }
-                }
-                Ok(())
-            }
+            None | Some(ORDERS) => Ok(()),
             Some(MONTE_CARLO) if !self.overlay.sky_light => Err(RenderError::setting(
                 "solver monte-carlo: expected sunlight and skylight to follow through fog and air, got ambient light; try \
                  sky-light",
@@ -274,6 +282,108 @@ impl OverlayScene {
                 "solver: expected orders or monte-carlo for fog over a picture, got {other}; try leaving it out"
             ))),
         }
+    }
+
+    /// Refuses settings that would be ignored.
+    fn check_ignored(&self) -> Result<(), RenderError> {
+        let refuse = |key: &str, expected: &str, got: &str, advice: &str| {
+            Err(RenderError::setting(format!(
+                "{key}: expected {expected}, got {got}; try {advice}"
+            )))
+        };
+        let (scene, overlay, sky_light) = (&self.scene, &self.overlay, self.overlay.sky_light);
+        for input in scene.set_inputs() {
+            let key = input.key();
+            if OF_SKY.contains(&input) {
+                if !sky_light {
+                    return refuse(
+                        key,
+                        "a solved sky",
+                        "ambient light",
+                        "sky-light, or leaving it out",
+                    );
+                }
+            } else if OF_MONTE_CARLO.contains(&input) {
+                if self.monte_carlo().is_none() {
+                    let advice = "solver monte-carlo, or leaving it out";
+                    return refuse(key, "solver monte-carlo", "another", advice);
+                }
+            } else if !OF_FOG.contains(&input) {
+                let got = input.to_string();
+                return refuse(
+                    key,
+                    "settings of fog over a picture",
+                    &got,
+                    "leaving it out",
+                );
+            }
+        }
+        let (sun, camera) = (&scene.sun, &scene.camera);
+        for (set, key) in [
+            (sun.latitude_deg.is_some(), "sun.latitude_deg"),
+            (
+                scene.air.ground_altitude_m.is_some(),
+                "air.ground_altitude_m",
+            ),
+            (overlay.radiance_scale.is_some(), "overlay.radiance_scale"),
+            (overlay.air == ExistingAerial::Missing, "overlay.air"),
+        ] {
+            if set && !sky_light {
+                return refuse(
+                    key,
+                    "a solved sky",
+                    "ambient light",
+                    "sky-light, or leaving it out",
+                );
+            }
+        }
+        if overlay.sun_strength.is_some() && (sky_light || sun.elevation_deg.is_none()) {
+            let got = if sky_light { "a solved sky" } else { "no sun" };
+            return refuse(
+                "overlay.sun_strength",
+                "a sun beside ambient light",
+                got,
+                "leaving it out, or sun-elevation without sky-light",
+            );
+        }
+        if overlay.focal_px.is_some() == camera.fov_deg.is_some() && camera.fov_deg.is_some() {
+            return refuse(
+                "overlay.focal_px",
+                "a focal length or a field of view",
+                "both",
+                "one of them",
+            );
+        }
+        if overlay.principal_point_px.is_some() && overlay.focal_px.is_none() {
+            return refuse(
+                "overlay.principal_point_px",
+                "a focal length with it",
+                "none",
+                "focal-px",
+            );
+        }
+        let output = OutputSpec {
+            file: None,
+            noise_map: None,
+            ..scene.output.clone()
+        };
+        let perspective = [None, Some(Projection::Perspective)];
+        for (set, key) in [
+            (scene.observer.altitude_m.is_some(), "observer.altitude_m"),
+            (
+                !perspective.contains(&camera.projection),
+                "camera.projection",
+            ),
+            (camera.size.is_some(), "camera.size"),
+            (output != OutputSpec::default(), "output"),
+            (scene.sequence.is_some(), "sequence"),
+        ] {
+            if set {
+                let expected = "the perspective, size and encoding of the colour picture, seen from eye_height_m";
+                return refuse(key, expected, "others", "leaving it out");
+            }
+        }
+        Ok(())
     }
 
     /// Fog of one colour scatters no light.

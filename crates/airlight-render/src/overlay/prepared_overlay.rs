@@ -23,6 +23,9 @@ use std::f32::consts::PI;
 /// Albedo of the ground, if the description gives none.
 const GROUND_ALBEDO: f64 = 0.2;
 
+/// Strength of the sun, if the description gives none.
+const SUN_STRENGTH: f64 = 3.0;
+
 /// The camera and the fog of a description over a picture.
 pub struct PreparedOverlay {
     /// The camera.
@@ -200,11 +203,12 @@ fn alone(
     layers: &[RgbLayer],
     ambient: Spectrum<3>,
 ) -> Result<FogSource, RenderError> {
+    let sun_strength = scene.overlay.sun_strength.unwrap_or(SUN_STRENGTH);
     let sun = scene.scene.sun.elevation_deg.map(|elevation_deg| {
         let azimuth_deg = scene.scene.sun.azimuth_deg.unwrap_or(180.0);
         DirectionalLight {
             direction: axes::direction(azimuth_deg, elevation_deg),
-            irradiance: (ambient * (PI * scene.overlay.sun_strength as f32)).0,
+            irradiance: (ambient * (PI * sun_strength as f32)).0,
         }
     });
     let albedo = scene.scene.air.ground_albedo.unwrap_or(GROUND_ALBEDO);

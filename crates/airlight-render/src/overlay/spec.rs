@@ -78,8 +78,9 @@ pub struct OverlaySpec {
     pub ambient: Option<[f64; 3]>,
     /// Factor on the ambient light, above 0.
     pub ambient_scale: f64,
-    /// Irradiance facing the sun over the horizontal irradiance of the ambient light (pi times its radiance).
-    pub sun_strength: f64,
+    /// Irradiance facing the sun over the horizontal irradiance of the ambient light (pi times its radiance); `None`: 3.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sun_strength: Option<f64>,
     /// Light the fog by the solved sky and its sun instead of the picture's ambient light.
     pub sky_light: bool,
     /// Units of the picture in one cd/m^2 of the solved sky; `None`: as the file states its white, else matched to the picture.
@@ -109,7 +110,7 @@ impl Default for OverlaySpec {
             principal_point_px: None,
             ambient: None,
             ambient_scale: 1.0,
-            sun_strength: 3.0,
+            sun_strength: None,
             sky_light: false,
             radiance_scale: None,
             air: ExistingAerial::Drawn,

@@ -428,6 +428,12 @@ fn contradictions_are_refused_before_anything_is_written() {
         let sentence = refused(given.clone(), vary(texts));
         assert!(sentence.contains(part), "{part}: {sentence}");
     }
+    let mut skylit = folder.usual(8.0);
+    skylit.overlay.sky_light = true;
+    skylit.fog_mut().top_m = Some(20.0);
+    skylit.scene.sun.elevation_deg = Some(20.0);
+    let sentence = refused(skylit, vary(&["sun-strength=1..3"]));
+    assert!(sentence.contains("sun_strength"), "{sentence}");
     let unknown = folder.varied("rgb/*.png", "depth/*.png", "out/*.png");
     assert!(refused(unknown, BatchSettings::default()).contains("a visibility"));
     // A choice that is refused is refused whether it is drawn or not.

@@ -2,7 +2,7 @@
 
 use super::common::{black, layers, scene};
 use airlight::fog::FogScattering;
-use airlight::scene::{FogLayerSpec, FogProfile};
+use airlight::scene::{FogLayerSpec, FogProfile, ObjectsSpec};
 use airlight_render::overlay::OverlayScene;
 
 const SIZE: (u32, u32) = (32, 24);
@@ -172,7 +172,43 @@ fn contradictions_are_refused_before_any_file_is_read() {
         scene.check().unwrap_err().to_string()
     };
     let light = || super::lights::point([0.0, 1.0, -5.0], 1.0);
-    let cases: [(&dyn Fn(&mut OverlayScene), &str); 12] = [
+    let cases: [(&dyn Fn(&mut OverlayScene), &str); 22] = [
+        (&|s| s.scene.air.aod_550 = Some(0.2), "a solved sky"),
+        (
+            &|s| s.scene.sun.latitude_deg = Some(50.0),
+            "latitude and longitude",
+        ),
+        (
+            &|s| s.scene.air.ground_altitude_m = Some(9.0),
+            "a solved sky",
+        ),
+        (&|s| s.overlay.radiance_scale = Some(1.0), "a solved sky"),
+        (&|s| s.overlay.sun_strength = Some(1.0), "no sun"),
+        (
+            &|s| s.overlay.principal_point_px = Some([1.0, 2.0]),
+            "focal-px",
+        ),
+        (
+            &|s| {
+                s.overlay.focal_px = Some(100.0);
+                s.scene.camera.fov_deg = Some(50.0);
+            },
+            "got both",
+        ),
+        (
+            &|s| s.scene.observer.altitude_m = Some(9.0),
+            "observer.altitude_m",
+        ),
+        (&|s| s.scene.output.scale = Some(2.0), "output: expected"),
+        (
+            &|s| {
+                s.scene.objects = Some(ObjectsSpec {
+                    file: Some("a.toml".into()),
+                    ..Default::default()
+                })
+            },
+            "objects",
+        ),
         (&|s| s.fog_mut().visibility_m = None, "a visibility"),
         (&|s| s.fog_mut().visibility_m = Some(0.0), "above 0"),
         (
