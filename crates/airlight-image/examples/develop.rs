@@ -5,7 +5,7 @@ use airlight_image::{
     Control, PictureOptions,
     input::read_picture,
     rows::StoredRows,
-    tone::{Exposure, Metering, ToneCurve, ToneMapper},
+    tone::{Exposure, Metering, ToneCurve, ToneMapper, srgb},
     write_picture,
 };
 use std::{error::Error, path::Path};
@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         .as_chunks::<3>()
         .0
         .iter()
-        .map(|c| (0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2], 1.0))
+        .map(|&c| (srgb::luminance(c), 1.0))
         .collect();
     let exposure = match ev100 {
         [ev100, ..] => Exposure::from_ev100(ev100.parse()?)?,

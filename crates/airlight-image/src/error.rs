@@ -1,6 +1,5 @@
 //! What can go wrong, in sentences that say what, where, and what would be right.
 
-use crate::Size;
 use airlight::Cancelled;
 use std::{io, path::PathBuf};
 
@@ -134,13 +133,13 @@ pub enum ImageError {
     /// A depth map that is not as large as its picture.
     #[error(
         "the depth map is {} x {} pixels, the picture {} x {}: both must be the same",
-        .depth.width(), .depth.height(), .picture.width(), .picture.height()
+        .depth.0, .depth.1, .picture.0, .picture.1
     )]
     SizesDiffer {
-        /// Of the depth map.
-        depth: Size,
-        /// Of the picture.
-        picture: Size,
+        /// Width and height of the depth map.
+        depth: (u32, u32),
+        /// Width and height of the picture.
+        picture: (u32, u32),
     },
     /// The caller cancelled; nothing was left behind.
     #[error("cancelled; no file was left behind")]

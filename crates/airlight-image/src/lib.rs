@@ -20,12 +20,14 @@ pub mod frame;
 pub mod input;
 pub mod output;
 pub mod rows;
+mod size;
 pub mod terminal;
 pub mod tone;
 
 pub use airlight::{Control, Progress};
 pub use error::ImageError;
-pub use frame::{Camera, CubeFace, Fisheye, Frame, Intrinsics, Projection, Size};
+pub use frame::{Camera, CubeFace, Fisheye, Frame, Intrinsics, Projection};
 pub use input::{DepthMap, DepthOptions, Picture, read_depth, read_picture};
 pub use output::{PictureFormat, PictureOptions, write_picture};
 pub use rows::RowSource;
+pub use size::Size;

@@ -1,6 +1,8 @@
 //! The mathematics of each projection, with everything that does not depend on the pixel worked out beforehand.
 
-use super::{CubeFace, Projection, Size, solid_angle};
+use super::projection::{CubeFace, Projection};
+use super::solid_angle;
+use crate::Size;
 use airlight::axes;
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};

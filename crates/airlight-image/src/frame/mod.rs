@@ -12,44 +12,9 @@ mod solid_angle;
 pub use intrinsics::{Intrinsics, PixelCentres};
 pub use projection::{Camera, CubeFace, Fisheye, Projection};
 
-use crate::ImageError;
+use crate::{ImageError, Size};
 use glam::DVec3;
 use lens::Lens;
-
-/// Width and height of a picture in pixels, each in `1..=65536`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Size {
-    width: u32,
-    height: u32,
-}
-
-impl Size {
-    /// The largest width and height.
-    pub const MAX: u32 = 65536;
-
-    /// Checks width and height.
-    ///
-    /// # Errors
-    /// [`ImageError::Size`] where one is 0 or above 65536.
-    pub fn new(width: u32, height: u32) -> Result<Self, ImageError> {
-        let fits = |n| (1..=Self::MAX).contains(&n);
-        if fits(width) && fits(height) {
-            Ok(Self { width, height })
-        } else {
-            Err(ImageError::Size { width, height })
-        }
-    }
-
-    /// Pixels in a row.
-    pub fn width(self) -> u32 {
-        self.width
-    }
-
-    /// Rows.
-    pub fn height(self) -> u32 {
-        self.height
-    }
-}
 
 /// A projection laid over a grid of pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -91,17 +56,7 @@ impl Frame {
 
     /// The same view in few pixels, for a preview or for metering: `longest_side` at most, each side at least 1.
     pub fn preview(&self, longest_side: u32) -> Self {
-        let (width, height) = (self.size.width, self.size.height);
-        let longest = width.max(height);
-        let side = longest_side.clamp(1, longest);
-        let scaled = |n: u32| {
-            let n = u64::from(n) * u64::from(side) + u64::from(longest) / 2;
-            (n / u64::from(longest)).max(1) as u32
-        };
-        let size = Size {
-            width: scaled(width),
-            height: scaled(height),
-        };
+        let size = self.size.shrunk_to(longest_side);
         Self {
             projection: self.projection,
             size,
@@ -122,8 +77,8 @@ impl Frame {
     /// The direction seen at continuous pixel coordinates; `None` outside the picture, outside the circle of a
     /// fisheye, and for numbers that are not finite.
     pub fn direction(&self, px: f64, py: f64) -> Option<DVec3> {
-        let inside = (0.0..=f64::from(self.size.width)).contains(&px)
-            && (0.0..=f64::from(self.size.height)).contains(&py);
+        let inside = (0.0..=f64::from(self.size.width())).contains(&px)
+            && (0.0..=f64::from(self.size.height())).contains(&py);
         inside.then(|| self.lens.direction(px, py)).flatten()
     }
 
@@ -137,7 +92,7 @@ impl Frame {
         let unit = direction.try_normalize()?;
         let (px, py) = self.lens.pixel_of(unit)?;
         // A direction at the very edge may land a rounding error beyond it.
-        let (w, h) = (f64::from(self.size.width), f64::from(self.size.height));
+        let (w, h) = (f64::from(self.size.width()), f64::from(self.size.height()));
         let slack = 1e-9;
         let inside = px >= -slack * w
             && px <= w * (1.0 + slack)
@@ -150,7 +105,7 @@ impl Frame {
     /// fisheye (relative error below 1e-9 for pixels wholly inside the circle of a picture of 64 or more pixels; a
     /// pixel cut by the circle counts by the part of its 9 sample points that lie inside).
     pub fn pixel_solid_angle(&self, i: u32, j: u32) -> f64 {
-        if i >= self.size.width || j >= self.size.height {
+        if i >= self.size.width() || j >= self.size.height() {
             return 0.0;
         }
         self.lens.solid_angle(i, j)
@@ -161,7 +116,7 @@ impl Frame {
     pub fn rows(&self) -> FrameRows {
         FrameRows {
             frame: *self,
-            columns: self.lens.columns(self.size.width),
+            columns: self.lens.columns(self.size.width()),
         }
     }
 }

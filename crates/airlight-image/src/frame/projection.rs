@@ -1,7 +1,6 @@
 //! The kinds of projection and their settings.
 
-use super::Size;
-use crate::ImageError;
+use crate::{ImageError, Size};
 
 /// How directions are laid out in a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -15,7 +15,11 @@ mod npy;
 mod pfm;
 pub mod picture;
 mod png;
+mod read_depth;
+mod read_picture;
 mod source;
 
-pub use depth::{DepthKind, DepthMap, DepthMeaning, DepthOptions, Unknown, read_depth};
-pub use picture::{LightReference, Picture, SampleBits, read_picture};
+pub use depth::{DepthKind, DepthMap, DepthMeaning, DepthOptions, Unknown};
+pub use picture::{LightReference, Picture, SampleBits};
+pub use read_depth::read_depth;
+pub use read_picture::read_picture;

@@ -1,12 +1,13 @@
 //! OpenEXR files: linear, any channels, half or single precision, scan lines in blocks that are compressed in parallel.
 
+pub use super::options::{ExrCompression, ExrOptions, ExrSample};
 use super::{
-    FormatEntry, Metadata, Written,
+    Metadata,
     bands::{Bands, RowBuffer},
     deflate::{Deflater, End},
     exr_header,
-    exr_stream::ScanLineStream,
-    into_file,
+    exr_stream::{FORMAT, ScanLineStream, failed},
+    format::{FormatEntry, Written, into_file},
 };
 use crate::{Control, ImageError, RowSource, Size};
 use ::exr::{
@@ -15,7 +16,6 @@ use ::exr::{
         chunk::{CompressedBlock, CompressedScanLineBlock},
     },
     compression::Compression,
-    error::Error as ExrError,
     math::Vec2,
     meta::header::Header,
 };
@@ -25,8 +25,6 @@ use std::{
     ops::Range,
     path::Path,
 };
-
-pub(super) const FORMAT: &str = "OpenEXR";
 
 /// The format of this file's writer.
 pub(super) static ENTRY: FormatEntry = FormatEntry {
@@ -55,41 +53,6 @@ pub(super) static ENTRY: FormatEntry = FormatEntry {
 
 /// Effort of zip, 0 to 9: from here up files shrink by a few percent only, for half as much time again.
 const ZIP_LEVEL: u8 = 2;
-
-/// How samples are stored.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum ExrSample {
-    /// 16 bits: about 3 digits, up to 65504; brighter samples are brought to that and counted.
-    #[default]
-    Half,
-    /// 32 bits; infinite samples stay infinite.
-    Float,
-}
-
-/// How samples are packed. None of these loses anything.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum ExrCompression {
-    /// Not at all.
-    None,
-    /// Run lengths: fast, large.
-    Rle,
-    /// Zip over single lines.
-    ZipLine,
-    /// Zip over 16 lines; over single lines where those would take more than 16 MiB.
-    #[default]
-    Zip,
-    /// Wavelets over 32 lines: small for grainy pictures; zip over single lines where they would take more than 16 MiB.
-    Piz,
-}
-
-/// Settings of EXR files.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub struct ExrOptions {
-    /// How samples are stored.
-    pub sample: ExrSample,
-    /// How samples are packed.
-    pub compression: ExrCompression,
-}
 
 /// Writes rows to a file; `channels` names the values of a pixel in the order the source gives them.
 ///
@@ -284,17 +247,4 @@ fn zip(data: Vec<u8>) -> Result<Vec<u8>, ImageError> {
     } else {
         data
     })
-}
-
-pub(super) fn failed(error: ExrError) -> ImageError {
-    match error {
-        ExrError::Io(source) => ImageError::Stream {
-            format: FORMAT,
-            source,
-        },
-        other => ImageError::Encode {
-            format: FORMAT,
-            reason: other.to_string(),
-        },
-    }
 }

@@ -2,7 +2,7 @@
 
 use super::{
     Metadata,
-    exr::{ExrCompression, ExrOptions, ExrSample},
+    options::{ExrCompression, ExrOptions, ExrSample},
 };
 use crate::{ImageError, Size};
 use ::exr::{

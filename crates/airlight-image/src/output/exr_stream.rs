@@ -2,10 +2,13 @@
 //!
 //! Attributes are written in the order of their names, so that the same picture always makes the same bytes.
 
-use super::exr::failed;
 use crate::ImageError;
+use ::exr::error::Error as ExrError;
 use ::exr::meta::{MetaData, attribute, header::Header};
 use std::io::{self, Seek, SeekFrom, Write};
+
+/// Name of the format.
+pub(super) const FORMAT: &str = "OpenEXR";
 
 /// Magic number of OpenEXR files.
 const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
@@ -45,7 +48,7 @@ impl<'a, W: Write + Seek> ScanLineStream<'a, W> {
     /// Writes the packed samples of the block that begins with row `y`.
     pub(super) fn block(&mut self, y: u32, packed: &[u8]) -> Result<(), ImageError> {
         let length = i32::try_from(packed.len()).map_err(|_| ImageError::Encode {
-            format: super::exr::FORMAT,
+            format: FORMAT,
             reason: "a block of scan lines exceeds 2 GiB".to_owned(),
         })?;
         self.offsets.push(self.next_at);
@@ -94,7 +97,21 @@ fn header_bytes(header: &Header) -> Result<Vec<u8>, ImageError> {
 
 fn stream(source: io::Error) -> ImageError {
     ImageError::Stream {
-        format: super::exr::FORMAT,
+        format: FORMAT,
         source,
+    }
+}
+
+/// The error of the EXR library as an error of this crate.
+pub(super) fn failed(error: ExrError) -> ImageError {
+    match error {
+        ExrError::Io(source) => ImageError::Stream {
+            format: FORMAT,
+            source,
+        },
+        other => ImageError::Encode {
+            format: FORMAT,
+            reason: other.to_string(),
+        },
     }
 }

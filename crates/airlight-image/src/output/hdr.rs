@@ -4,9 +4,9 @@
 //! percent of the largest component. Radiance's own programs add half a step on reading.
 
 use super::{
-    FormatEntry, Metadata, Written,
+    Metadata,
     bands::{Bands, RowBuffer},
-    expect_channels, into_file,
+    format::{FormatEntry, Written, expect_channels, into_file},
 };
 use crate::{Control, ImageError, RowSource, Size};
 use std::{io::Write, path::Path};

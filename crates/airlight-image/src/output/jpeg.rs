@@ -1,9 +1,10 @@
 //! JPEG files: baseline, 8 bits, sRGB by convention. Rows are tone mapped in parallel; one thread encodes.
 
+pub use super::options::JpegOptions;
 use super::{
-    FormatEntry, Metadata, Written,
+    Metadata,
     bands::{Bands, RowBuffer},
-    expect_channels, into_file,
+    format::{FormatEntry, Written, expect_channels, into_file},
 };
 use crate::{Control, ImageError, RowSource, Size, tone::ToneMapper};
 use jpeg_encoder::{Encoder, EncodingError, ImageBuffer, JpegColorType, SamplingFactor};
@@ -36,19 +37,6 @@ pub(super) static ENTRY: FormatEntry = FormatEntry {
         )
     },
 };
-
-/// Settings of JPEG files.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct JpegOptions {
-    /// 1 (smallest) to 100 (best). From 90 up colour is kept at full resolution, below at half.
-    pub quality: u8,
-}
-
-impl Default for JpegOptions {
-    fn default() -> Self {
-        Self { quality: 92 }
-    }
-}
 
 /// Writes linear RGB rows, as `tone` shows them, to a file.
 ///

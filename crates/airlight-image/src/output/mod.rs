@@ -9,46 +9,23 @@ mod deflate;
 pub mod exr;
 mod exr_header;
 mod exr_stream;
+mod format;
 pub mod hdr;
 pub mod jpeg;
 mod metadata;
+mod options;
 pub mod png;
 mod png_filter;
 pub mod spectral;
 
 pub use atomic::AtomicFile;
+pub use format::Written;
 pub use metadata::{Chromaticities, Metadata};
+pub use options::PictureOptions;
 
 use crate::{Control, ImageError, RowSource, Size, tone::ToneMapper};
-use std::{
-    io::{BufWriter, Write},
-    path::Path,
-};
-
-/// What a format is and how it is written: one in the file of each writer, all of them listed in [`PictureFormat::ALL`].
-struct FormatEntry {
-    name: &'static str,
-    /// Endings of file names in small letters, the usual one first.
-    endings: &'static [&'static str],
-    /// Linear light, without tone mapping.
-    is_linear: bool,
-    holds_alpha: bool,
-    /// Channels of any number and name besides red, green and blue.
-    holds_channels: bool,
-    /// What the writer did to samples that the format cannot hold; empty where there are none such.
-    clamping: &'static str,
-    /// The name with the settings that matter.
-    describe: fn(&PictureOptions) -> String,
-    /// Writes rows of red, green and blue.
-    write: fn(&Path, &Rgb<'_>, &PictureOptions, Control<'_>) -> Result<Written, ImageError>,
-}
-
-/// Rows of linear red, green and blue, and what makes display values of them.
-struct Rgb<'a> {
-    size: Size,
-    source: &'a dyn RowSource,
-    tone: &'a ToneMapper,
-}
+use format::{FormatEntry, Rgb};
+use std::path::Path;
 
 /// A format that pictures can be written in.
 #[derive(Clone, Copy)]
@@ -141,31 +118,6 @@ impl std::fmt::Debug for PictureFormat {
     }
 }
 
-/// What a writer reports of a file it finished.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Written {
-    /// Size of the file in bytes.
-    pub bytes: u64,
-    /// Samples beyond what the format holds, brought to its nearest value: for instance a sun's disc above 65504 in a
-    /// half-precision EXR. Always 0 for PNG and JPEG, where the tone curve sees to it.
-    pub clamped_samples: u64,
-    /// Samples that were not a number, written as 0. Always 0 for PNG and JPEG.
-    pub nan_samples: u64,
-}
-
-/// Settings of every format, of which [`write_picture`] uses those that apply.
-#[derive(Clone, Debug, Default)]
-pub struct PictureOptions {
-    /// For OpenEXR.
-    pub exr: exr::ExrOptions,
-    /// For PNG.
-    pub png: png::PngOptions,
-    /// For JPEG.
-    pub jpeg: jpeg::JpegOptions,
-    /// For all.
-    pub metadata: Metadata,
-}
-
 /// Writes linear RGB rows in the format that the ending of `path` names; `tone` makes PNG and JPEG of them, EXR and HDR
 /// take them as they are.
 ///
@@ -181,45 +133,4 @@ pub fn write_picture(
 ) -> Result<Written, ImageError> {
     let rgb = Rgb { size, source, tone };
     (PictureFormat::from_path(path)?.0.write)(path, &rgb, options, control)
-}
-
-/// Runs an encoder into a file beside `path`, then moves it there.
-fn into_file(
-    path: &Path,
-    control: Control<'_>,
-    encode: impl FnOnce(&mut BufWriter<&std::fs::File>) -> Result<Written, ImageError>,
-) -> Result<Written, ImageError> {
-    control.check()?;
-    let file = AtomicFile::create(path)?;
-    let mut buffered = BufWriter::with_capacity(1 << 20, file.file());
-    let written = encode(&mut buffered).map_err(|e| e.at(path))?;
-    let failed = |source| ImageError::File {
-        action: "write",
-        path: path.to_owned(),
-        source,
-    };
-    buffered.flush().map_err(failed)?;
-    drop(buffered);
-    let bytes = file.file().metadata().map_err(failed)?.len();
-    control.check()?;
-    file.commit()?;
-    Ok(Written { bytes, ..written })
-}
-
-/// Refuses a source with the wrong number of channels.
-fn expect_channels(
-    format: &'static str,
-    source: &dyn RowSource,
-    expected: usize,
-) -> Result<(), ImageError> {
-    let got = source.channels();
-    if got == expected {
-        Ok(())
-    } else {
-        Err(ImageError::Channels {
-            format,
-            expected,
-            got,
-        })
-    }
 }

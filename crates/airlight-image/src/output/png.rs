@@ -1,11 +1,13 @@
 //! PNG files: sRGB, 8 or 16 bits, with or without opacity. Bands are filtered and compressed in parallel, each on its own, and joined to one
 //! stream.
 
+pub use super::options::{PngDepth, PngOptions};
 use super::{
-    FormatEntry, Metadata, Written,
+    Metadata,
     bands::{Bands, RowBuffer},
     deflate::{Adler32, Deflater, End},
-    expect_channels, into_file, png_filter,
+    format::{FormatEntry, Written, expect_channels, into_file},
+    png_filter,
 };
 use crate::{Control, ImageError, RowSource, Size, tone::ToneMapper};
 use png::{BitDepth, ColorType, chunk};
@@ -27,43 +29,6 @@ pub(super) static ENTRY: FormatEntry = FormatEntry {
         write(path, rgb.size, rgb.source, rgb.tone, png, metadata, control)
     },
 };
-
-/// Bits of a component.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum PngDepth {
-    /// 8 bits, dithered unless the tone mapper says otherwise.
-    #[default]
-    Eight,
-    /// 16 bits.
-    Sixteen,
-}
-
-/// Settings of PNG files.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PngOptions {
-    /// Bits of a component.
-    pub depth: PngDepth,
-    /// Effort of compression: 0 stores, 1 is fastest, 9 smallest; from 3 up little is gained.
-    pub compression_level: u8,
-}
-
-impl PngDepth {
-    fn bytes(self) -> usize {
-        match self {
-            Self::Eight => 1,
-            Self::Sixteen => 2,
-        }
-    }
-}
-
-impl Default for PngOptions {
-    fn default() -> Self {
-        Self {
-            depth: PngDepth::Eight,
-            compression_level: 3,
-        }
-    }
-}
 
 /// Writes linear RGB rows, as `tone` shows them, to a file. A fourth channel is opacity in `[0, 1]`: it is rounded,
 /// without tone curve or dither, and colours are taken as not multiplied by it.

@@ -1,6 +1,6 @@
 //! Operations on blocks of pixels, component by component, without branches: the compiler makes vector code of them.
 
-use super::srgb::LUMINANCE_WEIGHTS;
+use super::srgb::luminance;
 
 /// Red, green and blue of N pixels.
 pub(super) type Planes<const N: usize> = [[f32; N]; 3];
@@ -41,7 +41,7 @@ pub(super) fn without_negatives<const N: usize>(planes: &mut Planes<N>) {
     let [r, g, b] = planes;
     for i in 0..N {
         let bottom = least(least(r[i], g[i]), b[i]);
-        let grey = luminance(r[i], g[i], b[i]);
+        let grey = luminance([r[i], g[i], b[i]]);
         let lit = if grey > 0.0 { grey } else { 0.0 };
         // Where nothing is negative, the whole colour stays: part 1.
         let part = if bottom < 0.0 {
@@ -64,7 +64,7 @@ pub(super) fn into_unit_cube<const N: usize>(planes: &mut Planes<N>) {
     let [r, g, b] = planes;
     for i in 0..N {
         let top = greatest(greatest(r[i], g[i]), b[i]);
-        let grey = least(luminance(r[i], g[i], b[i]), 1.0);
+        let grey = least(luminance([r[i], g[i], b[i]]), 1.0);
         let part = if top > 1.0 {
             (1.0 - grey) / (top - grey)
         } else {
@@ -76,9 +76,4 @@ pub(super) fn into_unit_cube<const N: usize>(planes: &mut Planes<N>) {
         };
         (r[i], g[i], b[i]) = (lower(r[i]), lower(g[i]), lower(b[i]));
     }
-}
-
-#[inline(always)]
-fn luminance(r: f32, g: f32, b: f32) -> f32 {
-    LUMINANCE_WEIGHTS[0] * r + LUMINANCE_WEIGHTS[1] * g + LUMINANCE_WEIGHTS[2] * b
 }

@@ -1,13 +1,9 @@
 //! The sRGB transfer function (IEC 61966-2-1) and luminance.
 
-/// Luminance of linear sRGB: weights of red, green and blue (Rec. ITU-R BT.709).
-pub const LUMINANCE_WEIGHTS: [f32; 3] = [0.2126, 0.7152, 0.0722];
-
-/// Luminance of a linear sRGB colour, in the unit of its components.
+/// Luminance of a linear sRGB colour, in the unit of its components, with the rounded weights of Rec. ITU-R BT.709.
 #[inline(always)]
 pub fn luminance(rgb: [f32; 3]) -> f32 {
-    let [r, g, b] = LUMINANCE_WEIGHTS;
-    r * rgb[0] + g * rgb[1] + b * rgb[2]
+    0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]
 }
 
 /// From linear light in `[0, 1]` to the encoded value.

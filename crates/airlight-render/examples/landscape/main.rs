@@ -26,7 +26,7 @@ use airlight_image::{
         exr::{self, ExrOptions, ExrSample},
     },
     rows::StoredRows,
-    tone::{Exposure, Metering, ToneCurve, ToneMapper},
+    tone::{Exposure, Metering, ToneCurve, ToneMapper, srgb},
     write_picture,
 };
 use options::Options;
@@ -114,7 +114,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             .as_chunks::<3>()
             .0
             .iter()
-            .map(|c| (0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2], 1.0))
+            .map(|&c| (srgb::luminance(c), 1.0))
             .collect();
         let exposure = Exposure::metered(&weighed, Metering::default()).ok_or("nothing is lit")?;
         println!("exposure of the shown picture: EV {:.2}", exposure.ev100());

@@ -1,6 +1,7 @@
 //! HTML report with plots, in one self-contained file.
 
-use super::{by_suite, claim, plot, short};
+use super::plot;
+use super::words::{by_suite, claim, short};
 use crate::check::{Check, Suite};
 use crate::measured;
 use std::fmt::Write;

@@ -1,5 +1,5 @@
 use super::*;
-use crate::check::{At, Row, Suite, Unit};
+use crate::check::{At, Check, Row, Suite, Unit};
 
 fn checks() -> Vec<Check> {
     let row = |view_zenith_deg, ours| Row {

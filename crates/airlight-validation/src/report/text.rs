@@ -1,6 +1,6 @@
 //! Plain-text report.
 
-use super::{by_suite, claim, short};
+use super::words::{by_suite, claim, short};
 use crate::check::{Check, Suite};
 use crate::measured;
 use std::fmt::Write;

@@ -2,11 +2,15 @@
 
 use super::error::FogError;
 use super::lighting::FogScattering;
-use super::multiple::{Peak, Reduced, STREAMS};
+use super::multiple::{Reduced, STREAMS};
 use crate::atmosphere::{Constituent, DensityProfile};
 use crate::optics::{PhaseError, PhaseFunction, TabulatedPhase};
 use crate::spectrum::rgb::{self, DOMINANT_NM};
 use crate::spectrum::{RgbSpace, Spectrum, WavelengthGrid};
+use crate::transfer::delta_m::ForwardPeak;
+
+/// A phase function divided for the solver.
+type Peak = ForwardPeak<STREAMS>;
 
 /// A layer of fog in red, green and blue.
 #[derive(Clone, Debug, PartialEq)]

@@ -74,13 +74,19 @@ impl Place {
 
     /// Linear interpolation of a list with one value per node.
     #[inline(always)]
-    pub fn value_in(self, values: &[f64]) -> f64 {
+    pub fn value_in<V>(self, values: &[V]) -> V
+    where
+        V: Copy + Add<Output = V> + Mul<f64, Output = V>,
+    {
         lerp(values[self.below], values[self.below + 1], self.fraction)
     }
 
     /// [`Place::value_in`] in single precision.
     #[inline(always)]
-    pub fn value_in_f32(self, values: &[f32]) -> f32 {
+    pub fn value_in_f32<V>(self, values: &[V]) -> V
+    where
+        V: Copy + Add<Output = V> + Mul<f32, Output = V>,
+    {
         lerp(
             values[self.below],
             values[self.below + 1],

@@ -180,21 +180,18 @@ impl Hillaire2020 {
         };
         let ray = Ray::new(self.eye, direction, self.sun);
         let limit_m = limit_m.unwrap_or(f64::INFINITY);
-        let Some((start, end, on_ground)) = self.air.segment_m(&ray) else {
+        let Some(segment) = self.air.segment(&ray, limit_m) else {
             return line;
         };
-        if limit_m <= start {
-            return line;
-        }
-        line.meets_ground = on_ground && end <= limit_m;
+        line.meets_ground = segment.meets_ground;
         let scattered = self.air.scattered(ray.nu);
         let (mut sunlight, mut psi) = (dark(), dark());
-        let segment = (start, end.min(limit_m));
+        let span = (segment.start_m, segment.end_m);
         line.transmittance = self
             .air
-            .march(&ray, segment, (self.steps, STEP_POWER), |step| {
+            .march(&ray, span, (self.steps, STEP_POWER), |step| {
                 let here = &step.here;
-                self.air.sunlight(
+                self.air.transmittance_to_sun(
                     &self.transmittance,
                     here.radius_m,
                     here.mu_sun,
@@ -216,8 +213,9 @@ impl Hillaire2020 {
                 }
             });
         if line.meets_ground {
+            let mu_sun = ray.advanced(segment.end_m).mu_sun;
             self.air
-                .ground_radiance(&self.transmittance, ray.advanced(end).mu_sun, &mut sunlight);
+                .ground_radiance(&self.transmittance, mu_sun, &mut sunlight);
             for lane in 0..lanes {
                 line.ground[lane] = line.transmittance[lane] * sunlight[lane] * self.solar[lane];
             }
@@ -234,9 +232,9 @@ impl Hillaire2020 {
         if angle >= self.disc.angular_radius_rad || ray.distance_to_ground(ground_m).is_some() {
             return light;
         }
-        // From above the atmosphere the ray enters at its top, or misses it.
-        let inside = match self.air.segment_m(&ray) {
-            Some((start, _, _)) if ray.radius_m > top_m => Some(ray.advanced(start)),
+        // From above the air the line enters at its top, or misses it.
+        let inside = match self.air.segment(&ray, f64::INFINITY) {
+            Some(segment) if ray.radius_m > top_m => Some(ray.advanced(segment.start_m)),
             Some(_) => Some(ray),
             None => None,
         };

@@ -6,6 +6,7 @@ use crate::math::random::Random;
 use crate::optics::Depolarization;
 use crate::optics::{MatrixRatios, PhaseFunction, PhaseSampler};
 use crate::spectrum::Spectrum;
+use crate::transfer::coefficients::Coefficients;
 use crate::transfer::shell::{MAX_CONSTITUENTS, PerConstituent};
 
 /// One spectrum for each constituent.
@@ -16,15 +17,11 @@ pub type PerScatterer<const N: usize> = [Spectrum<N>; MAX_CONSTITUENTS];
 pub struct Lanes<const N: usize> {
     /// Wavelength of each lane, nm.
     pub wavelengths_nm: [f64; N],
-    /// Extinction of each constituent at density 1, 1/m.
-    extinction: Vec<Spectrum<N>>,
-    /// Extinction as above, lane by lane.
+    /// Extinction, scattering and ground albedo.
+    pub coefficients: Coefficients<Spectrum<N>>,
+    /// Extinction of each constituent at density 1 in double precision, lane by lane, 1/m.
     extinction_of_lane: [PerConstituent; N],
-    /// Scattering of each constituent at density 1, 1/m.
-    scattering: Vec<Spectrum<N>>,
     phases: Vec<Phase<N>>,
-    /// Lambertian albedo of the ground.
-    pub ground_albedo: Spectrum<N>,
 }
 
 /// Elements of a scattering matrix relative to the phase function in all lanes, as [`MatrixRatios`].
@@ -160,8 +157,6 @@ impl<const N: usize> Ratios<N> {
 impl<const N: usize> Lanes<N> {
     /// Samples `atmosphere` at N wavelengths.
     pub fn new(atmosphere: &Atmosphere, wavelengths_nm: [f64; N]) -> Self {
-        let sample =
-            |f: &dyn Fn(f64) -> f64| Spectrum::from_fn(|lane| f(wavelengths_nm[lane]) as f32);
         let parts = &atmosphere.constituents;
         let mut extinction_of_lane = [[0.0; MAX_CONSTITUENTS]; N];
         for (all, &nm) in extinction_of_lane.iter_mut().zip(&wavelengths_nm) {
@@ -171,20 +166,12 @@ impl<const N: usize> Lanes<N> {
         }
         Self {
             wavelengths_nm,
-            extinction: parts
-                .iter()
-                .map(|part| sample(&|nm| part.extinction_per_m(nm)))
-                .collect(),
+            coefficients: Coefficients::in_lanes(atmosphere, &wavelengths_nm),
             extinction_of_lane,
-            scattering: parts
-                .iter()
-                .map(|part| sample(&|nm| part.scattering_per_m.at(nm)))
-                .collect(),
             phases: parts
                 .iter()
                 .map(|part| Phase::new(&part.phase, &wavelengths_nm))
                 .collect(),
-            ground_albedo: sample(&|nm| atmosphere.planet.ground_albedo.at(nm)),
         }
     }
 
@@ -194,27 +181,12 @@ impl<const N: usize> Lanes<N> {
         &self.extinction_of_lane[lane]
     }
 
-    /// Optical depth of columns, or extinction coefficient (1/m) of densities.
-    #[inline(always)]
-    pub fn extinction(&self, columns: &PerConstituent) -> Spectrum<N> {
-        let mut depth = Spectrum::ZERO;
-        for (extinction, &column) in self.extinction.iter().zip(columns) {
-            depth = depth.scale_acc(*extinction, column as f32);
-        }
-        depth
-    }
-
-    /// Transmittance through columns.
-    #[inline(always)]
-    pub fn transmittance(&self, columns: &PerConstituent) -> Spectrum<N> {
-        (Spectrum::ZERO - self.extinction(columns)).exp()
-    }
-
     /// Scattering coefficient of each constituent at the given densities, 1/m.
     #[inline(always)]
     pub fn scattering(&self, densities: &PerConstituent) -> PerScatterer<N> {
         let mut out = [Spectrum::ZERO; MAX_CONSTITUENTS];
-        for ((out, scattering), &density) in out.iter_mut().zip(&self.scattering).zip(densities) {
+        let scattering = &self.coefficients.scattering_per_m;
+        for ((out, scattering), &density) in out.iter_mut().zip(scattering).zip(densities) {
             *out = *scattering * density as f32;
         }
         out
@@ -224,7 +196,8 @@ impl<const N: usize> Lanes<N> {
     #[inline(always)]
     pub fn phases(&self, mu: f64) -> PerScatterer<N> {
         let mut out = [Spectrum::ZERO; MAX_CONSTITUENTS];
-        for ((out, phase), scattering) in out.iter_mut().zip(&self.phases).zip(&self.scattering) {
+        let scattering = &self.coefficients.scattering_per_m;
+        for ((out, phase), scattering) in out.iter_mut().zip(&self.phases).zip(scattering) {
             if scattering.max_element() > 0.0 {
                 *out = phase.evaluate(mu, &self.wavelengths_nm);
             }

@@ -1,7 +1,8 @@
 //! Sampling of collisions on rays that are partly in the planet's shadow.
 
 use super::chord::Chord;
-use super::path::PathScene;
+use super::lanes::Lanes;
+use super::layers::Layers;
 use crate::spectrum::Spectrum;
 
 /// Probability of sampling the collision in the sunlit part of a ray that is partly in shadow.
@@ -48,8 +49,8 @@ impl<const N: usize> Lit<N> {
     #[inline(always)]
     pub fn draw(
         &self,
-        scene: &PathScene<'_, N>,
-        chord: &Chord,
+        lanes: &Lanes<N>,
+        (layers, chord): (&Layers, &Chord),
         hero: usize,
         choice: f64,
         absorbed: &Spectrum<N>,
@@ -65,9 +66,9 @@ impl<const N: usize> Lit<N> {
                 0.0
             }
         });
-        let extinction = scene.lanes.extinction_of(hero);
+        let extinction = lanes.extinction_of(hero);
         let depth_to = |t: f64| -> f64 {
-            let columns = chord.columns_to(scene.layers, t);
+            let columns = chord.columns_to(layers, t);
             extinction.iter().zip(columns).map(|(e, c)| e * c).sum()
         };
         // Coordinate between two points by which the fraction `choice` of the light lost between them is lost.
@@ -75,7 +76,7 @@ impl<const N: usize> Lit<N> {
             let before = depth_to(from);
             let share = choice * (before - depth_to(to)).exp_m1();
             chord
-                .at_depth(scene.layers, extinction, before - share.ln_1p())
+                .at_depth(layers, extinction, before - share.ln_1p())
                 .clamp(from, to)
         };
         let mut choice = choice;

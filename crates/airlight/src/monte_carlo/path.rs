@@ -173,7 +173,7 @@ impl<const N: usize> PathScene<'_, N> {
             chord.cut(layers, line.start + reach_m);
             end = End::Space;
         }
-        let whole_depth = self.lanes.extinction(&chord.columns);
+        let whole_depth = self.lanes.coefficients.extinction(&chord.columns);
         let absorbed = lanes::absorbed(whole_depth);
         let mut choice = choice;
         let mut collides = Spectrum::ONE;
@@ -192,12 +192,14 @@ impl<const N: usize> PathScene<'_, N> {
             return Event::None;
         }
         let lit = self.lit_segments(path, chord, line);
-        let (t, share) = lit.draw(self, chord, hero, choice, &absorbed);
+        let (t, share) = lit.draw(self.lanes, (layers, chord), hero, choice, &absorbed);
         let columns = chord.columns_to(layers, t);
         let layer = layers.layer(chord.layer_at(t));
         let control = layer.densities_of(layer.coordinate(line.tangent + t * t));
-        let pdf =
-            self.lanes.extinction(&control) * self.lanes.transmittance(&columns) * share * collides;
+        let pdf = self.lanes.coefficients.extinction(&control)
+            * self.lanes.coefficients.transmittance(&columns)
+            * share
+            * collides;
         path.step(self.transmittance_to(chord, t, random), pdf);
         path.place += path.direction * (t - line.start);
         Event::Air
@@ -207,7 +209,10 @@ impl<const N: usize> PathScene<'_, N> {
     /// residual collisions (residual ratio tracking: Novak, Selle & Jarosz, ACM Trans. Graph. 33(6), 179, 2014).
     #[inline(always)]
     fn transmittance_to(&self, chord: &Chord, t: f64, random: &mut Random) -> Spectrum<N> {
-        let mut transmittance = self.lanes.transmittance(&chord.columns_to(self.layers, t));
+        let mut transmittance = self
+            .lanes
+            .coefficients
+            .transmittance(&chord.columns_to(self.layers, t));
         chord.residual(self.layers, t, random, |square, layer| {
             transmittance *= self.residual_weight(square, layer);
         });
@@ -223,7 +228,8 @@ impl<const N: usize> PathScene<'_, N> {
         for (d, (truth, control)) in difference.iter_mut().zip(truth.iter().zip(control)) {
             *d = truth - control;
         }
-        Spectrum::ONE - self.lanes.extinction(&difference) * (1.0 / layer.residual_per_m) as f32
+        Spectrum::ONE
+            - self.lanes.coefficients.extinction(&difference) * (1.0 / layer.residual_per_m) as f32
     }
 
     /// Adds direct sunlight at a vertex in the air and samples a new direction; false if the path ends.
@@ -293,7 +299,7 @@ impl<const N: usize> PathScene<'_, N> {
         let up = path.place.normalize();
         // Projects the vertex onto the ground, so that rounding does not place it below.
         path.place = up * self.layers.edge(0).sqrt();
-        path.throughput *= self.lanes.ground_albedo;
+        path.throughput *= self.lanes.coefficients.ground_albedo;
         let sun = self.shape.draw(self.sun, self.disc, random);
         let height = up.dot(sun);
         if height > 0.0
@@ -317,7 +323,7 @@ impl<const N: usize> PathScene<'_, N> {
             return None;
         }
         let (columns, residual) = line.to_space(self.layers);
-        let mut light = self.lanes.transmittance(&columns);
+        let mut light = self.lanes.coefficients.transmittance(&columns);
         let first = -random.unit().ln();
         if first < residual {
             line.residual_places(self.layers, first, random, |square, layer| {
@@ -364,8 +370,8 @@ impl<const N: usize> PathScene<'_, N> {
                 lit.segments[lit.count] = LitSegment {
                     from: cuts[k],
                     to: cuts[k + 1],
-                    absorbed: self.lanes.transmittance(&before)
-                        * lanes::absorbed(self.lanes.extinction(&between)),
+                    absorbed: self.lanes.coefficients.transmittance(&before)
+                        * lanes::absorbed(self.lanes.coefficients.extinction(&between)),
                 };
                 lit.count += 1;
             }

@@ -4,11 +4,13 @@ mod index;
 pub mod mie;
 pub mod ozone;
 pub mod phase;
+mod phase_error;
 mod polarisation;
 pub mod rayleigh;
 mod tabulated;
 
 pub use index::RefractiveIndex;
-pub use phase::{Depolarization, PhaseError, PhaseFunction, PhaseSampler};
+pub use phase::{Depolarization, PhaseFunction, PhaseSampler};
+pub use phase_error::PhaseError;
 pub use polarisation::MatrixRatios;
 pub use tabulated::TabulatedPhase;

@@ -4,7 +4,7 @@ mod matrix;
 mod moments;
 mod sample;
 
-use super::phase::PhaseError;
+use super::phase_error::PhaseError;
 use crate::math::interpolation::{Place, hermite, interval_of, lerp, monotone_slopes};
 use crate::math::quadrature::FixedRule;
 use std::sync::Arc;

@@ -1,11 +1,10 @@
 //! Aerial perspective: clear air between the eye and things.
 
-use super::aerial_fill;
-use super::error::SceneError;
-use super::lane_channels::{Converter, LaneChannels};
 use crate::fog::Lanes;
 use crate::math::interpolation::{Place as AxisPlace, cubic_f32};
-use crate::sky::{Peaked, View};
+use crate::sky::Peaked;
+#[cfg(doc)]
+use crate::sky::View;
 use crate::spectrum::Spectrum;
 use crate::transfer::PathOptics;
 use glam::DVec3;
@@ -67,19 +66,6 @@ pub(super) struct Half {
 const STEP: usize = 4;
 
 impl<const N: usize> AerialPerspective<N> {
-    /// Tabulates what lies between a view's eye and points up to `limit_m` away (m; infinite: to space), in all
-    /// directions. Points that are farther count as at the limit, points beyond the ground as on it.
-    ///
-    /// # Errors
-    /// [`SceneError`] where N lanes cannot be these channels, or for a limit that is no distance.
-    pub fn new(view: &View, channels: LaneChannels, limit_m: f64) -> Result<Self, SceneError> {
-        if limit_m.is_nan() || limit_m <= 0.0 {
-            return Err(SceneError::Distance(limit_m));
-        }
-        let converter = Converter::new(view, channels)?;
-        Ok(aerial_fill::tabulated(view, &converter, limit_m))
-    }
-
     /// What the air does to the light of a point at `distance_m` along the unit vector `direction`.
     #[inline]
     pub fn optics(&self, direction: DVec3, distance_m: f64) -> PathOptics<N> {

@@ -1,7 +1,8 @@
 //! Filling the table of aerial perspective.
 
 use super::aerial::{AZIMUTHS, AerialPerspective, DISTANCES, Eye, Half, ROWS, part_of};
-use super::lane_channels::Converter;
+use super::error::SceneError;
+use super::lane_channels::{Converter, LaneChannels};
 use crate::math::parallel;
 use crate::sky::{Peaked, View};
 use glam::DVec3;
@@ -12,8 +13,23 @@ const FIRST_NODE: f64 = 0.01;
 /// A channel whose transmittance falls below this counts as opaque: RGB channels of saturated light may even be negative.
 const OPAQUE: f64 = 1e-6;
 
+impl<const N: usize> AerialPerspective<N> {
+    /// Tabulates the air between a view's eye and points up to `limit_m` away (m; infinite: to space), in all directions.
+    /// Points farther away count as at the limit, points beyond the ground as on it.
+    ///
+    /// # Errors
+    /// [`SceneError`] if N lanes cannot be these channels, or for a limit that is not a positive distance.
+    pub fn new(view: &View, channels: LaneChannels, limit_m: f64) -> Result<Self, SceneError> {
+        if limit_m.is_nan() || limit_m <= 0.0 {
+            return Err(SceneError::Distance(limit_m));
+        }
+        let converter = Converter::new(view, channels)?;
+        Ok(tabulated(view, &converter, limit_m))
+    }
+}
+
 /// The table of a view, in the lanes of `converter`.
-pub(super) fn tabulated<const N: usize>(
+fn tabulated<const N: usize>(
     view: &View,
     converter: &Converter<N>,
     limit_m: f64,

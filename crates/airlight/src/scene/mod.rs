@@ -34,6 +34,7 @@ mod sun_source;
 mod toml_tests;
 
 pub use crate::sky::TableChannels as Channels;
+pub use crate::sun::SunState;
 pub use aerial::AerialPerspective;
 pub use air::aerosol_mixture;
 pub use capabilities::{Capabilities, Input, check_inputs};
@@ -45,9 +46,7 @@ pub use foggy::FoggySky;
 pub use irradiance_map::IrradianceMap;
 pub use lane_channels::LaneChannels;
 pub use lighting::SceneLighting;
-pub use model::{
-    PreparedModel, RadianceModel, RadianceSampler, RadianceView, RowSampler, SunState,
-};
+pub use model::{PreparedModel, RadianceModel, RadianceSampler, RadianceView, RowSampler};
 pub use resolved::ResolvedScene;
 pub use spec::{
     AirSpec, BaseBlueKind, CameraSpec, CheckerSpec, Effort, Exposure, ExrCompression, FogLayerSpec,

@@ -15,7 +15,7 @@ use super::{Capabilities, Channels, ResolvedScene, SceneError};
 use crate::monte_carlo::{Estimate, PolarisedEstimate};
 use crate::sky::{LineOfSight, SunCoverage};
 use crate::spectrum::WavelengthGrid;
-use crate::sun::SunDisc;
+use crate::sun::{SunDisc, SunState};
 use glam::DVec3;
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -185,13 +185,4 @@ pub trait RadianceSampler: Debug + Send + Sync {
 
     /// The same scene by a deterministic solver: for exposure and previews, and where noise must not be.
     fn preview(&self) -> Arc<dyn RadianceView>;
-}
-
-/// Where the sun is and how far away.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SunState {
-    /// Unit vector towards it.
-    pub direction: DVec3,
-    /// Distance over the planet's mean distance from the sun.
-    pub distance_ratio: f64,
 }

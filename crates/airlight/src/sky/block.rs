@@ -1,19 +1,18 @@
 //! Solutions for blocks of 4, 8 or 16 wavelengths behind a common interface.
 
-use super::Scattering;
-use super::SkySettings;
-use super::field::FieldGrid;
-use super::orders::{self, Diffuse};
+use super::air::Air;
+use super::field::{Diffuse, FieldGrid, ground_irradiance};
+use super::orders;
 use super::ray_bundle::{Path, RayBundle, Scratch};
-use super::trace::{Tracer, ground_irradiance};
+use super::settings::{Scattering, SkySettings};
+use super::trace::Tracer;
 use crate::atmosphere::Atmosphere;
 use crate::control::{Cancelled, Control};
 use crate::math::parallel;
 use crate::math::simd::vectorized;
 use crate::spectrum::Spectrum;
-use crate::transfer::air::Air;
+use crate::transfer::columns::SlantColumns;
 use crate::transfer::ray::Ray;
-use crate::transfer::shell::Shell;
 use std::sync::Arc;
 
 /// Light along a view ray at the wavelengths of a block, per unit solar irradiance.
@@ -93,7 +92,7 @@ pub struct TableRow {
 /// [`Cancelled`] soon after cancellation.
 pub fn solve(
     atmosphere: &Atmosphere,
-    shell: &Arc<Shell>,
+    columns: &Arc<SlantColumns>,
     wavelengths_nm: &[f64],
     settings: &SkySettings,
     control: Control<'_>,
@@ -106,9 +105,9 @@ pub fn solve(
             count,
         };
         match chunk.len() {
-            0..=4 if count == 1 => Solved::<4>::boxed(atmosphere, shell, chunk, settings, share),
-            0..=8 => Solved::<8>::boxed(atmosphere, shell, chunk, settings, share),
-            _ => Solved::<16>::boxed(atmosphere, shell, chunk, settings, share),
+            0..=4 if count == 1 => Solved::<4>::boxed(atmosphere, columns, chunk, settings, share),
+            0..=8 => Solved::<8>::boxed(atmosphere, columns, chunk, settings, share),
+            _ => Solved::<16>::boxed(atmosphere, columns, chunk, settings, share),
         }
     });
     solved.collect()
@@ -139,7 +138,7 @@ struct Solved<const N: usize> {
 impl<const N: usize> Solved<N> {
     fn boxed(
         atmosphere: &Atmosphere,
-        shell: &Arc<Shell>,
+        columns: &Arc<SlantColumns>,
         wavelengths_nm: &[f64],
         settings: &SkySettings,
         share: BlockProgress<'_>,
@@ -148,7 +147,7 @@ impl<const N: usize> Solved<N> {
         let padded = std::array::from_fn(|lane| wavelengths_nm[lane.min(lanes - 1)]);
         let air = Air::<N>::new(
             atmosphere,
-            shell.clone(),
+            columns.clone(),
             padded,
             settings.orders.peak_degree,
         );
@@ -156,7 +155,7 @@ impl<const N: usize> Solved<N> {
         if settings.scattering == Scattering::All && !air.scatterers.is_empty() {
             let zeniths = settings
                 .suns
-                .sun_zeniths_deg(shell.ground_radius_m, shell.top_radius_m);
+                .sun_zeniths_deg(air.shell().ground_radius_m, air.shell().top_radius_m);
             let grid = FieldGrid::new(&air, settings.altitudes, &zeniths);
             let report = |fraction| share.report(fraction);
             let solved = orders::solve(&air, grid, &settings.orders, share.control, report)?;
@@ -231,7 +230,7 @@ impl<const N: usize> Block for Solved<N> {
     }
 
     fn transmittance_to_space(&self, radius_m: f64, mu: f64) -> Vec<f32> {
-        let shell = &self.air.shell;
+        let shell = self.air.shell();
         let ray = Ray {
             radius_m,
             mu,
@@ -245,11 +244,7 @@ impl<const N: usize> Block for Solved<N> {
             return vec![1.0; self.lanes];
         };
         let entry = ray.advanced(segment.start_m);
-        self.used(
-            &self
-                .air
-                .transmittance(&shell.columns_to_space_m(entry.radius_m, entry.mu)),
-        )
+        self.used(&self.air.transmittance_to_sun(entry.radius_m, entry.mu))
     }
 
     fn peaked_phase(&self, constituent: usize, nu: f64) -> f64 {

@@ -1,9 +1,9 @@
 //! Angular moments of the light inside the atmosphere, on a grid of altitudes and sun zenith angles.
 
+use super::air::Air;
 use super::harmonics::Harmonics;
 use crate::math::interpolation::{Place, lerp};
 use crate::spectrum::Spectrum;
-use crate::transfer::air::Air;
 use crate::transfer::ray::Ray;
 use crate::transfer::shell::{PerConstituent, Shell};
 
@@ -46,7 +46,7 @@ impl FieldGrid {
 /// Radii at equal steps of a measure that grows with each scatterer's column below and with altitude.
 fn radii_m<const N: usize>(air: &Air<N>, count: usize) -> Vec<f64> {
     const SAMPLES: usize = 2000;
-    let shell: &Shell = &air.shell;
+    let shell: &Shell = air.shell();
     let ground = shell.vertical_columns_m(shell.ground_radius_m);
     let share = 1.0 / air.scatterers.len().max(1) as f64;
     let measure = |x: f64| -> f64 {
@@ -133,11 +133,7 @@ impl<const N: usize> RadianceField<N> {
     #[inline(always)]
     pub fn ground_irradiance(&self, mu_sun: f64) -> Spectrum<N> {
         let at = self.grid.place_of_sun(mu_sun);
-        let (a, b) = (
-            self.ground_irradiance[at.below],
-            self.ground_irradiance[at.below + 1],
-        );
-        lerp(a, b, at.fraction as f32).exp()
+        at.value_in_f32(&self.ground_irradiance).exp()
     }
 
     /// Interpolates the stored form of the first `count` moments in radius, for all sun cosines, into `out`:
@@ -210,4 +206,28 @@ pub fn scattering_moment<const N: usize>(
         sum = sum.scale_acc(s.scattering * s.moments[l], densities[s.constituent] as f32);
     }
     sum
+}
+
+/// Light that has been scattered or reflected at least once, other than into a forward peak.
+pub struct Diffuse<const N: usize> {
+    /// Moments of the light, per unit solar irradiance.
+    pub field: RadianceField<N>,
+    /// The air for which the field was solved, without forward peaks. The difference between sunlight attenuated by this air
+    /// and by the real air is light scattered into forward peaks, which keeps the direction of the sun.
+    pub air: Air<N>,
+}
+
+/// Irradiance on the ground from sun and sky at the sun cosine `mu_sun`, per unit solar irradiance.
+#[inline(always)]
+pub fn ground_irradiance<const N: usize>(
+    air: &Air<N>,
+    diffuse: Option<&Diffuse<N>>,
+    mu_sun: f64,
+) -> Spectrum<N> {
+    match diffuse {
+        Some(diffuse) => {
+            diffuse.field.ground_irradiance(mu_sun) + diffuse.air.sun_on_ground(mu_sun)
+        }
+        None => air.sun_on_ground(mu_sun),
+    }
 }

@@ -20,13 +20,16 @@
 //! atmosphere), `orders` (successive orders of scattering), `ray_bundle` (rays that share their path), `trace` (light along
 //! one ray), `samples_along_ray` (light at many distances along a ray), `table` (all directions of a view).
 
+mod air;
 mod block;
 mod coverage;
 mod field;
 mod harmonics;
 mod orders;
+mod peaked;
 mod ray_bundle;
 mod samples_along_ray;
+mod settings;
 mod solver;
 mod table;
 mod tabulate;
@@ -34,7 +37,9 @@ mod trace;
 mod view;
 
 pub use coverage::SunCoverage;
-pub use solver::{Scattering, Sky, SkyError, SkySettings};
+pub(crate) use peaked::Peaked;
+pub use settings::{Scattering, SkyError, SkySettings};
+pub use solver::Sky;
 pub use table::{SkyColumns, SkyTable, TableChannels};
-pub(crate) use tabulate::{Peaked, channel_weights};
+pub(crate) use tabulate::channel_weights;
 pub use view::{LineOfSight, View};

@@ -5,17 +5,16 @@
 //! source of the next order follows with each constituent's phase function. Rays, transmittances and quadrature nodes
 //! depend only on the altitude and zenith angle: they are computed once for all sun angles, azimuths and orders.
 
-use super::field::{FieldGrid, RadianceField};
+use super::air::Air;
+use super::field::{Diffuse, FieldGrid, RadianceField};
 use super::harmonics::Harmonics;
 use super::ray_bundle::{Path, RayBundle, Scratch};
-use super::trace::sun_on_ground;
 use crate::control::{Cancelled, Control};
 use crate::math::legendre::legendre;
 use crate::math::parallel;
 use crate::math::quadrature::GaussRule;
 use crate::math::simd::vectorized;
 use crate::spectrum::Spectrum;
-use crate::transfer::air::Air;
 use crate::transfer::march::Marcher;
 use std::f64::consts::PI;
 
@@ -49,15 +48,6 @@ pub struct Directions {
     pub azimuths: usize,
     /// Number of quadrature nodes in a panel of a ray.
     pub panel_nodes: usize,
-}
-
-/// Light that has been scattered or reflected at least once, other than into a forward peak.
-pub struct Diffuse<const N: usize> {
-    /// Moments of the light, per unit solar irradiance.
-    pub field: RadianceField<N>,
-    /// The air for which the field was solved, without forward peaks. The difference between sunlight attenuated by this air
-    /// and by the real air is light scattered into forward peaks, which keeps the direction of the sun.
-    pub air: Air<N>,
 }
 
 /// Solves for all light scattered or reflected at least once; `report` receives the fraction of the work done.
@@ -193,7 +183,11 @@ impl<'a, const N: usize> Transport<'a, N> {
         directions: &Directions,
         control: Control<'a>,
     ) -> Result<Self, Cancelled> {
-        let marcher = Marcher::new(directions.panel_nodes, 2.0, air.max_extinction_per_m());
+        let marcher = Marcher::new(
+            directions.panel_nodes,
+            2.0,
+            air.coefficients.max_extinction_per_m(),
+        );
         let paths = parallel::try_map(grid.radii_m.len(), |row| {
             control.check()?;
             let radius_m = grid.radii_m[row];
@@ -243,7 +237,7 @@ impl<'a, const N: usize> Transport<'a, N> {
                 path.accumulate_ground(
                     air,
                     bundle,
-                    |mu_sun| sun_on_ground(air, mu_sun),
+                    |mu_sun| air.sun_on_ground(mu_sun),
                     &mut work.light,
                 );
             },
@@ -368,7 +362,7 @@ fn zenith_rule<const N: usize>(
     directions: &Directions,
 ) -> Vec<(f64, f64)> {
     const BAND: f64 = 0.2;
-    let sin = (air.shell.ground_radius_m / radius_m).min(1.0);
+    let sin = (air.shell().ground_radius_m / radius_m).min(1.0);
     let horizon = -((1.0 - sin) * (1.0 + sin)).sqrt();
     let [below, band, above] = directions.zenith_nodes.map(GaussRule::new);
     below

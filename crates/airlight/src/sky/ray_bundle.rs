@@ -4,11 +4,11 @@
 //! transmittances to the eye and radial interpolation are computed once, in a [`Path`], for the whole [`RayBundle`]. What
 //! depends on the sun remains for each ray and is stored in arrays over the rays, so that the compiler vectorises it.
 
+use super::air::Air;
 use super::field::{FieldGrid, RadianceField, scattering_moment};
 use super::harmonics::Harmonics;
 use crate::math::interpolation::Place;
 use crate::spectrum::Spectrum;
-use crate::transfer::air::Air;
 use crate::transfer::march::Marcher;
 use crate::transfer::ray::{Ray, in_shadow};
 use crate::transfer::shell::PerConstituent;
@@ -110,11 +110,11 @@ impl<const N: usize> Path<N> {
             mu_sun: 1.0,
             nu: mu,
         };
-        let Some(segment) = air.shell.segment(&ray, f64::INFINITY) else {
+        let Some(segment) = air.shell().segment(&ray, f64::INFINITY) else {
             return path;
         };
         let columns = marcher.march(
-            &air.shell,
+            air.shell(),
             &ray,
             (segment.start_m, segment.end_m),
             &mut Vec::new(),
@@ -122,7 +122,7 @@ impl<const N: usize> Path<N> {
             |nodes| {
                 let mut brightest = 0.0f32;
                 for node in nodes {
-                    let transmittance = air.transmittance(&node.columns_m);
+                    let transmittance = air.coefficients.transmittance(&node.columns_m);
                     brightest = brightest.max(transmittance.max_element());
                     let weight = transmittance * node.dt as f32;
                     let radius_m = node.here.radius_m;
@@ -152,7 +152,7 @@ impl<const N: usize> Path<N> {
             },
         );
         if segment.meets_ground {
-            path.ground = Some((segment.end_m, air.transmittance(&columns)));
+            path.ground = Some((segment.end_m, air.coefficients.transmittance(&columns)));
         }
         path
     }
@@ -160,7 +160,7 @@ impl<const N: usize> Path<N> {
     /// True if the sun is above the planet's limb at all nodes of all rays.
     #[inline(always)]
     pub fn is_lit(&self, air: &Air<N>, bundle: &RayBundle) -> bool {
-        let ground_radius_m = air.shell.ground_radius_m;
+        let ground_radius_m = air.shell().ground_radius_m;
         self.nodes.iter().all(|node| {
             (0..bundle.len()).all(|slot| {
                 let mu_sun = (self.radius_m * bundle.mu_sun[slot] + node.t * bundle.nu[slot])
@@ -179,20 +179,22 @@ impl<const N: usize> Path<N> {
         bundle: &RayBundle,
         out: &mut Vec<Spectrum<N>>,
     ) {
-        let shell = &air.shell;
+        let shell = air.shell();
         out.clear();
         out.resize(air.scatterers.len() * bundle.len(), Spectrum::ZERO);
         for node in &self.nodes {
-            let columns = shell.columns_at(node.radius_m);
+            let columns = air.columns.at(node.radius_m);
             for slot in 0..bundle.len() {
                 let mu_sun = (self.radius_m * bundle.mu_sun[slot] + node.t * bundle.nu[slot])
                     / node.radius_m;
                 let depth = if mu_sun >= 0.0 {
-                    air.optical_depth_f32(&columns.to_space_m(mu_sun as f32))
+                    air.coefficients
+                        .extinction_f32(&columns.to_space_m(mu_sun as f32))
                 } else if in_shadow(node.radius_m, mu_sun, shell.ground_radius_m) {
                     continue;
                 } else {
-                    air.optical_depth(&shell.columns_to_space_m(node.radius_m, mu_sun))
+                    air.coefficients
+                        .extinction(&air.columns.to_space_m(node.radius_m, mu_sun))
                 };
                 let arriving = node.weight * (Spectrum::ZERO - depth).exp();
                 for (place, s) in air.scatterers.iter().enumerate() {
@@ -260,7 +262,10 @@ impl<const N: usize> Path<N> {
                 .ray((self.radius_m, self.mu), slot)
                 .advanced(t)
                 .mu_sun;
-            *out = out.mul_acc(transmittance, air.reflected(irradiance(mu_sun)));
+            *out = out.mul_acc(
+                transmittance,
+                air.coefficients.reflected(irradiance(mu_sun)),
+            );
         }
     }
 }

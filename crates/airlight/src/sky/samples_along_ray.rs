@@ -11,8 +11,9 @@
 //! without cancellation and without a separate march for each sample. As S is linear in P and L', it can be stored by
 //! scatterer and without phase functions, as in the sky's tables.
 
+use super::field::ground_irradiance;
 use super::harmonics::Harmonics;
-use super::trace::{Arriving, Tracer, ground_irradiance};
+use super::trace::{Arriving, Tracer};
 use crate::spectrum::Spectrum;
 use crate::transfer::march::Marcher;
 use crate::transfer::ray::Ray;
@@ -50,10 +51,10 @@ impl<const N: usize> Tracer<'_, N> {
                 multiple_scatter: Spectrum::ZERO,
             },
         };
-        let Some(segment) = self.air.shell.segment(ray, f64::INFINITY) else {
+        let Some(segment) = self.air.shell().segment(ray, f64::INFINITY) else {
             return vec![self.sample(&accumulated, &accumulated.path); samples_m.len()];
         };
-        let marcher = Marcher::new(NODES, 2.0, self.air.max_extinction_per_m());
+        let marcher = Marcher::new(NODES, 2.0, self.air.coefficients.max_extinction_per_m());
         let mut from_m = segment.start_m;
         let mut all = Vec::with_capacity(samples_m.len());
         for sample_m in samples_m {
@@ -72,11 +73,14 @@ impl<const N: usize> Tracer<'_, N> {
             if segment.meets_ground {
                 let irradiance =
                     ground_irradiance(self.air, self.diffuse, ray.advanced(segment.end_m).mu_sun);
-                let arriving = self.dimming.transmittance(&accumulated.columns_m);
+                let arriving = self
+                    .dimming
+                    .coefficients
+                    .transmittance(&accumulated.columns_m);
                 accumulated.path.multiple_scatter = accumulated
                     .path
                     .multiple_scatter
-                    .mul_acc(arriving, self.air.reflected(irradiance));
+                    .mul_acc(arriving, self.air.coefficients.reflected(irradiance));
             }
         }
         all.iter()
@@ -87,8 +91,8 @@ impl<const N: usize> Tracer<'_, N> {
     /// Path radiance `S = P T/T' + (1 - T/T') L'` and optical depth of a sample.
     #[inline(always)]
     fn sample(&self, accumulated: &Accumulated<N>, whole: &Arriving<N>) -> RaySample<N> {
-        let depth = self.air.optical_depth(&accumulated.columns_m);
-        let into_peaks = depth - self.dimming.optical_depth(&accumulated.columns_m);
+        let depth = self.air.coefficients.extinction(&accumulated.columns_m);
+        let into_peaks = depth - self.dimming.coefficients.extinction(&accumulated.columns_m);
         let replaced = into_peaks.map(|tau| -(-tau).exp_m1());
         let mix = |near: Spectrum<N>, whole: Spectrum<N>| near.mul_acc(replaced, whole - near);
         let (near, whole) = (&accumulated.path, whole);
@@ -113,12 +117,12 @@ impl<const N: usize> Tracer<'_, N> {
         accumulated: &mut Accumulated<N>,
     ) {
         let dimming = self.dimming;
-        let transmittance_before = dimming.transmittance(&accumulated.columns_m);
+        let transmittance_before = dimming.coefficients.transmittance(&accumulated.columns_m);
         let mut y = [0.0f32; Harmonics::MAX_COUNT];
         let mut edges = std::mem::take(&mut self.edges);
         let path = &mut accumulated.path;
         let columns_m = marcher.march(
-            &self.air.shell,
+            self.air.shell(),
             ray,
             span,
             &mut edges,
@@ -126,7 +130,7 @@ impl<const N: usize> Tracer<'_, N> {
             |nodes| {
                 for node in nodes {
                     let transmittance =
-                        transmittance_before * dimming.transmittance(&node.columns_m);
+                        transmittance_before * dimming.coefficients.transmittance(&node.columns_m);
                     let weight = transmittance * node.dt as f32;
                     self.add(node, weight, &mut y, path);
                 }

@@ -1,150 +1,14 @@
-//! The prepared sky and its settings.
+//! The prepared sky.
 
 use super::block::{self, Block};
-use super::coverage::SunCoverage;
-use super::harmonics::Harmonics;
-use super::orders::{Directions, OrderSettings};
-use super::view::View;
-use crate::atmosphere::{Atmosphere, AtmosphereError};
-use crate::control::{Cancelled, Control};
+use super::settings::{SkyError, SkySettings};
+use crate::atmosphere::Atmosphere;
+use crate::control::Control;
 use crate::spectrum::WavelengthGrid;
-use crate::transfer::shell::{MAX_CONSTITUENTS, Shell};
-use glam::DVec3;
+use crate::transfer::columns::SlantColumns;
+use crate::transfer::shell::Shell;
 use std::fmt;
 use std::sync::Arc;
-
-/// Orders of scattering that are computed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Scattering {
-    /// Sunlight scattered once, and the ground lit by direct sunlight.
-    Single,
-    /// All orders of scattering and reflection.
-    All,
-}
-
-/// Settings of the sky solver.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SkySettings {
-    /// Sun elevations and observer altitudes to prepare for.
-    pub suns: SunCoverage,
-    /// Orders of scattering that are computed.
-    pub scattering: Scattering,
-    /// Number of altitudes at which the light inside the atmosphere is solved for, 2 to 200.
-    pub altitudes: usize,
-    /// Resolution and convergence of the orders of scattering.
-    pub orders: OrderSettings,
-}
-
-impl Default for SkySettings {
-    /// All orders, for all sun elevations, with the accuracy stated in the book: within 1 % of Monte Carlo for the sun above
-    /// 10 degrees, 2 % near the horizon.
-    fn default() -> Self {
-        Self {
-            suns: SunCoverage::All,
-            scattering: Scattering::All,
-            altitudes: 20,
-            orders: OrderSettings {
-                degree: 8,
-                peak_degree: 10,
-                rescattered_degree: 4,
-                first: Directions {
-                    zenith_nodes: [7, 5, 8],
-                    azimuths: 12,
-                    panel_nodes: 2,
-                },
-                later: Directions {
-                    zenith_nodes: [4, 4, 5],
-                    azimuths: 7,
-                    panel_nodes: 2,
-                },
-                tolerance: 0.03,
-                max_orders: 40,
-            },
-        }
-    }
-}
-
-impl SkySettings {
-    /// Settings for hazy air and low suns: twice the altitudes, more directions and moments; about five times slower.
-    pub fn fine() -> Self {
-        let mut settings = Self {
-            altitudes: 40,
-            ..Self::default()
-        };
-        let orders = &mut settings.orders;
-        (orders.degree, orders.peak_degree, orders.rescattered_degree) = (12, 12, 8);
-        orders.later.zenith_nodes = [8, 8, 10];
-        (orders.first.panel_nodes, orders.later.panel_nodes) = (3, 3);
-        settings
-    }
-
-    /// Checks the ranges of all settings.
-    ///
-    /// # Errors
-    /// [`SkyError::Setting`] for the first setting out of range.
-    pub fn validate(&self) -> Result<(), SkyError> {
-        let orders = &self.orders;
-        let directions = |d: &Directions| {
-            d.azimuths >= 1
-                && (1..=4).contains(&d.panel_nodes)
-                && d.zenith_nodes.iter().all(|&n| (1..=64).contains(&n))
-        };
-        let finite = match self.suns {
-            SunCoverage::All => true,
-            SunCoverage::Near {
-                sun_elevation_deg,
-                observer_altitude_m,
-            } => sun_elevation_deg.is_finite() && observer_altitude_m.is_finite(),
-        };
-        let checks = [
-            (finite, "a finite elevation and altitude in suns"),
-            (
-                (2..=200).contains(&self.altitudes),
-                "altitudes from 2 to 200",
-            ),
-            (
-                orders.degree <= Harmonics::MAX_DEGREE,
-                "orders.degree of at most 16",
-            ),
-            (
-                orders.peak_degree >= orders.degree && orders.peak_degree <= 64,
-                "orders.peak_degree from orders.degree to 64",
-            ),
-            (
-                orders.rescattered_degree <= orders.degree,
-                "orders.rescattered_degree of at most orders.degree",
-            ),
-            (
-                directions(&orders.first) && directions(&orders.later),
-                "1 to 64 zenith nodes, 1 to 4 panel nodes and at least 1 azimuth in orders.first and orders.later",
-            ),
-            (orders.tolerance > 0.0, "an orders.tolerance above 0"),
-        ];
-        match checks.into_iter().find(|(holds, _)| !holds) {
-            Some((_, expected)) => Err(SkyError::Setting(expected)),
-            None => Ok(()),
-        }
-    }
-}
-
-/// Error of [`Sky::prepare`].
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum SkyError {
-    /// The atmosphere has more constituents than the solver supports.
-    #[error(
-        "expected at most {MAX_CONSTITUENTS} constituents in an atmosphere, got {0}; try merging some"
-    )]
-    TooManyConstituents(usize),
-    /// A setting is out of range; says what is expected.
-    #[error("sky setting out of range: expected {0}")]
-    Setting(&'static str),
-    /// The atmosphere is invalid.
-    #[error(transparent)]
-    Atmosphere(#[from] AtmosphereError),
-    /// The computation was cancelled.
-    #[error(transparent)]
-    Cancelled(#[from] Cancelled),
-}
 
 /// The solved light inside an atmosphere at the wavelengths of a grid. A handle: cheap to clone and to share between
 /// threads.
@@ -155,7 +19,7 @@ pub struct Sky(Arc<Solution>);
 struct Solution {
     atmosphere: Atmosphere,
     grid: WavelengthGrid,
-    shell: Arc<Shell>,
+    columns: Arc<SlantColumns>,
     blocks: Vec<Box<dyn Block>>,
 }
 
@@ -195,13 +59,20 @@ impl Sky {
     ) -> Result<Self, SkyError> {
         settings.validate()?;
         atmosphere.validate()?;
-        let shell = Arc::new(Shell::new(atmosphere, settings.suns.includes_low_suns())?);
+        let shell = Shell::new(atmosphere, settings.suns.includes_low_suns())?;
+        let columns = Arc::new(SlantColumns::new(shell));
         let grid = grid.clone().with_solar(&atmosphere.solar_irradiance);
-        let blocks = block::solve(atmosphere, &shell, grid.wavelengths_nm(), settings, control)?;
+        let blocks = block::solve(
+            atmosphere,
+            &columns,
+            grid.wavelengths_nm(),
+            settings,
+            control,
+        )?;
         Ok(Self(Arc::new(Solution {
             atmosphere: atmosphere.clone(),
             grid,
-            shell,
+            columns,
             blocks,
         })))
     }
@@ -217,18 +88,12 @@ impl Sky {
     }
 
     pub(super) fn shell(&self) -> &Shell {
-        &self.0.shell
+        &self.0.columns.shell
     }
 
     /// Solutions for blocks of wavelengths.
     pub(super) fn blocks(&self) -> &[Box<dyn Block>] {
         &self.0.blocks
-    }
-
-    /// View from `altitude_m` (m; raised to the ground if below it) with the sun in the direction of the unit vector `sun`
-    /// (world axes: [`crate::axes`]), at the planet's mean distance from the sun.
-    pub fn view(&self, altitude_m: f64, sun: DVec3) -> View {
-        View::new(self, altitude_m, sun)
     }
 }
 
@@ -237,31 +102,10 @@ mod tests {
     use super::*;
     use crate::atmosphere::reference;
     use crate::control::Progress;
+    use crate::sky::SunCoverage;
     use std::sync::Mutex;
     use std::sync::atomic::{AtomicBool, Ordering};
 
-    #[test]
-    fn settings_out_of_range_are_refused() {
-        type Change = fn(&mut SkySettings);
-        let changes: [Change; 7] = [
-            |s| s.suns = SunCoverage::near(f64::NAN, 0.0),
-            |s| s.altitudes = 1,
-            |s| s.orders.degree = 17,
-            |s| s.orders.peak_degree = 7,
-            |s| s.orders.rescattered_degree = 9,
-            |s| s.orders.later.panel_nodes = 5,
-            |s| s.orders.tolerance = 0.0,
-        ];
-        for change in changes {
-            let mut settings = SkySettings::default();
-            assert_eq!(settings.validate(), Ok(()));
-            change(&mut settings);
-            assert!(
-                matches!(settings.validate(), Err(SkyError::Setting(_))),
-                "{settings:?}"
-            );
-        }
-    }
     /// Records progress and cancels after a number of reports.
     struct Recorder {
         reports: Mutex<Vec<(u64, u64)>>,

@@ -4,7 +4,7 @@
 //! of a uniform coordinate, and interpolated with cubics. What varies fast is not tabulated: light singly scattered by a
 //! constituent with a peaked phase function is stored without the phase function, which is applied for each pixel.
 
-use super::tabulate::Peaked;
+use super::peaked::Peaked;
 use crate::math::interpolation::{cubic_f32, cubic_mirrored};
 use crate::math::quadrature::GaussRule;
 use crate::math::simd::vectorized;
@@ -27,8 +27,6 @@ pub(super) const AZIMUTHS: usize = 64;
 pub(super) const ROWS_ABOVE: usize = 128;
 /// Number of rows from the horizon to the nadir.
 pub(super) const ROWS_BELOW: usize = 96;
-/// Number of intervals of a sampled phase function, uniform in the sine of half the scattering angle.
-pub(super) const PHASE_SAMPLES: usize = 4096;
 
 /// Widest cell that is interpolated without allocation: 16 wavelengths and three peaked scatterers.
 const SMALL_WIDTH: usize = 64;

@@ -1,19 +1,24 @@
 //! Computation of a view's table.
 
 use super::block::{ChannelMatrix, TableRow};
+use super::peaked::{PHASE_SAMPLES, Peaked};
 use super::ray_bundle::RayBundle;
-use super::table::{
-    AZIMUTHS, Half, PHASE_SAMPLES, ROWS_ABOVE, ROWS_BELOW, SkyTable, TableChannels,
-};
+use super::table::{AZIMUTHS, Half, ROWS_ABOVE, ROWS_BELOW, SkyTable, TableChannels};
 use super::view::View;
 use crate::atmosphere::Constituent;
-use crate::math::interpolation::Place;
 use crate::spectrum::{WavelengthGrid, rgb};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI};
 
+impl View {
+    /// Tabulates the radiance in all directions.
+    pub fn table(&self, channels: TableChannels) -> SkyTable {
+        SkyTable::new(self, channels)
+    }
+}
+
 impl SkyTable {
-    pub(super) fn new(view: &View, channels: TableChannels) -> Self {
+    fn new(view: &View, channels: TableChannels) -> Self {
         let sky = view.sky();
         let shell = sky.shell();
         let radius_m = view.radius_m();
@@ -60,15 +65,6 @@ impl SkyTable {
     }
 }
 
-/// Constituents whose phase function is too peaked to be tabulated with the light.
-pub(crate) struct Peaked {
-    /// Indices of the constituents.
-    pub constituents: Vec<usize>,
-    /// Phase function of each (1/sr), uniform in the sine of half the scattering angle. The same for all blocks, because pixels
-    /// are multiplied by it: the mean over the lanes of the first block.
-    pub phases: Vec<Vec<f32>>,
-}
-
 impl Peaked {
     /// Peaked constituents of a view's atmosphere.
     pub fn of(view: &View) -> Self {
@@ -104,12 +100,6 @@ impl Peaked {
             constituents,
             phases,
         }
-    }
-
-    /// Interpolates a sampled phase function at the sine of half the scattering angle.
-    #[inline(always)]
-    pub fn sampled(phase: &[f32], half_sine: f64) -> f32 {
-        Place::evenly(half_sine, PHASE_SAMPLES + 1).value_in_f32(phase)
     }
 }
 

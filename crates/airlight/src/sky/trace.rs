@@ -13,10 +13,10 @@
 //!
 //! This composes exactly: splitting the segment does not change the result.
 
+use super::air::Air;
+use super::field::{Diffuse, ground_irradiance};
 use super::harmonics::Harmonics;
-use super::orders::Diffuse;
 use crate::spectrum::Spectrum;
-use crate::transfer::air::Air;
 use crate::transfer::march::{Marcher, Node};
 use crate::transfer::ray::Ray;
 use crate::transfer::shell::MAX_CONSTITUENTS;
@@ -72,13 +72,13 @@ impl<'a, const N: usize> Tracer<'a, N> {
 
     /// Marcher with the step size for full accuracy.
     pub fn marcher(air: &Air<N>) -> Marcher {
-        Marcher::new(4, 2.0, air.max_extinction_per_m())
+        Marcher::new(4, 2.0, air.coefficients.max_extinction_per_m())
     }
 
     /// Light along `ray`, over at most `limit_m`.
     pub fn trace(&mut self, ray: &Ray, limit_m: f64) -> Light<N> {
         let (air, dimming) = (self.air, self.dimming);
-        let Some(segment) = air.shell.segment(ray, limit_m) else {
+        let Some(segment) = air.shell().segment(ray, limit_m) else {
             return Light {
                 transmittance: Spectrum::ONE,
                 single: Spectrum::ZERO,
@@ -98,10 +98,10 @@ impl<'a, const N: usize> Tracer<'a, N> {
         let span = (segment.start_m, segment.end_m);
         let columns = self
             .marcher
-            .march(&air.shell, ray, span, &mut edges, |nodes| {
+            .march(air.shell(), ray, span, &mut edges, |nodes| {
                 let mut brightest = 0.0f32;
                 for node in nodes {
-                    let transmittance = dimming.transmittance(&node.columns_m);
+                    let transmittance = dimming.coefficients.transmittance(&node.columns_m);
                     brightest = brightest.max(transmittance.max_element());
                     let mut source = self.source(node, &mut y);
                     if node.lit {
@@ -110,13 +110,12 @@ impl<'a, const N: usize> Tracer<'a, N> {
                             let density = node.densities[s.constituent] as f32;
                             scattering = scattering.scale_acc(s.whole_scattering * *phase, density);
                         }
-                        let to_sun = air
-                            .shell
-                            .columns_to_space_m(node.here.radius_m, node.here.mu_sun);
-                        source = source.mul_acc(scattering, dimming.transmittance(&to_sun));
+                        let to_sun = air.columns.to_space_m(node.here.radius_m, node.here.mu_sun);
+                        source =
+                            source.mul_acc(scattering, dimming.coefficients.transmittance(&to_sun));
                         let once = (Spectrum::ZERO
-                            - air.optical_depth(&node.columns_m)
-                            - air.optical_depth(&to_sun))
+                            - air.coefficients.extinction(&node.columns_m)
+                            - air.coefficients.extinction(&to_sun))
                         .exp();
                         single = single.mul_acc(scattering * node.dt as f32, once);
                     }
@@ -131,7 +130,9 @@ impl<'a, const N: usize> Tracer<'a, N> {
         self.edges = edges;
         let end = ray.advanced(segment.end_m);
         let ground = match segment.meets_ground {
-            true => air.reflected(ground_irradiance(air, self.diffuse, end.mu_sun)),
+            true => air
+                .coefficients
+                .reflected(ground_irradiance(air, self.diffuse, end.mu_sun)),
             false => Spectrum::ZERO,
         };
         let behind = match segment.meets_ground {
@@ -139,9 +140,10 @@ impl<'a, const N: usize> Tracer<'a, N> {
             false if self.diffuse.is_some() => self.radiance(&end),
             false => Spectrum::ZERO,
         };
-        let transmittance = air.transmittance(&columns);
+        let transmittance = air.coefficients.transmittance(&columns);
         // T' - T, without cancellation if both are close to 1.
-        let into_peaks = air.optical_depth(&columns) - dimming.optical_depth(&columns);
+        let into_peaks =
+            air.coefficients.extinction(&columns) - dimming.coefficients.extinction(&columns);
         let difference = transmittance * into_peaks.map(f32::exp_m1);
         path = path.mul_acc(difference, behind);
         Light {
@@ -179,14 +181,14 @@ impl<'a, const N: usize> Tracer<'a, N> {
             single_scatter_without_phase: [Spectrum::ZERO; MAX_CONSTITUENTS],
             multiple_scatter: Spectrum::ZERO,
         };
-        let Some(segment) = air.shell.segment(ray, f64::INFINITY) else {
+        let Some(segment) = air.shell().segment(ray, f64::INFINITY) else {
             return light;
         };
         let mut y = [0.0f32; Harmonics::MAX_COUNT];
         let mut edges = std::mem::take(&mut self.edges);
         let span = (segment.start_m, segment.end_m);
         let columns = self.marcher.march(
-            &air.shell,
+            air.shell(),
             ray,
             span,
             &mut edges,
@@ -194,7 +196,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
             |nodes| {
                 let mut brightest = 0.0f32;
                 for node in nodes {
-                    let transmittance = dimming.transmittance(&node.columns_m);
+                    let transmittance = dimming.coefficients.transmittance(&node.columns_m);
                     brightest = brightest.max(transmittance.max_element());
                     let weight = transmittance * node.dt as f32;
                     self.add(node, weight, &mut y, &mut light);
@@ -217,9 +219,10 @@ impl<'a, const N: usize> Tracer<'a, N> {
         if segment.meets_ground {
             let irradiance =
                 ground_irradiance(air, self.diffuse, ray.advanced(segment.end_m).mu_sun);
-            light.multiple_scatter = light
-                .multiple_scatter
-                .mul_acc(dimming.transmittance(&columns), air.reflected(irradiance));
+            light.multiple_scatter = light.multiple_scatter.mul_acc(
+                dimming.coefficients.transmittance(&columns),
+                air.coefficients.reflected(irradiance),
+            );
         }
         light
     }
@@ -236,11 +239,10 @@ impl<'a, const N: usize> Tracer<'a, N> {
     ) {
         light.multiple_scatter = light.multiple_scatter.mul_acc(weight, self.source(node, y));
         if node.lit {
-            let to_sun = self
-                .air
-                .shell
-                .columns_to_space_m(node.here.radius_m, node.here.mu_sun);
-            let sunlight = weight * self.dimming.transmittance(&to_sun);
+            let sunlight = weight
+                * self
+                    .dimming
+                    .transmittance_to_sun(node.here.radius_m, node.here.mu_sun);
             for (s, sum) in self
                 .air
                 .scatterers
@@ -263,31 +265,4 @@ impl<'a, const N: usize> Tracer<'a, N> {
             .evaluate(node.here.mu as f32, node.here.toward_sun() as f32, y);
         field.source(air, &node.here, &node.densities, y)
     }
-}
-
-/// Irradiance on the ground from sun and sky at the sun cosine `mu_sun`, per unit solar irradiance.
-#[inline(always)]
-pub fn ground_irradiance<const N: usize>(
-    air: &Air<N>,
-    diffuse: Option<&Diffuse<N>>,
-    mu_sun: f64,
-) -> Spectrum<N> {
-    match diffuse {
-        Some(diffuse) => {
-            diffuse.field.ground_irradiance(mu_sun) + sun_on_ground(&diffuse.air, mu_sun)
-        }
-        None => sun_on_ground(air, mu_sun),
-    }
-}
-
-/// Irradiance on the ground from the sun alone at the sun cosine `mu_sun`, per unit solar irradiance.
-#[inline(always)]
-pub fn sun_on_ground<const N: usize>(air: &Air<N>, mu_sun: f64) -> Spectrum<N> {
-    if mu_sun <= 0.0 {
-        return Spectrum::ZERO;
-    }
-    let columns = air
-        .shell
-        .columns_to_space_m(air.shell.ground_radius_m, mu_sun);
-    air.transmittance(&columns) * mu_sun as f32
 }

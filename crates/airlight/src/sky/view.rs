@@ -1,11 +1,10 @@
 //! View of a prepared sky from one position under one sun.
 
 use super::block::{BlockLight, SampleLight};
+use super::peaked::Peaked;
 use super::solver::Sky;
-use super::table::{SkyTable, TableChannels};
-use super::tabulate::Peaked;
 use crate::spectrum::Spectrum;
-use crate::sun::SunDisc;
+use crate::sun::{SunDisc, SunState};
 use crate::transfer::PathOptics;
 use crate::transfer::ray::Ray;
 use glam::DVec3;
@@ -16,9 +15,8 @@ use std::ops::Range;
 pub struct View {
     sky: Sky,
     position: DVec3,
-    sun: DVec3,
-    /// Solar irradiance relative to that at the planet's mean distance.
-    irradiance_scale: f64,
+    sun: SunState,
+    /// The disc at the distance of the sun.
     disc: SunDisc,
 }
 
@@ -66,14 +64,21 @@ impl LineOfSight {
     }
 }
 
+impl Sky {
+    /// View from `altitude_m` (m; raised to the ground if below it) with the sun in the direction of the unit vector `sun`
+    /// (world axes: [`crate::axes`]), at the planet's mean distance from the sun.
+    pub fn view(&self, altitude_m: f64, sun: DVec3) -> View {
+        View::new(self, altitude_m, sun)
+    }
+}
+
 impl View {
     pub(super) fn new(sky: &Sky, altitude_m: f64, sun: DVec3) -> Self {
         let radius_m = (sky.shell().planet_radius_m + altitude_m).max(sky.shell().ground_radius_m);
         Self {
             sky: sky.clone(),
             position: DVec3::Y * radius_m,
-            sun: sun.normalize(),
-            irradiance_scale: 1.0,
+            sun: SunState::at_mean_distance(sun),
             disc: sky.atmosphere().sun.clone(),
         }
     }
@@ -81,14 +86,14 @@ impl View {
     /// This view with the planet at `ratio` times its mean distance from the sun: scales the irradiance by `1 / ratio^2` and
     /// the angular size of the disc.
     pub fn at_sun_distance(mut self, ratio: f64) -> Self {
-        self.irradiance_scale = 1.0 / (ratio * ratio);
-        self.disc = self.sky.atmosphere().sun.at_distance_ratio(ratio);
+        self.sun.distance_ratio = ratio;
+        self.disc = self.sun.disc(&self.sky.atmosphere().sun);
         self
     }
 
     /// This view from another altitude (m; raised to the ground if below it), vertically above or below.
     pub fn at_altitude(&self, altitude_m: f64) -> Self {
-        let place = Self::new(&self.sky, altitude_m, self.sun);
+        let place = Self::new(&self.sky, altitude_m, self.sun.direction);
         Self {
             position: place.position,
             ..self.clone()
@@ -102,7 +107,7 @@ impl View {
 
     /// Unit vector towards the sun.
     pub fn sun(&self) -> DVec3 {
-        self.sun
+        self.sun.direction
     }
 
     /// The sun's disc as seen from this distance.
@@ -117,16 +122,17 @@ impl View {
 
     /// Solar irradiance at the top of the atmosphere on a surface that faces the sun, W m^-2 nm^-1.
     pub fn solar_irradiance(&self) -> Vec<f32> {
+        let factor = self.sun.irradiance_factor();
         self.sky
             .grid()
             .solar_irradiance()
             .iter()
-            .map(|e| (e * self.irradiance_scale) as f32)
+            .map(|e| (e * factor) as f32)
             .collect()
     }
 
     pub(super) fn ray(&self, direction: DVec3) -> Ray {
-        Ray::new(self.position, direction, self.sun)
+        Ray::new(self.position, direction, self.sun.direction)
     }
 
     /// Light along the unit vector `direction`, over at most `limit_m` metres; `None` for the whole ray to the ground or to
@@ -228,19 +234,20 @@ impl View {
     /// transmittances, down to the horizon.
     pub fn sun_irradiance(&self) -> Vec<f32> {
         let radius = self.disc.angular_radius_rad;
-        let across = self.sun.cross(DVec3::Y);
+        let sun = self.sun.direction;
+        let across = sun.cross(DVec3::Y);
         let up = if across.length() > 1e-9 {
-            across.normalize().cross(self.sun).normalize()
+            across.normalize().cross(sun).normalize()
         } else {
             DVec3::X
         };
         // Height at which the horizon cuts the disc, relative to its centre.
         let ground_radius_m = self.sky.shell().ground_radius_m;
         let horizon = -(ground_radius_m / self.radius_m()).min(1.0).acos();
-        let cut = (horizon - self.sun.y.clamp(-1.0, 1.0).asin()).clamp(-radius, radius);
+        let cut = (horizon - sun.y.clamp(-1.0, 1.0).asin()).clamp(-radius, radius);
         let mut sum = vec![0.0f64; self.sky.grid().len()];
         for (height, light) in self.disc_strips(cut) {
-            let direction = (self.sun + up * height.tan()).normalize();
+            let direction = (sun + up * height.tan()).normalize();
             let transmittance = self.transmittance_to_space(direction);
             for ((sum, light), t) in sum.iter_mut().zip(&light).zip(&transmittance) {
                 *sum += light * f64::from(*t);
@@ -287,7 +294,7 @@ impl View {
     /// the planet hides it.
     pub fn sun_disc_radiance(&self, direction: DVec3) -> Vec<f32> {
         let direction = direction.normalize();
-        let angle = direction.angle_between(self.sun);
+        let angle = direction.angle_between(self.sun.direction);
         if angle >= self.disc.angular_radius_rad {
             return vec![0.0; self.sky.grid().len()];
         }
@@ -298,10 +305,5 @@ impl View {
             .zip(self.sky.grid().wavelengths_nm())
             .map(|((e, t), &nm)| e * t * self.disc.radiance_per_irradiance(angle, nm) as f32)
             .collect()
-    }
-
-    /// Tabulates the radiance in all directions.
-    pub fn table(&self, channels: TableChannels) -> SkyTable {
-        SkyTable::new(self, channels)
     }
 }

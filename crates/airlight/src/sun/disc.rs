@@ -100,11 +100,6 @@ pub fn limb_polynomial(wavelength_nm: f64) -> [f64; 6] {
     }
 }
 
-/// Solar irradiance at a distance from the sun in AU, relative to that at one AU.
-pub fn irradiance_factor(distance_au: f64) -> f64 {
-    1.0 / (distance_au * distance_au)
-}
-
 impl SunDisc {
     /// The limb-darkened disc at a distance in astronomical units: `sin(radius) = R / distance`.
     ///

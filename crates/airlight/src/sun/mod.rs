@@ -3,7 +3,9 @@
 pub mod disc;
 mod moment;
 pub mod position;
+mod state;
 
 pub use disc::{LimbDarkening, SunDisc, SunError};
 pub use moment::{Moment, MomentError};
 pub use position::{EphemerisError, Place, RefractingAir, SunPosition, sun_position};
+pub use state::SunState;

@@ -18,19 +18,37 @@ const VERTICAL: usize = 1024;
 /// Quadrature rule for each panel of a ray.
 static RULE: FixedRule<4> = FixedRule::fixed();
 
-/// Vertical columns and inverse air masses of all constituents.
-#[derive(Clone, Debug, Default)]
-pub struct ColumnTable {
+/// Columns of every constituent from any point of a shell to space.
+#[derive(Clone, Debug)]
+pub struct SlantColumns {
+    /// The shell.
+    pub shell: Shell,
     /// Uniform in the altitude coordinate: the vertical column and its slope in that coordinate.
     vertical: Vec<[PerConstituent; 2]>,
     /// `[altitude][angle]`.
     inverse_air_mass: Vec<[f32; MAX_CONSTITUENTS]>,
 }
 
-/// The table at one altitude.
+/// Columns from one altitude.
 pub struct ColumnRow {
     vertical: [f32; MAX_CONSTITUENTS],
     inverse_air_mass: [[f32; MAX_CONSTITUENTS]; ANGLES],
+}
+
+/// Columns along a ray to space that misses the ground, from those along rays that climb (`upward(radius_m, mu)`, `mu >= 0`).
+/// A ray that starts downwards first passes its lowest point: `N = 2 N(tangent, 0) - N(r, -mu)`.
+#[inline(always)]
+pub fn slant_columns<const C: usize>(
+    (radius_m, mu): (f64, f64),
+    ground_radius_m: f64,
+    upward: impl Fn(f64, f64) -> [f64; C],
+) -> [f64; C] {
+    if mu >= 0.0 {
+        return upward(radius_m, mu);
+    }
+    let tangent = (radius_m * (1.0 - mu * mu).max(0.0).sqrt()).max(ground_radius_m);
+    let (beyond, above) = (upward(tangent, 0.0), upward(radius_m, -mu));
+    std::array::from_fn(|c| (2.0 * beyond[c] - above[c]).max(0.0))
 }
 
 impl ColumnRow {
@@ -52,8 +70,9 @@ impl ColumnRow {
     }
 }
 
-impl ColumnTable {
-    pub(super) fn new(shell: &Shell) -> Self {
+impl SlantColumns {
+    /// Integrates the columns of a shell.
+    pub fn new(shell: Shell) -> Self {
         let vertical = (0..VERTICAL)
             .map(|i| {
                 let x = i as f64 / (VERTICAL - 1) as f64;
@@ -96,27 +115,26 @@ impl ColumnTable {
             }
         }
         Self {
+            shell,
             vertical,
             inverse_air_mass,
         }
     }
 
-    /// Columns from `radius_m` along `mu` to the top of the atmosphere, in metres at density 1. A descending ray passes its
-    /// lowest point: `N = 2 N(tangent, 0) - N(r, -mu)`.
+    /// Columns from `radius_m` along `mu` to the top of the atmosphere for a ray that misses the ground, in metres at density 1.
     #[inline(always)]
-    pub(super) fn to_space_m(&self, shell: &Shell, radius_m: f64, mu: f64) -> PerConstituent {
-        if mu >= 0.0 {
-            return self.upward_m(shell, radius_m, mu);
-        }
-        let tangent = (radius_m * (1.0 - mu * mu).max(0.0).sqrt()).max(shell.ground_radius_m);
-        let beyond = self.upward_m(shell, tangent, 0.0);
-        let above = self.upward_m(shell, radius_m, -mu);
-        std::array::from_fn(|c| (2.0 * beyond[c] - above[c]).max(0.0))
+    pub fn to_space_m(&self, radius_m: f64, mu: f64) -> PerConstituent {
+        slant_columns(
+            (radius_m, mu),
+            self.shell.ground_radius_m,
+            #[inline(always)]
+            |radius_m, mu| self.upward_m(radius_m, mu),
+        )
     }
 
     #[inline(always)]
-    fn upward_m(&self, shell: &Shell, radius_m: f64, mu: f64) -> PerConstituent {
-        let x = shell.altitude_coordinate(radius_m);
+    fn upward_m(&self, radius_m: f64, mu: f64) -> PerConstituent {
+        let x = self.shell.altitude_coordinate(radius_m);
         let vertical = self.vertical_m(x);
         let (row, row_weights) = cubic(x, ALTITUDES);
         let (column, column_weights) = cubic(mu.sqrt(), ANGLES);
@@ -137,10 +155,10 @@ impl ColumnTable {
         columns
     }
 
-    /// The table at one altitude, for evaluation at many zenith angles.
+    /// The columns from one radius, for evaluation at many zenith angles.
     #[inline(always)]
-    pub(super) fn at(&self, shell: &Shell, radius_m: f64) -> ColumnRow {
-        let x = shell.altitude_coordinate(radius_m);
+    pub fn at(&self, radius_m: f64) -> ColumnRow {
+        let x = self.shell.altitude_coordinate(radius_m);
         let (first, weights) = cubic(x, ALTITUDES);
         let mut row = ColumnRow {
             vertical: self.vertical_m(x).map(|column| column as f32),

@@ -1,10 +1,12 @@
 //! Radiative transfer shared by sky, fog, published models and Monte Carlo.
 //!
 //! [`PathOptics`]: transmittance and path radiance of a ray segment; `ray`, `shell` and `columns`: geometry of a
-//! spherical atmosphere; `march`: integration along a ray; `air`: optical coefficients at N wavelengths.
+//! spherical atmosphere, and columns from any point to space; `coefficients`: optical coefficients at some wavelengths;
+//! `march`: integration along a ray; `delta_m`: separation of the forward peak of a phase function.
 
-pub(crate) mod air;
+pub(crate) mod coefficients;
 pub(crate) mod columns;
+pub(crate) mod delta_m;
 pub(crate) mod march;
 mod path_optics;
 pub(crate) mod ray;

@@ -2,6 +2,17 @@
 
 use glam::DVec3;
 
+/// Segment of a ray inside the atmosphere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AirSegment {
+    /// Distance of its start from the origin, m.
+    pub start_m: f64,
+    /// Distance of its end from the origin, m.
+    pub end_m: f64,
+    /// True if it ends on the ground.
+    pub meets_ground: bool,
+}
+
 /// A ray, reduced to the four numbers that determine radiative transfer along it in a spherically symmetric atmosphere lit by
 /// a distant sun.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -94,6 +105,37 @@ impl Ray {
         }
         let (near, _) = self.crossings(ground_radius_m)?;
         Some(near.max(0.0))
+    }
+
+    /// Segment of the ray inside an atmosphere between the radii of the ground and of the top: from the origin or its entry, to
+    /// `limit_m`, the ground or its exit. `None` if it misses the atmosphere.
+    pub fn segment_in_air(
+        &self,
+        ground_radius_m: f64,
+        top_radius_m: f64,
+        limit_m: f64,
+    ) -> Option<AirSegment> {
+        let (enter, leave) = self.crossings(top_radius_m)?;
+        let start_m = if self.radius_m > top_radius_m {
+            enter
+        } else {
+            0.0
+        };
+        if start_m < 0.0 || leave <= start_m || limit_m <= start_m {
+            return None;
+        }
+        Some(match self.distance_to_ground(ground_radius_m) {
+            Some(ground) if ground <= limit_m => AirSegment {
+                start_m,
+                end_m: ground,
+                meets_ground: true,
+            },
+            _ => AirSegment {
+                start_m,
+                end_m: leave.min(limit_m),
+                meets_ground: false,
+            },
+        })
     }
 
     /// Distances at which the line enters and leaves the planet's cylindrical shadow (radius `ground_radius_m`, on the side away

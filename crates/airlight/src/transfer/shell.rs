@@ -1,10 +1,8 @@
-//! Geometry of an atmosphere, independent of wavelength.
+//! Geometry and density profiles of a spherical atmosphere, independent of wavelength.
 
 use crate::atmosphere::{Atmosphere, DensityProfile};
 use crate::math::quadrature::FixedRule;
-use crate::sky::SkyError;
-use crate::transfer::columns::{ColumnRow, ColumnTable};
-use crate::transfer::ray::Ray;
+use crate::transfer::ray::{AirSegment, Ray};
 
 /// Largest number of constituents.
 pub const MAX_CONSTITUENTS: usize = 8;
@@ -12,7 +10,11 @@ pub const MAX_CONSTITUENTS: usize = 8;
 /// One number for each constituent (relative densities, or columns in metres at density 1); unused entries are 0.
 pub type PerConstituent = [f64; MAX_CONSTITUENTS];
 
-/// A spherical shell of air: radii, density profiles, quadrature panels and slant columns.
+/// An atmosphere with more than [`MAX_CONSTITUENTS`] constituents, and how many it has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TooManyConstituents(pub usize);
+
+/// A spherical shell of air: radii, density profiles and quadrature panels.
 #[derive(Clone, Debug)]
 pub struct Shell {
     /// Radius at altitude 0, m.
@@ -24,18 +26,17 @@ pub struct Shell {
     /// Boundaries of quadrature panels: between them densities are smooth and change by a limited factor.
     pub panel_radii_m: Vec<f64>,
     densities: Vec<DensityProfile>,
-    columns: ColumnTable,
 }
 
 impl Shell {
-    /// Computes panels and column tables of `atmosphere`; `low_sun` adds panels in thin air, which dominates with a low sun.
+    /// Divides `atmosphere` into panels; `low_sun` adds panels in thin air, which dominates with a low sun.
     ///
     /// # Errors
-    /// [`SkyError::TooManyConstituents`] for more than [`MAX_CONSTITUENTS`].
-    pub fn new(atmosphere: &Atmosphere, low_sun: bool) -> Result<Self, SkyError> {
+    /// [`TooManyConstituents`] for more than [`MAX_CONSTITUENTS`].
+    pub fn new(atmosphere: &Atmosphere, low_sun: bool) -> Result<Self, TooManyConstituents> {
         let planet = &atmosphere.planet;
         if atmosphere.constituents.len() > MAX_CONSTITUENTS {
-            return Err(SkyError::TooManyConstituents(atmosphere.constituents.len()));
+            return Err(TooManyConstituents(atmosphere.constituents.len()));
         }
         let densities: Vec<_> = atmosphere
             .constituents
@@ -56,16 +57,13 @@ impl Shell {
             .into_iter()
             .map(|altitude| planet.radius_m + altitude)
             .collect();
-        let mut shell = Self {
+        Ok(Self {
             planet_radius_m: planet.radius_m,
             ground_radius_m: planet.radius_m + bottom,
             top_radius_m: planet.radius_m + top,
             panel_radii_m,
             densities,
-            columns: ColumnTable::default(),
-        };
-        shell.columns = ColumnTable::new(&shell);
-        Ok(shell)
+        })
     }
 
     /// Number of constituents.
@@ -101,42 +99,9 @@ impl Shell {
         out
     }
 
-    /// Columns from `radius_m` along `mu` to the top of the atmosphere, for a ray that does not hit the ground.
-    #[inline(always)]
-    pub fn columns_to_space_m(&self, radius_m: f64, mu: f64) -> PerConstituent {
-        self.columns.to_space_m(self, radius_m, mu)
-    }
-
-    /// Columns to space from one radius, for many zenith angles.
-    #[inline(always)]
-    pub fn columns_at(&self, radius_m: f64) -> ColumnRow {
-        self.columns.at(self, radius_m)
-    }
-
-    /// Segment of a ray inside the atmosphere, from `t = 0` or its entry to `limit_m`, the ground or its exit; `None` if it
-    /// misses the atmosphere.
-    pub fn segment(&self, ray: &Ray, limit_m: f64) -> Option<ShellSegment> {
-        let (enter, leave) = ray.crossings(self.top_radius_m)?;
-        let start = if ray.radius_m > self.top_radius_m {
-            enter
-        } else {
-            0.0
-        };
-        if start < 0.0 || leave <= start || limit_m <= start {
-            return None;
-        }
-        match ray.distance_to_ground(self.ground_radius_m) {
-            Some(ground) if ground <= limit_m => Some(ShellSegment {
-                start_m: start,
-                end_m: ground,
-                meets_ground: true,
-            }),
-            _ => Some(ShellSegment {
-                start_m: start,
-                end_m: leave.min(limit_m),
-                meets_ground: false,
-            }),
-        }
+    /// Segment of a ray inside the atmosphere, over at most `limit_m`.
+    pub fn segment(&self, ray: &Ray, limit_m: f64) -> Option<AirSegment> {
+        ray.segment_in_air(self.ground_radius_m, self.top_radius_m, limit_m)
     }
 
     /// Altitude coordinate `sqrt(height above ground / thickness)` in `[0, 1]`, in which tables are uniform: dense near the
@@ -185,17 +150,6 @@ impl Shell {
         }
         columns
     }
-}
-
-/// The segment of a ray inside the atmosphere.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ShellSegment {
-    /// Distance of its start from the eye, m.
-    pub start_m: f64,
-    /// Distance of its end from the eye, m.
-    pub end_m: f64,
-    /// True if it ends on the ground.
-    pub meets_ground: bool,
 }
 
 /// Altitudes from `bottom` to `top`, both included, between which all densities are free of kinks and, as far as the

@@ -1,7 +1,7 @@
 //! The sky behind the haze.
 
+use super::lanes::{Lanes, to_xyz, wavelengths_nm};
 use super::settings::{BaseBlue, Klassen1987Error, Klassen1987Settings};
-use super::{Lanes, to_xyz, wavelengths_nm};
 use crate::axes;
 use crate::sky::{Sky, SkySettings, SkyTable, SunCoverage, TableChannels};
 use crate::spectrum::WavelengthGrid;

@@ -12,8 +12,6 @@
 //! change divided by 0.034 times the brightest channel is sufficient as long as the brightest channel does not exceed white.
 //! Red sunsets are exposed for luminance, so their red may: the bound holds for channels up to [`OVEREXPOSED`] times white.
 
-use super::Klassen1987;
-use super::simpson::Simpson;
 use crate::math::interpolation::Place;
 use crate::spectrum::RgbSpace;
 use std::collections::HashMap;
@@ -74,20 +72,18 @@ impl Axis {
 }
 
 impl Cells {
-    /// Cells of a model for pictures with `bits` bits per channel.
-    pub fn new(model: &Klassen1987, bits: u32) -> Self {
+    /// Cells for pictures with `bits` bits per channel of the colours `xyz(sin_elevation, cos_sun)`.
+    pub fn new(bits: u32, mut xyz: impl FnMut(f64, f64) -> [f64; 3]) -> Self {
         let codes = 2f64.powi(bits as i32) - 1.0;
         let cell_change = STEPS / (codes * 1.055 / 2.4);
         let from_xyz = RgbSpace::Srgb.from_xyz_matrix();
-        let mut simpson = Simpson::new(0.0);
         let colours: Vec<Vec<[f64; 3]>> = (0..=ELEVATIONS)
             .map(|i| {
                 let sin_elevation = Axis::node(FRAC_PI_2, ELEVATIONS, i).sin();
                 (0..=ANGLES)
                     .map(|k| {
                         let cos_sun = Axis::node(PI, ANGLES, k).cos();
-                        let xyz = model.xyz_along(sin_elevation, cos_sun, &mut simpson);
-                        crate::spectrum::rgb::apply(&from_xyz, xyz)
+                        crate::spectrum::rgb::apply(&from_xyz, xyz(sin_elevation, cos_sun))
                     })
                     .collect()
             })
@@ -119,20 +115,19 @@ fn change(a: [f64; 3], b: [f64; 3]) -> f64 {
 }
 
 /// Evaluates pixels one after another, computing only colours of new cells.
-pub(super) struct Walker<'a> {
-    model: &'a Klassen1987,
+pub(super) struct Walker<'a, F> {
     cells: &'a Cells,
-    simpson: Simpson,
+    /// The colour by the sine of the elevation and the cosine of the angle to the sun.
+    colour: F,
     known: HashMap<(u32, u32), [f64; 3]>,
     last: Option<((u32, u32), [f64; 3])>,
 }
 
-impl<'a> Walker<'a> {
-    pub fn new(model: &'a Klassen1987, cells: &'a Cells, alike: f32) -> Self {
+impl<'a, F: FnMut(f64, f64) -> [f64; 3]> Walker<'a, F> {
+    pub fn new(cells: &'a Cells, colour: F) -> Self {
         Self {
-            model,
             cells,
-            simpson: Simpson::new(alike),
+            colour,
             known: HashMap::new(),
             last: None,
         }
@@ -153,11 +148,11 @@ impl<'a> Walker<'a> {
         if self.known.len() >= MAX_COLOURS {
             self.known.clear();
         }
-        let (model, simpson) = (self.model, &mut self.simpson);
+        let colour = &mut self.colour;
         let xyz = *self.known.entry(cell).or_insert_with(|| {
             let sin_elevation = elevation.middle(cell.0).sin();
             let cos_sun = angle.middle(cell.1).cos();
-            model.xyz_along(sin_elevation, cos_sun, simpson)
+            colour(sin_elevation, cos_sun)
         });
         self.last = Some((cell, xyz));
         xyz

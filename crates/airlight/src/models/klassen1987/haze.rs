@@ -1,8 +1,9 @@
 //! Optical properties of the haze at the model's wavelengths: figures 2 and 3 as tables.
 
+use super::lanes::{Lanes, wavelengths_nm};
 use super::settings::{Haze, HazePhase, Klassen1987Error, Klassen1987Settings};
-use super::{Lanes, wavelengths_nm};
 use crate::atmosphere::aerosol::REFERENCE_NM;
+use crate::math::interpolation::Place;
 use crate::optics::mie::droplets::Drops;
 use crate::optics::mie::{BulkOptics, MieError, Particles};
 use crate::optics::{PhaseFunction, TabulatedPhase};
@@ -78,10 +79,8 @@ impl HazeTables {
     /// `beta_sc(psi)` by the cosine of the scattering angle, m^-1 sr^-1.
     pub fn scattered(&self, cos_angle: f64) -> Lanes {
         let half_sine = (0.5 * (1.0 - cos_angle)).clamp(0.0, 1.0).sqrt();
-        let place = (2.0 / PI * half_sine.asin()).sqrt() * SAMPLES as f64;
-        let below = (place as usize).min(SAMPLES - 1);
-        let t = (place - below as f64) as f32;
-        self.scattering[below] * (1.0 - t) + self.scattering[below + 1] * t
+        let root = (2.0 / PI * half_sine.asin()).sqrt();
+        Place::evenly(root, SAMPLES + 1).value_in_f32(&self.scattering)
     }
 }
 

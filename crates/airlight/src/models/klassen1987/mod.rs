@@ -37,6 +37,7 @@ mod errata;
 pub mod fog;
 mod geometry;
 mod haze;
+mod lanes;
 mod layers;
 mod scene;
 mod settings;
@@ -45,46 +46,22 @@ mod simpson;
 mod tests;
 
 pub use geometry::{HazePath, SunRay};
+pub use lanes::{FIRST_NM, WAVELENGTHS, wavelength_grid};
 pub use scene::{Fog1987, Klassen1987Scene, SUNSET_DEG};
 pub use settings::{BaseBlue, Haze, HazePhase, Klassen1987Error, Klassen1987Settings};
 
 use super::PublishedModel;
 use crate::axes;
-use crate::spectrum::{Spectrum, WavelengthGrid};
+use crate::spectrum::WavelengthGrid;
 use crate::sun::SunDisc;
 use blue::Blue;
 use coherence::{Cells, Walker};
 use geometry::{RaySegment, Spheres};
 use glam::DVec3;
 use haze::HazeTables;
+use lanes::{Lanes, exp_neg, f64s, to_xyz, wavelengths_nm};
 use simpson::Simpson;
 use std::sync::OnceLock;
-
-/// Number of wavelengths.
-pub const WAVELENGTHS: usize = 33;
-/// First wavelength, nm; the others follow every 10 nm up to 700 nm.
-pub const FIRST_NM: f64 = 380.0;
-
-type Lanes = Spectrum<WAVELENGTHS>;
-
-fn wavelengths_nm() -> impl Iterator<Item = f64> {
-    (0..WAVELENGTHS).map(|i| FIRST_NM + 10.0 * i as f64)
-}
-
-/// The wavelengths as a grid with the Earth's solar spectrum.
-pub fn wavelength_grid() -> WavelengthGrid {
-    WavelengthGrid::from_wavelengths_nm(wavelengths_nm().collect())
-        .expect("the model's wavelengths are in order")
-}
-
-/// Transmittance `e^-depth` of an optical depth.
-fn exp_neg(depth: Lanes) -> Lanes {
-    (depth * -1.0).exp()
-}
-
-fn to_xyz(grid: &WavelengthGrid, radiance: &Lanes) -> [f64; 3] {
-    grid.to_xyz(&radiance.0)
-}
 
 /// Sun and sky of 1987 for one sun direction.
 pub struct Klassen1987 {
@@ -247,10 +224,6 @@ impl Klassen1987 {
     }
 }
 
-fn f64s(lanes: &Lanes) -> Vec<f64> {
-    lanes.0.iter().map(|&v| f64::from(v)).collect()
-}
-
 impl PublishedModel for Klassen1987 {
     fn sun(&self) -> DVec3 {
         self.sun
@@ -273,10 +246,14 @@ impl PublishedModel for Klassen1987 {
     /// no channel is exposed to more than 8 times white.
     fn walk(&self) -> Box<dyn FnMut(DVec3) -> [f64; 3] + '_> {
         let bits = self.settings.bits_per_channel;
-        let cells = self.cells.get_or_init(|| Cells::new(self, bits));
+        let colours = |alike| {
+            let mut simpson = Simpson::new(alike);
+            move |sin_elevation, cos_sun| self.xyz_along(sin_elevation, cos_sun, &mut simpson)
+        };
+        let cells = self.cells.get_or_init(|| Cells::new(bits, colours(0.0)));
         // An eighth of a step of the picture.
         let alike = 0.125 * 2.4 / 1.055 / (2f32.powi(bits as i32) - 1.0);
-        let mut walker = Walker::new(self, cells, alike);
+        let mut walker = Walker::new(cells, colours(alike));
         Box::new(move |direction| {
             let (sin_elevation, cos_sun) = self.angles(direction);
             walker.xyz(sin_elevation, cos_sun)

@@ -12,8 +12,10 @@
 //!   is the light that falls on the level, of sun and sky, sent evenly into all directions; below [`SUNSET_DEG`].
 //! - Without fog there are haze and air before things (eq. 45), and things are lit by `I_t`.
 
-use super::{HazePhase, Klassen1987, Klassen1987Error, Lanes, Simpson, WAVELENGTHS};
-use super::{to_xyz, wavelengths_nm};
+use super::Klassen1987;
+use super::lanes::{Lanes, WAVELENGTHS, to_xyz, wavelengths_nm};
+use super::settings::{HazePhase, Klassen1987Error};
+use super::simpson::Simpson;
 use crate::atmosphere::{Constituent, DensityProfile, RaySegment};
 use crate::axes;
 use crate::fog::LayerLanes;

@@ -1,6 +1,6 @@
 //! Adaptive Simpson quadrature over all wavelengths, which reuses the previous result (section 8).
 
-use super::Lanes;
+use super::lanes::Lanes;
 use crate::math::simpson::{adaptive_simpson, simpson};
 
 /// Relative tolerance of each wavelength (relative to at least [`DIM`] times the brightest); 16 times that where the integrand jumps.

@@ -3,7 +3,8 @@
 use super::TransmittanceTable;
 use crate::atmosphere::{Atmosphere, DensityProfile};
 use crate::optics::PhaseFunction;
-use crate::transfer::ray::{Ray, in_shadow};
+use crate::transfer::coefficients::Coefficients;
+use crate::transfer::ray::{AirSegment, Ray, in_shadow};
 
 /// An atmosphere at some wavelengths; all lists have one entry per wavelength.
 pub struct AirLanes {
@@ -11,15 +12,9 @@ pub struct AirLanes {
     planet_radius_m: f64,
     ground_radius_m: f64,
     top_radius_m: f64,
-    ground_albedo: Vec<f32>,
-    parts: Vec<Part>,
-}
-
-struct Part {
-    density: DensityProfile,
-    scattering_per_m: Vec<f32>,
-    extinction_per_m: Vec<f32>,
-    phase: PhaseFunction,
+    coefficients: Coefficients<Vec<f32>>,
+    densities: Vec<DensityProfile>,
+    phases: Vec<PhaseFunction>,
 }
 
 /// A step of a march.
@@ -38,25 +33,17 @@ impl AirLanes {
     /// Samples `atmosphere` at wavelengths (nm, in any order).
     pub fn new(atmosphere: &Atmosphere, wavelengths_nm: &[f64]) -> Self {
         let planet = &atmosphere.planet;
-        let sample =
-            |f: &dyn Fn(f64) -> f64| wavelengths_nm.iter().map(|&nm| f(nm) as f32).collect();
-        let parts = atmosphere
-            .constituents
-            .iter()
-            .map(|part| Part {
-                density: part.density.clone(),
-                scattering_per_m: sample(&|nm| part.scattering_per_m.at(nm)),
-                extinction_per_m: sample(&|nm| part.extinction_per_m(nm)),
-                phase: part.phase.clone(),
-            })
-            .collect();
+        let parts = &atmosphere.constituents;
         Self {
             wavelengths_nm: wavelengths_nm.to_vec(),
             planet_radius_m: planet.radius_m,
             ground_radius_m: planet.radius_m + planet.ground_altitude_m,
             top_radius_m: planet.radius_m + planet.top_altitude_m,
-            ground_albedo: sample(&|nm| planet.ground_albedo.at(nm)),
-            parts,
+            coefficients: Coefficients::sample(atmosphere, |f| {
+                wavelengths_nm.iter().map(|&nm| f(nm) as f32).collect()
+            }),
+            densities: parts.iter().map(|part| part.density.clone()).collect(),
+            phases: parts.iter().map(|part| part.phase.clone()).collect(),
         }
     }
 
@@ -78,23 +65,19 @@ impl AirLanes {
     /// Scattering coefficient times phase function of each constituent at density 1, `[constituent][wavelength]`, 1/(m sr);
     /// `nu` is the cosine of the angle to the sun.
     pub fn scattered(&self, nu: f64) -> Vec<Vec<f32>> {
-        let of = |part: &Part| {
-            let lanes = part.scattering_per_m.iter().zip(&self.wavelengths_nm);
+        let of = |(scattering, phase): (&Vec<f32>, &PhaseFunction)| {
+            let lanes = scattering.iter().zip(&self.wavelengths_nm);
             lanes
-                .map(|(s, &nm)| s * part.phase.evaluate(nu, nm) as f32)
+                .map(|(s, &nm)| s * phase.evaluate(nu, nm) as f32)
                 .collect()
         };
-        self.parts.iter().map(of).collect()
+        let scattering = self.coefficients.scattering_per_m.iter();
+        scattering.zip(&self.phases).map(of).collect()
     }
 
-    /// Segment of a ray inside the atmosphere, m, and whether it ends on the ground; `None` if it misses the atmosphere.
-    pub fn segment_m(&self, ray: &Ray) -> Option<(f64, f64, bool)> {
-        let (near, far) = ray.crossings(self.top_radius_m)?;
-        if far <= 0.0 {
-            return None;
-        }
-        let ground = ray.distance_to_ground(self.ground_radius_m);
-        Some((near.max(0.0), ground.unwrap_or(far), ground.is_some()))
+    /// Segment of a ray inside the atmosphere, over at most `limit_m` metres; `None` if it misses the atmosphere.
+    pub fn segment(&self, ray: &Ray, limit_m: f64) -> Option<AirSegment> {
+        ray.segment_in_air(self.ground_radius_m, self.top_radius_m, limit_m)
     }
 
     /// Marches from `start_m` to `end_m` in `steps` steps with the density of their midpoints; step k of n begins at the fraction
@@ -111,7 +94,7 @@ impl AirLanes {
         let mut throughput = vec![1.0f32; lanes];
         let (mut scattering, mut weight) = (vec![0.0f32; lanes], vec![0.0f32; lanes]);
         let mut extinction = vec![0.0f32; lanes];
-        let mut densities = vec![0.0; self.parts.len()];
+        let mut densities = vec![0.0; self.densities.len()];
         let edge = |k: usize| start_m + (end_m - start_m) * (k as f64 / steps as f64).powf(power);
         for k in 0..steps {
             let (from, to) = (edge(k), edge(k + 1));
@@ -119,12 +102,12 @@ impl AirLanes {
             let altitude = ray.radius_m - self.planet_radius_m + ray.climb_at(middle);
             scattering.fill(0.0);
             extinction.fill(0.0);
-            for (part, density) in self.parts.iter().zip(&mut densities) {
-                *density = part.density.at(altitude);
+            for (part, density) in densities.iter_mut().enumerate() {
+                *density = self.densities[part].at(altitude);
                 let d = *density as f32;
                 for lane in 0..lanes {
-                    scattering[lane] += d * part.scattering_per_m[lane];
-                    extinction[lane] += d * part.extinction_per_m[lane];
+                    scattering[lane] += d * self.coefficients.scattering_per_m[part][lane];
+                    extinction[lane] += d * self.coefficients.extinction_per_m[part][lane];
                 }
             }
             let dt = (to - from) as f32;
@@ -165,9 +148,10 @@ impl AirLanes {
             for k in 0..steps {
                 let altitude =
                     ray.radius_m - self.planet_radius_m + ray.climb_at((k as f64 + 0.5) * step);
-                for part in &self.parts {
-                    let column = (part.density.at(altitude) * step) as f32;
-                    for (tau, sigma) in out.iter_mut().zip(&part.extinction_per_m) {
+                let extinction = self.coefficients.extinction_per_m.iter();
+                for (density, extinction) in self.densities.iter().zip(extinction) {
+                    let column = (density.at(altitude) * step) as f32;
+                    for (tau, sigma) in out.iter_mut().zip(extinction) {
                         *tau += column * sigma;
                     }
                 }
@@ -175,8 +159,8 @@ impl AirLanes {
         })
     }
 
-    /// Transmittance to the sun from the table; 0 in the planet's shadow.
-    pub fn sunlight(
+    /// Transmittance to the sun at the zenith cosine `mu_sun` from the table; 0 in the planet's shadow.
+    pub fn transmittance_to_sun(
         &self,
         table: &TransmittanceTable,
         radius_m: f64,
@@ -197,7 +181,7 @@ impl AirLanes {
             return;
         }
         table.look_up(self.ground_radius_m, mu_sun, out);
-        for (o, albedo) in out.iter_mut().zip(&self.ground_albedo) {
+        for (o, albedo) in out.iter_mut().zip(&self.coefficients.ground_albedo) {
             *o *= albedo * (mu_sun * std::f64::consts::FRAC_1_PI) as f32;
         }
     }

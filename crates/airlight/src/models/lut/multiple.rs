@@ -107,24 +107,33 @@ fn psi(
                 mu_sun,
                 nu,
             };
-            let Some((start, end, on_ground)) = air.segment_m(&ray) else {
+            let Some(segment) = air.segment(&ray, f64::INFINITY) else {
                 continue;
             };
-            let through = air.march(&ray, (start, end), (settings.steps, 1.0), |step| {
-                air.sunlight(
+            let through = air.march(
+                &ray,
+                (segment.start_m, segment.end_m),
+                (settings.steps, 1.0),
+                |step| {
+                    air.transmittance_to_sun(
+                        transmittance,
+                        step.here.radius_m,
+                        step.here.mu_sun,
+                        &mut sunlight,
+                    );
+                    for lane in 0..lanes {
+                        let scattered = step.scattering_per_m[lane] * step.weight_m[lane];
+                        second[lane] += scattered * sunlight[lane] * isotropic;
+                        returned[lane] += scattered;
+                    }
+                },
+            );
+            if segment.meets_ground {
+                air.ground_radiance(
                     transmittance,
-                    step.here.radius_m,
-                    step.here.mu_sun,
+                    ray.advanced(segment.end_m).mu_sun,
                     &mut sunlight,
                 );
-                for lane in 0..lanes {
-                    let scattered = step.scattering_per_m[lane] * step.weight_m[lane];
-                    second[lane] += scattered * sunlight[lane] * isotropic;
-                    returned[lane] += scattered;
-                }
-            });
-            if on_ground {
-                air.ground_radiance(transmittance, ray.advanced(end).mu_sun, &mut sunlight);
                 for lane in 0..lanes {
                     second[lane] += through[lane] * sunlight[lane];
                 }

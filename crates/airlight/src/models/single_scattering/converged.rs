@@ -3,14 +3,14 @@
 use super::constants as c;
 use super::nodes::{self, Columns};
 use super::printed::smoothstep;
-use super::{Settings, Variant};
+use super::settings::{Settings, Variant};
 use crate::atmosphere::presets::published;
 use crate::math::quadrature::{GaussRule, RunningRule};
 use crate::models::lut::{
     AirLanes, MultipleScatteringSettings, MultipleScatteringTable, TransmittanceTable,
 };
 use crate::optics::PhaseFunction;
-use crate::transfer::ray::{Ray, in_shadow};
+use crate::transfer::ray::{AirSegment, Ray, in_shadow};
 use glam::DVec3;
 use std::f64::consts::PI;
 
@@ -77,13 +77,13 @@ impl Converged {
     /// Luminances scattered into a direction.
     pub fn luminance(&self, direction: DVec3, sun: DVec3) -> [f64; 3] {
         let ray = self.ray(direction, sun);
-        let (end_m, _) = end_of(&ray);
+        let end_m = in_air(&ray).map_or(0.0, |segment| segment.end_m);
         let rayleigh = rayleigh_phase(ray.nu);
         let mie = PhaseFunction::HenyeyGreenstein { g: c::MIE_G }.evaluate(ray.nu, 550.0);
         let mut sum = [0.0; 3];
         nodes::march(&self.view_rule, &ray, end_m, |node| {
             let way = optical_depths(node.columns).map(|tau| (-tau).exp());
-            let sunlight = self.sunlight(&node.here);
+            let sunlight = self.transmittance_to_sun(&node.here);
             let mut psi = [0.0f32; 3];
             if let Some(table) = &self.multiple {
                 table.look_up(node.here.radius_m, node.here.mu_sun, &mut psi);
@@ -105,8 +105,8 @@ impl Converged {
         let [inner, outer] = c::SUN_EDGE.map(|edge| radius * edge);
         let disc = 1.0 - smoothstep(inner, outer, direction.angle_between(sun));
         let ray = self.ray(direction, sun);
-        let (_, on_ground) = end_of(&ray);
-        if disc == 0.0 || on_ground {
+        let hidden = in_air(&ray).is_some_and(|segment| segment.meets_ground);
+        if disc == 0.0 || hidden {
             return [0.0; 3];
         }
         let depths = optical_depths(nodes::columns_to_space(
@@ -118,8 +118,8 @@ impl Converged {
         [0, 1, 2].map(|i| disc * self.illuminance[i] / solid_angle * (-depths[i]).exp())
     }
 
-    /// Transmittance to the sun from a point.
-    fn sunlight(&self, here: &Ray) -> [f64; 3] {
+    /// Transmittance to the sun from a point; 0 in the planet's shadow.
+    fn transmittance_to_sun(&self, here: &Ray) -> [f64; 3] {
         if in_shadow(here.radius_m, here.mu_sun, c::PLANET_RADIUS_M) {
             return [0.0; 3];
         }
@@ -144,15 +144,9 @@ impl Converged {
     }
 }
 
-/// Distance at which a ray that starts in the atmosphere ends, m, and whether it ends on the ground.
-fn end_of(ray: &Ray) -> (f64, bool) {
-    match ray.distance_to_ground(c::PLANET_RADIUS_M) {
-        Some(end_m) => (end_m, true),
-        None => (
-            ray.crossings(c::TOP_RADIUS_M).map_or(0.0, |(_, far)| far),
-            false,
-        ),
-    }
+/// Segment of a ray inside the atmosphere.
+fn in_air(ray: &Ray) -> Option<AirSegment> {
+    ray.segment_in_air(c::PLANET_RADIUS_M, c::TOP_RADIUS_M, f64::INFINITY)
 }
 
 /// Optical depths for columns of the two densities.

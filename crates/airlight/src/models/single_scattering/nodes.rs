@@ -7,6 +7,7 @@
 
 use super::constants as c;
 use crate::math::quadrature::{GaussRule, RunningRule};
+use crate::transfer::columns::slant_columns;
 use crate::transfer::ray::Ray;
 
 /// Largest step next to the densest point, m: a mean free path of blue light at sea level.
@@ -67,15 +68,9 @@ pub fn columns_up(rule: &GaussRule, radius_m: f64, mu: f64) -> Columns {
 
 /// Columns from `radius_m` to space along a ray that misses the ground.
 pub fn columns_to_space(rule: &GaussRule, radius_m: f64, mu: f64) -> Columns {
-    if mu >= 0.0 {
-        return columns_up(rule, radius_m, mu);
-    }
-    let tangent = radius_m * ((1.0 - mu) * (1.0 + mu)).sqrt();
-    let (whole, behind) = (
-        columns_up(rule, tangent, 0.0),
-        columns_up(rule, radius_m, -mu),
-    );
-    [0, 1].map(|i| 2.0 * whole[i] - behind[i])
+    slant_columns((radius_m, mu), c::PLANET_RADIUS_M, |radius_m, mu| {
+        columns_up(rule, radius_m, mu)
+    })
 }
 
 /// Calls `visit` with the nodes of the view ray from the eye to `end_m`; returns the columns of the whole ray. The ray is

@@ -4,7 +4,8 @@
 //! 4.74), summed as `S_1 + S_2 = sum c_n (a_n + b_n) (pi_n + tau_n)` and `S_1 - S_2 = sum c_n (a_n - b_n) (pi_n - tau_n)`: half
 //! the work (Wiscombe 1980), without cancellation near 0 and 180 degrees, where one of the two vanishes.
 
-use super::sphere::{Coefficients, ScatteringMatrix};
+use super::coefficients::Coefficients;
+use super::matrix::ScatteringMatrix;
 use num_complex::Complex64;
 
 /// Number of angles summed in parallel.

@@ -11,18 +11,21 @@
 
 mod angles;
 mod angular;
+mod coefficients;
 pub mod droplets;
+mod matrix;
 mod particles;
 mod recurrence;
 mod shared;
 mod sizes;
 mod sphere;
 
+pub use matrix::ScatteringMatrix;
 pub use num_complex::Complex64;
 pub use particles::{BulkOptics, Particles};
 pub use shared::DropTable;
 pub use sizes::{SizeDistribution, SizeNode};
-pub use sphere::{Efficiencies, ScatteringMatrix, Sphere};
+pub use sphere::{Efficiencies, Sphere};
 
 /// Largest supported size parameter: a drop of 1 cm at 600 nm.
 pub const LARGEST_SIZE_PARAMETER: f64 = 1e5;
@@ -60,5 +63,5 @@ pub enum MieError {
     },
     /// The wavelengths do not make a table of a phase function.
     #[error(transparent)]
-    Phase(#[from] super::phase::PhaseError),
+    Phase(#[from] super::phase_error::PhaseError),
 }

@@ -2,8 +2,10 @@
 
 use super::angles::adapt;
 use super::angular::{Angles, LANES, Pair, pairs};
+use super::coefficients::Coefficients;
+use super::matrix::ScatteringMatrix;
 use super::sizes::{MIN_SIZES, Steps};
-use super::sphere::{Coefficients, ScatteringMatrix, check_index};
+use super::sphere::check_index;
 use super::{LARGEST_SIZE_PARAMETER, MieError, SizeDistribution, SizeNode};
 use crate::math::parallel;
 use crate::math::simd::vectorized;

@@ -1,5 +1,6 @@
 use super::*;
 use crate::math::quadrature::GaussRule;
+use crate::optics::mie::recurrence::terms;
 use crate::optics::{Depolarization, PhaseFunction};
 
 /// Rows of a test table whose first field is `source`.

@@ -1,0 +1,52 @@
+//! Width and height of pictures.
+
+use crate::ImageError;
+
+/// Width and height of a picture in pixels, each in `1..=65536`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Size {
+    width: u32,
+    height: u32,
+}
+
+impl Size {
+    /// The largest width and height.
+    pub const MAX: u32 = 65536;
+
+    /// Checks width and height.
+    ///
+    /// # Errors
+    /// [`ImageError::Size`] where one is 0 or above 65536.
+    pub fn new(width: u32, height: u32) -> Result<Self, ImageError> {
+        let fits = |n| (1..=Self::MAX).contains(&n);
+        if fits(width) && fits(height) {
+            Ok(Self { width, height })
+        } else {
+            Err(ImageError::Size { width, height })
+        }
+    }
+
+    /// Pixels in a row.
+    pub fn width(self) -> u32 {
+        self.width
+    }
+
+    /// Rows.
+    pub fn height(self) -> u32 {
+        self.height
+    }
+
+    /// The same shape in few pixels: at most `longest_side`, each side at least 1.
+    pub(crate) fn shrunk_to(self, longest_side: u32) -> Self {
+        let longest = self.width.max(self.height);
+        let side = longest_side.clamp(1, longest);
+        let scaled = |n: u32| {
+            let n = u64::from(n) * u64::from(side) + u64::from(longest) / 2;
+            (n / u64::from(longest)).max(1) as u32
+        };
+        Self {
+            width: scaled(self.width),
+            height: scaled(self.height),
+        }
+    }
+}

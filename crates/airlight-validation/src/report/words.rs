@@ -1,0 +1,23 @@
+//! Parts that the reports have in common.
+
+use crate::check::Check;
+
+/// The checks of each suite, in their order.
+pub(super) fn by_suite(checks: &[Check]) -> impl Iterator<Item = &[Check]> {
+    checks.chunk_by(|a, b| a.suite == b.suite)
+}
+
+/// A number with as many decimals as errors need.
+pub(super) fn short(value: f64) -> String {
+    let decimals = if value.abs() < 0.095 { 3 } else { 2 };
+    format!("{value:.decimals$}")
+}
+
+/// What is claimed of a check, in words.
+pub(super) fn claim(check: &Check) -> String {
+    match (check.limit, check.limit_of_rms) {
+        (Some(limit), _) => format!("each within {limit} {}", check.unit),
+        (None, Some(limit)) => format!("rms within {limit} {}", check.unit),
+        (None, None) => String::new(),
+    }
+}

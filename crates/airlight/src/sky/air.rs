@@ -1,0 +1,134 @@
+//! An atmosphere at the N wavelengths of a block of lanes.
+
+use crate::atmosphere::Atmosphere;
+use crate::optics::PhaseFunction;
+use crate::spectrum::Spectrum;
+use crate::transfer::coefficients::Coefficients;
+use crate::transfer::columns::SlantColumns;
+use crate::transfer::delta_m::peak_fraction;
+use crate::transfer::shell::Shell;
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+/// Geometry, optical coefficients and phase functions of an atmosphere at N wavelengths.
+#[derive(Clone, Debug)]
+pub struct Air<const N: usize> {
+    /// Geometry and slant columns, shared by all blocks of wavelengths.
+    pub columns: Arc<SlantColumns>,
+    /// Extinction and ground albedo.
+    pub coefficients: Coefficients<Spectrum<N>>,
+    /// The constituents with scattering.
+    pub scatterers: Vec<Scatterer<N>>,
+    wavelengths_nm: [f64; N],
+}
+
+/// Scattering coefficients of a constituent.
+#[derive(Clone, Debug)]
+pub struct Scatterer<const N: usize> {
+    /// Index of the constituent.
+    pub constituent: usize,
+    /// Scattering at density 1, 1/m; excludes the forward peak if that counts as unscattered.
+    pub scattering: Spectrum<N>,
+    /// Scattering at density 1, 1/m, including the forward peak, for use with the exact phase function.
+    pub whole_scattering: Spectrum<N>,
+    /// Legendre moments of the phase function, `moments[l]`.
+    pub moments: Vec<Spectrum<N>>,
+    phase: PhaseFunction,
+}
+
+impl<const N: usize> Air<N> {
+    /// Samples `atmosphere` at N wavelengths, with phase-function moments up to degree `l_max + 1`.
+    pub fn new(
+        atmosphere: &Atmosphere,
+        columns: Arc<SlantColumns>,
+        wavelengths_nm: [f64; N],
+        l_max: usize,
+    ) -> Self {
+        let coefficients = Coefficients::in_lanes(atmosphere, &wavelengths_nm);
+        let scatterers = atmosphere
+            .constituents
+            .iter()
+            .zip(&coefficients.scattering_per_m)
+            .enumerate()
+            .filter(|(_, (_, scattering))| scattering.max_element() > 0.0)
+            .map(|(constituent, (part, &scattering))| {
+                let by_lane = wavelengths_nm.map(|nm| part.phase.legendre_moments(l_max + 2, nm));
+                Scatterer {
+                    constituent,
+                    scattering,
+                    whole_scattering: scattering,
+                    moments: (0..=l_max + 1)
+                        .map(|l| Spectrum::from_fn(|lane| by_lane[lane][l] as f32))
+                        .collect(),
+                    phase: part.phase.clone(),
+                }
+            })
+            .collect();
+        Self {
+            columns,
+            coefficients,
+            scatterers,
+            wavelengths_nm,
+        }
+    }
+
+    /// This air with the forward peaks of its phase functions treated as unscattered ([`crate::transfer::delta_m`]), which leaves
+    /// small moments beyond degree `l_max`.
+    pub fn without_forward_peaks(&self, l_max: usize) -> Self {
+        let mut air = self.clone();
+        for s in &mut air.scatterers {
+            let peak = s.moments[l_max + 1].map(|moment| peak_fraction(moment, 0.99));
+            let rest = Spectrum::ONE - peak;
+            let removed = s.scattering * peak;
+            air.coefficients.extinction_per_m[s.constituent] -= removed;
+            s.scattering -= removed;
+            for moment in &mut s.moments {
+                *moment = (*moment - peak) / rest;
+            }
+        }
+        air
+    }
+
+    /// Geometry and density profiles.
+    #[inline(always)]
+    pub fn shell(&self) -> &Shell {
+        &self.columns.shell
+    }
+
+    /// Transmittance from a radius to the sun at the zenith cosine `mu_sun`, where the planet does not hide it.
+    #[inline(always)]
+    pub fn transmittance_to_sun(&self, radius_m: f64, mu_sun: f64) -> Spectrum<N> {
+        let columns = self.columns.to_space_m(radius_m, mu_sun);
+        self.coefficients.transmittance(&columns)
+    }
+
+    /// Irradiance on the ground from the sun alone at the zenith cosine `mu_sun`, per unit solar irradiance.
+    #[inline(always)]
+    pub fn sun_on_ground(&self, mu_sun: f64) -> Spectrum<N> {
+        if mu_sun <= 0.0 {
+            return Spectrum::ZERO;
+        }
+        self.transmittance_to_sun(self.shell().ground_radius_m, mu_sun) * mu_sun as f32
+    }
+}
+
+impl<const N: usize> Scatterer<N> {
+    /// Phase function at the cosine `nu` of the scattering angle, 1/sr.
+    pub fn phase(&self, air: &Air<N>, nu: f64) -> Spectrum<N> {
+        if self.phase.depends_on_wavelength() {
+            Spectrum::from_fn(|lane| self.phase.evaluate(nu, air.wavelengths_nm[lane]) as f32)
+        } else {
+            Spectrum::splat(self.phase.evaluate(nu, air.wavelengths_nm[0]) as f32)
+        }
+    }
+
+    /// The phase function cut off after the degree of `legendre`, whose entries are `P_l(nu)`, 1/sr.
+    #[inline(always)]
+    pub fn truncated_phase(&self, legendre: &[f64]) -> Spectrum<N> {
+        let mut sum = Spectrum::ZERO;
+        for (l, (moment, &p)) in self.moments.iter().zip(legendre).enumerate() {
+            sum = sum.scale_acc(*moment, ((2 * l + 1) as f64 * p / (4.0 * PI)) as f32);
+        }
+        sum
+    }
+}
