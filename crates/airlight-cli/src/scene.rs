@@ -87,7 +87,7 @@ impl Scene {
     }
 
     /// What is seen under a sun.
-    pub fn view<'a>(&self, sky: &'a Sky, sun: &Sun) -> View {
+    pub fn view(&self, sky: &Sky, sun: &Sun) -> View {
         sky.view(self.eye_altitude_m, sun.direction())
             .at_sun_distance(sun.distance_ratio)
     }

@@ -44,11 +44,7 @@ impl Layout {
             .as_deref()
             .map(PictureFormat::from_path)
             .transpose()?;
-        let spectral = picture.spectral
-            || args
-                .output
-                .as_deref()
-                .is_some_and(|path| is_spectral_path(path));
+        let spectral = picture.spectral || args.output.as_deref().is_some_and(is_spectral_path);
         if spectral && format != Some(PictureFormat::EXR) {
             return Err(CliError::usage(
                 "--spectral is for OpenEXR files: give --output a name that ends in .exr",

@@ -172,7 +172,8 @@ fn contradictions_are_refused_before_any_file_is_read() {
         scene.check().unwrap_err().to_string()
     };
     let light = || super::lights::point([0.0, 1.0, -5.0], 1.0);
-    let cases: [(&dyn Fn(&mut OverlayScene), &str); 22] = [
+    type Change<'a> = &'a dyn Fn(&mut OverlayScene);
+    let cases: [(Change<'_>, &str); 22] = [
         (&|s| s.scene.air.aod_550 = Some(0.2), "a solved sky"),
         (
             &|s| s.scene.sun.latitude_deg = Some(50.0),

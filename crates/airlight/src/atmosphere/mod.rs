@@ -2,8 +2,8 @@
 
 pub mod aerosol;
 pub mod aerosol_types;
-mod atmosphere;
 pub mod config;
+mod constituents;
 mod density;
 pub mod droplets;
 pub mod gases;
@@ -15,7 +15,7 @@ pub mod visibility;
 
 pub use aerosol::{AerosolError, AerosolLoad, AngstromAerosol, ClearAir};
 pub use aerosol_types::{AerosolMixture, AerosolType, AerosolTypeError};
-pub use atmosphere::{Atmosphere, AtmosphereError, Constituent, ConstituentKind, Planet};
+pub use constituents::{Atmosphere, AtmosphereError, Constituent, ConstituentKind, Planet};
 pub use density::{AltitudeTable, DensityError, DensityProfile, Interpolation};
 pub(crate) use density::{Decay, HeightStructure};
 pub use presets::{UnknownPreset, preset, preset_names, reference};

@@ -14,7 +14,6 @@
 
 mod closed_forms;
 mod error;
-mod fog;
 mod fog_lanes;
 mod layer;
 pub mod legacy;
@@ -23,14 +22,15 @@ pub mod lights;
 mod multiple;
 mod ray_cuts;
 mod single_scattering;
+mod spectral;
 mod table;
 
 pub use crate::atmosphere::{DensityError, DensityProfile, RaySegment, droplets, visibility};
 pub use closed_forms::split_sum_error;
 pub use error::FogError;
-pub use fog::{Fog, FogTable, RgbFog, RgbFogTable};
 pub use layer::RgbLayer;
 pub use lighting::{ChannelValues, DirectionalLight, FogLighting, FogScattering, Ground};
+pub use spectral::{Fog, FogTable, RgbFog, RgbFogTable};
 
 pub(crate) use closed_forms::{Lanes, constant_source, dimmed_source};
 pub(crate) use fog_lanes::FogLanes;

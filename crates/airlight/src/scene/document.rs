@@ -263,7 +263,7 @@ fn find<'t, 'a>(table: &'t DeTable<'a>, path: &str) -> Option<&'t Spanned<DeValu
         let mut value = entry(here, name)?.1;
         for place in places.split('[').filter(|place| !place.is_empty()) {
             let place: usize = place.trim_end_matches(']').parse().ok()?;
-            value = value.get_ref().as_array()?.iter().nth(place)?;
+            value = value.get_ref().as_array()?.get(place)?;
         }
         found = Some(value);
     }

@@ -587,10 +587,10 @@ fn numbers_outside_their_domain_are_refused() {
         radius_m: 0.0,
         ..Ground::FLAT
     };
-    assert!(refused(&[good.clone()], flat, light(5.0)).contains("radius"));
+    assert!(refused(std::slice::from_ref(&good), flat, light(5.0)).contains("radius"));
     let mut dark = light(5.0);
     dark.ambient = Spectrum([-1.0, 0.0, 0.0]);
-    assert!(refused(&[good.clone()], Ground::FLAT, dark).contains("ambient"));
+    assert!(refused(std::slice::from_ref(&good), Ground::FLAT, dark).contains("ambient"));
     let mut long = light(5.0);
     long.sun.as_mut().unwrap().direction *= 2.0;
     assert!(refused(&[good], Ground::FLAT, long).contains("direction"));
