@@ -1,13 +1,14 @@
-//! Atmospheres by name, from files, and with what the options change.
+//! `airlight atmospheres`: the atmospheres by name, and what one is made of.
 
 use crate::aerosol;
 use crate::args::AtmospheresArgs;
 use crate::error::CliError;
 use crate::report;
-use airlight::atmosphere::visibility::Contrast;
 use airlight::atmosphere::{AerosolType, Atmosphere, preset_names};
 use airlight::scene::Scene;
+use airlight_render::scene_file;
 use std::fmt::Write;
+use std::path::Path;
 
 /// The help of `--atmosphere`: every preset with its description.
 pub fn option_help() -> String {
@@ -17,57 +18,18 @@ pub fn option_help() -> String {
     format!("The atmosphere: one of these names, or a TOML file\n{names}\n")
 }
 
-/// Takes the file of a scene's atmosphere into the scene, where it is a file.
-///
-/// # Errors
-/// [`CliError::Failure`] for a file that cannot be read, [`CliError::Usage`] for one that is not text.
-pub fn inline_file(scene: &mut Scene) -> Result<(), CliError> {
-    let mut failed = None;
-    let inlined = scene.inline_files(|name| {
-        read(name).map_err(|error| {
-            let sentence = error.sentence().unwrap_or_default().to_owned();
-            failed = Some(error);
-            sentence
-        })
-    });
-    match failed {
-        Some(error) => Err(error),
-        None => Ok(inlined?),
-    }
-}
-
-fn read(name: &str) -> Result<String, CliError> {
-    let bytes = std::fs::read(name).map_err(|error| {
-        CliError::failure(format!("cannot read the atmosphere `{name}`: {error}"))
-    })?;
-    String::from_utf8(bytes).map_err(|error| {
-        let at = error.utf8_error().valid_up_to();
-        CliError::usage(format!(
-            "the atmosphere `{name}` must be a text in UTF-8: it is not at byte {at}"
-        ))
-    })
-}
-
 /// The atmosphere of a name or a file.
 fn named(name: &str) -> Result<Atmosphere, CliError> {
     let mut scene = Scene::default();
     scene.air.atmosphere = Some(name.to_owned());
-    inline_file(&mut scene)?;
+    scene_file::inline_files(&mut scene, Path::new(""))?;
     Ok(scene.air.named_atmosphere()?)
-}
-
-/// The contrast that visibility means, of the option's two values.
-pub fn contrast(option: &str) -> Contrast {
-    match option {
-        "0.02" => Contrast::TwoPercent,
-        _ => Contrast::FivePercent,
-    }
 }
 
 /// Runs `airlight atmospheres`.
 ///
 /// # Errors
-/// As [`named`], and where standard output cannot be written.
+/// [`CliError`] for an unknown name or a file that is wrong, and where standard output cannot be written.
 pub fn list(args: &AtmospheresArgs) -> Result<(), CliError> {
     if let Some(name) = &args.atmosphere {
         if let Ok(kind) = AerosolType::named(name) {

@@ -77,10 +77,11 @@ impl From<ImageError> for CliError {
 
 impl From<RenderError> for CliError {
     fn from(error: RenderError) -> Self {
-        match (error.is_cancelled(), error.is_refusal()) {
-            (true, _) => Self::Interrupted,
-            (_, true) => Self::usage(error.to_string()),
-            _ => Self::failure(error.to_string()),
+        match error {
+            RenderError::Scene(error) => error.into(),
+            error if error.is_cancelled() => Self::Interrupted,
+            error if error.is_refusal() => Self::usage(error.to_string()),
+            error => Self::failure(error.to_string()),
         }
     }
 }
@@ -119,6 +120,9 @@ refusals!(
 impl From<SceneError> for CliError {
     /// In the words of the command line: flags for the keys of a scene.
     fn from(error: SceneError) -> Self {
+        if error.is_cancelled() {
+            return Self::Interrupted;
+        }
         let mut sentence = error.to_string();
         if error.key().is_some_and(|key| key.starts_with("sun")) {
             for (keys, flags) in SUN_FLAGS {
@@ -148,15 +152,41 @@ const SUN_FLAGS: [(&str, &str); 4] = [
 
 /// The flag that fills in a key of a scene.
 fn flag(key: &str) -> String {
-    match key {
-        "sun" => "--sun-elevation".to_owned(),
-        "sun.time" => "--when".to_owned(),
-        "sun.latitude_deg" => "--at".to_owned(),
-        "air.haze_visibility_m" => "--visibility-m".to_owned(),
-        key => {
+    let known = match key {
+        "sun" => "--sun-elevation",
+        "sun.elevation_deg" => "--sun-elevation",
+        "sun.azimuth_deg" => "--sun-azimuth",
+        "sun.latitude_deg" | "sun.longitude_deg" => "--at",
+        "sun.time" => "--when",
+        "observer" => "--altitude-m and --eye-height-m",
+        "air.aerosol, humidity, aod_550, turbidity and haze_visibility_m" => {
+            "--aerosol, --humidity, --aod-550, --turbidity and --haze-visibility-m"
+        }
+        "fog" => "--visibility-m",
+        "fog.profile" => "--fog-profile",
+        "fog.scattering" => "--fog-scattering",
+        "objects.shadows" => "--no-shadows",
+        "objects.file" => "--objects",
+        "solver.name" => "--solver",
+        "solver.paths and solver.seed" => "--paths and --seed",
+        "solver.sunlight and solver.zenith_lux" => "--sunlight and --zenith-lux",
+        "solver.klassen1987" => {
+            "--haze-extinction-per-m, --haze-thickness-m, --wet-haze, --air-density, --air-thickness-m and --base-blue"
+        }
+        "camera.azimuth_deg" => "--camera-azimuth",
+        "camera.elevation_deg" => "--camera-elevation",
+        "camera.roll_deg" => "--camera-roll",
+        "camera.fov_deg" => "--fov",
+        "output.file" => "--output",
+        _ => "",
+    };
+    match (known, key.strip_prefix("fog.layers")) {
+        ("", None) => {
             let name = key.rsplit('.').next().unwrap_or(key);
             format!("--{}", name.replace('_', "-"))
         }
+        ("", Some(_)) => "--layer".to_owned(),
+        (known, _) => known.to_owned(),
     }
 }
 

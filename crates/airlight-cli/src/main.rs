@@ -1,11 +1,13 @@
 //! The airlight program: skies from the command line.
 //!
-//! Rooms, each importing only from those above it:
-//! - [`error`]: why a command ends, and its exit code; [`parse`]: values on the command line; [`moment`]: times.
-//! - [`args`]: every option of every command.
+//! A thin program over `airlight-render`: options fill in a [`Scene`](airlight::scene::Scene), the library draws it, the
+//! program shows progress and reports.
+//!
+//! Modules, each importing only from those above it:
+//! - [`error`]: why a command ends, and its exit code; [`parse`]: values on the command line.
 //! - [`interrupt`], [`progress`], [`report`]: Ctrl-C, bars on standard error, text on standard output.
-//! - [`atmosphere`], [`scene`], [`models`], [`illuminance`]: what is asked for, from options to the solver or the published
-//!   model; sums over the sky.
+//! - [`args`]: every option of every command, and the scenes that they fill in.
+//! - [`scene`]: saving scenes, threads; [`atmosphere`], [`aerosol`]: lists of what has a name.
 //! - [`sky`], [`fog`], [`probe`], [`compare`], [`grid`], [`accuracy`] and [`plot`]: the commands.
 
 mod accuracy;
@@ -16,9 +18,7 @@ mod compare;
 mod error;
 mod fog;
 mod grid;
-mod illuminance;
 mod interrupt;
-mod models;
 mod parse;
 mod plot;
 mod probe;
@@ -27,6 +27,7 @@ mod report;
 mod scene;
 mod sky;
 
+use airlight::scene::Scene;
 use args::{Cli, Command};
 use clap::Parser;
 use error::CliError;
@@ -48,6 +49,7 @@ fn main() -> ExitCode {
 
 fn run(cli: &Cli) -> Result<(), CliError> {
     interrupt::install()?;
+    scene::use_threads(cli.threads)?;
     match &cli.command {
         Command::Sky(args) => sky::run(args),
         Command::Fog(args) => fog::run(args),
@@ -57,5 +59,6 @@ fn run(cli: &Cli) -> Result<(), CliError> {
         Command::Accuracy(args) => accuracy::run(args),
         Command::Plot(args) => plot::run(args),
         Command::Atmospheres(args) => atmosphere::list(args),
+        Command::Schema => report::print(&(Scene::json_schema() + "\n")),
     }
 }

@@ -2,6 +2,11 @@
 
 pub mod words;
 
+use airlight::scene::Exposure;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use serde::de::DeserializeOwned;
+use serde::de::IntoDeserializer;
+use serde::de::value::{Error, StrDeserializer};
 use std::str::FromStr;
 
 /// Two numbers of degrees.
@@ -187,33 +192,32 @@ pub fn pixel_size(text: &str) -> Result<PixelSize, String> {
     })
 }
 
-/// A span of time such as `90s`, `10m`, `1h30m` or `2d`, in whole seconds above 0.
-pub fn span_s(text: &str) -> Result<i64, String> {
-    let right =
-        "must be a span of time above 0 in days, hours, minutes and whole seconds: 10m, 1h30m, 45s";
-    let mut total = 0i64;
-    let mut rest = text.trim();
-    while !rest.is_empty() {
-        let digits = rest.bytes().take_while(u8::is_ascii_digit).count();
-        let count: i64 = rest[..digits].parse().map_err(|_| right)?;
-        let mut after = rest[digits..].chars();
-        let unit = match after.next() {
-            Some('d') => 86_400,
-            Some('h') => 3_600,
-            Some('m') => 60,
-            Some('s') => 1,
-            _ => return Err(right.to_owned()),
-        };
-        total = count
-            .checked_mul(unit)
-            .and_then(|s| total.checked_add(s))
-            .ok_or(right)?;
-        rest = after.as_str();
+/// A span of time such as `90s`, `10m`, `1h30m` or `2d`.
+pub fn span(text: &str) -> Result<String, String> {
+    airlight_render::sequence::parse_span_s(text)
+        .map(|_| text.to_owned())
+        .map_err(|right| format!("must be {right}"))
+}
+
+/// An exposure: auto, or an exposure value at ISO 100.
+pub fn exposure(text: &str) -> Result<Exposure, String> {
+    match text.eq_ignore_ascii_case("auto") {
+        true => Ok(Exposure::AUTO),
+        false => number(text)
+            .map(Exposure::Ev100)
+            .map_err(|_| "must be auto or an exposure value at ISO 100, such as 14.5".to_owned()),
     }
-    match total > 0 {
-        true => Ok(total),
-        false => Err(right.to_owned()),
-    }
+}
+
+/// One of the values of a list that scene files write by these names.
+pub fn one_of<T>(names: &'static [&'static str]) -> impl TypedValueParser<Value = T>
+where
+    T: DeserializeOwned + Clone + Send + Sync + 'static,
+{
+    PossibleValuesParser::new(names).try_map(|name| {
+        let name: StrDeserializer<'_, Error> = name.as_str().into_deserializer();
+        T::deserialize(name)
+    })
 }
 
 #[cfg(test)]
@@ -250,9 +254,6 @@ mod tests {
                 height: 1024
             })
         );
-        for (text, s) in [("10m", 600), ("1h30m", 5400), ("90s", 90), ("2d", 172_800)] {
-            assert_eq!(span_s(text), Ok(s));
-        }
     }
 
     #[test]
@@ -274,20 +275,6 @@ mod tests {
             "ax1",
         ] {
             assert!(pixel_size(text).is_err(), "{text}");
-        }
-        for text in [
-            "",
-            "10",
-            "m",
-            "0s",
-            "-1m",
-            "1y",
-            "1h30",
-            "99999999999999999999s",
-            "9223372036854775807d",
-            "1é",
-        ] {
-            assert!(span_s(text).is_err(), "{text}");
         }
         for text in ["nan", "inf", "x", ""] {
             assert!(

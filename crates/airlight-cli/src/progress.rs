@@ -1,66 +1,66 @@
 //! Bars on standard error, shown only where that is a terminal.
 
-use airlight::monte_carlo::BUNDLE;
 use airlight_image::Progress;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
-/// How far many rows of one or more files have come.
+/// Progress in rows of pictures.
 pub struct RowsBar {
     bar: ProgressBar,
     /// Rows of files already done.
     before: AtomicU64,
+    /// Whether each stage of a picture begins the bar again.
+    by_stages: bool,
 }
 
 impl RowsBar {
-    /// A bar for so many rows in all.
+    /// A bar over a number of rows.
     pub fn new(rows: u64) -> Self {
+        Self::with(rows, false)
+    }
+
+    /// A bar over each stage of a picture: solving, and rows.
+    pub fn by_stages() -> Self {
+        Self::with(0, true)
+    }
+
+    fn with(rows: u64, by_stages: bool) -> Self {
         let bar = ProgressBar::new(rows);
         let style = ProgressStyle::with_template("{msg} {wide_bar} {percent:>3} %, {eta} left");
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
         Self {
             bar,
             before: AtomicU64::new(0),
+            by_stages,
         }
     }
 
-    /// A bar for a pass over the rows of a picture, up to a number of bundles of paths a pixel.
-    pub fn for_pass(rows: u64, until: u64, goal: u64) -> Self {
-        let bar = Self::new(rows);
-        bar.say(format!(
-            "{} of {} paths a pixel",
-            until * BUNDLE as u64,
-            goal * BUNDLE as u64
-        ));
-        bar
-    }
-
-    /// Says what is being made now.
+    /// Shows what is being done.
     pub fn say(&self, what: String) {
         self.bar.set_message(what);
     }
 
-    /// So much more is done.
-    pub fn advance(&self, rows: u64) {
-        self.bar.inc(rows);
-    }
-
-    /// A file of so many rows is whole.
-    pub fn file_done(&self, rows: u64) {
+    /// Files of a number of rows are finished: those that follow are counted on top.
+    pub fn files_done(&self, rows: u64) {
         let before = self.before.fetch_add(rows, Ordering::Relaxed);
         self.bar.set_position(before + rows);
     }
 }
 
 impl Progress for RowsBar {
-    fn stage(&self, what: &str, total: u64) {
-        self.bar.set_message(what.to_owned());
-        self.bar.set_length(total);
-        self.bar.set_position(0);
+    fn stage(&self, what: &str, rows: u64) {
+        if self.by_stages {
+            self.bar.set_length(rows);
+            self.bar.set_position(0);
+            self.bar.set_message(what.to_owned());
+        }
     }
 
-    fn advanced(&self, done: u64, _total: u64) {
+    fn advanced(&self, done: u64, total: u64) {
+        if self.by_stages {
+            self.bar.set_length(total);
+        }
         self.bar
             .set_position(self.before.load(Ordering::Relaxed) + done);
     }
@@ -72,11 +72,11 @@ impl Drop for RowsBar {
     }
 }
 
-/// A sign of life during work whose length is not known.
+/// A spinner for work whose length is not known.
 pub struct Busy(ProgressBar);
 
 impl Busy {
-    /// Says what is being done.
+    /// Shows what is being done.
     pub fn with(what: &'static str) -> Self {
         let bar = ProgressBar::new_spinner();
         let style = ProgressStyle::with_template("{spinner} {msg}, {elapsed}");
@@ -93,11 +93,11 @@ impl Drop for Busy {
     }
 }
 
-/// How many of many pictures are done.
+/// Progress in pictures.
 pub struct PicturesBar(ProgressBar);
 
 impl PicturesBar {
-    /// A bar for so many pictures.
+    /// A bar over a number of pictures.
     pub fn new(count: u64) -> Self {
         let bar = ProgressBar::new(count);
         let style = ProgressStyle::with_template(
@@ -107,7 +107,7 @@ impl PicturesBar {
         Self(bar)
     }
 
-    /// One more is done.
+    /// One more picture is finished.
     pub fn one_more(&self) {
         self.0.inc(1);
     }

@@ -3,10 +3,14 @@
 use crate::error::CliError;
 use crate::interrupt;
 use airlight_image::output::AtomicFile;
-use airlight_plot::ContactSheet;
+use airlight_image::tone::ToneMapper;
+use airlight_plot::{ContactSheet, Panel, Raster};
+use airlight_render::RenderedImage;
 use std::io::Write;
 use std::path::Path;
 use std::time::Duration;
+
+pub use airlight_render::summary::short;
 
 /// Writes a text to standard output.
 ///
@@ -53,6 +57,20 @@ pub fn check_png(path: &Path) -> Result<(), CliError> {
     check_writable(path)
 }
 
+/// A picture of a contact sheet, with its title.
+pub fn panel(title: &str, image: &RenderedImage, tone: &ToneMapper) -> Panel {
+    let size = image.frame.size();
+    Panel {
+        title: title.to_owned(),
+        picture: Raster {
+            width: size.width(),
+            height: size.height(),
+            rgb: image.displayed(tone),
+        },
+        scale: None,
+    }
+}
+
 /// Writes a contact sheet as PNG.
 ///
 /// # Errors
@@ -68,20 +86,6 @@ pub fn write_contact_sheet(path: &Path, sheet: &ContactSheet) -> Result<(), CliE
 /// Writes a remark to standard error; where that is gone there is nobody to read it.
 pub fn note(text: &str) {
     let _ = writeln!(std::io::stderr(), "airlight: {text}");
-}
-
-/// A number with 4 significant digits.
-pub fn short(value: f64) -> String {
-    let size = value.abs();
-    match size {
-        _ if !value.is_finite() => value.to_string(),
-        0.0 => "0".to_owned(),
-        s if !(1e-3..1e7).contains(&s) => format!("{value:.3e}"),
-        s => {
-            let decimals = (3 - s.log10().floor() as i32).clamp(0, 6) as usize;
-            format!("{value:.decimals$}")
-        }
-    }
 }
 
 /// A span of time in words.
@@ -108,19 +112,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_keep_four_digits() {
-        for (value, text) in [
-            (0.0, "0"),
-            (123_456.7, "123457"),
-            (1234.6, "1235"),
-            (5.0, "5.000"),
-            (-0.012_346, "-0.01235"),
-            (1.5e9, "1.500e9"),
-            (1e-7, "1.000e-7"),
-        ] {
-            assert_eq!(short(value), text);
-        }
-        assert_eq!(short(f64::NAN), "NaN");
+    fn times_and_sizes_have_units() {
         assert_eq!(seconds(Duration::from_secs(125)), "2 min 05 s");
+        assert_eq!(seconds(Duration::from_millis(1234)), "1.23 s");
+        assert_eq!(bytes(123), "123 bytes");
+        assert_eq!(bytes(12_345_678), "12.3 MB");
     }
 }

@@ -4,6 +4,7 @@ mod common;
 
 use common::{Folder, run, succeed};
 use image::RgbImage;
+use std::path::Path;
 
 const SKY: &str = "--sun-elevation 20 --wavelengths fast --size 32x16";
 
@@ -25,7 +26,7 @@ fn a_solver_is_no_different_from_itself_and_scatters_more_than_once() {
 }
 
 #[test]
-fn random_paths_agree_with_the_fast_solver() {
+fn monte_carlo_agrees_with_the_fast_solver() {
     let folder = Folder::new();
     let text = succeed(
         &folder,
@@ -97,8 +98,8 @@ fn both_pictures_and_the_maps_are_drawn() {
 #[test]
 fn contact_sheets_are_drawn_from_files() {
     let folder = Folder::new();
-    let text = "columns = 2\n[sky]\nwavelengths = \"rgb\"\nsize = \"40x20\"\n\
-        [[cell]]\nsun-elevation = 40\n[[cell]]\nsun-elevation = 1\n";
+    let text = "columns = 2\n[scene]\nsolver.wavelengths = \"rgb\"\ncamera.size = [40, 20]\n\
+        [[cell]]\nsun.elevation_deg = 40\n[[cell]]\nsun.elevation_deg = 1\n";
     std::fs::write(folder.file("suns.toml"), text).unwrap();
     succeed(&folder, "grid suns.toml -o suns.png");
     let sheet = picture(&folder, "suns.png");
@@ -112,28 +113,56 @@ fn contact_sheets_are_drawn_from_files() {
     assert_eq!(low, (high.0 + 40 + GAP, high.1));
 }
 
+/// The files that the book's figures are drawn from.
+#[test]
+fn the_files_of_the_repository_are_read() {
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
+    let mut count = 0;
+    for folder in ["height-fog", "klassen1987", "models"] {
+        for entry in std::fs::read_dir(scenes.join(folder)).unwrap() {
+            let path = entry.unwrap().path();
+            let text = std::fs::read_to_string(&path).unwrap_or_default();
+            if text.contains("[[cell]]") {
+                let spec = airlight_render::contact_sheet::ContactSheetSpec::load(&path).unwrap();
+                for (label, scene) in &spec.cells {
+                    airlight_render::Renderer::new(scene)
+                        .unwrap_or_else(|error| panic!("{}, {label}: {error}", path.display()));
+                }
+                count += 1;
+            }
+        }
+    }
+    assert!(count >= 10, "{count}");
+}
+
 #[test]
 fn what_makes_no_sense_is_refused() {
     let folder = Folder::new();
     std::fs::write(folder.file("bad.toml"), "[[cell]]\nsunny = 1\n").unwrap();
-    for (words, sentence) in [
-        (format!("compare orders sunny {SKY}"), "knows no solver"),
+    let ignored =
+        "[[cell]]\nsun.elevation_deg = 20\nsolver.name = \"preetham\"\nair.ozone_du = 300\n";
+    std::fs::write(folder.file("ignored.toml"), ignored).unwrap();
+    for (words, code, sentence) in [
+        (format!("compare orders sunny {SKY}"), 2, "sunny"),
         (
             format!("compare orders orders {SKY} --solver monte-carlo"),
+            2,
             "leave out --solver",
         ),
         (
             format!("compare orders orders {SKY} --paths 256"),
-            "random paths",
+            2,
+            "try monte-carlo",
         ),
-        (format!("compare orders orders {SKY} -o a.jpg"), ".png"),
-        ("grid bad.toml -o a.png".to_owned(), "cell 1"),
-        ("grid none.toml -o a.png".to_owned(), "none.toml"),
-        ("grid bad.toml -o a.jpg".to_owned(), ".png"),
+        (format!("compare orders orders {SKY} -o a.jpg"), 2, ".png"),
+        ("grid bad.toml -o a.png".to_owned(), 2, "line 2"),
+        ("grid ignored.toml -o a.png".to_owned(), 2, "cell 1"),
+        ("grid none.toml -o a.png".to_owned(), 1, "none.toml"),
+        ("grid bad.toml -o a.jpg".to_owned(), 2, ".png"),
     ] {
         let output = run(&folder, &words);
         let text = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{words}: {text}");
+        assert_eq!(output.status.code(), Some(code), "{words}: {text}");
         assert!(text.contains(sentence), "{words}: {text}");
     }
 }

@@ -114,7 +114,7 @@ fn a_stopped_sequence_keeps_its_whole_frames_and_goes_on() {
     let done = names.len();
     let text = common::succeed(&folder, words);
     assert!(
-        text.contains(&format!("{} of 3 frames made", 3 - done)),
+        text.contains(&format!("{} of 3 pictures made", 3 - done)),
         "{text}"
     );
     assert_eq!(folder.names(), ["a.0001.png", "a.0002.png", "a.0003.png"]);

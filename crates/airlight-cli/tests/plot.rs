@@ -87,8 +87,8 @@ fn plots_of_nothing_are_refused() {
             "zenith angle",
         ),
         (
-            "plot spectrum --sun-elevation 9 --solver monte-carlo -o a.svg",
-            "leave out --solver",
+            "plot spectrum --sun-elevation 9 --solver preetham -o a.svg",
+            "--wavelengths",
         ),
         ("plot spectrum -o a.svg", "--sun-elevation"),
         ("plot efficiency --to nan -o a.svg", "above 0"),
@@ -105,14 +105,15 @@ fn plots_of_nothing_are_refused() {
 #[test]
 fn skies_are_drawn_through_drops_by_theory() {
     let folder = Folder::new();
-    let sky = "sky --sun-elevation 20 --wavelengths rgb --size 32x16 -q --fog-visibility-m 300 --fog-top-m 60";
+    let sky =
+        "sky --sun-elevation 20 --wavelengths rgb --size 32x16 -q --visibility-m 300 --top-m 60";
     for (name, kind) in [
         ("grey.png", "radiation"),
         ("cloud.png", "cloud-c3"),
         ("fog.png", "moderate-radiation-fog"),
         ("mist.png", "mist"),
     ] {
-        succeed(&folder, &format!("{sky} --fog-droplets {kind} -o {name}"));
+        succeed(&folder, &format!("{sky} --droplets {kind} -o {name}"));
     }
     let pixels = |name: &str| image::open(folder.file(name)).unwrap().into_rgb8();
     assert_ne!(pixels("grey.png"), pixels("cloud.png"));
@@ -120,6 +121,6 @@ fn skies_are_drawn_through_drops_by_theory() {
     assert_eq!(pixels("fog.png"), pixels("mist.png"));
     succeed(
         &folder,
-        &format!("{sky} --fog-droplets cloud-c3 -o a.spectral.exr"),
+        &format!("{sky} --droplets cloud-c3 -o a.spectral.exr"),
     );
 }

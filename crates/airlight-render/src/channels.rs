@@ -1,22 +1,13 @@
 //! From the values of a view to the values of a pixel.
 
 use airlight::scene::Channels;
-use airlight::spectrum::{RgbSpace, WavelengthGrid, rgb};
+use airlight::spectrum::{RgbSpace, WavelengthGrid};
 use airlight_image::ImageError;
 use airlight_image::output::Chromaticities;
 use airlight_image::output::spectral::SpectralLayout;
 
 /// Weights of the radiance at each wavelength (W m^-2 sr^-1 nm^-1) in linear red, green and blue (cd/m^2).
 pub type RgbWeights = Vec<[f32; 3]>;
-
-/// The weights of a grid's wavelengths in an RGB space.
-pub fn rgb_weights(grid: &WavelengthGrid, space: RgbSpace) -> RgbWeights {
-    let from_xyz = space.from_xyz_matrix();
-    grid.xyz_weights()
-        .iter()
-        .map(|&weights| rgb::apply(&from_xyz, weights).map(|v| v as f32))
-        .collect()
-}
 
 /// The values of a pixel: red, green and blue, and in spectral pictures the radiance at each wavelength after them.
 #[derive(Clone, Debug)]
@@ -42,7 +33,7 @@ impl PixelChannels {
         let layout = SpectralLayout::new(grid.wavelengths_nm())?;
         Ok(Self {
             space,
-            spectral: Some((layout, rgb_weights(grid, space))),
+            spectral: Some((layout, grid.rgb_weights(space))),
         })
     }
 

@@ -1,6 +1,7 @@
 //! [`RenderError`]: why something could not be drawn.
 
 use crate::objects::file::ObjectsError;
+use airlight::Cancelled;
 use airlight::scene::SceneError;
 use airlight_image::ImageError;
 
@@ -23,6 +24,21 @@ pub enum RenderError {
 }
 
 impl RenderError {
+    /// A value of a scene that cannot be drawn: its key, what would be right, what was given, what to try instead.
+    pub fn value(
+        key: impl Into<String>,
+        expected: impl Into<String>,
+        got: impl Into<String>,
+        try_instead: impl Into<String>,
+    ) -> Self {
+        Self::Scene(SceneError::Value {
+            key: key.into(),
+            expected: expected.into(),
+            got: got.into(),
+            try_instead: try_instead.into(),
+        })
+    }
+
     /// A value or a combination of values that cannot be drawn; the sentence says what would be right.
     pub fn setting(sentence: impl Into<String>) -> Self {
         Self::Setting(sentence.into())
@@ -43,6 +59,16 @@ impl RenderError {
 
     /// True where the caller asked to stop.
     pub fn is_cancelled(&self) -> bool {
-        matches!(self, Self::Image(error) if error.is_cancelled())
+        match self {
+            Self::Image(error) => error.is_cancelled(),
+            Self::Scene(error) => error.is_cancelled(),
+            _ => false,
+        }
+    }
+}
+
+impl From<Cancelled> for RenderError {
+    fn from(_: Cancelled) -> Self {
+        Self::Image(ImageError::Cancelled)
     }
 }

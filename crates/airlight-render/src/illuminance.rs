@@ -1,7 +1,6 @@
 //! Light of sun and sky on surfaces at the eye.
 
 use airlight::scene::RadianceView;
-use glam::DVec3;
 
 /// Illuminances at the eye, lx.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,7 +19,7 @@ impl Illuminances {
         let mut values = vec![0.0; view.channel_count()];
         view.sun_irradiance(&mut values);
         let sun_normal_lx = view.luminance(&values);
-        view.irradiance(&[DVec3::Y], &mut values);
+        view.horizontal_irradiance(&mut values);
         Self {
             sun_normal_lx,
             sun_horizontal_lx: sun_normal_lx * view.sun().y.max(0.0),

@@ -97,6 +97,10 @@ impl RadianceView for TestView {
         });
     }
 
+    fn horizontal_irradiance(&self, out: &mut [f32]) {
+        self.irradiance(&[DVec3::Y], out);
+    }
+
     fn sun_irradiance(&self, out: &mut [f32]) {
         out.fill(self.disc_irradiance_above_horizon() as f32);
     }

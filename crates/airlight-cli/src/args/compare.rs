@@ -1,8 +1,11 @@
 //! Options of `airlight compare`.
 
-use super::{AirArgs, EffortArg, ModelArgs, PictureArgs, PlaceArgs, ScatteringArg, SkyFogArgs};
-use super::{KlassenArgs, ObjectArgs, SkyArgs, SolverArg, VariantArg};
+use super::{CameraArgs, DisplayArgs, SceneArgs};
+use crate::error::CliError;
 use crate::parse;
+use airlight::models::registry;
+use airlight::scene::{Effort, Input, RadianceModel, Scene, SunDiscPlacement};
+use airlight::sky::Scattering;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -19,155 +22,145 @@ pub enum StatisticsArg {
 #[derive(Debug, Args)]
 #[command(allow_negative_numbers = true, after_help = EXAMPLES)]
 pub struct CompareArgs {
-    /// The solver to measure against: a name that --solver takes, or NAME:FORM, where the form is one of --variant for
-    /// published models, and single or fine for orders
-    #[arg(value_name = "SOLVER", value_parser = SolverSpec::parse)]
-    pub first: SolverSpec,
-    /// The solver that is measured
-    #[arg(value_name = "SOLVER", value_parser = SolverSpec::parse)]
-    pub second: SolverSpec,
+    /// The reference: a name that --solver takes, or NAME:FORM, where the form is one of --variant for published models, and
+    /// single or fine for solvers
+    #[arg(value_name = "SOLVER", value_parser = SolverChoice::parse)]
+    pub first: SolverChoice,
+    /// The solver that is compared with it
+    #[arg(value_name = "SOLVER", value_parser = SolverChoice::parse)]
+    pub second: SolverChoice,
     /// File to write: .png with both pictures and the maps of their difference
     #[arg(short, long, value_name = "FILE.png", help_heading = "Files")]
     pub output: Option<PathBuf>,
     /// How the statistics are written to standard output
     #[arg(long, value_enum, default_value_t = StatisticsArg::Table, help_heading = "Files")]
     pub format: StatisticsArg,
-    /// Scale the second sky so that both shed the same light on the horizontal: for models whose brightness means nothing
+    /// Scale the second sky to the same illuminance of the horizontal: for models whose brightness means nothing
     #[arg(long, help_heading = "Difference")]
     pub same_light: bool,
     /// Percent at the ends of the map's colours [default: as the differences are]
     #[arg(long, value_name = "PERCENT", value_parser = parse::positive, help_heading = "Difference")]
     pub map_percent: Option<f64>,
     #[command(flatten)]
-    pub place: PlaceArgs,
+    pub scene: SceneArgs,
     #[command(flatten)]
-    pub picture: PictureArgs,
+    pub camera: CameraArgs,
     #[command(flatten)]
-    pub air: AirArgs,
-    #[command(flatten)]
-    pub model: ModelArgs,
-    #[command(flatten)]
-    pub fog: SkyFogArgs,
-    /// Solids that a TOML file describes, lit and seen by both
-    #[arg(long, value_name = "FILE.toml", help_heading = "Things")]
-    pub objects: Option<PathBuf>,
+    pub display: DisplayArgs,
+    /// Solids from a TOML file, lit and seen by both
+    #[arg(long, value_name = "FILE.toml", help_heading = "Objects")]
+    pub objects: Option<String>,
 }
 
 /// A solver and its form.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SolverSpec {
+#[derive(Clone, Debug)]
+pub struct SolverChoice {
     /// As it was written.
-    pub name: String,
-    solver: SolverArg,
+    pub text: String,
+    model: &'static dyn RadianceModel,
     form: Form,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 enum Form {
     Default,
     Single,
     Fine,
-    Variant(VariantArg),
+    Variant(String),
 }
 
-impl SolverSpec {
+impl SolverChoice {
     fn parse(text: &str) -> Result<Self, String> {
         let (name, form) = text.split_once(':').unwrap_or((text, ""));
-        let solver = SolverArg::from_str(name, true).map_err(|_| {
-            let names: Vec<String> = SolverArg::value_variants()
-                .iter()
-                .filter_map(|solver| solver.to_possible_value())
-                .map(|value| value.get_name().to_owned())
-                .collect();
-            format!("knows no solver {name}: there are {}", names.join(", "))
-        })?;
-        let form = match (solver.is_published_model(), form) {
-            (_, "") => Form::Default,
-            (true, form) => Form::Variant(
-                VariantArg::from_str(form, true)
-                    .map_err(|_| format!("{name} has no form {form}: see --variant"))?,
-            ),
-            (false, "single") => Form::Single,
-            (false, "fine") if solver == SolverArg::Orders => Form::Fine,
-            (false, form) => {
-                return Err(format!(
-                    "{name} has no form {form}: there are single{}",
-                    if solver == SolverArg::Orders {
-                        " and fine"
-                    } else {
-                        ""
-                    }
-                ));
+        let model = registry::find(name).map_err(|error| error.to_string())?;
+        let capabilities = model.capabilities();
+        let mut forms: Vec<&str> = capabilities.variants.to_vec();
+        for (input, name) in [(Input::Scattering, "single"), (Input::Effort, "fine")] {
+            if capabilities.honours(input) {
+                forms.push(name);
             }
-        };
+        }
+        if !form.is_empty() && !forms.contains(&form) {
+            let there = match forms.is_empty() {
+                true => format!("{name} alone, as it has one form"),
+                false => forms.join(", "),
+            };
+            return Err(format!(
+                "expected a form of {name}, got \"{form}\"; try {there}"
+            ));
+        }
         Ok(Self {
-            name: text.to_owned(),
-            solver,
-            form,
+            text: text.to_owned(),
+            model,
+            form: match form {
+                "" => Form::Default,
+                "single" => Form::Single,
+                "fine" => Form::Fine,
+                variant => Form::Variant(variant.to_owned()),
+            },
         })
+    }
+
+    /// The scene by this solver; inputs that only `other` honours are left out.
+    fn choose(&self, mut scene: Scene, other: &Self) -> Scene {
+        let (own, others) = (self.model.capabilities(), other.model.capabilities());
+        for input in scene.set_inputs() {
+            if !own.honours(input) && others.honours(input) {
+                scene = scene.without(input);
+            }
+        }
+        let solver = &mut scene.solver;
+        solver.name = Some(self.model.name().to_owned());
+        match &self.form {
+            Form::Default => {}
+            Form::Single => solver.scattering = Some(Scattering::Single),
+            Form::Fine => solver.effort = Some(Effort::Fine),
+            Form::Variant(variant) => solver.variant = Some(variant.clone()),
+        }
+        scene
     }
 }
 
 impl CompareArgs {
-    /// The options of `airlight sky` that draw the scene by a solver, without the sun's disc.
-    pub fn sky(&self, by: &SolverSpec) -> SkyArgs {
-        let mut sky = SkyArgs {
-            output: None,
-            preview: false,
-            quiet: true,
-            noise_map: false,
-            polarisation: false,
-            place: self.place.clone(),
-            sequence: super::SequenceArgs {
-                until: None,
-                every: None,
-                overwrite: false,
-            },
-            picture: PictureArgs {
-                sun_disc: super::SunDiscArg::Out,
-                ..self.picture.clone()
-            },
-            air: self.air.clone(),
-            model: self.model.clone(),
-            fog: self.fog.clone(),
-            objects: ObjectArgs {
+    /// The scene by both solvers, without the sun's disc.
+    ///
+    /// # Errors
+    /// [`CliError`] where a file cannot be read or is wrong, or --solver is given.
+    pub fn read(&self) -> Result<[Scene; 2], CliError> {
+        if self.scene.solver.solver.is_some() {
+            return Err(CliError::usage(
+                "the solvers are the two names without dashes: leave out --solver",
+            ));
+        }
+        let scene = self.scene.read(|scene| {
+            self.camera.fill(&mut scene.camera);
+            scene.output = Default::default();
+            scene.output.sun_disc = Some(SunDiscPlacement::Out);
+            self.display.fill(&mut scene.output);
+            super::ObjectArgs {
                 objects: self.objects.clone(),
-                ..ObjectArgs::default()
-            },
-        };
-        sky.air.solver = by.solver;
-        if by.solver != SolverArg::MonteCarlo {
-            (sky.air.paths, sky.air.seed) = (None, None);
-        }
-        if by.solver != SolverArg::Klassen1987 {
-            sky.model.klassen = KlassenArgs::default();
-        }
-        match by.form {
-            Form::Default => {}
-            Form::Single => sky.air.scattering = ScatteringArg::Single,
-            Form::Fine => sky.air.effort = EffortArg::Fine,
-            Form::Variant(variant) => sky.model.variant = Some(variant),
-        }
-        sky
-    }
-
-    /// Whether one of the solvers follows random paths.
-    pub fn has_paths(&self) -> bool {
-        [&self.first, &self.second]
-            .iter()
-            .any(|spec| spec.solver == SolverArg::MonteCarlo)
+                ..Default::default()
+            }
+            .fill(&mut scene.objects);
+            scene.sequence = None;
+        })?;
+        Ok([
+            self.first.choose(scene.clone(), &self.second),
+            self.second.choose(scene, &self.first),
+        ])
     }
 }
 
 const EXAMPLES: &str = "\
-The difference is that of the second from the first, over the sky above the horizon, the sun's disc left out.
+The difference is that of the second from the first, over the sky above the horizon, without the sun's disc. Options that only
+one of the two honours hold for that one.
 
 Examples:
   What is lost where light is scattered once only:
     airlight compare orders orders:single --sun-elevation 10 --size 512x256 -o single.png
   The model of 1987 as printed beside its corrected form:
     airlight compare klassen1987 klassen1987:printed --sun-elevation 10 --size 512x256 -o klassen.png
-  The fast solver beside random paths, statistics alone:
+  The fast solver beside Monte Carlo, statistics alone:
     airlight compare monte-carlo orders --sun-elevation 3 --size 64x32 --paths 2048 --format json";
 
 #[cfg(test)]
@@ -181,18 +174,35 @@ mod tests {
             "orders:single",
             "orders:fine",
             "monte-carlo:single",
+            "klassen1987:printed",
         ] {
-            assert!(SolverSpec::parse(text).is_ok(), "{text}");
+            assert!(SolverChoice::parse(text).is_ok(), "{text}");
         }
-        assert!(SolverSpec::parse("klassen1987:printed").is_ok());
-        for (text, said) in [
-            ("sunny", "there are orders, monte-carlo"),
-            ("orders:printed", "there are single and fine"),
-            ("monte-carlo:fine", "there are single"),
-            ("klassen1987:fine", "see --variant"),
+        for (text, part) in [
+            ("sunny", "orders"),
+            ("orders:printed", "single, fine"),
+            ("monte-carlo:fine", "single"),
+            ("klassen1987:fine", "printed"),
+            ("preetham:printed", "one form"),
         ] {
-            let error = SolverSpec::parse(text).unwrap_err();
-            assert!(error.contains(said), "{text}: {error}");
+            let error = SolverChoice::parse(text).unwrap_err();
+            assert!(error.contains(part), "{text}: {error}");
         }
+    }
+
+    #[test]
+    fn an_option_that_one_solver_ignores_holds_for_the_other() {
+        let parse = |text| SolverChoice::parse(text).unwrap();
+        let (paths, orders) = (parse("monte-carlo"), parse("orders:single"));
+        let mut scene = Scene::default();
+        scene.solver.paths = Some(512);
+        let [a, b] = [
+            paths.choose(scene.clone(), &orders),
+            orders.choose(scene.clone(), &paths),
+        ];
+        assert_eq!((a.solver.paths, b.solver.paths), (Some(512), None));
+        assert_eq!(b.solver.scattering, Some(Scattering::Single));
+        // Ignored by both: left for the renderer to refuse.
+        assert_eq!(orders.choose(scene, &orders).solver.paths, Some(512));
     }
 }

@@ -1,11 +1,11 @@
 //! Options that describe fog, the same for every command that draws it.
 
 use crate::parse::{self, words::Words};
-use crate::report::short;
 use airlight::fog::FogScattering;
 use airlight::fog::droplets::DropletKind;
 use airlight::optics::mie::droplets::Drops;
 use airlight::scene::{FogLayerSpec, FogProfile, FogSpec};
+use airlight_render::summary;
 use clap::builder::PossibleValue;
 use clap::{Args, ValueEnum};
 use std::sync::LazyLock;
@@ -47,32 +47,11 @@ impl ValueEnum for DropletsArg {
     }
 
     fn to_possible_value(&self) -> Option<PossibleValue> {
-        let value = PossibleValue::new(self.0.name()).help(in_words(self.0));
+        let value = PossibleValue::new(self.0.name()).help(summary::droplets(self.0));
         Some(match self.0 {
             DropletKind::Published(Drops::ModerateRadiationFog) => value.alias("mist"),
             _ => value,
         })
-    }
-}
-
-/// Droplets in words, by their size.
-pub fn in_words(kind: DropletKind) -> String {
-    match kind {
-        DropletKind::Analytic(droplets) => {
-            format!("grey, of {} um diameter", short(droplets.diameter_um()))
-        }
-        DropletKind::Isotropic => {
-            "grey, equal in all directions: the assumption of published models, of no droplets"
-                .to_owned()
-        }
-        DropletKind::Published(drops) => {
-            let sizes = drops.sizes();
-            format!(
-                "Lorenz-Mie theory, mode radius {} um, effective radius {} um",
-                short(sizes.mode_radius_um()),
-                short(sizes.effective_radius_um())
-            )
-        }
     }
 }
 
@@ -95,15 +74,6 @@ impl FogScatteringArg {
             Self::All => FogScattering::Multiple,
             Self::Single => FogScattering::Single,
             Self::Undimmed => FogScattering::Undimmed,
-        }
-    }
-
-    /// The scattering in words; `None` for all orders.
-    pub fn in_words(self) -> Option<&'static str> {
-        match self {
-            Self::All => None,
-            Self::Single => Some("light scattered once"),
-            Self::Undimmed => Some("light scattered once, the sun not dimmed"),
         }
     }
 }

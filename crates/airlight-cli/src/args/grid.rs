@@ -16,19 +16,18 @@ pub struct GridArgs {
 }
 
 const EXAMPLES: &str = "\
-The file has options of `airlight sky` without their dashes, for all pictures under [sky], for each under [[cell]]:
+The file has a scene as of `airlight sky --scene` for all pictures, and for each what overrides it:
 
   title = \"Suns through haze\"
   columns = 3
 
-  [sky]
-  projection = \"perspective\"
-  size = \"320x180\"
-  aod-550 = 0.3
+  [scene]
+  air.aod_550 = 0.3
+  camera = { projection = \"perspective\", size = [320, 180] }
 
   [[cell]]
   label = \"10 degrees\"
-  sun-elevation = 10
+  sun.elevation_deg = 10
 
 Examples:
   A figure of Klassen's paper of 1987:

@@ -1,7 +1,7 @@
 //! Options of `airlight plot`.
 
+use super::SceneArgs;
 use super::fog::DropletsArg;
-use super::{AirArgs, PlaceArgs};
 use crate::parse::{self, AzEl};
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
@@ -34,7 +34,7 @@ pub enum PlotWhat {
 
 /// Options of `airlight plot spectrum`.
 #[derive(Debug, Args)]
-#[command(allow_negative_numbers = true, mut_arg("wavelengths", |arg| arg.default_value("fine")))]
+#[command(allow_negative_numbers = true)]
 pub struct SpectrumPlotArgs {
     /// File to write: .svg or .png
     #[arg(short, long, value_name = "FILE")]
@@ -43,14 +43,12 @@ pub struct SpectrumPlotArgs {
     #[arg(long, value_name = "AZ,EL", value_parser = parse::az_el, allow_hyphen_values = true)]
     pub view: Vec<AzEl>,
     #[command(flatten)]
-    pub place: PlaceArgs,
-    #[command(flatten)]
-    pub air: AirArgs,
+    pub scene: SceneArgs,
 }
 
-/// Options of `airlight plot transmittance`. The sun is of no account.
+/// Options of `airlight plot transmittance`, on which the sun has no influence.
 #[derive(Debug, Args)]
-#[command(allow_negative_numbers = true, mut_arg("wavelengths", |arg| arg.default_value("fine")))]
+#[command(allow_negative_numbers = true)]
 pub struct TransmittancePlotArgs {
     /// File to write: .svg or .png
     #[arg(short, long, value_name = "FILE")]
@@ -62,9 +60,7 @@ pub struct TransmittancePlotArgs {
     #[arg(long, conflicts_with = "zenith_deg")]
     pub map: bool,
     #[command(flatten)]
-    pub place: PlaceArgs,
-    #[command(flatten)]
-    pub air: AirArgs,
+    pub scene: SceneArgs,
 }
 
 /// Options of `airlight plot fog-profile`.
@@ -84,7 +80,7 @@ pub struct FogProfilePlotArgs {
     pub scale_height_m: f64,
     /// Height from which on the last thins, m
     #[arg(long, value_name = "M", value_parser = parse::not_negative, default_value_t = 50.0)]
-    pub base_m: f64,
+    pub base_height_m: f64,
     /// Greatest height shown, m [default: as the profiles need]
     #[arg(long, value_name = "M", value_parser = parse::length_m)]
     pub to_m: Option<f64>,

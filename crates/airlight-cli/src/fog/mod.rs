@@ -3,7 +3,6 @@
 mod batch;
 
 use crate::args::OverlayArgs;
-use crate::atmosphere;
 use crate::error::CliError;
 use crate::interrupt::{self, STOP};
 use crate::progress::{Busy, RowsBar};
@@ -13,6 +12,7 @@ use airlight_image::Control;
 use airlight_image::output::Written;
 use airlight_render::batch::is_batch;
 use airlight_render::overlay::{MonteCarloFog, OverlayImage, OverlayScene, PreparedOverlay};
+use airlight_render::scene_file;
 use std::path::Path;
 
 /// Runs the command.
@@ -48,7 +48,7 @@ pub fn run(args: &OverlayArgs) -> Result<(), CliError> {
     if let Some(path) = &args.save_scene {
         report::write(path, scene.to_toml()?)?;
     }
-    atmosphere::inline_file(&mut scene.scene)?;
+    scene_file::inline_files(&mut scene.scene, Path::new(""))?;
     match many {
         true => batch::run(args, scene),
         false => one(args, &scene),
@@ -57,12 +57,7 @@ pub fn run(args: &OverlayArgs) -> Result<(), CliError> {
 
 /// The description in a scene file.
 fn read(path: &Path) -> Result<OverlayScene, CliError> {
-    let text = std::fs::read_to_string(path).map_err(|error| {
-        CliError::failure(format!(
-            "cannot read the scene `{}`: {error}",
-            path.display()
-        ))
-    })?;
+    let text = scene_file::read_text(path)?;
     OverlayScene::from_toml(&text)
         .map_err(|error| CliError::usage(format!("`{}`, {error}", path.display())))
 }
@@ -133,7 +128,7 @@ fn passes(
 ) -> Result<(Written, String), CliError> {
     let (mut written, mut noise) = (Written::default(), String::new());
     let overlay = prepared.overlay(image)?;
-    let bar = RowsBar::new(0);
+    let bar = RowsBar::by_stages();
     fog.run(&overlay, control.reporting_to(&bar), |pass| {
         written = prepared.write_pass(scene, image, pass, control)?;
         if pass.is_last {

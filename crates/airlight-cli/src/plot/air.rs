@@ -1,16 +1,47 @@
 //! Light and transmittance of the air by wavelength.
 
 use super::Chart;
-use crate::args::{AirArgs, PlaceArgs, ScatteringArg, SpectrumPlotArgs, TransmittancePlotArgs};
+use crate::args::{SceneArgs, SpectrumPlotArgs, TransmittancePlotArgs};
 use crate::error::CliError;
-use crate::scene::Scene;
-use airlight::axes;
-use airlight::sky::TableChannels;
+use crate::interrupt::STOP;
+use airlight::scene::Scene;
+use airlight::sky::Scattering;
+use airlight_image::Control;
 use airlight_plot::{Axis, Colormap, Curve, HeatMap, heat_map, line_chart};
-use glam::DVec3;
+use airlight_render::probe::{Probe, ProbeAnswer, ProbeRay};
 
 fn wavelength() -> Axis {
     Axis::linear("wavelength, nm")
+}
+
+/// The scene of the options, at fine wavelengths where they do not say.
+fn read(args: &SceneArgs) -> Result<Scene, CliError> {
+    args.read(|scene| {
+        scene
+            .solver
+            .wavelengths
+            .get_or_insert_with(|| "fine".to_owned());
+    })
+}
+
+/// Asks for the light along directions; a solver without spectra is refused.
+fn probe(scene: &Scene, rays: Vec<ProbeRay>) -> Result<ProbeAnswer, CliError> {
+    let answer = Probe::new(scene, rays)?.answer(Control::cancelled_by(&STOP))?;
+    match answer.wavelengths_nm.is_empty() {
+        true => Err(CliError::usage(format!(
+            "--solver: expected one with spectra, got {}; try orders",
+            answer.solver
+        ))),
+        false => Ok(answer),
+    }
+}
+
+fn ray(azimuth_deg: f64, elevation_deg: f64) -> ProbeRay {
+    ProbeRay {
+        azimuth_deg,
+        elevation_deg,
+        distance_m: None,
+    }
 }
 
 /// Spectral radiance of the sky in directions, or without any the irradiances of sun and sky.
@@ -18,38 +49,43 @@ fn wavelength() -> Axis {
 /// # Errors
 /// [`CliError`] for options that do not fit together.
 pub fn spectrum(args: &SpectrumPlotArgs) -> Result<Chart, CliError> {
-    let scene = Scene::new(&args.place, &args.air)?;
-    args.air.refuse_other_solvers("airlight plot")?;
-    let sun = scene.sun.at(None)?;
-    let (sky, _) = scene.prepare(scene.near(&sun))?;
-    let view = scene.view(&sky, &sun);
-    let curve = |name: String, values: Vec<f32>| Curve {
+    let rays = args
+        .view
+        .iter()
+        .map(|at| ray(at.azimuth_deg, at.elevation_deg));
+    let answer = probe(&read(&args.scene)?, rays.collect())?;
+    let curve = |name: String, values: &[f32]| Curve {
         name,
-        points: points(&scene, values),
+        points: points(&answer, values),
     };
     if args.view.is_empty() {
-        let sky_light = view.table(TableChannels::Spectral).irradiance(DVec3::Y);
+        let (sun, sky) = (&answer.sun, &answer.sky);
         let all = [
-            curve("sun outside the air".to_owned(), view.solar_irradiance()),
+            curve(
+                "sun outside the air".to_owned(),
+                &sun.irradiance_outside_w_m2_nm,
+            ),
             curve(
                 "sun, on a surface that faces it".to_owned(),
-                view.sun_irradiance(),
+                &sun.irradiance_normal_w_m2_nm,
             ),
-            curve("sky, on the horizontal".to_owned(), sky_light),
+            curve(
+                "sky, on the horizontal".to_owned(),
+                &sky.irradiance_horizontal_w_m2_nm,
+            ),
         ];
         let y = Axis::linear("irradiance, W m\u{207b}\u{b2} nm\u{207b}\u{b9}");
         return Ok(line_chart(&wavelength(), &y, &all));
     }
-    let all: Vec<Curve> = args
-        .view
+    let all: Vec<Curve> = answer
+        .views
         .iter()
-        .map(|at| {
-            let direction = axes::direction(at.azimuth_deg, at.elevation_deg);
+        .map(|view| {
             let name = format!(
                 "azimuth {}, elevation {} degrees",
-                at.azimuth_deg, at.elevation_deg
+                view.azimuth_deg, view.elevation_deg
             );
-            curve(name, view.along(direction, None).radiance())
+            curve(name, &view.radiance_w_m2_sr_nm)
         })
         .collect();
     let y = Axis::linear("radiance, W m\u{207b}\u{b2} sr\u{207b}\u{b9} nm\u{207b}\u{b9}");
@@ -61,38 +97,29 @@ pub fn spectrum(args: &SpectrumPlotArgs) -> Result<Chart, CliError> {
 /// # Errors
 /// [`CliError`] for options that do not fit together.
 pub fn transmittance(args: &TransmittancePlotArgs) -> Result<Chart, CliError> {
-    // Whatever sun: it is the air alone that counts.
-    let place = PlaceArgs {
-        sun_elevation: args
-            .place
-            .sun_elevation
-            .or(args.place.at.is_none().then_some(45.0)),
-        ..args.place.clone()
+    let mut scene = read(&args.scene)?;
+    // Any sun will do, and any light: the transmittance is that of the air alone.
+    if scene.sun.latitude_deg.is_none() {
+        scene.sun.elevation_deg.get_or_insert(45.0);
+    }
+    scene.solver.scattering = Some(Scattering::Single);
+    const STEP_DEG: f64 = 1.5;
+    let zenith_deg = match args.map {
+        true => (0..=60).map(|i| f64::from(i) * STEP_DEG).collect(),
+        false => args.zenith_deg.clone(),
     };
-    let air = AirArgs {
-        scattering: ScatteringArg::Single,
-        ..args.air.clone()
-    };
-    let scene = Scene::new(&place, &air)?;
-    args.air.refuse_other_solvers("airlight plot")?;
-    let sun = scene.sun.at(None)?;
-    let (sky, _) = scene.prepare(scene.near(&sun))?;
-    let view = scene.view(&sky, &sun);
-    let at = |zenith_deg: f64| {
-        points(
-            &scene,
-            view.transmittance_to_space(axes::direction(0.0, 90.0 - zenith_deg)),
-        )
-    };
+    let rays = zenith_deg.iter().map(|deg| ray(0.0, 90.0 - deg)).collect();
+    let answer = probe(&scene, rays)?;
+    let transmittances = answer.views.iter().map(|view| {
+        let values = view.transmittance.as_deref();
+        points(&answer, values.unwrap_or_default())
+    });
     if args.map {
-        const STEP_DEG: f64 = 1.5;
-        let zenith_deg: Vec<f64> = (0..=60).map(|i| f64::from(i) * STEP_DEG).collect();
-        let values = zenith_deg
-            .iter()
-            .map(|&deg| at(deg).into_iter().map(|p| p.1).collect());
         let data = HeatMap {
-            values: values.collect(),
-            x: scene.grid.wavelengths_nm().to_vec(),
+            values: transmittances
+                .map(|points| points.into_iter().map(|p| p.1).collect())
+                .collect(),
+            x: answer.wavelengths_nm.clone(),
             y: zenith_deg,
         };
         let zenith = Axis::linear("zenith angle, degrees");
@@ -103,19 +130,21 @@ pub fn transmittance(args: &TransmittancePlotArgs) -> Result<Chart, CliError> {
             &[0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9],
         ));
     }
-    let all: Vec<Curve> = args
-        .zenith_deg
+    let all: Vec<Curve> = zenith_deg
         .iter()
-        .map(|&deg| Curve {
+        .zip(transmittances)
+        .map(|(deg, points)| Curve {
             name: format!("zenith angle {deg} degrees"),
-            points: at(deg),
+            points,
         })
         .collect();
     let y = Axis::linear("transmittance to space").with_range(0.0, 1.0);
     Ok(line_chart(&wavelength(), &y, &all))
 }
 
-fn points(scene: &Scene, values: Vec<f32>) -> Vec<(f64, f64)> {
-    let wavelengths = scene.grid.wavelengths_nm().iter().copied();
-    wavelengths.zip(values.into_iter().map(f64::from)).collect()
+fn points(answer: &ProbeAnswer, values: &[f32]) -> Vec<(f64, f64)> {
+    let wavelengths = answer.wavelengths_nm.iter().copied();
+    wavelengths
+        .zip(values.iter().map(|&v| f64::from(v)))
+        .collect()
 }

@@ -31,17 +31,17 @@ pub fn profile(args: &FogProfilePlotArgs) -> Result<Chart, CliError> {
         (
             format!(
                 "exponential above {} m, scale height {scale_height_m} m",
-                args.base_m
+                args.base_height_m
             ),
             DensityProfile::Clamped {
-                base_height_m: args.base_m,
+                base_height_m: args.base_height_m,
                 scale_height_m,
             },
         ),
     ];
     let to_m = args
         .to_m
-        .unwrap_or(1.5 * args.top_m.max(args.base_m + 2.0 * scale_height_m));
+        .unwrap_or(1.5 * args.top_m.max(args.base_height_m + 2.0 * scale_height_m));
     let mut all = Vec::new();
     for (name, profile) in profiles {
         profile

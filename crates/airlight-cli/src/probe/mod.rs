@@ -1,58 +1,42 @@
-//! `airlight probe`: the light along given directions, in numbers.
-//!
-//! [`views`] reads the directions, [`values`] holds what is told of them, [`model`] what published models tell; [`json`], [`csv`]
-//! and [`table`] write it.
+//! `airlight probe`: the light along given directions, in numbers. [`table`] writes them to be read.
 
-mod csv;
-mod json;
-mod model;
 mod table;
-mod values;
-mod views;
 
 use crate::args::{FormatArg, ProbeArgs};
 use crate::error::CliError;
-use crate::progress::Busy;
+use crate::interrupt::STOP;
+use crate::progress::RowsBar;
 use crate::report;
-use crate::scene::Scene;
-use airlight::monte_carlo::{MonteCarlo, MonteCarloSettings};
-use values::Answer;
-use views::AskedView;
-
-/// Paths for each view where nothing is said.
-const PATHS: u64 = 65_536;
+use airlight_image::Control;
+use airlight_render::probe::{Probe, ProbeRay};
+use airlight_render::scene_file::read_text;
+use std::io::Read;
+use std::path::Path;
 
 /// Runs the command.
 ///
 /// # Errors
 /// [`CliError`]: what was wrong with the options, or what failed.
 pub fn run(args: &ProbeArgs) -> Result<(), CliError> {
-    crate::scene::use_threads(args.air.threads)?;
-    let views = views::read(args)?;
-    if views.is_empty() && args.format == FormatArg::Csv {
+    let rays = rays(args)?;
+    if rays.is_empty() && args.format == FormatArg::Csv {
         return Err(CliError::usage(
-            "CSV has a line for each view: give --view AZ,EL or --views FILE.csv",
+            "CSV has a line for each direction: give --view AZ,EL or --views FILE.csv",
         ));
     }
-    let settings = args.air.monte_carlo(PATHS)?;
-    if args.polarisation && settings.is_none() {
-        return Err(CliError::usage(
-            "--polarisation is for random paths, the other solver's light is scalar: give --solver monte-carlo as well",
-        ));
-    }
-    args.model.check(args.air.solver)?;
-    model::check(args, &views)?;
-    let scene = Scene::new(&args.place, &args.air)?;
+    let probe = Probe::new(&args.read()?, rays)?;
     if let Some(path) = &args.output {
         report::check_writable(path)?;
     }
-    let answer = match args.air.solver.is_published_model() {
-        true => model::answer(args, &scene, &views)?,
-        false => solved(args, &scene, settings, &views)?,
-    };
+    let bar = RowsBar::by_stages();
+    bar.say("solving for the light in the air".to_owned());
+    let answer = probe.answer(Control::cancelled_by(&STOP).reporting_to(&bar))?;
+    drop(bar);
     let text = match args.format {
-        FormatArg::Json => json::text(&answer)?,
-        FormatArg::Csv => csv::text(&answer),
+        FormatArg::Json => answer
+            .to_json()
+            .map_err(|error| CliError::failure(format!("cannot write JSON: {error}")))?,
+        FormatArg::Csv => answer.to_csv(),
         FormatArg::Table => table::text(&answer),
     };
     match &args.output {
@@ -61,24 +45,35 @@ pub fn run(args: &ProbeArgs) -> Result<(), CliError> {
     }
 }
 
-/// What the solver answers, and random paths beside it where there are settings for them.
-fn solved(
-    args: &ProbeArgs,
-    scene: &Scene,
-    settings: Option<MonteCarloSettings>,
-    views: &[AskedView],
-) -> Result<Answer, CliError> {
-    let sun = scene.sun.at(None)?;
-    let (sky, _) = scene.prepare(scene.near(&sun))?;
-    let paths = settings
-        .map(|settings| MonteCarlo::new(&scene.atmosphere, &scene.grid, settings))
-        .transpose()?;
-    let _busy = Busy::with("computing");
-    Ok(Answer::new(
-        args,
-        scene,
-        (&sky, paths.as_ref()),
-        &sun,
-        views,
-    ))
+/// The directions of the options, those of the command line first.
+fn rays(args: &ProbeArgs) -> Result<Vec<ProbeRay>, CliError> {
+    let mut rays: Vec<ProbeRay> = args
+        .view
+        .iter()
+        .map(|view| ProbeRay {
+            azimuth_deg: view.azimuth_deg,
+            elevation_deg: view.elevation_deg,
+            distance_m: args.distance_m,
+        })
+        .collect();
+    if let Some(path) = &args.views {
+        let text = match path == Path::new("-") {
+            true => {
+                let mut text = String::new();
+                std::io::stdin()
+                    .lock()
+                    .read_to_string(&mut text)
+                    .map_err(|error| {
+                        CliError::failure(format!("cannot read standard input: {error}"))
+                    })?;
+                text
+            }
+            false => read_text(path)?,
+        };
+        let found = ProbeRay::list_from_csv(&text, args.distance_m).map_err(|error| {
+            CliError::usage(format!("the views of `{}`, {error}", path.display()))
+        })?;
+        rays.extend(found);
+    }
+    Ok(rays)
 }

@@ -1,11 +1,11 @@
 //! A probe's answer as a text to read.
 
-use super::values::{Answer, ViewLight};
-use crate::report::short;
+use airlight_render::probe::{ProbeAnswer, RayAnswer};
+use airlight_render::summary::short;
 use std::fmt::Write;
 
 /// The whole text.
-pub fn text(answer: &Answer) -> String {
+pub fn text(answer: &ProbeAnswer) -> String {
     let mut text = head(answer);
     for view in &answer.views {
         text.push('\n');
@@ -14,16 +14,14 @@ pub fn text(answer: &Answer) -> String {
     text
 }
 
-fn head(answer: &Answer) -> String {
+fn head(answer: &ProbeAnswer) -> String {
     let (observer, sun) = (&answer.observer, &answer.sun);
     let mut text = format!(
         "air           {}, eye at {} m\n",
         answer.atmosphere.as_deref().unwrap_or("the model's own"),
         short(observer.altitude_m)
     );
-    if answer.is_of_model {
-        text.push_str(&model(answer));
-    }
+    text.push_str(&solver(answer));
     if let (Some(latitude), Some(longitude), Some(time)) = (
         observer.latitude_deg,
         observer.longitude_deg,
@@ -58,18 +56,18 @@ fn head(answer: &Answer) -> String {
     text
 }
 
-/// Which published model, and whether it has spectra.
-fn model(answer: &Answer) -> String {
+/// The solver or published model, and whether it has spectra.
+fn solver(answer: &ProbeAnswer) -> String {
     let variant = answer.variant.as_ref();
     let variant = variant.map_or(String::new(), |variant| format!(", {variant}"));
     let spectra = match answer.wavelengths_nm.is_empty() {
-        true => "; it knows colours, and no spectra",
+        true => "; it knows colours, not spectra",
         false => "",
     };
-    format!("model         {}{variant}{spectra}\n", answer.solver)
+    format!("solver        {}{variant}{spectra}\n", answer.solver)
 }
 
-fn one(answer: &Answer, view: &ViewLight) -> String {
+fn one(answer: &ProbeAnswer, view: &RayAnswer) -> String {
     let end = match (view.distance_m, view.meets_ground) {
         (_, true) => "to the ground".to_owned(),
         (Some(m), false) => format!("over {} m", short(m)),
@@ -97,13 +95,13 @@ fn one(answer: &Answer, view: &ViewLight) -> String {
         ("ground", &view.radiance_ground_w_m2_sr_nm),
         ("transmittance", &view.transmittance),
     ];
-    let told = parts.into_iter();
-    columns.extend(told.filter_map(|(name, values)| Some((name, values.as_ref()?))));
+    let known = parts.into_iter();
+    columns.extend(known.filter_map(|(name, values)| Some((name, values.as_ref()?))));
     let single = |values: &[f64]| -> Vec<f32> { values.iter().map(|&v| v as f32).collect() };
     let found = view.monte_carlo.as_ref();
     let mut more = Vec::new();
     if let Some(found) = found {
-        more.push(("random paths", single(&found.radiance_w_m2_sr_nm)));
+        more.push(("Monte Carlo", single(&found.radiance_w_m2_sr_nm)));
         more.push(("std. error", single(&found.standard_error_w_m2_sr_nm)));
     }
     if let Some(found) = found.and_then(|found| found.polarisation.as_ref()) {

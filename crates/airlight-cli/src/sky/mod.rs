@@ -1,110 +1,94 @@
-//! `airlight sky`: pictures of the sky.
-//!
-//! - [`channels`]: what the values of a pixel are, and how spectra become them.
-//! - [`disc`]: the sun's disc in a picture, exact in irradiance at every size; [`rows`]: sky and disc, row by row.
-//! - [`fog`]: fog before the sky.
-//! - [`layout`]: which files a picture consists of and where each looks.
-//! - [`metadata`]: what the files say about themselves; [`exposure`]: how bright PNG, JPEG and preview are.
-//! - [`objects`]: things before the sky.
-//! - [`monte_carlo`]: pictures by random paths; [`polarisation`]: what is told of it beside them; [`classic`]: pictures by
-//!   published models.
-//! - [`prepared`]: one moment, made ready; [`image`]: a picture in memory; [`draw`]: one moment into files; [`preview`]: onto the terminal; [`sequence`]: many
-//!   moments.
+//! `airlight sky`: pictures of the sky. [`preview`]: onto the terminal.
 
-mod channels;
-mod disc;
-mod exposure;
-mod fog;
-mod layout;
-mod metadata;
-mod models;
-mod monte_carlo;
-mod objects;
-mod polarisation;
-mod prepared_frame;
 mod preview;
-mod rendered_image;
-mod renderer;
-mod rows;
-mod sequence;
 
 use crate::args::SkyArgs;
 use crate::error::CliError;
-use crate::illuminance::Illuminances;
-use crate::interrupt;
+use crate::interrupt::{self, STOP};
 use crate::progress::RowsBar;
-use crate::report::{self, bytes, seconds, short};
-use crate::scene::Sun;
-pub use channels::{space_name, space_of};
-pub use exposure::curve as tone_curve;
-pub use metadata::SOFTWARE;
-use prepared_frame::{Prepared, PreparedFrame};
-pub use rendered_image::RenderedImage;
-use renderer::{Renderer, Setup};
+use crate::report::{self, bytes, seconds};
+use crate::scene;
+use airlight::scene::PreparedModel;
+use airlight::sky::SunCoverage;
+use airlight_image::Control;
+use airlight_image::output::Written;
+use airlight_render::sequence::Sequence;
+use airlight_render::summary::{self, short};
+use airlight_render::{PreparedFrame, Renderer, WrittenFile};
 use std::fmt::Write;
-use std::time::Instant;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 /// Runs the command.
 ///
 /// # Errors
 /// [`CliError`]: what was wrong with the options, or what failed.
 pub fn run(args: &SkyArgs) -> Result<(), CliError> {
-    crate::scene::use_threads(args.air.threads)?;
-    let preview = preview::wanted(args)?;
-    let setup = Setup::new(args)?;
-    monte_carlo::check(args)?;
-    let renderer = setup.renderer(args);
-    match &args.sequence.until {
-        Some(until) => sequence::run(&renderer, until, preview),
-        None => single(&renderer, &setup.first, preview),
+    let scene = args.read()?;
+    if let Some(path) = &args.save_scene {
+        scene::save(&scene, path)?;
+        if scene.output.file.is_none() && !args.preview {
+            return Ok(());
+        }
+    }
+    let preview = preview::wanted(args.preview, scene.output.file.is_some())?;
+    let renderer = Renderer::new(&scene)?.with_text("command", scene::command_line());
+    match renderer.sequence()? {
+        Some(sequence) => many(args, &renderer, &sequence, preview),
+        None => one(args, &renderer, preview),
     }
 }
 
-fn single(
-    renderer: &Renderer<'_>,
-    sun: &Sun,
+fn one(
+    args: &SkyArgs,
+    renderer: &Renderer,
     preview: Option<preview::Terminal>,
 ) -> Result<(), CliError> {
-    let scene = renderer.scene;
-    renderer.check(renderer.layout.output.as_deref())?;
-    let (prepared, solving) = Prepared::new(renderer, scene.near(sun))?;
+    let output = renderer.output_path().ok();
+    for file in output
+        .map(|path| renderer.layout().files(path))
+        .unwrap_or_default()
+    {
+        report::check_writable(&file.path)?;
+    }
+    let sun = renderer.sun(None)?;
+    let (prepared, solving) = solve(renderer, renderer.suns_near(&sun))?;
     let start = Instant::now();
-    let prepared = PreparedFrame::new(renderer, &prepared, sun, scene.sun.start())?;
+    let frame = renderer.frame(prepared.as_ref(), None)?;
     if let Some(terminal) = preview {
-        report::print(&preview::text(renderer, &prepared, terminal)?)?;
+        report::print(&preview::text(renderer, &frame, terminal)?)?;
     }
     let mut text = String::new();
-    if let Some(path) = &renderer.layout.output {
-        let files = renderer.layout.files(path);
-        let rows = files
-            .iter()
-            .map(|file| u64::from(file.frame.size().height()))
-            .sum();
-        let bar = RowsBar::new(rows);
-        bar.say("drawing".to_owned());
+    if let Some(path) = output {
+        let bar = RowsBar::by_stages();
         let writing = interrupt::start_writing()?;
-        let written = renderer.write(&prepared, &files, &bar)?;
+        let written = frame.write(path, Control::cancelled_by(&STOP).reporting_to(&bar))?;
         drop(writing);
         drop(bar);
-        for (file, written) in files.iter().zip(&written) {
-            let size = file.frame.size();
+        for file in &written.files {
             // Writing to a string cannot fail.
             let _ = writeln!(
                 text,
                 "{}: {} x {} {}, {}",
                 file.path.display(),
-                size.width(),
-                size.height(),
+                file.size.width(),
+                file.size.height(),
                 renderer.kind(),
-                bytes(written.bytes)
+                bytes(file.written.bytes)
             );
         }
-        renderer.warn_of_clipping(&written);
+        warn_of_clipping(renderer, written.files.iter().map(|file| &file.written));
+        if let Some(noise) = written.noise.filter(|_| !args.quiet) {
+            report::note(&format!(
+                "standard error of a pixel's green: {:.2} % (root mean square over the picture)",
+                100.0 * noise
+            ));
+        }
     }
-    if renderer.args.quiet {
+    if args.quiet {
         return Ok(());
     }
-    text.push_str(&said(renderer, sun, &prepared.light));
+    text.push_str(&facts(renderer, &frame));
     let _ = writeln!(
         text,
         "  time          {} to solve, {} to draw",
@@ -114,11 +98,71 @@ fn single(
     report::print(&text)
 }
 
-/// Sun and light in words.
-fn said(renderer: &Renderer<'_>, sun: &Sun, light: &Illuminances) -> String {
-    let scene = renderer.scene;
+fn many(
+    args: &SkyArgs,
+    renderer: &Renderer,
+    sequence: &Sequence,
+    preview: Option<preview::Terminal>,
+) -> Result<(), CliError> {
+    let total = sequence.steps().len();
+    let missing = match args.sequence.overwrite {
+        true => sequence.steps().to_vec(),
+        false => sequence.missing(),
+    };
+    let begun = Instant::now();
+    if let Some(suns) = renderer.suns_of(&missing)? {
+        for file in missing.iter().take(1).flat_map(|step| &step.files) {
+            report::check_writable(&file.path)?;
+        }
+        let (prepared, _) = solve(renderer, suns)?;
+        let bar = RowsBar::new(missing.iter().map(|step| step.rows()).sum());
+        let mut written: Vec<WrittenFile> = Vec::new();
+        for step in &missing {
+            bar.say(format!("picture {} of {total}", step.number));
+            let frame = renderer.frame(prepared.as_ref(), Some(step.time))?;
+            if let Some(terminal) = preview {
+                report::print(&preview::text(renderer, &frame, terminal)?)?;
+            }
+            let _writing = interrupt::start_writing()?;
+            let control = Control::cancelled_by(&STOP).reporting_to(&bar);
+            written.extend(frame.write(&step.path, control)?.files);
+            bar.files_done(step.rows());
+        }
+        drop(bar);
+        warn_of_clipping(renderer, written.iter().map(|file| &file.written));
+    }
+    if args.quiet {
+        return Ok(());
+    }
+    let skipped = match total - missing.len() {
+        0 => String::new(),
+        n => format!(", {n} were there already (--overwrite draws them again)"),
+    };
+    report::print(&format!(
+        "{}: {} of {total} pictures made{skipped}, {}\n  time          {}\n",
+        renderer.output_path()?.display(),
+        missing.len(),
+        renderer.kind(),
+        seconds(begun.elapsed())
+    ))
+}
+
+fn solve(
+    renderer: &Renderer,
+    suns: SunCoverage,
+) -> Result<(Arc<dyn PreparedModel>, Duration), CliError> {
+    let start = Instant::now();
+    let bar = RowsBar::by_stages();
+    let prepared = renderer.prepare(suns, Control::cancelled_by(&STOP).reporting_to(&bar))?;
+    Ok((prepared, start.elapsed()))
+}
+
+/// Sun, light and air in words.
+fn facts(renderer: &Renderer, frame: &PreparedFrame) -> String {
+    let scene = renderer.resolved();
+    let (sun, light) = (frame.sun(), frame.light());
     let mut text = String::new();
-    if let (Some(place), Some(time)) = (scene.sun.place(), scene.sun.start()) {
+    if let (Some(place), Some(time)) = (scene.sun.place(), frame.time()) {
         let _ = writeln!(
             text,
             "  place, time   latitude {}, longitude {}, {time}",
@@ -145,10 +189,31 @@ fn said(renderer: &Renderer<'_>, sun: &Sun, light: &Illuminances) -> String {
         text,
         "  air           {}; eye at {} m",
         scene.atmosphere.name,
-        short(scene.eye_altitude_m)
+        short(scene.observer_altitude_m)
     );
-    if let Some(fog) = fog::in_words(&renderer.args.fog) {
-        let _ = writeln!(text, "  fog           {fog}");
+    if let Some(fog) = &scene.fog {
+        let _ = writeln!(text, "  fog           {}", summary::fog(fog));
     }
     text
+}
+
+/// Warns of samples that the format could not hold.
+fn warn_of_clipping<'w>(renderer: &Renderer, written: impl Iterator<Item = &'w Written>) {
+    let (clamped, nans) = written.fold((0, 0), |sum, written| {
+        (sum.0 + written.clamped_samples, sum.1 + written.nan_samples)
+    });
+    if let Some(format) = renderer.layout().format().filter(|_| clamped > 0) {
+        let tip = match format.holds_channels() {
+            true => {
+                ": --precision float keeps them, --scale 1e-5 makes them fit, --sun-disc separate or out keeps the sun apart"
+            }
+            false => "",
+        };
+        report::note(&format!("{clamped} samples {}{tip}", format.clamping()));
+    }
+    if nans > 0 {
+        report::note(&format!(
+            "{nans} samples were not a number and are 0: please report this"
+        ));
+    }
 }

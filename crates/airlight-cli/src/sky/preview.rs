@@ -1,12 +1,9 @@
 //! The picture on the terminal, as coloured half blocks.
 
-use super::exposure;
-use super::prepared_frame::PreparedFrame;
-use super::renderer::{Renderer, stored};
-use crate::args::SkyArgs;
 use crate::error::CliError;
 use airlight::spectrum::{RgbSpace, rgb};
 use airlight_image::terminal::{TerminalColor, half_blocks};
+use airlight_render::{PreparedFrame, Renderer};
 use std::io::IsTerminal;
 
 /// A terminal that shows colours.
@@ -17,12 +14,12 @@ pub struct Terminal {
     lines: u16,
 }
 
-/// Whether to show a preview: where it is asked for, or where nothing else would show and the terminal can.
+/// The terminal for a preview, where one is requested, or where nothing else would show and the terminal can.
 ///
 /// # Errors
 /// [`CliError::Usage`] where there would be no output at all.
-pub fn wanted(args: &SkyArgs) -> Result<Option<Terminal>, CliError> {
-    if !args.preview && args.output.is_some() {
+pub fn wanted(requested: bool, has_output: bool) -> Result<Option<Terminal>, CliError> {
+    if !requested && has_output {
         return Ok(None);
     }
     let variable = |name| std::env::var(name).ok();
@@ -32,8 +29,8 @@ pub fn wanted(args: &SkyArgs) -> Result<Option<Terminal>, CliError> {
         variable("NO_COLOR"),
     );
     let color = TerminalColor::detect(colorterm.as_deref(), term.as_deref(), none.as_deref());
-    if color == TerminalColor::None || !args.preview && !std::io::stdout().is_terminal() {
-        return Err(CliError::usage(match args.preview {
+    if color == TerminalColor::None || !requested && !std::io::stdout().is_terminal() {
+        return Err(CliError::usage(match requested {
             true => {
                 "--preview needs a terminal that shows colours (COLORTERM and TERM say it does not)"
             }
@@ -50,32 +47,32 @@ pub fn wanted(args: &SkyArgs) -> Result<Option<Terminal>, CliError> {
     }))
 }
 
-/// The text that shows a shot.
+/// The text that shows a frame.
 ///
 /// # Errors
-/// As [`exposure::tone`].
+/// [`CliError::Usage`] for an exposure out of range.
 pub fn text(
-    renderer: &Renderer<'_>,
-    prepared: &PreparedFrame,
+    renderer: &Renderer,
+    frame: &PreparedFrame,
     terminal: Terminal,
 ) -> Result<String, CliError> {
     let mut columns = u32::from(terminal.columns).clamp(8, 256);
-    let mut frame = renderer.layout.overview(columns)?;
+    let mut small = renderer.layout().overview(columns)?;
     // Two pixels a line, and room for the report.
     let most = 2 * u32::from(terminal.lines.saturating_sub(8)).max(8);
-    if frame.size().height() > most {
-        columns = (columns * most / frame.size().height()).max(8);
-        frame = renderer.layout.overview(columns)?;
+    if small.size().height() > most {
+        columns = (columns * most / small.size().height()).max(8);
+        small = renderer.layout().overview(columns)?;
     }
-    let tone = exposure::tone(renderer, prepared)?;
+    let tone = frame.tone()?;
     let to_srgb = rgb::multiply(
         &RgbSpace::Srgb.from_xyz_matrix(),
-        &renderer.channels.space.to_xyz_matrix(),
+        &frame.channels().space().to_xyz_matrix(),
     );
-    let rows = renderer.rows(prepared, &frame, (renderer.layout.main_layer(), 1.0), None);
-    let width = frame.size().width() as usize;
+    let width = small.size().width() as usize;
+    let pixels = frame.pixels(&small, renderer.layout().main_layer());
     let mut bytes = Vec::new();
-    for (y, row) in (0..).zip(stored(rows.as_ref(), &frame).chunks_exact(width)) {
+    for (y, row) in (0..).zip(pixels.chunks_exact(width)) {
         let linear: Vec<f32> = row
             .iter()
             .flat_map(|p| rgb::apply(&to_srgb, p.map(f64::from)).map(|v| v as f32))

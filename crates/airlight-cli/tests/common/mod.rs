@@ -128,38 +128,10 @@ impl Exr {
         }
     }
 
-    pub fn rgb(&self, x: u32, y: u32) -> [f32; 3] {
-        let at = (y * self.width + x) as usize;
-        ["R", "G", "B"].map(|name| self.channels[name][at])
-    }
-
     /// Luminance of linear sRGB.
     pub fn luminance(&self, x: u32, y: u32) -> f64 {
-        let [r, g, b] = self.rgb(x, y).map(f64::from);
+        let at = (y * self.width + x) as usize;
+        let [r, g, b] = ["R", "G", "B"].map(|name| f64::from(self.channels[name][at]));
         0.212_639 * r + 0.715_169 * g + 0.072_192 * b
     }
-
-    /// Sum over the pixels of luminance, solid angle and a weight of the direction.
-    pub fn sum(&self, frame: &airlight_image::Frame, weight: impl Fn(glam::DVec3) -> f64) -> f64 {
-        let mut sum = 0.0;
-        for y in 0..self.height {
-            for x in 0..self.width {
-                if let Some(direction) = frame.pixel_direction(x, y) {
-                    sum += self.luminance(x, y) * frame.pixel_solid_angle(x, y) * weight(direction);
-                }
-            }
-        }
-        sum
-    }
-}
-
-/// Options of the probe that ask for the directions of pixels.
-pub fn views_of(frame: &airlight_image::Frame, pixels: &[(u32, u32)]) -> String {
-    let view = |&(x, y): &(u32, u32)| {
-        let direction = frame.pixel_direction(x, y).unwrap();
-        let azimuth = airlight::axes::azimuth_deg(direction);
-        let elevation = airlight::axes::elevation_deg(direction);
-        format!(" --view {azimuth},{elevation}")
-    };
-    pixels.iter().map(view).collect()
 }

@@ -7,9 +7,7 @@
 mod moments;
 mod passes;
 mod picture;
-mod stokes;
 
 pub use moments::ColorMoments;
 pub use passes::{Passes, pixel_offset};
 pub use picture::{Canvas, POLARISATION_CHANNELS};
-pub use stokes::{POLARIZATION_CHANNELS, PixelStokes};

@@ -1,8 +1,8 @@
 //! Objects in the light of a view.
 
 use super::{Hit, Object, Objects, Ray};
-use crate::channels::{RgbWeights, rgb_weights};
-use airlight::scene::{Channels, RadianceView};
+use crate::channels::{PixelChannels, RgbWeights};
+use airlight::scene::{Channels, RadianceView, ResolvedScene, SceneError};
 use airlight::spectrum::{RgbSpace, SpectralCurve, WavelengthGrid};
 use glam::DVec3;
 use std::f32::consts::PI;
@@ -47,7 +47,7 @@ pub struct LitObjects {
 
 impl LitObjects {
     /// Objects in the light of `view`, whose eye is `eye_height_m` above the ground; `around` are views from heights (m)
-    /// above the ground, rising and at least one, in the same channels. Pictures are in `space`.
+    /// above the ground, rising and at least one, in the same channels.
     pub fn new(
         objects: Arc<Objects>,
         (eye_height_m, view): (f64, Arc<dyn RadianceView>),
@@ -74,9 +74,38 @@ impl LitObjects {
         }
     }
 
-    /// The same with the light summed to colours of an RGB space, where the views are spectral.
-    pub fn in_rgb(mut self, space: RgbSpace) -> Self {
-        self.weights = self.view.grid().map(|grid| rgb_weights(grid, space));
+    /// Objects in a scene; `view_at` is the view from an altitude (m above sea level). Where there is fog, the light around
+    /// objects changes from the ground to their tops; else it is that in the middle.
+    ///
+    /// # Errors
+    /// Those of `view_at`.
+    pub fn in_scene(
+        objects: Arc<Objects>,
+        scene: &ResolvedScene,
+        view_at: impl Fn(f64) -> Result<Arc<dyn RadianceView>, SceneError>,
+        shadows: bool,
+    ) -> Result<Self, SceneError> {
+        let ground_m = scene.atmosphere.planet.ground_altitude_m;
+        let top_m = objects.top_m().max(1.0);
+        let heights_m = match scene.fog {
+            Some(_) => vec![0.0, top_m],
+            None => vec![0.5 * top_m],
+        };
+        let around = heights_m
+            .into_iter()
+            .map(|height_m| Ok((height_m, view_at(ground_m + height_m)?)))
+            .collect::<Result<_, SceneError>>()?;
+        let eye_height_m = scene.observer_altitude_m - ground_m;
+        let view = view_at(scene.observer_altitude_m)?;
+        Ok(Self::new(objects, (eye_height_m, view), around, shadows))
+    }
+
+    /// The same in the channels of a picture: where it is RGB and the views are spectral, their light is summed.
+    pub fn in_picture(mut self, channels: &PixelChannels) -> Self {
+        self.weights = match (channels.of_views(), self.view.grid()) {
+            (Channels::Rgb(space), Some(grid)) => Some(grid.rgb_weights(space)),
+            _ => None,
+        };
         self
     }
 

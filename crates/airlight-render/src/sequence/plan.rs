@@ -1,8 +1,6 @@
-//! Which frames a sequence has, and the loop over those still missing.
+//! Evenly spaced moments.
 
-use super::FramePattern;
-use airlight_image::{Control, ImageError};
-use std::path::{Path, PathBuf};
+use airlight_image::ImageError;
 
 /// Evenly spaced moments, from the first to the last inclusive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -79,68 +77,34 @@ impl SequencePlan {
     }
 }
 
-/// Hears how far a sequence has come. Each method does nothing unless overridden.
-pub trait SequenceProgress {
-    /// A frame is about to be made; `total` frames in all.
-    fn started(&mut self, frame: FrameStep, total: u64, path: &Path) {
-        let _ = (frame, total, path);
-    }
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-    /// A frame's file was already there.
-    fn skipped(&mut self, frame: FrameStep, total: u64, path: &Path) {
-        let _ = (frame, total, path);
-    }
-
-    /// A frame's file is whole.
-    fn finished(&mut self, frame: FrameStep, total: u64, path: &Path) {
-        let _ = (frame, total, path);
-    }
-}
-
-/// Hears nothing.
-impl SequenceProgress for () {}
-
-/// What a run of a sequence did.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct SequenceReport {
-    /// Frames made.
-    pub made: u64,
-    /// Frames whose file was there already.
-    pub skipped: u64,
-}
-
-/// Makes every frame of `plan` whose file is not there yet, in order, by `make(frame, path)`.
-///
-/// Files are only ever whole, so one that exists and is not empty counts as done; with `overwrite`, all are made.
-///
-/// # Errors
-/// The first error of `make`, or [`ImageError::Cancelled`] between frames once the caller has asked to stop. Frames
-/// already made stay.
-pub fn run(
-    plan: &SequencePlan,
-    pattern: &FramePattern,
-    overwrite: bool,
-    control: Control<'_>,
-    progress: &mut dyn SequenceProgress,
-    mut make: impl FnMut(FrameStep, &Path) -> Result<(), ImageError>,
-) -> Result<SequenceReport, ImageError> {
-    let mut report = SequenceReport::default();
-    for frame in plan.frames() {
-        control.check()?;
-        let path: PathBuf = pattern.path(frame.number, frame.time_s);
-        if !overwrite && is_whole(&path) {
-            report.skipped += 1;
-            progress.skipped(frame, plan.count, &path);
-            continue;
+    #[test]
+    fn plans_count_their_frames() {
+        for (start, until, every, count) in
+            [(0, 0, 5, 1), (0, 9, 5, 2), (0, 10, 5, 3), (-7, 7, 7, 3)]
+        {
+            let plan = SequencePlan::new(start, until, every).unwrap();
+            let times: Vec<i64> = plan.frames().map(|f| f.time_s).collect();
+            assert_eq!(plan.count(), count);
+            assert_eq!(times.len() as u64, count);
+            assert_eq!(times[0], start);
+            assert!(times.iter().all(|&t| t <= until));
         }
-        progress.started(frame, plan.count, &path);
-        make(frame, &path)?;
-        report.made += 1;
-        progress.finished(frame, plan.count, &path);
+        for (start, until, every, words) in [
+            (0, 10, 0, "above 0"),
+            (10, 0, 1, "after its start"),
+            (0, 10_000_000, 1, "10000001"),
+            (i64::MIN, i64::MAX, 1, "at most"),
+        ] {
+            let error = SequencePlan::new(start, until, every)
+                .unwrap_err()
+                .to_string();
+            assert!(error.contains(words), "{error}");
+        }
+        let wide = SequencePlan::new(i64::MIN, i64::MAX, i64::MAX).unwrap();
+        assert_eq!(wide.frames().last().unwrap().time_s, i64::MAX - 1);
     }
-    Ok(report)
-}
-
-fn is_whole(path: &Path) -> bool {
-    std::fs::metadata(path).is_ok_and(|about| about.is_file() && about.len() > 0)
 }

@@ -5,5 +5,5 @@ mod common;
 mod forms;
 mod lights;
 mod monte_carlo;
-mod sequence;
+mod scenes;
 mod sky;

@@ -1,0 +1,55 @@
+//! Options that make a scene: a file, and what overrides it.
+
+use super::fog::{ContrastArgs, FogArgs};
+use super::{AirArgs, PlaceArgs, SolverArgs};
+use crate::error::CliError;
+use airlight::scene::Scene;
+use airlight_render::scene_file;
+use clap::Args;
+use std::path::{Path, PathBuf};
+
+/// A scene: a file, and what overrides it.
+#[derive(Clone, Debug, Default, Args)]
+pub struct SceneArgs {
+    /// Scene to begin with, which the other options override: a TOML file (`airlight schema` prints its JSON Schema)
+    #[arg(long, value_name = "FILE.toml", help_heading = "Scene")]
+    pub scene: Option<PathBuf>,
+    #[command(flatten)]
+    pub place: PlaceArgs,
+    #[command(flatten)]
+    pub air: AirArgs,
+    #[command(flatten)]
+    pub contrast: ContrastArgs,
+    #[command(flatten)]
+    pub solver: SolverArgs,
+    #[command(flatten)]
+    pub fog: FogArgs,
+}
+
+impl SceneArgs {
+    /// The scene of the file and the options, with the files that it names; `more` are further options.
+    ///
+    /// # Errors
+    /// [`CliError`] where a file cannot be read or is wrong.
+    pub fn read(&self, more: impl FnOnce(&mut Scene)) -> Result<Scene, CliError> {
+        let mut scene = match &self.scene {
+            Some(path) => scene_file::load(path)?,
+            None => Scene::default(),
+        };
+        self.place.fill(&mut scene);
+        self.air.fill(&mut scene.air);
+        put(&mut scene.air.contrast, &self.contrast.contrast);
+        self.solver.fill(&mut scene.solver);
+        self.fog.fill(&mut scene.fog);
+        more(&mut scene);
+        scene_file::inline_files(&mut scene, Path::new(""))?;
+        Ok(scene)
+    }
+}
+
+/// Puts what is given in place of what is there.
+pub fn put<T: Clone>(value: &mut Option<T>, given: &Option<T>) {
+    if given.is_some() {
+        value.clone_from(given);
+    }
+}

@@ -1,0 +1,257 @@
+//! How much two pictures of one sky differ, direction by direction and in sum.
+
+use crate::image::RenderedImage;
+use crate::summary::short;
+use airlight::axes;
+use airlight::spectrum::difference::{ciede2000, xyz_to_lab};
+use airlight::spectrum::rgb;
+use serde::Serialize;
+use std::fmt::Write;
+
+/// The difference of two pictures of one frame, pixel by pixel.
+#[derive(Clone, Debug)]
+pub struct Difference {
+    /// Of luminance, percent of the first's; not a number where the first is black.
+    pub percent: Vec<f64>,
+    /// CIEDE2000, under a white that the exposure of the first picture makes white.
+    pub ciede2000: Vec<f64>,
+}
+
+/// Statistics over the sky above the horizon, each direction weighted by its solid angle.
+#[derive(Clone, Debug, Serialize)]
+pub struct Statistics {
+    /// Name of the reference.
+    pub first: String,
+    /// Name of the other.
+    pub second: String,
+    /// Elevation of the sun.
+    pub sun_elevation_deg: f64,
+    /// Illuminance of the horizontal by both skies.
+    pub sky_horizontal_lx: [f64; 2],
+    /// Factor by which the second was scaled.
+    pub second_scaled_by: f64,
+    /// Difference of luminance, percent of the first's.
+    pub luminance_percent: Spread,
+    /// CIEDE2000.
+    pub ciede2000: Spread,
+    /// Time that both took, s.
+    pub seconds: [f64; 2],
+}
+
+/// How differences spread over the sky.
+#[derive(Clone, Debug, Serialize)]
+pub struct Spread {
+    /// Mean, with its sign.
+    pub mean: f64,
+    /// Root mean square.
+    pub rms: f64,
+    /// Bound of the absolute value over 95 % of the sky.
+    pub within_95: f64,
+    /// The one with the largest absolute value.
+    pub worst: f64,
+    /// Where that is: azimuth and elevation, degrees.
+    pub worst_at_deg: [f64; 2],
+}
+
+impl Difference {
+    /// Of `second`, `scale` times, from `first`; both are of one frame and RGB space.
+    pub fn new(first: &RenderedImage, second: &RenderedImage, scale: f64) -> Self {
+        let to_xyz = first.space.to_xyz_matrix();
+        let exposure = f64::from(first.tone.exposure());
+        let white = rgb::apply(&to_xyz, [1.0; 3]);
+        let (mut percent, mut differences) = (Vec::new(), Vec::new());
+        for (a, b) in first.rgb.iter().zip(&second.rgb) {
+            let xyz = |rgb: &[f32; 3], by: f64| rgb::apply(&to_xyz, rgb.map(|c| by * f64::from(c)));
+            let (a, b) = (xyz(a, exposure), xyz(b, scale * exposure));
+            percent.push(match a[1] > 0.0 {
+                true => 100.0 * (b[1] / a[1] - 1.0),
+                false => f64::NAN,
+            });
+            differences.push(ciede2000(xyz_to_lab(a, white), xyz_to_lab(b, white)));
+        }
+        Self {
+            percent,
+            ciede2000: differences,
+        }
+    }
+
+    /// Statistics of the difference of two pictures with names; `None` where they show no lit sky.
+    pub fn statistics(
+        &self,
+        (first, first_name): (&RenderedImage, &str),
+        (second, second_name): (&RenderedImage, &str),
+        scale: f64,
+    ) -> Option<Statistics> {
+        Some(Statistics {
+            first: first_name.to_owned(),
+            second: second_name.to_owned(),
+            sun_elevation_deg: first.sun.elevation_deg,
+            sky_horizontal_lx: [
+                first.light.sky_horizontal_lx,
+                second.light.sky_horizontal_lx,
+            ],
+            second_scaled_by: scale,
+            luminance_percent: Spread::new(first, &self.percent)?,
+            ciede2000: Spread::new(first, &self.ciede2000)?,
+            seconds: [first.time.as_secs_f64(), second.time.as_secs_f64()],
+        })
+    }
+}
+
+impl Spread {
+    /// Of the values of a picture's pixels above the horizon; `None` where it shows none.
+    pub fn new(image: &RenderedImage, values: &[f64]) -> Option<Self> {
+        let (width, height) = (image.frame.size().width(), image.frame.size().height());
+        let pixels = (0..height).flat_map(|j| (0..width).map(move |i| (i, j)));
+        let mut sky: Vec<(f64, f64, [f64; 2])> = pixels
+            .zip(values)
+            .filter_map(|((i, j), &value)| {
+                let direction = image.frame.pixel_direction(i, j)?;
+                let above = direction.y > 0.0 && value.is_finite();
+                let at = [
+                    axes::azimuth_deg(direction),
+                    direction.y.asin().to_degrees(),
+                ];
+                above.then(|| (value, image.frame.pixel_solid_angle(i, j), at))
+            })
+            .collect();
+        let whole: f64 = sky.iter().map(|pixel| pixel.1).sum();
+        let mean_of = |f: fn(f64) -> f64| {
+            sky.iter().map(|&(v, weight, _)| weight * f(v)).sum::<f64>() / whole
+        };
+        let (mean, rms) = (mean_of(|v| v), mean_of(|v| v * v).sqrt());
+        sky.sort_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
+        let &(worst, _, worst_at_deg) = sky.last()?;
+        let mut below = 0.0;
+        let within_95 = sky
+            .iter()
+            .find(|pixel| {
+                below += pixel.1;
+                below >= 0.95 * whole
+            })
+            .map_or(worst, |pixel| pixel.0);
+        Some(Self {
+            mean,
+            rms,
+            within_95: within_95.abs(),
+            worst,
+            worst_at_deg,
+        })
+    }
+
+    fn in_words(&self, unit: &str) -> String {
+        format!(
+            "mean {}{unit}, rms {}{unit}, 95 % of the sky within {}{unit}, worst {}{unit} at azimuth {:.1}, elevation {:.1} deg",
+            short(self.mean),
+            short(self.rms),
+            short(self.within_95),
+            short(self.worst),
+            self.worst_at_deg[0],
+            self.worst_at_deg[1]
+        )
+    }
+}
+
+impl Statistics {
+    /// As lines to read.
+    pub fn lines(&self) -> Vec<String> {
+        let [first, second] = self.sky_horizontal_lx;
+        let mut light = format!(
+            "sky on the horizontal: {} lx, {} lx ({:+.2} %)",
+            short(first),
+            short(second),
+            100.0 * (second / first - 1.0)
+        );
+        if self.second_scaled_by != 1.0 {
+            // Writing to a string cannot fail.
+            let _ = write!(
+                light,
+                ", the second scaled by {}",
+                short(self.second_scaled_by)
+            );
+        }
+        vec![
+            light,
+            format!("luminance: {}", self.luminance_percent.in_words(" %")),
+            format!("CIEDE2000: {}", self.ciede2000.in_words("")),
+        ]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::illuminance::Illuminances;
+    use airlight::scene::SunAngles;
+    use airlight::spectrum::RgbSpace;
+    use airlight_image::Frame;
+    use airlight_image::tone::{ToneCurve, ToneMapper};
+    use std::time::Duration;
+
+    /// A picture whose luminance is a function of the row.
+    fn image(value: impl Fn(usize) -> f32) -> RenderedImage {
+        let frame = Frame::equirectangular(8).unwrap();
+        RenderedImage {
+            frame,
+            space: RgbSpace::Srgb,
+            rgb: (0..128).map(|i| [value(i / 16); 3]).collect(),
+            sun: SunAngles {
+                azimuth_deg: 180.0,
+                elevation_deg: 30.0,
+                geometric_elevation_deg: None,
+                distance_ratio: 1.0,
+            },
+            light: Illuminances {
+                sun_normal_lx: 1e5,
+                sun_horizontal_lx: 5e4,
+                sky_horizontal_lx: 1e4,
+            },
+            tone: ToneMapper::new(1e-3, ToneCurve::Clip).unwrap(),
+            time: Duration::ZERO,
+        }
+    }
+
+    fn statistics(first: &RenderedImage, second: &RenderedImage, scale: f64) -> Option<Statistics> {
+        Difference::new(first, second, scale).statistics((first, "a"), (second, "b"), scale)
+    }
+
+    #[test]
+    fn a_picture_does_not_differ_from_itself_and_a_scale_is_a_percentage() {
+        let sky = image(|row| 100.0 + row as f32);
+        let same = statistics(&sky, &sky, 1.0).unwrap();
+        assert_eq!(
+            [same.luminance_percent.worst, same.ciede2000.worst],
+            [0.0; 2]
+        );
+        let brighter = statistics(&sky, &sky, 1.25).unwrap().luminance_percent;
+        for value in [
+            brighter.mean,
+            brighter.rms,
+            brighter.within_95,
+            brighter.worst,
+        ] {
+            assert!((value - 25.0).abs() < 1e-4, "{brighter:?}");
+        }
+    }
+
+    #[test]
+    fn rows_below_the_horizon_do_not_count_and_the_worst_is_found() {
+        let sky = image(|_| 100.0);
+        let ground = image(|row| if row < 4 { 100.0 } else { 900.0 });
+        assert_eq!(
+            statistics(&sky, &ground, 1.0)
+                .unwrap()
+                .luminance_percent
+                .worst,
+            0.0
+        );
+        // The row from 45 to 67.5 degrees.
+        let dark = image(|row| if row == 1 { 50.0 } else { 100.0 });
+        let found = statistics(&sky, &dark, 1.0).unwrap().luminance_percent;
+        assert!((found.worst + 50.0).abs() < 1e-4);
+        assert!((found.worst_at_deg[1] - 56.25).abs() < 1e-9);
+        assert!(found.mean < -5.0 && found.mean > -15.0);
+        let black = image(|_| 0.0);
+        assert!(statistics(&black, &sky, 1.0).is_none());
+    }
+}

@@ -1,0 +1,469 @@
+//! One moment of a scene, ready to be drawn.
+
+use crate::canvas::{Canvas, POLARISATION_CHANNELS, Passes};
+use crate::channels::PixelChannels;
+use crate::error::RenderError;
+use crate::exposure::METERED_WIDTH;
+use crate::illuminance::Illuminances;
+use crate::image::RenderedImage;
+use crate::layout::PictureFile;
+use crate::metadata;
+use crate::objects::{LitObjects, ObjectRows, write_depth};
+use crate::pixels::tagged_path;
+use crate::renderer::Renderer;
+use crate::sky_rows::{Layer, SkyRows, SkyValues};
+use crate::sun_disc::SunDiscImage;
+use airlight::scene::{PreparedModel, RadianceSampler, RadianceView, SunAngles, SunDiscPlacement};
+use airlight::sun::Moment;
+use airlight_image::output::exr::{self, ExrOptions, ExrSample};
+use airlight_image::output::{Metadata, Written, spectral};
+use airlight_image::rows::StoredRows;
+use airlight_image::tone::{Exposure, ToneCurve, ToneMapper};
+use airlight_image::{
+    Control, Frame, ImageError, PictureOptions, Progress, RowSource, Size, write_picture,
+};
+use rayon::prelude::*;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Duration;
+
+/// One moment of a scene: its light at the eye, and objects in it.
+#[derive(Debug)]
+pub struct PreparedFrame<'r> {
+    renderer: &'r Renderer,
+    sun: SunAngles,
+    time: Option<Moment>,
+    view: Arc<dyn RadianceView>,
+    /// The same without noise.
+    preview: Arc<dyn RadianceView>,
+    channels: PixelChannels,
+    light: Illuminances,
+    disc: Option<SunDiscImage>,
+    objects: Option<LitObjects>,
+}
+
+/// A file that has been written.
+#[derive(Clone, Debug)]
+pub struct WrittenFile {
+    /// Where.
+    pub path: PathBuf,
+    /// Width and height.
+    pub size: Size,
+    /// Its bytes, and samples that the format could not hold.
+    pub written: Written,
+}
+
+/// What was written of one moment.
+#[derive(Clone, Debug, Default)]
+pub struct WrittenFrame {
+    /// The files, the main one last.
+    pub files: Vec<WrittenFile>,
+    /// Root mean square over the picture of the relative standard error of a pixel's green; `None` without noise.
+    pub noise: Option<f64>,
+}
+
+impl<'r> PreparedFrame<'r> {
+    pub(crate) fn new(
+        renderer: &'r Renderer,
+        prepared: &dyn PreparedModel,
+        time: Option<Moment>,
+    ) -> Result<Self, RenderError> {
+        let scene = renderer.resolved();
+        let sun = renderer.sun(time)?;
+        let space = renderer.scene().output.color_space.unwrap_or_default();
+        let channels = match (renderer.layout().is_spectral(), prepared.grid()) {
+            (true, Some(grid)) => PixelChannels::spectral(space, grid)?,
+            _ => PixelChannels::rgb(space),
+        };
+        let state = sun.state();
+        let view = prepared.view(scene.observer_altitude_m, &state, channels.of_views())?;
+        let preview = match view.sampler() {
+            Some(sampler) => sampler.preview(),
+            None => view.clone(),
+        };
+        let disc = match renderer.scene().output.sun_disc {
+            Some(SunDiscPlacement::Out) => None,
+            _ => SunDiscImage::new(preview.clone()),
+        };
+        let objects = renderer
+            .objects()
+            .map(|objects| {
+                let light = prepared.object_channels(channels.of_views());
+                let at = |altitude_m| prepared.view(altitude_m, &state, light);
+                LitObjects::in_scene(objects.clone(), scene, at, renderer.casts_shadows())
+                    .map(|lit| lit.in_picture(&channels))
+            })
+            .transpose()?;
+        Ok(Self {
+            renderer,
+            sun,
+            time: time.or(scene.sun.start()),
+            light: Illuminances::of(preview.as_ref()),
+            view,
+            preview,
+            channels,
+            disc,
+            objects,
+        })
+    }
+
+    /// Position of the sun.
+    pub fn sun(&self) -> &SunAngles {
+        &self.sun
+    }
+
+    /// The time that is shown; `None` for a sun without a time.
+    pub fn time(&self) -> Option<Moment> {
+        self.time
+    }
+
+    /// Illuminances at the eye.
+    pub fn light(&self) -> &Illuminances {
+        &self.light
+    }
+
+    /// The light at the eye.
+    pub fn view(&self) -> &Arc<dyn RadianceView> {
+        &self.view
+    }
+
+    /// Values of a pixel.
+    pub fn channels(&self) -> &PixelChannels {
+        &self.channels
+    }
+
+    /// Rows of a layer in a frame, without noise: by the solver itself, or for Monte Carlo by a deterministic one. Values are
+    /// `scale` times radiance or luminance.
+    pub fn rows<'s>(&'s self, frame: &Frame, layer: Layer, scale: f32) -> Box<dyn RowSource + 's> {
+        let view = self.preview.as_ref();
+        self.rows_over(frame, layer, SkyValues::View(view), scale)
+    }
+
+    fn rows_over<'s>(
+        &'s self,
+        frame: &Frame,
+        layer: Layer,
+        sky: SkyValues<'s>,
+        scale: f32,
+    ) -> Box<dyn RowSource + 's> {
+        let channels = &self.channels;
+        let sky = SkyRows::new(frame, layer, (sky, self.disc.as_ref()), channels, scale);
+        match &self.objects {
+            None => Box::new(sky),
+            Some(objects) => Box::new(ObjectRows::new(
+                Box::new(sky),
+                objects,
+                (frame, layer),
+                channels,
+                scale,
+            )),
+        }
+    }
+
+    /// Red, green and blue of a small picture, row after row, without noise.
+    pub fn pixels(&self, frame: &Frame, layer: Layer) -> Vec<[f32; 3]> {
+        stored(self.rows(frame, layer, 1.0).as_ref(), frame)
+    }
+
+    /// The exposure of display pictures.
+    ///
+    /// # Errors
+    /// [`RenderError`] for an exposure out of range.
+    pub fn exposure(&self) -> Result<Exposure, RenderError> {
+        let settings = self.renderer.exposure();
+        if let Some(exposure) = settings.fixed()? {
+            return Ok(exposure);
+        }
+        let frame = self.renderer.layout().overview(METERED_WIDTH)?;
+        let pixels = self.pixels(&frame, Layer::Sky);
+        let horizon_rad = self.preview.horizon_elevation_rad();
+        let is_ground = |direction: glam::DVec3| direction.y.clamp(-1.0, 1.0).asin() < horizon_rad;
+        let space = self.channels.space();
+        Ok(settings.metered((&frame, &pixels), space, is_ground)?)
+    }
+
+    /// What makes display values of linear light.
+    ///
+    /// # Errors
+    /// As [`PreparedFrame::exposure`].
+    pub fn tone(&self) -> Result<ToneMapper, RenderError> {
+        let exposure = self.exposure()?.factor() as f32;
+        Ok(ToneMapper::new(exposure, self.renderer.tone_curve())?)
+    }
+
+    /// Draws a frame into memory.
+    ///
+    /// # Errors
+    /// [`RenderError`] for an exposure out of range, or where the caller asked to stop.
+    pub fn image(&self, frame: &Frame, control: Control<'_>) -> Result<RenderedImage, RenderError> {
+        let layer = self.renderer.layout().main_layer();
+        let means = match self.view.sampler() {
+            Some(sampler) => {
+                Canvas::check_memory(std::iter::once(frame), &self.channels)?;
+                let mut canvas = Canvas::new(*frame, &self.channels, false);
+                let goal = Passes::new(sampler.paths()).goal();
+                control.stage("following Monte Carlo paths", rows_of([frame]));
+                canvas.add(sampler, 0..goal, control)?;
+                Some(canvas.means())
+            }
+            None => None,
+        };
+        let sky = match &means {
+            Some(means) => SkyValues::Stored(means),
+            None => SkyValues::View(self.preview.as_ref()),
+        };
+        let rows = self.rows_over(frame, layer, sky, 1.0);
+        Ok(RenderedImage {
+            frame: *frame,
+            space: self.channels.space(),
+            rgb: stored(rows.as_ref(), frame),
+            sun: self.sun,
+            light: self.light,
+            tone: self.tone()?,
+            time: Duration::ZERO,
+        })
+    }
+
+    /// Writes the files of a picture called `path`.
+    ///
+    /// # Errors
+    /// [`RenderError`]; files written before stay, and nothing is left of an unfinished one.
+    pub fn write(&self, path: &Path, control: Control<'_>) -> Result<WrittenFrame, RenderError> {
+        let files = self.renderer.layout().files(path);
+        match self.view.sampler() {
+            Some(sampler) => self.write_passes(&files, sampler, control),
+            None => self.write_once(&files, control),
+        }
+    }
+
+    fn write_once(
+        &self,
+        files: &[PictureFile],
+        control: Control<'_>,
+    ) -> Result<WrittenFrame, RenderError> {
+        let tone = self.file_tone()?;
+        let total = rows_of(files.iter().map(|file| &file.frame));
+        control.stage("drawing", total);
+        let mut whole = WrittenFrame::default();
+        let mut done = 0;
+        for file in files {
+            if let Some(objects) = self.depth_of(file) {
+                let path = tagged_path(&file.path, "depth").with_extension("exr");
+                write_depth(&path, &file.frame, objects, control.reporting_to(&SILENT))?;
+            }
+            let part = Part {
+                control,
+                done,
+                total,
+            };
+            let control = control.reporting_to(&part);
+            let sky = SkyValues::View(self.preview.as_ref());
+            whole
+                .files
+                .push(self.write_file(file, sky, &tone, control)?);
+            done += u64::from(file.frame.size().height());
+        }
+        Ok(whole)
+    }
+
+    /// Draws the files pass by pass; each pass replaces them.
+    fn write_passes(
+        &self,
+        files: &[PictureFile],
+        sampler: &dyn RadianceSampler,
+        control: Control<'_>,
+    ) -> Result<WrittenFrame, RenderError> {
+        let tone = self.file_tone()?;
+        let drawn = || files.iter().filter(|file| file.layer != Layer::Disc);
+        Canvas::check_memory(drawn().map(|file| &file.frame), &self.channels)?;
+        let polarised = self.renderer.scene().output.polarisation == Some(true);
+        let mut canvases: Vec<Option<Canvas>> = files
+            .iter()
+            .map(|file| {
+                (file.layer != Layer::Disc)
+                    .then(|| Canvas::new(file.frame, &self.channels, polarised))
+            })
+            .collect();
+        let passes = Passes::new(sampler.paths());
+        let (goal, bundle) = (passes.goal(), sampler.paths_per_bundle());
+        let total = rows_of(drawn().map(|file| &file.frame));
+        // Writing is short beside the paths: its progress is not reported.
+        let quiet = control.reporting_to(&SILENT);
+        let mut whole = WrittenFrame::default();
+        for bundles in passes {
+            let (until, all) = (bundles.end * bundle, goal * bundle);
+            control.stage(&format!("{until} of {all} paths a pixel"), total);
+            whole.files.clear();
+            let mut done = 0;
+            for (file, canvas) in files.iter().zip(&mut canvases) {
+                let means = match canvas {
+                    None => None,
+                    Some(canvas) => {
+                        let part = Part {
+                            control,
+                            done,
+                            total,
+                        };
+                        canvas.add(sampler, bundles.clone(), control.reporting_to(&part))?;
+                        done += u64::from(file.frame.size().height());
+                        self.write_maps(file, canvas, &tone, quiet)?;
+                        Some(canvas.means())
+                    }
+                };
+                let sky = match &means {
+                    Some(means) => SkyValues::Stored(means),
+                    None => SkyValues::View(self.preview.as_ref()),
+                };
+                whole.files.push(self.write_file(file, sky, &tone, quiet)?);
+            }
+        }
+        let errors = canvases.iter().flatten().map(Canvas::relative_errors);
+        let (sum, count) = errors.fold((0.0, 0), |a, b| (a.0 + b.0, a.1 + b.1));
+        whole.noise = (count > 0).then(|| f64::sqrt(sum / count as f64));
+        Ok(whole)
+    }
+
+    /// Noise and polarisation beside a file, where the scene has them.
+    fn write_maps(
+        &self,
+        file: &PictureFile,
+        canvas: &Canvas,
+        tone: &ToneMapper,
+        control: Control<'_>,
+    ) -> Result<(), RenderError> {
+        let output = &self.renderer.scene().output;
+        let size = file.frame.size();
+        if output.noise_map == Some(true) {
+            let rows = canvas.noise(output.scale.unwrap_or(1.0) as f32)?;
+            let path = tagged_path(&file.path, "noise").with_extension("exr");
+            write_picture(&path, size, &rows, tone, &self.options(file), control)?;
+        }
+        if let Some(rows) = canvas.polarisation() {
+            let path = tagged_path(&file.path, "polarisation").with_extension("exr");
+            write_polarisation(&path, size, &rows?, control)?;
+        }
+        Ok(())
+    }
+
+    fn write_file(
+        &self,
+        file: &PictureFile,
+        sky: SkyValues<'_>,
+        tone: &ToneMapper,
+        control: Control<'_>,
+    ) -> Result<WrittenFile, RenderError> {
+        let renderer = self.renderer;
+        let is_linear = renderer.layout().format().is_some_and(|f| f.is_linear());
+        let scale = match is_linear {
+            true => renderer.scene().output.scale.unwrap_or(1.0) as f32,
+            false => 1.0,
+        };
+        let rows = self.rows_over(&file.frame, file.layer, sky, scale);
+        let options = self.options(file);
+        let (path, size) = (&file.path, file.frame.size());
+        let written = match self.channels.layout() {
+            Some(layout) => spectral::write(
+                path,
+                size,
+                layout,
+                rows.as_ref(),
+                &options.exr,
+                &options.metadata,
+                control,
+            )?,
+            None => write_picture(path, size, rows.as_ref(), tone, &options, control)?,
+        };
+        Ok(WrittenFile {
+            path: path.clone(),
+            size,
+            written,
+        })
+    }
+
+    /// The tone mapper of the files' format.
+    fn file_tone(&self) -> Result<ToneMapper, RenderError> {
+        match self.renderer.layout().format() {
+            Some(format) if !format.is_linear() => self.tone(),
+            _ => Ok(ToneMapper::new(1.0, ToneCurve::Clip)?),
+        }
+    }
+
+    fn options(&self, file: &PictureFile) -> PictureOptions {
+        PictureOptions {
+            metadata: metadata::of(self.renderer, self, file.layer).with_frame(&file.frame),
+            ..self.renderer.picture_options()
+        }
+    }
+
+    /// The objects whose depth is written beside a file: once where the sun's disc has a file of its own.
+    fn depth_of(&self, file: &PictureFile) -> Option<&LitObjects> {
+        let wanted = self.renderer.scene().output.depth_map == Some(true);
+        self.objects
+            .as_ref()
+            .filter(|_| wanted && file.layer != Layer::Disc)
+    }
+}
+
+fn write_polarisation(
+    path: &Path,
+    size: Size,
+    rows: &StoredRows,
+    control: Control<'_>,
+) -> Result<Written, ImageError> {
+    let options = ExrOptions {
+        sample: ExrSample::Float,
+        ..ExrOptions::default()
+    };
+    let metadata = Metadata::default();
+    exr::write(
+        path,
+        size,
+        &POLARISATION_CHANNELS,
+        rows,
+        &options,
+        &metadata,
+        control,
+    )
+}
+
+/// Progress of one of several files.
+struct Part<'a> {
+    control: Control<'a>,
+    /// Rows of the files before.
+    done: u64,
+    /// Rows of all files.
+    total: u64,
+}
+
+impl Progress for Part<'_> {
+    fn advanced(&self, done: u64, _total: u64) {
+        self.control.report(self.done + done, self.total);
+    }
+}
+
+/// Reports nothing.
+static SILENT: fn(u64, u64) = |_, _| {};
+
+fn rows_of<'f>(frames: impl IntoIterator<Item = &'f Frame>) -> u64 {
+    frames
+        .into_iter()
+        .map(|frame| u64::from(frame.size().height()))
+        .sum()
+}
+
+/// Red, green and blue of the pixels of rows.
+fn stored(rows: &dyn RowSource, frame: &Frame) -> Vec<[f32; 3]> {
+    let (width, channels) = (frame.size().width() as usize, rows.channels());
+    let mut pixels = vec![[0.0; 3]; width * frame.size().height() as usize];
+    pixels
+        .par_chunks_mut(width)
+        .zip(0..frame.size().height())
+        .for_each(|(pixels, y)| {
+            let mut row = vec![0.0; width * channels];
+            rows.fill_row(y, &mut row);
+            for (pixel, values) in pixels.iter_mut().zip(row.chunks_exact(channels)) {
+                pixel.copy_from_slice(&values[..3]);
+            }
+        });
+    pixels
+}

@@ -1,0 +1,414 @@
+//! Which files a picture consists of, and where each looks.
+
+use crate::error::RenderError;
+use crate::pixels::{is_spectral_path, tagged_path};
+use crate::sky_rows::Layer;
+use airlight::scene::{CameraSpec, OutputSpec, Projection as ProjectionKind, SunDiscPlacement};
+use airlight::spectrum::RgbSpace;
+use airlight_image::{Camera, CubeFace, Fisheye, Frame, PictureFormat, Projection, Size};
+use std::path::{Path, PathBuf};
+
+/// The frames of a picture, and how its files are named and encoded.
+#[derive(Clone, Debug)]
+pub struct Layout {
+    format: Option<PictureFormat>,
+    /// Each frame, with the name of a cube's face.
+    frames: Vec<(Option<&'static str>, Frame)>,
+    is_spectral: bool,
+    sun_disc: SunDiscPlacement,
+}
+
+/// One file to write.
+#[derive(Clone, Debug)]
+pub struct PictureFile {
+    /// Where.
+    pub path: PathBuf,
+    /// Where its pixels look.
+    pub frame: Frame,
+    /// What it shows.
+    pub layer: Layer,
+}
+
+impl Layout {
+    /// The layout of a scene's camera and output. A perspective camera looks towards the sun's azimuth where the scene does
+    /// not say.
+    ///
+    /// # Errors
+    /// [`RenderError`] where settings do not go together or numbers are out of range.
+    pub fn new(
+        camera: &CameraSpec,
+        output: &OutputSpec,
+        sun_azimuth_deg: f64,
+    ) -> Result<Self, RenderError> {
+        let file = output.file.as_deref().map(Path::new);
+        let format = file.map(PictureFormat::from_path).transpose()?;
+        let is_spectral = is_spectral(output);
+        let name = || {
+            output
+                .file
+                .clone()
+                .map_or("no file".to_owned(), |file| format!("`{file}`"))
+        };
+        if is_spectral && !format.is_some_and(PictureFormat::holds_channels) {
+            return Err(RenderError::value(
+                "output.spectral",
+                "an OpenEXR file to write to",
+                name(),
+                "a name that ends in .exr",
+            ));
+        }
+        let is_linear = format.is_none_or(PictureFormat::is_linear);
+        if !is_linear
+            && output
+                .color_space
+                .is_some_and(|space| space != RgbSpace::Srgb)
+        {
+            return Err(RenderError::value(
+                "output.color_space",
+                "linear light, as other files are always sRGB",
+                name(),
+                "leaving it out, or a name that ends in .exr or .hdr",
+            ));
+        }
+        let sun_disc = output.sun_disc.unwrap_or_default();
+        if sun_disc == SunDiscPlacement::Separate && file.is_none() {
+            return Err(RenderError::value(
+                "output.sun_disc",
+                "a file beside which to write a second one",
+                name(),
+                "output.file, or in or out",
+            ));
+        }
+        for (map, set) in [
+            ("output.depth_map", output.depth_map),
+            ("output.noise_map", output.noise_map),
+            ("output.polarisation", output.polarisation),
+        ] {
+            if set == Some(true) && file.is_none() {
+                return Err(RenderError::value(
+                    map,
+                    "a file beside which to write it",
+                    name(),
+                    "output.file",
+                ));
+            }
+        }
+        Ok(Self {
+            format,
+            frames: frames(camera, sun_azimuth_deg)?,
+            is_spectral,
+            sun_disc,
+        })
+    }
+
+    /// The format of the files; `None` for a picture that is not written.
+    pub fn format(&self) -> Option<PictureFormat> {
+        self.format
+    }
+
+    /// Whether there is a channel for each wavelength.
+    pub fn is_spectral(&self) -> bool {
+        self.is_spectral
+    }
+
+    /// What the main file shows.
+    pub fn main_layer(&self) -> Layer {
+        match self.sun_disc {
+            SunDiscPlacement::In => Layer::All,
+            SunDiscPlacement::Out | SunDiscPlacement::Separate => Layer::Sky,
+        }
+    }
+
+    /// The files of a picture called `path`, in the order to write them: that of this name last.
+    pub fn files(&self, path: &Path) -> Vec<PictureFile> {
+        let layers: &[(Option<&str>, Layer)] = match self.sun_disc {
+            SunDiscPlacement::Separate => &[(Some("sun"), Layer::Disc), (None, Layer::Sky)],
+            _ => &[(None, self.main_layer())],
+        };
+        let mut files = Vec::new();
+        for (part, layer) in layers {
+            for (face, frame) in &self.frames {
+                let path = [*part, *face]
+                    .into_iter()
+                    .flatten()
+                    .fold(path.to_owned(), |path, tag| tagged_path(&path, tag));
+                files.push(PictureFile {
+                    path,
+                    frame: *frame,
+                    layer: *layer,
+                });
+            }
+        }
+        files
+    }
+
+    /// The frame of a picture that has only one.
+    ///
+    /// # Errors
+    /// [`RenderError`] for a cube, which has six.
+    pub fn only_frame(&self) -> Result<Frame, RenderError> {
+        match self.frames[..] {
+            [(_, frame)] => Ok(frame),
+            _ => Err(RenderError::value(
+                "camera.projection",
+                "one picture",
+                "the six of a cube",
+                "equirectangular, fisheye or perspective",
+            )),
+        }
+    }
+
+    /// The picture in small, at most `width` pixels wide; for a cube, the whole sphere.
+    ///
+    /// # Errors
+    /// As [`Frame::new`].
+    pub fn overview(&self, width: u32) -> Result<Frame, RenderError> {
+        let frame = &self.frames[0].1;
+        let (projection, size) = match frame.projection() {
+            Projection::CubeFace(_) => (
+                Projection::Equirectangular {
+                    center_azimuth_deg: 0.0,
+                },
+                (2, 1),
+            ),
+            other => (*other, (frame.size().width(), frame.size().height())),
+        };
+        let across = match projection {
+            Projection::Equirectangular { .. } => width,
+            _ => width.min(size.0),
+        };
+        let down = (f64::from(across) * f64::from(size.1) / f64::from(size.0))
+            .round()
+            .clamp(1.0, 4096.0);
+        Ok(Frame::new(projection, across.max(1), down as u32)?)
+    }
+
+    /// The projection in words.
+    pub fn projection_name(&self) -> &'static str {
+        match self.frames[0].1.projection() {
+            Projection::Equirectangular { .. } => "equirectangular",
+            Projection::CubeFace(_) => "cube face",
+            Projection::AngularFisheye(_) => "fisheye",
+            Projection::Perspective(_) => "perspective",
+        }
+    }
+}
+
+/// Whether an output has a channel for each wavelength: it says so, or its name ends in `.spectral.exr`.
+pub(crate) fn is_spectral(output: &OutputSpec) -> bool {
+    output.spectral == Some(true)
+        || output
+            .file
+            .as_deref()
+            .is_some_and(|file| is_spectral_path(Path::new(file)))
+}
+
+fn frames(
+    camera: &CameraSpec,
+    sun_azimuth_deg: f64,
+) -> Result<Vec<(Option<&'static str>, Frame)>, RenderError> {
+    let kind = camera.projection.unwrap_or_default();
+    refuse_unused(camera, kind)?;
+    let [width, height] = camera.size.unwrap_or(match kind {
+        ProjectionKind::Equirectangular => [2048, 1024],
+        ProjectionKind::Cube | ProjectionKind::Fisheye => [1024, 1024],
+        ProjectionKind::Perspective => [1920, 1080],
+    });
+    let projection = match kind {
+        ProjectionKind::Equirectangular => Projection::Equirectangular {
+            center_azimuth_deg: camera.azimuth_deg.unwrap_or(0.0),
+        },
+        ProjectionKind::Cube => {
+            let face = |face: CubeFace| {
+                let frame = Frame::new(Projection::CubeFace(face), width, height)?;
+                Ok((Some(face.name()), frame))
+            };
+            return CubeFace::ALL.into_iter().map(face).collect();
+        }
+        ProjectionKind::Fisheye => Projection::AngularFisheye(Fisheye {
+            azimuth_deg: camera.azimuth_deg.unwrap_or(180.0),
+            elevation_deg: camera.elevation_deg.unwrap_or(90.0),
+            field_of_view_deg: camera.fov_deg.unwrap_or(180.0),
+        }),
+        ProjectionKind::Perspective => Projection::Perspective(Camera {
+            roll_deg: camera.roll_deg.unwrap_or(0.0),
+            ..Camera::with_horizontal_fov(
+                camera.azimuth_deg.unwrap_or(sun_azimuth_deg),
+                camera.elevation_deg.unwrap_or(10.0),
+                camera.fov_deg.unwrap_or(75.0),
+                Size::new(width, height)?,
+            )
+        }),
+    };
+    Ok(vec![(None, Frame::new(projection, width, height)?)])
+}
+
+/// Refuses settings of the camera that its projection does not use.
+fn refuse_unused(camera: &CameraSpec, kind: ProjectionKind) -> Result<(), RenderError> {
+    use ProjectionKind::{Cube, Equirectangular, Fisheye, Perspective};
+    let name = |kind: &ProjectionKind| match kind {
+        Equirectangular => "equirectangular",
+        Cube => "cube",
+        Fisheye => "fisheye",
+        Perspective => "perspective",
+    };
+    let set: [(bool, &str, &[ProjectionKind]); 4] = [
+        (
+            camera.azimuth_deg.is_some(),
+            "camera.azimuth_deg",
+            &[Equirectangular, Fisheye, Perspective],
+        ),
+        (
+            camera.elevation_deg.is_some(),
+            "camera.elevation_deg",
+            &[Fisheye, Perspective],
+        ),
+        (camera.roll_deg.is_some(), "camera.roll_deg", &[Perspective]),
+        (
+            camera.fov_deg.is_some(),
+            "camera.fov_deg",
+            &[Fisheye, Perspective],
+        ),
+    ];
+    for (set, key, kinds) in set {
+        if set && !kinds.contains(&kind) {
+            let list: Vec<&str> = kinds.iter().map(name).collect();
+            return Err(RenderError::value(
+                key,
+                format!("the projection {}", list.join(" or ")),
+                name(&kind),
+                "leaving it out",
+            ));
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn output(file: &str) -> OutputSpec {
+        OutputSpec {
+            file: Some(file.to_owned()),
+            ..Default::default()
+        }
+    }
+
+    fn camera(kind: ProjectionKind) -> CameraSpec {
+        CameraSpec {
+            projection: Some(kind),
+            ..Default::default()
+        }
+    }
+
+    #[test]
+    fn a_cube_with_a_separate_sun_is_twelve_files() {
+        let output = OutputSpec {
+            sun_disc: Some(SunDiscPlacement::Separate),
+            ..output("a/dome.exr")
+        };
+        let layout = Layout::new(&camera(ProjectionKind::Cube), &output, 0.0).unwrap();
+        let files = layout.files(Path::new("a/dome.exr"));
+        let names: Vec<_> = files
+            .iter()
+            .map(|file| file.path.to_str().unwrap())
+            .collect();
+        assert_eq!(files.len(), 12);
+        assert_eq!(
+            [names[0], names[11]],
+            ["a/dome.sun.px.exr", "a/dome.nz.exr"]
+        );
+        assert_eq!([files[0].layer, files[11].layer], [Layer::Disc, Layer::Sky]);
+        assert_eq!(
+            layout.overview(64).unwrap().size(),
+            Size::new(64, 32).unwrap()
+        );
+        assert!(layout.only_frame().is_err());
+    }
+
+    #[test]
+    fn a_perspective_camera_looks_towards_the_sun() {
+        let layout = Layout::new(
+            &camera(ProjectionKind::Perspective),
+            &output("a.png"),
+            123.0,
+        );
+        match *layout.unwrap().only_frame().unwrap().projection() {
+            Projection::Perspective(camera) => assert_eq!(camera.azimuth_deg, 123.0),
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn settings_that_do_not_go_together_are_refused() {
+        use ProjectionKind::{Cube, Equirectangular, Fisheye, Perspective};
+        let size = |kind, width, height| CameraSpec {
+            size: Some([width, height]),
+            ..camera(kind)
+        };
+        let fov = |kind, deg| CameraSpec {
+            fov_deg: Some(deg),
+            ..camera(kind)
+        };
+        let roll = CameraSpec {
+            roll_deg: Some(9.0),
+            ..camera(Fisheye)
+        };
+        let exr = || output("a.exr");
+        for (camera, output, part) in [
+            (camera(Equirectangular), output("a.bmp"), ".exr"),
+            (camera(Equirectangular), output("a"), "no ending"),
+            (fov(Equirectangular, 90.0), exr(), "fisheye or perspective"),
+            (
+                roll,
+                exr(),
+                "camera.roll_deg: expected the projection perspective, got fisheye",
+            ),
+            (fov(Perspective, 180.0), exr(), "below 180"),
+            (fov(Fisheye, 400.0), exr(), "360"),
+            (size(Cube, 8, 4), exr(), "as wide as high"),
+            (
+                camera(Equirectangular),
+                OutputSpec {
+                    spectral: Some(true),
+                    ..output("a.png")
+                },
+                "output.spectral: expected an OpenEXR file",
+            ),
+            (camera(Equirectangular), output("a.spectral.exr.png"), ""),
+            (
+                camera(Equirectangular),
+                OutputSpec {
+                    color_space: Some(RgbSpace::AcesCg),
+                    ..output("a.png")
+                },
+                "sRGB",
+            ),
+            (
+                camera(Equirectangular),
+                OutputSpec {
+                    sun_disc: Some(SunDiscPlacement::Separate),
+                    ..Default::default()
+                },
+                "output.file",
+            ),
+            (
+                camera(Equirectangular),
+                OutputSpec {
+                    noise_map: Some(true),
+                    ..Default::default()
+                },
+                "output.noise_map",
+            ),
+        ] {
+            match Layout::new(&camera, &output, 0.0) {
+                Ok(_) => assert!(part.is_empty(), "{part}"),
+                Err(error) => assert!(
+                    !part.is_empty() && error.to_string().contains(part),
+                    "{part}: {error}"
+                ),
+            }
+        }
+    }
+}

@@ -1,0 +1,273 @@
+//! Asking a scene's solver for the light along rays.
+
+use super::answer::{ObserverAnswer, PROBE_FORMAT, ProbeAnswer, RayAnswer, SkyAnswer, SunAnswer};
+use super::monte_carlo::MonteCarloAnswer;
+use super::rays::ProbeRay;
+use crate::error::RenderError;
+use crate::illuminance::Illuminances;
+use crate::metadata::SOFTWARE;
+use airlight::models::registry;
+use airlight::scene::{
+    CameraSpec, Channels, Input, OutputSpec, RadianceModel, RadianceView, ResolvedScene, Scene,
+    SunAngles, check_inputs,
+};
+use airlight::sky::{Scattering, SunCoverage};
+use airlight::spectrum::{RgbSpace, WavelengthGrid};
+use airlight::{Control, axes};
+use glam::DVec3;
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// Monte Carlo paths for each ray where the scene does not say.
+const PATHS: u64 = 65_536;
+
+/// A scene whose light is computed along rays. Its camera, output and objects have no influence.
+#[derive(Clone, Debug)]
+pub struct Probe {
+    scene: Scene,
+    resolved: ResolvedScene,
+    model: &'static dyn RadianceModel,
+    rays: Vec<ProbeRay>,
+}
+
+impl Probe {
+    /// Checks a scene and rays, and everything that can be checked without solving for light.
+    ///
+    /// # Errors
+    /// [`RenderError`] for values out of range or that do not go together, and for inputs that the solver would ignore.
+    pub fn new(scene: &Scene, rays: Vec<ProbeRay>) -> Result<Self, RenderError> {
+        let mut scene = scene.clone();
+        // A probe draws no picture.
+        scene.output = OutputSpec {
+            color_space: scene.output.color_space,
+            polarisation: scene.output.polarisation,
+            ..OutputSpec::default()
+        };
+        (scene.camera, scene.objects, scene.sequence) = (CameraSpec::default(), None, None);
+        let mut resolved = scene.resolve()?;
+        if rays.iter().any(|ray| ray.distance_m.is_some()) {
+            resolved.set_inputs.push(Input::Distances);
+        }
+        let model = registry::of_scene(&resolved)?;
+        let variant = scene.solver.variant.as_deref();
+        check_inputs(model, &resolved.set_inputs, variant, registry::ALL)?;
+        resolved.sun.at(None)?;
+        scene.solver.paths.get_or_insert(PATHS);
+        resolved.solver = scene.solver.clone();
+        Ok(Self {
+            scene,
+            resolved,
+            model,
+            rays,
+        })
+    }
+
+    /// Computes the answer.
+    ///
+    /// # Errors
+    /// [`RenderError::Scene`] where the solver refuses the scene.
+    pub fn answer(&self, control: Control<'_>) -> Result<ProbeAnswer, RenderError> {
+        let (scene, resolved) = (&self.scene, &self.resolved);
+        let sun = resolved.sun.at(None)?;
+        let suns = SunCoverage::near(sun.elevation_deg, resolved.observer_altitude_m);
+        let prepared = self.model.prepare(resolved, suns, control)?;
+        let space = scene.output.color_space.unwrap_or_default();
+        let channels = match prepared.grid() {
+            Some(_) => Channels::Spectral,
+            None => Channels::Rgb(space),
+        };
+        let altitude_m = resolved.observer_altitude_m;
+        let paths = prepared.view(altitude_m, &sun.state(), channels)?;
+        let view = match paths.sampler() {
+            Some(sampler) => sampler.preview(),
+            None => paths.clone(),
+        };
+        let asked = Asked {
+            foggy: resolved.fog.is_some(),
+            view,
+            paths,
+            space,
+            polarised: scene.output.polarisation == Some(true),
+        };
+        let capabilities = self.model.capabilities();
+        let scattering = match resolved.solver.scattering.unwrap_or(Scattering::All) {
+            Scattering::All => "all",
+            Scattering::Single => "single",
+        };
+        let variants = capabilities.variants;
+        let variant = scene.solver.variant.clone();
+        Ok(ProbeAnswer {
+            format: PROBE_FORMAT,
+            program: SOFTWARE,
+            atmosphere: capabilities
+                .honours(Input::Atmosphere)
+                .then(|| resolved.atmosphere.name.clone()),
+            scattering: capabilities
+                .honours(Input::Scattering)
+                .then_some(scattering),
+            solver: self.model.name(),
+            variant: variant.or_else(|| variants.first().map(|name| (*name).to_owned())),
+            color_space: space_name(space),
+            wavelengths_nm: asked.wavelengths_nm(),
+            observer: observer(resolved),
+            sun: asked.sun(&sun),
+            sky: asked.sky(),
+            views: self.rays.par_iter().map(|ray| asked.ray(ray)).collect(),
+        })
+    }
+}
+
+/// The views that answer.
+struct Asked {
+    /// Without noise.
+    view: Arc<dyn RadianceView>,
+    /// The solver's own.
+    paths: Arc<dyn RadianceView>,
+    space: RgbSpace,
+    polarised: bool,
+    /// Whether there is fog in the air, which the parts of a ray leave out.
+    foggy: bool,
+}
+
+impl Asked {
+    fn wavelengths_nm(&self) -> Vec<f64> {
+        let grid = self.view.grid().map(WavelengthGrid::wavelengths_nm);
+        grid.unwrap_or_default().to_vec()
+    }
+
+    /// The values of a view as a spectrum; empty where they are colours.
+    fn spectrum(&self, values: &[f32]) -> Vec<f32> {
+        match self.view.grid() {
+            Some(_) => values.to_vec(),
+            None => Vec::new(),
+        }
+    }
+
+    fn xyz(&self, values: &[f32]) -> [f64; 3] {
+        match (self.view.grid(), values) {
+            (Some(grid), spectrum) => grid.to_xyz(spectrum),
+            (None, &[r, g, b]) => self.space.to_xyz([r, g, b].map(f64::from)),
+            (None, _) => [0.0; 3],
+        }
+    }
+
+    fn values(&self, fill: impl Fn(&dyn RadianceView, &mut [f32])) -> Vec<f32> {
+        let mut values = vec![0.0; self.view.channel_count()];
+        fill(self.view.as_ref(), &mut values);
+        values
+    }
+
+    fn sun(&self, sun: &SunAngles) -> SunAnswer {
+        let view = self.view.as_ref();
+        let light = Illuminances::of(view);
+        let normal = self.values(|view, out| view.sun_irradiance(out));
+        let cosine = view.sun().y.max(0.0) as f32;
+        let horizontal: Vec<f32> = normal.iter().map(|e| e * cosine).collect();
+        let outside = view.grid().map(|grid| {
+            let solar = grid.solar_irradiance().iter();
+            solar.map(|&e| e as f32).collect()
+        });
+        SunAnswer {
+            azimuth_deg: sun.azimuth_deg,
+            elevation_deg: sun.elevation_deg,
+            geometric_elevation_deg: sun.geometric_elevation_deg,
+            distance_ratio: sun.distance_ratio,
+            angular_radius_deg: view.disc().angular_radius_rad.to_degrees(),
+            irradiance_outside_w_m2_nm: outside.unwrap_or_default(),
+            irradiance_normal_w_m2_nm: self.spectrum(&normal),
+            irradiance_horizontal_w_m2_nm: self.spectrum(&horizontal),
+            illuminance_normal_lx: light.sun_normal_lx,
+            illuminance_horizontal_lx: light.sun_horizontal_lx,
+        }
+    }
+
+    fn sky(&self) -> SkyAnswer {
+        let values = self.values(|view, out| view.horizontal_irradiance(out));
+        SkyAnswer {
+            irradiance_horizontal_w_m2_nm: self.spectrum(&values),
+            illuminance_horizontal_lx: self.view.luminance(&values),
+        }
+    }
+
+    fn ray(&self, ray: &ProbeRay) -> RayAnswer {
+        let direction = axes::direction(ray.azimuth_deg, ray.elevation_deg);
+        let clear = self.view.line_of_sight(direction, ray.distance_m);
+        let meets_ground = match &clear {
+            Some(line) => line.meets_ground,
+            None => direction.y.clamp(-1.0, 1.0).asin() < self.view.horizon_elevation_rad(),
+        };
+        let line = clear.filter(|_| !self.foggy);
+        let (values, transmittance) = match &line {
+            Some(line) => (line.radiance(), Some(line.transmittance.clone())),
+            None => self.through_fog(direction, ray.distance_m.filter(|_| !meets_ground)),
+        };
+        let xyz = self.xyz(&values);
+        // Where the ray ends on the ground, that is seen.
+        let limit_m = ray.distance_m.filter(|_| !meets_ground);
+        let part =
+            |of: fn(&airlight::sky::LineOfSight) -> &Vec<f32>| line.as_ref().map(of).cloned();
+        RayAnswer {
+            azimuth_deg: ray.azimuth_deg,
+            elevation_deg: ray.elevation_deg,
+            distance_m: ray.distance_m,
+            meets_ground,
+            sun_angle_deg: direction.angle_between(self.view.sun()).to_degrees(),
+            radiance_w_m2_sr_nm: self.spectrum(&values),
+            radiance_single_w_m2_sr_nm: part(|line| &line.single),
+            radiance_multiple_w_m2_sr_nm: part(|line| &line.multiple),
+            radiance_ground_w_m2_sr_nm: part(|line| &line.ground),
+            transmittance,
+            xyz_cd_m2: xyz,
+            rgb_cd_m2: self.space.from_xyz(xyz),
+            luminance_cd_m2: xyz[1],
+            monte_carlo: self.monte_carlo(direction, limit_m),
+        }
+    }
+
+    /// Radiance along a ray to a distance, or to the ground or space, and transmittance in fog.
+    fn through_fog(
+        &self,
+        direction: DVec3,
+        distance_m: Option<f64>,
+    ) -> (Vec<f32>, Option<Vec<f32>>) {
+        let mut through = vec![0.0; self.view.channel_count()];
+        let mut path = through.clone();
+        let length_m = distance_m.unwrap_or(f64::INFINITY);
+        self.view.path(direction, length_m, &mut through, &mut path);
+        let values = match distance_m {
+            Some(_) => path,
+            None => self.values(|view, out| view.radiance(&[direction], out)),
+        };
+        (values, self.foggy.then_some(through))
+    }
+
+    fn monte_carlo(&self, direction: DVec3, limit_m: Option<f64>) -> Option<MonteCarloAnswer> {
+        let (sampler, grid) = (self.paths.sampler()?, self.paths.grid()?);
+        Some(match self.polarised {
+            true => {
+                let found = sampler.polarised_estimate(direction, limit_m);
+                MonteCarloAnswer::polarised(found, grid)
+            }
+            false => MonteCarloAnswer::new(sampler.estimate(direction, limit_m), grid),
+        })
+    }
+}
+
+fn observer(scene: &ResolvedScene) -> ObserverAnswer {
+    let place = scene.sun.place();
+    ObserverAnswer {
+        latitude_deg: place.map(|place| place.latitude_deg),
+        longitude_deg: place.map(|place| place.longitude_deg),
+        altitude_m: scene.observer_altitude_m,
+        ground_altitude_m: scene.atmosphere.planet.ground_altitude_m,
+        time_utc: scene.sun.start().map(|time| time.utc().to_string()),
+    }
+}
+
+fn space_name(space: RgbSpace) -> &'static str {
+    match space {
+        RgbSpace::Srgb => "srgb",
+        RgbSpace::Rec2020 => "rec2020",
+        RgbSpace::AcesCg => "acescg",
+    }
+}

@@ -1,0 +1,310 @@
+//! [`Renderer`]: from a scene to pictures.
+
+use crate::error::RenderError;
+use crate::exposure::ExposureSettings;
+use crate::frame::{PreparedFrame, WrittenFile};
+use crate::image::RenderedImage;
+use crate::layout::{Layout, is_spectral};
+use crate::objects::Objects;
+use crate::sequence::Sequence;
+use airlight::models::registry;
+use airlight::scene::{
+    Exposure, PreparedModel, RadianceModel, ResolvedScene, Scene, SunAngles, ToneKind, check_inputs,
+};
+use airlight::sky::SunCoverage;
+use airlight::sun::Moment;
+use airlight_image::output::exr::{ExrCompression, ExrOptions, ExrSample};
+use airlight_image::output::jpeg::JpegOptions;
+use airlight_image::output::png::{PngDepth, PngOptions};
+use airlight_image::tone::{FilmicSettings, ToneCurve};
+use airlight_image::{Control, PictureOptions};
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// Draws a scene.
+///
+/// ```no_run
+/// # use airlight::scene::Scene;
+/// # use airlight_image::Control;
+/// # use airlight_render::Renderer;
+/// let scene = Scene::from_toml("sun.elevation_deg = 10\noutput.file = \"sky.exr\"")?;
+/// Renderer::new(&scene)?.write(Control::default())?;
+/// # Ok::<(), airlight_render::RenderError>(())
+/// ```
+///
+/// [`Renderer::write`] and [`Renderer::render`] do everything. In steps: [`Renderer::prepare`] solves for the light under a
+/// range of suns, [`Renderer::frame`] is one moment of it, which can be written, drawn into memory or previewed, and
+/// [`Renderer::sequence`] lists the moments.
+#[derive(Clone, Debug)]
+pub struct Renderer {
+    scene: Scene,
+    resolved: ResolvedScene,
+    model: &'static dyn RadianceModel,
+    layout: Layout,
+    objects: Option<Arc<Objects>>,
+    texts: Vec<(String, String)>,
+}
+
+impl Renderer {
+    /// Checks a scene, and everything that can be checked without solving for light.
+    ///
+    /// # Errors
+    /// [`RenderError`] for values out of range or that do not go together, and for inputs that the solver would ignore.
+    pub fn new(scene: &Scene) -> Result<Self, RenderError> {
+        let mut scene = scene.clone();
+        // By its name, too.
+        if is_spectral(&scene.output) {
+            scene.output.spectral = Some(true);
+        }
+        let resolved = scene.resolve()?;
+        let model = registry::of_scene(&resolved)?;
+        let variant = scene.solver.variant.as_deref();
+        check_inputs(model, &resolved.set_inputs, variant, registry::ALL)?;
+        let sun = resolved.sun.at(None)?;
+        let layout = Layout::new(&scene.camera, &scene.output, sun.azimuth_deg)?;
+        let objects = match &scene.objects {
+            Some(spec) if spec.is_set() => Some(Arc::new(Objects::from_specs(&spec.object)?)),
+            _ => None,
+        };
+        let renderer = Self {
+            scene,
+            resolved,
+            model,
+            layout,
+            objects,
+            texts: Vec::new(),
+        };
+        renderer.exposure().fixed()?;
+        Ok(renderer)
+    }
+
+    /// The same with a named text in the metadata of every file.
+    pub fn with_text(mut self, name: impl Into<String>, text: impl Into<String>) -> Self {
+        self.texts.push((name.into(), text.into()));
+        self
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// The scene in the terms of the physics.
+    pub fn resolved(&self) -> &ResolvedScene {
+        &self.resolved
+    }
+
+    /// The solver or published model.
+    pub fn model(&self) -> &'static dyn RadianceModel {
+        self.model
+    }
+
+    /// Frames and names of files.
+    pub fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
+    /// Objects in front of the sky.
+    pub fn objects(&self) -> Option<&Arc<Objects>> {
+        self.objects.as_ref()
+    }
+
+    /// The sun at a time; `None`: at that of the scene.
+    ///
+    /// # Errors
+    /// [`RenderError::Scene`] for a time outside the range of the ephemeris.
+    pub fn sun(&self, time: Option<Moment>) -> Result<SunAngles, RenderError> {
+        Ok(self.resolved.sun.at(time)?)
+    }
+
+    /// The smallest range of suns that serves one sun.
+    pub fn suns_near(&self, sun: &SunAngles) -> SunCoverage {
+        SunCoverage::near(sun.elevation_deg, self.resolved.observer_altitude_m)
+    }
+
+    /// Solves for the light under a range of suns: what all moments share.
+    ///
+    /// # Errors
+    /// [`RenderError::Scene`] where the solver refuses the scene or the caller asked to stop.
+    pub fn prepare(
+        &self,
+        suns: SunCoverage,
+        control: Control<'_>,
+    ) -> Result<Arc<dyn PreparedModel>, RenderError> {
+        control.stage("solving for the light in the air", 0);
+        Ok(self.model.prepare(&self.resolved, suns, control)?)
+    }
+
+    /// One moment, ready to be drawn; `None`: that of the scene.
+    ///
+    /// # Errors
+    /// [`RenderError::Scene`] where the solver refuses the sun.
+    pub fn frame<'r>(
+        &'r self,
+        prepared: &dyn PreparedModel,
+        time: Option<Moment>,
+    ) -> Result<PreparedFrame<'r>, RenderError> {
+        PreparedFrame::new(self, prepared, time)
+    }
+
+    /// The pictures of a scene with a sequence, those of which the files are there already included.
+    ///
+    /// # Errors
+    /// [`RenderError`] for a sequence without a file name, with a sun that does not move, or of times that are none.
+    pub fn sequence(&self) -> Result<Option<Sequence>, RenderError> {
+        Sequence::of(self)
+    }
+
+    /// Draws the scene at its time into memory.
+    ///
+    /// # Errors
+    /// [`RenderError`] where the solver refuses the scene, for a cube, or where the caller asked to stop.
+    pub fn render(&self, control: Control<'_>) -> Result<RenderedImage, RenderError> {
+        let frame = self.layout.only_frame()?;
+        let begun = Instant::now();
+        let prepared = self.prepare(self.suns_near(&self.sun(None)?), control)?;
+        let image = self
+            .frame(prepared.as_ref(), None)?
+            .image(&frame, control)?;
+        Ok(RenderedImage {
+            time: begun.elapsed(),
+            ..image
+        })
+    }
+
+    /// Writes the scene's picture, or the pictures of its sequence that are not there yet, to `output.file`.
+    ///
+    /// # Errors
+    /// [`RenderError`]; files already written stay, and nothing is left of an unfinished one.
+    pub fn write(&self, control: Control<'_>) -> Result<Vec<WrittenFile>, RenderError> {
+        if let Some(sequence) = self.sequence()? {
+            let missing = sequence.missing();
+            let Some(suns) = self.suns_of(&missing)? else {
+                return Ok(Vec::new());
+            };
+            let prepared = self.prepare(suns, control)?;
+            let mut written = Vec::new();
+            for step in missing {
+                control.check()?;
+                let frame = self.frame(prepared.as_ref(), Some(step.time))?;
+                written.extend(frame.write(&step.path, control)?.files);
+            }
+            return Ok(written);
+        }
+        let path = self.output_path()?;
+        let prepared = self.prepare(self.suns_near(&self.sun(None)?), control)?;
+        let frame = self.frame(prepared.as_ref(), None)?;
+        Ok(frame.write(path, control)?.files)
+    }
+
+    /// The range of suns of the moments of a sequence; `None` without any.
+    ///
+    /// # Errors
+    /// As [`Renderer::sun`].
+    pub fn suns_of(
+        &self,
+        steps: &[crate::sequence::SequenceStep],
+    ) -> Result<Option<SunCoverage>, RenderError> {
+        Ok(match steps {
+            [] => None,
+            [only] => Some(self.suns_near(&self.sun(Some(only.time))?)),
+            _ => Some(SunCoverage::All),
+        })
+    }
+
+    /// The file that the scene writes.
+    ///
+    /// # Errors
+    /// [`RenderError`] where it names none.
+    pub fn output_path(&self) -> Result<&Path, RenderError> {
+        self.scene
+            .output
+            .file
+            .as_deref()
+            .map(Path::new)
+            .ok_or_else(|| {
+                RenderError::value(
+                    "output.file",
+                    "a file to write",
+                    "none",
+                    "file = \"sky.exr\"",
+                )
+            })
+    }
+
+    /// How display pictures are exposed.
+    pub fn exposure(&self) -> ExposureSettings {
+        let output = &self.scene.output;
+        ExposureSettings {
+            ev100: match output.exposure {
+                Some(Exposure::Ev100(ev100)) => Some(ev100),
+                _ => None,
+            },
+            brighten_stops: output.brighten.unwrap_or(0.0),
+        }
+    }
+
+    /// The tone curve of display pictures.
+    pub fn tone_curve(&self) -> ToneCurve {
+        match self.scene.output.tone.unwrap_or_default() {
+            ToneKind::Filmic => ToneCurve::Filmic(FilmicSettings::default()),
+            ToneKind::Clip => ToneCurve::Clip,
+        }
+    }
+
+    /// How files are encoded, without metadata.
+    pub fn picture_options(&self) -> PictureOptions {
+        use airlight::scene::{ExrCompression as Packing, SamplePrecision};
+        let output = &self.scene.output;
+        PictureOptions {
+            exr: ExrOptions {
+                sample: match output.precision.unwrap_or_default() {
+                    SamplePrecision::Half => ExrSample::Half,
+                    SamplePrecision::Float => ExrSample::Float,
+                },
+                compression: match output.compression.unwrap_or_default() {
+                    Packing::None => ExrCompression::None,
+                    Packing::Rle => ExrCompression::Rle,
+                    Packing::Zips => ExrCompression::ZipLine,
+                    Packing::Zip => ExrCompression::Zip,
+                    Packing::Piz => ExrCompression::Piz,
+                },
+            },
+            png: PngOptions {
+                depth: match output.bits {
+                    Some(16) => PngDepth::Sixteen,
+                    _ => PngDepth::Eight,
+                },
+                ..PngOptions::default()
+            },
+            jpeg: JpegOptions {
+                quality: output.quality.unwrap_or(92),
+            },
+            ..PictureOptions::default()
+        }
+    }
+
+    /// Projection and format of the files in words: "equirectangular, float EXR".
+    pub fn kind(&self) -> String {
+        let format = match self.layout.format() {
+            Some(format) => format.describe(&self.picture_options()),
+            None => "picture".to_owned(),
+        };
+        let spectral = if self.layout.is_spectral() {
+            "spectral "
+        } else {
+            ""
+        };
+        format!("{}, {spectral}{format}", self.layout.projection_name())
+    }
+
+    pub(crate) fn texts(&self) -> &[(String, String)] {
+        &self.texts
+    }
+
+    pub(crate) fn casts_shadows(&self) -> bool {
+        let objects = self.scene.objects.as_ref();
+        objects.and_then(|objects| objects.shadows).unwrap_or(true)
+    }
+}

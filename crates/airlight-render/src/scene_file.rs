@@ -1,0 +1,59 @@
+//! Scenes from files, with the files that they name.
+
+use crate::error::RenderError;
+use airlight::scene::{Scene, SceneError};
+use airlight_image::ImageError;
+use std::path::Path;
+
+/// Reads a scene from a TOML file, with the atmosphere and the objects that it names.
+///
+/// # Errors
+/// [`RenderError`] for files that cannot be read, and for what they say wrong.
+pub fn load(path: &Path) -> Result<Scene, RenderError> {
+    let in_file = |error: SceneError| {
+        RenderError::setting(format!("the scene `{}`: {error}", path.display()))
+    };
+    let text = read_text(path)?;
+    let mut scene = Scene::from_toml(&text).map_err(in_file)?;
+    inline_files(&mut scene, path.parent().unwrap_or(Path::new("")))?;
+    Ok(scene)
+}
+
+/// Reads the atmosphere and the objects that a scene names; their paths are relative to a folder.
+///
+/// # Errors
+/// [`RenderError`] for files that cannot be read, and for what they say wrong.
+pub fn inline_files(scene: &mut Scene, folder: &Path) -> Result<(), RenderError> {
+    // What the loader's own error was: the scene keeps only its text.
+    let mut unreadable = None;
+    let inlined = scene.inline_files(|name| {
+        read_text(&folder.join(name)).map_err(|error| {
+            let sentence = error.to_string();
+            unreadable = Some(error);
+            sentence
+        })
+    });
+    match unreadable {
+        Some(error) => Err(error),
+        None => Ok(inlined?),
+    }
+}
+
+/// The text of a file.
+///
+/// # Errors
+/// [`RenderError`] where it cannot be read or is not UTF-8.
+pub fn read_text(path: &Path) -> Result<String, RenderError> {
+    let bytes = std::fs::read(path).map_err(|source| ImageError::File {
+        action: "read",
+        path: path.to_owned(),
+        source,
+    })?;
+    String::from_utf8(bytes).map_err(|error| {
+        RenderError::setting(format!(
+            "`{}` must be a text in UTF-8: it is not at byte {}",
+            path.display(),
+            error.utf8_error().valid_up_to()
+        ))
+    })
+}

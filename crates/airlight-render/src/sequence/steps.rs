@@ -1,0 +1,112 @@
+//! The pictures of a scene's sequence: their times and files, and which are missing.
+
+use super::{FramePattern, SequencePlan, parse_span_s};
+use crate::error::RenderError;
+use crate::layout::PictureFile;
+use crate::renderer::Renderer;
+use airlight::sun::Moment;
+use std::path::PathBuf;
+
+/// The pictures of a scene's sequence.
+#[derive(Clone, Debug)]
+pub struct Sequence {
+    steps: Vec<SequenceStep>,
+}
+
+/// One picture of a sequence.
+#[derive(Clone, Debug)]
+pub struct SequenceStep {
+    /// Its number, from 1.
+    pub number: u64,
+    /// The time that it shows.
+    pub time: Moment,
+    /// Its main file.
+    pub path: PathBuf,
+    /// All its files.
+    pub files: Vec<PictureFile>,
+}
+
+impl Sequence {
+    /// The sequence of a renderer's scene, where it has one.
+    pub(crate) fn of(renderer: &Renderer) -> Result<Option<Self>, RenderError> {
+        let Some(spec) = &renderer.scene().sequence else {
+            return Ok(None);
+        };
+        let (Some(until), Some(every)) = (&spec.until, &spec.every) else {
+            return Ok(None);
+        };
+        let pattern = FramePattern::new(renderer.output_path()?);
+        let Some(start) = renderer.resolved().sun.start() else {
+            return Err(RenderError::value(
+                "sequence.until",
+                "a sun that moves",
+                "one at a fixed elevation",
+                "sun.latitude_deg, longitude_deg and time",
+            ));
+        };
+        let start = start.at(start.unix_s().floor());
+        let refused = |key: &str, got: &str, right: String| RenderError::value(key, right, got, "");
+        let end_s = match until.trim().strip_prefix('+') {
+            Some(span) => {
+                let span_s =
+                    parse_span_s(span).map_err(|right| refused("sequence.until", until, right))?;
+                start.unix_s() + span_s as f64
+            }
+            None => Moment::parse(until)
+                .map_err(|error| refused("sequence.until", until, error.to_string()))?
+                .unix_s(),
+        };
+        let every_s =
+            parse_span_s(every).map_err(|right| refused("sequence.every", every, right))?;
+        if end_s < start.unix_s() {
+            return Err(RenderError::value(
+                "sequence.until",
+                format!("a time later than {}", start),
+                until.clone(),
+                "a span of time such as +6h",
+            ));
+        }
+        // Refused before anything is computed.
+        renderer.sun(Some(start.at(end_s)))?;
+        let plan = SequencePlan::new(start.unix_s() as i64, end_s.floor() as i64, every_s)?;
+        let step = |step: super::FrameStep| {
+            let path = pattern.path(step.number, step.time_s);
+            SequenceStep {
+                number: step.number,
+                time: start.at(step.time_s as f64),
+                files: renderer.layout().files(&path),
+                path,
+            }
+        };
+        Ok(Some(Self {
+            steps: plan.frames().map(step).collect(),
+        }))
+    }
+
+    /// All pictures.
+    pub fn steps(&self) -> &[SequenceStep] {
+        &self.steps
+    }
+
+    /// The pictures of which a file is missing or empty. Files are only ever whole, so those that are there are done.
+    pub fn missing(&self) -> Vec<SequenceStep> {
+        let missing = |step: &&SequenceStep| !step.is_whole();
+        self.steps.iter().filter(missing).cloned().collect()
+    }
+}
+
+impl SequenceStep {
+    fn is_whole(&self) -> bool {
+        self.files.iter().all(|file| {
+            std::fs::metadata(&file.path).is_ok_and(|about| about.is_file() && about.len() > 0)
+        })
+    }
+
+    /// Rows of all its files.
+    pub fn rows(&self) -> u64 {
+        self.files
+            .iter()
+            .map(|file| u64::from(file.frame.size().height()))
+            .sum()
+    }
+}

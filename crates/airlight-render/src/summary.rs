@@ -1,0 +1,99 @@
+//! Scenes and numbers in words, for the metadata of files and for reports.
+
+use airlight::atmosphere::DensityProfile;
+use airlight::fog::FogScattering;
+use airlight::fog::droplets::DropletKind;
+use airlight::scene::FogLayers;
+
+/// A number with 4 significant digits.
+pub fn short(value: f64) -> String {
+    let size = value.abs();
+    match size {
+        _ if !value.is_finite() => value.to_string(),
+        0.0 => "0".to_owned(),
+        s if !(1e-3..1e7).contains(&s) => format!("{value:.3e}"),
+        s => {
+            let decimals = (3 - s.log10().floor() as i32).clamp(0, 6) as usize;
+            format!("{value:.decimals$}")
+        }
+    }
+}
+
+/// Droplets in words, by their size.
+pub fn droplets(kind: DropletKind) -> String {
+    match kind {
+        DropletKind::Analytic(droplets) => {
+            format!("grey, of {} um diameter", short(droplets.diameter_um()))
+        }
+        DropletKind::Isotropic => {
+            "grey, equal in all directions: the assumption of published models, of no droplets"
+                .to_owned()
+        }
+        DropletKind::Published(drops) => {
+            let sizes = drops.sizes();
+            format!(
+                "Lorenz-Mie theory, mode radius {} um, effective radius {} um",
+                short(sizes.mode_radius_um()),
+                short(sizes.effective_radius_um())
+            )
+        }
+    }
+}
+
+/// Fog in words: its layers, and which light it scatters where that is not all.
+pub fn fog(fog: &FogLayers) -> String {
+    let layers = fog.layers.iter().map(|layer| {
+        let extent = match layer.profile {
+            DensityProfile::Layer { top_m, .. } => format!("up to {} m", short(top_m)),
+            DensityProfile::Clamped {
+                base_height_m,
+                scale_height_m,
+            }
+            | DensityProfile::Exponential {
+                reference_height_m: base_height_m,
+                scale_height_m,
+            } => {
+                let from = match base_height_m {
+                    0.0 => String::new(),
+                    base_m => format!(" from {} m", short(base_m)),
+                };
+                format!("scale height {} m{from}", short(scale_height_m))
+            }
+            _ => "the same at all heights".to_owned(),
+        };
+        format!(
+            "extinction {} 1/m, {extent}, droplets {} ({})",
+            short(layer.extinction_per_m),
+            layer.droplets.name(),
+            droplets(layer.droplets)
+        )
+    });
+    let mut text = layers.collect::<Vec<_>>().join("; ");
+    text.push_str(match fog.scattering {
+        FogScattering::Multiple => "",
+        FogScattering::Single => "; light scattered once",
+        FogScattering::Undimmed => "; light scattered once, the sun not dimmed",
+    });
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_keep_four_digits() {
+        for (value, text) in [
+            (0.0, "0"),
+            (123_456.7, "123457"),
+            (1234.6, "1235"),
+            (5.0, "5.000"),
+            (-0.012_346, "-0.01235"),
+            (1.5e9, "1.500e9"),
+            (1e-7, "1.000e-7"),
+        ] {
+            assert_eq!(short(value), text);
+        }
+        assert_eq!(short(f64::NAN), "NaN");
+    }
+}

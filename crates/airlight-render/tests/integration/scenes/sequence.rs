@@ -1,0 +1,111 @@
+//! Sequences: names, times, resuming where an earlier run stopped.
+
+use super::{Exr, Folder, parse};
+use airlight_image::{Control, ImageError, Progress};
+use airlight_render::{RenderError, Renderer};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+const SCENE: &str = "solver.wavelengths = \"rgb\"\nsolver.scattering = \"single\"\ncamera.size = [16, 8]\n\
+    sun = { latitude_deg = 50, longitude_deg = 10, time = \"2026-06-21T18:00:00+02:00\" }\n\
+    sequence = { until = \"+3h\", every = \"1h\" }\n";
+
+#[test]
+fn pictures_there_are_left_as_they_are() {
+    let folder = Folder::new();
+    assert_eq!(folder.write("a.exr", SCENE).len(), 4);
+    let names = ["a.0001.exr", "a.0002.exr", "a.0003.exr", "a.0004.exr"];
+    assert_eq!(folder.names(), names);
+    // One is missing, one is empty: both are made; the others are not touched.
+    std::fs::remove_file(folder.file(names[1])).unwrap();
+    std::fs::write(folder.file(names[2]), "").unwrap();
+    std::fs::write(folder.file(names[3]), "mine").unwrap();
+    assert_eq!(folder.write("a.exr", SCENE).len(), 2);
+    assert_eq!(std::fs::read(folder.file(names[3])).unwrap(), b"mine");
+    assert!(Exr::read(&folder.file(names[2])).luminance(3, 1) > 0.0);
+    assert!(folder.write("a.exr", SCENE).is_empty());
+}
+
+#[test]
+fn pictures_show_the_time_that_they_are_named_after() {
+    let folder = Folder::new();
+    folder.write(
+        "s-{time}.png",
+        &format!(
+            "{SCENE}output.sun_disc = \"separate\"\nsequence = {{ until = \"2026-06-21T17:30:00Z\", every = \"1h\" }}"
+        ),
+    );
+    assert_eq!(
+        folder.names(),
+        [
+            "s-20260621T160000Z.png",
+            "s-20260621T160000Z.sun.png",
+            "s-20260621T170000Z.png",
+            "s-20260621T170000Z.sun.png"
+        ]
+    );
+    folder.write("b.exr", SCENE);
+    let alone = SCENE.lines().filter(|line| !line.starts_with("sequence"));
+    let alone = alone
+        .collect::<Vec<_>>()
+        .join("\n")
+        .replace("18:00", "19:00");
+    let (step, alone) = (Exr::read(&folder.file("b.0002.exr")), folder.exr(&alone));
+    assert_eq!(step.texts["time"], "2026-06-21T19:00:00+02:00");
+    assert_eq!(step.texts["sunPosition"], alone.texts["sunPosition"]);
+    // A sky prepared for all heights of the sun is that prepared for one.
+    for (x, y) in [(3, 1), (8, 3), (12, 2), (5, 6)] {
+        let (a, b) = (step.luminance(x, y), alone.luminance(x, y));
+        assert!((a / b - 1.0).abs() < 0.01, "{x} {y}: {a} {b}");
+    }
+}
+
+#[test]
+fn a_stopped_sequence_keeps_its_whole_pictures() {
+    /// Stops as the second picture begins.
+    #[derive(Default)]
+    struct Stop {
+        stages: std::sync::atomic::AtomicU32,
+        stop: AtomicBool,
+    }
+    impl Progress for Stop {
+        fn stage(&self, _what: &str, rows: u64) {
+            if rows > 0 && self.stages.fetch_add(1, Ordering::Relaxed) == 1 {
+                self.stop.store(true, Ordering::Relaxed);
+            }
+        }
+
+        fn advanced(&self, _done: u64, _total: u64) {}
+    }
+    let folder = Folder::new();
+    let mut scene = parse(SCENE);
+    scene.output.file = Some(folder.file("a.png").to_str().unwrap().to_owned());
+    let renderer = Renderer::new(&scene).unwrap();
+    let progress = Stop::default();
+    let control = Control::cancelled_by(&progress.stop).reporting_to(&progress);
+    match renderer.write(control) {
+        Err(RenderError::Image(ImageError::Cancelled)) => {}
+        other => panic!("{other:?}"),
+    }
+    assert_eq!(folder.names(), ["a.0001.png"]);
+    assert_eq!(renderer.write(Control::default()).unwrap().len(), 3);
+}
+
+#[test]
+fn sequences_that_make_no_sense_are_refused() {
+    let folder = Folder::new();
+    let sequence = |until: &str, every: &str| {
+        format!("{SCENE}sequence = {{ until = \"{until}\", every = \"{every}\" }}")
+    };
+    let fixed = "solver.wavelengths = \"rgb\"\nsun.elevation_deg = 5\nsequence = { until = \"+1h\", every = \"1h\" }";
+    for (scene, part) in [
+        (fixed.to_owned(), "a sun that moves"),
+        (sequence("+1h", "5x"), "1h30m"),
+        (sequence("2025-01-01T00:00:00Z", "5m"), "later"),
+        (sequence("+9000d", "1s"), "1000000"),
+        (sequence("+9000000d", "9000d"), "year 3000"),
+    ] {
+        let error = folder.try_write("a.png", &scene).unwrap_err().to_string();
+        assert!(error.contains(part), "{scene}: {error}");
+    }
+    assert!(folder.names().is_empty());
+}
