@@ -93,12 +93,14 @@ impl ContactSheetSpec {
             let expected = "a whole number from 1 to 64";
             return Err(wrong("columns", expected, columns.to_string(), "3"));
         }
-        let common = document.scene(&["scene"], &[])?.set_inputs();
+        // One layer alone need not be a valid scene.
+        let common = document.read::<Scene>(&["scene"], &[])?.set_inputs();
         let mut own_inputs = Vec::with_capacity(count);
         let mut cells = (0..count)
             .map(|number| {
                 let path = format!("cell[{number}]");
-                own_inputs.push(document.scene(&[&path], &["label"])?.set_inputs());
+                let own: Scene = document.read(&[&path], &["label"])?;
+                own_inputs.push(own.set_inputs());
                 let scene = document.scene(&["scene", &path], &["label"])?;
                 for (key, set) in [
                     ("output.file", scene.output.file.is_some()),
@@ -143,7 +145,8 @@ mod tests {
     #[test]
     fn cells_have_the_scene_of_all_and_their_own() {
         let text = "title = \"Suns\"\ncolumns = 2\n[scene]\nsun.elevation_deg = 5\nair.aod_550 = 0.3\n\
-            [[cell]]\nlabel = \"low\"\n[[cell]]\nlabel = \"set\"\nsun.elevation_deg = -1.5\n";
+            [[cell]]\nlabel = \"low\"\n[[cell]]\nlabel = \"set\"\nsun.elevation_deg = -1.5\n\
+            [[cell]]\nlabel = \"aside\"\nsun.azimuth_deg = 90\n";
         let sheet = ContactSheetSpec::from_toml(text).unwrap();
         assert_eq!((sheet.title.as_str(), sheet.columns), ("Suns", 2));
         let suns: Vec<_> = sheet
@@ -155,7 +158,8 @@ mod tests {
             suns,
             [
                 ("low", Some(5.0), Some(0.3)),
-                ("set", Some(-1.5), Some(0.3))
+                ("set", Some(-1.5), Some(0.3)),
+                ("aside", Some(5.0), Some(0.3))
             ]
         );
     }

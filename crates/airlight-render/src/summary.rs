@@ -70,9 +70,9 @@ pub fn fog(fog: &FogLayers) -> String {
     });
     let mut text = layers.collect::<Vec<_>>().join("; ");
     text.push_str(match fog.scattering {
-        FogScattering::Multiple => "",
         FogScattering::Single => "; light scattered once",
         FogScattering::Undimmed => "; light scattered once, the sun not dimmed",
+        _ => "",
     });
     text
 }

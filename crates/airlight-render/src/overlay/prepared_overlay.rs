@@ -115,7 +115,10 @@ impl PreparedOverlay {
         let ground_m = air.planet.ground_altitude_m;
         let grid = WavelengthGrid::fast();
         for layer in layers {
-            let part = layer.constituent(ground_m, grid.wavelengths_nm())?;
+            let part = layer.constituent(grid.wavelengths_nm())?;
+            let part = part.raised(ground_m).ok_or_else(|| {
+                RenderError::setting("fog.profile: expected fog with a top or a scale height, got fog without an upper end; try height, clamped, unclamped or slab")
+            })?;
             air.constituents.push(part);
         }
         let altitude_m = sky.observer_altitude_m();

@@ -164,6 +164,14 @@ impl DensityProfile {
         }
     }
 
+    /// Height of the top of a slab ([`DensityProfile::slab`]), m; `None` for other profiles.
+    pub fn slab_top_m(&self) -> Option<f64> {
+        match *self {
+            Self::Layer { bottom_m, top_m } if bottom_m == f64::NEG_INFINITY => Some(top_m),
+            _ => None,
+        }
+    }
+
     /// The clamped profile of a falloff (1/m) instead of a scale height: uniform for 0, a slab for infinity.
     ///
     /// # Errors

@@ -7,16 +7,20 @@
 //! been scattered more often.)
 
 use super::PublishedModel;
+use super::orders::sky_settings;
+use super::prepared::Prepared;
 use crate::atmosphere::Atmosphere;
-use crate::sky::{LineOfSight, Sky, SkyError, SkySettings, View};
+use crate::control::Control;
+use crate::scene::{Capabilities, Input, PreparedModel, RadianceModel, ResolvedScene, SceneError};
+use crate::sky::{LineOfSight, Sky, SkyError, SkySettings, SunCoverage, View};
 use crate::spectrum::WavelengthGrid;
+use crate::sun::SunDisc;
 use glam::DVec3;
+use std::sync::Arc;
 
 /// Sky of four orders of scattering for one eye and one sun.
 pub struct FourOrders {
-    sky: Sky,
-    eye_altitude_m: f64,
-    sun: DVec3,
+    view: View,
 }
 
 impl FourOrders {
@@ -32,37 +36,95 @@ impl FourOrders {
         orders: usize,
         settings: &SkySettings,
     ) -> Result<Self, SkyError> {
-        if orders < 2 {
-            return Err(SkyError::Setting("at least 2 orders of scattering"));
-        }
         let sun = sun_direction
             .try_normalize()
             .ok_or(SkyError::Setting("a finite sun direction that is not zero"))?;
-        let mut settings = settings.clone();
-        // The field holds all orders but the last, which tracing the view ray adds.
-        settings.orders.max_orders = orders - 1;
-        // No extrapolation of the remaining orders.
-        settings.orders.tolerance = f32::MIN_POSITIVE;
+        let sky = solve(atmosphere, grid, orders, settings, Control::default())?;
         Ok(Self {
-            sky: Sky::prepare(atmosphere, grid, &settings)?,
-            eye_altitude_m,
-            sun,
+            view: sky.view(eye_altitude_m, sun),
         })
     }
+}
 
-    /// View of the solver.
-    fn view(&self) -> View {
-        self.sky.view(self.eye_altitude_m, self.sun)
+/// Solves for the first `orders` orders of scattering.
+fn solve(
+    atmosphere: &Atmosphere,
+    grid: &WavelengthGrid,
+    orders: usize,
+    settings: &SkySettings,
+    control: Control<'_>,
+) -> Result<Sky, SkyError> {
+    if orders < 2 {
+        return Err(SkyError::Setting("at least 2 orders of scattering"));
+    }
+    let mut settings = settings.clone();
+    // The field holds all orders but the last, which tracing the view ray adds.
+    settings.orders.max_orders = orders - 1;
+    // No extrapolation of the remaining orders.
+    settings.orders.tolerance = f32::MIN_POSITIVE;
+    Sky::prepare_with(atmosphere, grid, &settings, control)
+}
+
+/// The solver of [`Orders`](super::orders::Orders) stopped after four orders of scattering.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FourOrdersModel;
+
+impl RadianceModel for FourOrdersModel {
+    fn name(&self) -> &'static str {
+        "four-orders"
+    }
+
+    fn summary(&self) -> &'static str {
+        "the first four orders of scattering, as in the tables of Bruneton & Neyret 2008"
+    }
+
+    fn capabilities(&self) -> Capabilities {
+        Capabilities {
+            inputs: &[
+                Input::Atmosphere,
+                Input::Haze,
+                Input::Ozone,
+                Input::GroundAlbedo,
+                Input::ObserverHeight,
+                Input::SunDistance,
+                Input::Objects,
+                Input::Wavelengths,
+                Input::Effort,
+                Input::Spectra,
+                Input::Distances,
+            ],
+            variants: &[],
+            twilight: true,
+            parts: true,
+        }
+    }
+
+    fn prepare(
+        &self,
+        scene: &ResolvedScene,
+        suns: SunCoverage,
+        control: Control<'_>,
+    ) -> Result<Arc<dyn PreparedModel>, SceneError> {
+        let settings = sky_settings(&scene.solver, suns);
+        let sky = solve(&scene.atmosphere, &scene.grid, 4, &settings, control)?;
+        let grid = Some(sky.grid().clone());
+        let prepared = Prepared::new(self.name(), scene, grid, move |altitude_m, sun| {
+            let view = sky.view(altitude_m, sun.direction);
+            Ok(Arc::new(FourOrders {
+                view: view.at_sun_distance(sun.distance_ratio),
+            }))
+        });
+        Ok(Arc::new(prepared))
     }
 }
 
 impl PublishedModel for FourOrders {
     fn sun(&self) -> DVec3 {
-        self.sun
+        self.view.sun()
     }
 
-    fn disc_edge_rad(&self) -> f64 {
-        self.sky.atmosphere().sun.angular_radius_rad
+    fn disc(&self) -> &SunDisc {
+        self.view.disc()
     }
 
     fn has_ground(&self) -> bool {
@@ -70,33 +132,35 @@ impl PublishedModel for FourOrders {
     }
 
     fn sky_xyz(&self, direction: DVec3) -> [f64; 3] {
-        self.sky
+        self.view
+            .sky()
             .grid()
-            .to_xyz(&self.view().along(direction, None).radiance())
+            .to_xyz(&self.view.along(direction, None).radiance())
     }
 
     fn disc_xyz(&self, direction: DVec3) -> [f64; 3] {
-        self.sky
+        self.view
+            .sky()
             .grid()
-            .to_xyz(&self.view().sun_disc_radiance(direction))
+            .to_xyz(&self.view.sun_disc_radiance(direction))
     }
 
     fn grid(&self) -> Option<&WavelengthGrid> {
-        Some(self.sky.grid())
+        Some(self.view.sky().grid())
     }
 
     fn sky_spectrum(&self, direction: DVec3) -> Vec<f64> {
-        let line = self.view().along(direction, None);
+        let line = self.view.along(direction, None);
         line.radiance().into_iter().map(f64::from).collect()
     }
 
     fn disc_spectrum(&self, direction: DVec3) -> Vec<f64> {
-        let disc = self.view().sun_disc_radiance(direction);
+        let disc = self.view.sun_disc_radiance(direction);
         disc.into_iter().map(f64::from).collect()
     }
 
     fn line(&self, direction: DVec3, limit_m: Option<f64>) -> Option<LineOfSight> {
-        Some(self.view().along(direction, limit_m))
+        Some(self.view.along(direction, limit_m))
     }
 }
 

@@ -14,12 +14,16 @@ use super::PublishedModel;
 use super::lut::{
     AirLanes, MultipleScatteringSettings, MultipleScatteringTable, TransmittanceTable,
 };
+use super::prepared::Prepared;
 use crate::atmosphere::{Atmosphere, AtmosphereError};
-use crate::sky::LineOfSight;
+use crate::control::Control;
+use crate::scene::{Capabilities, Input, PreparedModel, RadianceModel, ResolvedScene, SceneError};
+use crate::sky::{LineOfSight, Scattering, SunCoverage};
 use crate::spectrum::WavelengthGrid;
 use crate::sun::SunDisc;
 use crate::transfer::ray::Ray;
 use glam::DVec3;
+use std::sync::Arc;
 
 /// Sizes of the tables and numbers of steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,15 +78,24 @@ pub enum HillaireError {
 
 /// The sky for one eye and one sun.
 pub struct Hillaire2020 {
+    tables: Arc<Tables>,
+    /// The wavelengths with the sun at its distance.
+    grid: WavelengthGrid,
+    solar: Vec<f32>,
+    disc: SunDisc,
+    eye: DVec3,
+    sun: DVec3,
+}
+
+/// The tables of an atmosphere: the same for all eyes and suns.
+struct Tables {
     grid: WavelengthGrid,
     air: AirLanes,
     transmittance: TransmittanceTable,
     multiple: Option<MultipleScatteringTable>,
     steps: usize,
     disc: SunDisc,
-    solar: Vec<f32>,
-    eye: DVec3,
-    sun: DVec3,
+    ground_altitude_m: f64,
 }
 
 /// Exponent of the step positions along a view ray.
@@ -120,8 +133,18 @@ impl Hillaire2020 {
         sun_direction: DVec3,
         settings: &Settings,
     ) -> Result<Self, HillaireError> {
-        atmosphere.validate()?;
-        let ground_m = atmosphere.planet.ground_altitude_m;
+        let tables = Tables::new(atmosphere, grid, settings)?;
+        Self::of(Arc::new(tables), eye_altitude_m, sun_direction, 1.0)
+    }
+
+    /// Sky of prepared tables, with the sun at a distance over the mean one.
+    fn of(
+        tables: Arc<Tables>,
+        eye_altitude_m: f64,
+        sun_direction: DVec3,
+        sun_distance_ratio: f64,
+    ) -> Result<Self, HillaireError> {
+        let ground_m = tables.ground_altitude_m;
         if !(eye_altitude_m.is_finite() && eye_altitude_m >= ground_m) {
             return Err(HillaireError::EyeAltitude {
                 altitude_m: eye_altitude_m,
@@ -131,6 +154,115 @@ impl Hillaire2020 {
         let sun = sun_direction
             .try_normalize()
             .ok_or(HillaireError::Sun(sun_direction))?;
+        let grid = tables.grid.at_sun_distance(sun_distance_ratio);
+        Ok(Self {
+            eye: DVec3::Y * (tables.air.planet_radius_m() + eye_altitude_m),
+            solar: grid.solar_irradiance().iter().map(|&e| e as f32).collect(),
+            disc: tables.disc.at_distance_ratio(sun_distance_ratio),
+            grid,
+            tables,
+            sun,
+        })
+    }
+
+    /// Spectral radiance along a unit vector, W m^-2 sr^-1 nm^-1, including the ground if the ray hits it.
+    pub fn radiance(&self, direction: DVec3) -> Vec<f32> {
+        self.along(direction, None).radiance()
+    }
+
+    /// Light along a unit vector over at most `limit_m` metres, by parts; `None` for the whole ray to the ground or to space. A
+    /// shorter ray is marched in the same number of steps.
+    pub fn along(&self, direction: DVec3, limit_m: Option<f64>) -> LineOfSight {
+        let Tables {
+            air,
+            transmittance,
+            multiple,
+            steps,
+            ..
+        } = self.tables.as_ref();
+        let lanes = air.lanes();
+        let dark = || vec![0.0f32; lanes];
+        let mut line = LineOfSight {
+            transmittance: vec![1.0; lanes],
+            single: dark(),
+            multiple: dark(),
+            ground: dark(),
+            meets_ground: false,
+        };
+        let ray = Ray::new(self.eye, direction, self.sun);
+        let limit_m = limit_m.unwrap_or(f64::INFINITY);
+        let Some(segment) = air.segment(&ray, limit_m) else {
+            return line;
+        };
+        line.meets_ground = segment.meets_ground;
+        let scattered = air.scattered(ray.nu);
+        let (mut sunlight, mut psi) = (dark(), dark());
+        let span = (segment.start_m, segment.end_m);
+        line.transmittance = air.march(&ray, span, (*steps, STEP_POWER), |step| {
+            let here = &step.here;
+            air.transmittance_to_sun(transmittance, here.radius_m, here.mu_sun, &mut sunlight);
+            if let Some(table) = multiple {
+                table.look_up(here.radius_m, here.mu_sun, &mut psi);
+            }
+            for lane in 0..lanes {
+                let once: f32 = step
+                    .densities
+                    .iter()
+                    .zip(&scattered)
+                    .map(|(&density, s)| density as f32 * s[lane])
+                    .sum();
+                let weight = step.weight_m[lane] * self.solar[lane];
+                line.single[lane] += weight * once * sunlight[lane];
+                line.multiple[lane] += weight * step.scattering_per_m[lane] * psi[lane];
+            }
+        });
+        if line.meets_ground {
+            let mu_sun = ray.advanced(segment.end_m).mu_sun;
+            air.ground_radiance(transmittance, mu_sun, &mut sunlight);
+            for lane in 0..lanes {
+                line.ground[lane] = line.transmittance[lane] * sunlight[lane] * self.solar[lane];
+            }
+        }
+        line
+    }
+
+    /// Spectral radiance of the sun's disc along a unit vector, attenuated by the air, W m^-2 sr^-1 nm^-1.
+    pub fn disc_radiance(&self, direction: DVec3) -> Vec<f32> {
+        let Tables {
+            air, transmittance, ..
+        } = self.tables.as_ref();
+        let mut light = vec![0.0f32; air.lanes()];
+        let angle = direction.angle_between(self.sun);
+        let ray = Ray::new(self.eye, direction, self.sun);
+        let (ground_m, top_m) = air.bounds_m();
+        if angle >= self.disc.angular_radius_rad || ray.distance_to_ground(ground_m).is_some() {
+            return light;
+        }
+        // From above the atmosphere the ray enters at its top, or misses it.
+        let inside = match air.segment(&ray, f64::INFINITY) {
+            Some(segment) if ray.radius_m > top_m => Some(ray.advanced(segment.start_m)),
+            Some(_) => Some(ray),
+            None => None,
+        };
+        match inside {
+            Some(ray) => transmittance.look_up(ray.radius_m, ray.mu, &mut light),
+            None => light.fill(1.0),
+        }
+        let lanes = self.solar.iter().zip(self.grid.wavelengths_nm());
+        for (light, (e, &nm)) in light.iter_mut().zip(lanes) {
+            *light *= e * self.disc.radiance_per_irradiance(angle, nm) as f32;
+        }
+        light
+    }
+}
+
+impl Tables {
+    fn new(
+        atmosphere: &Atmosphere,
+        grid: &WavelengthGrid,
+        settings: &Settings,
+    ) -> Result<Self, HillaireError> {
+        atmosphere.validate()?;
         let multiple_fits = settings.multiple.is_none_or(|m| {
             m.size.iter().all(|&n| n >= 2) && m.root_of_directions >= 1 && m.steps >= 1
         });
@@ -149,104 +281,72 @@ impl Hillaire2020 {
             .multiple
             .map(|m| MultipleScatteringTable::new(&air, &transmittance, &m));
         Ok(Self {
-            eye: DVec3::Y * (air.planet_radius_m() + eye_altitude_m),
-            solar: grid.solar_irradiance().iter().map(|&e| e as f32).collect(),
             grid,
             air,
             transmittance,
             multiple,
             steps: settings.steps,
             disc: atmosphere.sun.clone(),
-            sun,
+            ground_altitude_m: atmosphere.planet.ground_altitude_m,
         })
     }
+}
 
-    /// Spectral radiance along a unit vector, W m^-2 sr^-1 nm^-1, including the ground if the ray hits it.
-    pub fn radiance(&self, direction: DVec3) -> Vec<f32> {
-        self.along(direction, None).radiance()
+/// The sky of Hillaire 2020 in the air of a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Hillaire2020Model;
+
+impl RadianceModel for Hillaire2020Model {
+    fn name(&self) -> &'static str {
+        "hillaire2020"
     }
 
-    /// Light along a unit vector over at most `limit_m` metres, by parts; `None` for the whole ray to the ground or to space. A
-    /// shorter ray is marched in the same number of steps.
-    pub fn along(&self, direction: DVec3, limit_m: Option<f64>) -> LineOfSight {
-        let lanes = self.air.lanes();
-        let dark = || vec![0.0f32; lanes];
-        let mut line = LineOfSight {
-            transmittance: vec![1.0; lanes],
-            single: dark(),
-            multiple: dark(),
-            ground: dark(),
-            meets_ground: false,
-        };
-        let ray = Ray::new(self.eye, direction, self.sun);
-        let limit_m = limit_m.unwrap_or(f64::INFINITY);
-        let Some(segment) = self.air.segment(&ray, limit_m) else {
-            return line;
-        };
-        line.meets_ground = segment.meets_ground;
-        let scattered = self.air.scattered(ray.nu);
-        let (mut sunlight, mut psi) = (dark(), dark());
-        let span = (segment.start_m, segment.end_m);
-        line.transmittance = self
-            .air
-            .march(&ray, span, (self.steps, STEP_POWER), |step| {
-                let here = &step.here;
-                self.air.transmittance_to_sun(
-                    &self.transmittance,
-                    here.radius_m,
-                    here.mu_sun,
-                    &mut sunlight,
-                );
-                if let Some(table) = &self.multiple {
-                    table.look_up(here.radius_m, here.mu_sun, &mut psi);
-                }
-                for lane in 0..lanes {
-                    let once: f32 = step
-                        .densities
-                        .iter()
-                        .zip(&scattered)
-                        .map(|(&density, s)| density as f32 * s[lane])
-                        .sum();
-                    let weight = step.weight_m[lane] * self.solar[lane];
-                    line.single[lane] += weight * once * sunlight[lane];
-                    line.multiple[lane] += weight * step.scattering_per_m[lane] * psi[lane];
-                }
-            });
-        if line.meets_ground {
-            let mu_sun = ray.advanced(segment.end_m).mu_sun;
-            self.air
-                .ground_radiance(&self.transmittance, mu_sun, &mut sunlight);
-            for lane in 0..lanes {
-                line.ground[lane] = line.transmittance[lane] * sunlight[lane] * self.solar[lane];
-            }
-        }
-        line
+    fn summary(&self) -> &'static str {
+        "Hillaire 2020: few steps and two small tables, in the air of the scene"
     }
 
-    /// Spectral radiance of the sun's disc along a unit vector, attenuated by the air, W m^-2 sr^-1 nm^-1.
-    pub fn disc_radiance(&self, direction: DVec3) -> Vec<f32> {
-        let mut light = vec![0.0f32; self.air.lanes()];
-        let angle = direction.angle_between(self.sun);
-        let ray = Ray::new(self.eye, direction, self.sun);
-        let (ground_m, top_m) = self.air.bounds_m();
-        if angle >= self.disc.angular_radius_rad || ray.distance_to_ground(ground_m).is_some() {
-            return light;
+    fn capabilities(&self) -> Capabilities {
+        Capabilities {
+            inputs: &[
+                Input::Atmosphere,
+                Input::Haze,
+                Input::Ozone,
+                Input::GroundAlbedo,
+                Input::ObserverHeight,
+                Input::SunDistance,
+                Input::Objects,
+                Input::Wavelengths,
+                Input::Scattering,
+                Input::Spectra,
+                Input::Distances,
+            ],
+            variants: &[],
+            twilight: true,
+            parts: true,
         }
-        // From above the air the line enters at its top, or misses it.
-        let inside = match self.air.segment(&ray, f64::INFINITY) {
-            Some(segment) if ray.radius_m > top_m => Some(ray.advanced(segment.start_m)),
-            Some(_) => Some(ray),
-            None => None,
-        };
-        match inside {
-            Some(ray) => self.transmittance.look_up(ray.radius_m, ray.mu, &mut light),
-            None => light.fill(1.0),
+    }
+
+    fn prepare(
+        &self,
+        scene: &ResolvedScene,
+        _suns: SunCoverage,
+        _control: Control<'_>,
+    ) -> Result<Arc<dyn PreparedModel>, SceneError> {
+        let name = self.name();
+        let refused = move |error| SceneError::model(name, error);
+        let mut settings = Settings::default();
+        if scene.solver.scattering == Some(Scattering::Single) {
+            settings.multiple = None;
         }
-        let lanes = self.solar.iter().zip(self.grid.wavelengths_nm());
-        for (light, (e, &nm)) in light.iter_mut().zip(lanes) {
-            *light *= e * self.disc.radiance_per_irradiance(angle, nm) as f32;
-        }
-        light
+        let tables = Tables::new(&scene.atmosphere, &scene.grid, &settings).map_err(refused)?;
+        let tables = Arc::new(tables);
+        let grid = Some(tables.grid.clone());
+        let prepared = Prepared::new(name, scene, grid, move |altitude_m, sun| {
+            let (sun, ratio) = (sun.direction, sun.distance_ratio);
+            let sky = Hillaire2020::of(tables.clone(), altitude_m, sun, ratio);
+            Ok(Arc::new(sky.map_err(refused)?))
+        });
+        Ok(Arc::new(prepared))
     }
 }
 
@@ -255,8 +355,8 @@ impl PublishedModel for Hillaire2020 {
         self.sun
     }
 
-    fn disc_edge_rad(&self) -> f64 {
-        self.disc.angular_radius_rad
+    fn disc(&self) -> &SunDisc {
+        &self.disc
     }
 
     fn has_ground(&self) -> bool {

@@ -9,11 +9,16 @@
 
 use super::PublishedModel;
 use super::preetham::DimmedSun;
+use super::prepared::{Prepared, turbidity};
 use crate::axes;
+use crate::control::Control;
+use crate::scene::{Capabilities, Input, PreparedModel, RadianceModel, ResolvedScene, SceneError};
+use crate::sky::SunCoverage;
 use crate::spectrum::RgbSpace;
-use crate::spectrum::rgb::{Matrix3, apply};
+use crate::spectrum::rgb::{DOMINANT_NM, Matrix3, apply};
 use glam::DVec3;
 use hw_skymodel::rgb::{Channel, SkyParams, SkyState};
+use std::sync::Arc;
 
 /// Luminance of one unit of the crate's data, cd/m^2: its spectra are in watts.
 const LUMENS_PER_WATT: f64 = 683.0;
@@ -99,6 +104,52 @@ impl PublishedModel for HosekWilkie {
 
     fn disc_xyz(&self, direction: DVec3) -> [f64; 3] {
         self.disc.xyz(direction)
+    }
+}
+
+/// The sky of Hosek and Wilkie 2012 for the turbidity of a scene's air and the albedo of its ground.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct HosekWilkieModel;
+
+impl RadianceModel for HosekWilkieModel {
+    fn name(&self) -> &'static str {
+        "hosek-wilkie"
+    }
+
+    fn summary(&self) -> &'static str {
+        "Hosek & Wilkie 2012: a formula by turbidity and ground albedo, for the sun above the horizon"
+    }
+
+    fn capabilities(&self) -> Capabilities {
+        Capabilities {
+            inputs: &[
+                Input::Atmosphere,
+                Input::Haze,
+                Input::GroundAlbedo,
+                Input::Objects,
+            ],
+            variants: &[],
+            twilight: false,
+            parts: false,
+        }
+    }
+
+    fn prepare(
+        &self,
+        scene: &ResolvedScene,
+        _suns: SunCoverage,
+        _control: Control<'_>,
+    ) -> Result<Arc<dyn PreparedModel>, SceneError> {
+        let (name, turbidity) = (self.name(), turbidity(&scene.atmosphere));
+        let albedo = &scene.atmosphere.planet.ground_albedo;
+        let albedo = DOMINANT_NM.map(|nm| albedo.at(nm));
+        let prepared = Prepared::new(name, scene, None, move |_, sun| {
+            let sky = HosekWilkie::new(turbidity, albedo, sun.direction);
+            Ok(Arc::new(
+                sky.map_err(|error| SceneError::model(name, error))?,
+            ))
+        });
+        Ok(Arc::new(prepared))
     }
 }
 

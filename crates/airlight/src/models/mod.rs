@@ -1,7 +1,8 @@
-//! Published models of the sky, as printed and as corrected, behind one interface.
+//! The solvers and the published models of the sky, each a [`RadianceModel`](crate::scene::RadianceModel), and the
+//! [`registry`] of them.
 //!
-//! The module of each model names its paper, with equation numbers, errata and its difference to the solver of
-//! [`crate::sky`].
+//! Published models are there as printed and as corrected; the module of each names its paper, with equation numbers, errata
+//! and its difference to the solver of [`crate::sky`].
 
 pub mod four_orders;
 pub mod hillaire2020;
@@ -9,70 +10,97 @@ pub mod hillaire2020;
 pub mod hosek_wilkie;
 pub mod klassen1987;
 mod lut;
+pub mod monte_carlo;
+pub mod orders;
 pub mod preetham;
+mod prepared;
+mod published_view;
 pub mod single_scattering;
 
 pub use lut::MultipleScatteringSettings;
+pub use published_view::PublishedModel;
 
-use crate::sky::LineOfSight;
-use crate::spectrum::WavelengthGrid;
-use glam::DVec3;
+/// The solvers and published models by name: the one list of them.
+pub mod registry {
+    #[cfg(feature = "hosek-wilkie")]
+    use super::hosek_wilkie;
+    use super::{
+        four_orders, hillaire2020, klassen1987, monte_carlo, orders, preetham, single_scattering,
+    };
+    use crate::atmosphere::nearest::nearest;
+    use crate::control::Control;
+    use crate::scene::{PreparedModel, RadianceModel, ResolvedScene, SceneError, check_inputs};
+    use crate::sky::SunCoverage;
+    use std::sync::Arc;
 
-/// A published model of the sky for one eye and one sun.
-///
-/// Colours are CIE 1931 XYZ with `Y` in cd/m^2. Directions are unit vectors that point away from the eye
-/// ([`crate::axes`]).
-pub trait PublishedModel: Send + Sync {
-    /// Unit vector towards the sun's centre.
-    fn sun(&self) -> DVec3;
+    /// Name of the solver of scenes that name none.
+    pub const DEFAULT: &str = "orders";
 
-    /// Angle from the sun's centre beyond which its disc has no light, rad.
-    fn disc_edge_rad(&self) -> f64 {
-        crate::sun::SunDisc::default().angular_radius_rad
+    /// All solvers and published models, in the order to list them in.
+    pub const ALL: &[&dyn RadianceModel] = &[
+        &orders::Orders,
+        &monte_carlo::MonteCarloModel,
+        &klassen1987::Klassen1987Model,
+        &preetham::PreethamModel,
+        #[cfg(feature = "hosek-wilkie")]
+        &hosek_wilkie::HosekWilkieModel,
+        &hillaire2020::Hillaire2020Model,
+        &four_orders::FourOrdersModel,
+        &single_scattering::SingleScatteringModel,
+    ];
+
+    /// The solver or published model of a name.
+    ///
+    /// # Errors
+    /// [`SceneError::UnknownModel`], with the nearest name.
+    pub fn find(name: &str) -> Result<&'static dyn RadianceModel, SceneError> {
+        let names = || ALL.iter().map(|model| model.name());
+        let found = ALL.iter().find(|model| model.name() == name);
+        found.copied().ok_or_else(|| SceneError::UnknownModel {
+            got: name.to_owned(),
+            nearest: nearest(name, names()),
+            valid: names().collect(),
+        })
     }
 
-    /// True if the radiance below the horizon includes the model's own ground and the air in front of it. For other models the
-    /// renderer draws the ground.
-    fn has_ground(&self) -> bool {
-        false
+    /// The solver or published model that a scene names.
+    ///
+    /// # Errors
+    /// [`SceneError::UnknownModel`].
+    pub fn of_scene(scene: &ResolvedScene) -> Result<&'static dyn RadianceModel, SceneError> {
+        find(scene.solver.name.as_deref().unwrap_or(DEFAULT))
     }
 
-    /// Colour of the sky along a direction, without the sun's disc.
-    fn sky_xyz(&self, direction: DVec3) -> [f64; 3];
-
-    /// Colour of the sun's disc along a direction, attenuated by the air; black outside the disc.
-    fn disc_xyz(&self, direction: DVec3) -> [f64; 3];
-
-    /// Evaluates the sky along one direction after another, for models that reuse results of neighbouring directions: equal to
-    /// [`Self::sky_xyz`] within the tolerance that such a model states.
-    fn walk(&self) -> Box<dyn FnMut(DVec3) -> [f64; 3] + '_> {
-        Box::new(|direction| self.sky_xyz(direction))
-    }
-
-    /// Wavelengths of the model's spectra, with their solar spectrum; `None` for models of colours only.
-    fn grid(&self) -> Option<&WavelengthGrid> {
-        None
-    }
-
-    /// Wavelengths of the model's spectra, nm; empty for models of colours only.
-    fn wavelengths_nm(&self) -> &[f64] {
-        self.grid().map_or(&[], WavelengthGrid::wavelengths_nm)
-    }
-
-    /// Spectral radiance of the sky (W m^-2 sr^-1 nm^-1) along a direction, at [`Self::wavelengths_nm`]; its colour is
-    /// [`Self::sky_xyz`].
-    fn sky_spectrum(&self, _direction: DVec3) -> Vec<f64> {
-        Vec::new()
-    }
-
-    /// Spectral radiance of the sun's disc along a direction; its colour is [`Self::disc_xyz`].
-    fn disc_spectrum(&self, _direction: DVec3) -> Vec<f64> {
-        Vec::new()
-    }
-
-    /// Light along a direction over at most `limit_m` metres (`None`: to the ground or to space), by parts, at
-    /// [`Self::wavelengths_nm`]; `None` for models that do not separate path radiance, ground and orders of scattering.
-    fn line(&self, _direction: DVec3, _limit_m: Option<f64>) -> Option<LineOfSight> {
-        None
+    /// Prepares the solver or published model that a scene names for a range of suns. Inputs that it would ignore are refused.
+    ///
+    /// ```
+    /// use airlight::{Control, axes, models::registry, scene::{Channels, Scene}, sky::SunCoverage, spectrum::RgbSpace};
+    ///
+    /// let scene = Scene::from_toml("sun.elevation_deg = 30\nsolver.name = \"preetham\"")?.resolve()?;
+    /// let sun = scene.sun.at(None)?;
+    /// let suns = SunCoverage::near(sun.elevation_deg, scene.observer_altitude_m);
+    /// let prepared = registry::prepare(&scene, suns, Control::default())?;
+    /// let view = prepared.view(scene.observer_altitude_m, &sun.state(), Channels::Rgb(RgbSpace::Srgb))?;
+    /// let mut zenith = [0.0; 3];
+    /// view.radiance(&[axes::direction(0.0, 90.0)], &mut zenith);
+    /// assert!(zenith[2] > zenith[0], "the sky is blue: {zenith:?}");
+    /// # Ok::<(), airlight::scene::SceneError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`SceneError`] for an unknown name, an input that the model ignores, and values outside its domain.
+    pub fn prepare(
+        scene: &ResolvedScene,
+        suns: SunCoverage,
+        control: Control<'_>,
+    ) -> Result<Arc<dyn PreparedModel>, SceneError> {
+        let model = of_scene(scene)?;
+        check_inputs(
+            model,
+            &scene.set_inputs,
+            scene.solver.variant.as_deref(),
+            ALL,
+        )?;
+        model.prepare(scene, suns, control)
     }
 }

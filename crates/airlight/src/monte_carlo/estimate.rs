@@ -58,6 +58,27 @@ pub struct Estimate {
     pub paths: u64,
 }
 
+impl Estimate {
+    /// Of it, the light scattered or reflected once.
+    pub fn first_order(&self) -> Self {
+        Self {
+            mean: self.orders[0].mean.clone(),
+            standard_error: self.orders[0].standard_error.clone(),
+            orders: std::array::from_fn(|order| match order {
+                0 => self.orders[0].clone(),
+                _ => {
+                    let dark = vec![0.0; self.mean.len()];
+                    Measured {
+                        mean: dark.clone(),
+                        standard_error: dark,
+                    }
+                }
+            }),
+            paths: self.paths,
+        }
+    }
+}
+
 impl Tally {
     /// An empty tally for a number of wavelengths.
     pub fn new(wavelengths: usize) -> Self {

@@ -168,6 +168,7 @@ pub fn check_inputs(
 mod tests {
     use super::super::{PreparedModel, ResolvedScene};
     use super::*;
+    use crate::control::Control;
     use crate::sky::SunCoverage;
     use std::sync::Arc;
 
@@ -197,6 +198,7 @@ mod tests {
             &self,
             _scene: &ResolvedScene,
             _suns: SunCoverage,
+            _control: Control<'_>,
         ) -> Result<Arc<dyn PreparedModel>, SceneError> {
             Err(SceneError::Distance(0.0))
         }

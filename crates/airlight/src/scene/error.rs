@@ -44,6 +44,33 @@ pub enum SceneError {
         /// What is wrong.
         error: Box<SceneError>,
     },
+    /// There is no solver or published model of a name.
+    #[error(
+        "solver.name: expected one of {}, got \"{got}\"{}",
+        valid.join(", "),
+        unknown_tip(got, nearest)
+    )]
+    UnknownModel {
+        /// The name.
+        got: String,
+        /// The name it may have been meant to be.
+        nearest: Option<&'static str>,
+        /// The names there are.
+        valid: Vec<&'static str>,
+    },
+    /// A model refuses a value of the scene, the sun or the eye.
+    #[error("{model}: {problem}")]
+    Model {
+        /// Name of the model.
+        model: &'static str,
+        /// Why.
+        problem: String,
+    },
+    /// A spectral view of a model that knows colours only.
+    #[error(
+        "output.spectral: expected a solver with spectra, got {0}, which knows colours only; try a picture in RGB"
+    )]
+    NoSpectra(&'static str),
     /// An input that the model would ignore.
     #[error(
         "{}: expected a solver that honours {input}, got {model}; try {}",
@@ -130,12 +157,27 @@ impl SceneError {
         }
     }
 
+    /// A value that a model refuses.
+    pub(crate) fn model(model: &'static str, problem: impl std::fmt::Display) -> Self {
+        Self::Model {
+            model,
+            problem: problem.to_string(),
+        }
+    }
+
+    /// Whether the caller cancelled.
+    pub fn is_cancelled(&self) -> bool {
+        matches!(self, Self::Sky(SkyError::Cancelled(_)))
+    }
+
     /// The key of the scene that is wrong, such as `air.ozone_du`, where it is one.
     pub fn key(&self) -> Option<&str> {
         match self {
             Self::Value { key, .. } | Self::Refused { key, .. } => Some(key),
             Self::IgnoredInput { input, .. } => Some(input.key()),
             Self::UnknownVariant { .. } => Some("solver.variant"),
+            Self::UnknownModel { .. } => Some("solver.name"),
+            Self::NoSpectra(_) => Some("output.spectral"),
             Self::UnknownAtmosphere(_) => Some("air.atmosphere"),
             Self::At { error, .. } => error.key(),
             _ => None,
@@ -157,5 +199,14 @@ fn alternatives(names: &[&str], none: &str) -> String {
         [] => none.to_owned(),
         [one] => (*one).to_owned(),
         [first @ .., last] => format!("{} or {last}", first.join(", ")),
+    }
+}
+
+/// What may have been meant, or how to get it.
+fn unknown_tip(got: &str, nearest: &Option<&'static str>) -> String {
+    match (got, nearest) {
+        ("hosek-wilkie", _) => "; try a build with the feature hosek-wilkie".to_owned(),
+        (_, Some(near)) => format!("; did you mean \"{near}\"?"),
+        (_, None) => String::new(),
     }
 }

@@ -31,44 +31,62 @@ pub struct FogLayer {
     pub extinction_per_m: f64,
 }
 
-impl FogLayer {
-    /// The layer as a constituent at wavelengths (nm, rising), with heights above the ground.
+impl FogLayers {
+    /// The layers as constituents at wavelengths (nm, rising), with heights from the ground.
     ///
     /// # Errors
-    /// [`SceneError`] for a profile or droplets that are invalid.
-    pub fn layer(&self, wavelengths_nm: &[f64]) -> Result<Constituent, SceneError> {
+    /// [`SceneError`] for a profile or droplets that are refused.
+    pub fn constituents(&self, wavelengths_nm: &[f64]) -> Result<Vec<Constituent>, SceneError> {
+        let layers = self.layers.iter();
+        layers
+            .map(|layer| layer.constituent(wavelengths_nm))
+            .collect()
+    }
+
+    /// The same at altitudes over a ground (m): as part of the air, for Monte Carlo.
+    ///
+    /// # Errors
+    /// [`SceneError`] for a profile without an upper end, too.
+    pub fn in_air(
+        &self,
+        ground_altitude_m: f64,
+        wavelengths_nm: &[f64],
+    ) -> Result<Vec<Constituent>, SceneError> {
+        let endless = || {
+            SceneError::value(
+                "fog.profile",
+                "fog with a top or a scale height",
+                "fog without an upper end",
+                "height, clamped, unclamped or slab",
+            )
+        };
+        let layers = self.constituents(wavelengths_nm)?.into_iter();
+        layers
+            .map(|layer| match layer.density.is_uniform() {
+                true => Err(endless()),
+                false => layer.raised(ground_altitude_m).ok_or_else(endless),
+            })
+            .collect()
+    }
+}
+
+impl FogLayer {
+    /// The layer as a constituent at wavelengths (nm, rising), with heights from the ground.
+    ///
+    /// # Errors
+    /// [`SceneError`] for a profile or droplets that are refused.
+    pub fn constituent(&self, wavelengths_nm: &[f64]) -> Result<Constituent, SceneError> {
         self.profile
             .validate()
             .map_err(|error| SceneError::refused("fog", error))?;
+        let profile = self.profile.clone();
+        let (extinction, droplets) = (self.extinction_per_m, self.droplets);
         Ok(Constituent::fog(
-            self.extinction_per_m,
-            self.droplets,
-            self.profile.clone(),
+            extinction,
+            droplets,
+            profile,
             wavelengths_nm,
         )?)
-    }
-
-    /// The same over a ground at an altitude (m), as a constituent of the air: for Monte Carlo.
-    ///
-    /// # Errors
-    /// [`SceneError`] for a profile without an upper end, and as [`Self::layer`].
-    pub fn constituent(
-        &self,
-        ground_m: f64,
-        wavelengths_nm: &[f64],
-    ) -> Result<Constituent, SceneError> {
-        let layer = self.layer(wavelengths_nm)?;
-        let raised = layer.raised(ground_m);
-        raised
-            .filter(|_| !self.profile.is_uniform())
-            .ok_or_else(|| {
-                SceneError::value(
-                    "fog.profile",
-                    "fog with a top or a scale height",
-                    "fog without an upper end",
-                    "height, clamped, unclamped or slab",
-                )
-            })
     }
 }
 

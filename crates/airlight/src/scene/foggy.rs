@@ -185,11 +185,6 @@ impl<const N: usize> FoggySky<N> {
         }
     }
 
-    /// The fog, in the light of this sky.
-    pub(super) fn fog_lanes(&self) -> &FogLanes<N> {
-        &self.fog
-    }
-
     /// The ground under the fog.
     pub fn ground(&self) -> &Ground {
         self.fog.ground()
@@ -274,6 +269,17 @@ impl<const N: usize> FoggySky<N> {
             .converter
             .light(&radiance, &self.view.solar_irradiance());
         disc * self.fog_transmittance(direction)
+    }
+
+    /// Irradiance of the sun's disc at a height above the ground (m) on a surface that faces it: the sun above the fog, dimmed
+    /// by the fog above; the air within the fog counts as above it.
+    pub fn sunlight(&self, height_m: f64) -> Spectrum<N> {
+        let Some(sun) = &self.fog.lighting().sun else {
+            return Spectrum::ZERO;
+        };
+        let radius_m = self.fog.ground().radius_m;
+        let up = RaySegment::new(height_m, sun.direction.y, f64::INFINITY, radius_m);
+        sun.irradiance * self.fog.transmittance(&up)
     }
 
     /// Transmittance of the fog alone, to the ground or to space.

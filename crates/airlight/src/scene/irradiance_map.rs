@@ -3,7 +3,6 @@
 use crate::axes;
 use crate::math::interpolation::{Place, lerp};
 use crate::math::parallel;
-use crate::spectrum::Spectrum;
 use glam::DVec3;
 use std::f64::consts::TAU;
 
@@ -18,49 +17,72 @@ const CAP_RAD: f64 = 0.15;
 const RINGS: usize = 32;
 const SPOKES: usize = 24;
 
-/// The irradiance that everything around a place but the sun's disc sheds on surfaces there, by their normal.
+/// Irradiance of everything around a place but the sun's disc, on surfaces there, by their normal.
 ///
 /// A table of 25 by 36 normals, bilinear: within 1 % of the irradiance where radiance is smooth over 3 degrees, about the sun over
 /// half a degree (tests).
 #[derive(Clone, Debug)]
-pub struct IrradianceMap<const N: usize> {
-    /// `[row][column]`, W m^-2 nm^-1 (or the unit of the radiance times sr).
-    irradiance: Vec<Spectrum<N>>,
+pub struct IrradianceMap {
+    channels: usize,
+    /// `[row][column][channel]`, W m^-2 nm^-1 (or the unit of the radiance times sr).
+    irradiance: Vec<f32>,
 }
 
-impl<const N: usize> IrradianceMap<N> {
-    /// Sums the radiance that arrives from each direction (unit vectors away from the place); about `sun`, a unit vector, it may
-    /// rise steeply.
-    pub fn of(sun: DVec3, radiance: impl Fn(DVec3) -> Spectrum<N> + Sync) -> Self {
-        let directions = directions(sun);
-        let arriving = parallel::map(directions.len(), |i| {
-            let (direction, solid_angle) = directions[i];
-            (direction, radiance(direction) * solid_angle as f32)
+impl IrradianceMap {
+    /// Sums the radiance that arrives from all directions (unit vectors away from the place), `channels` values each; about
+    /// `sun`, a unit vector, it may rise steeply.
+    pub fn new(
+        sun: DVec3,
+        channels: usize,
+        radiance: impl Fn(&[DVec3], &mut [f32]) + Sync,
+    ) -> Self {
+        /// Directions in one call of `radiance`.
+        const CALL: usize = 64;
+        let (directions, solid_angles): (Vec<DVec3>, Vec<f64>) =
+            directions(sun).into_iter().unzip();
+        let mut arriving = vec![0.0f32; directions.len() * channels];
+        parallel::for_each_chunk(&mut arriving, CALL * channels, |call, out| {
+            let first = call * CALL;
+            let count = out.len() / channels;
+            radiance(&directions[first..first + count], out);
+            let solid_angles = &solid_angles[first..first + count];
+            for (values, solid_angle) in out.chunks_exact_mut(channels).zip(solid_angles) {
+                values.iter_mut().for_each(|v| *v *= *solid_angle as f32);
+            }
         });
-        let on = |normal: DVec3| {
-            arriving
-                .iter()
-                .fold(Spectrum::ZERO, |sum, (direction, light)| {
-                    sum.scale_acc(*light, direction.dot(normal).max(0.0) as f32)
-                })
-        };
-        let irradiance = parallel::map(ROWS * COLUMNS, |i| {
+        let mut irradiance = vec![0.0f32; ROWS * COLUMNS * channels];
+        parallel::for_each_chunk(&mut irradiance, channels, |i, sum| {
             let elevation_deg = 180.0 * (i / COLUMNS) as f64 / (ROWS - 1) as f64 - 90.0;
             let azimuth_deg = 360.0 * (i % COLUMNS) as f64 / COLUMNS as f64;
-            on(axes::direction(azimuth_deg, elevation_deg))
+            let normal = axes::direction(azimuth_deg, elevation_deg);
+            for (direction, values) in directions.iter().zip(arriving.chunks_exact(channels)) {
+                let cosine = direction.dot(normal) as f32;
+                if cosine > 0.0 {
+                    sum.iter_mut()
+                        .zip(values)
+                        .for_each(|(s, v)| *s += v * cosine);
+                }
+            }
         });
-        Self { irradiance }
+        Self {
+            channels,
+            irradiance,
+        }
     }
 
     /// Irradiance of a surface with this unit normal.
-    pub fn irradiance(&self, normal: DVec3) -> Spectrum<N> {
+    pub fn irradiance(&self, normal: DVec3, out: &mut [f32]) {
         let row = Place::evenly((axes::elevation_deg(normal) + 90.0) / 180.0, ROWS);
         let column = axes::azimuth_deg(normal) / 360.0 * COLUMNS as f64;
         let (above, left) = (row.below, column as usize % COLUMNS);
         let (down, right) = (row.fraction as f32, column.fract() as f32);
-        let at = |row: usize, column: usize| self.irradiance[row * COLUMNS + column % COLUMNS];
-        let line = |row| lerp(at(row, left), at(row, left + 1), right);
-        lerp(line(above), line(above + 1), down)
+        let at = |row: usize, column: usize, channel: usize| {
+            self.irradiance[(row * COLUMNS + column % COLUMNS) * self.channels + channel]
+        };
+        for (channel, out) in out.iter_mut().enumerate().take(self.channels) {
+            let line = |row| lerp(at(row, left, channel), at(row, left + 1, channel), right);
+            *out = lerp(line(above), line(above + 1), down);
+        }
     }
 }
 
@@ -102,25 +124,39 @@ mod tests {
 
     const SUN: DVec3 = DVec3::new(0.6, 0.64, 0.48);
 
+    /// The map of a radiance in one channel.
+    fn of(radiance: impl Fn(DVec3) -> f64 + Sync) -> IrradianceMap {
+        IrradianceMap::new(SUN, 1, |directions, out| {
+            let pairs = directions.iter().zip(out);
+            pairs.for_each(|(direction, out)| *out = radiance(*direction) as f32);
+        })
+    }
+
+    fn on(map: &IrradianceMap, normal: DVec3) -> f64 {
+        let mut irradiance = [0.0];
+        map.irradiance(normal, &mut irradiance);
+        f64::from(irradiance[0])
+    }
+
     fn normals() -> impl Iterator<Item = DVec3> {
         (0..200).map(|i| axes::direction(137.5 * f64::from(i), 0.9 * f64::from(i) - 89.5))
     }
 
     #[test]
     fn even_light_sheds_pi_times_its_radiance_on_every_surface() {
-        let even = IrradianceMap::of(SUN, |_| Spectrum([2.0f32]));
+        let even = of(|_| 2.0);
         for normal in normals() {
-            let ratio = f64::from(even.irradiance(normal)[0]) / (2.0 * PI);
+            let ratio = on(&even, normal) / (2.0 * PI);
             assert!((ratio - 1.0).abs() < 3e-3, "{normal}: {ratio}");
         }
     }
 
     #[test]
     fn a_bright_sky_over_black_ground_falls_off_with_the_slant() {
-        let sky = IrradianceMap::of(SUN, |d| Spectrum([if d.y > 0.0 { 1.0f32 } else { 0.0 }]));
+        let sky = of(|d| if d.y > 0.0 { 1.0 } else { 0.0 });
         for normal in normals() {
             let exact = 0.5 * PI * (1.0 + normal.y);
-            let got = f64::from(sky.irradiance(normal)[0]);
+            let got = on(&sky, normal);
             assert!((got - exact).abs() < 0.01 * PI, "{normal}: {got} {exact}");
         }
     }
@@ -129,10 +165,10 @@ mod tests {
     fn a_bright_side_lights_what_faces_it() {
         // Radiance 1 + s . d, with the exact irradiance pi + 2 pi / 3 s . n.
         let side = axes::direction(60.0, 20.0);
-        let sky = IrradianceMap::of(SUN, |d| Spectrum([(1.0 + side.dot(d)) as f32]));
+        let sky = of(|d| 1.0 + side.dot(d));
         for normal in normals() {
             let exact = PI + 2.0 * PI / 3.0 * side.dot(normal);
-            let got = f64::from(sky.irradiance(normal)[0]);
+            let got = on(&sky, normal);
             assert!((got / exact - 1.0).abs() < 0.01, "{normal}: {got} {exact}");
         }
     }
@@ -141,13 +177,13 @@ mod tests {
     fn a_narrow_glow_about_the_sun_is_counted_whole() {
         // Radiance e^-(t / w), of the solid angle 2 pi w^2.
         for width in [0.004f64, 0.01, 0.03] {
-            let glow = IrradianceMap::of(SUN, |d| {
+            let glow = of(|d| {
                 let angle = 2.0 * (0.5 * (d - SUN).length()).asin();
-                Spectrum([(-angle / width).exp() as f32])
+                (-angle / width).exp()
             });
             for normal in normals().filter(|n| n.dot(SUN) > 0.3) {
                 let exact = TAU * width * width * SUN.dot(normal);
-                let got = f64::from(glow.irradiance(normal)[0]);
+                let got = on(&glow, normal);
                 let off = got / exact - 1.0;
                 assert!(off.abs() < 0.015, "{width} {normal}: {got} {exact}");
             }

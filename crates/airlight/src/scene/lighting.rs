@@ -1,7 +1,6 @@
 //! What it takes to light things, and to show them through the air.
 
 use super::foggy::FoggySky;
-use crate::atmosphere::RaySegment;
 use crate::spectrum::Spectrum;
 use crate::transfer::PathOptics;
 use glam::DVec3;
@@ -29,19 +28,8 @@ impl<const N: usize> SceneLighting<N> for FoggySky<N> {
         self.sun_direction()
     }
 
-    /// The sun as it stands over the fog, dimmed by the fog above; the air within the fog is counted as above it.
     fn sunlight(&self, height_m: f64) -> Spectrum<N> {
-        let fog = self.fog_lanes();
-        let Some(sun) = &fog.lighting().sun else {
-            return Spectrum::ZERO;
-        };
-        let up = RaySegment::new(
-            height_m,
-            sun.direction.y,
-            f64::INFINITY,
-            fog.ground().radius_m,
-        );
-        sun.irradiance * fog.transmittance(&up)
+        FoggySky::sunlight(self, height_m)
     }
 
     fn before(&self, direction: DVec3, distance_m: f64) -> PathOptics<N> {

@@ -19,6 +19,7 @@ mod capabilities;
 #[cfg(feature = "config")]
 mod document;
 mod error;
+mod fog_in_sky;
 mod fog_layers;
 mod foggy;
 mod irradiance_map;
@@ -28,7 +29,9 @@ mod lighting;
 mod model;
 mod places;
 mod resolved;
+mod solved_view;
 mod spec;
+mod sun_disc_table;
 mod sun_source;
 #[cfg(all(test, feature = "config"))]
 mod toml_tests;
@@ -48,6 +51,7 @@ pub use lane_channels::LaneChannels;
 pub use lighting::SceneLighting;
 pub use model::{PreparedModel, RadianceModel, RadianceSampler, RadianceView, RowSampler};
 pub use resolved::ResolvedScene;
+pub(crate) use solved_view::SolvedView;
 pub use spec::{
     AirSpec, BaseBlueKind, CameraSpec, CheckerSpec, Effort, Exposure, ExrCompression, FogLayerSpec,
     FogProfile, FogSpec, GlossSpec, Klassen1987Spec, LightKind, LightSpec, Metered, ObjectShape,

@@ -3,8 +3,8 @@
 //! A model is used in three steps, each of which does its own share of the work once:
 //!
 //! ```text
-//! RadianceModel   --prepare(scene, suns)-->   PreparedModel    --view(altitude, sun, channels)-->   RadianceView
-//! a registry entry                            all suns of a sequence                               one eye, one sun
+//! RadianceModel   --prepare(scene, suns, control)-->   PreparedModel   --view(altitude, sun, channels)-->   RadianceView
+//! a registry entry                                     all suns of a sequence                              one eye, one sun
 //! ```
 //!
 //! A [`RadianceView`] answers for many directions at once, into slices: values are interleaved,
@@ -12,6 +12,7 @@
 //! `Send + Sync + 'static` and can be kept behind an [`Arc`].
 
 use super::{Capabilities, Channels, ResolvedScene, SceneError};
+use crate::control::Control;
 use crate::monte_carlo::{Estimate, PolarisedEstimate};
 use crate::sky::{LineOfSight, SunCoverage};
 use crate::spectrum::WavelengthGrid;
@@ -31,15 +32,17 @@ pub trait RadianceModel: Debug + Send + Sync + 'static {
     /// Which inputs it honours and which questions it answers.
     fn capabilities(&self) -> Capabilities;
 
-    /// Does the work that all suns in `suns` share. Inputs of the scene that the model ignores have been refused before
-    /// ([`check_inputs`](super::check_inputs)).
+    /// Does the work that all suns in `suns` share, followed and cancelled through `control`. Inputs of the scene that the
+    /// model ignores have been refused before ([`check_inputs`](super::check_inputs)).
     ///
     /// # Errors
-    /// [`SceneError`] for an input outside the model's domain.
+    /// [`SceneError`] for an input outside the model's domain, and where the caller cancelled
+    /// ([`SceneError::is_cancelled`]).
     fn prepare(
         &self,
         scene: &ResolvedScene,
         suns: SunCoverage,
+        control: Control<'_>,
     ) -> Result<Arc<dyn PreparedModel>, SceneError>;
 }
 
@@ -47,6 +50,11 @@ pub trait RadianceModel: Debug + Send + Sync + 'static {
 pub trait PreparedModel: Debug + Send + Sync + 'static {
     /// The wavelengths of its spectra; `None` for a model that knows colours only.
     fn grid(&self) -> Option<&WavelengthGrid>;
+
+    /// Channels of the views in whose light objects are shaded, for a picture in `channels`.
+    fn object_channels(&self, channels: Channels) -> Channels {
+        channels
+    }
 
     /// The light at an eye at an altitude (m above sea level) under a sun, in `channels`.
     ///
@@ -118,8 +126,12 @@ pub trait RadianceView: Debug + Send + Sync + 'static {
     /// of a picture of the disc.
     fn sun_disc(&self, directions: &[DVec3], out: &mut [f32]);
 
-    /// Irradiance of everything but the sun's disc, on surfaces at the eye with these unit normals.
+    /// Irradiance of everything but the sun's disc, on surfaces at the eye with these unit normals: cheap enough for every
+    /// pixel of a picture ([`IrradianceMap`](super::IrradianceMap)).
     fn irradiance(&self, normals: &[DVec3], out: &mut [f32]);
+
+    /// The same on a level surface that faces up: integrated with more directions.
+    fn horizontal_irradiance(&self, out: &mut [f32]);
 
     /// Irradiance of the sun's disc at the eye on a surface that faces it.
     fn sun_irradiance(&self, out: &mut [f32]);

@@ -27,9 +27,9 @@
 //!
 //! For ozone from 0 to 500 DU, haze from 0 to 0.3 and air masses from 1 to 19.5 the standard grid stays below 0.08.
 
-use super::SpectralCurve;
 use super::cie::{self, LUMINOUS_EFFICACY_LM_PER_W};
-use super::solar;
+use super::rgb::{self, RgbSpace};
+use super::{SpectralCurve, solar};
 use crate::math::spline::{local_means, product_weights};
 
 /// Step of integrals over wavelength, nm: the finest step of the solar and observer tables.
@@ -186,6 +186,24 @@ impl WavelengthGrid {
     /// It is sampled every 0.5 nm. Negative values count as 0; a node with no irradiance about it has weight 0.
     pub fn with_solar(self, solar: &SpectralCurve) -> Self {
         Self::with_sun(self.wavelengths_nm, |nm| solar.at(nm).max(0.0))
+    }
+
+    /// This grid with the sun at `ratio` times the distance: the solar irradiance falls by its square.
+    pub fn at_sun_distance(&self, ratio: f64) -> Self {
+        let mut grid = self.clone();
+        let scale = 1.0 / (ratio * ratio);
+        grid.solar_irradiance.iter_mut().for_each(|e| *e *= scale);
+        grid
+    }
+
+    /// Weights that convert sunlit spectral radiance at the wavelengths, W m^-2 sr^-1 nm^-1, to linear red, green and blue of
+    /// an RGB space, cd/m^2.
+    pub fn rgb_weights(&self, space: RgbSpace) -> Vec<[f32; 3]> {
+        let from_xyz = space.from_xyz_matrix();
+        let weights = self.xyz_weights.iter();
+        weights
+            .map(|&weights| rgb::apply(&from_xyz, weights).map(|v| v as f32))
+            .collect()
     }
 
     fn build(nm: Vec<f64>) -> Self {

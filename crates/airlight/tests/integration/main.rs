@@ -13,6 +13,7 @@ mod fog_monte_carlo;
 mod fog_reference;
 mod fogbow;
 mod foggy_sky;
+mod models;
 mod monte_carlo_lines;
 mod monte_carlo_polarisation;
 mod sky_laws;

@@ -3,10 +3,22 @@
 use super::lanes::{Lanes, to_xyz, wavelengths_nm};
 use super::settings::{BaseBlue, Klassen1987Error, Klassen1987Settings};
 use crate::axes;
+use crate::control::Control;
 use crate::sky::{Sky, SkySettings, SkyTable, SunCoverage, TableChannels};
 use crate::spectrum::WavelengthGrid;
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
+
+/// What the blue of all suns is made from.
+pub(super) enum BaseSky {
+    /// One colour, with a luminance under a sun in the zenith.
+    Constant {
+        /// cd/m^2.
+        noon_luminance_cd_m2: f64,
+    },
+    /// The clear air, solved for.
+    Solved(Sky),
+}
 
 /// Radiance behind the haze, W m^-2 sr^-1 nm^-1.
 pub(super) enum Blue {
@@ -17,14 +29,23 @@ pub(super) enum Blue {
 }
 
 impl Blue {
-    /// Blue for checked settings and an elevation of the sun (rad).
+    /// Blue for checked settings and an elevation of the sun (rad) at a distance over the mean one; `grid` has the sun at that
+    /// distance.
     pub fn new(
         settings: &Klassen1987Settings,
         grid: &WavelengthGrid,
-        sun_elevation: f64,
-    ) -> Result<Self, Klassen1987Error> {
-        match settings.base_blue {
-            BaseBlue::Constant {
+        (sun_elevation, sun_distance_ratio): (f64, f64),
+        base: &BaseSky,
+    ) -> Self {
+        match base {
+            BaseSky::Solved(sky) => {
+                let ground_m = sky.atmosphere().planet.ground_altitude_m;
+                let sun = axes::direction(180.0, sun_elevation.to_degrees());
+                let view = sky.view(ground_m, sun).at_sun_distance(sun_distance_ratio);
+                let table = view.table(TableChannels::Spectral);
+                Self::Table(Box::new(table), sun_elevation)
+            }
+            BaseSky::Constant {
                 noon_luminance_cd_m2,
             } => {
                 let scattered = |density: f64| {
@@ -39,25 +60,7 @@ impl Blue {
                 };
                 let brightness = 0.01 + 0.99 * sun_elevation.sin();
                 let unit = noon_luminance_cd_m2 / to_xyz(grid, &scattered(1.0))[1];
-                Ok(Self::Constant(
-                    scattered(settings.air_density) * (unit * brightness) as f32,
-                ))
-            }
-            BaseBlue::Solver => {
-                let air = settings.dense_clear_air();
-                let ground_m = air.planet.ground_altitude_m;
-                let sun_deg = sun_elevation.to_degrees();
-                let sky = Sky::prepare(
-                    &air,
-                    grid,
-                    &SkySettings {
-                        suns: SunCoverage::near(sun_deg, ground_m),
-                        ..SkySettings::default()
-                    },
-                )?;
-                let view = sky.view(ground_m, axes::direction(180.0, sun_deg));
-                let table = view.table(TableChannels::Spectral);
-                Ok(Self::Table(Box::new(table), sun_elevation))
+                Self::Constant(scattered(settings.air_density) * (unit * brightness) as f32)
             }
         }
     }
@@ -77,6 +80,43 @@ impl Blue {
                 lanes
             }
         }
+    }
+}
+
+impl BaseSky {
+    /// Solves for the clear air of checked settings under a range of suns, where the blue is that.
+    ///
+    /// # Errors
+    /// [`Klassen1987Error::Sky`] for an atmosphere that the solver refuses.
+    pub fn prepare(
+        settings: &Klassen1987Settings,
+        suns: SunCoverage,
+        control: Control<'_>,
+    ) -> Result<Self, Klassen1987Error> {
+        if let BaseBlue::Constant {
+            noon_luminance_cd_m2,
+        } = settings.base_blue
+        {
+            return Ok(Self::Constant {
+                noon_luminance_cd_m2,
+            });
+        }
+        let air = settings.dense_clear_air();
+        let suns = match suns {
+            // It is seen from the ground.
+            SunCoverage::Near {
+                sun_elevation_deg, ..
+            } => SunCoverage::near(sun_elevation_deg.max(0.0), air.planet.ground_altitude_m),
+            SunCoverage::All => SunCoverage::All,
+        };
+        let settings = SkySettings {
+            suns,
+            ..SkySettings::default()
+        };
+        let grid = super::wavelength_grid();
+        Ok(Self::Solved(Sky::prepare_with(
+            &air, &grid, &settings, control,
+        )?))
     }
 }
 

@@ -39,6 +39,7 @@ mod geometry;
 mod haze;
 mod lanes;
 mod layers;
+mod model;
 mod scene;
 mod settings;
 mod simpson;
@@ -47,14 +48,17 @@ mod tests;
 
 pub use geometry::{HazePath, SunRay};
 pub use lanes::{FIRST_NM, WAVELENGTHS, wavelength_grid};
+pub use model::Klassen1987Model;
 pub use scene::{Fog1987, Klassen1987Scene, SUNSET_DEG};
 pub use settings::{BaseBlue, Haze, HazePhase, Klassen1987Error, Klassen1987Settings};
 
 use super::PublishedModel;
 use crate::axes;
+use crate::control::Control;
+use crate::sky::SunCoverage;
 use crate::spectrum::WavelengthGrid;
 use crate::sun::SunDisc;
-use blue::Blue;
+use blue::{BaseSky, Blue};
 use coherence::{Cells, Walker};
 use geometry::{RaySegment, Spheres};
 use glam::DVec3;
@@ -88,13 +92,27 @@ impl Klassen1987 {
     /// [`Klassen1987Error`] if a setting is outside its domain or the sun is below the horizon.
     pub fn new(settings: &Klassen1987Settings, sun: DVec3) -> Result<Self, Klassen1987Error> {
         settings.validate()?;
+        let suns = SunCoverage::near(axes::elevation_deg(sun), 0.0);
+        let base = BaseSky::prepare(settings, suns, Control::default())?;
+        Self::over(settings, &base, sun, 1.0)
+    }
+
+    /// The model of checked settings before a prepared blue, with the sun at a distance over the mean one.
+    fn over(
+        settings: &Klassen1987Settings,
+        base: &BaseSky,
+        sun: DVec3,
+        sun_distance_ratio: f64,
+    ) -> Result<Self, Klassen1987Error> {
         let sun = sun.normalize_or_zero();
         let elevation_deg = axes::elevation_deg(sun);
         // Tolerates rounding below 0.
         if sun == DVec3::ZERO || elevation_deg < -1e-9 {
             return Err(Klassen1987Error::SunBelowHorizon(elevation_deg));
         }
-        let grid = wavelength_grid().with_solar(&settings.clear_air.solar_irradiance);
+        let grid = wavelength_grid()
+            .with_solar(&settings.clear_air.solar_irradiance)
+            .at_sun_distance(sun_distance_ratio);
         let planet = &settings.clear_air.planet;
         let earth_m = planet.radius_m + planet.ground_altitude_m;
         let mut air_per_m = Lanes::ZERO;
@@ -110,11 +128,11 @@ impl Klassen1987 {
             },
             sun,
             sin_sun,
-            disc: settings.clear_air.sun.clone(),
+            disc: settings.clear_air.sun.at_distance_ratio(sun_distance_ratio),
             sunlight: Lanes::from_fn(|i| grid.solar_irradiance()[i] as f32),
             air_per_m,
             haze: HazeTables::new(settings)?,
-            blue: Blue::new(settings, &grid, sin_sun.asin())?,
+            blue: Blue::new(settings, &grid, (sin_sun.asin(), sun_distance_ratio), base),
             cells: OnceLock::new(),
             settings: settings.clone(),
             grid,
@@ -145,8 +163,9 @@ impl Klassen1987 {
     /// Opacity of the haze for light behind it (eq. 31).
     pub fn opacity(&self, direction: DVec3) -> Vec<f64> {
         let (sin_elevation, _) = self.angles(direction);
-        let clear = self.haze_transmittance(sin_elevation);
-        clear.0.iter().map(|&t| 1.0 - f64::from(t)).collect()
+        let depth = self.haze_depth(sin_elevation);
+        let opacity = |&depth: &f32| -(-f64::from(depth)).exp_m1();
+        depth.0.iter().map(opacity).collect()
     }
 
     /// `I_0` attenuated along `d_1` and `d_2` (eqs. 20 to 22, 13).
@@ -168,9 +187,13 @@ impl Klassen1987 {
         (level.y.min(1.0), level.dot(self.sun).clamp(-1.0, 1.0))
     }
 
+    /// Optical depth of the haze along a view ray.
+    fn haze_depth(&self, sin_elevation: f64) -> Lanes {
+        self.haze.extinction_per_m * self.spheres.haze_length_m(sin_elevation) as f32
+    }
+
     fn haze_transmittance(&self, sin_elevation: f64) -> Lanes {
-        let length_m = self.spheres.haze_length_m(sin_elevation);
-        exp_neg(self.haze.extinction_per_m * length_m as f32)
+        exp_neg(self.haze_depth(sin_elevation))
     }
 
     /// Eq. 23, or eqs. 27 to 29.
@@ -229,8 +252,8 @@ impl PublishedModel for Klassen1987 {
         self.sun
     }
 
-    fn disc_edge_rad(&self) -> f64 {
-        self.disc.angular_radius_rad
+    fn disc(&self) -> &SunDisc {
+        &self.disc
     }
 
     fn sky_xyz(&self, direction: DVec3) -> [f64; 3] {

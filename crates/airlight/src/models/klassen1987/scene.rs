@@ -24,6 +24,7 @@ use crate::models::klassen1987::fog::{Slab1987, SunDepth};
 use crate::optics::{Depolarization, PhaseFunction};
 use crate::scene::{IrradianceMap, SceneLighting};
 use crate::spectrum::{Spectrum, WavelengthGrid};
+use crate::sun::SunDisc;
 use crate::transfer::PathOptics;
 use glam::DVec3;
 use std::f32::consts::PI;
@@ -101,8 +102,7 @@ impl Klassen1987Scene {
         };
         let level = |irradiance: Lanes| irradiance * scene.model.sin_sun as f32;
         if foggy && axes::elevation_deg(scene.model.sun) < SUNSET_DEG {
-            let sky =
-                IrradianceMap::of(scene.model.sun, |d| scene.sky_alone(d)).irradiance(DVec3::Y);
+            let sky = scene.horizontal_irradiance(|d| scene.sky_alone(d));
             scene.evening = Some((level(scene.slab.irradiance_at_top()) + sky) / PI);
         }
         // The ground is lit by what is over it: itself black for that.
@@ -110,9 +110,21 @@ impl Klassen1987Scene {
             eye_height_m: 0.0,
             ..scene.clone()
         };
-        let even = IrradianceMap::of(scene.model.sun, |d| on_ground.around(d)).irradiance(DVec3::Y);
+        let even = scene.horizontal_irradiance(|d| on_ground.around(d));
         scene.ground = (level(scene.sunlight(0.0)) + even) * albedo / PI;
         Ok(scene)
+    }
+
+    /// Irradiance of the horizontal by a radiance.
+    fn horizontal_irradiance(&self, radiance: impl Fn(DVec3) -> Lanes + Sync) -> Lanes {
+        let map = IrradianceMap::new(self.model.sun, WAVELENGTHS, |directions, out| {
+            for (direction, out) in directions.iter().zip(out.chunks_exact_mut(WAVELENGTHS)) {
+                out.copy_from_slice(&radiance(*direction).0);
+            }
+        });
+        let mut lanes = Lanes::ZERO;
+        map.irradiance(DVec3::Y, &mut lanes.0);
+        lanes
     }
 
     /// The same from another height, m.
@@ -244,13 +256,9 @@ impl Klassen1987 {
     }
 }
 
-impl SceneLighting<WAVELENGTHS> for Klassen1987Scene {
-    fn sun(&self) -> DVec3 {
-        self.model.sun
-    }
-
-    /// Eqs. 34, 36 and 38 under `I_t`.
-    fn sunlight(&self, height_m: f64) -> Lanes {
+impl Klassen1987Scene {
+    /// Irradiance of the sun's disc at a height (m), on a surface that faces it: eqs. 34, 36 and 38 under `I_t`.
+    pub fn sunlight(&self, height_m: f64) -> Lanes {
         match (self.foggy, self.evening) {
             (false, _) => self.slab.irradiance_at_top(),
             (true, None) => self.slab.irradiance_at(height_m),
@@ -260,8 +268,8 @@ impl SceneLighting<WAVELENGTHS> for Klassen1987Scene {
         }
     }
 
-    /// The air above the fog and the fog (eqs. 39 to 46); without fog, haze and air.
-    fn before(&self, direction: DVec3, distance_m: f64) -> PathOptics<WAVELENGTHS> {
+    /// The air above the fog and the fog before a point at a distance (eqs. 39 to 46); without fog, haze and air.
+    pub fn before(&self, direction: DVec3, distance_m: f64) -> PathOptics<WAVELENGTHS> {
         let cos_sun = direction.dot(self.model.sun);
         let (eye_m, sin_elevation) = (self.eye_height_m, direction.y);
         match self.foggy {
@@ -276,8 +284,27 @@ impl SceneLighting<WAVELENGTHS> for Klassen1987Scene {
         }
     }
 
-    fn around(&self, direction: DVec3) -> Lanes {
+    /// Radiance that arrives from a direction, without the sun's disc.
+    pub fn around(&self, direction: DVec3) -> Lanes {
         self.seen(direction, &mut Simpson::new(0.0))
+    }
+}
+
+impl SceneLighting<WAVELENGTHS> for Klassen1987Scene {
+    fn sun(&self) -> DVec3 {
+        self.model.sun
+    }
+
+    fn sunlight(&self, height_m: f64) -> Lanes {
+        Klassen1987Scene::sunlight(self, height_m)
+    }
+
+    fn before(&self, direction: DVec3, distance_m: f64) -> PathOptics<WAVELENGTHS> {
+        Klassen1987Scene::before(self, direction, distance_m)
+    }
+
+    fn around(&self, direction: DVec3) -> Lanes {
+        Klassen1987Scene::around(self, direction)
     }
 }
 
@@ -286,8 +313,8 @@ impl PublishedModel for Klassen1987Scene {
         self.model.sun
     }
 
-    fn disc_edge_rad(&self) -> f64 {
-        self.model.disc_edge_rad()
+    fn disc(&self) -> &SunDisc {
+        self.model.disc()
     }
 
     fn has_ground(&self) -> bool {
@@ -328,6 +355,18 @@ impl PublishedModel for Klassen1987Scene {
 
     fn disc_spectrum(&self, direction: DVec3) -> Vec<f64> {
         super::f64s(&self.disc_along(direction))
+    }
+
+    fn path(&self, direction: DVec3, distance_m: f64) -> Option<(Vec<f32>, Vec<f64>)> {
+        let optics = self.before(direction, distance_m);
+        Some((
+            optics.transmittance.0.to_vec(),
+            super::f64s(&optics.path_radiance),
+        ))
+    }
+
+    fn sunlight(&self, height_m: f64) -> Option<Vec<f64>> {
+        Some(super::f64s(&Klassen1987Scene::sunlight(self, height_m)))
     }
 }
 

@@ -15,8 +15,13 @@
 mod sun;
 
 use super::PublishedModel;
+use super::prepared::{Prepared, turbidity};
+use crate::control::Control;
+use crate::scene::{Capabilities, Input, PreparedModel, RadianceModel, ResolvedScene, SceneError};
+use crate::sky::SunCoverage;
 use glam::DVec3;
 use std::f64::consts::PI;
+use std::sync::Arc;
 pub(super) use sun::DimmedSun;
 pub use sun::transmittance;
 
@@ -165,6 +170,50 @@ impl PublishedModel for Preetham {
     /// The limb-darkened disc, attenuated by the paper's formulas ([`transmittance`]) at its centre.
     fn disc_xyz(&self, direction: DVec3) -> [f64; 3] {
         self.disc.xyz(direction)
+    }
+}
+
+/// The sky of Preetham 1999 for the turbidity of a scene's air.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PreethamModel;
+
+impl RadianceModel for PreethamModel {
+    fn name(&self) -> &'static str {
+        "preetham"
+    }
+
+    fn summary(&self) -> &'static str {
+        "Preetham, Shirley & Smits 1999: a formula by turbidity, for the sun above the horizon"
+    }
+
+    fn capabilities(&self) -> Capabilities {
+        Capabilities {
+            inputs: &[
+                Input::Atmosphere,
+                Input::Haze,
+                Input::GroundAlbedo,
+                Input::Objects,
+            ],
+            variants: &[],
+            twilight: false,
+            parts: false,
+        }
+    }
+
+    fn prepare(
+        &self,
+        scene: &ResolvedScene,
+        _suns: SunCoverage,
+        _control: Control<'_>,
+    ) -> Result<Arc<dyn PreparedModel>, SceneError> {
+        let (name, turbidity) = (self.name(), turbidity(&scene.atmosphere));
+        let prepared = Prepared::new(name, scene, None, move |_, sun| {
+            let sky = Preetham::new(turbidity, sun.direction);
+            Ok(Arc::new(
+                sky.map_err(|error| SceneError::model(name, error))?,
+            ))
+        });
+        Ok(Arc::new(prepared))
     }
 }
 

@@ -25,20 +25,29 @@ mod sunlight;
 mod tests;
 mod vec3;
 
+use crate::control::Control;
 use crate::models::PublishedModel;
+use crate::models::prepared::Prepared;
+use crate::scene::{
+    Capabilities, Input, PreparedModel, RadianceModel, ResolvedScene, SceneError, SunlightKind,
+};
+use crate::sky::SunCoverage;
 use crate::spectrum::RgbSpace;
 use crate::spectrum::rgb::{Matrix3, apply};
+use crate::sun::{LimbDarkening, SunDisc};
 pub use constants::{EYE_ALTITUDE_M, UNIT_ILLUMINANCE, ZENITH_ILLUMINANCE_LX};
 use converged::Converged;
 use glam::DVec3;
 use printed::Printed;
 pub use settings::{Settings, SettingsError, Variant};
+use std::sync::Arc;
 pub use sunlight::Sunlight;
 
 /// The article's sky for one eye and one sun.
 pub struct SkyArticle {
     sun: DVec3,
-    model: Model,
+    disc: SunDisc,
+    model: Arc<Model>,
     to_xyz: Matrix3,
 }
 
@@ -63,25 +72,45 @@ impl SkyArticle {
         {
             return Err(SettingsError::Illuminance(lx));
         }
-        let sun = sun_direction
-            .try_normalize()
-            .ok_or(SettingsError::Sun(sun_direction))?;
         let model = match settings.variant {
             Variant::Printed => Model::Printed(Printed::new(eye, settings.sunlight)),
             Variant::PrintedF64 => Model::PrintedF64(Printed::new(eye, settings.sunlight)),
             variant => Model::Converged(Box::new(Converged::new(variant, settings))),
         };
+        let sky = Self {
+            sun: DVec3::Y,
+            // Where the smooth edge ends.
+            disc: SunDisc {
+                angular_radius_rad: (0.5 * constants::SUN_WIDTH_DEG).to_radians()
+                    * constants::SUN_EDGE[1],
+                limb_darkening: LimbDarkening::Uniform,
+            },
+            model: Arc::new(model),
+            to_xyz: RgbSpace::Srgb.to_xyz_matrix(),
+        };
+        sky.under(sun_direction)
+    }
+
+    /// The same air and eye under another sun.
+    ///
+    /// # Errors
+    /// [`SettingsError::Sun`].
+    pub fn under(&self, sun_direction: DVec3) -> Result<Self, SettingsError> {
+        let sun = sun_direction
+            .try_normalize()
+            .ok_or(SettingsError::Sun(sun_direction))?;
         Ok(Self {
             sun,
-            model,
-            to_xyz: RgbSpace::Srgb.to_xyz_matrix(),
+            disc: self.disc.clone(),
+            model: self.model.clone(),
+            to_xyz: self.to_xyz,
         })
     }
 
     /// Luminances of the red, green and blue channel of the sky along a unit vector, cd/m^2, without the sun's disc. The printed
     /// variants return what the shader returns: NaN for rays deep into the planet.
     pub fn luminance(&self, direction: DVec3) -> [f64; 3] {
-        match &self.model {
+        match self.model.as_ref() {
             Model::Printed(shader) => shader.luminance(direction.into(), self.sun.into()),
             Model::PrintedF64(shader) => shader.luminance(direction.into(), self.sun.into()),
             Model::Converged(model) => model.luminance(direction, self.sun),
@@ -90,7 +119,7 @@ impl SkyArticle {
 
     /// Luminances of the sun's disc, cd/m^2, whose edge is smooth from 0.95 to 1.05 of its radius.
     pub fn disc_luminance(&self, direction: DVec3) -> [f64; 3] {
-        match &self.model {
+        match self.model.as_ref() {
             Model::Printed(shader) => shader.disc(direction.into(), self.sun.into()),
             Model::PrintedF64(shader) => shader.disc(direction.into(), self.sun.into()),
             Model::Converged(model) => model.disc(direction, self.sun),
@@ -105,14 +134,98 @@ impl SkyArticle {
     }
 }
 
+/// The article's sky, in its own air.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SingleScatteringModel;
+
+/// Names of the variants, the default first.
+const VARIANTS: [(&str, Variant); 5] = [
+    ("corrected", Variant::Converged),
+    ("printed", Variant::Printed),
+    ("printed-f64", Variant::PrintedF64),
+    ("table", Variant::Table),
+    ("multiple", Variant::Multiple),
+];
+
+impl RadianceModel for SingleScatteringModel {
+    fn name(&self) -> &'static str {
+        "single-scattering"
+    }
+
+    fn summary(&self) -> &'static str {
+        "the sky article: sunlight scattered once, in its own air, and the steps beyond it (variants)"
+    }
+
+    fn capabilities(&self) -> Capabilities {
+        const NAMES: [&str; 5] = [
+            VARIANTS[0].0,
+            VARIANTS[1].0,
+            VARIANTS[2].0,
+            VARIANTS[3].0,
+            VARIANTS[4].0,
+        ];
+        Capabilities {
+            inputs: &[
+                Input::GroundAlbedo,
+                Input::ObserverHeight,
+                Input::Objects,
+                Input::Variant,
+                Input::Sunlight,
+            ],
+            variants: &NAMES,
+            twilight: true,
+            parts: false,
+        }
+    }
+
+    fn prepare(
+        &self,
+        scene: &ResolvedScene,
+        _suns: SunCoverage,
+        _control: Control<'_>,
+    ) -> Result<Arc<dyn PreparedModel>, SceneError> {
+        let name = self.name();
+        let refused = move |error| SceneError::model(name, error);
+        let solver = &scene.solver;
+        let variant = VARIANTS
+            .iter()
+            .find(|(name, _)| solver.variant.as_deref() == Some(name));
+        let settings = Settings {
+            variant: variant.map_or(Variant::Converged, |(_, variant)| *variant),
+            sunlight: match solver.sunlight.unwrap_or_default() {
+                SunlightKind::Measured => Sunlight::SolarSpectrum,
+                SunlightKind::White => {
+                    Sunlight::WhiteAtZenith(solver.zenith_lux.unwrap_or(ZENITH_ILLUMINANCE_LX))
+                }
+            },
+            eye_altitude_m: scene.observer_altitude_m,
+        };
+        // Its tables serve all suns.
+        let at_eye = SkyArticle::new(&settings, DVec3::Y).map_err(refused)?;
+        let prepared = Prepared::new(name, scene, None, move |eye_altitude_m, sun| {
+            let sky = match eye_altitude_m == settings.eye_altitude_m {
+                true => at_eye.under(sun.direction),
+                false => SkyArticle::new(
+                    &Settings {
+                        eye_altitude_m,
+                        ..settings
+                    },
+                    sun.direction,
+                ),
+            };
+            Ok(Arc::new(sky.map_err(refused)?))
+        });
+        Ok(Arc::new(prepared))
+    }
+}
+
 impl PublishedModel for SkyArticle {
     fn sun(&self) -> DVec3 {
         self.sun
     }
 
-    /// End of the smooth edge.
-    fn disc_edge_rad(&self) -> f64 {
-        (0.5 * constants::SUN_WIDTH_DEG).to_radians() * constants::SUN_EDGE[1]
+    fn disc(&self) -> &SunDisc {
+        &self.disc
     }
 
     /// Black where the printed shader returns NaN.

@@ -1,0 +1,333 @@
+//! The solver `monte-carlo`: random paths, without approximation.
+
+use super::orders::{PreparedOrders, sky_settings};
+use crate::atmosphere::Atmosphere;
+use crate::control::Control;
+use crate::math::parallel;
+use crate::monte_carlo::{
+    BUNDLE, Estimate, MonteCarlo, MonteCarloSettings, ORDERS, PolarisedEstimate, SunShape,
+};
+use crate::scene::{
+    Capabilities, Channels, Input, PreparedModel, RadianceModel, RadianceSampler, RadianceView,
+    ResolvedScene, SceneError, SolvedView, SunState,
+};
+use crate::sky::{LineOfSight, Scattering, SunCoverage};
+use crate::spectrum::WavelengthGrid;
+use crate::sun::SunDisc;
+use glam::DVec3;
+use std::sync::Arc;
+
+/// Paths for each direction where none are set.
+const PATHS: u64 = 256;
+
+/// Monte Carlo (path tracing): no approximation, slow, with noise of known size.
+///
+/// Radiance is random; irradiances and the sun's disc are those of [`Orders`](super::orders::Orders).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MonteCarloModel;
+
+impl RadianceModel for MonteCarloModel {
+    fn name(&self) -> &'static str {
+        "monte-carlo"
+    }
+
+    fn summary(&self) -> &'static str {
+        "Monte Carlo (path tracing): no approximation, slow, with noise of known size"
+    }
+
+    fn capabilities(&self) -> Capabilities {
+        Capabilities {
+            inputs: &[
+                Input::Atmosphere,
+                Input::Haze,
+                Input::Ozone,
+                Input::GroundAlbedo,
+                Input::ObserverHeight,
+                Input::SunDistance,
+                Input::Fog,
+                Input::Wavelengths,
+                Input::Scattering,
+                Input::Paths,
+                Input::NoiseMap,
+                Input::Polarisation,
+                Input::Spectra,
+                Input::Distances,
+            ],
+            variants: &[],
+            twilight: true,
+            parts: true,
+        }
+    }
+
+    fn prepare(
+        &self,
+        scene: &ResolvedScene,
+        suns: SunCoverage,
+        control: Control<'_>,
+    ) -> Result<Arc<dyn PreparedModel>, SceneError> {
+        let solver = &scene.solver;
+        let scattering = solver.scattering.unwrap_or(Scattering::All);
+        if scattering == Scattering::Single && scene.set_inputs.contains(&Input::Polarisation) {
+            return Err(SceneError::value(
+                "output.polarisation",
+                "all orders of scattering",
+                "scattering = \"single\"",
+                "leaving it out",
+            ));
+        }
+        let settings = MonteCarloSettings {
+            paths: solver.paths.unwrap_or(PATHS),
+            seed: solver.seed.unwrap_or(1),
+            sun: SunShape::Disc,
+        };
+        let mut atmosphere = scene.atmosphere.clone();
+        let ground_m = atmosphere.planet.ground_altitude_m;
+        if let Some(fog) = &scene.fog {
+            let layers = fog.in_air(ground_m, scene.grid.wavelengths_nm())?;
+            atmosphere.constituents.extend(layers);
+        }
+        // Any fault of the air shows before the preview is solved for.
+        MonteCarlo::new(&atmosphere, &scene.grid, settings)?;
+        Ok(Arc::new(PreparedMonteCarlo {
+            preview: PreparedOrders::new(scene, &sky_settings(solver, suns), control)?,
+            atmosphere,
+            settings,
+            orders: match scattering {
+                Scattering::All => ORDERS,
+                Scattering::Single => 1,
+            },
+        }))
+    }
+}
+
+/// Air with the fog in it, and the same solved for without noise.
+#[derive(Debug)]
+struct PreparedMonteCarlo {
+    preview: PreparedOrders,
+    atmosphere: Atmosphere,
+    settings: MonteCarloSettings,
+    /// Orders of scattering that count.
+    orders: usize,
+}
+
+impl PreparedModel for PreparedMonteCarlo {
+    fn grid(&self) -> Option<&WavelengthGrid> {
+        self.preview.grid()
+    }
+
+    fn view(
+        &self,
+        observer_altitude_m: f64,
+        sun: &SunState,
+        channels: Channels,
+    ) -> Result<Arc<dyn RadianceView>, SceneError> {
+        let preview = self
+            .preview
+            .solved_view(observer_altitude_m, sun, channels)?;
+        let grid = preview.sky_view().sky().grid();
+        let air = self.atmosphere.at_sun_distance(sun.distance_ratio);
+        let weights = match channels {
+            Channels::Rgb(space) => grid.rgb_weights(space),
+            Channels::Spectral => Vec::new(),
+        };
+        Ok(Arc::new(MonteCarloView {
+            paths: MonteCarlo::new(&air, grid, self.settings)?,
+            eye_altitude_m: observer_altitude_m,
+            weights,
+            orders: self.orders,
+            preview: Arc::new(preview),
+        }))
+    }
+}
+
+/// What Monte Carlo paths see from one eye under one sun.
+#[derive(Debug)]
+struct MonteCarloView {
+    /// In the light of the sun at its distance.
+    paths: MonteCarlo,
+    eye_altitude_m: f64,
+    /// Weights of the wavelengths in red, green and blue; empty where the values are spectra.
+    weights: Vec<[f32; 3]>,
+    orders: usize,
+    preview: Arc<SolvedView>,
+}
+
+impl MonteCarloView {
+    /// Adds radiance at each wavelength to values.
+    fn put(&self, radiance: impl Iterator<Item = f64>, sum: &mut [f64]) {
+        match self.weights.is_empty() {
+            true => sum.iter_mut().zip(radiance).for_each(|(sum, v)| *sum += v),
+            false => {
+                let mut rgb = [0.0; 3];
+                for (radiance, weights) in radiance.zip(&self.weights) {
+                    for (c, weight) in rgb.iter_mut().zip(weights) {
+                        *c += f64::from(*weight) * radiance;
+                    }
+                }
+                sum.iter_mut().zip(rgb).for_each(|(sum, v)| *sum += v);
+            }
+        }
+    }
+
+    /// A limit that the ray reaches before the ground; where it ends on the ground, that is seen.
+    fn limit_before_ground(&self, direction: DVec3, limit_m: Option<f64>) -> Option<f64> {
+        limit_m.filter(|_| {
+            !self
+                .preview
+                .sky_view()
+                .along(direction, limit_m)
+                .meets_ground
+        })
+    }
+}
+
+impl RadianceView for MonteCarloView {
+    fn channels(&self) -> Channels {
+        self.preview.channels()
+    }
+
+    fn grid(&self) -> Option<&WavelengthGrid> {
+        RadianceView::grid(self.preview.as_ref())
+    }
+
+    fn sun(&self) -> DVec3 {
+        RadianceView::sun(self.preview.as_ref())
+    }
+
+    fn disc(&self) -> &SunDisc {
+        RadianceView::disc(self.preview.as_ref())
+    }
+
+    fn horizon_elevation_rad(&self) -> f64 {
+        self.preview.horizon_elevation_rad()
+    }
+
+    /// The mean over all paths of each direction.
+    fn radiance(&self, directions: &[DVec3], out: &mut [f32]) {
+        let count = self.channel_count();
+        parallel::for_each_chunk(out, count, |i, out| {
+            let mut sum = vec![0.0; count];
+            if directions[i] != DVec3::ZERO {
+                self.put(
+                    self.estimate(directions[i], None).mean.into_iter(),
+                    &mut sum,
+                );
+            }
+            out.iter_mut()
+                .zip(sum)
+                .for_each(|(out, sum)| *out = sum as f32);
+        });
+    }
+
+    fn sun_disc(&self, directions: &[DVec3], out: &mut [f32]) {
+        self.preview.sun_disc(directions, out);
+    }
+
+    fn irradiance(&self, normals: &[DVec3], out: &mut [f32]) {
+        self.preview.irradiance(normals, out);
+    }
+
+    fn horizontal_irradiance(&self, out: &mut [f32]) {
+        self.preview.horizontal_irradiance(out);
+    }
+
+    fn sun_irradiance(&self, out: &mut [f32]) {
+        self.preview.sun_irradiance(out);
+    }
+
+    fn sunlight(&self, height_m: f64, out: &mut [f32]) {
+        self.preview.sunlight(height_m, out);
+    }
+
+    /// Path radiance by paths, transmittance without noise.
+    fn path(
+        &self,
+        direction: DVec3,
+        distance_m: f64,
+        transmittance: &mut [f32],
+        path_radiance: &mut [f32],
+    ) {
+        self.preview
+            .path(direction, distance_m, transmittance, path_radiance);
+        if distance_m.is_finite() {
+            let mut sum = vec![0.0; path_radiance.len()];
+            let estimate = self.estimate(direction, Some(distance_m));
+            self.put(estimate.mean.into_iter(), &mut sum);
+            path_radiance
+                .iter_mut()
+                .zip(sum)
+                .for_each(|(out, sum)| *out = sum as f32);
+        }
+    }
+
+    fn line_of_sight(&self, direction: DVec3, limit_m: Option<f64>) -> Option<LineOfSight> {
+        self.preview.line_of_sight(direction, limit_m)
+    }
+
+    fn sampler(&self) -> Option<&dyn RadianceSampler> {
+        Some(self)
+    }
+}
+
+impl RadianceSampler for MonteCarloView {
+    fn paths_per_bundle(&self) -> u64 {
+        BUNDLE as u64
+    }
+
+    fn paths(&self) -> u64 {
+        self.paths.settings().paths
+    }
+
+    fn add_bundle(&self, direction: DVec3, bundle: u64, sum: &mut [f64]) {
+        let sun = RadianceView::sun(self);
+        let sample = self
+            .paths
+            .sample(self.eye_altitude_m, sun, direction, bundle);
+        let orders = &sample[..self.orders];
+        let lanes = self.paths.grid().len();
+        let radiance = (0..lanes).map(|lane| orders.iter().map(|order| order[lane]).sum());
+        self.put(radiance, sum);
+    }
+
+    fn add_polarised_bundle(
+        &self,
+        direction: DVec3,
+        bundle: u64,
+        sum: &mut [f64],
+        stokes: &mut [f64; 3],
+    ) {
+        let (eye_m, sun) = (self.eye_altitude_m, RadianceView::sun(self));
+        let sample = self
+            .paths
+            .sample_polarised(eye_m, sun, direction, None, bundle);
+        for (lane, weights) in self.paths.grid().xyz_weights().iter().enumerate() {
+            for (sum, part) in stokes.iter_mut().zip(&sample.stokes) {
+                *sum += weights[1] * part[lane];
+            }
+        }
+        let [intensity, _, _] = sample.stokes;
+        self.put(intensity.into_iter(), sum);
+    }
+
+    fn estimate(&self, direction: DVec3, limit_m: Option<f64>) -> Estimate {
+        let (eye_m, sun) = (self.eye_altitude_m, RadianceView::sun(self));
+        let found = match self.limit_before_ground(direction, limit_m) {
+            Some(limit_m) => self.paths.path_radiance(eye_m, sun, direction, limit_m),
+            None => self.paths.radiance(eye_m, sun, direction),
+        };
+        match self.orders {
+            1 => found.first_order(),
+            _ => found,
+        }
+    }
+
+    fn polarised_estimate(&self, direction: DVec3, limit_m: Option<f64>) -> PolarisedEstimate {
+        let (eye_m, sun) = (self.eye_altitude_m, RadianceView::sun(self));
+        let limit_m = self.limit_before_ground(direction, limit_m);
+        self.paths.polarised(eye_m, sun, direction, limit_m)
+    }
+
+    fn preview(&self) -> Arc<dyn RadianceView> {
+        self.preview.clone()
+    }
+}

@@ -1,0 +1,100 @@
+//! A published model prepared for a scene.
+
+use super::PublishedModel;
+use super::published_view::PublishedView;
+use crate::atmosphere::aerosol::turbidity_of_optical_depth;
+use crate::atmosphere::{Atmosphere, ConstituentKind};
+use crate::scene::{Channels, PreparedModel, RadianceView, ResolvedScene, SceneError, SunState};
+use crate::spectrum::{SpectralCurve, WavelengthGrid};
+use std::fmt;
+use std::sync::Arc;
+
+/// A published model prepared for a scene: what `make` builds for an eye at an altitude (m above sea level) and a sun.
+pub(super) struct Prepared<F> {
+    name: &'static str,
+    albedo: SpectralCurve,
+    /// Wavelengths of its spectra.
+    grid: Option<WavelengthGrid>,
+    /// Whether objects are shaded at its wavelengths, also in RGB pictures.
+    spectral_objects: bool,
+    make: F,
+}
+
+impl<F> Prepared<F>
+where
+    F: Fn(f64, &SunState) -> Result<Arc<dyn PublishedModel>, SceneError> + Send + Sync + 'static,
+{
+    /// A model that knows colours only, without `grid`, or one with spectra at the wavelengths of one.
+    pub fn new(
+        name: &'static str,
+        scene: &ResolvedScene,
+        grid: Option<WavelengthGrid>,
+        make: F,
+    ) -> Self {
+        Self {
+            name,
+            albedo: scene.atmosphere.planet.ground_albedo.clone(),
+            grid,
+            spectral_objects: false,
+            make,
+        }
+    }
+
+    /// With objects shaded at the model's wavelengths also in RGB pictures.
+    pub fn with_spectral_objects(self) -> Self {
+        Self {
+            spectral_objects: true,
+            ..self
+        }
+    }
+}
+
+impl<F> PreparedModel for Prepared<F>
+where
+    F: Fn(f64, &SunState) -> Result<Arc<dyn PublishedModel>, SceneError> + Send + Sync + 'static,
+{
+    fn grid(&self) -> Option<&WavelengthGrid> {
+        self.grid.as_ref()
+    }
+
+    fn object_channels(&self, channels: Channels) -> Channels {
+        match self.spectral_objects {
+            true => Channels::Spectral,
+            false => channels,
+        }
+    }
+
+    fn view(
+        &self,
+        observer_altitude_m: f64,
+        sun: &SunState,
+        channels: Channels,
+    ) -> Result<Arc<dyn RadianceView>, SceneError> {
+        let model = (self.make)(observer_altitude_m, sun)?;
+        Ok(Arc::new(PublishedView::new(
+            self.name,
+            model,
+            &self.albedo,
+            channels,
+        )?))
+    }
+}
+
+impl<F> fmt::Debug for Prepared<F> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Prepared")
+            .field("name", &self.name)
+            .finish_non_exhaustive()
+    }
+}
+
+/// The turbidity of an atmosphere: optical depth of molecules and haze over that of molecules, at 550 nm.
+pub(super) fn turbidity(air: &Atmosphere) -> f64 {
+    let planet = &air.planet;
+    let depth = air
+        .constituent(&ConstituentKind::Aerosol)
+        .map_or(0.0, |haze| {
+            haze.optical_depth(planet.ground_altitude_m, planet.top_altitude_m, 550.0)
+        });
+    turbidity_of_optical_depth(depth, air.clear_air())
+}

@@ -1,0 +1,280 @@
+//! The light of a solved sky, and of the fog in it.
+
+use super::fog_in_sky::FogInSky;
+use super::sun_disc_table::SunDiscTable;
+use super::{Channels, FogLayers, IrradianceMap, RadianceView, RowSampler, SceneError};
+use crate::axes;
+use crate::sky::{LineOfSight, SkyColumns, SkyTable, View};
+use crate::spectrum::WavelengthGrid;
+use crate::sun::SunDisc;
+use glam::DVec3;
+use std::f64::consts::PI;
+use std::fmt;
+use std::sync::{Arc, OnceLock};
+
+/// A solved sky in the channels of a picture, and the fog in it. Tables that not every caller needs are made at first use.
+pub(crate) struct SolvedView {
+    view: View,
+    channels: Channels,
+    /// Wavelengths under the sun at its distance, where the values are spectra.
+    grid: Option<WavelengthGrid>,
+    clear: Arc<SkyTable>,
+    fog: Option<Arc<FogInSky>>,
+    /// Air without fog, for what lies before objects.
+    air: OnceLock<FogInSky>,
+    disc: OnceLock<Option<SunDiscTable>>,
+    irradiance: OnceLock<IrradianceMap>,
+}
+
+impl SolvedView {
+    /// Tabulates the sky of a view with fog in it, or without; `sun_distance_ratio` is that of the view.
+    ///
+    /// # Errors
+    /// [`SceneError`] for fog that is refused.
+    pub fn new(
+        view: View,
+        sun_distance_ratio: f64,
+        fog: Option<&FogLayers>,
+        channels: Channels,
+    ) -> Result<Self, SceneError> {
+        let fog = match fog {
+            Some(fog) => Some(Arc::new(FogInSky::new(Some(fog), &view, channels)?)),
+            None => None,
+        };
+        let clear = match &fog {
+            Some(fog) => fog.clear().clone(),
+            None => Arc::new(view.table(channels)),
+        };
+        let grid = match channels {
+            Channels::Spectral => Some(view.sky().grid().at_sun_distance(sun_distance_ratio)),
+            Channels::Rgb(_) => None,
+        };
+        Ok(Self {
+            view,
+            channels,
+            grid,
+            clear,
+            fog,
+            air: OnceLock::new(),
+            disc: OnceLock::new(),
+            irradiance: OnceLock::new(),
+        })
+    }
+
+    /// The sky of the solver that is looked at.
+    pub fn sky_view(&self) -> &View {
+        &self.view
+    }
+
+    /// Air, and fog where there is any.
+    fn air(&self) -> &FogInSky {
+        match &self.fog {
+            Some(fog) => fog,
+            None => self.air.get_or_init(|| {
+                FogInSky::new(None, &self.view, self.channels)
+                    .expect("channels of a view and no fog are never refused")
+            }),
+        }
+    }
+
+    #[inline]
+    fn sample(&self, direction: DVec3, out: &mut [f32]) {
+        if direction == DVec3::ZERO {
+            out.fill(0.0);
+            return;
+        }
+        self.clear.sample(direction, out);
+        if let Some(fog) = &self.fog {
+            fog.cover(direction, out);
+        }
+    }
+
+    /// From values at the wavelengths of the sky to channels.
+    fn put(&self, spectrum: &[f32], out: &mut [f32]) {
+        match self.channels {
+            Channels::Spectral => out.copy_from_slice(spectrum),
+            Channels::Rgb(space) => {
+                let rgb = space.from_xyz(self.view.sky().grid().to_xyz(spectrum));
+                out.iter_mut().zip(rgb).for_each(|(out, v)| *out = v as f32);
+            }
+        }
+    }
+}
+
+impl RadianceView for SolvedView {
+    fn channels(&self) -> Channels {
+        self.channels
+    }
+
+    fn grid(&self) -> Option<&WavelengthGrid> {
+        self.grid.as_ref()
+    }
+
+    fn sun(&self) -> DVec3 {
+        self.view.sun()
+    }
+
+    fn disc(&self) -> &SunDisc {
+        self.view.disc()
+    }
+
+    fn horizon_elevation_rad(&self) -> f64 {
+        self.clear.horizon_elevation_rad()
+    }
+
+    fn averages_horizon(&self) -> bool {
+        true
+    }
+
+    fn radiance(&self, directions: &[DVec3], out: &mut [f32]) {
+        let values = out.chunks_exact_mut(self.clear.channels());
+        for (&direction, values) in directions.iter().zip(values) {
+            self.sample(direction, values);
+        }
+    }
+
+    fn row_sampler(&self, azimuths_rad: &[f64]) -> Option<Box<dyn RowSampler>> {
+        let sun_rad = axes::azimuth_deg(self.sun()).to_radians();
+        let columns = self
+            .clear
+            .columns(azimuths_rad.iter().map(|rad| rad - sun_rad));
+        Some(Box::new(SolvedRows {
+            clear: self.clear.clone(),
+            columns,
+            fog: self.fog.clone(),
+        }))
+    }
+
+    fn sun_disc(&self, directions: &[DVec3], out: &mut [f32]) {
+        let table = self.disc.get_or_init(|| {
+            let fog = |direction| {
+                self.fog
+                    .as_ref()
+                    .map_or(1.0, |fog| fog.transmittance(direction))
+            };
+            SunDiscTable::new(&self.view, self.channels, self.horizon_elevation_rad(), fog)
+        });
+        let Some(table) = table else {
+            out.fill(0.0);
+            return;
+        };
+        let values = out.chunks_exact_mut(self.clear.channels());
+        for (&direction, values) in directions.iter().zip(values) {
+            table.sample(direction, values);
+        }
+    }
+
+    fn irradiance(&self, normals: &[DVec3], out: &mut [f32]) {
+        let count = self.clear.channels();
+        let map = self.irradiance.get_or_init(|| {
+            IrradianceMap::new(self.sun(), count, |directions, out| {
+                self.radiance(directions, out)
+            })
+        });
+        for (&normal, out) in normals.iter().zip(out.chunks_exact_mut(count)) {
+            map.irradiance(normal, out);
+        }
+    }
+
+    /// With fog from rings of even weight: to a few percent where the fog's glow about the sun is narrow.
+    fn horizontal_irradiance(&self, out: &mut [f32]) {
+        const RINGS: u32 = 60;
+        const SPOKES: u32 = 120;
+        if self.fog.is_none() {
+            out.copy_from_slice(&self.clear.irradiance(DVec3::Y));
+            return;
+        }
+        let mut values = vec![0.0; out.len()];
+        let mut sum = vec![0.0f64; out.len()];
+        for ring in 0..RINGS {
+            // Rings of equal weight: even in the squared sine of the elevation.
+            let sine = ((f64::from(ring) + 0.5) / f64::from(RINGS)).sqrt();
+            for spoke in 0..SPOKES {
+                let azimuth_deg = 360.0 * (f64::from(spoke) + 0.5) / f64::from(SPOKES);
+                self.sample(
+                    axes::direction(azimuth_deg, sine.asin().to_degrees()),
+                    &mut values,
+                );
+                sum.iter_mut()
+                    .zip(&values)
+                    .for_each(|(sum, v)| *sum += f64::from(*v));
+            }
+        }
+        let weight = PI / f64::from(RINGS * SPOKES);
+        out.iter_mut()
+            .zip(sum)
+            .for_each(|(out, sum)| *out = (weight * sum) as f32);
+    }
+
+    fn sun_irradiance(&self, out: &mut [f32]) {
+        let through = self
+            .fog
+            .as_ref()
+            .map_or(1.0, |fog| fog.transmittance(self.sun()));
+        let spectrum: Vec<f32> = self
+            .view
+            .sun_irradiance()
+            .iter()
+            .map(|e| e * through)
+            .collect();
+        self.put(&spectrum, out);
+    }
+
+    fn sunlight(&self, height_m: f64, out: &mut [f32]) {
+        self.air().sunlight(height_m, out);
+    }
+
+    fn path(
+        &self,
+        direction: DVec3,
+        distance_m: f64,
+        transmittance: &mut [f32],
+        path_radiance: &mut [f32],
+    ) {
+        self.air()
+            .path(direction, distance_m, transmittance, path_radiance);
+    }
+
+    fn line_of_sight(&self, direction: DVec3, limit_m: Option<f64>) -> Option<LineOfSight> {
+        Some(self.view.along(direction, limit_m))
+    }
+}
+
+impl fmt::Debug for SolvedView {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("SolvedView")
+            .field("sky", self.view.sky())
+            .field("channels", &self.channels)
+            .field("fog", &self.fog.is_some())
+            .finish_non_exhaustive()
+    }
+}
+
+/// Rows of a solved sky in columns of fixed azimuth.
+struct SolvedRows {
+    clear: Arc<SkyTable>,
+    columns: SkyColumns,
+    fog: Option<Arc<FogInSky>>,
+}
+
+impl RowSampler for SolvedRows {
+    fn sample_row(&self, directions: &[DVec3], out: &mut [f32]) {
+        let Some(first) = directions.first() else {
+            return;
+        };
+        let elevation = first.y.atan2(first.x.hypot(first.z));
+        self.clear.sample_row(elevation, &self.columns, out);
+        if let Some(fog) = &self.fog {
+            let values = out.chunks_exact_mut(self.clear.channels());
+            for (&direction, values) in directions.iter().zip(values) {
+                fog.cover(direction, values);
+            }
+        }
+    }
+}
+
+impl fmt::Debug for SolvedRows {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("SolvedRows").finish_non_exhaustive()
+    }
+}

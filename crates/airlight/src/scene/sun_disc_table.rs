@@ -1,0 +1,123 @@
+//! The radiance of the sun's disc, tabulated for pictures.
+
+use super::Channels;
+use crate::axes;
+use crate::math::interpolation::Place;
+use crate::sky::View;
+use glam::DVec3;
+
+/// Elevations and cosines on the sun at which the disc's radiance is tabulated.
+const ELEVATIONS: usize = 129;
+const COSINES: usize = 65;
+
+/// Radiance of the sun's disc of a view, by elevation (which the air's transmittance follows) and by the cosine on the sun
+/// (which the limb darkening follows), bilinear.
+#[derive(Debug)]
+pub(super) struct SunDiscTable {
+    sun: DVec3,
+    radius_rad: f64,
+    /// Lowest and highest elevation, rad; the lowest is the horizon's at least.
+    elevations: (f64, f64),
+    channels: usize,
+    /// `[elevation][cosine][channel]`.
+    values: Vec<f32>,
+}
+
+impl SunDiscTable {
+    /// Tabulates the disc of a view through what `fog` lets pass by direction; `None` where the planet hides all of it.
+    pub fn new(
+        view: &View,
+        channels: Channels,
+        horizon_rad: f64,
+        fog: impl Fn(DVec3) -> f32,
+    ) -> Option<Self> {
+        let sun = view.sun();
+        let radius_rad = view.disc().angular_radius_rad;
+        let centre = elevation(sun);
+        let lowest = (centre - radius_rad).max(horizon_rad + 1e-7);
+        let highest = centre + radius_rad;
+        if lowest >= highest {
+            return None;
+        }
+        let irradiance = view.solar_irradiance();
+        let grid = view.sky().grid();
+        let azimuth_deg = axes::azimuth_deg(sun);
+        // Radiance per irradiance at each cosine, wavelength by wavelength.
+        let shape: Vec<Vec<f64>> = (0..COSINES)
+            .map(|m| {
+                let mu = m as f64 / (COSINES - 1) as f64;
+                // Just inside the limb, beyond which there is nothing.
+                let angle = (radius_rad.sin() * (1.0 - mu * mu).sqrt() * (1.0 - 1e-12)).asin();
+                let nm = grid.wavelengths_nm().iter();
+                nm.map(|&nm| view.disc().radiance_per_irradiance(angle, nm))
+                    .collect()
+            })
+            .collect();
+        let weights = match channels {
+            Channels::Rgb(space) => Some(grid.rgb_weights(space)),
+            Channels::Spectral => None,
+        };
+        let count = weights.as_ref().map_or(grid.len(), |_| 3);
+        let mut values = Vec::with_capacity(ELEVATIONS * COSINES * count);
+        for k in 0..ELEVATIONS {
+            let part = k as f64 / (ELEVATIONS - 1) as f64;
+            let elevation = lowest + (highest - lowest) * part;
+            let direction = axes::direction(azimuth_deg, elevation.to_degrees());
+            let transmittance = view.transmittance_to_space(direction);
+            let fog = fog(direction);
+            for shape in &shape {
+                let arriving = |lane: usize| {
+                    (f64::from(irradiance[lane] * transmittance[lane] * fog) * shape[lane]) as f32
+                };
+                match &weights {
+                    None => values.extend((0..count).map(arriving)),
+                    Some(weights) => {
+                        let mut sum = [0.0f32; 3];
+                        for (lane, weights) in weights.iter().enumerate() {
+                            let arriving = arriving(lane);
+                            for (sum, weight) in sum.iter_mut().zip(weights) {
+                                *sum += weight * arriving;
+                            }
+                        }
+                        values.extend(sum);
+                    }
+                }
+            }
+        }
+        Some(Self {
+            sun,
+            radius_rad,
+            elevations: (lowest, highest),
+            channels: count,
+            values,
+        })
+    }
+
+    /// Radiance along a unit vector; zero beside the disc and below the horizon.
+    pub fn sample(&self, direction: DVec3, out: &mut [f32]) {
+        out.fill(0.0);
+        let from_sun = 2.0 * (0.5 * direction.distance(self.sun)).min(1.0).asin();
+        let s = from_sun.sin() / self.radius_rad.sin();
+        let elevation = elevation(direction);
+        let (lowest, highest) = self.elevations;
+        // Up to the horizon, which lies a little below the lowest elevation.
+        if from_sun >= self.radius_rad || s >= 1.0 || elevation < lowest - 2e-7 {
+            return;
+        }
+        let row = Place::evenly((elevation - lowest) / (highest - lowest), ELEVATIONS);
+        let column = Place::evenly(((1.0 - s) * (1.0 + s)).sqrt(), COSINES);
+        for (k, wk) in [(0, 1.0 - row.fraction), (1, row.fraction)] {
+            for (m, wm) in [(0, 1.0 - column.fraction), (1, column.fraction)] {
+                let cell = (row.below + k) * COSINES + column.below + m;
+                let values = &self.values[cell * self.channels..][..self.channels];
+                for (out, value) in out.iter_mut().zip(values) {
+                    *out += (wk * wm) as f32 * value;
+                }
+            }
+        }
+    }
+}
+
+fn elevation(direction: DVec3) -> f64 {
+    direction.y.atan2(direction.x.hypot(direction.z))
+}
