@@ -425,6 +425,11 @@ mod tests {
             assert!(refused(text).contains(part), "{text}: {}", refused(text));
         }
     }
+}
+
+#[cfg(test)]
+mod guards {
+    use super::*;
 
     /// Values that version 0.1.0 drew.
     #[test]
