@@ -64,7 +64,7 @@ impl Input {
     }
 }
 
-/// The result of [`find_inputs`].
+/// The pictures of a batch, and what was left out.
 #[derive(Clone, Debug)]
 pub struct FoundInputs {
     /// Pictures with depth, sorted by their captures; at least one.

@@ -3,7 +3,7 @@
 //!
 //! 1. [`BatchPlan::new`] finds the inputs of an [`OverlayScene`](crate::overlay::OverlayScene) whose paths are folders or
 //!    [`Pattern`]s, and checks that every picture has an output of its own.
-//! 2. [`BatchPlan::start`] opens the [`Manifest`] and finds the pictures that do not exist yet.
+//! 2. [`BatchPlan::start`] opens the manifest and finds the pictures that do not exist yet.
 //! 3. [`BatchRun::run`] makes them.
 
 mod draw;
@@ -17,9 +17,8 @@ mod run;
 mod vary;
 
 pub use error::{BatchError, listed};
-pub use inputs::{FoundInputs, Input, InputPath, find_inputs};
-pub use manifest::{MANIFEST_VERSION, Manifest};
+pub use inputs::{FoundInputs, Input};
 pub use pattern::{Match, Pattern};
 pub use plan::{BatchPlan, BatchSettings, is_batch};
 pub use run::{BatchReport, BatchRun};
-pub use vary::{Variation, variation_names};
+pub use vary::Variation;

@@ -1,6 +1,7 @@
 //! The pictures of a batch: their inputs, outputs and settings.
 
-use super::{BatchError, FoundInputs, Input, InputPath, Pattern, Variation, find_inputs};
+use super::inputs::{InputPath, find_inputs};
+use super::{BatchError, FoundInputs, Input, Pattern, Variation};
 use crate::overlay::OverlayScene;
 use airlight_image::output::PictureFormat;
 use std::collections::{HashMap, HashSet};

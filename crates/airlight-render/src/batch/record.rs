@@ -1,6 +1,6 @@
 //! Lines of a manifest.
 
-use super::{BatchError, Input, MANIFEST_VERSION};
+use super::{BatchError, Input, manifest::MANIFEST_VERSION};
 use crate::overlay::{LightLevelSource, OverlayImage, OverlayScene, PreparedOverlay};
 use serde::Serialize;
 use serde_json::{Map, Value};

@@ -1,7 +1,8 @@
 //! Running a batch: threads that each read a picture, put fog over it, write it and take the next.
 
+use super::manifest::{Manifest, is_whole};
 use super::record::{Record, differences};
-use super::{BatchError, BatchPlan, Input, Manifest, manifest::is_whole};
+use super::{BatchError, BatchPlan, Input};
 use crate::RenderError;
 use crate::overlay::{OverlayImage, OverlayScene, PreparedOverlay, SkyLight};
 use airlight_image::{Control, ImageError};

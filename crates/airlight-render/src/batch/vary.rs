@@ -211,8 +211,8 @@ const OF_SKY: [&str; 4] = [
     "ground-albedo",
 ];
 
-/// Names of all settings that can vary, in the order of the help.
-pub fn variation_names() -> impl Iterator<Item = &'static str> {
+/// Names of all settings that can vary.
+fn variation_names() -> impl Iterator<Item = &'static str> {
     SETTINGS.iter().map(|setting| setting.name)
 }
 

@@ -20,7 +20,7 @@ mod prepared_overlay;
 mod sky_light;
 mod spec;
 
-pub use ambient::{Ambient, estimate_ambient, horizon_pixels};
+pub use ambient::{Ambient, estimate_ambient};
 pub use fog_overlay::{ExistingAerial, FogOverlay, FogSource};
 pub use light_level::{LightLevel, LightLevelSource};
 pub use monte_carlo::{MonteCarloFog, MonteCarloPass};
@@ -34,6 +34,7 @@ use airlight::spectrum::Spectrum;
 use airlight::transfer::PathOptics;
 use airlight_image::input::{DepthKind, DepthMap, LightReference, Picture};
 use airlight_image::{ImageError, Intrinsics, RowSource, Size};
+use ambient::horizon_pixels;
 use fog_overlay::FogSampler;
 use glam::DVec3;
 
