@@ -43,6 +43,7 @@ pub enum FogSource {
 /// Whether a picture shows the clear air before its objects.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum ExistingAerial {
     /// It does, like every photograph.
     #[default]

@@ -50,6 +50,7 @@ const PATHS: u64 = 256;
 
 /// A picture in fog: a scene with fog, lights, sun, camera and output, and the picture that it is laid over.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct OverlayScene {
     /// Fog, lights, sun, air, camera, solver and output.
     #[serde(flatten)]
@@ -77,6 +78,12 @@ impl OverlayScene {
     /// [`RenderError::Setting`] for a value that TOML cannot hold, such as a seed beyond 2^63.
     pub fn to_toml(&self) -> Result<String, RenderError> {
         toml::to_string(self).map_err(|error| RenderError::setting(format!("scene: {error}")))
+    }
+
+    /// JSON Schema of scene files with a table `[overlay]`: editors complete and check them with it.
+    #[cfg(feature = "schema")]
+    pub fn json_schema() -> String {
+        format!("{:#}", schemars::schema_for!(Self).to_value())
     }
 
     /// The fog; without any setting if the scene has none.

@@ -13,6 +13,7 @@ use std::path::{Path, PathBuf};
 /// Meaning of the numbers in a depth file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub enum DepthFileKind {
     /// Depth along the camera's axis.
@@ -29,6 +30,7 @@ pub enum DepthFileKind {
 /// Treatment of pixels whose depth is unknown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub enum DepthHoles {
     /// Filled from their neighbours.
@@ -43,6 +45,7 @@ pub enum DepthHoles {
 /// Colour picture, depth map and light level of an overlay: the table `[overlay]` of a scene file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct OverlaySpec {
     /// Colour picture: EXR or HDR (linear), PNG or JPEG (decoded to light and encoded again); of a batch, a folder or pattern.
     pub colour: PathBuf,

@@ -264,6 +264,18 @@ fn contradictions_are_refused_before_any_file_is_read() {
     }
 }
 
+#[cfg(feature = "schema")]
+#[test]
+fn the_schema_has_the_scene_and_the_overlay() {
+    let schema: serde_json::Value = serde_json::from_str(&OverlayScene::json_schema()).unwrap();
+    let keys = schema["properties"].as_object().unwrap();
+    for key in ["version", "fog", "lights", "camera", "overlay"] {
+        assert!(keys.contains_key(key), "{key}: {schema:#}");
+    }
+    let overlay = &schema["$defs"]["OverlaySpec"]["properties"];
+    assert!(overlay["depth_kind"].is_object(), "{schema:#}");
+}
+
 #[test]
 fn descriptions_are_read_as_they_are_written() {
     let mut scene = sunny(Some(FogScattering::Single));
