@@ -1,4 +1,4 @@
-//! Speed of fog: rays through it, and solving for the light inside.
+//! Speed of fog: view rays, and solving for multiple scattering.
 //!
 //! `cargo bench -p airlight --bench fog`
 
@@ -67,7 +67,7 @@ fn spectral(scattering: FogScattering) -> Fog {
     Fog::new(&[layer], Ground::FLAT, &lighting, scattering, &grid).unwrap()
 }
 
-/// Rays of a picture: a thousand directions and distances.
+/// View rays of a picture: a thousand directions and distances.
 fn rays() -> Vec<(DVec3, f64)> {
     (0..THOUSAND)
         .map(|k| {
@@ -130,7 +130,7 @@ fn two_profiles_rgb(bencher: Bencher) {
 }
 
 #[divan::bench(args = ["exponential", "clamped", "slab"])]
-fn many_scatterings_rgb(bencher: Bencher, name: &str) {
+fn multiple_scattering_rgb(bencher: Bencher, name: &str) {
     look_rgb(
         bencher,
         &rgb(&[name], Ground::FLAT, FogScattering::Multiple),
@@ -138,11 +138,11 @@ fn many_scatterings_rgb(bencher: Bencher, name: &str) {
 }
 
 #[divan::bench]
-fn many_scatterings_16_wavelengths(bencher: Bencher) {
+fn multiple_scattering_16_wavelengths(bencher: Bencher) {
     look_spectral(bencher, &spectral(FogScattering::Multiple));
 }
 
-/// Solving for the light inside: once for a fog and its sun.
+/// Solves for multiple scattering, once for a fog and its sun.
 #[divan::bench]
 fn solving_rgb() -> RgbFog {
     rgb(&["exponential"], Ground::FLAT, FogScattering::Multiple)

@@ -1,5 +1,5 @@
-//! Speed of a view ray past a light in fog: `cargo bench -p airlight --bench fog_lights`. Every bench follows 64 rays and counts
-//! them as items: the time of one is the printed time over 64.
+//! Speed of a view ray past a light in fog: `cargo bench -p airlight --bench fog_lights`. Each bench traces 64 rays and counts
+//! them as items: the time of one ray is the printed time divided by 64.
 
 use airlight::atmosphere::{Constituent, ConstituentKind, DensityProfile};
 use airlight::fog::lights::{

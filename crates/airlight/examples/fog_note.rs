@@ -1,6 +1,6 @@
-//! Tables of the book's chapter on the fog note, as it shows them (`scripts/book`).
+//! Prints the tables of the book's chapter on the fog note (`scripts/book`).
 //!
-//! `cargo run --release -p airlight --example fog_note`; with the word `lamp`, `base` or `speed` only that one.
+//! `cargo run --release -p airlight --example fog_note`; with the argument `light`, `base` or `speed` only that one.
 
 mod common;
 
@@ -13,19 +13,19 @@ use std::f64::consts::PI;
 use std::hint::black_box;
 use std::time::Instant;
 
-const TABLES: [Table; 3] = [("lamp", lamp_forms), ("base", base), ("speed", speed)];
+const TABLES: [Table; 3] = [("light", light_forms), ("base", base), ("speed", speed)];
 
 fn main() -> Result<(), Box<dyn Error>> {
     common::print(&TABLES)
 }
 
-/// The light of a lamp by each form over the exact one: b = -5, c = 26, d = 20, and the same with the lamp 5 m behind the
-/// line's end.
-fn lamp_forms() {
+/// Airlight of a light by each form relative to the exact one: b = -5, c = 26, d = 20, and the same with the light 5 m beyond
+/// the end of the ray.
+fn light_forms() {
     println!(
-        "| lamp | extinction, 1/m | printed | printed, in the right unit | no extinction | split sum |\n|---|---|---|---|---|---|"
+        "| light | extinction, 1/m | printed | printed, in the right unit | no extinction | split sum |\n|---|---|---|---|---|---|"
     );
-    for (lamp, start_m) in [
+    for (light, start_m) in [
         ("5 m ahead, passed", -5.0),
         ("25 m ahead, not reached", -25.0),
     ] {
@@ -44,7 +44,7 @@ fn lamp_forms() {
             let ratio = |form: LightForm| form.airlight(&passage, extinction) / exact;
             let printed = ratio(LightForm::Printed);
             println!(
-                "| {lamp} | {} | {} | {} | {} | {} |",
+                "| {light} | {} | {} | {} | {} | {} |",
                 (extinction * 1e3).round() / 1e3,
                 figures(printed),
                 figures(printed / (4.0 * PI * PI)),
@@ -55,7 +55,7 @@ fn lamp_forms() {
     }
 }
 
-/// The optical depth of the note's height fog as its formula has it over that of the fog that it defines.
+/// Optical depth of the note's height fog by its formula, relative to that of the fog that it defines.
 fn base() {
     const BASE_M: f64 = 20.0;
     const SCALE_M: f64 = 30.0;
@@ -93,7 +93,7 @@ fn base() {
     }
 }
 
-/// `int density ds` along a line by Simpson's rule, cut at the base.
+/// `int density ds` along a ray by Simpson's rule, split at the base.
 fn integral(line: &RaySegment, base_m: f64, density: impl Fn(f64) -> f64) -> f64 {
     const STEPS: u32 = 2000;
     let (first, last) = line.below(base_m);
@@ -109,7 +109,7 @@ fn integral(line: &RaySegment, base_m: f64, density: impl Fn(f64) -> f64) -> f64
         .sum()
 }
 
-/// What a line past a lamp costs, in units of the printed form.
+/// Time of a ray past a light, relative to the printed form.
 fn speed() {
     const LINES: u32 = 50_000;
     let time = |form: &dyn Fn(&LightRayGeometry) -> f64| {
@@ -150,7 +150,7 @@ fn speed() {
     }
 }
 
-/// A ratio in three figures.
+/// Formats a ratio with three significant digits.
 fn figures(ratio: f64) -> String {
     match ratio.abs() {
         r if r >= 99.95 => format!("{ratio:.0}"),

@@ -1,6 +1,6 @@
-//! Where the short cuts of fog hold: tables of the book's chapters on fog and on lamps, as it shows them (`scripts/book`).
+//! Prints tables on the validity of fog approximations, for the book's chapters on fog and on lights (`scripts/book`).
 //!
-//! `cargo run --release -p airlight --example fog_study`; with the word `split-sum`, `lamp`, `dimming` or `extinction` only
+//! `cargo run --release -p airlight --example fog_study`; with the argument `split-sum`, `light`, `dimming` or `extinction` only
 //! that one.
 
 mod common;
@@ -17,16 +17,16 @@ use std::error::Error;
 
 const TABLES: [Table; 4] = [
     ("split-sum", split_sum_map),
-    ("lamp", lamp_beside_the_line),
+    ("light", light_beside_the_ray),
     ("dimming", sun_undimmed),
-    ("extinction", lamp_without_extinction),
+    ("extinction", light_without_extinction),
 ];
 
 fn main() -> Result<(), Box<dyn Error>> {
     common::print(&TABLES)
 }
 
-/// A number in two digits, or more where it has more before the point; at most `most` behind it.
+/// Formats a number with two digits, or more if it has more before the decimal point; at most `most` after it.
 fn short(v: f64, most: i32) -> String {
     let before = v.abs().max(1e-9).log10().floor() as i32;
     let text = format!("{v:.0$}", (1 - before).clamp(0, most) as usize);
@@ -47,9 +47,8 @@ fn split_sum_map() {
     }
 }
 
-/// Error of the split sum and of leaving out extinction, for a lamp halfway along the line of sight and h lengths of the line
-/// to its side.
-fn lamp_beside_the_line() {
+/// Error of the split sum and of omitting extinction, for a light halfway along the view ray and h ray lengths to its side.
+fn light_beside_the_ray() {
     println!("| τ | h | split sum | no extinction |\n|---|---|---|---|");
     for (tau, aside) in [
         (0.1, 0.1),
@@ -60,7 +59,7 @@ fn lamp_beside_the_line() {
         (3.0, 0.1),
         (3.0, 0.5),
     ] {
-        // A line of length 1 with extinction tau; source e^-(tau r) / r^2 but for constants.
+        // A ray of length 1 with extinction tau; source e^-(tau r) / r^2 up to a constant.
         let source = |s: f64| {
             let r2 = (s - 0.5).powi(2) + aside * aside;
             (-tau * r2.sqrt()).exp() / r2
@@ -76,8 +75,8 @@ fn lamp_beside_the_line() {
     }
 }
 
-/// How much too bright the glow of a lamp is without extinction: 5 m ahead and 1 m beside a line of 20 m.
-fn lamp_without_extinction() {
+/// Overestimate of a light's airlight without extinction: 5 m ahead and 1 m beside a ray of 20 m.
+fn light_without_extinction() {
     println!(
         "| extinction, 1/m | visibility (5 %) | without extinction it is too bright by |\n|---|---|---|"
     );
@@ -101,7 +100,7 @@ fn lamp_without_extinction() {
     }
 }
 
-/// `int_0^1 f ds` with steps that crowd where a lamp at 1/2, `aside` away, is near: even in angle.
+/// `int_0^1 f ds` with steps uniform in angle, and so dense near a light at 1/2, `aside` away.
 fn mean(aside: f64, f: impl Fn(f64) -> f64) -> f64 {
     const STEPS: u32 = 20_000;
     let end = (0.5 / aside).atan();
@@ -116,9 +115,9 @@ fn mean(aside: f64, f: impl Fn(f64) -> f64) -> f64 {
         / f64::from(STEPS)
 }
 
-/// Ishiyama's model as printed against the same with the sun's own way through the fog: path radiance of sunlight without its
-/// dimming in the fog over that with it. Height fog, scale height 50 m, visibility at the ground as given, a level line of
-/// 150 m, the eye at 2 m, away from the sun.
+/// Ishiyama's model as printed relative to the same model with attenuation of sunlight in the fog: ratio of the path
+/// radiances. Height fog with a scale height of 50 m, the given visibility at the ground, a horizontal ray of 150 m away from
+/// the sun, the eye at 2 m.
 fn sun_undimmed() {
     println!("| visibility | sun 5° | 15° | 30° | 60° | 90° |\n|---|---|---|---|---|---|");
     let suns = [5.0, 15.0, 30.0, 60.0, 90.0];

@@ -1,6 +1,6 @@
-//! Tables of the book's chapter on height fog (Ishiyama 2018), as it shows them (`scripts/book`).
+//! Prints the tables of the book's chapter on height fog (Ishiyama 2018) (`scripts/book`).
 //!
-//! `cargo run --release -p airlight --example height_fog`; with the word `level`, `closed` or `solved` only that one.
+//! `cargo run --release -p airlight --example height_fog`; with the argument `level`, `closed` or `solved` only that one.
 
 mod common;
 
@@ -21,7 +21,7 @@ const TABLES: [Table; 3] = [
     ("solved", against_all_orders),
 ];
 
-/// Scale height of all fogs here, m; the eye is 2 m high unless told otherwise.
+/// Scale height of all fogs, m; the eye is 2 m high unless stated otherwise.
 const SCALE_M: f64 = 50.0;
 const EYE_M: f64 = 2.0;
 
@@ -29,7 +29,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     common::print(&TABLES)
 }
 
-/// The optical depth of (23) as printed, in f32: light goes from the background, which is `length_m` away, to the eye.
+/// Optical depth of (23) as printed, in f32: light travels from the background, at the distance `length_m`, to the eye.
 fn printed_depth(extinction_per_m: f32, climb: f32, length_m: f32) -> f32 {
     let scale = SCALE_M as f32;
     let y0 = EYE_M as f32 + climb * length_m;
@@ -40,9 +40,9 @@ fn printed_depth(extinction_per_m: f32, climb: f32, length_m: f32) -> f32 {
         * (1.0 - (-omega * length_m / scale).exp())
 }
 
-/// Error of (23) as printed in f32, and of the profile's column.
+/// Errors of (23) as printed in f32, and of the profile's column.
 fn level_lines() {
-    println!("| line | as printed, f32 | here |\n|---|---|---|");
+    println!("| ray | as printed, f32 | this crate |\n|---|---|---|");
     let profile = exponential();
     for (elevation, length_m) in [
         (10.0f64, 150.0),
@@ -68,11 +68,11 @@ fn level_lines() {
     }
 }
 
-/// Sunlight scattered once, for each unit of irradiance and of phase function: one line by the closed form of the errata, by
-/// the divided difference, by `Fog` in f32, and by quadrature.
+/// Singly scattered sunlight per unit irradiance and phase function: a ray by the closed form of the errata, by the divided
+/// difference, by `Fog` in f32, and by quadrature.
 fn closed_forms() {
     println!(
-        "| visibility | line | closed form with C, f64 | divided difference, f64 | `Fog`, f32 |\n|---|---|---|---|---|"
+        "| visibility | ray | closed form with C, f64 | divided difference, f64 | `Fog`, f32 |\n|---|---|---|---|---|"
     );
     let sine_sun = 15f64.to_radians().sin();
     for (visibility_m, eye_m, elevation, length_m) in [
@@ -96,7 +96,7 @@ fn closed_forms() {
             extinction * profile.at(height) * (-depth - to_sun(height)).exp()
         });
 
-        // Ishiyama's letters, with C.
+        // Ishiyama's notation, with C.
         let (y0, omega) = (line.end_height_m(), -climb);
         let a = omega / SCALE_M;
         let b = extinction * (-y0 / SCALE_M).exp();
@@ -138,10 +138,10 @@ fn closed_forms() {
     }
 }
 
-/// What the two single forms make of a line of 150 m, 20 degrees up (nearer to the level the solver itself errs by more), against
-/// light scattered any number of times, percent.
+/// Errors of the two single-scattering forms relative to multiple scattering, percent, for a ray of 150 m at an elevation of 20
+/// degrees (the error of the solver itself is larger near the horizontal).
 fn against_all_orders() {
-    // The sky's light on the level over that of the sun on a surface that faces it: `airlight probe --sun-elevation`, lux.
+    // Irradiance on a horizontal surface from the sky, relative to that on a surface facing the sun: from `airlight probe`, lux.
     const SKY_OVER_SUN: [(f64, f32); 4] = [
         (5.0, 4334.0 / 11312.0),
         (15.0, 9787.0 / 53377.0),
@@ -185,8 +185,8 @@ fn grey_layer(extinction_per_m: f64, phase: PhaseFunction) -> RgbLayer {
     }
 }
 
-/// The divided difference of `e^-x` times the optical depth `along`: sunlight scattered into a line whose exponent grows from
-/// `near` by `growth`.
+/// Divided difference of `e^-x` times the optical depth `along`: sunlight scattered into a ray whose exponent grows from `near`
+/// by `growth`.
 fn divided_difference(near: f64, growth: f64, along: f64) -> f64 {
     let size = growth.abs();
     let mean = match size < 1e-8 {
@@ -200,7 +200,7 @@ fn extinction_of(visibility_m: f64) -> f64 {
     extinction_per_m(visibility_m, Contrast::FivePercent)
 }
 
-/// Height fog of drops of 10 micrometres under a sun in the north and an even sky, ground of albedo 0.2.
+/// Height fog of drops of 10 micrometres with the sun in the north, a uniform sky and ground of albedo 0.2.
 fn lit_fog(
     visibility_m: f64,
     sun_deg: f64,
@@ -219,16 +219,16 @@ fn lit_fog(
     RgbFog::new(&[layer], Ground::FLAT, &light, scattering).expect("a fog of ordinary numbers")
 }
 
-/// `int_0^length f ds`: Gauss's rule with five points in stretches that grow from the eye on.
+/// `int_0^length f ds`: five-point Gauss rule in segments that grow with the distance from the eye.
 fn integral(length_m: f64, f: impl Fn(f64) -> f64) -> f64 {
     const RULE: [(f64, f64); 3] = [
         (0.0, 0.568_888_888_888_888_9),
         (0.538_469_310_105_683_1, 0.478_628_670_499_366_47),
         (0.906_179_845_938_664, 0.236_926_885_056_189_08),
     ];
-    const STRETCHES: u32 = 4000;
-    let edges: Vec<f64> = (0..=STRETCHES)
-        .map(|k| length_m * (f64::from(k) / f64::from(STRETCHES)).powi(2))
+    const SEGMENTS: u32 = 4000;
+    let edges: Vec<f64> = (0..=SEGMENTS)
+        .map(|k| length_m * (f64::from(k) / f64::from(SEGMENTS)).powi(2))
         .collect();
     edges
         .windows(2)
@@ -243,17 +243,17 @@ fn integral(length_m: f64, f: impl Fn(f64) -> f64) -> f64 {
         .sum()
 }
 
-/// A relative error in one digit; rounding, or no number.
+/// Formats a relative error with one digit.
 fn error(got: f64, right: f64) -> String {
     match (got / right - 1.0).abs() {
-        e if e.is_nan() => "no number".to_owned(),
+        e if e.is_nan() => "not a number".to_owned(),
         f64::INFINITY => "infinite".to_owned(),
         e if e < 1e-12 => "< 1e-12".to_owned(),
         e => format!("{e:.0e}"),
     }
 }
 
-/// Percent with a sign and two figures or so.
+/// Formats a signed percentage with about two digits.
 fn signed(percent: f64) -> String {
     match percent.abs() {
         p if p < 9.95 => format!("{percent:+.1} %"),

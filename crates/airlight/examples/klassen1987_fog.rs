@@ -1,4 +1,4 @@
-//! The numbers of the book's chapter on the fog of 1987, as Markdown tables.
+//! Prints the tables of the book's chapter on the fog of 1987.
 //!
 //! `cargo run --release -p airlight --example klassen1987_fog -- flat|depth|solved|ambient|speed`
 
@@ -19,11 +19,11 @@ use std::time::Instant;
 const TOP_M: f64 = 25.0;
 /// Elevation of the sun, degrees.
 const SUN_DEG: f64 = 35.0;
-/// Length of lines of sight, m.
+/// Length of the view rays, m.
 const LINE_M: f64 = 100.0;
-/// Elevation of the lines that are solved for: on level ones in thin fog the solution itself is up to 31 % too bright.
+/// Elevation of the rays compared with the solver, degrees: for horizontal rays in thin fog the solver is up to 31 % too bright.
 const UP_DEG: f64 = 10.0;
-/// Light of the sky on the level over that of the sun facing it: about that of the model under a sun 35 degrees high.
+/// Irradiance on a horizontal surface from the sky, relative to that facing the sun: about that of the model at 35 degrees.
 const SKY_OVER_SUN: f32 = 0.15;
 const VISIBILITIES_M: [f64; 4] = [1000.0, 300.0, 150.0, 90.0];
 
@@ -35,13 +35,15 @@ fn main() {
         Some("ambient") => ambient(),
         Some("speed") => speed(),
         other => {
-            eprintln!("say which table: flat, depth, solved, ambient or speed; got {other:?}");
+            eprintln!(
+                "expected the name of a table: flat, depth, solved, ambient or speed; got {other:?}"
+            );
             std::process::exit(2);
         }
     }
 }
 
-/// What flat ground makes of the ways through air and fog (eqs. 37, 38) against spheres (eqs. 20, 21), and of the light.
+/// Path lengths through air and fog with flat ground (eqs. 37, 38) compared with spheres (eqs. 20, 21), and the effect on light.
 fn flat() {
     const EARTH_M: f64 = 6.371e6;
     const AIR_M: f64 = 8.4e3;
@@ -70,7 +72,7 @@ fn flat() {
     }
 }
 
-/// The sun's depth as printed against the exact one.
+/// The sun's depth as printed compared with the exact one.
 fn depth() {
     println!("| visibility | eye at 2 m | 10 m | 20 m | from 60 m, 20° down |");
     println!("|---|---|---|---|---|");
@@ -90,7 +92,7 @@ fn depth() {
     }
 }
 
-/// The fog component of 1987 against light scattered any number of times.
+/// The fog component of 1987 compared with multiple scattering.
 fn solved() {
     println!(
         "| visibility | optical depth of the fog | towards the sun | 60° aside | away from it |"
@@ -115,8 +117,8 @@ fn solved() {
     }
 }
 
-/// How much light the term A stands for: the part of the light on the level ground that has been scattered in the fog, and the
-/// light on the ground over that without fog.
+/// Light represented by the term A: the fraction of the irradiance on the ground that was scattered in the fog, and the
+/// irradiance relative to that without fog.
 fn ambient() {
     println!(
         "| visibility | light of sun and sky on the ground over that without fog | of it not straight from the sun |"
@@ -136,7 +138,7 @@ fn ambient() {
     }
 }
 
-/// What a line costs.
+/// Time of a view ray.
 fn speed() {
     let (slab, fog) = (slab(150.0), fog(150.0));
     const LINES: u32 = 400_000;
@@ -157,13 +159,10 @@ fn speed() {
         let direction = glam::DVec3::new(0.0, climb, -level);
         fog.path(2.0, direction, LINE_M).path_radiance[0]
     });
-    println!("| a line of sight | time |");
+    println!("| view ray | time |");
     println!("|---|---|");
     println!("| fog of 1987 | 1.0 |");
-    println!(
-        "| light scattered any number of times | {:.1} |",
-        solved / of_1987
-    );
+    println!("| multiple scattering | {:.1} |", solved / of_1987);
 }
 
 fn sun() -> glam::DVec3 {
@@ -174,7 +173,7 @@ fn extinction(visibility_m: f64) -> f64 {
     extinction_per_m(visibility_m, Contrast::FivePercent)
 }
 
-/// The fog of 1987 in green light, under a sun of irradiance 1 at its top.
+/// The fog of 1987 in green light, with solar irradiance 1 at its top.
 fn slab(visibility_m: f64) -> Slab1987<3> {
     let air = Constituent {
         kind: ConstituentKind::Molecules,
@@ -194,7 +193,7 @@ fn layer(visibility_m: f64) -> Constituent {
     Constituent::fog(extinction(visibility_m), drops, slab, &[]).expect("a fog of grey drops")
 }
 
-/// The same fog, solved for; the sky adds its light.
+/// The same fog with multiple scattering and light from the sky.
 fn fog(visibility_m: f64) -> RgbFog {
     let layer = RgbLayer::from_constituent(&layer(visibility_m), RgbSpace::Srgb);
     let layers = [layer.expect("a fog of grey drops")];
@@ -210,7 +209,7 @@ fn fog(visibility_m: f64) -> RgbFog {
         .expect("a fog of ordinary numbers")
 }
 
-/// Percent with a sign and two figures or so.
+/// Formats a signed percentage with about two digits.
 fn signed(percent: f64) -> String {
     let digits = match percent.abs() {
         p if p < 0.095 => 2,
