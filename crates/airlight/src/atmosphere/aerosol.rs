@@ -1,7 +1,7 @@
 //! Haze: an aerosol after Angstrom's law, set by optical depth, turbidity or visibility.
 
 use super::visibility::{self, Contrast};
-use super::{Constituent, ConstituentKind, DensityProfile};
+use super::{ClearAir, Constituent, ConstituentKind, DensityProfile};
 use crate::optics::{PhaseError, PhaseFunction};
 use crate::spectrum::{SampledCurve, SpectralCurve};
 
@@ -27,15 +27,6 @@ pub enum AerosolLoad {
         /// The contrast that is left there: 5 % makes it the meteorological optical range.
         contrast: Contrast,
     },
-}
-
-/// What the other gases do at 550 nm, which turbidity and visibility are stated relative to.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ClearAir {
-    /// Vertical optical depth of the molecules' scattering.
-    pub optical_depth_550: f64,
-    /// Extinction by molecules at the ground, m^-1.
-    pub ground_extinction_per_m: f64,
 }
 
 /// An aerosol whose extinction follows `lambda^-exponent`.

@@ -65,7 +65,7 @@ pub use error::{ConfigError, ConfigProblem};
 
 use super::presets::{self, earth};
 use super::{Atmosphere, AtmosphereError, ConstituentKind, gases};
-use crate::optics::{PhaseFunction, rayleigh::STANDARD_PRESSURE_PA};
+use crate::optics::rayleigh::STANDARD_PRESSURE_PA;
 use crate::sun::LimbDarkening;
 use reader::Section;
 use toml::de::DeTable;
@@ -255,14 +255,4 @@ fn molecules(
         None => atmosphere.put(gases::air(pressure_pa)),
     }
     Ok(())
-}
-
-/// The phase function that parameters without a kind belong to.
-fn kind_of(phase: &PhaseFunction) -> Option<&'static str> {
-    match phase {
-        PhaseFunction::HenyeyGreenstein { .. } => Some("henyey-greenstein"),
-        PhaseFunction::CornetteShanks { .. } => Some("cornette-shanks"),
-        PhaseFunction::Draine { .. } => Some("draine"),
-        _ => None,
-    }
 }

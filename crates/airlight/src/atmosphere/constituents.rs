@@ -1,11 +1,13 @@
 //! A planet's air: what it is made of, what lies under it and what shines on it.
 
-use super::aerosol::ClearAir;
 use super::density::{DensityError, DensityProfile};
 use crate::optics::{PhaseError, PhaseFunction};
 use crate::spectrum::SpectralCurve;
 use crate::sun::{SunDisc, SunError};
 use std::fmt;
+
+/// Mean radius of the Earth, m (IUGG).
+pub const EARTH_RADIUS_M: f64 = 6_371_008.8;
 
 /// The solid ball under the air.
 #[derive(Clone, Debug, PartialEq)]
@@ -111,6 +113,15 @@ pub enum AtmosphereError {
     /// The sun's disc is refused.
     #[error("{0}")]
     Sun(#[from] SunError),
+}
+
+/// What the other gases do at 550 nm, which turbidity and visibility are stated relative to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ClearAir {
+    /// Vertical optical depth of the molecules' scattering.
+    pub optical_depth_550: f64,
+    /// Extinction by molecules at the ground, m^-1.
+    pub ground_extinction_per_m: f64,
 }
 
 impl Atmosphere {
@@ -278,7 +289,7 @@ impl Atmosphere {
 
     /// Whether the planet is the Earth, by its size.
     pub fn is_earth(&self) -> bool {
-        (self.planet.radius_m / super::presets::earth::EARTH_RADIUS_M - 1.0).abs() < 0.02
+        (self.planet.radius_m / EARTH_RADIUS_M - 1.0).abs() < 0.02
     }
 
     /// The same air at a distance from the sun, over the planet's mean distance: irradiance falls by its square, the disc

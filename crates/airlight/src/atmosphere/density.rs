@@ -5,8 +5,10 @@
 //! profile works on its [`HeightStructure`].
 
 mod column;
+mod error;
 mod table;
 
+pub use error::DensityError;
 pub use table::{AltitudeTable, Interpolation};
 
 use super::ray_segment::RaySegment;
@@ -56,60 +58,6 @@ pub enum DensityProfile {
     Tabulated(AltitudeTable),
     /// A sum of profiles, each with its factor.
     Sum(Vec<(f64, DensityProfile)>),
-}
-
-/// Why numbers do not make a density profile.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum DensityError {
-    /// A scale height that is not positive and finite.
-    #[error(
-        "scale height: expected a finite number of metres above 0, got {0}; try a layer for a sharp top, or a uniform profile"
-    )]
-    ScaleHeight(f64),
-    /// A height that is not finite.
-    #[error("{which}: expected a finite number of metres, got {got_m}")]
-    Height {
-        /// Which height.
-        which: &'static str,
-        /// Its value, m.
-        got_m: f64,
-    },
-    /// Edges out of order, or not finite.
-    #[error(
-        "edges of a layer: expected finite heights (m) that rise from bottom to top, got {0:?}"
-    )]
-    Edges(Vec<f64>),
-    /// Altitudes of a table not strictly increasing, or fewer than two.
-    #[error(
-        "altitudes of a table: expected two or more finite, strictly rising numbers (m), got {value} at index {index}"
-    )]
-    Altitudes {
-        /// Which entry, counted from 0.
-        index: usize,
-        /// Its altitude (not a number where it is missing).
-        value: f64,
-    },
-    /// Not one density for each altitude.
-    #[error(
-        "densities of a table: expected one for each of {altitudes} altitudes, got {densities}"
-    )]
-    Length {
-        /// Number of altitudes.
-        altitudes: usize,
-        /// Number of densities.
-        densities: usize,
-    },
-    /// A density or factor that is negative or not finite.
-    #[error(
-        "densities and factors: expected finite numbers not below 0, got {value} at index {index}"
-    )]
-    Negative {
-        /// Which entry, counted from 0.
-        index: usize,
-        /// Its value.
-        value: f64,
-    },
 }
 
 /// Where a profile changes with height: what quadrature over height or along a ray has to resolve.
@@ -401,7 +349,7 @@ impl DensityProfile {
             } => column::clamped(ray, base_height_m, scale_height_m),
             Self::Layer { bottom_m, top_m } => column::layer(ray, bottom_m, top_m),
             Self::Tent { .. } | Self::StandardAir1976 | Self::Tabulated(_) => {
-                column::by_quadrature(self, ray)
+                by_quadrature(self, ray)
             }
             Self::Sum(ref parts) => parts
                 .iter()
@@ -557,6 +505,34 @@ impl DensityProfile {
             ),
         })
     }
+}
+
+/// Column along a ray by quadrature between the heights of the profile's ramps: density is constant below the first and 0
+/// above the last.
+fn by_quadrature(profile: &DensityProfile, ray: &RaySegment) -> f64 {
+    let ramps = profile.structure().ramps_m;
+    let Some(&[lowest_m, _]) = ramps.first() else {
+        return 0.0;
+    };
+    let (mut enter, mut leave) = ray.below(lowest_m);
+    let below = profile.at(lowest_m - 1.0);
+    let mut sum = match enter < leave && below > 0.0 {
+        true => below * (leave - enter),
+        false => 0.0,
+    };
+    let within = |from: f64, to: f64| match to > from {
+        true => column::RULE.integrate(from, to, |s| profile.at(ray.height_at(s))),
+        false => 0.0,
+    };
+    for &[_, height_m] in &ramps {
+        let (first, last) = ray.below(height_m);
+        sum += match enter < leave {
+            true => within(first, enter) + within(leave, last),
+            false => within(first, last),
+        };
+        (enter, leave) = (first, last);
+    }
+    sum
 }
 
 #[cfg(test)]

@@ -13,10 +13,13 @@ mod ray_segment;
 mod standard_air;
 pub mod visibility;
 
-pub use aerosol::{AerosolError, AerosolLoad, AngstromAerosol, ClearAir};
+pub use aerosol::{AerosolError, AerosolLoad, AngstromAerosol};
 pub use aerosol_types::{AerosolMixture, AerosolType, AerosolTypeError};
-pub use constituents::{Atmosphere, AtmosphereError, Constituent, ConstituentKind, Planet};
+pub use constituents::{
+    Atmosphere, AtmosphereError, ClearAir, Constituent, ConstituentKind, Planet,
+};
 pub use density::{AltitudeTable, DensityError, DensityProfile, Interpolation};
 pub(crate) use density::{Decay, HeightStructure};
 pub use presets::{UnknownPreset, preset, preset_names, reference};
 pub use ray_segment::RaySegment;
+pub(crate) use standard_air::refracting_air;

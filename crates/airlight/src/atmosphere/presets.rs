@@ -1,12 +1,12 @@
 //! Atmospheres ready to use, by name.
 
 pub mod earth;
+mod fixed_table;
 pub mod mars;
 pub mod published;
 pub mod reference;
 
 use super::{Atmosphere, nearest::nearest};
-use crate::spectrum::SpectralCurve;
 
 /// One line of the list of presets.
 struct Preset {
@@ -114,12 +114,6 @@ pub fn preset_names() -> impl Iterator<Item = (&'static str, &'static str)> {
     PRESETS
         .iter()
         .map(|preset| (preset.name, preset.description))
-}
-
-/// A table whose samples are constants of this crate.
-fn fixed_table(samples: &[(f64, f64)]) -> SpectralCurve {
-    let (wavelengths, values) = samples.iter().copied().unzip();
-    SpectralCurve::table(wavelengths, values).expect("tables of this crate are in order")
 }
 
 #[cfg(test)]

@@ -3,6 +3,8 @@
 #[cfg(test)]
 use crate::optics::rayleigh::BOLTZMANN_J_PER_K;
 
+use crate::sun::RefractingAir;
+
 /// Effective radius of the Earth for geopotential altitude, m (table 2 of the standard).
 const GEOPOTENTIAL_RADIUS_M: f64 = 6_356_766.0;
 /// Sea-level gravity, m/s^2; molar mass of air, kg/mol; gas constant as the standard has it, J/(mol K).
@@ -63,6 +65,18 @@ pub(super) fn pressure_and_temperature(altitude_m: f64) -> (f64, f64) {
     (pressure, temperature)
 }
 
+/// The air that refracts the sun for an eye at a geometric altitude, m; none above 86 km. Pressures are held at 2000 hPa.
+pub(crate) fn refracting_air(altitude_m: f64) -> RefractingAir {
+    let (pressure_pa, temperature_k) = pressure_and_temperature(altitude_m);
+    RefractingAir {
+        pressure_pa: match altitude_m > HOMOPAUSE_M {
+            true => 0.0,
+            false => pressure_pa.min(200_000.0),
+        },
+        temperature_c: temperature_k - 273.15,
+    }
+}
+
 /// Number density of air relative to sea level at a geometric altitude, m.
 pub(super) fn relative_density(altitude_m: f64) -> f64 {
     let (pressure, temperature) = pressure_and_temperature(altitude_m);
@@ -111,6 +125,16 @@ const SEA_LEVEL_DENSITY_PER_M3: f64 = 101_325.0 / (BOLTZMANN_J_PER_K * 288.15);
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn refraction_fades_with_the_air() {
+        let at = |m| refracting_air(m).pressure_pa;
+        assert!((at(0.0) - 101_325.0).abs() < 1e-9);
+        assert!((refracting_air(0.0).temperature_c - 15.0).abs() < 1e-9);
+        assert!((at(5000.0) / 54_020.0 - 1.0).abs() < 1e-3);
+        assert_eq!(at(400e3), 0.0);
+        assert_eq!(at(-12e3), 200_000.0);
+    }
 
     #[test]
     fn densities_are_those_of_the_standards_tables() {

@@ -1,6 +1,6 @@
 //! Why numbers do not make a fog.
 
-use super::lighting::Values;
+use super::values::Values;
 use crate::atmosphere::DensityError;
 use crate::optics::PhaseError;
 use glam::DVec3;

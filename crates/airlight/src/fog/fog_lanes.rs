@@ -2,7 +2,7 @@
 
 use super::closed_forms::Lanes;
 use super::error::FogError;
-use super::layer::{LayerLanes, MergedLayer, merge_layers};
+use super::layer::{LayerLanes, MergedLayer, OPAQUE, merge_layers};
 use super::lighting::{FogLighting, FogScattering, Ground};
 use super::multiple::{self, DirectionWeights, Field};
 use super::ray_cuts::height_breakpoints;
@@ -11,9 +11,6 @@ use crate::atmosphere::RaySegment;
 use crate::spectrum::Spectrum;
 use crate::transfer::PathOptics;
 use glam::DVec3;
-
-/// Bound of columns and optical depths: far beyond opaque, far from the largest f32.
-pub(super) const OPAQUE: f64 = 1e25;
 
 /// Fog in N lanes: wavelengths, or red, green and blue. Queries allocate nothing.
 ///

@@ -24,13 +24,15 @@ mod ray_cuts;
 mod single_scattering;
 mod spectral;
 mod table;
+mod values;
 
 pub use crate::atmosphere::{DensityError, DensityProfile, RaySegment, droplets, visibility};
 pub use closed_forms::split_sum_error;
 pub use error::FogError;
 pub use layer::RgbLayer;
-pub use lighting::{ChannelValues, DirectionalLight, FogLighting, FogScattering, Ground};
+pub use lighting::{DirectionalLight, FogLighting, FogScattering, Ground};
 pub use spectral::{Fog, FogTable, RgbFog, RgbFogTable};
+pub use values::ChannelValues;
 
 pub(crate) use closed_forms::{Lanes, constant_source, dimmed_source};
 pub(crate) use fog_lanes::FogLanes;

@@ -1,8 +1,7 @@
 //! Sunlight scattered once into a ray, and uniform light, for all layers and grounds.
 
 use super::closed_forms::{Lanes, mean_dimmed_source};
-use super::fog_lanes::OPAQUE;
-use super::layer::MergedLayer;
+use super::layer::{MergedLayer, OPAQUE};
 use super::lighting::Ground;
 use super::ray_cuts::split_at_heights;
 use crate::atmosphere::RaySegment;

@@ -1,8 +1,8 @@
 //! A fog tabulated for the rays from one height: for pictures.
 
 use super::closed_forms::Lanes;
-use super::fog_lanes::{FogLanes, OPAQUE};
-use super::layer::MergedLayer;
+use super::fog_lanes::FogLanes;
+use super::layer::{MergedLayer, OPAQUE};
 use super::multiple::{self, Field, STREAMS};
 use crate::atmosphere::RaySegment;
 use crate::math::interpolation::cubic_weights;

@@ -1,6 +1,6 @@
 //! Why the light of a scene cannot be computed.
 
-use super::Input;
+use super::input::Input;
 use crate::atmosphere::config::ConfigError;
 use crate::atmosphere::{AtmosphereError, UnknownPreset};
 use crate::fog::FogError;

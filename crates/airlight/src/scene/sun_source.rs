@@ -1,9 +1,9 @@
 //! Finding the sun of a scene: as set, or from place and time.
 
 use super::{Scene, SceneError, SunState};
-use crate::atmosphere::Atmosphere;
+use crate::atmosphere::{Atmosphere, refracting_air};
 use crate::axes;
-use crate::sun::{Moment, Place, RefractingAir, sun_position};
+use crate::sun::{Moment, Place, sun_position};
 use glam::DVec3;
 
 /// How the sun is found.
@@ -65,7 +65,7 @@ impl SunSource {
             } => (place, start, refraction),
         };
         let time = time.unwrap_or(start);
-        let air = refraction.then(|| standard_air(place.altitude_m));
+        let air = refraction.then(|| refracting_air(place.altitude_m));
         let place = Place {
             // The sun's parallax is 0.002 degrees for the whole radius of the Earth.
             altitude_m: place.altitude_m.clamp(-12e3, 100e3),
@@ -151,29 +151,10 @@ impl Scene {
     }
 }
 
-/// Pressure and temperature of the International Standard Atmosphere (ISO 2533) up to 11 km, and above that as if it
-/// continued until nothing is left.
-fn standard_air(altitude_m: f64) -> RefractingAir {
-    let cooling = (1.0 - 2.255_77e-5 * altitude_m).max(0.0);
-    RefractingAir {
-        pressure_pa: (101_325.0 * cooling.powf(5.255_88)).min(200_000.0),
-        temperature_c: (15.0 - 6.5e-3 * altitude_m).max(-56.5),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::atmosphere::preset;
-
-    #[test]
-    fn standard_air_thins_out() {
-        let at = |m| standard_air(m).pressure_pa;
-        assert!((at(0.0) - 101_325.0).abs() < 1.0);
-        assert!((at(5000.0) / 54_020.0 - 1.0).abs() < 2e-3);
-        assert_eq!(at(400e3), 0.0);
-        assert!(at(-12e3) < 400_000.0);
-    }
 
     #[test]
     fn a_sun_is_found_or_its_absence_explained() {

@@ -1,14 +1,11 @@
 //! Types and components mixed, and the constituent they make.
 
 use super::modes::{Mode, Optics, WAVELENGTHS_NM};
-use super::{AerosolType, Component, layer};
-use crate::atmosphere::aerosol::{
-    AerosolError, AerosolLoad, REFERENCE_NM, extinction_at_density_1,
-};
+use super::{AerosolType, AerosolTypeError, Component, layer};
+use crate::atmosphere::aerosol::{AerosolLoad, REFERENCE_NM, extinction_at_density_1};
 use crate::atmosphere::presets::earth::EARTH_TOP_M;
 use crate::atmosphere::{ClearAir, Constituent, ConstituentKind, DensityProfile};
 use crate::optics::PhaseFunction;
-use crate::optics::mie::MieError;
 use crate::spectrum::{CurveError, SpectralCurve};
 
 /// One thing that a mixture holds.
@@ -41,41 +38,6 @@ pub struct AerosolSummary {
     pub angstrom_350_500: f64,
     /// The same from 500 to 800 nm.
     pub angstrom_500_800: f64,
-}
-
-/// Why words and numbers do not make an aerosol of a type.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum AerosolTypeError {
-    /// There is no type of that name.
-    #[error("there is no aerosol type called \"{name}\"{}; there are: {}", hint(*nearest), AerosolType::ALL.map(|known| known.0).join(", "))]
-    UnknownType {
-        /// The name asked for.
-        name: String,
-        /// The name it may have been meant to be.
-        nearest: Option<&'static str>,
-    },
-    /// The humidity is out of range.
-    #[error("relative humidity must lie between 0 and 0.99 (0.8 is 80 %), got {0}")]
-    Humidity(f64),
-    /// A share is not positive.
-    #[error("the shares of a mixture must be finite and above 0, got {0}")]
-    Share(f64),
-    /// Nothing is mixed.
-    #[error("a mixture needs at least one part")]
-    Empty,
-    /// The particles are refused.
-    #[error("{0}")]
-    Mie(#[from] MieError),
-    /// The amount or the place is refused.
-    #[error("{0}")]
-    Aerosol(#[from] AerosolError),
-    /// A spectrum is refused.
-    #[error("{0}")]
-    Curve(#[from] CurveError),
-}
-
-fn hint(nearest: Option<&str>) -> String {
-    nearest.map_or(String::new(), |near| format!(" (did you mean \"{near}\"?)"))
 }
 
 impl AerosolMixture {

@@ -17,12 +17,15 @@ mod smoke;
 mod tests;
 
 pub use material::Component;
-pub use mixture::{AerosolMixture, AerosolSummary, AerosolTypeError, Ingredient};
+pub use mixture::{AerosolMixture, AerosolSummary, Ingredient};
 pub use smoke::Smoke;
 
+use super::aerosol::AerosolError;
 use super::nearest::nearest;
 use super::presets::earth::EARTH_TOP_M;
 use super::{DensityProfile, Interpolation};
+use crate::optics::mie::MieError;
+use crate::spectrum::CurveError;
 use modes::Mode;
 
 /// A published kind of haze.
@@ -50,6 +53,41 @@ pub enum AerosolType {
     Antarctic,
     /// Smoke of vegetation that burns.
     Biomass(Smoke),
+}
+
+/// Why words and numbers do not make an aerosol of a type.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum AerosolTypeError {
+    /// There is no type of that name.
+    #[error("there is no aerosol type called \"{name}\"{}; there are: {}", hint(*nearest), AerosolType::ALL.map(|known| known.0).join(", "))]
+    UnknownType {
+        /// The name asked for.
+        name: String,
+        /// The name it may have been meant to be.
+        nearest: Option<&'static str>,
+    },
+    /// The humidity is out of range.
+    #[error("relative humidity must lie between 0 and 0.99 (0.8 is 80 %), got {0}")]
+    Humidity(f64),
+    /// A share is not positive.
+    #[error("the shares of a mixture must be finite and above 0, got {0}")]
+    Share(f64),
+    /// Nothing is mixed.
+    #[error("a mixture needs at least one part")]
+    Empty,
+    /// The particles are refused.
+    #[error("{0}")]
+    Mie(#[from] MieError),
+    /// The amount or the place is refused.
+    #[error("{0}")]
+    Aerosol(#[from] AerosolError),
+    /// A spectrum is refused.
+    #[error("{0}")]
+    Curve(#[from] CurveError),
+}
+
+fn hint(nearest: Option<&str>) -> String {
+    nearest.map_or(String::new(), |near| format!(" (did you mean \"{near}\"?)"))
 }
 
 impl AerosolType {

@@ -1,7 +1,6 @@
 //! Spectra, densities, phase functions and constituents as they are written.
 
 use super::error::{ConfigError, ConfigProblem};
-use super::kind_of;
 use super::reader::Section;
 use crate::atmosphere::aerosol::continental_phase;
 use crate::atmosphere::{Constituent, DensityProfile, Interpolation};
@@ -298,4 +297,14 @@ pub(super) fn constituent(section: &Section<'_>) -> Result<Constituent, ConfigEr
         absorption_per_m: absorption.unwrap_or(SpectralCurve::Constant(0.0)),
         phase: phase.unwrap_or(PhaseFunction::Isotropic),
     })
+}
+
+/// The phase function that parameters without a kind belong to.
+fn kind_of(phase: &PhaseFunction) -> Option<&'static str> {
+    match phase {
+        PhaseFunction::HenyeyGreenstein { .. } => Some("henyey-greenstein"),
+        PhaseFunction::CornetteShanks { .. } => Some("cornette-shanks"),
+        PhaseFunction::Draine { .. } => Some("draine"),
+        _ => None,
+    }
 }

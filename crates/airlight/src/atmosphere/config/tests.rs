@@ -1,3 +1,4 @@
+use crate::optics::PhaseFunction;
 use super::*;
 use crate::atmosphere::{AerosolError, DensityError, DensityProfile, preset};
 use crate::optics::PhaseError;

@@ -1,10 +1,10 @@
 //! Columns of the profiles along rays.
 
-use super::DensityProfile;
 use crate::atmosphere::ray_segment::RaySegment;
 use crate::math::quadrature::FixedRule;
 
-static RULE: FixedRule<8> = FixedRule::fixed();
+/// Quadrature rule for each part of a ray.
+pub(super) static RULE: FixedRule<8> = FixedRule::fixed();
 
 /// Column of a layer of density 1 between two heights; `bottom_m` may be minus infinity.
 #[inline]
@@ -109,32 +109,4 @@ fn scaled_erfc(z: f64) -> f64 {
         let w = 0.5 / (z * z);
         (1.0 - w * (1.0 - 3.0 * w * (1.0 - 5.0 * w * (1.0 - 7.0 * w)))) / (z * SQRT_PI)
     }
-}
-
-/// Column along a ray by quadrature between the heights of the profile's ramps: density is constant below the first and 0
-/// above the last.
-pub(super) fn by_quadrature(profile: &DensityProfile, ray: &RaySegment) -> f64 {
-    let ramps = profile.structure().ramps_m;
-    let Some(&[lowest_m, _]) = ramps.first() else {
-        return 0.0;
-    };
-    let (mut enter, mut leave) = ray.below(lowest_m);
-    let below = profile.at(lowest_m - 1.0);
-    let mut column = match enter < leave && below > 0.0 {
-        true => below * (leave - enter),
-        false => 0.0,
-    };
-    let within = |from: f64, to: f64| match to > from {
-        true => RULE.integrate(from, to, |s| profile.at(ray.height_at(s))),
-        false => 0.0,
-    };
-    for &[_, height_m] in &ramps {
-        let (first, last) = ray.below(height_m);
-        column += match enter < leave {
-            true => within(first, enter) + within(leave, last),
-            false => within(first, last),
-        };
-        (enter, leave) = (first, last);
-    }
-    column
 }

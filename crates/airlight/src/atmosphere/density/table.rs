@@ -1,6 +1,6 @@
 //! Densities tabulated by altitude.
 
-use super::DensityError;
+use super::error::DensityError;
 
 /// How a table goes from one sample to the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

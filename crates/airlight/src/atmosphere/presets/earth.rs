@@ -1,14 +1,13 @@
 //! The Earth's air from first principles, with an aerosol and a ground.
 
-use super::fixed_table;
+use super::fixed_table::fixed_table;
 use crate::atmosphere::aerosol::{AerosolError, AerosolLoad, AngstromAerosol, continental_phase};
+pub use crate::atmosphere::constituents::EARTH_RADIUS_M;
 use crate::atmosphere::{Atmosphere, DensityProfile, Planet, gases};
 use crate::optics::rayleigh::STANDARD_PRESSURE_PA;
 use crate::spectrum::{SpectralCurve, solar};
 use crate::sun::SunDisc;
 
-/// Mean radius of the Earth, m (IUGG).
-pub const EARTH_RADIUS_M: f64 = 6_371_008.8;
 /// Where the Earth's air is taken to end, m: what lies above scatters less than 1e-6 of the whole.
 pub const EARTH_TOP_M: f64 = 100e3;
 

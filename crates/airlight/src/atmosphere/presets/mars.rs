@@ -1,6 +1,6 @@
 //! Mars: thin carbon dioxide and suspended dust.
 
-use super::fixed_table;
+use super::fixed_table::fixed_table;
 use crate::atmosphere::{Atmosphere, Constituent, ConstituentKind, DensityProfile, Planet};
 use crate::optics::rayleigh::number_density_per_m3;
 use crate::optics::{Depolarization, PhaseFunction, TabulatedPhase};

@@ -1,6 +1,7 @@
 //! Atmospheres of published sky models, with the constants printed there.
 
-use super::{fixed_table, reference};
+use super::fixed_table::fixed_table;
+use super::reference;
 use crate::atmosphere::{Atmosphere, Constituent, ConstituentKind, DensityProfile, Planet};
 use crate::optics::{Depolarization, PhaseFunction};
 use crate::spectrum::{SpectralCurve, embedded_table, solar};

@@ -2,7 +2,7 @@
 //!
 //! Earth radius 6360 km, top at 60 km, scale heights 8 km (molecules) and 1.2 km (aerosol) in all.
 
-use super::fixed_table;
+use super::fixed_table::fixed_table;
 use crate::atmosphere::{Atmosphere, Constituent, ConstituentKind, DensityProfile, Planet};
 use crate::optics::{Depolarization, PhaseFunction};
 use crate::spectrum::{SpectralCurve, embedded_table};

@@ -2,7 +2,7 @@
 
 use super::geometry::LightRayGeometry;
 use crate::fog::error::{FogError, check_light, check_position, check_radius};
-use crate::fog::lighting::ChannelValues;
+use crate::fog::values::ChannelValues;
 use crate::spectrum::{SpectralCurve, Spectrum};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI};

@@ -1,0 +1,109 @@
+//! Inputs of a scene that not every model honours.
+
+use std::fmt;
+
+/// An input of a scene that not every model honours.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[non_exhaustive]
+pub enum Input {
+    /// The atmosphere: preset or file.
+    Atmosphere,
+    /// Type, humidity, optical depth, turbidity or visibility of the haze.
+    Haze,
+    /// Ozone column.
+    Ozone,
+    /// Albedo of the ground.
+    GroundAlbedo,
+    /// An eye high above the ground.
+    ObserverHeight,
+    /// Distance of the planet from the sun.
+    SunDistance,
+    /// Fog near the ground.
+    Fog,
+    /// Which orders of scattering the fog has.
+    FogScattering,
+    /// Point, spot and sphere lights.
+    Lights,
+    /// Objects in front of the sky.
+    Objects,
+    /// The wavelengths to compute.
+    Wavelengths,
+    /// Which orders of scattering are computed.
+    Scattering,
+    /// How finely the solver works.
+    Effort,
+    /// Number of Monte Carlo paths and their seed.
+    Paths,
+    /// Pictures of the standard error.
+    NoiseMap,
+    /// Polarisation of the light.
+    Polarisation,
+    /// The form of a published model.
+    Variant,
+    /// The sunlight of the single-scattering shader.
+    Sunlight,
+    /// Haze and air of the model of 1987.
+    Klassen1987,
+    /// Pictures with one channel for each wavelength.
+    Spectra,
+    /// Air in front of a point at a distance.
+    Distances,
+}
+
+impl Input {
+    /// Its key in a scene file.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::Atmosphere => "air.atmosphere",
+            Self::Haze => "air.aerosol, humidity, aod_550, turbidity and haze_visibility_m",
+            Self::Ozone => "air.ozone_du",
+            Self::GroundAlbedo => "air.ground_albedo",
+            Self::ObserverHeight => "observer",
+            Self::SunDistance => "sun.distance_ratio",
+            Self::Fog => "fog",
+            Self::FogScattering => "fog.scattering",
+            Self::Lights => "lights",
+            Self::Objects => "objects",
+            Self::Wavelengths => "solver.wavelengths",
+            Self::Scattering => "solver.scattering",
+            Self::Effort => "solver.effort",
+            Self::Paths => "solver.paths and solver.seed",
+            Self::NoiseMap => "output.noise_map",
+            Self::Polarisation => "output.polarisation",
+            Self::Variant => "solver.variant",
+            Self::Sunlight => "solver.sunlight and solver.zenith_lux",
+            Self::Klassen1987 => "solver.klassen1987",
+            Self::Spectra => "output.spectral",
+            Self::Distances => "distance_m",
+        }
+    }
+}
+
+impl fmt::Display for Input {
+    /// What it is, with its article: "the ozone column".
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Atmosphere => "the atmosphere",
+            Self::Haze => "haze",
+            Self::Ozone => "the ozone column",
+            Self::GroundAlbedo => "the albedo of the ground",
+            Self::ObserverHeight => "an eye high above the ground",
+            Self::SunDistance => "the distance of the sun",
+            Self::Fog => "fog",
+            Self::FogScattering => "the scattering of the fog",
+            Self::Lights => "lights",
+            Self::Objects => "objects",
+            Self::Wavelengths => "the wavelengths",
+            Self::Scattering => "the orders of scattering",
+            Self::Effort => "the effort",
+            Self::Paths => "the number of paths and their seed",
+            Self::NoiseMap => "maps of the noise",
+            Self::Polarisation => "polarisation",
+            Self::Variant => "variants",
+            Self::Sunlight => "the colour of the sunlight",
+            Self::Klassen1987 => "the settings of the 1987 model",
+            Self::Spectra => "spectral pictures",
+            Self::Distances => "the air in front of a point",
+        })
+    }
+}
