@@ -9,7 +9,7 @@ use std::fmt::Write;
 pub fn option_help() -> String {
     let names: String = AerosolType::ALL
         .iter()
-        .map(|(name, _, what)| format!("\n- {name}: {what}"))
+        .map(|kind| format!("\n- {kind}: {}", kind.summary()))
         .collect();
     format!(
         "Haze of a published type instead of the atmosphere's, or a mixture by shares of the extinction (urban:0.7,desert:0.3); without an amount as much as published\n{names}\n"
@@ -18,15 +18,7 @@ pub fn option_help() -> String {
 
 /// The types, one a line.
 pub fn list() -> String {
-    let width = AerosolType::ALL
-        .map(|known| known.0.len())
-        .into_iter()
-        .max();
-    let width = width.unwrap_or(0);
-    let lines: String = AerosolType::ALL
-        .iter()
-        .map(|(name, _, what)| format!("  {name:width$}  {what}\n"))
-        .collect();
+    let lines = report::named::<AerosolType>("  ");
     format!("\nTypes of haze, for --aerosol:\n{lines}")
 }
 

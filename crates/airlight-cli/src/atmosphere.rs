@@ -4,7 +4,7 @@ use crate::aerosol;
 use crate::args::AtmospheresArgs;
 use crate::error::CliError;
 use crate::report;
-use airlight::atmosphere::{AerosolType, Atmosphere, preset_names};
+use airlight::atmosphere::{AerosolType, Atmosphere, Preset};
 use airlight::scene::Scene;
 use airlight_render::scene_file;
 use std::fmt::Write;
@@ -12,8 +12,9 @@ use std::path::Path;
 
 /// The help of `--atmosphere`: every preset with its description.
 pub fn option_help() -> String {
-    let names: String = preset_names()
-        .map(|(name, what)| format!("\n- {name}: {what}"))
+    let names: String = Preset::ALL
+        .iter()
+        .map(|preset| format!("\n- {preset}: {}", preset.summary()))
         .collect();
     format!("The atmosphere: one of these names, or a TOML file\n{names}\n")
 }
@@ -32,19 +33,12 @@ fn named(name: &str) -> Result<Atmosphere, CliError> {
 /// [`CliError`] for an unknown name or a file that is wrong, and where standard output cannot be written.
 pub fn list(args: &AtmospheresArgs) -> Result<(), CliError> {
     if let Some(name) = &args.atmosphere {
-        if let Ok(kind) = AerosolType::named(name) {
+        if let Ok(kind) = name.parse::<AerosolType>() {
             return report::print(&aerosol::describe(kind)?);
         }
         return report::print(&describe(&named(name)?));
     }
-    let width = preset_names()
-        .map(|(name, _)| name.len())
-        .max()
-        .unwrap_or(0);
-    let lines: String = preset_names()
-        .map(|(name, what)| format!("{name:width$}  {what}\n"))
-        .collect();
-    report::print(&(lines + &aerosol::list()))
+    report::print(&(report::named::<Preset>("") + &aerosol::list()))
 }
 
 /// What an atmosphere is made of.

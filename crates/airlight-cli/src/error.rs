@@ -1,6 +1,7 @@
 //! Why a command ends before its time, and with which exit code.
 
-use airlight::atmosphere::{AerosolError, AtmosphereError, UnknownPreset};
+use airlight::UnknownName;
+use airlight::atmosphere::{AerosolError, AtmosphereError};
 use airlight::optics::mie::MieError;
 use airlight::scene::SceneError;
 use airlight::sky::SkyError;
@@ -114,7 +115,7 @@ refusals!(
     GridError,
     MieError,
     SkyError,
-    UnknownPreset
+    UnknownName
 );
 
 impl From<SceneError> for CliError {

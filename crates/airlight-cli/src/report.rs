@@ -2,6 +2,7 @@
 
 use crate::error::CliError;
 use crate::interrupt;
+use airlight::Named;
 use airlight_image::output::AtomicFile;
 use airlight_image::tone::ToneMapper;
 use airlight_plot::{ContactSheet, Panel, Raster};
@@ -118,4 +119,12 @@ mod tests {
         assert_eq!(bytes(123), "123 bytes");
         assert_eq!(bytes(12_345_678), "12.3 MB");
     }
+}
+
+/// The names of a set with their descriptions, one a line, each after `indent`.
+pub fn named<T: Named>(indent: &str) -> String {
+    let width = T::all().map(|value| value.name().len()).max().unwrap_or(0);
+    T::all()
+        .map(|value| format!("{indent}{:width$}  {}\n", value.name(), value.summary()))
+        .collect()
 }

@@ -80,7 +80,7 @@ fn bad_use_of_sky() {
         ("sky --sun-elevation 30 -o a", "no ending"),
         (
             "sky --sun-elevation 30 --atmosphere claer -o a.exr",
-            "did you mean \"clear\"",
+            "try \"clear\"",
         ),
         (
             "sky --sun-elevation 30 --atmosphere bad.toml -o a.exr",
@@ -105,7 +105,7 @@ fn bad_use_of_sky() {
         ),
         (
             "sky --sun-elevation 30 --aerosol dessert -o a.exr",
-            "did you mean \"desert\"",
+            "try \"desert\"",
         ),
         (
             "sky --sun-elevation 30 --aerosol urban --humidity 80 -o a.exr",

@@ -109,11 +109,7 @@ impl PixelChannels {
 
     /// Primaries and white of the RGB space, as files state them.
     pub fn chromaticities(&self) -> Chromaticities {
-        match self.space {
-            RgbSpace::Srgb => Chromaticities::SRGB,
-            RgbSpace::Rec2020 => Chromaticities::REC2020,
-            RgbSpace::AcesCg => Chromaticities::ACESCG,
-        }
+        self.space.into()
     }
 }
 

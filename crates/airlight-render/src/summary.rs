@@ -1,8 +1,8 @@
 //! Scenes and numbers in words, for the metadata of files and for reports.
 
+use airlight::Named;
 use airlight::atmosphere::DensityProfile;
 use airlight::fog::FogScattering;
-use airlight::fog::droplets::DropletKind;
 use airlight::scene::FogLayers;
 
 /// A number with 4 significant digits.
@@ -15,27 +15,6 @@ pub fn short(value: f64) -> String {
         s => {
             let decimals = (3 - s.log10().floor() as i32).clamp(0, 6) as usize;
             format!("{value:.decimals$}")
-        }
-    }
-}
-
-/// Droplets in words, by their size.
-pub fn droplets(kind: DropletKind) -> String {
-    match kind {
-        DropletKind::Analytic(droplets) => {
-            format!("grey, of {} um diameter", short(droplets.diameter_um()))
-        }
-        DropletKind::Isotropic => {
-            "grey, equal in all directions: the assumption of published models, of no droplets"
-                .to_owned()
-        }
-        DropletKind::Published(drops) => {
-            let sizes = drops.sizes();
-            format!(
-                "Lorenz-Mie theory, mode radius {} um, effective radius {} um",
-                short(sizes.mode_radius_um()),
-                short(sizes.effective_radius_um())
-            )
         }
     }
 }
@@ -65,7 +44,7 @@ pub fn fog(fog: &FogLayers) -> String {
             "extinction {} 1/m, {extent}, droplets {} ({})",
             short(layer.extinction_per_m),
             layer.droplets.name(),
-            droplets(layer.droplets)
+            layer.droplets.summary()
         )
     });
     let mut text = layers.collect::<Vec<_>>().join("; ");

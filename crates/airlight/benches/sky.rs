@@ -69,7 +69,7 @@ fn panorama_from_scratch(bencher: Bencher, elevation_deg: f64) {
 
 #[divan::bench(args = ["rgb", "fast", "standard", "fine"], sample_count = 5)]
 fn solve_one_sun(bencher: Bencher, grid: &str) {
-    let grid = WavelengthGrid::by_name(grid).expect("a grid");
+    let grid = grid.parse::<WavelengthGrid>().expect("a grid");
     bencher.bench(|| prepare(&grid, SunCoverage::near(30.0, 0.0), Scattering::All));
 }
 

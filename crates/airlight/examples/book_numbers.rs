@@ -2,7 +2,7 @@
 //! `cargo run --release --example book_numbers -p airlight`; with the argument `molecules`, `hazes` or `earth` only that table.
 
 use airlight::atmosphere::aerosol::{turbidity_of_optical_depth, visibility_of_extinction_m};
-use airlight::atmosphere::{ConstituentKind, gases, preset, preset_names};
+use airlight::atmosphere::{ConstituentKind, Preset, gases, preset};
 use airlight::optics::rayleigh;
 use airlight::sun::{self, Place, RefractingAir};
 
@@ -109,8 +109,8 @@ fn earth() -> Fallible {
 
 /// The constituents of all presets.
 fn presets() -> Fallible {
-    for (name, _) in preset_names() {
-        let air = preset(name)?;
+    for &preset in Preset::ALL {
+        let (name, air) = (preset.name(), preset.atmosphere());
         let planet = &air.planet;
         println!(
             "\n{name}: radius {} km, top {} km, ground albedo {} / {} / {} at 440 / 550 / 680 nm",

@@ -22,6 +22,7 @@ pub mod fog;
 mod math;
 pub mod models;
 pub mod monte_carlo;
+mod names;
 pub mod optics;
 pub mod scene;
 pub mod sky;
@@ -30,6 +31,7 @@ pub mod sun;
 pub mod transfer;
 
 pub use control::{Cancelled, Control, Progress};
+pub use names::{Named, UnknownName};
 
 /// The example of the README, compiled and run as a test.
 #[cfg(doctest)]

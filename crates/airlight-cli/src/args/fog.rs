@@ -1,11 +1,11 @@
 //! Options that describe fog, the same for every command that draws it.
 
 use crate::parse::{self, words::Words};
+use airlight::Named;
 use airlight::fog::FogScattering;
 use airlight::fog::droplets::DropletKind;
 use airlight::optics::mie::droplets::Drops;
 use airlight::scene::{FogLayerSpec, FogProfile, FogSpec};
-use airlight_render::summary;
 use clap::builder::PossibleValue;
 use clap::{Args, ValueEnum};
 use std::sync::LazyLock;
@@ -16,19 +16,13 @@ pub struct FogProfileArg(pub FogProfile);
 
 impl ValueEnum for FogProfileArg {
     fn value_variants<'a>() -> &'a [Self] {
-        static ALL: LazyLock<Vec<FogProfileArg>> = LazyLock::new(|| {
-            FogProfile::ALL
-                .map(|(_, profile, _)| FogProfileArg(profile))
-                .to_vec()
-        });
+        static ALL: LazyLock<Vec<FogProfileArg>> =
+            LazyLock::new(|| FogProfile::all().map(FogProfileArg).collect());
         &ALL
     }
 
     fn to_possible_value(&self) -> Option<PossibleValue> {
-        let (name, _, summary) = FogProfile::ALL
-            .into_iter()
-            .find(|(_, profile, _)| *profile == self.0)?;
-        Some(PossibleValue::new(name).help(summary))
+        Some(PossibleValue::new(self.0.name()).help(self.0.summary()))
     }
 }
 
@@ -38,16 +32,13 @@ pub struct DropletsArg(pub DropletKind);
 
 impl ValueEnum for DropletsArg {
     fn value_variants<'a>() -> &'a [Self] {
-        static ALL: LazyLock<Vec<DropletsArg>> = LazyLock::new(|| {
-            DropletKind::all()
-                .map(|(_, kind)| DropletsArg(kind))
-                .collect()
-        });
+        static ALL: LazyLock<Vec<DropletsArg>> =
+            LazyLock::new(|| DropletKind::all().map(DropletsArg).collect());
         &ALL
     }
 
     fn to_possible_value(&self) -> Option<PossibleValue> {
-        let value = PossibleValue::new(self.0.name()).help(summary::droplets(self.0));
+        let value = PossibleValue::new(self.0.name()).help(self.0.summary());
         Some(match self.0 {
             DropletKind::Published(Drops::ModerateRadiationFog) => value.alias("mist"),
             _ => value,

@@ -61,7 +61,7 @@ fn of_drops(DropletsArg(kind): DropletsArg, nm: f64) -> Result<Curve, CliError> 
     let layer = Constituent::fog(1.0, kind, DensityProfile::Uniform, &[nm])?;
     let point = |angle: f64| (angle, layer.phase.evaluate(angle.cos(), nm));
     Ok(Curve {
-        name: format!("{}, {nm} nm", kind.name()),
+        name: format!("{kind}, {nm} nm"),
         points: angles(PI / 1800.0).into_iter().map(point).collect(),
     })
 }

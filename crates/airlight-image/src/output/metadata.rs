@@ -1,6 +1,7 @@
 //! What a picture file says about itself.
 
 use crate::{Frame, Projection};
+use airlight::spectrum::RgbSpace;
 
 /// Facts about a picture. EXR files keep them as standard attributes where there is one, PNG files as text chunks, HDR
 /// files as header lines, JPEG files as a comment.
@@ -54,20 +55,6 @@ impl Chromaticities {
         blue: [0.15, 0.06],
         white: [0.3127, 0.3290],
     };
-    /// Rec. ITU-R BT.2020, white D65.
-    pub const REC2020: Self = Self {
-        red: [0.708, 0.292],
-        green: [0.170, 0.797],
-        blue: [0.131, 0.046],
-        white: [0.3127, 0.3290],
-    };
-    /// ACEScg (AP1, SMPTE ST 2065-1 white).
-    pub const ACESCG: Self = Self {
-        red: [0.713, 0.293],
-        green: [0.165, 0.830],
-        blue: [0.128, 0.044],
-        white: [0.32168, 0.33767],
-    };
     /// The CIE 1931 XYZ components themselves, white of equal energy.
     pub const XYZ: Self = Self {
         red: [1.0, 0.0],
@@ -75,6 +62,18 @@ impl Chromaticities {
         blue: [0.0, 0.0],
         white: [1.0 / 3.0, 1.0 / 3.0],
     };
+}
+
+impl From<RgbSpace> for Chromaticities {
+    fn from(space: RgbSpace) -> Self {
+        let [red, green, blue] = space.primaries_xy().map(|xy| xy.map(|v| v as f32));
+        Self {
+            red,
+            green,
+            blue,
+            white: space.white_point_xy().map(|v| v as f32),
+        }
+    }
 }
 
 impl Metadata {

@@ -1,6 +1,7 @@
 //! Pictures read from files.
 
 use crate::common::{Folder, files::*, size};
+use airlight::spectrum::RgbSpace;
 use airlight_image::{
     Control, ImageError, Picture, PictureOptions,
     input::{LightReference, SampleBits, read_picture},
@@ -308,7 +309,7 @@ fn written_pictures_come_back() {
     let tone = ToneMapper::as_displayed();
     let options = PictureOptions {
         metadata: Metadata {
-            chromaticities: Some(output::Chromaticities::REC2020),
+            chromaticities: Some(output::Chromaticities::from(RgbSpace::Rec2020)),
             white_luminance_cd_m2: Some(250.0),
             ..Metadata::default()
         },
@@ -342,7 +343,7 @@ fn written_pictures_come_back() {
         let white = (ending == "exr").then_some(250.0);
         assert_eq!(picture.white_luminance_cd_m2, white, "{ending}");
         if picture.reference == LightReference::Scene {
-            let rec2020 = Some(output::Chromaticities::REC2020);
+            let rec2020 = Some(output::Chromaticities::from(RgbSpace::Rec2020));
             assert_eq!(picture.chromaticities, rec2020, "{ending}");
         }
     }

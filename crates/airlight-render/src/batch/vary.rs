@@ -1,6 +1,7 @@
 //! Variation: settings of an overlay that are drawn for each picture.
 
 use crate::overlay::OverlayScene;
+use airlight::Named;
 use airlight::fog::droplets::DropletKind;
 use airlight::scene::FogProfile;
 use std::fmt;
@@ -177,31 +178,19 @@ static SETTINGS: [Setting; 15] = [
         name: "fog-profile",
         stream: "model",
         kind: Kind::Choice {
-            names: || FogProfile::ALL.map(|(name, ..)| name).to_vec(),
-            set: |s, name| {
-                s.fog_mut().profile = of_name(
-                    FogProfile::ALL.map(|(name, profile, _)| (name, profile)),
-                    name,
-                )
-            },
+            names: || FogProfile::all().map(FogProfile::name).collect(),
+            set: |s, name| s.fog_mut().profile = name.parse().ok(),
         },
     },
     Setting {
         name: "droplets",
         stream: "droplets",
         kind: Kind::Choice {
-            names: || DropletKind::all().map(|(name, _)| name).collect(),
-            set: |s, name| s.fog_mut().droplets = of_name(DropletKind::all(), name),
+            names: || DropletKind::all().map(DropletKind::name).collect(),
+            set: |s, name| s.fog_mut().droplets = name.parse().ok(),
         },
     },
 ];
-
-/// The value of a name.
-fn of_name<T>(all: impl IntoIterator<Item = (&'static str, T)>, name: &str) -> Option<T> {
-    all.into_iter()
-        .find(|(known, _)| *known == name)
-        .map(|(_, value)| value)
-}
 
 /// Settings on which a solved sky depends.
 const OF_SKY: [&str; 4] = [

@@ -107,7 +107,7 @@ impl Probe {
                 .then_some(scattering),
             solver: self.model.name(),
             variant: variant.or_else(|| variants.first().map(|name| (*name).to_owned())),
-            color_space: space_name(space),
+            color_space: space.name(),
             wavelengths_nm: asked.wavelengths_nm(),
             observer: observer(resolved),
             sun: asked.sun(&sun),
@@ -261,13 +261,5 @@ fn observer(scene: &ResolvedScene) -> ObserverAnswer {
         altitude_m: scene.observer_altitude_m,
         ground_altitude_m: scene.atmosphere.planet.ground_altitude_m,
         time_utc: scene.sun.start().map(|time| time.utc().to_string()),
-    }
-}
-
-fn space_name(space: RgbSpace) -> &'static str {
-    match space {
-        RgbSpace::Srgb => "srgb",
-        RgbSpace::Rec2020 => "rec2020",
-        RgbSpace::AcesCg => "acescg",
     }
 }

@@ -20,9 +20,7 @@ fn hedge(eye_height_m: f64) -> (OverlayScene, OverlayImage) {
     let fog = scene.fog_mut();
     fog.visibility_m = Some(60.0);
     fog.top_m = Some(60.0);
-    fog.droplets = airlight::fog::droplets::DropletKind::all()
-        .find(|(name, _)| *name == "fine")
-        .map(|(_, kind)| kind);
+    fog.droplets = Some("fine".parse().unwrap());
     let dark = picture(SIZE, |_, _| [0.02, 0.03, 0.01]);
     let far = depth(SIZE, |_, y| if y < 4 { f32::INFINITY } else { 40.0 });
     let image = OverlayImage::new(&scene.overlay, dark, far).unwrap();

@@ -26,7 +26,7 @@
 //! | key | meaning |
 //! |---|---|
 //! | `name` | what the atmosphere is called; else the base's name |
-//! | `base` | a preset ([`crate::atmosphere::preset_names`]), or `"none"`: the Earth without air. `"average"` where absent |
+//! | `base` | a preset ([`crate::atmosphere::Preset`]), or `"none"`: the Earth without air. `"average"` where absent |
 //! | `remove` | list of constituents of the base to leave out |
 //! | `planet.radius_m`, `.top_altitude_m`, `.ground_altitude_m` | lengths in metres |
 //! | `planet.ground_albedo` | *spectrum* in `[0, 1]` |
@@ -63,10 +63,10 @@ mod type_tests;
 
 pub use error::{ConfigError, ConfigProblem};
 
-use super::presets::{self, earth};
+use super::presets::{self, Preset, earth};
 use super::{Atmosphere, AtmosphereError, ConstituentKind, gases};
+use crate::names::Named;
 use crate::optics::rayleigh::STANDARD_PRESSURE_PA;
-use crate::sun::LimbDarkening;
 use reader::Section;
 use toml::de::DeTable;
 
@@ -118,10 +118,8 @@ pub fn from_toml_table(
     let mut atmosphere = match base {
         NO_AIR => earth::airless(NO_AIR),
         name => presets::preset(name).map_err(|_| {
-            let names = presets::preset_names()
-                .map(|preset| preset.0)
-                .chain([NO_AIR]);
-            root.unknown("base", "base", name, names.collect())
+            let names = Preset::all().map(Preset::name).chain([NO_AIR]);
+            root.unknown("base", "a base", name, names.collect())
         })?,
     };
     if let Some(name) = root.text("name")? {
@@ -134,7 +132,7 @@ pub fn from_toml_table(
             .map(|part| part.kind.name())
             .collect();
         if !names.contains(&name) {
-            return Err(root.unknown("remove", "constituent", name, names));
+            return Err(root.unknown("remove", "a constituent", name, names));
         }
         let kind = ConstituentKind::from(name);
         atmosphere.constituents.retain(|part| part.kind != kind);
@@ -208,16 +206,8 @@ fn sun(section: &Section<'_>, atmosphere: &mut Atmosphere) -> Result<(), ConfigE
     if let Some(deg) = section.number("angular_radius_deg", "above 0 and below 90", below_90)? {
         atmosphere.sun.angular_radius_rad = deg.to_radians();
     }
-    if let Some(name) = section.text("limb_darkening")? {
-        atmosphere.sun.limb_darkening = match name {
-            "neckel" => LimbDarkening::Neckel,
-            "power-law" => LimbDarkening::PowerLaw,
-            "uniform" => LimbDarkening::Uniform,
-            _ => {
-                let names = vec!["neckel", "power-law", "uniform"];
-                return Err(section.unknown("limb_darkening", "limb darkening", name, names));
-            }
-        };
+    if let Some(limb_darkening) = section.named("limb_darkening")? {
+        atmosphere.sun.limb_darkening = limb_darkening;
     }
     if let Some(irradiance) = parts::spectrum(section, "irradiance_w_m2_nm", f64::INFINITY)? {
         atmosphere.solar_irradiance = irradiance;

@@ -1,6 +1,7 @@
 //! Water droplets: fog by the diameter of its drops, or by published size distributions and Lorenz-Mie theory.
 
 use super::{Constituent, ConstituentKind, DensityProfile};
+use crate::names::{Named, UnknownName, named, written_by_name};
 use crate::optics::PhaseFunction;
 use crate::optics::mie::droplets::Drops;
 use crate::optics::mie::{BulkOptics, MieError};
@@ -27,6 +28,7 @@ pub fn phase(diameter_um: f64) -> PhaseFunction {
 
 /// Kinds of fog by the typical diameter of its drops.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Droplets {
     /// Young radiation fog over land, smog: 5 micrometres.
     Fine,
@@ -39,15 +41,14 @@ pub enum Droplets {
     Coarse,
 }
 
-impl Droplets {
-    /// All kinds with their names.
-    pub const ALL: [(&'static str, Self); 4] = [
-        ("fine", Self::Fine),
-        ("radiation", Self::Radiation),
-        ("advection", Self::Advection),
-        ("coarse", Self::Coarse),
-    ];
+named! { Droplets, "a droplet size", [
+    ("fine", (Fine), "grey, of 5 um diameter"),
+    ("radiation", (Radiation), "grey, of 10 um diameter"),
+    ("advection", (Advection), "grey, of 20 um diameter"),
+    ("coarse", (Coarse), "grey, of 40 um diameter"),
+] }
 
+impl Droplets {
     /// Typical diameter of a drop, micrometres (rounded from the mode radii of Shettle & Fenn 1979, AFGL-TR-79-0214:
     /// radiation fog 2 to 4 micrometres with volume in larger drops, advection fog 8 to 10).
     pub fn diameter_um(self) -> f64 {
@@ -68,6 +69,7 @@ impl Droplets {
 /// Drops of any kind, by name: analytic and grey, or published sizes by Lorenz-Mie theory, with bows, glories and coronas; or
 /// none, to compare with models of fog that scatters equally in all directions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum DropletKind {
     /// The analytic phase function of one diameter.
     Analytic(Droplets),
@@ -95,22 +97,43 @@ impl From<Drops> for DropletKind {
     }
 }
 
-impl DropletKind {
-    /// All kinds with their names.
-    pub fn all() -> impl Iterator<Item = (&'static str, Self)> {
-        let analytic = Droplets::ALL.map(|(name, kind)| (name, kind.into()));
-        let published = Drops::ALL.map(|(name, kind)| (name, kind.into()));
-        let isotropic = [("isotropic", Self::Isotropic)];
-        analytic.into_iter().chain(isotropic).chain(published)
+impl Named for DropletKind {
+    const WHAT: &'static str = "a kind of droplets";
+
+    fn all() -> impl Iterator<Item = Self> {
+        let analytic = Droplets::all().map(Self::Analytic);
+        let published = Drops::all().map(Self::Published);
+        analytic.chain([Self::Isotropic]).chain(published)
     }
 
-    /// Its name.
-    pub fn name(self) -> &'static str {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Analytic(droplets) => droplets.name(),
+            Self::Isotropic => "isotropic",
+            Self::Published(drops) => drops.name(),
+        }
+    }
+
+    fn summary(self) -> &'static str {
+        match self {
+            Self::Analytic(droplets) => droplets.summary(),
+            Self::Isotropic => {
+                "grey, the same in all directions: no drops do so, published models do"
+            }
+            Self::Published(drops) => drops.summary(),
+        }
+    }
+
+    /// As listed; "mist" is moderate radiation fog.
+    fn from_name(name: &str) -> Result<Self, UnknownName> {
         Self::all()
-            .find(|(_, kind)| *kind == self)
-            .map_or("", |(name, _)| name)
+            .find(|kind| kind.name() == name)
+            .or((name == "mist").then_some(Drops::ModerateRadiationFog.into()))
+            .ok_or_else(|| UnknownName::new(Self::WHAT, name, Self::all().map(Self::name)))
     }
 }
+
+written_by_name!(DropletKind);
 
 impl Constituent {
     /// A layer of fog: its extinction at 550 nm (1/m, [`extinction_per_m`](super::visibility::extinction_per_m) of a
@@ -164,11 +187,15 @@ mod tests {
     #[test]
     fn every_kind_has_a_name_of_its_own() {
         let names: std::collections::BTreeSet<_> =
-            DropletKind::all().map(|(name, _)| name).collect();
+            DropletKind::all().map(DropletKind::name).collect();
         assert_eq!(names.len(), DropletKind::all().count());
-        for (name, kind) in DropletKind::all() {
-            assert_eq!(kind.name(), name);
+        for kind in DropletKind::all() {
+            assert_eq!(kind.to_string().parse(), Ok(kind));
         }
+        assert_eq!(
+            "mist".parse(),
+            Ok(DropletKind::Published(Drops::ModerateRadiationFog))
+        );
     }
 
     /// Lorenz-Mie theory gives large water drops a mean cosine of 0.85 to 0.88 in the visible (Hu & Stamnes 1993).

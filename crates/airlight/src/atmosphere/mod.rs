@@ -7,7 +7,6 @@ mod constituents;
 mod density;
 pub mod droplets;
 pub mod gases;
-pub(crate) mod nearest;
 pub mod presets;
 mod ray_segment;
 mod standard_air;
@@ -20,6 +19,6 @@ pub use constituents::{
 };
 pub use density::{AltitudeTable, DensityError, DensityProfile, Interpolation};
 pub(crate) use density::{Decay, HeightStructure};
-pub use presets::{UnknownPreset, preset, preset_names, reference};
+pub use presets::{Preset, preset, reference};
 pub use ray_segment::RaySegment;
 pub(crate) use standard_air::refracting_air;

@@ -6,114 +6,82 @@ pub mod mars;
 pub mod published;
 pub mod reference;
 
-use super::{Atmosphere, nearest::nearest};
+use super::Atmosphere;
+use crate::names::{UnknownName, named};
 
-/// One line of the list of presets.
-struct Preset {
-    name: &'static str,
-    description: &'static str,
-    build: fn() -> Atmosphere,
+/// An atmosphere that is ready to use, by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Preset {
+    /// Earth on a clear day: aerosol optical depth 0.05 at 550 nm.
+    Clear,
+    /// Earth on an average day: aerosol optical depth 0.12 at 550 nm.
+    Average,
+    /// Earth on a hazy day: aerosol optical depth 0.35 at 550 nm.
+    Hazy,
+    /// Mars on a moderately dusty day: dust optical depth 0.5 at 880 nm.
+    Mars,
+    /// Earth of Bruneton's precomputed scattering (2017), spectral.
+    Bruneton,
+    /// Earth of Hillaire's production sky (2020), red, green and blue.
+    Hillaire,
+    /// Earth of "Sky and Atmosphere rendering: A physical approach", as printed.
+    SkyArticle,
+    /// Reference: air molecules alone over black ground, unit sun.
+    ReferenceRayleigh,
+    /// Reference: air molecules alone over ground of albedo 0.3, unit sun.
+    ReferenceRayleighAlbedo03,
+    /// Reference: Bruneton's Earth at 680, 550 and 440 nm.
+    ReferenceEarthDemo,
+    /// Reference: the comparison of clear-sky models (2017), 40 wavelengths.
+    ReferenceCsm,
 }
 
-/// The presets in the order to list them in.
-const PRESETS: [Preset; 11] = [
-    Preset {
-        name: "clear",
-        description: "Earth on a clear day: aerosol optical depth 0.05 at 550 nm",
-        build: earth::clear,
-    },
-    Preset {
-        name: "average",
-        description: "Earth on an average day: aerosol optical depth 0.12 at 550 nm",
-        build: earth::average,
-    },
-    Preset {
-        name: "hazy",
-        description: "Earth on a hazy day: aerosol optical depth 0.35 at 550 nm",
-        build: earth::hazy,
-    },
-    Preset {
-        name: "mars",
-        description: "Mars on a moderately dusty day: dust optical depth 0.5 at 880 nm",
-        build: mars::mars,
-    },
-    Preset {
-        name: "bruneton",
-        description: "Earth of Bruneton's precomputed scattering (2017), spectral",
-        build: published::bruneton,
-    },
-    Preset {
-        name: "hillaire",
-        description: "Earth of Hillaire's production sky (2020), red, green and blue",
-        build: published::hillaire,
-    },
-    Preset {
-        name: "sky-article",
-        description: "Earth of \"Sky and Atmosphere rendering: A physical approach\", as printed",
-        build: published::sky_article,
-    },
-    Preset {
-        name: "reference-rayleigh",
-        description: "Reference: air molecules alone over black ground, unit sun",
-        build: || reference::rayleigh(0.0),
-    },
-    Preset {
-        name: "reference-rayleigh-albedo-0.3",
-        description: "Reference: air molecules alone over ground of albedo 0.3, unit sun",
-        build: || reference::rayleigh(0.3),
-    },
-    Preset {
-        name: "reference-earth-demo",
-        description: "Reference: Bruneton's Earth at 680, 550 and 440 nm",
-        build: reference::earth_demo,
-    },
-    Preset {
-        name: "reference-csm",
-        description: "Reference: the comparison of clear-sky models (2017), 40 wavelengths",
-        build: reference::csm,
-    },
-];
+named! { Preset, "an atmosphere", [
+    ("clear", (Clear), "Earth on a clear day: aerosol optical depth 0.05 at 550 nm"),
+    ("average", (Average), "Earth on an average day: aerosol optical depth 0.12 at 550 nm"),
+    ("hazy", (Hazy), "Earth on a hazy day: aerosol optical depth 0.35 at 550 nm"),
+    ("mars", (Mars), "Mars on a moderately dusty day: dust optical depth 0.5 at 880 nm"),
+    ("bruneton", (Bruneton), "Earth of Bruneton's precomputed scattering (2017), spectral"),
+    ("hillaire", (Hillaire), "Earth of Hillaire's production sky (2020), red, green and blue"),
+    ("sky-article", (SkyArticle), "Earth of \"Sky and Atmosphere rendering: A physical approach\", as printed"),
+    ("reference-rayleigh", (ReferenceRayleigh), "Reference: air molecules alone over black ground, unit sun"),
+    ("reference-rayleigh-albedo-0.3", (ReferenceRayleighAlbedo03), "Reference: air molecules alone over ground of albedo 0.3, unit sun"),
+    ("reference-earth-demo", (ReferenceEarthDemo), "Reference: Bruneton's Earth at 680, 550 and 440 nm"),
+    ("reference-csm", (ReferenceCsm), "Reference: the comparison of clear-sky models (2017), 40 wavelengths"),
+] }
 
-/// There is no preset of that name.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("there is no atmosphere called \"{name}\"{}; there are: {}", self.hint(), self.names())]
-pub struct UnknownPreset {
-    /// The name asked for.
-    pub name: String,
-    /// The name it may have been meant to be.
-    pub nearest: Option<&'static str>,
-}
-
-impl UnknownPreset {
-    fn hint(&self) -> String {
-        self.nearest
-            .map_or(String::new(), |near| format!(" (did you mean \"{near}\"?)"))
-    }
-
-    fn names(&self) -> String {
-        PRESETS.map(|preset| preset.name).join(", ")
+impl Preset {
+    /// The atmosphere.
+    pub fn atmosphere(self) -> Atmosphere {
+        match self {
+            Self::Clear => earth::clear(),
+            Self::Average => earth::average(),
+            Self::Hazy => earth::hazy(),
+            Self::Mars => mars::mars(),
+            Self::Bruneton => published::bruneton(),
+            Self::Hillaire => published::hillaire(),
+            Self::SkyArticle => published::sky_article(),
+            Self::ReferenceRayleigh => reference::rayleigh(0.0),
+            Self::ReferenceRayleighAlbedo03 => reference::rayleigh(0.3),
+            Self::ReferenceEarthDemo => reference::earth_demo(),
+            Self::ReferenceCsm => reference::csm(),
+        }
     }
 }
 
-/// The atmosphere of a name.
+impl From<Preset> for Atmosphere {
+    fn from(preset: Preset) -> Self {
+        preset.atmosphere()
+    }
+}
+
+/// The atmosphere of a name: that of [`Preset`].
 ///
 /// # Errors
-/// [`UnknownPreset`], which lists the names there are and the nearest one.
-pub fn preset(name: &str) -> Result<Atmosphere, UnknownPreset> {
-    match PRESETS.iter().find(|preset| preset.name == name) {
-        Some(preset) => Ok((preset.build)()),
-        None => Err(UnknownPreset {
-            name: name.to_owned(),
-            nearest: nearest(name, PRESETS.iter().map(|preset| preset.name)),
-        }),
-    }
-}
-
-/// Name and one-line description of each preset.
-pub fn preset_names() -> impl Iterator<Item = (&'static str, &'static str)> {
-    PRESETS
-        .iter()
-        .map(|preset| (preset.name, preset.description))
+/// [`UnknownName`], which lists the names and the nearest one.
+pub fn preset(name: &str) -> Result<Atmosphere, UnknownName> {
+    name.parse().map(Preset::atmosphere)
 }
 
 #[cfg(test)]
@@ -123,8 +91,9 @@ mod tests {
 
     #[test]
     fn every_preset_is_valid_and_bears_its_name() {
-        for (name, description) in preset_names() {
-            let atmosphere = preset(name).unwrap();
+        for &preset in Preset::ALL {
+            let (name, description) = (preset.name(), preset.summary());
+            let atmosphere = preset.atmosphere();
             atmosphere
                 .validate()
                 .unwrap_or_else(|error| panic!("{name}: {error}"));
@@ -140,10 +109,10 @@ mod tests {
     #[test]
     fn unknown_names_get_help() {
         let error = preset("claer").unwrap_err();
-        assert_eq!(error.nearest, Some("clear"));
+        assert_eq!(error.nearest.as_deref(), Some("clear"));
         let text = error.to_string();
         assert!(
-            text.contains("did you mean \"clear\"") && text.contains("mars"),
+            text.contains("try \"clear\"") && text.contains("mars"),
             "{text}"
         );
     }

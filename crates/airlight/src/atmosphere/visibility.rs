@@ -3,6 +3,8 @@
 //! Along a horizontal line the contrast of a black object against the horizon falls as `e^(-extinction * distance)`
 //! (Koschmieder 1924); visibility is the distance at which a stated contrast is left.
 
+use crate::names::named;
+
 /// Which contrast counts as the last that is seen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Contrast {
@@ -12,6 +14,11 @@ pub enum Contrast {
     /// 2 %: Koschmieder's visual range, which much of the literature on haze means.
     TwoPercent,
 }
+
+named! { Contrast, "a contrast", [
+    ("five-percent", (FivePercent), "meteorological optical range"),
+    ("two-percent", (TwoPercent), "Koschmieder's visual range"),
+] }
 
 impl Contrast {
     /// The contrast itself.

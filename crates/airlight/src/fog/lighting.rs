@@ -3,6 +3,7 @@
 use super::error::{FogError, check_light};
 use super::values::ChannelValues;
 use crate::atmosphere::RaySegment;
+use crate::names::named;
 use crate::spectrum::SpectralCurve;
 use glam::DVec3;
 
@@ -51,6 +52,12 @@ pub enum FogScattering {
     /// light and by the undimmed sun.
     Multiple,
 }
+
+named! { FogScattering, "a scattering of fog", [
+    ("all", (Multiple), "any number of times, between sky, sun and ground"),
+    ("single", (Single), "once: sunlight after its way through the fog, ambient light undimmed"),
+    ("undimmed", (Undimmed), "once, the sun not dimmed by the fog: Ishiyama's height fog as printed"),
+] }
 
 impl Ground {
     /// Flat ground at height 0.

@@ -27,7 +27,7 @@ pub mod registry {
     use super::{
         four_orders, hillaire2020, klassen1987, monte_carlo, orders, preetham, single_scattering,
     };
-    use crate::atmosphere::nearest::nearest;
+    use crate::names::UnknownName;
     use crate::control::Control;
     use crate::scene::{PreparedModel, RadianceModel, ResolvedScene, SceneError, check_inputs};
     use crate::sky::SunCoverage;
@@ -57,9 +57,7 @@ pub mod registry {
         let names = || ALL.iter().map(|model| model.name());
         let found = ALL.iter().find(|model| model.name() == name);
         found.copied().ok_or_else(|| SceneError::UnknownModel {
-            got: name.to_owned(),
-            nearest: nearest(name, names()),
-            valid: names().collect(),
+            unknown: UnknownName::new("a solver", name, names()),
         })
     }
 

@@ -226,7 +226,7 @@ impl Layer {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::atmosphere::presets::{preset, preset_names};
+    use crate::atmosphere::Preset;
 
     fn extinctions(air: &Atmosphere) -> Vec<PerConstituent> {
         [400.0, 550.0, 700.0]
@@ -243,8 +243,8 @@ mod tests {
     /// The vertical optical depth of the control medium matches the profiles, with few layers.
     #[test]
     fn layers_preserve_the_vertical_column() {
-        for (name, _) in preset_names() {
-            let air = preset(name).unwrap();
+        for &preset in Preset::ALL {
+            let (name, air) = (preset.name(), preset.atmosphere());
             let extinctions = extinctions(&air);
             let layers = Layers::new(&air, &extinctions);
             assert!((2..160).contains(&layers.len()), "{name}: {}", layers.len());

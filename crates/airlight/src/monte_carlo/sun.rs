@@ -1,6 +1,7 @@
 //! Sampling of the sun's disc.
 
 use crate::math::random::Random;
+use crate::names::named;
 use crate::spectrum::Spectrum;
 use crate::sun::SunDisc;
 use glam::DVec3;
@@ -15,6 +16,11 @@ pub enum SunShape {
     /// Light comes from the whole disc, with limb darkening.
     Disc,
 }
+
+named! { SunShape, "a sun shape", [
+    ("point", (Point), "all light from the centre of the disc"),
+    ("disc", (Disc), "from all over the disc, darker towards the limb"),
+] }
 
 impl SunShape {
     /// Draws a direction, uniformly over the disc.

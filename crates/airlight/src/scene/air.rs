@@ -74,7 +74,7 @@ impl AirSpec {
                 "its name alone",
                 "Scene::inline_files",
             )),
-            false => Ok(preset(name)?),
+            false => preset(name).map_err(SceneError::UnknownAtmosphere),
         }
     }
 
@@ -110,7 +110,10 @@ pub fn aerosol_mixture(types: &str, humidity: Option<f64>) -> Result<AerosolMixt
     let mut parts = Vec::new();
     for part in types.split(',') {
         let (name, share) = part.split_once(':').unwrap_or((part, "1"));
-        let kind = AerosolType::named(name.trim()).map_err(refused)?;
+        let kind: AerosolType = name
+            .trim()
+            .parse()
+            .map_err(|error| SceneError::refused("air.aerosol", error))?;
         let share = share.trim().parse().map_err(|_| {
             let expected = format!("a number above 0 as the share of {name}");
             SceneError::value(
@@ -266,7 +269,7 @@ mod tests {
         assert_eq!(two, AerosolMixture::new(parts, 0.5).unwrap());
         let refused =
             |types: &str, humidity| aerosol_mixture(types, humidity).unwrap_err().to_string();
-        assert!(refused("urbam", None).contains("did you mean \"urban\""));
+        assert!(refused("urbam", None).contains("try \"urban\""));
         assert!(refused("biomass", None).contains("biomass-savanna"));
         assert!(refused("urban:x", None).contains("number above 0"));
         assert!(refused("urban:-1", None).contains("above 0"));

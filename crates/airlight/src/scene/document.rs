@@ -2,7 +2,7 @@
 
 use super::{ObjectSpec, Scene, SceneError};
 use crate::atmosphere::config::{ConfigError, ConfigProblem};
-use crate::atmosphere::nearest::nearest;
+use crate::names::nearest;
 use serde::de::DeserializeOwned;
 use std::borrow::Cow;
 use std::ops::Range;

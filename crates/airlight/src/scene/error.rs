@@ -1,9 +1,10 @@
 //! Why the light of a scene cannot be computed.
 
 use super::input::Input;
+use crate::atmosphere::AtmosphereError;
 use crate::atmosphere::config::ConfigError;
-use crate::atmosphere::{AtmosphereError, UnknownPreset};
 use crate::fog::FogError;
+use crate::names::UnknownName;
 use crate::optics::mie::MieError;
 use crate::sky::SkyError;
 
@@ -45,18 +46,10 @@ pub enum SceneError {
         error: Box<SceneError>,
     },
     /// There is no solver or published model of a name.
-    #[error(
-        "solver.name: expected one of {}, got \"{got}\"{}",
-        valid.join(", "),
-        unknown_tip(got, nearest)
-    )]
+    #[error("solver.name: {unknown}{}", feature_tip(unknown))]
     UnknownModel {
-        /// The name.
-        got: String,
-        /// The name it may have been meant to be.
-        nearest: Option<&'static str>,
-        /// The names there are.
-        valid: Vec<&'static str>,
+        /// The name, with the names of all solvers.
+        unknown: UnknownName,
     },
     /// A model refuses a value of the scene, the sun or the eye.
     #[error("{model}: {problem}")]
@@ -121,7 +114,7 @@ pub enum SceneError {
     Atmosphere(#[from] AtmosphereError),
     /// There is no atmosphere of that name.
     #[error("air.atmosphere: {0}; a file must end in .toml")]
-    UnknownAtmosphere(#[from] UnknownPreset),
+    UnknownAtmosphere(UnknownName),
     /// The fog is refused.
     #[error(transparent)]
     Fog(#[from] FogError),
@@ -203,10 +196,9 @@ fn alternatives(names: &[&str], none: &str) -> String {
 }
 
 /// What may have been meant, or how to get it.
-fn unknown_tip(got: &str, nearest: &Option<&'static str>) -> String {
-    match (got, nearest) {
-        ("hosek-wilkie", _) => "; try a build with the feature hosek-wilkie".to_owned(),
-        (_, Some(near)) => format!("; did you mean \"{near}\"?"),
-        (_, None) => String::new(),
+fn feature_tip(unknown: &UnknownName) -> &'static str {
+    match unknown.name.as_str() {
+        "hosek-wilkie" => "; try a build with the feature hosek-wilkie",
+        _ => "",
     }
 }

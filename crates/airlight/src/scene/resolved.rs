@@ -39,7 +39,8 @@ impl Scene {
         let observer_altitude_m = self.observer_altitude_m(&atmosphere);
         let sun = self.sun_source(&atmosphere, observer_altitude_m)?;
         let wavelengths = self.solver.wavelengths.as_deref().unwrap_or("standard");
-        let grid = WavelengthGrid::by_name(wavelengths)
+        let grid = wavelengths
+            .parse::<WavelengthGrid>()
             .map_err(|error| SceneError::refused("solver.wavelengths", error))?;
         let contrast = self.air.visibility_contrast();
         let fog = self

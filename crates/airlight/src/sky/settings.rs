@@ -5,6 +5,7 @@ use super::harmonics::Harmonics;
 use super::orders::{Directions, OrderSettings};
 use crate::atmosphere::AtmosphereError;
 use crate::control::Cancelled;
+use crate::names::named;
 use crate::transfer::shell::{MAX_CONSTITUENTS, TooManyConstituents};
 
 /// Orders of scattering that are computed.
@@ -15,6 +16,11 @@ pub enum Scattering {
     /// All orders of scattering and reflection.
     All,
 }
+
+named! { Scattering, "a scattering", [
+    ("all", (All), "all orders of scattering and reflection"),
+    ("single", (Single), "sunlight scattered once, and the ground lit by direct sunlight"),
+] }
 
 /// Settings of the sky solver.
 #[derive(Clone, Debug, PartialEq)]

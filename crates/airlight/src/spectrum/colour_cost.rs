@@ -52,7 +52,7 @@ fn colour_errors_of_named_grids_stay_within_bounds() {
         ("fine", 0.002),
         ("rgb", 12.2),
     ] {
-        let grid = WavelengthGrid::by_name(name).unwrap();
+        let grid = name.parse::<WavelengthGrid>().unwrap();
         let mut cells = String::new();
         for (elevation, air_mass) in SUNS {
             let sun = cost(&grid, &fine, |nm| direct(nm, air_mass));

@@ -31,6 +31,8 @@ use super::cie::{self, LUMINOUS_EFFICACY_LM_PER_W};
 use super::rgb::{self, RgbSpace};
 use super::{SpectralCurve, solar};
 use crate::math::spline::{local_means, product_weights};
+use crate::names::{UnknownName, named};
+use std::str::FromStr;
 
 /// Step of integrals over wavelength, nm: the finest step of the solar and observer tables.
 const STEP_NM: f64 = 0.5;
@@ -46,7 +48,7 @@ pub struct WavelengthGrid {
     smooth_xyz_weights: Vec<[f64; 3]>,
 }
 
-/// Error of [`WavelengthGrid::from_wavelengths_nm`] and [`WavelengthGrid::by_name`].
+/// Error of [`WavelengthGrid::from_wavelengths_nm`] and of reading a grid from text.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum GridError {
     /// No wavelengths.
@@ -73,18 +75,61 @@ pub enum GridError {
         previous: f64,
     },
     /// A text that is neither the name of a grid nor a list of wavelengths.
-    #[error(
-        "expected a wavelength grid, one of rgb, fast, standard, fine, 1nm, or a list of wavelengths in nm such as \
-         450,550,650; got '{name}'"
-    )]
-    UnknownName {
-        /// The text.
-        name: String,
-    },
+    #[error("{0}; or list wavelengths in nm, such as \"450,550,650\"")]
+    UnknownName(UnknownName),
 }
 
-/// Names that [`WavelengthGrid::by_name`] accepts, besides lists of wavelengths.
-pub const GRID_NAMES: [&str; 5] = ["rgb", "fast", "standard", "fine", "1nm"];
+/// A named wavelength grid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+#[non_exhaustive]
+pub enum GridPreset {
+    /// 440, 550 and 680 nm.
+    Rgb,
+    /// 8 wavelengths from 413 nm to 682 nm.
+    Fast,
+    /// 16 wavelengths from 360 nm to 830 nm.
+    #[default]
+    Standard,
+    /// Every 5 nm from 360 nm to 830 nm.
+    Fine,
+    /// Every 1 nm from 360 nm to 830 nm.
+    OneNanometre,
+}
+
+named! { GridPreset, "a wavelength grid", [
+    ("rgb", (Rgb), "3 wavelengths: 440, 550 and 680 nm"),
+    ("fast", (Fast), "8 wavelengths from 413 to 682 nm"),
+    ("standard", (Standard), "16 wavelengths from 360 to 830 nm"),
+    ("fine", (Fine), "every 5 nm from 360 to 830 nm"),
+    ("1nm", (OneNanometre), "every 1 nm from 360 to 830 nm"),
+] }
+
+impl From<GridPreset> for WavelengthGrid {
+    fn from(preset: GridPreset) -> Self {
+        match preset {
+            GridPreset::Rgb => Self::rgb(),
+            GridPreset::Fast => Self::fast(),
+            GridPreset::Standard => Self::standard(),
+            GridPreset::Fine => Self::fine(),
+            GridPreset::OneNanometre => Self::one_nanometre(),
+        }
+    }
+}
+
+impl FromStr for WavelengthGrid {
+    type Err = GridError;
+
+    /// The grid of a name ([`GridPreset`]) or of a list of wavelengths in nm such as `450,550,650`.
+    fn from_str(text: &str) -> Result<Self, GridError> {
+        let text = text.trim();
+        let list: Result<Vec<f64>, _> = text.split(',').map(|nm| nm.trim().parse()).collect();
+        match (text.parse::<GridPreset>(), list) {
+            (Ok(preset), _) => Ok(preset.into()),
+            (_, Ok(list)) => Self::from_wavelengths_nm(list),
+            (Err(unknown), _) => Err(GridError::UnknownName(unknown)),
+        }
+    }
+}
 
 /// Shortest wavelength a grid may have, nm.
 pub const SHORTEST_NM: f64 = 300.0;
@@ -155,29 +200,6 @@ impl WavelengthGrid {
             }
         }
         Ok(Self::build(nm))
-    }
-
-    /// The grid with a name from [`GRID_NAMES`], or of a list of wavelengths in nm such as `450,550,650`.
-    ///
-    /// # Errors
-    /// [`GridError::UnknownName`], whose text lists the names, if `name` is neither; as [`Self::from_wavelengths_nm`] for a
-    /// list.
-    pub fn by_name(name: &str) -> Result<Self, GridError> {
-        match name.trim() {
-            "rgb" => Ok(Self::rgb()),
-            "fast" => Ok(Self::fast()),
-            "standard" => Ok(Self::standard()),
-            "fine" => Ok(Self::fine()),
-            "1nm" => Ok(Self::one_nanometre()),
-            list => list
-                .split(',')
-                .map(|field| field.trim().parse::<f64>())
-                .collect::<Result<Vec<_>, _>>()
-                .map_err(|_| GridError::UnknownName {
-                    name: name.to_owned(),
-                })
-                .and_then(Self::from_wavelengths_nm),
-        }
     }
 
     /// This grid with another solar spectrum: `solar` is the extraterrestrial irradiance at 1 AU, W m^-2 nm^-1 by wavelength
@@ -311,8 +333,12 @@ mod tests {
             "300,320,600,900",
             "500,510,520,530,540,900",
         ];
-        for name in GRID_NAMES.into_iter().chain(lists) {
-            let got = flat(&WavelengthGrid::by_name(name).unwrap());
+        for name in GridPreset::ALL
+            .iter()
+            .map(|preset| preset.name())
+            .chain(lists)
+        {
+            let got = flat(&name.parse::<WavelengthGrid>().unwrap());
             for i in 0..3 {
                 assert!((got[i] / want[i] - 1.0).abs() < 1e-5, "{name}: {got:?}");
             }
@@ -321,7 +347,8 @@ mod tests {
 
     #[test]
     fn named_grids_have_the_documented_sizes() {
-        let sizes = GRID_NAMES.map(|name| WavelengthGrid::by_name(name).unwrap().len());
+        let size = |&preset: &GridPreset| WavelengthGrid::from(preset).len();
+        let sizes: Vec<usize> = GridPreset::ALL.iter().map(size).collect();
         assert_eq!(sizes, [3, 8, 16, 95, 471]);
         assert_eq!(WavelengthGrid::default(), WavelengthGrid::standard());
         let standard = WavelengthGrid::standard();
@@ -353,12 +380,12 @@ mod tests {
     #[test]
     fn few_wavelengths_have_positive_weights() {
         for name in ["rgb", "450,550,650", "400,500,600,700", "550"] {
-            let grid = WavelengthGrid::by_name(name).unwrap();
+            let grid = name.parse::<WavelengthGrid>().unwrap();
             assert!(grid.xyz_weights().iter().flatten().all(|&w| w > 0.0));
         }
         // The spline of the larger grids may dip slightly below 0.
         for name in ["fast", "standard"] {
-            let grid = WavelengthGrid::by_name(name).unwrap();
+            let grid = name.parse::<WavelengthGrid>().unwrap();
             for (w, e) in grid.xyz_weights().iter().zip(grid.solar_irradiance()) {
                 for (w, total) in w.iter().zip(flat(&grid)) {
                     assert!(w * e > -0.01 * total, "{name} {w}");
@@ -401,15 +428,17 @@ mod tests {
             make(vec![400.0, 400.0]),
             Err(Order { index: 1, .. })
         ));
-        let text = WavelengthGrid::by_name("650,550").unwrap_err().to_string();
+        let text = "650,550".parse::<WavelengthGrid>().unwrap_err().to_string();
         assert!(text.contains("increasing"), "{text}");
         for name in ["best", "", "450,,550", "450;550"] {
-            let text = WavelengthGrid::by_name(name).unwrap_err().to_string();
+            let text = name.parse::<WavelengthGrid>().unwrap_err().to_string();
             assert!(
-                GRID_NAMES.iter().all(|known| text.contains(known)),
+                GridPreset::ALL
+                    .iter()
+                    .all(|known| text.contains(known.name())),
                 "{text}"
             );
         }
-        assert_eq!(WavelengthGrid::by_name(" 450, 550 ,650").unwrap().len(), 3);
+        assert_eq!(" 450, 550 ,650".parse::<WavelengthGrid>().unwrap().len(), 3);
     }
 }

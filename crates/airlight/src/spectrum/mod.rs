@@ -18,7 +18,7 @@ pub mod solar;
 mod table;
 
 pub use curve::{CurveError, SampledCurve, SpectralCurve};
-pub use grid::{GridError, WavelengthGrid};
+pub use grid::{GridError, GridPreset, WavelengthGrid};
 pub use lanes::Spectrum;
 pub use rgb::RgbSpace;
 pub(crate) use table::embedded as embedded_table;

@@ -6,6 +6,8 @@
 //! an RGB whose luminance is in cd/m^2. To make pictures look neutral relative to another white (that of ACEScg is near
 //! D60), multiply by [`adaptation_matrix`] first.
 
+use crate::names::named;
+
 /// A 3 by 3 matrix, row-major.
 pub type Matrix3 = [[f64; 3]; 3];
 
@@ -15,6 +17,7 @@ pub const DOMINANT_NM: [f64; 3] = [612.0, 549.0, 465.0];
 
 /// A linear RGB colour space.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+#[non_exhaustive]
 pub enum RgbSpace {
     /// IEC 61966-2-1 primaries (those of BT.709), white D65.
     #[default]
@@ -24,6 +27,12 @@ pub enum RgbSpace {
     /// ACEScg: Academy S-2014-004 (AP1 primaries), white near D60.
     AcesCg,
 }
+
+named! { RgbSpace, "an RGB space", [
+    ("srgb", (Srgb), "linear sRGB: BT.709 primaries, white D65"),
+    ("rec2020", (Rec2020), "BT.2020 primaries, white D65"),
+    ("acescg", (AcesCg), "ACEScg: AP1 primaries, white near D60"),
+] }
 
 impl RgbSpace {
     /// Chromaticities (x, y) of the red, green and blue primaries.

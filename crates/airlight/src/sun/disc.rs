@@ -1,6 +1,7 @@
 //! The sun's disc: angular size, limb darkening and radiance.
 
 use crate::math::interpolation::lerp;
+use crate::names::named;
 use std::f64::consts::PI;
 
 /// Nominal solar radius, m (IAU 2015 resolution B3).
@@ -31,6 +32,12 @@ pub enum LimbDarkening {
     /// `mu >= 0.2`, from 440 to 1000 nm; at the limb it falls to 0, unlike the sun.
     PowerLaw,
 }
+
+named! { LimbDarkening, "a limb darkening", [
+    ("neckel", (Neckel), "polynomials fitted to observations (Neckel 2005)"),
+    ("power-law", (PowerLaw), "power law (Hestroffer & Magnan 1998)"),
+    ("uniform", (Uniform), "none"),
+] }
 
 /// Error of [`SunDisc::at_distance_au`] and [`SunDisc::validate`].
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

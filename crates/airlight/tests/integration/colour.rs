@@ -43,7 +43,7 @@ fn the_default_wavelengths_give_the_colours_of_one_nanometre() {
     for elevation in [60.0, 10.0, 2.0] {
         let exact = colours(&WavelengthGrid::one_nanometre(), elevation);
         for (name, allowed) in [("standard", 0.5), ("fast", 1.0)] {
-            let got = colours(&WavelengthGrid::by_name(name).unwrap(), elevation);
+            let got = colours(&name.parse::<WavelengthGrid>().unwrap(), elevation);
             let differences: Vec<f64> = exact
                 .iter()
                 .zip(got)

@@ -228,7 +228,7 @@ fn inputs_that_a_model_ignores_are_refused() {
         (
             "orders",
             |s| s.solver.name = Some("bruneton".to_owned()),
-            "expected one of orders, monte-carlo",
+            "expected a solver (orders, monte-carlo",
         ),
     ];
     for (model, change, sentence) in changes {

@@ -1,6 +1,7 @@
 //! What OPAC's aerosols are made of: components, their sizes, their refractive indices, their growth in moist air.
 
 use crate::math::interpolation::{interval_by_key, lerp};
+use crate::names::named;
 use crate::optics::RefractiveIndex;
 use crate::optics::mie::SizeDistribution;
 use crate::spectrum::embedded_table;
@@ -51,21 +52,20 @@ static INDICES: LazyLock<Vec<[f64; 15]>> =
 static GROWTH: LazyLock<Vec<[f64; 4]>> =
     LazyLock::new(|| embedded_table(include_str!("../../../data/atmosphere/aerosol_growth.txt")));
 
-impl Component {
-    /// All with their names.
-    pub const ALL: [(&'static str, Self); 10] = [
-        ("insoluble", Self::Insoluble),
-        ("water-soluble", Self::WaterSoluble),
-        ("soot", Self::Soot),
-        ("sea-salt-accumulation", Self::SeaSaltAccumulation),
-        ("sea-salt-coarse", Self::SeaSaltCoarse),
-        ("mineral-nucleation", Self::MineralNucleation),
-        ("mineral-accumulation", Self::MineralAccumulation),
-        ("mineral-coarse", Self::MineralCoarse),
-        ("mineral-transported", Self::MineralTransported),
-        ("sulfate", Self::Sulfate),
-    ];
+named! { Component, "an aerosol component", [
+    ("insoluble", (Insoluble), "Soil with some organic matter"),
+    ("water-soluble", (WaterSoluble), "Sulfates, nitrates, organic matter; grows in moist air"),
+    ("soot", (Soot), "Black carbon"),
+    ("sea-salt-accumulation", (SeaSaltAccumulation), "Sea salt, accumulation mode; grows in moist air"),
+    ("sea-salt-coarse", (SeaSaltCoarse), "Sea salt, coarse mode; grows in moist air"),
+    ("mineral-nucleation", (MineralNucleation), "Desert dust, nucleation mode"),
+    ("mineral-accumulation", (MineralAccumulation), "Desert dust, accumulation mode"),
+    ("mineral-coarse", (MineralCoarse), "Desert dust, coarse mode"),
+    ("mineral-transported", (MineralTransported), "Desert dust carried far"),
+    ("sulfate", (Sulfate), "Droplets of sulfuric acid (75 %); grow in moist air"),
+] }
 
+impl Component {
     fn material(self) -> Material {
         match self {
             Self::Insoluble => Material::Insoluble,
@@ -190,7 +190,7 @@ mod tests {
 
     #[test]
     fn growth_rises_with_humidity() {
-        for (_, component) in Component::ALL {
+        for &component in Component::ALL {
             let mut before = component.growth(0.0);
             assert!((before - 1.0).abs() < 1e-12);
             for step in 1..=99 {

@@ -21,15 +21,16 @@ pub use mixture::{AerosolMixture, AerosolSummary, Ingredient};
 pub use smoke::Smoke;
 
 use super::aerosol::AerosolError;
-use super::nearest::nearest;
 use super::presets::earth::EARTH_TOP_M;
 use super::{DensityProfile, Interpolation};
+use crate::names::named;
 use crate::optics::mie::MieError;
 use crate::spectrum::CurveError;
 use modes::Mode;
 
 /// A published kind of haze.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum AerosolType {
     /// Remote continental air without soot.
     ContinentalClean,
@@ -55,17 +56,10 @@ pub enum AerosolType {
     Biomass(Smoke),
 }
 
-/// Why words and numbers do not make an aerosol of a type.
+/// Error of an aerosol type or mixture.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum AerosolTypeError {
-    /// There is no type of that name.
-    #[error("there is no aerosol type called \"{name}\"{}; there are: {}", hint(*nearest), AerosolType::ALL.map(|known| known.0).join(", "))]
-    UnknownType {
-        /// The name asked for.
-        name: String,
-        /// The name it may have been meant to be.
-        nearest: Option<&'static str>,
-    },
     /// The humidity is out of range.
     #[error("relative humidity must lie between 0 and 0.99 (0.8 is 80 %), got {0}")]
     Humidity(f64),
@@ -86,84 +80,23 @@ pub enum AerosolTypeError {
     Curve(#[from] CurveError),
 }
 
-fn hint(nearest: Option<&str>) -> String {
-    nearest.map_or(String::new(), |near| format!(" (did you mean \"{near}\"?)"))
-}
+named! { AerosolType, "an aerosol type", [
+    ("continental-clean", (ContinentalClean), "remote continental air without soot"),
+    ("continental-average", (ContinentalAverage), "continental air with some soot"),
+    ("continental-polluted", (ContinentalPolluted), "continental air polluted by man"),
+    ("urban", (Urban), "air of large towns, much soot"),
+    ("desert", (Desert), "desert dust, as spheres"),
+    ("maritime-clean", (MaritimeClean), "undisturbed air over the sea"),
+    ("maritime-polluted", (MaritimePolluted), "sea air with soot"),
+    ("maritime-tropical", (MaritimeTropical), "sea air of the tropics"),
+    ("arctic", (Arctic), "arctic haze of spring"),
+    ("antarctic", (Antarctic), "antarctic summer"),
+    ("biomass-savanna", (Biomass(Smoke::Savanna)), "smoke of the African savanna"),
+    ("biomass-forest", (Biomass(Smoke::Forest)), "smoke of the Amazonian forest"),
+    ("biomass-boreal", (Biomass(Smoke::Boreal)), "smoke of boreal forest"),
+] }
 
 impl AerosolType {
-    /// All with their names and one line on each.
-    pub const ALL: [(&'static str, Self, &'static str); 13] = [
-        (
-            "continental-clean",
-            Self::ContinentalClean,
-            "remote continental air without soot",
-        ),
-        (
-            "continental-average",
-            Self::ContinentalAverage,
-            "continental air with some soot",
-        ),
-        (
-            "continental-polluted",
-            Self::ContinentalPolluted,
-            "continental air polluted by man",
-        ),
-        ("urban", Self::Urban, "air of large towns, much soot"),
-        ("desert", Self::Desert, "desert dust, as spheres"),
-        (
-            "maritime-clean",
-            Self::MaritimeClean,
-            "undisturbed air over the sea",
-        ),
-        (
-            "maritime-polluted",
-            Self::MaritimePolluted,
-            "sea air with soot",
-        ),
-        (
-            "maritime-tropical",
-            Self::MaritimeTropical,
-            "sea air of the tropics",
-        ),
-        ("arctic", Self::Arctic, "arctic haze of spring"),
-        ("antarctic", Self::Antarctic, "antarctic summer"),
-        (
-            "biomass-savanna",
-            Self::Biomass(Smoke::Savanna),
-            "smoke of the African savanna",
-        ),
-        (
-            "biomass-forest",
-            Self::Biomass(Smoke::Forest),
-            "smoke of the Amazonian forest",
-        ),
-        (
-            "biomass-boreal",
-            Self::Biomass(Smoke::Boreal),
-            "smoke of boreal forest",
-        ),
-    ];
-
-    /// The type of a name.
-    ///
-    /// # Errors
-    /// [`AerosolTypeError::UnknownType`], which lists the names there are and the nearest one.
-    pub fn named(name: &str) -> Result<Self, AerosolTypeError> {
-        match Self::ALL.iter().find(|known| known.0 == name) {
-            Some(known) => Ok(known.1),
-            None => Err(AerosolTypeError::UnknownType {
-                name: name.to_owned(),
-                nearest: nearest(name, Self::ALL.iter().map(|known| known.0)),
-            }),
-        }
-    }
-
-    /// What it is called.
-    pub fn name(self) -> &'static str {
-        let known = Self::ALL.iter().find(|known| known.1 == self);
-        known.map_or("", |known| known.0)
-    }
-
     /// OPAC's numbers of particles in a cubic centimetre (Hess, Koepke & Schult 1998, table 4); none for smoke.
     pub fn components(self) -> &'static [(Component, f64)] {
         use Component::{

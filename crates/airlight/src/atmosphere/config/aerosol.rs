@@ -4,9 +4,7 @@ use super::error::{ConfigError, ConfigProblem};
 use super::parts;
 use super::reader::Section;
 use crate::atmosphere::aerosol::{AerosolLoad, AngstromAerosol, continental_phase};
-use crate::atmosphere::aerosol_types::{
-    AerosolMixture, AerosolType, AerosolTypeError, Component, Ingredient,
-};
+use crate::atmosphere::aerosol_types::{AerosolMixture, AerosolType, AerosolTypeError, Ingredient};
 use crate::atmosphere::presets::earth;
 use crate::atmosphere::visibility::Contrast;
 use crate::atmosphere::{Atmosphere, Constituent, ConstituentKind, DensityProfile};
@@ -133,13 +131,9 @@ fn of_a_type(section: &Section<'_>, atmosphere: &mut Atmosphere) -> Result<(), C
 }
 
 fn named_type(section: &Section<'_>) -> Result<AerosolType, ConfigError> {
-    let name = section
-        .text("type")?
-        .ok_or_else(|| section.missing("type", "the name of an aerosol type"))?;
-    AerosolType::named(name).map_err(|_| {
-        let names = AerosolType::ALL.map(|known| known.0).to_vec();
-        section.unknown("type", "aerosol type", name, names)
-    })
+    section
+        .named("type")?
+        .ok_or_else(|| section.missing("type", "the name of an aerosol type"))
 }
 
 /// The parts of a mixture with their shares.
@@ -150,17 +144,11 @@ fn mixed(section: &Section<'_>) -> Result<Vec<(f64, Ingredient)>, ConfigError> {
         let share = part
             .positive("share")?
             .ok_or_else(|| part.missing("share", "the part of the extinction at 550 nm"))?;
-        let ingredient = match (part.has("type"), part.text("component")?) {
+        let ingredient = match (part.has("type"), part.named("component")?) {
             (true, Some(_)) => {
                 return Err(part.error("component", ConfigProblem::Conflict { with: "type" }));
             }
-            (false, Some(name)) => match Component::ALL.iter().find(|known| known.0 == name) {
-                Some(known) => Ingredient::Component(known.1),
-                None => {
-                    let names = Component::ALL.map(|known| known.0).to_vec();
-                    return Err(part.unknown("component", "aerosol component", name, names));
-                }
-            },
+            (false, Some(component)) => Ingredient::Component(component),
             (_, None) => Ingredient::Type(named_type(&part)?),
         };
         parts.push((share, ingredient));

@@ -1,6 +1,7 @@
 //! What can be wrong with a written atmosphere.
 
 use crate::atmosphere::{AerosolError, AerosolTypeError, AtmosphereError, DensityError};
+use crate::names::UnknownName;
 use crate::optics::PhaseError;
 use crate::spectrum::CurveError;
 
@@ -32,18 +33,9 @@ pub enum ConfigProblem {
         /// The keys there are.
         valid: Vec<String>,
     },
-    /// There is no such name.
-    #[error("there is no {what} called \"{got}\"{}; there are {}", hint(nearest), valid.join(", "))]
-    UnknownName {
-        /// What is named.
-        what: &'static str,
-        /// The name given.
-        got: String,
-        /// The name it may have been meant to be.
-        nearest: Option<String>,
-        /// The names there are.
-        valid: Vec<String>,
-    },
+    /// A name that does not exist.
+    #[error(transparent)]
+    UnknownName(UnknownName),
     /// A value that is not among those there are.
     #[error("expected one of {}, got \"{got}\"{}", valid.join(", "), hint(nearest))]
     UnknownValue {

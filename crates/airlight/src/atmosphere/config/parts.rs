@@ -118,18 +118,9 @@ pub(super) fn density(
         }
         "table" => {
             inner.check_keys(&["kind", "altitudes_m", "densities", "interpolation"])?;
-            let interpolation = match inner.text("interpolation")?.unwrap_or("linear") {
-                "linear" => Interpolation::Linear,
-                "log-linear" => Interpolation::LogLinear,
-                other => {
-                    return Err(inner.unknown(
-                        "interpolation",
-                        "interpolation",
-                        other,
-                        vec!["linear", "log-linear"],
-                    ));
-                }
-            };
+            let interpolation = inner
+                .named("interpolation")?
+                .unwrap_or(Interpolation::Linear);
             let (altitudes, densities) = (
                 inner.required_numbers("altitudes_m")?,
                 inner.required_numbers("densities")?,
@@ -137,7 +128,7 @@ pub(super) fn density(
             DensityProfile::tabulated(altitudes, densities, interpolation)
                 .map_err(|error| inner.error("altitudes_m", ConfigProblem::Density(error)))?
         }
-        other => return Err(inner.unknown("kind", "density", other, kinds.to_vec())),
+        other => return Err(inner.unknown("kind", "a density", other, kinds.to_vec())),
     };
     match profile.validate() {
         Ok(()) => Ok(Some(profile)),
@@ -239,7 +230,7 @@ fn phase_of(
                         .into_iter()
                         .filter(|kind| *kind != "mixture")
                         .collect();
-                    return Err(part.unknown("kind", "part of a mixture", "mixture", flat));
+                    return Err(part.unknown("kind", "a part of a mixture", "mixture", flat));
                 }
                 parts.push((
                     part.required("weight")?,
@@ -259,7 +250,7 @@ fn phase_of(
             );
             TabulatedPhase::new(angles, wavelengths, values).map(PhaseFunction::Tabulated)
         }
-        other => return Err(inner.unknown("kind", "phase function", other, kinds)),
+        other => return Err(inner.unknown("kind", "a phase function", other, kinds)),
     };
     built.map_err(|error| inner.error("kind", ConfigProblem::Phase(error)))
 }

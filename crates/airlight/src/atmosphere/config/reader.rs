@@ -1,7 +1,7 @@
 //! Reading values out of a table, with errors that know where they are.
 
 use super::error::{ConfigError, ConfigProblem};
-use crate::atmosphere::nearest::nearest;
+use crate::names::{Named, UnknownName, nearest};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -63,13 +63,17 @@ impl<'a> Section<'a> {
         got: &str,
         valid: Vec<&str>,
     ) -> ConfigError {
-        let problem = ConfigProblem::UnknownName {
-            what,
-            got: got.to_owned(),
-            nearest: nearest(got, valid.iter().copied()).map(str::to_owned),
-            valid: valid.into_iter().map(str::to_owned).collect(),
+        let unknown = UnknownName::new(what, got, valid);
+        self.error(key, ConfigProblem::UnknownName(unknown))
+    }
+
+    /// A value by its name.
+    pub fn named<T: Named>(&self, key: &str) -> Result<Option<T>, ConfigError> {
+        let Some(name) = self.text(key)? else {
+            return Ok(None);
         };
-        self.error(key, problem)
+        let unknown = |error| self.error(key, ConfigProblem::UnknownName(error));
+        T::from_name(name).map(Some).map_err(unknown)
     }
 
     fn wrong_type(&self, key: &str, expected: &'static str, got: &DeValue<'_>) -> ConfigError {

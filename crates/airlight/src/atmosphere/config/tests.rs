@@ -2,6 +2,7 @@ use crate::optics::PhaseFunction;
 use super::*;
 use crate::atmosphere::{AerosolError, DensityError, DensityProfile, preset};
 use crate::optics::PhaseError;
+use crate::sun::LimbDarkening;
 
 pub(super) fn read(text: &str) -> Atmosphere {
     from_toml(text).unwrap_or_else(|error| panic!("{text}\n{error}"))
@@ -263,7 +264,7 @@ fn unknown_names_list_the_known_ones() {
     ] {
         let error = refuse(text);
         assert!(
-            matches!(&*error.problem, ConfigProblem::UnknownName { valid, .. } if valid.iter().any(|v| v == meant)),
+            matches!(&*error.problem, ConfigProblem::UnknownName(error) if error.names.iter().any(|v| v == meant)),
             "{error}"
         );
     }

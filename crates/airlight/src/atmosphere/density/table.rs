@@ -1,6 +1,7 @@
 //! Densities tabulated by altitude.
 
 use super::error::DensityError;
+use crate::names::named;
 
 /// How a table goes from one sample to the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -11,6 +12,11 @@ pub enum Interpolation {
     /// Linear in the logarithm of the density; linear in the density next to a sample that is 0.
     LogLinear,
 }
+
+named! { Interpolation, "an interpolation", [
+    ("linear", (Linear), "straight lines"),
+    ("log-linear", (LogLinear), "straight lines of the logarithm"),
+] }
 
 /// Densities at strictly rising altitudes: the first value below the first altitude, 0 above the last.
 #[derive(Clone, Debug, PartialEq)]

@@ -10,9 +10,11 @@
 //! All but the rain are modified gamma distributions, `n(r) ~ r^alpha exp(-(alpha / gamma) (r / r_c)^gamma)`.
 
 use super::SizeDistribution;
+use crate::names::named;
 
 /// A published size distribution of drops.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Drops {
     /// Heavy advection fog, Shettle & Fenn's fog 1: mode radius 10 micrometres, 0.37 g of water per cubic metre.
     HeavyAdvectionFog,
@@ -38,22 +40,21 @@ pub enum Drops {
     Rain,
 }
 
-impl Drops {
-    /// All distributions with their names.
-    pub const ALL: [(&'static str, Self); 11] = [
-        ("heavy-advection-fog", Self::HeavyAdvectionFog),
-        ("moderate-advection-fog", Self::ModerateAdvectionFog),
-        ("heavy-radiation-fog", Self::HeavyRadiationFog),
-        ("moderate-radiation-fog", Self::ModerateRadiationFog),
-        ("cloud-c1", Self::CloudC1),
-        ("cloud-c2", Self::CloudC2),
-        ("cloud-c3", Self::CloudC3),
-        ("haze-m", Self::HazeM),
-        ("haze-l", Self::HazeL),
-        ("haze-h", Self::HazeH),
-        ("rain", Self::Rain),
-    ];
+named! { Drops, "a published drop distribution", [
+    ("heavy-advection-fog", (HeavyAdvectionFog), "Lorenz-Mie theory, mode radius 10 um, effective radius 20 um (Shettle & Fenn 1979, fog 1)"),
+    ("moderate-advection-fog", (ModerateAdvectionFog), "Lorenz-Mie theory, mode radius 8 um, effective radius 16 um (Shettle & Fenn 1979, fog 2)"),
+    ("heavy-radiation-fog", (HeavyRadiationFog), "Lorenz-Mie theory, mode radius 4 um, effective radius 6 um (Shettle & Fenn 1979, fog 3)"),
+    ("moderate-radiation-fog", (ModerateRadiationFog), "Lorenz-Mie theory, mode radius 2 um, effective radius 3 um (Shettle & Fenn 1979, fog 4)"),
+    ("cloud-c1", (CloudC1), "Lorenz-Mie theory, mode radius 4 um, effective radius 6 um (Deirmendjian 1969, cloud C.1)"),
+    ("cloud-c2", (CloudC2), "Lorenz-Mie theory, mode radius 4 um, effective radius 4.3 um, narrow (Deirmendjian 1969, cloud C.2)"),
+    ("cloud-c3", (CloudC3), "Lorenz-Mie theory, mode radius 2 um, effective radius 2.2 um, narrow (Deirmendjian 1969, cloud C.3)"),
+    ("haze-m", (HazeM), "Lorenz-Mie theory, mode radius 0.05 um, effective radius 0.9 um (Deirmendjian 1969, haze M)"),
+    ("haze-l", (HazeL), "Lorenz-Mie theory, mode radius 0.07 um, effective radius 0.48 um (Deirmendjian 1969, haze L)"),
+    ("haze-h", (HazeH), "Lorenz-Mie theory, mode radius 0.1 um, effective radius 0.25 um (Deirmendjian 1969, haze H)"),
+    ("rain", (Rain), "Lorenz-Mie theory, median radius 360 um, effective radius 496 um (Feingold & Levin 1986)"),
+] }
 
+impl Drops {
     /// The size distribution.
     pub fn sizes(self) -> SizeDistribution {
         let (alpha, gamma, mode_radius_um) = match self {
@@ -107,6 +108,19 @@ mod tests {
             let got = 1e-6 * number * drops.sizes().mean_volume_um3();
             let rounding = if grams < 0.025 { 0.25 } else { 0.06 };
             assert!((got / grams - 1.0).abs() < rounding, "{drops:?}: {got}");
+        }
+    }
+
+    #[test]
+    fn summaries_state_the_effective_radius() {
+        for drops in Drops::ALL {
+            let (_, after) = drops.summary().split_once("effective radius ").unwrap();
+            let stated: f64 = after.split(' ').next().unwrap().parse().unwrap();
+            let computed = drops.sizes().effective_radius_um();
+            assert!(
+                (stated / computed - 1.0).abs() < 0.03,
+                "{drops}: {computed}"
+            );
         }
     }
 

@@ -1,15 +1,12 @@
 //! Fog near the ground.
 
-#[cfg(feature = "serde")]
-use super::named;
 use crate::fog::FogScattering;
 use crate::fog::droplets::DropletKind;
+#[cfg(feature = "serde")]
+use crate::names::named;
 
 /// How fog thins with height, or which look it has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum FogProfile {
     /// The same everywhere: for pictures with depth, as no sky shines through it.
     Uniform,
@@ -29,53 +26,16 @@ pub enum FogProfile {
     FoggyCityscapes,
 }
 
-impl FogProfile {
-    /// All profiles with their names in scene files and summaries for help texts.
-    pub const ALL: [(&'static str, Self, &'static str); 8] = [
-        (
-            "uniform",
-            Self::Uniform,
-            "The same everywhere; for pictures with depth",
-        ),
-        (
-            "height",
-            Self::Height,
-            "Decreases exponentially from height 0 up, and increases below",
-        ),
-        (
-            "clamped",
-            Self::Clamped,
-            "Constant up to the base height, decreases exponentially above",
-        ),
-        (
-            "unclamped",
-            Self::Unclamped,
-            "Decreases exponentially from the base height up and increases below it: the fog note's formula as printed",
-        ),
-        ("slab", Self::Slab, "Constant up to the top, zero above"),
-        (
-            "exp2",
-            Self::Exp2,
-            "Exponential-squared fog of one colour; for pictures with depth",
-        ),
-        (
-            "linear",
-            Self::Linear,
-            "Linear fog of one colour from 0 to the visibility; for pictures with depth",
-        ),
-        (
-            "foggy-cityscapes",
-            Self::FoggyCityscapes,
-            "Uniform fog of one colour blended in encoded values, as in the data set Foggy Cityscapes; for pictures with depth",
-        ),
-    ];
-
-    /// Its name in scene files.
-    pub fn name(self) -> &'static str {
-        let known = Self::ALL.iter().find(|(_, profile, _)| *profile == self);
-        known.map_or("", |(name, ..)| name)
-    }
-}
+named! { FogProfile, "a fog profile", [
+    ("uniform", (Uniform), "the same everywhere; for pictures with depth"),
+    ("height", (Height), "decreases exponentially from height 0 up, and increases below"),
+    ("clamped", (Clamped), "constant up to the base height, decreases exponentially above"),
+    ("unclamped", (Unclamped), "decreases exponentially from the base height up and increases below it: the fog note's formula as printed"),
+    ("slab", (Slab), "constant up to the top, zero above"),
+    ("exp2", (Exp2), "exponential-squared fog of one colour; for pictures with depth"),
+    ("linear", (Linear), "linear fog of one colour from 0 to the visibility; for pictures with depth"),
+    ("foggy-cityscapes", (FoggyCityscapes), "uniform fog of one colour blended in encoded values, as in the data set Foggy Cityscapes; for pictures with depth"),
+] }
 
 /// Fog: one layer, and more of them in `layers`. Heights are above the ground.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -94,12 +54,8 @@ pub struct FogSpec {
     /// Height of the top of a slab, m, above 0. Default: 50.
     pub top_m: Option<f64>,
     /// Droplets by name. Default: radiation.
-    #[cfg_attr(feature = "serde", serde(with = "named"))]
-    #[cfg_attr(feature = "schema", schemars(with = "Option<String>"))]
     pub droplets: Option<DropletKind>,
     /// Which light it scatters: "all" orders, "single", or "undimmed", where the fog does not dim the sun. Default: all.
-    #[cfg_attr(feature = "serde", serde(with = "named"))]
-    #[cfg_attr(feature = "schema", schemars(with = "Option<String>"))]
     pub scattering: Option<FogScattering>,
     /// More layers.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
@@ -123,8 +79,6 @@ pub struct FogLayerSpec {
     /// Height of the top of a slab, m, above 0. Default: 50.
     pub top_m: Option<f64>,
     /// Droplets by name. Default: radiation.
-    #[cfg_attr(feature = "serde", serde(with = "named"))]
-    #[cfg_attr(feature = "schema", schemars(with = "Option<String>"))]
     pub droplets: Option<DropletKind>,
 }
 

@@ -7,7 +7,6 @@ mod air;
 mod fog;
 mod lights;
 #[cfg(feature = "serde")]
-mod named;
 mod objects;
 mod picture;
 mod solver;

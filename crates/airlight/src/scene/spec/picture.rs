@@ -1,7 +1,6 @@
 //! The picture of a scene: projection, file and sequence.
 
 #[cfg(feature = "serde")]
-use super::named;
 use crate::spectrum::RgbSpace;
 
 /// How directions are laid out in a picture.
@@ -148,8 +147,6 @@ pub struct OutputSpec {
     /// The sun's disc in the picture, left out of it, or in a second file. Default: in.
     pub sun_disc: Option<SunDiscPlacement>,
     /// RGB space of .exr and .hdr: srgb, rec2020 or acescg; .png and .jpg are always sRGB. Default: srgb.
-    #[cfg_attr(feature = "serde", serde(with = "named"))]
-    #[cfg_attr(feature = "schema", schemars(with = "Option<String>"))]
     pub color_space: Option<RgbSpace>,
     /// Factor on the values of .exr and .hdr, which are in cd/m^2 (spectral: W m^-2 sr^-1 nm^-1), above 0. Default: 1.
     pub scale: Option<f64>,

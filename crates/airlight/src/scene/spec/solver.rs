@@ -1,7 +1,6 @@
 //! How the light of a scene is solved for.
 
 #[cfg(feature = "serde")]
-use super::named;
 use crate::sky::Scattering;
 
 /// The solver or published model, and its settings.
@@ -13,8 +12,6 @@ pub struct SolverSpec {
     /// Name of the solver or published model. Default: orders.
     pub name: Option<String>,
     /// Which light is computed: "all" orders of scattering, or "single". Default: all.
-    #[cfg_attr(feature = "serde", serde(with = "named"))]
-    #[cfg_attr(feature = "schema", schemars(with = "Option<String>"))]
     pub scattering: Option<Scattering>,
     /// How finely the orders of scattering are solved. Default: standard.
     pub effort: Option<Effort>,

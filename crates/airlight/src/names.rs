@@ -1,0 +1,239 @@
+//! Names of values: kebab case, one way to list and to read them, one error.
+
+use std::fmt;
+
+/// A closed set of values, each of which has a name in kebab case.
+///
+/// `Display` writes the name, `FromStr` reads it; with the feature `serde` it is the serialized form.
+///
+/// ```
+/// use airlight::{Named, spectrum::RgbSpace};
+///
+/// let names: Vec<&str> = RgbSpace::all().map(RgbSpace::name).collect();
+/// assert_eq!(names, ["srgb", "rec2020", "acescg"]);
+/// let error = "rec2o20".parse::<RgbSpace>().unwrap_err();
+/// assert_eq!(error.to_string(), "expected an RGB space (srgb, rec2020, acescg), got \"rec2o20\"; try \"rec2020\"");
+/// ```
+pub trait Named: Copy + PartialEq + 'static {
+    /// What a value is, with its article: "an RGB space".
+    const WHAT: &'static str;
+
+    /// All values, in the order in which to list them.
+    fn all() -> impl Iterator<Item = Self>;
+
+    /// The name in kebab case.
+    fn name(self) -> &'static str;
+
+    /// A description of one line.
+    fn summary(self) -> &'static str;
+
+    /// The value of a name.
+    ///
+    /// # Errors
+    /// [`UnknownName`], which lists the names and the nearest one.
+    fn from_name(name: &str) -> Result<Self, UnknownName> {
+        Self::all()
+            .find(|value| value.name() == name)
+            .ok_or_else(|| UnknownName::new(Self::WHAT, name, Self::all().map(Self::name)))
+    }
+}
+
+/// Error: no value of a set has this name.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct UnknownName {
+    /// What the name should stand for, with its article.
+    pub what: &'static str,
+    /// The name that was given.
+    pub name: String,
+    /// All names of the set.
+    pub names: Vec<String>,
+    /// The name that was probably meant.
+    pub nearest: Option<String>,
+}
+
+impl UnknownName {
+    /// An error for `name`, where `what` is one of `names`.
+    pub fn new<'a>(
+        what: &'static str,
+        name: &str,
+        names: impl IntoIterator<Item = &'a str>,
+    ) -> Self {
+        let names: Vec<&str> = names.into_iter().collect();
+        Self {
+            what,
+            name: name.to_owned(),
+            nearest: nearest(name, names.iter().copied()).map(str::to_owned),
+            names: names.into_iter().map(str::to_owned).collect(),
+        }
+    }
+}
+
+impl fmt::Display for UnknownName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            what, name, names, ..
+        } = self;
+        write!(f, "expected {what} ({}), got \"{name}\"", names.join(", "))?;
+        match &self.nearest {
+            Some(nearest) => write!(f, "; try \"{nearest}\""),
+            None => Ok(()),
+        }
+    }
+}
+
+impl std::error::Error for UnknownName {}
+
+/// Implements [`Named`], `Display` and `FromStr` for an enum: `(name, (variant), description)` for each value.
+macro_rules! named {
+    ($type:ty, $what:literal, [$(($name:literal, ($($value:tt)+), $summary:literal)),+ $(,)?]) => {
+        impl $type {
+            /// All values, in the order in which to list them.
+            pub const ALL: &'static [Self] = &[$(Self::$($value)+),+];
+
+            /// The name in kebab case.
+            pub fn name(self) -> &'static str {
+                match self {
+                    $(Self::$($value)+ => $name),+
+                }
+            }
+
+            /// A description of one line.
+            pub fn summary(self) -> &'static str {
+                match self {
+                    $(Self::$($value)+ => $summary),+
+                }
+            }
+        }
+
+        impl $crate::names::Named for $type {
+            const WHAT: &'static str = $what;
+
+            fn all() -> impl Iterator<Item = Self> {
+                Self::ALL.iter().copied()
+            }
+
+            fn name(self) -> &'static str {
+                self.name()
+            }
+
+            fn summary(self) -> &'static str {
+                self.summary()
+            }
+        }
+
+        $crate::names::written_by_name!($type);
+    };
+}
+
+/// Implements `Display`, `FromStr` and, with their features, serde's traits and `JsonSchema` of a [`Named`] type.
+macro_rules! written_by_name {
+    ($type:ty) => {
+        impl std::fmt::Display for $type {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.pad($crate::names::Named::name(*self))
+            }
+        }
+
+        impl std::str::FromStr for $type {
+            type Err = $crate::names::UnknownName;
+
+            fn from_str(name: &str) -> Result<Self, Self::Err> {
+                $crate::names::Named::from_name(name)
+            }
+        }
+
+        #[cfg(feature = "serde")]
+        impl serde::Serialize for $type {
+            fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                serializer.serialize_str($crate::names::Named::name(*self))
+            }
+        }
+
+        #[cfg(feature = "serde")]
+        impl<'de> serde::Deserialize<'de> for $type {
+            fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                let name = <std::borrow::Cow<'de, str>>::deserialize(deserializer)?;
+                name.parse().map_err(serde::de::Error::custom)
+            }
+        }
+
+        #[cfg(feature = "schema")]
+        impl schemars::JsonSchema for $type {
+            fn schema_name() -> std::borrow::Cow<'static, str> {
+                stringify!($type).into()
+            }
+
+            fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+                let names: Vec<&str> = <Self as $crate::names::Named>::all()
+                    .map($crate::names::Named::name)
+                    .collect();
+                schemars::json_schema!({ "type": "string", "enum": names })
+            }
+        }
+    };
+}
+
+pub(crate) use {named, written_by_name};
+
+/// The candidate that takes the fewest insertions, deletions, replacements and swaps of neighbours to reach from
+/// `word`, case aside; none where even that one is more than about a third of the word away.
+pub(crate) fn nearest<'a>(
+    word: &str,
+    candidates: impl IntoIterator<Item = &'a str>,
+) -> Option<&'a str> {
+    let word: Vec<char> = word.to_lowercase().chars().take(64).collect();
+    candidates
+        .into_iter()
+        .map(|candidate| {
+            (
+                distance(&word, &candidate.to_lowercase().chars().collect::<Vec<_>>()),
+                candidate,
+            )
+        })
+        .min_by_key(|(distance, _)| *distance)
+        .filter(|(distance, candidate)| *distance <= 1 + candidate.len().max(word.len()) / 3)
+        .map(|(_, candidate)| candidate)
+}
+
+/// Optimal string alignment distance.
+fn distance(a: &[char], b: &[char]) -> usize {
+    let mut rows = [
+        vec![0; b.len() + 1],
+        (0..=b.len()).collect::<Vec<usize>>(),
+        vec![0; b.len() + 1],
+    ];
+    for i in 1..=a.len() {
+        rows[2][0] = i;
+        for j in 1..=b.len() {
+            let replaced = rows[1][j - 1] + usize::from(a[i - 1] != b[j - 1]);
+            let mut best = replaced.min(rows[1][j] + 1).min(rows[2][j - 1] + 1);
+            if i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] {
+                best = best.min(rows[0][j - 2] + 1);
+            }
+            rows[2][j] = best;
+        }
+        rows.rotate_left(1);
+    }
+    rows[1][b.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn misspellings_find_their_word() {
+        let words = ["clear", "average", "hazy", "mars"];
+        for (typed, meant) in [
+            ("claer", "clear"),
+            ("Mars", "mars"),
+            ("avrage", "average"),
+            ("hazzy", "hazy"),
+        ] {
+            assert_eq!(nearest(typed, words), Some(meant));
+        }
+        assert_eq!(nearest("spectrometer", words), None);
+        assert_eq!(nearest("", []), None);
+    }
+}
