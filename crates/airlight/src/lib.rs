@@ -18,6 +18,7 @@
 pub mod atmosphere;
 pub mod axes;
 mod control;
+mod debug;
 pub mod fog;
 mod math;
 pub mod models;

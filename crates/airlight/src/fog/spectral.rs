@@ -6,6 +6,7 @@ use super::layer::{LayerLanes, RgbLayer};
 use super::lighting::{FogLighting, FogScattering, Ground};
 use super::table::TableLanes;
 use crate::atmosphere::{Constituent, RaySegment};
+use crate::math::slices::check_length;
 use crate::spectrum::{SpectralCurve, Spectrum, WavelengthGrid};
 use crate::transfer::{PathOptics, RgbPathOptics};
 use glam::DVec3;
@@ -423,15 +424,6 @@ pub(super) fn sampled<const N: usize>(
 /// The first lanes into a slice.
 pub(super) fn store<const N: usize>(lanes: Spectrum<N>, out: &mut [f32]) {
     out.copy_from_slice(&lanes.0[..out.len()]);
-}
-
-/// Slices must have the length stated.
-pub(super) fn check_length<T>(slice: &[T], expected: usize) {
-    assert!(
-        slice.len() == expected,
-        "expected a slice of {expected} values, got {}",
-        slice.len()
-    );
 }
 
 /// Calls `path` with each direction, its distance, and its part of the interleaved outputs.

@@ -8,4 +8,5 @@ pub(crate) mod random;
 pub(crate) mod real;
 pub(crate) mod simd;
 pub(crate) mod simpson;
+pub(crate) mod slices;
 pub(crate) mod spline;

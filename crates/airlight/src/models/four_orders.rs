@@ -19,6 +19,7 @@ use glam::DVec3;
 use std::sync::Arc;
 
 /// Sky of four orders of scattering for one eye and one sun.
+#[derive(Debug)]
 pub struct FourOrders {
     view: View,
 }

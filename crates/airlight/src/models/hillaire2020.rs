@@ -17,6 +17,7 @@ use super::lut::{
 use super::prepared::Prepared;
 use crate::atmosphere::{Atmosphere, AtmosphereError};
 use crate::control::Control;
+use crate::debug::debug_fields;
 use crate::scene::{Capabilities, Input, PreparedModel, RadianceModel, ResolvedScene, SceneError};
 use crate::sky::{LineOfSight, Scattering, SunCoverage};
 use crate::spectrum::WavelengthGrid;
@@ -97,6 +98,8 @@ struct Tables {
     disc: SunDisc,
     ground_altitude_m: f64,
 }
+
+debug_fields! { Hillaire2020 { grid, disc, eye, sun } }
 
 /// Exponent of the step positions along a view ray.
 const STEP_POWER: f64 = 2.0;

@@ -14,6 +14,7 @@ use crate::axes;
 use crate::control::Control;
 use crate::scene::{Capabilities, Input, PreparedModel, RadianceModel, ResolvedScene, SceneError};
 use crate::sky::SunCoverage;
+use crate::debug::debug_fields;
 use crate::spectrum::RgbSpace;
 use crate::spectrum::rgb::{DOMINANT_NM, Matrix3, apply};
 use glam::DVec3;
@@ -46,6 +47,8 @@ pub struct HosekWilkie {
     disc: DimmedSun,
     to_xyz: Matrix3,
 }
+
+debug_fields! { HosekWilkie { sun } }
 
 impl HosekWilkie {
     /// Sky for a turbidity (1 to 10), a ground albedo (red, green, blue; 0 to 1) and a sun direction.

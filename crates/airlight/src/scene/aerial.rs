@@ -1,5 +1,6 @@
 //! Aerial perspective: clear air between the eye and things.
 
+use crate::debug::debug_fields;
 use crate::fog::Lanes;
 use crate::math::interpolation::{Place as AxisPlace, cubic_f32};
 use crate::sky::Peaked;
@@ -37,6 +38,8 @@ pub struct AerialPerspective<const N: usize> {
     /// For each peaked scatterer, its phase function at even steps of the sine of half the scattering angle.
     pub(super) phases: Vec<Vec<f32>>,
 }
+
+debug_fields! { AerialPerspective<const N: usize> { sun, eye } }
 
 /// Where the eye is, and where the air ends.
 #[derive(Clone, Copy, Debug)]

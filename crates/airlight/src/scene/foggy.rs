@@ -6,6 +6,7 @@ use super::lane_channels::{Converter, LaneChannels};
 use super::light::{self, TopLight};
 use super::places;
 use crate::atmosphere::{Constituent, RaySegment};
+use crate::debug::debug_fields;
 use crate::fog::{FogLanes, FogLighting, FogScattering, Ground, LayerLanes};
 use crate::sky::{SkyTable, TableChannels, View};
 use crate::spectrum::Spectrum;
@@ -35,6 +36,8 @@ pub struct FoggySky<const N: usize> {
     /// Irradiance of the ground over that without fog.
     ground_share: Spectrum<N>,
 }
+
+debug_fields! { FoggySky<const N: usize> { view, eye_height_m, ground_share } }
 
 /// What is the same for all pieces of a spectrum.
 struct IrradianceMap {

@@ -21,6 +21,7 @@
 //! one ray), `samples_along_ray` (light at many distances along a ray), `table` (all directions of a view).
 
 mod air;
+mod batch;
 mod block;
 mod coverage;
 mod field;
@@ -28,6 +29,7 @@ mod harmonics;
 mod orders;
 mod peaked;
 mod ray_bundle;
+mod rgb_view;
 mod samples_along_ray;
 mod settings;
 mod solver;
@@ -38,6 +40,7 @@ mod view;
 
 pub use coverage::SunCoverage;
 pub(crate) use peaked::Peaked;
+pub use rgb_view::RgbView;
 pub use settings::{Scattering, SkyError, SkySettings};
 pub use solver::Sky;
 pub use table::{SkyColumns, SkyTable, TableChannels};

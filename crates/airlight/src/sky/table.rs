@@ -5,9 +5,12 @@
 //! constituent with a peaked phase function is stored without the phase function, which is applied for each pixel.
 
 use super::peaked::Peaked;
+use crate::debug::debug_fields;
 use crate::math::interpolation::{cubic_f32, cubic_mirrored};
+use crate::math::parallel;
 use crate::math::quadrature::GaussRule;
 use crate::math::simd::vectorized;
+use crate::math::slices::check_length;
 use crate::spectrum::RgbSpace;
 use glam::DVec3;
 use std::f64::consts::PI;
@@ -45,6 +48,8 @@ pub struct SkyTable {
     pub(super) phases: Vec<Vec<f32>>,
 }
 
+debug_fields! { SkyTable { channels, sun, horizon_elevation } }
+
 /// The table on one side of the horizon.
 pub(super) struct Half {
     /// Signed angle from the horizon to the last row, rad.
@@ -55,10 +60,12 @@ pub(super) struct Half {
 }
 
 /// Interpolation weights for the columns of a picture, computed once for pictures whose columns have constant azimuth.
+#[derive(Clone, Debug)]
 pub struct SkyColumns {
     columns: Vec<Column>,
 }
 
+#[derive(Clone, Copy, Debug)]
 struct Column {
     nodes: [usize; 4],
     weights: [f32; 4],
@@ -93,6 +100,23 @@ impl SkyTable {
             Some((half, row)) => self.interpolate(half, row, &nodes, &weights, half_sine, out),
             None => out[..self.channels].fill(0.0),
         }
+    }
+
+    /// [`SkyTable::sample`] of many directions; `out` is `[direction][channel]`.
+    ///
+    /// # Panics
+    /// Where `out` has another length.
+    pub fn samples(&self, directions: &[DVec3], out: &mut [f32]) {
+        /// Directions that a thread takes at a time.
+        const LOOK_UPS: usize = 64;
+        let width = self.channels();
+        check_length(out, directions.len() * width);
+        parallel::for_each_chunk(out, LOOK_UPS * width, |index, out| {
+            let directions = &directions[index * LOOK_UPS..];
+            for (out, &direction) in out.chunks_exact_mut(width).zip(directions) {
+                self.sample(direction, out);
+            }
+        });
     }
 
     /// Prepares the columns of a picture; `azimuths_rad` are relative to the sun's azimuth.
@@ -209,30 +233,50 @@ impl SkyTable {
     /// A sum over about 25 000 directions, denser towards the horizon as in the table; accurate to 0.1 % for skies whose
     /// aureole is wider than a degree.
     pub fn irradiance(&self, normal: DVec3) -> Vec<f32> {
+        let mut out = vec![0.0; self.channels];
+        self.irradiances(&[normal], &mut out);
+        out
+    }
+
+    /// [`SkyTable::irradiance`] on surfaces with the unit normals `normals`, which share the evaluation of the sky; `out` is
+    /// `[normal][channel]`.
+    ///
+    /// # Panics
+    /// Where `out` has another length.
+    pub fn irradiances(&self, normals: &[DVec3], out: &mut [f32]) {
         const AZIMUTH_SAMPLES: usize = 256;
+        check_length(out, normals.len() * self.channels);
         let rule = GaussRule::new(48);
-        let mut sum = vec![0.0f64; self.channels];
-        let mut radiance = vec![0.0f32; self.channels];
+        let mut sums = vec![0.0f64; out.len()];
+        let mut radiance = vec![0.0f32; AZIMUTH_SAMPLES * self.channels];
         for half in [&self.above, &self.below] {
             for (x, w) in rule.on(0.0, 1.0) {
                 let elevation = self.horizon_elevation + half.span * x * x;
                 let (sin, cos) = elevation.sin_cos();
                 let solid_angle =
                     w * 2.0 * x * half.span.abs() * cos * 2.0 * PI / AZIMUTH_SAMPLES as f64;
-                for k in 0..AZIMUTH_SAMPLES {
+                let ring: [DVec3; AZIMUTH_SAMPLES] = std::array::from_fn(|k| {
                     let (z, x) = (2.0 * PI * (k as f64 + 0.5) / AZIMUTH_SAMPLES as f64).sin_cos();
-                    let direction = DVec3::new(cos * x, sin, cos * z);
-                    let cosine = direction.dot(normal);
-                    if cosine > 0.0 {
-                        self.sample(direction, &mut radiance);
-                        for (sum, &radiance) in sum.iter_mut().zip(&radiance) {
-                            *sum += solid_angle * cosine * f64::from(radiance);
+                    DVec3::new(cos * x, sin, cos * z)
+                });
+                self.samples(&ring, &mut radiance);
+                parallel::for_each_chunk(&mut sums, self.channels, |index, sums| {
+                    for (direction, radiance) in
+                        ring.iter().zip(radiance.chunks_exact(self.channels))
+                    {
+                        let cosine = direction.dot(normals[index]);
+                        if cosine > 0.0 {
+                            for (sum, &radiance) in sums.iter_mut().zip(radiance) {
+                                *sum += solid_angle * cosine * f64::from(radiance);
+                            }
                         }
                     }
-                }
+                });
             }
         }
-        sum.into_iter().map(|e| e as f32).collect()
+        for (out, sum) in out.iter_mut().zip(sums) {
+            *out = sum as f32;
+        }
     }
 
     /// The half of the table that contains an elevation, and the row coordinate in `[0, 1]`; `None` above the atmosphere's limb.

@@ -56,6 +56,7 @@ use super::PublishedModel;
 use crate::axes;
 use crate::control::Control;
 use crate::sky::SunCoverage;
+use crate::debug::debug_fields;
 use crate::spectrum::WavelengthGrid;
 use crate::sun::SunDisc;
 use blue::{BaseSky, Blue};
@@ -83,6 +84,8 @@ pub struct Klassen1987 {
     blue: Blue,
     cells: OnceLock<Cells>,
 }
+
+debug_fields! { Klassen1987 { settings, sun } }
 
 impl Klassen1987 {
     /// Model for an eye on the ground and a sun in the direction of a unit vector ([`crate::axes`]), at the horizon or above.

@@ -36,7 +36,7 @@ pub const SUNSET_DEG: f64 = 1.0;
 const FARTHEST_M: f64 = 1e9;
 
 /// Sun, sky, fog and ground of 1987, seen by an eye at a height.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct Klassen1987Scene {
     model: Arc<Klassen1987>,
     eye_height_m: f64,

@@ -19,6 +19,7 @@ use super::prepared::{Prepared, turbidity};
 use crate::control::Control;
 use crate::scene::{Capabilities, Input, PreparedModel, RadianceModel, ResolvedScene, SceneError};
 use crate::sky::SunCoverage;
+use crate::debug::debug_fields;
 use glam::DVec3;
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -83,6 +84,8 @@ pub struct Preetham {
     zenith: [f64; 3],
     disc: DimmedSun,
 }
+
+debug_fields! { Preetham { sun, zenith } }
 
 /// Perez' formula, relative to its value at the zenith.
 struct Perez {

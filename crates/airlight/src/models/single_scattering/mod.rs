@@ -26,6 +26,7 @@ mod tests;
 mod vec3;
 
 use crate::control::Control;
+use crate::debug::debug_fields;
 use crate::models::PublishedModel;
 use crate::models::prepared::Prepared;
 use crate::scene::{
@@ -50,6 +51,8 @@ pub struct SkyArticle {
     model: Arc<Model>,
     to_xyz: Matrix3,
 }
+
+debug_fields! { SkyArticle { sun } }
 
 enum Model {
     Printed(Printed<f32>),
