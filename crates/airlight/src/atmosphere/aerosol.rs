@@ -1,14 +1,14 @@
-//! Haze: an aerosol after Angstrom's law, set by optical depth, turbidity or visibility.
+//! Haze: an aerosol that follows Angstrom's law, with an amount given by optical depth, turbidity or visibility.
 
 use super::visibility::{self, Contrast};
 use super::{ClearAir, Constituent, ConstituentKind, DensityProfile};
 use crate::optics::{PhaseError, PhaseFunction};
 use crate::spectrum::{SampledCurve, SpectralCurve};
 
-/// The wavelength that loads are stated at, nm.
+/// Wavelength of all aerosol loads, nm.
 pub const REFERENCE_NM: f64 = 550.0;
 
-/// How much aerosol there is.
+/// Amount of aerosol.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum AerosolLoad {
     /// Vertical optical depth of the aerosol at 550 nm.
@@ -22,9 +22,9 @@ pub enum AerosolLoad {
     ///
     /// `extinction_aerosol = ln(1 / contrast) / range - extinction_molecules`
     Visibility {
-        /// How far one sees, m.
+        /// The visibility, m.
         range_m: f64,
-        /// The contrast that is left there: 5 % makes it the meteorological optical range.
+        /// Contrast that remains at this distance; 5 % defines the meteorological optical range.
         contrast: Contrast,
     },
 }
@@ -32,59 +32,60 @@ pub enum AerosolLoad {
 /// An aerosol whose extinction follows `lambda^-exponent`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AngstromAerosol {
-    /// How much.
+    /// Amount.
     pub load: AerosolLoad,
     /// Angstrom exponent of the extinction.
     pub angstrom_exponent: f64,
-    /// Scattering over extinction, by wavelength.
+    /// Ratio of scattering to extinction, by wavelength.
     pub single_scattering_albedo: SpectralCurve,
-    /// Where it is.
+    /// Relative density by height.
     pub density: DensityProfile,
-    /// Where it scatters to.
+    /// Phase function.
     pub phase: PhaseFunction,
 }
 
-/// Why numbers do not make an aerosol.
+/// Why an aerosol is invalid.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum AerosolError {
-    /// The optical depth is negative or not finite.
-    #[error("the aerosol optical depth at 550 nm must be finite and not negative, got {0}")]
+    /// A negative or infinite optical depth.
+    #[error("expected a finite aerosol optical depth at 550 nm of at least 0, got {0}")]
     OpticalDepth(f64),
-    /// The turbidity is below 1.
-    #[error("turbidity must be finite and at least 1 (1 is air without aerosol), got {0}")]
+    /// A turbidity below 1.
+    #[error("expected a finite turbidity of at least 1 (1 is air without aerosol), got {0}")]
     Turbidity(f64),
-    /// The visibility is not positive, or farther than clear air allows.
+    /// A visibility that is not positive, or longer than that of air without aerosol.
     #[error(
-        "visibility must lie above 0 and not above {clearest_m:.0} m, that of air without aerosol, got {got_m} m"
+        "expected a visibility above 0 and at most {clearest_m:.0} m, that of air without aerosol, got {got_m} m"
     )]
     Visibility {
-        /// What was asked for, m.
+        /// The visibility given, m.
         got_m: f64,
-        /// What air without aerosol has, m.
+        /// Visibility without aerosol, m.
         clearest_m: f64,
     },
-    /// The Angstrom exponent is out of range.
-    #[error("the Angstrom exponent must lie between -4 and 8, got {0}")]
+    /// An Angstrom exponent out of range.
+    #[error("expected an Angstrom exponent from -4 to 8, got {0}")]
     AngstromExponent(f64),
-    /// The single-scattering albedo is out of range.
-    #[error("the single-scattering albedo must lie in [0, 1], got {0}")]
+    /// A single-scattering albedo out of range.
+    #[error("expected a single-scattering albedo in [0, 1], got {0}")]
     SingleScatteringAlbedo(f64),
-    /// The profile holds nothing between ground and top.
+    /// A density profile that does not allow the load.
     #[error(
-        "the aerosol's density profile is empty between the ground and the top of the atmosphere"
+        "expected a density profile with aerosol between the ground and the top of the atmosphere, and at the ground if \
+         its amount is a visibility; got one that is 0 there"
     )]
     EmptyProfile,
-    /// The phase function is refused.
+    /// An invalid phase function.
     #[error("{0}")]
     Phase(#[from] PhaseError),
 }
 
 impl AerosolLoad {
-    /// Vertical optical depth at 550 nm; `column_m` is the integral of the relative density from the ground up, over
-    /// its value at the ground (see [`AngstromAerosol::constituent`]).
+    /// Vertical optical depth at 550 nm. `column_m` is the integral of the relative density from the ground to the top,
+    /// divided by its value at the ground.
     ///
     /// # Errors
-    /// [`AerosolError`] where the load is out of its domain.
+    /// [`AerosolError`] if the load is out of range.
     pub fn optical_depth_550(self, clear: ClearAir, column_m: f64) -> Result<f64, AerosolError> {
         match self {
             Self::OpticalDepth550(depth) if depth.is_finite() && depth >= 0.0 => Ok(depth),
@@ -120,10 +121,10 @@ pub fn visibility_of_extinction_m(aerosol_extinction_550_per_m: f64, clear: Clea
 }
 
 impl AngstromAerosol {
-    /// The aerosol as a constituent named "aerosol" of an atmosphere between two altitudes, m.
+    /// The constituent of kind [`ConstituentKind::Aerosol`] of an atmosphere between two altitudes, m.
     ///
     /// # Errors
-    /// [`AerosolError`] where a number is out of its domain.
+    /// [`AerosolError`] if a number is out of range.
     pub fn constituent(
         &self,
         clear: ClearAir,
@@ -156,7 +157,7 @@ impl AngstromAerosol {
         })
     }
 
-    /// Scattering and absorption: exact for a constant albedo, else sampled every 2 nm from 250 to 1100 nm.
+    /// Scattering and absorption spectra: exact for a constant albedo, otherwise sampled every 2 nm from 250 to 1100 nm.
     fn split(
         &self,
         extinction: SpectralCurve,
@@ -189,7 +190,7 @@ impl AngstromAerosol {
     }
 }
 
-/// Extinction (1/m) at 550 nm and relative density 1 of so much aerosol in a profile between two altitudes, m.
+/// Extinction coefficient (1/m) at 550 nm and relative density 1 for a load in a profile between two altitudes, m.
 pub(super) fn extinction_at_density_1(
     load: AerosolLoad,
     density: &DensityProfile,
@@ -203,7 +204,7 @@ pub(super) fn extinction_at_density_1(
     }
     let at_ground = density.at(ground_altitude_m);
     let depth = match load {
-        // A layer aloft has no extinction at the ground that visibility could set.
+        // A layer above the ground has no extinction at the ground, which visibility defines.
         AerosolLoad::Visibility { .. } if at_ground <= 0.0 => {
             return Err(AerosolError::EmptyProfile);
         }
@@ -232,7 +233,7 @@ mod tests {
     const GROUND: f64 = 0.0;
     const TOP: f64 = 100e3;
 
-    fn seen(range_m: f64) -> AerosolLoad {
+    fn visibility(range_m: f64) -> AerosolLoad {
         AerosolLoad::Visibility {
             range_m,
             contrast: Contrast::FivePercent,
@@ -258,7 +259,7 @@ mod tests {
     }
 
     #[test]
-    fn each_load_gives_what_it_says() {
+    fn loads_define_the_optical_depth() {
         let build = |load| aerosol(load).constituent(clear(), GROUND, TOP).unwrap();
         let by_depth = build(AerosolLoad::OpticalDepth550(0.12));
         assert!((by_depth.optical_depth(GROUND, TOP, 550.0) / 0.12 - 1.0).abs() < 1e-12);
@@ -275,12 +276,12 @@ mod tests {
         assert!((depth / (2.0 * clear().optical_depth_550) - 1.0).abs() < 1e-12);
         assert!((turbidity_of_optical_depth(depth, clear()) - 3.0).abs() < 1e-12);
 
-        let by_visibility = build(seen(23e3));
+        let by_visibility = build(visibility(23e3));
         let total = by_visibility.extinction_per_m(550.0) + clear().ground_extinction_per_m;
         assert!(((-total * 23e3).exp() / 0.05 - 1.0).abs() < 1e-12);
         let range = visibility_of_extinction_m(by_visibility.extinction_per_m(550.0), clear());
         assert!((range / 23e3 - 1.0).abs() < 1e-12);
-        // Clear air is seen through for some 260 km.
+        // Visibility of air without aerosol is about 260 km.
         let clearest = visibility_of_extinction_m(0.0, clear());
         assert!((255e3..265e3).contains(&clearest), "{clearest}");
         let by_contrast = build(AerosolLoad::Visibility {
@@ -289,12 +290,12 @@ mod tests {
         });
         let total = by_contrast.extinction_per_m(550.0) + clear().ground_extinction_per_m;
         assert!(((-total * 23e3).exp() / 0.02 - 1.0).abs() < 1e-12);
-        let none = build(seen(clearest));
+        let none = build(visibility(clearest));
         assert!(none.extinction_per_m(550.0) < 1e-15);
     }
 
     #[test]
-    fn a_spectral_albedo_splits_the_extinction() {
+    fn a_spectral_albedo_divides_the_extinction() {
         let mut dust = aerosol(AerosolLoad::OpticalDepth550(0.5));
         dust.single_scattering_albedo =
             SpectralCurve::table(vec![400.0, 700.0], vec![0.7, 0.97]).unwrap();
@@ -307,7 +308,7 @@ mod tests {
     }
 
     #[test]
-    fn bad_numbers_are_refused() {
+    fn invalid_numbers_are_rejected() {
         let refuse = |a: &AngstromAerosol| a.constituent(clear(), GROUND, TOP).unwrap_err();
         assert_eq!(
             refuse(&aerosol(AerosolLoad::OpticalDepth550(-0.1))),
@@ -319,7 +320,7 @@ mod tests {
         );
         for range in [0.0, -5.0, f64::NAN, 1e7] {
             assert!(matches!(
-                refuse(&aerosol(seen(range))),
+                refuse(&aerosol(visibility(range))),
                 AerosolError::Visibility { .. }
             ));
         }
@@ -334,11 +335,11 @@ mod tests {
         ));
         bad.angstrom_exponent = f64::NAN;
         assert!(matches!(refuse(&bad), AerosolError::AngstromExponent(_)));
-        let mut aloft = aerosol(seen(20e3));
-        aloft.density = DensityProfile::Layer {
+        let mut elevated = aerosol(visibility(20e3));
+        elevated.density = DensityProfile::Layer {
             bottom_m: 2e3,
             top_m: 3e3,
         };
-        assert_eq!(refuse(&aloft), AerosolError::EmptyProfile);
+        assert_eq!(refuse(&elevated), AerosolError::EmptyProfile);
     }
 }

@@ -1,4 +1,4 @@
-//! Atmospheres written down: a TOML text that names a preset and overrides what differs.
+//! Atmospheres in TOML: a preset and the values that differ from it.
 //!
 //! ```
 //! let air = airlight::atmosphere::config::from_toml(
@@ -31,16 +31,16 @@
 //! | `planet.radius_m`, `.top_altitude_m`, `.ground_altitude_m` | lengths in metres |
 //! | `planet.ground_albedo` | *spectrum* in `[0, 1]` |
 //! | `sun.angular_radius_deg`, `.limb_darkening` | `"neckel"`, `"power-law"` or `"uniform"` |
-//! | `sun.irradiance_w_m2_nm`, `.irradiance_factor` | *spectrum* at the top of the atmosphere; factor on it |
-//! | `rayleigh.pressure_pa` | sea-level pressure; scales the base's molecules, or adds the Earth's where it has none |
-//! | `ozone.column_du` | replaces the base's ozone by the measured cross-section and mid-latitude profile, of this column |
-//! | `aerosol.type`, `.relative_humidity` | a published kind ([`crate::atmosphere::AerosolType`]) in air of a humidity from 0 to 0.99 |
+//! | `sun.irradiance_w_m2_nm`, `.irradiance_factor` | *spectrum* at the top of the atmosphere; a factor on it |
+//! | `rayleigh.pressure_pa` | sea-level pressure; scales the molecules of the base, or adds those of the Earth if it has none |
+//! | `ozone.column_du` | replaces the ozone of the base: measured cross-section, mid-latitude profile, this column |
+//! | `aerosol.type`, `.relative_humidity` | a published type ([`crate::atmosphere::AerosolType`]) at a humidity from 0 to 0.99 |
 //! | `aerosol.mixture` | instead of `type`: list of `{ type, share }` or `{ component, share }`, shares of the extinction |
-//! | `aerosol.aod_550`, `.turbidity` or `.visibility_m` | one of three ways to say how much ([`crate::atmosphere::AerosolLoad`]) |
-//! | `aerosol.contrast` | which contrast visibility means: 0.05 (if absent) or 0.02 |
+//! | `aerosol.aod_550`, `.turbidity` or `.visibility_m` | amount ([`crate::atmosphere::AerosolLoad`]) |
+//! | `aerosol.contrast` | contrast threshold of the visibility: 0.05 (default) or 0.02 |
 //! | `aerosol.angstrom_exponent`, `.single_scattering_albedo` | exponent of the extinction; *spectrum* in `[0, 1]` |
-//! | `aerosol.scale_height_m` or `.density` | how it thins out with altitude; *density* |
-//! | `aerosol.phase` | *phase*; `kind` may be left out to change the parameters the base has |
+//! | `aerosol.scale_height_m` or `.density` | scale height of an exponential profile, or a *density* |
+//! | `aerosol.phase` | *phase*; without `kind`, changes parameters of the base's phase function |
 //! | `[[constituent]]` | `name`, `density`, `scattering_per_m`, `absorption_per_m`, `phase`; replaces one of the same name |
 //!
 //! A *spectrum* is a number, `{ wavelengths_nm = [...], values = [...] }` or `{ at_550_nm = ..., angstrom_exponent = ... }`.
@@ -50,7 +50,7 @@
 //! `{ kind = "table", altitudes_m, densities, interpolation = "linear" | "log-linear" }`.
 //! A *phase* is `{ kind = "isotropic" }`, `"rayleigh"` (optional `depolarization_ratio`), `"henyey-greenstein"` or
 //! `"cornette-shanks"` (`g`), `"draine"` (`g`, `alpha`), `"continental"`, `"mixture"`
-//! (`parts = [{ weight, kind, ... }, ...]`) or `"table"` (`angles_deg`, `wavelengths_nm`, `values` wavelength by wavelength).
+//! (`parts = [{ weight, kind, ... }, ...]`) or `"table"` (`angles_deg`, `wavelengths_nm`, `values` by wavelength, then angle).
 
 mod aerosol;
 mod error;
@@ -58,8 +58,6 @@ mod parts;
 mod reader;
 #[cfg(test)]
 mod tests;
-#[cfg(test)]
-mod type_tests;
 
 pub use error::{ConfigError, ConfigProblem};
 
@@ -70,15 +68,15 @@ use crate::optics::rayleigh::STANDARD_PRESSURE_PA;
 use reader::Section;
 use toml::de::DeTable;
 
-/// The base that a text without `base` starts from.
+/// The default base.
 const DEFAULT_BASE: &str = "average";
-/// The base that has no air.
+/// The base without air.
 const NO_AIR: &str = "none";
 
 /// Reads an atmosphere from TOML.
 ///
 /// # Errors
-/// [`ConfigError`]: what is wrong, where, and what would be right.
+/// [`ConfigError`] with place, problem and allowed values.
 pub fn from_toml(text: &str) -> Result<Atmosphere, ConfigError> {
     let table = DeTable::parse(text).map_err(|error| {
         let at = error.span().map_or(0, |span| span.start);
@@ -92,8 +90,8 @@ pub fn from_toml(text: &str) -> Result<Atmosphere, ConfigError> {
     from_toml_table(text, table.get_ref(), "")
 }
 
-/// Reads an atmosphere from a table inside a larger TOML text; `path` is what its keys are called in messages
-/// (`"atmosphere"`, or nothing for the whole text).
+/// Reads an atmosphere from a table inside a larger TOML text. Error messages prefix keys with `path` (such as
+/// `"atmosphere"`; empty for the whole text).
 ///
 /// # Errors
 /// As [`from_toml`].
@@ -158,7 +156,7 @@ pub fn from_toml_table(
     for section in root.sections("constituent")? {
         atmosphere.put(parts::constituent(&section)?);
     }
-    // Each value has been looked at where it stands; this is for what only shows together.
+    // Single values are checked above; this checks their combination.
     atmosphere.validate().map_err(|error| {
         let key = match error {
             AtmosphereError::Planet { .. } => "planet",
@@ -203,7 +201,11 @@ fn sun(section: &Section<'_>, atmosphere: &mut Atmosphere) -> Result<(), ConfigE
         "irradiance_factor",
     ])?;
     let below_90 = |deg: f64| deg > 0.0 && deg < 90.0;
-    if let Some(deg) = section.number("angular_radius_deg", "above 0 and below 90", below_90)? {
+    if let Some(deg) = section.number(
+        "angular_radius_deg",
+        "a number above 0 and below 90",
+        below_90,
+    )? {
         atmosphere.sun.angular_radius_rad = deg.to_radians();
     }
     if let Some(limb_darkening) = section.named("limb_darkening")? {

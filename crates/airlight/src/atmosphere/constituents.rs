@@ -1,4 +1,4 @@
-//! A planet's air: what it is made of, what lies under it and what shines on it.
+//! [`Atmosphere`]: a planet, the constituents of its air, and the sun at its top.
 
 use super::density::{DensityError, DensityProfile};
 use crate::optics::{PhaseError, PhaseFunction};
@@ -12,21 +12,21 @@ pub const EARTH_RADIUS_M: f64 = 6_371_008.8;
 /// The solid ball under the air.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Planet {
-    /// Radius from which altitudes are counted, m.
+    /// Radius at altitude 0, m.
     pub radius_m: f64,
-    /// Altitude above which there is no air, m.
+    /// Altitude of the top of the atmosphere, m; no air above.
     pub top_altitude_m: f64,
-    /// Altitude of the ground that blocks and reflects light, m.
+    /// Altitude of the ground, m. It blocks and reflects light.
     pub ground_altitude_m: f64,
     /// Lambertian albedo of the ground, in `[0, 1]`.
     pub ground_albedo: SpectralCurve,
 }
 
-/// What a constituent is: at most one of each kind in an atmosphere file, which replaces that of its base.
+/// Kind of a constituent. An atmosphere file has at most one constituent of each kind; it replaces that of the base.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum ConstituentKind {
-    /// Molecules that scatter: "rayleigh". Turbidity and visibility are relative to them ([`Atmosphere::clear_air`]).
+    /// Scattering molecules: "rayleigh". Turbidity and visibility are relative to them ([`Atmosphere::clear_air`]).
     Molecules,
     /// Ozone: "ozone".
     Ozone,
@@ -34,16 +34,16 @@ pub enum ConstituentKind {
     Aerosol,
     /// A layer of fog: "fog".
     Fog,
-    /// Any other, by its own name.
+    /// Any other constituent, by name.
     Other(String),
 }
 
-/// A constituent of the air: molecules, aerosol, a fog layer.
+/// One constituent of the air: a gas, an aerosol or a layer of fog.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Constituent {
-    /// What it is.
+    /// Its kind.
     pub kind: ConstituentKind,
-    /// Density relative to the density of the coefficients.
+    /// Relative density by height: factor on the coefficients.
     pub density: DensityProfile,
     /// Scattering coefficient at relative density 1, m^-1.
     pub scattering_per_m: SpectralCurve,
@@ -56,11 +56,11 @@ pub struct Constituent {
 /// A planet, its air and its sun.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Atmosphere {
-    /// What it is called.
+    /// Name, for reports and metadata.
     pub name: String,
-    /// The ball under the air.
+    /// The planet.
     pub planet: Planet,
-    /// What the air holds.
+    /// Constituents of the air.
     pub constituents: Vec<Constituent>,
     /// Solar irradiance at the top of the atmosphere on a surface that faces the sun, at the planet's mean distance,
     /// W m^-2 nm^-1.
@@ -69,48 +69,48 @@ pub struct Atmosphere {
     pub sun: SunDisc,
 }
 
-/// Why numbers do not make an atmosphere.
+/// Why an atmosphere is invalid.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum AtmosphereError {
-    /// A length of the planet is out of its domain.
-    #[error("planet.{field} must be {expected}, got {value}")]
+    /// A length of the planet out of range.
+    #[error("planet.{field}: expected a number of metres that is {expected}, got {value}")]
     Planet {
-        /// Which field.
+        /// The field.
         field: &'static str,
-        /// What would be right.
+        /// The values allowed.
         expected: &'static str,
-        /// What was given.
+        /// The value given.
         value: f64,
     },
-    /// A spectrum takes a value out of its domain.
-    #[error("{what} must be {expected}, but is {value} at {wavelength_nm} nm")]
+    /// A spectrum with a value out of range.
+    #[error("{what}: expected values {expected}, got {value} at {wavelength_nm} nm")]
     Spectrum {
-        /// Which spectrum.
+        /// The spectrum.
         what: String,
-        /// What would be right.
+        /// The values allowed.
         expected: &'static str,
         /// The value found.
         value: f64,
-        /// Where it was found, nm.
+        /// Its wavelength, nm.
         wavelength_nm: f64,
     },
-    /// A constituent's density profile is refused.
+    /// A constituent with an invalid density profile.
     #[error("constituent \"{constituent}\": {error}")]
     Density {
-        /// Its name.
+        /// Name of the constituent.
         constituent: String,
-        /// Why.
+        /// What is wrong.
         error: DensityError,
     },
-    /// A constituent's phase function is refused.
+    /// A constituent with an invalid phase function.
     #[error("constituent \"{constituent}\": {error}")]
     Phase {
-        /// Its name.
+        /// Name of the constituent.
         constituent: String,
-        /// Why.
+        /// What is wrong.
         error: PhaseError,
     },
-    /// The sun's disc is refused.
+    /// An invalid disc of the sun.
     #[error("{0}")]
     Sun(#[from] SunError),
 }
@@ -125,10 +125,10 @@ pub struct ClearAir {
 }
 
 impl Atmosphere {
-    /// Checks and takes the parts.
+    /// An atmosphere of these parts, checked by [`Atmosphere::validate`].
     ///
     /// # Errors
-    /// [`AtmosphereError`], see [`Atmosphere::validate`].
+    /// [`AtmosphereError`] for the first invalid part.
     pub fn new(
         name: impl Into<String>,
         planet: Planet,
@@ -147,12 +147,12 @@ impl Atmosphere {
         Ok(atmosphere)
     }
 
-    /// Checks what a solver relies on: finite lengths in order, albedo in `[0, 1]`, coefficients and irradiance finite
-    /// and not negative, densities, phase functions and sun in their domains. Spectra are looked at every 10 nm from
-    /// 250 to 1100 nm, and at each sample of a table.
+    /// Checks what solvers assume: finite lengths in order, albedo in `[0, 1]`, coefficients and irradiance finite and
+    /// not negative, valid densities, phase functions and sun. Spectra are checked every 10 nm from 250 to 1100 nm, and
+    /// at each sample of a table.
     ///
     /// # Errors
-    /// The first fault found.
+    /// [`AtmosphereError`] for the first invalid value.
     pub fn validate(&self) -> Result<(), AtmosphereError> {
         let planet = &self.planet;
         let check = |ok: bool, field, expected, value| match ok {
@@ -239,7 +239,7 @@ impl Atmosphere {
         self.constituents.iter().map(of).sum()
     }
 
-    /// The altitudes of kinks and jumps of all densities strictly between ground and top, rising, m.
+    /// Altitudes of kinks and jumps of all densities strictly between ground and top, in increasing order, m.
     pub fn breakpoints_m(&self) -> Vec<f64> {
         let (ground, top) = (self.planet.ground_altitude_m, self.planet.top_altitude_m);
         let mut all: Vec<f64> = self
@@ -253,7 +253,7 @@ impl Atmosphere {
         all
     }
 
-    /// What turbidity and visibility are stated relative to: the scattering of the molecules at 550 nm, 0 without molecules.
+    /// Scattering of the molecules at 550 nm, which turbidity and visibility are relative to; 0 without molecules.
     pub fn clear_air(&self) -> ClearAir {
         let (ground, top) = (self.planet.ground_altitude_m, self.planet.top_altitude_m);
         let molecules = || {
@@ -287,13 +287,13 @@ impl Atmosphere {
         }
     }
 
-    /// Whether the planet is the Earth, by its size.
+    /// Whether the planet is the Earth, judged by its radius.
     pub fn is_earth(&self) -> bool {
         (self.planet.radius_m / EARTH_RADIUS_M - 1.0).abs() < 0.02
     }
 
-    /// The same air at a distance from the sun, over the planet's mean distance: irradiance falls by its square, the disc
-    /// shrinks.
+    /// The same atmosphere at another distance from the sun, `ratio` times the planet's mean distance: irradiance falls
+    /// with its square, the disc shrinks.
     pub fn at_sun_distance(&self, ratio: f64) -> Self {
         let mut air = self.clone();
         air.solar_irradiance = air.solar_irradiance.scaled(1.0 / (ratio * ratio));
@@ -303,7 +303,7 @@ impl Atmosphere {
 }
 
 impl ConstituentKind {
-    /// Its name in atmosphere files.
+    /// Name in atmosphere files.
     pub fn name(&self) -> &str {
         match self {
             Self::Molecules => "rayleigh",
@@ -316,7 +316,7 @@ impl ConstituentKind {
 }
 
 impl From<&str> for ConstituentKind {
-    /// The kind of a name in an atmosphere file.
+    /// The kind with this name in atmosphere files.
     fn from(name: &str) -> Self {
         let known = [Self::Molecules, Self::Ozone, Self::Aerosol, Self::Fog];
         known
@@ -338,8 +338,8 @@ impl Constituent {
         self.scattering_per_m.at(wavelength_nm) + self.absorption_per_m.at(wavelength_nm)
     }
 
-    /// The same constituent with every height raised by `by_m`: from heights above a ground to altitudes. `None` where the
-    /// density is tied to sea level ([`DensityProfile::raised`]).
+    /// The same constituent with every height raised by `by_m`, to convert heights above ground to altitudes. `None` if
+    /// the density is tied to sea level ([`DensityProfile::raised`]).
     pub fn raised(&self, by_m: f64) -> Option<Self> {
         Some(Self {
             density: self.density.raised(by_m)?,
@@ -359,11 +359,11 @@ impl Constituent {
     }
 }
 
-/// Every value where it is looked at lies in `[0, most]` and is finite.
+/// Checks that values are finite and in `[0, most]`.
 fn check_curve(curve: &SpectralCurve, what: &str, most: f64) -> Result<(), AtmosphereError> {
     let expected = match most == 1.0 {
         true => "in [0, 1]",
-        false => "finite and not negative",
+        false => "that are finite and not negative",
     };
     let mut wavelengths: Vec<f64> = (25..=110).map(|i| 10.0 * f64::from(i)).collect();
     samples_of(curve, &mut wavelengths);

@@ -1,8 +1,8 @@
-//! Density against height: one set of profiles for all constituents, from molecules to fog.
+//! [`DensityProfile`]: relative density by height, for all constituents from molecules to fog.
 //!
-//! Heights are altitudes above the planet's radius in an [`Atmosphere`](super::Atmosphere), and heights above the scene's
-//! zero in a fog. Every behaviour of a profile is one `match` in this file; everything else that depends on the shape of a
-//! profile works on its [`HeightStructure`].
+//! Heights are altitudes above the planet's radius in an [`Atmosphere`](super::Atmosphere), and heights above the zero of the
+//! scene in a fog. Each behaviour of a profile is one `match` in this file; other code that depends on the shape of a profile
+//! uses its [`HeightStructure`].
 
 mod column;
 mod error;
@@ -15,11 +15,11 @@ use super::ray_segment::RaySegment;
 use super::standard_air;
 use crate::math::quadrature::FixedRule;
 
-/// Density relative to the density that the coefficients of a constituent are stated for, as a function of height.
+/// Relative density of a constituent as a function of height: a factor on its coefficients.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum DensityProfile {
-    /// 1 at all heights. In fog: without an upper end.
+    /// 1 at all heights.
     Uniform,
     /// `e^-((height - reference) / H)` at all heights: exponential height fog (Ishiyama 2018, eq. 7 with reference 0).
     Exponential {
@@ -28,7 +28,7 @@ pub enum DensityProfile {
         /// Height `H` over which the density falls by a factor e, m, above 0.
         scale_height_m: f64,
     },
-    /// 1 up to the base, `e^-((height - base) / H)` above it: the fog note's `e^-(f max(0, y - h0))` with falloff `f = 1 / H`.
+    /// 1 up to the base, `e^-((height - base) / H)` above: `e^-(f max(0, y - h0))` of the fog note, with falloff `f = 1 / H`.
     Clamped {
         /// Height up to which the density is 1, m.
         base_height_m: f64,
@@ -54,29 +54,29 @@ pub enum DensityProfile {
     /// Number density of air in the U.S. Standard Atmosphere 1976, 1 at sea level, by the standard's layer formulas
     /// (to 1e-4 of its tables up to 86 km; from there to 100 km one exponential, within 1 %).
     StandardAir1976,
-    /// Tabulated by altitude: the first value below the first altitude, **0 above the last**.
+    /// A table by altitude: the first value below the first altitude, **0 above the last**.
     Tabulated(AltitudeTable),
-    /// A sum of profiles, each with its factor.
+    /// A weighted sum of profiles.
     Sum(Vec<(f64, DensityProfile)>),
 }
 
 /// Where a profile changes with height: what quadrature over height or along a ray has to resolve.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct HeightStructure {
-    /// Heights of kinks and jumps, rising, m.
+    /// Heights of kinks and jumps, in increasing order, m.
     pub kinks_m: Vec<f64>,
     /// Exponential decays with height.
     pub decays: Vec<Decay>,
-    /// Other intervals of height, rising, in which the density varies smoothly by less than a factor e or linearly, m.
+    /// Other intervals of height, in increasing order, in which the density is linear or varies by less than a factor of e, m.
     pub ramps_m: Vec<[f64; 2]>,
-    /// Height above which the density is 0, m; infinite where there is none.
+    /// Height above which the density is 0, m; infinite if there is none.
     pub top_m: f64,
 }
 
 /// An exponential decay with height.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Decay {
-    /// Height from which on the density decays, m; minus infinity where it does at all heights.
+    /// Height above which the density decays, m; minus infinity if it does at all heights.
     pub from_m: f64,
     /// Height at which the density is 1, m.
     pub reference_height_m: f64,
@@ -85,7 +85,7 @@ pub(crate) struct Decay {
 }
 
 impl HeightStructure {
-    /// Kinks at which no exponential decay begins, m.
+    /// Kinks that are not the start of an exponential decay, m.
     pub fn other_kinks_m(&self) -> impl Iterator<Item = f64> + '_ {
         let begins = |kink: &f64| self.decays.iter().any(|decay| decay.from_m == *kink);
         self.kinks_m
@@ -104,7 +104,7 @@ impl DensityProfile {
         }
     }
 
-    /// 1 below `top_m`, 0 above: a [`DensityProfile::Layer`] without a lower edge, as the fog of Klassen 1987.
+    /// 1 below `top_m`, 0 above: a [`DensityProfile::Layer`] without a lower edge, such as the fog of Klassen 1987.
     pub const fn slab(top_m: f64) -> Self {
         Self::Layer {
             bottom_m: f64::NEG_INFINITY,
@@ -123,7 +123,7 @@ impl DensityProfile {
     /// The clamped profile of a falloff (1/m) instead of a scale height: uniform for 0, a slab for infinity.
     ///
     /// # Errors
-    /// [`DensityError`] for a falloff below 0 or not a number, or a base that is not finite.
+    /// [`DensityError`] for a falloff that is negative or NaN, or a base that is not finite.
     pub fn from_falloff(base_height_m: f64, falloff_per_m: f64) -> Result<Self, DensityError> {
         let profile = if falloff_per_m == 0.0 {
             Self::Uniform
@@ -159,7 +159,7 @@ impl DensityProfile {
     /// Checks the parameters.
     ///
     /// # Errors
-    /// [`DensityError`] for the first parameter outside its domain.
+    /// [`DensityError`] for the first parameter out of range.
     pub fn validate(&self) -> Result<(), DensityError> {
         let scale = |scale_height_m: f64| match scale_height_m.is_finite() && scale_height_m > 0.0 {
             true => Ok(()),
@@ -210,7 +210,7 @@ impl DensityProfile {
         }
     }
 
-    /// The relative density at a height, m.
+    /// Relative density at a height, m.
     #[inline]
     pub fn at(&self, height_m: f64) -> f64 {
         let z = height_m;
@@ -231,7 +231,7 @@ impl DensityProfile {
                 top_m,
             } => {
                 if z <= bottom_m || z >= top_m {
-                    // A tent whose peak is its edge is 1 there.
+                    // 1 at a peak that is also an edge.
                     f64::from(z == peak_m)
                 } else if z < peak_m {
                     (z - bottom_m) / (peak_m - bottom_m)
@@ -268,8 +268,8 @@ impl DensityProfile {
         }
     }
 
-    /// Integral of the density over height, m: the length of a column of density 1 that holds as much. 0 where the top is
-    /// not above the start. Closed forms; the standard atmosphere by quadrature to 1e-10.
+    /// Integral of the density over height, m; 0 if the top is not above the start. Closed forms; the standard atmosphere by
+    /// quadrature to 1e-10.
     pub fn column_m(&self, from_height_m: f64, top_height_m: f64) -> f64 {
         let (a, b) = (from_height_m, top_height_m);
         if b <= a || a.is_nan() || b.is_nan() {
@@ -299,7 +299,7 @@ impl DensityProfile {
                 top_m,
             } => {
                 let ramp = |from: f64, to: f64| match to > from {
-                    // The mean density of a linear ramp is the density at its middle.
+                    // The mean density of a linear ramp is that at its middle.
                     true => (to - from) * self.at(0.5 * (from + to)),
                     false => 0.0,
                 };
@@ -319,7 +319,7 @@ impl DensityProfile {
         }
     }
 
-    /// Integral of the density from a height (m) straight up, m; infinite for [`DensityProfile::Uniform`].
+    /// Integral of the density above a height (m), m; infinite for [`DensityProfile::Uniform`].
     #[inline]
     pub fn column_above_m(&self, height_m: f64) -> f64 {
         match *self {
@@ -358,7 +358,7 @@ impl DensityProfile {
         }
     }
 
-    /// The profiles that this one is the sum of, with their factors: sums of sums are resolved.
+    /// Terms of a sum with their factors, resolving nested sums; the profile itself if it is not a sum.
     pub(crate) fn terms(&self) -> Vec<(f64, &Self)> {
         match self {
             Self::Sum(parts) => {
@@ -372,7 +372,7 @@ impl DensityProfile {
         }
     }
 
-    /// Where the profile changes with height.
+    /// Features of the profile.
     pub(crate) fn structure(&self) -> HeightStructure {
         let smooth = HeightStructure {
             kinks_m: Vec::new(),
@@ -423,7 +423,7 @@ impl DensityProfile {
                 ..smooth
             },
             Self::StandardAir1976 => HeightStructure {
-                // The other kinks change the slope by less than 10 %: not worth a panel edge each.
+                // The other kinks change the slope by less than 10 % and are ignored.
                 kinks_m: standard_air::kinks_m().skip(1).take(1).collect(),
                 ramps_m: standard_air::ramps_m(),
                 top_m: standard_air::END_M,
@@ -455,15 +455,15 @@ impl DensityProfile {
         }
     }
 
-    /// Heights at which the profile has a kink or a jump, m, rising: edges for quadrature panels. Of the standard
-    /// atmosphere only the tropopause.
+    /// Heights of kinks and jumps, in increasing order, m: edges for quadrature panels. For the standard atmosphere only the
+    /// tropopause.
     pub fn breakpoints_m(&self) -> Vec<f64> {
         let mut all = self.structure().kinks_m;
         all.dedup();
         all
     }
 
-    /// The same profile with every height raised by `by_m`: from heights above a ground to altitudes. `None` for
+    /// The same profile with every height raised by `by_m`, to convert heights above ground to altitudes. `None` for
     /// [`DensityProfile::StandardAir1976`], which is tied to sea level.
     pub fn raised(&self, by_m: f64) -> Option<Self> {
         Some(match *self {

@@ -1,4 +1,4 @@
-//! Water droplets: fog by the diameter of its drops, or by published size distributions and Lorenz-Mie theory.
+//! Fog droplets: an analytic phase function by diameter, or published size distributions and Lorenz-Mie theory.
 
 use super::{Constituent, ConstituentKind, DensityProfile};
 use crate::names::{Named, UnknownName, named, written_by_name};
@@ -7,13 +7,13 @@ use crate::optics::mie::droplets::Drops;
 use crate::optics::mie::{BulkOptics, MieError};
 use crate::spectrum::SpectralCurve;
 
-/// The diameters (micrometres) for which [`phase`] was fitted.
+/// Diameters (micrometres) to which [`phase`] is fitted.
 pub const DIAMETERS_UM: std::ops::RangeInclusive<f64> = 5.0..=50.0;
 
-/// The analytic phase function of fog (Jendersie & d'Eon, "An approximate Mie scattering function for fog and cloud
+/// Analytic phase function of fog (Jendersie & d'Eon, "An approximate Mie scattering function for fog and cloud
 /// rendering", SIGGRAPH 2023 Talks, eqs. 4-7): a Henyey-Greenstein function for the diffraction peak and a Draine
-/// function for the rest, fitted to Lorenz-Mie theory for droplets of 5 to 50 micrometres; diameters outside are held at
-/// the ends. Grey: the same at every wavelength.
+/// function for the rest, fitted to Lorenz-Mie theory for droplets of 5 to 50 micrometres; other diameters are clamped to
+/// this range. Grey: the same at every wavelength.
 pub fn phase(diameter_um: f64) -> PhaseFunction {
     let d = diameter_um.clamp(*DIAMETERS_UM.start(), *DIAMETERS_UM.end());
     let peak = (-0.0990567 / (d - 1.67154)).exp();
@@ -26,7 +26,7 @@ pub fn phase(diameter_um: f64) -> PhaseFunction {
     ])
 }
 
-/// Kinds of fog by the typical diameter of its drops.
+/// Kinds of fog by typical droplet diameter.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Droplets {
@@ -37,7 +37,7 @@ pub enum Droplets {
     Radiation,
     /// Advection fog, sea fog, cloud at the ground: 20 micrometres.
     Advection,
-    /// Drizzling fog and mist of large drops: 40 micrometres.
+    /// Drizzling fog and mist of large droplets: 40 micrometres.
     Coarse,
 }
 
@@ -60,22 +60,22 @@ impl Droplets {
         }
     }
 
-    /// Its phase function.
+    /// Phase function of this diameter.
     pub fn phase(self) -> PhaseFunction {
         phase(self.diameter_um())
     }
 }
 
-/// Drops of any kind, by name: analytic and grey, or published sizes by Lorenz-Mie theory, with bows, glories and coronas; or
-/// none, to compare with models of fog that scatters equally in all directions.
+/// Scattering of fog droplets: analytic and grey, published size distributions by Lorenz-Mie theory (with fogbows, glories
+/// and coronas), or isotropic, to compare with models that assume it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum DropletKind {
     /// The analytic phase function of one diameter.
     Analytic(Droplets),
-    /// Grey, scattering equally in all directions, as the fog note has it. No drops do.
+    /// Grey and isotropic, as in the height-fog note. No real droplets scatter like this.
     Isotropic,
-    /// Published sizes.
+    /// A published size distribution.
     Published(Drops),
 }
 
@@ -136,12 +136,13 @@ impl Named for DropletKind {
 written_by_name!(DropletKind);
 
 impl Constituent {
-    /// A layer of fog: its extinction at 550 nm (1/m, [`extinction_per_m`](super::visibility::extinction_per_m) of a
-    /// visibility), its drops, and how it thins with height. `wavelengths_nm` (rising) are those at which it will be used:
-    /// published drops are computed there by Lorenz-Mie theory and interpolated between; analytic ones are grey and need none.
+    /// A layer of fog with this extinction coefficient at 550 nm (1/m; see
+    /// [`visibility::extinction_per_m`](super::visibility::extinction_per_m)), droplets and density profile. Published
+    /// droplets are computed by Lorenz-Mie theory at `wavelengths_nm` (increasing) and interpolated between them; analytic
+    /// droplets are grey and need no wavelengths.
     ///
     /// # Errors
-    /// [`MieError`] for wavelengths that are not finite, above 0 and rising.
+    /// [`MieError`] for wavelengths that are not finite, positive and increasing.
     pub fn fog(
         extinction_per_m: f64,
         droplets: DropletKind,
@@ -185,7 +186,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_kind_has_a_name_of_its_own() {
+    fn names_are_unique() {
         let names: std::collections::BTreeSet<_> =
             DropletKind::all().map(DropletKind::name).collect();
         assert_eq!(names.len(), DropletKind::all().count());
@@ -198,9 +199,9 @@ mod tests {
         );
     }
 
-    /// Lorenz-Mie theory gives large water drops a mean cosine of 0.85 to 0.88 in the visible (Hu & Stamnes 1993).
+    /// Lorenz-Mie theory gives large water droplets a mean cosine of 0.85 to 0.88 in the visible (Hu & Stamnes 1993).
     #[test]
-    fn fog_scatters_forward_as_water_drops_do() {
+    fn the_mean_cosine_is_that_of_water_droplets() {
         let mut before = 0.0;
         for d in [5.0, 10.0, 20.0, 50.0] {
             let phase = phase(d);

@@ -1,18 +1,19 @@
-//! The gases of the Earth's air: molecules that scatter, ozone that absorbs.
+//! Gases of the Earth's atmosphere: scattering molecules and absorbing ozone.
 
 use super::{Constituent, ConstituentKind, DensityProfile, Interpolation};
 use crate::optics::ozone::{self, DOBSON_UNIT_M2};
 use crate::optics::{Depolarization, PhaseFunction, rayleigh};
 use crate::spectrum::SpectralCurve;
 
-/// Wavelengths for which the scattering of air is tabulated, nm, every 1 nm; constant beyond.
+/// Range of the tabulated scattering of air, nm, in steps of 1 nm; constant beyond.
 const SHORTEST_NM: u32 = 250;
 const LONGEST_NM: u32 = 1100;
 
-/// Dry air at a sea-level pressure (Pa): Rayleigh scattering from first principles ([`rayleigh::cross_section_m2`],
-/// 420 ppm of carbon dioxide), depolarization by wavelength, the density profile of the U.S. Standard Atmosphere 1976.
+/// Dry air with a given sea-level pressure (Pa): Rayleigh scattering from first principles
+/// ([`rayleigh::cross_section_m2`], 420 ppm of carbon dioxide), depolarization by wavelength, density profile of the U.S.
+/// Standard Atmosphere 1976.
 ///
-/// Samples every 1 nm from 250 to 1100 nm: linear interpolation errs by less than 4e-5.
+/// Sampled every 1 nm from 250 to 1100 nm: the error of linear interpolation is below 4e-5.
 pub fn air(sea_level_pressure_pa: f64) -> Constituent {
     let molecules =
         rayleigh::number_density_per_m3(sea_level_pressure_pa, rayleigh::STANDARD_TEMPERATURE_K);
@@ -36,8 +37,8 @@ pub fn air(sea_level_pressure_pa: f64) -> Constituent {
 }
 
 /// Altitude (km) and ozone molecules per cubic metre (1e18): the mid-latitude model that the U.S. Standard Atmosphere 1976
-/// adopts (Krueger & Minzner, J. Geophys. Res. 81, 4477, 1976), of whose 37 samples, every 2 km from 2 to 74 km, these
-/// are enough to stay within 4 % of the peak. Fewer samples are fewer panels for a solver.
+/// adopts (Krueger & Minzner, J. Geophys. Res. 81, 4477, 1976). Of its 37 samples, every 2 km from 2 to 74 km, these
+/// suffice to stay within 4 % of the peak. Fewer samples mean fewer integration panels for a solver.
 const OZONE_KM_1E18_PER_M3: [(f64, f64); 9] = [
     (2.0, 0.68),
     (8.0, 0.65),
@@ -50,19 +51,19 @@ const OZONE_KM_1E18_PER_M3: [(f64, f64); 9] = [
     (74.0, 0.000_17),
 ];
 
-/// The density of ozone relative to its peak at 22 km: straight lines in the logarithm, constant below 2 km, zero above
-/// 74 km. Within 4 % of the peak of the model it is taken from.
+/// Density of ozone relative to its peak at 22 km: linear in the logarithm between samples, constant below 2 km, 0 above
+/// 74 km. Within 4 % of the peak of the published model.
 pub fn ozone_profile() -> DensityProfile {
     let (altitudes, densities) = OZONE_KM_1E18_PER_M3
         .iter()
         .map(|(km, n)| (km * 1e3, n / 4.86))
         .unzip();
     DensityProfile::tabulated(altitudes, densities, Interpolation::LogLinear)
-        .expect("the ozone table of this file is in order")
+        .expect("the ozone table is valid")
 }
 
-/// Ozone with a vertical column (from sea level) in Dobson units: the profile of [`ozone_profile`] scaled, the measured
-/// cross-section at 233 K ([`ozone::cross_section_m2`]). Absorbs only.
+/// Ozone with a vertical column (from sea level) in Dobson units: [`ozone_profile`], scaled, with the cross-section
+/// measured at 233 K ([`ozone::cross_section_m2`]). Absorbs only.
 pub fn ozone(column_du: f64) -> Constituent {
     let density = ozone_profile();
     let peak_per_m3 = column_du * DOBSON_UNIT_M2 / density.column_m(0.0, 80e3);
@@ -80,7 +81,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_standard_atmosphere_has_the_published_optical_depth() {
+    fn the_standard_atmosphere_has_its_published_optical_depth() {
         let depth = |nm| air(101_325.0).optical_depth(0.0, 100e3, nm);
         assert!(
             (depth(550.0) / 0.0973 - 1.0).abs() < 0.01,
@@ -101,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn samples_are_close_enough_together() {
+    fn the_table_of_scattering_is_fine_enough() {
         let air = air(101_325.0);
         let molecules = rayleigh::number_density_per_m3(101_325.0, 288.15);
         for nm in [300.5, 440.5, 700.25] {
@@ -111,14 +112,14 @@ mod tests {
     }
 
     #[test]
-    fn ozone_has_the_column_asked_for() {
+    fn ozone_has_the_given_column() {
         let depth = ozone(300.0).optical_depth(0.0, 100e3, 603.0);
         let want = 300.0 * DOBSON_UNIT_M2 * ozone::cross_section_m2(603.0);
         assert!((depth / want - 1.0).abs() < 1e-12);
     }
 
     #[test]
-    fn ozone_follows_the_whole_model() {
+    fn ozone_follows_the_published_model() {
         let model: [f64; 37] = [
             0.68, 0.58, 0.57, 0.65, 1.13, 2.02, 2.35, 2.95, 4.04, 4.77, 4.86, 4.54, 4.03, 3.24,
             2.52, 2.03, 1.58, 1.22, 0.873, 0.607, 0.398, 0.274, 0.169, 0.103, 0.0664, 0.0384,
@@ -133,7 +134,7 @@ mod tests {
                 "sample {i}: {got} against {density}"
             );
         }
-        // The model itself holds 345 Dobson units (U.S. Standard Atmosphere 1976, 0.345 atm-cm).
+        // The column of the model is 345 Dobson units (U.S. Standard Atmosphere 1976, 0.345 atm-cm).
         let own = 4.86e18 * profile.column_m(0.0, 80e3) / DOBSON_UNIT_M2;
         assert!((own / 345.0 - 1.0).abs() < 0.02, "{own}");
     }

@@ -1,4 +1,4 @@
-//! What fills the air and where.
+//! Atmospheres: density profiles, constituents, gases, aerosols, fog droplets, visibility, presets and TOML files.
 
 pub mod aerosol;
 pub mod aerosol_types;

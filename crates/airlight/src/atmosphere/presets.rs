@@ -1,4 +1,4 @@
-//! Atmospheres ready to use, by name.
+//! Named atmospheres, ready to use.
 
 pub mod earth;
 mod fixed_table;
@@ -107,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn unknown_names_get_help() {
+    fn unknown_names_list_the_presets() {
         let error = preset("claer").unwrap_err();
         assert_eq!(error.nearest.as_deref(), Some("clear"));
         let text = error.to_string();
@@ -118,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn earths_have_the_optical_depths_they_state() {
+    fn optical_depths_match_the_descriptions() {
         for (name, aerosol) in [("clear", 0.05), ("average", 0.12), ("hazy", 0.35)] {
             let earth = preset(name).unwrap();
             let ozone = earth

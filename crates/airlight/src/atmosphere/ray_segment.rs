@@ -1,6 +1,6 @@
-//! A segment of a straight ray in terms of the height above the ground.
+//! [`RaySegment`]: a straight ray over flat or round ground.
 
-/// A segment of a straight ray over flat or round ground, described by its height alone.
+/// A segment of a straight ray over flat or round ground, described by its height.
 ///
 /// Over round ground the height after `s` metres is `height + sin_elevation s + (1 - sin_elevation^2) s^2 / (2 R)`: the
 /// sphere to second order, with an error below `s^3 sin_elevation / (2 R^2)` (8 m after 100 km at an elevation of 1 degree).
@@ -76,7 +76,7 @@ impl RaySegment {
         }
     }
 
-    /// Distance to the lowest point, m, where it lies between the ends.
+    /// Distance to the lowest point, m, if it lies between the ends.
     #[inline]
     pub fn dip_m(&self) -> Option<f64> {
         let dip = -0.5 * self.sin_elevation / self.curvature_per_m;
@@ -92,8 +92,8 @@ impl RaySegment {
         }
     }
 
-    /// Distances between which the segment is below `height_m`; equal where it never is. One interval is enough, as the
-    /// height along a ray is convex.
+    /// Interval of distances in which the segment is below `height_m`; empty (equal ends) if it never is. There is only one interval,
+    /// as the height along a ray is convex.
     #[inline]
     pub fn below(&self, height_m: f64) -> (f64, f64) {
         let nowhere = (0.0, 0.0);
@@ -128,7 +128,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_ray_over_round_ground_dips_and_rises() {
+    fn rays_over_round_ground_dip_and_rise() {
         let radius = 6.371e6;
         let ray = RaySegment::new(10.0, -1e-3, 50e3, radius);
         let (first, last) = ray.below(9.0);
@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn a_part_of_a_segment_and_its_lowest_point_lie_on_it() {
+    fn parts_and_lowest_points_lie_on_the_segment() {
         let ray = RaySegment::new(10.0, -1e-3, 50e3, 6.371e6);
         assert!((ray.dip_m().unwrap() / 6371.0 - 1.0).abs() < 1e-5);
         assert!((ray.lowest_height_m() - ray.height_at(6371.0)).abs() < 1e-6);

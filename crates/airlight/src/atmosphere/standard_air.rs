@@ -1,4 +1,4 @@
-//! Number density of the U.S. Standard Atmosphere, 1976 (NOAA-S/T 76-1562), by the standard's own formulas.
+//! Number density of the U.S. Standard Atmosphere, 1976 (NOAA-S/T 76-1562), computed by the formulas of the standard.
 
 #[cfg(test)]
 use crate::optics::rayleigh::BOLTZMANN_J_PER_K;
@@ -7,13 +7,13 @@ use crate::sun::RefractingAir;
 
 /// Effective radius of the Earth for geopotential altitude, m (table 2 of the standard).
 const GEOPOTENTIAL_RADIUS_M: f64 = 6_356_766.0;
-/// Sea-level gravity, m/s^2; molar mass of air, kg/mol; gas constant as the standard has it, J/(mol K).
+/// Sea-level gravity, m/s^2; molar mass of air, kg/mol; gas constant of the standard, J/(mol K).
 const GRAVITY: f64 = 9.806_65;
 const MOLAR_MASS: f64 = 0.028_964_4;
 const GAS_CONSTANT: f64 = 8.314_32;
 
-/// A layer in which temperature is linear in geopotential altitude: base (geopotential m), temperature there (K),
-/// lapse (K/m) and pressure at the base (Pa). Table 4 of the standard; the pressures follow from eqs. 33a and 33b.
+/// A layer in which temperature is linear in geopotential altitude: base (geopotential m), temperature at the base (K),
+/// lapse rate (K/m) and pressure at the base (Pa). Table 4 of the standard; pressures by eqs. 33a and 33b.
 struct Layer {
     base_m: f64,
     temperature_k: f64,
@@ -40,15 +40,15 @@ const fn layer(base_m: f64, temperature_k: f64, lapse_k_per_m: f64, pressure_pa:
     }
 }
 
-/// Where the layers end and molecular diffusion takes over, geometric m.
+/// Top of the layers, above which molecular diffusion dominates, geometric m.
 pub(super) const HOMOPAUSE_M: f64 = 86_000.0;
 /// Above 86 km the density falls as in table VIII of the standard between 86 km (1.447e20 m^-3) and 100 km
 /// (1.189e19 m^-3): scale height 14 km / ln(1.447e20 / 1.189e19).
 const UPPER_SCALE_HEIGHT_M: f64 = 5_602.6;
 
-/// Pressure (Pa) and temperature (K) at a geometric altitude, m, up to 86 km; below sea level the lowest layer goes on.
+/// Pressure (Pa) and temperature (K) at a geometric altitude (m) up to 86 km; the lowest layer extends below sea level.
 pub(super) fn pressure_and_temperature(altitude_m: f64) -> (f64, f64) {
-    // No planet reaches down 30 km; the bound keeps the power law's base positive.
+    // The lower bound keeps the base of the power law positive.
     let z = altitude_m.clamp(-30_000.0, HOMOPAUSE_M);
     let geopotential = GEOPOTENTIAL_RADIUS_M * z / (GEOPOTENTIAL_RADIUS_M + z);
     let index = LAYERS.partition_point(|l| l.base_m <= geopotential).max(1) - 1;
@@ -95,11 +95,11 @@ pub(super) fn kinks_m() -> impl Iterator<Item = f64> {
         .chain([HOMOPAUSE_M])
 }
 
-/// Altitude above which the density counts as 0 where a profile must end: 25 scale heights above the homopause, m.
+/// Altitude above which density is neglected where a profile must end, m: 25 scale heights above the homopause.
 pub(super) const END_M: f64 = HOMOPAUSE_M + 25.0 * UPPER_SCALE_HEIGHT_M;
 
-/// Intervals of altitude from 5 km below sea level to [`END_M`] in each of which the density is smooth and falls by less than
-/// a factor e, m.
+/// Intervals of altitude from 5 km below sea level to [`END_M`], m, in each of which the density is smooth and falls by
+/// less than a factor of e.
 pub(super) fn ramps_m() -> Vec<[f64; 2]> {
     const DEPTH_M: f64 = -5e3;
     const WIDEST_M: f64 = 3e3;
@@ -162,17 +162,17 @@ mod tests {
     }
 
     #[test]
-    fn only_the_tropopause_is_a_kink_worth_telling() {
+    fn only_the_tropopause_is_a_significant_kink() {
         for (i, z) in kinks_m().enumerate().skip(1) {
             let slope = |d: f64| (relative_density(z + d) / relative_density(z)).ln() / d;
             let change = (slope(1.0) / slope(-1.0) - 1.0).abs();
-            // Above 86 km less than 1e-5 of the air is left.
+            // Less than 1e-5 of the air lies above 86 km.
             assert_eq!(i == 1, change > 0.10 && z < 80e3, "{z} m: {change}");
         }
     }
 
     #[test]
-    fn layers_join_without_a_step() {
+    fn density_is_continuous_between_layers() {
         for z in kinks_m() {
             let (below, above) = (relative_density(z - 1e-3), relative_density(z + 1e-3));
             assert!((below / above - 1.0).abs() < 2e-6, "{z}: {below} {above}");

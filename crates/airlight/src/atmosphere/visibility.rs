@@ -1,17 +1,17 @@
-//! Visibility and extinction: how far one sees in air that is the same everywhere.
+//! Visibility and extinction in homogeneous air.
 //!
-//! Along a horizontal line the contrast of a black object against the horizon falls as `e^(-extinction * distance)`
-//! (Koschmieder 1924); visibility is the distance at which a stated contrast is left.
+//! The contrast of a black object against the horizon falls with distance as `e^(-extinction * distance)` (Koschmieder
+//! 1924). Visibility is the distance at which it reaches a threshold.
 
 use crate::names::named;
 
 /// Which contrast counts as the last that is seen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Contrast {
-    /// 5 %: the meteorological optical range (WMO-No. 8, chapter 9), which instruments and weather reports state.
+    /// 5 %: the meteorological optical range (WMO-No. 8, chapter 9), used by instruments and weather reports.
     #[default]
     FivePercent,
-    /// 2 %: Koschmieder's visual range, which much of the literature on haze means.
+    /// 2 %: Koschmieder's visual range, used in much of the literature on haze.
     TwoPercent,
 }
 
@@ -21,7 +21,7 @@ named! { Contrast, "a contrast", [
 ] }
 
 impl Contrast {
-    /// The contrast itself.
+    /// The threshold.
     pub fn value(self) -> f64 {
         match self {
             Self::FivePercent => 0.05,
@@ -29,18 +29,18 @@ impl Contrast {
         }
     }
 
-    /// Optical depth at which it is reached: 2.996 or 3.912.
+    /// Optical depth at which the threshold is reached: 2.996 or 3.912.
     pub fn optical_depth(self) -> f64 {
         -self.value().ln()
     }
 }
 
-/// The extinction (1/m) at which one sees `visibility_m` far.
+/// Extinction coefficient (1/m) of air with this visibility, m.
 pub fn extinction_per_m(visibility_m: f64, contrast: Contrast) -> f64 {
     contrast.optical_depth() / visibility_m
 }
 
-/// How far one sees (m) at an extinction (1/m).
+/// Visibility (m) of air with this extinction coefficient, 1/m.
 pub fn visibility_m(extinction_per_m: f64, contrast: Contrast) -> f64 {
     contrast.optical_depth() / extinction_per_m
 }
@@ -50,7 +50,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_left_at_the_visibility_is_the_contrast() {
+    fn transmittance_at_the_visibility_is_the_threshold() {
         for contrast in [Contrast::FivePercent, Contrast::TwoPercent] {
             let extinction = extinction_per_m(150.0, contrast);
             assert!(((-extinction * 150.0).exp() / contrast.value() - 1.0).abs() < 1e-14);

@@ -1,39 +1,38 @@
-//! Light scattered once into a ray, in closed form, and the functions of optical depth that all solvers of fog share.
+//! Closed forms of single scattering, and functions of optical depth that all fog solvers share.
 //!
-//! Let `t` be the optical depth from the eye and let light arrive at each point dimmed by the optical depth `d(t)` between the
-//! point and the top of the fog. Where the two are linear in each other, `d(t) = d_near + (slope) t`, a unit source
-//! contributes
+//! Let `t` be the optical depth from the eye, and let the light that arrives at each point be attenuated by the optical depth
+//! `d(t)` between the point and the top of the fog. If `d(t) = d_near + slope t` is linear, a unit source contributes
 //!
 //! ```text
 //! int_0^tau e^-(d(t) + t) dt = tau (e^-a - e^-b) / (b - a),    a = d_near,  b = d_far + tau
 //! ```
 //!
-//! the divided difference of `e^-x`, times the optical depth. Where density depends on height alone over flat ground they are
-//! linear in each other for every profile: `d` is the vertical optical depth over the sine of the sun's elevation, and `t`
-//! changes as the vertical optical depth over the sine of the ray's. For the exponential profile this is Ishiyama's integral
-//! (2018, eq. 20) with the sun's own dimming, and it needs no special case: neither for a level ray nor for one that rises as
-//! steeply as the sun (`a = b`).
+//! the divided difference of `e^-x` times the optical depth. Over flat ground `d` is linear in `t` for every density profile
+//! that depends on height only: `d` is the vertical optical depth divided by the sine of the sun's elevation, and `t` changes
+//! as the vertical optical depth divided by the sine of the ray's elevation. For the exponential profile this is Ishiyama's
+//! integral (2018, eq. 20) with attenuated sunlight. There are no special cases: level rays and rays that rise as steeply as
+//! the sun (`a = b`) are included.
 
 use crate::spectrum::Spectrum;
 use crate::transfer::PathOptics;
 use std::ops::{Add, Div, Mul, Sub};
 
-/// Numbers that the closed forms are evaluated on: `f64` or the lanes of a [`Spectrum`].
+/// Number type of the closed forms: `f64` or the lanes of a [`Spectrum`].
 pub(crate) trait Lanes:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
 {
     /// The same value in every lane.
     fn splat(value: f64) -> Self;
 
-    /// `e^-x`; 0 where x is beyond what the lane can hold (87 for f32).
+    /// `e^-x`; 0 where it underflows (`x > 87` for f32).
     fn exp_neg(self) -> Self;
 
-    /// `(1 - e^-x) / x` for `x >= 0`, 1 at 0: the transmittance averaged over the optical depths from 0 to `x`.
-    /// Relative error below 1e-15 in f64, 2e-7 in f32; `1 / x` for any large x.
+    /// `(1 - e^-x) / x` for `x >= 0`, 1 at 0: mean transmittance over optical depths from 0 to `x`. Relative error below
+    /// 1e-15 in f64, 2e-7 in f32, also for large `x`.
     fn mean_transmittance(self) -> Self;
 
-    /// `((1 - e^-x) / x - e^-x) / x` for `x >= 0`, 1/2 at 0: the mean of `e^-t t / x` over the optical depths from 0 to
-    /// `x`. Relative error below 1e-13 in f64, 1e-6 in f32.
+    /// `((1 - e^-x) / x - e^-x) / x` for `x >= 0`, 1/2 at 0: mean of `e^-t t / x` over optical depths from 0 to `x`.
+    /// Relative error below 1e-13 in f64, 1e-6 in f32.
     fn ramp_transmittance(self) -> Self;
 
     /// The smaller of each lane and 0.
@@ -99,7 +98,7 @@ impl<const N: usize> Lanes for Spectrum<N> {
 
     #[inline(always)]
     fn exp_neg(self) -> Self {
-        // The lanes' exponential stops at e^-87; what is dimmed more is dark.
+        // The exponential of lanes is clamped at e^-87.
         let e = self.map(|x| -x).exp();
         Self::from_fn(|i| if self[i] < 87.0 { e[i] } else { 0.0 })
     }
@@ -109,7 +108,7 @@ impl<const N: usize> Lanes for Spectrum<N> {
         let e = self.map(|x| -x).exp();
         Self::from_fn(|i| {
             let x = self[i];
-            // Taylor, to x^7 / 8!: both branches are computed, so that the loop has none.
+            // Taylor series to x^7 / 8!. Both branches are evaluated, so that the loop vectorizes.
             let series = 1.0
                 + x * (-1.0 / 2.0
                     + x * (1.0 / 6.0
@@ -148,25 +147,25 @@ impl<const N: usize> Lanes for Spectrum<N> {
     }
 }
 
-/// `int_0^along e^-(near + slope t) e^-t dt` with `growth = (1 + slope) along`, the growth of the whole exponent from the
-/// near to the far end: the contribution of a unit source. Relative error of rounding only; any argument may be huge (up to
-/// 1e30); `near`, `along` and `near + growth` must not be negative.
+/// `int_0^along e^-(near + slope t) e^-t dt`, the contribution of a unit source; `growth = (1 + slope) along` is the increase
+/// of the exponent from the near to the far end. Exact to rounding, for arguments up to 1e30; `near`, `along` and
+/// `near + growth` must not be negative.
 #[inline(always)]
-pub(crate) fn dimmed_source<L: Lanes>(near: L, growth: L, along: L) -> L {
-    along * mean_dimmed_source(near, growth)
+pub(crate) fn attenuated_source<L: Lanes>(near: L, growth: L, along: L) -> L {
+    along * mean_attenuated_source(near, growth)
 }
 
-/// [`dimmed_source`] for each unit of optical depth: the mean of `e^-(d + t)` along the ray.
+/// [`attenuated_source`] per unit of optical depth: mean of `e^-(d + t)` along the ray.
 #[inline(always)]
-pub(crate) fn mean_dimmed_source<L: Lanes>(near: L, growth: L) -> L {
+pub(crate) fn mean_attenuated_source<L: Lanes>(near: L, growth: L) -> L {
     (near + growth.min_zero()).exp_neg() * growth.abs().mean_transmittance()
 }
 
-/// Constant source: `S = (1 - T) J` for the source function `J`, the radiance that each unit of optical depth scatters towards
-/// the eye. Exact where `J` is the same all along the ray, as in exponential fog lit uniformly.
+/// Path optics of a constant source function `J` (radiance scattered towards the eye per unit of optical depth):
+/// `S = (1 - T) J`. Exact if `J` is constant along the ray, as in uniformly lit exponential fog.
 ///
-/// With the mean of `J` over optical depth it is the split sum, the mean of a product as the product of the means: exact to
-/// first order in thin fog. In thick fog it neglects that the far part is dimmed more than the near part
+/// With the mean of `J` over optical depth it is the split sum, which replaces the mean of a product by the product of the
+/// means: exact to first order in thin fog. In thick fog it neglects that the far part is attenuated more than the near part
 /// ([`split_sum_error`]).
 pub(crate) fn constant_source<const N: usize>(
     optical_depth: Spectrum<N>,
@@ -178,18 +177,18 @@ pub(crate) fn constant_source<const N: usize>(
     }
 }
 
-/// The two weights of a source that changes linearly with optical depth from the near end to the far end of a segment, for
-/// each unit of its optical depth: `1/tau int_0^tau e^-t (near (1 - t/tau) + far t/tau) dt = w_near near + w_far far`.
+/// Weights of the near and the far end of a segment for a source that is linear in optical depth, per unit of optical depth:
+/// `1/tau int_0^tau e^-t (near (1 - t/tau) + far t/tau) dt = w_near near + w_far far`.
 #[inline(always)]
 pub(crate) fn linear_source_mean<L: Lanes>(along: L) -> (L, L) {
     let far = along.ramp_transmittance();
     (along.mean_transmittance() - far, far)
 }
 
-/// Relative error of the split sum for a source that falls as `e^-(k t)` with optical depth `t` from the eye (rises for
-/// `k < 0`): the closed form of `split sum / exact - 1`, over a ray of optical depth `tau`.
+/// Relative error `split sum / exact - 1` over a ray of optical depth `tau`, for a source `e^-(k t)` at optical depth `t` from
+/// the eye. Closed form.
 ///
-/// For small `tau` it is `-k tau^2 / 12`, so the split sum is good to 1 % where `|k| tau^2 < 0.12`.
+/// For small `tau` it is `-k tau^2 / 12`, so the error of the split sum is below 1 % if `|k| tau^2 < 0.12`.
 pub fn split_sum_error(tau: f64, k: f64) -> f64 {
     // (1 - e^-x) / x for either sign of x.
     let mean = |x: f64| {
@@ -221,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn sunlight_scattered_once_matches_quadrature() {
+    fn attenuated_sources_match_quadrature() {
         for tau in [1e-9, 1e-4, 0.1, 1.0, 7.0, 40.0] {
             for near in [0.0, 1e-6, 0.3, 5.0, 30.0] {
                 for slope in [
@@ -240,14 +239,15 @@ mod tests {
                     }
                     let exact = weighted(tau, |t| (-(near + slope * t) - t).exp());
                     let growth = (1.0 + slope) * tau;
-                    let got = dimmed_source(near, growth, tau);
+                    let got = attenuated_source(near, growth, tau);
                     assert!(
                         (got / exact - 1.0).abs() < 1e-9,
                         "{tau} {near} {slope}: {got} {exact}"
                     );
                     let lane = Spectrum::<4>::splat;
                     let lane =
-                        dimmed_source(lane(near as f32), lane(growth as f32), lane(tau as f32))[1];
+                        attenuated_source(lane(near as f32), lane(growth as f32), lane(tau as f32))
+                            [1];
                     assert!(
                         (f64::from(lane) / exact - 1.0).abs() < 1e-5,
                         "f32: {tau} {near} {slope}: {lane} {exact}"
@@ -258,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn a_source_that_changes_linearly_matches_quadrature() {
+    fn linear_sources_match_quadrature() {
         for tau in [1e-9, 1e-4, 1e-2, 0.3, 1.0, 7.0, 40.0] {
             let exact = weighted(tau, |t| (-t).exp() * t / tau);
             let opaque = weighted(tau, |t| (-t).exp());
@@ -274,23 +274,26 @@ mod tests {
 
     #[test]
     fn opaque_fog_is_finite() {
-        assert!((dimmed_source(0.0, 1e30, 1e30) - 1.0).abs() < 1e-12);
-        assert!((dimmed_source(0.0, 0.5e30, 1e30) - 2.0).abs() < 1e-12);
+        assert!((attenuated_source(0.0, 1e30, 1e30) - 1.0).abs() < 1e-12);
+        assert!((attenuated_source(0.0, 0.5e30, 1e30) - 2.0).abs() < 1e-12);
         let lane = Spectrum::<2>::splat;
-        assert!((dimmed_source(lane(0.0), lane(1e30), lane(1e30))[0] - 1.0).abs() < 1e-6);
-        assert_eq!(dimmed_source(lane(1e30), lane(1e30), lane(1e30))[0], 0.0);
+        assert!((attenuated_source(lane(0.0), lane(1e30), lane(1e30))[0] - 1.0).abs() < 1e-6);
+        assert_eq!(
+            attenuated_source(lane(1e30), lane(1e30), lane(1e30))[0],
+            0.0
+        );
         let opaque = constant_source(lane(1e30), Spectrum::ONE).path_radiance;
         assert!((opaque[0] - 1.0).abs() < 1e-6);
     }
 
     #[test]
-    fn the_mean_transmittance_holds_from_clear_to_opaque() {
+    fn the_mean_transmittance_is_exact_from_clear_to_opaque() {
         let mut x = 1e-12f64;
         while x < 1e30 {
-            // exp_m1 is exact to an ulp; the f32 lane is given the x it can hold.
+            // exp_m1 is exact to an ulp. Round x to f32 first.
             let lane = x as f32;
-            let held = f64::from(lane);
-            let exact = -(-held).exp_m1() / held;
+            let rounded = f64::from(lane);
+            let exact = -(-rounded).exp_m1() / rounded;
             let got = f64::from(Spectrum([lane; 4]).mean_transmittance()[3]);
             assert!(
                 (got / exact - 1.0).abs() < 4e-7,
@@ -319,7 +322,7 @@ mod tests {
     }
 
     #[test]
-    fn the_error_of_the_split_sum_is_what_quadrature_says() {
+    fn the_error_of_the_split_sum_matches_quadrature() {
         let rule = GaussRule::new(40);
         for (tau, k) in [(0.1, 1.0), (0.5, -1.0), (2.0, 0.5), (3.0, -0.3), (1.0, 5.0)] {
             let exact = rule.integrate(0.0, tau, |t| (-(1.0 + k) * t).exp());
@@ -327,7 +330,7 @@ mod tests {
             let split = (1.0 - (-tau).exp()) * mean;
             assert!((split_sum_error(tau, k) - (split / exact - 1.0)).abs() < 1e-12);
         }
-        // The rule of thumb, on both sides of the 1 % line.
+        // The rule for 1 %.
         for k in [-0.9, -0.2, 0.2, 0.9] {
             let tau = (0.12 / f64::abs(k)).sqrt();
             assert!(

@@ -1,20 +1,20 @@
-//! Why numbers do not make a fog.
+//! [`FogError`] and the checks of fog inputs.
 
 use super::values::Values;
 use crate::atmosphere::DensityError;
 use crate::optics::PhaseError;
 use glam::DVec3;
 
-/// Why numbers do not make a fog.
+/// Why a fog or its lights are invalid.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FogError {
-    /// Extinction below 0 or not finite.
+    /// An extinction that is negative or not finite.
     #[error(
         "extinction (1/m): expected finite numbers not below 0, got {got_per_m} in channel {channel}"
     )]
     Extinction {
-        /// Which wavelength or colour, counted from 0.
+        /// Index of the wavelength or colour channel.
         channel: usize,
         /// Its value, 1/m.
         got_per_m: f64,
@@ -24,47 +24,47 @@ pub enum FogError {
         "single-scattering albedo: expected numbers from 0 to 1, got {got} in channel {channel}"
     )]
     Albedo {
-        /// Which wavelength or colour, counted from 0.
+        /// Index of the wavelength or colour channel.
         channel: usize,
         /// Its value.
         got: f64,
     },
-    /// Light that is negative or not finite.
+    /// A radiance, irradiance or intensity that is negative or not finite.
     #[error("{what}: expected finite numbers not below 0, got {got}")]
     Light {
-        /// Which light.
+        /// The quantity.
         what: &'static str,
-        /// The first such value.
+        /// The first invalid value.
         got: f64,
     },
-    /// A number outside its domain.
+    /// A number out of range.
     #[error("{what}: expected {expected}, got {got}")]
     Number {
-        /// Which number, with its unit.
+        /// The quantity, with its unit.
         what: &'static str,
         /// Its value.
         got: f64,
-        /// What it must be, and what to try.
+        /// The range allowed, and what to try.
         expected: &'static str,
     },
-    /// A form of the light of light sources does not hold for these lights or layers.
+    /// Lights or layers for which a [`LightForm`](super::lights::LightForm) is not valid.
     #[error(
-        "form of light: expected point lights in one layer of uniform fog that scatters equally in all directions, got {got}; \
+        "light form: expected point lights in one layer of uniform, isotropically scattering fog, got {got}; \
          try the exact form"
     )]
     LightForm {
-        /// What it does not hold for.
+        /// The light or layer for which it is not valid.
         got: &'static str,
     },
-    /// The phase function is refused.
+    /// An invalid phase function.
     #[error(transparent)]
     Phase(#[from] PhaseError),
-    /// The density profile is refused.
+    /// An invalid density profile.
     #[error(transparent)]
     Density(#[from] DensityError),
 }
 
-/// Light must be finite and not below 0 at all wavelengths.
+/// Checks that all values are finite and not negative.
 pub(super) fn check_light(
     what: &'static str,
     light: &(impl Values + ?Sized),
@@ -75,7 +75,7 @@ pub(super) fn check_light(
     }
 }
 
-/// A position must be finite.
+/// Checks that a position is finite.
 pub(super) fn check_position(position: DVec3) -> Result<(), FogError> {
     match position.to_array().into_iter().find(|c| !c.is_finite()) {
         None => Ok(()),
@@ -87,7 +87,7 @@ pub(super) fn check_position(position: DVec3) -> Result<(), FogError> {
     }
 }
 
-/// A radius must be above 0.
+/// Checks that a radius is positive and finite.
 pub(super) fn check_radius(radius_m: f64) -> Result<(), FogError> {
     match radius_m > 0.0 && radius_m.is_finite() {
         true => Ok(()),

@@ -1,4 +1,4 @@
-//! Fog in N lanes: layers lit by sun and sky, and their effect on light along any ray.
+//! Fog in N lanes: transmittance and path radiance along rays.
 
 use super::closed_forms::Lanes;
 use super::error::FogError;
@@ -14,29 +14,28 @@ use glam::DVec3;
 
 /// Fog in N lanes: wavelengths, or red, green and blue. Queries allocate nothing.
 ///
-/// Layers of the same density profile are merged. Over flat ground a fog of one profile is solved in closed form:
-/// transmittance (Ishiyama 2018, eqs. 14 and 23), ambient light (eq. 21) and sunlight dimmed on its own way through the fog
-/// ([`super::closed_forms`]), to the rounding of f32. With several profiles, or over round ground, a ray is cut at
-/// heights, and the same closed forms hold between them. With [`FogScattering::Multiple`] the diffuse light inside is solved
-/// for when the fog is built, and added.
+/// Layers with the same density profile are merged. Fog of one profile over flat ground has closed forms: transmittance
+/// (Ishiyama 2018, eqs. 14 and 23), ambient light (eq. 21) and attenuated sunlight ([`super::closed_forms`]), exact to the
+/// rounding of f32. With several profiles, or over round ground, rays are split at heights, and the closed forms are used for
+/// each part. With [`FogScattering::Multiple`] the diffuse light is solved for when the fog is built, and added.
 #[derive(Clone, Debug)]
 pub(crate) struct FogLanes<const N: usize> {
     pub(super) layers: Vec<MergedLayer<N>>,
     pub(super) ground: Ground,
     pub(super) lighting: FogLighting<Spectrum<N>>,
     scattering: FogScattering,
-    /// Heights at which rays through several layers are cut, rising, m.
+    /// Heights at which rays are split, in increasing order, m.
     breakpoints_m: Vec<f64>,
     /// Diffuse light; `None` for single scattering, and for fog without an upper end.
     pub(super) field: Option<Field<N>>,
 }
 
 impl<const N: usize> FogLanes<N> {
-    /// Validates layers and light, and solves for the diffuse light. `lanes` of the N are in use; those beyond repeat the last
-    /// of them.
+    /// Validates the inputs and solves for the diffuse light. The first `lanes` of the N are used; the others repeat the last of
+    /// them.
     ///
     /// # Errors
-    /// [`FogError`] for the first number outside its domain.
+    /// [`FogError`] for the first value out of range.
     pub fn new(
         layers: &[LayerLanes<N>],
         ground: Ground,
@@ -62,7 +61,7 @@ impl<const N: usize> FogLanes<N> {
         Ok(fog)
     }
 
-    /// The diffuse light inside.
+    /// Solves for the diffuse light.
     fn solve(&self, lanes: usize) -> Option<Field<N>> {
         let reduced: Vec<_> = self
             .layers
@@ -84,31 +83,31 @@ impl<const N: usize> FogLanes<N> {
         ))
     }
 
-    /// The light on it.
+    /// Lighting of the fog.
     pub fn lighting(&self) -> &FogLighting<Spectrum<N>> {
         &self.lighting
     }
 
-    /// The ground under it.
+    /// The ground below the fog.
     pub fn ground(&self) -> &Ground {
         &self.ground
     }
 
-    /// Irradiance of sun and sky on the horizontal ground under the fog, all orders of scattering; `None` unless these are
-    /// solved for.
+    /// Irradiance on the horizontal ground below the fog, with all orders of scattering; `None` without
+    /// [`FogScattering::Multiple`].
     pub fn ground_irradiance(&self) -> Option<Spectrum<N>> {
         self.field.as_ref().map(|field| field.ground_irradiance)
     }
 
-    /// Extinction at a height, 1/m.
+    /// Extinction coefficient at a height, 1/m.
     pub fn extinction_per_m(&self, height_m: f64) -> Spectrum<N> {
         self.layers.iter().fold(Spectrum::ZERO, |sum, layer| {
             sum.scale_acc(layer.extinction_per_m, layer.density.at(height_m) as f32)
         })
     }
 
-    /// Transmittance and path radiance between an eye (m above the zero of heights) and a point `distance_m` away (infinite:
-    /// the sky) along the unit vector `direction`.
+    /// Transmittance and path radiance between an eye at a height (m) and a point `distance_m` away (infinite for the sky) along
+    /// the unit vector `direction`.
     #[inline]
     pub fn path(&self, eye_height_m: f64, direction: DVec3, distance_m: f64) -> PathOptics<N> {
         let ray = RaySegment::new(eye_height_m, direction.y, distance_m, self.ground.radius_m);
@@ -124,13 +123,13 @@ impl<const N: usize> FogLanes<N> {
         }
     }
 
-    /// Transmittance along a ray: in closed form for all layers, over flat and round ground.
+    /// Transmittance along a ray. Exact for all layers, over flat and round ground.
     #[inline]
     pub fn transmittance(&self, ray: &RaySegment) -> Spectrum<N> {
         self.optical_depth(ray).exp_neg()
     }
 
-    /// Optical depth along a ray, at most [`OPAQUE`] for each layer.
+    /// Optical depth along a ray; columns are at most [`OPAQUE`].
     #[inline]
     pub fn optical_depth(&self, ray: &RaySegment) -> Spectrum<N> {
         self.depth_of(ray, &|layer| layer.extinction_per_m)
@@ -148,12 +147,13 @@ impl<const N: usize> FogLanes<N> {
         })
     }
 
-    /// Transmittance and path radiance along a ray; `cos_sun` is the cosine of the angle between its direction and the sun's.
+    /// Transmittance and path radiance along a ray; `cos_sun` is the cosine of the angle between the ray and the direction to the
+    /// sun.
     ///
-    /// The transmittance is exact. Error of the path radiance against exact single scattering: rounding (below 1e-5) for one
-    /// profile over flat ground; below 0.2 % for several profiles; over round ground below 1 % (rays up to 100 km, a sun
-    /// at least 0.5 degrees high; 0.02 % up to 10 km). Measured over scale heights from 10 m to 8 km and rays from level to
-    /// vertical (test `several_profiles_and_round_ground_err_as_stated`).
+    /// The transmittance is exact. Errors of the path radiance compared with exact single scattering: rounding (below 1e-5) for
+    /// one profile over flat ground; below 0.2 % for several profiles; over round ground below 1 % (rays up to 100 km, sun at
+    /// least 0.5 degrees above the horizon; 0.02 % up to 10 km). Measured for scale heights from 10 m to 8 km and rays from level
+    /// to vertical (test `errors_of_several_profiles_and_round_ground`).
     #[inline]
     pub fn path_along(&self, ray: &RaySegment, cos_sun: f64) -> PathOptics<N> {
         if self.layers.is_empty() {
@@ -183,7 +183,7 @@ impl<const N: usize> FogLanes<N> {
         }
     }
 
-    /// Sunlight scattered once, dimmed by an extinction of each layer, with a strength of each layer towards the eye.
+    /// Single scattering with an extinction coefficient and a scattering towards the eye for each layer.
     #[inline]
     pub(super) fn single_scattering<'a, X, S>(
         &'a self,
@@ -199,19 +199,18 @@ impl<const N: usize> FogLanes<N> {
             breakpoints_m: &self.breakpoints_m,
             ground: &self.ground,
             sin_sun: self.lighting.sun.map(|sun| sun.direction.y),
-            dimmed: self.scattering != FogScattering::Undimmed,
+            attenuated: self.scattering != FogScattering::Undimmed,
             extinction,
             towards_eye,
         }
     }
 
-    /// Path radiance of light scattered any number of times.
+    /// Path radiance of all orders of scattering.
     ///
-    /// Inside, light that the forward peak scatters counts as not scattered: the radiance `I` that arrives from the edge of
-    /// the fog is dimmed by less than the whole extinction, and contains the light that the peak scatters into the ray. The
-    /// path radiance of a segment is `I` without the light that arrives unscattered from the segment's far end,
-    /// `S = I(near) - T I(far)`, which composes at any cut, and is `(1 - T) I` where light is the same everywhere. It is
-    /// summed from terms that do not cancel.
+    /// The solver treats light scattered by the forward peak as unscattered: the radiance `I` from the edge of the fog is
+    /// attenuated by a reduced extinction, and includes light that the peak scatters into the ray. The path radiance of a segment
+    /// is `I` minus the light that arrives unscattered from its far end, `S = I(near) - T I(far)`. This composes exactly when a
+    /// segment is split, and is `(1 - T) I` in uniform light. It is summed from terms that do not cancel.
     fn multiple_scattering(
         &self,
         field: &Field<N>,
@@ -222,7 +221,7 @@ impl<const N: usize> FogLanes<N> {
         let towards = Towards::new(self, ray.sin_elevation, cos_sun);
         let near = self.part(field, ray, &towards);
         let path = near.smooth + near.peaked;
-        // Light that passes through because the peak counts as not scattered.
+        // Light from beyond the far end that the peak scatters into the ray.
         let through = |reduced: Spectrum<N>| {
             let rest = (depth - reduced).map(|d| if d > 0.0 { d } else { 0.0 });
             reduced.exp_neg() * rest * rest.mean_transmittance()
@@ -258,7 +257,7 @@ impl<const N: usize> FogLanes<N> {
         }
     }
 
-    /// The light scattered into a ray, by the extinction that dims it.
+    /// Light scattered into a ray, by kind of extinction.
     fn part(&self, field: &Field<N>, ray: &RaySegment, towards: &Towards) -> Part<N> {
         let cos_sun = towards.cos_sun;
         let uniform_scattering = |s: &MergedLayer<N>| match s.density.is_uniform() {
@@ -272,7 +271,7 @@ impl<const N: usize> FogLanes<N> {
         let mut smooth = field.scattered(ray, &towards.weights, uniform_extinction);
         let smooth_depth = self.depth_of(ray, &reduced);
         let (mut peaked, mut peaked_depth) = (Spectrum::ZERO, smooth_depth);
-        // In the peak the residual is dimmed by its own extinction; elsewhere the whole phase function by one.
+        // Inside the peak the residual has its own extinction; outside, the whole phase function has one.
         let in_peak = towards.in_peak;
         let (sunlit, uniform) = self
             .single_scattering(reduced, |s| match in_peak {
@@ -299,8 +298,8 @@ impl<const N: usize> FogLanes<N> {
     }
 }
 
-/// Light scattered into a ray, dimmed by the extinction without the peak and by the extinction of the residual; and both
-/// optical depths.
+/// Light scattered into a ray, attenuated by the extinction without the peak and by that of the residual, with both optical
+/// depths.
 struct Part<const N: usize> {
     smooth: Spectrum<N>,
     peaked: Spectrum<N>,
@@ -308,7 +307,7 @@ struct Part<const N: usize> {
     peaked_depth: Spectrum<N>,
 }
 
-/// A direction in the terms of the field.
+/// A view direction, prepared for the field.
 struct Towards {
     cos_sun: f64,
     weights: DirectionWeights,

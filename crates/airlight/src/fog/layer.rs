@@ -1,4 +1,4 @@
-//! Layers of fog: constituents of the air at the wavelengths of N lanes, or in red, green and blue; merged by density profile.
+//! Layers of fog: constituents in RGB and at the wavelengths of N lanes, merged by density profile.
 
 use super::error::FogError;
 use super::lighting::FogScattering;
@@ -18,24 +18,24 @@ type Peak = ForwardPeak<STREAMS>;
 /// A layer of fog in red, green and blue.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RgbLayer {
-    /// Density against height.
+    /// Relative density by height.
     pub density: DensityProfile,
     /// Extinction coefficient at density 1, 1/m.
     pub extinction_per_m: [f32; 3],
-    /// Scattering over extinction, 0 to 1.
+    /// Ratio of scattering to extinction, 0 to 1.
     pub single_scattering_albedo: [f32; 3],
     /// Phase function; one that depends on wavelength is evaluated at [`DOMINANT_NM`].
     pub phase: PhaseFunction,
 }
 
 impl RgbLayer {
-    /// A constituent in a linear RGB space under sunlight: each channel is the mean over the wavelengths of
-    /// [`WavelengthGrid::standard`], weighted as the channel weighs sunlight; tabulated phase functions by the scattered light,
-    /// too. For white sunlight scattered once that is the spectral result, where three single wavelengths would make bows
-    /// and glories too saturated.
+    /// A constituent in a linear RGB space, under sunlight. Each channel is the mean over the wavelengths of
+    /// [`WavelengthGrid::standard`], weighted by sunlight and the channel's sensitivity; tabulated phase functions are also
+    /// weighted by scattering. For single scattering of white sunlight the result equals that of a spectral computation,
+    /// while three single wavelengths would make fogbows and glories too saturated.
     ///
     /// # Errors
-    /// [`PhaseError`] where the mean of a tabulated phase function is not one.
+    /// [`PhaseError`] if the mean of a tabulated phase function is invalid.
     pub fn from_constituent(layer: &Constituent, space: RgbSpace) -> Result<Self, PhaseError> {
         let grid = WavelengthGrid::standard();
         let nm = grid.wavelengths_nm();
@@ -67,17 +67,17 @@ impl RgbLayer {
         })
     }
 
-    /// Checks every number.
+    /// Checks all values.
     ///
     /// # Errors
-    /// [`FogError`] for the first outside its domain.
+    /// [`FogError`] for the first value out of range.
     pub fn validate(&self) -> Result<(), FogError> {
         self.density.validate()?;
         LayerLanes::<3>::rgb(self).validate()
     }
 }
 
-/// The part of each wavelength in the red, green and blue of sunlight.
+/// Share of each wavelength in the red, green and blue of sunlight.
 fn channel_weights(grid: &WavelengthGrid, space: RgbSpace) -> [Vec<f64>; 3] {
     let from_xyz = space.from_xyz_matrix();
     let sunlight: Vec<[f64; 3]> = grid
@@ -92,10 +92,10 @@ fn channel_weights(grid: &WavelengthGrid, space: RgbSpace) -> [Vec<f64>; 3] {
     })
 }
 
-/// Means of a phase function over wavelengths (nm) by channel.
+/// Means of a phase function over wavelengths (nm), by channel.
 ///
-/// The weights of a channel are negative where its primary lies inside the spectral locus; phase functions vary far too
-/// little with wavelength to make such a mean negative, and are held at a thousandth of the plain mean.
+/// The weights of a channel are negative at some wavelengths, as its primary lies inside the spectral locus. Phase functions
+/// vary too little with wavelength for a mean to become negative; it is bounded by a thousandth of the unweighted mean.
 fn in_channels(
     table: &TabulatedPhase,
     wavelengths_nm: &[f64],
@@ -112,7 +112,7 @@ fn in_channels(
         })
         .collect();
     let mut values = Vec::new();
-    // Tables are in the order of rising wavelength: blue first.
+    // Tables are in the order of increasing wavelength: blue first.
     for weights in weights.iter().rev() {
         let whole: f64 = weights.iter().zip(scattering).map(|(w, s)| w * s).sum();
         for phase in &by_angle {
@@ -130,7 +130,7 @@ fn in_channels(
     TabulatedPhase::new(angles_deg, vec![blue, green, red], values)
 }
 
-/// A layer at the wavelengths of N lanes.
+/// A constituent at the wavelengths of N lanes.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct LayerLanes<const N: usize> {
     pub density: DensityProfile,
@@ -144,7 +144,7 @@ pub(crate) struct LayerLanes<const N: usize> {
 }
 
 impl<const N: usize> LayerLanes<N> {
-    /// A layer in red, green and blue; lanes beyond repeat the last.
+    /// A layer in red, green and blue; further lanes repeat the last.
     pub fn rgb(layer: &RgbLayer) -> Self {
         let lanes = |rgb: &[f32; 3]| Spectrum::from_fn(|lane| rgb[lane.min(2)]);
         let extinction = lanes(&layer.extinction_per_m);
@@ -170,7 +170,7 @@ impl<const N: usize> LayerLanes<N> {
         }
     }
 
-    /// Checks every number.
+    /// Checks all values.
     pub fn validate(&self) -> Result<(), FogError> {
         for channel in 0..N {
             let extinction = f64::from(self.extinction_per_m[channel]);
@@ -180,7 +180,7 @@ impl<const N: usize> LayerLanes<N> {
                     got_per_m: extinction,
                 });
             }
-            // Half a unit in the last place of either may be rounding.
+            // Allow for rounding of both.
             let scattering = f64::from(self.scattering_per_m[channel]);
             if !(scattering >= 0.0 && scattering <= extinction * (1.0 + 1e-6)) {
                 return Err(FogError::Albedo {
@@ -193,7 +193,7 @@ impl<const N: usize> LayerLanes<N> {
         Ok(self.phase.validate()?)
     }
 
-    /// The phase function at a cosine of the scattering angle in every lane, 1/sr.
+    /// Phase function of all lanes at a cosine of the scattering angle, 1/sr.
     #[inline]
     pub fn phase_lanes(&self, cos_angle: f64) -> Spectrum<N> {
         match &self.phase {
@@ -209,7 +209,7 @@ impl<const N: usize> LayerLanes<N> {
         }
     }
 
-    /// The layers that this one is the sum of: one for each term of its density.
+    /// Layers whose sum is this one: one for each term of its density.
     pub fn terms(&self) -> Vec<Self> {
         let term = |(factor, density): (f64, &DensityProfile)| Self {
             density: density.clone(),
@@ -236,14 +236,14 @@ pub(super) struct MergedLayer<const N: usize> {
 #[derive(Clone, Debug)]
 struct Part<const N: usize> {
     layer: LayerLanes<N>,
-    /// Its phase function without the forward peak: one for all lanes, one for each, or none where the peak is kept.
+    /// Forward peak of the phase function: one for all lanes, one for each lane, or none if the peak is not split off.
     peaks: Vec<Peak>,
 }
 
 /// Validates layers and merges those of one density profile.
 ///
 /// # Errors
-/// [`FogError`] for the first number outside its domain.
+/// [`FogError`] for the first value out of range.
 pub(super) fn merge_layers<const N: usize>(
     layers: &[LayerLanes<N>],
     scattering: FogScattering,
@@ -283,13 +283,13 @@ pub(super) fn merge_layers<const N: usize>(
 }
 
 impl<const N: usize> MergedLayer<N> {
-    /// `sum over j of sigma_s,j p_j`: sunlight scattered towards the eye, 1/(m sr).
+    /// Scattering coefficient times phase function towards the eye, summed over constituents, 1/(m sr).
     #[inline]
     pub fn towards_eye(&self, cos_sun: f64) -> Spectrum<N> {
         self.sum(|part| part.layer.phase_lanes(cos_sun))
     }
 
-    /// The part of [`MergedLayer::towards_eye`] that the solver's moments hold; all of it where peaks are kept.
+    /// Part of [`MergedLayer::towards_eye`] in the moments of the solver; all of it if peaks are not split off.
     pub fn smooth_towards_eye(&self, cos_sun: f64) -> Spectrum<N> {
         self.sum(|part| match &part.peaks[..] {
             [] => part.layer.phase_lanes(cos_sun),
@@ -297,7 +297,7 @@ impl<const N: usize> MergedLayer<N> {
         })
     }
 
-    /// Extinction of light that the residual of the peak scatters, 1/m.
+    /// Extinction coefficient of light scattered by the residual of the peak, 1/m.
     #[inline]
     pub fn residual_extinction(&self, cos_sun: f64) -> Spectrum<N> {
         let fraction =
@@ -305,14 +305,14 @@ impl<const N: usize> MergedLayer<N> {
         self.extinction_per_m - self.sum(fraction)
     }
 
-    /// Whether the residual matters at an angle to the sun.
+    /// Whether an angle to the sun lies in the forward peak.
     #[inline]
     pub fn in_peak(&self, cos_sun: f64) -> bool {
         let mut peaks = self.parts.iter().flat_map(|part| &part.peaks);
         peaks.any(|peak| peak.in_lobe(cos_sun))
     }
 
-    /// Input of the solver; `None` for a fog without an upper end.
+    /// Input of the solver; `None` for uniform density, which has no upper end.
     pub fn reduced(&self) -> Option<Reduced<N>> {
         (!self.density.is_uniform()).then(|| Reduced {
             density: self.density.clone(),
@@ -323,7 +323,7 @@ impl<const N: usize> MergedLayer<N> {
         })
     }
 
-    /// The sum over all constituents of scattering times a factor.
+    /// Sum over constituents of scattering coefficient times a factor.
     #[inline]
     fn sum(&self, factor: impl Fn(&Part<N>) -> Spectrum<N>) -> Spectrum<N> {
         self.parts.iter().fold(Spectrum::ZERO, |sum, part| {
@@ -332,7 +332,7 @@ impl<const N: usize> MergedLayer<N> {
     }
 }
 
-/// A value of each lane's peak: 0 where none is kept.
+/// A value for each lane from its peak; 0 without peaks.
 #[inline]
 fn by_lane<const N: usize>(peaks: &[Peak], of: impl Fn(&Peak) -> f32) -> Spectrum<N> {
     match peaks {
@@ -348,9 +348,9 @@ mod tests {
     use crate::atmosphere::droplets::DropletKind;
     use crate::optics::mie::droplets::Drops;
 
-    /// Mist, whose table is quick to compute: visibility is meant at 550 nm, and RGB is the mean over the wavelengths.
+    /// Extinction is given at 550 nm, and RGB is the mean over wavelengths. Mist, as its table is fast to compute.
     #[test]
-    fn published_drops_are_means_over_wavelengths() {
+    fn rgb_of_published_droplets_is_a_mean_over_wavelengths() {
         let mist = |wavelengths_nm: &[f64]| {
             let slab = DensityProfile::slab(100.0);
             Constituent::fog(0.01, DropletKind::from(Drops::HazeH), slab, wavelengths_nm).unwrap()
@@ -371,7 +371,7 @@ mod tests {
         let [red, green, blue] = rgb.extinction_per_m;
         assert!(red < green && green < blue, "{red} {green} {blue}");
         assert!((green / 0.01 - 1.0).abs() < 0.02, "{green}");
-        // Red and blue lie within the range of the wavelengths of their bands.
+        // Red and blue lie between the values at the ends of their bands.
         let at = |nm: f64, mu: f64| mist(&[nm]).phase.evaluate(mu, nm);
         for mu in [-1.0, -0.5, 0.5, 0.99] {
             let p = LayerLanes::<3>::rgb(&rgb).phase_lanes(mu);
@@ -390,7 +390,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_outside_their_domain_are_refused() {
+    fn invalid_layers_are_rejected() {
         let good = RgbLayer {
             density: DensityProfile::slab(50.0),
             extinction_per_m: [0.01; 3],

@@ -1,7 +1,7 @@
-//! Fog factors of older graphics hardware: of one colour, and not physical.
+//! Fog factors of older graphics hardware: one colour, not physical.
 //!
-//! They do not compose: two segments in a row are not the segment that they make up, as no medium attenuates like this. They
-//! are for comparison with pictures and games that were made with them.
+//! They do not compose: the optics of two consecutive segments are not those of the combined segment, as no medium attenuates
+//! like this. They are for comparison with existing pictures and games.
 
 use crate::transfer::RgbPathOptics;
 
@@ -10,14 +10,14 @@ pub fn exponential_squared(density_per_m: f64, distance_m: f64, colour: [f32; 3]
     blend((-(density_per_m * distance_m).powi(2)).exp(), colour)
 }
 
-/// The density (1/m) of exponential-squared fog that leaves a contrast at a visibility.
+/// Density (1/m) of exponential-squared fog with this visibility, defined by a contrast threshold.
 pub fn exponential_squared_density_per_m(visibility_m: f64, contrast: f64) -> f64 {
     (-contrast.ln()).sqrt() / visibility_m
 }
 
 /// Linear fog: clear up to `start_m`, opaque from `end_m`.
 pub fn linear(start_m: f64, end_m: f64, distance_m: f64, colour: [f32; 3]) -> RgbPathOptics {
-    // Where both ends coincide the fog is a step.
+    // A step if both ends coincide.
     let part = if end_m > start_m {
         ((end_m - distance_m) / (end_m - start_m)).clamp(0.0, 1.0)
     } else {
@@ -38,7 +38,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_factors_run_from_clear_to_the_fog_colour() {
+    fn factors_range_from_clear_to_the_fog_colour() {
         let colour = [0.5, 0.6, 0.7];
         for fog in [
             |d| exponential_squared(0.01, d, [0.5, 0.6, 0.7]),

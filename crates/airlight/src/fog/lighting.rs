@@ -1,4 +1,4 @@
-//! The light on a fog, and the ground under it.
+//! Lighting of a fog by sun and sky, and the ground below it.
 
 use super::error::{FogError, check_light};
 use super::values::ChannelValues;
@@ -10,46 +10,46 @@ use glam::DVec3;
 /// The sun above the fog. `C` is a [`SpectralCurve`], or `[f32; 3]` for red, green and blue.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DirectionalLight<C = SpectralCurve> {
-    /// Unit vector towards it.
+    /// Unit vector towards the sun.
     pub direction: DVec3,
-    /// Irradiance on a surface that faces it, above the fog (W m^-2 nm^-1, lux, or any unit of the caller).
+    /// Irradiance above the fog on a surface that faces the sun (W m^-2 nm^-1, lux, or any other unit).
     pub irradiance: C,
 }
 
-/// The light on a fog. `C` is a [`SpectralCurve`], or `[f32; 3]` for red, green and blue.
+/// Lighting of a fog. `C` is a [`SpectralCurve`], or `[f32; 3]` for red, green and blue.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FogLighting<C = SpectralCurve> {
-    /// The sun, if it is up.
+    /// The sun, if it is above the horizon.
     pub sun: Option<DirectionalLight<C>>,
-    /// Radiance that arrives uniformly from all directions: the mean of the sky's. With [`FogScattering::Multiple`] from above
-    /// only.
+    /// Radiance that arrives uniformly from all directions, such as the mean of the sky; with [`FogScattering::Multiple`] from
+    /// above only.
     pub ambient: C,
-    /// Lambertian albedo of the ground, 0 to 1; matters with [`FogScattering::Multiple`] only.
+    /// Lambertian albedo of the ground, 0 to 1; used by [`FogScattering::Multiple`] only.
     pub ground_albedo: C,
 }
 
-/// The ground under a fog.
+/// The ground below a fog.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ground {
-    /// Its height, m.
+    /// Height, m.
     pub height_m: f64,
-    /// Its radius, m; infinite for flat ground.
+    /// Radius, m; infinite for flat ground.
     pub radius_m: f64,
 }
 
-/// Which orders of scattering a fog has.
+/// Orders of scattering.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum FogScattering {
-    /// Sun and ambient light scattered once, neither dimmed by the fog on its way to where it is scattered: Ishiyama's
-    /// model as printed. Right for thin fog; too bright in thick.
+    /// Single scattering without attenuation between the light and the point of scattering: Ishiyama's model as printed.
+    /// Correct for thin fog, too bright in thick fog.
     Undimmed,
-    /// Sunlight scattered once, dimmed by the fog before; ambient light the same everywhere.
+    /// Single scattering of attenuated sunlight, and of ambient light that is the same everywhere.
     #[default]
     Single,
-    /// Light scattered any number of times: sun and sky enter at the top, the ground reflects its part. Solved for once
-    /// when the fog is built. A fog without an upper end, which no light could enter, counts as lit uniformly by the ambient
-    /// light and by the undimmed sun.
+    /// All orders of scattering: sunlight and sky light enter at the top, and the ground reflects. Solved once when the fog is
+    /// built. Fog without an upper end, which no light could enter, is lit uniformly by the ambient light and by the
+    /// unattenuated sun.
     Multiple,
 }
 
@@ -66,19 +66,19 @@ impl Ground {
         radius_m: f64::INFINITY,
     };
 
-    /// The Earth's mean radius, m, at height 0.
+    /// Ground with the Earth's mean radius at height 0.
     pub const EARTH: Self = Self {
         height_m: 0.0,
         radius_m: 6.371e6,
     };
 
-    /// Whether it is flat.
+    /// Whether the ground is flat.
     #[inline]
     pub fn is_flat(&self) -> bool {
         self.radius_m == f64::INFINITY
     }
 
-    /// Whether an infinite ray meets it.
+    /// Whether an infinite ray hits the ground.
     #[inline]
     pub(super) fn blocks(&self, ray: &RaySegment) -> bool {
         if self.is_flat() {
@@ -110,7 +110,7 @@ impl Ground {
 }
 
 impl<C> FogLighting<C> {
-    /// The same light in other values.
+    /// Converts the values of all channels.
     pub(crate) fn map<D>(&self, values: impl Fn(&C) -> D) -> FogLighting<D> {
         FogLighting {
             sun: self.sun.as_ref().map(|sun| DirectionalLight {
@@ -141,7 +141,7 @@ impl<C: ChannelValues> FogLighting<C> {
                 return Err(FogError::Number {
                     what: "length of the direction to the sun",
                     got: length,
-                    expected: "1; try to normalize it",
+                    expected: "a unit vector; try normalizing it",
                 });
             }
         }

@@ -1,12 +1,11 @@
-//! Fog: its effect on light, in closed form or nearly, and solved for.
+//! Fog: transmittance and path radiance, in closed form and with multiple scattering.
 //!
 //! A layer of fog is a [`Constituent`](crate::atmosphere::Constituent) of the air
-//! ([`Constituent::fog`](crate::atmosphere::Constituent::fog)), and its density any [`DensityProfile`]; for real-time use a
-//! [`RgbLayer`] with coefficients in red, green and blue. Light in fog comes from sun and sky ([`FogLighting`]) and from
-//! [`lights`].
+//! ([`Constituent::fog`](crate::atmosphere::Constituent::fog)) with any [`DensityProfile`]; for real-time use there is
+//! [`RgbLayer`], with coefficients in red, green and blue. Fog is lit by sun and sky ([`FogLighting`]) and by [`lights`].
 //!
 //! - [`Fog`], [`RgbFog`]: transmittance and path radiance along rays, over the wavelengths of a grid and in RGB.
-//! - [`FogTable`], [`RgbFogTable`]: the same for the many rays of a picture.
+//! - [`FogTable`], [`RgbFogTable`]: the same, tabulated for the many rays of a picture.
 //! - [`lights`]: point, spot and sphere lights in fog.
 //! - [`legacy`]: fog factors of older graphics hardware.
 //!
@@ -34,6 +33,6 @@ pub use lighting::{DirectionalLight, FogLighting, FogScattering, Ground};
 pub use spectral::{Fog, FogTable, RgbFog, RgbFogTable};
 pub use values::ChannelValues;
 
-pub(crate) use closed_forms::{Lanes, constant_source, dimmed_source};
+pub(crate) use closed_forms::{Lanes, attenuated_source, constant_source};
 pub(crate) use fog_lanes::FogLanes;
 pub(crate) use layer::LayerLanes;

@@ -1,17 +1,17 @@
-//! Cutting rays at heights: between the cuts a fog of several layers is treated as a single layer.
+//! Splits rays at heights, between which several layers are treated as one.
 
 use crate::atmosphere::{HeightStructure, RaySegment};
 
-/// Steps in scale heights: dense where most of the fog is.
+/// Breakpoints of an exponential decay in scale heights, dense where most of the fog is.
 const STEPS: [f64; 14] = [
     0.0, 0.12, 0.25, 0.4, 0.57, 0.77, 1.0, 1.3, 1.65, 2.1, 2.7, 3.5, 5.0, 8.0,
 ];
 
-/// Steps in each other interval of smooth variation.
+/// Number of steps in each interval of smooth variation that is not exponential.
 const RAMP_STEPS: u32 = 8;
 
-/// Rising heights (m) for the profiles of these structures over ground at a height: steps of each scale height upwards from
-/// where the profile starts to decay, steps of smooth variation, edges of layers.
+/// Breakpoints for profiles with these structures, in increasing order, m: steps from the start of each exponential decay
+/// upwards, steps of smooth variation, edges of layers.
 pub(super) fn height_breakpoints(profiles: &[HeightStructure], ground_height_m: f64) -> Vec<f64> {
     let mut heights: Vec<f64> = Vec::new();
     for profile in profiles {
@@ -26,13 +26,13 @@ pub(super) fn height_breakpoints(profiles: &[HeightStructure], ground_height_m: 
         }
     }
     heights.sort_by(f64::total_cmp);
-    // Heights that nearly coincide count once.
+    // Merge heights that nearly coincide.
     heights.dedup_by(|b, a| *b - *a < 1e-6 * (1.0 + a.abs()));
     heights
 }
 
-/// Calls `visit` with the parts into which the rising `heights_m` cut a ray, from its start on, until it returns `false`. A ray
-/// over round ground is also cut at its lowest point, so that each part only rises or only falls.
+/// Splits a ray at `heights_m` (increasing) and calls `visit` with the parts from the start on, until it returns `false`. Over
+/// round ground a ray is also split at its lowest point, so that each part only rises or only falls.
 pub(super) fn split_at_heights(
     ray: &RaySegment,
     heights_m: &[f64],
@@ -51,7 +51,7 @@ pub(super) fn split_at_heights(
     }
 }
 
-/// The same for a ray that only rises or only falls; returns whether all parts were visited.
+/// [`split_at_heights`] for a ray that only rises or only falls. Returns whether all parts were visited.
 fn monotone(
     ray: &RaySegment,
     rises: bool,
@@ -60,7 +60,7 @@ fn monotone(
 ) -> bool {
     let mut from = 0.0;
     let mut cut = |at: f64, visit: &mut dyn FnMut(&RaySegment) -> bool| {
-        // A height at which the ray starts cuts nothing off.
+        // The height of the start does not split the ray.
         if at > from && at < ray.length_m {
             let part = ray.part(from, at);
             from = at;
@@ -108,7 +108,7 @@ mod tests {
     }
 
     #[test]
-    fn the_parts_make_up_the_ray_and_stay_between_the_heights() {
+    fn parts_cover_the_ray_and_stay_between_the_heights() {
         let heights = [0.0, 5.0, 10.0, 40.0, 300.0];
         for ray in [
             RaySegment::flat(7.0, 0.5, 300.0),

@@ -1,24 +1,24 @@
-//! Sunlight scattered once into a ray, and uniform light, for all layers and grounds.
+//! Single scattering of sunlight and of uniform light into a ray.
 
-use super::closed_forms::{Lanes, mean_dimmed_source};
+use super::closed_forms::{Lanes, mean_attenuated_source};
 use super::layer::{MergedLayer, OPAQUE};
 use super::lighting::Ground;
 use super::ray_cuts::split_at_heights;
 use crate::atmosphere::RaySegment;
 use crate::spectrum::Spectrum;
 
-/// Light scattered once, for a sun of unit irradiance.
+/// Single scattering for a sun of unit irradiance.
 pub(super) struct SingleScattering<'a, const N: usize, X, S> {
     pub layers: &'a [MergedLayer<N>],
     pub breakpoints_m: &'a [f64],
     pub ground: &'a Ground,
     /// Sine of the sun's elevation, if there is a sun.
     pub sin_sun: Option<f64>,
-    /// Whether the fog dims the sun.
-    pub dimmed: bool,
-    /// The extinction that dims, of each layer, 1/m.
+    /// Whether the fog attenuates sunlight on its way to the ray.
+    pub attenuated: bool,
+    /// Extinction coefficient of each layer, 1/m.
     pub extinction: X,
-    /// Sunlight scattered towards the eye, of each layer, 1/(m sr).
+    /// Scattering coefficient of each layer times its phase function towards the eye, 1/(m sr).
     pub towards_eye: S,
 }
 
@@ -27,8 +27,8 @@ where
     X: Fn(&MergedLayer<N>) -> Spectrum<N>,
     S: Fn(&MergedLayer<N>) -> Spectrum<N>,
 {
-    /// Sunlight scattered into a ray, and the same for a source `uniform` (1/m of each layer) that nothing dims on its way to
-    /// the ray.
+    /// Radiance of sunlight scattered into a ray, and of a uniform source (`uniform`, 1/m, for each layer) that is not
+    /// attenuated on its way to the ray.
     #[inline]
     pub fn along(
         &self,
@@ -52,12 +52,12 @@ where
         let extinction = (self.extinction)(layer);
         let column = layer.density.column_along_m(ray).min(OPAQUE);
         let along = extinction * column as f32;
-        // Stated for each metre of column, as extinction may be 0.
+        // Per metre of column, as extinction may be 0.
         let opacity = along.mean_transmittance() * column as f32;
         let Some(sin_sun) = self.sin_sun else {
             return (Spectrum::ZERO, uniform * opacity);
         };
-        let arriving = if !self.dimmed || layer.density.is_uniform() {
+        let arriving = if !self.attenuated || layer.density.is_uniform() {
             opacity
         } else if sin_sun <= 0.0 {
             Spectrum::ZERO
@@ -65,12 +65,12 @@ where
             let near = layer.density.column_above_m(ray.height_m) / sin_sun;
             let near = extinction * near.min(OPAQUE) as f32;
             let growth = along * (1.0 - ray.sin_elevation / sin_sun) as f32;
-            mean_dimmed_source(near, growth) * column as f32
+            mean_attenuated_source(near, growth) * column as f32
         };
         ((self.towards_eye)(layer) * arriving, uniform * opacity)
     }
 
-    /// Several profiles, or round ground: the closed form from height to height.
+    /// Several profiles, or round ground: the closed form between breakpoints.
     fn layered(
         &self,
         ray: &RaySegment,
@@ -93,10 +93,10 @@ where
             let opacity = along.mean_transmittance();
             from_uniform += seen * ambient * opacity;
             if let Some(sin_sun) = self.sin_sun {
-                let arriving = if self.dimmed {
+                let arriving = if self.attenuated {
                     let near = self.depth_to_sun(part.height_m, sin_sun);
                     let far = self.depth_to_sun(part.end_height_m(), sin_sun);
-                    mean_dimmed_source(near, far - near + along)
+                    mean_attenuated_source(near, far - near + along)
                 } else {
                     opacity
                 };
@@ -108,8 +108,8 @@ where
         (sunlit, from_uniform)
     }
 
-    /// Optical depth between a height and the sun; [`OPAQUE`] where the ground is in the way. Layers without an upper end
-    /// are left out, as no light would come through them.
+    /// Optical depth between a height and the sun; [`OPAQUE`] if the ground blocks the sun. Layers without an upper end are
+    /// ignored, as they would block all light.
     pub fn depth_to_sun(&self, height_m: f64, sin_sun: f64) -> Spectrum<N> {
         let ray = RaySegment::new(height_m, sin_sun, f64::INFINITY, self.ground.radius_m);
         if self.ground.blocks(&ray) {

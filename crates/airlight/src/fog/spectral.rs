@@ -1,4 +1,4 @@
-//! Fog over the wavelengths of a grid, and in red, green and blue.
+//! [`Fog`] and [`RgbFog`], and their tables for pictures.
 
 use super::error::FogError;
 use super::fog_lanes::FogLanes;
@@ -13,14 +13,14 @@ use glam::DVec3;
 use std::fmt::Debug;
 use std::sync::Arc;
 
-/// Fog at the wavelengths of a grid: layers of constituents, lit by sun and sky. A cheap handle: clones share one solution.
+/// Fog at the wavelengths of a grid: layers of constituents, lit by sun and sky. Cloning is cheap; clones share one solution.
 ///
-/// Values of a point or ray are one slice with a value for each wavelength of the grid; batches are interleaved, one such
-/// slice after the other. The errors are those of the closed forms and of the solver: rounding for singly scattered light in
-/// one profile over flat ground, below 0.2 % for several profiles, below 1 % over round ground.
+/// Queries write one value for each wavelength of the grid; batch queries write the values of one ray after the other. Errors
+/// of single scattering: rounding for one profile over flat ground, below 0.2 % for several profiles, below 1 % over round
+/// ground.
 ///
 /// # Panics
-/// Queries panic where a slice does not have the length stated.
+/// Queries panic if an output slice does not have the documented length.
 #[derive(Clone, Debug)]
 pub struct Fog {
     shared: Arc<FogShared>,
@@ -34,8 +34,8 @@ struct FogShared {
     blocks: Vec<Box<dyn FogBlock>>,
 }
 
-/// Fog in red, green and blue, for real-time use: layers with RGB coefficients, lit by RGB light. A cheap handle: clones share
-/// one solution. Queries allocate nothing.
+/// Fog in red, green and blue, for real-time use: layers with RGB coefficients, lit by RGB light. Cloning is cheap; clones
+/// share one solution. Queries do not allocate.
 ///
 /// ```
 /// use airlight::atmosphere::visibility::{Contrast, extinction_per_m};
@@ -43,7 +43,7 @@ struct FogShared {
 /// use airlight::fog::{DensityProfile, DirectionalLight, FogLighting, FogScattering, Ground, RgbFog, RgbLayer};
 /// use airlight::atmosphere::droplets;
 ///
-/// // Radiation fog 30 m deep, 200 m of visibility, under a morning sun.
+/// // Radiation fog with a scale height of 30 m and a visibility of 200 m at the ground, under a morning sun.
 /// let layer = RgbLayer {
 ///     density: DensityProfile::exponential(30.0),
 ///     extinction_per_m: [extinction_per_m(200.0, Contrast::FivePercent) as f32; 3],
@@ -66,26 +66,26 @@ pub struct RgbFog {
     lanes: Arc<FogLanes<3>>,
 }
 
-/// A [`Fog`] seen from one height: the results of [`Fog::path`] for many rays in a fraction of the time, within 0.3 %
-/// of the path radiance. Fog of one profile over flat ground with multiple scattering is tabulated, as far as rays need it;
-/// any other is evaluated directly.
+/// A [`Fog`] tabulated for one eye height: [`Fog::path`] for many rays in a fraction of the time, with an error below 0.3 % of
+/// the path radiance. Tables are computed on demand, for one density profile over flat ground with multiple scattering; other
+/// fog is evaluated directly.
 #[derive(Clone, Debug)]
 pub struct FogTable {
     fog: Fog,
     blocks: Arc<[Box<dyn TableBlock>]>,
 }
 
-/// A [`RgbFog`] seen from one height: as [`FogTable`] for a [`Fog`].
+/// A [`RgbFog`] tabulated for one eye height, see [`FogTable`].
 #[derive(Clone, Debug)]
 pub struct RgbFogTable {
     lanes: Arc<TableLanes<3>>,
 }
 
 impl Fog {
-    /// Validates layers and light, and solves for the light inside with [`FogScattering::Multiple`].
+    /// Validates the inputs, and solves for the diffuse light with [`FogScattering::Multiple`].
     ///
     /// # Errors
-    /// [`FogError`] for the first number outside its domain.
+    /// [`FogError`] for the first value out of range.
     pub fn new(
         layers: &[Constituent],
         ground: Ground,
@@ -110,18 +110,18 @@ impl Fog {
         })
     }
 
-    /// The wavelengths.
+    /// Wavelengths of the outputs.
     pub fn grid(&self) -> &WavelengthGrid {
         &self.shared.grid
     }
 
-    /// The ground under the fog.
+    /// The ground below the fog.
     pub fn ground(&self) -> &Ground {
         &self.shared.ground
     }
 
-    /// Transmittance and path radiance between an eye (m above the zero of heights) and a point `distance_m` away (infinite:
-    /// the sky) along the unit vector `direction`: one value for each wavelength.
+    /// Transmittance and path radiance between an eye at a height (m) and a point `distance_m` away (infinite for the sky) along
+    /// the unit vector `direction`: one value for each wavelength.
     pub fn path(
         &self,
         eye_height_m: f64,
@@ -135,7 +135,7 @@ impl Fog {
         self.path_along(&ray, cos_sun, transmittance, path_radiance);
     }
 
-    /// [`Fog::path`] along many directions.
+    /// [`Fog::path`] for many rays.
     pub fn paths(
         &self,
         eye_height_m: f64,
@@ -157,7 +157,8 @@ impl Fog {
         );
     }
 
-    /// Transmittance and path radiance along a ray; `cos_sun` is the cosine of the angle between its direction and the sun's.
+    /// Transmittance and path radiance along a ray; `cos_sun` is the cosine of the angle between the ray and the direction to the
+    /// sun.
     pub fn path_along(
         &self,
         ray: &RaySegment,
@@ -176,7 +177,7 @@ impl Fog {
         }
     }
 
-    /// Optical depth along a ray, one value for each wavelength: exact for all layers, over flat and round ground.
+    /// Optical depth along a ray, one value for each wavelength. Exact for all layers, over flat and round ground.
     pub fn optical_depth(&self, ray: &RaySegment, out: &mut [f32]) {
         check_length(out, self.shared.grid.len());
         for (block, out) in self.shared.blocks.iter().zip(out.chunks_mut(BLOCK)) {
@@ -184,7 +185,7 @@ impl Fog {
         }
     }
 
-    /// Extinction at a height (m), 1/m, one value for each wavelength.
+    /// Extinction coefficient at a height (m), 1/m, one value for each wavelength.
     pub fn extinction_per_m(&self, height_m: f64, out: &mut [f32]) {
         check_length(out, self.shared.grid.len());
         for (block, out) in self.shared.blocks.iter().zip(out.chunks_mut(BLOCK)) {
@@ -192,8 +193,8 @@ impl Fog {
         }
     }
 
-    /// Irradiance of sun and sky on the horizontal ground under the fog at each wavelength, all orders of scattering; `None`
-    /// unless these are solved for.
+    /// Irradiance on the horizontal ground below the fog at each wavelength, with all orders of scattering; `None` without
+    /// [`FogScattering::Multiple`].
     pub fn ground_irradiance(&self) -> Option<Vec<f32>> {
         let mut all = vec![0.0; self.shared.grid.len()];
         let mut blocks = self.shared.blocks.iter().zip(all.chunks_mut(BLOCK));
@@ -202,7 +203,7 @@ impl Fog {
             .then_some(all)
     }
 
-    /// The fog seen from one height (m), for pictures.
+    /// The fog tabulated for an eye height (m), for pictures.
     pub fn seen_from(&self, eye_height_m: f64) -> FogTable {
         let blocks = self.shared.blocks.iter();
         FogTable {
@@ -223,7 +224,7 @@ impl FogTable {
         &self.fog
     }
 
-    /// Transmittance and path radiance between the eye and a point `distance_m` away (infinite: the sky) along the unit vector
+    /// Transmittance and path radiance between the eye and a point `distance_m` away (infinite for the sky) along the unit vector
     /// `direction`: one value for each wavelength.
     pub fn path(
         &self,
@@ -243,7 +244,7 @@ impl FogTable {
         }
     }
 
-    /// [`FogTable::path`] along many directions.
+    /// [`FogTable::path`] for many rays.
     pub fn paths(
         &self,
         directions: &[DVec3],
@@ -266,10 +267,10 @@ impl FogTable {
 }
 
 impl RgbFog {
-    /// Validates layers and light, and solves for the light inside with [`FogScattering::Multiple`].
+    /// Validates the inputs, and solves for the diffuse light with [`FogScattering::Multiple`].
     ///
     /// # Errors
-    /// [`FogError`] for the first number outside its domain.
+    /// [`FogError`] for the first value out of range.
     pub fn new(
         layers: &[RgbLayer],
         ground: Ground,
@@ -284,27 +285,27 @@ impl RgbFog {
         })
     }
 
-    /// The light on the fog.
+    /// Lighting of the fog.
     pub fn lighting(&self) -> FogLighting<[f32; 3]> {
         self.lanes.lighting().map(|lanes| lanes.0)
     }
 
-    /// The ground under the fog.
+    /// The ground below the fog.
     pub fn ground(&self) -> &Ground {
         self.lanes.ground()
     }
 
-    /// Transmittance and path radiance between an eye (m above the zero of heights) and a point `distance_m` away (infinite:
-    /// the sky) along the unit vector `direction`.
+    /// Transmittance and path radiance between an eye at a height (m) and a point `distance_m` away (infinite for the sky) along
+    /// the unit vector `direction`.
     #[inline]
     pub fn path(&self, eye_height_m: f64, direction: DVec3, distance_m: f64) -> RgbPathOptics {
         self.lanes.path(eye_height_m, direction, distance_m).into()
     }
 
-    /// [`RgbFog::path`] along many directions.
+    /// [`RgbFog::path`] for many rays.
     ///
     /// # Panics
-    /// Where the slices differ in length.
+    /// If the slices differ in length.
     pub fn paths(
         &self,
         eye_height_m: f64,
@@ -319,36 +320,37 @@ impl RgbFog {
         }
     }
 
-    /// Transmittance and path radiance along a ray; `cos_sun` is the cosine of the angle between its direction and the sun's.
+    /// Transmittance and path radiance along a ray; `cos_sun` is the cosine of the angle between the ray and the direction to the
+    /// sun.
     #[inline]
     pub fn path_along(&self, ray: &RaySegment, cos_sun: f64) -> RgbPathOptics {
         self.lanes.path_along(ray, cos_sun).into()
     }
 
-    /// Optical depth along a ray: exact for all layers, over flat and round ground.
+    /// Optical depth along a ray. Exact for all layers, over flat and round ground.
     #[inline]
     pub fn optical_depth(&self, ray: &RaySegment) -> [f32; 3] {
         self.lanes.optical_depth(ray).0
     }
 
-    /// Transmittance along a ray: exact for all layers, over flat and round ground.
+    /// Transmittance along a ray. Exact for all layers, over flat and round ground.
     #[inline]
     pub fn transmittance(&self, ray: &RaySegment) -> [f32; 3] {
         self.lanes.transmittance(ray).0
     }
 
-    /// Extinction at a height (m), 1/m.
+    /// Extinction coefficient at a height (m), 1/m.
     pub fn extinction_per_m(&self, height_m: f64) -> [f32; 3] {
         self.lanes.extinction_per_m(height_m).0
     }
 
-    /// Irradiance of sun and sky on the horizontal ground under the fog, all orders of scattering; `None` unless these are
-    /// solved for.
+    /// Irradiance on the horizontal ground below the fog, with all orders of scattering; `None` without
+    /// [`FogScattering::Multiple`].
     pub fn ground_irradiance(&self) -> Option<[f32; 3]> {
         self.lanes.ground_irradiance().map(|lanes| lanes.0)
     }
 
-    /// The fog seen from one height (m), for pictures.
+    /// The fog tabulated for an eye height (m), for pictures.
     pub fn seen_from(&self, eye_height_m: f64) -> RgbFogTable {
         RgbFogTable {
             lanes: Arc::new(TableLanes::new(self.lanes.clone(), eye_height_m)),
@@ -357,17 +359,17 @@ impl RgbFog {
 }
 
 impl RgbFogTable {
-    /// Transmittance and path radiance between the eye and a point `distance_m` away (infinite: the sky) along the unit vector
+    /// Transmittance and path radiance between the eye and a point `distance_m` away (infinite for the sky) along the unit vector
     /// `direction`.
     #[inline]
     pub fn path(&self, direction: DVec3, distance_m: f64) -> RgbPathOptics {
         self.lanes.path(direction, distance_m).into()
     }
 
-    /// [`RgbFogTable::path`] along many directions.
+    /// [`RgbFogTable::path`] for many rays.
     ///
     /// # Panics
-    /// Where the slices differ in length.
+    /// If the slices differ in length.
     pub fn paths(&self, directions: &[DVec3], distances_m: &[f64], out: &mut [RgbPathOptics]) {
         check_length(distances_m, directions.len());
         check_length(out, directions.len());
@@ -377,15 +379,15 @@ impl RgbFogTable {
     }
 }
 
-/// The widest block of lanes.
+/// Number of lanes of the widest block.
 pub(super) const BLOCK: usize = 16;
 
-/// What is built in blocks of lanes.
+/// Inputs of a computation that is built in blocks of lanes.
 pub(super) trait InBlocks {
-    /// A block behind one interface.
+    /// Trait object of a block.
     type Block: ?Sized;
 
-    /// The block of N lanes with these wavelengths (nm), of which the first `lanes` are in use.
+    /// A block of N lanes with these wavelengths (nm), of which the first `lanes` are used.
     fn block<const N: usize>(
         &self,
         wavelengths_nm: [f64; N],
@@ -393,7 +395,7 @@ pub(super) trait InBlocks {
     ) -> Result<Box<Self::Block>, FogError>;
 }
 
-/// All wavelengths in blocks of 16 or, for the rest, of the narrowest width that holds them; unused lanes repeat the last
+/// Splits wavelengths into blocks of 16, and the rest into the narrowest block that fits; unused lanes repeat the last
 /// wavelength.
 pub(super) fn in_blocks<I: InBlocks>(
     wavelengths_nm: &[f64],
@@ -421,7 +423,7 @@ pub(super) fn sampled<const N: usize>(
     Spectrum::from_fn(|lane| curve.at(wavelengths_nm[lane]) as f32)
 }
 
-/// The first lanes into a slice.
+/// Writes the first lanes to a slice.
 pub(super) fn store<const N: usize>(lanes: Spectrum<N>, out: &mut [f32]) {
     out.copy_from_slice(&lanes.0[..out.len()]);
 }
@@ -474,7 +476,7 @@ impl InBlocks for FogInputs<'_> {
     }
 }
 
-/// A block of lanes of a fog; slices have the number of lanes in use.
+/// A block of lanes of a fog. Slices have the length of the used lanes.
 trait FogBlock: Debug + Send + Sync {
     fn path_along(
         &self,
@@ -485,12 +487,12 @@ trait FogBlock: Debug + Send + Sync {
     );
     fn optical_depth(&self, ray: &RaySegment, out: &mut [f32]);
     fn extinction_per_m(&self, height_m: f64, out: &mut [f32]);
-    /// Whether all orders of scattering are solved for.
+    /// Returns whether all orders of scattering are computed.
     fn ground_irradiance(&self, out: &mut [f32]) -> bool;
     fn seen_from(&self, eye_height_m: f64) -> Box<dyn TableBlock>;
 }
 
-/// A block whose tables share it.
+/// A block, shared with its tables.
 #[derive(Debug)]
 struct SharedLanes<const N: usize>(Arc<FogLanes<N>>);
 

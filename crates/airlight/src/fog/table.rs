@@ -1,4 +1,4 @@
-//! A fog tabulated for the rays from one height: for pictures.
+//! Fog tabulated for the rays from one eye height, for pictures.
 
 use super::closed_forms::Lanes;
 use super::fog_lanes::FogLanes;
@@ -11,32 +11,30 @@ use crate::transfer::PathOptics;
 use glam::DVec3;
 use std::sync::{Arc, OnceLock};
 
-/// Elevations on each side of the horizontal.
+/// Number of elevations on each side of the horizontal.
 const ROWS: usize = 64;
-/// Weight of the logarithm of the sine of the elevation, against the sine itself, in the spacing of rows.
+/// Weight of the logarithm of the sine of the elevation in the spacing of rows; the rest is the weight of the sine.
 const LOGARITHMIC: f32 = 0.6;
-/// Distances up to the end of the fog or the ground, and again from there on.
+/// Number of distances up to the end of the fog or to the ground, and again beyond the ground.
 const NODES: usize = 41;
-/// Shares of the forward peak that count as scattered, at which light in the peak is tabulated.
+/// Number of tabulated shares of the forward peak that count as scattered.
 const SHARES: usize = 7;
-/// Smallest opacity of a node over the largest: there the source function is that at the eye.
+/// Opacity of the first node relative to that of the last.
 const NEAREST: f32 = 1e-5;
-
-/// The logarithm of light that counts as dark.
+/// Logarithm of the smallest radiance.
 const DARK: f32 = -80.0;
 
-/// A fog seen from one height: the results of [`FogLanes::path`] for many rays in a fraction of the time.
+/// Fog tabulated for one eye height: [`FogLanes::path`] for many rays in a fraction of the time.
 ///
-/// Transmittance is the fog's own. Of the path radiance `S = (1 - T) J` the mean source function `J` is interpolated, which
-/// is finite and smooth from the eye to infinity. It is the sum of multiply scattered light, tabulated by azimuth mode over
-/// elevation and distance, and of singly scattered sunlight, `p(Theta)` times a function of both (and, within the forward
-/// peak, of the part of the peak that counts as not scattered), so that neither the peak nor the azimuth needs nodes. The
-/// coordinate of distance is opacity, `1 - (1 - x / x_end)^(1/4)`, where `x` is `1 - T` and `x_end` the same up to space or to
-/// the ground.
+/// Transmittance is evaluated exactly. For the path radiance `S = (1 - T) J` the mean source function `J` is interpolated, which
+/// is finite and smooth from the eye to infinity. It is the sum of multiple scattering, tabulated by azimuth mode, elevation
+/// and distance, and of single scattering of sunlight: `p(Theta)` times a function of elevation, distance and, in the forward
+/// peak, of the share of the peak that counts as scattered. So neither the peak nor the azimuth needs nodes. The coordinate of
+/// distance is `1 - (1 - x / x_end)^(1/4)`, where `x = 1 - T` is the opacity and `x_end` the opacity to space or to the ground.
 ///
-/// Error against [`FogLanes::path`]: below 0.3 % of the path radiance (test `a_table_is_the_fog_itself`). Rows of the table are
-/// computed when they are first used, by whichever thread does; the values do not depend on that. Fog of several profiles,
-/// over round ground, or without multiple scattering is not tabulated but evaluated directly.
+/// Error compared with [`FogLanes::path`]: below 0.3 % of the path radiance (test `tables_match_direct_evaluation`). Rows are
+/// computed on first use, by any thread; values do not depend on it. Fog of several profiles, over round ground, or without
+/// multiple scattering is evaluated directly.
 #[derive(Debug)]
 pub(crate) struct TableLanes<const N: usize> {
     fog: Arc<FogLanes<N>>,
@@ -46,26 +44,26 @@ pub(crate) struct TableLanes<const N: usize> {
 
 #[derive(Debug)]
 struct Table<const N: usize> {
-    /// Downwards and upwards.
+    /// Rays downwards and upwards.
     sides: [Side<N>; 2],
-    /// Whether all lanes have the same extinction, so that one is enough.
+    /// Whether all lanes have the same extinction.
     is_grey: bool,
-    /// The largest part of the forward peak that counts as scattered at any angle to the sun.
+    /// Largest share of the forward peak that counts as scattered, over all angles to the sun.
     largest_share: f32,
     sun: Option<SunSide<N>>,
 }
 
-/// The sun in the terms of the table.
+/// The sun, prepared for the table.
 #[derive(Debug)]
 struct SunSide<const N: usize> {
     irradiance: Spectrum<N>,
     direction: DVec3,
-    /// Its horizontal part, of length 1; 0 for a sun in the zenith.
+    /// Horizontal unit vector towards the sun; 0 for a sun in the zenith.
     horizontal: DVec3,
 }
 
 impl<const N: usize> TableLanes<N> {
-    /// The fog seen from a height (m).
+    /// Tabulates a fog for an eye height, m.
     pub fn new(fog: Arc<FogLanes<N>>, eye_height_m: f64) -> Self {
         let table = (fog.field.is_some() && fog.ground.is_flat() && fog.layers.len() == 1)
             .then(|| Table::new(&fog, eye_height_m));
@@ -76,7 +74,7 @@ impl<const N: usize> TableLanes<N> {
         }
     }
 
-    /// Transmittance and path radiance between the eye and a point `distance_m` away (infinite: the sky) along the unit vector
+    /// Transmittance and path radiance between the eye and a point `distance_m` away (infinite for the sky) along the unit vector
     /// `direction`.
     #[inline]
     pub fn path(&self, direction: DVec3, distance_m: f64) -> PathOptics<N> {
@@ -115,7 +113,7 @@ impl<const N: usize> TableLanes<N> {
         }
     }
 
-    /// One elevation at all distances.
+    /// Values of one elevation at all distances.
     fn row(&self, table: &Table<N>, field: &Field<N>, side: &Side<N>, row: usize) -> Row<N> {
         let sin_elevation = side.sign * side.sin_elevations[row];
         let ray = RaySegment::flat(self.eye_height_m, sin_elevation, f64::INFINITY);
@@ -174,7 +172,7 @@ impl<const N: usize> TableLanes<N> {
         values
     }
 
-    /// The distances of the nodes, by opacity.
+    /// Distances of the nodes, m.
     fn lengths_m(&self, side: &Side<N>, ray: &RaySegment) -> Vec<f64> {
         let opacity = |length_m: f64| {
             let depth = self.fog.optical_depth(&ray.part(0.0, length_m));
@@ -212,7 +210,7 @@ impl<const N: usize> TableLanes<N> {
 }
 
 impl<const N: usize> Table<N> {
-    /// An empty table of a fog of one layer over flat ground.
+    /// An empty table for fog of one layer over flat ground.
     fn new(fog: &FogLanes<N>, eye_height_m: f64) -> Self {
         let sun = fog.lighting.sun.filter(|sun| sun.direction.y > 0.0);
         let layer = &fog.layers[0];
@@ -240,20 +238,20 @@ impl<const N: usize> Table<N> {
         }
     }
 
-    /// The share of the peak at a tabulated index: close together towards the largest, where least of the sunlight is left.
+    /// Share of the peak at a tabulated index: dense near the largest, where sunlight is most attenuated.
     fn share(&self, index: usize) -> f32 {
         let left = 1.0 - index as f32 / (SHARES - 1) as f32;
         self.largest_share * (1.0 - left * left)
     }
 
-    /// The inverse: a real index from 0.
+    /// Real index of a share: inverse of [`Table::share`].
     #[inline]
     fn index_of_share(&self, share: f32) -> f32 {
         let part = share / self.largest_share.max(f32::MIN_POSITIVE);
         (SHARES - 1) as f32 * (1.0 - (1.0 - part).max(0.0).sqrt())
     }
 
-    /// Sunlight scattered once by a layer, for a unit of irradiance and of opacity.
+    /// Single scattering of sunlight by a layer per unit of irradiance and of opacity.
     #[inline]
     fn sunlit(
         &self,
@@ -267,7 +265,7 @@ impl<const N: usize> Table<N> {
         if !layer.in_peak(cos_sun) {
             return whole * once;
         }
-        // All lanes take the same four of the nodes.
+        // All lanes use the same four nodes.
         let at = share_at(layer, cos_sun).map(|share| self.index_of_share(share));
         let first = (mean(at) as usize).clamp(1, SHARES - 3) - 1;
         let logarithms: [Spectrum<N>; 4] = std::array::from_fn(|k| arriving(first + k));
@@ -280,7 +278,7 @@ impl<const N: usize> Table<N> {
     }
 }
 
-/// The share of the forward peak that counts as scattered at an angle to the sun.
+/// Share of the forward peak that counts as scattered at an angle to the sun.
 #[inline]
 fn share_at<const N: usize>(layer: &MergedLayer<N>, cos_sun: f64) -> Spectrum<N> {
     let reduced = layer.reduced_extinction_per_m;
@@ -294,7 +292,7 @@ fn share_at<const N: usize>(layer: &MergedLayer<N>, cos_sun: f64) -> Spectrum<N>
     })
 }
 
-/// The largest share at any angle and in any lane.
+/// Largest share over all angles and lanes.
 fn largest_share<const N: usize>(layer: &MergedLayer<N>) -> f32 {
     let cosines = (0..=200).map(|k| 1.0 - 2.0 * (f64::from(k) / 200.0).powi(4));
     cosines
@@ -302,45 +300,45 @@ fn largest_share<const N: usize>(layer: &MergedLayer<N>) -> f32 {
         .fold(0.0, f32::max)
 }
 
-/// All rays that go up, or all that go down.
+/// All rising or all descending rays.
 #[derive(Debug)]
 struct Side<const N: usize> {
     /// -1 or 1.
     sign: f64,
-    /// Optical depth straight to space or to the ground.
+    /// Vertical optical depth to space or to the ground.
     depth: Spectrum<N>,
     is_grey: bool,
-    /// Absolute sine of the elevation up to which rows are evenly spaced; beyond, in a mean of its logarithm and itself.
+    /// Absolute sine of the elevation up to which the spacing of rows is even; beyond, it becomes partly logarithmic.
     even_to: f64,
-    /// The absolute sine of the elevation of each row; nearly 0 for the first.
+    /// Absolute sine of the elevation of each row; nearly 0 for the first.
     sin_elevations: Vec<f64>,
     rows: Vec<OnceLock<Row<N>>>,
     /// `1 / ln(1 + 1 / even_to)`.
     per_logarithm: f32,
 }
 
-/// Light for a unit of opacity, along rays of one elevation, at each distance.
+/// Path radiance per unit of opacity along rays of one elevation, at each distance.
 #[derive(Debug)]
 struct Row<const N: usize> {
-    /// Multiply scattered: the mean over azimuth.
+    /// Multiple scattering, mean over azimuth.
     mean: Vec<Spectrum<N>>,
-    /// Mode `m` in azimuth over the `m`-th power of the cosine of the elevation; 0 for mode 0. Lanes outside, so that modes
-    /// add up in one vector.
+    /// Multiple scattering, azimuth mode `m` divided by the `m`-th power of the cosine of the elevation; 0 for mode 0. Modes are
+    /// the inner index, so that they are summed as one vector.
     modes: Vec<[[f32; STREAMS]; N]>,
-    /// The logarithm of singly scattered sunlight, by share of the peak.
+    /// Logarithm of singly scattered sunlight, by share of the peak.
     sunlit: Vec<[Spectrum<N>; SHARES]>,
 }
 
-/// Where a ray lies in a side's table.
+/// Position of a ray in the table of a side.
 struct Place {
     row: usize,
     node: usize,
-    /// Weights of four rows, at the nearer and the farther node.
+    /// Weights of four rows at the nearer and the farther node.
     weights: [[f32; 2]; 4],
 }
 
 impl Place {
-    /// An interpolated value of the table.
+    /// Interpolates a value of the table.
     #[inline]
     fn interpolate<const N: usize>(
         &self,
@@ -356,7 +354,7 @@ impl Place {
         sum
     }
 
-    /// The azimuth modes above 0, summed in a direction.
+    /// Sum of the azimuth modes above 0 in a direction.
     #[inline]
     fn azimuth_modes<const N: usize>(
         &self,
@@ -405,7 +403,7 @@ impl<const N: usize> Side<N> {
         side
     }
 
-    /// The real row of an absolute sine of the elevation.
+    /// Real index of the row of an absolute sine of the elevation.
     #[inline]
     fn row_of(&self, sin_elevation: f64) -> f32 {
         let logarithm = (1.0 + sin_elevation / self.even_to) as f32;
@@ -413,7 +411,7 @@ impl<const N: usize> Side<N> {
         (ROWS - 1) as f32 * (LOGARITHMIC * logarithm + (1.0 - LOGARITHMIC) * sin_elevation as f32)
     }
 
-    /// The inverse, by bisection.
+    /// Inverse of [`Side::row_of`], by bisection.
     fn sin_elevation_at(&self, row: usize) -> f64 {
         let row = if row == 0 { 1e-3 } else { row as f32 };
         let (mut low, mut high) = (0.0, 1.0);
@@ -428,14 +426,14 @@ impl<const N: usize> Side<N> {
         high
     }
 
-    /// Opacity to space or to the ground.
+    /// Opacity to space or to the ground at an absolute sine of the elevation.
     #[inline]
     fn end(&self, sin_elevation: f64) -> f32 {
         let per_sine = 1.0 / sin_elevation.max(1e-20) as f32;
         mean(opacity(self.depth * per_sine, self.is_grey))
     }
 
-    /// Where a ray with this absolute sine of the elevation and this opacity lies.
+    /// Position of a ray with this absolute sine of the elevation and this opacity.
     #[inline]
     fn place(&self, sin_elevation: f64, opacity: f32) -> Place {
         let end = self.end(sin_elevation);
@@ -463,7 +461,7 @@ impl<const N: usize> Side<N> {
     }
 }
 
-/// `1 - e^-depth`, exact where it is small.
+/// `1 - e^-depth`, accurate for small depths.
 #[inline]
 fn opacity<const N: usize>(depth: Spectrum<N>, is_grey: bool) -> Spectrum<N> {
     let of = |depth: f32| depth * Spectrum([depth]).mean_transmittance()[0];
@@ -473,24 +471,25 @@ fn opacity<const N: usize>(depth: Spectrum<N>, is_grey: bool) -> Spectrum<N> {
     }
 }
 
-/// The mean of the lanes.
+/// Mean of all lanes.
 #[inline]
 fn mean<const N: usize>(lanes: Spectrum<N>) -> f32 {
     lanes.0.iter().sum::<f32>() / N as f32
 }
-/// Rays of one elevation up to each of their distances.
+
+/// Rays of one elevation to each distance of the table.
 struct Rays<'a, const N: usize> {
     fog: &'a FogLanes<N>,
     field: &'a Field<N>,
     ray: RaySegment,
     lengths_m: &'a [f64],
-    /// Index of the distance that ends on the ground; `usize::MAX` for rays that rise.
+    /// Index of the distance to the ground; `usize::MAX` for rising rays.
     ground: usize,
 }
 
 impl<const N: usize> Rays<'_, N> {
-    /// Path radiance of multiply scattered light, of one azimuth mode over the cosine of the elevation to its power: the
-    /// terms of [`FogLanes::path`].
+    /// Path radiance of multiple scattering for one azimuth mode, divided by the power of the cosine of the elevation: the terms
+    /// of [`FogLanes::path`].
     fn diffuse(&self, mode: usize) -> Vec<Spectrum<N>> {
         let field = self.field;
         let weights = multiple::of_mode(self.ray.sin_elevation, mode);
@@ -502,8 +501,8 @@ impl<const N: usize> Rays<'_, N> {
         self.to_each(|s| s.reduced_extinction_per_m, scattered, sky, ground)
     }
 
-    /// The same of singly scattered sunlight, for a unit of irradiance and of scattering towards the eye, where a share of the
-    /// peak counts as scattered.
+    /// Path radiance of single scattering per unit of irradiance and of scattering towards the eye, if a share of the peak counts
+    /// as scattered.
     fn sunlit(&self, share: f32) -> Vec<Spectrum<N>> {
         let extinction = |s: &MergedLayer<N>| {
             let reduced = s.reduced_extinction_per_m;
@@ -514,8 +513,8 @@ impl<const N: usize> Rays<'_, N> {
         self.to_each(extinction, scattered, Spectrum::ZERO, Spectrum::ZERO)
     }
 
-    /// Path radiance up to each distance, of light that segments scatter and of light that arrives from the sky or the ground,
-    /// dimmed by an extinction: the light at the eye without the light from the far end that passes unscattered.
+    /// Path radiance up to each distance, from light scattered in segments and light from the sky or the ground, attenuated by an
+    /// extinction: radiance at the eye minus the unscattered radiance from the far end.
     fn to_each(
         &self,
         extinction: impl Fn(&MergedLayer<N>) -> Spectrum<N>,
@@ -535,7 +534,7 @@ impl<const N: usize> Rays<'_, N> {
                 false => (Spectrum::ZERO, Spectrum::ZERO),
             })
             .collect();
-        // Light that arrives at each distance from beyond it.
+        // Radiance at each distance from beyond it.
         let mut arriving = vec![
             if self.ray.sin_elevation < 0.0 {
                 ground
@@ -563,8 +562,8 @@ impl<const N: usize> Rays<'_, N> {
     }
 }
 
-/// The distance, beyond `from`, at which a function that rises with it from 0 reaches `target`: by false position (the
-/// Illinois algorithm), to 1e-6 of the target.
+/// Distance beyond `from` at which an increasing function reaches `target`, by false position (Illinois algorithm), to 1e-6 of
+/// the target.
 fn distance_of(rising: &impl Fn(f64) -> f32, target: f32, from: f64) -> f64 {
     let over = |at: f64| f64::from(rising(at) - target);
     let enough = 1e-6 * f64::from(target);

@@ -106,15 +106,15 @@ fn mistakes_are_refused_with_their_place_and_what_would_be_right() {
     for (text, sentence) in [
         (
             "[air]\nozone = 300\n",
-            "line 2, column 1: air.ozone: no such key (did you mean \"ozone_du\"?)",
+            "line 2, column 1: air.ozone: unknown key (did you mean \"ozone_du\"?)",
         ),
         (
             "[fogg]\n",
-            "line 1, column 2: fogg: no such key (did you mean \"fog\"?)",
+            "line 1, column 2: fogg: unknown key (did you mean \"fog\"?)",
         ),
         (
             "[[fog.layers]]\nvisibility_m = 1\n[[fog.layers]]\ntop = 3\n",
-            "line 4, column 1: fog.layers[1].top: no such key (did you mean \"top_m\"?)",
+            "line 4, column 1: fog.layers[1].top: unknown key (did you mean \"top_m\"?)",
         ),
         (
             "[camera]\nprojection = \"perspektive\"\n",
@@ -171,7 +171,7 @@ fn layers_of_tables_override_key_by_key() {
     assert_eq!(denser.sun.elevation_deg, Some(5.0));
     let wrong = cell(1).unwrap_err().to_string();
     assert!(
-        wrong.starts_with("line 12, column 5: cell[1].fog.visibility: no such key"),
+        wrong.starts_with("line 12, column 5: cell[1].fog.visibility: unknown key"),
         "{wrong}"
     );
     let far = cell(2).unwrap_err().to_string();
@@ -191,7 +191,7 @@ fn layers_of_tables_override_key_by_key() {
         .read::<Sheet>(&[""], &["scene"])
         .unwrap_err()
         .to_string();
-    assert!(error.contains("cell: no such key"), "{error}");
+    assert!(error.contains("cell: unknown key"), "{error}");
 }
 
 #[test]
@@ -226,7 +226,7 @@ fn files_are_taken_in() {
     let error = wrong.inline_files(|_: &str| Ok::<_, String>("[[object]]\nshap = 1\n".to_owned()));
     let error = error.unwrap_err().to_string();
     assert!(
-        error.starts_with("objects.file: o.toml: line 2, column 1: object[0].shap: no such key"),
+        error.starts_with("objects.file: o.toml: line 2, column 1: object[0].shap: unknown key"),
         "{error}"
     );
 }

@@ -1,5 +1,5 @@
-//! Fog of published drops, whose phase functions have diffraction peaks of a degree, bows and glories: the fog's solution
-//! beside paths of light followed one by one with the whole phase function.
+//! Multiple scattering in fog of published droplets, whose phase functions have narrow diffraction peaks, fogbows and glories:
+//! comparison with Monte Carlo path tracing with the full phase function.
 
 use crate::common::{GREEN_NM as NM, green_fog, green_path};
 use airlight::atmosphere::Constituent;
@@ -12,7 +12,7 @@ use rayon::prelude::*;
 
 const TOP_M: f64 = 100.0;
 
-/// Even numbers in `[0, 1)` (Steele, Lea & Flood, OOPSLA 2014: SplitMix).
+/// Uniform random numbers in `[0, 1)`: SplitMix (Steele, Lea & Flood, OOPSLA 2014).
 struct Random(u64);
 
 impl Random {
@@ -25,7 +25,7 @@ impl Random {
     }
 }
 
-/// What one path of light is followed through: a slab with heights in optical depths above the ground.
+/// A slab for path tracing; heights are optical depths above the ground.
 struct Slab<'a> {
     phase: &'a TabulatedPhase,
     tau: f64,
@@ -37,7 +37,7 @@ impl Slab<'_> {
         self.phase.evaluate(a.dot(b), NM)
     }
 
-    /// A direction that light from `around` is scattered to.
+    /// Samples a direction of scattering around `around`.
     fn scattered(&self, around: DVec3, random: &mut Random) -> DVec3 {
         let cosine = self.phase.sample(random.next(), NM);
         let sine = ((1.0 - cosine) * (1.0 + cosine)).max(0.0).sqrt();
@@ -46,15 +46,15 @@ impl Slab<'_> {
         (around * cosine + (across * cos + up * sin) * sine).normalize()
     }
 
-    /// The height at which a line from a height meets a drop; none where it leaves.
+    /// Samples the height of the next scattering event; `None` if the path leaves the slab.
     fn next(&self, height: f64, towards: DVec3, random: &mut Random) -> Option<f64> {
         let next = height - (1.0 - random.next()).ln() * towards.y;
         (0.0..self.tau).contains(&next).then_some(next)
     }
 
-    /// Radiance of light scattered twice or more along one path traced backwards from the eye. Where its last direction but
-    /// one goes is drawn from both the drop's own scattering and that of the drop which sunlight meets, so that no peak is
-    /// met by chance (Veach & Guibas 1995, the balance heuristic).
+    /// Radiance of light scattered twice or more along one path traced backwards from the eye. The second last direction is
+    /// sampled by multiple importance sampling from the peaks of both scattering events (Veach & Guibas 1995, balance
+    /// heuristic).
     fn path(&self, view: DVec3, random: &mut Random) -> f64 {
         let start = if view.y > 0.0 { 0.0 } else { self.tau };
         let (mut at, mut towards, mut radiance) = (self.next(start, view, random), view, 0.0);
@@ -66,8 +66,8 @@ impl Slab<'_> {
             let last = self.scattered(around, random);
             if let Some(height) = self.next(height, last, random) {
                 let (here, there) = (self.p(towards, last), self.p(last, self.sun));
-                let dimmed = (-(self.tau - height) / self.sun.y).exp();
-                radiance += 2.0 * here * there / (here + there) * dimmed;
+                let transmittance = (-(self.tau - height) / self.sun.y).exp();
+                radiance += 2.0 * here * there / (here + there) * transmittance;
             }
             towards = self.scattered(towards, random);
             at = self.next(height, towards, random);
@@ -76,7 +76,7 @@ impl Slab<'_> {
     }
 }
 
-/// Radiance of light scattered twice or more into a line of sight: its mean over paths and its standard error.
+/// Radiance of light scattered twice or more into a view ray: mean and standard error over paths.
 fn scattered_again(slab: &Slab<'_>, view: DVec3, paths: u64) -> (f64, f64) {
     const CHUNK: u64 = 1000;
     let chunk = |chunk: u64| {
@@ -93,22 +93,22 @@ fn scattered_again(slab: &Slab<'_>, view: DVec3, paths: u64) -> (f64, f64) {
     (mean, ((squares / count - mean * mean) / count).sqrt())
 }
 
-/// A line of sight: azimuth and elevation, degrees. The sun stands at 180, 40.
+/// A view ray: azimuth and elevation, degrees. The sun is at 180, 40.
 type ViewRay = (f64, f64);
 
-/// From the ground up, 10 to 80 degrees from the sun.
+/// Upwards from the ground, 10 to 80 degrees from the sun.
 const UP: [ViewRay; 4] = [(180.0, 30.0), (180.0, 65.0), (90.0, 50.0), (0.0, 60.0)];
-/// From the top down: to the point opposite to the sun and in its glory.
+/// Downwards from the top, towards the antisolar point and the glory around it.
 const GLORY: [ViewRay; 2] = [(0.0, -40.0), (0.0, -43.0)];
-/// In the bow, and beside it.
+/// Downwards from the top, in and beside the fogbow.
 const DOWN: [ViewRay; 3] = [(0.0, -79.0), (60.0, -60.0), (180.0, -50.0)];
 
-/// Our error, and the standard error of the paths that it is measured against, as parts of the radiance.
-fn errors(drops: Drops, tau: f64, sights: &[ViewRay], paths: u64) -> Vec<[f64; 2]> {
+/// Relative error, and relative standard error of the path tracing.
+fn errors(drops: Drops, tau: f64, rays: &[ViewRay], paths: u64) -> Vec<[f64; 2]> {
     let slab = DensityProfile::slab(TOP_M);
     let layer = Constituent::fog(tau / TOP_M, drops.into(), slab, &[NM]).unwrap();
     let PhaseFunction::Tabulated(phase) = layer.phase.clone() else {
-        panic!("{drops:?} is no table")
+        panic!("{drops:?} has no table")
     };
     let sun = direction(180.0, 40.0);
     let fog = |scattering| green_fog(layer.clone(), Ground::FLAT, Some(sun), 0.0, scattering);
@@ -128,36 +128,36 @@ fn errors(drops: Drops, tau: f64, sights: &[ViewRay], paths: u64) -> Vec<[f64; 2
         let seen = |fog: &Fog| green_path(fog, height, view, length)[1];
         let (again, error) = scattered_again(&slab, view, paths);
         let want = seen(&once) + again;
-        let [ours, loose] = [seen(&many) / want - 1.0, error / want];
+        let [error, noise] = [seen(&many) / want - 1.0, error / want];
         println!(
             "{drops:?}, depth {tau}, {:.0} degrees from the sun: {:+.1} +- {:.1} %",
             view.angle_between(sun).to_degrees(),
-            100.0 * ours,
-            100.0 * loose
+            100.0 * error,
+            100.0 * noise
         );
-        [ours, loose]
+        [error, noise]
     };
-    sights.iter().map(error).collect()
+    rays.iter().map(error).collect()
 }
 
-/// The field inside keeps 8 moments; what it leaves out of the peak is put back for light scattered once. A glory, as narrow
-/// as the peak, is then not smeared by it as it should be: up to 17 % too bright; all else is right to 8 %.
+/// The diffuse field has 8 moments; the rest of the peak is added to single scattering only. A glory, which is as narrow as the
+/// peak, is therefore not blurred by it and up to 17 % too bright; other errors are below 8 %.
 fn check(drops: Drops, tau: f64, paths: u64) {
-    for (sights, limit) in [(&UP[..], 0.08), (&DOWN[..], 0.08), (&GLORY[..], 0.17)] {
-        for [ours, loose] in errors(drops, tau, sights, paths) {
-            assert!(ours.abs() < limit + 3.0 * loose, "{ours} {loose}");
+    for (rays, limit) in [(&UP[..], 0.08), (&DOWN[..], 0.08), (&GLORY[..], 0.17)] {
+        for [error, noise] in errors(drops, tau, rays, paths) {
+            assert!(error.abs() < limit + 3.0 * noise, "{error} {noise}");
         }
     }
 }
 
 #[test]
-fn drops_by_theory_scatter_as_paths_say() {
+fn fog_of_droplets_matches_path_tracing() {
     check(Drops::CloudC1, 1.0, 10_000);
 }
 
 #[test]
 #[ignore = "takes minutes: prints the errors that the book states"]
-fn errors_of_fog_of_drops_by_theory() {
+fn errors_of_fog_of_droplets() {
     for (drops, tau) in [
         (Drops::CloudC1, 1.0),
         (Drops::CloudC1, 6.0),

@@ -1,5 +1,4 @@
-//! Light scattered many times in fog, against the Monte Carlo on the sphere: a method that shares nothing with the fog's but
-//! the phase functions.
+//! Multiple scattering in fog compared with spherical Monte Carlo, which shares only the phase functions with the fog solver.
 
 use crate::common::{green_fog, green_path, grey_layer};
 use airlight::atmosphere::{Atmosphere, Constituent, ConstituentKind, DensityProfile, Planet};
@@ -11,7 +10,7 @@ use airlight::spectrum::{SpectralCurve, WavelengthGrid};
 use airlight::sun::SunDisc;
 use std::f32::consts::PI;
 
-/// Height of the fog's top, m.
+/// Height of the top of the fog, m.
 const TOP_M: f64 = 100.0;
 /// Height of the eye, m.
 const EYE_M: f64 = 2.0;
@@ -19,7 +18,7 @@ const GROUND_ALBEDO: f64 = 0.2;
 /// Azimuth of the sun, degrees.
 const SUN_DEG: f64 = 180.0;
 
-/// A slab of fog of a vertical optical depth that absorbs nothing.
+/// A slab of fog without absorption.
 struct Scene {
     depth: f64,
     phase: PhaseFunction,
@@ -31,7 +30,7 @@ impl Scene {
         self.depth / TOP_M
     }
 
-    /// The fog, over ground as round as the Earth.
+    /// The fog over round ground.
     fn fog(&self) -> Fog {
         let slab = DensityProfile::slab(TOP_M);
         let layer = grey_layer(slab, self.extinction_per_m(), 1.0, self.phase.clone());
@@ -40,7 +39,7 @@ impl Scene {
         green_fog(layer, Ground::EARTH, Some(sun), GROUND_ALBEDO, multiple)
     }
 
-    /// The same as the only air of a planet.
+    /// The fog as the atmosphere of a planet.
     fn planet(&self) -> MonteCarlo {
         let air = Atmosphere {
             name: "fog".to_owned(),
@@ -68,7 +67,7 @@ impl Scene {
     }
 }
 
-/// Azimuths from the sun's and elevations looked to, degrees. The last three are level, or nearly.
+/// Views: azimuth relative to the sun and elevation, degrees. The last three are level, or nearly.
 const VIEWS: [(f64, f64); 9] = [
     (0.0, 90.0),
     (60.0, 45.0),
@@ -82,17 +81,17 @@ const VIEWS: [(f64, f64); 9] = [
 ];
 const SLANT: usize = 6;
 
-/// Errors in percent of the radiance, ground included, in each view: without their signs, and what of them noise cannot hide.
+/// Absolute errors of the radiance in each view in percent, and the same reduced by three standard errors of the reference.
 fn errors(scene: &Scene) -> (Vec<f64>, Vec<f64>) {
     let (fog, planet) = (scene.fog(), scene.planet());
     let ground = fog.ground_irradiance().unwrap()[0] * GROUND_ALBEDO as f32 / PI;
-    let (mut errors, mut sure) = (Vec::new(), Vec::new());
+    let (mut errors, mut significant) = (Vec::new(), Vec::new());
     for (azimuth, elevation) in VIEWS {
         let view = direction(SUN_DEG + azimuth, elevation);
         let sun = direction(SUN_DEG, scene.sun_elevation_deg);
         let truth = planet.radiance_within(2e-3, 1 << 22, EYE_M, sun, view);
         let (length_m, behind) = match elevation < 0.0 {
-            // Over such a length the ground falls away by less than a part in 1000 of the eye's height.
+            // The curvature of the ground over this length is below 1e-3 of the eye height.
             true => (EYE_M / -view.y, ground),
             false => (f64::INFINITY, 0.0),
         };
@@ -102,20 +101,20 @@ fn errors(scene: &Scene) -> (Vec<f64>, Vec<f64>) {
         let noise = 100.0 * truth.standard_error[0] / mean;
         let error = 100.0 * (seen / mean - 1.0);
         println!("    {azimuth:4} {elevation:4}: {mean:.4e} +- {noise:.2} %, off by {error:6.2} %");
-        assert!(noise < 1.0, "the Monte Carlo is too noisy: {noise} %");
+        assert!(noise < 1.0, "Monte Carlo noise: {noise} %");
         errors.push(error.abs());
-        sure.push((error.abs() - 3.0 * noise).max(0.0));
+        significant.push((error.abs() - 3.0 * noise).max(0.0));
     }
-    (errors, sure)
+    (errors, significant)
 }
 
-/// What the book's chapter on fog states; prints its table with `--nocapture`.
+/// Prints a table of the book with `--nocapture`.
 #[test]
-#[ignore = "some minutes of random paths"]
-fn many_scatterings_are_those_of_the_monte_carlo() {
+#[ignore = "takes minutes of Monte Carlo"]
+fn multiple_scattering_matches_monte_carlo() {
     let drops = droplets::phase(10.0);
     let peaked = PhaseFunction::HenyeyGreenstein { g: 0.8 };
-    // Optical depth, and bounds in percent of lines that rise or fall, and of level ones.
+    // Optical depth, and limits in percent for slant and for level rays.
     let (thin, middling, thick) = ((0.05, 7.0, 35.0), (0.5, 5.0, 15.0), (3.0, 3.0, 3.0));
     let mut table = "| vertical optical depth | 0.05 | 0.5 | 3 |\n|---|---|---|---|\n".to_owned();
     for (name, phase, sun_elevation_deg, fogs) in [
@@ -131,7 +130,7 @@ fn many_scatterings_are_those_of_the_monte_carlo() {
         let mut cells = ["", "", ""].map(str::to_owned);
         for (cell, &(depth, slant, level)) in cells.iter_mut().zip(fogs) {
             println!("{name}; optical depth {depth}");
-            let (errors, sure) = errors(&Scene {
+            let (errors, significant) = errors(&Scene {
                 depth,
                 phase: phase.clone(),
                 sun_elevation_deg,
@@ -143,7 +142,7 @@ fn many_scatterings_are_those_of_the_monte_carlo() {
                 _ => format!("{error:.1}"),
             };
             *cell = format!("{} / {}", short(worst(slants)), short(worst(levels)));
-            let (slants, levels) = sure.split_at(SLANT);
+            let (slants, levels) = significant.split_at(SLANT);
             assert!(worst(slants) < slant, "{slants:.2?}");
             assert!(worst(levels) < level, "{levels:.2?}");
         }

@@ -1,5 +1,5 @@
-//! Fog against outside truth: Henyey-Greenstein slabs and exponential fog under a sun of unit irradiance, by Mitsuba (path
-//! tracing, with standard errors) and PythonicDISORT. `data/README.md` says where the tables come from.
+//! Fog compared with independent reference values: Henyey-Greenstein slabs and exponential fog under a sun of unit irradiance,
+//! by Mitsuba (path tracing, with standard errors) and PythonicDISORT. Sources of the tables: `data/README.md`.
 
 use crate::common::{green_fog, green_path, grey_layer};
 use airlight::axes::direction;
@@ -7,13 +7,13 @@ use airlight::fog::{DensityProfile, Fog, FogScattering, Ground, droplets};
 use airlight::optics::PhaseFunction;
 use glam::DVec3;
 
-/// The lines of a table without remarks and head, split at the commas.
+/// Rows of a CSV table without comments and header.
 fn rows(table: &'static str) -> impl Iterator<Item = Vec<&'static str>> {
     let lines = table.lines().filter(|line| !line.starts_with('#')).skip(1);
     lines.map(|line| line.split(',').collect())
 }
 
-/// The same where every column is a number.
+/// Rows of a CSV table of numbers.
 fn numbers<const N: usize>(table: &'static str) -> impl Iterator<Item = [f64; N]> {
     rows(table).map(|row| std::array::from_fn(|column| row[column].parse().unwrap()))
 }
@@ -23,11 +23,11 @@ const SLAB: DensityProfile = DensityProfile::slab(100.0);
 /// Fog 100 m high over flat ground.
 struct Scene {
     profile: DensityProfile,
-    /// Optical depth, vertical.
+    /// Vertical optical depth.
     depth: f64,
     single_scattering_albedo: f64,
     phase: PhaseFunction,
-    /// A sun of unit irradiance in the north, or else an even sky of unit radiance.
+    /// A sun of unit irradiance in the north; if `None`, an isotropic sky of unit radiance.
     sun_zenith_deg: Option<f64>,
     ground_albedo: f64,
 }
@@ -42,7 +42,7 @@ impl Scene {
     }
 }
 
-/// Path radiance up to the edge of a slab, of which the part `above` lies above the eye.
+/// Path radiance up to the edge of a slab, a fraction `above` of which is above the eye.
 fn to_the_edge(fog: &Fog, above: f64, view: DVec3) -> f64 {
     let height = 100.0 * (1.0 - above);
     let length = match view.y < 0.0 {
@@ -52,8 +52,8 @@ fn to_the_edge(fog: &Fog, above: f64, view: DVec3) -> f64 {
     green_path(fog, height, view, length)[1]
 }
 
-/// One row of Mitsuba's table: the line of sight from the ground through all of the fog.
-fn whole_line(row: &[&str], scattering: FogScattering) -> f64 {
+/// Path radiance for a row of Mitsuba's table, from the ground through all of the fog.
+fn from_ground(row: &[&str], scattering: FogScattering) -> f64 {
     let number = |column: usize| row[column].parse::<f64>().unwrap();
     let (profile, depth) = match row[0] {
         "slab" => (SLAB, number(3)),
@@ -62,7 +62,7 @@ fn whole_line(row: &[&str], scattering: FogScattering) -> f64 {
                 reference_height_m: 0.0,
                 scale_height_m: 100.0,
             };
-            // The path tracer's fog ends ten scale heights up; only its optical depth counts.
+            // In Mitsuba the fog ends at ten scale heights.
             (profile, number(3) * (1.0 - f64::exp(-10.0)))
         }
         other => panic!("unknown case {other}"),
@@ -82,7 +82,7 @@ fn whole_line(row: &[&str], scattering: FogScattering) -> f64 {
 #[test]
 fn single_scattering_matches_the_closed_form_and_mitsuba() {
     for row in rows(include_str!("../data/mitsuba_fog_checks.csv")) {
-        let got = whole_line(&row, FogScattering::Single);
+        let got = from_ground(&row, FogScattering::Single);
         let number = |column: usize| row[column].parse::<f64>().unwrap();
         let (closed, mitsuba, error) = (number(7), number(8), number(9));
         assert!((got / closed - 1.0).abs() < 1e-6, "{row:?}: {got}");
@@ -90,17 +90,17 @@ fn single_scattering_matches_the_closed_form_and_mitsuba() {
     }
 }
 
-/// The radiance that the reference says is scattered into a line, beside ours; and the irradiance on the ground.
+/// Relative errors of the path radiance of a ray, and of the irradiance on the ground.
 struct Compared {
     g: f64,
     tau: f64,
-    /// Angle between the line and the sun, degrees; none under the sky alone.
+    /// Angle between the ray and the sun, degrees; `None` without sun.
     from_sun_deg: Option<f64>,
     scattered: f64,
     irradiance: f64,
 }
 
-/// `ours / theirs - 1` for every row of the table of slabs.
+/// Relative errors for every row of the table of slabs.
 fn slabs() -> Vec<Compared> {
     rows(include_str!("../data/fog_slabs_disort.csv"))
         .map(|row| {
@@ -131,7 +131,7 @@ fn slabs() -> Vec<Compared> {
         .collect()
 }
 
-/// Median, 90th percentile and worst of the errors without their signs, in percent.
+/// Median, 90th percentile and maximum of the absolute errors, in percent.
 fn spread(errors: impl Iterator<Item = f64>) -> [f64; 3] {
     let mut errors: Vec<f64> = errors.map(|e| 100.0 * e.abs()).collect();
     errors.sort_by(f64::total_cmp);
@@ -139,10 +139,9 @@ fn spread(errors: impl Iterator<Item = f64>) -> [f64; 3] {
     [errors[last / 2], errors[last * 9 / 10], errors[last]]
 }
 
-/// The table of the book's chapter on fog; shown with `--nocapture`. The limits are the measured errors, a little rounded
-/// up: median, 90th percentile, worst.
+/// Prints a table of the book with `--nocapture`. Limits are the measured errors (median, 90th percentile, maximum), rounded up.
 #[test]
-fn light_scattered_many_times_matches_the_slabs() {
+fn multiple_scattering_matches_disort() {
     let slabs = slabs();
     let towards = |c: &Compared, near: bool| c.from_sun_deg.is_some_and(|a| (a < 20.0) == near);
     let far = |c: &Compared| towards(c, false);
@@ -217,8 +216,8 @@ fn light_scattered_many_times_matches_the_slabs() {
     }
 }
 
-/// Nearly level lines in thin fog: the hardest case, as the forward peak is taken to be narrower than the band of bright fog
-/// along the horizon. Asymmetry 0.7, and 0.85.
+/// Relative errors of nearly level rays in thin fog, for asymmetries of 0.7 and 0.85. The most difficult case, as the forward
+/// peak is assumed to be narrower than the bright band along the horizon.
 fn nearly_level() -> [Vec<f64>; 2] {
     let mut errors = [Vec::new(), Vec::new()];
     for row in numbers::<7>(include_str!("../data/fog_level_disort.csv")) {
@@ -243,7 +242,7 @@ fn nearly_level() -> [Vec<f64>; 2] {
     errors
 }
 
-/// The phase function of real fog has a far sharper peak than Henyey-Greenstein's.
+/// Relative errors for the phase function of droplets, whose peak is much narrower than that of Henyey-Greenstein.
 fn droplets_of_ten() -> Vec<f64> {
     let rows = numbers::<7>(include_str!("../data/fog_droplets_disort.csv"));
     let error = |row: [f64; 7]| {
@@ -277,9 +276,9 @@ fn droplets_of_ten() -> Vec<f64> {
 
 /// Mitsuba and PythonicDISORT on the same four scenes.
 #[test]
-fn light_scattered_many_times_matches_path_tracing() {
+fn multiple_scattering_matches_path_tracing() {
     for row in rows(include_str!("../data/mitsuba_fog_checks.csv")) {
-        let got = whole_line(&row, FogScattering::Multiple);
+        let got = from_ground(&row, FogScattering::Multiple);
         let number = |column: usize| row[column].parse::<f64>().unwrap();
         let (mitsuba, error) = (number(11), number(12));
         println!(
@@ -293,7 +292,7 @@ fn light_scattered_many_times_matches_path_tracing() {
         );
     }
     for row in rows(include_str!("../data/disort_vs_mitsuba.csv")) {
-        let got = whole_line(&row, FogScattering::Multiple);
+        let got = from_ground(&row, FogScattering::Multiple);
         let disort: f64 = row[7].parse().unwrap();
         assert!((got / disort - 1.0).abs() < 0.01, "{row:?}: {got}");
     }

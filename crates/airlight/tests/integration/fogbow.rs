@@ -1,4 +1,4 @@
-//! The fogbow and the glory, seen from above a fog with the sun behind.
+//! Fogbow and glory, seen from above the fog with the sun behind.
 
 use airlight::atmosphere::{Constituent, presets};
 use airlight::axes::direction;
@@ -16,8 +16,7 @@ const PROFILE: DensityProfile = DensityProfile::slab(100.0);
 
 type Seen = Result<Vec<[[f64; 3]; 2]>, Box<dyn std::error::Error>>;
 
-/// Linear sRGB by the angle from the point opposite to the sun (degrees, level with it or below), solved in red, green and
-/// blue, and wavelength by wavelength.
+/// Linear sRGB at angles below the antisolar point (degrees), computed in RGB and spectrally.
 fn seen(drops: Drops, angles: &[f64]) -> Seen {
     let settings = SkySettings {
         suns: SunCoverage::near(SUN_DEG, EYE_M),
@@ -48,7 +47,7 @@ fn seen(drops: Drops, angles: &[f64]) -> Seen {
     Ok(angles.iter().map(look).collect())
 }
 
-/// The same of a moderate advection fog, degree by degree.
+/// [`seen`] for moderate advection fog, in steps of one degree.
 fn moderate() -> &'static [[[f64; 3]; 2]] {
     static SEEN: LazyLock<Vec<[[f64; 3]; 2]>> = LazyLock::new(|| {
         let angles: Vec<f64> = (0..=58).map(f64::from).collect();
@@ -57,9 +56,9 @@ fn moderate() -> &'static [[[f64; 3]; 2]] {
     &SEEN
 }
 
-/// White within a few percent, brightest 36 to 41 degrees from the point opposite to the sun, which has a glory.
+/// The fogbow is nearly white and brightest at 36 to 41 degrees from the antisolar point, which has a glory.
 #[test]
-fn bow_and_glory_stand_in_the_fog() {
+fn fog_has_a_fogbow_and_a_glory() {
     let seen = moderate();
     let green = |degrees: usize| seen[degrees][1][1];
     let bow = (30..50)
@@ -74,7 +73,7 @@ fn bow_and_glory_stand_in_the_fog() {
     assert!(inside > 1.1 && outside > 1.4 && glory > 1.6);
     for (degrees, [_, all]) in seen.iter().enumerate() {
         for channel in 0..3 {
-            // Colour against that of the fog between bow and glory.
+            // Colour relative to that between fogbow and glory.
             let tint = all[channel] / all[1] * seen[20][1][1] / seen[20][1][channel];
             assert!((0.8..1.25).contains(&tint), "{degrees} {channel}: {tint}");
         }
@@ -85,7 +84,7 @@ mod guards {
     use super::*;
 
     #[test]
-    fn red_green_and_blue_show_what_16_wavelengths_show() {
+    fn rgb_matches_16_wavelengths() {
         let errors = moderate()
             .iter()
             .flat_map(|[few, all]| (0..3).map(|channel| (few[channel] / all[channel] - 1.0).abs()));

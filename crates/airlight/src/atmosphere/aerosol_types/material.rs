@@ -1,4 +1,4 @@
-//! What OPAC's aerosols are made of: components, their sizes, their refractive indices, their growth in moist air.
+//! Components of OPAC aerosols: size distributions, refractive indices, growth in moist air.
 
 use crate::math::interpolation::{interval_by_key, lerp};
 use crate::names::named;
@@ -7,7 +7,7 @@ use crate::optics::mie::SizeDistribution;
 use crate::spectrum::embedded_table;
 use std::sync::LazyLock;
 
-/// A component of OPAC's aerosols: spheres of one material in a lognormal distribution of sizes (Hess, Koepke & Schult
+/// A component of OPAC aerosols: spheres of one material with a lognormal size distribution (Hess, Koepke & Schult
 /// 1998, table 1c).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Component {
@@ -27,13 +27,13 @@ pub enum Component {
     MineralAccumulation,
     /// Desert dust, coarse mode.
     MineralCoarse,
-    /// Desert dust carried far.
+    /// Desert dust after long transport.
     MineralTransported,
     /// Droplets of sulfuric acid (75 %); grow in moist air.
     Sulfate,
 }
 
-/// What a component is made of: a column of the tables.
+/// Material of a component: a column of the tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Material {
     Insoluble,
@@ -45,10 +45,10 @@ enum Material {
     Water,
 }
 
-/// Wavelength (nm), then n and k of each [`Material`].
+/// Rows of wavelength (nm) and n, k of each [`Material`].
 static INDICES: LazyLock<Vec<[f64; 15]>> =
     LazyLock::new(|| embedded_table(include_str!("../../../data/atmosphere/aerosol_indices.txt")));
-/// Relative humidity, radius over dry radius of water-soluble matter, sea salt and sulfate.
+/// Rows of relative humidity and growth (radius over dry radius) of water-soluble matter, sea salt and sulfate.
 static GROWTH: LazyLock<Vec<[f64; 4]>> =
     LazyLock::new(|| embedded_table(include_str!("../../../data/atmosphere/aerosol_growth.txt")));
 
@@ -80,30 +80,30 @@ impl Component {
         }
     }
 
-    /// Whether it takes up water.
+    /// Whether the particles take up water.
     pub fn grows(self) -> bool {
         self.material().growth_column().is_some()
     }
 
-    /// Radius at a relative humidity (0 to 0.99) over the dry radius. Both modes of sea salt grow alike here; OPAC has the
-    /// coarse one grow by 0.2 % more at 80 % and 3 % more at 99 %.
+    /// Radius at a relative humidity (0 to 0.99) over the dry radius. Both modes of sea salt grow alike here; in OPAC the
+    /// coarse mode grows 0.2 % more at 80 % and 3 % more at 99 %.
     pub fn growth(self, relative_humidity: f64) -> f64 {
         let Some(column) = self.material().growth_column() else {
             return 1.0;
         };
-        // The volume of water over that of the solute goes about as a / (1 - a): what is left is interpolated.
+        // Water volume over solute volume is about proportional to a / (1 - a): interpolate the ratio to it.
         let odds = |a: f64| a / (1.0 - a);
-        let taken_up = |row: &[f64; 4]| (row[column].powi(3) - 1.0) / odds(row[0]);
+        let water_uptake = |row: &[f64; 4]| (row[column].powi(3) - 1.0) / odds(row[0]);
         let wet = &GROWTH[1..];
         let below = interval_by_key(wet, relative_humidity, |row| row[0]);
         let (low, high) = (&wet[below], &wet[below + 1]);
         let t = ((relative_humidity - low[0]) / (high[0] - low[0])).clamp(0.0, 1.0);
-        let kappa = lerp(taken_up(low), taken_up(high), t);
+        let kappa = lerp(water_uptake(low), water_uptake(high), t);
         (1.0 + kappa * odds(relative_humidity)).cbrt()
     }
 
-    /// The sizes, grown. The smallest radius (5 nm and more in OPAC) is left at 0: what lies below does nothing to light,
-    /// and OPAC's numbers count the whole distribution.
+    /// Size distribution at a relative humidity. The smallest radius (5 nm or more in OPAC) is 0 here: smaller particles
+    /// have no optical effect, and OPAC's number densities are of the whole distribution.
     pub fn sizes(self, relative_humidity: f64) -> SizeDistribution {
         // Mode radius of the number (micrometres), geometric standard deviation, largest radius.
         let (radius_um, geometric_deviation, largest_um) = match self {
@@ -126,7 +126,7 @@ impl Component {
         }
     }
 
-    /// The refractive index, 250 nm to 1250 nm: of solute and water mixed by volume.
+    /// Refractive index from 250 nm to 1250 nm: mean of solute and water, weighted by volume.
     pub fn index(self, relative_humidity: f64) -> RefractiveIndex {
         let solute = self.growth(relative_humidity).powi(-3);
         let row = |row: &[f64; 15]| {
@@ -162,7 +162,7 @@ mod tests {
     /// Mode radii of OPAC's table for moist air: 0.0306 micrometres for water-soluble matter at 80 % and 0.0534 at 99 %,
     /// 0.416 for sea salt at 80 %, 0.231 for sulfate at 99 %; and an index of the files for wet materials.
     #[test]
-    fn particles_grow_as_published() {
+    fn growth_matches_the_publication() {
         for (component, humidity, radius_um) in [
             (Component::WaterSoluble, 0.8, 0.0306),
             (Component::WaterSoluble, 0.99, 0.0534),

@@ -1,4 +1,4 @@
-//! Types and components mixed, and the constituent they make.
+//! [`AerosolMixture`]: mixtures of types and components, and their constituents.
 
 use super::modes::{Mode, Optics, WAVELENGTHS_NM};
 use super::{AerosolType, AerosolTypeError, Component, layer};
@@ -8,47 +8,47 @@ use crate::atmosphere::{ClearAir, Constituent, ConstituentKind, DensityProfile};
 use crate::optics::PhaseFunction;
 use crate::spectrum::{CurveError, SpectralCurve};
 
-/// One thing that a mixture holds.
+/// A part of a mixture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Ingredient {
-    /// A type, itself a mixture.
+    /// A type, which is itself a mixture.
     Type(AerosolType),
     /// A single component of OPAC.
     Component(Component),
 }
 
-/// Types and components mixed by their shares of the extinction at 550 nm, in air of a relative humidity.
+/// A mixture of types and components by their shares of the extinction at 550 nm, at a relative humidity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AerosolMixture {
-    /// Shares, which sum to 1.
+    /// Parts with their shares, which sum to 1.
     parts: Vec<(f64, Ingredient)>,
     relative_humidity: f64,
 }
 
-/// What an aerosol does to light at 550 nm, in bulk.
+/// Bulk optical properties of an aerosol at 550 nm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AerosolSummary {
-    /// Extinction at the ground as published (of a mixture the mean by shares), m^-1.
+    /// Extinction coefficient at the ground at the published number density (mean by shares for a mixture), m^-1.
     pub extinction_per_m: f64,
-    /// Scattering over extinction.
+    /// Ratio of scattering to extinction.
     pub single_scattering_albedo: f64,
     /// Mean cosine of the scattering angle.
     pub asymmetry: f64,
     /// Angstrom exponent of the extinction from 350 to 500 nm.
     pub angstrom_350_500: f64,
-    /// The same from 500 to 800 nm.
+    /// Angstrom exponent of the extinction from 500 to 800 nm.
     pub angstrom_500_800: f64,
 }
 
 impl AerosolMixture {
-    /// The humidity where none is given: that of OPAC's tables.
+    /// Default relative humidity, that of OPAC's tables.
     pub const USUAL_HUMIDITY: f64 = 0.8;
 
-    /// Mixes parts by their shares of the extinction at 550 nm, which are scaled to sum to 1, in air of a relative humidity
-    /// (0 to 0.99).
+    /// A mixture of parts with these shares of the extinction at 550 nm, which are normalized to sum to 1, at a relative
+    /// humidity from 0 to 0.99.
     ///
     /// # Errors
-    /// [`AerosolTypeError`] where there are no parts, a share is not positive or the humidity is out of range.
+    /// [`AerosolTypeError`] if there are no parts, a share is not positive or the humidity is out of range.
     pub fn new(
         parts: Vec<(f64, Ingredient)>,
         relative_humidity: f64,
@@ -60,7 +60,7 @@ impl AerosolMixture {
         if let Some(&(share, _)) = parts.iter().find(|part| wrong(part.0)) {
             return Err(AerosolTypeError::Share(share));
         }
-        // Over the largest, so that no sum of finite shares overflows.
+        // Divided by the largest share, so that the sum does not overflow.
         let most = parts.iter().fold(0.0, |most: f64, part| most.max(part.0));
         let sum: f64 = parts.iter().map(|part| part.0 / most).sum();
         match parts.is_empty() {
@@ -75,21 +75,21 @@ impl AerosolMixture {
         }
     }
 
-    /// One type alone.
+    /// A single type.
     ///
     /// # Errors
-    /// [`AerosolTypeError::Humidity`] where it is out of range.
+    /// [`AerosolTypeError::Humidity`] if the humidity is out of range.
     pub fn of(kind: AerosolType, relative_humidity: f64) -> Result<Self, AerosolTypeError> {
         Self::new(vec![(1.0, Ingredient::Type(kind))], relative_humidity)
     }
 
-    /// Whether the humidity of the air makes a difference.
+    /// Whether any particles take up water, so that optics depend on humidity.
     pub fn grows(&self) -> bool {
         self.parts.iter().any(|&(_, part)| part.grows())
     }
 
-    /// Where it is over ground of an altitude (m): where the part with the largest share is ([`AerosolType::profile`]; a
-    /// component alone as continental aerosol).
+    /// Density profile above ground at this altitude (m): that of the part with the largest share ([`AerosolType::profile`];
+    /// single components have that of continental aerosol).
     pub fn profile(&self, ground_altitude_m: f64) -> DensityProfile {
         let most = self.parts.iter().max_by(|a, b| a.0.total_cmp(&b.0));
         match most.map(|part| part.1) {
@@ -98,11 +98,11 @@ impl AerosolMixture {
         }
     }
 
-    /// How much there is as published: OPAC's numbers of particles at this humidity, for smoke an optical depth of 0.5 at
-    /// 440 nm. Each part counts by its share.
+    /// Default optical depth at 550 nm: OPAC's number densities at this humidity, for smoke an optical depth of 0.5 at 440 nm;
+    /// parts are weighted by their shares.
     ///
     /// # Errors
-    /// [`AerosolTypeError::Mie`] where the particles are refused.
+    /// [`AerosolTypeError::Mie`] for invalid particles.
     pub fn usual_optical_depth_550(&self) -> Result<f64, AerosolTypeError> {
         let mut depth = 0.0;
         for &(share, part) in &self.parts {
@@ -113,8 +113,8 @@ impl AerosolMixture {
         Ok(depth)
     }
 
-    /// The modes of all parts: numbers as published for one part alone, for several such that each makes its share of the
-    /// extinction, and all together the mean of what each is published with.
+    /// Modes of all parts. Number densities are scaled such that each part has its share of the extinction, and the total
+    /// is the mean, by shares, of the published extinctions.
     fn modes(&self) -> Result<Vec<Mode>, AerosolTypeError> {
         let mut all = Vec::new();
         let mut whole_per_m = 0.0;
@@ -131,10 +131,10 @@ impl AerosolMixture {
             .collect())
     }
 
-    /// The bulk of it.
+    /// Bulk optical properties.
     ///
     /// # Errors
-    /// [`AerosolTypeError::Mie`] where the particles are refused.
+    /// [`AerosolTypeError::Mie`] for invalid particles.
     pub fn summary(&self) -> Result<AerosolSummary, AerosolTypeError> {
         let optics = Optics::of(&self.modes()?)?;
         let at = |nm: f64| WAVELENGTHS_NM.iter().position(|&w| w == nm).unwrap_or(0);
@@ -152,13 +152,13 @@ impl AerosolMixture {
         })
     }
 
-    /// The constituent "aerosol" of an atmosphere between two altitudes (m), so much of it (as published, where that is not
-    /// said) and where `density` says (else its own profile).
+    /// The aerosol constituent of an atmosphere between two altitudes, m. Defaults: [`Self::usual_optical_depth_550`] and
+    /// [`Self::profile`].
     ///
-    /// Coefficients are power laws between the wavelengths that Mie's theory was summed at, tabulated every 5 nm.
+    /// Coefficients are power laws between the wavelengths of the Lorenz-Mie computation, tabulated every 5 nm.
     ///
     /// # Errors
-    /// [`AerosolTypeError`] where the amount or the place is refused.
+    /// [`AerosolTypeError`] for an invalid amount or density profile.
     pub fn constituent(
         &self,
         load: Option<AerosolLoad>,
@@ -194,7 +194,7 @@ impl Ingredient {
         }
     }
 
-    /// Where it is over ground of an altitude, m.
+    /// Density profile above ground at this altitude, m.
     fn profile(self, ground_altitude_m: f64) -> DensityProfile {
         match self {
             Self::Type(kind) => kind.profile(ground_altitude_m),
@@ -216,7 +216,7 @@ impl Optics {
     }
 }
 
-/// Which of the wavelengths is 550 nm.
+/// Index of 550 nm in [`WAVELENGTHS_NM`].
 fn reference() -> usize {
     WAVELENGTHS_NM
         .iter()
@@ -224,7 +224,7 @@ fn reference() -> usize {
         .unwrap_or(0)
 }
 
-/// Positive values at [`WAVELENGTHS_NM`] times a factor, joined by power laws that are sampled every 5 nm.
+/// Curve of positive values at [`WAVELENGTHS_NM`], times `scale`: power laws between them, sampled every 5 nm.
 fn curve(values: &[f64], scale: f64) -> Result<SpectralCurve, CurveError> {
     let mut wavelengths = Vec::new();
     let mut samples = Vec::new();

@@ -1,13 +1,14 @@
-//! Aerosol types: haze of a kind, by name, with its colour, its albedo and its phase function by wavelength.
+//! Published aerosol types, with extinction, albedo and phase function by wavelength.
 //!
-//! [`AerosolType`] names what has been published: ten types of OPAC (M. Hess, P. Koepke & I. Schult, *Optical Properties of
+//! [`AerosolType`] lists ten types of OPAC (M. Hess, P. Koepke & I. Schult, *Optical Properties of
 //! Aerosols and Clouds: The Software Package OPAC*, Bull. Amer. Meteor. Soc. 79, 831, 1998), mixed from [`Component`]s that
-//! grow in moist air, and three smokes ([`Smoke`]). [`AerosolMixture`] is one of them at a humidity, or several by their
-//! shares, and makes the constituent "aerosol" of an atmosphere. All follows from Lorenz-Mie theory ([`crate::optics::mie`]).
+//! grow in moist air, and three smokes ([`Smoke`]). [`AerosolMixture`] is one type at a relative humidity, or a mixture of
+//! several, and builds the aerosol constituent of an atmosphere. Optics are computed by Lorenz-Mie theory
+//! ([`crate::optics::mie`]).
 //!
-//! **Limits.** All particles are spheres. Grains of desert dust are not: they scatter more to the side and less straight back
-//! than spheres do (Koepke, Gasteiger & Hess, Atmos. Chem. Phys. 15, 5947, 2015); the albedo of spheroids is within 0.005.
-//! Optics are computed every 50 nm from 350 to 850 nm; beyond, coefficients stay as they are there.
+//! **Limitations.** All particles are spheres. Grains of desert dust are not: they scatter more sideways and less backwards
+//! (Koepke, Gasteiger & Hess, Atmos. Chem. Phys. 15, 5947, 2015); the albedo of spheroids is within 0.005.
+//! Optics are computed every 50 nm from 350 to 850 nm and constant beyond.
 
 mod material;
 mod mixture;
@@ -28,7 +29,7 @@ use crate::optics::mie::MieError;
 use crate::spectrum::CurveError;
 use modes::Mode;
 
-/// A published kind of haze.
+/// A published aerosol type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum AerosolType {
@@ -36,23 +37,23 @@ pub enum AerosolType {
     ContinentalClean,
     /// Continental air with some soot.
     ContinentalAverage,
-    /// Continental air polluted by man.
+    /// Polluted continental air.
     ContinentalPolluted,
-    /// Air of large towns.
+    /// Urban air with much soot.
     Urban,
     /// Desert dust.
     Desert,
-    /// Undisturbed air over the sea.
+    /// Unpolluted marine air.
     MaritimeClean,
-    /// Sea air with what towns add to it.
+    /// Marine air with soot.
     MaritimePolluted,
-    /// Sea air of the tropics, where less salt is raised.
+    /// Tropical marine air, with less sea salt.
     MaritimeTropical,
-    /// Arctic haze of spring.
+    /// Arctic haze in spring.
     Arctic,
-    /// The antarctic continent in summer.
+    /// Antarctica in summer.
     Antarctic,
-    /// Smoke of vegetation that burns.
+    /// Smoke of burning vegetation.
     Biomass(Smoke),
 }
 
@@ -151,10 +152,10 @@ impl AerosolType {
         }
     }
 
-    /// Where it is over ground of an altitude (m): of OPAC (table 5) the layer in which it is mixed, `e^(-h / Z)` up to
-    /// a height of 2 km (desert 6 km, antarctic 10 km) with Z of 8 km (desert 2 km, maritime 1 km, arctic 99 km) and nothing
-    /// above. OPAC adds to it what the free troposphere and the stratosphere hold, an optical depth of 0.02 at 550 nm, which
-    /// is left out. For smoke nothing is published: `e^(-h / 2 km)`, chosen here, up to 10 km.
+    /// Density profile above ground at this altitude (m). OPAC types (table 5) have the mixing layer only: `e^(-h / Z)` up to
+    /// 2 km (desert 6 km, antarctic 10 km), with Z = 8 km (desert 2 km, maritime 1 km, arctic 99 km). The aerosol that OPAC
+    /// adds in the free troposphere and stratosphere, an optical depth of 0.02 at 550 nm, is omitted. No profile is published
+    /// for smoke; `e^(-h / 2 km)` up to 10 km is an assumption made here.
     pub fn profile(self, ground_altitude_m: f64) -> DensityProfile {
         let (scale_height_m, top_m) = match self {
             Self::Desert => (2e3, 6e3),
@@ -170,7 +171,7 @@ impl AerosolType {
         layer(ground_altitude_m, scale_height_m, top_m)
     }
 
-    /// What it is made of at a relative humidity.
+    /// Modes of particles at a relative humidity.
     fn modes(self, relative_humidity: f64) -> Vec<Mode> {
         match self {
             Self::Biomass(smoke) => {
@@ -196,13 +197,13 @@ impl Component {
     }
 }
 
-/// `e^(-h / scale height)` from the ground to a height above it, nothing higher up.
+/// `e^(-h / scale height)` from the ground up to `top_m` above it, 0 above.
 fn layer(ground_altitude_m: f64, scale_height_m: f64, top_m: f64) -> DensityProfile {
     DensityProfile::tabulated(
         vec![ground_altitude_m, ground_altitude_m + top_m],
         vec![1.0, (-top_m / scale_height_m).exp()],
         Interpolation::LogLinear,
     )
-    // Only a ground altitude that no atmosphere takes can bring this about; it is refused there.
+    // Fails only for a ground altitude that is not finite, which the atmosphere rejects.
     .unwrap_or(DensityProfile::exponential(scale_height_m))
 }

@@ -1,33 +1,33 @@
-//! What modes of particles do to light, one by one and together.
+//! Optics of modes of particles, single and summed.
 
 use crate::optics::mie::{BulkOptics, MieError, Particles, SizeDistribution};
 use crate::optics::{RefractiveIndex, TabulatedPhase};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Wavelengths that optics are computed at, nm. Constant beyond.
+/// Wavelengths at which optics are computed, nm; constant beyond.
 pub(super) const WAVELENGTHS_NM: [f64; 11] = [
     350.0, 400.0, 450.0, 500.0, 550.0, 600.0, 650.0, 700.0, 750.0, 800.0, 850.0,
 ];
-/// Steps over the sizes, in those of fog's drops, and the tolerance of `ln p` that angles are chosen by. Against the finest
-/// steps the phase functions of types differ by less than 1 % within 20 degrees and 4 % anywhere, scattering by less than 1e-3
-/// (test `quick_sums_are_good_enough`).
+/// Step of the sum over sizes, in steps used for fog droplets, and the tolerance of `ln p` by which angles are chosen.
+/// Compared with the finest steps, phase functions of types differ by less than 1 % within 20 degrees and 4 % anywhere,
+/// scattering by less than 1e-3 (test `coarse_sums_are_accurate`).
 const WIDER: f64 = 10.0;
 const TOLERANCE: f64 = 0.03;
-/// So many modes are remembered, the latest first.
-const MOST_REMEMBERED: usize = 48;
+/// Number of modes in the cache; the oldest is dropped first.
+const CACHED_MODES: usize = 48;
 
-/// Spheres of one material in one distribution of sizes, so many of them.
+/// Spheres of one material and size distribution, with their number density.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Mode {
-    /// Number in a cubic centimetre.
+    /// Number of particles per cubic centimetre.
     pub number_per_cm3: f64,
     /// Refractive index.
     pub index: RefractiveIndex,
-    /// Sizes.
+    /// Size distribution.
     pub sizes: SizeDistribution,
 }
 
-/// What many modes do to light, at each of [`WAVELENGTHS_NM`].
+/// Optics of a sum of modes at each of [`WAVELENGTHS_NM`].
 #[derive(Clone, Debug)]
 pub(super) struct Optics {
     /// Scattering coefficient, m^-1.
@@ -36,7 +36,7 @@ pub(super) struct Optics {
     pub absorption_per_m: Vec<f64>,
     /// Mean cosine of the scattering angle.
     pub asymmetry: Vec<f64>,
-    /// The phase functions that make up the whole, with their shares by wavelength.
+    /// Phase functions of the modes, each with its scattering coefficients by wavelength.
     parts: Vec<(Vec<f64>, Arc<ModeOptics>)>,
 }
 
@@ -48,7 +48,7 @@ struct ModeOptics {
 }
 
 impl Mode {
-    /// More or fewer of it.
+    /// The mode with its number density multiplied by `factor`.
     pub fn times(self, factor: f64) -> Self {
         let number_per_cm3 = factor * self.number_per_cm3;
         Self {
@@ -57,26 +57,26 @@ impl Mode {
         }
     }
 
-    /// Its optics, computed once for each process.
+    /// Optics of the mode, cached for the process.
     fn optics(&self) -> Result<Arc<ModeOptics>, MieError> {
-        static KNOWN: Mutex<Vec<(Particles, Arc<ModeOptics>)>> = Mutex::new(Vec::new());
+        static CACHE: Mutex<Vec<(Particles, Arc<ModeOptics>)>> = Mutex::new(Vec::new());
         let particles = Particles::new(self.index.clone(), self.sizes)?;
-        let known = || KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, optics)) = known().iter().find(|(key, _)| *key == particles) {
+        let cache = || CACHE.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, optics)) = cache().iter().find(|(key, _)| *key == particles) {
             return Ok(Arc::clone(optics));
         }
-        // Not under the lock: others may want another mode meanwhile.
+        // Without the lock, so that other threads can compute other modes.
         let (phase, bulk) = particles.broad_table(&WAVELENGTHS_NM, WIDER, TOLERANCE)?;
         let optics = Arc::new(ModeOptics { phase, bulk });
-        let mut known = known();
-        known.insert(0, (particles, Arc::clone(&optics)));
-        known.truncate(MOST_REMEMBERED);
+        let mut cache = cache();
+        cache.insert(0, (particles, Arc::clone(&optics)));
+        cache.truncate(CACHED_MODES);
         Ok(optics)
     }
 }
 
 impl Optics {
-    /// The sum over modes: coefficients add up, phase functions weighted by what each mode scatters.
+    /// Sum of modes: coefficients are added, phase functions weighted by scattering coefficients.
     pub fn of(modes: &[Mode]) -> Result<Self, MieError> {
         let count = WAVELENGTHS_NM.len();
         let mut sum = Self {
@@ -103,7 +103,7 @@ impl Optics {
         Ok(sum)
     }
 
-    /// The phase function of all together.
+    /// Phase function of the sum.
     pub fn phase(&self) -> Result<TabulatedPhase, MieError> {
         let mut angles: Vec<f64> = self
             .parts
@@ -111,7 +111,7 @@ impl Optics {
             .flat_map(|(_, part)| part.phase.angles_rad().iter().map(|a| a.to_degrees()))
             .collect();
         angles.sort_by(f64::total_cmp);
-        // The same angle of two modes, but for rounding.
+        // Angles of two modes that differ by rounding only.
         angles.dedup_by(|next, kept| *next - *kept < 1e-9);
         let last = angles.len() - 1;
         angles[last] = 180.0;

@@ -1,19 +1,19 @@
-//! Smoke of burning vegetation, as sun photometers saw it.
+//! Smoke of burning vegetation, from sun photometer measurements.
 
 use super::modes::Mode;
 use crate::optics::RefractiveIndex;
 use crate::optics::mie::{Complex64, SizeDistribution};
 use std::f64::consts::PI;
 
-/// Optical depth at 440 nm that the sizes are stated for: in the middle of what was measured.
+/// Optical depth at 440 nm at which size distributions are evaluated: the middle of the measured range.
 const OPTICAL_DEPTH_440: f64 = 0.5;
 
-/// The largest radius that the inversions hold, micrometres.
+/// Largest radius of the inversions, micrometres.
 const LARGEST_UM: f64 = 15.0;
 
-/// Smoke of one region: O. Dubovik et al., *Variability of absorption and optical properties of key aerosol types observed in
-/// worldwide locations*, J. Atmos. Sci. 59, 590, 2002, table 1. Two lognormal distributions of volume, one refractive index
-/// for both and for all wavelengths. It is the mean of the whole column of ambient air, so there is no humidity to choose.
+/// Smoke of one region, from O. Dubovik et al., *Variability of absorption and optical properties of key aerosol types observed in
+/// worldwide locations*, J. Atmos. Sci. 59, 590, 2002, table 1: two lognormal volume distributions with one refractive
+/// index at all wavelengths. Values are means over the column of ambient air, so humidity is not a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Smoke {
     /// African savanna, Zambia 1995 to 2000.
@@ -25,7 +25,7 @@ pub enum Smoke {
 }
 
 impl Smoke {
-    /// Fine and coarse mode, at an optical depth of 0.5 at 440 nm. The numbers count as if the column were 1 m high.
+    /// Fine and coarse mode at an optical depth of 0.5 at 440 nm. Number densities are those of a column 1 m high.
     pub(super) fn modes(self) -> Vec<Mode> {
         let tau = OPTICAL_DEPTH_440;
         // n, k; for each mode median radius of the volume (micrometres), standard deviation of ln r, volume in a column
@@ -58,7 +58,7 @@ impl Smoke {
                 range_um: [0.0, LARGEST_UM],
             };
             Mode {
-                // volume is in micrometres of height: 1 um^3/um^2 over 1 m is 1e6 um^3 in a cm^3.
+                // A column volume of 1 um^3/um^2 in a column 1 m high is 1e6 um^3 per cm^3.
                 number_per_cm3: 1e6 * volume / mean_volume_um3,
                 index: RefractiveIndex::constant(index),
                 sizes,

@@ -18,16 +18,16 @@ fn of(kind: AerosolType, humidity: f64) -> AerosolMixture {
     AerosolMixture::of(kind, humidity).unwrap()
 }
 
-fn thick(mixture: &AerosolMixture, depth: f64) -> Constituent {
+fn with_depth(mixture: &AerosolMixture, depth: f64) -> Constituent {
     let load = Some(AerosolLoad::OpticalDepth550(depth));
     mixture.constituent(load, None, clear(), 0.0, TOP).unwrap()
 }
 
 /// Hess, Koepke & Schult 1998, table 3, at 80 % and 550 nm: extinction (1/km), albedo, mean cosine, Angstrom exponents from
-/// 350 to 500 nm and from 500 to 800 nm. All come out within the rounding of the table and 1e-3 (exponents 1e-2). Prints the
-/// book's table with `--nocapture`.
+/// 350 to 500 nm and from 500 to 800 nm. All agree within the rounding of the table and 1e-3 (exponents 1e-2). Prints a
+/// table of the book with `--nocapture`.
 #[test]
-fn types_do_what_was_published() {
+fn types_match_the_published_table() {
     println!(
         "\n| type | extinction, 1/km | albedo | mean cosine | Ångström 350-500 nm | 500-800 nm | optical depth |"
     );
@@ -103,7 +103,7 @@ fn types_do_what_was_published() {
 /// The program OPAC 3.1 itself, continental polluted aerosol at 80 %: extinction 0.1746 and absorption 0.01877 per km, mean
 /// cosine 0.6977; optical depth 0.327, of which 0.018 lies above the mixing layer.
 #[test]
-fn one_type_is_as_the_program_has_it() {
+fn continental_polluted_matches_the_opac_program() {
     let mixture = of(AerosolType::ContinentalPolluted, 0.8);
     let got = mixture.summary().unwrap();
     let per_km = 1e3 * got.extinction_per_m;
@@ -117,7 +117,7 @@ fn one_type_is_as_the_program_has_it() {
 
 /// Gasteiger & Wiegner 2018, figure 5: albedo of dry types at 532 nm, with spheroids for dust.
 #[test]
-fn dry_types_are_as_another_program_has_them() {
+fn albedos_of_dry_types_match_another_program() {
     for (kind, albedo) in [
         (AerosolType::Urban, 0.673),
         (AerosolType::ContinentalPolluted, 0.785),
@@ -127,17 +127,17 @@ fn dry_types_are_as_another_program_has_them() {
         (AerosolType::Arctic, 0.749),
         (AerosolType::MaritimePolluted, 0.927),
     ] {
-        let part = thick(&of(kind, 0.0), 0.1);
+        let part = with_depth(&of(kind, 0.0), 0.1);
         let got = part.scattering_per_m.at(532.0) / part.extinction_per_m(532.0);
         assert!((got - albedo).abs() < 0.005, "{kind:?}: {got}");
     }
 }
 
-/// Dubovik et al. 2002, table 1, at 440, 670, 870 and 1020 nm. Means over many inversions of four numbers that depend on each
-/// other need not fit together: albedos come out up to 0.015 too low at 440 nm and 670 nm and 0.035 beyond, mean cosines up
-/// to 0.03 and 0.05. Prints the book's table with `--nocapture`.
+/// Dubovik et al. 2002, table 1, at 440, 670, 870 and 1020 nm. The published means over many inversions are not exactly
+/// consistent with each other: computed albedos are up to 0.015 lower at 440 nm and 670 nm and 0.035 at longer wavelengths,
+/// mean cosines up to 0.03 and 0.05. Prints a table of the book with `--nocapture`.
 #[test]
-fn smoke_does_what_was_measured() {
+fn smoke_matches_measurements() {
     println!(
         "\n| type | albedo at 440 nm | 670 nm | 870 nm | mean cosine at 440 nm | 670 nm | 870 nm |"
     );
@@ -161,24 +161,24 @@ fn smoke_does_what_was_measured() {
     ] {
         let (mut albedo_cells, mut cosine_cells) = (String::new(), String::new());
         for (i, nm) in [440.0, 670.0, 870.0, 1020.0].into_iter().enumerate() {
-            let (mut scattered, mut taken, mut forward) = (0.0, 0.0, 0.0);
+            let (mut scattering, mut extinction, mut forward) = (0.0, 0.0, 0.0);
             for mode in smoke.modes() {
                 let spheres = Particles::new(mode.index, mode.sizes).unwrap();
                 let bulk = spheres.bulk(nm).unwrap();
-                scattered += mode.number_per_cm3 * bulk.scattering_um2;
-                taken += mode.number_per_cm3 * bulk.extinction_um2();
+                scattering += mode.number_per_cm3 * bulk.scattering_um2;
+                extinction += mode.number_per_cm3 * bulk.extinction_um2();
                 forward += mode.number_per_cm3 * bulk.scattering_um2 * bulk.asymmetry;
             }
             if i < 3 {
-                let (albedo, published) = (scattered / taken, albedos[i]);
-                // One of them is published in three digits.
+                let (albedo, published) = (scattering / extinction, albedos[i]);
+                // One value is published with three digits.
                 let digits = if published == 0.935 { 3 } else { 2 };
                 albedo_cells += &format!(" {albedo:.3} ({published:.digits$}) |");
-                cosine_cells += &format!(" {:.2} ({:.2}) |", forward / scattered, cosines[i]);
+                cosine_cells += &format!(" {:.2} ({:.2}) |", forward / scattering, cosines[i]);
             }
             let (albedo, cosine) = (
-                scattered / taken - albedos[i],
-                forward / scattered - cosines[i],
+                scattering / extinction - albedos[i],
+                forward / scattering - cosines[i],
             );
             let least = if i < 2 {
                 [-0.015, -0.03]
@@ -193,9 +193,9 @@ fn smoke_does_what_was_measured() {
                 (least[1]..0.006).contains(&cosine),
                 "{smoke:?} {nm}: {cosine}"
             );
-            // The volumes are stated for an optical depth of 0.5 at 440 nm.
+            // The volumes are those at an optical depth of 0.5 at 440 nm.
             if i == 0 {
-                let depth = 1e-6 * taken;
+                let depth = 1e-6 * extinction;
                 assert!((0.48..0.56).contains(&depth), "{smoke:?}: {depth}");
             }
         }
@@ -204,9 +204,9 @@ fn smoke_does_what_was_measured() {
     }
 }
 
-/// Growing particles take more light. Of the types with soot they dilute what absorbs.
+/// Particles that take up water extinguish more light, and water dilutes the absorbing soot.
 #[test]
-fn moist_air_thickens_haze() {
+fn extinction_and_albedo_increase_with_humidity() {
     for kind in [AerosolType::Urban, AerosolType::MaritimeClean] {
         let mut before = of(kind, 0.0).summary().unwrap();
         for humidity in [0.3, 0.6, 0.8, 0.9, 0.97, 0.99] {
@@ -224,7 +224,7 @@ fn moist_air_thickens_haze() {
     assert!((set.unwrap().optical_depth(0.0, TOP, 550.0) / 0.2 - 1.0).abs() < 1e-12);
 }
 
-/// Extinctions of the parts add up by their shares at 550 nm, phase functions by what is scattered.
+/// Extinctions are weighted by shares at 550 nm, phase functions by scattering coefficients.
 #[test]
 fn mixtures_are_sums() {
     let (urban, desert) = (AerosolType::Urban, AerosolType::Desert);
@@ -232,8 +232,8 @@ fn mixtures_are_sums() {
         (3.0, Ingredient::Type(urban)),
         (1.0, Ingredient::Type(desert)),
     ];
-    let mixed = thick(&AerosolMixture::new(parts, 0.5).unwrap(), 1.0);
-    // In the layer of the larger part, as the optical depths are compared by coefficients.
+    let mixed = with_depth(&AerosolMixture::new(parts, 0.5).unwrap(), 1.0);
+    // With the profile of the larger part, so that coefficients can be compared.
     let [a, b] = [urban, desert].map(|kind| {
         let load = Some(AerosolLoad::OpticalDepth550(1.0));
         let place = Some(urban.profile(0.0));
@@ -241,7 +241,7 @@ fn mixtures_are_sums() {
             .constituent(load, place, clear(), 0.0, TOP)
             .unwrap()
     });
-    // Exact where Mie's theory was summed; between, power laws of sums are not sums of power laws.
+    // Exact at computed wavelengths; between, the power law of a sum is not the sum of power laws.
     for (nm, most) in [
         (350.0, 1e-9),
         (375.0, 2e-3),
@@ -272,9 +272,9 @@ fn mixtures_are_sums() {
     }
 }
 
-/// Against the finest sums over sizes: 1 % in the aureole, 4 % anywhere, 1e-3 in bulk.
+/// Compared with the finest sums over sizes: 1 % in the aureole, 4 % anywhere, 1e-3 in bulk properties.
 #[test]
-fn quick_sums_are_good_enough() {
+fn coarse_sums_are_accurate() {
     for kind in [AerosolType::Desert, AerosolType::MaritimeClean] {
         let modes = kind.modes(0.8);
         let mut fine = Vec::new();
@@ -317,7 +317,7 @@ fn quick_sums_are_good_enough() {
 }
 
 #[test]
-fn layers_stand_on_the_ground() {
+fn profiles_start_at_the_ground() {
     let high = of(AerosolType::Desert, 0.5);
     let part = high.constituent(None, None, clear(), 2500.0, TOP).unwrap();
     let low = high.constituent(None, None, clear(), 0.0, TOP).unwrap();
@@ -344,7 +344,7 @@ fn names_lead_to_types_and_back() {
 }
 
 #[test]
-fn bad_mixtures_are_refused() {
+fn invalid_mixtures_are_rejected() {
     let urban = Ingredient::Type(AerosolType::Urban);
     for humidity in [-0.1, 0.995, 80.0, f64::NAN] {
         let error = AerosolMixture::new(vec![(1.0, urban)], humidity).unwrap_err();
@@ -359,7 +359,7 @@ fn bad_mixtures_are_refused() {
         Err(AerosolTypeError::Empty)
     );
     let huge = AerosolMixture::new(vec![(f64::MAX, urban); 3], 0.8).unwrap();
-    assert!((thick(&huge, 0.3).optical_depth(0.0, TOP, 550.0) / 0.3 - 1.0).abs() < 1e-9);
+    assert!((with_depth(&huge, 0.3).optical_depth(0.0, TOP, 550.0) / 0.3 - 1.0).abs() < 1e-9);
     let far = AerosolLoad::Turbidity(0.5);
     let error = of(AerosolType::Urban, 0.8).constituent(Some(far), None, clear(), 0.0, TOP);
     assert!(matches!(error, Err(AerosolTypeError::Aerosol(_))));

@@ -10,7 +10,7 @@ use crate::atmosphere::visibility::Contrast;
 use crate::atmosphere::{Atmosphere, Constituent, ConstituentKind, DensityProfile};
 use crate::spectrum::SpectralCurve;
 
-/// Changes the aerosol of an atmosphere, or gives it one.
+/// Changes or adds the aerosol of an atmosphere.
 pub(super) fn aerosol(
     section: &Section<'_>,
     atmosphere: &mut Atmosphere,
@@ -30,18 +30,18 @@ pub(super) fn aerosol(
         "phase",
     ])?;
     match section.has("type") || section.has("mixture") {
-        true => of_a_type(section, atmosphere),
+        true => published_type(section, atmosphere),
         false if section.has("relative_humidity") => Err(section.error(
             "relative_humidity",
             ConfigProblem::Needs {
                 with: "type or mixture",
             },
         )),
-        false => after_angstrom(section, atmosphere),
+        false => angstrom(section, atmosphere),
     }
 }
 
-/// Keys that say how much there is, and what is said.
+/// The load, with its key.
 fn load(section: &Section<'_>) -> Result<Option<(&'static str, AerosolLoad)>, ConfigError> {
     let contrast = section.number("contrast", "0.05 or 0.02", |c| c == 0.05 || c == 0.02)?;
     let contrast = match contrast {
@@ -69,7 +69,7 @@ fn load(section: &Section<'_>) -> Result<Option<(&'static str, AerosolLoad)>, Co
     Ok(load)
 }
 
-/// Where it is, if that is said.
+/// The density profile, if given.
 fn density(section: &Section<'_>) -> Result<Option<DensityProfile>, ConfigError> {
     match (
         section.positive("scale_height_m")?,
@@ -84,8 +84,8 @@ fn density(section: &Section<'_>) -> Result<Option<DensityProfile>, ConfigError>
     }
 }
 
-/// An aerosol of a published type, or a mixture of several.
-fn of_a_type(section: &Section<'_>, atmosphere: &mut Atmosphere) -> Result<(), ConfigError> {
+/// Sets an aerosol of a published type, or a mixture.
+fn published_type(section: &Section<'_>, atmosphere: &mut Atmosphere) -> Result<(), ConfigError> {
     let (own, other) = match section.has("type") {
         true => ("type", "mixture"),
         false => ("mixture", "type"),
@@ -100,14 +100,14 @@ fn of_a_type(section: &Section<'_>, atmosphere: &mut Atmosphere) -> Result<(), C
             return Err(section.error(key, ConfigProblem::Conflict { with: own }));
         }
     }
-    let humidity = section.number("relative_humidity", "between 0 and 0.99", |h| {
+    let humidity = section.number("relative_humidity", "a number from 0 to 0.99", |h| {
         (0.0..=0.99).contains(&h)
     })?;
     let parts = match own {
         "type" => vec![(1.0, Ingredient::Type(named_type(section)?))],
-        _ => mixed(section)?,
+        _ => mixture_parts(section)?,
     };
-    let said = |error| {
+    let report = |error| {
         let key = match error {
             AerosolTypeError::Aerosol(_) => load(section).ok().flatten().map_or(own, |load| load.0),
             _ => own,
@@ -115,7 +115,7 @@ fn of_a_type(section: &Section<'_>, atmosphere: &mut Atmosphere) -> Result<(), C
         section.error(key, ConfigProblem::AerosolType(error))
     };
     let mixture = AerosolMixture::new(parts, humidity.unwrap_or(AerosolMixture::USUAL_HUMIDITY))
-        .map_err(said)?;
+        .map_err(report)?;
     if humidity.is_some() && !mixture.grows() {
         return Err(section.error("relative_humidity", ConfigProblem::Dry));
     }
@@ -126,7 +126,7 @@ fn of_a_type(section: &Section<'_>, atmosphere: &mut Atmosphere) -> Result<(), C
         atmosphere.planet.ground_altitude_m,
         atmosphere.planet.top_altitude_m,
     );
-    atmosphere.put(part.map_err(said)?);
+    atmosphere.put(part.map_err(report)?);
     Ok(())
 }
 
@@ -136,8 +136,8 @@ fn named_type(section: &Section<'_>) -> Result<AerosolType, ConfigError> {
         .ok_or_else(|| section.missing("type", "the name of an aerosol type"))
 }
 
-/// The parts of a mixture with their shares.
-fn mixed(section: &Section<'_>) -> Result<Vec<(f64, Ingredient)>, ConfigError> {
+/// Parts of a mixture with their shares.
+fn mixture_parts(section: &Section<'_>) -> Result<Vec<(f64, Ingredient)>, ConfigError> {
     let mut parts = Vec::new();
     for part in section.sections("mixture")? {
         part.check_keys(&["type", "component", "share"])?;
@@ -156,8 +156,8 @@ fn mixed(section: &Section<'_>) -> Result<Vec<(f64, Ingredient)>, ConfigError> {
     Ok(parts)
 }
 
-/// An aerosol whose extinction follows Angstrom's law, from what the base has.
-fn after_angstrom(section: &Section<'_>, atmosphere: &mut Atmosphere) -> Result<(), ConfigError> {
+/// Sets an aerosol whose extinction follows Angstrom's law; values not given are those of the base.
+fn angstrom(section: &Section<'_>, atmosphere: &mut Atmosphere) -> Result<(), ConfigError> {
     let (ground, top) = (
         atmosphere.planet.ground_altitude_m,
         atmosphere.planet.top_altitude_m,
@@ -167,7 +167,7 @@ fn after_angstrom(section: &Section<'_>, atmosphere: &mut Atmosphere) -> Result<
         .as_ref()
         .map_or(0.0, |part| part.optical_depth(ground, top, 550.0));
     let load = load(section)?;
-    let exponent = section.number("angstrom_exponent", "between -4 and 8", |x| {
+    let exponent = section.number("angstrom_exponent", "a number from -4 to 8", |x| {
         (-4.0..=8.0).contains(&x)
     })?;
     let albedo = parts::spectrum(section, "single_scattering_albedo", 1.0)?;
@@ -176,7 +176,7 @@ fn after_angstrom(section: &Section<'_>, atmosphere: &mut Atmosphere) -> Result<
     if old.is_none() && load.is_none() {
         return Err(section.missing(
             "aod_550",
-            "the base has no aerosol: say how much with aod_550, turbidity or visibility_m",
+            "aod_550, turbidity or visibility_m, as the base has no aerosol",
         ));
     }
     let usual = earth::Earth::with_aerosol(old_depth).aerosol;
@@ -205,7 +205,7 @@ fn after_angstrom(section: &Section<'_>, atmosphere: &mut Atmosphere) -> Result<
             let key = load.map_or("phase", |(key, _)| key);
             section.error(key, ConfigProblem::Aerosol(error))
         })?;
-    // Where only the amount, the place or the direction changes, the base's own spectra stay, scaled.
+    // If only amount, density or phase function change, keep the spectra of the base, scaled.
     if let (Some(old), None, None) = (old, exponent, albedo) {
         let factor = part.extinction_per_m(550.0) / old.extinction_per_m(550.0);
         if factor.is_finite() {
@@ -217,13 +217,13 @@ fn after_angstrom(section: &Section<'_>, atmosphere: &mut Atmosphere) -> Result<
     Ok(())
 }
 
-/// The Angstrom exponent of a constituent's extinction between 440 and 880 nm.
+/// Angstrom exponent of a constituent's extinction between 440 and 880 nm.
 fn exponent_of(part: &Constituent) -> Option<f64> {
     let ratio = part.extinction_per_m(440.0) / part.extinction_per_m(880.0);
     (ratio.is_finite() && ratio > 0.0).then(|| ratio.log2())
 }
 
-/// The single-scattering albedo of a constituent: constant where it is, else every 2 nm.
+/// The single-scattering albedo of a constituent: a constant if possible, otherwise sampled every 2 nm.
 fn albedo_of(part: &Constituent) -> SpectralCurve {
     let at = |nm: f64| match part.extinction_per_m(nm) {
         extinction if extinction > 0.0 => {

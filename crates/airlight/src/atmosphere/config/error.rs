@@ -1,36 +1,36 @@
-//! What can be wrong with a written atmosphere.
+//! Errors in TOML texts.
 
 use crate::atmosphere::{AerosolError, AerosolTypeError, AtmosphereError, DensityError};
 use crate::names::UnknownName;
 use crate::optics::PhaseError;
 use crate::spectrum::CurveError;
 
-/// What is wrong, where, and what would be right.
+/// A problem in a TOML text, with its place.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("line {line}, column {column}: {}{problem}", self.subject())]
 pub struct ConfigError {
-    /// Line of the text, counted from 1.
+    /// Line, counted from 1.
     pub line: usize,
     /// Column, counted from 1 in characters.
     pub column: usize,
-    /// The key, as `aerosol.phase.g`; empty where the text is no TOML.
+    /// The key, such as `aerosol.phase.g`; empty if the text is not TOML.
     pub key: String,
-    /// What is wrong with it.
+    /// The problem.
     pub problem: Box<ConfigProblem>,
 }
 
-/// What is wrong with a key.
+/// A problem with a key.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ConfigProblem {
-    /// The text is no TOML.
+    /// The text is not TOML.
     #[error("{0}")]
     Syntax(String),
-    /// There is no such key.
-    #[error("no such key{}; the keys here are {}", hint(nearest), valid.join(", "))]
+    /// An unknown key.
+    #[error("unknown key{}; expected one of {}", hint(nearest), valid.join(", "))]
     UnknownKey {
-        /// The key it may have been meant to be.
+        /// The most similar key, if one is similar.
         nearest: Option<String>,
-        /// The keys there are.
+        /// The keys allowed.
         valid: Vec<String>,
     },
     /// A name that does not exist.
@@ -39,63 +39,65 @@ pub enum ConfigProblem {
     /// A value that is not among those there are.
     #[error("expected one of {}, got \"{got}\"{}", valid.join(", "), hint(nearest))]
     UnknownValue {
-        /// The value given.
+        /// The name given.
         got: String,
-        /// The value it may have been meant to be.
+        /// The most similar name, if one is similar.
         nearest: Option<String>,
-        /// The values there are.
+        /// The names allowed.
         valid: Vec<String>,
     },
     /// A value of the wrong type.
-    #[error("must be {expected}, got {got}")]
+    #[error("expected {expected}, got {got}")]
     WrongType {
-        /// What would be right.
+        /// The type expected.
         expected: &'static str,
         /// The type given.
         got: &'static str,
     },
-    /// A number out of its domain.
-    #[error("must be {expected}, got {got}")]
+    /// A number out of range.
+    #[error("expected {expected}, got {got}")]
     OutOfRange {
-        /// What would be right.
+        /// The range.
         expected: &'static str,
         /// The number given.
         got: f64,
     },
-    /// Something is needed that is not there.
-    #[error("is missing: {0}")]
+    /// A required key is missing.
+    #[error("expected {0}, got nothing")]
     Missing(&'static str),
     /// Two keys that exclude each other.
-    #[error("cannot stand beside {with}: keep one of them")]
+    #[error("expected only one of this key and {with}, got both")]
     Conflict {
         /// The other key.
         with: &'static str,
     },
-    /// A key that says nothing without another.
-    #[error("says nothing without {with}")]
+    /// A key that has an effect only together with another.
+    #[error("expected {with} together with this key, got this key alone")]
     Needs {
         /// The other key.
         with: &'static str,
     },
-    /// Humidity of particles that take up no water.
-    #[error("makes no difference to these particles, which take up no water: leave it out")]
+    /// A humidity for particles that take up no water.
+    #[error(
+        "expected an aerosol that takes up water, got particles that do not; try leaving this key out"
+    )]
     Dry,
-    /// A table of samples is refused.
+    /// An invalid table of samples.
     #[error("{0}")]
     Curve(CurveError),
-    /// A density profile is refused.
+    /// An invalid density profile.
     #[error("{0}")]
     Density(DensityError),
-    /// A phase function is refused.
+    /// An invalid phase function.
     #[error("{0}")]
     Phase(PhaseError),
-    /// An aerosol is refused.
+    /// An invalid aerosol.
     #[error("{0}")]
     Aerosol(AerosolError),
-    /// An aerosol of a type is refused.
+    /// An invalid aerosol type or mixture.
     #[error("{0}")]
     AerosolType(AerosolTypeError),
-    /// The whole is refused.
+    /// Values that are invalid in combination.
     #[error("{0}")]
     Atmosphere(AtmosphereError),
 }

@@ -1,4 +1,4 @@
-//! Spectra, densities, phase functions and constituents as they are written.
+//! Spectra, density profiles, phase functions and constituents in TOML.
 
 use super::error::{ConfigError, ConfigProblem};
 use super::reader::Section;
@@ -7,15 +7,15 @@ use crate::atmosphere::{Constituent, DensityProfile, Interpolation};
 use crate::optics::{Depolarization, PhaseFunction, TabulatedPhase};
 use crate::spectrum::SpectralCurve;
 
-/// A spectrum whose values lie in `[0, most]`.
+/// A spectrum with values in `[0, most]`.
 pub(super) fn spectrum(
     section: &Section<'_>,
     key: &str,
     most: f64,
 ) -> Result<Option<SpectralCurve>, ConfigError> {
     let expected = match most == 1.0 {
-        true => "in [0, 1]",
-        false => "finite and not below 0",
+        true => "values in [0, 1]",
+        false => "finite values not below 0",
     };
     let allowed = |x: f64| x.is_finite() && x >= 0.0 && x <= most;
     if !section.has(key) {
@@ -36,10 +36,12 @@ pub(super) fn spectrum(
     }
     if !table {
         let value = inner.number("at_550_nm", expected, allowed)?;
-        let exponent = inner.number("angstrom_exponent", "between -8 and 8", |x| x.abs() <= 8.0)?;
+        let exponent = inner.number("angstrom_exponent", "a number from -8 to 8", |x| {
+            x.abs() <= 8.0
+        })?;
         return Ok(Some(SpectralCurve::PowerLaw {
             value_at_550_nm: value
-                .ok_or_else(|| inner.missing("at_550_nm", "the value at 550 nm is needed here"))?,
+                .ok_or_else(|| inner.missing("at_550_nm", "the value at 550 nm"))?,
             exponent: exponent.unwrap_or(0.0),
         }));
     }
@@ -136,7 +138,7 @@ pub(super) fn density(
     }
 }
 
-/// A phase function; parameters without a kind change those of `old`.
+/// A phase function. Parameters without a kind replace those of `old`.
 pub(super) fn phase(
     section: &Section<'_>,
     key: &str,
@@ -181,10 +183,10 @@ fn phase_of(
         _ => (None, None),
     };
     let g = || {
-        let given = inner.number("g", "strictly between -1 and 1", |g| g.abs() < 1.0)?;
+        let given = inner.number("g", "a number strictly between -1 and 1", |g| g.abs() < 1.0)?;
         given
             .or(old_g)
-            .ok_or_else(|| inner.missing("g", "the asymmetry parameter, strictly between -1 and 1"))
+            .ok_or_else(|| inner.missing("g", "an asymmetry parameter strictly between -1 and 1"))
     };
     let built = match kind {
         "isotropic" => {
@@ -193,7 +195,7 @@ fn phase_of(
         }
         "rayleigh" => {
             keys(&["depolarization_ratio"])?;
-            let ratio = inner.number("depolarization_ratio", "in [0, 6/7)", |x| {
+            let ratio = inner.number("depolarization_ratio", "a number in [0, 6/7)", |x| {
                 (0.0..6.0 / 7.0).contains(&x)
             })?;
             Ok(PhaseFunction::Rayleigh(
@@ -224,7 +226,7 @@ fn phase_of(
             keys(&["parts"])?;
             let mut parts = Vec::new();
             for part in inner.sections("parts")? {
-                // A mixture of mixtures says nothing that a flat one does not.
+                // A nested mixture can always be written as a flat one.
                 if part.text("kind")? == Some("mixture") {
                     let flat = kinds
                         .into_iter()
@@ -266,24 +268,23 @@ pub(super) fn constituent(section: &Section<'_>) -> Result<Constituent, ConfigEr
     ])?;
     let name = section
         .text("name")?
-        .ok_or_else(|| section.missing("name", "what the constituent is called"))?;
+        .ok_or_else(|| section.missing("name", "the name of the constituent"))?;
     let scattering = spectrum(section, "scattering_per_m", f64::INFINITY)?;
     let absorption = spectrum(section, "absorption_per_m", f64::INFINITY)?;
     if scattering.is_none() && absorption.is_none() {
         return Err(section.missing(
             "scattering_per_m",
-            "a constituent needs scattering_per_m, absorption_per_m or both",
+            "scattering_per_m, absorption_per_m or both",
         ));
     }
     let phase = phase(section, "phase", None)?;
     if scattering.is_some() && phase.is_none() {
-        return Err(section.missing("phase", "what scatters needs a phase function"));
+        return Err(section.missing("phase", "a phase function for the scattering"));
     }
     Ok(Constituent {
         kind: name.into(),
-        density: density(section, "density")?.ok_or_else(|| {
-            section.missing("density", "how the constituent thins out with altitude")
-        })?,
+        density: density(section, "density")?
+            .ok_or_else(|| section.missing("density", "a density profile"))?,
         scattering_per_m: scattering.unwrap_or(SpectralCurve::Constant(0.0)),
         absorption_per_m: absorption.unwrap_or(SpectralCurve::Constant(0.0)),
         phase: phase.unwrap_or(PhaseFunction::Isotropic),

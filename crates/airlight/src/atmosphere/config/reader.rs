@@ -1,11 +1,11 @@
-//! Reading values out of a table, with errors that know where they are.
+//! Typed access to TOML tables, with errors that carry line, column and key.
 
 use super::error::{ConfigError, ConfigProblem};
 use crate::names::{Named, UnknownName, nearest};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// A table of the text, and what it is called.
+/// A table of the text, with its path.
 pub(super) struct Section<'a> {
     text: &'a str,
     table: &'a DeTable<'a>,
@@ -14,7 +14,7 @@ pub(super) struct Section<'a> {
 }
 
 impl<'a> Section<'a> {
-    /// The outermost table.
+    /// A table at the top level of the text.
     pub fn new(text: &'a str, table: &'a DeTable<'a>, path: String) -> Self {
         let start = table.keys().map(|key| key.span().start).min().unwrap_or(0);
         Self {
@@ -25,7 +25,8 @@ impl<'a> Section<'a> {
         }
     }
 
-    fn called(&self, key: &str) -> String {
+    /// Full path of a key.
+    fn path_of(&self, key: &str) -> String {
         match self.path.is_empty() {
             true => key.to_owned(),
             false => format!("{}.{key}", self.path),
@@ -39,20 +40,20 @@ impl<'a> Section<'a> {
             .map(|(_, value)| value)
     }
 
-    /// Whether the key is there.
+    /// Whether the table has this key.
     pub fn has(&self, key: &str) -> bool {
         self.get(key).is_some()
     }
 
-    /// An error about a key: at its value, or where the table begins.
+    /// An error about a key, placed at its value, or at the start of the table if the key is missing.
     pub fn error(&self, key: &str, problem: ConfigProblem) -> ConfigError {
         let at = self.get(key).map_or(self.start, |value| value.span().start);
-        ConfigError::at(self.text, at, self.called(key), problem)
+        ConfigError::at(self.text, at, self.path_of(key), problem)
     }
 
-    /// An error about a key that is not there.
-    pub fn missing(&self, key: &str, why: &'static str) -> ConfigError {
-        self.error(key, ConfigProblem::Missing(why))
+    /// An error about a missing key.
+    pub fn missing(&self, key: &str, expected: &'static str) -> ConfigError {
+        self.error(key, ConfigProblem::Missing(expected))
     }
 
     /// An error about a name that does not exist.
@@ -81,7 +82,7 @@ impl<'a> Section<'a> {
         self.error(key, ConfigProblem::WrongType { expected, got })
     }
 
-    /// Refuses keys that are not among these.
+    /// Rejects keys other than these.
     pub fn check_keys(&self, valid: &[&str]) -> Result<(), ConfigError> {
         let unknown = self
             .table
@@ -98,14 +99,14 @@ impl<'a> Section<'a> {
                 Err(ConfigError::at(
                     self.text,
                     name.span().start,
-                    self.called(name.get_ref()),
+                    self.path_of(name.get_ref()),
                     problem,
                 ))
             }
         }
     }
 
-    /// A number in its domain.
+    /// A number for which `allowed` is true.
     pub fn number(
         &self,
         key: &str,
@@ -140,24 +141,24 @@ impl<'a> Section<'a> {
         self.number(key, "a finite number", f64::is_finite)
     }
 
-    /// A number that must be there.
+    /// A finite number, required.
     pub fn required(&self, key: &str) -> Result<f64, ConfigError> {
         self.finite(key)?
-            .ok_or_else(|| self.missing(key, "a number is needed here"))
+            .ok_or_else(|| self.missing(key, "a number"))
     }
 
-    /// A text.
+    /// A string.
     pub fn text(&self, key: &str) -> Result<Option<&'a str>, ConfigError> {
         match self.get(key) {
             None => Ok(None),
             Some(value) => match value.get_ref().as_str() {
                 Some(text) => Ok(Some(text)),
-                None => Err(self.wrong_type(key, "a text in quotes", value.get_ref())),
+                None => Err(self.wrong_type(key, "a string", value.get_ref())),
             },
         }
     }
 
-    /// A list of texts.
+    /// A list of strings.
     pub fn texts(&self, key: &str) -> Result<Option<Vec<&'a str>>, ConfigError> {
         let Some(value) = self.get(key) else {
             return Ok(None);
@@ -166,10 +167,10 @@ impl<'a> Section<'a> {
         let texts = list.and_then(|list| list.iter().map(|item| item.get_ref().as_str()).collect());
         texts
             .map(Some)
-            .ok_or_else(|| self.wrong_type(key, "a list of texts", value.get_ref()))
+            .ok_or_else(|| self.wrong_type(key, "a list of strings", value.get_ref()))
     }
 
-    /// A list of numbers; lists inside it are laid end to end.
+    /// A list of numbers; nested lists are concatenated.
     pub fn numbers(&self, key: &str) -> Result<Option<Vec<f64>>, ConfigError> {
         let Some(value) = self.get(key) else {
             return Ok(None);
@@ -197,14 +198,14 @@ impl<'a> Section<'a> {
                 expected: "a number",
                 got: item.get_ref().type_str(),
             };
-            ConfigError::at(self.text, item.span().start, self.called(key), problem)
+            ConfigError::at(self.text, item.span().start, self.path_of(key), problem)
         })
     }
 
-    /// A list of numbers that must be there.
+    /// A list of numbers, required.
     pub fn required_numbers(&self, key: &str) -> Result<Vec<f64>, ConfigError> {
         self.numbers(key)?
-            .ok_or_else(|| self.missing(key, "a list of numbers is needed here"))
+            .ok_or_else(|| self.missing(key, "a list of numbers"))
     }
 
     /// Whether the value is a table.
@@ -217,14 +218,14 @@ impl<'a> Section<'a> {
     pub fn section(&self, key: &str) -> Result<Option<Section<'a>>, ConfigError> {
         match self.get(key) {
             None => Ok(None),
-            Some(value) => match self.inner(self.called(key), value) {
+            Some(value) => match self.inner(self.path_of(key), value) {
                 Some(section) => Ok(Some(section)),
                 None => Err(self.wrong_type(key, "a table", value.get_ref())),
             },
         }
     }
 
-    /// A list of tables inside this one; empty where the key is absent.
+    /// A list of tables inside this one; empty without the key.
     pub fn sections(&self, key: &str) -> Result<Vec<Section<'a>>, ConfigError> {
         let Some(value) = self.get(key) else {
             return Ok(vec![]);
@@ -233,7 +234,7 @@ impl<'a> Section<'a> {
             .get_ref()
             .as_array()
             .map(|list| list.iter().enumerate());
-        let inner = |(i, item)| self.inner(format!("{}[{i}]", self.called(key)), item);
+        let inner = |(i, item)| self.inner(format!("{}[{i}]", self.path_of(key)), item);
         let sections = list.and_then(|mut list| list.by_ref().map(inner).collect());
         sections.ok_or_else(|| self.wrong_type(key, "a list of tables", value.get_ref()))
     }

@@ -1,15 +1,19 @@
 use crate::optics::PhaseFunction;
 use super::*;
-use crate::atmosphere::{AerosolError, DensityError, DensityProfile, preset};
+use crate::atmosphere::aerosol_types::{Component, Ingredient};
+use crate::atmosphere::{
+    AerosolError, AerosolLoad, AerosolMixture, AerosolType, AerosolTypeError, DensityError,
+    DensityProfile, preset,
+};
 use crate::optics::PhaseError;
 use crate::sun::LimbDarkening;
 
-pub(super) fn read(text: &str) -> Atmosphere {
+fn read(text: &str) -> Atmosphere {
     from_toml(text).unwrap_or_else(|error| panic!("{text}\n{error}"))
 }
 
-/// The error of a text, which must also read well: one line that names the key.
-pub(super) fn refuse(text: &str) -> ConfigError {
+/// The error of a text. Its message must start with the line and name the key.
+fn refuse(text: &str) -> ConfigError {
     let error = from_toml(text).expect_err(text);
     let message = error.to_string();
     assert!(
@@ -20,14 +24,14 @@ pub(super) fn refuse(text: &str) -> ConfigError {
 }
 
 #[test]
-fn an_empty_text_is_the_average_earth() {
+fn the_default_is_the_average_earth() {
     assert_eq!(read(""), preset("average").unwrap());
     assert_eq!(read("base = \"mars\""), preset("mars").unwrap());
     assert_eq!(read("name = \"mine\"").name, "mine");
 }
 
 #[test]
-fn fields_are_overridden_one_by_one() {
+fn single_values_override_the_base() {
     let text = r#"
         base = "clear"
         remove = ["ozone"]
@@ -76,7 +80,7 @@ fn fields_are_overridden_one_by_one() {
 }
 
 #[test]
-fn aerosol_keeps_what_is_not_overridden() {
+fn aerosol_values_not_given_are_those_of_the_base() {
     let depth = |a: &Atmosphere, nm| {
         a.constituent(&ConstituentKind::Aerosol)
             .unwrap()
@@ -119,7 +123,7 @@ fn aerosol_keeps_what_is_not_overridden() {
     };
     let more = (0.05f64 / 0.02).ln() / 10e3;
     assert!((extinction(&two) - extinction(&got) - more).abs() < 1e-9);
-    // Mars keeps its dust's spectral albedo when there is more of it.
+    // The dust of Mars keeps its spectral albedo.
     let (mars, got) = (
         preset("mars").unwrap(),
         read("base = \"mars\"\naerosol.aod_550 = 1.5"),
@@ -138,7 +142,7 @@ fn aerosol_keeps_what_is_not_overridden() {
 }
 
 #[test]
-fn phase_parameters_may_stand_alone() {
+fn phase_parameters_without_a_kind_change_the_base() {
     let phase = |text: &str| {
         read(text)
             .constituent(&ConstituentKind::Aerosol)
@@ -165,7 +169,7 @@ fn phase_parameters_may_stand_alone() {
 }
 
 #[test]
-fn constituents_can_be_written_out() {
+fn constituents_are_read() {
     let got = read(
         r#"
         base = "none"
@@ -201,7 +205,7 @@ fn constituents_can_be_written_out() {
 }
 
 #[test]
-fn unknown_keys_name_their_place_and_neighbour() {
+fn unknown_keys_report_place_and_similar_key() {
     for (text, line, key, meant) in [
         (
             "base = \"clear\"\naersol.aod_550 = 1",
@@ -250,7 +254,7 @@ fn unknown_keys_name_their_place_and_neighbour() {
 }
 
 #[test]
-fn unknown_names_list_the_known_ones() {
+fn unknown_names_list_the_allowed_names() {
     for (text, meant) in [
         ("base = \"marz\"", "mars"),
         ("remove = [\"ozon\"]", "ozone"),
@@ -276,7 +280,7 @@ fn unknown_names_list_the_known_ones() {
 }
 
 #[test]
-fn wrong_types_and_values_say_what_would_be_right() {
+fn wrong_types_and_values_report_what_is_expected() {
     for text in [
         "planet = 3",
         "base = 3",
@@ -322,12 +326,12 @@ fn wrong_types_and_values_say_what_would_be_right() {
     let message = refuse("[planet]\nground_albedo = 1.5").to_string();
     assert_eq!(
         message,
-        "line 2, column 17: planet.ground_albedo: must be in [0, 1], got 1.5"
+        "line 2, column 17: planet.ground_albedo: expected values in [0, 1], got 1.5"
     );
 }
 
 #[test]
-fn faults_between_values_are_found() {
+fn invalid_combinations_are_rejected() {
     assert!(matches!(
         *refuse("aerosol = { aod_550 = 1, turbidity = 2 }").problem,
         ConfigProblem::Conflict { .. }
@@ -390,7 +394,7 @@ fn faults_between_values_are_found() {
 }
 
 #[test]
-fn broken_toml_is_placed() {
+fn syntax_errors_have_a_place() {
     let error = refuse("base = \"clear\"\nplanet = {");
     assert!(matches!(*error.problem, ConfigProblem::Syntax(_)));
     assert_eq!(error.line, 2);
@@ -405,4 +409,97 @@ fn broken_toml_is_placed() {
     ] {
         let _ = refuse(text);
     }
+}
+
+#[test]
+fn aerosol_types_equal_those_of_the_library() {
+    let got = read(
+        "base = \"clear\"\naerosol = { type = \"urban\", relative_humidity = 0.5, aod_550 = 0.3 }",
+    );
+    let mixture = AerosolMixture::of(AerosolType::Urban, 0.5).unwrap();
+    let load = Some(AerosolLoad::OpticalDepth550(0.3));
+    let clear = got.clear_air();
+    let want = mixture.constituent(load, None, clear, 0.0, 100e3).unwrap();
+    assert_eq!(got.constituent(&ConstituentKind::Aerosol), Some(&want));
+    // Defaults: 80 % and the published number densities.
+    let usual = read("aerosol.type = \"urban\"");
+    let mixture = AerosolMixture::of(AerosolType::Urban, 0.8).unwrap();
+    let want = mixture.constituent(None, None, clear, 0.0, 100e3).unwrap();
+    assert_eq!(usual.constituent(&ConstituentKind::Aerosol), Some(&want));
+    let placed = read("aerosol = { type = \"urban\", visibility_m = 10e3, scale_height_m = 900 }");
+    let part = placed.constituent(&ConstituentKind::Aerosol).unwrap();
+    let whole = part.extinction_per_m(550.0) + clear.ground_extinction_per_m;
+    assert!(((-whole * 10e3).exp() / 0.05 - 1.0).abs() < 1e-9);
+    assert_eq!(part.density, DensityProfile::exponential(900.0));
+}
+
+#[test]
+fn aerosol_mixtures_are_read() {
+    let text = r#"
+        [aerosol]
+        mixture = [{ type = "desert", share = 3 }, { component = "soot", share = 1 }]
+        aod_550 = 0.2
+    "#;
+    let parts = vec![
+        (3.0, Ingredient::Type(AerosolType::Desert)),
+        (1.0, Ingredient::Component(Component::Soot)),
+    ];
+    let mixture = AerosolMixture::new(parts, 0.8).unwrap();
+    let got = read(text);
+    let load = Some(AerosolLoad::OpticalDepth550(0.2));
+    let want = mixture
+        .constituent(load, None, got.clear_air(), 0.0, 100e3)
+        .unwrap();
+    assert_eq!(got.constituent(&ConstituentKind::Aerosol), Some(&want));
+}
+
+#[test]
+fn errors_in_aerosol_types_report_their_key() {
+    let near = refuse("aerosol.type = \"dessert\"");
+    assert_eq!(near.key, "aerosol.type");
+    assert!(
+        near.to_string().contains("did you mean \"desert\""),
+        "{near}"
+    );
+    let damp = refuse("aerosol = { type = \"urban\", relative_humidity = 80 }");
+    assert_eq!(damp.key, "aerosol.relative_humidity");
+    assert!(damp.to_string().contains("from 0 to 0.99"), "{damp}");
+    let dry = refuse("aerosol = { type = \"biomass-forest\", relative_humidity = 0.5 }");
+    assert_eq!(*dry.problem, ConfigProblem::Dry);
+    let alone = refuse("aerosol.relative_humidity = 0.5");
+    assert!(matches!(*alone.problem, ConfigProblem::Needs { .. }));
+    for key in [
+        "angstrom_exponent = 1",
+        "single_scattering_albedo = 1",
+        "phase.g = 0.5",
+        "mixture = []",
+    ] {
+        let text = format!("[aerosol]\ntype = \"urban\"\n{key}");
+        assert!(matches!(
+            *refuse(&text).problem,
+            ConfigProblem::Conflict { with: "type" }
+        ));
+    }
+    let part = |text: &str| refuse(&format!("[aerosol]\nmixture = [{{ {text} }}]"));
+    assert_eq!(part("type = \"urban\"").key, "aerosol.mixture[0].share");
+    assert_eq!(part("share = 1").key, "aerosol.mixture[0].type");
+    assert_eq!(
+        part("share = 0, type = \"urban\"").key,
+        "aerosol.mixture[0].share"
+    );
+    let soot = part("share = 1, component = \"sooot\"");
+    assert!(soot.to_string().contains("did you mean \"soot\""), "{soot}");
+    let both = part("share = 1, component = \"soot\", type = \"urban\"");
+    assert!(matches!(*both.problem, ConfigProblem::Conflict { .. }));
+    let none = refuse("aerosol.mixture = []");
+    assert_eq!(
+        *none.problem,
+        ConfigProblem::AerosolType(AerosolTypeError::Empty)
+    );
+    let turbid = refuse("aerosol = { type = \"urban\", turbidity = 0.5 }");
+    let want = AerosolTypeError::Aerosol(AerosolError::Turbidity(0.5));
+    assert_eq!(
+        (turbid.key.as_str(), *turbid.problem),
+        ("aerosol.turbidity", ConfigProblem::AerosolType(want))
+    );
 }

@@ -1,4 +1,4 @@
-//! Columns of the profiles along rays.
+//! Integrals of density along rays.
 
 use crate::atmosphere::ray_segment::RaySegment;
 use crate::math::quadrature::FixedRule;
@@ -47,7 +47,7 @@ pub(super) fn exponential(ray: &RaySegment, reference_height_m: f64, scale_heigh
     let start = (ray.height_m - reference_height_m) / scale_height_m;
     let length = ray.length_m;
     if curvature == 0.0 && length.is_finite() {
-        // Flat ground: from the denser end, so that nothing overflows before it must.
+        // Flat ground: start from the denser end to avoid overflow.
         let rise = slope * length;
         let densest = start + rise.min(0.0);
         let rise = rise.abs();
@@ -64,7 +64,7 @@ pub(super) fn exponential(ray: &RaySegment, reference_height_m: f64, scale_heigh
             false => f64::INFINITY,
         };
     }
-    // Round ground: the exponent is a parabola, integrated away from its lowest point on either side.
+    // Round ground: the exponent is a parabola, integrated away from its lowest point.
     let lowest = -0.5 * slope / curvature;
     let exponent_at = |s: f64| start + s * (slope + s * curvature);
     let column = if lowest <= 0.0 {
@@ -79,8 +79,8 @@ pub(super) fn exponential(ray: &RaySegment, reference_height_m: f64, scale_heigh
     column.min(f64::MAX)
 }
 
-/// `int_0^length e^-(a s + b s^2) ds` for `a >= 0`, `b > 0`: by the scaled complementary error function, or by
-/// Gauss-Legendre quadrature where its two values would nearly cancel.
+/// `int_0^length e^-(a s + b s^2) ds` for `a >= 0`, `b > 0`, by the scaled complementary error function, or by Gauss-Legendre
+/// quadrature if its two values would nearly cancel.
 fn falling(a: f64, b: f64, length: f64) -> f64 {
     const HALF_SQRT_PI: f64 = 0.886_226_925_452_758;
     let fall = length * (a + b * length);

@@ -1,9 +1,9 @@
-//! Densities tabulated by altitude.
+//! [`AltitudeTable`]: densities tabulated by altitude.
 
 use super::error::DensityError;
 use crate::names::named;
 
-/// How a table goes from one sample to the next.
+/// Interpolation between samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Interpolation {
@@ -30,7 +30,7 @@ impl AltitudeTable {
     /// A table of densities at altitudes, m.
     ///
     /// # Errors
-    /// [`DensityError`] where altitudes do not rise, the lengths differ or a density is negative or not finite.
+    /// [`DensityError`] if altitudes do not increase, the lengths differ, or a density is negative or not finite.
     pub fn new(
         altitudes_m: Vec<f64>,
         densities: Vec<f64>,
@@ -129,7 +129,7 @@ impl AltitudeTable {
         sum
     }
 
-    /// Intervals of height, rising, in each of which the density is linear or changes by less than a factor e.
+    /// Intervals of height, in increasing order, in which the density is linear or varies by less than a factor of e.
     pub(super) fn ramps_m(&self) -> Vec<[f64; 2]> {
         let samples = self.altitudes_m.windows(2).zip(self.densities.windows(2));
         samples

@@ -55,7 +55,7 @@ fn columns_are_integrals_of_the_density() {
 }
 
 #[test]
-fn profiles_hold_what_they_promise_beyond_their_ends() {
+fn densities_beyond_the_ends() {
     let exponential = DensityProfile::exponential(8e3);
     assert!(exponential.at(-400.0) > 1.0);
     let [_, air, table, ..] = &profiles()[..] else {
@@ -80,7 +80,7 @@ fn profiles_hold_what_they_promise_beyond_their_ends() {
 }
 
 #[test]
-fn thin_columns_keep_their_digits() {
+fn thin_columns_are_precise() {
     let profile = DensityProfile::exponential(8e3);
     assert!(
         (profile.column_m(100.0, 100.0 + 1e-6) / (1e-6 * profile.at(100.0)) - 1.0).abs() < 1e-7
@@ -91,7 +91,7 @@ fn thin_columns_keep_their_digits() {
 }
 
 #[test]
-fn bad_profiles_are_refused() {
+fn invalid_profiles_are_rejected() {
     for scale_height_m in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let profile = DensityProfile::exponential(scale_height_m);
         assert!(matches!(
@@ -265,7 +265,7 @@ fn fog_profiles(scale_height_m: f64) -> [DensityProfile; 5] {
 }
 
 #[test]
-fn columns_match_quadrature_from_micrometres_to_the_far_side_of_the_world() {
+fn columns_match_quadrature_at_all_scales() {
     for radius in [f64::INFINITY, EARTH_M] {
         for scale in [0.1, 7.0, 300.0, 8e3, 1e7] {
             for profile in fog_profiles(scale) {
@@ -297,7 +297,7 @@ fn columns_match_quadrature_from_micrometres_to_the_far_side_of_the_world() {
 }
 
 #[test]
-fn columns_without_end() {
+fn infinite_columns() {
     let fog = DensityProfile::Exponential {
         reference_height_m: 0.0,
         scale_height_m: 100.0,
@@ -326,7 +326,7 @@ fn columns_without_end() {
 }
 
 #[test]
-fn falloff_runs_from_endless_to_sharp() {
+fn falloffs_range_from_uniform_to_slab() {
     assert_eq!(
         DensityProfile::from_falloff(5.0, 0.0),
         Ok(DensityProfile::Uniform)
@@ -349,7 +349,7 @@ fn falloff_runs_from_endless_to_sharp() {
 /// The fog note's optical depth, `a / (f (c - p)_y) d e^-(f (p_y - h0)) (1 - e^-(f (c - p)_y))`, is that of density without the
 /// `max(0, ...)` that the note puts into it: right wholly above the base, too large below.
 #[test]
-fn the_notes_formula_is_of_unclamped_fog() {
+fn the_formula_of_the_fog_note_is_for_unclamped_fog() {
     let (h0, falloff) = (20.0, 1.0 / 30.0);
     let printed = |p: f64, c: f64, d: f64| {
         let rise = falloff * (c - p);

@@ -1,4 +1,4 @@
-//! The Earth's air from first principles, with an aerosol and a ground.
+//! The Earth: gases from first principles, a continental aerosol, ground of grass and soil.
 
 use super::fixed_table::fixed_table;
 use crate::atmosphere::aerosol::{AerosolError, AerosolLoad, AngstromAerosol, continental_phase};
@@ -11,21 +11,21 @@ use crate::sun::SunDisc;
 /// Where the Earth's air is taken to end, m: what lies above scatters less than 1e-6 of the whole.
 pub const EARTH_TOP_M: f64 = 100e3;
 
-/// What makes one Earth differ from another.
+/// Parameters of an Earth atmosphere.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Earth {
     /// Pressure at sea level, Pa.
     pub sea_level_pressure_pa: f64,
     /// Ozone column, Dobson units.
     pub ozone_du: f64,
-    /// The haze.
+    /// The aerosol.
     pub aerosol: AngstromAerosol,
     /// Albedo of the ground.
     pub ground_albedo: SpectralCurve,
 }
 
 impl Earth {
-    /// Standard pressure, 300 Dobson units of ozone, grass and soil, and a continental aerosol of a given optical
+    /// Standard pressure, 300 Dobson units of ozone, ground of grass and soil, and a continental aerosol with this optical
     /// depth at 550 nm: Angstrom exponent 1.3, single-scattering albedo 0.95, scale height 1.5 km, the phase function
     /// of [`continental_phase`].
     pub fn with_aerosol(optical_depth_550: f64) -> Self {
@@ -43,11 +43,10 @@ impl Earth {
         }
     }
 
-    /// The atmosphere.
+    /// The atmosphere with these parameters.
     ///
     /// # Errors
-    /// [`AerosolError`] where the aerosol is refused. Pressure, ozone and albedo are checked by
-    /// [`Atmosphere::validate`].
+    /// [`AerosolError`] for an invalid aerosol. Pressure, ozone and albedo are checked by [`Atmosphere::validate`].
     pub fn atmosphere(&self, name: &str) -> Result<Atmosphere, AerosolError> {
         let mut atmosphere = Atmosphere {
             name: name.to_owned(),
@@ -67,7 +66,7 @@ impl Earth {
     }
 }
 
-/// The Earth without its air.
+/// The Earth without an atmosphere.
 pub(in crate::atmosphere) fn airless(name: &str) -> Atmosphere {
     Atmosphere {
         name: name.to_owned(),
@@ -127,5 +126,5 @@ pub fn hazy() -> Atmosphere {
 fn fixed(name: &str, earth: Earth) -> Atmosphere {
     earth
         .atmosphere(name)
-        .expect("the numbers of this file are in their domains")
+        .expect("constant parameters are valid")
 }

@@ -1,4 +1,4 @@
-//! Mars: thin carbon dioxide and suspended dust.
+//! Mars: carbon dioxide and suspended dust.
 
 use super::fixed_table::fixed_table;
 use crate::atmosphere::{Atmosphere, Constituent, ConstituentKind, DensityProfile, Planet};
@@ -12,14 +12,14 @@ use std::f64::consts::PI;
 pub const MARS_DISTANCE_AU: f64 = 1.5237;
 /// Scale height of gas and dust, m.
 const SCALE_HEIGHT_M: f64 = 11.1e3;
-/// Mean surface pressure (Pa) and a mean temperature of the lower air (K).
+/// Mean surface pressure (Pa) and mean temperature of the lower atmosphere (K).
 pub(in crate::atmosphere) const MARS_PRESSURE_PA: f64 = 610.0;
 const TEMPERATURE_K: f64 = 210.0;
-/// Vertical optical depth of the dust at 880 nm: between the clear season (0.3 to 0.4) and the dusty one (1.25 and
-/// more) seen from the ground (Lemmon et al., Icarus 251, 96, 2015; Chen-Chen et al., Icarus 319, 43, 2019).
+/// Vertical optical depth of the dust at 880 nm: between the clear season (0.3 to 0.4) and the dusty season (1.25 and
+/// more) as measured from the ground (Lemmon et al., Icarus 251, 96, 2015; Chen-Chen et al., Icarus 319, 43, 2019).
 const DUST_DEPTH_880: f64 = 0.5;
 
-/// Scattering cross-section of a carbon dioxide molecule, m^2: refractive index of Bideau-Mehu et al. (Opt. Commun. 9,
+/// Scattering cross-section of the carbon dioxide molecule, m^2: refractive index of Bideau-Mehu et al. (Opt. Commun. 9,
 /// 432, 1973) at 273.15 K and 101325 Pa, King factor `1.1364 + 25.3e-12 nu^2` (nu in cm^-1) of Sneep & Ubachs (J. Quant.
 /// Spectrosc. Radiat. Transfer 92, 293, 2005). Within 0.5 % of measurements at 532 and 660 nm.
 pub fn carbon_dioxide_cross_section_m2(wavelength_nm: f64) -> f64 {
@@ -39,14 +39,14 @@ pub fn carbon_dioxide_cross_section_m2(wavelength_nm: f64) -> f64 {
 /// Mars on a moderately dusty day.
 ///
 /// - Radius 3389.5 km; gas and dust with a scale height of 11.1 km (dust 11 to 19 km at three sites, Lemmon et al. 2015).
-/// - Gas: carbon dioxide at 610 Pa and 210 K, 2.8 % less for the lighter gases mixed in; optical depth 0.0065 at 440 nm.
+/// - Gas: carbon dioxide at 610 Pa and 210 K, reduced by 2.8 % for the lighter gases; optical depth 0.0065 at 440 nm.
 /// - Dust: optical depth 0.5 at 880 nm, nearly grey (exponent -0.09, Lemmon et al. 2024); single-scattering albedo 0.73
 ///   at 388 nm rising to 0.98 at 700 nm (Wolff et al., J. Geophys. Res. 114, E00D04, 2009), which makes the sky
-///   butterscotch; phase function by wavelength with a diffraction peak that is narrower and higher in the blue, which
-///   makes the glow round the low sun blue (Ehlers et al., Appl. Opt. 53, 1808, 2014). At 650 nm it lies within 15 % of
+///   butterscotch; phase function by wavelength, with a diffraction peak that is narrower and higher in the blue, which
+///   makes the glow around the low sun blue (Ehlers et al., Appl. Opt. 53, 1808, 2014). At 650 nm it lies within 15 % of
 ///   the sky measurements of Chen-Chen et al. (Icarus 330, 16, 2019) from 0 to 150 degrees.
-/// - Ground: rounded albedo of bright, dusty regions (0.07 at 440 nm, 0.29 at 680 nm); good to some 20 %.
-/// - Sun: the Earth's spectrum over 1.5237^2, and a disc smaller by that factor.
+/// - Ground: rounded albedo of bright, dusty regions (0.07 at 440 nm, 0.29 at 680 nm), accurate to about 20 %.
+/// - Sun: the solar spectrum at the Earth divided by 1.5237^2, and a disc 1.5237 times smaller.
 pub fn mars() -> Atmosphere {
     let density = DensityProfile::exponential(SCALE_HEIGHT_M);
     let top_m = 120e3;
@@ -118,7 +118,7 @@ fn dust_phase() -> TabulatedPhase {
         .collect();
     let wavelengths = vec![388.0, 440.0, 550.0, 650.0, 700.0, 800.0];
     TabulatedPhase::new(rows.iter().map(|row| row[0]).collect(), wavelengths, values)
-        .expect("the embedded table of dust is in order")
+        .expect("the embedded table is valid")
 }
 
 #[cfg(test)]
@@ -126,7 +126,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn carbon_dioxide_scatters_as_measured() {
+    fn carbon_dioxide_scattering_matches_measurements() {
         // He et al., Atmos. Chem. Phys. 21, 14927, 2021: 13.32e-31 m^2 at 532 nm, 5.516e-31 m^2 at 660 nm.
         for (nm, measured) in [(532.0, 13.32e-31), (660.0, 5.516e-31)] {
             let got = carbon_dioxide_cross_section_m2(nm);
@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn dust_glows_blue_round_the_sun_and_yellow_elsewhere() {
+    fn scattering_by_dust_is_blue_near_the_sun_and_yellow_elsewhere() {
         let dust = mars()
             .constituent(&ConstituentKind::Aerosol)
             .unwrap()
@@ -159,7 +159,7 @@ mod tests {
                 "{degrees}"
             );
         }
-        // The asymmetries the table is made for.
+        // Mean cosines to which the table was made.
         for (nm, g) in [
             (440.0, 0.766),
             (550.0, 0.693),

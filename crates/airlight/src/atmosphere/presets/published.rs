@@ -1,4 +1,4 @@
-//! Atmospheres of published sky models, with the constants printed there.
+//! Atmospheres of published sky models, with their published constants.
 
 use super::fixed_table::fixed_table;
 use super::reference;
@@ -9,7 +9,7 @@ use crate::sun::{LimbDarkening, SunDisc};
 
 const ZERO: SpectralCurve = SpectralCurve::Constant(0.0);
 
-/// A spectrum stated for red, green and blue, taken to be 680, 550 and 440 nm; linear between, constant beyond.
+/// A spectrum published for red, green and blue, assigned to 680, 550 and 440 nm; linear between, constant beyond.
 fn rgb([red, green, blue]: [f64; 3], factor: f64) -> SpectralCurve {
     fixed_table(&[
         (440.0, blue * factor),
@@ -20,11 +20,12 @@ fn rgb([red, green, blue]: [f64; 3], factor: f64) -> SpectralCurve {
 
 /// The constants of the article "Sky and Atmosphere rendering: A physical approach", as printed: Rayleigh (5.8, 13.5,
 /// 33.1)e-6 per m with 8 km, Mie 21e-6 per m with 1.2 km, extinction 1.11 times that, Henyey-Greenstein g = 0.76, and an
-/// absorption (3.426, 8.298, 0.356) x 0.06e-5 per m that it calls ozone and gives the Rayleigh profile. Planet 6360 km,
-/// top 60 km, no light from the ground.
+/// absorption (3.426, 8.298, 0.356) x 0.06e-5 per m, called ozone, with the Rayleigh profile. Planet radius 6360 km, top
+/// at 60 km, black ground.
 ///
-/// Its sun is set so that the beam of the zenith sun reaches the ground white, with 120 000 lx: a flat 1.6442
-/// W m^-2 nm^-1 there, over the zenith transmittance from its eye 1 m up. Uniform disc, 0.53 degrees across.
+/// The solar irradiance is chosen such that direct light of the zenith sun is white at the ground, with 120 000 lx:
+/// 1.6442 W m^-2 nm^-1 at every wavelength, divided by the zenith transmittance from the article's eye at 1 m. Uniform
+/// disc, 0.53 degrees in diameter.
 pub fn sky_article() -> Atmosphere {
     let mie = 21e-6;
     let part = |kind, height, scattering_per_m, absorption_per_m, phase| Constituent {
@@ -86,7 +87,8 @@ pub fn sky_article() -> Atmosphere {
 }
 
 /// The Earth of E. Bruneton's "Precomputed Atmospheric Scattering: a New Implementation" (2017), demonstration, with
-/// its spectral tables (10 nm, linear between): [`reference::earth_demo`] for all wavelengths. Uniform sun of 4.675 mrad.
+/// its spectral tables (every 10 nm, linear between): [`reference::earth_demo`] for all wavelengths. Uniform disc with a
+/// radius of 4.675 mrad.
 pub fn bruneton() -> Atmosphere {
     let rows = embedded_table::<3>(include_str!("../../../data/atmosphere/bruneton_demo.txt"));
     let column =
@@ -113,7 +115,7 @@ pub fn bruneton() -> Atmosphere {
 /// absorption 4.40e-6 per m with 1.2 km, Cornette-Shanks g = 0.8, ozone (0.650, 1.881, 0.085)e-6 per m as a tent from 10
 /// over 25 to 40 km; ground 6360 km, top 6460 km.
 ///
-/// The table leaves ground albedo and sun open: 0.3 and the measured solar spectrum here.
+/// The table does not specify ground albedo and sun: 0.3 and the measured solar spectrum are used here.
 pub fn hillaire() -> Atmosphere {
     let part = |kind, density, scattering_per_m, absorption_per_m, phase| Constituent {
         kind,
@@ -168,12 +170,12 @@ mod tests {
     use crate::spectrum::cie;
 
     #[test]
-    fn the_articles_zenith_sun_is_white_and_as_bright_as_stated() {
+    fn the_zenith_sun_of_the_article_is_white_with_120_klx() {
         let atmosphere = sky_article();
         for nm in [440.0, 550.0, 680.0] {
-            let beam =
+            let direct =
                 atmosphere.solar_irradiance.at(nm) * (-atmosphere.vertical_optical_depth(nm)).exp();
-            assert!((beam / 1.6442 - 1.0).abs() < 1e-4, "{nm}: {beam}");
+            assert!((direct / 1.6442 - 1.0).abs() < 1e-4, "{nm}: {direct}");
         }
         let v: f64 = (360..=830)
             .map(|nm| cie::color_matching(f64::from(nm))[1])
@@ -184,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn bruneton_is_the_reference_at_its_three_wavelengths() {
+    fn bruneton_equals_the_reference_at_its_three_wavelengths() {
         let (full, three) = (bruneton(), reference::earth_demo());
         for nm in [440.0, 550.0, 680.0] {
             assert!(
@@ -196,7 +198,7 @@ mod tests {
     }
 
     #[test]
-    fn hillaires_ozone_is_that_of_300_dobson_units() {
+    fn the_ozone_of_hillaire_is_300_dobson_units() {
         let ozone = hillaire()
             .constituent(&ConstituentKind::Ozone)
             .unwrap()

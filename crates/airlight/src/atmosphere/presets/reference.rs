@@ -1,6 +1,6 @@
-//! Atmospheres of published comparisons, exactly as stated there: what solvers are checked against.
+//! Atmospheres of published comparisons, exactly as published: solvers are tested against their reference values.
 //!
-//! Earth radius 6360 km, top at 60 km, scale heights 8 km (molecules) and 1.2 km (aerosol) in all.
+//! All have an Earth radius of 6360 km, a top at 60 km, and scale heights of 8 km (molecules) and 1.2 km (aerosol).
 
 use super::fixed_table::fixed_table;
 use crate::atmosphere::{Atmosphere, Constituent, ConstituentKind, DensityProfile, Planet};
@@ -43,8 +43,8 @@ fn aerosol(
     }
 }
 
-/// Air molecules alone: sea-level scattering 5.8, 13.5, 33.1 per 1000 km at 680, 550, 440 nm (linear between), unit
-/// solar irradiance, a ground of the albedo given (0 and 0.3 have reference values).
+/// Molecules only: sea-level scattering 5.8, 13.5, 33.1 per 1000 km at 680, 550, 440 nm (linear between), solar irradiance
+/// 1, and this ground albedo (there are reference values for 0 and 0.3).
 pub fn rayleigh(ground_albedo: f64) -> Atmosphere {
     Atmosphere {
         name: "reference-rayleigh".into(),
@@ -59,13 +59,13 @@ pub fn rayleigh(ground_albedo: f64) -> Atmosphere {
     }
 }
 
-/// The Earth of E. Bruneton's "Precomputed Atmospheric Scattering: a New Implementation" (2017) as its demonstration
-/// sets it: molecules 1.24062e-6 (lambda/um)^-4 per m, aerosol of optical depth 5.328e-3 at every wavelength with
+/// The Earth of the demonstration of E. Bruneton's "Precomputed Atmospheric Scattering: a New Implementation" (2017):
+/// molecules 1.24062e-6 (lambda/um)^-4 per m, aerosol of optical depth 5.328e-3 at every wavelength with
 /// single-scattering albedo 0.9 and Cornette-Shanks g = 0.8, 300 Dobson units of ozone as a tent from 10 over 25 to
-/// 40 km, ground albedo 0.1. Ozone and sun are stated at 680, 550 and 440 nm; linear between.
+/// 40 km, ground albedo 0.1. Ozone and sun are given at 680, 550 and 440 nm; linear between.
 pub fn earth_demo() -> Atmosphere {
     let dobson_unit_m2 = 2.687e20;
-    // The tent's column is 15 km of its peak density.
+    // The column of the tent is 15 km at peak density.
     let peak_per_m3 = 300.0 * dobson_unit_m2 / 15e3;
     let cross_sections_m2 =
         fixed_table(&[(440.0, 1.582e-26), (550.0, 3.5e-25), (680.0, 1.209e-25)]);
@@ -125,14 +125,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn all_are_valid() {
+    fn references_are_valid() {
         for atmosphere in [rayleigh(0.0), rayleigh(0.3), earth_demo(), csm()] {
             atmosphere.validate().unwrap();
         }
     }
 
     #[test]
-    fn optical_depths_are_those_stated() {
+    fn optical_depths_match_the_publications() {
         let demo = earth_demo();
         let part = |kind, nm: f64| {
             demo.constituent(&kind)

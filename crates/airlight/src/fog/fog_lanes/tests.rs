@@ -49,7 +49,7 @@ fn light(sun_elevation_deg: f64) -> FogLighting<Spectrum<3>> {
     }
 }
 
-/// Single scattering along a line by brute force in f64, lane by lane: `(optical depth, path radiance)`.
+/// Reference for one lane: optical depth and path radiance of single scattering by quadrature in f64.
 fn by_quadrature(
     layers: &[RgbLayer],
     ground: Ground,
@@ -65,7 +65,7 @@ fn by_quadrature(
             |l: &RgbLayer| f64::from(l.extinction_per_m[lane]) * l.density.column_along_m(line);
         layers.iter().map(of).sum()
     };
-    // Stop where nothing is left to see.
+    // Stop where all light is attenuated.
     let mut end = line.length_m.min(1e9);
     while depth(&line.part(0.0, end)) > 60.0 {
         end *= 0.8;
@@ -101,11 +101,11 @@ fn by_quadrature(
         } else if scattering == FogScattering::Undimmed {
             1.0
         } else {
-            let solid = layers.iter().filter(|l| !l.density.is_uniform());
+            let bounded = layers.iter().filter(|l| !l.density.is_uniform());
             let of = |l: &RgbLayer| {
                 f64::from(l.extinction_per_m[lane]) * l.density.column_along_m(&to_sun)
             };
-            (-solid.map(of).sum::<f64>()).exp()
+            (-bounded.map(of).sum::<f64>()).exp()
         };
         let mut source = 0.0;
         for layer in layers {
@@ -144,7 +144,7 @@ fn worst_error(
                         (t - (-depth).exp()).abs() < 1e-4 * (-depth).exp() + 1e-37,
                         "T {t} against e^-{depth}: {line:?}"
                     );
-                    // Light below the range of f32 counts as dark.
+                    // Ignore light below the range of f32.
                     let error = (f64::from(got.path_radiance[lane]) - path).abs() / (path + 1e-30);
                     if error > worst {
                         worst = error;
@@ -210,7 +210,7 @@ fn one_profile_over_flat_ground_is_exact() {
                         ..molecules(0.3 * extinction)
                     },
                 ];
-                // Sunlight in fog so deep that the sun is invisible leaves the range of f32.
+                // In very deep fog sunlight underflows in f32.
                 if extinction as f64 * profile.column_above_m(0.0) > 10.0
                     && profile != DensityProfile::Uniform
                 {
@@ -226,9 +226,9 @@ fn one_profile_over_flat_ground_is_exact() {
     }
 }
 
-/// The errors that the doc comment of [`FogLanes::path_along`] states.
+/// The errors documented at [`FogLanes::path_along`].
 #[test]
-fn several_profiles_and_round_ground_err_as_stated() {
+fn errors_of_several_profiles_and_round_ground() {
     let exponential = |scale_height_m| DensityProfile::Exponential {
         reference_height_m: 0.0,
         scale_height_m,
@@ -293,10 +293,10 @@ fn several_profiles_and_round_ground_err_as_stated() {
     }
 }
 
-/// Layers aloft, tents, tables, sums and the standard atmosphere are fog, too.
+/// Elevated layers, tents, tables, sums and the standard atmosphere.
 #[test]
 fn all_density_profiles_may_be_fog() {
-    let aloft = DensityProfile::Layer {
+    let elevated = DensityProfile::Layer {
         bottom_m: 30.0,
         top_m: 70.0,
     };
@@ -308,9 +308,9 @@ fn all_density_profiles_may_be_fog() {
     let heights: Vec<f64> = (0..13).map(|k| 25.0 * f64::from(k)).collect();
     let decaying = heights.iter().map(|h| (-h / 40.0).exp()).collect();
     let table = DensityProfile::tabulated(heights, decaying, Interpolation::LogLinear).unwrap();
-    let sum = DensityProfile::Sum(vec![(0.5, aloft.clone()), (2.0, tent.clone())]);
+    let sum = DensityProfile::Sum(vec![(0.5, elevated.clone()), (2.0, tent.clone())]);
     for (density, extinction) in [
-        (aloft, 0.02),
+        (elevated, 0.02),
         (tent, 0.02),
         (table.clone(), 0.02),
         (sum, 0.01),
@@ -335,7 +335,7 @@ fn all_density_profiles_may_be_fog() {
             }
         }
     }
-    // Solved for, the table of an exponential decay is that decay.
+    // Multiple scattering in a tabulated exponential equals that in the exponential.
     let [by_table, by_formula] = [table, DensityProfile::exponential(40.0)].map(|density| {
         let layers = [RgbLayer {
             density,
@@ -354,7 +354,7 @@ fn all_density_profiles_may_be_fog() {
 }
 
 #[test]
-fn a_ray_may_be_cut_anywhere() {
+fn rays_may_be_split_anywhere() {
     let exponential = |scale_height_m| DensityProfile::Exponential {
         reference_height_m: 0.0,
         scale_height_m,
@@ -413,7 +413,7 @@ fn a_ray_may_be_cut_anywhere() {
                             (of(&joined)[lane], of(&whole)[lane])
                         };
                         for (a, b) in [pair(|p| p.transmittance), pair(|p| p.path_radiance)] {
-                            // Both are 0 along a ray above the fog.
+                            // Both are 0 for rays above the fog.
                             assert!(
                                 (a - b).abs() <= tolerance * b,
                                 "{sin_elevation} {cut}: {a} {b}"
@@ -427,7 +427,7 @@ fn a_ray_may_be_cut_anywhere() {
 }
 
 #[test]
-fn fog_without_absorption_is_invisible_in_light_that_is_the_same_everywhere() {
+fn fog_without_absorption_is_invisible_in_uniform_light() {
     let mut clear = drops(0.01);
     clear.single_scattering_albedo = [1.0; 3];
     let everywhere = FogLighting {
@@ -463,7 +463,7 @@ fn fog_without_absorption_is_invisible_in_light_that_is_the_same_everywhere() {
                     let seen = fog.path_along(&line, 0.0).apply(everywhere.ambient);
                     for lane in 0..3 {
                         let ratio = seen[lane] / everywhere.ambient[lane];
-                        // The moments of the diffuse light are kept in f32.
+                        // Moments of the diffuse light are stored in f32.
                         assert!((ratio - 1.0).abs() < 2e-5, "{profile:?} {line:?}: {ratio}");
                     }
                 }
@@ -473,7 +473,7 @@ fn fog_without_absorption_is_invisible_in_light_that_is_the_same_everywhere() {
 }
 
 #[test]
-fn transmittance_stays_between_0_and_1_and_falls_with_distance() {
+fn transmittance_is_between_0_and_1_and_decreases_with_distance() {
     for profile in [
         DensityProfile::Uniform,
         DensityProfile::Clamped {
@@ -514,10 +514,10 @@ fn transmittance_stays_between_0_and_1_and_falls_with_distance() {
     }
 }
 
-/// The closed form in f64, for one wavelength: sunlight dimmed on its own way through exponential fog included.
+/// The closed form of attenuated sunlight in f64.
 #[test]
 fn sunlight_in_exponential_fog_is_exact_in_f64() {
-    use crate::fog::closed_forms::dimmed_source;
+    use crate::fog::closed_forms::attenuated_source;
     for scale_height_m in [1e-2, 1.0, 50.0, 1e4, 1e7] {
         let profile = DensityProfile::Exponential {
             reference_height_m: 0.0,
@@ -532,7 +532,7 @@ fn sunlight_in_exponential_fog_is_exact_in_f64() {
             })
             .flat_map(|(c, s, l)| [1e-6, 0.3, 8.0].map(|depth| (c, s, l, depth)))
         {
-            // An extinction that leaves this vertical optical depth above the eye.
+            // Extinction for this vertical optical depth above the eye.
             let extinction = depth / scale_height_m;
             let line = RaySegment::flat(0.0, sin_elevation, length_m);
             let along = extinction * profile.column_along_m(&line);
@@ -541,8 +541,8 @@ fn sunlight_in_exponential_fog_is_exact_in_f64() {
                 continue;
             }
             tested += 1;
-            let got = dimmed_source(near, along * (1.0 - sin_elevation / sine), along);
-            // Steps that shrink towards both ends.
+            let got = attenuated_source(near, along * (1.0 - sin_elevation / sine), along);
+            // Intervals that shrink towards both ends.
             let mut breaks: Vec<f64> = (0..60)
                 .map(|k| length_m * 0.6f64.powi(k))
                 .flat_map(|step| [step, length_m - step])
@@ -564,7 +564,7 @@ fn sunlight_in_exponential_fog_is_exact_in_f64() {
 }
 
 #[test]
-fn numbers_outside_their_domain_are_refused() {
+fn invalid_inputs_are_rejected() {
     let refused = |layers: &[RgbLayer], ground, light| {
         lanes(layers, ground, light, FogScattering::Single)
             .unwrap_err()
@@ -597,7 +597,7 @@ fn numbers_outside_their_domain_are_refused() {
 }
 
 #[test]
-fn in_thin_fog_multiple_scattering_is_single() {
+fn multiple_scattering_equals_single_scattering_in_thin_fog() {
     let layers = [RgbLayer {
         density: DensityProfile::Exponential {
             reference_height_m: 0.0,
@@ -618,8 +618,8 @@ fn in_thin_fog_multiple_scattering_is_single() {
 }
 
 #[test]
-fn thick_fog_is_not_dark() {
-    // A white cloud 30 optical depths thick transmits a good part of the sunlight, by single scattering nearly none.
+fn multiple_scattering_brightens_thick_fog() {
+    // A cloud without absorption and with optical depth 30 transmits a large part of the sunlight; single scattering nearly none.
     let mut white = drops(0.3);
     white.single_scattering_albedo = [1.0; 3];
     let layers = [RgbLayer {
@@ -628,19 +628,19 @@ fn thick_fog_is_not_dark() {
     }];
     let [one, many] = [FogScattering::Single, FogScattering::Multiple]
         .map(|scattering| lanes(&layers, Ground::FLAT, light(40.0), scattering).unwrap());
-    let level = |fog: &FogLanes<3>| {
+    let near_horizon = |fog: &FogLanes<3>| {
         fog.path(1.7, axes::direction(200.0, 5.0), 500.0)
             .path_radiance[1]
     };
     assert!(
-        level(&many) > 0.05 && level(&one) < 0.2,
+        near_horizon(&many) > 0.05 && near_horizon(&one) < 0.2,
         "{} {}",
-        level(&many),
-        level(&one)
+        near_horizon(&many),
+        near_horizon(&one)
     );
     let ground = many.ground_irradiance().unwrap()[1] / (1.8 * axes::direction(0.0, 40.0).y as f32);
     assert!((0.15..0.7).contains(&ground), "{ground}");
-    // Nothing below 0 anywhere, near the sun and away from it, in thick and in thin fog.
+    // Path radiance is not negative, near the sun and away from it, in thick and in thin fog.
     for extinction in [1e-4, 0.01, 1.0] {
         let layers = [RgbLayer {
             density: DensityProfile::Exponential {

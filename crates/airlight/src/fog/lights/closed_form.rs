@@ -1,7 +1,7 @@
-//! The light of a point light that uniform fog scatters equally in all directions into a ray: exact in f64, and fast in lanes.
+//! Closed forms for a point light in uniform, isotropically scattering fog: exact in f64, and fast in lanes.
 //!
-//! All functions give `int T(t) / (4 pi r^2) dt` in 1/m: times the radiant intensity of the light and the scattering coefficient
-//! that is the path radiance. Derivation: `docs/src/lights.md`.
+//! All functions return `int T(t) / (4 pi r^2) dt` in 1/m. Multiply by radiant intensity and scattering coefficient for the path
+//! radiance. Derivation: `docs/src/lights.md`.
 
 use super::geometry::LightRayGeometry;
 use super::march::Nodes;
@@ -10,19 +10,19 @@ use crate::math::quadrature::FixedRule;
 use crate::spectrum::Spectrum;
 use std::f64::consts::{LN_2, PI};
 
-/// Without extinction: `theta / (4 pi h)`, with the angle `theta` under which the light sees the ray (after Macklin 2010,
-/// whose arctangent is off by pi where the light is passed).
+/// Without extinction: `theta / (4 pi h)`, with the angle `theta` that the ray subtends at the light (after Macklin 2010, whose
+/// arctangent is wrong by pi for some rays).
 ///
-/// Exact to rounding (a few 1e-16) for any geometry: light ahead, passed, behind, beside the eye; ray finite or infinite.
+/// Exact to rounding (a few 1e-16) for any geometry: light ahead, passed, behind or beside the eye, finite or infinite ray.
 #[inline]
 pub fn airlight_without_extinction(geometry: &LightRayGeometry) -> f64 {
     geometry.angle() / (4.0 * PI * geometry.nearest_m)
 }
 
-/// With extinction from the light to the fog and from the fog to the eye (1/m, not below 0):
+/// With extinction (1/m, not negative) between light, fog and eye:
 ///
 /// `e^-(sigma r_0) / (2 pi h) int_(w_0)^(w_1) e^-(x (w - w_0)) / (1 + w^2) dw`, `x = sigma h`, `w = tan v`
-/// (the integral of Sun, Ramamoorthi, Narasimhan and Nayar 2005, with a closed form for what they tabulate).
+/// (the integral that Sun, Ramamoorthi, Narasimhan and Nayar 2005 tabulate, in closed form).
 ///
 /// Relative error below 1e-13 plus 1e-16 times the optical depth.
 pub fn airlight_isotropic(geometry: &LightRayGeometry, extinction_per_m: f64) -> f64 {
@@ -40,8 +40,8 @@ pub fn airlight_isotropic(geometry: &LightRayGeometry, extinction_per_m: f64) ->
 /// `int_0^rise e^-(x s) / (1 + (first + s)^2) ds`, `angle = atan(first + rise) - atan(first)`.
 fn finite(x: f64, first: f64, rise: f64, angle: f64) -> f64 {
     let last = first + rise;
-    // Two infinite integrals nearly cancel only where the segment is thin and short against what lies beyond; there the
-    // integrand is nearly a polynomial of the angle.
+    // The difference of two infinite integrals cancels only for thin segments that are short compared with what lies beyond.
+    // There the integrand is nearly a polynomial of the angle.
     if x * rise < LN_2 && angle <= (1.0 / last).atan() {
         return short(x, first, angle);
     }
@@ -58,8 +58,8 @@ fn infinite(x: f64, w: f64) -> f64 {
     scaled_exponential_integral(x * w, -x).1
 }
 
-/// Gauss-Legendre in the angle: 16 points leave less than 1e-16 where the singularity at a right angle is at least a whole
-/// interval away and the optical depth at most ln 2.
+/// Gauss-Legendre quadrature in the angle: with 16 points the error is below 1e-16 if the singularity at a right angle is at least
+/// one interval away and the optical depth at most ln 2.
 fn short(x: f64, first: f64, angle: f64) -> f64 {
     static RULE: FixedRule<16> = FixedRule::fixed();
     RULE.integrate(0.0, angle, |part| {
@@ -69,7 +69,7 @@ fn short(x: f64, first: f64, angle: f64) -> f64 {
     })
 }
 
-/// [`airlight_isotropic`] by a few well-placed nodes: with 12 of them within 5e-6 of the exact form, in a fraction of its time.
+/// Approximation of [`airlight_isotropic`] by quadrature: an error below 5e-6 with 12 nodes, in a fraction of the time.
 pub fn airlight_isotropic_fast(
     geometry: &LightRayGeometry,
     extinction_per_m: f64,
@@ -78,9 +78,9 @@ pub fn airlight_isotropic_fast(
     airlight_isotropic_lanes(geometry, extinction_per_m, nodes)
 }
 
-/// Lanes with a cube root.
+/// Number types with a cube root.
 pub(super) trait CubeRoot: Lanes {
-    /// The cube root of numbers not below 0.
+    /// Cube root of numbers that are not negative.
     fn cube_root(self) -> Self;
 }
 
@@ -101,13 +101,12 @@ impl<const N: usize> CubeRoot for Spectrum<N> {
 /// [`airlight_isotropic`] for `f64` or the lanes of a [`Spectrum`], each with its own extinction (1/m).
 ///
 /// With `m^2 = h^2 + a^2` and `c = a / m` it is `e^-(sigma r_0) / (2 pi m) int_0^(E / m) e^-(X s) / (1 + 2 c s + s^2) ds`,
-/// `X = sigma m`. The integrand's one scale besides `1 / X` is 1, so `s = (1 - q^3) / q^3` and Gauss's nodes in `q` serve
-/// every case; the integral of each lane ends where its light is negligible.
+/// `X = sigma m`. Besides `1 / X` the only scale of the integrand is 1, so that Gauss nodes in `q`, with `s = (1 - q^3) / q^3`, suit
+/// all cases. The integral of each lane ends where its light is negligible.
 ///
-/// Worst relative error against the exact form for nodes 8, 10, 12, 16, 20: 1.25e-4, 2e-5, 5e-6, 1.1e-6, 3.5e-7 (f64;
-/// h, start and length from 1e-6 m to 1e7 m and infinite, optical depths from 1e-6 to 600: test
-/// `the_fast_form_is_as_good_as_stated`). In f32
-/// rounding adds 2e-6 plus 1e-7 times the optical depth, and light dimmed below `e^-87` is 0.
+/// Largest relative error with 8, 10, 12, 16, 20 nodes: 1.25e-4, 2e-5, 5e-6, 1.1e-6, 3.5e-7 (f64; h, start and length from 1e-6 m
+/// to 1e7 m and infinite, optical depths from 1e-6 to 600: test `errors_of_the_fast_form`). In f32 rounding adds 2e-6 plus 1e-7
+/// times the optical depth, and light attenuated below `e^-87` is 0.
 #[inline]
 pub(super) fn airlight_isotropic_lanes<V: CubeRoot>(
     geometry: &LightRayGeometry,
@@ -119,11 +118,11 @@ pub(super) fn airlight_isotropic_lanes<V: CubeRoot>(
     let spread = V::splat(2.0 * ahead / scale);
     let one = V::splat(1.0);
     let x = extinction_per_m * V::splat(scale);
-    // One over the end of the integral: that of the ray, or where e^-(X s) is negligible.
+    // Inverse of the end of the integral: end of the ray, or where e^-(X s) is negligible.
     let inverse = larger(
-        // (Bounded by the range of f32, for a ray of nearly no length.)
+        // Bounded by the range of f32, for very short rays.
         V::splat((scale / geometry.excess_m()).min(1e30)),
-        x * V::splat(1.0 / nodes.spent()),
+        x * V::splat(1.0 / nodes.cutoff_depth()),
     );
     let covered = one / (one + inverse);
     let last = (inverse * covered).cube_root();
@@ -143,7 +142,7 @@ pub(super) fn airlight_isotropic_lanes<V: CubeRoot>(
     V::splat(0.5 / (PI * scale)) * arriving * span * sum
 }
 
-/// The larger of two that are not below 0.
+/// Maximum of two values that are not negative.
 #[inline(always)]
 fn larger<V: Lanes>(a: V, b: V) -> V {
     a - (a - b).min_zero()
@@ -155,8 +154,7 @@ const EULER: f64 = 0.577_215_664_901_532_9;
 /// Real and imaginary part of `e^z E1(z)`, `E1(z) = int_z^inf e^-y / y dy`, for `z = re + i im` in the right half plane,
 /// `re >= 0`, `z != 0` (Abramowitz & Stegun 1964, 5.1.11 below `|z| = 2`, 5.1.22 in its even form elsewhere).
 ///
-/// Relative error below 1e-13, of each part on its own: where the imaginary part is 1e13 times the smaller, it is still
-/// exact to 1e-13 (neither form subtracts in it).
+/// Relative error below 1e-13 for each part separately, even if the imaginary part is 1e13 times smaller.
 fn scaled_exponential_integral(re: f64, im: f64) -> (f64, f64) {
     if re * re + im * im <= 4.0 {
         series(re, im)
@@ -186,8 +184,8 @@ fn series(re: f64, im: f64) -> (f64, f64) {
     )
 }
 
-/// `1 / (z + 1 - 1 / (z + 3 - 4 / (z + 5 - 9 / (z + 7 - ...))))`, from its far end, which is placed where the rest is below
-/// 1e-15: the error after n terms is about `e^(-4 sqrt(n |z|) cos(arg z / 2))`.
+/// Continued fraction `1 / (z + 1 - 1 / (z + 3 - 4 / (z + 5 - 9 / (z + 7 - ...))))`, evaluated backwards. The error after n terms is
+/// about `e^(-4 sqrt(n |z|) cos(arg z / 2))`; the number of terms is chosen for 1e-15.
 fn fraction(re: f64, im: f64) -> (f64, f64) {
     let terms = 6 + (160.0 / (re.hypot(im) + re)) as u32;
     let mut rest = (0.0, 0.0);

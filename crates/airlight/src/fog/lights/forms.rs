@@ -1,21 +1,21 @@
-//! Forms of the light of a point light in uniform fog: exact, and those of the fog note (after Macklin 2010).
+//! [`LightForm`]: scattering of a point light in uniform fog, exact and as in the fog note (after Macklin 2010).
 //!
 //! # The printed form
-//! In uniform fog of the scattering coefficient `sigma`, from the surface `p` towards the camera, `d` away, past a light at
-//! `s` with the intensity `I`:
+//! For uniform fog with scattering coefficient `sigma`, a surface at `p`, a camera at the distance `d`, and a light at `s` with
+//! intensity `I`:
 //!
 //! ```text
 //! b = (p - s) . v,  c = |p - s|^2,  v = sqrt(c - b^2),  x = (b + d) / v,  y = b / v
 //! S = sigma pi I / v  arctan((x - y) / (1 + x y))
 //! ```
 //!
-//! Its errata:
-//! - The arctangent is off by pi wherever `1 + x y < 0`, which is where the light sees the ray under more than a right angle:
-//!   for b = -5, c = 26, d = 20 it is -0.2640, and should be 2.8776. The path radiance is then negative.
-//! - A light of intensity `I` gives the irradiance `I / r^2`, and the uniform phase function is `1 / (4 pi)`: the source is
-//!   `I / (4 pi r^2)`, not `pi I / r^2`. So all of it is `4 pi^2` = 39.5 times too bright.
-//! - "Transmittance is left out because only single scattering is considered": extinction before and after the scattering is part
-//!   of single scattering.
+//! Errata:
+//! - The arctangent is wrong by pi if `1 + x y < 0`, when the ray subtends more than a right angle at the light: for b = -5,
+//!   c = 26, d = 20 it is -0.2640 instead of 2.8776. The path radiance is then negative.
+//! - A light of intensity `I` causes the irradiance `I / r^2`, and the isotropic phase function is `1 / (4 pi)`: the source is
+//!   `I / (4 pi r^2)`, not `pi I / r^2`. The printed form is `4 pi^2` = 39.5 times too bright.
+//! - The note omits transmittance "because only single scattering is considered", but extinction before and after scattering is
+//!   part of single scattering.
 //!
 //! [`airlight_without_extinction`] corrects the first two, [`airlight_isotropic`] all three.
 
@@ -30,26 +30,26 @@ use crate::optics::PhaseFunction;
 use crate::spectrum::Spectrum;
 use std::f64::consts::PI;
 
-/// The form in which the light of lights that fog scatters into a ray is computed. All but the first hold for point lights in
-/// one layer of uniform fog that scatters equally in all directions.
+/// Form of the scattering of lights. All but [`LightForm::Exact`] are for point lights in one layer of uniform, isotropically
+/// scattering fog.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum LightForm {
-    /// Dimmed from the light to the fog and from the fog to the eye; for all lights and layers.
+    /// With extinction between light, fog and eye; for all lights and layers.
     #[default]
     Exact,
-    /// The opacity of the ray times the mean of the source on it: [`airlight_split_sum`].
+    /// Opacity of the ray times the mean source: [`airlight_split_sum`].
     SplitSum,
-    /// Not dimmed: [`airlight_without_extinction`].
+    /// Without extinction: [`airlight_without_extinction`].
     NoExtinction,
-    /// As the fog note prints it: [`airlight_printed`].
+    /// As printed in the fog note: [`airlight_printed`].
     Printed,
 }
 
 impl LightForm {
-    /// Its name in scene files.
+    /// Name in scene files.
     pub fn name(self) -> &'static str {
         match self {
             Self::Exact => "exact",
@@ -59,7 +59,7 @@ impl LightForm {
         }
     }
 
-    /// Light of unit intensity in fog of unit scattering coefficient, 1/m.
+    /// Path radiance for unit intensity and unit scattering coefficient, 1/m.
     pub fn airlight(self, geometry: &LightRayGeometry, extinction_per_m: f64) -> f64 {
         match self {
             Self::Exact => airlight_isotropic(geometry, extinction_per_m),
@@ -69,7 +69,7 @@ impl LightForm {
         }
     }
 
-    /// Light that a layer of uniform fog, which scatters equally in all directions, scatters into a ray past a light.
+    /// Path radiance of a layer of uniform, isotropically scattering fog.
     pub(super) fn path_radiance<const N: usize>(
         self,
         layer: &LayerLanes<N>,
@@ -81,10 +81,10 @@ impl LightForm {
         layer.scattering_per_m * intensity * Spectrum::from_fn(of_lane)
     }
 
-    /// Refuses lights and layers that the form does not hold for.
+    /// Checks whether the form is valid for lights and layers.
     ///
     /// # Errors
-    /// [`FogError::LightForm`] with the reason.
+    /// [`FogError::LightForm`] if it is not.
     pub(super) fn check<C, const N: usize>(
         self,
         lights: &[Light<C>],
@@ -92,22 +92,22 @@ impl LightForm {
     ) -> Result<(), FogError> {
         let got = match layers {
             _ if self == Self::Exact => return Ok(()),
-            [layer] if !layer.density.is_uniform() => "fog that thins with height",
+            [layer] if !layer.density.is_uniform() => "fog whose density depends on height",
             [layer] if layer.phase != PhaseFunction::Isotropic => {
-                "fog that scatters more in some directions"
+                "fog with a directional phase function"
             }
             [_] => match lights.iter().all(|light| matches!(light, Light::Point(_))) {
                 true => return Ok(()),
-                false => "a light that is no point light",
+                false => "a light that is not a point light",
             },
-            _ => "another number of layers",
+            _ => "no layer or several layers",
         };
         Err(FogError::LightForm { got })
     }
 }
 
-/// The printed form, in 1/m: times the light's intensity and the scattering coefficient that is the path radiance. It is the
-/// same from either end of the ray; an infinite ray has the limit, `arctan(1 / y)`.
+/// The printed form in 1/m, to be multiplied by intensity and scattering coefficient. It is symmetric in the ends of the ray; for
+/// an infinite ray it is the limit `arctan(1 / y)`.
 #[inline]
 pub fn airlight_printed(geometry: &LightRayGeometry) -> f64 {
     let v = geometry.nearest_m;
@@ -120,19 +120,19 @@ pub fn airlight_printed(geometry: &LightRayGeometry) -> f64 {
     PI / v * tangent.atan()
 }
 
-/// Distance from the point closest to the light up to which the light of an infinite ray is integrated, in `asinh(u / h)`:
-/// beyond is a part of 1e-16 of it.
+/// Limit of the integral along an infinite ray, in `asinh(u / h)` from the point closest to the light; a fraction of 1e-16 lies
+/// beyond.
 const REACH: f64 = 37.0;
 /// Length of a Gauss-Legendre panel in the same coordinate.
 const PANEL: f64 = 2.0;
 
-/// The fog note's split sum, `(1 - T) (1 / d) int J dt` with the light's source `J`, dimmed on its way to the fog, in 1/m: times
-/// the radiant intensity and the scattering coefficient that is the path radiance.
+/// The split sum of the fog note in 1/m, `(1 - T) (1 / d) int J dt` with the attenuated source `J` of the light, to be multiplied
+/// by intensity and scattering coefficient.
 ///
 /// With `u = h sinh s` the integral is `1 / (4 pi h) int e^-(sigma h cosh s) / cosh s ds`, by Gauss-Legendre quadrature:
-/// relative error below 1e-6 up to an optical depth of 10 between light and ray. Against [`airlight_isotropic`] the split sum is
-/// within 5 % up to an optical depth of 1 of the ray for a light halfway along it; for an infinite ray it is 0, as the mean of
-/// the source is.
+/// relative error below 1e-6 up to an optical depth of 10 between light and ray. The split sum is within 5 % of
+/// [`airlight_isotropic`] up to an optical depth of 1 of the ray, for a light halfway along it. For an infinite ray it is 0, as
+/// the mean of the source is 0.
 pub fn airlight_split_sum(geometry: &LightRayGeometry, extinction_per_m: f64) -> f64 {
     static RULE: FixedRule<12> = FixedRule::fixed();
     if extinction_per_m == 0.0 {
@@ -177,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn the_printed_form_is_as_wrong_as_the_errata_say() {
+    fn errors_of_the_printed_form_are_those_of_the_errata() {
         // b = -5, c = 26, d = 20.
         let passed = past(-5.0, 20.0);
         let printed = airlight_printed(&passed) / PI;
@@ -185,12 +185,12 @@ mod tests {
         let right = 4.0 * PI * airlight_without_extinction(&passed);
         assert!((right - 2.8776).abs() < 5e-5, "{right}");
         assert!((right - printed - PI).abs() < 1e-12);
-        // The same from the other end.
+        // Symmetric in the ends of the ray.
         assert!((airlight_printed(&passed.reversed()) / PI - printed).abs() < 1e-12);
     }
 
     #[test]
-    fn where_the_light_is_not_passed_only_the_unit_of_the_printed_form_is_wrong() {
+    fn the_printed_form_is_wrong_by_a_factor_below_a_right_angle() {
         for (start_m, length_m) in [
             (-5.0, 4.0),
             (0.5, 20.0),
@@ -205,7 +205,7 @@ mod tests {
                 "{start_m} {ratio}"
             );
         }
-        // Under more than a right angle: below 0, also for an infinite ray.
+        // Negative above a right angle, also for an infinite ray.
         for (start_m, length_m) in [(-1.0, 2.1), (-1.0, f64::INFINITY)] {
             let printed = airlight_printed(&past(start_m, length_m));
             assert!(printed < 0.0 && printed.is_finite(), "{start_m} {printed}");
@@ -222,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn the_split_sum_is_the_mean_of_the_source_by_quadrature() {
+    fn the_split_sum_matches_quadrature() {
         for (h, start, length) in [
             (1.0, -5.0, 20.0),
             (0.01, -8.0, 9.0),
@@ -235,7 +235,7 @@ mod tests {
                     continue;
                 }
                 let geometry = geometry(h, start, length);
-                // Evenly spaced in the angle under which the light sees the ray.
+                // In the angle that the ray subtends at the light.
                 let (from, to) = ((start / h).atan(), ((start + length) / h).atan());
                 let mean = GaussRule::new(3000)
                     .integrate(from, to, |angle| (-sigma * h / angle.cos()).exp())
@@ -257,8 +257,8 @@ mod tests {
     }
 
     #[test]
-    fn the_split_sum_is_good_in_thin_fog_and_bad_in_thick() {
-        // The book's table: a light halfway along the ray, h lengths of it aside; percent.
+    fn errors_of_the_split_sum_grow_with_optical_depth() {
+        // A table of the book: light halfway along the ray, at h times its length from it; error in percent.
         for (tau, h, percent) in [
             (0.1, 0.1, 0.0),
             (0.5, 0.1, 0.7),
@@ -277,14 +277,14 @@ mod tests {
     }
 
     #[test]
-    fn the_limits_of_the_split_sum() {
-        let line = geometry(1.0, -5.0, 20.0);
-        let thin = airlight_split_sum(&line, 0.0) / airlight_without_extinction(&line);
+    fn limits_of_the_split_sum() {
+        let passing = geometry(1.0, -5.0, 20.0);
+        let thin = airlight_split_sum(&passing, 0.0) / airlight_without_extinction(&passing);
         assert!((thin - 1.0).abs() < 1e-9);
         let infinite = geometry(1.0, -5.0, f64::INFINITY);
         assert_eq!(airlight_split_sum(&infinite, 0.1), 0.0);
         assert_eq!(airlight_split_sum(&geometry(1.0, -5.0, 0.0), 0.1), 0.0);
-        assert_eq!(airlight_split_sum(&line, 1e6), 0.0);
+        assert_eq!(airlight_split_sum(&passing, 1e6), 0.0);
     }
 
     fn layer(density: DensityProfile, phase: PhaseFunction) -> RgbLayer {
@@ -296,7 +296,7 @@ mod tests {
         }
     }
 
-    /// The set of a light in layers, in one form.
+    /// A set of one light in one form.
     fn set(
         light: Light<[f32; 3]>,
         layers: &[RgbLayer],
@@ -310,7 +310,7 @@ mod tests {
     }
 
     #[test]
-    fn each_form_is_that_far_from_the_exact_one() {
+    fn ratios_of_forms_to_the_exact_form() {
         let uniform = layer(DensityProfile::Uniform, PhaseFunction::Isotropic);
         let intensity = [3.0, 2.0, 1.0];
         let light = PointLight::new(DVec3::new(1.0, 0.0, -5.0), intensity, 0.01).unwrap();
@@ -330,7 +330,7 @@ mod tests {
         let exact = LightForm::Exact.path_radiance(&lanes, &geometry, Spectrum(intensity));
         for lane in 0..3 {
             assert!((exact[lane] / right[lane] - 1.0).abs() < 1e-5);
-            // 5.8 times too bright in dense fog.
+            // 5.8 times too bright.
             let without = of(LightForm::NoExtinction)[lane] / right[lane];
             assert!((without / 5.8 - 1.0).abs() < 3e-3, "{without}");
             assert!(of(LightForm::Printed)[lane] < 0.0);
@@ -340,7 +340,7 @@ mod tests {
     }
 
     #[test]
-    fn forms_refuse_lights_and_layers_that_they_do_not_hold_for() {
+    fn forms_reject_invalid_lights_and_layers() {
         let point = Light::Point(PointLight::new(DVec3::ZERO, [1.0; 3], 0.1).unwrap());
         let sphere = Light::Sphere(SphereLight::new(DVec3::ZERO, 0.1, [1.0; 3]).unwrap());
         let uniform = layer(DensityProfile::Uniform, PhaseFunction::Isotropic);
@@ -362,8 +362,8 @@ mod tests {
                 }
             };
             assert!(set(point, std::slice::from_ref(&uniform), form).is_ok());
-            assert!(refused(sphere, &[&uniform]).contains("no point"));
-            assert!(refused(point, &[&forward]).contains("directions"));
+            assert!(refused(sphere, &[&uniform]).contains("not a point"));
+            assert!(refused(point, &[&forward]).contains("directional"));
             assert!(refused(point, &[&slab]).contains("height"));
             assert!(refused(point, &[&uniform, &uniform]).contains("layers"));
         }

@@ -1,42 +1,42 @@
-//! A view ray past a light, and the variable in which the light along it is smooth.
+//! Geometry of view rays past lights.
 
 use glam::DVec3;
 
 /// A view ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewRay {
-    /// Its start, m; y is the height.
+    /// Start, m; y is the height.
     pub eye: DVec3,
     /// Unit vector away from the eye.
     pub direction: DVec3,
-    /// Its length, m, not below 0; may be infinite.
+    /// Length, m, not negative; may be infinite.
     pub length_m: f64,
 }
 
-/// A segment of a straight ray that passes a light.
+/// A segment of a straight ray past a light.
 ///
-/// With `u` the distance along the ray from the point closest to the light, the light is `r = sqrt(h^2 + u^2)` away.
-/// Everything is expressed by the **excess** `e = t + r - r_0`: the length of the path eye, point, light for the point `t` metres
-/// on, minus that for the start. With `a = r_0 + u_0` and `w = (e + a) / h = (r + u) / h = tan(Theta / 2)`, where
-/// `Theta` is the scattering angle (0: the light goes straight on),
+/// With `u` the distance along the ray from the point closest to the light, the distance to the light is `r = sqrt(h^2 + u^2)`.
+/// Integrals use the **excess** `e = t + r - r_0`: the length of the path from the eye to the point at `t` and on to the light,
+/// minus that for `t = 0`. With `a = r_0 + u_0` and `w = (e + a) / h = (r + u) / h = tan(Theta / 2)`, where `Theta` is the
+/// scattering angle (0: forward),
 ///
 /// `dt / r^2 = 2 de / (h^2 + (e + a)^2)`, `cos(Theta) = -u / r = (1 - w^2) / (1 + w^2)`.
 ///
-/// That is the equi-angular substitution `u = h tan(theta)`, `Theta = theta + pi/2`, without its tangents, and the path on
-/// which uniform fog dims the light is `r_0 + e`.
+/// This is the equi-angular substitution `u = h tan(theta)`, `Theta = theta + pi/2`, without tangents. The length of the path
+/// through the fog is `r_0 + e`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightRayGeometry {
-    /// Distance of the light from the (infinite) ray, m, above 0.
+    /// Distance of the light from the infinite line of the ray, m, above 0.
     pub nearest_m: f64,
-    /// The start of the segment, m beyond the point closest to the light; below 0 where the light lies ahead.
+    /// Distance of the start from the point closest to the light, along the ray, m; negative if the light lies ahead.
     pub start_m: f64,
-    /// Length of the segment, m, not below 0; may be infinite.
+    /// Length of the segment, m, not negative; may be infinite.
     pub length_m: f64,
 }
 
 impl LightRayGeometry {
-    /// The segment of `length_m` from `eye` along the unit vector `direction` past a light at `light`, whose distance from the
-    /// ray is not taken below `at_least_m` (above 0): the ray is moved out to it, and nothing else changes.
+    /// A segment from `eye` along the unit vector `direction` past a light at `light`. The distance of the light from the ray is at
+    /// least `at_least_m` (above 0).
     #[inline]
     pub fn new(eye: DVec3, direction: DVec3, length_m: f64, light: DVec3, at_least_m: f64) -> Self {
         let to_light = light - eye;
@@ -47,7 +47,7 @@ impl LightRayGeometry {
         }
     }
 
-    /// The part from `from_m` to `to_m`, counted from the start.
+    /// The part from `from_m` to `to_m`, in metres from the start.
     #[inline]
     pub fn part(&self, from_m: f64, to_m: f64) -> Self {
         Self {
@@ -57,7 +57,7 @@ impl LightRayGeometry {
         }
     }
 
-    /// The same segment, which must be finite, from its far end.
+    /// The segment in the opposite direction. It must be finite.
     #[inline]
     pub fn reversed(&self) -> Self {
         Self {
@@ -66,19 +66,19 @@ impl LightRayGeometry {
         }
     }
 
-    /// Distance from the light `t_m` on, m.
+    /// Distance to the light at `t_m` from the start, m.
     #[inline]
     pub fn distance_m(&self, t_m: f64) -> f64 {
         self.distance_at(self.start_m + t_m)
     }
 
-    /// `r` at `u` beyond the point closest to the light.
+    /// `r` at `u` from the point closest to the light.
     #[inline]
     fn distance_at(&self, u: f64) -> f64 {
         (self.nearest_m * self.nearest_m + u * u).sqrt()
     }
 
-    /// `r + u`, without cancellation on either side of the light.
+    /// `r + u`, without cancellation.
     #[inline]
     fn ahead(&self, u: f64) -> f64 {
         let r = self.distance_at(u);
@@ -113,7 +113,7 @@ impl LightRayGeometry {
             / (excess_m + self.ahead_at_start())
     }
 
-    /// The angle under which the light sees the segment, radians, 0 to pi: `atan2(h L, h^2 + u_0 u_1)`.
+    /// Angle that the segment subtends at the light, radians, 0 to pi: `atan2(h L, h^2 + u_0 u_1)`.
     #[inline]
     pub fn angle(&self) -> f64 {
         let (h, u) = (self.nearest_m, self.start_m);
@@ -129,7 +129,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_excess_leads_back_to_the_place() {
+    fn distances_are_recovered_from_the_excess() {
         for h in [1e-6, 1.0, 1e7] {
             for start in [-1e7, -3.0, -1e-6, 0.0, 2.0, 1e7] {
                 for length in [1e-6, 1.0, 1e7] {
@@ -139,7 +139,7 @@ mod tests {
                         length_m: length,
                     };
                     let back = geometry.place_m(geometry.excess_m());
-                    // Where the light is almost on the ray the excess hardly determines the place before it.
+                    // Ill-conditioned before a light that is almost on the ray.
                     let loose = 1e-14 + 1e-16 * (geometry.distance_m(length) / h).powi(2).min(1e18);
                     assert!(
                         (back / length - 1.0).abs() < loose,
@@ -151,8 +151,8 @@ mod tests {
     }
 
     #[test]
-    fn the_angle_is_right_before_at_and_behind_the_light() {
-        let seen = |start_m, length_m| {
+    fn angles_are_exact_before_at_and_behind_the_light() {
+        let angle = |start_m, length_m| {
             LightRayGeometry {
                 nearest_m: 1.0,
                 start_m,
@@ -160,9 +160,9 @@ mod tests {
             }
             .angle()
         };
-        assert!((seen(-5.0, 20.0) - (15f64.atan() + 5f64.atan())).abs() < 1e-15);
-        assert!((seen(-1.0, f64::INFINITY) - 0.75 * std::f64::consts::PI).abs() < 1e-15);
-        assert!((seen(1e9, f64::INFINITY) * 1e9 - 1.0).abs() < 1e-12);
-        assert_eq!(seen(3.0, 0.0), 0.0);
+        assert!((angle(-5.0, 20.0) - (15f64.atan() + 5f64.atan())).abs() < 1e-15);
+        assert!((angle(-1.0, f64::INFINITY) - 0.75 * std::f64::consts::PI).abs() < 1e-15);
+        assert!((angle(1e9, f64::INFINITY) * 1e9 - 1.0).abs() < 1e-12);
+        assert_eq!(angle(3.0, 0.0), 0.0);
     }
 }

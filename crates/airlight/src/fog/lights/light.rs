@@ -11,9 +11,9 @@ use std::f64::consts::{FRAC_PI_2, PI};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Light<C = SpectralCurve> {
-    /// Small, with the same intensity in all directions.
+    /// A small light with the same intensity in all directions.
     Point(PointLight<C>),
-    /// Small, with its intensity in a cone.
+    /// A small light with its intensity in a cone.
     Spot(SpotLight<C>),
     /// A sphere of uniform radiance.
     Sphere(SphereLight<C>),
@@ -26,40 +26,39 @@ pub struct PointLight<C = SpectralCurve> {
     pub position: DVec3,
     /// Radiant intensity, W sr^-1 nm^-1 (or candela, for colours): the irradiance at the distance `r` is `I / r^2`.
     pub intensity: C,
-    /// Its size, m, above 0: rays are taken to pass no closer than this, and lit points to lie no closer, so that nothing is
-    /// infinite. Farther away it makes no difference.
+    /// Radius, m, above 0. Distances of rays and surfaces are clamped to it, which avoids infinite values; at larger distances it
+    /// has no effect.
     pub radius_m: f64,
 }
 
-/// A small light that shines into a cone: the full intensity inside the inner angle, none outside the outer one.
+/// A small light that shines into a cone: full intensity inside the inner angle, none outside the outer angle.
 ///
 /// Between them the intensity falls as in glTF's `KHR_lights_punctual`:
-/// `clamp((cos beta - cos outer) / (cos inner - cos outer), 0, 1)^2` at the angle `beta` off the axis.
+/// `clamp((cos beta - cos outer) / (cos inner - cos outer), 0, 1)^2` at the angle `beta` from the axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpotLight<C = SpectralCurve> {
     /// Position, m; y is the height.
     pub position: DVec3,
-    /// Unit vector of the direction in which it shines.
+    /// Unit vector along the axis of the cone, away from the light.
     pub axis: DVec3,
     /// Radiant intensity on the axis, W sr^-1 nm^-1 (or candela).
     pub intensity: C,
-    /// Angle off the axis up to which the intensity is full, radians.
+    /// Angle from the axis up to which the intensity is full, radians.
     pub inner_angle_rad: f64,
-    /// Angle off the axis from which it is dark, radians, at most a right angle.
+    /// Angle from the axis beyond which the intensity is 0, radians, at most a right angle.
     pub outer_angle_rad: f64,
-    /// Its size, m, as of [`PointLight`].
+    /// Radius, m, as for [`PointLight`].
     pub radius_m: f64,
 }
 
 /// A sphere of uniform radiance.
 ///
-/// At the distance `r` it fills the solid angle `2 pi (1 - sqrt(1 - R^2 / r^2))`, so the fog there receives (as scalar
-/// irradiance) that times its radiance: `I / r^2` with `I = pi R^2 L`, times `2 / (1 + sqrt(1 - R^2 / r^2))`, which is 2 at its
-/// surface. Its light is taken to come from its centre, dimmed on the way to the nearest point of its surface: right to
-/// `(R / r)^2`, and rough within a radius of it.
+/// At the distance `r` it subtends the solid angle `2 pi (1 - sqrt(1 - R^2 / r^2))`, so that the scalar irradiance in the fog is
+/// `I / r^2` with `I = pi R^2 L`, times `2 / (1 + sqrt(1 - R^2 / r^2))`, which is 2 at the surface. Light is assumed to come from
+/// the centre, attenuated up to the nearest point of the surface: the error is of the order `(R / r)^2`, and large within one
+/// radius of the surface.
 ///
-/// A ray that hits the sphere ends there. A sphere casts no shadow of its own light, as from every point of the fog outside it
-/// some of its surface is visible; that it blocks the light of *other* lights is left out.
+/// A ray that hits the sphere ends there. Shadows that a sphere casts in the light of *other* lights are neglected.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SphereLight<C = SpectralCurve> {
     /// Position of the centre, m; y is the height.
@@ -71,7 +70,7 @@ pub struct SphereLight<C = SpectralCurve> {
 }
 
 impl<C> Light<C> {
-    /// Its position (its centre), m.
+    /// Position of the light (the centre of a sphere), m.
     pub fn position(&self) -> DVec3 {
         match self {
             Self::Point(light) => light.position,
@@ -80,7 +79,7 @@ impl<C> Light<C> {
         }
     }
 
-    /// Its size, m.
+    /// Radius, m.
     pub fn radius_m(&self) -> f64 {
         match self {
             Self::Point(light) => light.radius_m,
@@ -89,7 +88,7 @@ impl<C> Light<C> {
         }
     }
 
-    /// The radiant intensity of point and spot lights, the radiance of sphere lights.
+    /// Radiant intensity of point and spot lights, radiance of sphere lights.
     pub fn emission(&self) -> &C {
         match self {
             Self::Point(light) => &light.intensity,
@@ -98,7 +97,7 @@ impl<C> Light<C> {
         }
     }
 
-    /// The same light with its emission in other values.
+    /// Converts the values of the emission.
     pub(super) fn map<D>(&self, values: impl FnOnce(&C) -> D) -> Light<D> {
         match self {
             Self::Point(light) => Light::Point(PointLight {
@@ -124,7 +123,7 @@ impl<C> Light<C> {
 }
 
 impl<const N: usize> Light<Spectrum<N>> {
-    /// Radiant intensity from afar (on the axis of a spot light), W sr^-1 nm^-1; of a sphere light `pi R^2 L`.
+    /// Radiant intensity (on the axis of a spot light), W sr^-1 nm^-1; `pi R^2 L` for a sphere light.
     pub(super) fn intensity(&self) -> Spectrum<N> {
         match self {
             Self::Point(light) => light.intensity,
@@ -135,10 +134,10 @@ impl<const N: usize> Light<Spectrum<N>> {
 }
 
 impl<C: ChannelValues> PointLight<C> {
-    /// A light whose numbers are checked.
+    /// A light with checked parameters.
     ///
     /// # Errors
-    /// [`FogError`] unless the position is finite, the radius above 0 and the intensity finite and not below 0.
+    /// [`FogError`] unless the position is finite, the radius positive and finite, and the intensity finite and not negative.
     pub fn new(position: DVec3, intensity: C, radius_m: f64) -> Result<Self, FogError> {
         check_position(position)?;
         check_radius(radius_m)?;
@@ -152,11 +151,11 @@ impl<C: ChannelValues> PointLight<C> {
 }
 
 impl<C: ChannelValues> SpotLight<C> {
-    /// A light whose numbers are checked; `towards` need not be a unit vector.
+    /// A light with checked parameters. `towards` need not be a unit vector.
     ///
     /// # Errors
-    /// [`FogError`] unless `towards` has a direction, `0 <= inner <= outer <= pi/2`, `outer > 0` and all else is as for
-    /// [`PointLight::new`].
+    /// [`FogError`] unless `towards` is finite and not zero, `0 <= inner <= outer <= pi/2`, `outer > 0`, and the other parameters
+    /// are valid for [`PointLight::new`].
     pub fn new(
         position: DVec3,
         towards: DVec3,
@@ -199,7 +198,7 @@ impl<C: ChannelValues> SpotLight<C> {
 }
 
 impl<C> SpotLight<C> {
-    /// The part of the intensity that goes into a direction (unit vector).
+    /// Intensity in a direction (unit vector), relative to that on the axis.
     pub fn falloff(&self, direction: DVec3) -> f64 {
         falloff(
             direction.dot(self.axis),
@@ -209,7 +208,7 @@ impl<C> SpotLight<C> {
     }
 }
 
-/// The falloff at a cosine of the angle off the axis.
+/// Falloff at a cosine of the angle from the axis.
 #[inline]
 fn falloff(cos: f64, cos_inner: f64, cos_outer: f64) -> f64 {
     if cos >= cos_inner {
@@ -222,10 +221,10 @@ fn falloff(cos: f64, cos_inner: f64, cos_outer: f64) -> f64 {
 }
 
 impl<C: ChannelValues> SphereLight<C> {
-    /// A light whose numbers are checked.
+    /// A light with checked parameters.
     ///
     /// # Errors
-    /// [`FogError`] unless the position is finite, the radius above 0 and the radiance finite and not below 0.
+    /// [`FogError`] unless the position is finite, the radius positive and finite, and the radiance finite and not negative.
     pub fn new(position: DVec3, radius_m: f64, radiance: C) -> Result<Self, FogError> {
         check_position(position)?;
         check_radius(radius_m)?;
@@ -239,7 +238,7 @@ impl<C: ChannelValues> SphereLight<C> {
 }
 
 impl<C> SphereLight<C> {
-    /// Distance at which the ray from `eye` along the unit vector `direction` hits the sphere, m; 0 from inside it.
+    /// Distance at which the ray from `eye` along the unit vector `direction` hits the sphere, m; 0 from the inside.
     pub fn hit(&self, eye: DVec3, direction: DVec3) -> Option<f64> {
         let to_light = self.position - eye;
         let distance = to_light.length();
@@ -254,21 +253,21 @@ impl<C> SphereLight<C> {
     }
 }
 
-/// Scalar irradiance of a sphere relative to that of a point of the same intensity: `2 / (1 + sqrt(1 - R^2 / r^2))`.
+/// Scalar irradiance of a sphere relative to that of a point light of the same intensity: `2 / (1 + sqrt(1 - R^2 / r^2))`.
 #[inline]
 pub(super) fn closeness(radius_m: f64, distance_m: f64) -> f64 {
     let sine = radius_m / distance_m;
     2.0 / (1.0 + (1.0 - sine * sine).max(0.0).sqrt())
 }
 
-/// The cone of a spot light along a ray that passes it.
+/// The cone of a spot light along a ray.
 ///
-/// The cosine of the angle off the axis is `(across + u along) / r`: in the angle `theta = atan(u / h)` a pure sinusoid,
-/// `rho cos(theta - phi)`, `rho cos(phi) = across / h`, `rho sin(phi) = along`. So the ray is inside a cone of half-angle
-/// `alpha` where `|theta - phi| <= acos(cos(alpha) / rho)`: in one interval, and never in the opposite cone.
+/// The cosine of the angle from the axis is `(across + u along) / r`: a sinusoid `rho cos(theta - phi)` of the angle
+/// `theta = atan(u / h)`, with `rho cos(phi) = across / h` and `rho sin(phi) = along`. So the ray is inside a cone of half-angle
+/// `alpha` for `|theta - phi| <= acos(cos(alpha) / rho)`: one interval, never in the opposite cone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct SpotCone {
-    /// From the light to the closest point of the ray, along the axis, m.
+    /// Component along the axis of the vector from the light to the closest point of the ray, m.
     across_m: f64,
     /// Cosine between ray and axis.
     along: f64,
@@ -292,7 +291,7 @@ impl SpotCone {
         }
     }
 
-    /// The part of the intensity towards the point `u` beyond the closest one, `r` away from the light.
+    /// Relative intensity towards the point at `u` from the closest point, at a distance `r` from the light.
     #[inline]
     pub(super) fn falloff(&self, u: f64, r: f64) -> f64 {
         falloff(
@@ -302,8 +301,7 @@ impl SpotCone {
         )
     }
 
-    /// Where a ray is inside the outer cone, in metres from its start (an empty interval where nowhere), and where inside the
-    /// inner one.
+    /// Intervals of the ray inside the outer and the inner cone, in metres from its start; an empty interval if it is outside.
     pub(super) fn lit(&self, geometry: &LightRayGeometry) -> [(f64, f64); 2] {
         [self.cos_outer, self.cos_inner].map(|cos| match self.inside(geometry.nearest_m, cos) {
             Some((first, last)) => (first - geometry.start_m, last - geometry.start_m),
@@ -311,7 +309,7 @@ impl SpotCone {
         })
     }
 
-    /// The interval of `u` inside the cone of a cosine.
+    /// Interval of `u` inside the cone with this cosine of the half-angle.
     fn inside(&self, nearest_m: f64, cos_angle: f64) -> Option<(f64, f64)> {
         let (across, along) = (self.across_m / nearest_m, self.along);
         let size = across.hypot(along);
@@ -326,7 +324,7 @@ impl SpotCone {
         let sin_first = sin_phi * cos_width - cos_phi * sin_width;
         let cos_last = cos_phi * cos_width - sin_phi * sin_width;
         let sin_last = sin_phi * cos_width + cos_phi * sin_width;
-        // An edge beyond a right angle is at infinity on its own side, or the whole interval is.
+        // Beyond a right angle an edge, or the whole interval, is at infinity.
         let first = match cos_first > 0.0 {
             true => nearest_m * sin_first / cos_first,
             false if across > 0.0 || along < 0.0 => f64::NEG_INFINITY,
@@ -358,7 +356,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ray_is_in_the_cone_where_its_points_are() {
+    fn intervals_in_cones_match_points() {
         let directions = [
             DVec3::X,
             DVec3::NEG_X,
@@ -383,16 +381,18 @@ mod tests {
                         let geometry =
                             LightRayGeometry::new(eye, direction, 100.0, light.position, 1e-3);
                         let cone = SpotCone::new(&light, &geometry, eye, direction);
-                        let [lit, full] = cone.lit(&geometry);
+                        let [outer_interval, inner_interval] = cone.lit(&geometry);
                         if geometry.nearest_m == light.radius_m {
-                            // Straight through the light: the step there is smoothed.
+                            // Distances are clamped for rays through the light.
                             continue;
                         }
                         for step in -400..400 {
                             let t = 0.25 * f64::from(step) + 0.013;
                             let off = (eye + t * direction - light.position).normalize();
                             let cos = off.dot(light.axis);
-                            for ((first, last), edge) in [(lit, outer), (full, 0.5 * outer)] {
+                            for ((first, last), edge) in
+                                [(outer_interval, outer), (inner_interval, 0.5 * outer)]
+                            {
                                 let edge = edge.to_radians().cos();
                                 if (cos - edge).abs() < 1e-9 {
                                     continue;
@@ -413,7 +413,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ray_through_the_light_is_lit_on_the_side_it_shines_to() {
+    fn rays_through_the_light_are_lit_on_one_side() {
         let light = light(DVec3::X, 10.0, 30.0);
         let eye = light.position - 5.0 * DVec3::X;
         let geometry = LightRayGeometry::new(eye, DVec3::X, 50.0, light.position, light.radius_m);
@@ -425,7 +425,7 @@ mod tests {
     }
 
     #[test]
-    fn the_falloff_is_the_one_of_the_extension() {
+    fn the_falloff_is_that_of_gltf() {
         let light = light(DVec3::X, 20.0, 40.0);
         let at = |degrees: f64| {
             let (sin, cos) = degrees.to_radians().sin_cos();
@@ -441,7 +441,7 @@ mod tests {
     }
 
     #[test]
-    fn invalid_spots_are_refused() {
+    fn invalid_spot_lights_are_rejected() {
         let make =
             |axis, inner, outer| SpotLight::new(DVec3::ZERO, axis, [1.0f32; 3], inner, outer, 0.1);
         assert!(make(DVec3::Y * 7.0, 0.0, 1.0).is_ok_and(|light| light.axis == DVec3::Y));
@@ -456,14 +456,14 @@ mod tests {
     }
 
     #[test]
-    fn a_sphere_is_hit_where_it_is() {
+    fn rays_hit_the_surface_of_the_sphere() {
         let light = SphereLight::new(DVec3::new(0.0, 2.0, -10.0), 0.5, [1.0f32; 3]).unwrap();
         let eye = DVec3::new(0.0, 2.0, 0.0);
         assert_eq!(light.hit(eye, DVec3::NEG_Z), Some(9.5));
         assert_eq!(light.hit(eye, DVec3::Z), None);
         assert_eq!(light.hit(eye, DVec3::Y), None);
         assert_eq!(light.hit(light.position, DVec3::Y), Some(0.0));
-        // From far away its surface is still found to rounding of the distance.
+        // From far away the error is the rounding of the distance.
         let far = DVec3::new(0.0, 2.0, 1e7);
         let hit = light.hit(far, DVec3::NEG_Z).unwrap();
         assert!((hit - (1e7 + 9.5)).abs() < 1e-8);
@@ -474,7 +474,7 @@ mod tests {
     }
 
     #[test]
-    fn its_solid_angle_is_that_of_a_sphere() {
+    fn the_scalar_irradiance_of_a_sphere_is_exact() {
         for (radius, distance) in [(0.5f64, 0.5f64), (0.5, 0.7), (0.5, 40.0)] {
             let solid = 2.0 * PI * (1.0 - (1.0 - (radius / distance).powi(2)).sqrt());
             let got = PI * radius * radius / (distance * distance) * closeness(radius, distance);
@@ -484,7 +484,7 @@ mod tests {
     }
 
     #[test]
-    fn invalid_spheres_are_refused() {
+    fn invalid_sphere_lights_are_rejected() {
         let dark = [1.0f32; 3];
         assert!(SphereLight::new(DVec3::ZERO, 0.0, dark).is_err());
         assert!(SphereLight::new(DVec3::new(0.0, f64::NAN, 0.0), 1.0, dark).is_err());

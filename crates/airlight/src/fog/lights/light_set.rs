@@ -1,4 +1,4 @@
-//! Sets of lights in layers of fog.
+//! [`LightSet`] and [`RgbLightSet`]: lights in layers of fog.
 
 use super::closed_form::airlight_isotropic_lanes;
 use super::forms::LightForm;
@@ -17,16 +17,16 @@ use glam::DVec3;
 use std::fmt::Debug;
 use std::sync::Arc;
 
-/// How the light of lights is computed.
+/// Settings of the light scattered from lights.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightSettings {
-    /// Nodes in each panel of a ray: 4 to 256.
+    /// Number of quadrature nodes in each panel of a ray: 4 to 256.
     pub nodes: usize,
-    /// A light that cannot add more than this to any channel of a ray is left out, W m^-2 sr^-1 nm^-1 (or candela per square
-    /// metre). The bound is that of the ray's densest fog without extinction, under the larger of the phase function's
-    /// values forward and backward; in uniform fog it is dimmed by the extinction between eye and light.
+    /// Lights that cannot add more than this to any channel of a ray are skipped, W m^-2 sr^-1 nm^-1 (or candela per square
+    /// metre). The bound assumes the ray's maximum density without extinction, and the larger of the forward and backward values
+    /// of the phase function; in uniform fog it includes extinction between eye and light.
     pub threshold: f32,
-    /// The form of the light: exact, or one of those that have been printed.
+    /// Exact, or one of the published approximations.
     pub form: LightForm,
 }
 
@@ -54,13 +54,13 @@ impl LightSettings {
     }
 }
 
-/// Lights in fog at the wavelengths of a grid: the light that layers of fog scatter once from the lights into a view ray.
-/// A cheap handle.
+/// Lights in fog at the wavelengths of a grid: radiance that fog scatters once into view rays, and irradiance on surfaces. Cloning
+/// is cheap.
 ///
-/// Values are one slice with a value for each wavelength of the grid; batches are interleaved, one such slice after the other.
+/// Queries write one value for each wavelength of the grid; batch queries write the values of one ray after the other.
 ///
 /// # Panics
-/// Queries panic where a slice does not have the length stated.
+/// Queries panic if an output slice does not have the documented length.
 #[derive(Clone, Debug)]
 pub struct LightSet {
     shared: Arc<Shared>,
@@ -73,7 +73,7 @@ struct Shared {
     blocks: Vec<Box<dyn LightBlock>>,
 }
 
-/// Lights in fog in red, green and blue. A cheap handle; queries allocate nothing.
+/// Lights in fog in red, green and blue. Cloning is cheap; queries do not allocate.
 ///
 /// ```
 /// use airlight::fog::lights::{Light, LightSettings, PointLight, RgbLightSet, ViewRay};
@@ -87,10 +87,10 @@ struct Shared {
 ///     single_scattering_albedo: [1.0; 3],
 ///     phase: PhaseFunction::henyey_greenstein(0.85)?,
 /// };
-/// // 100 cd, 5 m up and 20 m ahead.
-/// let lamp = PointLight::new(DVec3::new(0.0, 5.0, -20.0), [120.0, 100.0, 60.0], 0.05)?;
+/// // A street light of about 100 cd, 5 m above the ground and 20 m ahead.
+/// let street_light = PointLight::new(DVec3::new(0.0, 5.0, -20.0), [120.0, 100.0, 60.0], 0.05)?;
 /// let settings = LightSettings::default();
-/// let lights = RgbLightSet::new(vec![Light::Point(lamp)], &[fog], Ground::FLAT, settings)?;
+/// let lights = RgbLightSet::new(vec![Light::Point(street_light)], &[fog], Ground::FLAT, settings)?;
 /// let glow = lights.path_radiance(&ViewRay {
 ///     eye: DVec3::new(0.0, 1.7, 0.0),
 ///     direction: DVec3::new(0.02, 0.15, -1.0).normalize(),
@@ -105,10 +105,10 @@ pub struct RgbLightSet {
 }
 
 impl LightSet {
-    /// Lights in layers of fog over a ground of a radius; the ground touches height 0 under the eye.
+    /// Lights in layers of fog. The ground is at height 0 below the eye.
     ///
     /// # Errors
-    /// [`FogError`] for layers or settings outside their domain, and for lights and layers that the form does not hold for.
+    /// [`FogError`] for invalid layers or settings, and for lights and layers for which the form is not valid.
     pub fn new(
         lights: Vec<Light>,
         layers: &[Constituent],
@@ -137,18 +137,18 @@ impl LightSet {
         &self.shared.lights
     }
 
-    /// The wavelengths.
+    /// Wavelengths of the outputs.
     pub fn grid(&self) -> &WavelengthGrid {
         &self.shared.grid
     }
 
-    /// The first sphere light that a ray hits: its distance, m, and its index.
+    /// Distance (m) and index of the first sphere light that a ray hits.
     pub fn hit(&self, eye: DVec3, direction: DVec3) -> Option<(f64, usize)> {
         hit(self.lights(), eye, direction)
     }
 
-    /// The light that fog scatters once into a view ray, W m^-2 sr^-1 nm^-1, one value for each wavelength: to be added to the
-    /// path radiance that the fog has without the lights. The ray ends at the first sphere light that it hits.
+    /// Radiance that fog scatters once from the lights into a view ray, W m^-2 sr^-1 nm^-1, one value for each wavelength. Add it
+    /// to the path radiance of the fog without the lights. The ray ends at the first sphere light that it hits.
     pub fn path_radiance(&self, ray: &ViewRay, out: &mut [f32]) {
         check_length(out, self.shared.grid.len());
         for (block, out) in self.shared.blocks.iter().zip(out.chunks_mut(BLOCK)) {
@@ -156,7 +156,7 @@ impl LightSet {
         }
     }
 
-    /// [`LightSet::path_radiance`] along many rays.
+    /// [`LightSet::path_radiance`] for many rays.
     pub fn path_radiances(&self, rays: &[ViewRay], out: &mut [f32]) {
         let width = self.shared.grid.len();
         check_length(out, width * rays.len());
@@ -165,8 +165,8 @@ impl LightSet {
         }
     }
 
-    /// Irradiance that a light causes on a small surface at `point` that faces it, W m^-2 nm^-1, one value for each wavelength:
-    /// `I / r^2`, dimmed by the fog between; see [`RgbLightSet::irradiance`].
+    /// Irradiance by a light on a small surface at `point` that faces it, W m^-2 nm^-1, one value for each wavelength; see
+    /// [`RgbLightSet::irradiance`].
     pub fn irradiance(&self, light: usize, point: DVec3, out: &mut [f32]) {
         check_length(out, self.shared.grid.len());
         for (block, out) in self.shared.blocks.iter().zip(out.chunks_mut(BLOCK)) {
@@ -176,10 +176,10 @@ impl LightSet {
 }
 
 impl RgbLightSet {
-    /// Lights in layers of fog over a ground of a radius; the ground touches height 0 under the eye.
+    /// Lights in layers of fog. The ground is at height 0 below the eye.
     ///
     /// # Errors
-    /// [`FogError`] for layers or settings outside their domain, and for lights and layers that the form does not hold for.
+    /// [`FogError`] for invalid layers or settings, and for lights and layers for which the form is not valid.
     pub fn new(
         lights: Vec<Light<[f32; 3]>>,
         layers: &[RgbLayer],
@@ -202,25 +202,25 @@ impl RgbLightSet {
             .map(|light| light.map(|lanes| lanes.0))
     }
 
-    /// The first sphere light that a ray hits: its distance, m, and its radiance, not dimmed by the fog before it.
+    /// Distance (m) and radiance (without attenuation by the fog) of the first sphere light that a ray hits.
     pub fn hit(&self, eye: DVec3, direction: DVec3) -> Option<(f64, [f32; 3])> {
         let (distance_m, light) = hit(&self.lanes.lights, eye, direction)?;
         Some((distance_m, self.lanes.lights[light].emission().0))
     }
 
-    /// The light that fog scatters once into a view ray, W m^-2 sr^-1 nm^-1 (or candela per square metre): to be added to the
-    /// path radiance that the fog has without the lights. The ray ends at the first sphere light that it hits.
+    /// Radiance that fog scatters once from the lights into a view ray, W m^-2 sr^-1 nm^-1 (or candela per square metre). Add it to
+    /// the path radiance of the fog without the lights. The ray ends at the first sphere light that it hits.
     ///
-    /// In uniform fog that scatters equally in all directions by a closed form; elsewhere by quadrature in the same
-    /// variable, with [`LightSettings::nodes`] in each panel. Errors: `docs/src/lights.md`.
+    /// Closed form for point lights in uniform, isotropically scattering fog; otherwise quadrature in the same variable, with
+    /// [`LightSettings::nodes`] in each panel. Errors: `docs/src/lights.md`.
     pub fn path_radiance(&self, ray: &ViewRay) -> [f32; 3] {
         self.lanes.path_radiance(ray).0
     }
 
-    /// [`RgbLightSet::path_radiance`] along many rays.
+    /// [`RgbLightSet::path_radiance`] for many rays.
     ///
     /// # Panics
-    /// Where the slices differ in length.
+    /// If the slices differ in length.
     pub fn path_radiances(&self, rays: &[ViewRay], out: &mut [[f32; 3]]) {
         check_length(out, rays.len());
         for (ray, out) in rays.iter().zip(out) {
@@ -228,16 +228,15 @@ impl RgbLightSet {
         }
     }
 
-    /// Irradiance that a light causes on a small surface at `point` that faces it, W m^-2 nm^-1: `I / r^2`, dimmed by the fog
-    /// between. For any other surface multiply by the cosine between its normal and the direction to the light. Exact
-    /// for all kinds of light (a sphere that fills the surface's sky down to the horizon included), except that points within
-    /// the radius count as at it, and that a sphere is dimmed on the way to its nearest point.
+    /// Irradiance by a light on a small surface at `point` that faces it, W m^-2 nm^-1: `I / r^2`, attenuated by the fog. For other
+    /// orientations multiply by the cosine between the normal and the direction to the light. Exact for all kinds of light, except
+    /// that distances are clamped to the light's radius, and that light of a sphere is attenuated up to its nearest point.
     pub fn irradiance(&self, light: usize, point: DVec3) -> [f32; 3] {
         self.lanes.irradiance(light, point).0
     }
 }
 
-/// The first sphere light that a ray hits.
+/// Distance and index of the first sphere light that a ray hits.
 fn hit<C>(lights: &[Light<C>], eye: DVec3, direction: DVec3) -> Option<(f64, usize)> {
     let hits = lights
         .iter()
@@ -312,7 +311,7 @@ impl<const N: usize> LightSetLanes<N> {
         sum
     }
 
-    /// The light of one light that one layer scatters.
+    /// Radiance that one layer scatters from one light.
     fn path_radiance_of(
         &self,
         light: &Light<Spectrum<N>>,
@@ -348,12 +347,12 @@ impl<const N: usize> LightSetLanes<N> {
         let to_light = light.position() - point;
         let distance = to_light.length().max(light.radius_m());
         let towards = to_light / distance;
-        let (part, leg) = match light {
+        let (part, path_m) = match light {
             Light::Point(_) => (1.0, distance),
             Light::Spot(spot) => (spot.falloff(-towards), distance),
             Light::Sphere(sphere) => (1.0, distance - sphere.radius_m),
         };
-        let ray = RaySegment::new(point.y, towards.y, leg, self.ground_radius_m);
+        let ray = RaySegment::new(point.y, towards.y, path_m, self.ground_radius_m);
         let depth = self.layers.iter().fold(Spectrum::ZERO, |sum, layer| {
             let column = layer.density.column_along_m(&ray);
             sum.scale_acc(layer.extinction_per_m, column as f32)
@@ -362,7 +361,7 @@ impl<const N: usize> LightSetLanes<N> {
     }
 }
 
-/// [`airlight_isotropic_lanes`], with a fourth lane where there are three, which vector instructions compute faster.
+/// [`airlight_isotropic_lanes`]. Three lanes are padded to four, which is faster in vector instructions.
 #[inline]
 fn closed_form<const N: usize>(
     geometry: &LightRayGeometry,
@@ -408,7 +407,7 @@ impl InBlocks for LightInputs<'_> {
     }
 }
 
-/// A block of lanes of a set of lights; slices have the number of lanes in use.
+/// A block of lanes of a set of lights. Slices have the length of the used lanes.
 trait LightBlock: Debug + Send + Sync {
     fn path_radiance(&self, ray: &ViewRay, out: &mut [f32]);
     fn irradiance(&self, light: usize, point: DVec3, out: &mut [f32]);

@@ -1,4 +1,4 @@
-//! The light of any light, any phase function and any profile: quadrature along the view ray.
+//! Quadrature along view rays, for all lights, phase functions and density profiles.
 
 use super::geometry::{LightRayGeometry, ViewRay};
 use super::light::{Light, SpotCone, closeness};
@@ -11,46 +11,46 @@ use crate::spectrum::Spectrum;
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// The optical depth within a node's scale that the rule integrates well.
+/// Optical depth within the scale of the nodes that is integrated accurately.
 const STRIDE: f64 = 12.0;
 
-/// The optical depth of a panel up to which its nodes may crowd at the light's end.
+/// Largest optical depth of a panel whose nodes are dense at the end near the light.
 const OUTWARDS: f64 = 4.0;
 
-/// A layer of fog that scatters light, among others that dim it: the same for all lights and rays.
+/// A scattering layer of fog among other layers, prepared for all lights and rays.
 #[derive(Clone, Debug)]
 pub(super) struct ScatteringLayer<const N: usize> {
     pub(super) layer: LayerLanes<N>,
     structure: HeightStructure,
     pub(super) others: Vec<OtherLayer<N>>,
-    /// Radius of the ground, m. The ground touches height 0 under the eye (or under the point that is lit) and falls away as
-    /// `d^2 / (2 R)` at the distance `d`.
+    /// Radius of the ground, m. The ground is at height 0 below the eye (or the illuminated point) and `d^2 / (2 R)` lower at the
+    /// distance `d`.
     pub(super) ground_radius_m: f64,
-    /// The largest extinction of any lane, 1/m; of all layers where all are uniform.
-    most_per_m: f64,
-    /// The smallest above 0.
-    least_per_m: f64,
+    /// Largest extinction coefficient of any lane, 1/m; of the sum of all layers if all are uniform.
+    max_extinction_per_m: f64,
+    /// Smallest extinction coefficient above 0.
+    min_extinction_per_m: f64,
     /// Whether all layers are uniform.
     uniform: bool,
-    /// `tan(Theta / 2)` over which the phase function falls off from its forward peak: `(1 - g) / (1 + g)` of the
-    /// Henyey-Greenstein function with the same peak.
+    /// Width of the forward peak of the phase function in `tan(Theta / 2)`: `(1 - g) / (1 + g)` of the Henyey-Greenstein function
+    /// with the same forward value.
     peak: f64,
-    /// Whether the phase function is the same in all directions.
+    /// Whether the phase function is isotropic.
     isotropic: bool,
 }
 
-/// A layer that dims the light that another scatters.
+/// A layer that attenuates light scattered by another layer.
 #[derive(Clone, Debug)]
 pub(super) struct OtherLayer<const N: usize> {
     pub(super) density: DensityProfile,
     structure: HeightStructure,
     pub(super) extinction_per_m: Spectrum<N>,
-    /// The smallest extinction above 0, 1/m.
-    least_per_m: f64,
+    /// Smallest extinction coefficient above 0, 1/m.
+    min_extinction_per_m: f64,
 }
 
 impl<const N: usize> ScatteringLayer<N> {
-    /// A layer among others; `None` where no lane scatters.
+    /// A layer among others; `None` if the extinction is 0 in all lanes.
     pub(super) fn new(
         layer: LayerLanes<N>,
         others: &[LayerLanes<N>],
@@ -73,12 +73,12 @@ impl<const N: usize> ScatteringLayer<N> {
                     density: other.density.clone(),
                     structure: other.density.structure(),
                     extinction_per_m: other.extinction_per_m,
-                    least_per_m: least_above_0(other.extinction_per_m).min(1e30),
+                    min_extinction_per_m: smallest_above_0(other.extinction_per_m).min(1e30),
                 })
                 .collect(),
             ground_radius_m,
-            most_per_m: f64::from(whole.max_element()),
-            least_per_m: least_above_0(whole),
+            max_extinction_per_m: f64::from(whole.max_element()),
+            min_extinction_per_m: smallest_above_0(whole),
             uniform,
             peak: match isotropic {
                 true => 1.0,
@@ -89,31 +89,31 @@ impl<const N: usize> ScatteringLayer<N> {
         })
     }
 
-    /// Whether [`super::closed_form`] holds for point lights: uniform fog alone, with an isotropic phase function.
+    /// Whether [`super::closed_form`] is valid for point lights: a single layer of uniform, isotropically scattering fog.
     pub(super) fn has_closed_form(&self) -> bool {
         self.isotropic && self.layer.density.is_uniform() && self.others.is_empty()
     }
 }
 
-/// The smallest extinction above 0 of any lane.
-fn least_above_0<const N: usize>(extinction_per_m: Spectrum<N>) -> f64 {
+/// Smallest extinction coefficient above 0 of any lane.
+fn smallest_above_0<const N: usize>(extinction_per_m: Spectrum<N>) -> f64 {
     let smaller = |least: f32, v: f32| if v > 0.0 && v < least { v } else { least };
     f64::from(extinction_per_m.0.into_iter().fold(f32::INFINITY, smaller))
 }
 
-/// `(1 - g) / (1 + g)` of the Henyey-Greenstein function that is `peak / (4 pi)` forward: `peak = (1 + g) / (1 - g)^2`.
+/// `(1 - g) / (1 + g)` of the Henyey-Greenstein function with the forward value `peak / (4 pi)`: `peak = (1 + g) / (1 - g)^2`.
 fn width_of_peak(peak: f64) -> f64 {
     let d = ((1.0 + 8.0 * peak).sqrt() - 1.0) / (2.0 * peak);
     (d / (2.0 - d)).min(1.0)
 }
 
-/// The factor of a light's intensity towards a point, besides `1 / r^2`.
+/// Directional dependence of a light's intensity.
 #[derive(Clone, Copy, Debug)]
 enum Emission {
     Point,
     Spot(SpotCone),
     Sphere {
-        /// The true distance of the ray from the centre, m.
+        /// Distance of the ray from the centre, m, not clamped.
         nearest_m: f64,
         radius_m: f64,
     },
@@ -168,11 +168,11 @@ impl<'a, const N: usize> LitRay<'a, N> {
         }
     }
 
-    /// Path radiance: the sum over all panels.
+    /// Path radiance: sum over all panels.
     pub(super) fn path_radiance(&self, nodes: &Nodes) -> Spectrum<N> {
         let fog = self.fog;
         let density = fog.layer.density.at(self.ray.height_m);
-        let mut cuts = Cuts::of(&fog.structure, density, &self.ray, fog.least_per_m);
+        let mut cuts = Cuts::of(&fog.structure, density, &self.ray, fog.min_extinction_per_m);
         if let Emission::Spot(cone) = &self.emission {
             let [outer, inner] = cone.lit(&self.geometry);
             cuts.keep(outer);
@@ -183,15 +183,15 @@ impl<'a, const N: usize> LitRay<'a, N> {
             cuts.add((closest, closest));
         }
         for other in &fog.others {
-            cuts.dimmed_by(&other.structure, &self.ray);
+            cuts.add_other(&other.structure, &self.ray);
         }
         let mut sum = Spectrum::ZERO;
         cuts.visit(|from, to| self.panel(from, to, nodes, &mut sum));
         sum * fog.layer.scattering_per_m * self.intensity
     }
 
-    /// A bound of the path radiance in all lanes: that of the ray's densest fog without extinction, under the larger of the
-    /// phase function's values forward and backward; in uniform fog dimmed between eye and light.
+    /// Upper bound of the path radiance of all lanes: the ray's maximum density without extinction, and the larger of the forward
+    /// and backward values of the phase function; in uniform fog with extinction between eye and light.
     pub(super) fn bound(&self) -> f32 {
         let layer = &self.fog.layer;
         let [forward, backward] = [1.0, -1.0].map(|cos| layer.phase_lanes(cos).max_element());
@@ -206,19 +206,19 @@ impl<'a, const N: usize> LitRay<'a, N> {
             }
             false => layer.density.max_above(self.ray.lowest_height_m()),
         };
-        // 4: twice for a sphere's closeness, twice for its ray moved out to its radius.
+        // A factor of 2 for the scalar irradiance near a sphere, and 2 for clamping the distance to its radius.
         let glow = 4.0 * density * self.geometry.angle() / self.geometry.nearest_m;
         light.max_element() * forward.max(backward) * glow.min(f64::from(f32::MAX)) as f32
     }
 
-    /// Adds the light that one panel scatters, for an intensity and a scattering coefficient of 1.
+    /// Adds the path radiance of one panel for unit intensity and scattering coefficient.
     ///
-    /// Its nodes crowd at its start, or, where it lies before the light in fog that is neither uniform nor thick, at its end:
-    /// away from the light they reach ever farther, and density changes with distance, not with the angle.
+    /// Nodes are dense at the start. In panels before the light, in fog that is neither uniform nor thick, they are dense at the end:
+    /// their spacing increases away from the light, where density changes with distance, not with angle.
     fn panel(&self, from: f64, to: f64, nodes: &Nodes, sum: &mut Spectrum<N>) {
         let fog = self.fog;
         let part = self.geometry.part(from, to);
-        let (end, rate) = self.dark_excess(&part, from, nodes.spent());
+        let (end, rate) = self.visible_excess(&part, from, nodes.cutoff_depth());
         let outwards = !fog.uniform && part.start_m + part.length_m <= 0.0 && rate * end < OUTWARDS;
         let (anchor, origin, sign, end) = match outwards {
             false => (part, from, 1.0, end),
@@ -230,7 +230,7 @@ impl<'a, const N: usize> LitRay<'a, N> {
         };
         let h = anchor.nearest_m;
         let (r0, ahead) = (anchor.distance_m(0.0), anchor.ahead_at_start());
-        // The smaller of the scales over which geometry, phase function and extinction change.
+        // Smallest scale of geometry, phase function and extinction.
         let peak = if outwards { 1.0 } else { fog.peak };
         let rate = if outwards { 0.0 } else { rate };
         let wide = (peak * h).hypot(ahead);
@@ -241,7 +241,7 @@ impl<'a, const N: usize> LitRay<'a, N> {
             let t = origin + sign * 0.5 * excess * (excess + 2.0 * r0) / s;
             let (u, mut r) = (sign * (s - h) * (s + h) / twice, squares / twice);
             let mut weight = 2.0 * step / squares;
-            let mut leg = r;
+            let mut to_light_m = r;
             match &self.emission {
                 Emission::Point => {}
                 Emission::Spot(cone) => weight *= cone.falloff(u, r),
@@ -252,15 +252,15 @@ impl<'a, const N: usize> LitRay<'a, N> {
                     let square = (nearest_m * nearest_m + u * u).max(radius_m * radius_m);
                     weight *= r * r / square;
                     r = square.sqrt();
-                    leg = r - radius_m;
+                    to_light_m = r - radius_m;
                     weight *= closeness(*radius_m, r);
                 }
             }
             weight *= fog.layer.density.at(self.ray.height_at(t));
-            let column = self.column_m(&fog.layer.density, t, r, leg);
+            let column = self.column_m(&fog.layer.density, t, r, to_light_m);
             let mut depth = fog.layer.extinction_per_m * column as f32;
             for other in &fog.others {
-                let column = self.column_m(&other.density, t, r, leg);
+                let column = self.column_m(&other.density, t, r, to_light_m);
                 depth = depth.scale_acc(other.extinction_per_m, column as f32);
             }
             let cos = (-u / r).clamp(-1.0, 1.0);
@@ -269,11 +269,12 @@ impl<'a, const N: usize> LitRay<'a, N> {
         });
     }
 
-    /// Column of a profile from the eye to the point `t` on and from there to the light, `r` away (its surface `leg`), m.
+    /// Column of a profile from the eye to the point at `t` and on to the light, m. `r` is the distance to the light's centre,
+    /// `to_light_m` that to its surface.
     #[inline]
-    fn column_m(&self, density: &DensityProfile, t: f64, r: f64, leg: f64) -> f64 {
+    fn column_m(&self, density: &DensityProfile, t: f64, r: f64, to_light_m: f64) -> f64 {
         if density.is_uniform() {
-            return t + leg;
+            return t + to_light_m;
         }
         let view_ray = RaySegment {
             length_m: t,
@@ -286,35 +287,38 @@ impl<'a, const N: usize> LitRay<'a, N> {
             height_m: self.ray.height_at(t),
             sin_elevation: towards.y + 2.0 * curvature * level,
             curvature_per_m: curvature * (1.0 - towards.y * towards.y).max(0.0),
-            length_m: leg,
+            length_m: to_light_m,
         };
         density.column_along_m(&view_ray) + density.column_along_m(&to_light)
     }
 
-    /// The excess at which a panel ends or the light of every lane has been dimmed by `depth`, and the largest optical depth
-    /// that a metre of excess adds on average up to there.
-    fn dark_excess(&self, part: &LightRayGeometry, from: f64, depth: f64) -> (f64, f64) {
+    /// Excess at which the panel ends or the optical depth of all lanes has increased by `depth`, and the largest mean increase of
+    /// optical depth per metre of excess up to there.
+    fn visible_excess(&self, part: &LightRayGeometry, from: f64, depth: f64) -> (f64, f64) {
         let fog = self.fog;
         let end = part.excess_m();
         if fog.uniform {
-            return (end.min(depth / fog.least_per_m), fog.most_per_m);
+            return (
+                end.min(depth / fog.min_extinction_per_m),
+                fog.max_extinction_per_m,
+            );
         }
         let depth_at = |excess: f64| {
             let t = part.place_m(excess);
             let r = part.distance_m(t);
-            let own = fog.least_per_m * self.column_m(&fog.layer.density, from + t, r, r);
+            let own = fog.min_extinction_per_m * self.column_m(&fog.layer.density, from + t, r, r);
             fog.others.iter().fold(own, |sum, other| {
-                sum + other.least_per_m * self.column_m(&other.density, from + t, r, r)
+                sum + other.min_extinction_per_m * self.column_m(&other.density, from + t, r, r)
             })
         };
         let start = depth_at(0.0);
-        let passed = |excess: f64| depth_at(excess) - start;
+        let increase = |excess: f64| depth_at(excess) - start;
         let density = fog.layer.density.at(self.ray.height_at(from));
-        let mut reach = end.min(2.0 * depth / (fog.least_per_m * density));
+        let mut reach = end.min(2.0 * depth / (fog.min_extinction_per_m * density));
         if reach.is_infinite() {
             return (end, 0.0);
         }
-        let mut reached = passed(reach);
+        let mut reached = increase(reach);
         for _ in 0..60 {
             if reached < depth && reach < end {
                 reach = end.min(2.0 * reach);
@@ -323,22 +327,23 @@ impl<'a, const N: usize> LitRay<'a, N> {
             } else {
                 break;
             }
-            reached = passed(reach);
+            reached = increase(reach);
         }
-        // Where doubling and halving would alternate, the longer one is kept.
-        let rate = (reached / reach).max(0.0) * (fog.most_per_m / fog.least_per_m);
+        // If doubling and halving would alternate, keep the longer one.
+        let rate =
+            (reached / reach).max(0.0) * (fog.max_extinction_per_m / fog.min_extinction_per_m);
         (reach, if rate.is_finite() { rate } else { 0.0 })
     }
 }
 
-/// A Gauss-Legendre rule for integrals along rays past lights.
+/// Quadrature rule for integrals along rays past lights.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Nodes {
     rule: GaussRule,
 }
 
 impl Nodes {
-    /// A rule of `count` nodes; at least 1.
+    /// A Gauss-Legendre rule with `count` nodes, at least 1.
     pub fn new(count: usize) -> Self {
         Self {
             rule: GaussRule::new(count.max(1)),
@@ -350,24 +355,23 @@ impl Nodes {
         self.rule.len()
     }
 
-    /// Node and weight of each point on `[0, 1]`.
+    /// Nodes on `[0, 1]` and weights.
     #[inline]
     pub(super) fn iter(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
         self.rule.iter()
     }
 
-    /// The optical depth after which an integral is cut off: the rest, `e^-depth`, is less than the error of the rule.
+    /// Optical depth at which integrals are truncated: `e^-depth` is less than the error of the rule.
     #[inline]
-    pub(super) fn spent(&self) -> f64 {
+    pub(super) fn cutoff_depth(&self) -> f64 {
         10.0 + self.count() as f64 / 3.0
     }
 
-    /// Nodes for `int_0^end f(s) ds` of a function that is smooth over the scale `scale` at 0 and over ever larger ones
-    /// beyond: `s = scale (1 - p) / p` with `p = q^3`, and Gauss's nodes in `q`, from 1 at `s = 0` to 0 at infinity. Calls
-    /// `visit(s, ds)`.
+    /// Nodes for `int_0^end f(s) ds` of a function whose scale of variation is `scale` at 0 and increases with `s`: Gauss nodes in
+    /// `q`, from 1 at `s = 0` to 0 at infinity, with `s = scale (1 - p) / p` and `p = q^3`. Calls `visit(s, ds)`.
     #[inline(always)]
     pub(super) fn visit(&self, scale: f64, end: f64, mut visit: impl FnMut(f64, f64)) {
-        // 0 for an infinite ray.
+        // 0 for infinite rays.
         let inverse = scale / end;
         let covered = 1.0 / (1.0 + inverse);
         let last = (inverse * covered).cbrt();
@@ -382,41 +386,42 @@ impl Nodes {
     }
 }
 
-/// Heights above a ray's densest point, in scale heights, at which it is cut; above the last the fog is negligible.
+/// Heights above the densest point of a ray, in scale heights, at which the ray is split; fog above the last is negligible.
 const HEIGHTS: [f64; 3] = [3.0, 10.0, 40.0];
 
-/// The optical depth from the eye beyond which light is negligible.
-const DARK: f64 = 90.0;
+/// Optical depth from the eye beyond which light is negligible.
+const MAX_DEPTH: f64 = 90.0;
 
-/// Number of cuts: of a fog with the cone of a spot light at most 12, of each other layer at most 6; more are left out, at the
-/// cost of some accuracy.
-const MOST_CUTS: usize = 40;
+/// Largest number of splits: at most 12 for a layer with the cone of a spot light, and 6 for each other layer. Further splits are
+/// ignored, which costs some accuracy.
+const MAX_CUTS: usize = 40;
 
-/// Distances along a ray between which panels lie, so that fog and light are smooth in each.
+/// Panels of a ray: fog and light are smooth in each.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cuts {
     first: f64,
     last: f64,
-    within: [f64; MOST_CUTS],
+    within: [f64; MAX_CUTS],
     count: usize,
 }
 
 impl Cuts {
-    /// The whole ray; `density` is that of the fog at its start, `least_per_m` the smallest extinction above 0 of any lane.
+    /// Panels of a ray in a layer; `density` is that at the start, `min_extinction_per_m` the smallest extinction coefficient above 0
+    /// of any lane.
     ///
-    /// It is cut where density has a kink, and at a few heights above its densest point: however far away the light is, the
-    /// part of a ray that lies in dense fog gets nodes of its own. What lies above the fog's top or 40 scale heights above its
-    /// densest point, or behind an optical depth of 90, is left out.
+    /// The ray is split at kinks of the density and at a few heights above its densest point, so that the part in dense fog has its
+    /// own nodes, however far away the light is. Parts above the top of the layer, more than 40 scale heights above the densest
+    /// point, or beyond an optical depth of 90 are omitted.
     pub(super) fn of(
         fog: &HeightStructure,
         density: f64,
         ray: &RaySegment,
-        least_per_m: f64,
+        min_extinction_per_m: f64,
     ) -> Self {
         let mut cuts = Self {
             first: 0.0,
             last: ray.length_m,
-            within: [0.0; MOST_CUTS],
+            within: [0.0; MAX_CUTS],
             count: 0,
         };
         for &kink in &fog.kinks_m {
@@ -428,9 +433,10 @@ impl Cuts {
         for decay in &fog.decays {
             let mut floor = ray.lowest_height_m().max(decay.from_m);
             if decay.from_m == f64::NEG_INFINITY && ray.sin_elevation < 0.0 {
-                // The density before which even a straight descent has passed an optical depth of DARK.
-                let density =
-                    density + DARK * -ray.sin_elevation / (least_per_m * decay.scale_height_m);
+                // Density at which even a straight descent has an optical depth of MAX_DEPTH.
+                let density = density
+                    + MAX_DEPTH * -ray.sin_elevation
+                        / (min_extinction_per_m * decay.scale_height_m);
                 let dark = decay.reference_height_m - decay.scale_height_m * density.ln();
                 if dark > floor {
                     cuts.keep((0.0, ray.below(dark).0));
@@ -442,8 +448,8 @@ impl Cuts {
         cuts
     }
 
-    /// Cuts where another layer, which dims the light, has a kink, and at heights where it has decayed.
-    pub(super) fn dimmed_by(&mut self, layer: &HeightStructure, ray: &RaySegment) {
+    /// Splits at kinks of another layer and at heights where it has decayed.
+    pub(super) fn add_other(&mut self, layer: &HeightStructure, ray: &RaySegment) {
         for kink in layer.other_kinks_m() {
             self.add(ray.below(kink));
         }
@@ -456,7 +462,7 @@ impl Cuts {
         }
     }
 
-    /// Cuts at the heights above the densest point.
+    /// Splits at the heights above the densest point.
     fn cut_decay(&mut self, ray: &RaySegment, densest_height_m: f64, decay: &Decay) {
         let below = |height: f64| ray.below(densest_height_m + height * decay.scale_height_m);
         for height in HEIGHTS {
@@ -467,23 +473,23 @@ impl Cuts {
         }
     }
 
-    /// Leaves out all that is not between two distances.
+    /// Restricts the panels to the interval between two distances.
     pub(super) fn keep(&mut self, (first, last): (f64, f64)) {
         self.first = self.first.max(first);
         self.last = self.last.min(last);
     }
 
-    /// Cuts at two distances.
+    /// Splits at two distances.
     pub(super) fn add(&mut self, (first, last): (f64, f64)) {
         for at in [first, last] {
-            if at.is_finite() && self.count < MOST_CUTS {
+            if at.is_finite() && self.count < MAX_CUTS {
                 self.within[self.count] = at;
                 self.count += 1;
             }
         }
     }
 
-    /// Calls `visit(from, to)` for every panel, nearest first.
+    /// Calls `visit(from, to)` for every panel, from near to far.
     #[inline]
     pub(super) fn visit(&mut self, mut visit: impl FnMut(f64, f64)) {
         let within = &mut self.within[..self.count];

@@ -1,17 +1,16 @@
-//! Lights in fog: the glow around a street light, a beam of light, a bulb seen through mist.
+//! Point, spot and sphere lights in fog: glow, cones of light, and irradiance on surfaces.
 //!
-//! Every function is **single scattering**: light travels from a light straight to a point of the fog, and from there straight
-//! to the eye, dimmed on both ways. Light scattered more than once is left out; in fog whose optical depth around the light
-//! exceeds about 1 the true glow is wider and brighter.
+//! All functions compute **single scattering**, with extinction between light, point of scattering and eye. Multiple scattering
+//! is neglected: around a light in fog with an optical depth above about 1 the true glow is wider and brighter.
 //!
 //! - [`PointLight`], [`SpotLight`], [`SphereLight`], [`Light`]: the lights. A radiant intensity `I` causes the irradiance
 //!   `I / r^2`.
-//! - [`LightSet`], [`RgbLightSet`]: lights in layers of fog, over the wavelengths of a grid and in red, green and blue: the light
-//!   scattered into a view ray, and the irradiance on a surface.
-//! - [`airlight_without_extinction`], [`airlight_isotropic`]: closed forms for uniform fog that scatters equally in all
-//!   directions, exact in f64; [`airlight_isotropic_fast`] by a few nodes. They need only the geometry, a [`LightRayGeometry`].
-//! - [`LightForm`]: those, the split sum ([`airlight_split_sum`]) and the fog note's own form ([`airlight_printed`]), to choose
-//!   from.
+//! - [`LightSet`], [`RgbLightSet`]: lights in layers of fog, over the wavelengths of a grid and in red, green and blue, with the
+//!   radiance scattered into view rays and the irradiance on surfaces.
+//! - [`airlight_without_extinction`], [`airlight_isotropic`]: closed forms for uniform, isotropically scattering fog, exact in
+//!   f64; [`airlight_isotropic_fast`]: a fast approximation. They depend on a [`LightRayGeometry`] only.
+//! - [`LightForm`]: selects one of these, the split sum ([`airlight_split_sum`]) or the form printed in the fog note
+//!   ([`airlight_printed`]).
 //!
 //! Derivation, measured errors and speed: `docs/src/lights.md`.
 

@@ -1,4 +1,4 @@
-//! Integrals along rays by brute force, for tests.
+//! Reference integrals along rays, for tests.
 
 use super::geometry::{LightRayGeometry, ViewRay};
 use super::light::{Light, SpotCone};
@@ -8,7 +8,7 @@ use crate::math::quadrature::GaussRule;
 use crate::spectrum::Spectrum;
 use std::f64::consts::PI;
 
-/// `e = t + r - r_0` without cancellation, at `u` beyond the point closest to the light.
+/// `e = t + r - r_0` without cancellation, at `u` from the point closest to the light.
 fn excess(geometry: &LightRayGeometry, t: f64, u: f64) -> f64 {
     let h = geometry.nearest_m;
     let ahead = |u: f64| match u < 0.0 {
@@ -18,9 +18,9 @@ fn excess(geometry: &LightRayGeometry, t: f64, u: f64) -> f64 {
     t * (ahead(geometry.start_m) + ahead(u)) / (geometry.distance_m(0.0) + h.hypot(u))
 }
 
-/// The integral along a ray of `f(t, u)`: Gauss-Legendre with 24 points in intervals that shrink by a quarter towards the start,
-/// the end, the point closest to the light and the places `more`. The coordinate is counted from the point closest to the
-/// light where that is on the ray, from the start elsewhere, so that small terms are not lost beside large ones.
+/// Integral of `f(t, u)` along a ray: Gauss-Legendre quadrature with 24 points in intervals that shrink by a quarter towards the
+/// start, the end, the point closest to the light and the distances `more`. The origin of the coordinate is the point closest
+/// to the light if it is on the ray, otherwise the start, to preserve precision.
 pub fn along(geometry: &LightRayGeometry, more: &[f64], f: impl Fn(f64, f64) -> f64) -> f64 {
     let length = geometry.length_m.min(1e16);
     let passed = -geometry.start_m;
@@ -39,16 +39,16 @@ pub fn along(geometry: &LightRayGeometry, more: &[f64], f: impl Fn(f64, f64) -> 
         }
     }
     breaks.sort_by(f64::total_cmp);
-    // Intervals shorter than rounding are left out.
+    // Omit intervals shorter than rounding.
     breaks.dedup_by(|b, a| (*b - *a).abs() <= 1e-14 * b.abs());
     GaussRule::new(24).integrate_between(first, last, &breaks, |s| {
         f(s + origin, s + (origin - passed))
     })
 }
 
-/// [`super::airlight_isotropic`] without the dimming over `r_0`.
+/// [`super::airlight_isotropic`] without the attenuation over `r_0`.
 pub fn isotropic_beyond(geometry: &LightRayGeometry, extinction: f64) -> f64 {
-    // An infinite ray is cut after 1e16 m; the rest counts only in clear air.
+    // Infinite rays are truncated at 1e16 m; the rest matters only without extinction.
     let rest = match geometry.length_m.is_infinite() && extinction == 0.0 {
         true => 1e-16 / (4.0 * PI),
         false => 0.0,
@@ -59,7 +59,7 @@ pub fn isotropic_beyond(geometry: &LightRayGeometry, extinction: f64) -> f64 {
     })
 }
 
-/// All geometries that tests try.
+/// Geometries of the tests.
 pub fn geometries(nearest: &[f64]) -> impl Iterator<Item = LightRayGeometry> + '_ {
     const START: [f64; 13] = [
         -1e7, -1e4, -37.0, -1.0, -1e-3, -1e-6, 0.0, 1e-6, 1e-3, 1.0, 37.0, 1e4, 1e7,
@@ -76,8 +76,7 @@ pub fn geometries(nearest: &[f64]) -> impl Iterator<Item = LightRayGeometry> + '
     })
 }
 
-/// The path radiance of a light in the first lane: the defining integral, without the clamp where the ray passes closer than
-/// the light's radius.
+/// Path radiance of a light in the first lane by the defining integral, without clamping distances to the light's radius.
 pub fn path_radiance<const N: usize>(
     light: &Light<Spectrum<N>>,
     fog: &ScatteringLayer<N>,
@@ -104,12 +103,12 @@ pub fn path_radiance<const N: usize>(
         let r = (geometry.nearest_m * geometry.nearest_m + u * u).sqrt();
         let point = eye + t * direction;
         let towards = (light.position() - point) / r;
-        let (leg, part) = match light {
+        let (to_surface_m, part) = match light {
             Light::Point(_) => (r, 1.0),
             Light::Spot(spot) => {
                 let closest = true_nearest.max(1e-300) / geometry.nearest_m;
                 let off = (point - light.position()) / r;
-                assert!(closest > 0.99, "spots are tried off the ray");
+                assert!(closest > 0.99, "spot lights are not on the ray");
                 (r, spot.falloff(off))
             }
             Light::Sphere(sphere) => {
@@ -124,12 +123,12 @@ pub fn path_radiance<const N: usize>(
             height_m: height,
             sin_elevation: towards.y + 2.0 * curvature * offset,
             curvature_per_m: curvature * (1.0 - towards.y * towards.y).max(0.0),
-            length_m: leg,
+            length_m: to_surface_m,
         };
         let column = |profile: &DensityProfile| {
             profile.column_along_m(&RaySegment { length_m: t, ..ray })
                 + match profile.is_uniform() {
-                    true => leg,
+                    true => to_surface_m,
                     false => profile.column_along_m(&to_light),
                 }
         };
@@ -143,7 +142,7 @@ pub fn path_radiance<const N: usize>(
     scattering * f64::from(light.intensity()[0]) * integral
 }
 
-/// Where density or the light's intensity has a kink, or fog is densest.
+/// Distances at which density or intensity has a kink, or density is largest.
 fn edges<const N: usize>(
     light: &Light<Spectrum<N>>,
     fog: &ScatteringLayer<N>,

@@ -1,19 +1,19 @@
-//! The light inside a fog, solved for once, and the part of it that is scattered into a ray.
+//! The diffuse light in a fog, and its scattering into rays.
 
 use super::heights::{self, Weighted};
 use super::legendre::{self, COUNT, STREAMS};
 use super::ordinates::{self, Boundary, Cell};
 use crate::atmosphere::DensityProfile;
 use crate::atmosphere::RaySegment;
-use crate::fog::closed_forms::{Lanes, linear_source_mean, mean_dimmed_source};
+use crate::fog::closed_forms::{Lanes, linear_source_mean, mean_attenuated_source};
 use crate::fog::lighting::{FogLighting, Ground};
 use crate::fog::ray_cuts::split_at_heights;
 use crate::math::interpolation::{interval_of, lerp};
 use crate::spectrum::Spectrum;
 use std::f64::consts::PI;
 
-/// Optical depth of the cells that the solver steps through.
-const THINNEST: f64 = 0.05;
+/// Optical depth of the cells of the solver.
+const CELL_DEPTH: f64 = 0.05;
 
 /// Input of the solver for a density profile: extinction and scattering without the forward peak.
 #[derive(Clone, Debug)]
@@ -25,31 +25,31 @@ pub struct Reduced<const N: usize> {
     pub scattering_per_m: [Spectrum<N>; STREAMS],
 }
 
-/// The factor of each moment in a direction.
+/// Factor of each moment in a direction.
 pub type DirectionWeights = [f32; COUNT];
 
-/// The source function of diffuse light, by height and direction, and the light on the ground.
+/// Source function of diffuse light by height and direction, and the light on the ground.
 #[derive(Clone, Debug)]
 pub struct Field<const N: usize> {
     layers: Vec<Reduced<N>>,
-    /// For interpolation within a layer.
+    /// Profiles with their mean extinctions, for interpolation between heights.
     weighted: Vec<Weighted>,
     heights_m: Vec<f64>,
     /// Optical depth above each height, by mean extinction.
     depths: Vec<f64>,
     /// Column above each height of the first profile, m.
     columns_m: Vec<f64>,
-    /// For each layer between two heights, at its lower and upper end: moments of the source function.
+    /// Moments of the source function in each cell between two heights, at its lower and upper end.
     sources: Vec<[[Spectrum<N>; COUNT]; 2]>,
     /// Radiance of the ground.
     pub ground_radiance: Spectrum<N>,
-    /// Irradiance on the ground, of sun and diffuse light.
+    /// Irradiance on the ground, by sun and diffuse light.
     pub ground_irradiance: Spectrum<N>,
 }
 
 impl<const N: usize> Field<N> {
     /// Solves for the light in these layers. `sun_depth(height)` is the reduced optical depth to the sun, huge where the
-    /// ground is in the way. Lanes from `lanes` on repeat the last one before.
+    /// ground blocks it. Lanes from `lanes` on are copies of the last lane before.
     pub fn solve(
         layers: Vec<Reduced<N>>,
         ground: &Ground,
@@ -118,28 +118,28 @@ impl<const N: usize> Field<N> {
             albedo: f64::from(light.ground_albedo[lane]),
             sun_on_ground: irradiance * sin_sun.max(0.0) * f64::from(sun_depths[0][lane]).exp_neg(),
         };
-        // The solver counts from the top, and takes thinner cells than are kept.
+        // The solver's cells are ordered from the top, and thinner than the stored ones.
         let mut thin = Vec::new();
-        let mut kept = vec![0];
+        let mut stored = vec![0];
         for (k, cell) in cells.iter().enumerate().rev() {
             let [low, high] = [sun_depths[k][lane], sun_depths[k + 1][lane]].map(f64::from);
-            let parts = (cell.extinction / THINNEST).ceil().clamp(1.0, 64.0);
+            let parts = (cell.extinction / CELL_DEPTH).ceil().clamp(1.0, 64.0);
             let step = (low - high) / parts;
             for part in 0..parts as usize {
-                // The mean over the part of light that falls off exponentially.
-                let sunlight = mean_dimmed_source(high + part as f64 * step, step);
+                // Mean over the part of exponentially attenuated light.
+                let sunlight = mean_attenuated_source(high + part as f64 * step, step);
                 thin.push(Cell {
                     extinction: cell.extinction / parts,
                     scattering: cell.scattering.map(|s| s / parts),
                     sunlight: irradiance * sunlight,
                 });
             }
-            kept.push(thin.len());
+            stored.push(thin.len());
         }
         let solution = ordinates::solve(&thin, &boundary);
         // From the ground up.
         let at_heights: Vec<&[f64; COUNT]> =
-            kept.iter().rev().map(|&k| &solution.moments[k]).collect();
+            stored.iter().rev().map(|&k| &solution.moments[k]).collect();
         for (k, cell) in cells.iter().enumerate() {
             for (end, moments) in [at_heights[k], at_heights[k + 1]].into_iter().enumerate() {
                 for m in 0..STREAMS {
@@ -160,7 +160,7 @@ impl<const N: usize> Field<N> {
         self.ground_radiance[lane] = (boundary.albedo * solution.ground_irradiance / PI) as f32;
     }
 
-    /// One wavelength of the cell between two heights.
+    /// The cell between two heights at one wavelength.
     fn cell(&self, k: usize, lane: usize) -> Cell {
         let (low, high) = (self.heights_m[k], self.heights_m[k + 1]);
         let mut cell = Cell::default();
@@ -176,8 +176,8 @@ impl<const N: usize> Field<N> {
         cell
     }
 
-    /// Diffuse light scattered into a ray, dimmed by the extinction without peaks of all layers (`uniform` is that of layers
-    /// without an upper end, which the field does not hold).
+    /// Diffuse light scattered into a ray, attenuated by the reduced extinction of all layers (`uniform` is that of uniform
+    /// layers, which are not part of the field).
     pub fn scattered(
         &self,
         ray: &RaySegment,
@@ -211,8 +211,8 @@ impl<const N: usize> Field<N> {
         path
     }
 
-    /// [`Field::scattered`] in one profile over flat ground, with the vertical column as the coordinate of height: it is linear
-    /// along a ray, and the source function is linear in it from one height to the next.
+    /// [`Field::scattered`] in one profile over flat ground. The coordinate of height is the vertical column: optical depth along
+    /// a ray is linear in it, and so is the source function between two heights.
     fn scattered_in_single_layer(
         &self,
         layer: &Reduced<N>,
@@ -222,7 +222,7 @@ impl<const N: usize> Field<N> {
         let column_m = |height_m: f64| layer.density.column_above_m(height_m).min(1e25);
         let per_m = layer.extinction_per_m * (1.0 / ray.sin_elevation.abs()) as f32;
         let (from, to) = (column_m(ray.height_m), column_m(ray.end_height_m()));
-        // Columns fall with height: count the heights with a larger column than the start.
+        // Columns decrease with height: count the heights with a larger column than the start.
         let above = self.columns_m.partition_point(|&column| column > from);
         let last = self.columns_m.len() - 1;
         let node = |k: usize| self.at_node(k, weights);
@@ -242,7 +242,7 @@ impl<const N: usize> Field<N> {
         let rises = ray.sin_elevation > 0.0;
         let mut next = if rises { above } else { above.wrapping_sub(1) };
         loop {
-            // Up to the next height or the end of the ray, whichever comes first.
+            // Continue to the next height or the end of the ray.
             let passes = match self.columns_m.get(next) {
                 Some(&column) => (rises && column > to) || (!rises && column < to),
                 None => false,
@@ -269,7 +269,7 @@ impl<const N: usize> Field<N> {
         }
     }
 
-    /// The source function at height `k`, of the cell below it (of the one above it at the ground).
+    /// Source function at height `k` in the cell below it (above it at the ground).
     #[inline]
     fn at_node(&self, k: usize, weights: &DirectionWeights) -> Spectrum<N> {
         match k {
@@ -278,7 +278,7 @@ impl<const N: usize> Field<N> {
         }
     }
 
-    /// The source function at a height in or beside cell `k`.
+    /// Source function at a height in or next to cell `k`.
     #[inline]
     fn source(&self, k: usize, height_m: f64, weights: &DirectionWeights) -> Spectrum<N> {
         let sum = |end: usize| weighted(&self.sources[k][end], weights);
@@ -292,7 +292,7 @@ impl<const N: usize> Field<N> {
         }
         let depth = heights::depth_above(&self.weighted, height_m);
         let whole = self.depths[k] - self.depths[k + 1];
-        // Between heights without fog the source function is 0 at both.
+        // Without fog between the heights the source function is 0 at both.
         let up = match whole > 0.0 {
             true => (self.depths[k] - depth) / whole,
             false => 0.0,
@@ -301,7 +301,7 @@ impl<const N: usize> Field<N> {
     }
 }
 
-/// The moments of a source function summed for a direction.
+/// Source function in a direction: weighted sum of its moments.
 #[inline]
 fn weighted<const N: usize>(
     moments: &[Spectrum<N>; COUNT],

@@ -1,8 +1,8 @@
-//! Heights at which the light inside a fog is solved for.
+//! Heights at which the diffuse light is stored.
 
 use crate::atmosphere::DensityProfile;
 
-/// A profile and the mean of its reduced extinction over wavelengths, 1/m.
+/// A profile and the mean of its reduced extinction coefficient over wavelengths, 1/m.
 pub type Weighted = (DensityProfile, f64);
 
 /// Optical depth above a height, by mean extinction.
@@ -13,8 +13,8 @@ pub fn depth_above(layers: &[Weighted], height_m: f64) -> f64 {
         .sum()
 }
 
-/// Rising heights from the ground to where next to nothing is above: close together, in optical depth, where light enters
-/// and leaves, and wide apart in between. Edges of the profiles are among them.
+/// Heights in increasing order from the ground to the top of the fog: dense in optical depth near both ends, sparse in between.
+/// Includes the edges of all profiles.
 pub fn between(layers: &[Weighted], ground_m: f64) -> Vec<f64> {
     let whole = depth_above(layers, ground_m);
     if whole <= 0.0 {
@@ -37,20 +37,20 @@ pub fn between(layers: &[Weighted], ground_m: f64) -> Vec<f64> {
     heights
 }
 
-/// The widest step, by mean extinction.
-const WIDEST: f64 = 0.8;
+/// Largest step of optical depth, by mean extinction.
+const MAX_STEP: f64 = 0.8;
 
-/// The most steps from an end to the middle: fog deeper than some 300 optical depths is the same all through.
-const MOST: usize = 200;
+/// Largest number of steps from an end to the middle: the interior of fog deeper than about 300 optical depths is uniform.
+const MAX_STEPS: usize = 200;
 
-/// Optical depths from the top: steps that grow away from both ends.
+/// Optical depths from the top, with steps that grow away from both ends.
 fn depths(whole: f64) -> Vec<f64> {
     let first = (whole / 10.0).min(0.05);
     let mut from_end = Vec::new();
     let mut depth = 0.0;
-    while depth < 0.5 * whole && from_end.len() < MOST {
+    while depth < 0.5 * whole && from_end.len() < MAX_STEPS {
         from_end.push(depth);
-        depth += (0.4 * depth).max(first).min(WIDEST);
+        depth += (0.4 * depth).max(first).min(MAX_STEP);
     }
     let other_end = from_end.iter().map(|depth| whole - depth);
     let mut depths: Vec<f64> = from_end.iter().copied().chain(other_end).collect();
@@ -58,7 +58,7 @@ fn depths(whole: f64) -> Vec<f64> {
     depths
 }
 
-/// The height with an optical depth above it, at or above the ground: by halving.
+/// Height with this optical depth above it, at or above the ground, by bisection.
 fn height_of(layers: &[Weighted], ground_m: f64, depth: f64) -> f64 {
     let deeper = |height: f64| depth_above(layers, height) > depth;
     if !deeper(ground_m) {
@@ -85,7 +85,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn heights_rise_from_the_ground_and_step_finely_where_light_enters() {
+    fn heights_increase_from_the_ground_with_bounded_steps() {
         let exponential = DensityProfile::Exponential {
             reference_height_m: 0.0,
             scale_height_m: 50.0,

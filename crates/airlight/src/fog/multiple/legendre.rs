@@ -1,21 +1,21 @@
-//! Associated Legendre functions, normalised so that the addition theorem has no factors:
+//! Associated Legendre functions, normalized such that the addition theorem has no factors:
 //! `P_l(cos angle) = sum over m of (2 - delta_m0) Y_lm(mu) Y_lm(mu') cos(m azimuth)`.
 
 use std::sync::LazyLock;
 
-/// Number of polar angles in both hemispheres together, and of Legendre moments.
+/// Number of polar angles in both hemispheres, and of Legendre moments.
 pub const STREAMS: usize = 8;
 
 /// Number of pairs `l < STREAMS`, `m <= l`.
 pub const COUNT: usize = STREAMS * (STREAMS + 1) / 2;
 
-/// Where the pair `(l, m)` stands: all `l` of `m = 0` first.
+/// Index of the pair `(l, m)`: all `l` of `m = 0` first.
 #[inline(always)]
 pub const fn index(l: usize, m: usize) -> usize {
     m * STREAMS - m * (m + 1) / 2 + l
 }
 
-/// Factors of the recurrence `Y_l = a mu Y_(l-1) - b Y_(l-2)` at fixed `m`, and of `Y_mm = a sine Y_(m-1)(m-1)`.
+/// Factors `(a, b)` of the recurrence `Y_l = a mu Y_(l-1) - b Y_(l-2)` at fixed `m`, and of `Y_mm = a sine Y_(m-1)(m-1)`.
 static FACTORS: LazyLock<[(f64, f64); COUNT]> = LazyLock::new(|| {
     let mut factors = [(0.0, 0.0); COUNT];
     for m in 0..STREAMS {
@@ -39,8 +39,8 @@ pub fn evaluate(mu: f64) -> [f64; COUNT] {
     with_sine(mu, (1.0 - mu * mu).max(0.0).sqrt())
 }
 
-/// [`evaluate`] of the pairs of one `m`, over the `m`-th power of the sine of the polar angle: polynomials of `mu`, without
-/// a root at the poles. All others are 0.
+/// [`evaluate`] for the pairs of one `m`, divided by the `m`-th power of the sine of the polar angle: polynomials in `mu`
+/// without a root at the poles. All other pairs are 0.
 pub fn of_mode(mu: f64, m: usize) -> [f32; COUNT] {
     let all = with_sine(mu, 1.0);
     let mut values = [0.0; COUNT];
@@ -70,7 +70,7 @@ fn with_sine(mu: f64, sine: f64) -> [f64; COUNT] {
     values
 }
 
-/// [`evaluate`] times `cos(m azimuth)`: what each moment adds in a direction.
+/// [`evaluate`] times `cos(m azimuth)`: weight of each moment in a direction.
 #[inline]
 pub fn in_direction(mu: f64, cos_azimuth: f64) -> [f32; COUNT] {
     let polar = evaluate(mu);
@@ -90,7 +90,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_pairs_are_numbered_without_gaps() {
+    fn indices_are_consecutive() {
         let mut next = 0;
         for m in 0..STREAMS {
             for l in m..STREAMS {

@@ -1,15 +1,14 @@
-//! Light inside plane-parallel layers at a few polar angles (discrete ordinates; Chandrasekhar 1960, Stamnes et al. 1988),
-//! for one wavelength.
+//! Discrete ordinates in plane-parallel layers at one wavelength (Chandrasekhar 1960, Stamnes et al. 1988).
 //!
-//! Each azimuth mode is a two-point boundary problem in optical depth. It is solved by imbedding: from the ground up, what
-//! each height sends up is kept as a linear function of what comes down, `up = reflection * down + emission`, which never
-//! grows; then from the top down. Between two heights the equation of transfer is differenced at the middle.
+//! Each azimuth mode is a two-point boundary value problem in optical depth, solved by invariant imbedding: from the ground up,
+//! upward radiance is expressed as a linear function of downward radiance, `up = reflection * down + emission`, which is
+//! stable; then radiance is evaluated from the top down. The equation of transfer is discretized by central differences.
 
 use super::legendre::{self, COUNT, STREAMS};
 use crate::math::quadrature::FixedRule;
 use std::f64::consts::PI;
 
-/// Polar angles in one hemisphere.
+/// Number of polar angles in one hemisphere.
 const HALF: usize = STREAMS / 2;
 
 type Vector = [f64; HALF];
@@ -18,35 +17,35 @@ type Matrix = [[f64; HALF]; HALF];
 /// A homogeneous layer between two heights.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Cell {
-    /// Optical depth, vertical.
+    /// Vertical optical depth.
     pub extinction: f64,
-    /// Optical depth of scattering times the Legendre moment, for each `l`.
+    /// Scattering optical depth times Legendre moment, for each `l`.
     pub scattering: [f64; STREAMS],
-    /// Sunlight that arrives on a surface facing the sun, averaged over the layer's optical depth.
+    /// Direct irradiance on a surface facing the sun, mean over the layer's optical depth.
     pub sunlight: f64,
 }
 
-/// What shines on the layers.
+/// Boundary conditions: light from above and reflection at the ground.
 #[derive(Clone, Copy, Debug)]
 pub struct Boundary {
     /// Sine of the sun's elevation.
     pub sin_sun: f64,
-    /// Radiance that comes evenly from above.
+    /// Isotropic radiance from above.
     pub sky: f64,
     /// Albedo of the Lambertian ground.
     pub albedo: f64,
-    /// Irradiance of the sun's own light on the ground, on the horizontal.
+    /// Direct irradiance of the sun on the horizontal ground.
     pub sun_on_ground: f64,
 }
 
-/// Moments of the light at each height, `1/2 int Y_lm I_m dmu`, from the top down, without the sun's own light; and the
-/// irradiance on the ground from all light.
+/// Moments of the diffuse radiance at each height from the top down, `1/2 int Y_lm I_m dmu`, and the total irradiance on the
+/// ground.
 pub struct Solution {
     pub moments: Vec<[f64; COUNT]>,
     pub ground_irradiance: f64,
 }
 
-/// Gauss's points on `(0, 1)` with weights that add up to 1, so that a hemisphere's flux is exact.
+/// Gauss points on `(0, 1)`, with weights that sum to 1.
 struct Angles {
     cosine: Vector,
     weight: Vector,
@@ -65,12 +64,12 @@ impl Angles {
     }
 }
 
-/// `(-1)^(l + m)`: the function of the opposite polar angle.
+/// `(-1)^(l + m)`: ratio of the function at the opposite polar angle.
 fn parity(l: usize, m: usize) -> f64 {
     if (l + m).is_multiple_of(2) { 1.0 } else { -1.0 }
 }
 
-/// Solves for the light in layers given from the top down.
+/// Solves for the light in layers, ordered from the top down.
 pub fn solve(cells: &[Cell], boundary: &Boundary) -> Solution {
     let angles = Angles::new();
     let mut solution = Solution {
@@ -80,10 +79,10 @@ pub fn solve(cells: &[Cell], boundary: &Boundary) -> Solution {
     let sun = legendre::evaluate(boundary.sin_sun);
     for m in 0..STREAMS {
         let lit = |cell: &Cell| {
-            let beam = (m..STREAMS).map(|l| cell.scattering[l] * sun[legendre::index(l, m)]);
-            cell.sunlight != 0.0 && beam.map(f64::abs).sum::<f64>() > 1e-9 * cell.extinction
+            let source = (m..STREAMS).map(|l| cell.scattering[l] * sun[legendre::index(l, m)]);
+            cell.sunlight != 0.0 && source.map(f64::abs).sum::<f64>() > 1e-9 * cell.extinction
         };
-        // Only the sun tells one azimuth from another.
+        // Only sunlight depends on azimuth.
         if m == 0 || cells.iter().any(lit) {
             solve_mode(m, cells, boundary, &angles, &sun, &mut solution);
         }
@@ -99,7 +98,7 @@ fn solve_mode(
     sun: &[f64; COUNT],
     solution: &mut Solution,
 ) {
-    // The ground: Lambertian, so that only the mean over azimuth comes back.
+    // Lambertian ground reflects into the azimuthal mean only.
     let mut reflection = Matrix::default();
     let mut emission = Vector::default();
     if m == 0 {
@@ -134,7 +133,7 @@ fn solve_mode(
     }
 }
 
-/// One layer put on top of all below it.
+/// A layer added on top of the layers below it.
 struct Step {
     /// `up_above = reflection * down_above + emission`.
     reflection: Matrix,
@@ -154,19 +153,19 @@ impl Step {
         from_below: &Vector,
     ) -> Self {
         const TWO: usize = 2 * HALF;
-        // Scattering between directions of the same and of opposite hemispheres, and of sunlight into each.
+        // Scattering within and between hemispheres, and of sunlight into each.
         let mut same = Matrix::default();
         let mut opposite = Matrix::default();
-        let mut beam_down = Vector::default();
-        let mut beam_up = Vector::default();
-        let beam = cell.sunlight / (4.0 * PI) * if m == 0 { 1.0 } else { 2.0 };
+        let mut source_down = Vector::default();
+        let mut source_up = Vector::default();
+        let sunlight = cell.sunlight / (4.0 * PI) * if m == 0 { 1.0 } else { 2.0 };
         for l in m..STREAMS {
             let strength = (2 * l + 1) as f64 * cell.scattering[l];
             let at = legendre::index(l, m);
             for i in 0..HALF {
                 let to = strength * angles.down[i][at];
-                beam_down[i] += beam * to * sun[at];
-                beam_up[i] += beam * to * sun[at] * parity(l, m);
+                source_down[i] += sunlight * to * sun[at];
+                source_up[i] += sunlight * to * sun[at] * parity(l, m);
                 for j in 0..HALF {
                     let pair = 0.5 * to * angles.down[j][at] * angles.weight[j];
                     same[i][j] += pair;
@@ -174,7 +173,7 @@ impl Step {
                 }
             }
         }
-        // P d' - H u = Q d + H u' + b_down,  P u - H d' = Q u' + H d + b_up;  primes below the layer.
+        // P d' - H u = Q d + H u' + s_down,  P u - H d' = Q u' + H d + s_up;  primes: below the layer.
         let part = |i: usize, j: usize, sign: f64| {
             let on = f64::from(u8::from(i == j));
             on * angles.cosine[i] + sign * 0.5 * (on * cell.extinction - same[i][j])
@@ -184,7 +183,7 @@ impl Step {
         let h = opposite.map(|row| row.map(|v| 0.5 * v));
         let (h_below, q_below) = (product(&h, below), product(&q, below));
         let (h_source, q_source) = (times(&h, from_below), times(&q, from_below));
-        // Unknown: d', u. Right-hand sides: one for each component of d, one for the sources.
+        // Unknowns: d', u. Right-hand sides: one for each component of d, one for the sources.
         let mut matrix = [[0.0; TWO]; TWO];
         let mut right = [[0.0; HALF + 1]; TWO];
         for i in 0..HALF {
@@ -196,8 +195,8 @@ impl Step {
                 right[i][j] = q[i][j];
                 right[HALF + i][j] = h[i][j];
             }
-            right[i][HALF] = h_source[i] + beam_down[i];
-            right[HALF + i][HALF] = q_source[i] + beam_up[i];
+            right[i][HALF] = h_source[i] + source_down[i];
+            right[HALF + i][HALF] = q_source[i] + source_up[i];
         }
         eliminate(&mut matrix, &mut right);
         Self {
@@ -209,7 +208,7 @@ impl Step {
     }
 }
 
-/// The moments of mode `m` from the light at the polar angles.
+/// Stores the moments of mode `m` of the radiance at the polar angles.
 fn store(m: usize, down: &Vector, up: &Vector, angles: &Angles, moments: &mut [f64; COUNT]) {
     for l in m..STREAMS {
         let at = legendre::index(l, m);
@@ -219,7 +218,7 @@ fn store(m: usize, down: &Vector, up: &Vector, angles: &Angles, moments: &mut [f
     }
 }
 
-/// Gauss's elimination with pivots: the solutions replace the right-hand sides.
+/// Gaussian elimination with pivoting. Solutions replace the right-hand sides.
 fn eliminate<const N: usize, const R: usize>(
     matrix: &mut [[f64; N]; N],
     right: &mut [[f64; R]; N],
@@ -277,7 +276,7 @@ mod tests {
     }
 
     #[test]
-    fn light_that_is_the_same_everywhere_stays_so() {
+    fn uniform_light_stays_uniform() {
         for depth in [0.01, 1.0, 100.0] {
             let boundary = Boundary {
                 sin_sun: 0.5,
@@ -288,7 +287,7 @@ mod tests {
             let solution = solve(&slab(depth, 20, 1.0, 0.6), &boundary);
             assert!((solution.ground_irradiance - 2.0 * PI).abs() < 1e-9);
             for moments in &solution.moments {
-                // 1/2 int I dmu over both hemispheres is the radiance itself; all others are 0.
+                // The moment l = 0 is the radiance; all others are 0.
                 assert!((moments[0] - 2.0).abs() < 1e-9, "{}", moments[0]);
                 assert!(moments[1..].iter().all(|m| m.abs() < 1e-9));
             }
@@ -296,8 +295,8 @@ mod tests {
     }
 
     #[test]
-    fn no_light_is_lost_where_nothing_absorbs() {
-        // Sunlight on a white slab over black ground: what enters leaves by the top or reaches the ground.
+    fn energy_is_conserved_without_absorption() {
+        // Sunlight on a slab without absorption over black ground leaves at the top or reaches the ground.
         let (depth, count, m) = (2.0, 60, 0.6);
         let mut cells = slab(depth, count, 1.0, 0.5);
         let each = depth / count as f64;
@@ -313,7 +312,7 @@ mod tests {
             sun_on_ground: direct,
         };
         let solution = solve(&cells, &boundary);
-        // Net flux from the moment l = 1: 4 pi times it, downwards.
+        // Net downward flux: 4 pi times the moment l = 1.
         let top = 4.0 * PI * solution.moments[0][1];
         let bottom = 4.0 * PI * solution.moments[count][1];
         assert!((top + m - bottom - direct).abs() < 1e-9, "{top} {bottom}");

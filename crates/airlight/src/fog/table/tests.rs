@@ -5,7 +5,7 @@ use crate::fog::layer::LayerLanes;
 use crate::fog::{DirectionalLight, FogLighting, FogScattering, Ground, RgbLayer};
 use crate::optics::PhaseFunction;
 
-/// Fog of a height, or up to one, with an extinction at the ground (1/m).
+/// A layer with an extinction coefficient at density 1, 1/m.
 fn layer(profile: DensityProfile, extinction_per_m: f32, phase: PhaseFunction) -> RgbLayer {
     RgbLayer {
         density: profile,
@@ -56,7 +56,7 @@ fn errors(fog: &Arc<FogLanes<3>>, eye_height_m: f64) -> Vec<(f32, String)> {
             let ground_m = eye_height_m / (-view.y).max(1e-9);
             let lengths = (-9..30).map(|k| 0.01 * 1.9f64.powi(k));
             for length_m in lengths.chain([ground_m, f64::INFINITY]) {
-                // Not farther down than 2 m under the ground.
+                // At most 2 m below the ground.
                 if -view.y * length_m > eye_height_m + 2.0 {
                     continue;
                 }
@@ -84,33 +84,37 @@ const CLAMPED: DensityProfile = DensityProfile::Clamped {
 };
 const SLAB: DensityProfile = DensityProfile::slab(20.0);
 
-#[test]
-fn a_table_is_the_fog_itself() {
-    let drops = droplets::phase(10.0);
-    let large = droplets::phase(50.0);
-    let peaked = PhaseFunction::HenyeyGreenstein { g: 0.8 };
-    for (profile, phase) in [
-        (DensityProfile::exponential(30.0), &drops),
-        (DensityProfile::exponential(400.0), &peaked),
-        (CLAMPED, &large),
-        (SLAB, &drops),
-    ] {
-        for extinction in [1e-4, 0.004, 0.04, 0.3] {
-            let mut layers = [layer(profile.clone(), extinction, phase.clone())];
-            if extinction == 0.04 {
-                layers[0].extinction_per_m = [extinction; 3];
-            }
-            for sun in [None, Some(30.0), Some(4.0)] {
-                for eye in [1.6, 15.0, 60.0] {
-                    let errors = errors(&fog(&layers, sun), eye);
-                    let (worst, place) = &errors[errors.len() - 1];
-                    let usual = errors[errors.len() * 9 / 10].0;
-                    let what = format!("{profile:?} {extinction} sun {sun:?} eye {eye}");
-                    if std::env::var("FOG_ERRORS").is_ok() {
-                        println!("{worst:.5} {usual:.5} {what}: {place}");
+mod guards {
+    use super::*;
+
+    #[test]
+    fn tables_match_direct_evaluation() {
+        let small = droplets::phase(10.0);
+        let large = droplets::phase(50.0);
+        let peaked = PhaseFunction::HenyeyGreenstein { g: 0.8 };
+        for (profile, phase) in [
+            (DensityProfile::exponential(30.0), &small),
+            (DensityProfile::exponential(400.0), &peaked),
+            (CLAMPED, &large),
+            (SLAB, &small),
+        ] {
+            for extinction in [1e-4, 0.004, 0.04, 0.3] {
+                let mut layers = [layer(profile.clone(), extinction, phase.clone())];
+                if extinction == 0.04 {
+                    layers[0].extinction_per_m = [extinction; 3];
+                }
+                for sun in [None, Some(30.0), Some(4.0)] {
+                    for eye in [1.6, 15.0, 60.0] {
+                        let errors = errors(&fog(&layers, sun), eye);
+                        let (worst, place) = &errors[errors.len() - 1];
+                        let usual = errors[errors.len() * 9 / 10].0;
+                        let what = format!("{profile:?} {extinction} sun {sun:?} eye {eye}");
+                        if std::env::var("FOG_ERRORS").is_ok() {
+                            println!("{worst:.5} {usual:.5} {what}: {place}");
+                        }
+                        assert!(*worst < 3e-3, "{what}, {place}: {worst}");
+                        assert!(usual < 1e-3, "{what}: {usual}");
                     }
-                    assert!(*worst < 3e-3, "{what}, {place}: {worst}");
-                    assert!(usual < 1e-3, "{what}: {usual}");
                 }
             }
         }
@@ -118,7 +122,7 @@ fn a_table_is_the_fog_itself() {
 }
 
 #[test]
-fn fog_that_is_not_tabulated_is_evaluated() {
+fn other_fog_is_evaluated_directly() {
     let drops = droplets::phase(10.0);
     let (slab, haze) = (
         layer(SLAB, 0.03, drops.clone()),
@@ -134,27 +138,27 @@ fn fog_that_is_not_tabulated_is_evaluated() {
 }
 
 #[test]
-fn white_light_stays_white_in_a_table() {
+fn tabulated_fog_without_absorption_is_invisible_in_uniform_light() {
     let mut clear = layer(
         DensityProfile::exponential(60.0),
         0.01,
         droplets::phase(10.0),
     );
     clear.single_scattering_albedo = [1.0; 3];
-    let everywhere = FogLighting {
+    let uniform = FogLighting {
         sun: None,
         ambient: Spectrum([0.3, 0.4, 0.5]),
         ground_albedo: Spectrum::ONE,
     };
-    let fog = solved(&[clear], Ground::FLAT, everywhere);
+    let fog = solved(&[clear], Ground::FLAT, uniform);
     let table = TableLanes::new(fog, 5.0);
     for k in 0..400 {
         let k = f64::from(k);
         let view = axes::direction(31.0 * k, 90.0 * (0.77 * k).sin());
         let length_m = (5.0 / (-view.y).max(0.0)).min(1e-3 * 1.1f64.powf(k));
-        let seen = table.path(view, length_m).apply(everywhere.ambient);
+        let seen = table.path(view, length_m).apply(uniform.ambient);
         for lane in 0..3 {
-            let ratio = seen[lane] / everywhere.ambient[lane];
+            let ratio = seen[lane] / uniform.ambient[lane];
             assert!((ratio - 1.0).abs() < 2e-5, "{view} {length_m}: {ratio}");
         }
     }

@@ -5,7 +5,7 @@
 //! sign in eq. 47 is minus. Flat ground is good to 1 % for a sun 15 degrees high or more (the paper's figure).
 
 use crate::atmosphere::{Constituent, RaySegment};
-use crate::fog::{Lanes, LayerLanes, constant_source, dimmed_source};
+use crate::fog::{Lanes, LayerLanes, attenuated_source, constant_source};
 use crate::spectrum::Spectrum;
 use crate::transfer::PathOptics;
 
@@ -108,7 +108,7 @@ impl<const N: usize> Slab1987<N> {
                 -sin_elevation / self.sin_sun,
             ),
         };
-        let arriving = dimmed_source(
+        let arriving = attenuated_source(
             extinction * near_m as f32,
             along * (1.0 + slope) as f32,
             along,

@@ -76,7 +76,7 @@ const DIRECTIONS: [DVec3; 5] = [
 ];
 
 #[test]
-fn near_and_far_compose_to_the_whole() {
+fn near_and_far_parts_compose() {
     for layer in layers() {
         let lights = street(layer.clone());
         for direction in DIRECTIONS {
@@ -105,7 +105,7 @@ fn near_and_far_compose_to_the_whole() {
 }
 
 #[test]
-fn the_closed_form_is_what_quadrature_gives() {
+fn the_closed_form_matches_quadrature() {
     let lights = street(layer(PhaseFunction::Isotropic, DensityProfile::Uniform));
     let set = &*lights.lanes;
     let fog = &set.scattering_layers[0];
@@ -123,7 +123,7 @@ fn the_closed_form_is_what_quadrature_gives() {
 }
 
 #[test]
-fn a_grid_gives_the_same_values_in_lanes() {
+fn spectral_values_equal_rgb_values() {
     // 21 wavelengths: a block of 16 and one of 8. The layers and lights have the RGB values at three of them.
     let nm: Vec<f64> = (0..21).map(|i| 400.0 + 15.0 * f64::from(i)).collect();
     let picked = [20, 10, 2];
@@ -178,7 +178,7 @@ fn a_grid_gives_the_same_values_in_lanes() {
 }
 
 #[test]
-fn nothing_is_infinite_anywhere() {
+fn values_are_always_finite() {
     let at = DVec3::new(0.0, 3.0, 0.0);
     let lights = vec![
         Light::Point(PointLight::new(at, [1.0; 3], 0.1).unwrap()),
@@ -207,7 +207,7 @@ fn nothing_is_infinite_anywhere() {
     }
 }
 
-/// Fog so thin that it dims nothing.
+/// Fog with negligible extinction.
 fn thin(extinction_per_m: f32) -> RgbLayer {
     RgbLayer {
         extinction_per_m: [extinction_per_m; 3],
@@ -217,7 +217,7 @@ fn thin(extinction_per_m: f32) -> RgbLayer {
 }
 
 #[test]
-fn an_eye_at_the_light_sees_half_a_turn_over_its_radius() {
+fn the_distance_of_an_eye_at_the_light_is_its_radius() {
     let at = DVec3::new(0.0, 3.0, 0.0);
     let light = PointLight::new(at, [1.0; 3], 0.1).unwrap();
     let lights = set(vec![Light::Point(light)], thin(1e-9), Ground::FLAT);
@@ -234,7 +234,7 @@ fn an_eye_at_the_light_sees_half_a_turn_over_its_radius() {
 }
 
 #[test]
-fn a_ray_ends_at_the_sphere() {
+fn rays_end_at_spheres() {
     let lights = street(layer(PhaseFunction::Isotropic, DensityProfile::Uniform));
     let sphere = DVec3::new(0.0, 4.0, -40.0);
     let eye = DVec3::new(0.0, 1.7, 0.0);
@@ -250,7 +250,7 @@ fn a_ray_ends_at_the_sphere() {
 }
 
 #[test]
-fn the_bound_holds_and_leaves_out_only_light_below_it() {
+fn lights_below_the_threshold_are_skipped() {
     for layer in layers() {
         let lights = street(layer.clone());
         let settings = LightSettings {
@@ -277,7 +277,7 @@ fn the_bound_holds_and_leaves_out_only_light_below_it() {
 }
 
 #[test]
-fn light_from_all_sides_adds_up() {
+fn the_scalar_irradiance_of_scattered_light_is_exact() {
     let sigma = 1e-6f32;
     let light = PointLight::new(DVec3::ZERO, [1.0; 3], 1e-9).unwrap();
     let lights = set(vec![Light::Point(light)], thin(sigma), Ground::FLAT);
@@ -298,17 +298,17 @@ fn light_from_all_sides_adds_up() {
 }
 
 #[test]
-fn surfaces_are_lit_through_the_fog() {
+fn irradiance_on_surfaces_is_exact() {
     let uniform = street(layer(PhaseFunction::Isotropic, DensityProfile::Uniform));
     let lit = uniform.irradiance(0, DVec3::new(2.0, 0.0, -15.0));
     let want = 120.0 / 25.0 * (-0.02f64 * 5.0).exp();
     assert!((f64::from(lit[0]) / want - 1.0).abs() < 1e-6);
-    // Of the slab only the metre and a half between 3 and 4.5 m is crossed from above; all else is clear.
+    // Only 1.5 m of the path, from 3 to 4.5 m, lies in the slab.
     let slab = street(layer(PhaseFunction::Isotropic, DensityProfile::slab(4.5)));
     let lit = slab.irradiance(0, DVec3::new(2.0, 3.0, -15.0));
     let want = 120.0 / 4.0 * (-0.02f64 * 1.5).exp();
     assert!((f64::from(lit[0]) / want - 1.0).abs() < 1e-6);
-    // Beside the cone it is dark; at the surface of a sphere the irradiance is pi times the radiance.
+    // 0 outside the cone; pi times the radiance at the surface of a sphere.
     assert_eq!(
         uniform.irradiance(1, DVec3::new(-3.0, 6.5, -30.0)),
         [0.0; 3]
@@ -318,7 +318,7 @@ fn surfaces_are_lit_through_the_fog() {
 }
 
 #[test]
-fn settings_are_checked() {
+fn invalid_settings_are_rejected() {
     let make = |nodes, threshold| {
         let settings = LightSettings {
             nodes,

@@ -29,7 +29,7 @@ fn point(position: DVec3) -> Light<Spectrum<1>> {
     Light::Point(PointLight::new(position, Spectrum([1.0]), 1e-3).expect("a light"))
 }
 
-/// The quadrature itself, not the closed form.
+/// Path radiance by quadrature.
 fn march(
     light: &Light<Spectrum<1>>,
     fog: &ScatteringLayer<1>,
@@ -39,7 +39,7 @@ fn march(
     f64::from(LitRay::new(light, fog, view_ray).path_radiance(&Nodes::new(nodes))[0])
 }
 
-/// The worst relative error, and where, of the quadrature over rays that pass lights `nearest` m away, in uniform fog.
+/// Largest relative error of the quadrature in uniform fog, over many rays, and the ray.
 fn worst_in_uniform_fog(phase: &PhaseFunction, nodes: usize) -> (f64, String) {
     let mut worst = (0.0, String::new());
     for nearest in [0.002, 0.1, 1.0, 12.0, 300.0, 1e4] {
@@ -78,7 +78,7 @@ fn worst_in_uniform_fog(phase: &PhaseFunction, nodes: usize) -> (f64, String) {
 }
 
 #[test]
-fn uniform_fog_of_any_phase_function_converges_in_a_few_nodes() {
+fn errors_in_uniform_fog() {
     for (g, limit) in [
         (0.0, 1e-5),
         (0.5, 1e-5),
@@ -91,7 +91,7 @@ fn uniform_fog_of_any_phase_function_converges_in_a_few_nodes() {
     }
 }
 
-/// A number of nodes, in bold where it is the default.
+/// A number of nodes, bold if it is the default.
 fn row_of(nodes: usize) -> String {
     match nodes == LightSettings::default().nodes {
         true => format!("| **{nodes}** |"),
@@ -114,7 +114,7 @@ fn print_convergence_in_uniform_fog() {
     }
 }
 
-/// Lights and rays in fog that thins with height, a few hundred of each kind.
+/// Visits many lights and rays in fog whose density decreases with height.
 fn in_thinning_fog(visit: &mut dyn FnMut(&ScatteringLayer<1>, &Light<Spectrum<1>>, &ViewRay)) {
     let profiles = |scale_height_m| {
         [
@@ -168,7 +168,7 @@ fn in_thinning_fog(visit: &mut dyn FnMut(&ScatteringLayer<1>, &Light<Spectrum<1>
     }
 }
 
-/// Relative errors over every `stride`-th of those rays, rising, without light that is dimmed by e^-30 or more.
+/// Sorted relative errors over every `stride`-th of these rays, except for light attenuated by e^-30 or more.
 fn errors_in_thinning_fog(nodes: usize, stride: usize) -> Vec<(f64, String)> {
     let mut all = Vec::new();
     let mut count = 0;
@@ -188,16 +188,16 @@ fn errors_in_thinning_fog(nodes: usize, stride: usize) -> Vec<(f64, String)> {
     all
 }
 
-/// The error that a share of the rays stays below.
+/// Error below which a share of the rays lies.
 fn below(errors: &[(f64, String)], share: f64) -> f64 {
     errors[((errors.len() - 1) as f64 * share) as usize].0
 }
 
 #[test]
-fn thinning_fog_converges() {
+fn errors_in_decreasing_density() {
     let errors = errors_in_thinning_fog(12, 11);
     assert!(errors.len() > 200);
-    let (worst, place) = errors.last().expect("lines");
+    let (worst, place) = errors.last().expect("errors");
     assert!(below(&errors, 0.5) < 3e-7);
     assert!(below(&errors, 0.9) < 1e-6, "{:e}", below(&errors, 0.9));
     assert!(below(&errors, 0.98) < 1e-4, "{:e}", below(&errors, 0.98));
@@ -210,18 +210,18 @@ fn print_convergence_in_thinning_fog() {
     println!(
         "\n| nodes a panel | median | 90 % below | 99 % below | worst |\n|---|---|---|---|---|"
     );
-    let mut lines = 0;
+    let mut rays = 0;
     for nodes in [6, 8, 12, 16, 24] {
         let errors = errors_in_thinning_fog(nodes, 1);
         let [half, most, nearly] = [0.5, 0.9, 0.99].map(|share| below(&errors, share));
-        let (worst, _) = errors.last().expect("lines");
+        let (worst, _) = errors.last().expect("errors");
         println!(
             "{} {half:.1e} | {most:.1e} | {nearly:.1e} | {worst:.1e} |",
             row_of(nodes)
         );
-        lines = errors.len();
+        rays = errors.len();
     }
-    println!("{lines} lines");
+    println!("{rays} rays");
 }
 
 #[test]
@@ -270,7 +270,7 @@ fn spots_and_spheres_match_quadrature() {
                         let exact = reference::path_radiance(light, &fog, &view_ray);
                         let got = march(light, &fog, &view_ray, 12);
                         lit += usize::from(exact > 0.0);
-                        // The scalar irradiance of a sphere has a square-root edge where the ray touches it.
+                        // The scalar irradiance near a sphere has a square-root singularity at its surface.
                         let limit = match light {
                             Light::Sphere(_) => 2e-3,
                             _ => 1e-4,
@@ -288,7 +288,7 @@ fn spots_and_spheres_match_quadrature() {
 }
 
 #[test]
-fn lanes_of_different_extinction_share_nodes() {
+fn lanes_with_different_extinction_share_nodes() {
     for spread in [1.0f32, 4.0, 16.0, 64.0] {
         for (near, limit) in [(0.01, 2e-5), (1.0, 2e-5), (200.0, 2e-5)] {
             let extinction = Spectrum([0.02, 0.02 * spread.sqrt(), 0.02 * spread, 0.0]);
@@ -329,7 +329,7 @@ fn lanes_of_different_extinction_share_nodes() {
 }
 
 #[test]
-fn the_narrow_peak_of_drops_costs_some_accuracy() {
+fn errors_for_droplets() {
     for (diameter_um, limit) in [(5.0, 1e-3), (10.0, 1e-3), (20.0, 1.5e-3), (50.0, 2e-3)] {
         let (off, place) = worst_in_uniform_fog(&phase(diameter_um), 12);
         println!("{diameter_um} um: {off:.1e}");
@@ -337,7 +337,7 @@ fn the_narrow_peak_of_drops_costs_some_accuracy() {
     }
 }
 
-/// Every pair of profiles of very different heights: one scatters, both dim. Visits relative errors.
+/// Visits relative errors for all pairs of a scattering layer and another layer of very different heights.
 fn among_other_layers(nodes: usize, visit: &mut dyn FnMut(f64, String)) {
     let profiles = [
         DensityProfile::Uniform,
@@ -391,7 +391,7 @@ fn among_other_layers(nodes: usize, visit: &mut dyn FnMut(f64, String)) {
 }
 
 #[test]
-fn other_layers_dim_the_light() {
+fn errors_with_other_layers() {
     let (mut count, mut worst) = (0, (0.0, String::new()));
     among_other_layers(12, &mut |off, place| {
         count += 1;
@@ -404,7 +404,7 @@ fn other_layers_dim_the_light() {
 }
 
 #[test]
-fn functions_that_fall_over_their_scale_are_integrated_well() {
+fn nodes_integrate_a_lorentzian() {
     let nodes = Nodes::new(12);
     for scale in [1e-6, 1.0, 1e5] {
         for end in [1e-9, 1e-3, 1.0, 1e4, 1e12, f64::INFINITY] {
@@ -426,7 +426,7 @@ fn panels(profile: &DensityProfile, ray: RaySegment) -> Vec<(f64, f64)> {
 }
 
 #[test]
-fn only_the_part_inside_a_slab_is_kept() {
+fn panels_lie_inside_a_slab() {
     let slab = DensityProfile::slab(10.0);
     let up = RaySegment::flat(2.0, 0.5, f64::INFINITY);
     assert_eq!(panels(&slab, up), [(0.0, 16.0)]);
@@ -435,7 +435,7 @@ fn only_the_part_inside_a_slab_is_kept() {
 }
 
 #[test]
-fn decaying_fog_is_cut_at_heights_and_at_its_base() {
+fn rays_are_split_at_heights_and_at_the_base() {
     let profile = DensityProfile::Clamped {
         base_height_m: 10.0,
         scale_height_m: 1.0,
@@ -450,7 +450,7 @@ fn decaying_fog_is_cut_at_heights_and_at_its_base() {
 }
 
 #[test]
-fn a_descent_into_ever_denser_fog_ends() {
+fn descents_into_increasing_density_are_truncated() {
     let profile = DensityProfile::Exponential {
         reference_height_m: 0.0,
         scale_height_m: 10.0,
@@ -459,12 +459,12 @@ fn a_descent_into_ever_denser_fog_ends() {
     let all = panels(&profile, down);
     let end = all.last().unwrap().1;
     let depth = 0.01 * profile.column_along_m(&RaySegment::flat(200.0, -0.7, end));
-    assert!((depth / DARK - 1.0).abs() < 1e-9, "{depth}");
+    assert!((depth / MAX_DEPTH - 1.0).abs() < 1e-9, "{depth}");
     assert!(all.len() >= 3);
 }
 
 #[test]
-fn a_ray_over_round_ground_is_lowest_where_it_dips() {
+fn the_lowest_height_of_a_ray_over_round_ground_is_at_its_dip() {
     let ray = RaySegment::new(100.0, -1e-3, 1e5, 6.371e6);
     let low = ray.lowest_height_m();
     assert!(low < 100.0 && low > 80.0);
