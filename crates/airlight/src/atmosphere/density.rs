@@ -535,5 +535,62 @@ fn by_quadrature(profile: &DensityProfile, ray: &RaySegment) -> f64 {
     sum
 }
 
+/// Profiles of every variant, for the tests: columns and bounds are compared with quadrature.
+#[cfg(test)]
+fn profiles() -> Vec<DensityProfile> {
+    let tent = DensityProfile::Tent {
+        bottom_m: 10e3,
+        peak_m: 25e3,
+        top_m: 40e3,
+    };
+    let layer = DensityProfile::Layer {
+        bottom_m: 2e3,
+        top_m: 3e3,
+    };
+    let table = |kind| {
+        DensityProfile::tabulated(vec![0.0, 1e3, 4e3, 5e3], vec![1.0, 0.8, 0.1, 0.0], kind).unwrap()
+    };
+    vec![
+        DensityProfile::exponential(8e3),
+        DensityProfile::StandardAir1976,
+        table(Interpolation::Linear),
+        table(Interpolation::LogLinear),
+        DensityProfile::Sum(vec![(0.5, tent.clone()), (2.0, layer.clone())]),
+        tent,
+        layer,
+        DensityProfile::Uniform,
+        DensityProfile::slab(7e3),
+        DensityProfile::Exponential {
+            reference_height_m: 300.0,
+            scale_height_m: 2e3,
+        },
+        DensityProfile::Clamped {
+            base_height_m: 2.7e3,
+            scale_height_m: 900.0,
+        },
+    ]
+}
+
+/// Profiles whose columns along rays have a closed form, for the tests at all scales.
+#[cfg(test)]
+fn fog_profiles(scale_height_m: f64) -> [DensityProfile; 5] {
+    [
+        DensityProfile::Uniform,
+        DensityProfile::Exponential {
+            reference_height_m: 3.0,
+            scale_height_m,
+        },
+        DensityProfile::Clamped {
+            base_height_m: 20.0,
+            scale_height_m,
+        },
+        DensityProfile::slab(35.0),
+        DensityProfile::Layer {
+            bottom_m: 15.0,
+            top_m: 35.0,
+        },
+    ]
+}
+
 #[cfg(test)]
 mod tests;

@@ -8,7 +8,7 @@ const STEPS: [f64; 14] = [
 ];
 
 /// Number of steps in each interval of smooth variation that is not exponential.
-const RAMP_STEPS: u32 = 8;
+const RAMP_STEPS: u32 = 10;
 
 /// Breakpoints for profiles with these structures, in increasing order, m: steps from the start of each exponential decay
 /// upwards, steps of smooth variation, edges of layers.

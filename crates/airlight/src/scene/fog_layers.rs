@@ -1,15 +1,10 @@
 //! From the fog of a scene to layers.
 
-use super::{FogLayerSpec, FogProfile, FogSpec, SceneError};
+use super::{FogLayerSpec, FogSpec, SceneError};
 use crate::atmosphere::visibility::{Contrast, extinction_per_m};
 use crate::atmosphere::{Constituent, DensityProfile};
 use crate::fog::FogScattering;
 use crate::fog::droplets::DropletKind;
-
-/// Scale height where none is set, m.
-const SCALE_HEIGHT_M: f64 = 50.0;
-/// Top of a slab where none is set, m.
-const TOP_M: f64 = 50.0;
 
 /// The fog of a scene: layers with an upper end, and which light they scatter.
 #[derive(Clone, Debug, PartialEq)]
@@ -125,30 +120,13 @@ impl FogLayerSpec {
                 "visibility_m = 200",
             ));
         };
-        let scale_height_m = self.scale_height_m.unwrap_or(SCALE_HEIGHT_M);
-        let base_height_m = self.base_height_m.unwrap_or(0.0);
-        let profile = match self.implied_profile() {
-            FogProfile::Height => DensityProfile::Exponential {
-                reference_height_m: 0.0,
-                scale_height_m,
-            },
-            FogProfile::Clamped => DensityProfile::Clamped {
-                base_height_m,
-                scale_height_m,
-            },
-            FogProfile::Unclamped => DensityProfile::Exponential {
-                reference_height_m: base_height_m,
-                scale_height_m,
-            },
-            FogProfile::Slab => DensityProfile::slab(self.top_m.unwrap_or(TOP_M)),
-            _ => {
-                return Err(SceneError::value(
-                    format!("{key}.profile"),
-                    "fog with an upper end, through which the sky shines",
-                    "fog that is for pictures with depth",
-                    "height, clamped, unclamped or slab",
-                ));
-            }
+        let Some(profile) = self.density() else {
+            return Err(SceneError::value(
+                format!("{key}.profile"),
+                "fog with an upper end, through which the sky shines",
+                "fog that is for pictures with depth",
+                "height, clamped, unclamped or slab",
+            ));
         };
         Ok(FogLayer {
             profile,

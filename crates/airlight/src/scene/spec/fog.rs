@@ -1,9 +1,15 @@
 //! Fog near the ground.
 
+use crate::atmosphere::DensityProfile;
 use crate::fog::FogScattering;
 use crate::fog::droplets::DropletKind;
 #[cfg(feature = "serde")]
 use crate::names::named;
+
+/// Default scale height, m.
+const SCALE_HEIGHT_M: f64 = 50.0;
+/// Default height of the top of a slab, m.
+const TOP_M: f64 = 50.0;
 
 /// How fog thins with height, or which look it has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -109,5 +115,27 @@ impl FogLayerSpec {
             (None, Some(_)) => FogProfile::Slab,
             (None, None) => FogProfile::Clamped,
         }
+    }
+
+    /// Density by height of the layer's profile; `None` for profiles without an upper end, which are for pictures with depth.
+    pub fn density(&self) -> Option<DensityProfile> {
+        let scale_height_m = self.scale_height_m.unwrap_or(SCALE_HEIGHT_M);
+        let base_height_m = self.base_height_m.unwrap_or(0.0);
+        Some(match self.implied_profile() {
+            FogProfile::Height => DensityProfile::exponential(scale_height_m),
+            FogProfile::Clamped => DensityProfile::Clamped {
+                base_height_m,
+                scale_height_m,
+            },
+            FogProfile::Unclamped => DensityProfile::Exponential {
+                reference_height_m: base_height_m,
+                scale_height_m,
+            },
+            FogProfile::Slab => DensityProfile::slab(self.top_m.unwrap_or(TOP_M)),
+            FogProfile::Uniform
+            | FogProfile::Exp2
+            | FogProfile::Linear
+            | FogProfile::FoggyCityscapes => return None,
+        })
     }
 }
