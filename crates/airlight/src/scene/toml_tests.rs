@@ -126,7 +126,7 @@ fn mistakes_are_refused_with_their_place_and_what_would_be_right() {
         ),
         (
             "[fog]\n  droplets = \"radiaton\"\n",
-            "line 2, column 14: fog.droplets: expected one of fine,",
+            "line 2, column 14: fog.droplets: expected a kind of droplets (fine,",
         ),
         (
             "[sun]\nelevation_deg = \"low\"\n",

@@ -274,7 +274,7 @@ fn unknown_names_list_the_allowed_names() {
     }
     let error = refuse("base = \"marz\"").to_string();
     assert!(
-        error.contains("did you mean \"mars\"") && error.contains("hazy"),
+        error.ends_with("try \"mars\"") && error.contains("hazy"),
         "{error}"
     );
 }
@@ -458,7 +458,7 @@ fn errors_in_aerosol_types_report_their_key() {
     let near = refuse("aerosol.type = \"dessert\"");
     assert_eq!(near.key, "aerosol.type");
     assert!(
-        near.to_string().contains("did you mean \"desert\""),
+        near.to_string().ends_with("try \"desert\""),
         "{near}"
     );
     let damp = refuse("aerosol = { type = \"urban\", relative_humidity = 80 }");
