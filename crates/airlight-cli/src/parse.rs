@@ -2,11 +2,9 @@
 
 pub mod words;
 
+use airlight::Named;
 use airlight::scene::Exposure;
-use clap::builder::{PossibleValuesParser, TypedValueParser};
-use serde::de::DeserializeOwned;
-use serde::de::IntoDeserializer;
-use serde::de::value::{Error, StrDeserializer};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use std::str::FromStr;
 
 /// Two numbers of degrees.
@@ -36,19 +34,9 @@ pub struct PixelSize {
     pub height: u32,
 }
 
-/// A value of a list as it is written on the command line.
-pub fn name(value: &impl clap::ValueEnum) -> String {
-    value
-        .to_possible_value()
-        .map_or_else(String::new, |value| value.get_name().to_owned())
-}
-
-/// A value of a list by its name.
-pub fn value_of<T: clap::ValueEnum>(text: &str) -> Result<T, String> {
-    T::from_str(text, false).map_err(|_| {
-        let names: Vec<String> = T::value_variants().iter().map(name).collect();
-        format!("got {text}; try {}", names.join(", "))
-    })
+/// A value of a [`Named`] type by its name.
+pub fn value_of<T: Named>(text: &str) -> Result<T, String> {
+    T::from_name(text).map_err(|error| error.to_string())
 }
 
 /// A contrast that defines visibility: 0.05 or 0.02.
@@ -209,15 +197,10 @@ pub fn exposure(text: &str) -> Result<Exposure, String> {
     }
 }
 
-/// One of the values of a list that scene files write by these names.
-pub fn one_of<T>(names: &'static [&'static str]) -> impl TypedValueParser<Value = T>
-where
-    T: DeserializeOwned + Clone + Send + Sync + 'static,
-{
-    PossibleValuesParser::new(names).try_map(|name| {
-        let name: StrDeserializer<'_, Error> = name.as_str().into_deserializer();
-        T::deserialize(name)
-    })
+/// A value by its name; the help lists all values.
+pub fn named<T: Named + Send + Sync>() -> impl TypedValueParser<Value = T> {
+    let values = T::all().map(|value| PossibleValue::new(value.name()).help(value.summary()));
+    PossibleValuesParser::new(values).try_map(|name| T::from_name(&name))
 }
 
 #[cfg(test)]

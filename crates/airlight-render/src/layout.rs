@@ -245,13 +245,7 @@ fn frames(
 
 /// Refuses settings of the camera that its projection does not use.
 fn refuse_unused(camera: &CameraSpec, kind: ProjectionKind) -> Result<(), RenderError> {
-    use ProjectionKind::{Cube, Equirectangular, Fisheye, Perspective};
-    let name = |kind: &ProjectionKind| match kind {
-        Equirectangular => "equirectangular",
-        Cube => "cube",
-        Fisheye => "fisheye",
-        Perspective => "perspective",
-    };
+    use ProjectionKind::{Equirectangular, Fisheye, Perspective};
     let set: [(bool, &str, &[ProjectionKind]); 4] = [
         (
             camera.azimuth_deg.is_some(),
@@ -272,11 +266,11 @@ fn refuse_unused(camera: &CameraSpec, kind: ProjectionKind) -> Result<(), Render
     ];
     for (set, key, kinds) in set {
         if set && !kinds.contains(&kind) {
-            let list: Vec<&str> = kinds.iter().map(name).collect();
+            let list: Vec<&str> = kinds.iter().map(|kind| kind.name()).collect();
             return Err(RenderError::value(
                 key,
                 format!("the projection {}", list.join(" or ")),
-                name(&kind),
+                kind.name(),
                 "leaving it out",
             ));
         }
@@ -342,7 +336,7 @@ mod tests {
 
     #[test]
     fn settings_that_do_not_go_together_are_refused() {
-        use ProjectionKind::{Cube, Equirectangular, Fisheye, Perspective};
+        use ProjectionKind::{Equirectangular, Fisheye, Perspective};
         let size = |kind, width, height| CameraSpec {
             size: Some([width, height]),
             ..camera(kind)
@@ -367,7 +361,7 @@ mod tests {
             ),
             (fov(Perspective, 180.0), exr(), "below 180"),
             (fov(Fisheye, 400.0), exr(), "360"),
-            (size(Cube, 8, 4), exr(), "as wide as high"),
+            (size(ProjectionKind::Cube, 8, 4), exr(), "as wide as high"),
             (
                 camera(Equirectangular),
                 OutputSpec {

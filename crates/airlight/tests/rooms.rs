@@ -10,9 +10,10 @@ use std::path::{Path, PathBuf};
 
 /// Modules at the root of the crate `airlight`, each importing only from those before it. Files of one room may import each
 /// other, but not in a circle.
-const ROOMS: [&str; 14] = [
+const ROOMS: [&str; 15] = [
     "axes",
     "control",
+    "names",
     "math",
     "spectrum",
     "optics",
@@ -50,13 +51,7 @@ fn rooms_import_only_from_rooms_before_them() {
 }
 
 /// Folders in which files still import each other in a circle. The list only gets shorter: an entry without a circle fails.
-const WITH_CIRCLES: [&str; 5] = [
-    "airlight-cli/src",
-    "airlight-render/src/objects",
-    "airlight/src/atmosphere",
-    "airlight/src/fog",
-    "airlight/src/scene",
-];
+const WITH_CIRCLES: [&str; 2] = ["airlight-cli/src", "airlight-render/src/objects"];
 
 #[test]
 fn no_files_import_each_other_in_a_circle() {

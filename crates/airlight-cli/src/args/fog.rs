@@ -6,67 +6,19 @@ use airlight::fog::FogScattering;
 use airlight::fog::droplets::DropletKind;
 use airlight::optics::mie::droplets::Drops;
 use airlight::scene::{FogLayerSpec, FogProfile, FogSpec};
-use clap::builder::PossibleValue;
-use clap::{Args, ValueEnum};
-use std::sync::LazyLock;
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
-/// Density of fog against height, or a fog of one colour.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct FogProfileArg(pub FogProfile);
-
-impl ValueEnum for FogProfileArg {
-    fn value_variants<'a>() -> &'a [Self] {
-        static ALL: LazyLock<Vec<FogProfileArg>> =
-            LazyLock::new(|| FogProfile::all().map(FogProfileArg).collect());
-        &ALL
-    }
-
-    fn to_possible_value(&self) -> Option<PossibleValue> {
-        Some(PossibleValue::new(self.0.name()).help(self.0.summary()))
-    }
-}
-
-/// Kinds of droplets.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct DropletsArg(pub DropletKind);
-
-impl ValueEnum for DropletsArg {
-    fn value_variants<'a>() -> &'a [Self] {
-        static ALL: LazyLock<Vec<DropletsArg>> =
-            LazyLock::new(|| DropletKind::all().map(DropletsArg).collect());
-        &ALL
-    }
-
-    fn to_possible_value(&self) -> Option<PossibleValue> {
-        let value = PossibleValue::new(self.0.name()).help(self.0.summary());
-        Some(match self.0 {
+/// The kinds of droplets by name.
+pub fn droplets() -> impl TypedValueParser<Value = DropletKind> {
+    let values = DropletKind::all().map(|kind| {
+        let value = PossibleValue::new(kind.name()).help(kind.summary());
+        match kind {
             DropletKind::Published(Drops::ModerateRadiationFog) => value.alias("mist"),
             _ => value,
-        })
-    }
-}
-
-/// Light that fog scatters.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub enum FogScatteringArg {
-    /// All orders of scattering, between sky, sun and ground.
-    #[default]
-    All,
-    /// One order: sunlight dimmed by the fog, ambient light not dimmed.
-    Single,
-    /// One order, with the sun not dimmed: Ishiyama's height fog as printed.
-    Undimmed,
-}
-
-impl FogScatteringArg {
-    /// The scattering of a scene's fog.
-    pub fn scattering(self) -> FogScattering {
-        match self {
-            Self::All => FogScattering::Multiple,
-            Self::Single => FogScattering::Single,
-            Self::Undimmed => FogScattering::Undimmed,
         }
-    }
+    });
+    PossibleValuesParser::new(values).try_map(|name| DropletKind::from_name(&name))
 }
 
 /// The contrast of every visibility.
@@ -85,8 +37,8 @@ pub struct FogArgs {
     #[arg(long, value_name = "M", value_parser = parse::length_m)]
     pub visibility_m: Option<f64>,
     /// Density against height [default: slab with --top-m, else clamped; for `airlight fog` without any height: uniform]
-    #[arg(long, value_enum, value_name = "PROFILE")]
-    pub fog_profile: Option<FogProfileArg>,
+    #[arg(long, value_name = "PROFILE", value_parser = parse::named::<FogProfile>())]
+    pub fog_profile: Option<FogProfile>,
     /// Height over which the density decreases to 1/e, m (height, clamped, unclamped) [default: 50]
     #[arg(long, value_name = "M", value_parser = parse::length_m)]
     pub scale_height_m: Option<f64>,
@@ -97,11 +49,11 @@ pub struct FogArgs {
     #[arg(long, value_name = "M", value_parser = parse::length_m)]
     pub top_m: Option<f64>,
     /// Droplets of the fog [default: radiation]
-    #[arg(long, value_enum, value_name = "KIND")]
-    pub droplets: Option<DropletsArg>,
+    #[arg(long, value_name = "KIND", value_parser = droplets())]
+    pub droplets: Option<DropletKind>,
     /// Light that the fog scatters; no difference in uniform fog, which counts as evenly lit [default: all]
-    #[arg(long, value_enum, value_name = "WHICH")]
-    pub fog_scattering: Option<FogScatteringArg>,
+    #[arg(long, value_name = "WHICH", value_parser = parse::named::<FogScattering>())]
+    pub fog_scattering: Option<FogScattering>,
     /// One more layer of fog, as in 'visibility=500 scale-height=20'; can be repeated
     ///
     /// KEY=VALUE pairs: visibility (m, as --visibility-m); scale-height (m), base (m), top (m), droplets and profile as the
@@ -119,11 +71,9 @@ impl FogArgs {
         put(&mut filled.scale_height_m, self.scale_height_m);
         put(&mut filled.base_height_m, self.base_height_m);
         put(&mut filled.top_m, self.top_m);
-        let profile = self.fog_profile.map(|arg| arg.0);
-        filled.profile = profile.or(filled.profile);
-        filled.droplets = self.droplets.map(|kind| kind.0).or(filled.droplets);
-        let scattering = self.fog_scattering.map(FogScatteringArg::scattering);
-        filled.scattering = scattering.or(filled.scattering);
+        filled.profile = self.fog_profile.or(filled.profile);
+        filled.droplets = self.droplets.or(filled.droplets);
+        filled.scattering = self.fog_scattering.or(filled.scattering);
         if !self.layer.is_empty() {
             filled.layers = self.layer.clone();
         }
@@ -147,13 +97,13 @@ fn layer(text: &str) -> Result<FogLayerSpec, String> {
     let visibility_m = words
         .take("visibility", parse::length_m)?
         .ok_or("expected visibility=METRES, got none; try visibility=500")?;
-    let profile = words.take("profile", parse::value_of::<FogProfileArg>)?;
+    let profile = words.take("profile", parse::value_of::<FogProfile>)?;
     let scale_height_m = words.take("scale-height", parse::length_m)?;
     let base_height_m = words.take("base", parse::number)?;
     let top_m = words.take("top", parse::length_m)?;
-    let droplets = words.take("droplets", parse::value_of::<DropletsArg>)?;
+    let droplets = words.take("droplets", parse::value_of::<DropletKind>)?;
     let profile = match (profile, scale_height_m, base_height_m, top_m) {
-        (Some(profile), ..) => Some(profile.0),
+        (Some(profile), ..) => Some(profile),
         (None, None, None, None) => Some(FogProfile::Uniform),
         (None, None, Some(_), None) => {
             return Err(
@@ -175,7 +125,7 @@ fn layer(text: &str) -> Result<FogLayerSpec, String> {
         scale_height_m,
         base_height_m,
         top_m,
-        droplets: droplets.map(|kind| kind.0),
+        droplets,
     })
 }
 
@@ -205,7 +155,7 @@ mod tests {
             ("visibility=NaN", "above 0"),
             ("visibility=5 base=3", "scale-height"),
             ("visibility=5 top=3 scale-height=3", "top alone"),
-            ("visibility=5 droplets=soup", "got soup; try fine,"),
+            ("visibility=5 droplets=soup", "(fine, radiation,"),
             ("visibility=5 profile=thick", "foggy-cityscapes"),
             ("visibility=5 visibility=6", "twice"),
             ("visibility=5 colour=red", "colour"),
@@ -223,7 +173,7 @@ mod tests {
         assert_eq!(fog, None);
         let args = FogArgs {
             visibility_m: Some(80.0),
-            droplets: Some(DropletsArg(DropletKind::Isotropic)),
+            droplets: Some(DropletKind::Isotropic),
             ..FogArgs::default()
         };
         let mut fog = Some(FogSpec {

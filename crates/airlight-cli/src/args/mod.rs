@@ -20,7 +20,6 @@ mod solver;
 pub use accuracy::{AccuracyArgs, ReportArg};
 pub use air::AirArgs;
 pub use compare::{CompareArgs, StatisticsArg};
-pub use fog::DropletsArg;
 pub use grid::GridArgs;
 pub use overlay::OverlayArgs;
 pub use overlay_light::OverlayLightArgs;

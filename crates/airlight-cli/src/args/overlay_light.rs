@@ -15,30 +15,6 @@ pub enum AirArg {
     Missing,
 }
 
-/// How the light of lights that fog scatters is computed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum LightFormArg {
-    /// Dimmed by the fog on both ways, in any fog (Sun et al. 2005 in uniform fog).
-    Exact,
-    /// Opacity of the view ray times the mean of its source: the fog note's split sum.
-    SplitSum,
-    /// Not dimmed by the fog: the fog note's formula with the right angle and unit.
-    NoExtinction,
-    /// As the fog note prints it: too bright by a factor of 40, and negative where the ray passes the light.
-    Printed,
-}
-
-impl LightFormArg {
-    fn form(self) -> LightForm {
-        match self {
-            Self::Exact => LightForm::Exact,
-            Self::SplitSum => LightForm::SplitSum,
-            Self::NoExtinction => LightForm::NoExtinction,
-            Self::Printed => LightForm::Printed,
-        }
-    }
-}
-
 /// The ambient light of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum AmbientArg {
@@ -94,8 +70,8 @@ pub struct OverlayLightArgs {
     #[arg(long, value_name = "LIGHT", value_parser = light)]
     pub light: Vec<LightSpec>,
     /// How the light of --light is computed; all forms but exact are for uniform isotropic fog and point lights [default: exact]
-    #[arg(long, value_enum, value_name = "FORM")]
-    pub light_form: Option<LightFormArg>,
+    #[arg(long, value_name = "FORM", value_parser = parse::named::<LightForm>())]
+    pub light_form: Option<LightForm>,
 
     /// Light the fog by the solved sky and its sun (--sun-elevation, or --at and --when) instead of the ambient light
     #[arg(long)]
@@ -147,9 +123,7 @@ impl OverlayLightArgs {
                 AirArg::Missing => ExistingAerial::Missing,
             };
         }
-        if let Some(form) = self.light_form {
-            overlay.light_form = form.form();
-        }
+        overlay.light_form = self.light_form.unwrap_or(overlay.light_form);
         if !self.light.is_empty() {
             scene.lights = self.light.clone();
         }
@@ -199,15 +173,11 @@ fn light(text: &str) -> Result<LightSpec, String> {
         Ok(angle) if (0.0..=90.0).contains(&angle) => Ok(angle),
         _ => Err("must be a number of degrees from 0 to 90".to_owned()),
     };
-    let kind = |text: &str| match text {
-        "point" => Ok(LightKind::Point),
-        "spot" => Ok(LightKind::Spot),
-        "sphere" => Ok(LightKind::Sphere),
-        other => Err(format!("must be point, spot or sphere, got \"{other}\"")),
-    };
     let pixel = words.take("pixel", parse::two_numbers)?;
     Ok(LightSpec {
-        kind: words.take("kind", kind)?.unwrap_or_default(),
+        kind: words
+            .take("kind", parse::value_of::<LightKind>)?
+            .unwrap_or_default(),
         position_m: words.take("at", parse::three_coordinates)?,
         pixel: pixel.map(|(x, y)| [x, y]),
         distance_m: words.take("distance", parse::length_m)?,
@@ -247,7 +217,7 @@ mod tests {
             ("at=1,NaN,2 intensity=1", "three numbers"),
             ("at=1,2,3 intensity=-1", "0 or above"),
             ("at=1,2,3 intensity=nan", "0 or above"),
-            ("at=1,2,3 intensity=1 kind=tube", "point, spot or sphere"),
+            ("at=1,2,3 intensity=1 kind=tube", "(point, spot, sphere)"),
             ("at=1,2,3 intensity=1 kind=spot outer=95", "from 0 to 90"),
             ("at=1,2,3 intensity=1 radius=0", "above 0"),
             ("at=1,2,3 intensity=1 wattage=60", "wattage"),

@@ -1,7 +1,7 @@
 //! Options for how a picture is laid out, shown and stored.
 
 use super::scene::put;
-use crate::parse::{self, PixelSize, one_of};
+use crate::parse::{self, PixelSize};
 use airlight::scene::{
     CameraSpec, Exposure, ExrCompression, OutputSpec, Projection, SamplePrecision,
     SunDiscPlacement, ToneKind,
@@ -18,7 +18,7 @@ pub struct CameraArgs {
     /// map (sky.px.exr, .nx, .py, .ny, .pz, .nz; x east, y up, z south), the sky as a disc (fisheye), or a camera
     /// (perspective) [default: equirectangular]
     #[arg(long, value_name = "KIND")]
-    #[arg(value_parser = one_of::<Projection>(&["equirectangular", "cube", "fisheye", "perspective"]))]
+    #[arg(value_parser = parse::named::<Projection>())]
     pub projection: Option<Projection>,
     /// Size in pixels [default: 2048x1024; cube and fisheye 1024x1024; perspective 1920x1080]
     #[arg(long, value_name = "WxH", value_parser = parse::pixel_size)]
@@ -44,7 +44,7 @@ pub struct CameraArgs {
 #[command(next_help_heading = "Picture")]
 pub struct DisplayArgs {
     /// Colour space of .exr and .hdr; .png and .jpg are always sRGB [default: srgb]
-    #[arg(long, value_name = "SPACE", value_parser = color_space())]
+    #[arg(long, value_name = "SPACE", value_parser = parse::named::<RgbSpace>())]
     pub color_space: Option<RgbSpace>,
     /// Exposure of .png, .jpg and preview: auto, or a camera's exposure value at ISO 100 (sunny day 15, dusk 8) [default: auto]
     #[arg(long, value_name = "auto|EV100", value_parser = parse::exposure)]
@@ -53,7 +53,7 @@ pub struct DisplayArgs {
     #[arg(long, value_name = "STOPS", value_parser = parse::number)]
     pub brighten: Option<f64>,
     /// How light becomes what .png, .jpg and preview show: a curve like film's, or linear and cut off at white [default: filmic]
-    #[arg(long, value_name = "CURVE", value_parser = one_of::<ToneKind>(&["filmic", "clip"]))]
+    #[arg(long, value_name = "CURVE", value_parser = parse::named::<ToneKind>())]
     pub tone: Option<ToneKind>,
 }
 
@@ -62,7 +62,7 @@ pub struct DisplayArgs {
 #[command(next_help_heading = "Picture")]
 pub struct EncodingArgs {
     /// The sun's disc in the picture, left out of it, or in a second file (sky.sun.exr beside sky.exr) [default: in]
-    #[arg(long, value_name = "WHERE", value_parser = one_of::<SunDiscPlacement>(&["in", "out", "separate"]))]
+    #[arg(long, value_name = "WHERE", value_parser = parse::named::<SunDiscPlacement>())]
     pub sun_disc: Option<SunDiscPlacement>,
     /// Factor on the values of .exr and .hdr, which are in cd/m^2 (spectral: W m^-2 sr^-1 nm^-1) [default: 1]
     #[arg(long, value_name = "FACTOR", value_parser = parse::positive)]
@@ -72,11 +72,11 @@ pub struct EncodingArgs {
     pub spectral: bool,
     /// How .exr samples are stored: 32 bits, or 16 bits up to 65504, where the sun's disc, some 1e9 cd/m^2, is cut off unless
     /// --scale makes it fit [default: float]
-    #[arg(long, value_name = "BITS", value_parser = one_of::<SamplePrecision>(&["float", "half"]))]
+    #[arg(long, value_name = "BITS", value_parser = parse::named::<SamplePrecision>())]
     pub precision: Option<SamplePrecision>,
     /// How .exr samples are packed, without loss [default: zip]
     #[arg(long, value_name = "METHOD")]
-    #[arg(value_parser = one_of::<ExrCompression>(&["none", "rle", "zips", "zip", "piz"]))]
+    #[arg(value_parser = parse::named::<ExrCompression>())]
     pub compression: Option<ExrCompression>,
     /// Bits of a component of .png [default: 8]
     #[arg(long, value_name = "BITS", value_parser = PossibleValuesParser::new(["8", "16"]).map(|bits| bits.parse::<u8>().unwrap_or(8)))]
@@ -120,13 +120,4 @@ impl EncodingArgs {
         put(&mut output.bits, &self.bits);
         put(&mut output.quality, &self.quality);
     }
-}
-
-/// The RGB spaces by their names.
-pub fn color_space() -> impl TypedValueParser<Value = RgbSpace> {
-    PossibleValuesParser::new(["srgb", "rec2020", "acescg"]).map(|name| match name.as_str() {
-        "rec2020" => RgbSpace::Rec2020,
-        "acescg" => RgbSpace::AcesCg,
-        _ => RgbSpace::Srgb,
-    })
 }

@@ -1,8 +1,9 @@
 //! Options of `airlight plot`.
 
 use super::SceneArgs;
-use super::fog::DropletsArg;
+use super::fog::droplets;
 use crate::parse::{self, AzEl};
+use airlight::fog::droplets::DropletKind;
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
 
@@ -110,8 +111,8 @@ pub struct PhasePlotArgs {
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
     /// Drops of fog, as `airlight fog --droplets` has them
-    #[arg(long, value_name = "KIND,...", value_delimiter = ',', value_enum)]
-    pub droplets: Vec<DropletsArg>,
+    #[arg(long, value_name = "KIND,...", value_delimiter = ',', value_parser = droplets())]
+    pub droplets: Vec<DropletKind>,
     /// Wavelengths for them, nm
     #[arg(long, value_name = "NM,...", value_delimiter = ',', value_parser = parse::positive, default_values_t = [550.0])]
     pub wavelength_nm: Vec<f64>,

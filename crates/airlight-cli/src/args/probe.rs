@@ -1,7 +1,6 @@
 //! Options of `airlight probe`.
 
 use super::SceneArgs;
-use super::picture::color_space;
 use super::scene::put;
 use crate::error::CliError;
 use crate::parse::{self, AzEl};
@@ -47,7 +46,7 @@ pub struct ProbeArgs {
     #[arg(short, long, value_name = "FILE", help_heading = "Output")]
     pub output: Option<PathBuf>,
     /// Colour space of the RGB values [default: srgb]
-    #[arg(long, value_name = "SPACE", value_parser = color_space(), help_heading = "Output")]
+    #[arg(long, value_name = "SPACE", value_parser = parse::named::<RgbSpace>(), help_heading = "Output")]
     pub color_space: Option<RgbSpace>,
     #[command(flatten)]
     pub scene: SceneArgs,

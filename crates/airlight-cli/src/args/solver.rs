@@ -1,7 +1,7 @@
 //! Options for how the light is solved for.
 
 use super::scene::put;
-use crate::parse::{self, one_of};
+use crate::parse;
 use airlight::models::registry;
 use airlight::scene::{BaseBlueKind, Effort, Klassen1987Spec, SolverSpec, SunlightKind, WetHaze};
 use airlight::sky::Scattering;
@@ -25,7 +25,7 @@ pub struct SolverArgs {
     pub scattering: Option<Scattering>,
     /// How finely orders of scattering are solved; fine is within 1 % by day in haze as in clear air (dust under a sun at the
     /// horizon: 4 %), and takes five times as long [default: standard]
-    #[arg(long, value_parser = one_of::<Effort>(&["standard", "fine"]))]
+    #[arg(long, value_parser = parse::named::<Effort>())]
     pub effort: Option<Effort>,
     /// Monte Carlo paths for each pixel [default: 256] or direction [default: 65536], 128 or above
     #[arg(long, value_name = "N")]
@@ -40,7 +40,7 @@ pub struct SolverArgs {
     /// single-scattering: sunlight white on the ground when it stands in the zenith, as printed, or as measured outside the
     /// air [default: white]
     #[arg(long, value_name = "COLOUR", help_heading = "Published models")]
-    #[arg(value_parser = one_of::<SunlightKind>(&["white", "measured"]))]
+    #[arg(value_parser = parse::named::<SunlightKind>())]
     pub sunlight: Option<SunlightKind>,
     /// single-scattering: illuminance by a white sun in the zenith, lx; 6.2832 for colours about 1 [default: 120000]
     #[arg(long, value_name = "LX", value_parser = parse::positive, help_heading = "Published models")]
@@ -61,7 +61,7 @@ pub struct KlassenArgs {
     pub haze_thickness_m: Option<f64>,
     /// klassen1987: its haze consists of Deirmendjian's drops by the sea (haze-m), over land (haze-l) or aloft (haze-h)
     /// [default: the atmosphere's haze]
-    #[arg(long, value_name = "KIND", value_parser = one_of::<WetHaze>(&["haze-m", "haze-l", "haze-h"]))]
+    #[arg(long, value_name = "KIND", value_parser = parse::named::<WetHaze>())]
     pub wet_haze: Option<WetHaze>,
     /// klassen1987: density of its air over the atmosphere's [default: 1]
     #[arg(long, value_name = "FACTOR", value_parser = parse::positive)]
@@ -71,7 +71,7 @@ pub struct KlassenArgs {
     pub air_thickness_m: Option<f64>,
     /// klassen1987: the sky behind its haze, the paper's constant blue or solved for [default: solver; paper with --variant
     /// printed]
-    #[arg(long, value_name = "WHICH", value_parser = one_of::<BaseBlueKind>(&["paper", "solver"]))]
+    #[arg(long, value_name = "WHICH", value_parser = parse::named::<BaseBlueKind>())]
     pub base_blue: Option<BaseBlueKind>,
 }
 

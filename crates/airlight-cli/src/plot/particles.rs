@@ -1,10 +1,11 @@
 //! What particles do to light: phase functions and efficiencies.
 
 use super::Chart;
-use crate::args::{DropletsArg, EfficiencyPlotArgs, Index, PhasePlotArgs};
+use crate::args::{EfficiencyPlotArgs, Index, PhasePlotArgs};
 use crate::error::CliError;
 use crate::progress::Busy;
 use airlight::atmosphere::{Constituent, DensityProfile};
+use airlight::fog::droplets::DropletKind;
 use airlight::optics::RefractiveIndex;
 use airlight::optics::mie::{Complex64, MieError, Particles, SizeDistribution, Sphere};
 use airlight_plot::{Axis, Curve, line_chart, polar_plot};
@@ -57,7 +58,7 @@ fn angles(width: f64) -> Vec<f64> {
         .collect()
 }
 
-fn of_drops(DropletsArg(kind): DropletsArg, nm: f64) -> Result<Curve, CliError> {
+fn of_drops(kind: DropletKind, nm: f64) -> Result<Curve, CliError> {
     let layer = Constituent::fog(1.0, kind, DensityProfile::Uniform, &[nm])?;
     let point = |angle: f64| (angle, layer.phase.evaluate(angle.cos(), nm));
     Ok(Curve {

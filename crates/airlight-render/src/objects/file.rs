@@ -79,16 +79,9 @@ struct Reading<'a> {
 
 impl Reading<'_> {
     fn wrong(&self, what: &'static str, right: &'static str, got: impl ToString) -> ObjectsError {
-        let name = match self.described.shape {
-            ObjectShape::Ground => " (ground)",
-            ObjectShape::Sphere => " (sphere)",
-            ObjectShape::Block => " (block)",
-            ObjectShape::Cylinder => " (cylinder)",
-            ObjectShape::Cone => " (cone)",
-        };
         ObjectsError::Value {
             number: self.number,
-            name: name.to_owned(),
+            name: format!(" ({})", self.described.shape),
             what,
             right,
             got: got.to_string(),

@@ -192,7 +192,9 @@ impl OverlayScene {
             return Ok(None);
         };
         let grid = WavelengthGrid::standard();
-        let layers = layers.iter().map(|fog| fog.constituent(grid.wavelengths_nm()));
+        let layers = layers
+            .iter()
+            .map(|fog| fog.constituent(grid.wavelengths_nm()));
         Ok(layers.collect::<Result<_, SceneError>>().map(Some)?)
     }
 

@@ -27,8 +27,8 @@ pub mod registry {
     use super::{
         four_orders, hillaire2020, klassen1987, monte_carlo, orders, preetham, single_scattering,
     };
-    use crate::names::UnknownName;
     use crate::control::Control;
+    use crate::names::UnknownName;
     use crate::scene::{PreparedModel, RadianceModel, ResolvedScene, SceneError, check_inputs};
     use crate::sky::SunCoverage;
     use std::sync::Arc;

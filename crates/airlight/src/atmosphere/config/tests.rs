@@ -1,4 +1,3 @@
-use crate::optics::PhaseFunction;
 use super::*;
 use crate::atmosphere::aerosol_types::{Component, Ingredient};
 use crate::atmosphere::{
@@ -6,6 +5,7 @@ use crate::atmosphere::{
     DensityProfile, preset,
 };
 use crate::optics::PhaseError;
+use crate::optics::PhaseFunction;
 use crate::sun::LimbDarkening;
 
 fn read(text: &str) -> Atmosphere {
@@ -457,10 +457,7 @@ fn aerosol_mixtures_are_read() {
 fn errors_in_aerosol_types_report_their_key() {
     let near = refuse("aerosol.type = \"dessert\"");
     assert_eq!(near.key, "aerosol.type");
-    assert!(
-        near.to_string().ends_with("try \"desert\""),
-        "{near}"
-    );
+    assert!(near.to_string().ends_with("try \"desert\""), "{near}");
     let damp = refuse("aerosol = { type = \"urban\", relative_humidity = 80 }");
     assert_eq!(damp.key, "aerosol.relative_humidity");
     assert!(damp.to_string().contains("from 0 to 0.99"), "{damp}");

@@ -26,6 +26,7 @@ use crate::fog::closed_forms::Lanes;
 use crate::fog::error::FogError;
 use crate::fog::layer::LayerLanes;
 use crate::math::quadrature::FixedRule;
+use crate::names::named;
 use crate::optics::PhaseFunction;
 use crate::spectrum::Spectrum;
 use std::f64::consts::PI;
@@ -33,9 +34,7 @@ use std::f64::consts::PI;
 /// Form of the scattering of lights. All but [`LightForm::Exact`] are for point lights in one layer of uniform, isotropically
 /// scattering fog.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub enum LightForm {
     /// With extinction between light, fog and eye; for all lights and layers.
     #[default]
@@ -48,17 +47,14 @@ pub enum LightForm {
     Printed,
 }
 
-impl LightForm {
-    /// Name in scene files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Exact => "exact",
-            Self::SplitSum => "split-sum",
-            Self::NoExtinction => "no-extinction",
-            Self::Printed => "printed",
-        }
-    }
+named! { LightForm, "a form of in-scattering", [
+    ("exact", (Exact), "with extinction between light, fog and eye, in any fog (Sun et al. 2005 in uniform fog)"),
+    ("split-sum", (SplitSum), "opacity of the view ray times the mean of its source: the split sum of the fog note"),
+    ("no-extinction", (NoExtinction), "without extinction: the formula of the fog note with the right angle and unit"),
+    ("printed", (Printed), "as printed in the fog note: 40 times too bright, and negative where the ray passes the light"),
+] }
 
+impl LightForm {
     /// Path radiance for unit intensity and unit scattering coefficient, 1/m.
     pub fn airlight(self, geometry: &LightRayGeometry, extinction_per_m: f64) -> f64 {
         match self {

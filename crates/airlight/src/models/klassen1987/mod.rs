@@ -55,8 +55,8 @@ pub use settings::{BaseBlue, Haze, HazePhase, Klassen1987Error, Klassen1987Setti
 use super::PublishedModel;
 use crate::axes;
 use crate::control::Control;
-use crate::sky::SunCoverage;
 use crate::debug::debug_fields;
+use crate::sky::SunCoverage;
 use crate::spectrum::WavelengthGrid;
 use crate::sun::SunDisc;
 use blue::{BaseSky, Blue};

@@ -3,7 +3,6 @@
 use crate::atmosphere::DensityProfile;
 use crate::fog::FogScattering;
 use crate::fog::droplets::DropletKind;
-#[cfg(feature = "serde")]
 use crate::names::named;
 
 /// Default scale height, m.

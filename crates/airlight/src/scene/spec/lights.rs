@@ -1,10 +1,10 @@
 //! Point, spot and sphere lights.
 
+use crate::names::named;
+
 /// Kind of a light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub enum LightKind {
     /// Shines equally in all directions.
     #[default]
@@ -14,6 +14,12 @@ pub enum LightKind {
     /// A glowing sphere.
     Sphere,
 }
+
+named! { LightKind, "a kind of light", [
+    ("point", (Point), "the same intensity in all directions"),
+    ("spot", (Spot), "a cone"),
+    ("sphere", (Sphere), "a luminous sphere"),
+] }
 
 /// A light: where it is, how bright, and where it shines. It is placed by `position_m`, or by `pixel` of a picture.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -1,5 +1,7 @@
 //! Objects in front of the sky: solids and their surfaces.
 
+use crate::names::named;
+
 /// Objects in front of the sky: a file, a list, or both.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -24,9 +26,6 @@ impl ObjectsSpec {
 
 /// Shape of a solid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum ObjectShape {
     /// The plane of the ground.
     Ground,
@@ -39,6 +38,14 @@ pub enum ObjectShape {
     /// An upright cone, at the middle of its base.
     Cone,
 }
+
+named! { ObjectShape, "a shape", [
+    ("ground", (Ground), "the plane of the ground"),
+    ("sphere", (Sphere), "a sphere, placed by its centre"),
+    ("block", (Block), "a block, placed by the middle of its base"),
+    ("cylinder", (Cylinder), "an upright cylinder, placed by the middle of its base"),
+    ("cone", (Cone), "an upright cone, placed by the middle of its base"),
+] }
 
 /// A solid. Positions are in metres east, up and south of the point of the ground under the eye.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,13 +1,10 @@
 //! The picture of a scene: projection, file and sequence.
 
-#[cfg(feature = "serde")]
+use crate::names::named;
 use crate::spectrum::RgbSpace;
 
 /// How directions are laid out in a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Projection {
     /// The whole sphere, azimuth across and elevation down, north in the middle.
     #[default]
@@ -19,6 +16,13 @@ pub enum Projection {
     /// A camera that keeps straight lines straight.
     Perspective,
 }
+
+named! { Projection, "a projection", [
+    ("equirectangular", (Equirectangular), "the whole sphere, north in the middle"),
+    ("cube", (Cube), "six square files for a cube map: sky.px.exr, .nx, .py, .ny, .pz, .nz (x east, y up, z south)"),
+    ("fisheye", (Fisheye), "the sky as a disc: angle from the centre in proportion to distance"),
+    ("perspective", (Perspective), "a camera that keeps straight lines straight"),
+] }
 
 /// Projection and direction of a picture.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -45,9 +49,6 @@ pub struct CameraSpec {
 
 /// Where the sun's disc goes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum SunDiscPlacement {
     /// Into the picture.
     #[default]
@@ -58,11 +59,14 @@ pub enum SunDiscPlacement {
     Separate,
 }
 
+named! { SunDiscPlacement, "a place for the sun's disc", [
+    ("in", (In), "in the picture"),
+    ("out", (Out), "left out"),
+    ("separate", (Separate), "in a second file: sky.sun.exr beside sky.exr"),
+] }
+
 /// How EXR samples are stored.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum SamplePrecision {
     /// 32 bits.
     #[default]
@@ -71,11 +75,13 @@ pub enum SamplePrecision {
     Half,
 }
 
+named! { SamplePrecision, "a sample precision", [
+    ("float", (Float), "32 bits"),
+    ("half", (Half), "16 bits, up to 65504"),
+] }
+
 /// How EXR samples are packed, without loss.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum ExrCompression {
     /// Not at all.
     None,
@@ -90,11 +96,16 @@ pub enum ExrCompression {
     Piz,
 }
 
+named! { ExrCompression, "a compression", [
+    ("none", (None), "no compression"),
+    ("rle", (Rle), "run lengths"),
+    ("zips", (Zips), "deflate, row by row"),
+    ("zip", (Zip), "deflate, 16 rows at a time"),
+    ("piz", (Piz), "wavelets"),
+] }
+
 /// How light becomes what a display shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum ToneKind {
     /// A curve like film's: bright light rolls off towards white.
     #[default]
@@ -102,6 +113,11 @@ pub enum ToneKind {
     /// Linear, cut off at white.
     Clip,
 }
+
+named! { ToneKind, "a tone curve", [
+    ("filmic", (Filmic), "a curve like that of film: bright light rolls off towards white"),
+    ("clip", (Clip), "linear, clipped at white"),
+] }
 
 /// Exposure of PNG, JPEG and preview: "auto", or a camera's exposure value at ISO 100 (sunny day 15, dusk 8).
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,6 +1,6 @@
 //! How the light of a scene is solved for.
 
-#[cfg(feature = "serde")]
+use crate::names::named;
 use crate::sky::Scattering;
 
 /// The solver or published model, and its settings.
@@ -35,9 +35,7 @@ pub struct SolverSpec {
 
 /// How finely the orders of scattering are solved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub enum Effort {
     /// By day within 1 % in clear air (1.4 % under a sun at the horizon), 3 % in haze.
     #[default]
@@ -46,11 +44,14 @@ pub enum Effort {
     Fine,
 }
 
+named! { Effort, "an effort", [
+    ("standard", (Standard), "by day within 1 % in clear air (1.4 % with the sun at the horizon), 3 % in haze"),
+    ("fine", (Fine), "within 1 % by day in haze too, five times as long"),
+] }
+
 /// Colour of the sun of the single-scattering shader.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub enum SunlightKind {
     /// White on the ground when it stands in the zenith, as printed.
     #[default]
@@ -58,6 +59,11 @@ pub enum SunlightKind {
     /// As bright and as coloured as measured outside the air.
     Measured,
 }
+
+named! { SunlightKind, "a kind of sunlight", [
+    ("white", (White), "white on the ground with the sun in the zenith, as printed"),
+    ("measured", (Measured), "as measured outside the atmosphere"),
+] }
 
 /// Settings of the model of 1987: each in place of what the atmosphere has.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -81,9 +87,7 @@ pub struct Klassen1987Spec {
 
 /// Deirmendjian's wet hazes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub enum WetHaze {
     /// Haze M: by the sea.
     HazeM,
@@ -93,14 +97,23 @@ pub enum WetHaze {
     HazeH,
 }
 
+named! { WetHaze, "a wet haze", [
+    ("haze-m", (HazeM), "haze M of Deirmendjian: maritime"),
+    ("haze-l", (HazeL), "haze L of Deirmendjian: continental"),
+    ("haze-h", (HazeH), "haze H of Deirmendjian: high altitudes"),
+] }
+
 /// The sky behind the haze of 1987.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub enum BaseBlueKind {
     /// One constant blue, dimmed to a hundredth from noon to sunset.
     Paper,
     /// The air without haze, solved for.
     Solver,
 }
+
+named! { BaseBlueKind, "a base sky", [
+    ("paper", (Paper), "one constant blue, dimmed to a hundredth from noon to sunset"),
+    ("solver", (Solver), "the air without haze, solved for"),
+] }

@@ -1,8 +1,6 @@
 //! `airlight sky` as a user meets it: files, reports, scenes, preview.
 
-mod common;
-
-use common::{Exr, Folder, command, number_after, run, succeed};
+use crate::common::{Exr, Folder, command, number_after, run, succeed};
 
 /// Options that solve quickly.
 const QUICK: &str = "--wavelengths rgb --scattering single";

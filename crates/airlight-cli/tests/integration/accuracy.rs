@@ -1,8 +1,6 @@
 //! `airlight accuracy` as a user meets it.
 
-mod common;
-
-use common::{Folder, run, succeed};
+use crate::common::{Folder, run, succeed};
 
 #[test]
 fn the_measured_sky_is_reported_in_every_form() {

@@ -1,5 +1,4 @@
 //! Running the program, folders that go away, reading what it wrote.
-#![allow(dead_code)]
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

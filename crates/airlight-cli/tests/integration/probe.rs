@@ -1,8 +1,6 @@
 //! `airlight probe` as a user meets it.
 
-mod common;
-
-use common::{Folder, command, run, succeed};
+use crate::common::{Folder, command, run, succeed};
 use serde_json::Value;
 use std::io::Write;
 use std::process::Stdio;

@@ -1,8 +1,6 @@
 //! Fog in `airlight sky`: what it draws, and what it refuses.
 
-mod common;
-
-use common::{Exr, Folder, run, succeed};
+use crate::common::{Exr, Folder, run, succeed};
 
 #[test]
 fn fog_changes_the_sky_or_is_refused() {
@@ -10,13 +8,10 @@ fn fog_changes_the_sky_or_is_refused() {
     let sky = "sky --sun-elevation 20 --wavelengths rgb --size 32x16 -q -o";
     for (name, fog) in [
         ("clear.png", ""),
-        (
-            "thinning.png",
-            "--fog-visibility-m 200 --fog-scale-height-m 60",
-        ),
+        ("thinning.png", "--visibility-m 200 --scale-height-m 60"),
         (
             "slab.png",
-            "--fog-visibility-m 200 --fog-top-m 60 --fog-droplets coarse",
+            "--visibility-m 200 --top-m 60 --droplets coarse",
         ),
     ] {
         succeed(&folder, &format!("{sky} {name} {fog}"));
@@ -26,19 +21,16 @@ fn fog_changes_the_sky_or_is_refused() {
     assert!(clear != thinning && thinning != slab);
     let before = folder.names();
     for (fog, sentence) in [
-        ("--fog-visibility-m 0", "above 0"),
-        ("--fog-visibility-m nan", "above 0"),
-        ("--fog-top-m 60", "--fog-visibility-m"),
+        ("--visibility-m 0", "above 0"),
+        ("--visibility-m nan", "above 0"),
+        ("--top-m 60", "--visibility-m"),
         (
-            "--fog-visibility-m 9 --fog-top-m 60 --fog-base-m 5",
+            "--visibility-m 9 --top-m 60 --base-height-m 5",
             "cannot be used with",
         ),
+        ("--visibility-m 9 --droplets soup", "possible values"),
         (
-            "--fog-visibility-m 9 --fog-droplets soup",
-            "possible values",
-        ),
-        (
-            "--fog-visibility-m 9 --fog-scattering single --solver monte-carlo",
+            "--visibility-m 9 --fog-scattering single --solver monte-carlo",
             "leave out --fog-scattering",
         ),
     ] {
@@ -54,7 +46,7 @@ fn fog_changes_the_sky_or_is_refused() {
 #[test]
 fn skies_have_fog_of_each_scattering() {
     let folder = Folder::new();
-    let sky = "sky --sun-elevation 12 --fog-visibility-m 300 --size 32x16 --sun-disc out --wavelengths fast -q";
+    let sky = "sky --sun-elevation 12 --visibility-m 300 --size 32x16 --sun-disc out --wavelengths fast -q";
     let of = |which: &str| {
         succeed(&folder, &format!("{sky} --fog-scattering {which} -o a.exr"));
         Exr::read(&folder.file("a.exr"))

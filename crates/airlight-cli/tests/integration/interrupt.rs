@@ -1,9 +1,7 @@
 //! A run that is stopped half-way leaves nothing behind.
 #![cfg(unix)]
 
-mod common;
-
-use common::{Folder, command};
+use crate::common::{Folder, command};
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 use std::process::{Child, Stdio};
@@ -92,7 +90,7 @@ fn random_paths_leave_the_picture_of_the_last_pass() {
     let (code, error) = stop(child, Signal::SIGINT);
     assert_eq!(code, Some(130), "{error}");
     assert_eq!(folder.names(), ["a.exr"]);
-    assert_eq!(common::Exr::read(&folder.file("a.exr")).width, 8);
+    assert_eq!(crate::common::Exr::read(&folder.file("a.exr")).width, 8);
 }
 
 #[test]
@@ -112,7 +110,7 @@ fn a_stopped_sequence_keeps_its_whole_frames_and_goes_on() {
         "{names:?}"
     );
     let done = names.len();
-    let text = common::succeed(&folder, words);
+    let text = crate::common::succeed(&folder, words);
     assert!(
         text.contains(&format!("{} of 3 pictures made", 3 - done)),
         "{text}"
@@ -159,7 +157,7 @@ fn a_stopped_batch_keeps_its_whole_pictures_and_goes_on() {
     assert_eq!(all, done + 1, "pictures and manifest, nothing else");
     let manifest = || std::fs::read_to_string(folder.file("out/manifest.jsonl")).unwrap();
     assert_eq!(manifest().lines().count(), done);
-    let text = common::succeed(&folder, words);
+    let text = crate::common::succeed(&folder, words);
     assert!(
         text.contains(&format!("{} of 20 pictures made", 20 - done)),
         "{text}"

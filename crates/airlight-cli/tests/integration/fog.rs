@@ -1,8 +1,6 @@
 //! `airlight fog` from the outside: flags, files, refusals and exit codes.
 
-mod common;
-
-use common::{Exr, Folder, command, run, succeed};
+use crate::common::{Exr, Folder, command, run, succeed};
 use std::path::Path;
 use std::process::Output;
 
@@ -203,7 +201,7 @@ fn options_that_contradict_are_refused() {
         ("--visibility-m 5 --sky-light -o a.exr", "upper end"),
         (
             "--visibility-m 5 --sky-light --fog-profile slab -o a.exr",
-            "elevation_deg",
+            "--sun-elevation: expected a position of the sun",
         ),
         (
             "--visibility-m 5 --sky-light --sun-elevation 5 --at 1,2 --when now -o a.exr",

@@ -1,8 +1,6 @@
 //! `airlight plot`, and drops by theory in the other commands, as a user meets them.
 
-mod common;
-
-use common::{Folder, run, succeed};
+use crate::common::{Folder, run, succeed};
 
 /// The text of a file.
 fn written(folder: &Folder, name: &str) -> String {

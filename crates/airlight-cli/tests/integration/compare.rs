@@ -1,8 +1,6 @@
 //! `airlight compare` and `airlight grid`, as a user meets them.
 
-mod common;
-
-use common::{Folder, run, succeed};
+use crate::common::{Folder, run, succeed};
 use image::RgbImage;
 use std::path::Path;
 
