@@ -1,20 +1,9 @@
-//! Haze of published types: `--aerosol`, `--humidity`, and what is told of them.
+//! Haze of published types: their list, and the optical properties of one.
 
 use crate::error::CliError;
 use crate::report;
 use airlight::atmosphere::{AerosolMixture, AerosolType, AerosolTypeError};
 use std::fmt::Write;
-
-/// The help of `--aerosol`: every type with its description.
-pub fn option_help() -> String {
-    let names: String = AerosolType::ALL
-        .iter()
-        .map(|kind| format!("\n- {kind}: {}", kind.summary()))
-        .collect();
-    format!(
-        "Haze of a published type instead of the atmosphere's, or a mixture by shares of the extinction (urban:0.7,desert:0.3); without an amount as much as published\n{names}\n"
-    )
-}
 
 /// The types, one a line.
 pub fn list() -> String {

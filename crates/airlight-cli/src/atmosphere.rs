@@ -10,15 +10,6 @@ use airlight_render::scene_file;
 use std::fmt::Write;
 use std::path::Path;
 
-/// The help of `--atmosphere`: every preset with its description.
-pub fn option_help() -> String {
-    let names: String = Preset::ALL
-        .iter()
-        .map(|preset| format!("\n- {preset}: {}", preset.summary()))
-        .collect();
-    format!("The atmosphere: one of these names, or a TOML file\n{names}\n")
-}
-
 /// The atmosphere of a name or a file.
 fn named(name: &str) -> Result<Atmosphere, CliError> {
     let mut scene = Scene::default();

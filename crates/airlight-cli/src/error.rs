@@ -8,6 +8,7 @@ use airlight::sky::SkyError;
 use airlight::spectrum::GridError;
 use airlight::sun::position::EphemerisError;
 use airlight_image::ImageError;
+use airlight_plot::PlotError;
 use airlight_render::RenderError;
 use airlight_render::batch::BatchError;
 use std::io;
@@ -94,6 +95,12 @@ impl From<BatchError> for CliError {
             (_, true) => Self::usage(error.to_string()),
             _ => Self::failure(error.to_string()),
         }
+    }
+}
+
+impl From<PlotError> for CliError {
+    fn from(error: PlotError) -> Self {
+        Self::failure(error.to_string())
     }
 }
 

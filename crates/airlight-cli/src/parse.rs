@@ -34,6 +34,13 @@ pub struct PixelSize {
     pub height: u32,
 }
 
+/// Overrides a value of a scene with that of an option, where the option is given.
+pub fn put<T: Clone>(value: &mut Option<T>, given: &Option<T>) {
+    if given.is_some() {
+        value.clone_from(given);
+    }
+}
+
 /// A value of a [`Named`] type by its name.
 pub fn value_of<T: Named>(text: &str) -> Result<T, String> {
     T::from_name(text).map_err(|error| error.to_string())

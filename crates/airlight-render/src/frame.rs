@@ -7,7 +7,7 @@ use crate::exposure::METERED_WIDTH;
 use crate::illuminance::Illuminances;
 use crate::image::RenderedImage;
 use crate::layout::PictureFile;
-use crate::metadata;
+use crate::metadata::FrameMetadata;
 use crate::objects::{LitObjects, ObjectRows, write_depth};
 use crate::pixels::tagged_path;
 use crate::renderer::Renderer;
@@ -62,8 +62,22 @@ pub struct WrittenFrame {
     pub noise: Option<f64>,
 }
 
+impl Renderer {
+    /// One moment, ready to be drawn; `None`: that of the scene.
+    ///
+    /// # Errors
+    /// [`RenderError::Scene`] where the solver refuses the sun.
+    pub fn frame<'r>(
+        &'r self,
+        prepared: &dyn PreparedModel,
+        time: Option<Moment>,
+    ) -> Result<PreparedFrame<'r>, RenderError> {
+        PreparedFrame::new(self, prepared, time)
+    }
+}
+
 impl<'r> PreparedFrame<'r> {
-    pub(crate) fn new(
+    fn new(
         renderer: &'r Renderer,
         prepared: &dyn PreparedModel,
         time: Option<Moment>,
@@ -389,8 +403,15 @@ impl<'r> PreparedFrame<'r> {
     }
 
     fn options(&self, file: &PictureFile) -> PictureOptions {
+        let metadata = FrameMetadata {
+            renderer: self.renderer,
+            time: self.time,
+            sun: &self.sun,
+            light: &self.light,
+            channels: &self.channels,
+        };
         PictureOptions {
-            metadata: metadata::of(self.renderer, self, file.layer).with_frame(&file.frame),
+            metadata: metadata.of_layer(file.layer).with_frame(&file.frame),
             ..self.renderer.picture_options()
         }
     }

@@ -17,6 +17,7 @@ pub mod canvas;
 pub mod channels;
 pub mod compare;
 pub mod contact_sheet;
+mod draw;
 pub mod error;
 pub mod exposure;
 pub mod frame;

@@ -1,73 +1,87 @@
 //! What picture files say about themselves.
 
-use crate::frame::PreparedFrame;
+use crate::channels::PixelChannels;
+use crate::illuminance::Illuminances;
 use crate::renderer::Renderer;
 use crate::sky_rows::Layer;
 use crate::summary::{self, short};
+use airlight::scene::SunAngles;
+use airlight::sun::Moment;
 use airlight_image::PictureFormat;
 use airlight_image::output::Metadata;
 
 /// Program and version.
 pub const SOFTWARE: &str = concat!("airlight ", env!("CARGO_PKG_VERSION"));
 
-/// The metadata of a file that shows a layer of a frame.
-pub(crate) fn of(renderer: &Renderer, frame: &PreparedFrame, layer: Layer) -> Metadata {
-    let scene = renderer.resolved();
-    let place = scene.sun.place();
-    let linear = renderer
-        .layout()
-        .format()
-        .is_none_or(PictureFormat::is_linear);
-    let scale = renderer.scene().output.scale.unwrap_or(1.0);
-    let channels = frame.channels();
-    let mut metadata = Metadata {
-        software: Some(SOFTWARE.to_owned()),
-        capture_date: frame.time().map(|time| time.capture_date()),
-        utc_offset_s: frame.time().map(|time| time.offset_s() as f32),
-        latitude_deg: place.map(|place| place.latitude_deg as f32),
-        longitude_deg: place.map(|place| place.longitude_deg as f32),
-        altitude_m: Some(scene.observer_altitude_m as f32),
-        white_luminance_cd_m2: linear.then_some((1.0 / scale) as f32),
-        chromaticities: linear.then(|| channels.chromaticities()),
-        ..Metadata::default()
-    };
-    let mut add = |name: &str, text: String| metadata.texts.push((name.to_owned(), text));
-    if let Some(time) = frame.time() {
-        add("time", time.to_string());
-    }
-    add("atmosphere", scene.atmosphere.name.clone());
-    if let Some(fog) = &scene.fog {
-        add("fog", summary::fog(fog));
-    }
-    let sun = frame.sun();
-    add(
-        "sunPosition",
-        format!(
-            "azimuth {:.5} deg, elevation {:.5} deg",
-            sun.azimuth_deg, sun.elevation_deg
-        ),
-    );
-    let light = frame.light();
-    add(
-        "illuminance",
-        format!(
-            "sun {} lx on a surface facing it, {} lx on the horizontal; sky {} lx on the horizontal",
-            short(light.sun_normal_lx),
-            short(light.sun_horizontal_lx),
-            short(light.sky_horizontal_lx)
-        ),
-    );
-    add("sunDisc", sun_disc(layer).to_owned());
-    if linear {
-        add("units", units(channels.layout().is_some(), scale));
-        let [x, y] = channels.space().white_point_xy();
+/// One moment of a scene, as the metadata of its files describe it.
+pub(crate) struct FrameMetadata<'a> {
+    pub renderer: &'a Renderer,
+    pub time: Option<Moment>,
+    pub sun: &'a SunAngles,
+    pub light: &'a Illuminances,
+    pub channels: &'a PixelChannels,
+}
+
+impl FrameMetadata<'_> {
+    /// The metadata of a file that shows a layer.
+    pub fn of_layer(&self, layer: Layer) -> Metadata {
+        let renderer = self.renderer;
+        let scene = renderer.resolved();
+        let place = scene.sun.place();
+        let linear = renderer
+            .layout()
+            .format()
+            .is_none_or(PictureFormat::is_linear);
+        let scale = renderer.scene().output.scale.unwrap_or(1.0);
+        let mut metadata = Metadata {
+            software: Some(SOFTWARE.to_owned()),
+            capture_date: self.time.map(|time| time.capture_date()),
+            utc_offset_s: self.time.map(|time| time.offset_s() as f32),
+            latitude_deg: place.map(|place| place.latitude_deg as f32),
+            longitude_deg: place.map(|place| place.longitude_deg as f32),
+            altitude_m: Some(scene.observer_altitude_m as f32),
+            white_luminance_cd_m2: linear.then_some((1.0 / scale) as f32),
+            chromaticities: linear.then(|| self.channels.chromaticities()),
+            ..Metadata::default()
+        };
+        let mut add = |name: &str, text: String| metadata.texts.push((name.to_owned(), text));
+        if let Some(time) = self.time {
+            add("time", time.to_string());
+        }
+        add("atmosphere", scene.atmosphere.name.clone());
+        if let Some(fog) = &scene.fog {
+            add("fog", summary::fog(fog));
+        }
+        let sun = self.sun;
         add(
-            "whitePoint",
-            format!("CIE 1931 x {x}, y {y}; colours are colorimetric, not adapted to it"),
+            "sunPosition",
+            format!(
+                "azimuth {:.5} deg, elevation {:.5} deg",
+                sun.azimuth_deg, sun.elevation_deg
+            ),
         );
+        let light = self.light;
+        add(
+            "illuminance",
+            format!(
+                "sun {} lx on a surface facing it, {} lx on the horizontal; sky {} lx on the horizontal",
+                short(light.sun_normal_lx),
+                short(light.sun_horizontal_lx),
+                short(light.sky_horizontal_lx)
+            ),
+        );
+        add("sunDisc", sun_disc(layer).to_owned());
+        if linear {
+            add("units", units(self.channels.layout().is_some(), scale));
+            let [x, y] = self.channels.space().white_point_xy();
+            add(
+                "whitePoint",
+                format!("CIE 1931 x {x}, y {y}; colours are colorimetric, not adapted to it"),
+            );
+        }
+        metadata.texts.extend(renderer.texts().iter().cloned());
+        metadata
     }
-    metadata.texts.extend(renderer.texts().iter().cloned());
-    metadata
 }
 
 fn sun_disc(layer: Layer) -> &'static str {

@@ -1,12 +1,9 @@
-//! [`Renderer`]: from a scene to pictures.
+//! [`Renderer`]: a checked scene, its solver and the layout of its files.
 
 use crate::error::RenderError;
 use crate::exposure::ExposureSettings;
-use crate::frame::{PreparedFrame, WrittenFile};
-use crate::image::RenderedImage;
 use crate::layout::{Layout, is_spectral};
 use crate::objects::Objects;
-use crate::sequence::Sequence;
 use airlight::models::registry;
 use airlight::scene::{
     Exposure, PreparedModel, RadianceModel, ResolvedScene, Scene, SunAngles, ToneKind, check_inputs,
@@ -20,7 +17,6 @@ use airlight_image::tone::{FilmicSettings, ToneCurve};
 use airlight_image::{Control, PictureOptions};
 use std::path::Path;
 use std::sync::Arc;
-use std::time::Instant;
 
 /// Draws a scene.
 ///
@@ -134,83 +130,6 @@ impl Renderer {
     ) -> Result<Arc<dyn PreparedModel>, RenderError> {
         control.stage("solving for the light in the air", 0);
         Ok(self.model.prepare(&self.resolved, suns, control)?)
-    }
-
-    /// One moment, ready to be drawn; `None`: that of the scene.
-    ///
-    /// # Errors
-    /// [`RenderError::Scene`] where the solver refuses the sun.
-    pub fn frame<'r>(
-        &'r self,
-        prepared: &dyn PreparedModel,
-        time: Option<Moment>,
-    ) -> Result<PreparedFrame<'r>, RenderError> {
-        PreparedFrame::new(self, prepared, time)
-    }
-
-    /// The pictures of a scene with a sequence, those of which the files are there already included.
-    ///
-    /// # Errors
-    /// [`RenderError`] for a sequence without a file name, with a sun that does not move, or of times that are none.
-    pub fn sequence(&self) -> Result<Option<Sequence>, RenderError> {
-        Sequence::of(self)
-    }
-
-    /// Draws the scene at its time into memory.
-    ///
-    /// # Errors
-    /// [`RenderError`] where the solver refuses the scene, for a cube, or where the caller asked to stop.
-    pub fn render(&self, control: Control<'_>) -> Result<RenderedImage, RenderError> {
-        let frame = self.layout.only_frame()?;
-        let begun = Instant::now();
-        let prepared = self.prepare(self.suns_near(&self.sun(None)?), control)?;
-        let image = self
-            .frame(prepared.as_ref(), None)?
-            .image(&frame, control)?;
-        Ok(RenderedImage {
-            time: begun.elapsed(),
-            ..image
-        })
-    }
-
-    /// Writes the scene's picture, or the pictures of its sequence that are not there yet, to `output.file`.
-    ///
-    /// # Errors
-    /// [`RenderError`]; files already written stay, and nothing is left of an unfinished one.
-    pub fn write(&self, control: Control<'_>) -> Result<Vec<WrittenFile>, RenderError> {
-        if let Some(sequence) = self.sequence()? {
-            let missing = sequence.missing();
-            let Some(suns) = self.suns_of(&missing)? else {
-                return Ok(Vec::new());
-            };
-            let prepared = self.prepare(suns, control)?;
-            let mut written = Vec::new();
-            for step in missing {
-                control.check()?;
-                let frame = self.frame(prepared.as_ref(), Some(step.time))?;
-                written.extend(frame.write(&step.path, control)?.files);
-            }
-            return Ok(written);
-        }
-        let path = self.output_path()?;
-        let prepared = self.prepare(self.suns_near(&self.sun(None)?), control)?;
-        let frame = self.frame(prepared.as_ref(), None)?;
-        Ok(frame.write(path, control)?.files)
-    }
-
-    /// The range of suns of the moments of a sequence; `None` without any.
-    ///
-    /// # Errors
-    /// As [`Renderer::sun`].
-    pub fn suns_of(
-        &self,
-        steps: &[crate::sequence::SequenceStep],
-    ) -> Result<Option<SunCoverage>, RenderError> {
-        Ok(match steps {
-            [] => None,
-            [only] => Some(self.suns_near(&self.sun(Some(only.time))?)),
-            _ => Some(SunCoverage::All),
-        })
     }
 
     /// The file that the scene writes.

@@ -1,7 +1,7 @@
-//! Options for gases, haze and ground.
+//! Options for gases, haze and ground, and those of `airlight atmospheres`, which lists their names.
 
-use super::scene::put;
-use crate::{aerosol, atmosphere, parse};
+use crate::parse::{self, put};
+use airlight::atmosphere::{AerosolType, Preset};
 use airlight::scene::AirSpec;
 use clap::Args;
 
@@ -10,10 +10,10 @@ use clap::Args;
 #[command(next_help_heading = "Air")]
 pub struct AirArgs {
     /// The atmosphere: a name (see --help or `airlight atmospheres`) or a TOML file [default: average]
-    #[arg(long, value_name = "NAME|FILE.toml", long_help = atmosphere::option_help())]
+    #[arg(long, value_name = "NAME|FILE.toml", long_help = atmosphere_help())]
     pub atmosphere: Option<String>,
     /// Haze of a published type (see --help or `airlight atmospheres`), or a mixture: urban:0.7,desert:0.3
-    #[arg(long, value_name = "TYPE", long_help = aerosol::option_help())]
+    #[arg(long, value_name = "TYPE", long_help = aerosol_help())]
     pub aerosol: Option<String>,
     /// Relative humidity in which the particles of --aerosol have grown, 0 to 0.99 [default: 0.8]
     #[arg(long, value_name = "SHARE", value_parser = parse::number)]
@@ -60,4 +60,32 @@ impl AirArgs {
         put(&mut air.ground_albedo, &self.ground_albedo);
         put(&mut air.ground_altitude_m, &self.ground_altitude_m);
     }
+}
+
+/// Options of `airlight atmospheres`.
+#[derive(Debug, Args)]
+pub struct AtmospheresArgs {
+    /// An atmosphere or a type of haze to describe: its name, or a TOML file
+    #[arg(value_name = "NAME|FILE.toml")]
+    pub atmosphere: Option<String>,
+}
+
+/// The help of `--atmosphere`: every preset with its description.
+fn atmosphere_help() -> String {
+    let names: String = Preset::ALL
+        .iter()
+        .map(|preset| format!("\n- {preset}: {}", preset.summary()))
+        .collect();
+    format!("The atmosphere: one of these names, or a TOML file\n{names}\n")
+}
+
+/// The help of `--aerosol`: every type with its description.
+fn aerosol_help() -> String {
+    let names: String = AerosolType::ALL
+        .iter()
+        .map(|kind| format!("\n- {kind}: {}", kind.summary()))
+        .collect();
+    format!(
+        "Haze of a published type instead of the atmosphere's, or a mixture by shares of the extinction (urban:0.7,desert:0.3); without an amount as much as published\n{names}\n"
+    )
 }

@@ -18,7 +18,7 @@ mod sky;
 mod solver;
 
 pub use accuracy::{AccuracyArgs, ReportArg};
-pub use air::AirArgs;
+pub use air::{AirArgs, AtmospheresArgs};
 pub use compare::{CompareArgs, StatisticsArg};
 pub use grid::GridArgs;
 pub use overlay::OverlayArgs;
@@ -35,7 +35,7 @@ pub use scene::SceneArgs;
 pub use sky::{ObjectArgs, SkyArgs};
 pub use solver::SolverArgs;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Parser, Subcommand};
 
 /// The colour of the sky, computed: spectral, multiply scattered, in physical units.
 #[derive(Debug, Parser)]
@@ -86,12 +86,4 @@ pub enum Command {
     Atmospheres(AtmospheresArgs),
     /// Print the JSON Schema of scene files, for editors that complete and check them.
     Schema,
-}
-
-/// Options of `airlight atmospheres`.
-#[derive(Debug, Args)]
-pub struct AtmospheresArgs {
-    /// An atmosphere or a type of haze to describe: its name, or a TOML file
-    #[arg(value_name = "NAME|FILE.toml")]
-    pub atmosphere: Option<String>,
 }

@@ -1,7 +1,6 @@
 //! Options for how a picture is laid out, shown and stored.
 
-use super::scene::put;
-use crate::parse::{self, PixelSize};
+use crate::parse::{self, PixelSize, put};
 use airlight::scene::{
     CameraSpec, Exposure, ExrCompression, OutputSpec, Projection, SamplePrecision,
     SunDiscPlacement, ToneKind,

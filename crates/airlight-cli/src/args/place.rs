@@ -1,7 +1,6 @@
 //! Options for the position of the eye and of the sun.
 
-use super::scene::put;
-use crate::parse::{self, LatLon};
+use crate::parse::{self, LatLon, put};
 use airlight::scene::{Scene, SunSpec};
 use clap::{ArgAction, Args};
 

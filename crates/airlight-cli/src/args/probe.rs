@@ -1,9 +1,8 @@
 //! Options of `airlight probe`.
 
 use super::SceneArgs;
-use super::scene::put;
 use crate::error::CliError;
-use crate::parse::{self, AzEl};
+use crate::parse::{self, AzEl, put};
 use airlight::scene::Scene;
 use airlight::spectrum::RgbSpace;
 use clap::{Args, ValueEnum};

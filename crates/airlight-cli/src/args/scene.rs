@@ -3,6 +3,7 @@
 use super::fog::{ContrastArgs, FogArgs};
 use super::{AirArgs, PlaceArgs, SolverArgs};
 use crate::error::CliError;
+use crate::parse::put;
 use airlight::scene::Scene;
 use airlight_render::scene_file;
 use clap::Args;
@@ -44,12 +45,5 @@ impl SceneArgs {
         more(&mut scene);
         scene_file::inline_files(&mut scene, Path::new(""))?;
         Ok(scene)
-    }
-}
-
-/// Puts what is given in place of what is there.
-pub fn put<T: Clone>(value: &mut Option<T>, given: &Option<T>) {
-    if given.is_some() {
-        value.clone_from(given);
     }
 }

@@ -1,9 +1,8 @@
 //! Options of `airlight sky`.
 
-use super::scene::put;
 use super::{CameraArgs, DisplayArgs, EncodingArgs, SceneArgs};
 use crate::error::CliError;
-use crate::parse;
+use crate::parse::{self, put};
 use airlight::scene::{ObjectsSpec, Scene, SequenceSpec};
 use clap::Args;
 use std::path::PathBuf;

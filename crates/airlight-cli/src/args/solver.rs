@@ -1,7 +1,6 @@
 //! Options for how the light is solved for.
 
-use super::scene::put;
-use crate::parse;
+use crate::parse::{self, put};
 use airlight::models::registry;
 use airlight::scene::{BaseBlueKind, Effort, Klassen1987Spec, SolverSpec, SunlightKind, WetHaze};
 use airlight::sky::Scattering;

@@ -1,6 +1,5 @@
 //! Light and transmittance of the air by wavelength.
 
-use super::Chart;
 use crate::args::{SceneArgs, SpectrumPlotArgs, TransmittancePlotArgs};
 use crate::error::CliError;
 use crate::interrupt::STOP;
@@ -48,7 +47,7 @@ fn ray(azimuth_deg: f64, elevation_deg: f64) -> ProbeRay {
 ///
 /// # Errors
 /// [`CliError`] for options that do not fit together.
-pub fn spectrum(args: &SpectrumPlotArgs) -> Result<Chart, CliError> {
+pub fn spectrum(args: &SpectrumPlotArgs) -> Result<String, CliError> {
     let rays = args
         .view
         .iter()
@@ -75,7 +74,7 @@ pub fn spectrum(args: &SpectrumPlotArgs) -> Result<Chart, CliError> {
             ),
         ];
         let y = Axis::linear("irradiance, W m\u{207b}\u{b2} nm\u{207b}\u{b9}");
-        return Ok(line_chart(&wavelength(), &y, &all));
+        return Ok(line_chart(&wavelength(), &y, &all)?);
     }
     let all: Vec<Curve> = answer
         .views
@@ -89,14 +88,14 @@ pub fn spectrum(args: &SpectrumPlotArgs) -> Result<Chart, CliError> {
         })
         .collect();
     let y = Axis::linear("radiance, W m\u{207b}\u{b2} sr\u{207b}\u{b9} nm\u{207b}\u{b9}");
-    Ok(line_chart(&wavelength(), &y, &all))
+    Ok(line_chart(&wavelength(), &y, &all)?)
 }
 
 /// Transmittance of the air from the eye to space, for zenith angles or as a map over them.
 ///
 /// # Errors
 /// [`CliError`] for options that do not fit together.
-pub fn transmittance(args: &TransmittancePlotArgs) -> Result<Chart, CliError> {
+pub fn transmittance(args: &TransmittancePlotArgs) -> Result<String, CliError> {
     let mut scene = read(&args.scene)?;
     // Any sun will do, and any light: the transmittance is that of the air alone.
     if scene.sun.latitude_deg.is_none() {
@@ -128,7 +127,7 @@ pub fn transmittance(args: &TransmittancePlotArgs) -> Result<Chart, CliError> {
             &data,
             ("transmittance", &Colormap::sequential(1.0)),
             &[0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9],
-        ));
+        )?);
     }
     let all: Vec<Curve> = zenith_deg
         .iter()
@@ -139,7 +138,7 @@ pub fn transmittance(args: &TransmittancePlotArgs) -> Result<Chart, CliError> {
         })
         .collect();
     let y = Axis::linear("transmittance to space").with_range(0.0, 1.0);
-    Ok(line_chart(&wavelength(), &y, &all))
+    Ok(line_chart(&wavelength(), &y, &all)?)
 }
 
 fn points(answer: &ProbeAnswer, values: &[f32]) -> Vec<(f64, f64)> {

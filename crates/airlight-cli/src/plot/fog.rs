@@ -1,6 +1,5 @@
 //! How dense fog is by height, and where the split sum holds.
 
-use super::Chart;
 use crate::args::{FogProfilePlotArgs, SplitSumPlotArgs};
 use crate::error::CliError;
 use airlight::fog::DensityProfile;
@@ -12,7 +11,7 @@ use airlight_plot::{Axis, Colormap, Curve, HeatMap, heat_map, line_chart};
 ///
 /// # Errors
 /// [`CliError::Usage`] for heights that make no profile.
-pub fn profile(args: &FogProfilePlotArgs) -> Result<Chart, CliError> {
+pub fn profile(args: &FogProfilePlotArgs) -> Result<String, CliError> {
     const STEPS: u32 = 400;
     let extinction = extinction_per_m(args.visibility_m, Contrast::FivePercent);
     let scale_height_m = args.scale_height_m;
@@ -57,11 +56,14 @@ pub fn profile(args: &FogProfilePlotArgs) -> Result<Chart, CliError> {
     }
     let x = Axis::linear("height above the ground, m");
     let y = Axis::linear("extinction coefficient, km\u{207b}\u{b9}");
-    Ok(line_chart(&x, &y, &all))
+    Ok(line_chart(&x, &y, &all)?)
 }
 
 /// The error of the split sum over optical depth and the fall of the source along it.
-pub fn split_sum(_: &SplitSumPlotArgs) -> Chart {
+///
+/// # Errors
+/// [`CliError`] where the map cannot be drawn.
+pub fn split_sum(_: &SplitSumPlotArgs) -> Result<String, CliError> {
     const COLUMNS: u32 = 72;
     const ROWS: u32 = 48;
     // From a hundredth to ten; falls from -1 to 1.
@@ -87,10 +89,10 @@ pub fn split_sum(_: &SplitSumPlotArgs) -> Chart {
     let x = Axis::logarithmic("optical depth of the line");
     let y =
         Axis::linear("k: the source falls as exp(\u{2212}k t) with optical depth t from the eye");
-    heat_map(
+    Ok(heat_map(
         (&x, &y),
         &data,
         ("error of the split sum, %", &Colormap::diverging(50.0)),
         &[-20.0, -10.0, -1.0, 1.0, 10.0, 20.0],
-    )
+    )?)
 }

@@ -10,13 +10,10 @@ mod particles;
 use crate::args::{PlotArgs, PlotWhat};
 use crate::error::CliError;
 use crate::report;
-use airlight_plot::{PlotError, Raster};
+use airlight_plot::Raster;
 
 /// Pixels of a PNG for each of the drawing's.
 const PNG_SCALE: f32 = 2.0;
-
-/// A chart as SVG, or why it could not be drawn.
-type Chart = Result<String, PlotError>;
 
 /// Runs the command.
 ///
@@ -36,21 +33,16 @@ pub fn run(args: &PlotArgs) -> Result<(), CliError> {
         Some("png") => true,
         _ => return Err(CliError::usage("--output must end in .svg or .png")),
     };
-    let chart = match &args.what {
+    let svg = match &args.what {
         PlotWhat::Phase(args) => particles::phase(args)?,
         PlotWhat::Efficiency(args) => particles::efficiency(args)?,
         PlotWhat::Spectrum(args) => air::spectrum(args)?,
         PlotWhat::Transmittance(args) => air::transmittance(args)?,
         PlotWhat::FogProfile(args) => fog::profile(args)?,
-        PlotWhat::SplitSum(args) => fog::split_sum(args),
+        PlotWhat::SplitSum(args) => fog::split_sum(args)?,
     };
-    let failed = |error: PlotError| CliError::failure(error.to_string());
-    let svg = chart.map_err(failed)?;
     match png {
         false => report::write(output, &svg),
-        true => {
-            let png = Raster::from_svg(&svg, PNG_SCALE).and_then(|raster| raster.to_png());
-            report::write(output, png.map_err(failed)?)
-        }
+        true => report::write(output, Raster::from_svg(&svg, PNG_SCALE)?.to_png()?),
     }
 }

@@ -1,6 +1,5 @@
 //! What particles do to light: phase functions and efficiencies.
 
-use super::Chart;
 use crate::args::{EfficiencyPlotArgs, Index, PhasePlotArgs};
 use crate::error::CliError;
 use crate::progress::Busy;
@@ -18,7 +17,7 @@ const VARIANCE: f64 = 0.1;
 ///
 /// # Errors
 /// [`CliError`] where nothing was asked for, or particles are refused.
-pub fn phase(args: &PhasePlotArgs) -> Result<Chart, CliError> {
+pub fn phase(args: &PhasePlotArgs) -> Result<String, CliError> {
     if args.droplets.is_empty() && args.size_parameter.is_empty() {
         return Err(CliError::usage(
             "say whose phase function: --droplets KIND,... or --size-parameter X,...",
@@ -36,7 +35,7 @@ pub fn phase(args: &PhasePlotArgs) -> Result<Chart, CliError> {
     }
     drop(busy);
     if args.polar {
-        return Ok(polar_plot(&curves));
+        return Ok(polar_plot(&curves)?);
     }
     let degrees = |points: &mut Vec<(f64, f64)>| {
         points.truncate(points.len() / 2 + 1);
@@ -47,7 +46,7 @@ pub fn phase(args: &PhasePlotArgs) -> Result<Chart, CliError> {
         .for_each(|curve| degrees(&mut curve.points));
     let x = Axis::linear("scattering angle, degrees");
     let y = Axis::logarithmic("phase function, 1/sr");
-    Ok(line_chart(&x, &y, &curves))
+    Ok(line_chart(&x, &y, &curves)?)
 }
 
 /// Angles all the way round (rad), in steps that resolve features of a width.
@@ -95,7 +94,7 @@ fn of_sphere(x: f64, index: Index, pattern: bool) -> Result<Curve, CliError> {
 ///
 /// # Errors
 /// [`CliError`] where particles are refused.
-pub fn efficiency(args: &EfficiencyPlotArgs) -> Result<Chart, CliError> {
+pub fn efficiency(args: &EfficiencyPlotArgs) -> Result<String, CliError> {
     const STEPS: usize = 2500;
     const SMOOTH_STEPS: usize = 120;
     let index = Complex64::new(args.index.real, args.index.imaginary);
@@ -123,5 +122,5 @@ pub fn efficiency(args: &EfficiencyPlotArgs) -> Result<Chart, CliError> {
     ];
     let x = Axis::linear("size parameter 2 pi r / wavelength");
     let y = Axis::linear("scattering efficiency");
-    Ok(line_chart(&x, &y, &curves))
+    Ok(line_chart(&x, &y, &curves)?)
 }

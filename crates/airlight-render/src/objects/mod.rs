@@ -14,26 +14,11 @@ pub mod surface;
 
 pub use lit::{LitObjects, Scratch, ViewRay};
 pub use rows::{ObjectRows, write_depth};
+pub use shape::Ray;
 
 use glam::DVec3;
 use shape::{Met, Shape};
 use surface::Surface;
-
-/// A straight line from a point.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ray {
-    /// Where it starts, m.
-    pub origin: DVec3,
-    /// Unit vector.
-    pub direction: DVec3,
-}
-
-impl Ray {
-    /// The point after so many metres.
-    pub fn at(&self, distance_m: f64) -> DVec3 {
-        self.origin + distance_m * self.direction
-    }
-}
 
 /// A thing.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,7 +1,22 @@
 //! Solids, and where rays meet them.
 
-use super::Ray;
 use glam::DVec3;
+
+/// A straight line from a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ray {
+    /// Where it starts, m.
+    pub origin: DVec3,
+    /// Unit vector.
+    pub direction: DVec3,
+}
+
+impl Ray {
+    /// The point at a distance from its start, m.
+    pub fn at(&self, distance_m: f64) -> DVec3 {
+        self.origin + distance_m * self.direction
+    }
+}
 
 /// A solid that stands on the ground, or the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]

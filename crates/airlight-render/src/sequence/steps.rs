@@ -4,6 +4,7 @@ use super::{FramePattern, SequencePlan, parse_span_s};
 use crate::error::RenderError;
 use crate::layout::PictureFile;
 use crate::renderer::Renderer;
+use airlight::sky::SunCoverage;
 use airlight::sun::Moment;
 use std::path::PathBuf;
 
@@ -26,9 +27,31 @@ pub struct SequenceStep {
     pub files: Vec<PictureFile>,
 }
 
+impl Renderer {
+    /// The pictures of a scene with a sequence, those of which the files are there already included.
+    ///
+    /// # Errors
+    /// [`RenderError`] for a sequence without a file name, with a sun that does not move, or with invalid times.
+    pub fn sequence(&self) -> Result<Option<Sequence>, RenderError> {
+        Sequence::of(self)
+    }
+
+    /// The range of suns of the moments of a sequence; `None` without any.
+    ///
+    /// # Errors
+    /// As [`Renderer::sun`].
+    pub fn suns_of(&self, steps: &[SequenceStep]) -> Result<Option<SunCoverage>, RenderError> {
+        Ok(match steps {
+            [] => None,
+            [only] => Some(self.suns_near(&self.sun(Some(only.time))?)),
+            _ => Some(SunCoverage::All),
+        })
+    }
+}
+
 impl Sequence {
     /// The sequence of a renderer's scene, where it has one.
-    pub(crate) fn of(renderer: &Renderer) -> Result<Option<Self>, RenderError> {
+    fn of(renderer: &Renderer) -> Result<Option<Self>, RenderError> {
         let Some(spec) = &renderer.scene().sequence else {
             return Ok(None);
         };
