@@ -7,6 +7,7 @@ use airlight::sky::{Sky, SkyError, SkySettings, SunCoverage};
 use airlight::spectrum::WavelengthGrid;
 
 /// One atmosphere with one position of the sun, seen from the ground.
+#[derive(Debug)]
 pub struct Solved {
     sky: Sky,
     wavelengths_nm: Vec<f64>,
@@ -95,6 +96,7 @@ impl Solved {
 }
 
 /// Radiance in a direction at each wavelength, W m^-2 sr^-1 nm^-1.
+#[derive(Debug)]
 pub struct Light {
     /// Single scattering.
     pub single: Vec<f64>,

@@ -3,6 +3,7 @@
 //! They are compiled in and read completely by the tests, so parsing panics with a message on malformed ones.
 
 /// A table of text fields with a header.
+#[derive(Debug)]
 pub struct Table {
     head: Vec<&'static str>,
     rows: Vec<Vec<&'static str>>,
@@ -41,7 +42,7 @@ impl Table {
 }
 
 /// A line of a table.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 pub struct Line<'a> {
     head: &'a [&'static str],
     fields: &'a [&'static str],

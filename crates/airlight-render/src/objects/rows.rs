@@ -9,6 +9,7 @@ use airlight_image::output::{Metadata, Written};
 use airlight_image::rows::RowFn;
 use airlight_image::{Control, Frame, ImageError, Projection, RowSource};
 use glam::DVec3;
+use std::fmt;
 use std::path::Path;
 
 /// A picture of objects over the picture of a sky.
@@ -19,6 +20,16 @@ pub struct ObjectRows<'a> {
     frame: Frame,
     channels: &'a PixelChannels,
     scale: f32,
+}
+
+impl fmt::Debug for ObjectRows<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("ObjectRows")
+            .field("draws_objects", &self.draws_objects)
+            .field("frame", &self.frame)
+            .field("scale", &self.scale)
+            .finish_non_exhaustive()
+    }
 }
 
 impl<'a> ObjectRows<'a> {

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use std::sync::{Arc, LazyLock};
 
 /// The fog between the camera and the objects of a picture.
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 pub enum FogOverlay {
     /// Fog that scatters light, and the lights in it.
     Fog(FogSource, Option<RgbLightSet>),
@@ -25,7 +25,7 @@ pub enum FogOverlay {
 }
 
 /// Fog and the daylight that it scatters.
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 pub enum FogSource {
     /// Fog in ambient light and sunlight.
     Alone(RgbFog),
@@ -53,6 +53,7 @@ pub enum ExistingAerial {
 }
 
 /// A fog overlay from one eye height, tabulated for the pixels of a picture.
+#[derive(Debug)]
 pub(super) struct FogSampler<'a> {
     overlay: &'a FogOverlay,
     eye_height_m: f64,

@@ -39,6 +39,7 @@ use fog_overlay::FogSampler;
 use glam::DVec3;
 
 /// Rows of a picture in fog.
+#[derive(Debug)]
 pub struct Overlay<'a> {
     picture: &'a Picture,
     depth: &'a DepthMap,

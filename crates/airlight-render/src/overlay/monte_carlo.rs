@@ -15,6 +15,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// The path radiance of a picture's fog by Monte Carlo.
+#[derive(Debug)]
 pub struct MonteCarloFog {
     solver: MonteCarlo,
     /// Red, green and blue of the radiance at each wavelength, in the picture's unit.

@@ -27,6 +27,7 @@ const GROUND_ALBEDO: f64 = 0.2;
 const SUN_STRENGTH: f64 = 3.0;
 
 /// The camera and the fog of a description over a picture.
+#[derive(Debug)]
 pub struct PreparedOverlay {
     /// The camera.
     pub camera: Intrinsics,

@@ -87,9 +87,6 @@ pub struct Exr {
     pub height: u32,
     pub channels: BTreeMap<String, Vec<f32>>,
     pub texts: BTreeMap<String, String>,
-    pub attributes: exr::meta::header::LayerAttributes,
-    pub shared: exr::meta::header::ImageAttributes,
-    pub is_half: bool,
 }
 
 impl Exr {
@@ -104,7 +101,6 @@ impl Exr {
         Self {
             width: layer.size.0 as u32,
             height: layer.size.1 as u32,
-            is_half: matches!(layer.channel_data.list[0].sample_data, FlatSamples::F16(_)),
             channels: layer
                 .channel_data
                 .list
@@ -122,8 +118,6 @@ impl Exr {
                 .iter()
                 .filter_map(|(name, value)| Some((name.to_string(), text(value)?)))
                 .collect(),
-            attributes: layer.attributes,
-            shared: image.attributes,
         }
     }
 

@@ -106,7 +106,7 @@ enum Lit {
     /// Sun and sky.
     Sky(Arc<Klassen1987>),
     /// With fog and ground, from any height.
-    Scene(Klassen1987Scene),
+    Scene(Box<Klassen1987Scene>),
 }
 
 impl PreparedAir {
@@ -131,7 +131,7 @@ impl PreparedAir {
                     true => {
                         let fog = self.fog.clone();
                         let scene = Klassen1987Scene::new(sky, height_m, fog, self.depth);
-                        Lit::Scene(scene.map_err(refused)?)
+                        Lit::Scene(Box::new(scene.map_err(refused)?))
                     }
                 };
                 *last() = Some((*sun, lit.clone()));
