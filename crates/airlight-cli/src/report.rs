@@ -108,6 +108,14 @@ pub fn bytes(count: u64) -> String {
     }
 }
 
+/// The names of a set with their descriptions, one a line, each after `indent`.
+pub fn named<T: Named>(indent: &str) -> String {
+    let width = T::all().map(|value| value.name().len()).max().unwrap_or(0);
+    T::all()
+        .map(|value| format!("{indent}{:width$}  {}\n", value.name(), value.summary()))
+        .collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -119,12 +127,4 @@ mod tests {
         assert_eq!(bytes(123), "123 bytes");
         assert_eq!(bytes(12_345_678), "12.3 MB");
     }
-}
-
-/// The names of a set with their descriptions, one a line, each after `indent`.
-pub fn named<T: Named>(indent: &str) -> String {
-    let width = T::all().map(|value| value.name().len()).max().unwrap_or(0);
-    T::all()
-        .map(|value| format!("{indent}{:width$}  {}\n", value.name(), value.summary()))
-        .collect()
 }
