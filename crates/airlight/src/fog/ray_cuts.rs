@@ -7,8 +7,11 @@ const STEPS: [f64; 14] = [
     0.0, 0.12, 0.25, 0.4, 0.57, 0.77, 1.0, 1.3, 1.65, 2.1, 2.7, 3.5, 5.0, 8.0,
 ];
 
-/// Number of steps in each interval of smooth variation that is not exponential.
-const RAMP_STEPS: u32 = 10;
+/// Breakpoints of an interval of smooth variation that is not exponential, as fractions of it: eighths, and one more near each
+/// end, as the ratio to the density of other layers changes fastest where a density rises from 0.
+const RAMP_STEPS: [f64; 11] = [
+    0.0, 0.03, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 0.97, 1.0,
+];
 
 /// Breakpoints for profiles with these structures, in increasing order, m: steps from the start of each exponential decay
 /// upwards, steps of smooth variation, edges of layers.
@@ -21,8 +24,7 @@ pub(super) fn height_breakpoints(profiles: &[HeightStructure], ground_height_m: 
             heights.extend(STEPS.map(|step| from + step * decay.scale_height_m));
         }
         for [from, to] in &profile.ramps_m {
-            let step = (to - from) / f64::from(RAMP_STEPS);
-            heights.extend((0..=RAMP_STEPS).map(|k| from + f64::from(k) * step));
+            heights.extend(RAMP_STEPS.map(|step| from + step * (to - from)));
         }
     }
     heights.sort_by(f64::total_cmp);

@@ -118,11 +118,11 @@ fn mistakes_are_refused_with_their_place_and_what_would_be_right() {
         ),
         (
             "[camera]\nprojection = \"perspektive\"\n",
-            "line 2, column 14: camera.projection: expected one of equirectangular,",
+            "line 2, column 14: camera.projection: expected a projection (equirectangular,",
         ),
         (
             "[camera]\nprojection = \"perspektive\"\n",
-            "(did you mean \"perspective\"?)",
+            "got \"perspektive\"; try \"perspective\"",
         ),
         (
             "[fog]\n  droplets = \"radiaton\"\n",

@@ -485,7 +485,7 @@ fn errors_in_aerosol_types_report_their_key() {
         "aerosol.mixture[0].share"
     );
     let soot = part("share = 1, component = \"sooot\"");
-    assert!(soot.to_string().contains("did you mean \"soot\""), "{soot}");
+    assert!(soot.to_string().ends_with("try \"soot\""), "{soot}");
     let both = part("share = 1, component = \"soot\", type = \"urban\"");
     assert!(matches!(*both.problem, ConfigProblem::Conflict { .. }));
     let none = refuse("aerosol.mixture = []");
