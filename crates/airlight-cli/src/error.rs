@@ -6,7 +6,7 @@ use airlight::optics::mie::MieError;
 use airlight::scene::SceneError;
 use airlight::sky::SkyError;
 use airlight::spectrum::GridError;
-use airlight::sun::position::EphemerisError;
+use airlight::sun::EphemerisError;
 use airlight_image::ImageError;
 use airlight_plot::PlotError;
 use airlight_render::RenderError;

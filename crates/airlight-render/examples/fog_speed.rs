@@ -9,7 +9,6 @@ use airlight::fog::visibility::{Contrast, extinction_per_m};
 use airlight::fog::{
     DensityProfile, DirectionalLight, FogLighting, FogScattering, Ground, RgbFog, RgbLayer,
 };
-use airlight::spectrum::Spectrum;
 use airlight_image::input::{DepthMap, DepthOptions, Picture, read_depth, read_picture};
 use airlight_image::output::exr::{ExrOptions, ExrSample};
 use airlight_image::output::{Metadata, PictureOptions, exr, png};
@@ -185,13 +184,13 @@ fn fogs() -> [(&'static str, DensityProfile, Option<f64>); 4] {
     ]
 }
 
-fn fog(profile: DensityProfile, sun_elevation_deg: Option<f64>, ambient: Spectrum<3>) -> RgbFog {
+fn fog(profile: DensityProfile, sun_elevation_deg: Option<f64>, ambient: [f32; 3]) -> RgbFog {
     let light = FogLighting {
         sun: sun_elevation_deg.map(|elevation| DirectionalLight {
             direction: axes::direction(180.0, elevation),
-            irradiance: (ambient * 9.0).0,
+            irradiance: ambient.map(|c| c * 9.0),
         }),
-        ambient: ambient.0,
+        ambient,
         ground_albedo: [0.2; 3],
     };
     let layers = [RgbLayer {

@@ -4,7 +4,7 @@
 //! cargo run --release -p airlight-validation --example polarisation [PATHS]
 //! ```
 
-use airlight::atmosphere::aerosol_types::AerosolType;
+use airlight::atmosphere::AerosolType;
 use airlight::atmosphere::{AerosolLoad, AerosolMixture, Atmosphere, ConstituentKind, preset};
 use airlight::axes::direction;
 use airlight::monte_carlo::{MonteCarlo, MonteCarloSettings, PolarisedEstimate};

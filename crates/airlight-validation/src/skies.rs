@@ -3,7 +3,7 @@
 use crate::check::{Check, Row, Suite, Unit};
 use crate::solved::Solved;
 use crate::table::{Line, Table};
-use airlight::atmosphere::aerosol_types::AerosolType;
+use airlight::atmosphere::AerosolType;
 use airlight::atmosphere::{
     self, AerosolLoad, AerosolMixture, Atmosphere, ConstituentKind, reference,
 };

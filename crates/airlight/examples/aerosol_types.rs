@@ -2,7 +2,7 @@
 //! `cargo run --release -p airlight --example aerosol_types`. Takes some minutes. An optional argument sets
 //! `SkySettings::orders.peak_degree`.
 
-use airlight::atmosphere::aerosol_types::AerosolType;
+use airlight::atmosphere::AerosolType;
 use airlight::atmosphere::{AerosolLoad, AerosolMixture, ConstituentKind, preset};
 use airlight::axes;
 use airlight::monte_carlo::{MonteCarlo, MonteCarloSettings};

@@ -196,7 +196,7 @@ fn error() -> Result<(), Klassen1987Error> {
     println!("| air | sun | form | mean | rms | CIEDE2000 | colour alone | sun |");
     println!("|---|---|---|---|---|---|---|---|");
     let layers = Klassen1987Settings::default();
-    let average = presets::earth::average();
+    let average = presets::average();
     for (air, atmosphere, settings) in [
         ("layers", layers.atmosphere()?, layers),
         (

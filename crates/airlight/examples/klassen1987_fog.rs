@@ -9,9 +9,9 @@ use airlight::fog::visibility::{Contrast, extinction_per_m};
 use airlight::fog::{
     DensityProfile, DirectionalLight, FogLighting, FogScattering, Ground, RgbFog, RgbLayer,
 };
-use airlight::models::klassen1987::fog::{Slab1987, SunDepth};
+use airlight::models::klassen1987::{RgbSlab1987, SunDepth};
 use airlight::optics::{Depolarization, PhaseFunction};
-use airlight::spectrum::{RgbSpace, SpectralCurve, Spectrum};
+use airlight::spectrum::{RgbSpace, SpectralCurve};
 use std::f64::consts::PI;
 use std::time::Instant;
 
@@ -174,7 +174,7 @@ fn extinction(visibility_m: f64) -> f64 {
 }
 
 /// The fog of 1987 in green light, with solar irradiance 1 at its top.
-fn slab(visibility_m: f64) -> Slab1987<3> {
+fn slab(visibility_m: f64) -> RgbSlab1987 {
     let air = Constituent {
         kind: ConstituentKind::Molecules,
         density: DensityProfile::Uniform,
@@ -184,7 +184,7 @@ fn slab(visibility_m: f64) -> Slab1987<3> {
     };
     let parts = [&layer(visibility_m), &air];
     let (heights, sin_sun) = ([TOP_M, TOP_M], sun().y);
-    Slab1987::new(parts, heights, Spectrum::ONE, sin_sun, &[550.0; 3])
+    RgbSlab1987::new(parts, heights, [1.0; 3], sin_sun, &[550.0; 3])
 }
 
 /// Fog of drops of 10 micrometres.

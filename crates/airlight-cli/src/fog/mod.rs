@@ -7,7 +7,6 @@ use crate::error::CliError;
 use crate::interrupt::{self, STOP};
 use crate::progress::{Busy, RowsBar};
 use crate::report::{self, bytes};
-use airlight::fog::visibility::Contrast;
 use airlight_image::Control;
 use airlight_image::output::Written;
 use airlight_render::batch::is_batch;
@@ -99,13 +98,10 @@ fn one(args: &OverlayArgs, scene: &OverlayScene) -> Result<(), CliError> {
         return Ok(());
     }
     let size = image.picture.size;
-    let [red, green, blue] = prepared.level.colour.0;
-    let contrast = match scene.contrast() {
-        Contrast::TwoPercent => "2 %",
-        Contrast::FivePercent => "5 %",
-    };
+    let [red, green, blue] = prepared.level.colour;
+    let contrast = 100.0 * scene.contrast().value();
     report::print(&format!(
-        "{}: {} x {}, {}\n  visibility    {} m (contrast {contrast})\n  light         {red:.4} {green:.4} {blue:.4} ({})\n  \
+        "{}: {} x {}, {}\n  visibility    {} m (contrast {contrast} %)\n  light         {red:.4} {green:.4} {blue:.4} ({})\n  \
          depth         {} pixels unknown, {} infinitely far\n{noise}",
         output.display(),
         size.width(),

@@ -66,7 +66,7 @@ impl<'a> Record<'a> {
         let facts = Facts {
             seed,
             extinction_per_m: scene.extinction_per_m(),
-            ambient_rgb: prepared.level.colour.0,
+            ambient_rgb: prepared.level.colour,
             ambient_from: prepared.level.source,
             width: size.width(),
             height: size.height(),

@@ -1,6 +1,5 @@
 //! The colour of thick fog, estimated from a picture.
 
-use airlight::spectrum::Spectrum;
 use airlight_image::input::{DepthMap, Picture};
 
 /// How an estimate came about.
@@ -22,7 +21,7 @@ const COUNTED: usize = 8;
 /// The light that fog would be made of: the mean colour of the [`horizon_pixels`], as the fog ends in the sky near the
 /// horizon. Where there are none, as Foggy Cityscapes and He et al. (2011) do, the dark channel (the smallest of the three
 /// colours within 15 x 15 pixels); of the pixels where it is brightest, one in a thousand, the mean colour.
-pub fn estimate_ambient(picture: &Picture, depth: &DepthMap) -> (Spectrum<3>, Ambient) {
+pub fn estimate_ambient(picture: &Picture, depth: &DepthMap) -> ([f32; 3], Ambient) {
     if let Some(pixels) = horizon_pixels(picture, depth) {
         return (mean(picture, pixels.into_iter()), Ambient::Sky);
     }
@@ -75,7 +74,7 @@ pub fn horizon_pixels(picture: &Picture, depth: &DepthMap) -> Option<Vec<usize>>
     Some(middle.collect())
 }
 
-fn mean(picture: &Picture, pixels: impl Iterator<Item = usize>) -> Spectrum<3> {
+fn mean(picture: &Picture, pixels: impl Iterator<Item = usize>) -> [f32; 3] {
     let mut sum = [0.0f64; 3];
     let mut count = 0.0;
     for pixel in pixels {
@@ -84,7 +83,7 @@ fn mean(picture: &Picture, pixels: impl Iterator<Item = usize>) -> Spectrum<3> {
             *sum += f64::from(*value);
         }
     }
-    Spectrum(sum.map(|s| (s / f64::max(count, 1.0)) as f32))
+    sum.map(|s| (s / f64::max(count, 1.0)) as f32)
 }
 
 /// The smallest value in the patch round each pixel: columns first, then rows.

@@ -2,13 +2,12 @@
 
 use airlight::fog::lights::{RgbLightSet, ViewRay};
 use airlight::fog::{RgbFog, RgbFogTable, legacy};
-use airlight::scene::FoggySky;
-use airlight::spectrum::Spectrum;
+use airlight::scene::RgbFoggySky;
 use airlight::spectrum::rgb::{srgb_decode, srgb_encode};
-use airlight::transfer::PathOptics;
+use airlight::transfer::RgbPathOptics;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
-use std::sync::{Arc, LazyLock};
+use std::sync::LazyLock;
 
 /// The fog between the camera and the objects of a picture.
 #[derive(Debug, Clone)]
@@ -16,12 +15,12 @@ pub enum FogOverlay {
     /// Fog that scatters light, and the lights in it.
     Fog(FogSource, Option<RgbLightSet>),
     /// Exponential-squared fog of one colour: density (1/m) and colour.
-    ExponentialSquared(f64, Spectrum<3>),
+    ExponentialSquared(f64, [f32; 3]),
     /// Linear fog of one colour: start and end (m), and colour.
-    Linear(f64, f64, Spectrum<3>),
+    Linear(f64, f64, [f32; 3]),
     /// Foggy Cityscapes (Sakaridis et al. 2018): uniform fog of an extinction (1/m) and one colour, blended in encoded
     /// (sRGB) values instead of light.
-    Encoded(f64, Spectrum<3>),
+    Encoded(f64, [f32; 3]),
 }
 
 /// Fog and the daylight that it scatters.
@@ -32,7 +31,7 @@ pub enum FogSource {
     /// Fog in a solved sky.
     Sky {
         /// Sky and fog, with the eye at the camera's height.
-        sky: Arc<FoggySky<3>>,
+        sky: RgbFoggySky,
         /// Units of the picture in one cd/m^2.
         radiance_scale: f32,
         /// Whether the picture shows the clear air.
@@ -81,12 +80,12 @@ impl<'a> FogSampler<'a> {
         &self,
         direction: DVec3,
         distance_m: f64,
-        path_radiance: Option<Spectrum<3>>,
-    ) -> PathOptics<3> {
+        path_radiance: Option<[f32; 3]>,
+    ) -> RgbPathOptics {
         match self.overlay {
             FogOverlay::Fog(source, lights) => {
                 let mut optics = match &self.table {
-                    Some(table) => table.path(direction, distance_m).into(),
+                    Some(table) => table.path(direction, distance_m),
                     None => source.optics(self.eye_height_m, direction, distance_m),
                 };
                 optics.path_radiance = path_radiance.unwrap_or(optics.path_radiance);
@@ -96,28 +95,29 @@ impl<'a> FogSampler<'a> {
                         direction,
                         length_m: distance_m,
                     });
-                    optics.path_radiance += Spectrum(glow);
+                    optics.path_radiance =
+                        std::array::from_fn(|i| optics.path_radiance[i] + glow[i]);
                 }
                 optics
             }
             FogOverlay::ExponentialSquared(density, colour) => {
-                legacy::exponential_squared(*density, distance_m, colour.0).into()
+                legacy::exponential_squared(*density, distance_m, *colour)
             }
             FogOverlay::Linear(start, end, colour) => {
-                legacy::linear(*start, *end, distance_m, colour.0).into()
+                legacy::linear(*start, *end, distance_m, *colour)
             }
             FogOverlay::Encoded(extinction, colour) => {
                 let transmittance = (-extinction * distance_m).exp() as f32;
-                PathOptics {
-                    transmittance: Spectrum::splat(transmittance),
-                    path_radiance: *colour * (1.0 - transmittance),
+                RgbPathOptics {
+                    transmittance: [transmittance; 3],
+                    path_radiance: colour.map(|c| c * (1.0 - transmittance)),
                 }
             }
         }
     }
 
     /// A colour through the fog.
-    pub fn apply(&self, optics: &PathOptics<3>, colour: Spectrum<3>) -> Spectrum<3> {
+    pub fn apply(&self, optics: &RgbPathOptics, colour: [f32; 3]) -> [f32; 3] {
         let FogOverlay::Encoded(_, fog) = self.overlay else {
             return optics.apply(colour);
         };
@@ -125,14 +125,14 @@ impl<'a> FogSampler<'a> {
         if part == 1.0 {
             return colour;
         }
-        Spectrum::from_fn(|i| decode(encode(colour[i]) * part + encode(fog[i]) * (1.0 - part)))
+        std::array::from_fn(|i| decode(encode(colour[i]) * part + encode(fog[i]) * (1.0 - part)))
     }
 }
 
 impl FogSource {
-    fn optics(&self, eye_height_m: f64, direction: DVec3, distance_m: f64) -> PathOptics<3> {
+    fn optics(&self, eye_height_m: f64, direction: DVec3, distance_m: f64) -> RgbPathOptics {
         match self {
-            Self::Alone(fog) => fog.path(eye_height_m, direction, distance_m).into(),
+            Self::Alone(fog) => fog.path(eye_height_m, direction, distance_m),
             Self::Sky {
                 sky,
                 radiance_scale,
@@ -140,12 +140,12 @@ impl FogSource {
             } => {
                 let optics = match air {
                     ExistingAerial::Missing if distance_m < f64::INFINITY => {
-                        sky.optics(direction, distance_m)
+                        sky.path(direction, distance_m)
                     }
-                    _ => sky.over_clear(direction, distance_m),
+                    _ => sky.path_over_clear(direction, distance_m),
                 };
-                PathOptics {
-                    path_radiance: optics.path_radiance * *radiance_scale,
+                RgbPathOptics {
+                    path_radiance: optics.path_radiance.map(|s| s * *radiance_scale),
                     ..optics
                 }
             }

@@ -3,11 +3,9 @@
 use super::{Ambient, OverlaySpec, estimate_ambient, horizon_pixels};
 use crate::RenderError;
 use airlight::fog::FogLighting;
-use airlight::scene::FoggySky;
-use airlight::spectrum::Spectrum;
+use airlight::scene::RgbFoggySky;
 use airlight_image::frame::Intrinsics;
 use airlight_image::input::{DepthMap, Picture};
-use glam::DVec3;
 use serde::Serialize;
 use std::f32::consts::PI;
 use std::fmt;
@@ -51,7 +49,7 @@ impl fmt::Display for LightLevelSource {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightLevel {
     /// Radiance of the ambient light, in the picture's unit; in a solved sky, of a white horizontal surface.
-    pub colour: Spectrum<3>,
+    pub colour: [f32; 3],
     /// Where it comes from.
     pub source: LightLevelSource,
 }
@@ -61,7 +59,7 @@ impl LightLevel {
     pub(super) fn ambient(spec: &OverlaySpec, picture: &Picture, depth: &DepthMap) -> Self {
         if let Some(given) = spec.ambient {
             return Self {
-                colour: Spectrum(given.map(|v| v as f32)),
+                colour: given.map(|v| v as f32),
                 source: LightLevelSource::Given,
             };
         }
@@ -91,10 +89,10 @@ pub(super) struct View<'p> {
 /// [`RenderError::Setting`] if the picture and its ambient light are black.
 pub(super) fn radiance_scale(
     spec: &OverlaySpec,
-    sky: &FoggySky<3>,
+    sky: &RgbFoggySky,
     view: &View<'_>,
 ) -> Result<(f32, LightLevel), RenderError> {
-    let white = white_surface(sky.fog_lighting());
+    let white = white_surface(&sky.fog_lighting());
     let stated = view.picture.white_luminance_cd_m2.map(|white| 1.0 / white);
     let (scale, source) = match (spec.radiance_scale, stated) {
         (Some(scale), _) => (scale as f32, LightLevelSource::RadianceScale),
@@ -113,20 +111,21 @@ pub(super) fn radiance_scale(
              picture's units in one cd/m^2",
         ));
     }
-    let colour = white * scale;
+    let colour = white.map(|c| c * scale);
     Ok((scale, LightLevel { colour, source }))
 }
 
 /// Radiance of a white horizontal surface in the light at a fog's top.
-fn white_surface(light: &FogLighting<Spectrum<3>>) -> Spectrum<3> {
-    let sun = light.sun.map_or(Spectrum::ZERO, |sun| {
-        sun.irradiance * (sun.direction.y.max(0.0) as f32 / PI)
+fn white_surface(light: &FogLighting<[f32; 3]>) -> [f32; 3] {
+    let sun = light.sun.map_or([0.0; 3], |sun| {
+        let factor = sun.direction.y.max(0.0) as f32 / PI;
+        sun.irradiance.map(|c| c * factor)
     });
-    light.ambient + sun
+    std::array::from_fn(|i| light.ambient[i] + sun[i])
 }
 
 /// Ratio of the picture's sky near the horizon to the solved one.
-fn picture_over_solved(spec: &OverlaySpec, sky: &FoggySky<3>, view: &View<'_>) -> Option<f32> {
+fn picture_over_solved(spec: &OverlaySpec, sky: &RgbFoggySky, view: &View<'_>) -> Option<f32> {
     if spec.ambient.is_some() {
         return None;
     }
@@ -141,20 +140,14 @@ fn picture_over_solved(spec: &OverlaySpec, sky: &FoggySky<3>, view: &View<'_>) -
             continue;
         }
         let rgb = &picture.rgb[3 * pixel..];
-        shown += f64::from(luminance(Spectrum([rgb[0], rgb[1], rgb[2]])));
-        solved += f64::from(luminance(clear_sky(sky, direction)));
+        shown += f64::from(luminance([rgb[0], rgb[1], rgb[2]]));
+        solved += f64::from(luminance(sky.clear_radiance(direction)));
     }
     let scale = (shown / solved) as f32;
     (scale.is_finite() && scale > 0.0).then_some(scale)
 }
 
-fn clear_sky(sky: &FoggySky<3>, direction: DVec3) -> Spectrum<3> {
-    let mut rgb = [0.0; 3];
-    sky.clear().sample(direction, &mut rgb);
-    Spectrum(rgb)
-}
-
 /// Luminance of linear sRGB (BT.709).
-fn luminance(colour: Spectrum<3>) -> f32 {
+fn luminance(colour: [f32; 3]) -> f32 {
     0.2126 * colour[0] + 0.7152 * colour[1] + 0.0722 * colour[2]
 }

@@ -30,13 +30,13 @@ pub use prepared_overlay::PreparedOverlay;
 pub use sky_light::SkyLight;
 pub use spec::{DepthFileKind, DepthHoles, OverlaySpec};
 
-use airlight::spectrum::Spectrum;
-use airlight::transfer::PathOptics;
+use airlight::transfer::RgbPathOptics;
 use airlight_image::input::{DepthKind, DepthMap, LightReference, Picture};
 use airlight_image::{ImageError, Intrinsics, RowSource, Size};
 use ambient::horizon_pixels;
 use fog_overlay::FogSampler;
 use glam::DVec3;
+use std::fmt;
 
 /// Rows of a picture in fog.
 #[derive(Debug)]
@@ -80,6 +80,16 @@ impl Channels {
             Self::Picture => &NAMES[..3],
             Self::Layers => &NAMES,
         }
+    }
+}
+
+impl fmt::Debug for Overlay<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Overlay")
+            .field("size", &self.picture.size)
+            .field("camera", &self.camera)
+            .field("channels", &self.channels)
+            .finish_non_exhaustive()
     }
 }
 
@@ -170,13 +180,15 @@ impl<'a> Overlay<'a> {
 
     /// A pixel's colour through the fog. The colours of linear files are multiplied by their opacity, and so is the path
     /// radiance before them.
-    fn through(&self, optics: &PathOptics<3>, colour: Spectrum<3>, opacity: f32) -> Spectrum<3> {
+    fn through(&self, optics: &RgbPathOptics, colour: [f32; 3], opacity: f32) -> [f32; 3] {
         if self.picture.reference == LightReference::Display || opacity == 1.0 {
             self.fog.apply(optics, colour)
         } else if opacity > 0.0 {
-            self.fog.apply(optics, colour / opacity) * opacity
+            self.fog
+                .apply(optics, colour.map(|c| c / opacity))
+                .map(|c| c * opacity)
         } else {
-            colour * optics.transmittance
+            std::array::from_fn(|i| colour[i] * optics.transmittance[i])
         }
     }
 }
@@ -193,18 +205,18 @@ impl RowSource for Overlay<'_> {
         for (i, (out, (direction, distance))) in pixels.enumerate() {
             let pixel = first + i;
             let rgb = &self.picture.rgb[3 * pixel..3 * pixel + 3];
-            let colour = Spectrum([rgb[0], rgb[1], rgb[2]]);
+            let colour = [rgb[0], rgb[1], rgb[2]];
             let path_radiance = self.path_radiance.map(|all| {
                 let rgb = &all[3 * pixel..3 * pixel + 3];
-                Spectrum([rgb[0], rgb[1], rgb[2]])
+                [rgb[0], rgb[1], rgb[2]]
             });
             let optics = self.fog.optics(direction, distance, path_radiance);
             let opacity = self.picture.alpha.as_ref().map(|alpha| alpha[pixel]);
             let seen = self.through(&optics, colour, opacity.unwrap_or(1.0));
-            out[..3].copy_from_slice(&seen.0);
+            out[..3].copy_from_slice(&seen);
             if self.has_layers() {
-                out[3..6].copy_from_slice(&optics.transmittance.0);
-                out[6..9].copy_from_slice(&optics.path_radiance.0);
+                out[3..6].copy_from_slice(&optics.transmittance);
+                out[6..9].copy_from_slice(&optics.path_radiance);
                 out[9] = distance as f32;
             }
             if let (Some(opacity), Some(last)) = (opacity, out.last_mut()) {

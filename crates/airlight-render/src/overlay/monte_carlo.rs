@@ -6,12 +6,11 @@ use crate::RenderError;
 use crate::canvas::{ColorMoments, Passes};
 use airlight::atmosphere::Atmosphere;
 use airlight::monte_carlo::{BUNDLE, MonteCarlo, MonteCarloSettings};
-use airlight::scene::{FoggySky, SunState};
+use airlight::scene::{RgbFoggySky, SunState};
 use airlight::spectrum::{RgbSpace, WavelengthGrid, rgb};
 use airlight_image::{Control, ImageError};
 use glam::DVec3;
 use rayon::prelude::*;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// The path radiance of a picture's fog by Monte Carlo.
@@ -23,7 +22,7 @@ pub struct MonteCarloFog {
     eye_altitude_m: f64,
     sun: DVec3,
     /// The fast solution: the fog's transmittance, and the clear air that the picture shows.
-    sky: Arc<FoggySky<3>>,
+    sky: RgbFoggySky,
     radiance_scale: f64,
     air: ExistingAerial,
     paths: u64,
@@ -192,21 +191,22 @@ impl MonteCarloFog {
         if self.air == ExistingAerial::Missing && distance_m < f64::INFINITY {
             return [0.0; 3];
         }
-        let fog = self.sky.over_clear(direction, distance_m).transmittance;
-        let air = self.sky.aerial().optics(direction, distance_m);
-        (fog * air.path_radiance)
-            .0
-            .map(|v| self.radiance_scale * f64::from(v))
+        let fog = self
+            .sky
+            .path_over_clear(direction, distance_m)
+            .transmittance;
+        let air = self.sky.clear_path(direction, distance_m);
+        std::array::from_fn(|i| self.radiance_scale * f64::from(fog[i] * air.path_radiance[i]))
     }
 
     /// Path radiance over that up to the ground. Paths end at the ground, but by its depth a point may lie below it: on a slope,
     /// or if the camera is not as level as its description. Path radiance is taken to grow with opacity there.
     fn below_ground(&self, direction: DVec3, distance_m: f64) -> [f64; 3] {
         let opacity = |distance_m: f64| {
-            let optics = self.sky.optics(direction, distance_m);
-            optics.transmittance.0.map(|t| f64::from(1.0 - t))
+            let optics = self.sky.path(direction, distance_m);
+            optics.transmittance.map(|t| f64::from(1.0 - t))
         };
-        match self.sky.aerial().ground_distance_m(direction) {
+        match self.sky.ground_distance_m(direction) {
             Some(ground_m) if ground_m < distance_m => {
                 let (whole, above) = (opacity(distance_m), opacity(ground_m));
                 std::array::from_fn(|i| match above[i] > 0.0 {

@@ -12,7 +12,7 @@ use airlight::fog::lights::{LightSettings, RgbLightSet};
 use airlight::fog::visibility::extinction_per_m;
 use airlight::fog::{DirectionalLight, FogError, FogLighting, Ground, RgbFog, RgbLayer, legacy};
 use airlight::scene::{FogProfile, SceneError};
-use airlight::spectrum::{RgbSpace, Spectrum, WavelengthGrid};
+use airlight::spectrum::{RgbSpace, WavelengthGrid};
 use airlight_image::Control;
 use airlight_image::frame::Intrinsics;
 use airlight_image::output::exr::{self, ExrOptions, ExrSample};
@@ -50,7 +50,10 @@ impl PreparedOverlay {
     ) -> Result<Self, RenderError> {
         let camera = scene.camera(image.picture.size)?;
         let ambient = LightLevel {
-            colour: image.ambient.colour * scene.overlay.ambient_scale as f32,
+            colour: image
+                .ambient
+                .colour
+                .map(|c| c * scene.overlay.ambient_scale as f32),
             ..image.ambient
         };
         let view = View {
@@ -189,7 +192,7 @@ fn fog(
 }
 
 /// Fog of one colour, which scatters no light.
-fn one_colour(scene: &OverlayScene, colour: Spectrum<3>) -> Result<FogOverlay, RenderError> {
+fn one_colour(scene: &OverlayScene, colour: [f32; 3]) -> Result<FogOverlay, RenderError> {
     let (visibility_m, contrast) = (scene.visibility_m()?, scene.contrast());
     Ok(match scene.fog_profile() {
         FogProfile::Exp2 => {
@@ -205,20 +208,20 @@ fn one_colour(scene: &OverlayScene, colour: Spectrum<3>) -> Result<FogOverlay, R
 fn alone(
     scene: &OverlayScene,
     layers: &[RgbLayer],
-    ambient: Spectrum<3>,
+    ambient: [f32; 3],
 ) -> Result<FogSource, RenderError> {
     let sun_strength = scene.overlay.sun_strength.unwrap_or(SUN_STRENGTH);
     let sun = scene.scene.sun.elevation_deg.map(|elevation_deg| {
         let azimuth_deg = scene.scene.sun.azimuth_deg.unwrap_or(180.0);
         DirectionalLight {
             direction: axes::direction(azimuth_deg, elevation_deg),
-            irradiance: (ambient * (PI * sun_strength as f32)).0,
+            irradiance: ambient.map(|c| c * (PI * sun_strength as f32)),
         }
     });
     let albedo = scene.scene.air.ground_albedo.unwrap_or(GROUND_ALBEDO);
     let light = FogLighting {
         sun,
-        ambient: ambient.0,
+        ambient,
         ground_albedo: [albedo as f32; 3],
     };
     RgbFog::new(layers, Ground::FLAT, &light, scene.fog_scattering())

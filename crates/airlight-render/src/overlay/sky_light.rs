@@ -3,11 +3,11 @@
 use crate::RenderError;
 use airlight::atmosphere::{Atmosphere, Constituent};
 use airlight::fog::FogScattering;
-use airlight::scene::{Effort, FoggySky, LaneChannels, ResolvedScene, SceneError, SunState};
+use airlight::scene::{Effort, ResolvedScene, RgbFoggySky, SceneError, SunState};
 use airlight::sky::{Scattering, Sky, SkySettings, SunCoverage, View};
 use airlight::spectrum::RgbSpace;
 use std::fmt;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError};
 
 /// A solved sky that lights fog: solved once for all pictures with the same air, eye and sun. It keeps the last fog, as another
 /// fog in the same sky costs little, and the same fog nothing.
@@ -22,7 +22,7 @@ pub struct SkyLight {
 struct LitFog {
     layers: Vec<Constituent>,
     scattering: FogScattering,
-    sky: Arc<FoggySky<3>>,
+    sky: RgbFoggySky,
 }
 
 impl SkyLight {
@@ -60,7 +60,7 @@ impl SkyLight {
         &self,
         layers: &[Constituent],
         scattering: FogScattering,
-    ) -> Result<Arc<FoggySky<3>>, RenderError> {
+    ) -> Result<RgbFoggySky, RenderError> {
         if layers.iter().any(|layer| layer.density.is_uniform()) {
             return Err(Self::needs_top());
         }
@@ -74,13 +74,8 @@ impl SkyLight {
                 return Ok(last.sky);
             }
             Some(last) => last.sky.with_fog(layers, scattering)?,
-            None => {
-                let ground = FoggySky::<3>::round_ground(&self.view);
-                let channels = LaneChannels::Rgb(RgbSpace::Srgb);
-                FoggySky::new(&self.view, channels, layers, ground, scattering)?
-            }
+            None => RgbFoggySky::new(&self.view, layers, scattering, RgbSpace::Srgb)?,
         };
-        let sky = Arc::new(sky);
         *self.last.lock().unwrap_or_else(PoisonError::into_inner) = Some(LitFog {
             layers: layers.to_vec(),
             scattering,

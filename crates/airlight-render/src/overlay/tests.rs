@@ -81,8 +81,8 @@ fn sky_in_thick_fog_is_the_ambient_and_encoded_blending_is_another_thing() {
     let picture = picture(4, 4, |_, _| [0.1, 0.1, 0.1]);
     let depth = depth(4, 4, |_, y| if y < 2 { f32::INFINITY } else { 20.0 });
     let camera = Intrinsics::from_horizontal_fov(picture.size, 60.0).unwrap();
-    let colour = Spectrum([0.8; 3]);
-    let light = uniform(0.03, colour.0);
+    let colour = [0.8; 3];
+    let light = uniform(0.03, colour);
     let encoded = FogOverlay::Encoded(0.03, colour);
     let shown = |overlay: &FogOverlay, y: u32| {
         let overlay =
@@ -125,10 +125,7 @@ fn fog_lies_before_what_is_there_only() {
     half.alpha = Some(vec![1.0, 0.5, 0.0]);
     let depth = depth(3, 1, |_, _| 20.0);
     let camera = Intrinsics::from_horizontal_fov(half.size, 1.0).unwrap();
-    for overlay in [
-        uniform(0.03, [0.8; 3]),
-        FogOverlay::Encoded(0.03, Spectrum([0.8; 3])),
-    ] {
+    for overlay in [uniform(0.03, [0.8; 3]), FogOverlay::Encoded(0.03, [0.8; 3])] {
         for channels in [Channels::Picture, Channels::Layers] {
             let overlay = Overlay::new(&half, &depth, &camera, 1.6, &overlay, channels).unwrap();
             let names = overlay.channel_names();

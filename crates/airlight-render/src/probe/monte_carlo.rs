@@ -1,6 +1,6 @@
 //! What Monte Carlo says of a ray, with standard errors.
 
-use airlight::monte_carlo::{Estimate, ORDERS, PolarisedEstimate};
+use airlight::monte_carlo::{Estimate, PolarisedEstimate};
 use airlight::spectrum::WavelengthGrid;
 use serde::Serialize;
 
@@ -14,7 +14,7 @@ pub struct MonteCarloAnswer {
     /// Its standard error.
     pub standard_error_w_m2_sr_nm: Vec<f64>,
     /// Of it, light scattered or reflected once, twice, three and four times, and more often.
-    pub radiance_by_order_w_m2_sr_nm: [Vec<f64>; ORDERS],
+    pub radiance_by_order_w_m2_sr_nm: Vec<Vec<f64>>,
     /// CIE 1931 XYZ.
     pub xyz_cd_m2: [f64; 3],
     /// Its polarisation, where that is followed.
@@ -57,7 +57,11 @@ impl MonteCarloAnswer {
             xyz_cd_m2: grid.to_xyz(&single),
             radiance_w_m2_sr_nm: found.mean,
             standard_error_w_m2_sr_nm: found.standard_error,
-            radiance_by_order_w_m2_sr_nm: found.orders.map(|order| order.mean),
+            radiance_by_order_w_m2_sr_nm: found
+                .orders
+                .into_iter()
+                .map(|order| order.mean)
+                .collect(),
             polarisation: None,
         }
     }

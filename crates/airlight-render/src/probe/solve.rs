@@ -90,10 +90,7 @@ impl Probe {
             polarised: scene.output.polarisation == Some(true),
         };
         let capabilities = self.model.capabilities();
-        let scattering = match resolved.solver.scattering.unwrap_or(Scattering::All) {
-            Scattering::All => "all",
-            Scattering::Single => "single",
-        };
+        let scattering = resolved.solver.scattering.unwrap_or(Scattering::All).name();
         let variants = capabilities.variants;
         let variant = scene.solver.variant.clone();
         Ok(ProbeAnswer {

@@ -1,6 +1,6 @@
 //! The atmosphere of the measured day.
 
-use airlight::atmosphere::presets::earth::Earth;
+use airlight::atmosphere::presets::Earth;
 use airlight::atmosphere::{AerosolLoad, AngstromAerosol, Atmosphere, DensityProfile, reference};
 use airlight::optics::{PhaseFunction, TabulatedPhase};
 use airlight::spectrum::{SpectralCurve, solar};

@@ -1,7 +1,7 @@
 //! Preetham, Hosek and Wilkie, Hillaire, and four orders of scattering.
 
 use crate::measure::{Errors, SUNS_DEG, fan, head, ratio, seconds_a_line, sun};
-use airlight::atmosphere::aerosol::turbidity_of_optical_depth;
+use airlight::atmosphere::turbidity_of_optical_depth;
 use airlight::atmosphere::{Atmosphere, ConstituentKind, preset};
 use airlight::models::PublishedModel;
 use airlight::models::four_orders::FourOrders;

@@ -10,6 +10,7 @@ pub const REFERENCE_NM: f64 = 550.0;
 
 /// Amount of aerosol.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum AerosolLoad {
     /// Vertical optical depth of the aerosol at 550 nm.
     OpticalDepth550(f64),
@@ -46,6 +47,7 @@ pub struct AngstromAerosol {
 
 /// Why an aerosol is invalid.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum AerosolError {
     /// A negative or infinite optical depth.
     #[error("expected a finite aerosol optical depth at 550 nm of at least 0, got {0}")]
@@ -216,7 +218,7 @@ pub(super) fn extinction_at_density_1(
 /// The phase function of a continental aerosol: three Henyey-Greenstein lobes fitted to the mean of five AERONET
 /// almucantar inversions (level 1.5, version 2) at Egbert, Ontario, on 27 May 2013 (principal investigators N. O'Neill,
 /// I. Abboud, V. Fioletov), 442 and 675 nm together; mean cosine 0.634, 11 % root mean square in `ln p` over all angles.
-pub fn continental_phase() -> PhaseFunction {
+pub(crate) fn continental_phase() -> PhaseFunction {
     let lobe = |g| PhaseFunction::HenyeyGreenstein { g };
     PhaseFunction::Mixture(vec![
         (0.085, lobe(0.945)),

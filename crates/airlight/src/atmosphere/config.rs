@@ -1,56 +1,4 @@
-//! Atmospheres in TOML: a preset and the values that differ from it.
-//!
-//! ```
-//! let air = airlight::atmosphere::config::from_toml(
-//!     r#"
-//!     base = "clear"
-//!     [planet]
-//!     ground_albedo = 0.2
-//!     [ozone]
-//!     column_du = 350
-//!     [aerosol]
-//!     visibility_m = 23e3
-//!     phase = { kind = "draine", g = 0.6, alpha = 0.5 }
-//!     [[constituent]]
-//!     name = "smoke"
-//!     density = { kind = "layer", bottom_m = 2000, top_m = 2500 }
-//!     scattering_per_m = { at_550_nm = 4e-5, angstrom_exponent = 1.8 }
-//!     absorption_per_m = 1e-5
-//!     phase = { kind = "henyey-greenstein", g = 0.6 }
-//!     "#,
-//! )?;
-//! assert_eq!(air.constituents.len(), 4);
-//! # Ok::<(), airlight::atmosphere::config::ConfigError>(())
-//! ```
-//!
-//! | key | meaning |
-//! |---|---|
-//! | `name` | what the atmosphere is called; else the base's name |
-//! | `base` | a preset ([`crate::atmosphere::Preset`]), or `"none"`: the Earth without air. `"average"` where absent |
-//! | `remove` | list of constituents of the base to leave out |
-//! | `planet.radius_m`, `.top_altitude_m`, `.ground_altitude_m` | lengths in metres |
-//! | `planet.ground_albedo` | *spectrum* in `[0, 1]` |
-//! | `sun.angular_radius_deg`, `.limb_darkening` | `"neckel"`, `"power-law"` or `"uniform"` |
-//! | `sun.irradiance_w_m2_nm`, `.irradiance_factor` | *spectrum* at the top of the atmosphere; a factor on it |
-//! | `rayleigh.pressure_pa` | sea-level pressure; scales the molecules of the base, or adds those of the Earth if it has none |
-//! | `ozone.column_du` | replaces the ozone of the base: measured cross-section, mid-latitude profile, this column |
-//! | `aerosol.type`, `.relative_humidity` | a published type ([`crate::atmosphere::AerosolType`]) at a humidity from 0 to 0.99 |
-//! | `aerosol.mixture` | instead of `type`: list of `{ type, share }` or `{ component, share }`, shares of the extinction |
-//! | `aerosol.aod_550`, `.turbidity` or `.visibility_m` | amount ([`crate::atmosphere::AerosolLoad`]) |
-//! | `aerosol.contrast` | contrast threshold of the visibility: 0.05 (default) or 0.02 |
-//! | `aerosol.angstrom_exponent`, `.single_scattering_albedo` | exponent of the extinction; *spectrum* in `[0, 1]` |
-//! | `aerosol.scale_height_m` or `.density` | scale height of an exponential profile, or a *density* |
-//! | `aerosol.phase` | *phase*; without `kind`, changes parameters of the base's phase function |
-//! | `[[constituent]]` | `name`, `density`, `scattering_per_m`, `absorption_per_m`, `phase`; replaces one of the same name |
-//!
-//! A *spectrum* is a number, `{ wavelengths_nm = [...], values = [...] }` or `{ at_550_nm = ..., angstrom_exponent = ... }`.
-//! A *density* is `{ kind = "exponential", scale_height_m }` (optional `reference_height_m`),
-//! `{ kind = "clamped", base_height_m, scale_height_m }`, `{ kind = "layer", top_m }` (optional `bottom_m`),
-//! `{ kind = "tent", bottom_m, peak_m, top_m }`, `{ kind = "uniform" }`, `{ kind = "standard-air" }` or
-//! `{ kind = "table", altitudes_m, densities, interpolation = "linear" | "log-linear" }`.
-//! A *phase* is `{ kind = "isotropic" }`, `"rayleigh"` (optional `depolarization_ratio`), `"henyey-greenstein"` or
-//! `"cornette-shanks"` (`g`), `"draine"` (`g`, `alpha`), `"continental"`, `"mixture"`
-//! (`parts = [{ weight, kind, ... }, ...]`) or `"table"` (`angles_deg`, `wavelengths_nm`, `values` by wavelength, then angle).
+//! Atmospheres in TOML: a preset and the values that differ from it; [`Atmosphere::from_toml`] lists the keys.
 
 mod aerosol;
 mod error;
@@ -73,34 +21,80 @@ const DEFAULT_BASE: &str = "average";
 /// The base without air.
 const NO_AIR: &str = "none";
 
-/// Reads an atmosphere from TOML.
-///
-/// # Errors
-/// [`ConfigError`] with place, problem and allowed values.
-pub fn from_toml(text: &str) -> Result<Atmosphere, ConfigError> {
-    let table = DeTable::parse(text).map_err(|error| {
-        let at = error.span().map_or(0, |span| span.start);
-        ConfigError::at(
-            text,
-            at,
-            String::new(),
-            ConfigProblem::Syntax(error.message().to_owned()),
-        )
-    })?;
-    from_toml_table(text, table.get_ref(), "")
+impl Atmosphere {
+    /// Reads an atmosphere from TOML: a preset and the values that differ from it.
+    ///
+    /// ```
+    /// use airlight::atmosphere::Atmosphere;
+    ///
+    /// let air = Atmosphere::from_toml(
+    ///     r#"
+    ///     base = "clear"
+    ///     [planet]
+    ///     ground_albedo = 0.2
+    ///     [ozone]
+    ///     column_du = 350
+    ///     [aerosol]
+    ///     visibility_m = 23e3
+    ///     phase = { kind = "draine", g = 0.6, alpha = 0.5 }
+    ///     [[constituent]]
+    ///     name = "smoke"
+    ///     density = { kind = "layer", bottom_m = 2000, top_m = 2500 }
+    ///     scattering_per_m = { at_550_nm = 4e-5, angstrom_exponent = 1.8 }
+    ///     absorption_per_m = 1e-5
+    ///     phase = { kind = "henyey-greenstein", g = 0.6 }
+    ///     "#,
+    /// )?;
+    /// assert_eq!(air.constituents.len(), 4);
+    /// # Ok::<(), airlight::atmosphere::ConfigError>(())
+    /// ```
+    ///
+    /// | key | meaning |
+    /// |---|---|
+    /// | `name` | what the atmosphere is called; else the base's name |
+    /// | `base` | a preset ([`crate::atmosphere::Preset`]), or `"none"`: the Earth without air. `"average"` where absent |
+    /// | `remove` | list of constituents of the base to leave out |
+    /// | `planet.radius_m`, `.top_altitude_m`, `.ground_altitude_m` | lengths in metres |
+    /// | `planet.ground_albedo` | *spectrum* in `[0, 1]` |
+    /// | `sun.angular_radius_deg`, `.limb_darkening` | `"neckel"`, `"power-law"` or `"uniform"` |
+    /// | `sun.irradiance_w_m2_nm`, `.irradiance_factor` | *spectrum* at the top of the atmosphere; a factor on it |
+    /// | `rayleigh.pressure_pa` | sea-level pressure; scales the molecules of the base, or adds those of the Earth if it has none |
+    /// | `ozone.column_du` | replaces the ozone of the base: measured cross-section, mid-latitude profile, this column |
+    /// | `aerosol.type`, `.relative_humidity` | a published type ([`crate::atmosphere::AerosolType`]) at a humidity from 0 to 0.99 |
+    /// | `aerosol.mixture` | instead of `type`: list of `{ type, share }` or `{ component, share }`, shares of the extinction |
+    /// | `aerosol.aod_550`, `.turbidity` or `.visibility_m` | amount ([`crate::atmosphere::AerosolLoad`]) |
+    /// | `aerosol.contrast` | contrast threshold of the visibility: 0.05 (default) or 0.02 |
+    /// | `aerosol.angstrom_exponent`, `.single_scattering_albedo` | exponent of the extinction; *spectrum* in `[0, 1]` |
+    /// | `aerosol.scale_height_m` or `.density` | scale height of an exponential profile, or a *density* |
+    /// | `aerosol.phase` | *phase*; without `kind`, changes parameters of the base's phase function |
+    /// | `[[constituent]]` | `name`, `density`, `scattering_per_m`, `absorption_per_m`, `phase`; replaces one of the same name |
+    ///
+    /// A *spectrum* is a number, `{ wavelengths_nm = [...], values = [...] }` or `{ at_550_nm = ..., angstrom_exponent = ... }`.
+    /// A *density* is `{ kind = "exponential", scale_height_m }` (optional `reference_height_m`),
+    /// `{ kind = "clamped", base_height_m, scale_height_m }`, `{ kind = "layer", top_m }` (optional `bottom_m`),
+    /// `{ kind = "tent", bottom_m, peak_m, top_m }`, `{ kind = "uniform" }`, `{ kind = "standard-air" }` or
+    /// `{ kind = "table", altitudes_m, densities, interpolation = "linear" | "log-linear" }`.
+    /// A *phase* is `{ kind = "isotropic" }`, `"rayleigh"` (optional `depolarization_ratio`), `"henyey-greenstein"` or
+    /// `"cornette-shanks"` (`g`), `"draine"` (`g`, `alpha`), `"continental"`, `"mixture"`
+    /// (`parts = [{ weight, kind, ... }, ...]`) or `"table"` (`angles_deg`, `wavelengths_nm`, `values` by wavelength, then angle).
+    ///
+    /// # Errors
+    /// [`ConfigError`] with place, problem and allowed values.
+    pub fn from_toml(text: &str) -> Result<Self, ConfigError> {
+        let table = DeTable::parse(text).map_err(|error| {
+            let at = error.span().map_or(0, |span| span.start);
+            ConfigError::at(
+                text,
+                at,
+                String::new(),
+                ConfigProblem::Syntax(error.message().to_owned()),
+            )
+        })?;
+        from_table(&Section::new(text, table.get_ref(), String::new()))
+    }
 }
 
-/// Reads an atmosphere from a table inside a larger TOML text. Error messages prefix keys with `path` (such as
-/// `"atmosphere"`; empty for the whole text).
-///
-/// # Errors
-/// As [`from_toml`].
-pub fn from_toml_table(
-    text: &str,
-    table: &DeTable<'_>,
-    path: &str,
-) -> Result<Atmosphere, ConfigError> {
-    let root = Section::new(text, table, path.to_owned());
+fn from_table(root: &Section<'_>) -> Result<Atmosphere, ConfigError> {
     root.check_keys(&[
         "name",
         "base",

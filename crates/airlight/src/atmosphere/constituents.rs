@@ -71,6 +71,7 @@ pub struct Atmosphere {
 
 /// Why an atmosphere is invalid.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum AtmosphereError {
     /// A length of the planet out of range.
     #[error("planet.{field}: expected a number of metres that is {expected}, got {value}")]
@@ -117,6 +118,7 @@ pub enum AtmosphereError {
 
 /// What the other gases do at 550 nm, which turbidity and visibility are stated relative to.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ClearAir {
     /// Vertical optical depth of the molecules' scattering.
     pub optical_depth_550: f64,
@@ -240,7 +242,7 @@ impl Atmosphere {
     }
 
     /// Altitudes of kinks and jumps of all densities strictly between ground and top, in increasing order, m.
-    pub fn breakpoints_m(&self) -> Vec<f64> {
+    pub(crate) fn breakpoints_m(&self) -> Vec<f64> {
         let (ground, top) = (self.planet.ground_altitude_m, self.planet.top_altitude_m);
         let mut all: Vec<f64> = self
             .constituents
@@ -288,7 +290,7 @@ impl Atmosphere {
     }
 
     /// Whether the planet is the Earth, judged by its radius.
-    pub fn is_earth(&self) -> bool {
+    pub(crate) fn is_earth(&self) -> bool {
         (self.planet.radius_m / EARTH_RADIUS_M - 1.0).abs() < 0.02
     }
 

@@ -113,7 +113,7 @@ impl DensityProfile {
     }
 
     /// Height of the top of a slab ([`DensityProfile::slab`]), m; `None` for other profiles.
-    pub fn slab_top_m(&self) -> Option<f64> {
+    pub(crate) fn slab_top_m(&self) -> Option<f64> {
         match *self {
             Self::Layer { bottom_m, top_m } if bottom_m == f64::NEG_INFINITY => Some(top_m),
             _ => None,
@@ -246,7 +246,7 @@ impl DensityProfile {
     }
 
     /// Upper bound of the density at and above a height, m.
-    pub fn max_above(&self, height_m: f64) -> f64 {
+    pub(crate) fn max_above(&self, height_m: f64) -> f64 {
         let z = height_m;
         match *self {
             Self::Uniform
@@ -457,7 +457,7 @@ impl DensityProfile {
 
     /// Heights of kinks and jumps, in increasing order, m: edges for quadrature panels. For the standard atmosphere only the
     /// tropopause.
-    pub fn breakpoints_m(&self) -> Vec<f64> {
+    pub(crate) fn breakpoints_m(&self) -> Vec<f64> {
         let mut all = self.structure().kinks_m;
         all.dedup();
         all

@@ -53,7 +53,7 @@ const OZONE_KM_1E18_PER_M3: [(f64, f64); 9] = [
 
 /// Density of ozone relative to its peak at 22 km: linear in the logarithm between samples, constant below 2 km, 0 above
 /// 74 km. Within 4 % of the peak of the published model.
-pub fn ozone_profile() -> DensityProfile {
+pub(crate) fn ozone_profile() -> DensityProfile {
     let (altitudes, densities) = OZONE_KM_1E18_PER_M3
         .iter()
         .map(|(km, n)| (km * 1e3, n / 4.86))

@@ -1,8 +1,9 @@
 //! Atmospheres: density profiles, constituents, gases, aerosols, fog droplets, visibility, presets and TOML files.
 
-pub mod aerosol;
-pub mod aerosol_types;
-pub mod config;
+mod aerosol;
+mod aerosol_types;
+#[cfg(feature = "config")]
+mod config;
 mod constituents;
 mod density;
 pub mod droplets;
@@ -12,8 +13,16 @@ mod ray_segment;
 mod standard_air;
 pub mod visibility;
 
-pub use aerosol::{AerosolError, AerosolLoad, AngstromAerosol};
-pub use aerosol_types::{AerosolMixture, AerosolType, AerosolTypeError};
+pub(crate) use aerosol::REFERENCE_NM;
+pub use aerosol::{
+    AerosolError, AerosolLoad, AngstromAerosol, turbidity_of_optical_depth,
+    visibility_of_extinction_m,
+};
+pub use aerosol_types::{
+    AerosolMixture, AerosolSummary, AerosolType, AerosolTypeError, Component, Ingredient, Smoke,
+};
+#[cfg(feature = "config")]
+pub use config::{ConfigError, ConfigProblem};
 pub use constituents::{
     Atmosphere, AtmosphereError, ClearAir, Constituent, ConstituentKind, Planet,
 };

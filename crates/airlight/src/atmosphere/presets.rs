@@ -1,10 +1,13 @@
 //! Named atmospheres, ready to use.
 
-pub mod earth;
+pub(crate) mod earth;
 mod fixed_table;
-pub mod mars;
+pub(crate) mod mars;
 pub mod published;
 pub mod reference;
+
+pub use earth::{Earth, average, clear, hazy};
+pub use mars::mars;
 
 use super::Atmosphere;
 use crate::names::{UnknownName, named};

@@ -47,7 +47,7 @@ impl RaySegment {
 
     /// Sine of the elevation after `s` metres, for segments much shorter than the ground's radius.
     #[inline]
-    pub fn sin_elevation_at(&self, s: f64) -> f64 {
+    pub(crate) fn sin_elevation_at(&self, s: f64) -> f64 {
         self.sin_elevation + 2.0 * s * self.curvature_per_m
     }
 
@@ -78,14 +78,14 @@ impl RaySegment {
 
     /// Distance to the lowest point, m, if it lies between the ends.
     #[inline]
-    pub fn dip_m(&self) -> Option<f64> {
+    pub(crate) fn dip_m(&self) -> Option<f64> {
         let dip = -0.5 * self.sin_elevation / self.curvature_per_m;
         (dip > 0.0 && dip < self.length_m).then_some(dip)
     }
 
     /// Lowest height, m; minus infinity for an infinite segment that descends over flat ground.
     #[inline]
-    pub fn lowest_height_m(&self) -> f64 {
+    pub(crate) fn lowest_height_m(&self) -> f64 {
         match self.dip_m() {
             Some(dip) => self.height_at(dip),
             None => self.height_m.min(self.end_height_m()),

@@ -7,6 +7,7 @@ use crate::names::named;
 
 /// Which contrast counts as the last that is seen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Contrast {
     /// 5 %: the meteorological optical range (WMO-No. 8, chapter 9), used by instruments and weather reports.
     #[default]

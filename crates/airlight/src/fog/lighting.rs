@@ -74,7 +74,7 @@ impl Ground {
 
     /// Whether the ground is flat.
     #[inline]
-    pub fn is_flat(&self) -> bool {
+    pub(crate) fn is_flat(&self) -> bool {
         self.radius_m == f64::INFINITY
     }
 

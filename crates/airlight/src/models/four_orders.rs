@@ -68,7 +68,7 @@ fn solve(
 
 /// The solver of [`Orders`](super::orders::Orders) stopped after four orders of scattering.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct FourOrdersModel;
+pub(crate) struct FourOrdersModel;
 
 impl RadianceModel for FourOrdersModel {
     fn name(&self) -> &'static str {

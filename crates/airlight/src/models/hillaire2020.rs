@@ -28,7 +28,7 @@ use std::sync::Arc;
 
 /// Sizes of the tables and numbers of steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settings {
+pub(crate) struct Settings {
     /// Zenith angles and altitudes of the transmittance table, at least 2 each.
     pub transmittance_size: [usize; 2],
     /// Number of steps along each ray of the transmittance table, at least 1.
@@ -53,6 +53,7 @@ impl Default for Settings {
 
 /// Error of [`Hillaire2020::new`].
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum HillaireError {
     /// The eye is below the ground, or its altitude is not finite.
     #[error(
@@ -129,7 +130,7 @@ impl Hillaire2020 {
     ///
     /// # Errors
     /// As [`Self::new`], and for settings out of range.
-    pub fn with_settings(
+    pub(crate) fn with_settings(
         atmosphere: &Atmosphere,
         grid: &WavelengthGrid,
         eye_altitude_m: f64,
@@ -230,7 +231,7 @@ impl Hillaire2020 {
     }
 
     /// Spectral radiance of the sun's disc along a unit vector, attenuated by the air, W m^-2 sr^-1 nm^-1.
-    pub fn disc_radiance(&self, direction: DVec3) -> Vec<f32> {
+    pub(crate) fn disc_radiance(&self, direction: DVec3) -> Vec<f32> {
         let Tables {
             air, transmittance, ..
         } = self.tables.as_ref();
@@ -297,7 +298,7 @@ impl Tables {
 
 /// The sky of Hillaire 2020 in the air of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Hillaire2020Model;
+pub(crate) struct Hillaire2020Model;
 
 impl RadianceModel for Hillaire2020Model {
     fn name(&self) -> &'static str {

@@ -26,6 +26,7 @@ const LUMENS_PER_WATT: f64 = 683.0;
 
 /// Error of [`HosekWilkie::new`].
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum HosekWilkieError {
     /// The turbidity is out of range.
     #[error("expected a turbidity from 1 to 10, got {0}")]
@@ -112,7 +113,7 @@ impl PublishedModel for HosekWilkie {
 
 /// The sky of Hosek and Wilkie 2012 for the turbidity of a scene's air and the albedo of its ground.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct HosekWilkieModel;
+pub(crate) struct HosekWilkieModel;
 
 impl RadianceModel for HosekWilkieModel {
     fn name(&self) -> &'static str {

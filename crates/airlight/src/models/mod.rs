@@ -17,7 +17,6 @@ mod prepared;
 mod published_view;
 pub mod single_scattering;
 
-pub use lut::MultipleScatteringSettings;
 pub use published_view::PublishedModel;
 
 /// The solvers and published models by name: the one list of them.

@@ -24,7 +24,7 @@ const PATHS: u64 = 256;
 ///
 /// Radiance is random; irradiances and the sun's disc are those of [`Orders`](super::orders::Orders).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct MonteCarloModel;
+pub(crate) struct MonteCarloModel;
 
 impl RadianceModel for MonteCarloModel {
     fn name(&self) -> &'static str {

@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 /// Successive orders of scattering on the sphere: the fast solver, without noise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Orders;
+pub(crate) struct Orders;
 
 impl RadianceModel for Orders {
     fn name(&self) -> &'static str {

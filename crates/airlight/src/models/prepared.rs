@@ -2,7 +2,7 @@
 
 use super::PublishedModel;
 use super::published_view::PublishedView;
-use crate::atmosphere::aerosol::turbidity_of_optical_depth;
+use crate::atmosphere::turbidity_of_optical_depth;
 use crate::atmosphere::{Atmosphere, ConstituentKind};
 use crate::scene::{Channels, PreparedModel, RadianceView, ResolvedScene, SceneError, SunState};
 use crate::spectrum::{SpectralCurve, WavelengthGrid};

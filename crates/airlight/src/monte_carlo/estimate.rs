@@ -37,6 +37,7 @@ impl Moments {
 
 /// A value at each wavelength of a grid, with its standard error.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Measured {
     /// Mean over all paths.
     pub mean: Vec<f64>,
@@ -46,6 +47,7 @@ pub struct Measured {
 
 /// Radiance along a view ray, W m^-2 sr^-1 nm^-1, at each wavelength of the grid, without the direct light of the sun's disc.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Estimate {
     /// Mean over all paths.
     pub mean: Vec<f64>,
@@ -53,27 +55,29 @@ pub struct Estimate {
     /// the true value in 95 % of cases.
     pub standard_error: Vec<f64>,
     /// Light scattered or reflected once, twice, three and four times, and five times or more.
-    pub orders: [Measured; ORDERS],
+    pub orders: Vec<Measured>,
     /// Number of paths.
     pub paths: u64,
 }
 
 impl Estimate {
     /// Of it, the light scattered or reflected once.
-    pub fn first_order(&self) -> Self {
+    pub(crate) fn first_order(&self) -> Self {
         Self {
             mean: self.orders[0].mean.clone(),
             standard_error: self.orders[0].standard_error.clone(),
-            orders: std::array::from_fn(|order| match order {
-                0 => self.orders[0].clone(),
-                _ => {
-                    let dark = vec![0.0; self.mean.len()];
-                    Measured {
-                        mean: dark.clone(),
-                        standard_error: dark,
+            orders: (0..ORDERS)
+                .map(|order| match order {
+                    0 => self.orders[0].clone(),
+                    _ => {
+                        let dark = vec![0.0; self.mean.len()];
+                        Measured {
+                            mean: dark.clone(),
+                            standard_error: dark,
+                        }
                     }
-                }
-            }),
+                })
+                .collect(),
             paths: self.paths,
         }
     }
@@ -129,7 +133,7 @@ impl Tally {
         Estimate {
             mean,
             standard_error,
-            orders: std::array::from_fn(measured),
+            orders: (0..ORDERS).map(measured).collect(),
             paths,
         }
     }

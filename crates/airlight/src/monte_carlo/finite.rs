@@ -1,7 +1,7 @@
 //! View rays that end at a distance: path radiance and transmittance.
 
 use super::chord::{Chord, HalfLine};
-use super::estimate::{Estimate, Sample};
+use super::estimate::Estimate;
 use super::solver::MonteCarlo;
 use glam::DVec3;
 
@@ -29,9 +29,9 @@ impl MonteCarlo {
         view: DVec3,
         distance_m: f64,
         bundle: u64,
-    ) -> Sample {
+    ) -> Vec<Vec<f64>> {
         let scene = self.scene(eye_altitude_m, sun, view, Some(distance_m));
-        self.sunlit_bundle(scene, bundle)
+        self.sunlit_bundle(scene, bundle).into()
     }
 
     /// Transmittance at each wavelength of the grid from the eye to `distance_m` along `view` (infinity: to space), or to the

@@ -34,8 +34,8 @@ mod solver;
 mod stokes;
 mod sun;
 
-pub use estimate::{Estimate, Measured, Sample};
-pub use path::ORDERS;
+pub use estimate::{Estimate, Measured};
+pub(crate) use path::ORDERS;
 pub use polarised::{PolarisedEstimate, PolarisedSample};
 pub use solver::{BUNDLE, MonteCarlo, MonteCarloSettings};
 pub use sun::SunShape;

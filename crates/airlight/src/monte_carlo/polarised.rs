@@ -8,6 +8,7 @@ use glam::DVec3;
 
 /// Mean over the paths of a bundle, at each wavelength, W m^-2 sr^-1 nm^-1.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct PolarisedSample {
     /// Radiance with scalar light transport, by order of scattering.
     pub scalar: Sample,
@@ -22,6 +23,7 @@ pub struct PolarisedSample {
 /// plane), `U` for light polarised at 45 degrees from there, anticlockwise as seen by the eye. Circular polarisation is
 /// traced, because it turns into linear polarisation, but not returned: it is far weaker.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct PolarisedEstimate {
     /// Radiance `I`.
     pub intensity: Measured,

@@ -131,8 +131,15 @@ impl MonteCarlo {
 
     /// Mean over one bundle of 64 paths, by order of scattering and wavelength, W m^-2 sr^-1 nm^-1, for custom statistics.
     /// Bundles of different numbers or view rays are independent; the mean over bundles is [`MonteCarlo::radiance`].
-    pub fn sample(&self, eye_altitude_m: f64, sun: DVec3, view: DVec3, bundle: u64) -> Sample {
-        self.sunlit_bundle(self.scene(eye_altitude_m, sun, view, None), bundle)
+    pub fn sample(
+        &self,
+        eye_altitude_m: f64,
+        sun: DVec3,
+        view: DVec3,
+        bundle: u64,
+    ) -> Vec<Vec<f64>> {
+        let scene = self.scene(eye_altitude_m, sun, view, None);
+        self.sunlit_bundle(scene, bundle).into()
     }
 
     /// Radiance with a relative error: adds paths until the largest relative standard error, over wavelengths brighter than
@@ -347,7 +354,7 @@ impl Block {
 
 impl Estimate {
     /// Largest ratio of standard error to mean over wavelengths brighter than 1e-3 of the brightest; 0 if all are 0.
-    pub fn worst_relative_error(&self) -> f64 {
+    fn worst_relative_error(&self) -> f64 {
         let brightest = self.mean.iter().copied().fold(0.0, f64::max);
         self.mean
             .iter()

@@ -9,6 +9,7 @@ use std::f64::consts::PI;
 
 /// Shape of the sun.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum SunShape {
     /// All light comes from the centre of the disc, as in the fast solvers.
     #[default]

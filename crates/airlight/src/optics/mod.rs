@@ -3,14 +3,15 @@
 mod index;
 pub mod mie;
 pub mod ozone;
-pub mod phase;
+mod phase;
 mod phase_error;
 mod polarisation;
 pub mod rayleigh;
 mod tabulated;
 
 pub use index::RefractiveIndex;
-pub use phase::{Depolarization, PhaseFunction, PhaseSampler};
+pub(crate) use phase::PhaseSampler;
+pub use phase::{Depolarization, PhaseFunction};
 pub use phase_error::PhaseError;
 pub use polarisation::MatrixRatios;
 pub use tabulated::TabulatedPhase;

@@ -4,7 +4,7 @@ use crate::spectrum::{SampledCurve, embedded_table};
 use std::sync::LazyLock;
 
 /// Molecules per square metre in one Dobson unit (a layer of 10 micrometres of the gas at 273.15 K and 101325 Pa).
-pub const DOBSON_UNIT_M2: f64 = 2.6867e20;
+pub(crate) const DOBSON_UNIT_M2: f64 = 2.6867e20;
 
 /// Absorption cross-section of an ozone molecule at 233 K, m^2, at a vacuum wavelength in nm.
 ///

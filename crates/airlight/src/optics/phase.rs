@@ -15,6 +15,7 @@ use std::f64::consts::PI;
 /// A phase function. The constructors check their parameters; [`PhaseFunction::validate`] checks a value built from its
 /// variants.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum PhaseFunction {
     /// Isotropic scattering: `1 / (4 pi)`.
     Isotropic,
@@ -47,6 +48,7 @@ pub enum PhaseFunction {
 
 /// Depolarization of light scattered by anisotropic molecules.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Depolarization {
     /// Isotropic molecules: `3 / (16 pi) (1 + mu^2)`.
     None,
@@ -240,7 +242,7 @@ impl PhaseFunction {
     }
 
     /// True if the function depends on wavelength.
-    pub fn depends_on_wavelength(&self) -> bool {
+    pub(crate) fn depends_on_wavelength(&self) -> bool {
         match self {
             Self::Rayleigh(depolarization) => *depolarization == Depolarization::Air,
             Self::Mixture(parts) => parts.iter().any(|(_, part)| part.depends_on_wavelength()),

@@ -2,6 +2,7 @@
 
 /// Error of a phase function's constructor or of [`PhaseFunction::validate`].
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum PhaseError {
     /// The asymmetry parameter is out of range.
     #[error("expected an asymmetry parameter g strictly between -1 and 1, got {0}")]

@@ -53,7 +53,7 @@ impl MatrixRatios {
 impl Depolarization {
     /// Fraction `Delta` of the scattered light that is scattered as by isotropic molecules (the rest is unpolarised and
     /// isotropic), and the factor `Delta'` of its circular polarisation: Hansen & Travis, eq. 2.16.
-    pub fn polarised_shares(self, wavelength_nm: f64) -> [f64; 2] {
+    pub(crate) fn polarised_shares(self, wavelength_nm: f64) -> [f64; 2] {
         let ratio = self.ratio(wavelength_nm);
         [
             (1.0 - ratio) / (1.0 + 0.5 * ratio),
@@ -92,7 +92,7 @@ impl PhaseFunction {
     }
 
     /// True if the scattering matrix is known beyond the phase function.
-    pub fn knows_polarisation(&self) -> bool {
+    pub(crate) fn knows_polarisation(&self) -> bool {
         match self {
             Self::Rayleigh(_) => true,
             Self::Tabulated(table) => table.has_matrix(),

@@ -13,16 +13,16 @@
 use std::f64::consts::PI;
 
 /// Boltzmann constant, J/K (exact in the SI of 2019).
-pub const BOLTZMANN_J_PER_K: f64 = 1.380_649e-23;
+pub(crate) const BOLTZMANN_J_PER_K: f64 = 1.380_649e-23;
 /// Temperature for which the refractive index is stated, that of the standard atmosphere at sea level, K.
-pub const STANDARD_TEMPERATURE_K: f64 = 288.15;
+pub(crate) const STANDARD_TEMPERATURE_K: f64 = 288.15;
 /// Standard pressure at sea level, Pa.
 pub const STANDARD_PRESSURE_PA: f64 = 101_325.0;
 /// Volume fraction of carbon dioxide in present-day air, parts per million.
 pub const CO2_PPM: f64 = 420.0;
 
 /// Number density of an ideal gas, molecules per cubic metre: `p / (k T)`.
-pub fn number_density_per_m3(pressure_pa: f64, temperature_k: f64) -> f64 {
+pub(crate) fn number_density_per_m3(pressure_pa: f64, temperature_k: f64) -> f64 {
     pressure_pa / (BOLTZMANN_J_PER_K * temperature_k)
 }
 
@@ -30,7 +30,7 @@ pub fn number_density_per_m3(pressure_pa: f64, temperature_k: f64) -> f64 {
 /// carbon dioxide, times `1 + 0.54 (C - 0.0003)` (Bodhaine et al. 1999, eq. 19).
 ///
 /// Fitted to measurements from 230 nm to 1690 nm, to about 1e-9 in `n`; used here from 200 nm on.
-pub fn refractivity(wavelength_nm: f64, co2_ppm: f64) -> f64 {
+pub(crate) fn refractivity(wavelength_nm: f64, co2_ppm: f64) -> f64 {
     let s2 = (1e3 / wavelength_nm).powi(2);
     let at_300_ppm = 1e-8 * (8060.51 + 2_480_990.0 / (132.274 - s2) + 17_455.7 / (39.329_57 - s2));
     at_300_ppm * (1.0 + 0.54 * (co2_ppm - 300.0) * 1e-6)

@@ -131,7 +131,7 @@ impl TabulatedPhase {
 
     /// As [`Self::evaluate`] at several wavelengths, with one look-up of the angle.
     #[inline]
-    pub fn evaluate_all<const N: usize>(
+    pub(crate) fn evaluate_all<const N: usize>(
         &self,
         cos_angle: f64,
         wavelengths_nm: &[f64; N],

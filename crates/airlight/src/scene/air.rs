@@ -1,8 +1,8 @@
 //! From the air of a scene to an atmosphere.
 
 use super::{AirSpec, Scene, SceneError};
-use crate::atmosphere::aerosol_types::Ingredient;
-use crate::atmosphere::presets::earth::Earth;
+use crate::atmosphere::Ingredient;
+use crate::atmosphere::presets::Earth;
 use crate::atmosphere::{
     AerosolLoad, AerosolMixture, AerosolType, AerosolTypeError, Atmosphere, ConstituentKind, gases,
     preset,
@@ -50,7 +50,7 @@ impl Scene {
 
 impl AirSpec {
     /// Whether the atmosphere is a file, by its name.
-    pub fn names_file(&self) -> bool {
+    pub(crate) fn names_file(&self) -> bool {
         self.atmosphere.as_deref().is_some_and(|name| {
             name.to_ascii_lowercase().ends_with(".toml") || name.contains(['/', '\\'])
         })
@@ -63,7 +63,7 @@ impl AirSpec {
     pub fn named_atmosphere(&self) -> Result<Atmosphere, SceneError> {
         let name = self.atmosphere.as_deref().unwrap_or("average");
         if let Some(text) = &self.atmosphere_toml {
-            return crate::atmosphere::config::from_toml(text).map_err(|error| {
+            return Atmosphere::from_toml(text).map_err(|error| {
                 SceneError::refused("air.atmosphere", format!("`{name}`, {error}"))
             });
         }

@@ -1,7 +1,7 @@
 //! Reading tables of a TOML text into plain data, with errors that say where: line, column, key, and the nearest known key.
 
 use super::{ObjectSpec, Scene, SceneError};
-use crate::atmosphere::config::{ConfigError, ConfigProblem};
+use crate::atmosphere::{ConfigError, ConfigProblem};
 use crate::names::nearest;
 use serde::de::DeserializeOwned;
 use std::borrow::Cow;

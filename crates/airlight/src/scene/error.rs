@@ -2,7 +2,7 @@
 
 use super::input::Input;
 use crate::atmosphere::AtmosphereError;
-use crate::atmosphere::config::ConfigError;
+use crate::atmosphere::ConfigError;
 use crate::fog::FogError;
 use crate::names::UnknownName;
 use crate::optics::mie::MieError;

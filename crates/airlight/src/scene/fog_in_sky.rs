@@ -1,6 +1,8 @@
 //! Fog in a sky, in the channels of a view.
 
-use super::{Channels, FogLayers, FoggySky, LaneChannels, SceneError};
+use super::foggy::FoggySky;
+use super::lane_channels::LaneChannels;
+use super::{Channels, FogLayers, SceneError};
 use crate::fog::FogScattering;
 use crate::sky::{SkyTable, View};
 use crate::spectrum::{Spectrum, WavelengthGrid};

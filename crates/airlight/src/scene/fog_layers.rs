@@ -42,7 +42,7 @@ impl FogLayers {
     ///
     /// # Errors
     /// [`SceneError`] for a profile without an upper end, too.
-    pub fn in_air(
+    pub(crate) fn in_air(
         &self,
         ground_altitude_m: f64,
         wavelengths_nm: &[f64],
@@ -90,7 +90,7 @@ impl FogSpec {
     ///
     /// # Errors
     /// [`SceneError::Value`] for a layer without a visibility, and for a profile that no sky can shine through.
-    pub fn resolve(&self, contrast: Contrast) -> Result<FogLayers, SceneError> {
+    pub(crate) fn resolve(&self, contrast: Contrast) -> Result<FogLayers, SceneError> {
         let layers = self
             .all_layers()
             .enumerate()

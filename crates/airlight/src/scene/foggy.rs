@@ -31,7 +31,7 @@ pub struct FoggySky<const N: usize> {
     first: usize,
     aerial: Arc<AerialPerspective<N>>,
     top: Arc<TopLight>,
-    fog: FogLanes<N>,
+    pub(super) fog: FogLanes<N>,
     eye_height_m: f64,
     /// Irradiance of the ground over that without fog.
     ground_share: Spectrum<N>,
@@ -196,22 +196,6 @@ impl<const N: usize> FoggySky<N> {
     /// The light of this sky on the fog.
     pub fn fog_lighting(&self) -> &FogLighting<Spectrum<N>> {
         self.fog.lighting()
-    }
-
-    /// Irradiance of sun and sky on the ground under the fog, all orders of scattering; `None` unless these are solved for.
-    pub fn ground_irradiance(&self) -> Option<Spectrum<N>> {
-        self.fog.ground_irradiance()
-    }
-
-    /// Transmittance and path radiance of the fog alone along a ray; `cos_sun` is the cosine of the angle between its
-    /// direction and the sun's.
-    pub fn fog_path(&self, ray: &RaySegment, cos_sun: f64) -> PathOptics<N> {
-        self.fog.path_along(ray, cos_sun)
-    }
-
-    /// Unit vector towards the sun.
-    pub(super) fn sun_direction(&self) -> DVec3 {
-        self.view.sun()
     }
 
     /// The clear air.

@@ -23,11 +23,6 @@ pub enum LaneChannels {
     },
 }
 
-impl LaneChannels {
-    /// All wavelengths of a grid of N.
-    pub const SPECTRAL: Self = Self::Wavelengths { first: 0 };
-}
-
 /// From the wavelengths of a view's grid to N lanes.
 pub(super) struct Converter<const N: usize> {
     way: Way<N>,

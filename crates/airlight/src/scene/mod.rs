@@ -4,13 +4,7 @@
 //!   [`Scene::resolve`]: the same in the terms of the physics, a [`ResolvedScene`].
 //! - [`RadianceModel`], [`PreparedModel`], [`RadianceView`]: what every solver and published model implements;
 //!   [`Capabilities`] and [`check_inputs`]: what each honours.
-//! - [`AerialPerspective`]: what clear air does between the eye and objects at any distance.
-//! - [`FoggySky`]: a sky with fog in it: the light of the sky falls on the fog, air and fog lie along every line in their
-//!   true order, and what is far away goes over into the drawn sky.
-//! - [`IrradianceMap`]: the irradiance of all of that on surfaces.
-//! - [`SceneLighting`]: light on objects, and the air before them.
-//!
-//! [`LaneChannels`] says what the N lanes of [`AerialPerspective`] and [`FoggySky`] are.
+//! - [`RgbFoggySky`]: a solved sky, aerial perspective and fog in red, green and blue, for real-time use.
 
 mod aerial;
 mod aerial_fill;
@@ -27,20 +21,21 @@ mod input;
 mod irradiance_map;
 mod lane_channels;
 mod light;
-mod lighting;
 mod model;
 mod places;
 mod resolved;
+mod rgb_foggy_sky;
 mod solved_view;
 mod spec;
 mod sun_disc_table;
 mod sun_source;
+#[cfg(test)]
+mod tests;
 #[cfg(all(test, feature = "config"))]
 mod toml_tests;
 
 pub use crate::sky::TableChannels as Channels;
 pub use crate::sun::SunState;
-pub use aerial::AerialPerspective;
 pub use air::aerosol_mixture;
 pub use capabilities::Capabilities;
 pub use check_inputs::check_inputs;
@@ -48,13 +43,11 @@ pub use check_inputs::check_inputs;
 pub use document::SceneDocument;
 pub use error::SceneError;
 pub use fog_layers::{FogLayer, FogLayers};
-pub use foggy::FoggySky;
 pub use input::Input;
-pub use irradiance_map::IrradianceMap;
-pub use lane_channels::LaneChannels;
-pub use lighting::SceneLighting;
+pub(crate) use irradiance_map::IrradianceMap;
 pub use model::{PreparedModel, RadianceModel, RadianceSampler, RadianceView, RowSampler};
 pub use resolved::ResolvedScene;
+pub use rgb_foggy_sky::RgbFoggySky;
 pub(crate) use solved_view::SolvedView;
 pub use spec::{
     AirSpec, BaseBlueKind, CameraSpec, CheckerSpec, Effort, Exposure, ExrCompression, FogLayerSpec,

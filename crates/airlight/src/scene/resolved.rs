@@ -9,6 +9,7 @@ const ON_THE_GROUND_M: f64 = 100.0;
 
 /// A scene in the terms of the physics: what [`RadianceModel::prepare`](super::RadianceModel::prepare) reads.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct ResolvedScene {
     /// The air over the ground.
     pub atmosphere: Atmosphere,

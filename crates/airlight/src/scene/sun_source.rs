@@ -8,6 +8,7 @@ use glam::DVec3;
 
 /// How the sun is found.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum SunSource {
     /// Its position is set.
     Fixed(SunAngles),

@@ -2,6 +2,7 @@
 
 /// The sun elevations and observer altitudes that a prepared sky supports.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum SunCoverage {
     /// One sun elevation and one observer altitude: the fastest to prepare.
     Near {

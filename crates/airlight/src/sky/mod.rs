@@ -39,6 +39,7 @@ mod trace;
 mod view;
 
 pub use coverage::SunCoverage;
+pub use orders::{Directions, OrderSettings};
 pub(crate) use peaked::Peaked;
 pub use rgb_view::RgbView;
 pub use settings::{Scattering, SkyError, SkySettings};

@@ -11,7 +11,7 @@ use std::sync::Arc;
 /// A [`View`] in linear red, green and blue, for real-time use: every answer is a table look-up or a few operations.
 ///
 /// Radiances are in cd/m^2, irradiances in lx: (1, 1, 1) is one unit of the white of the space. For air between the eye and
-/// objects see `scene::AerialPerspective`.
+/// objects see `scene::RgbFoggySky`.
 #[derive(Clone, Debug)]
 pub struct RgbView {
     view: View,

@@ -10,6 +10,7 @@ use crate::transfer::shell::{MAX_CONSTITUENTS, TooManyConstituents};
 
 /// Orders of scattering that are computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Scattering {
     /// Sunlight scattered once, and the ground lit by direct sunlight.
     Single,
@@ -129,6 +130,7 @@ impl SkySettings {
 
 /// Error of [`Sky::prepare`].
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SkyError {
     /// The atmosphere has more constituents than the solver supports.
     #[error(

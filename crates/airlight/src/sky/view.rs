@@ -3,9 +3,7 @@
 use super::block::{BlockLight, SampleLight};
 use super::peaked::Peaked;
 use super::solver::Sky;
-use crate::spectrum::Spectrum;
 use crate::sun::{SunDisc, SunState};
-use crate::transfer::PathOptics;
 use crate::transfer::ray::Ray;
 use glam::DVec3;
 use std::ops::Range;
@@ -23,6 +21,7 @@ pub struct View {
 /// Light along a view ray, without the direct light of the sun's disc. Each list has one entry per wavelength of the sky's
 /// grid; radiances are in W m^-2 sr^-1 nm^-1.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct LineOfSight {
     /// Transmittance to the end of the ray: the given distance, the ground or space.
     pub transmittance: Vec<f32>,
@@ -53,14 +52,6 @@ impl LineOfSight {
             .zip(&self.ground)
             .map(|(p, g)| p + g)
             .collect()
-    }
-
-    /// Path optics of the air along the ray, for a grid of N wavelengths; `None` for a grid of another size.
-    pub fn optics<const N: usize>(&self) -> Option<PathOptics<N>> {
-        Some(PathOptics {
-            transmittance: Spectrum(self.transmittance.as_slice().try_into().ok()?),
-            path_radiance: Spectrum(self.path_radiance().try_into().ok()?),
-        })
     }
 }
 

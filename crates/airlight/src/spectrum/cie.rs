@@ -6,12 +6,12 @@ use std::sync::LazyLock;
 /// Maximum luminous efficacy K_m, lm/W: `Y = 683.002 * integral L ybar dl` is in cd/m^2 for `L` in W m^-2 sr^-1 nm^-1.
 ///
 /// From CIE 018:2019: 683 lm/W at 540 THz, converted to the peak of V(lambda) at 555 nm in air.
-pub const LUMINOUS_EFFICACY_LM_PER_W: f64 = 683.002;
+pub(crate) const LUMINOUS_EFFICACY_LM_PER_W: f64 = 683.002;
 
 /// Shortest wavelength of the tabulated observer, nm.
-pub const FIRST_NM: f64 = 360.0;
+pub(crate) const FIRST_NM: f64 = 360.0;
 /// Longest wavelength of the tabulated observer, nm.
-pub const LAST_NM: f64 = 830.0;
+pub(crate) const LAST_NM: f64 = 830.0;
 
 /// Colour-matching functions (x-bar, y-bar, z-bar) at a wavelength in nm: ISO/CIE 11664-1:2019, tabulated every 1 nm from
 /// 360 nm to 830 nm, linearly interpolated, zero outside.

@@ -4,6 +4,7 @@ use crate::math::interpolation::piecewise_linear;
 
 /// A quantity as a function of wavelength.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum SpectralCurve {
     /// The same at every wavelength.
     Constant(f64),
@@ -60,6 +61,7 @@ pub struct SampledCurve {
 
 /// Error of [`SampledCurve::new`] and [`SpectralCurve::table`].
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum CurveError {
     /// No samples, or different numbers of abscissae and values.
     #[error(

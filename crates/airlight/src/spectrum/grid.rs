@@ -50,6 +50,7 @@ pub struct WavelengthGrid {
 
 /// Error of [`WavelengthGrid::from_wavelengths_nm`] and of reading a grid from text.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum GridError {
     /// No wavelengths.
     #[error("expected at least one wavelength, got none")]

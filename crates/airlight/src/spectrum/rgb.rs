@@ -9,11 +9,11 @@
 use crate::names::named;
 
 /// A 3 by 3 matrix, row-major.
-pub type Matrix3 = [[f64; 3]; 3];
+pub(crate) type Matrix3 = [[f64; 3]; 3];
 
 /// Wavelengths in nm that represent red, green and blue where a model is evaluated at three wavelengths: the dominant
 /// wavelengths of the sRGB primaries.
-pub const DOMINANT_NM: [f64; 3] = [612.0, 549.0, 465.0];
+pub(crate) const DOMINANT_NM: [f64; 3] = [612.0, 549.0, 465.0];
 
 /// A linear RGB colour space.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
@@ -53,7 +53,7 @@ impl RgbSpace {
     }
 
     /// XYZ of RGB (1, 1, 1), with Y = 1.
-    pub fn white_xyz(self) -> [f64; 3] {
+    pub(crate) fn white_xyz(self) -> [f64; 3] {
         xy_to_xyz(self.white_point_xy())
     }
 

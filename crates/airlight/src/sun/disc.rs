@@ -5,9 +5,9 @@ use crate::names::named;
 use std::f64::consts::PI;
 
 /// Nominal solar radius, m (IAU 2015 resolution B3).
-pub const SOLAR_RADIUS_M: f64 = 6.957e8;
+pub(crate) const SOLAR_RADIUS_M: f64 = 6.957e8;
 /// Astronomical unit, m (IAU 2012).
-pub const ASTRONOMICAL_UNIT_M: f64 = 149_597_870_700.0;
+pub(crate) const ASTRONOMICAL_UNIT_M: f64 = 149_597_870_700.0;
 
 /// The disc of the sun as seen from the planet.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,6 +21,7 @@ pub struct SunDisc {
 /// Limb-darkening law: radiance as a function of `mu`, the cosine of the angle between the line of sight and the normal of
 /// the sun's surface, which is 1 at the centre and 0 at the limb.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum LimbDarkening {
     /// Uniform radiance.
     Uniform,
@@ -41,6 +42,7 @@ named! { LimbDarkening, "a limb darkening", [
 
 /// Error of [`SunDisc::at_distance_au`] and [`SunDisc::validate`].
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SunError {
     /// The angular radius is out of range.
     #[error("expected an angular radius of the sun strictly between 0 and pi/2 rad, got {0}")]
@@ -49,7 +51,7 @@ pub enum SunError {
 
 /// Exponent `alpha` of the limb darkening `mu^alpha`: `-0.023 + 0.292 / lambda` from 416 to 1099 nm and
 /// `-0.507 + 0.441 / lambda` from 303 to 372 nm (lambda in um; Hestroffer & Magnan 1998), linear between, constant beyond.
-pub fn limb_exponent(wavelength_nm: f64) -> f64 {
+pub(crate) fn limb_exponent(wavelength_nm: f64) -> f64 {
     let um = wavelength_nm.clamp(303.0, 1099.0) * 1e-3;
     let visible = |um: f64| -0.023 + 0.292 / um;
     let ultraviolet = |um: f64| -0.507 + 0.441 / um;
@@ -65,7 +67,7 @@ pub fn limb_exponent(wavelength_nm: f64) -> f64 {
 
 /// Coefficients `A_k` of `I(mu) / I(1) = sum of A_k mu^k`, k = 0 to 5 (Neckel 2005, table 2). The fits cover 303 to 373,
 /// 385 to 422.57 and 422.57 to 1099 nm; linear between 373 and 385 nm, constant beyond. The coefficients sum to 1.
-pub fn limb_polynomial(wavelength_nm: f64) -> [f64; 6] {
+pub(crate) fn limb_polynomial(wavelength_nm: f64) -> [f64; 6] {
     /// The constant terms, the factor of `1 / lambda` in `A_0` (and, negated, in `A_1`), and the factors of `1 / lambda^5`.
     type Fit = ([f64; 6], f64, [f64; 6]);
     const BELOW_BALMER: Fit = (

@@ -1,8 +1,8 @@
 //! The sun: its disc, its position in the sky, and times to compute that for.
 
-pub mod disc;
+mod disc;
 mod moment;
-pub mod position;
+mod position;
 mod state;
 
 pub use disc::{LimbDarkening, SunDisc, SunError};

@@ -30,6 +30,7 @@ pub struct Moment {
 #[error(
     "expected a time such as 2013-05-27T16:30:00Z or 2013-05-27T12:30:00-04:00, got \"{text}\": {reason}"
 )]
+#[non_exhaustive]
 pub struct MomentError {
     /// The text.
     pub text: String,

@@ -40,6 +40,7 @@ impl RefractingAir {
 
 /// Position of the sun in the sky.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct SunPosition {
     /// Azimuth in degrees clockwise from north, in `[0, 360)`.
     pub azimuth_deg: f64,
@@ -60,6 +61,7 @@ impl SunPosition {
 
 /// Error of [`sun_position`] or of parsing a time.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum EphemerisError {
     /// A latitude, longitude or altitude out of range.
     #[error("expected {what} from {least} to {most}, got {got}")]
@@ -109,7 +111,7 @@ pub fn sun_position(
 ///
 /// # Errors
 /// As [`sun_position`].
-pub fn sun_position_with_lag(
+pub(crate) fn sun_position_with_lag(
     time: Moment,
     terrestrial_lag_s: f64,
     place: Place,

@@ -14,7 +14,7 @@ pub struct SunState {
 
 impl SunState {
     /// The sun in the direction of a vector, at the planet's mean distance.
-    pub fn at_mean_distance(direction: DVec3) -> Self {
+    pub(crate) fn at_mean_distance(direction: DVec3) -> Self {
         Self {
             direction: direction.normalize(),
             distance_ratio: 1.0,

@@ -12,4 +12,5 @@ mod path_optics;
 pub(crate) mod ray;
 pub(crate) mod shell;
 
-pub use path_optics::{PathOptics, RgbPathOptics};
+pub(crate) use path_optics::PathOptics;
+pub use path_optics::RgbPathOptics;

@@ -1,6 +1,6 @@
 //! What the book shows must work.
 
-use airlight::atmosphere::config;
+use airlight::atmosphere::Atmosphere;
 
 /// The fenced blocks of a language in a Markdown text.
 fn blocks<'a>(text: &'a str, language: &str) -> Vec<&'a str> {
@@ -18,7 +18,8 @@ fn atmospheres_of_the_book_are_read() {
     let examples = [blocks(chapter, "toml"), blocks(types, "toml")].concat();
     assert!(examples.len() >= 6, "{}", examples.len());
     for example in examples {
-        let air = config::from_toml(example).unwrap_or_else(|error| panic!("{error}\n{example}"));
+        let air =
+            Atmosphere::from_toml(example).unwrap_or_else(|error| panic!("{error}\n{example}"));
         assert!(!air.constituents.is_empty(), "{example}");
     }
 }

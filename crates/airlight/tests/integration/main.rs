@@ -3,7 +3,6 @@
 //! A test is a claim, compared with something outside this crate's own results, unless it stands in a module `guards`
 //! (CONTRIBUTING.md, "Tests").
 
-mod aerial;
 mod analytic_drops;
 mod book;
 mod colour;
@@ -11,8 +10,6 @@ mod common;
 mod fog_drops;
 mod fog_monte_carlo;
 mod fog_reference;
-mod fogbow;
-mod foggy_sky;
 mod models;
 mod monte_carlo_lines;
 mod monte_carlo_polarisation;

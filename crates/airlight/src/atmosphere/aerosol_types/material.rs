@@ -10,6 +10,7 @@ use std::sync::LazyLock;
 /// A component of OPAC aerosols: spheres of one material with a lognormal size distribution (Hess, Koepke & Schult
 /// 1998, table 1c).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Component {
     /// Soil with some organic matter.
     Insoluble,

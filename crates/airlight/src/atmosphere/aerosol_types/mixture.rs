@@ -10,6 +10,7 @@ use crate::spectrum::{CurveError, SpectralCurve};
 
 /// A part of a mixture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Ingredient {
     /// A type, which is itself a mixture.
     Type(AerosolType),
@@ -27,6 +28,7 @@ pub struct AerosolMixture {
 
 /// Bulk optical properties of an aerosol at 550 nm.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct AerosolSummary {
     /// Extinction coefficient at the ground at the published number density (mean by shares for a mixture), m^-1.
     pub extinction_per_m: f64,

@@ -15,6 +15,7 @@ const LARGEST_UM: f64 = 15.0;
 /// worldwide locations*, J. Atmos. Sci. 59, 590, 2002, table 1: two lognormal volume distributions with one refractive
 /// index at all wavelengths. Values are means over the column of ambient air, so humidity is not a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Smoke {
     /// African savanna, Zambia 1995 to 2000.
     Savanna,

@@ -4,9 +4,9 @@ use super::error::{ConfigError, ConfigProblem};
 use super::parts;
 use super::reader::Section;
 use crate::atmosphere::aerosol::{AerosolLoad, AngstromAerosol, continental_phase};
-use crate::atmosphere::aerosol_types::{AerosolMixture, AerosolType, AerosolTypeError, Ingredient};
 use crate::atmosphere::presets::earth;
 use crate::atmosphere::visibility::Contrast;
+use crate::atmosphere::{AerosolMixture, AerosolType, AerosolTypeError, Ingredient};
 use crate::atmosphere::{Atmosphere, Constituent, ConstituentKind, DensityProfile};
 use crate::spectrum::SpectralCurve;
 

@@ -8,6 +8,7 @@ use crate::spectrum::CurveError;
 /// A problem in a TOML text, with its place.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("line {line}, column {column}: {}{problem}", self.subject())]
+#[non_exhaustive]
 pub struct ConfigError {
     /// Line, counted from 1.
     pub line: usize,
@@ -21,6 +22,7 @@ pub struct ConfigError {
 
 /// A problem with a key.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ConfigProblem {
     /// The text is not TOML.
     #[error("{0}")]

@@ -1,20 +1,18 @@
 use super::*;
-use crate::atmosphere::aerosol_types::{Component, Ingredient};
 use crate::atmosphere::{
-    AerosolError, AerosolLoad, AerosolMixture, AerosolType, AerosolTypeError, DensityError,
-    DensityProfile, preset,
+    AerosolError, AerosolLoad, AerosolMixture, AerosolType, AerosolTypeError, Component,
+    DensityError, DensityProfile, Ingredient, preset,
 };
-use crate::optics::PhaseError;
-use crate::optics::PhaseFunction;
+use crate::optics::{PhaseError, PhaseFunction};
 use crate::sun::LimbDarkening;
 
 fn read(text: &str) -> Atmosphere {
-    from_toml(text).unwrap_or_else(|error| panic!("{text}\n{error}"))
+    Atmosphere::from_toml(text).unwrap_or_else(|error| panic!("{text}\n{error}"))
 }
 
 /// The error of a text. Its message must start with the line and name the key.
 fn refuse(text: &str) -> ConfigError {
-    let error = from_toml(text).expect_err(text);
+    let error = Atmosphere::from_toml(text).expect_err(text);
     let message = error.to_string();
     assert!(
         message.contains(&error.key) && message.starts_with(&format!("line {}", error.line)),

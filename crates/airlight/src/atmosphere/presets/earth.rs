@@ -9,7 +9,7 @@ use crate::spectrum::{SpectralCurve, solar};
 use crate::sun::SunDisc;
 
 /// Where the Earth's air is taken to end, m: what lies above scatters less than 1e-6 of the whole.
-pub const EARTH_TOP_M: f64 = 100e3;
+pub(crate) const EARTH_TOP_M: f64 = 100e3;
 
 /// Parameters of an Earth atmosphere.
 #[derive(Clone, Debug, PartialEq)]
@@ -88,7 +88,7 @@ fn planet(ground_albedo: SpectralCurve) -> Planet {
 
 /// Half grass (as in the comparison of clear-sky models, [`super::reference::csm`]), half a soil whose albedo rises
 /// from 0.05 at 360 nm to 0.23 at 800 nm: 0.107 at 550 nm, green with a red edge. Rounded.
-pub fn grass_and_soil() -> SpectralCurve {
+pub(crate) fn grass_and_soil() -> SpectralCurve {
     fixed_table(&[
         (360.0, 0.034),
         (450.0, 0.058),

@@ -9,7 +9,7 @@ use crate::sun::SunDisc;
 use std::f64::consts::PI;
 
 /// Mean distance of Mars from the sun, AU.
-pub const MARS_DISTANCE_AU: f64 = 1.5237;
+pub(crate) const MARS_DISTANCE_AU: f64 = 1.5237;
 /// Scale height of gas and dust, m.
 const SCALE_HEIGHT_M: f64 = 11.1e3;
 /// Mean surface pressure (Pa) and mean temperature of the lower atmosphere (K).
@@ -22,7 +22,7 @@ const DUST_DEPTH_880: f64 = 0.5;
 /// Scattering cross-section of the carbon dioxide molecule, m^2: refractive index of Bideau-Mehu et al. (Opt. Commun. 9,
 /// 432, 1973) at 273.15 K and 101325 Pa, King factor `1.1364 + 25.3e-12 nu^2` (nu in cm^-1) of Sneep & Ubachs (J. Quant.
 /// Spectrosc. Radiat. Transfer 92, 293, 2005). Within 0.5 % of measurements at 532 and 660 nm.
-pub fn carbon_dioxide_cross_section_m2(wavelength_nm: f64) -> f64 {
+pub(crate) fn carbon_dioxide_cross_section_m2(wavelength_nm: f64) -> f64 {
     let s2 = (1e3 / wavelength_nm).powi(2);
     let refractivity = 6.99100e-2 / (166.175 - s2)
         + 1.44720e-3 / (79.609 - s2)

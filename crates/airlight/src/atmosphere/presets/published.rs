@@ -167,7 +167,7 @@ pub fn hillaire() -> Atmosphere {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::spectrum::cie;
+    use crate::spectrum::color_matching;
 
     #[test]
     fn the_zenith_sun_of_the_article_is_white_with_120_klx() {
@@ -177,9 +177,7 @@ mod tests {
                 atmosphere.solar_irradiance.at(nm) * (-atmosphere.vertical_optical_depth(nm)).exp();
             assert!((direct / 1.6442 - 1.0).abs() < 1e-4, "{nm}: {direct}");
         }
-        let v: f64 = (360..=830)
-            .map(|nm| cie::color_matching(f64::from(nm))[1])
-            .sum();
+        let v: f64 = (360..=830).map(|nm| color_matching(f64::from(nm))[1]).sum();
         assert!((683.002 * 1.6442 * v / 120e3 - 1.0).abs() < 1e-3, "{v}");
         let aerosol = atmosphere.constituent(&ConstituentKind::Aerosol).unwrap();
         assert!((aerosol.extinction_per_m(550.0) / 21e-6 - 1.11).abs() < 1e-12);

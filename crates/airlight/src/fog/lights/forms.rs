@@ -105,7 +105,7 @@ impl LightForm {
 /// The printed form in 1/m, to be multiplied by intensity and scattering coefficient. It is symmetric in the ends of the ray; for
 /// an infinite ray it is the limit `arctan(1 / y)`.
 #[inline]
-pub fn airlight_printed(geometry: &LightRayGeometry) -> f64 {
+pub(crate) fn airlight_printed(geometry: &LightRayGeometry) -> f64 {
     let v = geometry.nearest_m;
     let y = geometry.start_m / v;
     let x = (geometry.start_m + geometry.length_m) / v;
@@ -129,7 +129,7 @@ const PANEL: f64 = 2.0;
 /// relative error below 1e-6 up to an optical depth of 10 between light and ray. The split sum is within 5 % of
 /// [`airlight_isotropic`] up to an optical depth of 1 of the ray, for a light halfway along it. For an infinite ray it is 0, as
 /// the mean of the source is 0.
-pub fn airlight_split_sum(geometry: &LightRayGeometry, extinction_per_m: f64) -> f64 {
+pub(crate) fn airlight_split_sum(geometry: &LightRayGeometry, extinction_per_m: f64) -> f64 {
     static RULE: FixedRule<12> = FixedRule::fixed();
     if extinction_per_m == 0.0 {
         return airlight_without_extinction(geometry);

@@ -59,7 +59,7 @@ impl LightRayGeometry {
 
     /// The segment in the opposite direction. It must be finite.
     #[inline]
-    pub fn reversed(&self) -> Self {
+    pub(crate) fn reversed(&self) -> Self {
         Self {
             start_m: -(self.start_m + self.length_m),
             ..*self

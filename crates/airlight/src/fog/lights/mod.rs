@@ -24,7 +24,7 @@ mod march;
 mod reference;
 
 pub use closed_form::{airlight_isotropic, airlight_isotropic_fast, airlight_without_extinction};
-pub use forms::{LightForm, airlight_printed, airlight_split_sum};
+pub use forms::LightForm;
 pub use geometry::{LightRayGeometry, ViewRay};
 pub use light::{Light, PointLight, SphereLight, SpotLight};
 pub use light_set::{LightSet, LightSettings, RgbLightSet};

@@ -7,10 +7,11 @@
 use crate::atmosphere::{Constituent, RaySegment};
 use crate::fog::{Lanes, LayerLanes, attenuated_source, constant_source};
 use crate::spectrum::Spectrum;
-use crate::transfer::PathOptics;
+use crate::transfer::{PathOptics, RgbPathOptics};
 
 /// How far sunlight has come through the fog where it is scattered into the line of sight.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum SunDepth {
     /// The whole depth of the fog (eq. 35), wherever on the line: good for lines near the ground.
     Printed,
@@ -21,7 +22,7 @@ pub enum SunDepth {
 
 /// The scene: heights above the ground, coefficients, light.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Slab1987<const N: usize> {
+pub(super) struct Slab1987<const N: usize> {
     /// Height of the fog's top, `R_H - R_E`, m.
     pub fog_top_m: f64,
     /// Height of the top of an atmosphere as dense everywhere as at the ground, `R_A - R_E`, m (8.4 km).
@@ -37,25 +38,6 @@ pub struct Slab1987<const N: usize> {
 }
 
 impl<const N: usize> Slab1987<N> {
-    /// Fog and air at wavelengths (nm), each as dense everywhere as its coefficients state; heights in m, the sine of the sun's
-    /// elevation above 0.
-    pub fn new(
-        [fog, air]: [&Constituent; 2],
-        [fog_top_m, air_top_m]: [f64; 2],
-        sun_irradiance: Spectrum<N>,
-        sin_sun: f64,
-        wavelengths_nm: &[f64; N],
-    ) -> Self {
-        Self {
-            fog_top_m,
-            air_top_m,
-            fog: LayerLanes::new(fog, wavelengths_nm),
-            air: LayerLanes::new(air, wavelengths_nm),
-            sun_irradiance,
-            sin_sun,
-        }
-    }
-
     /// `B = beta_m + beta_p` (eq. 43), 1/m.
     pub fn extinction_per_m(&self) -> Spectrum<N> {
         self.air.extinction_per_m + self.fog.extinction_per_m
@@ -71,19 +53,6 @@ impl<const N: usize> Slab1987<N> {
     pub fn irradiance_at(&self, height_m: f64) -> Spectrum<N> {
         let d2 = (self.fog_top_m - height_m).max(0.0) / self.sin_sun;
         self.irradiance_at_top() * (self.extinction_per_m() * d2 as f32).exp_neg()
-    }
-
-    /// Radiance of an object at a height: what it reflects of sun and ambient light (the bracket of eqs. 36, 40 and 47).
-    ///
-    /// `reflectivity` is the angular reflectivity `R(psi)` (1/sr) towards the eye, times the cosine of incidence;
-    /// `ambient` is the radiance `A` that it reflects of all other light.
-    pub fn object(
-        &self,
-        height_m: f64,
-        reflectivity: Spectrum<N>,
-        ambient: Spectrum<N>,
-    ) -> Spectrum<N> {
-        ambient + self.irradiance_at(height_m) * reflectivity
     }
 
     /// The fog and air between a point at `eye_height_m`, in the fog or at its top, and an object `length_m` away: its
@@ -165,6 +134,55 @@ impl<const N: usize> Slab1987<N> {
     fn scattered(&self, cos_sun: f64) -> Spectrum<N> {
         let part = |layer: &LayerLanes<N>| layer.scattering_per_m * layer.phase_lanes(cos_sun);
         part(&self.fog) + part(&self.air)
+    }
+}
+
+/// Fog of 1987 lit by sun and sky, at three wavelengths: a slab of uniform fog under clear air, over flat ground.
+#[derive(Clone, Debug)]
+pub struct RgbSlab1987 {
+    lanes: Slab1987<3>,
+}
+
+impl RgbSlab1987 {
+    /// Fog and air at wavelengths (nm), each as dense everywhere as its coefficients state; heights of the tops of fog and air
+    /// in m, irradiance of the sun outside the atmosphere, the sine of its elevation above 0.
+    pub fn new(
+        [fog, air]: [&Constituent; 2],
+        [fog_top_m, air_top_m]: [f64; 2],
+        sun_irradiance: [f32; 3],
+        sin_sun: f64,
+        wavelengths_nm: &[f64; 3],
+    ) -> Self {
+        Self {
+            lanes: Slab1987 {
+                fog_top_m,
+                air_top_m,
+                fog: LayerLanes::new(fog, wavelengths_nm),
+                air: LayerLanes::new(air, wavelengths_nm),
+                sun_irradiance: Spectrum(sun_irradiance),
+                sin_sun,
+            },
+        }
+    }
+
+    /// Irradiance on an object at a height (m) in the fog, facing the sun (eqs. 34, 36, 38).
+    pub fn irradiance_at(&self, height_m: f64) -> [f32; 3] {
+        self.lanes.irradiance_at(height_m).0
+    }
+
+    /// Path optics between an eye at a height (m) and an object `length_m` away: the air above the fog, then the fog (eqs. 39 to
+    /// 46). `sin_elevation` is the sine of the ray's elevation, `cos_sun` the cosine of its angle to the direction of the sun.
+    pub fn along(
+        &self,
+        eye_height_m: f64,
+        sin_elevation: f64,
+        length_m: f64,
+        cos_sun: f64,
+        depth: SunDepth,
+    ) -> RgbPathOptics {
+        self.lanes
+            .along(eye_height_m, sin_elevation, length_m, cos_sun, depth)
+            .into()
     }
 }
 
@@ -280,8 +298,6 @@ mod tests {
         assert!((f64::from(ground) / exact - 1.0).abs() < 1e-5);
         assert_eq!(scene.irradiance_at(100.0), scene.irradiance_at_top());
         let ambient = Spectrum([0.1; 3]);
-        let object = scene.object(0.0, Spectrum([0.2; 3]), ambient);
-        assert!((object[1] - (0.1 + 0.2 * ground)).abs() < 1e-6);
         let far = scene.in_fog_at_sunset(1e6, ambient);
         assert!((far.path_radiance - ambient).map(f32::abs).max_element() < 1e-7);
     }

@@ -10,6 +10,7 @@ pub(super) struct Spheres {
 
 /// Path lengths in the haze integral.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum HazePath {
     /// Eqs. 27 to 29, with the corrected offset of 27, `l = l_max (r - R_E) / (R_H - R_E)`: the distance along the view ray is
     /// taken as linear in the radius. Too dark near the horizon: by 16 % at an elevation of 1 degree, 80 % on the horizon; 0.6 %
@@ -22,6 +23,7 @@ pub enum HazePath {
 
 /// Path of sunlight to the point of scattering.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum SunRay {
     /// Eqs. 20, 21, 24 and 25: the ray crosses each sphere at the elevation that the sun has at the eye. At sunset the path
     /// through the air above the haze is 70 % too long (test `errata`).

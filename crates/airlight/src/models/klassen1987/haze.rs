@@ -2,7 +2,7 @@
 
 use super::lanes::{Lanes, wavelengths_nm};
 use super::settings::{Haze, HazePhase, Klassen1987Error, Klassen1987Settings};
-use crate::atmosphere::aerosol::REFERENCE_NM;
+use crate::atmosphere::REFERENCE_NM;
 use crate::math::interpolation::Place;
 use crate::optics::mie::droplets::Drops;
 use crate::optics::mie::{BulkOptics, MieError, Particles};

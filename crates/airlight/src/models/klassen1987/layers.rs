@@ -1,7 +1,7 @@
 //! Conversion of an atmosphere to the two layers of the model, and back.
 
 use super::settings::{Haze, Klassen1987Error, Klassen1987Settings, scatters};
-use crate::atmosphere::aerosol::REFERENCE_NM;
+use crate::atmosphere::REFERENCE_NM;
 use crate::atmosphere::{Atmosphere, Constituent, ConstituentKind, DensityProfile, Planet};
 use crate::optics::PhaseFunction;
 use crate::spectrum::SpectralCurve;

@@ -34,7 +34,7 @@ mod blue;
 mod coherence;
 #[cfg(test)]
 mod errata;
-pub mod fog;
+mod fog;
 mod geometry;
 mod haze;
 mod lanes;
@@ -46,10 +46,10 @@ mod simpson;
 #[cfg(test)]
 mod tests;
 
+pub use fog::{RgbSlab1987, SunDepth};
 pub use geometry::{HazePath, SunRay};
-pub use lanes::{FIRST_NM, WAVELENGTHS, wavelength_grid};
-pub use model::Klassen1987Model;
-pub use scene::{Fog1987, Klassen1987Scene, SUNSET_DEG};
+pub use lanes::wavelength_grid;
+pub(crate) use model::Klassen1987Model;
 pub use settings::{BaseBlue, Haze, HazePhase, Klassen1987Error, Klassen1987Settings};
 
 use super::PublishedModel;

@@ -2,9 +2,8 @@
 
 use super::blue::BaseSky;
 use super::fog::SunDepth;
-use super::{
-    BaseBlue, Fog1987, Haze, Klassen1987, Klassen1987Error, Klassen1987Scene, Klassen1987Settings,
-};
+use super::scene::{Fog1987, Klassen1987Scene};
+use super::{BaseBlue, Haze, Klassen1987, Klassen1987Error, Klassen1987Settings};
 use crate::control::Control;
 use crate::models::PublishedModel;
 use crate::models::prepared::Prepared;
@@ -21,7 +20,7 @@ const BITS: u32 = 12;
 
 /// Klassen 1987 in the air of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Klassen1987Model;
+pub(crate) struct Klassen1987Model;
 
 impl RadianceModel for Klassen1987Model {
     fn name(&self) -> &'static str {

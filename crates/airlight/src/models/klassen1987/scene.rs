@@ -22,7 +22,7 @@ use crate::fog::LayerLanes;
 use crate::models::PublishedModel;
 use crate::models::klassen1987::fog::{Slab1987, SunDepth};
 use crate::optics::{Depolarization, PhaseFunction};
-use crate::scene::{IrradianceMap, SceneLighting};
+use crate::scene::IrradianceMap;
 use crate::spectrum::{Spectrum, WavelengthGrid};
 use crate::sun::SunDisc;
 use crate::transfer::PathOptics;
@@ -135,11 +135,6 @@ impl Klassen1987Scene {
         }
     }
 
-    /// The eye's height, m.
-    pub fn eye_height_m(&self) -> f64 {
-        self.eye_height_m
-    }
-
     /// The sun's disc, dimmed by the fog.
     fn disc_along(&self, direction: DVec3) -> Lanes {
         let disc = self.model.disc_along(direction);
@@ -147,11 +142,6 @@ impl Klassen1987Scene {
             true => self.fog_on(direction, FARTHEST_M).transmittance * disc,
             false => disc,
         }
-    }
-
-    /// The model behind.
-    pub fn model(&self) -> &Klassen1987 {
-        &self.model
     }
 
     /// The sky without fog, W m^-2 sr^-1 nm^-1; black below the horizon.
@@ -287,24 +277,6 @@ impl Klassen1987Scene {
     /// Radiance that arrives from a direction, without the sun's disc.
     pub fn around(&self, direction: DVec3) -> Lanes {
         self.seen(direction, &mut Simpson::new(0.0))
-    }
-}
-
-impl SceneLighting<WAVELENGTHS> for Klassen1987Scene {
-    fn sun(&self) -> DVec3 {
-        self.model.sun
-    }
-
-    fn sunlight(&self, height_m: f64) -> Lanes {
-        Klassen1987Scene::sunlight(self, height_m)
-    }
-
-    fn before(&self, direction: DVec3, distance_m: f64) -> PathOptics<WAVELENGTHS> {
-        Klassen1987Scene::before(self, direction, distance_m)
-    }
-
-    fn around(&self, direction: DVec3) -> Lanes {
-        Klassen1987Scene::around(self, direction)
     }
 }
 

@@ -1,8 +1,8 @@
 //! Settings of the model, their validation and errors.
 
 use super::geometry::{HazePath, SunRay};
-use crate::atmosphere::aerosol::REFERENCE_NM;
-use crate::atmosphere::presets::earth::Earth;
+use crate::atmosphere::REFERENCE_NM;
+use crate::atmosphere::presets::Earth;
 use crate::atmosphere::{Atmosphere, AtmosphereError, Constituent, ConstituentKind};
 use crate::fog::FogError;
 use crate::optics::mie::MieError;
@@ -42,6 +42,7 @@ pub struct Klassen1987Settings {
 
 /// Particles of the haze: spectral dependence of extinction, albedo and phase function.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Haze {
     /// Wet haze: water drops of a published distribution, by Mie theory.
     Drops(Drops),
@@ -58,6 +59,7 @@ pub enum Haze {
 
 /// Phase function of the haze, `beta_sc(psi)` divided by the scattering coefficient.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub enum HazePhase {
     /// That of its particles: a table by angle and wavelength, as the paper prefers.
     #[default]
@@ -77,6 +79,7 @@ pub enum HazePhase {
 
 /// The sky behind the haze.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum BaseBlue {
     /// One colour in all directions, as in the paper: sunlight weighted by the fraction of each wavelength that the molecules
     /// scatter on a vertical path. Its luminance is proportional to the sine of the sun's elevation, down to a hundredth at
@@ -98,6 +101,7 @@ impl BaseBlue {
 
 /// Error of [`Klassen1987Settings::validate`] and of the model's constructors.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum Klassen1987Error {
     /// An argument is outside its domain.
     #[error("expected {what} {right}, got {got}")]

@@ -1,6 +1,7 @@
 //! Tests of the model against its errata, its limits and itself.
 
 use super::errata::{EARTH_M, SPHERES};
+use super::lanes::WAVELENGTHS;
 use super::*;
 use crate::atmosphere::{ConstituentKind, preset};
 use crate::axes::direction;

@@ -66,6 +66,7 @@ const ZENITH_CHROMA_Y: [[f64; 4]; 3] = [
 
 /// Error of [`Preetham::new`].
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum PreethamError {
     /// The turbidity is out of range.
     #[error("expected a turbidity from 2 to 10, got {0} (the model is fitted to 2 to 6)")]
@@ -178,7 +179,7 @@ impl PublishedModel for Preetham {
 
 /// The sky of Preetham 1999 for the turbidity of a scene's air.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PreethamModel;
+pub(crate) struct PreethamModel;
 
 impl RadianceModel for PreethamModel {
     fn name(&self) -> &'static str {

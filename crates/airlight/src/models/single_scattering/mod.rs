@@ -121,7 +121,7 @@ impl SkyArticle {
     }
 
     /// Luminances of the sun's disc, cd/m^2, whose edge is smooth from 0.95 to 1.05 of its radius.
-    pub fn disc_luminance(&self, direction: DVec3) -> [f64; 3] {
+    pub(crate) fn disc_luminance(&self, direction: DVec3) -> [f64; 3] {
         match self.model.as_ref() {
             Model::Printed(shader) => shader.disc(direction.into(), self.sun.into()),
             Model::PrintedF64(shader) => shader.disc(direction.into(), self.sun.into()),
@@ -139,7 +139,7 @@ impl SkyArticle {
 
 /// The article's sky, in its own air.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct SingleScatteringModel;
+pub(crate) struct SingleScatteringModel;
 
 /// Names of the variants, the default first.
 const VARIANTS: [(&str, Variant); 5] = [

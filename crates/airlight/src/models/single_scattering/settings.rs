@@ -6,6 +6,7 @@ use glam::DVec3;
 
 /// Evaluation of the integrals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[non_exhaustive]
 pub enum Variant {
     /// The shader in f32, operation by operation.
     Printed,
@@ -47,6 +48,7 @@ impl Default for Settings {
 
 /// Error of [`SkyArticle::new`].
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SettingsError {
     /// The eye is not inside the atmosphere.
     #[error("expected an eye altitude from 0 to below 60 000 m, got {0} m")]

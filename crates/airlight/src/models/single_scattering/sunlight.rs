@@ -5,6 +5,7 @@ use crate::spectrum::{RgbSpace, WavelengthGrid};
 
 /// Normalisation of the sunlight.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Sunlight {
     /// White on the ground for a sun at the zenith, with this illuminance there (lx, or [`c::UNIT_ILLUMINANCE`] for colours
     /// without a unit).

@@ -4,6 +4,7 @@ use num_complex::Complex64;
 
 /// The four independent elements of a sphere's scattering matrix (BH eq. 4.77), scaled so that `f11` is the phase function.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ScatteringMatrix {
     /// Phase function for natural light, sr^-1.
     pub f11: f64,

@@ -28,12 +28,13 @@ pub use sizes::{SizeDistribution, SizeNode};
 pub use sphere::{Efficiencies, Sphere};
 
 /// Largest supported size parameter: a drop of 1 cm at 600 nm.
-pub const LARGEST_SIZE_PARAMETER: f64 = 1e5;
+pub(crate) const LARGEST_SIZE_PARAMETER: f64 = 1e5;
 /// Largest supported modulus of a refractive index.
-pub const LARGEST_INDEX: f64 = 1e3;
+pub(crate) const LARGEST_INDEX: f64 = 1e3;
 
 /// Error of a sphere or a distribution of spheres.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum MieError {
     /// The size parameter is out of range.
     #[error("expected a size parameter above 0 and at most {LARGEST_SIZE_PARAMETER}, got {0}")]

@@ -37,6 +37,7 @@ pub struct Particles {
 
 /// Mean optical properties of a sphere in a distribution, at one wavelength.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct BulkOptics {
     /// Wavelength, nm.
     pub wavelength_nm: f64,

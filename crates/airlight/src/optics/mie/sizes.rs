@@ -6,6 +6,7 @@ use std::f64::consts::{PI, SQRT_2};
 
 /// Number distribution of radii, a density with integral 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum SizeDistribution {
     /// A single radius.
     Monodisperse {
@@ -215,7 +216,7 @@ impl SizeDistribution {
     }
 
     /// Mean volume of a sphere, um^3.
-    pub fn mean_volume_um3(&self) -> f64 {
+    pub(crate) fn mean_volume_um3(&self) -> f64 {
         4.0 / 3.0 * PI * self.mean_power(3.0)
     }
 

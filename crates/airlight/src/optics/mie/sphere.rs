@@ -15,6 +15,7 @@ pub struct Sphere {
 
 /// Efficiencies, the cross-sections divided by the geometric cross-section `pi r^2`, and the mean cosine of scattering.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Efficiencies {
     /// Extinction: scattering plus absorption.
     pub extinction: f64,

@@ -44,7 +44,7 @@ impl AirSpec {
     }
 
     /// Whether the haze is set: its type or its amount.
-    pub fn sets_haze(&self) -> bool {
+    pub(crate) fn sets_haze(&self) -> bool {
         self.aerosol.is_some()
             || self.humidity.is_some()
             || self.aod_550.is_some()

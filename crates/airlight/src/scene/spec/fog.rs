@@ -12,6 +12,7 @@ const TOP_M: f64 = 50.0;
 
 /// How fog thins with height, or which look it has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum FogProfile {
     /// The same everywhere: for pictures with depth, as no sky shines through it.
     Uniform,
@@ -101,7 +102,7 @@ impl FogSpec {
     }
 
     /// All layers.
-    pub fn all_layers(&self) -> impl Iterator<Item = FogLayerSpec> {
+    pub(crate) fn all_layers(&self) -> impl Iterator<Item = FogLayerSpec> {
         std::iter::once(self.first_layer()).chain(self.layers.iter().cloned())
     }
 }

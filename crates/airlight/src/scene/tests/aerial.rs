@@ -1,12 +1,13 @@
 //! Aerial perspective from its table against the line of sight itself.
 
-use crate::common::sky;
-use airlight::atmosphere::presets;
-use airlight::axes::direction;
-use airlight::scene::{AerialPerspective, LaneChannels};
-use airlight::sky::{Sky, SkySettings, SunCoverage, View};
-use airlight::spectrum::{RgbSpace, WavelengthGrid};
-use airlight::transfer::PathOptics;
+use super::{SPECTRAL, path_optics, sky};
+use crate::atmosphere::presets;
+use crate::axes::direction;
+use crate::scene::aerial::AerialPerspective;
+use crate::scene::lane_channels::LaneChannels;
+use crate::sky::{Sky, SkySettings, SunCoverage, View};
+use crate::spectrum::{RgbSpace, WavelengthGrid};
+use crate::transfer::PathOptics;
 use glam::DVec3;
 
 /// The same numbers on every machine.
@@ -25,8 +26,8 @@ impl Dice {
 fn lines(sun: DVec3, horizon_deg: f64, farthest_m: f64, count: usize) -> Vec<(DVec3, f64)> {
     let mut dice = Dice(88_172_645_463_325_252);
     let (sun_azimuth, sun_elevation) = (
-        airlight::axes::azimuth_deg(sun),
-        airlight::axes::elevation_deg(sun),
+        crate::axes::azimuth_deg(sun),
+        crate::axes::elevation_deg(sun),
     );
     (0..count)
         .map(|k| {
@@ -82,7 +83,7 @@ fn errors<const N: usize>(
 }
 
 fn spectral<const N: usize>(view: &View, direction: DVec3, distance: f64) -> ([f64; N], [f64; N]) {
-    let optics = view.along(direction, Some(distance)).optics::<N>().unwrap();
+    let optics = path_optics::<N>(&view.along(direction, Some(distance)));
     (
         optics.transmittance.0.map(f64::from),
         optics.path_radiance.0.map(f64::from),
@@ -111,7 +112,7 @@ fn rgb(view: &View, space: RgbSpace, direction: DVec3, distance: f64) -> ([f64; 
 fn points_beyond_ground_and_limit_are_held_there() {
     let sky = sky("average", SunCoverage::near(30.0, 2.0));
     let view = sky.view(2.0, direction(90.0, 30.0));
-    let table = AerialPerspective::<3>::new(&view, LaneChannels::SPECTRAL, 50e3).unwrap();
+    let table = AerialPerspective::<3>::new(&view, SPECTRAL, 50e3).unwrap();
     for (elevation, far) in [(-10.0, 100.0), (-0.5, 5e3), (5.0, 50e3), (90.0, 50e3)] {
         let line = direction(33.0, elevation);
         assert_eq!(
@@ -122,7 +123,7 @@ fn points_beyond_ground_and_limit_are_held_there() {
         assert_eq!(table.optics(line, 0.0), PathOptics::CLEAR);
     }
     for limit in [0.0, -1.0, f64::NAN] {
-        assert!(AerialPerspective::<3>::new(&view, LaneChannels::SPECTRAL, limit).is_err());
+        assert!(AerialPerspective::<3>::new(&view, SPECTRAL, limit).is_err());
     }
     assert!(AerialPerspective::<4>::new(&view, LaneChannels::Rgb(RgbSpace::Srgb), 1e5).is_err());
     let beyond = LaneChannels::Wavelengths { first: 3 };
@@ -144,8 +145,7 @@ mod guards {
             let sky = sky("average", SunCoverage::near(sun_deg, altitude_m));
             let view = sky.view(altitude_m, direction(180.0, sun_deg));
             let lines = lines(view.sun(), -1.0, limit_m.min(1e6), 400);
-            let table =
-                AerialPerspective::<3>::new(&view, LaneChannels::SPECTRAL, limit_m).unwrap();
+            let table = AerialPerspective::<3>::new(&view, SPECTRAL, limit_m).unwrap();
             let (path, dimming) = errors(&table, &lines, |d, m| spectral(&view, d, m));
             assert!(path[path.len() * 99 / 100].0 < at_99, "{sun_deg}: {path:?}");
             assert!(path[path.len() - 1].0 < worst, "{sun_deg}: {path:?}");
@@ -184,8 +184,7 @@ mod guards {
             let air = presets::preset(preset).unwrap();
             let sky = Sky::prepare(&air, &WavelengthGrid::standard(), &settings).unwrap();
             let view = sky.view(altitude_m, direction(180.0, sun_deg));
-            let table =
-                AerialPerspective::<16>::new(&view, LaneChannels::SPECTRAL, limit_m).unwrap();
+            let table = AerialPerspective::<16>::new(&view, SPECTRAL, limit_m).unwrap();
             let ratio: f64 = 6371e3 / (6371e3 + altitude_m);
             let horizon_deg = -ratio.acos().to_degrees();
             let lines = lines(view.sun(), horizon_deg, limit_m.min(1.5e6), 1500);

@@ -1,15 +1,16 @@
 //! Sky and fog together: order of the layers, seams, limits.
 
-use crate::common::sky;
-use airlight::atmosphere::Constituent;
-use airlight::axes::direction;
-use airlight::fog::droplets::Droplets;
-use airlight::fog::visibility::{Contrast, extinction_per_m};
-use airlight::fog::{DensityProfile, FogScattering, Ground, RaySegment};
-use airlight::scene::{FoggySky, LaneChannels};
-use airlight::sky::{SunCoverage, View};
-use airlight::spectrum::{RgbSpace, Spectrum};
-use airlight::transfer::PathOptics;
+use super::{SPECTRAL, path_optics, sky};
+use crate::atmosphere::Constituent;
+use crate::axes::direction;
+use crate::fog::droplets::Droplets;
+use crate::fog::visibility::{Contrast, extinction_per_m};
+use crate::fog::{DensityProfile, FogScattering, Ground, RaySegment};
+use crate::scene::foggy::FoggySky;
+use crate::scene::lane_channels::LaneChannels;
+use crate::sky::{SunCoverage, View};
+use crate::spectrum::{RgbSpace, Spectrum};
+use crate::transfer::PathOptics;
 use glam::DVec3;
 
 fn layer(visibility_m: f64, profile: DensityProfile) -> Constituent {
@@ -26,14 +27,7 @@ fn slab(top_m: f64) -> DensityProfile {
 }
 
 fn foggy(view: &View, layer: Constituent, ground: Ground) -> FoggySky<3> {
-    FoggySky::new(
-        view,
-        LaneChannels::SPECTRAL,
-        &[layer],
-        ground,
-        FogScattering::Single,
-    )
-    .unwrap()
+    FoggySky::new(view, SPECTRAL, &[layer], ground, FogScattering::Single).unwrap()
 }
 
 #[test]
@@ -93,8 +87,8 @@ mod guards {
         let mut from = 0.0;
         for k in 1..=SLICES {
             let to = length_m * (k as f64 / SLICES as f64).powi(2);
-            let fog = foggy.fog_path(&line.part(from, to), cos_sun);
-            let air = view.along(towards, Some(to)).optics::<3>().unwrap();
+            let fog = foggy.fog.path_along(&line.part(from, to), cos_sun);
+            let air = path_optics::<3>(&view.along(towards, Some(to)));
             let slice = PathOptics {
                 transmittance: air.transmittance / before.transmittance,
                 path_radiance: (air.path_radiance - before.path_radiance) / before.transmittance,
@@ -277,7 +271,10 @@ mod guards {
         for (azimuth, elevation) in [(0.0, 0.0), (90.0, 20.0), (180.0, 10.0), (30.0, -0.5)] {
             let towards = direction(azimuth, elevation);
             let ray = RaySegment::new(2.0, towards.y, 1e4, ground.radius_m);
-            let alone = foggy.fog_path(&ray, towards.dot(view.sun())).path_radiance;
+            let alone = foggy
+                .fog
+                .path_along(&ray, towards.dot(view.sun()))
+                .path_radiance;
             for seen in [foggy.sky(towards), foggy.optics(towards, 1e4).path_radiance] {
                 for lane in 0..3 {
                     let off = (seen[lane] / alone[lane] - 1.0).abs();
@@ -318,9 +315,8 @@ mod guards {
         let ground = FoggySky::<3>::round_ground(&view);
         let share = |visibility_m: f64, scattering| {
             let fog = [layer(visibility_m, slab(100.0))];
-            let foggy =
-                FoggySky::new(&view, LaneChannels::SPECTRAL, &fog, ground, scattering).unwrap();
-            if let Some(irradiance) = foggy.ground_irradiance() {
+            let foggy = FoggySky::new(&view, SPECTRAL, &fog, ground, scattering).unwrap();
+            if let Some(irradiance) = foggy.fog.ground_irradiance() {
                 // The ground as the fog has it, seen through fog and air.
                 let lit = irradiance * albedo / std::f32::consts::PI;
                 let whole = foggy.optics(down, 120.0).apply(lit);

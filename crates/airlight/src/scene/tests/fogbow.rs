@@ -1,12 +1,13 @@
 //! Fogbow and glory, seen from above the fog with the sun behind.
 
-use airlight::atmosphere::{Constituent, presets};
-use airlight::axes::direction;
-use airlight::fog::{DensityProfile, FogScattering};
-use airlight::optics::mie::droplets::Drops;
-use airlight::scene::{FoggySky, LaneChannels};
-use airlight::sky::{Sky, SkySettings, SunCoverage};
-use airlight::spectrum::{RgbSpace, WavelengthGrid};
+use crate::atmosphere::{Constituent, presets};
+use crate::axes::direction;
+use crate::fog::{DensityProfile, FogScattering};
+use crate::optics::mie::droplets::Drops;
+use crate::scene::foggy::FoggySky;
+use crate::scene::lane_channels::LaneChannels;
+use crate::sky::{Sky, SkySettings, SunCoverage};
+use crate::spectrum::{RgbSpace, WavelengthGrid};
 use std::sync::LazyLock;
 
 const SUN_DEG: f64 = 32.0;
