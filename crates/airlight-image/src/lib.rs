@@ -27,6 +27,7 @@ pub mod tone;
 pub use airlight::{Control, Progress};
 pub use error::ImageError;
 pub use frame::{Camera, CubeFace, Fisheye, Frame, Intrinsics, Projection};
+pub use glam;
 pub use input::{DepthMap, DepthOptions, Picture, read_depth, read_picture};
 pub use output::{PictureFormat, PictureOptions, write_picture};
 pub use rows::RowSource;

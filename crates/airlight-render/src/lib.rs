@@ -40,5 +40,6 @@ mod test_view;
 
 pub use error::RenderError;
 pub use frame::{PreparedFrame, WrittenFile, WrittenFrame};
+pub use glam;
 pub use image::RenderedImage;
 pub use renderer::Renderer;

@@ -57,7 +57,7 @@ impl Renderer {
         let model = registry::of_scene(&resolved)?;
         let variant = scene.solver.variant.as_deref();
         check_inputs(model, &resolved.set_inputs, variant, registry::ALL)?;
-        let sun = resolved.sun.at(None)?;
+        let sun = resolved.sun.at_start()?;
         let layout = Layout::new(&scene.camera, &scene.output, sun.azimuth_deg)?;
         let objects = match &scene.objects {
             Some(spec) if spec.is_set() => Some(Arc::new(Objects::from_specs(&spec.object)?)),
@@ -111,7 +111,10 @@ impl Renderer {
     /// # Errors
     /// [`RenderError::Scene`] for a time outside the range of the ephemeris.
     pub fn sun(&self, time: Option<Moment>) -> Result<SunAngles, RenderError> {
-        Ok(self.resolved.sun.at(time)?)
+        Ok(match time {
+            Some(time) => self.resolved.sun.at(time)?,
+            None => self.resolved.sun.at_start()?,
+        })
     }
 
     /// The smallest range of suns that serves one sun.

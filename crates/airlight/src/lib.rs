@@ -1,19 +1,46 @@
-//! What air does to light: the colour of sky and sun, haze over distance.
+//! Airlight computes what air does to light: the colour of the sky and the sun, aerial perspective, haze, mist and fog, and the
+//! glow around a lamp.
 //!
-//! # World axes
-//! Right-handed, metres: **x east, y up, z south** (north is -z). Azimuth is measured clockwise from north,
-//! elevation up from the horizon; see [`axes`]. A view direction points away from the eye.
+//! A stretch of air acts on light as an affine map: radiance `L` behind it reaches the eye as `T L + S`, with its transmittance
+//! `T` and the radiance `S` scattered into the ray. Every model produces `T` and `S`, over wavelengths into slices or in red,
+//! green and blue as [`transfer::RgbPathOptics`]; what draws a picture only applies them.
 //!
-//! # Rooms, each importing only from those above it
-//! - [`spectrum`]: wavelength grids, spectra, the solar spectrum, colour.
-//! - [`optics`]: what one particle does to light: Rayleigh, ozone, phase functions.
-//! - [`light`]: what shines: the sun's position, disc and irradiance.
-//! - [`medium`]: what fills the air and where: density profiles, constituents, [`medium::Atmosphere`], presets.
-//! - [`path`]: [`path::PathOptics`] and its law of composition.
-//! - [`fog`]: closed forms of fog, and lamps in it.
-//! - [`sky`]: the solver for a spherical, multiply scattering atmosphere.
-//! - [`outdoors`]: one lighting of sky, air, fog and ground.
-//! - [`classic`]: published models of the sky, as printed and as corrected.
+//! ```
+//! use airlight::prelude::*;
+//!
+//! // A clear day, the sun 30 degrees high in the south, seen from 2 m above the ground.
+//! let settings = SkySettings { suns: SunCoverage::near(30.0, 2.0), ..Default::default() };
+//! let sky = Sky::prepare(&Preset::Clear.atmosphere(), &WavelengthGrid::fast(), &settings)?;
+//! let view = sky.view(2.0, axes::direction(180.0, 30.0)).rgb(RgbSpace::Srgb);
+//! let [red, _, blue] = view.radiance(axes::direction(0.0, 60.0));
+//! assert!(blue > 2.0 * red, "the sky is blue");
+//! # Ok::<(), airlight::sky::SkyError>(())
+//! ```
+//!
+//! # Where to start
+//! - [`sky`]: [`sky::Sky`] solves a spherical atmosphere with all orders of scattering; a [`sky::View`] answers along any ray.
+//! - [`fog`]: [`fog::Fog`] and [`fog::RgbFog`], layers of fog without a sky; [`fog::lights`], lamps in them.
+//! - [`scene`]: [`scene::Scene`] describes sun, air, fog, lights and camera as plain data; [`scene::RadianceModel`] is the one
+//!   interface of all solvers and published models ([`models::registry`]); [`scene::RgbFoggySky`] is a sky with fog for
+//!   real-time use.
+//! - [`atmosphere`]: presets, constituents, density profiles, aerosols and visibility; [`sun`]: its disc and position.
+//! - [`monte_carlo`]: unbiased reference results with standard errors.
+//! - [`optics`], [`spectrum`]: scattering by one particle; wavelength grids, spectra and colour.
+//!
+//! # Conventions
+//! SI units, radians and nanometres; names state any other unit. World axes are right-handed: **x east, y up, z south** (north is
+//! -z). Azimuth is measured clockwise from north, elevation up from the horizon ([`axes`]). A view direction points away from
+//! the eye. Phase functions integrate to 1. Results have the same bits for any number of threads.
+//!
+//! # Features
+//! | feature | default | what it adds |
+//! |---|---|---|
+//! | `parallel` | yes | work on all threads |
+//! | `config` | yes | scenes and atmospheres as TOML; includes `serde` |
+//! | `ephemeris` | yes | the sun of a place and a time ([`sun`]) |
+//! | `serde` | with `config` | scenes as serde data |
+//! | `schema` | no | JSON Schema of scene files |
+//! | `hosek-wilkie` | no | the published sky model of Hosek and Wilkie |
 
 pub mod atmosphere;
 pub mod axes;
@@ -25,6 +52,7 @@ pub mod models;
 pub mod monte_carlo;
 mod names;
 pub mod optics;
+pub mod prelude;
 pub mod scene;
 pub mod sky;
 pub mod spectrum;
@@ -32,9 +60,10 @@ pub mod sun;
 pub mod transfer;
 
 pub use control::{Cancelled, Control, Progress};
+pub use glam;
 pub use names::{Named, UnknownName};
 
 /// The example of the README, compiled and run as a test.
 #[cfg(doctest)]
-#[doc = include_str!("../../../README.md")]
+#[doc = include_str!("../README.md")]
 struct Readme;

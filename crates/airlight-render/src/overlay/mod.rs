@@ -36,7 +36,6 @@ use airlight_image::{ImageError, Intrinsics, RowSource, Size};
 use ambient::horizon_pixels;
 use fog_overlay::FogSampler;
 use glam::DVec3;
-use std::fmt;
 
 /// Rows of a picture in fog.
 #[derive(Debug)]
@@ -80,16 +79,6 @@ impl Channels {
             Self::Picture => &NAMES[..3],
             Self::Layers => &NAMES,
         }
-    }
-}
-
-impl fmt::Debug for Overlay<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Overlay")
-            .field("size", &self.picture.size)
-            .field("camera", &self.camera)
-            .field("channels", &self.channels)
-            .finish_non_exhaustive()
     }
 }
 

@@ -31,7 +31,7 @@ impl SkyLight {
     /// # Errors
     /// [`RenderError::Scene`] for a sun outside the range of the ephemeris, and an atmosphere that the solver refuses.
     pub fn solve(scene: &ResolvedScene) -> Result<Self, RenderError> {
-        let sun = scene.sun.at(None)?;
+        let sun = scene.sun.at_start()?;
         let settings = SkySettings {
             suns: SunCoverage::near(sun.elevation_deg, scene.observer_altitude_m),
             scattering: scene.solver.scattering.unwrap_or(Scattering::All),

@@ -51,7 +51,7 @@ impl Probe {
         let model = registry::of_scene(&resolved)?;
         let variant = scene.solver.variant.as_deref();
         check_inputs(model, &resolved.set_inputs, variant, registry::ALL)?;
-        resolved.sun.at(None)?;
+        resolved.sun.at_start()?;
         scene.solver.paths.get_or_insert(PATHS);
         resolved.solver = scene.solver.clone();
         Ok(Self {
@@ -68,7 +68,7 @@ impl Probe {
     /// [`RenderError::Scene`] where the solver refuses the scene.
     pub fn answer(&self, control: Control<'_>) -> Result<ProbeAnswer, RenderError> {
         let (scene, resolved) = (&self.scene, &self.resolved);
-        let sun = resolved.sun.at(None)?;
+        let sun = resolved.sun.at_start()?;
         let suns = SunCoverage::near(sun.elevation_deg, resolved.observer_altitude_m);
         let prepared = self.model.prepare(resolved, suns, control)?;
         let space = scene.output.color_space.unwrap_or_default();

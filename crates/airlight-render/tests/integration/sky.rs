@@ -33,7 +33,7 @@ fn drawn_sky(scene: &OverlayScene, scale: f32) -> Picture {
     clear.fog = None;
     clear.observer.altitude_m = Some(2.0);
     let resolved = clear.resolve().unwrap();
-    let sun = resolved.sun.at(None).unwrap();
+    let sun = resolved.sun.at_start().unwrap();
     let suns = SunCoverage::near(sun.elevation_deg, 2.0);
     let settings = SkySettings {
         suns,

@@ -62,7 +62,7 @@ pub(crate) fn ozone_profile() -> DensityProfile {
         .expect("the ozone table is valid")
 }
 
-/// Ozone with a vertical column (from sea level) in Dobson units: [`ozone_profile`], scaled, with the cross-section
+/// Ozone with a vertical column (from sea level) in Dobson units: the mid-latitude profile of the U.S. Standard Atmosphere 1976, scaled, with the cross-section
 /// measured at 233 K ([`ozone::cross_section_m2`]). Absorbs only.
 pub fn ozone(column_du: f64) -> Constituent {
     let density = ozone_profile();

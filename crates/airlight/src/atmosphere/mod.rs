@@ -30,4 +30,5 @@ pub use density::{AltitudeTable, DensityError, DensityProfile, Interpolation};
 pub(crate) use density::{Decay, HeightStructure};
 pub use presets::{Preset, preset, reference};
 pub use ray_segment::RaySegment;
+#[cfg(feature = "ephemeris")]
 pub(crate) use standard_air::refracting_air;

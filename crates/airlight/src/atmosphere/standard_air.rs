@@ -3,6 +3,7 @@
 #[cfg(test)]
 use crate::optics::rayleigh::BOLTZMANN_J_PER_K;
 
+#[cfg(feature = "ephemeris")]
 use crate::sun::RefractingAir;
 
 /// Effective radius of the Earth for geopotential altitude, m (table 2 of the standard).
@@ -66,6 +67,7 @@ pub(super) fn pressure_and_temperature(altitude_m: f64) -> (f64, f64) {
 }
 
 /// The air that refracts the sun for an eye at a geometric altitude, m; none above 86 km. Pressures are held at 2000 hPa.
+#[cfg(feature = "ephemeris")]
 pub(crate) fn refracting_air(altitude_m: f64) -> RefractingAir {
     let (pressure_pa, temperature_k) = pressure_and_temperature(altitude_m);
     RefractingAir {
@@ -126,6 +128,7 @@ const SEA_LEVEL_DENSITY_PER_M3: f64 = 101_325.0 / (BOLTZMANN_J_PER_K * 288.15);
 mod tests {
     use super::*;
 
+    #[cfg(feature = "ephemeris")]
     #[test]
     fn refraction_fades_with_the_air() {
         let at = |m| refracting_air(m).pressure_pa;

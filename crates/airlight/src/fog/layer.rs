@@ -24,7 +24,7 @@ pub struct RgbLayer {
     pub extinction_per_m: [f32; 3],
     /// Ratio of scattering to extinction, 0 to 1.
     pub single_scattering_albedo: [f32; 3],
-    /// Phase function; one that depends on wavelength is evaluated at [`DOMINANT_NM`].
+    /// Phase function; one that depends on wavelength is evaluated at 612, 549 and 465 nm.
     pub phase: PhaseFunction,
 }
 

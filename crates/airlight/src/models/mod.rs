@@ -74,7 +74,7 @@ pub mod registry {
     /// use airlight::{Control, axes, models::registry, scene::{Channels, Scene}, sky::SunCoverage, spectrum::RgbSpace};
     ///
     /// let scene = Scene::from_toml("sun.elevation_deg = 30\nsolver.name = \"preetham\"")?.resolve()?;
-    /// let sun = scene.sun.at(None)?;
+    /// let sun = scene.sun.at_start()?;
     /// let suns = SunCoverage::near(sun.elevation_deg, scene.observer_altitude_m);
     /// let prepared = registry::prepare(&scene, suns, Control::default())?;
     /// let view = prepared.view(scene.observer_altitude_m, &sun.state(), Channels::Rgb(RgbSpace::Srgb))?;

@@ -1,6 +1,6 @@
 //! Errors of phase functions.
 
-/// Error of a phase function's constructor or of [`PhaseFunction::validate`].
+/// Error of a phase function's constructor or of [`PhaseFunction::validate`](super::PhaseFunction::validate).
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PhaseError {

@@ -63,9 +63,7 @@ impl AirSpec {
     pub fn named_atmosphere(&self) -> Result<Atmosphere, SceneError> {
         let name = self.atmosphere.as_deref().unwrap_or("average");
         if let Some(text) = &self.atmosphere_toml {
-            return Atmosphere::from_toml(text).map_err(|error| {
-                SceneError::refused("air.atmosphere", format!("`{name}`, {error}"))
-            });
+            return atmosphere_of_file(name, text);
         }
         match self.names_file() {
             true => Err(SceneError::value(
@@ -102,7 +100,7 @@ impl AirSpec {
 /// # Errors
 /// [`SceneError::Refused`] for an unknown type, a share that is not a positive number, a humidity out of range or one of
 /// particles that take up no water.
-pub fn aerosol_mixture(types: &str, humidity: Option<f64>) -> Result<AerosolMixture, SceneError> {
+fn aerosol_mixture(types: &str, humidity: Option<f64>) -> Result<AerosolMixture, SceneError> {
     let refused = |error: AerosolTypeError| match error {
         AerosolTypeError::Humidity(_) => SceneError::refused("air.humidity", error),
         _ => SceneError::refused("air.aerosol", error),
@@ -195,6 +193,23 @@ fn set_haze(air: &mut Atmosphere, key: &str, load: AerosolLoad) -> Result<(), Sc
     };
     air.put(part);
     Ok(())
+}
+
+/// The atmosphere in the text of a file.
+#[cfg(feature = "config")]
+fn atmosphere_of_file(name: &str, text: &str) -> Result<Atmosphere, SceneError> {
+    Atmosphere::from_toml(text)
+        .map_err(|error| SceneError::refused("air.atmosphere", format!("`{name}`, {error}")))
+}
+
+#[cfg(not(feature = "config"))]
+fn atmosphere_of_file(name: &str, _: &str) -> Result<Atmosphere, SceneError> {
+    Err(SceneError::value(
+        "air.atmosphere",
+        "a build with the feature config, which reads files",
+        format!("one without, and the file `{name}`"),
+        "the name of an atmosphere",
+    ))
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use super::input::Input;
 use crate::atmosphere::AtmosphereError;
+#[cfg(feature = "config")]
 use crate::atmosphere::ConfigError;
 use crate::fog::FogError;
 use crate::names::UnknownName;
@@ -33,6 +34,7 @@ pub enum SceneError {
         problem: String,
     },
     /// A text that is not TOML, or has keys or values that a scene does not have.
+    #[cfg(feature = "config")]
     #[error(transparent)]
     Toml(#[from] ConfigError),
     /// A value of a scene file, with its place.

@@ -36,7 +36,6 @@ mod toml_tests;
 
 pub use crate::sky::TableChannels as Channels;
 pub use crate::sun::SunState;
-pub use air::aerosol_mixture;
 pub use capabilities::Capabilities;
 pub use check_inputs::check_inputs;
 #[cfg(feature = "config")]

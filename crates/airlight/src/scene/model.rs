@@ -127,7 +127,7 @@ pub trait RadianceView: Debug + Send + Sync + 'static {
     fn sun_disc(&self, directions: &[DVec3], out: &mut [f32]);
 
     /// Irradiance of everything but the sun's disc, on surfaces at the eye with these unit normals: cheap enough for every
-    /// pixel of a picture ([`IrradianceMap`](super::IrradianceMap)).
+    /// pixel of a picture.
     fn irradiance(&self, normals: &[DVec3], out: &mut [f32]);
 
     /// The same on a level surface that faces up: integrated with more directions.

@@ -1,8 +1,11 @@
 //! Finding the sun of a scene: as set, or from place and time.
 
 use super::{Scene, SceneError, SunState};
-use crate::atmosphere::{Atmosphere, refracting_air};
+use crate::atmosphere::Atmosphere;
+#[cfg(feature = "ephemeris")]
+use crate::atmosphere::refracting_air;
 use crate::axes;
+#[cfg(feature = "ephemeris")]
 use crate::sun::{Moment, Place, sun_position};
 use glam::DVec3;
 
@@ -13,6 +16,7 @@ pub enum SunSource {
     /// Its position is set.
     Fixed(SunAngles),
     /// From a place on the Earth and a time.
+    #[cfg(feature = "ephemeris")]
     Ephemeris {
         /// The place, at the altitude of the eye.
         place: Place,
@@ -52,20 +56,32 @@ impl SunAngles {
 }
 
 impl SunSource {
-    /// The sun at a time; `None`: at the start. A fixed sun does not move.
+    /// The sun at the time of the scene, the start of a sequence.
     ///
     /// # Errors
     /// [`SceneError::Refused`] for a time outside the range of the ephemeris.
-    pub fn at(&self, time: Option<Moment>) -> Result<SunAngles, SceneError> {
-        let (place, start, refraction) = match *self {
+    pub fn at_start(&self) -> Result<SunAngles, SceneError> {
+        match self {
+            Self::Fixed(sun) => Ok(*sun),
+            #[cfg(feature = "ephemeris")]
+            Self::Ephemeris { start, .. } => self.at(*start),
+        }
+    }
+}
+
+#[cfg(feature = "ephemeris")]
+impl SunSource {
+    /// The sun at a time. A fixed sun does not move.
+    ///
+    /// # Errors
+    /// [`SceneError::Refused`] for a time outside the range of the ephemeris.
+    pub fn at(&self, time: Moment) -> Result<SunAngles, SceneError> {
+        let (place, refraction) = match *self {
             Self::Fixed(sun) => return Ok(sun),
             Self::Ephemeris {
-                place,
-                start,
-                refraction,
-            } => (place, start, refraction),
+                place, refraction, ..
+            } => (place, refraction),
         };
-        let time = time.unwrap_or(start);
         let air = refraction.then(|| refracting_air(place.altitude_m));
         let place = Place {
             // The sun's parallax is 0.002 degrees for the whole radius of the Earth.
@@ -135,6 +151,17 @@ impl Scene {
                 "elevation_deg and azimuth_deg",
             ));
         }
+        self.ephemeris(latitude_deg, longitude_deg, altitude_m)
+    }
+
+    #[cfg(feature = "ephemeris")]
+    fn ephemeris(
+        &self,
+        latitude_deg: f64,
+        longitude_deg: f64,
+        altitude_m: f64,
+    ) -> Result<SunSource, SceneError> {
+        let sun = &self.sun;
         let start = Moment::parse(sun.time.as_deref().unwrap_or("now"))
             .map_err(|error| SceneError::refused("sun.time", format!("{error}; or write now")))?;
         let source = SunSource::Ephemeris {
@@ -147,12 +174,23 @@ impl Scene {
             refraction: sun.refraction.unwrap_or(true),
         };
         // A time out of range is refused before anything is computed.
-        source.at(None)?;
+        source.at_start()?;
         Ok(source)
+    }
+
+    #[cfg(not(feature = "ephemeris"))]
+    fn ephemeris(&self, latitude_deg: f64, _: f64, _: f64) -> Result<SunSource, SceneError> {
+        Err(SceneError::value(
+            "sun.latitude_deg",
+            "a build with the feature ephemeris, which computes the sun of a place and a time",
+            format!("one without, and {latitude_deg}"),
+            "elevation_deg and azimuth_deg",
+        ))
     }
 }
 
 #[cfg(test)]
+#[cfg(feature = "ephemeris")]
 mod tests {
     use super::*;
     use crate::atmosphere::preset;
@@ -165,7 +203,7 @@ mod tests {
         assert!(said(&scene, &earth).contains("elevation_deg = 10"));
         scene.sun.elevation_deg = Some(10.0);
         scene.sun.azimuth_deg = Some(-90.0);
-        let sun = scene.sun_source(&mars, 0.0).unwrap().at(None).unwrap();
+        let sun = scene.sun_source(&mars, 0.0).unwrap().at_start().unwrap();
         assert_eq!((sun.azimuth_deg, sun.distance_ratio), (270.0, 1.0));
         scene.sun = super::super::SunSpec {
             latitude_deg: Some(48.8584),
@@ -179,7 +217,7 @@ mod tests {
             said(&scene, &mars)
         );
         let source = scene.sun_source(&earth, 0.0).unwrap();
-        let sun = source.at(None).unwrap();
+        let sun = source.at_start().unwrap();
         assert!(
             (60.0..65.0).contains(&sun.elevation_deg) && sun.distance_ratio > 1.01,
             "{sun:?}"

@@ -128,7 +128,7 @@ impl SkySettings {
     }
 }
 
-/// Error of [`Sky::prepare`].
+/// Error of [`Sky::prepare`](super::Sky::prepare).
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SkyError {

@@ -26,9 +26,9 @@ pub enum LimbDarkening {
     /// Uniform radiance.
     Uniform,
     /// A polynomial of degree 5 in `mu` by wavelength, fitted to the observed continuum (Neckel, Sol. Phys. 229, 13,
-    /// 2005, after Neckel & Labs, Sol. Phys. 153, 91, 1994), see [`limb_polynomial`].
+    /// 2005, after Neckel & Labs, Sol. Phys. 153, 91, 1994).
     Neckel,
-    /// `I(mu) = I(1) mu^alpha(lambda)` (Hestroffer & Magnan, Astron. Astrophys. 333, 338, 1998), see [`limb_exponent`].
+    /// `I(mu) = I(1) mu^alpha(lambda)` (Hestroffer & Magnan, Astron. Astrophys. 333, 338, 1998).
     /// Differs from [`LimbDarkening::Neckel`] by less than 0.02 of the central radiance for `mu >= 0.4` and 0.05 for
     /// `mu >= 0.2`, from 440 to 1000 nm; at the limb it falls to 0, unlike the sun.
     PowerLaw,

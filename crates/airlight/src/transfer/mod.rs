@@ -1,6 +1,6 @@
 //! Radiative transfer shared by sky, fog, published models and Monte Carlo.
 //!
-//! [`PathOptics`]: transmittance and path radiance of a ray segment; `ray`, `shell` and `columns`: geometry of a
+//! [`RgbPathOptics`]: transmittance and path radiance of a ray segment, and their composition; `ray`, `shell` and `columns`: geometry of a
 //! spherical atmosphere, and columns from any point to space; `coefficients`: optical coefficients at some wavelengths;
 //! `march`: integration along a ray; `delta_m`: separation of the forward peak of a phase function.
 

@@ -40,10 +40,19 @@ impl<const N: usize> PathOptics<N> {
     }
 }
 
-/// [`PathOptics`] in red, green and blue.
+/// Transmittance and in-scattered radiance of a ray segment, in red, green and blue: `L' = transmittance * L + path_radiance`
+/// for the radiance `L` behind it. Spectral queries write the same two quantities into slices.
+///
+/// ```
+/// use airlight::transfer::RgbPathOptics;
+///
+/// let near = RgbPathOptics { transmittance: [0.5; 3], path_radiance: [1.0; 3] };
+/// let far = RgbPathOptics { transmittance: [0.25; 3], path_radiance: [4.0; 3] };
+/// assert_eq!(near.then(far).apply([8.0; 3]), near.apply(far.apply([8.0; 3])));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RgbPathOptics {
-    /// The part of the background's light that arrives.
+    /// Fraction of the background radiance that reaches the eye.
     pub transmittance: [f32; 3],
     /// Radiance scattered into the ray, in the unit of the background's.
     pub path_radiance: [f32; 3],
@@ -56,13 +65,14 @@ impl RgbPathOptics {
         path_radiance: [0.0; 3],
     };
 
-    /// The map of this segment (nearer to the eye) followed by `far` (behind it).
+    /// Composition of this segment (nearer to the eye) with the segment `far` behind it: `T = T_near T_far`,
+    /// `S = S_near + T_near S_far`.
     #[inline]
     pub fn then(self, far: Self) -> Self {
         PathOptics::from(self).then(far.into()).into()
     }
 
-    /// The radiance that reaches the eye from `background` behind this segment.
+    /// Radiance at the eye for the radiance `background` behind the segment.
     #[inline]
     pub fn apply(self, background: [f32; 3]) -> [f32; 3] {
         PathOptics::from(self).apply(Spectrum(background)).0

@@ -12,6 +12,20 @@ fn blocks<'a>(text: &'a str, language: &str) -> Vec<&'a str> {
 }
 
 #[test]
+fn the_readme_shows_the_example_of_the_crate() {
+    let readme = include_str!("../../../../README.md");
+    let of_crate = include_str!("../../README.md");
+    let examples = blocks(readme, "rust");
+    assert!(!examples.is_empty());
+    for example in examples {
+        assert!(
+            of_crate.contains(example),
+            "the documentation tests of the crate do not run this example:\n{example}"
+        );
+    }
+}
+
+#[test]
 fn atmospheres_of_the_book_are_read() {
     let chapter = include_str!("../../../../docs/src/atmosphere.md");
     let types = include_str!("../../../../docs/src/aerosols.md");

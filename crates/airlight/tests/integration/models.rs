@@ -30,7 +30,7 @@ fn scene(model: &str) -> Scene {
 
 fn prepared(scene: &Scene) -> Result<(ResolvedScene, Arc<dyn PreparedModel>), SceneError> {
     let scene = scene.resolve()?;
-    let sun = scene.sun.at(None)?;
+    let sun = scene.sun.at_start()?;
     let suns = SunCoverage::near(sun.elevation_deg, scene.observer_altitude_m);
     let model = registry::prepare(&scene, suns, Control::default())?;
     Ok((scene, model))
@@ -38,7 +38,7 @@ fn prepared(scene: &Scene) -> Result<(ResolvedScene, Arc<dyn PreparedModel>), Sc
 
 fn view(scene: &Scene, channels: Channels) -> Arc<dyn RadianceView> {
     let (scene, model) = prepared(scene).unwrap();
-    let sun = scene.sun.at(None).unwrap().state();
+    let sun = scene.sun.at_start().unwrap().state();
     model
         .view(scene.observer_altitude_m, &sun, channels)
         .unwrap()
@@ -85,7 +85,7 @@ fn every_model_answers_everywhere() {
         let scene = scene(name);
         for channels in [SRGB, Channels::Spectral] {
             let (resolved, prepared) = prepared(&scene).unwrap();
-            let sun = resolved.sun.at(None).unwrap().state();
+            let sun = resolved.sun.at_start().unwrap().state();
             let view = prepared.view(resolved.observer_altitude_m, &sun, channels);
             let view = match (channels, prepared.grid()) {
                 (Channels::Spectral, None) => {
@@ -249,7 +249,7 @@ fn inputs_that_a_model_ignores_are_refused() {
     below.sun.elevation_deg = Some(-2.0);
     below.solver.klassen1987.base_blue = Some(airlight::scene::BaseBlueKind::Paper);
     let (resolved, model) = prepared(&below).unwrap();
-    let sun = resolved.sun.at(None).unwrap().state();
+    let sun = resolved.sun.at_start().unwrap().state();
     let error = model.view(2.0, &sun, SRGB).err().unwrap().to_string();
     assert!(
         error.starts_with("klassen1987: ") && error.contains("horizon"),
@@ -267,7 +267,7 @@ fn distance_of_the_sun_dims_all_light() {
     {
         let name = model.name();
         let (resolved, prepared) = prepared(&scene(name)).unwrap();
-        let near = resolved.sun.at(None).unwrap().state();
+        let near = resolved.sun.at_start().unwrap().state();
         let far = SunState {
             distance_ratio: RATIO,
             ..near
@@ -313,7 +313,7 @@ fn models_prepared_once_serve_every_sun() {
         let alone = view(&low, SRGB);
         let resolved = scene(name).resolve().unwrap();
         let prepared = registry::prepare(&resolved, SunCoverage::All, Control::default()).unwrap();
-        let sun = low.resolve().unwrap().sun.at(None).unwrap().state();
+        let sun = low.resolve().unwrap().sun.at_start().unwrap().state();
         let shared = prepared
             .view(resolved.observer_altitude_m, &sun, SRGB)
             .unwrap();

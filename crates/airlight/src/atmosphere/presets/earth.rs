@@ -27,7 +27,7 @@ pub struct Earth {
 impl Earth {
     /// Standard pressure, 300 Dobson units of ozone, ground of grass and soil, and a continental aerosol with this optical
     /// depth at 550 nm: Angstrom exponent 1.3, single-scattering albedo 0.95, scale height 1.5 km, the phase function
-    /// of [`continental_phase`].
+    /// measured in continental air (AERONET, Egbert 2013).
     pub fn with_aerosol(optical_depth_550: f64) -> Self {
         Self {
             sea_level_pressure_pa: STANDARD_PRESSURE_PA,
@@ -67,6 +67,7 @@ impl Earth {
 }
 
 /// The Earth without an atmosphere.
+#[cfg(feature = "config")]
 pub(in crate::atmosphere) fn airless(name: &str) -> Atmosphere {
     Atmosphere {
         name: name.to_owned(),

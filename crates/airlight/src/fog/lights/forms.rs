@@ -39,11 +39,11 @@ pub enum LightForm {
     /// With extinction between light, fog and eye; for all lights and layers.
     #[default]
     Exact,
-    /// Opacity of the ray times the mean source: [`airlight_split_sum`].
+    /// Opacity of the ray times the mean source: within 5 % up to an optical depth of 1, for a light halfway along the ray.
     SplitSum,
     /// Without extinction: [`airlight_without_extinction`].
     NoExtinction,
-    /// As printed in the fog note: [`airlight_printed`].
+    /// As printed in the fog note.
     Printed,
 }
 

@@ -9,8 +9,7 @@
 //!   radiance scattered into view rays and the irradiance on surfaces.
 //! - [`airlight_without_extinction`], [`airlight_isotropic`]: closed forms for uniform, isotropically scattering fog, exact in
 //!   f64; [`airlight_isotropic_fast`]: a fast approximation. They depend on a [`LightRayGeometry`] only.
-//! - [`LightForm`]: selects one of these, the split sum ([`airlight_split_sum`]) or the form printed in the fog note
-//!   ([`airlight_printed`]).
+//! - [`LightForm`]: selects one of these, the split sum or the form printed in the fog note.
 //!
 //! Derivation, measured errors and speed: `docs/src/lights.md`.
 

@@ -1,5 +1,5 @@
 //! R. V. Klassen, "Modeling the Effect of the Atmosphere on Light", ACM Transactions on Graphics 6(3), 215-237, July 1987:
-//! colours of sun and sky (sections 2 to 8, eqs. 1 to 33); [`Klassen1987Scene`] adds its naturally lit fog (sections 9 to 12).
+//! colours of sun and sky (sections 2 to 8, eqs. 1 to 33); as a model of the registry also its naturally lit fog (sections 9 to 12).
 //!
 //! The air consists of two spherical shells above the ground at `R_E`: molecules and haze up to `R_H`, molecules alone up to
 //! `R_A`, both with their density at the ground; `R_A` is lowered to give the air the right column. Sunlight is attenuated on

@@ -24,7 +24,7 @@ pub enum Variant {
     Multiple,
 }
 
-/// Settings of [`SkyArticle`].
+/// Settings of [`SkyArticle`](super::SkyArticle).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// Evaluation of the integrals.
@@ -46,7 +46,7 @@ impl Default for Settings {
     }
 }
 
-/// Error of [`SkyArticle::new`].
+/// Error of [`SkyArticle::new`](super::SkyArticle::new).
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SettingsError {

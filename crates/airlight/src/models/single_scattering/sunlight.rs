@@ -7,7 +7,7 @@ use crate::spectrum::{RgbSpace, WavelengthGrid};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Sunlight {
-    /// White on the ground for a sun at the zenith, with this illuminance there (lx, or [`c::UNIT_ILLUMINANCE`] for colours
+    /// White on the ground for a sun at the zenith, with this illuminance there (lx, or [`UNIT_ILLUMINANCE`](super::UNIT_ILLUMINANCE) for colours
     /// without a unit).
     WhiteAtZenith(f64),
     /// Colour and illuminance of the measured solar spectrum (ASTM G173).

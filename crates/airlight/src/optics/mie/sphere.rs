@@ -30,7 +30,7 @@ pub struct Efficiencies {
 }
 
 impl Sphere {
-    /// Sphere with a size parameter (above 0, at most [`LARGEST_SIZE_PARAMETER`]) and an index `n + i k`.
+    /// Sphere with a size parameter (above 0, at most 1e5) and an index `n + i k`.
     ///
     /// For size parameters from 0.001 to 20000, transparent or absorbing, efficiencies are accurate to 1e-13 (relative; including
     /// absorption, however small) and amplitudes to 3e-11 (test `corners_agree_with_sixty_digits`). Time and memory grow with

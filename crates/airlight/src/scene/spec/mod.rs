@@ -6,7 +6,6 @@
 mod air;
 mod fog;
 mod lights;
-#[cfg(feature = "serde")]
 mod objects;
 mod picture;
 mod solver;
