@@ -1,6 +1,6 @@
 //! The airlight program: skies from the command line.
 //!
-//! A thin program over `airlight-render`: options fill in a [`Scene`](airlight::scene::Scene), the library draws it, the
+//! A thin program over `airlight-render`: options fill in a [`Scene`], the library draws it, the
 //! program shows progress and reports.
 //!
 //! Modules, each importing only from those above it:

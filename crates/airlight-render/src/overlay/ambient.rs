@@ -18,7 +18,7 @@ const MIXED: usize = 2;
 /// The sky pixels of a column that count.
 const COUNTED: usize = 8;
 
-/// The light that fog would be made of: the mean colour of the [`horizon_pixels`], as the fog ends in the sky near the
+/// The light that fog would be made of: the mean colour of the sky's lowest pixels, as the fog ends in the sky near the
 /// horizon. Where there are none, as Foggy Cityscapes and He et al. (2011) do, the dark channel (the smallest of the three
 /// colours within 15 x 15 pixels); of the pixels where it is brightest, one in a thousand, the mean colour.
 pub fn estimate_ambient(picture: &Picture, depth: &DepthMap) -> ([f32; 3], Ambient) {

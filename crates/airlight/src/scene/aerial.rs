@@ -27,7 +27,7 @@ pub(super) const DISTANCES: usize = 64;
 /// Error of the path radiance against [`View::along`], random lines: with the sun 5 to 40 degrees high and an eye up to
 /// 1 km, median 0.014 % or less, 99 % below 0.26 %, worst 0.53 %; an eye at 10 km 0.96 %, at 400 km 4.8 %; twilight at -4
 /// degrees 2.5 %, at -8 degrees 15 % (median 0.007 %). Transmittance: worst 0.005. The ignored test
-/// `errors_are_those_stated` of `tests/integration/aerial.rs` checks and prints them.
+/// `errors_are_those_stated` of `scene/tests/aerial.rs` checks and prints them.
 #[derive(Clone)]
 pub struct AerialPerspective<const N: usize> {
     pub(super) sun: DVec3,
