@@ -33,7 +33,7 @@ impl From<SuiteArg> for Suite {
 pub enum ReportArg {
     /// A text to read.
     Text,
-    /// One JSON object, format airlight-validation/1.
+    /// One JSON object, format airlight-accuracy/1.
     Json,
     /// A page with plots, complete in one file.
     Html,

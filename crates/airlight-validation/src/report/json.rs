@@ -24,7 +24,7 @@ struct Entry<'a> {
     rows: Option<&'a [Row]>,
 }
 
-/// The checks as one JSON object, format `airlight-validation/1`; includes all rows if `with_rows`.
+/// The checks as one JSON object, format `airlight-accuracy/1`; includes all rows if `with_rows`.
 ///
 /// # Errors
 /// Errors of the JSON writer; numbers that are not finite become `null`.
@@ -36,7 +36,7 @@ pub fn json(checks: &[Check], with_rows: bool) -> Result<String, serde_json::Err
         rows: with_rows.then_some(check.rows.as_slice()),
     };
     let mut text = serde_json::to_string_pretty(&Report {
-        format: "airlight-validation/1",
+        format: "airlight-accuracy/1",
         version: env!("CARGO_PKG_VERSION"),
         holds: checks.iter().all(Check::holds),
         checks: checks.iter().map(entry).collect(),
