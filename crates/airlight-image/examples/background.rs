@@ -1,6 +1,6 @@
-//! Backgrounds kept in less: sizes of a sky packed by run lengths, and errors of skies computed small and enlarged by
-//! splines, as the book shows them (`scripts/book`): `cargo run --release -p airlight-image --example background`. With the
-//! word `runs` or `splines` only that part.
+//! Compact backgrounds: file sizes of a sky compressed by run lengths, and errors of skies rendered small and enlarged by
+//! splines. Prints the tables of the book (`scripts/book`): `cargo run --release -p airlight-image --example background`, with
+//! the argument `runs` or `splines` only one of them.
 
 use airlight::axes::direction;
 use airlight::models::PublishedModel;
@@ -25,7 +25,7 @@ fn main() -> Outcome<()> {
         None => run_lengths().and_then(|()| splines()),
         Some("runs") => run_lengths(),
         Some("splines") => splines(),
-        Some(other) => Err(format!("there is no `{other}`: there are runs, splines").into()),
+        Some(other) => Err(format!("expected `runs` or `splines`, got `{other}`").into()),
     }
 }
 
@@ -62,7 +62,9 @@ fn picture(model: &Klassen1987, (width, height): (u32, u32), remember: bool) -> 
     let mut samples = Vec::with_capacity((3 * width * height) as usize);
     for j in 0..height {
         for i in 0..width {
-            let look = frame.pixel_direction(i, j).ok_or("a pixel looks nowhere")?;
+            let look = frame
+                .pixel_direction(i, j)
+                .ok_or("expected a direction for each pixel")?;
             let xyz = match remember {
                 true => walk(look),
                 false => model.sky_xyz(look),
@@ -73,7 +75,7 @@ fn picture(model: &Klassen1987, (width, height): (u32, u32), remember: bool) -> 
     Ok(samples)
 }
 
-/// What packing by run lengths leaves of a picture: of its 8-bit codes, in halves, in 32 bits.
+/// Sizes of pictures compressed by run lengths: 8-bit codes, half and single precision.
 fn run_lengths() -> Outcome<()> {
     println!(
         "| sky | 8-bit colours in runs | EXR, half: run lengths | zip | EXR, float: run lengths | zip |"
@@ -90,7 +92,7 @@ fn run_lengths() -> Outcome<()> {
     Ok(())
 }
 
-/// The sizes of one picture in percent of the plain one, its colours remembered or not.
+/// Sizes of one compressed picture in percent of the uncompressed one, with the model's colours cached or not.
 fn packed(model: &Klassen1987, remember: bool) -> Outcome<String> {
     let size = Size::new(SIZE.0, SIZE.1)?;
     let samples = picture(model, SIZE, remember)?;
@@ -103,7 +105,7 @@ fn packed(model: &Klassen1987, remember: bool) -> Outcome<String> {
             rgb.map(|v| (255.0 * srgb_encode(f64::from(v / white).clamp(0.0, 1.0))).round() as u8)
         })
         .collect();
-    // A run is a length of a byte and a colour, and ends with its row.
+    // A run is a length (one byte) and a colour; it ends with its row.
     let runs: usize = codes
         .chunks(SIZE.0 as usize)
         .map(|row| {
@@ -146,13 +148,13 @@ fn packed(model: &Klassen1987, remember: bool) -> Outcome<String> {
     ))
 }
 
-/// A number in two digits, or more where it has more before the point; no more than three behind it.
+/// A number with two significant digits, all its digits before the point, and at most three after it.
 fn short(v: f64) -> String {
     let before = v.abs().log10().floor() as i32;
     format!("{v:.0$}", (1 - before).clamp(0, 3) as usize)
 }
 
-/// How far enlarged pictures are from the one computed in full.
+/// Errors of enlarged pictures against those rendered at full size.
 fn splines() -> Outcome<()> {
     println!(
         "| sky | enlarged | luminance, rms | worst | CIEDE2000, mean | worst |\n|---|---|---|---|---|---|"
@@ -170,7 +172,7 @@ fn splines() -> Outcome<()> {
     Ok(())
 }
 
-/// The errors of a picture that is computed smaller by a factor.
+/// Errors of a picture rendered smaller by a factor.
 fn enlarged(model: &Klassen1987, full: &[f32], factor: u32) -> Outcome<String> {
     let luminance = |rgb: &[f32; 3]| RgbSpace::Srgb.to_xyz(rgb.map(f64::from))[1];
     let pixels = full.as_chunks::<3>().0;

@@ -1,4 +1,4 @@
-//! Measures writers on a large picture: seconds, megapixels a second, file size, peak memory (where the system tells).
+//! Measures writers on a large picture: seconds, megapixels a second, file size, and peak memory on Linux.
 //!
 //! `cargo run --release -p airlight-image --example big_picture -- FOLDER [HEIGHT] [FORMAT...]`, where a format is
 //! `png`, `png16`, `jpg`, `hdr`, `exr`, `exr-float`, `exr-piz` or `spectral`. The width is twice the height (default
@@ -124,7 +124,7 @@ fn write(folder: &Path, frame: &Frame, format: &str) -> Result<Written, ImageErr
     }
 }
 
-/// A cheap sky: brighter to the horizon and round the sun, whose disc is far beyond half precision.
+/// A simple sky, brighter towards the horizon and around the sun, whose disc is above the range of half precision.
 fn gradient(frame: &Frame, channels: usize) -> RowFn<impl Fn(u32, &mut [f32]) + Sync + use<>> {
     let rows = frame.rows();
     let width = frame.size().width() as usize;

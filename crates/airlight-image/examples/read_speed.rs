@@ -1,7 +1,8 @@
-//! Measures readers on a picture and a depth map of 10 megapixels: milliseconds a megapixel, the best of five.
+//! Measures readers on a picture and a depth map of 10 megapixels: milliseconds per megapixel, best of five runs.
 //!
 //! `cargo run --release -p airlight-image --example read_speed`
 
+use airlight::spectrum::rgb::srgb_decode;
 use airlight_image::{
     Control, DepthOptions, Size,
     input::{DepthMeaning, read_depth, read_picture},
@@ -10,7 +11,6 @@ use airlight_image::{
         exr::{self, ExrCompression, ExrOptions},
     },
     rows::StoredRows,
-    tone::srgb,
 };
 use png::{BitDepth, ColorType};
 use std::{error::Error, io::Cursor, path::Path, time::Instant};
@@ -31,7 +31,7 @@ fn measure(path: &Path) -> Result<(), Box<dyn Error>> {
         .flat_map(|i| [0, 1, 2].map(|_| shade(i) + noise.below(4)))
         .collect();
     let picture = || read_picture(path, None).map(drop);
-    timed("12 bytes a pixel written once", path, &[], || {
+    timed("writing 12 bytes per pixel", path, &[], || {
         let mut memory = Vec::with_capacity(rgb.len());
         memory.extend(rgb.iter().map(|&v| f32::from(v)));
         std::hint::black_box(&memory);
@@ -60,7 +60,7 @@ fn measure(path: &Path) -> Result<(), Box<dyn Error>> {
     timed("JPEG", path, &jpeg, picture)?;
     let linear = rgb
         .iter()
-        .map(|&v| srgb::decode(f64::from(v) / 255.0) as f32);
+        .map(|&v| srgb_decode(f64::from(v) / 255.0) as f32);
     let rows = StoredRows::new(WIDTH, 3, linear.collect())?;
     for compression in [
         ExrCompression::Zip,
@@ -116,7 +116,7 @@ fn measure(path: &Path) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Prints the time of `work`, done once before it is measured, on a file of these bytes.
+/// Prints the time of `work` on a file of these bytes, after one run to warm up.
 fn timed<E: Error + 'static>(
     name: &str,
     path: &Path,
@@ -132,7 +132,7 @@ fn timed<E: Error + 'static>(
         best = best.min(start.elapsed().as_secs_f64());
     }
     let megapixels = f64::from(WIDTH * HEIGHT) / 1e6;
-    println!("{name}: {:.2} ms a megapixel", best * 1e3 / megapixels);
+    println!("{name}: {:.2} ms per megapixel", best * 1e3 / megapixels);
     Ok(())
 }
 

@@ -1,5 +1,5 @@
 //! Puts pictures side by side: `cargo run --release -p airlight-image --example strip -- OUT.png ROWS IN.png ...` keeps the
-//! upper ROWS rows of each (0: all). 16-bit pictures are rounded to 8 bits without dither, which makes small files.
+//! upper ROWS rows of each (0: all). 16-bit pictures are rounded to 8 bits without dither, for small files.
 
 use image::{ImageReader, RgbImage, imageops};
 use std::error::Error;
@@ -10,7 +10,7 @@ const GAP: u32 = 2;
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [out, rows, inputs @ ..] = arguments.as_slice() else {
-        return Err("say OUT.png ROWS IN.png ...".into());
+        return Err("expected the arguments OUT.png ROWS IN.png ...".into());
     };
     let rows: u32 = rows.parse()?;
     let pictures = inputs

@@ -1,54 +1,54 @@
-//! Small pictures made large: cubic B-splines through their pixels.
+//! Upsampling by interpolating cubic B-splines.
 //!
-//! For backgrounds that are dear to compute and smooth, such as skies: Klassen, "Modeling the Effect of the Atmosphere on
-//! Light", ACM Transactions on Graphics 6(3), 1987, section 8, renders them small and enlarges them so. The spline passes
-//! through every pixel of the small picture at its centre; its slope and curvature are continuous. Along a line of samples
+//! For smooth backgrounds that are expensive to compute, such as skies: Klassen, "Modeling the Effect of the Atmosphere on
+//! Light", ACM Transactions on Graphics 6(3), 1987, section 8, renders them small and enlarges them with splines. The spline passes
+//! through the centre of every pixel of the small picture; its slope and curvature are continuous. Along a line of samples
 //! `s_i` its coefficients `c_i` solve
 //!
 //! ```text
 //! (c_(i-1) + 4 c_i + c_(i+1)) / 6 = s_i
 //! ```
 //!
-//! which a picture takes along its rows and then along its columns. At either end the outermost piece is a parabola, and so
-//! is what lies beyond the last pixel's centre: with `c_(-1) = 3 c_0 - 3 c_1 + c_2` the first two equations leave
-//! `c_0 - c_1 = s_0 - s_1`. Any parabola is so enlarged exactly, up to the edges. (A mirror at the edge, as is common, would
-//! make every sky level there, and the horizon is an edge.)
+//! first along the rows of a picture, then along its columns. At either end the outermost segment and its continuation beyond the
+//! centre of the last pixel are a parabola: with `c_(-1) = 3 c_0 - 3 c_1 + c_2` the first two equations give
+//! `c_0 - c_1 = s_0 - s_1`. Parabolas are therefore reproduced exactly up to the edges. (The common reflection at the edge would
+//! force a zero slope there, and the horizon is an edge.)
 
 use crate::{ImageError, RowSource, Size, rows::StoredRows};
 
-/// Coefficients kept beyond either end of a line: as far as half a pixel beyond the last centre reaches.
-const BEYOND: usize = 2;
+/// Coefficients beyond either end of a line, for positions up to half a pixel beyond the last centre.
+const PADDING: usize = 2;
 
-/// A stored picture as large as is wished for.
+/// A stored picture resampled to another size.
 ///
-/// Where a picture has jumps, the spline swings over by about an eighth of them, and may so fall below 0; skies without the
-/// sun's disc have none. How far a sky is from one computed in full: the book's chapter on the sky of 1987.
+/// At discontinuities the spline overshoots by about an eighth of the step, possibly below 0; skies without the sun's disc have
+/// none. The book's chapter on the sky of 1987 states the errors of enlarged skies.
 #[derive(Clone, Debug)]
 pub struct Enlarged {
     channels: usize,
-    /// Values of a row of coefficients.
+    /// Number of coefficients of a row.
     stride: usize,
     coefficients: Vec<f64>,
-    columns: Vec<Place>,
-    rows: Vec<Place>,
+    columns: Vec<Taps>,
+    rows: Vec<Taps>,
 }
 
-/// The first of four coefficients, and what each weighs.
+/// Index of the first of four coefficients, and their weights.
 #[derive(Clone, Copy, Debug)]
-struct Place {
+struct Taps {
     first: usize,
     weights: [f64; 4],
 }
 
 impl Enlarged {
-    /// Lays the spline through the pixels of `picture`, to be seen at the size `to`, which may also be smaller.
+    /// Fits the spline through the pixels of `picture`, to be sampled at the size `to`, which may also be smaller.
     ///
     /// # Errors
     /// [`ImageError::Setting`] where a sample is not finite.
     pub fn new(picture: &StoredRows, to: Size) -> Result<Self, ImageError> {
         if let Some(bad) = picture.samples().iter().find(|v| !v.is_finite()) {
             return Err(ImageError::Setting {
-                what: "each sample of a picture to be enlarged",
+                what: "each sample of an enlarged picture",
                 got: bad.to_string(),
                 right: "a finite number",
             });
@@ -56,11 +56,11 @@ impl Enlarged {
         let channels = picture.channels();
         let height = picture.height() as usize;
         let width = picture.samples().len() / (height * channels);
-        let (padded_width, padded_height) = (width + 2 * BEYOND, height + 2 * BEYOND);
+        let (padded_width, padded_height) = (width + 2 * PADDING, height + 2 * PADDING);
         let stride = padded_width * channels;
         let mut coefficients = vec![0.0; padded_height * stride];
         for (row, samples) in picture.samples().chunks_exact(width * channels).enumerate() {
-            let start = (row + BEYOND) * stride;
+            let start = (row + PADDING) * stride;
             for channel in 0..channels {
                 let line = samples.iter().skip(channel).step_by(channels);
                 let line = spline(line.map(|&v| f64::from(v)).collect());
@@ -70,7 +70,7 @@ impl Enlarged {
             }
         }
         for column in 0..stride {
-            let line = (0..height).map(|row| coefficients[(row + BEYOND) * stride + column]);
+            let line = (0..height).map(|row| coefficients[(row + PADDING) * stride + column]);
             for (row, c) in spline(line.collect()).into_iter().enumerate() {
                 coefficients[row * stride + column] = c;
             }
@@ -79,8 +79,8 @@ impl Enlarged {
             channels,
             stride,
             coefficients,
-            columns: places(width, to.width()),
-            rows: places(height, to.height()),
+            columns: taps(width, to.width()),
+            rows: taps(height, to.height()),
         })
     }
 }
@@ -90,7 +90,7 @@ impl RowSource for Enlarged {
         self.channels
     }
 
-    /// Rows below the last are left as they are.
+    /// Leaves `out` unchanged below the last row.
     fn fill_row(&self, y: u32, out: &mut [f32]) {
         let Some(row) = self.rows.get(y as usize) else {
             return;
@@ -112,15 +112,15 @@ impl RowSource for Enlarged {
     }
 }
 
-/// The coefficients of the spline through samples, [`BEYOND`] more at either end. Two samples make a straight line, one a
-/// level one.
+/// Coefficients of the spline through samples, with [`PADDING`] more at either end. Two samples give a straight line, one a
+/// constant.
 fn spline(samples: Vec<f64>) -> Vec<f64> {
     let n = samples.len();
-    let mut c = vec![0.0; n + 2 * BEYOND];
-    let inner = &mut c[BEYOND..BEYOND + n];
+    let mut c = vec![0.0; n + 2 * PADDING];
+    let inner = &mut c[PADDING..PADDING + n];
     inner.copy_from_slice(&samples);
     if n > 2 {
-        // c_0 = c_1 + (s_0 - s_1), so the line 1 reads 5 c_1 + c_2 = 6 s_1 - (s_0 - s_1), and so from the other end.
+        // c_0 = c_1 + (s_0 - s_1), so equation 1 is 5 c_1 + c_2 = 6 s_1 - (s_0 - s_1); the other end is symmetric.
         let (first, last) = (samples[0] - samples[1], samples[n - 1] - samples[n - 2]);
         for (i, value) in inner.iter_mut().enumerate().take(n - 1).skip(1) {
             *value = 6.0 * samples[i];
@@ -141,16 +141,16 @@ fn spline(samples: Vec<f64>) -> Vec<f64> {
         inner[0] = inner[1] + first;
         inner[n - 1] = inner[n - 2] + last;
     }
-    for k in (0..BEYOND).rev() {
-        c[k] = beyond(n, c[k + 1], c[k + 2], c[k + 3]);
-        let m = n + 2 * BEYOND - 1 - k;
-        c[m] = beyond(n, c[m - 1], c[m - 2], c[m - 3]);
+    for k in (0..PADDING).rev() {
+        c[k] = extrapolate(n, c[k + 1], c[k + 2], c[k + 3]);
+        let m = n + 2 * PADDING - 1 - k;
+        c[m] = extrapolate(n, c[m - 1], c[m - 2], c[m - 3]);
     }
     c
 }
 
-/// The coefficient after three (of which a short line has fewer) that goes on as they do.
-fn beyond(samples: usize, a: f64, b: f64, c: f64) -> f64 {
+/// Extrapolates three coefficients (fewer for short lines) by one.
+fn extrapolate(samples: usize, a: f64, b: f64, c: f64) -> f64 {
     match samples {
         1 => a,
         2 => 2.0 * a - b,
@@ -158,12 +158,12 @@ fn beyond(samples: usize, a: f64, b: f64, c: f64) -> f64 {
     }
 }
 
-/// Where the centres of `to` pixels lie among `from` padded coefficients.
-fn places(from: usize, to: u32) -> Vec<Place> {
+/// Taps of the centres of `to` pixels on `from` padded coefficients.
+fn taps(from: usize, to: u32) -> Vec<Taps> {
     let step = from as f64 / f64::from(to);
-    let place = |i: u32| {
-        let x = (f64::from(i) + 0.5) * step - 0.5 + BEYOND as f64;
-        let below = (x.floor() as usize).clamp(1, from + 2 * BEYOND - 3);
+    let taps = |i: u32| {
+        let x = (f64::from(i) + 0.5) * step - 0.5 + PADDING as f64;
+        let below = (x.floor() as usize).clamp(1, from + 2 * PADDING - 3);
         let t = x - below as f64;
         let u = 1.0 - t;
         let weights = [
@@ -172,12 +172,12 @@ fn places(from: usize, to: u32) -> Vec<Place> {
             (4.0 - 6.0 * u * u + 3.0 * u * u * u) / 6.0,
             t * t * t / 6.0,
         ];
-        Place {
+        Taps {
             first: below - 1,
             weights,
         }
     };
-    (0..to).map(place).collect()
+    (0..to).map(taps).collect()
 }
 
 #[cfg(test)]
@@ -207,7 +207,7 @@ mod tests {
         out
     }
 
-    /// Up to the very edges.
+    /// Also at the edges.
     #[test]
     fn parabolas_are_exact_at_any_size() {
         let of = |x: f64, y: f64, channel: usize| match channel {
@@ -235,7 +235,7 @@ mod tests {
             (40.0 * x + channel as f64).sin() + (31.0 * y * y).cos()
         };
         let small = picture(11, 7, rough);
-        // Thrice as large, every third pixel from the second lies where one was.
+        // Enlarged three times, every third pixel from the second has the centre of an original one.
         let large = enlarged(&small, 33, 21);
         for j in 0..7 {
             for i in 0..11 {
@@ -248,14 +248,14 @@ mod tests {
         }
     }
 
-    /// The error of cubic splines falls with the fourth power of the pixel: twice as many pixels, a sixteenth of it.
+    /// The error of cubic splines falls with the fourth power of the pixel size.
     #[test]
     fn the_error_falls_with_the_fourth_power() {
         let smooth = |x: f64, y: f64, _: usize| (9.0 * x + 1.0).sin() + (8.0 * y).cos();
         let want = picture(240, 240, smooth);
         let worst = |size: u32| {
             let got = enlarged(&picture(size, size, smooth), 240, 240);
-            // Away from the edges, where the parabola costs an order.
+            // Away from the edges, where the parabola has an order less.
             let inside = (60..180).flat_map(|j| (60..180).map(move |i| (j * 240 + i) * 3));
             inside
                 .map(|at| (got[at] - want.samples()[at]).abs())

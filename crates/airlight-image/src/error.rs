@@ -1,100 +1,101 @@
-//! What can go wrong, in sentences that say what, where, and what would be right.
+//! Error type.
 
 use airlight::Cancelled;
 use std::{io, path::PathBuf};
 
 /// Why a picture could not be set up, written or read.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ImageError {
     /// A width or height outside `1..=65536`.
-    #[error("a picture must be 1 to 65536 pixels wide and high: {width} x {height} was asked for")]
+    #[error("expected a picture of 1 to 65536 pixels a side, got {width} x {height}")]
     Size {
         /// Pixels in a row.
         width: u32,
         /// Rows.
         height: u32,
     },
-    /// A setting that makes no sense.
-    #[error("{what} must be {right}: got {got}")]
+    /// A setting out of range.
+    #[error("{what} must be {right}, got {got}")]
     Setting {
-        /// Which setting, with its unit.
+        /// The setting, with its unit.
         what: &'static str,
-        /// What was given.
+        /// The given value.
         got: String,
-        /// What would be right.
+        /// Valid values.
         right: &'static str,
     },
-    /// A file ending that names no known picture format.
-    #[error("cannot tell the picture format of `{path}`: {ending}. Known endings: {known}", path = .path.display())]
+    /// A file ending of no known picture format.
+    #[error("unknown picture format of `{path}`: {ending}. Known endings: {known}", path = .path.display())]
     UnknownFormat {
-        /// The file asked for.
+        /// The path.
         path: PathBuf,
-        /// What its ending is, or that there is none.
+        /// The ending, or that there is none.
         ending: String,
-        /// The endings that are known.
+        /// Known endings.
         known: String,
     },
     /// The rows have the wrong number of channels for the format.
-    #[error("{format} needs rows of {expected} channels: these have {got}")]
+    #[error("expected rows of {expected} channels for {format}, got {got}")]
     Channels {
         /// The format or layout.
         format: &'static str,
-        /// Channels it holds.
+        /// Channels of the format.
         expected: usize,
         /// Channels of the row source.
         got: usize,
     },
-    /// The folder a file should go to is not there.
+    /// The folder of a file to be written does not exist.
     #[error("cannot write `{path}`: there is no folder `{folder}`", path = .path.display(), folder = .folder.display())]
     NoFolder {
-        /// The file asked for.
+        /// The path.
         path: PathBuf,
         /// The missing folder.
         folder: PathBuf,
     },
-    /// The name given for a file cannot be one.
+    /// A path that cannot be written to.
     #[error("cannot write `{path}`: {reason}", path = .path.display())]
     Target {
-        /// The file asked for.
+        /// The path.
         path: PathBuf,
-        /// Why not.
+        /// The reason.
         reason: &'static str,
     },
     /// The operating system refused.
     #[error("cannot {action} `{path}`: {source}", path = .path.display())]
     File {
-        /// What was tried, as a verb.
+        /// The operation, as a verb.
         action: &'static str,
-        /// On which file.
+        /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// Error of the system.
         source: io::Error,
     },
-    /// Bytes could not be written to a stream that is not a file with a name.
+    /// A stream without a name could not be written to.
     #[error("cannot write the {format} picture: {source}")]
     Stream {
-        /// The format being written.
+        /// Format being written.
         format: &'static str,
-        /// What the system said.
+        /// Error of the system.
         source: io::Error,
     },
     /// The encoder refused the picture.
     #[error("cannot encode the picture as {format}: {reason}")]
     Encode {
-        /// The format being written.
+        /// Format being written.
         format: &'static str,
-        /// What the encoder said.
+        /// Error of the encoder.
         reason: String,
     },
-    /// What a file holds cannot be read, or is not what it should be.
+    /// The contents of a file are corrupt or of the wrong kind.
     #[error("cannot read `{path}`: {reason}", path = .path.display())]
     Read {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// What is wrong.
         reason: String,
     },
-    /// A file breaks off before all is there that its beginning promises.
+    /// A file is shorter than its header states.
     #[error("`{path}` ends too early: {reason}", path = .path.display())]
     EndsEarly {
         /// The file.
@@ -102,37 +103,37 @@ pub enum ImageError {
         /// What is missing.
         reason: String,
     },
-    /// A file lacks a channel that is needed, or has several that could be meant.
-    #[error("`{path}` has no {wanted}. Its channels: {there}", path = .path.display())]
+    /// A required channel is missing or ambiguous.
+    #[error("`{path}` has no {wanted}. Its channels: {available}", path = .path.display())]
     NoChannel {
         /// The file.
         path: PathBuf,
-        /// What was looked for.
+        /// The required channel.
         wanted: String,
-        /// The channels that are there, with commas between them.
-        there: String,
+        /// Channels of the file, separated by commas.
+        available: String,
     },
-    /// Depth below 0, where a mistake of sign is likelier than a hole.
+    /// Negative depth, which is more likely a wrong sign than unknown depth.
     #[error(
-        "`{path}` has negative depth in {count} of its pixels, the first at x {x}, y {y}: {value}. Depth must grow away from \
-         the camera; where negative numbers mean that nothing is known, 0 should stand",
+        "expected depth of 0 or more in `{path}`, got negative depth in {count} of its pixels, the first at x {x}, y {y}: {value}; \
+         try 0 where the depth is unknown",
         path = .path.display()
     )]
     NegativeDepth {
         /// The file.
         path: PathBuf,
-        /// How many pixels.
+        /// Number of negative pixels.
         count: u64,
         /// Column of the first, from 0.
         x: u32,
         /// Row of the first, from 0 at the top.
         y: u32,
-        /// What the file says there, before any scale.
+        /// Its number in the file, before scaling.
         value: f32,
     },
-    /// A depth map that is not as large as its picture.
+    /// A depth map of another size than its picture.
     #[error(
-        "the depth map is {} x {} pixels, the picture {} x {}: both must be the same",
+        "expected a depth map and a picture of the same size, got {} x {} and {} x {} pixels",
         .depth.0, .depth.1, .picture.0, .picture.1
     )]
     SizesDiffer {
@@ -141,7 +142,7 @@ pub enum ImageError {
         /// Width and height of the picture.
         picture: (u32, u32),
     },
-    /// The caller cancelled; nothing was left behind.
+    /// The caller cancelled; no file was written.
     #[error("cancelled; no file was left behind")]
     Cancelled,
 }
@@ -153,7 +154,24 @@ impl From<Cancelled> for ImageError {
 }
 
 impl ImageError {
-    /// The same error with the name of the file, where it lacked one.
+    /// [`ImageError::Setting`] where a setting is not valid.
+    pub(crate) fn require(
+        valid: bool,
+        what: &'static str,
+        got: f64,
+        right: &'static str,
+    ) -> Result<(), Self> {
+        match valid {
+            true => Ok(()),
+            false => Err(Self::Setting {
+                what,
+                got: got.to_string(),
+                right,
+            }),
+        }
+    }
+
+    /// Adds the name of the file to an error of a stream.
     pub fn at(self, path: &std::path::Path) -> Self {
         match self {
             Self::Stream { source, .. } => Self::File {

@@ -1,15 +1,16 @@
 //! Picture and depth files, projections, exposure and tone curves.
 //!
-//! A picture is a [`frame::Frame`], which maps pixels to view directions, and a [`rows::RowSource`], which provides
-//! their values. Writers ask for rows in any order and from many threads, hold only a few bands of the picture at a
-//! time, and leave either a complete file or none.
+//! A picture consists of a [`frame::Frame`], which maps pixels to view directions, and a [`rows::RowSource`], which provides
+//! their values. Writers request rows in any order and from many threads, hold only a few bands of the picture in memory,
+//! and leave either a complete file or none.
 //!
 //! # Modules, each importing only from those above it
 //! - [`error`]: error type.
+//! - [`Size`]: width and height of pictures.
 //! - [`frame`]: projections, from pixels to view directions and back.
 //! - [`rows`]: row sources.
 //! - [`enlarge`]: upsampling by cubic splines.
-//! - [`tone`]: exposure, tone curves, dither: from linear light to display values.
+//! - [`tone`]: exposure, tone curves, sRGB encoding, dither: from linear light to display values.
 //! - [`output`]: picture writers: OpenEXR (RGB and spectral), Radiance HDR, PNG, JPEG.
 //! - [`input`]: picture and depth readers.
 //! - [`terminal`]: previews in a terminal.

@@ -1,17 +1,17 @@
-//! Where pixels come from.
+//! Sources of picture rows.
 
 use crate::ImageError;
 
-/// Supplies linear pixels row by row. Called from many threads, in any order, each row once a picture.
+/// Supplies linear pixels row by row. Writers call it from many threads, in any order, once for each row.
 pub trait RowSource: Sync {
-    /// Values a pixel.
+    /// Number of samples of a pixel.
     fn channels(&self) -> usize;
 
-    /// Fills row `y` (0 at the top): `out` holds `width * channels` values, pixel by pixel.
+    /// Fills row `y` (0 at the top). `out` has `width * channels` samples, interleaved.
     fn fill_row(&self, y: u32, out: &mut [f32]);
 }
 
-/// A row source made of a function.
+/// A row source from a function.
 #[derive(Clone, Copy, Debug)]
 pub struct RowFn<F> {
     channels: usize,
@@ -19,7 +19,7 @@ pub struct RowFn<F> {
 }
 
 impl<F: Fn(u32, &mut [f32]) + Sync> RowFn<F> {
-    /// Rows of `channels` values a pixel, filled by `fill(y, out)`.
+    /// Rows with `channels` samples a pixel, filled by `fill(y, out)`.
     pub fn new(channels: usize, fill: F) -> Self {
         Self { channels, fill }
     }
@@ -35,7 +35,7 @@ impl<F: Fn(u32, &mut [f32]) + Sync> RowSource for RowFn<F> {
     }
 }
 
-/// A picture that lies in memory, row after row, pixel by pixel.
+/// A picture in memory.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StoredRows {
     width: u32,
@@ -44,10 +44,10 @@ pub struct StoredRows {
 }
 
 impl StoredRows {
-    /// Takes `samples`, whose number must be a whole number of rows of `width * channels` values.
+    /// Interleaved samples, row after row from the top.
     ///
     /// # Errors
-    /// [`ImageError::Setting`] where it is not.
+    /// [`ImageError::Setting`] where the number of samples is not a multiple of `width * channels`.
     pub fn new(width: u32, channels: usize, samples: Vec<f32>) -> Result<Self, ImageError> {
         let row = (width as usize).saturating_mul(channels);
         if row == 0 || !samples.len().is_multiple_of(row) {
@@ -69,7 +69,7 @@ impl StoredRows {
         (self.samples.len() / (self.width as usize * self.channels)) as u32
     }
 
-    /// All samples, row after row.
+    /// All samples, interleaved, row after row.
     pub fn samples(&self) -> &[f32] {
         &self.samples
     }
@@ -80,7 +80,7 @@ impl RowSource for StoredRows {
         self.channels
     }
 
-    /// Rows below the last are left as they are.
+    /// Leaves `out` unchanged below the last row.
     fn fill_row(&self, y: u32, out: &mut [f32]) {
         let row = self.width as usize * self.channels;
         let start = y as usize * row;

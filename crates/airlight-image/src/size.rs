@@ -10,10 +10,10 @@ pub struct Size {
 }
 
 impl Size {
-    /// The largest width and height.
+    /// Largest width and height.
     pub const MAX: u32 = 65536;
 
-    /// Checks width and height.
+    /// A size of `width` times `height` pixels.
     ///
     /// # Errors
     /// [`ImageError::Size`] where one is 0 or above 65536.
@@ -26,17 +26,17 @@ impl Size {
         }
     }
 
-    /// Pixels in a row.
+    /// Number of pixels in a row.
     pub fn width(self) -> u32 {
         self.width
     }
 
-    /// Rows.
+    /// Number of rows.
     pub fn height(self) -> u32 {
         self.height
     }
 
-    /// The same shape in few pixels: at most `longest_side`, each side at least 1.
+    /// The same aspect ratio in fewer pixels: at most `longest_side`, at least 1 a side.
     pub(crate) fn shrunk_to(self, longest_side: u32) -> Self {
         let longest = self.width.max(self.height);
         let side = longest_side.clamp(1, longest);

@@ -1,21 +1,22 @@
-//! A small picture as coloured text: two pixels a character cell, one above the other.
+//! Previews in a terminal: coloured text with two pixels in a character cell, one above the other.
 
-use crate::tone::srgb;
+use airlight::spectrum::rgb::{srgb_decode, srgb_encode};
 use std::fmt::Write;
 
-/// What colours a terminal can show.
+/// Colours of a terminal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum TerminalColor {
     /// Any 24-bit colour.
     True,
     /// The 256-colour palette.
     Palette,
-    /// None.
+    /// No colours.
     None,
 }
 
 impl TerminalColor {
-    /// What the environment variables `COLORTERM`, `TERM` and `NO_COLOR` say.
+    /// Capabilities according to the environment variables `COLORTERM`, `TERM` and `NO_COLOR`.
     pub fn detect(colorterm: Option<&str>, term: Option<&str>, no_color: Option<&str>) -> Self {
         let colorterm = colorterm.unwrap_or("").to_ascii_lowercase();
         let term = term.unwrap_or("").to_ascii_lowercase();
@@ -44,11 +45,11 @@ impl TerminalColor {
     }
 }
 
-/// The picture as lines of upper half blocks, at most `columns` wide and each ending in a reset and a line feed.
+/// A picture as lines of upper half blocks, at most `columns` wide, each ending with a reset and a line feed.
 ///
-/// `rgb` is 8-bit sRGB, row after row, `width` pixels a row; what does not fill a row is left out. A picture wider than
-/// `columns` is averaged down in linear light; a smaller one is shown pixel for pixel. Empty where the picture is, and
-/// where the terminal shows no colours.
+/// `rgb` is 8-bit sRGB, row after row, `width` pixels a row; an incomplete row is ignored. A picture wider than
+/// `columns` is averaged in linear light; a smaller one is shown pixel for pixel. Empty for an empty picture and a terminal without
+/// colours.
 pub fn half_blocks(rgb: &[u8], width: usize, columns: usize, color: TerminalColor) -> String {
     let height = if width == 0 {
         0
@@ -75,9 +76,9 @@ pub fn half_blocks(rgb: &[u8], width: usize, columns: usize, color: TerminalColo
             let top = pixel(x, pair * 2);
             let bottom = (pair * 2 + 1 < down).then(|| pixel(x, pair * 2 + 1));
             if last != Some((top, bottom)) {
-                paint(&mut text, 38, top, color);
+                set_colour(&mut text, 38, top, color);
                 match bottom {
-                    Some(bottom) => paint(&mut text, 48, bottom, color),
+                    Some(bottom) => set_colour(&mut text, 48, bottom, color),
                     None => text.push_str("\x1b[49m"),
                 }
                 last = Some((top, bottom));
@@ -95,25 +96,25 @@ fn average(rgb: &[u8], width: usize, x: (usize, usize), y: (usize, usize)) -> [u
     for row in y.0..y.1 {
         for column in x.0..x.1 {
             for (c, sum) in sum.iter_mut().enumerate() {
-                *sum += srgb::decode(f64::from(rgb[(row * width + column) * 3 + c]) / 255.0);
+                *sum += srgb_decode(f64::from(rgb[(row * width + column) * 3 + c]) / 255.0);
             }
         }
     }
     let count = ((x.1 - x.0) * (y.1 - y.0)).max(1) as f64;
-    sum.map(|v| (srgb::encode(v / count) * 255.0 + 0.5) as u8)
+    sum.map(|v| (srgb_encode(v / count) * 255.0 + 0.5) as u8)
 }
 
 /// Appends the escape sequence that sets the foreground (38) or background (48).
-fn paint(text: &mut String, ground: u8, [r, g, b]: [u8; 3], color: TerminalColor) {
+fn set_colour(text: &mut String, ground: u8, [r, g, b]: [u8; 3], color: TerminalColor) {
     // Writing to a string cannot fail.
     let _ = match color {
         TerminalColor::True => write!(text, "\x1b[{ground};2;{r};{g};{b}m"),
-        _ => write!(text, "\x1b[{ground};5;{}m", palette(r, g, b)),
+        _ => write!(text, "\x1b[{ground};5;{}m", palette_index(r, g, b)),
     };
 }
 
-/// The nearest colour of the palette's 6 x 6 x 6 cube or its 24 greys.
-fn palette(r: u8, g: u8, b: u8) -> u8 {
+/// Index of the nearest colour of the palette: its 6 x 6 x 6 cube or its 24 greys.
+fn palette_index(r: u8, g: u8, b: u8) -> u8 {
     const LEVELS: [u8; 6] = [0, 95, 135, 175, 215, 255];
     let nearest = |v: u8| (0..6).min_by_key(|&i| v.abs_diff(LEVELS[i])).unwrap_or(0);
     let (ri, gi, bi) = (nearest(r), nearest(g), nearest(b));

@@ -71,7 +71,7 @@ impl ExposureSettings {
             .unwrap_or(DAYLIGHT_CD_M2);
         let dusk_stops = DARKER_PER_STOP * (typical / DAYLIGHT_CD_M2).log2().min(0.0);
         let sky_stops = SKY_STOPS * lit_sky / lit.max(f64::MIN_POSITIVE);
-        Exposure::factor_of(metering.key / typical)?
+        Exposure::from_factor(metering.key / typical)?
             .brighter_by(self.brighten_stops + sky_stops + dusk_stops)
     }
 }

@@ -183,14 +183,9 @@ impl Layout {
         Ok(Frame::new(projection, across.max(1), down as u32)?)
     }
 
-    /// The projection in words.
+    /// Name of the kind of projection.
     pub fn projection_name(&self) -> &'static str {
-        match self.frames[0].1.projection() {
-            Projection::Equirectangular { .. } => "equirectangular",
-            Projection::CubeFace(_) => "cube face",
-            Projection::AngularFisheye(_) => "fisheye",
-            Projection::Perspective(_) => "perspective",
-        }
+        self.frames[0].1.projection().name()
     }
 }
 

@@ -1,25 +1,24 @@
-//! A real camera as a calibration describes it: focal length and principal point in pixels.
+//! Cameras by calibration: focal length and principal point in pixels.
 
 use super::{
     Camera, Size,
-    lens::View,
-    projection::{azimuth, demand, elevation},
+    lens::CameraAxes,
+    projection::{check_azimuth, check_elevation},
 };
 use crate::ImageError;
 use glam::DVec3;
 
-/// Where a calibration puts the coordinates of a pixel.
+/// Pixel coordinates of a calibration.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum PixelCentres {
     /// The centre of pixel `(i, j)` is at `(i + 0.5, j + 0.5)`, as everywhere in [`crate::frame`].
     #[default]
     Halves,
-    /// It is at `(i, j)`, as OpenCV and most data sets (Middlebury, KITTI) have it.
+    /// The centre is at `(i, j)`, as in OpenCV and most data sets (Middlebury, KITTI).
     Whole,
 }
 
-/// A pinhole camera with square or oblong pixels whose axis may pass anywhere through the picture, looking north and
-/// level unless told otherwise.
+/// A pinhole camera with square or rectangular pixels and any principal point. By default it looks north, level.
 ///
 /// Depth along the axis (z-depth) times [`Intrinsics::ray_length_per_z`] is the distance along the ray of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,12 +26,12 @@ pub struct Intrinsics {
     size: Size,
     focal_px: (f64, f64),
     principal_px: (f64, f64),
-    view: View,
+    axes: CameraAxes,
 }
 
 impl Intrinsics {
-    /// A camera for pictures of this size, from focal length across and down and from the point where its axis meets
-    /// the picture (right, down), all in pixels.
+    /// A camera for pictures of this size from the horizontal and vertical focal length and the principal point (right, down from
+    /// the upper left corner), in pixels.
     ///
     /// # Errors
     /// [`ImageError::Setting`] where a focal length is not above 0, or a number is not finite or beyond 1e9.
@@ -43,7 +42,7 @@ impl Intrinsics {
         centres: PixelCentres,
     ) -> Result<Self, ImageError> {
         for focal in [focal_px.0, focal_px.1] {
-            demand(
+            ImageError::require(
                 (1e-3..=1e9).contains(&focal),
                 "the focal length in pixels",
                 focal,
@@ -51,7 +50,7 @@ impl Intrinsics {
             )?;
         }
         for principal in [principal_px.0, principal_px.1] {
-            demand(
+            ImageError::require(
                 principal.abs() <= 1e9,
                 "the principal point in pixels",
                 principal,
@@ -66,11 +65,11 @@ impl Intrinsics {
             size,
             focal_px,
             principal_px: (principal_px.0 + shift, principal_px.1 + shift),
-            view: View::new(0.0, 0.0, 0.0),
+            axes: CameraAxes::new(0.0, 0.0, 0.0),
         })
     }
 
-    /// A camera with square pixels and its axis through the middle, from the angle between the left and the right edge
+    /// A camera with square pixels and a central principal point, from the angle between the left and the right edge
     /// in degrees.
     ///
     /// # Errors
@@ -87,7 +86,7 @@ impl Intrinsics {
         Self::across(size, f64::from(size.height()), degrees)
     }
 
-    /// What [`Camera`] sees in a picture of this size.
+    /// The same camera as a [`Camera`] in a picture of this size.
     ///
     /// # Errors
     /// [`ImageError::Setting`] where one of its angles is out of range.
@@ -100,7 +99,7 @@ impl Intrinsics {
     }
 
     fn across(size: Size, side: f64, degrees: f64) -> Result<Self, ImageError> {
-        demand(
+        ImageError::require(
             degrees > 0.0 && degrees < 180.0,
             "the camera's field of view in degrees",
             degrees,
@@ -114,8 +113,8 @@ impl Intrinsics {
         Self::new(size, (focal, focal), middle, PixelCentres::Halves)
     }
 
-    /// The same camera with its axis turned to an azimuth (degrees clockwise from north) and an elevation above the
-    /// horizon (degrees), and rolled about it (degrees, clockwise as seen by the photographer).
+    /// The same camera with its axis at an azimuth (degrees clockwise from north) and an elevation above the horizon (degrees),
+    /// and with a roll about the axis (degrees, clockwise as seen by the photographer).
     ///
     /// # Errors
     /// [`ImageError::Setting`] where an angle is not finite or the elevation outside `[-90, 90]`.
@@ -125,16 +124,16 @@ impl Intrinsics {
         elevation_deg: f64,
         roll_deg: f64,
     ) -> Result<Self, ImageError> {
-        azimuth(azimuth_deg)?;
-        elevation(elevation_deg)?;
-        demand(
+        check_azimuth(azimuth_deg)?;
+        check_elevation(elevation_deg)?;
+        ImageError::require(
             roll_deg.is_finite(),
             "the roll in degrees",
             roll_deg,
             "a finite number",
         )?;
         Ok(Self {
-            view: View::new(azimuth_deg, elevation_deg, roll_deg),
+            axes: CameraAxes::new(azimuth_deg, elevation_deg, roll_deg),
             ..self
         })
     }
@@ -144,27 +143,27 @@ impl Intrinsics {
         self.size
     }
 
-    /// Focal length across and down in pixels.
+    /// Horizontal and vertical focal length in pixels.
     pub fn focal_px(&self) -> (f64, f64) {
         self.focal_px
     }
 
-    /// Where the axis meets the picture, pixels to the right and down from its upper left corner.
+    /// Principal point: pixels to the right and down from the upper left corner.
     pub fn principal_px(&self) -> (f64, f64) {
         self.principal_px
     }
 
-    /// The direction along the axis, a unit vector in the axes of [`airlight::axes`].
+    /// Unit vector along the optical axis, in the world axes of [`airlight::axes`].
     pub fn axis(&self) -> DVec3 {
-        self.view.forward
+        self.axes.forward
     }
 
-    /// The direction seen at the centre of pixel `(i, j)`: a unit vector in the axes of [`airlight::axes`].
+    /// View direction at the centre of pixel `(i, j)`: a unit vector in the world axes of [`airlight::axes`].
     pub fn pixel_direction(&self, i: u32, j: u32) -> DVec3 {
         self.ray(i, self.y(j)).0
     }
 
-    /// Distance along the ray of pixel `(i, j)` for each metre along the axis: 1 or more.
+    /// Distance along the ray of pixel `(i, j)` per depth along the axis: 1 or more.
     pub fn ray_length_per_z(&self, i: u32, j: u32) -> f64 {
         self.ray(i, self.y(j)).1
     }
@@ -174,8 +173,8 @@ impl Intrinsics {
         1.0 / self.ray_length_per_z(i, j)
     }
 
-    /// Writes the directions at the centres of row `j` and their lengths for each metre along the axis (each slice at
-    /// most one row long), bit for bit those of [`Intrinsics::pixel_direction`] and [`Intrinsics::ray_length_per_z`].
+    /// Writes the directions at the pixel centres of row `j` and their ray lengths per depth (slices of at most one row), the same
+    /// bits as [`Intrinsics::pixel_direction`] and [`Intrinsics::ray_length_per_z`].
     pub fn fill(&self, j: u32, directions: &mut [DVec3], lengths: &mut [f64]) {
         let y = self.y(j);
         for (i, (direction, length)) in directions.iter_mut().zip(lengths).enumerate() {
@@ -183,7 +182,7 @@ impl Intrinsics {
         }
     }
 
-    /// Up per forward at the middle of row `j`.
+    /// Tangent of the vertical angle at the centre of row `j`.
     fn y(&self, j: u32) -> f64 {
         (self.principal_px.1 - (f64::from(j) + 0.5)) / self.focal_px.1
     }
@@ -192,7 +191,7 @@ impl Intrinsics {
     fn ray(&self, i: u32, y: f64) -> (DVec3, f64) {
         let x = (f64::from(i) + 0.5 - self.principal_px.0) / self.focal_px.0;
         let length = (1.0 + x * x + y * y).sqrt();
-        let ray = self.view.forward + self.view.right * x + self.view.up * y;
+        let ray = self.axes.forward + self.axes.right * x + self.axes.up * y;
         (ray / length, length)
     }
 }

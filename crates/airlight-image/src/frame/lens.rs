@@ -1,16 +1,15 @@
-//! The mathematics of each projection, with everything that does not depend on the pixel worked out beforehand.
+//! Projections prepared for one picture size: from pixels to directions and back, and solid angles of pixels.
 
 use super::projection::{CubeFace, Projection};
-use super::solid_angle;
 use crate::Size;
-use airlight::axes;
+use airlight::axes as world;
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// How far beyond a fisheye's circle rounding may put a direction on it, relatively.
+/// Relative tolerance for rounding at the circle of a fisheye.
 const RIM: f64 = 1e-12;
 
-/// A projection made ready for one picture size.
+/// A projection with the quantities that do not depend on the pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Lens {
     Equirectangular {
@@ -22,31 +21,31 @@ pub(super) enum Lens {
         side: f64,
     },
     Fisheye {
-        view: View,
+        axes: CameraAxes,
         center: (f64, f64),
         radians_per_pixel: f64,
         half_angle: f64,
     },
     Perspective {
-        view: View,
+        axes: CameraAxes,
         size: (f64, f64),
-        /// Tangents of half the angle across and down.
+        /// Tangents of half the horizontal and the vertical angle of axes.
         tangents: (f64, f64),
     },
 }
 
-/// Right, up and forward of a camera: unit vectors, each square to the others.
+/// Axes of a camera: orthogonal unit vectors.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct View {
+pub(super) struct CameraAxes {
     pub(super) right: DVec3,
     pub(super) up: DVec3,
     pub(super) forward: DVec3,
 }
 
-impl View {
+impl CameraAxes {
     pub(super) fn new(azimuth_deg: f64, elevation_deg: f64, roll_deg: f64) -> Self {
-        let forward = axes::direction(azimuth_deg, elevation_deg);
-        let level = axes::direction(azimuth_deg + 90.0, 0.0);
+        let forward = world::direction(azimuth_deg, elevation_deg);
+        let level = world::direction(azimuth_deg + 90.0, 0.0);
         let upright = level.cross(forward);
         let (sin, cos) = roll_deg.to_radians().sin_cos();
         Self {
@@ -66,7 +65,7 @@ impl View {
     }
 }
 
-/// The direction whose azimuth and elevation have these sines and cosines.
+/// Direction from the sines and cosines of azimuth and elevation.
 pub(super) fn from_sines(azimuth: (f64, f64), elevation: (f64, f64)) -> DVec3 {
     DVec3::new(
         elevation.1 * azimuth.0,
@@ -90,7 +89,7 @@ impl Lens {
             Projection::AngularFisheye(fisheye) => {
                 let half_angle = fisheye.field_of_view_deg.to_radians() / 2.0;
                 Self::Fisheye {
-                    view: View::new(fisheye.azimuth_deg, fisheye.elevation_deg, 0.0),
+                    axes: CameraAxes::new(fisheye.azimuth_deg, fisheye.elevation_deg, 0.0),
                     center: (width / 2.0, height / 2.0),
                     radians_per_pixel: half_angle / (width.min(height) / 2.0),
                     half_angle,
@@ -99,7 +98,11 @@ impl Lens {
             Projection::Perspective(camera) => {
                 let down = (camera.vertical_fov_deg.to_radians() / 2.0).tan();
                 Self::Perspective {
-                    view: View::new(camera.azimuth_deg, camera.elevation_deg, camera.roll_deg),
+                    axes: CameraAxes::new(
+                        camera.azimuth_deg,
+                        camera.elevation_deg,
+                        camera.roll_deg,
+                    ),
                     size: (width, height),
                     tangents: (down * width / height, down),
                 }
@@ -118,7 +121,7 @@ impl Lens {
                 Some(from_face(*face, s, t).normalize())
             }
             Self::Fisheye {
-                view,
+                axes,
                 center,
                 radians_per_pixel,
                 half_angle,
@@ -130,20 +133,20 @@ impl Lens {
                     return None;
                 }
                 if radius == 0.0 {
-                    return Some(view.forward);
+                    return Some(axes.forward);
                 }
                 let (sin, cos) = theta.sin_cos();
-                let sideways = (view.right * x + view.up * y) / radius;
-                Some(view.forward * cos + sideways * sin)
+                let sideways = (axes.right * x + axes.up * y) / radius;
+                Some(axes.forward * cos + sideways * sin)
             }
             Self::Perspective {
-                view,
+                axes,
                 size,
                 tangents,
             } => {
                 let x = (2.0 * px / size.0 - 1.0) * tangents.0;
                 let y = (1.0 - 2.0 * py / size.1) * tangents.1;
-                Some((view.forward + view.right * x + view.up * y).normalize())
+                Some((axes.forward + axes.right * x + axes.up * y).normalize())
             }
         }
     }
@@ -166,12 +169,12 @@ impl Lens {
                 Some(((s + 1.0) / 2.0 * side, (t + 1.0) / 2.0 * side))
             }
             Self::Fisheye {
-                view,
+                axes,
                 center,
                 radians_per_pixel,
                 half_angle,
             } => {
-                let (x, y, z) = view.split(direction);
+                let (x, y, z) = axes.split(direction);
                 let sideways = x.hypot(y);
                 let theta = sideways.atan2(z);
                 if theta > half_angle * (1.0 + RIM) {
@@ -181,17 +184,17 @@ impl Lens {
                 let (x, y) = if sideways > 0.0 {
                     (x / sideways, y / sideways)
                 } else {
-                    // Straight ahead the radius is 0; straight behind, any point of the circle will do.
+                    // Ahead, the radius is 0; behind, any point of the circle is valid.
                     (1.0, 0.0)
                 };
                 Some((center.0 + x * radius, center.1 - y * radius))
             }
             Self::Perspective {
-                view,
+                axes,
                 size,
                 tangents,
             } => {
-                let (x, y, z) = view.split(direction);
+                let (x, y, z) = axes.split(direction);
                 (z > 0.0).then(|| {
                     (
                         (x / z / tangents.0 + 1.0) / 2.0 * size.0,
@@ -206,23 +209,23 @@ impl Lens {
         let (i, j) = (f64::from(i), f64::from(j));
         match self {
             Self::Equirectangular { size, .. } => {
-                solid_angle::band(self.elevation(j + 1.0), self.elevation(j)) / size.0
+                band_solid_angle(self.elevation(j + 1.0), self.elevation(j)) / size.0
             }
             Self::Cube { side, .. } => {
                 let at = |n: f64| 2.0 * n / side - 1.0;
-                solid_angle::rectangle((at(i), at(i + 1.0)), (at(j), at(j + 1.0)))
+                rectangle_solid_angle((at(i), at(i + 1.0)), (at(j), at(j + 1.0)))
             }
             Self::Perspective { size, tangents, .. } => {
                 let x = |n: f64| (2.0 * n / size.0 - 1.0) * tangents.0;
                 let y = |n: f64| (2.0 * n / size.1 - 1.0) * tangents.1;
-                solid_angle::rectangle((x(i), x(i + 1.0)), (y(j), y(j + 1.0)))
+                rectangle_solid_angle((x(i), x(i + 1.0)), (y(j), y(j + 1.0)))
             }
             Self::Fisheye {
                 center,
                 radians_per_pixel,
                 half_angle,
                 ..
-            } => solid_angle::equidistant_pixel(
+            } => fisheye_pixel_solid_angle(
                 (i - center.0, j - center.1),
                 *radians_per_pixel,
                 *half_angle,
@@ -230,7 +233,7 @@ impl Lens {
         }
     }
 
-    /// Sine and cosine of the azimuth at the centre of each column, where azimuth depends on the column alone.
+    /// Sine and cosine of the azimuth at the centre of each column, where azimuth depends only on the column.
     pub(super) fn columns(&self, width: u32) -> Vec<(f64, f64)> {
         match self {
             Self::Equirectangular { .. } => (0..width)
@@ -282,4 +285,39 @@ fn on_face(face: CubeFace, d: DVec3) -> Option<(f64, f64)> {
         CubeFace::NegativeZ => (-d.x, -d.y, -d.z),
     };
     (depth > 0.0).then(|| (s / depth, t / depth))
+}
+
+/// Solid angle of the band of the sphere between two elevations (rad).
+fn band_solid_angle(bottom: f64, top: f64) -> f64 {
+    // sin(top) - sin(bottom), without cancellation.
+    TAU * 2.0 * ((top + bottom) / 2.0).cos() * ((top - bottom) / 2.0).sin()
+}
+
+/// Solid angle of a rectangle in the plane at distance 1, given by its edges.
+fn rectangle_solid_angle(x: (f64, f64), y: (f64, f64)) -> f64 {
+    // The rectangle from the axis to the corner (x, y) has the solid angle atan(x y / sqrt(1 + x^2 + y^2)).
+    let corner = |x: f64, y: f64| (x * y).atan2((1.0 + x * x + y * y).sqrt());
+    corner(x.1, y.1) - corner(x.0, y.1) - corner(x.1, y.0) + corner(x.0, y.0)
+}
+
+/// Solid angle of a pixel of an equidistant fisheye with its upper left corner at `corner` (pixels from the centre): 9-point
+/// Gauss-Legendre quadrature of `sin(theta) / theta`; points outside the circle have weight 0.
+fn fisheye_pixel_solid_angle(corner: (f64, f64), radians_per_pixel: f64, half_angle: f64) -> f64 {
+    let offset = 0.5 * 0.6f64.sqrt();
+    let points = [(0.5 - offset, 5.0), (0.5, 8.0), (0.5 + offset, 5.0)];
+    let mut sum = 0.0;
+    for (x, weight_x) in points {
+        for (y, weight_y) in points {
+            let theta = (corner.0 + x).hypot(corner.1 + y) * radians_per_pixel;
+            if theta <= half_angle {
+                let density = if theta < 1e-4 {
+                    1.0 - theta * theta / 6.0
+                } else {
+                    theta.sin() / theta
+                };
+                sum += density * (weight_x * weight_y) / 324.0;
+            }
+        }
+    }
+    sum * radians_per_pixel * radians_per_pixel
 }

@@ -1,4 +1,4 @@
-//! Where pixels look: projections between the picture plane and view directions.
+//! Projections between pixels and view directions.
 //!
 //! Pixel coordinates are continuous: x to the right from 0 to the width, y down from 0 to the height; the centre of
 //! pixel `(i, j)` is at `(i + 0.5, j + 0.5)`. Directions are unit vectors in the world axes of [`airlight::axes`]
@@ -7,7 +7,6 @@
 mod intrinsics;
 mod lens;
 mod projection;
-mod solid_angle;
 
 pub use intrinsics::{Intrinsics, PixelCentres};
 pub use projection::{Camera, CubeFace, Fisheye, Projection};
@@ -16,7 +15,7 @@ use crate::{ImageError, Size};
 use glam::DVec3;
 use lens::Lens;
 
-/// A projection laid over a grid of pixels.
+/// A projection with a size in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
     projection: Projection,
@@ -25,7 +24,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Checks and takes a projection and a size in pixels.
+    /// A frame of a projection and a size in pixels.
     ///
     /// # Errors
     /// [`ImageError::Size`], or [`ImageError::Setting`] where an angle is not finite or out of range, or a cube face
@@ -40,7 +39,7 @@ impl Frame {
         })
     }
 
-    /// The whole sphere, twice as wide as high, with north in the middle.
+    /// The whole sphere as an equirectangular picture, twice as wide as high, with north in the centre.
     ///
     /// # Errors
     /// [`ImageError::Size`] where `height` is not in `1..=32768`.
@@ -54,7 +53,7 @@ impl Frame {
         )
     }
 
-    /// The same view in few pixels, for a preview or for metering: `longest_side` at most, each side at least 1.
+    /// The same view in fewer pixels, for a preview or metering: at most `longest_side`, at least 1 a side.
     pub fn preview(&self, longest_side: u32) -> Self {
         let size = self.size.shrunk_to(longest_side);
         Self {
@@ -64,7 +63,7 @@ impl Frame {
         }
     }
 
-    /// What was given.
+    /// The projection.
     pub fn projection(&self) -> &Projection {
         &self.projection
     }
@@ -74,24 +73,24 @@ impl Frame {
         self.size
     }
 
-    /// The direction seen at continuous pixel coordinates; `None` outside the picture, outside the circle of a
-    /// fisheye, and for numbers that are not finite.
+    /// View direction at continuous pixel coordinates; `None` outside the picture, outside the circle of a fisheye, and for
+    /// numbers that are not finite.
     pub fn direction(&self, px: f64, py: f64) -> Option<DVec3> {
         let inside = (0.0..=f64::from(self.size.width())).contains(&px)
             && (0.0..=f64::from(self.size.height())).contains(&py);
         inside.then(|| self.lens.direction(px, py)).flatten()
     }
 
-    /// The direction seen at the centre of pixel `(i, j)`; `None` as in [`Frame::direction`].
+    /// View direction at the centre of pixel `(i, j)`; `None` as in [`Frame::direction`].
     pub fn pixel_direction(&self, i: u32, j: u32) -> Option<DVec3> {
         self.direction(f64::from(i) + 0.5, f64::from(j) + 0.5)
     }
 
-    /// Where a direction (of any length above 0) lies in the picture; `None` where the picture does not show it.
+    /// Pixel coordinates of a direction (of any length above 0); `None` outside the picture.
     pub fn pixel_of(&self, direction: DVec3) -> Option<(f64, f64)> {
         let unit = direction.try_normalize()?;
         let (px, py) = self.lens.pixel_of(unit)?;
-        // A direction at the very edge may land a rounding error beyond it.
+        // Rounding may put a direction at the edge just outside.
         let (w, h) = (f64::from(self.size.width()), f64::from(self.size.height()));
         let slack = 1e-9;
         let inside = px >= -slack * w
@@ -101,9 +100,9 @@ impl Frame {
         inside.then(|| (px.clamp(0.0, w), py.clamp(0.0, h)))
     }
 
-    /// The solid angle of pixel `(i, j)` in steradians; 0 outside the picture or a fisheye's circle. Exact but for the
-    /// fisheye (relative error below 1e-9 for pixels wholly inside the circle of a picture of 64 or more pixels; a
-    /// pixel cut by the circle counts by the part of its 9 sample points that lie inside).
+    /// Solid angle of pixel `(i, j)` in steradians; 0 outside the picture or the circle of a fisheye. Exact except for the fisheye:
+    /// relative error below 1e-9 for pixels inside the circle of a picture of 64 or more pixels a side; a pixel cut by the circle
+    /// counts by the fraction of its 9 sample points inside.
     pub fn pixel_solid_angle(&self, i: u32, j: u32) -> f64 {
         if i >= self.size.width() || j >= self.size.height() {
             return 0.0;
@@ -111,8 +110,8 @@ impl Frame {
         self.lens.solid_angle(i, j)
     }
 
-    /// Prepared to give the directions of whole rows: bit for bit those of [`Frame::pixel_direction`], without its
-    /// trigonometry for each pixel where the projection allows.
+    /// Prepares directions of whole rows: the same bits as [`Frame::pixel_direction`], without trigonometry per pixel where the
+    /// projection allows it.
     pub fn rows(&self) -> FrameRows {
         FrameRows {
             frame: *self,
@@ -121,7 +120,7 @@ impl Frame {
     }
 }
 
-/// The directions of whole rows: see [`Frame::rows`].
+/// Directions of whole rows: see [`Frame::rows`].
 #[derive(Clone, Debug)]
 pub struct FrameRows {
     frame: Frame,
@@ -135,8 +134,7 @@ impl FrameRows {
         &self.frame
     }
 
-    /// Writes the directions at the centres of row `j` to `out` (at most one row long); the zero vector where nothing
-    /// is seen.
+    /// Writes the directions at the pixel centres of row `j` to `out` (at most one row); the zero vector outside the projection.
     pub fn fill(&self, j: u32, out: &mut [DVec3]) {
         let py = f64::from(j) + 0.5;
         if self.columns.is_empty() {

@@ -1,29 +1,32 @@
-//! The kinds of projection and their settings.
+//! Kinds of projection and their settings.
 
 use crate::{ImageError, Size};
+use airlight::{Named, UnknownName};
+use std::{fmt, str::FromStr};
 
-/// How directions are laid out in a picture.
+/// Mapping of directions to a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Projection {
-    /// The whole sphere: azimuth grows evenly from left to right as seen from inside, elevation falls evenly from the
-    /// zenith (top edge) to the nadir. With north in the middle, west is on the left and east on the right.
+    /// The whole sphere: azimuth increases linearly from left to right, elevation decreases linearly from the zenith (top
+    /// edge) to the nadir. With north in the centre, west is on the left and east on the right.
     ///
-    /// OpenEXR's own latitude-longitude environment maps look along +z in the middle: here that is south, 180 degrees.
+    /// OpenEXR's latitude-longitude environment maps have +z in the centre: that is south, an azimuth of 180 degrees.
     Equirectangular {
-        /// Azimuth of the middle of the picture, degrees clockwise from north.
+        /// Azimuth of the centre of the picture, degrees clockwise from north.
         center_azimuth_deg: f64,
     },
-    /// One side of a cube, laid out for sampling by world direction in a graphics API.
+    /// A face of a cube map for sampling by world direction in a graphics API.
     CubeFace(CubeFace),
-    /// Angle from the centre direction in proportion to distance from the middle of the picture.
+    /// Equidistant: the angle from the central direction is proportional to the distance from the centre of the picture.
     AngularFisheye(Fisheye),
-    /// Straight lines stay straight.
+    /// Rectilinear: a pinhole camera.
     Perspective(Camera),
 }
 
-/// Sides of a cube map, named by the world axis they face (x east, y up, z south).
+/// Faces of a cube map, named by the world axis they face (x east, y up, z south).
 ///
-/// Each picture is laid out as OpenGL and Vulkan expect it, so that sampling the cube with a world direction gives the
+/// The layout is that of OpenGL and Vulkan, so that sampling the cube with a world direction gives the
 /// radiance in that direction: with `s` to the right and `t` down, both in `[-1, 1]`,
 ///
 /// | face | direction |
@@ -35,7 +38,7 @@ pub enum Projection {
 /// | +Z south | `( s, -t,  1)` |
 /// | -Z north | `(-s, -t, -1)` |
 ///
-/// Cube maps are defined in left-handed axes, so each picture by itself is the mirror image of what the eye sees.
+/// Cube maps are defined in left-handed axes: each face is the mirror image of the view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum CubeFace {
     /// +X, east.
@@ -53,7 +56,7 @@ pub enum CubeFace {
 }
 
 impl CubeFace {
-    /// All six, in the order of graphics APIs: layer 0 to 5.
+    /// All faces, in the order of layers in graphics APIs.
     pub const ALL: [Self; 6] = [
         Self::PositiveX,
         Self::NegativeX,
@@ -63,7 +66,7 @@ impl CubeFace {
         Self::NegativeZ,
     ];
 
-    /// A short name for files: `px`, `nx`, `py`, `ny`, `pz`, `nz`.
+    /// Short name for files: `px`, `nx`, `py`, `ny`, `pz`, `nz`.
     pub fn name(self) -> &'static str {
         match self {
             Self::PositiveX => "px",
@@ -76,20 +79,57 @@ impl CubeFace {
     }
 }
 
-/// An equidistant fisheye. Its circle is the largest that fits the picture; outside it nothing is seen.
+impl Named for CubeFace {
+    const WHAT: &'static str = "a cube face";
+
+    fn all() -> impl Iterator<Item = Self> {
+        Self::ALL.into_iter()
+    }
+
+    fn name(self) -> &'static str {
+        self.name()
+    }
+
+    fn summary(self) -> &'static str {
+        match self {
+            Self::PositiveX => "+X, east",
+            Self::NegativeX => "-X, west",
+            Self::PositiveY => "+Y, up",
+            Self::NegativeY => "-Y, down",
+            Self::PositiveZ => "+Z, south",
+            Self::NegativeZ => "-Z, north",
+        }
+    }
+}
+
+impl fmt::Display for CubeFace {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+impl FromStr for CubeFace {
+    type Err = UnknownName;
+
+    fn from_str(name: &str) -> Result<Self, UnknownName> {
+        Named::from_name(name)
+    }
+}
+
+/// An equidistant fisheye. Its circle is the largest that fits the picture; pixels outside show nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fisheye {
-    /// Azimuth of the middle, degrees clockwise from north. For a middle at the zenith it says which way the *bottom*
-    /// of the picture lies: 180 puts north on top and east on the left, as on a star chart.
+    /// Azimuth of the centre, degrees clockwise from north. With the zenith in the centre it is the azimuth of the *bottom* of the
+    /// picture: 180 has north at the top and east on the left, as on a star chart.
     pub azimuth_deg: f64,
-    /// Elevation of the middle above the horizon, degrees, in `[-90, 90]`.
+    /// Elevation of the centre above the horizon, degrees, in `[-90, 90]`.
     pub elevation_deg: f64,
     /// Angle across the circle, degrees, above 0 and at most 360.
     pub field_of_view_deg: f64,
 }
 
 impl Fisheye {
-    /// The whole sky: zenith in the middle, horizon round the edge, north on top, east on the left.
+    /// The whole sky: zenith in the centre, horizon at the edge, north at the top, east on the left.
     pub const ALL_SKY: Self = Self {
         azimuth_deg: 180.0,
         elevation_deg: 90.0,
@@ -100,20 +140,18 @@ impl Fisheye {
 /// A pinhole camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// Azimuth of the middle of the picture, degrees clockwise from north.
+    /// Azimuth of the centre of the picture, degrees clockwise from north.
     pub azimuth_deg: f64,
-    /// Elevation of the middle above the horizon, degrees, in `[-90, 90]`.
+    /// Elevation of the centre above the horizon, degrees, in `[-90, 90]`.
     pub elevation_deg: f64,
-    /// Turn of the camera about its axis, degrees, clockwise as seen by the photographer: the horizon then falls to
-    /// the left.
+    /// Roll about the axis, degrees, clockwise as seen by the photographer: the horizon then tilts down to the left.
     pub roll_deg: f64,
     /// Angle from the top to the bottom edge, degrees, above 0 and below 180.
     pub vertical_fov_deg: f64,
 }
 
 impl Camera {
-    /// A level camera given its field of view from the left to the right edge (degrees, above 0 and below 180) of a
-    /// picture of this size.
+    /// A camera without roll from its horizontal field of view (degrees, above 0 and below 180) in a picture of this size.
     pub fn with_horizontal_fov(
         azimuth_deg: f64,
         elevation_deg: f64,
@@ -126,7 +164,7 @@ impl Camera {
             azimuth_deg,
             elevation_deg,
             roll_deg: 0.0,
-            // An angle beyond 180 degrees stays wrong, and is refused with the frame.
+            // An angle beyond 180 degrees stays invalid, and is refused with the frame.
             vertical_fov_deg: if horizontal_fov_deg < 180.0 {
                 half.atan().to_degrees() * 2.0
             } else {
@@ -137,9 +175,19 @@ impl Camera {
 }
 
 impl Projection {
+    /// Name of the kind of projection: "equirectangular", "cube face", "fisheye" or "perspective".
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Equirectangular { .. } => "equirectangular",
+            Self::CubeFace(_) => "cube face",
+            Self::AngularFisheye(_) => "fisheye",
+            Self::Perspective(_) => "perspective",
+        }
+    }
+
     pub(super) fn check(&self, size: Size) -> Result<(), ImageError> {
         match self {
-            Self::Equirectangular { center_azimuth_deg } => azimuth(*center_azimuth_deg),
+            Self::Equirectangular { center_azimuth_deg } => check_azimuth(*center_azimuth_deg),
             Self::CubeFace(_) if size.width() != size.height() => Err(ImageError::Setting {
                 what: "a cube face",
                 got: format!("{} x {}", size.width(), size.height()),
@@ -147,10 +195,10 @@ impl Projection {
             }),
             Self::CubeFace(_) => Ok(()),
             Self::AngularFisheye(fisheye) => {
-                azimuth(fisheye.azimuth_deg)?;
-                elevation(fisheye.elevation_deg)?;
+                check_azimuth(fisheye.azimuth_deg)?;
+                check_elevation(fisheye.elevation_deg)?;
                 let angle = fisheye.field_of_view_deg;
-                demand(
+                ImageError::require(
                     angle > 0.0 && angle <= 360.0,
                     "the fisheye's field of view in degrees",
                     angle,
@@ -158,16 +206,16 @@ impl Projection {
                 )
             }
             Self::Perspective(camera) => {
-                azimuth(camera.azimuth_deg)?;
-                elevation(camera.elevation_deg)?;
-                demand(
+                check_azimuth(camera.azimuth_deg)?;
+                check_elevation(camera.elevation_deg)?;
+                ImageError::require(
                     camera.roll_deg.is_finite(),
                     "the roll in degrees",
                     camera.roll_deg,
                     "a finite number",
                 )?;
                 let angle = camera.vertical_fov_deg;
-                demand(
+                ImageError::require(
                     angle > 0.0 && angle < 180.0,
                     "the camera's field of view in degrees",
                     angle,
@@ -178,8 +226,8 @@ impl Projection {
     }
 }
 
-pub(super) fn azimuth(degrees: f64) -> Result<(), ImageError> {
-    demand(
+pub(super) fn check_azimuth(degrees: f64) -> Result<(), ImageError> {
+    ImageError::require(
         degrees.is_finite(),
         "the azimuth in degrees",
         degrees,
@@ -187,28 +235,11 @@ pub(super) fn azimuth(degrees: f64) -> Result<(), ImageError> {
     )
 }
 
-pub(super) fn elevation(degrees: f64) -> Result<(), ImageError> {
-    demand(
+pub(super) fn check_elevation(degrees: f64) -> Result<(), ImageError> {
+    ImageError::require(
         (-90.0..=90.0).contains(&degrees),
         "the elevation in degrees",
         degrees,
         "between -90 and 90",
     )
-}
-
-pub(super) fn demand(
-    fulfilled: bool,
-    what: &'static str,
-    got: f64,
-    right: &'static str,
-) -> Result<(), ImageError> {
-    if fulfilled {
-        Ok(())
-    } else {
-        Err(ImageError::Setting {
-            what,
-            got: got.to_string(),
-            right,
-        })
-    }
 }

@@ -1,18 +1,20 @@
-//! Depth maps: the distance of what each pixel shows.
+//! Depth maps: their meaning, and the conversion from the numbers of a file to metres.
 
 use super::picture::{Picture, SampleBits};
 use crate::{ImageError, Size};
+use rayon::prelude::*;
+use std::path::Path;
 
-/// What the numbers in a depth file mean.
+/// Meaning of the numbers in a depth file.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub enum DepthMeaning {
     /// Depth along the axis of the camera.
     #[default]
     ZDepth,
     /// Distance from the camera along the ray of the pixel.
     RayDistance,
-    /// How many pixels apart two cameras side by side see the same point: z is
-    /// `focal_length_px * baseline_m / (scale * value + offset_px)`.
+    /// Disparity of a stereo pair in pixels: z is `focal_length_px * baseline_m / (scale * value + offset_px)`.
     Disparity {
         /// Focal length in pixels, above 0.
         focal_length_px: f64,
@@ -21,43 +23,43 @@ pub enum DepthMeaning {
         /// Difference of the two principal points, pixels (Middlebury's `doffs`).
         offset_px: f64,
     },
-    /// One over depth along the axis: z is `1 / (scale * value)`.
+    /// Reciprocal of the depth along the axis: z is `1 / (scale * value)`.
     Inverse,
 }
 
-/// What becomes of pixels whose depth is unknown.
+/// Treatment of pixels whose depth is unknown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Unknown {
-    /// They are filled from their known neighbours: from the farther one, as holes of stereo pictures want it, or by a
-    /// straight line where both lie on one surface.
+#[non_exhaustive]
+pub enum UnknownDepth {
+    /// Filled from the known neighbours: from the farther one, as is right for occlusions in stereo pairs, or by linear
+    /// interpolation where both lie on one surface.
     #[default]
     Fill,
-    /// They are taken for sky: infinitely far.
+    /// Sky: infinitely far.
     Far,
-    /// They are kept clear of fog: depth 0.
+    /// Free of fog: depth 0.
     Clear,
 }
 
-/// How a depth file is to be read. The default is z-depth in metres.
+/// Settings for reading a depth file. The default is z-depth in metres.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DepthOptions {
-    /// What its numbers mean.
+    /// Meaning of the numbers.
     pub meaning: DepthMeaning,
-    /// Metres for each unit of the file, above 0: 0.001 for millimetres. For disparity, pixels for each unit; for
-    /// inverse depth, 1/m for each unit.
+    /// Metres per unit of the file, above 0: 0.001 for millimetres. For disparity, pixels per unit; for inverse depth, 1/m per
+    /// unit.
     pub scale: f64,
-    /// The channel of an EXR file, in a file with several parts also as `PART.CHANNEL`.
+    /// Channel of an EXR file; in a file with several parts also as `PART.CHANNEL`.
     ///
-    /// Where none is given: `Z`, `depth.Z`, `depth.V`, `depth.Y`, `depth.R` or `depth`, the first of these that is
-    /// there, in large or small letters; then a single channel that ends so (`ViewLayer.Depth.Z`), a `Y` without `X` or
-    /// `Z`, an `R` without `G`, `B`, `A`, and the only channel of the file. A `Z` beside an `X` is no depth. Other files
-    /// are refused with the list of their channels.
+    /// By default the first of `Z`, `depth.Z`, `depth.V`, `depth.Y`, `depth.R` and `depth` in the file, ignoring case; then a single
+    /// channel whose name ends with one of them (`ViewLayer.Depth.Z`), a `Y` without `X` or `Z`, an `R` without `G`, `B`, `A`,
+    /// and the only channel of the file. A `Z` beside an `X` is not depth. Other files are refused with the list of their channels.
     pub channel: Option<String>,
-    /// What becomes of pixels whose depth is unknown.
-    pub unknown: Unknown,
-    /// At or beyond so many metres, pixels show the sky: infinitely far.
+    /// Treatment of pixels whose depth is unknown.
+    pub unknown: UnknownDepth,
+    /// Distance from which pixels are sky (infinitely far), metres.
     pub far_from_m: Option<f64>,
-    /// Negative numbers mean that nothing is known, and are no error.
+    /// Negative numbers mean unknown depth instead of an error.
     pub negative_is_unknown: bool,
 }
 
@@ -67,17 +69,47 @@ impl Default for DepthOptions {
             meaning: DepthMeaning::default(),
             scale: 1.0,
             channel: None,
-            unknown: Unknown::default(),
+            unknown: UnknownDepth::default(),
             far_from_m: None,
             negative_is_unknown: false,
         }
     }
 }
 
-/// Along what depth is measured.
+impl DepthOptions {
+    /// Checks the numbers.
+    pub(super) fn validate(&self) -> Result<(), ImageError> {
+        let positive = |what, value: f64| {
+            let valid = value.is_finite() && value > 0.0;
+            ImageError::require(valid, what, value, "a finite number above 0")
+        };
+        positive("the scale of depth", self.scale)?;
+        if let Some(far) = self.far_from_m {
+            positive("the distance in metres from which pixels are sky", far)?;
+        }
+        if let DepthMeaning::Disparity {
+            focal_length_px,
+            baseline_m,
+            offset_px,
+        } = self.meaning
+        {
+            positive("the focal length in pixels", focal_length_px)?;
+            positive("the distance between the cameras in metres", baseline_m)?;
+            ImageError::require(
+                offset_px.is_finite(),
+                "the offset of disparity in pixels",
+                offset_px,
+                "a finite number",
+            )?;
+        }
+        Ok(())
+    }
+}
+
+/// Direction in which depth is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum DepthKind {
-    /// Along the axis of the camera: [`crate::Intrinsics::ray_length_per_z`] makes distance of it.
+    /// Along the axis of the camera; [`crate::Intrinsics::ray_length_per_z`] converts to distance.
     Z,
     /// Along the ray of the pixel.
     Ray,
@@ -88,24 +120,23 @@ pub enum DepthKind {
 pub struct DepthMap {
     /// Width and height in pixels.
     pub size: Size,
-    /// Depth of each pixel in metres, row by row from the upper left: 0 or more, infinite where nothing was met, never
-    /// not-a-number.
+    /// Depth of each pixel in metres, row by row from the upper left: 0 or more, infinite for sky, never NaN.
     pub metres: Vec<f32>,
-    /// Along what it is measured.
+    /// Direction in which depth is measured.
     pub kind: DepthKind,
-    /// How the file stores its numbers. Eight bits are coarse for anything but disparity.
+    /// Sample format of the file. Eight bits are coarse for anything but disparity.
     pub bits: SampleBits,
-    /// Pixels whose depth the file does not say.
+    /// Number of pixels of unknown depth in the file.
     pub holes: u64,
-    /// Pixels that the file says are infinitely far, or as good as.
+    /// Number of pixels infinitely far.
     pub infinite: u64,
 }
 
 impl DepthMap {
-    /// Makes sure that the map belongs to a picture.
+    /// Checks that the map has the size of a picture.
     ///
     /// # Errors
-    /// [`ImageError::SizesDiffer`] where it is not as large.
+    /// [`ImageError::SizesDiffer`].
     pub fn check_against(&self, picture: &Picture) -> Result<(), ImageError> {
         if self.size == picture.size {
             Ok(())
@@ -118,43 +149,165 @@ impl DepthMap {
     }
 }
 
-impl DepthOptions {
-    /// Checks the numbers.
-    ///
-    /// # Errors
-    /// [`ImageError::Setting`] for one out of range.
-    pub(super) fn check(&self) -> Result<(), ImageError> {
-        let above_0 = |what, value: f64| {
-            if value.is_finite() && value > 0.0 {
-                Ok(())
-            } else {
-                Err(ImageError::Setting {
-                    what,
-                    got: value.to_string(),
-                    right: "a finite number above 0",
-                })
-            }
-        };
-        above_0("the scale of depth", self.scale)?;
-        if let Some(far) = self.far_from_m {
-            above_0("the depth in metres from which all is sky", far)?;
+/// Depth from which a pixel is sky, metres: renderers write 1e10 and more where a ray leaves the scene.
+const SKY_M: f64 = 1e9;
+
+/// Number from which a pixel is sky at any scale.
+const SKY: f32 = 9.9e9;
+
+/// Pixels converted together.
+const BLOCK: usize = 1 << 14;
+
+/// A depth map in the numbers of its file.
+pub(super) struct RawDepth {
+    pub(super) size: Size,
+    pub(super) values: Vec<f32>,
+    pub(super) bits: SampleBits,
+}
+
+/// Number of pixels of each kind.
+#[derive(Clone, Copy, Default)]
+struct Counts {
+    holes: u64,
+    infinite: u64,
+    negative: u64,
+    /// Index and value of the first negative pixel.
+    first_negative: Option<(usize, f32)>,
+}
+
+impl Counts {
+    fn and(self, later: Self) -> Self {
+        Self {
+            holes: self.holes + later.holes,
+            infinite: self.infinite + later.infinite,
+            negative: self.negative + later.negative,
+            first_negative: self.first_negative.or(later.first_negative),
         }
-        if let DepthMeaning::Disparity {
+    }
+}
+
+/// Meaning of one number.
+enum Sample {
+    Metres(f64),
+    Hole,
+    Negative,
+}
+
+impl RawDepth {
+    /// The map in metres; holes are NaN.
+    pub(super) fn into_map(
+        mut self,
+        path: &Path,
+        options: &DepthOptions,
+    ) -> Result<DepthMap, ImageError> {
+        let counts = self.convert(options);
+        let width = self.size.width() as usize;
+        if let Some((at, value)) = counts.first_negative {
+            return Err(ImageError::NegativeDepth {
+                path: path.to_owned(),
+                count: counts.negative,
+                x: (at % width) as u32,
+                y: (at / width) as u32,
+                value,
+            });
+        }
+        if counts.holes == self.values.len() as u64 {
+            return Err(ImageError::Read {
+                path: path.to_owned(),
+                reason: format!(
+                    "expected at least one pixel of known depth, got {} holes ({})",
+                    counts.holes,
+                    holes_of(&options.meaning)
+                ),
+            });
+        }
+        Ok(DepthMap {
+            size: self.size,
+            metres: self.values,
+            kind: match options.meaning {
+                DepthMeaning::RayDistance => DepthKind::Ray,
+                _ => DepthKind::Z,
+            },
+            bits: self.bits,
+            holes: counts.holes,
+            infinite: counts.infinite,
+        })
+    }
+
+    /// Converts the numbers to metres in place, holes to NaN.
+    fn convert(&mut self, options: &DepthOptions) -> Counts {
+        let far = options.far_from_m.unwrap_or(SKY_M);
+        let far = far.min(SKY_M);
+        self.values
+            .par_chunks_mut(BLOCK)
+            .enumerate()
+            .map(|(block, values)| {
+                let mut counts = Counts::default();
+                for (i, value) in values.iter_mut().enumerate() {
+                    let metres = match interpret(*value, options) {
+                        Sample::Metres(metres) if metres >= far => {
+                            counts.infinite += 1;
+                            f32::INFINITY
+                        }
+                        Sample::Metres(metres) => metres as f32,
+                        Sample::Negative if !options.negative_is_unknown => {
+                            counts.negative += 1;
+                            let first = Some((block * BLOCK + i, *value));
+                            counts.first_negative = counts.first_negative.or(first);
+                            0.0
+                        }
+                        Sample::Hole | Sample::Negative => {
+                            counts.holes += 1;
+                            f32::NAN
+                        }
+                    };
+                    *value = metres;
+                }
+                counts
+            })
+            .reduce(Counts::default, Counts::and)
+    }
+}
+
+/// Numbers that mean unknown depth.
+fn holes_of(meaning: &DepthMeaning) -> &'static str {
+    match meaning {
+        DepthMeaning::ZDepth | DepthMeaning::RayDistance => "0 or NaN",
+        DepthMeaning::Disparity { .. } => "0, infinite or NaN",
+        DepthMeaning::Inverse => "infinite or NaN",
+    }
+}
+
+#[inline(always)]
+fn interpret(value: f32, options: &DepthOptions) -> Sample {
+    let scaled = f64::from(value) * options.scale;
+    match options.meaning {
+        _ if value.is_nan() => Sample::Hole,
+        DepthMeaning::ZDepth | DepthMeaning::RayDistance => match value {
+            0.0 => Sample::Hole,
+            v if v < 0.0 => Sample::Negative,
+            v if v >= SKY => Sample::Metres(f64::INFINITY),
+            _ => Sample::Metres(scaled),
+        },
+        DepthMeaning::Disparity {
             focal_length_px,
             baseline_m,
             offset_px,
-        } = self.meaning
-        {
-            above_0("the focal length in pixels", focal_length_px)?;
-            above_0("the distance between the cameras in metres", baseline_m)?;
-            if !offset_px.is_finite() {
-                return Err(ImageError::Setting {
-                    what: "the offset of disparity in pixels",
-                    got: offset_px.to_string(),
-                    right: "a finite number",
-                });
+        } => {
+            let disparity = scaled + offset_px;
+            if value == 0.0 || value.is_infinite() {
+                Sample::Hole
+            } else if disparity <= 0.0 {
+                Sample::Metres(f64::INFINITY)
+            } else {
+                Sample::Metres(focal_length_px * baseline_m / disparity)
             }
         }
-        Ok(())
+        DepthMeaning::Inverse => match value {
+            f32::INFINITY => Sample::Hole,
+            v if v < 0.0 => Sample::Negative,
+            // 1 / 0 is infinite.
+            _ => Sample::Metres(1.0 / scaled.abs()),
+        },
     }
 }

@@ -1,9 +1,10 @@
-//! OpenEXR files: any channels of one part, brought to the display window as 32-bit floats.
+//! OpenEXR decoder: any channels of one part, placed in the display window as 32-bit floats.
 
 use super::{
-    fault::{Fault, checked_size, samples, zeros},
-    picture::SampleBits,
-    source::{Source, Watched},
+    depth::RawDepth,
+    exr_channels,
+    picture::{LightReference, Picture, SampleBits, repair_colours, repair_opacity},
+    source::{DecodeError, Source, TrackedFile, checked_size, sample_count, zeros},
 };
 use crate::{Size, output::Chromaticities};
 use ::exr::{
@@ -20,39 +21,79 @@ use half::{f16, slice::HalfFloatSliceExt};
 use rayon::prelude::*;
 use std::io::BufReader;
 
-/// The most bytes that blocks being decoded together may take, unless a single one takes more.
+/// Largest size in bytes of the blocks decoded together, unless a single one is larger.
 const BATCH_BYTES: usize = 64 << 20;
 
-/// The most bytes of one block.
+/// Largest size of a block, bytes.
 const BLOCK_BYTES: usize = 1 << 31;
 
-/// An EXR file whose header has been read.
-pub(super) struct ExrFile {
-    reader: Reader<BufReader<Watched>>,
+/// Reads the colours of a layer, or of the file.
+pub(super) fn read(source: Source, layer: Option<&str>) -> Result<Picture, DecodeError> {
+    let file = ExrFile::open(source)?;
+    let colours = exr_channels::colours(file.headers(), layer)?;
+    let bits = file.bits(colours.part, &colours.rgb);
+    let chromaticities = file.chromaticities(colours.part);
+    let white_luminance_cd_m2 = file.white_luminance_cd_m2(colours.part);
+    let mut groups: Vec<&[usize]> = vec![&colours.rgb];
+    groups.extend(colours.alpha.as_ref().map(std::slice::from_ref));
+    let loaded = file.load(colours.part, &groups, |group, samples| match group {
+        0 => repair_colours(samples),
+        _ => repair_opacity(samples),
+    })?;
+    let mut buffers = loaded.groups.into_iter();
+    Ok(Picture {
+        size: loaded.size,
+        rgb: buffers.next().unwrap_or_default(),
+        alpha: buffers.next(),
+        reference: LightReference::Scene,
+        bits,
+        chromaticities,
+        white_luminance_cd_m2,
+        profile_ignored: false,
+        repaired_samples: loaded.repaired,
+    })
+}
+
+/// Reads a depth channel.
+pub(super) fn read_depth(source: Source, channel: Option<&str>) -> Result<RawDepth, DecodeError> {
+    let file = ExrFile::open(source)?;
+    let (part, channel) = exr_channels::depth(file.headers(), channel)?;
+    let bits = file.bits(part, &[channel]);
+    let loaded = file.load(part, &[&[channel]], |_, _| 0)?;
+    Ok(RawDepth {
+        size: loaded.size,
+        values: loaded.groups.into_iter().next().unwrap_or_default(),
+        bits,
+    })
+}
+
+/// An EXR file after reading its header.
+struct ExrFile {
+    reader: Reader<BufReader<TrackedFile>>,
 }
 
 /// Samples of groups of channels.
-pub(super) struct Loaded {
-    /// Of the display window.
-    pub(super) size: Size,
-    /// For each group its channels, interleaved; 0 outside the data window.
-    pub(super) groups: Vec<Vec<f32>>,
-    /// Sum of what mending returned.
-    pub(super) mended: u64,
+struct Loaded {
+    /// Size of the display window.
+    size: Size,
+    /// Interleaved channels of each group; 0 outside the data window.
+    groups: Vec<Vec<f32>>,
+    /// Number of repaired samples.
+    repaired: u64,
 }
 
 impl ExrFile {
-    pub(super) fn open(source: Source) -> Result<Self, Fault> {
+    fn open(source: Source) -> Result<Self, DecodeError> {
         let reader = Reader::read_from_buffered(source.reader, false).map_err(failed)?;
         Ok(Self { reader })
     }
 
-    pub(super) fn headers(&self) -> &[Header] {
+    fn headers(&self) -> &[Header] {
         self.reader.headers()
     }
 
-    /// How the widest of these channels is stored.
-    pub(super) fn bits(&self, part: usize, channels: &[usize]) -> SampleBits {
+    /// Widest sample format of these channels.
+    fn bits(&self, part: usize, channels: &[usize]) -> SampleBits {
         let list = &self.headers()[part].channels.list;
         let has = |kind| channels.iter().any(|&c| list[c].sample_type == kind);
         if has(SampleType::F32) {
@@ -64,8 +105,8 @@ impl ExrFile {
         }
     }
 
-    /// Primaries and white, where the file states them.
-    pub(super) fn chromaticities(&self, part: usize) -> Option<Chromaticities> {
+    /// Primaries and white point, where the file states them.
+    fn chromaticities(&self, part: usize) -> Option<Chromaticities> {
         let c = self.headers()[part].shared_attributes.chromaticities?;
         Some(Chromaticities {
             red: [c.red.0, c.red.1],
@@ -75,29 +116,30 @@ impl ExrFile {
         })
     }
 
-    /// The luminance of a value of 1 (red, green and blue), cd/m^2, where the file states one above 0.
-    pub(super) fn white_luminance_cd_m2(&self, part: usize) -> Option<f32> {
+    /// Luminance of red, green and blue of 1, cd/m^2, where the file states one above 0.
+    fn white_luminance_cd_m2(&self, part: usize) -> Option<f32> {
         let stated = self.headers()[part].own_attributes.white_luminance?;
         (stated.is_finite() && stated > 0.0).then_some(stated)
     }
 
-    /// Decodes groups of channels of one part; `mend` is given the number of the group and pieces of its samples.
-    pub(super) fn load(
+    /// Decodes groups of channels of one part. `repair` is called with the index of a group and blocks of its samples, and returns
+    /// the number of samples it changed.
+    fn load(
         self,
         part: usize,
         groups: &[&[usize]],
-        mend: impl Fn(usize, &mut [f32]) -> u64 + Sync,
-    ) -> Result<Loaded, Fault> {
+        repair: impl Fn(usize, &mut [f32]) -> u64 + Sync,
+    ) -> Result<Loaded, DecodeError> {
         let header = &self.headers()[part];
         let window = header.shared_attributes.display_window;
         let size = checked_size(window.size.0 as u64, window.size.1 as u64)?;
         check(header)?;
         let position = header.own_attributes.layer_position;
-        let layout = Layout::new(header);
+        let layout = BlockLayout::new(header);
         let block_bytes = header.max_block_byte_size().max(1);
         let threads = rayon::current_num_threads().max(1);
         let batch = (BATCH_BYTES / block_bytes).clamp(1, threads * 4);
-        let place = Place {
+        let offset = WindowOffset {
             size,
             x: i64::from(position.0) - i64::from(window.position.0),
             y: i64::from(position.1) - i64::from(window.position.1),
@@ -106,11 +148,11 @@ impl ExrFile {
             size,
             groups: groups
                 .iter()
-                .map(|group| zeros(samples(size, group.len())))
+                .map(|group| zeros(sample_count(size, group.len())))
                 .collect::<Result<_, _>>()?,
-            mended: 0,
+            repaired: 0,
         };
-        // Nothing reads other parts' blocks, but their offsets must make sense.
+        // Blocks of other parts are not read, but their offsets must be valid.
         self.headers().iter().try_for_each(check_tiles)?;
         let mut chunks = self
             .reader
@@ -130,45 +172,47 @@ impl ExrFile {
             }
             let blocks: Vec<Block> = compressed
                 .into_par_iter()
-                .map(|chunk| layout.decode(chunk, &meta, part, groups, &mend))
+                .map(|chunk| layout.decode(chunk, &meta, part, groups, &repair))
                 .collect::<Result<_, _>>()?;
             for block in blocks {
-                loaded.mended += block.mended;
+                loaded.repaired += block.repaired;
                 for ((whole, piece), group) in
                     loaded.groups.iter_mut().zip(&block.groups).zip(groups)
                 {
-                    place.copy(&block, piece, whole, group.len());
+                    offset.copy(&block, piece, whole, group.len());
                 }
             }
         }
     }
 }
 
-/// Refuses what cannot be decoded, or would need absurd amounts of memory.
-fn check(header: &Header) -> Result<(), Fault> {
+/// Refuses files that cannot be decoded, or would need too much memory.
+fn check(header: &Header) -> Result<(), DecodeError> {
     checked_size(header.layer_size.0 as u64, header.layer_size.1 as u64)?;
     check_tiles(header)?;
     if header.max_block_byte_size() > BLOCK_BYTES {
-        return Err(Fault::bad("as EXR it has blocks of more than 2 GiB"));
+        return Err(DecodeError::invalid(
+            "expected EXR blocks of at most 2 GiB, got larger ones",
+        ));
     }
     let coarse =
         |channel: &&::exr::meta::attribute::ChannelDescription| channel.sampling != Vec2(1, 1);
     match header.channels.list.iter().find(coarse) {
-        Some(channel) => Err(Fault::Bad(format!(
-            "its channel `{}` has fewer samples than the picture has pixels (as luminance with chroma has), which is \
-             not read: save it as R, G, B",
+        Some(channel) => Err(DecodeError::Invalid(format!(
+            "expected a sample per pixel in each EXR channel, got a subsampled channel `{}` (such as chroma); try saving it as \
+             R, G, B",
             channel.name
         ))),
         None => Ok(()),
     }
 }
 
-fn check_tiles(header: &Header) -> Result<(), Fault> {
+fn check_tiles(header: &Header) -> Result<(), DecodeError> {
     let fits = |n: usize| (1..=Size::MAX as usize).contains(&n);
     match header.blocks {
         BlockDescription::Tiles(tiles) if !fits(tiles.tile_size.0) || !fits(tiles.tile_size.1) => {
-            Err(Fault::Bad(format!(
-                "as EXR it has tiles of {} x {} pixels, which must be 1 to {} a side",
+            Err(DecodeError::Invalid(format!(
+                "expected EXR tiles of 1 to {2} pixels a side, got {0} x {1}",
                 tiles.tile_size.0,
                 tiles.tile_size.1,
                 Size::MAX
@@ -185,17 +229,17 @@ struct Block {
     width: usize,
     height: usize,
     groups: Vec<Vec<f32>>,
-    mended: u64,
+    repaired: u64,
 }
 
-/// Where channels lie in the rows of a block.
-struct Layout {
-    /// Of each channel: bytes of a pixel before it, and its kind.
+/// Positions of channels in the rows of a block.
+struct BlockLayout {
+    /// For each channel: bytes of a pixel before it, and its sample type.
     channels: Vec<(usize, SampleType)>,
     pixel_bytes: usize,
 }
 
-impl Layout {
+impl BlockLayout {
     fn new(header: &Header) -> Self {
         let mut pixel_bytes = 0;
         let channels = header
@@ -220,9 +264,10 @@ impl Layout {
         meta: &MetaData,
         part: usize,
         groups: &[&[usize]],
-        mend: &(impl Fn(usize, &mut [f32]) -> u64 + Sync),
-    ) -> Result<Block, Fault> {
-        let corrupt = || Fault::bad("as EXR it is corrupt: a block is not what was announced");
+        repair: &(impl Fn(usize, &mut [f32]) -> u64 + Sync),
+    ) -> Result<Block, DecodeError> {
+        let corrupt =
+            || DecodeError::invalid("corrupt EXR data: a block does not match the header");
         if chunk.layer_index != part {
             return Err(corrupt());
         }
@@ -232,28 +277,28 @@ impl Layout {
         if block.index.level != Vec2(0, 0) || block.data.len() != row_bytes * height {
             return Err(corrupt());
         }
-        let mut mended = 0;
+        let mut repaired = 0;
         let mut decoded = Vec::with_capacity(groups.len());
         for (number, group) in groups.iter().enumerate() {
             let mut samples = vec![0.0; width * height * group.len()];
             let rows = samples.chunks_exact_mut((width * group.len()).max(1));
-            let mut scratch = Scratch::new(width);
+            let mut buffers = RowBuffers::new(width);
             for (row, data) in rows.zip(block.data.chunks_exact(row_bytes.max(1))) {
                 for (c, &channel) in group.iter().enumerate() {
                     let (before, kind) = self.channels[channel];
                     let start = before * width;
                     let bytes = &data[start..start + width * kind.bytes_per_sample()];
-                    scratch.convert(bytes, kind);
+                    buffers.convert(bytes, kind);
                     for (to, from) in row[c..]
                         .iter_mut()
                         .step_by(group.len())
-                        .zip(&scratch.floats)
+                        .zip(&buffers.floats)
                     {
                         *to = *from;
                     }
                 }
             }
-            mended += mend(number, &mut samples);
+            repaired += repair(number, &mut samples);
             decoded.push(samples);
         }
         Ok(Block {
@@ -262,18 +307,18 @@ impl Layout {
             width,
             height,
             groups: decoded,
-            mended,
+            repaired,
         })
     }
 }
 
-/// A row of one channel.
-struct Scratch {
+/// Buffers for a row of one channel.
+struct RowBuffers {
     halves: Vec<f16>,
     floats: Vec<f32>,
 }
 
-impl Scratch {
+impl RowBuffers {
     fn new(width: usize) -> Self {
         Self {
             halves: vec![f16::ZERO; width],
@@ -304,18 +349,18 @@ impl Scratch {
     }
 }
 
-/// Where the data window lies in the display window.
-struct Place {
+/// Position of the data window in the display window.
+struct WindowOffset {
     size: Size,
     x: i64,
     y: i64,
 }
 
-impl Place {
-    /// Copies what of a block lies in the picture, `each` samples a pixel.
-    fn copy(&self, block: &Block, from: &[f32], to: &mut [f32], each: usize) {
+impl WindowOffset {
+    /// Copies the part of a block inside the picture, `channels` samples a pixel.
+    fn copy(&self, block: &Block, from: &[f32], to: &mut [f32], channels: usize) {
         let (width, height) = (self.size.width() as usize, self.size.height() as usize);
-        // Columns of the block that are in the picture.
+        // Columns of the block inside the picture.
         let left = self.x + block.x as i64;
         let first = left.min(0).unsigned_abs() as usize;
         let start = left.max(0) as usize;
@@ -326,24 +371,24 @@ impl Place {
         if count == 0 {
             return;
         }
-        for (row, samples) in from.chunks_exact(block.width * each).enumerate() {
+        for (row, samples) in from.chunks_exact(block.width * channels).enumerate() {
             let y = self.y + (block.y + row) as i64;
             if row < block.height && (0..height as i64).contains(&y) {
-                let at = (y as usize * width + start) * each;
-                to[at..at + count * each]
-                    .copy_from_slice(&samples[first * each..(first + count) * each]);
+                let at = (y as usize * width + start) * channels;
+                to[at..at + count * channels]
+                    .copy_from_slice(&samples[first * channels..(first + count) * channels]);
             }
         }
     }
 }
 
-fn failed(error: ExrError) -> Fault {
+fn failed(error: ExrError) -> DecodeError {
     match error {
-        ExrError::Io(error) => Fault::Io(error),
+        ExrError::Io(error) => DecodeError::Io(error),
         ExrError::NotSupported(what) => {
-            Fault::Bad(format!("as EXR it is of a kind that is not read: {what}"))
+            DecodeError::Invalid(format!("unsupported EXR file: {what}"))
         }
-        ExrError::Invalid(what) => Fault::Bad(format!("as EXR it is corrupt: {what}")),
-        ExrError::Aborted => Fault::bad("decoding stopped"),
+        ExrError::Invalid(what) => DecodeError::Invalid(format!("corrupt EXR data: {what}")),
+        ExrError::Aborted => DecodeError::invalid("decoding stopped"),
     }
 }

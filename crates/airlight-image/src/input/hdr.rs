@@ -1,39 +1,38 @@
-//! Radiance HDR files: RGBE or XYZE, plain or run-length encoded.
+//! Radiance HDR decoder: RGBE or XYZE, plain or run-length encoded.
 
 use super::{
-    fault::{Fault, checked_size, room, samples},
-    picture::{LightReference, Picture, SampleBits, mend_colours},
-    source::Source,
+    picture::{LightReference, Picture, SampleBits, repair_colours},
+    source::{DecodeError, Source, checked_size, reserve, sample_count},
 };
 use crate::{Size, output::Chromaticities};
 use std::io::{BufRead, Read};
 
-/// The longest line of a header.
-const LONGEST_LINE: u64 = 1 << 16;
+/// Longest line of a header, bytes.
+const MAX_LINE: u64 = 1 << 16;
 
-/// The longest header in lines.
-const MOST_LINES: usize = 1 << 12;
+/// Longest header, lines.
+const MAX_LINES: usize = 1 << 12;
 
 struct Header {
     size: Size,
-    /// By which the stored values are to be multiplied.
+    /// Factor for the stored values.
     factor: f64,
     chromaticities: Option<Chromaticities>,
 }
 
-pub(super) fn read(mut source: Source) -> Result<Picture, Fault> {
+pub(super) fn read(mut source: Source) -> Result<Picture, DecodeError> {
     let reader = &mut source.reader;
     let header = header(reader)?;
     let size = header.size;
     let width = size.width() as usize;
-    // 2^(e - 136) for each exponent, none for 0.
+    // 2^(e - 136) for each exponent; 0 for exponent 0.
     let scale: Vec<f32> = (0..=255)
         .map(|e| match e {
             0 => 0.0,
             _ => (f64::from(e - 136).exp2() * header.factor) as f32,
         })
         .collect();
-    let mut rgb = room(samples(size, 3))?;
+    let mut rgb = reserve(sample_count(size, 3))?;
     let mut line = vec![[0; 4]; width];
     for _ in 0..size.height() {
         scan_line(reader, &mut line)?;
@@ -42,8 +41,8 @@ pub(super) fn read(mut source: Source) -> Result<Picture, Fault> {
             [r, g, b].map(|mantissa| f32::from(mantissa) * unit)
         }));
     }
-    // Only a tiny exposure can have made anything infinite.
-    let repaired_samples = mend_colours(&mut rgb);
+    // A tiny exposure can make values infinite.
+    let repaired_samples = repair_colours(&mut rgb);
     Ok(Picture {
         size,
         rgb,
@@ -57,14 +56,16 @@ pub(super) fn read(mut source: Source) -> Result<Picture, Fault> {
     })
 }
 
-fn header(reader: &mut impl BufRead) -> Result<Header, Fault> {
+fn header(reader: &mut impl BufRead) -> Result<Header, DecodeError> {
     let mut exposure = 1.0;
     let mut chromaticities = None;
     let mut is_xyz = false;
     for number in 0.. {
         let line = header_line(reader)?;
-        if number == MOST_LINES {
-            return Err(Fault::bad("as HDR it has a header that does not end"));
+        if number == MAX_LINES {
+            return Err(DecodeError::invalid(
+                "expected an empty line after the HDR header, got none",
+            ));
         }
         if line.is_empty() {
             break;
@@ -81,12 +82,12 @@ fn header(reader: &mut impl BufRead) -> Result<Header, Fault> {
                 "32-bit_rle_rgbe" => {}
                 "32-bit_rle_xyze" => is_xyz = true,
                 _ => {
-                    return Err(Fault::Bad(format!(
-                        "as HDR it must have the format 32-bit_rle_rgbe or 32-bit_rle_xyze: this is `{value}`"
+                    return Err(DecodeError::Invalid(format!(
+                        "expected the HDR format 32-bit_rle_rgbe or 32-bit_rle_xyze, got `{value}`"
                     )));
                 }
             },
-            // Several multiply.
+            // Several exposures multiply.
             "EXPOSURE" => exposure *= value.parse().unwrap_or(1.0),
             "PRIMARIES" => chromaticities = primaries(value),
             _ => {}
@@ -104,11 +105,13 @@ fn header(reader: &mut impl BufRead) -> Result<Header, Fault> {
     })
 }
 
-fn header_line(reader: &mut impl BufRead) -> Result<String, Fault> {
+fn header_line(reader: &mut impl BufRead) -> Result<String, DecodeError> {
     let mut line = Vec::new();
-    reader.take(LONGEST_LINE).read_until(b'\n', &mut line)?;
+    reader.take(MAX_LINE).read_until(b'\n', &mut line)?;
     if line.pop() != Some(b'\n') {
-        return Err(Fault::bad("as HDR it has a header that does not end"));
+        return Err(DecodeError::invalid(
+            "expected an empty line after the HDR header, got none",
+        ));
     }
     Ok(String::from_utf8_lossy(&line).trim().to_owned())
 }
@@ -127,11 +130,11 @@ fn primaries(value: &str) -> Option<Chromaticities> {
     })
 }
 
-fn dimensions(line: &str) -> Result<Size, Fault> {
+fn dimensions(line: &str) -> Result<Size, DecodeError> {
     let words: Vec<&str> = line.split_whitespace().collect();
     let refused = || {
-        Fault::Bad(format!(
-            "as HDR it must give its size as `-Y HEIGHT +X WIDTH`, rows from the top: this says `{line}`"
+        DecodeError::Invalid(format!(
+            "expected the HDR size as `-Y HEIGHT +X WIDTH`, rows from the top, got `{line}`"
         ))
     };
     let ["-Y", height, "+X", width] = words[..] else {
@@ -141,14 +144,16 @@ fn dimensions(line: &str) -> Result<Size, Fault> {
     checked_size(number(width)?, number(height)?)
 }
 
-fn scan_line(reader: &mut impl BufRead, line: &mut [[u8; 4]]) -> Result<(), Fault> {
+fn scan_line(reader: &mut impl BufRead, line: &mut [[u8; 4]]) -> Result<(), DecodeError> {
     let width = line.len();
     let first = four(reader)?;
     let [2, 2, high @ 0..128, low] = first else {
         return old_line(reader, first, line);
     };
     if usize::from(u16::from_be_bytes([high, low])) != width {
-        return Err(Fault::bad("as HDR it has a row of the wrong length"));
+        return Err(DecodeError::invalid(
+            "corrupt HDR data: a row has the wrong length",
+        ));
     }
     let mut loose = [0; 128];
     for component in 0..4 {
@@ -157,7 +162,9 @@ fn scan_line(reader: &mut impl BufRead, line: &mut [[u8; 4]]) -> Result<(), Faul
             let code = usize::from(byte(reader)?);
             let length = if code > 128 { code - 128 } else { code };
             if length == 0 || length > rest.len() {
-                return Err(Fault::bad("as HDR it has a run that leaves its row"));
+                return Err(DecodeError::invalid(
+                    "corrupt HDR data: a run exceeds its row",
+                ));
             }
             let (now, later) = rest.split_at_mut(length);
             if code > 128 {
@@ -178,16 +185,22 @@ fn scan_line(reader: &mut impl BufRead, line: &mut [[u8; 4]]) -> Result<(), Faul
     Ok(())
 }
 
-/// Plain pixels, among which `1 1 1 n` repeats the one before: n times, 256 n times if it follows another such, and so
-/// on.
-fn old_line(reader: &mut impl BufRead, first: [u8; 4], line: &mut [[u8; 4]]) -> Result<(), Fault> {
+/// A row in the old encoding: plain pixels, among which `1 1 1 n` repeats the previous pixel n times, or 256 n times if it
+/// follows another repetition, and so on.
+fn old_line(
+    reader: &mut impl BufRead,
+    first: [u8; 4],
+    line: &mut [[u8; 4]],
+) -> Result<(), DecodeError> {
     let (mut at, mut shift) = (0, 0);
     let mut next = first;
     loop {
         if let [1, 1, 1, n] = next {
             let run = usize::from(n).checked_shl(shift).unwrap_or(usize::MAX);
             if at == 0 || run > line.len() - at {
-                return Err(Fault::bad("as HDR it has a run that leaves its row"));
+                return Err(DecodeError::invalid(
+                    "corrupt HDR data: a run exceeds its row",
+                ));
             }
             let before = line[at - 1];
             line[at..at + run].fill(before);
@@ -205,13 +218,13 @@ fn old_line(reader: &mut impl BufRead, first: [u8; 4], line: &mut [[u8; 4]]) -> 
     }
 }
 
-fn byte(reader: &mut impl BufRead) -> Result<u8, Fault> {
+fn byte(reader: &mut impl BufRead) -> Result<u8, DecodeError> {
     let mut one = [0];
     reader.read_exact(&mut one)?;
     Ok(one[0])
 }
 
-fn four(reader: &mut impl BufRead) -> Result<[u8; 4], Fault> {
+fn four(reader: &mut impl BufRead) -> Result<[u8; 4], DecodeError> {
     let mut four = [0; 4];
     reader.read_exact(&mut four)?;
     Ok(four)

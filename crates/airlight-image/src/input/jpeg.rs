@@ -1,20 +1,18 @@
-//! JPEG files: baseline and progressive, grey or colour.
+//! JPEG decoder: baseline and progressive, grey or colour.
 
 use super::{
-    fault::{Fault, checked_size, room, samples},
-    picture::{LightReference, Picture, SampleBits, is_foreign},
-    png::srgb_8,
-    source::Source,
+    picture::{LightReference, Picture, SRGB_8, SampleBits, is_foreign_profile},
+    source::{DecodeError, Source, checked_size, reserve, sample_count},
 };
 use crate::Size;
 use std::io::Read;
 use zune_core::{bytestream::ZCursor, colorspace::ColorSpace, options::DecoderOptions};
 use zune_jpeg::{JpegDecoder, errors::DecodeErrors};
 
-pub(super) fn read(mut source: Source) -> Result<Picture, Fault> {
+pub(super) fn read(mut source: Source) -> Result<Picture, DecodeError> {
     let mut bytes = Vec::new();
     source.reader.read_to_end(&mut bytes)?;
-    demand_end(&bytes)?;
+    require_end(&bytes)?;
     let options = DecoderOptions::default()
         .set_max_width(Size::MAX as usize)
         .set_max_height(Size::MAX as usize);
@@ -22,12 +20,12 @@ pub(super) fn read(mut source: Source) -> Result<Picture, Fault> {
     decoder.decode_headers().map_err(failed)?;
     let info = decoder
         .info()
-        .ok_or_else(|| Fault::bad("as JPEG it has no header"))?;
+        .ok_or_else(|| DecodeError::invalid("expected a JPEG header, got none"))?;
     let size = checked_size(u64::from(info.width), u64::from(info.height))?;
     let is_grey = match decoder.input_colorspace() {
         Some(ColorSpace::CMYK | ColorSpace::YCCK) => {
-            return Err(Fault::bad(
-                "it is a CMYK picture, made for printing: save it as RGB",
+            return Err(DecodeError::invalid(
+                "expected a grey or RGB picture, got CMYK; try saving it as RGB",
             ));
         }
         Some(ColorSpace::Luma) => true,
@@ -39,16 +37,20 @@ pub(super) fn read(mut source: Source) -> Result<Picture, Fault> {
         (ColorSpace::RGB, 3)
     };
     decoder.set_options(options.jpeg_set_out_colorspace(space));
-    let count = samples(size, each);
+    let count = sample_count(size, each);
     if decoder.output_buffer_size() != Some(count) {
-        return Err(Fault::bad("as JPEG it has an unusual number of colours"));
+        return Err(DecodeError::invalid(
+            "expected 1 or 3 JPEG components, got another number",
+        ));
     }
-    let profile_ignored = decoder.icc_profile().as_deref().is_some_and(is_foreign);
-    let mut rgb = room(samples(size, 3))?;
+    let profile_ignored = decoder
+        .icc_profile()
+        .as_deref()
+        .is_some_and(is_foreign_profile);
+    let mut rgb = reserve(sample_count(size, 3))?;
     let mut decoded = vec![0; count];
     decoder.decode_into(&mut decoded).map_err(failed)?;
-    let table = srgb_8();
-    let light = |v: u8| table.get(usize::from(v)).copied().unwrap_or(0.0);
+    let light = |v: u8| SRGB_8.get(usize::from(v)).copied().unwrap_or(0.0);
     if is_grey {
         rgb.extend(decoded.iter().flat_map(|&v| [light(v); 3]));
     } else {
@@ -67,20 +69,20 @@ pub(super) fn read(mut source: Source) -> Result<Picture, Fault> {
     })
 }
 
-/// Refuses a file without an end marker after its first scan: the decoder would make up what is missing.
-fn demand_end(bytes: &[u8]) -> Result<(), Fault> {
-    let early = |what: &str| Err(Fault::Early(format!("{what} is missing")));
-    // Past the marker of the beginning, segments of a marker and a length that counts itself, up to the first scan.
+/// Refuses a file without an end marker after its first scan: the decoder would fill in missing pixels.
+fn require_end(bytes: &[u8]) -> Result<(), DecodeError> {
+    let early = |what: &str| Err(DecodeError::Truncated(format!("{what} is missing")));
+    // After the start marker: segments of a marker and a length that includes itself, up to the first scan.
     let mut at = 2;
     loop {
         let Some(&[0xff, marker, high, low]) = bytes.get(at..at + 4) else {
-            // Fill bytes, or nonsense for the decoder to complain of.
+            // Fill bytes, or corrupt data that the decoder reports.
             match bytes.get(at) {
                 Some(_) if at + 4 <= bytes.len() => {
                     at += 1;
                     continue;
                 }
-                _ => return early("the picture itself"),
+                _ => return early("the image data"),
             }
         };
         match marker {
@@ -95,16 +97,18 @@ fn demand_end(bytes: &[u8]) -> Result<(), Fault> {
     if scan.windows(2).any(|pair| pair == [0xff, 0xd9]) {
         Ok(())
     } else {
-        early("the end of the picture")
+        early("the end marker")
     }
 }
 
-fn failed(error: DecodeErrors) -> Fault {
+fn failed(error: DecodeErrors) -> DecodeError {
     match error {
-        DecodeErrors::ExhaustedData => Fault::Early("the rest of the picture is missing".into()),
+        DecodeErrors::ExhaustedData => {
+            DecodeError::Truncated("the rest of the image data is missing".into())
+        }
         other => {
             let reason = format!("{other:?}");
-            Fault::Bad(format!("as JPEG it cannot be decoded: {}", reason.trim()))
+            DecodeError::Invalid(format!("corrupt JPEG data: {}", reason.trim()))
         }
     }
 }

@@ -1,25 +1,127 @@
-//! Pictures and depth maps read from files.
+//! Picture and depth readers.
 //!
-//! Formats are told by what a file holds, not by its ending. Whatever the bytes, the outcome is a picture or an error
-//! that names the file and says what is wrong.
+//! Formats are recognised by their contents, not by file endings. Any bytes give either a picture or an error that names the file
+//! and what is wrong with it.
 
-pub mod depth;
+mod depth;
 mod exr;
-mod exr_names;
-mod fault;
-mod fill;
+mod exr_channels;
 mod hdr;
+mod hole_fill;
 mod jpeg;
-mod metres;
 mod npy;
 mod pfm;
-pub mod picture;
+mod picture;
 mod png;
-mod read_depth;
-mod read_picture;
 mod source;
 
-pub use depth::{DepthKind, DepthMap, DepthMeaning, DepthOptions, Unknown};
+pub use depth::{DepthKind, DepthMap, DepthMeaning, DepthOptions, UnknownDepth};
 pub use picture::{LightReference, Picture, SampleBits};
-pub use read_depth::read_depth;
-pub use read_picture::read_picture;
+
+use crate::ImageError;
+use depth::RawDepth;
+use source::{DecodeError, FileKind, Source, decode_file};
+use std::path::Path;
+
+/// Formats of pictures, as errors name them.
+const PICTURE_FORMATS: &str = "OpenEXR, Radiance HDR, PNG, JPEG";
+
+/// Formats of depth maps, as errors name them.
+const DEPTH_FORMATS: &str = "OpenEXR, PNG, NPY, PFM";
+
+/// Reads a picture.
+///
+/// `layer` names a layer of an EXR file: channels `LAYER.R`, `LAYER.G`, `LAYER.B` (and `LAYER.A`), or the part of that
+/// name. Without it, plain `R`, `G`, `B` are read, or those of the only layer that has them. A layer that has only a luminance
+/// `Y` gives grey. The picture has the size of the display window; it is black where the data window does not cover it.
+///
+/// PNG files may have any colour type and depth; their colours are decoded as sRGB, or by a `gAMA` chunk where that
+/// differs and no other chunk says sRGB. EXIF orientation is not applied.
+///
+/// # Errors
+/// [`ImageError::File`] where the system refuses, [`ImageError::EndsEarly`] for empty and truncated files,
+/// [`ImageError::NoChannel`] where the layer has no colours, and [`ImageError::Read`] for anything else: an unknown
+/// format, corrupt contents, CMYK, more than 65536 pixels a side or 2^30 in total.
+pub fn read_picture(path: &Path, layer: Option<&str>) -> Result<Picture, ImageError> {
+    decode_file(path, PICTURE_FORMATS, |source| {
+        if let Some(layer) = layer
+            && source.kind != FileKind::Exr
+        {
+            return Err(DecodeError::Invalid(format!(
+                "expected an EXR file for layer `{layer}`: only EXR files have layers"
+            )));
+        }
+        match source.kind {
+            FileKind::Exr => exr::read(source, layer),
+            FileKind::Hdr => hdr::read(source),
+            FileKind::Png => png::read(source),
+            FileKind::Jpeg => jpeg::read(source),
+            FileKind::Npy | FileKind::Pfm => Err(DecodeError::Invalid(format!(
+                "expected a picture ({PICTURE_FORMATS}), got an array of numbers (NPY or PFM)"
+            ))),
+        }
+    })
+}
+
+/// Reads a depth map: EXR, PNG (grey, 8 or 16 bits), NPY (numbers of any type, shape `(h, w)`, `(h, w, 1)` or
+/// `(1, h, w)`) or PFM (whose scale factor is ignored).
+///
+/// | number in the file | z-depth, distance | disparity | inverse |
+/// |---|---|---|---|
+/// | NaN | hole | hole | hole |
+/// | 0 | hole | hole | infinitely far |
+/// | infinite | infinitely far | hole | hole |
+/// | below 0 | error | as any other | error |
+///
+/// Infinitely far are also disparities that are not above 0 with their offset, depths of 1e9 m or more, and z-depths and distances
+/// of 9.9e9 units or more at any scale: renderers write 1e10 where a ray leaves the scene. Outside the data window of an EXR
+/// file the number is 0.
+///
+/// # Errors
+/// As [`read_picture`]; [`ImageError::Setting`] where an option is out of range;
+/// [`ImageError::NegativeDepth`]; [`ImageError::Read`] also where all pixels are holes.
+pub fn read_depth(path: &Path, options: &DepthOptions) -> Result<DepthMap, ImageError> {
+    options.validate()?;
+    let raw = decode_file(path, DEPTH_FORMATS, |source| {
+        decode_depth(source, options.channel.as_deref())
+    })?;
+    let mut map = raw.into_map(path, options)?;
+    if map.holes > 0 {
+        match options.unknown {
+            UnknownDepth::Fill => {
+                hole_fill::fill_holes(&mut map.metres, map.size.width() as usize);
+            }
+            UnknownDepth::Far => replace_holes(&mut map.metres, f32::INFINITY),
+            UnknownDepth::Clear => replace_holes(&mut map.metres, 0.0),
+        }
+    }
+    Ok(map)
+}
+
+/// Replaces NaN by a value.
+fn replace_holes(depth: &mut [f32], value: f32) {
+    for v in depth {
+        *v = if v.is_nan() { value } else { *v };
+    }
+}
+
+fn decode_depth(source: Source, channel: Option<&str>) -> Result<RawDepth, DecodeError> {
+    if let Some(channel) = channel
+        && source.kind != FileKind::Exr
+    {
+        return Err(DecodeError::Invalid(format!(
+            "expected an EXR file for channel `{channel}`: only EXR files have channels with names"
+        )));
+    }
+    let kind = match source.kind {
+        FileKind::Exr => return exr::read_depth(source, channel),
+        FileKind::Png => return png::read_depth(source),
+        FileKind::Npy => return npy::read(source),
+        FileKind::Pfm => return pfm::read(source),
+        FileKind::Jpeg => "a JPEG picture, whose compression alters depth",
+        FileKind::Hdr => "a Radiance HDR picture",
+    };
+    Err(DecodeError::Invalid(format!(
+        "expected a depth map ({DEPTH_FORMATS}), got {kind}"
+    )))
+}

@@ -1,21 +1,20 @@
-//! NumPy's NPY files: whole numbers and floats of any width and byte order, by rows or by columns.
+//! NPY decoder (NumPy arrays): integers and floats of any width and byte order, in C or Fortran order.
 
 use super::{
-    fault::{Fault, checked_size, room, samples, zeros},
-    metres::Raw,
+    depth::RawDepth,
     picture::SampleBits,
-    source::Source,
+    source::{DecodeError, Source, checked_size, reserve, sample_count, zeros},
 };
 use half::f16;
 use std::io::Read;
 
-/// The longest header in bytes.
-const LONGEST_HEADER: u32 = 1 << 20;
+/// Longest header, bytes.
+const MAX_HEADER: u32 = 1 << 20;
 
 /// Bytes read at a time.
-const PIECE: usize = 1 << 16;
+const BLOCK: usize = 1 << 16;
 
-pub(super) fn read(mut source: Source) -> Result<Raw, Fault> {
+pub(super) fn read(mut source: Source) -> Result<RawDepth, DecodeError> {
     let length = source.length;
     let reader = &mut source.reader;
     let mut start = [0; 8];
@@ -32,13 +31,15 @@ pub(super) fn read(mut source: Source) -> Result<Raw, Fault> {
             (u32::from_le_bytes(four), 12)
         }
         other => {
-            return Err(Fault::Bad(format!(
-                "as NPY it must be of version 1, 2 or 3: it is {other}"
+            return Err(DecodeError::Invalid(format!(
+                "expected NPY version 1, 2 or 3, got {other}"
             )));
         }
     };
-    if header_length > LONGEST_HEADER {
-        return Err(Fault::bad("as NPY it has a header of more than 1 MiB"));
+    if header_length > MAX_HEADER {
+        return Err(DecodeError::invalid(
+            "expected an NPY header of at most 1 MiB, got a longer one",
+        ));
     }
     let mut header = vec![0; header_length as usize];
     reader.read_exact(&mut header)?;
@@ -46,38 +47,42 @@ pub(super) fn read(mut source: Source) -> Result<Raw, Fault> {
     let element = Element::parse(&header)?;
     let (height, width) = shape(&header)?;
     let size = checked_size(width, height)?;
-    let by_columns = match value(&header, "fortran_order").map(|v| v.starts_with("True")) {
-        Some(by_columns) => by_columns,
-        None => return Err(Fault::bad("as NPY it does not say its fortran_order")),
+    let fortran_order = match value(&header, "fortran_order").map(|v| v.starts_with("True")) {
+        Some(fortran_order) => fortran_order,
+        None => {
+            return Err(DecodeError::invalid(
+                "expected `fortran_order` in the NPY header, got none",
+            ));
+        }
     };
-    let needed = samples(size, element.bytes) as u64;
-    let there = length.saturating_sub(before + u64::from(header_length));
-    // Devices and pipes have no length.
-    if length > 0 && there < needed {
-        return Err(Fault::Early(format!(
-            "{needed} bytes of samples are announced, {there} are there"
+    let needed = sample_count(size, element.bytes) as u64;
+    let available = length.saturating_sub(before + u64::from(header_length));
+    // Devices and pipes have length 0.
+    if length > 0 && available < needed {
+        return Err(DecodeError::Truncated(format!(
+            "expected {needed} bytes of samples, got {available}"
         )));
     }
-    let mut values = room(samples(size, 1))?;
-    let mut buffer = vec![0; PIECE];
+    let mut values = reserve(sample_count(size, 1))?;
+    let mut buffer = vec![0; BLOCK];
     let mut left = needed;
     while left > 0 {
-        let piece = &mut buffer[..left.min(PIECE as u64) as usize];
-        reader.read_exact(piece)?;
-        element.append(piece, &mut values);
-        left -= piece.len() as u64;
+        let block = &mut buffer[..left.min(BLOCK as u64) as usize];
+        reader.read_exact(block)?;
+        element.append(block, &mut values);
+        left -= block.len() as u64;
     }
-    if by_columns {
+    if fortran_order {
         values = transposed(&values, size.width() as usize, size.height() as usize)?;
     }
-    Ok(Raw {
+    Ok(RawDepth {
         size,
         values,
         bits: element.bits(),
     })
 }
 
-fn transposed(columns: &[f32], width: usize, height: usize) -> Result<Vec<f32>, Fault> {
+fn transposed(columns: &[f32], width: usize, height: usize) -> Result<Vec<f32>, DecodeError> {
     let mut rows = zeros(columns.len())?;
     for (x, column) in columns.chunks_exact(height).enumerate() {
         for (to, from) in rows[x..].iter_mut().step_by(width).zip(column) {
@@ -87,7 +92,7 @@ fn transposed(columns: &[f32], width: usize, height: usize) -> Result<Vec<f32>, 
     Ok(rows)
 }
 
-/// What stands after `'name':` in the header.
+/// Text after `'name':` in the header.
 fn value<'a>(header: &'a str, name: &str) -> Option<&'a str> {
     let quoted = |quote: char| {
         let key = format!("{quote}{name}{quote}");
@@ -98,8 +103,8 @@ fn value<'a>(header: &'a str, name: &str) -> Option<&'a str> {
 }
 
 /// Rows and columns.
-fn shape(header: &str) -> Result<(u64, u64), Fault> {
-    let missing = || Fault::bad("as NPY it does not say its shape");
+fn shape(header: &str) -> Result<(u64, u64), DecodeError> {
+    let missing = || DecodeError::invalid("expected a shape in the NPY header, got none");
     let list = value(header, "shape").ok_or_else(missing)?;
     let list = list.strip_prefix('(').ok_or_else(missing)?;
     let (list, _) = list.split_once(')').ok_or_else(missing)?;
@@ -111,13 +116,13 @@ fn shape(header: &str) -> Result<(u64, u64), Fault> {
         .collect::<Result<_, _>>()?;
     match numbers[..] {
         [height, width] | [height, width, 1] | [1, height, width] => Ok((height, width)),
-        _ => Err(Fault::Bad(format!(
-            "as NPY it must have the shape (height, width), with or without a 1 before or after: it is ({list})"
+        _ => Err(DecodeError::Invalid(format!(
+            "expected the NPY shape (height, width), optionally with a 1 before or after, got ({list})"
         ))),
     }
 }
 
-/// The kind of its numbers.
+/// Element type of an array.
 #[derive(Clone, Copy)]
 struct Element {
     little: bool,
@@ -126,14 +131,14 @@ struct Element {
 }
 
 impl Element {
-    fn parse(header: &str) -> Result<Self, Fault> {
+    fn parse(header: &str) -> Result<Self, DecodeError> {
         let described = value(header, "descr").unwrap_or_default();
         let quote = described.chars().next().unwrap_or('\'');
         let name = described.split(quote).nth(1).unwrap_or_default();
         let refused = || {
             let shown: String = described.chars().take(40).collect();
-            Fault::Bad(format!(
-                "as NPY it must hold numbers of type f2, f4, f8, u1, u2, u4, u8, i1, i2, i4 or i8: it says {shown}"
+            DecodeError::Invalid(format!(
+                "expected NPY numbers of type f2, f4, f8, u1, u2, u4, u8, i1, i2, i4 or i8, got {shown}"
             ))
         };
         let (&[order, kind, bytes], true) = (name.as_bytes(), matches!(quote, '\'' | '"')) else {

@@ -1,49 +1,48 @@
-//! PFM files: 32-bit floats, rows from the bottom.
+//! PFM decoder: 32-bit floats, rows from the bottom.
 
 use super::{
-    fault::{Fault, checked_size, samples, zeros},
-    metres::Raw,
+    depth::RawDepth,
     picture::SampleBits,
-    source::Source,
+    source::{DecodeError, Source, checked_size, sample_count, zeros},
 };
 use std::io::{BufRead, Read};
 
-/// The longest word of a header in bytes.
-const LONGEST_WORD: usize = 64;
+/// Longest word of a header, bytes.
+const MAX_WORD: usize = 64;
 
-pub(super) fn read(mut source: Source) -> Result<Raw, Fault> {
+pub(super) fn read(mut source: Source) -> Result<RawDepth, DecodeError> {
     let reader = &mut source.reader;
     match word(reader)?.as_str() {
         "Pf" => {}
         "PF" => {
-            return Err(Fault::bad(
-                "as PFM it holds colours: a depth map begins with `Pf`",
+            return Err(DecodeError::invalid(
+                "expected a PFM depth map (`Pf`), got colours (`PF`)",
             ));
         }
         other => {
-            return Err(Fault::Bad(format!(
-                "as PFM it must begin with `Pf`: it begins with `{other}`"
+            return Err(DecodeError::Invalid(format!(
+                "expected `Pf` at the start of the PFM file, got `{other}`"
             )));
         }
     }
     let side = |word: String| {
         word.parse::<u64>()
-            .map_err(|_| Fault::Bad(format!("as PFM it has `{word}` where its size should be")))
+            .map_err(|_| DecodeError::Invalid(format!("expected the PFM size, got `{word}`")))
     };
     let (width, height) = (side(word(reader)?)?, side(word(reader)?)?);
     let size = checked_size(width, height)?;
     let order = word(reader)?;
-    // The size of this number is meant as a factor, but data sets write anything: only the sign counts.
+    // The number is specified as a scale factor, but data sets write arbitrary values: only its sign is used.
     let little = match order.parse::<f64>() {
         Ok(n) if n < 0.0 => true,
         Ok(n) if n > 0.0 => false,
         _ => {
-            return Err(Fault::Bad(format!(
-                "as PFM it must give a byte order below or above 0: it says `{order}`"
+            return Err(DecodeError::Invalid(format!(
+                "expected a PFM byte order below or above 0, got `{order}`"
             )));
         }
     };
-    let mut values = zeros(samples(size, 1))?;
+    let mut values = zeros(sample_count(size, 1))?;
     let width = size.width() as usize;
     let mut bytes = vec![0; width * 4];
     for row in values.chunks_exact_mut(width).rev() {
@@ -56,15 +55,15 @@ pub(super) fn read(mut source: Source) -> Result<Raw, Fault> {
             };
         }
     }
-    Ok(Raw {
+    Ok(RawDepth {
         size,
         values,
         bits: SampleBits::Float,
     })
 }
 
-/// The next word, and the one white space after it.
-fn word(reader: &mut impl BufRead) -> Result<String, Fault> {
+/// Reads the next word and one white space after it.
+fn word(reader: &mut impl BufRead) -> Result<String, DecodeError> {
     let mut word = String::new();
     loop {
         let mut one = [0];
@@ -72,8 +71,12 @@ fn word(reader: &mut impl BufRead) -> Result<String, Fault> {
         match one[0] {
             b' ' | b'\t' | b'\n' | b'\r' if word.is_empty() => {}
             b' ' | b'\t' | b'\n' | b'\r' => return Ok(word),
-            letter @ b'!'..=b'~' if word.len() < LONGEST_WORD => word.push(char::from(letter)),
-            _ => return Err(Fault::bad("as PFM it has a header that is not text")),
+            letter @ b'!'..=b'~' if word.len() < MAX_WORD => word.push(char::from(letter)),
+            _ => {
+                return Err(DecodeError::invalid(
+                    "expected a text header in the PFM file, got other bytes",
+                ));
+            }
         }
     }
 }

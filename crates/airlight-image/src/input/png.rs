@@ -1,35 +1,20 @@
-//! PNG files: pictures of any colour type and depth, depth maps of 8 or 16 bits of grey.
+//! PNG decoder: pictures of any colour type and depth, depth maps of 8 or 16 bits of grey.
 
 use super::{
-    fault::{Fault, checked_size, room, samples},
-    metres::Raw,
-    picture::{LightReference, Picture, SampleBits, is_foreign},
-    source::{Source, Watched},
+    depth::RawDepth,
+    picture::{
+        LightReference, Picture, SRGB_8, SRGB_16, SampleBits, decoding_table, is_foreign_profile,
+    },
+    source::{DecodeError, Source, TrackedFile, checked_size, reserve, sample_count},
 };
-use crate::{Size, output::Chromaticities, tone::srgb};
+use crate::{Size, output::Chromaticities};
+use airlight::spectrum::RgbSpace;
 use png::{BitDepth, ColorType, Decoder, DecodingError, Info, Limits, Reader, Transformations};
-use std::{io::BufReader, sync::LazyLock};
+use std::io::BufReader;
 
-type PngReader = Reader<BufReader<Watched>>;
+type PngReader = Reader<BufReader<TrackedFile>>;
 
-/// Linear light of every 8-bit sRGB value.
-static SRGB_8: LazyLock<Vec<f32>> = LazyLock::new(|| table(256, srgb::decode));
-/// Linear light of every 16-bit sRGB value.
-static SRGB_16: LazyLock<Vec<f32>> = LazyLock::new(|| table(65536, srgb::decode));
-
-fn table(count: u32, decode: impl Fn(f64) -> f64) -> Vec<f32> {
-    let scale = 1.0 / f64::from(count - 1);
-    (0..count)
-        .map(|n| decode(f64::from(n) * scale) as f32)
-        .collect()
-}
-
-/// Linear light of every 8-bit value of a picture that is sRGB.
-pub(super) fn srgb_8() -> &'static [f32] {
-    &SRGB_8
-}
-
-fn start(source: Source, transform: Transformations) -> Result<(PngReader, Size), Fault> {
+fn start(source: Source, transform: Transformations) -> Result<(PngReader, Size), DecodeError> {
     let mut decoder = Decoder::new_with_limits(source.reader, Limits { bytes: 1 << 28 });
     decoder.set_transformations(transform);
     decoder.set_ignore_text_chunk(true);
@@ -38,10 +23,10 @@ fn start(source: Source, transform: Transformations) -> Result<(PngReader, Size)
     Ok((decoder.read_info().map_err(failed)?, size))
 }
 
-pub(super) fn read(source: Source) -> Result<Picture, Fault> {
+pub(super) fn read(source: Source) -> Result<Picture, DecodeError> {
     let (mut reader, size) = start(source, Transformations::EXPAND)?;
     let (color, depth) = reader.output_color_type();
-    let layout = Layout {
+    let layout = PixelLayout {
         colours: match color {
             ColorType::Grayscale | ColorType::GrayscaleAlpha => 1,
             _ => 3,
@@ -50,16 +35,19 @@ pub(super) fn read(source: Source) -> Result<Picture, Fault> {
     };
     let info = reader.info();
     let chromaticities = chromaticities(info);
-    let profile_ignored = info.icc_profile.as_deref().is_some_and(is_foreign);
+    let profile_ignored = info.icc_profile.as_deref().is_some_and(is_foreign_profile);
     let gamma = foreign_gamma(info);
-    let mut rgb = room(samples(size, 3))?;
-    let mut alpha = layout.alpha.then(|| room(samples(size, 1))).transpose()?;
+    let mut rgb = reserve(sample_count(size, 3))?;
+    let mut alpha = layout
+        .alpha
+        .then(|| reserve(sample_count(size, 1)))
+        .transpose()?;
     let count = if depth == BitDepth::Sixteen {
         65536
     } else {
         256
     };
-    let own_table = gamma.map(|gamma| table(count, |v| v.powf(1.0 / gamma)));
+    let own_table = gamma.map(|gamma| decoding_table(count, |v| v.powf(1.0 / gamma)));
     let bits = if depth == BitDepth::Sixteen {
         let table = own_table.as_deref().unwrap_or(&SRGB_16);
         rows(&mut reader, |rows| {
@@ -89,7 +77,7 @@ pub(super) fn read(source: Source) -> Result<Picture, Fault> {
 }
 
 /// A depth map: grey of 8 or 16 bits, in the numbers of the file.
-pub(super) fn read_grey(source: Source) -> Result<Raw, Fault> {
+pub(super) fn read_depth(source: Source) -> Result<RawDepth, DecodeError> {
     let (mut reader, size) = start(source, Transformations::IDENTITY)?;
     let (color, depth) = reader.output_color_type();
     let bits = match (color, depth) {
@@ -103,13 +91,13 @@ pub(super) fn read_grey(source: Source) -> Result<Raw, Fault> {
                 ColorType::Rgba => "RGB and opacity",
                 ColorType::Indexed => "a palette",
             };
-            return Err(Fault::Bad(format!(
-                "a depth map in PNG must be grey of 8 or 16 bits, without opacity: this is {kind} of {} bits",
+            return Err(DecodeError::Invalid(format!(
+                "expected a PNG depth map with grey of 8 or 16 bits and no opacity, got {kind} of {} bits",
                 depth as u8
             )));
         }
     };
-    let mut values = room(samples(size, 1))?;
+    let mut values = reserve(sample_count(size, 1))?;
     if bits == SampleBits::U16 {
         rows(&mut reader, |rows| {
             let (pairs, _) = rows.as_chunks::<2>();
@@ -120,24 +108,24 @@ pub(super) fn read_grey(source: Source) -> Result<Raw, Fault> {
             values.extend(rows.iter().copied().map(f32::from));
         })?;
     }
-    Ok(Raw { size, values, bits })
+    Ok(RawDepth { size, values, bits })
 }
 
-/// Bytes of the rows that are decoded while those before them are taken.
+/// Bytes of the rows that are decoded while those before them are used.
 const BATCH_BYTES: usize = 1 << 18;
 
-/// Hands over whole rows from the top, several at a time, while the next ones are decoded. Interlaced pictures are put
-/// together first.
-fn rows(reader: &mut PngReader, mut take: impl FnMut(&[u8]) + Send) -> Result<(), Fault> {
+/// Passes whole rows from the top to `take`, several at a time, while the next ones are decoded. Interlaced pictures are
+/// decoded completely first.
+fn rows(reader: &mut PngReader, mut take: impl FnMut(&[u8]) + Send) -> Result<(), DecodeError> {
     let info = reader.info();
     let (width, height) = (info.width, info.height as usize);
-    let too_large = || Fault::bad("a row of it does not fit into memory");
+    let too_large = || DecodeError::invalid("a row does not fit into memory");
     let line = reader.output_line_size(width).ok_or_else(too_large)?.max(1);
     if info.interlaced {
         let bytes = reader.output_buffer_size().ok_or_else(too_large)?;
-        Vec::<u8>::new()
-            .try_reserve_exact(bytes)
-            .map_err(|_| Fault::bad("there is no memory for an interlaced picture of its size"))?;
+        Vec::<u8>::new().try_reserve_exact(bytes).map_err(|_| {
+            DecodeError::invalid("not enough memory for an interlaced picture of this size")
+        })?;
         let mut whole = vec![0; bytes];
         reader.next_frame(&mut whole).map_err(failed)?;
         take(&whole);
@@ -161,27 +149,27 @@ fn rows(reader: &mut PngReader, mut take: impl FnMut(&[u8]) + Send) -> Result<()
         taken = count;
         left -= count;
     }
-    // Past the last row: the rest of the data and its checksums.
+    // Reads past the last row: the rest of the data and its checksums.
     reader.read_row(&mut next).map_err(failed)?;
     Ok(())
 }
 
-fn decode_row(reader: &mut PngReader, row: &mut [u8]) -> Result<(), Fault> {
+fn decode_row(reader: &mut PngReader, row: &mut [u8]) -> Result<(), DecodeError> {
     match reader.read_row(row).map_err(failed)? {
         Some(_) => Ok(()),
-        None => Err(Fault::Early("rows are missing".to_owned())),
+        None => Err(DecodeError::Truncated("rows are missing".to_owned())),
     }
 }
 
 /// Components of a pixel.
 #[derive(Clone, Copy)]
-struct Layout {
+struct PixelLayout {
     colours: usize,
     alpha: bool,
 }
 
-impl Layout {
-    /// Appends rows of interleaved values, decoded by the table; opacity is linear already.
+impl PixelLayout {
+    /// Appends rows of interleaved values, decoded with a table; opacity is linear.
     #[inline(always)]
     fn split<T: Copy + Into<usize>>(
         self,
@@ -190,7 +178,7 @@ impl Layout {
         rgb: &mut Vec<f32>,
         alpha: Option<&mut Vec<f32>>,
     ) {
-        // A table with one entry for each value that T can take: the default is never used.
+        // The table has an entry for each value of T: the default is never used.
         let light = |v: T| table.get(v.into()).copied().unwrap_or(0.0);
         let opaque = (table.len() - 1) as f32;
         match (self.colours, alpha) {
@@ -217,19 +205,19 @@ impl Layout {
     }
 }
 
-/// The exponent of encoding, where the file states one that is not about sRGB's and nothing outweighs it.
+/// Encoding exponent, where the file states one that differs from that of sRGB and no chunk takes precedence.
 fn foreign_gamma(info: &Info<'_>) -> Option<f64> {
-    let outweighed = info.srgb.is_some()
+    let overridden = info.srgb.is_some()
         || info.icc_profile.is_some()
         || info.coding_independent_code_points.is_some();
     let gamma = f64::from(info.gama_chunk?.into_value());
     let is_about_srgb = (gamma * 2.2 - 1.0).abs() < 0.05;
-    (!outweighed && !is_about_srgb && (0.1..=10.0).contains(&gamma)).then_some(gamma)
+    (!overridden && !is_about_srgb && (0.1..=10.0).contains(&gamma)).then_some(gamma)
 }
 
 fn chromaticities(info: &Info<'_>) -> Option<Chromaticities> {
     if info.srgb.is_some() {
-        return Some(Chromaticities::SRGB);
+        return Some(RgbSpace::Srgb.into());
     }
     let c = info.chrm_chunk?;
     let xy = |(x, y): (png::ScaledFloat, png::ScaledFloat)| [x.into_value(), y.into_value()];
@@ -241,12 +229,12 @@ fn chromaticities(info: &Info<'_>) -> Option<Chromaticities> {
     })
 }
 
-fn failed(error: DecodingError) -> Fault {
+fn failed(error: DecodingError) -> DecodeError {
     match error {
-        DecodingError::IoError(error) => Fault::Io(error),
+        DecodingError::IoError(error) => DecodeError::Io(error),
         DecodingError::LimitsExceeded => {
-            Fault::bad("its rows or notes take more than 256 MiB of memory")
+            DecodeError::invalid("its rows or metadata take more than 256 MiB of memory")
         }
-        other => Fault::Bad(format!("as PNG it is corrupt: {other}")),
+        other => DecodeError::Invalid(format!("corrupt PNG data: {other}")),
     }
 }

@@ -1,7 +1,6 @@
-//! A file opened for reading, and what kind of file its first bytes say it is.
+//! Files being read: their format, errors of decoders, limits of size and memory.
 
-use super::fault::Fault;
-use crate::ImageError;
+use crate::{ImageError, Size};
 use std::{
     fs::File,
     io::{self, BufReader, Read, Seek, SeekFrom},
@@ -13,9 +12,9 @@ use std::{
     },
 };
 
-/// What the first bytes of a file say.
+/// A file format, recognised by its first bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum FileKind {
     Exr,
     Hdr,
     Png,
@@ -24,42 +23,41 @@ pub(super) enum Kind {
     Pfm,
 }
 
-impl Kind {
-    fn of(start: &[u8]) -> Option<Self> {
-        const MAGIC: [(&[u8], Kind); 6] = [
-            (&[0x76, 0x2f, 0x31, 0x01], Kind::Exr),
-            (b"#?", Kind::Hdr),
-            (b"\x89PNG\r\n\x1a\n", Kind::Png),
-            (&[0xff, 0xd8, 0xff], Kind::Jpeg),
-            (b"\x93NUMPY", Kind::Npy),
-            // Followed by white space.
-            (b"Pf", Kind::Pfm),
+impl FileKind {
+    fn from_magic(start: &[u8]) -> Option<Self> {
+        const MAGIC: [(&[u8], FileKind); 7] = [
+            (&[0x76, 0x2f, 0x31, 0x01], FileKind::Exr),
+            (b"#?", FileKind::Hdr),
+            (b"\x89PNG\r\n\x1a\n", FileKind::Png),
+            (&[0xff, 0xd8, 0xff], FileKind::Jpeg),
+            (b"\x93NUMPY", FileKind::Npy),
+            (b"Pf", FileKind::Pfm),
+            (b"PF", FileKind::Pfm),
         ];
         MAGIC
             .iter()
             .find(|(magic, _)| start.starts_with(magic))
             .map(|&(_, kind)| kind)
-            .or(start.starts_with(b"PF").then_some(Self::Pfm))
     }
 }
 
 /// A file being read.
 pub(super) struct Source {
-    pub(super) kind: Kind,
-    /// From its first byte.
-    pub(super) reader: BufReader<Watched>,
-    /// Bytes in the file.
+    pub(super) kind: FileKind,
+    /// At the first byte.
+    pub(super) reader: BufReader<TrackedFile>,
+    /// Size of the file in bytes.
     pub(super) length: u64,
     ended: Arc<AtomicBool>,
 }
 
-/// A file that remembers whether more was asked of it than it holds.
-pub(super) struct Watched {
+/// A file that records whether a read reached its end.
+pub(super) struct TrackedFile {
     file: File,
     ended: Arc<AtomicBool>,
 }
 
-impl Read for Watched {
+impl Read for TrackedFile {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let read = self.file.read(buffer)?;
         if read == 0 && !buffer.is_empty() {
@@ -69,37 +67,92 @@ impl Read for Watched {
     }
 }
 
-impl Seek for Watched {
+impl Seek for TrackedFile {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
         self.file.seek(to)
     }
 }
 
-/// Opens a file, has `decode` read it, and puts the file's name to what it complains of. `known` lists the formats that
-/// `decode` can tell apart.
-pub(super) fn with_source<T>(
-    path: &Path,
-    known: &str,
-    decode: impl FnOnce(Source) -> Result<T, Fault>,
-) -> Result<T, ImageError> {
-    let source = open(path, known).map_err(|fault| fault.at(path, false))?;
-    let ended = source.ended.clone();
-    // Some decoders that this room builds on panic on corrupt files.
-    panic::catch_unwind(AssertUnwindSafe(|| decode(source)))
-        .unwrap_or_else(|_| Err(Fault::bad("it is corrupt: its decoder gave up")))
-        .map_err(|fault| fault.at(path, ended.load(Ordering::Relaxed)))
+/// Why the contents of a file cannot be decoded; [`decode_file`] adds the name of the file.
+#[derive(Debug)]
+pub(super) enum DecodeError {
+    Io(io::Error),
+    /// The contents are corrupt or of the wrong kind.
+    Invalid(String),
+    /// The file ends too early.
+    Truncated(String),
+    /// A channel is missing or ambiguous.
+    NoChannel {
+        wanted: String,
+        available: String,
+    },
 }
 
-fn open(path: &Path, known: &str) -> Result<Source, Fault> {
+impl DecodeError {
+    pub(super) fn invalid(reason: impl Into<String>) -> Self {
+        Self::Invalid(reason.into())
+    }
+
+    /// With the name of the file; `ended` where the decoder read past its end.
+    fn in_file(self, path: &Path, ended: bool) -> ImageError {
+        let path = path.to_owned();
+        match self {
+            Self::Io(error) if error.kind() == io::ErrorKind::UnexpectedEof => {
+                ImageError::EndsEarly {
+                    path,
+                    reason: "bytes are missing".to_owned(),
+                }
+            }
+            Self::Io(source) => ImageError::File {
+                action: "read",
+                path,
+                source,
+            },
+            Self::Invalid(reason) if ended => ImageError::EndsEarly { path, reason },
+            Self::Invalid(reason) => ImageError::Read { path, reason },
+            Self::Truncated(reason) => ImageError::EndsEarly { path, reason },
+            Self::NoChannel { wanted, available } => ImageError::NoChannel {
+                path,
+                wanted,
+                available,
+            },
+        }
+    }
+}
+
+impl From<io::Error> for DecodeError {
+    fn from(error: io::Error) -> Self {
+        Self::Io(error)
+    }
+}
+
+/// Opens a file and decodes it. `formats` lists the formats that `decode` distinguishes.
+pub(super) fn decode_file<T>(
+    path: &Path,
+    formats: &str,
+    decode: impl FnOnce(Source) -> Result<T, DecodeError>,
+) -> Result<T, ImageError> {
+    let source = open(path, formats).map_err(|error| error.in_file(path, false))?;
+    let ended = source.ended.clone();
+    // Some of the decoding libraries panic on corrupt files.
+    panic::catch_unwind(AssertUnwindSafe(|| decode(source)))
+        .unwrap_or_else(|_| Err(DecodeError::invalid("corrupt data: the decoder failed")))
+        .map_err(|error| error.in_file(path, ended.load(Ordering::Relaxed)))
+}
+
+fn open(path: &Path, formats: &str) -> Result<Source, DecodeError> {
     let mut file = File::open(path)?;
     let length = file.metadata()?.len();
     let mut start = Vec::with_capacity(16);
     (&mut file).take(16).read_to_end(&mut start)?;
     if start.is_empty() {
-        return Err(Fault::Early("it is empty (0 bytes)".to_owned()));
+        return Err(DecodeError::Truncated("it is empty (0 bytes)".to_owned()));
     }
-    let kind = Kind::of(&start)
-        .ok_or_else(|| Fault::Bad(format!("it is none of the formats that are read ({known})")))?;
+    let kind = FileKind::from_magic(&start).ok_or_else(|| {
+        DecodeError::Invalid(format!(
+            "expected one of the formats {formats}, got another"
+        ))
+    })?;
     file.rewind()?;
     let ended = Arc::new(AtomicBool::new(false));
     Ok(Source {
@@ -107,11 +160,51 @@ fn open(path: &Path, known: &str) -> Result<Source, Fault> {
         length,
         reader: BufReader::with_capacity(
             1 << 17,
-            Watched {
+            TrackedFile {
                 file,
                 ended: ended.clone(),
             },
         ),
         ended,
     })
+}
+
+/// Largest number of pixels of a picture.
+const MAX_PIXELS: u64 = 1 << 30;
+
+/// Checks the size of a picture.
+pub(super) fn checked_size(width: u64, height: u64) -> Result<Size, DecodeError> {
+    let refused = || {
+        DecodeError::Invalid(format!(
+            "expected 1 to {} pixels a side and at most {MAX_PIXELS} in total, got {width} x {height} pixels",
+            Size::MAX
+        ))
+    };
+    let side = |n: u64| u32::try_from(n).map_err(|_| refused());
+    let size = Size::new(side(width)?, side(height)?).map_err(|_| refused())?;
+    if width.saturating_mul(height) > MAX_PIXELS {
+        return Err(refused());
+    }
+    Ok(size)
+}
+
+/// Number of samples of a picture with `channels` samples a pixel.
+pub(super) fn sample_count(size: Size, channels: usize) -> usize {
+    size.width() as usize * size.height() as usize * channels
+}
+
+/// An empty vector with capacity for `count` samples.
+pub(super) fn reserve(count: usize) -> Result<Vec<f32>, DecodeError> {
+    let mut samples = Vec::new();
+    samples.try_reserve_exact(count).map_err(|_| {
+        let mebibytes = (count as u64 * 4) >> 20;
+        DecodeError::Invalid(format!("not enough memory for {mebibytes} MiB of samples"))
+    })?;
+    Ok(samples)
+}
+
+/// A vector of zeros, whose pages are not allocated before they are written.
+pub(super) fn zeros(count: usize) -> Result<Vec<f32>, DecodeError> {
+    drop(reserve(count)?);
+    Ok(vec![0.0; count])
 }

@@ -1,4 +1,4 @@
-//! A file that appears whole or not at all.
+//! Atomic replacement of files.
 
 use crate::ImageError;
 use std::{
@@ -8,8 +8,8 @@ use std::{
     sync::atomic::{AtomicU64, Ordering},
 };
 
-/// A file written under another name beside its target and moved there by [`AtomicFile::commit`]; dropped without
-/// that, on an error or a panic, it removes itself and the target stays as it was.
+/// A temporary file beside its target, moved there by [`AtomicFile::commit`]. Dropped without commit, on an error or a panic,
+/// it is removed and the target stays unchanged.
 #[derive(Debug)]
 pub struct AtomicFile {
     target: PathBuf,
@@ -19,7 +19,7 @@ pub struct AtomicFile {
 }
 
 impl AtomicFile {
-    /// Opens a new file beside `target`.
+    /// Creates a temporary file beside `target`.
     ///
     /// # Errors
     /// [`ImageError`] where the target names no file, is a folder, its folder is missing, or the system refuses.
@@ -44,8 +44,8 @@ impl AtomicFile {
                 folder: folder.to_owned(),
             });
         }
-        // Names differ within a process by a count and between processes by their number; what an earlier, killed
-        // process of the same number left behind is passed over.
+        // Names are unique within a process by a count and between processes by their number; files of an earlier, killed
+        // process with the same number are skipped.
         static COUNT: AtomicU64 = AtomicU64::new(0);
         for _ in 0..1000 {
             let count = COUNT.fetch_add(1, Ordering::Relaxed);
@@ -77,7 +77,7 @@ impl AtomicFile {
             }
         }
         Err(refuse(
-            "too many unfinished files of earlier runs lie beside it",
+            "its folder holds too many temporary files of earlier runs; try removing `.*.part`",
         ))
     }
 
@@ -87,7 +87,7 @@ impl AtomicFile {
         self.file.as_ref().expect("open until committed")
     }
 
-    /// Closes the file and moves it to its target, replacing what was there.
+    /// Closes the file and moves it to its target, replacing an existing file.
     ///
     /// # Errors
     /// [`ImageError::File`] where the system refuses; the file is then removed.

@@ -1,20 +1,20 @@
-//! The loop under every writer: bands made in parallel, written in order, few in memory.
+//! The loop shared by all writers: bands of rows are encoded in parallel and written in order, with few in memory.
 
 use crate::{Control, ImageError, RowSource, Size};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Rows `start..end` of each band of a picture.
+/// Division of a picture into bands of rows.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bands {
     size: Size,
     rows: u32,
 }
 
-/// Bytes of a band's rows as the source fills them that a writer aims for.
+/// Target size of the rows of a band as filled by the source, bytes.
 const BAND_BYTES: usize = 4 << 20;
 
-/// Bytes that the bands being made at a time may take: it bounds a writer's memory however many threads there are.
+/// Largest size of the bands being encoded at a time, bytes: bounds the memory of a writer for any number of threads.
 const HELD_BYTES: usize = 64 << 20;
 
 impl Bands {
@@ -42,20 +42,19 @@ impl Bands {
         start..(start + self.rows).min(self.size.height())
     }
 
-    /// Makes every band by `make(band)` in parallel and hands them in order to `write`, which works while the next ones
-    /// are made. `band_bytes` is about what one band takes in memory while it is made; once made it is taken to need much
-    /// less.
+    /// Encodes all bands with `encode` in parallel and passes the results in order to `write`, which runs while the next bands are
+    /// encoded. `band_bytes` is the approximate memory for encoding one band; encoded bands are assumed to be much smaller.
     pub(super) fn run<T: Send>(
         self,
         band_bytes: usize,
         control: Control<'_>,
-        make: impl Fn(u32) -> Result<T, ImageError> + Sync,
+        encode: impl Fn(u32) -> Result<T, ImageError> + Sync,
         mut write: impl FnMut(u32, T) -> Result<(), ImageError> + Send,
     ) -> Result<(), ImageError> {
         let threads = rayon::current_num_threads();
         let batch = (HELD_BYTES / band_bytes.max(1)).clamp(1, threads * 4) as u32;
         let height = u64::from(self.size.height());
-        let mut made: Vec<T> = Vec::new();
+        let mut encoded: Vec<T> = Vec::new();
         let mut first = 0;
         let mut next = 0;
         loop {
@@ -68,12 +67,12 @@ impl Bands {
                         .with_max_len(1)
                         .map(|band| {
                             control.check()?;
-                            make(band)
+                            encode(band)
                         })
                         .collect::<Result<Vec<T>, ImageError>>()
                 },
                 || {
-                    for (band, item) in (first..).zip(made.drain(..)) {
+                    for (band, item) in (first..).zip(encoded.drain(..)) {
                         control.check()?;
                         write(band, item)?;
                         control.report(u64::from(self.rows(band).end), height);
@@ -82,8 +81,8 @@ impl Bands {
                 },
             );
             written?;
-            made = coming?;
-            if made.is_empty() {
+            encoded = coming?;
+            if encoded.is_empty() {
                 return Ok(());
             }
             first = ahead.start;
@@ -92,7 +91,7 @@ impl Bands {
     }
 }
 
-/// Rows of a source, one at a time, in a buffer that is kept.
+/// Rows of a source, one at a time, in a reused buffer.
 pub(super) struct RowBuffer<'a> {
     source: &'a dyn RowSource,
     row: Vec<f32>,

@@ -1,15 +1,15 @@
-//! Deflate (RFC 1951) and zlib (RFC 1950), a piece at a time.
+//! Deflate (RFC 1951) and zlib (RFC 1950) streams in independently compressed pieces.
 
 use crate::ImageError;
 use flate2::{Compress, Compression, FlushCompress, Status};
 
-/// A compressor to be used for many pieces.
+/// A compressor for many pieces.
 pub(super) struct Deflater {
     format: &'static str,
     compress: Compress,
 }
 
-/// How a piece of a stream ends.
+/// End of a piece of a stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum End {
     /// At a byte boundary, with more to follow.
@@ -27,7 +27,7 @@ impl Deflater {
         }
     }
 
-    /// Compresses one piece that needs nothing before it.
+    /// Compresses a piece independently of those before it.
     pub(super) fn piece(&mut self, input: &[u8], end: End) -> Result<Vec<u8>, ImageError> {
         self.compress.reset();
         let flush = match end {
@@ -59,18 +59,18 @@ impl Deflater {
     }
 }
 
-/// The Adler-32 checksum of a stream, put together from those of its pieces.
+/// Adler-32 checksum of a stream, composed from those of its pieces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Adler32 {
     sum: u32,
     sum_of_sums: u32,
 }
 
-/// The largest prime below 2^16.
+/// Largest prime below 2^16.
 const MODULUS: u32 = 65_521;
 
 impl Adler32 {
-    /// Of no bytes.
+    /// Checksum of no bytes.
     pub(super) const EMPTY: Self = Self {
         sum: 1,
         sum_of_sums: 0,
@@ -81,7 +81,7 @@ impl Adler32 {
             mut sum,
             mut sum_of_sums,
         } = Self::EMPTY;
-        // So many bytes of 255 can be added before 32 bits overflow.
+        // The largest number of bytes of 255 that can be added before 32 bits overflow.
         for chunk in bytes.chunks(5552) {
             for &byte in chunk {
                 sum += u32::from(byte);
@@ -93,11 +93,11 @@ impl Adler32 {
         Self { sum, sum_of_sums }
     }
 
-    /// The checksum of these bytes followed by `length` bytes that have checksum `next`.
+    /// Checksum of these bytes followed by `length` bytes with checksum `next`.
     pub(super) fn then(self, next: Self, length: usize) -> Self {
         let m = u64::from(MODULUS);
         let length = length as u64 % m;
-        // Every later partial sum is greater by the sum so far, less the 1 that each piece starts from.
+        // Each later partial sum is larger by the sum so far, less the 1 that each piece starts from.
         let carried = u64::from(self.sum) + m - 1;
         Self {
             sum: ((carried + u64::from(next.sum)) % m) as u32,

@@ -1,12 +1,13 @@
 //! OpenEXR files: linear, any channels, half or single precision, scan lines in blocks that are compressed in parallel.
+//!
+//! The `exr` crate describes headers and compresses blocks; the file itself is written here, block after block, so that a picture
+//! is never in memory as a whole. Attributes are sorted by name, so that equal pictures give equal bytes.
 
 pub use super::options::{ExrCompression, ExrOptions, ExrSample};
 use super::{
     Metadata,
     bands::{Bands, RowBuffer},
     deflate::{Deflater, End},
-    exr_header,
-    exr_stream::{FORMAT, ScanLineStream, failed},
     format::{FormatEntry, Written, into_file},
 };
 use crate::{Control, ImageError, RowSource, Size};
@@ -16,17 +17,28 @@ use ::exr::{
         chunk::{CompressedBlock, CompressedScanLineBlock},
     },
     compression::Compression,
+    error::Error as ExrError,
     math::Vec2,
-    meta::header::Header,
+    meta::{
+        BlockDescription, MetaData,
+        attribute::{
+            self, AttributeValue, ChannelDescription, Chromaticities, EnvironmentMap, LineOrder,
+            SampleType, Text,
+        },
+        header::{Header, LayerAttributes},
+    },
 };
 use half::{f16, slice::HalfFloatSliceExt};
 use std::{
-    io::{Seek, Write},
+    collections::HashSet,
+    io::{self, Seek, SeekFrom, Write},
     ops::Range,
     path::Path,
 };
 
-/// The format of this file's writer.
+const FORMAT: &str = "OpenEXR";
+
+/// Registry entry of the format.
 pub(super) static ENTRY: FormatEntry = FormatEntry {
     name: FORMAT,
     endings: &["exr"],
@@ -51,13 +63,13 @@ pub(super) static ENTRY: FormatEntry = FormatEntry {
     },
 };
 
-/// Effort of zip, 0 to 9: from here up files shrink by a few percent only, for half as much time again.
+/// Zip compression level, 0 to 9: higher levels shrink files by a few percent and take half as much time again.
 const ZIP_LEVEL: u8 = 2;
 
-/// Writes rows to a file; `channels` names the values of a pixel in the order the source gives them.
+/// Writes rows to a file. `channels` names the samples of a pixel in the order of the source.
 ///
 /// # Errors
-/// [`ImageError`]; the target is then as before.
+/// [`ImageError`]; the target is then unchanged.
 pub fn write(
     path: &Path,
     size: Size,
@@ -72,11 +84,11 @@ pub fn write(
     })
 }
 
-/// Writes rows to a stream. [`Written::bytes`] is left 0.
+/// Writes rows to a stream as [`write()`] does; [`Written::bytes`] stays 0.
 ///
 /// # Errors
-/// [`ImageError`] where the names are not as many as the source's channels, one is empty, too long or there twice, the
-/// stream fails, or the caller asks to stop.
+/// [`ImageError`] where the number of names is not that of the source's channels, a name is empty, too long or repeated, the
+/// stream fails, or the caller cancels.
 pub fn encode<W: Write + Seek + Send>(
     out: &mut W,
     size: Size,
@@ -87,7 +99,7 @@ pub fn encode<W: Write + Seek + Send>(
     control: Control<'_>,
 ) -> Result<Written, ImageError> {
     check_channels(channels, source)?;
-    let (header, order) = exr_header::build(size, channels, options, metadata)?;
+    let (header, order) = build_header(size, channels, options, metadata)?;
     let lines = header.compression.scan_lines_per_block() as u32;
     let block_bytes = header.channels.bytes_per_pixel * size.width() as usize * lines as usize;
     let bands = Bands::of_rows(size, lines);
@@ -100,7 +112,7 @@ pub fn encode<W: Write + Seek + Send>(
         headers: std::slice::from_ref(&header),
         half: options.sample == ExrSample::Half,
     };
-    // The block, sorted and packed; a row as given, split by channel and rounded.
+    // The block raw, sorted and compressed; a row interleaved, split by channel and rounded.
     let band_bytes = block_bytes * 3 + size.width() as usize * channels.len() * 10;
     bands.run(
         band_bytes,
@@ -119,7 +131,7 @@ pub fn encode<W: Write + Seek + Send>(
 fn check_channels(channels: &[&str], source: &dyn RowSource) -> Result<(), ImageError> {
     if channels.is_empty() || channels.len() != source.channels() {
         return Err(ImageError::Channels {
-            format: "this EXR layout",
+            format: "the EXR channel list",
             expected: channels.len(),
             got: source.channels(),
         });
@@ -130,11 +142,110 @@ fn check_channels(channels: &[&str], source: &dyn RowSource) -> Result<(), Image
             return Err(ImageError::Setting {
                 what: "each EXR channel name",
                 got: format!("`{name}`"),
-                right: "1 to 255 bytes long, and there once",
+                right: "1 to 255 bytes long and unique",
             });
         }
     }
     Ok(())
+}
+
+/// Size in bytes of a block of 16 or 32 scan lines above which single lines are compressed, to bound memory.
+const MAX_BLOCK: usize = 16 << 20;
+
+/// The header, and the index in a pixel of the source for each channel of the file (sorted by name).
+fn build_header(
+    size: Size,
+    channels: &[&str],
+    options: &ExrOptions,
+    metadata: &Metadata,
+) -> Result<(Header, Vec<usize>), ImageError> {
+    let mut order: Vec<usize> = (0..channels.len()).collect();
+    order.sort_by_key(|&c| channels[c].as_bytes());
+    let sample = match options.sample {
+        ExrSample::Half => SampleType::F16,
+        ExrSample::Float => SampleType::F32,
+    };
+    let list = order
+        .iter()
+        .map(|&c| ChannelDescription::named(text(channels[c]), sample))
+        .collect();
+    let bytes_per_line = size.width() as usize * channels.len() * sample.bytes_per_sample();
+    let compression = match options.compression {
+        ExrCompression::None => Compression::Uncompressed,
+        ExrCompression::Rle => Compression::RLE,
+        ExrCompression::ZipLine => Compression::ZIP1,
+        ExrCompression::Zip if bytes_per_line * 16 > MAX_BLOCK => Compression::ZIP1,
+        ExrCompression::Zip => Compression::ZIP16,
+        ExrCompression::Piz if bytes_per_line * 32 > MAX_BLOCK => Compression::ZIP1,
+        ExrCompression::Piz => Compression::PIZ,
+    };
+    let dimensions = Vec2(size.width() as usize, size.height() as usize);
+    let mut header = Header::new(text("main"), dimensions, list)
+        .with_encoding(
+            compression,
+            BlockDescription::ScanLines,
+            LineOrder::Increasing,
+        )
+        .with_attributes(attributes(metadata));
+    let point = |p: [f32; 2]| Vec2(p[0], p[1]);
+    header.shared_attributes.chromaticities = metadata.chromaticities.map(|c| Chromaticities {
+        red: point(c.red),
+        green: point(c.green),
+        blue: point(c.blue),
+        white: point(c.white),
+    });
+    let taken: HashSet<Vec<u8>> = header
+        .all_named_attributes()
+        .map(|(name, _)| name.to_vec())
+        .collect();
+    for (name, value) in &metadata.texts {
+        let name = attribute_name(name, &taken);
+        header
+            .own_attributes
+            .other
+            .insert(text(&name), AttributeValue::Text(text(value)));
+    }
+    Ok((header, order))
+}
+
+fn attributes(metadata: &Metadata) -> LayerAttributes {
+    let words = |words: &Option<String>| words.as_deref().map(text);
+    LayerAttributes {
+        owner: words(&metadata.owner),
+        comments: words(&metadata.comments),
+        capture_date: words(&metadata.capture_date),
+        software_name: words(&metadata.software),
+        // OpenEXR: UTC = local time + offset.
+        utc_offset: metadata.utc_offset_s.map(|s| -s),
+        latitude: metadata.latitude_deg,
+        longitude: metadata.longitude_deg,
+        altitude: metadata.altitude_m,
+        white_luminance: metadata.white_luminance_cd_m2,
+        environment_map: metadata
+            .is_latitude_longitude
+            .then_some(EnvironmentMap::LatitudeLongitude),
+        ..LayerAttributes::default()
+    }
+}
+
+/// A name or text in UTF-8, without null bytes, which terminate names.
+fn text(words: &str) -> Text {
+    Text::from_bytes_unchecked(words.bytes().filter(|&b| b != 0).collect())
+}
+
+/// A name of 1 to 255 bytes that differs from those of standard attributes.
+fn attribute_name(name: &str, taken: &HashSet<Vec<u8>>) -> String {
+    let mut end = name.len().min(240);
+    while !name.is_char_boundary(end) {
+        end -= 1;
+    }
+    let name = &name[..end];
+    let reserved = ::exr::meta::header::standard_names::ALL.contains(&name.as_bytes());
+    if name.is_empty() || reserved || taken.contains(name.as_bytes()) {
+        format!("airlight:{name}")
+    } else {
+        name.to_owned()
+    }
 }
 
 struct BlockEncoder<'a> {
@@ -146,7 +257,7 @@ struct BlockEncoder<'a> {
 }
 
 impl BlockEncoder<'_> {
-    /// The compressed block of these rows.
+    /// Compresses a block of rows.
     fn block(&self, rows: Range<u32>) -> Result<(Vec<u8>, Written), ImageError> {
         let width = self.size.width() as usize;
         let pixel_bytes = self.headers[0].channels.bytes_per_pixel;
@@ -158,7 +269,7 @@ impl BlockEncoder<'_> {
         let largest = if self.half {
             f16::MAX.to_f32()
         } else {
-            // Holds infinity: the depth of the sky, for one.
+            // Infinity is valid: the depth of the sky.
             f32::INFINITY
         };
         for y in rows.clone() {
@@ -182,9 +293,9 @@ impl BlockEncoder<'_> {
         Ok((self.compress(data, &rows)?, counts))
     }
 
-    /// From values pixel by pixel to values channel by channel, in the order of the file.
+    /// Splits interleaved samples by channel, in the order of the file.
     fn split_planes(&self, row: &[f32], planes: &mut [f32]) {
-        // Few enough pixels at a time that they stay in the cache while each channel is picked out.
+        // Few enough pixels at a time to stay in the cache while each channel is copied.
         const PIXELS: usize = 256;
         let (width, count) = (self.size.width() as usize, self.order.len());
         for start in (0..width).step_by(PIXELS) {
@@ -225,19 +336,19 @@ impl BlockEncoder<'_> {
             }) => Ok(compressed_pixels_le),
             _ => Err(ImageError::Encode {
                 format: FORMAT,
-                reason: "scan lines were packed as something else".to_owned(),
+                reason: "the compressor returned no scan lines".to_owned(),
             }),
         }
     }
 }
 
-/// OpenEXR's zip: bytes of even place first, then those of odd place, each as its difference from the one before (plus
-/// 128), then zlib. Data that would not shrink stay as they are.
+/// OpenEXR's zip compression: bytes at even positions, then those at odd positions, as differences from the previous byte (plus
+/// 128), then zlib. Data that would not shrink stay uncompressed.
 fn zip(data: Vec<u8>) -> Result<Vec<u8>, ImageError> {
     let mut sorted: Vec<u8> = Vec::with_capacity(data.len());
     sorted.extend(data.iter().step_by(2));
     sorted.extend(data.iter().skip(1).step_by(2));
-    // From the end, so that each byte still finds the one before it unchanged.
+    // From the end, so that the previous byte is still unchanged.
     for i in (1..sorted.len()).rev() {
         sorted[i] = sorted[i].wrapping_sub(sorted[i - 1]).wrapping_add(128);
     }
@@ -247,4 +358,109 @@ fn zip(data: Vec<u8>) -> Result<Vec<u8>, ImageError> {
     } else {
         data
     })
+}
+
+/// Magic number of OpenEXR files.
+const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
+
+/// File format version 2, single part, scan lines.
+const VERSION: u32 = 2;
+
+/// Flag of files in which a name is longer than 31 bytes.
+const LONG_NAMES: u32 = 1 << 10;
+
+/// A scan-line file being written: header, table of offsets, blocks in order.
+struct ScanLineStream<'a, W> {
+    out: &'a mut W,
+    table_at: u64,
+    next_at: u64,
+    offsets: Vec<u64>,
+}
+
+impl<'a, W: Write + Seek> ScanLineStream<'a, W> {
+    /// Writes the header and an empty table.
+    fn start(out: &'a mut W, header: &Header) -> Result<Self, ImageError> {
+        MetaData::validate(std::slice::from_ref(header), true).map_err(failed)?;
+        let bytes = header_bytes(header)?;
+        let start = out.stream_position().map_err(stream_error)?;
+        out.write_all(&bytes).map_err(stream_error)?;
+        let table_at = start + bytes.len() as u64;
+        let table = vec![0; header.chunk_count * 8];
+        out.write_all(&table).map_err(stream_error)?;
+        Ok(Self {
+            out,
+            table_at,
+            next_at: table_at + table.len() as u64,
+            offsets: Vec::with_capacity(header.chunk_count),
+        })
+    }
+
+    /// Writes the compressed block that starts with row `y`.
+    fn block(&mut self, y: u32, packed: &[u8]) -> Result<(), ImageError> {
+        let length = i32::try_from(packed.len()).map_err(|_| ImageError::Encode {
+            format: FORMAT,
+            reason: "a block of scan lines is larger than 2 GiB".to_owned(),
+        })?;
+        self.offsets.push(self.next_at);
+        self.next_at += 8 + packed.len() as u64;
+        let mut write = |bytes: &[u8]| self.out.write_all(bytes).map_err(stream_error);
+        write(&(y as i32).to_le_bytes())?;
+        write(&length.to_le_bytes())?;
+        write(packed)
+    }
+
+    /// Writes the table.
+    fn finish(self) -> Result<(), ImageError> {
+        let table: Vec<u8> = self.offsets.iter().flat_map(|o| o.to_le_bytes()).collect();
+        self.out
+            .seek(SeekFrom::Start(self.table_at))
+            .map_err(stream_error)?;
+        self.out.write_all(&table).map_err(stream_error)?;
+        self.out
+            .seek(SeekFrom::Start(self.next_at))
+            .map_err(stream_error)?;
+        self.out.flush().map_err(stream_error)
+    }
+}
+
+fn header_bytes(header: &Header) -> Result<Vec<u8>, ImageError> {
+    let mut attributes: Vec<_> = header.all_named_attributes().collect();
+    attributes.sort_by_key(|(name, _)| *name);
+    let channel_names = header.channels.list.iter().map(|c| c.name.as_slice().len());
+    let attribute_names = attributes.iter().map(|(name, _)| name.len());
+    let long_names = channel_names
+        .chain(attribute_names)
+        .any(|length| length > 31);
+    let version = if long_names {
+        VERSION | LONG_NAMES
+    } else {
+        VERSION
+    };
+    let mut bytes = Vec::from(MAGIC);
+    bytes.extend_from_slice(&version.to_le_bytes());
+    for (name, value) in &attributes {
+        attribute::write(name, value, &mut bytes).map_err(failed)?;
+    }
+    bytes.push(0);
+    Ok(bytes)
+}
+
+fn failed(error: ExrError) -> ImageError {
+    match error {
+        ExrError::Io(source) => ImageError::Stream {
+            format: FORMAT,
+            source,
+        },
+        other => ImageError::Encode {
+            format: FORMAT,
+            reason: other.to_string(),
+        },
+    }
+}
+
+fn stream_error(source: io::Error) -> ImageError {
+    ImageError::Stream {
+        format: FORMAT,
+        source,
+    }
 }

@@ -1,4 +1,4 @@
-//! What a picture format is, and what its writers share.
+//! Registry entry of a picture format, and functions that all writers share.
 
 use super::atomic::AtomicFile;
 use super::options::PictureOptions;
@@ -8,45 +8,46 @@ use std::{
     path::Path,
 };
 
-/// What a format is and how it is written: one in the file of each writer, all of them listed in [`PictureFormat::ALL`].
+/// Registry entry of a format: one per writer, listed in [`super::PictureFormat::ALL`].
 pub(super) struct FormatEntry {
     pub(super) name: &'static str,
-    /// Endings of file names in small letters, the usual one first.
+    /// Endings of file names in lower case, the usual one first.
     pub(super) endings: &'static [&'static str],
     /// Linear light, without tone mapping.
     pub(super) is_linear: bool,
     pub(super) holds_alpha: bool,
-    /// Channels of any number and name besides red, green and blue.
+    /// Any number of named channels besides red, green and blue.
     pub(super) holds_channels: bool,
-    /// What the writer did to samples that the format cannot hold; empty where there are none such.
+    /// What the writer does to samples that the format cannot represent; empty where it represents all.
     pub(super) clamping: &'static str,
-    /// The name with the settings that matter.
+    /// Name with the relevant settings.
     pub(super) describe: fn(&PictureOptions) -> String,
-    /// Writes rows of red, green and blue.
+    /// Writes linear RGB rows.
     pub(super) write:
         fn(&Path, &Rgb<'_>, &PictureOptions, Control<'_>) -> Result<Written, ImageError>,
 }
 
-/// Rows of linear red, green and blue, and what makes display values of them.
+/// Linear RGB rows and their tone mapping.
 pub(super) struct Rgb<'a> {
     pub(super) size: Size,
     pub(super) source: &'a dyn RowSource,
     pub(super) tone: &'a ToneMapper,
 }
 
-/// What a writer reports of a file it finished.
+/// Report on a written file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Written {
     /// Size of the file in bytes.
     pub bytes: u64,
-    /// Samples beyond what the format holds, brought to its nearest value: for instance a sun's disc above 65504 in a
-    /// half-precision EXR. Always 0 for PNG and JPEG, where the tone curve sees to it.
+    /// Number of samples outside the range of the format, clamped to it: for instance a sun's disc above 65504 in a
+    /// half-precision EXR. Always 0 for PNG and JPEG, whose range is that of the tone curve.
     pub clamped_samples: u64,
-    /// Samples that were not a number, written as 0. Always 0 for PNG and JPEG.
+    /// Number of NaN samples, written as 0. Always 0 for PNG and JPEG.
     pub nan_samples: u64,
 }
 
-/// Runs an encoder into a file beside `path`, then moves it there.
+/// Encodes to a temporary file beside `path`, then moves it there.
 pub(super) fn into_file(
     path: &Path,
     control: Control<'_>,

@@ -1,7 +1,7 @@
-//! Radiance RGBE files: three 8-bit mantissas and a shared exponent, about 1 percent steps, run-length encoded.
+//! Radiance RGBE files: three 8-bit mantissas and a shared exponent, steps of about 1 percent, run-length encoded.
 //!
-//! Mantissas are rounded to nearest for readers that take them as they are (most do), so values come back within 0.4
-//! percent of the largest component. Radiance's own programs add half a step on reading.
+//! Mantissas are rounded to nearest, as most readers expect: errors stay below 0.4 percent of the largest component.
+//! Radiance's own programs add half a step on reading.
 
 use super::{
     Metadata,
@@ -13,7 +13,7 @@ use std::{io::Write, path::Path};
 
 const FORMAT: &str = "Radiance HDR";
 
-/// The format of this file's writer.
+/// Registry entry of the format.
 pub(super) static ENTRY: FormatEntry = FormatEntry {
     name: FORMAT,
     endings: &["hdr", "pic"],
@@ -27,13 +27,13 @@ pub(super) static ENTRY: FormatEntry = FormatEntry {
     },
 };
 
-/// The largest value RGBE holds: mantissa 255 with the highest exponent.
-const LARGEST: f32 = 255.0 * 6.646_14e35;
+/// Largest RGBE value: mantissa 255 with the highest exponent.
+const MAX: f32 = 255.0 * 6.646_14e35;
 
 /// Writes linear RGB rows to a file.
 ///
 /// # Errors
-/// [`ImageError`]; the target is then as before.
+/// [`ImageError`]; the target is then unchanged.
 pub fn write(
     path: &Path,
     size: Size,
@@ -46,10 +46,10 @@ pub fn write(
     })
 }
 
-/// Writes linear RGB rows to a stream. [`Written::bytes`] is left 0.
+/// Writes linear RGB rows to a stream as [`write()`] does; [`Written::bytes`] stays 0.
 ///
 /// # Errors
-/// [`ImageError`] where the source has not three channels, the stream fails, or the caller asks to stop.
+/// [`ImageError`] where the source does not have three channels, the stream fails, or the caller cancels.
 pub fn encode<W: Write + Send>(
     out: &mut W,
     size: Size,
@@ -96,7 +96,7 @@ pub fn encode<W: Write + Send>(
 fn header(size: Size, metadata: &Metadata) -> String {
     let mut text = String::from("#?RADIANCE\n");
     for (name, value) in metadata.as_texts() {
-        // One line each; an `=` in the name would split it elsewhere.
+        // One line each, with only one `=`.
         let clean = |text: &str| text.replace(['\n', '\r', '\0'], " ");
         let name = clean(&name).to_ascii_uppercase().replace([' ', '='], "_");
         text.push_str(&format!("# {name}={}\n", clean(&value)));
@@ -122,28 +122,28 @@ fn header(size: Size, metadata: &Metadata) -> String {
     text
 }
 
-/// Mantissas and exponent of a colour. Negative values, which RGBE cannot hold, become 0.
+/// Mantissas and exponent of a colour; negative components become 0.
 #[inline]
 fn rgbe(rgb: [f32; 3], counts: &mut Written) -> [u8; 4] {
     let rgb = rgb.map(|v| {
         if v.is_nan() {
             counts.nan_samples += 1;
             0.0
-        } else if !(0.0..=LARGEST).contains(&v) {
+        } else if !(0.0..=MAX).contains(&v) {
             counts.clamped_samples += 1;
-            v.clamp(0.0, LARGEST)
+            v.clamp(0.0, MAX)
         } else {
             v
         }
     });
-    let most = rgb[0].max(rgb[1]).max(rgb[2]);
-    if most < 1e-37 {
+    let max = rgb[0].max(rgb[1]).max(rgb[2]);
+    if max < 1e-37 {
         return [0; 4];
     }
-    // most = m * 2^exponent with m in [1/2, 1).
-    let mut exponent = (most.to_bits() >> 23) as i32 - 126;
+    // max = m * 2^exponent with m in [1/2, 1).
+    let mut exponent = (max.to_bits() >> 23) as i32 - 126;
     // Rounding up to 256 takes the next exponent.
-    if most * power_of_two(8 - exponent) >= 255.5 {
+    if max * power_of_two(8 - exponent) >= 255.5 {
         exponent += 1;
     }
     let scale = power_of_two(8 - exponent);
@@ -151,13 +151,13 @@ fn rgbe(rgb: [f32; 3], counts: &mut Written) -> [u8; 4] {
     [r, g, b, (exponent + 128).clamp(0, 255) as u8]
 }
 
-/// 2^n, for normal results.
+/// 2^n where the result is normal.
 #[inline]
 fn power_of_two(n: i32) -> f32 {
     f32::from_bits(((n + 127).clamp(1, 254) as u32) << 23)
 }
 
-/// Appends a scan line: run-length encoded by component where the format allows its width, else plain.
+/// Appends a scan line: run-length encoded by component where the format allows for its width, plain otherwise.
 fn scan_line(pixels: &[[u8; 4]], out: &mut Vec<u8>) {
     let width = pixels.len();
     if !(8..=0x7fff).contains(&width) {
@@ -177,9 +177,9 @@ fn scan_line(pixels: &[[u8; 4]], out: &mut Vec<u8>) {
 /// Runs as `128 + length, value` (length 2 to 127), other bytes as `length, values` (length 1 to 128).
 fn run_lengths(values: &[u8], out: &mut Vec<u8>) {
     // Shorter runs cost more than they save.
-    const WORTHWHILE: usize = 4;
+    const MIN_RUN: usize = 4;
     let mut at = 0;
-    let mut loose = 0;
+    let mut literal = 0;
     let flush = |from: usize, to: usize, out: &mut Vec<u8>| {
         for part in values[from..to].chunks(128) {
             out.push(part.len() as u8);
@@ -192,14 +192,14 @@ fn run_lengths(values: &[u8], out: &mut Vec<u8>) {
             .take(127)
             .take_while(|&&v| v == values[at])
             .count();
-        if run >= WORTHWHILE {
-            flush(loose, at, out);
+        if run >= MIN_RUN {
+            flush(literal, at, out);
             out.extend_from_slice(&[128 + run as u8, values[at]]);
             at += run;
-            loose = at;
+            literal = at;
         } else {
             at += run;
         }
     }
-    flush(loose, at, out);
+    flush(literal, at, out);
 }

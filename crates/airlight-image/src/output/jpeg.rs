@@ -21,7 +21,7 @@ use std::{
 
 const FORMAT: &str = "JPEG";
 
-/// The format of this file's writer.
+/// Registry entry of the format.
 pub(super) static ENTRY: FormatEntry = FormatEntry {
     name: FORMAT,
     endings: &["jpg", "jpeg"],
@@ -38,10 +38,10 @@ pub(super) static ENTRY: FormatEntry = FormatEntry {
     },
 };
 
-/// Writes linear RGB rows, as `tone` shows them, to a file.
+/// Writes linear RGB rows, tone mapped by `tone`, to a file.
 ///
 /// # Errors
-/// [`ImageError`]; the target is then as before.
+/// [`ImageError`]; the target is then unchanged.
 pub fn write(
     path: &Path,
     size: Size,
@@ -56,11 +56,11 @@ pub fn write(
     })
 }
 
-/// Writes linear RGB rows, as `tone` shows them, to a stream. [`Written::bytes`] is left 0.
+/// Writes linear RGB rows to a stream as [`write()`] does; [`Written::bytes`] stays 0.
 ///
 /// # Errors
-/// [`ImageError`] where the source has not three channels, a side is above 65535, the quality is out of range, the
-/// stream fails, or the caller asks to stop.
+/// [`ImageError`] where the source does not have three channels, a side is above 65535, the quality is out of range, the
+/// stream fails, or the caller cancels.
 pub fn encode<W: Write + Send>(
     out: &mut W,
     size: Size,
@@ -81,7 +81,7 @@ pub fn encode<W: Write + Send>(
     let side = |n: u32| {
         u16::try_from(n).map_err(|_| ImageError::Encode {
             format: FORMAT,
-            reason: format!("a side of {n} pixels is above 65535; PNG and EXR take it"),
+            reason: format!("expected at most 65535 pixels a side, got {n}; try PNG or EXR"),
         })
     };
     let (width, height) = (side(size.width())?, side(size.height())?);
@@ -102,7 +102,7 @@ pub fn encode<W: Write + Send>(
             };
             run_encoder(stream, buffer, options, metadata)
         });
-        // The sender moves into the closure and is dropped with it, so the encoder never waits in vain.
+        // The sender is dropped with the closure, so that the encoder does not wait forever.
         let fed = Bands::for_channels(size, 3, 16).run(
             size.width() as usize * 3 * 64,
             control,
@@ -126,10 +126,10 @@ pub fn encode<W: Write + Send>(
         let encoded = encoder.join().unwrap_or_else(|_| {
             Err(ImageError::Encode {
                 format: FORMAT,
-                reason: "the encoder failed".to_owned(),
+                reason: "the encoder panicked".to_owned(),
             })
         });
-        // Where the encoder failed by itself, its reason is the one to report, not that nobody took the rows.
+        // An error of the encoder takes precedence over the closed channel that it causes.
         match (fed, control.check()) {
             (Ok(()), _) => encoded,
             (Err(_), Err(cancelled)) => Err(cancelled.into()),
@@ -166,7 +166,7 @@ fn run_encoder<W: Write>(
     encoder.encode_image(buffer).map_err(failed)
 }
 
-/// Luma and the two chromas of a band, each row after row.
+/// Luma and the two chroma planes of a band.
 type PlanarBand = [Vec<u8>; 3];
 
 fn planar_band(
@@ -193,12 +193,12 @@ fn planar_band(
     planes
 }
 
-/// Hands the encoder rows as they come; it asks for them from top to bottom, for the last one perhaps again.
+/// Rows as they arrive for the encoder, which reads them from top to bottom and may repeat the last one.
 struct IncomingRows<'a> {
     width: u16,
     height: u16,
     incoming: Receiver<PlanarBand>,
-    /// The band being read and the number of its first row.
+    /// The current band and its first row.
     band: RefCell<(PlanarBand, usize)>,
     stopped: &'a AtomicBool,
 }
@@ -224,7 +224,7 @@ impl ImageBuffer for IncomingRows<'_> {
             match self.incoming.recv() {
                 Ok(next) => *band = (next, first),
                 Err(_) => {
-                    // Nothing more comes: end the encoding at its next write.
+                    // No more rows: stops the encoder at its next write.
                     self.stopped.store(true, Ordering::Relaxed);
                     for buffer in &mut buffers[..3] {
                         buffer.resize(buffer.len() + width, 0);
@@ -240,7 +240,7 @@ impl ImageBuffer for IncomingRows<'_> {
     }
 }
 
-/// A stream that fails once told to stop: the only way out of the encoder.
+/// A stream that fails once `stopped` is set: the only way to interrupt the encoder.
 struct Stoppable<'a, W> {
     out: &'a mut W,
     stopped: &'a AtomicBool,
@@ -259,7 +259,7 @@ impl<W: Write> Write for Stoppable<'_, W> {
     }
 }
 
-/// A minimal Exif block (TIFF structure, little endian): software, description, and that the colours are sRGB.
+/// A minimal Exif block (TIFF, little endian): software, description, sRGB colour space.
 fn exif(metadata: &Metadata) -> Vec<u8> {
     const ASCII: u16 = 2;
     const SHORT: u16 = 3;
@@ -285,7 +285,7 @@ fn exif(metadata: &Metadata) -> Vec<u8> {
             .take(8000)
             .collect();
         bytes.push(0);
-        // Texts of 4 bytes or fewer would be stored in the entry itself.
+        // Texts of up to 4 bytes would be stored in the entry itself.
         while bytes.len() < 5 {
             bytes.push(0);
         }

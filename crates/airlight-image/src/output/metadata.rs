@@ -1,22 +1,21 @@
-//! What a picture file says about itself.
+//! Metadata of picture files.
 
 use crate::{Frame, Projection};
 use airlight::spectrum::RgbSpace;
 
-/// Facts about a picture. EXR files keep them as standard attributes where there is one, PNG files as text chunks, HDR
-/// files as header lines, JPEG files as a comment.
+/// Metadata of a picture. EXR files store them as standard attributes where one exists, PNG files as text chunks, HDR files as
+/// header lines, JPEG files in the Exif block.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Metadata {
-    /// Program and version that made it.
+    /// Program and version.
     pub software: Option<String>,
-    /// Who it belongs to.
+    /// Owner or author.
     pub owner: Option<String>,
-    /// Anything else a person should read.
+    /// Free text.
     pub comments: Option<String>,
-    /// Local date and time shown: `YYYY:MM:DD hh:mm:ss`, as OpenEXR wants it.
+    /// Local date and time of the scene, as in OpenEXR: `YYYY:MM:DD hh:mm:ss`.
     pub capture_date: Option<String>,
-    /// Local time minus UTC in seconds: positive east of Greenwich. (OpenEXR stores the opposite sign; the writer sees
-    /// to it.)
+    /// Local time minus UTC in seconds: positive east of Greenwich. (OpenEXR files store the opposite sign.)
     pub utc_offset_s: Option<f32>,
     /// Degrees north of the equator.
     pub latitude_deg: Option<f32>,
@@ -24,13 +23,13 @@ pub struct Metadata {
     pub longitude_deg: Option<f32>,
     /// Metres above sea level.
     pub altitude_m: Option<f32>,
-    /// Luminance in cd/m^2 of RGB (1, 1, 1): 1 where the values are in cd/m^2.
+    /// Luminance of RGB (1, 1, 1), cd/m^2: 1 where the values are in cd/m^2.
     pub white_luminance_cd_m2: Option<f32>,
-    /// Primaries and white of the RGB values; readers take sRGB's where it is missing.
+    /// Primaries and white of the RGB values; readers assume sRGB where they are missing.
     pub chromaticities: Option<Chromaticities>,
     /// The picture covers the sphere as an equirectangular map.
     pub is_latitude_longitude: bool,
-    /// Further named texts: units, command line, place, ...
+    /// Further named texts, such as units or the command line.
     pub texts: Vec<(String, String)>,
 }
 
@@ -48,14 +47,7 @@ pub struct Chromaticities {
 }
 
 impl Chromaticities {
-    /// sRGB and Rec. ITU-R BT.709, white D65.
-    pub const SRGB: Self = Self {
-        red: [0.64, 0.33],
-        green: [0.30, 0.60],
-        blue: [0.15, 0.06],
-        white: [0.3127, 0.3290],
-    };
-    /// The CIE 1931 XYZ components themselves, white of equal energy.
+    /// CIE 1931 XYZ, white of equal energy.
     pub const XYZ: Self = Self {
         red: [1.0, 0.0],
         green: [0.0, 1.0],
@@ -66,58 +58,48 @@ impl Chromaticities {
 
 impl From<RgbSpace> for Chromaticities {
     fn from(space: RgbSpace) -> Self {
-        let [red, green, blue] = space.primaries_xy().map(|xy| xy.map(|v| v as f32));
+        let xy = |point: [f64; 2]| point.map(|v| v as f32);
+        let [red, green, blue] = space.primaries_xy().map(xy);
         Self {
             red,
             green,
             blue,
-            white: space.white_point_xy().map(|v| v as f32),
+            white: xy(space.white_point_xy()),
         }
     }
 }
 
 impl Metadata {
-    /// The same with the frame's projection described.
+    /// The same with a description of the frame's projection.
     pub fn with_frame(mut self, frame: &Frame) -> Self {
-        let (kind, detail) = match frame.projection() {
+        let settings = match frame.projection() {
             Projection::Equirectangular { center_azimuth_deg } => {
                 self.is_latitude_longitude = true;
-                (
-                    "equirectangular",
-                    format!("center azimuth {center_azimuth_deg} deg"),
-                )
+                format!("center azimuth {center_azimuth_deg} deg")
             }
-            Projection::CubeFace(face) => ("cube face", face.name().to_owned()),
-            Projection::AngularFisheye(fisheye) => (
-                "equidistant fisheye",
-                format!(
-                    "azimuth {} deg, elevation {} deg, field of view {} deg",
-                    fisheye.azimuth_deg, fisheye.elevation_deg, fisheye.field_of_view_deg
-                ),
+            Projection::CubeFace(face) => face.to_string(),
+            Projection::AngularFisheye(fisheye) => format!(
+                "equidistant, azimuth {} deg, elevation {} deg, field of view {} deg",
+                fisheye.azimuth_deg, fisheye.elevation_deg, fisheye.field_of_view_deg
             ),
-            Projection::Perspective(camera) => (
-                "perspective",
-                format!(
-                    "azimuth {} deg, elevation {} deg, roll {} deg, vertical field of view {} deg",
-                    camera.azimuth_deg,
-                    camera.elevation_deg,
-                    camera.roll_deg,
-                    camera.vertical_fov_deg
-                ),
+            Projection::Perspective(camera) => format!(
+                "azimuth {} deg, elevation {} deg, roll {} deg, vertical field of view {} deg",
+                camera.azimuth_deg, camera.elevation_deg, camera.roll_deg, camera.vertical_fov_deg
             ),
         };
+        let name = frame.projection().name();
         self.texts
-            .push(("projection".to_owned(), format!("{kind}, {detail}")));
+            .push(("projection".to_owned(), format!("{name}, {settings}")));
         self
     }
 
-    /// The same with a named text added.
+    /// The same with another named text.
     pub fn with_text(mut self, name: impl Into<String>, text: impl Into<String>) -> Self {
         self.texts.push((name.into(), text.into()));
         self
     }
 
-    /// Every fact as a name and a text, for formats that know nothing else.
+    /// All metadata as names and texts, for formats without standard fields.
     pub(super) fn as_texts(&self) -> Vec<(String, String)> {
         let mut texts = Vec::new();
         let mut add = |name: &str, text: Option<String>| {

@@ -1,21 +1,18 @@
 //! Picture files: OpenEXR (RGB and spectral), Radiance HDR, PNG, JPEG; [`PictureFormat`] lists them.
 //!
-//! Every writer computes rows in parallel in bands, holds few bands at a time, polls for cancellation, and writes
-//! beside its target: the target appears whole or not at all.
+//! Writers compute rows in parallel in bands, hold few bands in memory, check for cancellation, and write a temporary file that
+//! replaces the target when it is complete.
 
 mod atomic;
 mod bands;
 mod deflate;
 pub mod exr;
-mod exr_header;
-mod exr_stream;
 mod format;
 pub mod hdr;
 pub mod jpeg;
 mod metadata;
 mod options;
 pub mod png;
-mod png_filter;
 pub mod spectral;
 
 pub use atomic::AtomicFile;
@@ -27,7 +24,7 @@ use crate::{Control, ImageError, RowSource, Size, tone::ToneMapper};
 use format::{FormatEntry, Rgb};
 use std::path::Path;
 
-/// A format that pictures can be written in.
+/// A picture format with a writer.
 #[derive(Clone, Copy)]
 pub struct PictureFormat(&'static FormatEntry);
 
@@ -40,13 +37,13 @@ impl PictureFormat {
     pub const PNG: Self = Self(&png::ENTRY);
     /// JPEG: sRGB, 8 bits, lossy.
     pub const JPEG: Self = Self(&jpeg::ENTRY);
-    /// All of them.
+    /// All formats.
     pub const ALL: [Self; 4] = [Self::EXR, Self::HDR, Self::PNG, Self::JPEG];
 
-    /// The format that a file's ending names, in large or small letters.
+    /// The format of a file ending, in any case.
     ///
     /// # Errors
-    /// [`ImageError::UnknownFormat`], which lists the endings known.
+    /// [`ImageError::UnknownFormat`], which lists the known endings.
     pub fn from_path(path: &Path) -> Result<Self, ImageError> {
         let ending = path.extension().map(|e| e.to_string_lossy().into_owned());
         let lower = ending.as_deref().unwrap_or("").to_ascii_lowercase();
@@ -56,7 +53,7 @@ impl PictureFormat {
             .ok_or_else(|| ImageError::UnknownFormat {
                 path: path.to_owned(),
                 ending: match ending {
-                    Some(ending) => format!("`.{ending}` is not one it knows"),
+                    Some(ending) => format!("its ending is `.{ending}`"),
                     None => "it has no ending".to_owned(),
                 },
                 known: Self::ALL
@@ -68,12 +65,12 @@ impl PictureFormat {
             })
     }
 
-    /// Its name: "OpenEXR".
+    /// Name, such as "OpenEXR".
     pub fn name(self) -> &'static str {
         self.0.name
     }
 
-    /// Its name with the settings that matter: "float EXR".
+    /// Name with the relevant settings, such as "float EXR".
     pub fn describe(self, options: &PictureOptions) -> String {
         (self.0.describe)(options)
     }
@@ -83,22 +80,22 @@ impl PictureFormat {
         self.0.endings
     }
 
-    /// Whether it holds linear light and needs no tone mapping.
+    /// Whether the format stores linear light, without tone mapping.
     pub fn is_linear(self) -> bool {
         self.0.is_linear
     }
 
-    /// Whether it holds opacity.
+    /// Whether the format stores opacity.
     pub fn holds_alpha(self) -> bool {
         self.0.holds_alpha
     }
 
-    /// Whether it holds channels of any number and name: spectra, depth, layers.
+    /// Whether the format stores any number of named channels: spectra, depth, layers.
     pub fn holds_channels(self) -> bool {
         self.0.holds_channels
     }
 
-    /// What its writer did to the samples of [`Written::clamped_samples`], to follow their number.
+    /// What the writer does to the samples counted in [`Written::clamped_samples`], as a predicate: "lay below 0, ...".
     pub fn clamping(self) -> &'static str {
         self.0.clamping
     }
@@ -118,11 +115,17 @@ impl std::fmt::Debug for PictureFormat {
     }
 }
 
-/// Writes linear RGB rows in the format that the ending of `path` names; `tone` makes PNG and JPEG of them, EXR and HDR
-/// take them as they are.
+impl std::fmt::Display for PictureFormat {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.pad(self.0.name)
+    }
+}
+
+/// Writes linear RGB rows in the format of the ending of `path`. PNG and JPEG are tone mapped by `tone`; EXR and HDR stay
+/// linear.
 ///
 /// # Errors
-/// [`ImageError`]; nothing is left at `path`, or what was there before.
+/// [`ImageError`]; `path` is then unchanged.
 pub fn write_picture(
     path: &Path,
     size: Size,

@@ -2,35 +2,37 @@
 
 use super::Metadata;
 
-/// Settings of every format, of which [`write_picture`] uses those that apply.
+/// Settings of all formats; [`write_picture`](super::write_picture) uses those that apply.
 #[derive(Clone, Debug, Default)]
 pub struct PictureOptions {
-    /// For OpenEXR.
+    /// Settings of OpenEXR.
     pub exr: ExrOptions,
-    /// For PNG.
+    /// Settings of PNG.
     pub png: PngOptions,
-    /// For JPEG.
+    /// Settings of JPEG.
     pub jpeg: JpegOptions,
-    /// For all.
+    /// Metadata, for all formats.
     pub metadata: Metadata,
 }
 
-/// How samples are stored.
+/// Sample format of an EXR file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum ExrSample {
-    /// 16 bits: about 3 digits, up to 65504; brighter samples are brought to that and counted.
+    /// 16-bit floating point: about 3 digits, up to 65504; larger samples are clamped and counted.
     #[default]
     Half,
-    /// 32 bits; infinite samples stay infinite.
+    /// 32-bit floating point; infinite samples stay infinite.
     Float,
 }
 
-/// How samples are packed. None of these loses anything.
+/// Lossless compression method of an EXR file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum ExrCompression {
-    /// Not at all.
+    /// No compression.
     None,
-    /// Run lengths: fast, large.
+    /// Run lengths: fast, large files.
     Rle,
     /// Zip over single lines.
     ZipLine,
@@ -44,16 +46,16 @@ pub enum ExrCompression {
 /// Settings of EXR files.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct ExrOptions {
-    /// How samples are stored.
+    /// Sample format.
     pub sample: ExrSample,
-    /// How samples are packed.
+    /// Compression method.
     pub compression: ExrCompression,
 }
 
-/// Bits of a component.
+/// Bits of a component of a PNG file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum PngDepth {
-    /// 8 bits, dithered unless the tone mapper says otherwise.
+    /// 8 bits, dithered unless the tone mapper disables it.
     #[default]
     Eight,
     /// 16 bits.
@@ -65,7 +67,7 @@ pub enum PngDepth {
 pub struct PngOptions {
     /// Bits of a component.
     pub depth: PngDepth,
-    /// Effort of compression: 0 stores, 1 is fastest, 9 smallest; from 3 up little is gained.
+    /// Compression level: 0 (none), 1 (fastest) to 9 (smallest); above 3 files shrink little.
     pub compression_level: u8,
 }
 
@@ -91,7 +93,7 @@ impl Default for PngOptions {
 /// Settings of JPEG files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct JpegOptions {
-    /// 1 (smallest) to 100 (best). From 90 up colour is kept at full resolution, below at half.
+    /// 1 (smallest) to 100 (best). Below 90, colour has half the resolution.
     pub quality: u8,
 }
 

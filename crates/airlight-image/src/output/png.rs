@@ -1,5 +1,5 @@
-//! PNG files: sRGB, 8 or 16 bits, with or without opacity. Bands are filtered and compressed in parallel, each on its own, and joined to one
-//! stream.
+//! PNG files: sRGB, 8 or 16 bits, with or without opacity. Bands of rows are filtered and compressed independently in parallel, and
+//! joined to one stream.
 
 pub use super::options::{PngDepth, PngOptions};
 use super::{
@@ -7,7 +7,6 @@ use super::{
     bands::{Bands, RowBuffer},
     deflate::{Adler32, Deflater, End},
     format::{FormatEntry, Written, expect_channels, into_file},
-    png_filter,
 };
 use crate::{Control, ImageError, RowSource, Size, tone::ToneMapper};
 use png::{BitDepth, ColorType, chunk};
@@ -15,7 +14,7 @@ use std::{io::Write, path::Path};
 
 const FORMAT: &str = "PNG";
 
-/// The format of this file's writer.
+/// Registry entry of the format.
 pub(super) static ENTRY: FormatEntry = FormatEntry {
     name: FORMAT,
     endings: &["png"],
@@ -30,11 +29,11 @@ pub(super) static ENTRY: FormatEntry = FormatEntry {
     },
 };
 
-/// Writes linear RGB rows, as `tone` shows them, to a file. A fourth channel is opacity in `[0, 1]`: it is rounded,
-/// without tone curve or dither, and colours are taken as not multiplied by it.
+/// Writes linear RGB rows, tone mapped by `tone`, to a file. A fourth channel is opacity in `[0, 1]`: it is rounded
+/// without tone curve or dither; colours are not premultiplied by it.
 ///
 /// # Errors
-/// [`ImageError`]; the target is then as before.
+/// [`ImageError`]; the target is then unchanged.
 pub fn write(
     path: &Path,
     size: Size,
@@ -49,11 +48,11 @@ pub fn write(
     })
 }
 
-/// Writes rows to a stream as [`write()`] does. [`Written::bytes`] is left 0.
+/// Writes rows to a stream as [`write()`] does; [`Written::bytes`] stays 0.
 ///
 /// # Errors
-/// [`ImageError`] where the source has neither three channels nor four, a setting is out of range, the stream fails, or the caller
-/// asks to stop.
+/// [`ImageError`] where the source has neither three nor four channels, a setting is out of range, the stream fails, or the
+/// caller cancels.
 pub fn encode<W: Write + Send>(
     out: &mut W,
     size: Size,
@@ -94,7 +93,7 @@ pub fn encode<W: Write + Send>(
             checksum = checksum.then(part, length);
             let mut data = Vec::with_capacity(packed.len() + 6);
             if band == 0 {
-                // Deflate with a window of 32 KiB; header checksum included.
+                // zlib header: deflate with a window of 32 KiB.
                 data.extend_from_slice(&[0x78, 0x01]);
             }
             data.extend_from_slice(&packed);
@@ -108,8 +107,8 @@ pub fn encode<W: Write + Send>(
     Ok(Written::default())
 }
 
-/// The rows of a band, tone mapped and filtered. The first row's guesses look only to the left, so that each band
-/// stands by itself.
+/// The rows of a band, tone mapped and filtered. The first row is predicted from its left neighbours only, so that bands are
+/// independent.
 fn filtered_band(
     source: &dyn RowSource,
     tone: &ToneMapper,
@@ -124,23 +123,123 @@ fn filtered_band(
     let mut writer = RowBytes::new(tone, width, source.channels(), depth);
     let mut now = vec![0u8; width * step];
     let mut above = vec![0u8; width * step];
-    let mut scratch = png_filter::Scratch::default();
+    let mut buffers = FilterBuffers::default();
     let mut filtered = Vec::with_capacity((width * step + 1) * bands.rows(band).len());
     for (index, y) in bands.rows(band).enumerate() {
         writer.write(y, rows.row(y), &mut now);
         let before = (index > 0).then_some(above.as_slice());
-        png_filter::filter(&now, before, step, &mut scratch, &mut filtered);
+        filter_row(&now, before, step, &mut buffers, &mut filtered);
         std::mem::swap(&mut now, &mut above);
     }
     filtered
 }
 
-/// Makes the bytes of rows.
+/// Filters a row (PNG specification, clause 9: each byte as its difference from a prediction) by each method and keeps the one
+/// whose differences have the least sum of magnitudes, as the specification recommends. `above` is the previous row, if the
+/// prediction may use it; `step` is the number of bytes of a pixel.
+///
+/// Appends the number of the method and the filtered bytes to `out`.
+fn filter_row(
+    row: &[u8],
+    above: Option<&[u8]>,
+    step: usize,
+    buffers: &mut FilterBuffers,
+    out: &mut Vec<u8>,
+) {
+    let step = step.min(row.len());
+    buffers.best.resize(row.len(), 0);
+    buffers.candidate.resize(row.len(), 0);
+    left(row, step, &mut buffers.best);
+    let mut method = 1;
+    let mut least = cost(&buffers.best);
+    if let Some(above) = above {
+        let methods: [(u8, Method); 3] = [(2, up), (3, average), (4, paeth)];
+        for (number, apply) in methods {
+            apply(row, above, step, &mut buffers.candidate);
+            let sum = cost(&buffers.candidate);
+            if sum < least {
+                least = sum;
+                method = number;
+                std::mem::swap(&mut buffers.best, &mut buffers.candidate);
+            }
+        }
+    }
+    out.push(method);
+    out.extend_from_slice(&buffers.best);
+}
+
+type Method = fn(&[u8], &[u8], usize, &mut [u8]);
+
+/// Buffers reused from row to row.
+#[derive(Default)]
+struct FilterBuffers {
+    best: Vec<u8>,
+    candidate: Vec<u8>,
+}
+
+/// Sum of the magnitudes of the differences as signed bytes.
+fn cost(filtered: &[u8]) -> u64 {
+    filtered
+        .chunks(4096)
+        .map(|part| {
+            let sum: u32 = part
+                .iter()
+                .map(|&b| u32::from((b as i8).unsigned_abs()))
+                .sum();
+            u64::from(sum)
+        })
+        .sum()
+}
+
+fn left(row: &[u8], step: usize, out: &mut [u8]) {
+    out[..step].copy_from_slice(&row[..step]);
+    for ((out, now), before) in out[step..].iter_mut().zip(&row[step..]).zip(row) {
+        *out = now.wrapping_sub(*before);
+    }
+}
+
+fn up(row: &[u8], above: &[u8], _step: usize, out: &mut [u8]) {
+    for ((out, now), above) in out.iter_mut().zip(row).zip(above) {
+        *out = now.wrapping_sub(*above);
+    }
+}
+
+fn average(row: &[u8], above: &[u8], step: usize, out: &mut [u8]) {
+    for i in 0..step {
+        out[i] = row[i].wrapping_sub(above[i] / 2);
+    }
+    let neighbours = row.iter().zip(&above[step..]);
+    for ((out, now), (&a, &b)) in out[step..].iter_mut().zip(&row[step..]).zip(neighbours) {
+        // The mean, rounded down.
+        *out = now.wrapping_sub((a & b) + ((a ^ b) >> 1));
+    }
+}
+
+fn paeth(row: &[u8], above: &[u8], step: usize, out: &mut [u8]) {
+    for i in 0..step {
+        out[i] = row[i].wrapping_sub(above[i]);
+    }
+    let neighbours = row.iter().zip(&above[step..]).zip(above);
+    for ((out, now), ((&a, &b), &c)) in out[step..].iter_mut().zip(&row[step..]).zip(neighbours) {
+        // The neighbour nearest to a + b - c; ties go to left, then above.
+        let (x, y, z) = (i16::from(a), i16::from(b), i16::from(c));
+        let (to_a, to_b, to_c) = ((y - z).abs(), (x - z).abs(), (x + y - 2 * z).abs());
+        let nearer = if to_b <= to_c { b } else { c };
+        let guess = if to_a <= to_b && to_a <= to_c {
+            a
+        } else {
+            nearer
+        };
+        *out = now.wrapping_sub(guess);
+    }
+}
+
+/// Converts rows to bytes.
 struct RowBytes<'a> {
     tone: &'a ToneMapper,
     depth: PngDepth,
     has_alpha: bool,
-    /// Colours without the opacity between them; empty where there is none.
+    /// Colours without opacity; empty where there is none.
     linear: Vec<f32>,
     narrow: Vec<u8>,
     wide: Vec<u16>,
@@ -161,8 +260,8 @@ impl<'a> RowBytes<'a> {
     }
 
     fn write(&mut self, y: u32, row: &[f32], out: &mut [u8]) {
-        // Not-a-number is transparent.
-        let level = |alpha: f32, most: f32| alpha.clamp(0.0, 1.0) * most + 0.5;
+        // NaN is transparent.
+        let level = |alpha: f32, max: f32| alpha.clamp(0.0, 1.0) * max + 0.5;
         let linear = if self.has_alpha {
             let pixels = row.as_chunks::<4>().0;
             for (rgb, [r, g, b, _]) in self.linear.as_chunks_mut::<3>().0.iter_mut().zip(pixels) {
@@ -224,7 +323,7 @@ fn header<'a, W: Write>(
     });
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
     for (name, text) in metadata.as_texts() {
-        // Keywords hold 1 to 79 Latin characters.
+        // Keywords have 1 to 79 Latin characters.
         let keyword: String = name
             .chars()
             .map(|c| {

@@ -1,5 +1,5 @@
 //! Spectral EXR files in the layout of Fichet, Pacanowski and Wilkie, "An OpenEXR Layout for Spectral Images", JCGT
-//! 10(3), 2021: one channel a wavelength, beside RGB that any viewer shows.
+//! 10(3), 2021: one channel per wavelength, and RGB channels for ordinary viewers.
 
 use super::{
     Metadata, Written,
@@ -8,22 +8,22 @@ use super::{
 use crate::{Control, ImageError, RowSource, Size};
 use std::path::Path;
 
-/// Unit that the layout's own software writes for radiance. The values are spectral densities, per nanometre.
+/// Unit of radiance as written by the software of the layout's authors. The values are spectral densities, per nanometre.
 pub const RADIANCE_UNITS: &str = "W.m^-2.sr^-1";
 
-/// The channels of a spectral picture.
+/// Channels of a spectral picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpectralLayout {
     names: Vec<String>,
 }
 
 impl SpectralLayout {
-    /// Rows whose pixels hold red, green and blue, then the spectral radiance (W m^-2 sr^-1 nm^-1) at each of these
+    /// A layout whose pixels hold red, green and blue, then the spectral radiance (W m^-2 sr^-1 nm^-1) at each of these
     /// wavelengths (nanometres).
     ///
     /// # Errors
-    /// [`ImageError::Setting`] where there is no wavelength, one is not positive and finite, or two would get the same
-    /// name (they are written to a millionth of a nanometre).
+    /// [`ImageError::Setting`] where there is no wavelength, one is not positive and finite, or two have the same name (which
+    /// has a resolution of a millionth of a nanometre).
     pub fn new(wavelengths_nm: &[f64]) -> Result<Self, ImageError> {
         let refuse = |got: String, right| {
             Err(ImageError::Setting {
@@ -55,16 +55,16 @@ impl SpectralLayout {
     }
 }
 
-/// The name of the channel of unpolarised light at a wavelength: the decimal mark is a comma, as points part layers.
+/// Name of the channel of unpolarised light at a wavelength. The decimal mark is a comma, as points separate layers.
 pub fn channel_name(wavelength_nm: f64) -> String {
     let number = format!("{wavelength_nm:.6}").replace('.', ",");
     format!("S0.{number}nm")
 }
 
-/// Writes spectral rows, laid out as [`SpectralLayout::new`] says, to a file.
+/// Writes spectral rows, with pixels as in [`SpectralLayout::new`], to a file.
 ///
 /// # Errors
-/// [`ImageError`]; the target is then as before.
+/// [`ImageError`]; the target is then unchanged.
 pub fn write(
     path: &Path,
     size: Size,

@@ -1,35 +1,35 @@
-//! Noise that hides the steps of 8-bit pictures: triangular, one step to either side, the same on every run.
+//! Dither of 8-bit pictures: triangular noise of one step to either side, the same on every run.
 //!
-//! Along a row each value is the difference of two successive hashes, so that most of its power lies at high
-//! frequencies, where it is seen least.
+//! Along a row each value is the difference of two successive hashes, so that most of its power is at high
+//! frequencies, where it is least visible.
 
-/// The noise of one row.
+/// Noise of one row.
 #[derive(Clone, Debug)]
-pub struct RowDither {
+pub(super) struct RowDither {
     seed: u32,
     column: u32,
     last: [f32; 3],
 }
 
 impl RowDither {
-    /// The noise of row `y`, from its first pixel.
-    pub fn new(y: u32) -> Self {
-        let seed = scramble(y ^ 0x5bd1_e995);
+    /// Noise of row `y` from its first pixel.
+    pub(super) fn new(y: u32) -> Self {
+        let seed = hash(y ^ 0x5bd1_e995);
         Self {
             seed,
             column: 0,
-            last: split(scramble(seed)),
+            last: split(hash(seed)),
         }
     }
 
-    /// Noise for the three components of the next N pixels, component by component, in steps: each in `(-1, 1)`, mean
-    /// 0, variance 1/6.
+    /// Noise for the three components of the next N pixels, component by component, in steps of 8-bit values: in `(-1, 1)`,
+    /// mean 0, variance 1/6.
     #[inline(always)]
-    pub fn next_pixels<const N: usize>(&mut self) -> [[f32; N]; 3] {
+    pub(super) fn next_pixels<const N: usize>(&mut self) -> [[f32; N]; 3] {
         let mut now = [[0.0; N]; 3];
         for i in 0..N {
             let column = self.column.wrapping_add(1 + i as u32);
-            let bits = scramble(self.seed.wrapping_add(column.wrapping_mul(0x9e37_79b9)));
+            let bits = hash(self.seed.wrapping_add(column.wrapping_mul(0x9e37_79b9)));
             let values = split(bits);
             for (plane, value) in now.iter_mut().zip(values) {
                 plane[i] = value;
@@ -49,16 +49,54 @@ impl RowDither {
     }
 }
 
-/// Mixes the bits of a number so that neighbours become unrelated.
+/// Hashes a number, so that neighbours are unrelated.
 #[inline(always)]
-fn scramble(n: u32) -> u32 {
+fn hash(n: u32) -> u32 {
     let n = (n ^ (n >> 16)).wrapping_mul(0x21f0_aaad);
     let n = (n ^ (n >> 15)).wrapping_mul(0x735a_2d97);
     n ^ (n >> 15)
 }
 
-/// Three numbers in `[0, 1)` from the bits of one.
+/// Three numbers in `[0, 1)` from the bits of a hash.
 #[inline(always)]
 fn split(bits: u32) -> [f32; 3] {
     [bits >> 22, (bits >> 11) & 0x3ff, bits & 0x3ff].map(|n| n as f32 * (1.0 / 1024.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn dither_is_balanced_and_the_same_every_time() {
+        let (mut sum, mut squares, mut next_to) = ([0.0; 3], [0.0; 3], 0.0);
+        let (rows, columns) = (200, 1000);
+        for y in 0..rows {
+            let mut row = RowDither::new(y);
+            let mut before = 0.0;
+            for _ in 0..columns {
+                let noise = row.next_pixels::<1>().map(|[v]| v);
+                for c in 0..3 {
+                    assert!(noise[c].abs() < 1.0);
+                    sum[c] += f64::from(noise[c]);
+                    squares[c] += f64::from(noise[c]).powi(2);
+                }
+                next_to += before * f64::from(noise[0]);
+                before = f64::from(noise[0]);
+            }
+        }
+        let count = f64::from(rows * columns);
+        for c in 0..3 {
+            assert!((sum[c] / count).abs() < 1e-3);
+            assert!((squares[c] / count - 1.0 / 6.0).abs() < 2e-3);
+        }
+        // Neighbours are anticorrelated: the noise has high frequencies.
+        assert!((next_to / count + 1.0 / 12.0).abs() < 2e-3);
+        // Independent of the number of pixels at a time.
+        let many = RowDither::new(7).next_pixels::<5>();
+        let mut one = RowDither::new(7);
+        for i in 0..5 {
+            assert_eq!(one.next_pixels::<1>(), many.map(|plane| [plane[i]]));
+        }
+    }
 }

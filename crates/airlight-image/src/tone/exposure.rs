@@ -1,20 +1,20 @@
-//! How bright a picture is made: by a camera's exposure value, or metered from the scene.
+//! Exposure: from a camera's exposure value, or metered from the scene.
 
-use super::MIDDLE_GREY;
+use super::filmic::MIDDLE_GREY;
 use crate::ImageError;
 
-/// The factor that brings linear light to display scale.
+/// Factor from linear light to display scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Exposure {
     factor: f64,
 }
 
 impl Exposure {
-    /// Multiplies linear values by `factor`.
+    /// An exposure that multiplies linear values by `factor`.
     ///
     /// # Errors
-    /// [`ImageError::Setting`] where it is negative or not finite.
-    pub fn factor_of(factor: f64) -> Result<Self, ImageError> {
+    /// [`ImageError::Setting`] where `factor` is negative or not finite.
+    pub fn from_factor(factor: f64) -> Result<Self, ImageError> {
         if factor.is_finite() && factor >= 0.0 && (factor as f32).is_finite() {
             Ok(Self { factor })
         } else {
@@ -26,8 +26,8 @@ impl Exposure {
         }
     }
 
-    /// A camera's exposure value at ISO 100, for linear values in cd/m^2: the luminance `1.2 * 2^ev100` saturates the
-    /// sensor (ISO 12232, saturation-based speed, lens transmittance 0.65) and becomes 1.
+    /// The exposure of a camera's exposure value at ISO 100, for linear values in cd/m^2: the luminance `1.2 * 2^ev100` saturates
+    /// the sensor (ISO 12232, saturation-based speed, lens transmittance 0.65) and becomes 1.
     ///
     /// # Errors
     /// [`ImageError::Setting`] where `ev100` is outside `[-40, 60]`.
@@ -45,48 +45,47 @@ impl Exposure {
         }
     }
 
-    /// Metered from luminances, such as those of a coarse grid of pixels of the picture: brings their typical value to
-    /// the metering's key. `None` where nothing is lit or the key is negative or not a number.
+    /// An exposure metered from luminances, such as those of a coarse grid of pixels: scales their typical value to the key of the
+    /// metering. `None` where no luminance is positive or the key is negative or NaN.
     ///
-    /// `samples` are pairs of luminance and weight (solid angle, or 1): not-a-number, infinite and non-positive
-    /// luminances and weights do not count. The typical value is the weighted mean logarithm of what lies between two
-    /// percentiles, so that a sun's disc or a black ground leaves it alone. The result does not depend on the order of
-    /// the samples but by rounding.
+    /// `samples` are pairs of luminance and weight (solid angle, or 1); NaN, infinite and non-positive luminances and weights are
+    /// ignored. The typical value is the weighted geometric mean between two percentiles, so that the sun's disc or a black
+    /// ground have no influence. The order of the samples changes the result only by rounding.
     pub fn metered(samples: &[(f32, f32)], metering: Metering) -> Option<Self> {
         let typical = metering.typical_luminance(samples)?;
         let factor = metering.key * metering.compensation_stops.exp2() / typical;
-        Self::factor_of(factor).ok()
+        Self::from_factor(factor).ok()
     }
 
-    /// The factor.
+    /// Factor for linear values.
     pub fn factor(self) -> f64 {
         self.factor
     }
 
-    /// The exposure value at ISO 100 that does the same, for linear values in cd/m^2.
+    /// Equivalent exposure value at ISO 100, for linear values in cd/m^2.
     pub fn ev100(self) -> f64 {
         -(1.2 * self.factor).log2()
     }
 
-    /// Brighter by so many stops (darker where negative).
+    /// The same exposure, brighter by a number of stops (darker where negative).
     ///
     /// # Errors
     /// [`ImageError::Setting`] where the result is out of range.
     pub fn brighter_by(self, stops: f64) -> Result<Self, ImageError> {
-        Self::factor_of(self.factor * stops.exp2())
+        Self::from_factor(self.factor * stops.exp2())
     }
 }
 
-/// How [`Exposure::metered`] judges a scene.
+/// Settings of [`Exposure::metered`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Metering {
-    /// Value that the typical luminance is brought to: middle grey by default.
+    /// Exposed value of the typical luminance; 0.18, middle grey, by default.
     pub key: f64,
-    /// The darkest part of the picture left out, 0 to 1.
+    /// Fraction of the darkest luminances ignored, 0 to 1.
     pub low_percentile: f64,
-    /// The part of the picture below which luminances count, 0 to 1.
+    /// Fraction of luminances above which the brightest are ignored, 0 to 1.
     pub high_percentile: f64,
-    /// Stops by which the result is made brighter.
+    /// Stops added to the result.
     pub compensation_stops: f64,
 }
 
@@ -102,7 +101,7 @@ impl Default for Metering {
 }
 
 impl Metering {
-    /// The weighted geometric mean of the luminances between the percentiles; `None` where nothing is lit.
+    /// Weighted geometric mean of the luminances between the percentiles; `None` where no luminance is positive.
     pub fn typical_luminance(&self, samples: &[(f32, f32)]) -> Option<f64> {
         let counts = |v: f32| v.is_finite() && v > 0.0;
         let mut lit: Vec<(f32, f32)> = samples
@@ -127,7 +126,7 @@ impl Metering {
         if weights > 0.0 {
             Some((sum / weights).exp())
         } else {
-            // Percentiles that leave nothing between them: the one luminance there.
+            // Nothing lies between the percentiles: the luminance at the lower one.
             let mut passed = 0.0;
             lit.iter()
                 .find(|&&(_, weight)| {

@@ -1,50 +1,47 @@
-//! A filmic tone curve after the idea of AgX: draw colours in towards white, shape the logarithm of each component by
-//! a sigmoid, and let them out again.
+//! A filmic tone curve in the manner of AgX: inset colours towards white, map the logarithm of each component by a sigmoid, and
+//! outset them again.
 //!
 //! # Derivation
 //! **Curve.** With `x = log2(v / 0.18)` in stops, taken linearly from `[-black_stops, white_stops]` to `[0, 1]`, the
-//! display signal is a sigmoid through three points: `(0, 0)`, the pivot `(x_p, y_p)` where middle grey lies, and
-//! `(1, 1)`, with slope `m` at the pivot. The signal is a power 2.4 of display light, and middle grey shall come out as
-//! it went in: `y_p = 0.18^(1/2.4)`. On either side of the pivot, with `u = m |x - x_p|`, the generalised sigmoid
-//! `u / (1 + (u/a)^p)^(1/p)` starts with slope `m`, bends and never exceeds `a`; asking that it cover exactly the
+//! display signal is a sigmoid through three points: `(0, 0)`, the pivot `(x_p, y_p)` of middle grey, and
+//! `(1, 1)`, with slope `m` at the pivot. Display light is the power 2.4 of the signal, and middle grey is unchanged:
+//! `y_p = 0.18^(1/2.4)`. On either side of the pivot, with `u = m |x - x_p|`, the generalised sigmoid
+//! `u / (1 + (u/a)^p)^(1/p)` starts with slope `m`, bends and never exceeds `a`; the condition that it cover exactly the
 //! height `h` (to 0 or 1) over the width `w` gives `a = m w / ((m w / h)^p - 1)^(1/p)`, which needs `m w > h`.
 //!
-//! **Inset.** `c' = (1 - s) c + s (w . c)`: each component moves the part `s` of the way to a weighted mean. Bright
+//! **Inset.** `c' = (1 - s) c + s (w . c)`: each component moves by the fraction `s` towards a weighted mean. Bright
 //! saturated light thus reaches all three components and goes to white, as on film, instead of clipping to a pure
 //! hue. The published AgX matrix (T. Sobotka, 2022) is of this form with `s = 0.2` and weights
 //! (0.2120, 0.3922, 0.3958). After the curve the exact inverse, `c = (c' - s (w . c')) / (1 - s)` as the weights sum to
-//! 1, gives the saturation back where the curve was straight.
+//! 1, restores the saturation where the curve is straight.
 
-use super::{
-    planes::{Planes, into_unit_cube, mix},
-    table::OctaveTable,
-};
+use super::blocks::{OctaveTable, Planes, into_unit_cube, mix};
 use crate::ImageError;
 
 /// Linear value of middle grey.
-pub const MIDDLE_GREY: f64 = 0.18;
+pub(super) const MIDDLE_GREY: f64 = 0.18;
 
-/// Weights of the mean towards which the inset draws colours.
+/// Weights of the mean of the inset.
 const INSET_WEIGHTS: [f32; 3] = [0.212, 0.3922, 0.3958];
 
-/// Power between the curve's signal and display light.
+/// Exponent from the signal of the curve to display light.
 const SIGNAL_POWER: f64 = 2.4;
 
 /// Shape of the filmic curve. The default is that of AgX.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FilmicSettings {
-    /// Stops below middle grey at which black is reached; 1 to 30.
+    /// Stops from middle grey down to black; 1 to 30.
     pub black_stops: f64,
-    /// Stops above middle grey at which white is reached; 1 to 30.
+    /// Stops from middle grey up to white; 1 to 30.
     pub white_stops: f64,
-    /// Slope of the curve at middle grey, signal (0 to 1) over the whole range of stops (0 to 1). 2.4 leaves colours
-    /// near middle grey almost as they are; more is harder.
+    /// Slope of the curve at middle grey: signal (0 to 1) over the range of stops (0 to 1). 2.4 hardly changes colours
+    /// near middle grey; more gives more contrast.
     pub slope: f64,
-    /// Sharpness of the bend into black; above 0, at most 10.
+    /// Sharpness of the toe, the bend to black; above 0, at most 10.
     pub toe_power: f64,
-    /// Sharpness of the bend into white; above 0, at most 10.
+    /// Sharpness of the shoulder, the bend to white; above 0, at most 10.
     pub shoulder_power: f64,
-    /// How far colours are drawn towards white before the curve: 0 to below 0.9.
+    /// Fraction by which colours move towards white before the curve: 0 to below 0.9.
     pub inset: f64,
 }
 
@@ -63,8 +60,7 @@ impl Default for FilmicSettings {
 
 /// The filmic curve, tabulated.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Filmic {
-    settings: FilmicSettings,
+pub(super) struct Filmic {
     inset: f32,
     outset_scale: f32,
     table: OctaveTable,
@@ -72,79 +68,58 @@ pub struct Filmic {
 
 impl Filmic {
     /// Checks the settings and tabulates the curve.
-    ///
-    /// # Errors
-    /// [`ImageError::Setting`] where a number is out of range, or the slope too small for the curve to reach black
-    /// and white.
-    pub fn new(settings: FilmicSettings) -> Result<Self, ImageError> {
-        let demand = |fulfilled, what, got: f64, right| {
-            if fulfilled {
-                Ok(())
-            } else {
-                Err(ImageError::Setting {
-                    what,
-                    got: got.to_string(),
-                    right,
-                })
-            }
-        };
+    pub(super) fn new(settings: FilmicSettings) -> Result<Self, ImageError> {
         let s = settings;
         let stops = |n: f64| (1.0..=30.0).contains(&n);
         let power = |n: f64| n > 0.0 && n <= 10.0;
-        demand(
+        ImageError::require(
             stops(s.black_stops),
             "the stops below middle grey",
             s.black_stops,
             "1 to 30",
         )?;
-        demand(
+        ImageError::require(
             stops(s.white_stops),
             "the stops above middle grey",
             s.white_stops,
             "1 to 30",
         )?;
-        demand(
+        ImageError::require(
             power(s.toe_power),
             "the toe power",
             s.toe_power,
             "above 0 and at most 10",
         )?;
-        demand(
+        ImageError::require(
             power(s.shoulder_power),
             "the shoulder power",
             s.shoulder_power,
             "above 0 and at most 10",
         )?;
-        demand(
+        ImageError::require(
             (0.0..0.9).contains(&s.inset),
             "the inset",
             s.inset,
             "0 to below 0.9",
         )?;
         let pivot = s.pivot();
-        let least = (pivot.1 / pivot.0).max((1.0 - pivot.1) / (1.0 - pivot.0));
-        demand(
-            s.slope > least * 1.001 && s.slope <= 20.0,
+        let min_slope = (pivot.1 / pivot.0).max((1.0 - pivot.1) / (1.0 - pivot.0));
+        ImageError::require(
+            s.slope > min_slope * 1.001 && s.slope <= 20.0,
             "the slope of the tone curve",
             s.slope,
-            "steeper than the straight lines from middle grey to black and to white, and at most 20",
+            "steeper than the lines from middle grey to black and to white, and at most 20",
         )?;
         let lowest = MIDDLE_GREY * (-s.black_stops).exp2();
         let highest = MIDDLE_GREY * s.white_stops.exp2();
         Ok(Self {
-            settings,
             inset: s.inset as f32,
             outset_scale: (1.0 / (1.0 - s.inset)) as f32,
             table: OctaveTable::new(lowest as f32, highest as f32, |v| s.display_light(v)),
         })
     }
 
-    /// The settings.
-    pub fn settings(&self) -> &FilmicSettings {
-        &self.settings
-    }
-
-    /// Display light in `[0, 1]` of exposed linear colours whose components are not negative.
+    /// Converts exposed linear colours without negative components to display light in `[0, 1]`.
     #[inline(always)]
     pub(super) fn apply<const N: usize>(&self, planes: &mut Planes<N>) {
         mix(planes, INSET_WEIGHTS, 1.0 - self.inset, self.inset);
@@ -158,7 +133,7 @@ impl Filmic {
 }
 
 impl FilmicSettings {
-    /// Where middle grey lies on the curve.
+    /// Middle grey on the curve.
     fn pivot(&self) -> (f64, f64) {
         (
             self.black_stops / (self.black_stops + self.white_stops),
@@ -166,7 +141,7 @@ impl FilmicSettings {
         )
     }
 
-    /// Display light of a linear value, by the formulas.
+    /// Display light of a linear value.
     fn display_light(&self, v: f64) -> f64 {
         let stops = (v / MIDDLE_GREY).log2();
         let x = (stops + self.black_stops) / (self.black_stops + self.white_stops);

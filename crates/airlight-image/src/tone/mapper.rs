@@ -1,20 +1,20 @@
-//! Whole rows from linear light to display bytes.
+//! Tone mapping of rows, from linear light to display bytes.
 
 use super::{
+    blocks::{OctaveTable, Planes, max, min, without_negatives},
     dither::RowDither,
     filmic::{Filmic, FilmicSettings},
-    planes::{Planes, greatest, least, without_negatives},
-    srgb,
-    table::OctaveTable,
 };
 use crate::ImageError;
+use airlight::spectrum::rgb::srgb_encode;
 
-/// How exposed light becomes display light.
+/// Curve from exposed light to display light.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum ToneCurve {
-    /// The filmic curve: highlights roll off, bright saturated colours go to white.
+    /// Filmic curve: highlights roll off, bright saturated colours turn white.
     Filmic(FilmicSettings),
-    /// None: each component is cut off at 0 and 1.
+    /// Linear: each component is clipped at 0 and 1.
     Clip,
 }
 
@@ -24,10 +24,10 @@ impl Default for ToneCurve {
     }
 }
 
-/// Exposure, tone curve, sRGB encoding and dither, made ready for use on rows of linear sRGB from many threads.
+/// Exposure, tone curve, sRGB encoding and dither for rows of linear sRGB.
 ///
-/// Takes any input without panic: not-a-number counts as 0, infinite as very bright, and colours with negative
-/// components are drawn to grey of their luminance until they lie in the gamut.
+/// Any input is valid: NaN counts as 0, infinity as very bright, and colours with negative components move towards grey of the
+/// same luminance until they are in the gamut.
 #[derive(Clone, Debug)]
 pub struct ToneMapper {
     exposure: f32,
@@ -36,17 +36,17 @@ pub struct ToneMapper {
     encode: OctaveTable,
 }
 
-/// Pixels worked on together, so that the compiler can use vector instructions.
+/// Pixels processed together, for vector instructions.
 const BLOCK: usize = 64;
 
-/// Below this sRGB is a straight line, and so is not tabulated.
-const STRAIGHT: f32 = 0.003_130_8;
+/// End of the linear part of sRGB, which is not tabulated.
+const LINEAR_END: f32 = 0.003_130_8;
 
-/// Exposed values beyond this are cut off: far above white, far below overflow.
-const BRIGHTEST: f32 = 1e12;
+/// Limit of exposed values: far above white, far below overflow.
+const MAX_EXPOSED: f32 = 1e12;
 
 impl ToneMapper {
-    /// Multiplies by `exposure`, applies `curve`; 8-bit output is dithered.
+    /// A mapper with an exposure factor and a tone curve; 8-bit output is dithered.
     ///
     /// # Errors
     /// [`ImageError::Setting`] where `exposure` is negative or not finite, or a setting of the curve out of range.
@@ -65,39 +65,39 @@ impl ToneMapper {
                 ToneCurve::Filmic(settings) => Some(Filmic::new(settings)?),
                 ToneCurve::Clip => None,
             },
-            encode: OctaveTable::new(STRAIGHT, 1.0, srgb::encode),
+            encode: OctaveTable::new(LINEAR_END, 1.0, srgb_encode),
         })
     }
 
-    /// For light that a display is to show as it is, 1 being its white: cut off at 0 and 1, encoded as sRGB and rounded,
-    /// without dither. A picture read from an sRGB file of 8 or 16 bits comes out bit for bit the same.
+    /// A mapper for display light relative to white: clipped at 0 and 1, encoded as sRGB and rounded without dither. A picture
+    /// read from an sRGB file of 8 or 16 bits is reproduced exactly.
     pub fn as_displayed() -> Self {
         Self {
             exposure: 1.0,
             dither: false,
             filmic: None,
-            encode: OctaveTable::new(STRAIGHT, 1.0, srgb::encode),
+            encode: OctaveTable::new(LINEAR_END, 1.0, srgb_encode),
         }
     }
 
-    /// The same, with dither of 8-bit output on or off.
+    /// The same with dither of 8-bit output on or off.
     pub fn with_dither(self, dither: bool) -> Self {
         Self { dither, ..self }
     }
 
-    /// The factor by which linear values are multiplied.
+    /// Factor for linear values.
     pub fn exposure(&self) -> f32 {
         self.exposure
     }
 
-    /// The encoded sRGB colour, each component in `[0, 1]`, of a linear colour. Within 2e-6 of the formulas.
+    /// Encoded sRGB colour, each component in `[0, 1]`, of a linear colour. Error below 2e-6.
     pub fn map(&self, linear: [f32; 3]) -> [f32; 3] {
         let mut planes = linear.map(|v| [v]);
         self.map_planes(&mut planes);
         planes.map(|[v]| v)
     }
 
-    /// Row `y` of interleaved linear RGB as 8-bit sRGB; the dither depends on `y` and the column alone.
+    /// Converts row `y` of interleaved linear RGB to 8-bit sRGB. The dither depends only on `y` and the column.
     pub fn row_to_u8(&self, y: u32, linear: &[f32], out: &mut [u8]) {
         let mut dither = RowDither::new(y);
         for (from, to) in linear.chunks(BLOCK * 3).zip(out.chunks_mut(BLOCK * 3)) {
@@ -110,8 +110,8 @@ impl ToneMapper {
             for (plane, noise) in planes.iter_mut().zip(&noise) {
                 for (value, noise) in plane.iter_mut().zip(noise) {
                     let level = *value * 255.0;
-                    // Full black and full white stay what they are, and no noise reaches beyond them.
-                    let room = least(least(level, 255.0 - level), 1.0);
+                    // Black and white stay unchanged, and no noise exceeds them.
+                    let room = min(min(level, 255.0 - level), 1.0);
                     *value = level + noise * room + 0.5;
                 }
             }
@@ -121,7 +121,7 @@ impl ToneMapper {
         }
     }
 
-    /// Interleaved linear RGB as 16-bit sRGB.
+    /// Converts interleaved linear RGB to 16-bit sRGB.
     pub fn row_to_u16(&self, linear: &[f32], out: &mut [u16]) {
         for (from, to) in linear.chunks(BLOCK * 3).zip(out.chunks_mut(BLOCK * 3)) {
             let planes = self.encoded(from);
@@ -132,7 +132,7 @@ impl ToneMapper {
         }
     }
 
-    /// The encoded colours of up to a block of interleaved pixels.
+    /// Encoded colours of at most one block of interleaved pixels.
     fn encoded(&self, linear: &[f32]) -> Planes<BLOCK> {
         let mut planes = [[0.0; BLOCK]; 3];
         for (i, pixel) in linear.as_chunks::<3>().0.iter().enumerate().take(BLOCK) {
@@ -149,7 +149,7 @@ impl ToneMapper {
         for v in planes.as_flattened_mut() {
             let exposed = *v * self.exposure;
             let exposed = if exposed.is_nan() { 0.0 } else { exposed };
-            *v = greatest(least(exposed, BRIGHTEST), -BRIGHTEST);
+            *v = max(min(exposed, MAX_EXPOSED), -MAX_EXPOSED);
         }
         match &self.filmic {
             Some(filmic) => {
@@ -158,13 +158,13 @@ impl ToneMapper {
             }
             None => {
                 for v in planes.as_flattened_mut() {
-                    *v = greatest(least(*v, 1.0), 0.0);
+                    *v = max(min(*v, 1.0), 0.0);
                 }
             }
         }
         for v in planes.as_flattened_mut() {
             let curved = self.encode.at(*v);
-            *v = if *v <= STRAIGHT { 12.92 * *v } else { curved };
+            *v = if *v <= LINEAR_END { 12.92 * *v } else { curved };
         }
     }
 }

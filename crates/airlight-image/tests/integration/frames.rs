@@ -1,4 +1,4 @@
-//! Projections: there and back, orientation, and that pixels cover the sphere.
+//! Projections: round trips, orientation, solid angles.
 
 use airlight::axes;
 use airlight_image::{Camera, CubeFace, Fisheye, Frame, Projection};
@@ -60,7 +60,7 @@ fn frames() -> Vec<Frame> {
 }
 
 #[test]
-fn pixels_survive_the_way_to_a_direction_and_back() {
+fn pixels_survive_a_round_trip_through_directions() {
     for frame in frames() {
         let (width, height) = (frame.size().width(), frame.size().height());
         let mut seen = 0;
@@ -84,7 +84,7 @@ fn pixels_survive_the_way_to_a_direction_and_back() {
 }
 
 #[test]
-fn directions_survive_the_way_to_a_pixel_and_back() {
+fn directions_survive_a_round_trip_through_pixels() {
     for frame in frames() {
         let mut seen = 0;
         for azimuth in 0..120 {
@@ -118,7 +118,7 @@ fn rows_of_directions_are_those_of_single_pixels() {
 }
 
 #[test]
-fn pictures_are_the_right_way_round() {
+fn pictures_have_the_right_orientation() {
     let close = |frame: &Frame, px: f64, py: f64, azimuth: f64, elevation: f64| {
         let direction = frame.direction(px, py).unwrap();
         let want = axes::direction(azimuth, elevation);
@@ -147,7 +147,7 @@ fn pictures_are_the_right_way_round() {
     close(&east, 50.0, 50.0, 90.0, 0.0);
     close(&east, 100.0, 50.0, 135.0, 0.0);
     close(&east, 50.0, 0.0, 90.0, 45.0);
-    // Rolled clockwise by a right angle, the top of the picture looks where its right side did.
+    // Rolled clockwise by a right angle, the top of the picture shows what its right side did.
     let rolled = Camera {
         roll_deg: 90.0,
         ..camera
@@ -169,7 +169,7 @@ fn pictures_are_the_right_way_round() {
 }
 
 #[test]
-fn a_horizontal_field_of_view_is_what_it_says() {
+fn a_horizontal_field_of_view_spans_the_picture() {
     let size = Frame::equirectangular(100).unwrap().size();
     let camera = Camera::with_horizontal_fov(0.0, 0.0, 90.0, size);
     let frame = Frame::new(Projection::Perspective(camera), 200, 100).unwrap();
@@ -199,7 +199,7 @@ fn pixels_cover_the_sphere() {
     assert!((cube / whole - 1.0).abs() < 1e-12);
     let all_sky = Frame::new(Projection::AngularFisheye(Fisheye::ALL_SKY), 512, 512).unwrap();
     assert!((total(&all_sky) / (2.0 * PI) - 1.0).abs() < 1e-3);
-    // A pyramid of 90 degrees is a side of the cube.
+    // A field of view of 90 degrees in both directions is a face of the cube.
     let camera = Camera {
         azimuth_deg: 3.0,
         elevation_deg: 20.0,
@@ -212,7 +212,7 @@ fn pixels_cover_the_sphere() {
 
 #[test]
 fn fisheye_pixels_have_the_solid_angle_of_their_corners() {
-    // Against the sum over a fine grid within the pixel, by the area of small parallelograms.
+    // Against a sum over a fine grid within the pixel, by the areas of small parallelograms.
     let frame = Frame::new(
         Projection::AngularFisheye(Fisheye {
             azimuth_deg: 0.0,
@@ -244,7 +244,7 @@ fn fisheye_pixels_have_the_solid_angle_of_their_corners() {
 }
 
 #[test]
-fn nonsense_is_refused_with_a_reason() {
+fn invalid_projections_are_refused_with_a_reason() {
     let camera = |vertical_fov_deg| {
         Projection::Perspective(Camera {
             azimuth_deg: 0.0,
@@ -315,4 +315,16 @@ fn a_preview_shows_the_same_view() {
             assert!(middle(&small).distance(middle(&frame)) < 1e-9);
         }
     }
+}
+
+#[test]
+fn cube_faces_are_named() {
+    for face in CubeFace::ALL {
+        assert_eq!(face.to_string().parse(), Ok(face));
+    }
+    let error = "pw".parse::<CubeFace>().unwrap_err().to_string();
+    assert!(
+        error.starts_with("expected a cube face (px, nx, py, ny, pz, nz), got \"pw\"; try"),
+        "{error}"
+    );
 }

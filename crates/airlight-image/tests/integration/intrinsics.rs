@@ -66,12 +66,12 @@ fn rows_and_pixels_agree_bit_for_bit() {
 #[test]
 fn the_axis_meets_the_principal_point() {
     let at = |centres| Intrinsics::new(size(741, 500), (994.978, 994.978), (311.0, 254.0), centres);
-    // With centres at whole numbers, that of pixel (311, 254) itself.
+    // With centres at whole numbers, the centre of pixel (311, 254).
     let whole = at(PixelCentres::Whole).unwrap();
     assert!((whole.pixel_direction(311, 254) - whole.axis()).length() < 1e-15);
     assert_eq!(whole.ray_length_per_z(311, 254), 1.0);
     assert_eq!(whole.principal_px(), (311.5, 254.5));
-    // Otherwise the corner between four pixels.
+    // Otherwise a corner of four pixels.
     let halves = at(PixelCentres::Halves).unwrap();
     let sum = halves.pixel_direction(310, 253) + halves.pixel_direction(311, 254);
     assert!((sum.normalize() - halves.axis()).length() < 1e-12);

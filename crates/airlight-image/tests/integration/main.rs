@@ -1,4 +1,4 @@
-//! Picture and depth files, written and read back by decoders and encoders of others.
+//! Picture and depth files, checked against independent decoders and encoders.
 
 mod common;
 mod frames;

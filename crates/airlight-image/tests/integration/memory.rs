@@ -1,4 +1,4 @@
-//! Wide pictures do not need memory for all their rows.
+//! Memory of writers: a large picture is never in memory as a whole.
 
 use airlight_image::{
     Control, PictureOptions, Size,
@@ -13,7 +13,7 @@ use airlight_image::{
 };
 use std::process::Command;
 
-/// Peak memory of this process in bytes, where the system tells.
+/// Peak memory of this process in bytes, on Linux.
 fn peak_memory() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status
@@ -26,7 +26,7 @@ fn peak_memory() -> Option<u64> {
 #[test]
 #[ignore = "takes a while: 16384 pixels wide, every format, 32 threads"]
 fn wide_pictures_fit_in_little_memory() {
-    // In a process of its own, so that no other test adds to the peak.
+    // In a separate process, so that no other test adds to the peak.
     const ALONE: &str = "AIRLIGHT_MEMORY_TEST_IS_ALONE";
     if std::env::var_os(ALONE).is_none() {
         let status = Command::new(std::env::current_exe().unwrap())
@@ -42,7 +42,7 @@ fn wide_pictures_fit_in_little_memory() {
     std::fs::create_dir_all(&folder).unwrap();
     let rows = |channels| {
         RowFn::new(channels, |y, out: &mut [f32]| {
-            // Grainy, so that little is gained by packing.
+            // Noise, which compresses little.
             let mut state = y.wrapping_mul(0x9e37_79b9) | 1;
             for value in out {
                 state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);

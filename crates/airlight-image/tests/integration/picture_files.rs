@@ -1,4 +1,4 @@
-//! Files that appear whole or not at all, errors that say why, progress, and the same bytes on every run.
+//! Atomic files, errors, progress, and equal bytes on every run.
 
 use crate::common::{Folder, full_metadata, size, sky, tone};
 use airlight_image::{
@@ -48,7 +48,7 @@ fn the_ending_names_the_format() {
         let written = write_to(&path, size, &sky(size, 3)).unwrap();
         assert_eq!(fs::metadata(&path).unwrap().len(), written.bytes);
         assert!(written.bytes > 100);
-        // Again, over the first.
+        // Again, replacing the first.
         write_to(&path, size, &sky(size, 3)).unwrap();
     }
     assert_eq!(folder.files().len(), endings.len());
@@ -90,7 +90,7 @@ fn a_bad_path_is_named_with_the_reason() {
 }
 
 #[test]
-fn a_stopped_write_leaves_nothing() {
+fn a_cancelled_write_leaves_nothing() {
     let folder = Folder::new("stopped");
     let size = size(1000, 3000);
     for ending in ["exr", "hdr", "png", "jpg"] {
@@ -188,7 +188,7 @@ fn a_full_disk_is_reported() {
 }
 
 #[test]
-fn progress_is_told_in_order_and_to_the_end() {
+fn progress_is_reported_in_order_and_to_the_end() {
     #[derive(Default)]
     struct Heard(Mutex<Vec<u64>>);
     impl Progress for Heard {
@@ -217,7 +217,7 @@ fn progress_is_told_in_order_and_to_the_end() {
 }
 
 #[test]
-fn the_same_rows_make_the_same_file() {
+fn equal_rows_give_equal_files() {
     let size = size(700, 400);
     let make = |threads| {
         let pool = rayon::ThreadPoolBuilder::new()

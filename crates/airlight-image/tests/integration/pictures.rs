@@ -33,7 +33,7 @@ fn read_back(
 }
 
 #[test]
-fn exr_files_hold_what_was_given() {
+fn exr_files_are_decoded_to_the_given_samples() {
     use ::exr::prelude::*;
     for (width, height) in [(1, 1), (37, 50), (130, 33)] {
         for sample_kind in [ExrSample::Half, ExrSample::Float] {
@@ -74,7 +74,7 @@ fn exr_files_hold_what_was_given() {
                         let want = sample(size, i as u32 % width, i as u32 / width, c);
                         let tolerance = match sample_kind {
                             ExrSample::Half => want * 5e-4,
-                            ExrSample::Float => 0.0,
+                            _ => 0.0,
                         };
                         assert!((got - want).abs() <= tolerance, "{name} {i}: {got} {want}");
                     }
@@ -85,7 +85,7 @@ fn exr_files_hold_what_was_given() {
 }
 
 #[test]
-fn exr_files_say_what_they_are() {
+fn exr_files_have_the_standard_attributes() {
     use ::exr::meta::{MetaData, attribute::*};
     let size = size(8, 4);
     let mut bytes = Cursor::new(Vec::new());
@@ -191,7 +191,7 @@ fn spectral_files_follow_the_layout() {
 }
 
 #[test]
-fn samples_that_do_not_fit_are_counted() {
+fn clamped_samples_are_counted() {
     let odd = vec![1e6, f32::NAN, -2.0, f32::INFINITY, 3.0, f32::NEG_INFINITY];
     let rows = StoredRows::new(2, 3, odd).unwrap();
     let mut bytes = Cursor::new(Vec::new());
@@ -219,7 +219,7 @@ fn samples_that_do_not_fit_are_counted() {
 }
 
 #[test]
-fn single_precision_exr_holds_infinity() {
+fn single_precision_exr_stores_infinity() {
     let odd = vec![1e6, f32::INFINITY, f32::NEG_INFINITY, f32::MAX];
     let rows = StoredRows::new(2, 2, odd.clone()).unwrap();
     let mut bytes = Cursor::new(Vec::new());
@@ -252,10 +252,10 @@ fn single_precision_exr_holds_infinity() {
 }
 
 #[test]
-fn hdr_files_hold_what_was_given() {
+fn hdr_files_are_decoded_to_the_given_samples() {
     for (width, height) in [(1, 1), (7, 3), (8, 2), (300, 40), (33_000, 2)] {
         let size = size(width, height);
-        // Steps make runs; a wide range tries the exponents.
+        // Steps give runs; a wide range covers the exponents.
         let source = RowFn::new(3, move |y, out: &mut [f32]| {
             for (x, pixel) in out.chunks_mut(3).enumerate() {
                 let base = 2f32.powi((x / 20 % 60) as i32 - 30);
@@ -297,11 +297,13 @@ fn hdr_files_hold_what_was_given() {
 }
 
 #[test]
-fn png_files_hold_what_was_given() {
-    for (width, height) in [(1, 1), (5, 3), (64, 700), (3000, 400)] {
+fn png_files_are_decoded_to_the_given_samples() {
+    let tone = tone();
+    // One band and several; those of the widest picture have fewer rows than the limit.
+    for (width, height) in [(1, 1), (5, 3), (64, 700), (1500, 300)] {
         for depth in [PngDepth::Eight, PngDepth::Sixteen] {
             for compression_level in [0, 1, 4, 9] {
-                if compression_level == 9 && width == 3000 {
+                if compression_level == 9 && width == 1500 {
                     continue;
                 }
                 let size = size(width, height);
@@ -315,7 +317,7 @@ fn png_files_hold_what_was_given() {
                     &mut bytes,
                     size,
                     &source,
-                    &tone(),
+                    &tone,
                     &options,
                     &full_metadata(),
                     Control::default(),
@@ -331,11 +333,11 @@ fn png_files_hold_what_was_given() {
                     let row = y as usize * linear.len()..(y as usize + 1) * linear.len();
                     match depth {
                         PngDepth::Eight => {
-                            tone().row_to_u8(y, &linear, &mut want);
+                            tone.row_to_u8(y, &linear, &mut want);
                             assert_eq!(&image.as_rgb8().unwrap().as_raw()[row], want);
                         }
                         PngDepth::Sixteen => {
-                            tone().row_to_u16(&linear, &mut wide);
+                            tone.row_to_u16(&linear, &mut wide);
                             assert_eq!(&image.as_rgb16().unwrap().as_raw()[row], wide);
                         }
                     }
@@ -349,11 +351,11 @@ mod guards {
     use super::*;
 
     #[test]
-    fn jpeg_files_look_like_what_was_given() {
+    fn jpeg_files_are_close_to_the_given_samples() {
         for (width, height) in [(1, 1), (17, 9), (64, 48), (1000, 700)] {
             for (quality, most) in [(100, 1.5), (95, 2.5), (80, 6.0)] {
                 let size = size(width, height);
-                // No sun: its hard edge is what JPEG does badly.
+                // No sun: JPEG is bad at its hard edge.
                 let source = RowFn::new(3, |y, out: &mut [f32]| {
                     for (x, pixel) in out.chunks_mut(3).enumerate() {
                         let v = 0.05 + 0.3 * (x as f32 + y as f32) / (width + height) as f32;
@@ -376,9 +378,10 @@ mod guards {
                 let mut linear = vec![0.0; width as usize * 3];
                 let mut want = vec![0u8; linear.len()];
                 let mut sum = 0.0;
+                let tone = tone();
                 for y in 0..height {
                     source.fill_row(y, &mut linear);
-                    tone().row_to_u8(y, &linear, &mut want);
+                    tone.row_to_u8(y, &linear, &mut want);
                     let start = y as usize * want.len();
                     for (got, want) in image.as_raw()[start..].iter().zip(&want) {
                         sum += (f64::from(*got) - f64::from(*want)).powi(2);

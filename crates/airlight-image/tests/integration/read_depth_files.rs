@@ -1,4 +1,4 @@
-//! The formats of depth maps.
+//! Formats of depth maps.
 
 use crate::common::{Folder, files::*, size};
 use airlight_image::{
@@ -152,12 +152,12 @@ fn pfm_depth_from_the_bottom_up() {
         assert_eq!(map.bits, SampleBits::Float);
     }
     for (start, said) in [
-        ("PF\n1 1\n-1\n", "holds colours"),
+        ("PF\n1 1\n-1\n", "got colours"),
         ("Pf\n1 x\n-1\n", "`x`"),
         ("Pf\n1 0\n-1\n", "1 x 0"),
         ("Pf\n1 1\n0\n", "byte order"),
-        ("Pf5\n1 1\n-1\n", "begin with `Pf`"),
-        ("Pf\n1 \u{7} \n", "not text"),
+        ("Pf5\n1 1\n-1\n", "expected `Pf`"),
+        ("Pf\n1 \u{7} \n", "text header"),
     ] {
         let mut bytes = start.as_bytes().to_vec();
         bytes.extend([0; 16]);
@@ -212,11 +212,11 @@ fn exr_depth_by_its_channel() {
         &["N.X", "N.Y", "N.Z"],
     ] {
         let error = first(&file(names), &options()).unwrap_err();
-        let ImageError::NoChannel { there, .. } = &error else {
+        let ImageError::NoChannel { available, .. } = &error else {
             panic!("{error}");
         };
-        assert_eq!(*there, names.join(", ").replace("R, G, B", "B, G, R"));
-        assert!(error.to_string().contains("name one"), "{error}");
+        assert_eq!(*available, names.join(", ").replace("R, G, B", "B, G, R"));
+        assert!(error.to_string().contains("try naming one"), "{error}");
     }
     let rgb = file(&["R", "G", "B"]);
     assert_eq!(first(&rgb, &named("G")).unwrap(), 2.0);

@@ -1,9 +1,9 @@
-//! Depth maps: what their numbers mean, and how holes are filled.
+//! Depth maps: meaning of their numbers, and filling of holes.
 
 use crate::common::{Folder, files::*, size};
 use airlight_image::{
     DepthOptions, ImageError,
-    input::{DepthKind, DepthMeaning, Unknown, read_depth, read_picture},
+    input::{DepthKind, DepthMeaning, UnknownDepth, read_depth, read_picture},
 };
 
 fn options() -> DepthOptions {
@@ -13,7 +13,7 @@ fn options() -> DepthOptions {
 const INF: f32 = f32::INFINITY;
 
 #[test]
-fn each_number_means_what_the_table_says() {
+fn each_number_has_the_documented_meaning() {
     let folder = Folder::new("depth-numbers");
     let mut bits = options();
     let mut read = |meaning, unknown, values: &[f32]| {
@@ -26,14 +26,14 @@ fn each_number_means_what_the_table_says() {
     };
     let odd = [2.0, f32::NAN, 0.0, -0.0, INF, 1e10, 2e9, 3.4e38];
     for meaning in [DepthMeaning::ZDepth, DepthMeaning::RayDistance] {
-        let map = read(meaning, Unknown::Clear, &odd).unwrap();
+        let map = read(meaning, UnknownDepth::Clear, &odd).unwrap();
         assert_eq!(map.metres, [2.0, 0.0, 0.0, 0.0, INF, INF, INF, INF]);
         assert_eq!((map.holes, map.infinite), (3, 4));
         assert_eq!(
             map.kind == DepthKind::Ray,
             meaning == DepthMeaning::RayDistance
         );
-        let map = read(meaning, Unknown::Far, &odd).unwrap();
+        let map = read(meaning, UnknownDepth::Far, &odd).unwrap();
         assert_eq!(map.metres, [2.0, INF, INF, INF, INF, INF, INF, INF]);
     }
     let stereo = DepthMeaning::Disparity {
@@ -42,17 +42,17 @@ fn each_number_means_what_the_table_says() {
         offset_px: 10.0,
     };
     let values = [30.0, 0.0, INF, f32::NAN, -10.0, -20.0, -5.0];
-    let map = read(stereo, Unknown::Clear, &values).unwrap();
+    let map = read(stereo, UnknownDepth::Clear, &values).unwrap();
     assert_eq!(map.metres, [5.0, 0.0, 0.0, 0.0, INF, INF, 40.0]);
     assert_eq!((map.holes, map.infinite, map.kind), (3, 2, DepthKind::Z));
     let values = [0.5, 0.0, -0.0, f32::NAN, INF, 1e-12];
-    let map = read(DepthMeaning::Inverse, Unknown::Clear, &values).unwrap();
+    let map = read(DepthMeaning::Inverse, UnknownDepth::Clear, &values).unwrap();
     assert_eq!(map.metres, [2.0, INF, INF, 0.0, 0.0, INF]);
     for meaning in [DepthMeaning::ZDepth, DepthMeaning::Inverse, stereo] {
-        let error = read(meaning, Unknown::Fill, &[f32::NAN; 4])
+        let error = read(meaning, UnknownDepth::Fill, &[f32::NAN; 4])
             .unwrap_err()
             .to_string();
-        assert!(error.contains("all its 4 pixels are holes"), "{error}");
+        assert!(error.contains("got 4 holes"), "{error}");
     }
 }
 
@@ -169,7 +169,7 @@ fn options_out_of_range_are_refused() {
 }
 
 #[test]
-fn holes_are_filled_from_behind() {
+fn holes_are_filled_from_the_farther_side() {
     let folder = Folder::new("depth-fill");
     let o = f32::NAN;
     let fill = |width: usize, values: &[f32]| {
@@ -183,35 +183,35 @@ fn holes_are_filled_from_behind() {
         assert!(map.metres.iter().all(|v| *v > 0.0));
         map.metres
     };
-    // Between a near and a far thing, the far one; at the edges what is there; the sky is farthest.
+    // Between a near and a far object, the far one; at the edges the only neighbour; the sky is farthest.
     assert_eq!(fill(5, &[2.0, o, o, 9.0, o]), [2.0, 9.0, 9.0, 9.0, 9.0]);
     assert_eq!(fill(5, &[o, 9.0, o, o, 2.0]), [9.0, 9.0, 9.0, 9.0, 2.0]);
     assert_eq!(fill(4, &[INF, o, o, 2.0]), [INF, INF, INF, 2.0]);
-    // On one surface, straight in 1/z, as a floor seen at a slant is.
+    // On one surface, linear in 1/z, as a floor seen at a slant.
     let floor = |x: usize| 1.0 / (0.2 + 0.002 * x as f32);
     let mut row: Vec<f32> = (0..10).map(floor).collect();
     row[4..8].fill(o);
     for (x, v) in fill(10, &row).into_iter().enumerate() {
         assert!((v / floor(x) - 1.0).abs() < 1e-6, "{x}: {v}");
     }
-    // Rows of which nothing is known take the farther of those above and below.
+    // Rows without known pixels take the farther of those above and below.
     let rows = [1.0, 8.0, o, o, o, o, 3.0, 2.0];
     assert_eq!(fill(2, &rows), [1.0, 8.0, 3.0, 8.0, 3.0, 8.0, 3.0, 2.0]);
     assert_eq!(fill(2, &[o, o, 3.0, 2.0]), [3.0, 2.0, 3.0, 2.0]);
     assert_eq!(fill(2, &[3.0, 2.0, o, o]), [3.0, 2.0, 3.0, 2.0]);
-    // One row whose far side is wrongly near makes no streak.
+    // A row whose far side is wrongly near gives no streak.
     let mut streak = [4.0, o, o, 1.0].repeat(9);
     streak[4 * 4] = 1.5;
     let filled = fill(4, &streak);
     for y in 0..9 {
         assert_eq!(filled[y * 4 + 1..y * 4 + 3], [4.0, 4.0], "{y}");
     }
-    // What is known stays.
+    // Known pixels stay unchanged.
     assert_eq!(filled[16], 1.5);
 }
 
 #[test]
-fn maps_and_pictures_must_be_as_large() {
+fn maps_and_pictures_must_have_equal_sizes() {
     let folder = Folder::new("depth-size");
     let map = read_as(&folder, &grey_16((2, 3), &[5; 6]), &options()).unwrap();
     let path = folder.0.join("colour.png");
@@ -230,7 +230,7 @@ fn maps_and_pictures_must_be_as_large() {
 
 #[test]
 fn a_measured_map_is_filled() {
-    // Tail lamp and bench of the motorcycle, 96 x 64 pixels: data/README.md.
+    // Tail light and bench of the motorcycle, 96 x 64 pixels: data/README.md.
     let path = concat!(
         env!("CARGO_MANIFEST_DIR"),
         "/tests/data/motorcycle_depth_mm.png"
@@ -242,6 +242,6 @@ fn a_measured_map_is_filled() {
     let map = read_depth(path.as_ref(), &options).unwrap();
     assert_eq!((map.size, map.infinite), (size(96, 64), 0));
     assert!(map.holes > 300, "{}", map.holes);
-    // The room ends 6 m away, the lamp begins at 2 m.
+    // The wall is 6 m away, the tail light at 2 m and beyond.
     assert!(map.metres.iter().all(|z| (1.5..7.0).contains(z)));
 }

@@ -164,22 +164,22 @@ fn layers_and_parts_are_found_by_name() {
     let error = first(&many, Some("depth")).unwrap_err().to_string();
     assert!(error.contains("depth.Z, left.B"), "{error}");
 
-    // The only layer with colours needs no name; one of two does.
+    // The only layer with colours needs no name; with two, one must be named.
     let only = rgb(["a.R", "a.G", "a.B"], 1.0);
     let mut two = rgb(["a.R", "a.G", "a.B"], 1.0);
     two.extend(rgb(["b.R", "b.G", "b.B"], 2.0));
     let file = |channels| exr_file((0, 0, 1, 1), vec![Part::new(pixel, channels)]);
     assert_eq!(first(&file(only), None).unwrap(), [1.0, 2.0, 3.0]);
     let error = first(&file(two), None).unwrap_err().to_string();
-    assert!(error.contains("name one"), "{error}");
-    // The Y of a position is no luminance.
+    assert!(error.contains("try naming a layer"), "{error}");
+    // The Y of a position is not luminance.
     let position = rgb(["X", "Y", "Z"], 1.0);
     assert!(first(&file(position), None).is_err());
 }
 
 #[test]
-fn odd_samples_are_mended_and_counted() {
-    let folder = Folder::new("mended");
+fn invalid_samples_are_repaired_and_counted() {
+    let folder = Folder::new("repaired");
     let odd = vec![f32::NAN, -1.0, f32::INFINITY, f32::NEG_INFINITY, 3.0, -0.0];
     let part = Part::new(
         (6, 1),

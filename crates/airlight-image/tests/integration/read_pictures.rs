@@ -1,13 +1,16 @@
 //! Pictures read from files.
 
 use crate::common::{Folder, files::*, size};
-use airlight::spectrum::RgbSpace;
+use airlight::spectrum::{
+    RgbSpace,
+    rgb::{srgb_decode, srgb_encode},
+};
 use airlight_image::{
     Control, ImageError, Picture, PictureOptions,
     input::{LightReference, SampleBits, read_picture},
     output::{self, Metadata, png::PngDepth, png::PngOptions},
     rows::StoredRows,
-    tone::{ToneMapper, srgb},
+    tone::ToneMapper,
     write_picture,
 };
 use png::{BitDepth, ColorType};
@@ -19,7 +22,7 @@ fn read_as(folder: &Folder, bytes: &[u8], layer: Option<&str>) -> Result<Picture
 }
 
 fn decoded(v: f64) -> f32 {
-    srgb::decode(v) as f32
+    srgb_decode(v) as f32
 }
 
 #[test]
@@ -110,7 +113,7 @@ fn png_pictures_of_every_kind() {
 }
 
 #[test]
-fn a_gamma_counts_only_where_nothing_says_srgb() {
+fn a_gamma_applies_only_without_srgb_chunks() {
     let folder = Folder::new("read-gamma");
     let with = |gamma: f32, is_srgb: bool| {
         let (color, depth) = (ColorType::Grayscale, BitDepth::Eight);
@@ -130,8 +133,8 @@ fn a_gamma_counts_only_where_nothing_says_srgb() {
 }
 
 #[test]
-fn interlaced_pngs_are_put_together() {
-    // Adam7 by hand of an 8 x 8 grey picture: the png crate writes none.
+fn interlaced_pngs_are_read() {
+    // Adam7 of an 8 x 8 grey picture by hand: the png crate does not write it.
     let folder = Folder::new("read-adam7");
     let pixel = |x: usize, y: usize| (x * 16 + y * 3) as u8;
     let passes = [
@@ -187,7 +190,7 @@ fn interlaced_pngs_are_put_together() {
 }
 
 #[test]
-fn every_level_of_a_png_comes_out_as_it_went_in() {
+fn every_level_of_a_png_survives_a_round_trip() {
     let folder = Folder::new("identity");
     for (color, each) in [(ColorType::Rgb, 3), (ColorType::Rgba, 4)] {
         for (depth, levels) in [(BitDepth::Eight, 256u32), (BitDepth::Sixteen, 65536)] {
@@ -245,7 +248,7 @@ fn every_level_of_a_png_comes_out_as_it_went_in() {
 }
 
 #[test]
-fn jpegs_agree_with_another_reader() {
+fn jpegs_agree_with_another_decoder() {
     let folder = Folder::new("read-jpeg");
     for (color, each) in [
         (jpeg_encoder::ColorType::Luma, 1),
@@ -268,8 +271,8 @@ fn jpegs_agree_with_another_reader() {
                 picture.rgb.iter().copied().eq(expected),
                 "{each} {progressive}"
             );
-            // What was encoded, but for the loss.
-            let near = srgb::encode(f64::from(picture.rgb[0])) * 255.0;
+            // The encoded colour within the loss of JPEG.
+            let near = srgb_encode(f64::from(picture.rgb[0])) * 255.0;
             assert!(near < 4.0, "{near}");
         }
     }
@@ -279,10 +282,10 @@ fn jpegs_agree_with_another_reader() {
 }
 
 #[test]
-fn colour_profiles_that_are_not_srgb_are_told() {
+fn colour_profiles_other_than_srgb_are_reported() {
     let folder = Folder::new("profiles");
     for (name, foreign) in [("Display P3", true), ("sRGB IEC61966-2.1", false)] {
-        // Letters of one byte, and of two as in newer profiles.
+        // Names in ASCII, and in UTF-16 as in newer profiles.
         let wide: Vec<u8> = name.bytes().flat_map(|b| [0, b]).collect();
         for letters in [name.as_bytes(), &wide] {
             let mut profile = vec![0; 200];
@@ -299,7 +302,7 @@ fn colour_profiles_that_are_not_srgb_are_told() {
 }
 
 #[test]
-fn written_pictures_come_back() {
+fn written_pictures_are_read_back() {
     let folder = Folder::new("come-back");
     let (width, height) = (61, 19);
     let samples: Vec<f32> = (0..width * height * 3)
@@ -309,7 +312,7 @@ fn written_pictures_come_back() {
     let tone = ToneMapper::as_displayed();
     let options = PictureOptions {
         metadata: Metadata {
-            chromaticities: Some(output::Chromaticities::from(RgbSpace::Rec2020)),
+            chromaticities: Some(RgbSpace::Rec2020.into()),
             white_luminance_cd_m2: Some(250.0),
             ..Metadata::default()
         },
@@ -319,7 +322,7 @@ fn written_pictures_come_back() {
         let path = folder.0.join(format!("picture.{ending}"));
         let size = size(width, height);
         write_picture(&path, size, &rows, &tone, &options, Control::default()).unwrap();
-        // Formats are told by contents.
+        // Formats are recognised by contents.
         let moved = folder.0.join("picture.txt");
         std::fs::rename(&path, &moved).unwrap();
         let picture = read_picture(&moved, None).unwrap();
@@ -343,14 +346,14 @@ fn written_pictures_come_back() {
         let white = (ending == "exr").then_some(250.0);
         assert_eq!(picture.white_luminance_cd_m2, white, "{ending}");
         if picture.reference == LightReference::Scene {
-            let rec2020 = Some(output::Chromaticities::from(RgbSpace::Rec2020));
+            let rec2020 = Some(RgbSpace::Rec2020.into());
             assert_eq!(picture.chromaticities, rec2020, "{ending}");
         }
     }
 }
 
 #[test]
-fn hdr_headers_count() {
+fn hdr_headers_are_applied() {
     let folder = Folder::new("hdr-headers");
     let file = |header: &str, pixels: &[u8]| {
         let mut bytes = format!("#?RADIANCE\n{header}\n").into_bytes();
@@ -361,12 +364,12 @@ fn hdr_headers_count() {
     let one = [128, 64, 32, 129];
     let plain = read(&file("FORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1", &one)).unwrap();
     assert_eq!(plain.rgb, [1.0, 0.5, 0.25]);
-    // Exposures multiply, and are taken out again.
+    // Exposures multiply; their product is divided out.
     let exposed = "EXPOSURE=2\nEXPOSURE = 0.25\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1";
     assert_eq!(read(&file(exposed, &one)).unwrap().rgb, [2.0, 1.0, 0.5]);
     let xyz = read(&file("FORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1", &one)).unwrap();
     assert_eq!(xyz.chromaticities, Some(output::Chromaticities::XYZ));
-    // Runs of the old kind: 1 pixel, then 3 + 256 * 1 more.
+    // Runs of the old encoding: 1 pixel, then 3 + 256 * 1 more.
     let mut old = one.to_vec();
     old.extend([1, 1, 1, 3, 1, 1, 1, 1]);
     let runs = read(&file("\n-Y 1 +X 260", &old)).unwrap();
@@ -386,7 +389,7 @@ fn hdr_headers_count() {
 }
 
 #[test]
-fn what_cannot_be_read_is_told() {
+fn unreadable_files_are_refused_with_a_reason() {
     let folder = Folder::new("refusals");
     let refused = |bytes: &[u8]| read_as(&folder, bytes, None).unwrap_err();
     let missing = read_picture(&folder.0.join("nothing.png"), None).unwrap_err();
@@ -407,13 +410,13 @@ fn what_cannot_be_read_is_told() {
         );
     }
     let error = refused(b"Pf\n1 1\n-1\n0000").to_string();
-    assert!(error.contains("not a picture"), "{error}");
+    assert!(error.contains("expected a picture"), "{error}");
     let png = grey_16((1, 1), &[5]);
     let error = read_as(&folder, &png, Some("beauty"))
         .unwrap_err()
         .to_string();
     assert!(error.contains("only EXR files have layers"), "{error}");
-    // A size beyond all bounds in a PNG header; its checksum comes after.
+    // A PNG header with a size out of range; its checksum follows.
     let mut large = png.clone();
     large[16..20].copy_from_slice(&100_000u32.to_be_bytes());
     let mut crc = !0u32;

@@ -1,15 +1,15 @@
-//! Whatever a file holds, reading it ends in a picture, a depth map or an error, never in a panic.
+//! Any file gives a picture, a depth map or an error, never a panic.
 
 use crate::common::{Folder, files::*};
 use airlight_image::{
     DepthOptions, ImageError,
-    input::{Unknown, read_depth, read_picture},
+    input::{UnknownDepth, read_depth, read_picture},
 };
 use exr::prelude::{Compression, FlatSamples, f16};
 use png::{BitDepth, ColorType};
 use std::path::Path;
 
-/// Valid files: a name, the bytes, whether they are pictures.
+/// Valid files: name, bytes, whether they are pictures.
 fn valid_files() -> Vec<(String, Vec<u8>, bool)> {
     let mut files = Vec::new();
     let mut add = |name: &str, bytes: Vec<u8>, is_picture: bool| {
@@ -110,7 +110,7 @@ fn valid_files() -> Vec<(String, Vec<u8>, bool)> {
     files
 }
 
-/// Reads a file both ways; the pictures and maps that come out must keep their promises.
+/// Reads a file both ways; checks the documented properties of the pictures and maps.
 fn read_both(path: &Path) -> [Option<ImageError>; 2] {
     let picture = read_picture(path, None).map(|picture| {
         let pixels = (picture.size.width() * picture.size.height()) as usize;
@@ -121,7 +121,7 @@ fn read_both(path: &Path) -> [Option<ImageError>; 2] {
         }
     });
     let options = DepthOptions {
-        unknown: Unknown::Fill,
+        unknown: UnknownDepth::Fill,
         ..DepthOptions::default()
     };
     let depth = read_depth(path, &options).map(|map| {
@@ -150,10 +150,10 @@ fn truncated_files_end_too_early() {
     let path = folder.0.join("file");
     for (name, bytes, is_picture) in valid_files() {
         let all = bytes.len();
-        // The last chunk of a PNG says nothing.
+        // The last chunk of a PNG is empty.
         let end = match name.as_str() {
             "png" | "palette" | "grey" => 12,
-            // The first part is read, and others are not missed.
+            // Only the first part is read.
             "exr parts" => all / 2,
             _ => 1,
         };
@@ -171,7 +171,7 @@ fn truncated_files_end_too_early() {
     }
 }
 
-/// Numbers without pattern, the same on every run.
+/// Pseudo-random numbers, the same on every run.
 struct Numbers(u64);
 
 impl Numbers {
@@ -191,7 +191,7 @@ fn corrupt_files(variants: usize, seed: u64) {
         for variant in 0..variants {
             let mut bytes = bytes.clone();
             let all = bytes.len();
-            // Headers, where most harm is done, are hit as often as all the rest.
+            // Headers, the most sensitive part, are changed as often as all the rest.
             let reach = if variant % 2 == 0 { all.min(400) } else { all };
             for _ in 0..1 + numbers.next(4) {
                 let at = 4 + numbers.next(reach - 4);

@@ -1,9 +1,9 @@
-//! Pictures as coloured text.
+//! Previews in a terminal.
 
 use airlight_image::terminal::{TerminalColor, half_blocks};
 
 #[test]
-fn half_blocks_hold_two_pixels_each() {
+fn half_blocks_show_two_pixels_each() {
     let rgb = [255, 0, 0, 0, 255, 0, 0, 0, 255, 9, 8, 7];
     let text = half_blocks(&rgb, 2, 80, TerminalColor::True);
     assert_eq!(
@@ -31,7 +31,7 @@ fn half_blocks_hold_two_pixels_each() {
 }
 
 #[test]
-fn terminals_are_known_by_their_environment() {
+fn terminals_are_detected_by_their_environment() {
     use TerminalColor::{None as No, Palette, True};
     for (colorterm, term, no_color, want) in [
         (Some("truecolor"), Some("xterm-256color"), None, True),

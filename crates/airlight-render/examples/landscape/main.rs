@@ -17,16 +17,16 @@ mod terrain;
 use airlight::{
     atmosphere, axes,
     sky::{Sky, SkySettings, SunCoverage},
-    spectrum::WavelengthGrid,
+    spectrum::{RgbSpace, WavelengthGrid},
 };
 use airlight_image::{
     Camera, Control, Frame, PictureOptions, Projection, Size,
     output::{
-        Chromaticities, Metadata,
+        Metadata,
         exr::{self, ExrOptions, ExrSample},
     },
     rows::StoredRows,
-    tone::{Exposure, Metering, ToneCurve, ToneMapper, srgb},
+    tone::{Exposure, Metering, ToneCurve, ToneMapper},
     write_picture,
 };
 use options::Options;
@@ -114,7 +114,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             .as_chunks::<3>()
             .0
             .iter()
-            .map(|&c| (srgb::luminance(c), 1.0))
+            .map(|rgb| (RgbSpace::Srgb.luminance(rgb.map(f64::from)) as f32, 1.0))
             .collect();
         let exposure = Exposure::metered(&weighed, Metering::default()).ok_or("nothing is lit")?;
         println!("exposure of the shown picture: EV {:.2}", exposure.ev100());
@@ -154,7 +154,7 @@ fn describe(options: &Options, frame: &Frame, camera: &Camera, altitude: f64) ->
         longitude_deg: Some(options.longitude as f32),
         altitude_m: Some(altitude as f32),
         white_luminance_cd_m2: Some(1.0),
-        chromaticities: Some(Chromaticities::SRGB),
+        chromaticities: Some(RgbSpace::Srgb.into()),
         ..Metadata::default()
     }
     .with_frame(frame)

@@ -219,7 +219,7 @@ mod tests {
         let path = std::env::temp_dir().join(format!("airlight-depth-{}.exr", std::process::id()));
         write_depth(&path, &frame, &objects, Control::default()).unwrap();
         let options = airlight_image::DepthOptions {
-            unknown: airlight_image::input::Unknown::Far,
+            unknown: airlight_image::input::UnknownDepth::Far,
             ..Default::default()
         };
         let depth = airlight_image::read_depth(&path, &options).unwrap();

@@ -4,7 +4,7 @@ use super::ExistingAerial;
 use crate::RenderError;
 use airlight::fog::lights::LightForm;
 use airlight_image::frame::{Intrinsics, PixelCentres};
-use airlight_image::input::{DepthMeaning, DepthOptions, Unknown};
+use airlight_image::input::{DepthMeaning, DepthOptions, UnknownDepth};
 use airlight_image::output::PictureFormat;
 use airlight_image::{ImageError, Size};
 use serde::{Deserialize, Serialize};
@@ -152,9 +152,9 @@ impl OverlaySpec {
             scale: self.depth_scale,
             channel: self.depth_channel.clone(),
             unknown: match self.holes {
-                DepthHoles::Fill => Unknown::Fill,
-                DepthHoles::Far => Unknown::Far,
-                DepthHoles::Clear => Unknown::Clear,
+                DepthHoles::Fill => UnknownDepth::Fill,
+                DepthHoles::Far => UnknownDepth::Far,
+                DepthHoles::Clear => UnknownDepth::Clear,
             },
             far_from_m: self.far_m,
             negative_is_unknown: false,

@@ -57,7 +57,7 @@ pub fn errors(
             let rows: Vec<(f64, f64)> = of_group
                 .flat_map(|check| check.rows.iter().map(|row| (place(row), check.error(row))))
                 .collect();
-            // A page needs no more points than can be told apart.
+            // A page needs no more points than can be distinguished.
             let few = rows.iter().step_by(rows.len().div_ceil(2000).max(1));
             let points = few.map(|&(x, error)| {
                 Circle::new((x, error.clamp(-most, most)), 2, colour.mix(0.5).filled())

@@ -1,11 +1,11 @@
-//! Files made in memory for the tests of reading.
+//! Files in memory for the tests of the readers.
 
 use super::Folder;
 use airlight_image::{DepthMap, DepthOptions, ImageError, read_depth};
 use exr::prelude::*;
 use std::io::Cursor;
 
-/// A part of an EXR file: its name, place and size, channels.
+/// A part of an EXR file: its name, position and size, channels.
 pub struct Part {
     pub name: Option<&'static str>,
     pub position: (i32, i32),
@@ -81,7 +81,7 @@ pub fn exr_file(window: (i32, i32, usize, usize), parts: Vec<Part>) -> Vec<u8> {
     bytes.into_inner()
 }
 
-/// A PNG file; `also` sets what else it says.
+/// A PNG file; `also` adds further chunks.
 pub fn png_file(
     (width, height): (u32, u32),
     color: png::ColorType,
@@ -100,14 +100,14 @@ pub fn png_file(
     bytes
 }
 
-/// Grey of 16 bits.
+/// A PNG file of 16-bit grey.
 pub fn grey_16(size: (u32, u32), values: &[u16]) -> Vec<u8> {
     let data: Vec<u8> = values.iter().flat_map(|v| v.to_be_bytes()).collect();
     let (color, depth) = (png::ColorType::Grayscale, png::BitDepth::Sixteen);
     png_file(size, color, depth, &data, |_| {})
 }
 
-/// An NPY file of a version, of whatever the words say.
+/// An NPY file of a version with these header fields.
 pub fn npy_file(version: u8, descr: &str, fortran: bool, shape: &str, data: &[u8]) -> Vec<u8> {
     let order = if fortran { "True" } else { "False" };
     let mut header = format!("{{'descr': {descr}, 'fortran_order': {order}, 'shape': {shape}, }}");
@@ -165,7 +165,7 @@ pub fn jpeg_file(size: (u16, u16), color: jpeg_encoder::ColorType, progressive: 
     bytes
 }
 
-/// The depth map in `bytes`, by way of a file.
+/// Reads the depth map in `bytes` through a file.
 pub fn read_as(
     folder: &Folder,
     bytes: &[u8],

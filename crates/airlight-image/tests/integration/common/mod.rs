@@ -1,16 +1,17 @@
-//! What the tests of picture files share.
+//! Functions that the tests of picture files share.
 
 pub mod files;
 
+use airlight::spectrum::RgbSpace;
 use airlight_image::{
     Frame, Size,
-    output::{Chromaticities, Metadata},
+    output::Metadata,
     rows::{RowFn, RowSource},
     tone::{ToneCurve, ToneMapper},
 };
 use std::{fs, path::PathBuf};
 
-/// A folder that goes when the test ends.
+/// A temporary folder, removed at the end of the test.
 pub struct Folder(pub PathBuf);
 
 impl Folder {
@@ -34,7 +35,7 @@ impl Drop for Folder {
     }
 }
 
-/// A smooth sky with a bright sun, `channels` values a pixel.
+/// A smooth sky with a bright sun, `channels` samples a pixel.
 pub fn sky(size: Size, channels: usize) -> impl RowSource {
     RowFn::new(channels, move |y, out: &mut [f32]| {
         for (x, pixel) in out.chunks_mut(channels).enumerate() {
@@ -77,12 +78,12 @@ pub fn full_metadata() -> Metadata {
         longitude_deg: Some(13.4),
         altitude_m: Some(34.0),
         white_luminance_cd_m2: Some(1.0),
-        chromaticities: Some(Chromaticities::SRGB),
+        chromaticities: Some(RgbSpace::Srgb.into()),
         is_latitude_longitude: false,
         texts: vec![
             ("units".into(), "cd/m^2".into()),
             ("place".into(), "Łódź".into()),
-            // Names that mean something to the format, or nothing to anyone.
+            // Names that the format reserves, and an empty one.
             ("channels".into(), "not really".into()),
             ("software".into(), "twice".into()),
             (String::new(), "nameless".into()),

@@ -1,16 +1,16 @@
-//! Which channels of an EXR file are meant.
+//! Selection of the channels of an EXR file by name.
 
-use super::fault::Fault;
+use super::source::DecodeError;
 use ::exr::meta::header::Header;
 
-/// The most channels an error lists.
-const MOST_LISTED: usize = 60;
+/// Largest number of channels that an error lists.
+const MAX_LISTED: usize = 60;
 
-/// The channels of a picture in one part of a file.
+/// Channels of a picture in one part of a file.
 #[derive(Debug, PartialEq)]
-pub(super) struct Colours {
+pub(super) struct ColourChannels {
     pub(super) part: usize,
-    /// Red, green, blue; three times the same for grey.
+    /// Red, green, blue; three equal indices for grey.
     pub(super) rgb: [usize; 3],
     pub(super) alpha: Option<usize>,
 }
@@ -41,8 +41,8 @@ fn parts(headers: &[Header]) -> Vec<Part> {
         .collect()
 }
 
-/// All channels, those of files with several parts with the part's name before them.
-fn listed(parts: &[Part]) -> String {
+/// Names of all channels, with the name of the part in files with several.
+fn list_channels(parts: &[Part]) -> String {
     let names: Vec<String> = parts
         .iter()
         .flat_map(|part| {
@@ -52,7 +52,7 @@ fn listed(parts: &[Part]) -> String {
             })
         })
         .collect();
-    let more = names.len().saturating_sub(MOST_LISTED);
+    let more = names.len().saturating_sub(MAX_LISTED);
     let shown = names[..names.len() - more].join(", ");
     match more {
         0 => shown,
@@ -60,15 +60,18 @@ fn listed(parts: &[Part]) -> String {
     }
 }
 
-fn missing(parts: &[Part], wanted: impl Into<String>) -> Fault {
-    Fault::NoChannel {
+fn missing(parts: &[Part], wanted: impl Into<String>) -> DecodeError {
+    DecodeError::NoChannel {
         wanted: wanted.into(),
-        there: listed(parts),
+        available: list_channels(parts),
     }
 }
 
-/// The colours of a layer, or of the file as such.
-pub(super) fn colours(headers: &[Header], layer: Option<&str>) -> Result<Colours, Fault> {
+/// Colour channels of a layer, or of the file.
+pub(super) fn colours(
+    headers: &[Header],
+    layer: Option<&str>,
+) -> Result<ColourChannels, DecodeError> {
     let parts = parts(headers);
     let Some(layer) = layer else {
         return plain_colours(&parts);
@@ -94,7 +97,7 @@ pub(super) fn colours(headers: &[Header], layer: Option<&str>) -> Result<Colours
     })
 }
 
-fn plain_colours(parts: &[Part]) -> Result<Colours, Fault> {
+fn plain_colours(parts: &[Part]) -> Result<ColourChannels, DecodeError> {
     let numbered = || parts.iter().enumerate();
     if let Some(plain) = numbered().find_map(|(number, part)| with_prefix(number, part, "")) {
         return Ok(plain);
@@ -109,15 +112,15 @@ fn plain_colours(parts: &[Part]) -> Result<Colours, Fault> {
     });
     match (layers.next(), layers.next()) {
         (Some(only), None) => Ok(only),
-        (None, _) => Err(missing(parts, "channels R, G, B, nor a luminance Y")),
+        (None, _) => Err(missing(parts, "channels R, G, B or Y")),
         (Some(_), Some(_)) => Err(missing(
             parts,
-            "plain channels R, G, B, but several layers that have them: name one",
+            "channels R, G, B outside layers, and several layers with them; try naming a layer",
         )),
     }
 }
 
-fn with_prefix(number: usize, part: &Part, prefix: &str) -> Option<Colours> {
+fn with_prefix(number: usize, part: &Part, prefix: &str) -> Option<ColourChannels> {
     let find = |name: &str| {
         part.channels.iter().position(|channel| {
             channel
@@ -128,25 +131,27 @@ fn with_prefix(number: usize, part: &Part, prefix: &str) -> Option<Colours> {
     let rgb = match (find("R"), find("G"), find("B")) {
         (Some(r), Some(g), Some(b)) => [r, g, b],
         _ => {
-            // Positions and normals have an X beside their Y.
+            // With an X beside it, Y belongs to a position or normal.
             let y = find("Y").filter(|_| find("X").is_none())?;
             [y; 3]
         }
     };
-    Some(Colours {
+    Some(ColourChannels {
         part: number,
         rgb,
         alpha: find("A"),
     })
 }
 
-/// Names that depth goes by, the likeliest first. In a name of several words, the last ones count.
+/// Names of depth channels, the likeliest first. Names of several words match by the last ones.
 const DEPTH_NAMES: [&str; 6] = ["Z", "depth.Z", "depth.V", "depth.Y", "depth.R", "depth"];
 
-/// The channel of that name, else the one that must be depth: part and number.
-///
-/// The rules are told at [`super::depth::DepthOptions::channel`].
-pub(super) fn depth(headers: &[Header], wanted: Option<&str>) -> Result<(usize, usize), Fault> {
+/// Part and index of the channel with a name, or of the depth channel by the rules of
+/// [`super::depth::DepthOptions::channel`].
+pub(super) fn depth(
+    headers: &[Header],
+    wanted: Option<&str>,
+) -> Result<(usize, usize), DecodeError> {
     let parts = parts(headers);
     let all = || {
         parts.iter().enumerate().flat_map(|(number, part)| {
@@ -173,7 +178,7 @@ pub(super) fn depth(headers: &[Header], wanted: Option<&str>) -> Result<(usize, 
     };
     for known in DEPTH_NAMES {
         let is_plain = |&((number, _), _, channel): &((usize, usize), Option<&str>, &str)| {
-            // X and Y beside a Z make a position or a normal.
+            // With an X beside it, Z belongs to a position or normal.
             let vector = known == "Z" && has(number, "X");
             channel.eq_ignore_ascii_case(known) && !vector
         };
@@ -197,7 +202,7 @@ pub(super) fn depth(headers: &[Header], wanted: Option<&str>) -> Result<(usize, 
             (Some(_), Some(_)) => break,
         }
     }
-    // A luminance or a red that is by itself.
+    // A luminance or a red channel without the others of a colour.
     for (known, others) in [("Y", ["X", "Z", "RY"]), ("R", ["G", "B", "A"])] {
         let alone = |number| !others.iter().any(|other| has(number, other));
         let is_it = |&((number, _), _, channel): &((usize, usize), Option<&str>, &str)| {
@@ -211,7 +216,7 @@ pub(super) fn depth(headers: &[Header], wanted: Option<&str>) -> Result<(usize, 
         (Some((at, _, _)), None) => Ok(at),
         _ => Err(missing(
             &parts,
-            "channel that is clearly depth (such as Z or depth.Z): name one",
+            "channel that is clearly depth (such as Z or depth.Z); try naming one",
         )),
     }
 }

@@ -1,28 +1,28 @@
-//! Holes in depth maps filled from what is known around them.
+//! Filling of holes in depth maps from the known pixels around them.
 //!
-//! Stereo and depth cameras leave holes mostly where a near thing hides a far one from one of two views: there the
-//! farther neighbour is right. Along each row a hole therefore takes the farther of the nearest known values to its left
-//! and right, unless the two are much the same: then both lie on one surface, and the hole is bridged by a straight line
-//! in 1/z, which is how a plane appears. A median down the columns of the holes then evens out the streaks that rows
-//! filled one by one would show. The work is in proportion to the number of pixels.
+//! Stereo and depth cameras leave holes mostly where a near object hides a far one from one of two views: there the
+//! farther neighbour is right. Along each row a hole therefore gets the farther of the nearest known values to its left
+//! and right, unless the two are similar: then both lie on one surface, and the hole is interpolated linearly
+//! in 1/z, as a plane appears. A median along the columns of the holes then removes the streaks that independently filled rows
+//! would show. The work is proportional to the number of pixels.
 
 use rayon::prelude::*;
 
-/// Values that differ by a smaller part than this lie on one surface.
+/// Largest relative difference of two depths on one surface.
 const ONE_SURFACE: f32 = 0.1;
 
-/// Rows that the median reaches up and down.
+/// Half width of the median, rows.
 const REACH: usize = 4;
 
-/// Fills not-a-number pixels; something must be known.
-pub(super) fn fill(values: &mut [f32], width: usize) {
+/// Fills NaN pixels; at least one pixel must be known.
+pub(super) fn fill_holes(values: &mut [f32], width: usize) {
     let holes: Vec<bool> = values.iter().map(|v| v.is_nan()).collect();
     values.par_chunks_mut(width).for_each(fill_row);
     fill_rows(values, width);
     smooth(values, &holes, width);
 }
 
-/// Along one row. A row of which nothing is known stays as it is.
+/// Fills the holes of a row; a row without known pixels stays unchanged.
 fn fill_row(row: &mut [f32]) {
     let mut start = 0;
     while let Some(first) = row[start..].iter().position(|v| v.is_nan()) {
@@ -35,7 +35,7 @@ fn fill_row(row: &mut [f32]) {
         let right = row.get(end).copied();
         let hole = &mut row[first..end];
         match (left, right) {
-            (Some(a), Some(b)) => bridge(hole, a, b),
+            (Some(a), Some(b)) => fill_between(hole, a, b),
             (Some(v), None) | (None, Some(v)) => hole.fill(v),
             (None, None) => {}
         }
@@ -43,7 +43,7 @@ fn fill_row(row: &mut [f32]) {
     }
 }
 
-fn bridge(hole: &mut [f32], left: f32, right: f32) {
+fn fill_between(hole: &mut [f32], left: f32, right: f32) {
     let (near, far) = (left.min(right), left.max(right));
     if !(far.is_finite() && near > 0.0 && far - near <= ONE_SURFACE * far) {
         hole.fill(far);
@@ -56,7 +56,7 @@ fn bridge(hole: &mut [f32], left: f32, right: f32) {
     }
 }
 
-/// Rows of which nothing is known take the farther of the nearest rows above and below.
+/// Fills rows without known pixels with the farther of the nearest rows above and below.
 fn fill_rows(values: &mut [f32], width: usize) {
     let height = values.len() / width;
     let is_empty = |values: &[f32], y: usize| values[y * width].is_nan();
@@ -83,7 +83,7 @@ fn fill_rows(values: &mut [f32], width: usize) {
     }
 }
 
-/// Each hole becomes the median of the holes above and below it that hang together with it.
+/// Replaces each hole by the median of the connected holes above and below it.
 fn smooth(values: &mut [f32], holes: &[bool], width: usize) {
     let height = values.len() / width;
     let before = values.to_vec();

@@ -1,0 +1,134 @@
+//! Operations on blocks of pixels, component by component and without branches, so that the compiler vectorises them.
+
+/// Weights of red, green and blue in the luminance of linear sRGB (ITU-R BT.709).
+const LUMINANCE_WEIGHTS: [f32; 3] = [0.2126, 0.7152, 0.0722];
+
+/// Red, green and blue of N pixels.
+pub(super) type Planes<const N: usize> = [[f32; N]; 3];
+
+/// The smaller of two numbers other than NaN: one instruction, where `f32::min` takes several.
+#[inline(always)]
+pub(super) fn min(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+/// The greater of two numbers other than NaN.
+#[inline(always)]
+pub(super) fn max(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
+/// `keep * c + share * (weighted mean of c)` for each component.
+#[inline(always)]
+pub(super) fn mix<const N: usize>(
+    planes: &mut Planes<N>,
+    weights: [f32; 3],
+    keep: f32,
+    share: f32,
+) {
+    let [r, g, b] = planes;
+    for i in 0..N {
+        let mean = share * (weights[0] * r[i] + weights[1] * g[i] + weights[2] * b[i]);
+        r[i] = keep * r[i] + mean;
+        g[i] = keep * g[i] + mean;
+        b[i] = keep * b[i] + mean;
+    }
+}
+
+/// Moves colours with negative components (outside the gamut) towards grey of the same luminance until no component is
+/// negative; black where the luminance is not positive.
+#[inline(always)]
+pub(super) fn without_negatives<const N: usize>(planes: &mut Planes<N>) {
+    let [r, g, b] = planes;
+    for i in 0..N {
+        let bottom = min(min(r[i], g[i]), b[i]);
+        let grey = luminance(r[i], g[i], b[i]);
+        let lit = if grey > 0.0 { grey } else { 0.0 };
+        // Colours without negative components stay unchanged.
+        let part = if bottom < 0.0 {
+            lit / (lit - bottom)
+        } else {
+            1.0
+        };
+        let raise = |v: f32| {
+            let raised = max(lit + part * (v - lit), 0.0);
+            if bottom < 0.0 { raised } else { v }
+        };
+        (r[i], g[i], b[i]) = (raise(r[i]), raise(g[i]), raise(b[i]));
+    }
+}
+
+/// Moves colours towards grey of the same luminance until all components are in `[0, 1]`.
+#[inline(always)]
+pub(super) fn into_unit_cube<const N: usize>(planes: &mut Planes<N>) {
+    without_negatives(planes);
+    let [r, g, b] = planes;
+    for i in 0..N {
+        let top = max(max(r[i], g[i]), b[i]);
+        let grey = min(luminance(r[i], g[i], b[i]), 1.0);
+        let part = if top > 1.0 {
+            (1.0 - grey) / (top - grey)
+        } else {
+            1.0
+        };
+        let lower = |v: f32| {
+            let lowered = min(grey + part * (v - grey), 1.0);
+            if top > 1.0 { lowered } else { v }
+        };
+        (r[i], g[i], b[i]) = (lower(r[i]), lower(g[i]), lower(b[i]));
+    }
+}
+
+#[inline(always)]
+fn luminance(r: f32, g: f32, b: f32) -> f32 {
+    LUMINANCE_WEIGHTS[0] * r + LUMINANCE_WEIGHTS[1] * g + LUMINANCE_WEIGHTS[2] * b
+}
+
+/// A function of a positive number, tabulated evenly within each octave and interpolated linearly. The index is part of the bits of
+/// the number, so that no logarithm is needed.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct OctaveTable {
+    lowest: f32,
+    highest: f32,
+    first_bits: u32,
+    /// Each sample and the difference to the next one.
+    samples: Vec<[f32; 2]>,
+}
+
+/// Binary logarithm of the number of samples in each octave.
+const STEPS_LOG2: u32 = 8;
+const SHIFT: u32 = 23 - STEPS_LOG2;
+
+impl OctaveTable {
+    /// Tabulates `f` from `lowest` to `highest`, both positive and normal, rounded outwards to whole steps.
+    pub(super) fn new(lowest: f32, highest: f32, f: impl Fn(f64) -> f64) -> Self {
+        let first_bits = lowest.to_bits() >> SHIFT << SHIFT;
+        let steps = (highest.to_bits() - first_bits).div_ceil(1 << SHIFT);
+        let sample_at = |i: u32| f32::from_bits(first_bits + (i << SHIFT));
+        Self {
+            lowest: sample_at(0),
+            highest: sample_at(steps),
+            first_bits,
+            samples: (0..=steps)
+                .map(|i| {
+                    let value = f(f64::from(sample_at(i))) as f32;
+                    // The last sample has no successor: its difference is never used.
+                    let next = f(f64::from(sample_at((i + 1).min(steps)))) as f32;
+                    [value, next - value]
+                })
+                .collect(),
+        }
+    }
+
+    /// The value at `x`, clamped to the range of the table; that at its lowest end for NaN.
+    #[inline(always)]
+    pub(super) fn at(&self, x: f32) -> f32 {
+        let x = if x > self.lowest { x } else { self.lowest };
+        let x = if x < self.highest { x } else { self.highest };
+        let bits = x.to_bits() - self.first_bits;
+        let step = (bits >> SHIFT) as usize;
+        let part = (bits & ((1 << SHIFT) - 1)) as f32 * (1.0 / (1 << SHIFT) as f32);
+        let [value, rise] = self.samples[step];
+        value + rise * part
+    }
+}
