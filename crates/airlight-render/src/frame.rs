@@ -213,11 +213,11 @@ impl<'r> PreparedFrame<'r> {
         let layer = self.renderer.layout().main_layer();
         let means = match self.view.sampler() {
             Some(sampler) => {
-                Canvas::check_memory(std::iter::once(frame), &self.channels)?;
-                let mut canvas = Canvas::new(*frame, &self.channels, false);
-                let goal = Passes::new(sampler.paths()).goal();
+                Canvas::check_memory(std::iter::once(frame.size()), &self.channels)?;
+                let mut canvas = Canvas::new(frame.size(), &self.channels, false);
+                let pass = Passes::new(sampler.paths()).at_once();
                 control.stage("following Monte Carlo paths", rows_of([frame]));
-                canvas.add(sampler, 0..goal, control)?;
+                canvas.add(frame, sampler, &pass, control)?;
                 Some(canvas.means())
             }
             None => None,
@@ -289,24 +289,21 @@ impl<'r> PreparedFrame<'r> {
     ) -> Result<WrittenFrame, RenderError> {
         let tone = self.file_tone()?;
         let drawn = || files.iter().filter(|file| file.layer != Layer::Disc);
-        Canvas::check_memory(drawn().map(|file| &file.frame), &self.channels)?;
+        Canvas::check_memory(drawn().map(|file| file.frame.size()), &self.channels)?;
         let polarised = self.renderer.scene().output.polarisation == Some(true);
         let mut canvases: Vec<Option<Canvas>> = files
             .iter()
             .map(|file| {
                 (file.layer != Layer::Disc)
-                    .then(|| Canvas::new(file.frame, &self.channels, polarised))
+                    .then(|| Canvas::new(file.frame.size(), &self.channels, polarised))
             })
             .collect();
-        let passes = Passes::new(sampler.paths());
-        let (goal, bundle) = (passes.goal(), sampler.paths_per_bundle());
         let total = rows_of(drawn().map(|file| &file.frame));
         // Writing is short beside the paths: its progress is not reported.
         let quiet = control.reporting_to(&SILENT);
         let mut whole = WrittenFrame::default();
-        for bundles in passes {
-            let (until, all) = (bundles.end * bundle, goal * bundle);
-            control.stage(&format!("{until} of {all} paths a pixel"), total);
+        for pass in Passes::new(sampler.paths()) {
+            control.stage(&pass.to_string(), total);
             whole.files.clear();
             let mut done = 0;
             for (file, canvas) in files.iter().zip(&mut canvases) {
@@ -318,7 +315,7 @@ impl<'r> PreparedFrame<'r> {
                             done,
                             total,
                         };
-                        canvas.add(sampler, bundles.clone(), control.reporting_to(&part))?;
+                        canvas.add(&file.frame, sampler, &pass, control.reporting_to(&part))?;
                         done += u64::from(file.frame.size().height());
                         self.write_maps(file, canvas, &tone, quiet)?;
                         Some(canvas.means())

@@ -1,6 +1,6 @@
 //! Pictures by Monte Carlo: sums over bundles of paths, pixel by pixel and pass by pass.
 //!
-//! - [`Passes`]: how many bundles each pass adds; [`pixel_offset`]: where in a pixel a bundle looks.
+//! - [`Passes`]: which bundles each [`Pass`] adds; [`pixel_offset`]: where in a pixel a bundle looks.
 //! - [`ColorMoments`]: mean and standard error of a pixel.
 //! - [`Canvas`]: all pixels of a picture, with maps of their noise and polarisation.
 
@@ -9,5 +9,5 @@ mod passes;
 mod picture;
 
 pub use moments::ColorMoments;
-pub use passes::{Passes, pixel_offset};
+pub use passes::{Pass, Passes, pixel_offset};
 pub use picture::{Canvas, POLARISATION_CHANNELS};

@@ -2,16 +2,26 @@
 //! and a better one later.
 
 use airlight::monte_carlo::BUNDLE;
+use std::fmt;
 use std::ops::Range;
 
 /// Bundles of the first pass: two are the fewest that have a standard error.
 const FIRST: u64 = 2;
 
-/// Ranges of bundles, one a pass: the first 2, then as many as before, up to the goal.
+/// Passes over a picture: the first of 2 bundles a pixel, each other of as many as all before, up to the goal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Passes {
     done: u64,
     goal: u64,
+}
+
+/// One pass over a picture. Its text is the number of paths after it: "256 of 1024 paths a pixel".
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Pass {
+    /// Bundles of paths that it adds to each pixel.
+    pub bundles: Range<u64>,
+    /// Bundles of all passes together.
+    pub goal: u64,
 }
 
 impl Passes {
@@ -23,22 +33,47 @@ impl Passes {
         }
     }
 
-    /// Bundles of all passes together.
-    pub fn goal(&self) -> u64 {
-        self.goal
+    /// All passes in one.
+    pub fn at_once(self) -> Pass {
+        Pass {
+            bundles: self.done..self.goal,
+            goal: self.goal,
+        }
+    }
+}
+
+impl Pass {
+    /// Paths a pixel after this pass.
+    pub fn paths(&self) -> u64 {
+        self.bundles.end * BUNDLE as u64
+    }
+
+    /// Whether it is the last pass.
+    pub fn is_last(&self) -> bool {
+        self.bundles.end == self.goal
+    }
+}
+
+impl fmt::Display for Pass {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let goal = self.goal * BUNDLE as u64;
+        write!(f, "{} of {goal} paths a pixel", self.paths())
     }
 }
 
 impl Iterator for Passes {
-    type Item = Range<u64>;
+    type Item = Pass;
 
-    fn next(&mut self) -> Option<Range<u64>> {
+    fn next(&mut self) -> Option<Pass> {
         let from = self.done;
         if from == self.goal {
             return None;
         }
         self.done = (2 * from).clamp(FIRST, self.goal);
-        Some(from..self.done)
+        Some(Pass {
+            bundles: from..self.done,
+            goal: self.goal,
+        })
     }
 }
 
@@ -55,13 +90,21 @@ mod tests {
 
     #[test]
     fn passes_double_up_to_the_goal() {
-        let until = |paths| -> Vec<u64> { Passes::new(paths).map(|pass| pass.end).collect() };
+        let until =
+            |paths| -> Vec<u64> { Passes::new(paths).map(|pass| pass.bundles.end).collect() };
         let bundle = BUNDLE as u64;
         assert_eq!(until(11 * bundle), [2, 4, 8, 11]);
         assert_eq!(until(10 * bundle + 1), [2, 4, 8, 11]);
         assert_eq!(until(1), [2]);
-        let passes: Vec<_> = Passes::new(11 * bundle).collect();
-        assert!(passes.windows(2).all(|pair| pair[0].end == pair[1].start));
+        let passes: Vec<Pass> = Passes::new(11 * bundle).collect();
+        for pair in passes.windows(2) {
+            assert_eq!(pair[0].bundles.end, pair[1].bundles.start);
+            assert!(!pair[0].is_last());
+        }
+        let last = &passes[3];
+        assert!(last.is_last() && last.paths() == 11 * bundle);
+        assert_eq!(passes[1].to_string(), "256 of 704 paths a pixel");
+        assert_eq!(Passes::new(11 * bundle).at_once().bundles, 0..11);
     }
 
     #[test]

@@ -1,13 +1,12 @@
 //! Sums over the bundles of paths of all pixels of a picture.
 
-use super::{ColorMoments, pixel_offset};
+use super::{ColorMoments, Pass, pixel_offset};
 use crate::channels::PixelChannels;
 use crate::error::RenderError;
 use airlight::scene::RadianceSampler;
 use airlight_image::rows::StoredRows;
 use airlight_image::{Control, Frame, ImageError, Size};
 use rayon::prelude::*;
-use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Channels of a polarisation map: degree and angle of linear polarisation, and `Q` and `U` over `I`.
@@ -19,7 +18,7 @@ const MOST_BYTES: f64 = 8e9;
 /// A picture by Monte Carlo as far as it is known: sums over bundles of paths.
 #[derive(Clone, Debug)]
 pub struct Canvas {
-    frame: Frame,
+    size: Size,
     channels: PixelChannels,
     /// In the channels of a view.
     sums: Vec<f64>,
@@ -31,10 +30,10 @@ pub struct Canvas {
 
 impl Canvas {
     /// An empty canvas; `polarised` where the polarisation of light is followed.
-    pub fn new(frame: Frame, channels: &PixelChannels, polarised: bool) -> Self {
-        let pixels = frame.size().width() as usize * frame.size().height() as usize;
+    pub fn new(size: Size, channels: &PixelChannels, polarised: bool) -> Self {
+        let pixels = size.width() as usize * size.height() as usize;
         Self {
-            frame,
+            size,
             channels: channels.clone(),
             sums: vec![0.0; pixels * channels.view_count()],
             colors: vec![ColorMoments::default(); pixels],
@@ -47,12 +46,12 @@ impl Canvas {
     ///
     /// # Errors
     /// [`RenderError::Setting`] above 8 GB.
-    pub fn check_memory<'f>(
-        frames: impl Iterator<Item = &'f Frame>,
+    pub fn check_memory(
+        sizes: impl Iterator<Item = Size>,
         channels: &PixelChannels,
     ) -> Result<(), RenderError> {
-        let pixels: f64 = frames
-            .map(|frame| f64::from(frame.size().width()) * f64::from(frame.size().height()))
+        let pixels: f64 = sizes
+            .map(|size| f64::from(size.width()) * f64::from(size.height()))
             .sum();
         let bytes = size_of::<ColorMoments>() + channels.view_count() * size_of::<f64>();
         match pixels * bytes as f64 {
@@ -66,24 +65,45 @@ impl Canvas {
         }
     }
 
-    /// Where its pixels look.
-    pub fn frame(&self) -> &Frame {
-        &self.frame
-    }
-
-    /// Follows the paths of a range of bundles through every pixel; the range begins where the last one ended.
+    /// Follows the paths of a pass through every pixel of a frame of this size; each bundle looks at another point of the
+    /// pixel.
     ///
     /// # Errors
     /// [`ImageError::Cancelled`] where the caller asked to stop.
     pub fn add(
         &mut self,
+        frame: &Frame,
         sampler: &dyn RadianceSampler,
-        bundles: Range<u64>,
+        pass: &Pass,
         control: Control<'_>,
     ) -> Result<(), ImageError> {
-        let (frame, channels) = (self.frame, &self.channels);
-        let (width, count) = (frame.size().width() as usize, channels.view_count());
-        let height = frame.size().height();
+        self.add_with(pass, control, |x, y, bundle, found, stokes| {
+            let [u, v] = pixel_offset(bundle);
+            match (frame.direction(f64::from(x) + u, f64::from(y) + v), stokes) {
+                (Some(direction), Some(stokes)) => {
+                    sampler.add_polarised_bundle(direction, bundle, found, stokes);
+                }
+                (Some(direction), None) => sampler.add_bundle(direction, bundle, found),
+                (None, _) => {}
+            }
+        })
+    }
+
+    /// Adds the bundles of a pass to every pixel, which begin where the last pass ended. `sample` gets column, row and
+    /// bundle, and adds to the radiance (zeros, in the channels of a view) and to the Stokes parameters, where polarisation
+    /// is followed.
+    ///
+    /// # Errors
+    /// [`ImageError::Cancelled`] where the caller asked to stop.
+    pub fn add_with(
+        &mut self,
+        pass: &Pass,
+        control: Control<'_>,
+        sample: impl Fn(u32, u32, u64, &mut [f64], Option<&mut [f64; 3]>) + Sync,
+    ) -> Result<(), ImageError> {
+        let channels = &self.channels;
+        let (width, count) = (self.size.width() as usize, channels.view_count());
+        let height = self.size.height();
         // One row each, empty where polarisation is not followed.
         let mut stokes: Vec<&mut [[f64; 3]]> = self.stokes.chunks_mut(width).collect();
         stokes.resize_with(height as usize, Default::default);
@@ -97,18 +117,9 @@ impl Canvas {
                 let mut found = vec![0.0; count];
                 for (x, (sums, color)) in sums.chunks_mut(count).zip(colors).enumerate() {
                     control.check()?;
-                    for bundle in bundles.clone() {
-                        let [u, v] = pixel_offset(bundle);
-                        let Some(direction) = frame.direction(x as f64 + u, y as f64 + v) else {
-                            continue;
-                        };
+                    for bundle in pass.bundles.clone() {
                         found.fill(0.0);
-                        match stokes.get_mut(x) {
-                            Some(stokes) => {
-                                sampler.add_polarised_bundle(direction, bundle, &mut found, stokes);
-                            }
-                            None => sampler.add_bundle(direction, bundle, &mut found),
-                        }
+                        sample(x as u32, y as u32, bundle, &mut found, stokes.get_mut(x));
                         sums.iter_mut().zip(&found).for_each(|(sum, v)| *sum += v);
                         color.add(channels.to_rgb(&found));
                     }
@@ -117,8 +128,14 @@ impl Canvas {
                 control.report(done, u64::from(height));
                 Ok::<(), ImageError>(())
             })?;
-        self.bundles = bundles.end;
-        Ok::<(), ImageError>(())
+        self.bundles = pass.bundles.end;
+        Ok(())
+    }
+
+    /// Mean and standard error of red, green and blue of each pixel, row after row.
+    pub fn moments(&self) -> impl Iterator<Item = [(f64, f64); 3]> + '_ {
+        let of = |color: &ColorMoments| [0, 1, 2].map(|lane| color.moments(lane, self.bundles));
+        self.colors.iter().map(of)
     }
 
     /// The picture so far, in the channels of a view.
@@ -132,15 +149,9 @@ impl Canvas {
     /// # Errors
     /// [`ImageError::Setting`]: never for a frame of a size above 0.
     pub fn noise(&self, scale: f32) -> Result<StoredRows, ImageError> {
-        let error = |color: &ColorMoments, component| {
-            scale * color.moments(component, self.bundles).1 as f32
-        };
-        let samples = self
-            .colors
-            .iter()
-            .flat_map(|color| [0, 1, 2].map(|component| error(color, component)))
-            .collect();
-        StoredRows::new(self.size().width(), 3, samples)
+        let errors = |moments: [(f64, f64); 3]| moments.map(|(_, error)| scale * error as f32);
+        let samples = self.moments().flat_map(errors).collect();
+        StoredRows::new(self.size.width(), 3, samples)
     }
 
     /// Values of [`POLARISATION_CHANNELS`]; `None` where polarisation is not followed.
@@ -150,20 +161,15 @@ impl Canvas {
         }
         let samples = self.stokes.iter().flat_map(polarisation).collect();
         let channels = POLARISATION_CHANNELS.len();
-        Some(StoredRows::new(self.size().width(), channels, samples))
+        Some(StoredRows::new(self.size.width(), channels, samples))
     }
 
     /// Sum of the squared relative standard errors of green, and the number of pixels that are lit.
     pub fn relative_errors(&self) -> (f64, u64) {
-        let errors = self.colors.iter().filter_map(|color| {
-            let (mean, error) = color.moments(1, self.bundles);
-            (mean > 0.0).then(|| (error / mean).powi(2))
-        });
+        let errors = self
+            .moments()
+            .filter_map(|[_, (mean, error), _]| (mean > 0.0).then(|| (error / mean).powi(2)));
         errors.fold((0.0, 0), |(sum, count), error| (sum + error, count + 1))
-    }
-
-    fn size(&self) -> Size {
-        self.frame.size()
     }
 }
 
@@ -181,19 +187,25 @@ mod tests {
     use super::*;
     use crate::test_view::TestSampler;
     use airlight::spectrum::RgbSpace;
+    use std::ops::Range;
     use std::sync::atomic::AtomicBool;
 
     fn canvas(passes: &[u64], polarised: bool) -> Canvas {
         let frame = Frame::equirectangular(4).unwrap();
         let channels = PixelChannels::rgb(RgbSpace::Srgb);
-        let mut canvas = Canvas::new(frame, &channels, polarised);
+        let mut canvas = Canvas::new(frame.size(), &channels, polarised);
         let mut done = 0;
         for &until in passes {
             let control = Control::default();
-            canvas.add(&TestSampler, done..until, control).unwrap();
+            let pass = pass(done..until);
+            canvas.add(&frame, &TestSampler, &pass, control).unwrap();
             done = until;
         }
         canvas
+    }
+
+    fn pass(bundles: Range<u64>) -> Pass {
+        Pass { bundles, goal: 8 }
     }
 
     #[test]
@@ -238,12 +250,13 @@ mod tests {
         let stop = AtomicBool::new(true);
         let frame = Frame::equirectangular(4).unwrap();
         let channels = PixelChannels::rgb(RgbSpace::Srgb);
-        let mut canvas = Canvas::new(frame, &channels, false);
-        let stopped = canvas.add(&TestSampler, 0..2, Control::cancelled_by(&stop));
+        let mut canvas = Canvas::new(frame.size(), &channels, false);
+        let control = Control::cancelled_by(&stop);
+        let stopped = canvas.add(&frame, &TestSampler, &pass(0..2), control);
         assert!(stopped.unwrap_err().is_cancelled());
         let large = Frame::equirectangular(32768).unwrap();
-        let refused = Canvas::check_memory([&large].into_iter(), &channels).unwrap_err();
+        let refused = Canvas::check_memory([large.size()].into_iter(), &channels).unwrap_err();
         assert!(refused.to_string().contains("try a smaller size"));
-        assert!(Canvas::check_memory([&frame; 6].into_iter(), &channels).is_ok());
+        assert!(Canvas::check_memory([frame.size(); 6].into_iter(), &channels).is_ok());
     }
 }

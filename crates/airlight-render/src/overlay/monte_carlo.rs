@@ -3,15 +3,15 @@
 
 use super::{ExistingAerial, FogSource, Overlay};
 use crate::RenderError;
-use crate::canvas::{ColorMoments, Passes};
+use crate::canvas::{Canvas, Passes};
+use crate::channels::PixelChannels;
 use airlight::atmosphere::Atmosphere;
-use airlight::monte_carlo::{BUNDLE, MonteCarlo, MonteCarloSettings};
+use airlight::monte_carlo::{MonteCarlo, MonteCarloSettings};
 use airlight::scene::{RgbFoggySky, SunState};
 use airlight::spectrum::{RgbSpace, WavelengthGrid, rgb};
 use airlight_image::{Control, ImageError};
 use glam::DVec3;
 use rayon::prelude::*;
-use std::sync::atomic::{AtomicU64, Ordering};
 
 /// The path radiance of a picture's fog by Monte Carlo.
 #[derive(Debug)]
@@ -53,9 +53,11 @@ impl MonteCarloPass {
     }
 }
 
-#[derive(Clone, Copy, Default)]
-struct Pixel {
-    radiance: ColorMoments,
+/// The ray of a pixel, and what is known of its path radiance.
+struct PixelRay {
+    direction: DVec3,
+    /// Its length, m.
+    distance_m: f64,
     /// Path radiance that the picture shows already, subtracted from the mean.
     shown: [f64; 3],
     /// Factor for the part of the ray below the ground.
@@ -90,7 +92,7 @@ impl MonteCarloFog {
             .map_err(|error| RenderError::setting(error.to_string()))?;
         let from_xyz = RgbSpace::Srgb.from_xyz_matrix();
         // The Monte Carlo's sun is at its mean distance.
-        let scale = f64::from(*radiance_scale) * sun.distance_ratio.powi(-2);
+        let scale = f64::from(*radiance_scale) * sun.irradiance_factor();
         let xyz = solver.grid().xyz_weights().iter();
         Ok(Self {
             weights: xyz
@@ -119,70 +121,62 @@ impl MonteCarloFog {
     ) -> Result<(), RenderError> {
         let size = overlay.size();
         let (width, height) = (size.width() as usize, u64::from(size.height()));
-        let mut pixels = vec![Pixel::default(); width * height as usize];
-        let passes = Passes::new(self.paths);
-        let (goal, bundle) = (passes.goal(), BUNDLE as u64);
-        for bundles in passes {
-            let paths = format!(
-                "{} of {} paths a pixel",
-                bundles.end * bundle,
-                goal * bundle
-            );
-            control.stage(&paths, height);
-            let rows = AtomicU64::new(0);
-            pixels
-                .par_chunks_mut(width)
-                .enumerate()
-                .try_for_each(|(y, row)| {
-                    for (pixel, ray) in row.iter_mut().zip(overlay.rays(y as u32)) {
-                        control.check()?;
-                        self.sample(pixel, ray, bundles.clone());
-                    }
-                    control.report(1 + rows.fetch_add(1, Ordering::Relaxed), height);
-                    Ok::<(), ImageError>(())
-                })?;
-            let done = bundles.end;
-            let values = |value: &dyn Fn(&Pixel, usize) -> f64| -> Vec<f32> {
-                let lanes = |pixel| [0, 1, 2].map(|lane| value(pixel, lane) as f32);
-                pixels.iter().flat_map(lanes).collect()
-            };
+        let rows: Vec<Vec<PixelRay>> = (0..size.height())
+            .into_par_iter()
+            .map(|y| {
+                control.check()?;
+                let rays = overlay.rays(y).into_iter();
+                Ok(rays.map(|ray| self.pixel_ray(ray)).collect())
+            })
+            .collect::<Result<_, ImageError>>()?;
+        let mut canvas = Canvas::new(size, &PixelChannels::rgb(RgbSpace::Srgb), false);
+        for pass in Passes::new(self.paths) {
+            control.stage(&pass.to_string(), height);
+            canvas.add_with(&pass, control, |x, y, bundle, rgb, _| {
+                self.sample(&rows[y as usize][x as usize], bundle, rgb);
+            })?;
+            let mut path_radiance = Vec::with_capacity(3 * width * height as usize);
+            let mut standard_error = Vec::with_capacity(path_radiance.capacity());
+            for (ray, moments) in rows.iter().flatten().zip(canvas.moments()) {
+                for (lane, (mean, error)) in moments.into_iter().enumerate() {
+                    let factor = ray.below_ground[lane];
+                    path_radiance.push((factor * mean - ray.shown[lane]) as f32);
+                    standard_error.push((factor * error) as f32);
+                }
+            }
             after_pass(&MonteCarloPass {
-                paths: done * bundle,
-                is_last: done == goal,
-                path_radiance: values(&|pixel, lane| pixel.mean(lane, done)),
-                standard_error: values(&|pixel, lane| pixel.standard_error(lane, done)),
+                paths: pass.paths(),
+                is_last: pass.is_last(),
+                path_radiance,
+                standard_error,
             })?;
         }
         Ok(())
     }
 
-    /// Follows more bundles of paths along a ray of a direction and a length, m.
-    fn sample(
-        &self,
-        pixel: &mut Pixel,
-        (direction, distance_m): (DVec3, f64),
-        bundles: std::ops::Range<u64>,
-    ) {
-        if bundles.start == 0 {
-            pixel.shown = self.shown(direction, distance_m);
-            pixel.below_ground = self.below_ground(direction, distance_m);
+    fn pixel_ray(&self, (direction, distance_m): (DVec3, f64)) -> PixelRay {
+        PixelRay {
+            direction,
+            distance_m,
+            shown: self.shown(direction, distance_m),
+            below_ground: self.below_ground(direction, distance_m),
         }
-        for bundle in bundles {
-            let sample = self.solver.sample_path(
-                self.eye_altitude_m,
-                self.sun,
-                direction,
-                distance_m,
-                bundle,
-            );
-            let mut rgb = [0.0; 3];
-            for (lane, weights) in self.weights.iter().enumerate() {
-                let radiance: f64 = sample.iter().map(|order| order[lane]).sum();
-                for (c, w) in rgb.iter_mut().zip(weights) {
-                    *c += w * radiance;
-                }
+    }
+
+    /// Adds the colour that a bundle of paths along a ray finds.
+    fn sample(&self, ray: &PixelRay, bundle: u64, rgb: &mut [f64]) {
+        let sample = self.solver.sample_path(
+            self.eye_altitude_m,
+            self.sun,
+            ray.direction,
+            ray.distance_m,
+            bundle,
+        );
+        for (lane, weights) in self.weights.iter().enumerate() {
+            let radiance: f64 = sample.iter().map(|order| order[lane]).sum();
+            for (c, w) in rgb.iter_mut().zip(weights) {
+                *c += w * radiance;
             }
-            pixel.radiance.add(rgb);
         }
     }
 
@@ -216,16 +210,5 @@ impl MonteCarloFog {
             }
             _ => [1.0; 3],
         }
-    }
-}
-
-impl Pixel {
-    /// Path radiance beyond what the picture shows already.
-    fn mean(&self, lane: usize, bundles: u64) -> f64 {
-        self.below_ground[lane] * self.radiance.moments(lane, bundles).0 - self.shown[lane]
-    }
-
-    fn standard_error(&self, lane: usize, bundles: u64) -> f64 {
-        self.below_ground[lane] * self.radiance.moments(lane, bundles).1
     }
 }
