@@ -7,6 +7,7 @@
 //! angle. The sum of radiance times solid angle over all pixels is then the disc's irradiance to 0.3 %.
 
 use crate::channels::PixelChannels;
+use airlight::axes;
 use airlight::scene::RadianceView;
 use airlight_image::Frame;
 use glam::DVec3;
@@ -47,7 +48,7 @@ impl SunDiscImage {
         let sun = view.sun();
         let radius_rad = view.disc().angular_radius_rad;
         let horizon_rad = view.horizon_elevation_rad();
-        (elevation(sun) + radius_rad > horizon_rad + LEAST_RAD).then_some(Self {
+        (axes::elevation_rad(sun) + radius_rad > horizon_rad + LEAST_RAD).then_some(Self {
             view,
             sun,
             radius_rad,
@@ -158,7 +159,7 @@ impl SunDiscImage {
         if from_sun > self.radius_rad + reach {
             return true;
         }
-        let height = elevation(centre) - self.horizon_rad;
+        let height = axes::elevation_rad(centre) - self.horizon_rad;
         if height < -reach {
             return true;
         }
@@ -203,10 +204,6 @@ fn edge_bulge(a: DVec3, b: DVec3, middle: Option<DVec3>) -> f64 {
     middle.map_or(0.0, |m| {
         (m.distance(a) + m.distance(b) - a.distance(b)).max(0.0)
     })
-}
-
-fn elevation(direction: DVec3) -> f64 {
-    direction.y.atan2(direction.x.hypot(direction.z))
 }
 
 #[cfg(test)]

@@ -126,10 +126,6 @@ impl RadianceView for TestView {
 pub struct TestSampler;
 
 impl RadianceSampler for TestSampler {
-    fn paths_per_bundle(&self) -> u64 {
-        64
-    }
-
     fn paths(&self) -> u64 {
         512
     }

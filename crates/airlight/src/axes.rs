@@ -25,10 +25,12 @@ pub fn azimuth_deg(direction: DVec3) -> f64 {
 
 /// Elevation above the horizon in degrees, in `[-90, 90]`.
 pub fn elevation_deg(direction: DVec3) -> f64 {
-    direction
-        .y
-        .atan2(direction.x.hypot(direction.z))
-        .to_degrees()
+    elevation_rad(direction).to_degrees()
+}
+
+/// Elevation above the horizon in radians, accurate also next to the vertical.
+pub fn elevation_rad(direction: DVec3) -> f64 {
+    direction.y.atan2(direction.x.hypot(direction.z))
 }
 
 #[cfg(test)]

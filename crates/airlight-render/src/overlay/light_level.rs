@@ -6,6 +6,7 @@ use airlight::fog::FogLighting;
 use airlight::scene::RgbFoggySky;
 use airlight_image::frame::Intrinsics;
 use airlight_image::input::{DepthMap, Picture};
+use airlight_image::tone::luminance;
 use serde::Serialize;
 use std::f32::consts::PI;
 use std::fmt;
@@ -145,9 +146,4 @@ fn picture_over_solved(spec: &OverlaySpec, sky: &RgbFoggySky, view: &View<'_>) -
     }
     let scale = (shown / solved) as f32;
     (scale.is_finite() && scale > 0.0).then_some(scale)
-}
-
-/// Luminance of linear sRGB (BT.709).
-fn luminance(colour: [f32; 3]) -> f32 {
-    0.2126 * colour[0] + 0.7152 * colour[1] + 0.0722 * colour[2]
 }

@@ -3,8 +3,8 @@
 use crate::RenderError;
 use airlight::atmosphere::{Atmosphere, Constituent};
 use airlight::fog::FogScattering;
-use airlight::scene::{Effort, ResolvedScene, RgbFoggySky, SceneError, SunState};
-use airlight::sky::{Scattering, Sky, SkySettings, SunCoverage, View};
+use airlight::scene::{ResolvedScene, RgbFoggySky, SceneError, SunState};
+use airlight::sky::{Sky, SunCoverage, View};
 use airlight::spectrum::RgbSpace;
 use std::fmt;
 use std::sync::{Mutex, PoisonError};
@@ -32,20 +32,13 @@ impl SkyLight {
     /// [`RenderError::Scene`] for a sun outside the range of the ephemeris, and an atmosphere that the solver refuses.
     pub fn solve(scene: &ResolvedScene) -> Result<Self, RenderError> {
         let sun = scene.sun.at_start()?;
-        let settings = SkySettings {
-            suns: SunCoverage::near(sun.elevation_deg, scene.observer_altitude_m),
-            scattering: scene.solver.scattering.unwrap_or(Scattering::All),
-            ..match scene.solver.effort {
-                Some(Effort::Fine) => SkySettings::fine(),
-                _ => SkySettings::default(),
-            }
-        };
+        let suns = SunCoverage::near(sun.elevation_deg, scene.observer_altitude_m);
+        let settings = scene.solver.sky_settings(suns);
         let sky =
             Sky::prepare(&scene.atmosphere, &scene.grid, &settings).map_err(SceneError::from)?;
         let sun = sun.state();
-        let view = sky.view(scene.observer_altitude_m, sun.direction);
         Ok(Self {
-            view: view.at_sun_distance(sun.distance_ratio),
+            view: sky.view(scene.observer_altitude_m, sun),
             observer_altitude_m: scene.observer_altitude_m,
             sun,
             last: Mutex::new(None),

@@ -3,7 +3,7 @@
 use super::density::{DensityError, DensityProfile};
 use crate::optics::{PhaseError, PhaseFunction};
 use crate::spectrum::SpectralCurve;
-use crate::sun::{SunDisc, SunError};
+use crate::sun::{SunDisc, SunError, SunState};
 use std::fmt;
 
 /// Mean radius of the Earth, m (IUGG).
@@ -294,12 +294,12 @@ impl Atmosphere {
         (self.planet.radius_m / EARTH_RADIUS_M - 1.0).abs() < 0.02
     }
 
-    /// The same atmosphere at another distance from the sun, `ratio` times the planet's mean distance: irradiance falls
-    /// with its square, the disc shrinks.
-    pub fn at_sun_distance(&self, ratio: f64) -> Self {
+    /// The same atmosphere with the sun at its present distance, instead of the planet's mean distance: irradiance and size
+    /// of the disc.
+    pub fn under(&self, sun: &SunState) -> Self {
         let mut air = self.clone();
-        air.solar_irradiance = air.solar_irradiance.scaled(1.0 / (ratio * ratio));
-        air.sun = air.sun.at_distance_ratio(ratio);
+        air.solar_irradiance = air.solar_irradiance.scaled(sun.irradiance_factor());
+        air.sun = sun.disc(&air.sun);
         air
     }
 }

@@ -1,8 +1,6 @@
 //! Number density of the U.S. Standard Atmosphere, 1976 (NOAA-S/T 76-1562), computed by the formulas of the standard.
 
-#[cfg(test)]
-use crate::optics::rayleigh::BOLTZMANN_J_PER_K;
-
+use crate::optics::rayleigh::{STANDARD_PRESSURE_PA, STANDARD_TEMPERATURE_K};
 #[cfg(feature = "ephemeris")]
 use crate::sun::RefractingAir;
 
@@ -23,7 +21,7 @@ struct Layer {
 }
 
 const LAYERS: [Layer; 7] = [
-    layer(0.0, 288.15, -6.5e-3, 101_325.0),
+    layer(0.0, STANDARD_TEMPERATURE_K, -6.5e-3, STANDARD_PRESSURE_PA),
     layer(11_000.0, 216.65, 0.0, 22_632.06),
     layer(20_000.0, 216.65, 1.0e-3, 5_474.889),
     layer(32_000.0, 228.65, 2.8e-3, 868.018_7),
@@ -82,7 +80,7 @@ pub(crate) fn refracting_air(altitude_m: f64) -> RefractingAir {
 /// Number density of air relative to sea level at a geometric altitude, m.
 pub(super) fn relative_density(altitude_m: f64) -> f64 {
     let (pressure, temperature) = pressure_and_temperature(altitude_m);
-    let below = pressure / temperature / (101_325.0 / 288.15);
+    let below = pressure / temperature / (STANDARD_PRESSURE_PA / STANDARD_TEMPERATURE_K);
     match altitude_m > HOMOPAUSE_M {
         true => below * (-(altitude_m - HOMOPAUSE_M) / UPPER_SCALE_HEIGHT_M).exp(),
         false => below,
@@ -120,13 +118,10 @@ pub(super) fn ramps_m() -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// Number density of air at sea level in the standard atmosphere, m^-3.
-#[cfg(test)]
-const SEA_LEVEL_DENSITY_PER_M3: f64 = 101_325.0 / (BOLTZMANN_J_PER_K * 288.15);
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::optics::rayleigh::number_density_per_m3;
 
     #[cfg(feature = "ephemeris")]
     #[test]
@@ -158,8 +153,9 @@ mod tests {
             );
         }
         // Table VIII, m^-3.
+        let sea_level_per_m3 = number_density_per_m3(STANDARD_PRESSURE_PA, STANDARD_TEMPERATURE_K);
         for (km, density) in [(86.0, 1.447e20), (90.0, 7.12e19), (100.0, 1.189e19)] {
-            let got = relative_density(km * 1e3) * SEA_LEVEL_DENSITY_PER_M3;
+            let got = relative_density(km * 1e3) * sea_level_per_m3;
             assert!((got / density - 1.0).abs() < 0.01, "{km} km: {got}");
         }
     }

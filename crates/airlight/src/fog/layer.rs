@@ -196,17 +196,7 @@ impl<const N: usize> LayerLanes<N> {
     /// Phase function of all lanes at a cosine of the scattering angle, 1/sr.
     #[inline]
     pub fn phase_lanes(&self, cos_angle: f64) -> Spectrum<N> {
-        match &self.phase {
-            PhaseFunction::Tabulated(table) => Spectrum(
-                table
-                    .evaluate_all(cos_angle, &self.wavelengths_nm)
-                    .map(|p| p as f32),
-            ),
-            phase if phase.depends_on_wavelength() => Spectrum::from_fn(|lane| {
-                phase.evaluate(cos_angle, self.wavelengths_nm[lane]) as f32
-            }),
-            phase => Spectrum::splat(phase.evaluate(cos_angle, 550.0) as f32),
-        }
+        self.phase.in_lanes(cos_angle, &self.wavelengths_nm)
     }
 
     /// Layers whose sum is this one: one for each term of its density.

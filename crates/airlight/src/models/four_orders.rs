@@ -7,7 +7,6 @@
 //! been scattered more often.)
 
 use super::PublishedModel;
-use super::orders::sky_settings;
 use super::prepared::Prepared;
 use crate::atmosphere::Atmosphere;
 use crate::control::Control;
@@ -106,14 +105,12 @@ impl RadianceModel for FourOrdersModel {
         suns: SunCoverage,
         control: Control<'_>,
     ) -> Result<Arc<dyn PreparedModel>, SceneError> {
-        let settings = sky_settings(&scene.solver, suns);
+        let settings = scene.solver.sky_settings(suns);
         let sky = solve(&scene.atmosphere, &scene.grid, 4, &settings, control)?;
         let grid = Some(sky.grid().clone());
         let prepared = Prepared::new(self.name(), scene, grid, move |altitude_m, sun| {
-            let view = sky.view(altitude_m, sun.direction);
-            Ok(Arc::new(FourOrders {
-                view: view.at_sun_distance(sun.distance_ratio),
-            }))
+            let view = sky.view(altitude_m, *sun);
+            Ok(Arc::new(FourOrders { view }))
         });
         Ok(Arc::new(prepared))
     }

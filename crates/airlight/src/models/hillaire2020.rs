@@ -21,7 +21,7 @@ use crate::debug::debug_fields;
 use crate::scene::{Capabilities, Input, PreparedModel, RadianceModel, ResolvedScene, SceneError};
 use crate::sky::{LineOfSight, Scattering, SunCoverage};
 use crate::spectrum::WavelengthGrid;
-use crate::sun::SunDisc;
+use crate::sun::{SunDisc, SunState};
 use crate::transfer::ray::Ray;
 use glam::DVec3;
 use std::sync::Arc;
@@ -138,16 +138,15 @@ impl Hillaire2020 {
         settings: &Settings,
     ) -> Result<Self, HillaireError> {
         let tables = Tables::new(atmosphere, grid, settings)?;
-        Self::of(Arc::new(tables), eye_altitude_m, sun_direction, 1.0)
+        let sun = SunState {
+            direction: sun_direction,
+            distance_ratio: 1.0,
+        };
+        Self::of(Arc::new(tables), eye_altitude_m, &sun)
     }
 
-    /// Sky of prepared tables, with the sun at a distance over the mean one.
-    fn of(
-        tables: Arc<Tables>,
-        eye_altitude_m: f64,
-        sun_direction: DVec3,
-        sun_distance_ratio: f64,
-    ) -> Result<Self, HillaireError> {
+    /// Sky of prepared tables.
+    fn of(tables: Arc<Tables>, eye_altitude_m: f64, sun: &SunState) -> Result<Self, HillaireError> {
         let ground_m = tables.ground_altitude_m;
         if !(eye_altitude_m.is_finite() && eye_altitude_m >= ground_m) {
             return Err(HillaireError::EyeAltitude {
@@ -155,17 +154,17 @@ impl Hillaire2020 {
                 ground_m,
             });
         }
-        let sun = sun_direction
-            .try_normalize()
-            .ok_or(HillaireError::Sun(sun_direction))?;
-        let grid = tables.grid.at_sun_distance(sun_distance_ratio);
+        let direction = sun.direction;
+        let grid = tables.grid.with_solar_factor(sun.irradiance_factor());
         Ok(Self {
             eye: DVec3::Y * (tables.air.planet_radius_m() + eye_altitude_m),
             solar: grid.solar_irradiance().iter().map(|&e| e as f32).collect(),
-            disc: tables.disc.at_distance_ratio(sun_distance_ratio),
+            disc: sun.disc(&tables.disc),
             grid,
             tables,
-            sun,
+            sun: direction
+                .try_normalize()
+                .ok_or(HillaireError::Sun(direction))?,
         })
     }
 
@@ -346,8 +345,7 @@ impl RadianceModel for Hillaire2020Model {
         let tables = Arc::new(tables);
         let grid = Some(tables.grid.clone());
         let prepared = Prepared::new(name, scene, grid, move |altitude_m, sun| {
-            let (sun, ratio) = (sun.direction, sun.distance_ratio);
-            let sky = Hillaire2020::of(tables.clone(), altitude_m, sun, ratio);
+            let sky = Hillaire2020::of(tables.clone(), altitude_m, sun);
             Ok(Arc::new(sky.map_err(refused)?))
         });
         Ok(Arc::new(prepared))

@@ -1,11 +1,11 @@
 //! The solver `monte-carlo`: random paths, without approximation.
 
-use super::orders::{PreparedOrders, sky_settings};
+use super::orders::PreparedOrders;
 use crate::atmosphere::Atmosphere;
 use crate::control::Control;
 use crate::math::parallel;
 use crate::monte_carlo::{
-    BUNDLE, Estimate, MonteCarlo, MonteCarloSettings, ORDERS, PolarisedEstimate, SunShape,
+    Estimate, MonteCarlo, MonteCarloSettings, ORDERS, PolarisedEstimate, SunShape,
 };
 use crate::scene::{
     Capabilities, Channels, Input, PreparedModel, RadianceModel, RadianceSampler, RadianceView,
@@ -89,7 +89,7 @@ impl RadianceModel for MonteCarloModel {
         // Any fault of the air shows before the preview is solved for.
         MonteCarlo::new(&atmosphere, &scene.grid, settings)?;
         Ok(Arc::new(PreparedMonteCarlo {
-            preview: PreparedOrders::new(scene, &sky_settings(solver, suns), control)?,
+            preview: PreparedOrders::new(scene, &solver.sky_settings(suns), control)?,
             atmosphere,
             settings,
             orders: match scattering {
@@ -125,7 +125,7 @@ impl PreparedModel for PreparedMonteCarlo {
             .preview
             .solved_view(observer_altitude_m, sun, channels)?;
         let grid = preview.sky_view().sky().grid();
-        let air = self.atmosphere.at_sun_distance(sun.distance_ratio);
+        let air = self.atmosphere.under(sun);
         let weights = match channels {
             Channels::Rgb(space) => grid.rgb_weights(space),
             Channels::Spectral => Vec::new(),
@@ -270,10 +270,6 @@ impl RadianceView for MonteCarloView {
 }
 
 impl RadianceSampler for MonteCarloView {
-    fn paths_per_bundle(&self) -> u64 {
-        BUNDLE as u64
-    }
-
     fn paths(&self) -> u64 {
         self.paths.settings().paths
     }

@@ -2,10 +2,10 @@
 
 use crate::control::Control;
 use crate::scene::{
-    Capabilities, Channels, Effort, FogLayers, Input, PreparedModel, RadianceModel, RadianceView,
-    ResolvedScene, SceneError, SolvedView, SolverSpec, SunState,
+    Capabilities, Channels, FogLayers, Input, PreparedModel, RadianceModel, RadianceView,
+    ResolvedScene, SceneError, SolvedView, SunState,
 };
-use crate::sky::{Scattering, Sky, SkySettings, SunCoverage};
+use crate::sky::{Sky, SkySettings, SunCoverage};
 use crate::spectrum::WavelengthGrid;
 use std::sync::Arc;
 
@@ -52,21 +52,9 @@ impl RadianceModel for Orders {
         suns: SunCoverage,
         control: Control<'_>,
     ) -> Result<Arc<dyn PreparedModel>, SceneError> {
-        let settings = sky_settings(&scene.solver, suns);
+        let settings = scene.solver.sky_settings(suns);
         let prepared = PreparedOrders::new(scene, &settings, control)?;
         Ok(Arc::new(prepared))
-    }
-}
-
-/// How the sky is solved under a range of suns.
-pub(super) fn sky_settings(solver: &SolverSpec, suns: SunCoverage) -> SkySettings {
-    SkySettings {
-        suns,
-        scattering: solver.scattering.unwrap_or(Scattering::All),
-        ..match solver.effort.unwrap_or_default() {
-            Effort::Standard => SkySettings::default(),
-            Effort::Fine => SkySettings::fine(),
-        }
     }
 }
 
@@ -103,14 +91,8 @@ impl PreparedOrders {
         sun: &SunState,
         channels: Channels,
     ) -> Result<SolvedView, SceneError> {
-        let ratio = sun.distance_ratio;
-        let view = self.sky.view(observer_altitude_m, sun.direction);
-        SolvedView::new(
-            view.at_sun_distance(ratio),
-            ratio,
-            self.fog.as_ref(),
-            channels,
-        )
+        let view = self.sky.view(observer_altitude_m, *sun);
+        SolvedView::new(view, self.fog.as_ref(), channels)
     }
 }
 

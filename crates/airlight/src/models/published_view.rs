@@ -1,8 +1,7 @@
 //! What a published model of the sky knows, and the same over the ground that it lights as a [`RadianceView`].
 
 use crate::axes;
-use crate::math::parallel;
-use crate::scene::{Channels, IrradianceMap, RadianceView, SceneError};
+use crate::scene::{Channels, IrradianceMap, RadianceView, SceneError, horizontal_irradiance};
 use crate::sky::LineOfSight;
 use crate::spectrum::rgb::{self, DOMINANT_NM};
 use crate::spectrum::{RgbSpace, SpectralCurve, WavelengthGrid};
@@ -352,29 +351,17 @@ fn add(sum: &mut [f64], values: &[f64]) {
     sum.iter_mut().zip(values).for_each(|(sum, v)| *sum += v);
 }
 
-/// Irradiance of the sky on the horizontal: bands of equal weight, and equal turns about the sun's azimuth.
+/// Irradiance of the sky on the horizontal.
 fn sky_horizontal(model: &dyn PublishedModel) -> Vec<f64> {
-    const BANDS: usize = 48;
-    const TURNS: usize = 96;
+    /// Rings, and directions in each.
+    const DIRECTIONS: (usize, usize) = (48, 96);
     let azimuth_deg = axes::azimuth_deg(model.sun());
-    let bands = parallel::map(BANDS, |i| {
-        // Equal parts of sin^2: each weighs the same on the horizontal.
-        let elevation = ((i as f64 + 0.5) / BANDS as f64).sqrt().asin();
-        let mut sum = dark(model);
-        for j in 0..TURNS {
-            let azimuth_deg = azimuth_deg + 360.0 * (j as f64 + 0.5) / TURNS as f64;
-            add(
-                &mut sum,
-                &sky(model, axes::direction(azimuth_deg, elevation.to_degrees())),
-            );
+    let lanes = dark(model).len();
+    horizontal_irradiance(DIRECTIONS, azimuth_deg, lanes, |directions, sum| {
+        for &direction in directions {
+            add(sum, &sky(model, direction));
         }
-        sum
-    });
-    let mut sum = dark(model);
-    bands.iter().for_each(|band| add(&mut sum, band));
-    sum.iter_mut()
-        .for_each(|v| *v *= PI / (BANDS * TURNS) as f64);
-    sum
+    })
 }
 
 /// Irradiance of the disc on a surface that faces it, from rings of equal area.

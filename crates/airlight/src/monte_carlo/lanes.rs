@@ -97,9 +97,7 @@ impl<const N: usize> Phase<N> {
         match &self.shape {
             Shape::Same => Spectrum::splat(self.function.evaluate(mu, wavelengths_nm[0]) as f32),
             Shape::Square(constant, square) => constant.scale_acc(*square, (mu * mu) as f32),
-            Shape::ByLane => {
-                Spectrum::from_fn(|i| self.function.evaluate(mu, wavelengths_nm[i]) as f32)
-            }
+            Shape::ByLane => self.function.in_lanes(mu, wavelengths_nm),
         }
     }
 }

@@ -10,6 +10,7 @@ pub use sample::PhaseSampler;
 use super::phase_error::PhaseError;
 use super::rayleigh;
 use super::tabulated::TabulatedPhase;
+use crate::spectrum::Spectrum;
 use std::f64::consts::PI;
 
 /// A phase function. The constructors check their parameters; [`PhaseFunction::validate`] checks a value built from its
@@ -195,6 +196,26 @@ impl PhaseFunction {
                 .map(|(weight, part)| weight * part.evaluate(cos_angle, wavelength_nm))
                 .sum(),
             Self::Tabulated(table) => table.evaluate(cos_angle, wavelength_nm),
+        }
+    }
+
+    /// [`Self::evaluate`] at N wavelengths (nm) in single precision.
+    #[inline]
+    pub(crate) fn in_lanes<const N: usize>(
+        &self,
+        cos_angle: f64,
+        wavelengths_nm: &[f64; N],
+    ) -> Spectrum<N> {
+        match self {
+            Self::Tabulated(table) => Spectrum(
+                table
+                    .evaluate_all(cos_angle, wavelengths_nm)
+                    .map(|p| p as f32),
+            ),
+            phase if phase.depends_on_wavelength() => {
+                Spectrum(wavelengths_nm.map(|nm| phase.evaluate(cos_angle, nm) as f32))
+            }
+            phase => Spectrum::splat(phase.evaluate(cos_angle, wavelengths_nm[0]) as f32),
         }
     }
 

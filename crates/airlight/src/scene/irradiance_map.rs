@@ -1,10 +1,10 @@
-//! Light from all around on surfaces of any slant.
+//! Light from all around on surfaces of any slant, and light of the sky on the horizontal.
 
 use crate::axes;
 use crate::math::interpolation::{Place, lerp};
 use crate::math::parallel;
 use glam::DVec3;
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 /// Normals tabulated from the nadir to the zenith, and round.
 const ROWS: usize = 25;
@@ -117,10 +117,41 @@ fn directions(sun: DVec3) -> Vec<(DVec3, f64)> {
     all
 }
 
+/// Irradiance of the upper half of the sphere on the horizontal, `channels` values, from rings of equal weight with equally
+/// spaced directions, the first of which is half a step after `from_azimuth_deg`.
+///
+/// `add` adds the radiances along the directions of a ring to a sum.
+pub(crate) fn horizontal_irradiance(
+    (rings, spokes): (usize, usize),
+    from_azimuth_deg: f64,
+    channels: usize,
+    add: impl Fn(&[DVec3], &mut [f64]) + Sync,
+) -> Vec<f64> {
+    let sums = parallel::map(rings, |ring| {
+        // Equal parts of the squared sine: each weighs the same on the horizontal.
+        let elevation = ((ring as f64 + 0.5) / rings as f64).sqrt().asin();
+        let directions: Vec<DVec3> = (0..spokes)
+            .map(|spoke| {
+                let azimuth_deg = from_azimuth_deg + 360.0 * (spoke as f64 + 0.5) / spokes as f64;
+                axes::direction(azimuth_deg, elevation.to_degrees())
+            })
+            .collect();
+        let mut sum = vec![0.0; channels];
+        add(&directions, &mut sum);
+        sum
+    });
+    let mut whole = vec![0.0; channels];
+    for sum in sums {
+        whole.iter_mut().zip(sum).for_each(|(whole, v)| *whole += v);
+    }
+    let weight = PI / (rings * spokes) as f64;
+    whole.iter_mut().for_each(|v| *v *= weight);
+    whole
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::f64::consts::PI;
 
     const SUN: DVec3 = DVec3::new(0.6, 0.64, 0.48);
 
@@ -149,6 +180,21 @@ mod tests {
             let ratio = on(&even, normal) / (2.0 * PI);
             assert!((ratio - 1.0).abs() < 3e-3, "{normal}: {ratio}");
         }
+    }
+
+    #[test]
+    fn the_horizontal_receives_pi_times_the_mean_weighted_by_the_sine() {
+        // Radiance 1 + s . d, with the exact irradiance pi + 2 pi / 3 s . y.
+        let side = axes::direction(60.0, 20.0);
+        let got = horizontal_irradiance((48, 96), 10.0, 2, |directions, sum| {
+            for direction in directions {
+                sum[0] += 1.0;
+                sum[1] += 1.0 + side.dot(*direction);
+            }
+        });
+        let exact = PI + 2.0 * PI / 3.0 * side.y;
+        assert!((got[0] / PI - 1.0).abs() < 1e-14, "{got:?}");
+        assert!((got[1] / exact - 1.0).abs() < 2e-4, "{got:?} {exact}");
     }
 
     #[test]

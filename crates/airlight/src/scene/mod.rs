@@ -43,7 +43,7 @@ pub use document::SceneDocument;
 pub use error::SceneError;
 pub use fog_layers::{FogLayer, FogLayers};
 pub use input::Input;
-pub(crate) use irradiance_map::IrradianceMap;
+pub(crate) use irradiance_map::{IrradianceMap, horizontal_irradiance};
 pub use model::{PreparedModel, RadianceModel, RadianceSampler, RadianceView, RowSampler};
 pub use resolved::ResolvedScene;
 pub use rgb_foggy_sky::RgbFoggySky;

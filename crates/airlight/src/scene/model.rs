@@ -169,9 +169,6 @@ pub trait RowSampler: Debug + Send + Sync {
 
 /// Independent unbiased samples of radiance: how a Monte Carlo picture is accumulated pass by pass.
 pub trait RadianceSampler: Debug + Send + Sync {
-    /// Paths in a bundle.
-    fn paths_per_bundle(&self) -> u64;
-
     /// Paths requested for each direction.
     fn paths(&self) -> u64;
 

@@ -1,6 +1,7 @@
 //! The light of a solved sky, and of the fog in it.
 
 use super::fog_in_sky::FogInSky;
+use super::irradiance_map::horizontal_irradiance;
 use super::sun_disc_table::SunDiscTable;
 use super::{Channels, FogLayers, IrradianceMap, RadianceView, RowSampler, SceneError};
 use crate::axes;
@@ -8,7 +9,6 @@ use crate::sky::{LineOfSight, SkyColumns, SkyTable, View};
 use crate::spectrum::WavelengthGrid;
 use crate::sun::SunDisc;
 use glam::DVec3;
-use std::f64::consts::PI;
 use std::fmt;
 use std::sync::{Arc, OnceLock};
 
@@ -27,13 +27,12 @@ pub(crate) struct SolvedView {
 }
 
 impl SolvedView {
-    /// Tabulates the sky of a view with fog in it, or without; `sun_distance_ratio` is that of the view.
+    /// Tabulates the sky of a view with fog in it, or without.
     ///
     /// # Errors
     /// [`SceneError`] for fog that is refused.
     pub fn new(
         view: View,
-        sun_distance_ratio: f64,
         fog: Option<&FogLayers>,
         channels: Channels,
     ) -> Result<Self, SceneError> {
@@ -46,7 +45,10 @@ impl SolvedView {
             None => Arc::new(view.table(channels)),
         };
         let grid = match channels {
-            Channels::Spectral => Some(view.sky().grid().at_sun_distance(sun_distance_ratio)),
+            Channels::Spectral => {
+                let factor = view.sun_state().irradiance_factor();
+                Some(view.sky().grid().with_solar_factor(factor))
+            }
             Channels::Rgb(_) => None,
         };
         Ok(Self {
@@ -176,34 +178,27 @@ impl RadianceView for SolvedView {
         }
     }
 
-    /// With fog from rings of even weight: to a few percent where the fog's glow about the sun is narrow.
+    /// With fog to a few percent where the fog's glow about the sun is narrow.
     fn horizontal_irradiance(&self, out: &mut [f32]) {
-        const RINGS: u32 = 60;
-        const SPOKES: u32 = 120;
+        /// Rings, and directions in each.
+        const DIRECTIONS: (usize, usize) = (60, 120);
         if self.fog.is_none() {
             out.copy_from_slice(&self.clear.irradiance(DVec3::Y));
             return;
         }
-        let mut values = vec![0.0; out.len()];
-        let mut sum = vec![0.0f64; out.len()];
-        for ring in 0..RINGS {
-            // Rings of equal weight: even in the squared sine of the elevation.
-            let sine = ((f64::from(ring) + 0.5) / f64::from(RINGS)).sqrt();
-            for spoke in 0..SPOKES {
-                let azimuth_deg = 360.0 * (f64::from(spoke) + 0.5) / f64::from(SPOKES);
-                self.sample(
-                    axes::direction(azimuth_deg, sine.asin().to_degrees()),
-                    &mut values,
-                );
+        let count = out.len();
+        let sum = horizontal_irradiance(DIRECTIONS, 0.0, count, |directions, sum| {
+            let mut values = vec![0.0; count];
+            for &direction in directions {
+                self.sample(direction, &mut values);
                 sum.iter_mut()
                     .zip(&values)
                     .for_each(|(sum, v)| *sum += f64::from(*v));
             }
-        }
-        let weight = PI / f64::from(RINGS * SPOKES);
+        });
         out.iter_mut()
             .zip(sum)
-            .for_each(|(out, sum)| *out = (weight * sum) as f32);
+            .for_each(|(out, sum)| *out = sum as f32);
     }
 
     fn sun_irradiance(&self, out: &mut [f32]) {
@@ -262,8 +257,8 @@ impl RowSampler for SolvedRows {
         let Some(first) = directions.first() else {
             return;
         };
-        let elevation = first.y.atan2(first.x.hypot(first.z));
-        self.clear.sample_row(elevation, &self.columns, out);
+        self.clear
+            .sample_row(axes::elevation_rad(*first), &self.columns, out);
         if let Some(fog) = &self.fog {
             let values = out.chunks_exact_mut(self.clear.channels());
             for (&direction, values) in directions.iter().zip(values) {

@@ -2,7 +2,7 @@
 
 use super::Channels;
 use crate::axes;
-use crate::math::interpolation::Place;
+use crate::math::interpolation::bilinear;
 use crate::sky::View;
 use glam::DVec3;
 
@@ -33,7 +33,7 @@ impl SunDiscTable {
     ) -> Option<Self> {
         let sun = view.sun();
         let radius_rad = view.disc().angular_radius_rad;
-        let centre = elevation(sun);
+        let centre = axes::elevation_rad(sun);
         let lowest = (centre - radius_rad).max(horizon_rad + 1e-7);
         let highest = centre + radius_rad;
         if lowest >= highest {
@@ -98,26 +98,19 @@ impl SunDiscTable {
         out.fill(0.0);
         let from_sun = 2.0 * (0.5 * direction.distance(self.sun)).min(1.0).asin();
         let s = from_sun.sin() / self.radius_rad.sin();
-        let elevation = elevation(direction);
+        let elevation = axes::elevation_rad(direction);
         let (lowest, highest) = self.elevations;
         // Up to the horizon, which lies a little below the lowest elevation.
         if from_sun >= self.radius_rad || s >= 1.0 || elevation < lowest - 2e-7 {
             return;
         }
-        let row = Place::evenly((elevation - lowest) / (highest - lowest), ELEVATIONS);
-        let column = Place::evenly(((1.0 - s) * (1.0 + s)).sqrt(), COSINES);
-        for (k, wk) in [(0, 1.0 - row.fraction), (1, row.fraction)] {
-            for (m, wm) in [(0, 1.0 - column.fraction), (1, column.fraction)] {
-                let cell = (row.below + k) * COSINES + column.below + m;
-                let values = &self.values[cell * self.channels..][..self.channels];
-                for (out, value) in out.iter_mut().zip(values) {
-                    *out += (wk * wm) as f32 * value;
-                }
+        let along = (elevation - lowest) / (highest - lowest);
+        let cosine = ((1.0 - s) * (1.0 + s)).sqrt();
+        for (cell, weight) in bilinear(cosine, along, [COSINES, ELEVATIONS]) {
+            let values = &self.values[cell * self.channels..][..self.channels];
+            for (out, value) in out.iter_mut().zip(values) {
+                *out += weight * value;
             }
         }
     }
-}
-
-fn elevation(direction: DVec3) -> f64 {
-    direction.y.atan2(direction.x.hypot(direction.z))
 }

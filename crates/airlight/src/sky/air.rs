@@ -115,11 +115,7 @@ impl<const N: usize> Air<N> {
 impl<const N: usize> Scatterer<N> {
     /// Phase function at the cosine `nu` of the scattering angle, 1/sr.
     pub fn phase(&self, air: &Air<N>, nu: f64) -> Spectrum<N> {
-        if self.phase.depends_on_wavelength() {
-            Spectrum::from_fn(|lane| self.phase.evaluate(nu, air.wavelengths_nm[lane]) as f32)
-        } else {
-            Spectrum::splat(self.phase.evaluate(nu, air.wavelengths_nm[0]) as f32)
-        }
+        self.phase.in_lanes(nu, &air.wavelengths_nm)
     }
 
     /// The phase function cut off after the degree of `legendre`, whose entries are `P_l(nu)`, 1/sr.

@@ -56,35 +56,41 @@ impl LineOfSight {
 }
 
 impl Sky {
-    /// View from `altitude_m` (m; raised to the ground if below it) with the sun in the direction of the unit vector `sun`
-    /// (world axes: [`crate::axes`]), at the planet's mean distance from the sun.
-    pub fn view(&self, altitude_m: f64, sun: DVec3) -> View {
-        View::new(self, altitude_m, sun)
+    /// View from `altitude_m` (m; raised to the ground if below it) under a sun: a [`SunState`], or a direction (world axes:
+    /// [`crate::axes`]), in which the sun is at the planet's mean distance.
+    pub fn view(&self, altitude_m: f64, sun: impl Into<SunState>) -> View {
+        View::new(self, altitude_m, sun.into())
     }
 }
 
 impl View {
-    pub(super) fn new(sky: &Sky, altitude_m: f64, sun: DVec3) -> Self {
+    pub(super) fn new(sky: &Sky, altitude_m: f64, sun: SunState) -> Self {
         let radius_m = (sky.shell().planet_radius_m + altitude_m).max(sky.shell().ground_radius_m);
         Self {
             sky: sky.clone(),
             position: DVec3::Y * radius_m,
-            sun: SunState::at_mean_distance(sun),
-            disc: sky.atmosphere().sun.clone(),
+            sun: SunState {
+                direction: sun.direction.normalize(),
+                ..sun
+            },
+            disc: sun.disc(&sky.atmosphere().sun),
         }
     }
 
     /// This view with the planet at `ratio` times its mean distance from the sun: scales the irradiance by `1 / ratio^2` and
     /// the angular size of the disc.
-    pub fn at_sun_distance(mut self, ratio: f64) -> Self {
-        self.sun.distance_ratio = ratio;
-        self.disc = self.sun.disc(&self.sky.atmosphere().sun);
-        self
+    pub fn at_sun_distance(self, ratio: f64) -> Self {
+        let sun = self.sun.at_distance_ratio(ratio);
+        Self {
+            disc: sun.disc(&self.sky.atmosphere().sun),
+            sun,
+            ..self
+        }
     }
 
     /// This view from another altitude (m; raised to the ground if below it), vertically above or below.
     pub fn at_altitude(&self, altitude_m: f64) -> Self {
-        let place = Self::new(&self.sky, altitude_m, self.sun.direction);
+        let place = Self::new(&self.sky, altitude_m, self.sun);
         Self {
             position: place.position,
             ..self.clone()
@@ -94,6 +100,11 @@ impl View {
     /// The sky.
     pub fn sky(&self) -> &Sky {
         &self.sky
+    }
+
+    /// Direction and distance of the sun.
+    pub fn sun_state(&self) -> &SunState {
+        &self.sun
     }
 
     /// Unit vector towards the sun.

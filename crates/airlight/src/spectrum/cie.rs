@@ -1,6 +1,7 @@
 //! The CIE 1931 2-degree standard observer.
 
 use super::table::embedded;
+use crate::math::interpolation::lerp;
 use std::sync::LazyLock;
 
 /// Maximum luminous efficacy K_m, lm/W: `Y = 683.002 * integral L ybar dl` is in cd/m^2 for `L` in W m^-2 sr^-1 nm^-1.
@@ -29,7 +30,7 @@ pub fn color_matching(nm: f64) -> [f64; 3] {
     let position = nm - FIRST_NM;
     let row = (position as usize).min(TABLE.len() - 2);
     let t = position - row as f64;
-    std::array::from_fn(|i| TABLE[row][i] * (1.0 - t) + TABLE[row + 1][i] * t)
+    std::array::from_fn(|i| lerp(TABLE[row][i], TABLE[row + 1][i], t))
 }
 
 #[cfg(test)]

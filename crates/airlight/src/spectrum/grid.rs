@@ -211,11 +211,11 @@ impl WavelengthGrid {
         Self::with_sun(self.wavelengths_nm, |nm| solar.at(nm).max(0.0))
     }
 
-    /// This grid with the sun at `ratio` times the distance: the solar irradiance falls by its square.
-    pub fn at_sun_distance(&self, ratio: f64) -> Self {
+    /// This grid under `factor` times the solar irradiance: that of a sun at another distance, for
+    /// [`SunState::irradiance_factor`](crate::sun::SunState::irradiance_factor).
+    pub fn with_solar_factor(&self, factor: f64) -> Self {
         let mut grid = self.clone();
-        let scale = 1.0 / (ratio * ratio);
-        grid.solar_irradiance.iter_mut().for_each(|e| *e *= scale);
+        grid.solar_irradiance.iter_mut().for_each(|e| *e *= factor);
         grid
     }
 

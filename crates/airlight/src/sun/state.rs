@@ -21,6 +21,14 @@ impl SunState {
         }
     }
 
+    /// The same sun at another distance, relative to the planet's mean distance.
+    pub fn at_distance_ratio(self, distance_ratio: f64) -> Self {
+        Self {
+            distance_ratio,
+            ..self
+        }
+    }
+
     /// Solar irradiance relative to that at the mean distance: it falls with the square of the distance.
     pub fn irradiance_factor(&self) -> f64 {
         1.0 / (self.distance_ratio * self.distance_ratio)
@@ -29,6 +37,13 @@ impl SunState {
     /// The disc at this distance of a sun whose disc at the mean distance is given: `sin(radius)` falls with the distance.
     pub fn disc(&self, at_mean_distance: &SunDisc) -> SunDisc {
         at_mean_distance.at_distance_ratio(self.distance_ratio)
+    }
+}
+
+impl From<DVec3> for SunState {
+    /// [`SunState::at_mean_distance`].
+    fn from(direction: DVec3) -> Self {
+        Self::at_mean_distance(direction)
     }
 }
 
@@ -45,10 +60,8 @@ mod tests {
         assert!(
             (near.disc(&mean).angular_radius_rad / mean.angular_radius_rad - 1.0).abs() < 1e-15
         );
-        let far = SunState {
-            distance_ratio: 1.5,
-            ..near
-        };
+        assert_eq!(SunState::from(DVec3::Y), near);
+        let far = near.at_distance_ratio(1.5);
         let disc = far.disc(&mean);
         assert_eq!(disc.limb_darkening, mean.limb_darkening);
         let dimmer = disc.solid_angle_sr() / mean.solid_angle_sr();

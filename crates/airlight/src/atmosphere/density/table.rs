@@ -1,6 +1,7 @@
 //! [`AltitudeTable`]: densities tabulated by altitude.
 
 use super::error::DensityError;
+use crate::math::interpolation::lerp;
 use crate::names::named;
 
 /// Interpolation between samples.
@@ -94,7 +95,7 @@ impl AltitudeTable {
         let t = (z - z0) / (z1 - z0);
         match self.is_log(d0, d1) {
             true => d0 * (t * (d1 / d0).ln()).exp(),
-            false => d0 * (1.0 - t) + d1 * t,
+            false => lerp(d0, d1, t),
         }
     }
 

@@ -6,6 +6,7 @@ use crate::axes;
 use crate::control::Control;
 use crate::sky::{Sky, SkySettings, SkyTable, SunCoverage, TableChannels};
 use crate::spectrum::WavelengthGrid;
+use crate::sun::SunState;
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
 
@@ -40,8 +41,8 @@ impl Blue {
         match base {
             BaseSky::Solved(sky) => {
                 let ground_m = sky.atmosphere().planet.ground_altitude_m;
-                let sun = axes::direction(180.0, sun_elevation.to_degrees());
-                let view = sky.view(ground_m, sun).at_sun_distance(sun_distance_ratio);
+                let sun = SunState::from(axes::direction(180.0, sun_elevation.to_degrees()));
+                let view = sky.view(ground_m, sun.at_distance_ratio(sun_distance_ratio));
                 let table = view.table(TableChannels::Spectral);
                 Self::Table(Box::new(table), sun_elevation)
             }

@@ -58,7 +58,7 @@ use crate::control::Control;
 use crate::debug::debug_fields;
 use crate::sky::SunCoverage;
 use crate::spectrum::WavelengthGrid;
-use crate::sun::SunDisc;
+use crate::sun::{SunDisc, SunState};
 use blue::{BaseSky, Blue};
 use coherence::{Cells, Walker};
 use geometry::{RaySegment, Spheres};
@@ -97,45 +97,48 @@ impl Klassen1987 {
         settings.validate()?;
         let suns = SunCoverage::near(axes::elevation_deg(sun), 0.0);
         let base = BaseSky::prepare(settings, suns, Control::default())?;
-        Self::over(settings, &base, sun, 1.0)
+        let sun = SunState {
+            direction: sun,
+            distance_ratio: 1.0,
+        };
+        Self::over(settings, &base, &sun)
     }
 
-    /// The model of checked settings before a prepared blue, with the sun at a distance over the mean one.
+    /// The model of checked settings before a prepared blue.
     fn over(
         settings: &Klassen1987Settings,
         base: &BaseSky,
-        sun: DVec3,
-        sun_distance_ratio: f64,
+        sun: &SunState,
     ) -> Result<Self, Klassen1987Error> {
-        let sun = sun.normalize_or_zero();
-        let elevation_deg = axes::elevation_deg(sun);
+        let direction = sun.direction.normalize_or_zero();
+        let elevation_deg = axes::elevation_deg(direction);
         // Tolerates rounding below 0.
-        if sun == DVec3::ZERO || elevation_deg < -1e-9 {
+        if direction == DVec3::ZERO || elevation_deg < -1e-9 {
             return Err(Klassen1987Error::SunBelowHorizon(elevation_deg));
         }
         let grid = wavelength_grid()
             .with_solar(&settings.clear_air.solar_irradiance)
-            .at_sun_distance(sun_distance_ratio);
+            .with_solar_factor(sun.irradiance_factor());
         let planet = &settings.clear_air.planet;
         let earth_m = planet.radius_m + planet.ground_altitude_m;
         let mut air_per_m = Lanes::ZERO;
         for (lane, nm) in wavelengths_nm().enumerate() {
             air_per_m.0[lane] = settings.air_extinction_per_m(nm) as f32;
         }
-        let sin_sun = sun.y.max(0.0);
+        let sin_sun = direction.y.max(0.0);
         Ok(Self {
             spheres: Spheres {
                 earth_m,
                 haze_m: earth_m + settings.haze_thickness_m,
                 air_m: earth_m + settings.air_thickness_m,
             },
-            sun,
+            sun: direction,
             sin_sun,
-            disc: settings.clear_air.sun.at_distance_ratio(sun_distance_ratio),
+            disc: sun.disc(&settings.clear_air.sun),
             sunlight: Lanes::from_fn(|i| grid.solar_irradiance()[i] as f32),
             air_per_m,
             haze: HazeTables::new(settings)?,
-            blue: Blue::new(settings, &grid, (sin_sun.asin(), sun_distance_ratio), base),
+            blue: Blue::new(settings, &grid, (sin_sun.asin(), sun.distance_ratio), base),
             cells: OnceLock::new(),
             settings: settings.clone(),
             grid,

@@ -122,8 +122,7 @@ impl PreparedAir {
         let lit = match known {
             Some((_, lit)) => lit,
             None => {
-                let (direction, ratio) = (sun.direction, sun.distance_ratio);
-                let sky = Klassen1987::over(&self.settings, &self.base, direction, ratio);
+                let sky = Klassen1987::over(&self.settings, &self.base, sun);
                 let sky = Arc::new(sky.map_err(refused)?);
                 let lit = match whole {
                     false => Lit::Sky(sky),

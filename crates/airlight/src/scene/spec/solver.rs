@@ -1,7 +1,7 @@
 //! How the light of a scene is solved for.
 
 use crate::names::named;
-use crate::sky::Scattering;
+use crate::sky::{Scattering, SkySettings, SunCoverage};
 
 /// The solver or published model, and its settings.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -31,6 +31,20 @@ pub struct SolverSpec {
     /// Settings of the model of 1987.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "super::is_default"))]
     pub klassen1987: Klassen1987Spec,
+}
+
+impl SolverSpec {
+    /// How a sky is solved for a range of suns.
+    pub fn sky_settings(&self, suns: SunCoverage) -> SkySettings {
+        SkySettings {
+            suns,
+            scattering: self.scattering.unwrap_or(Scattering::All),
+            ..match self.effort.unwrap_or_default() {
+                Effort::Standard => SkySettings::default(),
+                Effort::Fine => SkySettings::fine(),
+            }
+        }
+    }
 }
 
 /// How finely the orders of scattering are solved.
