@@ -158,7 +158,7 @@ impl Lens {
                 size,
             } => {
                 let turn = (direction.x.atan2(-direction.z) - center_azimuth) / TAU + 0.5;
-                let elevation = axes::elevation_rad(direction);
+                let elevation = world::elevation_rad(direction);
                 Some((
                     turn.rem_euclid(1.0) * size.0,
                     (0.5 - elevation / PI) * size.1,

@@ -1,8 +1,5 @@
 //! Operations on blocks of pixels, component by component and without branches, so that the compiler vectorises them.
 
-/// Weights of red, green and blue in the luminance of linear sRGB (ITU-R BT.709).
-const LUMINANCE_WEIGHTS: [f32; 3] = [0.2126, 0.7152, 0.0722];
-
 /// Red, green and blue of N pixels.
 pub(super) type Planes<const N: usize> = [[f32; N]; 3];
 
@@ -42,7 +39,7 @@ pub(super) fn without_negatives<const N: usize>(planes: &mut Planes<N>) {
     let [r, g, b] = planes;
     for i in 0..N {
         let bottom = min(min(r[i], g[i]), b[i]);
-        let grey = luminance(r[i], g[i], b[i]);
+        let grey = luminance([r[i], g[i], b[i]]);
         let lit = if grey > 0.0 { grey } else { 0.0 };
         // Colours without negative components stay unchanged.
         let part = if bottom < 0.0 {
@@ -65,7 +62,7 @@ pub(super) fn into_unit_cube<const N: usize>(planes: &mut Planes<N>) {
     let [r, g, b] = planes;
     for i in 0..N {
         let top = max(max(r[i], g[i]), b[i]);
-        let grey = min(luminance(r[i], g[i], b[i]), 1.0);
+        let grey = min(luminance([r[i], g[i], b[i]]), 1.0);
         let part = if top > 1.0 {
             (1.0 - grey) / (top - grey)
         } else {
@@ -79,9 +76,10 @@ pub(super) fn into_unit_cube<const N: usize>(planes: &mut Planes<N>) {
     }
 }
 
+/// Luminance of a linear sRGB colour, in the unit of its components, with the rounded weights of ITU-R BT.709.
 #[inline(always)]
-fn luminance(r: f32, g: f32, b: f32) -> f32 {
-    LUMINANCE_WEIGHTS[0] * r + LUMINANCE_WEIGHTS[1] * g + LUMINANCE_WEIGHTS[2] * b
+pub fn luminance([r, g, b]: [f32; 3]) -> f32 {
+    0.2126 * r + 0.7152 * g + 0.0722 * b
 }
 
 /// A function of a positive number, tabulated evenly within each octave and interpolated linearly. The index is part of the bits of

@@ -9,6 +9,7 @@ mod exposure;
 mod filmic;
 mod mapper;
 
+pub use blocks::luminance;
 pub use exposure::{Exposure, Metering};
 pub use filmic::FilmicSettings;
 pub use mapper::{ToneCurve, ToneMapper};
