@@ -168,7 +168,8 @@ impl Canvas {
     pub fn relative_errors(&self) -> (f64, u64) {
         let errors = self
             .moments()
-            .filter_map(|[_, (mean, error), _]| (mean > 0.0).then(|| (error / mean).powi(2)));
+            .filter(|[_, (mean, _), _]| *mean > 0.0)
+            .map(|[_, (mean, error), _]| (error / mean).powi(2));
         errors.fold((0.0, 0), |(sum, count), error| (sum + error, count + 1))
     }
 }
