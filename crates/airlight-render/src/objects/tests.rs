@@ -166,7 +166,7 @@ fn the_nearest_thing_is_seen_and_shadows_what_is_behind() {
 fn what_is_wrong_with_a_file_is_told() {
     for (text, said) in [
         ("", "no object"),
-        ("[[object]]\nshape = \"cube\"", "did you mean \"cone\""),
+        ("[[object]]\nshape = \"cube\"", "try \"cone\""),
         ("[[object]]\nshape = \"sphere\"\nradius = 2", "radius_m"),
         (
             "[[object]]\nshape = \"sphere\"",
