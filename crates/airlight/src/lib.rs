@@ -1,9 +1,9 @@
-//! Airlight computes what air does to light: the colour of the sky and the sun, aerial perspective, haze, mist and fog, and the
-//! glow around a lamp.
+//! Airlight computes light scattering in the air: the colour of the sky and the sun, aerial perspective, haze, mist and fog, and
+//! the glow of lights in fog.
 //!
-//! A stretch of air acts on light as an affine map: radiance `L` behind it reaches the eye as `T L + S`, with its transmittance
-//! `T` and the radiance `S` scattered into the ray. Every model produces `T` and `S`, over wavelengths into slices or in red,
-//! green and blue as [`transfer::RgbPathOptics`]; what draws a picture only applies them.
+//! A ray segment in air acts on light as an affine map: radiance `L` behind it reaches the eye as `T L + S`, with the transmittance
+//! `T` and the in-scattered radiance `S`. Every model computes `T` and `S`, by wavelength into slices, or in red, green and blue as
+//! [`transfer::RgbPathOptics`]; a renderer only applies them.
 //!
 //! ```
 //! use airlight::prelude::*;
@@ -18,9 +18,9 @@
 //! ```
 //!
 //! # Where to start
-//! - [`sky`]: [`sky::Sky`] solves a spherical atmosphere with all orders of scattering; a [`sky::View`] answers along any ray.
-//! - [`fog`]: [`fog::Fog`] and [`fog::RgbFog`], layers of fog without a sky; [`fog::lights`], lamps in them.
-//! - [`scene`]: [`scene::Scene`] describes sun, air, fog, lights and camera as plain data; [`scene::RadianceModel`] is the one
+//! - [`sky`]: [`sky::Sky`] solves a spherical atmosphere with all orders of scattering; a [`sky::View`] evaluates any ray.
+//! - [`fog`]: [`fog::Fog`] and [`fog::RgbFog`], layers of fog without a sky; [`fog::lights`], lights in fog.
+//! - [`scene`]: [`scene::Scene`] describes sun, air, fog, lights and camera as plain data; [`scene::RadianceModel`] is the
 //!   interface of all solvers and published models ([`models::registry`]); [`scene::RgbFoggySky`] is a sky with fog for
 //!   real-time use.
 //! - [`atmosphere`]: presets, constituents, density profiles, aerosols and visibility; [`sun`]: its disc and position.
@@ -33,11 +33,11 @@
 //! the eye. Phase functions integrate to 1. Results have the same bits for any number of threads.
 //!
 //! # Features
-//! | feature | default | what it adds |
+//! | feature | default | meaning |
 //! |---|---|---|
-//! | `parallel` | yes | work on all threads |
+//! | `parallel` | yes | computation on all threads |
 //! | `config` | yes | scenes and atmospheres as TOML; includes `serde` |
-//! | `ephemeris` | yes | the sun of a place and a time ([`sun`]) |
+//! | `ephemeris` | yes | position of the sun from place and time ([`sun`]) |
 //! | `serde` | with `config` | scenes as serde data |
 //! | `schema` | no | JSON Schema of scene files |
 //! | `hosek-wilkie` | no | the published sky model of Hosek and Wilkie |

@@ -1,4 +1,4 @@
-//! Names of values: kebab case, one way to list and to read them, one error.
+//! Names of values in kebab case: listing, parsing and the error for an unknown name.
 
 use std::fmt;
 
@@ -15,22 +15,22 @@ use std::fmt;
 /// assert_eq!(error.to_string(), "expected an RGB space (srgb, rec2020, acescg), got \"rec2o20\"; try \"rec2020\"");
 /// ```
 pub trait Named: Copy + PartialEq + 'static {
-    /// What a value is, with its article: "an RGB space".
+    /// What a value is, with its article, for error messages: "an RGB space".
     const WHAT: &'static str;
 
-    /// All values, in the order in which to list them.
+    /// All values, in the order in which they are listed.
     fn all() -> impl Iterator<Item = Self>;
 
     /// The name in kebab case.
     fn name(self) -> &'static str;
 
-    /// A description of one line.
+    /// Description in one line.
     fn summary(self) -> &'static str;
 
-    /// The value of a name.
+    /// The value with this name.
     ///
     /// # Errors
-    /// [`UnknownName`], which lists the names and the nearest one.
+    /// [`UnknownName`] with all names and the most similar one.
     fn from_name(name: &str) -> Result<Self, UnknownName> {
         Self::all()
             .find(|value| value.name() == name)
@@ -38,7 +38,7 @@ pub trait Named: Copy + PartialEq + 'static {
     }
 }
 
-/// Error: no value of a set has this name.
+/// Error for a name that no value of a set has.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct UnknownName {
@@ -48,7 +48,7 @@ pub struct UnknownName {
     pub name: String,
     /// All names of the set.
     pub names: Vec<String>,
-    /// The name that was probably meant.
+    /// The most similar name, if one is similar.
     pub nearest: Option<String>,
 }
 
@@ -88,7 +88,7 @@ impl std::error::Error for UnknownName {}
 macro_rules! named {
     ($type:ty, $what:literal, [$(($name:literal, ($($value:tt)+), $summary:literal)),+ $(,)?]) => {
         impl $type {
-            /// All values, in the order in which to list them.
+            /// All values, in the order in which they are listed.
             pub const ALL: &'static [Self] = &[$(Self::$($value)+),+];
 
             /// The name in kebab case.
@@ -98,7 +98,7 @@ macro_rules! named {
                 }
             }
 
-            /// A description of one line.
+            /// Description in one line.
             pub fn summary(self) -> &'static str {
                 match self {
                     $(Self::$($value)+ => $summary),+
@@ -176,8 +176,8 @@ macro_rules! written_by_name {
 
 pub(crate) use {named, written_by_name};
 
-/// The candidate that takes the fewest insertions, deletions, replacements and swaps of neighbours to reach from
-/// `word`, case aside; none where even that one is more than about a third of the word away.
+/// The candidate with the smallest edit distance to `word` (insertions, deletions, replacements and swaps of adjacent
+/// letters), ignoring case; `None` if the distance exceeds about a third of the word's length.
 pub(crate) fn nearest<'a>(
     word: &str,
     candidates: impl IntoIterator<Item = &'a str>,
@@ -223,7 +223,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn misspellings_find_their_word() {
+    fn misspelled_words_are_found() {
         let words = ["clear", "average", "hazy", "mars"];
         for (typed, meant) in [
             ("claer", "clear"),

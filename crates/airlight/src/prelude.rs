@@ -1,4 +1,4 @@
-//! The names that most programs need: `use airlight::prelude::*;`.
+//! Types that most programs need: `use airlight::prelude::*;`.
 
 pub use crate::atmosphere::{Atmosphere, Constituent, ConstituentKind, DensityProfile, Preset};
 pub use crate::axes;

@@ -33,7 +33,7 @@ pub enum AerosolLoad {
 /// An aerosol whose extinction follows `lambda^-exponent`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AngstromAerosol {
-    /// Amount.
+    /// Amount, at 550 nm.
     pub load: AerosolLoad,
     /// Angstrom exponent of the extinction.
     pub angstrom_exponent: f64,

@@ -51,9 +51,9 @@ impl Atmosphere {
     ///
     /// | key | meaning |
     /// |---|---|
-    /// | `name` | what the atmosphere is called; else the base's name |
-    /// | `base` | a preset ([`crate::atmosphere::Preset`]), or `"none"`: the Earth without air. `"average"` where absent |
-    /// | `remove` | list of constituents of the base to leave out |
+    /// | `name` | name of the atmosphere; default: name of the base |
+    /// | `base` | a preset ([`crate::atmosphere::Preset`]), or `"none"`: the Earth without air; default `"average"` |
+    /// | `remove` | names of constituents of the base to remove |
     /// | `planet.radius_m`, `.top_altitude_m`, `.ground_altitude_m` | lengths in metres |
     /// | `planet.ground_albedo` | *spectrum* in `[0, 1]` |
     /// | `sun.angular_radius_deg`, `.limb_darkening` | `"neckel"`, `"power-law"` or `"uniform"` |

@@ -9,7 +9,7 @@ use std::fmt;
 /// Mean radius of the Earth, m (IUGG).
 pub const EARTH_RADIUS_M: f64 = 6_371_008.8;
 
-/// The solid ball under the air.
+/// Size and ground of the planet: a sphere.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Planet {
     /// Radius at altitude 0, m.
@@ -41,7 +41,7 @@ pub enum ConstituentKind {
 /// One constituent of the air: a gas, an aerosol or a layer of fog.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Constituent {
-    /// Its kind.
+    /// Kind, which also names the constituent in files.
     pub kind: ConstituentKind,
     /// Relative density by height: factor on the coefficients.
     pub density: DensityProfile,
@@ -58,7 +58,7 @@ pub struct Constituent {
 pub struct Atmosphere {
     /// Name, for reports and metadata.
     pub name: String,
-    /// The planet.
+    /// The planet below the air.
     pub planet: Planet,
     /// Constituents of the air.
     pub constituents: Vec<Constituent>,
@@ -116,13 +116,13 @@ pub enum AtmosphereError {
     Sun(#[from] SunError),
 }
 
-/// What the other gases do at 550 nm, which turbidity and visibility are stated relative to.
+/// Scattering of the molecules at 550 nm, which turbidity and visibility are relative to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ClearAir {
-    /// Vertical optical depth of the molecules' scattering.
+    /// Vertical optical depth of the molecules.
     pub optical_depth_550: f64,
-    /// Extinction by molecules at the ground, m^-1.
+    /// Extinction coefficient of the molecules at the ground, m^-1.
     pub ground_extinction_per_m: f64,
 }
 

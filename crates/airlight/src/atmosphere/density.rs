@@ -60,7 +60,7 @@ pub enum DensityProfile {
     Sum(Vec<(f64, DensityProfile)>),
 }
 
-/// Where a profile changes with height: what quadrature over height or along a ray has to resolve.
+/// Features of a profile that quadrature over height or along a ray has to resolve.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct HeightStructure {
     /// Heights of kinks and jumps, in increasing order, m.
@@ -120,7 +120,7 @@ impl DensityProfile {
         }
     }
 
-    /// The clamped profile of a falloff (1/m) instead of a scale height: uniform for 0, a slab for infinity.
+    /// A clamped profile with this falloff (1/m), the inverse of the scale height: uniform for 0, a slab for infinity.
     ///
     /// # Errors
     /// [`DensityError`] for a falloff that is negative or NaN, or a base that is not finite.
@@ -507,8 +507,8 @@ impl DensityProfile {
     }
 }
 
-/// Column along a ray by quadrature between the heights of the profile's ramps: density is constant below the first and 0
-/// above the last.
+/// Column along a ray by quadrature between the heights of the profile's ramps. Density is constant below the first and 0 above
+/// the last.
 fn by_quadrature(profile: &DensityProfile, ray: &RaySegment) -> f64 {
     let ramps = profile.structure().ramps_m;
     let Some(&[lowest_m, _]) = ramps.first() else {

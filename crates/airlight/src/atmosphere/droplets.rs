@@ -49,8 +49,8 @@ named! { Droplets, "a droplet size", [
 ] }
 
 impl Droplets {
-    /// Typical diameter of a drop, micrometres (rounded from the mode radii of Shettle & Fenn 1979, AFGL-TR-79-0214:
-    /// radiation fog 2 to 4 micrometres with volume in larger drops, advection fog 8 to 10).
+    /// Typical droplet diameter, micrometres (rounded from the mode radii of Shettle & Fenn 1979, AFGL-TR-79-0214:
+    /// radiation fog 2 to 4 micrometres with most volume in larger droplets, advection fog 8 to 10).
     pub fn diameter_um(self) -> f64 {
         match self {
             Self::Fine => 5.0,
@@ -118,13 +118,13 @@ impl Named for DropletKind {
         match self {
             Self::Analytic(droplets) => droplets.summary(),
             Self::Isotropic => {
-                "grey, the same in all directions: no drops do so, published models do"
+                "grey and isotropic, as in published models; no real droplets scatter like this"
             }
             Self::Published(drops) => drops.summary(),
         }
     }
 
-    /// As listed; "mist" is moderate radiation fog.
+    /// Accepts the listed names, and "mist" for moderate radiation fog.
     fn from_name(name: &str) -> Result<Self, UnknownName> {
         Self::all()
             .find(|kind| kind.name() == name)

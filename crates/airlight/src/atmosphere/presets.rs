@@ -1,4 +1,4 @@
-//! Named atmospheres, ready to use.
+//! Named atmospheres of the Earth, of Mars and of published models.
 
 pub(crate) mod earth;
 mod fixed_table;
@@ -12,7 +12,7 @@ pub use mars::mars;
 use super::Atmosphere;
 use crate::names::{UnknownName, named};
 
-/// An atmosphere that is ready to use, by name.
+/// Named atmospheres of the Earth, of Mars and of published models.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Preset {
@@ -24,19 +24,19 @@ pub enum Preset {
     Hazy,
     /// Mars on a moderately dusty day: dust optical depth 0.5 at 880 nm.
     Mars,
-    /// Earth of Bruneton's precomputed scattering (2017), spectral.
+    /// Earth of Bruneton's Precomputed Atmospheric Scattering (2017), spectral.
     Bruneton,
-    /// Earth of Hillaire's production sky (2020), red, green and blue.
+    /// Earth of Hillaire's Scalable and Production Ready Sky (2020), red, green and blue.
     Hillaire,
     /// Earth of "Sky and Atmosphere rendering: A physical approach", as printed.
     SkyArticle,
-    /// Reference: air molecules alone over black ground, unit sun.
+    /// Reference: molecules only, black ground, solar irradiance 1.
     ReferenceRayleigh,
-    /// Reference: air molecules alone over ground of albedo 0.3, unit sun.
+    /// Reference: molecules only, ground albedo 0.3, solar irradiance 1.
     ReferenceRayleighAlbedo03,
     /// Reference: Bruneton's Earth at 680, 550 and 440 nm.
     ReferenceEarthDemo,
-    /// Reference: the comparison of clear-sky models (2017), 40 wavelengths.
+    /// Reference: Bruneton's comparison of clear-sky models (2017), 40 wavelengths.
     ReferenceCsm,
 }
 
@@ -45,13 +45,13 @@ named! { Preset, "an atmosphere", [
     ("average", (Average), "Earth on an average day: aerosol optical depth 0.12 at 550 nm"),
     ("hazy", (Hazy), "Earth on a hazy day: aerosol optical depth 0.35 at 550 nm"),
     ("mars", (Mars), "Mars on a moderately dusty day: dust optical depth 0.5 at 880 nm"),
-    ("bruneton", (Bruneton), "Earth of Bruneton's precomputed scattering (2017), spectral"),
-    ("hillaire", (Hillaire), "Earth of Hillaire's production sky (2020), red, green and blue"),
+    ("bruneton", (Bruneton), "Earth of Bruneton's Precomputed Atmospheric Scattering (2017), spectral"),
+    ("hillaire", (Hillaire), "Earth of Hillaire's Scalable and Production Ready Sky (2020), red, green and blue"),
     ("sky-article", (SkyArticle), "Earth of \"Sky and Atmosphere rendering: A physical approach\", as printed"),
-    ("reference-rayleigh", (ReferenceRayleigh), "Reference: air molecules alone over black ground, unit sun"),
-    ("reference-rayleigh-albedo-0.3", (ReferenceRayleighAlbedo03), "Reference: air molecules alone over ground of albedo 0.3, unit sun"),
+    ("reference-rayleigh", (ReferenceRayleigh), "Reference: molecules only, black ground, solar irradiance 1"),
+    ("reference-rayleigh-albedo-0.3", (ReferenceRayleighAlbedo03), "Reference: molecules only, ground albedo 0.3, solar irradiance 1"),
     ("reference-earth-demo", (ReferenceEarthDemo), "Reference: Bruneton's Earth at 680, 550 and 440 nm"),
-    ("reference-csm", (ReferenceCsm), "Reference: the comparison of clear-sky models (2017), 40 wavelengths"),
+    ("reference-csm", (ReferenceCsm), "Reference: Bruneton's comparison of clear-sky models (2017), 40 wavelengths"),
 ] }
 
 impl Preset {
@@ -79,10 +79,10 @@ impl From<Preset> for Atmosphere {
     }
 }
 
-/// The atmosphere of a name: that of [`Preset`].
+/// The atmosphere of the [`Preset`] with this name.
 ///
 /// # Errors
-/// [`UnknownName`], which lists the names and the nearest one.
+/// [`UnknownName`] with all names and the most similar one.
 pub fn preset(name: &str) -> Result<Atmosphere, UnknownName> {
     name.parse().map(Preset::atmosphere)
 }
@@ -93,7 +93,7 @@ mod tests {
     use crate::atmosphere::ConstituentKind;
 
     #[test]
-    fn every_preset_is_valid_and_bears_its_name() {
+    fn presets_are_valid_and_carry_their_names() {
         for &preset in Preset::ALL {
             let (name, description) = (preset.name(), preset.summary());
             let atmosphere = preset.atmosphere();

@@ -64,7 +64,7 @@ pub(super) fn pressure_and_temperature(altitude_m: f64) -> (f64, f64) {
     (pressure, temperature)
 }
 
-/// The air that refracts the sun for an eye at a geometric altitude, m; none above 86 km. Pressures are held at 2000 hPa.
+/// Refracting air at the eye's geometric altitude, m; vacuum above 86 km. Pressure is clamped to 2000 hPa.
 #[cfg(feature = "ephemeris")]
 pub(crate) fn refracting_air(altitude_m: f64) -> RefractingAir {
     let (pressure_pa, temperature_k) = pressure_and_temperature(altitude_m);
@@ -135,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn densities_are_those_of_the_standards_tables() {
+    fn densities_match_the_tables_of_the_standard() {
         // Table I (number density from density, table I: rho / rho0) of the standard.
         for (km, ratio) in [
             (-5.0, 1.5760),

@@ -5,7 +5,7 @@
 
 use crate::names::named;
 
-/// Which contrast counts as the last that is seen.
+/// Contrast threshold that defines visibility.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Contrast {

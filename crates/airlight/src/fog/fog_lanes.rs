@@ -12,7 +12,7 @@ use crate::spectrum::Spectrum;
 use crate::transfer::PathOptics;
 use glam::DVec3;
 
-/// Fog in N lanes: wavelengths, or red, green and blue. Queries allocate nothing.
+/// Fog in N lanes: wavelengths, or red, green and blue. Queries do not allocate.
 ///
 /// Layers with the same density profile are merged. Fog of one profile over flat ground has closed forms: transmittance
 /// (Ishiyama 2018, eqs. 14 and 23), ambient light (eq. 21) and attenuated sunlight ([`super::closed_forms`]), exact to the

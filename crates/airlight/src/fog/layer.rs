@@ -9,10 +9,10 @@ use crate::spectrum::rgb::{self, DOMINANT_NM};
 use crate::spectrum::{RgbSpace, Spectrum, WavelengthGrid};
 use crate::transfer::delta_m::ForwardPeak;
 
-/// Bound of columns and optical depths: far beyond opaque, far from the largest f32.
+/// Upper bound of columns and optical depths: opaque, and far below the largest f32.
 pub(super) const OPAQUE: f64 = 1e25;
 
-/// A phase function divided for the solver.
+/// A phase function with its forward peak split off for the solver.
 type Peak = ForwardPeak<STREAMS>;
 
 /// A layer of fog in red, green and blue.

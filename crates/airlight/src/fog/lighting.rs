@@ -7,7 +7,7 @@ use crate::names::named;
 use crate::spectrum::SpectralCurve;
 use glam::DVec3;
 
-/// The sun above the fog. `C` is a [`SpectralCurve`], or `[f32; 3]` for red, green and blue.
+/// Sunlight above the fog. `C` is a [`SpectralCurve`], or `[f32; 3]` for red, green and blue.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DirectionalLight<C = SpectralCurve> {
     /// Unit vector towards the sun.
@@ -53,10 +53,10 @@ pub enum FogScattering {
     Multiple,
 }
 
-named! { FogScattering, "a scattering of fog", [
-    ("all", (Multiple), "any number of times, between sky, sun and ground"),
-    ("single", (Single), "once: sunlight after its way through the fog, ambient light undimmed"),
-    ("undimmed", (Undimmed), "once, the sun not dimmed by the fog: Ishiyama's height fog as printed"),
+named! { FogScattering, "a kind of fog scattering", [
+    ("all", (Multiple), "all orders of scattering, with light reflected by the ground"),
+    ("single", (Single), "single scattering of attenuated sunlight and of uniform ambient light"),
+    ("undimmed", (Undimmed), "single scattering of unattenuated sunlight: Ishiyama's height fog as printed"),
 ] }
 
 impl Ground {

@@ -428,7 +428,7 @@ pub(super) fn store<const N: usize>(lanes: Spectrum<N>, out: &mut [f32]) {
     out.copy_from_slice(&lanes.0[..out.len()]);
 }
 
-/// Calls `path` with each direction, its distance, and its part of the interleaved outputs.
+/// Calls `path` with each direction, its distance and its part of the outputs.
 fn each_ray(
     directions: &[DVec3],
     distances_m: &[f64],

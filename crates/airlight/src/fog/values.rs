@@ -20,7 +20,7 @@ impl ChannelValues for SpectralCurve {}
 impl ChannelValues for [f32; 3] {}
 impl<const N: usize> ChannelValues for Spectrum<N> {}
 
-/// The values of a curve every 10 nm from 300 to 900 nm.
+/// Values of a curve every 10 nm from 300 to 900 nm.
 fn samples(curve: &SpectralCurve) -> impl Iterator<Item = f64> + '_ {
     (30..=90).map(|i| curve.at(10.0 * f64::from(i)))
 }

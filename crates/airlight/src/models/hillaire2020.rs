@@ -81,7 +81,7 @@ pub enum HillaireError {
 /// The sky for one eye and one sun.
 pub struct Hillaire2020 {
     tables: Arc<Tables>,
-    /// The wavelengths with the sun at its distance.
+    /// Wavelengths with the solar irradiance at the sun's distance.
     grid: WavelengthGrid,
     solar: Vec<f32>,
     disc: SunDisc,
@@ -305,7 +305,7 @@ impl RadianceModel for Hillaire2020Model {
     }
 
     fn summary(&self) -> &'static str {
-        "Hillaire 2020: few steps and two small tables, in the air of the scene"
+        "Hillaire 2020: ray marching in few steps with two small tables"
     }
 
     fn capabilities(&self) -> Capabilities {

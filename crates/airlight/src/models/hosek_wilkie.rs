@@ -111,7 +111,7 @@ impl PublishedModel for HosekWilkie {
     }
 }
 
-/// The sky of Hosek and Wilkie 2012 for the turbidity of a scene's air and the albedo of its ground.
+/// Hosek & Wilkie 2012 as a [`RadianceModel`], with turbidity and ground albedo derived from a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct HosekWilkieModel;
 
@@ -121,7 +121,7 @@ impl RadianceModel for HosekWilkieModel {
     }
 
     fn summary(&self) -> &'static str {
-        "Hosek & Wilkie 2012: a formula by turbidity and ground albedo, for the sun above the horizon"
+        "Hosek & Wilkie 2012: an analytic sky by turbidity and ground albedo, for the sun above the horizon"
     }
 
     fn capabilities(&self) -> Capabilities {

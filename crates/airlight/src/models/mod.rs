@@ -1,8 +1,7 @@
-//! The solvers and the published models of the sky, each a [`RadianceModel`](crate::scene::RadianceModel), and the
-//! [`registry`] of them.
+//! Solvers and published models of the sky, each a [`RadianceModel`](crate::scene::RadianceModel), and their [`registry`].
 //!
-//! Published models are there as printed and as corrected; the module of each names its paper, with equation numbers, errata
-//! and its difference to the solver of [`crate::sky`].
+//! Published models are implemented as printed and as corrected. The module of each cites its paper, with equation numbers,
+//! errata and the difference from the solver of [`crate::sky`].
 
 pub mod four_orders;
 pub mod hillaire2020;
@@ -19,7 +18,7 @@ pub mod single_scattering;
 
 pub use published_view::PublishedModel;
 
-/// The solvers and published models by name: the one list of them.
+/// Registry of the solvers and published models by name.
 pub mod registry {
     #[cfg(feature = "hosek-wilkie")]
     use super::hosek_wilkie;
@@ -32,10 +31,10 @@ pub mod registry {
     use crate::sky::SunCoverage;
     use std::sync::Arc;
 
-    /// Name of the solver of scenes that name none.
+    /// Name of the default solver.
     pub const DEFAULT: &str = "orders";
 
-    /// All solvers and published models, in the order to list them in.
+    /// All solvers and published models, in the order in which they are listed.
     pub const ALL: &[&dyn RadianceModel] = &[
         &orders::Orders,
         &monte_carlo::MonteCarloModel,
@@ -48,10 +47,10 @@ pub mod registry {
         &single_scattering::SingleScatteringModel,
     ];
 
-    /// The solver or published model of a name.
+    /// The solver or published model with this name.
     ///
     /// # Errors
-    /// [`SceneError::UnknownModel`], with the nearest name.
+    /// [`SceneError::UnknownModel`] with all names and the most similar one.
     pub fn find(name: &str) -> Result<&'static dyn RadianceModel, SceneError> {
         let names = || ALL.iter().map(|model| model.name());
         let found = ALL.iter().find(|model| model.name() == name);
@@ -63,12 +62,12 @@ pub mod registry {
     /// The solver or published model that a scene names.
     ///
     /// # Errors
-    /// [`SceneError::UnknownModel`].
+    /// [`SceneError::UnknownModel`] for an unknown name.
     pub fn of_scene(scene: &ResolvedScene) -> Result<&'static dyn RadianceModel, SceneError> {
         find(scene.solver.name.as_deref().unwrap_or(DEFAULT))
     }
 
-    /// Prepares the solver or published model that a scene names for a range of suns. Inputs that it would ignore are refused.
+    /// Prepares the solver or published model of a scene for a range of suns, and refuses inputs that it would ignore.
     ///
     /// ```
     /// use airlight::{Control, axes, models::registry, scene::{Channels, Scene}, sky::SunCoverage, spectrum::RgbSpace};
@@ -85,7 +84,7 @@ pub mod registry {
     /// ```
     ///
     /// # Errors
-    /// [`SceneError`] for an unknown name, an input that the model ignores, and values outside its domain.
+    /// [`SceneError`] for an unknown name, an input that the model ignores, or a value outside its domain.
     pub fn prepare(
         scene: &ResolvedScene,
         suns: SunCoverage,

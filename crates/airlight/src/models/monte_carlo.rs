@@ -1,4 +1,4 @@
-//! The solver `monte-carlo`: random paths, without approximation.
+//! The solver `monte-carlo`: path tracing, without approximation.
 
 use super::orders::PreparedOrders;
 use crate::atmosphere::Atmosphere;
@@ -17,12 +17,12 @@ use crate::sun::SunDisc;
 use glam::DVec3;
 use std::sync::Arc;
 
-/// Paths for each direction where none are set.
+/// Default number of paths for each direction.
 const PATHS: u64 = 256;
 
-/// Monte Carlo (path tracing): no approximation, slow, with noise of known size.
+/// Monte Carlo path tracing as a [`RadianceModel`]: no approximation, slow, with noise of known size.
 ///
-/// Radiance is random; irradiances and the sun's disc are those of [`Orders`](super::orders::Orders).
+/// Radiance has noise; irradiances and the sun's disc are those of [`Orders`](super::orders::Orders).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct MonteCarloModel;
 
@@ -86,7 +86,7 @@ impl RadianceModel for MonteCarloModel {
             let layers = fog.in_air(ground_m, scene.grid.wavelengths_nm())?;
             atmosphere.constituents.extend(layers);
         }
-        // Any fault of the air shows before the preview is solved for.
+        // Check the air before solving for the preview.
         MonteCarlo::new(&atmosphere, &scene.grid, settings)?;
         Ok(Arc::new(PreparedMonteCarlo {
             preview: PreparedOrders::new(scene, &solver.sky_settings(suns), control)?,
@@ -100,13 +100,13 @@ impl RadianceModel for MonteCarloModel {
     }
 }
 
-/// Air with the fog in it, and the same solved for without noise.
+/// Air with fog for path tracing, and its deterministic solution.
 #[derive(Debug)]
 struct PreparedMonteCarlo {
     preview: PreparedOrders,
     atmosphere: Atmosphere,
     settings: MonteCarloSettings,
-    /// Orders of scattering that count.
+    /// Number of orders of scattering that are summed.
     orders: usize,
 }
 
@@ -140,20 +140,20 @@ impl PreparedModel for PreparedMonteCarlo {
     }
 }
 
-/// What Monte Carlo paths see from one eye under one sun.
+/// View of one eye under one sun by path tracing.
 #[derive(Debug)]
 struct MonteCarloView {
-    /// In the light of the sun at its distance.
+    /// Path tracer with the solar irradiance at the sun's distance.
     paths: MonteCarlo,
     eye_altitude_m: f64,
-    /// Weights of the wavelengths in red, green and blue; empty where the values are spectra.
+    /// Weights of the wavelengths in red, green and blue; empty for spectral values.
     weights: Vec<[f32; 3]>,
     orders: usize,
     preview: Arc<SolvedView>,
 }
 
 impl MonteCarloView {
-    /// Adds radiance at each wavelength to values.
+    /// Adds radiance at each wavelength to the values of a direction.
     fn put(&self, radiance: impl Iterator<Item = f64>, sum: &mut [f64]) {
         match self.weights.is_empty() {
             true => sum.iter_mut().zip(radiance).for_each(|(sum, v)| *sum += v),
@@ -169,7 +169,7 @@ impl MonteCarloView {
         }
     }
 
-    /// A limit that the ray reaches before the ground; where it ends on the ground, that is seen.
+    /// The limit if the ray reaches it before the ground; otherwise `None`, so that light of the ground is included.
     fn limit_before_ground(&self, direction: DVec3, limit_m: Option<f64>) -> Option<f64> {
         limit_m.filter(|_| {
             !self
@@ -202,7 +202,7 @@ impl RadianceView for MonteCarloView {
         self.preview.horizon_elevation_rad()
     }
 
-    /// The mean over all paths of each direction.
+    /// Mean over all paths of each direction.
     fn radiance(&self, directions: &[DVec3], out: &mut [f32]) {
         let count = self.channel_count();
         parallel::for_each_chunk(out, count, |i, out| {
@@ -239,7 +239,7 @@ impl RadianceView for MonteCarloView {
         self.preview.sunlight(height_m, out);
     }
 
-    /// Path radiance by paths, transmittance without noise.
+    /// Path radiance by path tracing, transmittance without noise.
     fn path(
         &self,
         direction: DVec3,

@@ -9,7 +9,7 @@ use crate::sky::{Sky, SkySettings, SunCoverage};
 use crate::spectrum::WavelengthGrid;
 use std::sync::Arc;
 
-/// Successive orders of scattering on the sphere: the fast solver, without noise.
+/// Successive orders of scattering on the sphere as a [`RadianceModel`]: the fast solver, without noise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Orders;
 
@@ -58,7 +58,7 @@ impl RadianceModel for Orders {
     }
 }
 
-/// A solved sky, and the fog to be put into it.
+/// A solved sky, and the fog to add to it.
 #[derive(Clone, Debug)]
 pub(super) struct PreparedOrders {
     sky: Sky,
@@ -69,7 +69,7 @@ impl PreparedOrders {
     /// Solves the sky of a scene.
     ///
     /// # Errors
-    /// [`SceneError::Sky`] for an atmosphere that the solver refuses.
+    /// [`SceneError::Sky`] if the solver fails.
     pub fn new(
         scene: &ResolvedScene,
         settings: &SkySettings,
@@ -81,10 +81,10 @@ impl PreparedOrders {
         })
     }
 
-    /// The light at an eye under a sun.
+    /// View for an eye at an altitude (m above sea level) under a sun.
     ///
     /// # Errors
-    /// [`SceneError`] for fog that is refused.
+    /// [`SceneError`] for an invalid fog.
     pub fn solved_view(
         &self,
         observer_altitude_m: f64,

@@ -9,13 +9,13 @@ use crate::spectrum::{SpectralCurve, WavelengthGrid};
 use std::fmt;
 use std::sync::Arc;
 
-/// A published model prepared for a scene: what `make` builds for an eye at an altitude (m above sea level) and a sun.
+/// A published model prepared for a scene; `make` builds it for an eye at an altitude (m above sea level) and a sun.
 pub(super) struct Prepared<F> {
     name: &'static str,
     albedo: SpectralCurve,
-    /// Wavelengths of its spectra.
+    /// Wavelengths of its spectra, if it has spectra.
     grid: Option<WavelengthGrid>,
-    /// Whether objects are shaded at its wavelengths, also in RGB pictures.
+    /// Whether objects are shaded at the model's wavelengths in RGB pictures too.
     spectral_objects: bool,
     make: F,
 }
@@ -24,7 +24,7 @@ impl<F> Prepared<F>
 where
     F: Fn(f64, &SunState) -> Result<Arc<dyn PublishedModel>, SceneError> + Send + Sync + 'static,
 {
-    /// A model that knows colours only, without `grid`, or one with spectra at the wavelengths of one.
+    /// A model with spectra at the wavelengths of `grid`, or with colours only for `None`.
     pub fn new(
         name: &'static str,
         scene: &ResolvedScene,
@@ -40,7 +40,7 @@ where
         }
     }
 
-    /// With objects shaded at the model's wavelengths also in RGB pictures.
+    /// The same, with objects shaded at the model's wavelengths in RGB pictures too.
     pub fn with_spectral_objects(self) -> Self {
         Self {
             spectral_objects: true,
@@ -88,7 +88,7 @@ impl<F> fmt::Debug for Prepared<F> {
     }
 }
 
-/// The turbidity of an atmosphere: optical depth of molecules and haze over that of molecules, at 550 nm.
+/// Turbidity of an atmosphere: optical depth of molecules and haze relative to that of the molecules, at 550 nm.
 pub(super) fn turbidity(air: &Atmosphere) -> f64 {
     let planet = &air.planet;
     let depth = air

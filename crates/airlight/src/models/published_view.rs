@@ -1,4 +1,5 @@
-//! What a published model of the sky knows, and the same over the ground that it lights as a [`RadianceView`].
+//! [`PublishedModel`]: sky and sun of a published model, and its view, with the ground that it lights, as a
+//! [`RadianceView`].
 
 use crate::axes;
 use crate::scene::{Channels, IrradianceMap, RadianceView, SceneError, horizontal_irradiance};
@@ -19,7 +20,7 @@ pub trait PublishedModel: Send + Sync {
     /// Unit vector towards the sun's centre.
     fn sun(&self) -> DVec3;
 
-    /// The sun's disc, beyond whose edge there is no light of it.
+    /// Size and limb darkening of the sun's disc.
     fn disc(&self) -> &SunDisc {
         static SUN: LazyLock<SunDisc> = LazyLock::new(SunDisc::default);
         &SUN
@@ -89,28 +90,27 @@ pub trait PublishedModel: Send + Sync {
 
 /// A published model in the channels of a picture.
 ///
-/// Inside, light is in the lanes of the model: radiances at its wavelengths, or CIE 1931 XYZ in cd/m^2 for models that know
-/// colours only. Irradiances are sums over bands of even weight: within 1 % where haze does not crowd the light about the
-/// sun.
+/// Internally, light is in the lanes of the model: radiances at its wavelengths, or CIE 1931 XYZ in cd/m^2 for models of
+/// colours only. Irradiances are sums over bands of equal weight, accurate to 1 % unless haze has a narrow aureole.
 pub(super) struct PublishedView {
     model: Arc<dyn PublishedModel>,
     channels: Channels,
-    /// Where the values are spectra.
+    /// Wavelengths of spectral values; `None` for RGB.
     grid: Option<WavelengthGrid>,
-    /// Radiance below the horizontal; `None` where the model has ground of its own.
+    /// Radiance below the horizon; `None` if the model has its own ground.
     ground: Option<Vec<f64>>,
     /// Irradiance of the sun's disc on a surface that faces it.
     sun_normal: Vec<f64>,
-    /// Irradiance of the sky on the horizontal.
+    /// Irradiance of the sky on a horizontal surface.
     sky_horizontal: Vec<f64>,
     irradiance: OnceLock<IrradianceMap>,
 }
 
 impl PublishedView {
-    /// A model of the name `name` over ground of an albedo.
+    /// View of the model called `name` over ground with an albedo.
     ///
     /// # Errors
-    /// [`SceneError::NoSpectra`] for spectra of a model that knows colours only.
+    /// [`SceneError::NoSpectra`] for spectral channels of a model of colours only.
     pub fn new(
         name: &'static str,
         model: Arc<dyn PublishedModel>,
@@ -136,8 +136,8 @@ impl PublishedView {
         Ok(view)
     }
 
-    /// Light of ground that reflects evenly what falls on it. Where there is no spectrum, its albedo is taken at the
-    /// dominant wavelengths of the sRGB primaries: exact for grey ground.
+    /// Radiance of Lambertian ground. For models of colours only, its albedo is evaluated at the dominant wavelengths of the
+    /// sRGB primaries, which is exact for grey ground.
     fn reflected(&self, albedo: &SpectralCurve) -> Vec<f64> {
         let sin_sun = self.model.sun().y.max(0.0);
         let lanes = self.sky_horizontal.iter().zip(&self.sun_normal);
@@ -159,7 +159,7 @@ impl PublishedView {
         }
     }
 
-    /// From the lanes of the model to channels.
+    /// Converts lanes of the model to channels.
     fn put(&self, lanes: &[f64], out: &mut [f32]) {
         let space = match self.channels {
             Channels::Spectral => {
@@ -181,13 +181,13 @@ impl PublishedView {
         put_xyz(space, xyz, out);
     }
 
-    /// The same, held at 0.
+    /// [`Self::put`] with negative values clamped to 0.
     fn put_light(&self, lanes: &[f64], out: &mut [f32]) {
         self.put(lanes, out);
         out.iter_mut().for_each(|v| *v = v.max(0.0));
     }
 
-    /// Transmittance in lanes as channels: that of sunlight.
+    /// Converts transmittance in lanes to channels, weighted by sunlight.
     fn put_transmittance(&self, lanes: &[f32], out: &mut [f32]) {
         let (Channels::Rgb(space), Some(grid)) = (self.channels, self.model.grid()) else {
             out.copy_from_slice(lanes);
@@ -230,7 +230,7 @@ impl RadianceView for PublishedView {
         self.model.disc()
     }
 
-    /// Colours reuse what neighbours had, spectra are computed for each direction.
+    /// RGB values reuse results of neighbouring directions; spectra are computed for each direction.
     fn radiance(&self, directions: &[DVec3], out: &mut [f32]) {
         let values = out.chunks_exact_mut(self.channel_count());
         match self.channels {

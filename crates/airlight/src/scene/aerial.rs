@@ -1,4 +1,4 @@
-//! Aerial perspective: clear air between the eye and things.
+//! Tabulated aerial perspective: transmittance and path radiance of the clear air between the eye and any point.
 
 use crate::debug::debug_fields;
 use crate::fog::Lanes;
@@ -10,11 +10,11 @@ use crate::spectrum::Spectrum;
 use crate::transfer::PathOptics;
 use glam::DVec3;
 
-/// Rows from the horizon to the zenith and to the nadir.
+/// Number of rows from the horizon to the zenith, and to the nadir.
 pub(super) const ROWS: [usize; 2] = [40, 32];
-/// Nodes in azimuth from the opposite of the sun's to the sun's.
+/// Number of nodes in azimuth, from opposite the sun to the sun.
 pub(super) const AZIMUTHS: usize = 16;
-/// Nodes along a line.
+/// Number of nodes along a ray.
 pub(super) const DISTANCES: usize = 64;
 
 /// What the air does between the eye of a [`View`] and any point, at the cost of a table look-up.
@@ -35,13 +35,13 @@ pub struct AerialPerspective<const N: usize> {
     pub(super) eye: Eye,
     pub(super) above: Half,
     pub(super) below: Half,
-    /// For each peaked scatterer, its phase function at even steps of the sine of half the scattering angle.
+    /// Phase function of each peaked scatterer, at even steps of the sine of half the scattering angle.
     pub(super) phases: Vec<Vec<f32>>,
 }
 
 debug_fields! { AerialPerspective<const N: usize> { sun, eye } }
 
-/// Where the eye is, and where the air ends.
+/// Position of the eye, and limits of the air.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Eye {
     pub radius_m: f64,
@@ -65,11 +65,11 @@ pub(super) struct Half {
     pub source: Vec<f32>,
 }
 
-/// Lanes in steps of which they are loaded.
+/// Number of lanes in one vector load.
 const STEP: usize = 4;
 
 impl<const N: usize> AerialPerspective<N> {
-    /// What the air does to the light of a point at `distance_m` along the unit vector `direction`.
+    /// Transmittance and path radiance between the eye and a point at `distance_m` along the unit vector `direction`.
     #[inline]
     pub fn optics(&self, direction: DVec3, distance_m: f64) -> PathOptics<N> {
         let horizontal = (direction.x * direction.x + direction.z * direction.z).sqrt();
@@ -109,7 +109,7 @@ impl<const N: usize> AerialPerspective<N> {
         below.then(|| self.eye.span_m(direction.y, true).1)
     }
 
-    /// Where the line of sight ends, m: at the ground, the end of the air, or the limit.
+    /// Distance at which a view ray ends, m: at the ground, the top of the air, or the limit.
     #[inline]
     pub(super) fn end_m(&self, direction: DVec3) -> f64 {
         let below = direction.y < self.eye.horizon_sine;
@@ -142,7 +142,7 @@ impl<const N: usize> AerialPerspective<N> {
     fn source(&self, half: &Half, place: &Place, half_sine: f64) -> Spectrum<N> {
         let width = N.next_multiple_of(STEP);
         let parts = 1 + self.phases.len();
-        // Cells that stay in registers, for the usual numbers of lanes and peaked scatterers.
+        // Cells that fit into registers, for the usual numbers of lanes and peaked scatterers.
         match width * parts {
             4 => self.phased(&half.cell::<4>(place, 0, 4), half_sine),
             8 => self.phased(&half.cell::<8>(place, 0, 8), half_sine),
@@ -162,7 +162,7 @@ impl<const N: usize> AerialPerspective<N> {
         }
     }
 
-    /// Applies the phase functions and adds up the parts of a cell.
+    /// Sums the parts of a cell, multiplied by their phase functions.
     #[inline(always)]
     fn phased(&self, cell: &[f32], half_sine: f64) -> Spectrum<N> {
         let mut lanes = Spectrum::ZERO;
@@ -205,7 +205,7 @@ impl Half {
 }
 
 impl Eye {
-    /// Where a line of sight runs through air, m from the eye, at most to the limit; `meets_ground` where it ends there.
+    /// Interval of a view ray inside the air, in metres from the eye, up to the limit; `meets_ground` if the ray hits the ground.
     #[inline(always)]
     pub fn span_m(&self, sin_elevation: f64, meets_ground: bool) -> (f64, f64) {
         // Roots of t^2 + 2 b t + c = 0, without cancellation: the smaller root is c over the larger.
@@ -230,7 +230,7 @@ impl Eye {
     }
 }
 
-/// Part of a line in which node `x` in `[0, 1]` lies: nodes crowd towards the eye.
+/// Fraction of a ray's length at node coordinate `x` in `[0, 1]`: nodes are dense near the eye.
 #[inline(always)]
 pub(super) fn part_of(x: f64) -> f64 {
     x * x
@@ -242,7 +242,7 @@ fn coordinate_of(part: f64) -> f64 {
     part.sqrt()
 }
 
-/// First node and weights of a straight line in distance, at a part of the line's length.
+/// First node and weights of linear interpolation in distance, at a fraction of the ray's length.
 #[inline(always)]
 fn along(part: f64) -> (usize, [f32; 2]) {
     const STEPS: f64 = (DISTANCES - 1) as f64;
@@ -256,7 +256,7 @@ fn along(part: f64) -> (usize, [f32; 2]) {
     (below, [1.0 - beyond, beyond])
 }
 
-/// First nodes and weights in the three directions of the table.
+/// First nodes and weights in the three dimensions of the table.
 struct Place {
     row: (usize, [f32; 4]),
     azimuth: (usize, [f32; 4]),

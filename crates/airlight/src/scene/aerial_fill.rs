@@ -1,4 +1,4 @@
-//! Filling the table of aerial perspective.
+//! Computation of the aerial-perspective table.
 
 use super::aerial::{AZIMUTHS, AerialPerspective, DISTANCES, Eye, Half, ROWS, part_of};
 use super::error::SceneError;
@@ -8,14 +8,14 @@ use crate::sky::{Peaked, View};
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
 
-/// Where the first node lies, in steps of the coordinate: at the eye itself there is no air to take the mean of.
+/// Coordinate of the first node, in steps: means are undefined at the eye itself.
 const FIRST_NODE: f64 = 0.01;
-/// A channel whose transmittance falls below this counts as opaque: RGB channels of saturated light may even be negative.
+/// Transmittance below which a channel counts as opaque; RGB channels of saturated light may even be negative.
 const OPAQUE: f64 = 1e-6;
 
 impl<const N: usize> AerialPerspective<N> {
     /// Tabulates the air between a view's eye and points up to `limit_m` away (m; infinite: to space), in all directions.
-    /// Points farther away count as at the limit, points beyond the ground as on it.
+    /// Distances are clamped to the limit and to the ground.
     ///
     /// # Errors
     /// [`SceneError`] if N lanes cannot be these channels, or for a limit that is not a positive distance.
@@ -46,7 +46,7 @@ fn tabulated<const N: usize>(
         horizon_sine: horizon_elevation.sin(),
         limit_m,
     };
-    // From outside the air, nothing is seen above the line that grazes its top.
+    // From outside the air, rays above the tangent to its top miss it.
     let ceiling = if radius_m > top_radius_m {
         -(top_radius_m / radius_m).acos()
     } else {
@@ -63,7 +63,7 @@ fn tabulated<const N: usize>(
         let rows = ROWS[usize::from(below)];
         let filled = parallel::map(rows, |row| {
             let x = row as f64 / (rows - 1) as f64;
-            // The horizon itself is a jump: start a hair's breadth from it.
+            // Values are discontinuous at the horizon: start just beside it.
             let elevation = eye.horizon_elevation + span * (x * x).max(1e-9);
             row_of(
                 view,
@@ -140,7 +140,7 @@ fn row_of<const N: usize>(
     (extinction, source)
 }
 
-/// Adds lanes, filled up with zeros to whole vector loads.
+/// Appends lanes, padded with zeros to whole vector loads.
 fn padded(out: &mut Vec<f32>, lanes: impl Iterator<Item = f32>) {
     out.extend(lanes);
     out.resize(out.len().next_multiple_of(4), 0.0);

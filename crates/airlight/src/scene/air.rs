@@ -1,4 +1,4 @@
-//! From the air of a scene to an atmosphere.
+//! Conversion of a scene's air to an atmosphere.
 
 use super::{AirSpec, Scene, SceneError};
 use crate::atmosphere::Ingredient;
@@ -10,10 +10,10 @@ use crate::atmosphere::{
 use crate::spectrum::SpectralCurve;
 
 impl Scene {
-    /// The atmosphere: that of the scene's name or file, with what the scene changes.
+    /// The atmosphere that the scene names, with the values that the scene overrides.
     ///
     /// # Errors
-    /// [`SceneError`] for an unknown name, a file whose text is not there, and values that do not fit the atmosphere.
+    /// [`SceneError`] for an unknown name, a file whose text is missing, and values that are invalid for the atmosphere.
     pub fn atmosphere(&self) -> Result<Atmosphere, SceneError> {
         let spec = &self.air;
         let mut air = spec.named_atmosphere()?;
@@ -40,7 +40,7 @@ impl Scene {
         Ok(air)
     }
 
-    /// Altitude of the eye above sea level, m, held above the ground of an atmosphere.
+    /// Altitude of the eye above sea level, m, clamped to at least the eye height above the ground of an atmosphere.
     pub fn observer_altitude_m(&self, atmosphere: &Atmosphere) -> f64 {
         let lowest_m =
             atmosphere.planet.ground_altitude_m + self.observer.eye_height_m.unwrap_or(2.0);
@@ -49,17 +49,17 @@ impl Scene {
 }
 
 impl AirSpec {
-    /// Whether the atmosphere is a file, by its name.
+    /// Whether the name of the atmosphere is that of a file: it ends in `.toml` or contains a slash or backslash.
     pub(crate) fn names_file(&self) -> bool {
         self.atmosphere.as_deref().is_some_and(|name| {
             name.to_ascii_lowercase().ends_with(".toml") || name.contains(['/', '\\'])
         })
     }
 
-    /// The atmosphere of the name or file, without what the scene changes.
+    /// The atmosphere that the scene names, without the scene's overrides.
     ///
     /// # Errors
-    /// [`SceneError`] for an unknown name, and a file that is wrong or whose text is not there.
+    /// [`SceneError`] for an unknown name, and for a file that is invalid or whose text is missing.
     pub fn named_atmosphere(&self) -> Result<Atmosphere, SceneError> {
         let name = self.atmosphere.as_deref().unwrap_or("average");
         if let Some(text) = &self.atmosphere_toml {
@@ -69,14 +69,14 @@ impl AirSpec {
             true => Err(SceneError::value(
                 "air.atmosphere",
                 format!("the text of the file `{name}`"),
-                "its name alone",
+                "only its name",
                 "Scene::inline_files",
             )),
             false => preset(name).map_err(SceneError::UnknownAtmosphere),
         }
     }
 
-    /// The amount of haze and the key that sets it.
+    /// The amount of haze with the key that sets it.
     fn haze_amount(&self) -> Option<(&'static str, AerosolLoad)> {
         let depth = self
             .aod_550
@@ -95,10 +95,10 @@ impl AirSpec {
     }
 }
 
-/// Haze of published types by their names and shares, such as "urban:0.7,desert:0.3", in air of a relative humidity.
+/// Parses a mixture of published aerosol types with shares, such as "urban:0.7,desert:0.3", at a relative humidity.
 ///
 /// # Errors
-/// [`SceneError::Refused`] for an unknown type, a share that is not a positive number, a humidity out of range or one of
+/// [`SceneError`] for an unknown type, a share that is not a positive number, a humidity out of range, or a humidity for
 /// particles that take up no water.
 fn aerosol_mixture(types: &str, humidity: Option<f64>) -> Result<AerosolMixture, SceneError> {
     let refused = |error: AerosolTypeError| match error {
@@ -129,7 +129,7 @@ fn aerosol_mixture(types: &str, humidity: Option<f64>) -> Result<AerosolMixture,
         true => Err(SceneError::value(
             "air.humidity",
             "particles that take up water",
-            format!("{types}, whose particles are those of ambient air"),
+            format!("{types}, whose particles do not grow"),
             "leaving it out",
         )),
         false => Ok(mixture),
@@ -143,12 +143,12 @@ fn require_earth(air: &Atmosphere, key: &str) -> Result<(), SceneError> {
             key,
             "the Earth's air",
             format!("the atmosphere \"{}\"", air.name),
-            "describing what it holds in a TOML file",
+            "describing its constituents in a TOML file",
         )),
     }
 }
 
-/// Replaces the haze by one of a type, in the amount that is set or else as published.
+/// Replaces the haze by one of a published type, in the given amount (default: as published).
 fn set_type(
     air: &mut Atmosphere,
     mixture: &AerosolMixture,
@@ -164,7 +164,7 @@ fn set_type(
     Ok(())
 }
 
-/// Scales the haze there is to an amount, or adds a continental haze where there is none.
+/// Scales the existing haze to an amount, or adds a continental haze if there is none.
 fn set_haze(air: &mut Atmosphere, key: &str, load: AerosolLoad) -> Result<(), SceneError> {
     let (ground, top) = (air.planet.ground_altitude_m, air.planet.top_altitude_m);
     let old = air
@@ -218,7 +218,7 @@ mod tests {
     use crate::atmosphere::visibility::Contrast;
 
     #[test]
-    fn haze_comes_out_as_set_on_every_planet() {
+    fn haze_has_the_given_amount_on_every_planet() {
         for name in ["average", "mars", "bruneton", "reference-rayleigh"] {
             let mut air = preset(name).unwrap();
             set_haze(&mut air, "air.aod_550", AerosolLoad::OpticalDepth550(0.4)).unwrap();
@@ -238,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn types_come_out_as_set() {
+    fn aerosol_types_have_the_given_amount() {
         let mut air = preset("average").unwrap();
         let desert = aerosol_mixture("desert", None).unwrap();
         let set = ("air.aod_550", AerosolLoad::OpticalDepth550(0.4));
@@ -258,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn names_and_files_are_told_apart() {
+    fn names_are_distinguished_from_files() {
         let said = |name: &str| {
             let mut scene = Scene::default();
             scene.air.atmosphere = Some(name.to_owned());
@@ -273,7 +273,7 @@ mod tests {
     }
 
     #[test]
-    fn types_and_shares_are_read() {
+    fn types_and_shares_are_parsed() {
         let alone = aerosol_mixture("urban", None).unwrap();
         assert_eq!(alone, AerosolMixture::of(AerosolType::Urban, 0.8).unwrap());
         let two = aerosol_mixture("urban:3, desert", Some(0.5)).unwrap();

@@ -1,14 +1,15 @@
-//! The one place where inputs that a model would ignore are refused.
+//! Refusal of inputs that a model would ignore.
 
 use super::error::SceneError;
 use super::input::Input;
 use super::model::RadianceModel;
 
 /// Refuses inputs that a model would ignore, and variants that it does not have. `set` are the inputs that are set
-/// explicitly, `variant` is the one requested; `all` are the models to suggest instead.
+/// explicitly, `variant` is the variant requested, `all` are the models from which alternatives are suggested.
 ///
 /// # Errors
-/// [`SceneError::IgnoredInput`] for the first input that it ignores, [`SceneError::UnknownVariant`].
+/// [`SceneError::IgnoredInput`] for the first input that the model ignores, [`SceneError::UnknownVariant`] for a variant
+/// that it does not have.
 pub fn check_inputs(
     model: &dyn RadianceModel,
     set: &[Input],
@@ -46,7 +47,7 @@ mod tests {
     use crate::sky::SunCoverage;
     use std::sync::Arc;
 
-    /// A model that honours one input.
+    /// A model with a name, inputs and variants.
     #[derive(Debug)]
     struct Named(&'static str, &'static [Input], &'static [&'static str]);
 
@@ -79,7 +80,7 @@ mod tests {
     }
 
     #[test]
-    fn ignored_inputs_are_refused_and_other_models_named() {
+    fn errors_for_ignored_inputs_suggest_other_models() {
         let formula = Named("formula", &[Input::Haze], &["printed", "corrected"]);
         let first = Named("first", &[Input::Ozone, Input::Haze], &[]);
         let second = Named("second", &[Input::Ozone], &[]);
@@ -102,7 +103,7 @@ mod tests {
         );
         assert_eq!(
             check(&first, &[], Some("fixed")).unwrap_err(),
-            "solver.variant: expected a variant of first, got \"fixed\"; try leaving it out, as it has one form only"
+            "solver.variant: expected a variant of first, got \"fixed\"; try leaving it out, as it has no variants"
         );
     }
 }

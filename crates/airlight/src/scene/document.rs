@@ -1,4 +1,4 @@
-//! Reading tables of a TOML text into plain data, with errors that say where: line, column, key, and the nearest known key.
+//! Deserialization of scenes and other tables from TOML; errors carry line, column, key and the most similar valid key.
 
 use super::{ObjectSpec, Scene, SceneError};
 use crate::atmosphere::{ConfigError, ConfigProblem};
@@ -9,30 +9,30 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// A TOML text from which scenes, and other tables beside them, are read.
+/// A TOML text from which scenes and other tables are read.
 ///
-/// Tables are layered: each is given by its path in the text, such as `scene` or `cell[2].scene` (empty: the whole text), and
-/// later ones override earlier ones key by key, down to the innermost tables.
+/// Tables are layered: each layer is given by its path in the text, such as `scene` or `cell[2].scene` (empty: the whole
+/// text), and later layers override earlier ones key by key, down to the innermost tables.
 #[derive(Clone, Debug)]
 pub struct SceneDocument {
     text: String,
 }
 
 impl SceneDocument {
-    /// Takes a text.
+    /// Parses a text.
     ///
     /// # Errors
-    /// [`ConfigError`] where it is not TOML.
+    /// [`ConfigError`] if it is not TOML.
     pub fn new(text: impl Into<String>) -> Result<Self, ConfigError> {
         let document = Self { text: text.into() };
         document.table()?;
         Ok(document)
     }
 
-    /// The scene of layered tables; keys in `others` at their top are left to [`SceneDocument::read`].
+    /// Reads a scene from layered tables. Top-level keys in `others` are ignored; read them with [`SceneDocument::read`].
     ///
     /// # Errors
-    /// [`SceneError::Toml`] for keys and values that a scene does not have, [`SceneError::At`] for numbers out of range.
+    /// [`SceneError::Toml`] for unknown keys and values of the wrong type, [`SceneError::At`] for numbers out of range.
     pub fn scene(&self, layers: &[&str], others: &[&str]) -> Result<Scene, SceneError> {
         let scene: Scene = self.read(layers, others)?;
         scene
@@ -41,10 +41,10 @@ impl SceneDocument {
         Ok(scene)
     }
 
-    /// Plain data of layered tables; keys in `others` at their top are left out.
+    /// Deserializes layered tables. Top-level keys in `others` are ignored; a layer that is not in the text is empty.
     ///
     /// # Errors
-    /// [`ConfigError`] for keys and values that the data does not have. A layer that is not in the text counts as empty.
+    /// [`ConfigError`] for unknown keys and values of the wrong type.
     pub fn read<T: DeserializeOwned>(
         &self,
         layers: &[&str],
@@ -62,7 +62,7 @@ impl SceneDocument {
     /// Number of tables in the list at a path, such as `cell`.
     ///
     /// # Errors
-    /// [`ConfigError`] where it is not a list of tables.
+    /// [`ConfigError`] if the value is not a list of tables.
     pub fn count(&self, path: &str) -> Result<usize, ConfigError> {
         let document = self.table()?;
         let Some(value) = find(document.get_ref(), path) else {
@@ -96,7 +96,7 @@ impl SceneDocument {
         )
     }
 
-    /// The tables at the paths, later ones over earlier ones.
+    /// Merges the tables at the paths; later ones override earlier ones.
     fn merged(
         &self,
         layers: &[&str],
@@ -128,11 +128,11 @@ impl SceneDocument {
         Ok(Spanned::new(span, merged))
     }
 
-    /// A scene's error at the place of its key.
+    /// A scene's error with the line and column of its key.
     fn located(&self, layers: &[&str], error: SceneError) -> SceneError {
         let place = error.key().and_then(|key| {
             let merged = self.merged(layers, &[]).ok()?;
-            // A key that is missing is missed where its table is.
+            // An error about a missing key is placed at its table.
             let (mut key, mut found) = (key, None);
             while found.is_none() && !key.is_empty() {
                 found = find_key(merged.get_ref(), key);
@@ -153,7 +153,7 @@ impl SceneDocument {
         }
     }
 
-    /// An error of the parser or of the data, with the key that it is about.
+    /// Converts an error of the parser or of deserialization, with the key that it is about.
     fn config_error(&self, error: &toml::de::Error) -> ConfigError {
         let at = error.span().map_or(0, |span| span.start);
         let key = DeTable::parse(&self.text)
@@ -168,16 +168,16 @@ impl Scene {
     /// Reads a scene from TOML. Files that it names are read by [`Scene::inline_files`].
     ///
     /// # Errors
-    /// [`SceneError`]: what is wrong, with line, column, key, and the nearest key that there is.
+    /// [`SceneError`] with line, column, key and the most similar valid key.
     pub fn from_toml(text: &str) -> Result<Self, SceneError> {
         SceneDocument::new(text)?.scene(&[""], &[])
     }
 
-    /// Takes in the files that the scene names: the atmosphere and the objects. `load` returns the text of a file; its paths
-    /// are as the scene has them, relative to wherever it lies.
+    /// Reads the files that the scene names, the atmosphere and the objects, into the scene. `load` returns the text of a
+    /// file; paths are passed as written in the scene, usually relative to the scene file.
     ///
     /// # Errors
-    /// [`SceneError::Refused`] for a file that `load` does not return, or that holds no objects.
+    /// [`SceneError::Refused`] for a file that `load` cannot read, and for an invalid file of objects.
     pub fn inline_files<E: std::fmt::Display>(
         &mut self,
         mut load: impl FnMut(&str) -> Result<String, E>,
@@ -201,10 +201,10 @@ impl Scene {
         Ok(())
     }
 
-    /// The scene as TOML: what is not set is left out.
+    /// Writes the scene as TOML; fields that are not set are omitted.
     ///
     /// # Errors
-    /// [`SceneError::Refused`] for what TOML cannot hold, such as a seed beyond 2^63.
+    /// [`SceneError::Refused`] for values that TOML cannot represent, such as a seed of 2^63 or more.
     pub fn to_toml(&self) -> Result<String, SceneError> {
         toml::to_string(self).map_err(|error| SceneError::refused("scene", error))
     }
@@ -214,7 +214,7 @@ impl ObjectSpec {
     /// Reads a list of objects, `[[object]]`, from TOML.
     ///
     /// # Errors
-    /// [`ConfigError`]: what is wrong, with line, column, key, and the nearest key that there is.
+    /// [`ConfigError`] with line, column, key and the most similar valid key.
     pub fn list_from_toml(text: &str) -> Result<Vec<Self>, ConfigError> {
         /// A file of objects.
         #[derive(serde::Deserialize)]
@@ -228,7 +228,7 @@ impl ObjectSpec {
     }
 }
 
-/// Puts a table over another, key by key.
+/// Overrides the keys of a table by those of another.
 fn merge<'a>(under: &mut DeTable<'a>, over: DeTable<'a>) {
     for (key, value) in over {
         let value = match (under.remove(&key), value.get_ref().is_table()) {
@@ -270,7 +270,7 @@ fn find<'t, 'a>(table: &'t DeTable<'a>, path: &str) -> Option<&'t Spanned<DeValu
     found
 }
 
-/// Where the key at a path stands in the text.
+/// Byte position of the key at a path.
 fn find_key(table: &DeTable<'_>, path: &str) -> Option<usize> {
     let (outer, name) = path.rsplit_once('.').unwrap_or(("", path));
     if name.ends_with(']') {
@@ -290,7 +290,7 @@ fn entry<'t, 'a>(table: &'t DeTable<'a>, name: &str) -> Option<(usize, &'t Spann
         .map(|(key, value)| (key.span().start, value))
 }
 
-/// The path of the key whose name or value stands at a byte of the text.
+/// The path of the key whose name or value contains a byte of the text.
 fn key_at(table: &DeTable<'_>, byte: usize) -> Option<String> {
     let joined = |outer: &str, inner: String| match inner.is_empty() {
         true => outer.to_owned(),
@@ -323,7 +323,7 @@ fn key_at(table: &DeTable<'_>, byte: usize) -> Option<String> {
     None
 }
 
-/// A message of serde's, as what is wrong and what would be right.
+/// Converts a message of serde to the form `expected ..., got ...`.
 fn problem(message: &str) -> ConfigProblem {
     let quoted = |text: &str| -> Vec<String> {
         text.split('`')
@@ -355,7 +355,7 @@ fn problem(message: &str) -> ConfigProblem {
         ("expected u32", "expected a whole number, 0 or above"),
         ("expected u64", "expected a whole number, 0 or above"),
         ("expected usize", "expected a whole number, 0 or above"),
-        ("expected a string", "expected a text in quotes"),
+        ("expected a string", "expected a string in quotes"),
         ("expected a boolean", "expected true or false"),
         ("expected struct ", "expected a table: "),
     ];

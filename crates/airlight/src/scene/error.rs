@@ -1,4 +1,4 @@
-//! Why the light of a scene cannot be computed.
+//! [`SceneError`].
 
 use super::input::Input;
 use crate::atmosphere::AtmosphereError;
@@ -9,61 +9,61 @@ use crate::names::UnknownName;
 use crate::optics::mie::MieError;
 use crate::sky::SkyError;
 
-/// Why a scene is refused, or its light cannot be computed.
+/// Error of reading a scene or of computing its light.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SceneError {
-    /// A value of the scene.
+    /// An invalid value of the scene.
     #[error("{key}: expected {expected}, got {got}{}", tip(try_instead))]
     Value {
-        /// Its key in a scene file, such as `air.ozone_du`.
+        /// Key in a scene file, such as `air.ozone_du`.
         key: String,
-        /// What would be right.
+        /// The values allowed.
         expected: String,
-        /// What was given.
+        /// The value given.
         got: String,
-        /// What to try instead; empty where that is plain.
+        /// What to try instead; may be empty.
         try_instead: String,
     },
-    /// A value of the scene that another part of the library refuses.
+    /// A value of the scene that another part of the library rejects.
     #[error("{key}: {problem}")]
     Refused {
-        /// Its key in a scene file.
+        /// Key in a scene file.
         key: String,
-        /// Why.
+        /// The reason.
         problem: String,
     },
-    /// A text that is not TOML, or has keys or values that a scene does not have.
+    /// A text that is not TOML, or has unknown keys or values of the wrong type.
     #[cfg(feature = "config")]
     #[error(transparent)]
     Toml(#[from] ConfigError),
-    /// A value of a scene file, with its place.
+    /// An invalid value of a scene file, with its place.
     #[error("line {line}, column {column}: {error}")]
     At {
         /// Line, counted from 1.
         line: usize,
         /// Column, counted from 1 in characters.
         column: usize,
-        /// What is wrong.
+        /// The problem.
         error: Box<SceneError>,
     },
-    /// There is no solver or published model of a name.
+    /// An unknown name of a solver or published model.
     #[error("solver.name: {unknown}{}", feature_tip(unknown))]
     UnknownModel {
         /// The name, with the names of all solvers.
         unknown: UnknownName,
     },
-    /// A model refuses a value of the scene, the sun or the eye.
+    /// A value of the scene, the sun or the eye outside a model's domain.
     #[error("{model}: {problem}")]
     Model {
         /// Name of the model.
         model: &'static str,
-        /// Why.
+        /// The reason.
         problem: String,
     },
-    /// A spectral view of a model that knows colours only.
+    /// A spectral view of a model without spectra.
     #[error(
-        "output.spectral: expected a solver with spectra, got {0}, which knows colours only; try a picture in RGB"
+        "output.spectral: expected a solver with spectra, got {0}, which has colours only; try a picture in RGB"
     )]
     NoSpectra(&'static str),
     /// An input that the model would ignore.
@@ -73,7 +73,7 @@ pub enum SceneError {
         alternatives(honoured_by, "leaving it out, as no solver does")
     )]
     IgnoredInput {
-        /// Which input.
+        /// The input.
         input: Input,
         /// The model that ignores it.
         model: &'static str,
@@ -83,7 +83,7 @@ pub enum SceneError {
     /// A variant that the model does not have.
     #[error(
         "solver.variant: expected a variant of {model}, got \"{got}\"; try {}",
-        alternatives(variants, "leaving it out, as it has one form only")
+        alternatives(variants, "leaving it out, as it has no variants")
     )]
     UnknownVariant {
         /// The variant requested.
@@ -93,43 +93,43 @@ pub enum SceneError {
         /// Its variants.
         variants: &'static [&'static str],
     },
-    /// RGB has three lanes.
-    #[error("red, green and blue are 3 lanes, got room for {0}")]
+    /// RGB channels in a number of lanes other than 3.
+    #[error("channels: expected 3 lanes for red, green and blue, got {0}")]
     RgbLanes(usize),
-    /// Wavelengths asked for that the sky's grid does not have.
+    /// A first wavelength beyond the end of the sky's grid.
     #[error(
-        "the sky was solved at {available} wavelengths: there is none to start from at place {first}"
+        "channels: expected a first wavelength with an index below {available}, the number of wavelengths of the sky, got {first}"
     )]
     Wavelengths {
-        /// Which was to be the first, counted from 0.
+        /// Index of the first wavelength.
         first: usize,
-        /// How many there are.
+        /// Number of wavelengths of the grid.
         available: usize,
     },
-    /// A distance that is none.
+    /// A limiting distance that is not positive.
     #[error(
-        "the farthest distance must be above 0 m (or infinite: to the end of the air), got {0} m"
+        "limit of the distance: expected a number of metres above 0 (infinite: to the top of the air), got {0}"
     )]
     Distance(f64),
-    /// The atmosphere is refused.
+    /// An invalid atmosphere.
     #[error(transparent)]
     Atmosphere(#[from] AtmosphereError),
-    /// There is no atmosphere of that name.
+    /// An unknown name of an atmosphere.
     #[error("air.atmosphere: {0}; a file must end in .toml")]
     UnknownAtmosphere(UnknownName),
-    /// The fog is refused.
+    /// An invalid fog.
     #[error(transparent)]
     Fog(#[from] FogError),
-    /// The fog's droplets are refused.
+    /// Invalid droplets of a fog.
     #[error(transparent)]
     Droplets(#[from] MieError),
-    /// The solver refuses the scene.
+    /// An error of the sky solver.
     #[error(transparent)]
     Sky(#[from] SkyError),
 }
 
 impl SceneError {
-    /// A value of the scene: its key, what would be right, what was given, and what to try (or nothing).
+    /// [`SceneError::Value`] with key, values allowed, value given, and what to try (may be empty).
     pub(crate) fn value(
         key: impl Into<String>,
         expected: impl Into<String>,
@@ -144,7 +144,7 @@ impl SceneError {
         }
     }
 
-    /// A value of the scene that another part of the library refuses.
+    /// [`SceneError::Refused`] for a key.
     pub(crate) fn refused(key: impl Into<String>, problem: impl std::fmt::Display) -> Self {
         Self::Refused {
             key: key.into(),
@@ -152,7 +152,7 @@ impl SceneError {
         }
     }
 
-    /// A value that a model refuses.
+    /// [`SceneError::Model`] for a value outside a model's domain.
     pub(crate) fn model(model: &'static str, problem: impl std::fmt::Display) -> Self {
         Self::Model {
             model,
@@ -160,12 +160,12 @@ impl SceneError {
         }
     }
 
-    /// Whether the caller cancelled.
+    /// Whether the caller cancelled the computation.
     pub fn is_cancelled(&self) -> bool {
         matches!(self, Self::Sky(SkyError::Cancelled(_)))
     }
 
-    /// The key of the scene that is wrong, such as `air.ozone_du`, where it is one.
+    /// The scene key that caused the error, such as `air.ozone_du`, if it is a single key.
     pub fn key(&self) -> Option<&str> {
         match self {
             Self::Value { key, .. } | Self::Refused { key, .. } => Some(key),
@@ -180,7 +180,7 @@ impl SceneError {
     }
 }
 
-/// "; try ...", where there is something to try.
+/// "; try ...", or nothing for an empty suggestion.
 fn tip(try_instead: &str) -> String {
     match try_instead {
         "" => String::new(),
@@ -188,7 +188,7 @@ fn tip(try_instead: &str) -> String {
     }
 }
 
-/// "a", "a or b", "a, b or c"; `none` where there is no name.
+/// "a", "a or b", "a, b or c"; `none` for an empty list.
 fn alternatives(names: &[&str], none: &str) -> String {
     match names {
         [] => none.to_owned(),
@@ -197,7 +197,7 @@ fn alternatives(names: &[&str], none: &str) -> String {
     }
 }
 
-/// What may have been meant, or how to get it.
+/// How to enable a model that needs a feature.
 fn feature_tip(unknown: &UnknownName) -> &'static str {
     match unknown.name.as_str() {
         "hosek-wilkie" => "; try a build with the feature hosek-wilkie",

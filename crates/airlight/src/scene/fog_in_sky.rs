@@ -1,4 +1,4 @@
-//! Fog in a sky, in the channels of a view.
+//! Sky with fog in the channels of a view.
 
 use super::foggy::FoggySky;
 use super::lane_channels::LaneChannels;
@@ -9,22 +9,22 @@ use crate::spectrum::{Spectrum, WavelengthGrid};
 use glam::DVec3;
 use std::sync::Arc;
 
-/// Wavelengths in a piece of a spectrum.
+/// Number of wavelengths in a block of a spectrum.
 const PIECE: usize = 16;
 
-/// A sky with fog in it, in the channels of a view.
+/// A sky with fog, in the channels of a view.
 pub(super) enum FogInSky {
     /// Red, green and blue.
     Rgb(Box<FoggySky<3>>),
-    /// All wavelengths, one piece after the other.
+    /// All wavelengths, in blocks.
     Spectral(Vec<FoggySky<PIECE>>),
 }
 
 impl FogInSky {
-    /// Layers of fog under the sky of a view; clear air without.
+    /// Layers of fog under the sky of a view; clear air for no layers.
     ///
     /// # Errors
-    /// [`SceneError`] for layers that are refused.
+    /// [`SceneError`] for invalid layers.
     pub fn new(
         fog: Option<&FogLayers>,
         view: &View,
@@ -55,7 +55,7 @@ impl FogInSky {
         }
     }
 
-    /// From radiance without fog to radiance through the fog.
+    /// Replaces radiance without fog by radiance through the fog.
     #[inline]
     pub fn cover(&self, direction: DVec3, values: &mut [f32]) {
         match self {
@@ -68,7 +68,7 @@ impl FogInSky {
         }
     }
 
-    /// Transmittance of the fog to the ground or to space, taken in the first channel for all: droplets are large against
+    /// Transmittance of the fog to the ground or to space. The first channel stands for all, as droplets are much larger than
     /// the wavelengths.
     pub fn transmittance(&self, direction: DVec3) -> f32 {
         match self {
@@ -77,7 +77,7 @@ impl FogInSky {
         }
     }
 
-    /// Transmittance and path radiance of air and fog to a point at a distance.
+    /// Transmittance and path radiance of air and fog between the eye and a point at a distance, m.
     pub fn path(
         &self,
         direction: DVec3,
@@ -98,7 +98,7 @@ impl FogInSky {
         }
     }
 
-    /// Irradiance of the sun's disc at a height above the ground, on a surface that faces it.
+    /// Irradiance of the sun's disc at a height above the ground (m) on a surface that faces it.
     pub fn sunlight(&self, height_m: f64, out: &mut [f32]) {
         match self {
             Self::Rgb(sky) => put(sky.sunlight(height_m), out),

@@ -1,4 +1,4 @@
-//! From the fog of a scene to layers.
+//! Conversion of a scene's fog to layers.
 
 use super::{FogLayerSpec, FogSpec, SceneError};
 use crate::atmosphere::visibility::{Contrast, extinction_per_m};
@@ -6,31 +6,31 @@ use crate::atmosphere::{Constituent, DensityProfile};
 use crate::fog::FogScattering;
 use crate::fog::droplets::DropletKind;
 
-/// The fog of a scene: layers with an upper end, and which light they scatter.
+/// The fog of a scene: layers with an upper end, and orders of scattering.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FogLayers {
-    /// The layers.
+    /// The layers, whose extinctions add up.
     pub layers: Vec<FogLayer>,
-    /// Which light they scatter.
+    /// Orders of scattering.
     pub scattering: FogScattering,
 }
 
 /// A layer of fog before its droplets are evaluated at wavelengths.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FogLayer {
-    /// How it thins; heights are above the ground.
+    /// Relative density by height above the ground.
     pub profile: DensityProfile,
-    /// Its droplets.
+    /// Kind of droplets.
     pub droplets: DropletKind,
     /// Extinction at density 1 at 550 nm, 1/m.
     pub extinction_per_m: f64,
 }
 
 impl FogLayers {
-    /// The layers as constituents at wavelengths (nm, rising), with heights from the ground.
+    /// The layers as constituents at wavelengths (nm, increasing), with heights above the ground.
     ///
     /// # Errors
-    /// [`SceneError`] for a profile or droplets that are refused.
+    /// [`SceneError`] for an invalid profile or invalid droplets.
     pub fn constituents(&self, wavelengths_nm: &[f64]) -> Result<Vec<Constituent>, SceneError> {
         let layers = self.layers.iter();
         layers
@@ -38,10 +38,10 @@ impl FogLayers {
             .collect()
     }
 
-    /// The same at altitudes over a ground (m): as part of the air, for Monte Carlo.
+    /// The layers as constituents of the air over a ground at this altitude (m), for Monte Carlo.
     ///
     /// # Errors
-    /// [`SceneError`] for a profile without an upper end, too.
+    /// As [`Self::constituents`], and for a profile without an upper end.
     pub(crate) fn in_air(
         &self,
         ground_altitude_m: f64,
@@ -66,10 +66,10 @@ impl FogLayers {
 }
 
 impl FogLayer {
-    /// The layer as a constituent at wavelengths (nm, rising), with heights from the ground.
+    /// The layer as a constituent at wavelengths (nm, increasing), with heights above the ground.
     ///
     /// # Errors
-    /// [`SceneError`] for a profile or droplets that are refused.
+    /// [`SceneError`] for an invalid profile or invalid droplets.
     pub fn constituent(&self, wavelengths_nm: &[f64]) -> Result<Constituent, SceneError> {
         self.profile
             .validate()
@@ -86,10 +86,10 @@ impl FogLayer {
 }
 
 impl FogSpec {
-    /// The layers, with visibilities that mean a contrast.
+    /// The layers, with visibilities defined by a contrast threshold.
     ///
     /// # Errors
-    /// [`SceneError::Value`] for a layer without a visibility, and for a profile that no sky can shine through.
+    /// [`SceneError::Value`] for a layer without a visibility, and for a profile without an upper end, which hides the sky.
     pub(crate) fn resolve(&self, contrast: Contrast) -> Result<FogLayers, SceneError> {
         let layers = self
             .all_layers()
@@ -107,15 +107,15 @@ impl FogSpec {
 }
 
 impl FogLayerSpec {
-    /// The layer that a key of the scene holds, with a visibility that means a contrast.
+    /// The layer at a key of the scene, with its visibility defined by a contrast threshold.
     ///
     /// # Errors
-    /// [`SceneError::Value`] without a visibility, and for a profile that no sky can shine through.
+    /// [`SceneError::Value`] for a layer without a visibility, and for a profile without an upper end, which hides the sky.
     pub fn resolve(&self, key: &str, contrast: Contrast) -> Result<FogLayer, SceneError> {
         let Some(visibility_m) = self.visibility_m else {
             return Err(SceneError::value(
                 format!("{key}.visibility_m"),
-                "how far one sees where the fog is thickest, m",
+                "the visibility where the fog is densest, m",
                 "none",
                 "visibility_m = 200",
             ));
@@ -123,8 +123,8 @@ impl FogLayerSpec {
         let Some(profile) = self.density() else {
             return Err(SceneError::value(
                 format!("{key}.profile"),
-                "fog with an upper end, through which the sky shines",
-                "fog that is for pictures with depth",
+                "fog with an upper end, as the sky must be visible through it",
+                "a profile for pictures with depth",
                 "height, clamped, unclamped or slab",
             ));
         };

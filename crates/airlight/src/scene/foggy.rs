@@ -1,4 +1,4 @@
-//! A sky with fog in it.
+//! [`FoggySky`]: a sky with fog in its lower air.
 
 use super::aerial::AerialPerspective;
 use super::error::SceneError;
@@ -14,38 +14,38 @@ use crate::transfer::PathOptics;
 use glam::DVec3;
 use std::sync::Arc;
 
-/// A sky with fog in it: sunlight and skylight fall on the fog, air and fog lie along every line in their true order, the
-/// ground is dimmed, and what is far away goes over into the drawn sky.
+/// A sky with fog: the fog is lit by sunlight and skylight, air and fog are interleaved along every ray in their true order,
+/// the ground below receives less light, and distant objects fade into the sky of the same picture.
 ///
-/// The fog's share of a line is [`Fog`](crate::fog::Fog)'s, with its errors. What this adds: fog and air in the right order, against lines
-/// cut into 500 slices median 0.04 % of the path radiance, 90 % below 0.22 %, worst 1.3 % in haze that fills the lower
-/// kilometre and 0.6 % elsewhere (the test `fog_and_air_lie_in_their_order`); the table of [`AerialPerspective`]. The
-/// ground under the fog is lit as the fog's own solution says, or by a two-stream estimate where light is scattered once only.
-/// Left out: the shadow of the fog on the air in and under it, which matters where fog is hardly thicker than air; the fog's own
-/// light on the air above it.
+/// Path optics of the fog are those of [`Fog`](crate::fog::Fog), with its errors, and those of the air come from
+/// [`AerialPerspective`]. Additional error of their order along the ray, compared with rays cut into 500 segments: median
+/// 0.04 % of the path radiance, 90 % below 0.22 %, largest 1.3 % in haze that fills the lower kilometre and 0.6 %
+/// elsewhere (test `fog_and_air_lie_in_their_order`). Light on the ground below the fog is that of the fog's solution, or
+/// a two-stream estimate for single scattering. Neglected: the shadow of the fog on the air in and below it, which matters
+/// if the fog is hardly denser than the air, and light from the fog on the air above it.
 pub struct FoggySky<const N: usize> {
     view: View,
     converter: Arc<Converter<N>>,
     clear: Arc<SkyTable>,
-    /// The table's first channel that is a lane.
+    /// Index of the table's channel that is the first lane.
     first: usize,
     aerial: Arc<AerialPerspective<N>>,
     top: Arc<TopLight>,
     pub(super) fog: FogLanes<N>,
     eye_height_m: f64,
-    /// Irradiance of the ground over that without fog.
+    /// Irradiance of the ground relative to that without fog.
     ground_share: Spectrum<N>,
 }
 
 debug_fields! { FoggySky<const N: usize> { view, eye_height_m, ground_share } }
 
-/// What is the same for all pieces of a spectrum.
-struct IrradianceMap {
+/// Parts shared by all blocks of a spectrum.
+struct SharedSky {
     top: Arc<TopLight>,
     clear: Arc<SkyTable>,
 }
 
-/// The view from the top of a fog, straight above or below that of the eye; the fog is checked.
+/// Validates a fog and returns the view from its top, vertically above or below the eye.
 fn top_view<const N: usize>(
     view: &View,
     layers: &[LayerLanes<N>],
@@ -56,18 +56,18 @@ fn top_view<const N: usize>(
         ambient: Spectrum::ZERO,
         ground_albedo: Spectrum::ZERO,
     };
-    // Any fault of the layers shows without solving for light.
+    // Validates the layers without solving for light.
     FogLanes::new(layers, ground, unlit, FogScattering::Single, N)?;
     let ground_m = view.sky().atmosphere().planet.ground_altitude_m;
     Ok(view.at_altitude(ground_m + light::top_m(layers, &ground) - ground.height_m))
 }
 
 impl<const N: usize> FoggySky<N> {
-    /// Fog under the sky of a view. Heights of `layers` and of `ground` are to one zero; the eye stands as high above
-    /// the fog's ground as the view's eye above its own. See [`FoggySky::round_ground`].
+    /// Fog under the sky of a view. Heights of `layers` and of `ground` have the same origin; the eye is as high above the
+    /// fog's ground as the view's eye above its own ground. See [`FoggySky::round_ground`].
     ///
     /// # Errors
-    /// [`SceneError`] where N lanes cannot be these channels, or for a fog that is none.
+    /// [`SceneError`] if N lanes cannot hold these channels, or for an invalid fog.
     pub fn new(
         view: &View,
         channels: LaneChannels,
@@ -82,42 +82,37 @@ impl<const N: usize> FoggySky<N> {
         // Checked before anything is computed.
         let converter = Converter::<N>::new(view, channels)?;
         let layers = converter.layers(layers)?;
-        let surroundings = IrradianceMap {
+        let shared = SharedSky {
             top: Arc::new(TopLight::of(&top_view(view, &layers, ground)?)),
             clear: Arc::new(view.table(table)),
         };
-        Self::among(view, channels, &layers, ground, scattering, &surroundings)
+        Self::among(view, channels, &layers, ground, scattering, &shared)
     }
 
-    /// The same at every wavelength of the sky's grid, N in a piece (lanes beyond the last wavelength repeat it).
+    /// The same at all wavelengths of the sky's grid, in blocks of N (lanes beyond the last wavelength repeat it).
     ///
     /// # Errors
-    /// [`SceneError`] for layers outside their domain.
+    /// [`SceneError`] for invalid layers.
     pub fn spectral(
         view: &View,
         layers: &[Constituent],
         ground: Ground,
         scattering: FogScattering,
     ) -> Result<Vec<Self>, SceneError> {
-        let mut surroundings = None;
+        let mut shared = None;
         let mut pieces = Vec::new();
         for first in (0..view.sky().grid().len()).step_by(N.max(1)) {
             let channels = LaneChannels::Wavelengths { first };
             let layers = Converter::<N>::new(view, channels)?.layers(layers)?;
-            let surroundings = match &surroundings {
+            let shared = match &shared {
                 Some(known) => known,
-                None => surroundings.insert(IrradianceMap {
+                None => shared.insert(SharedSky {
                     top: Arc::new(TopLight::of(&top_view(view, &layers, ground)?)),
                     clear: Arc::new(view.table(TableChannels::Spectral)),
                 }),
             };
             pieces.push(Self::among(
-                view,
-                channels,
-                &layers,
-                ground,
-                scattering,
-                surroundings,
+                view, channels, &layers, ground, scattering, shared,
             )?);
         }
         Ok(pieces)
@@ -129,14 +124,14 @@ impl<const N: usize> FoggySky<N> {
         layers: &[LayerLanes<N>],
         ground: Ground,
         scattering: FogScattering,
-        surroundings: &IrradianceMap,
+        shared: &SharedSky,
     ) -> Result<Self, SceneError> {
         let converter = Converter::new(view, channels)?;
-        let top = surroundings.top.clone();
+        let top = shared.top.clone();
         let light = top.on_fog(view, &converter, scattering);
         let fog = FogLanes::new(layers, ground, light, scattering, converter.used().len())?;
         Ok(Self {
-            clear: surroundings.clear.clone(),
+            clear: shared.clear.clone(),
             first: converter.used().start,
             aerial: Arc::new(AerialPerspective::new(view, channels, f64::INFINITY)?),
             top,
@@ -148,11 +143,11 @@ impl<const N: usize> FoggySky<N> {
         })
     }
 
-    /// Another fog in the same sky, over the same ground: what does not depend on the fog is shared, and so is the light on
-    /// it where it reaches as high.
+    /// Another fog in the same sky, over the same ground. Parts that do not depend on the fog are shared, and so is the light
+    /// on it if its top is equally high.
     ///
     /// # Errors
-    /// [`SceneError`] for a fog that is none.
+    /// [`SceneError`] for an invalid fog.
     pub fn with_fog(
         &self,
         layers: &[Constituent],
@@ -180,7 +175,7 @@ impl<const N: usize> FoggySky<N> {
         })
     }
 
-    /// The ground of a view's planet, as round as it is, at height 0.
+    /// Ground at height 0 with the radius of the view's planet.
     pub fn round_ground(view: &View) -> Ground {
         Ground {
             height_m: 0.0,
@@ -188,17 +183,17 @@ impl<const N: usize> FoggySky<N> {
         }
     }
 
-    /// The ground under the fog.
+    /// The ground below the fog.
     pub fn ground(&self) -> &Ground {
         self.fog.ground()
     }
 
-    /// The light of this sky on the fog.
+    /// Lighting of the fog by this sky.
     pub fn fog_lighting(&self) -> &FogLighting<Spectrum<N>> {
         self.fog.lighting()
     }
 
-    /// The clear air.
+    /// Aerial perspective of the air without fog.
     pub fn aerial(&self) -> &AerialPerspective<N> {
         &self.aerial
     }
@@ -208,15 +203,15 @@ impl<const N: usize> FoggySky<N> {
         &self.clear
     }
 
-    /// What fog and air together do to the light of a point at `distance_m` along the unit vector `direction` (infinite:
-    /// of space).
+    /// Transmittance and path radiance of fog and air between the eye and a point at `distance_m` (infinite: in space) along
+    /// the unit vector `direction`.
     #[inline]
     pub fn optics(&self, direction: DVec3, distance_m: f64) -> PathOptics<N> {
         let air = self.aerial.optics(direction, distance_m);
         self.over_clear(direction, distance_m).then(air)
     }
 
-    /// Radiance along the unit vector `direction`: sky or ground, seen through the fog, without the sun's disc.
+    /// Radiance of sky or ground along the unit vector `direction`, seen through the fog, without the sun's disc.
     #[inline]
     pub fn sky(&self, direction: DVec3) -> Spectrum<N> {
         const FEW: usize = 64;
@@ -235,21 +230,21 @@ impl<const N: usize> FoggySky<N> {
         self.before(direction, clear)
     }
 
-    /// The same where the radiance without fog is known already.
+    /// [`Self::sky`] for a known radiance without fog.
     #[inline]
     pub fn before(&self, direction: DVec3, clear: Spectrum<N>) -> Spectrum<N> {
         let Some(end_m) = self.aerial.ground_distance_m(direction) else {
             return self.over_clear(direction, f64::INFINITY).apply(clear);
         };
-        // What of the clear picture is the ground's own light, dimmed by the air.
+        // Light of the ground in the radiance without fog, attenuated by the air.
         let air = self.aerial.optics(direction, end_m).path_radiance;
         let ground = (clear - air).max_scalar(0.0);
         let behind = clear - ground + ground * self.ground_share;
         self.over_clear(direction, end_m).apply(behind)
     }
 
-    /// Radiance of the sun's disc in a direction, dimmed by air and fog; zero beside it. (It allocates: for pictures
-    /// dim a tabulated disc by [`FoggySky::fog_transmittance`].)
+    /// Radiance of the sun's disc in a direction, attenuated by air and fog; 0 outside the disc. Allocates; for pictures,
+    /// attenuate a tabulated disc by [`FoggySky::fog_transmittance`] instead.
     pub fn sun_disc(&self, direction: DVec3) -> Spectrum<N> {
         let radiance = self.view.sun_disc_radiance(direction);
         let disc = self
@@ -258,8 +253,8 @@ impl<const N: usize> FoggySky<N> {
         disc * self.fog_transmittance(direction)
     }
 
-    /// Irradiance of the sun's disc at a height above the ground (m) on a surface that faces it: the sun above the fog, dimmed
-    /// by the fog above; the air within the fog counts as above it.
+    /// Irradiance of the sun's disc at a height above the ground (m) on a surface that faces it: that above the fog,
+    /// attenuated by the fog above this height. All air between the fog's top and the ground is assumed to lie above the fog.
     pub fn sunlight(&self, height_m: f64) -> Spectrum<N> {
         let Some(sun) = &self.fog.lighting().sun else {
             return Spectrum::ZERO;
@@ -269,7 +264,7 @@ impl<const N: usize> FoggySky<N> {
         sun.irradiance * self.fog.transmittance(&up)
     }
 
-    /// Transmittance of the fog alone, to the ground or to space.
+    /// Transmittance of the fog without the air, to the ground or to space.
     #[inline]
     pub fn fog_transmittance(&self, direction: DVec3) -> Spectrum<N> {
         let far = self.aerial.ground_distance_m(direction);
@@ -277,7 +272,7 @@ impl<const N: usize> FoggySky<N> {
         self.fog.transmittance(&line)
     }
 
-    /// The line of sight as the fog sees it: it ends on the fog's ground, too.
+    /// The view ray in the coordinates of the fog, which also ends at the fog's ground.
     #[inline]
     fn line(&self, direction: DVec3, distance_m: f64) -> RaySegment {
         let ground = self.fog.ground();
@@ -289,18 +284,19 @@ impl<const N: usize> FoggySky<N> {
         line
     }
 
-    /// What the fog does to the light of a point at `distance_m` (infinite: of the sky) that has come through the clear air
-    /// already: a picture of the scene without fog goes through it. [`FoggySky::optics`] has the air, too.
+    /// Effect of the fog on light from a point at `distance_m` (infinite: the sky) that is already attenuated by the clear air,
+    /// as in a picture of the scene without fog. [`FoggySky::optics`] includes the air.
     ///
-    /// With `T_a`, `S_a` of the air up to a distance `s`, and `T_f`, `S_f` of the fog, in small steps one after the other,
+    /// With `T_a`, `S_a` of the air up to a distance `s`, and `T_f`, `S_f` of the fog, composed in small steps,
     ///
     /// ```text
     /// S = int T_f dS_a + int T_a dS_f = T_f S_a(d) + (1 - T_f) <S_a> + <T_a> S_f
     /// ```
     ///
-    /// by parts, where `<f>` is the mean of `f(s)` over the light that the fog scatters away, `int f dT_f / (T_f - 1)`, by
-    /// Gauss's rule. The second mean should be over `dS_f`: the same where the fog's source function varies little. The
-    /// first term is that of the light which has come through the air; the others are the path radiance here.
+    /// by integration by parts, where `<f>` is the mean of `f(s)` over the light that the fog removes,
+    /// `int f dT_f / (T_f - 1)`, by Gauss-Legendre quadrature. The exact second mean is over `dS_f`, which is the same if the
+    /// fog's source function varies little. The first term belongs to the light attenuated by the air; the others are the
+    /// path radiance returned here.
     #[inline]
     pub fn over_clear(&self, direction: DVec3, distance_m: f64) -> PathOptics<N> {
         let line = self.line(direction, distance_m);

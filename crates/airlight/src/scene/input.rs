@@ -1,4 +1,4 @@
-//! Inputs of a scene that not every model honours.
+//! [`Input`]: inputs of a scene that not every model honours.
 
 use std::fmt;
 
@@ -6,7 +6,7 @@ use std::fmt;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Input {
-    /// The atmosphere: preset or file.
+    /// Atmosphere: preset or file.
     Atmosphere,
     /// Type, humidity, optical depth, turbidity or visibility of the haze.
     Haze,
@@ -14,44 +14,44 @@ pub enum Input {
     Ozone,
     /// Albedo of the ground.
     GroundAlbedo,
-    /// An eye high above the ground.
+    /// Height of the eye, if it is far above the ground.
     ObserverHeight,
     /// Distance of the planet from the sun.
     SunDistance,
     /// Fog near the ground.
     Fog,
-    /// Which orders of scattering the fog has.
+    /// Orders of scattering in the fog.
     FogScattering,
     /// Point, spot and sphere lights.
     Lights,
     /// Objects in front of the sky.
     Objects,
-    /// The wavelengths to compute.
+    /// Wavelengths to compute.
     Wavelengths,
-    /// Which orders of scattering are computed.
+    /// Orders of scattering in the air.
     Scattering,
-    /// How finely the solver works.
+    /// Resolution of the solver.
     Effort,
     /// Number of Monte Carlo paths and their seed.
     Paths,
-    /// Pictures of the standard error.
+    /// Maps of the standard error.
     NoiseMap,
     /// Polarisation of the light.
     Polarisation,
-    /// The form of a published model.
+    /// Variant of a published model.
     Variant,
-    /// The sunlight of the single-scattering shader.
+    /// Sunlight of the single-scattering shader.
     Sunlight,
-    /// Haze and air of the model of 1987.
+    /// Settings of the 1987 model.
     Klassen1987,
     /// Pictures with one channel for each wavelength.
     Spectra,
-    /// Air in front of a point at a distance.
+    /// Path optics of the air in front of a point.
     Distances,
 }
 
 impl Input {
-    /// Its key in a scene file.
+    /// Key in a scene file; several keys are joined by "and".
     pub fn key(self) -> &'static str {
         match self {
             Self::Atmosphere => "air.atmosphere",
@@ -80,7 +80,7 @@ impl Input {
 }
 
 impl fmt::Display for Input {
-    /// What it is, with its article: "the ozone column".
+    /// Writes a phrase for error messages, such as "the ozone column".
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Atmosphere => "the atmosphere",
@@ -97,7 +97,7 @@ impl fmt::Display for Input {
             Self::Scattering => "the orders of scattering",
             Self::Effort => "the effort",
             Self::Paths => "the number of paths and their seed",
-            Self::NoiseMap => "maps of the noise",
+            Self::NoiseMap => "noise maps",
             Self::Polarisation => "polarisation",
             Self::Variant => "variants",
             Self::Sunlight => "the colour of the sunlight",

@@ -6,21 +6,21 @@ use crate::math::parallel;
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// Normals tabulated from the nadir to the zenith, and round.
+/// Numbers of tabulated normals from the nadir to the zenith, and in azimuth.
 const ROWS: usize = 25;
 const COLUMNS: usize = 36;
-/// Bands of equal solid angle that radiance is taken in, and directions in each.
+/// Number of bands of equal solid angle in which radiance is sampled, and of directions in each.
 const BANDS: usize = 64;
 const AROUND: usize = 128;
-/// Angle about the sun within which directions crowd towards it, rad; rings there, and directions in each.
+/// Angle from the sun within which directions are denser, rad; number of rings there, and of directions in each.
 const CAP_RAD: f64 = 0.15;
 const RINGS: usize = 32;
 const SPOKES: usize = 24;
 
-/// Irradiance of everything around a place but the sun's disc, on surfaces there, by their normal.
+/// Irradiance of surfaces at one place, by their normal, from all directions except the sun's disc.
 ///
-/// A table of 25 by 36 normals, bilinear: within 1 % of the irradiance where radiance is smooth over 3 degrees, about the sun over
-/// half a degree (tests).
+/// A table of 25 by 36 normals with bilinear interpolation: accurate to 1 % of the irradiance if radiance is smooth over 3
+/// degrees, and near the sun over half a degree (tested).
 #[derive(Clone, Debug)]
 pub struct IrradianceMap {
     channels: usize,
@@ -29,14 +29,14 @@ pub struct IrradianceMap {
 }
 
 impl IrradianceMap {
-    /// Sums the radiance that arrives from all directions (unit vectors away from the place), `channels` values each; about
-    /// `sun`, a unit vector, it may rise steeply.
+    /// Integrates radiance over all directions (unit vectors away from the place), with `channels` values each. Directions are
+    /// denser around the unit vector `sun`, where radiance may increase steeply.
     pub fn new(
         sun: DVec3,
         channels: usize,
         radiance: impl Fn(&[DVec3], &mut [f32]) + Sync,
     ) -> Self {
-        /// Directions in one call of `radiance`.
+        /// Number of directions in one call of `radiance`.
         const CALL: usize = 64;
         let (directions, solid_angles): (Vec<DVec3>, Vec<f64>) =
             directions(sun).into_iter().unzip();
@@ -70,7 +70,8 @@ impl IrradianceMap {
         }
     }
 
-    /// Irradiance of a surface with this unit normal.
+    /// Irradiance of a surface with this unit normal, one value for each channel, W m^-2 nm^-1 (or the unit of radiance times
+    /// sr).
     pub fn irradiance(&self, normal: DVec3, out: &mut [f32]) {
         let row = Place::evenly((axes::elevation_deg(normal) + 90.0) / 180.0, ROWS);
         let column = axes::azimuth_deg(normal) / 360.0 * COLUMNS as f64;
@@ -86,8 +87,8 @@ impl IrradianceMap {
     }
 }
 
-/// Directions all over the sphere with the solid angles that they stand for: equal ones, each band turned against its
-/// neighbours; about the sun, rings that crowd towards it.
+/// Directions over the whole sphere with their solid angles: equal ones in bands that are rotated against each other, and
+/// rings around the sun that are denser towards it.
 fn directions(sun: DVec3) -> Vec<(DVec3, f64)> {
     let golden = 0.5 * (5f64.sqrt() - 1.0);
     let even = (0..BANDS * AROUND).map(|i| {
@@ -174,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn even_light_sheds_pi_times_its_radiance_on_every_surface() {
+    fn uniform_radiance_gives_pi_times_its_value() {
         let even = of(|_| 2.0);
         for normal in normals() {
             let ratio = on(&even, normal) / (2.0 * PI);
@@ -198,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bright_sky_over_black_ground_falls_off_with_the_slant() {
+    fn irradiance_by_a_uniform_sky_decreases_with_tilt() {
         let sky = of(|d| if d.y > 0.0 { 1.0 } else { 0.0 });
         for normal in normals() {
             let exact = 0.5 * PI * (1.0 + normal.y);
@@ -208,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bright_side_lights_what_faces_it() {
+    fn linear_radiance_is_integrated_exactly() {
         // Radiance 1 + s . d, with the exact irradiance pi + 2 pi / 3 s . n.
         let side = axes::direction(60.0, 20.0);
         let sky = of(|d| 1.0 + side.dot(d));
@@ -220,8 +221,8 @@ mod tests {
     }
 
     #[test]
-    fn a_narrow_glow_about_the_sun_is_counted_whole() {
-        // Radiance e^-(t / w), of the solid angle 2 pi w^2.
+    fn a_narrow_aureole_is_integrated_accurately() {
+        // Radiance e^-(t / w) at the angle t from the sun integrates to 2 pi w^2.
         for width in [0.004f64, 0.01, 0.03] {
             let glow = of(|d| {
                 let angle = 2.0 * (0.5 * (d - SUN).length()).asin();

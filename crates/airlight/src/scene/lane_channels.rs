@@ -1,4 +1,4 @@
-//! What the N lanes are.
+//! [`LaneChannels`]: meaning of the N lanes of aerial perspective and of a sky with fog.
 
 use super::error::SceneError;
 use crate::atmosphere::Constituent;
@@ -7,50 +7,50 @@ use crate::sky::{TableChannels, View, channel_weights};
 use crate::spectrum::{RgbSpace, Spectrum, rgb};
 use std::ops::Range;
 
-/// What the N lanes are.
+/// Meaning of N lanes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LaneChannels {
-    /// Linear red, green and blue, N = 3: radiances are converted from spectra, (1, 1, 1) being 1 cd/m^2 of the space's
-    /// white (irradiances: 1 lx). A transmittance is the channel of sunlight that has come through the air over the same
-    /// channel of sunlight outside it: exact for a background as white as the sun, good for greys, wrong by a few percent
-    /// for saturated colours far away.
+    /// Linear red, green and blue, N = 3. Radiances are converted from spectra; (1, 1, 1) is 1 cd/m^2 of the space's white
+    /// (irradiances: 1 lx). A transmittance is the ratio of a channel of attenuated sunlight to that of unattenuated
+    /// sunlight: exact for backgrounds with the sun's spectrum, accurate for greys, wrong by a few percent for distant
+    /// saturated colours.
     Rgb(RgbSpace),
-    /// Wavelengths of the sky's grid, from the one at place `first` on; lanes beyond the last repeat it. Radiances in
-    /// W m^-2 sr^-1 nm^-1.
+    /// Consecutive wavelengths of the sky's grid, from the index `first` on; lanes beyond the last wavelength repeat it.
+    /// Radiances are in W m^-2 sr^-1 nm^-1.
     Wavelengths {
-        /// Place of the first lane's wavelength in the grid.
+        /// Index of the first lane's wavelength in the grid.
         first: usize,
     },
 }
 
-/// From the wavelengths of a view's grid to N lanes.
+/// Conversion from the wavelengths of a view's grid to N lanes.
 pub(super) struct Converter<const N: usize> {
     way: Way<N>,
-    /// Which of the grid's wavelengths count.
+    /// Wavelengths of the grid that are used.
     used: Range<usize>,
     wavelengths_nm: [f64; N],
-    /// The space of red, green and blue.
+    /// The RGB space; `None` for wavelengths.
     space: Option<RgbSpace>,
 }
 
-/// How.
+/// Kind of conversion.
 enum Way<const N: usize> {
-    /// Each lane is one wavelength: its place and its solar irradiance.
+    /// Each lane is one wavelength: its index and its solar irradiance.
     Picked([(usize, f64); N]),
-    /// Each lane is a sum over all.
+    /// Each lane is a sum over all wavelengths.
     Summed {
-        /// For each wavelength what a unit of its solar irradiance adds to each lane.
+        /// Contribution of each wavelength to each lane, per unit of its solar irradiance.
         weights: Vec<[f64; N]>,
-        /// For each wavelength the share of its transmittance in each lane's.
+        /// Weight of the transmittance of each wavelength in that of each lane.
         shares: Vec<[f64; N]>,
     },
 }
 
 impl<const N: usize> Converter<N> {
-    /// For the light of a view.
+    /// A converter for the wavelengths and the solar spectrum of a view.
     ///
     /// # Errors
-    /// [`SceneError`] where N lanes cannot be these channels.
+    /// [`SceneError`] if N lanes cannot hold these channels.
     pub fn new(view: &View, channels: LaneChannels) -> Result<Self, SceneError> {
         let grid = view.sky().grid();
         let solar = view.solar_irradiance();
@@ -92,12 +92,12 @@ impl<const N: usize> Converter<N> {
         }
     }
 
-    /// Which of the grid's wavelengths count; what is said of the others is not looked at.
+    /// Range of the grid's wavelengths that are used; values at others are ignored.
     pub fn used(&self) -> Range<usize> {
         self.used.clone()
     }
 
-    /// The wavelength of each lane, nm; for red, green and blue, dominant ones.
+    /// Wavelength of each lane, nm; for red, green and blue the dominant wavelengths.
     pub fn wavelengths_nm(&self) -> [f64; N] {
         self.wavelengths_nm
     }
@@ -105,7 +105,7 @@ impl<const N: usize> Converter<N> {
     /// Layers of fog in lanes.
     ///
     /// # Errors
-    /// [`SceneError`] where the phase function of a layer has no mean in a channel.
+    /// [`SceneError`] if the phase function of a layer has no valid mean in a channel.
     pub fn layers(&self, layers: &[Constituent]) -> Result<Vec<LayerLanes<N>>, SceneError> {
         let in_lanes = |layer: &Constituent| match self.space {
             Some(space) => {
@@ -117,7 +117,7 @@ impl<const N: usize> Converter<N> {
         layers.iter().map(in_lanes).collect()
     }
 
-    /// Radiance in lanes, of radiance per unit solar irradiance at each wavelength.
+    /// Converts radiance per unit of solar irradiance at each wavelength to radiance in lanes.
     pub fn radiance(&self, per_irradiance: &[f32]) -> [f64; N] {
         match &self.way {
             Way::Picked(picked) => picked.map(|(nm, solar)| solar * f64::from(per_irradiance[nm])),
@@ -127,8 +127,8 @@ impl<const N: usize> Converter<N> {
         }
     }
 
-    /// Light in lanes, of plain radiance or irradiance at each wavelength under the solar irradiance `solar`; what lies
-    /// outside the colour space is held at 0.
+    /// Converts radiance or irradiance at each wavelength, under the solar irradiance `solar`, to lanes; colours outside the
+    /// RGB space are clamped to 0.
     pub fn light(&self, plain: &[f32], solar: &[f32]) -> Spectrum<N> {
         let lanes = match &self.way {
             Way::Picked(picked) => picked.map(|(nm, _)| f64::from(plain[nm])),
@@ -143,7 +143,7 @@ impl<const N: usize> Converter<N> {
         Spectrum::from_fn(|lane| lanes[lane].max(0.0) as f32)
     }
 
-    /// Opacity in lanes, 1 - transmittance, of the optical depth at each wavelength.
+    /// Converts optical depth at each wavelength to opacity, 1 - transmittance, in lanes.
     pub fn opacity(&self, depths: &[f32]) -> [f64; N] {
         let opacity = |depth: f32| -(-f64::from(depth)).exp_m1();
         match &self.way {

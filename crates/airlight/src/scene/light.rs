@@ -1,4 +1,4 @@
-//! The light that a sky sheds on a fog, and what of it reaches the ground under the fog.
+//! Light of a sky at the top of a fog, and its fraction that reaches the ground below.
 
 use super::lane_channels::Converter;
 use crate::fog::{DirectionalLight, FogLanes, FogLighting, FogScattering, Ground, LayerLanes};
@@ -7,26 +7,26 @@ use crate::spectrum::Spectrum;
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// The part of a fog's vertical column that may lie above its "top".
+/// Fraction of a fog's vertical optical depth above its effective top.
 const ABOVE_TOP: f64 = 0.01;
-/// How far up the top is looked for, m.
+/// Largest height of the effective top, m.
 const HIGHEST_M: f64 = 100e3;
 
-/// The light of a sky at the top of a fog, at every wavelength of its grid.
+/// Light of a sky at the top of a fog, at all wavelengths of its grid.
 pub(super) struct TopLight {
     /// Distance of the top from the planet's centre, m.
     radius_m: f64,
-    /// Of the sun's disc on a surface that faces it, W m^-2 nm^-1.
+    /// Irradiance of the sun's disc on a surface that faces it, W m^-2 nm^-1.
     sun_irradiance: Vec<f32>,
-    /// Mean radiance of all directions, W m^-2 sr^-1 nm^-1: half of sky, half of ground, each as its irradiance of a level
-    /// surface over pi.
+    /// Mean radiance over all directions, W m^-2 sr^-1 nm^-1: the mean of sky and ground, each taken as the irradiance of a
+    /// horizontal surface divided by pi.
     mean_radiance: Vec<f32>,
-    /// Mean radiance of the sky, W m^-2 sr^-1 nm^-1: its irradiance of a level surface over pi.
+    /// Mean radiance of the sky, W m^-2 sr^-1 nm^-1: its irradiance of a horizontal surface divided by pi.
     sky_radiance: Vec<f32>,
 }
 
 impl TopLight {
-    /// As seen from the fog's top.
+    /// The light in a view from the fog's top.
     pub fn of(top: &View) -> Self {
         let table = top.table(TableChannels::Spectral);
         let (down, up) = (table.irradiance(DVec3::Y), table.irradiance(-DVec3::Y));
@@ -44,7 +44,8 @@ impl TopLight {
         self.radius_m
     }
 
-    /// In lanes, as a fog wants it: many scatterings start from the sky alone, as the ground's light is solved for.
+    /// Lighting of a fog in lanes. For multiple scattering the ambient light is that of the sky only, as the solution includes
+    /// the light reflected by the ground.
     pub fn on_fog<const N: usize>(
         &self,
         view: &View,
@@ -71,7 +72,7 @@ impl TopLight {
     }
 }
 
-/// Height above which only 1 % of the fog's vertical column lies, m; the ground's for a fog without an upper end.
+/// Height above which 1 % of the fog's vertical optical depth lies, m; that of the ground for fog without an upper end.
 pub(super) fn top_m<const N: usize>(layers: &[LayerLanes<N>], ground: &Ground) -> f64 {
     let above = |height_m: f64| -> f64 {
         let column = |layer: &LayerLanes<N>| {
@@ -100,11 +101,11 @@ pub(super) fn top_m<const N: usize>(layers: &[LayerLanes<N>], ground: &Ground) -
     high
 }
 
-/// The irradiance of the ground under a fog over that without it.
+/// Irradiance of the ground below a fog relative to that without the fog.
 ///
-/// Where the fog's light is solved for, that solution says it. Else light that falls on the fog comes through by two-stream theory (Meador & Weaver 1980, quadrature: their table 1), and
-/// what the ground reflects comes back from the fog's underside: `t / (1 - albedo r)`. The slant of the sunlight is left
-/// out. It tends to 1 for thin fog, and to 1 for any fog over a white ground.
+/// With multiple scattering it is that of the fog's solution. Otherwise it is a two-stream estimate (Meador & Weaver 1980,
+/// quadrature of their table 1) with reflection between ground and fog: `t / (1 - albedo r)`, which neglects the
+/// inclination of sunlight. It tends to 1 in thin fog, and in any fog without absorption over white ground.
 pub(super) fn share_on_ground<const N: usize>(
     fog: &FogLanes<N>,
     layers: &[LayerLanes<N>],
@@ -124,7 +125,7 @@ pub(super) fn share_on_ground<const N: usize>(
         let (mut depth, mut scattered, mut forward) = (0.0, 0.0, 0.0);
         for layer in layers {
             let column = layer.density.column_above_m(ground.height_m);
-            // A fog without an upper end would let no light in: it counts as lit from within.
+            // Fog without an upper end would transmit no light: it is lit uniformly.
             if column.is_finite() {
                 let tau = column * f64::from(layer.scattering_per_m[lane]);
                 depth += column * f64::from(layer.extinction_per_m[lane]);
@@ -137,8 +138,8 @@ pub(super) fn share_on_ground<const N: usize>(
     })
 }
 
-/// Transmittance and reflectance of a layer for diffuse light, by its optical depth, how much of that scatters, and that
-/// times the mean cosine.
+/// Transmittance and reflectance of a layer for diffuse light, from its optical depth, its scattering optical depth, and
+/// the latter times the mean cosine.
 fn two_streams(depth: f64, scattered: f64, forward: f64) -> (f64, f64) {
     let root3 = 3f64.sqrt();
     // gamma_1 tau and gamma_2 tau.
@@ -158,11 +159,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn two_streams_keep_what_is_not_absorbed() {
+    fn two_streams_conserve_energy() {
         for tau in [1e-6, 0.1, 3.0, 80.0] {
             let (t, r) = two_streams(tau, tau, 0.85 * tau);
             assert!((t + r - 1.0).abs() < 1e-9, "{tau}: {t} {r}");
-            // A little absorption changes a little.
+            // Continuous in the absorption.
             let (t2, r2) = two_streams(tau, tau * (1.0 - 1e-6), 0.85 * tau);
             assert!((t2 / t - 1.0).abs() < 0.02 && t2 + r2 < 1.0);
         }

@@ -1,9 +1,9 @@
-//! A scene as plain data, and the one interface through which its light is requested.
+//! Scenes as plain data, and the interface of all models that compute their light.
 //!
-//! - [`Scene`] and its parts: what is there, read from TOML ([`Scene::from_toml`]) or filled in by a program;
-//!   [`Scene::resolve`]: the same in the terms of the physics, a [`ResolvedScene`].
-//! - [`RadianceModel`], [`PreparedModel`], [`RadianceView`]: what every solver and published model implements;
-//!   [`Capabilities`] and [`check_inputs`]: what each honours.
+//! - [`Scene`] and its parts: read from TOML ([`Scene::from_toml`]) or filled in by a program; [`Scene::resolve`] converts
+//!   a scene to the physical quantities of a [`ResolvedScene`].
+//! - [`RadianceModel`], [`PreparedModel`], [`RadianceView`]: traits that every solver and published model implements;
+//!   [`Capabilities`] and [`check_inputs`]: the inputs that each honours.
 //! - [`RgbFoggySky`]: a solved sky, aerial perspective and fog in red, green and blue, for real-time use.
 
 mod aerial;

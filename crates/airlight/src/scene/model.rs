@@ -1,15 +1,14 @@
-//! [`RadianceModel`]: the one interface through which light is requested from every solver and published model.
+//! [`RadianceModel`]: the interface of all solvers and published models.
 //!
-//! A model is used in three steps, each of which does its own share of the work once:
+//! A model is used in three steps, each of which computes what later steps share:
 //!
 //! ```text
 //! RadianceModel   --prepare(scene, suns, control)-->   PreparedModel   --view(altitude, sun, channels)-->   RadianceView
 //! a registry entry                                     all suns of a sequence                              one eye, one sun
 //! ```
 //!
-//! A [`RadianceView`] answers for many directions at once, into slices: values are interleaved,
-//! [`RadianceView::channel_count`] values for each direction. Nothing here borrows: all three are
-//! `Send + Sync + 'static` and can be kept behind an [`Arc`].
+//! A [`RadianceView`] evaluates many directions at once and writes interleaved values, [`RadianceView::channel_count`] for
+//! each direction. All three traits are `Send + Sync + 'static`, so that implementations can be stored in an [`Arc`].
 
 use super::{Capabilities, Channels, ResolvedScene, SceneError};
 use crate::control::Control;
@@ -21,23 +20,22 @@ use glam::DVec3;
 use std::fmt::Debug;
 use std::sync::Arc;
 
-/// A way to compute the light of a scene: a solver or a published model.
+/// A solver or a published model, which computes the light of a scene.
 pub trait RadianceModel: Debug + Send + Sync + 'static {
-    /// Its name in scene files and on the command line, in kebab case.
+    /// Name in scene files and on the command line, in kebab case.
     fn name(&self) -> &'static str;
 
-    /// One sentence for help texts.
+    /// Description in one line, for help texts.
     fn summary(&self) -> &'static str;
 
-    /// Which inputs it honours and which questions it answers.
+    /// The inputs that the model honours and the results that it provides.
     fn capabilities(&self) -> Capabilities;
 
-    /// Does the work that all suns in `suns` share, followed and cancelled through `control`. Inputs of the scene that the
-    /// model ignores have been refused before ([`check_inputs`](super::check_inputs)).
+    /// Computes what all suns in `suns` share. `control` reports progress and cancels. The caller must have refused inputs
+    /// that the model ignores ([`check_inputs`](super::check_inputs)).
     ///
     /// # Errors
-    /// [`SceneError`] for an input outside the model's domain, and where the caller cancelled
-    /// ([`SceneError::is_cancelled`]).
+    /// [`SceneError`] for an input outside the model's domain, and if the caller cancelled ([`SceneError::is_cancelled`]).
     fn prepare(
         &self,
         scene: &ResolvedScene,
@@ -48,15 +46,15 @@ pub trait RadianceModel: Debug + Send + Sync + 'static {
 
 /// A model prepared for a scene and a range of suns.
 pub trait PreparedModel: Debug + Send + Sync + 'static {
-    /// The wavelengths of its spectra; `None` for a model that knows colours only.
+    /// Wavelengths of the model's spectra; `None` for a model without spectra.
     fn grid(&self) -> Option<&WavelengthGrid>;
 
-    /// Channels of the views in whose light objects are shaded, for a picture in `channels`.
+    /// Channels of the view that lights objects, for a picture in `channels`.
     fn object_channels(&self, channels: Channels) -> Channels {
         channels
     }
 
-    /// The light at an eye at an altitude (m above sea level) under a sun, in `channels`.
+    /// The light for an eye at an altitude (m above sea level) under a sun, in `channels`.
     ///
     /// # Errors
     /// [`SceneError`] for a sun, an altitude or channels outside the model's domain.
@@ -68,17 +66,17 @@ pub trait PreparedModel: Debug + Send + Sync + 'static {
     ) -> Result<Arc<dyn RadianceView>, SceneError>;
 }
 
-/// The light at one eye under one sun.
+/// The light for one eye under one sun.
 ///
-/// Radiances are in cd/m^2 of a linear RGB space (1, 1, 1 being 1 cd/m^2 of its white) or in W m^-2 sr^-1 nm^-1, irradiances
-/// in lx or W m^-2 nm^-1, as [`Self::channels`] says. Directions are unit vectors that point away from the eye
-/// ([`crate::axes`]); a zero vector stands for no direction and yields zero. Slices are interleaved:
+/// Depending on [`Self::channels`], radiances are in cd/m^2 of a linear RGB space (1, 1, 1 is 1 cd/m^2 of its white) or in
+/// W m^-2 sr^-1 nm^-1, and irradiances in lx or W m^-2 nm^-1. Directions are unit vectors that point away from the eye
+/// ([`crate::axes`]); a zero vector is no direction and yields zero. Slices are interleaved:
 /// `out.len() == directions.len() * channel_count()`.
 pub trait RadianceView: Debug + Send + Sync + 'static {
     /// Meaning of the values.
     fn channels(&self) -> Channels;
 
-    /// Wavelengths of a spectral view, under the sun's irradiance outside the air at its present distance; `None` for RGB.
+    /// Wavelengths of a spectral view, with the solar irradiance outside the air at the sun's distance; `None` for RGB.
     fn grid(&self) -> Option<&WavelengthGrid>;
 
     /// Number of values for each direction.
@@ -98,49 +96,49 @@ pub trait RadianceView: Debug + Send + Sync + 'static {
     /// Unit vector towards the sun's centre.
     fn sun(&self) -> DVec3;
 
-    /// Size and limb darkening of the sun's disc at its present distance.
+    /// Size and limb darkening of the sun's disc at the sun's distance.
     fn disc(&self) -> &SunDisc;
 
-    /// Elevation of the horizon, rad: below it the ground is seen.
+    /// Elevation of the horizon, rad; the ground is visible below it.
     fn horizon_elevation_rad(&self) -> f64 {
         0.0
     }
 
-    /// Whether pictures average over pixels that the horizon runs through. Published models are drawn as they were
-    /// published, by the direction of a pixel's centre.
+    /// Whether pictures average over pixels that the horizon crosses. Published models are evaluated at the centre of each
+    /// pixel only, as published.
     fn averages_horizon(&self) -> bool {
         false
     }
 
-    /// Radiance of sky, air, fog and ground without the sun's disc. Directions that are neighbours in a picture belong in
-    /// one call: some models reuse what a neighbour needed, within the tolerance that they state.
+    /// Radiance of sky, air, fog and ground without the sun's disc. Pass neighbouring directions of a picture in one call:
+    /// some models reuse results of neighbours, within the tolerance that they document.
     fn radiance(&self, directions: &[DVec3], out: &mut [f32]);
 
-    /// A faster [`Self::radiance`] for pictures whose columns keep their azimuth and whose rows keep their elevation;
-    /// `azimuths_rad` are those of the columns, clockwise from north. `None` for models without.
+    /// A faster [`Self::radiance`] for pictures with constant azimuth in each column and constant elevation in each row;
+    /// `azimuths_rad` are those of the columns, clockwise from north. `None` if the model has none.
     fn row_sampler(&self, _azimuths_rad: &[f64]) -> Option<Box<dyn RowSampler>> {
         None
     }
 
-    /// Radiance of the sun's disc as it arrives; zero beside the disc and behind the planet. Cheap enough for every point
-    /// of a picture of the disc.
+    /// Radiance of the sun's disc at the eye; zero outside the disc and behind the planet. Cheap enough for every sample of a
+    /// picture of the disc.
     fn sun_disc(&self, directions: &[DVec3], out: &mut [f32]);
 
-    /// Irradiance of everything but the sun's disc, on surfaces at the eye with these unit normals: cheap enough for every
+    /// Irradiance of surfaces at the eye with these unit normals, by all light except the sun's disc. Cheap enough for every
     /// pixel of a picture.
     fn irradiance(&self, normals: &[DVec3], out: &mut [f32]);
 
-    /// The same on a level surface that faces up: integrated with more directions.
+    /// The same for an upward-facing horizontal surface, integrated over more directions.
     fn horizontal_irradiance(&self, out: &mut [f32]);
 
     /// Irradiance of the sun's disc at the eye on a surface that faces it.
     fn sun_irradiance(&self, out: &mut [f32]);
 
-    /// The same at a height above the ground (m) on the eye's vertical: what objects stand in.
+    /// The same at a height above the ground (m) on the vertical through the eye, for objects.
     fn sunlight(&self, height_m: f64, out: &mut [f32]);
 
     /// Transmittance and path radiance between the eye and a point `distance_m` away (infinite: to the ground or space).
-    /// Models that do not know the air before objects fill in clear air: 1 and 0.
+    /// Models without [`Input::Distances`](super::Input::Distances) write 1 and 0.
     fn path(
         &self,
         direction: DVec3,
@@ -149,35 +147,35 @@ pub trait RadianceView: Debug + Send + Sync + 'static {
         path_radiance: &mut [f32],
     );
 
-    /// The parts of the light along a ray at the model's wavelengths, over at most `limit_m` metres; `None` for models
-    /// without [`Capabilities::parts`].
+    /// Light along a ray by parts, at the model's wavelengths, over at most `limit_m` metres; `None` for models without
+    /// [`Capabilities::parts`].
     fn line_of_sight(&self, _direction: DVec3, _limit_m: Option<f64>) -> Option<LineOfSight> {
         None
     }
 
-    /// The estimator behind a view whose values are random, for progressive rendering; `None` for deterministic models.
+    /// The estimator of a Monte Carlo view, for progressive rendering; `None` for deterministic models.
     fn sampler(&self) -> Option<&dyn RadianceSampler> {
         None
     }
 }
 
-/// Radiance row by row for pictures whose columns keep their azimuth and whose rows keep their elevation.
+/// Radiance by rows for pictures with constant azimuth in each column and constant elevation in each row.
 pub trait RowSampler: Debug + Send + Sync {
-    /// Radiance along a row of directions of one elevation, which have the azimuths that the sampler was made for.
+    /// Radiance in the directions of a row, which have one elevation and the azimuths for which the sampler was created.
     fn sample_row(&self, directions: &[DVec3], out: &mut [f32]);
 }
 
-/// Independent unbiased samples of radiance: how a Monte Carlo picture is accumulated pass by pass.
+/// Independent unbiased samples of radiance, from which a Monte Carlo picture is accumulated in passes.
 pub trait RadianceSampler: Debug + Send + Sync {
-    /// Paths requested for each direction.
+    /// Number of paths requested for each direction.
     fn paths(&self) -> u64;
 
-    /// Adds the mean of one bundle of paths along a direction to `sum` (values as of [`RadianceView::radiance`]). Bundles
-    /// of different numbers are independent; the same number always gives the same values.
+    /// Adds the mean of one bundle of paths along a direction to `sum` (units of [`RadianceView::radiance`]). Bundles with
+    /// different numbers are independent; the same number always gives the same values.
     fn add_bundle(&self, direction: DVec3, bundle: u64, sum: &mut [f64]);
 
-    /// The same with polarisation: adds the Stokes parameters I, Q and U of the bundle, weighted as luminance (cd/m^2), to
-    /// `stokes`. `Q` is positive in the vertical plane through the ray.
+    /// [`Self::add_bundle`] with polarisation: adds the Stokes parameters I, Q and U of the bundle, weighted as luminance
+    /// (cd/m^2), to `stokes`. `Q` is positive for polarisation in the vertical plane through the ray.
     fn add_polarised_bundle(
         &self,
         direction: DVec3,
@@ -189,9 +187,9 @@ pub trait RadianceSampler: Debug + Send + Sync {
     /// Mean and standard error at each wavelength along a direction, over at most `limit_m` metres.
     fn estimate(&self, direction: DVec3, limit_m: Option<f64>) -> Estimate;
 
-    /// The same with polarisation.
+    /// [`Self::estimate`] with polarisation.
     fn polarised_estimate(&self, direction: DVec3, limit_m: Option<f64>) -> PolarisedEstimate;
 
-    /// The same scene by a deterministic solver: for exposure and previews, and where noise must not be.
+    /// A view of the same scene by a deterministic solver, for exposure, previews and quantities that must be free of noise.
     fn preview(&self) -> Arc<dyn RadianceView>;
 }

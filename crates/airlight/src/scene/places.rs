@@ -1,4 +1,4 @@
-//! Where on a line of sight a fog does its work.
+//! Quadrature nodes on a ray, weighted by the light that a fog removes.
 
 use crate::atmosphere::RaySegment;
 use crate::fog::FogLanes;
@@ -6,16 +6,15 @@ use crate::math::quadrature::FixedRule;
 
 /// Gauss-Legendre nodes and weights on `[0, 1]`.
 static RULE: FixedRule<3> = FixedRule::fixed();
-/// How far a place may be off, in the logarithm of the optical depth up to it.
+/// Tolerance of a node, in the logarithm of the optical depth up to it.
 const TOLERANCE: f64 = 5e-3;
 
-/// Number of places.
+/// Number of nodes.
 pub(super) const PLACES: usize = RULE.pairs().len();
 
-/// Distances (m) at which the fog on a line of finite length has scattered away the parts of what it scatters away in all
-/// at which Gauss's rule wants to be evaluated, and their weights: the mean of any smooth `f(s)` over the light lost,
-/// `int f(s) dT / (T - 1)`, is the sum of weights times `f`. Judged by the fog's middle lane; nothing where the fog is
-/// thinner than `1e-5`.
+/// Distances (m) on a ray of finite length, with weights: the mean of a smooth `f(s)` over the light that the fog removes,
+/// `int f(s) dT / (T - 1)`, is the weighted sum of `f`. They are Gauss-Legendre nodes in the fraction of light removed, for
+/// the fog's middle lane. `None` for an optical depth below `1e-5`.
 #[inline]
 pub(super) fn of<const N: usize>(
     fog: &FogLanes<N>,
@@ -44,9 +43,9 @@ pub(super) fn of<const N: usize>(
     }))
 }
 
-/// The distance at which the optical depth reaches `wanted`, between two (distance, depth): Newton's steps in the
-/// logarithm of the depth, which are exact at once in fog of even density (from the eye) and in fog that thickens
-/// exponentially; halvings where they lead astray.
+/// Distance at which the optical depth reaches `wanted`, between two pairs of distance and optical depth: Newton's method
+/// in the logarithm of the depth, which converges in one step in uniform fog (from the eye) and in fog whose density
+/// increases exponentially; bisection where a step leaves the interval.
 #[inline]
 fn place(
     depth_to: &impl Fn(f64) -> f64,

@@ -1,39 +1,39 @@
-//! From a scene to what a model is prepared from.
+//! [`ResolvedScene`]: the input from which models are prepared.
 
 use super::{FogLayers, Input, ObjectsSpec, Scene, SceneError, SolverSpec, SunSource};
 use crate::atmosphere::Atmosphere;
 use crate::spectrum::WavelengthGrid;
 
-/// Height above the ground up to which an eye counts as on the ground, m: models that look from the ground accept it.
+/// Height above the ground up to which an eye counts as on the ground, m; models for eyes on the ground accept it.
 const ON_THE_GROUND_M: f64 = 100.0;
 
-/// A scene in the terms of the physics: what [`RadianceModel::prepare`](super::RadianceModel::prepare) reads.
+/// A scene in physical quantities, the input of [`RadianceModel::prepare`](super::RadianceModel::prepare).
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct ResolvedScene {
-    /// The air over the ground.
+    /// The atmosphere, without the fog.
     pub atmosphere: Atmosphere,
     /// Wavelengths to compute, for models without wavelengths of their own.
     pub grid: WavelengthGrid,
     /// Altitude of the eye above sea level, m.
     pub observer_altitude_m: f64,
-    /// How the sun is found.
+    /// Position of the sun, or place and time that determine it.
     pub sun: SunSource,
     /// Fog near the ground.
     pub fog: Option<FogLayers>,
     /// Whether objects stand in front of the sky.
     pub has_objects: bool,
-    /// Settings of the solver.
+    /// Solver or published model, and its settings.
     pub solver: SolverSpec,
     /// The inputs that are set explicitly, in the order of [`Input`].
     pub set_inputs: Vec<Input>,
 }
 
 impl Scene {
-    /// The scene in the terms of the physics.
+    /// Converts the scene to physical quantities.
     ///
     /// # Errors
-    /// [`SceneError`] for values that do not fit together.
+    /// [`SceneError`] for invalid values, and for values that contradict each other.
     pub fn resolve(&self) -> Result<ResolvedScene, SceneError> {
         self.validate()?;
         let atmosphere = self.atmosphere()?;
@@ -66,8 +66,8 @@ impl Scene {
         })
     }
 
-    /// The inputs that the scene sets explicitly, in the order of [`Input`]. An eye high above the ground is added by
-    /// [`Scene::resolve`], as it depends on the atmosphere.
+    /// The inputs that the scene sets explicitly, in the order of [`Input`]. [`Scene::resolve`] adds
+    /// [`Input::ObserverHeight`], which depends on the atmosphere.
     pub fn set_inputs(&self) -> Vec<Input> {
         let (air, solver, output) = (&self.air, &self.solver, &self.output);
         let is = |flag: Option<bool>| flag == Some(true);
@@ -116,8 +116,7 @@ impl Scene {
             .collect()
     }
 
-    /// The scene without an input: as if it had not been set. For a comparison of solvers, of which one honours what the
-    /// other ignores.
+    /// The scene with an input reset to its default, to compare solvers of which only one honours it.
     pub fn without(mut self, input: Input) -> Self {
         let defaults = Self::default();
         match input {
@@ -182,7 +181,7 @@ mod tests {
             ..Default::default()
         });
         scene.objects = Some(ObjectsSpec {
-            file: Some("things.toml".to_owned()),
+            file: Some("solids.toml".to_owned()),
             ..Default::default()
         });
         scene.lights.push(Default::default());
@@ -207,14 +206,14 @@ mod tests {
     }
 
     #[test]
-    fn every_input_is_found_where_it_is_set_and_can_be_taken_away() {
+    fn inputs_are_found_and_can_be_removed() {
         assert_eq!(Scene::default().set_inputs(), []);
         let all = full().set_inputs();
         assert_eq!(all.len(), 19);
         assert!(all.windows(2).all(|pair| pair[0] < pair[1]));
         for input in all {
             let left = full().without(input).set_inputs();
-            // Without fog there is no scattering of it either.
+            // Removing the fog also removes its scattering.
             let gone = if input == Input::Fog { 2 } else { 1 };
             assert_eq!(left.len(), 19 - gone, "{input:?}");
             assert!(!left.contains(&input));
@@ -222,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn a_scene_resolves_to_what_it_says() {
+    fn scenes_are_resolved_or_rejected() {
         let mut scene = full();
         scene.lights.clear();
         scene.observer.altitude_m = Some(500.0);

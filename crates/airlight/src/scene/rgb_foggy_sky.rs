@@ -1,4 +1,4 @@
-//! A solved sky, its air and the fog in it, in red, green and blue.
+//! [`RgbFoggySky`]: a solved sky with aerial perspective and fog, in red, green and blue.
 
 use super::error::SceneError;
 use super::foggy::FoggySky;
@@ -12,19 +12,19 @@ use crate::transfer::RgbPathOptics;
 use glam::DVec3;
 use std::sync::Arc;
 
-/// A solved sky with fog in it, in linear red, green and blue, for real-time use: every answer is a few table look-ups.
-/// Cloning is cheap.
+/// A solved sky with fog in linear red, green and blue, for real-time use: queries are a few table look-ups. Cloning is cheap.
 ///
-/// Sunlight and skylight fall on the fog, air and fog lie along every ray in their true order, the ground is dimmed, and
-/// objects fade into the sky with distance. Without layers it is the clear air: aerial perspective.
+/// The fog is lit by sunlight and skylight, air and fog are interleaved along every ray in their true order, the ground below
+/// receives less light, and objects fade into the sky with distance. Without layers it is the aerial perspective of clear air.
 ///
-/// Radiances are in cd/m^2, irradiances in lx: (1, 1, 1) is one unit of the white of the space. A transmittance is the
-/// channel of sunlight that has come through the air over the same channel of sunlight outside it: exact for a background
-/// as white as the sun, good for greys, wrong by a few percent for saturated colours far away. Directions are unit vectors that
-/// point away from the eye ([`crate::axes`]).
+/// Radiances are in cd/m^2, irradiances in lx: (1, 1, 1) is one unit of the white of the space. A transmittance is the ratio
+/// of a channel of attenuated sunlight to that of unattenuated sunlight: exact for backgrounds with the sun's spectrum,
+/// accurate for greys, wrong by a few percent for distant saturated colours. Directions are unit vectors that point away from
+/// the eye ([`crate::axes`]).
 ///
-/// The path radiance of the clear air is within 0.3 % of [`View::along`] for 99 % of rays by day from an eye below 1 km; that of
-/// air and fog within 0.22 % of thin slices of both for 90 % of rays, 1.3 % at worst in haze that fills the lower kilometre.
+/// Error of the path radiance of clear air compared with [`View::along`]: below 0.3 % for 99 % of rays in daylight from an eye
+/// below 1 km. Error of that of air and fog compared with thin segments of both: below 0.22 % for 90 % of rays, at most 1.3 %
+/// in haze that fills the lower kilometre.
 ///
 /// ```
 /// use airlight::atmosphere::{Constituent, DensityProfile, presets, droplets::Droplets};
@@ -50,10 +50,10 @@ pub struct RgbFoggySky {
 }
 
 impl RgbFoggySky {
-    /// Layers of fog under the sky of a view, over the ground of its planet: heights of `layers` are above the ground.
+    /// Layers of fog under the sky of a view, over the ground of its planet; heights of `layers` are above the ground.
     ///
     /// # Errors
-    /// [`SceneError`] for layers outside their domain.
+    /// [`SceneError`] for invalid layers.
     pub fn new(
         view: &View,
         layers: &[Constituent],
@@ -68,11 +68,11 @@ impl RgbFoggySky {
         })
     }
 
-    /// Another fog in the same sky: what does not depend on the fog is shared, and so is the light on it where it reaches as
-    /// high.
+    /// Another fog in the same sky. Parts that do not depend on the fog are shared, and so is the light on it if its top is
+    /// equally high.
     ///
     /// # Errors
-    /// [`SceneError`] for layers outside their domain.
+    /// [`SceneError`] for invalid layers.
     pub fn with_fog(
         &self,
         layers: &[Constituent],
@@ -83,12 +83,12 @@ impl RgbFoggySky {
         })
     }
 
-    /// The ground under the fog.
+    /// The ground below the fog.
     pub fn ground(&self) -> &Ground {
         self.lanes.ground()
     }
 
-    /// The light of this sky on the top of the fog.
+    /// Lighting of the fog by this sky.
     pub fn fog_lighting(&self) -> FogLighting<[f32; 3]> {
         self.lanes.fog_lighting().map(|lanes| lanes.0)
     }
@@ -136,13 +136,13 @@ impl RgbFoggySky {
         }
     }
 
-    /// The same of the clear air alone.
+    /// Transmittance and path radiance of the clear air without the fog.
     #[inline]
     pub fn clear_path(&self, direction: DVec3, distance_m: f64) -> RgbPathOptics {
         self.lanes.aerial().optics(direction, distance_m).into()
     }
 
-    /// The same for light that has come through the clear air already: what fog adds to a picture that shows the air.
+    /// Effect of the fog on light that is already attenuated by the clear air, as in a picture of the scene without fog:
     /// `path_over_clear(..).then(clear_path(..))` is [`RgbFoggySky::path`].
     #[inline]
     pub fn path_over_clear(&self, direction: DVec3, distance_m: f64) -> RgbPathOptics {
@@ -155,7 +155,7 @@ impl RgbFoggySky {
         self.lanes.aerial().ground_distance_m(direction)
     }
 
-    /// Radiance of the sun's disc along `direction`, dimmed by air and fog; zero outside the disc.
+    /// Radiance of the sun's disc along `direction`, attenuated by air and fog; zero outside the disc.
     pub fn sun_disc_radiance(&self, direction: DVec3) -> [f32; 3] {
         self.lanes.sun_disc(direction).0
     }

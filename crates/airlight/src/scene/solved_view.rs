@@ -1,4 +1,4 @@
-//! The light of a solved sky, and of the fog in it.
+//! Views of a solved sky, with or without fog.
 
 use super::fog_in_sky::FogInSky;
 use super::irradiance_map::horizontal_irradiance;
@@ -12,15 +12,16 @@ use glam::DVec3;
 use std::fmt;
 use std::sync::{Arc, OnceLock};
 
-/// A solved sky in the channels of a picture, and the fog in it. Tables that not every caller needs are made at first use.
+/// A solved sky with optional fog, in the channels of a picture. Tables that not every caller needs are computed on first
+/// use.
 pub(crate) struct SolvedView {
     view: View,
     channels: Channels,
-    /// Wavelengths under the sun at its distance, where the values are spectra.
+    /// Wavelengths with the solar irradiance at the sun's distance, for spectral values.
     grid: Option<WavelengthGrid>,
     clear: Arc<SkyTable>,
     fog: Option<Arc<FogInSky>>,
-    /// Air without fog, for what lies before objects.
+    /// Air without fog, for path optics in front of objects.
     air: OnceLock<FogInSky>,
     disc: OnceLock<Option<SunDiscTable>>,
     irradiance: OnceLock<IrradianceMap>,
@@ -63,18 +64,18 @@ impl SolvedView {
         })
     }
 
-    /// The sky of the solver that is looked at.
+    /// The view of the solved sky.
     pub fn sky_view(&self) -> &View {
         &self.view
     }
 
-    /// Air, and fog where there is any.
+    /// Air with fog, if any.
     fn air(&self) -> &FogInSky {
         match &self.fog {
             Some(fog) => fog,
             None => self.air.get_or_init(|| {
                 FogInSky::new(None, &self.view, self.channels)
-                    .expect("channels of a view and no fog are never refused")
+                    .expect("channels of a view without fog are valid")
             }),
         }
     }
@@ -91,7 +92,7 @@ impl SolvedView {
         }
     }
 
-    /// From values at the wavelengths of the sky to channels.
+    /// Converts values at the wavelengths of the sky to channels.
     fn put(&self, spectrum: &[f32], out: &mut [f32]) {
         match self.channels {
             Channels::Spectral => out.copy_from_slice(spectrum),
@@ -245,7 +246,7 @@ impl fmt::Debug for SolvedView {
     }
 }
 
-/// Rows of a solved sky in columns of fixed azimuth.
+/// Row sampler of a solved sky for columns of constant azimuth.
 struct SolvedRows {
     clear: Arc<SkyTable>,
     columns: SkyColumns,

@@ -1,4 +1,4 @@
-//! The radiance of the sun's disc, tabulated for pictures.
+//! Radiance of the sun's disc, tabulated for pictures.
 
 use super::Channels;
 use crate::axes;
@@ -6,17 +6,17 @@ use crate::math::interpolation::bilinear;
 use crate::sky::View;
 use glam::DVec3;
 
-/// Elevations and cosines on the sun at which the disc's radiance is tabulated.
+/// Numbers of elevations and of cosines of the emission angle at which the disc's radiance is tabulated.
 const ELEVATIONS: usize = 129;
 const COSINES: usize = 65;
 
-/// Radiance of the sun's disc of a view, by elevation (which the air's transmittance follows) and by the cosine on the sun
-/// (which the limb darkening follows), bilinear.
+/// Radiance of the sun's disc of a view, with bilinear interpolation in elevation (for the air's transmittance) and in the
+/// cosine of the emission angle on the sun (for limb darkening).
 #[derive(Debug)]
 pub(super) struct SunDiscTable {
     sun: DVec3,
     radius_rad: f64,
-    /// Lowest and highest elevation, rad; the lowest is the horizon's at least.
+    /// Lowest and highest elevation, rad; the lowest is at or above the horizon.
     elevations: (f64, f64),
     channels: usize,
     /// `[elevation][cosine][channel]`.
@@ -24,7 +24,7 @@ pub(super) struct SunDiscTable {
 }
 
 impl SunDiscTable {
-    /// Tabulates the disc of a view through what `fog` lets pass by direction; `None` where the planet hides all of it.
+    /// Tabulates the disc of a view, attenuated by the transmittance `fog` of a direction; `None` if the planet hides the disc.
     pub fn new(
         view: &View,
         channels: Channels,
@@ -42,11 +42,11 @@ impl SunDiscTable {
         let irradiance = view.solar_irradiance();
         let grid = view.sky().grid();
         let azimuth_deg = axes::azimuth_deg(sun);
-        // Radiance per irradiance at each cosine, wavelength by wavelength.
+        // Radiance per unit of irradiance at each cosine and wavelength.
         let shape: Vec<Vec<f64>> = (0..COSINES)
             .map(|m| {
                 let mu = m as f64 / (COSINES - 1) as f64;
-                // Just inside the limb, beyond which there is nothing.
+                // Just inside the limb, beyond which radiance is 0.
                 let angle = (radius_rad.sin() * (1.0 - mu * mu).sqrt() * (1.0 - 1e-12)).asin();
                 let nm = grid.wavelengths_nm().iter();
                 nm.map(|&nm| view.disc().radiance_per_irradiance(angle, nm))
@@ -93,14 +93,14 @@ impl SunDiscTable {
         })
     }
 
-    /// Radiance along a unit vector; zero beside the disc and below the horizon.
+    /// Radiance along a unit vector; zero outside the disc and below the horizon.
     pub fn sample(&self, direction: DVec3, out: &mut [f32]) {
         out.fill(0.0);
         let from_sun = 2.0 * (0.5 * direction.distance(self.sun)).min(1.0).asin();
         let s = from_sun.sin() / self.radius_rad.sin();
         let elevation = axes::elevation_rad(direction);
         let (lowest, highest) = self.elevations;
-        // Up to the horizon, which lies a little below the lowest elevation.
+        // Down to the horizon, which is slightly below the lowest elevation.
         if from_sun >= self.radius_rad || s >= 1.0 || elevation < lowest - 2e-7 {
             return;
         }

@@ -1,4 +1,4 @@
-//! Finding the sun of a scene: as set, or from place and time.
+//! Position of a scene's sun: fixed, or computed from place and time.
 
 use super::{Scene, SceneError, SunState};
 use crate::atmosphere::Atmosphere;
@@ -9,20 +9,20 @@ use crate::axes;
 use crate::sun::{Moment, Place, sun_position};
 use glam::DVec3;
 
-/// How the sun is found.
+/// Source of the sun's position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum SunSource {
-    /// Its position is set.
+    /// A fixed position.
     Fixed(SunAngles),
-    /// From a place on the Earth and a time.
+    /// Computed from a place on the Earth and a time.
     #[cfg(feature = "ephemeris")]
     Ephemeris {
-        /// The place, at the altitude of the eye.
+        /// Place, at the altitude of the eye.
         place: Place,
-        /// The time; of a sequence, its start.
+        /// Time, or the start of a sequence.
         start: Moment,
-        /// Whether the air lifts the sun.
+        /// Whether refraction raises the sun.
         refraction: bool,
     },
 }
@@ -30,18 +30,18 @@ pub enum SunSource {
 /// Position of the sun in the sky.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SunAngles {
-    /// Degrees clockwise from north.
+    /// Azimuth, degrees clockwise from north.
     pub azimuth_deg: f64,
-    /// Degrees above the horizontal, as seen.
+    /// Apparent elevation above the horizontal, degrees.
     pub elevation_deg: f64,
-    /// The same without refraction, where place and time gave it.
+    /// Elevation without refraction, if computed from place and time, degrees.
     pub geometric_elevation_deg: Option<f64>,
-    /// Distance over the planet's mean distance.
+    /// Distance relative to the planet's mean distance.
     pub distance_ratio: f64,
 }
 
 impl SunAngles {
-    /// Unit vector towards it.
+    /// Unit vector towards the sun.
     pub fn direction(&self) -> DVec3 {
         axes::direction(self.azimuth_deg, self.elevation_deg)
     }
@@ -56,7 +56,7 @@ impl SunAngles {
 }
 
 impl SunSource {
-    /// The sun at the time of the scene, the start of a sequence.
+    /// Position at the time of the scene or the start of its sequence.
     ///
     /// # Errors
     /// [`SceneError::Refused`] for a time outside the range of the ephemeris.
@@ -71,7 +71,7 @@ impl SunSource {
 
 #[cfg(feature = "ephemeris")]
 impl SunSource {
-    /// The sun at a time. A fixed sun does not move.
+    /// Position at a time. A fixed sun does not move.
     ///
     /// # Errors
     /// [`SceneError::Refused`] for a time outside the range of the ephemeris.
@@ -98,7 +98,7 @@ impl SunSource {
         })
     }
 
-    /// The time, or the start of a sequence; `None` for a fixed sun.
+    /// Time, or start of a sequence; `None` for a fixed sun.
     pub fn start(&self) -> Option<Moment> {
         match self {
             Self::Fixed(_) => None,
@@ -106,7 +106,7 @@ impl SunSource {
         }
     }
 
-    /// The place on the Earth; `None` for a fixed sun.
+    /// Place on the Earth; `None` for a fixed sun.
     pub fn place(&self) -> Option<Place> {
         match self {
             Self::Fixed(_) => None,
@@ -116,10 +116,10 @@ impl SunSource {
 }
 
 impl Scene {
-    /// How the sun is found, for an eye at an altitude (m above sea level) in an atmosphere.
+    /// Source of the sun's position for an eye at an altitude (m above sea level) in an atmosphere.
     ///
     /// # Errors
-    /// [`SceneError`] where the scene does not say where the sun is, or says a time that is none.
+    /// [`SceneError`] if the scene has neither a position of the sun nor a place, or an invalid time.
     pub fn sun_source(
         &self,
         atmosphere: &Atmosphere,
@@ -146,7 +146,7 @@ impl Scene {
         if !atmosphere.is_earth() {
             return Err(SceneError::value(
                 "sun.latitude_deg",
-                "the Earth, for which place and time give the sun",
+                "the Earth for a sun of place and time",
                 format!("the atmosphere \"{}\"", atmosphere.name),
                 "elevation_deg and azimuth_deg",
             ));
@@ -163,7 +163,7 @@ impl Scene {
     ) -> Result<SunSource, SceneError> {
         let sun = &self.sun;
         let start = Moment::parse(sun.time.as_deref().unwrap_or("now"))
-            .map_err(|error| SceneError::refused("sun.time", format!("{error}; or write now")))?;
+            .map_err(|error| SceneError::refused("sun.time", format!("{error}; try now")))?;
         let source = SunSource::Ephemeris {
             place: Place {
                 latitude_deg,
@@ -173,7 +173,7 @@ impl Scene {
             start,
             refraction: sun.refraction.unwrap_or(true),
         };
-        // A time out of range is refused before anything is computed.
+        // Refuse a time out of range before anything is computed.
         source.at_start()?;
         Ok(source)
     }
@@ -196,7 +196,7 @@ mod tests {
     use crate::atmosphere::preset;
 
     #[test]
-    fn a_sun_is_found_or_its_absence_explained() {
+    fn the_sun_is_found_or_the_error_suggests_a_position() {
         let (earth, mars) = (preset("average").unwrap(), preset("mars").unwrap());
         let mut scene = Scene::default();
         let said = |scene: &Scene, air| scene.sun_source(air, 0.0).unwrap_err().to_string();
@@ -229,7 +229,7 @@ mod tests {
         scene.sun.time = Some("yesterday".to_owned());
         assert!(
             said(&scene, &earth).starts_with("sun.time: ")
-                && said(&scene, &earth).ends_with("or write now")
+                && said(&scene, &earth).ends_with("try now")
         );
     }
 }

@@ -1,11 +1,11 @@
-//! Scenes as TOML: there and back, errors with their place, layered tables, files.
+//! Scenes as TOML: round trip, errors with their place, layered tables, files.
 
 use super::*;
 use crate::fog::FogScattering;
 use crate::fog::droplets::DropletKind;
 use crate::optics::mie::droplets::Drops;
 
-/// Every table, as the book shows it.
+/// A scene with all tables, as in the book.
 const FULL: &str = r#"
 version = 1
 
@@ -81,7 +81,7 @@ every = "10m"
 "#;
 
 #[test]
-fn a_scene_survives_the_way_to_toml_and_back() {
+fn scenes_round_trip_through_toml() {
     let scene = Scene::from_toml(FULL).unwrap();
     let fog = scene.fog.as_ref().unwrap();
     assert_eq!(
@@ -93,7 +93,7 @@ fn a_scene_survives_the_way_to_toml_and_back() {
     assert_eq!(scene.output.exposure, Some(Exposure::AUTO));
     let text = scene.to_toml().unwrap();
     assert_eq!(Scene::from_toml(&text).unwrap(), scene, "{text}");
-    // What is not set is not written.
+    // Fields that are not set are not written.
     let empty = Scene::default().to_toml().unwrap();
     assert_eq!(empty.trim(), "version = 1");
     assert_eq!(Scene::from_toml("").unwrap(), Scene::default());
@@ -102,19 +102,20 @@ fn a_scene_survives_the_way_to_toml_and_back() {
 }
 
 #[test]
-fn mistakes_are_refused_with_their_place_and_what_would_be_right() {
+fn errors_have_a_place_and_the_expected_values() {
     for (text, sentence) in [
         (
             "[air]\nozone = 300\n",
-            "line 2, column 1: air.ozone: unknown key (did you mean \"ozone_du\"?)",
+            "line 2, column 1: air.ozone: unknown key; expected one of atmosphere,",
         ),
+        ("[air]\nozone = 300\n", "; try \"ozone_du\""),
         (
             "[fogg]\n",
-            "line 1, column 2: fogg: unknown key (did you mean \"fog\"?)",
+            "line 1, column 2: fogg: unknown key; expected one of version,",
         ),
         (
             "[[fog.layers]]\nvisibility_m = 1\n[[fog.layers]]\ntop = 3\n",
-            "line 4, column 1: fog.layers[1].top: unknown key (did you mean \"top_m\"?)",
+            "line 4, column 1: fog.layers[1].top: unknown key; expected one of visibility_m,",
         ),
         (
             "[camera]\nprojection = \"perspektive\"\n",
@@ -179,7 +180,7 @@ fn layers_of_tables_override_key_by_key() {
         far.starts_with("line 15, column 5: fog.visibility_m: expected a number of metres"),
         "{far}"
     );
-    // What is beside the scene is read the same way.
+    // Tables beside the scene are read in the same way.
     #[derive(Debug, serde::Deserialize)]
     #[serde(deny_unknown_fields)]
     struct Sheet {
@@ -195,13 +196,13 @@ fn layers_of_tables_override_key_by_key() {
 }
 
 #[test]
-fn files_are_taken_in() {
+fn files_are_inlined() {
     let mut scene =
-        Scene::from_toml("air.atmosphere = \"mine.toml\"\nobjects.file = \"things.toml\"\n")
+        Scene::from_toml("air.atmosphere = \"mine.toml\"\nobjects.file = \"solids.toml\"\n")
             .unwrap();
     let load = |file: &str| match file {
         "mine.toml" => Ok("name = \"mine\"\nplanet.ground_albedo = 0.5\n"),
-        "things.toml" => Ok("[[object]]\nshape = \"ground\"\n"),
+        "solids.toml" => Ok("[[object]]\nshape = \"ground\"\n"),
         _ => Err(format!("cannot read {file}")),
     };
     let load = |file: &str| load(file).map(str::to_owned);
@@ -216,7 +217,7 @@ fn files_are_taken_in() {
         (objects.file, objects.object[0].shape),
         (None, ObjectShape::Ground)
     );
-    // A scene that has taken in its files needs them no more.
+    // A scene with inlined files does not need them any more.
     let again = Scene::from_toml(&scene.to_toml().unwrap()).unwrap();
     assert_eq!(again, scene);
     let mut missing = Scene::from_toml("objects.file = \"nothing.toml\"\n").unwrap();
@@ -233,7 +234,7 @@ fn files_are_taken_in() {
 
 #[cfg(feature = "schema")]
 #[test]
-fn the_schema_knows_every_key() {
+fn the_schema_contains_all_keys() {
     let schema: serde_json::Value = serde_json::from_str(&Scene::json_schema()).unwrap();
     let text = schema.to_string();
     let key = |line: &str| line.split_once(" =").map(|(key, _)| key.trim().to_owned());

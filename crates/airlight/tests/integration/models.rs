@@ -242,7 +242,7 @@ fn inputs_that_a_model_ignores_are_refused() {
     high.observer.altitude_m = Some(500.0);
     let error = prepared(&high).err().unwrap().to_string();
     assert!(
-        error.contains("where there is neither fog nor an object"),
+        error.contains("for a scene without fog and objects"),
         "{error}"
     );
     let mut below = scene("klassen1987");
@@ -377,7 +377,7 @@ fn fast_ways_of_the_solver_agree_with_slow_ones() {
     }
 }
 
-/// What random paths find is what the solver finds, with fog and without, to 4 standard errors and 2 %.
+/// Monte Carlo and the solver agree with and without fog, to 4 standard errors and 2 %.
 #[test]
 #[ignore = "follows a million paths"]
 fn monte_carlo_agrees_with_the_solver_through_the_interface() {

@@ -1,4 +1,4 @@
-//! Random paths along lines of sight that end at a distance.
+//! Monte Carlo along rays that end at a distance.
 
 use crate::common::{green_fog, green_path, grey_layer};
 use airlight::atmosphere::{
@@ -138,9 +138,9 @@ fn aerial_perspective_is_that_of_the_fast_solver() {
     }
 }
 
-/// Things in thick fog: the fog's own solution of many scatterings states 3 % there.
+/// Objects in thick fog, where the stated error of the fog solution with multiple scattering is 3 %.
 #[test]
-fn fog_before_a_thing_is_that_of_the_fog() {
+fn fog_in_front_of_objects_matches_the_fog_solution() {
     const TOP_M: f64 = 100.0;
     let phase = PhaseFunction::HenyeyGreenstein { g: 0.8 };
     let (extinction_per_m, sun) = (0.03, direction(180.0, 30.0));

@@ -1,4 +1,4 @@
-//! Random paths with their polarisation.
+//! Monte Carlo with polarisation.
 
 use airlight::atmosphere::{
     Atmosphere, Constituent, ConstituentKind, DensityProfile, Planet, preset, reference,
@@ -185,8 +185,8 @@ fn paths_do_not_depend_on_what_they_carry() {
     assert!((sum / 16.0 / one.q.mean[2] - 1.0).abs() < 1e-9);
 }
 
-/// Light that a Rayleigh layer of an optical depth of 0.5 sends up under a sun at a cosine of 0.2, for a solar irradiance of
-/// pi: Natraj, Li & Yung, Astrophys. J. 691, 1909, 2009, who made the tables of Coulson, Dave & Sekera (1960) anew. Cosine of
+/// Upward light of a Rayleigh layer with an optical depth of 0.5 under a sun at a cosine of 0.2, for a solar irradiance of
+/// pi: Natraj, Li & Yung, Astrophys. J. 691, 1909, 2009, who recomputed the tables of Coulson, Dave & Sekera (1960). Cosine of
 /// the view's zenith angle, azimuth from the sun's, then `I`, `Q` and `U` over ground of albedo 0 and `I` and `Q` over one of
 /// 0.8. Their `Q` is positive across the vertical plane.
 const RAYLEIGH_LAYER: [([f64; 2], [f64; 5]); 6] = [

@@ -85,8 +85,8 @@ fn a_short_path_scatters_in_proportion_to_its_length() {
 }
 
 #[test]
-fn the_sky_on_the_ground_adds_up_to_what_the_solver_says_the_ground_receives() {
-    // The ground's own radiance tells how much light it receives: albedo / pi times sun and sky.
+fn ground_radiance_matches_the_irradiance_by_sun_and_sky() {
+    // The radiance of the ground is its irradiance by sun and sky times albedo / pi.
     let sky = sky("average", SunCoverage::near(35.0, 0.0));
     let view = sky.view(0.0, direction(180.0, 35.0));
     let sky_irradiance = view.table(TableChannels::Spectral).irradiance(DVec3::Y);

@@ -62,7 +62,7 @@ named! { Component, "an aerosol component", [
     ("mineral-nucleation", (MineralNucleation), "Desert dust, nucleation mode"),
     ("mineral-accumulation", (MineralAccumulation), "Desert dust, accumulation mode"),
     ("mineral-coarse", (MineralCoarse), "Desert dust, coarse mode"),
-    ("mineral-transported", (MineralTransported), "Desert dust carried far"),
+    ("mineral-transported", (MineralTransported), "Desert dust after long transport"),
     ("sulfate", (Sulfate), "Droplets of sulfuric acid (75 %); grow in moist air"),
 ] }
 
@@ -190,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn growth_rises_with_humidity() {
+    fn growth_increases_with_humidity() {
         for &component in Component::ALL {
             let mut before = component.growth(0.0);
             assert!((before - 1.0).abs() < 1e-12);

@@ -61,22 +61,22 @@ pub enum AerosolType {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum AerosolTypeError {
-    /// The humidity is out of range.
-    #[error("relative humidity must lie between 0 and 0.99 (0.8 is 80 %), got {0}")]
+    /// A humidity out of range.
+    #[error("expected a relative humidity from 0 to 0.99 (0.8 is 80 %), got {0}")]
     Humidity(f64),
-    /// A share is not positive.
-    #[error("the shares of a mixture must be finite and above 0, got {0}")]
+    /// A share that is not positive.
+    #[error("expected finite shares of a mixture above 0, got {0}")]
     Share(f64),
-    /// Nothing is mixed.
-    #[error("a mixture needs at least one part")]
+    /// No parts.
+    #[error("expected a mixture of at least one part, got none")]
     Empty,
-    /// The particles are refused.
+    /// Invalid particles.
     #[error("{0}")]
     Mie(#[from] MieError),
-    /// The amount or the place is refused.
+    /// An invalid amount or density profile.
     #[error("{0}")]
     Aerosol(#[from] AerosolError),
-    /// A spectrum is refused.
+    /// An invalid spectrum.
     #[error("{0}")]
     Curve(#[from] CurveError),
 }
@@ -84,21 +84,22 @@ pub enum AerosolTypeError {
 named! { AerosolType, "an aerosol type", [
     ("continental-clean", (ContinentalClean), "remote continental air without soot"),
     ("continental-average", (ContinentalAverage), "continental air with some soot"),
-    ("continental-polluted", (ContinentalPolluted), "continental air polluted by man"),
-    ("urban", (Urban), "air of large towns, much soot"),
-    ("desert", (Desert), "desert dust, as spheres"),
-    ("maritime-clean", (MaritimeClean), "undisturbed air over the sea"),
-    ("maritime-polluted", (MaritimePolluted), "sea air with soot"),
-    ("maritime-tropical", (MaritimeTropical), "sea air of the tropics"),
-    ("arctic", (Arctic), "arctic haze of spring"),
-    ("antarctic", (Antarctic), "antarctic summer"),
+    ("continental-polluted", (ContinentalPolluted), "polluted continental air"),
+    ("urban", (Urban), "urban air, much soot"),
+    ("desert", (Desert), "desert dust (spheres)"),
+    ("maritime-clean", (MaritimeClean), "unpolluted marine air"),
+    ("maritime-polluted", (MaritimePolluted), "marine air with soot"),
+    ("maritime-tropical", (MaritimeTropical), "tropical marine air"),
+    ("arctic", (Arctic), "arctic haze in spring"),
+    ("antarctic", (Antarctic), "Antarctica in summer"),
     ("biomass-savanna", (Biomass(Smoke::Savanna)), "smoke of the African savanna"),
     ("biomass-forest", (Biomass(Smoke::Forest)), "smoke of the Amazonian forest"),
     ("biomass-boreal", (Biomass(Smoke::Boreal)), "smoke of boreal forest"),
 ] }
 
 impl AerosolType {
-    /// OPAC's numbers of particles in a cubic centimetre (Hess, Koepke & Schult 1998, table 4); none for smoke.
+    /// Components with their number densities in particles per cubic centimetre (Hess, Koepke & Schult 1998, table 4); empty
+    /// for smoke.
     pub fn components(self) -> &'static [(Component, f64)] {
         use Component::{
             Insoluble, MineralAccumulation, MineralCoarse, MineralNucleation, MineralTransported,

@@ -329,7 +329,7 @@ fn profiles_start_at_the_ground() {
 }
 
 #[test]
-fn names_lead_to_types_and_back() {
+fn names_are_unique() {
     for &kind in AerosolType::ALL {
         assert_eq!(kind.to_string().parse(), Ok(kind));
         let made_of_smoke = matches!(kind, AerosolType::Biomass(_));

@@ -143,7 +143,7 @@ fn mixture_parts(section: &Section<'_>) -> Result<Vec<(f64, Ingredient)>, Config
         part.check_keys(&["type", "component", "share"])?;
         let share = part
             .positive("share")?
-            .ok_or_else(|| part.missing("share", "the part of the extinction at 550 nm"))?;
+            .ok_or_else(|| part.missing("share", "the share of the extinction at 550 nm"))?;
         let ingredient = match (part.has("type"), part.named("component")?) {
             (true, Some(_)) => {
                 return Err(part.error("component", ConfigProblem::Conflict { with: "type" }));

@@ -28,17 +28,17 @@ pub enum ConfigProblem {
     #[error("{0}")]
     Syntax(String),
     /// An unknown key.
-    #[error("unknown key{}; expected one of {}", hint(nearest), valid.join(", "))]
+    #[error("unknown key; expected one of {}{}", valid.join(", "), hint(nearest))]
     UnknownKey {
         /// The most similar key, if one is similar.
         nearest: Option<String>,
         /// The keys allowed.
         valid: Vec<String>,
     },
-    /// A name that does not exist.
+    /// An unknown name of a value, with the names of its set.
     #[error(transparent)]
     UnknownName(UnknownName),
-    /// A value that is not among those there are.
+    /// A name that is not among those allowed.
     #[error("expected one of {}, got \"{got}\"{}", valid.join(", "), hint(nearest))]
     UnknownValue {
         /// The name given.
@@ -107,7 +107,7 @@ pub enum ConfigProblem {
 fn hint(nearest: &Option<String>) -> String {
     nearest
         .as_ref()
-        .map_or(String::new(), |near| format!(" (did you mean \"{near}\"?)"))
+        .map_or(String::new(), |near| format!("; try \"{near}\""))
 }
 
 impl ConfigError {

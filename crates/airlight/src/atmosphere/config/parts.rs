@@ -291,7 +291,7 @@ pub(super) fn constituent(section: &Section<'_>) -> Result<Constituent, ConfigEr
     })
 }
 
-/// The phase function that parameters without a kind belong to.
+/// The kind to which phase parameters without a kind refer.
 fn kind_of(phase: &PhaseFunction) -> Option<&'static str> {
     match phase {
         PhaseFunction::HenyeyGreenstein { .. } => Some("henyey-greenstein"),

@@ -56,7 +56,7 @@ impl<'a> Section<'a> {
         self.error(key, ConfigProblem::Missing(expected))
     }
 
-    /// An error about a name that does not exist.
+    /// An error about an unknown name; `what` is what it should stand for, with its article.
     pub fn unknown(
         &self,
         key: &str,
@@ -68,7 +68,7 @@ impl<'a> Section<'a> {
         self.error(key, ConfigProblem::UnknownName(unknown))
     }
 
-    /// A value by its name.
+    /// A value parsed from its name.
     pub fn named<T: Named>(&self, key: &str) -> Result<Option<T>, ConfigError> {
         let Some(name) = self.text(key)? else {
             return Ok(None);

@@ -15,11 +15,11 @@ pub enum Interpolation {
 }
 
 named! { Interpolation, "an interpolation", [
-    ("linear", (Linear), "straight lines"),
-    ("log-linear", (LogLinear), "straight lines of the logarithm"),
+    ("linear", (Linear), "linear in the density"),
+    ("log-linear", (LogLinear), "linear in the logarithm of the density"),
 ] }
 
-/// Densities at strictly rising altitudes: the first value below the first altitude, 0 above the last.
+/// Densities at strictly increasing altitudes: the first value below the first altitude, 0 above the last.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AltitudeTable {
     altitudes_m: Vec<f64>,

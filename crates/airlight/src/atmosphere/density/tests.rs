@@ -188,7 +188,7 @@ fn sums_resolve_into_their_terms() {
 
 const EARTH_M: f64 = 6.371e6;
 
-/// The column by brute force: Gauss's rule in many stretches that shrink towards every point where density changes fast.
+/// The column by Gauss-Legendre quadrature in many intervals that shrink towards every point where density changes fast.
 fn by_quadrature(profile: &DensityProfile, ray: &RaySegment, length_m: f64) -> f64 {
     let mut breaks = Vec::new();
     let lowest = -0.5 * ray.sin_elevation / ray.curvature_per_m;
@@ -222,7 +222,7 @@ fn columns_match_quadrature_at_all_scales() {
                     for length in [1e-6, 1e-2, 1.0, 63.0, 1e3, 1e5, 1e7] {
                         for height in [0.0, 1.7, 20.0, 500.0] {
                             let ray = RaySegment::new(height, sin_elevation, length, radius);
-                            // Deep below ground density means nothing, and overflows.
+                            // Deep below the ground the density is meaningless and overflows.
                             let dip =
                                 (-0.5 * ray.sin_elevation / ray.curvature_per_m).clamp(0.0, length);
                             let dip = if dip.is_nan() { 0.0 } else { dip };
@@ -293,8 +293,8 @@ fn falloffs_range_from_uniform_to_slab() {
     assert!(DensityProfile::from_falloff(0.0, f64::NAN).is_err());
 }
 
-/// The fog note's optical depth, `a / (f (c - p)_y) d e^-(f (p_y - h0)) (1 - e^-(f (c - p)_y))`, is that of density without the
-/// `max(0, ...)` that the note puts into it: right wholly above the base, too large below.
+/// The fog note's optical depth, `a / (f (c - p)_y) d e^-(f (p_y - h0)) (1 - e^-(f (c - p)_y))`, is that of a density without the
+/// `max(0, ...)` of the note's definition: correct for rays above the base, too large for others.
 #[test]
 fn the_formula_of_the_fog_note_is_for_unclamped_fog() {
     let (h0, falloff) = (20.0, 1.0 / 30.0);

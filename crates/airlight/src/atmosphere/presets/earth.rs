@@ -8,7 +8,7 @@ use crate::optics::rayleigh::STANDARD_PRESSURE_PA;
 use crate::spectrum::{SpectralCurve, solar};
 use crate::sun::SunDisc;
 
-/// Where the Earth's air is taken to end, m: what lies above scatters less than 1e-6 of the whole.
+/// Top of the Earth's atmosphere, m: less than 1e-6 of all scattering happens above.
 pub(crate) const EARTH_TOP_M: f64 = 100e3;
 
 /// Parameters of an Earth atmosphere.

@@ -2,8 +2,8 @@
 
 use crate::spectrum::SpectralCurve;
 
-/// A table whose samples are constants of this crate.
+/// A curve of constant samples.
 pub(super) fn fixed_table(samples: &[(f64, f64)]) -> SpectralCurve {
     let (wavelengths, values) = samples.iter().copied().unzip();
-    SpectralCurve::table(wavelengths, values).expect("tables of this crate are in order")
+    SpectralCurve::table(wavelengths, values).expect("constant tables are valid")
 }

@@ -112,8 +112,8 @@ pub fn bruneton() -> Atmosphere {
 
 /// The Earth of S. Hillaire, "A Scalable and Production Ready Sky and Atmosphere Rendering Technique", Computer
 /// Graphics Forum 39(4), 2020, table 1: Rayleigh (5.802, 13.558, 33.1)e-6 per m with 8 km, Mie scattering 3.996e-6 and
-/// absorption 4.40e-6 per m with 1.2 km, Cornette-Shanks g = 0.8, ozone (0.650, 1.881, 0.085)e-6 per m as a tent from 10
-/// over 25 to 40 km; ground 6360 km, top 6460 km.
+/// absorption 4.40e-6 per m with 1.2 km, Cornette-Shanks g = 0.8, ozone (0.650, 1.881, 0.085)e-6 per m as a tent with
+/// corners at 10, 25 and 40 km; ground 6360 km, top 6460 km.
 ///
 /// The table does not specify ground albedo and sun: 0.3 and the measured solar spectrum are used here.
 pub fn hillaire() -> Atmosphere {

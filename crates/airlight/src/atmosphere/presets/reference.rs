@@ -61,8 +61,8 @@ pub fn rayleigh(ground_albedo: f64) -> Atmosphere {
 
 /// The Earth of the demonstration of E. Bruneton's "Precomputed Atmospheric Scattering: a New Implementation" (2017):
 /// molecules 1.24062e-6 (lambda/um)^-4 per m, aerosol of optical depth 5.328e-3 at every wavelength with
-/// single-scattering albedo 0.9 and Cornette-Shanks g = 0.8, 300 Dobson units of ozone as a tent from 10 over 25 to
-/// 40 km, ground albedo 0.1. Ozone and sun are given at 680, 550 and 440 nm; linear between.
+/// single-scattering albedo 0.9 and Cornette-Shanks g = 0.8, 300 Dobson units of ozone as a tent with corners at 10, 25
+/// and 40 km, ground albedo 0.1. Ozone and sun are given at 680, 550 and 440 nm; linear between.
 pub fn earth_demo() -> Atmosphere {
     let dobson_unit_m2 = 2.687e20;
     // The column of the tent is 15 km at peak density.

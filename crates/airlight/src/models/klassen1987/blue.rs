@@ -10,14 +10,14 @@ use crate::sun::SunState;
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
 
-/// What the blue of all suns is made from.
+/// Source of the blue for all suns.
 pub(super) enum BaseSky {
     /// One colour, with a luminance under a sun in the zenith.
     Constant {
         /// cd/m^2.
         noon_luminance_cd_m2: f64,
     },
-    /// The clear air, solved for.
+    /// The solved sky of the clear air.
     Solved(Sky),
 }
 
@@ -30,8 +30,8 @@ pub(super) enum Blue {
 }
 
 impl Blue {
-    /// Blue for checked settings and an elevation of the sun (rad) at a distance over the mean one; `grid` has the sun at that
-    /// distance.
+    /// Blue for checked settings and an elevation of the sun (rad), at a distance relative to the mean distance; `grid` has the
+    /// solar irradiance at that distance.
     pub fn new(
         settings: &Klassen1987Settings,
         grid: &WavelengthGrid,
@@ -85,10 +85,10 @@ impl Blue {
 }
 
 impl BaseSky {
-    /// Solves for the clear air of checked settings under a range of suns, where the blue is that.
+    /// Solves for the clear air of checked settings under a range of suns, for [`BaseBlue::Solver`].
     ///
     /// # Errors
-    /// [`Klassen1987Error::Sky`] for an atmosphere that the solver refuses.
+    /// [`Klassen1987Error::Sky`] if the solver fails.
     pub fn prepare(
         settings: &Klassen1987Settings,
         suns: SunCoverage,
@@ -104,7 +104,7 @@ impl BaseSky {
         }
         let air = settings.dense_clear_air();
         let suns = match suns {
-            // It is seen from the ground.
+            // The eye is on the ground.
             SunCoverage::Near {
                 sun_elevation_deg, ..
             } => SunCoverage::near(sun_elevation_deg.max(0.0), air.planet.ground_altitude_m),

@@ -1,31 +1,32 @@
-//! Naturally lit fog of 1987: a slab of uniform fog under clear air, over flat ground.
+//! Naturally lit fog of Klassen 1987: a slab of uniform fog below clear air, over flat ground.
 //!
 //! Klassen, "Modeling the effect of the atmosphere on light", ACM Trans. Graph. 6(3), 1987, sections 9 to 12, eqs. 34 to
-//! 47, with the corrections that the book lists: the sun's way through the fog follows eqs. 37 and 38 everywhere, and the
-//! sign in eq. 47 is minus. Flat ground is good to 1 % for a sun 15 degrees high or more (the paper's figure).
+//! 47, with the corrections listed in the book: the path of sunlight through the fog follows eqs. 37 and 38 everywhere, and
+//! the sign in eq. 47 is minus. The error of flat ground is below 1 % for a sun at least 15 degrees high (the paper's
+//! figure).
 
 use crate::atmosphere::{Constituent, RaySegment};
 use crate::fog::{Lanes, LayerLanes, attenuated_source, constant_source};
 use crate::spectrum::Spectrum;
 use crate::transfer::{PathOptics, RgbPathOptics};
 
-/// How far sunlight has come through the fog where it is scattered into the line of sight.
+/// Depth of fog through which sunlight passes before it is scattered into the view ray.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum SunDepth {
-    /// The whole depth of the fog (eq. 35), wherever on the line: good for lines near the ground.
+    /// The whole depth of the fog at every point (eq. 35); accurate for rays near the ground.
     Printed,
-    /// The depth below the top at each point of the line.
+    /// The depth below the top at each point of the ray.
     #[default]
     Exact,
 }
 
-/// The scene: heights above the ground, coefficients, light.
+/// Slab of fog below clear air: heights above the ground, coefficients and sunlight.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Slab1987<const N: usize> {
     /// Height of the fog's top, `R_H - R_E`, m.
     pub fog_top_m: f64,
-    /// Height of the top of an atmosphere as dense everywhere as at the ground, `R_A - R_E`, m (8.4 km).
+    /// Height of the top of an atmosphere with constant density, `R_A - R_E`, m (8.4 km).
     pub air_top_m: f64,
     /// Droplets (`beta_p`).
     pub(super) fog: LayerLanes<N>,
@@ -43,23 +44,23 @@ impl<const N: usize> Slab1987<N> {
         self.air.extinction_per_m + self.fog.extinction_per_m
     }
 
-    /// Irradiance facing the sun at the top of the fog, `I_t`: `I_0` dimmed along `d_1` (eq. 37).
+    /// Irradiance at the top of the fog on a surface that faces the sun, `I_t`: `I_0` attenuated along `d_1` (eq. 37).
     pub fn irradiance_at_top(&self) -> Spectrum<N> {
         let d1 = (self.air_top_m - self.fog_top_m) / self.sin_sun;
         self.sun_irradiance * (self.air.extinction_per_m * d1 as f32).exp_neg()
     }
 
-    /// Irradiance facing the sun on an object at a height in the fog: along `d_1` and `d_2` (eqs. 34, 36, 38).
+    /// Irradiance at a height in the fog on a surface that faces the sun: attenuated along `d_1` and `d_2` (eqs. 34, 36, 38).
     pub fn irradiance_at(&self, height_m: f64) -> Spectrum<N> {
         let d2 = (self.fog_top_m - height_m).max(0.0) / self.sin_sun;
         self.irradiance_at_top() * (self.extinction_per_m() * d2 as f32).exp_neg()
     }
 
-    /// The fog and air between a point at `eye_height_m`, in the fog or at its top, and an object `length_m` away: its
-    /// transmittance dims the object component (eq. 40), its path radiance is the fog component (eqs. 41 to 46).
+    /// Fog and air between a point at `eye_height_m`, in the fog or at its top, and an object `length_m` away. The transmittance
+    /// attenuates the object component (eq. 40); the path radiance is the fog component (eqs. 41 to 46).
     ///
-    /// `sin_elevation` is the sine of the line's elevation, `cos_sun` the cosine of the angle between the line of sight and the
-    /// direction to the sun. A line that leaves the top must be given its length to there.
+    /// `sin_elevation` is the sine of the ray's elevation, `cos_sun` the cosine of the angle between the ray and the direction to
+    /// the sun. The length of a ray that leaves the fog at the top must end there.
     pub fn in_fog(
         &self,
         eye_height_m: f64,
@@ -82,7 +83,7 @@ impl<const N: usize> Slab1987<N> {
             along * (1.0 + slope) as f32,
             along,
         );
-        // What a unit of optical depth sends towards the eye.
+        // Radiance scattered towards the eye per unit of optical depth.
         let source = self.scattered(cos_sun) / extinction;
         PathOptics {
             transmittance: along.exp_neg(),
@@ -90,13 +91,13 @@ impl<const N: usize> Slab1987<N> {
         }
     }
 
-    /// The same with the sun at the horizon: no direct light arrives, and light that has been scattered many times comes
-    /// from everywhere with the radiance `colour` (section 11.2).
+    /// The same with the sun at the horizon: there is no direct light, and multiply scattered light has the radiance `colour`
+    /// in all directions (section 11.2).
     pub fn in_fog_at_sunset(&self, length_m: f64, colour: Spectrum<N>) -> PathOptics<N> {
         constant_source(self.extinction_per_m() * length_m as f32, colour)
     }
 
-    /// The clear air between an eye above the fog and the point where its line enters the top, at the ground's density.
+    /// Clear air, at the density of the ground, between an eye above the fog and the point where the ray enters the fog.
     pub fn air_above(&self, length_m: f64, cos_sun: f64) -> PathOptics<N> {
         let along = self.air.extinction_per_m * length_m as f32;
         let albedo = self.air.scattering_per_m / self.air.extinction_per_m;
@@ -104,7 +105,7 @@ impl<const N: usize> Slab1987<N> {
         constant_source(along, source)
     }
 
-    /// Everything between an eye at any height and an object `length_m` away: the air above the fog, then the fog.
+    /// Air above the fog, then fog, between an eye at any height and an object `length_m` away.
     pub fn along(
         &self,
         eye_height_m: f64,
@@ -137,15 +138,15 @@ impl<const N: usize> Slab1987<N> {
     }
 }
 
-/// Fog of 1987 lit by sun and sky, at three wavelengths: a slab of uniform fog under clear air, over flat ground.
+/// Naturally lit fog of Klassen 1987 at three wavelengths: a slab of uniform fog below clear air, over flat ground.
 #[derive(Clone, Debug)]
 pub struct RgbSlab1987 {
     lanes: Slab1987<3>,
 }
 
 impl RgbSlab1987 {
-    /// Fog and air at wavelengths (nm), each as dense everywhere as its coefficients state; heights of the tops of fog and air
-    /// in m, irradiance of the sun outside the atmosphere, the sine of its elevation above 0.
+    /// Fog and air at wavelengths (nm), each with the constant density of its coefficients; heights of the tops of fog and air
+    /// in m, irradiance of the sun outside the atmosphere, and the sine of its elevation, which must be above 0.
     pub fn new(
         [fog, air]: [&Constituent; 2],
         [fog_top_m, air_top_m]: [f64; 2],
@@ -165,7 +166,7 @@ impl RgbSlab1987 {
         }
     }
 
-    /// Irradiance on an object at a height (m) in the fog, facing the sun (eqs. 34, 36, 38).
+    /// Irradiance at a height (m) in the fog on a surface that faces the sun (eqs. 34, 36, 38).
     pub fn irradiance_at(&self, height_m: f64) -> [f32; 3] {
         self.lanes.irradiance_at(height_m).0
     }
@@ -250,10 +251,10 @@ mod tests {
     }
 
     #[test]
-    fn the_printed_depth_holds_near_the_ground_only() {
+    fn the_printed_depth_is_accurate_near_the_ground_only() {
         let scene = scene();
         let ratio = |eye: f64| {
-            // Straight across at eye height.
+            // A level ray at eye height.
             let of = |depth| scene.in_fog(eye, 0.0, 150.0, 0.4, depth).path_radiance[1];
             of(SunDepth::Printed) / of(SunDepth::Exact)
         };
@@ -262,7 +263,7 @@ mod tests {
     }
 
     #[test]
-    fn an_eye_above_the_fog_sees_air_and_then_fog() {
+    fn rays_from_above_cross_air_and_then_fog() {
         let scene = scene();
         let whole = scene.along(300.0, -0.5, 600.0, 0.2, SunDepth::Exact);
         let parts = scene.air_above(400.0, 0.2).then(scene.in_fog(
@@ -273,7 +274,7 @@ mod tests {
             SunDepth::Exact,
         ));
         assert_eq!(whole, parts);
-        // Wherever the line inside the fog is cut, the answer is the same.
+        // Splitting the ray inside the fog does not change the result.
         for cut in [420.0, 500.0, 599.0] {
             let near = scene.along(300.0, -0.5, cut, 0.2, SunDepth::Exact);
             let far = scene.along(300.0 - 0.5 * cut, -0.5, 600.0 - cut, 0.2, SunDepth::Exact);
@@ -291,7 +292,7 @@ mod tests {
     }
 
     #[test]
-    fn an_object_is_lit_through_air_and_fog() {
+    fn light_on_objects_is_attenuated_by_air_and_fog() {
         let scene = scene();
         let ground = scene.irradiance_at(0.0)[1];
         let exact = 1.8 * f64::exp(-13.5e-6 * 8400.0 / 0.6 - 0.021 * 100.0 / 0.6);

@@ -128,7 +128,7 @@ fn drop_optics(drops: Drops) -> Result<Optics, MieError> {
     let table = match kept {
         Some(table) => table,
         None => {
-            // Not under the lock: other threads may need another kind meanwhile.
+            // Computed without the lock, so that other threads can compute other kinds.
             let table =
                 Particles::water(drops.sizes())?.broad_table(&MIE_NM, STEP_FACTOR, TOLERANCE)?;
             let table = Arc::new(table);

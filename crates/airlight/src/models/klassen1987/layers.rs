@@ -52,7 +52,6 @@ impl Klassen1987Settings {
     ///
     /// # Errors
     /// [`Klassen1987Error`] if a setting is outside its domain.
-    /// [`Klassen1987Error`] for a number out of its domain.
     pub fn atmosphere(&self) -> Result<Atmosphere, Klassen1987Error> {
         self.validate()?;
         let mut atmosphere = self.dense_clear_air();

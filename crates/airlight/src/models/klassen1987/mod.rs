@@ -28,7 +28,7 @@
 //!
 //! The model has no light below the horizon; there it repeats the horizon's
 //! ([`PublishedModel::has_ground`] is false). It has no twilight, no ozone in the colour of the
-//! sun, and no multiple scattering. The book's chapter compares it with the solver.
+//! sun, and no multiple scattering. The book compares it with the solver.
 
 mod blue;
 mod coherence;

@@ -1,4 +1,4 @@
-//! The model of 1987 as a [`RadianceModel`]: sun and sky, and with fog or objects the naturally lit scene.
+//! Klassen 1987 as a [`RadianceModel`]: sun and sky, and the naturally lit scene with fog or objects.
 
 use super::blue::BaseSky;
 use super::fog::SunDepth;
@@ -15,10 +15,10 @@ use crate::scene::{
 use crate::sky::{SkyError, SunCoverage};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Bits of a channel that colours are remembered for: files may hold more than 8, and are exposed later.
+/// Bits per channel to which colours are accurate when they are reused: files may hold more than 8, and are exposed later.
 const BITS: u32 = 12;
 
-/// Klassen 1987 in the air of a scene.
+/// Klassen 1987 as a [`RadianceModel`], with haze and air derived from a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Klassen1987Model;
 
@@ -28,7 +28,7 @@ impl RadianceModel for Klassen1987Model {
     }
 
     fn summary(&self) -> &'static str {
-        "Klassen 1987: two layers of haze and air, sunlight scattered once by the haze, before a blue sky"
+        "Klassen 1987: layers of haze and air, with single scattering by the haze in front of a blue sky"
     }
 
     fn capabilities(&self) -> Capabilities {
@@ -63,9 +63,9 @@ impl RadianceModel for Klassen1987Model {
         if !whole && scene.set_inputs.contains(&Input::ObserverHeight) {
             return Err(SceneError::value(
                 "observer",
-                "an eye on the ground where there is neither fog nor an object",
+                "an eye on the ground for a scene without fog and objects",
                 format!("{} m", scene.observer_altitude_m),
-                "leaving altitude_m and eye_height_m out, or fog or objects",
+                "leaving altitude_m and eye_height_m out, or adding fog or objects",
             ));
         }
         let printed = scene.solver.variant.as_deref() == Some("printed");
@@ -89,7 +89,7 @@ impl RadianceModel for Klassen1987Model {
     }
 }
 
-/// What all suns share, and the last sun.
+/// Parts shared by all suns, and the last sun.
 struct PreparedAir {
     settings: Klassen1987Settings,
     base: BaseSky,
@@ -99,17 +99,17 @@ struct PreparedAir {
     last: Mutex<Option<(SunState, Lit)>>,
 }
 
-/// The light of one sun.
+/// The model for one sun.
 #[derive(Clone)]
 enum Lit {
     /// Sun and sky.
     Sky(Arc<Klassen1987>),
-    /// With fog and ground, from any height.
+    /// Fog and ground, seen from any height.
     Scene(Box<Klassen1987Scene>),
 }
 
 impl PreparedAir {
-    /// Sun and sky; with `whole` fog and ground, too, seen from an altitude.
+    /// Sun and sky; if `whole` is set, also fog and ground, seen from an altitude.
     fn model(
         &self,
         altitude_m: f64,
@@ -143,7 +143,7 @@ impl PreparedAir {
     }
 }
 
-/// The layers of 1987 that stand for the scene's air, with what the scene sets instead.
+/// Layers of the model for a scene's air, with the scene's overrides.
 fn settings(scene: &ResolvedScene, printed: bool) -> Klassen1987Settings {
     let mut settings = Klassen1987Settings {
         bits_per_channel: BITS,
@@ -187,7 +187,7 @@ fn slab(fog: &FogLayers) -> Result<Fog1987, SceneError> {
         _ => {
             return Err(SceneError::value(
                 "fog.layers",
-                "one layer for the fog of klassen1987",
+                "one layer of fog for klassen1987",
                 format!("{}", fog.layers.len()),
                 "leaving the others out, or another solver",
             ));
@@ -196,8 +196,8 @@ fn slab(fog: &FogLayers) -> Result<Fog1987, SceneError> {
     let Some(top_m) = top_m else {
         return Err(SceneError::value(
             "fog.top_m",
-            "fog that is even up to a height for klassen1987",
-            "fog that thins with height",
+            "a slab of constant density for klassen1987",
+            "fog whose density depends on height",
             "top_m = 25",
         ));
     };
@@ -207,7 +207,7 @@ fn slab(fog: &FogLayers) -> Result<Fog1987, SceneError> {
     })
 }
 
-/// What the model says of numbers that it refuses.
+/// Converts an error of the model.
 fn refused(error: Klassen1987Error) -> SceneError {
     match error {
         Klassen1987Error::Sky(SkyError::Cancelled(cancelled)) => {

@@ -1,16 +1,17 @@
-//! Naturally lit fog under the sun and sky of 1987 (sections 9 to 12, eqs. 34 to 47), and things in it.
+//! Naturally lit fog, and objects in it, under the sun and sky of Klassen 1987 (sections 9 to 12, eqs. 34 to 47).
 //!
-//! What the paper says of the slab alone is [`Slab1987`]; here it is lit by this model's sun, and seen before this model's
-//! sky. As section 12 has it, the light that strikes the fog, `I_t`, is the sun's colour at the ground without the fog (eq. 22):
-//! then only the fog itself, some tens of metres, is taken to lie on flat ground, and flat is good to 1 % down to a sun of
-//! 1 degree (test `flat_ground_is_good_to_a_percent`); with eqs. 37 and 44 the paper's own bound is 15 degrees.
+//! [`Slab1987`] is the paper's slab of fog; here it is lit by the sun and seen in front of the sky of this model. As in
+//! section 12, the irradiance at the top of the fog, `I_t`, is that of the sun at the ground without the fog (eq. 22). Then
+//! only the fog itself, some tens of metres high, is assumed to lie on flat ground: the error is below 1 % down to a sun at
+//! 1 degree (test `error_of_flat_ground_is_below_a_percent`), whereas the paper states 15 degrees for eqs. 37 and 44.
 //!
-//! Where the paper leaves things open:
-//! - The ambient term `A` of eqs. 36 to 47 has no value. Here it is what the surface reflects of all that the model itself sees
-//!   around ([`crate::scene::IrradianceMap`]): sky, fog component, ground.
-//! - With the sun at the horizon the fog has one colour, that of direct sunlight (section 11.2), of no stated brightness. Here it
-//!   is the light that falls on the level, of sun and sky, sent evenly into all directions; below [`SUNSET_DEG`].
-//! - Without fog there are haze and air before things (eq. 45), and things are lit by `I_t`.
+//! Choices that the paper leaves open:
+//! - The ambient term `A` of eqs. 36 to 47 has no value. Here it is the reflected light of sky, fog and ground of the model
+//!   itself ([`crate::scene::IrradianceMap`]).
+//! - With the sun at the horizon the fog has one colour, that of direct sunlight (section 11.2), without a stated radiance.
+//!   Here, for suns below [`SUNSET_DEG`], it is the irradiance of sun and sky on a horizontal surface, emitted uniformly in
+//!   all directions.
+//! - Without fog there are haze and air in front of objects (eq. 45), and objects are lit by `I_t`.
 
 use super::Klassen1987;
 use super::lanes::{Lanes, WAVELENGTHS, to_xyz, wavelengths_nm};
@@ -30,41 +31,43 @@ use glam::DVec3;
 use std::f32::consts::PI;
 use std::sync::Arc;
 
-/// Elevation of the sun below which the fog has one colour, degrees: where flat ground errs by more than 1 % for a fog of 50 m.
+/// Elevation of the sun below which the fog has one colour, degrees: there the error of flat ground exceeds 1 % for 50 m of
+/// fog.
 pub const SUNSET_DEG: f64 = 1.0;
-/// Length of a line without end, m: nothing shines through so much fog.
+/// Length that stands for an infinite ray, m: opaque in any fog.
 const FARTHEST_M: f64 = 1e9;
 
-/// Sun, sky, fog and ground of 1987, seen by an eye at a height.
+/// Sun, sky, fog and ground of Klassen 1987 for an eye at a height.
 #[derive(Clone, Debug)]
 pub struct Klassen1987Scene {
     model: Arc<Klassen1987>,
     eye_height_m: f64,
     depth: SunDepth,
-    /// The fog with the light on it; without fog, haze and air at the ground.
+    /// The fog with its sunlight; without fog, haze and air at the ground.
     slab: Slab1987<WAVELENGTHS>,
     foggy: bool,
-    /// Light of the level ground where no thing is, W m^-2 sr^-1 nm^-1.
+    /// Radiance of the horizontal ground, W m^-2 sr^-1 nm^-1.
     ground: Lanes,
-    /// The fog's colour at sunset.
+    /// Radiance of the fog with the sun at the horizon; `None` for higher suns.
     evening: Option<Lanes>,
 }
 
-/// A fog of 1987.
+/// Fog of Klassen 1987.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fog1987 {
     /// Height of its top, `R_H - R_E`, m.
     pub top_m: f64,
-    /// Droplets, of which the model takes coefficients and phase function at its wavelengths ([`Klassen1987::wavelengths`]).
+    /// Droplets, whose coefficients and phase function are evaluated at the model's wavelengths
+    /// ([`Klassen1987::wavelengths`]).
     pub droplets: Constituent,
 }
 
 impl Klassen1987Scene {
-    /// An eye so high above the ground (m, not below 0), with fog or without; `depth` says how the sun's way through the fog is
-    /// reckoned.
+    /// Scene for an eye at a height above the ground (m, not negative), with or without fog; `depth` selects the path of
+    /// sunlight through the fog.
     ///
     /// # Errors
-    /// [`Klassen1987Error`] for a number out of its domain.
+    /// [`Klassen1987Error`] if a number is outside its domain.
     pub fn new(
         model: Arc<Klassen1987>,
         eye_height_m: f64,
@@ -91,7 +94,7 @@ impl Klassen1987Scene {
             eye_height_m,
             depth: match foggy {
                 true => depth,
-                // Nothing lies above: the light is the same all along.
+                // No air lies above, so the light is the same along the whole ray.
                 false => SunDepth::Printed,
             },
             slab,
@@ -105,7 +108,7 @@ impl Klassen1987Scene {
             let sky = scene.horizontal_irradiance(|d| scene.sky_alone(d));
             scene.evening = Some((level(scene.slab.irradiance_at_top()) + sky) / PI);
         }
-        // The ground is lit by what is over it: itself black for that.
+        // The ground is lit from above; its own light is 0 in this computation.
         let on_ground = Self {
             eye_height_m: 0.0,
             ..scene.clone()
@@ -115,7 +118,7 @@ impl Klassen1987Scene {
         Ok(scene)
     }
 
-    /// Irradiance of the horizontal by a radiance.
+    /// Irradiance of a horizontal surface by a radiance.
     fn horizontal_irradiance(&self, radiance: impl Fn(DVec3) -> Lanes + Sync) -> Lanes {
         let map = IrradianceMap::new(self.model.sun, WAVELENGTHS, |directions, out| {
             for (direction, out) in directions.iter().zip(out.chunks_exact_mut(WAVELENGTHS)) {
@@ -127,7 +130,7 @@ impl Klassen1987Scene {
         lanes
     }
 
-    /// The same from another height, m.
+    /// The same scene for an eye at another height, m.
     pub fn at_height_m(&self, eye_height_m: f64) -> Self {
         Self {
             eye_height_m,
@@ -135,7 +138,7 @@ impl Klassen1987Scene {
         }
     }
 
-    /// The sun's disc, dimmed by the fog.
+    /// Radiance of the sun's disc, attenuated by the fog.
     fn disc_along(&self, direction: DVec3) -> Lanes {
         let disc = self.model.disc_along(direction);
         match self.foggy {
@@ -152,7 +155,7 @@ impl Klassen1987Scene {
         }
     }
 
-    /// What lies behind the fog: sky, or the level ground.
+    /// Radiance behind the fog: sky or ground.
     fn behind(&self, direction: DVec3, simpson: &mut Simpson) -> Lanes {
         if direction.y < 0.0 {
             return self.ground;
@@ -173,7 +176,7 @@ impl Klassen1987Scene {
         }
     }
 
-    /// The fog alone on a line from the eye.
+    /// Path optics of the fog on a ray from the eye.
     fn fog_on(&self, direction: DVec3, length_m: f64) -> PathOptics<WAVELENGTHS> {
         let line = RaySegment::flat(self.eye_height_m, direction.y, length_m);
         let (enters, leaves) = line.below(self.slab.fog_top_m);
@@ -194,7 +197,7 @@ impl Klassen1987Scene {
     }
 }
 
-/// The fog under the light at its top, `I_t`; without fog, the haze and the air at the ground in the sun there.
+/// The fog with the irradiance `I_t` at its top; without fog, haze and air at the ground with the irradiance there.
 fn slab(
     model: &Klassen1987,
     fog: Option<Fog1987>,
@@ -202,7 +205,7 @@ fn slab(
     let top_m = fog.as_ref().map_or(0.0, |fog| fog.top_m);
     Ok(Slab1987 {
         fog_top_m: top_m,
-        // The sun's light is that at the top already.
+        // The sun's irradiance is already that at the top.
         air_top_m: top_m,
         fog: match fog {
             Some(fog) => LayerLanes::new(&fog.droplets, &Klassen1987::wavelengths()),
@@ -227,7 +230,7 @@ impl Klassen1987 {
         std::array::from_fn(|_| nm.next().unwrap_or(f64::NAN))
     }
 
-    /// The haze at the ground.
+    /// Haze with its density at the ground.
     fn haze_at_ground(&self) -> Result<LayerLanes<WAVELENGTHS>, Klassen1987Error> {
         let (_, albedo, phase) = self.settings.haze.optics()?;
         let albedo = Self::wavelengths().map(|nm| albedo.at(nm).clamp(0.0, 1.0) as f32);
@@ -252,13 +255,13 @@ impl Klassen1987Scene {
         match (self.foggy, self.evening) {
             (false, _) => self.slab.irradiance_at_top(),
             (true, None) => self.slab.irradiance_at(height_m),
-            // Section 11.2: all of it is scattered out of the beam.
+            // Section 11.2: all direct sunlight is scattered.
             (true, Some(_)) if height_m < self.slab.fog_top_m => Lanes::ZERO,
             (true, Some(_)) => self.slab.irradiance_at_top(),
         }
     }
 
-    /// The air above the fog and the fog before a point at a distance (eqs. 39 to 46); without fog, haze and air.
+    /// Air above the fog, and fog, in front of a point at a distance (eqs. 39 to 46); without fog, haze and air.
     pub fn before(&self, direction: DVec3, distance_m: f64) -> PathOptics<WAVELENGTHS> {
         let cos_sun = direction.dot(self.model.sun);
         let (eye_m, sin_elevation) = (self.eye_height_m, direction.y);
@@ -301,8 +304,8 @@ impl PublishedModel for Klassen1987Scene {
         to_xyz(&self.model.grid, &self.disc_along(direction))
     }
 
-    /// Within one step of a picture of the model's bits where the sky is seen without fog; with fog, as [`Self::sky_xyz`], but for integrals
-    /// that begin alike.
+    /// Without fog within one step of a picture with the model's bits per channel; with fog as [`Self::sky_xyz`], except that
+    /// integrals with nearly equal first estimates are reused.
     fn walk(&self) -> Box<dyn FnMut(DVec3) -> [f64; 3] + '_> {
         if self.foggy {
             let mut simpson = Simpson::new(1e-3);

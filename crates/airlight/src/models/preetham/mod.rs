@@ -10,7 +10,7 @@
 //!   of the formula are clamped to 0.
 //! - The formula is singular for clear air: `1 + A e^B`, by which the sky is divided, is 0.17 at turbidity 2, 0.03 at 1.7
 //!   and 0 near 1.6, so that everything but the zenith becomes unboundedly bright. Turbidities from 2 to 10 are accepted.
-//! - By day it is up to three times as bright as our solver, mostly near the horizon: the book has the figures.
+//! - In daylight it is up to three times as bright as the solver, mostly near the horizon; the book has a table.
 
 mod sun;
 
@@ -177,7 +177,7 @@ impl PublishedModel for Preetham {
     }
 }
 
-/// The sky of Preetham 1999 for the turbidity of a scene's air.
+/// Preetham, Shirley & Smits 1999 as a [`RadianceModel`], with the turbidity derived from a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct PreethamModel;
 
@@ -187,7 +187,7 @@ impl RadianceModel for PreethamModel {
     }
 
     fn summary(&self) -> &'static str {
-        "Preetham, Shirley & Smits 1999: a formula by turbidity, for the sun above the horizon"
+        "Preetham, Shirley & Smits 1999: an analytic sky by turbidity, for the sun above the horizon"
     }
 
     fn capabilities(&self) -> Capabilities {

@@ -1,4 +1,4 @@
-//! The article's integrals with converged quadrature, the planet's shadow, and the two further steps of the article.
+//! The article's integrals with converged quadrature and the planet's shadow, and the article's two further improvements.
 
 use super::constants as c;
 use super::nodes::{self, Columns};
@@ -23,7 +23,7 @@ pub const TABLE_SIZE: [usize; 2] = [256, 64];
 /// Wavelengths of red, green and blue in the article's preset.
 const CHANNELS_NM: [f64; 3] = [680.0, 550.0, 440.0];
 
-/// The article's sky, converged.
+/// The article's sky with converged quadrature.
 pub struct Converged {
     eye_altitude_m: f64,
     view_rule: RunningRule,

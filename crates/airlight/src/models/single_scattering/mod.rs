@@ -95,7 +95,7 @@ impl SkyArticle {
         sky.under(sun_direction)
     }
 
-    /// The same air and eye under another sun.
+    /// The same air and eye with another sun direction.
     ///
     /// # Errors
     /// [`SettingsError::Sun`].
@@ -138,7 +138,7 @@ impl SkyArticle {
     }
 }
 
-/// The article's sky, in its own air.
+/// The article's sky as a [`RadianceModel`], with the article's air instead of the scene's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct SingleScatteringModel;
 
@@ -157,7 +157,7 @@ impl RadianceModel for SingleScatteringModel {
     }
 
     fn summary(&self) -> &'static str {
-        "the sky article: sunlight scattered once, in its own air, and the steps beyond it (variants)"
+        "the sky article: single scattering in its own air; variants are the article's improvements"
     }
 
     fn capabilities(&self) -> Capabilities {
@@ -204,7 +204,7 @@ impl RadianceModel for SingleScatteringModel {
             },
             eye_altitude_m: scene.observer_altitude_m,
         };
-        // Its tables serve all suns.
+        // Tables are shared by all suns.
         let at_eye = SkyArticle::new(&settings, DVec3::Y).map_err(refused)?;
         let prepared = Prepared::new(name, scene, None, move |eye_altitude_m, sun| {
             let sky = match eye_altitude_m == settings.eye_altitude_m {

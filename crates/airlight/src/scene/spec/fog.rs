@@ -10,30 +10,30 @@ const SCALE_HEIGHT_M: f64 = 50.0;
 /// Default height of the top of a slab, m.
 const TOP_M: f64 = 50.0;
 
-/// How fog thins with height, or which look it has.
+/// Density of fog by height, or a fog factor that is not physical.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum FogProfile {
-    /// The same everywhere: for pictures with depth, as no sky shines through it.
+    /// Constant. For pictures with depth only, as it hides the sky.
     Uniform,
-    /// Thins exponentially from height 0 up, and is thicker below it.
+    /// Decreases exponentially from height 0 up, and increases below.
     Height,
-    /// The same up to the base height, thins exponentially above.
+    /// Constant up to the base height, decreases exponentially above.
     Clamped,
-    /// Thins exponentially from the base height up, and is as much thicker below it: Ishiyama's formula as printed.
+    /// Decreases exponentially from the base height up and increases below it: the fog note's formula as printed.
     Unclamped,
-    /// The same up to the top, nothing above.
+    /// Constant up to the top, zero above.
     Slab,
-    /// Exponential-squared, a look of pictures with depth.
+    /// Exponential-squared fog of one colour. For pictures with depth only.
     Exp2,
-    /// Linear from 0 to the visibility, a look of pictures with depth.
+    /// Linear fog of one colour from 0 to the visibility. For pictures with depth only.
     Linear,
-    /// Uniform fog blended in encoded values, as the data set Foggy Cityscapes has it.
+    /// Uniform fog of one colour blended in encoded values, as in the data set Foggy Cityscapes. For pictures with depth only.
     FoggyCityscapes,
 }
 
 named! { FogProfile, "a fog profile", [
-    ("uniform", (Uniform), "the same everywhere; for pictures with depth"),
+    ("uniform", (Uniform), "constant; for pictures with depth"),
     ("height", (Height), "decreases exponentially from height 0 up, and increases below"),
     ("clamped", (Clamped), "constant up to the base height, decreases exponentially above"),
     ("unclamped", (Unclamped), "decreases exponentially from the base height up and increases below it: the fog note's formula as printed"),
@@ -43,27 +43,27 @@ named! { FogProfile, "a fog profile", [
     ("foggy-cityscapes", (FoggyCityscapes), "uniform fog of one colour blended in encoded values, as in the data set Foggy Cityscapes; for pictures with depth"),
 ] }
 
-/// Fog: one layer, and more of them in `layers`. Heights are above the ground.
+/// Fog: one layer, and further ones in `layers`. Heights are above the ground.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FogSpec {
-    /// Distance at which the scene's contrast is left where the fog is thickest, m, above 0.
+    /// Visibility where the fog is densest, m, above 0: the distance at which contrast falls to the scene's threshold.
     pub visibility_m: Option<f64>,
-    /// How it thins with height. Default: slab with `top_m`, else clamped.
+    /// Density by height. Default: slab with `top_m`, otherwise clamped.
     pub profile: Option<FogProfile>,
-    /// Height over which it thins to 1/e, m, above 0. Default: 50.
+    /// Height over which the density falls by a factor e, m, above 0. Default: 50.
     pub scale_height_m: Option<f64>,
-    /// Height from which it thins, m. Default: 0.
+    /// Height from which the density decreases, m. Default: 0.
     pub base_height_m: Option<f64>,
     /// Height of the top of a slab, m, above 0. Default: 50.
     pub top_m: Option<f64>,
-    /// Droplets by name. Default: radiation.
+    /// Kind of droplets. Default: radiation.
     pub droplets: Option<DropletKind>,
-    /// Which light it scatters: "all" orders, "single", or "undimmed", where the fog does not dim the sun. Default: all.
+    /// Orders of scattering: "all", "single", or "undimmed" for single scattering of unattenuated sunlight. Default: all.
     pub scattering: Option<FogScattering>,
-    /// More layers.
+    /// Further layers.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
     pub layers: Vec<FogLayerSpec>,
 }
@@ -74,22 +74,22 @@ pub struct FogSpec {
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FogLayerSpec {
-    /// Distance at which the scene's contrast is left where the layer is thickest, m, above 0.
+    /// Visibility where the layer is densest, m, above 0: the distance at which contrast falls to the scene's threshold.
     pub visibility_m: Option<f64>,
-    /// How it thins with height. Default: slab with `top_m`, else clamped.
+    /// Density by height. Default: slab with `top_m`, otherwise clamped.
     pub profile: Option<FogProfile>,
-    /// Height over which it thins to 1/e, m, above 0. Default: 50.
+    /// Height over which the density falls by a factor e, m, above 0. Default: 50.
     pub scale_height_m: Option<f64>,
-    /// Height from which it thins, m. Default: 0.
+    /// Height from which the density decreases, m. Default: 0.
     pub base_height_m: Option<f64>,
     /// Height of the top of a slab, m, above 0. Default: 50.
     pub top_m: Option<f64>,
-    /// Droplets by name. Default: radiation.
+    /// Kind of droplets. Default: radiation.
     pub droplets: Option<DropletKind>,
 }
 
 impl FogSpec {
-    /// The first layer without the others.
+    /// The first layer, without those in `layers`.
     pub fn first_layer(&self) -> FogLayerSpec {
         FogLayerSpec {
             visibility_m: self.visibility_m,
@@ -101,14 +101,14 @@ impl FogSpec {
         }
     }
 
-    /// All layers.
+    /// All layers, the first included.
     pub(crate) fn all_layers(&self) -> impl Iterator<Item = FogLayerSpec> {
         std::iter::once(self.first_layer()).chain(self.layers.iter().cloned())
     }
 }
 
 impl FogLayerSpec {
-    /// How it thins with height: as set, or as the heights that are set imply.
+    /// The profile that is set, or the one that the heights imply.
     pub fn implied_profile(&self) -> FogProfile {
         match (self.profile, self.top_m) {
             (Some(profile), _) => profile,

@@ -2,49 +2,50 @@
 
 use crate::names::named;
 
-/// Kind of a light.
+/// Shape and directionality of a light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum LightKind {
-    /// Shines equally in all directions.
+    /// The same intensity in all directions.
     #[default]
     Point,
-    /// Shines into a cone.
+    /// Intensity in a cone.
     Spot,
-    /// A glowing sphere.
+    /// A sphere of uniform radiance.
     Sphere,
 }
 
 named! { LightKind, "a kind of light", [
     ("point", (Point), "the same intensity in all directions"),
-    ("spot", (Spot), "a cone"),
-    ("sphere", (Sphere), "a luminous sphere"),
+    ("spot", (Spot), "intensity in a cone"),
+    ("sphere", (Sphere), "a sphere of uniform radiance"),
 ] }
 
-/// A light: where it is, how bright, and where it shines. It is placed by `position_m`, or by `pixel` of a picture.
+/// A light, placed by `position_m` or by a `pixel` of a picture.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LightSpec {
-    /// Point, spot or sphere.
+    /// Point, spot or sphere. Default: point.
     pub kind: LightKind,
-    /// Position, m east, up and south of the ground under the camera.
+    /// Position, m east, up and south of the ground below the camera.
     pub position_m: Option<[f64; 3]>,
-    /// On the ray of this pixel, instead of `position_m`; x to the right and y down, pixel centres at whole numbers.
+    /// Pixel of a picture on whose ray the light lies, instead of `position_m`: x to the right, y down, pixel centres at whole
+    /// numbers.
     pub pixel: Option<[f64; 2]>,
     /// Distance along the ray of `pixel`, m, above 0. Default: that of the surface in the picture.
     pub distance_m: Option<f64>,
-    /// Radiant intensity in red, green and blue, in the picture's unit times m^2: it gives the irradiance intensity / r^2.
+    /// Radiant intensity in red, green and blue, in the picture's unit times m^2; it causes the irradiance intensity / r^2.
     pub intensity: [f64; 3],
-    /// Radius, m, above 0: of a sphere its size; of a point or spot, no ray passes closer. Default: a quarter of a pixel.
+    /// Radius of a sphere, or smallest distance of rays from a point or spot light, m, above 0. Default: a quarter of a pixel.
     pub radius_m: Option<f64>,
-    /// Azimuth that a spot shines to, degrees clockwise from north. Default: 0.
+    /// Azimuth of a spot's axis, degrees clockwise from north. Default: 0.
     pub azimuth_deg: Option<f64>,
-    /// Elevation that a spot shines to, degrees, -90 to 90. Default: -90, straight down.
+    /// Elevation of a spot's axis, degrees, -90 to 90. Default: -90, straight down.
     pub elevation_deg: Option<f64>,
-    /// Angle from the axis of a spot up to which it has all its intensity, degrees, 0 to 90. Default: 20.
+    /// Angle from a spot's axis up to which the intensity is full, degrees, 0 to 90. Default: 20.
     pub inner_deg: Option<f64>,
-    /// Angle from the axis of a spot beyond which it has none, degrees, 0 to 90. Default: 40.
+    /// Angle from a spot's axis beyond which the intensity is 0, degrees, 0 to 90. Default: 40.
     pub outer_deg: Option<f64>,
 }

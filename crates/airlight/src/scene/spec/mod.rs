@@ -1,7 +1,7 @@
-//! A scene as plain data: what a scene file holds, and what flags of a program fill in.
+//! A scene as plain data: the content of a scene file, also set by flags of programs.
 //!
-//! Every field that is `None` has the default that its documentation states; a field that is set counts as set explicitly,
-//! and is refused where the solver would ignore it ([`Scene::set_inputs`]).
+//! A field that is `None` has the default that its documentation states. A field that is set is an explicit input, which
+//! is refused if the solver would ignore it ([`Scene::set_inputs`]).
 
 mod air;
 mod fog;
@@ -26,7 +26,7 @@ pub use solver::{BaseBlueKind, Effort, Klassen1987Spec, SolverSpec, SunlightKind
 /// Version of the scene format that this library reads and writes.
 pub const SCENE_VERSION: u32 = 1;
 
-/// A scene: place and time or sun, air, fog, lights, objects, observer, camera, output, and how its light is solved for.
+/// A scene: sun (or place and time), observer, air, fog, lights, objects, solver, camera, output and sequence.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
@@ -34,7 +34,7 @@ pub const SCENE_VERSION: u32 = 1;
 pub struct Scene {
     /// Version of the format: 1.
     pub version: u32,
-    /// Position of the sun, or place and time to find it.
+    /// Position of the sun, or place and time that determine it.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "is_default"))]
     pub sun: SunSpec,
     /// Position of the eye.
@@ -50,16 +50,16 @@ pub struct Scene {
     pub lights: Vec<LightSpec>,
     /// Objects in front of the sky.
     pub objects: Option<ObjectsSpec>,
-    /// How the light is solved for.
+    /// Solver or published model, and its settings.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "is_default"))]
     pub solver: SolverSpec,
     /// Projection and direction of the picture.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "is_default"))]
     pub camera: CameraSpec,
-    /// File and its encoding.
+    /// Picture file and its encoding.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "is_default"))]
     pub output: OutputSpec,
-    /// A picture for each of several times.
+    /// Times of a sequence of pictures.
     pub sequence: Option<SequenceSpec>,
 }
 
@@ -83,7 +83,7 @@ impl Default for Scene {
 
 #[cfg(feature = "schema")]
 impl Scene {
-    /// JSON Schema of scene files: editors complete and check them with it.
+    /// JSON Schema of scene files, for completion and validation in editors.
     pub fn json_schema() -> String {
         let schema = schemars::schema_for!(Self);
         serde_json::to_string_pretty(&schema).expect("a schema is JSON")
@@ -100,7 +100,7 @@ pub struct SunSpec {
     pub elevation_deg: Option<f64>,
     /// Azimuth, degrees clockwise from north. Default: 180, south.
     pub azimuth_deg: Option<f64>,
-    /// Distance from the planet over the mean distance, with `elevation_deg`. Default: 1.
+    /// Distance of the sun relative to the planet's mean distance, with `elevation_deg`. Default: 1.
     pub distance_ratio: Option<f64>,
     /// Latitude of the place on the Earth, degrees north, -90 to 90.
     pub latitude_deg: Option<f64>,
@@ -108,7 +108,7 @@ pub struct SunSpec {
     pub longitude_deg: Option<f64>,
     /// Time with its offset from UTC, as in 2026-06-21T21:15:00+02:00, or "now". Default: now.
     pub time: Option<String>,
-    /// Whether the air lifts the sun of place and time, by half a degree at the horizon. Default: true.
+    /// Whether refraction raises the sun of a place and time, by half a degree at the horizon. Default: true.
     pub refraction: Option<bool>,
 }
 
@@ -118,13 +118,13 @@ pub struct SunSpec {
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ObserverSpec {
-    /// Altitude above sea level, m, -12000 to 1e9; held at least `eye_height_m` above the ground. Default: 0.
+    /// Altitude above sea level, m, -12000 to 1e9; at least `eye_height_m` above the ground. Default: 0.
     pub altitude_m: Option<f64>,
-    /// Height above the ground below which the eye does not go, m, above 0. Default: 2.
+    /// Smallest height of the eye above the ground, m, above 0. Default: 2.
     pub eye_height_m: Option<f64>,
 }
 
-/// Whether a part of a scene says nothing.
+/// Whether no field of a part of a scene is set.
 #[cfg(feature = "serde")]
 fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()

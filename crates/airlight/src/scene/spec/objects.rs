@@ -1,4 +1,4 @@
-//! Objects in front of the sky: solids and their surfaces.
+//! Objects in front of the sky: shapes and surfaces.
 
 use crate::names::named;
 
@@ -10,52 +10,52 @@ use crate::names::named;
 pub struct ObjectsSpec {
     /// Whether objects cast shadows on each other. Default: true.
     pub shadows: Option<bool>,
-    /// TOML file beside the scene with a list of objects, `[[object]]`.
+    /// TOML file with a list of objects, `[[object]]`, relative to the scene file.
     pub file: Option<String>,
-    /// The objects.
+    /// List of objects, besides those of the file.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
     pub object: Vec<ObjectSpec>,
 }
 
 impl ObjectsSpec {
-    /// Whether there is any object.
+    /// Whether a file or a list of objects is set.
     pub fn is_set(&self) -> bool {
         self.file.is_some() || !self.object.is_empty()
     }
 }
 
-/// Shape of a solid.
+/// Shape of an object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ObjectShape {
-    /// The plane of the ground.
+    /// The horizontal plane at height 0.
     Ground,
-    /// A sphere, at its centre.
+    /// A sphere, positioned by its centre.
     Sphere,
-    /// A block, at the middle of its base.
+    /// A block, positioned by the centre of its base.
     Block,
-    /// An upright cylinder, at the middle of its base.
+    /// A vertical cylinder, positioned by the centre of its base.
     Cylinder,
-    /// An upright cone, at the middle of its base.
+    /// A vertical cone, positioned by the centre of its base.
     Cone,
 }
 
 named! { ObjectShape, "a shape", [
-    ("ground", (Ground), "the plane of the ground"),
-    ("sphere", (Sphere), "a sphere, placed by its centre"),
-    ("block", (Block), "a block, placed by the middle of its base"),
-    ("cylinder", (Cylinder), "an upright cylinder, placed by the middle of its base"),
-    ("cone", (Cone), "an upright cone, placed by the middle of its base"),
+    ("ground", (Ground), "the horizontal plane at height 0"),
+    ("sphere", (Sphere), "a sphere, positioned by its centre"),
+    ("block", (Block), "a block, positioned by the centre of its base"),
+    ("cylinder", (Cylinder), "a vertical cylinder, positioned by the centre of its base"),
+    ("cone", (Cone), "a vertical cone, positioned by the centre of its base"),
 ] }
 
-/// A solid. Positions are in metres east, up and south of the point of the ground under the eye.
+/// An object. Positions are in metres east, up and south of the point of the ground below the eye.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ObjectSpec {
-    /// Shape.
+    /// Shape, which determines the fields that are needed.
     pub shape: ObjectShape,
-    /// Position, m.
+    /// Position of the shape's reference point, m.
     pub at_m: Option<[f64; 3]>,
     /// Radius of a sphere, cylinder or cone, m.
     pub radius_m: Option<f64>,
@@ -63,15 +63,15 @@ pub struct ObjectSpec {
     pub height_m: Option<f64>,
     /// Size of a block east, up and south, m.
     pub size_m: Option<[f64; 3]>,
-    /// Turn about the vertical, degrees clockwise.
+    /// Rotation about the vertical axis, degrees clockwise.
     pub turn_deg: Option<f64>,
     /// Diffuse reflectance. Default: 0.5.
     pub reflectance: Option<Reflectance>,
-    /// Squares of another reflectance.
+    /// Checker pattern with a second reflectance.
     pub checker: Option<CheckerSpec>,
-    /// A coat that mirrors.
+    /// Glossy coat.
     pub gloss: Option<GlossSpec>,
-    /// Copies of it in a row.
+    /// Copies at equal steps.
     pub repeat: Option<RepeatSpec>,
 }
 
@@ -93,14 +93,14 @@ pub enum Reflectance {
     Rgb([f64; 3]),
     /// By wavelength, linear in between.
     Spectrum {
-        /// Wavelengths, nm, rising.
+        /// Wavelengths, nm, increasing.
         wavelengths_nm: Vec<f64>,
-        /// Reflectance at each.
+        /// Reflectance at each wavelength, 0 to 1.
         values: Vec<f64>,
     },
 }
 
-/// Squares, or cubes, of two reflectances by turns.
+/// Pattern of squares (or cubes) with two alternating reflectances.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
@@ -108,11 +108,11 @@ pub enum Reflectance {
 pub struct CheckerSpec {
     /// Side of a square, m.
     pub size_m: f64,
-    /// The other reflectance.
+    /// The second reflectance.
     pub reflectance: Reflectance,
 }
 
-/// A coat of rough facets that mirror.
+/// A coat of mirroring microfacets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
@@ -120,11 +120,11 @@ pub struct CheckerSpec {
 pub struct GlossSpec {
     /// Root mean square slope of the facets.
     pub roughness: f64,
-    /// Refractive index. Default: 1.5.
+    /// Refractive index of the coat. Default: 1.5.
     pub index: Option<f64>,
 }
 
-/// Copies of an object in a row.
+/// Copies of an object at equal steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
@@ -132,6 +132,6 @@ pub struct GlossSpec {
 pub struct RepeatSpec {
     /// Number of objects, the first included.
     pub count: usize,
-    /// From each to the next, m.
+    /// Displacement from each object to the next, m.
     pub step_m: [f64; 3],
 }

@@ -1,4 +1,4 @@
-//! How the light of a scene is solved for.
+//! Solver of a scene and its settings.
 
 use crate::names::named;
 use crate::sky::{Scattering, SkySettings, SunCoverage};
@@ -11,9 +11,9 @@ use crate::sky::{Scattering, SkySettings, SunCoverage};
 pub struct SolverSpec {
     /// Name of the solver or published model. Default: orders.
     pub name: Option<String>,
-    /// Which light is computed: "all" orders of scattering, or "single". Default: all.
+    /// Orders of scattering: "all" or "single". Default: all.
     pub scattering: Option<Scattering>,
-    /// How finely the orders of scattering are solved. Default: standard.
+    /// Resolution of the orders of scattering. Default: standard.
     pub effort: Option<Effort>,
     /// Wavelengths to compute: rgb (3), fast (8), standard (16), fine (95), 1nm (471), or a list in nm: "440,550,680".
     /// Default: standard.
@@ -22,13 +22,13 @@ pub struct SolverSpec {
     pub paths: Option<u64>,
     /// Seed of the Monte Carlo paths: the same seed gives the same picture. Default: 1.
     pub seed: Option<u64>,
-    /// Form of a published model. Default: corrected.
+    /// Variant of a published model. Default: the model's first.
     pub variant: Option<String>,
-    /// single-scattering: colour of the sun. Default: white.
+    /// Colour of the sun of single-scattering. Default: white.
     pub sunlight: Option<SunlightKind>,
-    /// single-scattering: illuminance by a white sun in the zenith, lx, above 0. Default: 120000.
+    /// Illuminance by a white sun at the zenith of single-scattering, lx, above 0. Default: 120000.
     pub zenith_lux: Option<f64>,
-    /// Settings of the model of 1987.
+    /// Settings of klassen1987.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "super::is_default"))]
     pub klassen1987: Klassen1987Spec,
 }
@@ -47,87 +47,87 @@ impl SolverSpec {
     }
 }
 
-/// How finely the orders of scattering are solved.
+/// Resolution of the orders of scattering.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Effort {
-    /// By day within 1 % in clear air (1.4 % under a sun at the horizon), 3 % in haze.
+    /// Error in daylight below 1 % in clear air (1.4 % with the sun at the horizon) and 3 % in haze.
     #[default]
     Standard,
-    /// Twice the heights, more directions and moments: within 1 % by day in haze too, five times as long.
+    /// Twice as many heights, more directions and moments: error in daylight below 1 % in haze too, five times slower.
     Fine,
 }
 
 named! { Effort, "an effort", [
-    ("standard", (Standard), "by day within 1 % in clear air (1.4 % with the sun at the horizon), 3 % in haze"),
-    ("fine", (Fine), "within 1 % by day in haze too, five times as long"),
+    ("standard", (Standard), "error in daylight below 1 % in clear air (1.4 % with the sun at the horizon), 3 % in haze"),
+    ("fine", (Fine), "error in daylight below 1 % in haze too, five times slower"),
 ] }
 
-/// Colour of the sun of the single-scattering shader.
+/// Colour of the sun of single-scattering.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum SunlightKind {
-    /// White on the ground when it stands in the zenith, as printed.
+    /// White on the ground with the sun at the zenith, as printed.
     #[default]
     White,
-    /// As bright and as coloured as measured outside the air.
+    /// Measured solar spectrum outside the atmosphere.
     Measured,
 }
 
 named! { SunlightKind, "a kind of sunlight", [
-    ("white", (White), "white on the ground with the sun in the zenith, as printed"),
-    ("measured", (Measured), "as measured outside the atmosphere"),
+    ("white", (White), "white on the ground with the sun at the zenith, as printed"),
+    ("measured", (Measured), "measured solar spectrum outside the atmosphere"),
 ] }
 
-/// Settings of the model of 1987: each in place of what the atmosphere has.
+/// Settings of klassen1987, each of which overrides a value derived from the atmosphere.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Klassen1987Spec {
-    /// Extinction of its haze at 550 nm, 1/m, 0 or above. Default: that of the atmosphere's haze at the ground.
+    /// Extinction of the haze at 550 nm, 1/m, 0 or above. Default: that of the atmosphere's haze at the ground.
     pub haze_extinction_per_m: Option<f64>,
-    /// Thickness of its haze, m, above 0. Default: that which gives the atmosphere's optical depth of haze.
+    /// Thickness of the haze, m, above 0. Default: the one that preserves the haze's optical depth.
     pub haze_thickness_m: Option<f64>,
-    /// Its haze consists of water drops of this kind. Default: the atmosphere's haze.
+    /// Kind of water drops in the haze. Default: particles of the atmosphere's haze.
     pub wet_haze: Option<WetHaze>,
-    /// Density of its air over the atmosphere's, above 0. Default: 1.
+    /// Density of the air relative to the atmosphere's, above 0. Default: 1.
     pub air_density: Option<f64>,
-    /// Thickness of its air were it all as dense as at the ground, m, above 0. Default: that which gives the atmosphere's.
+    /// Thickness of the air at its density at the ground, m, above 0. Default: the one that preserves its optical depth.
     pub air_thickness_m: Option<f64>,
-    /// The sky behind its haze. Default: solver; paper for the variant printed.
+    /// Sky behind the haze. Default: solver; paper for the variant printed.
     pub base_blue: Option<BaseBlueKind>,
 }
 
-/// Deirmendjian's wet hazes.
+/// Deirmendjian's hazes of water drops.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum WetHaze {
-    /// Haze M: by the sea.
+    /// Haze M: marine and coastal.
     HazeM,
-    /// Haze L: over land.
+    /// Haze L: continental.
     HazeL,
-    /// Haze H: aloft.
+    /// Haze H: high levels, stratosphere.
     HazeH,
 }
 
 named! { WetHaze, "a wet haze", [
-    ("haze-m", (HazeM), "haze M of Deirmendjian: maritime"),
+    ("haze-m", (HazeM), "haze M of Deirmendjian: marine and coastal"),
     ("haze-l", (HazeL), "haze L of Deirmendjian: continental"),
-    ("haze-h", (HazeH), "haze H of Deirmendjian: high altitudes"),
+    ("haze-h", (HazeH), "haze H of Deirmendjian: high levels, stratosphere"),
 ] }
 
-/// The sky behind the haze of 1987.
+/// Sky behind the haze of klassen1987.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum BaseBlueKind {
-    /// One constant blue, dimmed to a hundredth from noon to sunset.
+    /// One blue in all directions, whose luminance falls to a hundredth from noon to sunset.
     Paper,
-    /// The air without haze, solved for.
+    /// The solved sky of the air without haze.
     Solver,
 }
 
 named! { BaseBlueKind, "a base sky", [
-    ("paper", (Paper), "one constant blue, dimmed to a hundredth from noon to sunset"),
-    ("solver", (Solver), "the air without haze, solved for"),
+    ("paper", (Paper), "one blue in all directions, whose luminance falls to a hundredth from noon to sunset"),
+    ("solver", (Solver), "the solved sky of the air without haze"),
 ] }

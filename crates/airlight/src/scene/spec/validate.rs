@@ -1,9 +1,9 @@
-//! Checks of a scene's numbers, and of keys that exclude or need each other.
+//! Validation of a scene's numbers, and of keys that exclude or need each other.
 
 use super::{Exposure, FogLayerSpec, LightKind, LightSpec, Scene, SunlightKind};
 use crate::scene::SceneError;
 
-/// What numbers are allowed.
+/// Description of the numbers allowed, and their test.
 type Allowed = (&'static str, fn(f64) -> bool);
 
 const FINITE: Allowed = ("a number", f64::is_finite);
@@ -39,11 +39,11 @@ fn number(
 }
 
 impl Scene {
-    /// Checks every number against its range, and keys that exclude or need each other. What depends on the atmosphere and
-    /// the solver is checked by [`Scene::resolve`].
+    /// Checks every number against its range, and keys that exclude or need each other. [`Scene::resolve`] also checks
+    /// conditions that depend on the atmosphere and the solver.
     ///
     /// # Errors
-    /// [`SceneError::Value`] for the first that is wrong.
+    /// [`SceneError::Value`] for the first invalid value.
     pub fn validate(&self) -> Result<(), SceneError> {
         if self.version != super::SCENE_VERSION {
             return Err(SceneError::value(
@@ -101,7 +101,7 @@ impl Scene {
             if set && sun.elevation_deg.is_none() {
                 return Err(SceneError::value(
                     key,
-                    "elevation_deg with it",
+                    "elevation_deg with this key",
                     "none",
                     "elevation_deg = 10",
                 ));
@@ -110,7 +110,7 @@ impl Scene {
         match sun.time.is_some() && !place {
             true => Err(SceneError::value(
                 "sun.time",
-                "a place with it",
+                "a place with this key",
                 "none",
                 "latitude_deg = 48.8584 with longitude_deg = 2.2945",
             )),
@@ -145,7 +145,7 @@ impl Scene {
         match air.humidity.is_some() && air.aerosol.is_none() {
             true => Err(SceneError::value(
                 "air.humidity",
-                "aerosol with it, whose particles grow",
+                "aerosol with particles that grow in moist air",
                 "none",
                 "aerosol = \"urban\"",
             )),
@@ -262,9 +262,9 @@ fn layer(key: &str, layer: &FogLayerSpec) -> Result<(), SceneError> {
     match implied && layer.top_m.is_some() && thins {
         true => Err(SceneError::value(
             format!("{key}.top_m"),
-            "fog that is even below its top",
+            "a slab of constant density",
             "scale_height_m or base_height_m as well",
-            "leaving one of them out, or saying profile",
+            "leaving one of them out, or setting profile",
         )),
         false => Ok(()),
     }
@@ -311,7 +311,7 @@ fn light(key: &str, light: &LightSpec) -> Result<(), SceneError> {
     if light.distance_m.is_some() && light.pixel.is_none() {
         return Err(SceneError::value(
             at("distance_m"),
-            "pixel with it",
+            "pixel with this key",
             "position_m",
             "leaving it out",
         ));
@@ -319,7 +319,7 @@ fn light(key: &str, light: &LightSpec) -> Result<(), SceneError> {
     if light.kind == LightKind::Sphere && light.radius_m.is_none() {
         return Err(SceneError::value(
             at("radius_m"),
-            "a radius of the sphere",
+            "the radius of the sphere",
             "none",
             "radius_m = 0.2",
         ));

@@ -43,7 +43,7 @@ fn changing_the_fog_of_a_sky_gives_the_bits_of_a_new_one() {
     // As high, and higher.
     for other in [layer(900.0, slab(40.0)), layer(300.0, thinning(80.0))] {
         let other = [other];
-        let (anew, changed) = (
+        let (new_sky, changed) = (
             new(&other),
             first.with_fog(&other, FogScattering::Multiple).unwrap(),
         );
@@ -53,13 +53,13 @@ fn changing_the_fog_of_a_sky_gives_the_bits_of_a_new_one() {
             (10.0, 30.0, 5e3),
         ] {
             let towards = direction(azimuth, elevation);
-            let optics = anew.optics(towards, distance_m);
+            let optics = new_sky.optics(towards, distance_m);
             assert_eq!(optics, changed.optics(towards, distance_m));
-            let seen = [anew.sky(towards), changed.sky(towards)];
+            let seen = [new_sky.sky(towards), changed.sky(towards)];
             assert_eq!(seen[0], seen[1]);
             // The fog over what has come through the air is the fog without the air.
-            let air = anew.aerial().optics(towards, distance_m);
-            let both = anew.over_clear(towards, distance_m).then(air);
+            let air = new_sky.aerial().optics(towards, distance_m);
+            let both = new_sky.over_clear(towards, distance_m).then(air);
             assert_eq!(both, optics);
         }
         assert!(first.sky(direction(100.0, 1.0)) != changed.sky(direction(100.0, 1.0)));
@@ -224,7 +224,7 @@ mod guards {
     }
 
     #[test]
-    fn without_fog_far_things_go_over_into_the_drawn_sky() {
+    fn distant_objects_fade_into_the_sky_without_fog() {
         let sky = sky("average", SunCoverage::near(25.0, 0.0));
         let none = layer(f64::INFINITY, thinning(50.0));
         let mut before = 0.0;
@@ -247,7 +247,7 @@ mod guards {
                     }
                 }
             }
-            // A black thing at the horizon's distance, against the sky just above it.
+            // A black object at the horizon's distance, against the sky just above it.
             let horizon_deg = foggy.clear().horizon_elevation_rad().to_degrees();
             let below = direction(60.0, horizon_deg - 1e-4);
             let black = foggy.optics(below, foggy.aerial().ground_distance_m(below).unwrap());

@@ -26,13 +26,13 @@ fn luminance(light: Lanes, scene: &Klassen1987Scene) -> f64 {
 }
 
 #[test]
-fn flat_ground_is_good_to_a_percent() {
+fn error_of_flat_ground_is_below_a_percent() {
     let spheres = |top_m: f64, air_m: f64| Spheres {
         earth_m: 6.371e6,
         haze_m: 6.371e6 + top_m,
         air_m: 6.371e6 + air_m,
     };
-    // The paper's figure, for the way through the air above (eqs. 20 and 37).
+    // The paper's figure, for the path through the air above (eqs. 20 and 37).
     let air = |deg: f64| {
         let sin = deg.to_radians().sin();
         let round = spheres(50.0, 8400.0)
@@ -46,7 +46,7 @@ fn flat_ground_is_good_to_a_percent() {
         air(15.0),
         air(13.0)
     );
-    // What is flat here is the fog alone (eqs. 21 and 38).
+    // Only the fog is flat here (eqs. 21 and 38).
     let fog = |deg: f64| {
         let sin = deg.to_radians().sin();
         let round = spheres(50.0, 8400.0)
@@ -63,7 +63,7 @@ fn flat_ground_is_good_to_a_percent() {
 }
 
 #[test]
-fn a_line_may_be_cut_anywhere() {
+fn rays_may_be_split_anywhere() {
     for (fog, sun_deg) in [(true, 30.0), (true, 0.5), (false, 30.0)] {
         let from = scene(sun_deg, 30.0, fog, SunDepth::Exact);
         for elevation_deg in [-40.0, -3.0, 0.0, 2.0, 30.0] {
@@ -88,7 +88,7 @@ fn a_line_may_be_cut_anywhere() {
 }
 
 #[test]
-fn light_is_a_number_everywhere_and_fog_hides_the_horizon() {
+fn radiance_is_finite_and_fog_hides_the_horizon() {
     for (sun_deg, eye_m, fog) in [
         (40.0, 1.6, true),
         (40.0, 90.0, true),
@@ -109,7 +109,7 @@ fn light_is_a_number_everywhere_and_fog_hides_the_horizon() {
         let exactly_level = scene.around(DVec3::Z);
         assert!(exactly_level.is_finite(), "{exactly_level:?}");
     }
-    // In fog one sees the fog alone at the horizon, on either side of it.
+    // On both sides of the horizon only the fog is visible.
     let scene = scene(40.0, 1.6, true, SunDepth::Exact);
     let at = |deg| luminance(scene.around(axes::direction(90.0, deg)), &scene);
     assert!(
@@ -147,11 +147,11 @@ fn at_sunset_the_fog_has_one_colour() {
 }
 
 #[test]
-fn things_without_fog_stand_in_the_sun_of_the_model() {
+fn objects_without_fog_are_lit_by_the_sun_of_the_model() {
     let scene = scene(30.0, 1.6, false, SunDepth::Printed);
     let sun: Vec<f64> = scene.model.sun_irradiance();
     assert_eq!(super::super::f64s(&scene.sunlight(3.0)), sun);
-    // Ten metres of haze are next to nothing.
+    // Ten metres of haze are nearly transparent.
     let near = scene.before(axes::direction(0.0, 0.0), 10.0);
     assert!(near.transmittance.min_element() > 0.998);
 }
