@@ -1,4 +1,4 @@
-//! `airlight accuracy`: how right the solvers are, beside measurement and other people's codes.
+//! `airlight accuracy`: accuracy of the solvers against measurements and other codes.
 
 use crate::args::{AccuracyArgs, ReportArg};
 use crate::error::CliError;
@@ -10,12 +10,12 @@ use airlight_validation::{Check, Suite, run as make};
 /// Runs the command.
 ///
 /// # Errors
-/// [`CliError`]: what was wrong with the options, what failed, or that a claim does not hold.
+/// [`CliError`] for invalid options, failures, and accuracy claims that do not hold.
 pub fn run(args: &AccuracyArgs) -> Result<(), CliError> {
     let format = format(args)?;
     if args.rows && format != ReportArg::Json {
         return Err(CliError::usage(
-            "--rows goes into JSON: give --format json, or --output a name that ends in .json",
+            "--rows: expected JSON, got another format; try --format json, or an --output that ends in .json",
         ));
     }
     if let Some(path) = &args.output {
@@ -43,7 +43,7 @@ pub fn run(args: &AccuracyArgs) -> Result<(), CliError> {
     match checks.iter().filter(|check| !check.holds()).count() {
         0 => Ok(()),
         n => Err(CliError::failure(format!(
-            "{n} of {} comparisons break a claim of the documentation",
+            "{n} of {} comparisons violate a claim of the documentation",
             checks.iter().filter(|check| Check::claims(check)).count()
         ))),
     }
@@ -58,7 +58,7 @@ fn format(args: &AccuracyArgs) -> Result<ReportArg, CliError> {
         (None, Some("txt")) => Ok(ReportArg::Text),
         (None, _) if args.output.is_none() => Ok(ReportArg::Text),
         (None, _) => Err(CliError::usage(
-            "--output must end in .html, .json or .txt, or --format say how the report is written",
+            "--output: expected a name that ends in .html, .json or .txt, got another; try --format",
         )),
     }
 }

@@ -1,20 +1,20 @@
-//! Haze of published types: their list, and the optical properties of one.
+//! List of published aerosol types, and optical properties of one.
 
 use crate::error::CliError;
 use crate::report;
 use airlight::atmosphere::{AerosolMixture, AerosolType, AerosolTypeError};
 use std::fmt::Write;
 
-/// The types, one a line.
+/// The types, one on each line.
 pub fn list() -> String {
     let lines = report::named::<AerosolType>("  ");
     format!("\nTypes of haze, for --aerosol:\n{lines}")
 }
 
-/// What a type does to light.
+/// Describes the optical properties of a type.
 ///
 /// # Errors
-/// [`CliError::Usage`] where its particles are refused.
+/// [`CliError::Usage`] for invalid particles.
 pub fn describe(kind: AerosolType) -> Result<String, CliError> {
     let said = |error: AerosolTypeError| CliError::usage(error.to_string());
     let mut text = format!("{}\n", kind.name());

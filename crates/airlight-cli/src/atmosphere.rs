@@ -1,4 +1,4 @@
-//! `airlight atmospheres`: the atmospheres by name, and what one is made of.
+//! `airlight atmospheres`: list of atmospheres, and description of one.
 
 use crate::aerosol;
 use crate::args::AtmospheresArgs;
@@ -10,7 +10,7 @@ use airlight_render::scene_file;
 use std::fmt::Write;
 use std::path::Path;
 
-/// The atmosphere of a name or a file.
+/// The atmosphere with a name or in a file.
 fn named(name: &str) -> Result<Atmosphere, CliError> {
     let mut scene = Scene::default();
     scene.air.atmosphere = Some(name.to_owned());
@@ -21,7 +21,7 @@ fn named(name: &str) -> Result<Atmosphere, CliError> {
 /// Runs `airlight atmospheres`.
 ///
 /// # Errors
-/// [`CliError`] for an unknown name or a file that is wrong, and where standard output cannot be written.
+/// [`CliError`] for an unknown name, an invalid file, and if standard output cannot be written.
 pub fn list(args: &AtmospheresArgs) -> Result<(), CliError> {
     if let Some(name) = &args.atmosphere {
         if let Ok(kind) = name.parse::<AerosolType>() {
@@ -32,7 +32,7 @@ pub fn list(args: &AtmospheresArgs) -> Result<(), CliError> {
     report::print(&(report::named::<Preset>("") + &aerosol::list()))
 }
 
-/// What an atmosphere is made of.
+/// Describes planet, sun and constituents of an atmosphere.
 fn describe(air: &Atmosphere) -> String {
     let planet = &air.planet;
     let (ground, top) = (planet.ground_altitude_m, planet.top_altitude_m);
@@ -70,7 +70,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_and_files_are_told_apart() {
+    fn names_are_distinguished_from_files() {
         assert!(matches!(named("claer"), Err(CliError::Usage(s)) if s.contains("\"clear\"")));
         assert!(matches!(named("no/such"), Err(CliError::Failure(_))));
         assert!(matches!(

@@ -1,4 +1,4 @@
-//! `airlight compare`: one scene by two solvers.
+//! `airlight compare`: one scene with two solvers.
 
 use crate::args::{CompareArgs, StatisticsArg};
 use crate::error::CliError;
@@ -14,11 +14,11 @@ use airlight_render::{RenderedImage, Renderer};
 /// Runs the command.
 ///
 /// # Errors
-/// [`CliError`]: what was wrong with the options, or what failed.
+/// [`CliError`] for invalid options and failures.
 pub fn run(args: &CompareArgs) -> Result<(), CliError> {
     args.output.as_deref().map_or(Ok(()), report::check_png)?;
     let [first, second] = args.read()?;
-    // Both are checked before either is solved.
+    // Check both before solving either.
     let renderers = [Renderer::new(&first)?, Renderer::new(&second)?];
     let draw = |renderer: &Renderer| {
         let bar = RowsBar::by_stages();
@@ -31,14 +31,14 @@ pub fn run(args: &CompareArgs) -> Result<(), CliError> {
     };
     if !scale.is_finite() || scale <= 0.0 {
         return Err(CliError::usage(
-            "--same-light needs two skies that are lit: one of these is black",
+            "--same-light: expected two skies that are not black, got a black one; try leaving it out",
         ));
     }
     let difference = Difference::new(&first, &second, scale);
     let names = (args.first.text.as_str(), args.second.text.as_str());
     let statistics = difference
         .statistics((&first, names.0), (&second, names.1), scale)
-        .ok_or_else(|| CliError::usage("the picture shows no lit sky: nothing can be compared"))?;
+        .ok_or_else(|| CliError::usage("expected a picture of sky that is not black, got none; try another projection or direction"))?;
     if let Some(output) = &args.output {
         let tone = ToneMapper::new(
             (f64::from(first.tone.exposure()) * scale) as f32,
@@ -61,7 +61,7 @@ pub fn run(args: &CompareArgs) -> Result<(), CliError> {
     report::print(&text)
 }
 
-/// Both pictures under one exposure, and the maps.
+/// Contact sheet of both pictures with the same exposure, and the maps.
 fn sheet(
     args: &CompareArgs,
     (first, second): (&RenderedImage, &RenderedImage),
@@ -69,7 +69,7 @@ fn sheet(
     difference: &Difference,
     statistics: &Statistics,
 ) -> ContactSheet {
-    // Steps that a scale is read by.
+    // Round limits of a scale.
     let round = |most: f64| {
         const STEPS: [f64; 9] = [0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0];
         STEPS
@@ -98,7 +98,7 @@ fn sheet(
     let (percents, colours) = (&difference.percent, &difference.ciede2000);
     ContactSheet {
         heading: format!(
-            "{} beside {}, sun at {:.2} degrees",
+            "{} compared with {}, sun at {:.2} degrees",
             args.second.text, args.first.text, first.sun.elevation_deg
         ),
         columns: 2,

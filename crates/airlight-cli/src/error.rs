@@ -1,4 +1,4 @@
-//! Why a command ends before its time, and with which exit code.
+//! [`CliError`]: errors of commands and their exit codes.
 
 use airlight::UnknownName;
 use airlight::atmosphere::{AerosolError, AtmosphereError};
@@ -13,40 +13,40 @@ use airlight_render::RenderError;
 use airlight_render::batch::BatchError;
 use std::io;
 
-/// Why a command ends before its time.
+/// Error or early end of a command.
 #[derive(Debug, PartialEq, Eq)]
 pub enum CliError {
-    /// What was asked for makes no sense; the sentence says what would.
+    /// An invalid request, with a complete message.
     Usage(String),
-    /// It made sense and failed.
+    /// A valid request that failed, with a complete message.
     Failure(String),
-    /// The user stopped it.
+    /// The user interrupted the command.
     Interrupted,
-    /// Whoever read standard output has gone: no failure of this program's.
+    /// The reader of standard output has closed it, which is not an error of this program.
     ReaderGone,
 }
 
 impl CliError {
-    /// What was asked for makes no sense.
+    /// An invalid request.
     pub fn usage(sentence: impl Into<String>) -> Self {
         Self::Usage(sentence.into())
     }
 
-    /// It failed.
+    /// A failure.
     pub fn failure(sentence: impl Into<String>) -> Self {
         Self::Failure(sentence.into())
     }
 
-    /// What to say on standard error, if anything.
+    /// Message for standard error, if any.
     pub fn sentence(&self) -> Option<&str> {
         match self {
             Self::Usage(sentence) | Self::Failure(sentence) => Some(sentence),
-            Self::Interrupted => Some("stopped; no unfinished file was left behind"),
+            Self::Interrupted => Some("stopped; unfinished files were removed"),
             Self::ReaderGone => None,
         }
     }
 
-    /// 2 for bad use, 1 for failure, 130 after Ctrl-C (as shells have it).
+    /// Exit code: 2 for an invalid request, 1 for a failure, 130 after Ctrl-C (as in shells).
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Usage(_) => 2,
@@ -56,7 +56,7 @@ impl CliError {
         }
     }
 
-    /// What standard output said.
+    /// Converts an error of standard output.
     pub fn from_stdout(error: &io::Error) -> Self {
         match error.kind() {
             io::ErrorKind::BrokenPipe => Self::ReaderGone,
@@ -104,7 +104,7 @@ impl From<PlotError> for CliError {
     }
 }
 
-/// These are refusals of what was asked for.
+/// Converts errors that are invalid requests.
 macro_rules! refusals {
     ($($kind:ty),*) => {$(
         impl From<$kind> for CliError {
@@ -126,7 +126,7 @@ refusals!(
 );
 
 impl From<SceneError> for CliError {
-    /// In the words of the command line: flags for the keys of a scene.
+    /// Replaces keys of a scene by command-line flags.
     fn from(error: SceneError) -> Self {
         if error.is_cancelled() {
             return Self::Interrupted;
@@ -147,7 +147,7 @@ impl From<SceneError> for CliError {
     }
 }
 
-/// Flags for the keys of the sun that sentences suggest, the longer ones first.
+/// Flags for keys of the sun in messages, the longest first.
 const SUN_FLAGS: [(&str, &str); 4] = [
     (
         "latitude_deg and longitude_deg with time",
@@ -158,7 +158,7 @@ const SUN_FLAGS: [(&str, &str); 4] = [
     ("azimuth_deg", "--sun-azimuth"),
 ];
 
-/// The flag that fills in a key of a scene.
+/// The flag that sets a key of a scene.
 fn flag(key: &str) -> String {
     let known = match key {
         "sun" => "--sun-elevation",
@@ -203,7 +203,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn codes_tell_bad_use_from_failure() {
+    fn exit_codes_distinguish_invalid_requests_from_failures() {
         let size = ImageError::Size {
             width: 0,
             height: 0,

@@ -1,4 +1,4 @@
-//! `airlight grid`: a contact sheet of skies that a TOML file describes.
+//! `airlight grid`: a contact sheet of skies described by a TOML file.
 
 use crate::args::GridArgs;
 use crate::error::CliError;
@@ -13,7 +13,7 @@ use airlight_render::contact_sheet::ContactSheetSpec;
 /// Runs the command.
 ///
 /// # Errors
-/// [`CliError`]: what was wrong with the file, or what failed.
+/// [`CliError`] for an invalid file, and failures.
 pub fn run(args: &GridArgs) -> Result<(), CliError> {
     report::check_png(&args.output)?;
     let spec = ContactSheetSpec::load(&args.file)?;

@@ -1,4 +1,4 @@
-//! Ctrl-C: stops at once while nothing is being written, else asks the writer to stop and clear up.
+//! Ctrl-C: exits immediately unless files are being written; then the writer stops and removes unfinished files.
 
 use crate::error::CliError;
 use std::sync::{
@@ -6,17 +6,17 @@ use std::sync::{
     atomic::{AtomicBool, Ordering},
 };
 
-/// True once the user has asked to stop.
+/// True after Ctrl-C.
 pub static STOP: AtomicBool = AtomicBool::new(false);
 
-/// Whether files are being written. Held by the handler while it ends the process, so that no file can come into being
+/// Whether files are being written. The handler holds the lock while it ends the process, so that no file can be created
 /// meanwhile.
 static WRITING: Mutex<bool> = Mutex::new(false);
 
-/// Listens for Ctrl-C and, where there are such, for requests to end and for a closed terminal.
+/// Installs the handler of Ctrl-C and, on systems that have them, of termination requests and closed terminals.
 ///
 /// # Errors
-/// [`CliError::Failure`] where the system refuses.
+/// [`CliError::Failure`] if the system fails to install it.
 pub fn install() -> Result<(), CliError> {
     ctrlc::set_handler(|| {
         STOP.store(true, Ordering::SeqCst);
@@ -28,13 +28,13 @@ pub fn install() -> Result<(), CliError> {
     .map_err(|error| CliError::failure(format!("cannot listen for Ctrl-C: {error}")))
 }
 
-/// While this lives, Ctrl-C leaves the process to clear up its files.
+/// Guard during which Ctrl-C does not exit, so that the writer can remove its files.
 pub struct WritingFiles(());
 
-/// From here on files are written.
+/// Declares that files are written until the guard is dropped.
 ///
 /// # Errors
-/// [`CliError::Interrupted`] where the user has already asked to stop.
+/// [`CliError::Interrupted`] after Ctrl-C.
 pub fn start_writing() -> Result<WritingFiles, CliError> {
     let mut writing = WRITING.lock().unwrap_or_else(PoisonError::into_inner);
     if STOP.load(Ordering::SeqCst) {

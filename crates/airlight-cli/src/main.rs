@@ -1,13 +1,13 @@
-//! The airlight program: skies from the command line.
+//! Command line of Airlight.
 //!
-//! A thin program over `airlight-render`: options fill in a [`Scene`], the library draws it, the
-//! program shows progress and reports.
+//! A thin layer over `airlight-render`: options fill in a [`Scene`], the library draws it, and the program shows progress and
+//! reports.
 //!
 //! Modules, each importing only from those above it:
-//! - [`error`]: why a command ends, and its exit code; [`parse`]: values on the command line.
-//! - [`interrupt`], [`progress`], [`report`]: Ctrl-C, bars on standard error, text on standard output.
-//! - [`args`]: every option of every command, and the scenes that they fill in.
-//! - [`scene`]: saving scenes, threads; [`atmosphere`], [`aerosol`]: lists of what has a name.
+//! - [`error`]: errors and exit codes; [`parse`]: parsing of argument values.
+//! - [`interrupt`], [`progress`], [`report`]: Ctrl-C, progress bars on standard error, text on standard output.
+//! - [`args`]: options of all commands, and the scenes that they describe.
+//! - [`scene`]: saving scenes, threads; [`atmosphere`], [`aerosol`]: lists of names.
 //! - [`sky`], [`fog`], [`probe`], [`compare`], [`grid`], [`accuracy`] and [`plot`]: the commands.
 
 mod accuracy;
@@ -39,7 +39,7 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             if let Some(sentence) = error.sentence() {
-                // Where standard error is gone there is nobody left to tell.
+                // Errors of standard error cannot be reported.
                 let _ = writeln!(std::io::stderr(), "airlight: {sentence}");
             }
             ExitCode::from(error.exit_code())

@@ -1,4 +1,4 @@
-//! Values on the command line: each parser's error says what would be right.
+//! Parsers of argument values; errors state the values expected.
 
 pub mod words;
 
@@ -7,41 +7,41 @@ use airlight::scene::Exposure;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use std::str::FromStr;
 
-/// Two numbers of degrees.
+/// A place on the Earth.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct LatLon {
-    /// Degrees north of the equator.
+    /// Latitude, degrees north.
     pub latitude_deg: f64,
-    /// Degrees east of Greenwich.
+    /// Longitude, degrees east.
     pub longitude_deg: f64,
 }
 
 /// A view direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AzEl {
-    /// Degrees clockwise from north.
+    /// Azimuth, degrees clockwise from north.
     pub azimuth_deg: f64,
-    /// Degrees above the horizon.
+    /// Elevation, degrees above the horizon.
     pub elevation_deg: f64,
 }
 
 /// Width and height in pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PixelSize {
-    /// Pixels in a row.
+    /// Number of columns.
     pub width: u32,
-    /// Rows.
+    /// Number of rows.
     pub height: u32,
 }
 
-/// Overrides a value of a scene with that of an option, where the option is given.
+/// Overrides a value of a scene by that of an option, if the option is given.
 pub fn put<T: Clone>(value: &mut Option<T>, given: &Option<T>) {
     if given.is_some() {
         value.clone_from(given);
     }
 }
 
-/// A value of a [`Named`] type by its name.
+/// Parses the name of a value of a [`Named`] type.
 pub fn value_of<T: Named>(text: &str) -> Result<T, String> {
     T::from_name(text).map_err(|error| error.to_string())
 }
@@ -50,7 +50,7 @@ pub fn value_of<T: Named>(text: &str) -> Result<T, String> {
 pub fn contrast(text: &str) -> Result<f64, String> {
     match f64::from_str(text.trim()) {
         Ok(value) if value == 0.05 || value == 0.02 => Ok(value),
-        _ => Err("must be 0.05 or 0.02".to_owned()),
+        _ => Err("expected 0.05 or 0.02".to_owned()),
     }
 }
 
@@ -81,7 +81,7 @@ pub fn elevation_deg(text: &str) -> Result<f64, String> {
     })
 }
 
-/// An altitude in metres: from the deepest sea to far out in space.
+/// An altitude in metres, from the deepest sea to space.
 pub fn altitude_m(text: &str) -> Result<f64, String> {
     within(text, "a number of metres from -12000 to 1e9", |v| {
         (-12e3..=1e9).contains(&v)
@@ -98,7 +98,7 @@ pub fn length_m(text: &str) -> Result<f64, String> {
 fn within(text: &str, right: &str, accepts: impl Fn(f64) -> bool) -> Result<f64, String> {
     match f64::from_str(text.trim()) {
         Ok(value) if accepts(value) => Ok(value),
-        _ => Err(format!("must be {right}")),
+        _ => Err(format!("expected {right}")),
     }
 }
 
@@ -109,12 +109,12 @@ fn pair(text: &str) -> Option<(f64, f64)> {
 
 /// `X,Y`.
 pub fn two_numbers(text: &str) -> Result<(f64, f64), String> {
-    pair(text).ok_or_else(|| "must be two numbers: 311.2,254.9".to_owned())
+    pair(text).ok_or_else(|| "expected two numbers, such as 311.2,254.9".to_owned())
 }
 
 /// `R,G,B`, each 0 or above.
 pub fn three_numbers(text: &str) -> Result<[f64; 3], String> {
-    let right = || "must be three numbers, 0 or above: 0.7,0.8,0.9".to_owned();
+    let right = || "expected three numbers, 0 or above, such as 0.7,0.8,0.9".to_owned();
     let numbers: Vec<f64> = text
         .split(',')
         .map(not_negative)
@@ -125,7 +125,7 @@ pub fn three_numbers(text: &str) -> Result<[f64; 3], String> {
 
 /// `X,Y,Z`.
 pub fn three_coordinates(text: &str) -> Result<[f64; 3], String> {
-    let right = || "must be three numbers: 1.5,2,-6".to_owned();
+    let right = || "expected three numbers, such as 1.5,2,-6".to_owned();
     let numbers: Vec<f64> = text
         .split(',')
         .map(number)
@@ -136,16 +136,17 @@ pub fn three_coordinates(text: &str) -> Result<[f64; 3], String> {
 
 /// `LAT,LON` in degrees.
 pub fn lat_lon(text: &str) -> Result<LatLon, String> {
-    let (latitude_deg, longitude_deg) = pair(text)
-        .ok_or("must be latitude,longitude in degrees, north and east positive: 48.8584,2.2945")?;
+    let (latitude_deg, longitude_deg) = pair(text).ok_or(
+        "expected latitude,longitude in degrees, north and east positive, such as 48.8584,2.2945",
+    )?;
     if !(-90.0..=90.0).contains(&latitude_deg) {
         return Err(format!(
-            "the latitude must be from -90 to 90 degrees, got {latitude_deg}"
+            "expected a latitude from -90 to 90 degrees, got {latitude_deg}"
         ));
     }
     if !(-180.0..=180.0).contains(&longitude_deg) {
         return Err(format!(
-            "the longitude must be from -180 to 180 degrees, got {longitude_deg}"
+            "expected a longitude from -180 to 180 degrees, got {longitude_deg}"
         ));
     }
     Ok(LatLon {
@@ -157,7 +158,7 @@ pub fn lat_lon(text: &str) -> Result<LatLon, String> {
 /// `AZ,EL` in degrees.
 pub fn az_el(text: &str) -> Result<AzEl, String> {
     let (azimuth_deg, elevation_deg) = pair(text).ok_or(
-        "must be azimuth,elevation in degrees, clockwise from north and above the horizon: 180,45",
+        "expected azimuth,elevation in degrees, clockwise from north and above the horizon, such as 180,45",
     )?;
     match (-90.0..=90.0).contains(&elevation_deg) {
         true => Ok(AzEl {
@@ -165,14 +166,14 @@ pub fn az_el(text: &str) -> Result<AzEl, String> {
             elevation_deg,
         }),
         false => Err(format!(
-            "the elevation must be from -90 to 90 degrees, got {elevation_deg}"
+            "expected an elevation from -90 to 90 degrees, got {elevation_deg}"
         )),
     }
 }
 
 /// `WIDTHxHEIGHT` in pixels.
 pub fn pixel_size(text: &str) -> Result<PixelSize, String> {
-    let right = "must be width x height in pixels, each from 1 to 65536: 2048x1024";
+    let right = "expected width x height in pixels, each from 1 to 65536, such as 2048x1024";
     let (width, height) = text.split_once(['x', 'X']).ok_or(right)?;
     let side = |text: &str| {
         text.trim()
@@ -187,11 +188,11 @@ pub fn pixel_size(text: &str) -> Result<PixelSize, String> {
     })
 }
 
-/// A span of time such as `90s`, `10m`, `1h30m` or `2d`.
+/// A duration such as `90s`, `10m`, `1h30m` or `2d`.
 pub fn span(text: &str) -> Result<String, String> {
     airlight_render::sequence::parse_span_s(text)
         .map(|_| text.to_owned())
-        .map_err(|right| format!("must be {right}"))
+        .map_err(|right| format!("expected {right}"))
 }
 
 /// An exposure: auto, or an exposure value at ISO 100.
@@ -200,11 +201,11 @@ pub fn exposure(text: &str) -> Result<Exposure, String> {
         true => Ok(Exposure::AUTO),
         false => number(text)
             .map(Exposure::Ev100)
-            .map_err(|_| "must be auto or an exposure value at ISO 100, such as 14.5".to_owned()),
+            .map_err(|_| "expected auto or an exposure value at ISO 100, such as 14.5".to_owned()),
     }
 }
 
-/// A value by its name; the help lists all values.
+/// Parser of a [`Named`] type, whose help lists all values.
 pub fn named<T: Named + Send + Sync>() -> impl TypedValueParser<Value = T> {
     let values = T::all().map(|value| PossibleValue::new(value.name()).help(value.summary()));
     PossibleValuesParser::new(values).try_map(|name| T::from_name(&name))
@@ -215,7 +216,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_right_is_read() {
+    fn valid_values_are_parsed() {
         assert_eq!(
             lat_lon("48.8584,2.2945"),
             Ok(LatLon {
@@ -247,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_refused() {
+    fn invalid_values_are_rejected() {
         for text in [
             "", "1", "91,0", "0,181", "NaN,0", "0,inf", "1,2,3", "a,b", ",",
         ] {

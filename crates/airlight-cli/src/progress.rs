@@ -1,4 +1,4 @@
-//! Bars on standard error, shown only where that is a terminal.
+//! Progress bars on standard error, shown only on a terminal.
 
 use airlight_image::Progress;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -8,9 +8,9 @@ use std::time::Duration;
 /// Progress in rows of pictures.
 pub struct RowsBar {
     bar: ProgressBar,
-    /// Rows of files already done.
+    /// Rows of finished files.
     before: AtomicU64,
-    /// Whether each stage of a picture begins the bar again.
+    /// Whether the bar restarts at each stage of a picture.
     by_stages: bool,
 }
 
@@ -20,7 +20,7 @@ impl RowsBar {
         Self::with(rows, false)
     }
 
-    /// A bar over each stage of a picture: solving, and rows.
+    /// A bar for each stage of a picture: solving, and rows.
     pub fn by_stages() -> Self {
         Self::with(0, true)
     }
@@ -36,12 +36,12 @@ impl RowsBar {
         }
     }
 
-    /// Shows what is being done.
+    /// Sets the message.
     pub fn say(&self, what: String) {
         self.bar.set_message(what);
     }
 
-    /// Files of a number of rows are finished: those that follow are counted on top.
+    /// Adds the rows of finished files, to which those of the following files are added.
     pub fn files_done(&self, rows: u64) {
         let before = self.before.fetch_add(rows, Ordering::Relaxed);
         self.bar.set_position(before + rows);
@@ -72,11 +72,11 @@ impl Drop for RowsBar {
     }
 }
 
-/// A spinner for work whose length is not known.
+/// A spinner for work of unknown duration.
 pub struct Busy(ProgressBar);
 
 impl Busy {
-    /// Shows what is being done.
+    /// Sets the message.
     pub fn with(what: &'static str) -> Self {
         let bar = ProgressBar::new_spinner();
         let style = ProgressStyle::with_template("{spinner} {msg}, {elapsed}");
@@ -107,7 +107,7 @@ impl PicturesBar {
         Self(bar)
     }
 
-    /// One more picture is finished.
+    /// Counts a finished picture.
     pub fn one_more(&self) {
         self.0.inc(1);
     }

@@ -1,4 +1,4 @@
-//! Text on standard output and standard error, written so that nothing ever panics.
+//! Text on standard output and standard error, written without panics.
 
 use crate::error::CliError;
 use crate::interrupt;
@@ -16,7 +16,7 @@ pub use airlight_render::summary::short;
 /// Writes a text to standard output.
 ///
 /// # Errors
-/// [`CliError::ReaderGone`] where nobody reads it any more, [`CliError::Failure`] where it cannot be written.
+/// [`CliError::ReaderGone`] if the reader has closed it, [`CliError::Failure`] if it cannot be written.
 pub fn print(text: &str) -> Result<(), CliError> {
     let mut out = std::io::stdout().lock();
     out.write_all(text.as_bytes())
@@ -24,10 +24,10 @@ pub fn print(text: &str) -> Result<(), CliError> {
         .map_err(|error| CliError::from_stdout(&error))
 }
 
-/// Writes a text or bytes to a file, which appears whole or not at all.
+/// Writes a text or bytes to a file, which is renamed into place when it is complete.
 ///
 /// # Errors
-/// [`CliError`] where the file cannot be written.
+/// [`CliError`] if the file cannot be written.
 pub fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<(), CliError> {
     let _writing = interrupt::start_writing()?;
     let file = AtomicFile::create(path)?;
@@ -37,28 +37,30 @@ pub fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<(), CliError> {
     Ok(file.commit()?)
 }
 
-/// Refuses a file that cannot be made: told before anything is computed.
+/// Checks that a file can be written, before anything is computed.
 ///
 /// # Errors
-/// [`CliError`] where it cannot be written.
+/// [`CliError`] if it cannot be written.
 pub fn check_writable(path: &Path) -> Result<(), CliError> {
     let _writing = interrupt::start_writing()?;
     AtomicFile::create(path)?;
     Ok(())
 }
 
-/// Refuses a name that does not end in .png, and a file that cannot be made.
+/// Checks that a name ends in .png and that the file can be written.
 ///
 /// # Errors
-/// [`CliError`]: which.
+/// [`CliError`] if it does not, or cannot.
 pub fn check_png(path: &Path) -> Result<(), CliError> {
     if path.extension().is_none_or(|ending| ending != "png") {
-        return Err(CliError::usage("--output must end in .png"));
+        return Err(CliError::usage(
+            "--output: expected a name that ends in .png, got another",
+        ));
     }
     check_writable(path)
 }
 
-/// A picture of a contact sheet, with its title.
+/// A panel of a contact sheet with a title.
 pub fn panel(title: &str, image: &RenderedImage, tone: &ToneMapper) -> Panel {
     let size = image.frame.size();
     Panel {
@@ -75,7 +77,7 @@ pub fn panel(title: &str, image: &RenderedImage, tone: &ToneMapper) -> Panel {
 /// Writes a contact sheet as PNG.
 ///
 /// # Errors
-/// [`CliError`] where the sheet does not fit in memory, or the file cannot be written.
+/// [`CliError`] if the sheet does not fit in memory or the file cannot be written.
 pub fn write_contact_sheet(path: &Path, sheet: &ContactSheet) -> Result<(), CliError> {
     let png = sheet
         .draw()
@@ -84,12 +86,12 @@ pub fn write_contact_sheet(path: &Path, sheet: &ContactSheet) -> Result<(), CliE
     write(path, png)
 }
 
-/// Writes a remark to standard error; where that is gone there is nobody to read it.
+/// Writes a remark to standard error, ignoring errors.
 pub fn note(text: &str) {
     let _ = writeln!(std::io::stderr(), "airlight: {text}");
 }
 
-/// A span of time in words.
+/// Formats a duration.
 pub fn seconds(time: Duration) -> String {
     let s = time.as_secs_f64();
     match s {
@@ -99,7 +101,7 @@ pub fn seconds(time: Duration) -> String {
     }
 }
 
-/// A number of bytes in words.
+/// Formats a number of bytes.
 pub fn bytes(count: u64) -> String {
     match count {
         0..10_000 => format!("{count} bytes"),
@@ -108,7 +110,7 @@ pub fn bytes(count: u64) -> String {
     }
 }
 
-/// The names of a set with their descriptions, one a line, each after `indent`.
+/// The names of a set with their descriptions, one on each line after `indent`.
 pub fn named<T: Named>(indent: &str) -> String {
     let width = T::all().map(|value| value.name().len()).max().unwrap_or(0);
     T::all()

@@ -1,14 +1,14 @@
-//! What commands that draw or probe a scene share: threads, saving, the command line as text.
+//! Functions shared by commands that draw or probe a scene: threads, saving, the command line as text.
 
 use crate::error::CliError;
 use crate::report;
 use airlight::scene::Scene;
 use std::path::Path;
 
-/// Computes with a number of threads.
+/// Sets the number of threads.
 ///
 /// # Errors
-/// [`CliError::Failure`] where the system refuses.
+/// [`CliError::Failure`] if the threads cannot be started.
 pub fn use_threads(count: Option<u32>) -> Result<(), CliError> {
     let Some(count) = count else { return Ok(()) };
     rayon::ThreadPoolBuilder::new()
@@ -20,13 +20,13 @@ pub fn use_threads(count: Option<u32>) -> Result<(), CliError> {
 /// Writes a scene as TOML.
 ///
 /// # Errors
-/// [`CliError`] where the scene is wrong or the file cannot be written.
+/// [`CliError`] if the scene is invalid or the file cannot be written.
 pub fn save(scene: &Scene, path: &Path) -> Result<(), CliError> {
     scene.validate()?;
     report::write(path, scene.to_toml()?)
 }
 
-/// The command line, as a shell would take it.
+/// The command line, quoted for a shell.
 pub fn command_line() -> String {
     let quoted = |word: std::ffi::OsString| {
         let word = word.to_string_lossy().into_owned();

@@ -148,7 +148,7 @@ fn measure(folder: &Path, ending: &str, scale: f64) -> Result<(), ImageError> {
         let alone = || fog(profile.clone(), sun, ambient);
         let make = || FogOverlay::Fog(FogSource::Alone(alone()), None);
         let overlay = timed(&format!("{name}: prepare"), make);
-        // Made anew each time, as its table is filled while it is looked at.
+        // Created again each time, as its table is filled on demand.
         let overlay = || Overlay::new(&picture, &depth, &camera, 1.6, &overlay, Channels::Picture);
         let rows = timed(&format!("{name}: fog"), || {
             overlay().map(|overlay| rows(&picture, &overlay))

@@ -1,4 +1,4 @@
-//! From the values of a view to the values of a pixel.
+//! [`PixelChannels`]: conversion from the values of a view to those of a pixel.
 
 use airlight::scene::Channels;
 use airlight::spectrum::{RgbSpace, WavelengthGrid};
@@ -9,7 +9,7 @@ use airlight_image::output::spectral::SpectralLayout;
 /// Weights of the radiance at each wavelength (W m^-2 sr^-1 nm^-1) in linear red, green and blue (cd/m^2).
 pub type RgbWeights = Vec<[f32; 3]>;
 
-/// The values of a pixel: red, green and blue, and in spectral pictures the radiance at each wavelength after them.
+/// Values of a pixel: red, green and blue, followed by the radiance at each wavelength in spectral pictures.
 #[derive(Clone, Debug)]
 pub struct PixelChannels {
     space: RgbSpace,
@@ -25,10 +25,10 @@ impl PixelChannels {
         }
     }
 
-    /// The same and the radiance at the wavelengths of a grid.
+    /// Red, green and blue, and the radiance at the wavelengths of a grid.
     ///
     /// # Errors
-    /// [`ImageError::Setting`] for wavelengths that cannot name channels.
+    /// [`ImageError::Setting`] for wavelengths whose channel names would be equal.
     pub fn spectral(space: RgbSpace, grid: &WavelengthGrid) -> Result<Self, ImageError> {
         let layout = SpectralLayout::new(grid.wavelengths_nm())?;
         Ok(Self {
@@ -42,7 +42,7 @@ impl PixelChannels {
         self.space
     }
 
-    /// The channels of the views that these pixels are made from.
+    /// Channels of the views from which these pixels are computed.
     pub fn of_views(&self) -> Channels {
         match self.spectral {
             Some(_) => Channels::Spectral,
@@ -58,7 +58,7 @@ impl PixelChannels {
             .map_or(0, |(_, weights)| weights.len())
     }
 
-    /// Number of values of one direction of a view.
+    /// Number of values that a view returns for each direction.
     pub fn view_count(&self) -> usize {
         match &self.spectral {
             Some((_, weights)) => weights.len(),
@@ -66,12 +66,12 @@ impl PixelChannels {
         }
     }
 
-    /// Channel names of a spectral picture.
+    /// Channel names of a spectral picture; `None` for RGB.
     pub fn layout(&self) -> Option<&SpectralLayout> {
         self.spectral.as_ref().map(|(layout, _)| layout)
     }
 
-    /// Adds `scale` times the values of a view to a pixel.
+    /// Adds the values of a view, multiplied by `scale`, to a pixel.
     pub fn add(&self, values: &[f32], scale: f32, pixel: &mut [f32]) {
         match &self.spectral {
             None => pixel
@@ -91,7 +91,7 @@ impl PixelChannels {
         }
     }
 
-    /// Red, green and blue of the values of a view.
+    /// Converts values of a view to red, green and blue.
     pub fn to_rgb(&self, values: &[f64]) -> [f64; 3] {
         let mut rgb = [0.0; 3];
         match &self.spectral {
@@ -107,7 +107,7 @@ impl PixelChannels {
         rgb
     }
 
-    /// Primaries and white of the RGB space, as files state them.
+    /// Primaries and white point of the RGB space, for file headers.
     pub fn chromaticities(&self) -> Chromaticities {
         self.space.into()
     }
@@ -118,7 +118,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn spectra_are_kept_and_summed_to_their_colour() {
+    fn spectra_are_stored_and_converted_to_colour() {
         let grid = WavelengthGrid::fast();
         let channels = PixelChannels::spectral(RgbSpace::Srgb, &grid).unwrap();
         let spectrum: Vec<f32> = (0..grid.len()).map(|i| 0.01 + 0.001 * i as f32).collect();

@@ -1,4 +1,4 @@
-//! How much two pictures of one sky differ, direction by direction and in sum.
+//! Differences between two pictures of one sky, for each pixel and as statistics.
 
 use crate::image::RenderedImage;
 use crate::summary::short;
@@ -8,53 +8,53 @@ use airlight::spectrum::rgb;
 use serde::Serialize;
 use std::fmt::Write;
 
-/// The difference of two pictures of one frame, pixel by pixel.
+/// Difference of two pictures of one frame at each pixel.
 #[derive(Clone, Debug)]
 pub struct Difference {
-    /// Of luminance, percent of the first's; not a number where the first is black.
+    /// Difference of luminance, percent of the first; NaN where the first picture is black.
     pub percent: Vec<f64>,
-    /// CIEDE2000, under a white that the exposure of the first picture makes white.
+    /// CIEDE2000, relative to the luminance that is white in the exposure of the first picture.
     pub ciede2000: Vec<f64>,
 }
 
-/// Statistics over the sky above the horizon, each direction weighted by its solid angle.
+/// Statistics over the sky above the horizon, weighted by solid angle.
 #[derive(Clone, Debug, Serialize)]
 pub struct Statistics {
     /// Name of the reference.
     pub first: String,
-    /// Name of the other.
+    /// Name of the picture that is compared with the reference.
     pub second: String,
-    /// Elevation of the sun.
+    /// Elevation of the sun, degrees.
     pub sun_elevation_deg: f64,
-    /// Illuminance of the horizontal by both skies.
+    /// Illuminance of a horizontal surface by each sky, lx.
     pub sky_horizontal_lx: [f64; 2],
-    /// Factor by which the second was scaled.
+    /// Factor by which the second picture was scaled.
     pub second_scaled_by: f64,
-    /// Difference of luminance, percent of the first's.
+    /// Difference of luminance, percent of the first.
     pub luminance_percent: Spread,
-    /// CIEDE2000.
+    /// CIEDE2000 colour difference.
     pub ciede2000: Spread,
-    /// Time that both took, s.
+    /// Time to solve and draw each picture, s.
     pub seconds: [f64; 2],
 }
 
-/// How differences spread over the sky.
+/// Distribution of a difference over the sky.
 #[derive(Clone, Debug, Serialize)]
 pub struct Spread {
-    /// Mean, with its sign.
+    /// Signed mean.
     pub mean: f64,
     /// Root mean square.
     pub rms: f64,
     /// Bound of the absolute value over 95 % of the sky.
     pub within_95: f64,
-    /// The one with the largest absolute value.
+    /// Difference with the largest absolute value.
     pub worst: f64,
-    /// Where that is: azimuth and elevation, degrees.
+    /// Direction of [`Self::worst`]: azimuth and elevation, degrees.
     pub worst_at_deg: [f64; 2],
 }
 
 impl Difference {
-    /// Of `second`, `scale` times, from `first`; both are of one frame and RGB space.
+    /// Difference of `second`, multiplied by `scale`, from `first`. Both must have the same frame and RGB space.
     pub fn new(first: &RenderedImage, second: &RenderedImage, scale: f64) -> Self {
         let to_xyz = first.space.to_xyz_matrix();
         let exposure = f64::from(first.tone.exposure());
@@ -75,7 +75,7 @@ impl Difference {
         }
     }
 
-    /// Statistics of the difference of two pictures with names; `None` where they show no lit sky.
+    /// Statistics of the difference of two named pictures; `None` if they show no sky or only black sky.
     pub fn statistics(
         &self,
         (first, first_name): (&RenderedImage, &str),
@@ -99,7 +99,7 @@ impl Difference {
 }
 
 impl Spread {
-    /// Of the values of a picture's pixels above the horizon; `None` where it shows none.
+    /// Distribution of values over the pixels above the horizon; `None` if there are none.
     pub fn new(image: &RenderedImage, values: &[f64]) -> Option<Self> {
         let (width, height) = (image.frame.size().width(), image.frame.size().height());
         let pixels = (0..height).flat_map(|j| (0..width).map(move |i| (i, j)));
@@ -153,11 +153,11 @@ impl Spread {
 }
 
 impl Statistics {
-    /// As lines to read.
+    /// Report in lines of text.
     pub fn lines(&self) -> Vec<String> {
         let [first, second] = self.sky_horizontal_lx;
         let mut light = format!(
-            "sky on the horizontal: {} lx, {} lx ({:+.2} %)",
+            "sky on a horizontal surface: {} lx, {} lx ({:+.2} %)",
             short(first),
             short(second),
             100.0 * (second / first - 1.0)
@@ -216,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn a_picture_does_not_differ_from_itself_and_a_scale_is_a_percentage() {
+    fn equal_pictures_do_not_differ_and_scales_are_percentages() {
         let sky = image(|row| 100.0 + row as f32);
         let same = statistics(&sky, &sky, 1.0).unwrap();
         assert_eq!(
@@ -235,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_below_the_horizon_do_not_count_and_the_worst_is_found() {
+    fn rows_below_the_horizon_are_ignored_and_the_worst_is_found() {
         let sky = image(|_| 100.0);
         let ground = image(|row| if row < 4 { 100.0 } else { 900.0 });
         assert_eq!(

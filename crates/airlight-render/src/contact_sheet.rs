@@ -4,16 +4,16 @@
 //! title = "Suns through haze"
 //! columns = 3
 //!
-//! [scene]                     # for all pictures
+//! [scene]                     # shared by all pictures
 //! air.aod_550 = 0.3
 //! camera = { projection = "perspective", size = [320, 180] }
 //!
-//! [[cell]]                    # for each: a label, and what overrides the scene
+//! [[cell]]                    # a label, and overrides of the scene
 //! label = "10 degrees"
 //! sun.elevation_deg = 10
 //! ```
 //!
-//! What the common scene sets and the solver of one picture ignores holds for the pictures of the others.
+//! An input of the common scene that the solver of one picture ignores applies only to pictures whose solver honours it.
 
 use crate::error::RenderError;
 use crate::scene_file;
@@ -22,23 +22,23 @@ use airlight::scene::{RadianceModel, Scene, SceneDocument, SceneError};
 use serde::Deserialize;
 use std::path::Path;
 
-/// Most columns.
+/// Largest number of columns.
 const MOST_COLUMNS: usize = 64;
-/// Columns where the file does not say.
+/// Default number of columns.
 const COLUMNS: usize = 3;
 
-/// A contact sheet that a file describes.
+/// Description of a contact sheet.
 #[derive(Clone, Debug)]
 pub struct ContactSheetSpec {
-    /// Heading.
+    /// Heading above the pictures; may be empty.
     pub title: String,
-    /// Pictures in a row.
+    /// Number of pictures in a row.
     pub columns: usize,
     /// Label and scene of each picture.
     pub cells: Vec<(String, Scene)>,
 }
 
-/// What a file has besides scenes.
+/// Keys of a file besides scenes.
 #[derive(Debug, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 struct Sheet {
@@ -46,7 +46,7 @@ struct Sheet {
     columns: Option<usize>,
 }
 
-/// What a cell has besides its scene.
+/// Keys of a cell besides its scene.
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
 struct Cell {
@@ -54,15 +54,15 @@ struct Cell {
 }
 
 impl ContactSheetSpec {
-    /// Reads a file, with the files that its scenes name.
+    /// Reads a file and the files that its scenes name.
     ///
     /// # Errors
-    /// [`RenderError`] for files that cannot be read, and for what they say wrong, with its place.
+    /// [`RenderError`] for files that cannot be read, and for invalid keys and values, with their place.
     pub fn load(path: &Path) -> Result<Self, RenderError> {
         let text = scene_file::read_text(path)?;
         let folder = path.parent().unwrap_or(Path::new(""));
         let mut sheet = Self::from_toml(&text).map_err(|error| {
-            RenderError::setting(format!("the contact sheet `{}`: {error}", path.display()))
+            RenderError::setting(format!("contact sheet `{}`: {error}", path.display()))
         })?;
         for (_, scene) in &mut sheet.cells {
             scene_file::inline_files(scene, folder)?;
@@ -70,10 +70,10 @@ impl ContactSheetSpec {
         Ok(sheet)
     }
 
-    /// Reads a text; files that its scenes name are not read.
+    /// Parses a text. Files that its scenes name are not read.
     ///
     /// # Errors
-    /// [`SceneError`]: what is wrong, with its place.
+    /// [`SceneError`] for invalid keys and values, with their place.
     pub fn from_toml(text: &str) -> Result<Self, SceneError> {
         let document = SceneDocument::new(text)?;
         let sheet: Sheet = document.read(&[""], &["scene", "cell"])?;
@@ -93,7 +93,7 @@ impl ContactSheetSpec {
             let expected = "a whole number from 1 to 64";
             return Err(wrong("columns", expected, columns.to_string(), "3"));
         }
-        // One layer alone need not be a valid scene.
+        // A single layer need not be a valid scene.
         let common = document.read::<Scene>(&["scene"], &[])?.set_inputs();
         let mut own_inputs = Vec::with_capacity(count);
         let mut cells = (0..count)
@@ -107,7 +107,8 @@ impl ContactSheetSpec {
                     ("sequence", scene.sequence.is_some()),
                 ] {
                     if set {
-                        let (expected, got) = ("a picture on the sheet", "one of its own");
+                        let (expected, got) =
+                            ("a picture of the sheet", "a file or sequence of its own");
                         let key = format!("{path}.{key}");
                         return Err(wrong(&key, expected, got.to_owned(), "leaving it out"));
                     }
@@ -143,7 +144,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn cells_have_the_scene_of_all_and_their_own() {
+    fn cells_override_the_common_scene() {
         let text = "title = \"Suns\"\ncolumns = 2\n[scene]\nsun.elevation_deg = 5\nair.aod_550 = 0.3\n\
             [[cell]]\nlabel = \"low\"\n[[cell]]\nlabel = \"set\"\nsun.elevation_deg = -1.5\n\
             [[cell]]\nlabel = \"aside\"\nsun.azimuth_deg = 90\n";
@@ -165,13 +166,13 @@ mod tests {
     }
 
     #[test]
-    fn the_common_scene_holds_for_the_solvers_that_honour_it() {
+    fn inputs_of_the_common_scene_apply_to_solvers_that_honour_them() {
         let text = "[scene]\nair.ozone_du = 200\n[[cell]]\nlabel = \"orders\"\n\
             [[cell]]\nlabel = \"formula\"\nsolver.name = \"preetham\"\n\
             [[cell]]\nlabel = \"wrong\"\nsolver.name = \"preetham\"\nair.ozone_du = 300\n";
         let sheet = ContactSheetSpec::from_toml(text).unwrap();
         let ozone: Vec<_> = sheet.cells.iter().map(|(_, s)| s.air.ozone_du).collect();
-        // What a picture sets itself is left for the renderer to refuse.
+        // Inputs of a single picture are refused by the renderer.
         assert_eq!(ozone, [Some(200.0), None, Some(300.0)]);
         let alone = "[scene]\nair.ozone_du = 200\n[[cell]]\nsolver.name = \"preetham\"\n";
         let sheet = ContactSheetSpec::from_toml(alone).unwrap();
@@ -179,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_refused_with_its_place() {
+    fn errors_have_a_place() {
         for (text, part) in [
             ("tilte = 1", "line 1"),
             ("title = \"x\"", "expected a list of pictures"),

@@ -1,4 +1,4 @@
-//! Drawing a whole scene in one call: into memory or into files.
+//! Drawing a scene in one call, to memory or to files.
 
 use crate::error::RenderError;
 use crate::frame::WrittenFile;
@@ -8,10 +8,10 @@ use airlight_image::Control;
 use std::time::Instant;
 
 impl Renderer {
-    /// Draws the scene at its time into memory.
+    /// Draws the scene at its time to memory.
     ///
     /// # Errors
-    /// [`RenderError`] where the solver refuses the scene, for a cube, or where the caller asked to stop.
+    /// [`RenderError`] if the solver fails, for a cube, and if the caller cancelled.
     pub fn render(&self, control: Control<'_>) -> Result<RenderedImage, RenderError> {
         let frame = self.layout().only_frame()?;
         let begun = Instant::now();
@@ -25,10 +25,10 @@ impl Renderer {
         })
     }
 
-    /// Writes the scene's picture, or the pictures of its sequence that are not there yet, to `output.file`.
+    /// Writes the scene's picture, or the missing pictures of its sequence, to `output.file`.
     ///
     /// # Errors
-    /// [`RenderError`]; files already written stay, and nothing is left of an unfinished one.
+    /// [`RenderError`]; files that are already written remain, and unfinished ones are removed.
     pub fn write(&self, control: Control<'_>) -> Result<Vec<WrittenFile>, RenderError> {
         if let Some(sequence) = self.sequence()? {
             let missing = sequence.missing();

@@ -1,30 +1,30 @@
-//! [`RenderError`]: why something could not be drawn.
+//! [`RenderError`].
 
 use crate::objects::file::ObjectsError;
 use airlight::Cancelled;
 use airlight::scene::SceneError;
 use airlight_image::ImageError;
 
-/// Why something could not be drawn.
+/// Error of drawing a scene.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RenderError {
-    /// A file or a frame: it cannot be set up, read or written; or the caller asked to stop.
+    /// An invalid frame, a file that cannot be read or written, or cancellation by the caller.
     #[error(transparent)]
     Image(#[from] ImageError),
-    /// The light of the scene cannot be computed.
+    /// An invalid scene, or an error of its solver.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// The text of an objects file describes no objects.
+    /// Invalid objects.
     #[error(transparent)]
     Objects(#[from] ObjectsError),
-    /// A value or a combination of values that cannot be drawn; the sentence says what would be right.
+    /// An error with a complete message.
     #[error("{0}")]
     Setting(String),
 }
 
 impl RenderError {
-    /// A value of a scene that cannot be drawn: its key, what would be right, what was given, what to try instead.
+    /// An error for a value of a scene: key, values allowed, value given, and what to try instead.
     pub fn value(
         key: impl Into<String>,
         expected: impl Into<String>,
@@ -39,12 +39,12 @@ impl RenderError {
         })
     }
 
-    /// A value or a combination of values that cannot be drawn; the sentence says what would be right.
+    /// An error with a complete message.
     pub fn setting(sentence: impl Into<String>) -> Self {
         Self::Setting(sentence.into())
     }
 
-    /// Whether what was requested is refused, so that the same request fails again; otherwise a file or the system failed.
+    /// Whether the request is invalid, so that it would fail again; otherwise a file or the system failed.
     pub fn is_refusal(&self) -> bool {
         match self {
             Self::Image(error) => matches!(
@@ -57,7 +57,7 @@ impl RenderError {
         }
     }
 
-    /// True where the caller asked to stop.
+    /// Whether the caller cancelled.
     pub fn is_cancelled(&self) -> bool {
         match self {
             Self::Image(error) => error.is_cancelled(),

@@ -5,28 +5,28 @@ use airlight_image::tone::{Exposure, Metering};
 use airlight_image::{Frame, ImageError};
 use glam::DVec3;
 
-/// Columns of the small picture that is metered.
+/// Width of the small picture that is metered, pixels.
 pub const METERED_WIDTH: u32 = 96;
-/// Weight of ground relative to sky: a dark foreground must not wash out the sky above it.
+/// Weight of ground relative to sky, so that a dark foreground does not overexpose the sky.
 const GROUND_SHARE: f64 = 0.2;
-/// Stops by which a picture that is all sky is brighter than middle grey; one that is all ground (from space) by none.
+/// Stops by which a picture of sky only is brighter than middle grey; a picture of ground only (from space) is middle grey.
 const SKY_STOPS: f64 = 1.0;
-/// Luminance of a daylight sky, cd/m^2, and by how many stops a picture gets darker for each stop below it: dusk should
-/// look like dusk.
+/// Luminance of a daylight sky, cd/m^2, and stops by which a picture is darkened for each stop below it, so that dusk looks
+/// darker than day.
 const DAYLIGHT_CD_M2: f64 = 2000.0;
 const DARKER_PER_STOP: f64 = 0.1;
 
-/// How display pictures are exposed.
+/// Exposure of display pictures.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ExposureSettings {
     /// Exposure value at ISO 100 (sunny day 15, dusk 8); `None` is automatic.
     pub ev100: Option<f64>,
-    /// Stops by which to brighten (negative: darken).
+    /// Stops by which pictures are brightened (negative: darkened).
     pub brighten_stops: f64,
 }
 
 impl ExposureSettings {
-    /// The exposure where it does not depend on the picture.
+    /// The exposure if it does not depend on the picture.
     ///
     /// # Errors
     /// [`ImageError::Setting`] for an exposure value out of range.
@@ -36,8 +36,8 @@ impl ExposureSettings {
             .transpose()
     }
 
-    /// The exposure of a picture, metered where it is automatic. `pixels` are those of a small picture in `frame`, linear
-    /// in `space` (cd/m^2) and without the sun's disc; `is_ground` says which directions meet the ground.
+    /// The exposure of a picture, metered if it is automatic. `pixels` are those of a small picture in `frame`, linear in
+    /// `space` (cd/m^2) and without the sun's disc; `is_ground` returns whether a direction meets the ground.
     ///
     /// # Errors
     /// [`ImageError::Setting`] for an exposure out of range.
@@ -65,7 +65,7 @@ impl ExposureSettings {
             }
         }
         let metering = Metering::default();
-        // Where nothing is lit any exposure shows black.
+        // A black picture is black in any exposure.
         let typical = metering
             .typical_luminance(&samples)
             .unwrap_or(DAYLIGHT_CD_M2);
@@ -90,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn dusk_is_exposed_longer_than_day_and_still_looks_darker() {
+    fn dusk_has_more_exposure_than_day_and_is_still_darker() {
         let auto = ExposureSettings::default();
         let (day, dusk) = (exposure(auto, 4000.0), exposure(auto, 4.0));
         assert!(dusk > day);
@@ -98,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn stops_are_factors_of_two_and_a_fixed_exposure_ignores_the_picture() {
+    fn stops_are_factors_of_two_and_fixed_exposures_ignore_the_picture() {
         let with = |ev100, brighten_stops| ExposureSettings {
             ev100,
             brighten_stops,

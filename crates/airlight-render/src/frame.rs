@@ -1,4 +1,4 @@
-//! One moment of a scene, ready to be drawn.
+//! [`PreparedFrame`]: one moment of a scene, ready to draw.
 
 use crate::canvas::{Canvas, POLARISATION_CHANNELS, Passes};
 use crate::channels::PixelChannels;
@@ -27,14 +27,14 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// One moment of a scene: its light at the eye, and objects in it.
+/// One moment of a scene: the light at the eye, and objects.
 #[derive(Debug)]
 pub struct PreparedFrame<'r> {
     renderer: &'r Renderer,
     sun: SunAngles,
     time: Option<Moment>,
     view: Arc<dyn RadianceView>,
-    /// The same without noise.
+    /// View without noise.
     preview: Arc<dyn RadianceView>,
     channels: PixelChannels,
     light: Illuminances,
@@ -42,31 +42,31 @@ pub struct PreparedFrame<'r> {
     objects: Option<LitObjects>,
 }
 
-/// A file that has been written.
+/// A picture file that was written.
 #[derive(Clone, Debug)]
 pub struct WrittenFile {
-    /// Where.
+    /// Path of the file.
     pub path: PathBuf,
-    /// Width and height.
+    /// Width and height, pixels.
     pub size: Size,
-    /// Its bytes, and samples that the format could not hold.
+    /// Number of bytes, and of samples out of the format's range.
     pub written: Written,
 }
 
-/// What was written of one moment.
+/// Files written for one moment.
 #[derive(Clone, Debug, Default)]
 pub struct WrittenFrame {
-    /// The files, the main one last.
+    /// The files, with the main file last.
     pub files: Vec<WrittenFile>,
     /// Root mean square over the picture of the relative standard error of a pixel's green; `None` without noise.
     pub noise: Option<f64>,
 }
 
 impl Renderer {
-    /// One moment, ready to be drawn; `None`: that of the scene.
+    /// The scene at a time (`None`: at its own time), ready to draw.
     ///
     /// # Errors
-    /// [`RenderError::Scene`] where the solver refuses the sun.
+    /// [`RenderError::Scene`] for a sun outside the solver's domain.
     pub fn frame<'r>(
         &'r self,
         prepared: &dyn PreparedModel,
@@ -126,7 +126,7 @@ impl<'r> PreparedFrame<'r> {
         &self.sun
     }
 
-    /// The time that is shown; `None` for a sun without a time.
+    /// Time of the picture; `None` for a fixed sun.
     pub fn time(&self) -> Option<Moment> {
         self.time
     }
@@ -136,7 +136,7 @@ impl<'r> PreparedFrame<'r> {
         &self.light
     }
 
-    /// The light at the eye.
+    /// View of the solver.
     pub fn view(&self) -> &Arc<dyn RadianceView> {
         &self.view
     }
@@ -146,8 +146,8 @@ impl<'r> PreparedFrame<'r> {
         &self.channels
     }
 
-    /// Rows of a layer in a frame, without noise: by the solver itself, or for Monte Carlo by a deterministic one. Values are
-    /// `scale` times radiance or luminance.
+    /// Rows of a layer in a frame, without noise: by the scene's solver, or a deterministic solver instead of Monte Carlo. Values
+    /// are radiance or luminance multiplied by `scale`.
     pub fn rows<'s>(&'s self, frame: &Frame, layer: Layer, scale: f32) -> Box<dyn RowSource + 's> {
         let view = self.preview.as_ref();
         self.rows_over(frame, layer, SkyValues::View(view), scale)
@@ -174,7 +174,7 @@ impl<'r> PreparedFrame<'r> {
         }
     }
 
-    /// Red, green and blue of a small picture, row after row, without noise.
+    /// Red, green and blue of a small picture, row by row, without noise.
     pub fn pixels(&self, frame: &Frame, layer: Layer) -> Vec<[f32; 3]> {
         stored(self.rows(frame, layer, 1.0).as_ref(), frame)
     }
@@ -196,7 +196,7 @@ impl<'r> PreparedFrame<'r> {
         Ok(settings.metered((&frame, &pixels), space, is_ground)?)
     }
 
-    /// What makes display values of linear light.
+    /// The tone mapper from linear light to display values.
     ///
     /// # Errors
     /// As [`PreparedFrame::exposure`].
@@ -205,10 +205,10 @@ impl<'r> PreparedFrame<'r> {
         Ok(ToneMapper::new(exposure, self.renderer.tone_curve())?)
     }
 
-    /// Draws a frame into memory.
+    /// Draws a frame to memory.
     ///
     /// # Errors
-    /// [`RenderError`] for an exposure out of range, or where the caller asked to stop.
+    /// [`RenderError`] for an exposure out of range, and if the caller cancelled.
     pub fn image(&self, frame: &Frame, control: Control<'_>) -> Result<RenderedImage, RenderError> {
         let layer = self.renderer.layout().main_layer();
         let means = match self.view.sampler() {
@@ -216,7 +216,7 @@ impl<'r> PreparedFrame<'r> {
                 Canvas::check_memory(std::iter::once(frame.size()), &self.channels)?;
                 let mut canvas = Canvas::new(frame.size(), &self.channels, false);
                 let pass = Passes::new(sampler.paths()).at_once();
-                control.stage("following Monte Carlo paths", rows_of([frame]));
+                control.stage("tracing Monte Carlo paths", rows_of([frame]));
                 canvas.add(frame, sampler, &pass, control)?;
                 Some(canvas.means())
             }
@@ -241,7 +241,7 @@ impl<'r> PreparedFrame<'r> {
     /// Writes the files of a picture called `path`.
     ///
     /// # Errors
-    /// [`RenderError`]; files written before stay, and nothing is left of an unfinished one.
+    /// [`RenderError`]; files that are already written remain, and unfinished ones are removed.
     pub fn write(&self, path: &Path, control: Control<'_>) -> Result<WrittenFrame, RenderError> {
         let files = self.renderer.layout().files(path);
         match self.view.sampler() {
@@ -280,7 +280,7 @@ impl<'r> PreparedFrame<'r> {
         Ok(whole)
     }
 
-    /// Draws the files pass by pass; each pass replaces them.
+    /// Writes the files of a Monte Carlo picture in passes, each of which replaces them.
     fn write_passes(
         &self,
         files: &[PictureFile],
@@ -299,7 +299,7 @@ impl<'r> PreparedFrame<'r> {
             })
             .collect();
         let total = rows_of(drawn().map(|file| &file.frame));
-        // Writing is short beside the paths: its progress is not reported.
+        // Writing takes little time compared with tracing: its progress is not reported.
         let quiet = control.reporting_to(&SILENT);
         let mut whole = WrittenFrame::default();
         for pass in Passes::new(sampler.paths()) {
@@ -334,7 +334,7 @@ impl<'r> PreparedFrame<'r> {
         Ok(whole)
     }
 
-    /// Noise and polarisation beside a file, where the scene has them.
+    /// Writes noise and polarisation maps beside a file, if the scene requests them.
     fn write_maps(
         &self,
         file: &PictureFile,
@@ -391,7 +391,7 @@ impl<'r> PreparedFrame<'r> {
         })
     }
 
-    /// The tone mapper of the files' format.
+    /// Tone mapper for the format of the files.
     fn file_tone(&self) -> Result<ToneMapper, RenderError> {
         match self.renderer.layout().format() {
             Some(format) if !format.is_linear() => self.tone(),
@@ -413,7 +413,7 @@ impl<'r> PreparedFrame<'r> {
         }
     }
 
-    /// The objects whose depth is written beside a file: once where the sun's disc has a file of its own.
+    /// Objects whose depth is written beside a file; `None` for the second file of a separate sun's disc.
     fn depth_of(&self, file: &PictureFile) -> Option<&LitObjects> {
         let wanted = self.renderer.scene().output.depth_map == Some(true);
         self.objects
@@ -444,10 +444,10 @@ fn write_polarisation(
     )
 }
 
-/// Progress of one of several files.
+/// Progress of one file among several.
 struct Part<'a> {
     control: Control<'a>,
-    /// Rows of the files before.
+    /// Rows of earlier files.
     done: u64,
     /// Rows of all files.
     total: u64,
@@ -459,7 +459,7 @@ impl Progress for Part<'_> {
     }
 }
 
-/// Reports nothing.
+/// Progress callback that does nothing.
 static SILENT: fn(u64, u64) = |_, _| {};
 
 fn rows_of<'f>(frames: impl IntoIterator<Item = &'f Frame>) -> u64 {

@@ -1,20 +1,20 @@
-//! Light of sun and sky on surfaces at the eye.
+//! [`Illuminances`] by sun and sky at the eye.
 
 use airlight::scene::RadianceView;
 
 /// Illuminances at the eye, lx.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Illuminances {
-    /// Of the sun's disc on a surface that faces it.
+    /// Illuminance by the sun's disc on a surface that faces it.
     pub sun_normal_lx: f64,
-    /// Of the sun's disc on a horizontal surface.
+    /// Illuminance by the sun's disc on a horizontal surface.
     pub sun_horizontal_lx: f64,
-    /// Of the sky on a horizontal surface, without the sun's disc.
+    /// Illuminance by the sky on a horizontal surface, without the sun's disc.
     pub sky_horizontal_lx: f64,
 }
 
 impl Illuminances {
-    /// The illuminances of a view.
+    /// Illuminances of a view.
     pub fn of(view: &dyn RadianceView) -> Self {
         let mut values = vec![0.0; view.channel_count()];
         view.sun_irradiance(&mut values);

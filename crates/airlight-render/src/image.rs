@@ -1,4 +1,4 @@
-//! A picture in memory.
+//! [`RenderedImage`]: a picture in memory.
 
 use crate::illuminance::Illuminances;
 use airlight::scene::SunAngles;
@@ -10,24 +10,24 @@ use std::time::Duration;
 /// A picture in memory.
 #[derive(Clone, Debug)]
 pub struct RenderedImage {
-    /// Where its pixels look.
+    /// Projection and size.
     pub frame: Frame,
-    /// Their RGB space.
+    /// RGB space of the pixels.
     pub space: RgbSpace,
-    /// Linear, cd/m^2, row after row.
+    /// Linear red, green and blue, cd/m^2, row by row.
     pub rgb: Vec<[f32; 3]>,
     /// Position of the sun.
     pub sun: SunAngles,
     /// Illuminances at the eye.
     pub light: Illuminances,
-    /// What makes display values of it.
+    /// Tone mapper to display values.
     pub tone: ToneMapper,
-    /// Time to solve and to draw.
+    /// Time to solve and draw.
     pub time: Duration,
 }
 
 impl RenderedImage {
-    /// Display values, three bytes a pixel, row after row.
+    /// Display values, three bytes for each pixel, row by row.
     pub fn displayed(&self, tone: &ToneMapper) -> Vec<u8> {
         let width = self.frame.size().width() as usize;
         let mut rgb = vec![0; 3 * self.rgb.len()];

@@ -1,4 +1,4 @@
-//! Which files a picture consists of, and where each looks.
+//! [`Layout`]: files of a picture, with their frames and formats.
 
 use crate::error::RenderError;
 use crate::pixels::{is_spectral_path, tagged_path};
@@ -8,7 +8,7 @@ use airlight::spectrum::RgbSpace;
 use airlight_image::{Camera, CubeFace, Fisheye, Frame, PictureFormat, Projection, Size};
 use std::path::{Path, PathBuf};
 
-/// The frames of a picture, and how its files are named and encoded.
+/// Frames of a picture, and names and encoding of its files.
 #[derive(Clone, Debug)]
 pub struct Layout {
     format: Option<PictureFormat>,
@@ -21,20 +21,19 @@ pub struct Layout {
 /// One file to write.
 #[derive(Clone, Debug)]
 pub struct PictureFile {
-    /// Where.
+    /// Path of the file.
     pub path: PathBuf,
-    /// Where its pixels look.
+    /// Projection and size.
     pub frame: Frame,
-    /// What it shows.
+    /// Layer that it shows.
     pub layer: Layer,
 }
 
 impl Layout {
-    /// The layout of a scene's camera and output. A perspective camera looks towards the sun's azimuth where the scene does
-    /// not say.
+    /// Layout of a scene's camera and output. The default azimuth of a perspective camera is that of the sun.
     ///
     /// # Errors
-    /// [`RenderError`] where settings do not go together or numbers are out of range.
+    /// [`RenderError`] for settings that contradict each other, and for numbers out of range.
     pub fn new(
         camera: &CameraSpec,
         output: &OutputSpec,
@@ -74,7 +73,7 @@ impl Layout {
         if sun_disc == SunDiscPlacement::Separate && file.is_none() {
             return Err(RenderError::value(
                 "output.sun_disc",
-                "a file beside which to write a second one",
+                "a picture file, beside which the sun's disc is written",
                 name(),
                 "output.file, or in or out",
             ));
@@ -87,7 +86,7 @@ impl Layout {
             if set == Some(true) && file.is_none() {
                 return Err(RenderError::value(
                     map,
-                    "a file beside which to write it",
+                    "a picture file, beside which the map is written",
                     name(),
                     "output.file",
                 ));
@@ -101,7 +100,7 @@ impl Layout {
         })
     }
 
-    /// The format of the files; `None` for a picture that is not written.
+    /// Format of the files; `None` for a picture without a file.
     pub fn format(&self) -> Option<PictureFormat> {
         self.format
     }
@@ -111,7 +110,7 @@ impl Layout {
         self.is_spectral
     }
 
-    /// What the main file shows.
+    /// Layer of the main file.
     pub fn main_layer(&self) -> Layer {
         match self.sun_disc {
             SunDiscPlacement::In => Layer::All,
@@ -119,7 +118,7 @@ impl Layout {
         }
     }
 
-    /// The files of a picture called `path`, in the order to write them: that of this name last.
+    /// Files of a picture called `path` in the order in which they are written; that with this name is last.
     pub fn files(&self, path: &Path) -> Vec<PictureFile> {
         let layers: &[(Option<&str>, Layer)] = match self.sun_disc {
             SunDiscPlacement::Separate => &[(Some("sun"), Layer::Disc), (None, Layer::Sky)],
@@ -142,10 +141,10 @@ impl Layout {
         files
     }
 
-    /// The frame of a picture that has only one.
+    /// The single frame of a picture.
     ///
     /// # Errors
-    /// [`RenderError`] for a cube, which has six.
+    /// [`RenderError`] for a cube map, which has six.
     pub fn only_frame(&self) -> Result<Frame, RenderError> {
         match self.frames[..] {
             [(_, frame)] => Ok(frame),
@@ -158,7 +157,7 @@ impl Layout {
         }
     }
 
-    /// The picture in small, at most `width` pixels wide; for a cube, the whole sphere.
+    /// Frame of a small overview, at most `width` pixels wide; for a cube map, of the whole sphere.
     ///
     /// # Errors
     /// As [`Frame::new`].
@@ -189,7 +188,7 @@ impl Layout {
     }
 }
 
-/// Whether an output has a channel for each wavelength: it says so, or its name ends in `.spectral.exr`.
+/// Whether an output has a channel for each wavelength: it is set, or the name ends in `.spectral.exr`.
 pub(crate) fn is_spectral(output: &OutputSpec) -> bool {
     output.spectral == Some(true)
         || output
@@ -238,7 +237,7 @@ fn frames(
     Ok(vec![(None, Frame::new(projection, width, height)?)])
 }
 
-/// Refuses settings of the camera that its projection does not use.
+/// Refuses camera settings that the projection does not use.
 fn refuse_unused(camera: &CameraSpec, kind: ProjectionKind) -> Result<(), RenderError> {
     use ProjectionKind::{Equirectangular, Fisheye, Perspective};
     let set: [(bool, &str, &[ProjectionKind]); 4] = [
@@ -330,7 +329,7 @@ mod tests {
     }
 
     #[test]
-    fn settings_that_do_not_go_together_are_refused() {
+    fn contradictory_settings_are_refused() {
         use ProjectionKind::{Equirectangular, Fisheye, Perspective};
         let size = |kind, width, height| CameraSpec {
             size: Some([width, height]),

@@ -1,16 +1,15 @@
 //! Drawing scenes with Airlight.
 //!
-//! [`Renderer`] draws a [`Scene`](airlight::scene::Scene) by whichever solver or published model the scene names: into files,
-//! into memory, or a sequence of times.
+//! [`Renderer`] draws a [`Scene`](airlight::scene::Scene) with the solver or published model that the scene names, to files or
+//! to memory, at one time or at a sequence of times.
 //!
-//! - [`error`]: why something could not be drawn; [`scene_file`]: scenes from files; [`summary`]: scenes in words.
-//! - [`layout`], [`channels`], [`pixels`]: which files a picture consists of, the values of a pixel, and points within one.
-//! - [`sun_disc`], [`sky_rows`], [`objects`]: sky, sun's disc and solids, row by row; [`canvas`]: Monte Carlo, pass by pass.
-//! - [`illuminance`], [`exposure`], [`metadata`]: what is measured and said of a picture.
-//! - [`renderer`], [`frame`], [`image`], [`sequence`]: the scene, one moment of it, a picture in memory, many moments.
-//! - [`compare`], [`contact_sheet`], [`probe`]: two solvers, many scenes, light in numbers.
-//! - [`overlay`]: fog over a picture and its depth map; [`batch`]: the same over many pictures, with varied settings and a
-//!   manifest.
+//! - [`error`]: errors; [`scene_file`]: scenes from files; [`summary`]: descriptions of scenes in words.
+//! - [`layout`], [`channels`], [`pixels`]: files of a picture, values of a pixel, and directions within a pixel.
+//! - [`sun_disc`], [`sky_rows`], [`objects`]: rows of sky, sun's disc and objects; [`canvas`]: Monte Carlo in passes.
+//! - [`illuminance`], [`exposure`], [`metadata`]: illuminances, exposure and metadata of a picture.
+//! - [`renderer`], [`frame`], [`image`], [`sequence`]: a scene, one moment of it, a picture in memory, and many moments.
+//! - [`compare`], [`contact_sheet`], [`probe`]: comparison of solvers, pictures of several scenes, and light as numbers.
+//! - [`overlay`]: fog over a picture with a depth map; [`batch`]: fog over many pictures, with varied settings and a manifest.
 
 pub mod batch;
 pub mod canvas;

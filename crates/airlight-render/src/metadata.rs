@@ -1,4 +1,4 @@
-//! What picture files say about themselves.
+//! Metadata of picture files.
 
 use crate::channels::PixelChannels;
 use crate::illuminance::Illuminances;
@@ -13,7 +13,7 @@ use airlight_image::output::Metadata;
 /// Program and version.
 pub const SOFTWARE: &str = concat!("airlight ", env!("CARGO_PKG_VERSION"));
 
-/// One moment of a scene, as the metadata of its files describe it.
+/// Data of one moment of a scene from which the metadata of its files are written.
 pub(crate) struct FrameMetadata<'a> {
     pub renderer: &'a Renderer,
     pub time: Option<Moment>,
@@ -23,7 +23,7 @@ pub(crate) struct FrameMetadata<'a> {
 }
 
 impl FrameMetadata<'_> {
-    /// The metadata of a file that shows a layer.
+    /// Metadata of a file that shows a layer.
     pub fn of_layer(&self, layer: Layer) -> Metadata {
         let renderer = self.renderer;
         let scene = renderer.resolved();
@@ -64,7 +64,7 @@ impl FrameMetadata<'_> {
         add(
             "illuminance",
             format!(
-                "sun {} lx on a surface facing it, {} lx on the horizontal; sky {} lx on the horizontal",
+                "sun {} lx on a surface facing it, {} lx on a horizontal surface; sky {} lx on a horizontal surface",
                 short(light.sun_normal_lx),
                 short(light.sun_horizontal_lx),
                 short(light.sky_horizontal_lx)
@@ -87,8 +87,8 @@ impl FrameMetadata<'_> {
 fn sun_disc(layer: Layer) -> &'static str {
     match layer {
         Layer::All => "in the picture",
-        Layer::Sky => "left out of the picture",
-        Layer::Disc => "alone in the picture",
+        Layer::Sky => "not in the picture",
+        Layer::Disc => "only the sun's disc in the picture",
     }
 }
 
@@ -101,5 +101,5 @@ fn units(is_spectral: bool, scale: f64) -> String {
         true => format!(", and {factor}spectral radiance in W m^-2 sr^-1 nm^-1"),
         false => String::new(),
     };
-    format!("linear light: {factor}cd/m^2, R = G = B = 1 being 1 cd/m^2 of the white{spectral}")
+    format!("linear light: {factor}cd/m^2, R = G = B = 1 is 1 cd/m^2 of the white{spectral}")
 }

@@ -1,29 +1,29 @@
-//! Pixels of a frame: points within one, how far one reaches, and names of files beside a picture.
+//! Directions within pixels of a frame, angular size of pixels, and names of files beside a picture.
 
 use airlight_image::Frame;
 use glam::DVec3;
 use std::path::{Path, PathBuf};
 
-/// Points across a pixel that an edge runs through; the pixel gets their mean.
+/// Number of samples across a pixel that an edge crosses; the pixel is their mean.
 const SUBPIXELS: u32 = 4;
-/// Points of such a pixel.
+/// Number of samples of such a pixel.
 pub const POINTS: u32 = SUBPIXELS * SUBPIXELS;
 
-/// Ending of spectral EXR files.
+/// Extension of spectral EXR files.
 const SPECTRAL_ENDING: &str = ".spectral.exr";
 
-/// Directions at evenly spaced points of a pixel, row by row, without those that lie outside the projection.
+/// Directions at evenly spaced points of a pixel, row by row, without those outside the projection.
 pub fn directions_within(frame: &Frame, (i, j): (u32, u32)) -> impl Iterator<Item = DVec3> {
     let at = |n: u32, k: u32| f64::from(n) + (f64::from(k) + 0.5) / f64::from(SUBPIXELS);
     (0..POINTS).filter_map(move |k| frame.direction(at(i, k % SUBPIXELS), at(j, k / SUBPIXELS)))
 }
 
-/// An upper bound of the angle from a pixel's centre to its corners, rad: 1.5 times the greatest at 33 by 33 pixels.
+/// Upper bound of the angle from a pixel's centre to its corners, rad: 1.5 times the largest of 33 by 33 pixels.
 pub fn pixel_reach(frame: &Frame) -> f64 {
     const STEPS: u32 = 32;
     let size = frame.size();
     if size.width() < 8 || size.height() < 8 {
-        // Pixels this large may bulge beyond their corners.
+        // Pixels of this size may extend beyond their corners.
         return std::f64::consts::PI;
     }
     let mut most = 0.0f64;
@@ -47,14 +47,14 @@ pub fn pixel_reach(frame: &Frame) -> f64 {
     1.5 * most
 }
 
-/// Whether a path ends in `.spectral.exr`, in small or large letters: a file with one channel a wavelength.
+/// Whether a path ends in `.spectral.exr`, ignoring case: a file with one channel for each wavelength.
 pub fn is_spectral_path(path: &Path) -> bool {
     file_name(path)
         .to_ascii_lowercase()
         .ends_with(SPECTRAL_ENDING)
 }
 
-/// The same path with a tag before its ending: `sky.sun.exr` of `sky.exr`.
+/// The path with a tag before its extension, such as `sky.sun.exr` for `sky.exr`.
 pub fn tagged_path(path: &Path, tag: &str) -> PathBuf {
     let name = file_name(path);
     let ending = match is_spectral_path(path) {
@@ -77,7 +77,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn tags_go_before_the_ending() {
+    fn tags_are_inserted_before_the_extension() {
         for (path, tagged) in [
             ("a/sky.exr", "a/sky.sun.exr"),
             ("sky.0001.exr", "sky.0001.sun.exr"),
@@ -89,7 +89,7 @@ mod tests {
     }
 
     #[test]
-    fn no_point_of_a_pixel_lies_beyond_its_reach() {
+    fn all_points_of_a_pixel_lie_within_its_reach() {
         let frame = Frame::equirectangular(32).unwrap();
         let reach = pixel_reach(&frame);
         for pixel in [(0, 0), (31, 15), (32, 16), (63, 31)] {

@@ -29,9 +29,9 @@ use std::sync::Arc;
 /// # Ok::<(), airlight_render::RenderError>(())
 /// ```
 ///
-/// [`Renderer::write`] and [`Renderer::render`] do everything. In steps: [`Renderer::prepare`] solves for the light under a
-/// range of suns, [`Renderer::frame`] is one moment of it, which can be written, drawn into memory or previewed, and
-/// [`Renderer::sequence`] lists the moments.
+/// [`Renderer::write`] and [`Renderer::render`] draw a scene in one call. In steps: [`Renderer::prepare`] solves for the light
+/// under a range of suns, [`Renderer::frame`] returns one moment, which can be written, drawn to memory or previewed, and
+/// [`Renderer::sequence`] lists the moments of a sequence.
 #[derive(Clone, Debug)]
 pub struct Renderer {
     scene: Scene,
@@ -43,13 +43,13 @@ pub struct Renderer {
 }
 
 impl Renderer {
-    /// Checks a scene, and everything that can be checked without solving for light.
+    /// Checks a scene as far as possible without solving for light.
     ///
     /// # Errors
-    /// [`RenderError`] for values out of range or that do not go together, and for inputs that the solver would ignore.
+    /// [`RenderError`] for values out of range, values that contradict each other, and inputs that the solver would ignore.
     pub fn new(scene: &Scene) -> Result<Self, RenderError> {
         let mut scene = scene.clone();
-        // By its name, too.
+        // Also selected by the file name.
         if is_spectral(&scene.output) {
             scene.output.spectral = Some(true);
         }
@@ -75,7 +75,7 @@ impl Renderer {
         Ok(renderer)
     }
 
-    /// The same with a named text in the metadata of every file.
+    /// The same renderer with a named text in the metadata of every file.
     pub fn with_text(mut self, name: impl Into<String>, text: impl Into<String>) -> Self {
         self.texts.push((name.into(), text.into()));
         self
@@ -86,7 +86,7 @@ impl Renderer {
         &self.scene
     }
 
-    /// The scene in the terms of the physics.
+    /// The scene in physical quantities.
     pub fn resolved(&self) -> &ResolvedScene {
         &self.resolved
     }
@@ -96,7 +96,7 @@ impl Renderer {
         self.model
     }
 
-    /// Frames and names of files.
+    /// Frames, names and formats of the files.
     pub fn layout(&self) -> &Layout {
         &self.layout
     }
@@ -106,7 +106,7 @@ impl Renderer {
         self.objects.as_ref()
     }
 
-    /// The sun at a time; `None`: at that of the scene.
+    /// Position of the sun at a time, or at that of the scene for `None`.
     ///
     /// # Errors
     /// [`RenderError::Scene`] for a time outside the range of the ephemeris.
@@ -117,15 +117,15 @@ impl Renderer {
         })
     }
 
-    /// The smallest range of suns that serves one sun.
+    /// The smallest range of suns that includes one sun.
     pub fn suns_near(&self, sun: &SunAngles) -> SunCoverage {
         SunCoverage::near(sun.elevation_deg, self.resolved.observer_altitude_m)
     }
 
-    /// Solves for the light under a range of suns: what all moments share.
+    /// Solves for the light under a range of suns, which all moments share.
     ///
     /// # Errors
-    /// [`RenderError::Scene`] where the solver refuses the scene or the caller asked to stop.
+    /// [`RenderError::Scene`] if the solver fails or the caller cancelled.
     pub fn prepare(
         &self,
         suns: SunCoverage,
@@ -135,10 +135,10 @@ impl Renderer {
         Ok(self.model.prepare(&self.resolved, suns, control)?)
     }
 
-    /// The file that the scene writes.
+    /// The scene's output file.
     ///
     /// # Errors
-    /// [`RenderError`] where it names none.
+    /// [`RenderError`] if the scene has none.
     pub fn output_path(&self) -> Result<&Path, RenderError> {
         self.scene
             .output
@@ -155,7 +155,7 @@ impl Renderer {
             })
     }
 
-    /// How display pictures are exposed.
+    /// Exposure settings of display pictures.
     pub fn exposure(&self) -> ExposureSettings {
         let output = &self.scene.output;
         ExposureSettings {
@@ -175,7 +175,7 @@ impl Renderer {
         }
     }
 
-    /// How files are encoded, without metadata.
+    /// Encoding of the files, without metadata.
     pub fn picture_options(&self) -> PictureOptions {
         use airlight::scene::{ExrCompression as Packing, SamplePrecision};
         let output = &self.scene.output;
@@ -207,7 +207,7 @@ impl Renderer {
         }
     }
 
-    /// Projection and format of the files in words: "equirectangular, float EXR".
+    /// Projection and format of the files for reports, such as "equirectangular, float EXR".
     pub fn kind(&self) -> String {
         let format = match self.layout.format() {
             Some(format) => format.describe(&self.picture_options()),

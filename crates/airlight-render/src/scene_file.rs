@@ -1,30 +1,29 @@
-//! Scenes from files, with the files that they name.
+//! Reading scenes and the files that they name.
 
 use crate::error::RenderError;
 use airlight::scene::{Scene, SceneError};
 use airlight_image::ImageError;
 use std::path::Path;
 
-/// Reads a scene from a TOML file, with the atmosphere and the objects that it names.
+/// Reads a scene from a TOML file, and the atmosphere and objects that it names.
 ///
 /// # Errors
-/// [`RenderError`] for files that cannot be read, and for what they say wrong.
+/// [`RenderError`] for files that cannot be read or are invalid.
 pub fn load(path: &Path) -> Result<Scene, RenderError> {
-    let in_file = |error: SceneError| {
-        RenderError::setting(format!("the scene `{}`: {error}", path.display()))
-    };
+    let in_file =
+        |error: SceneError| RenderError::setting(format!("scene `{}`: {error}", path.display()));
     let text = read_text(path)?;
     let mut scene = Scene::from_toml(&text).map_err(in_file)?;
     inline_files(&mut scene, path.parent().unwrap_or(Path::new("")))?;
     Ok(scene)
 }
 
-/// Reads the atmosphere and the objects that a scene names; their paths are relative to a folder.
+/// Reads the atmosphere and the objects that a scene names, with paths relative to a folder.
 ///
 /// # Errors
-/// [`RenderError`] for files that cannot be read, and for what they say wrong.
+/// [`RenderError`] for files that cannot be read or are invalid.
 pub fn inline_files(scene: &mut Scene, folder: &Path) -> Result<(), RenderError> {
-    // What the loader's own error was: the scene keeps only its text.
+    // Error of the loader, of which the scene's error has only the text.
     let mut unreadable = None;
     let inlined = scene.inline_files(|name| {
         read_text(&folder.join(name)).map_err(|error| {
@@ -39,10 +38,10 @@ pub fn inline_files(scene: &mut Scene, folder: &Path) -> Result<(), RenderError>
     }
 }
 
-/// The text of a file.
+/// Reads a text file.
 ///
 /// # Errors
-/// [`RenderError`] where it cannot be read or is not UTF-8.
+/// [`RenderError`] if it cannot be read or is not UTF-8.
 pub fn read_text(path: &Path) -> Result<String, RenderError> {
     let bytes = std::fs::read(path).map_err(|source| ImageError::File {
         action: "read",
@@ -51,7 +50,7 @@ pub fn read_text(path: &Path) -> Result<String, RenderError> {
     })?;
     String::from_utf8(bytes).map_err(|error| {
         RenderError::setting(format!(
-            "`{}` must be a text in UTF-8: it is not at byte {}",
+            "`{}`: expected text in UTF-8, got an invalid byte at position {}",
             path.display(),
             error.utf8_error().valid_up_to()
         ))

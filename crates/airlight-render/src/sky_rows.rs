@@ -1,4 +1,4 @@
-//! Sky and sun's disc, row by row.
+//! Rows of sky and sun's disc.
 
 use crate::channels::PixelChannels;
 use crate::pixels::{directions_within, pixel_reach};
@@ -8,27 +8,27 @@ use airlight_image::frame::FrameRows;
 use airlight_image::{Frame, Projection, RowSource};
 use glam::DVec3;
 
-/// Which part of the light is drawn.
+/// Part of the light that is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Layer {
     /// Sky, objects and the sun's disc.
     All,
-    /// Sky and objects without the disc.
+    /// Sky and objects without the sun's disc.
     Sky,
-    /// The disc alone.
+    /// Only the sun's disc.
     Disc,
 }
 
-/// Where the radiance of the sky comes from.
+/// Source of the sky's radiance.
 #[derive(Clone, Copy, Debug)]
 pub enum SkyValues<'a> {
-    /// A view, which is asked for each direction.
+    /// A view, evaluated in each direction.
     View(&'a dyn RadianceView),
-    /// The values of all pixels in the channels of a view, row after row.
+    /// Values of all pixels in the channels of a view, row by row.
     Stored(&'a [f32]),
 }
 
-/// The sky of one moment in one frame.
+/// Rows of the sky in one frame.
 #[derive(Debug)]
 pub struct SkyRows<'a> {
     sky: Option<SkyValues<'a>>,
@@ -41,7 +41,7 @@ pub struct SkyRows<'a> {
 }
 
 impl<'a> SkyRows<'a> {
-    /// Rows of a layer of `frame`; values are `scale` times radiance or luminance.
+    /// Rows of a layer of `frame`; values are radiance or luminance multiplied by `scale`.
     pub fn new(
         frame: &Frame,
         layer: Layer,
@@ -92,7 +92,7 @@ impl<'a> SkyRows<'a> {
         }
     }
 
-    /// The mean over a pixel that the horizon runs through.
+    /// Mean over a pixel that the horizon crosses.
     fn average_pixel(&self, view: &dyn RadianceView, pixel: (u32, u32), values: &mut [f32]) {
         let directions: Vec<DVec3> = directions_within(self.rows.frame(), pixel).collect();
         let count = values.len();
@@ -143,7 +143,7 @@ impl RowSource for SkyRows<'_> {
     }
 }
 
-/// The faster way for projections whose columns keep their azimuth.
+/// Row sampler for projections with constant azimuth in each column; `None` for others.
 fn row_sampler(frame: &Frame, view: &dyn RadianceView) -> Option<Box<dyn RowSampler>> {
     let Projection::Equirectangular { center_azimuth_deg } = *frame.projection() else {
         return None;
@@ -193,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_drawn_beside_a_fisheyes_circle_nor_of_a_disc_that_is_hidden() {
+    fn pixels_outside_a_fisheye_and_hidden_discs_are_black() {
         let view = TestView::with_sun(axes::direction(0.0, 30.0));
         let frame = Frame::new(Projection::AngularFisheye(Fisheye::ALL_SKY), 9, 9).unwrap();
         let first = row(&frame, SkyValues::View(&view), Layer::All, 0);
@@ -204,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn stored_values_are_drawn_instead_of_the_view() {
+    fn stored_values_replace_the_view() {
         let frame = Frame::equirectangular(2).unwrap();
         let stored: Vec<f32> = (0..3 * 4 * 2).map(|i| i as f32).collect();
         let second = row(&frame, SkyValues::Stored(&stored), Layer::Sky, 1);

@@ -1,11 +1,11 @@
-//! Scenes and numbers in words, for the metadata of files and for reports.
+//! Descriptions of scenes and formatting of numbers, for metadata and reports.
 
 use airlight::Named;
 use airlight::atmosphere::DensityProfile;
 use airlight::fog::FogScattering;
 use airlight::scene::FogLayers;
 
-/// A number with 4 significant digits.
+/// Formats a number with 4 significant digits.
 pub fn short(value: f64) -> String {
     let size = value.abs();
     match size {
@@ -19,7 +19,7 @@ pub fn short(value: f64) -> String {
     }
 }
 
-/// Fog in words: its layers, and which light it scatters where that is not all.
+/// Describes a fog: its layers, and orders of scattering unless all are computed.
 pub fn fog(fog: &FogLayers) -> String {
     let layers = fog.layers.iter().map(|layer| {
         let extent = match layer.profile {
@@ -38,7 +38,7 @@ pub fn fog(fog: &FogLayers) -> String {
                 };
                 format!("scale height {} m{from}", short(scale_height_m))
             }
-            _ => "the same at all heights".to_owned(),
+            _ => "constant density".to_owned(),
         };
         format!(
             "extinction {} 1/m, {extent}, droplets {} ({})",
@@ -49,8 +49,8 @@ pub fn fog(fog: &FogLayers) -> String {
     });
     let mut text = layers.collect::<Vec<_>>().join("; ");
     text.push_str(match fog.scattering {
-        FogScattering::Single => "; light scattered once",
-        FogScattering::Undimmed => "; light scattered once, the sun not dimmed",
+        FogScattering::Single => "; single scattering",
+        FogScattering::Undimmed => "; single scattering of unattenuated sunlight",
         _ => "",
     });
     text

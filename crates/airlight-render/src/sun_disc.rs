@@ -1,10 +1,10 @@
-//! The sun's disc in a picture: true in size, darkened towards its limb, dimmed and cut off by air and horizon, and exact
-//! in irradiance for pixels of every size.
+//! The sun's disc in a picture: of its true size, with limb darkening, attenuated by the air, hidden below the horizon, and with
+//! the correct irradiance for pixels of any size.
 //!
-//! A pixel gets the mean of the disc's radiance over its solid angle. The integral is a sum over cells: a pixel is
-//! halved across its longer side until its parts lie outside the disc, or are small compared with the disc (and, where an
-//! edge of the disc runs through, with the pixel), and each part counts with the radiance at its centre and its own solid
-//! angle. The sum of radiance times solid angle over all pixels is then the disc's irradiance to 0.3 %.
+//! A pixel is the mean of the disc's radiance over its solid angle. The integral is a sum over cells: a pixel is halved across its
+//! longer side until the parts lie outside the disc or are small compared with the disc (and, if they contain an edge of the disc,
+//! with the pixel); each part contributes the radiance at its centre times its solid angle. The sum of radiance times solid angle
+//! over all pixels matches the disc's irradiance to 0.3 %.
 
 use crate::channels::PixelChannels;
 use airlight::axes;
@@ -13,12 +13,12 @@ use airlight_image::Frame;
 use glam::DVec3;
 use std::sync::Arc;
 
-/// Most halvings of a pixel.
+/// Largest number of halvings of a pixel.
 const DEEPEST: u32 = 48;
-/// The least part of the disc above the horizon that is drawn, rad.
+/// Smallest height of the visible part of the disc that is drawn, rad.
 const LEAST_RAD: f64 = 1e-7;
 
-/// The sun's disc of a view, to be added to pictures.
+/// The sun's disc of a view, which can be added to pictures.
 #[derive(Clone, Debug)]
 pub struct SunDiscImage {
     view: Arc<dyn RadianceView>,
@@ -35,7 +35,7 @@ struct Cell {
     halvings: u32,
 }
 
-/// Directions on the disc and the solid angles that they stand for.
+/// Directions on the disc with their solid angles.
 #[derive(Default)]
 struct Samples {
     directions: Vec<DVec3>,
@@ -43,7 +43,7 @@ struct Samples {
 }
 
 impl SunDiscImage {
-    /// The disc of a view; `None` where the planet hides all of it.
+    /// The disc of a view; `None` if the planet hides it.
     pub fn new(view: Arc<dyn RadianceView>) -> Option<Self> {
         let sun = view.sun();
         let radius_rad = view.disc().angular_radius_rad;
@@ -56,8 +56,8 @@ impl SunDiscImage {
         })
     }
 
-    /// Adds the disc to a row of pixels that look along `directions`; values are `scale` times the radiance. A pixel's
-    /// corners lie no farther than `pixel_reach` (rad) from its centre.
+    /// Adds the disc to a row of pixels with these directions; values are radiance multiplied by `scale`. Corners of a pixel must
+    /// lie within `pixel_reach` (rad) of its centre.
     pub fn add_row(
         &self,
         (frame, y): (&Frame, u32),
@@ -118,7 +118,7 @@ impl SunDiscImage {
         let (Some(centre), (Some(a), Some(b), Some(c), Some(d))) =
             (at(middle.0, middle.1), corners)
         else {
-            // The rim of a fisheye: a few halvings show what lies inside.
+            // Edge of a fisheye: a few halvings determine which parts lie inside.
             if cell.halvings < 10 {
                 for half in cell.halves(cell.halvings.is_multiple_of(2)) {
                     self.sample_cell(frame, half, samples);
@@ -142,7 +142,7 @@ impl SunDiscImage {
         }
     }
 
-    /// Counts a cell if it is small enough, or misses the disc.
+    /// Adds a cell to the samples if it is small enough. Returns whether the cell is done: added, or outside the disc.
     fn is_done(
         &self,
         centre: DVec3,
@@ -199,7 +199,7 @@ impl Cell {
     }
 }
 
-/// How far the middle of an edge lies from both its ends: the ends of a full circle are one point.
+/// Length of an edge through its midpoint minus the distance of its ends, which coincide for a full circle.
 fn edge_bulge(a: DVec3, b: DVec3, middle: Option<DVec3>) -> f64 {
     middle.map_or(0.0, |m| {
         (m.distance(a) + m.distance(b) - a.distance(b)).max(0.0)
@@ -214,7 +214,7 @@ mod tests {
     use airlight::spectrum::RgbSpace;
     use airlight_image::{Camera, CubeFace, Fisheye, Projection, Size};
 
-    /// Irradiance of the disc in a picture over that of the view.
+    /// Irradiance of the disc in a picture relative to that of the view.
     fn share(view: &TestView, frame: &Frame) -> f64 {
         let disc = SunDiscImage::new(Arc::new(view.clone())).unwrap();
         let channels = PixelChannels::rgb(RgbSpace::Srgb);
@@ -234,7 +234,7 @@ mod tests {
     }
 
     #[test]
-    fn the_disc_has_the_suns_irradiance_at_every_size() {
+    fn irradiance_is_correct_for_pixels_of_any_size() {
         for ((width, height), elevation_deg, azimuth_deg) in [
             ((2, 1), 30.0, 200.0),
             ((16, 8), 45.0, 90.0),
@@ -258,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn the_disc_has_the_suns_irradiance_in_every_projection() {
+    fn irradiance_is_correct_in_all_projections() {
         let size = Size::new(200, 100).unwrap();
         let camera = Camera {
             roll_deg: 20.0,

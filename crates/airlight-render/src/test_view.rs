@@ -1,4 +1,4 @@
-//! A view for tests: an even sky over even ground, and an even sun.
+//! A view for tests: uniform sky, ground and sun.
 
 use airlight::axes;
 use airlight::monte_carlo::{Estimate, PolarisedEstimate};
@@ -9,7 +9,7 @@ use glam::DVec3;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-/// An even sky over even ground without air, and a sun that is as bright at its limb as in its middle; linear sRGB.
+/// Uniform sky over uniform ground without air, and a sun without limb darkening; linear sRGB.
 #[derive(Clone, Debug)]
 pub struct TestView {
     sun: DVec3,
@@ -23,10 +23,10 @@ impl TestView {
     pub const GROUND: f32 = 200.0;
     /// Radiance of the sun's disc.
     pub const SUN: f32 = 1e9;
-    /// Light scattered in by a metre of air before objects.
+    /// Path radiance of a metre of air in front of objects.
     pub const AIR_PER_M: f32 = 0.5;
 
-    /// Under a sun in a direction.
+    /// A view with the sun in a direction.
     pub fn with_sun(sun: DVec3) -> Self {
         Self {
             sun,
@@ -34,7 +34,7 @@ impl TestView {
         }
     }
 
-    /// Irradiance, facing the sun, of the part of the disc that the horizon does not hide.
+    /// Irradiance, on a surface that faces the sun, by the part of the disc above the horizon.
     pub fn disc_irradiance_above_horizon(&self) -> f64 {
         let radius = self.disc.angular_radius_rad;
         // The visible part of the radius from the centre down, and the area of the segment below it.
@@ -121,7 +121,7 @@ impl RadianceView for TestView {
     }
 }
 
-/// Bundles of radiance 0 and 2 by turns, half of it polarised level.
+/// Sampler whose bundles alternate between radiance 0 and 2, half of which is horizontally polarised.
 #[derive(Clone, Copy, Debug)]
 pub struct TestSampler;
 

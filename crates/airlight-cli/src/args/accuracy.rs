@@ -4,16 +4,16 @@ use airlight_validation::Suite;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
-/// What is compared.
+/// Set of comparisons.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum SuiteArg {
-    /// Skies against a Monte Carlo, SASKTRAN2 and libRadtran, from tables.
+    /// Skies against tables of an independent Monte Carlo, SASKTRAN2 and libRadtran.
     Tables,
-    /// Skies by day and in twilight against Airlight's own Monte Carlo.
+    /// Skies in daylight and twilight against Airlight's Monte Carlo solver.
     MonteCarlo,
-    /// Other models of the sky beside ours.
+    /// Published sky models against the default solver.
     Peers,
-    /// The sky measured on 27 May 2013, beside what published models make of it.
+    /// The sky measured on 27 May 2013 against the solver and published models.
     Measured,
 }
 
@@ -28,14 +28,14 @@ impl From<SuiteArg> for Suite {
     }
 }
 
-/// How the report is written.
+/// Format of the report.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum ReportArg {
-    /// A text to read.
+    /// Plain text.
     Text,
-    /// One JSON object, format airlight-accuracy/1.
+    /// JSON in the format airlight-accuracy/1.
     Json,
-    /// A page with plots, complete in one file.
+    /// Self-contained page with plots.
     Html,
 }
 
@@ -43,13 +43,13 @@ pub enum ReportArg {
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct AccuracyArgs {
-    /// What to compare [default: everything]
+    /// Comparisons to run [default: all]
     #[arg(value_enum, value_name = "SUITE")]
     pub suites: Vec<SuiteArg>,
-    /// How the report is written [default: by the ending of --output, else text]
+    /// Format of the report [default: by the extension of --output, otherwise text]
     #[arg(long, value_enum)]
     pub format: Option<ReportArg>,
-    /// Put every compared value into the JSON
+    /// Include all compared values in the JSON
     #[arg(long)]
     pub rows: bool,
     /// File to write instead of standard output: .html, .json, .txt
@@ -58,7 +58,7 @@ pub struct AccuracyArgs {
 }
 
 const EXAMPLES: &str = "\
-Errors are ours minus the reference. Ends with exit code 1 where a claim of the documentation does not hold.
+Errors are Airlight minus the reference. The exit code is 1 if a claim of the documentation does not hold.
 
 Examples:
   airlight accuracy

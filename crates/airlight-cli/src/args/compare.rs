@@ -9,12 +9,12 @@ use airlight::sky::Scattering;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
-/// How statistics are written.
+/// Format of the statistics.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum StatisticsArg {
-    /// A text to read.
+    /// Plain text.
     Table,
-    /// One JSON object.
+    /// JSON.
     Json,
 }
 
@@ -22,23 +22,23 @@ pub enum StatisticsArg {
 #[derive(Debug, Args)]
 #[command(allow_negative_numbers = true, after_help = EXAMPLES)]
 pub struct CompareArgs {
-    /// The reference: a name that --solver takes, or NAME:FORM, where the form is one of --variant for published models, and
-    /// single or fine for solvers
+    /// Reference: a name for --solver, or NAME:FORM, where the form is a --variant of a published model, or single or fine for
+    /// solvers
     #[arg(value_name = "SOLVER", value_parser = SolverChoice::parse)]
     pub first: SolverChoice,
-    /// The solver that is compared with it
+    /// Solver that is compared with the reference
     #[arg(value_name = "SOLVER", value_parser = SolverChoice::parse)]
     pub second: SolverChoice,
-    /// File to write: .png with both pictures and the maps of their difference
+    /// File to write: .png with both pictures and maps of their difference
     #[arg(short, long, value_name = "FILE.png", help_heading = "Files")]
     pub output: Option<PathBuf>,
-    /// How the statistics are written to standard output
+    /// Format of the statistics on standard output
     #[arg(long, value_enum, default_value_t = StatisticsArg::Table, help_heading = "Files")]
     pub format: StatisticsArg,
-    /// Scale the second sky to the same illuminance of the horizontal: for models whose brightness means nothing
+    /// Scale the second sky to the same horizontal illuminance, for models without absolute brightness
     #[arg(long, help_heading = "Difference")]
     pub same_light: bool,
-    /// Percent at the ends of the map's colours [default: as the differences are]
+    /// Percentage at the ends of the map's colour scale [default: from the differences]
     #[arg(long, value_name = "PERCENT", value_parser = parse::positive, help_heading = "Difference")]
     pub map_percent: Option<f64>,
     #[command(flatten)]
@@ -47,15 +47,15 @@ pub struct CompareArgs {
     pub camera: CameraArgs,
     #[command(flatten)]
     pub display: DisplayArgs,
-    /// Solids from a TOML file, lit and seen by both
+    /// TOML file of objects in both pictures
     #[arg(long, value_name = "FILE.toml", help_heading = "Objects")]
     pub objects: Option<String>,
 }
 
-/// A solver and its form.
+/// A solver with its form.
 #[derive(Clone, Debug)]
 pub struct SolverChoice {
-    /// As it was written.
+    /// Text of the argument.
     pub text: String,
     model: &'static dyn RadianceModel,
     form: Form,
@@ -82,7 +82,7 @@ impl SolverChoice {
         }
         if !form.is_empty() && !forms.contains(&form) {
             let there = match forms.is_empty() {
-                true => format!("{name} alone, as it has one form"),
+                true => format!("{name} without a form, as it has no variants"),
                 false => forms.join(", "),
             };
             return Err(format!(
@@ -101,7 +101,7 @@ impl SolverChoice {
         })
     }
 
-    /// The scene by this solver; inputs that only `other` honours are left out.
+    /// The scene with this solver, without inputs that only `other` honours.
     fn choose(&self, mut scene: Scene, other: &Self) -> Scene {
         let (own, others) = (self.model.capabilities(), other.model.capabilities());
         for input in scene.set_inputs() {
@@ -122,14 +122,14 @@ impl SolverChoice {
 }
 
 impl CompareArgs {
-    /// The scene by both solvers, without the sun's disc.
+    /// The scene with each solver, without the sun's disc.
     ///
     /// # Errors
-    /// [`CliError`] where a file cannot be read or is wrong, or --solver is given.
+    /// [`CliError`] if a file cannot be read or is invalid, or --solver is given.
     pub fn read(&self) -> Result<[Scene; 2], CliError> {
         if self.scene.solver.solver.is_some() {
             return Err(CliError::usage(
-                "the solvers are the two names without dashes: leave out --solver",
+                "--solver: expected two solvers as arguments, got this option too; try leaving it out",
             ));
         }
         let scene = self.scene.read(|scene| {
@@ -153,14 +153,14 @@ impl CompareArgs {
 
 const EXAMPLES: &str = "\
 The difference is that of the second from the first, over the sky above the horizon, without the sun's disc. Options that only
-one of the two honours hold for that one.
+one of the two solvers honours apply to that one.
 
 Examples:
-  What is lost where light is scattered once only:
+  Effect of multiple scattering:
     airlight compare orders orders:single --sun-elevation 10 --size 512x256 -o single.png
-  The model of 1987 as printed beside its corrected form:
+  Klassen 1987 as printed and as corrected:
     airlight compare klassen1987 klassen1987:printed --sun-elevation 10 --size 512x256 -o klassen.png
-  The fast solver beside Monte Carlo, statistics alone:
+  The fast solver and Monte Carlo, statistics only:
     airlight compare monte-carlo orders --sun-elevation 3 --size 64x32 --paths 2048 --format json";
 
 #[cfg(test)]
@@ -168,7 +168,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn solvers_have_forms_of_their_own() {
+    fn forms_depend_on_the_solver() {
         for text in [
             "orders",
             "orders:single",
@@ -183,7 +183,7 @@ mod tests {
             ("orders:printed", "single, fine"),
             ("monte-carlo:fine", "single"),
             ("klassen1987:fine", "printed"),
-            ("preetham:printed", "one form"),
+            ("preetham:printed", "no variants"),
         ] {
             let error = SolverChoice::parse(text).unwrap_err();
             assert!(error.contains(part), "{text}: {error}");
@@ -191,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn an_option_that_one_solver_ignores_holds_for_the_other() {
+    fn options_apply_to_solvers_that_honour_them() {
         let parse = |text| SolverChoice::parse(text).unwrap();
         let (paths, orders) = (parse("monte-carlo"), parse("orders:single"));
         let mut scene = Scene::default();
@@ -202,7 +202,7 @@ mod tests {
         ];
         assert_eq!((a.solver.paths, b.solver.paths), (Some(512), None));
         assert_eq!(b.solver.scattering, Some(Scattering::Single));
-        // Ignored by both: left for the renderer to refuse.
+        // An input that both ignore is kept, so that the renderer refuses it.
         assert_eq!(orders.choose(scene, &orders).solver.paths, Some(512));
     }
 }

@@ -1,4 +1,4 @@
-//! Options that describe fog, the same for every command that draws it.
+//! Options that describe fog, shared by all commands that draw it.
 
 use crate::parse::{self, words::Words};
 use airlight::Named;
@@ -9,7 +9,7 @@ use airlight::scene::{FogLayerSpec, FogProfile, FogSpec};
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
-/// The kinds of droplets by name.
+/// Parser of the kinds of droplets.
 pub fn droplets() -> impl TypedValueParser<Value = DropletKind> {
     let values = DropletKind::all().map(|kind| {
         let value = PossibleValue::new(kind.name()).help(kind.summary());
@@ -21,10 +21,10 @@ pub fn droplets() -> impl TypedValueParser<Value = DropletKind> {
     PossibleValuesParser::new(values).try_map(|name| DropletKind::from_name(&name))
 }
 
-/// The contrast of every visibility.
+/// Contrast threshold that defines visibility.
 #[derive(Clone, Debug, Default, Args)]
 pub struct ContrastArgs {
-    /// Contrast that visibility means: 0.05 (meteorological optical range) or 0.02 (Koschmieder's visual range) [default: 0.05]
+    /// Contrast threshold of visibility: 0.05 (meteorological optical range) or 0.02 (Koschmieder's visual range) [default: 0.05]
     #[arg(long, value_name = "C", value_parser = parse::contrast, help_heading = "Air")]
     pub contrast: Option<f64>,
 }
@@ -33,16 +33,16 @@ pub struct ContrastArgs {
 #[derive(Clone, Debug, Default, Args)]
 #[command(next_help_heading = "Fog")]
 pub struct FogArgs {
-    /// Visibility in the fog where it is densest, m: the distance at which --contrast is left
+    /// Visibility where the fog is densest, m: the distance at which contrast falls to --contrast
     #[arg(long, value_name = "M", value_parser = parse::length_m)]
     pub visibility_m: Option<f64>,
-    /// Density against height [default: slab with --top-m, else clamped; for `airlight fog` without any height: uniform]
+    /// Density by height [default: slab with --top-m, otherwise clamped; for `airlight fog` without any height: uniform]
     #[arg(long, value_name = "PROFILE", value_parser = parse::named::<FogProfile>())]
     pub fog_profile: Option<FogProfile>,
-    /// Height over which the density decreases to 1/e, m (height, clamped, unclamped) [default: 50]
+    /// Height over which the density falls by a factor e, m (height, clamped, unclamped) [default: 50]
     #[arg(long, value_name = "M", value_parser = parse::length_m)]
     pub scale_height_m: Option<f64>,
-    /// Height at which the density begins to decrease (clamped) or the visibility is the given one (unclamped), m [default: 0]
+    /// Height above which the density decreases (clamped) or at which the visibility is --visibility-m (unclamped), m [default: 0]
     #[arg(long, value_name = "M", value_parser = parse::number)]
     pub base_height_m: Option<f64>,
     /// Height of the top, m (slab) [default: 50]
@@ -51,19 +51,19 @@ pub struct FogArgs {
     /// Droplets of the fog [default: radiation]
     #[arg(long, value_name = "KIND", value_parser = droplets())]
     pub droplets: Option<DropletKind>,
-    /// Light that the fog scatters; no difference in uniform fog, which counts as evenly lit [default: all]
+    /// Orders of scattering in the fog; without effect in uniform fog, which is lit uniformly [default: all]
     #[arg(long, value_name = "WHICH", value_parser = parse::named::<FogScattering>())]
     pub fog_scattering: Option<FogScattering>,
-    /// One more layer of fog, as in 'visibility=500 scale-height=20'; can be repeated
+    /// Further layer of fog, as in 'visibility=500 scale-height=20'; can be repeated
     ///
-    /// KEY=VALUE pairs: visibility (m, as --visibility-m); scale-height (m), base (m), top (m), droplets and profile as the
-    /// options of these names. Without profile and heights the layer is uniform, with scale-height alone it is height.
+    /// KEY=VALUE pairs: visibility (m, as --visibility-m), and scale-height (m), base (m), top (m), droplets and profile as the
+    /// corresponding options. Without profile and heights the layer is uniform; with scale-height only, its profile is height.
     #[arg(long, value_name = "LAYER", value_parser = layer)]
     pub layer: Vec<FogLayerSpec>,
 }
 
 impl FogArgs {
-    /// Sets what was given in a scene's fog, and adds fog to a scene without it if any option was given.
+    /// Overrides values of a scene's fog; adds fog to a scene without it if any option is given.
     pub fn fill(&self, fog: &mut Option<FogSpec>) {
         let mut filled = fog.clone().unwrap_or_default();
         let put = |value: &mut Option<f64>, given: Option<f64>| *value = given.or(*value);
@@ -134,7 +134,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn layers_are_read_from_their_words() {
+    fn layers_are_parsed() {
         let profile = |text| layer(text).unwrap().implied_profile();
         assert_eq!(profile("visibility=200"), FogProfile::Uniform);
         assert_eq!(profile("top=9  visibility=200"), FogProfile::Slab);
@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn options_change_only_what_they_set() {
+    fn options_override_only_given_values() {
         let mut fog = None;
         FogArgs::default().fill(&mut fog);
         assert_eq!(fog, None);

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct GridArgs {
-    /// What to draw: a TOML file
+    /// TOML file that describes the contact sheet
     #[arg(value_name = "FILE.toml")]
     pub file: PathBuf,
     /// File to write: .png
@@ -16,7 +16,7 @@ pub struct GridArgs {
 }
 
 const EXAMPLES: &str = "\
-The file has a scene as of `airlight sky --scene` for all pictures, and for each what overrides it:
+The file has a common scene, as for `airlight sky --scene`, and overrides for each picture:
 
   title = \"Suns through haze\"
   columns = 3
@@ -30,5 +30,5 @@ The file has a scene as of `airlight sky --scene` for all pictures, and for each
   sun.elevation_deg = 10
 
 Examples:
-  A figure of Klassen's paper of 1987:
+  A figure of Klassen 1987:
     airlight grid scenes/klassen1987/figure-12.toml -o figure-12.png";

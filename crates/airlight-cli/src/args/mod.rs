@@ -1,4 +1,4 @@
-//! Every option of every command. Options that make a scene fill in an [`airlight::scene::Scene`].
+//! Options of all commands. Options that describe a scene fill in an [`airlight::scene::Scene`].
 
 mod accuracy;
 mod air;
@@ -37,7 +37,7 @@ pub use solver::SolverArgs;
 
 use clap::{Parser, Subcommand};
 
-/// The colour of the sky, computed: spectral, multiply scattered, in physical units.
+/// Compute the colour of the sky: spectral, with multiple scattering, in physical units.
 #[derive(Debug, Parser)]
 #[command(
     name = "airlight",
@@ -48,42 +48,42 @@ use clap::{Parser, Subcommand};
 )]
 #[command(max_term_width = 110, after_help = NOTES)]
 pub struct Cli {
-    /// What to do.
+    /// Command to run.
     #[command(subcommand)]
     pub command: Command,
-    /// Threads to compute with [default: one for each processor]
+    /// Number of threads [default: one for each processor]
     #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
     pub threads: Option<u32>,
 }
 
 const NOTES: &str = "\
 Angles are in degrees: azimuth clockwise from north, elevation up from the horizon.
-Exit codes: 0 done, 1 failed, 2 the request makes no sense, 130 stopped by Ctrl-C.
+Exit codes: 0 success, 1 failure, 2 invalid request, 130 interrupted by Ctrl-C.
 
 Examples:
   airlight sky --at 48.8584,2.2945 --when 2026-06-21T21:15:00+02:00 -o sky.exr
   airlight probe --sun-elevation 30 --view 180,45
   airlight atmospheres";
 
-/// What to do.
+/// Commands of the program.
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Draw the sky: whole sphere, cube faces, fisheye or camera; as EXR, HDR, PNG or JPEG.
     Sky(Box<SkyArgs>),
-    /// Put fog over existing pictures with depth: one, or whole folders.
+    /// Add fog to existing pictures with depth: one, or whole folders.
     Fog(Box<OverlayArgs>),
     /// Print the spectral radiance of the sky along given directions, and the light of sun and sky.
     Probe(Box<ProbeArgs>),
-    /// Draw one sky by two solvers side by side, with maps and statistics of the difference.
+    /// Draw one sky with two solvers, with maps and statistics of the difference.
     Compare(Box<CompareArgs>),
-    /// Draw a contact sheet of skies that a TOML file describes.
+    /// Draw a contact sheet of skies described by a TOML file.
     Grid(GridArgs),
-    /// Report accuracy against measurements and other people's codes.
+    /// Report accuracy against measurements and other codes.
     Accuracy(AccuracyArgs),
-    /// Plot curves and maps, as SVG or PNG: phase functions, efficiencies, spectra, transmittance, fog.
+    /// Plot curves and maps as SVG or PNG: phase functions, efficiencies, spectra, transmittance, fog.
     Plot(PlotArgs),
-    /// List the atmospheres and types of haze by name, or describe one.
+    /// List the names of atmospheres and types of haze, or describe one.
     Atmospheres(AtmospheresArgs),
-    /// Print the JSON Schema of scene files, for editors that complete and check them.
+    /// Print the JSON Schema of scene files, for completion and validation in editors.
     Schema,
 }

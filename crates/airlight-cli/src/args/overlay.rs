@@ -8,7 +8,7 @@ use airlight_render::overlay::{DepthFileKind, DepthHoles, OverlayScene};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
-/// Meaning of the numbers in the depth file.
+/// Meaning of the values of the depth file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum DepthKindArg {
     /// Depth along the camera's axis.
@@ -17,7 +17,7 @@ pub enum DepthKindArg {
     Ray,
     /// Stereo disparity, pixels: needs --focal-px and --baseline-m.
     Disparity,
-    /// One over depth.
+    /// Inverse depth.
     Inverse,
 }
 
@@ -26,7 +26,7 @@ pub enum DepthKindArg {
 pub enum HolesArg {
     /// Filled from their neighbours.
     Fill,
-    /// Taken for sky.
+    /// Treated as sky.
     Far,
     /// Kept free of fog.
     Clear,
@@ -36,22 +36,22 @@ pub enum HolesArg {
 #[derive(Clone, Debug, Args)]
 #[command(allow_negative_numbers = true, after_help = EXAMPLES)]
 pub struct OverlayArgs {
-    /// The picture: EXR or HDR (linear), PNG or JPEG (decoded to light, encoded again); many: a folder, or 'rgb/*.png'
+    /// Picture: EXR or HDR (linear), PNG or JPEG (decoded to light, encoded again); for many, a folder or 'rgb/*.png'
     #[arg(value_name = "COLOUR", required_unless_present = "scene")]
     pub colour: Option<PathBuf>,
-    /// Its depth: EXR, PNG, NPY or PFM; a folder, or 'depth/*.png' [default: the depth channel of COLOUR, if that is an EXR]
+    /// Depth map: EXR, PNG, NPY or PFM; a folder, or 'depth/*.png' [default: the depth channel of COLOUR, if that is an EXR]
     #[arg(long, value_name = "DEPTH")]
     pub depth: Option<PathBuf>,
     /// File to write: .png, .jpg, .exr or .hdr; a folder, or 'out/*.png'
     #[arg(short, long, value_name = "FILE", required_unless_present = "scene")]
     pub output: Option<String>,
-    /// Write transmittance, path radiance and distance as layers too (.exr)
+    /// Also write transmittance, path radiance and distance as layers (.exr)
     #[arg(long)]
     pub layers: bool,
-    /// Read a scene file first; other options override it
+    /// Scene file, which the other options override
     #[arg(long, value_name = "FILE.toml")]
     pub scene: Option<PathBuf>,
-    /// Write the scene of these options to a file
+    /// Write the scene of these options to a TOML file
     #[arg(long, value_name = "FILE.toml")]
     pub save_scene: Option<PathBuf>,
     /// Print nothing on standard output
@@ -60,7 +60,7 @@ pub struct OverlayArgs {
     #[command(flatten)]
     pub batch: BatchArgs,
 
-    /// Meaning of the depth [default: z]
+    /// Meaning of the depth values [default: z]
     #[arg(long, value_enum, value_name = "KIND", help_heading = "Depth")]
     pub depth_kind: Option<DepthKindArg>,
     /// Metres for each unit of depth: 0.001 for millimetres [default: 1]
@@ -82,13 +82,13 @@ pub struct OverlayArgs {
     #[arg(long, value_name = "PX", value_parser = parse::number, help_heading = "Depth")]
     pub disparity_offset_px: Option<f64>,
 
-    /// Field of view from left to right, degrees [default: 60]
+    /// Horizontal field of view, degrees [default: 60]
     #[arg(long, value_name = "DEG", value_parser = parse::positive, help_heading = "Camera", conflicts_with = "focal_px")]
     pub fov: Option<f64>,
     /// Focal length, pixels, instead of --fov
     #[arg(long, value_name = "PX", value_parser = parse::positive, help_heading = "Camera")]
     pub focal_px: Option<f64>,
-    /// Principal point, pixels, pixel centres at whole numbers [default: the middle]
+    /// Principal point, pixels, with pixel centres at whole numbers [default: the centre]
     #[arg(long, value_name = "X,Y", value_parser = parse::two_numbers, help_heading = "Camera")]
     pub principal_point: Option<(f64, f64)>,
     /// Elevation of the camera's axis above the horizon, degrees [default: 0]
@@ -115,12 +115,12 @@ pub struct OverlayArgs {
 }
 
 impl OverlayArgs {
-    /// Sets what was given in a description.
+    /// Overrides values of a description.
     pub fn fill(&self, to: &mut OverlayScene) {
         let put = |value: &mut Option<f64>, given: Option<f64>| *value = given.or(*value);
         let overlay = &mut to.overlay;
         if let Some(colour) = &self.colour {
-            // The depth map of another picture does not belong to this one.
+            // The description's depth map belongs to another picture.
             (overlay.colour, overlay.depth) = (colour.clone(), None);
         }
         overlay.depth = self.depth.clone().or(overlay.depth.take());
@@ -180,25 +180,25 @@ Examples:
   The same fog as in Foggy Cityscapes:
     airlight fog photo.png --depth depth_mm.png --depth-scale 0.001 --visibility-m 12 --fog-profile foggy-cityscapes \\
       -o fogged.png
-  Ishiyama's height fog as printed, which does not dim the sun:
+  Ishiyama's height fog as printed, with unattenuated sunlight:
     airlight fog render.exr --visibility-m 400 --fog-profile height --sun-elevation 20 --fog-scattering undimmed \\
       -o fogged.exr
-  A light as the fog note prints it, negative where the view ray passes the light:
+  A light in the form printed in the fog note, negative for rays that pass the light:
     airlight fog photo.png --depth depth_mm.png --depth-scale 0.001 --visibility-m 12 --droplets isotropic \\
       --light 'pixel=120,80 distance=3 intensity=3,2.5,2' --light-form printed -o printed.png
-  A street lamp, and ground fog lit by the solved sky:
+  A street light; ground fog lit by the solved sky:
     airlight fog photo.png --depth depth_mm.png --depth-scale 0.001 --visibility-m 12 \\
       --light 'pixel=120,80 intensity=3,2.5,2' -o fogged.png
     airlight fog render.exr --visibility-m 400 --fog-profile height --sky-light --sun-elevation 20 -o fogged.exr
-  The same by Monte Carlo, with the noise of each pixel in a second file (slow: for small pictures):
+  The same by Monte Carlo, with a noise map in a second file (slow; for small pictures):
     airlight fog small.exr --visibility-m 400 --fog-profile height --sky-light --sun-elevation 20 --solver monte-carlo \\
       --paths 512 --noise-map -o fogged.exr
   Every picture of a folder, with the depth map of the same name:
     airlight fog rgb/ --depth depth/ --depth-scale 0.001 --visibility-m 80 -o foggy/
-  Training data: * links colour, depth and output; three fogs for each picture, recorded in foggy/manifest.jsonl:
+  Training data: * matches colour, depth and output; three variants of each picture, recorded in foggy/manifest.jsonl:
     airlight fog 'rgb/*_left.png' --depth 'depth/*_depth.png' --depth-scale 0.001 --vary visibility=50..500 \\
       --vary droplets=fine,radiation,advection --variants 3 --seed 1 -o 'foggy/*.png'
 
---vary draws visibility, scale-height, top, eye-height and ambient-scale evenly in their logarithm, and base-height,
-camera-elevation, camera-azimuth, camera-roll, sun-elevation, sun-azimuth, sun-strength and ground-albedo evenly;
-NAME=log:LOW..HIGH and NAME=uniform:LOW..HIGH choose otherwise. fog-profile and droplets take lists.";
+--vary draws visibility, scale-height, top, eye-height and ambient-scale uniformly in the logarithm, and base-height,
+camera-elevation, camera-azimuth, camera-roll, sun-elevation, sun-azimuth, sun-strength and ground-albedo uniformly;
+NAME=log:LOW..HIGH and NAME=uniform:LOW..HIGH override this. fog-profile and droplets take lists.";

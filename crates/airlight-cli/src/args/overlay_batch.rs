@@ -9,35 +9,36 @@ use std::path::PathBuf;
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Many pictures")]
 pub struct BatchArgs {
-    /// Draw a setting for each picture: visibility=50..500, fog-profile=uniform,height (see below)
+    /// Draw a random value of a setting for each picture: visibility=50..500, fog-profile=uniform,height (see below)
     #[arg(long, value_name = "NAME=LOW..HIGH|A,B")]
     pub vary: Vec<Variation>,
-    /// Number of pictures of each input: {variant} in --output is the number of a picture, else _v0001 before the ending
+    /// Number of variants of each input; {variant} in --output is replaced by their number, otherwise _v0001 precedes the
+    /// extension
     #[arg(long, value_name = "N", requires = "vary")]
     pub variants: Option<NonZeroU32>,
-    /// Seed of --vary, whose draws depend on it, the picture's name and the variant [default: 0], and of Monte Carlo paths
-    /// [default: 1]
+    /// Seed of the draws of --vary, which also depend on the picture's name and the variant [default: 0], and of Monte Carlo
+    /// paths [default: 1]
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
-    /// Manifest: a line of JSON for each picture [default: manifest.jsonl beside the outputs]
+    /// Manifest, with a line of JSON for each picture [default: manifest.jsonl beside the outputs]
     #[arg(long, value_name = "FILE")]
     pub manifest: Option<PathBuf>,
-    /// Make existing pictures again; otherwise they are kept
+    /// Replace existing pictures; otherwise they are kept
     #[arg(long)]
     pub overwrite: bool,
     /// Leave out pictures without depth
     #[arg(long)]
     pub skip_unpaired: bool,
-    /// Stop at the first picture that fails; otherwise the others are made
+    /// Stop at the first picture that fails; otherwise continue with the others
     #[arg(long)]
     pub fail_fast: bool,
-    /// Threads, and the most pictures in memory [default: one a processor]
+    /// Number of threads, which also limits the pictures in memory [default: one for each processor]
     #[arg(long, value_name = "N")]
     pub jobs: Option<NonZeroU32>,
 }
 
 impl BatchArgs {
-    /// Whether any option is given that only a batch has: a single picture is then a batch of one.
+    /// Whether any option of batches is given; a single picture is then a batch of one.
     pub fn is_given(&self) -> bool {
         !self.vary.is_empty()
             || self.manifest.is_some()

@@ -1,4 +1,4 @@
-//! Options of `airlight fog` that describe its light: ambient light, sun, sky, and lights in the fog.
+//! Options of `airlight fog` for light: ambient light, sun, sky, and lights in the fog.
 
 use crate::parse::{self, LatLon, words::Words};
 use airlight::fog::lights::LightForm;
@@ -6,12 +6,12 @@ use airlight::scene::{LightKind, LightSpec};
 use airlight_render::overlay::{ExistingAerial, OverlayScene};
 use clap::{Args, ValueEnum};
 
-/// Whether the picture shows the clear air before its objects.
+/// Whether the picture shows the clear air in front of its objects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum AirArg {
-    /// It does, like every photograph.
+    /// It does, like photographs.
     Drawn,
-    /// It does not, like many a rendered picture: the air is added.
+    /// It does not, like many rendered pictures: the air is added.
     Missing,
 }
 
@@ -30,7 +30,7 @@ impl AmbientArg {
             "auto" => Ok(Self::Auto),
             _ => parse::three_numbers(text)
                 .map(Self::Rgb)
-                .map_err(|error| format!("{error}, or auto")),
+                .map_err(|error| format!("{error}; try auto")),
         }
     }
 }
@@ -51,25 +51,25 @@ pub struct OverlayLightArgs {
     /// Azimuth of the sun, degrees clockwise from north [default: 180]
     #[arg(long, value_name = "DEG", value_parser = parse::number)]
     pub sun_azimuth: Option<f64>,
-    /// Irradiance facing the sun over the horizontal irradiance of the ambient light (pi times its radiance) [default: 3]
+    /// Irradiance of the sun on a surface that faces it, relative to that of the ambient light (pi times its radiance) [default: 3]
     #[arg(long, value_name = "RATIO", value_parser = parse::not_negative)]
     pub sun_strength: Option<f64>,
-    /// Albedo of the ground under fog with a top [default: 0.2; with --sky-light that of the atmosphere]
+    /// Albedo of the ground below fog with a top [default: 0.2; with --sky-light that of the atmosphere]
     #[arg(long, value_name = "ALBEDO", value_parser = parse::fraction)]
     pub ground_albedo: Option<f64>,
 
-    /// A light in the fog, as in 'pixel=320,120 distance=6 intensity=3,2.5,2'; can be repeated
+    /// Light in the fog, as in 'pixel=320,120 distance=6 intensity=3,2.5,2'; can be repeated
     ///
-    /// KEY=VALUE pairs. Position: pixel=X,Y with distance (m along the ray; without it, that of the surface in the picture), or
-    /// at=EAST,UP,SOUTH (m from the ground under the camera; a camera of azimuth 0 looks north, to negative south).
-    /// intensity=R,G,B or one number: radiant intensity in the picture's unit times m^2; it gives the irradiance
-    /// intensity / r^2, and pi makes a white wall 1 m away as bright as 1. kind: point, spot or sphere. radius (m): size of a
-    /// sphere; no view ray passes a point or spot light closer [default: a quarter of a pixel]. A spot light shines to azimuth
-    /// and elevation (degrees) [default: straight down], with its full intensity up to inner [default: 20] and none beyond
-    /// outer [default: 40] degrees off its axis.
+    /// KEY=VALUE pairs. Position: pixel=X,Y with distance (m along the ray) [default: that of the surface in the picture], or
+    /// at=EAST,UP,SOUTH (m from the ground below the camera; a camera with azimuth 0 looks north, to negative south).
+    /// intensity=R,G,B or one number: radiant intensity in the picture's unit times m^2, which causes the irradiance
+    /// intensity / r^2; with pi, a white wall 1 m away has radiance 1. kind: point, spot or sphere. radius (m): that of a
+    /// sphere, or the smallest distance of rays from a point or spot light [default: a quarter of a pixel]. azimuth and
+    /// elevation (degrees): axis of a spot light [default: straight down]; its intensity is full up to inner [default: 20] and
+    /// 0 beyond outer [default: 40] degrees from the axis.
     #[arg(long, value_name = "LIGHT", value_parser = light)]
     pub light: Vec<LightSpec>,
-    /// How the light of --light is computed; all forms but exact are for uniform isotropic fog and point lights [default: exact]
+    /// Form of the light scattered from --light; all but exact are for point lights in uniform isotropic fog [default: exact]
     #[arg(long, value_name = "FORM", value_parser = parse::named::<LightForm>())]
     pub light_form: Option<LightForm>,
 
@@ -82,7 +82,7 @@ pub struct OverlayLightArgs {
     /// Optical depth of the haze of --sky-light at 550 nm
     #[arg(long, value_name = "DEPTH", value_parser = parse::not_negative, conflicts_with = "haze_visibility_m")]
     pub aod_550: Option<f64>,
-    /// Visibility in the haze of --sky-light at the ground, m: the distance at which --contrast is left at 550 nm
+    /// Visibility in the haze of --sky-light at the ground, m: the distance at which contrast falls to --contrast at 550 nm
     #[arg(long, value_name = "M", value_parser = parse::positive)]
     pub haze_visibility_m: Option<f64>,
     /// Place of --sky-light: latitude,longitude in degrees, instead of --sun-elevation
@@ -95,16 +95,17 @@ pub struct OverlayLightArgs {
     /// Altitude of the ground above sea level, m [default: 0]
     #[arg(long, value_name = "M", value_parser = parse::altitude_m)]
     pub ground_altitude_m: Option<f64>,
-    /// Units of the picture in one cd/m^2 [default: as an EXR file states its white; else matched to the picture's sky]
+    /// Units of the picture in one cd/m^2 [default: from the white luminance stated in an EXR file, otherwise matched to the
+    /// picture's sky]
     #[arg(long, value_name = "FACTOR", value_parser = parse::positive)]
     pub radiance_scale: Option<f64>,
-    /// Whether the picture shows the clear air before its objects, or --sky-light adds it [default: drawn]
+    /// Whether the picture shows the clear air in front of its objects, or --sky-light adds it [default: drawn]
     #[arg(long, value_enum)]
     pub air: Option<AirArg>,
 }
 
 impl OverlayLightArgs {
-    /// Sets what was given in a description.
+    /// Overrides values of a description.
     pub fn fill(&self, to: &mut OverlayScene) {
         let put = |value: &mut Option<f64>, given: Option<f64>| *value = given.or(*value);
         let (scene, overlay) = (&mut to.scene, &mut to.overlay);
@@ -171,7 +172,7 @@ fn light(text: &str) -> Result<LightSpec, String> {
     let mut words = Words::new(text, &KEYS)?;
     let angle = |text: &str| match parse::number(text) {
         Ok(angle) if (0.0..=90.0).contains(&angle) => Ok(angle),
-        _ => Err("must be a number of degrees from 0 to 90".to_owned()),
+        _ => Err("expected a number of degrees from 0 to 90".to_owned()),
     };
     let pixel = words.take("pixel", parse::two_numbers)?;
     Ok(LightSpec {
@@ -205,7 +206,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lights_are_read_from_their_words() {
+    fn lights_are_parsed() {
         let point = light("pixel=3,4 intensity=2").unwrap();
         assert_eq!((point.intensity, point.kind), ([2.0; 3], LightKind::Point));
         let spot = light("at=1,2,-5 intensity=0,1,2 kind=spot outer=10").unwrap();

@@ -1,4 +1,4 @@
-//! Options for how a picture is laid out, shown and stored.
+//! Options for the projection, display and encoding of a picture.
 
 use crate::parse::{self, PixelSize, put};
 use airlight::scene::{
@@ -13,23 +13,23 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 #[derive(Clone, Debug, Default, Args)]
 #[command(next_help_heading = "Picture")]
 pub struct CameraArgs {
-    /// How directions are laid out: the whole sphere with north in the middle (equirectangular), six square files for a cube
-    /// map (sky.px.exr, .nx, .py, .ny, .pz, .nz; x east, y up, z south), the sky as a disc (fisheye), or a camera
-    /// (perspective) [default: equirectangular]
+    /// Projection: the whole sphere with north in the centre (equirectangular), six square files of a cube map (sky.px.exr, .nx,
+    /// .py, .ny, .pz, .nz; x east, y up, z south), an equidistant fisheye (fisheye), or a rectilinear camera (perspective)
+    /// [default: equirectangular]
     #[arg(long, value_name = "KIND")]
     #[arg(value_parser = parse::named::<Projection>())]
     pub projection: Option<Projection>,
     /// Size in pixels [default: 2048x1024; cube and fisheye 1024x1024; perspective 1920x1080]
     #[arg(long, value_name = "WxH", value_parser = parse::pixel_size)]
     pub size: Option<PixelSize>,
-    /// Azimuth of the middle of the picture, degrees clockwise from north [default: 0; perspective: the sun's at the
-    /// start; fisheye: 180, which puts north on top when it looks up]
+    /// Azimuth of the centre of the picture, degrees clockwise from north [default: 0; perspective: that of the sun at the
+    /// start; fisheye: 180, which puts north at the top of a picture of the zenith]
     #[arg(long, value_name = "DEG", value_parser = parse::number)]
     pub camera_azimuth: Option<f64>,
-    /// Elevation of the middle of a perspective or fisheye picture, degrees [default: perspective 10, fisheye 90]
+    /// Elevation of the centre of a perspective or fisheye picture, degrees [default: perspective 10, fisheye 90]
     #[arg(long, value_name = "DEG", value_parser = parse::elevation_deg)]
     pub camera_elevation: Option<f64>,
-    /// Turn of the perspective camera about its axis, degrees clockwise [default: 0]
+    /// Rotation of the perspective camera about its axis, degrees clockwise [default: 0]
     #[arg(long, value_name = "DEG", value_parser = parse::number)]
     pub camera_roll: Option<f64>,
     /// Field of view, degrees: left to right edge of a perspective picture [default: 75], across the disc of a
@@ -38,46 +38,46 @@ pub struct CameraArgs {
     pub fov: Option<f64>,
 }
 
-/// How light is shown.
+/// Display of a picture.
 #[derive(Clone, Debug, Default, Args)]
 #[command(next_help_heading = "Picture")]
 pub struct DisplayArgs {
     /// Colour space of .exr and .hdr; .png and .jpg are always sRGB [default: srgb]
     #[arg(long, value_name = "SPACE", value_parser = parse::named::<RgbSpace>())]
     pub color_space: Option<RgbSpace>,
-    /// Exposure of .png, .jpg and preview: auto, or a camera's exposure value at ISO 100 (sunny day 15, dusk 8) [default: auto]
+    /// Exposure of .png, .jpg and preview: auto, or the exposure value of a camera at ISO 100 (sunny day 15, dusk 8) [default: auto]
     #[arg(long, value_name = "auto|EV100", value_parser = parse::exposure)]
     pub exposure: Option<Exposure>,
-    /// Stops by which to brighten .png, .jpg and preview (negative: darken) [default: 0]
+    /// Stops by which .png, .jpg and preview are brightened (negative: darkened) [default: 0]
     #[arg(long, value_name = "STOPS", value_parser = parse::number)]
     pub brighten: Option<f64>,
-    /// How light becomes what .png, .jpg and preview show: a curve like film's, or linear and cut off at white [default: filmic]
+    /// Tone curve of .png, .jpg and preview: film-like, or linear and clipped at white [default: filmic]
     #[arg(long, value_name = "CURVE", value_parser = parse::named::<ToneKind>())]
     pub tone: Option<ToneKind>,
 }
 
-/// How a picture is stored.
+/// Encoding of a picture.
 #[derive(Clone, Debug, Default, Args)]
 #[command(next_help_heading = "Picture")]
 pub struct EncodingArgs {
-    /// The sun's disc in the picture, left out of it, or in a second file (sky.sun.exr beside sky.exr) [default: in]
+    /// Sun's disc in the picture, omitted, or in a second file (sky.sun.exr beside sky.exr) [default: in]
     #[arg(long, value_name = "WHERE", value_parser = parse::named::<SunDiscPlacement>())]
     pub sun_disc: Option<SunDiscPlacement>,
     /// Factor on the values of .exr and .hdr, which are in cd/m^2 (spectral: W m^-2 sr^-1 nm^-1) [default: 1]
     #[arg(long, value_name = "FACTOR", value_parser = parse::positive)]
     pub scale: Option<f64>,
-    /// Write one channel for each wavelength into the EXR, besides RGB; the same as a name ending in .spectral.exr
+    /// Write one EXR channel for each wavelength besides RGB; implied by a name that ends in .spectral.exr
     #[arg(long)]
     pub spectral: bool,
-    /// How .exr samples are stored: 32 bits, or 16 bits up to 65504, where the sun's disc, some 1e9 cd/m^2, is cut off unless
-    /// --scale makes it fit [default: float]
+    /// Precision of .exr samples: 32 bits, or 16 bits up to 65504, to which the sun's disc of about 1e9 cd/m^2 is clipped unless
+    /// --scale reduces it [default: float]
     #[arg(long, value_name = "BITS", value_parser = parse::named::<SamplePrecision>())]
     pub precision: Option<SamplePrecision>,
-    /// How .exr samples are packed, without loss [default: zip]
+    /// Lossless compression of .exr samples [default: zip]
     #[arg(long, value_name = "METHOD")]
     #[arg(value_parser = parse::named::<ExrCompression>())]
     pub compression: Option<ExrCompression>,
-    /// Bits of a component of .png [default: 8]
+    /// Bits per component of .png [default: 8]
     #[arg(long, value_name = "BITS", value_parser = PossibleValuesParser::new(["8", "16"]).map(|bits| bits.parse::<u8>().unwrap_or(8)))]
     pub bits: Option<u8>,
     /// Quality of .jpg, 1 to 100 [default: 92]
@@ -86,7 +86,7 @@ pub struct EncodingArgs {
 }
 
 impl CameraArgs {
-    /// Overrides what a scene has.
+    /// Overrides values of a scene.
     pub fn fill(&self, camera: &mut CameraSpec) {
         put(&mut camera.projection, &self.projection);
         let size = self.size.map(|size| [size.width, size.height]);
@@ -99,7 +99,7 @@ impl CameraArgs {
 }
 
 impl DisplayArgs {
-    /// Overrides what a scene has.
+    /// Overrides values of a scene.
     pub fn fill(&self, output: &mut OutputSpec) {
         put(&mut output.color_space, &self.color_space);
         put(&mut output.exposure, &self.exposure);
@@ -109,7 +109,7 @@ impl DisplayArgs {
 }
 
 impl EncodingArgs {
-    /// Overrides what a scene has.
+    /// Overrides values of a scene.
     pub fn fill(&self, output: &mut OutputSpec) {
         put(&mut output.sun_disc, &self.sun_disc);
         put(&mut output.scale, &self.scale);

@@ -21,19 +21,19 @@ pub struct PlaceArgs {
     /// Azimuth of the sun, degrees clockwise from north [default: 180, south]
     #[arg(long, value_name = "DEG", value_parser = parse::number)]
     pub sun_azimuth: Option<f64>,
-    /// Altitude of the eye above sea level, m; held at least --eye-height-m above the ground [default: 0]
+    /// Altitude of the eye above sea level, m; at least --eye-height-m above the ground [default: 0]
     #[arg(long, value_name = "M", value_parser = parse::altitude_m)]
     pub altitude_m: Option<f64>,
-    /// Height above the ground below which the eye does not go, m [default: 2]
+    /// Smallest height of the eye above the ground, m [default: 2]
     #[arg(long, value_name = "M", value_parser = parse::length_m)]
     pub eye_height_m: Option<f64>,
-    /// Whether the air lifts the sun of --at and --when, by half a degree at the horizon [default: true]
+    /// Whether refraction raises the sun of --at and --when, by half a degree at the horizon [default: true]
     #[arg(long, value_name = "BOOL", action = ArgAction::Set)]
     pub refraction: Option<bool>,
 }
 
 impl PlaceArgs {
-    /// Overrides what a scene has.
+    /// Overrides values of a scene.
     pub fn fill(&self, scene: &mut Scene) {
         let sun = &mut scene.sun;
         let refraction = sun.refraction;
@@ -67,7 +67,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_place_replaces_a_fixed_sun_and_the_other_way_round() {
+    fn a_place_replaces_a_fixed_sun_and_vice_versa() {
         let mut scene = Scene::default();
         scene.sun.elevation_deg = Some(10.0);
         scene.sun.azimuth_deg = Some(90.0);

@@ -11,25 +11,25 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct PlotArgs {
-    /// What is plotted.
+    /// Kinds of plots.
     #[command(subcommand)]
     pub what: PlotWhat,
 }
 
-/// What is plotted.
+/// Kinds of plots.
 #[derive(Debug, Subcommand)]
 pub enum PlotWhat {
-    /// Phase functions of fogs and of single spheres against the scattering angle, or around the particle.
+    /// Phase functions of fog droplets and single spheres by scattering angle, also in polar form.
     Phase(PhasePlotArgs),
-    /// Scattering efficiency of spheres against the size parameter, single and in a spread of sizes.
+    /// Scattering efficiency of spheres by size parameter, for a single size and a distribution of sizes.
     Efficiency(EfficiencyPlotArgs),
     /// Spectra of the sky along directions, or of sunlight and skylight.
     Spectrum(Box<SpectrumPlotArgs>),
-    /// Transmittance of the air against wavelength, for zenith angles or as a map over them.
+    /// Transmittance of the air by wavelength, for some zenith angles or as a map.
     Transmittance(Box<TransmittancePlotArgs>),
-    /// Extinction of fog against height.
+    /// Extinction of fog by height.
     FogProfile(FogProfilePlotArgs),
-    /// Error of the split-sum approximation, as a map.
+    /// Map of the error of the split-sum approximation.
     SplitSum(SplitSumPlotArgs),
 }
 
@@ -40,14 +40,14 @@ pub struct SpectrumPlotArgs {
     /// File to write: .svg or .png
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
-    /// A direction to look in: azimuth,elevation in degrees; may be given many times [default: irradiances instead]
+    /// View direction: azimuth,elevation in degrees; can be repeated [default: plot irradiances instead]
     #[arg(long, value_name = "AZ,EL", value_parser = parse::az_el, allow_hyphen_values = true)]
     pub view: Vec<AzEl>,
     #[command(flatten)]
     pub scene: SceneArgs,
 }
 
-/// Options of `airlight plot transmittance`, on which the sun has no influence.
+/// Options of `airlight plot transmittance`, which does not depend on the sun.
 #[derive(Debug, Args)]
 #[command(allow_negative_numbers = true)]
 pub struct TransmittancePlotArgs {
@@ -57,7 +57,7 @@ pub struct TransmittancePlotArgs {
     /// Zenith angles, degrees
     #[arg(long, value_name = "DEG,...", value_delimiter = ',', value_parser = zenith_deg, default_values_t = [0.0, 60.0, 75.0, 85.0, 89.0])]
     pub zenith_deg: Vec<f64>,
-    /// A map over wavelength and all zenith angles instead of curves
+    /// Plot a map over wavelength and all zenith angles instead of curves
     #[arg(long, conflicts_with = "zenith_deg")]
     pub map: bool,
     #[command(flatten)]
@@ -70,19 +70,19 @@ pub struct FogProfilePlotArgs {
     /// File to write: .svg or .png
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
-    /// How far one sees where the fog is thickest, m: the distance at which 5 % of contrast is left
+    /// Visibility where the fog is densest, m: the distance at which contrast falls to 5 %
     #[arg(long, value_name = "M", value_parser = parse::length_m, default_value_t = 200.0)]
     pub visibility_m: f64,
-    /// Top of the even slab, m
+    /// Top of the slab, m
     #[arg(long, value_name = "M", value_parser = parse::length_m, default_value_t = 100.0)]
     pub top_m: f64,
-    /// Height over which the others thin to 1/e, m
+    /// Scale height of the exponential profiles, m
     #[arg(long, value_name = "M", value_parser = parse::length_m, default_value_t = 50.0)]
     pub scale_height_m: f64,
-    /// Height from which on the last thins, m
+    /// Height above which the clamped profile decreases, m
     #[arg(long, value_name = "M", value_parser = parse::not_negative, default_value_t = 50.0)]
     pub base_height_m: f64,
-    /// Greatest height shown, m [default: as the profiles need]
+    /// Largest height shown, m [default: from the profiles]
     #[arg(long, value_name = "M", value_parser = parse::length_m)]
     pub to_m: Option<f64>,
 }
@@ -99,7 +99,7 @@ fn zenith_deg(text: &str) -> Result<f64, String> {
     match parse::not_negative(text)? {
         deg if deg <= 90.0 => Ok(deg),
         deg => Err(format!(
-            "must be a zenith angle from 0 to 90 degrees, got {deg}"
+            "expected a zenith angle from 0 to 90 degrees, got {deg}"
         )),
     }
 }
@@ -110,19 +110,19 @@ pub struct PhasePlotArgs {
     /// File to write: .svg or .png
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
-    /// Drops of fog, as `airlight fog --droplets` has them
+    /// Fog droplets, as for `airlight fog --droplets`
     #[arg(long, value_name = "KIND,...", value_delimiter = ',', value_parser = droplets())]
     pub droplets: Vec<DropletKind>,
-    /// Wavelengths for them, nm
+    /// Wavelengths of --droplets, nm
     #[arg(long, value_name = "NM,...", value_delimiter = ',', value_parser = parse::positive, default_values_t = [550.0])]
     pub wavelength_nm: Vec<f64>,
-    /// Single spheres by their edge in wavelengths, 2 pi r / lambda
+    /// Size parameters of single spheres: circumference divided by wavelength, 2 pi r / lambda
     #[arg(long, value_name = "X,...", value_delimiter = ',', value_parser = parse::positive)]
     pub size_parameter: Vec<f64>,
-    /// Refractive index of single spheres: n, or n,k where they absorb
+    /// Refractive index of single spheres: n, or n,k with absorption
     #[arg(long, value_name = "N[,K]", value_parser = index, default_value = "1.333")]
     pub index: Index,
-    /// Around the particle, light from the left, each in a panel of its own; single spheres by |S|^2, not by phase function
+    /// Polar plots with light from the left, one panel for each curve; single spheres as |S|^2 instead of the phase function
     #[arg(long)]
     pub polar: bool,
 }
@@ -133,7 +133,7 @@ pub struct EfficiencyPlotArgs {
     /// File to write: .svg or .png
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
-    /// Refractive index: n, or n,k where they absorb
+    /// Refractive index: n, or n,k with absorption
     #[arg(long, value_name = "N[,K]", value_parser = index, default_value = "1.333")]
     pub index: Index,
     /// Largest size parameter, 2 pi r / lambda
@@ -160,12 +160,12 @@ fn index(text: &str) -> Result<Index, String> {
 
 const EXAMPLES: &str = "\
 Examples:
-  Angular scattering around drops of six sizes (figure 2 of Klassen 1987), and the efficiency of water (figure 3):
+  Angular scattering by drops of six sizes (figure 2 of Klassen 1987), and the efficiency of water (figure 3):
     airlight plot phase --polar --size-parameter 0.2,1,2,4,6,10 -o angular.svg
     airlight plot efficiency -o efficiency.svg
-  Bow and glory of two fogs:
+  Fogbow and glory of two fogs:
     airlight plot phase --droplets heavy-radiation-fog,moderate-advection-fog --wavelength-nm 450,650 -o fogs.svg
-  Sunlight and skylight of a low sun; the sky in two directions; the air's transmittance as a map:
+  Spectra of sunlight and skylight for a low sun; of the sky in two directions; a map of the air's transmittance:
     airlight plot spectrum --sun-elevation 5 --wavelengths fine -o light.svg
     airlight plot spectrum --sun-elevation 30 --wavelengths fine --view 0,90 --view 180,5 -o sky.png
     airlight plot transmittance --sun-elevation 30 --wavelengths fine --map -o transmittance.png";
@@ -175,7 +175,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_index_has_one_or_two_numbers() {
+    fn refractive_indices_have_one_or_two_numbers() {
         let water = Index {
             real: 1.33,
             imaginary: 0.0,

@@ -8,14 +8,14 @@ use airlight::spectrum::RgbSpace;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
-/// How numbers are written.
+/// Output format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum FormatArg {
-    /// One JSON object, format airlight-probe/1.
+    /// JSON in the format airlight-probe/1.
     Json,
-    /// A line for each direction and wavelength, with a header.
+    /// CSV with a line for each direction and wavelength.
     Csv,
-    /// A text to read.
+    /// Plain text.
     Table,
 }
 
@@ -23,22 +23,20 @@ pub enum FormatArg {
 #[derive(Debug, Args)]
 #[command(allow_negative_numbers = true, after_help = EXAMPLES)]
 pub struct ProbeArgs {
-    /// A direction to look in: azimuth,elevation in degrees; may be given many times
+    /// View direction: azimuth,elevation in degrees; can be repeated
     #[arg(long, value_name = "AZ,EL", value_parser = parse::az_el, allow_hyphen_values = true)]
     #[arg(help_heading = "Directions")]
     pub view: Vec<AzEl>,
-    /// CSV file of directions: a header with azimuth_deg, elevation_deg and, if wanted, distance_m; - reads standard
-    /// input
+    /// CSV file of directions with the columns azimuth_deg, elevation_deg and optionally distance_m; - reads standard input
     #[arg(long, value_name = "FILE.csv", help_heading = "Directions")]
     pub views: Option<PathBuf>,
-    /// Look no farther than this, m: the air between the eye and an object at that distance [default: to the ground or
-    /// to space]
+    /// Length of the rays, m, for the air between the eye and an object at this distance [default: to the ground or to space]
     #[arg(long, value_name = "M", value_parser = parse::length_m, help_heading = "Directions")]
     pub distance_m: Option<f64>,
-    /// With --solver monte-carlo: the polarisation of the light as well
+    /// With --solver monte-carlo: also compute polarisation
     #[arg(long, help_heading = "Directions")]
     pub polarisation: bool,
-    /// How the numbers are written
+    /// Output format
     #[arg(long, value_enum, default_value_t = FormatArg::Table, help_heading = "Output")]
     pub format: FormatArg,
     /// File to write instead of standard output
@@ -55,7 +53,7 @@ impl ProbeArgs {
     /// The scene of the options.
     ///
     /// # Errors
-    /// [`CliError`] where a file cannot be read or is wrong.
+    /// [`CliError`] if a file cannot be read or is invalid.
     pub fn read(&self) -> Result<Scene, CliError> {
         self.scene.read(|scene| {
             put(&mut scene.output.color_space, &self.color_space);
@@ -66,21 +64,21 @@ impl ProbeArgs {
 }
 
 const EXAMPLES: &str = "\
-Radiances leave out the sun's own disc; its light is given apart from the sky's.
+Radiances do not include the sun's disc, whose light is printed separately.
 
 Examples:
-  The zenith and a point near the horizon, to read:
+  The zenith and a point near the horizon, as plain text:
     airlight probe --sun-elevation 30 --view 0,90 --view 90,2
-  Every 5 nm over Paris, for a program:
+  The sky over Paris every 5 nm, as JSON:
     airlight probe --at 48.8584,2.2945 --when 2026-06-21T19:15:00Z --view 180,45 --wavelengths fine --format json
-  The haze before a mountain 20 km away:
+  The haze in front of a mountain 20 km away:
     airlight probe --sun-elevation 20 --view 90,1 --distance-m 20e3 --haze-visibility-m 40e3
-  The same by Monte Carlo, each value with its standard error:
+  The same by Monte Carlo, with standard errors:
     airlight probe --sun-elevation 20 --view 90,1 --distance-m 20e3 --haze-visibility-m 40e3 --solver monte-carlo
-  How much of the sky's light is polarised a right angle from the sun, and in which plane:
+  Degree and angle of polarisation at a right angle from the sun:
     airlight probe --sun-elevation 20 --view 0,70 --solver monte-carlo --polarisation
-  That sky by a shader and by a model of 1987 (the first in colours only, the second at wavelengths of its own):
+  The same sky by published models (the first has colours only, the second its own wavelengths):
     airlight probe --sun-elevation 20 --view 0,70 --solver single-scattering --variant printed
     airlight probe --sun-elevation 20 --view 0,70 --solver klassen1987
-  Illuminance of sun and sky alone, of a scene file:
+  Illuminance by sun and sky only, for a scene file:
     airlight probe --scene sky.toml --format json";

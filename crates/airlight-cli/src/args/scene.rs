@@ -1,4 +1,4 @@
-//! Options that make a scene: a file, and what overrides it.
+//! Options that describe a scene: a file and overrides.
 
 use super::fog::{ContrastArgs, FogArgs};
 use super::{AirArgs, PlaceArgs, SolverArgs};
@@ -9,10 +9,10 @@ use airlight_render::scene_file;
 use clap::Args;
 use std::path::{Path, PathBuf};
 
-/// A scene: a file, and what overrides it.
+/// A scene: a file and overrides.
 #[derive(Clone, Debug, Default, Args)]
 pub struct SceneArgs {
-    /// Scene to begin with, which the other options override: a TOML file (`airlight schema` prints its JSON Schema)
+    /// Scene file, which the other options override (`airlight schema` prints its JSON Schema)
     #[arg(long, value_name = "FILE.toml", help_heading = "Scene")]
     pub scene: Option<PathBuf>,
     #[command(flatten)]
@@ -28,10 +28,10 @@ pub struct SceneArgs {
 }
 
 impl SceneArgs {
-    /// The scene of the file and the options, with the files that it names; `more` are further options.
+    /// The scene of the file and the options, with the files that it names; `more` applies further options.
     ///
     /// # Errors
-    /// [`CliError`] where a file cannot be read or is wrong.
+    /// [`CliError`] if a file cannot be read or is invalid.
     pub fn read(&self, more: impl FnOnce(&mut Scene)) -> Result<Scene, CliError> {
         let mut scene = match &self.scene {
             Some(path) => scene_file::load(path)?,

@@ -11,22 +11,22 @@ use std::path::PathBuf;
 #[derive(Clone, Debug, Args)]
 #[command(allow_negative_numbers = true, after_help = EXAMPLES)]
 pub struct SkyArgs {
-    /// File to write; its ending says the format: .exr, .hdr, .png, .jpg, or .spectral.exr
+    /// File to write; its extension selects the format: .exr, .hdr, .png, .jpg, or .spectral.exr
     #[arg(short, long, value_name = "FILE", help_heading = "Files")]
     pub output: Option<String>,
-    /// Show the picture in the terminal as well (the default without a file to write)
+    /// Show the picture in the terminal (default without --output)
     #[arg(long, help_heading = "Files")]
     pub preview: bool,
-    /// Write the scene that the options and --scene come to, complete in one TOML file
+    /// Write the complete scene of --scene and the options to a TOML file
     #[arg(long, value_name = "FILE.toml", help_heading = "Files")]
     pub save_scene: Option<PathBuf>,
     /// Print nothing on standard output
     #[arg(short, long, help_heading = "Files")]
     pub quiet: bool,
-    /// With --solver monte-carlo: write the standard error of each pixel's colour as well, into NAME.noise.exr
+    /// With --solver monte-carlo: write the standard error of each pixel's colour to NAME.noise.exr
     #[arg(long, help_heading = "Files")]
     pub noise_map: bool,
-    /// With --solver monte-carlo: follow the polarisation of light, and write its degree and angle into NAME.polarisation.exr
+    /// With --solver monte-carlo: write degree and angle of polarisation to NAME.polarisation.exr
     #[arg(long, help_heading = "Files")]
     pub polarisation: bool,
     #[command(flatten)]
@@ -43,17 +43,17 @@ pub struct SkyArgs {
     pub objects: ObjectArgs,
 }
 
-/// Many pictures over a span of time.
+/// A sequence of pictures.
 #[derive(Clone, Debug, Default, Args)]
 #[command(next_help_heading = "Sequences")]
 pub struct SequenceArgs {
-    /// Draw a sequence from --when until this time, or for a span of time after it: +6h
+    /// Draw a sequence from --when until this time, or for a duration: +6h
     #[arg(long, value_name = "TIME|+SPAN")]
     pub until: Option<String>,
-    /// Time from picture to picture: 10m, 1h30m, 45s
+    /// Interval between pictures: 10m, 1h30m, 45s
     #[arg(long, value_name = "SPAN", value_parser = parse::span)]
     pub every: Option<String>,
-    /// Draw pictures again whose file is there already; otherwise those count as done
+    /// Replace existing pictures of a sequence; otherwise they are kept
     #[arg(long)]
     pub overwrite: bool,
 }
@@ -62,14 +62,14 @@ pub struct SequenceArgs {
 #[derive(Clone, Debug, Default, Args)]
 #[command(next_help_heading = "Objects")]
 pub struct ObjectArgs {
-    /// Solids from a TOML file, lit by sun, sky and fog, and seen through them; they stand about the point under the eye
+    /// TOML file of objects; their origin is the point of the ground below the eye
     #[arg(long, value_name = "FILE.toml")]
     pub objects: Option<String>,
-    /// Write their depth as well, into NAME.depth.exr: metres along the camera's axis (perspective) or along the ray; infinite
-    /// for the sky
+    /// Write the depth of objects to NAME.depth.exr: metres along the camera's axis (perspective) or along the ray, infinite
+    /// for sky
     #[arg(long)]
     pub depth_map: bool,
-    /// Let objects cast no shadows on each other, as in the pictures of 1987
+    /// Disable shadows of objects on each other, as in the pictures of Klassen 1987
     #[arg(long)]
     pub no_shadows: bool,
 }
@@ -78,7 +78,7 @@ impl SkyArgs {
     /// The scene of the options.
     ///
     /// # Errors
-    /// [`CliError`] where a file cannot be read or is wrong.
+    /// [`CliError`] if a file cannot be read or is invalid.
     pub fn read(&self) -> Result<Scene, CliError> {
         self.scene.read(|scene| {
             self.camera.fill(&mut scene.camera);
@@ -99,7 +99,7 @@ impl SkyArgs {
 }
 
 impl ObjectArgs {
-    /// Overrides what a scene has.
+    /// Overrides values of a scene.
     pub fn fill(&self, objects: &mut Option<ObjectsSpec>) {
         if let Some(file) = &self.objects {
             *objects = Some(ObjectsSpec {
@@ -126,24 +126,24 @@ impl SequenceArgs {
 
 const EXAMPLES: &str = "\
 Examples:
-  The sky over Paris as a map of the whole sphere, linear light in cd/m^2:
+  The sky over Paris on the whole sphere, linear light in cd/m^2:
     airlight sky --at 48.8584,2.2945 --when 2026-06-21T21:15:00+02:00 -o sky.exr
   A photograph of a low sun through haze:
     airlight sky --sun-elevation 3 --aod-550 0.3 --projection perspective --size 1920x1080 -o dusk.png
-  A scene file, written from options and drawn again at another time:
+  A scene file, written from options and drawn at another time:
     airlight sky --at 64.1,-21.9 --when 2026-06-21T00:00:00Z --projection fisheye -o a.png --save-scene iceland.toml
     airlight sky --scene iceland.toml --when 2026-12-21T12:00:00Z -o b.png
-  A dome for rendering, with the sun in a file of its own (dome.sun.exr):
+  An environment map for rendering, with the sun in a separate file (dome.sun.exr):
     airlight sky --sun-elevation 40 --sun-disc separate --size 4096x2048 -o dome.exr
-  A day, a picture every ten minutes (day.0001.png, ...); a second run draws what is missing:
+  A day with a picture every ten minutes (day.0001.png, ...); a second run draws missing pictures:
     airlight sky --at 64.1,-21.9 --when 2026-06-21T00:00:00Z --until +24h --every 10m \\
       --projection fisheye -o day.png
   Ground fog at sunrise, seen from a hill 60 m high:
     airlight sky --sun-elevation 2 --visibility-m 150 --top-m 40 --altitude-m 60 --projection perspective -o fog.png
-  The same sky by Monte Carlo, with the noise of each pixel in a file of its own:
+  A sky by Monte Carlo, with a noise map:
     airlight sky --sun-elevation 3 --solver monte-carlo --paths 1024 --size 512x256 --noise-map -o truth.exr
-  With its polarisation, degree and angle from the vertical, anticlockwise as the eye sees it:
+  A sky with maps of polarisation: degree, and angle from the vertical, anticlockwise as seen by the eye:
     airlight sky --sun-elevation 10 --solver monte-carlo --polarisation --projection fisheye --size 256x256 -o blue.exr
-  From a height of 400 km, from Mars:
+  The Earth from a height of 400 km; the sky of Mars:
     airlight sky --sun-elevation 20 --altitude-m 400e3 --projection perspective --camera-elevation -15 -o iss.png
     airlight sky --atmosphere mars --sun-elevation 5 --projection perspective -o mars.png";

@@ -1,4 +1,4 @@
-//! Options for how the light is solved for.
+//! Options for the solver.
 
 use crate::parse::{self, put};
 use airlight::models::registry;
@@ -7,7 +7,7 @@ use airlight::sky::Scattering;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 
-/// How the light is solved for.
+/// Options for the solver.
 #[derive(Clone, Debug, Default, Args)]
 #[command(next_help_heading = "Solver")]
 pub struct SolverArgs {
@@ -18,12 +18,11 @@ pub struct SolverArgs {
     /// standard]
     #[arg(long, value_name = "GRID|LIST")]
     pub wavelengths: Option<String>,
-    /// Which light is computed: all orders of scattering, or sunlight scattered once with the ground lit by the sun alone
-    /// [default: all]
+    /// Orders of scattering: all, or single scattering with the ground lit by direct sunlight [default: all]
     #[arg(long, value_name = "WHICH", value_parser = scattering())]
     pub scattering: Option<Scattering>,
-    /// How finely orders of scattering are solved; fine is within 1 % by day in haze as in clear air (dust under a sun at the
-    /// horizon: 4 %), and takes five times as long [default: standard]
+    /// Resolution of the orders of scattering; the error of fine is below 1 % in daylight in haze as in clear air (dust with the
+    /// sun at the horizon: 4 %), and it is five times slower [default: standard]
     #[arg(long, value_parser = parse::named::<Effort>())]
     pub effort: Option<Effort>,
     /// Monte Carlo paths for each pixel [default: 256] or direction [default: 65536], 128 or above
@@ -32,50 +31,50 @@ pub struct SolverArgs {
     /// Seed of the Monte Carlo paths: the same seed gives the same picture [default: 1]
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
-    /// Form of a published model that has several: printed (as published, with its mistakes), corrected, and for
-    /// single-scattering printed-f64, table and multiple [default: corrected]
+    /// Variant of a published model: printed (as published, with errors), corrected, and for single-scattering printed-f64,
+    /// table and multiple [default: corrected]
     #[arg(long, value_name = "FORM", help_heading = "Published models")]
     pub variant: Option<String>,
-    /// single-scattering: sunlight white on the ground when it stands in the zenith, as printed, or as measured outside the
-    /// air [default: white]
+    /// single-scattering: sunlight that is white on the ground with the sun at the zenith, as printed, or as measured outside
+    /// the air [default: white]
     #[arg(long, value_name = "COLOUR", help_heading = "Published models")]
     #[arg(value_parser = parse::named::<SunlightKind>())]
     pub sunlight: Option<SunlightKind>,
-    /// single-scattering: illuminance by a white sun in the zenith, lx; 6.2832 for colours about 1 [default: 120000]
+    /// single-scattering: illuminance by a white sun at the zenith, lx; 6.2832 for colours of about 1 [default: 120000]
     #[arg(long, value_name = "LX", value_parser = parse::positive, help_heading = "Published models")]
     pub zenith_lux: Option<f64>,
     #[command(flatten)]
     pub klassen: KlassenArgs,
 }
 
-/// Settings of the model of 1987.
+/// Settings of klassen1987.
 #[derive(Clone, Debug, Default, Args)]
 #[command(next_help_heading = "Published models")]
 pub struct KlassenArgs {
-    /// klassen1987: extinction of its haze at 550 nm, 1/m [default: that of the atmosphere's haze at the ground]
+    /// klassen1987: extinction of the haze at 550 nm, 1/m [default: that of the atmosphere's haze at the ground]
     #[arg(long, value_name = "1/M", value_parser = parse::not_negative)]
     pub haze_extinction_per_m: Option<f64>,
-    /// klassen1987: thickness of its haze, m [default: that which gives the atmosphere's optical depth of haze]
+    /// klassen1987: thickness of the haze, m [default: the one that preserves the haze's optical depth]
     #[arg(long, value_name = "M", value_parser = parse::positive)]
     pub haze_thickness_m: Option<f64>,
-    /// klassen1987: its haze consists of Deirmendjian's drops by the sea (haze-m), over land (haze-l) or aloft (haze-h)
-    /// [default: the atmosphere's haze]
+    /// klassen1987: water drops of the haze, of Deirmendjian's distributions for marine (haze-m), continental (haze-l) or high
+    /// (haze-h) haze [default: particles of the atmosphere's haze]
     #[arg(long, value_name = "KIND", value_parser = parse::named::<WetHaze>())]
     pub wet_haze: Option<WetHaze>,
-    /// klassen1987: density of its air over the atmosphere's [default: 1]
+    /// klassen1987: density of the air relative to the atmosphere's [default: 1]
     #[arg(long, value_name = "FACTOR", value_parser = parse::positive)]
     pub air_density: Option<f64>,
-    /// klassen1987: thickness of its air were it all as dense as at the ground, m [default: that which gives the atmosphere's]
+    /// klassen1987: thickness of the air at its density at the ground, m [default: the one that preserves its optical depth]
     #[arg(long, value_name = "M", value_parser = parse::positive)]
     pub air_thickness_m: Option<f64>,
-    /// klassen1987: the sky behind its haze, the paper's constant blue or solved for [default: solver; paper with --variant
+    /// klassen1987: sky behind the haze, the paper's constant blue or the solved sky [default: solver; paper with --variant
     /// printed]
     #[arg(long, value_name = "WHICH", value_parser = parse::named::<BaseBlueKind>())]
     pub base_blue: Option<BaseBlueKind>,
 }
 
 impl SolverArgs {
-    /// Overrides what a scene has.
+    /// Overrides values of a scene.
     pub fn fill(&self, solver: &mut SolverSpec) {
         put(&mut solver.name, &self.solver);
         put(&mut solver.wavelengths, &self.wavelengths);
@@ -101,7 +100,7 @@ impl KlassenArgs {
     }
 }
 
-/// The names of the registry.
+/// Parser of the names of solvers and published models.
 fn solvers() -> PossibleValuesParser {
     let values = registry::ALL.iter();
     PossibleValuesParser::new(

@@ -10,10 +10,10 @@ use airlight_render::batch::{BatchPlan, FoundInputs, listed};
 use airlight_render::overlay::OverlayScene;
 use std::time::Instant;
 
-/// Makes the pictures of a description whose paths are folders or patterns.
+/// Writes the pictures of a description whose paths are folders or patterns.
 ///
 /// # Errors
-/// [`CliError`]; pictures already made stay.
+/// [`CliError`]; pictures that are already written remain.
 pub fn run(args: &OverlayArgs, scene: OverlayScene) -> Result<(), CliError> {
     let plan = BatchPlan::new(scene, args.batch.settings())?;
     remarks(plan.found(), args.quiet);
@@ -33,7 +33,7 @@ pub fn run(args: &OverlayArgs, scene: OverlayScene) -> Result<(), CliError> {
         let mut also = String::new();
         if total > missing {
             also = format!(
-                ", {} existed already (--overwrite makes them again)",
+                ", {} existed already (--overwrite replaces them)",
                 total - missing
             );
         }
@@ -42,7 +42,7 @@ pub fn run(args: &OverlayArgs, scene: OverlayScene) -> Result<(), CliError> {
         }
         let time = begun.elapsed();
         report::print(&format!(
-            "{}: {} of {total} pictures made{also}\n  manifest      {}\n  time          {}, {} pictures/s\n",
+            "{}: {} of {total} pictures written{also}\n  manifest      {}\n  time          {}, {} pictures/s\n",
             plan.scene().output()?.display(),
             report.made,
             plan.manifest().display(),
@@ -60,12 +60,12 @@ pub fn run(args: &OverlayArgs, scene: OverlayScene) -> Result<(), CliError> {
     }
 }
 
-/// Reports on standard error what was left out, and depth files without a picture.
+/// Reports pictures that are left out and depth files without a picture on standard error.
 fn remarks(found: &FoundInputs, quiet: bool) {
     let missing = found.without_depth.len();
     if missing > 0 {
         report::note(&format!(
-            "{missing} of {} pictures have no depth and are left out:{}",
+            "{missing} of {} pictures without depth are left out:{}",
             missing + found.inputs.len(),
             listed(&found.without_depth)
         ));
@@ -74,7 +74,7 @@ fn remarks(found: &FoundInputs, quiet: bool) {
         let paths = found.unused_depths.iter();
         let paths: Vec<String> = paths.map(|path| format!("`{}`", path.display())).collect();
         report::note(&format!(
-            "{} depth files have no picture:{}",
+            "{} depth files without a picture:{}",
             paths.len(),
             listed(&paths)
         ));

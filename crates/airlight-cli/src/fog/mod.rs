@@ -17,7 +17,7 @@ use std::path::Path;
 /// Runs the command.
 ///
 /// # Errors
-/// [`CliError`]: what is wrong with the options or the files.
+/// [`CliError`] for invalid options and files.
 pub fn run(args: &OverlayArgs) -> Result<(), CliError> {
     let mut scene = match &args.scene {
         None => OverlayScene::default(),
@@ -30,7 +30,7 @@ pub fn run(args: &OverlayArgs) -> Result<(), CliError> {
             scene.scene.solver.seed = Some(seed);
         } else if args.batch.vary.is_empty() {
             return Err(CliError::usage(
-                "--seed: expected something random, got nothing; try --vary or --solver monte-carlo",
+                "--seed: expected a random input, got none; try --vary or --solver monte-carlo",
             ));
         }
     }
@@ -54,7 +54,7 @@ pub fn run(args: &OverlayArgs) -> Result<(), CliError> {
     }
 }
 
-/// The description in a scene file.
+/// Reads a description from a scene file.
 fn read(path: &Path) -> Result<OverlayScene, CliError> {
     let text = scene_file::read_text(path)?;
     OverlayScene::from_toml(&text)
@@ -114,7 +114,7 @@ fn one(args: &OverlayArgs, scene: &OverlayScene) -> Result<(), CliError> {
     ))
 }
 
-/// Writes a picture by Monte Carlo pass by pass; the noise of the last one as a line of the report.
+/// Writes a Monte Carlo picture in passes; returns a line of the report with the noise of the last one.
 fn passes(
     scene: &OverlayScene,
     image: &OverlayImage,
@@ -129,7 +129,7 @@ fn passes(
         written = prepared.write_pass(scene, image, pass, control)?;
         if pass.is_last {
             noise = format!(
-                "  noise         {:.2} % of the fog's green (root mean square over the picture), {} paths a pixel\n",
+                "  noise         {:.2} % of the fog's green (root mean square over the picture), {} paths per pixel\n",
                 100.0 * pass.relative_noise(),
                 pass.paths
             );
@@ -139,7 +139,7 @@ fn passes(
     Ok((written, noise))
 }
 
-/// Whether two paths lead to one existing file.
+/// Whether two paths are of the same existing file.
 fn same_file(a: &Path, b: &Path) -> bool {
     match (a.canonicalize(), b.canonicalize()) {
         (Ok(a), Ok(b)) => a == b,

@@ -1,13 +1,13 @@
-//! Values made of pairs `KEY=VALUE`.
+//! Argument values that consist of `KEY=VALUE` pairs.
 
-/// Pairs `KEY=VALUE`, each taken once.
+/// `KEY=VALUE` pairs, each with another key.
 pub struct Words<'a>(Vec<(&'a str, &'a str)>);
 
 impl<'a> Words<'a> {
-    /// Splits a text at its spaces.
+    /// Splits a text at spaces.
     ///
     /// # Errors
-    /// For a word that is not `KEY=VALUE`, and for a key that is unknown or repeated.
+    /// A message for a word that is not `KEY=VALUE`, and for a key that is unknown or repeated.
     pub fn new(text: &'a str, keys: &[&str]) -> Result<Self, String> {
         let mut words = Vec::new();
         for word in text.split_whitespace() {
@@ -28,10 +28,10 @@ impl<'a> Words<'a> {
         Ok(Self(words))
     }
 
-    /// The value of a key, read by `parse`.
+    /// Takes the value of a key, parsed by `parse`; `None` if it is not given.
     ///
     /// # Errors
-    /// What `parse` says, with the key.
+    /// The error of `parse`, with the key.
     pub fn take<T>(
         &mut self,
         key: &str,
@@ -43,7 +43,7 @@ impl<'a> Words<'a> {
         let (_, value) = self.0.swap_remove(at);
         match parse(value) {
             Ok(value) => Ok(Some(value)),
-            Err(error) => Err(format!("{key} {error}")),
+            Err(error) => Err(format!("{key}: {error}")),
         }
     }
 }

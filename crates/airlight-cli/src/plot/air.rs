@@ -1,4 +1,4 @@
-//! Light and transmittance of the air by wavelength.
+//! Plots of light and transmittance of the air by wavelength.
 
 use crate::args::{SceneArgs, SpectrumPlotArgs, TransmittancePlotArgs};
 use crate::error::CliError;
@@ -13,7 +13,7 @@ fn wavelength() -> Axis {
     Axis::linear("wavelength, nm")
 }
 
-/// The scene of the options, at fine wavelengths where they do not say.
+/// The scene of the options, by default at fine wavelengths.
 fn read(args: &SceneArgs) -> Result<Scene, CliError> {
     args.read(|scene| {
         scene
@@ -23,7 +23,7 @@ fn read(args: &SceneArgs) -> Result<Scene, CliError> {
     })
 }
 
-/// Asks for the light along directions; a solver without spectra is refused.
+/// Computes the light along directions; refuses a solver without spectra.
 fn probe(scene: &Scene, rays: Vec<ProbeRay>) -> Result<ProbeAnswer, CliError> {
     let answer = Probe::new(scene, rays)?.answer(Control::cancelled_by(&STOP))?;
     match answer.wavelengths_nm.is_empty() {
@@ -43,10 +43,10 @@ fn ray(azimuth_deg: f64, elevation_deg: f64) -> ProbeRay {
     }
 }
 
-/// Spectral radiance of the sky in directions, or without any the irradiances of sun and sky.
+/// Spectral radiance of the sky in directions, or without directions the irradiances by sun and sky.
 ///
 /// # Errors
-/// [`CliError`] for options that do not fit together.
+/// [`CliError`] for options that contradict each other.
 pub fn spectrum(args: &SpectrumPlotArgs) -> Result<String, CliError> {
     let rays = args
         .view
@@ -69,7 +69,7 @@ pub fn spectrum(args: &SpectrumPlotArgs) -> Result<String, CliError> {
                 &sun.irradiance_normal_w_m2_nm,
             ),
             curve(
-                "sky, on the horizontal".to_owned(),
+                "sky, on a horizontal surface".to_owned(),
                 &sky.irradiance_horizontal_w_m2_nm,
             ),
         ];
@@ -91,13 +91,13 @@ pub fn spectrum(args: &SpectrumPlotArgs) -> Result<String, CliError> {
     Ok(line_chart(&wavelength(), &y, &all)?)
 }
 
-/// Transmittance of the air from the eye to space, for zenith angles or as a map over them.
+/// Transmittance of the air from the eye to space, for zenith angles or as a map.
 ///
 /// # Errors
-/// [`CliError`] for options that do not fit together.
+/// [`CliError`] for options that contradict each other.
 pub fn transmittance(args: &TransmittancePlotArgs) -> Result<String, CliError> {
     let mut scene = read(&args.scene)?;
-    // Any sun will do, and any light: the transmittance is that of the air alone.
+    // The transmittance does not depend on the sun.
     if scene.sun.latitude_deg.is_none() {
         scene.sun.elevation_deg.get_or_insert(45.0);
     }

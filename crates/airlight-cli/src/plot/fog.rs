@@ -1,4 +1,4 @@
-//! How dense fog is by height, and where the split sum holds.
+//! Plots of fog profiles, and of the error of the split sum.
 
 use crate::args::{FogProfilePlotArgs, SplitSumPlotArgs};
 use crate::error::CliError;
@@ -7,10 +7,10 @@ use airlight::fog::split_sum_error;
 use airlight::fog::visibility::{Contrast, extinction_per_m};
 use airlight_plot::{Axis, Colormap, Curve, HeatMap, heat_map, line_chart};
 
-/// Extinction by height of an even slab, an exponential fog and one that is even up to a base.
+/// Extinction by height of a slab, an exponential profile and a clamped exponential profile.
 ///
 /// # Errors
-/// [`CliError::Usage`] for heights that make no profile.
+/// [`CliError::Usage`] for heights out of range.
 pub fn profile(args: &FogProfilePlotArgs) -> Result<String, CliError> {
     const STEPS: u32 = 400;
     let extinction = extinction_per_m(args.visibility_m, Contrast::FivePercent);
@@ -59,14 +59,14 @@ pub fn profile(args: &FogProfilePlotArgs) -> Result<String, CliError> {
     Ok(line_chart(&x, &y, &all)?)
 }
 
-/// The error of the split sum over optical depth and the fall of the source along it.
+/// Error of the split sum by optical depth and by the decay rate of the source.
 ///
 /// # Errors
-/// [`CliError`] where the map cannot be drawn.
+/// [`CliError`] if the map cannot be drawn.
 pub fn split_sum(_: &SplitSumPlotArgs) -> Result<String, CliError> {
     const COLUMNS: u32 = 72;
     const ROWS: u32 = 48;
-    // From a hundredth to ten; falls from -1 to 1.
+    // Optical depths from 0.01 to 10, decay rates from -1 to 1.
     let depth: Vec<f64> = (0..=COLUMNS)
         .map(|i| 10f64.powf(-2.0 + 3.0 * f64::from(i) / f64::from(COLUMNS)))
         .collect();
@@ -86,9 +86,9 @@ pub fn split_sum(_: &SplitSumPlotArgs) -> Result<String, CliError> {
         x: depth,
         y: fall,
     };
-    let x = Axis::logarithmic("optical depth of the line");
+    let x = Axis::logarithmic("optical depth of the ray");
     let y =
-        Axis::linear("k: the source falls as exp(\u{2212}k t) with optical depth t from the eye");
+        Axis::linear("k: the source decays as exp(\u{2212}k t) with optical depth t from the eye");
     Ok(heat_map(
         (&x, &y),
         &data,

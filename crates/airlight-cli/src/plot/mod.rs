@@ -1,4 +1,4 @@
-//! `airlight plot`: curves and maps, as SVG or PNG.
+//! `airlight plot`: curves and maps as SVG or PNG.
 //!
 //! [`particles`]: phase functions and efficiencies; [`air`]: spectra and transmittance; [`fog`]: profiles, and the error of
 //! the split sum.
@@ -12,13 +12,13 @@ use crate::error::CliError;
 use crate::report;
 use airlight_plot::Raster;
 
-/// Pixels of a PNG for each of the drawing's.
+/// Number of PNG pixels for each unit of the drawing.
 const PNG_SCALE: f32 = 2.0;
 
 /// Runs the command.
 ///
 /// # Errors
-/// [`CliError`]: what was wrong with the options, or the file.
+/// [`CliError`] for invalid options, and if the file cannot be written.
 pub fn run(args: &PlotArgs) -> Result<(), CliError> {
     let output = match &args.what {
         PlotWhat::Phase(args) => &args.output,
@@ -31,7 +31,11 @@ pub fn run(args: &PlotArgs) -> Result<(), CliError> {
     let png = match output.extension().and_then(|ending| ending.to_str()) {
         Some("svg") => false,
         Some("png") => true,
-        _ => return Err(CliError::usage("--output must end in .svg or .png")),
+        _ => {
+            return Err(CliError::usage(
+                "--output: expected a name that ends in .svg or .png, got another",
+            ));
+        }
     };
     let svg = match &args.what {
         PlotWhat::Phase(args) => particles::phase(args)?,

@@ -1,4 +1,4 @@
-//! What particles do to light: phase functions and efficiencies.
+//! Plots of phase functions and scattering efficiencies.
 
 use crate::args::{EfficiencyPlotArgs, Index, PhasePlotArgs};
 use crate::error::CliError;
@@ -13,14 +13,14 @@ use std::f64::consts::{PI, TAU};
 /// Effective variance of the sizes over which the oscillations of single spheres are smoothed.
 const VARIANCE: f64 = 0.1;
 
-/// Phase functions, or the patterns around single spheres.
+/// Phase functions, or angular patterns of single spheres.
 ///
 /// # Errors
-/// [`CliError`] where nothing was asked for, or particles are refused.
+/// [`CliError`] if no particles are given or they are invalid.
 pub fn phase(args: &PhasePlotArgs) -> Result<String, CliError> {
     if args.droplets.is_empty() && args.size_parameter.is_empty() {
         return Err(CliError::usage(
-            "say whose phase function: --droplets KIND,... or --size-parameter X,...",
+            "expected particles, got none; try --droplets KIND,... or --size-parameter X,...",
         ));
     }
     let busy = Busy::with("summing over spheres");
@@ -49,7 +49,7 @@ pub fn phase(args: &PhasePlotArgs) -> Result<String, CliError> {
     Ok(line_chart(&x, &y, &curves)?)
 }
 
-/// Angles all the way round (rad), in steps that resolve features of a width.
+/// Angles over the full circle (rad), in steps that resolve features of a width.
 fn angles(width: f64) -> Vec<f64> {
     let half = ((PI / width).ceil() as usize).clamp(360, 7200);
     (0..=2 * half)
@@ -66,8 +66,8 @@ fn of_drops(kind: DropletKind, nm: f64) -> Result<Curve, CliError> {
     })
 }
 
-/// The phase function of a sphere, or how strongly it scatters each way, `(|S_1|^2 + |S_2|^2) / 2`: the differential
-/// cross-section times the squared wave number.
+/// Phase function of a sphere, or its scattered intensity `(|S_1|^2 + |S_2|^2) / 2`: the differential cross-section times the
+/// squared wave number.
 fn of_sphere(x: f64, index: Index, pattern: bool) -> Result<Curve, CliError> {
     let sphere = Sphere::new(x, Complex64::new(index.real, index.imaginary))?;
     let value = |angle: f64| match pattern {
@@ -93,7 +93,7 @@ fn of_sphere(x: f64, index: Index, pattern: bool) -> Result<Curve, CliError> {
 /// Efficiencies of single spheres, and the mean over sizes.
 ///
 /// # Errors
-/// [`CliError`] where particles are refused.
+/// [`CliError`] for invalid particles.
 pub fn efficiency(args: &EfficiencyPlotArgs) -> Result<String, CliError> {
     const STEPS: usize = 2500;
     const SMOOTH_STEPS: usize = 120;
@@ -112,7 +112,7 @@ pub fn efficiency(args: &EfficiencyPlotArgs) -> Result<String, CliError> {
     let of_many: Result<Vec<_>, MieError> = places(SMOOTH_STEPS).map(of_many).collect();
     let curves = [
         Curve {
-            name: "one size".to_owned(),
+            name: "single size".to_owned(),
             points: single?,
         },
         Curve {

@@ -1,4 +1,4 @@
-//! `airlight probe`: the light along given directions, in numbers. [`table`] writes them to be read.
+//! `airlight probe`: light along given directions as numbers. [`table`] formats them as plain text.
 
 mod table;
 
@@ -16,12 +16,12 @@ use std::path::Path;
 /// Runs the command.
 ///
 /// # Errors
-/// [`CliError`]: what was wrong with the options, or what failed.
+/// [`CliError`] for invalid options and failures.
 pub fn run(args: &ProbeArgs) -> Result<(), CliError> {
     let rays = rays(args)?;
     if rays.is_empty() && args.format == FormatArg::Csv {
         return Err(CliError::usage(
-            "CSV has a line for each direction: give --view AZ,EL or --views FILE.csv",
+            "--format csv: expected directions, got none; try --view AZ,EL or --views FILE.csv",
         ));
     }
     let probe = Probe::new(&args.read()?, rays)?;
@@ -45,7 +45,7 @@ pub fn run(args: &ProbeArgs) -> Result<(), CliError> {
     }
 }
 
-/// The directions of the options, those of the command line first.
+/// Directions of the options, those of `--view` first.
 fn rays(args: &ProbeArgs) -> Result<Vec<ProbeRay>, CliError> {
     let mut rays: Vec<ProbeRay> = args
         .view
@@ -70,9 +70,8 @@ fn rays(args: &ProbeArgs) -> Result<Vec<ProbeRay>, CliError> {
             }
             false => read_text(path)?,
         };
-        let found = ProbeRay::list_from_csv(&text, args.distance_m).map_err(|error| {
-            CliError::usage(format!("the views of `{}`, {error}", path.display()))
-        })?;
+        let found = ProbeRay::list_from_csv(&text, args.distance_m)
+            .map_err(|error| CliError::usage(format!("`{}`, {error}", path.display())))?;
         rays.extend(found);
     }
     Ok(rays)

@@ -1,10 +1,10 @@
-//! A probe's answer as a text to read.
+//! Result of a probe as plain text.
 
 use airlight_render::probe::{ProbeAnswer, RayAnswer};
 use airlight_render::summary::short;
 use std::fmt::Write;
 
-/// The whole text.
+/// Formats the result.
 pub fn text(answer: &ProbeAnswer) -> String {
     let mut text = head(answer);
     for view in &answer.views {
@@ -35,8 +35,8 @@ fn head(answer: &ProbeAnswer) -> String {
     }
     let _ = writeln!(
         text,
-        "sun           elevation {:.4} deg, azimuth {:.4} deg\nilluminance   sun {} lx facing it, {} lx on the \
-         horizontal; sky {} lx on the horizontal",
+        "sun           elevation {:.4} deg, azimuth {:.4} deg\nilluminance   sun {} lx facing it, {} lx horizontal; sky \
+        {} lx horizontal",
         sun.elevation_deg,
         sun.azimuth_deg,
         short(sun.illuminance_normal_lx),
@@ -56,12 +56,12 @@ fn head(answer: &ProbeAnswer) -> String {
     text
 }
 
-/// The solver or published model, and whether it has spectra.
+/// Line with the solver or published model, and whether it has spectra.
 fn solver(answer: &ProbeAnswer) -> String {
     let variant = answer.variant.as_ref();
     let variant = variant.map_or(String::new(), |variant| format!(", {variant}"));
     let spectra = match answer.wavelengths_nm.is_empty() {
-        true => "; it knows colours, not spectra",
+        true => "; colours only, no spectra",
         false => "",
     };
     format!("solver        {}{variant}{spectra}\n", answer.solver)

@@ -1,4 +1,4 @@
-//! `airlight sky`: pictures of the sky. [`preview`]: onto the terminal.
+//! `airlight sky`: pictures of the sky. [`preview`] shows them on the terminal.
 
 mod preview;
 
@@ -22,7 +22,7 @@ use std::time::{Duration, Instant};
 /// Runs the command.
 ///
 /// # Errors
-/// [`CliError`]: what was wrong with the options, or what failed.
+/// [`CliError`] for invalid options and failures.
 pub fn run(args: &SkyArgs) -> Result<(), CliError> {
     let scene = args.read()?;
     if let Some(path) = &args.save_scene {
@@ -136,10 +136,10 @@ fn many(
     }
     let skipped = match total - missing.len() {
         0 => String::new(),
-        n => format!(", {n} were there already (--overwrite draws them again)"),
+        n => format!(", {n} existed already (--overwrite replaces them)"),
     };
     report::print(&format!(
-        "{}: {} of {total} pictures made{skipped}, {}\n  time          {}\n",
+        "{}: {} of {total} pictures written{skipped}, {}\n  time          {}\n",
         renderer.output_path()?.display(),
         missing.len(),
         renderer.kind(),
@@ -157,7 +157,7 @@ fn solve(
     Ok((prepared, start.elapsed()))
 }
 
-/// Sun, light and air in words.
+/// Describes sun, light and air.
 fn facts(renderer: &Renderer, frame: &PreparedFrame) -> String {
     let scene = renderer.resolved();
     let (sun, light) = (frame.sun(), frame.light());
@@ -180,7 +180,7 @@ fn facts(renderer: &Renderer, frame: &PreparedFrame) -> String {
     );
     let _ = writeln!(
         text,
-        "  illuminance   sun {} lx facing it, {} lx on the horizontal; sky {} lx on the horizontal",
+        "  illuminance   sun {} lx facing it, {} lx horizontal; sky {} lx horizontal",
         short(light.sun_normal_lx),
         short(light.sun_horizontal_lx),
         short(light.sky_horizontal_lx)
@@ -197,23 +197,21 @@ fn facts(renderer: &Renderer, frame: &PreparedFrame) -> String {
     text
 }
 
-/// Warns of samples that the format could not hold.
+/// Warns of samples out of the format's range.
 fn warn_of_clipping<'w>(renderer: &Renderer, written: impl Iterator<Item = &'w Written>) {
     let (clamped, nans) = written.fold((0, 0), |sum, written| {
         (sum.0 + written.clamped_samples, sum.1 + written.nan_samples)
     });
     if let Some(format) = renderer.layout().format().filter(|_| clamped > 0) {
         let tip = match format.holds_channels() {
-            true => {
-                ": --precision float keeps them, --scale 1e-5 makes them fit, --sun-disc separate or out keeps the sun apart"
-            }
+            true => "; try --precision float, --scale 1e-5, or --sun-disc separate or out",
             false => "",
         };
         report::note(&format!("{clamped} samples {}{tip}", format.clamping()));
     }
     if nans > 0 {
         report::note(&format!(
-            "{nans} samples were not a number and are 0: please report this"
+            "{nans} samples were NaN and are 0; please report this"
         ));
     }
 }

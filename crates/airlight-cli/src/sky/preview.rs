@@ -1,4 +1,4 @@
-//! The picture on the terminal, as coloured half blocks.
+//! Preview of a picture on the terminal, as coloured half blocks.
 
 use crate::error::CliError;
 use airlight::spectrum::{RgbSpace, rgb};
@@ -6,7 +6,7 @@ use airlight_image::terminal::{TerminalColor, half_blocks};
 use airlight_render::{PreparedFrame, Renderer};
 use std::io::IsTerminal;
 
-/// A terminal that shows colours.
+/// A terminal with colours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Terminal {
     color: TerminalColor,
@@ -14,10 +14,10 @@ pub struct Terminal {
     lines: u16,
 }
 
-/// The terminal for a preview, where one is requested, or where nothing else would show and the terminal can.
+/// The terminal for a preview, if one is requested, or if there is no other output and the terminal has colours.
 ///
 /// # Errors
-/// [`CliError::Usage`] where there would be no output at all.
+/// [`CliError::Usage`] if there would be no output.
 pub fn wanted(requested: bool, has_output: bool) -> Result<Option<Terminal>, CliError> {
     if !requested && has_output {
         return Ok(None);
@@ -32,10 +32,10 @@ pub fn wanted(requested: bool, has_output: bool) -> Result<Option<Terminal>, Cli
     if color == TerminalColor::None || !requested && !std::io::stdout().is_terminal() {
         return Err(CliError::usage(match requested {
             true => {
-                "--preview needs a terminal that shows colours (COLORTERM and TERM say it does not)"
+                "--preview: expected a terminal with colours, got one without according to COLORTERM and TERM; try --output"
             }
             false => {
-                "say what to write: --output FILE (.exr, .hdr, .png, .jpg), or --preview for the terminal"
+                "expected an output, got none; try --output FILE (.exr, .hdr, .png, .jpg), or --preview for the terminal"
             }
         }));
     }
@@ -47,7 +47,7 @@ pub fn wanted(requested: bool, has_output: bool) -> Result<Option<Terminal>, Cli
     }))
 }
 
-/// The text that shows a frame.
+/// Text that shows a frame.
 ///
 /// # Errors
 /// [`CliError::Usage`] for an exposure out of range.
@@ -58,7 +58,7 @@ pub fn text(
 ) -> Result<String, CliError> {
     let mut columns = u32::from(terminal.columns).clamp(8, 256);
     let mut small = renderer.layout().overview(columns)?;
-    // Two pixels a line, and room for the report.
+    // Two rows of pixels on each line, with space for the report.
     let most = 2 * u32::from(terminal.lines.saturating_sub(8)).max(8);
     if small.size().height() > most {
         columns = (columns * most / small.size().height()).max(8);

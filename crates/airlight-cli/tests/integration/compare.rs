@@ -145,7 +145,7 @@ fn what_makes_no_sense_is_refused() {
         (
             format!("compare orders orders {SKY} --solver monte-carlo"),
             2,
-            "leave out --solver",
+            "expected two solvers",
         ),
         (
             format!("compare orders orders {SKY} --paths 256"),

@@ -240,7 +240,7 @@ fn monte_carlo_reports_its_noise() {
     let words = "fog scene.exr --depth depth.npy --sky-light --sun-elevation 25 --visibility-m 60 --top-m 60 \
                  --radiance-scale 1e-4 --solver monte-carlo --paths 128 --noise-map -o out.exr";
     let text = succeed(&folder, words);
-    assert!(text.contains("128 paths a pixel"), "{text}");
+    assert!(text.contains("128 paths per pixel"), "{text}");
     let [picture, noise] = ["out.exr", "out.noise.exr"].map(|name| Exr::read(&folder.file(name)));
     assert_eq!((noise.width, noise.height), (picture.width, picture.height));
     assert!(noise.channels["G"].iter().all(|error| *error > 0.0));
@@ -294,13 +294,13 @@ fn a_batch_is_made_reported_and_resumed() {
     npy(&folder.file("depth.npy"), (30, 40), |_| 2.0);
     let words = "fog rgb/*.png --depth depth.npy -o out/*.png --vary visibility=5..50 --seed 7";
     let text = succeed(&folder, words);
-    assert!(text.contains("2 of 2 pictures made"), "{text}");
+    assert!(text.contains("2 of 2 pictures written"), "{text}");
     let manifest = std::fs::read_to_string(folder.file("out/manifest.jsonl")).unwrap();
     assert_eq!(manifest.lines().count(), 2);
     std::fs::remove_file(folder.file("out/b.png")).unwrap();
     let text = succeed(&folder, words);
     assert!(
-        text.contains("1 of 2 pictures made, 1 existed already"),
+        text.contains("1 of 2 pictures written, 1 existed already"),
         "{text}"
     );
     let text = refused(&folder, &words.replace("--seed 7", "--seed 8"), 2);

@@ -82,7 +82,7 @@ fn stopped_while_solving() {
 }
 
 #[test]
-fn random_paths_leave_the_picture_of_the_last_pass() {
+fn interrupted_monte_carlo_keeps_the_picture_of_the_last_pass() {
     let folder = Folder::new();
     let words = "sky --sun-elevation 30 --wavelengths rgb --size 8x4 --solver monte-carlo --paths 1000000000 -o a.exr";
     let child = spawn(&folder, words);

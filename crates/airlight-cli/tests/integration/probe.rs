@@ -35,7 +35,7 @@ fn json_csv_and_table_say_the_same() {
         &folder,
         "probe --solver single-scattering --variant printed --sun-elevation 45 --view 180,45",
     );
-    assert!(table.contains("single-scattering, printed; it knows colours, not spectra"));
+    assert!(table.contains("single-scattering, printed; colours only, no spectra"));
 }
 
 #[test]

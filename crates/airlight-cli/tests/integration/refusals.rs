@@ -47,7 +47,7 @@ fn bad_use_of_sky() {
         ("sky --sun-elevation NaN -o a.exr", "-90 to 90"),
         ("sky --sun-elevation 91 -o a.exr", "-90 to 90"),
         ("sky --sun-azimuth 10 -o a.exr", "--sun-azimuth"),
-        ("sky --at 100,0 -o a.exr", "latitude must be from -90 to 90"),
+        ("sky --at 100,0 -o a.exr", "a latitude from -90 to 90"),
         ("sky --at 1;2 -o a.exr", "latitude,longitude"),
         (
             "sky --at 1,2 --sun-elevation 3 -o a.exr",
@@ -209,7 +209,7 @@ fn bad_use_of_sky() {
         ("sky --sun-elevation 30 --altitude-m inf -o a.png", "metres"),
         (
             "sky --sun-elevation 30 --until +1h --every 10m -o a.png",
-            "a sun that moves",
+            "a sun of place and time",
         ),
         (
             "sky --at 1,2 --when 2026-01-01T00:00:00Z --until +1h -o a.png",

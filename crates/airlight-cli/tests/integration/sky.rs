@@ -57,7 +57,7 @@ fn the_preview_paints_where_the_terminal_can() {
 fn scenes_are_saved_read_and_overridden() {
     let folder = Folder::new();
     std::fs::write(
-        folder.file("ball.toml"),
+        folder.file("sphere.toml"),
         "[[object]]\nshape = \"sphere\"\nat_m = [0, 3, -20]\nradius_m = 2\n",
     )
     .unwrap();
@@ -67,7 +67,7 @@ fn scenes_are_saved_read_and_overridden() {
     )
     .unwrap();
     let words = format!(
-        "sky {QUICK} --sun-elevation 30 --atmosphere air.toml --ozone-du 250 --objects ball.toml --projection perspective \
+        "sky {QUICK} --sun-elevation 30 --atmosphere air.toml --ozone-du 250 --objects sphere.toml --projection perspective \
          --size 32x18 --camera-azimuth 0 --visibility-m 900 --top-m 30 --sun-disc out -q"
     );
     succeed(
@@ -84,7 +84,7 @@ fn scenes_are_saved_read_and_overridden() {
         assert!(text.contains(part), "{part}: {text}");
     }
     // Complete: without the files that it was made from.
-    std::fs::remove_file(folder.file("ball.toml")).unwrap();
+    std::fs::remove_file(folder.file("sphere.toml")).unwrap();
     std::fs::remove_file(folder.file("air.toml")).unwrap();
     succeed(&folder, "sky --scene scene.toml -q -o b.exr");
     let [a, b] = ["a.exr", "b.exr"].map(|name| Exr::read(&folder.file(name)));
@@ -101,7 +101,7 @@ fn scenes_are_saved_read_and_overridden() {
             "{} --save-scene d.toml",
             words
                 .replace("--atmosphere air.toml", "")
-                .replace("--objects ball.toml", "")
+                .replace("--objects sphere.toml", "")
         ),
     );
     assert!(folder.names().contains(&"d.toml".to_owned()));
@@ -113,14 +113,14 @@ fn sequences_report_what_they_made() {
     let words = format!(
         "sky {QUICK} --at 50,10 --when 2026-06-21T18:00:00+02:00 --every 1h --until +2h --size 16x8 -o a.png"
     );
-    assert!(succeed(&folder, &words).contains("3 of 3 pictures made"));
+    assert!(succeed(&folder, &words).contains("3 of 3 pictures written"));
     std::fs::remove_file(folder.file("a.0002.png")).unwrap();
     let text = succeed(&folder, &words);
     assert!(
-        text.contains("1 of 3 pictures made, 2 were there already"),
+        text.contains("1 of 3 pictures written, 2 existed already"),
         "{text}"
     );
-    assert!(succeed(&folder, &format!("{words} --overwrite")).contains("3 of 3 pictures made"));
+    assert!(succeed(&folder, &format!("{words} --overwrite")).contains("3 of 3 pictures written"));
 }
 
 #[test]

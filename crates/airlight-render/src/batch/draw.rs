@@ -46,7 +46,7 @@ mod tests {
     }
 
     #[test]
-    fn draws_are_even_and_independent() {
+    fn draws_are_uniform_and_independent() {
         let count = 20_000;
         let of = |n: u32, option| fraction(1, &format!("{:05}", n / 4), n % 4, option);
         let (mut tenths, mut product) = ([0u32; 10], 0.0);

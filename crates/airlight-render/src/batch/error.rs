@@ -15,7 +15,7 @@ pub enum BatchError {
     /// A pattern whose wildcards touch, so that a name can be divided between them in several ways.
     #[error("expected text between the wildcards of a pattern, got `{0}`; try leaving one * out")]
     AdjacentWildcards(String),
-    /// Patterns that stand for each other in order, with different numbers of wildcards.
+    /// A depth or output pattern with another number of wildcards than the colour pattern.
     #[error(
         "expected as many wildcards (*) in the {role} pattern as in the colour pattern, which has {expected}, got {got} in \
          `{pattern}`; try one * for each * of the colour pattern"
@@ -69,7 +69,7 @@ pub enum BatchError {
     /// An output that is also an input.
     #[error("expected an output that is not an input, got `{path}`; try another output name", path = .0.display())]
     OutputIsInput(PathBuf),
-    /// An output that the colour pattern matches, so that the next run would put fog over fog.
+    /// An output that the colour pattern matches, so that the next run would add fog to it again.
     #[error(
         "expected outputs that the colour pattern `{colour}` does not match, got `{output}`, an input of the next run; try \
          another output folder", output = .output.display(), colour = .colour.display()
@@ -100,7 +100,7 @@ pub enum BatchError {
         name: String,
         /// What is valid.
         expected: String,
-        /// What was given.
+        /// The value given.
         got: String,
         /// What to do.
         advice: String,
@@ -122,7 +122,7 @@ pub enum BatchError {
     Manifest {
         /// The manifest.
         path: PathBuf,
-        /// What the operating system said.
+        /// Error of the operating system.
         source: io::Error,
     },
     /// A file that is not a manifest.
@@ -159,14 +159,14 @@ pub enum BatchError {
         path = .0.display()
     )]
     ManifestLocked(PathBuf),
-    /// A folder or file that the operating system refuses.
+    /// A folder or file that the operating system cannot access.
     #[error("cannot {action} `{path}`: {source}", path = .path.display())]
     File {
         /// What was tried, as a verb with its object.
         action: &'static str,
-        /// On which path.
+        /// The path.
         path: PathBuf,
-        /// What the operating system said.
+        /// Error of the operating system.
         source: io::Error,
     },
     /// The threads could not be started.
@@ -175,7 +175,7 @@ pub enum BatchError {
     /// The first picture that failed, in a batch that stops there.
     #[error("stopped at the first failure: {0}")]
     FirstFailure(String),
-    /// The settings of a picture are refused, or a picture could not be written.
+    /// A picture with invalid settings, or one that could not be written.
     #[error(transparent)]
     Render(#[from] RenderError),
 }
@@ -187,8 +187,8 @@ impl From<ImageError> for BatchError {
 }
 
 impl BatchError {
-    /// Whether the request contradicts itself or what exists, so that the same request fails again; otherwise it failed on
-    /// files or on the system.
+    /// Whether the request is invalid or contradicts existing files, so that it would fail again; otherwise a file or the system
+    /// failed.
     pub fn is_refusal(&self) -> bool {
         match self {
             Self::NotUnicode(_)
@@ -206,7 +206,7 @@ impl BatchError {
         }
     }
 
-    /// Whether the caller cancelled.
+    /// Whether the caller cancelled the batch.
     pub fn is_cancelled(&self) -> bool {
         matches!(self, Self::Render(error) if error.is_cancelled())
     }
@@ -219,7 +219,7 @@ impl BatchError {
     }
 }
 
-/// The first ten lines of a list, indented, and the number of the others.
+/// The first ten lines of a list, indented, and the number of remaining lines.
 pub fn listed(lines: &[String]) -> String {
     const SHOWN: usize = 10;
     let mut text: String = lines

@@ -1,26 +1,26 @@
-//! The pictures of a batch, each with its depth map.
+//! Input files of a batch: pictures with their depth maps.
 
 use super::{BatchError, Pattern, pattern::Match};
 use airlight_image::output::PictureFormat;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-/// Meaning of a path that is read: one file, or several.
+/// An input path: one file, or several.
 #[derive(Clone, Debug)]
 pub enum InputPath {
     /// One file.
     File(PathBuf),
-    /// All files in a folder, named without their endings.
+    /// All files in a folder, named without their extensions.
     Folder(PathBuf),
     /// The files that match a pattern.
     Pattern(Pattern),
 }
 
 impl InputPath {
-    /// Reads a path: an existing folder or file, or else a pattern if it has a `*`.
+    /// Interprets a path: an existing folder or file; otherwise a pattern if it has a `*`.
     ///
     /// # Errors
-    /// [`BatchError::NotUnicode`], [`BatchError::AdjacentWildcards`].
+    /// [`BatchError::NotUnicode`] or [`BatchError::AdjacentWildcards`] for an invalid pattern.
     pub fn new(path: &Path) -> Result<Self, BatchError> {
         if path.is_dir() {
             return Ok(Self::Folder(path.to_owned()));
@@ -31,12 +31,12 @@ impl InputPath {
         }
     }
 
-    /// Whether it stands for several files.
+    /// Whether the path stands for several files.
     pub fn is_many(&self) -> bool {
         !matches!(self, Self::File(_))
     }
 
-    /// Whether a file, existing or not, is one of several that it stands for.
+    /// Whether the path stands for several files and a file, which need not exist, is among them.
     pub fn includes(&self, file: &Path) -> bool {
         match self {
             Self::File(_) => false,
@@ -49,7 +49,7 @@ impl InputPath {
 /// A colour picture and its depth map.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Input {
-    /// What the wildcards of the colour pattern match, or the file name without its ending.
+    /// Texts matched by the wildcards of the colour pattern, or the file name without its extension.
     pub captures: Vec<String>,
     /// The colour picture.
     pub colour: PathBuf,
@@ -64,7 +64,7 @@ impl Input {
     }
 }
 
-/// The pictures of a batch, and what was left out.
+/// Inputs found for a batch, and files that were left out.
 #[derive(Clone, Debug)]
 pub struct FoundInputs {
     /// Pictures with depth, sorted by their captures; at least one.
@@ -75,7 +75,7 @@ pub struct FoundInputs {
     pub unused_depths: Vec<PathBuf>,
 }
 
-/// Endings of depth files.
+/// File extensions of depth maps.
 const DEPTH_ENDINGS: [&str; 4] = ["exr", "npy", "pfm", "png"];
 
 /// Finds the pictures of a file, folder or pattern and the depth map of each: in `depth` (a file for all, a folder with files of
@@ -136,7 +136,7 @@ fn colours(path: &Path) -> Result<Vec<Match>, BatchError> {
         InputPath::Folder(folder) => {
             let mut files = files_within(&folder, "*")?;
             files.retain(|file| PictureFormat::from_path(&file.path).is_ok());
-            // With the ending, `a-b.png` sorts before `a.png`.
+            // With the extension, `a-b.png` would sort before `a.png`.
             files.sort();
             files
         }
@@ -149,7 +149,7 @@ fn colours(path: &Path) -> Result<Vec<Match>, BatchError> {
     })
 }
 
-/// The files of a folder that match a pattern of one wildcard, whose capture loses the file's ending.
+/// The files of a folder that match a pattern with one wildcard, whose captures are stripped of the file's extension.
 fn files_within(folder: &Path, pattern: &str) -> Result<Vec<Match>, BatchError> {
     let Some(pattern) = Pattern::new(&folder.join(pattern))? else {
         return Ok(Vec::new());
@@ -166,11 +166,11 @@ fn files_within(folder: &Path, pattern: &str) -> Result<Vec<Match>, BatchError> 
     Ok(files)
 }
 
-/// Where the depth maps are.
+/// Location of the depth maps.
 enum Depths {
     /// In the colour files.
     Inside,
-    /// In one file, for all.
+    /// In one file for all pictures.
     One(PathBuf),
     /// In a folder, by name.
     Named(PathBuf, BTreeMap<String, Vec<PathBuf>>),
@@ -245,7 +245,7 @@ impl Depths {
         let all: Vec<PathBuf> = match self {
             Self::Inside | Self::One(_) => return Vec::new(),
             Self::Named(_, named) => named.values().flatten().cloned().collect(),
-            // Only a remark depends on it: a folder that cannot be read does not end the batch.
+            // Used for a remark only, so a folder that cannot be read is ignored.
             Self::Pattern(pattern) => {
                 let files = pattern.files().unwrap_or_default();
                 files.into_iter().map(|file| file.path).collect()

@@ -1,7 +1,7 @@
 //! The manifest of a batch: one line of JSON for each picture, with its settings.
 //!
-//! A line is written before its picture appears, so that after a kill no picture is without its line; an unfinished last line
-//! is dropped. At the end of a run the lines are sorted, and those without a picture are left out.
+//! A line is written before its picture is renamed into place, so that every picture has a line even if the process is killed;
+//! an unfinished last line is dropped. At the end of a run the lines are sorted, and those without a picture are removed.
 
 use super::BatchError;
 use airlight_image::output::AtomicFile;
@@ -13,15 +13,15 @@ use std::io::{self, BufRead, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-/// Version of the lines, counted up when keys change their meaning. Lines of version 1 carried no version and held the options
-/// of the command line.
+/// Version of the lines, incremented when keys change their meaning. Lines of version 1 had no version and contained options of
+/// the command line.
 pub const MANIFEST_VERSION: u32 = 2;
 
 /// A manifest, locked for this run.
 #[derive(Debug)]
 pub struct Manifest {
     path: PathBuf,
-    /// Its folder, absolute: outputs are named relative to it.
+    /// Absolute path of its folder, to which names of outputs are relative.
     folder: PathBuf,
     lines: Mutex<Lines>,
 }
@@ -58,7 +58,7 @@ impl Manifest {
     /// Opens a manifest, or creates one.
     ///
     /// # Errors
-    /// [`BatchError`] if it cannot be read or written, is something else or of another version, or another run holds it.
+    /// [`BatchError`] if the file cannot be read or written, is not a manifest of this version, or is locked by another run.
     pub fn open(path: &Path) -> Result<Self, BatchError> {
         let failed = |error: io::Error| BatchError::manifest(path, error);
         let file = OpenOptions::new()
@@ -85,7 +85,7 @@ impl Manifest {
         })
     }
 
-    /// Name of an output in it: the path relative to the manifest's folder if it is inside, else the whole path.
+    /// Name of an output in the manifest: its path relative to the manifest's folder if it is inside, otherwise the whole path.
     pub fn name_of(&self, output: &Path) -> String {
         let absolute = std::path::absolute(output).unwrap_or_else(|_| output.to_owned());
         let name = absolute.strip_prefix(&self.folder).unwrap_or(&absolute);
@@ -141,10 +141,10 @@ impl Manifest {
         Ok(())
     }
 
-    /// Closes it unchanged; an empty file is removed.
+    /// Closes the manifest unchanged; an empty file is removed.
     ///
     /// # Errors
-    /// [`BatchError::Manifest`] if the operating system refuses.
+    /// [`BatchError::Manifest`] if the file cannot be removed.
     pub fn close(self) -> Result<(), BatchError> {
         let lines = self
             .lines
@@ -157,10 +157,10 @@ impl Manifest {
         }
     }
 
-    /// Rewrites it sorted by output, one line each, without lines whose picture does not exist.
+    /// Rewrites the manifest sorted by output, with one line for each picture that exists.
     ///
     /// # Errors
-    /// [`BatchError`] if it cannot be written; it is then unchanged.
+    /// [`BatchError`] if it cannot be written; the file is then unchanged.
     pub fn finish(self) -> Result<(), BatchError> {
         let failed = |error: io::Error| BatchError::manifest(&self.path, error);
         let mut lines = self
@@ -182,7 +182,7 @@ impl Manifest {
 }
 
 impl Lines {
-    /// Reads the position of each output's line; cuts off an unfinished last line.
+    /// Reads the position of each output's line and truncates an unfinished last line.
     fn read(&mut self, path: &Path) -> Result<(), BatchError> {
         let failed = |error: io::Error| BatchError::manifest(path, error);
         let not_ours = |line: usize, reason: String| BatchError::NotAManifest {
@@ -220,7 +220,7 @@ impl Lines {
             }
             self.end += length;
         }
-        // An unfinished line of a manifest, or a text of somebody else's.
+        // An unfinished line of a manifest, or another file.
         let torn = text.trim_ascii_start();
         if !torn.is_empty()
             && !torn.starts_with(b"{\"output\":")
@@ -239,7 +239,7 @@ impl Lines {
     }
 }
 
-/// Whether a picture exists. Pictures appear whole or not at all.
+/// Whether a picture exists. Pictures are renamed into place, so one that exists is complete.
 pub fn is_whole(path: &Path) -> bool {
     std::fs::metadata(path).is_ok_and(|about| about.is_file() && about.len() > 0)
 }

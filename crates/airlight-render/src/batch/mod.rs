@@ -1,10 +1,10 @@
-//! Fog over many pictures: inputs found by name, varied settings, several pictures at a time, existing ones kept, all recorded in
-//! a manifest.
+//! Fog over many pictures: inputs are found by name, settings can vary, pictures are processed in parallel, existing ones are
+//! kept, and all are recorded in a manifest.
 //!
 //! 1. [`BatchPlan::new`] finds the inputs of an [`OverlayScene`](crate::overlay::OverlayScene) whose paths are folders or
 //!    [`Pattern`]s, and checks that every picture has an output of its own.
 //! 2. [`BatchPlan::start`] opens the manifest and finds the pictures that do not exist yet.
-//! 3. [`BatchRun::run`] makes them.
+//! 3. [`BatchRun::run`] writes them.
 
 mod draw;
 mod error;

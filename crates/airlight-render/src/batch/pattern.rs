@@ -3,9 +3,9 @@
 use super::BatchError;
 use std::path::{Path, PathBuf};
 
-/// A path with the wildcards `*`, which matches one character or more of a file's or folder's name, and `**` (or `**/*`), which
-/// matches across folders as well. What they match in a path are its *captures*; the same captures put into another pattern
-/// give the path of the file that belongs to it. Folders are separated by `/`.
+/// A path with the wildcards `*`, which matches one or more characters of a file or folder name, and `**` (or `**/*`), which
+/// also matches across folders. The texts that they match are the *captures* of a path; inserted into another pattern they give
+/// the path of the corresponding file. Folders are separated by `/`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Pattern {
     text: String,
@@ -29,7 +29,7 @@ enum Token {
 /// A file that a pattern matches.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Match {
-    /// What the wildcards match, in order.
+    /// Texts matched by the wildcards, in order.
     pub captures: Vec<String>,
     /// The file.
     pub path: PathBuf,
@@ -39,10 +39,10 @@ pub struct Match {
 const MAX_DEPTH: usize = 64;
 
 impl Pattern {
-    /// Reads a path as a pattern; `None` if it has no `*`.
+    /// Parses a path as a pattern; `None` if it has no `*`.
     ///
     /// # Errors
-    /// [`BatchError::NotUnicode`], [`BatchError::AdjacentWildcards`].
+    /// [`BatchError::NotUnicode`] or [`BatchError::AdjacentWildcards`] for an invalid pattern.
     pub fn new(path: &Path) -> Result<Option<Self>, BatchError> {
         if !path.as_os_str().as_encoded_bytes().contains(&b'*') {
             return Ok(None);
@@ -67,12 +67,12 @@ impl Pattern {
         }))
     }
 
-    /// The pattern as it was given.
+    /// The pattern as given.
     pub fn text(&self) -> &str {
         &self.text
     }
 
-    /// The folder that holds all its files, directly or below; empty for the current one.
+    /// The folder that contains all matching files, directly or in subfolders; empty for the current folder.
     pub fn base(&self) -> &Path {
         &self.base
     }
@@ -83,10 +83,10 @@ impl Pattern {
         self.whole.iter().filter(wildcard).count()
     }
 
-    /// Refuses a number of wildcards other than that of the colour pattern; `role` says what the pattern is for.
+    /// Checks that the number of wildcards is that of the colour pattern; `role` is the purpose of the pattern.
     ///
     /// # Errors
-    /// [`BatchError::WildcardCount`].
+    /// [`BatchError::WildcardCount`] for another number.
     pub(super) fn check_wildcards(
         &self,
         expected: usize,
@@ -103,7 +103,7 @@ impl Pattern {
         }
     }
 
-    /// The path with captures in place of the wildcards, one each.
+    /// The path with each wildcard replaced by its capture.
     pub fn path(&self, captures: &[String]) -> PathBuf {
         let mut captures = captures.iter();
         let below: String = self
@@ -117,17 +117,16 @@ impl Pattern {
         self.base.join(below)
     }
 
-    /// Whether it matches a path, written with the same base.
+    /// Whether the pattern matches a path that begins with the same base.
     pub fn matches(&self, path: &Path) -> bool {
         let below = path.strip_prefix(&self.base).ok().and_then(Path::to_str);
         below.is_some_and(|below| matched(&self.whole, below).is_some())
     }
 
-    /// The files that it matches, sorted by their captures, without hidden files and folders; `**` does not follow links to
-    /// folders.
+    /// Matching files, sorted by their captures, without hidden files and folders; `**` does not follow links to folders.
     ///
     /// # Errors
-    /// [`BatchError::File`] if a folder cannot be read, [`BatchError::NotUnicode`] for a name in one.
+    /// [`BatchError::File`] if a folder cannot be read, [`BatchError::NotUnicode`] for a name that is not Unicode.
     pub fn files(&self) -> Result<Vec<Match>, BatchError> {
         let mut found = Vec::new();
         self.walk(&self.base, "", 0, &mut found)?;
@@ -217,7 +216,7 @@ fn tokens(text: &str) -> Vec<Token> {
     tokens
 }
 
-/// What the wildcards match in a text, each as short as possible.
+/// Texts matched by the wildcards, each as short as possible.
 fn matched(tokens: &[Token], text: &str) -> Option<Vec<String>> {
     let Some((first, rest)) = tokens.split_first() else {
         return text.is_empty().then(Vec::new);
@@ -251,7 +250,7 @@ mod tests {
     }
 
     #[test]
-    fn captures_are_found_and_put_into_another_pattern() {
+    fn captures_are_found_and_inserted_into_another_pattern() {
         for (text, below, expected) in [
             ("rgb/*.png", "a.png", Some(vec!["a"])),
             ("rgb/*.png", ".png", None),

@@ -1,4 +1,4 @@
-//! The pictures of a batch: their inputs, outputs and settings.
+//! [`BatchPlan`]: inputs, outputs and settings of the pictures of a batch.
 
 use super::inputs::{InputPath, find_inputs};
 use super::{BatchError, FoundInputs, Input, Pattern, Variation};
@@ -8,24 +8,24 @@ use std::collections::{HashMap, HashSet};
 use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
 
-/// How a batch is made, besides the description of its pictures.
+/// Settings of a batch, besides the description of its pictures.
 #[derive(Clone, Debug, Default)]
 pub struct BatchSettings {
     /// Settings drawn for each picture.
     pub vary: Vec<Variation>,
-    /// Pictures of each input, numbered from 1; `None`: one without a number in its name.
+    /// Number of variants of each input, numbered from 1; `None`: one picture without a number in its name.
     pub variants: Option<NonZeroU32>,
-    /// Draws depend on this number, the picture's name and the number of the variant.
+    /// Seed of the random draws, which also depend on the picture's name and the number of the variant.
     pub seed: u64,
-    /// The manifest; `None`: `manifest.jsonl` in the folder of the outputs.
+    /// Path of the manifest; `None`: `manifest.jsonl` in the folder of the outputs.
     pub manifest: Option<PathBuf>,
-    /// Make pictures that exist again.
+    /// Whether existing pictures are replaced.
     pub overwrite: bool,
-    /// Leave out pictures without depth.
+    /// Whether pictures without depth are left out.
     pub skip_unpaired: bool,
-    /// Stop at the first picture that fails.
+    /// Whether to stop at the first picture that fails.
     pub fail_fast: bool,
-    /// Threads, and the most pictures in memory; `None`: one a processor.
+    /// Number of threads, which also bounds the number of pictures in memory; `None`: one for each processor.
     pub threads: Option<NonZeroU32>,
 }
 
@@ -47,7 +47,7 @@ enum OutputPath {
     Pattern(Pattern),
 }
 
-/// Stands for the number of the variant in an output name.
+/// Placeholder for the number of the variant in an output name.
 const VARIANT: &str = "{variant}";
 
 /// Whether paths of a description stand for several pictures.
@@ -59,10 +59,10 @@ pub fn is_batch(colour: &Path, output: &Path) -> Result<bool, BatchError> {
 }
 
 impl BatchPlan {
-    /// Finds the inputs of a description, and checks its settings and that every output has a name of its own.
+    /// Finds the inputs of a description, and checks its settings and that outputs have different names.
     ///
     /// # Errors
-    /// [`BatchError`]: what does not fit together.
+    /// [`BatchError`] for invalid settings, missing inputs and conflicting outputs.
     pub fn new(scene: OverlayScene, settings: BatchSettings) -> Result<Self, BatchError> {
         check_variation(&scene, &settings.vary)?;
         let is_one = !InputPath::new(&scene.overlay.colour)?.is_many();
@@ -87,12 +87,12 @@ impl BatchPlan {
         &self.scene
     }
 
-    /// How the batch is made.
+    /// Settings of the batch.
     pub fn settings(&self) -> &BatchSettings {
         &self.settings
     }
 
-    /// The inputs, and what was left out.
+    /// The inputs, and files that were left out.
     pub fn found(&self) -> &FoundInputs {
         &self.found
     }
@@ -145,7 +145,7 @@ impl BatchPlan {
         let mut scene = self.scene.clone();
         scene.overlay.colour = input.colour.clone();
         scene.overlay.depth = (input.depth != input.colour).then(|| input.depth.clone());
-        // The output names the line, from the manifest's folder.
+        // The manifest names the output, relative to its folder.
         scene.scene.output.file = None;
         let name = input.name();
         for variation in &self.settings.vary {
@@ -154,7 +154,7 @@ impl BatchPlan {
         scene
     }
 
-    /// Whether a solved sky differs between pictures.
+    /// Whether a varied setting changes the solved sky.
     pub(super) fn varies_sky(&self) -> bool {
         self.settings.vary.iter().any(Variation::changes_sky)
     }
@@ -194,7 +194,7 @@ impl BatchPlan {
     }
 }
 
-/// Refuses variation that contradicts itself or the description, or changes nothing, and every choice that is invalid.
+/// Refuses variations that contradict each other or the description or have no effect, and invalid choices.
 fn check_variation(scene: &OverlayScene, vary: &[Variation]) -> Result<(), BatchError> {
     let refuse = |name: &str, expected: &str, got: String, advice: &str| {
         Err(BatchError::Variation {
@@ -220,8 +220,8 @@ fn check_variation(scene: &OverlayScene, vary: &[Variation]) -> Result<(), Batch
         return refuse(
             "visibility",
             "a drawn visibility instead of a given one",
-            format!("both, visibility-m {given} too"),
-            "leaving one out",
+            format!("both, as visibility-m is {given}"),
+            "leaving one of them out",
         );
     }
     let own = [scene.fog_profile().name()];
@@ -255,7 +255,7 @@ fn check_variation(scene: &OverlayScene, vary: &[Variation]) -> Result<(), Batch
             }
         }
     }
-    // Every choice is checked with the first values of the other settings.
+    // Check each choice with the first values of the other settings.
     let mut base = scene.clone();
     for variation in vary {
         variation.set(&mut base, 0.0);

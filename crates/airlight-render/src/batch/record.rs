@@ -8,7 +8,7 @@ use serde_json::{Map, Value};
 /// The line of a picture.
 #[derive(Serialize)]
 pub(super) struct Record<'a> {
-    /// Relative to the manifest's folder. The first key, by which a manifest is recognised.
+    /// Output relative to the manifest's folder. This is the first key, by which a manifest is recognised.
     output: &'a str,
     manifest_version: u32,
     name: String,
@@ -21,7 +21,7 @@ pub(super) struct Record<'a> {
     airlight: &'static str,
 }
 
-/// What became of the picture.
+/// Result of the picture.
 #[derive(Serialize)]
 #[serde(untagged)]
 enum Outcome<'a> {
@@ -29,10 +29,10 @@ enum Outcome<'a> {
     Failed { error: &'a str },
 }
 
-/// Values that follow from the description and the files.
+/// Values derived from the description and the files.
 #[derive(Serialize)]
 struct Facts {
-    /// Seed of the varied settings, if any vary.
+    /// Seed of the varied settings; `None` if none vary.
     #[serde(skip_serializing_if = "Option::is_none")]
     seed: Option<u64>,
     /// Extinction where the fog is densest, 1/m; `None` for profiles without one.
@@ -41,7 +41,7 @@ struct Facts {
     ambient_from: LightLevelSource,
     width: u32,
     height: u32,
-    /// Focal lengths across and down, pixels.
+    /// Horizontal and vertical focal length, pixels.
     focal_lengths_px: (f64, f64),
     /// Principal point, pixels from the upper left corner of the picture.
     principal_point_px: (f64, f64),
@@ -52,7 +52,7 @@ struct Facts {
 const AIRLIGHT: &str = env!("CARGO_PKG_VERSION");
 
 impl<'a> Record<'a> {
-    /// Of a picture with these settings that is about to be written.
+    /// Record of a picture that is about to be written.
     pub fn made(
         output: &'a str,
         input: &Input,
@@ -78,7 +78,7 @@ impl<'a> Record<'a> {
         Self::new(output, input, variant, scene, Outcome::Made(facts))
     }
 
-    /// Of a picture that failed.
+    /// Record of a picture that failed.
     pub fn failed(
         output: &'a str,
         input: &Input,
@@ -108,16 +108,16 @@ impl<'a> Record<'a> {
     }
 }
 
-/// How the settings in a line differ from a description, as `fog.visibility_m was 50.0, is 60.0`; empty if they do not.
+/// Differences between the settings in a line and a description, such as `fog.visibility_m was 50.0, is 60.0`.
 ///
 /// # Errors
-/// [`BatchError::Render`] if the description cannot be put into JSON.
+/// [`BatchError::Render`] if the description cannot be written as JSON.
 pub(super) fn differences(
     scene: &OverlayScene,
     line: &Map<String, Value>,
 ) -> Result<Vec<String>, BatchError> {
     let now = serde_json::to_value(scene).map_err(|error| {
-        crate::RenderError::setting(format!("cannot put the settings into JSON: {error}"))
+        crate::RenderError::setting(format!("cannot write the settings as JSON: {error}"))
     })?;
     let mut differences = Vec::new();
     if let Value::Object(now) = &now {
@@ -126,7 +126,7 @@ pub(super) fn differences(
     Ok(differences)
 }
 
-/// Adds the differences between two tables; at the top, a line may have keys that are no settings.
+/// Adds the differences between two tables; at the top level, a line also has keys that are not settings.
 fn compare(
     path: Option<&str>,
     was: &Map<String, Value>,

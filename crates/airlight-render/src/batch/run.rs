@@ -1,4 +1,4 @@
-//! Running a batch: threads that each read a picture, put fog over it, write it and take the next.
+//! Running a batch: each thread reads a picture, adds fog, writes it and takes the next.
 
 use super::manifest::{Manifest, is_whole};
 use super::record::{Record, differences};
@@ -10,7 +10,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// A batch ready to run: its manifest is open, and the pictures that are to be made are known.
+/// A batch that is ready to run, with an open manifest and the list of missing pictures.
 #[derive(Debug)]
 pub struct BatchRun<'a> {
     plan: &'a BatchPlan,
@@ -22,15 +22,15 @@ pub struct BatchRun<'a> {
 /// Result of a batch.
 #[derive(Debug, Default)]
 pub struct BatchReport {
-    /// Pictures made.
+    /// Number of pictures written.
     pub made: usize,
     /// Pictures that failed, each with the reason.
     pub failures: Vec<String>,
-    /// Why the remaining pictures were not made, if any remain.
+    /// Why the remaining pictures were not written, if any remain.
     pub stopped: Option<BatchError>,
 }
 
-/// Pictures to make of one input.
+/// Pictures to write for one input.
 #[derive(Clone, Debug)]
 struct Task<'a> {
     input: &'a Input,
@@ -41,8 +41,8 @@ impl BatchPlan {
     /// Opens the manifest, finds the pictures that do not exist yet, and solves the sky if all pictures share one.
     ///
     /// # Errors
-    /// [`BatchError`] if the manifest is not usable, a picture exists that has other settings, or the sky cannot be solved;
-    /// the manifest is then unchanged.
+    /// [`BatchError`] if the manifest is not usable, an existing picture has other settings, or the sky cannot be solved; the
+    /// manifest is then unchanged.
     pub fn start(&self) -> Result<BatchRun<'_>, BatchError> {
         let light = match self.varies_sky() {
             true => None,
@@ -67,14 +67,14 @@ impl BatchPlan {
 }
 
 impl BatchRun<'_> {
-    /// Number of pictures to make.
+    /// Number of pictures to write.
     pub fn missing(&self) -> usize {
         self.tasks.iter().map(|task| task.variants.len()).sum()
     }
 
-    /// Makes the pictures on several threads until all are made or the caller cancels, and finishes the manifest. Progress is in
-    /// pictures. A picture whose files cannot be read or whose settings are refused fails alone; one that cannot be written
-    /// stops the batch.
+    /// Writes the pictures on several threads until all are written or the caller cancels, and finishes the manifest. Progress is
+    /// in pictures. A picture whose input cannot be read or whose settings are invalid fails without stopping the others; one
+    /// that cannot be written stops the batch.
     ///
     /// # Errors
     /// [`BatchError`] if the manifest cannot be finished. Other errors are in the report.
@@ -101,8 +101,8 @@ impl BatchRun<'_> {
                 let threads = threads / workers + usize::from(index < threads % workers);
                 let (worker, tasks, next) = (&worker, &tasks, &next);
                 scope.spawn(move || {
-                    // A pool of its own: in a shared pool, a thread that waits for part of its picture would start another
-                    // picture meanwhile, and more pictures than threads would be in memory.
+                    // In a shared pool, a thread that waits for part of its picture would start another picture, and more pictures
+                    // than threads would be in memory.
                     let pool = rayon::ThreadPoolBuilder::new()
                         .num_threads(threads)
                         .use_current_thread()
@@ -133,7 +133,7 @@ impl BatchRun<'_> {
 /// The pictures that do not exist yet, by input.
 ///
 /// # Errors
-/// [`BatchError::DifferentSettings`], [`BatchError::NotInManifest`].
+/// [`BatchError::DifferentSettings`] or [`BatchError::NotInManifest`] for existing pictures.
 fn missing<'a>(plan: &'a BatchPlan, manifest: &Manifest) -> Result<Vec<Task<'a>>, BatchError> {
     let mut tasks: Vec<Task<'a>> = Vec::new();
     let (mut unknown, mut different) = (Vec::new(), Vec::new());
@@ -174,7 +174,7 @@ fn missing<'a>(plan: &'a BatchPlan, manifest: &Manifest) -> Result<Vec<Task<'a>>
     Ok(tasks)
 }
 
-/// Splits tasks so that there is one for each thread, if there are as many pictures.
+/// Splits tasks so that there is at least one for each thread, if there are enough pictures.
 fn split<'a>(tasks: &[Task<'a>], threads: usize) -> Vec<Task<'a>> {
     let parts = threads.div_ceil(tasks.len().max(1));
     tasks
@@ -210,15 +210,15 @@ impl Worker<'_> {
         self.report().stopped.is_some()
     }
 
-    /// Stops the batch; the first reason is kept.
+    /// Stops the batch; only the first reason is stored.
     fn stop(&self, error: BatchError) {
         self.report().stopped.get_or_insert(error);
     }
 
-    /// Makes the pictures of one input.
+    /// Writes the pictures of one input.
     ///
     /// # Errors
-    /// [`BatchError`] if the batch is to stop.
+    /// [`BatchError`] if the batch must stop.
     fn make(&self, task: &Task<'_>) -> Result<(), BatchError> {
         let Task { input, variants } = task;
         let Some(first) = variants.first() else {
@@ -249,7 +249,7 @@ impl Worker<'_> {
                     report.made += 1;
                     self.done(&report);
                 }
-                // The settings of this picture are refused.
+                // The settings of this picture are invalid.
                 Err(BatchError::Render(error)) if error.is_refusal() => {
                     self.failed(input, *variant, &error)?;
                 }
@@ -275,7 +275,8 @@ impl Worker<'_> {
         let output = &self.plan.output(input, variant);
         let name = self.manifest.name_of(output);
         create_folder(output.parent())?;
-        // With the old picture still there, a kill after the new line is written would make it pass for the new one.
+        // Remove the old picture first: if the process is killed after the new line is written, the old picture must not be
+        // taken for the new one.
         match std::fs::remove_file(output) {
             Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
                 return Err(BatchError::File {
@@ -299,7 +300,7 @@ impl Worker<'_> {
     /// Records a picture that failed.
     ///
     /// # Errors
-    /// [`BatchError`] if the batch is to stop.
+    /// [`BatchError`] if the batch must stop.
     fn failed(&self, input: &Input, variant: u32, error: &RenderError) -> Result<(), BatchError> {
         if error.is_cancelled() {
             return Err(ImageError::Cancelled.into());
@@ -327,7 +328,7 @@ impl Worker<'_> {
     }
 }
 
-/// Creates a folder that does not exist.
+/// Creates a folder if it does not exist.
 fn create_folder(folder: Option<&Path>) -> Result<(), BatchError> {
     let Some(folder) = folder.filter(|folder| !folder.as_os_str().is_empty()) else {
         return Ok(());

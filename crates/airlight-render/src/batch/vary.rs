@@ -7,7 +7,7 @@ use airlight::scene::FogProfile;
 use std::fmt;
 use std::str::FromStr;
 
-/// A setting that varies, and the values it is drawn from: read from `NAME=LOW..HIGH`, `NAME=uniform:LOW..HIGH`,
+/// A setting that varies, and the values from which it is drawn: parsed from `NAME=LOW..HIGH`, `NAME=uniform:LOW..HIGH`,
 /// `NAME=log:LOW..HIGH` or `NAME=A,B,C`.
 #[derive(Clone, Debug)]
 pub struct Variation {
@@ -15,7 +15,7 @@ pub struct Variation {
     values: Values,
 }
 
-/// What a varied setting is drawn from.
+/// Values from which a setting is drawn.
 #[derive(Clone, Debug, PartialEq)]
 enum Values {
     Range(Spacing, f64, f64),
@@ -23,12 +23,12 @@ enum Values {
     Names(Vec<&'static str>),
 }
 
-/// How values are spread over a range.
+/// Distribution of values over a range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Spacing {
-    /// Evenly.
+    /// Uniform.
     Uniform,
-    /// Evenly in their logarithm, so that every octave is equally likely.
+    /// Uniform in the logarithm, so that all octaves are equally likely.
     Log,
 }
 
@@ -37,7 +37,7 @@ enum Spacing {
 struct Setting {
     /// Name without unit.
     name: &'static str,
-    /// Name that its draws depend on; it stays when a setting is renamed.
+    /// Name on which its draws depend; it remains the same if the setting is renamed.
     stream: &'static str,
     kind: Kind,
 }
@@ -66,7 +66,7 @@ enum Domain {
     Fraction,
     Length,
     Elevation,
-    /// Elevation of a sun that shines on fog.
+    /// Elevation of a sun that lights the fog.
     AboveHorizon,
 }
 
@@ -122,12 +122,12 @@ const fn number(
     }
 }
 
-/// A length in metres, above 0: spread evenly in its logarithm.
+/// A length in metres, above 0: uniform in the logarithm.
 const fn length(name: &'static str, set: fn(&mut OverlayScene, f64)) -> Setting {
     number(name, "m", Spacing::Log, Domain::Length, set)
 }
 
-/// An angle in degrees or a number that may be 0: spread evenly.
+/// An angle in degrees or a number that may be 0: uniform.
 const fn even(
     name: &'static str,
     unit: &'static str,
@@ -216,7 +216,7 @@ impl Variation {
         OF_SKY.contains(&self.setting.name)
     }
 
-    /// The names it is drawn from; `None` for numbers.
+    /// The names from which it is drawn; `None` for numbers.
     pub(super) fn choices(&self) -> Option<&[&'static str]> {
         match &self.values {
             Values::Names(names) => Some(names),
@@ -224,14 +224,14 @@ impl Variation {
         }
     }
 
-    /// Sets the setting to one of the names it is drawn from.
+    /// Sets the setting to one of its names.
     pub(super) fn choose(&self, scene: &mut OverlayScene, name: &str) {
         if let Kind::Choice { set, .. } = &self.setting.kind {
             set(scene, name);
         }
     }
 
-    /// Draws the setting for a variant of a picture; the value depends on the arguments and the setting's name only.
+    /// Draws the setting for a variant of a picture; the value depends only on the arguments and the setting's name.
     pub fn draw(&self, scene: &mut OverlayScene, seed: u64, picture: &str, variant: u32) {
         self.set(
             scene,
@@ -258,7 +258,7 @@ impl Variation {
     }
 }
 
-/// One of a list that is not empty.
+/// The element at a fraction of a list that is not empty.
 fn pick<T: Copy>(list: &[T], fraction: f64) -> T {
     let at = (fraction * list.len() as f64) as usize;
     list[at.min(list.len() - 1)]
@@ -305,7 +305,7 @@ impl FromStr for Variation {
 }
 
 impl Setting {
-    /// Whether a name is this setting's, with its unit or without.
+    /// Whether a name, with or without unit, is that of this setting.
     fn is_called(&self, name: &str) -> bool {
         let Some(rest) = name.strip_prefix(self.name) else {
             return false;
@@ -375,7 +375,7 @@ mod tests {
     }
 
     #[test]
-    fn variations_are_read_as_written() {
+    fn variations_round_trip_through_text() {
         for (text, written) in [
             ("visibility=50..500", "visibility=log:50..500"),
             ("visibility-m=50..500", "visibility=log:50..500"),
@@ -420,7 +420,7 @@ mod tests {
 mod guards {
     use super::*;
 
-    /// Values that version 0.1.0 drew.
+    /// Values drawn by version 0.1.0.
     #[test]
     fn drawn_values_do_not_change_between_versions() {
         let mut scene = OverlayScene::default();

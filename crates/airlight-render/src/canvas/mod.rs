@@ -1,8 +1,8 @@
-//! Pictures by Monte Carlo: sums over bundles of paths, pixel by pixel and pass by pass.
+//! Monte Carlo pictures, accumulated from bundles of paths in passes.
 //!
-//! - [`Passes`]: which bundles each [`Pass`] adds; [`pixel_offset`]: where in a pixel a bundle looks.
+//! - [`Passes`]: the bundles of each [`Pass`]; [`pixel_offset`]: position of a bundle's rays in a pixel.
 //! - [`ColorMoments`]: mean and standard error of a pixel.
-//! - [`Canvas`]: all pixels of a picture, with maps of their noise and polarisation.
+//! - [`Canvas`]: all pixels of a picture, with noise and polarisation maps.
 
 mod moments;
 mod passes;

@@ -1,6 +1,6 @@
-//! Mean and standard error of a colour that is sampled.
+//! Mean and standard error of a sampled colour.
 
-/// Sums of red, green and blue over the bundles of paths of a pixel, and of their squares.
+/// Sums of red, green and blue and of their squares over the bundles of paths of a pixel.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ColorMoments {
     sum: [f64; 3],
@@ -8,7 +8,7 @@ pub struct ColorMoments {
 }
 
 impl ColorMoments {
-    /// Adds the colour that one bundle found.
+    /// Adds the colour of one bundle.
     pub fn add(&mut self, rgb: [f64; 3]) {
         for (component, value) in rgb.into_iter().enumerate() {
             self.sum[component] += value;
@@ -16,7 +16,7 @@ impl ColorMoments {
         }
     }
 
-    /// Mean and standard error of a component after a number of bundles, two or more.
+    /// Mean and standard error of a component after a number of bundles, at least two.
     pub fn moments(&self, component: usize, bundles: u64) -> (f64, f64) {
         let n = bundles as f64;
         let mean = self.sum[component] / n;
@@ -30,7 +30,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn moments_are_those_of_the_bundles() {
+    fn moments_match_their_definition() {
         let mut color = ColorMoments::default();
         for value in [1.0, 2.0, 3.0] {
             color.add([value, 5.0, 0.0]);

@@ -1,31 +1,31 @@
-//! Passes over a picture: each follows as many bundles of paths as all before it, so that there is a whole picture soon
-//! and a better one later.
+//! Passes over a picture. Each traces as many bundles of paths as all earlier passes together, so that a first complete picture
+//! is available early.
 
 use airlight::monte_carlo::BUNDLE;
 use std::fmt;
 use std::ops::Range;
 
-/// Bundles of the first pass: two are the fewest that have a standard error.
+/// Bundles of the first pass, at least two for a standard error.
 const FIRST: u64 = 2;
 
-/// Passes over a picture: the first of 2 bundles a pixel, each other of as many as all before, up to the goal.
+/// Passes over a picture: the first adds 2 bundles to each pixel, every other as many as all earlier ones, up to the goal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Passes {
     done: u64,
     goal: u64,
 }
 
-/// One pass over a picture. Its text is the number of paths after it: "256 of 1024 paths a pixel".
+/// One pass over a picture. `Display` writes the number of paths after it: "256 of 1024 paths per pixel".
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Pass {
-    /// Bundles of paths that it adds to each pixel.
+    /// Bundles of paths that the pass adds to each pixel.
     pub bundles: Range<u64>,
-    /// Bundles of all passes together.
+    /// Number of bundles of all passes.
     pub goal: u64,
 }
 
 impl Passes {
-    /// Passes that together follow at least `paths` paths a pixel: whole bundles, two or more.
+    /// Passes that together trace at least `paths` paths for each pixel, in whole bundles, at least two.
     pub fn new(paths: u64) -> Self {
         Self {
             done: 0,
@@ -33,7 +33,7 @@ impl Passes {
         }
     }
 
-    /// All passes in one.
+    /// A single pass with the bundles of all passes.
     pub fn at_once(self) -> Pass {
         Pass {
             bundles: self.done..self.goal,
@@ -43,7 +43,7 @@ impl Passes {
 }
 
 impl Pass {
-    /// Paths a pixel after this pass.
+    /// Number of paths for each pixel after this pass.
     pub fn paths(&self) -> u64 {
         self.bundles.end * BUNDLE as u64
     }
@@ -57,7 +57,7 @@ impl Pass {
 impl fmt::Display for Pass {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let goal = self.goal * BUNDLE as u64;
-        write!(f, "{} of {goal} paths a pixel", self.paths())
+        write!(f, "{} of {goal} paths per pixel", self.paths())
     }
 }
 
@@ -77,8 +77,8 @@ impl Iterator for Passes {
     }
 }
 
-/// Where in a pixel a bundle looks, each coordinate in `[0, 1)`: the two-dimensional sequence of M. Roberts (2018), which
-/// fills the square evenly for any number of points.
+/// Position of a bundle's rays in a pixel, each coordinate in `[0, 1)`: the two-dimensional low-discrepancy sequence of
+/// M. Roberts (2018), which fills the square evenly for any number of points.
 pub fn pixel_offset(bundle: u64) -> [f64; 2] {
     const STEPS: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_3];
     STEPS.map(|step| (0.5 + bundle as f64 * step).fract())
@@ -103,7 +103,7 @@ mod tests {
         }
         let last = &passes[3];
         assert!(last.is_last() && last.paths() == 11 * bundle);
-        assert_eq!(passes[1].to_string(), "256 of 704 paths a pixel");
+        assert_eq!(passes[1].to_string(), "256 of 704 paths per pixel");
         assert_eq!(Passes::new(11 * bundle).at_once().bundles, 0..11);
     }
 

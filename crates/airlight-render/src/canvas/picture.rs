@@ -1,4 +1,4 @@
-//! Sums over the bundles of paths of all pixels of a picture.
+//! [`Canvas`]: sums over bundles of paths for all pixels of a picture.
 
 use super::{ColorMoments, Pass, pixel_offset};
 use crate::channels::PixelChannels;
@@ -9,27 +9,27 @@ use airlight_image::{Control, Frame, ImageError, Size};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Channels of a polarisation map: degree and angle of linear polarisation, and `Q` and `U` over `I`.
+/// Channels of a polarisation map: degree and angle of linear polarisation, `Q / I` and `U / I`.
 pub const POLARISATION_CHANNELS: [&str; 4] = ["degree", "angle_deg", "Q_over_I", "U_over_I"];
 
-/// Most memory that the canvases of a picture may take, bytes.
+/// Largest memory of all canvases of a picture, bytes.
 const MOST_BYTES: f64 = 8e9;
 
-/// A picture by Monte Carlo as far as it is known: sums over bundles of paths.
+/// A Monte Carlo picture in progress: sums over bundles of paths.
 #[derive(Clone, Debug)]
 pub struct Canvas {
     size: Size,
     channels: PixelChannels,
-    /// In the channels of a view.
+    /// Sums in the channels of a view.
     sums: Vec<f64>,
     colors: Vec<ColorMoments>,
-    /// Stokes parameters I, Q and U weighted as luminance; empty where polarisation is not followed.
+    /// Stokes parameters I, Q and U weighted as luminance; empty without polarisation.
     stokes: Vec<[f64; 3]>,
     bundles: u64,
 }
 
 impl Canvas {
-    /// An empty canvas; `polarised` where the polarisation of light is followed.
+    /// An empty canvas, with or without polarisation.
     pub fn new(size: Size, channels: &PixelChannels, polarised: bool) -> Self {
         let pixels = size.width() as usize * size.height() as usize;
         Self {
@@ -42,7 +42,7 @@ impl Canvas {
         }
     }
 
-    /// Refuses pictures too large to be kept in memory while they are drawn.
+    /// Refuses pictures that are too large to be kept in memory.
     ///
     /// # Errors
     /// [`RenderError::Setting`] above 8 GB.
@@ -65,11 +65,10 @@ impl Canvas {
         }
     }
 
-    /// Follows the paths of a pass through every pixel of a frame of this size; each bundle looks at another point of the
-    /// pixel.
+    /// Traces the paths of a pass for every pixel of a frame of this size; each bundle starts at another point of the pixel.
     ///
     /// # Errors
-    /// [`ImageError::Cancelled`] where the caller asked to stop.
+    /// [`ImageError::Cancelled`] if the caller cancelled.
     pub fn add(
         &mut self,
         frame: &Frame,
@@ -89,12 +88,11 @@ impl Canvas {
         })
     }
 
-    /// Adds the bundles of a pass to every pixel, which begin where the last pass ended. `sample` gets column, row and
-    /// bundle, and adds to the radiance (zeros, in the channels of a view) and to the Stokes parameters, where polarisation
-    /// is followed.
+    /// Adds the bundles of a pass, which begin where the last pass ended, to every pixel. `sample` takes column, row and bundle,
+    /// and adds to the radiance (initially zero, in the channels of a view) and, with polarisation, to the Stokes parameters.
     ///
     /// # Errors
-    /// [`ImageError::Cancelled`] where the caller asked to stop.
+    /// [`ImageError::Cancelled`] if the caller cancelled.
     pub fn add_with(
         &mut self,
         pass: &Pass,
@@ -104,7 +102,7 @@ impl Canvas {
         let channels = &self.channels;
         let (width, count) = (self.size.width() as usize, channels.view_count());
         let height = self.size.height();
-        // One row each, empty where polarisation is not followed.
+        // One row each, empty without polarisation.
         let mut stokes: Vec<&mut [[f64; 3]]> = self.stokes.chunks_mut(width).collect();
         stokes.resize_with(height as usize, Default::default);
         let done = AtomicU64::new(0);
@@ -132,29 +130,29 @@ impl Canvas {
         Ok(())
     }
 
-    /// Mean and standard error of red, green and blue of each pixel, row after row.
+    /// Mean and standard error of red, green and blue of each pixel, row by row.
     pub fn moments(&self) -> impl Iterator<Item = [(f64, f64); 3]> + '_ {
         let of = |color: &ColorMoments| [0, 1, 2].map(|lane| color.moments(lane, self.bundles));
         self.colors.iter().map(of)
     }
 
-    /// The picture so far, in the channels of a view.
+    /// Mean over all bundles so far, in the channels of a view.
     pub fn means(&self) -> Vec<f32> {
         let count = self.bundles.max(1) as f64;
         self.sums.iter().map(|sum| (sum / count) as f32).collect()
     }
 
-    /// Standard errors of red, green and blue, `scale` times.
+    /// Standard errors of red, green and blue, multiplied by `scale`.
     ///
     /// # Errors
-    /// [`ImageError::Setting`]: never for a frame of a size above 0.
+    /// [`ImageError::Setting`], which does not occur for a frame of a size above 0.
     pub fn noise(&self, scale: f32) -> Result<StoredRows, ImageError> {
         let errors = |moments: [(f64, f64); 3]| moments.map(|(_, error)| scale * error as f32);
         let samples = self.moments().flat_map(errors).collect();
         StoredRows::new(self.size.width(), 3, samples)
     }
 
-    /// Values of [`POLARISATION_CHANNELS`]; `None` where polarisation is not followed.
+    /// Values of [`POLARISATION_CHANNELS`]; `None` without polarisation.
     pub fn polarisation(&self) -> Option<Result<StoredRows, ImageError>> {
         if self.stokes.is_empty() {
             return None;
@@ -164,7 +162,7 @@ impl Canvas {
         Some(StoredRows::new(self.size.width(), channels, samples))
     }
 
-    /// Sum of the squared relative standard errors of green, and the number of pixels that are lit.
+    /// Sum of the squared relative standard errors of green, and the number of pixels that are not black.
     pub fn relative_errors(&self) -> (f64, u64) {
         let errors = self
             .moments()
@@ -174,7 +172,7 @@ impl Canvas {
     }
 }
 
-/// Degree and angle of linear polarisation, and `Q` and `U` over `I`; zeros where there is no light.
+/// Degree and angle of linear polarisation, `Q / I` and `U / I`; 0 for black pixels.
 fn polarisation(&[i, q, u]: &[f64; 3]) -> [f32; 4] {
     if i <= 0.0 {
         return [0.0; 4];
@@ -210,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn passes_add_up_to_one() {
+    fn passes_equal_a_single_pass() {
         assert_eq!(
             canvas(&[2, 4, 8], false).means(),
             canvas(&[8], false).means()
@@ -218,8 +216,8 @@ mod tests {
     }
 
     #[test]
-    fn the_noise_is_the_spread_of_the_bundles() {
-        // Bundles of 0 and 2 by turns: a mean of 1 and a standard deviation of sqrt(8 / 7).
+    fn noise_is_the_standard_error_over_bundles() {
+        // Bundles alternate between 0 and 2: a mean of 1 and a standard deviation of sqrt(8 / 7).
         let canvas = canvas(&[8], false);
         assert!(canvas.means().iter().all(|v| *v == 1.0));
         let noise = canvas.noise(10.0).unwrap();
@@ -247,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn a_canvas_stops_when_asked_and_is_not_larger_than_memory() {
+    fn canvases_can_be_cancelled_and_are_limited_in_size() {
         let stop = AtomicBool::new(true);
         let frame = Frame::equirectangular(4).unwrap();
         let channels = PixelChannels::rgb(RgbSpace::Srgb);

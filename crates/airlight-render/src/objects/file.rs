@@ -1,4 +1,4 @@
-//! Things from TOML: the format is in the book's chapter on pictures.
+//! Objects from TOML; the book's chapter on pictures describes the format.
 
 use super::shape::Shape;
 use super::surface::{Checker, Gloss, Surface};
@@ -7,40 +7,40 @@ use airlight::scene::{ObjectShape, ObjectSpec, Reflectance, RepeatSpec};
 use airlight::spectrum::SpectralCurve;
 use glam::DVec3;
 
-/// Most objects of a scene.
+/// Largest number of objects of a scene.
 const MOST: usize = 10_000;
-/// Reflectance where none is given.
+/// Default reflectance.
 const GREY: Reflectance = Reflectance::Grey(0.5);
-/// Refractive index of a coat where none is given.
+/// Default refractive index of a coat.
 const GLASS: f64 = 1.5;
 
-/// Why a text describes no things.
+/// Error of a description of objects.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ObjectsError {
-    /// It is not TOML, or not of this format; the sentence tells line and column.
+    /// A text that is not TOML or not a list of objects, with line and column; or no objects, or too many.
     #[error("{0}")]
     Text(String),
-    /// A thing cannot be.
-    #[error("object {number}{name}: {what} must be {right}, got {got}")]
+    /// An invalid value of an object.
+    #[error("object {number}{name}: {what}: expected {right}, got {got}")]
     Value {
-        /// Which, counted from 1.
+        /// Number of the object, from 1.
         number: usize,
-        /// Its shape in brackets.
+        /// Its shape in parentheses.
         name: String,
-        /// What of it.
+        /// Key of the value.
         what: &'static str,
-        /// What would be right.
+        /// The values allowed.
         right: &'static str,
-        /// What was given.
+        /// The value given.
         got: String,
     },
 }
 
 impl Objects {
-    /// Reads a text.
+    /// Reads a list of objects, `[[object]]`, from TOML.
     ///
     /// # Errors
-    /// [`ObjectsError`]: what is wrong with it, and where.
+    /// [`ObjectsError`] for invalid keys and values, with their place.
     pub fn from_toml(text: &str) -> Result<Self, ObjectsError> {
         let specs = ObjectSpec::list_from_toml(text)
             .map_err(|error| ObjectsError::Text(error.to_string()))?;
@@ -50,7 +50,7 @@ impl Objects {
     /// Builds the objects of a scene.
     ///
     /// # Errors
-    /// [`ObjectsError`]: which is wrong, and what would be right.
+    /// [`ObjectsError`] for the first invalid value.
     pub fn from_specs(specs: &[ObjectSpec]) -> Result<Self, ObjectsError> {
         let mut objects = Vec::new();
         for (number, described) in (1..).zip(specs) {
@@ -58,20 +58,20 @@ impl Objects {
             objects.extend(made);
             if objects.len() > MOST {
                 return Err(ObjectsError::Text(format!(
-                    "there are more than {MOST} objects: object {number} and its repetitions are too many"
+                    "expected at most {MOST} objects, got more with object {number} and its copies"
                 )));
             }
         }
         match objects.is_empty() {
             true => Err(ObjectsError::Text(
-                "there is no object: write [[object]] with a shape".to_owned(),
+                "expected an object, got none; try [[object]] with a shape".to_owned(),
             )),
             false => Ok(Self::new(objects)),
         }
     }
 }
 
-/// One thing of a file.
+/// One object of a file.
 struct Reading<'a> {
     number: usize,
     described: &'a ObjectSpec,
@@ -88,7 +88,7 @@ impl Reading<'_> {
         }
     }
 
-    /// The thing and its repetitions.
+    /// The object and its copies.
     fn objects(&self) -> Result<Vec<Object>, ObjectsError> {
         let surface = self.surface()?;
         let repeat = self.described.repeat.unwrap_or(RepeatSpec {
@@ -96,7 +96,11 @@ impl Reading<'_> {
             step_m: [0.0; 3],
         });
         if !(1..=MOST).contains(&repeat.count) {
-            return Err(self.wrong("repeat.count", "from 1 to 10000", repeat.count));
+            return Err(self.wrong(
+                "repeat.count",
+                "a whole number from 1 to 10000",
+                repeat.count,
+            ));
         }
         let step = self.place("repeat.step_m", repeat.step_m)?;
         (0..repeat.count)
@@ -113,7 +117,7 @@ impl Reading<'_> {
         let d = self.described;
         self.only_known()?;
         let at = self.place("at_m", d.at_m.unwrap_or_default())? + moved;
-        let needed = "given, above 0 and up to 1e6";
+        let needed = "a number above 0 and at most 1e6";
         let length = |what, given: Option<f64>| match given {
             Some(m) if m > 0.0 && m <= 1e6 => Ok(m),
             Some(m) => Err(self.wrong(what, needed, m)),
@@ -153,7 +157,7 @@ impl Reading<'_> {
         })
     }
 
-    /// Refuses measures that the shape does not have.
+    /// Refuses dimensions that the shape does not have.
     fn only_known(&self) -> Result<(), ObjectsError> {
         let d = self.described;
         let has = |radius, height, size| (radius, height, size);
@@ -163,7 +167,7 @@ impl Reading<'_> {
             ObjectShape::Block => has(false, false, true),
             ObjectShape::Cylinder | ObjectShape::Cone => has(true, true, false),
         };
-        let left_out = "left out for this shape";
+        let left_out = "no value for this shape";
         for (what, known, given) in [
             ("radius_m", radius, d.radius_m.is_some()),
             ("height_m", height, d.height_m.is_some()),
@@ -193,7 +197,9 @@ impl Reading<'_> {
                     size_m,
                     reflectance: self.reflectance(&checker.reflectance)?,
                 }),
-                false => Err(self.wrong("checker.size_m", "above 0 and up to 1e6", size_m)),
+                false => {
+                    Err(self.wrong("checker.size_m", "a number above 0 and at most 1e6", size_m))
+                }
             }
         });
         let gloss = d.gloss.map(|gloss| Gloss {
@@ -202,10 +208,10 @@ impl Reading<'_> {
         });
         if let Some(Gloss { roughness, index }) = gloss {
             if !(0.02..=1.0).contains(&roughness) {
-                return Err(self.wrong("gloss.roughness", "from 0.02 to 1", roughness));
+                return Err(self.wrong("gloss.roughness", "a number from 0.02 to 1", roughness));
             }
             if !(1.01..=10.0).contains(&index) {
-                return Err(self.wrong("gloss.index", "from 1.01 to 10", index));
+                return Err(self.wrong("gloss.index", "a number from 1.01 to 10", index));
             }
         }
         Ok(Surface {
@@ -222,7 +228,7 @@ impl Reading<'_> {
             Reflectance::Spectrum { values, .. } => values,
         };
         if let Some(value) = values.iter().find(|v| !(0.0..=1.0).contains(*v)) {
-            return Err(self.wrong("reflectance", "from 0 to 1", value));
+            return Err(self.wrong("reflectance", "numbers from 0 to 1", value));
         }
         match given {
             Reflectance::Grey(value) => Ok(SpectralCurve::Constant(*value)),
@@ -231,16 +237,21 @@ impl Reading<'_> {
                 wavelengths_nm,
                 values,
             } => SpectralCurve::table(wavelengths_nm.clone(), values.clone()).map_err(|error| {
-                self.wrong("reflectance", "wavelengths_nm with as many values", error)
+                self.wrong(
+                    "reflectance",
+                    "increasing wavelengths_nm with as many values",
+                    error,
+                )
             }),
         }
     }
 }
 
-/// Blue up to 480 nm, green from 500 to 580, red from 600 on: the reflectance that turns sunlight into a linear sRGB colour, from
-/// 0 to 1 for every such colour. (Of steps at multiples of 5 nm, these are the only ones for which it stays there.)
+/// Reflectance that turns sunlight into a linear sRGB colour, with constant values up to 480 nm (blue), from 500 to 580 nm (green)
+/// and from 600 nm (red). It is from 0 to 1 for every colour from 0 to 1; of all band edges at multiples of 5 nm, only these have
+/// this property.
 fn of_rgb(rgb: [f64; 3]) -> SpectralCurve {
-    // The inverse of what the three bands under the sun outside the air look like, over the sun.
+    // Inverse of the colours of the three bands in sunlight outside the air, relative to the colour of sunlight.
     const BANDS: [[f64; 3]; 3] = [
         [0.995_718, 0.002_690, 0.001_592],
         [0.009_911, 0.959_431, 0.030_658],
@@ -252,7 +263,7 @@ fn of_rgb(rgb: [f64; 3]) -> SpectralCurve {
         vec![480.0, 500.0, 580.0, 600.0],
         vec![blue, green, green, red],
     )
-    .expect("four wavelengths rise")
+    .expect("wavelengths increase")
 }
 
 #[cfg(test)]
@@ -261,7 +272,7 @@ mod tests {
     use airlight::spectrum::{RgbSpace, WavelengthGrid};
 
     #[test]
-    fn colours_come_out_as_they_are_given() {
+    fn reflectances_reproduce_rgb_colours() {
         let grid = WavelengthGrid::one_nanometre();
         let seen = |curve: &SpectralCurve| {
             let pairs = grid.wavelengths_nm().iter().zip(grid.solar_irradiance());

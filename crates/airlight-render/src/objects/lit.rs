@@ -1,4 +1,4 @@
-//! Objects in the light of a view.
+//! Objects lit by a view.
 
 use super::{Hit, Object, Objects, Ray};
 use crate::channels::{PixelChannels, RgbWeights};
@@ -8,46 +8,46 @@ use glam::DVec3;
 use std::f32::consts::PI;
 use std::sync::Arc;
 
-/// A ray from the eye that meets an object.
+/// A ray from the eye that hits an object.
 #[derive(Clone, Copy, Debug)]
 pub struct ViewRay<'a> {
-    /// Which object, and where.
+    /// The object, and the point that is hit.
     pub hit: Hit<'a>,
     /// Unit vector away from the eye.
     pub direction: DVec3,
-    /// Width of the part of the picture that the ray stands for, at a distance of 1.
+    /// Width of the part of the picture that the ray represents, at a distance of 1.
     pub width: f64,
 }
 
-/// Rays end side by side where their lengths differ by less than this part.
+/// Largest relative difference of the lengths of rays that share the air in front of them.
 const BESIDE: f64 = 0.05;
 
 impl ViewRay<'_> {
-    /// Whether both end on the same object, about equally far away.
+    /// Whether both end on the same object at nearly the same distance.
     fn ends_beside(&self, other: &Self) -> bool {
         let (a, b) = (self.hit.distance_m, other.hit.distance_m);
         self.hit.index == other.hit.index && (a - b).abs() < BESIDE * a.min(b)
     }
 }
 
-/// Objects in the light of a view. They stand about the point of the ground under its eye.
+/// Objects lit by a view. Their origin is the point of the ground below its eye.
 #[derive(Clone, Debug)]
 pub struct LitObjects {
     objects: Arc<Objects>,
     eye: DVec3,
     view: Arc<dyn RadianceView>,
-    /// Views from heights (m) above the ground, rising, one or more: their irradiance is that of objects there.
+    /// Views from increasing heights (m) above the ground, at least one, whose irradiance lights objects there.
     around: Vec<(f64, Arc<dyn RadianceView>)>,
     /// Reflectances of each object and of its checker, in the channels of the views.
     reflectances: Vec<[Vec<f32>; 2]>,
-    /// Where the views are spectral and the picture is not: weights of their wavelengths.
+    /// Weights of the wavelengths if the views are spectral and the picture is RGB.
     weights: Option<RgbWeights>,
     shadows: bool,
 }
 
 impl LitObjects {
-    /// Objects in the light of `view`, whose eye is `eye_height_m` above the ground; `around` are views from heights (m)
-    /// above the ground, rising and at least one, in the same channels.
+    /// Objects lit by `view`, whose eye is `eye_height_m` above the ground; `around` are views from increasing heights (m) above
+    /// the ground, at least one, in the same channels.
     pub fn new(
         objects: Arc<Objects>,
         (eye_height_m, view): (f64, Arc<dyn RadianceView>),
@@ -74,11 +74,11 @@ impl LitObjects {
         }
     }
 
-    /// Objects in a scene; `view_at` is the view from an altitude (m above sea level). Where there is fog, the light around
-    /// objects changes from the ground to their tops; else it is that in the middle.
+    /// Objects in a scene; `view_at` is the view from an altitude (m above sea level). In fog, the ambient light of objects
+    /// depends on height; otherwise it is that at half the height of the highest object.
     ///
     /// # Errors
-    /// Those of `view_at`.
+    /// Errors of `view_at`.
     pub fn in_scene(
         objects: Arc<Objects>,
         scene: &ResolvedScene,
@@ -100,7 +100,7 @@ impl LitObjects {
         Ok(Self::new(objects, (eye_height_m, view), around, shadows))
     }
 
-    /// The same in the channels of a picture: where it is RGB and the views are spectral, their light is summed.
+    /// The same objects in the channels of a picture: light of spectral views is converted for an RGB picture.
     pub fn in_picture(mut self, channels: &PixelChannels) -> Self {
         self.weights = match (channels.of_views(), self.view.grid()) {
             (Channels::Rgb(space), Some(grid)) => Some(grid.rgb_weights(space)),
@@ -109,7 +109,7 @@ impl LitObjects {
         self
     }
 
-    /// The first object along a ray from the eye, which stands for a part of the picture of this width at a distance of 1.
+    /// The first object along a ray from the eye that represents a part of the picture of this width at a distance of 1.
     pub fn hit(&self, direction: DVec3, width: f64) -> Option<ViewRay<'_>> {
         let ray = Ray {
             origin: self.eye,
@@ -122,7 +122,7 @@ impl LitObjects {
         })
     }
 
-    /// Room for the values of a pixel.
+    /// Buffers for the values of a pixel.
     pub fn scratch(&self) -> Scratch {
         let values = || vec![0.0; self.view.channel_count()];
         Scratch {
@@ -137,10 +137,10 @@ impl LitObjects {
         }
     }
 
-    /// The sum of the radiances along the rays of a pixel, which all meet objects, through the air before them.
+    /// Sum of the radiances along the rays of a pixel that hit objects, including the air in front of them.
     pub fn radiance<'s>(&self, rays: &[ViewRay<'_>], scratch: &'s mut Scratch) -> &'s [f32] {
         scratch.sum.fill(0.0);
-        // The air is computed once for rays that end side by side.
+        // The air is computed once for rays of nearly equal length.
         for beside in rays.chunk_by(|a, b| a.ends_beside(b)) {
             let count = beside.len() as f64;
             let mean = |of: fn(&Hit<'_>) -> f64| {
@@ -175,7 +175,7 @@ impl LitObjects {
         &scratch.sum
     }
 
-    /// Adds the radiance that a surface sends to the eye.
+    /// Adds the radiance that a surface reflects to the eye.
     fn add_reflected(&self, ray: &ViewRay<'_>, scratch: &mut Scratch) {
         let ViewRay { hit, direction, .. } = ray;
         let sun = self.view.sun();
@@ -210,7 +210,7 @@ impl LitObjects {
         }
     }
 
-    /// Irradiance of everything but the sun's disc on a surface at a height.
+    /// Irradiance of a surface at a height (m) by all light except the sun's disc.
     fn ambient(&self, height_m: f64, normal: DVec3, out: &mut [f32], other: &mut [f32]) {
         let above = self
             .around
@@ -231,7 +231,7 @@ impl LitObjects {
     }
 }
 
-/// Room for the values of a pixel, one a channel of the views.
+/// Buffers for the values of a pixel, one value for each channel of the views.
 #[derive(Clone, Debug)]
 pub struct Scratch {
     sum: Vec<f32>,
@@ -244,23 +244,23 @@ pub struct Scratch {
     path_radiance: Vec<f32>,
 }
 
-/// How much of the checker's own reflectance a ray meets, 0 to 1.
+/// Share of the checker's second reflectance in the footprint of a ray, 0 to 1.
 fn checker_share(ray: &ViewRay<'_>) -> f32 {
     let ViewRay { hit, direction, .. } = ray;
     let Some(checker) = &hit.surface.checker else {
         return 0.0;
     };
-    // The footprint is long where the ray grazes the surface, and has no extent across it.
+    // The footprint is long at grazing incidence, and has no extent along the normal.
     let across = ray.width * hit.distance_m;
     let slant = hit.normal.dot(*direction).abs().max(1e-6);
     let footprint =
         (DVec3::ONE + direction.abs() / slant) * across * (DVec3::ONE - hit.normal * hit.normal);
-    // Just inside, as squares begin on the surface of a block.
+    // Just inside the object, as squares begin at the surface of a block.
     let inside = hit.point - 1e-3 * checker.size_m * hit.normal;
     hit.surface.checker_share(inside, footprint)
 }
 
-/// Reflectances of objects and of their checkers, by how a curve becomes channels.
+/// Reflectances of objects and of their checkers, with curves converted by `to_channels`.
 fn reflectances(
     objects: &Objects,
     channels: impl Fn(&SpectralCurve) -> Vec<f32>,
@@ -273,8 +273,8 @@ fn reflectances(
     objects.all().iter().map(of).collect()
 }
 
-/// Reflectance in red, green and blue: the colour of reflected sunlight over that of sunlight. Exact under the sun outside
-/// the air, and for greys under any light; a strong red in the light of a sun 20 degrees high is off by 4 %.
+/// Reflectance in red, green and blue: the colour of reflected sunlight relative to that of sunlight. Exact for sunlight outside
+/// the air, and for greys in any light; the error of a saturated red with the sun at 20 degrees is 4 %.
 fn reflectance_in_rgb(space: RgbSpace) -> impl Fn(&SpectralCurve) -> Vec<f32> {
     let grid = WavelengthGrid::one_nanometre();
     let color = move |curve: &SpectralCurve| {

@@ -1,10 +1,10 @@
-//! Things before the sky: simple solids, what they are made of, and where rays meet them.
+//! Objects in front of the sky: simple shapes with reflecting surfaces.
 //!
-//! - [`shape`]: solids; [`surface`]: how they reflect; [`mod@file`]: reading both from TOML.
-//! - [`Objects`]: all objects of a scene, and the first that a ray meets; [`LitObjects`]: the same in the light of a view.
-//! - [`ObjectRows`], [`write_depth`]: pictures of them.
+//! - [`shape`]: shapes and their intersection with rays; [`surface`]: reflection; [`mod@file`]: both from TOML.
+//! - [`Objects`]: all objects of a scene, with the first hit of a ray; [`LitObjects`]: objects lit by a view.
+//! - [`ObjectRows`], [`write_depth`]: pictures of them, and their depth.
 //!
-//! Positions are in metres east, up and south of the point of the ground under the eye.
+//! Positions are in metres east, up and south of the point of the ground below the eye.
 
 pub mod file;
 mod lit;
@@ -20,64 +20,64 @@ use glam::DVec3;
 use shape::{Met, Shape};
 use surface::Surface;
 
-/// A thing.
+/// A shape with a surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Object {
-    /// Its form and place.
+    /// Shape and position.
     pub shape: Shape,
-    /// What it is made of.
+    /// Reflection properties.
     pub surface: Surface,
 }
 
-/// Where a ray meets a thing.
+/// Intersection of a ray with an object.
 #[derive(Clone, Copy, Debug)]
 pub struct Hit<'a> {
     /// Distance from the ray's start, m.
     pub distance_m: f64,
-    /// Where, m.
+    /// Point of intersection, m.
     pub point: DVec3,
     /// Unit normal, on the ray's side.
     pub normal: DVec3,
-    /// Which thing, counted from 0.
+    /// Index of the object.
     pub index: usize,
-    /// What is met.
+    /// Surface of the object.
     pub surface: &'a Surface,
 }
 
-/// How far from a surface light for it is looked for, as part of its distance from the scene's middle (and in metres at the least):
-/// so that no point shadows itself.
+/// Offset of shadow rays from a surface, relative to the largest coordinate of the point (at least 10 m), so that points do not
+/// shadow themselves.
 const OFF: f64 = 1e-7;
 
-/// The things of a scene.
+/// The objects of a scene.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Objects {
     objects: Vec<Object>,
-    /// A ball about each: its middle, and its radius squared.
-    balls: Vec<(DVec3, f64)>,
+    /// Bounding sphere of each object: centre and squared radius.
+    bounds: Vec<(DVec3, f64)>,
 }
 
 impl Objects {
-    /// Takes checked things.
+    /// A list of valid objects.
     pub fn new(objects: Vec<Object>) -> Self {
-        let balls = objects.iter().map(|object| object.shape.ball());
+        let bounds = objects.iter().map(|object| object.shape.ball());
         Self {
-            balls: balls.map(|(middle, r)| (middle, r * r)).collect(),
+            bounds: bounds.map(|(middle, r)| (middle, r * r)).collect(),
             objects,
         }
     }
 
-    /// All of them.
+    /// The list of objects.
     pub fn all(&self) -> &[Object] {
         &self.objects
     }
 
-    /// The highest point of things that are not ground, m above the ground; 0 where there are none.
+    /// Height of the highest point of all objects except ground, m; 0 if there are none.
     pub fn top_m(&self) -> f64 {
         let tops = self.objects.iter().map(|object| object.shape.top_m());
         tops.fold(0.0, f64::max)
     }
 
-    /// The first thing that a ray meets.
+    /// The first intersection of a ray.
     pub fn hit(&self, ray: &Ray) -> Option<Hit<'_>> {
         let (index, met) = self
             .met(ray)
@@ -92,7 +92,7 @@ impl Objects {
         })
     }
 
-    /// Whether something stands between a surface and a light in this direction.
+    /// Whether an object blocks light from this direction at a point of a surface.
     pub fn shadowed(&self, hit: &Hit<'_>, to_light: DVec3) -> bool {
         let off_m = OFF * hit.point.abs().max_element().max(10.0);
         let ray = Ray {
@@ -102,7 +102,7 @@ impl Objects {
         self.met(&ray).next().is_some()
     }
 
-    /// All things that a ray meets.
+    /// Intersections of a ray with all objects, by index.
     fn met<'s>(&'s self, ray: &'s Ray) -> impl Iterator<Item = (usize, Met)> + 's {
         let near = |(middle, squared): &(DVec3, f64)| {
             let to = middle - ray.origin;
@@ -110,8 +110,8 @@ impl Objects {
             to.length_squared() - along * along <= *squared
         };
         (0..)
-            .zip(self.objects.iter().zip(&self.balls))
-            .filter(move |(_, (_, ball))| near(ball))
+            .zip(self.objects.iter().zip(&self.bounds))
+            .filter(move |(_, (_, bound))| near(bound))
             .filter_map(|(index, (object, _))| Some((index, object.shape.meet(ray)?)))
     }
 }

@@ -1,4 +1,4 @@
-//! Objects in front of a sky, row by row, and their depth.
+//! Rows of objects in front of a sky, and their depth.
 
 use super::lit::{LitObjects, Scratch, ViewRay};
 use crate::channels::PixelChannels;
@@ -12,7 +12,7 @@ use glam::DVec3;
 use std::fmt;
 use std::path::Path;
 
-/// A picture of objects over the picture of a sky.
+/// Rows of objects in front of rows of a sky.
 pub struct ObjectRows<'a> {
     sky: Box<dyn RowSource + 'a>,
     objects: &'a LitObjects,
@@ -33,8 +33,8 @@ impl fmt::Debug for ObjectRows<'_> {
 }
 
 impl<'a> ObjectRows<'a> {
-    /// Objects over `sky`; values are `scale` times radiance or luminance. In a layer of the sun's disc alone objects cover
-    /// the disc and are black.
+    /// Objects in front of `sky`; values are radiance or luminance multiplied by `scale`. In the layer of the sun's disc, objects
+    /// hide the disc and are black.
     pub fn new(
         sky: Box<dyn RowSource + 'a>,
         objects: &'a LitObjects,
@@ -52,7 +52,7 @@ impl<'a> ObjectRows<'a> {
         }
     }
 
-    /// Puts objects over what is in a pixel.
+    /// Draws objects over the value of a pixel.
     fn cover(
         &self,
         (i, j): (u32, u32),
@@ -96,11 +96,11 @@ impl RowSource for ObjectRows<'_> {
     }
 }
 
-/// Writes the depth of objects at the centre of each pixel as OpenEXR, in metres: `Z` along the camera's axis of a
-/// perspective picture, `distance` along the ray of others; infinite where there is only sky.
+/// Writes the depth of objects at the centre of each pixel as OpenEXR, in metres: `Z` along the camera's axis for perspective
+/// pictures, `distance` along the ray for others; infinite for sky.
 ///
 /// # Errors
-/// [`ImageError`] where it cannot be written.
+/// [`ImageError`] if the file cannot be written.
 pub fn write_depth(
     path: &Path,
     frame: &Frame,
@@ -194,9 +194,9 @@ mod tests {
     }
 
     #[test]
-    fn shadows_can_be_left_out() {
-        let ball = "\n[[object]]\nshape = \"sphere\"\nat_m = [0, 30, -2.4]\nradius_m = 8\n";
-        let (text, frame) = (format!("{PLANE}{ball}"), camera(-40.0, 1.0, 9));
+    fn shadows_can_be_disabled() {
+        let solid = "\n[[object]]\nshape = \"sphere\"\nat_m = [0, 30, -2.4]\nradius_m = 8\n";
+        let (text, frame) = (format!("{PLANE}{solid}"), camera(-40.0, 1.0, 9));
         let at = |shadows| {
             middle(
                 &lit(&text, axes::direction(180.0, 89.0), shadows),
@@ -208,10 +208,10 @@ mod tests {
     }
 
     #[test]
-    fn objects_cover_the_sky_and_have_their_depth() {
-        let ball = "[[object]]\nshape = \"sphere\"\nat_m = [0, 2, -20]\nradius_m = 2\n\
+    fn objects_hide_the_sky_and_have_depth() {
+        let solid = "[[object]]\nshape = \"sphere\"\nat_m = [0, 2, -20]\nradius_m = 2\n\
             reflectance = [0.5, 0.1, 0.1]\n";
-        let objects = lit(ball, axes::direction(170.0, 20.0), true);
+        let objects = lit(solid, axes::direction(170.0, 20.0), true);
         let frame = camera(5.0, 40.0, 33);
         let level = 5f64.to_radians();
         let ahead = objects.hit(-DVec3::Z, 0.0).unwrap();

@@ -1,71 +1,71 @@
-//! Solids, and where rays meet them.
+//! Shapes and their intersections with rays.
 
 use glam::DVec3;
 
-/// A straight line from a point.
+/// A half-line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
-    /// Where it starts, m.
+    /// Start, m.
     pub origin: DVec3,
     /// Unit vector.
     pub direction: DVec3,
 }
 
 impl Ray {
-    /// The point at a distance from its start, m.
+    /// The point at a distance from the start, m.
     pub fn at(&self, distance_m: f64) -> DVec3 {
         self.origin + distance_m * self.direction
     }
 }
 
-/// A solid that stands on the ground, or the ground.
+/// The shape of an object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shape {
-    /// Level ground at a height, without end.
+    /// An infinite horizontal plane.
     Ground {
-        /// Its height, m.
+        /// Height of the plane, m.
         height_m: f64,
     },
-    /// A ball.
+    /// A sphere.
     Sphere {
-        /// Its middle, m.
+        /// Centre, m.
         centre: DVec3,
-        /// Its radius, m.
+        /// Radius, m.
         radius_m: f64,
     },
-    /// A block with level top and bottom, turned about the vertical.
+    /// A block with horizontal top and bottom, rotated about the vertical axis.
     Block {
-        /// The middle of its bottom, m.
+        /// Centre of the base, m.
         base: DVec3,
-        /// Half its extent east, up to its top, and half its extent south, before it is turned, m.
+        /// Half the extent to the east, the height, and half the extent to the south, before rotation, m.
         half_m: DVec3,
-        /// Sine and cosine of its turn, clockwise from above.
+        /// Sine and cosine of the rotation, clockwise seen from above.
         turn: (f64, f64),
     },
-    /// A cylinder, a cone, or the stump of a cone, upright.
+    /// A vertical cylinder, cone or truncated cone.
     Frustum {
-        /// The middle of its bottom, m.
+        /// Centre of the base, m.
         base: DVec3,
-        /// Radius at the bottom, m.
+        /// Radius of the base, m.
         radius_m: f64,
-        /// Radius at the top, m.
+        /// Radius of the top, m.
         top_radius_m: f64,
-        /// Its height, m.
+        /// Height, m.
         height_m: f64,
     },
 }
 
-/// Where a ray meets a solid.
+/// Intersection of a ray with a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Met {
     /// Distance from the ray's start, m, above 0.
     pub distance_m: f64,
-    /// Unit normal, outwards.
+    /// Outward unit normal.
     pub normal: DVec3,
 }
 
 impl Shape {
-    /// Its highest point, m; of ground, 0.
+    /// Height of the highest point, m; 0 for ground.
     pub fn top_m(&self) -> f64 {
         match self {
             Self::Ground { .. } => 0.0,
@@ -75,7 +75,7 @@ impl Shape {
         }
     }
 
-    /// The middle and the radius of a ball about it, m; of ground, an endless one.
+    /// Centre and radius of a bounding sphere, m; infinite for ground.
     pub fn ball(&self) -> (DVec3, f64) {
         match *self {
             Self::Ground { .. } => (DVec3::ZERO, f64::INFINITY),
@@ -97,7 +97,7 @@ impl Shape {
         }
     }
 
-    /// The nearest point of its surface on a ray.
+    /// The first intersection with a ray.
     pub fn meet(&self, ray: &Ray) -> Option<Met> {
         match *self {
             Self::Ground { height_m } => level(ray, height_m),
@@ -121,7 +121,7 @@ fn level(ray: &Ray, height_m: f64) -> Option<Met> {
     })
 }
 
-/// Roots of `a t^2 + 2 b t + c`, the smaller first: without cancellation, and right for `a` = 0, where one is infinite.
+/// Roots of `a t^2 + 2 b t + c` in increasing order, without cancellation; for `a` = 0 one is infinite.
 fn roots(a: f64, b: f64, c: f64) -> Option<[f64; 2]> {
     let discriminant = b * b - a * c;
     if discriminant < 0.0 {
@@ -147,7 +147,7 @@ fn sphere(ray: &Ray, centre: DVec3, radius_m: f64) -> Option<Met> {
     })
 }
 
-/// Between three pairs of planes: the ray is inside from the last entry to the first exit.
+/// Intersection of three slabs: the ray is inside from the last entry to the first exit.
 fn block(ray: &Ray, base: DVec3, half_m: DVec3, (sin, cos): (f64, f64)) -> Option<Met> {
     let turned = |v: DVec3| DVec3::new(cos * v.x + sin * v.z, v.y, cos * v.z - sin * v.x);
     let back = |v: DVec3| DVec3::new(cos * v.x - sin * v.z, v.y, cos * v.z + sin * v.x);
@@ -184,7 +184,7 @@ fn block(ray: &Ray, base: DVec3, half_m: DVec3, (sin, cos): (f64, f64)) -> Optio
     })
 }
 
-/// The mantle, where `x^2 + z^2 = r(y)^2` with `r` linear in the height, and two discs.
+/// The lateral surface `x^2 + z^2 = r(y)^2`, with `r` linear in the height, and two discs.
 fn frustum(ray: &Ray, base: DVec3, (bottom_m, top_m): (f64, f64), height_m: f64) -> Option<Met> {
     let (o, d) = (ray.origin - base, ray.direction);
     let slope = (top_m - bottom_m) / height_m;

@@ -1,69 +1,69 @@
-//! How surfaces reflect: Lambert's law, as in the pictures of 1987, and the shading of Cook and Torrance.
+//! Reflection by surfaces: Lambertian, as in the pictures of Klassen 1987, with an optional Cook-Torrance coat.
 //!
-//! R. L. Cook and K. E. Torrance, "A reflection model for computer graphics", Computer Graphics 15(3), 1981: facets of
-//! Beckmann's slopes that mirror after Fresnel. Their `R_s = F D G / (pi (n.l)(n.v))` with Beckmann's distribution as they print it,
-//! `e^-(tan^2 a / m^2) / (m^2 cos^4 a)`, reflects four times too much; here it is `F D G / (4 (n.l)(n.v))` with that over pi
-//! (Walter et al. 2007, eqs. 20 and 25), which a smooth surface turns into a mirror.
+//! R. L. Cook and K. E. Torrance, "A reflection model for computer graphics", Computer Graphics 15(3), 1981: microfacets with
+//! Beckmann's distribution of slopes and Fresnel reflection. The printed `R_s = F D G / (pi (n.l)(n.v))` with the printed
+//! distribution `e^-(tan^2 a / m^2) / (m^2 cos^4 a)` is four times too large. Here it is `F D G / (4 (n.l)(n.v))` with the
+//! distribution divided by pi (Walter et al. 2007, eqs. 20 and 25), whose smooth limit is a mirror.
 
 use airlight::spectrum::SpectralCurve;
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// What a thing is made of.
+/// Reflection properties of an object.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surface {
     /// Diffuse reflectance, 0 to 1.
     pub reflectance: SpectralCurve,
-    /// Squares of another reflectance.
+    /// Checker pattern with a second reflectance.
     pub checker: Option<Checker>,
-    /// A coat that mirrors.
+    /// Glossy coat.
     pub gloss: Option<Gloss>,
 }
 
-/// Squares (or cubes) of two reflectances by turns.
+/// Pattern of squares (or cubes) with two alternating reflectances.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Checker {
-    /// Their side, m.
+    /// Side of a square, m.
     pub size_m: f64,
-    /// The other reflectance, 0 to 1.
+    /// The second reflectance, 0 to 1.
     pub reflectance: SpectralCurve,
 }
 
-/// A coat of Cook and Torrance's facets.
+/// A coat of Cook-Torrance microfacets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gloss {
     /// Root mean square slope of the facets, `m`.
     pub roughness: f64,
-    /// Refractive index.
+    /// Refractive index of the coat.
     pub index: f64,
 }
 
-/// How much of the light that arrives at a surface goes to the eye. With the diffuse reflectance `r`, the sun's irradiance
-/// `E` of a surface that faces it, the irradiance `A` of all else and the radiance `M` of all else around the mirrored ray,
+/// Factors of the light that a surface reflects to the eye. With the diffuse reflectance `r`, the sun's irradiance `E` on a
+/// surface that faces it, the irradiance `A` of all other light and its radiance `M` along the mirrored ray,
 ///
 /// ```text
 /// L = r / pi (sun E + ambient A) + sun_mirrored E + mirrored M
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shading {
-    /// Of the sun, diffusely.
+    /// Diffuse reflection of sunlight.
     pub sun: f32,
-    /// Of all else, diffusely.
+    /// Diffuse reflection of other light.
     pub ambient: f32,
-    /// Of the sun, mirrored, 1/sr.
+    /// Mirrored sunlight, 1/sr.
     pub sun_mirrored: f32,
-    /// Of all else, mirrored.
+    /// Mirrored other light.
     pub mirrored: f32,
 }
 
 impl Surface {
-    /// How much of the checker's own reflectance there is about a point, 0 to 1, where a ray's footprint covers so much of
-    /// each axis (m): squares too small to be seen become their mean.
+    /// Share of the checker's second reflectance around a point, 0 to 1, averaged over a footprint with this extent along each
+    /// axis, m.
     pub fn checker_share(&self, point: DVec3, footprint_m: DVec3) -> f32 {
         let Some(checker) = &self.checker else {
             return 0.0;
         };
-        // The mean over the footprint of a wave of 1 and -1 along each axis.
+        // Mean over the footprint of a square wave of 1 and -1 along each axis.
         let wave = |axis: usize| {
             let (x, w) = (
                 0.5 * point[axis] / checker.size_m,
@@ -75,8 +75,8 @@ impl Surface {
         (0.5 - 0.5 * wave(0) * wave(1) * wave(2)) as f32
     }
 
-    /// How it reflects light of the sun (at the unit vector `to_sun`) and of all else towards the eye (at `to_eye`); `normal`
-    /// is on the eye's side.
+    /// Reflection of sunlight (from the unit vector `to_sun`) and of other light towards the eye (at the unit vector `to_eye`);
+    /// `normal` is on the eye's side.
     pub fn shading(&self, normal: DVec3, to_eye: DVec3, to_sun: DVec3) -> Shading {
         let slant = normal.dot(to_sun).max(0.0);
         let Some(gloss) = &self.gloss else {
@@ -89,7 +89,7 @@ impl Surface {
         };
         let facing = normal.dot(to_eye).max(1e-4);
         let seen = fresnel(facing, gloss.index);
-        // What the coat mirrors does not reach the matter under it, on the way in and out.
+        // Light mirrored by the coat does not reach the diffuse surface below, on the way in and out.
         let through = |cosine: f64| (1.0 - seen) * (1.0 - fresnel(cosine, gloss.index));
         Shading {
             sun: (slant * through(slant)) as f32,
@@ -101,7 +101,7 @@ impl Surface {
 }
 
 impl Gloss {
-    /// Radiance towards the eye for each unit of irradiance that faces the sun: `F D G / (4 n.v)`, 1/sr.
+    /// Radiance towards the eye per unit of irradiance on a surface that faces the sun: `F D G / (4 n.v)`, 1/sr.
     pub fn mirrored_sun(&self, normal: DVec3, to_eye: DVec3, to_sun: DVec3) -> f64 {
         let (v, l) = (normal.dot(to_eye), normal.dot(to_sun));
         if v <= 0.0 || l <= 0.0 {
@@ -109,12 +109,12 @@ impl Gloss {
         }
         let half = (to_eye + to_sun).normalize();
         let (h, vh) = (normal.dot(half), to_eye.dot(half));
-        // Torrance and Sparrow's shadowing in grooves.
+        // Shadowing in V-grooves (Torrance and Sparrow).
         let grooves = (2.0 * h * v / vh).min(2.0 * h * l / vh).min(1.0);
         fresnel(vh, self.index) * self.facets(h) * grooves / (4.0 * v)
     }
 
-    /// Beckmann's distribution of facets by the cosine of their angle to the normal, 1/sr.
+    /// Beckmann's distribution of facets, by the cosine of their angle to the normal, 1/sr.
     fn facets(&self, cosine: f64) -> f64 {
         if cosine <= 0.0 {
             return 0.0;
@@ -124,7 +124,7 @@ impl Gloss {
     }
 }
 
-/// What a smooth surface of a refractive index mirrors of unpolarised light, by the cosine of incidence (Fresnel).
+/// Fresnel reflectance of a smooth surface for unpolarised light, by the cosine of incidence.
 pub fn fresnel(cosine: f64, index: f64) -> f64 {
     let c = cosine.clamp(0.0, 1.0);
     let g = (index * index - 1.0 + c * c).sqrt();

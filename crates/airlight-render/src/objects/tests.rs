@@ -29,7 +29,7 @@ fn shapes() -> [Shape; 5] {
     ]
 }
 
-/// Whether a point lies inside: the implicit form of each solid.
+/// Whether a point lies inside a shape, by its implicit form.
 fn inside(shape: &Shape, p: DVec3) -> bool {
     match *shape {
         Shape::Ground { height_m } => p.y < height_m,
@@ -81,7 +81,7 @@ fn rays() -> impl Iterator<Item = Ray> {
 }
 
 #[test]
-fn rays_meet_solids_where_a_march_does() {
+fn intersections_match_marching() {
     for shape in shapes() {
         let mut met = 0;
         let (middle, radius_m) = shape.ball();
@@ -100,13 +100,13 @@ fn rays_meet_solids_where_a_march_does() {
                         (n.length() - 1.0).abs() < 1e-9 && n.dot(ray.direction) <= 1e-9,
                         "{n}"
                     );
-                    // The normal points out.
+                    // The normal points outwards.
                     let p = ray.at(hit.distance_m);
                     assert!(p.distance(middle) < radius_m + 1e-9, "{shape:?} {p}");
                     assert!(!inside(&shape, p + 1e-4 * n), "{shape:?} {p} {n}");
                 }
                 (None, None) => {}
-                // Corners that are thinner than a step.
+                // Corners thinner than a step.
                 (Some(hit), None) => {
                     let through = (0..100)
                         .filter(|i| inside(&shape, ray.at(hit.distance_m + 1e-4 * f64::from(*i))));
@@ -120,7 +120,7 @@ fn rays_meet_solids_where_a_march_does() {
 }
 
 #[test]
-fn a_ray_from_inside_meets_the_far_side() {
+fn rays_from_inside_hit_the_far_side() {
     for shape in shapes() {
         let origin = DVec3::new(0.5, 1.8, -9.6);
         assert!(inside(&shape, origin), "{shape:?}");
@@ -135,26 +135,26 @@ fn a_ray_from_inside_meets_the_far_side() {
 }
 
 #[test]
-fn the_nearest_thing_is_seen_and_shadows_what_is_behind() {
+fn the_nearest_object_is_hit_and_casts_a_shadow() {
     let text = "[[object]]\nshape = \"ground\"\n\n[[object]]\nshape = \"sphere\"\nat_m = [0, 1, -10]\nradius_m = 1\n";
     let objects = Objects::from_toml(text).unwrap();
     let look = |azimuth, elevation| Ray {
         origin: DVec3::new(0.0, 1.0, 0.0),
         direction: axes::direction(azimuth, elevation),
     };
-    let ball = objects.hit(&look(0.0, 0.0)).unwrap();
-    assert!((ball.distance_m - 9.0).abs() < 1e-12 && ball.index == 1);
+    let front = objects.hit(&look(0.0, 0.0)).unwrap();
+    assert!((front.distance_m - 9.0).abs() < 1e-12 && front.index == 1);
     let ground = objects.hit(&look(180.0, -45.0)).unwrap();
     assert!((ground.normal - DVec3::Y).length() < 1e-12 && ground.index == 0);
     assert!(objects.hit(&look(90.0, 10.0)).is_none());
-    // Under the ball it is dark, in front of it not; no point is in its own shadow.
+    // The ground below the sphere is in shadow, its front is not; points do not shadow themselves.
     let under = objects
         .hit(&Ray {
             origin: DVec3::new(0.0, 0.5, -8.0),
             direction: axes::direction(0.0, -20.0),
         })
         .unwrap();
-    assert!(objects.shadowed(&under, DVec3::Y) && !objects.shadowed(&ball, DVec3::Z));
+    assert!(objects.shadowed(&under, DVec3::Y) && !objects.shadowed(&front, DVec3::Z));
     for i in 0..100 {
         let hit = objects.hit(&look(0.05 * f64::from(i) - 2.5, 0.0)).unwrap();
         assert!(!objects.shadowed(&hit, hit.normal));
@@ -163,23 +163,23 @@ fn the_nearest_thing_is_seen_and_shadows_what_is_behind() {
 }
 
 #[test]
-fn what_is_wrong_with_a_file_is_told() {
+fn errors_of_a_file_name_the_value() {
     for (text, said) in [
-        ("", "no object"),
+        ("", "expected an object"),
         ("[[object]]\nshape = \"cube\"", "try \"cone\""),
         ("[[object]]\nshape = \"sphere\"\nradius = 2", "radius_m"),
         (
             "[[object]]\nshape = \"sphere\"",
-            "object 1 (sphere): radius_m must be given",
+            "object 1 (sphere): radius_m: expected a number above 0",
         ),
         ("[[object]]\nshape = \"sphere\"\nradius_m = nan", "radius_m"),
         (
             "[[object]]\nshape = \"ground\"\nradius_m = 2",
-            "radius_m must be left out",
+            "radius_m: expected no value",
         ),
         (
             "[[object]]\nshape = \"ground\"\nreflectance = 1.5",
-            "reflectance must be from 0 to 1",
+            "reflectance: expected numbers from 0 to 1",
         ),
         (
             "[[object]]\nshape = \"ground\"\nreflectance = { wavelengths_nm = [500, 400], values = [0, 1] }",
@@ -221,7 +221,7 @@ fn surface(gloss: Option<Gloss>) -> Surface {
 }
 
 #[test]
-fn squares_are_sharp_near_by_and_grey_far_away() {
+fn checkers_are_sharp_nearby_and_grey_far_away() {
     let tiles = Surface {
         checker: Some(Checker {
             size_m: 2.0,
@@ -253,8 +253,8 @@ fn squares_are_sharp_near_by_and_grey_far_away() {
 }
 
 #[test]
-fn an_even_world_is_not_outshone() {
-    // Under light that is the same from everywhere no surface sends more than arrives (a white furnace), a black matt one nothing.
+fn surfaces_do_not_amplify_uniform_light() {
+    // White furnace: in uniform light no surface reflects more than arrives, and a black matt one reflects nothing.
     for gloss in [
         None,
         Some(Gloss {
@@ -265,7 +265,7 @@ fn an_even_world_is_not_outshone() {
         for elevation_deg in [90.0, 40.0, 10.0, 1.0] {
             let to_eye = axes::direction(0.0, elevation_deg);
             let shading = surface(gloss).shading(DVec3::Y, to_eye, DVec3::Y);
-            // Radiance 1 from everywhere: an irradiance of pi.
+            // Radiance 1 from all directions: an irradiance of pi.
             let at = |reflectance: f32| reflectance * shading.ambient + shading.mirrored;
             assert!(
                 at(1.0) <= 1.0 + 1e-6 && at(1.0) > 0.8,
@@ -278,25 +278,25 @@ fn an_even_world_is_not_outshone() {
 }
 
 #[test]
-fn facets_mirror_no_more_than_falls_on_them_and_both_ways_alike() {
+fn facets_conserve_energy_and_are_reciprocal() {
     for roughness in [0.1, 0.3, 0.6] {
         let gloss = Gloss {
             roughness,
             index: 1.5,
         };
-        // All facets together show the surface its own area: int D (n.h) = 1.
+        // The projected area of all facets is that of the surface: int D (n.h) = 1.
         let mut facets = 0.0;
         let mut sent = 0.0;
         let sun = axes::direction(0.0, 50.0);
         let (n, m) = (600, 400);
         for i in 0..n {
-            // Equal parts of solid angle.
+            // Equal solid angles.
             let up = (f64::from(i) + 0.5) / f64::from(n);
             for j in 0..m {
                 let azimuth = 360.0 * (f64::from(j) + 0.5) / f64::from(m);
                 let direction = axes::direction(azimuth, up.asin().to_degrees());
                 let weight = 2.0 * PI / f64::from(n * m);
-                // Mirrored at incidence and exitance alike F D G / (4 v) with v = l = h: D.
+                // Retroreflection, v = l = h, gives F D G / (4 v), and so D.
                 let d = 4.0 * up * gloss.mirrored_sun(DVec3::Y, direction, direction)
                     / fresnel(1.0, 1.5)
                     / (2.0 * up * up).min(1.0);
@@ -315,7 +315,7 @@ fn facets_mirror_no_more_than_falls_on_them_and_both_ways_alike() {
 }
 
 #[test]
-fn a_thing_repeats_along_its_step() {
+fn objects_repeat_at_equal_steps() {
     let text = "[[object]]\nshape = \"cylinder\"\nat_m = [1, 0, -5]\nradius_m = 0.2\nheight_m = 4\n\
         repeat = { count = 3, step_m = [0, 0, -10] }\n";
     let objects = Objects::from_toml(text).unwrap();

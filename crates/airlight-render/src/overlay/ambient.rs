@@ -1,11 +1,11 @@
-//! The colour of thick fog, estimated from a picture.
+//! Ambient light of fog, estimated from a picture.
 
 use airlight_image::input::{DepthMap, Picture};
 
-/// How an estimate came about.
+/// Method of an estimate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ambient {
-    /// The sky above its lower edge, in the columns of middling brightness.
+    /// The sky above its lower edge, in columns of medium brightness.
     Sky,
     /// The brightest thousandth of the dark channel.
     DarkChannel,
@@ -13,14 +13,14 @@ pub enum Ambient {
 
 /// Half the side of the dark channel's patch: 15 x 15 pixels.
 const HALF_PATCH: usize = 7;
-/// How far from the sky's edge pixels may be mixed with what stands before it, or blurred into it.
+/// Distance from the edge of the sky within which pixels may be mixed with objects in front of it, pixels.
 const MIXED: usize = 2;
-/// The sky pixels of a column that count.
+/// Number of sky pixels used in each column.
 const COUNTED: usize = 8;
 
-/// The light that fog would be made of: the mean colour of the sky's lowest pixels, as the fog ends in the sky near the
-/// horizon. Where there are none, as Foggy Cityscapes and He et al. (2011) do, the dark channel (the smallest of the three
-/// colours within 15 x 15 pixels); of the pixels where it is brightest, one in a thousand, the mean colour.
+/// Estimates the ambient light of fog: the mean colour of the sky's lowest pixels. Without any, as in Foggy Cityscapes and
+/// He et al. (2011), the mean colour of the thousandth of all pixels with the brightest dark channel (the smallest of the
+/// three colours within 15 x 15 pixels).
 pub fn estimate_ambient(picture: &Picture, depth: &DepthMap) -> ([f32; 3], Ambient) {
     if let Some(pixels) = horizon_pixels(picture, depth) {
         return (mean(picture, pixels.into_iter()), Ambient::Sky);
@@ -35,12 +35,12 @@ pub fn estimate_ambient(picture: &Picture, depth: &DepthMap) -> ([f32; 3], Ambie
     (mean(picture, pixels), Ambient::DarkChannel)
 }
 
-/// Pixels that show the sky's usual colour near the horizon; nothing where less than 0.5 % of the picture is sky
-/// (infinitely far), or all of it near an edge.
+/// Pixels with the typical colour of the sky near the horizon; `None` if less than 0.5 % of the picture is sky (infinitely
+/// far), or all sky is near an edge.
 ///
-/// Of each column, the lowest eight sky pixels that have sky two pixels below and to either side: nearer to the edge they
-/// are mixed with what stands before them. Of the columns, the fifth in the middle by brightness: the sun's surroundings may
-/// take up two fifths of the horizon, and so may dark clouds, without having a say.
+/// In each column, these are the lowest eight sky pixels that have sky two pixels below and on both sides: nearer to the edge,
+/// pixels are mixed with objects. Of all columns, only the middle fifth by brightness is used, so that a bright aureole or dark
+/// clouds may cover up to two fifths of the horizon each without effect.
 pub fn horizon_pixels(picture: &Picture, depth: &DepthMap) -> Option<Vec<usize>> {
     let (width, height) = (
         picture.size.width() as usize,
@@ -86,7 +86,7 @@ fn mean(picture: &Picture, pixels: impl Iterator<Item = usize>) -> [f32; 3] {
     sum.map(|s| (s / f64::max(count, 1.0)) as f32)
 }
 
-/// The smallest value in the patch round each pixel: columns first, then rows.
+/// Smallest value in the patch around each pixel: columns first, then rows.
 fn dark_channel(picture: &Picture, width: usize) -> Vec<f32> {
     let smallest = picture
         .rgb
@@ -98,11 +98,11 @@ fn dark_channel(picture: &Picture, width: usize) -> Vec<f32> {
     rows.flat_map(|row| least_around(row.to_vec(), 1)).collect()
 }
 
-/// The least of the 15 values `step` apart round each one, fewer at the ends.
+/// Smallest of the 15 values, `step` apart, around each one; fewer at the ends.
 fn least_around(values: Vec<f32>, step: usize) -> Vec<f32> {
     let beyond = vec![f32::INFINITY; HALF_PATCH * step];
     let mut least_of = [&beyond[..], &values, &beyond].concat();
-    // The least of 2, of 4, of 8, of 8 and 8 that share one.
+    // Minimum of 2, of 4, of 8, and of two overlapping groups of 8.
     for by in [1, 2, 4, 7] {
         let ahead = &least_of[by * step..];
         least_of = least_of
@@ -114,7 +114,7 @@ fn least_around(values: Vec<f32>, step: usize) -> Vec<f32> {
     least_of
 }
 
-/// The smaller of two numbers, neither of them NaN: one instruction, where the library's takes several.
+/// The smaller of two numbers that are not NaN: a single instruction, unlike `f32::min`.
 #[inline(always)]
 fn least(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
@@ -125,7 +125,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_least_around_is_that_of_the_patch() {
+    fn least_around_is_the_minimum_of_the_patch() {
         for count in [1usize, 5, 14, 15, 16, 40] {
             let values: Vec<f32> = (0..count).map(|i| ((i * 37 + 11) % 29) as f32).collect();
             for step in [1, 3] {

@@ -23,7 +23,7 @@ pub enum FogOverlay {
     Encoded(f64, [f32; 3]),
 }
 
-/// Fog and the daylight that it scatters.
+/// Fog that scatters daylight.
 #[derive(Debug, Clone)]
 pub enum FogSource {
     /// Fog in ambient light and sunlight.
@@ -39,15 +39,15 @@ pub enum FogSource {
     },
 }
 
-/// Whether a picture shows the clear air before its objects.
+/// Whether a picture shows the clear air in front of its objects.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum ExistingAerial {
-    /// It does, like every photograph.
+    /// It does, like photographs.
     #[default]
     Drawn,
-    /// It does not, like many a rendered picture: the air is added, except before the sky.
+    /// It does not, like many rendered pictures: the air is added, except in front of the sky.
     Missing,
 }
 
@@ -61,7 +61,7 @@ pub(super) struct FogSampler<'a> {
 }
 
 impl<'a> FogSampler<'a> {
-    /// From an eye height (m).
+    /// Prepares an overlay for an eye height, m.
     pub fn from_height(overlay: &'a FogOverlay, eye_height_m: f64) -> Self {
         let table = match overlay {
             FogOverlay::Fog(FogSource::Alone(fog), _) => Some(fog.seen_from(eye_height_m)),
@@ -74,8 +74,8 @@ impl<'a> FogSampler<'a> {
         }
     }
 
-    /// Transmittance and path radiance up to a distance (m; infinite: the sky) in a direction; `path_radiance` replaces the
-    /// fog's own.
+    /// Transmittance and path radiance up to a distance (m; infinite: the sky) in a direction. `path_radiance`, if given, replaces
+    /// that of the fog.
     pub fn optics(
         &self,
         direction: DVec3,
@@ -156,7 +156,7 @@ impl FogSource {
 /// Steps of the tables of the sRGB curve.
 const STEPS: usize = 4096;
 
-/// The sRGB signal of the square of each step.
+/// The sRGB signal for the square of each step.
 static SIGNALS: LazyLock<Vec<f32>> = LazyLock::new(|| {
     let step = |k| f64::from(k) / STEPS as f64;
     (0..=STEPS as u32)
@@ -202,7 +202,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn tables_of_the_curve_are_the_curve() {
+    fn tables_match_the_srgb_curve() {
         for k in -100..=20_000 {
             let x = k as f32 / 17_000.0;
             let (signal, linear) = (srgb_encode(f64::from(x)), srgb_decode(f64::from(x)));

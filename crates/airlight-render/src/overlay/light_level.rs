@@ -1,4 +1,4 @@
-//! How bright the light of a fog is in the unit of the picture.
+//! [`LightLevel`]: radiance of the light of a fog, in the unit of the picture.
 
 use super::{Ambient, OverlaySpec, estimate_ambient, horizon_pixels};
 use crate::RenderError;
@@ -11,12 +11,12 @@ use serde::Serialize;
 use std::f32::consts::PI;
 use std::fmt;
 
-/// Where a [`LightLevel`] comes from.
+/// Source of a [`LightLevel`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum LightLevelSource {
-    /// An ambient light that was given.
+    /// A given ambient light.
     Given,
     /// The picture's sky.
     PictureSky,
@@ -24,7 +24,7 @@ pub enum LightLevelSource {
     DarkChannel,
     /// A solved sky at a given radiance scale.
     RadianceScale,
-    /// A solved sky at the white luminance that the file states.
+    /// A solved sky, with the white luminance stated in the file.
     FileWhite,
     /// A solved sky as bright as the picture's sky near the horizon.
     MatchedSky,
@@ -39,24 +39,24 @@ impl fmt::Display for LightLevelSource {
             Self::PictureSky => "from the picture's sky",
             Self::DarkChannel => "from the picture's dark channel",
             Self::RadianceScale => "solved sky, radiance scale as given",
-            Self::FileWhite => "solved sky, unit as the file states it",
+            Self::FileWhite => "solved sky, unit as stated in the file",
             Self::MatchedSky => "solved sky, as bright as the picture's sky",
             Self::MatchedAmbient => "solved sky, a white surface as bright as the ambient light",
         })
     }
 }
 
-/// How bright the light of a fog is.
+/// Radiance of the light of a fog, and its source.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightLevel {
-    /// Radiance of the ambient light, in the picture's unit; in a solved sky, of a white horizontal surface.
+    /// Radiance of the ambient light in the picture's unit; for a solved sky, that of a white horizontal surface.
     pub colour: [f32; 3],
-    /// Where it comes from.
+    /// Source of the radiance.
     pub source: LightLevelSource,
 }
 
 impl LightLevel {
-    /// The ambient light of a description, or else as estimated from the picture.
+    /// The ambient light of a description; otherwise estimated from the picture.
     pub(super) fn ambient(spec: &OverlaySpec, picture: &Picture, depth: &DepthMap) -> Self {
         if let Some(given) = spec.ambient {
             return Self {
@@ -82,9 +82,9 @@ pub(super) struct View<'p> {
     pub ambient: LightLevel,
 }
 
-/// Units of the picture in one cd/m^2 of a solved sky, and the level that follows: by the description's radiance scale; else as
-/// the file states its white; else so that the clear sky is as bright as the picture's where that shows it near the horizon;
-/// else so that a white horizontal surface under the clear sky is as bright as the ambient light.
+/// Units of the picture in one cd/m^2 of a solved sky, and the resulting level. In this order: the description's radiance scale;
+/// the white luminance stated in the file; the scale that makes the clear sky near the horizon as bright as that of the
+/// picture, if it shows one; the scale that makes a white horizontal surface as bright as the ambient light.
 ///
 /// # Errors
 /// [`RenderError::Setting`] if the picture and its ambient light are black.
@@ -108,7 +108,7 @@ pub(super) fn radiance_scale(
     };
     if !(scale.is_finite() && scale > 0.0) {
         return Err(RenderError::setting(
-            "expected a picture or an ambient light that shows how bright the sky is, got black; try radiance-scale, the \
+            "expected a picture or an ambient light that is not black, from which to scale the sky, got black; try radiance-scale, the \
              picture's units in one cd/m^2",
         ));
     }
@@ -116,7 +116,7 @@ pub(super) fn radiance_scale(
     Ok((scale, LightLevel { colour, source }))
 }
 
-/// Radiance of a white horizontal surface in the light at a fog's top.
+/// Radiance of a white horizontal surface at a fog's top.
 fn white_surface(light: &FogLighting<[f32; 3]>) -> [f32; 3] {
     let sun = light.sun.map_or([0.0; 3], |sun| {
         let factor = sun.direction.y.max(0.0) as f32 / PI;

@@ -1,4 +1,4 @@
-//! Fog over an existing picture: colour and depth in, the picture in fog and its layers out.
+//! Fog over an existing picture with a depth map.
 //!
 //! An [`OverlayScene`] describes a picture: a [`Scene`](airlight::scene::Scene) with its fog, lights, sun and camera, and an
 //! [`OverlaySpec`] with the colour picture, the depth map and the level of the light. From it:
@@ -49,12 +49,12 @@ pub struct Overlay<'a> {
     path_radiance: Option<&'a [f32]>,
 }
 
-/// What a row of an [`Overlay`] holds for each pixel.
+/// Channels of an [`Overlay`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Channels {
     /// Red, green and blue of the picture in fog.
     Picture,
-    /// The same; then red, green and blue of the transmittance and of the path radiance, and the distance in metres.
+    /// The picture, then red, green and blue of the transmittance and of the path radiance, and the distance in metres.
     Layers,
 }
 
@@ -73,7 +73,7 @@ const NAMES: [&str; 10] = [
 ];
 
 impl Channels {
-    /// Without opacity.
+    /// EXR names, without opacity.
     fn names(self) -> &'static [&'static str] {
         match self {
             Self::Picture => &NAMES[..3],
@@ -113,11 +113,11 @@ impl<'a> Overlay<'a> {
         })
     }
 
-    /// The same with the path radiance of its fog computed elsewhere: red, green and blue of each pixel, row after row, in the
-    /// picture's unit. The light of point, spot and sphere lights is added to it; fog of one colour ignores it.
+    /// The same overlay with a given path radiance of the fog: red, green and blue of each pixel, row by row, in the picture's
+    /// unit. Light of point, spot and sphere lights is added to it; fog of one colour ignores it.
     ///
     /// # Errors
-    /// [`ImageError::Setting`] if it is not of the picture's size.
+    /// [`ImageError::Setting`] if the number of values does not match the picture.
     pub fn with_path_radiance(self, path_radiance: &'a [f32]) -> Result<Self, ImageError> {
         match path_radiance.len() == self.picture.rgb.len() {
             true => Ok(Self {
@@ -137,12 +137,12 @@ impl<'a> Overlay<'a> {
         self.picture.size
     }
 
-    /// Whether its rows hold [`Channels::Layers`].
+    /// Whether rows contain [`Channels::Layers`].
     pub fn has_layers(&self) -> bool {
         self.channels == Channels::Layers
     }
 
-    /// Direction of each pixel of row `y`, and the distance of what it shows, m (infinite: the sky).
+    /// Direction and distance (m; infinite: the sky) of each pixel of row `y`.
     pub fn rays(&self, y: u32) -> Vec<(DVec3, f64)> {
         let width = self.picture.size.width() as usize;
         let mut directions = vec![DVec3::ZERO; width];
@@ -160,15 +160,15 @@ impl<'a> Overlay<'a> {
         directions.into_iter().zip(distances).collect()
     }
 
-    /// EXR names of the channels; opacity comes last, if the picture has it.
+    /// EXR names of the channels; opacity is last, if the picture has it.
     pub fn channel_names(&self) -> Vec<&'static str> {
         let opacity = self.picture.alpha.as_ref().map(|_| "A");
         let names = self.channels.names().iter().copied();
         names.chain(opacity).collect()
     }
 
-    /// A pixel's colour through the fog. The colours of linear files are multiplied by their opacity, and so is the path
-    /// radiance before them.
+    /// A pixel's colour through the fog. Colours of linear files are premultiplied by opacity, so the path radiance in front of
+    /// them is multiplied by it too.
     fn through(&self, optics: &RgbPathOptics, colour: [f32; 3], opacity: f32) -> [f32; 3] {
         if self.picture.reference == LightReference::Display || opacity == 1.0 {
             self.fog.apply(optics, colour)

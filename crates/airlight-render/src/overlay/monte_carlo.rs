@@ -1,5 +1,5 @@
-//! Fog over a picture by Monte Carlo: pass by pass, each with as many paths as all before it, so that there is a complete picture
-//! soon and a better one later.
+//! Fog over a picture by Monte Carlo, in passes. Each traces as many paths as all earlier passes together, so that a first
+//! complete picture is available early.
 
 use super::{ExistingAerial, FogSource, Overlay};
 use crate::RenderError;
@@ -13,15 +13,15 @@ use airlight_image::{Control, ImageError};
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// The path radiance of a picture's fog by Monte Carlo.
+/// Monte Carlo estimate of the path radiance of a picture's fog.
 #[derive(Debug)]
 pub struct MonteCarloFog {
     solver: MonteCarlo,
-    /// Red, green and blue of the radiance at each wavelength, in the picture's unit.
+    /// Weights of the radiance at each wavelength in red, green and blue, in the picture's unit.
     weights: Vec<[f64; 3]>,
     eye_altitude_m: f64,
     sun: DVec3,
-    /// The fast solution: the fog's transmittance, and the clear air that the picture shows.
+    /// The deterministic solution, for the fog's transmittance and the clear air that the picture shows.
     sky: RgbFoggySky,
     radiance_scale: f64,
     air: ExistingAerial,
@@ -31,18 +31,18 @@ pub struct MonteCarloFog {
 /// The path radiance after a pass.
 #[derive(Clone, Debug)]
 pub struct MonteCarloPass {
-    /// Paths a pixel so far.
+    /// Number of paths for each pixel so far.
     pub paths: u64,
     /// Whether it is the last pass.
     pub is_last: bool,
-    /// Red, green and blue of the path radiance of each pixel, row after row.
+    /// Red, green and blue of the path radiance of each pixel, row by row.
     pub path_radiance: Vec<f32>,
-    /// Its standard error, the same way.
+    /// Standard error of each value of `path_radiance`.
     pub standard_error: Vec<f32>,
 }
 
 impl MonteCarloPass {
-    /// Root mean square of the standard error of green over that of the path radiance.
+    /// Root mean square of the standard error of green divided by that of the path radiance.
     pub fn relative_noise(&self) -> f64 {
         let squares = |values: &[f32]| -> f64 {
             let greens = values.iter().skip(1).step_by(3);
@@ -53,23 +53,23 @@ impl MonteCarloPass {
     }
 }
 
-/// The ray of a pixel, and what is known of its path radiance.
+/// Ray of a pixel, and corrections of its path radiance.
 struct PixelRay {
     direction: DVec3,
-    /// Its length, m.
+    /// Length of the ray, m.
     distance_m: f64,
-    /// Path radiance that the picture shows already, subtracted from the mean.
+    /// Path radiance that the picture already contains, subtracted from the mean.
     shown: [f64; 3],
     /// Factor for the part of the ray below the ground.
     below_ground: [f64; 3],
 }
 
 impl MonteCarloFog {
-    /// Prepares the Monte Carlo of a fog that a solved sky lights. `foggy_air` is the sky's atmosphere with the fog among its
+    /// Prepares Monte Carlo for a fog lit by a solved sky. `foggy_air` is the sky's atmosphere with the fog among its
     /// constituents.
     ///
     /// # Errors
-    /// [`RenderError::Setting`] for a fog without a solved sky, or an atmosphere that the solver refuses.
+    /// [`RenderError::Setting`] for a fog without a solved sky, or an invalid atmosphere.
     pub fn new(
         fog: &FogSource,
         foggy_air: &Atmosphere,
@@ -84,14 +84,13 @@ impl MonteCarloFog {
         } = fog
         else {
             return Err(RenderError::setting(
-                "solver monte-carlo: expected fog in the light of a solved sky, got fog in the picture's ambient light; try \
-                 sky-light",
+                "solver monte-carlo: expected fog lit by a solved sky, got fog in the picture's ambient light; try sky-light",
             ));
         };
         let solver = MonteCarlo::new(foggy_air, &WavelengthGrid::fast(), settings)
             .map_err(|error| RenderError::setting(error.to_string()))?;
         let from_xyz = RgbSpace::Srgb.from_xyz_matrix();
-        // The Monte Carlo's sun is at its mean distance.
+        // The Monte Carlo solver uses the sun's mean distance.
         let scale = f64::from(*radiance_scale) * sun.irradiance_factor();
         let xyz = solver.grid().xyz_weights().iter();
         Ok(Self {
@@ -108,11 +107,11 @@ impl MonteCarloFog {
         })
     }
 
-    /// Samples the pixels of an overlay pass by pass and calls `after_pass` after each. Each pass is a stage of the progress,
-    /// in rows.
+    /// Samples the pixels of an overlay in passes and calls `after_pass` after each. Each pass is a stage of the progress, in
+    /// rows.
     ///
     /// # Errors
-    /// The first error of `after_pass`, or [`ImageError::Cancelled`] once the caller cancels.
+    /// The first error of `after_pass`, or [`ImageError::Cancelled`] if the caller cancelled.
     pub fn run(
         &self,
         overlay: &Overlay<'_>,
@@ -163,7 +162,7 @@ impl MonteCarloFog {
         }
     }
 
-    /// Adds the colour that a bundle of paths along a ray finds.
+    /// Adds the colour of a bundle of paths along a ray.
     fn sample(&self, ray: &PixelRay, bundle: u64, rgb: &mut [f64]) {
         let sample = self.solver.sample_path(
             self.eye_altitude_m,
@@ -180,7 +179,7 @@ impl MonteCarloFog {
         }
     }
 
-    /// Path radiance that the picture shows already: that of the clear air, dimmed by the fog.
+    /// Path radiance that the picture already contains: that of the clear air, attenuated by the fog.
     fn shown(&self, direction: DVec3, distance_m: f64) -> [f64; 3] {
         if self.air == ExistingAerial::Missing && distance_m < f64::INFINITY {
             return [0.0; 3];
@@ -193,8 +192,8 @@ impl MonteCarloFog {
         std::array::from_fn(|i| self.radiance_scale * f64::from(fog[i] * air.path_radiance[i]))
     }
 
-    /// Path radiance over that up to the ground. Paths end at the ground, but by its depth a point may lie below it: on a slope,
-    /// or if the camera is not as level as its description. Path radiance is taken to grow with opacity there.
+    /// Ratio of the path radiance to that up to the ground. Paths end at the ground, but according to its depth a point may lie
+    /// below it: on a slope, or if the camera is not exactly level. There, path radiance is assumed proportional to opacity.
     fn below_ground(&self, direction: DVec3, distance_m: f64) -> [f64; 3] {
         let opacity = |distance_m: f64| {
             let optics = self.sky.path(direction, distance_m);

@@ -1,4 +1,4 @@
-//! An overlay's picture and depth map in memory: reading and writing.
+//! [`OverlayImage`]: picture and depth map of an overlay, in memory.
 
 use super::{LightLevel, Overlay, OverlaySpec};
 use crate::RenderError;
@@ -17,12 +17,12 @@ pub struct OverlayImage {
     pub picture: Picture,
     /// Its depth map, of the same size.
     pub depth: DepthMap,
-    /// The ambient light: given or estimated, without the factor of the description.
+    /// The ambient light, given or estimated, without the description's factor.
     pub ambient: LightLevel,
 }
 
 impl OverlayImage {
-    /// A picture and its depth map in the ambient light of a description, or else as the picture shows it.
+    /// A picture and its depth map, with the ambient light of a description or estimated from the picture.
     ///
     /// # Errors
     /// [`RenderError`] if their sizes differ.
@@ -36,10 +36,10 @@ impl OverlayImage {
         })
     }
 
-    /// Reads the colour picture and depth map of a description, to be written in a format.
+    /// Reads the colour picture and depth map of a description, for output in a format.
     ///
     /// # Errors
-    /// [`RenderError`] if one cannot be read, their sizes differ, or the format does not hold the picture's kind of values.
+    /// [`RenderError`] if one cannot be read, their sizes differ, or the format cannot store the picture's kind of values.
     pub fn read(spec: &OverlaySpec, format: PictureFormat) -> Result<Self, RenderError> {
         let mut picture = read_picture(&spec.colour, None)?;
         if !format.holds_alpha() {
@@ -51,7 +51,7 @@ impl OverlayImage {
         };
         if format.is_linear() != (picture.reference == LightReference::Scene) {
             return Err(RenderError::setting(format!(
-                "expected an output that holds {values}, as `{}` does, got another format; try a name that ends in {endings}",
+                "expected an output format for {values}, like that of `{}`, got another; try a name that ends in {endings}",
                 spec.colour.display(),
             )));
         }
@@ -63,7 +63,7 @@ impl OverlayImage {
     /// Writes an overlay of this picture.
     ///
     /// # Errors
-    /// [`RenderError`]; `output` is then unchanged.
+    /// [`RenderError`] if the file cannot be written; an existing `output` is then unchanged.
     pub fn write(
         &self,
         overlay: &Overlay<'_>,

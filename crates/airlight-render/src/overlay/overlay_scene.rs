@@ -1,4 +1,4 @@
-//! The complete description of a picture in fog.
+//! [`OverlayScene`]: complete description of a picture in fog.
 
 use super::{ExistingAerial, OverlaySpec, SkyLight};
 use crate::RenderError;
@@ -19,11 +19,11 @@ use serde::Serialize;
 use std::path::Path;
 use std::sync::LazyLock;
 
-/// Height of the eye above the ground, m, if the description gives none.
+/// Default height of the eye above the ground, m.
 const EYE_HEIGHT_M: f64 = 1.6;
-/// Horizontal field of view, degrees, if the description gives none and no focal length.
+/// Default horizontal field of view, degrees, without a focal length.
 const FOV_DEG: f64 = 60.0;
-/// Solvers in scene files.
+/// Names of solvers in scene files.
 const ORDERS: &str = "orders";
 const MONTE_CARLO: &str = "monte-carlo";
 /// Inputs that change the fog itself.
@@ -43,12 +43,12 @@ const OF_SKY: [Input; 7] = [
     Input::Scattering,
     Input::Effort,
 ];
-/// Inputs that change the Monte Carlo.
+/// Inputs that change the Monte Carlo estimate.
 const OF_MONTE_CARLO: [Input; 2] = [Input::Paths, Input::NoiseMap];
-/// Monte Carlo paths for each pixel, if the description gives none.
+/// Default number of Monte Carlo paths for each pixel.
 const PATHS: u64 = 256;
 
-/// A picture in fog: a scene with fog, lights, sun, camera and output, and the picture that it is laid over.
+/// A picture in fog: a scene with fog, lights, sun, camera and output, and the picture to which the fog is added.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct OverlayScene {
@@ -63,7 +63,7 @@ impl OverlayScene {
     /// Reads a description from TOML: a scene, with colour picture and depth map in the table `[overlay]`.
     ///
     /// # Errors
-    /// [`SceneError`]: what is wrong, with line, column, key, and the nearest key that there is.
+    /// [`SceneError`] with line, column, key and the most similar valid key.
     pub fn from_toml(text: &str) -> Result<Self, SceneError> {
         let document = SceneDocument::new(text)?;
         Ok(Self {
@@ -72,32 +72,32 @@ impl OverlayScene {
         })
     }
 
-    /// The description as TOML: settings that have no value are left out.
+    /// Writes the description as TOML; settings without a value are omitted.
     ///
     /// # Errors
-    /// [`RenderError::Setting`] for a value that TOML cannot hold, such as a seed beyond 2^63.
+    /// [`RenderError::Setting`] for a value that TOML cannot represent, such as a seed of 2^63 or more.
     pub fn to_toml(&self) -> Result<String, RenderError> {
         toml::to_string(self).map_err(|error| RenderError::setting(format!("scene: {error}")))
     }
 
-    /// JSON Schema of scene files with a table `[overlay]`: editors complete and check them with it.
+    /// JSON Schema of scene files with a table `[overlay]`, for completion and validation in editors.
     #[cfg(feature = "schema")]
     pub fn json_schema() -> String {
         format!("{:#}", schemars::schema_for!(Self).to_value())
     }
 
-    /// The fog; without any setting if the scene has none.
+    /// The fog; with no settings if the scene has none.
     pub fn fog(&self) -> &FogSpec {
         static NONE: LazyLock<FogSpec> = LazyLock::new(FogSpec::default);
         self.scene.fog.as_ref().unwrap_or(&NONE)
     }
 
-    /// The fog, to be changed.
+    /// The fog, added if the scene has none.
     pub fn fog_mut(&mut self) -> &mut FogSpec {
         self.scene.fog.get_or_insert_default()
     }
 
-    /// How the fog thins with height. Unlike in a sky, fog without a profile and without heights is uniform.
+    /// Profile of the fog. Unlike in a sky, fog without a profile and without heights is uniform.
     pub fn fog_profile(&self) -> FogProfile {
         let fog = self.fog();
         match (
@@ -131,12 +131,12 @@ impl OverlayScene {
         }
     }
 
-    /// The contrast that visibility means.
+    /// Contrast threshold that defines visibility.
     pub fn contrast(&self) -> Contrast {
         self.scene.air.visibility_contrast()
     }
 
-    /// Which light the fog scatters.
+    /// Orders of scattering in the fog.
     pub fn fog_scattering(&self) -> FogScattering {
         self.fog().scattering.unwrap_or(FogScattering::Multiple)
     }
@@ -159,7 +159,7 @@ impl OverlayScene {
         }
     }
 
-    /// The layers of the fog; `None` for fog of one colour, which scatters no light.
+    /// Layers of the fog; `None` for fog of one colour, which does not scatter light.
     ///
     /// # Errors
     /// [`RenderError`] for a layer without visibility.
@@ -183,7 +183,7 @@ impl OverlayScene {
         Ok(layers.collect::<Result<_, _>>().map(Some)?)
     }
 
-    /// The same as constituents with heights above the ground.
+    /// Layers of the fog as constituents, with heights above the ground.
     ///
     /// # Errors
     /// [`RenderError`] for an invalid layer.
@@ -198,7 +198,7 @@ impl OverlayScene {
         Ok(layers.collect::<Result<_, SceneError>>().map(Some)?)
     }
 
-    /// The camera of a picture of a size.
+    /// The camera of a picture of this size.
     ///
     /// # Errors
     /// [`ImageError::Setting`] for numbers out of range.
@@ -212,7 +212,7 @@ impl OverlayScene {
         )
     }
 
-    /// Settings of the Monte Carlo; `None` for the fast solution.
+    /// Settings of Monte Carlo; `None` for the deterministic solution.
     pub fn monte_carlo(&self) -> Option<MonteCarloSettings> {
         let solver = &self.scene.solver;
         (solver.name.as_deref() == Some(MONTE_CARLO)).then(|| MonteCarloSettings {
@@ -225,7 +225,7 @@ impl OverlayScene {
     /// The solved sky that lights the fog; `None` without sky light.
     ///
     /// # Errors
-    /// [`RenderError`] for air, sun or place that are invalid.
+    /// [`RenderError`] for invalid air, sun or place.
     pub fn solve_sky(&self) -> Result<Option<SkyLight>, RenderError> {
         if !self.overlay.sky_light {
             return Ok(None);
@@ -233,7 +233,7 @@ impl OverlayScene {
         SkyLight::solve(&self.sky_scene().resolve()?).map(Some)
     }
 
-    /// The scene whose sky lights the fog: without the fog, the eye at its height above the ground.
+    /// The scene whose sky lights the fog: without the fog, and with the eye at its height above the ground.
     fn sky_scene(&self) -> Scene {
         let mut scene = self.scene.clone();
         scene.fog = None;
@@ -243,10 +243,10 @@ impl OverlayScene {
         scene
     }
 
-    /// Refuses a description that no picture could fit, before any file is read.
+    /// Checks all settings that do not depend on files.
     ///
     /// # Errors
-    /// [`RenderError`]: the first setting that is invalid, contradicts another or would be ignored.
+    /// [`RenderError`] for the first setting that is invalid, contradicts another or would be ignored.
     pub fn check(&self) -> Result<(), RenderError> {
         self.scene.validate()?;
         self.visibility_m()?;
@@ -256,8 +256,8 @@ impl OverlayScene {
         let sun_is_down = self.scene.sun.elevation_deg.is_some_and(|deg| deg <= 0.0);
         if sun_is_down && !sky_light {
             return Err(RenderError::setting(
-                "sun-elevation: expected a sun above the horizon, which shines on the fog, got one below it; try leaving it out \
-                 for fog in ambient light, or sky-light for twilight",
+                "sun-elevation: expected a sun above the horizon, got one below it; try leaving it out for fog in ambient light, or \
+                sky-light for twilight",
             ));
         }
         self.check_solver()?;
@@ -277,13 +277,11 @@ impl OverlayScene {
         match solver.name.as_deref() {
             None | Some(ORDERS) => Ok(()),
             Some(MONTE_CARLO) if !self.overlay.sky_light => Err(RenderError::setting(
-                "solver monte-carlo: expected sunlight and skylight to follow through fog and air, got ambient light; try \
-                 sky-light",
+                "solver monte-carlo: expected fog lit by a solved sky, got fog in ambient light; try sky-light",
             )),
             Some(MONTE_CARLO) if self.fog_scattering() != FogScattering::Multiple => {
                 Err(RenderError::setting(
-                    "solver monte-carlo: expected fog-scattering all, as paths scatter any number of times, got another; try \
-                     leaving out fog-scattering, or solver orders",
+                    "solver monte-carlo: expected fog-scattering all, got another; try leaving out fog-scattering, or solver orders",
                 ))
             }
             Some(MONTE_CARLO) => Ok(()),
@@ -350,7 +348,7 @@ impl OverlayScene {
             let got = if sky_light { "a solved sky" } else { "no sun" };
             return refuse(
                 "overlay.sun_strength",
-                "a sun beside ambient light",
+                "a sun with ambient light",
                 got,
                 "leaving it out, or sun-elevation without sky-light",
             );
@@ -366,7 +364,7 @@ impl OverlayScene {
         if overlay.principal_point_px.is_some() && overlay.focal_px.is_none() {
             return refuse(
                 "overlay.principal_point_px",
-                "a focal length with it",
+                "a focal length with this key",
                 "none",
                 "focal-px",
             );
@@ -388,14 +386,15 @@ impl OverlayScene {
             (scene.sequence.is_some(), "sequence"),
         ] {
             if set {
-                let expected = "the perspective, size and encoding of the colour picture, seen from eye_height_m";
+                let expected =
+                    "the projection, size and encoding of the colour picture, and eye_height_m";
                 return refuse(key, expected, "others", "leaving it out");
             }
         }
         Ok(())
     }
 
-    /// Fog of one colour scatters no light.
+    /// Refuses settings that fog of one colour would ignore, as it does not scatter light.
     fn check_one_colour(&self) -> Result<(), RenderError> {
         let given = [
             (!self.scene.lights.is_empty(), "light"),
@@ -415,7 +414,7 @@ impl OverlayScene {
         }
     }
 
-    /// The approximate forms of a light hold for point lights in one layer of uniform, isotropic fog.
+    /// Refuses approximate light forms unless all lights are point lights in one layer of uniform, isotropic fog.
     fn check_light_form(&self, profile: FogProfile) -> Result<(), RenderError> {
         let form = self.overlay.light_form;
         if form == LightForm::Exact {
@@ -435,7 +434,7 @@ impl OverlayScene {
             ("one layer of fog", "several", "leaving out layer")
         } else if fog.droplets != Some(DropletKind::Isotropic) {
             (
-                "fog that scatters equally in all directions",
+                "isotropically scattering fog",
                 "other droplets",
                 "droplets isotropic",
             )
@@ -451,7 +450,7 @@ impl OverlayScene {
     }
 }
 
-/// A layer; unlike in a sky, it needs no upper end.
+/// A layer of the fog; unlike in a sky, it needs no upper end.
 fn fog_layer(layer: &FogLayerSpec, key: &str, contrast: Contrast) -> Result<FogLayer, SceneError> {
     if layer.implied_profile() != FogProfile::Uniform {
         return layer.resolve(key, contrast);
@@ -466,7 +465,7 @@ fn fog_layer(layer: &FogLayerSpec, key: &str, contrast: Contrast) -> Result<FogL
     })
 }
 
-/// Whether fog of a profile has one colour and scatters no light.
+/// Whether fog with this profile has one colour and does not scatter light.
 fn is_one_colour(profile: FogProfile) -> bool {
     matches!(
         profile,

@@ -1,4 +1,4 @@
-//! Lights of a description, placed in front of a picture's camera.
+//! Positions of a description's lights in front of a picture's camera.
 
 use crate::RenderError;
 use airlight::axes;
@@ -9,14 +9,14 @@ use airlight_image::input::{DepthKind, DepthMap};
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// Smallest radius of a light without a given one, m.
+/// Smallest default radius of a light, m.
 const MIN_RADIUS_M: f64 = 0.005;
-/// Radius of a light without a given one, in pixels as the camera sees it. The view ray through the light's own pixel then gives
-/// the mean of the glow over a disc as large as a pixel: in a circle of radius `a` around the light the glow falls as 1 / h,
-/// whose mean is `2 / a`, the value at `h = a / 2`; and a disc of the area of a pixel has `a` = 0.56 pixels.
+/// Default radius of a light, in pixels of the camera. The view ray through the light's pixel then gives the mean of the glow over
+/// a disc with the area of a pixel: within the distance `a` from the light the glow is proportional to 1 / h, whose mean `2 / a`
+/// is the value at `h = a / 2`, and a disc with the area of a pixel has `a` = 0.56 pixels.
 const RADIUS_PX: f64 = 0.28;
 
-/// Places lights before a camera at a height above the ground, m.
+/// Places lights in front of a camera at a height above the ground, m.
 ///
 /// # Errors
 /// [`RenderError::Setting`] for a light without a position in the picture, or with invalid numbers.
@@ -98,7 +98,7 @@ fn cone_deg(light: &LightSpec) -> (f64, f64) {
     (inner.unwrap_or(outer.min(20.0)), outer)
 }
 
-/// The pixel of whole coordinates in the picture.
+/// The pixel with whole coordinates in the picture.
 fn whole_pixel(x: f64, y: f64, camera: &Intrinsics) -> Result<(u32, u32), String> {
     let size = camera.size();
     let whole = |v: f64, side: u32| {
@@ -115,7 +115,7 @@ fn whole_pixel(x: f64, y: f64, camera: &Intrinsics) -> Result<(u32, u32), String
     }
 }
 
-/// Distance of the surface that a pixel shows, m.
+/// Distance of the surface in a pixel, m.
 fn surface_distance_m(
     (x, y): (u32, u32),
     camera: &Intrinsics,

@@ -1,4 +1,4 @@
-//! A description over one picture: camera, light level and fog.
+//! [`PreparedOverlay`]: camera, light level and fog of a description for one picture.
 
 use super::light_level::{self, View};
 use super::{
@@ -20,18 +20,18 @@ use airlight_image::output::{Metadata, Written};
 use airlight_image::rows::StoredRows;
 use std::f32::consts::PI;
 
-/// Albedo of the ground, if the description gives none.
+/// Default albedo of the ground.
 const GROUND_ALBEDO: f64 = 0.2;
 
-/// Strength of the sun, if the description gives none.
+/// Default strength of the sun.
 const SUN_STRENGTH: f64 = 3.0;
 
-/// The camera and the fog of a description over a picture.
+/// Camera and fog of a description for one picture.
 #[derive(Debug)]
 pub struct PreparedOverlay {
-    /// The camera.
+    /// Projection of the picture.
     pub camera: Intrinsics,
-    /// The light that the fog scatters.
+    /// Level of the light that the fog scatters.
     pub level: LightLevel,
     fog: FogOverlay,
     eye_height_m: f64,
@@ -42,7 +42,7 @@ impl PreparedOverlay {
     /// Prepares a description for a picture; `sky` is the solved sky that lights the fog, if the description has one.
     ///
     /// # Errors
-    /// [`RenderError`] for a description that is invalid or does not fit the picture.
+    /// [`RenderError`] for a description that is invalid, or invalid for this picture.
     pub fn new(
         scene: &OverlayScene,
         image: &OverlayImage,
@@ -75,7 +75,7 @@ impl PreparedOverlay {
         })
     }
 
-    /// The fog; `None` for fog of one colour, which scatters no light.
+    /// The fog; `None` for fog of one colour, which does not scatter light.
     pub fn fog(&self) -> Option<&FogSource> {
         match &self.fog {
             FogOverlay::Fog(source, _) => Some(source),
@@ -86,7 +86,7 @@ impl PreparedOverlay {
     /// Rows of the picture in fog.
     ///
     /// # Errors
-    /// [`RenderError`] if the picture is of another size.
+    /// [`RenderError`] if the picture has another size.
     pub fn overlay<'o>(&'o self, image: &'o OverlayImage) -> Result<Overlay<'o>, RenderError> {
         Ok(Overlay::new(
             &image.picture,
@@ -98,10 +98,10 @@ impl PreparedOverlay {
         )?)
     }
 
-    /// The Monte Carlo of the description's fog in a solved sky; `None` if the description has another solver.
+    /// Monte Carlo estimate of the description's fog in a solved sky; `None` if the description has another solver.
     ///
     /// # Errors
-    /// [`RenderError`] for fog that scatters no light or has no solved sky, and for too many layers.
+    /// [`RenderError`] for fog that does not scatter light or has no solved sky, and for too many layers.
     pub fn monte_carlo(
         &self,
         scene: &OverlayScene,
@@ -112,7 +112,7 @@ impl PreparedOverlay {
         };
         let (Some(source), Some(sky), Some(layers)) = (self.fog(), sky, scene.fog_layers()?) else {
             return Err(RenderError::setting(
-                "solver monte-carlo: expected fog that scatters the light of a solved sky, got other fog; try sky-light",
+                "solver monte-carlo: expected fog lit by a solved sky, got other fog; try sky-light",
             ));
         };
         let mut air = sky.atmosphere().clone();
@@ -129,11 +129,11 @@ impl PreparedOverlay {
         MonteCarloFog::new(source, &air, altitude_m, sky.sun(), settings).map(Some)
     }
 
-    /// Writes the picture after a pass of the Monte Carlo, and its standard error into `NAME.noise.exr` if the description asks
-    /// for a noise map.
+    /// Writes the picture after a Monte Carlo pass, and its standard error to `NAME.noise.exr` if the description has a noise
+    /// map.
     ///
     /// # Errors
-    /// [`RenderError`]; the files are then those of the pass before.
+    /// [`RenderError`] if a file cannot be written; the files are then those of the previous pass.
     pub fn write_pass(
         &self,
         scene: &OverlayScene,
@@ -191,7 +191,7 @@ fn fog(
     Ok((FogOverlay::Fog(source, lights), level))
 }
 
-/// Fog of one colour, which scatters no light.
+/// Fog of one colour, which does not scatter light.
 fn one_colour(scene: &OverlayScene, colour: [f32; 3]) -> Result<FogOverlay, RenderError> {
     let (visibility_m, contrast) = (scene.visibility_m()?, scene.contrast());
     Ok(match scene.fog_profile() {

@@ -9,8 +9,8 @@ use airlight::spectrum::RgbSpace;
 use std::fmt;
 use std::sync::{Mutex, PoisonError};
 
-/// A solved sky that lights fog: solved once for all pictures with the same air, eye and sun. It keeps the last fog, as another
-/// fog in the same sky costs little, and the same fog nothing.
+/// A solved sky that lights fog, shared by all pictures with the same air, eye and sun. It caches the last fog; another fog in
+/// the same sky is computed quickly.
 pub struct SkyLight {
     view: View,
     observer_altitude_m: f64,
@@ -29,7 +29,7 @@ impl SkyLight {
     /// Solves the sky of a scene.
     ///
     /// # Errors
-    /// [`RenderError::Scene`] for a sun outside the range of the ephemeris, and an atmosphere that the solver refuses.
+    /// [`RenderError::Scene`] for a sun outside the range of the ephemeris, and if the solver fails.
     pub fn solve(scene: &ResolvedScene) -> Result<Self, RenderError> {
         let sun = scene.sun.at_start()?;
         let suns = SunCoverage::near(sun.elevation_deg, scene.observer_altitude_m);
@@ -45,10 +45,10 @@ impl SkyLight {
         })
     }
 
-    /// The sky with layers of fog in it.
+    /// The sky with layers of fog.
     ///
     /// # Errors
-    /// [`RenderError`] for fog without an upper end, on which no sky can shine, or invalid fog.
+    /// [`RenderError`] for fog without an upper end, which no skylight can enter, and for invalid fog.
     pub fn with_fog(
         &self,
         layers: &[Constituent],
@@ -77,20 +77,20 @@ impl SkyLight {
         Ok(sky)
     }
 
-    /// The refusal of fog without an upper end.
+    /// The error for fog without an upper end.
     pub(super) fn needs_top() -> RenderError {
         RenderError::setting(
-            "sky-light: expected fog with an upper end, on which the sky shines, got uniform fog; try fog-profile height, \
+            "sky-light: expected fog with an upper end, where skylight enters, got uniform fog; try fog-profile height, \
              clamped, unclamped or slab, and scale-height or top for each layer",
         )
     }
 
-    /// The sun.
+    /// Direction and distance of the sun.
     pub fn sun(&self) -> &SunState {
         &self.sun
     }
 
-    /// The clear air.
+    /// The atmosphere without the fog.
     pub fn atmosphere(&self) -> &Atmosphere {
         self.view.sky().atmosphere()
     }

@@ -1,4 +1,4 @@
-//! Description of an overlay: its colour picture and depth map, and how bright its light is.
+//! [`OverlaySpec`]: colour picture, depth map and light level of an overlay.
 
 use super::ExistingAerial;
 use crate::RenderError;
@@ -10,7 +10,7 @@ use airlight_image::{ImageError, Size};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
-/// Meaning of the numbers in a depth file.
+/// Meaning of the values of a depth file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -23,7 +23,7 @@ pub enum DepthFileKind {
     Ray,
     /// Stereo disparity, pixels: needs a focal length in pixels and a baseline.
     Disparity,
-    /// One over depth along the camera's axis.
+    /// Inverse depth along the camera's axis.
     Inverse,
 }
 
@@ -36,7 +36,7 @@ pub enum DepthHoles {
     /// Filled from their neighbours.
     #[default]
     Fill,
-    /// Taken for sky.
+    /// Treated as sky.
     Far,
     /// Kept free of fog.
     Clear,
@@ -47,12 +47,12 @@ pub enum DepthHoles {
 #[serde(default, deny_unknown_fields)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct OverlaySpec {
-    /// Colour picture: EXR or HDR (linear), PNG or JPEG (decoded to light and encoded again); of a batch, a folder or pattern.
+    /// Colour picture: EXR or HDR (linear), PNG or JPEG (decoded to light and encoded again); for a batch, a folder or pattern.
     pub colour: PathBuf,
     /// Depth map; `None`: the depth channel of the colour picture.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub depth: Option<PathBuf>,
-    /// Meaning of the depth map's numbers.
+    /// Meaning of the depth map's values.
     pub depth_kind: DepthFileKind,
     /// Metres for each unit of depth (disparity: pixels, inverse: 1/m), above 0.
     pub depth_scale: f64,
@@ -72,7 +72,7 @@ pub struct OverlaySpec {
     /// Focal length, pixels, instead of a field of view.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub focal_px: Option<f64>,
-    /// Principal point, pixels from the upper left corner with pixel centres at whole numbers; `None`: the middle. Needs
+    /// Principal point, pixels from the upper left corner with pixel centres at whole numbers; `None`: the centre. Needs
     /// `focal_px`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub principal_point_px: Option<[f64; 2]>,
@@ -81,19 +81,21 @@ pub struct OverlaySpec {
     pub ambient: Option<[f64; 3]>,
     /// Factor on the ambient light, above 0.
     pub ambient_scale: f64,
-    /// Irradiance facing the sun over the horizontal irradiance of the ambient light (pi times its radiance); `None`: 3.
+    /// Irradiance of the sun on a surface that faces it, relative to the irradiance by the ambient light (pi times its radiance);
+    /// `None`: 3.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sun_strength: Option<f64>,
-    /// Light the fog by the solved sky and its sun instead of the picture's ambient light.
+    /// Whether the fog is lit by the solved sky and its sun instead of the picture's ambient light.
     pub sky_light: bool,
-    /// Units of the picture in one cd/m^2 of the solved sky; `None`: as the file states its white, else matched to the picture.
+    /// Units of the picture in one cd/m^2 of the solved sky; `None`: from the white luminance stated in the file, otherwise matched
+    /// to the picture.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub radiance_scale: Option<f64>,
-    /// Whether the picture shows the clear air before its objects.
+    /// Whether the picture shows the clear air in front of its objects.
     pub air: ExistingAerial,
-    /// How the light of the scene's lights is computed.
+    /// Form of the light scattered from the scene's lights.
     pub light_form: LightForm,
-    /// Write transmittance, path radiance and distance as layers too (EXR).
+    /// Whether transmittance, path radiance and distance are written as additional layers (EXR).
     pub layers: bool,
 }
 
@@ -124,7 +126,7 @@ impl Default for OverlaySpec {
 }
 
 impl OverlaySpec {
-    /// How the depth file is read.
+    /// Options for reading the depth file.
     ///
     /// # Errors
     /// [`RenderError::Setting`] for a disparity map without focal length or baseline.
@@ -161,10 +163,10 @@ impl OverlaySpec {
         })
     }
 
-    /// The format of an output, from its ending.
+    /// Format of an output, from its extension.
     ///
     /// # Errors
-    /// [`RenderError`] for an unknown ending, or one of a format that cannot hold the layers.
+    /// [`RenderError`] for an unknown extension, or that of a format that cannot store the layers.
     pub fn output_format(&self, output: &Path) -> Result<PictureFormat, RenderError> {
         let format = PictureFormat::from_path(output)?;
         if self.layers && !format.holds_channels() {
@@ -176,7 +178,7 @@ impl OverlaySpec {
         Ok(format)
     }
 
-    /// The camera of a picture of a size, horizontal field of view `fov_deg` where there is no focal length, looking north.
+    /// The camera of a picture of this size, looking north. Its horizontal field of view is `fov_deg` unless a focal length is set.
     ///
     /// # Errors
     /// [`ImageError::Setting`] for numbers out of range.

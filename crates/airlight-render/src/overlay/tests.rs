@@ -77,7 +77,7 @@ fn depth_along_the_axis_becomes_distance_along_the_ray() {
 }
 
 #[test]
-fn sky_in_thick_fog_is_the_ambient_and_encoded_blending_is_another_thing() {
+fn sky_in_thick_fog_is_ambient_and_encoded_blending_differs() {
     let picture = picture(4, 4, |_, _| [0.1, 0.1, 0.1]);
     let depth = depth(4, 4, |_, y| if y < 2 { f32::INFINITY } else { 20.0 });
     let camera = Intrinsics::from_horizontal_fov(picture.size, 60.0).unwrap();
@@ -92,12 +92,12 @@ fn sky_in_thick_fog_is_the_ambient_and_encoded_blending_is_another_thing() {
         row[4]
     };
     assert!((shown(&light, 0) - 0.8).abs() < 1e-6 && (shown(&encoded, 0) - 0.8).abs() < 1e-5);
-    // Blending encoded values keeps dark things darker.
+    // Blending encoded values keeps dark colours darker.
     assert!(shown(&encoded, 3) < shown(&light, 3) - 0.03);
 }
 
 #[test]
-fn the_ambient_is_that_of_the_sky_or_of_the_brightest_dark_patch() {
+fn ambient_is_estimated_from_sky_or_dark_channel() {
     let bright = |x: u32, y: u32| match (x, y) {
         (_, 0..=9) => [0.5, 0.6, 0.8],
         (20..=39, 20..=39) => [0.9, 0.8, 0.7],
@@ -114,8 +114,8 @@ fn the_ambient_is_that_of_the_sky_or_of_the_brightest_dark_patch() {
 }
 
 #[test]
-fn fog_lies_before_what_is_there_only() {
-    // Colours of linear files are multiplied by their opacity.
+fn fog_covers_opaque_pixels_only() {
+    // Colours of linear files are premultiplied by opacity.
     let mut half = picture(3, 1, |x, _| match x {
         0 => [0.4; 3],
         1 => [0.2; 3],
@@ -135,7 +135,7 @@ fn fog_lies_before_what_is_there_only() {
             overlay.fill_row(0, &mut row);
             let pixel = |i: usize| &row[i * names.len()..][..names.len()];
             assert!((pixel(1)[0] - 0.5 * pixel(0)[0]).abs() < 1e-4, "{row:?}");
-            assert_eq!(pixel(2)[0], 0.0, "nothing is there");
+            assert_eq!(pixel(2)[0], 0.0, "transparent pixels stay black");
             let opacities = [0, 1, 2].map(|i| pixel(i)[names.len() - 1]);
             assert_eq!(opacities, [1.0, 0.5, 0.0]);
         }
@@ -143,7 +143,7 @@ fn fog_lies_before_what_is_there_only() {
 }
 
 #[test]
-fn the_ambient_takes_no_notice_of_sun_cloud_and_edges() {
+fn sun_clouds_and_edges_do_not_affect_the_ambient() {
     let horizon = [0.5f32, 0.6, 0.8];
     // Hills whose edge is mixed with the sky over two pixels, sky that darkens upwards from them.
     let (width, height) = (120u32, 60u32);
@@ -177,7 +177,7 @@ fn the_ambient_takes_no_notice_of_sun_cloud_and_edges() {
             assert!(off.abs() < 0.02, "case {case}, lane {lane}: {off}");
         }
     }
-    // Gaps in a hedge, all of them edge, are no sky to judge by.
+    // Gaps in a hedge, whose pixels are all near an edge, are not used as sky.
     let hedge = self::depth(width, height, |x, y| match (x % 4, y % 3) {
         (0, 0) => f32::INFINITY,
         _ => 9.0,
@@ -188,7 +188,7 @@ fn the_ambient_takes_no_notice_of_sun_cloud_and_edges() {
 }
 
 #[test]
-fn a_point_light_glows_before_the_objects() {
+fn a_point_light_glows_in_front_of_objects() {
     use airlight::fog::lights::{
         Light, LightRayGeometry, LightSettings, PointLight, RgbLightSet, airlight_isotropic,
     };

@@ -1,4 +1,4 @@
-//! What a probe says: the format `airlight-probe/1`, described in docs/src/probe.md.
+//! [`ProbeAnswer`]: result of a probe in the format `airlight-probe/1`, described in docs/src/probe.md.
 
 use super::MonteCarloAnswer;
 use serde::Serialize;
@@ -6,7 +6,7 @@ use serde::Serialize;
 /// Name and version of the format.
 pub const PROBE_FORMAT: &str = "airlight-probe/1";
 
-/// The whole answer. Lists have one value for each of `wavelengths_nm`; those of a model without spectra are empty.
+/// Result of a probe. Lists have one value for each of `wavelengths_nm`; they are empty for a model without spectra.
 #[derive(Clone, Debug, Serialize)]
 pub struct ProbeAnswer {
     /// Name and version of the format.
@@ -15,106 +15,106 @@ pub struct ProbeAnswer {
     pub program: &'static str,
     /// Name of the atmosphere; `None` for a model with its own.
     pub atmosphere: Option<String>,
-    /// `all` or `single` orders of scattering; `None` for a model without the choice.
+    /// Orders of scattering, `all` or `single`; `None` for a model without this input.
     pub scattering: Option<&'static str>,
     /// Name of the solver or published model.
     pub solver: &'static str,
-    /// Its form, where it has several.
+    /// Variant of the model; `None` for a model without variants.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub variant: Option<String>,
-    /// The RGB space.
+    /// Name of the RGB space.
     pub color_space: &'static str,
-    /// Wavelengths of every list.
+    /// Wavelengths of all lists.
     pub wavelengths_nm: Vec<f64>,
     /// Place and time.
     pub observer: ObserverAnswer,
     /// The sun and its light.
     pub sun: SunAnswer,
-    /// Light of the sky.
+    /// Light of the sky without the sun's disc.
     pub sky: SkyAnswer,
-    /// Each direction.
+    /// Light along each direction.
     pub views: Vec<RayAnswer>,
 }
 
 /// Place and time.
 #[derive(Clone, Debug, Serialize)]
 pub struct ObserverAnswer {
-    /// Degrees north, where the scene has a place.
+    /// Latitude, degrees north; `None` without a place.
     pub latitude_deg: Option<f64>,
-    /// Degrees east.
+    /// Longitude, degrees east.
     pub longitude_deg: Option<f64>,
     /// Altitude of the eye above sea level.
     pub altitude_m: f64,
     /// Altitude of the ground.
     pub ground_altitude_m: f64,
-    /// Time in UTC.
+    /// Time in UTC; `None` for a fixed sun.
     pub time_utc: Option<String>,
 }
 
 /// The sun and its light.
 #[derive(Clone, Debug, Serialize)]
 pub struct SunAnswer {
-    /// Degrees clockwise from north.
+    /// Azimuth, degrees clockwise from north.
     pub azimuth_deg: f64,
-    /// Degrees above the horizontal, as seen.
+    /// Apparent elevation above the horizontal, degrees.
     pub elevation_deg: f64,
-    /// The same without refraction.
+    /// Elevation without refraction, degrees; `None` for a fixed sun.
     pub geometric_elevation_deg: Option<f64>,
-    /// Distance over the planet's mean distance.
+    /// Distance relative to the planet's mean distance.
     pub distance_ratio: f64,
-    /// Half the angle across the disc.
+    /// Angular radius of the disc.
     pub angular_radius_deg: f64,
     /// Irradiance outside the air on a surface that faces the sun.
     pub irradiance_outside_w_m2_nm: Vec<f32>,
     /// Irradiance at the eye on a surface that faces the sun.
     pub irradiance_normal_w_m2_nm: Vec<f32>,
-    /// Irradiance at the eye on the horizontal.
+    /// Irradiance at the eye on a horizontal surface.
     pub irradiance_horizontal_w_m2_nm: Vec<f32>,
     /// Illuminance at the eye on a surface that faces the sun.
     pub illuminance_normal_lx: f64,
-    /// Illuminance at the eye on the horizontal.
+    /// Illuminance at the eye on a horizontal surface.
     pub illuminance_horizontal_lx: f64,
 }
 
 /// Light of the sky, without the sun's disc.
 #[derive(Clone, Debug, Serialize)]
 pub struct SkyAnswer {
-    /// Irradiance at the eye on the horizontal.
+    /// Irradiance at the eye on a horizontal surface.
     pub irradiance_horizontal_w_m2_nm: Vec<f32>,
-    /// Illuminance at the eye on the horizontal.
+    /// Illuminance at the eye on a horizontal surface.
     pub illuminance_horizontal_lx: f64,
 }
 
-/// Light along one direction, without the sun's disc. Parts are `None` for models that do not know them.
+/// Light along one direction, without the sun's disc. Parts are `None` for models that do not separate them.
 #[derive(Clone, Debug, Serialize)]
 pub struct RayAnswer {
-    /// Degrees clockwise from north.
+    /// Azimuth, degrees clockwise from north.
     pub azimuth_deg: f64,
-    /// Degrees above the horizontal.
+    /// Elevation, degrees above the horizontal.
     pub elevation_deg: f64,
     /// Length of the ray; `None`: to the ground or to space.
     pub distance_m: Option<f64>,
-    /// Whether it ends on the ground.
+    /// Whether the ray ends on the ground.
     pub meets_ground: bool,
-    /// Angle from the sun's centre.
+    /// Angle from the sun's centre, degrees.
     pub sun_angle_deg: f64,
-    /// All light that arrives.
+    /// Total radiance.
     pub radiance_w_m2_sr_nm: Vec<f32>,
-    /// Of it, light scattered once on the way.
+    /// Radiance of single scattering.
     pub radiance_single_w_m2_sr_nm: Option<Vec<f32>>,
-    /// Light scattered or reflected more than once.
+    /// Radiance of light scattered or reflected more than once.
     pub radiance_multiple_w_m2_sr_nm: Option<Vec<f32>>,
-    /// Light of the ground.
+    /// Radiance of the ground.
     pub radiance_ground_w_m2_sr_nm: Option<Vec<f32>>,
     /// Transmittance to the end of the ray.
     pub transmittance: Option<Vec<f32>>,
-    /// CIE 1931 XYZ.
+    /// CIE 1931 XYZ of the total radiance.
     pub xyz_cd_m2: [f64; 3],
-    /// Linear red, green and blue.
+    /// Linear red, green and blue of the total radiance.
     pub rgb_cd_m2: [f64; 3],
-    /// Luminance: Y.
+    /// Luminance, equal to Y.
     pub luminance_cd_m2: f64,
-    /// The same light by Monte Carlo, with that solver.
+    /// Monte Carlo estimate; `None` for other solvers.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub monte_carlo: Option<MonteCarloAnswer>,
 }

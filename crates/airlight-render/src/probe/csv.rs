@@ -1,27 +1,27 @@
-//! A probe's answer as CSV: a line for each ray and wavelength; for a model without spectra, a line for each ray.
+//! Result of a probe as CSV: a line for each ray and wavelength; for a model without spectra, a line for each ray.
 
 use super::{ProbeAnswer, RayAnswer};
 use std::fmt::Write;
 
-/// Names of the columns, in order.
+/// Names of the first columns.
 const HEADER: &str = "view,azimuth_deg,elevation_deg,distance_m,meets_ground,sun_angle_deg,wavelength_nm,\
     radiance_w_m2_sr_nm,radiance_single_w_m2_sr_nm,radiance_multiple_w_m2_sr_nm,radiance_ground_w_m2_sr_nm,transmittance,\
     luminance_cd_m2,x_cd_m2,y_cd_m2,z_cd_m2,red_cd_m2,green_cd_m2,blue_cd_m2,\
     sun_azimuth_deg,sun_elevation_deg,sun_irradiance_outside_w_m2_nm,sun_irradiance_normal_w_m2_nm,\
     sun_irradiance_horizontal_w_m2_nm,sky_irradiance_horizontal_w_m2_nm,sun_illuminance_normal_lx,\
     sun_illuminance_horizontal_lx,sky_illuminance_horizontal_lx";
-/// Columns after them for Monte Carlo.
+/// Additional columns for Monte Carlo.
 const MONTE_CARLO_HEADER: &str =
     ",monte_carlo_radiance_w_m2_sr_nm,monte_carlo_standard_error_w_m2_sr_nm";
-/// Columns after those for its polarisation.
+/// Additional columns for polarisation.
 const POLARISATION_HEADER: &str = ",stokes_i_w_m2_sr_nm,stokes_q_w_m2_sr_nm,stokes_u_w_m2_sr_nm,degree_of_polarisation,\
     degree_standard_error,angle_of_polarisation_deg,angle_standard_error_deg";
-/// Columns after all others.
+/// Last columns.
 const MODEL_HEADER: &str = ",solver,variant";
 
 impl ProbeAnswer {
-    /// The answer as CSV with a header: a line for each ray and wavelength, each of which stands by itself; for a model
-    /// without spectra a line for each ray.
+    /// The result as CSV with a header: a self-contained line for each ray and wavelength, or for each ray if the model has no
+    /// spectra.
     pub fn to_csv(&self) -> String {
         let mut text = HEADER.to_owned();
         if self.views.iter().any(|view| view.monte_carlo.is_some()) {
@@ -48,7 +48,7 @@ impl ProbeAnswer {
     }
 }
 
-/// The value of a wavelength; empty where there is none.
+/// The value at a wavelength; empty if there is none.
 fn at<T: ToString>(values: &[T], lane: usize) -> String {
     values.get(lane).map_or(String::new(), T::to_string)
 }

@@ -1,4 +1,4 @@
-//! A probe's answer as JSON: an object a line and deeper, lists of numbers on one line.
+//! Result of a probe as JSON, indented, with each list of numbers on one line.
 
 use super::ProbeAnswer;
 use serde::Serialize;
@@ -6,10 +6,10 @@ use serde_json::ser::{Formatter, PrettyFormatter, Serializer};
 use std::io::{self, Write};
 
 impl ProbeAnswer {
-    /// The answer as JSON in the format [`PROBE_FORMAT`](super::PROBE_FORMAT).
+    /// The result as JSON in the format [`PROBE_FORMAT`](super::PROBE_FORMAT).
     ///
     /// # Errors
-    /// [`serde_json::Error`] where it cannot be put into JSON.
+    /// [`serde_json::Error`] if serialization fails.
     pub fn to_json(&self) -> Result<String, serde_json::Error> {
         let mut bytes = Vec::new();
         let formatter = ShortLists(PrettyFormatter::new());
@@ -19,7 +19,7 @@ impl ProbeAnswer {
     }
 }
 
-/// Pretty objects, lists without line breaks.
+/// Formatter that indents objects and writes lists without line breaks.
 struct ShortLists(PrettyFormatter<'static>);
 
 impl Formatter for ShortLists {

@@ -1,7 +1,7 @@
-//! The light along given directions, and that of sun and sky, in numbers.
+//! Light along given directions, and light of sun and sky, as numbers.
 //!
-//! [`Probe`] asks a scene's solver; [`ProbeAnswer`] holds what it says; [`ProbeAnswer::to_json`] and
-//! [`ProbeAnswer::to_csv`] write it. Directions are read from CSV by [`ProbeRay::list_from_csv`].
+//! [`Probe`] evaluates a scene's solver; [`ProbeAnswer`] is the result, written by [`ProbeAnswer::to_json`] and
+//! [`ProbeAnswer::to_csv`]. Directions are read from CSV by [`ProbeRay::list_from_csv`].
 
 mod answer;
 mod csv;

@@ -1,55 +1,55 @@
-//! What Monte Carlo says of a ray, with standard errors.
+//! Monte Carlo estimates along a ray, with standard errors.
 
 use airlight::monte_carlo::{Estimate, PolarisedEstimate};
 use airlight::spectrum::WavelengthGrid;
 use serde::Serialize;
 
-/// Light along one direction by Monte Carlo.
+/// Monte Carlo estimate of the light along one direction.
 #[derive(Clone, Debug, Serialize)]
 pub struct MonteCarloAnswer {
     /// Number of paths.
     pub paths: u64,
-    /// All light that arrives.
+    /// Total radiance.
     pub radiance_w_m2_sr_nm: Vec<f64>,
     /// Its standard error.
     pub standard_error_w_m2_sr_nm: Vec<f64>,
-    /// Of it, light scattered or reflected once, twice, three and four times, and more often.
+    /// Radiance of light scattered or reflected once, twice, three times, four times and more often.
     pub radiance_by_order_w_m2_sr_nm: Vec<Vec<f64>>,
     /// CIE 1931 XYZ.
     pub xyz_cd_m2: [f64; 3],
-    /// Its polarisation, where that is followed.
+    /// Polarisation; `None` unless it is traced.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub polarisation: Option<PolarisationAnswer>,
 }
 
-/// Polarised light along one direction. `Q` is positive in the vertical plane through the ray; angles are from there,
-/// anticlockwise as the eye sees it.
+/// Polarised light along one direction. `Q` is positive for polarisation in the vertical plane through the ray, from which
+/// angles are measured anticlockwise as seen by the eye.
 #[derive(Clone, Debug, Serialize)]
 pub struct PolarisationAnswer {
-    /// Radiance, the first Stokes parameter.
+    /// Stokes parameter `I`, the radiance.
     pub stokes_i_w_m2_sr_nm: Vec<f64>,
-    /// Second.
+    /// Stokes parameter `Q`.
     pub stokes_q_w_m2_sr_nm: Vec<f64>,
-    /// Third.
+    /// Stokes parameter `U`.
     pub stokes_u_w_m2_sr_nm: Vec<f64>,
-    /// Standard error of the first.
+    /// Standard error of `I`.
     pub standard_error_i_w_m2_sr_nm: Vec<f64>,
-    /// Standard error of the second.
+    /// Standard error of `Q`.
     pub standard_error_q_w_m2_sr_nm: Vec<f64>,
-    /// Standard error of the third.
+    /// Standard error of `U`.
     pub standard_error_u_w_m2_sr_nm: Vec<f64>,
-    /// Degree of linear polarisation.
+    /// Degree of linear polarisation, 0 to 1.
     pub degree: Vec<f64>,
     /// Its standard error.
     pub degree_standard_error: Vec<f64>,
-    /// Angle of the plane of polarisation.
+    /// Angle of the plane of polarisation, degrees.
     pub angle_deg: Vec<f64>,
     /// Its standard error.
     pub angle_standard_error_deg: Vec<f64>,
 }
 
 impl MonteCarloAnswer {
-    /// Of an estimate at the wavelengths of a grid.
+    /// Converts an estimate at the wavelengths of a grid.
     pub fn new(found: Estimate, grid: &WavelengthGrid) -> Self {
         let single: Vec<f32> = found.mean.iter().map(|&v| v as f32).collect();
         Self {
@@ -66,7 +66,7 @@ impl MonteCarloAnswer {
         }
     }
 
-    /// Of an estimate with polarisation.
+    /// Converts an estimate with polarisation.
     pub fn polarised(found: PolarisedEstimate, grid: &WavelengthGrid) -> Self {
         Self {
             polarisation: Some(PolarisationAnswer {

@@ -1,17 +1,17 @@
-//! Directions to probe, and reading them from CSV.
+//! [`ProbeRay`]: directions to probe, also from CSV.
 
-/// A direction to look in, and how far.
+/// A direction to probe, with an optional length.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProbeRay {
-    /// Degrees clockwise from north.
+    /// Azimuth, degrees clockwise from north.
     pub azimuth_deg: f64,
-    /// Degrees above the horizontal, -90 to 90.
+    /// Elevation, degrees above the horizontal, -90 to 90.
     pub elevation_deg: f64,
-    /// Metres, above 0; `None`: to the ground or to space.
+    /// Length, m, above 0; `None`: to the ground or to space.
     pub distance_m: Option<f64>,
 }
 
-/// Which column holds what.
+/// Indices of the columns.
 struct Columns {
     azimuth: usize,
     elevation: usize,
@@ -20,11 +20,11 @@ struct Columns {
 }
 
 impl ProbeRay {
-    /// Reads a CSV text with a header that names the columns azimuth_deg, elevation_deg and perhaps distance_m; where it has
-    /// no distance, `distance_m` holds.
+    /// Reads CSV with a header that names the columns azimuth_deg, elevation_deg and optionally distance_m. `distance_m` is the
+    /// default for lines without a distance.
     ///
     /// # Errors
-    /// What is wrong, with its line.
+    /// A message with the line of the first error.
     pub fn list_from_csv(text: &str, distance_m: Option<f64>) -> Result<Vec<Self>, String> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let mut lines = (1..)
@@ -32,7 +32,7 @@ impl ProbeRay {
             .filter(|(_, line)| !line.trim().is_empty() && !line.starts_with('#'));
         let (number, header) = lines
             .next()
-            .ok_or("line 1: there must be a header such as azimuth_deg,elevation_deg")?;
+            .ok_or("line 1: expected a header, got nothing; try azimuth_deg,elevation_deg")?;
         let columns = columns(header).map_err(|error| format!("line {number}: {error}"))?;
         lines
             .map(|(number, line)| {
@@ -47,7 +47,7 @@ fn columns(header: &str) -> Result<Columns, String> {
     let find = |wanted: &str| names.iter().position(|name| *name == wanted);
     let need = |wanted: &str| {
         find(wanted).ok_or(format!(
-            "the header must name a column {wanted} (and may name distance_m), it names {}",
+            "expected a header with the column {wanted} (and optionally distance_m), got {}",
             names.join(", ")
         ))
     };
@@ -63,14 +63,14 @@ fn ray(line: &str, columns: &Columns, distance_m: Option<f64>) -> Result<ProbeRa
     let fields: Vec<&str> = fields(line).collect();
     if fields.len() != columns.count {
         return Err(format!(
-            "there must be {} fields as in the header, there are {}",
+            "expected {} fields as in the header, got {}",
             columns.count,
             fields.len()
         ));
     }
     let read = |name: &str, at: usize, right: &str, accepts: fn(f64) -> bool| {
         let value = fields[at].parse().ok().filter(|&value| accepts(value));
-        value.ok_or_else(|| format!("{name} must be {right}, got `{}`", fields[at]))
+        value.ok_or_else(|| format!("{name}: expected {right}, got `{}`", fields[at]))
     };
     let distance = columns.distance.filter(|&at| !fields[at].is_empty());
     Ok(ProbeRay {
@@ -103,7 +103,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn files_are_read_by_the_names_of_their_columns() {
+    fn columns_are_found_by_name() {
         let text = "\u{feff}elevation_deg, name, azimuth_deg, distance_m\r\n# remark\n10,a,20,\n-5,\"b\",350,1e3\n\n";
         let rays = ProbeRay::list_from_csv(text, Some(7.0)).unwrap();
         assert_eq!(rays.len(), 2);
@@ -126,17 +126,14 @@ mod tests {
     }
 
     #[test]
-    fn mistakes_are_named_with_their_line() {
+    fn errors_have_a_line() {
         for (text, part) in [
             ("", "header"),
             ("azimuth,elevation\n1,2", "azimuth_deg"),
-            (
-                "azimuth_deg,elevation_deg\n1",
-                "line 2: there must be 2 fields",
-            ),
+            ("azimuth_deg,elevation_deg\n1", "line 2: expected 2 fields"),
             (
                 "azimuth_deg,elevation_deg\n1,2\nx,3",
-                "line 3: azimuth_deg must be a number, got `x`",
+                "line 3: azimuth_deg: expected a number, got `x`",
             ),
             ("azimuth_deg,elevation_deg\n1,91", "-90 to 90"),
             ("azimuth_deg,elevation_deg,distance_m\n1,2,-3", "distance_m"),

@@ -1,4 +1,4 @@
-//! Asking a scene's solver for the light along rays.
+//! [`Probe`]: evaluation of a scene's solver along rays.
 
 use super::answer::{ObserverAnswer, PROBE_FORMAT, ProbeAnswer, RayAnswer, SkyAnswer, SunAnswer};
 use super::monte_carlo::MonteCarloAnswer;
@@ -18,10 +18,10 @@ use glam::DVec3;
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Monte Carlo paths for each ray where the scene does not say.
+/// Default number of Monte Carlo paths for each ray.
 const PATHS: u64 = 65_536;
 
-/// A scene whose light is computed along rays. Its camera, output and objects have no influence.
+/// A scene whose light is computed along rays. Camera, output and objects have no effect.
 #[derive(Clone, Debug)]
 pub struct Probe {
     scene: Scene,
@@ -31,13 +31,13 @@ pub struct Probe {
 }
 
 impl Probe {
-    /// Checks a scene and rays, and everything that can be checked without solving for light.
+    /// Checks a scene and rays as far as possible without solving for light.
     ///
     /// # Errors
-    /// [`RenderError`] for values out of range or that do not go together, and for inputs that the solver would ignore.
+    /// [`RenderError`] for values out of range, values that contradict each other, and inputs that the solver would ignore.
     pub fn new(scene: &Scene, rays: Vec<ProbeRay>) -> Result<Self, RenderError> {
         let mut scene = scene.clone();
-        // A probe draws no picture.
+        // A probe does not draw a picture.
         scene.output = OutputSpec {
             color_space: scene.output.color_space,
             polarisation: scene.output.polarisation,
@@ -62,10 +62,10 @@ impl Probe {
         })
     }
 
-    /// Computes the answer.
+    /// Computes the light along the rays.
     ///
     /// # Errors
-    /// [`RenderError::Scene`] where the solver refuses the scene.
+    /// [`RenderError::Scene`] if the solver fails.
     pub fn answer(&self, control: Control<'_>) -> Result<ProbeAnswer, RenderError> {
         let (scene, resolved) = (&self.scene, &self.resolved);
         let sun = resolved.sun.at_start()?;
@@ -114,15 +114,15 @@ impl Probe {
     }
 }
 
-/// The views that answer.
+/// Views from which the result is computed.
 struct Asked {
-    /// Without noise.
+    /// View without noise.
     view: Arc<dyn RadianceView>,
-    /// The solver's own.
+    /// View of the scene's solver.
     paths: Arc<dyn RadianceView>,
     space: RgbSpace,
     polarised: bool,
-    /// Whether there is fog in the air, which the parts of a ray leave out.
+    /// Whether there is fog, which the parts of a ray do not include.
     foggy: bool,
 }
 
@@ -132,7 +132,7 @@ impl Asked {
         grid.unwrap_or_default().to_vec()
     }
 
-    /// The values of a view as a spectrum; empty where they are colours.
+    /// The values of a view as a spectrum; empty for colours.
     fn spectrum(&self, values: &[f32]) -> Vec<f32> {
         match self.view.grid() {
             Some(_) => values.to_vec(),
@@ -199,7 +199,7 @@ impl Asked {
             None => self.through_fog(direction, ray.distance_m.filter(|_| !meets_ground)),
         };
         let xyz = self.xyz(&values);
-        // Where the ray ends on the ground, that is seen.
+        // A ray that ends on the ground includes its light.
         let limit_m = ray.distance_m.filter(|_| !meets_ground);
         let part =
             |of: fn(&airlight::sky::LineOfSight) -> &Vec<f32>| line.as_ref().map(of).cloned();
@@ -221,7 +221,7 @@ impl Asked {
         }
     }
 
-    /// Radiance along a ray to a distance, or to the ground or space, and transmittance in fog.
+    /// Radiance along a ray up to a distance (or to the ground or space), and transmittance, in fog.
     fn through_fog(
         &self,
         direction: DVec3,

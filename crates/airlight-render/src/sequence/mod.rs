@@ -1,4 +1,4 @@
-//! Many pictures: file names, time steps, which are missing.
+//! Sequences of pictures: file names, times and missing pictures.
 
 mod pattern;
 mod plan;

@@ -3,13 +3,13 @@
 use airlight::sun::Moment;
 use std::path::{Path, PathBuf};
 
-/// How frames are named.
+/// Pattern of the file names of frames.
 ///
-/// - `####` in the file name: the frame's number, padded with zeros to as many digits as there are signs.
+/// - `####` in the file name: the frame's number, padded with zeros to as many digits as there are number signs.
 /// - `{time}`: the frame's time, UTC, as in `20240621T120000Z`.
-/// - Neither: the number with 4 digits before the ending, as in `sky.0001.exr`.
+/// - Neither: the number with 4 digits before the extension, as in `sky.0001.exr`.
 ///
-/// Only the file name is searched, not its folders.
+/// Placeholders in the names of folders are not replaced.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FramePattern {
     folder: PathBuf,
@@ -24,7 +24,7 @@ enum Part {
 }
 
 impl FramePattern {
-    /// Reads a pattern. Any path is one; a file name that is not Unicode has its odd bytes replaced.
+    /// Parses a pattern. Every path is valid; bytes of a file name that are not Unicode are replaced.
     pub fn new(path: &Path) -> Self {
         let name = path
             .file_name()
@@ -32,7 +32,7 @@ impl FramePattern {
             .unwrap_or_default();
         let mut parts = split(&name);
         if parts.iter().all(|part| matches!(part, Part::Text(_))) {
-            // A leading dot is part of the name, not an ending.
+            // A leading dot is part of the name, not an extension.
             let at = name.rfind('.').filter(|&at| at > 0).unwrap_or(name.len());
             parts = vec![
                 Part::Text(format!("{}.", &name[..at])),
@@ -46,7 +46,7 @@ impl FramePattern {
         }
     }
 
-    /// The file of frame `number`, which shows the moment `time_s` (seconds since 1970-01-01T00:00:00Z).
+    /// Path of the frame `number` at the time `time_s` (seconds since 1970-01-01T00:00:00Z).
     pub fn path(&self, number: u64, time_s: i64) -> PathBuf {
         let name: String = self
             .parts
@@ -74,7 +74,7 @@ fn split(name: &str) -> Vec<Part> {
         } else if first == '#' {
             let digits = rest.bytes().take_while(|&b| b == b'#').count();
             parts.push(Part::Text(std::mem::take(&mut text)));
-            // A number of 64 bits has no more than 20 digits.
+            // A number of 64 bits has at most 20 digits.
             parts.push(Part::Number {
                 digits: digits.min(20),
             });

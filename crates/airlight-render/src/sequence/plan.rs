@@ -1,8 +1,8 @@
-//! Evenly spaced moments.
+//! Evenly spaced times.
 
 use airlight_image::ImageError;
 
-/// Evenly spaced moments, from the first to the last inclusive.
+/// Evenly spaced times, from the first to the last inclusive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SequencePlan {
     start_s: i64,
@@ -13,21 +13,21 @@ pub struct SequencePlan {
 /// One frame of a plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FrameStep {
-    /// Its number, from 1.
+    /// Number of the frame, from 1.
     pub number: u64,
-    /// The moment it shows, seconds since 1970-01-01T00:00:00Z.
+    /// Time, seconds since 1970-01-01T00:00:00Z.
     pub time_s: i64,
 }
 
 impl SequencePlan {
-    /// The most frames a plan may have.
+    /// Largest number of frames of a plan.
     pub const MOST_FRAMES: u64 = 1_000_000;
 
-    /// Moments `start_s`, `start_s + every_s` and so on, none after `until_s` (seconds since 1970-01-01T00:00:00Z).
+    /// Times `start_s`, `start_s + every_s` and so on up to `until_s` (seconds since 1970-01-01T00:00:00Z).
     ///
     /// # Errors
-    /// [`ImageError::Setting`] where `every_s` is not positive, `until_s` lies before `start_s`, or there would be
-    /// more than a million frames.
+    /// [`ImageError::Setting`] if `every_s` is not positive, `until_s` is before `start_s`, or there would be more than a
+    /// million frames.
     pub fn new(start_s: i64, until_s: i64, every_s: i64) -> Result<Self, ImageError> {
         let refuse = |what, got: String, right| Err(ImageError::Setting { what, got, right });
         if every_s <= 0 {
@@ -49,7 +49,7 @@ impl SequencePlan {
             return refuse(
                 "the number of frames",
                 format!("{}", u128::from(count) + 1),
-                "at most 1000000: take a longer step or an earlier end",
+                "at most 1000000 (try a longer step or an earlier end)",
             );
         }
         Ok(Self {
@@ -71,7 +71,7 @@ impl SequencePlan {
         } = *self;
         (0..self.count).map(move |index| FrameStep {
             number: index + 1,
-            // The result lies between start and end, even where a step from the start overflows on the way.
+            // The result lies between start and end, even if an intermediate value overflows.
             time_s: start_s.wrapping_add(every_s.wrapping_mul(index as i64)),
         })
     }
@@ -82,7 +82,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn plans_count_their_frames() {
+    fn plans_have_the_expected_frames() {
         for (start, until, every, count) in
             [(0, 0, 5, 1), (0, 9, 5, 2), (0, 10, 5, 3), (-7, 7, 7, 3)]
         {

@@ -1,11 +1,12 @@
-//! Spans of time in words: `90s`, `10m`, `1h30m`, `2d`.
+//! Parsing of durations such as `90s`, `10m`, `1h30m` and `2d`.
 
-/// Reads a span of time such as `90s`, `10m`, `1h30m` or `2d`: whole seconds above 0.
+/// Parses a duration such as `90s`, `10m`, `1h30m` or `2d`, in whole seconds above 0.
 ///
 /// # Errors
-/// What would be right.
+/// A description of the values allowed.
 pub fn parse_span_s(text: &str) -> Result<i64, String> {
-    let right = "a span of time above 0 in days, hours, minutes and whole seconds, such as 10m, 1h30m or 45s";
+    let right =
+        "a duration above 0 in days, hours, minutes and whole seconds, such as 10m, 1h30m or 45s";
     let mut total = 0i64;
     let mut rest = text.trim();
     while !rest.is_empty() {
@@ -36,7 +37,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn spans_are_sums_of_their_parts() {
+    fn durations_are_sums_of_their_parts() {
         for (text, s) in [("10m", 600), ("1h30m", 5400), ("90s", 90), ("2d", 172_800)] {
             assert_eq!(parse_span_s(text), Ok(s));
         }

@@ -1,4 +1,4 @@
-//! The pictures of a scene's sequence: their times and files, and which are missing.
+//! Pictures of a scene's sequence: times, files, and missing pictures.
 
 use super::{FramePattern, SequencePlan, parse_span_s};
 use crate::error::RenderError;
@@ -8,7 +8,7 @@ use airlight::sky::SunCoverage;
 use airlight::sun::Moment;
 use std::path::PathBuf;
 
-/// The pictures of a scene's sequence.
+/// Pictures of a scene's sequence.
 #[derive(Clone, Debug)]
 pub struct Sequence {
     steps: Vec<SequenceStep>,
@@ -17,26 +17,26 @@ pub struct Sequence {
 /// One picture of a sequence.
 #[derive(Clone, Debug)]
 pub struct SequenceStep {
-    /// Its number, from 1.
+    /// Number of the picture, from 1.
     pub number: u64,
-    /// The time that it shows.
+    /// Time of the picture.
     pub time: Moment,
-    /// Its main file.
+    /// Main file.
     pub path: PathBuf,
-    /// All its files.
+    /// All files, with the main file last.
     pub files: Vec<PictureFile>,
 }
 
 impl Renderer {
-    /// The pictures of a scene with a sequence, those of which the files are there already included.
+    /// Pictures of the scene's sequence, including those that exist already; `None` for a scene without a sequence.
     ///
     /// # Errors
-    /// [`RenderError`] for a sequence without a file name, with a sun that does not move, or with invalid times.
+    /// [`RenderError`] for a sequence without a file name, with a fixed sun, or with invalid times.
     pub fn sequence(&self) -> Result<Option<Sequence>, RenderError> {
         Sequence::of(self)
     }
 
-    /// The range of suns of the moments of a sequence; `None` without any.
+    /// The range of suns of pictures of a sequence; `None` for no pictures.
     ///
     /// # Errors
     /// As [`Renderer::sun`].
@@ -50,7 +50,7 @@ impl Renderer {
 }
 
 impl Sequence {
-    /// The sequence of a renderer's scene, where it has one.
+    /// The sequence of a renderer's scene, if it has one.
     fn of(renderer: &Renderer) -> Result<Option<Self>, RenderError> {
         let Some(spec) = &renderer.scene().sequence else {
             return Ok(None);
@@ -62,8 +62,8 @@ impl Sequence {
         let Some(start) = renderer.resolved().sun.start() else {
             return Err(RenderError::value(
                 "sequence.until",
-                "a sun that moves",
-                "one at a fixed elevation",
+                "a sun of place and time",
+                "a fixed sun",
                 "sun.latitude_deg, longitude_deg and time",
             ));
         };
@@ -86,10 +86,10 @@ impl Sequence {
                 "sequence.until",
                 format!("a time later than {}", start),
                 until.clone(),
-                "a span of time such as +6h",
+                "a duration such as +6h",
             ));
         }
-        // Refused before anything is computed.
+        // Refuse times out of range before anything is computed.
         renderer.sun(Some(start.at(end_s)))?;
         let plan = SequencePlan::new(start.unix_s() as i64, end_s.floor() as i64, every_s)?;
         let step = |step: super::FrameStep| {
@@ -111,7 +111,7 @@ impl Sequence {
         &self.steps
     }
 
-    /// The pictures of which a file is missing or empty. Files are only ever whole, so those that are there are done.
+    /// Pictures with a missing or empty file. Files are renamed into place, so existing ones are complete.
     pub fn missing(&self) -> Vec<SequenceStep> {
         let missing = |step: &&SequenceStep| !step.is_whole();
         self.steps.iter().filter(missing).cloned().collect()
@@ -125,7 +125,7 @@ impl SequenceStep {
         })
     }
 
-    /// Rows of all its files.
+    /// Number of rows of all files.
     pub fn rows(&self) -> u64 {
         self.files
             .iter()

@@ -223,7 +223,7 @@ fn pictures_with_other_settings_are_not_mixed_with_new_ones() {
     };
     assert_eq!(made(varied(), variants(1)), 2);
     assert_eq!(made(varied(), variants(3)), 4);
-    // Files of somebody else are neither taken for done nor overwritten.
+    // Files that are not in the manifest are neither taken for finished pictures nor overwritten.
     fs::create_dir(folder.file("mine")).unwrap();
     fs::write(folder.file("mine/a.png"), "mine").unwrap();
     let mine = folder.scene("rgb/*.png", "depth/*.png", "mine/*.png", 9.0);
@@ -302,7 +302,7 @@ fn a_picture_that_fails_does_not_stop_the_others() {
     assert_eq!(made(folder.usual(8.0), BatchSettings::default()), 2);
     let lines = folder.manifest("out/manifest.jsonl");
     assert!(lines.values().all(|line| !line.contains_key("error")));
-    // It can be told to stop at the first.
+    // With fail_fast it stops at the first failure.
     fs::write(folder.file("rgb/b.png"), "").unwrap();
     let settings = BatchSettings {
         overwrite: true,

@@ -145,7 +145,7 @@ impl Hillaire2020 {
         Self::of(Arc::new(tables), eye_altitude_m, &sun)
     }
 
-    /// Sky of prepared tables.
+    /// Sky from prepared tables.
     fn of(tables: Arc<Tables>, eye_altitude_m: f64, sun: &SunState) -> Result<Self, HillaireError> {
         let ground_m = tables.ground_altitude_m;
         if !(eye_altitude_m.is_finite() && eye_altitude_m >= ground_m) {

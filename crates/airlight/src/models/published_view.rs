@@ -351,9 +351,9 @@ fn add(sum: &mut [f64], values: &[f64]) {
     sum.iter_mut().zip(values).for_each(|(sum, v)| *sum += v);
 }
 
-/// Irradiance of the sky on the horizontal.
+/// Irradiance of the sky on a horizontal surface.
 fn sky_horizontal(model: &dyn PublishedModel) -> Vec<f64> {
-    /// Rings, and directions in each.
+    /// Number of rings, and of directions in each.
     const DIRECTIONS: (usize, usize) = (48, 96);
     let azimuth_deg = axes::azimuth_deg(model.sun());
     let lanes = dark(model).len();

@@ -20,7 +20,7 @@ pub enum SunShape {
 
 named! { SunShape, "a sun shape", [
     ("point", (Point), "all light from the centre of the disc"),
-    ("disc", (Disc), "from all over the disc, darker towards the limb"),
+    ("disc", (Disc), "light from the whole disc, with limb darkening"),
 ] }
 
 impl SunShape {

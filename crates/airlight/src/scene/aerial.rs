@@ -17,17 +17,17 @@ pub(super) const AZIMUTHS: usize = 16;
 /// Number of nodes along a ray.
 pub(super) const DISTANCES: usize = 64;
 
-/// What the air does between the eye of a [`View`] and any point, at the cost of a table look-up.
+/// Transmittance and path radiance between the eye of a [`View`] and any point, by table look-up.
 ///
-/// Two quantities are kept that hardly vary: the mean extinction up to a distance, `tau / d`, and the mean source
-/// function, `S / (1 - T)`: the radiance that the path radiance tends to. Both by elevation (crowding towards the horizon
-/// on either side, where they jump) and distance (crowding towards the eye), the latter also by azimuth from the sun's and
-/// for each scatterer with a peaked phase function without it: that is applied at look-up.
+/// The table holds two quantities that vary slowly: the mean extinction up to a distance, `tau / d`, and the mean source
+/// function, `S / (1 - T)`. Both depend on elevation (nodes are dense near the horizon, where the values are
+/// discontinuous) and on distance (nodes are dense near the eye); the source function also depends on the azimuth from
+/// the sun. Scatterers with a peaked phase function are stored separately without it; the look-up multiplies by it.
 ///
-/// Error of the path radiance against [`View::along`], random lines: with the sun 5 to 40 degrees high and an eye up to
-/// 1 km, median 0.014 % or less, 99 % below 0.26 %, worst 0.53 %; an eye at 10 km 0.96 %, at 400 km 4.8 %; twilight at -4
-/// degrees 2.5 %, at -8 degrees 15 % (median 0.007 %). Transmittance: worst 0.005. The ignored test
-/// `errors_are_those_stated` of `scene/tests/aerial.rs` checks and prints them.
+/// Error of the path radiance compared with [`View::along`] on random rays: with the sun 5 to 40 degrees high and the eye
+/// up to 1 km, median at most 0.014 %, 99 % below 0.26 %, largest 0.53 %; with the eye at 10 km 0.96 %, at 400 km 4.8 %;
+/// in twilight at -4 degrees 2.5 %, at -8 degrees 15 % (median 0.007 %). Transmittance: largest error 0.005. The ignored
+/// test `errors_are_those_stated` of `scene/tests/aerial.rs` checks and prints them.
 #[derive(Clone)]
 pub struct AerialPerspective<const N: usize> {
     pub(super) sun: DVec3,

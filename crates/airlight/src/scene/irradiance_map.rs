@@ -1,4 +1,4 @@
-//! Light from all around on surfaces of any slant, and light of the sky on the horizontal.
+//! [`IrradianceMap`]: irradiance of surfaces by their normal; irradiance of a horizontal surface by the sky.
 
 use crate::axes;
 use crate::math::interpolation::{Place, lerp};
@@ -118,8 +118,8 @@ fn directions(sun: DVec3) -> Vec<(DVec3, f64)> {
     all
 }
 
-/// Irradiance of the upper half of the sphere on the horizontal, `channels` values, from rings of equal weight with equally
-/// spaced directions, the first of which is half a step after `from_azimuth_deg`.
+/// Irradiance of a horizontal surface by the upper hemisphere, `channels` values, from rings of equal weight with equally spaced
+/// directions, the first of which is half a step after `from_azimuth_deg`.
 ///
 /// `add` adds the radiances along the directions of a ring to a sum.
 pub(crate) fn horizontal_irradiance(
@@ -129,7 +129,7 @@ pub(crate) fn horizontal_irradiance(
     add: impl Fn(&[DVec3], &mut [f64]) + Sync,
 ) -> Vec<f64> {
     let sums = parallel::map(rings, |ring| {
-        // Equal parts of the squared sine: each weighs the same on the horizontal.
+        // Equal steps of the squared sine have equal weight on a horizontal surface.
         let elevation = ((ring as f64 + 0.5) / rings as f64).sqrt().asin();
         let directions: Vec<DVec3> = (0..spokes)
             .map(|spoke| {

@@ -28,7 +28,7 @@ pub(crate) struct SolvedView {
 }
 
 impl SolvedView {
-    /// Tabulates the sky of a view with fog in it, or without.
+    /// Tabulates the sky of a view, with or without fog.
     ///
     /// # Errors
     /// [`SceneError`] for fog that is refused.
@@ -179,9 +179,9 @@ impl RadianceView for SolvedView {
         }
     }
 
-    /// With fog to a few percent where the fog's glow about the sun is narrow.
+    /// With fog accurate to a few percent if the fog's aureole is narrow.
     fn horizontal_irradiance(&self, out: &mut [f32]) {
-        /// Rings, and directions in each.
+        /// Number of rings, and of directions in each.
         const DIRECTIONS: (usize, usize) = (60, 120);
         if self.fog.is_none() {
             out.copy_from_slice(&self.clear.irradiance(DVec3::Y));

@@ -3,7 +3,7 @@
 use super::{Exr, Folder};
 
 const PLANE: &str = "[[objects.object]]\nshape = \"ground\"\nreflectance = 0.3\n";
-const BALL: &str = "[[objects.object]]\nshape = \"sphere\"\nat_m = [0, 3, -20]\nradius_m = 2\nreflectance = [0.5, 0.1, 0.1]\n";
+const SPHERE: &str = "[[objects.object]]\nshape = \"sphere\"\nat_m = [0, 3, -20]\nradius_m = 2\nreflectance = [0.5, 0.1, 0.1]\n";
 /// Looks north and 40 degrees down.
 const DOWN: &str = "camera = { projection = \"perspective\", size = [8, 8], fov_deg = 20, azimuth_deg = 0, elevation_deg = -40 }\n\
     sun.azimuth_deg = 150\nair.ground_albedo = 0.3\n";
@@ -48,18 +48,24 @@ fn objects_cover_the_sky_and_are_as_far_away_as_they_are() {
     let sky = "sun.elevation_deg = 20\nsun.azimuth_deg = 170\nsolver.wavelengths = \"rgb\"\nobserver.eye_height_m = 3\n\
         camera = { projection = \"perspective\", size = [33, 33], fov_deg = 40, azimuth_deg = 0, elevation_deg = 5 }\n";
     folder.write("plain.exr", sky);
-    folder.write("ball.exr", &format!("{sky}output.depth_map = true\n{BALL}"));
-    assert_eq!(folder.names(), ["ball.depth.exr", "ball.exr", "plain.exr"]);
-    let [plain, ball, depth] =
-        ["plain.exr", "ball.exr", "ball.depth.exr"].map(|name| Exr::read(&folder.file(name)));
+    folder.write(
+        "sphere.exr",
+        &format!("{sky}output.depth_map = true\n{SPHERE}"),
+    );
+    assert_eq!(
+        folder.names(),
+        ["plain.exr", "sphere.depth.exr", "sphere.exr"]
+    );
+    let [plain, sphere, depth] =
+        ["plain.exr", "sphere.exr", "sphere.depth.exr"].map(|name| Exr::read(&folder.file(name)));
     let z = |x: usize, y: usize| depth.channels["Z"][33 * y + x];
-    assert!(z(0, 0) == f32::INFINITY && plain.rgb(0, 0) == ball.rgb(0, 0));
+    assert!(z(0, 0) == f32::INFINITY && plain.rgb(0, 0) == sphere.rgb(0, 0));
     // Straight ahead on the level, below the middle of the picture.
     let rows: Vec<usize> = (0..33).filter(|&y| z(16, y).is_finite()).collect();
     let row = rows.iter().sum::<usize>() / rows.len();
     let level = 5f64.to_radians();
     assert!((f64::from(z(16, row)) - 18.0 * level.cos()).abs() < 0.1);
-    let [r, g, b] = ball.rgb(16, row as u32);
+    let [r, g, b] = sphere.rgb(16, row as u32);
     assert!(r > 2.0 * g && r > 2.0 * b && g > 0.0, "{r} {g} {b}");
 }
 
@@ -80,8 +86,11 @@ fn spectral_objects_sum_to_their_colour() {
             0.1,
         ),
     ] {
-        let rgb = folder.exr(&format!("{sky}{scene}{BALL}")).rgb(4, 4);
-        folder.write("all.spectral.exr", &format!("{sky}{scene}{spectral}{BALL}"));
+        let rgb = folder.exr(&format!("{sky}{scene}{SPHERE}")).rgb(4, 4);
+        folder.write(
+            "all.spectral.exr",
+            &format!("{sky}{scene}{spectral}{SPHERE}"),
+        );
         let all = Exr::read(&folder.file("all.spectral.exr"));
         let summed = all.rgb(4, 4);
         assert!(all.channels.len() > 30, "{scene}: {}", all.channels.len());

@@ -104,7 +104,7 @@ impl Klassen1987 {
         Self::over(settings, &base, &sun)
     }
 
-    /// The model of checked settings before a prepared blue.
+    /// The model of checked settings in front of a prepared blue.
     fn over(
         settings: &Klassen1987Settings,
         base: &BaseSky,

@@ -34,7 +34,7 @@ pub struct SolverSpec {
 }
 
 impl SolverSpec {
-    /// How a sky is solved for a range of suns.
+    /// Settings of the sky solver for a range of suns.
     pub fn sky_settings(&self, suns: SunCoverage) -> SkySettings {
         SkySettings {
             suns,
