@@ -59,7 +59,7 @@ pub struct Objects {
 impl Objects {
     /// A list of valid objects.
     pub fn new(objects: Vec<Object>) -> Self {
-        let bounds = objects.iter().map(|object| object.shape.ball());
+        let bounds = objects.iter().map(|object| object.shape.bounding_sphere());
         Self {
             bounds: bounds.map(|(middle, r)| (middle, r * r)).collect(),
             objects,

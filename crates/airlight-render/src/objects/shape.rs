@@ -76,7 +76,7 @@ impl Shape {
     }
 
     /// Centre and radius of a bounding sphere, m; infinite for ground.
-    pub fn ball(&self) -> (DVec3, f64) {
+    pub fn bounding_sphere(&self) -> (DVec3, f64) {
         match *self {
             Self::Ground { .. } => (DVec3::ZERO, f64::INFINITY),
             Self::Sphere { centre, radius_m } => (centre, radius_m),

@@ -84,7 +84,7 @@ fn rays() -> impl Iterator<Item = Ray> {
 fn intersections_match_marching() {
     for shape in shapes() {
         let mut met = 0;
-        let (middle, radius_m) = shape.ball();
+        let (middle, radius_m) = shape.bounding_sphere();
         for ray in rays() {
             let steps = (1..6000).map(|i| 0.005 * f64::from(i));
             let marched = steps.clone().find(|t| inside(&shape, ray.at(*t)));
