@@ -305,7 +305,7 @@ fn all_density_profiles_may_be_fog() {
         peak_m: 50.0,
         top_m: 120.0,
     };
-    let heights: Vec<f64> = (0..7).map(|k| 50.0 * f64::from(k)).collect();
+    let heights: Vec<f64> = (0..4).map(|k| 100.0 * f64::from(k)).collect();
     let decaying = heights.iter().map(|h| (-h / 40.0).exp()).collect();
     let table = DensityProfile::tabulated(heights, decaying, Interpolation::LogLinear).unwrap();
     let sum = DensityProfile::Sum(vec![(0.5, elevated.clone()), (2.0, tent.clone())]);
@@ -329,8 +329,8 @@ fn all_density_profiles_may_be_fog() {
         for layers in [&layers[..1], &layers[..]] {
             for ground in [Ground::FLAT, EARTH] {
                 let stated = if ground.is_flat() { 2e-3 } else { 1e-2 };
-                let lines = lines(ground, -1.0, &[1.7, 50.0], &[200.0, 1e4]);
-                let worst = worst_error(layers, ground, &lines, &[5.0, 40.0]);
+                let lines = lines(ground, -1.0, &[1.7, 50.0], &[1e4]);
+                let worst = worst_error(layers, ground, &lines, &[5.0]);
                 assert!(worst < stated, "{layers:?} {ground:?}: {worst:.2e}");
             }
         }
