@@ -112,7 +112,7 @@ fn a_stopped_sequence_keeps_its_whole_frames_and_goes_on() {
     let done = names.len();
     let text = crate::common::succeed(&folder, words);
     assert!(
-        text.contains(&format!("{} of 3 pictures made", 3 - done)),
+        text.contains(&format!("{} of 3 pictures written", 3 - done)),
         "{text}"
     );
     assert_eq!(folder.names(), ["a.0001.png", "a.0002.png", "a.0003.png"]);
@@ -159,7 +159,7 @@ fn a_stopped_batch_keeps_its_whole_pictures_and_goes_on() {
     assert_eq!(manifest().lines().count(), done);
     let text = crate::common::succeed(&folder, words);
     assert!(
-        text.contains(&format!("{} of 20 pictures made", 20 - done)),
+        text.contains(&format!("{} of 20 pictures written", 20 - done)),
         "{text}"
     );
     assert_eq!((made().len(), manifest().lines().count()), (20, 20));

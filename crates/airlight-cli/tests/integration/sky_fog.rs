@@ -26,12 +26,12 @@ fn fog_changes_the_sky_or_is_refused() {
         ("--top-m 60", "--visibility-m"),
         (
             "--visibility-m 9 --top-m 60 --base-height-m 5",
-            "cannot be used with",
+            "try leaving one of them out",
         ),
         ("--visibility-m 9 --droplets soup", "possible values"),
         (
             "--visibility-m 9 --fog-scattering single --solver monte-carlo",
-            "leave out --fog-scattering",
+            "expected a solver that honours the scattering of the fog",
         ),
     ] {
         let output = run(&folder, &format!("{sky} refused.png {fog}"));
