@@ -418,7 +418,7 @@ fn contradictions_are_refused_before_anything_is_written() {
     for (texts, part) in [
         (&["sun-azimuth=0..20"][..], "expected a sun"),
         (&["droplets=fine", "droplets=coarse"], "each setting once"),
-        (&["visibility=5..9"], "leaving one out"),
+        (&["visibility=5..9"], "leaving one of them out"),
         (&["scale-height=5..9"], "fog-profile height or clamped"),
         (
             &["fog-profile=uniform,height", "top=5..9"],

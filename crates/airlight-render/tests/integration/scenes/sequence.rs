@@ -98,7 +98,7 @@ fn sequences_that_make_no_sense_are_refused() {
     };
     let fixed = "solver.wavelengths = \"rgb\"\nsun.elevation_deg = 5\nsequence = { until = \"+1h\", every = \"1h\" }";
     for (scene, part) in [
-        (fixed.to_owned(), "a sun that moves"),
+        (fixed.to_owned(), "expected a sun of place and time"),
         (sequence("+1h", "5x"), "1h30m"),
         (sequence("2025-01-01T00:00:00Z", "5m"), "later"),
         (sequence("+9000d", "1s"), "1000000"),
