@@ -18,7 +18,7 @@ impl Folder {
     fn new(names: &[&str]) -> Self {
         static COUNT: AtomicU32 = AtomicU32::new(0);
         let count = COUNT.fetch_add(1, Ordering::Relaxed);
-        let name = format!("airlight-render-{}-{count}", std::process::id());
+        let name = format!("airlight-batch-{}-{count}", std::process::id());
         let folder = Self(std::env::temp_dir().join(name));
         for (number, name) in (1..).zip(names) {
             folder.picture(&format!("rgb/{name}.png"), number);
