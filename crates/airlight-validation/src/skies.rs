@@ -154,7 +154,7 @@ pub fn truth_air(name: &str) -> Option<Atmosphere> {
     Some(air)
 }
 
-/// Index of the wavelength of a channel in [`atmosphere`].
+/// Index of the wavelength of a channel in [`atmosphere()`].
 pub fn lane(channel: &str) -> usize {
     match channel.trim_start_matches("L_").trim_start_matches("beta") {
         "33.1e-6" | "440" | "442.25" => 0,

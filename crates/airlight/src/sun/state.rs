@@ -41,7 +41,7 @@ impl SunState {
 }
 
 impl From<DVec3> for SunState {
-    /// [`SunState::at_mean_distance`].
+    /// A sun in this direction at the mean distance.
     fn from(direction: DVec3) -> Self {
         Self::at_mean_distance(direction)
     }
