@@ -1,5 +1,6 @@
 //! Fog over many pictures: pairs, existing pictures, variation, the manifest.
 
+use super::common::Folder;
 use airlight::scene::FogProfile;
 use airlight_image::Control;
 use airlight_render::batch::{BatchError, BatchPlan, BatchReport, BatchSettings, listed};
@@ -9,17 +10,14 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::num::NonZeroU32;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::sync::atomic::AtomicBool;
 
-/// A folder with pictures `rgb/NAME.png` and depths `depth/NAME.png`, removed at the end.
-struct Folder(PathBuf);
+/// Pictures `rgb/NAME.png` and depths `depth/NAME.png`.
+struct Pictures(Folder);
 
-impl Folder {
+impl Pictures {
     fn new(names: &[&str]) -> Self {
-        static COUNT: AtomicU32 = AtomicU32::new(0);
-        let count = COUNT.fetch_add(1, Ordering::Relaxed);
-        let name = format!("airlight-batch-{}-{count}", std::process::id());
-        let folder = Self(std::env::temp_dir().join(name));
+        let folder = Self(Folder::new());
         for (number, name) in (1..).zip(names) {
             folder.picture(&format!("rgb/{name}.png"), number);
             folder.depth(&format!("depth/{name}.png"), (40, 30));
@@ -28,19 +26,15 @@ impl Folder {
     }
 
     fn file(&self, name: &str) -> PathBuf {
-        self.0.join(name)
+        self.0.file(name)
+    }
+
+    fn names(&self, below: &str) -> Vec<String> {
+        self.0.names(below)
     }
 
     fn bytes(&self, name: &str) -> Vec<u8> {
         fs::read(self.file(name)).unwrap()
-    }
-
-    fn names(&self, below: &str) -> Vec<String> {
-        let entries = fs::read_dir(self.file(below)).unwrap();
-        let name = |entry: std::io::Result<fs::DirEntry>| entry.unwrap().file_name();
-        let mut names: Vec<String> = entries.map(|e| name(e).into_string().unwrap()).collect();
-        names.sort();
-        names
     }
 
     fn picture(&self, name: &str, number: u8) {
@@ -98,12 +92,6 @@ impl Folder {
     }
 }
 
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
-
 fn vary(texts: &[&str]) -> BatchSettings {
     BatchSettings {
         vary: texts.iter().map(|text| text.parse().unwrap()).collect(),
@@ -130,7 +118,7 @@ fn refused(scene: OverlayScene, settings: BatchSettings) -> String {
 
 #[test]
 fn folders_pair_by_name_and_patterns_by_their_captures() {
-    let folder = Folder::new(&["a", "b"]);
+    let folder = Pictures::new(&["a", "b"]);
     for (colour, depth, output, expected) in [
         ("rgb", "depth/", "by_name", "by_name/a.png"),
         ("rgb/*.png", "depth", "jpg/x-*.jpg", "jpg/x-b.jpg"),
@@ -163,7 +151,7 @@ fn folders_pair_by_name_and_patterns_by_their_captures() {
 
 #[test]
 fn existing_pictures_are_kept_and_missing_ones_made() {
-    let folder = Folder::new(&["a", "b", "c"]);
+    let folder = Pictures::new(&["a", "b", "c"]);
     let scene = folder.varied("rgb/*.png", "depth/*.png", "out/*.png");
     let settings = BatchSettings {
         seed: 7,
@@ -193,7 +181,7 @@ fn existing_pictures_are_kept_and_missing_ones_made() {
 
 #[test]
 fn pictures_with_other_settings_are_not_mixed_with_new_ones() {
-    let folder = Folder::new(&["a", "b"]);
+    let folder = Pictures::new(&["a", "b"]);
     let plain = BatchSettings::default;
     made(folder.usual(8.0), plain());
     fs::remove_file(folder.file("out/b.png")).unwrap();
@@ -236,7 +224,7 @@ fn pictures_with_other_settings_are_not_mixed_with_new_ones() {
 fn draws_depend_on_names_not_on_threads() {
     let names: Vec<String> = (0..8).map(|n| format!("p{n}")).collect();
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    let folder = Folder::new(&names);
+    let folder = Pictures::new(&names);
     let settings = |threads| BatchSettings {
         variants: NonZeroU32::new(2),
         seed: 3,
@@ -280,7 +268,7 @@ fn draws_depend_on_names_not_on_threads() {
 
 #[test]
 fn a_picture_that_fails_does_not_stop_the_others() {
-    let folder = Folder::new(&["a", "b", "c", "d"]);
+    let folder = Pictures::new(&["a", "b", "c", "d"]);
     let whole = folder.bytes("rgb/b.png");
     fs::write(folder.file("rgb/b.png"), &whole[..whole.len() / 2]).unwrap();
     folder.depth("depth/c.png", (41, 30));
@@ -320,7 +308,7 @@ fn a_picture_that_fails_does_not_stop_the_others() {
 
 #[test]
 fn a_cancelled_batch_leaves_what_is_done() {
-    let folder = Folder::new(&["a", "b"]);
+    let folder = Pictures::new(&["a", "b"]);
     let plan = BatchPlan::new(folder.usual(8.0), BatchSettings::default()).unwrap();
     let report = plan
         .start()
@@ -336,7 +324,7 @@ fn a_cancelled_batch_leaves_what_is_done() {
 #[test]
 fn names_that_need_escaping_are_recorded() {
     let name = "a \"quoted\" \\ \u{e9}t\u{e9}";
-    let folder = Folder::new(&[name]);
+    let folder = Pictures::new(&[name]);
     made(folder.usual(8.0), BatchSettings::default());
     let lines = folder.manifest("out/manifest.jsonl");
     assert_eq!(lines[&format!("{name}.png")]["name"], name);
@@ -344,7 +332,7 @@ fn names_that_need_escaping_are_recorded() {
 
 #[test]
 fn unpaired_pictures_are_refused_or_left_out() {
-    let folder = Folder::new(&["a", "b", "c"]);
+    let folder = Pictures::new(&["a", "b", "c"]);
     fs::remove_file(folder.file("depth/b.png")).unwrap();
     folder.depth("depth/z.png", (40, 30));
     for scene in [folder.usual(8.0), folder.scene("rgb", "depth", "out", 8.0)] {
@@ -375,7 +363,7 @@ fn unpaired_pictures_are_refused_or_left_out() {
 
 #[test]
 fn contradictions_are_refused_before_anything_is_written() {
-    let folder = Folder::new(&["a", "b"]);
+    let folder = Pictures::new(&["a", "b"]);
     folder.picture("twice/a.png", 1);
     fs::copy(folder.file("twice/a.png"), folder.file("twice/a.jpg")).unwrap();
     fs::create_dir(folder.file("empty")).unwrap();
@@ -450,7 +438,7 @@ fn contradictions_are_refused_before_anything_is_written() {
 
 #[test]
 fn manifests_that_cannot_be_resumed_are_refused() {
-    let folder = Folder::new(&["a"]);
+    let folder = Pictures::new(&["a"]);
     let with = |name: &str| BatchSettings {
         manifest: Some(folder.file(name)),
         ..BatchSettings::default()
@@ -484,7 +472,7 @@ fn manifests_that_cannot_be_resumed_are_refused() {
 #[test]
 fn names_that_are_not_unicode_and_folders_that_cannot_be_created_are_refused() {
     use std::os::unix::ffi::OsStrExt;
-    let folder = Folder::new(&["a"]);
+    let folder = Pictures::new(&["a"]);
     fs::write(folder.file("file"), "").unwrap();
     let inside = folder.scene("rgb/*.png", "depth/*.png", "file/out/*.png", 8.0);
     let sentence = refused(inside, BatchSettings::default());
@@ -497,7 +485,7 @@ fn names_that_are_not_unicode_and_folders_that_cannot_be_created_are_refused() {
 
 #[test]
 fn a_manifest_elsewhere_names_outputs_from_its_own_folder() {
-    let folder = Folder::new(&["a"]);
+    let folder = Pictures::new(&["a"]);
     let settings = || BatchSettings {
         manifest: Some(folder.file("m.jsonl")),
         ..BatchSettings::default()
@@ -511,7 +499,7 @@ fn a_manifest_elsewhere_names_outputs_from_its_own_folder() {
 #[test]
 fn a_single_picture_is_what_a_batch_makes_of_it() {
     use airlight_render::overlay::{OverlayImage, PreparedOverlay};
-    let folder = Folder::new(&["a"]);
+    let folder = Pictures::new(&["a"]);
     made(folder.usual(8.0), BatchSettings::default());
     let scene = folder.scene("rgb/a.png", "depth/a.png", "one.png", 8.0);
     let output = Path::new(scene.scene.output.file.as_ref().unwrap());

@@ -7,44 +7,16 @@ mod probe;
 mod published;
 mod sequence;
 
+pub use super::common::Folder;
 use airlight::scene::Scene;
 use airlight_image::{Control, Frame, Projection};
 use airlight_render::probe::{Probe, ProbeAnswer, ProbeRay};
 use airlight_render::{RenderError, RenderedImage, Renderer, WrittenFile};
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU32, Ordering};
+use std::path::Path;
 
-/// A folder of a test's own.
-pub struct Folder(pub PathBuf);
-
+/// Writing scenes into a folder.
 impl Folder {
-    pub fn new() -> Self {
-        static COUNT: AtomicU32 = AtomicU32::new(0);
-        let name = format!(
-            "airlight-scenes-{}-{}",
-            std::process::id(),
-            COUNT.fetch_add(1, Ordering::Relaxed)
-        );
-        let path = std::env::temp_dir().join(name);
-        std::fs::create_dir_all(&path).unwrap();
-        Self(path)
-    }
-
-    pub fn file(&self, name: &str) -> PathBuf {
-        self.0.join(name)
-    }
-
-    /// Names of the files in it, hidden ones too.
-    pub fn names(&self) -> Vec<String> {
-        let mut names: Vec<String> = std::fs::read_dir(&self.0)
-            .unwrap()
-            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-            .collect();
-        names.sort();
-        names
-    }
-
     /// Writes a scene to a file of a name.
     pub fn write(&self, name: &str, scene: &str) -> Vec<WrittenFile> {
         self.try_write(name, scene)
@@ -61,12 +33,6 @@ impl Folder {
     pub fn exr(&self, scene: &str) -> Exr {
         self.write("a.exr", scene);
         Exr::read(&self.file("a.exr"))
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
     }
 }
 

@@ -16,7 +16,7 @@ fn two_solvers_draw_one_sky() {
             "{SMALL}solver.name = \"monte-carlo\"\nsolver.paths = 1024\noutput.noise_map = true"
         ),
     );
-    let names = folder.names();
+    let names = folder.names("");
     assert_eq!(names, ["orders.exr", "paths.exr", "paths.noise.exr"]);
     let [orders, paths, noise] = [0, 1, 2].map(|i: usize| Exr::read(&folder.file(&names[i])));
     let (mut squares, mut count) = (0.0, 0.0);
@@ -169,7 +169,7 @@ fn polarisation_is_followed() {
          camera = {{ projection = \"perspective\", fov_deg = 2, azimuth_deg = 0, elevation_deg = 70, size = [8, 6] }}"
     );
     folder.write("sky.exr", &scene);
-    assert_eq!(folder.names(), ["sky.exr", "sky.polarisation.exr"]);
+    assert_eq!(folder.names(""), ["sky.exr", "sky.polarisation.exr"]);
     let map = Exr::read(&folder.file("sky.polarisation.exr")).channels;
     let mean = |name: &str| map[name].iter().sum::<f32>() / 48.0;
     assert!((0.4..0.9).contains(&mean("degree")), "{}", mean("degree"));
@@ -182,5 +182,5 @@ fn a_picture_larger_than_memory_is_refused() {
     let scene = format!("{SMALL}solver.name = \"monte-carlo\"\ncamera.size = [20000, 20000]");
     let error = folder.try_write("a.png", &scene).unwrap_err().to_string();
     assert!(error.contains("smaller size"), "{error}");
-    assert!(folder.names().is_empty());
+    assert!(folder.names("").is_empty());
 }

@@ -53,7 +53,7 @@ fn objects_cover_the_sky_and_are_as_far_away_as_they_are() {
         &format!("{sky}output.depth_map = true\n{SPHERE}"),
     );
     assert_eq!(
-        folder.names(),
+        folder.names(""),
         ["plain.exr", "sphere.depth.exr", "sphere.exr"]
     );
     let [plain, sphere, depth] =

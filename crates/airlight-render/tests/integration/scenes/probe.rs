@@ -1,7 +1,21 @@
 //! The numbers of a probe agree with each other.
 
 use super::{probe, try_probe};
-use airlight_render::probe::ProbeRay;
+use airlight_render::probe::{ProbeRay, RayAnswer};
+
+/// Single scattering, multiple scattering and ground make the radiance of a view.
+fn assert_parts_sum(view: &RayAnswer) {
+    let parts = [
+        &view.radiance_single_w_m2_sr_nm,
+        &view.radiance_multiple_w_m2_sr_nm,
+        &view.radiance_ground_w_m2_sr_nm,
+    ]
+    .map(|part| part.as_ref().unwrap());
+    for (lane, all) in view.radiance_w_m2_sr_nm.iter().enumerate() {
+        let sum: f32 = parts.iter().map(|part| part[lane]).sum();
+        assert!((all / sum - 1.0).abs() < 1e-5);
+    }
+}
 
 #[test]
 fn parts_make_the_whole() {
@@ -9,16 +23,7 @@ fn parts_make_the_whole() {
     let answer = probe(scene, &[(0.0, 90.0), (90.0, -30.0), (45.0, 3.0)]);
     assert_eq!(answer.format, "airlight-probe/1");
     for view in &answer.views {
-        let parts = [
-            &view.radiance_single_w_m2_sr_nm,
-            &view.radiance_multiple_w_m2_sr_nm,
-            &view.radiance_ground_w_m2_sr_nm,
-        ]
-        .map(|part| part.as_ref().unwrap());
-        for (lane, all) in view.radiance_w_m2_sr_nm.iter().enumerate() {
-            let sum: f32 = parts.iter().map(|part| part[lane]).sum();
-            assert!((all / sum - 1.0).abs() < 1e-5);
-        }
+        assert_parts_sum(view);
         let transmittance = view.transmittance.as_ref().unwrap();
         assert!(transmittance.iter().all(|t| (0.0..=1.0).contains(t)));
         assert_eq!(view.xyz_cd_m2[1], view.luminance_cd_m2);
@@ -231,16 +236,7 @@ fn models_with_rays_know_their_parts() {
         "solver = { name = \"hillaire2020\", wavelengths = \"rgb\" }\nsun.elevation_deg = 30";
     let whole = probe(scene, &[(180.0, 2.0), (0.0, -30.0), (90.0, 1.0)]);
     for view in &whole.views {
-        let parts = [
-            &view.radiance_single_w_m2_sr_nm,
-            &view.radiance_multiple_w_m2_sr_nm,
-            &view.radiance_ground_w_m2_sr_nm,
-        ]
-        .map(|part| part.as_ref().unwrap());
-        for (lane, all) in view.radiance_w_m2_sr_nm.iter().enumerate() {
-            let sum: f32 = parts.iter().map(|part| part[lane]).sum();
-            assert!((all / sum - 1.0).abs() < 1e-5);
-        }
+        assert_parts_sum(view);
     }
     assert!(whole.views[1].meets_ground);
     // The air before an object: less than all of it, and more transparent.
@@ -256,7 +252,7 @@ fn models_with_rays_know_their_parts() {
         .iter()
         .zip(&far.radiance_w_m2_sr_nm);
     assert!(pairs.into_iter().all(|(n, f)| *n > 0.0 && n < f));
-    let through = |view: &airlight_render::probe::RayAnswer| view.transmittance.clone().unwrap();
+    let through = |view: &RayAnswer| view.transmittance.clone().unwrap();
     assert!(
         through(near)
             .iter()

@@ -76,7 +76,7 @@ fn models_refuse_what_they_do_not_honour() {
             }
         }
     }
-    assert!(folder.names().is_empty());
+    assert!(folder.names("").is_empty());
 }
 
 /// A pixel of a picture is what the probe gives for the direction of its centre, above the horizon and below; in spectra to the

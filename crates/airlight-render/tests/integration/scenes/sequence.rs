@@ -14,7 +14,7 @@ fn pictures_there_are_left_as_they_are() {
     let folder = Folder::new();
     assert_eq!(folder.write("a.exr", SCENE).len(), 4);
     let names = ["a.0001.exr", "a.0002.exr", "a.0003.exr", "a.0004.exr"];
-    assert_eq!(folder.names(), names);
+    assert_eq!(folder.names(""), names);
     // One is missing, one is empty: both are made; the others are not touched.
     std::fs::remove_file(folder.file(names[1])).unwrap();
     std::fs::write(folder.file(names[2]), "").unwrap();
@@ -35,7 +35,7 @@ fn pictures_show_the_time_that_they_are_named_after() {
         ),
     );
     assert_eq!(
-        folder.names(),
+        folder.names(""),
         [
             "s-20260621T160000Z.png",
             "s-20260621T160000Z.sun.png",
@@ -86,7 +86,7 @@ fn a_stopped_sequence_keeps_its_whole_pictures() {
         Err(RenderError::Image(ImageError::Cancelled)) => {}
         other => panic!("{other:?}"),
     }
-    assert_eq!(folder.names(), ["a.0001.png"]);
+    assert_eq!(folder.names(""), ["a.0001.png"]);
     assert_eq!(renderer.write(Control::default()).unwrap().len(), 3);
 }
 
@@ -107,5 +107,5 @@ fn sequences_that_make_no_sense_are_refused() {
         let error = folder.try_write("a.png", &scene).unwrap_err().to_string();
         assert!(error.contains(part), "{scene}: {error}");
     }
-    assert!(folder.names().is_empty());
+    assert!(folder.names("").is_empty());
 }
