@@ -4,6 +4,7 @@ use crate::args::{AccuracyArgs, ReportArg};
 use crate::error::CliError;
 use crate::progress::Busy;
 use crate::report;
+use airlight::Named;
 use airlight_validation::report::{html, json, text};
 use airlight_validation::{Check, Suite, run as make};
 
@@ -23,7 +24,7 @@ pub fn run(args: &AccuracyArgs) -> Result<(), CliError> {
     }
     let suites: Vec<Suite> = match args.suites.as_slice() {
         [] => Suite::ALL.to_vec(),
-        some => some.iter().map(|&suite| suite.into()).collect(),
+        some => some.to_vec(),
     };
     let busy = Busy::with("comparing");
     let checks = make(&suites);

@@ -2,6 +2,7 @@
 
 use crate::error::CliError;
 use crate::report;
+use airlight::Named;
 use airlight::atmosphere::{AerosolMixture, AerosolType, AerosolTypeError};
 use std::fmt::Write;
 

@@ -207,7 +207,9 @@ pub fn exposure(text: &str) -> Result<Exposure, String> {
 
 /// Parser of a [`Named`] type, whose help lists all values.
 pub fn named<T: Named + Send + Sync>() -> impl TypedValueParser<Value = T> {
-    let values = T::all().map(|value| PossibleValue::new(value.name()).help(value.summary()));
+    let values = T::ALL
+        .iter()
+        .map(|value| PossibleValue::new(value.name()).help(value.summary()));
     PossibleValuesParser::new(values).try_map(|name| T::from_name(&name))
 }
 

@@ -112,8 +112,10 @@ pub fn bytes(count: u64) -> String {
 
 /// The names of a set with their descriptions, one on each line after `indent`.
 pub fn named<T: Named>(indent: &str) -> String {
-    let width = T::all().map(|value| value.name().len()).max().unwrap_or(0);
-    T::all()
+    let lengths = T::ALL.iter().map(|value| value.name().len());
+    let width = lengths.max().unwrap_or(0);
+    T::ALL
+        .iter()
         .map(|value| format!("{indent}{:width$}  {}\n", value.name(), value.summary()))
         .collect()
 }

@@ -10,7 +10,7 @@ use airlight::spectrum::difference::{D65_WHITE, ciede2000, xyz_to_lab};
 use airlight::spectrum::rgb::srgb_encode;
 use airlight_image::enlarge::Enlarged;
 use airlight_image::output::Metadata;
-use airlight_image::output::exr::{ExrCompression, ExrOptions, ExrSample, encode};
+use airlight_image::output::exr::{ExrCompression, ExrOptions, SamplePrecision, encode};
 use airlight_image::rows::StoredRows;
 use airlight_image::{Camera, Control, Frame, Projection, RowSource, Size};
 use std::error::Error;
@@ -114,10 +114,10 @@ fn packed(model: &Klassen1987, remember: bool) -> Outcome<String> {
         })
         .sum();
     let source = StoredRows::new(SIZE.0, 3, samples)?;
-    let bytes = |sample, compression| -> Outcome<usize> {
+    let bytes = |precision, compression| -> Outcome<usize> {
         let mut out = Cursor::new(Vec::new());
         let options = ExrOptions {
-            sample,
+            precision,
             compression,
         };
         let names = ["R", "G", "B"];
@@ -133,18 +133,18 @@ fn packed(model: &Klassen1987, remember: bool) -> Outcome<String> {
         )?;
         Ok(out.into_inner().len())
     };
-    let percent = |sample| -> Outcome<String> {
-        let whole = bytes(sample, ExrCompression::None)? as f64;
-        let rle = bytes(sample, ExrCompression::Rle)? as f64;
-        let zip = bytes(sample, ExrCompression::Zip)? as f64;
+    let percent = |precision| -> Outcome<String> {
+        let whole = bytes(precision, ExrCompression::None)? as f64;
+        let rle = bytes(precision, ExrCompression::Rle)? as f64;
+        let zip = bytes(precision, ExrCompression::Zip)? as f64;
         let [rle, zip] = [rle, zip].map(|packed| 100.0 * packed / whole);
         Ok(format!("{rle:.0} % | {zip:.0} %"))
     };
     Ok(format!(
         "{:.0} % | {} | {}",
         100.0 * (4 * runs) as f64 / (3 * codes.len()) as f64,
-        percent(ExrSample::Half)?,
-        percent(ExrSample::Float)?
+        percent(SamplePrecision::Half)?,
+        percent(SamplePrecision::Float)?
     ))
 }
 

@@ -8,7 +8,7 @@ use airlight_image::{
     Control, Frame, ImageError,
     output::{
         Metadata, Written,
-        exr::{self, ExrCompression, ExrOptions, ExrSample},
+        exr::{self, ExrCompression, ExrOptions, SamplePrecision},
         hdr,
         jpeg::{self, JpegOptions},
         png::{self, PngDepth, PngOptions},
@@ -64,9 +64,9 @@ fn write(folder: &Path, frame: &Frame, format: &str) -> Result<Written, ImageErr
     let tone = ToneMapper::new(1.0, ToneCurve::default())?;
     let metadata = Metadata::default().with_frame(frame);
     let control = Control::default();
-    let exr_as = |sample, compression| {
+    let exr_as = |precision, compression| {
         let options = ExrOptions {
-            sample,
+            precision,
             compression,
         };
         let path = folder.join(format!("big_{format}.exr"));
@@ -106,8 +106,8 @@ fn write(folder: &Path, frame: &Frame, format: &str) -> Result<Written, ImageErr
             )
         }
         "hdr" => hdr::write(&folder.join("big.hdr"), size, &rgb, &metadata, control),
-        "exr-float" => exr_as(ExrSample::Float, ExrCompression::Zip),
-        "exr-piz" => exr_as(ExrSample::Half, ExrCompression::Piz),
+        "exr-float" => exr_as(SamplePrecision::Float, ExrCompression::Zip),
+        "exr-piz" => exr_as(SamplePrecision::Half, ExrCompression::Piz),
         "spectral" => {
             let wavelengths: Vec<f64> = (0..40).map(|i| 380.0 + 10.0 * f64::from(i)).collect();
             spectral::write(
@@ -120,7 +120,7 @@ fn write(folder: &Path, frame: &Frame, format: &str) -> Result<Written, ImageErr
                 control,
             )
         }
-        _ => exr_as(ExrSample::Half, ExrCompression::Zip),
+        _ => exr_as(SamplePrecision::Half, ExrCompression::Zip),
     }
 }
 

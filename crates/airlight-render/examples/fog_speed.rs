@@ -10,7 +10,7 @@ use airlight::fog::{
     DensityProfile, DirectionalLight, FogLighting, FogScattering, Ground, RgbFog, RgbLayer,
 };
 use airlight_image::input::{DepthMap, DepthOptions, Picture, read_depth, read_picture};
-use airlight_image::output::exr::{ExrOptions, ExrSample};
+use airlight_image::output::exr::{ExrOptions, SamplePrecision};
 use airlight_image::output::{Metadata, PictureOptions, exr, png};
 use airlight_image::rows::{RowFn, StoredRows};
 use airlight_image::tone::ToneMapper;
@@ -93,7 +93,7 @@ fn make(folder: &Path, number: u32) -> Result<(), Box<dyn Error>> {
     let (path, options) = (
         file("depth", "exr"),
         ExrOptions {
-            sample: ExrSample::Float,
+            precision: SamplePrecision::Float,
             ..ExrOptions::default()
         },
     );

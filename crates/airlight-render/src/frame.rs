@@ -15,7 +15,7 @@ use crate::sky_rows::{Layer, SkyRows, SkyValues};
 use crate::sun_disc::SunDiscImage;
 use airlight::scene::{PreparedModel, RadianceSampler, RadianceView, SunAngles, SunDiscPlacement};
 use airlight::sun::Moment;
-use airlight_image::output::exr::{self, ExrOptions, ExrSample};
+use airlight_image::output::exr::{self, ExrOptions, SamplePrecision};
 use airlight_image::output::{Metadata, Written, spectral};
 use airlight_image::rows::StoredRows;
 use airlight_image::tone::{Exposure, ToneCurve, ToneMapper};
@@ -429,7 +429,7 @@ fn write_polarisation(
     control: Control<'_>,
 ) -> Result<Written, ImageError> {
     let options = ExrOptions {
-        sample: ExrSample::Float,
+        precision: SamplePrecision::Float,
         ..ExrOptions::default()
     };
     let metadata = Metadata::default();

@@ -3,6 +3,7 @@
 use crate::error::RenderError;
 use crate::pixels::{is_spectral_path, tagged_path};
 use crate::sky_rows::Layer;
+use airlight::Named;
 use airlight::scene::{CameraSpec, OutputSpec, Projection as ProjectionKind, SunDiscPlacement};
 use airlight::spectrum::RgbSpace;
 use airlight_image::{Camera, CubeFace, Fisheye, Frame, PictureFormat, Projection, Size};
@@ -213,11 +214,11 @@ fn frames(
             center_azimuth_deg: camera.azimuth_deg.unwrap_or(0.0),
         },
         ProjectionKind::Cube => {
-            let face = |face: CubeFace| {
+            let face = |&face: &CubeFace| {
                 let frame = Frame::new(Projection::CubeFace(face), width, height)?;
                 Ok((Some(face.name()), frame))
             };
-            return CubeFace::ALL.into_iter().map(face).collect();
+            return CubeFace::ALL.iter().map(face).collect();
         }
         ProjectionKind::Fisheye => Projection::AngularFisheye(Fisheye {
             azimuth_deg: camera.azimuth_deg.unwrap_or(180.0),

@@ -10,7 +10,7 @@ use airlight::scene::{
 };
 use airlight::sky::SunCoverage;
 use airlight::sun::Moment;
-use airlight_image::output::exr::{ExrCompression, ExrOptions, ExrSample};
+use airlight_image::output::exr::ExrOptions;
 use airlight_image::output::jpeg::JpegOptions;
 use airlight_image::output::png::{PngDepth, PngOptions};
 use airlight_image::tone::{FilmicSettings, ToneCurve};
@@ -177,21 +177,11 @@ impl Renderer {
 
     /// Encoding of the files, without metadata.
     pub fn picture_options(&self) -> PictureOptions {
-        use airlight::scene::{ExrCompression as Packing, SamplePrecision};
         let output = &self.scene.output;
         PictureOptions {
             exr: ExrOptions {
-                sample: match output.precision.unwrap_or_default() {
-                    SamplePrecision::Half => ExrSample::Half,
-                    SamplePrecision::Float => ExrSample::Float,
-                },
-                compression: match output.compression.unwrap_or_default() {
-                    Packing::None => ExrCompression::None,
-                    Packing::Rle => ExrCompression::Rle,
-                    Packing::Zips => ExrCompression::ZipLine,
-                    Packing::Zip => ExrCompression::Zip,
-                    Packing::Piz => ExrCompression::Piz,
-                },
+                precision: output.precision.unwrap_or_default(),
+                compression: output.compression.unwrap_or_default(),
             },
             png: PngOptions {
                 depth: match output.bits {

@@ -210,6 +210,7 @@ fn edge_bulge(a: DVec3, b: DVec3, middle: Option<DVec3>) -> f64 {
 mod tests {
     use super::*;
     use crate::test_view::TestView;
+    use airlight::Named;
     use airlight::axes;
     use airlight::spectrum::RgbSpace;
     use airlight_image::{Camera, CubeFace, Fisheye, Projection, Size};
@@ -276,8 +277,8 @@ mod tests {
             assert!((share - 1.0).abs() < 5e-3, "{frame:?}: {share}");
         }
         let cube: f64 = CubeFace::ALL
-            .into_iter()
-            .map(|face| {
+            .iter()
+            .map(|&face| {
                 share(
                     &view,
                     &Frame::new(Projection::CubeFace(face), 16, 16).unwrap(),

@@ -4,8 +4,8 @@ use serde::Serialize;
 use std::fmt;
 
 /// A family of checks.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Suite {
     /// Skies compared with tables of a Monte Carlo, SASKTRAN2 and libRadtran.
     Tables,
@@ -17,20 +17,14 @@ pub enum Suite {
     Measured,
 }
 
+airlight::named! { Suite, "a set of comparisons", [
+    ("tables", (Tables), "skies against tables of an independent Monte Carlo, SASKTRAN2 and libRadtran"),
+    ("monte-carlo", (MonteCarlo), "skies in daylight and twilight against Airlight's Monte Carlo solver"),
+    ("peers", (Peers), "published sky models against the default solver"),
+    ("measured", (Measured), "the sky measured on 27 May 2013 against the solver and published models"),
+] }
+
 impl Suite {
-    /// All suites.
-    pub const ALL: [Self; 4] = [Self::Tables, Self::MonteCarlo, Self::Peers, Self::Measured];
-
-    /// Name on the command line and in reports.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Tables => "tables",
-            Self::MonteCarlo => "monte-carlo",
-            Self::Peers => "peers",
-            Self::Measured => "measured",
-        }
-    }
-
     /// Title in reports.
     pub fn title(self) -> &'static str {
         match self {

@@ -14,12 +14,13 @@ pub mod skies;
 pub mod solved;
 pub mod table;
 
+use airlight::Named;
 use airlight::sky::SkySettings;
 pub use check::{At, Check, Row, Statistics, Suite, Unit};
 
 /// Performs all checks of the suites, in the order of [`Suite::ALL`].
 pub fn run(suites: &[Suite]) -> Vec<Check> {
-    let wanted = Suite::ALL.into_iter().filter(|s| suites.contains(s));
+    let wanted = Suite::ALL.iter().filter(|s| suites.contains(s));
     wanted
         .flat_map(|suite| match suite {
             Suite::Tables => skies::checks(),

@@ -1,6 +1,7 @@
 //! Prints the book's numbers and tables of the air and the sun (`scripts/book`):
 //! `cargo run --release --example book_numbers -p airlight`; with the argument `molecules`, `hazes` or `earth` only that table.
 
+use airlight::Named;
 use airlight::atmosphere::{ConstituentKind, Preset, gases, preset};
 use airlight::atmosphere::{turbidity_of_optical_depth, visibility_of_extinction_m};
 use airlight::optics::rayleigh;

@@ -1,6 +1,7 @@
 //! Prints the tables of the book's chapter on spheres (`scripts/book`): `cargo run --release -p airlight --example spheres` for
 //! the optical properties of published drop distributions; with the argument `times` for the time to compute their tables.
 
+use airlight::Named;
 use airlight::atmosphere::{Constituent, DensityProfile};
 use airlight::fog::RgbLayer;
 use airlight::optics::mie::droplets::Drops;

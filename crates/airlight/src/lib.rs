@@ -63,6 +63,15 @@ pub use control::{Cancelled, Control, Progress};
 pub use glam;
 pub use names::{Named, UnknownName};
 
+/// Crates that the code of macros names.
+#[doc(hidden)]
+pub mod dependencies {
+    #[cfg(feature = "schema")]
+    pub use schemars;
+    #[cfg(feature = "serde")]
+    pub use serde;
+}
+
 /// The example of the README, compiled and run as a test.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -9,7 +9,7 @@ use std::fmt;
 /// ```
 /// use airlight::{Named, spectrum::RgbSpace};
 ///
-/// let names: Vec<&str> = RgbSpace::all().map(RgbSpace::name).collect();
+/// let names: Vec<&str> = RgbSpace::ALL.iter().map(|space| space.name()).collect();
 /// assert_eq!(names, ["srgb", "rec2020", "acescg"]);
 /// let error = "rec2o20".parse::<RgbSpace>().unwrap_err();
 /// assert_eq!(error.to_string(), "expected an RGB space (srgb, rec2020, acescg), got \"rec2o20\"; try \"rec2020\"");
@@ -19,7 +19,7 @@ pub trait Named: Copy + PartialEq + 'static {
     const WHAT: &'static str;
 
     /// All values, in the order in which they are listed.
-    fn all() -> impl Iterator<Item = Self>;
+    const ALL: &'static [Self];
 
     /// The name in kebab case.
     fn name(self) -> &'static str;
@@ -32,9 +32,12 @@ pub trait Named: Copy + PartialEq + 'static {
     /// # Errors
     /// [`UnknownName`] with all names and the most similar one.
     fn from_name(name: &str) -> Result<Self, UnknownName> {
-        Self::all()
-            .find(|value| value.name() == name)
-            .ok_or_else(|| UnknownName::new(Self::WHAT, name, Self::all().map(Self::name)))
+        let named = |value: &&Self| value.name() == name;
+        let names = || Self::ALL.iter().map(|value| value.name());
+        match Self::ALL.iter().find(named) {
+            Some(&value) => Ok(value),
+            None => Err(UnknownName::new(Self::WHAT, name, names())),
+        }
     }
 }
 
@@ -84,94 +87,118 @@ impl fmt::Display for UnknownName {
 
 impl std::error::Error for UnknownName {}
 
-/// Implements [`Named`], `Display` and `FromStr` for an enum: `(name, (variant), description)` for each value.
+/// Implements [`Named`], `Display`, `FromStr` and, with their features, serde's traits and `JsonSchema` of an enum:
+/// `(name, (variant), description)` for each value.
+#[doc(hidden)]
+#[macro_export]
 macro_rules! named {
     ($type:ty, $what:literal, [$(($name:literal, ($($value:tt)+), $summary:literal)),+ $(,)?]) => {
-        impl $type {
-            /// All values, in the order in which they are listed.
-            pub const ALL: &'static [Self] = &[$(Self::$($value)+),+];
+        impl $crate::Named for $type {
+            const WHAT: &'static str = $what;
+            const ALL: &'static [Self] = &[$(Self::$($value)+),+];
 
-            /// The name in kebab case.
-            pub fn name(self) -> &'static str {
+            fn name(self) -> &'static str {
                 match self {
                     $(Self::$($value)+ => $name),+
                 }
             }
 
-            /// Description in one line.
-            pub fn summary(self) -> &'static str {
+            fn summary(self) -> &'static str {
                 match self {
                     $(Self::$($value)+ => $summary),+
                 }
             }
         }
 
-        impl $crate::names::Named for $type {
-            const WHAT: &'static str = $what;
-
-            fn all() -> impl Iterator<Item = Self> {
-                Self::ALL.iter().copied()
-            }
-
-            fn name(self) -> &'static str {
-                self.name()
-            }
-
-            fn summary(self) -> &'static str {
-                self.summary()
-            }
-        }
-
-        $crate::names::written_by_name!($type);
+        $crate::written_by_name!($type);
     };
 }
 
 /// Implements `Display`, `FromStr` and, with their features, serde's traits and `JsonSchema` of a [`Named`] type.
+#[doc(hidden)]
+#[macro_export]
 macro_rules! written_by_name {
     ($type:ty) => {
         impl std::fmt::Display for $type {
             fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-                f.pad($crate::names::Named::name(*self))
+                f.pad($crate::Named::name(*self))
             }
         }
 
         impl std::str::FromStr for $type {
-            type Err = $crate::names::UnknownName;
+            type Err = $crate::UnknownName;
 
             fn from_str(name: &str) -> Result<Self, Self::Err> {
-                $crate::names::Named::from_name(name)
+                $crate::Named::from_name(name)
             }
         }
 
-        #[cfg(feature = "serde")]
-        impl serde::Serialize for $type {
-            fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-                serializer.serialize_str($crate::names::Named::name(*self))
+        $crate::serialized_by_name!($type);
+        $crate::listed_in_schema!($type);
+    };
+}
+
+// The features of this crate decide, not those of the crate in which the macros are used.
+#[cfg(feature = "serde")]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! serialized_by_name {
+    ($type:ty) => {
+        impl $crate::dependencies::serde::Serialize for $type {
+            fn serialize<S>(&self, serializer: S) -> Result<S::Ok, S::Error>
+            where
+                S: $crate::dependencies::serde::Serializer,
+            {
+                serializer.serialize_str($crate::Named::name(*self))
             }
         }
 
-        #[cfg(feature = "serde")]
-        impl<'de> serde::Deserialize<'de> for $type {
-            fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-                let name = <std::borrow::Cow<'de, str>>::deserialize(deserializer)?;
-                name.parse().map_err(serde::de::Error::custom)
+        impl<'de> $crate::dependencies::serde::Deserialize<'de> for $type {
+            fn deserialize<D>(deserializer: D) -> Result<Self, D::Error>
+            where
+                D: $crate::dependencies::serde::Deserializer<'de>,
+            {
+                use $crate::dependencies::serde::{Deserialize, de::Error};
+                let name = <std::borrow::Cow<'de, str> as Deserialize>::deserialize(deserializer)?;
+                name.parse().map_err(Error::custom)
             }
         }
+    };
+}
 
-        #[cfg(feature = "schema")]
-        impl schemars::JsonSchema for $type {
+#[cfg(not(feature = "serde"))]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! serialized_by_name {
+    ($type:ty) => {};
+}
+
+#[cfg(feature = "schema")]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! listed_in_schema {
+    ($type:ty) => {
+        impl $crate::dependencies::schemars::JsonSchema for $type {
             fn schema_name() -> std::borrow::Cow<'static, str> {
                 stringify!($type).into()
             }
 
-            fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
-                let names: Vec<&str> = <Self as $crate::names::Named>::all()
-                    .map($crate::names::Named::name)
-                    .collect();
-                schemars::json_schema!({ "type": "string", "enum": names })
+            fn json_schema(
+                _: &mut $crate::dependencies::schemars::SchemaGenerator,
+            ) -> $crate::dependencies::schemars::Schema {
+                let values = <Self as $crate::Named>::ALL;
+                let names: Vec<&str> = values.iter().map(|&v| $crate::Named::name(v)).collect();
+                $crate::dependencies::schemars::json_schema!({ "type": "string", "enum": names })
             }
         }
     };
+}
+
+#[cfg(not(feature = "schema"))]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! listed_in_schema {
+    ($type:ty) => {};
 }
 
 pub(crate) use {named, written_by_name};

@@ -1,35 +1,12 @@
 //! Options of `airlight accuracy`.
 
+use crate::parse;
 use airlight_validation::Suite;
-use clap::{Args, ValueEnum};
+use clap::Args;
 use std::path::PathBuf;
 
-/// Set of comparisons.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum SuiteArg {
-    /// Skies against tables of an independent Monte Carlo, SASKTRAN2 and libRadtran.
-    Tables,
-    /// Skies in daylight and twilight against Airlight's Monte Carlo solver.
-    MonteCarlo,
-    /// Published sky models against the default solver.
-    Peers,
-    /// The sky measured on 27 May 2013 against the solver and published models.
-    Measured,
-}
-
-impl From<SuiteArg> for Suite {
-    fn from(arg: SuiteArg) -> Self {
-        match arg {
-            SuiteArg::Tables => Self::Tables,
-            SuiteArg::MonteCarlo => Self::MonteCarlo,
-            SuiteArg::Peers => Self::Peers,
-            SuiteArg::Measured => Self::Measured,
-        }
-    }
-}
-
 /// Format of the report.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReportArg {
     /// Plain text.
     Text,
@@ -39,15 +16,21 @@ pub enum ReportArg {
     Html,
 }
 
+airlight::named! { ReportArg, "a format of a report", [
+    ("text", (Text), "plain text"),
+    ("json", (Json), "the format airlight-accuracy/1"),
+    ("html", (Html), "a self-contained page with plots"),
+] }
+
 /// Options of `airlight accuracy`.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct AccuracyArgs {
     /// Comparisons to run [default: all]
-    #[arg(value_enum, value_name = "SUITE")]
-    pub suites: Vec<SuiteArg>,
+    #[arg(value_name = "SUITE", value_parser = parse::named::<Suite>())]
+    pub suites: Vec<Suite>,
     /// Format of the report [default: by the extension of --output, otherwise text]
-    #[arg(long, value_enum)]
+    #[arg(long, value_parser = parse::named::<ReportArg>())]
     pub format: Option<ReportArg>,
     /// Include all compared values in the JSON
     #[arg(long)]

@@ -1,6 +1,7 @@
 //! Options for gases, haze and ground, and for `airlight atmospheres`, which lists their names.
 
 use crate::parse::{self, put};
+use airlight::Named;
 use airlight::atmosphere::{AerosolType, Preset};
 use airlight::scene::AirSpec;
 use clap::Args;

@@ -6,17 +6,22 @@ use crate::parse;
 use airlight::models::registry;
 use airlight::scene::{Effort, Input, RadianceModel, Scene, SunDiscPlacement};
 use airlight::sky::Scattering;
-use clap::{Args, ValueEnum};
+use clap::Args;
 use std::path::PathBuf;
 
 /// Format of the statistics.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StatisticsArg {
     /// Plain text.
     Table,
     /// JSON.
     Json,
 }
+
+airlight::named! { StatisticsArg, "a format of statistics", [
+    ("table", (Table), "plain text"),
+    ("json", (Json), "JSON"),
+] }
 
 /// Options of `airlight compare`.
 #[derive(Debug, Args)]
@@ -33,7 +38,7 @@ pub struct CompareArgs {
     #[arg(short, long, value_name = "FILE.png", help_heading = "Files")]
     pub output: Option<PathBuf>,
     /// Format of the statistics on standard output
-    #[arg(long, value_enum, default_value_t = StatisticsArg::Table, help_heading = "Files")]
+    #[arg(long, value_parser = parse::named::<StatisticsArg>(), default_value_t = StatisticsArg::Table, help_heading = "Files")]
     pub format: StatisticsArg,
     /// Scale the second sky to the same horizontal illuminance, for models without absolute brightness
     #[arg(long, help_heading = "Difference")]

@@ -11,7 +11,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 /// Parser of the kinds of droplets.
 pub fn droplets() -> impl TypedValueParser<Value = DropletKind> {
-    let values = DropletKind::all().map(|kind| {
+    let values = DropletKind::ALL.iter().map(|kind| {
         let value = PossibleValue::new(kind.name()).help(kind.summary());
         match kind {
             DropletKind::Published(Drops::ModerateRadiationFog) => value.alias("mist"),

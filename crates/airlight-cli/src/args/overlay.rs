@@ -4,33 +4,10 @@ use super::fog::{ContrastArgs, FogArgs};
 use super::overlay_batch::BatchArgs;
 use super::{OverlayLightArgs, OverlaySolverArgs};
 use crate::parse;
-use airlight_render::overlay::{DepthFileKind, DepthHoles, OverlayScene};
-use clap::{Args, ValueEnum};
+use airlight_image::input::UnknownDepth;
+use airlight_render::overlay::{DepthFileKind, OverlayScene};
+use clap::Args;
 use std::path::PathBuf;
-
-/// Meaning of the values of the depth file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum DepthKindArg {
-    /// Depth along the camera's axis.
-    Z,
-    /// Distance along the ray of the pixel.
-    Ray,
-    /// Stereo disparity, pixels: needs --focal-px and --baseline-m.
-    Disparity,
-    /// Inverse depth.
-    Inverse,
-}
-
-/// Treatment of pixels of unknown depth.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum HolesArg {
-    /// Filled from their neighbours.
-    Fill,
-    /// Treated as sky.
-    Far,
-    /// Kept free of fog.
-    Clear,
-}
 
 /// Options of `airlight fog`.
 #[derive(Clone, Debug, Args)]
@@ -61,8 +38,8 @@ pub struct OverlayArgs {
     pub batch: BatchArgs,
 
     /// Meaning of the depth values [default: z]
-    #[arg(long, value_enum, value_name = "KIND", help_heading = "Depth")]
-    pub depth_kind: Option<DepthKindArg>,
+    #[arg(long, value_name = "KIND", value_parser = parse::named::<DepthFileKind>(), help_heading = "Depth")]
+    pub depth_kind: Option<DepthFileKind>,
     /// Metres for each unit of depth: 0.001 for millimetres [default: 1]
     #[arg(long, value_name = "M", value_parser = parse::positive, help_heading = "Depth")]
     pub depth_scale: Option<f64>,
@@ -70,8 +47,8 @@ pub struct OverlayArgs {
     #[arg(long, value_name = "NAME", help_heading = "Depth")]
     pub depth_channel: Option<String>,
     /// Treatment of pixels of unknown depth [default: fill]
-    #[arg(long, value_enum, value_name = "HOW", help_heading = "Depth")]
-    pub holes: Option<HolesArg>,
+    #[arg(long, value_name = "HOW", value_parser = parse::named::<UnknownDepth>(), help_heading = "Depth")]
+    pub holes: Option<UnknownDepth>,
     /// Pixels at this distance or beyond are sky, m
     #[arg(long, value_name = "M", value_parser = parse::length_m, help_heading = "Depth")]
     pub far_m: Option<f64>,
@@ -124,23 +101,10 @@ impl OverlayArgs {
             (overlay.colour, overlay.depth) = (colour.clone(), None);
         }
         overlay.depth = self.depth.clone().or(overlay.depth.take());
-        if let Some(kind) = self.depth_kind {
-            overlay.depth_kind = match kind {
-                DepthKindArg::Z => DepthFileKind::Z,
-                DepthKindArg::Ray => DepthFileKind::Ray,
-                DepthKindArg::Disparity => DepthFileKind::Disparity,
-                DepthKindArg::Inverse => DepthFileKind::Inverse,
-            };
-        }
+        overlay.depth_kind = self.depth_kind.unwrap_or(overlay.depth_kind);
         overlay.depth_scale = self.depth_scale.unwrap_or(overlay.depth_scale);
         overlay.depth_channel = self.depth_channel.clone().or(overlay.depth_channel.take());
-        if let Some(holes) = self.holes {
-            overlay.holes = match holes {
-                HolesArg::Fill => DepthHoles::Fill,
-                HolesArg::Far => DepthHoles::Far,
-                HolesArg::Clear => DepthHoles::Clear,
-            };
-        }
+        overlay.holes = self.holes.unwrap_or(overlay.holes);
         put(&mut overlay.far_m, self.far_m);
         put(&mut overlay.baseline_m, self.baseline_m);
         let offset_px = self.disparity_offset_px;

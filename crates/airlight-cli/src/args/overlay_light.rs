@@ -4,16 +4,7 @@ use crate::parse::{self, LatLon, words::Words};
 use airlight::fog::lights::LightForm;
 use airlight::scene::{LightKind, LightSpec};
 use airlight_render::overlay::{ExistingAerial, OverlayScene};
-use clap::{Args, ValueEnum};
-
-/// Whether the picture shows the clear air in front of its objects.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum AirArg {
-    /// It does, like photographs.
-    Drawn,
-    /// It does not, like many rendered pictures: the air is added.
-    Missing,
-}
+use clap::Args;
 
 /// The ambient light of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -100,8 +91,8 @@ pub struct OverlayLightArgs {
     #[arg(long, value_name = "FACTOR", value_parser = parse::positive)]
     pub radiance_scale: Option<f64>,
     /// Whether the picture shows the clear air in front of its objects, or --sky-light adds it [default: drawn]
-    #[arg(long, value_enum)]
-    pub air: Option<AirArg>,
+    #[arg(long, value_parser = parse::named::<ExistingAerial>())]
+    pub air: Option<ExistingAerial>,
 }
 
 impl OverlayLightArgs {
@@ -118,12 +109,7 @@ impl OverlayLightArgs {
         put(&mut overlay.sun_strength, self.sun_strength);
         overlay.sky_light |= self.sky_light;
         put(&mut overlay.radiance_scale, self.radiance_scale);
-        if let Some(air) = self.air {
-            overlay.air = match air {
-                AirArg::Drawn => ExistingAerial::Drawn,
-                AirArg::Missing => ExistingAerial::Missing,
-            };
-        }
+        overlay.air = self.air.unwrap_or(overlay.air);
         overlay.light_form = self.light_form.unwrap_or(overlay.light_form);
         if !self.light.is_empty() {
             scene.lights = self.light.clone();

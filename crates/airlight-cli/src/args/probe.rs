@@ -5,11 +5,11 @@ use crate::error::CliError;
 use crate::parse::{self, AzEl, put};
 use airlight::scene::Scene;
 use airlight::spectrum::RgbSpace;
-use clap::{Args, ValueEnum};
+use clap::Args;
 use std::path::PathBuf;
 
 /// Output format.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FormatArg {
     /// JSON in the format airlight-probe/1.
     Json,
@@ -18,6 +18,12 @@ pub enum FormatArg {
     /// Plain text.
     Table,
 }
+
+airlight::named! { FormatArg, "an output format", [
+    ("json", (Json), "the format airlight-probe/1"),
+    ("csv", (Csv), "a line for each direction and wavelength"),
+    ("table", (Table), "plain text"),
+] }
 
 /// Options of `airlight probe`.
 #[derive(Debug, Args)]
@@ -37,7 +43,7 @@ pub struct ProbeArgs {
     #[arg(long, help_heading = "Directions")]
     pub polarisation: bool,
     /// Output format
-    #[arg(long, value_enum, default_value_t = FormatArg::Table, help_heading = "Output")]
+    #[arg(long, value_parser = parse::named::<FormatArg>(), default_value_t = FormatArg::Table, help_heading = "Output")]
     pub format: FormatArg,
     /// File to write instead of standard output
     #[arg(short, long, value_name = "FILE", help_heading = "Output")]

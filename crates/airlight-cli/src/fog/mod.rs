@@ -7,6 +7,7 @@ use crate::error::CliError;
 use crate::interrupt::{self, STOP};
 use crate::progress::{Busy, RowsBar};
 use crate::report::{self, bytes};
+use airlight::Named;
 use airlight_image::Control;
 use airlight_image::output::Written;
 use airlight_render::batch::is_batch;
@@ -108,7 +109,7 @@ fn one(args: &OverlayArgs, scene: &OverlayScene) -> Result<(), CliError> {
         size.height(),
         bytes(written.bytes),
         report::short(scene.visibility_m()?),
-        prepared.level.source,
+        prepared.level.source.summary(),
         image.depth.holes,
         image.depth.infinite,
     ))

@@ -1,8 +1,6 @@
 //! Kinds of projection and their settings.
 
 use crate::{ImageError, Size};
-use airlight::{Named, UnknownName};
-use std::{fmt, str::FromStr};
 
 /// Mapping of directions to a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,66 +53,14 @@ pub enum CubeFace {
     NegativeZ,
 }
 
-impl CubeFace {
-    /// All faces, in the order of layers in graphics APIs.
-    pub const ALL: [Self; 6] = [
-        Self::PositiveX,
-        Self::NegativeX,
-        Self::PositiveY,
-        Self::NegativeY,
-        Self::PositiveZ,
-        Self::NegativeZ,
-    ];
-
-    /// Short name for files: `px`, `nx`, `py`, `ny`, `pz`, `nz`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::PositiveX => "px",
-            Self::NegativeX => "nx",
-            Self::PositiveY => "py",
-            Self::NegativeY => "ny",
-            Self::PositiveZ => "pz",
-            Self::NegativeZ => "nz",
-        }
-    }
-}
-
-impl Named for CubeFace {
-    const WHAT: &'static str = "a cube face";
-
-    fn all() -> impl Iterator<Item = Self> {
-        Self::ALL.into_iter()
-    }
-
-    fn name(self) -> &'static str {
-        self.name()
-    }
-
-    fn summary(self) -> &'static str {
-        match self {
-            Self::PositiveX => "+X, east",
-            Self::NegativeX => "-X, west",
-            Self::PositiveY => "+Y, up",
-            Self::NegativeY => "-Y, down",
-            Self::PositiveZ => "+Z, south",
-            Self::NegativeZ => "-Z, north",
-        }
-    }
-}
-
-impl fmt::Display for CubeFace {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.name())
-    }
-}
-
-impl FromStr for CubeFace {
-    type Err = UnknownName;
-
-    fn from_str(name: &str) -> Result<Self, UnknownName> {
-        Named::from_name(name)
-    }
-}
+airlight::named! { CubeFace, "a cube face", [
+    ("px", (PositiveX), "+X, east"),
+    ("nx", (NegativeX), "-X, west"),
+    ("py", (PositiveY), "+Y, up"),
+    ("ny", (NegativeY), "-Y, down"),
+    ("pz", (PositiveZ), "+Z, south"),
+    ("nz", (NegativeZ), "-Z, north"),
+] }
 
 /// An equidistant fisheye. Its circle is the largest that fits the picture; pixels outside show nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -41,6 +41,12 @@ pub enum UnknownDepth {
     Clear,
 }
 
+airlight::named! { UnknownDepth, "a treatment of unknown depth", [
+    ("fill", (Fill), "filled from their neighbours"),
+    ("far", (Far), "treated as sky"),
+    ("clear", (Clear), "kept free of fog"),
+] }
+
 /// Settings for reading a depth file. The default is z-depth in metres.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DepthOptions {

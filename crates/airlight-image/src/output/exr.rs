@@ -3,7 +3,7 @@
 //! The `exr` crate describes headers and compresses blocks; the file itself is written here, block after block, so that a picture
 //! is never in memory as a whole. Attributes are sorted by name, so that equal pictures give equal bytes.
 
-pub use super::options::{ExrCompression, ExrOptions, ExrSample};
+pub use super::options::{ExrCompression, ExrOptions, SamplePrecision};
 use super::{
     Metadata,
     bands::{Bands, RowBuffer},
@@ -46,9 +46,9 @@ pub(super) static ENTRY: FormatEntry = FormatEntry {
     holds_alpha: true,
     holds_channels: true,
     clamping: "were brighter than half precision holds (65504) and are cut off there",
-    describe: |options| match options.exr.sample {
-        ExrSample::Float => "float EXR".to_owned(),
-        ExrSample::Half => "half EXR".to_owned(),
+    describe: |options| match options.exr.precision {
+        SamplePrecision::Float => "float EXR".to_owned(),
+        SamplePrecision::Half => "half EXR".to_owned(),
     },
     write: |path, rgb, options, control| {
         write(
@@ -110,7 +110,7 @@ pub fn encode<W: Write + Seek + Send>(
         size,
         order: &order,
         headers: std::slice::from_ref(&header),
-        half: options.sample == ExrSample::Half,
+        half: options.precision == SamplePrecision::Half,
     };
     // The block raw, sorted and compressed; a row interleaved, split by channel and rounded.
     let band_bytes = block_bytes * 3 + size.width() as usize * channels.len() * 10;
@@ -161,9 +161,9 @@ fn build_header(
 ) -> Result<(Header, Vec<usize>), ImageError> {
     let mut order: Vec<usize> = (0..channels.len()).collect();
     order.sort_by_key(|&c| channels[c].as_bytes());
-    let sample = match options.sample {
-        ExrSample::Half => SampleType::F16,
-        ExrSample::Float => SampleType::F32,
+    let sample = match options.precision {
+        SamplePrecision::Half => SampleType::F16,
+        SamplePrecision::Float => SampleType::F32,
     };
     let list = order
         .iter()
@@ -173,7 +173,7 @@ fn build_header(
     let compression = match options.compression {
         ExrCompression::None => Compression::Uncompressed,
         ExrCompression::Rle => Compression::RLE,
-        ExrCompression::ZipLine => Compression::ZIP1,
+        ExrCompression::Zips => Compression::ZIP1,
         ExrCompression::Zip if bytes_per_line * 16 > MAX_BLOCK => Compression::ZIP1,
         ExrCompression::Zip => Compression::ZIP16,
         ExrCompression::Piz if bytes_per_line * 32 > MAX_BLOCK => Compression::ZIP1,

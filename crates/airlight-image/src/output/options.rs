@@ -1,6 +1,7 @@
 //! Settings of the picture formats.
 
 use super::Metadata;
+pub use airlight::scene::{ExrCompression, SamplePrecision};
 
 /// Settings of all formats; [`write_picture`](super::write_picture) uses those that apply.
 #[derive(Clone, Debug, Default)]
@@ -15,39 +16,11 @@ pub struct PictureOptions {
     pub metadata: Metadata,
 }
 
-/// Sample format of an EXR file.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[non_exhaustive]
-pub enum ExrSample {
-    /// 16-bit floating point: about 3 digits, up to 65504; larger samples are clamped and counted.
-    #[default]
-    Half,
-    /// 32-bit floating point; infinite samples stay infinite.
-    Float,
-}
-
-/// Lossless compression method of an EXR file.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[non_exhaustive]
-pub enum ExrCompression {
-    /// No compression.
-    None,
-    /// Run lengths: fast, large files.
-    Rle,
-    /// Zip over single lines.
-    ZipLine,
-    /// Zip over 16 lines; over single lines where those would take more than 16 MiB.
-    #[default]
-    Zip,
-    /// Wavelets over 32 lines: small for grainy pictures; zip over single lines where they would take more than 16 MiB.
-    Piz,
-}
-
 /// Settings of EXR files.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct ExrOptions {
     /// Sample format.
-    pub sample: ExrSample,
+    pub precision: SamplePrecision,
     /// Compression method.
     pub compression: ExrCompression,
 }

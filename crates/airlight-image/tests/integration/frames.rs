@@ -1,5 +1,6 @@
 //! Projections: round trips, orientation, solid angles.
 
+use airlight::Named;
 use airlight::axes;
 use airlight_image::{Camera, CubeFace, Fisheye, Frame, Projection};
 use glam::DVec3;
@@ -52,7 +53,11 @@ fn frames() -> Vec<Frame> {
             45,
         ),
     ];
-    projections.extend(CubeFace::ALL.map(|face| (Projection::CubeFace(face), 32, 32)));
+    projections.extend(
+        CubeFace::ALL
+            .iter()
+            .map(|&face| (Projection::CubeFace(face), 32, 32)),
+    );
     projections
         .into_iter()
         .map(|(projection, width, height)| Frame::new(projection, width, height).unwrap())
@@ -319,7 +324,7 @@ fn a_preview_shows_the_same_view() {
 
 #[test]
 fn cube_faces_are_named() {
-    for face in CubeFace::ALL {
+    for &face in CubeFace::ALL {
         assert_eq!(face.to_string().parse(), Ok(face));
     }
     let error = "pw".parse::<CubeFace>().unwrap_err().to_string();

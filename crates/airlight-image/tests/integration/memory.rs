@@ -4,7 +4,7 @@ use airlight_image::{
     Control, PictureOptions, Size,
     output::{
         Metadata,
-        exr::{ExrOptions, ExrSample},
+        exr::{ExrOptions, SamplePrecision},
         spectral::{self, SpectralLayout},
     },
     rows::RowFn,
@@ -52,7 +52,7 @@ fn wide_pictures_fit_in_little_memory() {
     };
     let tone = ToneMapper::new(1.0, ToneCurve::default()).unwrap();
     let float = ExrOptions {
-        sample: ExrSample::Float,
+        precision: SamplePrecision::Float,
         ..ExrOptions::default()
     };
     let options = PictureOptions {

@@ -5,7 +5,7 @@ use airlight_image::{
     Control,
     output::{
         Metadata,
-        exr::{self, ExrCompression, ExrOptions, ExrSample},
+        exr::{self, ExrCompression, ExrOptions, SamplePrecision},
         hdr,
         jpeg::{self, JpegOptions},
         png::{self, PngDepth, PngOptions},
@@ -36,17 +36,17 @@ fn read_back(
 fn exr_files_are_decoded_to_the_given_samples() {
     use ::exr::prelude::*;
     for (width, height) in [(1, 1), (37, 50), (130, 33)] {
-        for sample_kind in [ExrSample::Half, ExrSample::Float] {
+        for sample_kind in [SamplePrecision::Half, SamplePrecision::Float] {
             for compression in [
                 ExrCompression::None,
                 ExrCompression::Rle,
-                ExrCompression::ZipLine,
+                ExrCompression::Zips,
                 ExrCompression::Zip,
                 ExrCompression::Piz,
             ] {
                 let size = size(width, height);
                 let options = ExrOptions {
-                    sample: sample_kind,
+                    precision: sample_kind,
                     compression,
                 };
                 let mut bytes = Cursor::new(Vec::new());
@@ -73,7 +73,7 @@ fn exr_files_are_decoded_to_the_given_samples() {
                     for (i, got) in channel.sample_data.values_as_f32().enumerate() {
                         let want = sample(size, i as u32 % width, i as u32 / width, c);
                         let tolerance = match sample_kind {
-                            ExrSample::Half => want * 5e-4,
+                            SamplePrecision::Half => want * 5e-4,
                             _ => 0.0,
                         };
                         assert!((got - want).abs() <= tolerance, "{name} {i}: {got} {want}");
@@ -134,7 +134,7 @@ fn spectral_files_follow_the_layout() {
     let layout = SpectralLayout::new(&[380.0, 550.0, 1000.25]).unwrap();
     let size = size(20, 10);
     let options = ExrOptions {
-        sample: ExrSample::Float,
+        precision: SamplePrecision::Float,
         ..ExrOptions::default()
     };
     spectral::write(
@@ -192,6 +192,10 @@ fn spectral_files_follow_the_layout() {
 
 #[test]
 fn clamped_samples_are_counted() {
+    let half = ExrOptions {
+        precision: SamplePrecision::Half,
+        ..ExrOptions::default()
+    };
     let odd = vec![1e6, f32::NAN, -2.0, f32::INFINITY, 3.0, f32::NEG_INFINITY];
     let rows = StoredRows::new(2, 3, odd).unwrap();
     let mut bytes = Cursor::new(Vec::new());
@@ -200,7 +204,7 @@ fn clamped_samples_are_counted() {
         size(2, 1),
         &["R", "G", "B"],
         &rows,
-        &ExrOptions::default(),
+        &half,
         &Metadata::default(),
         Control::default(),
     )
@@ -224,7 +228,7 @@ fn single_precision_exr_stores_infinity() {
     let rows = StoredRows::new(2, 2, odd.clone()).unwrap();
     let mut bytes = Cursor::new(Vec::new());
     let options = ExrOptions {
-        sample: ExrSample::Float,
+        precision: SamplePrecision::Float,
         ..ExrOptions::default()
     };
     let written = exr::encode(

@@ -5,6 +5,7 @@ use airlight::spectrum::{
     RgbSpace,
     rgb::{srgb_decode, srgb_encode},
 };
+use airlight_image::output::exr::{ExrOptions, SamplePrecision};
 use airlight_image::{
     Control, ImageError, Picture, PictureOptions,
     input::{LightReference, SampleBits, read_picture},
@@ -315,6 +316,10 @@ fn written_pictures_are_read_back() {
             chromaticities: Some(RgbSpace::Rec2020.into()),
             white_luminance_cd_m2: Some(250.0),
             ..Metadata::default()
+        },
+        exr: ExrOptions {
+            precision: SamplePrecision::Half,
+            ..ExrOptions::default()
         },
         ..PictureOptions::default()
     };

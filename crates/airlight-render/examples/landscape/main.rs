@@ -23,7 +23,7 @@ use airlight_image::{
     Camera, Control, Frame, PictureOptions, Projection, Size,
     output::{
         Metadata,
-        exr::{self, ExrOptions, ExrSample},
+        exr::{self, ExrOptions, SamplePrecision},
     },
     rows::StoredRows,
     tone::{Exposure, Metering, ToneCurve, ToneMapper},
@@ -132,7 +132,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         &["R", "G", "B", "Z"],
         &StoredRows::new(width, 4, pixels)?,
         &ExrOptions {
-            sample: ExrSample::Float,
+            precision: SamplePrecision::Float,
             ..ExrOptions::default()
         },
         &metadata,

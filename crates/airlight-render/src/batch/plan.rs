@@ -3,6 +3,7 @@
 use super::inputs::{InputPath, find_inputs};
 use super::{BatchError, FoundInputs, Input, Pattern, Variation};
 use crate::overlay::OverlayScene;
+use airlight::Named;
 use airlight_image::output::PictureFormat;
 use std::collections::{HashMap, HashSet};
 use std::num::NonZeroU32;

@@ -178,7 +178,7 @@ static SETTINGS: [Setting; 15] = [
         name: "fog-profile",
         stream: "model",
         kind: Kind::Choice {
-            names: || FogProfile::all().map(FogProfile::name).collect(),
+            names: || FogProfile::ALL.iter().map(|kind| kind.name()).collect(),
             set: |s, name| s.fog_mut().profile = name.parse().ok(),
         },
     },
@@ -186,7 +186,7 @@ static SETTINGS: [Setting; 15] = [
         name: "droplets",
         stream: "droplets",
         kind: Kind::Choice {
-            names: || DropletKind::all().map(DropletKind::name).collect(),
+            names: || DropletKind::ALL.iter().map(|kind| kind.name()).collect(),
             set: |s, name| s.fog_mut().droplets = name.parse().ok(),
         },
     },

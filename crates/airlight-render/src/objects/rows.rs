@@ -4,7 +4,7 @@ use super::lit::{LitObjects, Scratch, ViewRay};
 use crate::channels::PixelChannels;
 use crate::pixels::{POINTS, directions_within};
 use crate::sky_rows::Layer;
-use airlight_image::output::exr::{self, ExrOptions, ExrSample};
+use airlight_image::output::exr::{self, ExrOptions, SamplePrecision};
 use airlight_image::output::{Metadata, Written};
 use airlight_image::rows::RowFn;
 use airlight_image::{Control, Frame, ImageError, Projection, RowSource};
@@ -132,7 +132,7 @@ pub fn write_depth(
         }
     });
     let options = ExrOptions {
-        sample: ExrSample::Float,
+        precision: SamplePrecision::Float,
         ..ExrOptions::default()
     };
     let metadata = Metadata::default().with_frame(frame);

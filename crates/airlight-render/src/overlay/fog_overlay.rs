@@ -6,7 +6,6 @@ use airlight::scene::RgbFoggySky;
 use airlight::spectrum::rgb::{srgb_decode, srgb_encode};
 use airlight::transfer::RgbPathOptics;
 use glam::DVec3;
-use serde::{Deserialize, Serialize};
 use std::sync::LazyLock;
 
 /// The fog between the camera and the objects of a picture.
@@ -40,9 +39,7 @@ pub enum FogSource {
 }
 
 /// Whether a picture shows the clear air in front of its objects.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum ExistingAerial {
     /// It does, like photographs.
     #[default]
@@ -50,6 +47,11 @@ pub enum ExistingAerial {
     /// It does not, like many rendered pictures: the air is added, except in front of the sky.
     Missing,
 }
+
+airlight::named! { ExistingAerial, "drawn or missing air", [
+    ("drawn", (Drawn), "it does, like photographs"),
+    ("missing", (Missing), "it does not, like many rendered pictures: the air is added"),
+] }
 
 /// A fog overlay from one eye height, tabulated for the pixels of a picture.
 #[derive(Debug)]

@@ -7,13 +7,10 @@ use airlight::scene::RgbFoggySky;
 use airlight_image::frame::Intrinsics;
 use airlight_image::input::{DepthMap, Picture};
 use airlight_image::tone::luminance;
-use serde::Serialize;
 use std::f32::consts::PI;
-use std::fmt;
 
 /// Source of a [`LightLevel`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum LightLevelSource {
     /// A given ambient light.
@@ -32,19 +29,15 @@ pub enum LightLevelSource {
     MatchedAmbient,
 }
 
-impl fmt::Display for LightLevelSource {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Given => "as given",
-            Self::PictureSky => "from the picture's sky",
-            Self::DarkChannel => "from the picture's dark channel",
-            Self::RadianceScale => "solved sky, radiance scale as given",
-            Self::FileWhite => "solved sky, unit as stated in the file",
-            Self::MatchedSky => "solved sky, as bright as the picture's sky",
-            Self::MatchedAmbient => "solved sky, a white surface as bright as the ambient light",
-        })
-    }
-}
+airlight::named! { LightLevelSource, "a source of a light level", [
+    ("given", (Given), "as given"),
+    ("picture-sky", (PictureSky), "from the picture's sky"),
+    ("dark-channel", (DarkChannel), "from the picture's dark channel"),
+    ("radiance-scale", (RadianceScale), "solved sky, radiance scale as given"),
+    ("file-white", (FileWhite), "solved sky, unit as stated in the file"),
+    ("matched-sky", (MatchedSky), "solved sky, as bright as the picture's sky"),
+    ("matched-ambient", (MatchedAmbient), "solved sky, a white surface as bright as the ambient light"),
+] }
 
 /// Radiance of the light of a fog, and its source.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -25,10 +25,10 @@ pub use fog_overlay::{ExistingAerial, FogOverlay, FogSource};
 pub use light_level::{LightLevel, LightLevelSource};
 pub use monte_carlo::{MonteCarloFog, MonteCarloPass};
 pub use overlay_image::OverlayImage;
-pub use overlay_scene::OverlayScene;
+pub use overlay_scene::{OverlayScene, OverlaySolver};
 pub use prepared_overlay::PreparedOverlay;
 pub use sky_light::SkyLight;
-pub use spec::{DepthFileKind, DepthHoles, OverlaySpec};
+pub use spec::{DepthFileKind, OverlaySpec};
 
 use airlight::transfer::RgbPathOptics;
 use airlight_image::input::{DepthKind, DepthMap, LightReference, Picture};

@@ -55,8 +55,16 @@ impl OverlayImage {
                 spec.colour.display(),
             )));
         }
-        let depth = spec.depth.as_ref().unwrap_or(&spec.colour);
-        let depth = read_depth(depth, &spec.depth_options()?)?;
+        let options = spec.depth_options()?;
+        let depth = match &spec.depth {
+            Some(file) => read_depth(file, &options)?,
+            None => read_depth(&spec.colour, &options).map_err(|error| {
+                RenderError::setting(format!(
+                    "depth: expected a depth map, or an EXR picture with a depth channel, got neither ({error}); try depth with a \
+                     file",
+                ))
+            })?,
+        };
         Self::new(spec, picture, depth)
     }
 
@@ -73,9 +81,9 @@ impl OverlayImage {
     ) -> Result<Written, RenderError> {
         let options = PictureOptions {
             exr: exr::ExrOptions {
-                sample: match (self.picture.bits, overlay.has_layers()) {
-                    (SampleBits::Half, false) => exr::ExrSample::Half,
-                    _ => exr::ExrSample::Float,
+                precision: match (self.picture.bits, overlay.has_layers()) {
+                    (SampleBits::Half, false) => exr::SamplePrecision::Half,
+                    _ => exr::SamplePrecision::Float,
                 },
                 ..Default::default()
             },

@@ -15,7 +15,7 @@ use airlight::scene::{FogProfile, SceneError};
 use airlight::spectrum::{RgbSpace, WavelengthGrid};
 use airlight_image::Control;
 use airlight_image::frame::Intrinsics;
-use airlight_image::output::exr::{self, ExrOptions, ExrSample};
+use airlight_image::output::exr::{self, ExrOptions, SamplePrecision};
 use airlight_image::output::{Metadata, Written};
 use airlight_image::rows::StoredRows;
 use std::f32::consts::PI;
@@ -152,7 +152,7 @@ impl PreparedOverlay {
             let path = tagged_path(output, "noise").with_extension("exr");
             let rows = StoredRows::new(size.width(), 3, pass.standard_error.clone())?;
             let options = ExrOptions {
-                sample: ExrSample::Float,
+                precision: SamplePrecision::Float,
                 ..ExrOptions::default()
             };
             let (names, metadata) = (["R", "G", "B"], Metadata::default());

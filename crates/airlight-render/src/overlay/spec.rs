@@ -11,9 +11,7 @@ use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
 /// Meaning of the values of a depth file.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum DepthFileKind {
     /// Depth along the camera's axis.
@@ -27,20 +25,12 @@ pub enum DepthFileKind {
     Inverse,
 }
 
-/// Treatment of pixels whose depth is unknown.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[non_exhaustive]
-pub enum DepthHoles {
-    /// Filled from their neighbours.
-    #[default]
-    Fill,
-    /// Treated as sky.
-    Far,
-    /// Kept free of fog.
-    Clear,
-}
+airlight::named! { DepthFileKind, "a kind of depth", [
+    ("z", (Z), "depth along the camera's axis"),
+    ("ray", (Ray), "distance along the ray of the pixel"),
+    ("disparity", (Disparity), "stereo disparity, pixels: needs --focal-px and --baseline-m"),
+    ("inverse", (Inverse), "inverse depth"),
+] }
 
 /// Colour picture, depth map and light level of an overlay: the table `[overlay]` of a scene file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -60,7 +50,7 @@ pub struct OverlaySpec {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub depth_channel: Option<String>,
     /// Treatment of pixels of unknown depth.
-    pub holes: DepthHoles,
+    pub holes: UnknownDepth,
     /// Pixels at this distance or beyond are sky, m.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub far_m: Option<f64>,
@@ -107,7 +97,7 @@ impl Default for OverlaySpec {
             depth_kind: DepthFileKind::Z,
             depth_scale: 1.0,
             depth_channel: None,
-            holes: DepthHoles::Fill,
+            holes: UnknownDepth::Fill,
             far_m: None,
             baseline_m: None,
             disparity_offset_px: 0.0,
@@ -153,11 +143,7 @@ impl OverlaySpec {
             meaning,
             scale: self.depth_scale,
             channel: self.depth_channel.clone(),
-            unknown: match self.holes {
-                DepthHoles::Fill => UnknownDepth::Fill,
-                DepthHoles::Far => UnknownDepth::Far,
-                DepthHoles::Clear => UnknownDepth::Clear,
-            },
+            unknown: self.holes,
             far_from_m: self.far_m,
             negative_is_unknown: false,
         })

@@ -6,6 +6,7 @@ use super::rays::ProbeRay;
 use crate::error::RenderError;
 use crate::illuminance::Illuminances;
 use crate::metadata::SOFTWARE;
+use airlight::Named;
 use airlight::models::registry;
 use airlight::scene::{
     CameraSpec, Channels, Input, OutputSpec, RadianceModel, RadianceView, ResolvedScene, Scene,

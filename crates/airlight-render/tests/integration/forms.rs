@@ -255,7 +255,7 @@ fn contradictions_are_refused_before_any_file_is_read() {
         ),
         (
             &|s| s.scene.solver.name = Some("preetham".to_owned()),
-            "orders or monte-carlo",
+            "(orders, monte-carlo)",
         ),
     ];
     for (set, part) in cases {

@@ -85,6 +85,7 @@ mod guards {
     use super::*;
 
     #[test]
+    #[ignore = "fits for a quarter of a minute"]
     fn embedded_fit_is_a_fixed_point_of_the_fit() {
         let (wavelengths, scans) = measured::scans();
         let fold = &measured::FOLDS[1];

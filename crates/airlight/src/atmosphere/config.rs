@@ -110,7 +110,10 @@ fn from_table(root: &Section<'_>) -> Result<Atmosphere, ConfigError> {
     let mut atmosphere = match base {
         NO_AIR => earth::airless(NO_AIR),
         name => presets::preset(name).map_err(|_| {
-            let names = Preset::all().map(Preset::name).chain([NO_AIR]);
+            let names = Preset::ALL
+                .iter()
+                .map(|preset| preset.name())
+                .chain([NO_AIR]);
             root.unknown("base", "a base", name, names.collect())
         })?,
     };

@@ -100,11 +100,24 @@ impl From<Drops> for DropletKind {
 impl Named for DropletKind {
     const WHAT: &'static str = "a kind of droplets";
 
-    fn all() -> impl Iterator<Item = Self> {
-        let analytic = Droplets::all().map(Self::Analytic);
-        let published = Drops::all().map(Self::Published);
-        analytic.chain([Self::Isotropic]).chain(published)
-    }
+    const ALL: &'static [Self] = &[
+        Self::Analytic(Droplets::Fine),
+        Self::Analytic(Droplets::Radiation),
+        Self::Analytic(Droplets::Advection),
+        Self::Analytic(Droplets::Coarse),
+        Self::Isotropic,
+        Self::Published(Drops::HeavyAdvectionFog),
+        Self::Published(Drops::ModerateAdvectionFog),
+        Self::Published(Drops::HeavyRadiationFog),
+        Self::Published(Drops::ModerateRadiationFog),
+        Self::Published(Drops::CloudC1),
+        Self::Published(Drops::CloudC2),
+        Self::Published(Drops::CloudC3),
+        Self::Published(Drops::HazeM),
+        Self::Published(Drops::HazeL),
+        Self::Published(Drops::HazeH),
+        Self::Published(Drops::Rain),
+    ];
 
     fn name(self) -> &'static str {
         match self {
@@ -126,10 +139,14 @@ impl Named for DropletKind {
 
     /// Accepts the listed names, and "mist" for moderate radiation fog.
     fn from_name(name: &str) -> Result<Self, UnknownName> {
-        Self::all()
-            .find(|kind| kind.name() == name)
-            .or((name == "mist").then_some(Drops::ModerateRadiationFog.into()))
-            .ok_or_else(|| UnknownName::new(Self::WHAT, name, Self::all().map(Self::name)))
+        if name == "mist" {
+            return Ok(Drops::ModerateRadiationFog.into());
+        }
+        let named = Self::ALL.iter().find(|kind| kind.name() == name);
+        let names = || Self::ALL.iter().map(|kind| kind.name());
+        named
+            .copied()
+            .ok_or_else(|| UnknownName::new(Self::WHAT, name, names()))
     }
 }
 
@@ -187,10 +204,9 @@ mod tests {
 
     #[test]
     fn names_are_unique() {
-        let names: std::collections::BTreeSet<_> =
-            DropletKind::all().map(DropletKind::name).collect();
-        assert_eq!(names.len(), DropletKind::all().count());
-        for kind in DropletKind::all() {
+        let all = DropletKind::ALL;
+        assert_eq!(all.len(), Droplets::ALL.len() + 1 + Drops::ALL.len());
+        for &kind in all {
             assert_eq!(kind.to_string().parse(), Ok(kind));
         }
         assert_eq!(

@@ -91,6 +91,7 @@ pub fn preset(name: &str) -> Result<Atmosphere, UnknownName> {
 mod tests {
     use super::*;
     use crate::atmosphere::ConstituentKind;
+    use crate::names::Named;
 
     #[test]
     fn presets_are_valid_and_carry_their_names() {

@@ -227,6 +227,7 @@ impl Layer {
 mod tests {
     use super::*;
     use crate::atmosphere::Preset;
+    use crate::names::Named;
 
     fn extinctions(air: &Atmosphere) -> Vec<PerConstituent> {
         [400.0, 550.0, 700.0]

@@ -318,6 +318,7 @@ impl Default for WavelengthGrid {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::names::Named;
 
     fn flat(grid: &WavelengthGrid) -> [f64; 3] {
         let sun: Vec<f32> = grid.solar_irradiance().iter().map(|&e| e as f32).collect();

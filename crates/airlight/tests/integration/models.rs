@@ -82,9 +82,8 @@ fn names_are_in_kebab_case_and_found() {
 fn every_model_answers_everywhere() {
     for model in registry::ALL {
         let name = model.name();
-        let scene = scene(name);
+        let (resolved, prepared) = prepared(&scene(name)).unwrap();
         for channels in [SRGB, Channels::Spectral] {
-            let (resolved, prepared) = prepared(&scene).unwrap();
             let sun = resolved.sun.at_start().unwrap().state();
             let view = prepared.view(resolved.observer_altitude_m, &sun, channels);
             let view = match (channels, prepared.grid()) {

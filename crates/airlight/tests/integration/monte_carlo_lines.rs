@@ -110,7 +110,7 @@ fn no_distance_is_no_air() {
 #[test]
 fn aerial_perspective_is_that_of_the_fast_solver() {
     let clear = preset("clear").unwrap();
-    let random = solver(&clear, 65_536);
+    let random = solver(&clear, 40_960);
     for sun_deg in [50.0, 6.0] {
         let sun = direction(180.0, sun_deg);
         let fast = Sky::prepare(&clear, random.grid(), &SkySettings::default()).unwrap();

@@ -13,10 +13,10 @@ fn a_plane_of_the_ground_s_albedo_looks_like_the_ground() {
     let folder = Folder::new();
     // Percent: how far apart both may be. The fog's own ground is lit by a solution, the plane by what is seen from near it.
     for (scene, percent) in [
-        ("sun.elevation_deg = 35\nsolver.wavelengths = \"fast\"", 1.0),
-        ("sun.elevation_deg = 3\nsolver.wavelengths = \"fast\"", 1.0),
+        ("sun.elevation_deg = 35\nsolver.wavelengths = \"rgb\"", 1.0),
+        ("sun.elevation_deg = 3\nsolver.wavelengths = \"rgb\"", 1.0),
         (
-            "sun.elevation_deg = 35\nsolver.wavelengths = \"fast\"\nfog = { visibility_m = 200, top_m = 20 }",
+            "sun.elevation_deg = 35\nsolver.wavelengths = \"rgb\"\nfog = { visibility_m = 200, top_m = 20 }",
             2.5,
         ),
         (
@@ -74,7 +74,9 @@ fn spectral_objects_sum_to_their_colour() {
     let folder = Folder::new();
     let sky = "sun.elevation_deg = 20\nsun.azimuth_deg = 170\nobserver.eye_height_m = 3\n\
         camera = { projection = \"perspective\", size = [9, 9], fov_deg = 8, azimuth_deg = 0, elevation_deg = 0 }\n";
-    let fine = "solver.wavelengths = \"fine\"\n";
+    let nm: Vec<String> = (0..44).map(|k| (390 + 10 * k).to_string()).collect();
+    let fine = format!("solver.wavelengths = \"{}\"\n", nm.join(","));
+    let fine = fine.as_str();
     for (scene, spectral, percent) in [
         // Reflectances in RGB are those under the sun outside the air: under a yellower sun a strong red is off by 4 %.
         ("", fine, 5.0),

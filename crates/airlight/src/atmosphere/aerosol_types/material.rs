@@ -159,6 +159,7 @@ impl Material {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::names::Named;
 
     /// Mode radii of OPAC's table for moist air: 0.0306 micrometres for water-soluble matter at 80 % and 0.0534 at 99 %,
     /// 0.416 for sea salt at 80 %, 0.231 for sulfate at 99 %; and an index of the files for wet materials.

@@ -1,6 +1,7 @@
 use super::modes::{Optics, WAVELENGTHS_NM};
 use super::*;
 use crate::atmosphere::{AerosolLoad, ClearAir, Constituent, gases};
+use crate::names::Named;
 use crate::optics::PhaseFunction;
 use crate::optics::mie::Particles;
 

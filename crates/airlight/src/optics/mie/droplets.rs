@@ -81,6 +81,7 @@ impl Drops {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::names::Named;
     use crate::optics::mie::{MieError, Particles};
 
     /// Table 5 of Shettle & Fenn: drops per cubic centimetre, grams of water per cubic metre, and the parameter

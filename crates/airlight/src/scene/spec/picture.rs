@@ -66,12 +66,12 @@ named! { SunDiscPlacement, "a place for the sun's disc", [
 ] }
 
 /// Precision of EXR samples.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum SamplePrecision {
-    /// 32 bits.
+    /// 32-bit floating point; infinite samples stay infinite.
     #[default]
     Float,
-    /// 16 bits, up to 65504.
+    /// 16-bit floating point: about 3 digits, up to 65504; larger samples are clamped and counted.
     Half,
 }
 
@@ -81,18 +81,18 @@ named! { SamplePrecision, "a sample precision", [
 ] }
 
 /// Lossless compression of EXR samples.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum ExrCompression {
     /// No compression.
     None,
-    /// Run-length encoding.
+    /// Run-length encoding: fast, large files.
     Rle,
     /// Deflate of single rows.
     Zips,
-    /// Deflate of blocks of 16 rows.
+    /// Deflate of blocks of 16 rows; of single rows where those would take more than 16 MiB.
     #[default]
     Zip,
-    /// Wavelets.
+    /// Wavelets over 32 rows: small for grainy pictures; deflate of single rows where they would take more than 16 MiB.
     Piz,
 }
 

@@ -173,16 +173,15 @@ mod guards {
         ] {
             let view = sky.view(eye_m, direction(180.0, 25.0));
             let foggy = foggy(&view, layer, FoggySky::<3>::round_ground(&view));
-            for elevation in elevations {
-                for azimuth in [170.0, 60.0] {
-                    let towards = direction(azimuth, elevation);
-                    let far = foggy.aerial().ground_distance_m(towards).unwrap_or(200e3);
-                    for length_m in [300.0, 3e3, 20e3, 200e3] {
-                        let length_m = f64::min(length_m, far);
-                        let exact = sliced(&view, &foggy, towards, length_m);
-                        let (s, t) = off(foggy.optics(towards, length_m), exact);
-                        all.push((s, t, what, eye_m, elevation, azimuth, length_m));
-                    }
+            for (k, elevation) in elevations.into_iter().enumerate() {
+                let azimuth = [170.0, 60.0][k % 2];
+                let towards = direction(azimuth, elevation);
+                let far = foggy.aerial().ground_distance_m(towards).unwrap_or(200e3);
+                for length_m in [300.0, 3e3, 20e3, 200e3] {
+                    let length_m = f64::min(length_m, far);
+                    let exact = sliced(&view, &foggy, towards, length_m);
+                    let (s, t) = off(foggy.optics(towards, length_m), exact);
+                    all.push((s, t, what, eye_m, elevation, azimuth, length_m));
                 }
             }
         }
