@@ -90,7 +90,7 @@ fn two_solvers_agree() {
 fn points_below_the_ground_are_in_fog_too() {
     let (scene, image) = hedge(1.6);
     let fast = layers(&scene, &image);
-    let (paths, _) = monte_carlo(&scene, &image, 1024, 1);
+    let (paths, _) = monte_carlo(&scene, &image, 512, 1);
     // The lowest two rows: 40 m, and the ground 5 to 8 m away.
     let sum = |layers: &Layers| layers.channel(7).skip(6 * 12).sum::<f32>();
     let ratio = sum(&paths) / sum(&fast);

@@ -210,7 +210,7 @@ fn smoke_matches_measurements() {
 fn extinction_and_albedo_increase_with_humidity() {
     for kind in [AerosolType::Urban, AerosolType::MaritimeClean] {
         let mut before = of(kind, 0.0).summary().unwrap();
-        for humidity in [0.3, 0.6, 0.8, 0.9, 0.97, 0.99] {
+        for humidity in [0.6, 0.9, 0.99] {
             let now = of(kind, humidity).summary().unwrap();
             assert!(
                 now.extinction_per_m > before.extinction_per_m,

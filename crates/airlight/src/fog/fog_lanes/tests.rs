@@ -71,9 +71,9 @@ fn by_quadrature(
         end *= 0.8;
     }
     let rule = GaussRule::new(12);
-    let mut breaks: Vec<f64> = (0..45)
+    let mut breaks: Vec<f64> = (0..24)
         .flat_map(|k| {
-            let step = end * 0.55f64.powi(k);
+            let step = end * 0.3f64.powi(k);
             [step, end - step]
         })
         .collect();
@@ -87,8 +87,8 @@ fn by_quadrature(
     }
     for kink in kinks.into_iter().filter(|k| k.is_finite()) {
         breaks.push(kink);
-        for k in 0..45 {
-            let step = end * 0.55f64.powi(k);
+        for k in 0..24 {
+            let step = end * 0.3f64.powi(k);
             breaks.extend([kink - step, kink + step]);
         }
     }
