@@ -63,3 +63,30 @@ fn format(args: &AccuracyArgs) -> Result<ReportArg, CliError> {
         )),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_format_follows_option_ending_and_default() {
+        let chosen = |output: Option<&str>, given| {
+            format(&AccuracyArgs {
+                suites: Vec::new(),
+                format: given,
+                rows: false,
+                output: output.map(Into::into),
+            })
+        };
+        for (output, given, expected) in [
+            (None, None, ReportArg::Text),
+            (Some("a.json"), None, ReportArg::Json),
+            (Some("a.html"), None, ReportArg::Html),
+            (Some("a.txt"), None, ReportArg::Text),
+            (Some("a.txt"), Some(ReportArg::Json), ReportArg::Json),
+        ] {
+            assert_eq!(chosen(output, given).ok(), Some(expected), "{output:?}");
+        }
+        assert!(chosen(Some("a.pdf"), None).is_err());
+    }
+}

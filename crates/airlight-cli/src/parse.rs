@@ -207,9 +207,12 @@ pub fn exposure(text: &str) -> Result<Exposure, String> {
 
 /// Parser of a [`Named`] type, whose help lists all values.
 pub fn named<T: Named + Send + Sync>() -> impl TypedValueParser<Value = T> {
-    let values = T::ALL
-        .iter()
-        .map(|value| PossibleValue::new(value.name()).help(value.summary()));
+    let values = T::ALL.iter().map(|value| {
+        let aliases = T::ALIASES.iter().filter(move |(_, meant)| meant == value);
+        PossibleValue::new(value.name())
+            .help(value.summary())
+            .aliases(aliases.map(|(alias, _)| *alias))
+    });
     PossibleValuesParser::new(values).try_map(|name| T::from_name(&name))
 }
 

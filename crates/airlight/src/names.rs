@@ -21,23 +21,25 @@ pub trait Named: Copy + PartialEq + 'static {
     /// All values, in the order in which they are listed.
     const ALL: &'static [Self];
 
+    /// Further names, which are read but not listed.
+    const ALIASES: &'static [(&'static str, Self)] = &[];
+
     /// The name in kebab case.
     fn name(self) -> &'static str;
 
     /// Description in one line.
     fn summary(self) -> &'static str;
 
-    /// The value with this name.
+    /// The value with this name or alias.
     ///
     /// # Errors
     /// [`UnknownName`] with all names and the most similar one.
     fn from_name(name: &str) -> Result<Self, UnknownName> {
-        let named = |value: &&Self| value.name() == name;
-        let names = || Self::ALL.iter().map(|value| value.name());
-        match Self::ALL.iter().find(named) {
-            Some(&value) => Ok(value),
-            None => Err(UnknownName::new(Self::WHAT, name, names())),
-        }
+        let listed = || Self::ALL.iter().map(|&value| (value.name(), value));
+        listed()
+            .chain(Self::ALIASES.iter().copied())
+            .find_map(|(known, value)| (known == name).then_some(value))
+            .ok_or_else(|| UnknownName::new(Self::WHAT, name, listed().map(|(known, _)| known)))
     }
 }
 

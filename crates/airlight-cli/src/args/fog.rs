@@ -1,25 +1,10 @@
 //! Options that describe fog, shared by all commands that draw it.
 
 use crate::parse::{self, words::Words};
-use airlight::Named;
 use airlight::fog::FogScattering;
 use airlight::fog::droplets::DropletKind;
-use airlight::optics::mie::droplets::Drops;
 use airlight::scene::{FogLayerSpec, FogProfile, FogSpec};
 use clap::Args;
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-
-/// Parser of the kinds of droplets.
-pub fn droplets() -> impl TypedValueParser<Value = DropletKind> {
-    let values = DropletKind::ALL.iter().map(|kind| {
-        let value = PossibleValue::new(kind.name()).help(kind.summary());
-        match kind {
-            DropletKind::Published(Drops::ModerateRadiationFog) => value.alias("mist"),
-            _ => value,
-        }
-    });
-    PossibleValuesParser::new(values).try_map(|name| DropletKind::from_name(&name))
-}
 
 /// Contrast threshold that defines visibility.
 #[derive(Clone, Debug, Default, Args)]
@@ -49,7 +34,7 @@ pub struct FogArgs {
     #[arg(long, value_name = "M", value_parser = parse::length_m)]
     pub top_m: Option<f64>,
     /// Droplets of the fog [default: radiation]
-    #[arg(long, value_name = "KIND", value_parser = droplets())]
+    #[arg(long, value_name = "KIND", value_parser = parse::named::<DropletKind>())]
     pub droplets: Option<DropletKind>,
     /// Orders of scattering in the fog; without effect in uniform fog, which is lit uniformly [default: all]
     #[arg(long, value_name = "WHICH", value_parser = parse::named::<FogScattering>())]

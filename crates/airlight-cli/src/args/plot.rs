@@ -1,7 +1,6 @@
 //! Options of `airlight plot`.
 
 use super::SceneArgs;
-use super::fog::droplets;
 use crate::parse::{self, AzEl};
 use airlight::fog::droplets::DropletKind;
 use clap::{Args, Subcommand};
@@ -111,7 +110,7 @@ pub struct PhasePlotArgs {
     #[arg(short, long, value_name = "FILE")]
     pub output: PathBuf,
     /// Fog droplets, as for `airlight fog --droplets`
-    #[arg(long, value_name = "KIND,...", value_delimiter = ',', value_parser = droplets())]
+    #[arg(long, value_name = "KIND,...", value_delimiter = ',', value_parser = parse::named::<DropletKind>())]
     pub droplets: Vec<DropletKind>,
     /// Wavelengths of --droplets, nm
     #[arg(long, value_name = "NM,...", value_delimiter = ',', value_parser = parse::positive, default_values_t = [550.0])]

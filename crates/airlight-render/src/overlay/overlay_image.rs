@@ -2,12 +2,12 @@
 
 use super::{LightLevel, Overlay, OverlaySpec};
 use crate::RenderError;
-use airlight_image::Control;
 use airlight_image::input::{
     DepthMap, LightReference, Picture, SampleBits, read_depth, read_picture,
 };
 use airlight_image::output::{PictureFormat, PictureOptions, Written, exr, png, write_picture};
 use airlight_image::tone::ToneMapper;
+use airlight_image::{Control, ImageError};
 use std::path::Path;
 
 /// A colour picture, its depth map and its ambient light.
@@ -58,11 +58,14 @@ impl OverlayImage {
         let options = spec.depth_options()?;
         let depth = match &spec.depth {
             Some(file) => read_depth(file, &options)?,
-            None => read_depth(&spec.colour, &options).map_err(|error| {
-                RenderError::setting(format!(
-                    "depth: expected a depth map, or an EXR picture with a depth channel, got neither ({error}); try depth with a \
-                     file",
-                ))
+            None => read_depth(&spec.colour, &options).map_err(|error| match error {
+                ImageError::NoChannel { .. } | ImageError::Read { .. } => {
+                    RenderError::setting(format!(
+                        "depth: expected a depth map, or an EXR picture with a depth channel, got neither ({error}); try depth \
+                         with a file",
+                    ))
+                }
+                error => error.into(),
             })?,
         };
         Self::new(spec, picture, depth)

@@ -58,7 +58,7 @@ pub enum OverlaySolver {
 
 airlight::named! { OverlaySolver, "a solver for fog over a picture", [
     ("orders", (Orders), "closed forms and discrete ordinates, in a sky solved by orders of scattering: fast, without noise"),
-    ("monte-carlo", (MonteCarlo), "path tracing in fog and air (with --sky-light): no approximation, with noise of known size; a \
+    ("monte-carlo", (MonteCarlo), "path tracing in fog and air, with sky light: no approximation, with noise of known size; a \
         picture of 160 x 120 pixels takes a minute on two cores, a megapixel an hour"),
 ] }
 

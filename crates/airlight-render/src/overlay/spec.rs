@@ -28,7 +28,7 @@ pub enum DepthFileKind {
 airlight::named! { DepthFileKind, "a kind of depth", [
     ("z", (Z), "depth along the camera's axis"),
     ("ray", (Ray), "distance along the ray of the pixel"),
-    ("disparity", (Disparity), "stereo disparity, pixels: needs --focal-px and --baseline-m"),
+    ("disparity", (Disparity), "stereo disparity, pixels: needs a focal length in pixels and a baseline"),
     ("inverse", (Inverse), "inverse depth"),
 ] }
 

@@ -1,7 +1,7 @@
 //! Fog droplets: an analytic phase function by diameter, or published size distributions and Lorenz-Mie theory.
 
 use super::{Constituent, ConstituentKind, DensityProfile};
-use crate::names::{Named, UnknownName, named, written_by_name};
+use crate::names::{Named, named, written_by_name};
 use crate::optics::PhaseFunction;
 use crate::optics::mie::droplets::Drops;
 use crate::optics::mie::{BulkOptics, MieError};
@@ -118,6 +118,9 @@ impl Named for DropletKind {
         Self::Published(Drops::HazeH),
         Self::Published(Drops::Rain),
     ];
+    /// Mist is moderate radiation fog.
+    const ALIASES: &'static [(&'static str, Self)] =
+        &[("mist", Self::Published(Drops::ModerateRadiationFog))];
 
     fn name(self) -> &'static str {
         match self {
@@ -135,18 +138,6 @@ impl Named for DropletKind {
             }
             Self::Published(drops) => drops.summary(),
         }
-    }
-
-    /// Accepts the listed names, and "mist" for moderate radiation fog.
-    fn from_name(name: &str) -> Result<Self, UnknownName> {
-        if name == "mist" {
-            return Ok(Drops::ModerateRadiationFog.into());
-        }
-        let named = Self::ALL.iter().find(|kind| kind.name() == name);
-        let names = || Self::ALL.iter().map(|kind| kind.name());
-        named
-            .copied()
-            .ok_or_else(|| UnknownName::new(Self::WHAT, name, names()))
     }
 }
 

@@ -203,7 +203,14 @@ mod guards {
     #[test]
     fn preparing_for_one_sun_or_for_all_is_the_same() {
         let all = sky("average", SunCoverage::All);
-        for (elevation, allowed) in [(50.0, 0.01), (5.0, 0.01), (-5.0, 0.02), (-14.0, 0.08)] {
+        for (elevation, allowed) in [
+            (50.0, 0.01),
+            (5.0, 0.01),
+            (-1.0, 0.02),
+            (-5.0, 0.02),
+            (-9.0, 0.04),
+            (-14.0, 0.08),
+        ] {
             let near = sky("average", SunCoverage::near(elevation, 0.0));
             let sun = direction(180.0, elevation);
             for eye in [
