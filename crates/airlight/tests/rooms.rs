@@ -65,6 +65,26 @@ fn no_files_import_each_other_in_a_circle() {
     assert!(wrong.is_empty(), "{}", list(&wrong));
 }
 
+/// Unit tests of such a crate would never run.
+#[test]
+fn crates_without_unit_tests_have_none() {
+    for entry in fs::read_dir(crates()).expect("the folder of the crates") {
+        let folder = entry.expect("a crate").path();
+        let manifest = fs::read_to_string(folder.join("Cargo.toml")).unwrap_or_default();
+        let library = manifest
+            .split("\n[")
+            .find(|table| table.starts_with("lib]"));
+        if library.is_some_and(|table| table.contains("test = false")) {
+            let house = House::read(&folder.join("src/lib.rs"));
+            for module in &house.modules {
+                let text = fs::read_to_string(&module.file).expect("a module");
+                let none = !text.contains("#[test]") && !text.contains("cfg(test)");
+                assert!(none, "{}", module.file.display());
+            }
+        }
+    }
+}
+
 fn crates() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }

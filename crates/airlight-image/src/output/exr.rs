@@ -84,13 +84,18 @@ pub fn write(
     })
 }
 
+/// A stream that an EXR file can be written to: the table of offsets is filled in at the end.
+pub trait WriteSeek: Write + Seek + Send {}
+
+impl<T: Write + Seek + Send> WriteSeek for T {}
+
 /// Writes rows to a stream as [`write()`] does; [`Written::bytes`] stays 0.
 ///
 /// # Errors
 /// [`ImageError`] where the number of names is not that of the source's channels, a name is empty, too long or repeated, the
 /// stream fails, or the caller cancels.
-pub fn encode<W: Write + Seek + Send>(
-    out: &mut W,
+pub fn encode(
+    out: &mut dyn WriteSeek,
     size: Size,
     channels: &[&str],
     source: &dyn RowSource,
@@ -370,16 +375,16 @@ const VERSION: u32 = 2;
 const LONG_NAMES: u32 = 1 << 10;
 
 /// A scan-line file being written: header, table of offsets, blocks in order.
-struct ScanLineStream<'a, W> {
-    out: &'a mut W,
+struct ScanLineStream<'a> {
+    out: &'a mut dyn WriteSeek,
     table_at: u64,
     next_at: u64,
     offsets: Vec<u64>,
 }
 
-impl<'a, W: Write + Seek> ScanLineStream<'a, W> {
+impl<'a> ScanLineStream<'a> {
     /// Writes the header and an empty table.
-    fn start(out: &'a mut W, header: &Header) -> Result<Self, ImageError> {
+    fn start(out: &'a mut dyn WriteSeek, header: &Header) -> Result<Self, ImageError> {
         MetaData::validate(std::slice::from_ref(header), true).map_err(failed)?;
         let bytes = header_bytes(header)?;
         let start = out.stream_position().map_err(stream_error)?;

@@ -50,8 +50,8 @@ pub fn write(
 ///
 /// # Errors
 /// [`ImageError`] where the source does not have three channels, the stream fails, or the caller cancels.
-pub fn encode<W: Write + Send>(
-    out: &mut W,
+pub fn encode(
+    out: &mut (dyn Write + Send),
     size: Size,
     source: &dyn RowSource,
     metadata: &Metadata,

@@ -61,8 +61,8 @@ pub fn write(
 /// # Errors
 /// [`ImageError`] where the source does not have three channels, a side is above 65535, the quality is out of range, the
 /// stream fails, or the caller cancels.
-pub fn encode<W: Write + Send>(
-    out: &mut W,
+pub fn encode(
+    out: &mut (dyn Write + Send),
     size: Size,
     source: &dyn RowSource,
     tone: &ToneMapper,
@@ -140,8 +140,8 @@ pub fn encode<W: Write + Send>(
     Ok(Written::default())
 }
 
-fn run_encoder<W: Write>(
-    stream: Stoppable<'_, W>,
+fn run_encoder(
+    stream: Stoppable<'_>,
     buffer: IncomingRows<'_>,
     options: &JpegOptions,
     metadata: &Metadata,
@@ -241,12 +241,12 @@ impl ImageBuffer for IncomingRows<'_> {
 }
 
 /// A stream that fails once `stopped` is set: the only way to interrupt the encoder.
-struct Stoppable<'a, W> {
-    out: &'a mut W,
+struct Stoppable<'a> {
+    out: &'a mut (dyn Write + Send),
     stopped: &'a AtomicBool,
 }
 
-impl<W: Write> Write for Stoppable<'_, W> {
+impl Write for Stoppable<'_> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         if self.stopped.load(Ordering::Relaxed) {
             return Err(io::Error::other("stopped"));

@@ -53,8 +53,8 @@ pub fn write(
 /// # Errors
 /// [`ImageError`] where the source has neither three nor four channels, a setting is out of range, the stream fails, or the
 /// caller cancels.
-pub fn encode<W: Write + Send>(
-    out: &mut W,
+pub fn encode(
+    out: &mut (dyn Write + Send),
     size: Size,
     source: &dyn RowSource,
     tone: &ToneMapper,
@@ -304,13 +304,13 @@ impl<'a> RowBytes<'a> {
     }
 }
 
-fn header<'a, W: Write>(
-    out: &'a mut W,
+fn header<'a>(
+    out: &'a mut (dyn Write + Send),
     size: Size,
     channels: usize,
     options: &PngOptions,
     metadata: &Metadata,
-) -> Result<png::Writer<&'a mut W>, png::EncodingError> {
+) -> Result<png::Writer<&'a mut (dyn Write + Send)>, png::EncodingError> {
     let mut encoder = png::Encoder::new(out, size.width(), size.height());
     encoder.set_color(if channels == 4 {
         ColorType::Rgba

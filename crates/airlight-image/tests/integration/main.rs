@@ -1,6 +1,7 @@
 //! Picture and depth files, checked against independent decoders and encoders.
 
 mod common;
+mod enlarge;
 mod frames;
 mod intrinsics;
 mod memory;

@@ -86,7 +86,7 @@ fn exr_files_are_decoded_to_the_given_samples() {
 
 #[test]
 fn exr_files_have_the_standard_attributes() {
-    use ::exr::meta::{MetaData, attribute::*};
+    use ::exr::meta::attribute::*;
     let size = size(8, 4);
     let mut bytes = Cursor::new(Vec::new());
     exr::encode(
@@ -99,9 +99,8 @@ fn exr_files_have_the_standard_attributes() {
         Control::default(),
     )
     .unwrap();
-    let meta = MetaData::read_from_buffered(Cursor::new(bytes.into_inner()), true).unwrap();
-    let header = &meta.headers[0];
-    let own = &header.own_attributes;
+    let image = read_back(bytes);
+    let own = &image.layer_data.attributes;
     assert_eq!(own.utc_offset, Some(-7200.0));
     assert_eq!(own.latitude, Some(52.5));
     assert_eq!(own.longitude, Some(13.4));
@@ -112,10 +111,7 @@ fn exr_files_have_the_standard_attributes() {
     assert_eq!(text(&own.software_name).unwrap(), "airlight test");
     assert_eq!(text(&own.owner).unwrap(), "Zażółć");
     assert_eq!(text(&own.capture_date).unwrap(), "2024:06:21 14:00:00");
-    assert_eq!(
-        header.shared_attributes.chromaticities.unwrap().red.x(),
-        0.64
-    );
+    assert_eq!(image.attributes.chromaticities.unwrap().red.x(), 0.64);
     let named = |name: &str| match own.other.get(&Text::new_or_panic(name)) {
         Some(AttributeValue::Text(text)) => String::from_utf8(text.bytes().into()).unwrap(),
         other => panic!("{name}: {other:?}"),
@@ -128,7 +124,7 @@ fn exr_files_have_the_standard_attributes() {
 
 #[test]
 fn spectral_files_follow_the_layout() {
-    use ::exr::meta::{MetaData, attribute::*};
+    use ::exr::meta::attribute::*;
     let folder = Folder::new("spectral");
     let path = folder.0.join("sky.exr");
     let layout = SpectralLayout::new(&[380.0, 550.0, 1000.25]).unwrap();
@@ -147,11 +143,9 @@ fn spectral_files_follow_the_layout() {
         Control::default(),
     )
     .unwrap();
-    let meta = MetaData::read_from_file(&path, true).unwrap();
-    let header = &meta.headers[0];
-    let names: Vec<String> = header
-        .channels
-        .list
+    let image = read_back(Cursor::new(std::fs::read(&path).unwrap()));
+    let channels = &image.layer_data.channel_data.list;
+    let names: Vec<String> = channels
         .iter()
         .map(|channel| channel.name.to_string())
         .collect();
@@ -170,20 +164,10 @@ fn spectral_files_follow_the_layout() {
         ("spectralLayoutVersion", "1.0"),
         ("emissiveUnits", "W.m^-2.sr^-1"),
     ] {
-        let attribute = &header.own_attributes.other[&Text::new_or_panic(name)];
+        let attribute = &image.layer_data.attributes.other[&Text::new_or_panic(name)];
         assert_eq!(*attribute, AttributeValue::Text(Text::new_or_panic(value)));
     }
-    use ::exr::prelude::{ReadChannels, ReadLayers};
-    let image = ::exr::prelude::read()
-        .no_deep_data()
-        .largest_resolution_level()
-        .all_channels()
-        .first_valid_layer()
-        .all_attributes()
-        .from_file(&path)
-        .unwrap();
-    let at_550 = &image.layer_data.channel_data.list[5];
-    let got: Vec<f32> = at_550.sample_data.values_as_f32().collect();
+    let got: Vec<f32> = channels[5].sample_data.values_as_f32().collect();
     assert_eq!(got[47], sample(size, 7, 2, 4));
     assert!(SpectralLayout::new(&[]).is_err());
     assert!(SpectralLayout::new(&[500.0, 500.0]).is_err());
@@ -327,6 +311,12 @@ fn png_files_are_decoded_to_the_given_samples() {
                     Control::default(),
                 )
                 .unwrap();
+                let mut strict = ::png::Decoder::new(Cursor::new(&bytes));
+                strict.ignore_checksums(false);
+                let mut strict = strict.read_info().unwrap();
+                let mut pixels = vec![0; strict.output_buffer_size().unwrap()];
+                strict.next_frame(&mut pixels).unwrap();
+                strict.finish().unwrap();
                 let image = image::load_from_memory(&bytes).unwrap();
                 assert_eq!((image.width(), image.height()), (width, height));
                 let mut linear = vec![0.0; width as usize * 3];

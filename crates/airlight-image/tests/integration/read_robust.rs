@@ -6,6 +6,7 @@ use airlight_image::{
     input::{UnknownDepth, read_depth, read_picture},
 };
 use exr::prelude::{Compression, FlatSamples, f16};
+use jpeg_encoder::JpegColorType;
 use png::{BitDepth, ColorType};
 use std::path::Path;
 
@@ -34,17 +35,17 @@ fn valid_files() -> Vec<(String, Vec<u8>, bool)> {
     add("grey", grey_16((20, 15), &grey), false);
     add(
         "jpeg",
-        jpeg_file((40, 25), jpeg_encoder::ColorType::Rgb, false),
+        jpeg_file((40, 25), JpegColorType::Ycbcr, false, &[]),
         true,
     );
     add(
         "progressive",
-        jpeg_file((40, 25), jpeg_encoder::ColorType::Rgb, true),
+        jpeg_file((40, 25), JpegColorType::Ycbcr, true, &[]),
         true,
     );
     add(
         "jpeg grey",
-        jpeg_file((17, 9), jpeg_encoder::ColorType::Luma, true),
+        jpeg_file((17, 9), JpegColorType::Luma, true, &[]),
         true,
     );
     let mut hdr = b"#?RADIANCE\nEXPOSURE=2\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 12\n".to_vec();

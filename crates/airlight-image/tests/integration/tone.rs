@@ -249,3 +249,52 @@ mod guards {
         }
     }
 }
+
+/// Triangular noise of one step makes the mean of the written values that of the picture, and the variance of their error a
+/// quarter of a step squared, whatever the value. Neighbours in a row share one of their two numbers with opposite signs:
+/// their errors have the covariance -1/12, so that the noise is of high frequencies.
+#[test]
+fn dither_is_balanced_and_the_same_every_time() {
+    let tone = ToneMapper::as_displayed().with_dither(true);
+    let (rows, columns) = (200, 1000);
+    for steps in [100.0, 100.3, 200.5] {
+        // The value as the tone mapper reads it.
+        let value = srgb_decode(steps / 255.0) as f32;
+        let row = vec![value; columns * 3];
+        let (mut sum, mut squares, mut beside) = ([0.0; 3], [0.0; 3], 0.0);
+        let (mut out, mut again) = (vec![0; columns * 3], vec![0; columns * 3]);
+        for y in 0..rows {
+            tone.row_to_u8(y, &row, &mut out);
+            tone.row_to_u8(y, &row, &mut again);
+            assert_eq!(out, again);
+            let mut last = 0.0;
+            for pixel in out.as_chunks::<3>().0 {
+                let error = pixel.map(|v| f64::from(v) - steps);
+                for c in 0..3 {
+                    sum[c] += error[c];
+                    squares[c] += error[c].powi(2);
+                }
+                beside += last * error[0];
+                last = error[0];
+            }
+        }
+        let count = f64::from(rows) * columns as f64;
+        for c in 0..3 {
+            assert!(
+                (sum[c] / count).abs() < 3e-3,
+                "{steps} {c}: {}",
+                sum[c] / count
+            );
+            assert!(
+                (squares[c] / count - 0.25).abs() < 3e-3,
+                "{steps} {c}: {}",
+                squares[c] / count
+            );
+        }
+        assert!(
+            (beside / count + 1.0 / 12.0).abs() < 3e-3,
+            "{steps}: {}",
+            beside / count
+        );
+    }
+}

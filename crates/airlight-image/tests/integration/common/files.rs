@@ -3,6 +3,7 @@
 use super::Folder;
 use airlight_image::{DepthMap, DepthOptions, ImageError, read_depth};
 use exr::prelude::*;
+use jpeg_encoder::{ImageBuffer, JpegColorType, rgb_to_ycbcr};
 use std::io::Cursor;
 
 /// A part of an EXR file: its name, position and size, channels.
@@ -143,25 +144,54 @@ pub fn pfm_file((width, height): (usize, usize), little: bool, rows: &[f32]) -> 
     bytes
 }
 
-/// A JPEG file of a smooth picture.
-pub fn jpeg_file(size: (u16, u16), color: jpeg_encoder::ColorType, progressive: bool) -> Vec<u8> {
-    let each = match color {
-        jpeg_encoder::ColorType::Luma => 1,
-        jpeg_encoder::ColorType::Rgb => 3,
-        _ => 4,
-    };
-    let mut data = Vec::new();
-    for y in 0..size.1 {
-        for x in 0..size.0 {
-            for c in 0..each {
-                data.push((x * 3 + y * 2 + c * 40).min(255) as u8);
+/// A smooth picture as the encoder of JPEG takes it.
+struct SmoothPicture {
+    size: (u16, u16),
+    color: JpegColorType,
+}
+
+impl ImageBuffer for SmoothPicture {
+    fn get_jpeg_color_type(&self) -> JpegColorType {
+        self.color
+    }
+
+    fn width(&self) -> u16 {
+        self.size.0
+    }
+
+    fn height(&self) -> u16 {
+        self.size.1
+    }
+
+    fn fill_buffers(&self, y: u16, buffers: &mut [Vec<u8>; 4]) {
+        for x in 0..self.size.0 {
+            let [a, b, c, d] = [0, 1, 2, 3].map(|c| (x * 3 + y * 2 + c * 40).min(255) as u8);
+            let components = match self.color {
+                JpegColorType::Luma => vec![a],
+                JpegColorType::Ycbcr => <[u8; 3]>::from(rgb_to_ycbcr(a, b, c)).to_vec(),
+                _ => vec![a, b, c, d],
+            };
+            for (buffer, component) in buffers.iter_mut().zip(components) {
+                buffer.push(component);
             }
         }
     }
+}
+
+/// A JPEG file of a smooth picture, with a colour profile if that is not empty.
+pub fn jpeg_file(
+    size: (u16, u16),
+    color: JpegColorType,
+    progressive: bool,
+    profile: &[u8],
+) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut encoder = jpeg_encoder::Encoder::new(&mut bytes, 95);
     encoder.set_progressive(progressive);
-    encoder.encode(&data, size.0, size.1, color).unwrap();
+    if !profile.is_empty() {
+        encoder.add_icc_profile(profile).unwrap();
+    }
+    encoder.encode_image(SmoothPicture { size, color }).unwrap();
     bytes
 }
 
