@@ -94,12 +94,12 @@ impl ContactSheetSpec {
             return Err(wrong("columns", expected, columns.to_string(), "3"));
         }
         // A single layer need not be a valid scene.
-        let common = document.read::<Scene>(&["scene"], &[])?.set_inputs();
+        let common = document.partial_scene(&["scene"], &[])?.set_inputs();
         let mut own_inputs = Vec::with_capacity(count);
         let mut cells = (0..count)
             .map(|number| {
                 let path = format!("cell[{number}]");
-                let own: Scene = document.read(&[&path], &["label"])?;
+                let own = document.partial_scene(&[&path], &["label"])?;
                 own_inputs.push(own.set_inputs());
                 let scene = document.scene(&["scene", &path], &["label"])?;
                 for (key, set) in [

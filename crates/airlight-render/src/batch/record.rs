@@ -116,7 +116,9 @@ pub(super) fn differences(
     scene: &OverlayScene,
     line: &Map<String, Value>,
 ) -> Result<Vec<String>, BatchError> {
-    let now = serde_json::to_value(scene).map_err(|error| {
+    // Written and read as lines are.
+    let now = serde_json::to_vec(scene).and_then(|text| serde_json::from_slice(&text));
+    let now = now.map_err(|error| {
         crate::RenderError::setting(format!("cannot write the settings as JSON: {error}"))
     })?;
     let mut differences = Vec::new();

@@ -91,7 +91,15 @@ impl OverlayScene {
     /// # Errors
     /// [`RenderError::Setting`] for a value that TOML cannot represent, such as a seed of 2^63 or more.
     pub fn to_toml(&self) -> Result<String, RenderError> {
-        toml::to_string(self).map_err(|error| RenderError::setting(format!("scene: {error}")))
+        /// The table of what is not part of the scene.
+        #[derive(Serialize)]
+        struct Rest<'a> {
+            overlay: &'a OverlaySpec,
+        }
+        let overlay = &self.overlay;
+        let rest = toml::to_string(&Rest { overlay })
+            .map_err(|error| RenderError::setting(format!("overlay: {error}")))?;
+        Ok(format!("{}\n{rest}", self.scene.to_toml()?))
     }
 
     /// JSON Schema of scene files with a table `[overlay]`, for completion and validation in editors.

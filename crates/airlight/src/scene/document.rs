@@ -1,5 +1,6 @@
 //! Deserialization of scenes and other tables from TOML; errors carry line, column, key and the most similar valid key.
 
+use super::toml_value::TomlValue;
 use super::{ObjectSpec, Scene, SceneError};
 use crate::atmosphere::{ConfigError, ConfigProblem};
 use crate::names::nearest;
@@ -34,11 +35,19 @@ impl SceneDocument {
     /// # Errors
     /// [`SceneError::Toml`] for unknown keys and values of the wrong type, [`SceneError::At`] for numbers out of range.
     pub fn scene(&self, layers: &[&str], others: &[&str]) -> Result<Scene, SceneError> {
-        let scene: Scene = self.read(layers, others)?;
+        let scene = self.partial_scene(layers, others)?;
         scene
             .validate()
             .map_err(|error| self.located(layers, error))?;
         Ok(scene)
+    }
+
+    /// Reads layered tables as [`SceneDocument::scene`] does, without validation: a single layer need not be a valid scene.
+    ///
+    /// # Errors
+    /// [`ConfigError`] for unknown keys and values of the wrong type.
+    pub fn partial_scene(&self, layers: &[&str], others: &[&str]) -> Result<Scene, ConfigError> {
+        self.read(layers, others)
     }
 
     /// Deserializes layered tables. Top-level keys in `others` are ignored; a layer that is not in the text is empty.
@@ -50,13 +59,8 @@ impl SceneDocument {
         layers: &[&str],
         others: &[&str],
     ) -> Result<T, ConfigError> {
-        let merged = self.merged(layers, others)?;
-        let span = merged.span();
-        T::deserialize(toml::de::Deserializer::from(Spanned::new(
-            span,
-            merged.into_inner(),
-        )))
-        .map_err(|error| self.config_error(&error))
+        T::deserialize(TomlValue::new(self.merged(layers, others)?))
+            .map_err(|error| self.config_error(error.span, &error.message))
     }
 
     /// Number of tables in the list at a path, such as `cell`.
@@ -77,7 +81,7 @@ impl SceneDocument {
     }
 
     fn table(&self) -> Result<Spanned<DeTable<'_>>, ConfigError> {
-        DeTable::parse(&self.text).map_err(|error| self.config_error(&error))
+        DeTable::parse(&self.text).map_err(|error| self.config_error(error.span(), error.message()))
     }
 
     fn wrong_type(
@@ -154,13 +158,13 @@ impl SceneDocument {
     }
 
     /// Converts an error of the parser or of deserialization, with the key that it is about.
-    fn config_error(&self, error: &toml::de::Error) -> ConfigError {
-        let at = error.span().map_or(0, |span| span.start);
+    fn config_error(&self, span: Option<Range<usize>>, message: &str) -> ConfigError {
+        let at = span.map_or(0, |span| span.start);
         let key = DeTable::parse(&self.text)
             .ok()
             .and_then(|table| key_at(table.get_ref(), at))
             .unwrap_or_default();
-        ConfigError::at(&self.text, at, key, problem(error.message()))
+        ConfigError::at(&self.text, at, key, problem(message))
     }
 }
 

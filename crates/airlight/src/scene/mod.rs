@@ -33,6 +33,8 @@ mod sun_source;
 mod tests;
 #[cfg(all(test, feature = "config"))]
 mod toml_tests;
+#[cfg(feature = "config")]
+mod toml_value;
 
 pub use crate::sky::TableChannels as Channels;
 pub use crate::sun::SunState;
