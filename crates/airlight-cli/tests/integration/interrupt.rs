@@ -98,7 +98,7 @@ fn a_stopped_sequence_keeps_its_whole_frames_and_goes_on() {
     let folder = Folder::new();
     let words = "sky --wavelengths rgb --scattering single --at 50,10 --when 2026-06-21T10:00:00Z --until +2h \
                  --every 1h --size 512x256 -o a.png";
-    let child = spawn(&folder, &words.replace("512x256", "8192x4096"));
+    let child = spawn(&folder, &words.replace("512x256", "4096x2048"));
     wait_for_file(&folder, "a.0001.png");
     let (code, error) = stop(child, Signal::SIGINT);
     assert_eq!(code, Some(130), "{error}");

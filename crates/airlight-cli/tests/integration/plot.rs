@@ -103,8 +103,8 @@ fn plots_of_nothing_are_refused() {
 #[test]
 fn skies_are_drawn_through_drops_by_theory() {
     let folder = Folder::new();
-    let sky =
-        "sky --sun-elevation 20 --wavelengths rgb --size 32x16 -q --visibility-m 300 --top-m 60";
+    let sky = "sky --sun-elevation 20 --wavelengths rgb --size 32x16 -q --visibility-m 300 --top-m 60 \
+               --fog-scattering single";
     for (name, kind) in [
         ("grey.png", "radiation"),
         ("cloud.png", "cloud-c3"),

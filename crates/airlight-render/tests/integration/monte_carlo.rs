@@ -65,7 +65,7 @@ fn two_solvers_agree() {
     for air in [ExistingAerial::Drawn, ExistingAerial::Missing] {
         scene.overlay.air = air;
         let fast = layers(&scene, &image);
-        let (paths, pass) = monte_carlo(&scene, &image, 1024, 1);
+        let (paths, pass) = monte_carlo(&scene, &image, 512, 1);
         let errors = pass.standard_error.iter().skip(1).step_by(3);
         let (mut sums, mut squares) = ([0.0; 2], 0.0);
         for ((fast, paths), error) in fast.channel(7).zip(paths.channel(7)).zip(errors) {
@@ -103,7 +103,7 @@ fn the_seed_changes_the_noise_and_the_number_of_threads_does_not() {
     let with_threads = |threads, seed| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         pool.unwrap()
-            .install(|| monte_carlo(&scene, &image, 128, seed).0)
+            .install(|| monte_carlo(&scene, &image, 64, seed).0)
     };
     let one = with_threads(1, 1);
     assert!(one == with_threads(2, 1) && one != with_threads(2, 2));

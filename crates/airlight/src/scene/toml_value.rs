@@ -51,6 +51,12 @@ impl<'a> TomlValue<'a> {
         let span = table.span();
         Self(Spanned::new(span, DeValue::Table(table.into_inner())))
     }
+
+    fn read<S: DeserializeSeed<'a>>(self, seed: S) -> Result<S::Value, TomlValueError> {
+        let span = self.0.span();
+        let at = |error: TomlValueError| error.or_at(span);
+        seed.deserialize(self).map_err(at)
+    }
 }
 
 impl<'de> Deserializer<'de> for TomlValue<'de> {
@@ -146,7 +152,7 @@ impl<'de> SeqAccess<'de> for List<'de> {
         seed: S,
     ) -> Result<Option<S::Value>, TomlValueError> {
         let next = self.0.next().map(TomlValue);
-        next.map(|value| seed.deserialize(value)).transpose()
+        next.map(|value| value.read(seed)).transpose()
     }
 
     fn size_hint(&self) -> Option<usize> {
@@ -178,7 +184,7 @@ impl<'de> MapAccess<'de> for Entries<'de> {
         &mut self,
         seed: S,
     ) -> Result<S::Value, TomlValueError> {
-        seed.deserialize(self.value.take().expect("a key was read before"))
+        self.value.take().expect("a key was read before").read(seed)
     }
 }
 
@@ -226,7 +232,7 @@ impl<'de> VariantAccess<'de> for Content<'de> {
         self,
         seed: S,
     ) -> Result<S::Value, TomlValueError> {
-        seed.deserialize(self.value()?)
+        self.value()?.read(seed)
     }
 
     fn tuple_variant<V: Visitor<'de>>(
@@ -278,6 +284,23 @@ mod tests {
         wrapped: Option<Wrapped>,
         shapes: Vec<Shape>,
         map: BTreeMap<String, f64>,
+        share: Share,
+    }
+
+    /// Refuses what it has read.
+    #[derive(Debug, Default, PartialEq, Deserialize)]
+    #[serde(try_from = "f64")]
+    struct Share(f64);
+
+    impl TryFrom<f64> for Share {
+        type Error = String;
+
+        fn try_from(share: f64) -> Result<Self, String> {
+            match (0.0..=1.0).contains(&share) {
+                true => Ok(Self(share)),
+                false => Err(format!("expected 0 to 1, got {share}")),
+            }
+        }
     }
 
     #[derive(Debug, PartialEq, Deserialize)]

@@ -41,7 +41,7 @@ fn of(estimate: &Estimate) -> (&[f64], &[f64]) {
 #[test]
 fn a_line_may_be_cut_anywhere() {
     let hazy = preset("hazy").unwrap();
-    let sky = solver(&hazy, 32_768);
+    let sky = solver(&hazy, 16_384);
     for (eye_m, sun_deg, view, distance_m) in [
         (2.0, 40.0, direction(160.0, 3.0), 8e3),
         (2.0, 40.0, direction(20.0, 70.0), 900.0),
@@ -111,7 +111,7 @@ fn no_distance_is_no_air() {
 fn aerial_perspective_is_that_of_the_fast_solver() {
     let clear = preset("clear").unwrap();
     let random = solver(&clear, 65_536);
-    for (sun_deg, every) in [(50.0, 2), (6.0, 1)] {
+    for (sun_deg, first) in [(50.0, 0), (6.0, 1)] {
         let sun = direction(180.0, sun_deg);
         let fast = Sky::prepare(&clear, random.grid(), &SkySettings::default()).unwrap();
         for (eye_m, view, distance_m) in [
@@ -121,7 +121,8 @@ fn aerial_perspective_is_that_of_the_fast_solver() {
             (2.0, direction(180.0, 30.0), 5e3),
         ]
         .into_iter()
-        .step_by(every)
+        .skip(first)
+        .step_by(2)
         {
             let line = fast.view(eye_m, sun).along(view, Some(distance_m));
             let found = random.path_radiance(eye_m, sun, view, distance_m);

@@ -267,7 +267,7 @@ fn disc_spectrum_matches_its_colour() -> Outcome {
 #[test]
 fn coherence_changes_codes_by_at_most_one() -> Outcome {
     let from_xyz = RgbSpace::Srgb.from_xyz_matrix();
-    let (width, height) = (96, 64);
+    let (width, height) = (64, 40);
     for settings in [plain(), paper(), Klassen1987Settings::default()] {
         for sun_deg in [0.5, 10.0, 60.0] {
             let model = Klassen1987::new(&settings, direction(180.0, sun_deg))?;

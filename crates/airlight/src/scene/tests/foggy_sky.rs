@@ -77,7 +77,7 @@ mod guards {
 
     /// Fog and air of a line cut into thin slices, one after the other.
     fn sliced(view: &View, foggy: &FoggySky<3>, towards: DVec3, length_m: f64) -> PathOptics<3> {
-        const SLICES: usize = 500;
+        const SLICES: usize = 250;
         let ground = foggy.ground();
         let eye_m = view.radius_m() - view.sky().atmosphere().planet.radius_m;
         let line = RaySegment::new(eye_m, towards.y, length_m, ground.radius_m);
