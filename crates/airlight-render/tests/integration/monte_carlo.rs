@@ -103,7 +103,7 @@ fn the_seed_changes_the_noise_and_the_number_of_threads_does_not() {
     let with_threads = |threads, seed| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         pool.unwrap()
-            .install(|| monte_carlo(&scene, &image, 64, seed).0)
+            .install(|| monte_carlo(&scene, &image, 128, seed).0)
     };
     let one = with_threads(1, 1);
     assert!(one == with_threads(2, 1) && one != with_threads(2, 2));

@@ -41,7 +41,7 @@ fn of(estimate: &Estimate) -> (&[f64], &[f64]) {
 #[test]
 fn a_line_may_be_cut_anywhere() {
     let hazy = preset("hazy").unwrap();
-    let sky = solver(&hazy, 16_384);
+    let sky = solver(&hazy, 32_768);
     for (eye_m, sun_deg, view, distance_m) in [
         (2.0, 40.0, direction(160.0, 3.0), 8e3),
         (2.0, 40.0, direction(20.0, 70.0), 900.0),
