@@ -309,7 +309,7 @@ mod tests {
     #[derive(Debug, PartialEq, Deserialize)]
     enum Shape {
         Point,
-        Ball(f64),
+        Sphere(f64),
         Pair(f64, f64),
         Cuboid { width: f64 },
     }
@@ -330,7 +330,7 @@ mod tests {
         }
         let text = "yes = true\nsmall = 255\nsigned = -3\nlarge = 9_000_000_000\nnumber = 1e-3\nfrom_integer = 4\n\
             text = \"a\\u00e9\"\nmaybe = 0.5\npair = [1, 2.5]\nwrapped = 7.0\n\
-            shapes = [\"Point\", { Ball = 2.0 }, { Pair = [1.0, 2.0] }, { Cuboid = { width = 3.0 } }]\n[map]\na = 1.0\n";
+            shapes = [\"Point\", { Sphere = 2.0 }, { Pair = [1.0, 2.0] }, { Cuboid = { width = 3.0 } }]\n[map]\na = 1.0\n";
         let read = read(text).unwrap();
         assert_eq!(read, toml::from_str(text).unwrap());
         assert_eq!(read.shapes[2], Shape::Pair(1.0, 2.0));
@@ -366,7 +366,7 @@ mod tests {
                 19,
                 "unknown variant `Cube`",
             ),
-            ("shapes = [\"Ball\"]", 10, "the variant needs a value"),
+            ("shapes = [\"Sphere\"]", 10, "the variant needs a value"),
             ("shapes = [{ Point = 1 }]", 20, "the variant has no value"),
             (
                 "shapes = [1]",
