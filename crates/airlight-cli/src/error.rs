@@ -90,10 +90,11 @@ impl From<RenderError> for CliError {
 
 impl From<BatchError> for CliError {
     fn from(error: BatchError) -> Self {
-        match (error.is_cancelled(), error.is_refusal()) {
-            (true, _) => Self::Interrupted,
-            (_, true) => Self::usage(error.to_string()),
-            _ => Self::failure(error.to_string()),
+        match error {
+            BatchError::Render(error) => error.into(),
+            error if error.is_cancelled() => Self::Interrupted,
+            error if error.is_refusal() => Self::usage(error.to_string()),
+            error => Self::failure(error.to_string()),
         }
     }
 }

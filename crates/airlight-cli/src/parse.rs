@@ -98,8 +98,19 @@ pub fn length_m(text: &str) -> Result<f64, String> {
 fn within(text: &str, right: &str, accepts: impl Fn(f64) -> bool) -> Result<f64, String> {
     match f64::from_str(text.trim()) {
         Ok(value) if accepts(value) => Ok(value),
+        _ if is_list(text) => Err(format!(
+            "expected {right}, got several; `airlight fog` draws one picture for each of several values with --vary NAME={text}"
+        )),
         _ => Err(format!("expected {right}")),
     }
+}
+
+/// Whether a text is a list of numbers.
+fn is_list(text: &str) -> bool {
+    text.contains(',')
+        && text
+            .split(',')
+            .all(|number| f64::from_str(number.trim()).is_ok())
 }
 
 fn pair(text: &str) -> Option<(f64, f64)> {
@@ -195,13 +206,14 @@ pub fn span(text: &str) -> Result<String, String> {
         .map_err(|right| format!("expected {right}"))
 }
 
-/// An exposure: auto, or an exposure value at ISO 100.
+/// An exposure: a metering mode, or an exposure value at ISO 100.
 pub fn exposure(text: &str) -> Result<Exposure, String> {
-    match text.eq_ignore_ascii_case("auto") {
-        true => Ok(Exposure::AUTO),
-        false => number(text)
-            .map(Exposure::Ev100)
-            .map_err(|_| "expected auto or an exposure value at ISO 100, such as 14.5".to_owned()),
+    match (number(text), text.to_ascii_lowercase().parse()) {
+        (Ok(ev100), _) => Ok(Exposure::Ev100(ev100)),
+        (_, Ok(mode)) => Ok(Exposure::Metered(mode)),
+        (_, Err(unknown)) => Err(format!(
+            "{unknown}, or give an exposure value at ISO 100, such as 14.5"
+        )),
     }
 }
 
@@ -284,5 +296,7 @@ mod tests {
                 && elevation_deg("90.1").is_err()
         );
         assert!(length_m("0").is_err() && az_el("0,91").is_err());
+        let several = length_m("5,10,20").unwrap_err();
+        assert!(several.contains("--vary NAME=5,10,20"), "{several}");
     }
 }

@@ -32,14 +32,15 @@ impl Renderer {
     pub fn write(&self, control: Control<'_>) -> Result<Vec<WrittenFile>, RenderError> {
         if let Some(sequence) = self.sequence()? {
             let missing = sequence.missing();
-            let Some(suns) = self.suns_of(&missing)? else {
+            let Some(ready) = self.prepare_sequence(&sequence, &missing, control)? else {
                 return Ok(Vec::new());
             };
-            let prepared = self.prepare(suns, control)?;
             let mut written = Vec::new();
             for step in missing {
                 control.check()?;
-                let frame = self.frame(prepared.as_ref(), Some(step.time))?;
+                let frame = ready
+                    .renderer
+                    .frame(ready.solution.as_ref(), Some(step.time))?;
                 written.extend(frame.write(&step.path, control)?.files);
             }
             return Ok(written);

@@ -3,7 +3,7 @@
 use crate::canvas::{Canvas, POLARISATION_CHANNELS, Passes};
 use crate::channels::PixelChannels;
 use crate::error::RenderError;
-use crate::exposure::METERED_WIDTH;
+use crate::exposure::{METERED_WIDTH, MeteredPicture};
 use crate::illuminance::Illuminances;
 use crate::image::RenderedImage;
 use crate::layout::PictureFile;
@@ -60,6 +60,8 @@ pub struct WrittenFrame {
     pub files: Vec<WrittenFile>,
     /// Root mean square over the picture of the relative standard error of a pixel's green; `None` without noise.
     pub noise: Option<f64>,
+    /// Exposure of a display format; `None` for linear formats.
+    pub exposure: Option<Exposure>,
 }
 
 impl Renderer {
@@ -185,15 +187,18 @@ impl<'r> PreparedFrame<'r> {
     /// [`RenderError`] for an exposure out of range.
     pub fn exposure(&self) -> Result<Exposure, RenderError> {
         let settings = self.renderer.exposure();
-        if let Some(exposure) = settings.fixed()? {
+        if let Some(exposure) = self.renderer.given_exposure()? {
             return Ok(exposure);
         }
         let frame = self.renderer.layout().overview(METERED_WIDTH)?;
         let pixels = self.pixels(&frame, Layer::Sky);
-        let horizon_rad = self.preview.horizon_elevation_rad();
-        let is_ground = |direction: glam::DVec3| direction.y.clamp(-1.0, 1.0).asin() < horizon_rad;
-        let space = self.channels.space();
-        Ok(settings.metered((&frame, &pixels), space, is_ground)?)
+        Ok(settings.metered(&MeteredPicture {
+            frame: &frame,
+            pixels: &pixels,
+            space: self.channels.space(),
+            horizon_elevation_rad: self.preview.horizon_elevation_rad(),
+            horizontal_lx: self.light.sun_horizontal_lx + self.light.sky_horizontal_lx,
+        })?)
     }
 
     /// The tone mapper from linear light to display values.
@@ -258,7 +263,10 @@ impl<'r> PreparedFrame<'r> {
         let tone = self.file_tone()?;
         let total = rows_of(files.iter().map(|file| &file.frame));
         control.stage("drawing", total);
-        let mut whole = WrittenFrame::default();
+        let mut whole = WrittenFrame {
+            exposure: self.file_exposure(&tone),
+            ..WrittenFrame::default()
+        };
         let mut done = 0;
         for file in files {
             if let Some(objects) = self.depth_of(file) {
@@ -301,7 +309,10 @@ impl<'r> PreparedFrame<'r> {
         let total = rows_of(drawn().map(|file| &file.frame));
         // Writing takes little time compared with tracing: its progress is not reported.
         let quiet = control.reporting_to(&SILENT);
-        let mut whole = WrittenFrame::default();
+        let mut whole = WrittenFrame {
+            exposure: self.file_exposure(&tone),
+            ..WrittenFrame::default()
+        };
         for pass in Passes::new(sampler.paths()) {
             control.stage(&pass.to_string(), total);
             whole.files.clear();
@@ -347,7 +358,7 @@ impl<'r> PreparedFrame<'r> {
         if output.noise_map == Some(true) {
             let rows = canvas.noise(output.scale.unwrap_or(1.0) as f32)?;
             let path = tagged_path(&file.path, "noise").with_extension("exr");
-            write_picture(&path, size, &rows, tone, &self.options(file), control)?;
+            write_picture(&path, size, &rows, tone, &self.options(file, tone), control)?;
         }
         if let Some(rows) = canvas.polarisation() {
             let path = tagged_path(&file.path, "polarisation").with_extension("exr");
@@ -370,7 +381,7 @@ impl<'r> PreparedFrame<'r> {
             false => 1.0,
         };
         let rows = self.rows_over(&file.frame, file.layer, sky, scale);
-        let options = self.options(file);
+        let options = self.options(file, tone);
         let (path, size) = (&file.path, file.frame.size());
         let written = match self.channels.layout() {
             Some(layout) => spectral::write(
@@ -399,13 +410,22 @@ impl<'r> PreparedFrame<'r> {
         }
     }
 
-    fn options(&self, file: &PictureFile) -> PictureOptions {
+    /// The exposure of a tone mapper for the files; `None` for linear formats.
+    fn file_exposure(&self, tone: &ToneMapper) -> Option<Exposure> {
+        let format = self.renderer.layout().format();
+        format
+            .filter(|format| !format.is_linear())
+            .and_then(|_| Exposure::from_factor(tone.exposure().into()).ok())
+    }
+
+    fn options(&self, file: &PictureFile, tone: &ToneMapper) -> PictureOptions {
         let metadata = FrameMetadata {
             renderer: self.renderer,
             time: self.time,
             sun: &self.sun,
             light: &self.light,
             channels: &self.channels,
+            exposure: self.file_exposure(tone),
         };
         PictureOptions {
             metadata: metadata.of_layer(file.layer).with_frame(&file.frame),

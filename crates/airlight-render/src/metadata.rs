@@ -9,6 +9,7 @@ use airlight::scene::SunAngles;
 use airlight::sun::Moment;
 use airlight_image::PictureFormat;
 use airlight_image::output::Metadata;
+use airlight_image::tone::Exposure;
 
 /// Program and version.
 pub const SOFTWARE: &str = concat!("airlight ", env!("CARGO_PKG_VERSION"));
@@ -20,6 +21,8 @@ pub(crate) struct FrameMetadata<'a> {
     pub sun: &'a SunAngles,
     pub light: &'a Illuminances,
     pub channels: &'a PixelChannels,
+    /// Exposure of a display format.
+    pub exposure: Option<Exposure>,
 }
 
 impl FrameMetadata<'_> {
@@ -71,6 +74,14 @@ impl FrameMetadata<'_> {
             ),
         );
         add("sunDisc", sun_disc(layer).to_owned());
+        if let Some(exposure) = self.exposure {
+            let tone = renderer.scene().output.tone.unwrap_or_default();
+            let ev100 = short(exposure.ev100());
+            add(
+                "exposure",
+                format!("EV {ev100} at ISO 100, tone curve {tone}"),
+            );
+        }
         if linear {
             add("units", units(self.channels.layout().is_some(), scale));
             let [x, y] = self.channels.space().white_point_xy();

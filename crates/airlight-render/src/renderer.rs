@@ -6,14 +6,15 @@ use crate::layout::{Layout, is_spectral};
 use crate::objects::Objects;
 use airlight::models::registry;
 use airlight::scene::{
-    Exposure, PreparedModel, RadianceModel, ResolvedScene, Scene, SunAngles, ToneKind, check_inputs,
+    Exposure, MeteringMode, PreparedModel, RadianceModel, ResolvedScene, Scene, SunAngles,
+    ToneKind, check_inputs,
 };
 use airlight::sky::SunCoverage;
 use airlight::sun::Moment;
 use airlight_image::output::exr::ExrOptions;
 use airlight_image::output::jpeg::JpegOptions;
 use airlight_image::output::png::{PngDepth, PngOptions};
-use airlight_image::tone::{FilmicSettings, ToneCurve};
+use airlight_image::tone::{self, AgxSettings, CameraSettings, ToneCurve};
 use airlight_image::{Control, PictureOptions};
 use std::path::Path;
 use std::sync::Arc;
@@ -40,6 +41,7 @@ pub struct Renderer {
     layout: Layout,
     objects: Option<Arc<Objects>>,
     texts: Vec<(String, String)>,
+    common_exposure: Option<tone::Exposure>,
 }
 
 impl Renderer {
@@ -70,6 +72,7 @@ impl Renderer {
             layout,
             objects,
             texts: Vec::new(),
+            common_exposure: None,
         };
         renderer.exposure().fixed()?;
         Ok(renderer)
@@ -163,15 +166,44 @@ impl Renderer {
                 Some(Exposure::Ev100(ev100)) => Some(ev100),
                 _ => None,
             },
+            metering: match output.exposure {
+                Some(Exposure::Metered(mode)) => mode,
+                _ => MeteringMode::default(),
+            },
             brighten_stops: output.brighten.unwrap_or(0.0),
+        }
+    }
+
+    /// The same renderer with one exposure for all pictures.
+    pub fn with_exposure(mut self, exposure: tone::Exposure) -> Self {
+        self.common_exposure = Some(exposure);
+        self
+    }
+
+    /// The exposure given by [`Renderer::with_exposure`], or metered for a whole sequence.
+    pub fn common_exposure(&self) -> Option<tone::Exposure> {
+        self.common_exposure
+    }
+
+    /// The exposure if it does not depend on the picture.
+    pub(crate) fn given_exposure(&self) -> Result<Option<tone::Exposure>, RenderError> {
+        match self.common_exposure {
+            Some(exposure) => Ok(Some(exposure)),
+            None => Ok(self.exposure().fixed()?),
         }
     }
 
     /// The tone curve of display pictures.
     pub fn tone_curve(&self) -> ToneCurve {
-        match self.scene.output.tone.unwrap_or_default() {
-            ToneKind::Filmic => ToneCurve::Filmic(FilmicSettings::default()),
+        let output = &self.scene.output;
+        let camera = CameraSettings::default();
+        match output.tone.unwrap_or_default() {
+            ToneKind::AgxBase => ToneCurve::Agx(AgxSettings::default()),
             ToneKind::Clip => ToneCurve::Clip,
+            _ => ToneCurve::Camera(CameraSettings {
+                contrast: output.tone_contrast.unwrap_or(camera.contrast),
+                saturation: output.saturation.unwrap_or(camera.saturation),
+            }),
         }
     }
 

@@ -90,14 +90,16 @@ impl fmt::Display for UnknownName {
 impl std::error::Error for UnknownName {}
 
 /// Implements [`Named`], `Display`, `FromStr` and, with their features, serde's traits and `JsonSchema` of an enum:
-/// `(name, (variant), description)` for each value.
+/// `(name, (variant), description)` for each value, then `(alias, (variant))` for further names.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! named {
-    ($type:ty, $what:literal, [$(($name:literal, ($($value:tt)+), $summary:literal)),+ $(,)?]) => {
+    ($type:ty, $what:literal, [$(($name:literal, ($($value:tt)+), $summary:literal)),+ $(,)?]
+        $(, aliases [$(($alias:literal, ($($meant:tt)+))),+])?) => {
         impl $crate::Named for $type {
             const WHAT: &'static str = $what;
             const ALL: &'static [Self] = &[$(Self::$($value)+),+];
+            $(const ALIASES: &'static [(&'static str, Self)] = &[$(($alias, Self::$($meant)+)),+];)?
 
             fn name(self) -> &'static str {
                 match self {

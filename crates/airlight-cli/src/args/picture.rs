@@ -45,15 +45,22 @@ pub struct DisplayArgs {
     /// Colour space of .exr and .hdr; .png and .jpg are always sRGB [default: srgb]
     #[arg(long, value_name = "SPACE", value_parser = parse::named::<RgbSpace>())]
     pub color_space: Option<RgbSpace>,
-    /// Exposure of .png, .jpg and preview: auto, or the exposure value of a camera at ISO 100 (sunny day 15, dusk 8) [default: auto]
-    #[arg(long, value_name = "auto|EV100", value_parser = parse::exposure)]
+    /// Exposure of .png, .jpg and preview: the exposure value of a camera at ISO 100 (sunny day 15, dusk 8), or metered: auto,
+    /// centre-weighted, spot, average, highlight-weighted, incident [default: auto]
+    #[arg(long, value_name = "MODE|EV100", value_parser = parse::exposure)]
     pub exposure: Option<Exposure>,
     /// Stops by which .png, .jpg and preview are brightened (negative: darkened) [default: 0]
     #[arg(long, value_name = "STOPS", value_parser = parse::number)]
     pub brighten: Option<f64>,
-    /// Tone curve of .png, .jpg and preview: film-like, or linear and clipped at white [default: filmic]
+    /// Tone curve of .png, .jpg and preview [default: camera]
     #[arg(long, value_name = "CURVE", value_parser = parse::named::<ToneKind>())]
     pub tone: Option<ToneKind>,
+    /// Contrast of the camera curve: its slope at middle grey on logarithmic axes, 0.5 to 3 [default: 1.2]
+    #[arg(long, value_name = "SLOPE", value_parser = parse::positive)]
+    pub tone_contrast: Option<f64>,
+    /// Saturation of the camera curve: factor on the distance from grey, 0 to 3 [default: 1]
+    #[arg(long, value_name = "FACTOR", value_parser = parse::not_negative)]
+    pub saturation: Option<f64>,
 }
 
 /// Encoding of a picture.
@@ -105,6 +112,8 @@ impl DisplayArgs {
         put(&mut output.exposure, &self.exposure);
         put(&mut output.brighten, &self.brighten);
         put(&mut output.tone, &self.tone);
+        put(&mut output.tone_contrast, &self.tone_contrast);
+        put(&mut output.saturation, &self.saturation);
     }
 }
 

@@ -53,6 +53,10 @@ pub struct SequenceArgs {
     /// Interval between pictures: 10m, 1h30m, 45s
     #[arg(long, value_name = "SPAN", value_parser = parse::span)]
     pub every: Option<String>,
+    /// Meter the exposure of every picture by itself; otherwise all have that of the brightest of the first, the middle and the
+    /// last
+    #[arg(long)]
+    pub meter_each: bool,
     /// Replace existing pictures of a sequence; otherwise they are kept
     #[arg(long)]
     pub overwrite: bool,
@@ -120,6 +124,9 @@ impl SequenceArgs {
             let sequence = sequence.get_or_insert_default();
             put(&mut sequence.until, &self.until);
             put(&mut sequence.every, &self.every);
+        }
+        if self.meter_each {
+            sequence.get_or_insert_default().meter_each = Some(true);
         }
     }
 }

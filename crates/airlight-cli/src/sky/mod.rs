@@ -12,7 +12,9 @@ use airlight::scene::PreparedModel;
 use airlight::sky::SunCoverage;
 use airlight_image::Control;
 use airlight_image::output::Written;
-use airlight_render::sequence::Sequence;
+use airlight_image::tone::Exposure;
+use airlight_render::exposure::DARKEST_EV100;
+use airlight_render::sequence::{PreparedSequence, Sequence};
 use airlight_render::summary::{self, short};
 use airlight_render::{PreparedFrame, Renderer, WrittenFile};
 use std::fmt::Write;
@@ -59,6 +61,7 @@ fn one(
         report::print(&preview::text(renderer, &frame, terminal)?)?;
     }
     let mut text = String::new();
+    let mut exposure = None;
     if let Some(path) = output {
         let bar = RowsBar::by_stages();
         let writing = interrupt::start_writing()?;
@@ -77,6 +80,8 @@ fn one(
                 bytes(file.written.bytes)
             );
         }
+        exposure = written.exposure;
+        note_of_night(renderer, exposure);
         warn_of_clipping(renderer, written.files.iter().map(|file| &file.written));
         if let Some(noise) = written.noise.filter(|_| !args.quiet) {
             report::note(&format!(
@@ -89,6 +94,13 @@ fn one(
         return Ok(());
     }
     text.push_str(&facts(renderer, &frame));
+    if let Some(exposure) = exposure {
+        let _ = writeln!(
+            text,
+            "  exposure      EV {} at ISO 100",
+            short(exposure.ev100())
+        );
+    }
     let _ = writeln!(
         text,
         "  time          {} to solve, {} to draw",
@@ -110,18 +122,24 @@ fn many(
         false => sequence.missing(),
     };
     let begun = Instant::now();
-    if let Some(suns) = renderer.suns_of(&missing)? {
-        for file in missing.iter().take(1).flat_map(|step| &step.files) {
-            report::check_writable(&file.path)?;
-        }
-        let (prepared, _) = solve(renderer, suns)?;
+    for file in missing.iter().take(1).flat_map(|step| &step.files) {
+        report::check_writable(&file.path)?;
+    }
+    let mut exposure = None;
+    let solving = RowsBar::by_stages();
+    let control = Control::cancelled_by(&STOP).reporting_to(&solving);
+    let solved = renderer.prepare_sequence(sequence, &missing, control)?;
+    drop(solving);
+    if let Some(PreparedSequence { solution, renderer }) = solved {
+        exposure = renderer.common_exposure();
+        note_of_night(&renderer, exposure);
         let bar = RowsBar::new(missing.iter().map(|step| step.rows()).sum());
         let mut written: Vec<WrittenFile> = Vec::new();
         for step in &missing {
             bar.say(format!("picture {} of {total}", step.number));
-            let frame = renderer.frame(prepared.as_ref(), Some(step.time))?;
+            let frame = renderer.frame(solution.as_ref(), Some(step.time))?;
             if let Some(terminal) = preview {
-                report::print(&preview::text(renderer, &frame, terminal)?)?;
+                report::print(&preview::text(&renderer, &frame, terminal)?)?;
             }
             let _writing = interrupt::start_writing()?;
             let control = Control::cancelled_by(&STOP).reporting_to(&bar);
@@ -129,7 +147,7 @@ fn many(
             bar.files_done(step.rows());
         }
         drop(bar);
-        warn_of_clipping(renderer, written.iter().map(|file| &file.written));
+        warn_of_clipping(&renderer, written.iter().map(|file| &file.written));
     }
     if args.quiet {
         return Ok(());
@@ -138,8 +156,12 @@ fn many(
         0 => String::new(),
         n => format!(", {n} existed already (--overwrite replaces them)"),
     };
+    let exposure = exposure.map_or(String::new(), |exposure| {
+        let ev100 = short(exposure.ev100());
+        format!("  exposure      EV {ev100} at ISO 100 in all pictures\n")
+    });
     report::print(&format!(
-        "{}: {} of {total} pictures written{skipped}, {}\n  time          {}\n",
+        "{}: {} of {total} pictures written{skipped}, {}\n{exposure}  time          {}\n",
         renderer.output_path()?.display(),
         missing.len(),
         renderer.kind(),
@@ -195,6 +217,21 @@ fn facts(renderer: &Renderer, frame: &PreparedFrame) -> String {
         let _ = writeln!(text, "  fog           {}", summary::fog(fog));
     }
     text
+}
+
+/// Says why a picture is dark if its exposure is the longest that is metered.
+fn note_of_night(renderer: &Renderer, exposure: Option<Exposure>) {
+    let settings = renderer.exposure();
+    let is_longest = |exposure: Exposure| {
+        exposure.ev100() + settings.brighten_stops < DARKEST_EV100 + 1e-3
+            && settings.ev100.is_none()
+    };
+    if exposure.is_some_and(is_longest) {
+        report::note(
+            "the sky is too dark for a photograph of 20 s and stays dark: the light of stars, airglow and moon is not included; \
+             --brighten adds stops",
+        );
+    }
 }
 
 /// Warns of samples out of the format's range.

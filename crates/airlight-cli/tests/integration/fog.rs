@@ -160,6 +160,16 @@ fn files_that_are_not_what_they_should_be_are_refused() {
         let text = refused(&folder, &words, 1);
         assert!(text.contains(sentence), "{name}: {text}");
     }
+    // A grey picture is not the depth of itself, alone or in a folder.
+    std::fs::create_dir(folder.file("grey")).unwrap();
+    std::fs::copy(folder.file("depth.png"), folder.file("grey/a.png")).unwrap();
+    for words in ["fog depth.png -o out.png", "fog grey -o out"] {
+        let text = refused(&folder, &format!("{words} --visibility-m 5"), 2);
+        assert!(
+            text.contains("--depth: expected a depth map, since only EXR"),
+            "{text}"
+        );
+    }
     // Not-a-number is a hole, which is filled.
     npy(&folder.file("hole.npy"), (30, 40), with_one(f32::NAN));
     let words = "fog small.png --depth hole.npy --visibility-m 5 -o out.png";

@@ -1,7 +1,9 @@
 //! Exposure: from a camera's exposure value, or metered from the scene.
 
-use super::filmic::MIDDLE_GREY;
 use crate::ImageError;
+
+/// Linear value of middle grey.
+pub const MIDDLE_GREY: f64 = 0.18;
 
 /// Factor from linear light to display scale.
 #[derive(Clone, Copy, Debug, PartialEq)]

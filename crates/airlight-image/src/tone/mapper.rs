@@ -1,9 +1,10 @@
 //! Tone mapping of rows, from linear light to display bytes.
 
 use super::{
+    agx::{Agx, AgxSettings},
     blocks::{OctaveTable, Planes, max, min, without_negatives},
+    camera::{Camera, CameraSettings},
     dither::RowDither,
-    filmic::{Filmic, FilmicSettings},
 };
 use crate::ImageError;
 use airlight::spectrum::rgb::srgb_encode;
@@ -12,15 +13,17 @@ use airlight::spectrum::rgb::srgb_encode;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ToneCurve {
-    /// Filmic curve: highlights roll off, bright saturated colours turn white.
-    Filmic(FilmicSettings),
+    /// Camera curve: contrast, highlights that roll off to white, hue kept.
+    Camera(CameraSettings),
+    /// AgX: highlights roll off, bright saturated colours turn white early.
+    Agx(AgxSettings),
     /// Linear: each component is clipped at 0 and 1.
     Clip,
 }
 
 impl Default for ToneCurve {
     fn default() -> Self {
-        Self::Filmic(FilmicSettings::default())
+        Self::Camera(CameraSettings::default())
     }
 }
 
@@ -32,8 +35,16 @@ impl Default for ToneCurve {
 pub struct ToneMapper {
     exposure: f32,
     dither: bool,
-    filmic: Option<Filmic>,
+    curve: Curve,
     encode: OctaveTable,
+}
+
+/// A tone curve, tabulated.
+#[derive(Clone, Debug)]
+enum Curve {
+    Camera(Camera),
+    Agx(Agx),
+    Clip,
 }
 
 /// Pixels processed together, for vector instructions.
@@ -61,9 +72,10 @@ impl ToneMapper {
         Ok(Self {
             exposure,
             dither: true,
-            filmic: match curve {
-                ToneCurve::Filmic(settings) => Some(Filmic::new(settings)?),
-                ToneCurve::Clip => None,
+            curve: match curve {
+                ToneCurve::Camera(settings) => Curve::Camera(Camera::new(settings)?),
+                ToneCurve::Agx(settings) => Curve::Agx(Agx::new(settings)?),
+                ToneCurve::Clip => Curve::Clip,
             },
             encode: OctaveTable::new(LINEAR_END, 1.0, srgb_encode),
         })
@@ -75,7 +87,7 @@ impl ToneMapper {
         Self {
             exposure: 1.0,
             dither: false,
-            filmic: None,
+            curve: Curve::Clip,
             encode: OctaveTable::new(LINEAR_END, 1.0, srgb_encode),
         }
     }
@@ -151,12 +163,16 @@ impl ToneMapper {
             let exposed = if exposed.is_nan() { 0.0 } else { exposed };
             *v = max(min(exposed, MAX_EXPOSED), -MAX_EXPOSED);
         }
-        match &self.filmic {
-            Some(filmic) => {
+        match &self.curve {
+            Curve::Camera(camera) => {
                 without_negatives(planes);
-                filmic.apply(planes);
+                camera.apply(planes);
             }
-            None => {
+            Curve::Agx(agx) => {
+                without_negatives(planes);
+                agx.apply(planes);
+            }
+            Curve::Clip => {
                 for v in planes.as_flattened_mut() {
                     *v = max(min(*v, 1.0), 0.0);
                 }

@@ -3,13 +3,15 @@
 //! Linear pixels have the primaries and white of sRGB (Rec. 709, D65), in any unit; the exposure scales them so that 0.18 is middle
 //! grey and, without a tone curve, 1 is white.
 
+mod agx;
 mod blocks;
+mod camera;
 mod dither;
 mod exposure;
-mod filmic;
 mod mapper;
 
+pub use agx::AgxSettings;
 pub use blocks::luminance;
-pub use exposure::{Exposure, Metering};
-pub use filmic::FilmicSettings;
+pub use camera::CameraSettings;
+pub use exposure::{Exposure, MIDDLE_GREY, Metering};
 pub use mapper::{ToneCurve, ToneMapper};

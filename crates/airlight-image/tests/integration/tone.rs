@@ -4,29 +4,47 @@ use airlight::spectrum::{
     RgbSpace,
     rgb::{srgb_decode, srgb_encode},
 };
-use airlight_image::tone::{Exposure, FilmicSettings, Metering, ToneCurve, ToneMapper};
+use airlight_image::tone::{
+    AgxSettings, CameraSettings, Exposure, Metering, ToneCurve, ToneMapper,
+};
 
-fn filmic() -> ToneMapper {
-    ToneMapper::new(1.0, ToneCurve::default()).unwrap()
+/// The curves that roll off.
+fn curves() -> [ToneCurve; 2] {
+    [
+        ToneCurve::Camera(CameraSettings::default()),
+        ToneCurve::Agx(AgxSettings::default()),
+    ]
+}
+
+fn mapper(curve: ToneCurve) -> ToneMapper {
+    ToneMapper::new(1.0, curve).unwrap()
+}
+
+fn decoded(encoded: [f32; 3]) -> [f64; 3] {
+    encoded.map(|v| srgb_decode(f64::from(v)))
 }
 
 #[test]
 fn middle_grey_is_unchanged() {
-    for (exposure, scene) in [(1.0, 0.18), (0.001, 180.0), (1e6, 0.18e-6)] {
-        let shown = ToneMapper::new(exposure, ToneCurve::default())
-            .unwrap()
-            .map([scene; 3]);
-        for v in shown {
-            assert!((f64::from(v) - srgb_encode(0.18)).abs() < 1e-3, "{v}");
+    for curve in curves() {
+        for (exposure, scene) in [(1.0, 0.18), (0.001, 180.0), (1e6, 0.18e-6)] {
+            for v in ToneMapper::new(exposure, curve).unwrap().map([scene; 3]) {
+                assert!((f64::from(v) - srgb_encode(0.18)).abs() < 1e-3, "{v}");
+            }
         }
     }
 }
 
 #[test]
-fn the_curve_rises_from_black_to_white() {
-    let tone = filmic();
+fn the_curves_rise_from_black_to_white() {
+    for (curve, white_stops) in curves().into_iter().zip([24.0, 6.6]) {
+        rises_from_black_to_white(&mapper(curve), white_stops);
+    }
+}
+
+fn rises_from_black_to_white(tone: &ToneMapper, white_stops: f32) {
     assert_eq!(tone.map([0.0; 3]), [0.0; 3]);
-    assert_eq!(tone.map([0.18 * 2f32.powf(6.6); 3]), [1.0; 3]);
+    assert_eq!(tone.map([0.18 * white_stops.exp2(); 3]), [1.0; 3]);
     let mut last = 0.0;
     for i in 0..200_000 {
         let v = 1e-5 * (1.0 + 1e-4f32).powi(i);
@@ -37,10 +55,7 @@ fn the_curve_rises_from_black_to_white() {
         last = shown[1];
     }
     // Raising one component never lowers the luminance.
-    let brightness = |rgb: [f32; 3]| {
-        let shown = tone.map(rgb).map(|v| srgb_decode(f64::from(v)));
-        RgbSpace::Srgb.luminance(shown)
-    };
+    let brightness = |rgb: [f32; 3]| RgbSpace::Srgb.luminance(decoded(tone.map(rgb)));
     for c in 0..3 {
         let mut last = 0.0;
         for i in 0..2000 {
@@ -71,7 +86,7 @@ fn any_input_gives_valid_colours() {
         0.18,
         5.0,
     ];
-    for curve in [ToneCurve::default(), ToneCurve::Clip] {
+    for curve in curves().into_iter().chain([ToneCurve::Clip]) {
         for exposure in [0.0, 1e-30, 1.0, 1e30] {
             let tone = ToneMapper::new(exposure, curve).unwrap();
             for r in odd {
@@ -87,18 +102,24 @@ fn any_input_gives_valid_colours() {
     }
     assert!(ToneMapper::new(f32::NAN, ToneCurve::Clip).is_err());
     assert!(ToneMapper::new(-1.0, ToneCurve::Clip).is_err());
-    let flat = FilmicSettings {
+    let flat = AgxSettings {
         slope: 0.5,
-        ..FilmicSettings::default()
+        ..AgxSettings::default()
     };
-    assert!(ToneMapper::new(1.0, ToneCurve::Filmic(flat)).is_err());
+    assert!(ToneMapper::new(1.0, ToneCurve::Agx(flat)).is_err());
+    for (contrast, saturation) in [(0.0, 1.0), (f64::NAN, 1.0), (1.2, -1.0), (1.2, f64::NAN)] {
+        let settings = CameraSettings {
+            contrast,
+            saturation,
+        };
+        assert!(ToneMapper::new(1.0, ToneCurve::Camera(settings)).is_err());
+    }
 }
 
 #[test]
-fn colours_near_middle_grey_keep_their_saturation() {
-    let tone = filmic();
+fn agx_keeps_the_saturation_near_middle_grey() {
     let rgb = [0.12f32, 0.18, 0.30];
-    let shown = tone.map(rgb).map(|v| srgb_decode(f64::from(v)));
+    let shown = decoded(mapper(ToneCurve::Agx(AgxSettings::default())).map(rgb));
     for (got, want) in shown.iter().zip(rgb) {
         assert!((got / f64::from(want) - 1.0).abs() < 0.1, "{shown:?}");
     }
@@ -199,18 +220,36 @@ fn metering_ignores_the_sun() {
 
 #[test]
 fn bright_primaries_end_in_white() {
-    for rgb in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] {
-        let shown = filmic().map(rgb.map(|v: f32| v * 1e4));
-        assert!(shown.iter().all(|&v| v > 0.99), "{shown:?}");
+    for curve in curves() {
+        for rgb in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] {
+            let shown = mapper(curve).map(rgb.map(|v: f32| v * 1e4));
+            assert!(shown.iter().all(|&v| v > 0.99), "{shown:?}");
+        }
+    }
+}
+
+#[test]
+fn saturation_changes_no_luminance() {
+    let with = |saturation| {
+        let settings = CameraSettings {
+            saturation,
+            ..CameraSettings::default()
+        };
+        decoded(mapper(ToneCurve::Camera(settings)).map([0.1, 0.15, 0.3]))
+    };
+    let luminance = |rgb: [f64; 3]| RgbSpace::Srgb.luminance(rgb);
+    let [grey, plain, more] = [0.0, 1.0, 1.5].map(with);
+    assert!((grey[0] - grey[2]).abs() < 1e-6 && more[2] > plain[2] && more[0] < plain[0]);
+    for other in [grey, more] {
+        assert!((luminance(other) / luminance(plain) - 1.0).abs() < 1e-4);
     }
 }
 
 mod guards {
     use super::*;
 
-    /// Hue angle in degrees of an sRGB colour in the plane of the opponents of Oklab (cube roots of linear light).
-    fn hue_deg(encoded: [f32; 3]) -> f64 {
-        let [r, g, b] = encoded.map(|v| srgb_decode(f64::from(v)));
+    /// Hue angle in degrees and chroma of a linear sRGB colour in Oklab (Ottosson 2020).
+    fn hue_and_chroma([r, g, b]: [f64; 3]) -> (f64, f64) {
         let l = (0.412_22 * r + 0.536_33 * g + 0.051_45 * b).cbrt();
         let m = (0.211_90 * r + 0.680_70 * g + 0.107_40 * b).cbrt();
         let s = (0.088_30 * r + 0.281_72 * g + 0.629_98 * b).cbrt();
@@ -218,34 +257,60 @@ mod guards {
             1.977_998 * l - 2.428_592 * m + 0.450_594 * s,
             0.025_904 * l + 0.782_772 * m - 0.808_676 * s,
         );
-        y.atan2(x).to_degrees()
+        (y.atan2(x).to_degrees(), x.hypot(y))
     }
 
-    /// Largest difference of hue from that of the dim colour, over the stops at which saturation remains.
+    /// Largest difference of hue from that of the scene, from 4 stops below to 5 stops above middle grey, where colour remains.
     fn hue_drift(tone: &ToneMapper, rgb: [f32; 3]) -> f64 {
-        let start = hue_deg(tone.map(rgb.map(|v| v * 0.05)));
-        (0..100)
-            .map(|i| tone.map(rgb.map(|v| v * 0.05 * 2f32.powf(i as f32 * 0.1))))
-            .filter(|shown| {
-                let most = shown.iter().copied().fold(0.0, f32::max);
-                most - shown.iter().copied().fold(1.0, f32::min) > 0.1
-            })
-            .map(|shown| ((hue_deg(shown) - start + 540.0).rem_euclid(360.0) - 180.0).abs())
+        let (scene, _) = hue_and_chroma(rgb.map(f64::from));
+        (-40..=50)
+            .map(|i| tone.map(rgb.map(|v| v * 0.18 * 2f32.powf(i as f32 * 0.1))))
+            .map(|shown| hue_and_chroma(decoded(shown)))
+            .filter(|(_, chroma)| *chroma > 0.02)
+            .map(|(hue, _)| ((hue - scene + 540.0).rem_euclid(360.0) - 180.0).abs())
             .fold(0.0, f64::max)
     }
 
+    /// The table of the book's chapter on pictures.
     #[test]
-    fn bright_colours_keep_their_hue_better_than_clipped_ones() {
-        let clip = ToneMapper::new(1.0, ToneCurve::Clip).unwrap();
+    fn bright_colours_keep_their_hue() {
+        let clip = mapper(ToneCurve::Clip);
+        let [camera, agx] = curves().map(mapper);
         for (name, rgb, most) in [
-            ("sunset orange", [1.0, 0.35, 0.05], 30.0),
-            ("deep sky blue", [0.05, 0.25, 1.0], 30.0),
-            ("sky blue", [0.2, 0.4, 1.0], 20.0),
+            ("zenith at noon", [0.39, 0.56, 1.0], 1.5),
+            ("deep sky blue", [0.2, 0.4, 1.0], 2.0),
+            ("horizon before sunset", [1.0, 0.63, 0.28], 2.0),
+            ("sunset orange", [1.0, 0.45, 0.15], 3.5),
+            ("setting sun", [1.0, 0.25, 0.02], 11.0),
         ] {
-            let (ours, cut) = (hue_drift(&filmic(), rgb), hue_drift(&clip, rgb));
-            println!("{name}: filmic {ours:.1} deg, cut off {cut:.1} deg");
+            let [ours, film, cut] = [&camera, &agx, &clip].map(|tone| hue_drift(tone, rgb));
+            println!("| {name} {rgb:?} | {ours:.1} | {film:.1} | {cut:.1} |");
             assert!(ours < most, "{name}: hue drifts by {ours} degrees");
-            assert!(ours < cut, "{name}: {ours} degrees, cut off {cut}");
+            assert!(ours < film.min(cut), "{name}: {ours} {film} {cut}");
+        }
+    }
+
+    /// Below middle grey the camera curve keeps the hue, and nearly the chroma.
+    #[test]
+    fn dim_colours_keep_their_colour() {
+        let [camera, _] = curves().map(mapper);
+        for rgb in [[0.39, 0.56, 1.0], [0.63, 0.72, 1.0], [1.0, 0.63, 0.28]] {
+            for stops in [-3.0f32, -2.0, -1.0, 0.0] {
+                let scene = rgb.map(|v: f32| v * 0.18 * stops.exp2());
+                let shown = decoded(camera.map(scene));
+                let scene = scene.map(f64::from);
+                let scale = RgbSpace::Srgb.luminance(scene) / RgbSpace::Srgb.luminance(shown);
+                // At the luminance of the scene.
+                let (hue, chroma) = hue_and_chroma(shown.map(|v| v * scale));
+                let (scene_hue, scene_chroma) = hue_and_chroma(scene);
+                let drift = (hue - scene_hue).abs();
+                let ratio = chroma / scene_chroma;
+                println!("{rgb:?} at {stops} stops: hue {drift:.1} deg, chroma {ratio:.2}");
+                assert!(
+                    drift < 1.0 && (0.95..1.2).contains(&ratio),
+                    "{drift} {ratio}"
+                );
+            }
         }
     }
 }

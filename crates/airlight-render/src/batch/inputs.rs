@@ -1,6 +1,7 @@
 //! Input files of a batch: pictures with their depth maps.
 
 use super::{BatchError, Pattern, pattern::Match};
+use crate::overlay::OverlaySpec;
 use airlight_image::output::PictureFormat;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -104,6 +105,13 @@ pub fn find_inputs(
         });
     }
     let depths = match depth {
+        None if !colours.iter().any(|colour| may_hold_depth(&colour.path)) => {
+            let spec = OverlaySpec {
+                colour: colour.to_owned(),
+                ..OverlaySpec::default()
+            };
+            return Err(spec.without_depth().into());
+        }
         None => Depths::Inside,
         Some(path) => Depths::new(path, &colours)?,
     };
@@ -128,6 +136,12 @@ pub fn find_inputs(
         inputs,
         without_depth: missing,
     })
+}
+
+/// Whether a picture may have a depth channel besides its colours; of unknown endings the content decides. A grey PNG is not
+/// the depth of itself.
+fn may_hold_depth(colour: &Path) -> bool {
+    PictureFormat::from_path(colour).map_or(true, PictureFormat::holds_channels)
 }
 
 fn colours(path: &Path) -> Result<Vec<Match>, BatchError> {
@@ -212,7 +226,8 @@ impl Depths {
     /// The depth map of a picture, or why it has none.
     fn of(&self, captures: &[String], colour: &Path) -> Result<PathBuf, String> {
         match self {
-            Self::Inside => Ok(colour.to_owned()),
+            Self::Inside if may_hold_depth(colour) => Ok(colour.to_owned()),
+            Self::Inside => Err("only EXR pictures hold depth; try depth with a file".to_owned()),
             Self::One(path) => Ok(path.clone()),
             Self::Pattern(pattern) => {
                 let path = pattern.path(captures);

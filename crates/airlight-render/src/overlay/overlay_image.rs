@@ -58,6 +58,9 @@ impl OverlayImage {
         let options = spec.depth_options()?;
         let depth = match &spec.depth {
             Some(file) => read_depth(file, &options)?,
+            None if picture.reference == LightReference::Display => {
+                return Err(spec.without_depth());
+            }
             None => read_depth(&spec.colour, &options).map_err(|error| match error {
                 ImageError::NoChannel { .. } | ImageError::Read { .. } => {
                     RenderError::setting(format!(

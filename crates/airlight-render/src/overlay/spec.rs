@@ -116,6 +116,16 @@ impl Default for OverlaySpec {
 }
 
 impl OverlaySpec {
+    /// Error for colour files that hold no depth and have no depth map.
+    pub(crate) fn without_depth(&self) -> RenderError {
+        RenderError::value(
+            "overlay.depth",
+            "a depth map, since only EXR pictures hold depth",
+            format!("none for `{}`", self.colour.display()),
+            "depth.npy, or a folder or pattern for several",
+        )
+    }
+
     /// Options for reading the depth file.
     ///
     /// # Errors

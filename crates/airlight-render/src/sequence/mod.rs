@@ -8,4 +8,4 @@ mod steps;
 pub use pattern::FramePattern;
 pub use plan::{FrameStep, SequencePlan};
 pub use span::parse_span_s;
-pub use steps::{Sequence, SequenceStep};
+pub use steps::{PreparedSequence, Sequence, SequenceStep};

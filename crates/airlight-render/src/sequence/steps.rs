@@ -4,14 +4,28 @@ use super::{FramePattern, SequencePlan, parse_span_s};
 use crate::error::RenderError;
 use crate::layout::PictureFile;
 use crate::renderer::Renderer;
+use airlight::scene::PreparedModel;
 use airlight::sky::SunCoverage;
 use airlight::sun::Moment;
+use airlight_image::Control;
+use airlight_image::tone::Exposure;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// Pictures of a scene's sequence.
 #[derive(Clone, Debug)]
 pub struct Sequence {
     steps: Vec<SequenceStep>,
+}
+
+/// Pictures of a sequence, ready to draw.
+#[derive(Clone, Debug)]
+pub struct PreparedSequence {
+    /// Solution for all their suns.
+    pub solution: Arc<dyn PreparedModel>,
+    /// Renderer with the exposure that all pictures of the sequence share, if they are metered together
+    /// ([`Renderer::common_exposure`]).
+    pub renderer: Renderer,
 }
 
 /// One picture of a sequence.
@@ -36,16 +50,57 @@ impl Renderer {
         Sequence::of(self)
     }
 
-    /// The range of suns of pictures of a sequence; `None` for no pictures.
+    /// Solves for the light of pictures of a sequence, and meters the exposure that all its pictures share; `None` for no
+    /// pictures.
     ///
     /// # Errors
-    /// As [`Renderer::sun`].
-    pub fn suns_of(&self, steps: &[SequenceStep]) -> Result<Option<SunCoverage>, RenderError> {
-        Ok(match steps {
-            [] => None,
-            [only] => Some(self.suns_near(&self.sun(Some(only.time))?)),
-            _ => Some(SunCoverage::All),
-        })
+    /// As [`Renderer::sun`] and [`Renderer::prepare`].
+    pub fn prepare_sequence(
+        &self,
+        sequence: &Sequence,
+        pictures: &[SequenceStep],
+        control: Control<'_>,
+    ) -> Result<Option<PreparedSequence>, RenderError> {
+        let renderer = self.clone();
+        let metered: Vec<&SequenceStep> = match self.meters_together() && !pictures.is_empty() {
+            true => sequence.first_middle_last(),
+            false => Vec::new(),
+        };
+        let mut times = pictures.iter().chain(metered.iter().copied());
+        let suns = match times.next() {
+            None => return Ok(None),
+            Some(first) if times.all(|other| other.time == first.time) => {
+                self.suns_near(&self.sun(Some(first.time))?)
+            }
+            Some(_) => SunCoverage::All,
+        };
+        let solution = self.prepare(suns, control)?;
+        let mut common: Option<Exposure> = None;
+        for step in metered {
+            let exposure = self.frame(solution.as_ref(), Some(step.time))?.exposure()?;
+            if common.is_none_or(|least| exposure.factor() < least.factor()) {
+                common = Some(exposure);
+            }
+        }
+        Ok(Some(PreparedSequence {
+            solution,
+            renderer: match common {
+                Some(exposure) => renderer.with_exposure(exposure),
+                None => renderer,
+            },
+        }))
+    }
+
+    /// Whether the pictures of a sequence have one exposure, which is metered.
+    fn meters_together(&self) -> bool {
+        let sequence = self.scene().sequence.as_ref();
+        let is_linear = self
+            .layout()
+            .format()
+            .is_none_or(|format| format.is_linear());
+        sequence.is_some_and(|sequence| sequence.meter_each != Some(true))
+            && !is_linear
+            && self.exposure().ev100.is_none()
     }
 }
 
@@ -109,6 +164,12 @@ impl Sequence {
     /// All pictures.
     pub fn steps(&self) -> &[SequenceStep] {
         &self.steps
+    }
+
+    fn first_middle_last(&self) -> Vec<&SequenceStep> {
+        let last = self.steps.len().saturating_sub(1);
+        let places = [0, last / 2, last];
+        places.iter().filter_map(|&k| self.steps.get(k)).collect()
     }
 
     /// Pictures with a missing or empty file. Files are renamed into place, so existing ones are complete.

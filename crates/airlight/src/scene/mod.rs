@@ -52,9 +52,9 @@ pub use rgb_foggy_sky::RgbFoggySky;
 pub(crate) use solved_view::SolvedView;
 pub use spec::{
     AirSpec, BaseBlueKind, CameraSpec, CheckerSpec, Effort, Exposure, ExrCompression, FogLayerSpec,
-    FogProfile, FogSpec, GlossSpec, Klassen1987Spec, LightKind, LightSpec, Metered, ObjectShape,
-    ObjectSpec, ObjectsSpec, ObserverSpec, OutputSpec, Projection, Reflectance, RepeatSpec,
-    SCENE_VERSION, SamplePrecision, Scene, SequenceSpec, SolverSpec, SunDiscPlacement, SunSpec,
-    SunlightKind, ToneKind, WetHaze,
+    FogProfile, FogSpec, GlossSpec, Klassen1987Spec, LightKind, LightSpec, MeteringMode,
+    ObjectShape, ObjectSpec, ObjectsSpec, ObserverSpec, OutputSpec, Projection, Reflectance,
+    RepeatSpec, SCENE_VERSION, SamplePrecision, Scene, SequenceSpec, SolverSpec, SunDiscPlacement,
+    SunSpec, SunlightKind, ToneKind, WetHaze,
 };
 pub use sun_source::{SunAngles, SunSource};

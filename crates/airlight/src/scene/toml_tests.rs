@@ -148,7 +148,7 @@ fn errors_have_a_place_and_the_expected_values() {
         ("[sun\n", "line 1, column 5: "),
         (
             "[output]\nexposure = \"bright\"\n",
-            "output.exposure: expected \"auto\" or an exposure value at ISO 100",
+            "output.exposure: expected a metering mode (auto, centre-weighted, spot",
         ),
     ] {
         let error = Scene::from_toml(text).unwrap_err().to_string();

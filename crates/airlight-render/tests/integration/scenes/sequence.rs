@@ -59,6 +59,30 @@ fn pictures_show_the_time_that_they_are_named_after() {
     }
 }
 
+/// From sunlight to dusk: one exposure makes the last picture darker than one metered for itself. A picture that is drawn
+/// again has the exposure of the others.
+#[test]
+fn pictures_share_an_exposure_unless_each_is_metered() {
+    let folder = Folder::new();
+    let mean = |name: &str| {
+        let image = image::open(folder.file(name)).unwrap().into_rgb8();
+        let sum: u64 = image.as_raw().iter().map(|&v| u64::from(v)).sum();
+        sum as f64 / image.as_raw().len() as f64
+    };
+    folder.write("a.png", SCENE);
+    folder.write(
+        "b.png",
+        &SCENE.replace("every =", "meter_each = true, every ="),
+    );
+    let (together, each) = (mean("a.0004.png"), mean("b.0004.png"));
+    assert!(together < 0.5 * each, "{together} {each}");
+    assert!(mean("a.0001.png") > 0.5 * mean("b.0001.png"));
+    let before = std::fs::read(folder.file("a.0003.png")).unwrap();
+    std::fs::remove_file(folder.file("a.0003.png")).unwrap();
+    assert_eq!(folder.write("a.png", SCENE).len(), 1);
+    assert!(before == std::fs::read(folder.file("a.0003.png")).unwrap());
+}
+
 #[test]
 fn a_stopped_sequence_keeps_its_whole_pictures() {
     /// Stops as the second picture begins.

@@ -18,7 +18,7 @@ pub use objects::{
     CheckerSpec, GlossSpec, ObjectShape, ObjectSpec, ObjectsSpec, Reflectance, RepeatSpec,
 };
 pub use picture::{
-    CameraSpec, Exposure, ExrCompression, Metered, OutputSpec, Projection, SamplePrecision,
+    CameraSpec, Exposure, ExrCompression, MeteringMode, OutputSpec, Projection, SamplePrecision,
     SequenceSpec, SunDiscPlacement, ToneKind,
 };
 pub use solver::{BaseBlueKind, Effort, Klassen1987Spec, SolverSpec, SunlightKind, WetHaze};

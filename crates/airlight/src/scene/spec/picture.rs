@@ -104,53 +104,76 @@ named! { ExrCompression, "a compression", [
     ("piz", (Piz), "wavelets"),
 ] }
 
-/// Tone curve from luminance to display values.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+/// Tone curve from exposed light to display values.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum ToneKind {
-    /// Film-like curve: highlights roll off towards white.
+    /// Camera-like: contrast, highlights that roll off to white, hue kept.
     #[default]
-    Filmic,
+    Camera,
+    /// The base look of AgX: low contrast, bright saturated colours turn white early.
+    AgxBase,
     /// Linear, clipped at white.
     Clip,
 }
 
 named! { ToneKind, "a tone curve", [
-    ("filmic", (Filmic), "film-like curve: highlights roll off towards white"),
+    ("camera", (Camera), "camera-like: contrast, highlights that roll off to white, hue kept"),
+    ("agx-base", (AgxBase), "base look of AgX: low contrast, bright saturated colours turn white early"),
     ("clip", (Clip), "linear, clipped at white"),
 ] }
 
-/// Exposure of PNG, JPEG and preview: "auto", or the exposure value of a camera at ISO 100 (sunny day 15, dusk 8).
+/// Exposure of PNG, JPEG and preview: a metering mode, or the exposure value of a camera at ISO 100 (sunny day 15, dusk 8).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
     feature = "serde",
     serde(
         untagged,
-        expecting = "expected \"auto\" or an exposure value at ISO 100, such as 14.5"
+        expecting = "expected a metering mode (auto, centre-weighted, spot, average, highlight-weighted, incident) or an exposure \
+            value at ISO 100, such as 14.5"
     )
 )]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Exposure {
     /// Determined from the picture.
-    Metered(Metered),
+    Metered(MeteringMode),
     /// Exposure value at ISO 100.
     Ev100(f64),
 }
 
 impl Exposure {
     /// Exposure from the picture's luminances.
-    pub const AUTO: Self = Self::Metered(Metered::Auto);
+    pub const AUTO: Self = Self::Metered(MeteringMode::Evaluative);
 }
 
-/// Kind of automatic exposure.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub enum Metered {
-    /// From the picture's luminances.
-    Auto,
+/// What automatic exposure is metered from. All modes meter without the sun's disc.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum MeteringMode {
+    /// The sky more than the ground, without the brightest and darkest parts; dusk stays darker than day.
+    #[default]
+    Evaluative,
+    /// The mean luminance, mostly of the centre, is middle grey.
+    CentreWeighted,
+    /// The mean luminance of 2.5 % of the picture, in its centre, is middle grey.
+    Spot,
+    /// The mean luminance is middle grey.
+    Average,
+    /// The brightest hundredth is just below white.
+    HighlightWeighted,
+    /// A grey card that faces the zenith is middle grey.
+    Incident,
 }
+
+named! { MeteringMode, "a metering mode", [
+    ("auto", (Evaluative), "evaluative: the sky more than the ground, without the brightest and darkest parts; dusk stays darker than day"),
+    ("centre-weighted", (CentreWeighted), "the mean luminance, mostly of the centre, is middle grey"),
+    ("spot", (Spot), "the mean luminance of 2.5 % of the picture, in its centre, is middle grey"),
+    ("average", (Average), "the mean luminance is middle grey"),
+    ("highlight-weighted", (HighlightWeighted), "the brightest hundredth is just below white"),
+    ("incident", (Incident), "a grey card that faces the zenith is middle grey"),
+], aliases [("evaluative", (Evaluative)), ("matrix", (Evaluative)), ("center-weighted", (CentreWeighted))] }
 
 /// Picture file and its encoding.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -172,12 +195,16 @@ pub struct OutputSpec {
     pub precision: Option<SamplePrecision>,
     /// Lossless compression of .exr samples. Default: zip.
     pub compression: Option<ExrCompression>,
-    /// Exposure of .png, .jpg and preview. Default: auto.
+    /// Exposure of .png, .jpg and preview: a metering mode or an exposure value at ISO 100. Default: auto.
     pub exposure: Option<Exposure>,
     /// Stops by which .png, .jpg and preview are brightened (negative: darkened). Default: 0.
     pub brighten: Option<f64>,
-    /// Tone curve of .png, .jpg and preview. Default: filmic.
+    /// Tone curve of .png, .jpg and preview. Default: camera.
     pub tone: Option<ToneKind>,
+    /// Contrast of the camera curve: its slope at middle grey on logarithmic axes, 0.5 to 3. Default: 1.2.
+    pub tone_contrast: Option<f64>,
+    /// Saturation of the camera curve: factor on the distance from grey, 0 to 3. Default: 1.
+    pub saturation: Option<f64>,
     /// Bits per component of .png, 8 or 16. Default: 8.
     pub bits: Option<u8>,
     /// Quality of .jpg, 1 to 100. Default: 92.
@@ -201,4 +228,7 @@ pub struct SequenceSpec {
     pub until: Option<String>,
     /// Interval between pictures: "10m", "1h30m", "45s".
     pub every: Option<String>,
+    /// Whether every picture is metered by itself, rather than all exposed as the brightest of the first, the middle and the
+    /// last. Default: false.
+    pub meter_each: Option<bool>,
 }

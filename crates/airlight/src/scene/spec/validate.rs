@@ -1,6 +1,6 @@
 //! Validation of a scene's numbers, and of keys that exclude or need each other.
 
-use super::{Exposure, FogLayerSpec, LightKind, LightSpec, Scene, SunlightKind};
+use super::{Exposure, FogLayerSpec, LightKind, LightSpec, Scene, SunlightKind, ToneKind};
 use crate::scene::SceneError;
 
 /// Description of the numbers allowed, and their test.
@@ -10,6 +10,8 @@ const FINITE: Allowed = ("a number", f64::is_finite);
 const NOT_NEGATIVE: Allowed = ("a number, 0 or above", |v| v.is_finite() && v >= 0.0);
 const POSITIVE: Allowed = ("a number above 0", |v| v.is_finite() && v > 0.0);
 const FRACTION: Allowed = ("a number from 0 to 1", |v| (0.0..=1.0).contains(&v));
+const TONE_CONTRAST: Allowed = ("a number from 0.5 to 3", |v| (0.5..=3.0).contains(&v));
+const SATURATION: Allowed = ("a number from 0 to 3", |v| (0.0..=3.0).contains(&v));
 const ELEVATION: Allowed = ("a number of degrees from -90 to 90", |v| {
     (-90.0..=90.0).contains(&v)
 });
@@ -212,6 +214,21 @@ impl Scene {
         number("camera.fov_deg", camera.fov_deg, POSITIVE)?;
         number("output.scale", output.scale, POSITIVE)?;
         number("output.brighten", output.brighten, FINITE)?;
+        let camera_curve = matches!(output.tone, None | Some(ToneKind::Camera));
+        for (key, value, allowed) in [
+            ("output.tone_contrast", output.tone_contrast, TONE_CONTRAST),
+            ("output.saturation", output.saturation, SATURATION),
+        ] {
+            number(key, value, allowed)?;
+            if let (Some(value), false) = (value, camera_curve) {
+                return Err(SceneError::value(
+                    key,
+                    "the tone curve camera with it",
+                    format!("{value} with another"),
+                    "output.tone = \"camera\"",
+                ));
+            }
+        }
         if let Some(Exposure::Ev100(ev100)) = output.exposure {
             number("output.exposure", Some(ev100), FINITE)?;
         }

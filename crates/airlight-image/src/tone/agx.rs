@@ -1,4 +1,4 @@
-//! A filmic tone curve in the manner of AgX: inset colours towards white, map the logarithm of each component by a sigmoid, and
+//! A tone curve in the manner of AgX: inset colours towards white, map the logarithm of each component by a sigmoid, and
 //! outset them again.
 //!
 //! # Derivation
@@ -16,10 +16,8 @@
 //! 1, restores the saturation where the curve is straight.
 
 use super::blocks::{OctaveTable, Planes, into_unit_cube, mix};
+use super::exposure::MIDDLE_GREY;
 use crate::ImageError;
-
-/// Linear value of middle grey.
-pub(super) const MIDDLE_GREY: f64 = 0.18;
 
 /// Weights of the mean of the inset.
 const INSET_WEIGHTS: [f32; 3] = [0.212, 0.3922, 0.3958];
@@ -27,9 +25,9 @@ const INSET_WEIGHTS: [f32; 3] = [0.212, 0.3922, 0.3958];
 /// Exponent from the signal of the curve to display light.
 const SIGNAL_POWER: f64 = 2.4;
 
-/// Shape of the filmic curve. The default is that of AgX.
+/// Shape of the curve. The default is the base look of AgX.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FilmicSettings {
+pub struct AgxSettings {
     /// Stops from middle grey down to black; 1 to 30.
     pub black_stops: f64,
     /// Stops from middle grey up to white; 1 to 30.
@@ -45,7 +43,7 @@ pub struct FilmicSettings {
     pub inset: f64,
 }
 
-impl Default for FilmicSettings {
+impl Default for AgxSettings {
     fn default() -> Self {
         Self {
             black_stops: 10.0,
@@ -58,17 +56,17 @@ impl Default for FilmicSettings {
     }
 }
 
-/// The filmic curve, tabulated.
+/// The curve of AgX, tabulated.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Filmic {
+pub(super) struct Agx {
     inset: f32,
     outset_scale: f32,
     table: OctaveTable,
 }
 
-impl Filmic {
+impl Agx {
     /// Checks the settings and tabulates the curve.
-    pub(super) fn new(settings: FilmicSettings) -> Result<Self, ImageError> {
+    pub(super) fn new(settings: AgxSettings) -> Result<Self, ImageError> {
         let s = settings;
         let stops = |n: f64| (1.0..=30.0).contains(&n);
         let power = |n: f64| n > 0.0 && n <= 10.0;
@@ -132,7 +130,7 @@ impl Filmic {
     }
 }
 
-impl FilmicSettings {
+impl AgxSettings {
     /// Middle grey on the curve.
     fn pivot(&self) -> (f64, f64) {
         (
