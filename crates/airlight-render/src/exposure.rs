@@ -81,7 +81,8 @@ impl ExposureSettings {
             MeteringMode::Spot => picture.mean(|pixel| f64::from(pixel.in_spot())),
             MeteringMode::Average => picture.mean(|_| 1.0),
             MeteringMode::HighlightWeighted => picture.highlight(),
-            MeteringMode::Incident => MIDDLE_GREY / (MIDDLE_GREY * picture.horizontal_lx / PI),
+            // A card of any reflectance is shown as that reflectance.
+            MeteringMode::Incident => PI / picture.horizontal_lx,
             _ => picture.evaluative(),
         };
         // A black picture, whose factor is infinite or NaN, is black in any exposure.

@@ -61,7 +61,6 @@ impl Renderer {
         pictures: &[SequenceStep],
         control: Control<'_>,
     ) -> Result<Option<PreparedSequence>, RenderError> {
-        let renderer = self.clone();
         let metered: Vec<&SequenceStep> = match self.meters_together() && !pictures.is_empty() {
             true => sequence.first_middle_last(),
             false => Vec::new(),
@@ -85,8 +84,8 @@ impl Renderer {
         Ok(Some(PreparedSequence {
             solution,
             renderer: match common {
-                Some(exposure) => renderer.with_exposure(exposure),
-                None => renderer,
+                Some(exposure) => self.clone().with_exposure(exposure),
+                None => self.clone(),
             },
         }))
     }

@@ -378,6 +378,8 @@ mod tests {
                 9,
                 "the integer is too large",
             ),
+            ("number = 1e999", 9, "the number is too large"),
+            ("share = 7", 8, "expected 0 to 1, got 7"),
         ] {
             let error = read(text).unwrap_err();
             assert!(error.to_string().contains(message), "{text}: {error}");
