@@ -3,6 +3,7 @@
 use crate::error::CliError;
 use crate::interrupt;
 use airlight::Named;
+use airlight_image::Notes;
 use airlight_image::output::AtomicFile;
 use airlight_image::tone::ToneMapper;
 use airlight_plot::{ContactSheet, Panel, Raster};
@@ -89,6 +90,13 @@ pub fn write_contact_sheet(path: &Path, sheet: &ContactSheet) -> Result<(), CliE
 /// Writes a remark to standard error, ignoring errors.
 pub fn note(text: &str) {
     let _ = writeln!(std::io::stderr(), "airlight: {text}");
+}
+
+/// Writes one line to standard error with what was converted, repaired or passed over in a file or folder.
+pub fn remarks(path: &Path, notes: &Notes) {
+    if !notes.is_empty() {
+        note(&format!("`{}`: {notes}", path.display()));
+    }
 }
 
 /// Formats a duration.

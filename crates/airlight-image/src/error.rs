@@ -133,14 +133,20 @@ pub enum ImageError {
     },
     /// A depth map of another size than its picture.
     #[error(
-        "expected a depth map and a picture of the same size, got {} x {} and {} x {} pixels",
-        .depth.0, .depth.1, .picture.0, .picture.1
+        "expected a depth map and a picture of the same size, got {} x {} and {} x {} pixels{}",
+        .depth.0, .depth.1, .picture.0, .picture.1,
+        match .exif_orientation {
+            Some(value) => format!(" (after turning the picture upright by its EXIF orientation, {value})"),
+            None => String::new(),
+        }
     )]
     SizesDiffer {
         /// Width and height of the depth map.
         depth: (u32, u32),
         /// Width and height of the picture.
         picture: (u32, u32),
+        /// EXIF orientation by which the picture was turned, if it was.
+        exif_orientation: Option<u8>,
     },
     /// The caller cancelled; no file was written.
     #[error("cancelled; no file was left behind")]

@@ -9,6 +9,7 @@
 //! - [`Size`]: width and height of pictures.
 //! - [`frame`]: projections, from pixels to view directions and back.
 //! - [`rows`]: row sources.
+//! - [`Notes`]: what was converted, repaired or passed over.
 //! - [`enlarge`]: upsampling by cubic splines.
 //! - [`tone`]: exposure, tone curves, sRGB encoding, dither: from linear light to display values.
 //! - [`output`]: picture writers: OpenEXR (RGB and spectral), Radiance HDR, PNG, JPEG.
@@ -19,6 +20,7 @@ pub mod enlarge;
 pub mod error;
 pub mod frame;
 pub mod input;
+mod notes;
 pub mod output;
 pub mod rows;
 mod size;
@@ -30,6 +32,7 @@ pub use error::ImageError;
 pub use frame::{Camera, CubeFace, Fisheye, Frame, Intrinsics, Projection};
 pub use glam;
 pub use input::{DepthMap, DepthOptions, Picture, read_depth, read_picture};
+pub use notes::Notes;
 pub use output::{PictureFormat, PictureOptions, write_picture};
 pub use rows::RowSource;
 pub use size::Size;

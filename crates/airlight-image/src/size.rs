@@ -36,6 +36,14 @@ impl Size {
         self.height
     }
 
+    /// Height and width exchanged.
+    pub(crate) fn transposed(self) -> Self {
+        Self {
+            width: self.height,
+            height: self.width,
+        }
+    }
+
     /// The same aspect ratio in fewer pixels: at most `longest_side`, at least 1 a side.
     pub(crate) fn shrunk_to(self, longest_side: u32) -> Self {
         let longest = self.width.max(self.height);

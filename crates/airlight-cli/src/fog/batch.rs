@@ -28,6 +28,7 @@ pub fn run(args: &OverlayArgs, scene: OverlayScene) -> Result<(), CliError> {
         let bar = PicturesBar::new(missing as u64);
         batch.run(Control::cancelled_by(&STOP).reporting_to(&bar))?
     };
+    report::remarks(&plan.scene().overlay.colour, &report.notes);
     let failures = report.failures.len();
     if !args.quiet {
         let mut also = String::new();

@@ -95,6 +95,7 @@ fn one(args: &OverlayArgs, scene: &OverlayScene) -> Result<(), CliError> {
         Some(fog) => passes(scene, &image, &prepared, &fog, control)?,
     };
     drop(writing);
+    report::remarks(&scene.overlay.colour, &image.notes());
     if args.quiet {
         return Ok(());
     }

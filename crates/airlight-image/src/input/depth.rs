@@ -1,7 +1,8 @@
 //! Depth maps: their meaning, and the conversion from the numbers of a file to metres.
 
+use super::Orientation;
 use super::picture::{Picture, SampleBits};
-use crate::{ImageError, Size};
+use crate::{ImageError, Notes, Size};
 use rayon::prelude::*;
 use std::path::Path;
 
@@ -136,9 +137,46 @@ pub struct DepthMap {
     pub holes: u64,
     /// Number of pixels infinitely far.
     pub infinite: u64,
+    /// What was converted or repaired.
+    pub notes: Notes,
 }
 
 impl DepthMap {
+    /// A map of known depths, in metres.
+    pub fn new(size: Size, metres: Vec<f32>, kind: DepthKind) -> Self {
+        Self {
+            size,
+            metres,
+            kind,
+            bits: SampleBits::Float,
+            holes: 0,
+            infinite: 0,
+            notes: Notes::default(),
+        }
+    }
+
+    /// Turns a map that lies as its picture lay in the file, which is seen by exchanged sides. Where the size leaves it open, the
+    /// map is upright, and a note says so.
+    pub fn turned_like(mut self, picture: &Picture) -> Self {
+        let orientation = picture.orientation;
+        let stored = orientation.turned(picture.size);
+        if orientation == Orientation::UPRIGHT {
+            return self;
+        }
+        if self.size == picture.size {
+            if self.size == stored {
+                self.notes.add("the depth map is taken to be upright");
+            }
+            return self;
+        }
+        if self.size == stored {
+            self.metres = orientation.apply(self.size, 1, self.metres);
+            self.size = picture.size;
+            self.notes.add("the depth map is turned with the picture");
+        }
+        self
+    }
+
     /// Checks that the map has the size of a picture.
     ///
     /// # Errors
@@ -150,6 +188,8 @@ impl DepthMap {
             Err(ImageError::SizesDiffer {
                 depth: (self.size.width(), self.size.height()),
                 picture: (picture.size.width(), picture.size.height()),
+                exif_orientation: (picture.orientation != Orientation::UPRIGHT)
+                    .then(|| picture.orientation.exif()),
             })
         }
     }
@@ -227,16 +267,15 @@ impl RawDepth {
                 ),
             });
         }
+        let kind = match options.meaning {
+            DepthMeaning::RayDistance => DepthKind::Ray,
+            _ => DepthKind::Z,
+        };
         Ok(DepthMap {
-            size: self.size,
-            metres: self.values,
-            kind: match options.meaning {
-                DepthMeaning::RayDistance => DepthKind::Ray,
-                _ => DepthKind::Z,
-            },
             bits: self.bits,
             holes: counts.holes,
             infinite: counts.infinite,
+            ..DepthMap::new(self.size, self.values, kind)
         })
     }
 

@@ -3,7 +3,7 @@
 use super::{
     depth::RawDepth,
     exr_channels,
-    picture::{LightReference, Picture, SampleBits, repair_colours, repair_opacity},
+    picture::{LightReference, Picture, REPAIRED, SampleBits, repair_colours, repair_opacity},
     source::{DecodeError, Source, TrackedFile, checked_size, sample_count, zeros},
 };
 use crate::{Size, output::Chromaticities};
@@ -41,17 +41,15 @@ pub(super) fn read(source: Source, layer: Option<&str>) -> Result<Picture, Decod
         _ => repair_opacity(samples),
     })?;
     let mut buffers = loaded.groups.into_iter();
-    Ok(Picture {
-        size: loaded.size,
-        rgb: buffers.next().unwrap_or_default(),
+    let rgb = buffers.next().unwrap_or_default();
+    let mut picture = Picture {
         alpha: buffers.next(),
-        reference: LightReference::Scene,
-        bits,
         chromaticities,
         white_luminance_cd_m2,
-        profile_ignored: false,
-        repaired_samples: loaded.repaired,
-    })
+        ..Picture::new(loaded.size, rgb, LightReference::Scene, bits)
+    };
+    picture.notes.count(loaded.repaired, REPAIRED);
+    Ok(picture)
 }
 
 /// Reads a depth channel.

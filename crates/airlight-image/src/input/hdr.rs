@@ -1,7 +1,7 @@
 //! Radiance HDR decoder: RGBE or XYZE, plain or run-length encoded.
 
 use super::{
-    picture::{LightReference, Picture, SampleBits, repair_colours},
+    picture::{LightReference, Picture, REPAIRED, SampleBits, repair_colours},
     source::{DecodeError, Source, checked_size, reserve, sample_count},
 };
 use crate::{Size, output::Chromaticities};
@@ -42,18 +42,13 @@ pub(super) fn read(mut source: Source) -> Result<Picture, DecodeError> {
         }));
     }
     // A tiny exposure can make values infinite.
-    let repaired_samples = repair_colours(&mut rgb);
-    Ok(Picture {
-        size,
-        rgb,
-        alpha: None,
-        reference: LightReference::Scene,
-        bits: SampleBits::Float,
+    let repaired = repair_colours(&mut rgb);
+    let mut picture = Picture {
         chromaticities: header.chromaticities,
-        white_luminance_cd_m2: None,
-        profile_ignored: false,
-        repaired_samples,
-    })
+        ..Picture::new(size, rgb, LightReference::Scene, SampleBits::Float)
+    };
+    picture.notes.count(repaired, REPAIRED);
+    Ok(picture)
 }
 
 fn header(reader: &mut impl BufRead) -> Result<Header, DecodeError> {

@@ -1,17 +1,18 @@
 //! JPEG decoder: baseline and progressive, grey or colour.
 
 use super::{
-    picture::{LightReference, Picture, SRGB_8, SampleBits, is_foreign_profile},
+    colour::ColourDecoding,
+    exif::Exif,
+    picture::{LightReference, Picture, SampleBits},
     source::{DecodeError, Source, checked_size, reserve, sample_count},
 };
-use crate::Size;
-use std::io::Read;
+use crate::{Notes, Size};
 use zune_core::{bytestream::ZCursor, colorspace::ColorSpace, options::DecoderOptions};
 use zune_jpeg::{JpegDecoder, errors::DecodeErrors};
 
-pub(super) fn read(mut source: Source) -> Result<Picture, DecodeError> {
-    let mut bytes = Vec::new();
-    source.reader.read_to_end(&mut bytes)?;
+pub(super) fn read(source: Source) -> Result<Picture, DecodeError> {
+    let bytes = source.read_to_end()?;
+    check_encoding(&bytes)?;
     require_end(&bytes)?;
     let options = DecoderOptions::default()
         .set_max_width(Size::MAX as usize)
@@ -22,15 +23,7 @@ pub(super) fn read(mut source: Source) -> Result<Picture, DecodeError> {
         .info()
         .ok_or_else(|| DecodeError::invalid("expected a JPEG header, got none"))?;
     let size = checked_size(u64::from(info.width), u64::from(info.height))?;
-    let is_grey = match decoder.input_colorspace() {
-        Some(ColorSpace::CMYK | ColorSpace::YCCK) => {
-            return Err(DecodeError::invalid(
-                "expected a grey or RGB picture, got CMYK; try saving it as RGB",
-            ));
-        }
-        Some(ColorSpace::Luma) => true,
-        _ => false,
-    };
+    let is_grey = matches!(decoder.input_colorspace(), Some(ColorSpace::Luma));
     let (space, each) = if is_grey {
         (ColorSpace::Luma, 1)
     } else {
@@ -43,56 +36,96 @@ pub(super) fn read(mut source: Source) -> Result<Picture, DecodeError> {
             "expected 1 or 3 JPEG components, got another number",
         ));
     }
-    let profile_ignored = decoder
-        .icc_profile()
-        .as_deref()
-        .is_some_and(is_foreign_profile);
+    let exif = decoder.exif().map(|exif| Exif::parse(exif));
+    let exif = exif.unwrap_or_default();
+    let mut notes = Notes::default();
+    let decoding = match decoder.icc_profile() {
+        Some(profile) => ColourDecoding::from_icc(&profile, if is_grey { 1 } else { 3 })
+            .unwrap_or_else(|reason| {
+                notes.add(format!("ICC profile ignored: {reason}"));
+                ColourDecoding::srgb()
+            }),
+        None if exif.is_adobe_rgb => ColourDecoding::adobe_rgb(),
+        None => ColourDecoding::srgb(),
+    };
+    let table = decoding.table(256);
     let mut rgb = reserve(sample_count(size, 3))?;
     let mut decoded = vec![0; count];
     decoder.decode_into(&mut decoded).map_err(failed)?;
-    let light = |v: u8| SRGB_8.get(usize::from(v)).copied().unwrap_or(0.0);
+    let light = |v: u8| table.get(usize::from(v)).copied().unwrap_or(0.0);
     if is_grey {
         rgb.extend(decoded.iter().flat_map(|&v| [light(v); 3]));
     } else {
         rgb.extend(decoded.iter().map(|&v| light(v)));
     }
-    Ok(Picture {
-        size,
-        rgb,
-        alpha: None,
-        reference: LightReference::Display,
-        bits: SampleBits::U8,
-        chromaticities: None,
-        white_luminance_cd_m2: None,
-        profile_ignored,
-        repaired_samples: 0,
-    })
+    decoding.finish(&mut rgb).map_err(DecodeError::Invalid)?;
+    let mut picture = Picture::new(size, rgb, LightReference::Display, SampleBits::U8);
+    picture.notes = notes;
+    picture.note_conversion(decoding.name());
+    Ok(picture.turned(exif.orientation))
 }
 
-/// Refuses a file without an end marker after its first scan: the decoder would fill in missing pixels.
-fn require_end(bytes: &[u8]) -> Result<(), DecodeError> {
-    let early = |what: &str| Err(DecodeError::Truncated(format!("{what} is missing")));
-    // After the start marker: segments of a marker and a length that includes itself, up to the first scan.
+/// Refuses kinds of JPEG that are not decoded, by the marker and the header of the frame.
+fn check_encoding(bytes: &[u8]) -> Result<(), DecodeError> {
+    let Some(at) = segment(bytes, |marker| {
+        matches!(marker, 0xc0..=0xcf) && !matches!(marker, 0xc4 | 0xc8 | 0xcc)
+    }) else {
+        return Ok(());
+    };
+    let refuse = |kind: &str, advice: &str| {
+        Err(DecodeError::Invalid(format!(
+            "expected a baseline or progressive JPEG of 8 bits, grey or colour, got {kind}; try saving it as {advice}"
+        )))
+    };
+    let (bits, components) = (bytes.get(at + 4), bytes.get(at + 9));
+    match bytes[at + 1] {
+        0xc3 | 0xc7 | 0xcb | 0xcf => return refuse("lossless compression", "PNG"),
+        0xc9..=0xcf => return refuse("arithmetic coding", "baseline JPEG"),
+        0xc5..=0xc7 => return refuse("a hierarchical one", "baseline JPEG"),
+        _ => {}
+    }
+    if bits.is_some_and(|&bits| bits != 8) {
+        return refuse("12 bits", "16-bit PNG");
+    }
+    match components {
+        Some(4) => refuse("CMYK", "RGB"),
+        Some(1 | 3) | None => Ok(()),
+        Some(count) => refuse(&format!("{count} components"), "RGB"),
+    }
+}
+
+/// Position of the first segment before the first scan whose marker `is_wanted`.
+fn segment(bytes: &[u8], is_wanted: impl Fn(u8) -> bool) -> Option<usize> {
+    // After the start marker: segments of a marker and a length that includes itself.
     let mut at = 2;
     loop {
-        let Some(&[0xff, marker, high, low]) = bytes.get(at..at + 4) else {
-            // Fill bytes, or corrupt data that the decoder reports.
-            match bytes.get(at) {
-                Some(_) if at + 4 <= bytes.len() => {
-                    at += 1;
-                    continue;
-                }
-                _ => return early("the image data"),
-            }
+        let &[first, marker, high, low] = bytes.get(at..at + 4)? else {
+            return None;
         };
+        if first != 0xff {
+            // Corrupt data, which the decoder reports.
+            at += 1;
+            continue;
+        }
+        if is_wanted(marker) {
+            return Some(at);
+        }
         match marker {
             // The scan.
-            0xda => break,
+            0xda => return None,
             // Fill bytes and markers without a length.
             0x00 | 0x01 | 0xff | 0xd0..=0xd8 => at += 1,
             _ => at += 2 + usize::from(u16::from_be_bytes([high, low])),
         }
     }
+}
+
+/// Refuses a file without an end marker after its first scan: the decoder would fill in missing pixels.
+fn require_end(bytes: &[u8]) -> Result<(), DecodeError> {
+    let early = |what: &str| Err(DecodeError::Truncated(format!("{what} is missing")));
+    let Some(at) = segment(bytes, |marker| marker == 0xda) else {
+        return early("the image data");
+    };
     let scan = bytes.get(at..).unwrap_or_default();
     if scan.windows(2).any(|pair| pair == [0xff, 0xd9]) {
         Ok(())

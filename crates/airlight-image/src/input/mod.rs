@@ -3,19 +3,23 @@
 //! Formats are recognised by their contents, not by file endings. Any bytes give either a picture or an error that names the file
 //! and what is wrong with it.
 
+mod colour;
 mod depth;
+mod exif;
 mod exr;
 mod exr_channels;
 mod hdr;
 mod hole_fill;
 mod jpeg;
 mod npy;
+mod orientation;
 mod pfm;
 mod picture;
 mod png;
 mod source;
 
 pub use depth::{DepthKind, DepthMap, DepthMeaning, DepthOptions, UnknownDepth};
+pub use orientation::Orientation;
 pub use picture::{LightReference, Picture, SampleBits};
 
 use crate::ImageError;
@@ -35,8 +39,10 @@ const DEPTH_FORMATS: &str = "OpenEXR, PNG, NPY, PFM";
 /// name. Without it, plain `R`, `G`, `B` are read, or those of the only layer that has them. A layer that has only a luminance
 /// `Y` gives grey. The picture has the size of the display window; it is black where the data window does not cover it.
 ///
-/// PNG files may have any colour type and depth; their colours are decoded as sRGB, or by a `gAMA` chunk where that
-/// differs and no other chunk says sRGB. EXIF orientation is not applied.
+/// PNG files may have any colour type and depth. Display colours are converted to linear sRGB from what the file says they are:
+/// PNG by its chunks cICP, else iCCP, else sRGB, else cHRM and gAMA; JPEG by its ICC profile, else the interoperability index of
+/// its EXIF data; otherwise they are sRGB. In high dynamic range (PQ, HLG), 203 cd/m^2 are 1 (ITU-R BT.2408). A picture with an
+/// EXIF orientation is turned upright. [`Picture::notes`] lists what was converted, repaired or ignored.
 ///
 /// # Errors
 /// [`ImageError::File`] where the system refuses, [`ImageError::EndsEarly`] for empty and truncated files,

@@ -57,8 +57,7 @@ pub(super) fn read(mut source: Source) -> Result<RawDepth, DecodeError> {
     };
     let needed = sample_count(size, element.bytes) as u64;
     let available = length.saturating_sub(before + u64::from(header_length));
-    // Devices and pipes have length 0.
-    if length > 0 && available < needed {
+    if available < needed {
         return Err(DecodeError::Truncated(format!(
             "expected {needed} bytes of samples, got {available}"
         )));

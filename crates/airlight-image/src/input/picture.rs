@@ -1,6 +1,7 @@
 //! Pictures in memory: linear red, green and blue.
 
-use crate::{Size, output::Chromaticities};
+use super::Orientation;
+use crate::{Notes, Size, output::Chromaticities};
 use airlight::spectrum::rgb::srgb_decode;
 use std::sync::LazyLock;
 
@@ -34,7 +35,7 @@ pub enum SampleBits {
 pub struct Picture {
     /// Width and height in pixels.
     pub size: Size,
-    /// Linear red, green and blue of each pixel, row by row from the upper left; finite and not negative.
+    /// Linear red, green and blue of each pixel, row by row from the upper left; finite.
     pub rgb: Vec<f32>,
     /// Opacity of each pixel in `[0, 1]`, where the file has it. By the conventions of the formats, colours of an EXR file
     /// are premultiplied by it, those of a PNG file are not.
@@ -43,50 +44,96 @@ pub struct Picture {
     pub reference: LightReference,
     /// Sample format of the colours in the file.
     pub bits: SampleBits,
-    /// Primaries and white of the colours, where the file states them; sRGB otherwise.
+    /// Primaries and white of the colours, where a file of light in the scene states them; sRGB otherwise. Display colours are
+    /// converted to sRGB.
     pub chromaticities: Option<Chromaticities>,
     /// Luminance of a value of 1, cd/m^2, where an EXR file states it (`whiteLuminance`).
     pub white_luminance_cd_m2: Option<f32>,
-    /// The file has an ICC colour profile that does not name itself sRGB. It is not applied: the colours are read as sRGB.
-    pub profile_ignored: bool,
-    /// Number of repaired samples: NaN and negative ones became 0, infinite ones 65504 (1 in opacity).
-    pub repaired_samples: u64,
+    /// How the picture lay in the file; it is turned upright.
+    pub orientation: Orientation,
+    /// What was converted, repaired or passed over.
+    pub notes: Notes,
+}
+
+impl Picture {
+    /// An opaque picture in linear sRGB about which nothing else is known.
+    pub fn new(size: Size, rgb: Vec<f32>, reference: LightReference, bits: SampleBits) -> Self {
+        Self {
+            size,
+            rgb,
+            alpha: None,
+            reference,
+            bits,
+            chromaticities: None,
+            white_luminance_cd_m2: None,
+            orientation: Orientation::UPRIGHT,
+            notes: Notes::default(),
+        }
+    }
+
+    /// Turns a picture upright that lies in its file by an orientation.
+    pub(super) fn turned(mut self, orientation: Orientation) -> Self {
+        if orientation != Orientation::UPRIGHT {
+            self.rgb = orientation.apply(self.size, 3, self.rgb);
+            self.alpha = self
+                .alpha
+                .map(|alpha| orientation.apply(self.size, 1, alpha));
+            self.size = orientation.turned(self.size);
+            self.orientation = orientation;
+            self.notes.add(format!(
+                "turned upright (EXIF orientation {})",
+                orientation.exif()
+            ));
+        }
+        self
+    }
+
+    /// Notes the name of the colour space from which display colours were converted.
+    pub(super) fn note_conversion(&mut self, from: Option<&str>) {
+        if let Some(from) = from {
+            let text = format!("colours converted from {from} to sRGB");
+            self.notes.add(text);
+        }
+    }
 }
 
 /// Largest finite half-precision number.
 const MAX_HALF: f32 = 65504.0;
 
-/// Repairs colours in place; returns the number of repaired samples.
+/// Note about samples changed by [`repair_colours`] and [`repair_opacity`].
+pub(super) const REPAIRED: &str = "NaN or infinite samples repaired";
+
+/// Repairs colours in place: NaN becomes 0, infinity the largest half-precision number of its sign. Negative colours, outside
+/// the gamut of their primaries, are kept. Returns the number of repaired samples.
 pub(super) fn repair_colours(samples: &mut [f32]) -> u64 {
-    repair(samples, MAX_HALF)
+    repair(samples, f32::NEG_INFINITY, |v| match v.is_nan() {
+        true => 0.0,
+        false => v.clamp(-MAX_HALF, MAX_HALF),
+    })
 }
 
-/// Repairs opacities in place; returns the number of repaired samples.
+/// Repairs opacities in place, to numbers from 0 to 1; returns the number of repaired samples.
 pub(super) fn repair_opacity(samples: &mut [f32]) -> u64 {
-    repair(samples, 1.0)
+    repair(samples, -f32::MIN_POSITIVE, |v| match v > 0.0 {
+        true => 1.0,
+        false => 0.0,
+    })
 }
 
-fn repair(samples: &mut [f32], for_infinity: f32) -> u64 {
+/// Replaces samples that are not above `least` and finite; returns their number.
+fn repair(samples: &mut [f32], least: f32, replacement: impl Fn(f32) -> f32) -> u64 {
     let mut repaired = 0;
     // In blocks whose count fits 32 bits, so that the loop is vectorised.
     for block in samples.chunks_mut(4096) {
         let mut count = 0u32;
         for v in block {
-            let valid = *v >= 0.0 && *v < f32::INFINITY;
+            let valid = *v > least && *v < f32::INFINITY;
             count += u32::from(!valid);
-            let replacement = if *v > 0.0 { for_infinity } else { 0.0 };
-            *v = if valid { *v } else { replacement };
+            *v = if valid { *v } else { replacement(*v) };
         }
         repaired += u64::from(count);
     }
     repaired
-}
-
-/// True for an ICC profile that does not name itself sRGB.
-pub(super) fn is_foreign_profile(profile: &[u8]) -> bool {
-    // Names are ASCII in old profiles, UTF-16 in new ones.
-    let letters: Vec<u8> = profile.iter().copied().filter(|&b| b != 0).collect();
-    !letters.windows(4).any(|four| four == b"sRGB")
 }
 
 /// Linear light of every 8-bit sRGB value.

@@ -1,14 +1,13 @@
 //! PNG decoder: pictures of any colour type and depth, depth maps of 8 or 16 bits of grey.
 
 use super::{
+    colour::ColourDecoding,
     depth::RawDepth,
-    picture::{
-        LightReference, Picture, SRGB_8, SRGB_16, SampleBits, decoding_table, is_foreign_profile,
-    },
+    exif::Exif,
+    picture::{LightReference, Picture, SampleBits},
     source::{DecodeError, Source, TrackedFile, checked_size, reserve, sample_count},
 };
-use crate::{Size, output::Chromaticities};
-use airlight::spectrum::RgbSpace;
+use crate::{Notes, Size, output::Chromaticities};
 use png::{BitDepth, ColorType, Decoder, DecodingError, Info, Limits, Reader, Transformations};
 use std::io::BufReader;
 
@@ -34,46 +33,37 @@ pub(super) fn read(source: Source) -> Result<Picture, DecodeError> {
         alpha: matches!(color, ColorType::GrayscaleAlpha | ColorType::Rgba),
     };
     let info = reader.info();
-    let chromaticities = chromaticities(info);
-    let profile_ignored = info.icc_profile.as_deref().is_some_and(is_foreign_profile);
-    let gamma = foreign_gamma(info);
+    let mut notes = Notes::default();
+    let decoding = decoding(info, layout.colours, &mut notes);
+    let exif = info.exif_metadata.as_deref().map(Exif::parse);
     let mut rgb = reserve(sample_count(size, 3))?;
     let mut alpha = layout
         .alpha
         .then(|| reserve(sample_count(size, 1)))
         .transpose()?;
-    let count = if depth == BitDepth::Sixteen {
-        65536
-    } else {
-        256
-    };
-    let own_table = gamma.map(|gamma| decoding_table(count, |v| v.powf(1.0 / gamma)));
     let bits = if depth == BitDepth::Sixteen {
-        let table = own_table.as_deref().unwrap_or(&SRGB_16);
+        let table = decoding.table(65_536);
         rows(&mut reader, |rows| {
             let (values, _) = rows.as_chunks::<2>();
             let values = values.iter().map(|&two| u16::from_be_bytes(two));
-            layout.split(values, table, &mut rgb, alpha.as_mut());
+            layout.split(values, &table, &mut rgb, alpha.as_mut());
         })?;
         SampleBits::U16
     } else {
-        let table = own_table.as_deref().unwrap_or(&SRGB_8);
+        let table = decoding.table(256);
         rows(&mut reader, |rows| {
-            layout.split(rows.iter().copied(), table, &mut rgb, alpha.as_mut());
+            layout.split(rows.iter().copied(), &table, &mut rgb, alpha.as_mut());
         })?;
         SampleBits::U8
     };
-    Ok(Picture {
-        size,
-        rgb,
+    decoding.finish(&mut rgb).map_err(DecodeError::Invalid)?;
+    let mut picture = Picture {
         alpha,
-        reference: LightReference::Display,
-        bits,
-        chromaticities,
-        white_luminance_cd_m2: None,
-        profile_ignored,
-        repaired_samples: 0,
-    })
+        notes,
+        ..Picture::new(size, rgb, LightReference::Display, bits)
+    };
+    picture.note_conversion(decoding.name());
+    Ok(picture.turned(exif.unwrap_or_default().orientation))
 }
 
 /// A depth map: grey of 8 or 16 bits, in the numbers of the file.
@@ -205,27 +195,43 @@ impl PixelLayout {
     }
 }
 
-/// Encoding exponent, where the file states one that differs from that of sRGB and no chunk takes precedence.
-fn foreign_gamma(info: &Info<'_>) -> Option<f64> {
-    let overridden = info.srgb.is_some()
-        || info.icc_profile.is_some()
-        || info.coding_independent_code_points.is_some();
-    let gamma = f64::from(info.gama_chunk?.into_value());
-    let is_about_srgb = (gamma * 2.2 - 1.0).abs() < 0.05;
-    (!overridden && !is_about_srgb && (0.1..=10.0).contains(&gamma)).then_some(gamma)
-}
-
-fn chromaticities(info: &Info<'_>) -> Option<Chromaticities> {
-    if info.srgb.is_some() {
-        return Some(RgbSpace::Srgb.into());
+/// Decoding of the colours: by code points, else by a profile, else as sRGB, else by primaries and gamma (PNG, third edition,
+/// clause 4.3).
+fn decoding(info: &Info<'_>, components: usize, notes: &mut Notes) -> ColourDecoding {
+    if let Some(points) = &info.coding_independent_code_points {
+        let full = points.is_video_full_range_image;
+        match ColourDecoding::from_cicp(points.color_primaries, points.transfer_function, full) {
+            Some(decoding) => return decoding,
+            None => notes.add(format!(
+                "cICP code points {} and {} are unknown and ignored",
+                points.color_primaries, points.transfer_function
+            )),
+        }
     }
-    let c = info.chrm_chunk?;
-    let xy = |(x, y): (png::ScaledFloat, png::ScaledFloat)| [x.into_value(), y.into_value()];
-    Some(Chromaticities {
-        red: xy(c.red),
-        green: xy(c.green),
-        blue: xy(c.blue),
-        white: xy(c.white),
+    if let Some(profile) = &info.icc_profile {
+        match ColourDecoding::from_icc(profile, components) {
+            Ok(decoding) => return decoding,
+            Err(reason) => notes.add(format!("ICC profile ignored: {reason}")),
+        }
+    }
+    if info.srgb.is_some() {
+        return ColourDecoding::srgb();
+    }
+    let exponent = info.gama_chunk.map(|gamma| f64::from(gamma.into_value()));
+    let exponent = exponent.filter(|gamma| (0.1..=10.0).contains(gamma));
+    let exponent = exponent.map(|gamma| 1.0 / gamma);
+    let primaries = info.chrm_chunk.map(|c| {
+        let xy = |(x, y): (png::ScaledFloat, png::ScaledFloat)| [x.into_value(), y.into_value()];
+        Chromaticities {
+            red: xy(c.red),
+            green: xy(c.green),
+            blue: xy(c.blue),
+            white: xy(c.white),
+        }
+    });
+    ColourDecoding::from_primaries(primaries, exponent).unwrap_or_else(|| {
+        notes.add("impossible primaries (cHRM) ignored");
+        ColourDecoding::srgb()
     })
 }
 

@@ -3,7 +3,7 @@
 use crate::{ImageError, Size};
 use std::{
     fs::File,
-    io::{self, BufReader, Read, Seek, SeekFrom},
+    io::{self, BufReader, Cursor, Read, Seek, SeekFrom},
     panic::{self, AssertUnwindSafe},
     path::Path,
     sync::{
@@ -53,13 +53,33 @@ pub(super) struct Source {
 
 /// A file that records whether a read reached its end.
 pub(super) struct TrackedFile {
-    file: File,
+    bytes: Bytes,
     ended: Arc<AtomicBool>,
+}
+
+/// Bytes of a file.
+enum Bytes {
+    File(File),
+    /// Of a pipe, which cannot be read twice.
+    Memory(Cursor<Vec<u8>>),
+}
+
+impl Source {
+    /// The whole contents, for decoders that work in memory. That the end was reached is then no sign of missing bytes.
+    pub(super) fn read_to_end(mut self) -> io::Result<Vec<u8>> {
+        let mut bytes = Vec::new();
+        self.reader.read_to_end(&mut bytes)?;
+        self.ended.store(false, Ordering::Relaxed);
+        Ok(bytes)
+    }
 }
 
 impl Read for TrackedFile {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let read = self.file.read(buffer)?;
+        let read = match &mut self.bytes {
+            Bytes::File(file) => file.read(buffer)?,
+            Bytes::Memory(memory) => memory.read(buffer)?,
+        };
         if read == 0 && !buffer.is_empty() {
             self.ended.store(true, Ordering::Relaxed);
         }
@@ -69,7 +89,10 @@ impl Read for TrackedFile {
 
 impl Seek for TrackedFile {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
-        self.file.seek(to)
+        match &mut self.bytes {
+            Bytes::File(file) => file.seek(to),
+            Bytes::Memory(memory) => memory.seek(to),
+        }
     }
 }
 
@@ -142,9 +165,20 @@ pub(super) fn decode_file<T>(
 
 fn open(path: &Path, formats: &str) -> Result<Source, DecodeError> {
     let mut file = File::open(path)?;
-    let length = file.metadata()?.len();
+    let about = file.metadata()?;
+    let (mut bytes, length) = if about.is_file() || about.is_dir() {
+        (Bytes::File(file), about.len())
+    } else {
+        let mut memory = Vec::new();
+        file.read_to_end(&mut memory)?;
+        let length = memory.len() as u64;
+        (Bytes::Memory(Cursor::new(memory)), length)
+    };
     let mut start = Vec::with_capacity(16);
-    (&mut file).take(16).read_to_end(&mut start)?;
+    match &mut bytes {
+        Bytes::File(file) => file.take(16).read_to_end(&mut start)?,
+        Bytes::Memory(memory) => memory.take(16).read_to_end(&mut start)?,
+    };
     if start.is_empty() {
         return Err(DecodeError::Truncated("it is empty (0 bytes)".to_owned()));
     }
@@ -153,18 +187,16 @@ fn open(path: &Path, formats: &str) -> Result<Source, DecodeError> {
             "expected one of the formats {formats}, got another"
         ))
     })?;
-    file.rewind()?;
     let ended = Arc::new(AtomicBool::new(false));
+    let mut tracked = TrackedFile {
+        bytes,
+        ended: ended.clone(),
+    };
+    tracked.rewind()?;
     Ok(Source {
         kind,
         length,
-        reader: BufReader::with_capacity(
-            1 << 17,
-            TrackedFile {
-                file,
-                ended: ended.clone(),
-            },
-        ),
+        reader: BufReader::with_capacity(1 << 17, tracked),
         ended,
     })
 }

@@ -2,6 +2,8 @@
 
 use crate::{Frame, Projection};
 use airlight::spectrum::RgbSpace;
+use airlight::spectrum::rgb::adaptation_matrix;
+use glam::{DMat3, DVec3};
 
 /// Metadata of a picture. EXR files store them as standard attributes where one exists, PNG files as text chunks, HDR files as
 /// header lines, JPEG files in the Exif block.
@@ -54,6 +56,27 @@ impl Chromaticities {
         blue: [0.0, 0.0],
         white: [1.0 / 3.0, 1.0 / 3.0],
     };
+
+    /// Matrix from linear RGB of these primaries to linear sRGB. White becomes white, adapted by the Bradford transform.
+    ///
+    /// `None` where the primaries lie on one line, or the white is no colour.
+    pub fn to_linear_srgb(&self) -> Option<DMat3> {
+        let srgb = Self::from(RgbSpace::Srgb);
+        let [from, to] = [self.white, srgb.white].map(|white| white.map(f64::from));
+        let adaptation = DMat3::from_cols_array_2d(&adaptation_matrix(from, to)).transpose();
+        let matrix = srgb.to_xyz()?.inverse() * adaptation * self.to_xyz()?;
+        (matrix.is_finite() && matrix.determinant().abs() > 1e-9).then_some(matrix)
+    }
+
+    /// Matrix to CIE XYZ, in which white has Y = 1.
+    fn to_xyz(self) -> Option<DMat3> {
+        let xyz = |[x, y]: [f32; 2]| DVec3::new(x.into(), y.into(), 1.0 - f64::from(x + y));
+        let primaries = DMat3::from_cols(xyz(self.red), xyz(self.green), xyz(self.blue));
+        let white = xyz(self.white) / f64::from(self.white[1]);
+        let amounts = primaries.inverse() * white;
+        let matrix = primaries * DMat3::from_diagonal(amounts);
+        (matrix.is_finite() && primaries.determinant().abs() > 1e-6).then_some(matrix)
+    }
 }
 
 impl From<RgbSpace> for Chromaticities {

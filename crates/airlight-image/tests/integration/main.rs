@@ -7,6 +7,7 @@ mod intrinsics;
 mod memory;
 mod picture_files;
 mod pictures;
+mod read_colours;
 mod read_depth_files;
 mod read_depths;
 mod read_exr;

@@ -281,22 +281,6 @@ fn jpegs_agree_with_another_decoder() {
 }
 
 #[test]
-fn colour_profiles_other_than_srgb_are_reported() {
-    let folder = Folder::new("profiles");
-    for (name, foreign) in [("Display P3", true), ("sRGB IEC61966-2.1", false)] {
-        // Names in ASCII, and in UTF-16 as in newer profiles.
-        let wide: Vec<u8> = name.bytes().flat_map(|b| [0, b]).collect();
-        for letters in [name.as_bytes(), &wide] {
-            let mut profile = vec![0; 200];
-            profile.extend_from_slice(letters);
-            let bytes = jpeg_file((8, 8), JpegColorType::Ycbcr, false, &profile);
-            let picture = read_as(&folder, &bytes, None).unwrap();
-            assert_eq!(picture.profile_ignored, foreign, "{name}");
-        }
-    }
-}
-
-#[test]
 fn written_pictures_are_read_back() {
     let folder = Folder::new("come-back");
     let (width, height) = (61, 19);
@@ -325,7 +309,8 @@ fn written_pictures_are_read_back() {
         let moved = folder.0.join("picture.txt");
         std::fs::rename(&path, &moved).unwrap();
         let picture = read_picture(&moved, None).unwrap();
-        assert_eq!((picture.size, picture.repaired_samples), (size, 0));
+        assert_eq!(picture.size, size);
+        assert!(picture.notes.is_empty(), "{}", picture.notes);
         match ending {
             "exr" => {
                 assert_eq!(picture.rgb, samples);

@@ -5,7 +5,7 @@ use super::record::{Record, differences};
 use super::{BatchError, BatchPlan, Input};
 use crate::RenderError;
 use crate::overlay::{OverlayImage, OverlayScene, PreparedOverlay, SkyLight};
-use airlight_image::{Control, ImageError};
+use airlight_image::{Control, ImageError, Notes};
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -26,6 +26,8 @@ pub struct BatchReport {
     pub made: usize,
     /// Pictures that failed, each with the reason.
     pub failures: Vec<String>,
+    /// What was converted, repaired or passed over in the files of the pictures written.
+    pub notes: Notes,
     /// Why the remaining pictures were not written, if any remain.
     pub stopped: Option<BatchError>,
 }
@@ -238,6 +240,7 @@ impl Worker<'_> {
                     .try_for_each(|variant| self.failed(input, *variant, &error));
             }
         };
+        self.report().notes.merge(&image.notes());
         for variant in variants {
             if self.is_stopped() {
                 return Ok(());

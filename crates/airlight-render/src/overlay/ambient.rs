@@ -83,7 +83,8 @@ fn mean(picture: &Picture, pixels: impl Iterator<Item = usize>) -> [f32; 3] {
             *sum += f64::from(*value);
         }
     }
-    sum.map(|s| (s / f64::max(count, 1.0)) as f32)
+    // Colours outside the gamut have negative components, which no light has.
+    sum.map(|s| (s / f64::max(count, 1.0)).max(0.0) as f32)
 }
 
 /// Smallest value in the patch around each pixel: columns first, then rows.

@@ -7,7 +7,7 @@ use airlight_image::input::{
 };
 use airlight_image::output::{PictureFormat, PictureOptions, Written, exr, png, write_picture};
 use airlight_image::tone::ToneMapper;
-use airlight_image::{Control, ImageError};
+use airlight_image::{Control, ImageError, Notes};
 use std::path::Path;
 
 /// A colour picture, its depth map and its ambient light.
@@ -27,6 +27,7 @@ impl OverlayImage {
     /// # Errors
     /// [`RenderError`] if their sizes differ.
     pub fn new(spec: &OverlaySpec, picture: Picture, depth: DepthMap) -> Result<Self, RenderError> {
+        let depth = depth.turned_like(&picture);
         depth.check_against(&picture)?;
         let ambient = LightLevel::ambient(spec, &picture, &depth);
         Ok(Self {
@@ -34,6 +35,13 @@ impl OverlayImage {
             depth,
             ambient,
         })
+    }
+
+    /// What was converted, repaired or passed over in the files.
+    pub fn notes(&self) -> Notes {
+        let mut notes = self.picture.notes.clone();
+        notes.merge(&self.depth.notes);
+        notes
     }
 
     /// Reads the colour picture and depth map of a description, for output in a format.

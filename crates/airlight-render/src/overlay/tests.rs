@@ -6,29 +6,15 @@ use airlight_image::input::{LightReference, SampleBits};
 fn picture(width: u32, height: u32, rgb: impl Fn(u32, u32) -> [f32; 3]) -> Picture {
     let size = Size::new(width, height).unwrap();
     let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
-    Picture {
-        size,
-        rgb: pixels.flat_map(|(x, y)| rgb(x, y)).collect(),
-        alpha: None,
-        reference: LightReference::Display,
-        bits: SampleBits::U8,
-        chromaticities: None,
-        white_luminance_cd_m2: None,
-        profile_ignored: false,
-        repaired_samples: 0,
-    }
+    let rgb = pixels.flat_map(|(x, y)| rgb(x, y)).collect();
+    Picture::new(size, rgb, LightReference::Display, SampleBits::U8)
 }
 
 fn depth(width: u32, height: u32, metres: impl Fn(u32, u32) -> f32) -> DepthMap {
     let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
-    DepthMap {
-        size: Size::new(width, height).unwrap(),
-        metres: pixels.map(|(x, y)| metres(x, y)).collect(),
-        kind: DepthKind::Z,
-        bits: SampleBits::Float,
-        holes: 0,
-        infinite: 0,
-    }
+    let size = Size::new(width, height).unwrap();
+    let metres = pixels.map(|(x, y)| metres(x, y)).collect();
+    DepthMap::new(size, metres, DepthKind::Z)
 }
 
 fn uniform_layer(extinction: f32, albedo: f32) -> RgbLayer {

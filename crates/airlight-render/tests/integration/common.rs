@@ -46,30 +46,17 @@ impl Drop for Folder {
 /// A linear picture.
 pub fn picture((width, height): (u32, u32), rgb: impl Fn(u32, u32) -> [f32; 3]) -> Picture {
     let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
-    Picture {
-        size: Size::new(width, height).unwrap(),
-        rgb: pixels.flat_map(|(x, y)| rgb(x, y)).collect(),
-        alpha: None,
-        reference: LightReference::Scene,
-        bits: SampleBits::Float,
-        chromaticities: None,
-        white_luminance_cd_m2: None,
-        profile_ignored: false,
-        repaired_samples: 0,
-    }
+    let size = Size::new(width, height).unwrap();
+    let rgb = pixels.flat_map(|(x, y)| rgb(x, y)).collect();
+    Picture::new(size, rgb, LightReference::Scene, SampleBits::Float)
 }
 
 /// A map of depths along the camera's axis.
 pub fn depth((width, height): (u32, u32), metres: impl Fn(u32, u32) -> f32) -> DepthMap {
     let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
-    DepthMap {
-        size: Size::new(width, height).unwrap(),
-        metres: pixels.map(|(x, y)| metres(x, y)).collect(),
-        kind: DepthKind::Z,
-        bits: SampleBits::Float,
-        holes: 0,
-        infinite: 0,
-    }
+    let size = Size::new(width, height).unwrap();
+    let metres = pixels.map(|(x, y)| metres(x, y)).collect();
+    DepthMap::new(size, metres, DepthKind::Z)
 }
 
 /// A black picture, 10 m away everywhere.
