@@ -16,6 +16,10 @@ pub struct OverlayArgs {
     /// Picture: EXR or HDR (linear), PNG or JPEG (decoded to light, encoded again); for many, a folder or 'rgb/*.png'
     #[arg(value_name = "COLOUR", required_unless_present = "scene")]
     pub colour: Option<PathBuf>,
+    /// Layer of an EXR picture, such as ViewLayer.Combined, or the name of a part [default: plain R, G, B, else a layer called
+    /// Combined, else the only one]
+    #[arg(long, value_name = "NAME")]
+    pub colour_layer: Option<String>,
     /// Depth map: EXR, PNG, NPY or PFM; a folder, or 'depth/*.png' [default: the depth channel of COLOUR, if that is an EXR]
     #[arg(long, value_name = "DEPTH")]
     pub depth: Option<PathBuf>,
@@ -99,7 +103,9 @@ impl OverlayArgs {
         if let Some(colour) = &self.colour {
             // The description's depth map belongs to another picture.
             (overlay.colour, overlay.depth) = (colour.clone(), None);
+            overlay.colour_layer = None;
         }
+        overlay.colour_layer = self.colour_layer.clone().or(overlay.colour_layer.take());
         overlay.depth = self.depth.clone().or(overlay.depth.take());
         overlay.depth_kind = self.depth_kind.unwrap_or(overlay.depth_kind);
         overlay.depth_scale = self.depth_scale.unwrap_or(overlay.depth_scale);

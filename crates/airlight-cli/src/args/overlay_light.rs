@@ -31,7 +31,7 @@ impl AmbientArg {
 #[command(next_help_heading = "Light")]
 pub struct OverlayLightArgs {
     /// Radiance of the ambient light, linear, in the picture's unit [default: estimated from the picture]
-    #[arg(long, value_name = "auto|R,G,B", value_parser = AmbientArg::parse)]
+    #[arg(long, value_name = "auto|R,G,B", value_parser = AmbientArg::parse, allow_hyphen_values = true)]
     pub ambient: Option<AmbientArg>,
     /// Factor on the ambient light [default: 1]
     #[arg(long, value_name = "FACTOR", value_parser = parse::positive)]

@@ -138,6 +138,19 @@ impl Intrinsics {
         })
     }
 
+    /// The same camera with pixels of this width over height; the horizontal focal length stays.
+    ///
+    /// # Errors
+    /// [`ImageError::Setting`] where the vertical focal length is then out of range.
+    pub fn with_pixel_aspect(self, aspect: f64) -> Result<Self, ImageError> {
+        let (focal, principal) = (self.focal_px, self.principal_px);
+        let focal = (focal.0, focal.0 * aspect);
+        Ok(Self {
+            axes: self.axes,
+            ..Self::new(self.size, focal, principal, PixelCentres::Halves)?
+        })
+    }
+
     /// Width and height in pixels.
     pub fn size(&self) -> Size {
         self.size

@@ -1,7 +1,7 @@
 //! Depth maps: their meaning, and the conversion from the numbers of a file to metres.
 
-use super::Orientation;
 use super::picture::{Picture, SampleBits};
+use super::{ExrLayer, Orientation};
 use crate::{ImageError, Notes, Size};
 use rayon::prelude::*;
 use std::path::Path;
@@ -62,6 +62,8 @@ pub struct DepthOptions {
     /// channel whose name ends with one of them (`ViewLayer.Depth.Z`), a `Y` without `X` or `Z`, an `R` without `G`, `B`, `A`,
     /// and the only channel of the file. A `Z` beside an `X` is not depth. Other files are refused with the list of their channels.
     pub channel: Option<String>,
+    /// Layer of the colours to which the depth belongs: of several views or layers of an EXR file, its depth is read.
+    pub beside: Option<ExrLayer>,
     /// Treatment of pixels whose depth is unknown.
     pub unknown: UnknownDepth,
     /// Distance from which pixels are sky (infinitely far), metres.
@@ -76,6 +78,7 @@ impl Default for DepthOptions {
             meaning: DepthMeaning::default(),
             scale: 1.0,
             channel: None,
+            beside: None,
             unknown: UnknownDepth::default(),
             far_from_m: None,
             negative_is_unknown: false,

@@ -1,25 +1,34 @@
-//! OpenEXR decoder: any channels of one part, placed in the display window as 32-bit floats.
+//! OpenEXR decoder: any channels of one part, placed in the display window as 32-bit floats or as they are.
 
 use super::{
     depth::RawDepth,
-    exr_channels,
+    exr_blocks::{self, Block, BlockLayout, failed},
+    exr_channels::{self, ExrLayer},
     picture::{LightReference, Picture, REPAIRED, SampleBits, repair_colours, repair_opacity},
     source::{DecodeError, Source, TrackedFile, checked_size, sample_count, zeros},
 };
-use crate::{Size, output::Chromaticities};
+use crate::{
+    Notes, Size,
+    output::{Carried, Chromaticities},
+};
 use ::exr::{
     block::{
-        UncompressedBlock,
         chunk::Chunk,
         reader::{ChunksReader, Reader},
     },
-    error::Error as ExrError,
     math::Vec2,
-    meta::{BlockDescription, MetaData, attribute::SampleType, header::Header},
+    meta::{
+        BlockDescription, MetaData,
+        attribute::{ChannelDescription, SampleType},
+        header::Header,
+    },
 };
-use half::{f16, slice::HalfFloatSliceExt};
+use airlight::spectrum::RgbSpace;
 use rayon::prelude::*;
-use std::io::BufReader;
+use std::{
+    io::{BufReader, Seek},
+    sync::Arc,
+};
 
 /// Largest size in bytes of the blocks decoded together, unless a single one is larger.
 const BATCH_BYTES: usize = 64 << 20;
@@ -31,33 +40,100 @@ const BLOCK_BYTES: usize = 1 << 31;
 pub(super) fn read(source: Source, layer: Option<&str>) -> Result<Picture, DecodeError> {
     let file = ExrFile::open(source)?;
     let colours = exr_channels::colours(file.headers(), layer)?;
-    let bits = file.bits(colours.part, &colours.rgb);
-    let chromaticities = file.chromaticities(colours.part);
-    let white_luminance_cd_m2 = file.white_luminance_cd_m2(colours.part);
+    let part = colours.part;
+    let bits = file.bits(part, &colours.rgb);
+    let header = &file.headers()[part];
+    let stated = file.chromaticities(part);
+    let chromaticities = stated.filter(|stated| stated.to_linear_srgb().is_some());
+    let white_luminance_cd_m2 = file.white_luminance_cd_m2(part);
+    let aspect = header.shared_attributes.pixel_aspect;
+    let mut carried = Carried::of_header(header);
+    let others: Vec<usize> = (0..header.channels.list.len())
+        .filter(|c| !colours.rgb.contains(c) && Some(*c) != colours.alpha)
+        .collect();
+    let (others, coarse): (Vec<usize>, Vec<usize>) = others
+        .into_iter()
+        .partition(|&c| file.sampling[part][c] == Vec2(1, 1));
+    let descriptions: Vec<ChannelDescription> = others
+        .iter()
+        .map(|&c| header.channels.list[c].clone())
+        .collect();
+    let mut notes = Notes::default();
+    if chromaticities != stated {
+        notes.add("impossible chromaticities ignored");
+    }
+    notes.count(
+        coarse.len() as u64,
+        "subsampled channels besides the colours left out",
+    );
+    notes.count(
+        file.headers().len() as u64 - 1,
+        "other parts of the file left out",
+    );
+    let (cut, whole) = (header.layer_size, header.shared_attributes.display_window);
+    let corner = header.own_attributes.layer_position - whole.position;
+    let far = corner + Vec2(cut.0 as i32, cut.1 as i32);
+    if corner.0 < 0 || corner.1 < 0 || far.0 > whole.size.0 as i32 || far.1 > whole.size.1 as i32 {
+        notes.add("pixels outside the display window left out");
+    }
     let mut groups: Vec<&[usize]> = vec![&colours.rgb];
     groups.extend(colours.alpha.as_ref().map(std::slice::from_ref));
-    let loaded = file.load(colours.part, &groups, |group, samples| match group {
+    let loaded = file.load(part, &groups, &others, |group, samples| match group {
         0 => repair_colours(samples),
         _ => repair_opacity(samples),
     })?;
     let mut buffers = loaded.groups.into_iter();
-    let rgb = buffers.next().unwrap_or_default();
-    let mut picture = Picture {
+    let mut rgb = buffers.next().unwrap_or_default();
+    if colours.is_luma_chroma {
+        let primaries = chromaticities.unwrap_or(RgbSpace::Srgb.into());
+        from_luma_chroma(&mut rgb, primaries.luminance_weights());
+        notes.add("colours converted from luminance and chroma (Y, RY, BY)");
+    }
+    for (description, bytes) in descriptions.iter().zip(loaded.raw) {
+        carried.add_channel(description, bytes);
+    }
+    notes.count(loaded.repaired, REPAIRED);
+    Ok(Picture {
         alpha: buffers.next(),
         chromaticities,
         white_luminance_cd_m2,
+        pixel_aspect: match (1e-3..=1e3).contains(&aspect) {
+            true => aspect,
+            false => 1.0,
+        },
+        layer: Some(match colours.is_luma_chroma {
+            true => ExrLayer {
+                prefix: String::new(),
+                ..colours.layer
+            },
+            false => colours.layer,
+        }),
+        carried: Some(Arc::new(carried)),
+        notes,
         ..Picture::new(loaded.size, rgb, LightReference::Scene, bits)
-    };
-    picture.notes.count(loaded.repaired, REPAIRED);
-    Ok(picture)
+    })
 }
 
-/// Reads a depth channel.
-pub(super) fn read_depth(source: Source, channel: Option<&str>) -> Result<RawDepth, DecodeError> {
+/// Converts luminance and chroma to red, green and blue in place: RY is (R - Y) / Y, BY is (B - Y) / Y, and Y has these weights.
+fn from_luma_chroma(samples: &mut [f32], weights: [f32; 3]) {
+    for pixel in samples.as_chunks_mut::<3>().0 {
+        let [luminance, red, blue] = *pixel;
+        let (red, blue) = ((red + 1.0) * luminance, (blue + 1.0) * luminance);
+        let green = (luminance - weights[0] * red - weights[2] * blue) / weights[1];
+        *pixel = [red, green, blue];
+    }
+}
+
+/// Reads a depth channel; that of the layer of the colours `beside` which it lies, if they are known.
+pub(super) fn read_depth(
+    source: Source,
+    channel: Option<&str>,
+    beside: Option<&ExrLayer>,
+) -> Result<RawDepth, DecodeError> {
     let file = ExrFile::open(source)?;
-    let (part, channel) = exr_channels::depth(file.headers(), channel)?;
+    let (part, channel) = exr_channels::depth(file.headers(), channel, beside)?;
     let bits = file.bits(part, &[channel]);
-    let loaded = file.load(part, &[&[channel]], |_, _| 0)?;
+    let loaded = file.load(part, &[&[channel]], &[], |_, _| 0)?;
     Ok(RawDepth {
         size: loaded.size,
         values: loaded.groups.into_iter().next().unwrap_or_default(),
@@ -68,6 +144,8 @@ pub(super) fn read_depth(source: Source, channel: Option<&str>) -> Result<RawDep
 /// An EXR file after reading its header.
 struct ExrFile {
     reader: Reader<BufReader<TrackedFile>>,
+    /// Horizontal and vertical distance of the samples of each channel of each part, pixels.
+    sampling: Vec<Vec<Vec2<usize>>>,
 }
 
 /// Samples of groups of channels.
@@ -76,14 +154,30 @@ struct Loaded {
     size: Size,
     /// Interleaved channels of each group; 0 outside the data window.
     groups: Vec<Vec<f32>>,
+    /// Other channels in their sample formats; 0 outside the data window.
+    raw: Vec<Vec<u8>>,
     /// Number of repaired samples.
     repaired: u64,
 }
 
 impl ExrFile {
-    fn open(source: Source) -> Result<Self, DecodeError> {
+    fn open(mut source: Source) -> Result<Self, DecodeError> {
+        // Errors are those of the second attempt.
+        let headers = MetaData::read_from_buffered(&mut source.reader, false);
+        source.reader.rewind()?;
+        let headers = headers.map(|meta| meta.headers).unwrap_or_default();
+        let sampling: Vec<Vec<Vec2<usize>>> = headers
+            .iter()
+            .map(|header| header.channels.list.iter().map(|c| c.sampling).collect())
+            .collect();
+        if sampling.iter().flatten().any(|step| *step != Vec2(1, 1)) {
+            // The library reads no subsampled channels: it gets another header, and their blocks are decoded here.
+            let mut bytes = source.read_to_end()?;
+            exr_blocks::hide_sampling(&mut bytes)?;
+            source = source.with_bytes(bytes);
+        }
         let reader = Reader::read_from_buffered(source.reader, false).map_err(failed)?;
-        Ok(Self { reader })
+        Ok(Self { reader, sampling })
     }
 
     fn headers(&self) -> &[Header] {
@@ -120,12 +214,13 @@ impl ExrFile {
         (stated.is_finite() && stated > 0.0).then_some(stated)
     }
 
-    /// Decodes groups of channels of one part. `repair` is called with the index of a group and blocks of its samples, and returns
+    /// Decodes groups of channels of one part, and other channels, which are not subsampled, as they are. `repair` is called with the index of a group and blocks of its samples, and returns
     /// the number of samples it changed.
     fn load(
         self,
         part: usize,
         groups: &[&[usize]],
+        raw: &[usize],
         repair: impl Fn(usize, &mut [f32]) -> u64 + Sync,
     ) -> Result<Loaded, DecodeError> {
         let header = &self.headers()[part];
@@ -133,7 +228,7 @@ impl ExrFile {
         let size = checked_size(window.size.0 as u64, window.size.1 as u64)?;
         check(header)?;
         let position = header.own_attributes.layer_position;
-        let layout = BlockLayout::new(header);
+        let layout = BlockLayout::new(header, part, &self.sampling[part])?;
         let block_bytes = header.max_block_byte_size().max(1);
         let threads = rayon::current_num_threads().max(1);
         let batch = (BATCH_BYTES / block_bytes).clamp(1, threads * 4);
@@ -148,6 +243,10 @@ impl ExrFile {
                 .iter()
                 .map(|group| zeros(sample_count(size, group.len())))
                 .collect::<Result<_, _>>()?,
+            raw: raw
+                .iter()
+                .map(|&c| vec![0; sample_count(size, layout.sample_bytes(c))])
+                .collect(),
             repaired: 0,
         };
         // Blocks of other parts are not read, but their offsets must be valid.
@@ -158,7 +257,7 @@ impl ExrFile {
                 block.layer == part && block.level == Vec2(0, 0)
             })
             .map_err(failed)?;
-        let meta = chunks.meta_data().clone();
+        let meta = layout.decoding_headers(chunks.meta_data());
         loop {
             let compressed: Vec<Chunk> = chunks
                 .by_ref()
@@ -166,11 +265,14 @@ impl ExrFile {
                 .collect::<Result<_, _>>()
                 .map_err(failed)?;
             if compressed.is_empty() {
+                for (whole, group) in loaded.groups.iter_mut().zip(groups) {
+                    offset.fill_rows(&layout, whole, group);
+                }
                 return Ok(loaded);
             }
             let blocks: Vec<Block> = compressed
                 .into_par_iter()
-                .map(|chunk| layout.decode(chunk, &meta, part, groups, &repair))
+                .map(|chunk| layout.decode(chunk, &meta, groups, raw, &repair))
                 .collect::<Result<_, _>>()?;
             for block in blocks {
                 loaded.repaired += block.repaired;
@@ -178,6 +280,9 @@ impl ExrFile {
                     loaded.groups.iter_mut().zip(&block.groups).zip(groups)
                 {
                     offset.copy(&block, piece, whole, group.len());
+                }
+                for ((whole, piece), &channel) in loaded.raw.iter_mut().zip(&block.raw).zip(raw) {
+                    offset.copy(&block, piece, whole, layout.sample_bytes(channel));
                 }
             }
         }
@@ -193,16 +298,7 @@ fn check(header: &Header) -> Result<(), DecodeError> {
             "expected EXR blocks of at most 2 GiB, got larger ones",
         ));
     }
-    let coarse =
-        |channel: &&::exr::meta::attribute::ChannelDescription| channel.sampling != Vec2(1, 1);
-    match header.channels.list.iter().find(coarse) {
-        Some(channel) => Err(DecodeError::Invalid(format!(
-            "expected a sample per pixel in each EXR channel, got a subsampled channel `{}` (such as chroma); try saving it as \
-             R, G, B",
-            channel.name
-        ))),
-        None => Ok(()),
-    }
+    Ok(())
 }
 
 fn check_tiles(header: &Header) -> Result<(), DecodeError> {
@@ -220,133 +316,6 @@ fn check_tiles(header: &Header) -> Result<(), DecodeError> {
     }
 }
 
-/// A decoded block.
-struct Block {
-    x: usize,
-    y: usize,
-    width: usize,
-    height: usize,
-    groups: Vec<Vec<f32>>,
-    repaired: u64,
-}
-
-/// Positions of channels in the rows of a block.
-struct BlockLayout {
-    /// For each channel: bytes of a pixel before it, and its sample type.
-    channels: Vec<(usize, SampleType)>,
-    pixel_bytes: usize,
-}
-
-impl BlockLayout {
-    fn new(header: &Header) -> Self {
-        let mut pixel_bytes = 0;
-        let channels = header
-            .channels
-            .list
-            .iter()
-            .map(|channel| {
-                let before = pixel_bytes;
-                pixel_bytes += channel.sample_type.bytes_per_sample();
-                (before, channel.sample_type)
-            })
-            .collect();
-        Self {
-            channels,
-            pixel_bytes,
-        }
-    }
-
-    fn decode(
-        &self,
-        chunk: Chunk,
-        meta: &MetaData,
-        part: usize,
-        groups: &[&[usize]],
-        repair: &(impl Fn(usize, &mut [f32]) -> u64 + Sync),
-    ) -> Result<Block, DecodeError> {
-        let corrupt =
-            || DecodeError::invalid("corrupt EXR data: a block does not match the header");
-        if chunk.layer_index != part {
-            return Err(corrupt());
-        }
-        let block = UncompressedBlock::decompress_chunk(chunk, meta, false).map_err(failed)?;
-        let Vec2(width, height) = block.index.pixel_size;
-        let row_bytes = width * self.pixel_bytes;
-        if block.index.level != Vec2(0, 0) || block.data.len() != row_bytes * height {
-            return Err(corrupt());
-        }
-        let mut repaired = 0;
-        let mut decoded = Vec::with_capacity(groups.len());
-        for (number, group) in groups.iter().enumerate() {
-            let mut samples = vec![0.0; width * height * group.len()];
-            let rows = samples.chunks_exact_mut((width * group.len()).max(1));
-            let mut buffers = RowBuffers::new(width);
-            for (row, data) in rows.zip(block.data.chunks_exact(row_bytes.max(1))) {
-                for (c, &channel) in group.iter().enumerate() {
-                    let (before, kind) = self.channels[channel];
-                    let start = before * width;
-                    let bytes = &data[start..start + width * kind.bytes_per_sample()];
-                    buffers.convert(bytes, kind);
-                    for (to, from) in row[c..]
-                        .iter_mut()
-                        .step_by(group.len())
-                        .zip(&buffers.floats)
-                    {
-                        *to = *from;
-                    }
-                }
-            }
-            repaired += repair(number, &mut samples);
-            decoded.push(samples);
-        }
-        Ok(Block {
-            x: block.index.pixel_position.0,
-            y: block.index.pixel_position.1,
-            width,
-            height,
-            groups: decoded,
-            repaired,
-        })
-    }
-}
-
-/// Buffers for a row of one channel.
-struct RowBuffers {
-    halves: Vec<f16>,
-    floats: Vec<f32>,
-}
-
-impl RowBuffers {
-    fn new(width: usize) -> Self {
-        Self {
-            halves: vec![f16::ZERO; width],
-            floats: vec![0.0; width],
-        }
-    }
-
-    fn convert(&mut self, bytes: &[u8], kind: SampleType) {
-        let fours = bytes.as_chunks::<4>().0.iter();
-        match kind {
-            SampleType::F16 => {
-                for (half, two) in self.halves.iter_mut().zip(bytes.as_chunks::<2>().0) {
-                    *half = f16::from_ne_bytes(*two);
-                }
-                self.halves.convert_to_f32_slice(&mut self.floats);
-            }
-            SampleType::F32 => {
-                for (value, four) in self.floats.iter_mut().zip(fours) {
-                    *value = f32::from_ne_bytes(*four);
-                }
-            }
-            SampleType::U32 => {
-                for (value, four) in self.floats.iter_mut().zip(fours) {
-                    *value = u32::from_ne_bytes(*four) as f32;
-                }
-            }
-        }
-    }
-}
-
 /// Position of the data window in the display window.
 struct WindowOffset {
     size: Size,
@@ -356,7 +325,7 @@ struct WindowOffset {
 
 impl WindowOffset {
     /// Copies the part of a block inside the picture, `channels` samples a pixel.
-    fn copy(&self, block: &Block, from: &[f32], to: &mut [f32], channels: usize) {
+    fn copy<T: Copy>(&self, block: &Block, from: &[T], to: &mut [T], channels: usize) {
         let (width, height) = (self.size.width() as usize, self.size.height() as usize);
         // Columns of the block inside the picture.
         let left = self.x + block.x as i64;
@@ -380,13 +349,35 @@ impl WindowOffset {
     }
 }
 
-fn failed(error: ExrError) -> DecodeError {
-    match error {
-        ExrError::Io(error) => DecodeError::Io(error),
-        ExrError::NotSupported(what) => {
-            DecodeError::Invalid(format!("unsupported EXR file: {what}"))
+impl WindowOffset {
+    /// Interpolates the rows of vertically subsampled channels between those that the file has.
+    fn fill_rows(&self, layout: &BlockLayout, samples: &mut [f32], group: &[usize]) {
+        let (width, height) = (self.size.width() as usize, i64::from(self.size.height()));
+        let row_length = width * group.len();
+        for (c, &channel) in group.iter().enumerate() {
+            let step = layout.sampling(channel).1 as i64;
+            if step == 1 {
+                continue;
+            }
+            // Rows of the picture that the file has.
+            let first = self.y.max(0);
+            let end = (self.y + layout.height() as i64).min(height);
+            let known = |y: i64| layout.has_row(channel, y - self.y);
+            for y in (first..end).filter(|&y| !known(y)) {
+                let above = (first..y).rev().take(step as usize).find(|&y| known(y));
+                let below = (y + 1..end).take(step as usize).find(|&y| known(y));
+                let Some((a, b)) = above.or(below).zip(below.or(above)) else {
+                    continue;
+                };
+                let part = match b > a {
+                    true => (y - a) as f32 / (b - a) as f32,
+                    false => 0.0,
+                };
+                for x in 0..width {
+                    let at = |y: i64| y as usize * row_length + x * group.len() + c;
+                    samples[at(y)] = samples[at(a)] * (1.0 - part) + samples[at(b)] * part;
+                }
+            }
         }
-        ExrError::Invalid(what) => DecodeError::Invalid(format!("corrupt EXR data: {what}")),
-        ExrError::Aborted => DecodeError::invalid("decoding stopped"),
     }
 }

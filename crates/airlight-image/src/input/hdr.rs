@@ -4,7 +4,8 @@ use super::{
     picture::{LightReference, Picture, REPAIRED, SampleBits, repair_colours},
     source::{DecodeError, Source, checked_size, reserve, sample_count},
 };
-use crate::{Size, output::Chromaticities};
+use crate::{Notes, Size, output::Chromaticities};
+use glam::Vec3;
 use std::io::{BufRead, Read};
 
 /// Longest line of a header, bytes.
@@ -18,6 +19,8 @@ struct Header {
     /// Factor for the stored values.
     factor: f64,
     chromaticities: Option<Chromaticities>,
+    is_xyz: bool,
+    pixel_aspect: f32,
 }
 
 pub(super) fn read(mut source: Source) -> Result<Picture, DecodeError> {
@@ -43,8 +46,25 @@ pub(super) fn read(mut source: Source) -> Result<Picture, DecodeError> {
     }
     // A tiny exposure can make values infinite.
     let repaired = repair_colours(&mut rgb);
+    let mut notes = Notes::default();
+    let stated = header.chromaticities;
+    let mut chromaticities = stated.filter(|stated| stated.to_linear_srgb().is_some());
+    if chromaticities != stated {
+        notes.add("impossible primaries ignored");
+    }
+    if header.is_xyz {
+        // Files with red, green and blue are what is written.
+        let matrix = Chromaticities::XYZ.to_linear_srgb().unwrap_or_default();
+        for pixel in rgb.as_chunks_mut::<3>().0 {
+            *pixel = (matrix.as_mat3() * Vec3::from(*pixel)).into();
+        }
+        chromaticities = None;
+        notes.add("colours converted from CIE XYZ to sRGB");
+    }
     let mut picture = Picture {
-        chromaticities: header.chromaticities,
+        chromaticities,
+        pixel_aspect: header.pixel_aspect,
+        notes,
         ..Picture::new(size, rgb, LightReference::Scene, SampleBits::Float)
     };
     picture.notes.count(repaired, REPAIRED);
@@ -52,7 +72,7 @@ pub(super) fn read(mut source: Source) -> Result<Picture, DecodeError> {
 }
 
 fn header(reader: &mut impl BufRead) -> Result<Header, DecodeError> {
-    let mut exposure = 1.0;
+    let (mut exposure, mut aspect) = (1.0, 1.0);
     let mut chromaticities = None;
     let mut is_xyz = false;
     for number in 0.. {
@@ -84,6 +104,7 @@ fn header(reader: &mut impl BufRead) -> Result<Header, DecodeError> {
             },
             // Several exposures multiply.
             "EXPOSURE" => exposure *= value.parse().unwrap_or(1.0),
+            "PIXASPECT" => aspect *= value.parse().unwrap_or(1.0),
             "PRIMARIES" => chromaticities = primaries(value),
             _ => {}
         }
@@ -92,10 +113,12 @@ fn header(reader: &mut impl BufRead) -> Result<Header, DecodeError> {
     Ok(Header {
         size: dimensions(&header_line(reader)?)?,
         factor: if usable { 1.0 / exposure } else { 1.0 },
-        chromaticities: if is_xyz {
-            Some(Chromaticities::XYZ)
-        } else {
-            chromaticities
+        chromaticities,
+        is_xyz,
+        // Radiance states height over width.
+        pixel_aspect: match (1e-3..=1e3).contains(&aspect) {
+            true => (1.0 / aspect) as f32,
+            false => 1.0,
         },
     })
 }
@@ -142,6 +165,10 @@ fn dimensions(line: &str) -> Result<Size, DecodeError> {
 fn scan_line(reader: &mut impl BufRead, line: &mut [[u8; 4]]) -> Result<(), DecodeError> {
     let width = line.len();
     let first = four(reader)?;
+    // Narrower and wider rows are never run-length encoded.
+    if !(8..0x8000).contains(&width) {
+        return old_line(reader, first, line);
+    }
     let [2, 2, high @ 0..128, low] = first else {
         return old_line(reader, first, line);
     };

@@ -7,6 +7,7 @@ mod colour;
 mod depth;
 mod exif;
 mod exr;
+mod exr_blocks;
 mod exr_channels;
 mod hdr;
 mod hole_fill;
@@ -19,6 +20,7 @@ mod png;
 mod source;
 
 pub use depth::{DepthKind, DepthMap, DepthMeaning, DepthOptions, UnknownDepth};
+pub use exr_channels::ExrLayer;
 pub use orientation::Orientation;
 pub use picture::{LightReference, Picture, SampleBits};
 
@@ -36,8 +38,10 @@ const DEPTH_FORMATS: &str = "OpenEXR, PNG, NPY, PFM";
 /// Reads a picture.
 ///
 /// `layer` names a layer of an EXR file: channels `LAYER.R`, `LAYER.G`, `LAYER.B` (and `LAYER.A`), or the part of that
-/// name. Without it, plain `R`, `G`, `B` are read, or those of the only layer that has them. A layer that has only a luminance
-/// `Y` gives grey. The picture has the size of the display window; it is black where the data window does not cover it.
+/// name. Without it, plain `R`, `G`, `B` are read, or those of the only layer called `Combined`, or of the only layer that has
+/// them; of a stereo file, its first view. A layer that has only a luminance `Y` gives grey; luminance and chroma (`Y`, `RY`, `BY`)
+/// are converted to red, green and blue. The picture has the size of the display window; it is black where the data window does
+/// not cover it.
 ///
 /// PNG files may have any colour type and depth. Display colours are converted to linear sRGB from what the file says they are:
 /// PNG by its chunks cICP, else iCCP, else sRGB, else cHRM and gAMA; JPEG by its ICC profile, else the interoperability index of
@@ -88,9 +92,7 @@ pub fn read_picture(path: &Path, layer: Option<&str>) -> Result<Picture, ImageEr
 /// [`ImageError::NegativeDepth`]; [`ImageError::Read`] also where all pixels are holes.
 pub fn read_depth(path: &Path, options: &DepthOptions) -> Result<DepthMap, ImageError> {
     options.validate()?;
-    let raw = decode_file(path, DEPTH_FORMATS, |source| {
-        decode_depth(source, options.channel.as_deref())
-    })?;
+    let raw = decode_file(path, DEPTH_FORMATS, |source| decode_depth(source, options))?;
     let mut map = raw.into_map(path, options)?;
     if map.holes > 0 {
         match options.unknown {
@@ -111,7 +113,8 @@ fn replace_holes(depth: &mut [f32], value: f32) {
     }
 }
 
-fn decode_depth(source: Source, channel: Option<&str>) -> Result<RawDepth, DecodeError> {
+fn decode_depth(source: Source, options: &DepthOptions) -> Result<RawDepth, DecodeError> {
+    let channel = options.channel.as_deref();
     if let Some(channel) = channel
         && source.kind != FileKind::Exr
     {
@@ -120,7 +123,7 @@ fn decode_depth(source: Source, channel: Option<&str>) -> Result<RawDepth, Decod
         )));
     }
     let kind = match source.kind {
-        FileKind::Exr => return exr::read_depth(source, channel),
+        FileKind::Exr => return exr::read_depth(source, channel, options.beside.as_ref()),
         FileKind::Png => return png::read_depth(source),
         FileKind::Npy => return npy::read(source),
         FileKind::Pfm => return pfm::read(source),

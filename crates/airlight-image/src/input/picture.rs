@@ -1,9 +1,13 @@
 //! Pictures in memory: linear red, green and blue.
 
-use super::Orientation;
-use crate::{Notes, Size, output::Chromaticities};
+use super::{ExrLayer, Orientation};
+use crate::{
+    Notes, Size,
+    output::{Carried, Chromaticities},
+};
 use airlight::spectrum::rgb::srgb_decode;
-use std::sync::LazyLock;
+use glam::DMat3;
+use std::sync::{Arc, LazyLock};
 
 /// Meaning of a value of 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -49,6 +53,12 @@ pub struct Picture {
     pub chromaticities: Option<Chromaticities>,
     /// Luminance of a value of 1, cd/m^2, where an EXR file states it (`whiteLuminance`).
     pub white_luminance_cd_m2: Option<f32>,
+    /// Width of a pixel over its height.
+    pub pixel_aspect: f32,
+    /// Layer of an EXR file from which the colours were read.
+    pub layer: Option<ExrLayer>,
+    /// What an EXR file holds besides the colours and their opacity.
+    pub carried: Option<Arc<Carried>>,
     /// How the picture lay in the file; it is turned upright.
     pub orientation: Orientation,
     /// What was converted, repaired or passed over.
@@ -66,9 +76,19 @@ impl Picture {
             bits,
             chromaticities: None,
             white_luminance_cd_m2: None,
+            pixel_aspect: 1.0,
+            layer: None,
+            carried: None,
             orientation: Orientation::UPRIGHT,
             notes: Notes::default(),
         }
+    }
+
+    /// Matrix from the colours to linear sRGB, white to white; `None` where they are sRGB.
+    pub fn to_linear_srgb(&self) -> Option<DMat3> {
+        let matrix = self.chromaticities?.to_linear_srgb()?;
+        // Files state chromaticities in single precision.
+        (!matrix.abs_diff_eq(DMat3::IDENTITY, 1e-5)).then_some(matrix)
     }
 
     /// Turns a picture upright that lies in its file by an orientation.

@@ -35,6 +35,14 @@ pub(super) fn read(source: Source) -> Result<Picture, DecodeError> {
     let info = reader.info();
     let mut notes = Notes::default();
     let decoding = decoding(info, layout.colours, &mut notes);
+    // Pixels per unit: wide pixels are few.
+    let pixel_aspect = info
+        .pixel_dims
+        .map_or(1.0, |dims| dims.yppu as f32 / dims.xppu as f32);
+    let pixel_aspect = match (1e-3..=1e3).contains(&pixel_aspect) {
+        true => pixel_aspect,
+        false => 1.0,
+    };
     let exif = info.exif_metadata.as_deref().map(Exif::parse);
     let mut rgb = reserve(sample_count(size, 3))?;
     let mut alpha = layout
@@ -60,6 +68,7 @@ pub(super) fn read(source: Source) -> Result<Picture, DecodeError> {
     let mut picture = Picture {
         alpha,
         notes,
+        pixel_aspect,
         ..Picture::new(size, rgb, LightReference::Display, bits)
     };
     picture.note_conversion(decoding.name());

@@ -65,8 +65,20 @@ enum Bytes {
 }
 
 impl Source {
+    /// The file with other contents, in memory.
+    pub(super) fn with_bytes(self, bytes: Vec<u8>) -> Self {
+        let tracked = TrackedFile {
+            bytes: Bytes::Memory(Cursor::new(bytes)),
+            ended: self.ended.clone(),
+        };
+        Self {
+            reader: BufReader::new(tracked),
+            ..self
+        }
+    }
+
     /// The whole contents, for decoders that work in memory. That the end was reached is then no sign of missing bytes.
-    pub(super) fn read_to_end(mut self) -> io::Result<Vec<u8>> {
+    pub(super) fn read_to_end(&mut self) -> io::Result<Vec<u8>> {
         let mut bytes = Vec::new();
         self.reader.read_to_end(&mut bytes)?;
         self.ended.store(false, Ordering::Relaxed);

@@ -1,12 +1,13 @@
 //! OpenEXR files: linear, any channels, half or single precision, scan lines in blocks that are compressed in parallel.
 //!
 //! The `exr` crate describes headers and compresses blocks; the file itself is written here, block after block, so that a picture
-//! is never in memory as a whole. Attributes are sorted by name, so that equal pictures give equal bytes.
+//! is never in memory as a whole, except for channels carried from another file. Attributes are sorted by name, so that equal pictures give equal bytes.
 
 pub use super::options::{ExrCompression, ExrOptions, SamplePrecision};
 use super::{
     Metadata,
     bands::{Bands, RowBuffer},
+    carried::CarriedChannel,
     deflate::{Deflater, End},
     format::{FormatEntry, Written, into_file},
 };
@@ -103,7 +104,9 @@ pub fn encode(
     metadata: &Metadata,
     control: Control<'_>,
 ) -> Result<Written, ImageError> {
-    check_channels(channels, source)?;
+    let carried = metadata.carried.as_deref();
+    let carried = carried.map_or(&[][..], |carried| &carried.channels);
+    check_channels(channels, carried, source)?;
     let (header, order) = build_header(size, channels, options, metadata)?;
     let lines = header.compression.scan_lines_per_block() as u32;
     let block_bytes = header.channels.bytes_per_pixel * size.width() as usize * lines as usize;
@@ -114,6 +117,7 @@ pub fn encode(
         source,
         size,
         order: &order,
+        carried,
         headers: std::slice::from_ref(&header),
         half: options.precision == SamplePrecision::Half,
     };
@@ -133,7 +137,15 @@ pub fn encode(
     Ok(written)
 }
 
-fn check_channels(channels: &[&str], source: &dyn RowSource) -> Result<(), ImageError> {
+fn check_channels(
+    channels: &[&str],
+    carried: &[CarriedChannel],
+    source: &dyn RowSource,
+) -> Result<(), ImageError> {
+    let carried = |name: &str| {
+        let mut names = carried.iter().map(|channel| &channel.description.name);
+        names.any(|carried| carried.as_slice() == name.as_bytes())
+    };
     if channels.is_empty() || channels.len() != source.channels() {
         return Err(ImageError::Channels {
             format: "the EXR channel list",
@@ -143,7 +155,7 @@ fn check_channels(channels: &[&str], source: &dyn RowSource) -> Result<(), Image
     }
     for (i, name) in channels.iter().enumerate() {
         let valid = (1..=255).contains(&name.len()) && !name.contains('\0');
-        if !valid || channels[..i].contains(name) {
+        if !valid || channels[..i].contains(name) || carried(name) {
             return Err(ImageError::Setting {
                 what: "each EXR channel name",
                 got: format!("`{name}`"),
@@ -157,24 +169,62 @@ fn check_channels(channels: &[&str], source: &dyn RowSource) -> Result<(), Image
 /// Size in bytes of a block of 16 or 32 scan lines above which single lines are compressed, to bound memory.
 const MAX_BLOCK: usize = 16 << 20;
 
-/// The header, and the index in a pixel of the source for each channel of the file (sorted by name).
+/// Where the samples of a channel of the file come from.
+#[derive(Clone, Copy)]
+enum ChannelSource {
+    /// A plane of [`BlockEncoder::planes`].
+    Plane(usize),
+    Carried(usize),
+}
+
+/// The channels of a file, sorted by name.
+struct ChannelOrder {
+    all: Vec<ChannelSource>,
+    /// Index in a pixel of the source for each plane.
+    planes: Vec<usize>,
+}
+
+/// The header, and the sources of its channels.
 fn build_header(
     size: Size,
     channels: &[&str],
     options: &ExrOptions,
     metadata: &Metadata,
-) -> Result<(Header, Vec<usize>), ImageError> {
-    let mut order: Vec<usize> = (0..channels.len()).collect();
-    order.sort_by_key(|&c| channels[c].as_bytes());
+) -> Result<(Header, ChannelOrder), ImageError> {
     let sample = match options.precision {
         SamplePrecision::Half => SampleType::F16,
         SamplePrecision::Float => SampleType::F32,
     };
-    let list = order
+    let carried = metadata.carried.as_deref();
+    let described = channels
         .iter()
-        .map(|&c| ChannelDescription::named(text(channels[c]), sample))
-        .collect();
-    let bytes_per_line = size.width() as usize * channels.len() * sample.bytes_per_sample();
+        .map(|name| ChannelDescription::named(text(name), sample))
+        .zip((0..).map(ChannelSource::Plane));
+    let also = carried.into_iter().flat_map(|carried| &carried.channels);
+    let also = also
+        .map(|channel| channel.description.clone())
+        .zip((0..).map(ChannelSource::Carried));
+    let mut sorted: Vec<_> = described.chain(also).collect();
+    sorted.sort_by(|(a, _), (b, _)| a.name.as_slice().cmp(b.name.as_slice()));
+    let mut order = ChannelOrder {
+        all: Vec::new(),
+        planes: Vec::new(),
+    };
+    for (_, source) in &sorted {
+        order.all.push(match *source {
+            ChannelSource::Plane(channel) => {
+                order.planes.push(channel);
+                ChannelSource::Plane(order.planes.len() - 1)
+            }
+            carried => carried,
+        });
+    }
+    let sizes = sorted
+        .iter()
+        .map(|(channel, _)| channel.sample_type.bytes_per_sample());
+    let pixel_bytes: usize = sizes.sum();
+    let list = sorted.into_iter().map(|(channel, _)| channel).collect();
+    let bytes_per_line = size.width() as usize * pixel_bytes;
     let compression = match options.compression {
         ExrCompression::None => Compression::Uncompressed,
         ExrCompression::Rle => Compression::RLE,
@@ -193,6 +243,10 @@ fn build_header(
         )
         .with_attributes(attributes(metadata));
     let point = |p: [f32; 2]| Vec2(p[0], p[1]);
+    header.shared_attributes.pixel_aspect = metadata.pixel_aspect.unwrap_or(1.0);
+    if let Some(carried) = carried {
+        carried.set_shared(&mut header);
+    }
     header.shared_attributes.chromaticities = metadata.chromaticities.map(|c| Chromaticities {
         red: point(c.red),
         green: point(c.green),
@@ -215,21 +269,25 @@ fn build_header(
 
 fn attributes(metadata: &Metadata) -> LayerAttributes {
     let words = |words: &Option<String>| words.as_deref().map(text);
+    let carried = metadata.carried.as_deref();
+    let carried = carried.map_or_else(LayerAttributes::default, |carried| {
+        carried.attributes.clone()
+    });
     LayerAttributes {
-        owner: words(&metadata.owner),
-        comments: words(&metadata.comments),
-        capture_date: words(&metadata.capture_date),
-        software_name: words(&metadata.software),
+        owner: words(&metadata.owner).or(carried.owner),
+        comments: words(&metadata.comments).or(carried.comments),
+        capture_date: words(&metadata.capture_date).or(carried.capture_date),
+        software_name: words(&metadata.software).or(carried.software_name),
         // OpenEXR: UTC = local time + offset.
-        utc_offset: metadata.utc_offset_s.map(|s| -s),
-        latitude: metadata.latitude_deg,
-        longitude: metadata.longitude_deg,
-        altitude: metadata.altitude_m,
+        utc_offset: metadata.utc_offset_s.map(|s| -s).or(carried.utc_offset),
+        latitude: metadata.latitude_deg.or(carried.latitude),
+        longitude: metadata.longitude_deg.or(carried.longitude),
+        altitude: metadata.altitude_m.or(carried.altitude),
         white_luminance: metadata.white_luminance_cd_m2,
         environment_map: metadata
             .is_latitude_longitude
             .then_some(EnvironmentMap::LatitudeLongitude),
-        ..LayerAttributes::default()
+        ..carried
     }
 }
 
@@ -256,7 +314,8 @@ fn attribute_name(name: &str, taken: &HashSet<Vec<u8>>) -> String {
 struct BlockEncoder<'a> {
     source: &'a dyn RowSource,
     size: Size,
-    order: &'a [usize],
+    order: &'a ChannelOrder,
+    carried: &'a [CarriedChannel],
     headers: &'a [Header],
     half: bool,
 }
@@ -269,7 +328,7 @@ impl BlockEncoder<'_> {
         let mut counts = Written::default();
         let mut data = Vec::with_capacity(width * rows.len() * pixel_bytes);
         let mut buffer = RowBuffer::new(self.source, self.size);
-        let mut planes = vec![0.0; width * self.order.len()];
+        let mut planes = vec![0.0; width * self.order.planes.len()];
         let mut halves = vec![f16::ZERO; if self.half { planes.len() } else { 0 }];
         let largest = if self.half {
             f16::MAX.to_f32()
@@ -290,9 +349,21 @@ impl BlockEncoder<'_> {
             }
             if self.half {
                 halves.convert_from_f32_slice(&planes);
-                data.extend(halves.iter().flat_map(|v| v.to_ne_bytes()));
-            } else {
-                data.extend(planes.iter().flat_map(|v| v.to_ne_bytes()));
+            }
+            for source in &self.order.all {
+                match *source {
+                    ChannelSource::Plane(n) if self.half => {
+                        let plane = &halves[n * width..(n + 1) * width];
+                        data.extend(plane.iter().flat_map(|v| v.to_ne_bytes()));
+                    }
+                    ChannelSource::Plane(n) => {
+                        let plane = &planes[n * width..(n + 1) * width];
+                        data.extend(plane.iter().flat_map(|v| v.to_ne_bytes()));
+                    }
+                    ChannelSource::Carried(n) => {
+                        data.extend_from_slice(self.carried[n].row(y, width));
+                    }
+                }
             }
         }
         Ok((self.compress(data, &rows)?, counts))
@@ -302,11 +373,11 @@ impl BlockEncoder<'_> {
     fn split_planes(&self, row: &[f32], planes: &mut [f32]) {
         // Few enough pixels at a time to stay in the cache while each channel is copied.
         const PIXELS: usize = 256;
-        let (width, count) = (self.size.width() as usize, self.order.len());
+        let (width, count) = (self.size.width() as usize, self.order.planes.len());
         for start in (0..width).step_by(PIXELS) {
             let end = (start + PIXELS).min(width);
             let pixels = &row[start * count..end * count];
-            for (plane, &channel) in planes.chunks_mut(width).zip(self.order) {
+            for (plane, &channel) in planes.chunks_mut(width).zip(&self.order.planes) {
                 let values = pixels[channel..].iter().step_by(count);
                 for (to, from) in plane[start..end].iter_mut().zip(values) {
                     *to = *from;
@@ -377,6 +448,8 @@ const LONG_NAMES: u32 = 1 << 10;
 /// A scan-line file being written: header, table of offsets, blocks in order.
 struct ScanLineStream<'a> {
     out: &'a mut dyn WriteSeek,
+    /// First row of the data window.
+    top: i32,
     table_at: u64,
     next_at: u64,
     offsets: Vec<u64>,
@@ -394,6 +467,7 @@ impl<'a> ScanLineStream<'a> {
         out.write_all(&table).map_err(stream_error)?;
         Ok(Self {
             out,
+            top: header.own_attributes.layer_position.y(),
             table_at,
             next_at: table_at + table.len() as u64,
             offsets: Vec::with_capacity(header.chunk_count),
@@ -409,7 +483,7 @@ impl<'a> ScanLineStream<'a> {
         self.offsets.push(self.next_at);
         self.next_at += 8 + packed.len() as u64;
         let mut write = |bytes: &[u8]| self.out.write_all(bytes).map_err(stream_error);
-        write(&(y as i32).to_le_bytes())?;
+        write(&self.top.saturating_add(y as i32).to_le_bytes())?;
         write(&length.to_le_bytes())?;
         write(packed)
     }

@@ -101,6 +101,9 @@ fn header(size: Size, metadata: &Metadata) -> String {
         let name = clean(&name).to_ascii_uppercase().replace([' ', '='], "_");
         text.push_str(&format!("# {name}={}\n", clean(&value)));
     }
+    if let Some(aspect) = metadata.pixel_aspect.filter(|aspect| *aspect != 1.0) {
+        text.push_str(&format!("PIXASPECT={}\n", 1.0 / aspect));
+    }
     if let Some(c) = metadata.chromaticities {
         text.push_str(&format!(
             "PRIMARIES={} {} {} {} {} {} {} {}\n",

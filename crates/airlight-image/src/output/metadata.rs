@@ -1,9 +1,11 @@
 //! Metadata of picture files.
 
+use super::carried::Carried;
 use crate::{Frame, Projection};
 use airlight::spectrum::RgbSpace;
 use airlight::spectrum::rgb::adaptation_matrix;
 use glam::{DMat3, DVec3};
+use std::sync::Arc;
 
 /// Metadata of a picture. EXR files store them as standard attributes where one exists, PNG files as text chunks, HDR files as
 /// header lines, JPEG files in the Exif block.
@@ -31,6 +33,10 @@ pub struct Metadata {
     pub chromaticities: Option<Chromaticities>,
     /// The picture covers the sphere as an equirectangular map.
     pub is_latitude_longitude: bool,
+    /// Width of a pixel over its height; square where missing.
+    pub pixel_aspect: Option<f32>,
+    /// Attributes and channels of an EXR file, carried to another.
+    pub carried: Option<Arc<Carried>>,
     /// Further named texts, such as units or the command line.
     pub texts: Vec<(String, String)>,
 }
@@ -66,6 +72,14 @@ impl Chromaticities {
         let adaptation = DMat3::from_cols_array_2d(&adaptation_matrix(from, to)).transpose();
         let matrix = srgb.to_xyz()?.inverse() * adaptation * self.to_xyz()?;
         (matrix.is_finite() && matrix.determinant().abs() > 1e-9).then_some(matrix)
+    }
+
+    /// Luminance of red, green and blue of 1; of sRGB for impossible primaries.
+    pub fn luminance_weights(&self) -> [f32; 3] {
+        let matrix = self
+            .to_xyz()
+            .or_else(|| Self::from(RgbSpace::Srgb).to_xyz());
+        matrix.map_or([0.0, 1.0, 0.0], |matrix| matrix.row(1).as_vec3().to_array())
     }
 
     /// Matrix to CIE XYZ, in which white has Y = 1.

@@ -5,6 +5,7 @@
 
 mod atomic;
 mod bands;
+mod carried;
 mod deflate;
 pub mod exr;
 mod format;
@@ -16,6 +17,7 @@ pub mod png;
 pub mod spectral;
 
 pub use atomic::AtomicFile;
+pub use carried::Carried;
 pub use format::Written;
 pub use metadata::{Chromaticities, Metadata};
 pub use options::PictureOptions;

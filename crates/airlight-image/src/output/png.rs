@@ -9,7 +9,7 @@ use super::{
     format::{FormatEntry, Written, expect_channels, into_file},
 };
 use crate::{Control, ImageError, RowSource, Size, tone::ToneMapper};
-use png::{BitDepth, ColorType, chunk};
+use png::{BitDepth, ColorType, PixelDimensions, Unit, chunk};
 use std::{io::Write, path::Path};
 
 const FORMAT: &str = "PNG";
@@ -321,6 +321,13 @@ fn header<'a>(
         PngDepth::Eight => BitDepth::Eight,
         PngDepth::Sixteen => BitDepth::Sixteen,
     });
+    if let Some(aspect) = metadata.pixel_aspect.filter(|aspect| *aspect != 1.0) {
+        encoder.set_pixel_dims(Some(PixelDimensions {
+            xppu: 10_000,
+            yppu: (aspect * 10_000.0).round() as u32,
+            unit: Unit::Unspecified,
+        }));
+    }
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
     for (name, text) in metadata.as_texts() {
         // Keywords have 1 to 79 Latin characters.

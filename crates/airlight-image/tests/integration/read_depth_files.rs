@@ -216,7 +216,7 @@ fn exr_depth_by_its_channel() {
             panic!("{error}");
         };
         assert_eq!(*available, names.join(", ").replace("R, G, B", "B, G, R"));
-        assert!(error.to_string().contains("try naming one"), "{error}");
+        assert!(error.to_string().contains("try depth-channel"), "{error}");
     }
     let rgb = file(&["R", "G", "B"]);
     assert_eq!(first(&rgb, &named("G")).unwrap(), 2.0);

@@ -1,9 +1,11 @@
 //! OpenEXR pictures: kinds of samples and compression, windows, layers and parts.
 
-use crate::common::{Folder, files::*, size};
+use crate::common::{Folder, files, files::*, size};
 use airlight_image::{
-    ImageError, Picture,
-    input::{LightReference, SampleBits, read_picture},
+    Control, DepthOptions, ImageError, Picture,
+    input::{ExrLayer, LightReference, SampleBits, read_picture},
+    output::{self, Metadata, exr::ExrOptions},
+    rows::StoredRows,
 };
 use exr::prelude::{Compression, FlatSamples, f16};
 
@@ -171,7 +173,7 @@ fn layers_and_parts_are_found_by_name() {
     let file = |channels| exr_file((0, 0, 1, 1), vec![Part::new(pixel, channels)]);
     assert_eq!(first(&file(only), None).unwrap(), [1.0, 2.0, 3.0]);
     let error = first(&file(two), None).unwrap_err().to_string();
-    assert!(error.contains("try naming a layer"), "{error}");
+    assert!(error.contains("try colour-layer"), "{error}");
     // The Y of a position is not luminance.
     let position = rgb(["X", "Y", "Z"], 1.0);
     assert!(first(&file(position), None).is_err());
@@ -199,4 +201,286 @@ fn invalid_samples_are_repaired_and_counted() {
         picture.notes.to_string(),
         "11 NaN or infinite samples repaired"
     );
+}
+
+#[test]
+fn depth_is_that_of_the_view_of_the_colours() {
+    let folder = Folder::new("views");
+    let one = |v: f32| FlatSamples::F32(vec![v]);
+    let colours = || vec![("B", one(1.0)), ("G", one(1.0)), ("R", one(1.0))];
+    let depth = |v| vec![("Z", one(v))];
+    let part = |channels| Part::new((1, 1), channels);
+    let depth_of = |bytes: &[u8], layer: Option<&ExrLayer>| {
+        let options = DepthOptions {
+            beside: layer.cloned(),
+            ..DepthOptions::default()
+        };
+        files::read_as(&folder, bytes, &options).map(|map| map.metres[0])
+    };
+    let right = exr_file(
+        (0, 0, 1, 1),
+        vec![
+            part(colours()).named("a").of_view("right"),
+            part(depth(10.0)).named("b").of_view("left"),
+            part(colours()).named("c").of_view("left"),
+            part(depth(100.0)).named("d").of_view("right"),
+        ],
+    );
+    let picture = read_as(&folder, &right, None).unwrap();
+    assert_eq!(depth_of(&right, picture.layer.as_ref()).unwrap(), 100.0);
+    let left = read_as(&folder, &right, Some("c")).unwrap();
+    assert_eq!(depth_of(&right, left.layer.as_ref()).unwrap(), 10.0);
+    let error = depth_of(&right, None).unwrap_err().to_string();
+    assert!(error.contains("several views"), "{error}");
+    // No depth of the colours' view.
+    let other = exr_file(
+        (0, 0, 1, 1),
+        vec![
+            part(colours()).named("a").of_view("right"),
+            part(depth(10.0)).named("b").of_view("left"),
+        ],
+    );
+    let picture = read_as(&folder, &other, None).unwrap();
+    let error = depth_of(&other, picture.layer.as_ref()).unwrap_err();
+    assert!(error.to_string().contains("view `right`"), "{error}");
+}
+
+#[test]
+fn the_combined_layer_is_preferred_and_has_its_depth() {
+    let folder = Folder::new("combined");
+    let one = |v: f32| FlatSamples::F32(vec![v]);
+    let mut channels = Vec::new();
+    for (v, names) in [
+        (1.0, ["A.Combined.R", "A.Combined.G", "A.Combined.B"]),
+        (2.0, ["A.DiffCol.R", "A.DiffCol.G", "A.DiffCol.B"]),
+    ] {
+        channels.extend(names.map(|name| (name, one(v))));
+    }
+    channels.push(("A.Depth.Z", one(10.0)));
+    let single = exr_file((0, 0, 1, 1), vec![Part::new((1, 1), channels.clone())]);
+    let picture = read_as(&folder, &single, None).unwrap();
+    assert_eq!(picture.rgb, [1.0; 3]);
+    let albedo = read_as(&folder, &single, Some("A.DiffCol")).unwrap();
+    assert_eq!(albedo.rgb, [2.0; 3]);
+    // Two layers: none is preferred, and each has its own depth.
+    channels.extend(["B.Combined.R", "B.Combined.G", "B.Combined.B"].map(|name| (name, one(3.0))));
+    channels.push(("B.Depth.Z", one(30.0)));
+    let double = exr_file((0, 0, 1, 1), vec![Part::new((1, 1), channels)]);
+    let error = read_as(&folder, &double, None).unwrap_err().to_string();
+    assert!(error.contains("try colour-layer"), "{error}");
+    for (layer, expected) in [("A.Combined", 10.0), ("B.Combined", 30.0)] {
+        let picture = read_as(&folder, &double, Some(layer)).unwrap();
+        let options = DepthOptions {
+            beside: picture.layer,
+            ..DepthOptions::default()
+        };
+        let map = files::read_as(&folder, &double, &options).unwrap();
+        assert_eq!(map.metres, [expected]);
+    }
+}
+
+/// Bytes of an uncompressed file of luminance and chroma at every other pixel, in blocks of one line.
+fn luma_chroma_file(
+    (width, height): (usize, usize),
+    rgb: impl Fn(usize, usize) -> [f32; 3],
+) -> Vec<u8> {
+    let weights = [0.212_639, 0.715_168_7, 0.072_192_3];
+    let mut bytes = vec![0x76, 0x2f, 0x31, 0x01, 2, 0, 0, 0];
+    let mut attribute = |name: &str, kind: &str, value: &[u8]| {
+        bytes.extend(name.bytes().chain([0]).chain(kind.bytes()).chain([0]));
+        bytes.extend((value.len() as u32).to_le_bytes());
+        bytes.extend(value);
+    };
+    let mut list = Vec::new();
+    for (name, step) in [("BY", 2u32), ("RY", 2), ("Y", 1)] {
+        list.extend(name.bytes().chain([0, 2, 0, 0, 0, 0, 0, 0, 0]));
+        list.extend(step.to_le_bytes().iter().chain(&step.to_le_bytes()));
+    }
+    list.push(0);
+    let window: Vec<u8> = [0, 0, width as i32 - 1, height as i32 - 1]
+        .iter()
+        .flat_map(|v| v.to_le_bytes())
+        .collect();
+    attribute("channels", "chlist", &list);
+    attribute("compression", "compression", &[0]);
+    attribute("dataWindow", "box2i", &window);
+    attribute("displayWindow", "box2i", &window);
+    attribute("lineOrder", "lineOrder", &[0]);
+    attribute("pixelAspectRatio", "float", &1f32.to_le_bytes());
+    attribute("screenWindowCenter", "v2f", &[0; 8]);
+    attribute("screenWindowWidth", "float", &1f32.to_le_bytes());
+    bytes.push(0);
+    let mut at = (bytes.len() + 8 * height) as u64;
+    let mut table = Vec::new();
+    let mut blocks = Vec::new();
+    for y in 0..height {
+        let luma = |x: usize| -> f32 { rgb(x, y).iter().zip(weights).map(|(v, w)| v * w).sum() };
+        let chroma = |x: usize, c: usize| (rgb(x, y)[c] - luma(x)) / luma(x);
+        let mut data = Vec::new();
+        if y % 2 == 0 {
+            for c in [2, 0] {
+                data.extend(
+                    (0..width)
+                        .step_by(2)
+                        .flat_map(|x| chroma(x, c).to_le_bytes()),
+                );
+            }
+        }
+        data.extend((0..width).flat_map(|x| luma(x).to_le_bytes()));
+        table.extend(at.to_le_bytes());
+        at += 8 + data.len() as u64;
+        blocks.extend((y as u32).to_le_bytes());
+        blocks.extend((data.len() as u32).to_le_bytes());
+        blocks.extend(data);
+    }
+    bytes.extend(table);
+    bytes.extend(blocks);
+    bytes
+}
+
+#[test]
+fn luminance_and_chroma_become_red_green_and_blue() {
+    let folder = Folder::new("luma-chroma");
+    let expected = [0.5f32, 0.25, 0.125];
+    // By the definition of the OpenEXR documentation, with the weights of BT.709 primaries.
+    let file = |rgb: &dyn Fn(usize, usize) -> [f32; 3]| {
+        let bytes = luma_chroma_file((8, 6), rgb);
+        read_as(&folder, &bytes, None).unwrap()
+    };
+    let picture = file(&|_, _| expected);
+    assert_eq!(picture.size, size(8, 6));
+    for rgb in picture.rgb.chunks(3) {
+        for (got, expected) in rgb.iter().zip(expected) {
+            assert!((got - expected).abs() < 1e-5, "{rgb:?}");
+        }
+    }
+    assert!(picture.notes.to_string().contains("luminance and chroma"));
+    // Chroma that changes linearly is interpolated; beyond its last sample it is constant.
+    let wedge = |x: usize, y: usize| {
+        let red = 1.0 + 0.02 * x as f32 + 0.03 * y as f32;
+        [
+            red,
+            (1.0 - 0.212_639 * red - 0.072_192_3) / 0.715_168_7,
+            1.0,
+        ]
+    };
+    let picture = file(&wedge);
+    for y in 0..5 {
+        for x in 0..7 {
+            let got = picture.rgb[(y * 8 + x) * 3];
+            assert!((got - wedge(x, y)[0]).abs() < 1e-5, "{x} {y}: {got}");
+        }
+    }
+    assert!((picture.rgb[(5 * 8 + 7) * 3] - wedge(6, 4)[0]).abs() < 1e-5);
+}
+
+#[test]
+fn attributes_channels_and_windows_are_carried() {
+    use exr::prelude::*;
+    let folder = Folder::new("carried");
+    let count = 6 * 4;
+    let ids: Vec<u32> = (0..count as u32).map(|i| 0xfff0_0001 + i).collect();
+    let halves =
+        |from: f32| FlatSamples::F16((0..count).map(|i| f16::from_f32(from + i as f32)).collect());
+    let list = vec![
+        AnyChannel::new("R", halves(0.0)),
+        AnyChannel::new("G", halves(1.0)),
+        AnyChannel::new("B", halves(2.0)),
+        AnyChannel::new("Z", FlatSamples::F32(vec![7.25; count])),
+        AnyChannel::new("id", FlatSamples::U32(ids.clone())),
+        AnyChannel::new("N.X", halves(-3.0)),
+    ];
+    let mut own = LayerAttributes {
+        owner: Some("me".into()),
+        layer_position: Vec2(5, 7),
+        screen_window_width: 3.0,
+        world_to_camera: Some([2.0; 16]),
+        preview: Some(exr::meta::attribute::Preview {
+            size: Vec2(1, 1),
+            pixel_data: vec![1; 4],
+        }),
+        ..LayerAttributes::default()
+    };
+    own.other.insert("shot".into(), AttributeValue::I32(12));
+    let layer = Layer::new(
+        (6, 4),
+        own,
+        Encoding::SMALL_LOSSLESS,
+        AnyChannels::sort(list.into()),
+    );
+    let mut attributes = ImageAttributes::new(IntegerBounds::new(Vec2(5, 7), Vec2(6, 4)));
+    attributes.pixel_aspect = 2.0;
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    let image = Image {
+        attributes,
+        layer_data: layer,
+    };
+    image
+        .write()
+        .non_parallel()
+        .to_buffered(&mut bytes)
+        .unwrap();
+    let picture = read_as(&folder, &bytes.into_inner(), None).unwrap();
+    assert_eq!(picture.pixel_aspect, 2.0);
+    let doubled = picture.rgb.iter().map(|v| 2.0 * v).collect();
+    let metadata = Metadata {
+        pixel_aspect: Some(picture.pixel_aspect),
+        carried: picture.carried.clone(),
+        ..Metadata::default()
+    };
+    let path = folder.0.join("out.exr");
+    let rows = StoredRows::new(6, 3, doubled).unwrap();
+    let (options, control) = (ExrOptions::default(), Control::default());
+    output::exr::write(
+        &path,
+        picture.size,
+        &["R", "G", "B"],
+        &rows,
+        &options,
+        &metadata,
+        control,
+    )
+    .unwrap();
+    let written = read_first_flat_layer_from_file(&path).unwrap();
+    let channel = |name: &str| {
+        let mut list = written.layer_data.channel_data.list.iter();
+        &list.find(|c| c.name == *name).unwrap().sample_data
+    };
+    assert_eq!(channel("id"), &FlatSamples::U32(ids));
+    assert_eq!(channel("Z"), &FlatSamples::F32(vec![7.25; count]));
+    assert_eq!(channel("N.X"), &halves(-3.0));
+    assert_eq!(channel("G").values_as_f32().nth(3), Some(8.0));
+    let (shared, own) = (&written.attributes, &written.layer_data.attributes);
+    assert_eq!(shared.pixel_aspect, 2.0);
+    assert_eq!(
+        shared.display_window,
+        IntegerBounds::new(Vec2(5, 7), Vec2(6, 4))
+    );
+    assert_eq!(own.owner, Some("me".into()));
+    assert_eq!(
+        (own.screen_window_width, own.world_to_camera),
+        (3.0, Some([2.0; 16]))
+    );
+    assert_eq!(
+        own.other.get(&Text::from("shot")),
+        Some(&AttributeValue::I32(12))
+    );
+    // A thumbnail shows the original colours.
+    assert_eq!(own.preview, None);
+    // The names of carried channels are taken.
+    let taken = ["R", "G", "Z"];
+    assert!(
+        output::exr::write(
+            &path,
+            picture.size,
+            &taken,
+            &rows,
+            &options,
+            &metadata,
+            control
+        )
+        .is_err()
+    );
+    let without = picture.carried.unwrap().without_channels(&["Z"]);
+    assert_eq!(without.channel_names().collect::<Vec<_>>(), ["N.X", "id"]);
 }

@@ -352,7 +352,11 @@ fn hdr_headers_are_applied() {
     let exposed = "EXPOSURE=2\nEXPOSURE = 0.25\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1";
     assert_eq!(read(&file(exposed, &one)).unwrap().rgb, [2.0, 1.0, 0.5]);
     let xyz = read(&file("FORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1", &one)).unwrap();
-    assert_eq!(xyz.chromaticities, Some(output::Chromaticities::XYZ));
+    // XYZ 1 0.5 0.25 under the white of equal energy, in sRGB of white D65 (Bradford).
+    assert_eq!(xyz.chromaticities, None);
+    for (got, expected) in xyz.rgb.iter().zip([2.19338, -0.00770, 0.24406]) {
+        assert!((got - expected).abs() < 1e-4, "{:?}", xyz.rgb);
+    }
     // Runs of the old encoding: 1 pixel, then 3 + 256 * 1 more.
     let mut old = one.to_vec();
     old.extend([1, 1, 1, 3, 1, 1, 1, 1]);

@@ -1,5 +1,6 @@
 //! The fog between the camera and the objects of a picture.
 
+use super::primaries::Primaries;
 use airlight::fog::lights::{RgbLightSet, ViewRay};
 use airlight::fog::{RgbFog, RgbFogTable, legacy};
 use airlight::scene::RgbFoggySky;
@@ -58,13 +59,15 @@ airlight::named! { ExistingAerial, "drawn or missing air", [
 pub(super) struct FogSampler<'a> {
     overlay: &'a FogOverlay,
     eye_height_m: f64,
+    /// Those of the picture, in which colours are given and returned.
+    primaries: Primaries,
     /// Table of [`FogSource::Alone`].
     table: Option<RgbFogTable>,
 }
 
 impl<'a> FogSampler<'a> {
-    /// Prepares an overlay for an eye height, m.
-    pub fn from_height(overlay: &'a FogOverlay, eye_height_m: f64) -> Self {
+    /// Prepares an overlay for an eye height, m, and the primaries of a picture.
+    pub fn new(overlay: &'a FogOverlay, eye_height_m: f64, primaries: Primaries) -> Self {
         let table = match overlay {
             FogOverlay::Fog(FogSource::Alone(fog), _) => Some(fog.seen_from(eye_height_m)),
             _ => None,
@@ -72,6 +75,7 @@ impl<'a> FogSampler<'a> {
         Self {
             overlay,
             eye_height_m,
+            primaries,
             table,
         }
     }
@@ -84,7 +88,7 @@ impl<'a> FogSampler<'a> {
         distance_m: f64,
         path_radiance: Option<[f32; 3]>,
     ) -> RgbPathOptics {
-        match self.overlay {
+        let optics = match self.overlay {
             FogOverlay::Fog(source, lights) => {
                 let mut optics = match &self.table {
                     Some(table) => table.path(direction, distance_m),
@@ -115,7 +119,8 @@ impl<'a> FogSampler<'a> {
                     path_radiance: colour.map(|c| c * (1.0 - transmittance)),
                 }
             }
-        }
+        };
+        self.primaries.optics(optics)
     }
 
     /// A colour through the fog.
@@ -123,6 +128,7 @@ impl<'a> FogSampler<'a> {
         let FogOverlay::Encoded(_, fog) = self.overlay else {
             return optics.apply(colour);
         };
+        let fog = self.primaries.in_picture(*fog);
         let part = optics.transmittance[0];
         if part == 1.0 {
             return colour;

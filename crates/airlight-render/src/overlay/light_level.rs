@@ -1,5 +1,6 @@
 //! [`LightLevel`]: radiance of the light of a fog, in the unit of the picture.
 
+use super::primaries::Primaries;
 use super::{Ambient, OverlaySpec, estimate_ambient, horizon_pixels};
 use crate::RenderError;
 use airlight::fog::FogLighting;
@@ -87,6 +88,7 @@ pub(super) fn radiance_scale(
     view: &View<'_>,
 ) -> Result<(f32, LightLevel), RenderError> {
     let white = white_surface(&sky.fog_lighting());
+    let primaries = Primaries::of(view.picture);
     let stated = view.picture.white_luminance_cd_m2.map(|white| 1.0 / white);
     let (scale, source) = match (spec.radiance_scale, stated) {
         (Some(scale), _) => (scale as f32, LightLevelSource::RadianceScale),
@@ -94,7 +96,7 @@ pub(super) fn radiance_scale(
         _ => match picture_over_solved(spec, sky, view) {
             Some(scale) => (scale, LightLevelSource::MatchedSky),
             None => (
-                luminance(view.ambient.colour) / luminance(white),
+                luminance(primaries.to_srgb(view.ambient.colour)) / luminance(white),
                 LightLevelSource::MatchedAmbient,
             ),
         },
@@ -105,7 +107,7 @@ pub(super) fn radiance_scale(
              picture's units in one cd/m^2",
         ));
     }
-    let colour = white.map(|c| c * scale);
+    let colour = primaries.in_picture(white.map(|c| c * scale));
     Ok((scale, LightLevel { colour, source }))
 }
 
@@ -124,6 +126,7 @@ fn picture_over_solved(spec: &OverlaySpec, sky: &RgbFoggySky, view: &View<'_>) -
         return None;
     }
     let picture = view.picture;
+    let primaries = Primaries::of(picture);
     let width = picture.size.width();
     let (mut shown, mut solved) = (0.0, 0.0);
     for pixel in horizon_pixels(picture, view.depth)? {
@@ -134,7 +137,7 @@ fn picture_over_solved(spec: &OverlaySpec, sky: &RgbFoggySky, view: &View<'_>) -
             continue;
         }
         let rgb = &picture.rgb[3 * pixel..];
-        shown += f64::from(luminance([rgb[0], rgb[1], rgb[2]]));
+        shown += f64::from(luminance(primaries.to_srgb([rgb[0], rgb[1], rgb[2]])));
         solved += f64::from(luminance(sky.clear_radiance(direction)));
     }
     let scale = (shown / solved) as f32;

@@ -17,6 +17,7 @@ mod overlay_image;
 mod overlay_scene;
 mod place_lights;
 mod prepared_overlay;
+mod primaries;
 mod sky_light;
 mod spec;
 
@@ -36,6 +37,7 @@ use airlight_image::{ImageError, Intrinsics, RowSource, Size};
 use ambient::horizon_pixels;
 use fog_overlay::FogSampler;
 use glam::DVec3;
+use primaries::Primaries;
 
 /// Rows of a picture in fog.
 #[derive(Debug)]
@@ -107,7 +109,7 @@ impl<'a> Overlay<'a> {
             picture,
             depth,
             camera,
-            fog: FogSampler::from_height(overlay, eye_height_m),
+            fog: FogSampler::new(overlay, eye_height_m, Primaries::of(picture)),
             channels,
             path_radiance: None,
         })
@@ -160,11 +162,22 @@ impl<'a> Overlay<'a> {
         directions.into_iter().zip(distances).collect()
     }
 
-    /// EXR names of the channels; opacity is last, if the picture has it.
-    pub fn channel_names(&self) -> Vec<&'static str> {
+    /// EXR names of the channels; opacity is last, if the picture has it. Colours and opacity belong to the layer from which they
+    /// were read.
+    pub fn channel_names(&self) -> Vec<String> {
+        let layer = self.picture.layer.as_ref();
+        let prefix = layer.map_or("", |layer| layer.prefix.as_str());
         let opacity = self.picture.alpha.as_ref().map(|_| "A");
-        let names = self.channels.names().iter().copied();
-        names.chain(opacity).collect()
+        let (colours, layers) = self.channels.names().split_at(3);
+        let own = |name: &&str| format!("{prefix}{name}");
+        let layers = layers.iter().map(|name| (*name).to_owned());
+        let opacity = opacity.iter().map(own);
+        colours
+            .iter()
+            .map(own)
+            .chain(layers)
+            .chain(opacity)
+            .collect()
     }
 
     /// A pixel's colour through the fog. Colours of linear files are premultiplied by opacity, so the path radiance in front of

@@ -3,12 +3,15 @@
 use super::{LightLevel, Overlay, OverlaySpec};
 use crate::RenderError;
 use airlight_image::input::{
-    DepthMap, LightReference, Picture, SampleBits, read_depth, read_picture,
+    DepthMap, DepthOptions, LightReference, Picture, SampleBits, read_depth, read_picture,
 };
-use airlight_image::output::{PictureFormat, PictureOptions, Written, exr, png, write_picture};
+use airlight_image::output::{
+    Carried, Metadata, PictureFormat, PictureOptions, Written, exr, png, write_picture,
+};
 use airlight_image::tone::ToneMapper;
 use airlight_image::{Control, ImageError, Notes};
 use std::path::Path;
+use std::sync::Arc;
 
 /// A colour picture, its depth map and its ambient light.
 #[derive(Clone, Debug)]
@@ -49,7 +52,7 @@ impl OverlayImage {
     /// # Errors
     /// [`RenderError`] if one cannot be read, their sizes differ, or the format cannot store the picture's kind of values.
     pub fn read(spec: &OverlaySpec, format: PictureFormat) -> Result<Self, RenderError> {
-        let mut picture = read_picture(&spec.colour, None)?;
+        let mut picture = read_picture(&spec.colour, spec.colour_layer.as_deref())?;
         if !format.holds_alpha() {
             picture.alpha = None;
         }
@@ -63,7 +66,10 @@ impl OverlayImage {
                 spec.colour.display(),
             )));
         }
-        let options = spec.depth_options()?;
+        let options = DepthOptions {
+            beside: picture.layer.clone(),
+            ..spec.depth_options()?
+        };
         let depth = match &spec.depth {
             Some(file) => read_depth(file, &options)?,
             None if picture.reference == LightReference::Display => {
@@ -80,6 +86,17 @@ impl OverlayImage {
             })?,
         };
         Self::new(spec, picture, depth)
+    }
+
+    /// What is carried from an EXR file, except channels that an overlay writes itself.
+    fn carried(&self, overlay: &Overlay<'_>) -> Option<Arc<Carried>> {
+        let carried = self.picture.carried.as_ref()?;
+        let names = overlay.channel_names();
+        if !carried.channel_names().any(|name| names.contains(&name)) {
+            return Some(carried.clone());
+        }
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        Some(Arc::new(carried.without_channels(&names)))
     }
 
     /// Writes an overlay of this picture.
@@ -101,6 +118,13 @@ impl OverlayImage {
                 },
                 ..Default::default()
             },
+            metadata: Metadata {
+                chromaticities: self.picture.chromaticities,
+                white_luminance_cd_m2: self.picture.white_luminance_cd_m2,
+                pixel_aspect: Some(self.picture.pixel_aspect),
+                carried: self.carried(overlay),
+                ..Metadata::default()
+            },
             png: png::PngOptions {
                 depth: match self.picture.bits {
                     SampleBits::U8 => png::PngDepth::Eight,
@@ -114,6 +138,7 @@ impl OverlayImage {
         Ok(match format.holds_channels() {
             true => {
                 let (names, metadata) = (overlay.channel_names(), &options.metadata);
+                let names: Vec<&str> = names.iter().map(String::as_str).collect();
                 exr::write(
                     output,
                     size,

@@ -220,14 +220,15 @@ impl OverlayScene {
         Ok(layers.collect::<Result<_, SceneError>>().map(Some)?)
     }
 
-    /// The camera of a picture of this size.
+    /// The camera of a picture of this size, with pixels of this width over height.
     ///
     /// # Errors
     /// [`ImageError::Setting`] for numbers out of range.
-    pub fn camera(&self, size: Size) -> Result<Intrinsics, ImageError> {
+    pub fn camera(&self, size: Size, pixel_aspect: f32) -> Result<Intrinsics, ImageError> {
         let camera = &self.scene.camera;
         let fov_deg = camera.fov_deg.unwrap_or(FOV_DEG);
-        self.overlay.camera(size, fov_deg)?.looking(
+        let level = self.overlay.camera(size, fov_deg)?;
+        level.with_pixel_aspect(pixel_aspect.into())?.looking(
             camera.azimuth_deg.unwrap_or(0.0),
             camera.elevation_deg.unwrap_or(0.0),
             camera.roll_deg.unwrap_or(0.0),

@@ -3,7 +3,7 @@
 use super::light_level::{self, View};
 use super::{
     Channels, FogOverlay, FogSource, LightLevel, MonteCarloFog, MonteCarloPass, Overlay,
-    OverlayImage, OverlayScene, SkyLight, place_lights,
+    OverlayImage, OverlayScene, SkyLight, place_lights, primaries::Primaries,
 };
 use crate::RenderError;
 use crate::pixels::tagged_path;
@@ -48,7 +48,7 @@ impl PreparedOverlay {
         image: &OverlayImage,
         sky: Option<&SkyLight>,
     ) -> Result<Self, RenderError> {
-        let camera = scene.camera(image.picture.size)?;
+        let camera = scene.camera(image.picture.size, image.picture.pixel_aspect)?;
         let ambient = LightLevel {
             colour: image
                 .ambient
@@ -155,7 +155,11 @@ impl PreparedOverlay {
                 precision: SamplePrecision::Float,
                 ..ExrOptions::default()
             };
-            let (names, metadata) = (["R", "G", "B"], Metadata::default());
+            let names = ["R", "G", "B"];
+            let metadata = Metadata {
+                chromaticities: Some(RgbSpace::Srgb.into()),
+                ..Metadata::default()
+            };
             exr::write(&path, size, &names, &rows, &options, &metadata, control)?;
         }
         Ok(written)
@@ -168,8 +172,10 @@ fn fog(
     sky: Option<&SkyLight>,
     view: &View<'_>,
 ) -> Result<(FogOverlay, LightLevel), RenderError> {
+    let primaries = Primaries::of(view.picture);
+    let ambient = primaries.to_srgb(view.ambient.colour);
     let Some(layers) = scene.constituents()? else {
-        return Ok((one_colour(scene, view.ambient.colour)?, view.ambient));
+        return Ok((one_colour(scene, ambient)?, view.ambient));
     };
     let rgb = |layer| RgbLayer::from_constituent(layer, RgbSpace::Srgb);
     let rgb: Result<Vec<RgbLayer>, _> = layers.iter().map(rgb).collect();
@@ -185,7 +191,7 @@ fn fog(
             };
             (source, level)
         }
-        None => (alone(scene, &rgb, view.ambient.colour)?, view.ambient),
+        None => (alone(scene, &rgb, ambient)?, view.ambient),
     };
     let lights = lights_in_fog(scene, &rgb, &source, view)?;
     Ok((FogOverlay::Fog(source, lights), level))
@@ -243,12 +249,13 @@ fn lights_in_fog(
         FogSource::Alone(_) => Ground::FLAT,
         FogSource::Sky { sky, .. } => *sky.ground(),
     };
-    let lights = place_lights::place(
-        &scene.scene.lights,
-        view.camera,
-        view.depth,
-        scene.eye_height_m(),
-    )?;
+    let primaries = Primaries::of(view.picture);
+    let mut lights = scene.scene.lights.clone();
+    for light in &mut lights {
+        let intensity = primaries.to_srgb(light.intensity.map(|v| v as f32));
+        light.intensity = intensity.map(|v| f64::from(v.max(0.0)));
+    }
+    let lights = place_lights::place(&lights, view.camera, view.depth, scene.eye_height_m())?;
     let settings = LightSettings {
         form: scene.overlay.light_form,
         ..LightSettings::default()

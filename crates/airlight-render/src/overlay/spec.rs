@@ -39,6 +39,9 @@ airlight::named! { DepthFileKind, "a kind of depth", [
 pub struct OverlaySpec {
     /// Colour picture: EXR or HDR (linear), PNG or JPEG (decoded to light and encoded again); for a batch, a folder or pattern.
     pub colour: PathBuf,
+    /// Layer of an EXR colour picture; `None`: its plain colours, else those of a layer called `Combined` or the only ones.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub colour_layer: Option<String>,
     /// Depth map; `None`: the depth channel of the colour picture.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub depth: Option<PathBuf>,
@@ -93,6 +96,7 @@ impl Default for OverlaySpec {
     fn default() -> Self {
         Self {
             colour: PathBuf::new(),
+            colour_layer: None,
             depth: None,
             depth_kind: DepthFileKind::Z,
             depth_scale: 1.0,
@@ -153,6 +157,7 @@ impl OverlaySpec {
             meaning,
             scale: self.depth_scale,
             channel: self.depth_channel.clone(),
+            beside: None,
             unknown: self.holes,
             far_from_m: self.far_m,
             negative_is_unknown: false,

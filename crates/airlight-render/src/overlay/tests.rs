@@ -116,7 +116,7 @@ fn fog_covers_opaque_pixels_only() {
             let overlay = Overlay::new(&half, &depth, &camera, 1.6, &overlay, channels).unwrap();
             let names = overlay.channel_names();
             assert_eq!(names.len(), overlay.channels());
-            assert_eq!(names.last(), Some(&"A"));
+            assert_eq!(names.last().map(String::as_str), Some("A"));
             let mut row = vec![0.0; 3 * names.len()];
             overlay.fill_row(0, &mut row);
             let pixel = |i: usize| &row[i * names.len()..][..names.len()];

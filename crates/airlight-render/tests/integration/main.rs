@@ -1,6 +1,7 @@
 //! Drawing from outside the crate: fog over pictures, batches, sequences.
 
 mod batch;
+mod colours;
 mod common;
 mod forms;
 mod lights;

@@ -42,7 +42,9 @@ fn drawn_sky(scene: &OverlayScene, scale: f32) -> Picture {
     let sky = Sky::prepare(&resolved.atmosphere, &resolved.grid, &settings).unwrap();
     let view = sky.view(2.0, sun.state().direction);
     let table = view.table(TableChannels::Rgb(RgbSpace::Srgb));
-    let camera = scene.camera(Size::new(SIZE.0, SIZE.1).unwrap()).unwrap();
+    let camera = scene
+        .camera(Size::new(SIZE.0, SIZE.1).unwrap(), 1.0)
+        .unwrap();
     picture(SIZE, |x, y| {
         let mut rgb = [0.0; 3];
         table.sample(camera.pixel_direction(x, y), &mut rgb);

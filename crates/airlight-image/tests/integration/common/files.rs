@@ -9,6 +9,7 @@ use std::io::Cursor;
 /// A part of an EXR file: its name, position and size, channels.
 pub struct Part {
     pub name: Option<&'static str>,
+    pub view: Option<&'static str>,
     pub position: (i32, i32),
     pub size: (usize, usize),
     pub channels: Vec<(&'static str, FlatSamples)>,
@@ -20,11 +21,19 @@ impl Part {
     pub fn new(size: (usize, usize), channels: Vec<(&'static str, FlatSamples)>) -> Self {
         Self {
             name: None,
+            view: None,
             position: (0, 0),
             size,
             channels,
             compression: Compression::ZIP16,
             tile: None,
+        }
+    }
+
+    pub fn of_view(self, view: &'static str) -> Self {
+        Self {
+            view: Some(view),
+            ..self
         }
     }
 
@@ -48,6 +57,7 @@ pub fn exr_file(window: (i32, i32, usize, usize), parts: Vec<Part>) -> Vec<u8> {
                 .collect();
             let attributes = LayerAttributes {
                 layer_name: part.name.map(Text::from),
+                view_name: part.view.map(Text::from),
                 layer_position: Vec2(part.position.0, part.position.1),
                 ..LayerAttributes::default()
             };

@@ -80,6 +80,8 @@ pub fn full_metadata() -> Metadata {
         white_luminance_cd_m2: Some(1.0),
         chromaticities: Some(RgbSpace::Srgb.into()),
         is_latitude_longitude: false,
+        pixel_aspect: None,
+        carried: None,
         texts: vec![
             ("units".into(), "cd/m^2".into()),
             ("place".into(), "Łódź".into()),
