@@ -6,7 +6,7 @@ use crate::interrupt::STOP;
 use crate::progress::RowsBar;
 use crate::report::{self, seconds};
 use airlight_image::Control;
-use airlight_image::tone::ToneMapper;
+use airlight_image::tone::{Exposure, ToneMapper};
 use airlight_plot::{Colormap, ContactSheet, Panel, Raster};
 use airlight_render::compare::{Difference, Statistics};
 use airlight_render::{RenderedImage, Renderer};
@@ -40,10 +40,8 @@ pub fn run(args: &CompareArgs) -> Result<(), CliError> {
         .statistics((&first, names.0), (&second, names.1), scale)
         .ok_or_else(|| CliError::usage("expected a picture of sky that is not black, got none; try another projection or direction"))?;
     if let Some(output) = &args.output {
-        let tone = ToneMapper::new(
-            (f64::from(first.tone.exposure()) * scale) as f32,
-            renderers[0].tone_curve(),
-        )?;
+        let exposure = Exposure::from_factor(f64::from(first.tone.exposure()) * scale)?;
+        let tone = renderers[0].tone_mapper(exposure)?;
         let sheet = sheet(args, (&first, &second), &tone, &difference, &statistics);
         report::write_contact_sheet(output, &sheet)?;
     }

@@ -133,7 +133,10 @@ impl From<SceneError> for CliError {
             return Self::Interrupted;
         }
         let mut sentence = error.to_string();
-        if error.key().is_some_and(|key| key.starts_with("sun")) {
+        if error
+            .key()
+            .is_some_and(|key| key.starts_with("sun") || key.starts_with("night"))
+        {
             for (keys, flags) in SUN_FLAGS {
                 sentence = sentence.replace(keys, flags);
             }
@@ -148,12 +151,14 @@ impl From<SceneError> for CliError {
     }
 }
 
-/// Flags for keys of the sun in messages, the longest first.
-const SUN_FLAGS: [(&str, &str); 4] = [
+/// Flags for keys of sun and moon in messages, the longest first.
+const SUN_FLAGS: [(&str, &str); 6] = [
     (
         "latitude_deg and longitude_deg with time",
         "--at LAT,LON with --when TIME",
     ),
+    ("moon_elevation_deg = 30", "--moon-elevation 30"),
+    ("moon_elevation_deg", "--moon-elevation"),
     ("elevation_deg = 10", "--sun-elevation 10"),
     ("elevation_deg", "--sun-elevation"),
     ("azimuth_deg", "--sun-azimuth"),
@@ -167,6 +172,14 @@ fn flag(key: &str) -> String {
         "sun.azimuth_deg" => "--sun-azimuth",
         "sun.latitude_deg" | "sun.longitude_deg" => "--at",
         "sun.time" => "--when",
+        "night" => "--night, --moon, --stars, --solar-flux and --sky-quality",
+        "night.lights" => "--night",
+        "night.moon_elevation_deg" => "--moon-elevation",
+        "night.moon_azimuth_deg" => "--moon-azimuth",
+        "night.moon_phase_deg" => "--moon-phase",
+        "night.solar_flux_sfu" => "--solar-flux",
+        "night.sky_quality_mag" => "--sky-quality",
+        "night.latitude_deg" => "--star-latitude",
         "observer" => "--altitude-m and --eye-height-m",
         "air.aerosol, humidity, aod_550, turbidity and haze_visibility_m" => {
             "--aerosol, --humidity, --aod-550, --turbidity and --haze-visibility-m"
@@ -187,6 +200,7 @@ fn flag(key: &str) -> String {
         "camera.roll_deg" => "--camera-roll",
         "camera.fov_deg" => "--fov",
         "output.file" => "--output",
+        "output.white_balance_k" => "--white-balance",
         _ => "",
     };
     match (known, key.strip_prefix("fog.layers")) {

@@ -11,9 +11,12 @@ use crate::metadata::FrameMetadata;
 use crate::objects::{LitObjects, ObjectRows, write_depth};
 use crate::pixels::tagged_path;
 use crate::renderer::Renderer;
-use crate::sky_rows::{Layer, SkyRows, SkyValues};
+use crate::sky_rows::{Layer, SkyRows, SkySources, SkyValues};
 use crate::sun_disc::SunDiscImage;
-use airlight::scene::{PreparedModel, RadianceSampler, RadianceView, SunAngles, SunDiscPlacement};
+use airlight::night::NightState;
+use airlight::scene::{
+    Channels, PreparedModel, RadianceSampler, RadianceView, SunAngles, SunDiscPlacement,
+};
 use airlight::sun::Moment;
 use airlight_image::output::exr::{self, ExrOptions, SamplePrecision};
 use airlight_image::output::{Metadata, Written, spectral};
@@ -38,7 +41,9 @@ pub struct PreparedFrame<'r> {
     preview: Arc<dyn RadianceView>,
     channels: PixelChannels,
     light: Illuminances,
-    disc: Option<SunDiscImage>,
+    /// Discs of sun and moon.
+    discs: Vec<SunDiscImage>,
+    night: Option<NightState>,
     objects: Option<LitObjects>,
 }
 
@@ -92,20 +97,32 @@ impl<'r> PreparedFrame<'r> {
             _ => PixelChannels::rgb(space),
         };
         let state = sun.state();
-        let view = prepared.view(scene.observer_altitude_m, &state, channels.of_views())?;
+        let night = match time {
+            Some(time) => scene.night_at(&sun, time),
+            None => scene.night(&sun),
+        };
+        let view_at = |altitude_m: f64, channels: Channels| match &night {
+            Some(night) => prepared.night_view(altitude_m, &state, night, channels),
+            None => prepared.view(altitude_m, &state, channels),
+        };
+        let view = view_at(scene.observer_altitude_m, channels.of_views())?;
         let preview = match view.sampler() {
             Some(sampler) => sampler.preview(),
             None => view.clone(),
         };
-        let disc = match renderer.scene().output.sun_disc {
-            Some(SunDiscPlacement::Out) => None,
-            _ => SunDiscImage::new(preview.clone()),
+        let discs = match renderer.scene().output.sun_disc {
+            Some(SunDiscPlacement::Out) => Vec::new(),
+            _ => [Some(&preview), preview.moon()]
+                .into_iter()
+                .flatten()
+                .filter_map(|view| SunDiscImage::new(view.clone()))
+                .collect(),
         };
         let objects = renderer
             .objects()
             .map(|objects| {
                 let light = prepared.object_channels(channels.of_views());
-                let at = |altitude_m| prepared.view(altitude_m, &state, light);
+                let at = |altitude_m| view_at(altitude_m, light);
                 LitObjects::in_scene(objects.clone(), scene, at, renderer.casts_shadows())
                     .map(|lit| lit.in_picture(&channels))
             })
@@ -118,9 +135,15 @@ impl<'r> PreparedFrame<'r> {
             view,
             preview,
             channels,
-            disc,
+            discs,
+            night,
             objects,
         })
+    }
+
+    /// Celestial sphere and moon, if the picture shows the lights of the night.
+    pub fn night(&self) -> Option<&NightState> {
+        self.night.as_ref()
     }
 
     /// Position of the sun.
@@ -163,7 +186,12 @@ impl<'r> PreparedFrame<'r> {
         scale: f32,
     ) -> Box<dyn RowSource + 's> {
         let channels = &self.channels;
-        let sky = SkyRows::new(frame, layer, (sky, self.disc.as_ref()), channels, scale);
+        let sources = SkySources {
+            sky,
+            discs: &self.discs,
+            stars: self.preview.stars(),
+        };
+        let sky = SkyRows::new(frame, layer, sources, channels, scale);
         match &self.objects {
             None => Box::new(sky),
             Some(objects) => Box::new(ObjectRows::new(
@@ -197,7 +225,7 @@ impl<'r> PreparedFrame<'r> {
             pixels: &pixels,
             space: self.channels.space(),
             horizon_elevation_rad: self.preview.horizon_elevation_rad(),
-            horizontal_lx: self.light.sun_horizontal_lx + self.light.sky_horizontal_lx,
+            horizontal_lx: self.light.horizontal_lx(),
         })?)
     }
 
@@ -206,8 +234,7 @@ impl<'r> PreparedFrame<'r> {
     /// # Errors
     /// As [`PreparedFrame::exposure`].
     pub fn tone(&self) -> Result<ToneMapper, RenderError> {
-        let exposure = self.exposure()?.factor() as f32;
-        Ok(ToneMapper::new(exposure, self.renderer.tone_curve())?)
+        self.renderer.tone_mapper(self.exposure()?)
     }
 
     /// Draws a frame to memory.
@@ -424,6 +451,7 @@ impl<'r> PreparedFrame<'r> {
             time: self.time,
             sun: &self.sun,
             light: &self.light,
+            night: self.night.as_ref(),
             channels: &self.channels,
             exposure: self.file_exposure(tone),
         };

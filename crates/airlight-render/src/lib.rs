@@ -32,6 +32,7 @@ pub mod renderer;
 pub mod scene_file;
 pub mod sequence;
 pub mod sky_rows;
+pub mod star_points;
 pub mod summary;
 pub mod sun_disc;
 #[cfg(test)]

@@ -5,6 +5,7 @@ use crate::illuminance::Illuminances;
 use crate::renderer::Renderer;
 use crate::sky_rows::Layer;
 use crate::summary::{self, short};
+use airlight::night::NightState;
 use airlight::scene::SunAngles;
 use airlight::sun::Moment;
 use airlight_image::PictureFormat;
@@ -20,6 +21,8 @@ pub(crate) struct FrameMetadata<'a> {
     pub time: Option<Moment>,
     pub sun: &'a SunAngles,
     pub light: &'a Illuminances,
+    /// Celestial sphere and moon of a picture with the lights of the night.
+    pub night: Option<&'a NightState>,
     pub channels: &'a PixelChannels,
     /// Exposure of a display format.
     pub exposure: Option<Exposure>,
@@ -63,6 +66,9 @@ impl FrameMetadata<'_> {
                 sun.azimuth_deg, sun.elevation_deg
             ),
         );
+        if let Some(moon) = self.night.and_then(|night| night.moon) {
+            add("moon", summary::moon(&moon));
+        }
         let light = self.light;
         add(
             "illuminance",

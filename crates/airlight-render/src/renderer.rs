@@ -14,7 +14,9 @@ use airlight::sun::Moment;
 use airlight_image::output::exr::ExrOptions;
 use airlight_image::output::jpeg::JpegOptions;
 use airlight_image::output::png::{PngDepth, PngOptions};
-use airlight_image::tone::{self, AgxSettings, CameraSettings, ToneCurve};
+use airlight_image::tone::{
+    self, AgxSettings, CameraSettings, ToneCurve, ToneMapper, WhiteBalance,
+};
 use airlight_image::{Control, PictureOptions};
 use std::path::Path;
 use std::sync::Arc;
@@ -205,6 +207,19 @@ impl Renderer {
                 saturation: output.saturation.unwrap_or(camera.saturation),
             }),
         }
+    }
+
+    /// The tone mapper of display pictures with an exposure.
+    ///
+    /// # Errors
+    /// [`RenderError`] for a setting out of range.
+    pub fn tone_mapper(&self, exposure: tone::Exposure) -> Result<ToneMapper, RenderError> {
+        let output = &self.scene.output;
+        let balance = output.white_balance_k.map(WhiteBalance::new).transpose()?;
+        let mapper = ToneMapper::new(exposure.factor() as f32, self.tone_curve())?;
+        Ok(mapper
+            .with_white_balance(balance)
+            .with_scotopic(output.scotopic.unwrap_or(false)))
     }
 
     /// Encoding of the files, without metadata.

@@ -2,8 +2,9 @@
 
 use crate::channels::PixelChannels;
 use crate::pixels::{directions_within, pixel_reach};
+use crate::star_points::StarPoints;
 use crate::sun_disc::SunDiscImage;
-use airlight::scene::{RadianceView, RowSampler};
+use airlight::scene::{RadianceView, RowSampler, StarField};
 use airlight_image::frame::FrameRows;
 use airlight_image::{Frame, Projection, RowSource};
 use glam::DVec3;
@@ -28,12 +29,24 @@ pub enum SkyValues<'a> {
     Stored(&'a [f32]),
 }
 
+/// What is drawn of a sky.
+#[derive(Clone, Copy, Debug)]
+pub struct SkySources<'a> {
+    /// Diffuse light.
+    pub sky: SkyValues<'a>,
+    /// Discs of sun and moon.
+    pub discs: &'a [SunDiscImage],
+    /// Single stars, part of the sky.
+    pub stars: Option<&'a StarField>,
+}
+
 /// Rows of the sky in one frame.
 #[derive(Debug)]
 pub struct SkyRows<'a> {
     sky: Option<SkyValues<'a>>,
     sampler: Option<Box<dyn RowSampler>>,
-    disc: Option<&'a SunDiscImage>,
+    discs: &'a [SunDiscImage],
+    stars: Option<StarPoints<'a>>,
     channels: &'a PixelChannels,
     rows: FrameRows,
     scale: f32,
@@ -45,18 +58,23 @@ impl<'a> SkyRows<'a> {
     pub fn new(
         frame: &Frame,
         layer: Layer,
-        (sky, disc): (SkyValues<'a>, Option<&'a SunDiscImage>),
+        sources: SkySources<'a>,
         channels: &'a PixelChannels,
         scale: f32,
     ) -> Self {
-        let sky = (layer != Layer::Disc).then_some(sky);
+        let sky = (layer != Layer::Disc).then_some(sources.sky);
+        let stars = sources.stars.filter(|_| layer != Layer::Disc);
         Self {
+            stars: stars.map(|stars| StarPoints::new(frame, stars)),
             sampler: match sky {
                 Some(SkyValues::View(view)) => row_sampler(frame, view),
                 _ => None,
             },
             sky,
-            disc: disc.filter(|_| layer != Layer::Sky),
+            discs: match layer {
+                Layer::Sky => &[],
+                _ => sources.discs,
+            },
             channels,
             rows: frame.rows(),
             scale,
@@ -136,7 +154,10 @@ impl RowSource for SkyRows<'_> {
                 put(&values, out);
             }
         }
-        if let Some(disc) = self.disc {
+        if let Some(stars) = &self.stars {
+            stars.add_row(y, self.scale, self.channels, out);
+        }
+        for disc in self.discs {
             let reach_and_scale = (self.pixel_reach, self.scale);
             disc.add_row((frame, y), &directions, reach_and_scale, self.channels, out);
         }
@@ -167,7 +188,12 @@ mod tests {
 
     fn row(frame: &Frame, sky: SkyValues<'_>, layer: Layer, y: u32) -> Vec<f32> {
         let channels = PixelChannels::rgb(RgbSpace::Srgb);
-        let rows = SkyRows::new(frame, layer, (sky, None), &channels, 2.0);
+        let sources = SkySources {
+            sky,
+            discs: &[],
+            stars: None,
+        };
+        let rows = SkyRows::new(frame, layer, sources, &channels, 2.0);
         let mut out = vec![f32::NAN; 3 * frame.size().width() as usize];
         rows.fill_row(y, &mut out);
         out

@@ -2,7 +2,9 @@
 
 use airlight::Named;
 use airlight::atmosphere::DensityProfile;
+use airlight::axes;
 use airlight::fog::FogScattering;
+use airlight::night::MoonState;
 use airlight::scene::FogLayers;
 
 /// Formats a number with 4 significant digits.
@@ -54,6 +56,16 @@ pub fn fog(fog: &FogLayers) -> String {
         _ => "",
     });
     text
+}
+
+/// Describes a moon: where it is, and how much of it is lit.
+pub fn moon(moon: &MoonState) -> String {
+    format!(
+        "elevation {:.3} deg, azimuth {:.3} deg, {:.0} % lit",
+        axes::elevation_deg(moon.direction),
+        axes::azimuth_deg(moon.direction),
+        100.0 * moon.lit_fraction()
+    )
 }
 
 #[cfg(test)]

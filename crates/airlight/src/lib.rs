@@ -23,7 +23,8 @@
 //! - [`scene`]: [`scene::Scene`] describes sun, air, fog, lights and camera as plain data; [`scene::RadianceModel`] is the
 //!   interface of all solvers and published models ([`models::registry`]); [`scene::RgbFoggySky`] is a sky with fog for
 //!   real-time use.
-//! - [`atmosphere`]: presets, constituents, density profiles, aerosols and visibility; [`sun`]: its disc and position.
+//! - [`atmosphere`]: presets, constituents, density profiles, aerosols and visibility; [`sun`]: its disc and position;
+//!   [`night`]: moon, airglow, zodiacal light and stars.
 //! - [`monte_carlo`]: unbiased reference results with standard errors.
 //! - [`optics`], [`spectrum`]: scattering by one particle; wavelength grids, spectra and colour.
 //!
@@ -51,6 +52,7 @@ mod math;
 pub mod models;
 pub mod monte_carlo;
 mod names;
+pub mod night;
 pub mod optics;
 pub mod prelude;
 pub mod scene;

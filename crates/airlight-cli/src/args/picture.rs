@@ -61,6 +61,13 @@ pub struct DisplayArgs {
     /// Saturation of the camera curve: factor on the distance from grey, 0 to 3 [default: 1]
     #[arg(long, value_name = "FACTOR", value_parser = parse::not_negative)]
     pub saturation: Option<f64>,
+    /// Colour temperature of the light that .png, .jpg and preview show as neutral, K: 4000 for a night sky [default: daylight,
+    /// D65]
+    #[arg(long, value_name = "K", value_parser = parse::positive)]
+    pub white_balance: Option<f64>,
+    /// Show dark scenes in .png, .jpg and preview as the dark-adapted eye sees them: bluish grey
+    #[arg(long)]
+    pub scotopic: bool,
 }
 
 /// Encoding of a picture.
@@ -114,6 +121,8 @@ impl DisplayArgs {
         put(&mut output.tone, &self.tone);
         put(&mut output.tone_contrast, &self.tone_contrast);
         put(&mut output.saturation, &self.saturation);
+        put(&mut output.white_balance_k, &self.white_balance);
+        put(&mut output.scotopic, &self.scotopic.then_some(true));
     }
 }
 

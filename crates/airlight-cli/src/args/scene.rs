@@ -1,7 +1,7 @@
 //! Options that describe a scene: a file and overrides.
 
 use super::fog::{ContrastArgs, FogArgs};
-use super::{AirArgs, PlaceArgs, SolverArgs};
+use super::{AirArgs, NightArgs, PlaceArgs, SolverArgs};
 use crate::error::CliError;
 use crate::parse::put;
 use airlight::scene::Scene;
@@ -17,6 +17,8 @@ pub struct SceneArgs {
     pub scene: Option<PathBuf>,
     #[command(flatten)]
     pub place: PlaceArgs,
+    #[command(flatten)]
+    pub night: NightArgs,
     #[command(flatten)]
     pub air: AirArgs,
     #[command(flatten)]
@@ -38,6 +40,7 @@ impl SceneArgs {
             None => Scene::default(),
         };
         self.place.fill(&mut scene);
+        self.night.fill(&mut scene);
         self.air.fill(&mut scene.air);
         put(&mut scene.air.contrast, &self.contrast.contrast);
         self.solver.fill(&mut scene.solver);

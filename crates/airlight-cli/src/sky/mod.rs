@@ -207,6 +207,16 @@ fn facts(renderer: &Renderer, frame: &PreparedFrame) -> String {
         short(light.sun_horizontal_lx),
         short(light.sky_horizontal_lx)
     );
+    if let Some(moon) = frame.night().and_then(|night| night.moon) {
+        let lux = |lux: Option<f64>| short(lux.unwrap_or(0.0));
+        let _ = writeln!(
+            text,
+            "  moon          {}; {} lx facing it, {} lx horizontal",
+            summary::moon(&moon),
+            lux(light.moon_normal_lx),
+            lux(light.moon_horizontal_lx)
+        );
+    }
     let _ = writeln!(
         text,
         "  air           {}; eye at {} m",
@@ -228,8 +238,8 @@ fn note_of_night(renderer: &Renderer, exposure: Option<Exposure>) {
     };
     if exposure.is_some_and(is_longest) {
         report::note(
-            "the sky is too dark for a photograph of 20 s and stays dark: the light of stars, airglow and moon is not included; \
-             --brighten adds stops",
+            "the sky is so dark that a photograph of 20 s at f/1.4 and ISO 2500 leaves it dark, and so does this picture; --brighten \
+             adds stops",
         );
     }
 }

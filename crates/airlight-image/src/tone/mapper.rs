@@ -5,6 +5,8 @@ use super::{
     blocks::{OctaveTable, Planes, max, min, without_negatives},
     camera::{Camera, CameraSettings},
     dither::RowDither,
+    scotopic,
+    white_balance::WhiteBalance,
 };
 use crate::ImageError;
 use airlight::spectrum::rgb::srgb_encode;
@@ -35,6 +37,8 @@ impl Default for ToneCurve {
 pub struct ToneMapper {
     exposure: f32,
     dither: bool,
+    scotopic: bool,
+    white_balance: Option<WhiteBalance>,
     curve: Curve,
     encode: OctaveTable,
 }
@@ -72,6 +76,8 @@ impl ToneMapper {
         Ok(Self {
             exposure,
             dither: true,
+            scotopic: false,
+            white_balance: None,
             curve: match curve {
                 ToneCurve::Camera(settings) => Curve::Camera(Camera::new(settings)?),
                 ToneCurve::Agx(settings) => Curve::Agx(Agx::new(settings)?),
@@ -87,6 +93,8 @@ impl ToneMapper {
         Self {
             exposure: 1.0,
             dither: false,
+            scotopic: false,
+            white_balance: None,
             curve: Curve::Clip,
             encode: OctaveTable::new(LINEAR_END, 1.0, srgb_encode),
         }
@@ -95,6 +103,19 @@ impl ToneMapper {
     /// The same with dither of 8-bit output on or off.
     pub fn with_dither(self, dither: bool) -> Self {
         Self { dither, ..self }
+    }
+
+    /// The same with light of a colour temperature neutral; `None` leaves colours as they are, under which daylight (D65) is.
+    pub fn with_white_balance(self, white_balance: Option<WhiteBalance>) -> Self {
+        Self {
+            white_balance,
+            ..self
+        }
+    }
+
+    /// The same with or without night vision: dark colours, in cd/m^2, as rods see them. See the book, "Pictures".
+    pub fn with_scotopic(self, scotopic: bool) -> Self {
+        Self { scotopic, ..self }
     }
 
     /// Factor for linear values.
@@ -158,6 +179,12 @@ impl ToneMapper {
 
     #[inline(always)]
     fn map_planes<const N: usize>(&self, planes: &mut Planes<N>) {
+        if self.scotopic {
+            scotopic::apply(planes);
+        }
+        if let Some(balance) = &self.white_balance {
+            balance.apply(planes);
+        }
         for v in planes.as_flattened_mut() {
             let exposed = *v * self.exposure;
             let exposed = if exposed.is_nan() { 0.0 } else { exposed };

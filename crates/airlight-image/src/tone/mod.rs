@@ -9,9 +9,12 @@ mod camera;
 mod dither;
 mod exposure;
 mod mapper;
+mod scotopic;
+mod white_balance;
 
 pub use agx::AgxSettings;
 pub use blocks::luminance;
 pub use camera::CameraSettings;
 pub use exposure::{Exposure, MIDDLE_GREY, Metering};
 pub use mapper::{ToneCurve, ToneMapper};
+pub use white_balance::WhiteBalance;

@@ -5,7 +5,7 @@ use airlight::spectrum::{
     rgb::{srgb_decode, srgb_encode},
 };
 use airlight_image::tone::{
-    AgxSettings, CameraSettings, Exposure, Metering, ToneCurve, ToneMapper,
+    AgxSettings, CameraSettings, Exposure, Metering, ToneCurve, ToneMapper, WhiteBalance,
 };
 
 /// The curves that roll off.
@@ -362,4 +362,54 @@ fn dither_is_balanced_and_the_same_every_time() {
             beside / count
         );
     }
+}
+
+#[test]
+fn white_balance_makes_its_light_neutral_and_keeps_its_luminance() {
+    // Linear sRGB of black bodies of luminance 1 (colour-science 0.4.7).
+    for (kelvin, rgb) in [
+        (3000.0, [1.7706, 0.8443, 0.2721]),
+        (5000.0, [1.2133, 0.9605, 0.7625]),
+        (10_000.0, [0.8718, 0.9946, 1.4310]),
+    ] {
+        let balance = WhiteBalance::new(kelvin).unwrap();
+        let tone = ToneMapper::new(0.2, ToneCurve::Clip)
+            .unwrap()
+            .with_white_balance(Some(balance));
+        let got = tone.map(rgb);
+        let grey = srgb_encode(0.2) as f32;
+        for v in got {
+            assert!((v - grey).abs() < 0.01, "{kelvin}: {got:?} against {grey}");
+        }
+    }
+    for kelvin in [1000.0, 30_000.0, f64::NAN] {
+        assert!(WhiteBalance::new(kelvin).is_err());
+    }
+}
+
+#[test]
+fn night_vision_greys_dark_colours_only_and_darkens_red() {
+    let tone = |scotopic| {
+        ToneMapper::new(1.0, ToneCurve::Clip)
+            .unwrap()
+            .with_scotopic(scotopic)
+    };
+    let bright = [5.0, 4.0, 3.0].map(|v| v / 5.0);
+    let mapper = |scotopic: bool, scale: f32| {
+        let exposed = ToneMapper::new(1.0 / scale, ToneCurve::Clip)
+            .unwrap()
+            .with_scotopic(scotopic);
+        move |rgb: [f32; 3]| exposed.map(rgb.map(|v| v * scale))
+    };
+    // Photopic above 4 cd/m^2.
+    assert_eq!(mapper(true, 20.0)(bright), mapper(false, 20.0)(bright));
+    // Wholly scotopic at 1e-3 cd/m^2: one bluish hue, and red darker than blue of the same luminance.
+    let dark = mapper(true, 1e-3);
+    let (red, blue) = (
+        dark([0.3 / 0.2126, 0.0, 0.0]),
+        dark([0.0, 0.0, 0.3 / 0.0722]),
+    );
+    assert!(red[2] > red[0] && red[2] < blue[2], "{red:?} {blue:?}");
+    assert!(tone(true).map([0.0; 3]) == [0.0; 3]);
+    assert!(tone(true).map([f32::NAN; 3]) == [0.0; 3]);
 }

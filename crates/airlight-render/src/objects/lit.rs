@@ -129,6 +129,7 @@ impl LitObjects {
             sum: values(),
             light: values(),
             sunlight: values(),
+            moonlight: values(),
             ambient: values(),
             mirrored: values(),
             other: values(),
@@ -146,8 +147,11 @@ impl LitObjects {
             let mean = |of: fn(&Hit<'_>) -> f64| {
                 beside.iter().map(|ray| of(&ray.hit)).sum::<f64>() / count
             };
-            self.view
-                .sunlight(mean(|hit| hit.point.y), &mut scratch.sunlight);
+            let height_m = mean(|hit| hit.point.y);
+            self.view.sunlight(height_m, &mut scratch.sunlight);
+            if let Some(moon) = self.view.moon() {
+                moon.sunlight(height_m, &mut scratch.moonlight);
+            }
             scratch.light.fill(0.0);
             for ray in beside {
                 self.add_reflected(ray, scratch);
@@ -178,17 +182,11 @@ impl LitObjects {
     /// Adds the radiance that a surface reflects to the eye.
     fn add_reflected(&self, ray: &ViewRay<'_>, scratch: &mut Scratch) {
         let ViewRay { hit, direction, .. } = ray;
-        let sun = self.view.sun();
-        let shading = hit.surface.shading(hit.normal, -*direction, sun);
-        let dark = hit.normal.dot(sun) <= 0.0 || self.shadows && self.objects.shadowed(hit, sun);
-        let (sun, sun_mirrored) = match dark {
-            true => (0.0, 0.0),
-            false => (shading.sun, shading.sun_mirrored),
-        };
         let height_m = hit.point.y;
         let Scratch {
             light,
             sunlight,
+            moonlight,
             ambient,
             mirrored,
             other,
@@ -199,15 +197,32 @@ impl LitObjects {
             let mirror = direction - 2.0 * direction.dot(hit.normal) * hit.normal;
             self.ambient(height_m, mirror, mirrored, other);
         }
+        let (sun, moon) = (self.view.sun(), self.view.moon());
+        let shading = hit.surface.shading(hit.normal, -*direction, sun);
+        let direct = self.direct(ray, sun);
+        let moonlit = moon.map_or((0.0, 0.0), |moon| self.direct(ray, moon.sun()));
         let share = checker_share(ray);
         let [own, checker] = &self.reflectances[hit.index];
         for lane in 0..light.len() {
             let reflectance = own[lane] * (1.0 - share) + checker[lane] * share;
-            let diffuse = sunlight[lane] * sun + ambient[lane] * shading.ambient;
+            let diffuse = sunlight[lane] * direct.0
+                + moonlight[lane] * moonlit.0
+                + ambient[lane] * shading.ambient;
             light[lane] += reflectance / PI * diffuse
-                + sunlight[lane] * sun_mirrored
+                + sunlight[lane] * direct.1
+                + moonlight[lane] * moonlit.1
                 + mirrored[lane] / PI * shading.mirrored;
         }
+    }
+
+    /// Diffuse and mirrored reflection of a distant source; 0 in shadow.
+    fn direct(&self, ray: &ViewRay<'_>, source: DVec3) -> (f32, f32) {
+        let hit = &ray.hit;
+        if hit.normal.dot(source) <= 0.0 || self.shadows && self.objects.shadowed(hit, source) {
+            return (0.0, 0.0);
+        }
+        let shading = hit.surface.shading(hit.normal, -ray.direction, source);
+        (shading.sun, shading.sun_mirrored)
     }
 
     /// Irradiance of a surface at a height (m) by all light except the sun's disc.
@@ -237,6 +252,7 @@ pub struct Scratch {
     sum: Vec<f32>,
     light: Vec<f32>,
     sunlight: Vec<f32>,
+    moonlight: Vec<f32>,
     ambient: Vec<f32>,
     mirrored: Vec<f32>,
     other: Vec<f32>,

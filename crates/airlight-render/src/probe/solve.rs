@@ -78,7 +78,10 @@ impl Probe {
             None => Channels::Rgb(space),
         };
         let altitude_m = resolved.observer_altitude_m;
-        let paths = prepared.view(altitude_m, &sun.state(), channels)?;
+        let paths = match resolved.night(&sun) {
+            Some(night) => prepared.night_view(altitude_m, &sun.state(), &night, channels)?,
+            None => prepared.view(altitude_m, &sun.state(), channels)?,
+        };
         let view = match paths.sampler() {
             Some(sampler) => sampler.preview(),
             None => paths.clone(),

@@ -1,8 +1,9 @@
 //! The solver `orders`: successive orders of scattering on the sphere, with fog in the sky.
 
 use crate::control::Control;
+use crate::night::NightState;
 use crate::scene::{
-    Capabilities, Channels, FogLayers, Input, PreparedModel, RadianceModel, RadianceView,
+    Capabilities, Channels, FogLayers, Input, NightSky, PreparedModel, RadianceModel, RadianceView,
     ResolvedScene, SceneError, SolvedView, SunState,
 };
 use crate::sky::{Sky, SkySettings, SunCoverage};
@@ -31,6 +32,7 @@ impl RadianceModel for Orders {
                 Input::GroundAlbedo,
                 Input::ObserverHeight,
                 Input::SunDistance,
+                Input::Night,
                 Input::Fog,
                 Input::FogScattering,
                 Input::Objects,
@@ -54,7 +56,12 @@ impl RadianceModel for Orders {
     ) -> Result<Arc<dyn PreparedModel>, SceneError> {
         let settings = scene.solver.sky_settings(suns);
         let prepared = PreparedOrders::new(scene, &settings, control)?;
-        Ok(Arc::new(prepared))
+        let night = scene.night.filter(|night| night.may_include(suns));
+        let night = night.map(|night| NightSky::new(scene, night, (&prepared.sky, suns), control));
+        Ok(Arc::new(PreparedOrders {
+            night: night.transpose()?,
+            ..prepared
+        }))
     }
 }
 
@@ -63,6 +70,8 @@ impl RadianceModel for Orders {
 pub(super) struct PreparedOrders {
     sky: Sky,
     fog: Option<FogLayers>,
+    /// Lights of the night, if the range of suns includes the night.
+    night: Option<NightSky>,
 }
 
 impl PreparedOrders {
@@ -78,6 +87,7 @@ impl PreparedOrders {
         Ok(Self {
             sky: Sky::prepare_with(&scene.atmosphere, &scene.grid, settings, control)?,
             fog: scene.fog.clone(),
+            night: None,
         })
     }
 
@@ -112,5 +122,19 @@ impl PreparedModel for PreparedOrders {
             sun,
             channels,
         )?))
+    }
+
+    fn night_view(
+        &self,
+        observer_altitude_m: f64,
+        sun: &SunState,
+        night: &NightState,
+        channels: Channels,
+    ) -> Result<Arc<dyn RadianceView>, SceneError> {
+        let sunlit = self.solved_view(observer_altitude_m, sun, channels)?;
+        Ok(match &self.night {
+            Some(sky) => Arc::new(sky.view(sunlit, night, channels)?),
+            None => Arc::new(sunlit),
+        })
     }
 }

@@ -18,6 +18,8 @@ pub enum Input {
     ObserverHeight,
     /// Distance of the planet from the sun.
     SunDistance,
+    /// Moon, stars and the other lights of the night.
+    Night,
     /// Fog near the ground.
     Fog,
     /// Orders of scattering in the fog.
@@ -60,6 +62,7 @@ impl Input {
             Self::GroundAlbedo => "air.ground_albedo",
             Self::ObserverHeight => "observer",
             Self::SunDistance => "sun.distance_ratio",
+            Self::Night => "night",
             Self::Fog => "fog",
             Self::FogScattering => "fog.scattering",
             Self::Lights => "lights",
@@ -89,6 +92,7 @@ impl fmt::Display for Input {
             Self::GroundAlbedo => "the albedo of the ground",
             Self::ObserverHeight => "an eye high above the ground",
             Self::SunDistance => "the distance of the sun",
+            Self::Night => "lights of the night",
             Self::Fog => "fog",
             Self::FogScattering => "the scattering of the fog",
             Self::Lights => "lights",

@@ -11,17 +11,24 @@ mod aerial_fill;
 mod air;
 mod capabilities;
 mod check_inputs;
+mod city_glow;
+mod diffuse_fog;
 #[cfg(feature = "config")]
 mod document;
 mod error;
 mod fog_in_sky;
 mod fog_layers;
 mod foggy;
+mod glow_view;
 mod input;
 mod irradiance_map;
 mod lane_channels;
 mod light;
 mod model;
+mod moon_view;
+mod night;
+mod night_sky;
+mod night_view;
 mod places;
 mod resolved;
 mod rgb_foggy_sky;
@@ -46,15 +53,19 @@ pub use error::SceneError;
 pub use fog_layers::{FogLayer, FogLayers};
 pub use input::Input;
 pub(crate) use irradiance_map::{IrradianceMap, horizontal_irradiance};
-pub use model::{PreparedModel, RadianceModel, RadianceSampler, RadianceView, RowSampler};
+pub use model::{
+    PreparedModel, RadianceModel, RadianceSampler, RadianceView, RowSampler, StarField,
+};
+pub use night::{MoonSource, NightSettings};
+pub(crate) use night_sky::NightSky;
 pub use resolved::ResolvedScene;
 pub use rgb_foggy_sky::RgbFoggySky;
 pub(crate) use solved_view::SolvedView;
 pub use spec::{
     AirSpec, BaseBlueKind, CameraSpec, CheckerSpec, Effort, Exposure, ExrCompression, FogLayerSpec,
     FogProfile, FogSpec, GlossSpec, Klassen1987Spec, LightKind, LightSpec, MeteringMode,
-    ObjectShape, ObjectSpec, ObjectsSpec, ObserverSpec, OutputSpec, Projection, Reflectance,
-    RepeatSpec, SCENE_VERSION, SamplePrecision, Scene, SequenceSpec, SolverSpec, SunDiscPlacement,
-    SunSpec, SunlightKind, ToneKind, WetHaze,
+    NightLights, NightSpec, ObjectShape, ObjectSpec, ObjectsSpec, ObserverSpec, OutputSpec,
+    Projection, Reflectance, RepeatSpec, SCENE_VERSION, SamplePrecision, Scene, SequenceSpec,
+    SolverSpec, SunDiscPlacement, SunSpec, SunlightKind, ToneKind, WetHaze,
 };
 pub use sun_source::{SunAngles, SunSource};

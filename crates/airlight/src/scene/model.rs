@@ -13,6 +13,7 @@
 use super::{Capabilities, Channels, ResolvedScene, SceneError};
 use crate::control::Control;
 use crate::monte_carlo::{Estimate, PolarisedEstimate};
+use crate::night::NightState;
 use crate::sky::{LineOfSight, SunCoverage};
 use crate::spectrum::WavelengthGrid;
 use crate::sun::{SunDisc, SunState};
@@ -64,6 +65,30 @@ pub trait PreparedModel: Debug + Send + Sync + 'static {
         sun: &SunState,
         channels: Channels,
     ) -> Result<Arc<dyn RadianceView>, SceneError>;
+
+    /// As [`PreparedModel::view`], with the lights of the night. Models without
+    /// [`Input::Night`](super::Input::Night), and those prepared for daylight only, return the view without them.
+    ///
+    /// # Errors
+    /// As [`PreparedModel::view`].
+    fn night_view(
+        &self,
+        observer_altitude_m: f64,
+        sun: &SunState,
+        _night: &NightState,
+        channels: Channels,
+    ) -> Result<Arc<dyn RadianceView>, SceneError> {
+        self.view(observer_altitude_m, sun, channels)
+    }
+}
+
+/// Stars as points of light, in the channels of a view.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct StarField {
+    /// Unit vectors towards the stars.
+    pub directions: Vec<DVec3>,
+    /// Irradiance of each star at the eye on a surface that faces it: one value for each channel, star by star.
+    pub irradiance: Vec<f32>,
 }
 
 /// The light for one eye under one sun.
@@ -98,6 +123,17 @@ pub trait RadianceView: Debug + Send + Sync + 'static {
 
     /// Size and limb darkening of the sun's disc at the sun's distance.
     fn disc(&self) -> &SunDisc;
+
+    /// The view lit by the moon alone, as by a second sun: its [`RadianceView::sun_disc`] is the moon's disc and its
+    /// [`RadianceView::sunlight`] direct moonlight. Its radiance is part of this view's. `None` without a moon.
+    fn moon(&self) -> Option<&Arc<dyn RadianceView>> {
+        None
+    }
+
+    /// Single stars, which are not part of the radiance; `None` without stars.
+    fn stars(&self) -> Option<&StarField> {
+        None
+    }
 
     /// Elevation of the horizon, rad; the ground is visible below it.
     fn horizon_elevation_rad(&self) -> f64 {

@@ -1,6 +1,9 @@
 //! [`ResolvedScene`]: the input from which models are prepared.
 
-use super::{FogLayers, Input, ObjectsSpec, Scene, SceneError, SolverSpec, SunSource};
+use super::{
+    FogLayers, Input, NightSettings, NightSpec, ObjectsSpec, Scene, SceneError, SolverSpec,
+    SunSource,
+};
 use crate::atmosphere::Atmosphere;
 use crate::spectrum::WavelengthGrid;
 
@@ -19,6 +22,8 @@ pub struct ResolvedScene {
     pub observer_altitude_m: f64,
     /// Position of the sun, or place and time that determine it.
     pub sun: SunSource,
+    /// Lights of the night; `None` if there are none.
+    pub night: Option<NightSettings>,
     /// Fog near the ground.
     pub fog: Option<FogLayers>,
     /// Whether objects stand in front of the sky.
@@ -55,6 +60,7 @@ impl Scene {
             set_inputs.sort();
         }
         Ok(ResolvedScene {
+            night: self.night.resolve(&atmosphere),
             atmosphere,
             grid,
             observer_altitude_m,
@@ -80,6 +86,7 @@ impl Scene {
             (Input::Ozone, air.ozone_du.is_some()),
             (Input::GroundAlbedo, air.ground_albedo.is_some()),
             (Input::SunDistance, self.sun.distance_ratio.is_some()),
+            (Input::Night, self.night.sets_lights()),
             (Input::Fog, self.fog.is_some()),
             (
                 Input::FogScattering,
@@ -135,6 +142,7 @@ impl Scene {
             Input::GroundAlbedo => self.air.ground_albedo = None,
             Input::ObserverHeight => self.observer = defaults.observer,
             Input::SunDistance => self.sun.distance_ratio = None,
+            Input::Night => self.night = NightSpec::default(),
             Input::Fog => self.fog = None,
             Input::FogScattering => self.fog.iter_mut().for_each(|fog| fog.scattering = None),
             Input::Lights => self.lights.clear(),
@@ -171,6 +179,7 @@ mod tests {
         let mut scene = Scene::default();
         scene.sun.elevation_deg = Some(20.0);
         scene.sun.distance_ratio = Some(1.01);
+        scene.night.stars = Some(false);
         scene.air.atmosphere = Some("clear".to_owned());
         scene.air.aod_550 = Some(0.2);
         scene.air.ozone_du = Some(250.0);

@@ -13,6 +13,8 @@ pub enum SunCoverage {
     },
     /// All sun elevations and observer altitudes: for sequences and views from space.
     All,
+    /// Sources above the horizon, at a coarse spacing: for the moon and for light from the whole sky, such as airglow.
+    AboveHorizon,
 }
 
 /// Zenith angle of the sun beyond which no relevant part of the atmosphere is sunlit, degrees.
@@ -35,7 +37,7 @@ impl SunCoverage {
             Self::Near {
                 sun_elevation_deg, ..
             } => sun_elevation_deg < LOW_DEG,
-            Self::All => true,
+            Self::All | Self::AboveHorizon => true,
         }
     }
 
@@ -46,7 +48,10 @@ impl SunCoverage {
             observer_altitude_m,
         } = self
         else {
-            return all_zeniths_deg();
+            return match self {
+                Self::AboveHorizon => zeniths_above_horizon_deg(),
+                _ => all_zeniths_deg(),
+            };
         };
         // A view ray extends to the horizon of the highest air; there the sun's zenith angle differs by the curvature of the
         // planet along the way.
@@ -105,6 +110,23 @@ fn all_zeniths_deg() -> Vec<f64> {
             _ => 2.0,
         };
         zeniths.push(zenith);
+    }
+    zeniths
+}
+
+/// Zenith angles down to 10 degrees below the horizon.
+fn zeniths_above_horizon_deg() -> Vec<f64> {
+    const LOWEST_DEG: f64 = 100.0;
+    let mut zeniths = vec![0.0f64];
+    let mut zenith = 0.0;
+    while zenith < LOWEST_DEG {
+        zenith += match zenith {
+            z if z < 60.0 => 6.0,
+            z if z < 75.0 => 5.0,
+            z if z < 85.0 => 3.0,
+            _ => 2.0,
+        };
+        zeniths.push(zenith.min(LOWEST_DEG));
     }
     zeniths
 }

@@ -91,7 +91,7 @@ impl SkySettings {
                 && d.zenith_nodes.iter().all(|&n| (1..=64).contains(&n))
         };
         let finite = match self.suns {
-            SunCoverage::All => true,
+            SunCoverage::All | SunCoverage::AboveHorizon => true,
             SunCoverage::Near {
                 sun_elevation_deg,
                 observer_altitude_m,

@@ -7,6 +7,7 @@ use crate::sun::{SunDisc, SunState};
 use crate::transfer::ray::Ray;
 use glam::DVec3;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// A prepared sky seen from one altitude under one position of the sun.
 #[derive(Clone, Debug)]
@@ -16,6 +17,8 @@ pub struct View {
     sun: SunState,
     /// The disc at the distance of the sun.
     disc: SunDisc,
+    /// Irradiance of the source relative to that of the sun, one for each wavelength; `None` for the sun itself.
+    source: Option<Arc<[f64]>>,
 }
 
 /// Light along a view ray, without the direct light of the sun's disc. Each list has one entry per wavelength of the sky's
@@ -74,6 +77,17 @@ impl View {
                 ..sun
             },
             disc: sun.disc(&sky.atmosphere().sun),
+            source: None,
+        }
+    }
+
+    /// This view under another distant source in the place of the sun, such as the moon: its irradiance outside the air
+    /// relative to that of the sun at each wavelength of the sky's grid, and its disc.
+    pub(crate) fn under_source(self, relative_irradiance: Vec<f64>, disc: SunDisc) -> Self {
+        Self {
+            source: Some(relative_irradiance.into()),
+            disc,
+            ..self
         }
     }
 
@@ -125,12 +139,14 @@ impl View {
     /// Solar irradiance at the top of the atmosphere on a surface that faces the sun, W m^-2 nm^-1.
     pub fn solar_irradiance(&self) -> Vec<f32> {
         let factor = self.sun.irradiance_factor();
-        self.sky
-            .grid()
-            .solar_irradiance()
-            .iter()
-            .map(|e| (e * factor) as f32)
-            .collect()
+        let solar = self.sky.grid().solar_irradiance().iter();
+        match &self.source {
+            None => solar.map(|e| (e * factor) as f32).collect(),
+            Some(ratios) => solar
+                .zip(ratios.iter())
+                .map(|(e, ratio)| (e * factor * ratio) as f32)
+                .collect(),
+        }
     }
 
     pub(super) fn ray(&self, direction: DVec3) -> Ray {

@@ -9,7 +9,7 @@
 use crate::names::named;
 
 /// A 3 by 3 matrix, row-major.
-pub(crate) type Matrix3 = [[f64; 3]; 3];
+pub type Matrix3 = [[f64; 3]; 3];
 
 /// Wavelengths in nm that represent red, green and blue where a model is evaluated at three wavelengths: the dominant
 /// wavelengths of the sRGB primaries.

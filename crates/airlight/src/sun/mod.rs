@@ -11,5 +11,8 @@ pub use disc::{LimbDarkening, SunDisc, SunError};
 #[cfg(feature = "ephemeris")]
 pub use moment::{Moment, MomentError};
 #[cfg(feature = "ephemeris")]
+#[cfg(feature = "ephemeris")]
+pub(crate) use position::raised;
+#[cfg(feature = "ephemeris")]
 pub use position::{EphemerisError, Place, RefractingAir, SunPosition, sun_position};
 pub use state::SunState;

@@ -150,6 +150,16 @@ pub(crate) fn sun_position_with_lag(
     })
 }
 
+/// A direction (unit vector) as it appears through refracting air, or unchanged for `None`.
+pub(crate) fn raised(direction: DVec3, refraction: Option<RefractingAir>) -> DVec3 {
+    let Some(air) = refraction else {
+        return direction;
+    };
+    let elevation_deg = axes::elevation_deg(direction);
+    let lift_deg = refraction_deg(elevation_deg, air);
+    axes::direction(axes::azimuth_deg(direction), elevation_deg + lift_deg)
+}
+
 /// Refraction at a geometric elevation, degrees (Reda & Andreas 2004, eq. 42).
 fn refraction_deg(geometric_elevation_deg: f64, air: RefractingAir) -> f64 {
     /// Minus the sun's radius and the refraction at the horizon, where the algorithm stops.

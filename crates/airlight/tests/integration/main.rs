@@ -13,4 +13,5 @@ mod fog_reference;
 mod models;
 mod monte_carlo_lines;
 mod monte_carlo_polarisation;
+mod night;
 mod sky_laws;

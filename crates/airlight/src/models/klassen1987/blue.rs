@@ -108,7 +108,7 @@ impl BaseSky {
             SunCoverage::Near {
                 sun_elevation_deg, ..
             } => SunCoverage::near(sun_elevation_deg.max(0.0), air.planet.ground_altitude_m),
-            SunCoverage::All => SunCoverage::All,
+            all => all,
         };
         let settings = SkySettings {
             suns,

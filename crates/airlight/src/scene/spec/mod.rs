@@ -6,6 +6,7 @@
 mod air;
 mod fog;
 mod lights;
+mod night;
 mod objects;
 mod picture;
 mod solver;
@@ -14,6 +15,7 @@ mod validate;
 pub use air::AirSpec;
 pub use fog::{FogLayerSpec, FogProfile, FogSpec};
 pub use lights::{LightKind, LightSpec};
+pub use night::{NightLights, NightSpec};
 pub use objects::{
     CheckerSpec, GlossSpec, ObjectShape, ObjectSpec, ObjectsSpec, Reflectance, RepeatSpec,
 };
@@ -40,6 +42,9 @@ pub struct Scene {
     /// Position of the eye.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "is_default"))]
     pub observer: ObserverSpec,
+    /// Moon, stars and the other lights of the night.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "is_default"))]
+    pub night: NightSpec,
     /// Gases, haze and ground.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "is_default"))]
     pub air: AirSpec,
@@ -69,6 +74,7 @@ impl Default for Scene {
             version: SCENE_VERSION,
             sun: SunSpec::default(),
             observer: ObserverSpec::default(),
+            night: NightSpec::default(),
             air: AirSpec::default(),
             fog: None,
             lights: Vec::new(),

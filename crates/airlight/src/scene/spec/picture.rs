@@ -205,6 +205,10 @@ pub struct OutputSpec {
     pub tone_contrast: Option<f64>,
     /// Saturation of the camera curve: factor on the distance from grey, 0 to 3. Default: 1.
     pub saturation: Option<f64>,
+    /// Colour temperature of the light that .png, .jpg and preview show as neutral, K, 1667 to 25000. Default: daylight, D65.
+    pub white_balance_k: Option<f64>,
+    /// Whether .png, .jpg and preview show dark scenes as the dark-adapted eye sees them: bluish grey. Default: false.
+    pub scotopic: Option<bool>,
     /// Bits per component of .png, 8 or 16. Default: 8.
     pub bits: Option<u8>,
     /// Quality of .jpg, 1 to 100. Default: 92.

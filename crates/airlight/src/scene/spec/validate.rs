@@ -15,6 +15,19 @@ const SATURATION: Allowed = ("a number from 0 to 3", |v| (0.0..=3.0).contains(&v
 const ELEVATION: Allowed = ("a number of degrees from -90 to 90", |v| {
     (-90.0..=90.0).contains(&v)
 });
+const PHASE: Allowed = ("a number of degrees from 0 (full) to 180 (new)", |v| {
+    (0.0..=180.0).contains(&v)
+});
+const SOLAR_FLUX: Allowed = ("a number of solar flux units from 50 to 400", |v| {
+    (50.0..=400.0).contains(&v)
+});
+const SKY_QUALITY: Allowed = (
+    "a number of magnitudes per square arcsecond from 14 to 23",
+    |v| (14.0..=23.0).contains(&v),
+);
+const KELVIN: Allowed = ("a number of kelvins from 1667 to 25000", |v| {
+    (1667.0..=25_000.0).contains(&v)
+});
 const LONGITUDE: Allowed = ("a number of degrees from -180 to 180", |v| {
     (-180.0..=180.0).contains(&v)
 });
@@ -58,6 +71,7 @@ impl Scene {
         self.validate_sun()?;
         number("observer.altitude_m", self.observer.altitude_m, ALTITUDE)?;
         number("observer.eye_height_m", self.observer.eye_height_m, LENGTH)?;
+        self.validate_night()?;
         self.validate_air()?;
         if let Some(fog) = &self.fog {
             layer("fog", &fog.first_layer())?;
@@ -115,6 +129,55 @@ impl Scene {
                 "a place with this key",
                 "none",
                 "latitude_deg = 48.8584 with longitude_deg = 2.2945",
+            )),
+            false => Ok(()),
+        }
+    }
+
+    fn validate_night(&self) -> Result<(), SceneError> {
+        let night = &self.night;
+        number(
+            "night.moon_elevation_deg",
+            night.moon_elevation_deg,
+            ELEVATION,
+        )?;
+        number("night.moon_azimuth_deg", night.moon_azimuth_deg, FINITE)?;
+        number("night.moon_phase_deg", night.moon_phase_deg, PHASE)?;
+        number("night.solar_flux_sfu", night.solar_flux_sfu, SOLAR_FLUX)?;
+        number("night.sky_quality_mag", night.sky_quality_mag, SKY_QUALITY)?;
+        number("night.latitude_deg", night.latitude_deg, ELEVATION)?;
+        let refuse = |key, expected, tip| Err(SceneError::value(key, expected, "none", tip));
+        if night.moon_azimuth_deg.is_some() && night.moon_elevation_deg.is_none() {
+            return refuse(
+                "night.moon_azimuth_deg",
+                "moon_elevation_deg with this key",
+                "moon_elevation_deg = 30",
+            );
+        }
+        if night.moon == Some(false)
+            && (night.moon_elevation_deg.is_some() || night.moon_phase_deg.is_some())
+        {
+            return Err(SceneError::value(
+                "night.moon",
+                "a moon for its elevation and phase",
+                "false",
+                "leaving it out",
+            ));
+        }
+        let place = self.sun.latitude_deg.is_some();
+        if night.moon_phase_deg.is_some() && night.moon_elevation_deg.is_none() && !place {
+            return refuse(
+                "night.moon_phase_deg",
+                "moon_elevation_deg with this key, or a place and a time",
+                "moon_elevation_deg = 30",
+            );
+        }
+        match night.latitude_deg.is_some() && place {
+            true => Err(SceneError::value(
+                "night.latitude_deg",
+                "a fixed sun with this key",
+                "a place",
+                "leaving it out",
             )),
             false => Ok(()),
         }
@@ -213,6 +276,7 @@ impl Scene {
         number("camera.roll_deg", camera.roll_deg, FINITE)?;
         number("camera.fov_deg", camera.fov_deg, POSITIVE)?;
         number("output.scale", output.scale, POSITIVE)?;
+        number("output.white_balance_k", output.white_balance_k, KELVIN)?;
         number("output.brighten", output.brighten, FINITE)?;
         let camera_curve = matches!(output.tone, None | Some(ToneKind::Camera));
         for (key, value, allowed) in [

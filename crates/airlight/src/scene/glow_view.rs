@@ -1,0 +1,451 @@
+//! [`GlowView`]: airglow, zodiacal light, starlight and the glow of cities as seen through the air.
+
+use super::city_glow::CityGlow;
+use super::diffuse_fog::DiffuseFog;
+use super::model::StarField;
+use super::{Channels, FogLayers, IrradianceMap, SceneError, horizontal_irradiance};
+use crate::axes;
+use crate::math::parallel;
+use crate::math::quadrature::GaussRule;
+use crate::night::{
+    CelestialFrame, GlowComponent, NightGlow, black_body, bright_stars, luminance_of_magnitude,
+};
+use crate::sky::{Sky, View};
+use glam::DVec3;
+use std::f64::consts::{FRAC_PI_2, PI};
+use std::sync::OnceLock;
+
+/// Numbers of tabulated elevations above and below the horizon, odd.
+const ABOVE: usize = 49;
+const BELOW: usize = 13;
+/// Number of rings of the sky whose scattered light is added up, and of azimuths at which each is evaluated.
+const RINGS: usize = 12;
+const AZIMUTHS: usize = 8;
+/// Smallest distance of a tabulated elevation from the horizon, rad.
+const OFF_HORIZON_RAD: f64 = 1e-6;
+/// Number of components of the light outside the air.
+const COMPONENTS: usize = GlowComponent::ALL.len();
+
+/// Elevations that are tabulated for an eye whose horizon is at `horizon_rad`: denser towards the horizon on both sides of it,
+/// first those above.
+fn elevations(horizon_rad: f64) -> Vec<f64> {
+    let square = |i: usize, count: usize| (i as f64 / (count - 1) as f64).powi(2);
+    let above = (0..ABOVE).map(|i| {
+        let up = square(i, ABOVE) * (FRAC_PI_2 - horizon_rad);
+        horizon_rad + up.max(OFF_HORIZON_RAD)
+    });
+    let below = (0..BELOW).map(|i| {
+        let down = square(i, BELOW) * (FRAC_PI_2 + horizon_rad);
+        horizon_rad - down.max(OFF_HORIZON_RAD)
+    });
+    above.chain(below).collect()
+}
+
+/// Sines of the elevations of the rings of the sky, and their shares of the solid angle of a hemisphere.
+fn ring_sines() -> impl Iterator<Item = (f64, f64)> {
+    GaussRule::new(RINGS)
+        .on(0.0, 1.0)
+        .collect::<Vec<_>>()
+        .into_iter()
+}
+
+/// Light of rings of the sky that the air scatters and the ground reflects, for one eye.
+#[derive(Debug)]
+pub(super) struct RingScattering {
+    altitude_m: f64,
+    /// For every second tabulated elevation, each ring and each wavelength: radiance under a ring with the radiance of the solar
+    /// irradiance over 1 sr.
+    scattered: Vec<Vec<Vec<f32>>>,
+}
+
+impl RingScattering {
+    /// The light for an eye at an altitude, m, in a sky that is solved for sources above the horizon.
+    pub fn new(sky: &Sky, altitude_m: f64) -> Self {
+        let eye = sky.view(altitude_m, DVec3::Y);
+        let above_and_below = elevations(horizon_rad(&eye));
+        let (above, below) = above_and_below.split_at(ABOVE);
+        let elevations: Vec<f64> = above
+            .iter()
+            .step_by(2)
+            .chain(below.iter().step_by(2))
+            .copied()
+            .collect();
+        let rings: Vec<(View, f64)> = ring_sines()
+            .map(|(sine, share)| {
+                let source = axes::direction(0.0, sine.asin().to_degrees());
+                (sky.view(altitude_m, source), 2.0 * PI * share)
+            })
+            .collect();
+        let solar = eye.solar_irradiance();
+        let scattered = parallel::map(elevations.len(), |i| {
+            let under = |(view, solid_angle): &(View, f64)| {
+                let mut mean = vec![0.0; solar.len()];
+                for k in 0..AZIMUTHS {
+                    let azimuth_deg = 180.0 * (k as f64 + 0.5) / AZIMUTHS as f64;
+                    let direction = axes::direction(azimuth_deg, elevations[i].to_degrees());
+                    let light = view.along(direction, None).radiance();
+                    for (mean, light) in mean.iter_mut().zip(light) {
+                        *mean += light * (solid_angle / AZIMUTHS as f64) as f32;
+                    }
+                }
+                mean
+            };
+            rings.iter().map(under).collect()
+        });
+        Self {
+            altitude_m,
+            scattered,
+        }
+    }
+
+    /// Altitude of the eye, m.
+    pub fn altitude_m(&self) -> f64 {
+        self.altitude_m
+    }
+}
+
+/// Elevation of the horizon of a view, rad.
+fn horizon_rad(view: &View) -> f64 {
+    -(view.bounds_m().0 / view.radius_m()).min(1.0).acos()
+}
+
+/// Diffuse light of the night for one eye.
+///
+/// Light that arrives straight is dimmed by the air along each ray. Light that the air scatters or the ground reflects is the
+/// solution of the sky's solver for distant sources, added up over the whole sky: 12 rings, each as bright as the sky on
+/// average over its azimuths. The scattered part therefore has the same brightness in all azimuths; it is a quarter of the
+/// light in clear air, and an uneven sky (Milky Way) makes it uneven by less than a tenth.
+#[derive(Debug)]
+pub(super) struct GlowView {
+    view: View,
+    channels: Channels,
+    count: usize,
+    glow: NightGlow,
+    sea_level_m: f64,
+    horizon_rad: f64,
+    /// `[elevation][component][channel]`: one unit of a component, dimmed by the air.
+    direct: Vec<f32>,
+    /// `[elevation][channel]`: light that the air and the ground scatter.
+    scattered: Vec<f32>,
+    fog: Option<DiffuseFog>,
+    /// `[channel]`: mean radiance of the sky that lights the fog.
+    sky_radiance: Vec<f32>,
+    irradiance: OnceLock<IrradianceMap>,
+}
+
+impl GlowView {
+    /// Tabulates the light for the eye of `rings`.
+    ///
+    /// # Errors
+    /// [`SceneError`] for an invalid fog.
+    pub fn new(
+        sky: &Sky,
+        rings: &RingScattering,
+        glow: NightGlow,
+        (city, sky_quality_mag): (Option<&CityGlow>, Option<f64>),
+        fog: Option<&FogLayers>,
+        channels: Channels,
+    ) -> Result<Self, SceneError> {
+        let view = sky.view(rings.altitude_m(), DVec3::Y);
+        let horizon_rad = horizon_rad(&view);
+        let count = match channels {
+            Channels::Rgb(_) => 3,
+            Channels::Spectral => sky.grid().len(),
+        };
+        let mut this = Self {
+            sea_level_m: sky.atmosphere().planet.radius_m,
+            view,
+            channels,
+            count,
+            glow,
+            horizon_rad,
+            direct: Vec::new(),
+            scattered: Vec::new(),
+            fog: None,
+            sky_radiance: vec![0.0; count],
+            irradiance: OnceLock::new(),
+        };
+        let elevations = elevations(horizon_rad);
+        this.direct = this.tabulate_direct(&elevations);
+        this.scattered = this.tabulate_scattered(rings);
+        if let (Some(city), Some(magnitude)) = (city, sky_quality_mag) {
+            this.add_city(city, magnitude, &elevations);
+        }
+        if let Some(fog) = fog {
+            let mut sky_irradiance = vec![0.0; count];
+            this.horizontal_irradiance(&mut sky_irradiance);
+            this.sky_radiance = sky_irradiance.iter().map(|e| e / PI as f32).collect();
+            this.fog = Some(DiffuseFog::new(fog, &this.view)?);
+        }
+        Ok(this)
+    }
+
+    /// Index of the tabulated elevation below (above the horizon) or above (below it) a direction's, and the fraction from
+    /// there to the next.
+    fn place(&self, elevation_rad: f64) -> (usize, f32) {
+        let (first, count, part) = match elevation_rad >= self.horizon_rad {
+            true => (
+                0,
+                ABOVE,
+                (elevation_rad - self.horizon_rad) / (FRAC_PI_2 - self.horizon_rad),
+            ),
+            false => (
+                ABOVE,
+                BELOW,
+                (self.horizon_rad - elevation_rad) / (FRAC_PI_2 + self.horizon_rad),
+            ),
+        };
+        let at = part.clamp(0.0, 1.0).sqrt() * (count - 1) as f64;
+        let cell = (at as usize).min(count - 2);
+        (first + cell, (at - cell as f64) as f32)
+    }
+
+    /// Converts spectral radiance at the wavelengths of the sky to channels.
+    fn to_channels(&self, spectrum: &[f64]) -> Vec<f32> {
+        let spectrum: Vec<f32> = spectrum.iter().map(|&v| v as f32).collect();
+        match self.channels {
+            Channels::Spectral => spectrum,
+            Channels::Rgb(space) => {
+                let xyz = self.view.sky().grid().to_xyz(&spectrum);
+                space.from_xyz(xyz).map(|v| v as f32).to_vec()
+            }
+        }
+    }
+
+    fn tabulate_direct(&self, elevations: &[f64]) -> Vec<f32> {
+        let grid = self.view.sky().grid();
+        let spectra = GlowComponent::ALL.map(|component| self.glow.spectrum(component, grid));
+        let rows = parallel::map(elevations.len(), |i| {
+            let direction = axes::direction(0.0, elevations[i].to_degrees());
+            let transmittance = self.view.transmittance_to_space(direction);
+            let mut row = Vec::with_capacity(COMPONENTS * self.count);
+            for (component, spectrum) in GlowComponent::ALL.iter().zip(&spectra) {
+                let dimmed = spectrum.iter().zip(&transmittance);
+                let dimmed: Vec<f64> = match component {
+                    GlowComponent::AirglowBefore => spectrum.clone(),
+                    _ => dimmed.map(|(v, t)| v * f64::from(*t)).collect(),
+                };
+                row.extend(self.to_channels(&dimmed));
+            }
+            row
+        });
+        rows.concat()
+    }
+
+    /// Light of rings of the sky, scattered into each tabulated elevation.
+    fn tabulate_scattered(&self, rings: &RingScattering) -> Vec<f32> {
+        let grid = self.view.sky().grid();
+        let spectra = GlowComponent::ALL.map(|component| self.glow.spectrum(component, grid));
+        // Radiance of each ring at each wavelength relative to the solar irradiance, as seen from the ground, where the air
+        // that scatters is.
+        let relative: Vec<Vec<f64>> = ring_sines()
+            .map(|(sine, _)| {
+                let mut mean = [0.0; COMPONENTS];
+                for k in 0..AZIMUTHS {
+                    let azimuth_deg = 360.0 * k as f64 / AZIMUTHS as f64;
+                    let direction = axes::direction(azimuth_deg, sine.asin().to_degrees());
+                    let sea = self.sea_level_m;
+                    let amounts = self.glow.amounts(direction, sea, sea, false);
+                    for (mean, amount) in mean.iter_mut().zip(amounts) {
+                        *mean += amount / AZIMUTHS as f64;
+                    }
+                }
+                let at = |(k, solar): (usize, &f64)| {
+                    let radiance: f64 = spectra.iter().zip(mean).map(|(s, m)| s[k] * m).sum();
+                    if *solar > 0.0 { radiance / solar } else { 0.0 }
+                };
+                grid.solar_irradiance().iter().enumerate().map(at).collect()
+            })
+            .collect();
+        let coarse: Vec<Vec<f32>> = rings
+            .scattered
+            .iter()
+            .map(|by_ring| {
+                let mut sum = vec![0.0; grid.len()];
+                for (light, relative) in by_ring.iter().zip(&relative) {
+                    for ((sum, light), relative) in sum.iter_mut().zip(light).zip(relative) {
+                        *sum += f64::from(*light) * relative;
+                    }
+                }
+                self.to_channels(&sum)
+            })
+            .collect();
+        let mut table = Vec::with_capacity((ABOVE + BELOW) * self.count);
+        for (side, count) in [
+            (&coarse[..ABOVE / 2 + 1], ABOVE),
+            (&coarse[ABOVE / 2 + 1..], BELOW),
+        ] {
+            for i in 0..count {
+                // Every second elevation lies between two of the coarse table.
+                let (low, high) = (&side[i / 2], &side[i.div_ceil(2)]);
+                table.extend(low.iter().zip(high).map(|(low, high)| 0.5 * (low + high)));
+            }
+        }
+        table
+    }
+
+    /// Adds the glow of cities, so that the zenith has a magnitude per square arcsecond; nothing if it is as bright without.
+    fn add_city(&mut self, city: &CityGlow, magnitude: f64, elevations: &[f64]) {
+        let mut zenith = vec![0.0; self.count];
+        self.radiance(DVec3::Y, &mut zenith);
+        let natural = self.luminance(&zenith);
+        let needed = luminance_of_magnitude(magnitude) - natural;
+        if needed <= 0.0 {
+            return;
+        }
+        let altitude_m = self.view.radius_m() - self.sea_level_m;
+        let above: Vec<DVec3> = elevations[..ABOVE]
+            .iter()
+            .map(|rad| axes::direction(0.0, rad.to_degrees()))
+            .collect();
+        for (i, spectrum) in city.radiance(altitude_m, &above).iter().enumerate() {
+            let more = self.to_channels(spectrum);
+            let values = &mut self.scattered[i * self.count..][..self.count];
+            for (value, more) in values.iter_mut().zip(more) {
+                *value += more * needed as f32;
+            }
+        }
+    }
+
+    fn luminance(&self, values: &[f32]) -> f64 {
+        match (self.channels, values) {
+            (Channels::Rgb(space), &[r, g, b]) => space.luminance([r, g, b].map(f64::from)),
+            _ => self.view.sky().grid().to_xyz(values)[1],
+        }
+    }
+
+    /// Adds the light along a unit vector to the values of a direction.
+    pub fn add_radiance(&self, direction: DVec3, values: &mut [f32]) {
+        let fog = self
+            .fog
+            .as_ref()
+            .map(|fog| fog.along(direction, f64::INFINITY));
+        let (through, lit) = fog.unwrap_or((1.0, 0.0));
+        let elevation_rad = axes::elevation_rad(direction);
+        let (cell, t) = self.place(elevation_rad);
+        let meets_ground = elevation_rad < self.horizon_rad;
+        let amounts = self.glow.amounts(
+            direction,
+            self.view.radius_m(),
+            self.sea_level_m,
+            meets_ground,
+        );
+        let count = self.count;
+        for (channel, value) in values.iter_mut().enumerate() {
+            let scattered = |cell: usize| self.scattered[cell * count + channel];
+            let mut sum = scattered(cell) * (1.0 - t) + scattered(cell + 1) * t;
+            for (component, amount) in amounts.iter().enumerate() {
+                if *amount > 0.0 {
+                    let direct = |cell: usize| {
+                        self.direct[(cell * COMPONENTS + component) * count + channel]
+                    };
+                    sum += *amount as f32 * (direct(cell) * (1.0 - t) + direct(cell + 1) * t);
+                }
+            }
+            *value += through * sum + lit * self.sky_radiance[channel];
+        }
+    }
+
+    /// [`Self::add_radiance`] for many directions, of which a zero vector is none.
+    pub fn add_to(&self, directions: &[DVec3], out: &mut [f32]) {
+        let values = out.chunks_exact_mut(self.count);
+        for (&direction, values) in directions.iter().zip(values) {
+            if direction != DVec3::ZERO {
+                self.add_radiance(direction, values);
+            }
+        }
+    }
+
+    fn radiance(&self, direction: DVec3, values: &mut [f32]) {
+        values.fill(0.0);
+        self.add_radiance(direction, values);
+    }
+
+    /// Adds the light of air and fog between the eye and a point at a distance: the share of the light that the air scatters
+    /// along the whole ray which its opacity up to the point has in that of the whole ray. `transmittance` is that of the air and
+    /// the fog up to the point.
+    pub fn add_path_radiance(
+        &self,
+        direction: DVec3,
+        distance_m: f64,
+        transmittance: &[f32],
+        whole: &[f32],
+        path_radiance: &mut [f32],
+    ) {
+        let (cell, t) = self.place(axes::elevation_rad(direction).max(self.horizon_rad));
+        let fog = self
+            .fog
+            .as_ref()
+            .map(|fog| fog.along(direction, distance_m));
+        let (through, lit) = fog.unwrap_or((1.0, 0.0));
+        for (channel, value) in path_radiance.iter_mut().enumerate() {
+            let scattered = |cell: usize| self.scattered[cell * self.count + channel];
+            let all = scattered(cell) * (1.0 - t) + scattered(cell + 1) * t;
+            let opaque = (1.0 - transmittance[channel] / through.max(1e-6)).clamp(0.0, 1.0);
+            let share = (opaque / (1.0 - whole[channel]).max(1e-6)).min(1.0);
+            *value += through * share * all + lit * self.sky_radiance[channel];
+        }
+    }
+
+    /// Irradiance of surfaces with a unit normal, added to `out`.
+    pub fn add_irradiance(&self, normal: DVec3, out: &mut [f32]) {
+        let map = self.irradiance.get_or_init(|| {
+            IrradianceMap::new(DVec3::Y, self.count, |directions, out| {
+                let values = out.chunks_exact_mut(self.count);
+                for (&direction, values) in directions.iter().zip(values) {
+                    self.radiance(direction, values);
+                }
+            })
+        });
+        let mut values = vec![0.0; self.count];
+        map.irradiance(normal, &mut values);
+        out.iter_mut().zip(values).for_each(|(out, v)| *out += v);
+    }
+
+    /// Irradiance of an upward-facing horizontal surface.
+    pub fn horizontal_irradiance(&self, out: &mut [f32]) {
+        const DIRECTIONS: (usize, usize) = (32, 48);
+        let sum = horizontal_irradiance(DIRECTIONS, 0.0, out.len(), |directions, sum| {
+            let mut values = vec![0.0; sum.len()];
+            for &direction in directions {
+                self.radiance(direction, &mut values);
+                sum.iter_mut()
+                    .zip(&values)
+                    .for_each(|(sum, v)| *sum += f64::from(*v));
+            }
+        });
+        out.iter_mut()
+            .zip(sum)
+            .for_each(|(out, sum)| *out = sum as f32);
+    }
+
+    /// The bright stars above the horizon, dimmed by air and fog.
+    pub fn stars(&self, frame: &CelestialFrame) -> StarField {
+        let grid = self.view.sky().grid();
+        let lowest = self.horizon_rad;
+        let seen: Vec<_> = bright_stars()
+            .iter()
+            .map(|star| (star, frame.to_world(star.equatorial)))
+            .filter(|(_, direction)| axes::elevation_rad(*direction) > lowest)
+            .collect();
+        let light = parallel::map(seen.len(), |i| {
+            let (star, direction) = seen[i];
+            let fog = self
+                .fog
+                .as_ref()
+                .map_or(1.0, |fog| fog.along(direction, f64::INFINITY).0);
+            let scale = star.illuminance_lx() * f64::from(fog);
+            let transmittance = self.view.transmittance_to_space(direction);
+            let arriving: Vec<f64> = black_body(grid, star.temperature_k)
+                .iter()
+                .zip(&transmittance)
+                .map(|(v, t)| v * f64::from(*t) * scale)
+                .collect();
+            self.to_channels(&arriving)
+        });
+        StarField {
+            directions: seen.into_iter().map(|(_, direction)| direction).collect(),
+            irradiance: light.concat(),
+        }
+    }
+}

@@ -1,0 +1,112 @@
+//! [`NightSky`]: the lights of the night as the air dims and scatters them.
+
+use super::city_glow::CityGlow;
+use super::glow_view::{GlowView, RingScattering};
+use super::moon_view::MoonView;
+use super::night_view::NightView;
+use super::{
+    Channels, FogLayers, NightSettings, RadianceView, ResolvedScene, SceneError, SolvedView,
+};
+use crate::control::Control;
+use crate::night::{NightGlow, NightState};
+use crate::sky::{Sky, SunCoverage};
+use crate::sun::SunState;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// The air, solved for sources anywhere above the horizon, and the lights of the night in it.
+#[derive(Clone, Debug)]
+pub(crate) struct NightSky {
+    sky: Sky,
+    fog: Option<FogLayers>,
+    settings: NightSettings,
+    city: Option<Arc<CityGlow>>,
+    /// Scattering for the eyes of earlier views.
+    rings: Arc<Mutex<Vec<Arc<RingScattering>>>>,
+}
+
+impl NightSky {
+    /// Solves the air of a scene; a `sky` that is solved for all suns serves as it is.
+    ///
+    /// # Errors
+    /// [`SceneError::Sky`] if the solver fails.
+    pub fn new(
+        scene: &ResolvedScene,
+        settings: NightSettings,
+        sky: (&Sky, SunCoverage),
+        control: Control<'_>,
+    ) -> Result<Self, SceneError> {
+        let city = match settings.sky_quality_mag {
+            Some(_) => Some(Arc::new(CityGlow::new(scene, control)?)),
+            None => None,
+        };
+        Ok(Self {
+            sky: match sky {
+                (sky, SunCoverage::All) => sky.clone(),
+                _ => Sky::prepare_with(
+                    &scene.atmosphere,
+                    &scene.grid,
+                    &scene.solver.sky_settings(SunCoverage::AboveHorizon),
+                    control,
+                )?,
+            },
+            fog: scene.fog.clone(),
+            settings,
+            city,
+            rings: Arc::default(),
+        })
+    }
+
+    /// The sky of a view by day, and the lights of a night with it.
+    ///
+    /// # Errors
+    /// [`SceneError`] for an invalid fog.
+    pub fn view(
+        &self,
+        sunlit: SolvedView,
+        night: &NightState,
+        channels: Channels,
+    ) -> Result<NightView, SceneError> {
+        let altitude_m = {
+            let view = sunlit.sky_view();
+            view.radius_m() - view.sky().atmosphere().planet.radius_m
+        };
+        let moon = night.moon.map(|moon| -> Result<_, SceneError> {
+            let ratios = self.sky.grid().wavelengths_nm().iter();
+            let view = self
+                .sky
+                .view(altitude_m, SunState::from(moon.direction))
+                .under_source(
+                    ratios.map(|&nm| moon.irradiance_ratio(nm)).collect(),
+                    moon.disc(),
+                );
+            let lit = SolvedView::new(view, self.fog.as_ref(), channels)?;
+            Ok(Arc::new(MoonView::new(lit, moon)) as Arc<dyn RadianceView>)
+        });
+        let glow = GlowView::new(
+            &self.sky,
+            self.rings(altitude_m).as_ref(),
+            NightGlow::new(night.frame, self.settings.solar_flux_sfu),
+            (self.city.as_deref(), self.settings.sky_quality_mag),
+            self.fog.as_ref(),
+            channels,
+        )?;
+        let stars = self.settings.stars.then(|| glow.stars(&night.frame));
+        Ok(NightView::new(sunlit, moon.transpose()?, glow, stars))
+    }
+
+    /// Scattering for an eye at an altitude, m; computed once.
+    fn rings(&self, altitude_m: f64) -> Arc<RingScattering> {
+        let known = || self.rings.lock().unwrap_or_else(PoisonError::into_inner);
+        let find = |rings: &[Arc<RingScattering>]| {
+            let same = |rings: &&Arc<RingScattering>| rings.altitude_m() == altitude_m;
+            rings.iter().find(same).cloned()
+        };
+        if let Some(rings) = find(&known()) {
+            return rings;
+        }
+        // Not computed under the lock: threads that wait for it might be needed.
+        let rings = Arc::new(RingScattering::new(&self.sky, altitude_m));
+        known().push(rings.clone());
+        rings
+    }
+}
