@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 /// Modules at the root of the crate `airlight`, each importing only from those before it. Files of one room may import each
 /// other, but not in a circle.
-const ROOMS: [&str; 15] = [
+const ROOMS: [&str; 16] = [
     "axes",
     "control",
     "names",
@@ -18,6 +18,7 @@ const ROOMS: [&str; 15] = [
     "spectrum",
     "optics",
     "sun",
+    "night",
     "atmosphere",
     "transfer",
     "sky",

@@ -8,18 +8,18 @@ use crate::sky::{Sky, SkySettings, SunCoverage};
 use crate::spectrum::SpectralCurve;
 use glam::DVec3;
 
-/// Colour temperature of street lighting, K: between sodium lamps and white light-emitting diodes.
+/// Colour temperature of street lighting, K: between sodium discharge and white light-emitting diodes.
 const TEMPERATURE_K: f64 = 3200.0;
 /// Elevation of the sun in the two solutions that are compared, and albedo of the bright ground.
 const SUN_DEG: f64 = 60.0;
 const BRIGHT_ALBEDO: f64 = 0.5;
 
-/// Radiance of a sky over ground that shines evenly everywhere: an unlimited city. What a sun adds to the sky by way of the
+/// Radiance of a sky over ground that emits evenly everywhere: an unlimited city. What a sun adds to the sky by way of the
 /// ground is the difference of two solutions, over black and over bright ground; divided by the light of the ground it is the
 /// sky over ground of radiance 1, by the same solver with all orders of scattering.
 ///
-/// A real city ends somewhere: its glow is stronger in its direction and falls off away from it. Light that lamps send out near
-/// the horizontal is underestimated, as the ground shines equally in all directions.
+/// A real city ends somewhere: its glow is stronger in its direction and falls off away from it. Light emitted near
+/// the horizontal is underestimated, as the ground emits equally in all directions.
 #[derive(Debug)]
 pub(super) struct CityGlow {
     black: Sky,
@@ -50,12 +50,12 @@ impl CityGlow {
     }
 
     /// Radiance of the sky at each wavelength along directions (unit vectors), for an eye at an altitude, over ground with the
-    /// spectrum of street lighting; scaled so that the luminance at the zenith is 1 cd/m^2. Towards the ground 0: streets and
-    /// lamps are not drawn.
+    /// spectrum of street lighting; scaled so that the luminance at the zenith is 1 cd/m^2. Towards the ground 0: streets are
+    /// not drawn.
     pub fn radiance(&self, altitude_m: f64, directions: &[DVec3]) -> Vec<Vec<f64>> {
         let sun = axes::direction(180.0, SUN_DEG);
         let grid = self.bright.grid();
-        let lamp = black_body(grid, TEMPERATURE_K);
+        let street_light = black_body(grid, TEMPERATURE_K);
         let ground = self
             .bright
             .view(self.ground_altitude_m, sun)
@@ -72,9 +72,9 @@ impl CityGlow {
                 .into_iter()
                 .zip(over_black.path_radiance());
             more.zip(&ground.ground)
-                .zip(&lamp)
-                .map(|(((bright, black), ground), lamp)| {
-                    f64::from((bright - black).max(0.0)) / f64::from(*ground) * lamp
+                .zip(&street_light)
+                .map(|(((bright, black), ground), street_light)| {
+                    f64::from((bright - black).max(0.0)) / f64::from(*ground) * street_light
                 })
                 .collect()
         };

@@ -104,6 +104,10 @@ impl RingScattering {
     }
 }
 
+fn add(values: &[f32], sum: &mut [f32]) {
+    sum.iter_mut().zip(values).for_each(|(sum, v)| *sum += v);
+}
+
 /// Elevation of the horizon of a view, rad.
 fn horizon_rad(view: &View) -> f64 {
     -(view.bounds_m().0 / view.radius_m()).min(1.0).acos()
@@ -298,13 +302,38 @@ impl GlowView {
             .iter()
             .map(|rad| axes::direction(0.0, rad.to_degrees()))
             .collect();
-        for (i, spectrum) in city.radiance(altitude_m, &above).iter().enumerate() {
+        let glow: Vec<Vec<f64>> = city
+            .radiance(altitude_m, &above)
+            .into_iter()
+            .map(|spectrum| spectrum.iter().map(|v| v * needed).collect())
+            .collect();
+        for (i, spectrum) in glow.iter().enumerate() {
             let more = self.to_channels(spectrum);
-            let values = &mut self.scattered[i * self.count..][..self.count];
-            for (value, more) in values.iter_mut().zip(more) {
-                *value += more * needed as f32;
-            }
+            add(&more, &mut self.scattered[i * self.count..][..self.count]);
         }
+        let ground = self.to_channels(&self.ground_under(&glow, elevations));
+        for values in self.scattered[ABOVE * self.count..].chunks_exact_mut(self.count) {
+            add(&ground, values);
+        }
+    }
+
+    /// Radiance of the ground at each wavelength under a glow of the same radiance in all azimuths, given at the tabulated
+    /// elevations above the horizon.
+    fn ground_under(&self, glow: &[Vec<f64>], elevations: &[f64]) -> Vec<f64> {
+        let sky = self.view.sky();
+        let albedo = &sky.atmosphere().planet.ground_albedo;
+        // Irradiance is the integral of 2 pi L over half the square of the sine of the elevation.
+        let squares: Vec<f64> = elevations
+            .iter()
+            .map(|rad| rad.sin().max(0.0).powi(2))
+            .collect();
+        let nm = sky.grid().wavelengths_nm().iter().enumerate();
+        nm.map(|(k, &nm)| {
+            let panels = (1..ABOVE)
+                .map(|i| 0.5 * (glow[i][k] + glow[i - 1][k]) * (squares[i] - squares[i - 1]));
+            albedo.at(nm) * panels.sum::<f64>()
+        })
+        .collect()
     }
 
     fn luminance(&self, values: &[f32]) -> f64 {
@@ -399,7 +428,7 @@ impl GlowView {
         });
         let mut values = vec![0.0; self.count];
         map.irradiance(normal, &mut values);
-        out.iter_mut().zip(values).for_each(|(out, v)| *out += v);
+        add(&values, out);
     }
 
     /// Irradiance of an upward-facing horizontal surface.

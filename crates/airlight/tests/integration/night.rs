@@ -192,6 +192,12 @@ fn cities_brighten_the_zenith_to_the_quality_that_is_given() {
     let mut rgb = [0.0; 3];
     city.radiance(&[DVec3::Y], &mut rgb);
     assert!(rgb[0] > rgb[2], "{rgb:?}");
+    // The ground reflects the glow.
+    let mut lit = [0.0; 3];
+    city.horizontal_irradiance(&mut lit);
+    let ground = luminance(city.as_ref(), -DVec3::Y);
+    let albedo = ground * std::f64::consts::PI / city.luminance(&lit);
+    assert!((0.05..0.25).contains(&albedo), "{albedo}");
     // A sky that is brighter by nature stays as it is.
     scene.night.sky_quality_mag = Some(23.0);
     let dark = luminance(view(&scene).as_ref(), DVec3::Y);
