@@ -205,6 +205,8 @@ mod tests {
                 sun_normal_lx: 1e5,
                 sun_horizontal_lx: 5e4,
                 sky_horizontal_lx: 1e4,
+                moon_normal_lx: None,
+                moon_horizontal_lx: None,
             },
             tone: ToneMapper::new(1e-3, ToneCurve::Clip).unwrap(),
             time: Duration::ZERO,

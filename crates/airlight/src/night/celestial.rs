@@ -135,11 +135,6 @@ pub(super) fn sidereal_time_rad(unix_s: f64, longitude_deg: f64) -> f64 {
     (deg + longitude_deg).to_radians().rem_euclid(TAU)
 }
 
-/// Obliquity of the ecliptic of date, rad (Meeus 1998, eq. 22.2).
-pub(super) fn obliquity_rad(centuries: f64) -> f64 {
-    (23.439_291_1 - 0.013_004_167 * centuries).to_radians()
-}
-
 /// Ecliptic longitude of the sun of date, rad, to 0.01 degrees (Meeus 1998, chapter 25).
 pub(super) fn sun_longitude_rad(centuries: f64) -> f64 {
     let t = centuries;

@@ -1,8 +1,7 @@
 //! Position of the moon (Meeus 1998, Astronomical Algorithms, chapter 47, after the theory ELP-2000/82 of Chapront).
 
 use super::celestial::{
-    centuries, equator_of_date_to_world, obliquity_rad, sidereal_time_rad, spherical,
-    sun_longitude_rad,
+    centuries, equator_of_date_to_world, sidereal_time_rad, spherical, sun_longitude_rad,
 };
 use glam::DVec3;
 
@@ -109,6 +108,11 @@ fn geocentric_moon(centuries: f64) -> (f64, f64, f64) {
     }
     let micro = |value: f64| (1e-6 * value).to_radians();
     (mean + micro(longitude), micro(latitude), distance_m)
+}
+
+/// Obliquity of the ecliptic of date, rad (Meeus 1998, eq. 22.2).
+fn obliquity_rad(centuries: f64) -> f64 {
+    (23.439_291_1 - 0.013_004_167 * centuries).to_radians()
 }
 
 /// The moon as seen from a place, in world axes.

@@ -28,6 +28,7 @@ mod model;
 mod moon_view;
 mod night;
 mod night_sky;
+mod night_state;
 mod night_view;
 mod places;
 mod resolved;

@@ -1,15 +1,10 @@
 //! Lights of the night in physical quantities.
 
 use super::spec::{NightLights, NightSpec};
-use super::{ResolvedScene, SunAngles, SunSource};
 use crate::atmosphere::Atmosphere;
-#[cfg(feature = "ephemeris")]
-use crate::atmosphere::refracting_air;
 use crate::axes;
-use crate::night::{CelestialFrame, MEAN_SOLAR_FLUX_SFU, MoonState, NightState};
+use crate::night::{MEAN_SOLAR_FLUX_SFU, MoonState};
 use crate::sky::SunCoverage;
-#[cfg(feature = "ephemeris")]
-use crate::sun::Moment;
 use glam::DVec3;
 
 /// Elevation of the sun below which the lights of the night are drawn by default, degrees. There the sky is 1e5 times as bright
@@ -78,7 +73,7 @@ impl NightSpec {
 
 impl NightSettings {
     /// Whether the lights of the night are drawn for a sun at an elevation.
-    fn includes(&self, sun_elevation_deg: f64) -> bool {
+    pub(super) fn includes(&self, sun_elevation_deg: f64) -> bool {
         self.by_day || sun_elevation_deg < NIGHT_DEG
     }
 
@@ -93,57 +88,9 @@ impl NightSettings {
     }
 }
 
-impl ResolvedScene {
-    /// Celestial sphere and moon under a sun at the time of the scene; `None` by day and without lights of the night.
-    pub fn night(&self, sun: &SunAngles) -> Option<NightState> {
-        match self.sun {
-            SunSource::Fixed(_) => self.night_over_fixed_sun(sun),
-            #[cfg(feature = "ephemeris")]
-            SunSource::Ephemeris { start, .. } => self.night_at(sun, start),
-        }
-    }
-
-    fn night_over_fixed_sun(&self, sun: &SunAngles) -> Option<NightState> {
-        let night = self
-            .night
-            .filter(|night| night.includes(sun.elevation_deg))?;
-        let direction = sun.direction();
-        Some(NightState {
-            frame: CelestialFrame::with_sun(direction, night.latitude_deg),
-            moon: night.fixed_moon(direction),
-        })
-    }
-
-    /// [`ResolvedScene::night`] at another time.
-    #[cfg(feature = "ephemeris")]
-    pub fn night_at(&self, sun: &SunAngles, time: Moment) -> Option<NightState> {
-        let SunSource::Ephemeris {
-            place, refraction, ..
-        } = self.sun
-        else {
-            return self.night_over_fixed_sun(sun);
-        };
-        let night = self
-            .night
-            .filter(|night| night.includes(sun.elevation_deg))?;
-        let (latitude_deg, longitude_deg) = (place.latitude_deg, place.longitude_deg);
-        let moon = match night.moon {
-            MoonSource::Ephemeris => {
-                let air = refraction.then(|| refracting_air(place.altitude_m));
-                let moon = MoonState::at(time.unix_s(), latitude_deg, longitude_deg, air);
-                Some(night.with_phase(moon))
-            }
-            _ => night.fixed_moon(sun.direction()),
-        };
-        Some(NightState {
-            frame: CelestialFrame::at(time.unix_s(), latitude_deg, longitude_deg),
-            moon,
-        })
-    }
-}
-
 impl NightSettings {
-    fn fixed_moon(&self, sun: DVec3) -> Option<MoonState> {
+    /// The moon over a fixed sun, if it is given.
+    pub(super) fn fixed_moon(&self, sun: DVec3) -> Option<MoonState> {
         match self.moon {
             MoonSource::Fixed(direction) => {
                 Some(self.with_phase(MoonState::lit_by(direction, sun)))
@@ -152,7 +99,8 @@ impl NightSettings {
         }
     }
 
-    fn with_phase(&self, moon: MoonState) -> MoonState {
+    /// A moon with the phase of the settings, if they give one.
+    pub(super) fn with_phase(&self, moon: MoonState) -> MoonState {
         let phased = self
             .moon_phase_deg
             .and_then(|deg| moon.with_phase(deg).ok());
