@@ -78,8 +78,9 @@ impl Probe {
             None => Channels::Rgb(space),
         };
         let altitude_m = resolved.observer_altitude_m;
-        let paths = match resolved.night(&sun) {
-            Some(night) => prepared.night_view(altitude_m, &sun.state(), &night, channels)?,
+        let night = resolved.night(&sun);
+        let paths = match &night {
+            Some(night) => prepared.night_view(altitude_m, &sun.state(), night, channels)?,
             None => prepared.view(altitude_m, &sun.state(), channels)?,
         };
         let view = match paths.sampler() {
@@ -88,6 +89,7 @@ impl Probe {
         };
         let asked = Asked {
             foggy: resolved.fog.is_some(),
+            lit_by_night: night.is_some() && self.model.capabilities().honours(Input::Night),
             view,
             paths,
             space,
@@ -128,6 +130,8 @@ struct Asked {
     polarised: bool,
     /// Whether there is fog, which the parts of a ray do not include.
     foggy: bool,
+    /// Whether the lights of the night are included, which are not separated into parts.
+    lit_by_night: bool,
 }
 
 impl Asked {
@@ -200,7 +204,7 @@ impl Asked {
         let line = clear.filter(|_| !self.foggy);
         let (values, transmittance) = match &line {
             Some(line) => (line.radiance(), Some(line.transmittance.clone())),
-            None => self.through_fog(direction, ray.distance_m.filter(|_| !meets_ground)),
+            None => self.as_a_whole(direction, ray.distance_m.filter(|_| !meets_ground)),
         };
         let xyz = self.xyz(&values);
         // A ray that ends on the ground includes its light.
@@ -225,8 +229,8 @@ impl Asked {
         }
     }
 
-    /// Radiance along a ray up to a distance (or to the ground or space), and transmittance, in fog.
-    fn through_fog(
+    /// Radiance along a ray up to a distance (or to the ground or space), and transmittance, in fog or by night.
+    fn as_a_whole(
         &self,
         direction: DVec3,
         distance_m: Option<f64>,
@@ -239,7 +243,7 @@ impl Asked {
             Some(_) => path,
             None => self.values(|view, out| view.radiance(&[direction], out)),
         };
-        (values, self.foggy.then_some(through))
+        (values, (self.foggy || self.lit_by_night).then_some(through))
     }
 
     fn monte_carlo(&self, direction: DVec3, limit_m: Option<f64>) -> Option<MonteCarloAnswer> {

@@ -45,7 +45,11 @@ impl<const N: usize> FogLanes<N> {
     ) -> Result<Self, FogError> {
         ground.validate()?;
         lighting.validate()?;
-        let layers = merge_layers(layers, scattering)?;
+        for layer in layers {
+            layer.validate()?;
+        }
+        let sun_depth = scattering_depth_to_sun(layers, &ground, &lighting);
+        let layers = merge_layers(layers, scattering, sun_depth)?;
         let structures: Vec<_> = layers.iter().map(|s| s.density.structure()).collect();
         let mut fog = Self {
             breakpoints_m: height_breakpoints(&structures, ground.height_m),
@@ -296,6 +300,26 @@ impl<const N: usize> FogLanes<N> {
             peaked_depth,
         }
     }
+}
+
+/// Scattering optical depth of all fog above the ground towards the sun, of the first lane; 0 without a sun. Curvature limits the
+/// path under a low sun to 20 times the vertical one.
+fn scattering_depth_to_sun<const N: usize>(
+    layers: &[LayerLanes<N>],
+    ground: &Ground,
+    lighting: &FogLighting<Spectrum<N>>,
+) -> f64 {
+    let Some(sun) = &lighting.sun else {
+        return 0.0;
+    };
+    let bounded = layers.iter().filter(|layer| !layer.density.is_uniform());
+    let vertical: f64 = bounded
+        .map(|layer| {
+            let column_m = layer.density.column_above_m(ground.height_m).min(OPAQUE);
+            column_m * f64::from(layer.scattering_per_m[0])
+        })
+        .sum();
+    vertical / sun.direction.y.max(0.05)
 }
 
 /// Light scattered into a ray, attenuated by the extinction without the peak and by that of the residual, with both optical

@@ -230,20 +230,19 @@ struct Part<const N: usize> {
     peaks: Vec<Peak>,
 }
 
-/// Validates layers and merges those of one density profile.
+/// Validates layers and merges those of one density profile. Forward peaks are divided for light that passes a scattering optical
+/// depth, `sun_depth`.
 ///
 /// # Errors
 /// [`FogError`] for the first value out of range.
 pub(super) fn merge_layers<const N: usize>(
     layers: &[LayerLanes<N>],
     scattering: FogScattering,
+    sun_depth: f64,
 ) -> Result<Vec<MergedLayer<N>>, FogError> {
-    for layer in layers {
-        layer.validate()?;
-    }
     let mut merged: Vec<MergedLayer<N>> = Vec::new();
     for layer in layers.iter().flat_map(LayerLanes::terms) {
-        let peak = |nm: f64| Peak::new(&layer.phase, nm);
+        let peak = |nm: f64| Peak::new(&layer.phase, nm, sun_depth);
         let peaks = if scattering != FogScattering::Multiple || layer.density.is_uniform() {
             Vec::new()
         } else if layer.phase.depends_on_wavelength() {

@@ -48,8 +48,6 @@ struct Table<const N: usize> {
     sides: [Side<N>; 2],
     /// Whether all lanes have the same extinction.
     is_grey: bool,
-    /// Largest share of the forward peak that counts as scattered, over all angles to the sun.
-    largest_share: f32,
     sun: Option<SunSide<N>>,
 }
 
@@ -163,7 +161,7 @@ impl<const N: usize> TableLanes<N> {
                 }
             }
             for k in 0..SHARES {
-                let light = per_opacity(rays.sunlit(table.share(k)));
+                let light = per_opacity(rays.sunlit(Table::<N>::share(k)));
                 for (sunlit, light) in values.sunlit.iter_mut().zip(light) {
                     sunlit[k] = light.map(|v| v.max(DARK.exp()).ln());
                 }
@@ -229,7 +227,6 @@ impl<const N: usize> Table<N> {
                 Side::new(-1.0, fog.optical_depth(&under), is_grey),
                 Side::new(1.0, above, is_grey),
             ],
-            largest_share: largest_share(layer),
             sun: sun.map(|sun| SunSide {
                 irradiance: sun.irradiance,
                 direction: sun.direction,
@@ -238,17 +235,16 @@ impl<const N: usize> Table<N> {
         }
     }
 
-    /// Share of the peak at a tabulated index: dense near the largest, where sunlight is most attenuated.
-    fn share(&self, index: usize) -> f32 {
+    /// Share of the peak at a tabulated index, from 0 to 1: dense near 1, where sunlight is most attenuated.
+    fn share(index: usize) -> f32 {
         let left = 1.0 - index as f32 / (SHARES - 1) as f32;
-        self.largest_share * (1.0 - left * left)
+        1.0 - left * left
     }
 
     /// Real index of a share: inverse of [`Table::share`].
     #[inline]
-    fn index_of_share(&self, share: f32) -> f32 {
-        let part = share / self.largest_share.max(f32::MIN_POSITIVE);
-        (SHARES - 1) as f32 * (1.0 - (1.0 - part).max(0.0).sqrt())
+    fn index_of_share(share: f32) -> f32 {
+        (SHARES - 1) as f32 * (1.0 - (1.0 - share).max(0.0).sqrt())
     }
 
     /// Single scattering of sunlight by a layer per unit of irradiance and of opacity.
@@ -266,7 +262,7 @@ impl<const N: usize> Table<N> {
             return whole * once;
         }
         // All lanes use the same four nodes.
-        let at = share_at(layer, cos_sun).map(|share| self.index_of_share(share));
+        let at = share_at(layer, cos_sun).map(Self::index_of_share);
         let first = (mean(at) as usize).clamp(1, SHARES - 3) - 1;
         let logarithms: [Spectrum<N>; 4] = std::array::from_fn(|k| arriving(first + k));
         let logarithm = Spectrum::from_fn(|lane| {
@@ -290,14 +286,6 @@ fn share_at<const N: usize>(layer: &MergedLayer<N>, cos_sun: f64) -> Spectrum<N>
         true => part[lane] / whole[lane],
         false => 0.0,
     })
-}
-
-/// Largest share over all angles and lanes.
-fn largest_share<const N: usize>(layer: &MergedLayer<N>) -> f32 {
-    let cosines = (0..=200).map(|k| 1.0 - 2.0 * (f64::from(k) / 200.0).powi(4));
-    cosines
-        .map(|cosine| share_at(layer, cosine).max_element())
-        .fold(0.0, f32::max)
 }
 
 /// All rising or all descending rays.

@@ -6,18 +6,26 @@
 //! as if the peak did not scatter (TMS: Nakajima & Tanaka, J. Quant. Spectrosc. Radiat. Transfer 40, 51, 1988).
 //!
 //! That is right where the phase function beyond the moments, the *residual* `q`, changes little over the width of the peak:
-//! not towards the sun. There light scattered twice by the peak has the width of `q` convolved with itself: how much of `q` is
-//! lost to further scattering and not replaced depends on the angle. With the residual of the self-convolved phase function,
-//! `q2` (moments `chi_l^2`), the fraction of the peak that replaces its own loss is `q2 / (2 q)`: the second term of the exact
-//! series of collinear scatterings, expressed as an extinction.
+//! not towards the sun. There light scattered n times by the peak has the width of `q` convolved n times with itself, `q_n`
+//! (moments `chi_l^n`): how much of `q` is lost to further scattering and not replaced depends on the angle. Over a scattering
+//! optical depth `t` along collinear paths the exact series is `exp(-t) sum t^n / n! q_n`. Expressed as single scattering with an
+//! extinction of its own, `t q exp(-(1 - r) t)`, it gives the fraction of the scattering that replaces its own loss,
+//!
+//! ```text
+//! r = ln( sum_l (2 l + 1) / (4 pi) (exp(t chi_l) - 1) P_l / (t q) ) / t,    sum over the degrees left out
+//! ```
+//!
+//! which is `q_2 / (2 q)` in thin fog and `f` in thick fog.
 
 use crate::math::interpolation::Place;
 use crate::math::legendre::legendre_series;
 use crate::math::real::Real;
 use crate::optics::PhaseFunction;
 
-/// Number of moments summed for the self-convolved phase function.
+/// Number of moments summed for the convolved phase functions.
 const MOMENTS: usize = 800;
+/// Scattering optical depth below which the fog is thin, and that beyond which the peak no longer changes.
+const DEPTHS: (f64, f64) = (1e-3, 60.0);
 /// Number of intervals of the table in the sine of half the angle.
 const INTERVALS: usize = 128;
 
@@ -46,8 +54,8 @@ pub struct ForwardPeak<const DEGREES: usize> {
 }
 
 impl<const DEGREES: usize> ForwardPeak<DEGREES> {
-    /// Divides a phase function.
-    pub fn new(phase: &PhaseFunction, wavelength_nm: f64) -> Self {
+    /// Divides a phase function, for light that passes a scattering optical depth.
+    pub fn new(phase: &PhaseFunction, wavelength_nm: f64, depth: f64) -> Self {
         let chi = phase.legendre_moments(MOMENTS, wavelength_nm);
         let moments = std::array::from_fn(|l| chi[l]);
         let fraction = peak_fraction(chi[DEGREES], 0.9999);
@@ -60,7 +68,9 @@ impl<const DEGREES: usize> ForwardPeak<DEGREES> {
         if fraction < 1e-6 {
             return peak;
         }
-        let squared: Vec<f64> = chi.iter().map(|c| c * c).collect();
+        let depth = depth.clamp(DEPTHS.0, DEPTHS.1);
+        // Moments of all orders of collinear scattering, per unit of optical depth.
+        let orders: Vec<f64> = chi.iter().map(|c| (depth * c).exp_m1() / depth).collect();
         let residual =
             |mu: f64| phase.evaluate(mu, wavelength_nm) - legendre_series(&chi[..DEGREES], mu);
         // The first zero of the residual, outwards from the sun.
@@ -73,13 +83,20 @@ impl<const DEGREES: usize> ForwardPeak<DEGREES> {
         peak.table = (0..=INTERVALS)
             .map(|k| {
                 let mu = cosine(peak.edge * k as f64 / INTERVALS as f64);
-                let (once, twice) = (
-                    residual(mu),
-                    legendre_series(&squared, mu) - legendre_series(&squared[..DEGREES], mu),
-                );
-                match once > 0.0 {
-                    true => (0.5 * twice / once).clamp(0.0, fraction) as f32,
-                    false => fraction as f32,
+                let once = residual(mu);
+                let beyond = legendre_series(&orders, mu) - legendre_series(&orders[..DEGREES], mu);
+                let low = legendre_series(&[1.0; DEGREES], mu);
+                let (f, t) = (fraction, depth);
+                // exp(-t f) - 1 + t f, without cancellation in thin fog.
+                let solved = if t * f < 1e-2 {
+                    0.5 * (t * f).powi(2)
+                } else {
+                    (-t * f).exp_m1() + t * f
+                };
+                let all = (-t * f).exp() * beyond - solved / t * low;
+                match once > 0.0 && all > 0.0 {
+                    true => (f + (all / once).ln() / t).clamp(0.0, f) as f32,
+                    false => 0.0,
                 }
             })
             .collect();
@@ -121,7 +138,7 @@ mod tests {
         let g = 0.85;
         let phase = PhaseFunction::HenyeyGreenstein { g };
         let twice = PhaseFunction::HenyeyGreenstein { g: g * g };
-        let peak = Peak::new(&phase, 550.0);
+        let peak = Peak::new(&phase, 550.0, 0.0);
         assert!((peak.fraction - g.powi(DEGREES as i32)).abs() < 1e-12);
         let low = |x: f64, mu: f64| {
             let chi: Vec<f64> = (0..DEGREES).map(|l| x.powi(l as i32)).collect();
@@ -130,12 +147,14 @@ mod tests {
         for mu in [1.0, 0.999, 0.99] {
             let q = phase.evaluate(mu, 550.0) - low(g, mu);
             let q2 = twice.evaluate(mu, 550.0) - low(g * g, mu);
-            let exact = (0.5 * q2 / q).clamp(0.0, peak.fraction);
+            // Second order: moments (chi_l - f)^2, whose constant part is that of a delta function without its low degrees.
+            let f = peak.fraction;
+            let exact = (0.5 * (q2 - f * f * low(1.0, mu)) / q).clamp(0.0, f);
             let got = f64::from(peak.residual_fraction(mu));
             assert!((got - exact).abs() < 2e-3, "{mu}: {got} {exact}");
         }
         assert_eq!(peak.residual_fraction(-0.5), peak.fraction as f32);
-        let even = Peak::new(&PhaseFunction::Isotropic, 550.0);
+        let even = Peak::new(&PhaseFunction::Isotropic, 550.0, 1.0);
         assert_eq!((even.fraction, even.residual_fraction(1.0)), (0.0, 0.0));
         let fractions = [-0.1f32, 0.3, 1.0].map(|moment| peak_fraction(moment, 0.99));
         assert_eq!(fractions, [0.0, 0.3, 0.99]);

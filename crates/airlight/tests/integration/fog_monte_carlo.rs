@@ -150,3 +150,39 @@ fn multiple_scattering_matches_monte_carlo() {
     }
     print!("\n{table}");
 }
+
+/// Light around the sun through thick fog, which the peak of the phase function scatters several times: the aureole has no ring.
+#[test]
+fn the_aureole_in_thick_fog_matches_monte_carlo() {
+    let scene = Scene {
+        depth: 6.0,
+        phase: droplets::phase(10.0),
+        sun_elevation_deg: 60.0,
+    };
+    let (fog, planet) = (scene.fog(), scene.planet());
+    let sun = direction(SUN_DEG, scene.sun_elevation_deg);
+    let along = |from_sun_deg: f64| {
+        let view = direction(SUN_DEG, scene.sun_elevation_deg - from_sun_deg);
+        green_path(&fog, EYE_M, view, f64::INFINITY)[1]
+    };
+    for from_sun_deg in [1.0, 2.5, 4.0] {
+        let view = direction(SUN_DEG, scene.sun_elevation_deg - from_sun_deg);
+        let truth = planet.radiance_within(2e-2, 1 << 18, EYE_M, sun, view);
+        let ratio = along(from_sun_deg) / truth.mean[0];
+        println!(
+            "{from_sun_deg}: {ratio:.3} +- {:.3}",
+            truth.standard_error[0] / truth.mean[0]
+        );
+        assert!((0.9..1.15).contains(&ratio), "{from_sun_deg}: {ratio}");
+    }
+    // Falls without steps.
+    let mut before = along(0.3);
+    for step in 1..80 {
+        let here = along(0.3 + 0.1 * f64::from(step));
+        assert!(
+            here < before && here > 0.85 * before,
+            "{step}: {before} {here}"
+        );
+        before = here;
+    }
+}

@@ -174,7 +174,7 @@ fn multiple_scattering_matches_disort() {
         (
             "less than 20° from the sun",
             scattered(&near),
-            [0.3, 5.0, 17.0],
+            [0.2, 2.0, 11.0],
         ),
         (
             "asymmetry 0.7 or less",
