@@ -1,5 +1,6 @@
 //! Result of a probe as plain text.
 
+use airlight::night::magnitude_per_square_arcsec;
 use airlight_render::probe::{ProbeAnswer, RayAnswer};
 use airlight_render::summary::short;
 use std::fmt::Write;
@@ -43,6 +44,17 @@ fn head(answer: &ProbeAnswer) -> String {
         short(sun.illuminance_horizontal_lx),
         short(answer.sky.illuminance_horizontal_lx)
     );
+    if let Some(moon) = &answer.moon {
+        let _ = writeln!(
+            text,
+            "moon          elevation {:.4} deg, azimuth {:.4} deg, {:.0} % lit; {} lx facing it, {} lx horizontal",
+            moon.elevation_deg,
+            moon.azimuth_deg,
+            100.0 * moon.lit_fraction,
+            short(moon.illuminance_normal_lx),
+            short(moon.illuminance_horizontal_lx)
+        );
+    }
     if answer.views.is_empty() && !answer.wavelengths_nm.is_empty() {
         let columns = [
             ("outside", &sun.irradiance_outside_w_m2_nm),
@@ -67,6 +79,19 @@ fn solver(answer: &ProbeAnswer) -> String {
     format!("solver        {}{variant}{spectra}\n", answer.solver)
 }
 
+/// Luminance as astronomers state it, in words for a sky as dark as late twilight.
+fn night_magnitude(luminance_cd_m2: f64) -> String {
+    /// About 16 magnitudes per square arcsecond.
+    const DARK_CD_M2: f64 = 0.05;
+    match luminance_cd_m2 > 0.0 && luminance_cd_m2 < DARK_CD_M2 {
+        true => {
+            let magnitude = magnitude_per_square_arcsec(luminance_cd_m2);
+            format!(" ({magnitude:.2} mag/arcsec^2)")
+        }
+        false => String::new(),
+    }
+}
+
 fn one(answer: &ProbeAnswer, view: &RayAnswer) -> String {
     let end = match (view.distance_m, view.meets_ground) {
         (_, true) => "to the ground".to_owned(),
@@ -76,12 +101,13 @@ fn one(answer: &ProbeAnswer, view: &RayAnswer) -> String {
     let [r, g, b] = view.rgb_cd_m2.map(short);
     let [x, y, z] = view.xyz_cd_m2.map(short);
     let mut text = format!(
-        "azimuth {} deg, elevation {} deg, {end}, {:.3} deg from the sun\nluminance {} cd/m^2; XYZ {x} {y} {z}; {} {r} {g} \
+        "azimuth {} deg, elevation {} deg, {end}, {:.3} deg from the sun\nluminance {} cd/m^2{}; XYZ {x} {y} {z}; {} {r} {g} \
          {b} cd/m^2\n",
         view.azimuth_deg,
         view.elevation_deg,
         view.sun_angle_deg,
         short(view.luminance_cd_m2),
+        night_magnitude(view.luminance_cd_m2),
         answer.color_space,
     );
     if answer.wavelengths_nm.is_empty() {

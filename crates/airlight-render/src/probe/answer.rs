@@ -30,7 +30,10 @@ pub struct ProbeAnswer {
     pub observer: ObserverAnswer,
     /// The sun and its light.
     pub sun: SunAnswer,
-    /// Light of the sky without the sun's disc.
+    /// The moon and its light; `None` by day and without a moon.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub moon: Option<MoonAnswer>,
+    /// Light of the sky without the discs of sun and moon and without single stars.
     pub sky: SkyAnswer,
     /// Light along each direction.
     pub views: Vec<RayAnswer>,
@@ -76,7 +79,28 @@ pub struct SunAnswer {
     pub illuminance_horizontal_lx: f64,
 }
 
-/// Light of the sky, without the sun's disc.
+/// The moon and its light.
+#[derive(Clone, Debug, Serialize)]
+pub struct MoonAnswer {
+    /// Azimuth, degrees clockwise from north.
+    pub azimuth_deg: f64,
+    /// Apparent elevation above the horizontal, degrees.
+    pub elevation_deg: f64,
+    /// Angle at the moon between sun and eye, degrees: 0 is full.
+    pub phase_angle_deg: f64,
+    /// Part of the disc that is lit.
+    pub lit_fraction: f64,
+    /// Angular radius of the disc.
+    pub angular_radius_deg: f64,
+    /// Irradiance at the eye on a surface that faces the moon.
+    pub irradiance_normal_w_m2_nm: Vec<f32>,
+    /// Illuminance at the eye on a surface that faces the moon.
+    pub illuminance_normal_lx: f64,
+    /// Illuminance at the eye on a horizontal surface.
+    pub illuminance_horizontal_lx: f64,
+}
+
+/// Light of the sky, without discs.
 #[derive(Clone, Debug, Serialize)]
 pub struct SkyAnswer {
     /// Irradiance at the eye on a horizontal surface.

@@ -10,7 +10,9 @@ mod monte_carlo;
 mod rays;
 mod solve;
 
-pub use answer::{ObserverAnswer, PROBE_FORMAT, ProbeAnswer, RayAnswer, SkyAnswer, SunAnswer};
+pub use answer::{
+    MoonAnswer, ObserverAnswer, PROBE_FORMAT, ProbeAnswer, RayAnswer, SkyAnswer, SunAnswer,
+};
 pub use monte_carlo::{MonteCarloAnswer, PolarisationAnswer};
 pub use rays::ProbeRay;
 pub use solve::Probe;

@@ -1,6 +1,8 @@
 //! [`Probe`]: evaluation of a scene's solver along rays.
 
-use super::answer::{ObserverAnswer, PROBE_FORMAT, ProbeAnswer, RayAnswer, SkyAnswer, SunAnswer};
+use super::answer::{
+    MoonAnswer, ObserverAnswer, PROBE_FORMAT, ProbeAnswer, RayAnswer, SkyAnswer, SunAnswer,
+};
 use super::monte_carlo::MonteCarloAnswer;
 use super::rays::ProbeRay;
 use crate::error::RenderError;
@@ -8,6 +10,7 @@ use crate::illuminance::Illuminances;
 use crate::metadata::SOFTWARE;
 use airlight::Named;
 use airlight::models::registry;
+use airlight::night::MoonState;
 use airlight::scene::{
     CameraSpec, Channels, Input, OutputSpec, RadianceModel, RadianceView, ResolvedScene, Scene,
     SunAngles, check_inputs,
@@ -114,6 +117,9 @@ impl Probe {
             wavelengths_nm: asked.wavelengths_nm(),
             observer: observer(resolved),
             sun: asked.sun(&sun),
+            moon: night
+                .and_then(|night| night.moon)
+                .and_then(|moon| asked.moon(&moon)),
             sky: asked.sky(),
             views: self.rays.par_iter().map(|ray| asked.ray(ray)).collect(),
         })
@@ -184,6 +190,23 @@ impl Asked {
             illuminance_normal_lx: light.sun_normal_lx,
             illuminance_horizontal_lx: light.sun_horizontal_lx,
         }
+    }
+
+    /// The moon and its light, if it lights the view.
+    fn moon(&self, moon: &MoonState) -> Option<MoonAnswer> {
+        let lit = self.view.moon()?;
+        let light = Illuminances::of(self.view.as_ref());
+        let normal = self.values(|_, out| lit.sun_irradiance(out));
+        Some(MoonAnswer {
+            azimuth_deg: axes::azimuth_deg(moon.direction),
+            elevation_deg: axes::elevation_deg(moon.direction),
+            phase_angle_deg: moon.phase_angle_rad.to_degrees(),
+            lit_fraction: moon.lit_fraction(),
+            angular_radius_deg: moon.angular_radius_rad().to_degrees(),
+            irradiance_normal_w_m2_nm: self.spectrum(&normal),
+            illuminance_normal_lx: light.moon_normal_lx?,
+            illuminance_horizontal_lx: light.moon_horizontal_lx?,
+        })
     }
 
     fn sky(&self) -> SkyAnswer {

@@ -319,3 +319,28 @@ fn models_refuse_what_they_do_not_know() {
         assert!(error.contains(part), "{scene}: {error}");
     }
 }
+
+/// By night the answer tells of the moon, and views are not separated into parts.
+#[test]
+fn the_moon_is_part_of_the_answer() {
+    let scene = "solver = { wavelengths = \"rgb\", scattering = \"single\" }\nsun.elevation_deg = -25\n\
+                 night = { moon_elevation_deg = 30, moon_azimuth_deg = 120, moon_phase_deg = 90 }";
+    let answer = probe(scene, &[(0.0, 90.0), (0.0, -5.0)]);
+    let moon = answer.moon.as_ref().unwrap();
+    assert!((moon.elevation_deg - 30.0).abs() < 1e-9 && (moon.azimuth_deg - 120.0).abs() < 1e-9);
+    assert!((moon.lit_fraction - 0.5).abs() < 1e-9);
+    let sine = moon.illuminance_horizontal_lx / moon.illuminance_normal_lx;
+    assert!((sine - 0.5).abs() < 1e-6 && (0.01..0.03).contains(&moon.illuminance_normal_lx));
+    assert_eq!(answer.sun.illuminance_normal_lx, 0.0);
+    for view in &answer.views {
+        assert!(view.radiance_single_w_m2_sr_nm.is_none());
+        let transmittance = view.transmittance.as_ref().unwrap();
+        assert!(transmittance.iter().all(|t| (0.0..=1.0).contains(t)));
+        assert!(view.luminance_cd_m2 > 1e-5);
+    }
+    let day = probe(
+        "solver = { wavelengths = \"rgb\" }\nsun.elevation_deg = 25",
+        &[(0.0, 90.0)],
+    );
+    assert!(day.moon.is_none());
+}
