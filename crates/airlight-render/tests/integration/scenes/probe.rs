@@ -320,7 +320,7 @@ fn models_refuse_what_they_do_not_know() {
     }
 }
 
-/// By night the answer tells of the moon, and views are not separated into parts.
+/// By night the answer includes the moon, and views are not separated into parts.
 #[test]
 fn the_moon_is_part_of_the_answer() {
     let scene = "solver = { wavelengths = \"rgb\", scattering = \"single\" }\nsun.elevation_deg = -25\n\
