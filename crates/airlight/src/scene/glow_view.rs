@@ -117,8 +117,9 @@ fn horizon_rad(view: &View) -> f64 {
 ///
 /// Light that arrives straight is dimmed by the air along each ray. Light that the air scatters or the ground reflects is the
 /// solution of the sky's solver for distant sources, added up over the whole sky: 12 rings, each as bright as the sky on
-/// average over its azimuths. The scattered part therefore has the same brightness in all azimuths; it is a quarter of the
-/// light in clear air, and an uneven sky (Milky Way) makes it uneven by less than a tenth.
+/// average over its azimuths. The scattered part therefore has the same brightness in all azimuths; at the zenith of clear air it
+/// is a tenth of the light at 550 nm. Under an even sky over white ground, air without absorption changes radiance by at most 1 %
+/// (test `air_without_absorption_is_invisible_under_an_even_sky`), instead of not at all.
 #[derive(Debug)]
 pub(super) struct GlowView {
     view: View,
@@ -476,5 +477,49 @@ impl GlowView {
             directions: seen.into_iter().map(|(_, direction)| direction).collect(),
             irradiance: light.concat(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+    use crate::sky::SunCoverage;
+
+    /// Under an even sky over white ground, air that does not absorb is invisible: what it takes from a ray it scatters into it.
+    #[test]
+    fn air_without_absorption_is_invisible_under_an_even_sky() {
+        let mut scene = Scene::default();
+        scene.sun.elevation_deg = Some(-30.0);
+        scene.air.aod_550 = Some(0.0);
+        scene.air.ozone_du = Some(0.0);
+        scene.air.ground_albedo = Some(1.0);
+        scene.solver.wavelengths = Some("450,550,650".to_owned());
+        let scene = scene.resolve().unwrap();
+        let settings = scene.solver.sky_settings(SunCoverage::AboveHorizon);
+        let sky = Sky::prepare(&scene.atmosphere, &scene.grid, &settings).unwrap();
+        let rings = RingScattering::new(&sky, 2.0);
+        let eye = sky.view(2.0, DVec3::Y);
+        let solar = eye.solar_irradiance();
+        let elevations = elevations(horizon_rad(&eye));
+        let coarse = (0..ABOVE)
+            .step_by(2)
+            .chain((ABOVE..ABOVE + BELOW).step_by(2));
+        let mut worst = 0.0f32;
+        for (by_ring, i) in rings.scattered.iter().zip(coarse) {
+            let direction = axes::direction(0.0, elevations[i].to_degrees());
+            let transmittance = eye.transmittance_to_space(direction);
+            for (lane, solar) in solar.iter().enumerate() {
+                let scattered: f32 = by_ring.iter().map(|light| light[lane] / solar).sum();
+                let whole = transmittance[lane] + scattered;
+                let degrees = elevations[i].to_degrees();
+                assert!((whole - 1.0).abs() < 0.01, "{degrees}, {lane}: {whole}");
+                worst = worst.max((whole - 1.0).abs());
+                if i == ABOVE - 1 && lane == 1 {
+                    assert!((scattered - 0.092).abs() < 0.002, "{scattered}");
+                }
+            }
+        }
+        println!("worst: {worst}");
     }
 }
