@@ -116,7 +116,7 @@ pub enum ImageError {
     /// Negative depth, which is more likely a wrong sign than unknown depth.
     #[error(
         "expected depth of 0 or more in `{path}`, got negative depth in {count} of its pixels, the first at x {x}, y {y}: {value}; \
-         try 0 where the depth is unknown",
+         try 0 where the depth is unknown, or negative unknown",
         path = .path.display()
     )]
     NegativeDepth {

@@ -22,6 +22,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let image = OverlayImage::read(&scene.overlay, format)?;
     let prepared = PreparedOverlay::new(&scene, &image, None)?;
     let rows = prepared.overlay(&image)?;
-    image.write(&rows, output, format, Control::default())?;
+    image.write(&rows, &scene.overlay, output, format, Control::default())?;
     Ok(())
 }

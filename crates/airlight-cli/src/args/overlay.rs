@@ -4,8 +4,8 @@ use super::fog::{ContrastArgs, FogArgs};
 use super::overlay_batch::BatchArgs;
 use super::{OverlayLightArgs, OverlaySolverArgs};
 use crate::parse;
-use airlight_image::input::UnknownDepth;
-use airlight_render::overlay::{DepthFileKind, OverlayScene};
+use airlight_image::input::{DepthPacking, UnknownDepth};
+use airlight_render::overlay::{DepthFileKind, NegativeDepth, OverlayScene};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -20,7 +20,7 @@ pub struct OverlayArgs {
     /// Combined, else the only one]
     #[arg(long, value_name = "NAME")]
     pub colour_layer: Option<String>,
-    /// Depth map: EXR, PNG, NPY or PFM; a folder, or 'depth/*.png' [default: the depth channel of COLOUR, if that is an EXR]
+    /// Depth map: EXR, PNG, NPY, NPZ, PFM or TIFF; a folder, or 'depth/*.png' [default: the depth channel of COLOUR, if that is an EXR]
     #[arg(long, value_name = "DEPTH")]
     pub depth: Option<PathBuf>,
     /// File to write: .png, .jpg, .exr or .hdr; a folder, or 'out/*.png'
@@ -29,6 +29,12 @@ pub struct OverlayArgs {
     /// Also write transmittance, path radiance and distance as layers (.exr)
     #[arg(long)]
     pub layers: bool,
+    /// Quality of .jpg, 1 to 100 [default: 92]
+    #[arg(long, value_name = "Q", value_parser = clap::value_parser!(u8).range(1..=100))]
+    pub quality: Option<u8>,
+    /// Stops by which EXR and HDR pictures are brightened in .png and .jpg (negative: darkened), where 1 is white [default: 0]
+    #[arg(long, value_name = "STOPS", value_parser = parse::number)]
+    pub brighten: Option<f64>,
     /// Scene file, which the other options override
     #[arg(long, value_name = "FILE.toml")]
     pub scene: Option<PathBuf>,
@@ -44,10 +50,19 @@ pub struct OverlayArgs {
     /// Meaning of the depth values [default: z]
     #[arg(long, value_name = "KIND", value_parser = parse::named::<DepthFileKind>(), help_heading = "Depth")]
     pub depth_kind: Option<DepthFileKind>,
-    /// Metres for each unit of depth: 0.001 for millimetres [default: 1]
-    #[arg(long, value_name = "M", value_parser = parse::positive, help_heading = "Depth")]
+    /// Metres for each unit of depth: 0.001 for millimetres; negative with --depth-offset for inverted depth [default: 1]
+    #[arg(long, value_name = "M", value_parser = parse::number, help_heading = "Depth")]
     pub depth_scale: Option<f64>,
-    /// Channel of an EXR depth file
+    /// Added to scaled depth, m (inverse: 1/m), for normalised depth; 0 is then a depth, otherwise unknown
+    #[arg(long, value_name = "M", value_parser = parse::number, help_heading = "Depth")]
+    pub depth_offset: Option<f64>,
+    /// How a colour PNG holds depth [default: none]
+    #[arg(long, value_name = "HOW", value_parser = parse::named::<DepthPacking>(), help_heading = "Depth")]
+    pub depth_packing: Option<DepthPacking>,
+    /// Treatment of negative depth [default: refuse]
+    #[arg(long, value_name = "HOW", value_parser = parse::named::<NegativeDepth>(), help_heading = "Depth")]
+    pub negative: Option<NegativeDepth>,
+    /// Channel of an EXR, or array of an NPZ depth file
     #[arg(long, value_name = "NAME", help_heading = "Depth")]
     pub depth_channel: Option<String>,
     /// Treatment of pixels of unknown depth [default: fill]
@@ -110,6 +125,11 @@ impl OverlayArgs {
         overlay.depth_kind = self.depth_kind.unwrap_or(overlay.depth_kind);
         overlay.depth_scale = self.depth_scale.unwrap_or(overlay.depth_scale);
         overlay.depth_channel = self.depth_channel.clone().or(overlay.depth_channel.take());
+        put(&mut overlay.depth_offset, self.depth_offset);
+        overlay.depth_packing = self.depth_packing.or(overlay.depth_packing);
+        overlay.negative = self.negative.or(overlay.negative);
+        overlay.quality = self.quality.or(overlay.quality);
+        put(&mut overlay.brighten, self.brighten);
         overlay.holes = self.holes.unwrap_or(overlay.holes);
         put(&mut overlay.far_m, self.far_m);
         put(&mut overlay.baseline_m, self.baseline_m);

@@ -8,6 +8,7 @@ use crate::report::{self, seconds};
 use airlight_image::Control;
 use airlight_render::batch::{BatchPlan, FoundInputs, listed};
 use airlight_render::overlay::OverlayScene;
+use std::collections::BTreeMap;
 use std::time::Instant;
 
 /// Writes the pictures of a description whose paths are folders or patterns.
@@ -61,7 +62,7 @@ pub fn run(args: &OverlayArgs, scene: OverlayScene) -> Result<(), CliError> {
     }
 }
 
-/// Reports pictures that are left out and depth files without a picture on standard error.
+/// Reports pictures that are left out, other files and depth files without a picture on standard error.
 fn remarks(found: &FoundInputs, quiet: bool) {
     let missing = found.without_depth.len();
     if missing > 0 {
@@ -69,6 +70,22 @@ fn remarks(found: &FoundInputs, quiet: bool) {
             "{missing} of {} pictures without depth are left out:{}",
             missing + found.inputs.len(),
             listed(&found.without_depth)
+        ));
+    }
+    let mut endings: BTreeMap<String, u32> = BTreeMap::new();
+    for path in &found.passed_over {
+        let ending = path.extension().unwrap_or_default().to_string_lossy();
+        *endings.entry(ending.into_owned()).or_default() += 1;
+    }
+    if !endings.is_empty() {
+        let endings = endings.iter().map(|(ending, count)| match ending.as_str() {
+            "" => format!("{count} without an ending"),
+            ending => format!("{count} .{ending}"),
+        });
+        let endings: Vec<String> = endings.collect();
+        report::note(&format!(
+            "files passed over, which are not EXR, HDR, PNG or JPEG: {}",
+            endings.join(", ")
         ));
     }
     if !(found.unused_depths.is_empty() || quiet) {

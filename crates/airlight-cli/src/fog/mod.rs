@@ -9,7 +9,7 @@ use crate::progress::{Busy, RowsBar};
 use crate::report::{self, bytes};
 use airlight::Named;
 use airlight_image::Control;
-use airlight_image::output::Written;
+use airlight_image::output::{AtomicFile, Written};
 use airlight_render::batch::is_batch;
 use airlight_render::overlay::{MonteCarloFog, OverlayImage, OverlayScene, PreparedOverlay};
 use airlight_render::scene_file;
@@ -43,6 +43,7 @@ pub fn run(args: &OverlayArgs) -> Result<(), CliError> {
         ));
     }
     if !many {
+        file_in_folder(&mut scene);
         scene.check()?;
     }
     if let Some(path) = &args.save_scene {
@@ -52,6 +53,19 @@ pub fn run(args: &OverlayArgs) -> Result<(), CliError> {
     match many {
         true => batch::run(args, scene),
         false => one(args, &scene),
+    }
+}
+
+/// An output that is a folder means the name of the picture in it.
+fn file_in_folder(scene: &mut OverlayScene) {
+    let colour = match scene.overlay.layers {
+        true => scene.overlay.colour.with_extension("exr"),
+        false => scene.overlay.colour.clone(),
+    };
+    if let (Some(output), Some(name)) = (&mut scene.scene.output.file, colour.file_name())
+        && (output.ends_with(std::path::is_separator) || Path::new(output).is_dir())
+    {
+        *output = Path::new(output).join(name).to_string_lossy().into_owned();
     }
 }
 
@@ -74,7 +88,11 @@ fn one(args: &OverlayArgs, scene: &OverlayScene) -> Result<(), CliError> {
             )));
         }
     }
+    if let (Some(folder), Some(name)) = (output.parent(), output.file_name()) {
+        AtomicFile::remove_leftovers(folder, |left| name == left);
+    }
     let image = OverlayImage::read(&scene.overlay, format)?;
+    let mut notes = image.notes();
     let sky = match scene.overlay.sky_light {
         true => {
             let _busy = Busy::with("solving for the light in the air");
@@ -89,22 +107,29 @@ fn one(args: &OverlayArgs, scene: &OverlayScene) -> Result<(), CliError> {
     let (written, noise) = match monte_carlo {
         None => {
             let overlay = prepared.overlay(&image)?;
-            let written = image.write(&overlay, output, format, control)?;
+            let written = image.write(&overlay, &scene.overlay, output, format, control)?;
+            notes.merge(&overlay.notes());
             (written, String::new())
         }
         Some(fog) => passes(scene, &image, &prepared, &fog, control)?,
     };
     drop(writing);
-    report::remarks(&scene.overlay.colour, &image.notes());
+    let clamped = format!("samples {}", format.clamping());
+    notes.count(written.clamped_samples, clamped);
+    report::remarks(&scene.overlay.colour, &notes);
     if args.quiet {
         return Ok(());
     }
     let size = image.picture.size;
     let [red, green, blue] = prepared.level.colour;
+    let range = image.depth.range_m().map_or(String::new(), |(near, far)| {
+        let [near, far] = [near, far].map(|m| report::short(f64::from(m)));
+        format!("{near} to {far} m, ")
+    });
     let contrast = 100.0 * scene.contrast().value();
     report::print(&format!(
         "{}: {} x {}, {}\n  visibility    {} m (contrast {contrast} %)\n  light         {red:.4} {green:.4} {blue:.4} ({})\n  \
-         depth         {} pixels unknown, {} infinitely far\n{noise}",
+         depth         {range}{} pixels unknown, {} infinitely far\n{noise}",
         output.display(),
         size.width(),
         size.height(),

@@ -184,7 +184,15 @@ fn options_that_contradict_are_refused() {
     for (more, sentence) in [
         ("-o a.exr", "a visibility in the fog"),
         ("--visibility-m 0 -o a.exr", "above 0"),
-        ("--visibility-m 5 -o a.png", ".exr or .hdr"),
+        (
+            "--visibility-m 5 --quality 50 -o a.exr",
+            "--quality: expected a JPEG",
+        ),
+        (
+            "--visibility-m 5 --brighten 1 -o a.exr",
+            "--brighten: expected a PNG",
+        ),
+        ("--visibility-m 5 --depth-scale -1 -o a.exr", "depth-offset"),
         ("--visibility-m 5 -o a.tiff", "Known endings"),
         ("--visibility-m 5 --layers -o a.hdr", ".exr"),
         ("--visibility-m 5 -o scene.exr", "not an input"),
@@ -327,4 +335,116 @@ fn a_batch_is_made_reported_and_resumed() {
         text.contains("1 pictures failed:") && text.contains("rgb/a.png"),
         "{text}"
     );
+}
+
+/// Runs it and expects success; standard error.
+fn remarks(folder: &Folder, words: &str) -> String {
+    let output = run(folder, words);
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success(), "{words}: {text}");
+    text
+}
+
+#[test]
+fn display_pictures_become_linear_and_return() {
+    let folder = Folder::new();
+    let glass = |x: u32, y: u32| image::Rgba([(6 * x) as u8, 200, (8 * y) as u8, (128 + x) as u8]);
+    let picture = image::RgbaImage::from_fn(40, 30, glass);
+    picture.save(folder.file("glass.png")).unwrap();
+    npy(&folder.file("depth.npy"), (30, 40), |_| 2.0);
+    let words = "fog glass.png --depth depth.npy --visibility-m 5 --ambient 1,1,1 --layers -q -o layers.exr";
+    succeed(&folder, words);
+    let made = Exr::read(&folder.file("layers.exr")).channels;
+    // By the colours of the picture and its opacity.
+    let clear = airlight::spectrum::rgb::srgb_decode(f64::from(6 * 7u8) / 255.0) as f32;
+    let at = 3 * 40 + 7;
+    let opacity = 135.0 / 255.0;
+    let expected = (clear * made["transmittance.R"][at] + made["path_radiance.R"][at]) * opacity;
+    assert!((made["R"][at] - expected).abs() < 1e-5);
+    assert!((made["A"][at] - opacity).abs() < 1e-6);
+    // Without fog, there and back.
+    let there = "fog glass.png --depth depth.npy --visibility-m 1e9 -o there.exr";
+    assert!(remarks(&folder, there).contains("the fog hides nothing"));
+    succeed(
+        &folder,
+        "fog there.exr --depth depth.npy --visibility-m 1e9 -o back.png",
+    );
+    let back = image::open(folder.file("back.png")).unwrap().to_rgba8();
+    for (a, b) in picture.pixels().zip(back.pixels()) {
+        let near = a.0.iter().zip(b.0).all(|(a, b)| a.abs_diff(b) <= 1);
+        assert!(near, "{a:?} {b:?}");
+    }
+    // Brighter than white.
+    let small = small();
+    let words = "fog scene.exr --depth depth.npy --visibility-m 1e9 -o a.png";
+    let text = remarks(&small, words);
+    assert!(text.contains("brighter than white"), "{text}");
+    let text = remarks(&small, &format!("{words} --brighten -3"));
+    assert!(!text.contains("brighter than white"), "{text}");
+}
+
+#[test]
+fn qualities_outputs_in_folders_and_negative_depths() {
+    let folder = Folder::new();
+    let noise =
+        |x: u32, y: u32| image::Rgb([(x * 37 + y * 91) as u8, (x * y) as u8, (y * 53) as u8]);
+    let picture = image::RgbImage::from_fn(40, 30, noise);
+    picture.save(folder.file("a.png")).unwrap();
+    let one = |pixel| if pixel == 7 { -1.0 } else { 2.0 };
+    npy(&folder.file("depth.npy"), (30, 40), one);
+    let words = "fog a.png --depth depth.npy --visibility-m 5";
+    let text = refused(&folder, &format!("{words} -o b.png"), 1);
+    assert!(text.contains("negative unknown"), "{text}");
+    let words = format!("{words} --negative unknown");
+    let size = |quality: u8| {
+        succeed(
+            &folder,
+            &format!("{words} --quality {quality} -o {quality}.jpg"),
+        );
+        std::fs::metadata(folder.file(&format!("{quality}.jpg")))
+            .unwrap()
+            .len()
+    };
+    assert!(size(20) < size(95));
+    std::fs::create_dir(folder.file("out")).unwrap();
+    let text = succeed(&folder, &format!("{words} -o out/"));
+    assert!(
+        text.contains("2.000 to 2.000 m, 1 pixels unknown"),
+        "{text}"
+    );
+    assert!(folder.file("out/a.png").is_file());
+    // Millimetres taken for metres.
+    let text = remarks(&folder, &format!("{words} --depth-scale 1000 -o c.png"));
+    assert!(text.contains("hides every object"), "{text}");
+}
+
+#[cfg(unix)]
+#[test]
+fn pipes_are_read() {
+    let folder = Folder::new();
+    image::RgbImage::from_pixel(40, 30, image::Rgb([90, 80, 70]))
+        .save(folder.file("a.png"))
+        .unwrap();
+    npy(&folder.file("depth.npy"), (30, 40), |_| 2.0);
+    let mut command = command(
+        &folder,
+        "fog /dev/stdin --depth depth.npy --visibility-m 5 -o b.png",
+    );
+    let mut cat = std::process::Command::new("cat")
+        .arg(folder.file("a.png"))
+        .stdout(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    let output = command.stdin(cat.stdout.take().unwrap()).output().unwrap();
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    cat.wait().unwrap();
+    succeed(
+        &folder,
+        "fog a.png --depth depth.npy --visibility-m 5 -o c.png",
+    );
+    assert_eq!(pixels(&folder.file("b.png")), pixels(&folder.file("c.png")));
 }

@@ -1,6 +1,7 @@
 //! Depth maps: their meaning, and the conversion from the numbers of a file to metres.
 
 use super::picture::{Picture, SampleBits};
+use super::source::DecodeError;
 use super::{ExrLayer, Orientation};
 use crate::{ImageError, Notes, Size};
 use rayon::prelude::*;
@@ -40,12 +41,31 @@ pub enum UnknownDepth {
     Far,
     /// Free of fog: depth 0.
     Clear,
+    /// Sky above the topmost known pixel of each column; otherwise filled.
+    SkyAbove,
 }
 
 airlight::named! { UnknownDepth, "a treatment of unknown depth", [
     ("fill", (Fill), "filled from their neighbours"),
     ("far", (Far), "treated as sky"),
     ("clear", (Clear), "kept free of fog"),
+    ("sky-above", (SkyAbove), "above the topmost known pixel of their column treated as sky, otherwise filled"),
+] }
+
+/// How the components of a colour PNG hold depth.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum DepthPacking {
+    /// One number to a pixel; equal red, green and blue count as one.
+    #[default]
+    None,
+    /// 24 bits, the lowest in red, from 0 to 1000 m: CARLA. The largest number is sky.
+    Carla,
+}
+
+airlight::named! { DepthPacking, "a packing of depth", [
+    ("none", (None), "one number to a pixel, or equal red, green and blue"),
+    ("carla", (Carla), "24 bits in red (lowest), green and blue, up to 1000 m, as in CARLA"),
 ] }
 
 /// Settings for reading a depth file. The default is z-depth in metres.
@@ -53,10 +73,17 @@ airlight::named! { UnknownDepth, "a treatment of unknown depth", [
 pub struct DepthOptions {
     /// Meaning of the numbers.
     pub meaning: DepthMeaning,
-    /// Metres per unit of the file, above 0: 0.001 for millimetres. For disparity, pixels per unit; for inverse depth, 1/m per
-    /// unit.
+    /// Metres per unit of the file: 0.001 for millimetres. For disparity, pixels per unit; for inverse depth, 1/m per
+    /// unit. Above 0; with an offset also below, for numbers that decrease with depth.
     pub scale: f64,
-    /// Channel of an EXR file; in a file with several parts also as `PART.CHANNEL`.
+    /// Added to scaled depths, distances and inverse depths, m or 1/m, as for normalised depth; 0 is then a number as any other and
+    /// not unknown. `None`: 0 is unknown.
+    pub offset: Option<f64>,
+    /// How a colour PNG holds depth.
+    pub packing: DepthPacking,
+    /// Equal red, green and blue of an EXR file without a depth channel are depth.
+    pub grey_is_depth: bool,
+    /// Channel of an EXR file, or array of an NPZ file; in a file with several parts also as `PART.CHANNEL`.
     ///
     /// By default the first of `Z`, `depth.Z`, `depth.V`, `depth.Y`, `depth.R` and `depth` in the file, ignoring case; then a single
     /// channel whose name ends with one of them (`ViewLayer.Depth.Z`), a `Y` without `X` or `Z`, an `R` without `G`, `B`, `A`,
@@ -77,6 +104,9 @@ impl Default for DepthOptions {
         Self {
             meaning: DepthMeaning::default(),
             scale: 1.0,
+            offset: None,
+            packing: DepthPacking::None,
+            grey_is_depth: true,
             channel: None,
             beside: None,
             unknown: UnknownDepth::default(),
@@ -93,7 +123,16 @@ impl DepthOptions {
             let valid = value.is_finite() && value > 0.0;
             ImageError::require(valid, what, value, "a finite number above 0")
         };
-        positive("the scale of depth", self.scale)?;
+        match self.offset {
+            None => positive("the scale of depth", self.scale)?,
+            Some(offset) => {
+                let valid = self.scale.is_finite() && self.scale != 0.0;
+                let right = "a finite number other than 0";
+                ImageError::require(valid, "the scale of depth", self.scale, right)?;
+                let (valid, right) = (offset.is_finite(), "a finite number");
+                ImageError::require(valid, "the offset of depth", offset, right)?;
+            }
+        }
         if let Some(far) = self.far_from_m {
             positive("the distance in metres from which pixels are sky", far)?;
         }
@@ -158,6 +197,48 @@ impl DepthMap {
         }
     }
 
+    /// Enlarges or reduces a map of another size to that of a picture, if both have the same aspect ratio: each pixel takes the
+    /// nearest depth, since means of depths lie on no surface.
+    pub fn resized_like(mut self, picture: &Picture) -> Self {
+        let (from, to) = (self.size, picture.size);
+        let height = u64::from(from.width()) * u64::from(to.height());
+        let expected = u64::from(from.height()) * u64::from(to.width());
+        // Equal to less than half a pixel of the smaller one.
+        let pixel = u64::from(from.width().max(to.width()));
+        if from == to || 2 * height.abs_diff(expected) >= pixel {
+            return self;
+        }
+        let nearest = |n: u32, from: u32, to: u32| {
+            ((u64::from(n) * 2 + 1) * u64::from(from) / (2 * u64::from(to))) as usize
+        };
+        let columns: Vec<usize> = (0..to.width())
+            .map(|x| nearest(x, from.width(), to.width()))
+            .collect();
+        let width = from.width() as usize;
+        let rows = (0..to.height()).map(|y| nearest(y, from.height(), to.height()));
+        let metres = rows.flat_map(|y| columns.iter().map(move |x| y * width + x));
+        self.metres = metres.map(|at| self.metres[at]).collect();
+        self.infinite = self.metres.iter().filter(|m| m.is_infinite()).count() as u64;
+        self.size = to;
+        self.notes.add(format!(
+            "depth map resized from {} x {} to {} x {}",
+            from.width(),
+            from.height(),
+            to.width(),
+            to.height()
+        ));
+        self
+    }
+
+    /// Least and largest depth that is not infinite, m; `None` for a map of sky.
+    pub fn range_m(&self) -> Option<(f32, f32)> {
+        let finite = self.metres.iter().copied().filter(|m| m.is_finite());
+        finite.fold(None, |range, m| {
+            let (least, largest) = range.unwrap_or((m, m));
+            Some((least.min(m), largest.max(m)))
+        })
+    }
+
     /// Turns a map that lies as its picture lay in the file, which is seen by exchanged sides. Where the size leaves it open, the
     /// map is upright, and a note says so.
     pub fn turned_like(mut self, picture: &Picture) -> Self {
@@ -212,6 +293,19 @@ pub(super) struct RawDepth {
     pub(super) size: Size,
     pub(super) values: Vec<f32>,
     pub(super) bits: SampleBits,
+}
+
+/// Depth from red, green and blue, interleaved, that must be equal.
+pub(super) fn of_equal_components(rgb: &[f32]) -> Result<Vec<f32>, DecodeError> {
+    let pixels = rgb.as_chunks::<3>().0;
+    let is_grey = |[r, g, b]: &[f32; 3]| r.total_cmp(g).is_eq() && g.total_cmp(b).is_eq();
+    if pixels.iter().all(is_grey) {
+        return Ok(pixels.iter().map(|[r, ..]| *r).collect());
+    }
+    Err(DecodeError::invalid(
+        "expected one number to a pixel or equal red, green and blue, got colours; try depth-packing for depth in their bits, \
+         or depth-channel with a name",
+    ))
 }
 
 /// Number of pixels of each kind.
@@ -331,10 +425,12 @@ fn interpret(value: f32, options: &DepthOptions) -> Sample {
     let scaled = f64::from(value) * options.scale;
     match options.meaning {
         _ if value.is_nan() => Sample::Hole,
-        DepthMeaning::ZDepth | DepthMeaning::RayDistance => match value {
-            0.0 => Sample::Hole,
-            v if v < 0.0 => Sample::Negative,
-            v if v >= SKY => Sample::Metres(f64::INFINITY),
+        DepthMeaning::ZDepth | DepthMeaning::RayDistance => match (value, options.offset) {
+            (v, _) if v >= SKY => Sample::Metres(f64::INFINITY),
+            (_, Some(offset)) if scaled + offset < 0.0 => Sample::Negative,
+            (_, Some(offset)) => Sample::Metres(scaled + offset),
+            (0.0, None) => Sample::Hole,
+            (v, None) if v < 0.0 => Sample::Negative,
             _ => Sample::Metres(scaled),
         },
         DepthMeaning::Disparity {
@@ -352,7 +448,12 @@ fn interpret(value: f32, options: &DepthOptions) -> Sample {
             }
         }
         DepthMeaning::Inverse => match value {
+            v if v.is_infinite() && options.offset.is_some() => Sample::Hole,
             f32::INFINITY => Sample::Hole,
+            // Affine inverse depth is uncertain at its far end: below 0 is as far as 0.
+            _ if let Some(offset) = options.offset => {
+                Sample::Metres(1.0 / (scaled + offset).max(0.0))
+            }
             v if v < 0.0 => Sample::Negative,
             // 1 / 0 is infinite.
             _ => Sample::Metres(1.0 / scaled.abs()),

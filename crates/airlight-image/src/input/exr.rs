@@ -1,7 +1,7 @@
 //! OpenEXR decoder: any channels of one part, placed in the display window as 32-bit floats or as they are.
 
 use super::{
-    depth::RawDepth,
+    depth::{self, DepthOptions, RawDepth},
     exr_blocks::{self, Block, BlockLayout, failed},
     exr_channels::{self, ExrLayer},
     picture::{LightReference, Picture, REPAIRED, SampleBits, repair_colours, repair_opacity},
@@ -124,19 +124,33 @@ fn from_luma_chroma(samples: &mut [f32], weights: [f32; 3]) {
     }
 }
 
-/// Reads a depth channel; that of the layer of the colours `beside` which it lies, if they are known.
-pub(super) fn read_depth(
-    source: Source,
-    channel: Option<&str>,
-    beside: Option<&ExrLayer>,
-) -> Result<RawDepth, DecodeError> {
+/// Reads a depth channel; that of the layer of the colours beside which it lies, if they are known.
+pub(super) fn read_depth(source: Source, options: &DepthOptions) -> Result<RawDepth, DecodeError> {
     let file = ExrFile::open(source)?;
-    let (part, channel) = exr_channels::depth(file.headers(), channel, beside)?;
-    let bits = file.bits(part, &[channel]);
-    let loaded = file.load(part, &[&[channel]], &[], |_, _| 0)?;
+    let (channel, beside) = (options.channel.as_deref(), options.beside.as_ref());
+    let found = exr_channels::depth(file.headers(), channel, beside);
+    let (part, channels) = match found {
+        Ok((part, channel)) => (part, vec![channel]),
+        Err(error) if options.grey_is_depth && channel.is_none() => {
+            // Nothing but colours.
+            match exr_channels::colours(file.headers(), None) {
+                Ok(plain) if file.channel_count() == 3 + usize::from(plain.alpha.is_some()) => {
+                    (plain.part, plain.rgb.to_vec())
+                }
+                _ => return Err(error),
+            }
+        }
+        Err(error) => return Err(error),
+    };
+    let bits = file.bits(part, &channels);
+    let loaded = file.load(part, &[&channels], &[], |_, _| 0)?;
+    let mut values = loaded.groups.into_iter().next().unwrap_or_default();
+    if channels.len() > 1 {
+        values = depth::of_equal_components(&values)?;
+    }
     Ok(RawDepth {
         size: loaded.size,
-        values: loaded.groups.into_iter().next().unwrap_or_default(),
+        values,
         bits,
     })
 }
@@ -182,6 +196,12 @@ impl ExrFile {
 
     fn headers(&self) -> &[Header] {
         self.reader.headers()
+    }
+
+    /// Number of channels of all parts.
+    fn channel_count(&self) -> usize {
+        let headers = self.headers().iter();
+        headers.map(|header| header.channels.list.len()).sum()
     }
 
     /// Widest sample format of these channels.

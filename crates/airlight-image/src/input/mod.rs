@@ -13,13 +13,15 @@ mod hdr;
 mod hole_fill;
 mod jpeg;
 mod npy;
+mod npz;
 mod orientation;
 mod pfm;
 mod picture;
 mod png;
 mod source;
+mod tiff;
 
-pub use depth::{DepthKind, DepthMap, DepthMeaning, DepthOptions, UnknownDepth};
+pub use depth::{DepthKind, DepthMap, DepthMeaning, DepthOptions, DepthPacking, UnknownDepth};
 pub use exr_channels::ExrLayer;
 pub use orientation::Orientation;
 pub use picture::{LightReference, Picture, SampleBits};
@@ -33,7 +35,7 @@ use std::path::Path;
 const PICTURE_FORMATS: &str = "OpenEXR, Radiance HDR, PNG, JPEG";
 
 /// Formats of depth maps, as errors name them.
-const DEPTH_FORMATS: &str = "OpenEXR, PNG, NPY, PFM";
+const DEPTH_FORMATS: &str = "OpenEXR, PNG, NPY, NPZ, PFM, TIFF";
 
 /// Reads a picture.
 ///
@@ -66,15 +68,19 @@ pub fn read_picture(path: &Path, layer: Option<&str>) -> Result<Picture, ImageEr
             FileKind::Hdr => hdr::read(source),
             FileKind::Png => png::read(source),
             FileKind::Jpeg => jpeg::read(source),
-            FileKind::Npy | FileKind::Pfm => Err(DecodeError::Invalid(format!(
-                "expected a picture ({PICTURE_FORMATS}), got an array of numbers (NPY or PFM)"
+            FileKind::Npy | FileKind::Npz | FileKind::Pfm => Err(DecodeError::Invalid(format!(
+                "expected a picture ({PICTURE_FORMATS}), got an array of numbers (NPY, NPZ or PFM)"
+            ))),
+            FileKind::Tiff => Err(DecodeError::Invalid(format!(
+                "expected a picture ({PICTURE_FORMATS}), got a TIFF file; try saving it as PNG or EXR"
             ))),
         }
     })
 }
 
-/// Reads a depth map: EXR, PNG (grey, 8 or 16 bits), NPY (numbers of any type, shape `(h, w)`, `(h, w, 1)` or
-/// `(1, h, w)`) or PFM (whose scale factor is ignored).
+/// Reads a depth map: EXR, PNG (grey of 8 or 16 bits, equal red, green and blue, or [`DepthPacking`]), NPY (numbers of any type,
+/// shape `(h, w)`, `(h, w, 1)` or `(1, h, w)`), NPZ (the only array, or that called depth), PFM (whose scale factor is ignored) or
+/// TIFF (one number to a pixel).
 ///
 /// | number in the file | z-depth, distance | disparity | inverse |
 /// |---|---|---|---|
@@ -100,6 +106,12 @@ pub fn read_depth(path: &Path, options: &DepthOptions) -> Result<DepthMap, Image
                 hole_fill::fill_holes(&mut map.metres, map.size.width() as usize);
             }
             UnknownDepth::Far => replace_holes(&mut map.metres, f32::INFINITY),
+            UnknownDepth::SkyAbove => {
+                let width = map.size.width() as usize;
+                hole_fill::open_sky(&mut map.metres, width);
+                map.infinite = map.metres.iter().filter(|m| m.is_infinite()).count() as u64;
+                hole_fill::fill_holes(&mut map.metres, width);
+            }
             UnknownDepth::Clear => replace_holes(&mut map.metres, 0.0),
         }
     }
@@ -116,17 +128,25 @@ fn replace_holes(depth: &mut [f32], value: f32) {
 fn decode_depth(source: Source, options: &DepthOptions) -> Result<RawDepth, DecodeError> {
     let channel = options.channel.as_deref();
     if let Some(channel) = channel
-        && source.kind != FileKind::Exr
+        && !matches!(source.kind, FileKind::Exr | FileKind::Npz)
     {
         return Err(DecodeError::Invalid(format!(
             "expected an EXR file for channel `{channel}`: only EXR files have channels with names"
         )));
     }
+    if options.packing != DepthPacking::None && source.kind != FileKind::Png {
+        return Err(DecodeError::Invalid(format!(
+            "expected a PNG file for packed depth ({}), got another format",
+            options.packing
+        )));
+    }
     let kind = match source.kind {
-        FileKind::Exr => return exr::read_depth(source, channel, options.beside.as_ref()),
-        FileKind::Png => return png::read_depth(source),
+        FileKind::Exr => return exr::read_depth(source, options),
+        FileKind::Png => return png::read_depth(source, options.packing),
         FileKind::Npy => return npy::read(source),
+        FileKind::Npz => return npy::read(npz::open(source, channel)?),
         FileKind::Pfm => return pfm::read(source),
+        FileKind::Tiff => return tiff::read(source),
         FileKind::Jpeg => "a JPEG picture, whose compression alters depth",
         FileKind::Hdr => "a Radiance HDR picture",
     };

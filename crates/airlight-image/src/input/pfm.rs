@@ -11,8 +11,11 @@ use std::io::{BufRead, Read};
 const MAX_WORD: usize = 64;
 
 pub(super) fn read(mut source: Source) -> Result<RawDepth, DecodeError> {
+    let length = source.length;
     let reader = &mut source.reader;
-    match word(reader)?.as_str() {
+    let mut header = 0;
+    let mut word = || word(reader, &mut header);
+    match word()?.as_str() {
         "Pf" => {}
         "PF" => {
             return Err(DecodeError::invalid(
@@ -29,9 +32,9 @@ pub(super) fn read(mut source: Source) -> Result<RawDepth, DecodeError> {
         word.parse::<u64>()
             .map_err(|_| DecodeError::Invalid(format!("expected the PFM size, got `{word}`")))
     };
-    let (width, height) = (side(word(reader)?)?, side(word(reader)?)?);
+    let (width, height) = (side(word()?)?, side(word()?)?);
     let size = checked_size(width, height)?;
-    let order = word(reader)?;
+    let order = word()?;
     // The number is specified as a scale factor, but data sets write arbitrary values: only its sign is used.
     let little = match order.parse::<f64>() {
         Ok(n) if n < 0.0 => true,
@@ -43,6 +46,10 @@ pub(super) fn read(mut source: Source) -> Result<RawDepth, DecodeError> {
         }
     };
     let mut values = zeros(sample_count(size, 1))?;
+    // Where lines end in two characters, the second one is left.
+    if length == header + 1 + 4 * values.len() as u64 {
+        reader.read_exact(&mut [0])?;
+    }
     let width = size.width() as usize;
     let mut bytes = vec![0; width * 4];
     for row in values.chunks_exact_mut(width).rev() {
@@ -62,12 +69,13 @@ pub(super) fn read(mut source: Source) -> Result<RawDepth, DecodeError> {
     })
 }
 
-/// Reads the next word and one white space after it.
-fn word(reader: &mut impl BufRead) -> Result<String, DecodeError> {
+/// Reads the next word and one white space after it; adds their bytes to `count`.
+fn word(reader: &mut impl BufRead, count: &mut u64) -> Result<String, DecodeError> {
     let mut word = String::new();
     loop {
         let mut one = [0];
         reader.read_exact(&mut one)?;
+        *count += 1;
         match one[0] {
             b' ' | b'\t' | b'\n' | b'\r' if word.is_empty() => {}
             b' ' | b'\t' | b'\n' | b'\r' => return Ok(word),

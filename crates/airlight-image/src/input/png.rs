@@ -2,7 +2,7 @@
 
 use super::{
     colour::ColourDecoding,
-    depth::RawDepth,
+    depth::{DepthPacking, RawDepth, of_equal_components},
     exif::Exif,
     picture::{LightReference, Picture, SampleBits},
     source::{DecodeError, Source, TrackedFile, checked_size, reserve, sample_count},
@@ -75,28 +75,32 @@ pub(super) fn read(source: Source) -> Result<Picture, DecodeError> {
     Ok(picture.turned(exif.unwrap_or_default().orientation))
 }
 
-/// A depth map: grey of 8 or 16 bits, in the numbers of the file.
-pub(super) fn read_depth(source: Source) -> Result<RawDepth, DecodeError> {
+/// A depth map: grey of 8 or 16 bits, in the numbers of the file; or red, green and blue that are equal or packed.
+pub(super) fn read_depth(source: Source, packing: DepthPacking) -> Result<RawDepth, DecodeError> {
     let (mut reader, size) = start(source, Transformations::IDENTITY)?;
     let (color, depth) = reader.output_color_type();
-    let bits = match (color, depth) {
-        (ColorType::Grayscale, BitDepth::Eight) => SampleBits::U8,
-        (ColorType::Grayscale, BitDepth::Sixteen) => SampleBits::U16,
+    let components = match color {
+        ColorType::Grayscale => 1,
+        ColorType::Rgb => 3,
+        ColorType::Rgba => 4,
+        ColorType::GrayscaleAlpha | ColorType::Indexed => 0,
+    };
+    let bits = match (components, depth) {
+        (1.., BitDepth::Eight) => SampleBits::U8,
+        (1.., BitDepth::Sixteen) => SampleBits::U16,
         _ => {
             let kind = match color {
-                ColorType::Grayscale => "grey",
                 ColorType::GrayscaleAlpha => "grey and opacity",
-                ColorType::Rgb => "RGB",
-                ColorType::Rgba => "RGB and opacity",
                 ColorType::Indexed => "a palette",
+                _ => "grey",
             };
             return Err(DecodeError::Invalid(format!(
-                "expected a PNG depth map with grey of 8 or 16 bits and no opacity, got {kind} of {} bits",
+                "expected a PNG depth map with grey or colours of 8 or 16 bits, got {kind} of {} bits",
                 depth as u8
             )));
         }
     };
-    let mut values = reserve(sample_count(size, 1))?;
+    let mut values = reserve(sample_count(size, components))?;
     if bits == SampleBits::U16 {
         rows(&mut reader, |rows| {
             let (pairs, _) = rows.as_chunks::<2>();
@@ -107,8 +111,40 @@ pub(super) fn read_depth(source: Source) -> Result<RawDepth, DecodeError> {
             values.extend(rows.iter().copied().map(f32::from));
         })?;
     }
+    if components == 4 {
+        values = values
+            .chunks_exact(4)
+            .flat_map(|p| [p[0], p[1], p[2]])
+            .collect();
+    }
+    match (packing, components, bits) {
+        (DepthPacking::None, 1, _) => {}
+        (DepthPacking::None, ..) => values = of_equal_components(&values)?,
+        (DepthPacking::Carla, 3.., SampleBits::U8) => {
+            let pixels = values.chunks_exact(3);
+            let metres = |number: f32| match number {
+                CARLA_MAX => f32::INFINITY,
+                number => number * (1000.0 / CARLA_MAX),
+            };
+            values = pixels
+                .map(|p| metres(p[0] + 256.0 * p[1] + 65_536.0 * p[2]))
+                .collect();
+        }
+        (DepthPacking::Carla, ..) => {
+            return Err(DecodeError::invalid(
+                "expected red, green and blue of 8 bits for packed depth, got grey or 16 bits; try leaving out depth-packing",
+            ));
+        }
+    }
+    let bits = match packing {
+        DepthPacking::None => bits,
+        DepthPacking::Carla => SampleBits::U32,
+    };
     Ok(RawDepth { size, values, bits })
 }
+
+/// Largest number of 24 bits.
+const CARLA_MAX: f32 = 16_777_215.0;
 
 /// Bytes of the rows that are decoded while those before them are used.
 const BATCH_BYTES: usize = 1 << 18;

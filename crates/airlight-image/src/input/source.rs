@@ -21,11 +21,13 @@ pub(super) enum FileKind {
     Jpeg,
     Npy,
     Pfm,
+    Npz,
+    Tiff,
 }
 
 impl FileKind {
     fn from_magic(start: &[u8]) -> Option<Self> {
-        const MAGIC: [(&[u8], FileKind); 7] = [
+        const MAGIC: [(&[u8], FileKind); 12] = [
             (&[0x76, 0x2f, 0x31, 0x01], FileKind::Exr),
             (b"#?", FileKind::Hdr),
             (b"\x89PNG\r\n\x1a\n", FileKind::Png),
@@ -33,6 +35,11 @@ impl FileKind {
             (b"\x93NUMPY", FileKind::Npy),
             (b"Pf", FileKind::Pfm),
             (b"PF", FileKind::Pfm),
+            (b"PK\x03\x04", FileKind::Npz),
+            (b"II*\0", FileKind::Tiff),
+            (b"MM\0*", FileKind::Tiff),
+            (b"II+\0", FileKind::Tiff),
+            (b"MM\0+", FileKind::Tiff),
         ];
         MAGIC
             .iter()
@@ -67,12 +74,14 @@ enum Bytes {
 impl Source {
     /// The file with other contents, in memory.
     pub(super) fn with_bytes(self, bytes: Vec<u8>) -> Self {
+        let length = bytes.len() as u64;
         let tracked = TrackedFile {
             bytes: Bytes::Memory(Cursor::new(bytes)),
             ended: self.ended.clone(),
         };
         Self {
             reader: BufReader::new(tracked),
+            length,
             ..self
         }
     }

@@ -81,6 +81,23 @@ impl AtomicFile {
         ))
     }
 
+    /// Removes temporary files of processes that ended before they could: those in a folder whose target `is_wanted`, by its name.
+    /// Returns their number. A folder that cannot be read has none.
+    pub fn remove_leftovers(folder: &Path, is_wanted: impl Fn(&str) -> bool) -> u64 {
+        let folder = match folder.as_os_str().is_empty() {
+            true => Path::new("."),
+            false => folder,
+        };
+        let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+        let left = entries.filter(|entry| {
+            let name = entry.file_name();
+            let about = name.to_str().and_then(target_and_process);
+            about.is_some_and(|(target, process)| is_wanted(target) && !is_running(process))
+        });
+        left.filter(|entry| fs::remove_file(entry.path()).is_ok())
+            .count() as u64
+    }
+
     /// The open file.
     pub fn file(&self) -> &File {
         // Taken only by `commit`, which consumes the value.
@@ -110,4 +127,21 @@ impl Drop for AtomicFile {
             let _ = fs::remove_file(&self.temporary);
         }
     }
+}
+
+/// Name of the target and number of the process of a temporary file.
+fn target_and_process(name: &str) -> Option<(&str, u32)> {
+    let (target, numbers) = name
+        .strip_prefix('.')?
+        .strip_suffix(".part")?
+        .rsplit_once('.')?;
+    let (process, count) = numbers.split_once('-')?;
+    count.parse::<u64>().ok()?;
+    Some((target, process.parse().ok()?))
+}
+
+/// Whether a process may be running; where the system does not list processes, it may.
+fn is_running(process: u32) -> bool {
+    let list = Path::new("/proc");
+    !list.join("self").exists() || list.join(process.to_string()).exists()
 }

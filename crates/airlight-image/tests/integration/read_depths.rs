@@ -2,8 +2,11 @@
 
 use crate::common::{Folder, files::*, size};
 use airlight_image::{
-    DepthOptions, ImageError,
-    input::{DepthKind, DepthMeaning, UnknownDepth, read_depth, read_picture},
+    DepthMap, DepthOptions, ImageError, Picture,
+    input::{
+        DepthKind, DepthMeaning, DepthPacking, LightReference, SampleBits, UnknownDepth,
+        read_depth, read_picture,
+    },
 };
 
 fn options() -> DepthOptions {
@@ -244,4 +247,122 @@ fn a_measured_map_is_filled() {
     assert!(map.holes > 300, "{}", map.holes);
     // The wall is 6 m away, the tail light at 2 m and beyond.
     assert!(map.metres.iter().all(|z| (1.5..7.0).contains(z)));
+}
+
+#[test]
+fn holes_on_one_surface_are_exact_in_every_row() {
+    let folder = Folder::new("depth-ground");
+    // The ground below a level camera: 800 m over the row. A column of holes between equal neighbours.
+    let (width, height) = (8, 6);
+    let ground = |y: usize| if y == 0 { 1e9 } else { 800.0 / y as f32 };
+    let mut values: Vec<f32> = (0..width * height).map(|i| ground(i / width)).collect();
+    for y in 1..height {
+        values[y * width + 4] = 0.0;
+    }
+    let map = read_as(
+        &folder,
+        &pfm_file((width, height), true, &values),
+        &options(),
+    )
+    .unwrap();
+    for y in 1..height {
+        assert_eq!(map.metres[y * width + 4], ground(y), "{y}");
+    }
+}
+
+#[test]
+fn unknown_pixels_above_a_column_are_sky() {
+    let folder = Folder::new("depth-sky-above");
+    let o = 0.0;
+    let values = [o, o, 5.0, o, 4.0, o, 2.0, o, 5.0];
+    let options = DepthOptions {
+        unknown: UnknownDepth::SkyAbove,
+        ..options()
+    };
+    let map = read_as(&folder, &pfm_file((3, 3), true, &values), &options).unwrap();
+    assert_eq!(map.metres, [INF, INF, 5.0, INF, 4.0, 4.0, 2.0, 5.0, 5.0]);
+    assert_eq!((map.holes, map.infinite), (5, 3));
+}
+
+#[test]
+fn affine_normalised_and_inverted_depths() {
+    let folder = Folder::new("depth-affine");
+    let read = |meaning, scale, offset, values: &[f32]| {
+        let options = DepthOptions {
+            meaning,
+            scale,
+            offset: Some(offset),
+            ..options()
+        };
+        read_as(
+            &folder,
+            &pfm_file((values.len(), 1), true, values),
+            &options,
+        )
+    };
+    // From 0 at 2 m to 1 at 10 m, and from 1 at 2 m to 0 at 10 m.
+    let map = read(DepthMeaning::ZDepth, 8.0, 2.0, &[0.0, 0.5, 1.0]).unwrap();
+    assert_eq!((map.metres, map.holes), (vec![2.0, 6.0, 10.0], 0));
+    let map = read(DepthMeaning::ZDepth, -8.0, 10.0, &[0.0, 0.5, 1.0]).unwrap();
+    assert_eq!(map.metres, [10.0, 6.0, 2.0]);
+    let error = read(DepthMeaning::ZDepth, -8.0, 4.0, &[0.0, 1.0]).unwrap_err();
+    assert!(matches!(error, ImageError::NegativeDepth { .. }));
+    // Affine inverse depth, as networks estimate it.
+    let map = read(DepthMeaning::Inverse, 0.25, -0.25, &[0.0, 1.0, 2.0, 3.0]).unwrap();
+    assert_eq!(map.metres, [INF, INF, 4.0, 2.0]);
+}
+
+#[test]
+fn depth_in_the_bits_of_colours() {
+    let folder = Folder::new("depth-packed");
+    let rgb = |data: &[u8]| {
+        let (color, depth) = (png::ColorType::Rgb, png::BitDepth::Eight);
+        png_file((data.len() as u32 / 3, 1), color, depth, data, |_| {})
+    };
+    let carla = DepthOptions {
+        packing: DepthPacking::Carla,
+        ..options()
+    };
+    let data = [0, 0, 128, 255, 255, 255, 1, 0, 0];
+    let map = read_as(&folder, &rgb(&data), &carla).unwrap();
+    let metres = |number: f64| (1000.0 * number / f64::from((1 << 24) - 1)) as f32;
+    assert!((map.metres[0] - metres(128.0 * 65_536.0)).abs() < 1e-4);
+    assert_eq!(map.metres[1], INF);
+    assert!((map.metres[2] / metres(1.0) - 1.0).abs() < 1e-6);
+    let map = read_as(&folder, &rgb(&[7, 7, 7, 9, 9, 9]), &options()).unwrap();
+    assert_eq!(map.metres, [7.0, 9.0]);
+    let error = read_as(&folder, &rgb(&data), &options()).unwrap_err();
+    assert!(error.to_string().contains("depth-packing"), "{error}");
+    let error = read_as(&folder, &grey_16((1, 1), &[5]), &carla).unwrap_err();
+    assert!(error.to_string().contains("packed depth"), "{error}");
+}
+
+#[test]
+fn maps_of_another_size_take_the_nearest_depth() {
+    let picture = |width, height| {
+        let rgb = vec![0.0; (3 * width * height) as usize];
+        Picture::new(
+            size(width, height),
+            rgb,
+            LightReference::Display,
+            SampleBits::U8,
+        )
+    };
+    let map = DepthMap::new(size(2, 1), vec![1.0, INF], DepthKind::Z);
+    let large = map.clone().resized_like(&picture(4, 2));
+    assert_eq!(large.metres, [1.0, 1.0, INF, INF, 1.0, 1.0, INF, INF]);
+    assert_eq!((large.infinite, large.range_m()), (4, Some((1.0, 1.0))));
+    assert!(
+        large.notes.to_string().contains("2 x 1 to 4 x 2"),
+        "{}",
+        large.notes
+    );
+    // Another aspect ratio is another picture.
+    assert!(
+        map.clone()
+            .resized_like(&picture(4, 3))
+            .check_against(&picture(4, 3))
+            .is_err()
+    );
+    assert_eq!(map.resized_like(&picture(2, 1)).notes.to_string(), "");
 }

@@ -363,6 +363,11 @@ fn hdr_headers_are_applied() {
     let runs = read(&file("\n-Y 1 +X 260", &old)).unwrap();
     assert_eq!(runs.rgb.len(), 780);
     assert_eq!(runs.rgb[777..], [1.0, 0.5, 0.25]);
+    // Rows narrower than 8 pixels are never run-length encoded, whatever their first bytes.
+    let mut narrow = vec![2, 2, 10, 130];
+    narrow.extend([4, 208, 233, 130].repeat(3));
+    let plain = read(&file("\n-Y 1 +X 4", &narrow)).unwrap();
+    assert_eq!(plain.rgb[..3], [2.0 / 64.0, 2.0 / 64.0, 10.0 / 64.0]);
     for (header, said) in [
         ("FORMAT=16-bit\n\n-Y 1 +X 1", "32-bit_rle_rgbe"),
         ("\n+Y 1 +X 1", "-Y HEIGHT +X WIDTH"),

@@ -107,6 +107,12 @@ fn valid_files() -> Vec<(String, Vec<u8>, bool)> {
         npy_file(3, "'<f2'", true, "(1, 12, 10)", &bytes),
         false,
     );
+    let array = npy_file(1, "'<f4'", false, "(6, 10)", &bytes);
+    for deflated in [false, true] {
+        let archive = npz_file(&[("depth.npy", array.clone())], deflated);
+        add(&format!("npz {deflated}"), archive, false);
+    }
+    add("tiff", tiff_file((10, 6), &floats), false);
     add("pfm", pfm_file((10, 6), true, &floats), false);
     files
 }
@@ -242,7 +248,9 @@ fn arbitrary_bytes_after_a_magic_number() {
     let folder = Folder::new("robust-magic");
     let path = folder.0.join("file");
     let mut numbers = Numbers(7);
-    let magics: [&[u8]; 7] = [
+    let magics: [&[u8]; 9] = [
+        b"PK\x03\x04",
+        b"II*\0\x08\0\0\0",
         &[0x76, 0x2f, 0x31, 0x01, 2, 0, 0, 0],
         b"#?RADIANCE\n\n-Y 9 +X 9\n",
         b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR",

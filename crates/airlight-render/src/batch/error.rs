@@ -66,6 +66,13 @@ pub enum BatchError {
         path = .0.display()
     )]
     OneOutput(PathBuf),
+    /// An output for several pictures whose ending is not that of a picture: probably a folder.
+    #[error(
+        "expected a folder or a pattern for several pictures, got `{path}`, whose ending is not that of a picture; try `{path}/` for \
+         a folder, or `{path}/*.png`",
+        path = .0.display()
+    )]
+    OutputEnding(PathBuf),
     /// An output that is also an input.
     #[error("expected an output that is not an input, got `{path}`; try another output name", path = .0.display())]
     OutputIsInput(PathBuf),

@@ -74,10 +74,12 @@ pub struct FoundInputs {
     pub without_depth: Vec<String>,
     /// Depth files that belong to no picture.
     pub unused_depths: Vec<PathBuf>,
+    /// Files of the colour folder that are neither pictures nor depth maps.
+    pub passed_over: Vec<PathBuf>,
 }
 
 /// File extensions of depth maps.
-const DEPTH_ENDINGS: [&str; 4] = ["exr", "npy", "pfm", "png"];
+const DEPTH_ENDINGS: [&str; 7] = ["exr", "npy", "npz", "pfm", "png", "tif", "tiff"];
 
 /// Finds the pictures of a file, folder or pattern and the depth map of each: in `depth` (a file for all, a folder with files of
 /// the same names, or a pattern), or in the colour files if that is `None`. With `skip_unpaired`, pictures without depth are
@@ -90,7 +92,7 @@ pub fn find_inputs(
     depth: Option<&Path>,
     skip_unpaired: bool,
 ) -> Result<FoundInputs, BatchError> {
-    let colours = colours(colour)?;
+    let (colours, mut passed_over) = colours(colour)?;
     if colours.is_empty() {
         return Err(BatchError::NoPictures(colour.to_owned()));
     }
@@ -131,8 +133,11 @@ pub fn find_inputs(
         let total = missing.len() + inputs.len();
         return Err(BatchError::NoDepth { missing, total });
     }
+    let used: BTreeSet<&Path> = inputs.iter().map(|input| input.depth.as_path()).collect();
+    passed_over.retain(|path| !used.contains(path.as_path()));
     Ok(FoundInputs {
         unused_depths: depths.unused(&inputs),
+        passed_over,
         inputs,
         without_depth: missing,
     })
@@ -144,21 +149,23 @@ fn may_hold_depth(colour: &Path) -> bool {
     PictureFormat::from_path(colour).map_or(true, PictureFormat::holds_channels)
 }
 
-fn colours(path: &Path) -> Result<Vec<Match>, BatchError> {
+/// The pictures of a path, and the other files of a folder.
+fn colours(path: &Path) -> Result<(Vec<Match>, Vec<PathBuf>), BatchError> {
     Ok(match InputPath::new(path)? {
-        InputPath::Pattern(pattern) => pattern.files()?,
+        InputPath::Pattern(pattern) => (pattern.files()?, Vec::new()),
         InputPath::Folder(folder) => {
-            let mut files = files_within(&folder, "*")?;
-            files.retain(|file| PictureFormat::from_path(&file.path).is_ok());
+            let files = files_within(&folder, "*")?;
+            let is_picture = |file: &Match| PictureFormat::from_path(&file.path).is_ok();
+            let (mut files, others): (Vec<_>, Vec<_>) = files.into_iter().partition(is_picture);
             // With the extension, `a-b.png` would sort before `a.png`.
             files.sort();
-            files
+            (files, others.into_iter().map(|file| file.path).collect())
         }
         InputPath::File(path) => {
             let name = path.file_stem().and_then(|stem| stem.to_str());
             let name = name.ok_or_else(|| BatchError::NotUnicode(path.clone()))?;
             let captures = vec![name.to_owned()];
-            vec![Match { captures, path }]
+            (vec![Match { captures, path }], Vec::new())
         }
     })
 }

@@ -85,10 +85,28 @@ impl Manifest {
         })
     }
 
-    /// Name of an output in the manifest: its path relative to the manifest's folder if it is inside, otherwise the whole path.
+    /// Name of an output in the manifest: its path relative to the manifest's folder.
     pub fn name_of(&self, output: &Path) -> String {
         let absolute = std::path::absolute(output).unwrap_or_else(|_| output.to_owned());
-        let name = absolute.strip_prefix(&self.folder).unwrap_or(&absolute);
+        let common = self
+            .folder
+            .components()
+            .zip(absolute.components())
+            .take_while(|(a, b)| a == b)
+            .count();
+        let up = self
+            .folder
+            .components()
+            .skip(common)
+            .map(|_| Path::new(".."));
+        let down = absolute.components().skip(common);
+        let name: PathBuf = match common {
+            // On another drive.
+            0 => absolute.clone(),
+            _ => up
+                .chain(down.map(|part| Path::new(part.as_os_str())))
+                .collect(),
+        };
         name.to_string_lossy()
             .replace(std::path::MAIN_SEPARATOR, "/")
     }

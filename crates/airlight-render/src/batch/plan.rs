@@ -122,7 +122,10 @@ impl BatchPlan {
             OutputPath::Pattern(pattern) => pattern.path(&input.captures),
             OutputPath::Folder(folder) => {
                 let ending = input.colour.extension().unwrap_or_default();
-                let ending = ending.to_string_lossy();
+                let ending = match self.scene.overlay.layers {
+                    true => "exr".into(),
+                    false => ending.to_string_lossy(),
+                };
                 folder.join(format!("{}.{ending}", input.name()))
             }
         };
@@ -285,6 +288,9 @@ impl OutputPath {
         if ends_in_slash || path.is_dir() || path.extension().is_none() {
             return Ok(Self::Folder(path.to_owned()));
         }
+        if let (false, Err(_)) = (is_one, PictureFormat::from_path(path)) {
+            return Err(BatchError::OutputEnding(path.to_owned()));
+        }
         PictureFormat::from_path(path)?;
         match is_one {
             true => Ok(Self::File(path.to_owned())),
@@ -292,12 +298,15 @@ impl OutputPath {
         }
     }
 
-    /// The folder of the outputs.
+    /// The folder of the outputs of all variants.
     fn folder(&self) -> PathBuf {
-        match self {
+        let folder = match self {
             Self::File(path) => path.parent().map(Path::to_owned).unwrap_or_default(),
             Self::Folder(folder) => folder.clone(),
             Self::Pattern(pattern) => pattern.base().to_owned(),
-        }
+        };
+        let is_common =
+            |name: &std::path::Component<'_>| !name.as_os_str().to_string_lossy().contains(VARIANT);
+        folder.components().take_while(is_common).collect()
     }
 }

@@ -5,8 +5,10 @@ use super::record::{Record, differences};
 use super::{BatchError, BatchPlan, Input};
 use crate::RenderError;
 use crate::overlay::{OverlayImage, OverlayScene, PreparedOverlay, SkyLight};
+use airlight_image::output::AtomicFile;
 use airlight_image::{Control, ImageError, Notes};
-use std::path::Path;
+use std::collections::{HashMap, HashSet};
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -17,6 +19,8 @@ pub struct BatchRun<'a> {
     manifest: Manifest,
     tasks: Vec<Task<'a>>,
     light: Option<SkyLight>,
+    /// Number of unfinished files of earlier runs that were removed.
+    removed: u64,
 }
 
 /// Result of a batch.
@@ -59,6 +63,7 @@ impl BatchPlan {
                 manifest,
                 tasks,
                 light,
+                removed: remove_leftovers(self, &path),
             }),
             Err(refusal) => {
                 manifest.close()?;
@@ -123,13 +128,33 @@ impl BatchRun<'_> {
                 });
             }
         });
-        let report = worker
+        let mut report = worker
             .report
             .into_inner()
             .unwrap_or_else(PoisonError::into_inner);
         self.manifest.finish()?;
+        let text = "unfinished files of an earlier run removed";
+        report.notes.count(self.removed, text);
         Ok(report)
     }
+}
+
+/// Removes what killed runs left of the plan's pictures and of its manifest, which this run holds.
+fn remove_leftovers(plan: &BatchPlan, manifest: &Path) -> u64 {
+    let mut names: HashMap<PathBuf, HashSet<String>> = HashMap::new();
+    let outputs = plan
+        .pictures()
+        .map(|(input, variant)| plan.output(input, variant));
+    for path in outputs.chain([manifest.to_owned()]) {
+        if let (Some(folder), Some(name)) = (path.parent(), path.file_name()) {
+            let name = name.to_string_lossy().into_owned();
+            names.entry(folder.to_owned()).or_default().insert(name);
+        }
+    }
+    names
+        .iter()
+        .map(|(folder, names)| AtomicFile::remove_leftovers(folder, |name| names.contains(name)))
+        .sum()
 }
 
 /// The pictures that do not exist yet, by input.
@@ -296,7 +321,14 @@ impl Worker<'_> {
         self.manifest.add(&name, false, &record)?;
         let format = scene.overlay.output_format(output)?;
         let overlay = prepared.overlay(image)?;
-        image.write(&overlay, output, format, self.control.without_progress())?;
+        let control = self.control.without_progress();
+        let written = image.write(&overlay, &scene.overlay, output, format, control)?;
+        let mut notes = overlay.notes();
+        notes.count(
+            written.clamped_samples,
+            format!("samples {}", format.clamping()),
+        );
+        self.report().notes.merge(&notes);
         Ok(())
     }
 

@@ -13,6 +13,7 @@ mod ambient;
 mod fog_overlay;
 mod light_level;
 mod monte_carlo;
+mod output_rows;
 mod overlay_image;
 mod overlay_scene;
 mod place_lights;
@@ -29,11 +30,11 @@ pub use overlay_image::OverlayImage;
 pub use overlay_scene::{OverlayScene, OverlaySolver};
 pub use prepared_overlay::PreparedOverlay;
 pub use sky_light::SkyLight;
-pub use spec::{DepthFileKind, OverlaySpec};
+pub use spec::{DepthFileKind, NegativeDepth, OverlaySpec};
 
 use airlight::transfer::RgbPathOptics;
 use airlight_image::input::{DepthKind, DepthMap, LightReference, Picture};
-use airlight_image::{ImageError, Intrinsics, RowSource, Size};
+use airlight_image::{ImageError, Intrinsics, Notes, RowSource, Size};
 use ambient::horizon_pixels;
 use fog_overlay::FogSampler;
 use glam::DVec3;
@@ -160,6 +161,31 @@ impl<'a> Overlay<'a> {
         };
         let distances = depths.iter().zip(&lengths).map(distance);
         directions.into_iter().zip(distances).collect()
+    }
+
+    /// A note where the fog hides all objects or none, as with a wrong unit of depth; from a sample of the pixels.
+    pub fn notes(&self) -> Notes {
+        const SAMPLES: u32 = 16;
+        let (width, height) = (self.picture.size.width(), self.picture.size.height());
+        let (mut least, mut most) = (1.0f32, 0.0f32);
+        for row in 0..SAMPLES.min(height) {
+            let rays = self.rays(row * height / SAMPLES.min(height));
+            let step = width.div_ceil(SAMPLES) as usize;
+            for (direction, distance) in rays.into_iter().step_by(step) {
+                if distance.is_finite() && distance > 0.0 {
+                    let seen = self.fog.optics(direction, distance, None).transmittance;
+                    least = least.min(seen[1]);
+                    most = most.max(seen[1]);
+                }
+            }
+        }
+        let mut notes = Notes::default();
+        if most > 0.0 && least > 0.99 {
+            notes.add("the fog hides nothing: is the unit of depth (depth-scale) right?");
+        } else if least < 1.0 && most < 0.01 {
+            notes.add("the fog hides every object: is the unit of depth (depth-scale) right?");
+        }
+        notes
     }
 
     /// EXR names of the channels; opacity is last, if the picture has it. Colours and opacity belong to the layer from which they

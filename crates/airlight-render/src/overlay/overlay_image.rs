@@ -1,15 +1,17 @@
 //! [`OverlayImage`]: picture and depth map of an overlay, in memory.
 
+use super::output_rows::OutputRows;
 use super::{LightLevel, Overlay, OverlaySpec};
 use crate::RenderError;
+use airlight::spectrum::RgbSpace;
 use airlight_image::input::{
     DepthMap, DepthOptions, LightReference, Picture, SampleBits, read_depth, read_picture,
 };
 use airlight_image::output::{
-    Carried, Metadata, PictureFormat, PictureOptions, Written, exr, png, write_picture,
+    Carried, Metadata, PictureFormat, PictureOptions, Written, exr, jpeg, png, write_picture,
 };
-use airlight_image::tone::ToneMapper;
-use airlight_image::{Control, ImageError, Notes};
+use airlight_image::tone::{ToneCurve, ToneMapper};
+use airlight_image::{Control, ImageError, Notes, RowSource};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -30,7 +32,7 @@ impl OverlayImage {
     /// # Errors
     /// [`RenderError`] if their sizes differ.
     pub fn new(spec: &OverlaySpec, picture: Picture, depth: DepthMap) -> Result<Self, RenderError> {
-        let depth = depth.turned_like(&picture);
+        let depth = depth.turned_like(&picture).resized_like(&picture);
         depth.check_against(&picture)?;
         let ambient = LightLevel::ambient(spec, &picture, &depth);
         Ok(Self {
@@ -50,32 +52,54 @@ impl OverlayImage {
     /// Reads the colour picture and depth map of a description, for output in a format.
     ///
     /// # Errors
-    /// [`RenderError`] if one cannot be read, their sizes differ, or the format cannot store the picture's kind of values.
+    /// [`RenderError`] if one cannot be read, their sizes differ, or a setting does not apply to the picture.
     pub fn read(spec: &OverlaySpec, format: PictureFormat) -> Result<Self, RenderError> {
         let mut picture = read_picture(&spec.colour, spec.colour_layer.as_deref())?;
-        if !format.holds_alpha() {
-            picture.alpha = None;
+        if !format.holds_alpha() && picture.alpha.take().is_some() {
+            picture
+                .notes
+                .add("opacity left out, which the output cannot hold");
         }
-        let (values, endings) = match picture.reference {
-            LightReference::Scene => ("linear light", ".exr or .hdr"),
-            LightReference::Display => ("display values", ".png or .jpg"),
-        };
-        if format.is_linear() != (picture.reference == LightReference::Scene) {
-            return Err(RenderError::setting(format!(
-                "expected an output format for {values}, like that of `{}`, got another; try a name that ends in {endings}",
-                spec.colour.display(),
-            )));
+        if let (false, Some(carried)) = (format.holds_channels(), &picture.carried) {
+            let count = carried.channel_names().count() as u64;
+            let text = "other channels left out, which the output cannot hold";
+            picture.notes.count(count, text);
+        }
+        match (picture.reference, format.is_linear(), spec.brighten) {
+            (LightReference::Scene, false, _) => {
+                let white = (-spec.brighten.unwrap_or(0.0)).exp2() as f32;
+                let pixels = picture.rgb.as_chunks::<3>().0.iter();
+                let bright = pixels.filter(|rgb| rgb.iter().any(|v| *v > white));
+                let text = "pixels brighter than white are clipped in the output (brighten darkens by negative stops)";
+                picture.notes.count(bright.count() as u64, text);
+            }
+            (LightReference::Display, _, Some(stops)) => {
+                return Err(RenderError::value(
+                    "overlay.brighten",
+                    format!(
+                        "a picture of linear light, unlike `{}`",
+                        spec.colour.display()
+                    ),
+                    stops.to_string(),
+                    "leaving it out",
+                ));
+            }
+            _ => {}
         }
         let options = DepthOptions {
             beside: picture.layer.clone(),
             ..spec.depth_options()?
+        };
+        let inside = DepthOptions {
+            grey_is_depth: false,
+            ..options.clone()
         };
         let depth = match &spec.depth {
             Some(file) => read_depth(file, &options)?,
             None if picture.reference == LightReference::Display => {
                 return Err(spec.without_depth());
             }
-            None => read_depth(&spec.colour, &options).map_err(|error| match error {
+            None => read_depth(&spec.colour, &inside).map_err(|error| match error {
                 ImageError::NoChannel { .. } | ImageError::Read { .. } => {
                     RenderError::setting(format!(
                         "depth: expected a depth map, or an EXR picture with a depth channel, got neither ({error}); try depth \
@@ -99,27 +123,38 @@ impl OverlayImage {
         Some(Arc::new(carried.without_channels(&names)))
     }
 
-    /// Writes an overlay of this picture.
+    /// Writes an overlay of this picture. Light of a display becomes linear light relative to white in EXR and HDR; linear light is
+    /// clipped at 1, after brightening, in PNG and JPEG.
     ///
     /// # Errors
     /// [`RenderError`] if the file cannot be written; an existing `output` is then unchanged.
     pub fn write(
         &self,
         overlay: &Overlay<'_>,
+        spec: &OverlaySpec,
         output: &Path,
         format: PictureFormat,
         control: Control<'_>,
     ) -> Result<Written, RenderError> {
+        let converted = OutputRows::new(overlay, &self.picture, format);
+        let rows: &dyn RowSource = match &converted {
+            Some(converted) => converted,
+            None => overlay,
+        };
+        let is_display = self.picture.reference == LightReference::Display;
         let options = PictureOptions {
             exr: exr::ExrOptions {
                 precision: match (self.picture.bits, overlay.has_layers()) {
-                    (SampleBits::Half, false) => exr::SamplePrecision::Half,
+                    (SampleBits::Half | SampleBits::U8, false) => exr::SamplePrecision::Half,
                     _ => exr::SamplePrecision::Float,
                 },
                 ..Default::default()
             },
             metadata: Metadata {
-                chromaticities: self.picture.chromaticities,
+                chromaticities: match is_display {
+                    true => Some(RgbSpace::Srgb.into()),
+                    false => self.picture.chromaticities,
+                },
                 white_luminance_cd_m2: self.picture.white_luminance_cd_m2,
                 pixel_aspect: Some(self.picture.pixel_aspect),
                 carried: self.carried(overlay),
@@ -132,26 +167,26 @@ impl OverlayImage {
                 },
                 ..Default::default()
             },
-            ..Default::default()
+            jpeg: jpeg::JpegOptions {
+                quality: spec.quality.unwrap_or(jpeg::JpegOptions::default().quality),
+            },
         };
         let size = self.picture.size;
         Ok(match format.holds_channels() {
             true => {
                 let (names, metadata) = (overlay.channel_names(), &options.metadata);
                 let names: Vec<&str> = names.iter().map(String::as_str).collect();
-                exr::write(
-                    output,
-                    size,
-                    &names,
-                    overlay,
-                    &options.exr,
-                    metadata,
-                    control,
-                )?
+                exr::write(output, size, &names, rows, &options.exr, metadata, control)?
             }
             false => {
-                let tone = ToneMapper::as_displayed();
-                write_picture(output, size, overlay, &tone, &options, control)?
+                let tone = match is_display {
+                    true => ToneMapper::as_displayed(),
+                    false => {
+                        let exposure = spec.brighten.unwrap_or(0.0).exp2() as f32;
+                        ToneMapper::new(exposure, ToneCurve::Clip)?
+                    }
+                };
+                write_picture(output, size, rows, &tone, &options, control)?
             }
         })
     }

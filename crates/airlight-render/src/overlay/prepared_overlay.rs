@@ -146,7 +146,7 @@ impl PreparedOverlay {
             .overlay(image)?
             .with_path_radiance(&pass.path_radiance)?;
         let format = scene.overlay.output_format(output)?;
-        let written = image.write(&overlay, output, format, control)?;
+        let written = image.write(&overlay, &scene.overlay, output, format, control)?;
         if scene.scene.output.noise_map == Some(true) {
             let size = image.picture.size;
             let path = tagged_path(output, "noise").with_extension("exr");

@@ -4,7 +4,7 @@ use super::ExistingAerial;
 use crate::RenderError;
 use airlight::fog::lights::LightForm;
 use airlight_image::frame::{Intrinsics, PixelCentres};
-use airlight_image::input::{DepthMeaning, DepthOptions, UnknownDepth};
+use airlight_image::input::{DepthMeaning, DepthOptions, DepthPacking, UnknownDepth};
 use airlight_image::output::PictureFormat;
 use airlight_image::{ImageError, Size};
 use serde::{Deserialize, Serialize};
@@ -32,6 +32,22 @@ airlight::named! { DepthFileKind, "a kind of depth", [
     ("inverse", (Inverse), "inverse depth"),
 ] }
 
+/// Treatment of negative depths.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum NegativeDepth {
+    /// An error, which names the first.
+    #[default]
+    Refuse,
+    /// Unknown depth.
+    Unknown,
+}
+
+airlight::named! { NegativeDepth, "a treatment of negative depth", [
+    ("refuse", (Refuse), "an error"),
+    ("unknown", (Unknown), "unknown depth"),
+] }
+
 /// Colour picture, depth map and light level of an overlay: the table `[overlay]` of a scene file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -47,11 +63,20 @@ pub struct OverlaySpec {
     pub depth: Option<PathBuf>,
     /// Meaning of the depth map's values.
     pub depth_kind: DepthFileKind,
-    /// Metres for each unit of depth (disparity: pixels, inverse: 1/m), above 0.
+    /// Metres for each unit of depth (disparity: pixels, inverse: 1/m), above 0; with `depth_offset` also below.
     pub depth_scale: f64,
+    /// Added to scaled depth, m (inverse: 1/m), as for normalised depth; 0 in the file is then not unknown.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub depth_offset: Option<f64>,
+    /// How the components of a colour PNG hold depth; `None`: one number to a pixel.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub depth_packing: Option<DepthPacking>,
     /// Channel of an EXR depth file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub depth_channel: Option<String>,
+    /// Treatment of negative depths; `None`: an error.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub negative: Option<NegativeDepth>,
     /// Treatment of pixels of unknown depth.
     pub holes: UnknownDepth,
     /// Pixels at this distance or beyond are sky, m.
@@ -90,6 +115,12 @@ pub struct OverlaySpec {
     pub light_form: LightForm,
     /// Whether transmittance, path radiance and distance are written as additional layers (EXR).
     pub layers: bool,
+    /// Quality of a JPEG output, 1 to 100; `None`: 92.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub quality: Option<u8>,
+    /// Stops by which linear light is brightened in a PNG or JPEG output (negative: darkened), where 1 is white; `None`: 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub brighten: Option<f64>,
 }
 
 impl Default for OverlaySpec {
@@ -100,6 +131,9 @@ impl Default for OverlaySpec {
             depth: None,
             depth_kind: DepthFileKind::Z,
             depth_scale: 1.0,
+            depth_offset: None,
+            depth_packing: None,
+            negative: None,
             depth_channel: None,
             holes: UnknownDepth::Fill,
             far_m: None,
@@ -115,6 +149,8 @@ impl Default for OverlaySpec {
             air: ExistingAerial::Drawn,
             light_form: LightForm::Exact,
             layers: false,
+            quality: None,
+            brighten: None,
         }
     }
 }
@@ -153,21 +189,40 @@ impl OverlaySpec {
                 }
             },
         };
+        if self.depth_offset.is_none() && self.depth_scale <= 0.0 {
+            return Err(RenderError::value(
+                "overlay.depth_scale",
+                "a number above 0, or an offset for depth that decreases",
+                self.depth_scale.to_string(),
+                "depth-offset with the depth of 0, in metres",
+            ));
+        }
+        if self.depth_offset.is_some() && self.depth_kind == DepthFileKind::Disparity {
+            return Err(RenderError::value(
+                "overlay.depth_offset",
+                "depth, distance or inverse depth",
+                "disparity",
+                "disparity-offset-px",
+            ));
+        }
         Ok(DepthOptions {
             meaning,
             scale: self.depth_scale,
+            offset: self.depth_offset,
+            packing: self.depth_packing.unwrap_or_default(),
+            grey_is_depth: true,
             channel: self.depth_channel.clone(),
             beside: None,
             unknown: self.holes,
             far_from_m: self.far_m,
-            negative_is_unknown: false,
+            negative_is_unknown: self.negative == Some(NegativeDepth::Unknown),
         })
     }
 
     /// Format of an output, from its extension.
     ///
     /// # Errors
-    /// [`RenderError`] for an unknown extension, or that of a format that cannot store the layers.
+    /// [`RenderError`] for an unknown extension, or that of a format that cannot store the layers or has no such setting.
     pub fn output_format(&self, output: &Path) -> Result<PictureFormat, RenderError> {
         let format = PictureFormat::from_path(output)?;
         if self.layers && !format.holds_channels() {
@@ -175,6 +230,29 @@ impl OverlaySpec {
                 "layers: expected an OpenEXR output, got `{}`; try a name that ends in .exr",
                 output.display()
             )));
+        }
+        let refuse = |key: &str, expected: &str, advice: &str| {
+            let got = format!("`{}`", output.display());
+            Err(RenderError::value(
+                format!("overlay.{key}"),
+                expected,
+                got,
+                advice,
+            ))
+        };
+        if self.quality.is_some() && format != PictureFormat::JPEG {
+            return refuse(
+                "quality",
+                "a JPEG output",
+                "a name that ends in .jpg, or leaving it out",
+            );
+        }
+        if self.brighten.is_some() && format.is_linear() {
+            return refuse(
+                "brighten",
+                "a PNG or JPEG output, as others keep the light of the picture",
+                "a name that ends in .png, or leaving it out",
+            );
         }
         Ok(format)
     }

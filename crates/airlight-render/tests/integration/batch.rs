@@ -508,7 +508,85 @@ fn a_single_picture_is_what_a_batch_makes_of_it() {
     let prepared = PreparedOverlay::new(&scene, &image, None).unwrap();
     let rows = prepared.overlay(&image).unwrap();
     image
-        .write(&rows, output, format, Control::default())
+        .write(&rows, &scene.overlay, output, format, Control::default())
         .unwrap();
     assert_eq!(folder.bytes("one.png"), folder.bytes("out/a.png"));
+}
+
+#[test]
+fn the_manifest_lies_above_the_folders_of_variants() {
+    let folder = Pictures::new(&["a"]);
+    let settings = || BatchSettings {
+        variants: NonZeroU32::new(2),
+        ..vary(&["visibility=5..9"])
+    };
+    let scene = || folder.varied("rgb/*.png", "depth/*.png", "v/{variant}/*.png");
+    assert_eq!(made(scene(), settings()), 2);
+    let lines = folder.manifest("v/manifest.jsonl");
+    assert_eq!(
+        lines.keys().collect::<Vec<_>>(),
+        ["0001/a.png", "0002/a.png"]
+    );
+    // A manifest in another folder names outputs from there.
+    let elsewhere = BatchSettings {
+        manifest: Some(folder.file("rgb/m.jsonl")),
+        ..settings()
+    };
+    let scene = || folder.varied("rgb/*.png", "depth/*.png", "w/{variant}/*.png");
+    assert_eq!(made(scene(), elsewhere.clone()), 2);
+    let lines = folder.manifest("rgb/m.jsonl");
+    assert!(lines.contains_key("../w/0002/a.png"), "{:?}", lines.keys());
+    assert_eq!(made(scene(), elsewhere), 0);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn unfinished_files_of_killed_runs_are_removed() {
+    let folder = Pictures::new(&["a"]);
+    fs::create_dir(folder.file("out")).unwrap();
+    // Numbers of processes are below 2^22.
+    let (dead, alive) = (u32::MAX, std::process::id());
+    for name in [
+        format!(".a.png.{dead}-0.part"),
+        format!(".manifest.jsonl.{dead}-7.part"),
+        format!(".a.png.{alive}-9999999.part"),
+        format!(".other.png.{dead}-0.part"),
+    ] {
+        fs::write(folder.file("out").join(name), "").unwrap();
+    }
+    let report = run(folder.usual(8.0), BatchSettings::default()).unwrap();
+    assert!(
+        report.notes.to_string().contains("2 unfinished files"),
+        "{}",
+        report.notes
+    );
+    assert_eq!(
+        folder.names("out"),
+        [
+            format!(".a.png.{alive}-9999999.part"),
+            format!(".other.png.{dead}-0.part"),
+            "a.png".to_owned(),
+            "manifest.jsonl".to_owned(),
+        ]
+    );
+}
+
+#[test]
+fn what_a_batch_passes_over_or_takes_for_a_folder_is_said() {
+    let folder = Pictures::new(&["a"]);
+    for name in ["b.webp", "c.bmp", "depth.npy"] {
+        fs::write(folder.file("rgb").join(name), "").unwrap();
+    }
+    let scene = folder.scene("rgb", "depth", "out", 8.0);
+    let plan = BatchPlan::new(scene, BatchSettings::default()).unwrap();
+    let expected = ["rgb/b.webp", "rgb/c.bmp", "rgb/depth.npy"].map(|name| folder.file(name));
+    assert_eq!(plan.found().passed_over, expected);
+    let dotted = folder.scene("rgb/*.png", "depth/*.png", "foggy_v1.0", 8.0);
+    let sentence = refused(dotted, BatchSettings::default());
+    assert!(sentence.contains("foggy_v1.0/` for a folder"), "{sentence}");
+    // With layers, a folder gets EXR files.
+    let mut layers = folder.scene("rgb", "depth", "layers", 8.0);
+    layers.overlay.layers = true;
+    assert_eq!(made(layers, BatchSettings::default()), 1);
+    assert!(folder.file("layers/a.exr").is_file());
 }

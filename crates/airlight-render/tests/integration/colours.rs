@@ -73,6 +73,7 @@ fn what_a_file_states_is_written_again() {
     image
         .write(
             &prepared.overlay(&image).unwrap(),
+            &scene.overlay,
             &path,
             PictureFormat::EXR,
             Control::default(),

@@ -138,6 +138,57 @@ pub fn npy_file(version: u8, descr: &str, fortran: bool, shape: &str, data: &[u8
     bytes
 }
 
+/// An NPZ archive of files, deflated or stored.
+pub fn npz_file(arrays: &[(&str, Vec<u8>)], deflated: bool) -> Vec<u8> {
+    let (mut bytes, mut directory) = (Vec::new(), Vec::new());
+    for (name, array) in arrays {
+        let packed = match deflated {
+            true => {
+                let mut packed = Vec::with_capacity(array.len() + 100);
+                let mut deflate = flate2::Compress::new(flate2::Compression::fast(), false);
+                let finish = flate2::FlushCompress::Finish;
+                deflate.compress_vec(array, &mut packed, finish).unwrap();
+                packed
+            }
+            false => array.clone(),
+        };
+        let mut about = vec![20, 0, 0, 0, if deflated { 8 } else { 0 }, 0, 0, 0, 0, 0];
+        about.extend([0; 4]);
+        about.extend((packed.len() as u32).to_le_bytes());
+        about.extend((array.len() as u32).to_le_bytes());
+        about.extend((name.len() as u16).to_le_bytes());
+        about.extend([0, 0]);
+        directory.extend(b"PK\x01\x02\x14\0");
+        directory.extend(&about);
+        directory.extend([0; 10]);
+        directory.extend((bytes.len() as u32).to_le_bytes());
+        directory.extend(name.bytes());
+        bytes.extend(b"PK\x03\x04");
+        bytes.extend(&about);
+        bytes.extend(name.bytes());
+        bytes.extend(packed);
+    }
+    let start = bytes.len() as u32;
+    bytes.extend(&directory);
+    let count = (arrays.len() as u16).to_le_bytes();
+    bytes.extend(b"PK\x05\x06\0\0\0\0");
+    bytes.extend(count.iter().chain(&count));
+    bytes.extend((directory.len() as u32).to_le_bytes());
+    bytes.extend(start.to_le_bytes());
+    bytes.extend([0, 0]);
+    bytes
+}
+
+/// A TIFF file of 32-bit floats, uncompressed.
+pub fn tiff_file((width, height): (u32, u32), values: &[f32]) -> Vec<u8> {
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    let mut encoder = tiff::encoder::TiffEncoder::new(&mut bytes).unwrap();
+    encoder
+        .write_image::<tiff::encoder::colortype::Gray32Float>(width, height, values)
+        .unwrap();
+    bytes.into_inner()
+}
+
 /// A PFM file; `rows` from the top.
 pub fn pfm_file((width, height): (usize, usize), little: bool, rows: &[f32]) -> Vec<u8> {
     let order = if little { "-0.003922" } else { "1.0" };
