@@ -4,7 +4,7 @@ use airlight::axes;
 use airlight::monte_carlo::{Estimate, PolarisedEstimate};
 use airlight::scene::{Channels, RadianceSampler, RadianceView};
 use airlight::spectrum::{RgbSpace, WavelengthGrid};
-use airlight::sun::SunDisc;
+use airlight::sun::{LimbDarkening, SunDisc};
 use glam::DVec3;
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -30,17 +30,37 @@ impl TestView {
     pub fn with_sun(sun: DVec3) -> Self {
         Self {
             sun,
-            disc: SunDisc::default(),
+            disc: SunDisc {
+                limb_darkening: LimbDarkening::Uniform,
+                ..SunDisc::default()
+            },
         }
     }
 
-    /// Irradiance, on a surface that faces the sun, by the part of the disc above the horizon.
+    /// The same with the limb darkening of the sun, and the same irradiance by the whole disc.
+    pub fn with_limb_darkening(mut self) -> Self {
+        self.disc = SunDisc::default();
+        self
+    }
+
+    /// Radiance of the disc at an angle from its centre.
+    fn disc_radiance(&self, angle_rad: f64) -> f64 {
+        let area = PI * self.disc.angular_radius_rad.sin().powi(2);
+        f64::from(Self::SUN) * area * self.disc.radiance_per_irradiance(angle_rad, 550.0)
+    }
+
+    /// Radiance times solid angle of the part of the disc above the horizon.
     pub fn disc_irradiance_above_horizon(&self) -> f64 {
         let radius = self.disc.angular_radius_rad;
-        // The visible part of the radius from the centre down, and the area of the segment below it.
-        let down = (axes::elevation_deg(self.sun).to_radians() / radius).clamp(-1.0, 1.0);
-        let hidden = (down.acos() - down * (1.0 - down * down).sqrt()) / PI;
-        f64::from(Self::SUN) * PI * radius.sin().powi(2) * (1.0 - hidden)
+        let elevation = axes::elevation_rad(self.sun);
+        // Rings, each with the visible part of its circle.
+        const RINGS: u32 = 20_000;
+        let ring = |k: u32| {
+            let angle = radius * (f64::from(k) + 0.5) / f64::from(RINGS);
+            let half = (-elevation.tan() / angle.tan()).clamp(-1.0, 1.0).acos();
+            2.0 * half * angle.sin() * self.disc_radiance(angle)
+        };
+        (0..RINGS).map(ring).sum::<f64>() * radius / f64::from(RINGS)
     }
 
     fn each(directions: &[DVec3], out: &mut [f32], value: impl Fn(DVec3) -> f32) {
@@ -82,11 +102,9 @@ impl RadianceView for TestView {
     }
 
     fn sun_disc(&self, directions: &[DVec3], out: &mut [f32]) {
-        Self::each(directions, out, |d| {
-            match d.y >= 0.0 && d.angle_between(self.sun) < self.disc.angular_radius_rad {
-                true => Self::SUN,
-                false => 0.0,
-            }
+        Self::each(directions, out, |d| match d.y >= 0.0 {
+            true => self.disc_radiance(d.angle_between(self.sun)) as f32,
+            false => 0.0,
         });
     }
 

@@ -19,6 +19,8 @@ pub(super) enum Lens {
     Cube {
         face: CubeFace,
         side: f64,
+        /// Factor on the x component of directions: -1 for mirrored faces.
+        x_factor: f64,
     },
     Fisheye {
         axes: CameraAxes,
@@ -85,6 +87,12 @@ impl Lens {
             Projection::CubeFace(face) => Self::Cube {
                 face: *face,
                 side: width,
+                x_factor: 1.0,
+            },
+            Projection::MirroredCubeFace(face) => Self::Cube {
+                face: *face,
+                side: width,
+                x_factor: -1.0,
             },
             Projection::AngularFisheye(fisheye) => {
                 let half_angle = fisheye.field_of_view_deg.to_radians() / 2.0;
@@ -116,9 +124,15 @@ impl Lens {
                 self.azimuth(px).sin_cos(),
                 self.elevation(py).sin_cos(),
             )),
-            Self::Cube { face, side } => {
+            Self::Cube {
+                face,
+                side,
+                x_factor,
+            } => {
                 let (s, t) = (2.0 * px / side - 1.0, 2.0 * py / side - 1.0);
-                Some(from_face(*face, s, t).normalize())
+                let mut direction = from_face(*face, s, t).normalize();
+                direction.x *= x_factor;
+                Some(direction)
             }
             Self::Fisheye {
                 axes,
@@ -164,7 +178,12 @@ impl Lens {
                     (0.5 - elevation / PI) * size.1,
                 ))
             }
-            Self::Cube { face, side } => {
+            Self::Cube {
+                face,
+                side,
+                x_factor,
+            } => {
+                let direction = DVec3::new(direction.x * x_factor, direction.y, direction.z);
                 let (s, t) = on_face(*face, direction)?;
                 Some(((s + 1.0) / 2.0 * side, (t + 1.0) / 2.0 * side))
             }
@@ -205,31 +224,36 @@ impl Lens {
         }
     }
 
-    pub(super) fn solid_angle(&self, i: u32, j: u32) -> f64 {
-        let (i, j) = (f64::from(i), f64::from(j));
+    /// Solid angle of the rectangle between two columns and two rows.
+    pub(super) fn solid_angle(&self, x: (f64, f64), y: (f64, f64)) -> f64 {
         match self {
             Self::Equirectangular { size, .. } => {
-                band_solid_angle(self.elevation(j + 1.0), self.elevation(j)) / size.0
+                let turn = (x.1 - x.0) / size.0;
+                turn * band_solid_angle(self.elevation(y.1), self.elevation(y.0))
             }
             Self::Cube { side, .. } => {
                 let at = |n: f64| 2.0 * n / side - 1.0;
-                rectangle_solid_angle((at(i), at(i + 1.0)), (at(j), at(j + 1.0)))
+                rectangle_solid_angle((at(x.0), at(x.1)), (at(y.0), at(y.1)))
             }
             Self::Perspective { size, tangents, .. } => {
-                let x = |n: f64| (2.0 * n / size.0 - 1.0) * tangents.0;
-                let y = |n: f64| (2.0 * n / size.1 - 1.0) * tangents.1;
-                rectangle_solid_angle((x(i), x(i + 1.0)), (y(j), y(j + 1.0)))
+                let across = |n: f64| (2.0 * n / size.0 - 1.0) * tangents.0;
+                let down = |n: f64| (2.0 * n / size.1 - 1.0) * tangents.1;
+                rectangle_solid_angle((across(x.0), across(x.1)), (down(y.0), down(y.1)))
             }
             Self::Fisheye {
                 center,
                 radians_per_pixel,
                 half_angle,
                 ..
-            } => fisheye_pixel_solid_angle(
-                (i - center.0, j - center.1),
-                *radians_per_pixel,
-                *half_angle,
-            ),
+            } => {
+                let across = |n: f64| (n - center.0) * radians_per_pixel;
+                let down = |n: f64| (n - center.1) * radians_per_pixel;
+                fisheye_solid_angle(
+                    (across(x.0), across(x.1)),
+                    (down(y.0), down(y.1)),
+                    *half_angle,
+                )
+            }
         }
     }
 
@@ -295,29 +319,40 @@ fn band_solid_angle(bottom: f64, top: f64) -> f64 {
 
 /// Solid angle of a rectangle in the plane at distance 1, given by its edges.
 fn rectangle_solid_angle(x: (f64, f64), y: (f64, f64)) -> f64 {
+    /// Longest side up to which quadrature is exact to rounding, where the closed form cancels.
+    const SMALL: f64 = 0.01;
+    if x.1 - x.0 <= SMALL && y.1 - y.0 <= SMALL {
+        return over_rectangle(x, y, |x, y| (1.0 + x * x + y * y).powf(-1.5));
+    }
     // The rectangle from the axis to the corner (x, y) has the solid angle atan(x y / sqrt(1 + x^2 + y^2)).
     let corner = |x: f64, y: f64| (x * y).atan2((1.0 + x * x + y * y).sqrt());
     corner(x.1, y.1) - corner(x.0, y.1) - corner(x.1, y.0) + corner(x.0, y.0)
 }
 
-/// Solid angle of a pixel of an equidistant fisheye with its upper left corner at `corner` (pixels from the centre): 9-point
-/// Gauss-Legendre quadrature of `sin(theta) / theta`; points outside the circle have weight 0.
-fn fisheye_pixel_solid_angle(corner: (f64, f64), radians_per_pixel: f64, half_angle: f64) -> f64 {
+/// Solid angle of a rectangle of an equidistant fisheye, given by its edges (rad from the axis): the integral of
+/// `sin(theta) / theta` inside the circle.
+fn fisheye_solid_angle(x: (f64, f64), y: (f64, f64), half_angle: f64) -> f64 {
+    over_rectangle(x, y, |x, y| match x.hypot(y) {
+        theta if theta > half_angle => 0.0,
+        theta if theta < 1e-4 => 1.0 - theta * theta / 6.0,
+        theta => theta.sin() / theta,
+    })
+}
+
+/// Integral of a density over a rectangle, by 9-point Gauss-Legendre quadrature.
+fn over_rectangle(
+    (left, right): (f64, f64),
+    (top, bottom): (f64, f64),
+    density: impl Fn(f64, f64) -> f64,
+) -> f64 {
     let offset = 0.5 * 0.6f64.sqrt();
     let points = [(0.5 - offset, 5.0), (0.5, 8.0), (0.5 + offset, 5.0)];
+    let (width, height) = (right - left, bottom - top);
     let mut sum = 0.0;
     for (x, weight_x) in points {
         for (y, weight_y) in points {
-            let theta = (corner.0 + x).hypot(corner.1 + y) * radians_per_pixel;
-            if theta <= half_angle {
-                let density = if theta < 1e-4 {
-                    1.0 - theta * theta / 6.0
-                } else {
-                    theta.sin() / theta
-                };
-                sum += density * (weight_x * weight_y) / 324.0;
-            }
+            sum += weight_x * weight_y * density(left + x * width, top + y * height);
         }
     }
-    sum * radians_per_pixel * radians_per_pixel
+    sum * width * height / 324.0
 }

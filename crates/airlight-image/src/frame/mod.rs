@@ -107,7 +107,14 @@ impl Frame {
         if i >= self.size.width() || j >= self.size.height() {
             return 0.0;
         }
-        self.lens.solid_angle(i, j)
+        let (i, j) = (f64::from(i), f64::from(j));
+        self.solid_angle((i, i + 1.0), (j, j + 1.0))
+    }
+
+    /// Solid angle in steradians of the rectangle between two columns `x` and two rows `y` in continuous pixel coordinates, which
+    /// must lie in the picture; as exact as [`Frame::pixel_solid_angle`] for rectangles up to the size of a pixel.
+    pub fn solid_angle(&self, x: (f64, f64), y: (f64, f64)) -> f64 {
+        self.lens.solid_angle(x, y)
     }
 
     /// Prepares directions of whole rows: the same bits as [`Frame::pixel_direction`], without trigonometry per pixel where the

@@ -9,13 +9,17 @@ pub enum Projection {
     /// The whole sphere: azimuth increases linearly from left to right, elevation decreases linearly from the zenith (top
     /// edge) to the nadir. With north in the centre, west is on the left and east on the right.
     ///
-    /// OpenEXR's latitude-longitude environment maps have +z in the centre: that is south, an azimuth of 180 degrees.
+    /// OpenEXR's latitude-longitude environment maps differ: they have south (+z) in the centre, and the outermost samples lie on
+    /// the poles and the seam.
     Equirectangular {
         /// Azimuth of the centre of the picture, degrees clockwise from north.
         center_azimuth_deg: f64,
     },
     /// A face of a cube map for sampling by world direction in a graphics API.
     CubeFace(CubeFace),
+    /// A face of a cube map for programs that sample it with the direction mirrored in x, as three.js' `CubeTextureLoader` does:
+    /// the face +X is what the eye sees towards -X, and no face is a mirror image.
+    MirroredCubeFace(CubeFace),
     /// Equidistant: the angle from the central direction is proportional to the distance from the centre of the picture.
     AngularFisheye(Fisheye),
     /// Rectilinear: a pinhole camera.
@@ -121,11 +125,12 @@ impl Camera {
 }
 
 impl Projection {
-    /// Name of the kind of projection: "equirectangular", "cube face", "fisheye" or "perspective".
+    /// Name of the kind of projection, such as "equirectangular" or "cube face".
     pub fn name(&self) -> &'static str {
         match self {
             Self::Equirectangular { .. } => "equirectangular",
             Self::CubeFace(_) => "cube face",
+            Self::MirroredCubeFace(_) => "cube face mirrored in x",
             Self::AngularFisheye(_) => "fisheye",
             Self::Perspective(_) => "perspective",
         }
@@ -134,12 +139,14 @@ impl Projection {
     pub(super) fn check(&self, size: Size) -> Result<(), ImageError> {
         match self {
             Self::Equirectangular { center_azimuth_deg } => check_azimuth(*center_azimuth_deg),
-            Self::CubeFace(_) if size.width() != size.height() => Err(ImageError::Setting {
-                what: "a cube face",
-                got: format!("{} x {}", size.width(), size.height()),
-                right: "as wide as high",
-            }),
-            Self::CubeFace(_) => Ok(()),
+            Self::CubeFace(_) | Self::MirroredCubeFace(_) if size.width() != size.height() => {
+                Err(ImageError::Setting {
+                    what: "a cube face",
+                    got: format!("{} x {}", size.width(), size.height()),
+                    right: "as wide as high",
+                })
+            }
+            Self::CubeFace(_) | Self::MirroredCubeFace(_) => Ok(()),
             Self::AngularFisheye(fisheye) => {
                 check_azimuth(fisheye.azimuth_deg)?;
                 check_elevation(fisheye.elevation_deg)?;

@@ -23,8 +23,7 @@ use ::exr::{
     meta::{
         BlockDescription, MetaData,
         attribute::{
-            self, AttributeValue, ChannelDescription, Chromaticities, EnvironmentMap, LineOrder,
-            SampleType, Text,
+            self, AttributeValue, ChannelDescription, Chromaticities, LineOrder, SampleType, Text,
         },
         header::{Header, LayerAttributes},
     },
@@ -284,9 +283,6 @@ fn attributes(metadata: &Metadata) -> LayerAttributes {
         longitude: metadata.longitude_deg.or(carried.longitude),
         altitude: metadata.altitude_m.or(carried.altitude),
         white_luminance: metadata.white_luminance_cd_m2,
-        environment_map: metadata
-            .is_latitude_longitude
-            .then_some(EnvironmentMap::LatitudeLongitude),
         ..carried
     }
 }

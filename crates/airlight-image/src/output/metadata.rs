@@ -31,8 +31,6 @@ pub struct Metadata {
     pub white_luminance_cd_m2: Option<f32>,
     /// Primaries and white of the RGB values; readers assume sRGB where they are missing.
     pub chromaticities: Option<Chromaticities>,
-    /// The picture covers the sphere as an equirectangular map.
-    pub is_latitude_longitude: bool,
     /// Width of a pixel over its height; square where missing.
     pub pixel_aspect: Option<f32>,
     /// Attributes and channels of an EXR file, carried to another.
@@ -111,10 +109,9 @@ impl Metadata {
     pub fn with_frame(mut self, frame: &Frame) -> Self {
         let settings = match frame.projection() {
             Projection::Equirectangular { center_azimuth_deg } => {
-                self.is_latitude_longitude = true;
                 format!("center azimuth {center_azimuth_deg} deg")
             }
-            Projection::CubeFace(face) => face.to_string(),
+            Projection::CubeFace(face) | Projection::MirroredCubeFace(face) => face.to_string(),
             Projection::AngularFisheye(fisheye) => format!(
                 "equidistant, azimuth {} deg, elevation {} deg, field of view {} deg",
                 fisheye.azimuth_deg, fisheye.elevation_deg, fisheye.field_of_view_deg

@@ -56,7 +56,13 @@ fn frames() -> Vec<Frame> {
     projections.extend(
         CubeFace::ALL
             .iter()
-            .map(|&face| (Projection::CubeFace(face), 32, 32)),
+            .flat_map(|&face| {
+                [
+                    Projection::CubeFace(face),
+                    Projection::MirroredCubeFace(face),
+                ]
+            })
+            .map(|projection| (projection, 32, 32)),
     );
     projections
         .into_iter()
@@ -170,6 +176,13 @@ fn pictures_have_the_right_orientation() {
     ] {
         let frame = Frame::new(Projection::CubeFace(face), 8, 8).unwrap();
         close(&frame, 4.0, 4.0, azimuth, elevation);
+        // A program that samples the mirrored faces at (-x, y, z) finds the light from (x, y, z).
+        let mirrored = Frame::new(Projection::MirroredCubeFace(face), 8, 8).unwrap();
+        for (px, py) in [(1.0, 2.0), (4.0, 4.0), (7.5, 0.5)] {
+            let sampled = frame.direction(px, py).unwrap();
+            let shown = mirrored.direction(px, py).unwrap();
+            assert_eq!(shown, DVec3::new(-sampled.x, sampled.y, sampled.z));
+        }
     }
 }
 
@@ -182,6 +195,34 @@ fn a_horizontal_field_of_view_spans_the_picture() {
     assert!((axes::azimuth_deg(edge) - 45.0).abs() < 1e-9);
     let camera = Camera::with_horizontal_fov(0.0, 0.0, 180.0, size);
     assert!(Frame::new(Projection::Perspective(camera), 200, 100).is_err());
+}
+
+#[test]
+fn parts_of_a_pixel_have_its_solid_angle() {
+    for frame in frames() {
+        let (i, j) = (frame.size().width() / 2, frame.size().height() / 2);
+        let (x, y) = (f64::from(i), f64::from(j));
+        let cuts = [0.0, 0.3, 0.31, 1.0];
+        let mut sum = 0.0;
+        for across in cuts.windows(2) {
+            for down in cuts.windows(2) {
+                sum +=
+                    frame.solid_angle((x + across[0], x + across[1]), (y + down[0], y + down[1]));
+            }
+        }
+        let whole = frame.pixel_solid_angle(i, j);
+        assert!((sum / whole - 1.0).abs() < 1e-9, "{frame:?}: {sum} {whole}");
+    }
+    // The closed form cancels for small rectangles: a field of view of 1e-5 degrees.
+    let camera = Camera {
+        azimuth_deg: 0.0,
+        elevation_deg: 0.0,
+        roll_deg: 0.0,
+        vertical_fov_deg: 1e-5,
+    };
+    let zoomed = Frame::new(Projection::Perspective(camera), 10, 10).unwrap();
+    let side = 1e-6f64.to_radians();
+    assert!((zoomed.pixel_solid_angle(9, 3) / (side * side) - 1.0).abs() < 1e-9);
 }
 
 fn total(frame: &Frame) -> f64 {

@@ -79,7 +79,6 @@ pub fn full_metadata() -> Metadata {
         altitude_m: Some(34.0),
         white_luminance_cd_m2: Some(1.0),
         chromaticities: Some(RgbSpace::Srgb.into()),
-        is_latitude_longitude: false,
         pixel_aspect: None,
         carried: None,
         texts: vec![
