@@ -90,11 +90,13 @@ impl FrameMetadata<'_> {
         }
         if linear {
             add("units", units(self.channels.layout().is_some(), scale));
-            let [x, y] = self.channels.space().white_point_xy();
-            add(
-                "whitePoint",
-                format!("CIE 1931 x {x}, y {y}; colours are colorimetric, not adapted to it"),
-            );
+            let space = self.channels.space();
+            let [x, y] = space.white_point_xy();
+            let meaning = match space.is_adapted() {
+                true => "D65 is adapted to it by Bradford's transform",
+                false => "colours are colorimetric, not adapted to it",
+            };
+            add("whitePoint", format!("CIE 1931 x {x}, y {y}; {meaning}"));
         }
         metadata.texts.extend(renderer.texts().iter().cloned());
         metadata

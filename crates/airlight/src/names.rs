@@ -10,9 +10,9 @@ use std::fmt;
 /// use airlight::{Named, spectrum::RgbSpace};
 ///
 /// let names: Vec<&str> = RgbSpace::ALL.iter().map(|space| space.name()).collect();
-/// assert_eq!(names, ["srgb", "rec2020", "acescg"]);
+/// assert_eq!(names, ["srgb", "rec2020", "acescg", "acescg-unadapted"]);
 /// let error = "rec2o20".parse::<RgbSpace>().unwrap_err();
-/// assert_eq!(error.to_string(), "expected an RGB space (srgb, rec2020, acescg), got \"rec2o20\"; try \"rec2020\"");
+/// assert_eq!(error.to_string(), "expected an RGB space (srgb, rec2020, acescg, acescg-unadapted), got \"rec2o20\"; try \"rec2020\"");
 /// ```
 pub trait Named: Copy + PartialEq + 'static {
     /// What a value is, with its article, for error messages: "an RGB space".

@@ -1,10 +1,11 @@
 //! Linear RGB spaces and the sRGB transfer function.
 //!
-//! A space is defined by the chromaticities of its primaries and its white; the matrices follow (SMPTE RP 177-1993).
-//! Conversion is colorimetric and absolute: XYZ goes through the primaries matrix without chromatic adaptation, so light
-//! of a given XYZ keeps that XYZ in every space. RGB (1, 1, 1) is the space's own white with Y = 1: an XYZ in cd/m^2 gives
-//! an RGB whose luminance is in cd/m^2. To make pictures look neutral relative to another white (that of ACEScg is near
-//! D60), multiply by [`adaptation_matrix`] first.
+//! A space is defined by the chromaticities of its primaries and its white; the matrices follow (SMPTE RP 177-1993). RGB (1, 1, 1)
+//! has Y = 1: an XYZ in cd/m^2 gives an RGB whose luminance is in cd/m^2.
+//!
+//! XYZ is relative to D65, the white of sRGB and BT.2020, whose conversion is therefore colorimetric. ACEScg has a white near D60: as
+//! in OpenColorIO and all programs that use it, D65 is adapted to it by Bradford's transform ([`adaptation_matrix`]), so that light
+//! that is neutral in sRGB is neutral in ACEScg. [`RgbSpace::AcesCgUnadapted`] keeps the XYZ instead.
 
 use crate::names::named;
 
@@ -24,15 +25,21 @@ pub enum RgbSpace {
     Srgb,
     /// ITU-R BT.2020 primaries, white D65.
     Rec2020,
-    /// ACEScg: Academy S-2014-004 (AP1 primaries), white near D60.
+    /// ACEScg: Academy S-2014-004 (AP1 primaries), to whose white near D60 D65 is adapted.
     AcesCg,
+    /// The primaries and the white of ACEScg without adaptation: light keeps its XYZ, and D65 is bluish.
+    AcesCgUnadapted,
 }
 
 named! { RgbSpace, "an RGB space", [
     ("srgb", (Srgb), "linear sRGB: BT.709 primaries, white D65"),
     ("rec2020", (Rec2020), "BT.2020 primaries, white D65"),
-    ("acescg", (AcesCg), "ACEScg: AP1 primaries, white near D60"),
+    ("acescg", (AcesCg), "ACEScg: AP1 primaries, D65 adapted to the white near D60"),
+    ("acescg-unadapted", (AcesCgUnadapted), "ACEScg's primaries and white without adaptation: light keeps its XYZ"),
 ] }
+
+/// White to which XYZ is relative: D65.
+const XYZ_WHITE_XY: [f64; 2] = [0.3127, 0.3290];
 
 impl RgbSpace {
     /// Chromaticities (x, y) of the red, green and blue primaries.
@@ -40,29 +47,42 @@ impl RgbSpace {
         match self {
             Self::Srgb => [[0.64, 0.33], [0.30, 0.60], [0.15, 0.06]],
             Self::Rec2020 => [[0.708, 0.292], [0.170, 0.797], [0.131, 0.046]],
-            Self::AcesCg => [[0.713, 0.293], [0.165, 0.830], [0.128, 0.044]],
+            Self::AcesCg | Self::AcesCgUnadapted => {
+                [[0.713, 0.293], [0.165, 0.830], [0.128, 0.044]]
+            }
         }
     }
 
     /// Chromaticity (x, y) of the white point.
     pub fn white_point_xy(self) -> [f64; 2] {
         match self {
-            Self::Srgb | Self::Rec2020 => [0.3127, 0.3290],
-            Self::AcesCg => [0.32168, 0.33767],
+            Self::Srgb | Self::Rec2020 => XYZ_WHITE_XY,
+            Self::AcesCg | Self::AcesCgUnadapted => [0.32168, 0.33767],
         }
     }
 
-    /// XYZ of RGB (1, 1, 1), with Y = 1.
-    pub(crate) fn white_xyz(self) -> [f64; 3] {
-        xy_to_xyz(self.white_point_xy())
+    /// Whether white, RGB (1, 1, 1), stands for D65 although the space has another white point.
+    pub fn is_adapted(self) -> bool {
+        self == Self::AcesCg
     }
 
-    /// Matrix from linear RGB to XYZ: the columns are the primaries, scaled so that they sum to the white.
+    /// Matrix from linear RGB to XYZ.
     pub fn to_xyz_matrix(self) -> Matrix3 {
+        match self.is_adapted() {
+            true => multiply(
+                &adaptation_matrix(self.white_point_xy(), XYZ_WHITE_XY),
+                &self.primaries_matrix(),
+            ),
+            false => self.primaries_matrix(),
+        }
+    }
+
+    /// Matrix whose columns are the XYZ of the primaries, scaled so that they sum to the white point.
+    fn primaries_matrix(self) -> Matrix3 {
         let primaries = self.primaries_xy().map(xy_to_xyz);
         let columns: Matrix3 =
             std::array::from_fn(|row| std::array::from_fn(|column| primaries[column][row]));
-        let amounts = apply(&invert(&columns), self.white_xyz());
+        let amounts = apply(&invert(&columns), xy_to_xyz(self.white_point_xy()));
         columns.map(|row| std::array::from_fn(|column| row[column] * amounts[column]))
     }
 
@@ -160,7 +180,7 @@ fn invert(m: &Matrix3) -> Matrix3 {
 mod tests {
     use super::*;
 
-    const SPACES: [RgbSpace; 3] = [RgbSpace::Srgb, RgbSpace::Rec2020, RgbSpace::AcesCg];
+    use crate::names::Named;
 
     fn close(a: &Matrix3, b: &Matrix3, tolerance: f64) {
         for (ra, rb) in a.iter().zip(b) {
@@ -188,13 +208,47 @@ mod tests {
             [0.272_228_716_8, 0.674_081_765_8, 0.053_689_517_4],
             [-0.005_574_649_5, 0.004_060_733_5, 1.010_339_100_3],
         ];
-        close(&RgbSpace::AcesCg.to_xyz_matrix(), &ap1, 1e-9);
+        close(&RgbSpace::AcesCgUnadapted.to_xyz_matrix(), &ap1, 1e-9);
+    }
+
+    #[test]
+    fn acescg_is_that_of_colour_science() {
+        // matrix_RGB_to_RGB("sRGB", "ACEScg", "Bradford") with derived matrices, and XYZ_to_RGB, of colour-science 0.4.7.
+        let srgb_to_acescg = [
+            [0.613_097_402_401, 0.339_523_146_184, 0.047_379_451_415],
+            [0.070_193_722_47, 0.916_353_879_057, 0.013_452_398_473],
+            [0.020_615_592_882, 0.109_569_772_938, 0.869_814_634_18],
+        ];
+        let matrix = multiply(
+            &RgbSpace::AcesCg.from_xyz_matrix(),
+            &RgbSpace::Srgb.to_xyz_matrix(),
+        );
+        close(&matrix, &srgb_to_acescg, 1e-9);
+        for (space, want) in [
+            (
+                RgbSpace::AcesCg,
+                [0.292_225_952_013, 0.609_677_634_757, 0.183_645_995_099],
+            ),
+            (
+                RgbSpace::AcesCgUnadapted,
+                [0.282_620_427_768, 0.611_918_207_749, 0.197_053_319_008],
+            ),
+        ] {
+            let got = space.from_xyz([0.3, 0.5, 0.2]);
+            for (got, want) in got.iter().zip(want) {
+                assert!((got - want).abs() < 1e-9, "{space}: {got} {want}");
+            }
+        }
     }
 
     #[test]
     fn white_is_one_and_conversion_round_trips() {
-        for space in SPACES {
-            let white = space.from_xyz(space.white_xyz());
+        for &space in RgbSpace::ALL {
+            let white = match space.is_adapted() {
+                true => RgbSpace::Srgb.white_point_xy(),
+                false => space.white_point_xy(),
+            };
+            let white = space.from_xyz(xy_to_xyz(white));
             assert!(white.iter().all(|v| (v - 1.0).abs() < 1e-12), "{white:?}");
             assert!((space.luminance([1.0; 3]) - 1.0).abs() < 1e-12);
             let xyz = [0.3, 0.7, 0.2];
@@ -211,8 +265,8 @@ mod tests {
             RgbSpace::Srgb.white_point_xy(),
             RgbSpace::AcesCg.white_point_xy(),
         );
-        let adapted = apply(&adaptation_matrix(d65, d60), RgbSpace::Srgb.white_xyz());
-        let rgb = RgbSpace::AcesCg.from_xyz(adapted);
+        let adapted = apply(&adaptation_matrix(d65, d60), xy_to_xyz(d65));
+        let rgb = RgbSpace::AcesCgUnadapted.from_xyz(adapted);
         assert!(rgb.iter().all(|v| (v - 1.0).abs() < 1e-12), "{rgb:?}");
         // The same adaptation computed by colour-science 0.4.7.
         let patch = apply(&adaptation_matrix(d65, d60), [0.3, 0.5, 0.2]);
