@@ -4,6 +4,7 @@ use crate::canvas::{Canvas, POLARISATION_CHANNELS, Passes};
 use crate::channels::PixelChannels;
 use crate::error::RenderError;
 use crate::exposure::{METERED_WIDTH, MeteredPicture};
+use crate::gamut::InGamut;
 use crate::illuminance::Illuminances;
 use crate::image::RenderedImage;
 use crate::layout::PictureFile;
@@ -15,7 +16,7 @@ use crate::sky_rows::{Layer, SkyRows, SkySources, SkyValues};
 use crate::sun_disc::SunDiscImage;
 use airlight::night::NightState;
 use airlight::scene::{
-    Channels, PreparedModel, RadianceSampler, RadianceView, SunAngles, SunDiscPlacement,
+    Channels, Gamut, PreparedModel, RadianceSampler, RadianceView, SunAngles, SunDiscPlacement,
 };
 use airlight::sun::Moment;
 use airlight_image::output::exr::{self, ExrOptions, SamplePrecision};
@@ -407,7 +408,10 @@ impl<'r> PreparedFrame<'r> {
             true => renderer.scene().output.scale.unwrap_or(1.0) as f32,
             false => 1.0,
         };
-        let rows = self.rows_over(&file.frame, file.layer, sky, scale);
+        let mut rows = self.rows_over(&file.frame, file.layer, sky, scale);
+        if is_linear && renderer.scene().output.gamut == Some(Gamut::Desaturate) {
+            rows = Box::new(InGamut::new(rows, self.channels.space()));
+        }
         let options = self.options(file, tone);
         let (path, size) = (&file.path, file.frame.size());
         let written = match self.channels.layout() {

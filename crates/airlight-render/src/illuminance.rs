@@ -23,7 +23,7 @@ impl Illuminances {
         let mut values = vec![0.0; view.channel_count()];
         let mut direct = |source: &dyn RadianceView| {
             source.sun_irradiance(&mut values);
-            let normal_lx = source.luminance(&values);
+            let normal_lx = source.luminance(&values).max(0.0);
             (normal_lx, normal_lx * source.sun().y.max(0.0))
         };
         let (sun_normal_lx, sun_horizontal_lx) = direct(view);
@@ -32,7 +32,8 @@ impl Illuminances {
         Self {
             sun_normal_lx,
             sun_horizontal_lx,
-            sky_horizontal_lx: view.luminance(&values),
+            // Above the air, where a solver's rounding has either sign, there is no sky.
+            sky_horizontal_lx: view.luminance(&values).max(0.0),
             moon_normal_lx: moon.map(|(normal_lx, _)| normal_lx),
             moon_horizontal_lx: moon.map(|(_, horizontal_lx)| horizontal_lx),
         }

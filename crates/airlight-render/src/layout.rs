@@ -4,8 +4,9 @@ use crate::error::RenderError;
 use crate::pixels::{is_spectral_path, tagged_path};
 use crate::sky_rows::Layer;
 use airlight::Named;
-use airlight::scene::{CameraSpec, OutputSpec, Projection as ProjectionKind, SunDiscPlacement};
-use airlight::spectrum::RgbSpace;
+use airlight::scene::{
+    CameraSpec, Orientation, OutputSpec, Projection as ProjectionKind, SunDiscPlacement,
+};
 use airlight_image::{Camera, CubeFace, Fisheye, Frame, PictureFormat, Projection, Size};
 use std::path::{Path, PathBuf};
 
@@ -55,19 +56,6 @@ impl Layout {
                 "an OpenEXR file to write to",
                 name(),
                 "a name that ends in .exr",
-            ));
-        }
-        let is_linear = format.is_none_or(PictureFormat::is_linear);
-        if !is_linear
-            && output
-                .color_space
-                .is_some_and(|space| space != RgbSpace::Srgb)
-        {
-            return Err(RenderError::value(
-                "output.color_space",
-                "linear light, as other files are always sRGB",
-                name(),
-                "leaving it out, or a name that ends in .exr or .hdr",
             ));
         }
         let sun_disc = output.sun_disc.unwrap_or_default();
@@ -165,7 +153,7 @@ impl Layout {
     pub fn overview(&self, width: u32) -> Result<Frame, RenderError> {
         let frame = &self.frames[0].1;
         let (projection, size) = match frame.projection() {
-            Projection::CubeFace(_) => (
+            Projection::CubeFace(_) | Projection::MirroredCubeFace(_) => (
                 Projection::Equirectangular {
                     center_azimuth_deg: 0.0,
                 },
@@ -203,6 +191,7 @@ fn frames(
     sun_azimuth_deg: f64,
 ) -> Result<Vec<(Option<&'static str>, Frame)>, RenderError> {
     let kind = camera.projection.unwrap_or_default();
+    let orientation = camera.orientation.unwrap_or_default();
     refuse_unused(camera, kind)?;
     let [width, height] = camera.size.unwrap_or(match kind {
         ProjectionKind::Equirectangular => [2048, 1024],
@@ -211,11 +200,17 @@ fn frames(
     });
     let projection = match kind {
         ProjectionKind::Equirectangular => Projection::Equirectangular {
-            center_azimuth_deg: camera.azimuth_deg.unwrap_or(0.0),
+            center_azimuth_deg: camera
+                .azimuth_deg
+                .unwrap_or(orientation.center_azimuth_deg()),
         },
         ProjectionKind::Cube => {
+            let projection = match orientation {
+                Orientation::Three => Projection::MirroredCubeFace,
+                _ => Projection::CubeFace,
+            };
             let face = |&face: &CubeFace| {
-                let frame = Frame::new(Projection::CubeFace(face), width, height)?;
+                let frame = Frame::new(projection(face), width, height)?;
                 Ok((Some(face.name()), frame))
             };
             return CubeFace::ALL.iter().map(face).collect();
@@ -240,8 +235,8 @@ fn frames(
 
 /// Refuses camera settings that the projection does not use.
 fn refuse_unused(camera: &CameraSpec, kind: ProjectionKind) -> Result<(), RenderError> {
-    use ProjectionKind::{Equirectangular, Fisheye, Perspective};
-    let set: [(bool, &str, &[ProjectionKind]); 4] = [
+    use ProjectionKind::{Cube, Equirectangular, Fisheye, Perspective};
+    let set: [(bool, &str, &[ProjectionKind]); 5] = [
         (
             camera.azimuth_deg.is_some(),
             "camera.azimuth_deg",
@@ -258,6 +253,11 @@ fn refuse_unused(camera: &CameraSpec, kind: ProjectionKind) -> Result<(), Render
             "camera.fov_deg",
             &[Fisheye, Perspective],
         ),
+        (
+            camera.orientation.is_some(),
+            "camera.orientation",
+            &[Equirectangular, Cube],
+        ),
     ];
     for (set, key, kinds) in set {
         if set && !kinds.contains(&kind) {
@@ -270,7 +270,26 @@ fn refuse_unused(camera: &CameraSpec, kind: ProjectionKind) -> Result<(), Render
             ));
         }
     }
-    Ok(())
+    match camera.orientation {
+        Some(orientation)
+            if kind == Cube
+                && !matches!(orientation, Orientation::Airlight | Orientation::Three) =>
+        {
+            Err(RenderError::value(
+                "camera.orientation",
+                "airlight or three for a cube map",
+                orientation.name(),
+                "the projection equirectangular",
+            ))
+        }
+        Some(orientation) if camera.azimuth_deg.is_some() => Err(RenderError::value(
+            "camera.orientation",
+            "either an orientation or azimuth_deg",
+            format!("{orientation} and azimuth_deg"),
+            "leaving one of them out",
+        )),
+        _ => Ok(()),
+    }
 }
 
 #[cfg(test)]
@@ -330,6 +349,49 @@ mod tests {
     }
 
     #[test]
+    fn panoramas_and_cubes_are_oriented_for_other_programs() {
+        use ProjectionKind::{Cube, Equirectangular, Fisheye};
+        let oriented = |kind, orientation| CameraSpec {
+            orientation: Some(orientation),
+            ..camera(kind)
+        };
+        let first = |camera: &CameraSpec| {
+            let layout = Layout::new(camera, &output("a.exr"), 0.0).unwrap();
+            *layout.files(Path::new("a.exr"))[0].frame.projection()
+        };
+        for &orientation in Orientation::ALL {
+            let center_azimuth_deg = orientation.center_azimuth_deg();
+            assert_eq!(
+                first(&oriented(Equirectangular, orientation)),
+                Projection::Equirectangular { center_azimuth_deg }
+            );
+        }
+        assert_eq!(
+            first(&oriented(Cube, Orientation::Three)),
+            Projection::MirroredCubeFace(CubeFace::PositiveX)
+        );
+        assert_eq!(
+            first(&camera(Cube)),
+            Projection::CubeFace(CubeFace::PositiveX)
+        );
+        let turned = CameraSpec {
+            azimuth_deg: Some(20.0),
+            ..oriented(Equirectangular, Orientation::Godot)
+        };
+        for (camera, part) in [
+            (oriented(Cube, Orientation::Unity), "airlight or three"),
+            (
+                oriented(Fisheye, Orientation::Three),
+                "equirectangular or cube",
+            ),
+            (turned, "got godot and azimuth_deg"),
+        ] {
+            let error = Layout::new(&camera, &output("a.exr"), 0.0).unwrap_err();
+            assert!(error.to_string().contains(part), "{error}");
+        }
+    }
+
+    #[test]
     fn contradictory_settings_are_refused() {
         use ProjectionKind::{Equirectangular, Fisheye, Perspective};
         let size = |kind, width, height| CameraSpec {
@@ -366,14 +428,6 @@ mod tests {
                 "output.spectral: expected an OpenEXR file",
             ),
             (camera(Equirectangular), output("a.spectral.exr.png"), ""),
-            (
-                camera(Equirectangular),
-                OutputSpec {
-                    color_space: Some(RgbSpace::AcesCg),
-                    ..output("a.png")
-                },
-                "sRGB",
-            ),
             (
                 camera(Equirectangular),
                 OutputSpec {

@@ -20,6 +20,8 @@ mod draw;
 pub mod error;
 pub mod exposure;
 pub mod frame;
+mod gamut;
+mod ignored;
 pub mod illuminance;
 pub mod image;
 pub mod layout;

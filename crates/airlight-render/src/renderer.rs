@@ -2,6 +2,7 @@
 
 use crate::error::RenderError;
 use crate::exposure::ExposureSettings;
+use crate::ignored::refuse_ignored;
 use crate::layout::{Layout, is_spectral};
 use crate::objects::Objects;
 use airlight::models::registry;
@@ -20,6 +21,9 @@ use airlight_image::tone::{
 use airlight_image::{Control, PictureOptions};
 use std::path::Path;
 use std::sync::Arc;
+
+/// Stage between solving and drawing: the light at the eye, in tables, and that of the fog.
+pub(crate) const LIGHT_AT_THE_EYE: &str = "tabulating the light at the eye";
 
 /// Draws a scene.
 ///
@@ -50,8 +54,22 @@ impl Renderer {
     /// Checks a scene as far as possible without solving for light.
     ///
     /// # Errors
-    /// [`RenderError`] for values out of range, values that contradict each other, and inputs that the solver would ignore.
+    /// [`RenderError`] for values out of range, values that contradict each other, inputs that the solver would ignore, and options
+    /// that the format of the file would ignore.
     pub fn new(scene: &Scene) -> Result<Self, RenderError> {
+        Self::checked(scene, false)
+    }
+
+    /// As [`Renderer::new`], for a picture that is also previewed, so that options of display formats act on the preview even if
+    /// the file holds linear light.
+    ///
+    /// # Errors
+    /// As [`Renderer::new`].
+    pub fn previewed(scene: &Scene) -> Result<Self, RenderError> {
+        Self::checked(scene, true)
+    }
+
+    fn checked(scene: &Scene, is_previewed: bool) -> Result<Self, RenderError> {
         let mut scene = scene.clone();
         // Also selected by the file name.
         if is_spectral(&scene.output) {
@@ -63,6 +81,7 @@ impl Renderer {
         check_inputs(model, &resolved.set_inputs, variant, registry::ALL)?;
         let sun = resolved.sun.at_start()?;
         let layout = Layout::new(&scene.camera, &scene.output, sun.azimuth_deg)?;
+        refuse_ignored(&scene.output, layout.format(), is_previewed)?;
         let objects = match &scene.objects {
             Some(spec) if spec.is_set() => Some(Arc::new(Objects::from_specs(&spec.object)?)),
             _ => None,
@@ -137,7 +156,9 @@ impl Renderer {
         control: Control<'_>,
     ) -> Result<Arc<dyn PreparedModel>, RenderError> {
         control.stage("solving for the light in the air", 0);
-        Ok(self.model.prepare(&self.resolved, suns, control)?)
+        let prepared = self.model.prepare(&self.resolved, suns, control)?;
+        control.stage(LIGHT_AT_THE_EYE, 0);
+        Ok(prepared)
     }
 
     /// The scene's output file.

@@ -2,8 +2,8 @@
 
 use crate::parse::{self, PixelSize, put};
 use airlight::scene::{
-    CameraSpec, Exposure, ExrCompression, OutputSpec, Projection, SamplePrecision,
-    SunDiscPlacement, ToneKind,
+    CameraSpec, Exposure, ExrCompression, Gamut, Orientation, OutputSpec, Projection,
+    SamplePrecision, SunDiscPlacement, ToneKind,
 };
 use airlight::spectrum::RgbSpace;
 use clap::Args;
@@ -26,6 +26,11 @@ pub struct CameraArgs {
     /// start; fisheye: 180, which puts north at the top of a picture of the zenith]
     #[arg(long, value_name = "DEG", value_parser = parse::number)]
     pub camera_azimuth: Option<f64>,
+    /// Program for whose axes a panorama is oriented, instead of --camera-azimuth; with three also a cube map [default: airlight,
+    /// north in the centre]
+    #[arg(long, value_name = "PROGRAM", value_parser = parse::named::<Orientation>())]
+    #[arg(conflicts_with = "camera_azimuth")]
+    pub orientation: Option<Orientation>,
     /// Elevation of the centre of a perspective or fisheye picture, degrees [default: perspective 10, fisheye 90]
     #[arg(long, value_name = "DEG", value_parser = parse::elevation_deg)]
     pub camera_elevation: Option<f64>,
@@ -80,6 +85,9 @@ pub struct EncodingArgs {
     /// Factor on the values of .exr and .hdr, which are in cd/m^2 (spectral: W m^-2 sr^-1 nm^-1) [default: 1]
     #[arg(long, value_name = "FACTOR", value_parser = parse::positive)]
     pub scale: Option<f64>,
+    /// Colours outside the RGB space of .exr and .hdr, such as those of a low sun, whose disc has negative components [default: keep]
+    #[arg(long, value_name = "HOW", value_parser = parse::named::<Gamut>())]
+    pub gamut: Option<Gamut>,
     /// Write one EXR channel for each wavelength besides RGB; implied by a name that ends in .spectral.exr
     #[arg(long)]
     pub spectral: bool,
@@ -105,7 +113,9 @@ impl CameraArgs {
         put(&mut camera.projection, &self.projection);
         let size = self.size.map(|size| [size.width, size.height]);
         put(&mut camera.size, &size);
-        put(&mut camera.azimuth_deg, &self.camera_azimuth);
+        if self.camera_azimuth.is_some() || self.orientation.is_some() {
+            (camera.azimuth_deg, camera.orientation) = (self.camera_azimuth, self.orientation);
+        }
         put(&mut camera.elevation_deg, &self.camera_elevation);
         put(&mut camera.roll_deg, &self.camera_roll);
         put(&mut camera.fov_deg, &self.fov);
@@ -131,6 +141,7 @@ impl EncodingArgs {
     pub fn fill(&self, output: &mut OutputSpec) {
         put(&mut output.sun_disc, &self.sun_disc);
         put(&mut output.scale, &self.scale);
+        put(&mut output.gamut, &self.gamut);
         put(&mut output.spectral, &self.spectral.then_some(true));
         put(&mut output.precision, &self.precision);
         put(&mut output.compression, &self.compression);

@@ -8,6 +8,7 @@ use super::rays::ProbeRay;
 use crate::error::RenderError;
 use crate::illuminance::Illuminances;
 use crate::metadata::SOFTWARE;
+use crate::renderer::LIGHT_AT_THE_EYE;
 use airlight::Named;
 use airlight::models::registry;
 use airlight::night::MoonState;
@@ -74,7 +75,9 @@ impl Probe {
         let (scene, resolved) = (&self.scene, &self.resolved);
         let sun = resolved.sun.at_start()?;
         let suns = SunCoverage::near(sun.elevation_deg, resolved.observer_altitude_m);
+        control.stage("solving for the light in the air", 0);
         let prepared = self.model.prepare(resolved, suns, control)?;
+        control.stage(LIGHT_AT_THE_EYE, 0);
         let space = scene.output.color_space.unwrap_or_default();
         let channels = match prepared.grid() {
             Some(_) => Channels::Spectral,
@@ -213,7 +216,7 @@ impl Asked {
         let values = self.values(|view, out| view.horizontal_irradiance(out));
         SkyAnswer {
             irradiance_horizontal_w_m2_nm: self.spectrum(&values),
-            illuminance_horizontal_lx: self.view.luminance(&values),
+            illuminance_horizontal_lx: Illuminances::of(self.view.as_ref()).sky_horizontal_lx,
         }
     }
 

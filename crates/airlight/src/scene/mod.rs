@@ -64,8 +64,8 @@ pub use rgb_foggy_sky::RgbFoggySky;
 pub(crate) use solved_view::SolvedView;
 pub use spec::{
     AirSpec, BaseBlueKind, CameraSpec, CheckerSpec, Effort, Exposure, ExrCompression, FogLayerSpec,
-    FogProfile, FogSpec, GlossSpec, Klassen1987Spec, LightKind, LightSpec, MeteringMode,
-    NightLights, NightSpec, ObjectShape, ObjectSpec, ObjectsSpec, ObserverSpec, OutputSpec,
+    FogProfile, FogSpec, Gamut, GlossSpec, Klassen1987Spec, LightKind, LightSpec, MeteringMode,
+    NightLights, NightSpec, ObjectShape, ObjectSpec, ObjectsSpec, ObserverSpec, Orientation, OutputSpec,
     Projection, Reflectance, RepeatSpec, SCENE_VERSION, SamplePrecision, Scene, SequenceSpec,
     SolverSpec, SunDiscPlacement, SunSpec, SunlightKind, ToneKind, WetHaze,
 };

@@ -8,6 +8,7 @@ mod fog;
 mod lights;
 mod night;
 mod objects;
+mod orientation;
 mod picture;
 mod solver;
 mod validate;
@@ -19,9 +20,10 @@ pub use night::{NightLights, NightSpec};
 pub use objects::{
     CheckerSpec, GlossSpec, ObjectShape, ObjectSpec, ObjectsSpec, Reflectance, RepeatSpec,
 };
+pub use orientation::Orientation;
 pub use picture::{
-    CameraSpec, Exposure, ExrCompression, MeteringMode, OutputSpec, Projection, SamplePrecision,
-    SequenceSpec, SunDiscPlacement, ToneKind,
+    CameraSpec, Exposure, ExrCompression, Gamut, MeteringMode, OutputSpec, Projection,
+    SamplePrecision, SequenceSpec, SunDiscPlacement, ToneKind,
 };
 pub use solver::{BaseBlueKind, Effort, Klassen1987Spec, SolverSpec, SunlightKind, WetHaze};
 
@@ -110,9 +112,10 @@ pub struct SunSpec {
     pub distance_ratio: Option<f64>,
     /// Latitude of the place on the Earth, degrees north, -90 to 90.
     pub latitude_deg: Option<f64>,
-    /// Longitude, degrees east, -180 to 180.
+    /// Longitude, degrees east, -180 to 360.
     pub longitude_deg: Option<f64>,
-    /// Time with its offset from UTC, as in 2026-06-21T21:15:00+02:00, or "now". Default: now.
+    /// Time with its offset from UTC or its time zone, as in 2026-06-21T21:15:00+02:00 and 2026-06-21T21:15[Europe/Paris], or "now".
+    /// Default: now.
     pub time: Option<String>,
     /// Whether refraction raises the sun of a place and time, by half a degree at the horizon. Default: true.
     pub refraction: Option<bool>,

@@ -1,5 +1,6 @@
 //! Picture of a scene: projection, file and sequence.
 
+use super::Orientation;
 use crate::names::named;
 use crate::spectrum::RgbSpace;
 
@@ -38,6 +39,9 @@ pub struct CameraSpec {
     /// Azimuth of the centre, degrees clockwise from north. Default: 0; perspective: that of the sun at the start; fisheye:
     /// 180, which puts north at the top of a picture of the zenith.
     pub azimuth_deg: Option<f64>,
+    /// Program for whose axes a panorama is oriented, instead of `azimuth_deg`; with three also a cube map. Default: airlight, with
+    /// north in the centre.
+    pub orientation: Option<Orientation>,
     /// Elevation of the centre of a perspective or fisheye picture, degrees, -90 to 90. Default: perspective 10, fisheye 90.
     pub elevation_deg: Option<f64>,
     /// Rotation of the perspective camera about its axis, degrees clockwise. Default: 0.
@@ -63,6 +67,22 @@ named! { SunDiscPlacement, "a place for the sun's disc", [
     ("in", (In), "in the picture"),
     ("out", (Out), "omitted"),
     ("separate", (Separate), "in a second file: sky.sun.exr beside sky.exr"),
+] }
+
+/// What happens to colours outside the RGB space of .exr and .hdr.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Gamut {
+    /// They keep their negative components, which .hdr stores as 0.
+    #[default]
+    Keep,
+    /// They move towards grey of the same luminance until no component is negative.
+    Desaturate,
+}
+
+named! { Gamut, "a treatment of colours outside the RGB space", [
+    ("keep", (Keep), "negative components are kept (.hdr: 0)"),
+    ("desaturate", (Desaturate), "moved towards grey of the same luminance until no component is negative"),
 ] }
 
 /// Precision of EXR samples.
@@ -185,10 +205,12 @@ pub struct OutputSpec {
     pub file: Option<String>,
     /// Sun's disc in the picture, omitted, or in a second file. Default: in.
     pub sun_disc: Option<SunDiscPlacement>,
-    /// RGB space of .exr and .hdr: srgb, rec2020 or acescg; .png and .jpg are always sRGB. Default: srgb.
+    /// RGB space of .exr and .hdr: srgb, rec2020, acescg or acescg-unadapted; .png and .jpg are always sRGB. Default: srgb.
     pub color_space: Option<RgbSpace>,
     /// Factor on the values of .exr and .hdr, which are in cd/m^2 (spectral: W m^-2 sr^-1 nm^-1), above 0. Default: 1.
     pub scale: Option<f64>,
+    /// Colours outside the RGB space of .exr and .hdr, such as those of a low sun. Default: keep.
+    pub gamut: Option<Gamut>,
     /// Whether the EXR has one channel for each wavelength besides RGB. Default: true for names that end in .spectral.exr.
     pub spectral: Option<bool>,
     /// Precision of .exr samples. Default: float.

@@ -1,0 +1,204 @@
+//! Options of the output that the format of its file would ignore are refused.
+
+use crate::error::RenderError;
+use airlight::scene::{Gamut, OutputSpec};
+use airlight::spectrum::RgbSpace;
+use airlight_image::PictureFormat;
+
+/// Kinds of files that an option acts on.
+#[derive(Clone, Copy)]
+enum ActsOn {
+    /// Linear light: EXR and HDR.
+    Linear,
+    /// Tone-mapped pictures: PNG, JPEG and previews.
+    Display,
+    /// One format; EXR also for the noise map beside a picture of another format.
+    Format(PictureFormat),
+}
+
+impl ActsOn {
+    fn includes(self, format: PictureFormat, output: &OutputSpec, is_previewed: bool) -> bool {
+        let has_noise_map = output.noise_map == Some(true);
+        match self {
+            Self::Linear => format.is_linear() || has_noise_map,
+            Self::Display => !format.is_linear() || is_previewed,
+            Self::Format(only) if only == PictureFormat::EXR && has_noise_map => true,
+            Self::Format(only) => format == only,
+        }
+    }
+
+    /// Endings of file names that the option acts on.
+    fn endings(self) -> String {
+        let formats = PictureFormat::ALL.into_iter().filter(|format| match self {
+            Self::Linear => format.is_linear(),
+            Self::Display => !format.is_linear(),
+            Self::Format(only) => *format == only,
+        });
+        let endings: Vec<String> = formats
+            .map(|format| format!(".{}", format.endings()[0]))
+            .collect();
+        endings.join(" or ")
+    }
+}
+
+/// Refuses the first option that is set and that a file of the output's format would ignore. `is_previewed`: the picture is also
+/// shown tone mapped, so that options of display formats have an effect.
+///
+/// # Errors
+/// [`RenderError`] with the key, and the endings of files on which it acts.
+pub(crate) fn refuse_ignored(
+    output: &OutputSpec,
+    format: Option<PictureFormat>,
+    is_previewed: bool,
+) -> Result<(), RenderError> {
+    let Some(format) = format else {
+        return Ok(());
+    };
+    let other_space = |space: RgbSpace| space != RgbSpace::Srgb;
+    let options = [
+        (
+            "color_space",
+            output.color_space.is_some_and(other_space),
+            ActsOn::Linear,
+        ),
+        ("scale", output.scale.is_some(), ActsOn::Linear),
+        (
+            "gamut",
+            output.gamut == Some(Gamut::Desaturate),
+            ActsOn::Linear,
+        ),
+        ("exposure", output.exposure.is_some(), ActsOn::Display),
+        ("brighten", output.brighten.is_some(), ActsOn::Display),
+        ("tone", output.tone.is_some(), ActsOn::Display),
+        (
+            "tone_contrast",
+            output.tone_contrast.is_some(),
+            ActsOn::Display,
+        ),
+        ("saturation", output.saturation.is_some(), ActsOn::Display),
+        (
+            "spectral",
+            output.spectral == Some(true),
+            ActsOn::Format(PictureFormat::EXR),
+        ),
+        (
+            "precision",
+            output.precision.is_some(),
+            ActsOn::Format(PictureFormat::EXR),
+        ),
+        (
+            "compression",
+            output.compression.is_some(),
+            ActsOn::Format(PictureFormat::EXR),
+        ),
+        (
+            "bits",
+            output.bits.is_some(),
+            ActsOn::Format(PictureFormat::PNG),
+        ),
+        (
+            "quality",
+            output.quality.is_some(),
+            ActsOn::Format(PictureFormat::JPEG),
+        ),
+    ];
+    let ignored = |(_, is_set, acts_on): &&(&str, bool, ActsOn)| {
+        *is_set && !acts_on.includes(format, output, is_previewed)
+    };
+    match options.iter().find(ignored) {
+        None => Ok(()),
+        Some((key, _, acts_on)) => Err(RenderError::value(
+            format!("output.{key}"),
+            format!(
+                "a file whose name ends in {}, which this acts on",
+                acts_on.endings()
+            ),
+            format!("`{}`", output.file.as_deref().unwrap_or_default()),
+            "leaving it out",
+        )),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use airlight::scene::{Exposure, ExrCompression, SamplePrecision, ToneKind};
+
+    #[test]
+    fn every_option_is_refused_where_it_is_ignored() {
+        type Set = fn(&mut OutputSpec);
+        let set: [(&str, Set, &[&str]); 12] = [
+            (
+                "color_space",
+                |o| o.color_space = Some(RgbSpace::AcesCg),
+                &["exr", "hdr"],
+            ),
+            ("scale", |o| o.scale = Some(2.0), &["exr", "hdr"]),
+            (
+                "gamut",
+                |o| o.gamut = Some(Gamut::Desaturate),
+                &["exr", "hdr"],
+            ),
+            (
+                "exposure",
+                |o| o.exposure = Some(Exposure::AUTO),
+                &["png", "jpg"],
+            ),
+            ("brighten", |o| o.brighten = Some(0.0), &["png", "jpg"]),
+            ("tone", |o| o.tone = Some(ToneKind::Clip), &["png", "jpg"]),
+            ("saturation", |o| o.saturation = Some(1.0), &["png", "jpg"]),
+            ("spectral", |o| o.spectral = Some(true), &["exr"]),
+            (
+                "precision",
+                |o| o.precision = Some(SamplePrecision::Half),
+                &["exr"],
+            ),
+            (
+                "compression",
+                |o| o.compression = Some(ExrCompression::Zip),
+                &["exr"],
+            ),
+            ("bits", |o| o.bits = Some(16), &["png"]),
+            ("quality", |o| o.quality = Some(90), &["jpg"]),
+        ];
+        for (key, set, acts_on) in set {
+            for ending in ["exr", "hdr", "png", "jpg"] {
+                let mut output = OutputSpec {
+                    file: Some(format!("a.{ending}")),
+                    ..Default::default()
+                };
+                set(&mut output);
+                let format = PictureFormat::from_path(format!("a.{ending}").as_ref()).unwrap();
+                match refuse_ignored(&output, Some(format), false) {
+                    Ok(()) => assert!(acts_on.contains(&ending), "{key} with {ending}"),
+                    Err(error) => {
+                        let said = error.to_string();
+                        assert!(!acts_on.contains(&ending), "{said}");
+                        assert!(
+                            said.starts_with(&format!("output.{key}: expected")),
+                            "{said}"
+                        );
+                        assert!(said.contains(&format!(".{}", acts_on[0])), "{said}");
+                    }
+                }
+                let shown = refuse_ignored(&output, Some(format), true).is_ok();
+                assert_eq!(
+                    shown,
+                    acts_on.contains(&ending) || acts_on == ["png", "jpg"]
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn options_of_the_noise_map_are_accepted_beside_a_png() {
+        let output = OutputSpec {
+            file: Some("a.png".to_owned()),
+            noise_map: Some(true),
+            scale: Some(1e-3),
+            precision: Some(SamplePrecision::Half),
+            ..Default::default()
+        };
+        assert!(refuse_ignored(&output, Some(PictureFormat::PNG), false).is_ok());
+    }
+}
