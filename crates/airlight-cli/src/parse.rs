@@ -155,9 +155,9 @@ pub fn lat_lon(text: &str) -> Result<LatLon, String> {
             "expected a latitude from -90 to 90 degrees, got {latitude_deg}"
         ));
     }
-    if !(-180.0..=180.0).contains(&longitude_deg) {
+    if !(-180.0..=360.0).contains(&longitude_deg) {
         return Err(format!(
-            "expected a longitude from -180 to 180 degrees, got {longitude_deg}"
+            "expected a longitude from -180 to 360 degrees, got {longitude_deg}"
         ));
     }
     Ok(LatLon {
@@ -267,7 +267,7 @@ mod tests {
     #[test]
     fn invalid_values_are_rejected() {
         for text in [
-            "", "1", "91,0", "0,181", "NaN,0", "0,inf", "1,2,3", "a,b", ",",
+            "", "1", "91,0", "0,361", "NaN,0", "0,inf", "1,2,3", "a,b", ",",
         ] {
             assert!(lat_lon(text).is_err(), "{text}");
         }

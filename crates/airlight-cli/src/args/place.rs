@@ -12,7 +12,8 @@ pub struct PlaceArgs {
     #[arg(long, value_name = "LAT,LON", value_parser = parse::lat_lon, allow_hyphen_values = true)]
     #[arg(conflicts_with_all = ["sun_elevation", "sun_azimuth"])]
     pub at: Option<LatLon>,
-    /// Time with its offset from UTC, as in 2026-06-21T21:15:00+02:00 or 2026-06-21T19:15:00Z; or now [default: now]
+    /// Time with its offset from UTC or its time zone, as in 2026-06-21T21:15:00+02:00 or "2026-06-21 21:15 Europe/Paris"; or now
+    /// [default: now]
     #[arg(long, value_name = "TIME")]
     pub when: Option<String>,
     /// Elevation of the sun's centre above the horizontal, degrees, instead of place and time

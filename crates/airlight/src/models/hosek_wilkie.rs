@@ -12,7 +12,7 @@ use super::preetham::DimmedSun;
 use super::prepared::{Prepared, turbidity};
 use crate::axes;
 use crate::control::Control;
-use crate::debug::debug_fields;
+use crate::debug::{debug_fields, rounded};
 use crate::scene::{Capabilities, Input, PreparedModel, RadianceModel, ResolvedScene, SceneError};
 use crate::sky::SunCoverage;
 use crate::spectrum::RgbSpace;
@@ -29,14 +29,15 @@ const LUMENS_PER_WATT: f64 = 683.0;
 #[non_exhaustive]
 pub enum HosekWilkieError {
     /// The turbidity is out of range.
-    #[error("expected a turbidity from 1 to 10, got {0}")]
+    #[error("expected a turbidity from 1 to 10, got {}", rounded(*.0))]
     Turbidity(f64),
     /// The ground's albedo is out of range.
     #[error("expected a ground albedo from 0 to 1 in red, green and blue, got {0:?}")]
     Albedo([f64; 3]),
     /// The sun is below the horizon, or its direction is zero or not finite.
     #[error(
-        "expected a sun elevation from 0 to 90 degrees, got {0}; the model has no sky for a sun below the horizon"
+        "expected a sun elevation from 0 to 90 degrees, got {}; the model has no sky for a sun below the horizon",
+        rounded(*.0)
     )]
     SunElevation(f64),
 }

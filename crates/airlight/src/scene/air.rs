@@ -21,6 +21,15 @@ impl Scene {
         air.planet.ground_altitude_m = spec
             .ground_altitude_m
             .unwrap_or_else(|| air.planet.ground_altitude_m.min(eye_altitude_m));
+        let top_m = air.planet.top_altitude_m;
+        if let Some(ground_m) = spec.ground_altitude_m.filter(|ground_m| *ground_m >= top_m) {
+            return Err(SceneError::value(
+                "air.ground_altitude_m",
+                format!("a ground below the top of the atmosphere at {top_m} m"),
+                format!("{ground_m} m"),
+                "a lower ground",
+            ));
+        }
         if let Some(albedo) = spec.ground_albedo {
             air.planet.ground_albedo = SpectralCurve::Constant(albedo);
         }

@@ -167,7 +167,11 @@ impl Scene {
         let source = SunSource::Ephemeris {
             place: Place {
                 latitude_deg,
-                longitude_deg,
+                // From -180 to 180.
+                longitude_deg: match longitude_deg > 180.0 {
+                    true => longitude_deg - 360.0,
+                    false => longitude_deg,
+                },
                 altitude_m,
             },
             start,
@@ -226,6 +230,9 @@ mod tests {
             source.start().unwrap().to_string(),
             "2026-06-21T14:00:00+02:00"
         );
+        scene.sun.longitude_deg = Some(200.0);
+        let east = scene.sun_source(&earth, 0.0).unwrap();
+        assert_eq!(east.place().unwrap().longitude_deg, -160.0);
         scene.sun.time = Some("yesterday".to_owned());
         assert!(
             said(&scene, &earth).starts_with("sun.time: ")

@@ -1,15 +1,17 @@
 //! Times with their offset from UTC.
 
-use jiff::fmt::temporal::{DateTimePrinter, Pieces};
-use jiff::tz::Offset;
-use jiff::{SignedDuration, Timestamp};
+use jiff::fmt::temporal::{DateTimePrinter, Pieces, PiecesOffset};
+use jiff::tz::{Offset, OffsetConflict, TimeZone};
+use jiff::{SignedDuration, Timestamp, civil::DateTime};
+use std::borrow::Cow;
 use std::fmt;
 use std::str::FromStr;
 
 /// A time with its offset from UTC, in the years -9999 to 9999 of the Gregorian calendar, also before 1582. Leap seconds do not
 /// count: a second of 60 is read as 59.
 ///
-/// Reads and writes RFC 3339:
+/// Writes RFC 3339, and reads it and the names of time zones of the IANA, in brackets as in RFC 9557 or after a space. The data of the
+/// zones is compiled in, so that a text means the same everywhere.
 ///
 /// ```
 /// use airlight::sun::Moment;
@@ -17,6 +19,8 @@ use std::str::FromStr;
 /// let evening: Moment = "2026-06-21T21:15:00+02:00".parse()?;
 /// assert_eq!(evening.to_string(), "2026-06-21T21:15:00+02:00");
 /// assert_eq!(evening.utc().to_string(), "2026-06-21T19:15:00Z");
+/// assert_eq!("2026-06-21T21:15[Europe/Paris]".parse(), Ok(evening));
+/// assert_eq!("2026-06-21 21:15 Europe/Paris".parse(), Ok(evening));
 /// # Ok::<(), airlight::sun::MomentError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -28,7 +32,7 @@ pub struct Moment {
 /// Why a text is not a [`Moment`].
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "expected a time such as 2013-05-27T16:30:00Z or 2013-05-27T12:30:00-04:00, got \"{text}\": {reason}"
+    "expected a time such as 2013-05-27T16:30:00Z, 2013-05-27T12:30:00-04:00 or 2013-05-27T12:30[America/New_York], got \"{text}\": {reason}"
 )]
 #[non_exhaustive]
 pub struct MomentError {
@@ -123,29 +127,70 @@ impl fmt::Display for Moment {
 impl FromStr for Moment {
     type Err = MomentError;
 
-    /// Reads RFC 3339. A time without offset is refused: it would not say when.
+    /// Reads RFC 3339 and names of time zones. A time with neither an offset nor a zone is refused: it would not say when; so is one
+    /// that a zone's clocks skip, or show twice without an offset.
     fn from_str(text: &str) -> Result<Self, MomentError> {
         let refuse = |reason: String| MomentError {
             text: text.to_owned(),
             reason,
         };
-        let pieces = Pieces::parse(text.trim()).map_err(|error| refuse(error.to_string()))?;
+        let written = zone_in_brackets(text.trim());
+        let pieces =
+            Pieces::parse(written.as_bytes()).map_err(|error| refuse(error.to_string()))?;
         let Some(clock) = pieces.time() else {
             return Err(refuse("it has no time of day".to_owned()));
         };
-        let Some(offset) = pieces.to_numeric_offset() else {
-            return Err(refuse("it has no offset from UTC".to_owned()));
-        };
-        if pieces.time_zone_annotation().is_some() {
-            return Err(refuse("a time zone's name is not read".to_owned()));
-        }
-        if offset.seconds() % 60 != 0 {
-            return Err(refuse("the offset from UTC has seconds".to_owned()));
-        }
-        let time = offset
-            .to_timestamp(pieces.date().to_datetime(clock))
+        let local = pieces.date().to_datetime(clock);
+        let zone = pieces
+            .to_time_zone()
             .map_err(|error| refuse(error.to_string()))?;
+        let moment = match (pieces.offset(), zone) {
+            (None, None) => return Err(refuse("it has no offset from UTC and no zone".to_owned())),
+            (Some(offset), None) => Self::with_offset(local, offset),
+            (offset, Some(zone)) => Self::in_zone(local, offset, zone),
+        }
+        .map_err(|error| refuse(error.to_string()))?;
+        match moment.offset.seconds() % 60 {
+            0 => Ok(moment),
+            _ => Err(refuse("the offset from UTC has seconds".to_owned())),
+        }
+    }
+}
+
+impl Moment {
+    fn with_offset(local: DateTime, offset: PiecesOffset) -> Result<Self, jiff::Error> {
+        let offset = offset.to_numeric_offset();
+        let time = offset.to_timestamp(local)?;
         Ok(Self { time, offset })
+    }
+
+    /// A time of a zone's clocks; with an offset the zone must agree. `Z` marks UTC, shown on the zone's clocks.
+    fn in_zone(
+        local: DateTime,
+        offset: Option<PiecesOffset>,
+        zone: TimeZone,
+    ) -> Result<Self, jiff::Error> {
+        let zoned = match offset {
+            Some(PiecesOffset::Zulu) => Offset::UTC.to_timestamp(local)?.to_zoned(zone),
+            Some(offset) => OffsetConflict::Reject
+                .resolve(local, offset.to_numeric_offset(), zone)?
+                .unambiguous()?,
+            None => zone.into_ambiguous_zoned(local).unambiguous()?,
+        };
+        Ok(Self {
+            time: zoned.timestamp(),
+            offset: zoned.offset(),
+        })
+    }
+}
+
+/// The text with a zone's name after the last space in brackets.
+fn zone_in_brackets(text: &str) -> Cow<'_, str> {
+    match text.rsplit_once(' ') {
+        Some((time, zone)) if zone.starts_with(|c: char| c.is_ascii_alphabetic()) => {
+            Cow::Owned(format!("{}[{zone}]", time.trim_end()))
+        }
+        _ => Cow::Borrowed(text),
     }
 }
 
@@ -174,6 +219,49 @@ mod tests {
         assert_eq!(m.capture_date(), "2026:06:21 01:15:00");
         assert_eq!(m.basic_utc(), "20260620T231500Z");
         assert!(Moment::parse(" Now ").unwrap().unix_s() > 1.7e9);
+    }
+
+    #[test]
+    fn zones_have_summer_and_winter_time() {
+        for (text, want) in [
+            (
+                "2026-06-21T21:15[Europe/Paris]",
+                "2026-06-21T21:15:00+02:00",
+            ),
+            ("2026-12-21 12:00 Europe/Paris", "2026-12-21T12:00:00+01:00"),
+            ("2026-06-21T12:00:00Asia/Kolkata", "zone"),
+            (
+                "2026-06-21T12:00:00 asia/kolkata",
+                "2026-06-21T12:00:00+05:30",
+            ),
+            (
+                "2026-06-21T21:15:00+02:00[Europe/Paris]",
+                "2026-06-21T21:15:00+02:00",
+            ),
+            (
+                "2026-06-21T19:15:00Z[Europe/Paris]",
+                "2026-06-21T21:15:00+02:00",
+            ),
+            // The clocks show this time twice.
+            (
+                "2026-10-25T02:30:00+01:00[Europe/Paris]",
+                "2026-10-25T02:30:00+01:00",
+            ),
+            ("2026-10-25T02:30:00[Europe/Paris]", "zone"),
+            // They skip this one.
+            ("2026-03-29T02:30:00[Europe/Paris]", "zone"),
+            ("2026-06-21T21:15:00+03:00[Europe/Paris]", "zone"),
+            ("2026-06-21T21:15[Europe/Pari]", "zone"),
+        ] {
+            match text.parse::<Moment>() {
+                Ok(moment) => assert_eq!(moment.to_string(), want),
+                Err(error) => assert_eq!(want, "zone", "{error}"),
+            }
+        }
+        assert_eq!(
+            read("2026-06-21T21:15:00+0200"),
+            read("2026-06-21T21:15:00+02:00")
+        );
     }
 
     #[test]
@@ -216,7 +304,6 @@ mod tests {
             ("2013-05-27T16:30:00+99:00", "offset"),
             ("2013-05-27T16:30:00+02:00:30", "offset"),
             ("2013-05-27T16:30:00.Z", "fractional"),
-            ("2013-05-27T16:30:00+02:00[Europe/Paris]", "zone"),
             ("2013-02-29T00:00:00Z", "'day' for `2013-02`"),
             ("2013-13-01T00:00:00Z", "'month'"),
             ("2013-01-01T24:00:00Z", "'hour'"),

@@ -87,8 +87,9 @@ const UNIX_EPOCH_JD: f64 = 2_440_587.5;
 
 /// Position of the sun at a time and a place on the Earth, with or without atmospheric refraction.
 ///
-/// Terrestrial time is computed from the polynomials of Espenak & Meeus; at present they are a few seconds off, which moves
-/// the sun by less than 1e-4 degrees.
+/// Terrestrial time is computed from polynomials after Espenak & Meeus; at present they are a few seconds off, which moves
+/// the sun by less than 1e-4 degrees. Far from the present the rotation of the Earth is uncertain: by minutes in the year -500, by
+/// hours in the years -2000 and 6000, in which the sun moves by degrees.
 ///
 /// Refraction follows the algorithm (its eq. 42, after Bennett and Saemundsson): for standard air 0.48 degrees when the
 /// geometric sun is at the horizon, uncertain there by about 0.05 degrees with the weather and much more accurate above
@@ -103,8 +104,17 @@ pub fn sun_position(
     refraction: Option<RefractingAir>,
 ) -> Result<SunPosition, EphemerisError> {
     let year = 1970.0 + time.unix_s() / (365.2425 * DAY_S);
-    let terrestrial_lag_s = delta_t::estimate(year).map_err(algorithm)?;
-    sun_position_with_lag(time, terrestrial_lag_s, place, refraction)
+    check("year", year.floor(), -2000.0, 6000.0)?;
+    sun_position_with_lag(time, terrestrial_lag_s(year)?, place, refraction)
+}
+
+/// Difference between terrestrial and universal time in a year, s: polynomials from -500 to 3000, continued before and after by the
+/// parabola of Espenak & Meeus (2006), 32 s per squared century from 1820.
+fn terrestrial_lag_s(year: f64) -> Result<f64, EphemerisError> {
+    let parabola = |year: f64| 32.0 * ((year - 1820.0) / 100.0).powi(2);
+    let known = year.clamp(-500.0, 3000.0);
+    let lag_s = delta_t::estimate(known).map_err(algorithm)?;
+    Ok(lag_s + parabola(year) - parabola(known))
 }
 
 /// As [`sun_position`], with an explicit difference between terrestrial and universal time (delta T), s.
@@ -274,14 +284,35 @@ mod tests {
                 Err(EphemerisError::Range { .. })
             ));
         }
-        for time in ["8000-01-01T00:00Z", "-004000-01-01T00:00Z"] {
+        for time in [
+            "8000-01-01T00:00Z",
+            "6001-01-01T12:00Z",
+            "-004000-01-01T00:00Z",
+        ] {
+            let error = sun_position(moment(time), GOLDEN, None).unwrap_err();
+            let said = error.to_string();
             assert!(
-                matches!(
-                    sun_position(moment(time), GOLDEN, None),
-                    Err(EphemerisError::Algorithm(_))
-                ),
-                "{time}"
+                said.starts_with("expected year from -2000 to 6000"),
+                "{said}"
             );
         }
+        for time in [
+            "-001999-06-01T12:00Z",
+            "0000-06-01T12:00Z",
+            "5999-06-01T12:00Z",
+        ] {
+            let sun = sun_position(moment(time), GOLDEN, None).unwrap();
+            assert!((-90.0..=90.0).contains(&sun.elevation_deg), "{time}");
+        }
+        // Continuous, and growing as the parabola.
+        for year in [-500.0, 3000.0] {
+            let [before, after] = [-1e-6, 1e-6].map(|step| terrestrial_lag_s(year + step).unwrap());
+            assert!((after - before).abs() < 0.01, "{year}: {before} {after}");
+        }
+        let grown = terrestrial_lag_s(6000.0).unwrap() - terrestrial_lag_s(3000.0).unwrap();
+        assert!(
+            (grown - 32.0 * (41.8 * 41.8 - 11.8 * 11.8)).abs() < 1e-6,
+            "{grown}"
+        );
     }
 }

@@ -50,6 +50,14 @@ fn models_refuse_what_they_do_not_honour() {
             "horizon",
         ),
         (
+            "solver.name = \"preetham\"\nsun.elevation_deg = -10",
+            "got an elevation of -10 degrees",
+        ),
+        (
+            "solver.name = \"preetham\"\nsolver.effort = \"fine\"",
+            "solver.effort",
+        ),
+        (
             "solver.name = \"preetham\"\noutput.spectral = true",
             "hillaire2020",
         ),

@@ -66,7 +66,7 @@ use glam::DVec3;
 use haze::HazeTables;
 use lanes::{Lanes, exp_neg, f64s, to_xyz, wavelengths_nm};
 use simpson::Simpson;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 /// Sun and sky of 1987 for one sun direction.
 pub struct Klassen1987 {
@@ -80,12 +80,32 @@ pub struct Klassen1987 {
     sunlight: Lanes,
     /// `beta_m`, m^-1.
     air_per_m: Lanes,
-    haze: HazeTables,
+    haze: Arc<HazeTables>,
     blue: Blue,
     cells: OnceLock<Cells>,
 }
 
 debug_fields! { Klassen1987 { settings, sun } }
+
+/// Parts that do not depend on the sun.
+struct Base {
+    sky: BaseSky,
+    haze: Arc<HazeTables>,
+}
+
+impl Base {
+    /// Solves for the clear air of checked settings under a range of suns, and tabulates the haze.
+    fn prepare(
+        settings: &Klassen1987Settings,
+        suns: SunCoverage,
+        control: Control<'_>,
+    ) -> Result<Self, Klassen1987Error> {
+        Ok(Self {
+            sky: BaseSky::prepare(settings, suns, control)?,
+            haze: Arc::new(HazeTables::new(settings)?),
+        })
+    }
+}
 
 impl Klassen1987 {
     /// Model for an eye on the ground and a sun in the direction of a unit vector ([`crate::axes`]), at the horizon or above.
@@ -96,7 +116,7 @@ impl Klassen1987 {
     pub fn new(settings: &Klassen1987Settings, sun: DVec3) -> Result<Self, Klassen1987Error> {
         settings.validate()?;
         let suns = SunCoverage::near(axes::elevation_deg(sun), 0.0);
-        let base = BaseSky::prepare(settings, suns, Control::default())?;
+        let base = Base::prepare(settings, suns, Control::default())?;
         let sun = SunState {
             direction: sun,
             distance_ratio: 1.0,
@@ -104,10 +124,10 @@ impl Klassen1987 {
         Self::over(settings, &base, &sun)
     }
 
-    /// The model of checked settings in front of a prepared blue.
+    /// The model of checked settings with their prepared parts.
     fn over(
         settings: &Klassen1987Settings,
-        base: &BaseSky,
+        base: &Base,
         sun: &SunState,
     ) -> Result<Self, Klassen1987Error> {
         let direction = sun.direction.normalize_or_zero();
@@ -137,8 +157,13 @@ impl Klassen1987 {
             disc: sun.disc(&settings.clear_air.sun),
             sunlight: Lanes::from_fn(|i| grid.solar_irradiance()[i] as f32),
             air_per_m,
-            haze: HazeTables::new(settings)?,
-            blue: Blue::new(settings, &grid, (sin_sun.asin(), sun.distance_ratio), base),
+            haze: base.haze.clone(),
+            blue: Blue::new(
+                settings,
+                &grid,
+                (sin_sun.asin(), sun.distance_ratio),
+                &base.sky,
+            ),
             cells: OnceLock::new(),
             settings: settings.clone(),
             grid,

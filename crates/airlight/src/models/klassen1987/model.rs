@@ -1,6 +1,6 @@
 //! Klassen 1987 as a [`RadianceModel`]: sun and sky, and the naturally lit scene with fog or objects.
 
-use super::blue::BaseSky;
+use super::Base;
 use super::fog::SunDepth;
 use super::scene::{Fog1987, Klassen1987Scene};
 use super::{BaseBlue, Haze, Klassen1987, Klassen1987Error, Klassen1987Settings};
@@ -72,7 +72,7 @@ impl RadianceModel for Klassen1987Model {
         let settings = settings(scene, printed);
         settings.validate().map_err(refused)?;
         let prepared = PreparedAir {
-            base: BaseSky::prepare(&settings, suns, control).map_err(refused)?,
+            base: Base::prepare(&settings, suns, control).map_err(refused)?,
             settings,
             fog,
             depth: match printed {
@@ -92,7 +92,7 @@ impl RadianceModel for Klassen1987Model {
 /// Parts shared by all suns, and the last sun.
 struct PreparedAir {
     settings: Klassen1987Settings,
-    base: BaseSky,
+    base: Base,
     fog: Option<Fog1987>,
     depth: SunDepth,
     ground_altitude_m: f64,

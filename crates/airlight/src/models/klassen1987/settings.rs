@@ -4,6 +4,7 @@ use super::geometry::{HazePath, SunRay};
 use crate::atmosphere::REFERENCE_NM;
 use crate::atmosphere::presets::Earth;
 use crate::atmosphere::{Atmosphere, AtmosphereError, Constituent, ConstituentKind};
+use crate::debug::rounded;
 use crate::fog::FogError;
 use crate::optics::mie::MieError;
 use crate::optics::mie::droplets::Drops;
@@ -125,7 +126,8 @@ pub enum Klassen1987Error {
     },
     /// The sun is below the horizon.
     #[error(
-        "expected a sun at the horizon or above, got an elevation of {0} degrees; the model of 1987 has no twilight"
+        "expected a sun at the horizon or above, got an elevation of {} degrees; the model of 1987 has no twilight",
+        rounded(*.0)
     )]
     SunBelowHorizon(f64),
     /// The clear air has no scattering.

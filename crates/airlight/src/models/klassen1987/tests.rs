@@ -29,6 +29,23 @@ fn both_geometries_agree_overhead() {
     }
 }
 
+/// A sequence evaluates the particles of the haze once.
+#[test]
+fn suns_share_what_does_not_depend_on_them() {
+    let settings = Klassen1987Settings {
+        base_blue: BaseBlue::PAPER,
+        ..Klassen1987Settings::of(&preset("average").unwrap())
+    };
+    let base = Base::prepare(&settings, SunCoverage::All, Control::default()).unwrap();
+    let under = |sun_deg| {
+        let sun = SunState::from(direction(180.0, sun_deg));
+        Klassen1987::over(&settings, &base, &sun).unwrap()
+    };
+    let (high, low) = (under(60.0), under(5.0));
+    assert!(Arc::ptr_eq(&high.haze, &low.haze));
+    assert!(high.sun_irradiance()[10] > low.sun_irradiance()[10]);
+}
+
 /// Eq. 19 compared with the law of cosines, and at both ends of its range.
 #[test]
 fn path_lengths_end_on_the_sphere() {

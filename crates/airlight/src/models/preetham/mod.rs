@@ -6,8 +6,8 @@
 //!
 //! Fitted to Nishita's model for turbidities from 2 to 6 and suns above the horizon. Limitations:
 //! - No light below the horizon: black here.
-//! - No twilight. The luminance of the zenith at sunset is still 2000 cd/m^2 and hardly decreases after it; negative values
-//!   of the formula are clamped to 0.
+//! - No twilight. The luminance of the zenith at sunset is still 2000 cd/m^2 and hardly decreases after it; scenes with a sun below
+//!   the horizon are refused. Negative values of the formula are clamped to 0.
 //! - The formula is singular for clear air: `1 + A e^B`, by which the sky is divided, is 0.17 at turbidity 2, 0.03 at 1.7
 //!   and 0 near 1.6, so that everything but the zenith becomes unboundedly bright. Turbidities from 2 to 10 are accepted.
 //! - In daylight it is up to three times as bright as the solver, mostly near the horizon; the book has a table.
@@ -16,8 +16,9 @@ mod sun;
 
 use super::PublishedModel;
 use super::prepared::{Prepared, turbidity};
+use crate::axes;
 use crate::control::Control;
-use crate::debug::debug_fields;
+use crate::debug::{debug_fields, rounded};
 use crate::scene::{Capabilities, Input, PreparedModel, RadianceModel, ResolvedScene, SceneError};
 use crate::sky::SunCoverage;
 use glam::DVec3;
@@ -64,13 +65,22 @@ const ZENITH_CHROMA_Y: [[f64; 4]; 3] = [
     [0.15346, -0.26756, 0.06670, 0.26688],
 ];
 
-/// Error of [`Preetham::new`].
+/// Error of [`Preetham::new`], and of scenes with this model.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PreethamError {
     /// The turbidity is out of range.
-    #[error("expected a turbidity from 2 to 10, got {0} (the model is fitted to 2 to 6)")]
+    #[error(
+        "expected a turbidity from 2 to 10, got {} (the model is fitted to 2 to 6)",
+        rounded(*.0)
+    )]
     Turbidity(f64),
+    /// The sun of a scene is below the horizon. [`Preetham::new`] continues the formula there.
+    #[error(
+        "expected a sun at the horizon or above, got an elevation of {} degrees; the model has no twilight",
+        rounded(*.0)
+    )]
+    SunBelowHorizon(f64),
     /// The sun's direction is zero or not finite.
     #[error("expected a finite sun direction that is not zero, got {0}")]
     Sun(DVec3),
@@ -107,7 +117,8 @@ impl Perez {
     /// `F(theta, gamma) / F(0, theta_s)` (eqs. 3 and 4).
     fn at(&self, cos_zenith: f64, gamma_rad: f64, cos_gamma: f64) -> f64 {
         let [a, b, c, d, e] = self.coefficients;
-        let gradation = 1.0 + a * (b / cos_zenith).exp();
+        // At the horizon the exponential is 0: `b` is negative for all three quantities at turbidities of 2 and above.
+        let gradation = 1.0 + a * (b / cos_zenith.abs()).exp();
         let scattering = 1.0 + c * (d * gamma_rad).exp() + e * cos_gamma * cos_gamma;
         gradation * scattering / self.in_zenith
     }
@@ -160,7 +171,7 @@ impl PublishedModel for Preetham {
 
     /// Black below the horizon.
     fn sky_xyz(&self, direction: DVec3) -> [f64; 3] {
-        if direction.y <= 0.0 {
+        if direction.y < 0.0 {
             return [0.0; 3];
         }
         let gamma_rad = direction.angle_between(self.sun);
@@ -211,11 +222,15 @@ impl RadianceModel for PreethamModel {
         _control: Control<'_>,
     ) -> Result<Arc<dyn PreparedModel>, SceneError> {
         let (name, turbidity) = (self.name(), turbidity(&scene.atmosphere));
+        let refused = move |error| SceneError::model(name, error);
         let prepared = Prepared::new(name, scene, None, move |_, sun| {
+            let elevation_deg = axes::elevation_deg(sun.direction);
+            // Tolerates rounding.
+            if elevation_deg < -1e-9 {
+                return Err(refused(PreethamError::SunBelowHorizon(elevation_deg)));
+            }
             let sky = Preetham::new(turbidity, sun.direction);
-            Ok(Arc::new(
-                sky.map_err(|error| SceneError::model(name, error))?,
-            ))
+            Ok(Arc::new(sky.map_err(refused)?))
         });
         Ok(Arc::new(prepared))
     }
@@ -224,7 +239,6 @@ impl RadianceModel for PreethamModel {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::axes;
 
     fn sky(turbidity: f64, sun_deg: f64) -> Preetham {
         Preetham::new(turbidity, axes::direction(180.0, sun_deg)).unwrap()
@@ -268,6 +282,21 @@ mod tests {
         // Continuous down to the horizon, black below.
         let (low, lower) = (at(90.0, 0.1)[1], at(90.0, 0.01)[1]);
         assert!((low / lower - 1.0).abs() < 0.01 && lower > 0.0);
+        for turbidity in [2.0, 2.5, 10.0] {
+            let sky = self::sky(turbidity, 40.0);
+            for horizon in [DVec3::X, DVec3::new(1.0, -0.0, 0.0)] {
+                let (limit, above) = (
+                    sky.sky_xyz(horizon),
+                    sky.sky_xyz(axes::direction(90.0, 1e-6)),
+                );
+                for (limit, above) in limit.iter().zip(above) {
+                    assert!(
+                        (limit / above - 1.0).abs() < 1e-6,
+                        "{turbidity}: {limit} {above}"
+                    );
+                }
+            }
+        }
         assert_eq!(at(90.0, -0.01), [0.0; 3]);
     }
 
@@ -284,7 +313,6 @@ mod tests {
         let (high, low) = (disc(60.0), disc(5.0));
         assert!(high[1] > 1.2e9 && high[1] < 2.2e9, "{high:?}");
         assert!(low[1] < 0.5 * high[1] && low[0] / low[2] > 2.0 * high[0] / high[2]);
-        assert_eq!(disc(-2.0), [0.0; 3]);
         assert_eq!(sky(2.5, 60.0).disc_xyz(DVec3::Y), [0.0; 3]);
     }
 
@@ -296,5 +324,8 @@ mod tests {
             assert!(error.to_string().contains("from 2 to 10"));
         }
         assert!(Preetham::new(3.0, DVec3::ZERO).is_err());
+        // 1.7 by way of an optical depth.
+        let error = Preetham::new(1.6999999999999997, DVec3::Y).err().unwrap();
+        assert!(error.to_string().contains("got 1.7 ("), "{error}");
     }
 }

@@ -64,7 +64,7 @@ impl DimmedSun {
     /// XYZ of the disc along a unit vector, Y in cd/m^2; black outside the disc and below the horizon.
     pub fn xyz(&self, direction: DVec3) -> [f64; 3] {
         let angle = direction.angle_between(self.sun);
-        if direction.y <= 0.0 || angle >= self.disc.angular_radius_rad {
+        if direction.y < 0.0 || angle >= self.disc.angular_radius_rad {
             return [0.0; 3];
         }
         let spectrum: Vec<f32> = self

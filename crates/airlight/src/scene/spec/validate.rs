@@ -28,8 +28,8 @@ const SKY_QUALITY: Allowed = (
 const KELVIN: Allowed = ("a number of kelvins from 1667 to 25000", |v| {
     (1667.0..=25_000.0).contains(&v)
 });
-const LONGITUDE: Allowed = ("a number of degrees from -180 to 180", |v| {
-    (-180.0..=180.0).contains(&v)
+const LONGITUDE: Allowed = ("a number of degrees from -180 to 360", |v| {
+    (-180.0..=360.0).contains(&v)
 });
 const CONE: Allowed = ("a number of degrees from 0 to 90", |v| {
     (0.0..=90.0).contains(&v)
@@ -315,15 +315,22 @@ impl Scene {
                 "92",
             ));
         }
-        match &self.sequence {
-            Some(sequence) if sequence.until.is_some() != sequence.every.is_some() => {
-                Err(SceneError::value(
-                    "sequence",
-                    "until and every",
-                    "one of them",
-                    "until = \"+6h\" with every = \"10m\"",
-                ))
-            }
+        let Some(sequence) = &self.sequence else {
+            return Ok(());
+        };
+        let missing = |key: &str, other: &str, example: &str| {
+            let expected = format!("{other} with this key");
+            Err(SceneError::value(key, expected, "none", example))
+        };
+        let times = (sequence.until.is_some(), sequence.every.is_some());
+        match times {
+            (true, false) => missing("sequence.until", "every", "every = \"10m\""),
+            (false, true) => missing("sequence.every", "until", "until = \"+6h\""),
+            (false, false) if sequence.meter_each.is_some() => missing(
+                "sequence.meter_each",
+                "a sequence",
+                "until = \"+6h\" and every = \"10m\"",
+            ),
             _ => Ok(()),
         }
     }
