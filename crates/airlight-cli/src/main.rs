@@ -6,9 +6,10 @@
 //! Modules, each importing only from those above it:
 //! - [`error`]: errors and exit codes; [`parse`]: parsing of argument values.
 //! - [`interrupt`], [`progress`], [`report`]: Ctrl-C, progress bars on standard error, text on standard output.
-//! - [`args`]: options of all commands, and the scenes that they describe.
+//! - [`topics`]: recipes. [`args`]: options of all commands, and the scenes that they describe.
 //! - [`scene`]: saving scenes, threads; [`atmosphere`], [`aerosol`]: lists of names.
-//! - [`sky`], [`fog`], [`probe`], [`compare`], [`grid`], [`accuracy`] and [`plot`]: the commands.
+//! - [`sky`], [`fog`], [`probe`], [`compare`], [`grid`], [`accuracy`] and [`plot`]: the commands; [`generate`]: files for
+//!   shells.
 
 mod accuracy;
 mod aerosol;
@@ -17,6 +18,7 @@ mod atmosphere;
 mod compare;
 mod error;
 mod fog;
+mod generate;
 mod grid;
 mod interrupt;
 mod parse;
@@ -26,15 +28,17 @@ mod progress;
 mod report;
 mod scene;
 mod sky;
+mod topics;
 
 use airlight::scene::Scene;
 use args::{Cli, Command};
-use clap::Parser;
+use clap::FromArgMatches;
 use error::CliError;
 use std::{io::Write, process::ExitCode};
 
 fn main() -> ExitCode {
-    let cli = Cli::parse();
+    let cli = Cli::from_arg_matches(&args::command().get_matches());
+    let cli = cli.unwrap_or_else(|error| error.exit());
     match run(&cli) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
@@ -59,6 +63,9 @@ fn run(cli: &Cli) -> Result<(), CliError> {
         Command::Accuracy(args) => accuracy::run(args),
         Command::Plot(args) => plot::run(args),
         Command::Atmospheres(args) => atmosphere::list(args),
+        Command::Topics => topics::run(),
+        Command::Completions(args) => generate::completions(args),
+        Command::Man(args) => generate::man(args),
         Command::Schema => report::print(&(Scene::json_schema() + "\n")),
     }
 }

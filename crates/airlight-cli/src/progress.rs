@@ -5,6 +5,21 @@ use indicatif::{ProgressBar, ProgressStyle};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
+/// Interval at which bars are drawn, whether or not progress is reported.
+const TICK: Duration = Duration::from_millis(200);
+
+/// Style of work of known length.
+fn bar_style() -> ProgressStyle {
+    let style = ProgressStyle::with_template("{msg} {wide_bar} {percent:>3} %, {eta} left");
+    style.unwrap_or_else(|_| ProgressStyle::default_bar())
+}
+
+/// Style of work of unknown length.
+fn spinner_style() -> ProgressStyle {
+    let style = ProgressStyle::with_template("{spinner} {msg}, {elapsed}");
+    style.unwrap_or_else(|_| ProgressStyle::default_spinner())
+}
+
 /// Progress in rows of pictures.
 pub struct RowsBar {
     bar: ProgressBar,
@@ -27,8 +42,12 @@ impl RowsBar {
 
     fn with(rows: u64, by_stages: bool) -> Self {
         let bar = ProgressBar::new(rows);
-        let style = ProgressStyle::with_template("{msg} {wide_bar} {percent:>3} %, {eta} left");
-        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        bar.set_style(if rows == 0 {
+            spinner_style()
+        } else {
+            bar_style()
+        });
+        bar.enable_steady_tick(TICK);
         Self {
             bar,
             before: AtomicU64::new(0),
@@ -41,6 +60,16 @@ impl RowsBar {
         self.bar.set_message(what);
     }
 
+    /// Sets the amount of work of a stage; 0: not known.
+    fn set_length(&self, rows: u64) {
+        self.bar.set_length(rows);
+        self.bar.set_style(if rows == 0 {
+            spinner_style()
+        } else {
+            bar_style()
+        });
+    }
+
     /// Adds the rows of finished files, to which those of the following files are added.
     pub fn files_done(&self, rows: u64) {
         let before = self.before.fetch_add(rows, Ordering::Relaxed);
@@ -51,15 +80,15 @@ impl RowsBar {
 impl Progress for RowsBar {
     fn stage(&self, what: &str, rows: u64) {
         if self.by_stages {
-            self.bar.set_length(rows);
-            self.bar.set_position(0);
+            self.bar.reset();
+            self.set_length(rows);
             self.bar.set_message(what.to_owned());
         }
     }
 
     fn advanced(&self, done: u64, total: u64) {
-        if self.by_stages {
-            self.bar.set_length(total);
+        if self.by_stages && self.bar.length() != Some(total) {
+            self.set_length(total);
         }
         self.bar
             .set_position(self.before.load(Ordering::Relaxed) + done);
@@ -79,10 +108,9 @@ impl Busy {
     /// Sets the message.
     pub fn with(what: &'static str) -> Self {
         let bar = ProgressBar::new_spinner();
-        let style = ProgressStyle::with_template("{spinner} {msg}, {elapsed}");
-        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()));
+        bar.set_style(spinner_style());
         bar.set_message(what);
-        bar.enable_steady_tick(Duration::from_millis(100));
+        bar.enable_steady_tick(TICK);
         Self(bar)
     }
 }
@@ -104,6 +132,7 @@ impl PicturesBar {
             "{pos} of {len} pictures {wide_bar} {per_sec}, {eta} left",
         );
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        bar.enable_steady_tick(TICK);
         Self(bar)
     }
 

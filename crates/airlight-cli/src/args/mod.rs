@@ -4,6 +4,7 @@ mod accuracy;
 mod air;
 mod compare;
 mod fog;
+mod generate;
 mod grid;
 mod night;
 mod overlay;
@@ -15,12 +16,14 @@ mod place;
 mod plot;
 mod probe;
 mod scene;
+mod short_help;
 mod sky;
 mod solver;
 
 pub use accuracy::{AccuracyArgs, ReportArg};
 pub use air::{AirArgs, AtmospheresArgs};
 pub use compare::{CompareArgs, StatisticsArg};
+pub use generate::{CompletionsArgs, ManArgs};
 pub use grid::GridArgs;
 pub use night::NightArgs;
 pub use overlay::OverlayArgs;
@@ -34,6 +37,7 @@ pub use plot::{
 };
 pub use probe::{FormatArg, ProbeArgs};
 pub use scene::SceneArgs;
+pub use short_help::command;
 pub use sky::{ObjectArgs, SkyArgs};
 pub use solver::SolverArgs;
 
@@ -65,7 +69,7 @@ Exit codes: 0 success, 1 failure, 2 invalid request, 130 interrupted by Ctrl-C.
 Examples:
   airlight sky --at 48.8584,2.2945 --when 2026-06-21T21:15:00+02:00 -o sky.exr
   airlight probe --sun-elevation 30 --view 180,45
-  airlight atmospheres";
+  airlight topics";
 
 /// Commands of the program.
 #[derive(Debug, Subcommand)]
@@ -86,6 +90,13 @@ pub enum Command {
     Plot(PlotArgs),
     /// List the names of atmospheres and types of haze, or describe one.
     Atmospheres(AtmospheresArgs),
+    /// Print worked recipes: panoramas for other programs, photographs, air, fog over pictures, numbers.
+    #[command(after_help = crate::topics::TOPICS)]
+    Topics,
     /// Print the JSON Schema of scene files, for completion and validation in editors.
     Schema,
+    /// Print completions of commands and options for a shell.
+    Completions(CompletionsArgs),
+    /// Write manual pages of all commands to a folder.
+    Man(ManArgs),
 }

@@ -100,14 +100,19 @@ fn one(args: &OverlayArgs, scene: &OverlayScene) -> Result<(), CliError> {
         }
         false => None,
     };
+    let busy = Busy::with("solving for the light in the fog");
     let prepared = PreparedOverlay::new(scene, &image, sky.as_ref())?;
+    drop(busy);
     let monte_carlo = prepared.monte_carlo(scene, sky.as_ref())?;
     let writing = interrupt::start_writing()?;
     let control = Control::cancelled_by(&STOP);
     let (written, noise) = match monte_carlo {
         None => {
             let overlay = prepared.overlay(&image)?;
+            let bar = RowsBar::by_stages();
+            let control = control.reporting_to(&bar);
             let written = image.write(&overlay, &scene.overlay, output, format, control)?;
+            drop(bar);
             notes.merge(&overlay.notes());
             (written, String::new())
         }

@@ -3,6 +3,7 @@
 use crate::args::{SceneArgs, SpectrumPlotArgs, TransmittancePlotArgs};
 use crate::error::CliError;
 use crate::interrupt::STOP;
+use crate::progress::RowsBar;
 use airlight::scene::Scene;
 use airlight::sky::Scattering;
 use airlight_image::Control;
@@ -25,7 +26,10 @@ fn read(args: &SceneArgs) -> Result<Scene, CliError> {
 
 /// Computes the light along directions; refuses a solver without spectra.
 fn probe(scene: &Scene, rays: Vec<ProbeRay>) -> Result<ProbeAnswer, CliError> {
-    let answer = Probe::new(scene, rays)?.answer(Control::cancelled_by(&STOP))?;
+    let bar = RowsBar::by_stages();
+    let control = Control::cancelled_by(&STOP).reporting_to(&bar);
+    let answer = Probe::new(scene, rays)?.answer(control)?;
+    drop(bar);
     match answer.wavelengths_nm.is_empty() {
         true => Err(CliError::usage(format!(
             "--solver: expected one with spectra, got {}; try orders",

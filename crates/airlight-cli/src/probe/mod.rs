@@ -29,7 +29,6 @@ pub fn run(args: &ProbeArgs) -> Result<(), CliError> {
         report::check_writable(path)?;
     }
     let bar = RowsBar::by_stages();
-    bar.say("solving for the light in the air".to_owned());
     let answer = probe.answer(Control::cancelled_by(&STOP).reporting_to(&bar))?;
     drop(bar);
     let text = match args.format {

@@ -8,8 +8,6 @@ use crate::interrupt::{self, STOP};
 use crate::progress::RowsBar;
 use crate::report::{self, bytes, seconds};
 use crate::scene;
-use airlight::scene::PreparedModel;
-use airlight::sky::SunCoverage;
 use airlight_image::Control;
 use airlight_image::output::Written;
 use airlight_image::tone::Exposure;
@@ -18,8 +16,7 @@ use airlight_render::sequence::{PreparedSequence, Sequence};
 use airlight_render::summary::{self, short};
 use airlight_render::{PreparedFrame, Renderer, WrittenFile};
 use std::fmt::Write;
-use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 /// Runs the command.
 ///
@@ -34,7 +31,11 @@ pub fn run(args: &SkyArgs) -> Result<(), CliError> {
         }
     }
     let preview = preview::wanted(args.preview, scene.output.file.is_some())?;
-    let renderer = Renderer::new(&scene)?.with_text("command", scene::command_line());
+    let renderer = match preview {
+        Some(_) => Renderer::previewed(&scene)?,
+        None => Renderer::new(&scene)?,
+    }
+    .with_text("command", scene::command_line());
     match renderer.sequence()? {
         Some(sequence) => many(args, &renderer, &sequence, preview),
         None => one(args, &renderer, preview),
@@ -54,9 +55,14 @@ fn one(
         report::check_writable(&file.path)?;
     }
     let sun = renderer.sun(None)?;
-    let (prepared, solving) = solve(renderer, renderer.suns_near(&sun))?;
+    let bar = RowsBar::by_stages();
+    let control = Control::cancelled_by(&STOP).reporting_to(&bar);
+    let begun = Instant::now();
+    let prepared = renderer.prepare(renderer.suns_near(&sun), control)?;
+    let solving = begun.elapsed();
     let start = Instant::now();
     let frame = renderer.frame(prepared.as_ref(), None)?;
+    drop(bar);
     if let Some(terminal) = preview {
         report::print(&preview::text(renderer, &frame, terminal)?)?;
     }
@@ -167,16 +173,6 @@ fn many(
         renderer.kind(),
         seconds(begun.elapsed())
     ))
-}
-
-fn solve(
-    renderer: &Renderer,
-    suns: SunCoverage,
-) -> Result<(Arc<dyn PreparedModel>, Duration), CliError> {
-    let start = Instant::now();
-    let bar = RowsBar::by_stages();
-    let prepared = renderer.prepare(suns, Control::cancelled_by(&STOP).reporting_to(&bar))?;
-    Ok((prepared, start.elapsed()))
 }
 
 /// Describes sun, light and air.

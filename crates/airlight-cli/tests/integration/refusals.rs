@@ -48,6 +48,28 @@ fn bad_use_of_sky() {
         ("sky --sun-elevation 91 -o a.exr", "-90 to 90"),
         ("sky --sun-azimuth 10 -o a.exr", "--sun-azimuth"),
         ("sky --at 100,0 -o a.exr", "a latitude from -90 to 90"),
+        ("sky --at 10,361 -o a.exr", "a longitude from -180 to 360"),
+        (
+            "sky --sun-elevation 30 --exposure 12 -o a.exr",
+            "--exposure: expected a file whose name ends in .png or .jpg",
+        ),
+        (
+            "sky --sun-elevation 30 --scale 2 -o a.png",
+            "--scale: expected a file whose name ends in .exr or .hdr",
+        ),
+        ("sky --sun-elevation 30 --bits 16 -o a.jpg", "--bits"),
+        (
+            "sky --sun-elevation 30 --meter-each -o a.png",
+            "--meter-each: expected a sequence",
+        ),
+        (
+            "sky --sun-elevation 30 --ground-altitude-m 100000 -o a.exr",
+            "--ground-altitude-m: expected a ground below the top",
+        ),
+        (
+            "sky --sun-elevation 30 --projection cube --orientation unity -o a.exr",
+            "--orientation: expected airlight or three for a cube map",
+        ),
         ("sky --at 1;2 -o a.exr", "latitude,longitude"),
         (
             "sky --at 1,2 --sun-elevation 3 -o a.exr",
@@ -213,7 +235,7 @@ fn bad_use_of_sky() {
         ),
         (
             "sky --at 1,2 --when 2026-01-01T00:00:00Z --until +1h -o a.png",
-            "until and every",
+            "--until: expected every with this key",
         ),
         (
             "sky --at 1,2 --when 2026-01-01T00:00:00Z --until +1h --every 5x -o a.png",
@@ -229,7 +251,7 @@ fn bad_use_of_sky() {
         ),
         (
             "sky --at 1,2 --when 2026-01-01T00:00:00Z --until +9000000d --every 9000d -o a.png",
-            "beyond year 3000",
+            "expected year from -2000 to 6000",
         ),
         (
             "sky --at 1,2 --when 2026-01-01T00:00:00Z --until +1h --every 10m",
@@ -314,6 +336,15 @@ fn help_and_lists_name_what_there_is() {
     }
     assert!(succeed(&folder, "probe --help").contains("--views <FILE.csv>"));
     assert!(succeed(&folder, "--help").contains("130"));
+    // Only the usual options, which point to the others.
+    let short = succeed(&folder, "sky -h");
+    assert!(short.contains("--help lists all") && !short.contains("--humidity"));
+    assert!(succeed(&folder, "help topics").contains("airlight fog rgb --depth depth"));
+    assert!(succeed(&folder, "topics").contains("--orientation blender"));
+    assert!(succeed(&folder, "completions bash").contains("--haze-visibility-m"));
+    succeed(&folder, "man pages");
+    let page = std::fs::read_to_string(folder.file("pages/airlight-sky.1")).unwrap();
+    assert!(page.contains("orientation") && page.contains(".SH"));
     assert!(succeed(&folder, "--version").starts_with("airlight "));
     let list = succeed(&folder, "atmospheres");
     assert!(list.lines().count() > 8 && list.contains("average"));
