@@ -18,6 +18,14 @@ fn assert_parts_sum(view: &RayAnswer) {
 }
 
 #[test]
+fn above_the_air_there_is_no_sky() {
+    let scene = "solver.wavelengths = \"rgb\"\nsun.elevation_deg = 30\nobserver.altitude_m = 1e5";
+    let answer = probe(scene, &[]);
+    assert_eq!(answer.sky.illuminance_horizontal_lx, 0.0);
+    assert!(answer.sun.illuminance_normal_lx > 1.2e5);
+}
+
+#[test]
 fn parts_make_the_whole() {
     let scene = "solver.wavelengths = \"fast\"\nsun.elevation_deg = 20\nsun.azimuth_deg = 90";
     let answer = probe(scene, &[(0.0, 90.0), (90.0, -30.0), (45.0, 3.0)]);
