@@ -6,7 +6,7 @@ use crate::report;
 /// Recipes for the usual tasks, of commands that work as they stand.
 pub const TOPICS: &str = "\
 Light a scene in Blender, Mitsuba, three.js, Unreal, Unity or Godot
-  The sun is left out of the panorama and becomes a lamp; the report states its direction and its illuminance.
+  The sun is left out of the panorama and becomes a light; the report states its direction and its illuminance.
     airlight sky --sun-elevation 40 --sun-azimuth 120 --sun-disc out --orientation blender --size 4096x2048 -o world.exr
   Values are cd/m^2: set the strength of Blender's background to about 2e-4, or write the file with --scale 2e-4.
 

@@ -77,6 +77,12 @@ pub(crate) fn refuse_ignored(
         ),
         ("saturation", output.saturation.is_some(), ActsOn::Display),
         (
+            "white_balance_k",
+            output.white_balance_k.is_some(),
+            ActsOn::Display,
+        ),
+        ("scotopic", output.scotopic == Some(true), ActsOn::Display),
+        (
             "spectral",
             output.spectral == Some(true),
             ActsOn::Format(PictureFormat::EXR),
@@ -127,7 +133,13 @@ mod tests {
     #[test]
     fn every_option_is_refused_where_it_is_ignored() {
         type Set = fn(&mut OutputSpec);
-        let set: [(&str, Set, &[&str]); 12] = [
+        let set: [(&str, Set, &[&str]); 14] = [
+            (
+                "white_balance_k",
+                |o| o.white_balance_k = Some(5000.0),
+                &["png", "jpg"],
+            ),
+            ("scotopic", |o| o.scotopic = Some(true), &["png", "jpg"]),
             (
                 "color_space",
                 |o| o.color_space = Some(RgbSpace::AcesCg),

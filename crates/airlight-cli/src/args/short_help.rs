@@ -2,10 +2,10 @@
 //! their values and examples.
 
 use super::Cli;
-use clap::{Command, CommandFactory};
+use clap::{Arg, Command, CommandFactory};
 
 /// Options of a scene that most pictures need.
-const SCENE: [&str; 13] = [
+const SCENE: [&str; 11] = [
     "scene",
     "at",
     "when",
@@ -14,9 +14,7 @@ const SCENE: [&str; 13] = [
     "altitude_m",
     "atmosphere",
     "aod_550",
-    "haze_visibility_m",
     "solver",
-    "wavelengths",
     "visibility_m",
     "top_m",
 ];
@@ -89,8 +87,20 @@ fn with_short_help(command: Command, path: &[&str], usual: &[&str]) -> Command {
     command.mut_args(|arg| {
         let id = arg.get_id().as_str();
         let is_usual = usual.contains(&id) || SCENE.contains(&id);
-        arg.hide_short_help(!is_usual)
+        first_clause(arg).hide_short_help(!is_usual)
     })
+}
+
+/// The option with the first clause of its help as short help; `--help` prints all of it.
+fn first_clause(arg: Arg) -> Arg {
+    let Some(help) = arg.get_help().map(ToString::to_string) else {
+        return arg;
+    };
+    let ends = [": ", "; ", " (", " [default", ", as in "];
+    let end = ends.iter().filter_map(|end| help.find(end)).min();
+    let short = help[..end.unwrap_or(help.len())].to_owned();
+    let long = arg.get_long_help().map_or(help, ToString::to_string);
+    arg.help(short).long_help(long)
 }
 
 #[cfg(test)]
