@@ -63,10 +63,6 @@ fn bad_use_of_sky() {
             "--meter-each: expected a sequence",
         ),
         (
-            "sky --sun-elevation 30 --ground-altitude-m 100000 -o a.exr",
-            "--ground-altitude-m: expected a ground below the top",
-        ),
-        (
             "sky --sun-elevation 30 --projection cube --orientation unity -o a.exr",
             "--orientation: expected airlight or three for a cube map",
         ),
@@ -158,7 +154,7 @@ fn bad_use_of_sky() {
         ),
         (
             "sky --sun-elevation 30 --ground-altitude-m 2e5 -o a.exr",
-            "top_altitude_m",
+            "--ground-altitude-m: expected a ground below the top",
         ),
         (
             "sky --sun-elevation 30 --wavelengths red -o a.exr",

@@ -126,7 +126,10 @@ fn sequences_that_make_no_sense_are_refused() {
         (sequence("+1h", "5x"), "1h30m"),
         (sequence("2025-01-01T00:00:00Z", "5m"), "later"),
         (sequence("+9000d", "1s"), "1000000"),
-        (sequence("+9000000d", "9000d"), "year 3000"),
+        (
+            sequence("+9000000d", "9000d"),
+            "expected year from -2000 to 6000",
+        ),
     ] {
         let error = folder.try_write("a.png", &scene).unwrap_err().to_string();
         assert!(error.contains(part), "{scene}: {error}");
