@@ -1,8 +1,9 @@
 //! `airlight completions` and `airlight man`: files generated from the options.
 
-use crate::args::{self, CompletionsArgs, ManArgs};
+use crate::args::{CompletionsArgs, ManArgs};
 use crate::error::CliError;
 use crate::report;
+use crate::short_help;
 
 /// Prints the completions of a shell.
 ///
@@ -10,7 +11,12 @@ use crate::report;
 /// [`CliError`] if standard output cannot be written.
 pub fn completions(args: &CompletionsArgs) -> Result<(), CliError> {
     let mut script = Vec::new();
-    clap_complete::generate(args.shell, &mut args::command(), "airlight", &mut script);
+    clap_complete::generate(
+        args.shell,
+        &mut short_help::command(),
+        "airlight",
+        &mut script,
+    );
     report::print(&String::from_utf8_lossy(&script))
 }
 
@@ -23,5 +29,5 @@ pub fn man(args: &ManArgs) -> Result<(), CliError> {
         CliError::failure(format!("cannot write `{}`: {error}", args.folder.display()))
     };
     std::fs::create_dir_all(&args.folder).map_err(failed)?;
-    clap_mangen::generate_to(args::command(), &args.folder).map_err(failed)
+    clap_mangen::generate_to(short_help::command(), &args.folder).map_err(failed)
 }

@@ -6,7 +6,8 @@
 //! Modules, each importing only from those above it:
 //! - [`error`]: errors and exit codes; [`parse`]: parsing of argument values.
 //! - [`interrupt`], [`progress`], [`report`]: Ctrl-C, progress bars on standard error, text on standard output.
-//! - [`topics`]: recipes. [`args`]: options of all commands, and the scenes that they describe.
+//! - [`topics`]: recipes. [`args`]: options of all commands, and the scenes that they describe; [`short_help`]: what `-h`
+//!   lists of them.
 //! - [`scene`]: saving scenes, threads; [`atmosphere`], [`aerosol`]: lists of names.
 //! - [`sky`], [`fog`], [`probe`], [`compare`], [`grid`], [`accuracy`] and [`plot`]: the commands; [`generate`]: files for
 //!   shells.
@@ -27,6 +28,7 @@ mod probe;
 mod progress;
 mod report;
 mod scene;
+mod short_help;
 mod sky;
 mod topics;
 
@@ -37,7 +39,7 @@ use error::CliError;
 use std::{io::Write, process::ExitCode};
 
 fn main() -> ExitCode {
-    let cli = Cli::from_arg_matches(&args::command().get_matches());
+    let cli = Cli::from_arg_matches(&short_help::command().get_matches());
     let cli = cli.unwrap_or_else(|error| error.exit());
     match run(&cli) {
         Ok(()) => ExitCode::SUCCESS,

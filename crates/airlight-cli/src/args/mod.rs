@@ -16,7 +16,6 @@ mod place;
 mod plot;
 mod probe;
 mod scene;
-mod short_help;
 mod sky;
 mod solver;
 
@@ -37,7 +36,6 @@ pub use plot::{
 };
 pub use probe::{FormatArg, ProbeArgs};
 pub use scene::SceneArgs;
-pub use short_help::command;
 pub use sky::{ObjectArgs, SkyArgs};
 pub use solver::SolverArgs;
 

@@ -1,7 +1,7 @@
 //! The command line with a short help (`-h`) that fits one screen for each command: the usual options. `--help` prints all options,
 //! their values and examples.
 
-use super::Cli;
+use crate::args::Cli;
 use clap::{Arg, Command, CommandFactory};
 
 /// Options of a scene that most pictures need.
