@@ -177,7 +177,7 @@ fn bad_use_of_sky() {
         ("sky --sun-elevation 30 --spectral -o a.png", ".exr"),
         (
             "sky --sun-elevation 30 --color-space acescg -o a.png",
-            "sRGB",
+            "--color-space: expected a file whose name ends in .exr or .hdr",
         ),
         ("sky --sun-elevation 30 --sun-disc separate", "--output"),
         (
