@@ -426,25 +426,33 @@ fn pipes_are_read() {
         .save(folder.file("a.png"))
         .unwrap();
     npy(&folder.file("depth.npy"), (30, 40), |_| 2.0);
-    let mut command = command(
-        &folder,
-        "fog /dev/stdin --depth depth.npy --visibility-m 5 -o b.png",
+    let through_pipe = |file: &str, words: &str| {
+        let mut cat = std::process::Command::new("cat")
+            .arg(folder.file(file))
+            .stdout(std::process::Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut command = command(&folder, words);
+        let output = command.stdin(cat.stdout.take().unwrap()).output();
+        let output = output.unwrap();
+        let error = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{error}");
+        cat.wait().unwrap();
+    };
+    let fog = "--visibility-m 5 -o";
+    through_pipe(
+        "a.png",
+        &format!("fog /dev/stdin --depth depth.npy {fog} b.png"),
     );
-    let mut cat = std::process::Command::new("cat")
-        .arg(folder.file("a.png"))
-        .stdout(std::process::Stdio::piped())
-        .spawn()
-        .unwrap();
-    let output = command.stdin(cat.stdout.take().unwrap()).output().unwrap();
-    assert!(
-        output.status.success(),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
-    cat.wait().unwrap();
+    succeed(&folder, &format!("fog a.png --depth depth.npy {fog} c.png"));
+    assert_eq!(pixels(&folder.file("b.png")), pixels(&folder.file("c.png")));
+    // Colours and depth from one file.
     succeed(
         &folder,
-        "fog a.png --depth depth.npy --visibility-m 5 -o c.png",
+        &format!("fog a.png --depth depth.npy --layers {fog} layers.exr"),
     );
-    assert_eq!(pixels(&folder.file("b.png")), pixels(&folder.file("c.png")));
+    through_pipe("layers.exr", &format!("fog /dev/stdin {fog} b.exr"));
+    succeed(&folder, &format!("fog layers.exr {fog} c.exr"));
+    let [b, c] = ["b.exr", "c.exr"].map(|name| Exr::read(&folder.file(name)).channels);
+    assert_eq!(b, c);
 }

@@ -97,10 +97,7 @@ pub(super) fn read(source: Source, layer: Option<&str>) -> Result<Picture, Decod
         alpha: buffers.next(),
         chromaticities,
         white_luminance_cd_m2,
-        pixel_aspect: match (1e-3..=1e3).contains(&aspect) {
-            true => aspect,
-            false => 1.0,
-        },
+        pixel_aspect: Picture::checked_aspect(aspect),
         layer: Some(match colours.is_luma_chroma {
             true => ExrLayer {
                 prefix: String::new(),

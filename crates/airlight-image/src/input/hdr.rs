@@ -116,10 +116,7 @@ fn header(reader: &mut impl BufRead) -> Result<Header, DecodeError> {
         chromaticities,
         is_xyz,
         // Radiance states height over width.
-        pixel_aspect: match (1e-3..=1e3).contains(&aspect) {
-            true => (1.0 / aspect) as f32,
-            false => 1.0,
-        },
+        pixel_aspect: Picture::checked_aspect((1.0 / aspect) as f32),
     })
 }
 

@@ -14,6 +14,7 @@ pub(super) fn read(mut source: Source) -> Result<Picture, DecodeError> {
     let bytes = source.read_to_end()?;
     check_encoding(&bytes)?;
     require_end(&bytes)?;
+    let pixel_aspect = pixel_aspect(&bytes).unwrap_or(1.0);
     let options = DecoderOptions::default()
         .set_max_width(Size::MAX as usize)
         .set_max_height(Size::MAX as usize);
@@ -59,10 +60,22 @@ pub(super) fn read(mut source: Source) -> Result<Picture, DecodeError> {
         rgb.extend(decoded.iter().map(|&v| light(v)));
     }
     decoding.finish(&mut rgb).map_err(DecodeError::Invalid)?;
-    let mut picture = Picture::new(size, rgb, LightReference::Display, SampleBits::U8);
-    picture.notes = notes;
+    let mut picture = Picture {
+        pixel_aspect: Picture::checked_aspect(pixel_aspect),
+        notes,
+        ..Picture::new(size, rgb, LightReference::Display, SampleBits::U8)
+    };
     picture.note_conversion(decoding.name());
     Ok(picture.turned(exif.orientation))
+}
+
+/// Width of a pixel over its height, by the densities of the JFIF header: pixels per unit, of which wide ones are few.
+fn pixel_aspect(bytes: &[u8]) -> Option<f32> {
+    // Marker, length, name, version, unit, horizontal and vertical density.
+    let at = segment(bytes, |marker| marker == 0xe0)?;
+    let header = bytes.get(at..at + 16)?;
+    let density = |at: usize| f32::from(u16::from_be_bytes([header[at], header[at + 1]]));
+    (header[4..9] == *b"JFIF\0").then(|| density(14) / density(12))
 }
 
 /// Refuses kinds of JPEG that are not decoded, by the marker and the header of the frame.

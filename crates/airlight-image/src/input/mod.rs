@@ -28,7 +28,7 @@ pub use picture::{LightReference, Picture, SampleBits};
 
 use crate::ImageError;
 use depth::RawDepth;
-use source::{DecodeError, FileKind, Source, decode_file};
+use source::{DecodeError, FileKind, Source, decode_file, decode_source};
 use std::path::Path;
 
 /// Formats of pictures, as errors name them.
@@ -56,26 +56,54 @@ const DEPTH_FORMATS: &str = "OpenEXR, PNG, NPY, NPZ, PFM, TIFF";
 /// format, corrupt contents, CMYK, more than 65536 pixels a side or 2^30 in total.
 pub fn read_picture(path: &Path, layer: Option<&str>) -> Result<Picture, ImageError> {
     decode_file(path, PICTURE_FORMATS, |source| {
-        if let Some(layer) = layer
-            && source.kind != FileKind::Exr
-        {
-            return Err(DecodeError::Invalid(format!(
-                "expected an EXR file for layer `{layer}`: only EXR files have layers"
-            )));
-        }
-        match source.kind {
-            FileKind::Exr => exr::read(source, layer),
-            FileKind::Hdr => hdr::read(source),
-            FileKind::Png => png::read(source),
-            FileKind::Jpeg => jpeg::read(source),
-            FileKind::Npy | FileKind::Npz | FileKind::Pfm => Err(DecodeError::Invalid(format!(
-                "expected a picture ({PICTURE_FORMATS}), got an array of numbers (NPY, NPZ or PFM)"
-            ))),
-            FileKind::Tiff => Err(DecodeError::Invalid(format!(
-                "expected a picture ({PICTURE_FORMATS}), got a TIFF file; try saving it as PNG or EXR"
-            ))),
-        }
+        decode_picture(source, layer)
     })
+}
+
+/// Reads a picture, and its depth from the same file, which may be a pipe. `options` are those of the depth of a picture.
+///
+/// # Errors
+/// For the picture as [`read_picture`]; those of the depth, as [`read_depth`], are in the inner result.
+pub fn read_picture_with_depth(
+    path: &Path,
+    layer: Option<&str>,
+    options: impl FnOnce(&Picture) -> DepthOptions,
+) -> Result<(Picture, Result<DepthMap, ImageError>), ImageError> {
+    let mut again = None;
+    let picture = decode_file(path, PICTURE_FORMATS, |source| {
+        again = source.again();
+        decode_picture(source, layer)
+    })?;
+    let options = options(&picture);
+    let depth = match again {
+        None => read_depth(path, &options),
+        Some(source) => finish_depth(path, &options, |path| {
+            decode_source(source, path, |source| decode_depth(source, &options))
+        }),
+    };
+    Ok((picture, depth))
+}
+
+fn decode_picture(source: Source, layer: Option<&str>) -> Result<Picture, DecodeError> {
+    if let Some(layer) = layer
+        && source.kind != FileKind::Exr
+    {
+        return Err(DecodeError::Invalid(format!(
+            "expected an EXR file for layer `{layer}`: only EXR files have layers"
+        )));
+    }
+    match source.kind {
+        FileKind::Exr => exr::read(source, layer),
+        FileKind::Hdr => hdr::read(source),
+        FileKind::Png => png::read(source),
+        FileKind::Jpeg => jpeg::read(source),
+        FileKind::Npy | FileKind::Npz | FileKind::Pfm => Err(DecodeError::Invalid(format!(
+            "expected a picture ({PICTURE_FORMATS}), got an array of numbers (NPY, NPZ or PFM)"
+        ))),
+        FileKind::Tiff => Err(DecodeError::Invalid(format!(
+            "expected a picture ({PICTURE_FORMATS}), got a TIFF file; try saving it as PNG or EXR"
+        ))),
+    }
 }
 
 /// Reads a depth map: EXR, PNG (grey of 8 or 16 bits, equal red, green and blue, or [`DepthPacking`]), NPY (numbers of any type,
@@ -97,8 +125,19 @@ pub fn read_picture(path: &Path, layer: Option<&str>) -> Result<Picture, ImageEr
 /// As [`read_picture`]; [`ImageError::Setting`] where an option is out of range;
 /// [`ImageError::NegativeDepth`]; [`ImageError::Read`] also where all pixels are holes.
 pub fn read_depth(path: &Path, options: &DepthOptions) -> Result<DepthMap, ImageError> {
+    finish_depth(path, options, |path| {
+        decode_file(path, DEPTH_FORMATS, |source| decode_depth(source, options))
+    })
+}
+
+/// Converts the numbers of a file to metres, and fills in unknown ones.
+fn finish_depth(
+    path: &Path,
+    options: &DepthOptions,
+    decode: impl FnOnce(&Path) -> Result<RawDepth, ImageError>,
+) -> Result<DepthMap, ImageError> {
     options.validate()?;
-    let raw = decode_file(path, DEPTH_FORMATS, |source| decode_depth(source, options))?;
+    let raw = decode(path)?;
     let mut map = raw.into_map(path, options)?;
     if map.holes > 0 {
         match options.unknown {

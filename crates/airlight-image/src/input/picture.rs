@@ -99,6 +99,9 @@ impl Picture {
                 .alpha
                 .map(|alpha| orientation.apply(self.size, 1, alpha));
             self.size = orientation.turned(self.size);
+            if orientation.swaps_sides() {
+                self.pixel_aspect = 1.0 / self.pixel_aspect;
+            }
             self.orientation = orientation;
             self.notes.add(format!(
                 "turned upright (EXIF orientation {})",
@@ -106,6 +109,14 @@ impl Picture {
             ));
         }
         self
+    }
+
+    /// Width of a pixel over its height, if that is within reason.
+    pub(super) fn checked_aspect(aspect: f32) -> f32 {
+        match (1e-3..=1e3).contains(&aspect) {
+            true => aspect,
+            false => 1.0,
+        }
     }
 
     /// Notes the name of the colour space from which display colours were converted.

@@ -39,10 +39,7 @@ pub(super) fn read(source: Source) -> Result<Picture, DecodeError> {
     let pixel_aspect = info
         .pixel_dims
         .map_or(1.0, |dims| dims.yppu as f32 / dims.xppu as f32);
-    let pixel_aspect = match (1e-3..=1e3).contains(&pixel_aspect) {
-        true => pixel_aspect,
-        false => 1.0,
-    };
+    let pixel_aspect = Picture::checked_aspect(pixel_aspect);
     let exif = info.exif_metadata.as_deref().map(Exif::parse);
     let mut rgb = reserve(sample_count(size, 3))?;
     let mut alpha = layout

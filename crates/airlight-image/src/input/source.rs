@@ -86,6 +86,24 @@ impl Source {
         }
     }
 
+    /// The file once more, if it cannot be opened again, such as a pipe.
+    pub(super) fn again(&self) -> Option<Self> {
+        let Bytes::Memory(memory) = &self.reader.get_ref().bytes else {
+            return None;
+        };
+        let ended = Arc::new(AtomicBool::new(false));
+        let tracked = TrackedFile {
+            bytes: Bytes::Memory(Cursor::new(memory.get_ref().clone())),
+            ended: ended.clone(),
+        };
+        Some(Self {
+            kind: self.kind,
+            reader: BufReader::new(tracked),
+            length: self.length,
+            ended,
+        })
+    }
+
     /// The whole contents, for decoders that work in memory. That the end was reached is then no sign of missing bytes.
     pub(super) fn read_to_end(&mut self) -> io::Result<Vec<u8>> {
         let mut bytes = Vec::new();
@@ -177,6 +195,15 @@ pub(super) fn decode_file<T>(
     decode: impl FnOnce(Source) -> Result<T, DecodeError>,
 ) -> Result<T, ImageError> {
     let source = open(path, formats).map_err(|error| error.in_file(path, false))?;
+    decode_source(source, path, decode)
+}
+
+/// Decodes an open file.
+pub(super) fn decode_source<T>(
+    source: Source,
+    path: &Path,
+    decode: impl FnOnce(Source) -> Result<T, DecodeError>,
+) -> Result<T, ImageError> {
     let ended = source.ended.clone();
     // Some of the decoding libraries panic on corrupt files.
     panic::catch_unwind(AssertUnwindSafe(|| decode(source)))

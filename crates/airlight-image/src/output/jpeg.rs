@@ -7,7 +7,10 @@ use super::{
     format::{FormatEntry, Written, expect_channels, into_file},
 };
 use crate::{Control, ImageError, RowSource, Size, tone::ToneMapper};
-use jpeg_encoder::{Encoder, EncodingError, ImageBuffer, JpegColorType, SamplingFactor};
+use jpeg_encoder::{
+    Encoder, EncodingError, ImageBuffer, JpegColorType, PixelDensity, PixelDensityUnit,
+    SamplingFactor,
+};
 use std::{
     cell::RefCell,
     io::{self, Write},
@@ -152,6 +155,18 @@ fn run_encoder(
     } else {
         SamplingFactor::F_2_2
     });
+    if let Some(aspect) = metadata.pixel_aspect.filter(|aspect| *aspect != 1.0) {
+        // Pixels per unit, in the largest numbers that fit.
+        let largest = 1000.0;
+        let density = match aspect > 1.0 {
+            true => (largest / aspect, largest),
+            false => (largest, largest * aspect),
+        };
+        encoder.set_density(PixelDensity {
+            density: (density.0.round() as u16, density.1.round() as u16),
+            unit: PixelDensityUnit::PixelAspectRatio,
+        });
+    }
     let failed = |error| match error {
         EncodingError::IoError(source) => ImageError::Stream {
             format: FORMAT,

@@ -3,8 +3,12 @@
 use crate::common::{Folder, files::*, size};
 use airlight::spectrum::rgb::srgb_encode;
 use airlight_image::{
-    DepthOptions, Picture,
+    Control, DepthOptions, Picture, PictureOptions,
     input::{Orientation, read_depth, read_picture},
+    output::Metadata,
+    rows::StoredRows,
+    tone::ToneMapper,
+    write_picture,
 };
 use jpeg_encoder::JpegColorType;
 use moxcms::{ColorProfile, ToneReprCurve};
@@ -256,4 +260,46 @@ fn pictures_are_turned_upright_and_depth_with_them() {
             assert_eq!(refused.contains("EXIF"), value != 1, "{refused}");
         }
     }
+}
+
+#[test]
+fn pixel_shapes_are_read_and_written() {
+    let folder = Folder::new("pixel-shape");
+    let plain = read_as(&folder, &red(|_| {}));
+    assert_eq!(plain.pixel_aspect, 1.0);
+    for ending in ["exr", "hdr", "png", "jpg"] {
+        for aspect in [2.0, 0.5] {
+            let path = folder.0.join(format!("wide.{ending}"));
+            let options = PictureOptions {
+                metadata: Metadata {
+                    pixel_aspect: Some(aspect),
+                    ..Metadata::default()
+                },
+                ..PictureOptions::default()
+            };
+            let rows = StoredRows::new(1, 3, vec![0.5; 3]).unwrap();
+            let tone = ToneMapper::as_displayed();
+            write_picture(
+                &path,
+                size(1, 1),
+                &rows,
+                &tone,
+                &options,
+                Control::default(),
+            )
+            .unwrap();
+            let read = read_picture(&path, None).unwrap();
+            assert!(
+                (read.pixel_aspect - aspect).abs() < 1e-3,
+                "{ending} {aspect}"
+            );
+        }
+    }
+    // Turned upright, wide pixels are high.
+    let mut jpeg = jpeg_file((8, 8), JpegColorType::Ycbcr, false, &[]);
+    let header = jpeg.windows(4).position(|four| four == b"JFIF").unwrap();
+    jpeg[header + 8..header + 12].copy_from_slice(&[0, 1, 0, 3]);
+    assert_eq!(read_as(&folder, &jpeg).pixel_aspect, 3.0);
+    let turned = read_as(&folder, &with_exif(&jpeg, &orientation(6)));
+    assert!((turned.pixel_aspect - 1.0 / 3.0).abs() < 1e-6);
 }

@@ -6,6 +6,7 @@ use crate::RenderError;
 use airlight::spectrum::RgbSpace;
 use airlight_image::input::{
     DepthMap, DepthOptions, LightReference, Picture, SampleBits, read_depth, read_picture,
+    read_picture_with_depth,
 };
 use airlight_image::output::{
     Carried, Metadata, PictureFormat, PictureOptions, Written, exr, jpeg, png, write_picture,
@@ -54,7 +55,21 @@ impl OverlayImage {
     /// # Errors
     /// [`RenderError`] if one cannot be read, their sizes differ, or a setting does not apply to the picture.
     pub fn read(spec: &OverlaySpec, format: PictureFormat) -> Result<Self, RenderError> {
-        let mut picture = read_picture(&spec.colour, spec.colour_layer.as_deref())?;
+        let depth_options = spec.depth_options()?;
+        let beside = |picture: &Picture| DepthOptions {
+            beside: picture.layer.clone(),
+            grey_is_depth: spec.depth.is_some(),
+            ..depth_options.clone()
+        };
+        let layer = spec.colour_layer.as_deref();
+        let (mut picture, depth) = match &spec.depth {
+            None => read_picture_with_depth(&spec.colour, layer, beside)?,
+            Some(file) => {
+                let picture = read_picture(&spec.colour, layer)?;
+                let depth = read_depth(file, &beside(&picture));
+                (picture, depth)
+            }
+        };
         if !format.holds_alpha() && picture.alpha.take().is_some() {
             picture
                 .notes
@@ -86,28 +101,18 @@ impl OverlayImage {
             }
             _ => {}
         }
-        let options = DepthOptions {
-            beside: picture.layer.clone(),
-            ..spec.depth_options()?
-        };
-        let inside = DepthOptions {
-            grey_is_depth: false,
-            ..options.clone()
-        };
-        let depth = match &spec.depth {
-            Some(file) => read_depth(file, &options)?,
-            None if picture.reference == LightReference::Display => {
+        let depth = match (depth, &spec.depth) {
+            (depth, Some(_)) => depth?,
+            (_, None) if picture.reference == LightReference::Display => {
                 return Err(spec.without_depth());
             }
-            None => read_depth(&spec.colour, &inside).map_err(|error| match error {
-                ImageError::NoChannel { .. } | ImageError::Read { .. } => {
-                    RenderError::setting(format!(
-                        "depth: expected a depth map, or an EXR picture with a depth channel, got neither ({error}); try depth \
-                         with a file",
-                    ))
-                }
-                error => error.into(),
-            })?,
+            (Err(error @ (ImageError::NoChannel { .. } | ImageError::Read { .. })), None) => {
+                return Err(RenderError::setting(format!(
+                    "depth: expected a depth map, or an EXR picture with a depth channel, got neither ({error}); try depth \
+                     with a file",
+                )));
+            }
+            (depth, None) => depth?,
         };
         Self::new(spec, picture, depth)
     }
