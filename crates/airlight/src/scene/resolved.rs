@@ -218,13 +218,13 @@ mod tests {
     fn inputs_are_found_and_can_be_removed() {
         assert_eq!(Scene::default().set_inputs(), []);
         let all = full().set_inputs();
-        assert_eq!(all.len(), 19);
+        assert_eq!(all.len(), 20);
         assert!(all.windows(2).all(|pair| pair[0] < pair[1]));
         for input in all {
             let left = full().without(input).set_inputs();
             // Removing the fog also removes its scattering.
             let gone = if input == Input::Fog { 2 } else { 1 };
-            assert_eq!(left.len(), 19 - gone, "{input:?}");
+            assert_eq!(left.len(), 20 - gone, "{input:?}");
             assert!(!left.contains(&input));
         }
     }

@@ -13,6 +13,16 @@ version = 1
 elevation_deg = 10
 azimuth_deg = 225
 
+[night]
+lights = "on"
+moon_elevation_deg = 30
+moon_azimuth_deg = 200
+moon_phase_deg = 40
+stars = false
+solar_flux_sfu = 70
+sky_quality_mag = 20
+latitude_deg = -30
+
 [observer]
 altitude_m = 100
 eye_height_m = 2
@@ -73,6 +83,8 @@ file = "sky.exr"
 sun_disc = "separate"
 color_space = "rec2020"
 exposure = "auto"
+white_balance_k = 4200
+scotopic = true
 compression = "piz"
 
 [sequence]
@@ -243,5 +255,5 @@ fn the_schema_contains_all_keys() {
     }
     assert_eq!(schema["additionalProperties"], false);
     let properties = schema["properties"].as_object().unwrap();
-    assert_eq!(properties.len(), 11);
+    assert_eq!(properties.len(), 12);
 }
