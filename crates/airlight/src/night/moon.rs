@@ -117,7 +117,7 @@ impl MoonState {
     /// (Kieffer & Stone, Astron. J. 129, 2887, 2005, eq. 7 and 8).
     ///
     /// `A(g, lambda) Omega / pi`, scaled with the distances, where `A` is the albedo of the whole disc
-    /// ([`disc_albedo`]).
+    /// (`disc_albedo`).
     pub fn irradiance_ratio(&self, wavelength_nm: f64) -> f64 {
         let from_sun = ASTRONOMICAL_UNIT_M / self.sun_distance_m;
         let from_eye = MEAN_DISTANCE_M / self.distance_m;
