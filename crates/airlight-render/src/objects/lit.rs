@@ -1,5 +1,6 @@
 //! Objects lit by a view.
 
+use super::surface::Shading;
 use super::{Hit, Object, Objects, Ray};
 use crate::channels::{PixelChannels, RgbWeights};
 use airlight::scene::{Channels, RadianceView, ResolvedScene, SceneError};
@@ -197,32 +198,40 @@ impl LitObjects {
             let mirror = direction - 2.0 * direction.dot(hit.normal) * hit.normal;
             self.ambient(height_m, mirror, mirrored, other);
         }
-        let (sun, moon) = (self.view.sun(), self.view.moon());
-        let shading = hit.surface.shading(hit.normal, -*direction, sun);
-        let direct = self.direct(ray, sun);
-        let moonlit = moon.map_or((0.0, 0.0), |moon| self.direct(ray, moon.sun()));
+        let shading = self.shading(ray, self.view.sun());
+        let moon = self.view.moon();
+        let moonlit = moon.map_or((0.0, 0.0), |moon| {
+            let shading = self.shading(ray, moon.sun());
+            (shading.sun, shading.sun_mirrored)
+        });
         let share = checker_share(ray);
         let [own, checker] = &self.reflectances[hit.index];
         for lane in 0..light.len() {
             let reflectance = own[lane] * (1.0 - share) + checker[lane] * share;
-            let diffuse = sunlight[lane] * direct.0
+            let diffuse = sunlight[lane] * shading.sun
                 + moonlight[lane] * moonlit.0
                 + ambient[lane] * shading.ambient;
             light[lane] += reflectance / PI * diffuse
-                + sunlight[lane] * direct.1
+                + sunlight[lane] * shading.sun_mirrored
                 + moonlight[lane] * moonlit.1
                 + mirrored[lane] / PI * shading.mirrored;
         }
     }
 
-    /// Diffuse and mirrored reflection of a distant source; 0 in shadow.
-    fn direct(&self, ray: &ViewRay<'_>, source: DVec3) -> (f32, f32) {
+    /// Reflection at the end of a ray under a distant source, whose light is 0 in shadow.
+    fn shading(&self, ray: &ViewRay<'_>, source: DVec3) -> Shading {
         let hit = &ray.hit;
-        if hit.normal.dot(source) <= 0.0 || self.shadows && self.objects.shadowed(hit, source) {
-            return (0.0, 0.0);
-        }
         let shading = hit.surface.shading(hit.normal, -ray.direction, source);
-        (shading.sun, shading.sun_mirrored)
+        let dark =
+            hit.normal.dot(source) <= 0.0 || self.shadows && self.objects.shadowed(hit, source);
+        match dark {
+            true => Shading {
+                sun: 0.0,
+                sun_mirrored: 0.0,
+                ..shading
+            },
+            false => shading,
+        }
     }
 
     /// Irradiance of a surface at a height (m) by all light except the sun's disc.

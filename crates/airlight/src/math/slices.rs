@@ -1,4 +1,4 @@
-//! Lengths of slices.
+//! Lengths and sums of slices.
 
 /// Checks that a slice has the length that a call states.
 ///
@@ -11,4 +11,9 @@ pub(crate) fn check_length<T>(slice: &[T], expected: usize) {
         "expected a slice of {expected} values, got {}",
         slice.len()
     );
+}
+
+/// Adds values to sums, one by one.
+pub(crate) fn accumulate(values: &[f32], sums: &mut [f32]) {
+    sums.iter_mut().zip(values).for_each(|(sum, v)| *sum += v);
 }

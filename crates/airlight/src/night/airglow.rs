@@ -25,9 +25,13 @@ fn zenith_radiance() -> &'static SampledCurve {
 /// wavelengths; the luminance is that of the tabulated spectrum.
 pub fn spectrum(grid: &WavelengthGrid, solar_flux_sfu: f64) -> Vec<f64> {
     let curve = zenith_radiance();
-    let fine = WavelengthGrid::fine();
-    let of = |nm: &[f64]| -> Vec<f32> { nm.iter().map(|&nm| curve.at(nm) as f32).collect() };
-    let luminance: f64 = fine.to_xyz(&of(fine.wavelengths_nm()))[1];
+    /// Luminance of the tabulated spectrum, cd/m^2.
+    static LUMINANCE: LazyLock<f64> = LazyLock::new(|| {
+        let fine = WavelengthGrid::fine();
+        let nm = fine.wavelengths_nm().iter();
+        let radiance: Vec<f32> = nm.map(|&nm| zenith_radiance().at(nm) as f32).collect();
+        fine.to_xyz(&radiance)[1]
+    });
     let nm = grid.wavelengths_nm();
     // Mean over a triangle that reaches to the neighbours.
     let mean = |k: usize| {
@@ -55,7 +59,7 @@ pub fn spectrum(grid: &WavelengthGrid, solar_flux_sfu: f64) -> Vec<f64> {
     with_luminance(
         grid,
         (0..nm.len()).map(mean).collect(),
-        activity * luminance,
+        activity * *LUMINANCE,
     )
 }
 

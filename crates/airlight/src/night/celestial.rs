@@ -1,5 +1,6 @@
 //! Orientation of the celestial sphere over a place.
 
+use crate::sun::{DAY_S, UNIX_EPOCH_JD};
 use glam::{DMat3, DVec3};
 use std::f64::consts::TAU;
 
@@ -7,9 +8,6 @@ use std::f64::consts::TAU;
 const OBLIQUITY_J2000_RAD: f64 = 0.409_092_804_222_329;
 /// Julian date of J2000.0.
 const J2000_JD: f64 = 2_451_545.0;
-/// Julian date of 1970-01-01T00:00:00Z.
-const UNIX_EPOCH_JD: f64 = 2_440_587.5;
-const DAY_S: f64 = 86_400.0;
 
 /// Orientation of the celestial sphere over a place at a time.
 ///

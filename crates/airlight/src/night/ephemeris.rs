@@ -3,13 +3,12 @@
 use super::celestial::{
     centuries, equator_of_date_to_world, sidereal_time_rad, spherical, sun_longitude_rad,
 };
+use crate::sun::ASTRONOMICAL_UNIT_M;
 use glam::DVec3;
 
 /// Equatorial radius of the Earth and its polar radius relative to it (WGS 84).
 const EARTH_RADIUS_M: f64 = 6_378_137.0;
 const POLAR_RATIO: f64 = 0.996_647_19;
-/// Astronomical unit, m.
-const ASTRONOMICAL_UNIT_M: f64 = 149_597_870_700.0;
 
 /// Periodic terms of longitude and distance: multiples of elongation, the sun's anomaly, the moon's anomaly and its argument
 /// of latitude; coefficients of the sine, 1e-6 degrees, and of the cosine, m (Meeus, table 47.A). Terms below 0.0022 degrees are

@@ -2,7 +2,7 @@
 
 #[cfg(feature = "ephemeris")]
 use super::ephemeris::moon_position;
-use crate::sun::{LimbDarkening, SunDisc};
+use crate::sun::{ASTRONOMICAL_UNIT_M, LimbDarkening, SunDisc};
 #[cfg(feature = "ephemeris")]
 use crate::sun::{RefractingAir, raised};
 use glam::DVec3;
@@ -13,7 +13,6 @@ const MOON_RADIUS_M: f64 = 1_737_400.0;
 const MEAN_DISTANCE_M: f64 = 384_400_000.0;
 /// Solid angle of the moon at that distance, sr (Kieffer & Stone 2005).
 const MEAN_SOLID_ANGLE_SR: f64 = 6.4177e-5;
-const ASTRONOMICAL_UNIT_M: f64 = 149_597_870_700.0;
 
 /// The moon at one time, seen from one place.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,8 +1,9 @@
 //! Zodiacal light: sunlight scattered by dust between the planets.
 
-use crate::math::interpolation::lerp;
+use crate::math::interpolation::{Place, lerp};
 use crate::spectrum::{WavelengthGrid, solar};
 use std::f64::consts::TAU;
+use std::sync::LazyLock;
 
 /// Ecliptic longitudes from the sun and ecliptic latitudes of the table, degrees.
 const LONGITUDES_DEG: [f64; 19] = [
@@ -77,24 +78,15 @@ const RADIANCE: [[f64; 11]; 19] = [
 /// Radiance at 500 nm outside the air, W m^-2 sr^-1 nm^-1, by ecliptic longitude from the sun and ecliptic latitude, rad.
 /// The logarithm is interpolated.
 pub fn radiance_500nm(longitude_from_sun_rad: f64, latitude_rad: f64) -> f64 {
+    static LOGARITHM: LazyLock<[[f64; 11]; 19]> =
+        LazyLock::new(|| RADIANCE.map(|row| row.map(f64::ln)));
     let turned = longitude_from_sun_rad.rem_euclid(TAU);
     let longitude = turned.min(TAU - turned).to_degrees();
     let latitude = latitude_rad.abs().to_degrees().min(90.0);
-    let (i, s) = place(&LONGITUDES_DEG, longitude);
-    let (j, t) = place(&LATITUDES_DEG, latitude);
-    let at = |i: usize, j: usize| RADIANCE[i][j].ln();
-    let low = lerp(at(i, j), at(i + 1, j), s);
-    let high = lerp(at(i, j + 1), at(i + 1, j + 1), s);
-    1e-11 * lerp(low, high, t).exp()
-}
-
-/// Interval of increasing nodes that contains a value, and the fraction within it.
-fn place(nodes: &[f64], value: f64) -> (usize, f64) {
-    let above = nodes
-        .partition_point(|node| *node < value)
-        .clamp(1, nodes.len() - 1);
-    let (low, high) = (nodes[above - 1], nodes[above]);
-    (above - 1, ((value - low) / (high - low)).clamp(0.0, 1.0))
+    let across = Place::among(&LONGITUDES_DEG, longitude);
+    let up = Place::among(&LATITUDES_DEG, latitude);
+    let at = |i: usize| up.value_in(&LOGARITHM[i]);
+    1e-11 * lerp(at(across.below), at(across.below + 1), across.fraction).exp()
 }
 
 /// Spectrum relative to that at 500 nm: the sun's, reddened as at 90 degrees from the sun (Leinert et al. 1998, eq. 22),

@@ -2,11 +2,13 @@
 
 use super::city_glow::CityGlow;
 use super::diffuse_fog::DiffuseFog;
+use super::irradiance_map::{IrradianceMap, horizontal_irradiance_of};
 use super::model::StarField;
-use super::{Channels, FogLayers, IrradianceMap, SceneError, horizontal_irradiance};
+use super::{Channels, FogLayers, SceneError};
 use crate::axes;
 use crate::math::parallel;
 use crate::math::quadrature::GaussRule;
+use crate::math::slices::accumulate;
 use crate::night::{
     CelestialFrame, GlowComponent, NightGlow, black_body, bright_stars, luminance_of_magnitude,
 };
@@ -25,6 +27,9 @@ const AZIMUTHS: usize = 8;
 const OFF_HORIZON_RAD: f64 = 1e-6;
 /// Number of components of the light outside the air.
 const COMPONENTS: usize = GlowComponent::ALL.len();
+
+/// Spectra of the components at the wavelengths of a sky.
+type Spectra = [Vec<f64>; COMPONENTS];
 
 /// Elevations that are tabulated for an eye whose horizon is at `horizon_rad`: denser towards the horizon on both sides of it,
 /// first those above.
@@ -104,10 +109,6 @@ impl RingScattering {
     }
 }
 
-fn add(values: &[f32], sum: &mut [f32]) {
-    sum.iter_mut().zip(values).for_each(|(sum, v)| *sum += v);
-}
-
 /// Elevation of the horizon of a view, rad.
 fn horizon_rad(view: &View) -> f64 {
     -(view.bounds_m().0 / view.radius_m()).min(1.0).acos()
@@ -171,8 +172,9 @@ impl GlowView {
             irradiance: OnceLock::new(),
         };
         let elevations = elevations(horizon_rad);
-        this.direct = this.tabulate_direct(&elevations);
-        this.scattered = this.tabulate_scattered(rings);
+        let spectra = GlowComponent::ALL.map(|component| glow.spectrum(component, sky.grid()));
+        this.direct = this.tabulate_direct(&elevations, &spectra);
+        this.scattered = this.tabulate_scattered(rings, &spectra);
         if let (Some(city), Some(magnitude)) = (city, sky_quality_mag) {
             this.add_city(city, magnitude, &elevations);
         }
@@ -217,14 +219,13 @@ impl GlowView {
         }
     }
 
-    fn tabulate_direct(&self, elevations: &[f64]) -> Vec<f32> {
-        let grid = self.view.sky().grid();
-        let spectra = GlowComponent::ALL.map(|component| self.glow.spectrum(component, grid));
+    /// One unit of each component with these spectra, dimmed by the air at each elevation.
+    fn tabulate_direct(&self, elevations: &[f64], spectra: &Spectra) -> Vec<f32> {
         let rows = parallel::map(elevations.len(), |i| {
             let direction = axes::direction(0.0, elevations[i].to_degrees());
             let transmittance = self.view.transmittance_to_space(direction);
             let mut row = Vec::with_capacity(COMPONENTS * self.count);
-            for (component, spectrum) in GlowComponent::ALL.iter().zip(&spectra) {
+            for (component, spectrum) in GlowComponent::ALL.iter().zip(spectra) {
                 let dimmed = spectrum.iter().zip(&transmittance);
                 let dimmed: Vec<f64> = match component {
                     GlowComponent::AirglowBefore => spectrum.clone(),
@@ -238,9 +239,8 @@ impl GlowView {
     }
 
     /// Light of rings of the sky, scattered into each tabulated elevation.
-    fn tabulate_scattered(&self, rings: &RingScattering) -> Vec<f32> {
+    fn tabulate_scattered(&self, rings: &RingScattering, spectra: &Spectra) -> Vec<f32> {
         let grid = self.view.sky().grid();
-        let spectra = GlowComponent::ALL.map(|component| self.glow.spectrum(component, grid));
         // Radiance of each ring at each wavelength relative to the solar irradiance, as seen from the ground, where the air
         // that scatters is.
         let relative: Vec<Vec<f64>> = ring_sines()
@@ -310,11 +310,11 @@ impl GlowView {
             .collect();
         for (i, spectrum) in glow.iter().enumerate() {
             let more = self.to_channels(spectrum);
-            add(&more, &mut self.scattered[i * self.count..][..self.count]);
+            accumulate(&more, &mut self.scattered[i * self.count..][..self.count]);
         }
         let ground = self.to_channels(&self.ground_under(&glow, elevations));
         for values in self.scattered[ABOVE * self.count..].chunks_exact_mut(self.count) {
-            add(&ground, values);
+            accumulate(&ground, values);
         }
     }
 
@@ -429,24 +429,15 @@ impl GlowView {
         });
         let mut values = vec![0.0; self.count];
         map.irradiance(normal, &mut values);
-        add(&values, out);
+        accumulate(&values, out);
     }
 
     /// Irradiance of an upward-facing horizontal surface.
     pub fn horizontal_irradiance(&self, out: &mut [f32]) {
         const DIRECTIONS: (usize, usize) = (32, 48);
-        let sum = horizontal_irradiance(DIRECTIONS, 0.0, out.len(), |directions, sum| {
-            let mut values = vec![0.0; sum.len()];
-            for &direction in directions {
-                self.radiance(direction, &mut values);
-                sum.iter_mut()
-                    .zip(&values)
-                    .for_each(|(sum, v)| *sum += f64::from(*v));
-            }
+        horizontal_irradiance_of(DIRECTIONS, out, |direction, values| {
+            self.radiance(direction, values);
         });
-        out.iter_mut()
-            .zip(sum)
-            .for_each(|(out, sum)| *out = sum as f32);
     }
 
     /// The bright stars above the horizon, dimmed by air and fog.

@@ -150,6 +150,26 @@ pub(crate) fn horizontal_irradiance(
     whole
 }
 
+/// As [`horizontal_irradiance`], without preference for an azimuth, of a radiance that is evaluated direction by direction.
+pub(super) fn horizontal_irradiance_of(
+    directions: (usize, usize),
+    out: &mut [f32],
+    radiance: impl Fn(DVec3, &mut [f32]) + Sync,
+) {
+    let sum = horizontal_irradiance(directions, 0.0, out.len(), |directions, sum| {
+        let mut values = vec![0.0; sum.len()];
+        for &direction in directions {
+            radiance(direction, &mut values);
+            sum.iter_mut()
+                .zip(&values)
+                .for_each(|(sum, v)| *sum += f64::from(*v));
+        }
+    });
+    out.iter_mut()
+        .zip(sum)
+        .for_each(|(out, sum)| *out = sum as f32);
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -25,7 +25,6 @@ mod irradiance_map;
 mod lane_channels;
 mod light;
 mod model;
-mod moon_view;
 mod night;
 mod night_sky;
 mod night_state;

@@ -2,7 +2,6 @@
 
 use super::city_glow::CityGlow;
 use super::glow_view::{GlowView, RingScattering};
-use super::moon_view::MoonView;
 use super::night_view::NightView;
 use super::{
     Channels, FogLayers, NightSettings, RadianceView, ResolvedScene, SceneError, SolvedView,
@@ -80,7 +79,7 @@ impl NightSky {
                     moon.disc(),
                 );
             let lit = SolvedView::new(view, self.fog.as_ref(), channels)?;
-            Ok(Arc::new(MoonView::new(lit, moon)) as Arc<dyn RadianceView>)
+            Ok(Arc::new(lit.with_moon(moon)) as Arc<dyn RadianceView>)
         });
         let glow = GlowView::new(
             &self.sky,

@@ -3,6 +3,7 @@
 use super::glow_view::GlowView;
 use super::model::StarField;
 use super::{Channels, RadianceView, RowSampler, SolvedView};
+use crate::math::slices::accumulate;
 use crate::spectrum::WavelengthGrid;
 use crate::sun::SunDisc;
 use glam::DVec3;
@@ -38,13 +39,9 @@ impl NightView {
         if let Some(moonlit) = &self.moonlit {
             let mut values = vec![0.0; out.len()];
             fill(moonlit.as_ref(), &mut values);
-            add(&values, out);
+            accumulate(&values, out);
         }
     }
-}
-
-fn add(values: &[f32], out: &mut [f32]) {
-    out.iter_mut().zip(values).for_each(|(out, v)| *out += v);
 }
 
 impl RadianceView for NightView {
@@ -117,7 +114,7 @@ impl RadianceView for NightView {
         self.add_moonlit(out, |moonlit, values| moonlit.horizontal_irradiance(values));
         let mut glow = vec![0.0; out.len()];
         self.glow.horizontal_irradiance(&mut glow);
-        add(&glow, out);
+        accumulate(&glow, out);
     }
 
     fn sun_irradiance(&self, out: &mut [f32]) {
@@ -144,7 +141,7 @@ impl RadianceView for NightView {
         if let Some(moonlit) = &self.moonlit {
             let mut same = vec![0.0; transmittance.len()];
             moonlit.path(direction, distance_m, &mut same, &mut light);
-            add(&light, path_radiance);
+            accumulate(&light, path_radiance);
         }
         self.glow
             .add_path_radiance(direction, distance_m, transmittance, &whole, path_radiance);
@@ -174,7 +171,7 @@ impl RowSampler for NightRows {
         if let Some(moonlit) = &self.moonlit {
             let mut values = vec![0.0; out.len()];
             moonlit.sample_row(directions, &mut values);
-            add(&values, out);
+            accumulate(&values, out);
         }
         self.glow.add_to(directions, out);
     }

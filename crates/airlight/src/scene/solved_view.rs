@@ -1,10 +1,11 @@
 //! Views of a solved sky, with or without fog.
 
 use super::fog_in_sky::FogInSky;
-use super::irradiance_map::horizontal_irradiance;
+use super::irradiance_map::horizontal_irradiance_of;
 use super::sun_disc_table::SunDiscTable;
 use super::{Channels, FogLayers, IrradianceMap, RadianceView, RowSampler, SceneError};
 use crate::axes;
+use crate::night::MoonState;
 use crate::sky::{LineOfSight, SkyColumns, SkyTable, View};
 use crate::spectrum::WavelengthGrid;
 use crate::sun::SunDisc;
@@ -24,6 +25,8 @@ pub(crate) struct SolvedView {
     /// Air without fog, for path optics in front of objects.
     air: OnceLock<FogInSky>,
     disc: OnceLock<Option<SunDiscTable>>,
+    /// The moon that lights the view in the place of the sun.
+    moon: Option<MoonState>,
     irradiance: OnceLock<IrradianceMap>,
 }
 
@@ -60,8 +63,17 @@ impl SolvedView {
             fog,
             air: OnceLock::new(),
             disc: OnceLock::new(),
+            moon: None,
             irradiance: OnceLock::new(),
         })
+    }
+
+    /// The same view of a sky that the moon lights, whose disc shows its phase.
+    pub fn with_moon(self, moon: MoonState) -> Self {
+        Self {
+            moon: Some(moon),
+            ..self
+        }
     }
 
     /// The view of the solved sky.
@@ -164,6 +176,10 @@ impl RadianceView for SolvedView {
         let values = out.chunks_exact_mut(self.clear.channels());
         for (&direction, values) in directions.iter().zip(values) {
             table.sample(direction, values);
+            if let Some(moon) = &self.moon {
+                let relative = moon.relative_radiance(direction) as f32;
+                values.iter_mut().for_each(|v| *v *= relative);
+            }
         }
     }
 
@@ -187,19 +203,9 @@ impl RadianceView for SolvedView {
             out.copy_from_slice(&self.clear.irradiance(DVec3::Y));
             return;
         }
-        let count = out.len();
-        let sum = horizontal_irradiance(DIRECTIONS, 0.0, count, |directions, sum| {
-            let mut values = vec![0.0; count];
-            for &direction in directions {
-                self.sample(direction, &mut values);
-                sum.iter_mut()
-                    .zip(&values)
-                    .for_each(|(sum, v)| *sum += f64::from(*v));
-            }
+        horizontal_irradiance_of(DIRECTIONS, out, |direction, values| {
+            self.sample(direction, values);
         });
-        out.iter_mut()
-            .zip(sum)
-            .for_each(|(out, sum)| *out = sum as f32);
     }
 
     fn sun_irradiance(&self, out: &mut [f32]) {

@@ -99,34 +99,32 @@ impl SunCoverage {
 
 /// Zenith angles over the whole range: coarse for high suns, every degree through twilight.
 fn all_zeniths_deg() -> Vec<f64> {
-    let mut zeniths = vec![0.0];
-    let mut zenith = 0.0;
-    while zenith < NIGHT_DEG {
-        zenith += match zenith {
-            z if z < 55.0 => 5.0,
-            z if z < 73.0 => 3.0,
-            z if z < 83.0 => 2.0,
-            z if z < 112.0 => 1.0,
-            _ => 2.0,
-        };
-        zeniths.push(zenith);
-    }
-    zeniths
+    zeniths_deg(NIGHT_DEG, |zenith| match zenith {
+        z if z < 55.0 => 5.0,
+        z if z < 73.0 => 3.0,
+        z if z < 83.0 => 2.0,
+        z if z < 112.0 => 1.0,
+        _ => 2.0,
+    })
 }
 
 /// Zenith angles down to 10 degrees below the horizon.
 fn zeniths_above_horizon_deg() -> Vec<f64> {
-    const LOWEST_DEG: f64 = 100.0;
-    let mut zeniths = vec![0.0f64];
+    zeniths_deg(100.0, |zenith| match zenith {
+        z if z < 60.0 => 6.0,
+        z if z < 75.0 => 5.0,
+        z if z < 85.0 => 3.0,
+        _ => 2.0,
+    })
+}
+
+/// Zenith angles from 0 to `lowest`, with a step that depends on the angle.
+fn zeniths_deg(lowest: f64, step: impl Fn(f64) -> f64) -> Vec<f64> {
+    let mut zeniths = vec![0.0];
     let mut zenith = 0.0;
-    while zenith < LOWEST_DEG {
-        zenith += match zenith {
-            z if z < 60.0 => 6.0,
-            z if z < 75.0 => 5.0,
-            z if z < 85.0 => 3.0,
-            _ => 2.0,
-        };
-        zeniths.push(zenith.min(LOWEST_DEG));
+    while zenith < lowest {
+        zenith = f64::min(zenith + step(zenith), lowest);
+        zeniths.push(zenith);
     }
     zeniths
 }

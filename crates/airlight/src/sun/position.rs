@@ -5,6 +5,7 @@
 //! `solar-positioning`.
 
 use super::moment::Moment;
+use super::{DAY_S, UNIX_EPOCH_JD};
 use crate::axes;
 use glam::DVec3;
 use solar_positioning::time::JulianDate;
@@ -79,11 +80,6 @@ pub enum EphemerisError {
     #[error("no position of the sun: {0}")]
     Algorithm(String),
 }
-
-/// Length of a day, s.
-const DAY_S: f64 = 86_400.0;
-/// Julian date of 1970-01-01T00:00:00Z.
-const UNIX_EPOCH_JD: f64 = 2_440_587.5;
 
 /// Position of the sun at a time and a place on the Earth, with or without atmospheric refraction.
 ///
