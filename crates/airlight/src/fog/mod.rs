@@ -6,6 +6,7 @@
 //!
 //! - [`Fog`], [`RgbFog`]: transmittance and path radiance along rays, over the wavelengths of a grid and in RGB.
 //! - [`FogTable`], [`RgbFogTable`]: the same, tabulated for the many rays of a picture.
+//! - [`FogPatches`], [`PatchField`], [`PatchView`]: fog whose density varies at random, and its optical depth along rays.
 //! - [`lights`]: point, spot and sphere lights in fog.
 //! - [`legacy`]: fog factors of older graphics hardware.
 //!
@@ -19,6 +20,8 @@ pub mod legacy;
 mod lighting;
 pub mod lights;
 mod multiple;
+mod patch_view;
+mod patches;
 mod ray_cuts;
 mod single_scattering;
 mod spectral;
@@ -30,6 +33,8 @@ pub use closed_forms::split_sum_error;
 pub use error::FogError;
 pub use layer::RgbLayer;
 pub use lighting::{DirectionalLight, FogLighting, FogScattering, Ground};
+pub use patch_view::PatchView;
+pub use patches::{FogPatches, PatchField};
 pub use spectral::{Fog, FogTable, RgbFog, RgbFogTable};
 pub use values::ChannelValues;
 

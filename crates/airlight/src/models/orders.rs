@@ -35,6 +35,7 @@ impl RadianceModel for Orders {
                 Input::Night,
                 Input::Fog,
                 Input::FogScattering,
+                Input::FogPatches,
                 Input::Objects,
                 Input::Wavelengths,
                 Input::Scattering,

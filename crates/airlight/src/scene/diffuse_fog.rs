@@ -3,7 +3,7 @@
 use super::lane_channels::{Converter, LaneChannels};
 use super::{FogLayers, SceneError};
 use crate::atmosphere::RaySegment;
-use crate::fog::{FogLanes, FogLighting, Ground};
+use crate::fog::{FogLanes, FogLighting, Ground, PatchView};
 use crate::sky::View;
 use crate::spectrum::{RgbSpace, Spectrum, WavelengthGrid};
 use glam::DVec3;
@@ -13,6 +13,7 @@ use glam::DVec3;
 pub(super) struct DiffuseFog {
     fog: FogLanes<3>,
     eye_height_m: f64,
+    patches: Option<PatchView>,
 }
 
 impl DiffuseFog {
@@ -38,6 +39,7 @@ impl DiffuseFog {
         Ok(Self {
             fog: FogLanes::new(&layers, ground, lighting, fog.scattering, lanes)?,
             eye_height_m: view.radius_m() - ground.radius_m,
+            patches: fog.patches_in_view(view)?,
         })
     }
 
@@ -45,7 +47,11 @@ impl DiffuseFog {
     pub fn along(&self, direction: DVec3, distance_m: f64) -> (f32, f32) {
         let radius_m = self.fog.ground().radius_m;
         let ray = RaySegment::new(self.eye_height_m, direction.y, distance_m, radius_m);
-        let path = self.fog.path_along(&ray, 0.0);
+        let even = self.fog.path_along(&ray, 0.0);
+        let path = match &self.patches {
+            Some(patches) => even.at_density(patches.factor(direction, distance_m) as f32),
+            None => even,
+        };
         (path.transmittance[1], path.path_radiance[1])
     }
 }

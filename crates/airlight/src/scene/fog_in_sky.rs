@@ -3,7 +3,7 @@
 use super::foggy::FoggySky;
 use super::lane_channels::LaneChannels;
 use super::{Channels, FogLayers, SceneError};
-use crate::fog::FogScattering;
+use crate::fog::{FogScattering, PatchView};
 use crate::sky::{SkyTable, View};
 use crate::spectrum::{Spectrum, WavelengthGrid};
 use glam::DVec3;
@@ -13,7 +13,13 @@ use std::sync::Arc;
 const PIECE: usize = 16;
 
 /// A sky with fog, in the channels of a view.
-pub(super) enum FogInSky {
+pub(super) struct FogInSky {
+    channels: InChannels,
+    patches: Option<PatchView>,
+}
+
+/// A sky with even fog, by channels.
+enum InChannels {
     /// Red, green and blue.
     Rgb(Box<FoggySky<3>>),
     /// All wavelengths, in blocks.
@@ -33,36 +39,56 @@ impl FogInSky {
         let ground = FoggySky::<3>::round_ground(view);
         let scattering = fog.map_or(FogScattering::Single, |fog| fog.scattering);
         let layers = |nm: &[f64]| fog.map_or(Ok(Vec::new()), |fog| fog.constituents(nm));
-        Ok(match channels {
+        let in_channels = match channels {
             Channels::Rgb(space) => {
                 let layers = layers(WavelengthGrid::standard().wavelengths_nm())?;
                 let channels = LaneChannels::Rgb(space);
                 let sky = FoggySky::new(view, channels, &layers, ground, scattering)?;
-                Self::Rgb(Box::new(sky))
+                InChannels::Rgb(Box::new(sky))
             }
             Channels::Spectral => {
                 let layers = layers(view.sky().grid().wavelengths_nm())?;
-                Self::Spectral(FoggySky::spectral(view, &layers, ground, scattering)?)
+                InChannels::Spectral(FoggySky::spectral(view, &layers, ground, scattering)?)
             }
+        };
+        let patches = match fog {
+            Some(fog) => fog.patches_in_view(view)?,
+            None => None,
+        };
+        Ok(Self {
+            channels: in_channels,
+            patches,
         })
     }
 
     /// The sky without the fog.
     pub fn clear(&self) -> &Arc<SkyTable> {
-        match self {
-            Self::Rgb(sky) => sky.clear(),
-            Self::Spectral(pieces) => pieces[0].clear(),
+        match &self.channels {
+            InChannels::Rgb(sky) => sky.clear(),
+            InChannels::Spectral(pieces) => pieces[0].clear(),
         }
+    }
+
+    /// Factor of the patches on the optical depth of the fog up to a distance (m; infinite: to the ground or to space).
+    fn factor(&self, direction: DVec3, distance_m: f64) -> Option<f32> {
+        let patches = self.patches.as_ref()?;
+        let ground_m = match &self.channels {
+            InChannels::Rgb(sky) => sky.aerial().ground_distance_m(direction),
+            InChannels::Spectral(pieces) => pieces[0].aerial().ground_distance_m(direction),
+        };
+        let end_m = ground_m.map_or(distance_m, |ground_m| ground_m.min(distance_m));
+        Some(patches.factor(direction, end_m) as f32)
     }
 
     /// Replaces radiance without fog by radiance through the fog.
     #[inline]
     pub fn cover(&self, direction: DVec3, values: &mut [f32]) {
-        match self {
-            Self::Rgb(sky) => cover(sky, direction, values),
-            Self::Spectral(pieces) => {
+        let factor = self.factor(direction, f64::INFINITY);
+        match &self.channels {
+            InChannels::Rgb(sky) => cover(sky, direction, factor, values),
+            InChannels::Spectral(pieces) => {
                 for (sky, values) in pieces.iter().zip(values.chunks_mut(PIECE)) {
-                    cover(sky, direction, values);
+                    cover(sky, direction, factor, values);
                 }
             }
         }
@@ -71,9 +97,13 @@ impl FogInSky {
     /// Transmittance of the fog to the ground or to space. The first channel stands for all, as droplets are much larger than
     /// the wavelengths.
     pub fn transmittance(&self, direction: DVec3) -> f32 {
-        match self {
-            Self::Rgb(sky) => sky.fog_transmittance(direction)[0],
-            Self::Spectral(pieces) => pieces[0].fog_transmittance(direction)[0],
+        let even = match &self.channels {
+            InChannels::Rgb(sky) => sky.fog_transmittance(direction)[0],
+            InChannels::Spectral(pieces) => pieces[0].fog_transmittance(direction)[0],
+        };
+        match self.factor(direction, f64::INFINITY) {
+            Some(factor) => (Spectrum([even]).ln() * factor).exp()[0],
+            None => even,
         }
     }
 
@@ -85,24 +115,30 @@ impl FogInSky {
         transmittance: &mut [f32],
         path_radiance: &mut [f32],
     ) {
-        match self {
-            Self::Rgb(sky) => path(sky, direction, distance_m, transmittance, path_radiance),
-            Self::Spectral(pieces) => {
+        let factor = self.factor(direction, distance_m);
+        let optics = Ray {
+            direction,
+            distance_m,
+            factor,
+        };
+        match &self.channels {
+            InChannels::Rgb(sky) => optics.path(sky, transmittance, path_radiance),
+            InChannels::Spectral(pieces) => {
                 let outs = transmittance
                     .chunks_mut(PIECE)
                     .zip(path_radiance.chunks_mut(PIECE));
                 for (sky, (transmittance, path_radiance)) in pieces.iter().zip(outs) {
-                    path(sky, direction, distance_m, transmittance, path_radiance);
+                    optics.path(sky, transmittance, path_radiance);
                 }
             }
         }
     }
 
-    /// Irradiance of the sun's disc at a height above the ground (m) on a surface that faces it.
+    /// Irradiance of the sun's disc at a height above the ground (m) on a surface that faces it, in even fog.
     pub fn sunlight(&self, height_m: f64, out: &mut [f32]) {
-        match self {
-            Self::Rgb(sky) => put(sky.sunlight(height_m), out),
-            Self::Spectral(pieces) => {
+        match &self.channels {
+            InChannels::Rgb(sky) => put(sky.sunlight(height_m), out),
+            InChannels::Spectral(pieces) => {
                 for (sky, out) in pieces.iter().zip(out.chunks_mut(PIECE)) {
                     put(sky.sunlight(height_m), out);
                 }
@@ -117,20 +153,33 @@ fn put<const N: usize>(lanes: Spectrum<N>, out: &mut [f32]) {
 }
 
 #[inline]
-fn cover<const N: usize>(sky: &FoggySky<N>, direction: DVec3, values: &mut [f32]) {
-    let last = values.len() - 1;
-    let clear = Spectrum::from_fn(|lane| values[lane.min(last)]);
-    put(sky.before(direction, clear), values);
-}
-
-fn path<const N: usize>(
+fn cover<const N: usize>(
     sky: &FoggySky<N>,
     direction: DVec3,
-    distance_m: f64,
-    transmittance: &mut [f32],
-    path_radiance: &mut [f32],
+    factor: Option<f32>,
+    values: &mut [f32],
 ) {
-    let optics = sky.optics(direction, distance_m);
-    put(optics.transmittance, transmittance);
-    put(optics.path_radiance, path_radiance);
+    let last = values.len() - 1;
+    let clear = Spectrum::from_fn(|lane| values[lane.min(last)]);
+    put(sky.before(direction, clear, factor), values);
+}
+
+/// A ray to a point, and the factor on the optical depth of the fog along it.
+struct Ray {
+    direction: DVec3,
+    distance_m: f64,
+    factor: Option<f32>,
+}
+
+impl Ray {
+    fn path<const N: usize>(
+        &self,
+        sky: &FoggySky<N>,
+        transmittance: &mut [f32],
+        path_radiance: &mut [f32],
+    ) {
+        let optics = sky.optics_at_density(self.direction, self.distance_m, self.factor);
+        put(optics.transmittance, transmittance);
+        put(optics.path_radiance, path_radiance);
+    }
 }

@@ -1,10 +1,12 @@
 //! Conversion of a scene's fog to layers.
 
-use super::{FogLayerSpec, FogSpec, SceneError};
+use super::{FogLayerSpec, FogPatchesSpec, FogSpec, SceneError};
 use crate::atmosphere::visibility::{Contrast, extinction_per_m};
 use crate::atmosphere::{Constituent, DensityProfile};
-use crate::fog::FogScattering;
 use crate::fog::droplets::DropletKind;
+use crate::fog::{FogPatches, FogScattering, PatchField, PatchView};
+use crate::sky::View;
+use glam::DVec3;
 
 /// The fog of a scene: layers with an upper end, and orders of scattering.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,6 +15,8 @@ pub struct FogLayers {
     pub layers: Vec<FogLayer>,
     /// Orders of scattering.
     pub scattering: FogScattering,
+    /// Patches; `None`: even fog.
+    pub patches: Option<FogPatches>,
 }
 
 /// A layer of fog before its droplets are evaluated at wavelengths.
@@ -36,6 +40,44 @@ impl FogLayers {
         layers
             .map(|layer| layer.constituent(wavelengths_nm))
             .collect()
+    }
+
+    /// The patches seen from an eye (m, above the ground) over ground of a radius (m), at an angular resolution (rad); `None` for even
+    /// fog.
+    ///
+    /// # Errors
+    /// [`SceneError`] for patches or profiles out of range.
+    pub fn patches_seen_from(
+        &self,
+        eye_height_m: f64,
+        ground_radius_m: f64,
+        resolution_rad: f64,
+    ) -> Result<Option<PatchView>, SceneError> {
+        let Some(patches) = &self.patches else {
+            return Ok(None);
+        };
+        let layers = self.layers.iter();
+        let layers = layers.map(|layer| (layer.extinction_per_m, layer.profile.clone()));
+        let field = PatchField::new(patches)?;
+        let eye = DVec3::Y * eye_height_m;
+        PatchView::new(
+            field,
+            layers.collect(),
+            ground_radius_m,
+            eye,
+            resolution_rad,
+        )
+        .map(Some)
+        .map_err(SceneError::from)
+    }
+
+    /// The patches in a view of the sky, at the resolution of a panorama.
+    pub(super) fn patches_in_view(&self, view: &View) -> Result<Option<PatchView>, SceneError> {
+        /// A quarter of a degree, rad.
+        const RESOLUTION_RAD: f64 = 0.004;
+        let ground_radius_m = view.bounds_m().0;
+        let eye_height_m = view.radius_m() - ground_radius_m;
+        self.patches_seen_from(eye_height_m, ground_radius_m, RESOLUTION_RAD)
     }
 
     /// The layers as constituents of the air over a ground at this altitude (m), for Monte Carlo.
@@ -102,6 +144,7 @@ impl FogSpec {
         Ok(FogLayers {
             layers,
             scattering: self.scattering.unwrap_or(FogScattering::Multiple),
+            patches: self.patches.as_ref().map(FogPatchesSpec::patches),
         })
     }
 }

@@ -207,8 +207,21 @@ impl<const N: usize> FoggySky<N> {
     /// the unit vector `direction`.
     #[inline]
     pub fn optics(&self, direction: DVec3, distance_m: f64) -> PathOptics<N> {
+        self.optics_at_density(direction, distance_m, None)
+    }
+
+    /// [`Self::optics`] in fog of another density along the ray: a factor on its optical depth
+    /// ([`PathOptics::at_density`]).
+    #[inline]
+    pub fn optics_at_density(
+        &self,
+        direction: DVec3,
+        distance_m: f64,
+        factor: Option<f32>,
+    ) -> PathOptics<N> {
         let air = self.aerial.optics(direction, distance_m);
-        self.over_clear(direction, distance_m).then(air)
+        self.over_clear_at_density(direction, distance_m, factor)
+            .then(air)
     }
 
     /// Radiance of sky or ground along the unit vector `direction`, seen through the fog, without the sun's disc.
@@ -227,20 +240,22 @@ impl<const N: usize> FoggySky<N> {
         self.clear.sample(direction, values);
         let last = values.len() - 1;
         let clear = Spectrum::from_fn(|lane| values[(self.first + lane).min(last)]);
-        self.before(direction, clear)
+        self.before(direction, clear, None)
     }
 
-    /// [`Self::sky`] for a known radiance without fog.
+    /// [`Self::sky`] for a known radiance without fog, and a factor on the optical depth of the fog.
     #[inline]
-    pub fn before(&self, direction: DVec3, clear: Spectrum<N>) -> Spectrum<N> {
+    pub fn before(&self, direction: DVec3, clear: Spectrum<N>, factor: Option<f32>) -> Spectrum<N> {
         let Some(end_m) = self.aerial.ground_distance_m(direction) else {
-            return self.over_clear(direction, f64::INFINITY).apply(clear);
+            let fog = self.over_clear_at_density(direction, f64::INFINITY, factor);
+            return fog.apply(clear);
         };
         // Light of the ground in the radiance without fog, attenuated by the air.
         let air = self.aerial.optics(direction, end_m).path_radiance;
         let ground = (clear - air).max_scalar(0.0);
         let behind = clear - ground + ground * self.ground_share;
-        self.over_clear(direction, end_m).apply(behind)
+        self.over_clear_at_density(direction, end_m, factor)
+            .apply(behind)
     }
 
     /// Radiance of the sun's disc in a direction, attenuated by air and fog; 0 outside the disc. Allocates; for pictures,
@@ -299,8 +314,20 @@ impl<const N: usize> FoggySky<N> {
     /// path radiance returned here.
     #[inline]
     pub fn over_clear(&self, direction: DVec3, distance_m: f64) -> PathOptics<N> {
+        self.over_clear_at_density(direction, distance_m, None)
+    }
+
+    /// [`Self::over_clear`] in fog of another density along the ray, whose means `<f>` are those of the even fog.
+    #[inline]
+    pub fn over_clear_at_density(
+        &self,
+        direction: DVec3,
+        distance_m: f64,
+        factor: Option<f32>,
+    ) -> PathOptics<N> {
         let line = self.line(direction, distance_m);
-        let fog = self.fog.path_along(&line, self.fog.cos_sun(direction));
+        let even = self.fog.path_along(&line, self.fog.cos_sun(direction));
+        let fog = factor.map_or(even, |factor| even.at_density(factor));
         let inside = RaySegment {
             length_m: line.length_m.min(self.aerial.end_m(direction)),
             ..line

@@ -24,6 +24,8 @@ pub enum Input {
     Fog,
     /// Orders of scattering in the fog.
     FogScattering,
+    /// Patches in the fog.
+    FogPatches,
     /// Point, spot and sphere lights.
     Lights,
     /// Objects in front of the sky.
@@ -65,6 +67,7 @@ impl Input {
             Self::Night => "night",
             Self::Fog => "fog",
             Self::FogScattering => "fog.scattering",
+            Self::FogPatches => "fog.patches",
             Self::Lights => "lights",
             Self::Objects => "objects",
             Self::Wavelengths => "solver.wavelengths",
@@ -95,6 +98,7 @@ impl fmt::Display for Input {
             Self::Night => "lights of the night",
             Self::Fog => "fog",
             Self::FogScattering => "the scattering of the fog",
+            Self::FogPatches => "patches in the fog",
             Self::Lights => "lights",
             Self::Objects => "objects",
             Self::Wavelengths => "the wavelengths",

@@ -63,9 +63,9 @@ pub use rgb_foggy_sky::RgbFoggySky;
 pub(crate) use solved_view::SolvedView;
 pub use spec::{
     AirSpec, BaseBlueKind, CameraSpec, CheckerSpec, Effort, Exposure, ExrCompression, FogLayerSpec,
-    FogProfile, FogSpec, Gamut, GlossSpec, Klassen1987Spec, LightKind, LightSpec, MeteringMode,
-    NightLights, NightSpec, ObjectShape, ObjectSpec, ObjectsSpec, ObserverSpec, Orientation,
-    OutputSpec, Projection, Reflectance, RepeatSpec, SCENE_VERSION, SamplePrecision, Scene,
-    SequenceSpec, SolverSpec, SunDiscPlacement, SunSpec, SunlightKind, ToneKind, WetHaze,
+    FogPatchesSpec, FogProfile, FogSpec, Gamut, GlossSpec, Klassen1987Spec, LightKind, LightSpec,
+    MeteringMode, NightLights, NightSpec, ObjectShape, ObjectSpec, ObjectsSpec, ObserverSpec,
+    Orientation, OutputSpec, Projection, Reflectance, RepeatSpec, SCENE_VERSION, SamplePrecision,
+    Scene, SequenceSpec, SolverSpec, SunDiscPlacement, SunSpec, SunlightKind, ToneKind, WetHaze,
 };
 pub use sun_source::{SunAngles, SunSource};

@@ -94,6 +94,10 @@ impl Scene {
                     .as_ref()
                     .is_some_and(|fog| fog.scattering.is_some()),
             ),
+            (
+                Input::FogPatches,
+                self.fog.as_ref().is_some_and(|fog| fog.patches.is_some()),
+            ),
             (Input::Lights, !self.lights.is_empty()),
             (
                 Input::Objects,
@@ -145,6 +149,7 @@ impl Scene {
             Input::Night => self.night = NightSpec::default(),
             Input::Fog => self.fog = None,
             Input::FogScattering => self.fog.iter_mut().for_each(|fog| fog.scattering = None),
+            Input::FogPatches => self.fog.iter_mut().for_each(|fog| fog.patches = None),
             Input::Lights => self.lights.clear(),
             Input::Objects => self.objects = None,
             Input::Wavelengths => self.solver.wavelengths = None,
@@ -187,6 +192,7 @@ mod tests {
         scene.fog = Some(FogSpec {
             visibility_m: Some(200.0),
             scattering: Some(FogScattering::Single),
+            patches: Some(Default::default()),
             ..Default::default()
         });
         scene.objects = Some(ObjectsSpec {
@@ -218,13 +224,13 @@ mod tests {
     fn inputs_are_found_and_can_be_removed() {
         assert_eq!(Scene::default().set_inputs(), []);
         let all = full().set_inputs();
-        assert_eq!(all.len(), 20);
+        assert_eq!(all.len(), 21);
         assert!(all.windows(2).all(|pair| pair[0] < pair[1]));
         for input in all {
             let left = full().without(input).set_inputs();
-            // Removing the fog also removes its scattering.
-            let gone = if input == Input::Fog { 2 } else { 1 };
-            assert_eq!(left.len(), 20 - gone, "{input:?}");
+            // Removing the fog also removes its scattering and its patches.
+            let gone = if input == Input::Fog { 3 } else { 1 };
+            assert_eq!(left.len(), 21 - gone, "{input:?}");
             assert!(!left.contains(&input));
         }
     }

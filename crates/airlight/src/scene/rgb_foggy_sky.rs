@@ -124,6 +124,19 @@ impl RgbFoggySky {
         self.lanes.optics(direction, distance_m).into()
     }
 
+    /// [`RgbFoggySky::path`] in fog of another density along the ray: `factor` times its optical depth, as of a
+    /// [`PatchView`](crate::fog::PatchView); `None` for even fog.
+    #[inline]
+    pub fn path_at_density(
+        &self,
+        direction: DVec3,
+        distance_m: f64,
+        factor: Option<f32>,
+    ) -> RgbPathOptics {
+        let optics = self.lanes.optics_at_density(direction, distance_m, factor);
+        optics.into()
+    }
+
     /// [`RgbFoggySky::path`] for many rays.
     ///
     /// # Panics
@@ -147,6 +160,20 @@ impl RgbFoggySky {
     #[inline]
     pub fn path_over_clear(&self, direction: DVec3, distance_m: f64) -> RgbPathOptics {
         self.lanes.over_clear(direction, distance_m).into()
+    }
+
+    /// [`RgbFoggySky::path_over_clear`] in fog of another density along the ray, as [`RgbFoggySky::path_at_density`].
+    #[inline]
+    pub fn path_over_clear_at_density(
+        &self,
+        direction: DVec3,
+        distance_m: f64,
+        factor: Option<f32>,
+    ) -> RgbPathOptics {
+        let optics = self
+            .lanes
+            .over_clear_at_density(direction, distance_m, factor);
+        optics.into()
     }
 
     /// Distance to the ground along `direction`, m; `None` above the horizon.

@@ -45,6 +45,14 @@ base_height_m = 5
 droplets = "mist"
 scattering = "undimmed"
 
+[fog.patches]
+strength = 0.6
+size_m = 40
+height_m = 15
+seed = 7
+wind_m_s = [2, -1]
+time_s = 60
+
 [[fog.layers]]
 visibility_m = 800
 top_m = 50
@@ -148,6 +156,14 @@ fn errors_have_a_place_and_the_expected_values() {
         (
             "[air]\n\nground_albedo = 1.5\n",
             "line 3, column 1: air.ground_albedo: expected a number from 0 to 1, got 1.5",
+        ),
+        (
+            "[fog.patches]\nstrength = 3\n",
+            "line 2, column 1: fog.patches.strength: expected a number from 0 to 2, got 3",
+        ),
+        (
+            "[fog.patches]\nsize = 3\n",
+            "fog.patches.size: unknown key; expected one of strength, size_m,",
         ),
         (
             "[[lights]]\nposition_m = [1, 2, 3]\nintensity = [1, 1, 1]\n[[lights]]\nintensity = [1, 1, 1]\n",

@@ -38,6 +38,31 @@ impl<const N: usize> PathOptics<N> {
     pub fn apply(self, background: Spectrum<N>) -> Spectrum<N> {
         self.path_radiance.mul_acc(self.transmittance, background)
     }
+
+    /// The same segment with `factor` times its optical depth and the same mean source function `S / (1 - T)`:
+    /// `T^factor`, `S (1 - T^factor) / (1 - T)`. Exact if extinction and scattering change together and the light in the segment
+    /// does not.
+    #[inline]
+    pub fn at_density(self, factor: f32) -> Self {
+        let depth = self.transmittance.ln() * -1.0;
+        let transmittance = (depth * -factor).exp();
+        Self {
+            transmittance: Spectrum::from_fn(|lane| match self.transmittance[lane] > 0.0 {
+                true => transmittance[lane],
+                false => 0.0,
+            }),
+            path_radiance: Spectrum::from_fn(|lane| {
+                /// Depth below which `(1 - T^factor) / (1 - T)` follows from its series.
+                const THIN: f32 = 1e-3;
+                let (depth, light) = (depth[lane], self.path_radiance[lane]);
+                light
+                    * match depth < THIN {
+                        true => factor * (1.0 + 0.5 * depth * (1.0 - factor)),
+                        false => (1.0 - transmittance[lane]) / (1.0 - self.transmittance[lane]),
+                    }
+            }),
+        }
+    }
 }
 
 /// Transmittance and in-scattered radiance of a ray segment, in red, green and blue: `L' = transmittance * L + path_radiance`
@@ -76,6 +101,14 @@ impl RgbPathOptics {
     #[inline]
     pub fn apply(self, background: [f32; 3]) -> [f32; 3] {
         PathOptics::from(self).apply(Spectrum(background)).0
+    }
+
+    /// The same segment with `factor` times its optical depth and the same mean source function `S / (1 - T)`:
+    /// `T^factor`, `S (1 - T^factor) / (1 - T)`. Exact if extinction and scattering change together and the light in the segment
+    /// does not.
+    #[inline]
+    pub fn at_density(self, factor: f32) -> Self {
+        PathOptics::from(self).at_density(factor).into()
     }
 }
 
@@ -125,5 +158,28 @@ mod tests {
     fn clear_air_is_the_identity() {
         assert_eq!(PathOptics::CLEAR.then(FAR), FAR);
         assert_eq!(FAR.then(PathOptics::CLEAR), FAR);
+    }
+
+    #[test]
+    fn segments_of_another_density_keep_their_source() {
+        for depth in [0.0f32, 1e-6, 5e-4, 2e-3, 0.3, 4.0, 60.0] {
+            for factor in [0.0f32, 0.3, 1.0, 2.5] {
+                let optics = |depth: f32| PathOptics {
+                    transmittance: Spectrum([(-f64::from(depth)).exp() as f32; 3]),
+                    path_radiance: Spectrum([-7.0 * f64::from(-depth).exp_m1() as f32; 3]),
+                };
+                let (got, right) = (optics(depth).at_density(factor), optics(depth * factor));
+                let off = |a: Spectrum<3>, b: Spectrum<3>| (a[1] - b[1]).abs();
+                assert!(off(got.transmittance, right.transmittance) < 3e-6);
+                // Thin segments are limited by the rounding of their transmittance.
+                assert!(off(got.path_radiance, right.path_radiance) < 3e-6 * 7.0);
+            }
+        }
+        let opaque = PathOptics::<3> {
+            transmittance: Spectrum::ZERO,
+            path_radiance: Spectrum::ONE,
+        };
+        assert_eq!(opaque.at_density(0.02).transmittance, Spectrum::ZERO);
+        assert_eq!(PathOptics::<3>::CLEAR.at_density(5.0), PathOptics::CLEAR);
     }
 }

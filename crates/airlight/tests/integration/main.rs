@@ -14,4 +14,5 @@ mod models;
 mod monte_carlo_lines;
 mod monte_carlo_polarisation;
 mod night;
+mod patchy_fog;
 mod sky_laws;

@@ -1,8 +1,8 @@
 //! Fog near the ground.
 
 use crate::atmosphere::DensityProfile;
-use crate::fog::FogScattering;
 use crate::fog::droplets::DropletKind;
+use crate::fog::{FogPatches, FogScattering};
 use crate::names::named;
 
 /// Default scale height, m.
@@ -63,6 +63,8 @@ pub struct FogSpec {
     pub droplets: Option<DropletKind>,
     /// Orders of scattering: "all", "single", or "undimmed" for single scattering of unattenuated sunlight. Default: all.
     pub scattering: Option<FogScattering>,
+    /// Patches: random variation of the density; even fog without them.
+    pub patches: Option<FogPatchesSpec>,
     /// Further layers.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Vec::is_empty"))]
     pub layers: Vec<FogLayerSpec>,
@@ -86,6 +88,42 @@ pub struct FogLayerSpec {
     pub top_m: Option<f64>,
     /// Kind of droplets. Default: radiation.
     pub droplets: Option<DropletKind>,
+}
+
+/// Patches in fog: a random factor on the density of all layers, with a mean of 1. The visibility is that of the mean extinction.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct FogPatchesSpec {
+    /// Standard deviation of the density relative to its mean, 0 to 2. Default: 0.5.
+    pub strength: Option<f64>,
+    /// Width of a typical patch, m, above 0. Default: 30.
+    pub size_m: Option<f64>,
+    /// Height of a typical patch, m, above 0. Default: a third of `size_m`.
+    pub height_m: Option<f64>,
+    /// Seed of the patches, a whole number. Default: 0.
+    pub seed: Option<u64>,
+    /// Velocity of the wind that moves the patches, to the east and to the north, m/s. Default: [0, 0].
+    pub wind_m_s: Option<[f64; 2]>,
+    /// Time for which the wind has moved the patches, s. Default: 0.
+    pub time_s: Option<f64>,
+}
+
+impl FogPatchesSpec {
+    /// The patches, with defaults for what is not set.
+    pub fn patches(&self) -> FogPatches {
+        let usual = FogPatches::default();
+        let size_m = self.size_m.unwrap_or(usual.size_m);
+        let time_s = self.time_s.unwrap_or(0.0);
+        FogPatches {
+            strength: self.strength.unwrap_or(usual.strength),
+            size_m,
+            height_m: self.height_m.unwrap_or(size_m / 3.0),
+            seed: self.seed.unwrap_or(usual.seed),
+            drift_m: self.wind_m_s.unwrap_or_default().map(|v| v * time_s),
+        }
+    }
 }
 
 impl FogSpec {

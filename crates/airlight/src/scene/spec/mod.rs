@@ -14,7 +14,7 @@ mod solver;
 mod validate;
 
 pub use air::AirSpec;
-pub use fog::{FogLayerSpec, FogProfile, FogSpec};
+pub use fog::{FogLayerSpec, FogPatchesSpec, FogProfile, FogSpec};
 pub use lights::{LightKind, LightSpec};
 pub use night::{NightLights, NightSpec};
 pub use objects::{

@@ -1,6 +1,8 @@
 //! Validation of a scene's numbers, and of keys that exclude or need each other.
 
-use super::{Exposure, FogLayerSpec, LightKind, LightSpec, Scene, SunlightKind, ToneKind};
+use super::{
+    Exposure, FogLayerSpec, FogPatchesSpec, LightKind, LightSpec, Scene, SunlightKind, ToneKind,
+};
 use crate::scene::SceneError;
 
 /// Description of the numbers allowed, and their test.
@@ -40,6 +42,7 @@ const ALTITUDE: Allowed = ("a number of metres from -12000 to 1e9", |v| {
 const LENGTH: Allowed = ("a number of metres above 0 and at most 1e9", |v| {
     v > 0.0 && v <= 1e9
 });
+const PATCH_STRENGTH: Allowed = ("a number from 0 to 2", |v| (0.0..=2.0).contains(&v));
 const CONTRAST: Allowed = ("0.05 or 0.02", |v| v == 0.05 || v == 0.02);
 
 fn number(
@@ -78,6 +81,7 @@ impl Scene {
             for (i, more) in fog.layers.iter().enumerate() {
                 layer(&format!("fog.layers[{i}]"), more)?;
             }
+            fog.patches.as_ref().map_or(Ok(()), patches)?;
         }
         for (i, spec) in self.lights.iter().enumerate() {
             light(&format!("lights[{i}]"), spec)?;
@@ -353,6 +357,25 @@ fn layer(key: &str, layer: &FogLayerSpec) -> Result<(), SceneError> {
             "a slab of constant density",
             "scale_height_m or base_height_m as well",
             "leaving one of them out, or setting profile",
+        )),
+        false => Ok(()),
+    }
+}
+
+fn patches(patches: &FogPatchesSpec) -> Result<(), SceneError> {
+    number("fog.patches.strength", patches.strength, PATCH_STRENGTH)?;
+    number("fog.patches.size_m", patches.size_m, LENGTH)?;
+    number("fog.patches.height_m", patches.height_m, LENGTH)?;
+    number("fog.patches.time_s", patches.time_s, FINITE)?;
+    for velocity in patches.wind_m_s.into_iter().flatten() {
+        number("fog.patches.wind_m_s", Some(velocity), FINITE)?;
+    }
+    match patches.time_s.is_some() && patches.wind_m_s.is_none() {
+        true => Err(SceneError::value(
+            "fog.patches.time_s",
+            "wind_m_s with this key",
+            "none",
+            "wind_m_s = [2, 0]",
         )),
         false => Ok(()),
     }
