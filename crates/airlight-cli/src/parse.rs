@@ -74,6 +74,11 @@ pub fn fraction(text: &str) -> Result<f64, String> {
     within(text, "a number from 0 to 1", |v| (0.0..=1.0).contains(&v))
 }
 
+/// The strength of patches in fog.
+pub fn patch_strength(text: &str) -> Result<f64, String> {
+    within(text, "a number from 0 to 2", |v| (0.0..=2.0).contains(&v))
+}
+
 /// An elevation in degrees.
 pub fn elevation_deg(text: &str) -> Result<f64, String> {
     within(text, "a number of degrees from -90 to 90", |v| {
@@ -99,7 +104,7 @@ fn within(text: &str, right: &str, accepts: impl Fn(f64) -> bool) -> Result<f64,
     match f64::from_str(text.trim()) {
         Ok(value) if accepts(value) => Ok(value),
         _ if is_list(text) => Err(format!(
-            "expected {right}, got several; `airlight fog` draws one picture for each of several values with --vary NAME={text}"
+            "expected {right}, got several; `airlight fog` makes a picture with each of several values with --each NAME={text}"
         )),
         _ => Err(format!("expected {right}")),
     }

@@ -55,6 +55,15 @@ pub fn fog(fog: &FogLayers) -> String {
         FogScattering::Undimmed => "; single scattering of unattenuated sunlight",
         _ => "",
     });
+    if let Some(patches) = &fog.patches {
+        text.push_str(&format!(
+            "; patches of strength {}, {} m wide and {} m high, seed {}",
+            short(patches.strength),
+            short(patches.size_m),
+            short(patches.height_m),
+            patches.seed
+        ));
+    }
     text
 }
 

@@ -3,7 +3,7 @@
 use crate::parse::{self, words::Words};
 use airlight::fog::FogScattering;
 use airlight::fog::droplets::DropletKind;
-use airlight::scene::{FogLayerSpec, FogProfile, FogSpec};
+use airlight::scene::{FogLayerSpec, FogPatchesSpec, FogProfile, FogSpec};
 use clap::Args;
 
 /// Contrast threshold that defines visibility.
@@ -39,6 +39,25 @@ pub struct FogArgs {
     /// Orders of scattering in the fog; without effect in uniform fog, which is lit uniformly [default: all]
     #[arg(long, value_name = "WHICH", value_parser = parse::named::<FogScattering>())]
     pub fog_scattering: Option<FogScattering>,
+    /// Strength of patches in the fog: standard deviation of the density relative to its mean, 0 to 2 [default: even fog; 0.5 with
+    /// another --patch option]
+    #[arg(long, value_name = "S", value_parser = parse::patch_strength)]
+    pub patch_strength: Option<f64>,
+    /// Width of a typical patch, m [default: 30]
+    #[arg(long, value_name = "M", value_parser = parse::length_m)]
+    pub patch_size_m: Option<f64>,
+    /// Height of a typical patch, m [default: a third of --patch-size-m]
+    #[arg(long, value_name = "M", value_parser = parse::length_m)]
+    pub patch_height_m: Option<f64>,
+    /// Seed of the patches [default: 0]
+    #[arg(long, value_name = "N")]
+    pub patch_seed: Option<u64>,
+    /// Wind that moves the patches, to the east and to the north, m/s [default: 0,0]
+    #[arg(long, value_name = "EAST,NORTH", value_parser = parse::two_numbers, allow_hyphen_values = true)]
+    pub patch_wind: Option<(f64, f64)>,
+    /// Time for which that wind has moved the patches, s [default: 0]
+    #[arg(long, value_name = "S", value_parser = parse::number)]
+    pub patch_time_s: Option<f64>,
     /// Further layer of fog, as in 'visibility=500 scale-height=20'; can be repeated
     ///
     /// KEY=VALUE pairs: visibility (m, as --visibility-m), and scale-height (m), base (m), top (m), droplets and profile as the
@@ -59,6 +78,17 @@ impl FogArgs {
         filled.profile = self.fog_profile.or(filled.profile);
         filled.droplets = self.droplets.or(filled.droplets);
         filled.scattering = self.fog_scattering.or(filled.scattering);
+        let mut patches = filled.patches.clone().unwrap_or_default();
+        put(&mut patches.strength, self.patch_strength);
+        put(&mut patches.size_m, self.patch_size_m);
+        put(&mut patches.height_m, self.patch_height_m);
+        put(&mut patches.time_s, self.patch_time_s);
+        patches.seed = self.patch_seed.or(patches.seed);
+        let wind = self.patch_wind.map(|(east, north)| [east, north]);
+        patches.wind_m_s = wind.or(patches.wind_m_s);
+        if patches != FogPatchesSpec::default() {
+            filled.patches = Some(patches);
+        }
         if !self.layer.is_empty() {
             filled.layers = self.layer.clone();
         }
@@ -170,5 +200,23 @@ mod tests {
         let fog = fog.unwrap();
         assert_eq!((fog.visibility_m, fog.top_m), (Some(80.0), Some(9.0)));
         assert_eq!(fog.droplets, Some(DropletKind::Isotropic));
+        assert_eq!(fog.patches, None);
+        let args = FogArgs {
+            patch_seed: Some(4),
+            patch_wind: Some((2.0, -1.0)),
+            ..FogArgs::default()
+        };
+        let mut fog = Some(FogSpec {
+            patches: Some(FogPatchesSpec {
+                strength: Some(0.7),
+                seed: Some(3),
+                ..Default::default()
+            }),
+            ..FogSpec::default()
+        });
+        args.fill(&mut fog);
+        let patches = fog.unwrap().patches.unwrap();
+        assert_eq!((patches.strength, patches.seed), (Some(0.7), Some(4)));
+        assert_eq!(patches.wind_m_s, Some([2.0, -1.0]));
     }
 }

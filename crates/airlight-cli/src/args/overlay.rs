@@ -189,6 +189,13 @@ Examples:
     airlight fog 'rgb/*_left.png' --depth 'depth/*_depth.png' --depth-scale 0.001 --vary visibility=50..500 \\
       --vary droplets=fine,radiation,advection --variants 3 --seed 1 -o 'foggy/*.png'
 
---vary draws visibility, scale-height, top, eye-height and ambient-scale uniformly in the logarithm, and base-height,
-camera-elevation, camera-azimuth, camera-roll, sun-elevation, sun-azimuth, sun-strength and ground-albedo uniformly;
-NAME=log:LOW..HIGH and NAME=uniform:LOW..HIGH override this. fog-profile and droplets take lists.";
+  Three visibilities of each picture in patchy fog, half of the pictures on each of two machines:
+    airlight fog 'rgb/*.png' --depth 'depth/*.png' --depth-scale 0.001 --each visibility=50,100,200 --patch-strength 0.7 \\
+      --vary patch-seed=0..999999 --seed 1 --shard 1/2 -o 'foggy/{visibility}/*.png'
+
+--vary and --each take the numeric options of one number, without their units: visibility, scale-height, base-height, top,
+contrast, patch-strength, patch-size, patch-height, patch-seed, patch-time, eye-height, camera-elevation, camera-azimuth,
+camera-roll, fov, focal, depth-scale, depth-offset, far, baseline, disparity-offset, ambient-scale, sun-elevation, sun-azimuth,
+sun-strength, ground-albedo, ground-altitude, aod-550, haze-visibility, radiance-scale, quality and brighten; and lists of
+fog-profile, droplets and fog-scattering. --vary draws lengths, ambient-scale, radiance-scale, focal and haze-visibility
+uniformly in the logarithm, and others uniformly; NAME=log:LOW..HIGH and NAME=uniform:LOW..HIGH override this.";

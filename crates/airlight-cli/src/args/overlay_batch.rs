@@ -1,6 +1,7 @@
 //! Options of `airlight fog` for many pictures.
 
-use airlight_render::batch::{BatchSettings, Variation};
+use airlight_render::Shard;
+use airlight_render::batch::{BatchSettings, Each, Variation};
 use clap::Args;
 use std::num::NonZeroU32;
 use std::path::PathBuf;
@@ -12,6 +13,10 @@ pub struct BatchArgs {
     /// Draw a random value of a setting for each picture: visibility=50..500, fog-profile=uniform,height (see below)
     #[arg(long, value_name = "NAME=LOW..HIGH|A,B")]
     pub vary: Vec<Variation>,
+    /// Make every picture with each of several values: visibility=5,10,20 gives three; several options give all combinations.
+    /// {NAME} in --output is replaced by the value, otherwise _NAME-VALUE precedes the extension
+    #[arg(long, value_name = "NAME=A,B,C")]
+    pub each: Vec<Each>,
     /// Number of variants of each input; {variant} in --output is replaced by their number, otherwise _v0001 precedes the
     /// extension
     #[arg(long, value_name = "N", requires = "vary")]
@@ -20,7 +25,12 @@ pub struct BatchArgs {
     /// paths [default: 1]
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
-    /// Manifest, with a line of JSON for each picture [default: manifest.jsonl beside the outputs]
+    /// Make only a part of the pictures, for one of several machines: 3/16 is the third of 16 parts, with the same draws as a run of
+    /// all
+    #[arg(long, value_name = "K/N")]
+    pub shard: Option<Shard>,
+    /// Manifest, with a line of JSON for each picture [default: manifest.jsonl beside the outputs; with --shard 3/16
+    /// manifest-3-of-16.jsonl]
     #[arg(long, value_name = "FILE")]
     pub manifest: Option<PathBuf>,
     /// Replace existing pictures; otherwise they are kept
@@ -41,6 +51,8 @@ impl BatchArgs {
     /// Whether any option of batches is given; a single picture is then a batch of one.
     pub fn is_given(&self) -> bool {
         !self.vary.is_empty()
+            || !self.each.is_empty()
+            || self.shard.is_some()
             || self.manifest.is_some()
             || self.jobs.is_some()
             || self.overwrite
@@ -52,7 +64,9 @@ impl BatchArgs {
     pub fn settings(&self) -> BatchSettings {
         BatchSettings {
             vary: self.vary.clone(),
+            each: self.each.clone(),
             variants: self.variants,
+            shard: self.shard,
             seed: self.seed.unwrap_or_default(),
             manifest: self.manifest.clone(),
             overwrite: self.overwrite,

@@ -4,6 +4,7 @@ use super::{CameraArgs, DisplayArgs, EncodingArgs, SceneArgs};
 use crate::error::CliError;
 use crate::parse::{self, put};
 use airlight::scene::{ObjectsSpec, Scene, SequenceSpec};
+use airlight_render::Shard;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -57,6 +58,9 @@ pub struct SequenceArgs {
     /// last
     #[arg(long)]
     pub meter_each: bool,
+    /// Draw only a part of a sequence, for one of several machines: 3/16 is the third of 16 parts
+    #[arg(long, value_name = "K/N")]
+    pub shard: Option<Shard>,
     /// Replace existing pictures of a sequence; otherwise they are kept
     #[arg(long)]
     pub overwrite: bool,

@@ -22,6 +22,10 @@ pub fn run(args: &OverlayArgs, scene: OverlayScene) -> Result<(), CliError> {
         let _busy = Busy::with("planning");
         plan.start()?
     };
+    let shard = match plan.settings().shard {
+        Some(shard) => format!(" in shard {shard}"),
+        None => String::new(),
+    };
     let begun = Instant::now();
     let (total, missing) = (plan.pictures().count(), batch.missing());
     let report = {
@@ -44,7 +48,7 @@ pub fn run(args: &OverlayArgs, scene: OverlayScene) -> Result<(), CliError> {
         }
         let time = begun.elapsed();
         report::print(&format!(
-            "{}: {} of {total} pictures written{also}\n  manifest      {}\n  time          {}, {} pictures/s\n",
+            "{}: {} of {total} pictures{shard} written{also}\n  manifest      {}\n  time          {}, {} pictures/s\n",
             plan.scene().output()?.display(),
             report.made,
             plan.manifest().display(),

@@ -12,7 +12,7 @@ use airlight_image::Control;
 use airlight_image::output::Written;
 use airlight_image::tone::Exposure;
 use airlight_render::exposure::DARKEST_EV100;
-use airlight_render::sequence::{PreparedSequence, Sequence};
+use airlight_render::sequence::{PreparedSequence, Sequence, SequenceStep};
 use airlight_render::summary::{self, short};
 use airlight_render::{PreparedFrame, Renderer, WrittenFile};
 use std::fmt::Write;
@@ -38,6 +38,9 @@ pub fn run(args: &SkyArgs) -> Result<(), CliError> {
     .with_text("command", scene::command_line());
     match renderer.sequence()? {
         Some(sequence) => many(args, &renderer, &sequence, preview),
+        None if args.sequence.shard.is_some() => Err(CliError::usage(
+            "--shard: expected a sequence of pictures, got one picture; try --until with --every",
+        )),
         None => one(args, &renderer, preview),
     }
 }
@@ -122,11 +125,17 @@ fn many(
     sequence: &Sequence,
     preview: Option<preview::Terminal>,
 ) -> Result<(), CliError> {
-    let total = sequence.steps().len();
-    let missing = match args.sequence.overwrite {
+    let mut missing = match args.sequence.overwrite {
         true => sequence.steps().to_vec(),
         false => sequence.missing(),
     };
+    let (mut total, mut shard) = (sequence.steps().len(), String::new());
+    if let Some(part) = args.sequence.shard {
+        let is_ours = |step: &SequenceStep| part.has(step.number as usize - 1);
+        missing.retain(is_ours);
+        total = sequence.steps().iter().filter(|step| is_ours(step)).count();
+        shard = format!(" in shard {part}");
+    }
     let begun = Instant::now();
     for file in missing.iter().take(1).flat_map(|step| &step.files) {
         report::check_writable(&file.path)?;
@@ -142,7 +151,11 @@ fn many(
         let bar = RowsBar::new(missing.iter().map(|step| step.rows()).sum());
         let mut written: Vec<WrittenFile> = Vec::new();
         for step in &missing {
-            bar.say(format!("picture {} of {total}", step.number));
+            bar.say(format!(
+                "picture {} of {}",
+                step.number,
+                sequence.steps().len()
+            ));
             let frame = renderer.frame(solution.as_ref(), Some(step.time))?;
             if let Some(terminal) = preview {
                 report::print(&preview::text(&renderer, &frame, terminal)?)?;
@@ -167,7 +180,7 @@ fn many(
         format!("  exposure      EV {ev100} at ISO 100 in all pictures\n")
     });
     report::print(&format!(
-        "{}: {} of {total} pictures written{skipped}, {}\n{exposure}  time          {}\n",
+        "{}: {} of {total} pictures{shard} written{skipped}, {}\n{exposure}  time          {}\n",
         renderer.output_path()?.display(),
         missing.len(),
         renderer.kind(),

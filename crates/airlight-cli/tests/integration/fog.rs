@@ -243,6 +243,23 @@ fn options_that_contradict_are_refused() {
         ("--visibility-m 5 --variants 2 -o a.exr", "--vary"),
         ("--visibility-m 5 --jobs 0 -o a.exr", "--jobs"),
         ("--vary fogginess=1..2 -o a.exr", "visibility, scale-height"),
+        ("--vary visibilty=5..9 -o a.exr", "try \"visibility\""),
+        ("--each visibility=5..9 -o a.exr", "try visibility=5,9"),
+        ("--visibility-m 5,9 -o a.exr", "--each NAME=5,9"),
+        ("--visibility-m 5 --shard 4/3 -o a.exr", "try 1/4"),
+        ("--visibility-m 5 --patch-strength 3 -o a.exr", "0 to 2"),
+        (
+            "--visibility-m 5 --patch-time-s 3 -o a.exr",
+            "--patch-time-s: expected",
+        ),
+        (
+            "--visibility-m 5 --patch-seed 3 --fog-profile exp2 -o a.exr",
+            "patches: expected fog that scatters light",
+        ),
+        (
+            &format!("--visibility-m 5 --patch-seed 3 {lit} --solver monte-carlo -o a.exr"),
+            "--patch-strength: expected solver orders",
+        ),
     ] {
         let text = refused(&folder, &format!("{scene} {more}"), 2);
         assert!(text.contains(sentence), "{more}: {text}");
@@ -289,6 +306,17 @@ fn scenes_are_saved_and_read() {
     assert_eq!(a, b);
     succeed(&folder, "fog --scene a.toml --visibility-m 30 -o c.exr");
     assert_ne!(Exr::read(&folder.file("c.exr")).channels, a);
+    let patches =
+        "--patch-strength 0.7 --patch-size-m 2 --patch-seed 5 --patch-wind -1,0 --patch-time-s 4";
+    succeed(
+        &folder,
+        &format!("{options} {patches} -o p.exr --save-scene p.toml"),
+    );
+    succeed(&folder, "fog --scene p.toml -o q.exr");
+    succeed(&folder, "fog --scene p.toml --patch-seed 6 -o r.exr");
+    let [p, q, r] = ["p.exr", "q.exr", "r.exr"].map(|name| Exr::read(&folder.file(name)).channels);
+    assert_eq!(p, q);
+    assert_ne!(p, r);
     std::fs::write(folder.file("wrong.toml"), "[fog]\nvisibilty_m = 3\n").unwrap();
     let text = refused(&folder, "fog --scene wrong.toml -o d.exr", 2);
     assert!(

@@ -121,6 +121,26 @@ fn sequences_report_what_they_made() {
         "{text}"
     );
     assert!(succeed(&folder, &format!("{words} --overwrite")).contains("3 of 3 pictures written"));
+    // Shards draw the same pictures; the command in their metadata is their own.
+    let pixels = |name: &str| image::open(folder.file(name)).unwrap().into_rgb8();
+    let whole = ["a.0001.png", "a.0002.png", "a.0003.png"].map(pixels);
+    let parts = words.replace("a.png", "b.png");
+    for (shard, said) in [
+        ("1/2", "2 of 2 pictures in shard 1/2"),
+        ("2/2", "1 of 1 pictures in shard 2/2"),
+    ] {
+        let text = succeed(&folder, &format!("{parts} --shard {shard}"));
+        assert!(text.contains(said), "{text}");
+    }
+    assert_eq!(
+        ["b.0001.png", "b.0002.png", "b.0003.png"].map(pixels),
+        whole
+    );
+    let one = format!("sky {QUICK} --sun-elevation 20 --shard 1/2 -o c.png");
+    let refused = run(&folder, &one);
+    let said = String::from_utf8_lossy(&refused.stderr);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(said.contains("--until with --every"), "{said}");
 }
 
 #[test]

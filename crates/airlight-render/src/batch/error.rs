@@ -112,6 +112,19 @@ pub enum BatchError {
         /// What to do.
         advice: String,
     },
+    /// More pictures of an input than make sense.
+    #[error(
+        "expected at most {most} pictures of an input, got {combinations} combinations of values times {variants} variants; try \
+         fewer values"
+    )]
+    TooManyVariants {
+        /// Combinations of the values of which every picture gets each.
+        combinations: u64,
+        /// Variants of each.
+        variants: u64,
+        /// Greatest number of their product.
+        most: u64,
+    },
     /// Outputs that exist and were made with other settings.
     #[error(
         "expected existing pictures to have the same settings, got {} that differ; try overwrite to make them again, or \

@@ -14,11 +14,12 @@ mod pattern;
 mod plan;
 mod record;
 mod run;
+mod settings;
 mod vary;
 
 pub use error::{BatchError, listed};
 pub use inputs::{FoundInputs, Input};
 pub use pattern::{Match, Pattern};
-pub use plan::{BatchPlan, BatchSettings, is_batch};
+pub use plan::{BatchPlan, BatchSettings, Variant, is_batch};
 pub use run::{BatchReport, BatchRun};
-pub use vary::Variation;
+pub use vary::{Each, Variation};

@@ -1,8 +1,10 @@
 //! [`BatchPlan`]: inputs, outputs and settings of the pictures of a batch.
 
 use super::inputs::{InputPath, find_inputs};
-use super::{BatchError, FoundInputs, Input, Pattern, Variation};
+use super::settings::Affects;
+use super::{BatchError, Each, FoundInputs, Input, Pattern, Variation};
 use crate::overlay::OverlayScene;
+use crate::shard::Shard;
 use airlight::Named;
 use airlight_image::output::PictureFormat;
 use std::collections::{HashMap, HashSet};
@@ -14,11 +16,15 @@ use std::path::{Path, PathBuf};
 pub struct BatchSettings {
     /// Settings drawn for each picture.
     pub vary: Vec<Variation>,
+    /// Settings of which every picture gets each value: all combinations of their values.
+    pub each: Vec<Each>,
     /// Number of variants of each input, numbered from 1; `None`: one picture without a number in its name.
     pub variants: Option<NonZeroU32>,
+    /// The part of the inputs whose pictures are made; `None`: all.
+    pub shard: Option<Shard>,
     /// Seed of the random draws, which also depend on the picture's name and the number of the variant.
     pub seed: u64,
-    /// Path of the manifest; `None`: `manifest.jsonl` in the folder of the outputs.
+    /// Path of the manifest; `None`: `manifest.jsonl` in the folder of the outputs, `manifest-3-of-16.jsonl` for a shard.
     pub manifest: Option<PathBuf>,
     /// Whether existing pictures are replaced.
     pub overwrite: bool,
@@ -40,6 +46,16 @@ pub struct BatchPlan {
     output: OutputPath,
 }
 
+/// One of the pictures of an input.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Variant {
+    /// Number of the draw of the varied settings, from 1.
+    pub number: u32,
+    /// Index among the combinations of the values of which every picture gets each, from 0; the values of the last setting
+    /// change first.
+    pub combination: u32,
+}
+
 /// Meaning of the output path.
 #[derive(Clone, Debug)]
 enum OutputPath {
@@ -50,6 +66,9 @@ enum OutputPath {
 
 /// Placeholder for the number of the variant in an output name.
 const VARIANT: &str = "{variant}";
+
+/// Greatest number of pictures of an input.
+const MOST_VARIANTS: u64 = 1_000_000;
 
 /// Whether paths of a description stand for several pictures.
 ///
@@ -65,7 +84,19 @@ impl BatchPlan {
     /// # Errors
     /// [`BatchError`] for invalid settings, missing inputs and conflicting outputs.
     pub fn new(scene: OverlayScene, settings: BatchSettings) -> Result<Self, BatchError> {
-        check_variation(&scene, &settings.vary)?;
+        let each = settings.each.iter().map(|each| each.count() as u64);
+        let combinations = each.fold(1u64, u64::saturating_mul);
+        let variants = settings.variants.map_or(1, |n| u64::from(n.get()));
+        if combinations.saturating_mul(variants) > MOST_VARIANTS {
+            return Err(BatchError::TooManyVariants {
+                combinations,
+                variants,
+                most: MOST_VARIANTS,
+            });
+        }
+        let drawn = settings.vary.iter();
+        let listed = settings.each.iter().map(Each::variation);
+        check_variation(&scene, &drawn.chain(listed).collect::<Vec<_>>())?;
         let is_one = !InputPath::new(&scene.overlay.colour)?.is_many();
         let found = find_inputs(
             &scene.overlay.colour,
@@ -73,13 +104,20 @@ impl BatchPlan {
             settings.skip_unpaired,
         )?;
         let output = OutputPath::new(scene.output()?, is_one, found.inputs[0].captures.len())?;
-        let plan = Self {
+        let mut plan = Self {
             scene,
             settings,
             found,
             output,
         };
+        // All shards check all pictures, so that none begins what another refuses.
         plan.check()?;
+        if let Some(shard) = plan.settings.shard {
+            let mut index = 0..;
+            plan.found
+                .inputs
+                .retain(|_| index.next().is_some_and(|index| shard.has(index)));
+        }
         Ok(plan)
     }
 
@@ -98,25 +136,62 @@ impl BatchPlan {
         &self.found
     }
 
-    /// Every picture: its input and the number of its variant.
-    pub fn pictures(&self) -> impl Iterator<Item = (&Input, u32)> {
-        let variants = 1..=self.settings.variants.map_or(1, u32::from);
-        self.found
-            .inputs
+    /// The pictures of each input.
+    fn variants(&self) -> Vec<Variant> {
+        let combinations = self
+            .settings
+            .each
             .iter()
-            .flat_map(move |input| variants.clone().map(move |variant| (input, variant)))
+            .map(Each::count)
+            .product::<usize>() as u32;
+        let numbers = 1..=self.settings.variants.map_or(1, u32::from);
+        let of = |combination| {
+            let with = move |number| Variant {
+                number,
+                combination,
+            };
+            numbers.clone().map(with)
+        };
+        (0..combinations).flat_map(of).collect()
+    }
+
+    /// Every picture of the batch or the shard: its input and its variant.
+    pub fn pictures(&self) -> impl Iterator<Item = (&Input, Variant)> {
+        let variants = self.variants();
+        self.found.inputs.iter().flat_map(move |input| {
+            let variants = variants.clone().into_iter();
+            variants.map(move |variant| (input, variant))
+        })
+    }
+
+    /// The settings of which every picture gets each value, with the index of the value in a variant.
+    pub(super) fn chosen(&self, variant: Variant) -> Vec<(&Each, usize)> {
+        let mut left = variant.combination as usize;
+        let mut chosen: Vec<(&Each, usize)> = Vec::new();
+        for each in self.settings.each.iter().rev() {
+            chosen.push((each, left % each.count()));
+            left /= each.count();
+        }
+        chosen.reverse();
+        chosen
     }
 
     /// Path of the manifest.
     pub fn manifest(&self) -> PathBuf {
         match &self.settings.manifest {
             Some(path) => path.clone(),
-            None => self.output.folder().join("manifest.jsonl"),
+            None => {
+                let name = match &self.settings.shard {
+                    Some(shard) => shard.manifest_name(),
+                    None => "manifest.jsonl".to_owned(),
+                };
+                self.output.folder(&self.settings.each).join(name)
+            }
         }
     }
 
     /// The output of a picture.
-    pub fn output(&self, input: &Input, variant: u32) -> PathBuf {
+    pub fn output(&self, input: &Input, variant: Variant) -> PathBuf {
         let path = match &self.output {
             OutputPath::File(path) => path.clone(),
             OutputPath::Pattern(pattern) => pattern.path(&input.captures),
@@ -129,23 +204,35 @@ impl BatchPlan {
                 folder.join(format!("{}.{ending}", input.name()))
             }
         };
-        let number = format!("{variant:04}");
-        let text = path.to_string_lossy();
-        if text.contains(VARIANT) {
-            return text.replace(VARIANT, &number).into();
+        let mut text = path.to_string_lossy().into_owned();
+        let mut suffix = String::new();
+        for (each, at) in self.chosen(variant) {
+            let (placeholder, value) = (placeholder(each), each.value(at).to_string());
+            match text.contains(&placeholder) {
+                true => text = text.replace(&placeholder, &value),
+                false => suffix.push_str(&format!("_{}-{value}", each.name())),
+            }
         }
-        if self.settings.variants.is_none() {
+        let number = format!("{:04}", variant.number);
+        if text.contains(VARIANT) {
+            text = text.replace(VARIANT, &number);
+        } else if self.settings.variants.is_some() {
+            suffix.push_str(&format!("_v{number}"));
+        }
+        let path = PathBuf::from(text);
+        if suffix.is_empty() {
             return path;
         }
         let part = |part: Option<&std::ffi::OsStr>| {
             part.unwrap_or_default().to_string_lossy().into_owned()
         };
         let (stem, ending) = (part(path.file_stem()), part(path.extension()));
-        path.with_file_name(format!("{stem}_v{number}.{ending}"))
+        path.with_file_name(format!("{stem}{suffix}.{ending}"))
     }
 
-    /// The description of a picture: its input files, and its varied settings drawn. [`Self::output`] is its output.
-    pub fn scene_of(&self, input: &Input, variant: u32) -> OverlayScene {
+    /// The description of a picture: its input files, its varied settings drawn, and its values of the others. [`Self::output`] is
+    /// its output.
+    pub fn scene_of(&self, input: &Input, variant: Variant) -> OverlayScene {
         let mut scene = self.scene.clone();
         scene.overlay.colour = input.colour.clone();
         scene.overlay.depth = (input.depth != input.colour).then(|| input.depth.clone());
@@ -153,14 +240,19 @@ impl BatchPlan {
         scene.scene.output.file = None;
         let name = input.name();
         for variation in &self.settings.vary {
-            variation.draw(&mut scene, self.settings.seed, &name, variant);
+            variation.draw(&mut scene, self.settings.seed, &name, variant.number);
+        }
+        for (each, at) in self.chosen(variant) {
+            each.set(&mut scene, at);
         }
         scene
     }
 
-    /// Whether a varied setting changes the solved sky.
-    pub(super) fn varies_sky(&self) -> bool {
-        self.settings.vary.iter().any(Variation::changes_sky)
+    /// Whether a setting that differs between pictures changes more than the fog.
+    pub(super) fn varies(&self, what: Affects) -> bool {
+        let listed = self.settings.each.iter().map(Each::variation);
+        let mut all = self.settings.vary.iter().chain(listed);
+        all.any(|variation| variation.affects() == what)
     }
 
     fn check(&self) -> Result<(), BatchError> {
@@ -199,7 +291,7 @@ impl BatchPlan {
 }
 
 /// Refuses variations that contradict each other or the description or have no effect, and invalid choices.
-fn check_variation(scene: &OverlayScene, vary: &[Variation]) -> Result<(), BatchError> {
+fn check_variation(scene: &OverlayScene, vary: &[&Variation]) -> Result<(), BatchError> {
     let refuse = |name: &str, expected: &str, got: String, advice: &str| {
         Err(BatchError::Variation {
             name: name.to_owned(),
@@ -232,7 +324,9 @@ fn check_variation(scene: &OverlayScene, vary: &[Variation]) -> Result<(), Batch
     let profiles = vary
         .iter()
         .find(|variation| variation.name() == "fog-profile");
-    let profiles = profiles.and_then(Variation::choices).unwrap_or(&own);
+    let profiles = profiles
+        .and_then(|variation| variation.choices())
+        .unwrap_or(&own);
     for (name, its) in [
         ("scale-height", &["height", "clamped", "unclamped"][..]),
         ("base-height", &["clamped", "unclamped"]),
@@ -259,19 +353,22 @@ fn check_variation(scene: &OverlayScene, vary: &[Variation]) -> Result<(), Batch
             }
         }
     }
-    // Check each choice with the first values of the other settings.
+    // Check each value of a list and both ends of a range with the first values of the other settings.
     let mut base = scene.clone();
     for variation in vary {
         variation.set(&mut base, 0.0);
     }
     for variation in vary {
-        for choice in variation.choices().unwrap_or_default() {
-            let mut scene = base.clone();
-            variation.choose(&mut scene, choice);
+        for scene in variation.extremes(&base) {
             scene.check()?;
         }
     }
     Ok(base.check()?)
+}
+
+/// Placeholder for the value of a setting in an output name.
+fn placeholder(each: &Each) -> String {
+    format!("{{{}}}", each.name())
 }
 
 impl OutputPath {
@@ -299,14 +396,17 @@ impl OutputPath {
     }
 
     /// The folder of the outputs of all variants.
-    fn folder(&self) -> PathBuf {
+    fn folder(&self, each: &[Each]) -> PathBuf {
         let folder = match self {
             Self::File(path) => path.parent().map(Path::to_owned).unwrap_or_default(),
             Self::Folder(folder) => folder.clone(),
             Self::Pattern(pattern) => pattern.base().to_owned(),
         };
-        let is_common =
-            |name: &std::path::Component<'_>| !name.as_os_str().to_string_lossy().contains(VARIANT);
+        let placeholders = || each.iter().map(placeholder);
+        let is_common = |name: &std::path::Component<'_>| {
+            let name = name.as_os_str().to_string_lossy();
+            !name.contains(VARIANT) && !placeholders().any(|one| name.contains(&one))
+        };
         folder.components().take_while(is_common).collect()
     }
 }

@@ -4,6 +4,7 @@ use super::{BatchError, Input, manifest::MANIFEST_VERSION};
 use crate::overlay::{LightLevelSource, OverlayImage, OverlayScene, PreparedOverlay};
 use serde::Serialize;
 use serde_json::{Map, Value};
+use std::collections::BTreeMap;
 
 /// The line of a picture.
 #[derive(Serialize)]
@@ -12,13 +13,24 @@ pub(super) struct Record<'a> {
     output: &'a str,
     manifest_version: u32,
     name: String,
-    variant: u32,
+    #[serde(flatten)]
+    which: Which,
     /// The description of the picture: its settings and files.
     #[serde(flatten)]
     scene: &'a OverlayScene,
     #[serde(flatten)]
     outcome: Outcome<'a>,
     airlight: &'static str,
+}
+
+/// What distinguishes a picture from the others of its input.
+#[derive(Serialize)]
+pub(super) struct Which {
+    /// Number of the draw.
+    pub variant: u32,
+    /// Values of the settings of which every picture gets each.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub each: BTreeMap<&'static str, super::vary::Value>,
 }
 
 /// Result of the picture.
@@ -56,7 +68,7 @@ impl<'a> Record<'a> {
     pub fn made(
         output: &'a str,
         input: &Input,
-        variant: u32,
+        which: Which,
         scene: &'a OverlayScene,
         seed: Option<u64>,
         image: &OverlayImage,
@@ -75,24 +87,24 @@ impl<'a> Record<'a> {
             unknown_depths: image.depth.holes,
             infinite_depths: image.depth.infinite,
         };
-        Self::new(output, input, variant, scene, Outcome::Made(facts))
+        Self::new(output, input, which, scene, Outcome::Made(facts))
     }
 
     /// Record of a picture that failed.
     pub fn failed(
         output: &'a str,
         input: &Input,
-        variant: u32,
+        which: Which,
         scene: &'a OverlayScene,
         error: &'a str,
     ) -> Self {
-        Self::new(output, input, variant, scene, Outcome::Failed { error })
+        Self::new(output, input, which, scene, Outcome::Failed { error })
     }
 
     fn new(
         output: &'a str,
         input: &Input,
-        variant: u32,
+        which: Which,
         scene: &'a OverlayScene,
         outcome: Outcome<'a>,
     ) -> Self {
@@ -100,7 +112,7 @@ impl<'a> Record<'a> {
             output,
             manifest_version: MANIFEST_VERSION,
             name: input.name(),
-            variant,
+            which,
             scene,
             outcome,
             airlight: AIRLIGHT,

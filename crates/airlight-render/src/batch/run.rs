@@ -1,8 +1,9 @@
 //! Running a batch: each thread reads a picture, adds fog, writes it and takes the next.
 
 use super::manifest::{Manifest, is_whole};
-use super::record::{Record, differences};
-use super::{BatchError, BatchPlan, Input};
+use super::record::{Record, Which, differences};
+use super::settings::Affects;
+use super::{BatchError, BatchPlan, Input, Variant};
 use crate::RenderError;
 use crate::overlay::{OverlayImage, OverlayScene, PreparedOverlay, SkyLight};
 use airlight_image::output::AtomicFile;
@@ -40,7 +41,7 @@ pub struct BatchReport {
 #[derive(Clone, Debug)]
 struct Task<'a> {
     input: &'a Input,
-    variants: Vec<u32>,
+    variants: Vec<Variant>,
 }
 
 impl BatchPlan {
@@ -50,7 +51,7 @@ impl BatchPlan {
     /// [`BatchError`] if the manifest is not usable, an existing picture has other settings, or the sky cannot be solved; the
     /// manifest is then unchanged.
     pub fn start(&self) -> Result<BatchRun<'_>, BatchError> {
-        let light = match self.varies_sky() {
+        let light = match self.varies(Affects::Sky) {
             true => None,
             false => self.scene().solve_sky()?,
         };
@@ -256,22 +257,40 @@ impl Worker<'_> {
             .scene()
             .overlay
             .output_format(&self.plan.output(input, *first))?;
-        let spec = self.plan.scene_of(input, *first).overlay;
-        let image = match OverlayImage::read(&spec, format) {
-            Ok(image) => image,
-            Err(error) => {
-                return variants
-                    .iter()
-                    .try_for_each(|variant| self.failed(input, *variant, &error));
-            }
+        // Settings that change how files are read need a picture of their own.
+        let at_once = match self.plan.varies(Affects::Files) {
+            true => 1,
+            false => variants.len(),
         };
+        for variants in variants.chunks(at_once) {
+            let spec = self.plan.scene_of(input, variants[0]).overlay;
+            match OverlayImage::read(&spec, format) {
+                Ok(image) => self.make_all(input, &image, variants)?,
+                Err(error) => variants
+                    .iter()
+                    .try_for_each(|variant| self.failed(input, *variant, &error))?,
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes pictures of an image.
+    ///
+    /// # Errors
+    /// [`BatchError`] if the batch must stop.
+    fn make_all(
+        &self,
+        input: &Input,
+        image: &OverlayImage,
+        variants: &[Variant],
+    ) -> Result<(), BatchError> {
         self.report().notes.merge(&image.notes());
         for variant in variants {
             if self.is_stopped() {
                 return Ok(());
             }
             let scene = self.plan.scene_of(input, *variant);
-            match self.make_one(&scene, &image, input, *variant) {
+            match self.make_one(&scene, image, input, *variant) {
                 Ok(()) => {
                     let mut report = self.report();
                     report.made += 1;
@@ -292,9 +311,9 @@ impl Worker<'_> {
         scene: &OverlayScene,
         image: &OverlayImage,
         input: &Input,
-        variant: u32,
+        variant: Variant,
     ) -> Result<(), BatchError> {
-        let own = match self.plan.varies_sky() {
+        let own = match self.plan.varies(Affects::Sky) {
             true => scene.solve_sky()?,
             false => None,
         };
@@ -317,7 +336,15 @@ impl Worker<'_> {
         }
         let settings = self.plan.settings();
         let seed = (!settings.vary.is_empty()).then_some(settings.seed);
-        let record = Record::made(&name, input, variant, scene, seed, image, &prepared);
+        let record = Record::made(
+            &name,
+            input,
+            self.which(variant),
+            scene,
+            seed,
+            image,
+            &prepared,
+        );
         self.manifest.add(&name, false, &record)?;
         let format = scene.overlay.output_format(output)?;
         let overlay = prepared.overlay(image)?;
@@ -336,7 +363,12 @@ impl Worker<'_> {
     ///
     /// # Errors
     /// [`BatchError`] if the batch must stop.
-    fn failed(&self, input: &Input, variant: u32, error: &RenderError) -> Result<(), BatchError> {
+    fn failed(
+        &self,
+        input: &Input,
+        variant: Variant,
+        error: &RenderError,
+    ) -> Result<(), BatchError> {
         if error.is_cancelled() {
             return Err(ImageError::Cancelled.into());
         }
@@ -344,7 +376,7 @@ impl Worker<'_> {
         let scene = self.plan.scene_of(input, variant);
         let output = &self.plan.output(input, variant);
         let name = self.manifest.name_of(output);
-        let record = Record::failed(&name, input, variant, &scene, &why);
+        let record = Record::failed(&name, input, self.which(variant), &scene, &why);
         self.manifest.add(&name, true, &record)?;
         let mut report = self.report();
         report
@@ -355,6 +387,17 @@ impl Worker<'_> {
         }
         self.done(&report);
         Ok(())
+    }
+
+    /// What distinguishes a picture from the others of its input, for the manifest.
+    fn which(&self, variant: Variant) -> Which {
+        let chosen = self.plan.chosen(variant).into_iter();
+        Which {
+            variant: variant.number,
+            each: chosen
+                .map(|(each, at)| (each.name(), each.value(at)))
+                .collect(),
+        }
     }
 
     fn done(&self, report: &BatchReport) {

@@ -1,9 +1,10 @@
-//! Variation: settings of an overlay that are drawn for each picture.
+//! [`Variation`], [`Each`]: settings of an overlay that are drawn for each picture, and settings of which each picture gets every
+//! value.
 
+use super::settings::{Affects, Domain, Kind, Setting, Spacing};
 use crate::overlay::OverlayScene;
-use airlight::Named;
-use airlight::fog::droplets::DropletKind;
-use airlight::scene::FogProfile;
+use serde::Serialize;
+use std::collections::HashSet;
 use std::fmt;
 use std::str::FromStr;
 
@@ -23,197 +24,29 @@ enum Values {
     Names(Vec<&'static str>),
 }
 
-/// Distribution of values over a range.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Spacing {
-    /// Uniform.
-    Uniform,
-    /// Uniform in the logarithm, so that all octaves are equally likely.
-    Log,
-}
-
-/// A setting that can vary.
-#[derive(Debug)]
-struct Setting {
-    /// Name without unit.
-    name: &'static str,
-    /// Name on which its draws depend; it remains the same if the setting is renamed.
-    stream: &'static str,
-    kind: Kind,
-}
-
-#[derive(Debug)]
-enum Kind {
-    Number {
-        /// Unit that may end the name.
-        unit: &'static str,
-        spacing: Spacing,
-        domain: Domain,
-        set: fn(&mut OverlayScene, f64),
-    },
-    Choice {
-        names: fn() -> Vec<&'static str>,
-        set: fn(&mut OverlayScene, &str),
-    },
-}
-
-/// Valid values of a number.
-#[derive(Clone, Copy, Debug)]
-enum Domain {
-    Any,
-    NotNegative,
-    Positive,
-    Fraction,
-    Length,
-    Elevation,
-    /// Elevation of a sun that lights the fog.
-    AboveHorizon,
-}
-
-impl Domain {
-    fn contains(self, value: f64) -> bool {
-        match self {
-            Self::Any => value.is_finite(),
-            Self::NotNegative => value.is_finite() && value >= 0.0,
-            Self::Positive => value.is_finite() && value > 0.0,
-            Self::Fraction => (0.0..=1.0).contains(&value),
-            Self::Length => value > 0.0 && value <= 1e9,
-            Self::Elevation => (-90.0..=90.0).contains(&value),
-            Self::AboveHorizon => value > 0.0 && value <= 90.0,
-        }
-    }
-
-    fn expected(self) -> &'static str {
-        match self {
-            Self::Any => "a number",
-            Self::NotNegative => "a number, 0 or above",
-            Self::Positive => "a number above 0",
-            Self::Fraction => "a number from 0 to 1",
-            Self::Length => "a number of metres above 0 and at most 1e9",
-            Self::Elevation => "a number of degrees from -90 to 90",
-            Self::AboveHorizon => "a number of degrees above 0 and at most 90",
-        }
-    }
-
-    fn read(self, text: &str) -> Result<f64, String> {
-        match f64::from_str(text.trim()) {
-            Ok(value) if self.contains(value) => Ok(value),
-            _ => Err(format!("expected {}, got `{text}`", self.expected())),
-        }
-    }
-}
-
-const fn number(
-    name: &'static str,
-    unit: &'static str,
-    spacing: Spacing,
-    domain: Domain,
-    set: fn(&mut OverlayScene, f64),
-) -> Setting {
-    Setting {
-        name,
-        stream: name,
-        kind: Kind::Number {
-            unit,
-            spacing,
-            domain,
-            set,
-        },
-    }
-}
-
-/// A length in metres, above 0: uniform in the logarithm.
-const fn length(name: &'static str, set: fn(&mut OverlayScene, f64)) -> Setting {
-    number(name, "m", Spacing::Log, Domain::Length, set)
-}
-
-/// An angle in degrees or a number that may be 0: uniform.
-const fn even(
-    name: &'static str,
-    unit: &'static str,
-    domain: Domain,
-    set: fn(&mut OverlayScene, f64),
-) -> Setting {
-    number(name, unit, Spacing::Uniform, domain, set)
-}
-
-/// Every setting that can vary.
-static SETTINGS: [Setting; 15] = [
-    length("visibility", |s, v| s.fog_mut().visibility_m = Some(v)),
-    length("scale-height", |s, v| s.fog_mut().scale_height_m = Some(v)),
-    even("base-height", "m", Domain::Any, |s, v| {
-        s.fog_mut().base_height_m = Some(v)
-    }),
-    length("top", |s, v| s.fog_mut().top_m = Some(v)),
-    length("eye-height", |s, v| s.scene.observer.eye_height_m = Some(v)),
-    even("camera-elevation", "deg", Domain::Elevation, |s, v| {
-        s.scene.camera.elevation_deg = Some(v)
-    }),
-    even("camera-azimuth", "deg", Domain::Any, |s, v| {
-        s.scene.camera.azimuth_deg = Some(v)
-    }),
-    even("camera-roll", "deg", Domain::Any, |s, v| {
-        s.scene.camera.roll_deg = Some(v)
-    }),
-    number(
-        "ambient-scale",
-        "",
-        Spacing::Log,
-        Domain::Positive,
-        |s, v| s.overlay.ambient_scale = v,
-    ),
-    even("sun-elevation", "deg", Domain::AboveHorizon, |s, v| {
-        s.scene.sun.elevation_deg = Some(v)
-    }),
-    even("sun-azimuth", "deg", Domain::Any, |s, v| {
-        s.scene.sun.azimuth_deg = Some(v)
-    }),
-    even("sun-strength", "", Domain::NotNegative, |s, v| {
-        s.overlay.sun_strength = Some(v)
-    }),
-    even("ground-albedo", "", Domain::Fraction, |s, v| {
-        s.scene.air.ground_albedo = Some(v)
-    }),
-    Setting {
-        name: "fog-profile",
-        stream: "model",
-        kind: Kind::Choice {
-            names: || FogProfile::ALL.iter().map(|kind| kind.name()).collect(),
-            set: |s, name| s.fog_mut().profile = name.parse().ok(),
-        },
-    },
-    Setting {
-        name: "droplets",
-        stream: "droplets",
-        kind: Kind::Choice {
-            names: || DropletKind::ALL.iter().map(|kind| kind.name()).collect(),
-            set: |s, name| s.fog_mut().droplets = name.parse().ok(),
-        },
-    },
-];
-
-/// Settings on which a solved sky depends.
-const OF_SKY: [&str; 4] = [
-    "sun-elevation",
-    "sun-azimuth",
-    "eye-height",
-    "ground-albedo",
-];
-
-/// Names of all settings that can vary.
-fn variation_names() -> impl Iterator<Item = &'static str> {
-    SETTINGS.iter().map(|setting| setting.name)
-}
-
 impl Variation {
     /// Name of the setting, without its unit.
     pub fn name(&self) -> &'static str {
         self.setting.name
     }
 
-    /// Whether a solved sky depends on the setting.
-    pub fn changes_sky(&self) -> bool {
-        OF_SKY.contains(&self.setting.name)
+    /// What the setting changes besides the fog.
+    pub(super) fn affects(&self) -> Affects {
+        self.setting.affects
+    }
+
+    /// Scenes with every value of a list, or with both ends of a range.
+    pub(super) fn extremes(&self, scene: &OverlayScene) -> Vec<OverlayScene> {
+        let values: Vec<Value> = match &self.values {
+            Values::Range(_, low, high) => vec![Value::Number(*low), Value::Number(*high)],
+            list => (0..list.len()).map(|at| list.value(at)).collect(),
+        };
+        let with = |value: Value| {
+            let mut scene = scene.clone();
+            self.setting.set(&mut scene, value);
+            scene
+        };
+        values.into_iter().map(with).collect()
     }
 
     /// The names from which it is drawn; `None` for numbers.
@@ -221,13 +54,6 @@ impl Variation {
         match &self.values {
             Values::Names(names) => Some(names),
             _ => None,
-        }
-    }
-
-    /// Sets the setting to one of its names.
-    pub(super) fn choose(&self, scene: &mut OverlayScene, name: &str) {
-        if let Kind::Choice { set, .. } = &self.setting.kind {
-            set(scene, name);
         }
     }
 
@@ -241,27 +67,128 @@ impl Variation {
 
     /// Sets the setting to the value at a fraction, from 0 to 1 (exclusive), of its range or list.
     pub(super) fn set(&self, scene: &mut OverlayScene, fraction: f64) {
-        match (&self.values, &self.setting.kind) {
-            (Values::Range(spacing, low, high), Kind::Number { set, .. }) => {
-                let value = match spacing {
-                    Spacing::Uniform => low + (high - low) * fraction,
-                    Spacing::Log => low * libm::exp(fraction * libm::log(high / low)),
-                };
-                set(scene, value.clamp(*low, *high));
+        let value = match &self.values {
+            Values::Range(spacing, low, high) => Value::Number(match spacing {
+                _ if self.setting.is_whole() => (low + (high - low + 1.0) * fraction).floor(),
+                Spacing::Uniform => low + (high - low) * fraction,
+                Spacing::Log => low * libm::exp(fraction * libm::log(high / low)),
+            })
+            .clamped(*low, *high),
+            list => {
+                let at = (fraction * list.len() as f64) as usize;
+                list.value(at.min(list.len() - 1))
             }
-            (Values::Numbers(values), Kind::Number { set, .. }) => {
-                set(scene, pick(values, fraction))
-            }
-            (Values::Names(names), _) => self.choose(scene, pick(names, fraction)),
-            _ => {}
+        };
+        self.setting.set(scene, value);
+    }
+}
+
+/// A value of a setting.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub(super) enum Value {
+    Number(f64),
+    Name(&'static str),
+}
+
+impl Value {
+    fn clamped(self, low: f64, high: f64) -> Self {
+        match self {
+            Self::Number(value) => Self::Number(value.clamp(low, high)),
+            name => name,
         }
     }
 }
 
-/// The element at a fraction of a list that is not empty.
-fn pick<T: Copy>(list: &[T], fraction: f64) -> T {
-    let at = (fraction * list.len() as f64) as usize;
-    list[at.min(list.len() - 1)]
+impl fmt::Display for Value {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(value) => write!(f, "{value}"),
+            Self::Name(name) => f.write_str(name),
+        }
+    }
+}
+
+impl Values {
+    /// Number of values in a list; 0 for a range.
+    fn len(&self) -> usize {
+        match self {
+            Self::Range(..) => 0,
+            Self::Numbers(values) => values.len(),
+            Self::Names(values) => values.len(),
+        }
+    }
+
+    /// A value of a list; the lower end of a range.
+    fn value(&self, at: usize) -> Value {
+        match self {
+            Self::Range(_, low, _) => Value::Number(*low),
+            Self::Numbers(values) => Value::Number(values[at]),
+            Self::Names(values) => Value::Name(values[at]),
+        }
+    }
+}
+
+/// A setting and the values of which every picture gets each: parsed from `NAME=A,B,C`.
+#[derive(Clone, Debug)]
+pub struct Each(Variation);
+
+impl Each {
+    /// Name of the setting, without its unit.
+    pub fn name(&self) -> &'static str {
+        self.0.name()
+    }
+
+    /// The setting with its list.
+    pub(super) fn variation(&self) -> &Variation {
+        &self.0
+    }
+
+    /// Number of values, at least 1.
+    pub(super) fn count(&self) -> usize {
+        self.0.values.len()
+    }
+
+    /// A value of the list.
+    pub(super) fn value(&self, at: usize) -> Value {
+        self.0.values.value(at)
+    }
+
+    /// Sets the setting to a value of the list.
+    pub(super) fn set(&self, scene: &mut OverlayScene, at: usize) {
+        self.0.setting.set(scene, self.value(at));
+    }
+}
+
+impl fmt::Display for Each {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.fmt(f)
+    }
+}
+
+impl FromStr for Each {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let variation: Variation = text.parse()?;
+        let (name, list) = (variation.name(), &variation.values);
+        if let Values::Range(_, low, high) = list {
+            return Err(format!(
+                "{name}: expected a list of values, got {low}..{high}; try {name}={low},{high}, or vary to draw from the range"
+            ));
+        }
+        let mut known = HashSet::new();
+        for at in 0..list.len() {
+            let value = list.value(at).to_string();
+            if known.contains(&value) {
+                return Err(format!(
+                    "{name}: expected each value once, got {value} twice; try leaving one out"
+                ));
+            }
+            known.insert(value);
+        }
+        Ok(Self(variation))
+    }
 }
 
 impl fmt::Display for Variation {
@@ -287,16 +214,7 @@ impl FromStr for Variation {
             format!("expected NAME=LOW..HIGH or NAME=A,B,C, got `{text}`; try visibility=50..500")
         })?;
         let name = name.trim();
-        let setting = SETTINGS
-            .iter()
-            .find(|setting| setting.is_called(name))
-            .ok_or_else(|| {
-                let names: Vec<&str> = variation_names().collect();
-                format!(
-                    "expected a setting that can vary, got `{name}`; try one of {}",
-                    names.join(", ")
-                )
-            })?;
+        let setting = Setting::named(name).map_err(|error| error.to_string())?;
         let values = setting
             .values(values)
             .map_err(|error| format!("{}: {error}", setting.name))?;
@@ -305,14 +223,16 @@ impl FromStr for Variation {
 }
 
 impl Setting {
-    /// Whether a name, with or without unit, is that of this setting.
-    fn is_called(&self, name: &str) -> bool {
-        let Some(rest) = name.strip_prefix(self.name) else {
-            return false;
-        };
-        match &self.kind {
-            Kind::Number { unit, .. } => rest.is_empty() || rest.strip_prefix('-') == Some(*unit),
-            Kind::Choice { .. } => rest.is_empty(),
+    fn is_whole(&self) -> bool {
+        matches!(&self.kind, Kind::Number { domain, .. } if Domain::is_whole(*domain))
+    }
+
+    /// Sets the setting of a scene.
+    fn set(&self, scene: &mut OverlayScene, value: Value) {
+        match (&self.kind, value) {
+            (Kind::Number { set, .. }, Value::Number(value)) => set(scene, value),
+            (Kind::Choice { set, .. }, Value::Name(name)) => set(scene, name),
+            _ => {}
         }
     }
 
@@ -385,8 +305,46 @@ mod tests {
             ("sun-strength=0..4", "sun-strength=uniform:0..4"),
             ("fog-profile=uniform, slab", "fog-profile=uniform,slab"),
             ("droplets=fine,coarse", "droplets=fine,coarse"),
+            ("focal-px=500..800", "focal=log:500..800"),
+            ("patch-seed=0..9", "patch-seed=uniform:0..9"),
         ] {
             assert_eq!(text.parse::<Variation>().unwrap().to_string(), written);
+        }
+    }
+
+    #[test]
+    fn whole_numbers_are_drawn_evenly_up_to_both_ends() {
+        let variation: Variation = "patch-seed=3..6".parse().unwrap();
+        let mut counts = [0; 4];
+        for variant in 0..4000 {
+            let mut scene = OverlayScene::default();
+            variation.draw(&mut scene, 1, "a", variant);
+            let seed = scene.fog().patches.as_ref().unwrap().seed.unwrap();
+            counts[seed as usize - 3] += 1;
+        }
+        // Within five standard deviations.
+        assert!(counts.iter().all(|n| (860..1140).contains(n)), "{counts:?}");
+    }
+
+    #[test]
+    fn lists_of_each_value_are_read_or_refused() {
+        let each: Each = "visibility-m=5,10,2.5".parse().unwrap();
+        assert_eq!(
+            (each.to_string().as_str(), each.count()),
+            ("visibility=5,10,2.5", 3)
+        );
+        let mut scene = OverlayScene::default();
+        each.set(&mut scene, 2);
+        assert_eq!(scene.fog().visibility_m, Some(2.5));
+        for (text, part) in [
+            ("visibility=5..50", "try visibility=5,50, or vary"),
+            ("visibility=5,6,5.0", "got 5 twice"),
+            ("visibility=5,-6", "above 0"),
+            ("visibilty=5,6", "try \"visibility\""),
+            ("visibility", "NAME=A,B,C"),
+        ] {
+            let said = text.parse::<Each>().unwrap_err();
+            assert!(said.contains(part), "{text}: {said}");
         }
     }
 
@@ -400,12 +358,14 @@ mod tests {
             ("visibility=nan..50", "above 0"),
             ("visibility=5,x", "`x`"),
             ("visibility=cubic:5..50", "uniform: or log:"),
-            (
-                "visibility-km=5..50",
-                "visibility, scale-height, base-height",
-            ),
+            ("visibility-km=5..50", "try \"visibility\""),
             ("fogginess=1..2", "visibility, scale-height, base-height"),
-            ("sun-elevation=-5..20", "above 0"),
+            ("patch-strenght=1..2", "try \"patch-strength\""),
+            ("patch-seed=0.5..2", "a whole number"),
+            ("patch-strength=0..3", "from 0 to 2"),
+            ("quality=50..101", "1 to 100"),
+            ("fov=60..180", "below 180"),
+            ("sun-elevation=-95..20", "-90 to 90"),
             ("base-height=log:0..20", "logarithmic"),
             ("ground-albedo=0..2", "from 0 to 1"),
             ("fog-profile=uniform,thick", "foggy-cityscapes"),
@@ -419,6 +379,8 @@ mod tests {
 #[cfg(test)]
 mod guards {
     use super::*;
+    use airlight::Named;
+    use airlight::scene::FogProfile;
 
     /// Values drawn by version 0.1.0.
     #[test]

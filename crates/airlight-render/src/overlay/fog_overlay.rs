@@ -2,7 +2,7 @@
 
 use super::primaries::Primaries;
 use airlight::fog::lights::{RgbLightSet, ViewRay};
-use airlight::fog::{RgbFog, RgbFogTable, legacy};
+use airlight::fog::{Ground, RgbFog, RgbFogTable, legacy};
 use airlight::scene::RgbFoggySky;
 use airlight::spectrum::rgb::{srgb_decode, srgb_encode};
 use airlight::transfer::RgbPathOptics;
@@ -80,19 +80,32 @@ impl<'a> FogSampler<'a> {
         }
     }
 
-    /// Transmittance and path radiance up to a distance (m; infinite: the sky) in a direction. `path_radiance`, if given, replaces
-    /// that of the fog.
+    /// Height of the eye and radius of the ground of the fog, m.
+    pub fn place(&self) -> (f64, f64) {
+        let ground = match self.overlay {
+            FogOverlay::Fog(FogSource::Sky { sky, .. }, _) => *sky.ground(),
+            _ => Ground::FLAT,
+        };
+        (self.eye_height_m, ground.radius_m)
+    }
+
+    /// Transmittance and path radiance up to a distance (m; infinite: the sky) in a direction. `factor`, if given, is that of patches
+    /// on the optical depth of fog that scatters light; `path_radiance` replaces that of the fog.
     pub fn optics(
         &self,
         direction: DVec3,
         distance_m: f64,
+        factor: Option<f32>,
         path_radiance: Option<[f32; 3]>,
     ) -> RgbPathOptics {
         let optics = match self.overlay {
             FogOverlay::Fog(source, lights) => {
                 let mut optics = match &self.table {
-                    Some(table) => table.path(direction, distance_m),
-                    None => source.optics(self.eye_height_m, direction, distance_m),
+                    Some(table) => {
+                        let even = table.path(direction, distance_m);
+                        factor.map_or(even, |factor| even.at_density(factor))
+                    }
+                    None => source.optics(self.eye_height_m, direction, distance_m, factor),
                 };
                 optics.path_radiance = path_radiance.unwrap_or(optics.path_radiance);
                 if let Some(lights) = lights {
@@ -138,9 +151,18 @@ impl<'a> FogSampler<'a> {
 }
 
 impl FogSource {
-    fn optics(&self, eye_height_m: f64, direction: DVec3, distance_m: f64) -> RgbPathOptics {
+    fn optics(
+        &self,
+        eye_height_m: f64,
+        direction: DVec3,
+        distance_m: f64,
+        factor: Option<f32>,
+    ) -> RgbPathOptics {
         match self {
-            Self::Alone(fog) => fog.path(eye_height_m, direction, distance_m),
+            Self::Alone(fog) => {
+                let even = fog.path(eye_height_m, direction, distance_m);
+                factor.map_or(even, |factor| even.at_density(factor))
+            }
             Self::Sky {
                 sky,
                 radiance_scale,
@@ -148,9 +170,9 @@ impl FogSource {
             } => {
                 let optics = match air {
                     ExistingAerial::Missing if distance_m < f64::INFINITY => {
-                        sky.path(direction, distance_m)
+                        sky.path_at_density(direction, distance_m, factor)
                     }
-                    _ => sky.path_over_clear(direction, distance_m),
+                    _ => sky.path_over_clear_at_density(direction, distance_m, factor),
                 };
                 RgbPathOptics {
                     path_radiance: optics.path_radiance.map(|s| s * *radiance_scale),

@@ -16,6 +16,7 @@ mod monte_carlo;
 mod output_rows;
 mod overlay_image;
 mod overlay_scene;
+mod patch_table;
 mod place_lights;
 mod prepared_overlay;
 mod primaries;
@@ -32,12 +33,14 @@ pub use prepared_overlay::PreparedOverlay;
 pub use sky_light::SkyLight;
 pub use spec::{DepthFileKind, NegativeDepth, OverlaySpec};
 
+use airlight::scene::{FogLayers, SceneError};
 use airlight::transfer::RgbPathOptics;
 use airlight_image::input::{DepthKind, DepthMap, LightReference, Picture};
 use airlight_image::{ImageError, Intrinsics, Notes, RowSource, Size};
 use ambient::horizon_pixels;
 use fog_overlay::FogSampler;
 use glam::DVec3;
+use patch_table::PatchTable;
 use primaries::Primaries;
 
 /// Rows of a picture in fog.
@@ -50,6 +53,7 @@ pub struct Overlay<'a> {
     channels: Channels,
     /// Path radiance of the fog in each pixel, if it is computed elsewhere.
     path_radiance: Option<&'a [f32]>,
+    patches: Option<PatchTable<'a>>,
 }
 
 /// Channels of an [`Overlay`].
@@ -113,7 +117,37 @@ impl<'a> Overlay<'a> {
             fog: FogSampler::new(overlay, eye_height_m, Primaries::of(picture)),
             channels,
             path_radiance: None,
+            patches: None,
         })
+    }
+
+    /// The same overlay with the patches of fog; `fog` describes the same layers as the overlay.
+    ///
+    /// # Errors
+    /// [`SceneError`] for patches out of range.
+    pub fn with_patches(self, fog: &FogLayers) -> Result<Self, SceneError> {
+        let far_m = self.depth.range_m().map_or(0.0, |(_, far)| f64::from(far));
+        let (width, height) = (self.size().width(), self.size().height());
+        let corners = [
+            (0, 0),
+            (width - 1, 0),
+            (0, height - 1),
+            (width - 1, height - 1),
+        ];
+        let longest = corners
+            .map(|(x, y)| self.camera.ray_length_per_z(x, y))
+            .into_iter()
+            .fold(1.0, f64::max);
+        let has_sky = self.depth.metres.iter().any(|m| m.is_infinite());
+        let (eye_height_m, ground_radius_m) = self.fog.place();
+        let patches = PatchTable::new(
+            fog,
+            self.camera,
+            eye_height_m,
+            ground_radius_m,
+            (far_m * longest, has_sky),
+        )?;
+        Ok(Self { patches, ..self })
     }
 
     /// The same overlay with a given path radiance of the fog: red, green and blue of each pixel, row by row, in the picture's
@@ -173,7 +207,10 @@ impl<'a> Overlay<'a> {
             let step = width.div_ceil(SAMPLES) as usize;
             for (direction, distance) in rays.into_iter().step_by(step) {
                 if distance.is_finite() && distance > 0.0 {
-                    let seen = self.fog.optics(direction, distance, None).transmittance;
+                    let seen = self
+                        .fog
+                        .optics(direction, distance, None, None)
+                        .transmittance;
                     least = least.min(seen[1]);
                     most = most.max(seen[1]);
                 }
@@ -229,6 +266,7 @@ impl RowSource for Overlay<'_> {
     fn fill_row(&self, y: u32, out: &mut [f32]) {
         let first = y as usize * self.picture.size.width() as usize;
         let rays = self.rays(y);
+        let patches = self.patches.as_ref().map(|patches| patches.row(y));
         let pixels = out.chunks_exact_mut(self.channels()).zip(rays);
         for (i, (out, (direction, distance))) in pixels.enumerate() {
             let pixel = first + i;
@@ -238,7 +276,8 @@ impl RowSource for Overlay<'_> {
                 let rgb = &all[3 * pixel..3 * pixel + 3];
                 [rgb[0], rgb[1], rgb[2]]
             });
-            let optics = self.fog.optics(direction, distance, path_radiance);
+            let factor = patches.map(|row| row.factor(i as u32, distance));
+            let optics = self.fog.optics(direction, distance, factor, path_radiance);
             let opacity = self.picture.alpha.as_ref().map(|alpha| alpha[pixel]);
             let seen = self.through(&optics, colour, opacity.unwrap_or(1.0));
             out[..3].copy_from_slice(&seen);

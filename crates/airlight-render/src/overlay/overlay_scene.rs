@@ -9,8 +9,8 @@ use airlight::fog::visibility::{Contrast, extinction_per_m};
 use airlight::fog::{DensityProfile, FogScattering};
 use airlight::monte_carlo::{MonteCarloSettings, SunShape};
 use airlight::scene::{
-    FogLayer, FogLayerSpec, FogProfile, FogSpec, Input, LightKind, OutputSpec, Projection, Scene,
-    SceneDocument, SceneError,
+    FogLayer, FogLayerSpec, FogLayers, FogPatchesSpec, FogProfile, FogSpec, Input, LightKind,
+    OutputSpec, Projection, Scene, SceneDocument, SceneError,
 };
 use airlight::spectrum::WavelengthGrid;
 use airlight::{Named, UnknownName};
@@ -25,9 +25,10 @@ const EYE_HEIGHT_M: f64 = 1.6;
 /// Default horizontal field of view, degrees, without a focal length.
 const FOV_DEG: f64 = 60.0;
 /// Inputs that change the fog itself.
-const OF_FOG: [Input; 4] = [
+const OF_FOG: [Input; 5] = [
     Input::Fog,
     Input::FogScattering,
+    Input::FogPatches,
     Input::Lights,
     Input::GroundAlbedo,
 ];
@@ -181,11 +182,11 @@ impl OverlayScene {
         }
     }
 
-    /// Layers of the fog; `None` for fog of one colour, which does not scatter light.
+    /// The fog with its layers and patches; `None` for fog of one colour, which does not scatter light.
     ///
     /// # Errors
     /// [`RenderError`] for a layer without visibility.
-    pub fn fog_layers(&self) -> Result<Option<Vec<FogLayer>>, RenderError> {
+    pub fn fog_layers(&self) -> Result<Option<FogLayers>, RenderError> {
         let profile = self.fog_profile();
         if is_one_colour(profile) {
             return Ok(None);
@@ -202,7 +203,11 @@ impl OverlayScene {
             };
             fog_layer(&layer, &key, contrast)
         });
-        Ok(layers.collect::<Result<_, _>>().map(Some)?)
+        Ok(Some(FogLayers {
+            layers: layers.collect::<Result<_, _>>()?,
+            scattering: self.fog_scattering(),
+            patches: self.fog().patches.as_ref().map(FogPatchesSpec::patches),
+        }))
     }
 
     /// Layers of the fog as constituents, with heights above the ground.
@@ -210,14 +215,11 @@ impl OverlayScene {
     /// # Errors
     /// [`RenderError`] for an invalid layer.
     pub fn constituents(&self) -> Result<Option<Vec<Constituent>>, RenderError> {
-        let Some(layers) = self.fog_layers()? else {
+        let Some(fog) = self.fog_layers()? else {
             return Ok(None);
         };
         let grid = WavelengthGrid::standard();
-        let layers = layers
-            .iter()
-            .map(|fog| fog.constituent(grid.wavelengths_nm()));
-        Ok(layers.collect::<Result<_, SceneError>>().map(Some)?)
+        Ok(Some(fog.constituents(grid.wavelengths_nm())?))
     }
 
     /// The camera of a picture of this size, with pixels of this width over height.
@@ -288,10 +290,12 @@ impl OverlayScene {
         if is_one_colour(profile) {
             self.check_one_colour()?;
         }
-        let layers = self.fog_layers()?.unwrap_or_default();
-        if sky_light && layers.iter().any(|layer| layer.profile.is_uniform()) {
+        let fog = self.fog_layers()?;
+        let mut layers = fog.iter().flat_map(|fog| &fog.layers);
+        if sky_light && layers.any(|layer| layer.profile.is_uniform()) {
             return Err(SkyLight::needs_top());
         }
+        self.check_patches()?;
         self.check_light_form(profile)
     }
 
@@ -419,11 +423,33 @@ impl OverlayScene {
         Ok(())
     }
 
+    /// Refuses patches where something would see even fog.
+    fn check_patches(&self) -> Result<(), RenderError> {
+        let refuse = |expected, got, advice| {
+            Err(RenderError::value(
+                "fog.patches",
+                expected,
+                got,
+                format!("{advice}, or leaving the patches out"),
+            ))
+        };
+        if self.fog().patches.is_none() {
+            Ok(())
+        } else if self.monte_carlo().is_some() {
+            refuse("solver orders", "solver monte-carlo", "solver orders")
+        } else if !self.scene.lights.is_empty() {
+            refuse("fog in daylight", "lights in it", "leaving light out")
+        } else {
+            Ok(())
+        }
+    }
+
     /// Refuses settings that fog of one colour would ignore, as it does not scatter light.
     fn check_one_colour(&self) -> Result<(), RenderError> {
         let given = [
             (!self.scene.lights.is_empty(), "light"),
             (!self.fog().layers.is_empty(), "layer"),
+            (self.fog().patches.is_some(), "patches"),
             (self.overlay.sky_light, "sky-light"),
             (
                 self.fog_scattering() != FogScattering::Multiple,

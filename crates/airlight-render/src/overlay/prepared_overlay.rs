@@ -11,7 +11,7 @@ use airlight::axes;
 use airlight::fog::lights::{LightSettings, RgbLightSet};
 use airlight::fog::visibility::extinction_per_m;
 use airlight::fog::{DirectionalLight, FogError, FogLighting, Ground, RgbFog, RgbLayer, legacy};
-use airlight::scene::{FogProfile, SceneError};
+use airlight::scene::{FogLayers, FogProfile, SceneError};
 use airlight::spectrum::{RgbSpace, WavelengthGrid};
 use airlight_image::Control;
 use airlight_image::frame::Intrinsics;
@@ -36,6 +36,8 @@ pub struct PreparedOverlay {
     fog: FogOverlay,
     eye_height_m: f64,
     channels: Channels,
+    /// The layers of the fog, if it has patches.
+    patchy: Option<FogLayers>,
 }
 
 impl PreparedOverlay {
@@ -68,6 +70,7 @@ impl PreparedOverlay {
             level,
             fog,
             eye_height_m: scene.eye_height_m(),
+            patchy: scene.fog_layers()?.filter(|fog| fog.patches.is_some()),
             channels: match scene.overlay.layers {
                 true => Channels::Layers,
                 false => Channels::Picture,
@@ -88,14 +91,18 @@ impl PreparedOverlay {
     /// # Errors
     /// [`RenderError`] if the picture has another size.
     pub fn overlay<'o>(&'o self, image: &'o OverlayImage) -> Result<Overlay<'o>, RenderError> {
-        Ok(Overlay::new(
+        let overlay = Overlay::new(
             &image.picture,
             &image.depth,
             &self.camera,
             self.eye_height_m,
             &self.fog,
             self.channels,
-        )?)
+        )?;
+        Ok(match &self.patchy {
+            Some(fog) => overlay.with_patches(fog)?,
+            None => overlay,
+        })
     }
 
     /// Monte Carlo estimate of the description's fog in a solved sky; `None` if the description has another solver.
@@ -110,7 +117,7 @@ impl PreparedOverlay {
         let Some(settings) = scene.monte_carlo() else {
             return Ok(None);
         };
-        let (Some(source), Some(sky), Some(layers)) = (self.fog(), sky, scene.fog_layers()?) else {
+        let (Some(source), Some(sky), Some(fog)) = (self.fog(), sky, scene.fog_layers()?) else {
             return Err(RenderError::setting(
                 "solver monte-carlo: expected fog lit by a solved sky, got other fog; try sky-light",
             ));
@@ -118,7 +125,7 @@ impl PreparedOverlay {
         let mut air = sky.atmosphere().clone();
         let ground_m = air.planet.ground_altitude_m;
         let grid = WavelengthGrid::fast();
-        for layer in layers {
+        for layer in fog.layers {
             let part = layer.constituent(grid.wavelengths_nm())?;
             let part = part.raised(ground_m).ok_or_else(|| {
                 RenderError::setting("fog.profile: expected fog with a top or a scale height, got fog without an upper end; try height, clamped, unclamped or slab")

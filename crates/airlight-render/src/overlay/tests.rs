@@ -209,3 +209,76 @@ fn a_point_light_glows_in_front_of_objects() {
         }
     }
 }
+
+/// A table of factors against the ray of each pixel on its own, in light that leaves the fog as it is.
+#[test]
+fn tables_of_patches_match_single_rays() {
+    use airlight::fog::FogPatches;
+    use airlight::fog::droplets::DropletKind;
+    use airlight::scene::{FogLayer, FogLayers};
+
+    let (width, height) = (640, 360);
+    let picture = picture(width, height, |_, _| [0.0; 3]);
+    // Ground, walls between 10 and 250 m, and sky.
+    let depth = depth(width, height, |x, y| match y {
+        0..60 => f32::INFINITY,
+        60..240 => 10.0 + 30.0 * (x / 80) as f32,
+        _ => 500.0 / (y as f32 - 180.0),
+    });
+    let camera = Intrinsics::from_horizontal_fov(picture.size, 70.0).unwrap();
+    let overlay = uniform(0.03, [1.0; 3]);
+    let layer = FogLayer {
+        profile: DensityProfile::Uniform,
+        droplets: DropletKind::Isotropic,
+        extinction_per_m: 0.03,
+    };
+    let fog = |strength| FogLayers {
+        layers: vec![layer.clone()],
+        scattering: FogScattering::Single,
+        patches: Some(FogPatches {
+            strength,
+            ..FogPatches::default()
+        }),
+    };
+    let shown = |fog: &FogLayers| {
+        let even =
+            Overlay::new(&picture, &depth, &camera, 1.6, &overlay, Channels::Layers).unwrap();
+        let patchy = even.with_patches(fog).unwrap();
+        let mut rows = vec![0.0; (width * height * 10) as usize];
+        for (y, row) in rows.chunks_exact_mut(width as usize * 10).enumerate() {
+            patchy.fill_row(y as u32, row);
+        }
+        rows
+    };
+    let strong = fog(0.8);
+    let rows = shown(&strong);
+    let view = strong
+        .patches_seen_from(1.6, f64::INFINITY, 0.0)
+        .unwrap()
+        .unwrap();
+    let (mut squares, mut worst, mut count) = (0.0, 0.0f64, 0.0);
+    for y in (0..height).step_by(7) {
+        for x in (0..width).step_by(11) {
+            let pixel = &rows[10 * (y * width + x) as usize..][..10];
+            let (seen, distance_m) = (f64::from(pixel[3]), f64::from(pixel[9]));
+            let factor = view.factor(camera.pixel_direction(x, y), distance_m);
+            let right = (-0.03 * distance_m * factor).exp();
+            let off = (seen - right).abs();
+            squares += off * off;
+            worst = worst.max(off);
+            count += 1.0;
+            // The fog has its colour.
+            assert!((f64::from(pixel[6]) - (1.0 - seen)).abs() < 1e-5);
+        }
+    }
+    let rms = f64::sqrt(squares / count);
+    assert!(rms < 0.003 && worst < 0.025, "{rms} {worst}");
+    // Patches without strength are even fog, to the rounding of exponentials.
+    let flat = shown(&fog(0.0));
+    let mut row = vec![0.0; (width * 10) as usize];
+    let even = Overlay::new(&picture, &depth, &camera, 1.6, &overlay, Channels::Layers).unwrap();
+    even.fill_row(300, &mut row);
+    for (a, b) in row.iter().zip(&flat[300 * row.len()..]) {
+        assert!((a - b).abs() < 1e-5, "{a} {b}");
+    }
+}

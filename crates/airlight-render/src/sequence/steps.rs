@@ -61,17 +61,17 @@ impl Renderer {
         pictures: &[SequenceStep],
         control: Control<'_>,
     ) -> Result<Option<PreparedSequence>, RenderError> {
-        let metered: Vec<&SequenceStep> = match self.meters_together() && !pictures.is_empty() {
+        let metered: Vec<&SequenceStep> = match self.meters_together() {
             true => sequence.first_middle_last(),
             false => Vec::new(),
         };
-        let mut times = pictures.iter().chain(metered.iter().copied());
-        let suns = match times.next() {
-            None => return Ok(None),
-            Some(first) if times.all(|other| other.time == first.time) => {
-                self.suns_near(&self.sun(Some(first.time))?)
-            }
-            Some(_) => SunCoverage::All,
+        if pictures.is_empty() {
+            return Ok(None);
+        }
+        // By the whole sequence, so that a picture does not depend on which others are drawn with it.
+        let suns = match sequence.steps() {
+            [only] => self.suns_near(&self.sun(Some(only.time))?),
+            _ => SunCoverage::All,
         };
         let solution = self.prepare(suns, control)?;
         let mut common: Option<Exposure> = None;

@@ -266,6 +266,128 @@ fn draws_depend_on_names_not_on_threads() {
     assert_eq!(alone["p5_v0002.png"]["fog"], one["p5_v0002.png"]["fog"]);
 }
 
+fn each(texts: &[&str], varied: &[&str]) -> BatchSettings {
+    BatchSettings {
+        each: texts.iter().map(|text| text.parse().unwrap()).collect(),
+        ..vary(varied)
+    }
+}
+
+#[test]
+fn every_picture_gets_each_value_and_all_combinations() {
+    let folder = Pictures::new(&["a", "b"]);
+    let settings = || BatchSettings {
+        variants: NonZeroU32::new(2),
+        ..each(
+            &["visibility=5,10,20", "fog-profile=uniform,height"],
+            &["eye-height=1..2"],
+        )
+    };
+    let all = |output| folder.varied("rgb/*.png", "depth/*.png", output);
+    assert_eq!(made(all("out/*.png"), settings()), 24);
+    let lines = folder.manifest("out/manifest.jsonl");
+    let line = &lines["a_visibility-10_fog-profile-height_v0002.png"];
+    assert_eq!(line["fog"]["visibility_m"], 10.0);
+    assert_eq!(line["fog"]["profile"], "height");
+    assert_eq!(line["each"]["visibility"], 10.0);
+    assert_eq!(line["each"]["fog-profile"], "height");
+    // Draws are those of the variant, whatever the value.
+    let other = &lines["a_visibility-5_fog-profile-uniform_v0002.png"];
+    assert_eq!(line["observer"], other["observer"]);
+    let (first, second) = (
+        "a_visibility-5_fog-profile-height_v0001.png",
+        "b_visibility-5_fog-profile-height_v0001.png",
+    );
+    assert_ne!(line["observer"], lines[first]["observer"]);
+    assert_ne!(lines[first]["observer"], lines[second]["observer"]);
+    assert_eq!(made(all("out/*.png"), settings()), 0);
+    // Places for values in the name of the output.
+    let output = "v/{visibility}/*_{fog-profile}_{variant}.png";
+    assert_eq!(made(all(output), settings()), 24);
+    let lines = folder.manifest("v/manifest.jsonl");
+    assert!(lines.contains_key("20/b_uniform_0001.png"));
+    let same = |a: &str, b: &str| assert_eq!(folder.bytes(a), folder.bytes(b));
+    same(
+        "v/20/b_uniform_0001.png",
+        "out/b_visibility-20_fog-profile-uniform_v0001.png",
+    );
+    // A single value is that of the option.
+    let single = each(&["visibility=8"], &[]);
+    assert_eq!(made(all("one/{visibility}/*.png"), single), 2);
+    made(
+        folder.scene("rgb/*.png", "depth/*.png", "eight/*.png", 8.0),
+        BatchSettings::default(),
+    );
+    same("one/8/a.png", "eight/a.png");
+}
+
+/// Values that change how a file is read give what the option gives.
+#[test]
+fn values_of_depth_are_read_for_each_picture() {
+    let folder = Pictures::new(&["a"]);
+    let scene = |output: &str| folder.scene("rgb/*.png", "depth/*.png", output, 8.0);
+    let settings = each(&["depth-scale=0.001,0.002"], &[]);
+    assert_eq!(made(scene("e/{depth-scale}/*.png"), settings), 2);
+    for (scale, name) in [(0.001, "one"), (0.002, "two")] {
+        let mut alone = scene(&format!("{name}/*.png"));
+        alone.overlay.depth_scale = scale;
+        made(alone, BatchSettings::default());
+        assert_eq!(
+            folder.bytes(&format!("e/{scale}/a.png")),
+            folder.bytes(&format!("{name}/a.png"))
+        );
+    }
+}
+
+#[test]
+fn shards_make_together_what_one_run_makes() {
+    let names: Vec<String> = (0..7).map(|n| format!("p{n}")).collect();
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let folder = Pictures::new(&names);
+    let settings = |shard: Option<&str>| BatchSettings {
+        shard: shard.map(|text| text.parse().unwrap()),
+        seed: 5,
+        variants: NonZeroU32::new(2),
+        ..each(
+            &["patch-strength=0,0.8"],
+            &["visibility=5..50", "patch-seed=0..99"],
+        )
+    };
+    let all = |output| folder.varied("rgb/*.png", "depth/*.png", output);
+    assert_eq!(made(all("whole/*.png"), settings(None)), 28);
+    let counts = ["1/3", "2/3", "3/3"].map(|shard| made(all("parts/*.png"), settings(Some(shard))));
+    assert_eq!(counts, [12, 8, 8]);
+    let manifests: Vec<String> = folder
+        .names("parts")
+        .into_iter()
+        .filter(|name| name.ends_with(".jsonl"))
+        .collect();
+    let name = |number: u32| format!("manifest-{number}-of-3.jsonl");
+    assert_eq!(manifests, [name(1), name(2), name(3)]);
+    // Joined, the manifests are that of one run, and the pictures are the same.
+    let joined: Vec<u8> = manifests
+        .iter()
+        .flat_map(|name| folder.bytes(&format!("parts/{name}")))
+        .collect();
+    fs::write(folder.file("parts/manifest.jsonl"), joined).unwrap();
+    assert_eq!(made(all("parts/*.png"), settings(None)), 0);
+    assert_eq!(
+        folder.bytes("parts/manifest.jsonl"),
+        folder.bytes("whole/manifest.jsonl")
+    );
+    for picture in folder.names("whole") {
+        assert_eq!(
+            folder.bytes(&format!("parts/{picture}")),
+            folder.bytes(&format!("whole/{picture}"))
+        );
+    }
+    // A shard resumes; one without inputs makes nothing.
+    fs::remove_file(folder.file("parts/p1_patch-strength-0_v0001.png")).unwrap();
+    assert_eq!(made(all("parts/*.png"), settings(Some("1/3"))), 0);
+    assert_eq!(made(all("parts/*.png"), settings(Some("2/3"))), 1);
+    assert_eq!(made(all("parts/*.png"), settings(Some("9/9"))), 0);
+}
+
 #[test]
 fn a_picture_that_fails_does_not_stop_the_others() {
     let folder = Pictures::new(&["a", "b", "c", "d"]);
@@ -416,6 +538,43 @@ fn contradictions_are_refused_before_anything_is_written() {
         let sentence = refused(given.clone(), vary(texts));
         assert!(sentence.contains(part), "{part}: {sentence}");
     }
+    for (texts, varied, part) in [
+        (&["visibility=5,9"][..], &[][..], "leaving one of them out"),
+        (&["top=5,9"], &[], "fog-profile slab"),
+        (
+            &["droplets=fine"],
+            &["droplets=coarse"],
+            "each setting once",
+        ),
+        (
+            &["patch-strength=0,1", "fog-profile=uniform,exp2"],
+            &[],
+            "patches: expected fog that scatters",
+        ),
+    ] {
+        let sentence = refused(given.clone(), each(texts, varied));
+        assert!(sentence.contains(part), "{part}: {sentence}");
+    }
+    let many: Vec<String> = (1..=1001).map(|n| n.to_string()).collect();
+    let many = each(
+        &[
+            &format!("eye-height={}", many.join(",")),
+            &format!("patch-seed={}", many.join(",")),
+        ],
+        &[],
+    );
+    assert!(refused(given.clone(), many).contains("1002001 combinations"));
+    // Both ends of a range are checked.
+    let sentence = refused(given.clone(), vary(&["sun-elevation=-5..20"]));
+    assert!(sentence.contains("sun above the horizon"), "{sentence}");
+    let mut patchy = given.clone();
+    patchy.fog_mut().patches = Some(Default::default());
+    patchy.scene.lights = vec![super::lights::point([0.0, 1.0, -5.0], 1.0)];
+    let sentence = refused(patchy, BatchSettings::default());
+    assert!(
+        sentence.contains("fog.patches: expected fog in daylight"),
+        "{sentence}"
+    );
     let mut skylit = folder.usual(8.0);
     skylit.overlay.sky_light = true;
     skylit.fog_mut().top_m = Some(20.0);
