@@ -302,6 +302,6 @@ mod tests {
         );
         assert!(length_m("0").is_err() && az_el("0,91").is_err());
         let several = length_m("5,10,20").unwrap_err();
-        assert!(several.contains("--vary NAME=5,10,20"), "{several}");
+        assert!(several.contains("--each NAME=5,10,20"), "{several}");
     }
 }

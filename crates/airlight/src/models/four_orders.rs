@@ -59,9 +59,7 @@ fn solve(
     }
     let mut settings = settings.clone();
     // The field holds all orders but the last, which tracing the view ray adds.
-    settings.orders.max_orders = orders - 1;
-    // No extrapolation of the remaining orders.
-    settings.orders.tolerance = f32::MIN_POSITIVE;
+    settings.orders.only_orders = Some(orders - 1);
     Sky::prepare_with(atmosphere, grid, &settings, control)
 }
 

@@ -150,6 +150,16 @@ impl Chord {
             }
             residual += layer.residual_per_m * (to - from);
         });
+        // A ray that ends where it starts, on an edge of the atmosphere.
+        if pieces.is_empty() {
+            pieces.push(Piece {
+                layer: layers.at(line.tangent + line.start * line.start),
+                from: line.start,
+                to: line.start,
+                before: columns,
+                residual_before: residual,
+            });
+        }
         self.columns = columns;
         self.residual = residual;
         end

@@ -19,6 +19,9 @@ pub struct Air<const N: usize> {
     pub coefficients: Coefficients<Spectrum<N>>,
     /// The constituents with scattering.
     pub scatterers: Vec<Scatterer<N>>,
+    /// Boundaries of the quadrature panels of rays: those of the shell, and more where sunlight is extinguished over a small
+    /// change of altitude.
+    pub panel_radii_m: Arc<[f64]>,
     wavelengths_nm: [f64; N],
 }
 
@@ -37,12 +40,14 @@ pub struct Scatterer<const N: usize> {
 }
 
 impl<const N: usize> Air<N> {
-    /// Samples `atmosphere` at N wavelengths, with phase-function moments up to degree `l_max + 1`.
+    /// Samples `atmosphere` at N wavelengths, with phase-function moments up to degree `l_max + 1`, for sunlight that arrives
+    /// through these air masses.
     pub fn new(
         atmosphere: &Atmosphere,
         columns: Arc<SlantColumns>,
         wavelengths_nm: [f64; N],
         l_max: usize,
+        air_masses: &[f64],
     ) -> Self {
         let coefficients = Coefficients::in_lanes(atmosphere, &wavelengths_nm);
         let scatterers = atmosphere
@@ -65,6 +70,7 @@ impl<const N: usize> Air<N> {
             })
             .collect();
         Self {
+            panel_radii_m: panel_radii_m(&columns.shell, &coefficients, air_masses).into(),
             columns,
             coefficients,
             scatterers,
@@ -127,4 +133,41 @@ impl<const N: usize> Scatterer<N> {
         }
         sum
     }
+}
+
+/// The panels of a shell, divided until the optical depth of the air above, times any of the air masses, changes by at most
+/// [`SUN_STEP`] in each, in the lanes with the least and the most extinction.
+fn panel_radii_m<const N: usize>(
+    shell: &Shell,
+    coefficients: &Coefficients<Spectrum<N>>,
+    air_masses: &[f64],
+) -> Vec<f64> {
+    /// Largest change of the optical depth towards the sun in a panel.
+    const SUN_STEP: f64 = 3.0;
+    /// Optical depth beyond which no sunlight matters.
+    const DARK: f64 = 16.0;
+    let depths = |radius_m: f64| {
+        let depth = coefficients.extinction(&shell.vertical_columns_m(radius_m));
+        [depth.min_element(), depth.max_element()].map(f64::from)
+    };
+    let fine = |deep: [f64; 2], shallow: [f64; 2]| {
+        air_masses.iter().all(|mass| {
+            deep.iter().zip(&shallow).all(|(deep, shallow)| {
+                (deep * mass).min(DARK) - (shallow * mass).min(DARK) <= SUN_STEP
+            })
+        })
+    };
+    let mut out = vec![shell.panel_radii_m[0]];
+    for edge in shell.panel_radii_m.windows(2) {
+        let mut parts = vec![(edge[0], edge[1])];
+        while let Some((below, above)) = parts.pop() {
+            let middle = 0.5 * (below + above);
+            if above - below > 1e-3 && !fine(depths(below), depths(above)) {
+                parts.extend([(middle, above), (below, middle)]);
+            } else {
+                out.push(above);
+            }
+        }
+    }
+    out
 }

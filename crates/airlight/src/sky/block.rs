@@ -4,10 +4,10 @@ use super::air::Air;
 use super::field::{Diffuse, FieldGrid, ground_irradiance};
 use super::orders;
 use super::ray_bundle::{Path, RayBundle, Scratch};
-use super::settings::{Scattering, SkySettings};
+use super::settings::{Scattering, SkyError, SkySettings};
 use super::trace::Tracer;
 use crate::atmosphere::Atmosphere;
-use crate::control::{Cancelled, Control};
+use crate::control::Control;
 use crate::math::parallel;
 use crate::math::simd::vectorized;
 use crate::spectrum::Spectrum;
@@ -89,14 +89,14 @@ pub struct TableRow {
 /// Solves for all `wavelengths_nm` in blocks.
 ///
 /// # Errors
-/// [`Cancelled`] soon after cancellation.
+/// [`SkyError::Cancelled`] soon after cancellation; [`SkyError::NotConverged`].
 pub fn solve(
     atmosphere: &Atmosphere,
     columns: &Arc<SlantColumns>,
     wavelengths_nm: &[f64],
     settings: &SkySettings,
     control: Control<'_>,
-) -> Result<Vec<Box<dyn Block>>, Cancelled> {
+) -> Result<Vec<Box<dyn Block>>, SkyError> {
     let count = wavelengths_nm.len().div_ceil(16);
     let solved = wavelengths_nm.chunks(16).enumerate().map(|(place, chunk)| {
         let share = BlockProgress {
@@ -142,7 +142,7 @@ impl<const N: usize> Solved<N> {
         wavelengths_nm: &[f64],
         settings: &SkySettings,
         share: BlockProgress<'_>,
-    ) -> Result<Box<dyn Block>, Cancelled> {
+    ) -> Result<Box<dyn Block>, SkyError> {
         let lanes = wavelengths_nm.len();
         let padded = std::array::from_fn(|lane| wavelengths_nm[lane.min(lanes - 1)]);
         let air = Air::<N>::new(
@@ -150,6 +150,7 @@ impl<const N: usize> Solved<N> {
             columns.clone(),
             padded,
             settings.orders.peak_degree,
+            &settings.suns.air_masses(),
         );
         let mut diffuse = None;
         if settings.scattering == Scattering::All && !air.scatterers.is_empty() {

@@ -41,6 +41,19 @@ impl SunCoverage {
         }
     }
 
+    /// Air masses of the sunlight, relative to the zenith, that bracket those of the range.
+    pub(super) fn air_masses(self) -> Vec<f64> {
+        /// At the horizon, and for light that passes the ground and comes up again.
+        const LOW: [f64; 3] = [10.0, 38.0, 76.0];
+        match self {
+            Self::Near {
+                sun_elevation_deg, ..
+            } if !self.includes_low_suns() => vec![1.0 / sun_elevation_deg.to_radians().sin()],
+            Self::Near { .. } => LOW.to_vec(),
+            Self::All | Self::AboveHorizon => [&[1.0, 3.0], &LOW[..]].concat(),
+        }
+    }
+
     /// Zenith angles of the sun at which the light inside the atmosphere is solved for, degrees, increasing.
     pub(super) fn sun_zeniths_deg(self, ground_radius_m: f64, top_radius_m: f64) -> Vec<f64> {
         let Self::Near {

@@ -2,7 +2,7 @@
 
 use super::air::Air;
 use super::harmonics::Harmonics;
-use crate::math::interpolation::{Place, lerp};
+use crate::math::interpolation::{Place, interval_of};
 use crate::spectrum::Spectrum;
 use crate::transfer::ray::Ray;
 use crate::transfer::shell::{PerConstituent, Shell};
@@ -14,32 +14,135 @@ pub struct FieldGrid {
     pub radii_m: Vec<f64>,
     /// Cosines of the sun's zenith angle, increasing.
     pub sun_cosines: Vec<f64>,
+    /// For each interval between radii, the nodes that interpolate in it.
+    intervals: Vec<Interval>,
+}
+
+/// Nodes of Lagrange interpolation in an interval between radii, in the coordinate [`Shell::altitude_coordinate`]: up to four,
+/// none beyond a kink of a density, where the light has a kink as well.
+#[derive(Clone, Debug)]
+struct Interval {
+    /// Index of the first of four radii, and those of them that interpolate.
+    first: usize,
+    nodes: std::ops::Range<usize>,
+    coordinates: [f64; 4],
+    /// Reciprocals of the products of differences of coordinates.
+    inverse: [f64; 4],
+}
+
+/// Four radii and their weights in an interpolation.
+#[derive(Clone, Copy, Debug)]
+pub struct RadialStencil {
+    /// Index of the first radius.
+    pub first: usize,
+    /// Weights, which sum to 1.
+    pub weights: [f32; 4],
+}
+
+impl RadialStencil {
+    /// The lowest radius alone.
+    pub const GROUND: Self = Self {
+        first: 0,
+        weights: [1.0, 0.0, 0.0, 0.0],
+    };
 }
 
 impl FieldGrid {
-    /// Grid with `altitudes` radii, denser where the scatterers are, and the given zenith angles of the sun (degrees,
-    /// increasing).
+    /// Grid with at least `altitudes` radii, denser where the scatterers are, and the given zenith angles of the sun (degrees,
+    /// increasing). Radii are added at kinks of the densities and in optically thick air.
     pub fn new<const N: usize>(air: &Air<N>, altitudes: usize, sun_zeniths_deg: &[f64]) -> Self {
+        let shell = air.shell();
+        let inside = |r: &f64| *r > shell.ground_radius_m && *r < shell.top_radius_m;
+        let kinks: Vec<f64> = shell.kink_radii_m.iter().copied().filter(inside).collect();
+        let mut radii_m = radii_m(air, altitudes.max(4));
+        insert_kinks(&mut radii_m, &kinks);
+        let radii_m = resolve_depth(air, &radii_m);
+        let sun_cosines = sun_zeniths_deg
+            .iter()
+            .rev()
+            .map(|angle| angle.to_radians().cos())
+            .collect();
+        let coordinates: Vec<f64> = radii_m
+            .iter()
+            .map(|&r| shell.altitude_coordinate(r))
+            .collect();
+        // Ends of the pieces without kinks.
+        let ends: Vec<usize> = (0..radii_m.len())
+            .filter(|&k| k == 0 || k + 1 == radii_m.len() || kinks.contains(&radii_m[k]))
+            .collect();
+        let intervals = (0..radii_m.len() - 1)
+            .map(|below| {
+                let end = ends.partition_point(|&end| end <= below);
+                Interval::new(&coordinates, below, ends[end - 1]..ends[end] + 1)
+            })
+            .collect();
         Self {
-            radii_m: radii_m(air, altitudes),
-            sun_cosines: sun_zeniths_deg
-                .iter()
-                .rev()
-                .map(|angle| angle.to_radians().cos())
-                .collect(),
+            radii_m,
+            sun_cosines,
+            intervals,
         }
     }
 
-    /// Interpolation interval of a radius in m.
+    /// Interpolation at a radius in m.
     #[inline(always)]
-    pub fn place_of_radius(&self, radius_m: f64) -> Place {
-        Place::among(&self.radii_m, radius_m)
+    pub fn place_of_radius(&self, radius_m: f64) -> RadialStencil {
+        let (bottom, top) = (self.radii_m[0], self.radii_m[self.radii_m.len() - 1]);
+        let x = ((radius_m - bottom) / (top - bottom))
+            .clamp(0.0, 1.0)
+            .sqrt();
+        self.intervals[interval_of(&self.radii_m, radius_m)].at(x)
     }
 
     /// Interpolation interval of a sun cosine.
     #[inline(always)]
     pub fn place_of_sun(&self, mu_sun: f64) -> Place {
         Place::among(&self.sun_cosines, mu_sun)
+    }
+}
+
+impl Interval {
+    /// Interval from node `below` to the next, within the nodes of `piece`.
+    fn new(all: &[f64], below: usize, piece: std::ops::Range<usize>) -> Self {
+        let from = below
+            .saturating_sub(1)
+            .clamp(piece.start, piece.end.saturating_sub(4).max(piece.start));
+        let to = (from + 4).min(piece.end);
+        let first = from.min(all.len() - 4);
+        let nodes = from - first..to - first;
+        let coordinates = std::array::from_fn(|k| all[first + k]);
+        let inverse = std::array::from_fn(|k| {
+            let others = nodes.clone().filter(|&j| j != k);
+            let product: f64 = others.map(|j| coordinates[k] - coordinates[j]).product();
+            if nodes.contains(&k) {
+                1.0 / product
+            } else {
+                0.0
+            }
+        });
+        Self {
+            first,
+            nodes,
+            coordinates,
+            inverse,
+        }
+    }
+
+    #[inline(always)]
+    fn at(&self, x: f64) -> RadialStencil {
+        let mut weights = [0.0f32; 4];
+        for k in self.nodes.clone() {
+            let mut weight = self.inverse[k];
+            for j in self.nodes.clone() {
+                if j != k {
+                    weight *= x - self.coordinates[j];
+                }
+            }
+            weights[k] = weight as f32;
+        }
+        RadialStencil {
+            first: self.first,
+            weights,
+        }
     }
 }
 
@@ -70,6 +173,59 @@ fn radii_m<const N: usize>(air: &Air<N>, count: usize) -> Vec<f64> {
     radii.push(shell.top_radius_m);
     radii
 }
+
+/// Adds `kinks` to increasing radii; each replaces a radius, other than the first and last, that is close to it.
+fn insert_kinks(radii_m: &mut Vec<f64>, kinks: &[f64]) {
+    for &kink in kinks {
+        let above = radii_m.partition_point(|&r| r < kink);
+        let gap = radii_m[above] - radii_m[above - 1];
+        let near = |r: f64| (r - kink).abs() < 0.3 * gap && !kinks.contains(&r);
+        let last = radii_m.len() - 1;
+        if radii_m[above] == kink {
+        } else if above < last && near(radii_m[above]) {
+            radii_m[above] = kink;
+        } else if above > 1 && near(radii_m[above - 1]) {
+            radii_m[above - 1] = kink;
+        } else {
+            radii_m.insert(above, kink);
+        }
+    }
+}
+
+/// Halves intervals between radii that are optically thick, in the lane with the most extinction: the light changes fastest
+/// within the first free paths below the top and above the ground.
+fn resolve_depth<const N: usize>(air: &Air<N>, radii_m: &[f64]) -> Vec<f64> {
+    let shell = air.shell();
+    let depth_above = |r: f64| {
+        let columns = shell.vertical_columns_m(r);
+        f64::from(air.coefficients.extinction(&columns).max_element())
+    };
+    let whole = depth_above(shell.ground_radius_m);
+    let mut out = vec![radii_m[0]];
+    for edge in radii_m.windows(2) {
+        let mut parts = vec![(edge[0], edge[1])];
+        while let Some((below, above)) = parts.pop() {
+            let (deep, shallow) = (depth_above(below), depth_above(above));
+            let from_end = shallow.min(whole - deep).max(0.0);
+            let allowed = (GROWTH * from_end).clamp(MIN_STEP, MAX_STEP);
+            if deep - shallow > allowed && out.len() + parts.len() < MAX_RADII {
+                let middle = 0.5 * (below + above);
+                parts.extend([(middle, above), (below, middle)]);
+            } else {
+                out.push(above);
+            }
+        }
+    }
+    out
+}
+
+/// Optical depth of a step between radii: its smallest and largest limit, and the limit as a fraction of the depth from the
+/// nearest end.
+const MIN_STEP: f64 = 0.15;
+const MAX_STEP: f64 = 4.0;
+const GROWTH: f64 = 0.25;
+/// Largest number of radii.
+const MAX_RADII: usize = 300;
 
 /// Moments of the radiance, `A_lm = integral of L Y_lm`, at each node of a grid, and the diffuse irradiance on the ground,
 /// both per unit solar irradiance.
@@ -139,13 +295,13 @@ impl<const N: usize> RadianceField<N> {
     /// Interpolates the stored form of the first `count` moments in radius, for all sun cosines, into `out`:
     /// `[sun][harmonic]`.
     #[inline(always)]
-    pub fn at_radius(&self, at: Place, count: usize, out: &mut Vec<Spectrum<N>>) {
+    pub fn at_radius(&self, at: RadialStencil, count: usize, out: &mut Vec<Spectrum<N>>) {
         out.clear();
-        let fraction = at.fraction as f32;
+        let [wa, wb, wc, wd] = at.weights;
         for sun in 0..self.grid.sun_cosines.len() {
-            let (below, above) = (self.point(at.below, sun), self.point(at.below + 1, sun));
-            for (a, b) in below[..count].iter().zip(&above[..count]) {
-                out.push(lerp(*a, *b, fraction));
+            let [a, b, c, d] = [0, 1, 2, 3].map(|k| &self.point(at.first + k, sun)[..count]);
+            for (((a, b), c), d) in a.iter().zip(b).zip(c).zip(d) {
+                out.push((*a * wa + *b * wb) + (*c * wc + *d * wd));
             }
         }
     }
@@ -162,28 +318,21 @@ impl<const N: usize> RadianceField<N> {
     ) -> Spectrum<N> {
         let radius = self.grid.place_of_radius(here.radius_m);
         let sun = self.grid.place_of_sun(here.mu_sun);
-        let corners = [
-            self.point(radius.below, sun.below),
-            self.point(radius.below, sun.below + 1),
-            self.point(radius.below + 1, sun.below),
-            self.point(radius.below + 1, sun.below + 1),
-        ];
-        let (fr, fs) = (radius.fraction as f32, sun.fraction as f32);
-        let weights = [
-            (1.0 - fr) * (1.0 - fs),
-            (1.0 - fr) * fs,
-            fr * (1.0 - fs),
-            fr * fs,
-        ];
+        let (fr, fs) = (radius.weights, sun.fraction as f32);
+        let corners: [_; 8] = std::array::from_fn(|k| {
+            let side = k % 2;
+            let weight = fr[k / 2] * if side == 0 { 1.0 - fs } else { fs };
+            (self.point(radius.first + k / 2, sun.below + side), weight)
+        });
         let mut log_intensity = Spectrum::ZERO;
-        for (corner, &w) in corners.iter().zip(&weights) {
+        for &(corner, w) in &corners {
             log_intensity = log_intensity.scale_acc(corner[0], w);
         }
         let mut sum = scattering_moment(air, densities, 0) * harmonics[0];
         for l in 1..=self.basis.degree() {
             let mut degree = Spectrum::ZERO;
             for k in self.basis.span(l) {
-                for (corner, &w) in corners.iter().zip(&weights) {
+                for &(corner, w) in &corners {
                     degree = degree.scale_acc(corner[k], w * harmonics[k]);
                 }
             }

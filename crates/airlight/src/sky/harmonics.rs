@@ -12,11 +12,6 @@ const fn count(l_max: usize) -> usize {
     (l_max + 1) * (l_max + 2) / 2
 }
 
-/// Index of `Y_lm` in a list of harmonics.
-const fn index(l: usize, m: usize) -> usize {
-    l * (l + 1) / 2 + m
-}
-
 /// Harmonics up to a degree: normalisation and recurrence coefficients.
 #[derive(Clone, Debug)]
 pub struct Harmonics {
@@ -44,7 +39,7 @@ impl Harmonics {
                 } else {
                     0.0
                 };
-                recurrence[index(l, m)] = (p as f32, q as f32);
+                recurrence[Self::index(l, m)] = (p as f32, q as f32);
             }
         }
         // N_mm P_mm / sin^m = sqrt((2 - d_m0) (2m + 1) / (4 pi (2m)!)) (2m - 1)!!
@@ -71,6 +66,12 @@ impl Harmonics {
     /// Largest number of harmonics, the size of arrays for [`Harmonics::evaluate`].
     pub const MAX_COUNT: usize = count(Self::MAX_DEGREE);
 
+    /// Index of `Y_lm` in a list of harmonics.
+    #[inline(always)]
+    pub const fn index(l: usize, m: usize) -> usize {
+        l * (l + 1) / 2 + m
+    }
+
     /// Number of harmonics.
     #[inline(always)]
     pub fn count(&self) -> usize {
@@ -86,7 +87,7 @@ impl Harmonics {
     /// Indices of the harmonics of degree `l`.
     #[inline(always)]
     pub fn span(&self, l: usize) -> RangeInclusive<usize> {
-        index(l, 0)..=index(l, l)
+        Self::index(l, 0)..=Self::index(l, l)
     }
 
     /// Evaluates the harmonics in the direction with `mu = cos(theta)` and `toward_sun = sin(theta) cos(phi)` into `out`.
@@ -96,15 +97,15 @@ impl Harmonics {
         // sin^m cos(m phi) by the Chebyshev recurrence.
         let (mut azimuthal_below, mut azimuthal) = (toward_sun, 1.0f32);
         for m in 0..=self.degree {
-            out[index(m, m)] = self.diagonal[m] * azimuthal;
+            out[Self::index(m, m)] = self.diagonal[m] * azimuthal;
             let mut below = 0.0;
-            let mut here = out[index(m, m)];
+            let mut here = out[Self::index(m, m)];
             for l in m + 1..=self.degree {
-                let (p, q) = self.recurrence[index(l, m)];
+                let (p, q) = self.recurrence[Self::index(l, m)];
                 let next = p * mu * here - q * below;
                 below = here;
                 here = next;
-                out[index(l, m)] = next;
+                out[Self::index(l, m)] = next;
             }
             let next = if m == 0 {
                 toward_sun
@@ -132,20 +133,20 @@ impl Harmonics {
         below[..rays].copy_from_slice(toward_sun);
         here[..rays].fill(1.0);
         for m in 0..=self.degree {
-            let diagonal = index(m, m) * rays;
+            let diagonal = Self::index(m, m) * rays;
             for (y, azimuthal) in out[diagonal..diagonal + rays].iter_mut().zip(&here[..rays]) {
                 *y = self.diagonal[m] * azimuthal;
             }
             for l in m + 1..=self.degree {
-                let (p, q) = self.recurrence[index(l, m)];
-                let (done, rest) = out.split_at_mut(index(l, m) * rays);
-                let one = &done[index(l - 1, m) * rays..][..rays];
+                let (p, q) = self.recurrence[Self::index(l, m)];
+                let (done, rest) = out.split_at_mut(Self::index(l, m) * rays);
+                let one = &done[Self::index(l - 1, m) * rays..][..rays];
                 if l == m + 1 {
                     for (y, one) in rest[..rays].iter_mut().zip(one) {
                         *y = p * mu * one;
                     }
                 } else {
-                    let two = &done[index(l - 2, m) * rays..][..rays];
+                    let two = &done[Self::index(l - 2, m) * rays..][..rays];
                     for ((y, one), two) in rest[..rays].iter_mut().zip(one).zip(two) {
                         *y = p * mu * one - q * two;
                     }
@@ -214,7 +215,9 @@ mod tests {
         harmonics.evaluate(tb.cos() as f32, tb.sin() as f32, &mut yb);
         legendre((ta - tb).cos(), &mut p);
         for l in 0..=8 {
-            let sum: f32 = (0..=l).map(|m| ya[index(l, m)] * yb[index(l, m)]).sum();
+            let sum: f32 = (0..=l)
+                .map(|m| ya[Harmonics::index(l, m)] * yb[Harmonics::index(l, m)])
+                .sum();
             let want = (2 * l + 1) as f64 / (4.0 * PI) * p[l];
             assert!(
                 (f64::from(sum) - want).abs() < 1e-5,

@@ -17,8 +17,9 @@
 //! ```
 //!
 //! The geometry is in [`crate::transfer`]. Modules: `field` and `harmonics` (angular moments of the light inside the
-//! atmosphere), `orders` (successive orders of scattering), `ray_bundle` (rays that share their path), `trace` (light along
-//! one ray), `samples_along_ray` (light at many distances along a ray), `table` (all directions of a view).
+//! atmosphere), `orders` (all orders of scattering), `transport` (light scattered once more), `plane_parallel` (its direct
+//! solution in plane-parallel air), `ray_bundle` (rays that share their path), `trace` (light along one ray),
+//! `samples_along_ray` (light at many distances along a ray), `table` (all directions of a view).
 
 mod air;
 mod batch;
@@ -26,8 +27,10 @@ mod block;
 mod coverage;
 mod field;
 mod harmonics;
+mod light;
 mod orders;
 mod peaked;
+mod plane_parallel;
 mod ray_bundle;
 mod rgb_view;
 mod samples_along_ray;
@@ -36,13 +39,13 @@ mod solver;
 mod table;
 mod tabulate;
 mod trace;
+mod transport;
 mod view;
 
 pub use coverage::SunCoverage;
-pub use orders::{Directions, OrderSettings};
 pub(crate) use peaked::Peaked;
 pub use rgb_view::RgbView;
-pub use settings::{Scattering, SkyError, SkySettings};
+pub use settings::{Directions, OrderSettings, Scattering, SkyError, SkySettings};
 pub use solver::Sky;
 pub use table::{SkyColumns, SkyTable, TableChannels};
 pub(crate) use tabulate::channel_weights;

@@ -5,11 +5,10 @@
 //! depends on the sun remains for each ray and is stored in arrays over the rays, so that the compiler vectorises it.
 
 use super::air::Air;
-use super::field::{FieldGrid, RadianceField, scattering_moment};
+use super::field::{FieldGrid, RadialStencil, RadianceField, scattering_moment};
 use super::harmonics::Harmonics;
-use crate::math::interpolation::Place;
 use crate::spectrum::Spectrum;
-use crate::transfer::march::Marcher;
+use crate::transfer::march::{MAX_NODES, Marcher};
 use crate::transfer::ray::{Ray, in_shadow};
 use crate::transfer::shell::PerConstituent;
 use std::ops::ControlFlow;
@@ -31,11 +30,97 @@ struct PathNode<const N: usize> {
     radius_m: f64,
     mu: f32,
     densities: PerConstituent,
-    place: Place,
+    place: RadialStencil,
     /// Transmittance from the start times the length of the node's interval, m.
     weight: Spectrum<N>,
     /// `weight` times the l-th phase moment of the scattering coefficients.
     source_weights: Vec<Spectrum<N>>,
+}
+
+/// Sums over the nodes of a panel of a path.
+struct Panel<const N: usize> {
+    /// Optical depth of each node from the start of the panel.
+    depths: [Spectrum<N>; MAX_NODES],
+    count: usize,
+    /// Optical depth of the panel.
+    whole: Spectrum<N>,
+    /// Sums of what the nodes take from the light at the start of the path, times powers of their optical depth.
+    sums: [Spectrum<N>; 3],
+}
+
+/// Factor `constant + slope * depth` of the weights of a panel.
+struct Correction<const N: usize> {
+    constant: Spectrum<N>,
+    slope: Spectrum<N>,
+}
+
+impl<const N: usize> Default for Panel<N> {
+    fn default() -> Self {
+        Self {
+            depths: [Spectrum::ZERO; MAX_NODES],
+            count: 0,
+            whole: Spectrum::ZERO,
+            sums: [Spectrum::ZERO; 3],
+        }
+    }
+}
+
+impl<const N: usize> Panel<N> {
+    /// Adds a node that takes `taken` from the light, at an optical depth in the panel, for a step of the optical depth `step`.
+    #[inline(always)]
+    fn add(&mut self, taken: Spectrum<N>, depth: Spectrum<N>, step: Spectrum<N>) {
+        self.depths[self.count] = depth;
+        self.count += 1;
+        self.whole += step;
+        let mut power = taken;
+        for sum in &mut self.sums {
+            *sum += power;
+            power *= depth;
+        }
+    }
+
+    /// The correction of the weights that makes the light of a source exact that is linear in the optical depth, given the
+    /// transmittance to the start of the panel. Without it the solution in thick air, where light is scattered thousands of times,
+    /// neither conserves energy nor diffuses at the right rate.
+    #[inline(always)]
+    fn correction(&self, transmittance: Spectrum<N>) -> Correction<N> {
+        let [s0, s1, s2] = &self.sums;
+        let mut out = Correction {
+            constant: Spectrum::ONE,
+            slope: Spectrum::ZERO,
+        };
+        let kept = (Spectrum::ZERO - self.whole).exp();
+        for lane in 0..N {
+            if s0[lane] < 1e-30 {
+                continue;
+            }
+            let whole = self.whole[lane];
+            let mean = s1[lane] / s0[lane];
+            let variance = s2[lane] - mean * s1[lane];
+            // In thin panels the rule is exact enough, and differences would be rounding errors.
+            if whole < 0.1 || variance <= 0.0 {
+                let exact = whole * (1.0 - whole * (0.5 - whole * (1.0 / 6.0 - whole / 24.0)));
+                let exact = if whole < 0.1 { exact } else { 1.0 - kept[lane] };
+                out.constant[lane] = transmittance[lane] * exact / s0[lane];
+            } else {
+                let exact = transmittance[lane] * (1.0 - kept[lane]);
+                let first = transmittance[lane] * (1.0 - (1.0 + whole) * kept[lane]);
+                // Weights stay positive, even of a panel that is too thick for its nodes.
+                let limit = exact / (s0[lane] * whole);
+                let slope = ((first - mean * exact) / variance).clamp(-limit, limit);
+                out.slope[lane] = slope;
+                out.constant[lane] = exact / s0[lane] - slope * mean;
+            }
+        }
+        out
+    }
+}
+
+impl<const N: usize> Correction<N> {
+    #[inline(always)]
+    fn at(&self, depth: Spectrum<N>) -> Spectrum<N> {
+        self.constant.mul_acc(self.slope, depth)
+    }
 }
 
 /// The rays of one path: the position of the sun at the start for each.
@@ -93,7 +178,7 @@ impl<const N: usize> Path<N> {
     pub fn new(
         air: &Air<N>,
         grid: Option<&FieldGrid>,
-        marcher: &Marcher,
+        marcher: &Marcher<'_>,
         (radius_m, mu): (f64, f64),
         degree: usize,
     ) -> Self {
@@ -113,6 +198,8 @@ impl<const N: usize> Path<N> {
         let Some(segment) = air.shell().segment(&ray, f64::INFINITY) else {
             return path;
         };
+        // Optical depth from the start.
+        let mut before = Spectrum::ZERO;
         let columns = marcher.march(
             air.shell(),
             &ray,
@@ -120,31 +207,37 @@ impl<const N: usize> Path<N> {
             &mut Vec::new(),
             #[inline(always)]
             |nodes| {
-                let mut brightest = 0.0f32;
+                let first = path.nodes.len();
+                let mut panel = Panel::<N>::default();
                 for node in nodes {
-                    let transmittance = air.coefficients.transmittance(&node.columns_m);
-                    brightest = brightest.max(transmittance.max_element());
-                    let weight = transmittance * node.dt as f32;
+                    let depth = air.coefficients.extinction(&node.columns_m);
+                    let weight = (Spectrum::ZERO - depth).exp() * node.dt as f32;
+                    let extinction = air.coefficients.extinction(&node.densities);
+                    panel.add(
+                        weight * extinction,
+                        depth - before,
+                        extinction * node.dt as f32,
+                    );
                     let radius_m = node.here.radius_m;
                     path.nodes.push(PathNode {
                         t: node.t,
                         radius_m,
                         mu: node.here.mu as f32,
                         densities: node.densities,
-                        place: grid.map_or(
-                            Place {
-                                below: 0,
-                                fraction: 0.0,
-                            },
-                            |g| g.place_of_radius(radius_m),
-                        ),
+                        place: grid.map_or(RadialStencil::GROUND, |g| g.place_of_radius(radius_m)),
                         weight,
-                        source_weights: (0..=degree)
-                            .map(|l| weight * scattering_moment(air, &node.densities, l))
-                            .collect(),
+                        source_weights: Vec::new(),
                     });
                 }
-                if brightest < 1e-7 {
+                let correct = panel.correction((Spectrum::ZERO - before).exp());
+                for (node, &depth) in path.nodes[first..].iter_mut().zip(&panel.depths) {
+                    node.weight *= correct.at(depth);
+                    node.source_weights = (0..=degree)
+                        .map(|l| node.weight * scattering_moment(air, &node.densities, l))
+                        .collect();
+                }
+                before += panel.whole;
+                if before.min_element() > 16.0 {
                     ControlFlow::Break(())
                 } else {
                     ControlFlow::Continue(())
@@ -243,6 +336,31 @@ impl<const N: usize> Path<N> {
                 *out = out.mul_acc(sum.max_scalar(0.0), intensity);
             }
         }
+    }
+
+    /// Adds the light at the start of the path scattered from a field that is the same for all places with the same radius: the
+    /// coefficients of its moments, `[radius][harmonic]`, for harmonics of `basis` and a direction at azimuth 0.
+    #[inline(always)]
+    pub fn accumulate_response(&self, basis: &Harmonics, y: &mut [f32], out: &mut [Spectrum<N>]) {
+        let count = basis.count();
+        for node in &self.nodes {
+            let sin = (1.0 - node.mu * node.mu).max(0.0).sqrt();
+            basis.evaluate(node.mu, sin, y);
+            let RadialStencil { first, weights } = node.place;
+            for (out, w) in out[first * count..].chunks_exact_mut(count).zip(weights) {
+                for (l, source) in node.source_weights.iter().enumerate() {
+                    for k in basis.span(l) {
+                        out[k] = out[k].scale_acc(*source, w * y[k]);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Transmittance to the ground, if the path ends there.
+    #[inline(always)]
+    pub fn transmittance_to_ground(&self) -> Option<Spectrum<N>> {
+        self.ground.map(|(_, transmittance)| transmittance)
     }
 
     /// Adds the attenuated ground radiance to each ray, for the irradiance on the ground `irradiance(sun cosine)`.

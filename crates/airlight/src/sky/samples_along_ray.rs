@@ -54,7 +54,12 @@ impl<const N: usize> Tracer<'_, N> {
         let Some(segment) = self.air.shell().segment(ray, f64::INFINITY) else {
             return vec![self.sample(&accumulated, &accumulated.path); samples_m.len()];
         };
-        let marcher = Marcher::new(NODES, 2.0, self.air.coefficients.max_extinction_per_m());
+        let marcher = Marcher::new(
+            &self.air.panel_radii_m,
+            NODES,
+            2.0,
+            self.air.coefficients.max_extinction_per_m(),
+        );
         let mut from_m = segment.start_m;
         let mut all = Vec::with_capacity(samples_m.len());
         for sample_m in samples_m {

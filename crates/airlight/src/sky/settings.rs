@@ -2,7 +2,6 @@
 
 use super::coverage::SunCoverage;
 use super::harmonics::Harmonics;
-use super::orders::{Directions, OrderSettings};
 use crate::atmosphere::AtmosphereError;
 use crate::control::Cancelled;
 use crate::names::named;
@@ -36,6 +35,40 @@ pub struct SkySettings {
     pub orders: OrderSettings,
 }
 
+/// Resolution and convergence of the light scattered more than once.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OrderSettings {
+    /// Degree of the angular moments.
+    pub degree: usize,
+    /// Degree, at least `degree`, above which the moments of a phase function are treated as a forward peak, and the light in
+    /// it as unscattered. Higher values improve the light near the sun; lower values reduce ringing elsewhere if the air
+    /// contains much forward-scattering dust.
+    pub peak_degree: usize,
+    /// Degree, at most `degree`, of the moments that are scattered again while solving; the final field keeps all moments.
+    pub rescattered_degree: usize,
+    /// Directions for singly scattered light, which contains the forward peak of the aerosol and needs the most.
+    pub first: Directions,
+    /// Directions for all later orders, which are smoother.
+    pub later: Directions,
+    /// Relative error of the intensity at any point of the grid below which the iteration ends.
+    pub tolerance: f32,
+    /// Number of iterations after which the solver gives up.
+    pub max_iterations: usize,
+    /// Number of orders of scattering in the field, to compute a given number of orders instead of all.
+    pub only_orders: Option<usize>,
+}
+
+/// Resolution of a set of directions.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Directions {
+    /// Number of zenith angles below the horizon, just above it, and higher up.
+    pub zenith_nodes: [usize; 3],
+    /// Number of azimuths from that of the sun to the opposite one.
+    pub azimuths: usize,
+    /// Number of quadrature nodes in a panel of a ray.
+    pub panel_nodes: usize,
+}
+
 impl Default for SkySettings {
     /// All orders, for all sun elevations, with the accuracy stated in the book: within 1 % of Monte Carlo for the sun above
     /// 10 degrees, 2 % near the horizon.
@@ -45,7 +78,7 @@ impl Default for SkySettings {
             scattering: Scattering::All,
             altitudes: 20,
             orders: OrderSettings {
-                degree: 8,
+                degree: 10,
                 peak_degree: 10,
                 rescattered_degree: 4,
                 first: Directions {
@@ -58,8 +91,9 @@ impl Default for SkySettings {
                     azimuths: 7,
                     panel_nodes: 2,
                 },
-                tolerance: 0.03,
-                max_orders: 40,
+                tolerance: 0.002,
+                max_iterations: 40,
+                only_orders: None,
             },
         }
     }
@@ -120,6 +154,10 @@ impl SkySettings {
                 "1 to 64 zenith nodes, 1 to 4 panel nodes and at least 1 azimuth in orders.first and orders.later",
             ),
             (orders.tolerance > 0.0, "an orders.tolerance above 0"),
+            (
+                orders.max_iterations >= 2,
+                "at least 2 orders.max_iterations",
+            ),
         ];
         match checks.into_iter().find(|(holds, _)| !holds) {
             Some((_, expected)) => Err(SkyError::Setting(expected)),
@@ -143,6 +181,18 @@ pub enum SkyError {
     /// The atmosphere is invalid.
     #[error(transparent)]
     Atmosphere(#[from] AtmosphereError),
+    /// The iteration for light scattered more than once did not converge.
+    #[error(
+        "the light scattered more than once did not converge: error {:.1} % after {iterations} iterations; \
+         try less extinction or more altitudes",
+        100.0 * error
+    )]
+    NotConverged {
+        /// Estimated relative error.
+        error: f32,
+        /// Number of iterations.
+        iterations: usize,
+    },
     /// The computation was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
@@ -161,14 +211,15 @@ mod tests {
     #[test]
     fn settings_out_of_range_are_refused() {
         type Change = fn(&mut SkySettings);
-        let changes: [Change; 7] = [
+        let changes: [Change; 8] = [
             |s| s.suns = SunCoverage::near(f64::NAN, 0.0),
             |s| s.altitudes = 1,
             |s| s.orders.degree = 17,
             |s| s.orders.peak_degree = 7,
-            |s| s.orders.rescattered_degree = 9,
+            |s| s.orders.rescattered_degree = 11,
             |s| s.orders.later.panel_nodes = 5,
             |s| s.orders.tolerance = 0.0,
+            |s| s.orders.max_iterations = 1,
         ];
         for change in changes {
             let mut settings = SkySettings::default();

@@ -54,7 +54,7 @@ pub struct Tracer<'a, const N: usize> {
     pub(super) dimming: &'a Air<N>,
     /// Multiply scattered light; `None` for single scattering.
     pub(super) diffuse: Option<&'a Diffuse<N>>,
-    marcher: Marcher,
+    marcher: Marcher<'a>,
     pub(super) edges: Vec<f64>,
 }
 
@@ -71,8 +71,9 @@ impl<'a, const N: usize> Tracer<'a, N> {
     }
 
     /// Marcher with the step size for full accuracy.
-    pub fn marcher(air: &Air<N>) -> Marcher {
-        Marcher::new(4, 2.0, air.coefficients.max_extinction_per_m())
+    pub fn marcher(air: &'a Air<N>) -> Marcher<'a> {
+        let extinction = air.coefficients.max_extinction_per_m();
+        Marcher::new(&air.panel_radii_m, 4, 2.0, extinction)
     }
 
     /// Light along `ray`, over at most `limit_m`.

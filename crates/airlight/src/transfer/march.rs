@@ -6,7 +6,10 @@ use crate::transfer::shell::{MAX_CONSTITUENTS, PerConstituent, Shell};
 use std::ops::ControlFlow;
 
 /// Largest number of nodes in a panel.
-const MAX_NODES: usize = 4;
+pub const MAX_NODES: usize = 4;
+
+/// Largest number of pieces of a panel; light is extinguished long before the last of them.
+const MAX_PIECES: usize = 1 << 16;
 
 /// A quadrature node on a ray.
 #[derive(Clone, Copy, Debug)]
@@ -45,7 +48,9 @@ impl Default for Node {
 
 /// Step size and quadrature of a march.
 #[derive(Clone, Debug)]
-pub struct Marcher {
+pub struct Marcher<'a> {
+    /// Boundaries of panels.
+    radii_m: &'a [f64],
     rule: RunningRule,
     /// Largest optical depth of a panel in any lane.
     max_panel_depth: f64,
@@ -53,11 +58,17 @@ pub struct Marcher {
     max_extinction_per_m: PerConstituent,
 }
 
-impl Marcher {
-    /// Marcher with panels of at most `max_panel_depth` optical depth and `nodes` nodes (1 to 4).
-    pub fn new(nodes: usize, max_panel_depth: f64, max_extinction_per_m: PerConstituent) -> Self {
+impl<'a> Marcher<'a> {
+    /// Marcher with panels between these radii, of at most `max_panel_depth` optical depth, and `nodes` nodes (1 to 4).
+    pub fn new(
+        radii_m: &'a [f64],
+        nodes: usize,
+        max_panel_depth: f64,
+        max_extinction_per_m: PerConstituent,
+    ) -> Self {
         assert!((1..=MAX_NODES).contains(&nodes));
         Self {
+            radii_m,
             rule: RunningRule::new(nodes),
             max_panel_depth,
             max_extinction_per_m,
@@ -75,7 +86,7 @@ impl Marcher {
         edges: &mut Vec<f64>,
         mut visit: impl FnMut(&[Node]) -> ControlFlow<()>,
     ) -> PerConstituent {
-        panel_edges(shell, ray, start_m, end_m, edges);
+        panel_edges(shell, self.radii_m, ray, (start_m, end_m), edges);
         let count = shell.constituents();
         let mut columns = [0.0; MAX_CONSTITUENTS];
         let RunningRule { rule, running } = &self.rule;
@@ -128,14 +139,20 @@ impl Marcher {
                 .sum()
         };
         let mean = (extinction(from) + 4.0 * extinction(0.5 * (from + to)) + extinction(to)) / 6.0;
-        ((mean * (to - from) / self.max_panel_depth).ceil() as usize).clamp(1, 512)
+        ((mean * (to - from) / self.max_panel_depth).ceil() as usize).clamp(1, MAX_PIECES)
     }
 }
 
 /// Fills `edges` with increasing distances from `start_m` to `end_m`: where a density has a kink or has changed enough, the
 /// lowest point of the ray, and the edges of the planet's shadow.
 #[inline(always)]
-fn panel_edges(shell: &Shell, ray: &Ray, start_m: f64, end_m: f64, edges: &mut Vec<f64>) {
+fn panel_edges(
+    shell: &Shell,
+    radii_m: &[f64],
+    ray: &Ray,
+    (start_m, end_m): (f64, f64),
+    edges: &mut Vec<f64>,
+) {
     edges.clear();
     edges.push(start_m);
     let mut add = |t: f64| {
@@ -146,7 +163,7 @@ fn panel_edges(shell: &Shell, ray: &Ray, start_m: f64, end_m: f64, edges: &mut V
     let closest = ray.closest_approach_m();
     let tangent = ray.tangent_radius_m();
     add(closest);
-    for &radius in &shell.panel_radii_m {
+    for &radius in radii_m {
         if radius > tangent {
             let half_chord = ((radius - tangent) * (radius + tangent)).sqrt();
             add(closest - half_chord);

@@ -25,6 +25,8 @@ pub struct Shell {
     pub top_radius_m: f64,
     /// Boundaries of quadrature panels: between them densities are smooth and change by a limited factor.
     pub panel_radii_m: Vec<f64>,
+    /// Radii at which a density has a jump or a sharp bend.
+    pub kink_radii_m: Vec<f64>,
     densities: Vec<DensityProfile>,
 }
 
@@ -53,15 +55,17 @@ impl Shell {
             })
             .collect();
         let (bottom, top) = (planet.ground_altitude_m, planet.top_altitude_m);
-        let panel_radii_m = panel_altitudes_m(&densities, &scatters, (bottom, top), low_sun)
-            .into_iter()
-            .map(|altitude| planet.radius_m + altitude)
-            .collect();
+        let (panels, kinks) = panel_altitudes_m(&densities, &scatters, (bottom, top), low_sun);
+        let radii = |altitudes: Vec<f64>| {
+            let radius = |altitude| planet.radius_m + altitude;
+            altitudes.into_iter().map(radius).collect()
+        };
         Ok(Self {
             planet_radius_m: planet.radius_m,
             ground_radius_m: planet.radius_m + bottom,
             top_radius_m: planet.radius_m + top,
-            panel_radii_m,
+            panel_radii_m: radii(panels),
+            kink_radii_m: radii(kinks),
             densities,
         })
     }
@@ -153,13 +157,13 @@ impl Shell {
 }
 
 /// Altitudes from `bottom` to `top`, both included, between which all densities are free of kinks and, as far as the
-/// constituent contributes, change by less than a factor `e^PANEL_DECAY`.
+/// constituent contributes, change by less than a factor `e^PANEL_DECAY`; and the altitudes of the kinks.
 fn panel_altitudes_m(
     densities: &[DensityProfile],
     scatters: &[bool],
     (bottom, top): (f64, f64),
     low_sun: bool,
-) -> Vec<f64> {
+) -> (Vec<f64>, Vec<f64>) {
     const PANEL_DECAY: f64 = 1.7;
     const SAMPLES: usize = 4000;
     let altitude = |i: usize| bottom + (top - bottom) * (i as f64 / SAMPLES as f64).powi(2);
@@ -218,7 +222,7 @@ fn panel_altitudes_m(
     if top > edges[edges.len() - 1] {
         edges.push(top);
     }
-    edges
+    (edges, kinks)
 }
 
 /// Jump of a density at an altitude, plus the change of its slope times an eighth of the thickness.

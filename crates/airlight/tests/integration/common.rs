@@ -69,3 +69,14 @@ pub fn green_path(fog: &Fog, eye_height_m: f64, view: DVec3, distance_m: f64) ->
     );
     [transmittance[0], path_radiance[0]].map(f64::from)
 }
+
+/// Rows of a CSV table without comments and header.
+pub fn rows(table: &'static str) -> impl Iterator<Item = Vec<&'static str>> {
+    let lines = table.lines().filter(|line| !line.starts_with('#')).skip(1);
+    lines.map(|line| line.split(',').collect())
+}
+
+/// Rows of a CSV table of numbers.
+pub fn numbers<const N: usize>(table: &'static str) -> impl Iterator<Item = [f64; N]> {
+    rows(table).map(|row| std::array::from_fn(|column| row[column].parse().unwrap()))
+}

@@ -1,22 +1,11 @@
 //! Fog compared with independent reference values: Henyey-Greenstein slabs and exponential fog under a sun of unit irradiance,
 //! by Mitsuba (path tracing, with standard errors) and PythonicDISORT. Sources of the tables: `data/README.md`.
 
-use crate::common::{green_fog, green_path, grey_layer};
+use crate::common::{green_fog, green_path, grey_layer, numbers, rows};
 use airlight::axes::direction;
 use airlight::fog::{DensityProfile, Fog, FogScattering, Ground, droplets};
 use airlight::optics::PhaseFunction;
 use glam::DVec3;
-
-/// Rows of a CSV table without comments and header.
-fn rows(table: &'static str) -> impl Iterator<Item = Vec<&'static str>> {
-    let lines = table.lines().filter(|line| !line.starts_with('#')).skip(1);
-    lines.map(|line| line.split(',').collect())
-}
-
-/// Rows of a CSV table of numbers.
-fn numbers<const N: usize>(table: &'static str) -> impl Iterator<Item = [f64; N]> {
-    rows(table).map(|row| std::array::from_fn(|column| row[column].parse().unwrap()))
-}
 
 const SLAB: DensityProfile = DensityProfile::slab(100.0);
 

@@ -16,3 +16,4 @@ mod monte_carlo_polarisation;
 mod night;
 mod patchy_fog;
 mod sky_laws;
+mod thick_air;

@@ -215,3 +215,16 @@ fn threads_change_no_bit() {
     let sum: f64 = bundles.flatten().map(|order| order[1]).sum();
     assert!((sum / 16.0 / one.mean[1] - 1.0).abs() < 1e-12);
 }
+
+#[test]
+fn the_ground_under_an_eye_on_the_ground_is_lit() {
+    let toml = "planet.ground_albedo = 0.5\naerosol.type = \"continental-average\"";
+    let monte_carlo = solver(&Atmosphere::from_toml(toml).unwrap(), 256);
+    let sun = direction(0.0, 15.0);
+    // The ray ends where it starts, on either side of the ground by rounding.
+    for k in 0..200 {
+        let down = direction(1.8 * f64::from(k), -0.2 - 0.44 * f64::from(k));
+        let radiance = monte_carlo.radiance(0.0, sun, down).mean[1];
+        assert!(radiance > 0.01 && radiance < 0.2, "{k}: {radiance}");
+    }
+}

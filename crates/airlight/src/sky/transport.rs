@@ -1,0 +1,283 @@
+//! Light scattered or reflected once more, integrated along straight rays in spherical geometry.
+//!
+//! Rays, transmittances and quadrature nodes depend only on the altitude and zenith angle: they are computed once for all sun
+//! angles, azimuths and iterations.
+
+use super::air::Air;
+use super::field::{FieldGrid, RadianceField};
+use super::harmonics::Harmonics;
+use super::light::Light;
+use super::plane_parallel::{PlaneParallel, ResponseRow, WeightedDirection};
+use super::ray_bundle::{Path, RayBundle, Scratch};
+use super::settings::Directions;
+use crate::control::{Cancelled, Control};
+use crate::math::legendre::legendre;
+use crate::math::parallel;
+use crate::math::quadrature::GaussRule;
+use crate::math::simd::vectorized;
+use crate::spectrum::Spectrum;
+use crate::transfer::march::Marcher;
+use std::f64::consts::PI;
+
+/// Rays from the nodes of a grid in a set of directions.
+pub struct Transport<'a, const N: usize> {
+    air: &'a Air<N>,
+    grid: &'a FieldGrid,
+    basis: &'a Harmonics,
+    /// Harmonics up to the degree that is scattered again.
+    rescattered: Harmonics,
+    /// For each radius, the paths that start there, with their weights in an integral over the cosine of the zenith angle.
+    paths: Vec<Vec<(Path<N>, f64)>>,
+    azimuth_cosines: Vec<f64>,
+    control: Control<'a>,
+}
+
+impl<'a, const N: usize> Transport<'a, N> {
+    /// Traces the paths; `rescattered_degree` is the degree of the moments that [`Transport::scattered`] uses.
+    ///
+    /// # Errors
+    /// [`Cancelled`] soon after cancellation.
+    pub fn new(
+        (air, grid, basis): (&'a Air<N>, &'a FieldGrid, &'a Harmonics),
+        rescattered_degree: usize,
+        directions: &Directions,
+        control: Control<'a>,
+    ) -> Result<Self, Cancelled> {
+        let marcher = Marcher::new(
+            &air.panel_radii_m,
+            directions.panel_nodes,
+            1.0,
+            air.coefficients.max_extinction_per_m(),
+        );
+        let paths = parallel::try_map(grid.radii_m.len(), |row| {
+            control.check()?;
+            let radius_m = grid.radii_m[row];
+            let degree = rescattered_degree;
+            Ok(vectorized(
+                #[inline(always)]
+                || {
+                    let rule = zenith_rule(air, radius_m, directions).into_iter();
+                    let path = |mu| Path::new(air, Some(grid), &marcher, (radius_m, mu), degree);
+                    rule.map(|(mu, w)| (path(mu), w)).collect()
+                },
+            ))
+        })?;
+        let azimuths = directions.azimuths;
+        let azimuth_cosines = (0..azimuths)
+            .map(|k| (PI * (k as f64 + 0.5) / azimuths as f64).cos())
+            .collect();
+        Ok(Self {
+            air,
+            grid,
+            basis,
+            rescattered: Harmonics::new(rescattered_degree),
+            paths,
+            azimuth_cosines,
+            control,
+        })
+    }
+
+    /// Light that has been scattered or reflected exactly once.
+    ///
+    /// # Errors
+    /// [`Cancelled`] soon after cancellation.
+    pub fn sunlight(&self) -> Result<Light<N>, Cancelled> {
+        let air = self.air;
+        self.gather(
+            #[inline(always)]
+            |path, bundle, work| {
+                path.accumulate_sunlight(air, bundle, &mut work.single_scatter_without_phase);
+                let mut p = [0.0; Harmonics::MAX_DEGREE + 1];
+                let p = &mut p[..=self.basis.degree()];
+                for (slot, light) in work.light.iter_mut().enumerate() {
+                    legendre(bundle.nu[slot], p);
+                    for (place, s) in air.scatterers.iter().enumerate() {
+                        *light = light.mul_acc(
+                            work.single_scatter_without_phase[place * bundle.len() + slot],
+                            s.scattering * s.truncated_phase(p),
+                        );
+                    }
+                }
+                path.accumulate_ground(
+                    air,
+                    bundle,
+                    |mu_sun| air.sun_on_ground(mu_sun),
+                    &mut work.light,
+                );
+            },
+        )
+    }
+
+    /// Light of `field`, scattered or reflected once more.
+    ///
+    /// # Errors
+    /// [`Cancelled`] soon after cancellation.
+    pub fn scattered(&self, field: &RadianceField<N>) -> Result<Light<N>, Cancelled> {
+        self.gather(
+            #[inline(always)]
+            |path, bundle, work| {
+                path.accumulate_scattered(
+                    field,
+                    &self.rescattered,
+                    bundle,
+                    &mut work.scratch,
+                    &mut work.light,
+                );
+                path.accumulate_ground(
+                    self.air,
+                    bundle,
+                    |mu_sun| field.ground_irradiance(mu_sun),
+                    &mut work.light,
+                );
+            },
+        )
+    }
+
+    /// The operator of [`Transport::scattered`] for light that does not change horizontally.
+    ///
+    /// # Errors
+    /// [`Cancelled`] soon after cancellation.
+    pub fn plane_parallel(&self) -> Result<PlaneParallel<N>, Cancelled> {
+        let rows = parallel::try_map(self.paths.len(), |row| {
+            self.control.check()?;
+            Ok(vectorized(
+                #[inline(always)]
+                || self.response_row(&self.paths[row]),
+            ))
+        })?;
+        Ok(PlaneParallel::new(self.basis, &self.rescattered, &rows))
+    }
+
+    /// Response of the light at one radius.
+    #[inline(always)]
+    fn response_row(&self, paths: &[(Path<N>, f64)]) -> ResponseRow<N> {
+        let radii = self.grid.radii_m.len();
+        let mut row = ResponseRow::new(radii, self.basis, &self.rescattered);
+        let mut coefficients = vec![Spectrum::ZERO; radii * self.rescattered.count()];
+        let mut y = [0.0f32; Harmonics::MAX_COUNT];
+        for (path, solid_weight) in paths {
+            coefficients.fill(Spectrum::ZERO);
+            path.accumulate_response(&self.rescattered, &mut y, &mut coefficients);
+            let ground = match path.transmittance_to_ground() {
+                Some(transmittance) => {
+                    transmittance * self.air.coefficients.reflected(Spectrum::ONE)
+                }
+                None => Spectrum::ZERO,
+            };
+            let sin = ((1.0 - path.mu) * (1.0 + path.mu)).max(0.0).sqrt();
+            self.basis.evaluate(path.mu as f32, sin as f32, &mut y);
+            let direction = WeightedDirection {
+                mu: path.mu,
+                weight: solid_weight * 2.0 * PI,
+                harmonics: &y,
+            };
+            row.add(&direction, &coefficients, ground);
+        }
+        row
+    }
+
+    /// Rays with the same start and zenith angle: each azimuth for each sun cosine.
+    #[inline(always)]
+    fn bundle(&self, mu: f64) -> RayBundle {
+        let sin = ((1.0 - mu) * (1.0 + mu)).max(0.0).sqrt();
+        let mut bundle = RayBundle::default();
+        for &mu_sun in &self.grid.sun_cosines {
+            let sin_sun = ((1.0 - mu_sun) * (1.0 + mu_sun)).max(0.0).sqrt();
+            for &cos_azimuth in &self.azimuth_cosines {
+                bundle.push(mu_sun, mu * mu_sun + sin * sin_sun * cos_azimuth);
+            }
+        }
+        bundle
+    }
+
+    /// Integrates the light along the rays of each path with `accumulate` and projects it onto moments and irradiances on the
+    /// ground.
+    fn gather(
+        &self,
+        accumulate: impl Fn(&Path<N>, &RayBundle, &mut Work<N>) + Send + Sync,
+    ) -> Result<Light<N>, Cancelled> {
+        let rows = parallel::try_map(self.paths.len(), |row| {
+            self.control.check()?;
+            Ok(vectorized(
+                #[inline(always)]
+                || self.gather_row(&self.paths[row], &accumulate),
+            ))
+        })?;
+        let ground = rows[0].1.clone();
+        Ok(Light {
+            count: self.basis.count(),
+            moments: rows.into_iter().flat_map(|(moments, _)| moments).collect(),
+            ground,
+        })
+    }
+
+    /// Moments, `[sun][harmonic]`, and downward irradiances, `[sun]`, at one radius.
+    #[inline(always)]
+    fn gather_row(
+        &self,
+        paths: &[(Path<N>, f64)],
+        accumulate: &impl Fn(&Path<N>, &RayBundle, &mut Work<N>),
+    ) -> (Vec<Spectrum<N>>, Vec<Spectrum<N>>) {
+        let (suns, azimuths, count) = (
+            self.grid.sun_cosines.len(),
+            self.azimuth_cosines.len(),
+            self.basis.count(),
+        );
+        let mut moments = vec![Spectrum::ZERO; suns * count];
+        let mut downward = vec![Spectrum::ZERO; suns];
+        let mut work = Work {
+            light: vec![Spectrum::ZERO; suns * azimuths],
+            ..Default::default()
+        };
+        let mut y = [0.0f32; Harmonics::MAX_COUNT];
+        for (path, solid_weight) in paths {
+            let bundle = self.bundle(path.mu);
+            work.light.fill(Spectrum::ZERO);
+            // A direct call: one through the reference would not be inlined into the vectorised code.
+            (*accumulate)(path, &bundle, &mut work);
+            let w = solid_weight * 2.0 * PI / azimuths as f64;
+            let sin = ((1.0 - path.mu) * (1.0 + path.mu)).max(0.0).sqrt();
+            for (slot, light) in work.light.iter().enumerate() {
+                // A truncated phase function can be slightly negative.
+                let light = light.max_scalar(0.0);
+                let (sun, azimuth) = (slot / azimuths, slot % azimuths);
+                let toward_sun = (sin * self.azimuth_cosines[azimuth]) as f32;
+                self.basis.evaluate(path.mu as f32, toward_sun, &mut y);
+                for (moment, y) in moments[sun * count..(sun + 1) * count].iter_mut().zip(&y) {
+                    *moment = moment.scale_acc(light, y * w as f32);
+                }
+                if path.mu > 0.0 {
+                    downward[sun] = downward[sun].scale_acc(light, (w * path.mu) as f32);
+                }
+            }
+        }
+        (moments, downward)
+    }
+}
+
+/// Reused buffers for the rays of one radius.
+#[derive(Default)]
+struct Work<const N: usize> {
+    /// Light along each ray.
+    light: Vec<Spectrum<N>>,
+    single_scatter_without_phase: Vec<Spectrum<N>>,
+    scratch: Scratch<N>,
+}
+
+/// Cosines of the zenith angle and quadrature weights: Gauss rules below the horizon, in a band just above it, where the
+/// light changes fastest, and in the rest of the sky.
+fn zenith_rule<const N: usize>(
+    air: &Air<N>,
+    radius_m: f64,
+    directions: &Directions,
+) -> Vec<(f64, f64)> {
+    const BAND: f64 = 0.2;
+    let sin = (air.shell().ground_radius_m / radius_m).min(1.0);
+    let horizon = -((1.0 - sin) * (1.0 + sin)).sqrt();
+    let [below, band, above] = directions.zenith_nodes.map(GaussRule::new);
+    below
+        .on(-1.0, horizon)
+        .chain(band.on(horizon, horizon + BAND))
+        .chain(above.on(horizon + BAND, 1.0))
+        .collect()
+}

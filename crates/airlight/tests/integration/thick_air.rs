@@ -1,0 +1,125 @@
+//! The sky of optically thick air: slabs against discrete ordinates, conservation of energy, and refusal of what did not
+//! converge.
+
+use crate::common::{grey_layer, numbers};
+use airlight::atmosphere::{Atmosphere, DensityProfile};
+use airlight::axes::direction;
+use airlight::optics::PhaseFunction;
+use airlight::sky::{Sky, SkyError, SkySettings, SunCoverage, TableChannels};
+use airlight::spectrum::{SpectralCurve, WavelengthGrid};
+use glam::DVec3;
+
+const TOP_M: f64 = 1000.0;
+
+/// A uniform layer of the Earth's air, 1 km high, under a sun of unit irradiance.
+struct Slab {
+    depth: f64,
+    single_scattering_albedo: f64,
+    asymmetry: f64,
+    ground_albedo: f64,
+}
+
+impl Slab {
+    fn sky(&self, sun_elevation_deg: f64, settings: SkySettings) -> Result<Sky, SkyError> {
+        let mut air = Atmosphere::from_toml("base = \"none\"").unwrap();
+        air.planet.top_altitude_m = TOP_M;
+        air.planet.ground_albedo = SpectralCurve::Constant(self.ground_albedo);
+        air.solar_irradiance = SpectralCurve::Constant(1.0);
+        air.constituents = vec![grey_layer(
+            DensityProfile::slab(2.0 * TOP_M),
+            self.depth / TOP_M,
+            self.single_scattering_albedo,
+            PhaseFunction::HenyeyGreenstein { g: self.asymmetry },
+        )];
+        let settings = SkySettings {
+            suns: SunCoverage::near(sun_elevation_deg, 0.0),
+            ..settings
+        };
+        let grid = WavelengthGrid::from_wavelengths_nm(vec![550.0]).unwrap();
+        Sky::prepare(&air, &grid, &settings)
+    }
+}
+
+#[test]
+fn skies_of_thick_slabs_are_those_of_discrete_ordinates() {
+    let table = include_str!("../data/sky_slabs_disort.csv");
+    let mut last: Option<([f64; 4], Sky)> = None;
+    for row in numbers::<9>(table) {
+        let [omega, g, tau, albedo, above, zenith, azimuth, expected, _] = row;
+        let key = [omega, g, tau, albedo];
+        if last.as_ref().is_none_or(|(solved, _)| *solved != key) {
+            let slab = Slab {
+                depth: tau,
+                single_scattering_albedo: omega,
+                asymmetry: g,
+                ground_albedo: albedo,
+            };
+            last = Some((key, slab.sky(60.0, SkySettings::default()).unwrap()));
+        }
+        let sky = &last.as_ref().unwrap().1;
+        let altitude_m = TOP_M * (1.0 - above);
+        let view = sky.view(altitude_m, direction(0.0, 60.0));
+        // Across 80 degrees from the zenith the Earth is not flat to 0.01 %.
+        let line = view.along(direction(azimuth, 90.0 - zenith), None);
+        let got = f64::from(line.path_radiance()[0]);
+        // Beyond what can be seen, 1e-9 of the sun's light, the iteration does not look.
+        if expected < 1e-9 {
+            continue;
+        }
+        let error = got / expected - 1.0;
+        let limit = if tau > 5.0 { 0.015 } else { 0.01 };
+        assert!(
+            error.abs() < limit,
+            "{row:?}: {got}, error {:.2} %",
+            100.0 * error
+        );
+    }
+}
+
+#[test]
+fn air_that_does_not_absorb_conserves_energy() {
+    for (depth, sun_elevation) in [(1.0, 60.0), (5.0, 60.0), (5.0, 20.0), (20.0, 60.0)] {
+        let slab = Slab {
+            depth,
+            single_scattering_albedo: 1.0,
+            asymmetry: 0.7,
+            ground_albedo: 0.0,
+        };
+        let sky = slab.sky(sun_elevation, SkySettings::default()).unwrap();
+        let sun = direction(0.0, sun_elevation);
+        let [above, ground] = [TOP_M, 0.0].map(|altitude| sky.view(altitude, sun));
+        let irradiance = |view: &airlight::sky::View, normal: DVec3| {
+            f64::from(view.table(TableChannels::Spectral).irradiance(normal)[0])
+        };
+        let arriving = sun.y;
+        let direct = f64::from(ground.sun_irradiance()[0]) * sun.y;
+        let leaving = irradiance(&above, -DVec3::Y) + irradiance(&ground, DVec3::Y) + direct;
+        let error = leaving / arriving - 1.0;
+        assert!(
+            error.abs() < 0.005,
+            "{depth} {sun_elevation}: {:.2} %",
+            100.0 * error
+        );
+    }
+}
+
+#[test]
+fn light_that_did_not_converge_is_refused() {
+    let slab = Slab {
+        depth: 5.0,
+        single_scattering_albedo: 1.0,
+        asymmetry: 0.7,
+        ground_albedo: 0.5,
+    };
+    let mut settings = SkySettings::default();
+    settings.orders.max_iterations = 2;
+    // Far below what two iterations reach.
+    settings.orders.tolerance = 1e-12;
+    let Err(error) = slab.sky(10.0, settings) else {
+        panic!("expected an error");
+    };
+    assert!(
+        matches!(error, SkyError::NotConverged { iterations: 2, .. }),
+        "{error}"
+    );
+}
