@@ -195,6 +195,14 @@ impl Intrinsics {
         }
     }
 
+    /// Writes the ray lengths per depth of row `j` alone, the same bits as [`Intrinsics::ray_length_per_z`].
+    pub fn fill_lengths(&self, j: u32, lengths: &mut [f64]) {
+        let y = self.y(j);
+        for (i, length) in (0..).zip(lengths) {
+            *length = self.ray(i, y).1;
+        }
+    }
+
     /// Tangent of the vertical angle at the centre of row `j`.
     fn y(&self, j: u32) -> f64 {
         (self.principal_px.1 - (f64::from(j) + 0.5)) / self.focal_px.1

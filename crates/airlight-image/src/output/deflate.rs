@@ -77,13 +77,26 @@ impl Adler32 {
     };
 
     pub(super) fn of(bytes: &[u8]) -> Self {
+        const LANES: usize = 32;
         let Self {
             mut sum,
             mut sum_of_sums,
         } = Self::EMPTY;
-        // The largest number of bytes of 255 that can be added before 32 bits overflow.
-        for chunk in bytes.chunks(5552) {
-            for &byte in chunk {
+        // No more bytes of 255 than can be added before 32 bits overflow.
+        for part in bytes.chunks(5504) {
+            let (lanes, rest) = part.as_chunks::<LANES>();
+            for lanes in lanes {
+                // Each byte counts once for itself and each one after it.
+                let weights = (1..=LANES as u32).rev();
+                let weighted: u32 = lanes
+                    .iter()
+                    .zip(weights)
+                    .map(|(&b, w)| u32::from(b) * w)
+                    .sum();
+                sum_of_sums += LANES as u32 * sum + weighted;
+                sum += lanes.iter().map(|&byte| u32::from(byte)).sum::<u32>();
+            }
+            for &byte in rest {
                 sum += u32::from(byte);
                 sum_of_sums += sum;
             }

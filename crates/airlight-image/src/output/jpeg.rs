@@ -195,17 +195,48 @@ fn planar_band(
     let mut rows = RowBuffer::new(source, size);
     let mut rgb = vec![0u8; width * 3];
     let count = width * bands.rows(band).len();
-    let mut planes: PlanarBand = std::array::from_fn(|_| Vec::with_capacity(count));
-    for y in bands.rows(band) {
+    let mut planes: PlanarBand = std::array::from_fn(|_| vec![0; count]);
+    let [luma, blue, red] = planes.each_mut().map(|plane| plane.chunks_exact_mut(width));
+    for (y, ((luma, blue), red)) in bands.rows(band).zip(luma.zip(blue).zip(red)) {
         tone.row_to_u8(y, rows.row(y), &mut rgb);
-        for pixel in rgb.as_chunks::<3>().0 {
-            let (luma, blue, red) = jpeg_encoder::rgb_to_ycbcr(pixel[0], pixel[1], pixel[2]);
-            planes[0].push(luma);
-            planes[1].push(blue);
-            planes[2].push(red);
+        let parts = luma
+            .chunks_mut(BLOCK)
+            .zip(blue.chunks_mut(BLOCK))
+            .zip(red.chunks_mut(BLOCK));
+        for (rgb, ((luma, blue), red)) in rgb.chunks(3 * BLOCK).zip(parts) {
+            to_ycbcr(rgb, luma, blue, red);
         }
     }
     planes
+}
+
+/// Pixels converted together.
+const BLOCK: usize = 64;
+
+/// Converts at most [`BLOCK`] interleaved pixels to luma and chroma (JFIF). The weights are multiples of 2^-16: all sums are integers
+/// below 2^24, exact in single precision.
+fn to_ycbcr(rgb: &[u8], luma: &mut [u8], blue: &mut [u8], red: &mut [u8]) {
+    const ROUND: f32 = 32_767.0;
+    const MIDDLE: f32 = 128.0 * 65_536.0;
+    let mut planes = [[0.0f32; BLOCK]; 3];
+    for (i, pixel) in rgb.as_chunks::<3>().0.iter().enumerate().take(BLOCK) {
+        for (plane, &value) in planes.iter_mut().zip(pixel) {
+            plane[i] = f32::from(value);
+        }
+    }
+    let [r, g, b] = &planes;
+    let convert = |out: &mut [u8], [from_r, from_g, from_b]: [f32; 3], offset: f32| {
+        let mut values = [0u8; BLOCK];
+        for i in 0..BLOCK {
+            let sum = from_r * r[i] + from_g * g[i] + from_b * b[i] + (offset + ROUND);
+            values[i] = (sum * (1.0 / 65_536.0)) as i32 as u8;
+        }
+        let count = out.len().min(BLOCK);
+        out[..count].copy_from_slice(&values[..count]);
+    };
+    convert(luma, [19_595.0, 38_470.0, 7_471.0], 0.0);
+    convert(blue, [-11_059.0, -21_709.0, 32_768.0], MIDDLE);
+    convert(red, [32_768.0, -27_439.0, -5_329.0], MIDDLE);
 }
 
 /// Rows as they arrive for the encoder, which reads them from top to bottom and may repeat the last one.

@@ -14,6 +14,7 @@ pub mod jpeg;
 mod metadata;
 mod options;
 pub mod png;
+mod run_huffman;
 pub mod spectral;
 
 pub use atomic::AtomicFile;

@@ -40,7 +40,8 @@ pub enum PngDepth {
 pub struct PngOptions {
     /// Bits of a component.
     pub depth: PngDepth,
-    /// Compression level: 0 (none), 1 (fastest) to 9 (smallest); above 3 files shrink little.
+    /// Compression level: 0 (none), 1 (fastest: repetitions of a byte only) to 9 (smallest); above 3 files shrink little. At 1, photographs
+    /// and noise are about as small as at 3, drawings larger.
     pub compression_level: u8,
 }
 

@@ -7,12 +7,16 @@ use super::{
     bands::{Bands, RowBuffer},
     deflate::{Adler32, Deflater, End},
     format::{FormatEntry, Written, expect_channels, into_file},
+    run_huffman,
 };
 use crate::{Control, ImageError, RowSource, Size, tone::ToneMapper};
 use png::{BitDepth, ColorType, PixelDimensions, Unit, chunk};
 use std::{io::Write, path::Path};
 
 const FORMAT: &str = "PNG";
+
+/// Compression level of [`run_huffman`].
+const FASTEST: u8 = 1;
 
 /// Registry entry of the format.
 pub(super) static ENTRY: FormatEntry = FormatEntry {
@@ -85,8 +89,10 @@ pub fn encode(
         |band| {
             let filtered = filtered_band(source, tone, size, options.depth, bands, band);
             let end = if band == last { End::Last } else { End::Open };
-            let packed =
-                Deflater::new(FORMAT, options.compression_level, false).piece(&filtered, end)?;
+            let packed = match options.compression_level {
+                FASTEST => run_huffman::compress(&filtered, end),
+                level => Deflater::new(FORMAT, level, false).piece(&filtered, end)?,
+            };
             Ok((packed, Adler32::of(&filtered), filtered.len()))
         },
         |band, (packed, part, length)| {

@@ -130,3 +130,61 @@ impl OctaveTable {
         value + rise * part
     }
 }
+
+/// The nearest of 256 levels of an increasing function on `[0, 1]`, exactly: a table by octaves, whose steps hold at most one border
+/// of two levels each.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct LevelTable {
+    /// The level in the upper half; in the lower half what a number must add to reach the next level.
+    steps: Vec<u32>,
+}
+
+/// Logarithm of the number of steps in each octave: in the steepest part of sRGB a level spans more than a step.
+const LEVEL_STEPS_LOG2: u32 = 7;
+const LEVEL_SHIFT: u32 = 23 - LEVEL_STEPS_LOG2;
+/// Below it all is level 0.
+const LOWEST: f32 = 1.0 / 8192.0;
+
+impl LevelTable {
+    /// Levels of a function by its inverse, which maps `[0, 1]` to `[0, 1]`.
+    pub(super) fn new(inverse: impl Fn(f64) -> f64) -> Self {
+        let first = LOWEST.to_bits() >> LEVEL_SHIFT;
+        let last = 1f32.to_bits() >> LEVEL_SHIFT;
+        // The least number of each level above 0.
+        let borders = (1..256).map(|level| {
+            let border = inverse((f64::from(level) - 0.5) / 255.0);
+            let near = border as f32;
+            let least = if f64::from(near) < border {
+                near.next_up()
+            } else {
+                near
+            };
+            least.to_bits()
+        });
+        let borders: Vec<u32> = borders.collect();
+        let steps = (first..=last).map(|step| {
+            let start = step << LEVEL_SHIFT;
+            let level = borders.partition_point(|&border| border <= start);
+            let rest = match borders.get(level) {
+                Some(border) if border >> LEVEL_SHIFT == step => {
+                    (1 << LEVEL_SHIFT) - (border - start)
+                }
+                _ => 0,
+            };
+            (level as u32) << LEVEL_SHIFT | rest
+        });
+        Self {
+            steps: steps.collect(),
+        }
+    }
+
+    /// The level at `x`; that of the nearer end outside `[0, 1]`, 0 for NaN.
+    #[inline(always)]
+    pub(super) fn at(&self, x: f32) -> u8 {
+        let x = if x > LOWEST { x } else { LOWEST };
+        let x = if x < 1.0 { x } else { 1.0 };
+        let bits = x.to_bits() - LOWEST.to_bits();
+        let step = self.steps[(bits >> LEVEL_SHIFT) as usize];
+        ((step + (bits & ((1 << LEVEL_SHIFT) - 1))) >> LEVEL_SHIFT) as u8
+    }
+}

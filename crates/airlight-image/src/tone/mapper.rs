@@ -2,14 +2,14 @@
 
 use super::{
     agx::{Agx, AgxSettings},
-    blocks::{OctaveTable, Planes, max, min, without_negatives},
+    blocks::{LevelTable, OctaveTable, Planes, max, min, without_negatives},
     camera::{Camera, CameraSettings},
     dither::RowDither,
     scotopic,
     white_balance::WhiteBalance,
 };
 use crate::ImageError;
-use airlight::spectrum::rgb::srgb_encode;
+use airlight::spectrum::rgb::{srgb_decode, srgb_encode};
 
 /// Curve from exposed light to display light.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,6 +41,7 @@ pub struct ToneMapper {
     white_balance: Option<WhiteBalance>,
     curve: Curve,
     encode: OctaveTable,
+    levels: LevelTable,
 }
 
 /// A tone curve, tabulated.
@@ -84,6 +85,7 @@ impl ToneMapper {
                 ToneCurve::Clip => Curve::Clip,
             },
             encode: OctaveTable::new(LINEAR_END, 1.0, srgb_encode),
+            levels: LevelTable::new(srgb_decode),
         })
     }
 
@@ -97,6 +99,7 @@ impl ToneMapper {
             white_balance: None,
             curve: Curve::Clip,
             encode: OctaveTable::new(LINEAR_END, 1.0, srgb_encode),
+            levels: LevelTable::new(srgb_decode),
         }
     }
 
@@ -132,6 +135,12 @@ impl ToneMapper {
 
     /// Converts row `y` of interleaved linear RGB to 8-bit sRGB. The dither depends only on `y` and the column.
     pub fn row_to_u8(&self, y: u32, linear: &[f32], out: &mut [u8]) {
+        if self.is_plain() && !self.dither {
+            for (to, value) in out.iter_mut().zip(linear) {
+                *to = self.levels.at(*value * self.exposure);
+            }
+            return;
+        }
         let mut dither = RowDither::new(y);
         for (from, to) in linear.chunks(BLOCK * 3).zip(out.chunks_mut(BLOCK * 3)) {
             let mut planes = self.encoded(from);
@@ -163,6 +172,11 @@ impl ToneMapper {
                 *to = [level(0), level(1), level(2)];
             }
         }
+    }
+
+    /// Whether components are only exposed, clipped and encoded, each on its own.
+    fn is_plain(&self) -> bool {
+        matches!(self.curve, Curve::Clip) && !self.scotopic && self.white_balance.is_none()
     }
 
     /// Encoded colours of at most one block of interleaved pixels.

@@ -1,6 +1,7 @@
 //! Pictures read back by decoders that share no code with the writers.
 
 use crate::common::{Folder, full_metadata, sample, size, sky, tone};
+use airlight::spectrum::rgb::srgb_decode;
 use airlight_image::{
     Control,
     output::{
@@ -12,6 +13,7 @@ use airlight_image::{
         spectral::{self, SpectralLayout},
     },
     rows::{RowFn, RowSource, StoredRows},
+    tone::ToneMapper,
 };
 use image::ImageDecoder;
 use std::io::Cursor;
@@ -339,6 +341,58 @@ fn png_files_are_decoded_to_the_given_samples() {
                 }
             }
         }
+    }
+}
+
+/// Level of a sample by its place in the row and its row.
+type Level<'a> = &'a (dyn Fn(u32, u32) -> u32 + Sync);
+
+/// Bytes for a compressor: noise of several widths, runs of every length up to the longest match and beyond, and one value.
+#[test]
+fn png_files_of_noise_and_runs_are_decoded_to_the_given_samples() {
+    let tone = ToneMapper::as_displayed();
+    let hash = |x: u32, y: u32| {
+        let mixed = x.wrapping_mul(0x9e37_79b9) ^ y.wrapping_mul(0x85eb_ca6b);
+        mixed.wrapping_mul(0x21f0_aaad)
+    };
+    // With the largest size relative to that of a search for repetitions: runs of several bytes are not found.
+    let levels: [(f64, Level<'_>); 4] = [
+        (1.01, &|x, y| hash(x, y) >> 24),
+        (1.25, &|x, y| 128 + (hash(x, y) >> 30)),
+        (2.5, &|x, y| {
+            if x.is_multiple_of(y + 1) { 17 * y } else { 90 }
+        }),
+        (2.0, &|_, _| 255),
+    ];
+    for (largest, level) in levels {
+        let (width, height) = (800, 300);
+        let source = RowFn::new(3, move |y, out: &mut [f32]| {
+            for (x, value) in (0..).zip(out) {
+                *value = srgb_decode(f64::from(level(x, y) % 256) / 255.0) as f32;
+            }
+        });
+        let mut sizes = Vec::new();
+        for compression_level in [1, 3] {
+            let options = PngOptions {
+                depth: PngDepth::Eight,
+                compression_level,
+            };
+            let (size, metadata) = (size(width, height), Metadata::default());
+            let mut bytes = Vec::new();
+            let control = Control::default();
+            png::encode(
+                &mut bytes, size, &source, &tone, &options, &metadata, control,
+            )
+            .unwrap();
+            let image = image::load_from_memory(&bytes).unwrap();
+            let got = image.as_rgb8().unwrap().as_raw();
+            for (at, &got) in (0..).zip(got) {
+                let (x, y) = (at % (3 * width), at / (3 * width));
+                assert_eq!(u32::from(got), level(x, y) % 256, "{x} {y}");
+            }
+            sizes.push(bytes.len() as f64);
+        }
+        assert!(sizes[0] < largest * sizes[1], "{sizes:?}");
     }
 }
 

@@ -315,6 +315,35 @@ mod guards {
     }
 }
 
+/// Without dither the nearest level is written, on both sides of every border between two levels.
+#[test]
+fn display_light_is_rounded_to_the_nearest_level() {
+    let tone = ToneMapper::as_displayed();
+    let mut values = vec![
+        f32::NAN,
+        f32::NEG_INFINITY,
+        -0.1,
+        0.0,
+        1e-30,
+        1.0,
+        1.1,
+        f32::INFINITY,
+    ];
+    for level in 0..255 {
+        let border = srgb_decode((f64::from(level) + 0.5) / 255.0) as f32;
+        values.extend([border.next_down(), border, border.next_up()]);
+        values.push(srgb_decode(f64::from(level) / 255.0) as f32);
+    }
+    values.extend((0..60_000).map(|i| i as f32 / 60_000.0));
+    let mut out = vec![0; values.len()];
+    tone.row_to_u8(0, &values, &mut out);
+    for (value, got) in values.iter().zip(out) {
+        let level = 255.0 * srgb_encode(f64::from(value.clamp(0.0, 1.0)));
+        let expected = (level + 0.5) as u8;
+        assert_eq!(got, expected, "{value}");
+    }
+}
+
 /// Triangular noise of one step makes the mean of the written values that of the picture, and the variance of their error a
 /// quarter of a step squared, whatever the value. Neighbours in a row share one of their two numbers with opposite signs:
 /// their errors have the covariance -1/12, so that the noise is of high frequencies.

@@ -2,7 +2,7 @@
 
 use super::primaries::Primaries;
 use airlight::fog::lights::{RgbLightSet, ViewRay};
-use airlight::fog::{Ground, RgbFog, RgbFogTable, legacy};
+use airlight::fog::{EvenFog, Ground, RgbFog, RgbFogTable, legacy};
 use airlight::scene::RgbFoggySky;
 use airlight::spectrum::rgb::{srgb_decode, srgb_encode};
 use airlight::transfer::RgbPathOptics;
@@ -63,6 +63,7 @@ pub(super) struct FogSampler<'a> {
     primaries: Primaries,
     /// Table of [`FogSource::Alone`].
     table: Option<RgbFogTable>,
+    even: Option<EvenFog>,
 }
 
 impl<'a> FogSampler<'a> {
@@ -72,12 +73,22 @@ impl<'a> FogSampler<'a> {
             FogOverlay::Fog(FogSource::Alone(fog), _) => Some(fog.seen_from(eye_height_m)),
             _ => None,
         };
+        let even = match overlay {
+            FogOverlay::Fog(FogSource::Alone(fog), None) if primaries.are_srgb() => fog.even(),
+            _ => None,
+        };
         Self {
             overlay,
             eye_height_m,
             primaries,
             table,
+            even,
         }
+    }
+
+    /// The whole overlay, if it is even fog in the primaries of the picture.
+    pub fn even(&self) -> Option<&EvenFog> {
+        self.even.as_ref()
     }
 
     /// Height of the eye and radius of the ground of the fog, m.

@@ -33,6 +33,7 @@ pub use prepared_overlay::PreparedOverlay;
 pub use sky_light::SkyLight;
 pub use spec::{DepthFileKind, NegativeDepth, OverlaySpec};
 
+use airlight::fog::EvenFog;
 use airlight::scene::{FogLayers, SceneError};
 use airlight::transfer::RgbPathOptics;
 use airlight_image::input::{DepthKind, DepthMap, LightReference, Picture};
@@ -183,18 +184,27 @@ impl<'a> Overlay<'a> {
     pub fn rays(&self, y: u32) -> Vec<(DVec3, f64)> {
         let width = self.picture.size.width() as usize;
         let mut directions = vec![DVec3::ZERO; width];
-        let mut lengths = vec![1.0; width];
-        self.camera.fill(y, &mut directions, &mut lengths);
-        let depths = &self.depth.metres[y as usize * width..][..width];
-        let distance = |(depth, length): (&f32, &f64)| {
-            let factor = match self.depth.kind {
-                DepthKind::Z => *length,
-                DepthKind::Ray => 1.0,
-            };
-            f64::from(*depth) * factor
-        };
-        let distances = depths.iter().zip(&lengths).map(distance);
+        let mut distances = vec![1.0; width];
+        self.camera.fill(y, &mut directions, &mut distances);
+        self.measure(y, &mut distances);
         directions.into_iter().zip(distances).collect()
+    }
+
+    /// Distances (m) of the pixels of row `y`, in the place of their ray lengths per depth.
+    fn measure(&self, y: u32, lengths: &mut [f64]) {
+        let depths = &self.depth.metres[y as usize * lengths.len()..];
+        for (length, depth) in lengths.iter_mut().zip(depths) {
+            *length = match self.depth.kind {
+                DepthKind::Z => f64::from(*depth) * *length,
+                DepthKind::Ray => f64::from(*depth),
+            };
+        }
+    }
+
+    /// The fog, if it needs nothing but the distance of a pixel and its colour.
+    fn even_fog(&self) -> Option<&EvenFog> {
+        let is_plain = self.path_radiance.is_none() && self.patches.is_none() && !self.has_layers();
+        self.fog.even().filter(|_| is_plain && self.picture.alpha.is_none())
     }
 
     /// A note where the fog hides all objects or none, as with a wrong unit of depth; from a sample of the pixels.
@@ -264,7 +274,15 @@ impl RowSource for Overlay<'_> {
     }
 
     fn fill_row(&self, y: u32, out: &mut [f32]) {
-        let first = y as usize * self.picture.size.width() as usize;
+        let width = self.picture.size.width() as usize;
+        let first = y as usize * width;
+        if let Some(fog) = self.even_fog() {
+            let mut distances = vec![1.0; width];
+            self.camera.fill_lengths(y, &mut distances);
+            self.measure(y, &mut distances);
+            fog.apply(&distances, &self.picture.rgb[3 * first..][..3 * width], out);
+            return;
+        }
         let rays = self.rays(y);
         let patches = self.patches.as_ref().map(|patches| patches.row(y));
         let pixels = out.chunks_exact_mut(self.channels()).zip(rays);

@@ -170,7 +170,11 @@ impl OverlayImage {
                     SampleBits::U8 => png::PngDepth::Eight,
                     _ => png::PngDepth::Sixteen,
                 },
-                ..Default::default()
+                compression_level: match self.picture.bits {
+                    // Pictures with the noise of a camera hardly have repetitions that a search would find.
+                    SampleBits::U8 => 1,
+                    _ => png::PngOptions::default().compression_level,
+                },
             },
             jpeg: jpeg::JpegOptions {
                 quality: spec.quality.unwrap_or(jpeg::JpegOptions::default().quality),

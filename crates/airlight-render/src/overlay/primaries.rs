@@ -23,6 +23,11 @@ impl Primaries {
         }))
     }
 
+    /// Whether the picture's are those of sRGB.
+    pub fn are_srgb(self) -> bool {
+        self.0.is_none()
+    }
+
     /// A colour of the picture in linear sRGB, negative components as 0: no light has them.
     pub fn to_srgb(self, colour: [f32; 3]) -> [f32; 3] {
         match self.0 {

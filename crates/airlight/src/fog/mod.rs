@@ -6,6 +6,7 @@
 //!
 //! - [`Fog`], [`RgbFog`]: transmittance and path radiance along rays, over the wavelengths of a grid and in RGB.
 //! - [`FogTable`], [`RgbFogTable`]: the same, tabulated for the many rays of a picture.
+//! - [`EvenFog`]: uniform fog in ambient light alone, for whole rows of a picture.
 //! - [`FogPatches`], [`PatchField`], [`PatchView`]: fog whose density varies at random, and its optical depth along rays.
 //! - [`lights`]: point, spot and sphere lights in fog.
 //! - [`legacy`]: fog factors of older graphics hardware.
@@ -14,6 +15,7 @@
 
 mod closed_forms;
 mod error;
+mod even;
 mod fog_lanes;
 mod layer;
 pub mod legacy;
@@ -31,6 +33,7 @@ mod values;
 pub use crate::atmosphere::{DensityError, DensityProfile, RaySegment, droplets, visibility};
 pub use closed_forms::split_sum_error;
 pub use error::FogError;
+pub use even::EvenFog;
 pub use layer::RgbLayer;
 pub use lighting::{DirectionalLight, FogLighting, FogScattering, Ground};
 pub use patch_view::PatchView;

@@ -1,6 +1,7 @@
 //! [`Fog`] and [`RgbFog`], and their tables for pictures.
 
 use super::error::FogError;
+use super::even::EvenFog;
 use super::fog_lanes::FogLanes;
 use super::layer::{LayerLanes, RgbLayer};
 use super::lighting::{FogLighting, FogScattering, Ground};
@@ -348,6 +349,11 @@ impl RgbFog {
     /// [`FogScattering::Multiple`].
     pub fn ground_irradiance(&self) -> Option<[f32; 3]> {
         self.lanes.ground_irradiance().map(|lanes| lanes.0)
+    }
+
+    /// The fog for whole rows of a picture, if it is the same in every direction: uniform, without a sun.
+    pub fn even(&self) -> Option<EvenFog> {
+        EvenFog::of(&self.lanes)
     }
 
     /// The fog tabulated for an eye height (m), for pictures.
