@@ -4,6 +4,7 @@ use crate::error::RenderError;
 use crate::frame::WrittenFile;
 use crate::image::RenderedImage;
 use crate::renderer::Renderer;
+use crate::sequence::SequenceStep;
 use airlight_image::Control;
 use std::time::Instant;
 
@@ -31,6 +32,7 @@ impl Renderer {
     /// [`RenderError`]; files that are already written remain, and unfinished ones are removed.
     pub fn write(&self, control: Control<'_>) -> Result<Vec<WrittenFile>, RenderError> {
         if let Some(sequence) = self.sequence()? {
+            SequenceStep::remove_leftovers(sequence.steps());
             let missing = sequence.missing();
             let Some(ready) = self.prepare_sequence(&sequence, &missing, control)? else {
                 return Ok(Vec::new());

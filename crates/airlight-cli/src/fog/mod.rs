@@ -88,9 +88,7 @@ fn one(args: &OverlayArgs, scene: &OverlayScene) -> Result<(), CliError> {
             )));
         }
     }
-    if let (Some(folder), Some(name)) = (output.parent(), output.file_name()) {
-        AtomicFile::remove_leftovers(folder, |left| name == left);
-    }
+    AtomicFile::remove_leftovers([output]);
     let image = OverlayImage::read(&scene.overlay, format)?;
     let mut notes = image.notes();
     let sky = match scene.overlay.sky_light {

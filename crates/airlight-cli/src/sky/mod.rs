@@ -9,7 +9,7 @@ use crate::progress::RowsBar;
 use crate::report::{self, bytes, seconds};
 use crate::scene;
 use airlight_image::Control;
-use airlight_image::output::Written;
+use airlight_image::output::{AtomicFile, Written};
 use airlight_image::tone::Exposure;
 use airlight_render::exposure::DARKEST_EV100;
 use airlight_render::sequence::{PreparedSequence, Sequence, SequenceStep};
@@ -51,10 +51,10 @@ fn one(
     preview: Option<preview::Terminal>,
 ) -> Result<(), CliError> {
     let output = renderer.output_path().ok();
-    for file in output
-        .map(|path| renderer.layout().files(path))
-        .unwrap_or_default()
-    {
+    let files = output.map(|path| renderer.layout().files(path));
+    let files = files.unwrap_or_default();
+    AtomicFile::remove_leftovers(files.iter().map(|file| file.path.as_path()));
+    for file in &files {
         report::check_writable(&file.path)?;
     }
     let sun = renderer.sun(None)?;
@@ -125,17 +125,26 @@ fn many(
     sequence: &Sequence,
     preview: Option<preview::Terminal>,
 ) -> Result<(), CliError> {
+    let part = args.sequence.shard;
+    let is_ours = |step: &SequenceStep| part.is_none_or(|part| part.has(step.number as usize - 1));
+    let ours: Vec<&SequenceStep> = sequence
+        .steps()
+        .iter()
+        .filter(|step| is_ours(step))
+        .collect();
+    let total = ours.len();
+    let shard = part.map_or(String::new(), |part| format!(" in shard {part}"));
+    let removed = SequenceStep::remove_leftovers(ours);
+    if removed > 0 {
+        report::note(&format!(
+            "{removed} unfinished files of an earlier run removed"
+        ));
+    }
     let mut missing = match args.sequence.overwrite {
         true => sequence.steps().to_vec(),
         false => sequence.missing(),
     };
-    let (mut total, mut shard) = (sequence.steps().len(), String::new());
-    if let Some(part) = args.sequence.shard {
-        let is_ours = |step: &SequenceStep| part.has(step.number as usize - 1);
-        missing.retain(is_ours);
-        total = sequence.steps().iter().filter(|step| is_ours(step)).count();
-        shard = format!(" in shard {part}");
-    }
+    missing.retain(is_ours);
     let begun = Instant::now();
     for file in missing.iter().take(1).flat_map(|step| &step.files) {
         report::check_writable(&file.path)?;

@@ -2,6 +2,8 @@
 
 use crate::ImageError;
 use std::{
+    collections::{HashMap, HashSet},
+    ffi::{OsStr, OsString},
     fs::{self, File, OpenOptions},
     io::ErrorKind,
     path::{Path, PathBuf},
@@ -49,7 +51,7 @@ impl AtomicFile {
         static COUNT: AtomicU64 = AtomicU64::new(0);
         for _ in 0..1000 {
             let count = COUNT.fetch_add(1, Ordering::Relaxed);
-            let mut hidden = std::ffi::OsString::from(".");
+            let mut hidden = OsString::from(".");
             hidden.push(name);
             hidden.push(format!(".{}-{count}.part", std::process::id()));
             let temporary = folder.join(hidden);
@@ -81,21 +83,31 @@ impl AtomicFile {
         ))
     }
 
-    /// Removes temporary files of processes that ended before they could: those in a folder whose target `is_wanted`, by its name.
-    /// Returns their number. A folder that cannot be read has none.
-    pub fn remove_leftovers(folder: &Path, is_wanted: impl Fn(&str) -> bool) -> u64 {
-        let folder = match folder.as_os_str().is_empty() {
-            true => Path::new("."),
-            false => folder,
-        };
-        let entries = fs::read_dir(folder).into_iter().flatten().flatten();
-        let left = entries.filter(|entry| {
-            let name = entry.file_name();
-            let about = name.to_str().and_then(target_and_process);
-            about.is_some_and(|(target, process)| is_wanted(target) && !is_running(process))
-        });
-        left.filter(|entry| fs::remove_file(entry.path()).is_ok())
-            .count() as u64
+    /// Removes temporary files of these targets that processes left which ended before they could. Returns their number. A folder
+    /// that cannot be read has none.
+    pub fn remove_leftovers<'p>(targets: impl IntoIterator<Item = &'p Path>) -> u64 {
+        let mut by_folder: HashMap<&Path, HashSet<&OsStr>> = HashMap::new();
+        for target in targets {
+            if let (Some(folder), Some(name)) = (target.parent(), target.file_name()) {
+                by_folder.entry(folder).or_default().insert(name);
+            }
+        }
+        let mut removed = 0;
+        for (folder, names) in by_folder {
+            let folder = match folder.as_os_str().is_empty() {
+                true => Path::new("."),
+                false => folder,
+            };
+            for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+                let name = entry.file_name();
+                let about = name.to_str().and_then(target_and_process);
+                let is_left = about.is_some_and(|(target, process)| {
+                    names.contains(OsStr::new(target)) && !is_running(process)
+                });
+                removed += u64::from(is_left && fs::remove_file(entry.path()).is_ok());
+            }
+        }
+        removed
     }
 
     /// The open file.

@@ -8,7 +8,6 @@ use crate::RenderError;
 use crate::overlay::{OverlayImage, OverlayScene, PreparedOverlay, SkyLight};
 use airlight_image::output::AtomicFile;
 use airlight_image::{Control, ImageError, Notes};
-use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -142,20 +141,11 @@ impl BatchRun<'_> {
 
 /// Removes what killed runs left of the plan's pictures and of its manifest, which this run holds.
 fn remove_leftovers(plan: &BatchPlan, manifest: &Path) -> u64 {
-    let mut names: HashMap<PathBuf, HashSet<String>> = HashMap::new();
     let outputs = plan
         .pictures()
         .map(|(input, variant)| plan.output(input, variant));
-    for path in outputs.chain([manifest.to_owned()]) {
-        if let (Some(folder), Some(name)) = (path.parent(), path.file_name()) {
-            let name = name.to_string_lossy().into_owned();
-            names.entry(folder.to_owned()).or_default().insert(name);
-        }
-    }
-    names
-        .iter()
-        .map(|(folder, names)| AtomicFile::remove_leftovers(folder, |name| names.contains(name)))
-        .sum()
+    let targets: Vec<PathBuf> = outputs.chain([manifest.to_owned()]).collect();
+    AtomicFile::remove_leftovers(targets.iter().map(PathBuf::as_path))
 }
 
 /// The pictures that do not exist yet, by input.

@@ -204,7 +204,9 @@ impl<'a> Overlay<'a> {
     /// The fog, if it needs nothing but the distance of a pixel and its colour.
     fn even_fog(&self) -> Option<&EvenFog> {
         let is_plain = self.path_radiance.is_none() && self.patches.is_none() && !self.has_layers();
-        self.fog.even().filter(|_| is_plain && self.picture.alpha.is_none())
+        self.fog
+            .even()
+            .filter(|_| is_plain && self.picture.alpha.is_none())
     }
 
     /// A note where the fog hides all objects or none, as with a wrong unit of depth; from a sample of the pixels.

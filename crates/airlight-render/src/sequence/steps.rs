@@ -8,6 +8,7 @@ use airlight::scene::PreparedModel;
 use airlight::sky::SunCoverage;
 use airlight::sun::Moment;
 use airlight_image::Control;
+use airlight_image::output::AtomicFile;
 use airlight_image::tone::Exposure;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -179,6 +180,12 @@ impl Sequence {
 }
 
 impl SequenceStep {
+    /// Removes what killed runs left of pictures; returns the number of files.
+    pub fn remove_leftovers<'s>(steps: impl IntoIterator<Item = &'s Self>) -> u64 {
+        let files = steps.into_iter().flat_map(|step| &step.files);
+        AtomicFile::remove_leftovers(files.map(|file| file.path.as_path()))
+    }
+
     fn is_whole(&self) -> bool {
         self.files.iter().all(|file| {
             std::fs::metadata(&file.path).is_ok_and(|about| about.is_file() && about.len() > 0)
