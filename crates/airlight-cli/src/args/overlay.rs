@@ -74,6 +74,12 @@ pub struct OverlayArgs {
     /// Distance between the cameras of a disparity map, m
     #[arg(long, value_name = "M", value_parser = parse::length_m, help_heading = "Depth")]
     pub baseline_m: Option<f64>,
+    /// Near plane of a depth buffer, m
+    #[arg(long, value_name = "M", value_parser = parse::length_m, help_heading = "Depth")]
+    pub near_plane_m: Option<f64>,
+    /// Far plane of a depth buffer, m; what reaches it is sky [default: infinite]
+    #[arg(long, value_name = "M", value_parser = parse::length_m, help_heading = "Depth")]
+    pub far_plane_m: Option<f64>,
     /// Offset added to disparities, pixels [default: 0]
     #[arg(long, value_name = "PX", value_parser = parse::number, help_heading = "Depth")]
     pub disparity_offset_px: Option<f64>,
@@ -133,6 +139,8 @@ impl OverlayArgs {
         overlay.holes = self.holes.unwrap_or(overlay.holes);
         put(&mut overlay.far_m, self.far_m);
         put(&mut overlay.baseline_m, self.baseline_m);
+        put(&mut overlay.near_plane_m, self.near_plane_m);
+        put(&mut overlay.far_plane_m, self.far_plane_m);
         let offset_px = self.disparity_offset_px;
         overlay.disparity_offset_px = offset_px.unwrap_or(overlay.disparity_offset_px);
         if self.fov.is_some() {
@@ -195,7 +203,7 @@ Examples:
 
 --vary and --each take the numeric options of one number, without their units: visibility, scale-height, base-height, top,
 contrast, patch-strength, patch-size, patch-height, patch-seed, patch-time, eye-height, camera-elevation, camera-azimuth,
-camera-roll, fov, focal, depth-scale, depth-offset, far, baseline, disparity-offset, ambient-scale, sun-elevation, sun-azimuth,
-sun-strength, ground-albedo, ground-altitude, aod-550, haze-visibility, radiance-scale, quality and brighten; and lists of
-fog-profile, droplets and fog-scattering. --vary draws lengths, ambient-scale, radiance-scale, focal and haze-visibility
-uniformly in the logarithm, and others uniformly; NAME=log:LOW..HIGH and NAME=uniform:LOW..HIGH override this.";
+camera-roll, fov, focal, depth-scale, depth-offset, far, baseline, near-plane, far-plane, disparity-offset, ambient-scale,
+sun-elevation, sun-azimuth, sun-strength, ground-albedo, ground-altitude, aod-550, haze-visibility, radiance-scale, quality and
+brighten; and lists of fog-profile, droplets and fog-scattering. --vary draws lengths, ambient-scale, radiance-scale, focal and
+haze-visibility uniformly in the logarithm, and others uniformly; NAME=log:LOW..HIGH and NAME=uniform:LOW..HIGH override this.";

@@ -27,6 +27,16 @@ pub enum DepthMeaning {
     },
     /// Reciprocal of the depth along the axis: z is `1 / (scale * value)`.
     Inverse,
+    /// Depth buffer of a perspective camera, from 0 at the near plane to 1 at the far plane, as graphics hardware stores it. Integers
+    /// stand for 0 to 1.
+    Buffer {
+        /// Depth of the near plane, metres, above 0.
+        near_m: f64,
+        /// Depth of the far plane, metres, beyond the near plane; may be infinite. What reaches it is sky.
+        far_m: f64,
+        /// 1 is at the near plane and 0 at the far plane.
+        is_reversed: bool,
+    },
 }
 
 /// Treatment of pixels whose depth is unknown.
@@ -149,6 +159,16 @@ impl DepthOptions {
                 "the offset of disparity in pixels",
                 offset_px,
                 "a finite number",
+            )?;
+        }
+        if let DepthMeaning::Buffer { near_m, far_m, .. } = self.meaning {
+            positive("the depth of the near plane in metres", near_m)?;
+            let right = "beyond the near plane, or infinite";
+            ImageError::require(
+                far_m > near_m,
+                "the depth of the far plane in metres",
+                far_m,
+                right,
             )?;
         }
         Ok(())
@@ -329,13 +349,6 @@ impl Counts {
     }
 }
 
-/// Meaning of one number.
-enum Sample {
-    Metres(f64),
-    Hole,
-    Negative,
-}
-
 impl RawDepth {
     /// The map in metres; holes are NaN.
     pub(super) fn into_map(
@@ -378,35 +391,61 @@ impl RawDepth {
 
     /// Converts the numbers to metres in place, holes to NaN.
     fn convert(&mut self, options: &DepthOptions) -> Counts {
+        let scale = options.scale;
+        match (options.meaning, options.offset) {
+            // The most common kind, without branches.
+            (DepthMeaning::ZDepth | DepthMeaning::RayDistance, None) => {
+                self.convert_by(options, |value| scaled_depth(value, scale))
+            }
+            (DepthMeaning::Buffer { .. }, _) => {
+                let largest = match self.bits {
+                    SampleBits::U8 => 255.0,
+                    SampleBits::U16 => 65_535.0,
+                    SampleBits::U32 => 4_294_967_295.0,
+                    SampleBits::Half | SampleBits::Float => 1.0,
+                };
+                let options = DepthOptions {
+                    scale: scale / largest,
+                    ..options.clone()
+                };
+                self.convert_by(&options, |value| interpret(value, &options))
+            }
+            _ => self.convert_by(options, |value| interpret(value, options)),
+        }
+    }
+
+    /// Converts with a function to metres: NaN where depth is unknown, below 0 where it is negative.
+    fn convert_by(&mut self, options: &DepthOptions, metres: impl Fn(f32) -> f64 + Sync) -> Counts {
         let far = options.far_from_m.unwrap_or(SKY_M);
         let far = far.min(SKY_M);
-        self.values
-            .par_chunks_mut(BLOCK)
-            .enumerate()
-            .map(|(block, values)| {
-                let mut counts = Counts::default();
-                for (i, value) in values.iter_mut().enumerate() {
-                    let metres = match interpret(*value, options) {
-                        Sample::Metres(metres) if metres >= far => {
-                            counts.infinite += 1;
-                            f32::INFINITY
-                        }
-                        Sample::Metres(metres) => metres as f32,
-                        Sample::Negative if !options.negative_is_unknown => {
-                            counts.negative += 1;
-                            let first = Some((block * BLOCK + i, *value));
-                            counts.first_negative = counts.first_negative.or(first);
-                            0.0
-                        }
-                        Sample::Hole | Sample::Negative => {
-                            counts.holes += 1;
-                            f32::NAN
-                        }
-                    };
-                    *value = metres;
-                }
-                counts
-            })
+        let convert = |block: usize, values: &mut [f32]| {
+            let mut counts = Counts::default();
+            let is_negative = |value: &f32| metres(*value) < 0.0;
+            let negative: u32 = values
+                .iter()
+                .map(|value| u32::from(is_negative(value)))
+                .sum();
+            if negative > 0 && !options.negative_is_unknown {
+                counts.negative = negative.into();
+                let first = values.iter().position(is_negative);
+                counts.first_negative = first.map(|at| (block * BLOCK + at, values[at]));
+            }
+            let (mut infinite, mut holes) = (0, 0);
+            for value in values {
+                let metres = metres(*value);
+                let is_known = metres >= 0.0;
+                let is_far = metres >= far;
+                holes += u32::from(!is_known);
+                infinite += u32::from(is_far);
+                let known = if is_known { metres as f32 } else { f32::NAN };
+                *value = if is_far { f32::INFINITY } else { known };
+            }
+            (counts.holes, counts.infinite) = (holes.into(), infinite.into());
+            counts
+        };
+        let blocks = self.values.par_chunks_mut(BLOCK).enumerate();
+        blocks
+            .map(|(block, values)| convert(block, values))
             .reduce(Counts::default, Counts::and)
     }
 }
@@ -417,21 +456,30 @@ fn holes_of(meaning: &DepthMeaning) -> &'static str {
         DepthMeaning::ZDepth | DepthMeaning::RayDistance => "0 or NaN",
         DepthMeaning::Disparity { .. } => "0, infinite or NaN",
         DepthMeaning::Inverse => "infinite or NaN",
+        DepthMeaning::Buffer { .. } => "NaN",
     }
 }
 
+/// Depth of a number that is proportional to it, m: NaN where it is unknown.
 #[inline(always)]
-fn interpret(value: f32, options: &DepthOptions) -> Sample {
+fn scaled_depth(value: f32, scale: f64) -> f64 {
+    let known = if value == 0.0 {
+        f64::NAN
+    } else {
+        f64::from(value) * scale
+    };
+    if value >= SKY { f64::INFINITY } else { known }
+}
+
+/// Depth of a number, m: NaN where it is unknown, below 0 where it is negative.
+fn interpret(value: f32, options: &DepthOptions) -> f64 {
     let scaled = f64::from(value) * options.scale;
     match options.meaning {
-        _ if value.is_nan() => Sample::Hole,
-        DepthMeaning::ZDepth | DepthMeaning::RayDistance => match (value, options.offset) {
-            (v, _) if v >= SKY => Sample::Metres(f64::INFINITY),
-            (_, Some(offset)) if scaled + offset < 0.0 => Sample::Negative,
-            (_, Some(offset)) => Sample::Metres(scaled + offset),
-            (0.0, None) => Sample::Hole,
-            (v, None) if v < 0.0 => Sample::Negative,
-            _ => Sample::Metres(scaled),
+        _ if value.is_nan() => f64::NAN,
+        DepthMeaning::ZDepth | DepthMeaning::RayDistance => match options.offset {
+            None => scaled_depth(value, options.scale),
+            Some(_) if value >= SKY => f64::INFINITY,
+            Some(offset) => scaled + offset,
         },
         DepthMeaning::Disparity {
             focal_length_px,
@@ -440,23 +488,36 @@ fn interpret(value: f32, options: &DepthOptions) -> Sample {
         } => {
             let disparity = scaled + offset_px;
             if value == 0.0 || value.is_infinite() {
-                Sample::Hole
+                f64::NAN
             } else if disparity <= 0.0 {
-                Sample::Metres(f64::INFINITY)
+                f64::INFINITY
             } else {
-                Sample::Metres(focal_length_px * baseline_m / disparity)
+                focal_length_px * baseline_m / disparity
             }
         }
         DepthMeaning::Inverse => match value {
-            v if v.is_infinite() && options.offset.is_some() => Sample::Hole,
-            f32::INFINITY => Sample::Hole,
+            v if v.is_infinite() && options.offset.is_some() => f64::NAN,
+            f32::INFINITY => f64::NAN,
             // Affine inverse depth is uncertain at its far end: below 0 is as far as 0.
-            _ if let Some(offset) = options.offset => {
-                Sample::Metres(1.0 / (scaled + offset).max(0.0))
-            }
-            v if v < 0.0 => Sample::Negative,
+            _ if let Some(offset) = options.offset => 1.0 / (scaled + offset).max(0.0),
+            v if v < 0.0 => scaled,
             // 1 / 0 is infinite.
-            _ => Sample::Metres(1.0 / scaled.abs()),
+            _ => 1.0 / scaled.abs(),
         },
+        DepthMeaning::Buffer {
+            near_m,
+            far_m,
+            is_reversed,
+        } => {
+            // Linear in the reciprocal of depth.
+            let nearness = if is_reversed { scaled } else { 1.0 - scaled };
+            if scaled < 0.0 {
+                scaled
+            } else if nearness <= 0.0 {
+                f64::INFINITY
+            } else {
+                1.0 / (nearness / near_m + (1.0 - nearness) / far_m)
+            }
+        }
     }
 }

@@ -110,12 +110,13 @@ fn decode_picture(source: Source, layer: Option<&str>) -> Result<Picture, Decode
 /// shape `(h, w)`, `(h, w, 1)` or `(1, h, w)`), NPZ (the only array, or that called depth), PFM (whose scale factor is ignored) or
 /// TIFF (one number to a pixel).
 ///
-/// | number in the file | z-depth, distance | disparity | inverse |
-/// |---|---|---|---|
-/// | NaN | hole | hole | hole |
-/// | 0 | hole | hole | infinitely far |
-/// | infinite | infinitely far | hole | hole |
-/// | below 0 | error | as any other | error |
+/// | number in the file | z-depth, distance | disparity | inverse | depth buffer |
+/// |---|---|---|---|---|
+/// | NaN | hole | hole | hole | hole |
+/// | 0 | hole | hole | infinitely far | the near plane; reversed: infinitely far |
+/// | 1 | 1 | 1 | 1 | infinitely far; reversed: the near plane |
+/// | infinite | infinitely far | hole | hole | infinitely far; reversed: hole |
+/// | below 0 | error | as any other | error | error |
 ///
 /// Infinitely far are also disparities that are not above 0 with their offset, depths of 1e9 m or more, and z-depths and distances
 /// of 9.9e9 units or more at any scale: renderers write 1e10 where a ray leaves the scene. Outside the data window of an EXR

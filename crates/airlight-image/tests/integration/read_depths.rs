@@ -312,6 +312,78 @@ fn affine_normalised_and_inverted_depths() {
     assert_eq!(map.metres, [INF, INF, 4.0, 2.0]);
 }
 
+/// The number in a depth buffer of a depth.
+type Project<'a> = &'a dyn Fn(f64) -> f64;
+
+/// The depths that perspective projections of graphics interfaces map to the numbers of their depth buffers.
+#[test]
+fn depth_buffers_are_linearised() {
+    let folder = Folder::new("depth-buffer");
+    let read = |near_m, far_m, is_reversed, file: &[u8]| {
+        let options = DepthOptions {
+            meaning: DepthMeaning::Buffer {
+                near_m,
+                far_m,
+                is_reversed,
+            },
+            ..options()
+        };
+        read_as(&folder, file, &options)
+    };
+    let (near, far) = (0.5, 200.0);
+    let depths = [0.5, 0.75, 3.0, 40.0, 199.0];
+    // The projections of Direct3D and Vulkan, and those with reversed depth.
+    let finite = |z: f64| far / (far - near) * (1.0 - near / z);
+    let infinite = |z: f64| 1.0 - near / z;
+    let cases: [(f64, bool, Project<'_>); 4] = [
+        (far, false, &finite),
+        (far, true, &|z| 1.0 - finite(z)),
+        (f64::INFINITY, false, &infinite),
+        (f64::INFINITY, true, &|z| near / z),
+    ];
+    for (far_m, is_reversed, project) in cases {
+        let beyond = if is_reversed { 0.0 } else { 1.0 };
+        let numbers = depths.iter().map(|&z| project(z) as f32);
+        let numbers: Vec<f32> = numbers.chain([beyond, f32::NAN]).collect();
+        let map = read(near, far_m, is_reversed, &pfm_file((7, 1), true, &numbers)).unwrap();
+        for (got, expected) in map.metres.iter().zip(depths) {
+            // Single precision leaves 6e-8 of the distance between the planes at 1.
+            let error = (f64::from(*got) / expected - 1.0).abs();
+            assert!(error < 1e-7 * (expected / near + 4.0), "{got} {expected}");
+        }
+        assert_eq!((map.metres[5], map.holes, map.infinite), (INF, 1, 1));
+    }
+    // Integers stand for 0 to 1.
+    let map = read(
+        0.5,
+        f64::INFINITY,
+        true,
+        &grey_16((3, 1), &[65_535, 6_553, 0]),
+    )
+    .unwrap();
+    assert_eq!((map.metres[0], map.metres[2]), (0.5, INF));
+    assert!(
+        (map.metres[1] / 5.000_38 - 1.0).abs() < 1e-5,
+        "{}",
+        map.metres[1]
+    );
+    let error = read(0.5, 9.0, false, &pfm_file((1, 1), true, &[-0.1])).unwrap_err();
+    assert!(matches!(error, ImageError::NegativeDepth { .. }));
+    for (near_m, far_m) in [
+        (0.0, 9.0),
+        (-1.0, 9.0),
+        (f64::INFINITY, INF.into()),
+        (1.0, 1.0),
+        (1.0, f64::NAN),
+    ] {
+        let error = read(near_m, far_m, false, &grey_16((1, 1), &[5])).unwrap_err();
+        assert!(
+            matches!(error, ImageError::Setting { .. }),
+            "{near_m} {far_m}"
+        );
+    }
+}
+
 #[test]
 fn depth_in_the_bits_of_colours() {
     let folder = Folder::new("depth-packed");

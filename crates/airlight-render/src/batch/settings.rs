@@ -166,7 +166,7 @@ use Domain::{
 };
 
 /// Every setting that can differ.
-pub(super) static SETTINGS: [Setting; 35] = [
+pub(super) static SETTINGS: [Setting; 37] = [
     number("visibility", "m", LENGTH, Fog, |s, v| {
         s.fog_mut().visibility_m = Some(v)
     }),
@@ -222,6 +222,12 @@ pub(super) static SETTINGS: [Setting; 35] = [
     number("far", "m", LENGTH, Files, |s, v| s.overlay.far_m = Some(v)),
     number("baseline", "m", LENGTH, Files, |s, v| {
         s.overlay.baseline_m = Some(v)
+    }),
+    number("near-plane", "m", LENGTH, Files, |s, v| {
+        s.overlay.near_plane_m = Some(v)
+    }),
+    number("far-plane", "m", LENGTH, Files, |s, v| {
+        s.overlay.far_plane_m = Some(v)
     }),
     number("disparity-offset", "px", even(Any), Files, |s, v| {
         s.overlay.disparity_offset_px = v

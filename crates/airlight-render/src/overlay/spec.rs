@@ -23,6 +23,10 @@ pub enum DepthFileKind {
     Disparity,
     /// Inverse depth along the camera's axis.
     Inverse,
+    /// Depth buffer, 0 at the near plane and 1 at the far plane: needs the near plane.
+    Buffer,
+    /// Depth buffer, 1 at the near plane and 0 at the far plane: needs the near plane.
+    ReversedBuffer,
 }
 
 airlight::named! { DepthFileKind, "a kind of depth", [
@@ -30,6 +34,8 @@ airlight::named! { DepthFileKind, "a kind of depth", [
     ("ray", (Ray), "distance along the ray of the pixel"),
     ("disparity", (Disparity), "stereo disparity, pixels: needs a focal length in pixels and a baseline"),
     ("inverse", (Inverse), "inverse depth"),
+    ("buffer", (Buffer), "depth buffer, 0 at the near plane to 1 at the far plane: needs the near plane"),
+    ("reversed-buffer", (ReversedBuffer), "depth buffer, 1 at the near plane to 0 at the far plane: needs the near plane"),
 ] }
 
 /// Treatment of negative depths.
@@ -87,6 +93,12 @@ pub struct OverlaySpec {
     pub baseline_m: Option<f64>,
     /// Difference of the principal points of the two cameras, added to disparities, pixels.
     pub disparity_offset_px: f64,
+    /// Depth of the near plane of a depth buffer, m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub near_plane_m: Option<f64>,
+    /// Depth of the far plane of a depth buffer, m; `None`: infinite. What reaches it is sky.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub far_plane_m: Option<f64>,
     /// Focal length, pixels, instead of a field of view.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub focal_px: Option<f64>,
@@ -139,6 +151,8 @@ impl Default for OverlaySpec {
             far_m: None,
             baseline_m: None,
             disparity_offset_px: 0.0,
+            near_plane_m: None,
+            far_plane_m: None,
             focal_px: None,
             principal_point_px: None,
             ambient: None,
@@ -175,6 +189,21 @@ impl OverlaySpec {
             DepthFileKind::Z => DepthMeaning::ZDepth,
             DepthFileKind::Ray => DepthMeaning::RayDistance,
             DepthFileKind::Inverse => DepthMeaning::Inverse,
+            DepthFileKind::Buffer | DepthFileKind::ReversedBuffer => match self.near_plane_m {
+                Some(near_m) => DepthMeaning::Buffer {
+                    near_m,
+                    far_m: self.far_plane_m.unwrap_or(f64::INFINITY),
+                    is_reversed: self.depth_kind == DepthFileKind::ReversedBuffer,
+                },
+                None => {
+                    return Err(RenderError::value(
+                        "overlay.near_plane_m",
+                        "the depth of the near plane of a depth buffer",
+                        "none",
+                        "0.1, which is that of many programs",
+                    ));
+                }
+            },
             DepthFileKind::Disparity => match (self.focal_px, self.baseline_m) {
                 (Some(focal_length_px), Some(baseline_m)) => DepthMeaning::Disparity {
                     focal_length_px,
@@ -189,6 +218,21 @@ impl OverlaySpec {
                 }
             },
         };
+        if let (Some(plane_m), false) = (
+            self.near_plane_m.or(self.far_plane_m),
+            matches!(meaning, DepthMeaning::Buffer { .. }),
+        ) {
+            let key = match self.near_plane_m {
+                Some(_) => "overlay.near_plane_m",
+                None => "overlay.far_plane_m",
+            };
+            return Err(RenderError::value(
+                key,
+                format!("a depth buffer, unlike depth-kind {}", self.depth_kind),
+                plane_m.to_string(),
+                "depth-kind buffer, or reversed-buffer",
+            ));
+        }
         if self.depth_offset.is_none() && self.depth_scale <= 0.0 {
             return Err(RenderError::value(
                 "overlay.depth_scale",
@@ -197,12 +241,17 @@ impl OverlaySpec {
                 "depth-offset with the depth of 0, in metres",
             ));
         }
-        if self.depth_offset.is_some() && self.depth_kind == DepthFileKind::Disparity {
+        let advice = match meaning {
+            DepthMeaning::Disparity { .. } => Some("disparity-offset-px"),
+            DepthMeaning::Buffer { .. } => Some("leaving it out"),
+            _ => None,
+        };
+        if let (Some(_), Some(advice)) = (self.depth_offset, advice) {
             return Err(RenderError::value(
                 "overlay.depth_offset",
                 "depth, distance or inverse depth",
-                "disparity",
-                "disparity-offset-px",
+                self.depth_kind.to_string(),
+                advice,
             ));
         }
         Ok(DepthOptions {

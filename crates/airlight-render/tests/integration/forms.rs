@@ -173,7 +173,7 @@ fn contradictions_are_refused_before_any_file_is_read() {
     };
     let light = || super::lights::point([0.0, 1.0, -5.0], 1.0);
     type Change<'a> = &'a dyn Fn(&mut OverlayScene);
-    let cases: [(Change<'_>, &str); 22] = [
+    let cases: [(Change<'_>, &str); 24] = [
         (&|s| s.scene.air.aod_550 = Some(0.2), "a solved sky"),
         (
             &|s| s.scene.sun.latitude_deg = Some(50.0),
@@ -219,6 +219,14 @@ fn contradictions_are_refused_before_any_file_is_read() {
         (
             &|s| s.overlay.depth_kind = airlight_render::overlay::DepthFileKind::Disparity,
             "focal-px",
+        ),
+        (
+            &|s| s.overlay.depth_kind = airlight_render::overlay::DepthFileKind::Buffer,
+            "near_plane_m",
+        ),
+        (
+            &|s| s.overlay.far_plane_m = Some(100.0),
+            "a depth buffer, unlike depth-kind z",
         ),
         (
             &|s| {
