@@ -6,6 +6,7 @@ use crate::math::interpolation::{Place, interval_of};
 use crate::spectrum::Spectrum;
 use crate::transfer::ray::Ray;
 use crate::transfer::shell::{PerConstituent, Shell};
+use std::ops::Range;
 
 /// Grid of the field: radii and cosines of the sun's zenith angle.
 #[derive(Clone, Debug)]
@@ -24,7 +25,7 @@ pub struct FieldGrid {
 struct Interval {
     /// Index of the first of four radii, and those of them that interpolate.
     first: usize,
-    nodes: std::ops::Range<usize>,
+    nodes: Range<usize>,
     coordinates: [f64; 4],
     /// Reciprocals of the products of differences of coordinates.
     inverse: [f64; 4],
@@ -102,7 +103,7 @@ impl FieldGrid {
 
 impl Interval {
     /// Interval from node `below` to the next, within the nodes of `piece`.
-    fn new(all: &[f64], below: usize, piece: std::ops::Range<usize>) -> Self {
+    fn new(all: &[f64], below: usize, piece: Range<usize>) -> Self {
         let from = below
             .saturating_sub(1)
             .clamp(piece.start, piece.end.saturating_sub(4).max(piece.start));
@@ -292,13 +293,19 @@ impl<const N: usize> RadianceField<N> {
         at.value_in_f32(&self.ground_irradiance).exp()
     }
 
-    /// Interpolates the stored form of the first `count` moments in radius, for all sun cosines, into `out`:
+    /// Interpolates the stored form of the first `count` moments in radius, for these sun cosines, into `out`:
     /// `[sun][harmonic]`.
     #[inline(always)]
-    pub fn at_radius(&self, at: RadialStencil, count: usize, out: &mut Vec<Spectrum<N>>) {
+    pub fn at_radius(
+        &self,
+        at: RadialStencil,
+        suns: Range<usize>,
+        count: usize,
+        out: &mut Vec<Spectrum<N>>,
+    ) {
         out.clear();
         let [wa, wb, wc, wd] = at.weights;
-        for sun in 0..self.grid.sun_cosines.len() {
+        for sun in suns {
             let [a, b, c, d] = [0, 1, 2, 3].map(|k| &self.point(at.first + k, sun)[..count]);
             for (((a, b), c), d) in a.iter().zip(b).zip(c).zip(d) {
                 out.push((*a * wa + *b * wb) + (*c * wc + *d * wd));

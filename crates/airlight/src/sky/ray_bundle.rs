@@ -11,7 +11,7 @@ use crate::spectrum::Spectrum;
 use crate::transfer::march::{MAX_NODES, Marcher};
 use crate::transfer::ray::{Ray, in_shadow};
 use crate::transfer::shell::PerConstituent;
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Range};
 
 /// What the rays of a bundle have in common: quadrature nodes, transmittances and densities along the path.
 pub struct Path<const N: usize> {
@@ -311,8 +311,9 @@ impl<const N: usize> Path<N> {
         let (rays, count) = (bundle.len(), basis.count());
         scratch.resize(rays, count);
         for node in &self.nodes {
-            field.at_radius(node.place, count, &mut scratch.row);
-            scratch.locate(&field.grid, self, node, bundle);
+            let suns = scratch.locate(&field.grid, self, node, bundle);
+            let first_sun = suns.start;
+            field.at_radius(node.place, suns, count, &mut scratch.row);
             basis.evaluate_bundle(
                 node.mu,
                 &scratch.toward_sun,
@@ -320,7 +321,7 @@ impl<const N: usize> Path<N> {
                 &mut scratch.y,
             );
             for (slot, out) in out.iter_mut().enumerate() {
-                let below = scratch.below[slot] as usize * count;
+                let below = (scratch.below[slot] as usize - first_sun) * count;
                 let (a, b) = scratch.row[below..below + 2 * count].split_at(count);
                 let (wa, wb) = (1.0 - scratch.fraction[slot], scratch.fraction[slot]);
                 let mut sum = node.source_weights[0] * scratch.y[slot];
@@ -401,9 +402,16 @@ impl<const N: usize> Scratch<N> {
         self.y.resize(rays * harmonics, 0.0);
     }
 
-    /// Computes for each ray the position of the sun relative to `node` and its interval in the sun cosines of the grid.
+    /// Computes for each ray the position of the sun relative to `node` and its interval in the sun cosines of the grid; returns
+    /// the sun cosines that are used.
     #[inline(always)]
-    fn locate(&mut self, grid: &FieldGrid, path: &Path<N>, node: &PathNode<N>, bundle: &RayBundle) {
+    fn locate(
+        &mut self,
+        grid: &FieldGrid,
+        path: &Path<N>,
+        node: &PathNode<N>,
+        bundle: &RayBundle,
+    ) -> Range<usize> {
         let rays = bundle.len();
         let (mu_suns, towards) = (&mut self.mu_sun[..rays], &mut self.toward_sun[..rays]);
         let (nus, starts) = (&bundle.nu[..rays], &bundle.mu_sun[..rays]);
@@ -432,5 +440,8 @@ impl<const N: usize> Scratch<N> {
             );
             fraction[slot] = ((mu_suns[slot] - a) / (b - a)).clamp(0.0, 1.0);
         }
+        let first = below.iter().min().map_or(0, |&sun| sun as usize);
+        let last = below.iter().max().map_or(0, |&sun| sun as usize);
+        first..last + 2
     }
 }
