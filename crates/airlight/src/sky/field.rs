@@ -202,14 +202,15 @@ fn resolve_depth<const N: usize>(air: &Air<N>, radii_m: &[f64]) -> Vec<f64> {
         f64::from(air.coefficients.extinction(&columns).max_element())
     };
     let whole = depth_above(shell.ground_radius_m);
+    let max_step = MAX_STEP.max(whole / MAX_STEPS);
     let mut out = vec![radii_m[0]];
     for edge in radii_m.windows(2) {
         let mut parts = vec![(edge[0], edge[1])];
         while let Some((below, above)) = parts.pop() {
             let (deep, shallow) = (depth_above(below), depth_above(above));
             let from_end = shallow.min(whole - deep).max(0.0);
-            let allowed = (GROWTH * from_end).clamp(MIN_STEP, MAX_STEP);
-            if deep - shallow > allowed && out.len() + parts.len() < MAX_RADII {
+            let allowed = (GROWTH * from_end).clamp(MIN_STEP, max_step);
+            if deep - shallow > allowed && above - below > THINNEST_M {
                 let middle = 0.5 * (below + above);
                 parts.extend([(middle, above), (below, middle)]);
             } else {
@@ -220,13 +221,15 @@ fn resolve_depth<const N: usize>(air: &Air<N>, radii_m: &[f64]) -> Vec<f64> {
     out
 }
 
-/// Optical depth of a step between radii: its smallest and largest limit, and the limit as a fraction of the depth from the
-/// nearest end.
+/// Smallest limit of the optical depth of a step between radii, the limit as a fraction of the depth from the nearest end, and
+/// its largest value.
 const MIN_STEP: f64 = 0.15;
-const MAX_STEP: f64 = 4.0;
 const GROWTH: f64 = 0.25;
-/// Largest number of radii.
-const MAX_RADII: usize = 300;
+const MAX_STEP: f64 = 4.0;
+/// About the largest number of steps in the interior of very thick air, where the light changes slowly.
+const MAX_STEPS: f64 = 60.0;
+/// Height of an interval that is not divided, m.
+const THINNEST_M: f64 = 1e-3;
 
 /// Moments of the radiance, `A_lm = integral of L Y_lm`, at each node of a grid, and the diffuse irradiance on the ground,
 /// both per unit solar irradiance.

@@ -196,7 +196,8 @@ fn panel_altitudes_m(
         .filter(|&h| h > bottom && h < top)
         .collect();
     kinks.sort_by(f64::total_cmp);
-    kinks.dedup();
+    // Closer kinks are one.
+    kinks.dedup_by(|above, below| *above - *below < 1e-3);
 
     let mut edges = vec![bottom];
     let mut next_kink = kinks.iter().copied().peekable();
