@@ -6,7 +6,7 @@ use crate::spectrum::Spectrum;
 use crate::transfer::coefficients::Coefficients;
 use crate::transfer::columns::SlantColumns;
 use crate::transfer::delta_m::peak_fraction;
-use crate::transfer::shell::Shell;
+use crate::transfer::shell::{Shell, divided};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -157,17 +157,7 @@ fn panel_radii_m<const N: usize>(
             })
         })
     };
-    let mut out = vec![shell.panel_radii_m[0]];
-    for edge in shell.panel_radii_m.windows(2) {
-        let mut parts = vec![(edge[0], edge[1])];
-        while let Some((below, above)) = parts.pop() {
-            let middle = 0.5 * (below + above);
-            if above - below > 1e-3 && !fine(depths(below), depths(above)) {
-                parts.extend([(middle, above), (below, middle)]);
-            } else {
-                out.push(above);
-            }
-        }
-    }
-    out
+    divided(&shell.panel_radii_m, |below, above| {
+        fine(depths(below), depths(above))
+    })
 }

@@ -5,7 +5,7 @@ use super::harmonics::Harmonics;
 use crate::math::interpolation::{Place, interval_of};
 use crate::spectrum::Spectrum;
 use crate::transfer::ray::Ray;
-use crate::transfer::shell::{PerConstituent, Shell};
+use crate::transfer::shell::{PerConstituent, Shell, divided};
 use std::ops::Range;
 
 /// Grid of the field: radii and cosines of the sun's zenith angle.
@@ -183,7 +183,9 @@ fn insert_kinks(radii_m: &mut Vec<f64>, kinks: &[f64]) {
         let near = |r: f64| (r - kink).abs() < 0.3 * gap && !kinks.contains(&r);
         let last = radii_m.len() - 1;
         if radii_m[above] == kink {
-        } else if above < last && near(radii_m[above]) {
+            continue;
+        }
+        if above < last && near(radii_m[above]) {
             radii_m[above] = kink;
         } else if above > 1 && near(radii_m[above - 1]) {
             radii_m[above - 1] = kink;
@@ -203,22 +205,11 @@ fn resolve_depth<const N: usize>(air: &Air<N>, radii_m: &[f64]) -> Vec<f64> {
     };
     let whole = depth_above(shell.ground_radius_m);
     let max_step = MAX_STEP.max(whole / MAX_STEPS);
-    let mut out = vec![radii_m[0]];
-    for edge in radii_m.windows(2) {
-        let mut parts = vec![(edge[0], edge[1])];
-        while let Some((below, above)) = parts.pop() {
-            let (deep, shallow) = (depth_above(below), depth_above(above));
-            let from_end = shallow.min(whole - deep).max(0.0);
-            let allowed = (GROWTH * from_end).clamp(MIN_STEP, max_step);
-            if deep - shallow > allowed && above - below > THINNEST_M {
-                let middle = 0.5 * (below + above);
-                parts.extend([(middle, above), (below, middle)]);
-            } else {
-                out.push(above);
-            }
-        }
-    }
-    out
+    divided(radii_m, |below, above| {
+        let (deep, shallow) = (depth_above(below), depth_above(above));
+        let from_end = shallow.min(whole - deep).max(0.0);
+        deep - shallow <= (GROWTH * from_end).clamp(MIN_STEP, max_step)
+    })
 }
 
 /// Smallest limit of the optical depth of a step between radii, the limit as a fraction of the depth from the nearest end, and
@@ -228,9 +219,6 @@ const GROWTH: f64 = 0.25;
 const MAX_STEP: f64 = 4.0;
 /// About the largest number of steps in the interior of very thick air, where the light changes slowly.
 const MAX_STEPS: f64 = 60.0;
-/// Height of an interval that is not divided, m.
-const THINNEST_M: f64 = 1e-3;
-
 /// Moments of the radiance, `A_lm = integral of L Y_lm`, at each node of a grid, and the diffuse irradiance on the ground,
 /// both per unit solar irradiance.
 ///

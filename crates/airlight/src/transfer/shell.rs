@@ -156,6 +156,26 @@ impl Shell {
     }
 }
 
+/// Height of an interval of altitudes that is not divided, m.
+const THINNEST_M: f64 = 1e-3;
+
+/// Increasing radii, with each interval halved until it is `fine(below, above)` or a millimetre high.
+pub fn divided(radii_m: &[f64], fine: impl Fn(f64, f64) -> bool) -> Vec<f64> {
+    let mut out = vec![radii_m[0]];
+    for edge in radii_m.windows(2) {
+        let mut parts = vec![(edge[0], edge[1])];
+        while let Some((below, above)) = parts.pop() {
+            if above - below > THINNEST_M && !fine(below, above) {
+                let middle = 0.5 * (below + above);
+                parts.extend([(middle, above), (below, middle)]);
+            } else {
+                out.push(above);
+            }
+        }
+    }
+    out
+}
+
 /// Altitudes from `bottom` to `top`, both included, between which all densities are free of kinks and, as far as the
 /// constituent contributes, change by less than a factor `e^PANEL_DECAY`; and the altitudes of the kinks.
 fn panel_altitudes_m(
@@ -197,7 +217,7 @@ fn panel_altitudes_m(
         .collect();
     kinks.sort_by(f64::total_cmp);
     // Closer kinks are one.
-    kinks.dedup_by(|above, below| *above - *below < 1e-3);
+    kinks.dedup_by(|above, below| *above - *below < THINNEST_M);
 
     let mut edges = vec![bottom];
     let mut next_kink = kinks.iter().copied().peekable();
