@@ -126,7 +126,7 @@ impl<const N: usize> Tracer<'_, N> {
         let mut y = [0.0f32; Harmonics::MAX_COUNT];
         let mut edges = std::mem::take(&mut self.edges);
         let path = &mut accumulated.path;
-        let columns_m = marcher.march(
+        marcher.march(
             self.air.shell(),
             ray,
             span,
@@ -142,6 +142,7 @@ impl<const N: usize> Tracer<'_, N> {
                 ControlFlow::Continue(())
             },
         );
+        let columns_m = self.air.columns.along_m(ray, span, &mut edges);
         self.edges = edges;
         for (sum, column) in accumulated.columns_m.iter_mut().zip(columns_m) {
             *sum += column;

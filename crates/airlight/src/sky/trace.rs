@@ -97,8 +97,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
         let mut y = [0.0f32; Harmonics::MAX_COUNT];
         let mut edges = std::mem::take(&mut self.edges);
         let span = (segment.start_m, segment.end_m);
-        let columns = self
-            .marcher
+        self.marcher
             .march(air.shell(), ray, span, &mut edges, |nodes| {
                 let mut brightest = 0.0f32;
                 for node in nodes {
@@ -128,6 +127,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
                     ControlFlow::Continue(())
                 }
             });
+        let columns = air.columns.along_m(ray, span, &mut edges);
         self.edges = edges;
         let end = ray.advanced(segment.end_m);
         let ground = match segment.meets_ground {
@@ -142,10 +142,11 @@ impl<'a, const N: usize> Tracer<'a, N> {
             false => Spectrum::ZERO,
         };
         let transmittance = air.coefficients.transmittance(&columns);
-        // T' - T, without cancellation if both are close to 1.
+        // T' - T, without cancellation if both are close to 1, or overflow if both are close to 0.
         let into_peaks =
             air.coefficients.extinction(&columns) - dimming.coefficients.extinction(&columns);
-        let difference = transmittance * into_peaks.map(f32::exp_m1);
+        let difference =
+            dimming.coefficients.transmittance(&columns) * into_peaks.map(|tau| -(-tau).exp_m1());
         path = path.mul_acc(difference, behind);
         Light {
             transmittance,

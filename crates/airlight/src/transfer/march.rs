@@ -146,7 +146,7 @@ impl<'a> Marcher<'a> {
 /// Fills `edges` with increasing distances from `start_m` to `end_m`: where a density has a kink or has changed enough, the
 /// lowest point of the ray, and the edges of the planet's shadow.
 #[inline(always)]
-fn panel_edges(
+pub(super) fn panel_edges(
     shell: &Shell,
     radii_m: &[f64],
     ray: &Ray,

@@ -1,7 +1,6 @@
 //! Geometry and density profiles of a spherical atmosphere, independent of wavelength.
 
 use crate::atmosphere::{Atmosphere, DensityProfile};
-use crate::math::quadrature::FixedRule;
 use crate::transfer::ray::{AirSegment, Ray};
 
 /// Largest number of constituents.
@@ -9,6 +8,9 @@ pub const MAX_CONSTITUENTS: usize = 8;
 
 /// One number for each constituent (relative densities, or columns in metres at density 1); unused entries are 0.
 pub type PerConstituent = [f64; MAX_CONSTITUENTS];
+
+/// Vertical optical depth at any visible wavelength up to which an absorber needs few panels along rays.
+const WEAK_ABSORBER: f64 = 0.05;
 
 /// An atmosphere with more than [`MAX_CONSTITUENTS`] constituents, and how many it has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,6 +29,8 @@ pub struct Shell {
     pub panel_radii_m: Vec<f64>,
     /// Radii at which a density has a jump or a sharp bend.
     pub kink_radii_m: Vec<f64>,
+    /// Largest extinction of each constituent at density 1 from 280 to 830 nm, 1/m.
+    pub(super) max_extinction_per_m: Vec<f64>,
     densities: Vec<DensityProfile>,
 }
 
@@ -45,17 +49,23 @@ impl Shell {
             .iter()
             .map(|c| c.density.clone())
             .collect();
-        let scatters: Vec<bool> = atmosphere
+        let (bottom, top) = (planet.ground_altitude_m, planet.top_altitude_m);
+        let resolutions: Vec<Resolution> = atmosphere
             .constituents
             .iter()
             .map(|c| {
-                (360..=830)
-                    .step_by(10)
-                    .any(|nm| c.scattering_per_m.at(f64::from(nm)) > 0.0)
+                let column_m = c.density.column_m(bottom, top);
+                let visible = || (360..=830).step_by(10).map(f64::from);
+                if visible().any(|nm| c.scattering_per_m.at(nm) > 0.0) {
+                    Resolution::scatterer(low_sun)
+                } else if visible().any(|nm| column_m * c.extinction_per_m(nm) > WEAK_ABSORBER) {
+                    Resolution::STRONG_ABSORBER
+                } else {
+                    Resolution::WEAK_ABSORBER
+                }
             })
             .collect();
-        let (bottom, top) = (planet.ground_altitude_m, planet.top_altitude_m);
-        let (panels, kinks) = panel_altitudes_m(&densities, &scatters, (bottom, top), low_sun);
+        let (panels, kinks) = panel_altitudes_m(&densities, &resolutions, (bottom, top));
         let radii = |altitudes: Vec<f64>| {
             let radius = |altitude| planet.radius_m + altitude;
             altitudes.into_iter().map(radius).collect()
@@ -66,6 +76,14 @@ impl Shell {
             top_radius_m: planet.radius_m + top,
             panel_radii_m: radii(panels),
             kink_radii_m: radii(kinks),
+            max_extinction_per_m: atmosphere
+                .constituents
+                .iter()
+                .map(|part| {
+                    let extinction = |nm| part.extinction_per_m(f64::from(nm));
+                    (280..=830).step_by(10).map(extinction).fold(0.0, f64::max)
+                })
+                .collect(),
             densities,
         })
     }
@@ -122,37 +140,29 @@ impl Shell {
         self.ground_radius_m + coordinate * coordinate * self.thickness_m()
     }
 
-    /// Integrates the columns along an ascending ray, for the column table.
-    pub(super) fn integrate_columns_m(
-        &self,
-        radius_m: f64,
-        mu: f64,
-        rule: &FixedRule<4>,
-    ) -> PerConstituent {
-        let ray = Ray {
-            radius_m,
-            mu,
-            mu_sun: 1.0,
-            nu: 0.0,
-        };
-        let mut edges = vec![0.0];
-        for &edge in &self.panel_radii_m {
-            if edge > radius_m
-                && let Some((_, t)) = ray.crossings(edge)
-            {
-                edges.push(t);
-            }
+    /// Increasing radii from the ground to the top, between which every density is smooth: its kinks, all of them.
+    pub(super) fn smooth_radii_m(&self) -> Vec<f64> {
+        let mut radii = vec![self.ground_radius_m, self.top_radius_m];
+        for density in &self.densities {
+            let structure = density.structure();
+            let ramps = structure.ramps_m.into_iter().flatten();
+            radii.extend(
+                structure
+                    .kinks_m
+                    .into_iter()
+                    .chain(ramps)
+                    .map(|h| h + self.planet_radius_m),
+            );
         }
-        let mut columns = [0.0; MAX_CONSTITUENTS];
-        for panel in edges.windows(2) {
-            for (t, w) in rule.on(panel[0], panel[1]) {
-                let densities = self.densities_at(ray.radius_at(t));
-                for c in 0..self.constituents() {
-                    columns[c] += w * densities[c];
-                }
-            }
+        radii.retain(|r| (self.ground_radius_m..=self.top_radius_m).contains(r));
+        radii.sort_by(f64::total_cmp);
+        // Closer kinks are one; the ends stay.
+        let top = self.top_radius_m;
+        radii.dedup_by(|above, below| *above - *below < THINNEST_M && *above < top);
+        while radii.len() > 2 && top - radii[radii.len() - 2] < THINNEST_M {
+            radii.remove(radii.len() - 2);
         }
-        columns
+        radii
     }
 }
 
@@ -176,42 +186,67 @@ pub fn divided(radii_m: &[f64], fine: impl Fn(f64, f64) -> bool) -> Vec<f64> {
     out
 }
 
+/// What panels have to resolve of a constituent, as fractions of its largest density.
+#[derive(Clone, Copy)]
+struct Resolution {
+    /// Density below which it needs no panels.
+    least_density: f64,
+    /// Largest kink ([`sharpness`]) inside a panel.
+    kink: f64,
+}
+
+impl Resolution {
+    const STRONG_ABSORBER: Self = Self {
+        least_density: 1e-4,
+        kink: 0.2,
+    };
+    const WEAK_ABSORBER: Self = Self {
+        least_density: 0.1,
+        kink: 0.8,
+    };
+
+    /// In twilight all light comes from thin air above the planet's shadow: with 3e-3 the sky is off by 1 % with the sun at 2
+    /// degrees, 8 % at -2, 20 % at -6.
+    fn scatterer(low_sun: bool) -> Self {
+        Self {
+            least_density: if low_sun { 1e-5 } else { 3e-3 },
+            kink: 0.2,
+        }
+    }
+}
+
 /// Altitudes from `bottom` to `top`, both included, between which all densities are free of kinks and, as far as the
 /// constituent contributes, change by less than a factor `e^PANEL_DECAY`; and the altitudes of the kinks.
 fn panel_altitudes_m(
     densities: &[DensityProfile],
-    scatters: &[bool],
+    resolutions: &[Resolution],
     (bottom, top): (f64, f64),
-    low_sun: bool,
 ) -> (Vec<f64>, Vec<f64>) {
     const PANEL_DECAY: f64 = 1.7;
     const SAMPLES: usize = 4000;
     let altitude = |i: usize| bottom + (top - bottom) * (i as f64 / SAMPLES as f64).powi(2);
-    // Fraction of its peak below which a constituent needs no panels. In twilight all light comes from thin air above the
-    // planet's shadow: with 3e-3 the sky is off by 1 % with the sun at 2 degrees, 8 % at -2, 20 % at -6.
-    let min_density = if low_sun { 1e-5 } else { 3e-3 };
-    let least = |scatters: bool| if scatters { min_density } else { 0.1 };
-    let floors: Vec<f64> = densities
+    let peaks: Vec<f64> = densities
         .iter()
-        .zip(scatters)
-        .map(|(density, &scatters)| {
-            let peak = (0..=SAMPLES)
+        .map(|density| {
+            (0..=SAMPLES)
                 .map(|i| density.at(altitude(i)))
-                .fold(0.0, f64::max);
-            peak * least(scatters)
+                .fold(0.0, f64::max)
         })
+        .collect();
+    let floors: Vec<f64> = peaks
+        .iter()
+        .zip(resolutions)
+        .map(|(peak, resolution)| peak * resolution.least_density)
         .collect();
     let mut kinks: Vec<f64> = densities
         .iter()
-        .zip(&floors)
-        .zip(scatters)
-        .flat_map(|((density, &floor), &scatters)| {
-            let peak = floor / least(scatters);
-            let allowed = peak * if scatters { 0.2 } else { 0.8 };
+        .zip(&peaks)
+        .zip(resolutions)
+        .flat_map(|((density, peak), resolution)| {
             density
                 .breakpoints_m()
                 .into_iter()
-                .filter(move |&h| sharpness(density, h, top - bottom) > allowed)
+                .filter(move |&h| sharpness(density, h, top - bottom) > peak * resolution.kink)
         })
         .filter(|&h| h > bottom && h < top)
         .collect();
