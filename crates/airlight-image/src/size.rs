@@ -45,7 +45,7 @@ impl Size {
     }
 
     /// The same aspect ratio in fewer pixels: at most `longest_side`, at least 1 a side.
-    pub(crate) fn shrunk_to(self, longest_side: u32) -> Self {
+    pub fn shrunk_to(self, longest_side: u32) -> Self {
         let longest = self.width.max(self.height);
         let side = longest_side.clamp(1, longest);
         let scaled = |n: u32| {

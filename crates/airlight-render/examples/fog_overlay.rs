@@ -18,10 +18,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     scene.fog_mut().visibility_m = Some(12.0);
     scene.check()?;
     let output = Path::new(output);
-    let format = scene.overlay.output_format(output)?;
-    let image = OverlayImage::read(&scene.overlay, format)?;
+    let format = scene.output_format(output)?;
+    let image = OverlayImage::read(&scene, format)?;
     let prepared = PreparedOverlay::new(&scene, &image, None)?;
-    let rows = prepared.overlay(&image)?;
-    image.write(&rows, &scene.overlay, output, format, Control::default())?;
+    let rows = prepared.output(&scene, &image, format)?;
+    rows.write(output, Control::default())?;
     Ok(())
 }

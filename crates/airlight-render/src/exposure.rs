@@ -1,9 +1,9 @@
 //! Exposure of display pictures (PNG, JPEG, previews): fixed, or metered from a small picture.
 
-use airlight::scene::MeteringMode;
+use airlight::scene::{self, MeteringMode, OutputSpec};
 use airlight::spectrum::RgbSpace;
 use airlight_image::tone::{Exposure, MIDDLE_GREY, Metering};
-use airlight_image::{Frame, ImageError};
+use airlight_image::{Frame, ImageError, Size};
 use glam::DVec3;
 use std::f64::consts::PI;
 
@@ -41,22 +41,43 @@ pub struct ExposureSettings {
     pub brighten_stops: f64,
 }
 
-/// A small picture to be metered, linear (cd/m^2) and without the sun's disc.
-#[derive(Clone, Copy, Debug)]
-pub struct MeteredPicture<'a> {
-    /// Directions of the pixels.
-    pub frame: &'a Frame,
-    /// Colours, row by row.
-    pub pixels: &'a [[f32; 3]],
-    /// Space of the colours.
-    pub space: RgbSpace,
-    /// Elevation of the horizon, radians.
-    pub horizon_elevation_rad: f64,
+/// A pixel to be metered.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MeteredPixel {
+    /// Luminance, cd/m^2.
+    pub luminance: f64,
+    /// Solid angle relative to the other pixels.
+    pub solid_angle: f64,
+    /// Whether it shows the ground or an object on it, not the sky.
+    pub is_ground: bool,
+}
+
+/// A small picture to be metered, without the sun's disc.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeteredPicture {
+    /// Width and height.
+    pub size: Size,
+    /// Pixels, row by row.
+    pub pixels: Vec<MeteredPixel>,
     /// Illuminance of sun and sky on the horizontal, lx.
     pub horizontal_lx: f64,
 }
 
 impl ExposureSettings {
+    /// The exposure settings of a scene's output.
+    pub fn of(output: &OutputSpec) -> Self {
+        let (ev100, metering) = match output.exposure {
+            Some(scene::Exposure::Ev100(ev100)) => (Some(ev100), MeteringMode::default()),
+            Some(scene::Exposure::Metered(mode)) => (None, mode),
+            None => (None, MeteringMode::default()),
+        };
+        Self {
+            ev100,
+            metering,
+            brighten_stops: output.brighten.unwrap_or(0.0),
+        }
+    }
+
     /// The exposure if it does not depend on the picture.
     ///
     /// # Errors
@@ -71,7 +92,7 @@ impl ExposureSettings {
     ///
     /// # Errors
     /// [`ImageError::Setting`] for an exposure out of range.
-    pub fn metered(&self, picture: &MeteredPicture<'_>) -> Result<Exposure, ImageError> {
+    pub fn metered(&self, picture: &MeteredPicture) -> Result<Exposure, ImageError> {
         if let Some(exposure) = self.fixed()? {
             return Ok(exposure);
         }
@@ -91,10 +112,10 @@ impl ExposureSettings {
     }
 }
 
-/// A pixel to be metered.
+/// A pixel and its place in the picture.
 struct Pixel {
     luminance: f64,
-    solid_angle_sr: f64,
+    solid_angle: f64,
     is_ground: bool,
     /// Distance from the centre, relative to the shorter side of the picture.
     from_centre: f64,
@@ -112,19 +133,48 @@ impl Pixel {
     }
 }
 
-impl MeteredPicture<'_> {
+impl MeteredPicture {
+    /// The pixels of a frame, from their colours in a space (cd/m^2), with ground below the horizon.
+    pub fn of_frame(
+        frame: &Frame,
+        colours: &[[f32; 3]],
+        space: RgbSpace,
+        horizon_elevation_rad: f64,
+        horizontal_lx: f64,
+    ) -> Self {
+        let size = frame.size();
+        let meets_ground = |d: DVec3| d.y.clamp(-1.0, 1.0).asin() < horizon_elevation_rad;
+        let pixels = (0..).zip(colours).map(|(index, rgb)| {
+            let (i, j) = (index % size.width(), index / size.width());
+            MeteredPixel {
+                luminance: space.luminance(rgb.map(f64::from)),
+                solid_angle: frame.pixel_solid_angle(i, j),
+                is_ground: frame.pixel_direction(i, j).is_some_and(meets_ground),
+            }
+        });
+        Self {
+            size,
+            pixels: pixels.collect(),
+            horizontal_lx,
+        }
+    }
+
     fn pixels(&self) -> impl Iterator<Item = Pixel> + '_ {
-        let size = self.frame.size();
+        let size = self.size;
         let (width, height) = (f64::from(size.width()), f64::from(size.height()));
-        (0..).zip(self.pixels).map(move |(index, rgb)| {
+        (0..).zip(&self.pixels).map(move |(index, pixel)| {
             let (i, j) = (index % size.width(), index / size.width());
             let across = f64::from(i) + 0.5 - 0.5 * width;
             let down = f64::from(j) + 0.5 - 0.5 * height;
-            let meets_ground = |d: DVec3| d.y.clamp(-1.0, 1.0).asin() < self.horizon_elevation_rad;
+            let &MeteredPixel {
+                luminance,
+                solid_angle,
+                is_ground,
+            } = pixel;
             Pixel {
-                luminance: self.space.luminance(rgb.map(f64::from)),
-                solid_angle_sr: self.frame.pixel_solid_angle(i, j),
-                is_ground: self.frame.pixel_direction(i, j).is_some_and(meets_ground),
+                luminance,
+                solid_angle,
+                is_ground,
                 from_centre: across.hypot(down) / width.min(height),
                 share_within: PI * across.hypot(down).powi(2) / (width * height),
             }
@@ -139,7 +189,7 @@ impl MeteredPicture<'_> {
     fn mean_luminance(&self, weight: impl Fn(&Pixel) -> f64) -> f64 {
         let (mut sum, mut weights) = (0.0, 0.0);
         for pixel in self.pixels().filter(|pixel| pixel.luminance.is_finite()) {
-            let weight = pixel.solid_angle_sr * weight(&pixel);
+            let weight = pixel.solid_angle * weight(&pixel);
             sum += weight * pixel.luminance;
             weights += weight;
         }
@@ -150,7 +200,7 @@ impl MeteredPicture<'_> {
     fn highlight(&self) -> f64 {
         let samples: Vec<_> = self
             .pixels()
-            .map(|pixel| (pixel.luminance as f32, pixel.solid_angle_sr as f32))
+            .map(|pixel| (pixel.luminance as f32, pixel.solid_angle as f32))
             .collect();
         let brightest = Metering {
             low_percentile: 0.99,
@@ -171,7 +221,7 @@ impl MeteredPicture<'_> {
                 continue;
             }
             let share = if pixel.is_ground { GROUND_SHARE } else { 1.0 };
-            let weight = share * pixel.solid_angle_sr;
+            let weight = share * pixel.solid_angle;
             samples.push((pixel.luminance as f32, weight as f32));
             if pixel.luminance > 0.0 {
                 lit += weight;
@@ -202,13 +252,7 @@ mod tests {
         let pixels: Vec<_> = (0..64 * 128)
             .map(|k| [luminance(frame.pixel_direction(k % 128, k / 128).unwrap()); 3])
             .collect();
-        let picture = MeteredPicture {
-            frame: &frame,
-            pixels: &pixels,
-            space: RgbSpace::Srgb,
-            horizon_elevation_rad: 0.0,
-            horizontal_lx: 1000.0,
-        };
+        let picture = MeteredPicture::of_frame(&frame, &pixels, RgbSpace::Srgb, 0.0, 1000.0);
         settings.metered(&picture).unwrap().factor()
     }
 

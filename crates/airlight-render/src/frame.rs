@@ -221,13 +221,13 @@ impl<'r> PreparedFrame<'r> {
         }
         let frame = self.renderer.layout().overview(METERED_WIDTH)?;
         let pixels = self.pixels(&frame, Layer::Sky);
-        Ok(settings.metered(&MeteredPicture {
-            frame: &frame,
-            pixels: &pixels,
-            space: self.channels.space(),
-            horizon_elevation_rad: self.preview.horizon_elevation_rad(),
-            horizontal_lx: self.light.horizontal_lx(),
-        })?)
+        Ok(settings.metered(&MeteredPicture::of_frame(
+            &frame,
+            &pixels,
+            self.channels.space(),
+            self.preview.horizon_elevation_rad(),
+            self.light.horizontal_lx(),
+        ))?)
     }
 
     /// The tone mapper from linear light to display values.

@@ -4,6 +4,7 @@ use crate::error::RenderError;
 use airlight::scene::{Gamut, OutputSpec};
 use airlight::spectrum::RgbSpace;
 use airlight_image::PictureFormat;
+use std::path::Path;
 
 /// Kinds of files that an option acts on.
 #[derive(Clone, Copy)]
@@ -41,77 +42,62 @@ impl ActsOn {
     }
 }
 
-/// Refuses the first option that is set and that a file of the output's format would ignore. `is_previewed`: the picture is also
-/// shown tone mapped, so that options of display formats have an effect.
+/// Options of an output: key, whether it is set, and the files that it acts on.
+fn options(output: &OutputSpec) -> [(&'static str, bool, ActsOn); 15] {
+    use ActsOn::{Display, Format, Linear};
+    let is_other_space = output
+        .color_space
+        .is_some_and(|space| space != RgbSpace::Srgb);
+    [
+        ("color_space", is_other_space, Linear),
+        ("scale", output.scale.is_some(), Linear),
+        ("gamut", output.gamut == Some(Gamut::Desaturate), Linear),
+        ("exposure", output.exposure.is_some(), Display),
+        ("brighten", output.brighten.is_some(), Display),
+        ("tone", output.tone.is_some(), Display),
+        ("tone_contrast", output.tone_contrast.is_some(), Display),
+        ("saturation", output.saturation.is_some(), Display),
+        ("white_balance_k", output.white_balance_k.is_some(), Display),
+        ("scotopic", output.scotopic == Some(true), Display),
+        (
+            "spectral",
+            output.spectral == Some(true),
+            Format(PictureFormat::EXR),
+        ),
+        (
+            "precision",
+            output.precision.is_some(),
+            Format(PictureFormat::EXR),
+        ),
+        (
+            "compression",
+            output.compression.is_some(),
+            Format(PictureFormat::EXR),
+        ),
+        ("bits", output.bits.is_some(), Format(PictureFormat::PNG)),
+        (
+            "quality",
+            output.quality.is_some(),
+            Format(PictureFormat::JPEG),
+        ),
+    ]
+}
+
+/// Refuses the first option that is set and that a file of a format would ignore. `is_previewed`: the picture is also shown tone
+/// mapped, so that options of display formats have an effect.
 ///
 /// # Errors
 /// [`RenderError`] with the key, and the endings of files on which it acts.
 pub(crate) fn refuse_ignored(
     output: &OutputSpec,
-    format: Option<PictureFormat>,
+    file: &Path,
+    format: PictureFormat,
     is_previewed: bool,
 ) -> Result<(), RenderError> {
-    let Some(format) = format else {
-        return Ok(());
-    };
-    let other_space = |space: RgbSpace| space != RgbSpace::Srgb;
-    let options = [
-        (
-            "color_space",
-            output.color_space.is_some_and(other_space),
-            ActsOn::Linear,
-        ),
-        ("scale", output.scale.is_some(), ActsOn::Linear),
-        (
-            "gamut",
-            output.gamut == Some(Gamut::Desaturate),
-            ActsOn::Linear,
-        ),
-        ("exposure", output.exposure.is_some(), ActsOn::Display),
-        ("brighten", output.brighten.is_some(), ActsOn::Display),
-        ("tone", output.tone.is_some(), ActsOn::Display),
-        (
-            "tone_contrast",
-            output.tone_contrast.is_some(),
-            ActsOn::Display,
-        ),
-        ("saturation", output.saturation.is_some(), ActsOn::Display),
-        (
-            "white_balance_k",
-            output.white_balance_k.is_some(),
-            ActsOn::Display,
-        ),
-        ("scotopic", output.scotopic == Some(true), ActsOn::Display),
-        (
-            "spectral",
-            output.spectral == Some(true),
-            ActsOn::Format(PictureFormat::EXR),
-        ),
-        (
-            "precision",
-            output.precision.is_some(),
-            ActsOn::Format(PictureFormat::EXR),
-        ),
-        (
-            "compression",
-            output.compression.is_some(),
-            ActsOn::Format(PictureFormat::EXR),
-        ),
-        (
-            "bits",
-            output.bits.is_some(),
-            ActsOn::Format(PictureFormat::PNG),
-        ),
-        (
-            "quality",
-            output.quality.is_some(),
-            ActsOn::Format(PictureFormat::JPEG),
-        ),
-    ];
-    let ignored = |(_, is_set, acts_on): &&(&str, bool, ActsOn)| {
+    let ignored = |(_, is_set, acts_on): &(&str, bool, ActsOn)| {
         *is_set && !acts_on.includes(format, output, is_previewed)
     };
-    match options.iter().find(ignored) {
+    match options(output).into_iter().find(ignored) {
         None => Ok(()),
         Some((key, _, acts_on)) => Err(RenderError::value(
             format!("output.{key}"),
@@ -119,7 +105,28 @@ pub(crate) fn refuse_ignored(
                 "a file whose name ends in {}, which this acts on",
                 acts_on.endings()
             ),
-            format!("`{}`", output.file.as_deref().unwrap_or_default()),
+            format!("`{}`", file.display()),
+            "leaving it out",
+        )),
+    }
+}
+
+/// Refuses the first option that is set and that acts on the display of linear light, for a picture of display colours.
+///
+/// # Errors
+/// [`RenderError`] with the key and the picture.
+pub(crate) fn refuse_display_options(
+    output: &OutputSpec,
+    picture: &Path,
+) -> Result<(), RenderError> {
+    let acts =
+        |(_, is_set, acts_on): &(&str, bool, ActsOn)| *is_set && matches!(acts_on, ActsOn::Display);
+    match options(output).into_iter().find(acts) {
+        None => Ok(()),
+        Some((key, ..)) => Err(RenderError::value(
+            format!("output.{key}"),
+            "a picture of linear light (EXR, HDR), which this acts on",
+            format!("`{}`", picture.display()),
             "leaving it out",
         )),
     }
@@ -175,13 +182,11 @@ mod tests {
         ];
         for (key, set, acts_on) in set {
             for ending in ["exr", "hdr", "png", "jpg"] {
-                let mut output = OutputSpec {
-                    file: Some(format!("a.{ending}")),
-                    ..Default::default()
-                };
+                let mut output = OutputSpec::default();
                 set(&mut output);
-                let format = PictureFormat::from_path(format!("a.{ending}").as_ref()).unwrap();
-                match refuse_ignored(&output, Some(format), false) {
+                let file = format!("a.{ending}");
+                let format = PictureFormat::from_path(file.as_ref()).unwrap();
+                match refuse_ignored(&output, file.as_ref(), format, false) {
                     Ok(()) => assert!(acts_on.contains(&ending), "{key} with {ending}"),
                     Err(error) => {
                         let said = error.to_string();
@@ -193,7 +198,7 @@ mod tests {
                         assert!(said.contains(&format!(".{}", acts_on[0])), "{said}");
                     }
                 }
-                let shown = refuse_ignored(&output, Some(format), true).is_ok();
+                let shown = refuse_ignored(&output, file.as_ref(), format, true).is_ok();
                 assert_eq!(
                     shown,
                     acts_on.contains(&ending) || acts_on == ["png", "jpg"]
@@ -205,12 +210,11 @@ mod tests {
     #[test]
     fn options_of_the_noise_map_are_accepted_beside_a_png() {
         let output = OutputSpec {
-            file: Some("a.png".to_owned()),
             noise_map: Some(true),
             scale: Some(1e-3),
             precision: Some(SamplePrecision::Half),
             ..Default::default()
         };
-        assert!(refuse_ignored(&output, Some(PictureFormat::PNG), false).is_ok());
+        assert!(refuse_ignored(&output, "a.png".as_ref(), PictureFormat::PNG, false).is_ok());
     }
 }

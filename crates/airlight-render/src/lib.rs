@@ -16,6 +16,7 @@ pub mod canvas;
 pub mod channels;
 pub mod compare;
 pub mod contact_sheet;
+mod display;
 mod draw;
 pub mod error;
 pub mod exposure;

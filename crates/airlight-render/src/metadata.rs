@@ -1,6 +1,7 @@
 //! Metadata of picture files.
 
 use crate::channels::PixelChannels;
+use crate::display;
 use crate::illuminance::Illuminances;
 use crate::renderer::Renderer;
 use crate::sky_rows::Layer;
@@ -81,12 +82,8 @@ impl FrameMetadata<'_> {
         );
         add("sunDisc", sun_disc(layer).to_owned());
         if let Some(exposure) = self.exposure {
-            let tone = renderer.scene().output.tone.unwrap_or_default();
-            let ev100 = short(exposure.ev100());
-            add(
-                "exposure",
-                format!("EV {ev100} at ISO 100, tone curve {tone}"),
-            );
+            let (name, text) = display::description(&renderer.scene().output, exposure);
+            add(&name, text);
         }
         if linear {
             add("units", units(self.channels.layout().is_some(), scale));

@@ -1,5 +1,6 @@
 //! [`Renderer`]: a checked scene, its solver and the layout of its files.
 
+use crate::display;
 use crate::error::RenderError;
 use crate::exposure::ExposureSettings;
 use crate::ignored::refuse_ignored;
@@ -7,17 +8,14 @@ use crate::layout::{Layout, is_spectral};
 use crate::objects::Objects;
 use airlight::models::registry;
 use airlight::scene::{
-    Exposure, MeteringMode, PreparedModel, RadianceModel, ResolvedScene, Scene, SunAngles,
-    ToneKind, check_inputs,
+    PreparedModel, RadianceModel, ResolvedScene, Scene, SunAngles, check_inputs,
 };
 use airlight::sky::SunCoverage;
 use airlight::sun::Moment;
 use airlight_image::output::exr::ExrOptions;
 use airlight_image::output::jpeg::JpegOptions;
 use airlight_image::output::png::{PngDepth, PngOptions};
-use airlight_image::tone::{
-    self, AgxSettings, CameraSettings, ToneCurve, ToneMapper, WhiteBalance,
-};
+use airlight_image::tone::{self, ToneMapper};
 use airlight_image::{Control, PictureOptions};
 use std::path::Path;
 use std::sync::Arc;
@@ -81,7 +79,9 @@ impl Renderer {
         check_inputs(model, &resolved.set_inputs, variant, registry::ALL)?;
         let sun = resolved.sun.at_start()?;
         let layout = Layout::new(&scene.camera, &scene.output, sun.azimuth_deg)?;
-        refuse_ignored(&scene.output, layout.format(), is_previewed)?;
+        if let (Some(file), Some(format)) = (&scene.output.file, layout.format()) {
+            refuse_ignored(&scene.output, Path::new(file), format, is_previewed)?;
+        }
         let objects = match &scene.objects {
             Some(spec) if spec.is_set() => Some(Arc::new(Objects::from_specs(&spec.object)?)),
             _ => None,
@@ -183,18 +183,7 @@ impl Renderer {
 
     /// Exposure settings of display pictures.
     pub fn exposure(&self) -> ExposureSettings {
-        let output = &self.scene.output;
-        ExposureSettings {
-            ev100: match output.exposure {
-                Some(Exposure::Ev100(ev100)) => Some(ev100),
-                _ => None,
-            },
-            metering: match output.exposure {
-                Some(Exposure::Metered(mode)) => mode,
-                _ => MeteringMode::default(),
-            },
-            brighten_stops: output.brighten.unwrap_or(0.0),
-        }
+        ExposureSettings::of(&self.scene.output)
     }
 
     /// The same renderer with one exposure for all pictures.
@@ -216,31 +205,12 @@ impl Renderer {
         }
     }
 
-    /// The tone curve of display pictures.
-    pub fn tone_curve(&self) -> ToneCurve {
-        let output = &self.scene.output;
-        let camera = CameraSettings::default();
-        match output.tone.unwrap_or_default() {
-            ToneKind::AgxBase => ToneCurve::Agx(AgxSettings::default()),
-            ToneKind::Clip => ToneCurve::Clip,
-            _ => ToneCurve::Camera(CameraSettings {
-                contrast: output.tone_contrast.unwrap_or(camera.contrast),
-                saturation: output.saturation.unwrap_or(camera.saturation),
-            }),
-        }
-    }
-
     /// The tone mapper of display pictures with an exposure.
     ///
     /// # Errors
     /// [`RenderError`] for a setting out of range.
     pub fn tone_mapper(&self, exposure: tone::Exposure) -> Result<ToneMapper, RenderError> {
-        let output = &self.scene.output;
-        let balance = output.white_balance_k.map(WhiteBalance::new).transpose()?;
-        let mapper = ToneMapper::new(exposure.factor() as f32, self.tone_curve())?;
-        Ok(mapper
-            .with_white_balance(balance)
-            .with_scotopic(output.scotopic.unwrap_or(false)))
+        Ok(display::tone_mapper(&self.scene.output, exposure)?)
     }
 
     /// Encoding of the files, without metadata.

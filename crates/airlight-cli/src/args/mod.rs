@@ -28,7 +28,7 @@ pub use night::NightArgs;
 pub use overlay::OverlayArgs;
 pub use overlay_light::OverlayLightArgs;
 pub use overlay_solver::OverlaySolverArgs;
-pub use picture::{CameraArgs, DisplayArgs, EncodingArgs};
+pub use picture::{CameraArgs, DisplayArgs, EncodingArgs, ToneArgs};
 pub use place::PlaceArgs;
 pub use plot::{
     EfficiencyPlotArgs, FogProfilePlotArgs, Index, PhasePlotArgs, PlotArgs, PlotWhat,

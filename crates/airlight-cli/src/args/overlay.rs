@@ -2,7 +2,7 @@
 
 use super::fog::{ContrastArgs, FogArgs};
 use super::overlay_batch::BatchArgs;
-use super::{OverlayLightArgs, OverlaySolverArgs};
+use super::{OverlayLightArgs, OverlaySolverArgs, ToneArgs};
 use crate::parse;
 use airlight_image::input::{DepthPacking, UnknownDepth};
 use airlight_render::overlay::{DepthFileKind, NegativeDepth, OverlayScene};
@@ -12,6 +12,7 @@ use std::path::PathBuf;
 /// Options of `airlight fog`.
 #[derive(Clone, Debug, Args)]
 #[command(allow_negative_numbers = true, after_help = EXAMPLES)]
+#[command(mut_args(of_linear_pictures))]
 pub struct OverlayArgs {
     /// Picture: EXR or HDR (linear), PNG or JPEG (decoded to light, encoded again); for many, a folder or 'rgb/*.png'
     #[arg(value_name = "COLOUR", required_unless_present = "scene")]
@@ -32,9 +33,6 @@ pub struct OverlayArgs {
     /// Quality of .jpg, 1 to 100 [default: 92]
     #[arg(long, value_name = "Q", value_parser = clap::value_parser!(u8).range(1..=100))]
     pub quality: Option<u8>,
-    /// Stops by which EXR and HDR pictures are brightened in .png and .jpg (negative: darkened), where 1 is white [default: 0]
-    #[arg(long, value_name = "STOPS", value_parser = parse::number)]
-    pub brighten: Option<f64>,
     /// Scene file, which the other options override
     #[arg(long, value_name = "FILE.toml")]
     pub scene: Option<PathBuf>,
@@ -114,6 +112,16 @@ pub struct OverlayArgs {
     pub light: OverlayLightArgs,
     #[command(flatten)]
     pub solver: OverlaySolverArgs,
+    #[command(flatten)]
+    pub tone: ToneArgs,
+}
+
+/// The options of [`ToneArgs`], under a heading that says which pictures they act on.
+fn of_linear_pictures(arg: clap::Arg) -> clap::Arg {
+    match arg.get_help_heading() {
+        Some("Picture") => arg.help_heading("Display (EXR or HDR in, PNG or JPEG out)"),
+        _ => arg,
+    }
 }
 
 impl OverlayArgs {
@@ -134,8 +142,6 @@ impl OverlayArgs {
         put(&mut overlay.depth_offset, self.depth_offset);
         overlay.depth_packing = self.depth_packing.or(overlay.depth_packing);
         overlay.negative = self.negative.or(overlay.negative);
-        overlay.quality = self.quality.or(overlay.quality);
-        put(&mut overlay.brighten, self.brighten);
         overlay.holes = self.holes.unwrap_or(overlay.holes);
         put(&mut overlay.far_m, self.far_m);
         put(&mut overlay.baseline_m, self.baseline_m);
@@ -153,6 +159,8 @@ impl OverlayArgs {
 
         let scene = &mut to.scene;
         scene.output.file = self.output.clone().or(scene.output.file.take());
+        scene.output.quality = self.quality.or(scene.output.quality);
+        self.tone.fill(&mut scene.output);
         if self.focal_px.is_some() {
             scene.camera.fov_deg = None;
         }
@@ -193,6 +201,8 @@ Examples:
       --paths 512 --noise-map -o fogged.exr
   Every picture of a folder, with the depth map of the same name:
     airlight fog rgb/ --depth depth/ --depth-scale 0.001 --visibility-m 80 -o foggy/
+  A rendered picture as a photograph of a dull day, exposed by its brightest part:
+    airlight fog render.exr --visibility-m 300 --exposure highlight-weighted --saturation 0.9 -o fogged.png
   Training data: * matches colour, depth and output; three variants of each picture, recorded in foggy/manifest.jsonl:
     airlight fog 'rgb/*_left.png' --depth 'depth/*_depth.png' --depth-scale 0.001 --vary visibility=50..500 \\
       --vary droplets=fine,radiation,advection --variants 3 --seed 1 -o 'foggy/*.png'
@@ -204,6 +214,6 @@ Examples:
 --vary and --each take the numeric options of one number, without their units: visibility, scale-height, base-height, top,
 contrast, patch-strength, patch-size, patch-height, patch-seed, patch-time, eye-height, camera-elevation, camera-azimuth,
 camera-roll, fov, focal, depth-scale, depth-offset, far, baseline, near-plane, far-plane, disparity-offset, ambient-scale,
-sun-elevation, sun-azimuth, sun-strength, ground-albedo, ground-altitude, aod-550, haze-visibility, radiance-scale, quality and
-brighten; and lists of fog-profile, droplets and fog-scattering. --vary draws lengths, ambient-scale, radiance-scale, focal and
-haze-visibility uniformly in the logarithm, and others uniformly; NAME=log:LOW..HIGH and NAME=uniform:LOW..HIGH override this.";
+sun-elevation, sun-azimuth, sun-strength, ground-albedo, ground-altitude, aod-550, haze-visibility, radiance-scale, quality, exposure,
+brighten, tone-contrast, saturation and white-balance; and lists of fog-profile, droplets and fog-scattering. --vary draws lengths, ambient-scale, radiance-scale, focal,
+haze-visibility and white-balance uniformly in the logarithm, and others uniformly; NAME=log:LOW..HIGH and NAME=uniform:LOW..HIGH override this.";

@@ -50,6 +50,14 @@ pub struct DisplayArgs {
     /// Colour space of .exr and .hdr; .png and .jpg are always sRGB [default: srgb]
     #[arg(long, value_name = "SPACE", value_parser = parse::named::<RgbSpace>())]
     pub color_space: Option<RgbSpace>,
+    #[command(flatten)]
+    pub tone: ToneArgs,
+}
+
+/// Tone mapping of linear light.
+#[derive(Clone, Debug, Default, Args)]
+#[command(next_help_heading = "Picture")]
+pub struct ToneArgs {
     /// Exposure of .png, .jpg and preview: the exposure value of a camera at ISO 100 (sunny day 15, dusk 8), or metered: auto,
     /// centre-weighted, spot, average, highlight-weighted, incident [default: auto]
     #[arg(long, value_name = "MODE|EV100", value_parser = parse::exposure)]
@@ -126,6 +134,13 @@ impl DisplayArgs {
     /// Overrides values of a scene.
     pub fn fill(&self, output: &mut OutputSpec) {
         put(&mut output.color_space, &self.color_space);
+        self.tone.fill(output);
+    }
+}
+
+impl ToneArgs {
+    /// Overrides values of a scene.
+    pub fn fill(&self, output: &mut OutputSpec) {
         put(&mut output.exposure, &self.exposure);
         put(&mut output.brighten, &self.brighten);
         put(&mut output.tone, &self.tone);

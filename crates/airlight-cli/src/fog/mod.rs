@@ -10,6 +10,7 @@ use crate::report::{self, bytes};
 use airlight::Named;
 use airlight_image::Control;
 use airlight_image::output::{AtomicFile, Written};
+use airlight_image::tone::Exposure;
 use airlight_render::batch::is_batch;
 use airlight_render::overlay::{MonteCarloFog, OverlayImage, OverlayScene, PreparedOverlay};
 use airlight_render::scene_file;
@@ -78,7 +79,7 @@ fn read(path: &Path) -> Result<OverlayScene, CliError> {
 
 fn one(args: &OverlayArgs, scene: &OverlayScene) -> Result<(), CliError> {
     let output = scene.output()?;
-    let format = scene.overlay.output_format(output)?;
+    let format = scene.output_format(output)?;
     let depth = scene.overlay.depth.as_ref();
     for input in depth.into_iter().chain([&scene.overlay.colour]) {
         if same_file(input, output) {
@@ -89,7 +90,7 @@ fn one(args: &OverlayArgs, scene: &OverlayScene) -> Result<(), CliError> {
         }
     }
     AtomicFile::remove_leftovers([output]);
-    let image = OverlayImage::read(&scene.overlay, format)?;
+    let image = OverlayImage::read(scene, format)?;
     let mut notes = image.notes();
     let sky = match scene.overlay.sky_light {
         true => {
@@ -104,15 +105,14 @@ fn one(args: &OverlayArgs, scene: &OverlayScene) -> Result<(), CliError> {
     let monte_carlo = prepared.monte_carlo(scene, sky.as_ref())?;
     let writing = interrupt::start_writing()?;
     let control = Control::cancelled_by(&STOP);
-    let (written, noise) = match monte_carlo {
+    let ((written, exposure), noise) = match monte_carlo {
         None => {
-            let overlay = prepared.overlay(&image)?;
+            let rows = prepared.output(scene, &image, format)?;
             let bar = RowsBar::by_stages();
-            let control = control.reporting_to(&bar);
-            let written = image.write(&overlay, &scene.overlay, output, format, control)?;
+            let written = rows.write(output, control.reporting_to(&bar))?;
             drop(bar);
-            notes.merge(&overlay.notes());
-            (written, String::new())
+            notes.merge(&rows.overlay().notes());
+            ((written, rows.exposure()), String::new())
         }
         Some(fog) => passes(scene, &image, &prepared, &fog, control)?,
     };
@@ -129,10 +129,16 @@ fn one(args: &OverlayArgs, scene: &OverlayScene) -> Result<(), CliError> {
         let [near, far] = [near, far].map(|m| report::short(f64::from(m)));
         format!("{near} to {far} m, ")
     });
+    let exposure = exposure.map_or(String::new(), |exposure| {
+        format!(
+            "  exposure      EV {} at ISO 100\n",
+            report::short(exposure.ev100())
+        )
+    });
     let contrast = 100.0 * scene.contrast().value();
     report::print(&format!(
         "{}: {} x {}, {}\n  visibility    {} m (contrast {contrast} %)\n  light         {red:.4} {green:.4} {blue:.4} ({})\n  \
-         depth         {range}{} pixels unknown, {} infinitely far\n{noise}",
+         depth         {range}{} pixels unknown, {} infinitely far\n{exposure}{noise}",
         output.display(),
         size.width(),
         size.height(),
@@ -151,8 +157,8 @@ fn passes(
     prepared: &PreparedOverlay,
     fog: &MonteCarloFog,
     control: Control<'_>,
-) -> Result<(Written, String), CliError> {
-    let (mut written, mut noise) = (Written::default(), String::new());
+) -> Result<((Written, Option<Exposure>), String), CliError> {
+    let (mut written, mut noise) = ((Written::default(), None), String::new());
     let overlay = prepared.overlay(image)?;
     let bar = RowsBar::by_stages();
     fog.run(&overlay, control.reporting_to(&bar), |pass| {

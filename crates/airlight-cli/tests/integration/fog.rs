@@ -1,6 +1,6 @@
 //! `airlight fog` from the outside: flags, files, refusals and exit codes.
 
-use crate::common::{Exr, Folder, command, run, succeed};
+use crate::common::{Exr, Folder, command, number_after, run, succeed};
 use std::path::Path;
 use std::process::Output;
 
@@ -186,11 +186,11 @@ fn options_that_contradict_are_refused() {
         ("--visibility-m 0 -o a.exr", "above 0"),
         (
             "--visibility-m 5 --quality 50 -o a.exr",
-            "--quality: expected a JPEG",
+            "--quality: expected a file whose name ends in .jpg",
         ),
         (
             "--visibility-m 5 --brighten 1 -o a.exr",
-            "--brighten: expected a PNG",
+            "--brighten: expected a file whose name ends in .png or .jpg",
         ),
         ("--visibility-m 5 --depth-scale -1 -o a.exr", "depth-offset"),
         ("--visibility-m 5 -o a.tiff", "Known endings"),
@@ -395,20 +395,57 @@ fn display_pictures_become_linear_and_return() {
     assert!(remarks(&folder, there).contains("the fog hides nothing"));
     succeed(
         &folder,
-        "fog there.exr --depth depth.npy --visibility-m 1e9 -o back.png",
+        "fog there.exr --depth depth.npy --visibility-m 1e9 --exposure 15 --tone clip -o back.png",
     );
     let back = image::open(folder.file("back.png")).unwrap().to_rgba8();
     for (a, b) in picture.pixels().zip(back.pixels()) {
         let near = a.0.iter().zip(b.0).all(|(a, b)| a.abs_diff(b) <= 1);
         assert!(near, "{a:?} {b:?}");
     }
-    // Brighter than white.
-    let small = small();
-    let words = "fog scene.exr --depth depth.npy --visibility-m 1e9 -o a.png";
-    let text = remarks(&small, words);
-    assert!(text.contains("brighter than white"), "{text}");
-    let text = remarks(&small, &format!("{words} --brighten -3"));
-    assert!(!text.contains("brighter than white"), "{text}");
+}
+
+/// The curve is in the metadata, the exposure in the report, too; pictures of a display have neither.
+#[test]
+fn linear_pictures_are_exposed_and_tone_mapped_for_a_display() {
+    let folder = small();
+    let words = "fog scene.exr --depth depth.npy --visibility-m 50";
+    let text = succeed(&folder, &format!("{words} --exposure spot -o a.png"));
+    let ev100 = number_after(&text, "exposure      EV");
+    let text = succeed(
+        &folder,
+        &format!("{words} --exposure {ev100} --tone agx-base -o b.png"),
+    );
+    assert_eq!(number_after(&text, "exposure      EV"), ev100);
+    let bytes = std::fs::read(folder.file("b.png")).unwrap();
+    let stated = format!("EV {ev100} at ISO 100, tone curve agx-base");
+    assert!(
+        bytes
+            .windows(stated.len())
+            .any(|part| part == stated.as_bytes())
+    );
+    assert_ne!(pixels(&folder.file("a.png")), pixels(&folder.file("b.png")));
+    for option in [
+        "--exposure auto",
+        "--tone camera",
+        "--brighten 1",
+        "--white-balance 5000",
+        "--scotopic",
+    ] {
+        let name = option.split(' ').next().unwrap();
+        let words = format!("fog a.png --depth depth.npy --visibility-m 50 {option} -o c.png");
+        let text = refused(&folder, &words, 2);
+        let expected = format!("{name}: expected a picture of linear light (EXR, HDR)");
+        assert!(text.contains(&expected), "{text}");
+    }
+    let words = format!("{words} --each exposure=12,13 -o out/x.png");
+    succeed(&folder, &words);
+    let manifest = std::fs::read_to_string(folder.file("out/manifest.jsonl")).unwrap();
+    for ev100 in ["12.0", "13.0"] {
+        assert!(
+            manifest.contains(&format!("\"exposure_ev100\":{ev100}")),
+            "{manifest}"
+        );
+    }
 }
 
 #[test]

@@ -268,7 +268,7 @@ impl BatchPlan {
         let mut taken: HashMap<PathBuf, &Path> = HashMap::new();
         for (input, variant) in self.pictures() {
             let output = self.output(input, variant);
-            self.scene.overlay.output_format(&output)?;
+            self.scene.output_format(&output)?;
             if existing(&output).is_some_and(|path| read.contains(&path)) {
                 return Err(BatchError::OutputIsInput(output));
             }

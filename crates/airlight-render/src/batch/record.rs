@@ -2,6 +2,7 @@
 
 use super::{BatchError, Input, manifest::MANIFEST_VERSION};
 use crate::overlay::{LightLevelSource, OverlayImage, OverlayScene, PreparedOverlay};
+use airlight_image::tone::Exposure;
 use serde::Serialize;
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
@@ -59,6 +60,9 @@ struct Facts {
     principal_point_px: (f64, f64),
     unknown_depths: u64,
     infinite_depths: u64,
+    /// Exposure value at ISO 100 of linear light in a PNG or JPEG file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    exposure_ev100: Option<f64>,
 }
 
 const AIRLIGHT: &str = env!("CARGO_PKG_VERSION");
@@ -72,7 +76,7 @@ impl<'a> Record<'a> {
         scene: &'a OverlayScene,
         seed: Option<u64>,
         image: &OverlayImage,
-        prepared: &PreparedOverlay,
+        (prepared, exposure): (&PreparedOverlay, Option<Exposure>),
     ) -> Self {
         let size = image.picture.size;
         let facts = Facts {
@@ -86,6 +90,7 @@ impl<'a> Record<'a> {
             principal_point_px: prepared.camera.principal_px(),
             unknown_depths: image.depth.holes,
             infinite_depths: image.depth.infinite,
+            exposure_ev100: exposure.map(Exposure::ev100),
         };
         Self::new(output, input, which, scene, Outcome::Made(facts))
     }

@@ -245,7 +245,6 @@ impl Worker<'_> {
         let format = self
             .plan
             .scene()
-            .overlay
             .output_format(&self.plan.output(input, *first))?;
         // Settings that change how files are read need a picture of their own.
         let at_once = match self.plan.varies(Affects::Files) {
@@ -253,8 +252,8 @@ impl Worker<'_> {
             false => variants.len(),
         };
         for variants in variants.chunks(at_once) {
-            let spec = self.plan.scene_of(input, variants[0]).overlay;
-            match OverlayImage::read(&spec, format) {
+            let scene = self.plan.scene_of(input, variants[0]);
+            match OverlayImage::read(&scene, format) {
                 Ok(image) => self.make_all(input, &image, variants)?,
                 Err(error) => variants
                     .iter()
@@ -310,6 +309,7 @@ impl Worker<'_> {
         let light = own.as_ref().or(self.light);
         let prepared = PreparedOverlay::new(scene, image, light)?;
         let output = &self.plan.output(input, variant);
+        let rows = prepared.output(scene, image, scene.output_format(output)?)?;
         let name = self.manifest.name_of(output);
         create_folder(output.parent())?;
         // Remove the old picture first: if the process is killed after the new line is written, the old picture must not be
@@ -333,17 +333,14 @@ impl Worker<'_> {
             scene,
             seed,
             image,
-            &prepared,
+            (&prepared, rows.exposure()),
         );
         self.manifest.add(&name, false, &record)?;
-        let format = scene.overlay.output_format(output)?;
-        let overlay = prepared.overlay(image)?;
-        let control = self.control.without_progress();
-        let written = image.write(&overlay, &scene.overlay, output, format, control)?;
-        let mut notes = overlay.notes();
+        let written = rows.write(output, self.control.without_progress())?;
+        let mut notes = rows.overlay().notes();
         notes.count(
             written.clamped_samples,
-            format!("samples {}", format.clamping()),
+            format!("samples {}", rows.format().clamping()),
         );
         self.report().notes.merge(&notes);
         Ok(())

@@ -3,7 +3,7 @@
 use crate::overlay::OverlayScene;
 use airlight::fog::FogScattering;
 use airlight::fog::droplets::DropletKind;
-use airlight::scene::{FogPatchesSpec, FogProfile};
+use airlight::scene::{Exposure, FogPatchesSpec, FogProfile};
 use airlight::{Named, UnknownName};
 use std::str::FromStr;
 
@@ -166,7 +166,7 @@ use Domain::{
 };
 
 /// Every setting that can differ.
-pub(super) static SETTINGS: [Setting; 37] = [
+pub(super) static SETTINGS: [Setting; 41] = [
     number("visibility", "m", LENGTH, Fog, |s, v| {
         s.fog_mut().visibility_m = Some(v)
     }),
@@ -260,10 +260,22 @@ pub(super) static SETTINGS: [Setting; 37] = [
         s.overlay.radiance_scale = Some(v)
     }),
     number("quality", "", even(Quality), Fog, |s, v| {
-        s.overlay.quality = Some(v as u8)
+        s.scene.output.quality = Some(v as u8)
     }),
-    number("brighten", "", even(Any), Files, |s, v| {
-        s.overlay.brighten = Some(v)
+    number("exposure", "", even(Any), Fog, |s, v| {
+        s.scene.output.exposure = Some(Exposure::Ev100(v))
+    }),
+    number("brighten", "", even(Any), Fog, |s, v| {
+        s.scene.output.brighten = Some(v)
+    }),
+    number("tone-contrast", "", even(NotNegative), Fog, |s, v| {
+        s.scene.output.tone_contrast = Some(v)
+    }),
+    number("saturation", "", even(NotNegative), Fog, |s, v| {
+        s.scene.output.saturation = Some(v)
+    }),
+    number("white-balance", "", POSITIVE, Fog, |s, v| {
+        s.scene.output.white_balance_k = Some(v)
     }),
     choice("fog-profile", "model", names::<FogProfile>, |s, name| {
         s.fog_mut().profile = name.parse().ok()

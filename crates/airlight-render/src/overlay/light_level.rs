@@ -1,7 +1,7 @@
 //! [`LightLevel`]: radiance of the light of a fog, in the unit of the picture.
 
 use super::primaries::Primaries;
-use super::{Ambient, OverlaySpec, estimate_ambient, horizon_pixels};
+use super::{Ambient, FogOverlay, FogSource, OverlaySpec, estimate_ambient, horizon_pixels};
 use crate::RenderError;
 use airlight::fog::FogLighting;
 use airlight::scene::RgbFoggySky;
@@ -64,6 +64,47 @@ impl LightLevel {
             Ambient::DarkChannel => LightLevelSource::DarkChannel,
         };
         Self { colour, source }
+    }
+}
+
+/// Luminance of 1 in a linear picture that states no unit, cd/m^2: white in an exposure of EV 15, that of a sunny day.
+const SUNNY_WHITE_CD_M2: f64 = 1.2 * (1 << 15) as f64;
+
+/// The light of a picture in photometric units, for its exposure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct PhotometricUnit {
+    /// Luminance of the picture's unit, cd/m^2.
+    pub cd_m2: f64,
+    /// Illuminance of a horizontal surface at the fog's top, lx.
+    pub horizontal_lx: f64,
+}
+
+impl PhotometricUnit {
+    /// That of a picture in fog: of the solved sky, or as the file states, or of a sunny day.
+    pub fn new(fog: &FogOverlay, picture: &Picture) -> Self {
+        let stated = picture.white_luminance_cd_m2.map(f64::from);
+        let stated = stated.unwrap_or(SUNNY_WHITE_CD_M2);
+        let (cd_m2, white) = match fog {
+            FogOverlay::Fog(
+                FogSource::Sky {
+                    sky,
+                    radiance_scale,
+                    ..
+                },
+                _,
+            ) => {
+                let white = white_surface(&sky.fog_lighting()).map(|c| c * radiance_scale);
+                (1.0 / f64::from(*radiance_scale), white)
+            }
+            FogOverlay::Fog(FogSource::Alone(fog), _) => (stated, white_surface(&fog.lighting())),
+            FogOverlay::ExponentialSquared(_, colour)
+            | FogOverlay::Linear(_, _, colour)
+            | FogOverlay::Encoded(_, colour) => (stated, *colour),
+        };
+        Self {
+            cd_m2,
+            horizontal_lx: cd_m2 * f64::from(PI * luminance(white)),
+        }
     }
 }
 

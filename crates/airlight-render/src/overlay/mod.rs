@@ -6,15 +6,14 @@
 //! 1. [`OverlayImage::read`]: picture, depth map and ambient light ([`estimate_ambient`]);
 //! 2. [`SkyLight::solve`], if the solved sky lights the fog;
 //! 3. [`PreparedOverlay::new`]: camera, lights and fog ([`FogOverlay`]);
-//! 4. [`Overlay`]: the rows of the picture in fog, which [`OverlayImage::write`] writes;
-//!    [`MonteCarloFog`] replaces their path radiance by a Monte Carlo estimate.
+//! 4. [`Overlay`]: the rows of the picture in fog, which [`OverlayOutput`] writes; [`MonteCarloFog`] replaces their path radiance by a Monte Carlo estimate.
 
 mod ambient;
 mod fog_overlay;
 mod light_level;
 mod monte_carlo;
-mod output_rows;
 mod overlay_image;
+mod overlay_output;
 mod overlay_scene;
 mod patch_table;
 mod place_lights;
@@ -28,6 +27,7 @@ pub use fog_overlay::{ExistingAerial, FogOverlay, FogSource};
 pub use light_level::{LightLevel, LightLevelSource};
 pub use monte_carlo::{MonteCarloFog, MonteCarloPass};
 pub use overlay_image::OverlayImage;
+pub use overlay_output::OverlayOutput;
 pub use overlay_scene::{OverlayScene, OverlaySolver};
 pub use prepared_overlay::PreparedOverlay;
 pub use sky_light::SkyLight;

@@ -2,6 +2,8 @@
 
 use super::{ExistingAerial, OverlaySpec, SkyLight};
 use crate::RenderError;
+use crate::exposure::ExposureSettings;
+use crate::ignored::refuse_ignored;
 use airlight::atmosphere::Constituent;
 use airlight::fog::droplets::DropletKind;
 use airlight::fog::lights::LightForm;
@@ -15,6 +17,7 @@ use airlight::scene::{
 use airlight::spectrum::WavelengthGrid;
 use airlight::{Named, UnknownName};
 use airlight_image::frame::Intrinsics;
+use airlight_image::output::PictureFormat;
 use airlight_image::{ImageError, Size};
 use serde::Serialize;
 use std::path::Path;
@@ -182,6 +185,22 @@ impl OverlayScene {
         }
     }
 
+    /// Format of an output, from its extension.
+    ///
+    /// # Errors
+    /// [`RenderError`] for an unknown extension, or that of a format that cannot store the layers or would ignore a setting.
+    pub fn output_format(&self, output: &Path) -> Result<PictureFormat, RenderError> {
+        let format = PictureFormat::from_path(output)?;
+        if self.overlay.layers && !format.holds_channels() {
+            return Err(RenderError::setting(format!(
+                "layers: expected an OpenEXR output, got `{}`; try a name that ends in .exr",
+                output.display()
+            )));
+        }
+        refuse_ignored(&self.scene.output, output, format, false)?;
+        Ok(format)
+    }
+
     /// The fog with its layers and patches; `None` for fog of one colour, which does not scatter light.
     ///
     /// # Errors
@@ -276,6 +295,7 @@ impl OverlayScene {
         self.scene.validate()?;
         self.visibility_m()?;
         self.overlay.depth_options()?;
+        ExposureSettings::of(&self.scene.output).fixed()?;
         let profile = self.fog_profile();
         let sky_light = self.overlay.sky_light;
         let sun_is_down = self.scene.sun.elevation_deg.is_some_and(|deg| deg <= 0.0);
@@ -401,6 +421,14 @@ impl OverlayScene {
         let output = OutputSpec {
             file: None,
             noise_map: None,
+            exposure: None,
+            brighten: None,
+            tone: None,
+            tone_contrast: None,
+            saturation: None,
+            white_balance_k: None,
+            scotopic: None,
+            quality: None,
             ..scene.output.clone()
         };
         let perspective = [None, Some(Projection::Perspective)];

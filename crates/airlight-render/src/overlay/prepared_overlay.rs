@@ -1,9 +1,9 @@
 //! [`PreparedOverlay`]: camera, light level and fog of a description for one picture.
 
-use super::light_level::{self, View};
+use super::light_level::{self, PhotometricUnit, View};
 use super::{
     Channels, FogOverlay, FogSource, LightLevel, MonteCarloFog, MonteCarloPass, Overlay,
-    OverlayImage, OverlayScene, SkyLight, place_lights, primaries::Primaries,
+    OverlayImage, OverlayOutput, OverlayScene, SkyLight, place_lights, primaries::Primaries,
 };
 use crate::RenderError;
 use crate::pixels::tagged_path;
@@ -16,8 +16,9 @@ use airlight::spectrum::{RgbSpace, WavelengthGrid};
 use airlight_image::Control;
 use airlight_image::frame::Intrinsics;
 use airlight_image::output::exr::{self, ExrOptions, SamplePrecision};
-use airlight_image::output::{Metadata, Written};
+use airlight_image::output::{Metadata, PictureFormat, Written};
 use airlight_image::rows::StoredRows;
+use airlight_image::tone::Exposure;
 use std::f32::consts::PI;
 
 /// Default albedo of the ground.
@@ -34,6 +35,7 @@ pub struct PreparedOverlay {
     /// Level of the light that the fog scatters.
     pub level: LightLevel,
     fog: FogOverlay,
+    unit: PhotometricUnit,
     eye_height_m: f64,
     channels: Channels,
     /// The layers of the fog, if it has patches.
@@ -68,6 +70,7 @@ impl PreparedOverlay {
         Ok(Self {
             camera,
             level,
+            unit: PhotometricUnit::new(&fog, &image.picture),
             fog,
             eye_height_m: scene.eye_height_m(),
             patchy: scene.fog_layers()?.filter(|fog| fog.patches.is_some()),
@@ -105,6 +108,19 @@ impl PreparedOverlay {
         })
     }
 
+    /// Rows of the picture in fog for a file in a format.
+    ///
+    /// # Errors
+    /// [`RenderError`] if the picture has another size, or a display setting is out of range.
+    pub fn output<'o>(
+        &'o self,
+        scene: &OverlayScene,
+        image: &'o OverlayImage,
+        format: PictureFormat,
+    ) -> Result<OverlayOutput<'o>, RenderError> {
+        OverlayOutput::new(self.overlay(image)?, scene, format, self.unit)
+    }
+
     /// Monte Carlo estimate of the description's fog in a solved sky; `None` if the description has another solver.
     ///
     /// # Errors
@@ -137,7 +153,7 @@ impl PreparedOverlay {
     }
 
     /// Writes the picture after a Monte Carlo pass, and its standard error to `NAME.noise.exr` if the description has a noise
-    /// map.
+    /// map. Returns the exposure of linear light in a PNG or JPEG file.
     ///
     /// # Errors
     /// [`RenderError`] if a file cannot be written; the files are then those of the previous pass.
@@ -147,13 +163,14 @@ impl PreparedOverlay {
         image: &OverlayImage,
         pass: &MonteCarloPass,
         control: Control<'_>,
-    ) -> Result<Written, RenderError> {
+    ) -> Result<(Written, Option<Exposure>), RenderError> {
         let output = scene.output()?;
         let overlay = self
             .overlay(image)?
             .with_path_radiance(&pass.path_radiance)?;
-        let format = scene.overlay.output_format(output)?;
-        let written = image.write(&overlay, &scene.overlay, output, format, control)?;
+        let format = scene.output_format(output)?;
+        let rows = OverlayOutput::new(overlay, scene, format, self.unit)?;
+        let written = rows.write(output, control)?;
         if scene.scene.output.noise_map == Some(true) {
             let size = image.picture.size;
             let path = tagged_path(output, "noise").with_extension("exr");
@@ -169,7 +186,7 @@ impl PreparedOverlay {
             };
             exr::write(&path, size, &names, &rows, &options, &metadata, control)?;
         }
-        Ok(written)
+        Ok((written, rows.exposure()))
     }
 }
 

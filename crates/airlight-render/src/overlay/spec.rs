@@ -5,10 +5,9 @@ use crate::RenderError;
 use airlight::fog::lights::LightForm;
 use airlight_image::frame::{Intrinsics, PixelCentres};
 use airlight_image::input::{DepthMeaning, DepthOptions, DepthPacking, UnknownDepth};
-use airlight_image::output::PictureFormat;
 use airlight_image::{ImageError, Size};
 use serde::{Deserialize, Serialize};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Meaning of the values of a depth file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -127,12 +126,6 @@ pub struct OverlaySpec {
     pub light_form: LightForm,
     /// Whether transmittance, path radiance and distance are written as additional layers (EXR).
     pub layers: bool,
-    /// Quality of a JPEG output, 1 to 100; `None`: 92.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub quality: Option<u8>,
-    /// Stops by which linear light is brightened in a PNG or JPEG output (negative: darkened), where 1 is white; `None`: 0.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub brighten: Option<f64>,
 }
 
 impl Default for OverlaySpec {
@@ -163,8 +156,6 @@ impl Default for OverlaySpec {
             air: ExistingAerial::Drawn,
             light_form: LightForm::Exact,
             layers: false,
-            quality: None,
-            brighten: None,
         }
     }
 }
@@ -266,44 +257,6 @@ impl OverlaySpec {
             far_from_m: self.far_m,
             negative_is_unknown: self.negative == Some(NegativeDepth::Unknown),
         })
-    }
-
-    /// Format of an output, from its extension.
-    ///
-    /// # Errors
-    /// [`RenderError`] for an unknown extension, or that of a format that cannot store the layers or has no such setting.
-    pub fn output_format(&self, output: &Path) -> Result<PictureFormat, RenderError> {
-        let format = PictureFormat::from_path(output)?;
-        if self.layers && !format.holds_channels() {
-            return Err(RenderError::setting(format!(
-                "layers: expected an OpenEXR output, got `{}`; try a name that ends in .exr",
-                output.display()
-            )));
-        }
-        let refuse = |key: &str, expected: &str, advice: &str| {
-            let got = format!("`{}`", output.display());
-            Err(RenderError::value(
-                format!("overlay.{key}"),
-                expected,
-                got,
-                advice,
-            ))
-        };
-        if self.quality.is_some() && format != PictureFormat::JPEG {
-            return refuse(
-                "quality",
-                "a JPEG output",
-                "a name that ends in .jpg, or leaving it out",
-            );
-        }
-        if self.brighten.is_some() && format.is_linear() {
-            return refuse(
-                "brighten",
-                "a PNG or JPEG output, as others keep the light of the picture",
-                "a name that ends in .png, or leaving it out",
-            );
-        }
-        Ok(format)
     }
 
     /// The camera of a picture of this size, looking north. Its horizontal field of view is `fov_deg` unless a focal length is set.

@@ -662,13 +662,11 @@ fn a_single_picture_is_what_a_batch_makes_of_it() {
     made(folder.usual(8.0), BatchSettings::default());
     let scene = folder.scene("rgb/a.png", "depth/a.png", "one.png", 8.0);
     let output = Path::new(scene.scene.output.file.as_ref().unwrap());
-    let format = scene.overlay.output_format(output).unwrap();
-    let image = OverlayImage::read(&scene.overlay, format).unwrap();
+    let format = scene.output_format(output).unwrap();
+    let image = OverlayImage::read(&scene, format).unwrap();
     let prepared = PreparedOverlay::new(&scene, &image, None).unwrap();
-    let rows = prepared.overlay(&image).unwrap();
-    image
-        .write(&rows, &scene.overlay, output, format, Control::default())
-        .unwrap();
+    let rows = prepared.output(&scene, &image, format).unwrap();
+    rows.write(output, Control::default()).unwrap();
     assert_eq!(folder.bytes("one.png"), folder.bytes("out/a.png"));
 }
 

@@ -70,17 +70,10 @@ fn what_a_file_states_is_written_again() {
     let image = OverlayImage::new(&scene.overlay, colours, depth((4, 4), |_, _| 1e-9)).unwrap();
     let prepared = PreparedOverlay::new(&scene, &image, None).unwrap();
     let path = folder.file("out.exr");
-    image
-        .write(
-            &prepared.overlay(&image).unwrap(),
-            &scene.overlay,
-            &path,
-            PictureFormat::EXR,
-            Control::default(),
-        )
-        .unwrap();
+    let rows = prepared.output(&scene, &image, PictureFormat::EXR).unwrap();
+    rows.write(&path, Control::default()).unwrap();
     scene.overlay.colour = path;
-    let again = OverlayImage::read(&scene.overlay, PictureFormat::EXR).unwrap();
+    let again = OverlayImage::read(&scene, PictureFormat::EXR).unwrap();
     assert_eq!(again.picture.chromaticities, image.picture.chromaticities);
     assert_eq!(again.picture.white_luminance_cd_m2, Some(100.0));
     assert_eq!(again.picture.pixel_aspect, 2.0);

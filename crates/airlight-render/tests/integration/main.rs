@@ -3,6 +3,7 @@
 mod batch;
 mod colours;
 mod common;
+mod display;
 mod forms;
 mod lights;
 mod monte_carlo;
