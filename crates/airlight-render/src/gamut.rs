@@ -2,6 +2,7 @@
 
 use airlight::spectrum::RgbSpace;
 use airlight_image::RowSource;
+use airlight_image::tone::without_negatives;
 
 /// Rows whose negative components of red, green and blue are removed: such a colour moves towards grey of the same luminance until
 /// its least component is 0.
@@ -29,15 +30,8 @@ impl RowSource for InGamut<'_> {
     fn fill_row(&self, y: u32, out: &mut [f32]) {
         self.rows.fill_row(y, out);
         for pixel in out.chunks_exact_mut(self.rows.channels()) {
-            let rgb = &mut pixel[..3];
-            let least = rgb.iter().copied().fold(0.0, f32::min);
-            if least < 0.0 {
-                let lit = rgb.iter().zip(&self.weights);
-                let luminance = lit.map(|(c, weight)| c * weight).sum::<f32>().max(0.0);
-                let kept = luminance / (luminance - least);
-                rgb.iter_mut()
-                    .for_each(|c| *c = (luminance + kept * (*c - luminance)).max(0.0));
-            }
+            let moved = without_negatives([pixel[0], pixel[1], pixel[2]], self.weights);
+            pixel[..3].copy_from_slice(&moved);
         }
     }
 }

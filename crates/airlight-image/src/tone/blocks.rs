@@ -32,33 +32,38 @@ pub(super) fn mix<const N: usize>(
     }
 }
 
-/// Moves colours with negative components (outside the gamut) towards grey of the same luminance until no component is
-/// negative; black where the luminance is not positive.
+/// A colour with negative components (outside the gamut), moved towards grey of the same luminance until no component is
+/// negative; black where the luminance is not positive. `weights` are the luminances of red, green and blue of 1, whose sum is 1.
 #[inline(always)]
-pub(super) fn without_negatives<const N: usize>(planes: &mut Planes<N>) {
+pub fn without_negatives(rgb: [f32; 3], weights: [f32; 3]) -> [f32; 3] {
+    let bottom = min(min(rgb[0], rgb[1]), rgb[2]);
+    let grey = weights[0] * rgb[0] + weights[1] * rgb[1] + weights[2] * rgb[2];
+    let lit = if grey > 0.0 { grey } else { 0.0 };
+    // Colours without negative components stay unchanged.
+    let part = if bottom < 0.0 {
+        lit / (lit - bottom)
+    } else {
+        1.0
+    };
+    rgb.map(|v| {
+        let raised = max(lit + part * (v - lit), 0.0);
+        if bottom < 0.0 { raised } else { v }
+    })
+}
+
+/// Moves colours of sRGB into its gamut as [`without_negatives`] does.
+#[inline(always)]
+pub(super) fn into_gamut<const N: usize>(planes: &mut Planes<N>) {
     let [r, g, b] = planes;
     for i in 0..N {
-        let bottom = min(min(r[i], g[i]), b[i]);
-        let grey = luminance([r[i], g[i], b[i]]);
-        let lit = if grey > 0.0 { grey } else { 0.0 };
-        // Colours without negative components stay unchanged.
-        let part = if bottom < 0.0 {
-            lit / (lit - bottom)
-        } else {
-            1.0
-        };
-        let raise = |v: f32| {
-            let raised = max(lit + part * (v - lit), 0.0);
-            if bottom < 0.0 { raised } else { v }
-        };
-        (r[i], g[i], b[i]) = (raise(r[i]), raise(g[i]), raise(b[i]));
+        [r[i], g[i], b[i]] = without_negatives([r[i], g[i], b[i]], LUMINANCE);
     }
 }
 
 /// Moves colours towards grey of the same luminance until all components are in `[0, 1]`.
 #[inline(always)]
 pub(super) fn into_unit_cube<const N: usize>(planes: &mut Planes<N>) {
-    without_negatives(planes);
+    into_gamut(planes);
     let [r, g, b] = planes;
     for i in 0..N {
         let top = max(max(r[i], g[i]), b[i]);
@@ -76,10 +81,13 @@ pub(super) fn into_unit_cube<const N: usize>(planes: &mut Planes<N>) {
     }
 }
 
+/// Luminances of red, green and blue of linear sRGB: the rounded weights of ITU-R BT.709.
+pub(super) const LUMINANCE: [f32; 3] = [0.2126, 0.7152, 0.0722];
+
 /// Luminance of a linear sRGB colour, in the unit of its components, with the rounded weights of ITU-R BT.709.
 #[inline(always)]
 pub fn luminance([r, g, b]: [f32; 3]) -> f32 {
-    0.2126 * r + 0.7152 * g + 0.0722 * b
+    LUMINANCE[0] * r + LUMINANCE[1] * g + LUMINANCE[2] * b
 }
 
 /// A function of a positive number, tabulated evenly within each octave and interpolated linearly. The index is part of the bits of

@@ -18,7 +18,7 @@
 //!
 //! **Inset.** Before the curve each component moves by a small fraction towards the mean, so that pure hues go to white as well.
 
-use super::blocks::{OctaveTable, Planes, into_unit_cube, max, min, mix};
+use super::blocks::{LUMINANCE, OctaveTable, Planes, into_unit_cube, max, min, mix};
 use super::exposure::MIDDLE_GREY;
 use crate::ImageError;
 
@@ -27,9 +27,6 @@ const BY_COMPONENT: f32 = 0.2;
 
 /// Fraction by which colours move towards white before the curve.
 const INSET: f32 = 0.01;
-
-/// Weights of luminance, with which the saturation changes colours but not their luminance.
-const LUMINANCE: [f32; 3] = [0.2126, 0.7152, 0.0722];
 
 /// Look of the camera curve.
 #[derive(Clone, Copy, Debug, PartialEq)]

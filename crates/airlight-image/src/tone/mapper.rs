@@ -2,7 +2,7 @@
 
 use super::{
     agx::{Agx, AgxSettings},
-    blocks::{LevelTable, OctaveTable, Planes, max, min, without_negatives},
+    blocks::{LevelTable, OctaveTable, Planes, into_gamut, max, min},
     camera::{Camera, CameraSettings},
     dither::RowDither,
     scotopic,
@@ -206,11 +206,11 @@ impl ToneMapper {
         }
         match &self.curve {
             Curve::Camera(camera) => {
-                without_negatives(planes);
+                into_gamut(planes);
                 camera.apply(planes);
             }
             Curve::Agx(agx) => {
-                without_negatives(planes);
+                into_gamut(planes);
                 agx.apply(planes);
             }
             Curve::Clip => {

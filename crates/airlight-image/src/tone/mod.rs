@@ -13,7 +13,7 @@ mod scotopic;
 mod white_balance;
 
 pub use agx::AgxSettings;
-pub use blocks::luminance;
+pub use blocks::{luminance, without_negatives};
 pub use camera::CameraSettings;
 pub use exposure::{Exposure, MIDDLE_GREY, Metering};
 pub use mapper::{ToneCurve, ToneMapper};
