@@ -125,7 +125,7 @@ pub(crate) fn refuse_display_options(
         None => Ok(()),
         Some((key, ..)) => Err(RenderError::value(
             format!("output.{key}"),
-            "a picture of linear light (EXR, HDR), which this acts on",
+            "a picture of linear light (EXR, HDR, TIFF of floats), which this acts on",
             format!("`{}`", picture.display()),
             "leaving it out",
         )),

@@ -14,7 +14,8 @@ use std::path::PathBuf;
 #[command(allow_negative_numbers = true, after_help = EXAMPLES)]
 #[command(mut_args(of_linear_pictures))]
 pub struct OverlayArgs {
-    /// Picture: EXR or HDR (linear), PNG or JPEG (decoded to light, encoded again); for many, a folder or 'rgb/*.png'
+    /// Picture: EXR, HDR or TIFF of floats (linear), PNG, JPEG or TIFF of integers (decoded to light, encoded again); for many, a folder
+    /// or 'rgb/*.png'
     #[arg(value_name = "COLOUR", required_unless_present = "scene")]
     pub colour: Option<PathBuf>,
     /// Layer of an EXR picture, such as ViewLayer.Combined, or the name of a part [default: plain R, G, B, else a layer called
@@ -119,7 +120,7 @@ pub struct OverlayArgs {
 /// The options of [`ToneArgs`], under a heading that says which pictures they act on.
 fn of_linear_pictures(arg: clap::Arg) -> clap::Arg {
     match arg.get_help_heading() {
-        Some("Picture") => arg.help_heading("Display (EXR or HDR in, PNG or JPEG out)"),
+        Some("Picture") => arg.help_heading("Display (linear light in, PNG or JPEG out)"),
         _ => arg,
     }
 }

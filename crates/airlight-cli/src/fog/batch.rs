@@ -88,7 +88,7 @@ fn remarks(found: &FoundInputs, quiet: bool) {
         });
         let endings: Vec<String> = endings.collect();
         report::note(&format!(
-            "files passed over, which are not EXR, HDR, PNG or JPEG: {}",
+            "files passed over, which are not EXR, HDR, PNG, JPEG or TIFF: {}",
             endings.join(", ")
         ));
     }

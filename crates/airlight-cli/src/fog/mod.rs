@@ -59,10 +59,8 @@ pub fn run(args: &OverlayArgs) -> Result<(), CliError> {
 
 /// An output that is a folder means the name of the picture in it.
 fn file_in_folder(scene: &mut OverlayScene) {
-    let colour = match scene.overlay.layers {
-        true => scene.overlay.colour.with_extension("exr"),
-        false => scene.overlay.colour.clone(),
-    };
+    let ending = scene.overlay.ending_in_folder(&scene.overlay.colour);
+    let colour = scene.overlay.colour.with_extension(ending);
     if let (Some(output), Some(name)) = (&mut scene.scene.output.file, colour.file_name())
         && (output.ends_with(std::path::is_separator) || Path::new(output).is_dir())
     {

@@ -274,6 +274,16 @@ impl ColourDecoding {
         self.name.as_deref()
     }
 
+    /// Matrix from linear light of the colour space to linear sRGB (`None`: it is that of sRGB); `None` for a space of encoded light.
+    pub(super) fn of_linear_light(&self) -> Option<Option<Mat3>> {
+        match &self.steps {
+            Steps::Curve(curve, matrix) if curve.is_like(&Curve::Power(1.0)) => {
+                Some(matrix.as_ref().map(narrowed))
+            }
+            _ => None,
+        }
+    }
+
     /// Value for each of `levels` encoded values, 256 or 65536, that [`Self::finish`] expects.
     pub(super) fn table(&self, levels: u32) -> Cow<'static, [f32]> {
         match &self.steps {

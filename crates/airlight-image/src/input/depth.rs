@@ -91,7 +91,7 @@ pub struct DepthOptions {
     pub offset: Option<f64>,
     /// How a colour PNG holds depth.
     pub packing: DepthPacking,
-    /// Equal red, green and blue of an EXR file without a depth channel are depth.
+    /// Equal red, green and blue of an EXR file without a depth channel are depth, and so are the numbers of a TIFF file.
     pub grey_is_depth: bool,
     /// Channel of an EXR file, or array of an NPZ file; in a file with several parts also as `PART.CHANNEL`.
     ///

@@ -17,6 +17,7 @@ mod npz;
 mod orientation;
 mod pfm;
 mod picture;
+mod pixel_layout;
 mod png;
 mod source;
 mod tiff;
@@ -26,13 +27,13 @@ pub use exr_channels::ExrLayer;
 pub use orientation::Orientation;
 pub use picture::{LightReference, Picture, SampleBits};
 
-use crate::ImageError;
+use crate::{ImageError, PictureFormat};
 use depth::RawDepth;
 use source::{DecodeError, FileKind, Source, decode_file, decode_source};
 use std::path::Path;
 
 /// Formats of pictures, as errors name them.
-const PICTURE_FORMATS: &str = "OpenEXR, Radiance HDR, PNG, JPEG";
+const PICTURE_FORMATS: &str = "OpenEXR, Radiance HDR, PNG, JPEG, TIFF";
 
 /// Formats of depth maps, as errors name them.
 const DEPTH_FORMATS: &str = "OpenEXR, PNG, NPY, NPZ, PFM, TIFF";
@@ -45,19 +46,31 @@ const DEPTH_FORMATS: &str = "OpenEXR, PNG, NPY, NPZ, PFM, TIFF";
 /// are converted to red, green and blue. The picture has the size of the display window; it is black where the data window does
 /// not cover it.
 ///
-/// PNG files may have any colour type and depth. Display colours are converted to linear sRGB from what the file says they are:
-/// PNG by its chunks cICP, else iCCP, else sRGB, else cHRM and gAMA; JPEG by its ICC profile, else the interoperability index of
+/// PNG files may have any colour type and depth; TIFF files grey or red, green and blue of 8 or 16 bits, which are display colours, or
+/// floats, which are linear light. Display colours are converted to linear sRGB from what the file says they are:
+/// PNG by its chunks cICP, else iCCP, else sRGB, else cHRM and gAMA; TIFF by its ICC profile; JPEG by its ICC profile, else the interoperability index of
 /// its EXIF data; otherwise they are sRGB. In high dynamic range (PQ, HLG), 203 cd/m^2 are 1 (ITU-R BT.2408). A picture with an
 /// EXIF orientation is turned upright. [`Picture::notes`] lists what was converted, repaired or ignored.
 ///
 /// # Errors
 /// [`ImageError::File`] where the system refuses, [`ImageError::EndsEarly`] for empty and truncated files,
 /// [`ImageError::NoChannel`] where the layer has no colours, and [`ImageError::Read`] for anything else: an unknown
-/// format, corrupt contents, CMYK, more than 65536 pixels a side or 2^30 in total.
+/// format, corrupt contents, CMYK, floats of a TIFF file that are encoded by a curve, more than 65536 pixels a side or 2^30 in total.
 pub fn read_picture(path: &Path, layer: Option<&str>) -> Result<Picture, ImageError> {
     decode_file(path, PICTURE_FORMATS, |source| {
         decode_picture(source, layer)
     })
+}
+
+/// Whether the ending of a name is that of a picture that [`read_picture`] reads.
+pub fn is_picture_name(path: &Path) -> bool {
+    PictureFormat::from_path(path).is_ok() || is_tiff_name(path)
+}
+
+/// Whether the ending of a name is that of a TIFF file.
+pub fn is_tiff_name(path: &Path) -> bool {
+    let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
+    ["tif", "tiff"].iter().any(|known| ending == *known)
 }
 
 /// Reads a picture, and its depth from the same file, which may be a pipe. `options` are those of the depth of a picture.
@@ -100,9 +113,7 @@ fn decode_picture(source: Source, layer: Option<&str>) -> Result<Picture, Decode
         FileKind::Npy | FileKind::Npz | FileKind::Pfm => Err(DecodeError::Invalid(format!(
             "expected a picture ({PICTURE_FORMATS}), got an array of numbers (NPY, NPZ or PFM)"
         ))),
-        FileKind::Tiff => Err(DecodeError::Invalid(format!(
-            "expected a picture ({PICTURE_FORMATS}), got a TIFF file; try saving it as PNG or EXR"
-        ))),
+        FileKind::Tiff => tiff::read(source),
     }
 }
 
@@ -186,7 +197,8 @@ fn decode_depth(source: Source, options: &DepthOptions) -> Result<RawDepth, Deco
         FileKind::Npy => return npy::read(source),
         FileKind::Npz => return npy::read(npz::open(source, channel)?),
         FileKind::Pfm => return pfm::read(source),
-        FileKind::Tiff => return tiff::read(source),
+        FileKind::Tiff if options.grey_is_depth => return tiff::read_depth(source),
+        FileKind::Tiff => "a TIFF picture without depth",
         FileKind::Jpeg => "a JPEG picture, whose compression alters depth",
         FileKind::Hdr => "a Radiance HDR picture",
     };

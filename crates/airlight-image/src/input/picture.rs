@@ -12,9 +12,9 @@ use std::sync::{Arc, LazyLock};
 /// Meaning of a value of 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum LightReference {
-    /// Light in the scene, in the unit of the file: OpenEXR and HDR.
+    /// Light in the scene, in the unit of the file: OpenEXR, HDR and floats of TIFF.
     Scene,
-    /// Light from a display, relative to its white: PNG and JPEG.
+    /// Light from a display, relative to its white: PNG, JPEG and integers of TIFF.
     Display,
 }
 
@@ -41,8 +41,8 @@ pub struct Picture {
     pub size: Size,
     /// Linear red, green and blue of each pixel, row by row from the upper left; finite.
     pub rgb: Vec<f32>,
-    /// Opacity of each pixel in `[0, 1]`, where the file has it. By the conventions of the formats, colours of an EXR file
-    /// are premultiplied by it, those of a PNG file are not.
+    /// Opacity of each pixel in `[0, 1]`, where the file has it. By the conventions of the formats, colours of light in
+    /// the scene are premultiplied by it, those of a display are not.
     pub alpha: Option<Vec<f32>>,
     /// Meaning of a value of 1.
     pub reference: LightReference,

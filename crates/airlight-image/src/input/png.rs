@@ -5,6 +5,7 @@ use super::{
     depth::{DepthPacking, RawDepth, of_equal_components},
     exif::Exif,
     picture::{LightReference, Picture, SampleBits},
+    pixel_layout::PixelLayout,
     source::{DecodeError, Source, TrackedFile, checked_size, reserve, sample_count},
 };
 use crate::{Notes, Size, output::Chromaticities};
@@ -190,50 +191,6 @@ fn decode_row(reader: &mut PngReader, row: &mut [u8]) -> Result<(), DecodeError>
     match reader.read_row(row).map_err(failed)? {
         Some(_) => Ok(()),
         None => Err(DecodeError::Truncated("rows are missing".to_owned())),
-    }
-}
-
-/// Components of a pixel.
-#[derive(Clone, Copy)]
-struct PixelLayout {
-    colours: usize,
-    alpha: bool,
-}
-
-impl PixelLayout {
-    /// Appends rows of interleaved values, decoded with a table; opacity is linear.
-    #[inline(always)]
-    fn split<T: Copy + Into<usize>>(
-        self,
-        values: impl ExactSizeIterator<Item = T>,
-        table: &[f32],
-        rgb: &mut Vec<f32>,
-        alpha: Option<&mut Vec<f32>>,
-    ) {
-        // The table has an entry for each value of T: the default is never used.
-        let light = |v: T| table.get(v.into()).copied().unwrap_or(0.0);
-        let opaque = (table.len() - 1) as f32;
-        match (self.colours, alpha) {
-            (3, None) => rgb.extend(values.map(light)),
-            (1, None) => values.for_each(|v| rgb.extend_from_slice(&[light(v); 3])),
-            (3, Some(alpha)) => {
-                for (i, v) in values.enumerate() {
-                    match i % 4 {
-                        3 => alpha.push(v.into() as f32 / opaque),
-                        _ => rgb.push(light(v)),
-                    }
-                }
-            }
-            (_, Some(alpha)) => {
-                for (i, v) in values.enumerate() {
-                    match i % 2 {
-                        1 => alpha.push(v.into() as f32 / opaque),
-                        _ => rgb.extend_from_slice(&[light(v); 3]),
-                    }
-                }
-            }
-            _ => {}
-        }
     }
 }
 

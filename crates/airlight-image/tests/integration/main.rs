@@ -13,5 +13,6 @@ mod read_depths;
 mod read_exr;
 mod read_pictures;
 mod read_robust;
+mod read_tiff;
 mod terminal;
 mod tone;

@@ -1,5 +1,6 @@
 //! Memory of writers: a large picture is never in memory as a whole.
 
+use crate::common::Folder;
 use airlight_image::{
     Control, PictureOptions, Size,
     output::{
@@ -38,8 +39,7 @@ fn wide_pictures_fit_in_little_memory() {
         assert!(status.success());
         return;
     }
-    let folder = std::env::temp_dir().join(format!("airlight-memory-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).unwrap();
+    let folder = Folder::new();
     let rows = |channels| {
         RowFn::new(channels, |y, out: &mut [f32]| {
             // Noise, which compresses little.
@@ -66,13 +66,13 @@ fn wide_pictures_fit_in_little_memory() {
     pool.install(|| {
         let size = Size::new(16384, 1024).unwrap();
         for ending in ["png", "jpg", "hdr", "exr"] {
-            let path = folder.join(format!("wide.{ending}"));
+            let path = folder.file(format!("wide.{ending}"));
             write_picture(&path, size, &rows(3), &tone, &options, Control::default()).unwrap();
             println!("{ending}: peak {:?}", peak_memory());
         }
         let wavelengths: Vec<f64> = (0..40).map(|i| 380.0 + 10.0 * f64::from(i)).collect();
         spectral::write(
-            &folder.join("spectral.exr"),
+            &folder.file("spectral.exr"),
             Size::new(16384, 128).unwrap(),
             &SpectralLayout::new(&wavelengths).unwrap(),
             &rows(43),
@@ -83,7 +83,6 @@ fn wide_pictures_fit_in_little_memory() {
         .unwrap();
         println!("spectral: peak {:?}", peak_memory());
     });
-    std::fs::remove_dir_all(folder).unwrap();
     if let Some(peak) = peak_memory() {
         assert!(peak < 300 << 20, "{} MiB", peak >> 20);
     }

@@ -36,7 +36,7 @@ fn write_to(path: &Path, size: Size, source: &dyn RowSource) -> Result<Written, 
 
 #[test]
 fn the_ending_names_the_format() {
-    let folder = Folder::new("ending");
+    let folder = Folder::new();
     let size = size(40, 20);
     let endings = PictureFormat::ALL.iter().flat_map(|f| f.endings());
     let endings: Vec<String> = endings
@@ -44,14 +44,14 @@ fn the_ending_names_the_format() {
         .chain(["JPEG".to_owned(), "PNG".to_owned()])
         .collect();
     for ending in &endings {
-        let path = folder.0.join(format!("sky.{ending}"));
+        let path = folder.file(format!("sky.{ending}"));
         let written = write_to(&path, size, &sky(size, 3)).unwrap();
         assert_eq!(fs::metadata(&path).unwrap().len(), written.bytes);
         assert!(written.bytes > 100);
         // Again, replacing the first.
         write_to(&path, size, &sky(size, 3)).unwrap();
     }
-    assert_eq!(folder.files().len(), endings.len());
+    assert_eq!(folder.names("").len(), endings.len());
     assert_eq!(
         PictureFormat::from_path(Path::new("a.b.Hdr")).unwrap(),
         PictureFormat::HDR
@@ -71,9 +71,9 @@ fn the_ending_names_the_format() {
 
 #[test]
 fn a_bad_path_is_named_with_the_reason() {
-    let folder = Folder::new("paths");
+    let folder = Folder::new();
     let size = size(40, 20);
-    let missing = folder.0.join("none").join("sky.png");
+    let missing = folder.file("none").join("sky.png");
     let error = write_to(&missing, size, &sky(size, 3))
         .unwrap_err()
         .to_string();
@@ -81,20 +81,20 @@ fn a_bad_path_is_named_with_the_reason() {
         error.contains("none") && error.contains("no folder"),
         "{error}"
     );
-    fs::create_dir(folder.0.join("folder.png")).unwrap();
-    let error = write_to(&folder.0.join("folder.png"), size, &sky(size, 3)).unwrap_err();
+    fs::create_dir(folder.file("folder.png")).unwrap();
+    let error = write_to(&folder.file("folder.png"), size, &sky(size, 3)).unwrap_err();
     assert!(error.to_string().contains("it is a folder"), "{error}");
-    let error = write_to(&folder.0.join("sky.exr"), size, &sky(size, 4)).unwrap_err();
+    let error = write_to(&folder.file("sky.exr"), size, &sky(size, 4)).unwrap_err();
     assert!(error.to_string().contains('4'), "{error}");
-    assert_eq!(folder.files(), ["folder.png"]);
+    assert_eq!(folder.names(""), ["folder.png"]);
 }
 
 #[test]
 fn a_cancelled_write_leaves_nothing() {
-    let folder = Folder::new("stopped");
+    let folder = Folder::new();
     let size = size(1000, 3000);
     for ending in ["exr", "hdr", "png", "jpg"] {
-        let path = folder.0.join(format!("sky.{ending}"));
+        let path = folder.file(format!("sky.{ending}"));
         fs::write(&path, "before").unwrap();
         let cancel = AtomicBool::new(false);
         let inner = sky(size, 3);
@@ -116,15 +116,15 @@ fn a_cancelled_write_leaves_nothing() {
         assert!(error.is_cancelled(), "{ending}: {error}");
         assert_eq!(fs::read(&path).unwrap(), b"before");
     }
-    assert_eq!(folder.files().len(), 4);
+    assert_eq!(folder.names("").len(), 4);
 }
 
 #[test]
 fn a_panicking_source_leaves_nothing() {
-    let folder = Folder::new("panic");
+    let folder = Folder::new();
     let size = size(200, 100);
     for ending in ["exr", "hdr", "png", "jpg"] {
-        let path = folder.0.join(format!("sky.{ending}"));
+        let path = folder.file(format!("sky.{ending}"));
         let source = RowFn::new(3, |y, out: &mut [f32]| {
             assert!(y < 50, "the source gives up");
             out.fill(0.5);
@@ -134,7 +134,7 @@ fn a_panicking_source_leaves_nothing() {
         }));
         assert!(outcome.is_err());
     }
-    assert!(folder.files().is_empty(), "{:?}", folder.files());
+    assert!(folder.names("").is_empty(), "{:?}", folder.names(""));
 }
 
 #[test]
@@ -197,12 +197,12 @@ fn progress_is_reported_in_order_and_to_the_end() {
             self.0.lock().unwrap().push(done);
         }
     }
-    let folder = Folder::new("progress");
+    let folder = Folder::new();
     let size = size(500, 1000);
     for ending in ["exr", "hdr", "png", "jpg"] {
         let heard = Heard::default();
         write_picture(
-            &folder.0.join(format!("sky.{ending}")),
+            &folder.file(format!("sky.{ending}")),
             size,
             &sky(size, 3),
             &tone(),

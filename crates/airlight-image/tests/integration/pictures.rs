@@ -128,8 +128,8 @@ fn exr_files_have_the_standard_attributes() {
 #[test]
 fn spectral_files_follow_the_layout() {
     use ::exr::meta::attribute::*;
-    let folder = Folder::new("spectral");
-    let path = folder.0.join("sky.exr");
+    let folder = Folder::new();
+    let path = folder.file("sky.exr");
     let layout = SpectralLayout::new(&[380.0, 550.0, 1000.25]).unwrap();
     let size = size(20, 10);
     let options = ExrOptions {

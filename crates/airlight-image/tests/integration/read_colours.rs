@@ -15,7 +15,7 @@ use moxcms::{ColorProfile, ToneReprCurve};
 use png::{BitDepth, ColorType, ScaledFloat, SourceChromaticities};
 
 fn read_as(folder: &Folder, bytes: &[u8]) -> Picture {
-    let path = folder.0.join("input.bin");
+    let path = folder.file("input.bin");
     std::fs::write(&path, bytes).unwrap();
     read_picture(&path, None).unwrap()
 }
@@ -62,7 +62,7 @@ fn with_chunk(png: &[u8], name: &[u8; 4], data: &[u8]) -> Vec<u8> {
 
 #[test]
 fn colours_are_converted_to_srgb() {
-    let folder = Folder::new("colours");
+    let folder = Folder::new();
     let straight = || Some(ToneReprCurve::Lut(Vec::new()));
     let mut linear = ColorProfile::new_srgb();
     (linear.red_trc, linear.green_trc, linear.blue_trc) = (straight(), straight(), straight());
@@ -118,7 +118,7 @@ fn colours_are_converted_to_srgb() {
 
 #[test]
 fn high_dynamic_range_is_relative_to_the_reference_white() {
-    let folder = Folder::new("colours-hdr");
+    let folder = Folder::new();
     let plain = red(|_| {});
     for (points, expected) in [
         // 1347 2.28 2.28 cd/m^2 in BT.2020 over 203 cd/m^2, and hybrid log-gamma on a display of 1000 cd/m^2.
@@ -146,7 +146,7 @@ fn high_dynamic_range_is_relative_to_the_reference_white() {
 
 #[test]
 fn jpegs_are_converted_by_profile_or_exif() {
-    let folder = Folder::new("colours-jpeg");
+    let folder = Folder::new();
     let file = |profile: &[u8]| jpeg_file((8, 8), JpegColorType::Ycbcr, false, profile);
     let plain = read_as(&folder, &file(&[]));
     let p3 = read_as(
@@ -205,7 +205,7 @@ fn orientation(value: u8) -> Vec<u8> {
 
 #[test]
 fn pictures_are_turned_upright_and_depth_with_them() {
-    let folder = Folder::new("orientation");
+    let folder = Folder::new();
     let jpeg = jpeg_file((16, 8), JpegColorType::Ycbcr, false, &[]);
     let stored = read_as(&folder, &jpeg);
     let at = |picture: &Picture, x: u32, y: u32| {
@@ -244,7 +244,7 @@ fn pictures_are_turned_upright_and_depth_with_them() {
         // A depth map that lies as the file does is turned too; an upright one is not.
         let values: Vec<f32> = (1..=128).map(|v| v as f32).collect();
         let map = |width, height| {
-            let path = folder.0.join("depth.pfm");
+            let path = folder.file("depth.pfm");
             std::fs::write(&path, pfm_file((width, height), true, &values)).unwrap();
             read_depth(&path, &DepthOptions::default())
                 .unwrap()
@@ -264,12 +264,12 @@ fn pictures_are_turned_upright_and_depth_with_them() {
 
 #[test]
 fn pixel_shapes_are_read_and_written() {
-    let folder = Folder::new("pixel-shape");
+    let folder = Folder::new();
     let plain = read_as(&folder, &red(|_| {}));
     assert_eq!(plain.pixel_aspect, 1.0);
     for ending in ["exr", "hdr", "png", "jpg"] {
         for aspect in [2.0, 0.5] {
-            let path = folder.0.join(format!("wide.{ending}"));
+            let path = folder.file(format!("wide.{ending}"));
             let options = PictureOptions {
                 metadata: Metadata {
                     pixel_aspect: Some(aspect),

@@ -14,7 +14,7 @@ fn options() -> DepthOptions {
 
 #[test]
 fn png_depth_of_8_and_16_bits() {
-    let folder = Folder::new("depth-png");
+    let folder = Folder::new();
     let millimetres = DepthOptions {
         scale: 0.001,
         ..options()
@@ -60,7 +60,7 @@ fn png_depth_of_8_and_16_bits() {
 
 #[test]
 fn npy_depth_of_every_kind() {
-    let folder = Folder::new("depth-npy");
+    let folder = Folder::new();
     let values = [1u8, 2, 3, 4, 5, 6];
     let be = |bytes: Vec<u8>, width: usize| -> Vec<u8> {
         bytes
@@ -137,7 +137,7 @@ fn npy_depth_of_every_kind() {
 
 #[test]
 fn pfm_depth_from_the_bottom_up() {
-    let folder = Folder::new("depth-pfm");
+    let folder = Folder::new();
     let rows = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
     for little in [false, true] {
         let map = read_as(&folder, &pfm_file((3, 2), little, &rows), &options()).unwrap();
@@ -163,7 +163,7 @@ fn pfm_depth_from_the_bottom_up() {
 
 #[test]
 fn exr_depth_by_its_channel() {
-    let folder = Folder::new("depth-exr");
+    let folder = Folder::new();
     let one = |v: f32| FlatSamples::F32(vec![v]);
     let file = |names: &[&'static str]| {
         let channels = names
@@ -233,7 +233,7 @@ fn exr_depth_by_its_channel() {
 
 #[test]
 fn archives_of_arrays_and_tiff() {
-    let folder = Folder::new("depth-npz");
+    let folder = Folder::new();
     let values = [1.5f32, 2.0, 3.0, 4.0, 5.0, 6.0];
     let data: Vec<u8> = values.iter().flat_map(|v| v.to_le_bytes()).collect();
     let array = |shape| npy_file(1, "'<f4'", false, shape, &data);
@@ -275,7 +275,7 @@ fn archives_of_arrays_and_tiff() {
 
 #[test]
 fn pfm_files_with_line_ends_of_two_characters() {
-    let folder = Folder::new("depth-crlf");
+    let folder = Folder::new();
     let rows = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
     let plain = pfm_file((3, 2), true, &rows);
     let header_end = plain.len() - 24;
@@ -287,7 +287,7 @@ fn pfm_files_with_line_ends_of_two_characters() {
 
 #[test]
 fn grey_exr_pictures_are_depth_in_a_file_of_their_own() {
-    let folder = Folder::new("depth-grey-exr");
+    let folder = Folder::new();
     let one = |v: f32| FlatSamples::F32(vec![v]);
     let file = |b: f32| {
         let channels = vec![("B", one(b)), ("G", one(7.0)), ("R", one(7.0))];

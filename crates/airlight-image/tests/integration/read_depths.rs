@@ -17,7 +17,7 @@ const INF: f32 = f32::INFINITY;
 
 #[test]
 fn each_number_has_the_documented_meaning() {
-    let folder = Folder::new("depth-numbers");
+    let folder = Folder::new();
     let mut bits = options();
     let mut read = |meaning, unknown, values: &[f32]| {
         bits = DepthOptions {
@@ -61,7 +61,7 @@ fn each_number_has_the_documented_meaning() {
 
 #[test]
 fn scale_and_sky() {
-    let folder = Folder::new("depth-scale");
+    let folder = Folder::new();
     let read = |options: &DepthOptions, values: &[u16]| {
         let size = (values.len() as u32, 1);
         read_as(&folder, &grey_16(size, values), options).unwrap()
@@ -97,7 +97,7 @@ fn scale_and_sky() {
 
 #[test]
 fn negative_depth_is_an_error_that_names_its_pixel() {
-    let folder = Folder::new("depth-negative");
+    let folder = Folder::new();
     let mut values = vec![1.0f32; 200 * 150];
     values[120 * 200 + 7] = -2.5;
     values[130 * 200] = f32::NEG_INFINITY;
@@ -132,7 +132,7 @@ fn negative_depth_is_an_error_that_names_its_pixel() {
 
 #[test]
 fn options_out_of_range_are_refused() {
-    let folder = Folder::new("depth-options");
+    let folder = Folder::new();
     let png = grey_16((1, 1), &[5]);
     let stereo = |focal_length_px, baseline_m, offset_px| DepthMeaning::Disparity {
         focal_length_px,
@@ -173,7 +173,7 @@ fn options_out_of_range_are_refused() {
 
 #[test]
 fn holes_are_filled_from_the_farther_side() {
-    let folder = Folder::new("depth-fill");
+    let folder = Folder::new();
     let o = f32::NAN;
     let fill = |width: usize, values: &[f32]| {
         let height = values.len() / width;
@@ -215,9 +215,9 @@ fn holes_are_filled_from_the_farther_side() {
 
 #[test]
 fn maps_and_pictures_must_have_equal_sizes() {
-    let folder = Folder::new("depth-size");
+    let folder = Folder::new();
     let map = read_as(&folder, &grey_16((2, 3), &[5; 6]), &options()).unwrap();
-    let path = folder.0.join("colour.png");
+    let path = folder.file("colour.png");
     let check = |width: u32, height: u32| {
         let values = vec![9; (width * height) as usize];
         std::fs::write(&path, grey_16((width, height), &values)).unwrap();
@@ -251,7 +251,7 @@ fn a_measured_map_is_filled() {
 
 #[test]
 fn holes_on_one_surface_are_exact_in_every_row() {
-    let folder = Folder::new("depth-ground");
+    let folder = Folder::new();
     // The ground below a level camera: 800 m over the row. A column of holes between equal neighbours.
     let (width, height) = (8, 6);
     let ground = |y: usize| if y == 0 { 1e9 } else { 800.0 / y as f32 };
@@ -272,7 +272,7 @@ fn holes_on_one_surface_are_exact_in_every_row() {
 
 #[test]
 fn unknown_pixels_above_a_column_are_sky() {
-    let folder = Folder::new("depth-sky-above");
+    let folder = Folder::new();
     let o = 0.0;
     let values = [o, o, 5.0, o, 4.0, o, 2.0, o, 5.0];
     let options = DepthOptions {
@@ -286,7 +286,7 @@ fn unknown_pixels_above_a_column_are_sky() {
 
 #[test]
 fn affine_normalised_and_inverted_depths() {
-    let folder = Folder::new("depth-affine");
+    let folder = Folder::new();
     let read = |meaning, scale, offset, values: &[f32]| {
         let options = DepthOptions {
             meaning,
@@ -318,7 +318,7 @@ type Project<'a> = &'a dyn Fn(f64) -> f64;
 /// The depths that perspective projections of graphics interfaces map to the numbers of their depth buffers.
 #[test]
 fn depth_buffers_are_linearised() {
-    let folder = Folder::new("depth-buffer");
+    let folder = Folder::new();
     let read = |near_m, far_m, is_reversed, file: &[u8]| {
         let options = DepthOptions {
             meaning: DepthMeaning::Buffer {
@@ -386,7 +386,7 @@ fn depth_buffers_are_linearised() {
 
 #[test]
 fn depth_in_the_bits_of_colours() {
-    let folder = Folder::new("depth-packed");
+    let folder = Folder::new();
     let rgb = |data: &[u8]| {
         let (color, depth) = (png::ColorType::Rgb, png::BitDepth::Eight);
         png_file((data.len() as u32 / 3, 1), color, depth, data, |_| {})

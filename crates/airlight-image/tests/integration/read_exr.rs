@@ -10,7 +10,7 @@ use airlight_image::{
 use exr::prelude::{Compression, FlatSamples, f16};
 
 fn read_as(folder: &Folder, bytes: &[u8], layer: Option<&str>) -> Result<Picture, ImageError> {
-    let path = folder.0.join("input.bin");
+    let path = folder.file("input.bin");
     std::fs::write(&path, bytes).unwrap();
     read_picture(&path, layer)
 }
@@ -25,7 +25,7 @@ fn halves(values: &[f32]) -> FlatSamples {
 
 #[test]
 fn exr_pictures_of_every_kind() {
-    let folder = Folder::new("read-exr");
+    let folder = Folder::new();
     let size_xy = (37, 41);
     let count = 37 * 41;
     for compression in [
@@ -71,7 +71,7 @@ fn exr_pictures_of_every_kind() {
 
 #[test]
 fn data_windows_are_brought_to_the_display_window() {
-    let folder = Folder::new("windows");
+    let folder = Folder::new();
     let (data_w, data_h) = (5, 20);
     for (window_x, window_y) in [
         (0, 0),
@@ -115,7 +115,7 @@ fn data_windows_are_brought_to_the_display_window() {
 
 #[test]
 fn layers_and_parts_are_found_by_name() {
-    let folder = Folder::new("layers");
+    let folder = Folder::new();
     let one = |v: f32| FlatSamples::F32(vec![v]);
     let pixel = (1, 1);
     let rgb = |prefix: [&'static str; 3], v: f32| {
@@ -181,7 +181,7 @@ fn layers_and_parts_are_found_by_name() {
 
 #[test]
 fn invalid_samples_are_repaired_and_counted() {
-    let folder = Folder::new("repaired");
+    let folder = Folder::new();
     let odd = vec![f32::NAN, -1.0, f32::INFINITY, f32::NEG_INFINITY, 3.0, -0.0];
     let part = Part::new(
         (6, 1),
@@ -205,7 +205,7 @@ fn invalid_samples_are_repaired_and_counted() {
 
 #[test]
 fn depth_is_that_of_the_view_of_the_colours() {
-    let folder = Folder::new("views");
+    let folder = Folder::new();
     let one = |v: f32| FlatSamples::F32(vec![v]);
     let colours = || vec![("B", one(1.0)), ("G", one(1.0)), ("R", one(1.0))];
     let depth = |v| vec![("Z", one(v))];
@@ -247,7 +247,7 @@ fn depth_is_that_of_the_view_of_the_colours() {
 
 #[test]
 fn the_combined_layer_is_preferred_and_has_its_depth() {
-    let folder = Folder::new("combined");
+    let folder = Folder::new();
     let one = |v: f32| FlatSamples::F32(vec![v]);
     let mut channels = Vec::new();
     for (v, names) in [
@@ -340,7 +340,7 @@ fn luma_chroma_file(
 
 #[test]
 fn luminance_and_chroma_become_red_green_and_blue() {
-    let folder = Folder::new("luma-chroma");
+    let folder = Folder::new();
     let expected = [0.5f32, 0.25, 0.125];
     // By the definition of the OpenEXR documentation, with the weights of BT.709 primaries.
     let file = |rgb: &dyn Fn(usize, usize) -> [f32; 3]| {
@@ -377,7 +377,7 @@ fn luminance_and_chroma_become_red_green_and_blue() {
 #[test]
 fn attributes_channels_and_windows_are_carried() {
     use exr::prelude::*;
-    let folder = Folder::new("carried");
+    let folder = Folder::new();
     let count = 6 * 4;
     let ids: Vec<u32> = (0..count as u32).map(|i| 0xfff0_0001 + i).collect();
     let halves =
@@ -428,7 +428,7 @@ fn attributes_channels_and_windows_are_carried() {
         carried: picture.carried.clone(),
         ..Metadata::default()
     };
-    let path = folder.0.join("out.exr");
+    let path = folder.file("out.exr");
     let rows = StoredRows::new(6, 3, doubled).unwrap();
     let (options, control) = (ExrOptions::default(), Control::default());
     output::exr::write(

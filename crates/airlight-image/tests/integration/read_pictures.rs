@@ -18,7 +18,7 @@ use jpeg_encoder::JpegColorType;
 use png::{BitDepth, ColorType};
 
 fn read_as(folder: &Folder, bytes: &[u8], layer: Option<&str>) -> Result<Picture, ImageError> {
-    let path = folder.0.join("input.bin");
+    let path = folder.file("input.bin");
     std::fs::write(&path, bytes).unwrap();
     read_picture(&path, layer)
 }
@@ -29,7 +29,7 @@ fn decoded(v: f64) -> f32 {
 
 #[test]
 fn png_pictures_of_every_kind() {
-    let folder = Folder::new("read-png");
+    let folder = Folder::new();
     let read = |bytes: &[u8]| read_as(&folder, bytes, None).unwrap();
     let plain = |_: &mut png::Encoder<'_, &mut Vec<u8>>| {};
 
@@ -116,7 +116,7 @@ fn png_pictures_of_every_kind() {
 
 #[test]
 fn a_gamma_applies_only_without_srgb_chunks() {
-    let folder = Folder::new("read-gamma");
+    let folder = Folder::new();
     let with = |gamma: f32, is_srgb: bool| {
         let (color, depth) = (ColorType::Grayscale, BitDepth::Eight);
         let bytes = png_file((1, 1), color, depth, &[64], |encoder| {
@@ -137,7 +137,7 @@ fn a_gamma_applies_only_without_srgb_chunks() {
 #[test]
 fn interlaced_pngs_are_read() {
     // Adam7 of an 8 x 8 grey picture by hand: the png crate does not write it.
-    let folder = Folder::new("read-adam7");
+    let folder = Folder::new();
     let pixel = |x: usize, y: usize| (x * 16 + y * 3) as u8;
     let passes = [
         (0, 0, 8, 8),
@@ -193,7 +193,7 @@ fn interlaced_pngs_are_read() {
 
 #[test]
 fn every_level_of_a_png_survives_a_round_trip() {
-    let folder = Folder::new("identity");
+    let folder = Folder::new();
     for (color, each) in [(ColorType::Rgb, 3), (ColorType::Rgba, 4)] {
         for (depth, levels) in [(BitDepth::Eight, 256u32), (BitDepth::Sixteen, 65536)] {
             // Every level in every component, in a different order in each.
@@ -251,7 +251,7 @@ fn every_level_of_a_png_survives_a_round_trip() {
 
 #[test]
 fn jpegs_agree_with_another_decoder() {
-    let folder = Folder::new("read-jpeg");
+    let folder = Folder::new();
     for color in [JpegColorType::Luma, JpegColorType::Ycbcr] {
         for progressive in [false, true] {
             let bytes = jpeg_file((37, 21), color, progressive, &[]);
@@ -282,7 +282,7 @@ fn jpegs_agree_with_another_decoder() {
 
 #[test]
 fn written_pictures_are_read_back() {
-    let folder = Folder::new("come-back");
+    let folder = Folder::new();
     let (width, height) = (61, 19);
     let samples: Vec<f32> = (0..width * height * 3)
         .map(|i| (i % 97) as f32 * 0.25)
@@ -302,11 +302,11 @@ fn written_pictures_are_read_back() {
         ..PictureOptions::default()
     };
     for ending in ["exr", "hdr", "png", "jpg"] {
-        let path = folder.0.join(format!("picture.{ending}"));
+        let path = folder.file(format!("picture.{ending}"));
         let size = size(width, height);
         write_picture(&path, size, &rows, &tone, &options, Control::default()).unwrap();
         // Formats are recognised by contents.
-        let moved = folder.0.join("picture.txt");
+        let moved = folder.file("picture.txt");
         std::fs::rename(&path, &moved).unwrap();
         let picture = read_picture(&moved, None).unwrap();
         assert_eq!(picture.size, size);
@@ -338,7 +338,7 @@ fn written_pictures_are_read_back() {
 
 #[test]
 fn hdr_headers_are_applied() {
-    let folder = Folder::new("hdr-headers");
+    let folder = Folder::new();
     let file = |header: &str, pixels: &[u8]| {
         let mut bytes = format!("#?RADIANCE\n{header}\n").into_bytes();
         bytes.extend(pixels);
@@ -383,12 +383,12 @@ fn hdr_headers_are_applied() {
 
 #[test]
 fn unreadable_files_are_refused_with_a_reason() {
-    let folder = Folder::new("refusals");
+    let folder = Folder::new();
     let refused = |bytes: &[u8]| read_as(&folder, bytes, None).unwrap_err();
-    let missing = read_picture(&folder.0.join("nothing.png"), None).unwrap_err();
+    let missing = read_picture(&folder.file("nothing.png"), None).unwrap_err();
     assert!(matches!(missing, ImageError::File { action: "read", .. }));
     assert!(missing.to_string().contains("nothing.png"), "{missing}");
-    assert!(read_picture(&folder.0, None).is_err());
+    assert!(read_picture(&folder.file(""), None).is_err());
     let empty = refused(&[]);
     assert!(matches!(empty, ImageError::EndsEarly { .. }));
     assert!(

@@ -2,6 +2,7 @@
 
 use super::{BatchError, Pattern, pattern::Match};
 use crate::overlay::OverlaySpec;
+use airlight_image::input::{is_picture_name, is_tiff_name};
 use airlight_image::output::PictureFormat;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -143,10 +144,12 @@ pub fn find_inputs(
     })
 }
 
-/// Whether a picture may have a depth channel besides its colours; of unknown endings the content decides. A grey PNG is not
-/// the depth of itself.
+/// Whether a picture may have a depth channel besides its colours; of unknown endings the content decides. A grey PNG or TIFF is
+/// not the depth of itself.
 fn may_hold_depth(colour: &Path) -> bool {
-    PictureFormat::from_path(colour).map_or(true, PictureFormat::holds_channels)
+    let holds_channels =
+        PictureFormat::from_path(colour).map_or(true, PictureFormat::holds_channels);
+    holds_channels && !is_tiff_name(colour)
 }
 
 /// The pictures of a path, and the other files of a folder.
@@ -155,7 +158,7 @@ fn colours(path: &Path) -> Result<(Vec<Match>, Vec<PathBuf>), BatchError> {
         InputPath::Pattern(pattern) => (pattern.files()?, Vec::new()),
         InputPath::Folder(folder) => {
             let files = files_within(&folder, "*")?;
-            let is_picture = |file: &Match| PictureFormat::from_path(&file.path).is_ok();
+            let is_picture = |file: &Match| is_picture_name(&file.path);
             let (mut files, others): (Vec<_>, Vec<_>) = files.into_iter().partition(is_picture);
             // With the extension, `a-b.png` would sort before `a.png`.
             files.sort();

@@ -4,10 +4,10 @@ use super::ExistingAerial;
 use crate::RenderError;
 use airlight::fog::lights::LightForm;
 use airlight_image::frame::{Intrinsics, PixelCentres};
-use airlight_image::input::{DepthMeaning, DepthOptions, DepthPacking, UnknownDepth};
+use airlight_image::input::{DepthMeaning, DepthOptions, DepthPacking, UnknownDepth, is_tiff_name};
 use airlight_image::{ImageError, Size};
 use serde::{Deserialize, Serialize};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Meaning of the values of a depth file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -58,7 +58,8 @@ airlight::named! { NegativeDepth, "a treatment of negative depth", [
 #[serde(default, deny_unknown_fields)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct OverlaySpec {
-    /// Colour picture: EXR or HDR (linear), PNG or JPEG (decoded to light and encoded again); for a batch, a folder or pattern.
+    /// Colour picture: EXR, HDR or TIFF of floats (linear), PNG, JPEG or TIFF of integers (decoded to light and encoded again); for a
+    /// batch, a folder or pattern.
     pub colour: PathBuf,
     /// Layer of an EXR colour picture; `None`: its plain colours, else those of a layer called `Combined` or the only ones.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -169,6 +170,16 @@ impl OverlaySpec {
             format!("none for `{}`", self.colour.display()),
             "depth.npy, or a folder or pattern for several",
         )
+    }
+
+    /// Ending of the output of a picture in a folder: that of the picture, but `exr` for layers and `png` for TIFF, which is not
+    /// written.
+    pub fn ending_in_folder(&self, colour: &Path) -> String {
+        match colour.extension() {
+            _ if self.layers => "exr".to_owned(),
+            _ if is_tiff_name(colour) => "png".to_owned(),
+            ending => ending.unwrap_or_default().to_string_lossy().into_owned(),
+        }
     }
 
     /// Options for reading the depth file.

@@ -1,47 +1,13 @@
-//! Folders that are removed at the end, pictures in memory, fog over them, and their layers.
+//! Pictures in memory, fog over them, and their layers.
+
+#[path = "../../../airlight-image/tests/integration/common/folder.rs"]
+mod folder;
+
+pub use folder::Folder;
 
 use airlight_image::input::{DepthKind, DepthMap, LightReference, Picture, SampleBits};
 use airlight_image::{RowSource, Size};
 use airlight_render::overlay::{Overlay, OverlayImage, OverlayScene, OverlaySpec, PreparedOverlay};
-use std::path::PathBuf;
-use std::sync::atomic::{AtomicU32, Ordering};
-
-/// A folder of a test's own. The tests of all modules share one process, and so one count.
-pub struct Folder(PathBuf);
-
-impl Folder {
-    pub fn new() -> Self {
-        static COUNT: AtomicU32 = AtomicU32::new(0);
-        let name = format!(
-            "airlight-render-{}-{}",
-            std::process::id(),
-            COUNT.fetch_add(1, Ordering::Relaxed)
-        );
-        let path = std::env::temp_dir().join(name);
-        std::fs::create_dir_all(&path).unwrap();
-        Self(path)
-    }
-
-    pub fn file(&self, name: &str) -> PathBuf {
-        self.0.join(name)
-    }
-
-    /// Names of the files in a folder below it (`""`: in itself), hidden ones too.
-    pub fn names(&self, below: &str) -> Vec<String> {
-        let entries = std::fs::read_dir(self.file(below)).unwrap();
-        let mut names: Vec<String> = entries
-            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-            .collect();
-        names.sort();
-        names
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
-}
 
 /// A linear picture.
 pub fn picture((width, height): (u32, u32), rgb: impl Fn(u32, u32) -> [f32; 3]) -> Picture {

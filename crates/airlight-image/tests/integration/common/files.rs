@@ -179,13 +179,44 @@ pub fn npz_file(arrays: &[(&str, Vec<u8>)], deflated: bool) -> Vec<u8> {
     bytes
 }
 
-/// A TIFF file of 32-bit floats, uncompressed.
-pub fn tiff_file((width, height): (u32, u32), values: &[f32]) -> Vec<u8> {
+/// A TIFF file of one 32-bit float to a pixel, uncompressed.
+pub fn tiff_file(size: (u32, u32), values: &[f32]) -> Vec<u8> {
+    tiff_of::<tiff::encoder::colortype::Gray32Float>(size, values, &[], &[])
+}
+
+/// Value of a further tag of a TIFF file.
+pub enum TiffTag<'a> {
+    Short(u16),
+    Bytes(&'a [u8]),
+    Fraction(u32, u32),
+}
+
+/// A TIFF file of pixels of a kind, with further components and tags, uncompressed.
+pub fn tiff_of<C: tiff::encoder::colortype::ColorType>(
+    (width, height): (u32, u32),
+    values: &[C::Inner],
+    extra: &[tiff::tags::ExtraSamples],
+    tags: &[(tiff::tags::Tag, TiffTag<'_>)],
+) -> Vec<u8>
+where
+    [C::Inner]: tiff::encoder::TiffValue,
+{
     let mut bytes = std::io::Cursor::new(Vec::new());
     let mut encoder = tiff::encoder::TiffEncoder::new(&mut bytes).unwrap();
-    encoder
-        .write_image::<tiff::encoder::colortype::Gray32Float>(width, height, values)
+    let mut image = encoder.new_image::<C>(width, height).unwrap();
+    if !extra.is_empty() {
+        image.extra_samples(extra).unwrap();
+    }
+    for (tag, value) in tags {
+        let directory = image.encoder();
+        match *value {
+            TiffTag::Short(number) => directory.write_tag(*tag, number),
+            TiffTag::Bytes(bytes) => directory.write_tag(*tag, bytes),
+            TiffTag::Fraction(n, d) => directory.write_tag(*tag, tiff::encoder::Rational { n, d }),
+        }
         .unwrap();
+    }
+    image.write_data(values).unwrap();
     bytes.into_inner()
 }
 
@@ -262,7 +293,7 @@ pub fn read_as(
     bytes: &[u8],
     options: &DepthOptions,
 ) -> std::result::Result<DepthMap, ImageError> {
-    let path = folder.0.join("depth.bin");
+    let path = folder.file("depth.bin");
     std::fs::write(&path, bytes).unwrap();
     read_depth(&path, options)
 }

@@ -1,6 +1,9 @@
 //! Functions that the tests of picture files share.
 
 pub mod files;
+mod folder;
+
+pub use folder::Folder;
 
 use airlight::spectrum::RgbSpace;
 use airlight_image::{
@@ -9,31 +12,6 @@ use airlight_image::{
     rows::{RowFn, RowSource},
     tone::{ToneCurve, ToneMapper},
 };
-use std::{fs, path::PathBuf};
-
-/// A temporary folder, removed at the end of the test.
-pub struct Folder(pub PathBuf);
-
-impl Folder {
-    pub fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("airlight-{name}-{}", std::process::id()));
-        fs::create_dir_all(&path).unwrap();
-        Self(path)
-    }
-
-    pub fn files(&self) -> Vec<String> {
-        fs::read_dir(&self.0)
-            .unwrap()
-            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-            .collect()
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
 
 /// A smooth sky with a bright sun, `channels` samples a pixel.
 pub fn sky(size: Size, channels: usize) -> impl RowSource {
