@@ -4,7 +4,7 @@ use crate::error::RenderError;
 use crate::frame::WrittenFile;
 use crate::image::RenderedImage;
 use crate::renderer::Renderer;
-use crate::sequence::SequenceStep;
+use crate::sequence::SequenceSettings;
 use airlight_image::Control;
 use std::time::Instant;
 
@@ -26,25 +26,24 @@ impl Renderer {
         })
     }
 
-    /// Writes the scene's picture, or the missing pictures of its sequence, to `output.file`.
+    /// Writes the scene's picture, or the missing pictures of its sequence and their manifest, to `output.file`.
     ///
     /// # Errors
     /// [`RenderError`]; files that are already written remain, and unfinished ones are removed.
     pub fn write(&self, control: Control<'_>) -> Result<Vec<WrittenFile>, RenderError> {
         if let Some(sequence) = self.sequence()? {
-            SequenceStep::remove_leftovers(sequence.steps());
-            let missing = sequence.missing();
-            let Some(ready) = self.prepare_sequence(&sequence, &missing, control)? else {
-                return Ok(Vec::new());
-            };
+            let run = self.start_sequence(&sequence, &SequenceSettings::default())?;
             let mut written = Vec::new();
-            for step in missing {
-                control.check()?;
-                let frame = ready
-                    .renderer
-                    .frame(ready.solution.as_ref(), Some(step.time))?;
-                written.extend(frame.write(&step.path, control)?.files);
+            if let Some(ready) = self.prepare_sequence(&sequence, run.missing(), control)? {
+                for (index, step) in run.missing().iter().enumerate() {
+                    control.check()?;
+                    let frame = ready
+                        .renderer
+                        .frame(ready.solution.as_ref(), Some(step.time))?;
+                    written.extend(run.write(index, &frame, control)?.files);
+                }
             }
+            run.finish()?;
             return Ok(written);
         }
         let path = self.output_path()?;

@@ -1,5 +1,6 @@
 //! [`RenderError`].
 
+use crate::manifest::ManifestError;
 use crate::objects::file::ObjectsError;
 use airlight::Cancelled;
 use airlight::scene::SceneError;
@@ -18,6 +19,9 @@ pub enum RenderError {
     /// Invalid objects.
     #[error(transparent)]
     Objects(#[from] ObjectsError),
+    /// A manifest that is not usable, or existing pictures with other settings.
+    #[error(transparent)]
+    Manifest(#[from] ManifestError),
     /// An error with a complete message.
     #[error("{0}")]
     Setting(String),
@@ -53,6 +57,7 @@ impl RenderError {
                     | ImageError::Setting { .. }
                     | ImageError::UnknownFormat { .. }
             ),
+            Self::Manifest(error) => error.is_refusal(),
             _ => true,
         }
     }

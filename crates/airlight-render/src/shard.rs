@@ -17,9 +17,14 @@ impl Shard {
         index % self.count as usize == self.number as usize - 1
     }
 
-    /// Name of the manifest of the shard.
-    pub(crate) fn manifest_name(&self) -> String {
-        format!("manifest-{}-of-{}.jsonl", self.number, self.count)
+    /// Its number, from 1.
+    pub fn number(&self) -> u32 {
+        self.number
+    }
+
+    /// Number of parts.
+    pub fn count(&self) -> u32 {
+        self.count
     }
 }
 
@@ -58,7 +63,7 @@ mod tests {
             let owners = shards.iter().filter(|shard| shard.has(index)).count();
             assert_eq!(owners, 1, "{index}");
         }
-        assert_eq!(shards[1].manifest_name(), "manifest-2-of-3.jsonl");
+        assert_eq!((shards[1].number(), shards[1].count()), (2, 3));
         for text in [
             "0/3",
             "4/3",

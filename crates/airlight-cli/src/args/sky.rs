@@ -61,7 +61,11 @@ pub struct SequenceArgs {
     /// Draw only a part of a sequence, for one of several machines: 3/16 is the third of 16 parts
     #[arg(long, value_name = "K/N")]
     pub shard: Option<Shard>,
-    /// Replace existing pictures of a sequence; otherwise they are kept
+    /// Manifest, with a line of JSON for each picture [default: manifest.jsonl beside the pictures; with --shard 3/16
+    /// manifest-3-of-16.jsonl]
+    #[arg(long, value_name = "FILE")]
+    pub manifest: Option<PathBuf>,
+    /// Replace existing pictures of a sequence; otherwise they are kept, and must have been made with the same options
     #[arg(long)]
     pub overwrite: bool,
 }
@@ -123,6 +127,16 @@ impl ObjectArgs {
 }
 
 impl SequenceArgs {
+    /// The first option that a single picture would ignore.
+    pub fn of_sequences(&self) -> Option<&'static str> {
+        let options = [
+            ("--shard", self.shard.is_some()),
+            ("--manifest", self.manifest.is_some()),
+        ];
+        let given = options.into_iter().find(|(_, is_given)| *is_given);
+        given.map(|(option, _)| option)
+    }
+
     fn fill(&self, sequence: &mut Option<SequenceSpec>) {
         if self.until.is_some() || self.every.is_some() {
             let sequence = sequence.get_or_insert_default();

@@ -12,7 +12,7 @@ use airlight_image::Control;
 use airlight_image::output::{AtomicFile, Written};
 use airlight_image::tone::Exposure;
 use airlight_render::exposure::DARKEST_EV100;
-use airlight_render::sequence::{PreparedSequence, Sequence, SequenceStep};
+use airlight_render::sequence::{PreparedSequence, Sequence, SequenceSettings};
 use airlight_render::summary::{self, short};
 use airlight_render::{PreparedFrame, Renderer, WrittenFile};
 use std::fmt::Write;
@@ -38,10 +38,12 @@ pub fn run(args: &SkyArgs) -> Result<(), CliError> {
     .with_text("command", scene::command_line());
     match renderer.sequence()? {
         Some(sequence) => many(args, &renderer, &sequence, preview),
-        None if args.sequence.shard.is_some() => Err(CliError::usage(
-            "--shard: expected a sequence of pictures, got one picture; try --until with --every",
-        )),
-        None => one(args, &renderer, preview),
+        None => match args.sequence.of_sequences() {
+            Some(option) => Err(CliError::usage(format!(
+                "{option}: expected a sequence of pictures, got one picture; try --until with --every"
+            ))),
+            None => one(args, &renderer, preview),
+        },
     }
 }
 
@@ -125,41 +127,36 @@ fn many(
     sequence: &Sequence,
     preview: Option<preview::Terminal>,
 ) -> Result<(), CliError> {
-    let part = args.sequence.shard;
-    let is_ours = |step: &SequenceStep| part.is_none_or(|part| part.has(step.number as usize - 1));
-    let ours: Vec<&SequenceStep> = sequence
-        .steps()
-        .iter()
-        .filter(|step| is_ours(step))
-        .collect();
-    let total = ours.len();
-    let shard = part.map_or(String::new(), |part| format!(" in shard {part}"));
-    let removed = SequenceStep::remove_leftovers(ours);
-    if removed > 0 {
+    let settings = SequenceSettings {
+        shard: args.sequence.shard,
+        overwrite: args.sequence.overwrite,
+        manifest: args.sequence.manifest.clone(),
+    };
+    let begun = Instant::now();
+    for file in sequence.steps().iter().take(1).flat_map(|step| &step.files) {
+        report::check_writable(&file.path)?;
+    }
+    // To the end, so that no empty manifest remains.
+    let writing = interrupt::start_writing()?;
+    let run = renderer.start_sequence(sequence, &settings)?;
+    if run.removed() > 0 {
+        let removed = run.removed();
         report::note(&format!(
             "{removed} unfinished files of an earlier run removed"
         ));
     }
-    let mut missing = match args.sequence.overwrite {
-        true => sequence.steps().to_vec(),
-        false => sequence.missing(),
-    };
-    missing.retain(is_ours);
-    let begun = Instant::now();
-    for file in missing.iter().take(1).flat_map(|step| &step.files) {
-        report::check_writable(&file.path)?;
-    }
+    let (missing, total) = (run.missing(), run.total());
     let mut exposure = None;
     let solving = RowsBar::by_stages();
     let control = Control::cancelled_by(&STOP).reporting_to(&solving);
-    let solved = renderer.prepare_sequence(sequence, &missing, control)?;
+    let solved = renderer.prepare_sequence(sequence, missing, control)?;
     drop(solving);
     if let Some(PreparedSequence { solution, renderer }) = solved {
         exposure = renderer.common_exposure();
         note_of_night(&renderer, exposure);
         let bar = RowsBar::new(missing.iter().map(|step| step.rows()).sum());
         let mut written: Vec<WrittenFile> = Vec::new();
-        for step in &missing {
+        for (index, step) in missing.iter().enumerate() {
             bar.say(format!(
                 "picture {} of {}",
                 step.number,
@@ -169,18 +166,24 @@ fn many(
             if let Some(terminal) = preview {
                 report::print(&preview::text(&renderer, &frame, terminal)?)?;
             }
-            let _writing = interrupt::start_writing()?;
             let control = Control::cancelled_by(&STOP).reporting_to(&bar);
-            written.extend(frame.write(&step.path, control)?.files);
+            written.extend(run.write(index, &frame, control)?.files);
             bar.files_done(step.rows());
         }
         drop(bar);
         warn_of_clipping(&renderer, written.iter().map(|file| &file.written));
     }
+    let made = missing.len();
+    let manifest = run.manifest().display().to_string();
+    run.finish()?;
+    drop(writing);
     if args.quiet {
         return Ok(());
     }
-    let skipped = match total - missing.len() {
+    let shard = settings
+        .shard
+        .map_or(String::new(), |part| format!(" in shard {part}"));
+    let skipped = match total - made {
         0 => String::new(),
         n => format!(", {n} existed already (--overwrite replaces them)"),
     };
@@ -189,9 +192,8 @@ fn many(
         format!("  exposure      EV {ev100} at ISO 100 in all pictures\n")
     });
     report::print(&format!(
-        "{}: {} of {total} pictures{shard} written{skipped}, {}\n{exposure}  time          {}\n",
+        "{}: {made} of {total} pictures{shard} written{skipped}, {}\n{exposure}  manifest      {manifest}\n  time          {}\n",
         renderer.output_path()?.display(),
-        missing.len(),
         renderer.kind(),
         seconds(begun.elapsed())
     ))

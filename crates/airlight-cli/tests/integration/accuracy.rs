@@ -24,6 +24,6 @@ fn bad_requests_are_refused_before_anything_is_computed() {
         let error = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(code), "{words}: {error}");
         assert!(error.contains(part), "{words}: {error}");
-        assert!(folder.names().is_empty(), "{words}");
+        assert!(folder.names("").is_empty(), "{words}");
     }
 }

@@ -31,11 +31,11 @@ fn wait_for_part(folder: &Folder) {
         name.ends_with(".part")
             && std::fs::metadata(folder.file(name)).is_ok_and(|about| about.len() > 100_000)
     };
-    while !folder.names().iter().any(grown) {
+    while !folder.names("").iter().any(grown) {
         assert!(
             start.elapsed() < Duration::from_secs(120),
             "nothing was written: {:?}",
-            folder.names()
+            folder.names("")
         );
         std::thread::sleep(Duration::from_millis(5));
     }
@@ -62,7 +62,7 @@ fn stopped_while_writing() {
         let (code, error) = stop(child, signal);
         assert_eq!(code, Some(130), "{error}");
         assert!(error.contains("stopped"), "{error}");
-        assert_eq!(folder.names(), ["a.exr"]);
+        assert_eq!(folder.names(""), ["a.exr"]);
         assert_eq!(
             std::fs::read(folder.file("a.exr")).unwrap(),
             b"what was there before"
@@ -78,7 +78,7 @@ fn stopped_while_solving() {
     std::thread::sleep(Duration::from_millis(700));
     let (code, error) = stop(child, Signal::SIGINT);
     assert_eq!(code, Some(130), "{error}");
-    assert!(folder.names().is_empty());
+    assert!(folder.names("").is_empty());
 }
 
 #[test]
@@ -89,7 +89,7 @@ fn interrupted_monte_carlo_keeps_the_picture_of_the_last_pass() {
     wait_for_file(&folder, "a.exr");
     let (code, error) = stop(child, Signal::SIGINT);
     assert_eq!(code, Some(130), "{error}");
-    assert_eq!(folder.names(), ["a.exr"]);
+    assert_eq!(folder.names(""), ["a.exr"]);
     assert_eq!(crate::common::Exr::read(&folder.file("a.exr")).width, 8);
 }
 
@@ -97,25 +97,28 @@ fn interrupted_monte_carlo_keeps_the_picture_of_the_last_pass() {
 fn a_stopped_sequence_keeps_its_whole_frames_and_goes_on() {
     let folder = Folder::new();
     let words = "sky --wavelengths rgb --scattering single --at 50,10 --when 2026-06-21T10:00:00Z --until +2h \
-                 --every 1h --size 512x256 -o a.png";
-    let child = spawn(&folder, &words.replace("512x256", "4096x2048"));
+                 --every 1h --size 2048x1024 -o a.png";
+    let child = spawn(&folder, words);
     wait_for_file(&folder, "a.0001.png");
     let (code, error) = stop(child, Signal::SIGINT);
     assert_eq!(code, Some(130), "{error}");
-    let names = folder.names();
+    let names = folder.names("");
+    let (manifest, pictures) = names.split_last().unwrap();
+    assert_eq!(manifest, "manifest.jsonl");
     assert!(
-        names
+        pictures
             .iter()
             .all(|name| name.ends_with(".png") && !name.starts_with('.')),
         "{names:?}"
     );
-    let done = names.len();
+    let done = pictures.len();
     let text = crate::common::succeed(&folder, words);
     assert!(
         text.contains(&format!("{} of 3 pictures written", 3 - done)),
         "{text}"
     );
-    assert_eq!(folder.names(), ["a.0001.png", "a.0002.png", "a.0003.png"]);
+    let all = ["a.0001.png", "a.0002.png", "a.0003.png", "manifest.jsonl"];
+    assert_eq!(folder.names(""), all);
 }
 
 #[test]
@@ -130,10 +133,10 @@ fn a_stopped_batch_keeps_its_whole_pictures_and_goes_on() {
         image::ImageBuffer::from_fn(width, height, |x, y| image::Luma([(9 * x + y) as u16 + 1]));
     for number in 10..30 {
         picture
-            .save(folder.file(&format!("rgb/{number}.png")))
+            .save(folder.file(format!("rgb/{number}.png")))
             .unwrap();
         depth
-            .save(folder.file(&format!("depth/{number}.png")))
+            .save(folder.file(format!("depth/{number}.png")))
             .unwrap();
     }
     let words = "fog rgb --depth depth --depth-scale 0.01 --fog-profile height --vary visibility=5..50 -o out";

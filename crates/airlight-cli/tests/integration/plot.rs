@@ -95,7 +95,7 @@ fn plots_of_nothing_are_refused() {
         let text = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(2), "{words}: {text}");
         assert!(text.contains(sentence), "{words}: {text}");
-        assert!(folder.names().is_empty(), "{words}");
+        assert!(folder.names("").is_empty(), "{words}");
     }
 }
 

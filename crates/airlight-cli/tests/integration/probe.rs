@@ -56,7 +56,7 @@ fn views_come_from_standard_input_and_answers_go_to_files() {
     let answer: Value =
         serde_json::from_slice(&std::fs::read(folder.file("a.json")).unwrap()).unwrap();
     assert_eq!(answer["views"][0]["azimuth_deg"], 180.0);
-    assert_eq!(folder.names(), ["a.json"]);
+    assert_eq!(folder.names(""), ["a.json"]);
 }
 
 #[test]
@@ -121,6 +121,6 @@ fn bad_use_is_refused() {
         let error = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(code), "{words}: {error}");
         assert!(error.contains(part), "{words}: {error}");
-        assert_eq!(folder.names(), ["views.csv"], "{words}");
+        assert_eq!(folder.names(""), ["views.csv"], "{words}");
     }
 }

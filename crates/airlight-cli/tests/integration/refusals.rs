@@ -6,13 +6,13 @@ const SUN: &str = "--wavelengths rgb --scattering single --size 16x8 --sun-eleva
 
 /// Runs, and checks the exit code, that the message holds a text, and that no file appeared.
 fn refused(folder: &Folder, words: &str, code: i32, part: &str) {
-    let before = folder.names();
+    let before = folder.names("");
     let output = run(folder, words);
     let error = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(code), "{words}: {error}");
     assert!(error.contains(part), "{words}: `{part}` is not in: {error}");
     assert!(!error.contains("panicked"), "{words}: {error}");
-    assert_eq!(folder.names(), before, "{words}");
+    assert_eq!(folder.names(""), before, "{words}");
 }
 
 #[test]

@@ -104,7 +104,7 @@ fn scenes_are_saved_read_and_overridden() {
                 .replace("--objects sphere.toml", "")
         ),
     );
-    assert!(folder.names().contains(&"d.toml".to_owned()));
+    assert!(folder.names("").contains(&"d.toml".to_owned()));
 }
 
 #[test]
@@ -116,7 +116,7 @@ fn sequences_report_what_they_made() {
     assert!(succeed(&folder, &words).contains("3 of 3 pictures written"));
     std::fs::remove_file(folder.file("a.0002.png")).unwrap();
     // What a killed run leaves: numbers of processes are below 2^22.
-    let left = folder.file(&format!(".a.0002.png.{}-0.part", u32::MAX));
+    let left = folder.file(format!(".a.0002.png.{}-0.part", u32::MAX));
     std::fs::write(&left, "").unwrap();
     let text = succeed(&folder, &words);
     assert!(left.exists() != cfg!(target_os = "linux"));
@@ -125,6 +125,13 @@ fn sequences_report_what_they_made() {
         "{text}"
     );
     assert!(succeed(&folder, &format!("{words} --overwrite")).contains("3 of 3 pictures written"));
+    let other = run(&folder, &words.replace("16x8", "32x16"));
+    let said = String::from_utf8_lossy(&other.stderr);
+    assert_eq!(other.status.code(), Some(2), "{said}");
+    assert!(
+        said.contains("camera.size was [16,8], is [32,16]"),
+        "{said}"
+    );
     // Shards draw the same pictures; the command in their metadata is their own.
     let pixels = |name: &str| image::open(folder.file(name)).unwrap().into_rgb8();
     let whole = ["a.0001.png", "a.0002.png", "a.0003.png"].map(pixels);
@@ -136,6 +143,11 @@ fn sequences_report_what_they_made() {
         let text = succeed(&folder, &format!("{parts} --shard {shard}"));
         assert!(text.contains(said), "{text}");
     }
+    assert!(
+        folder
+            .names("")
+            .contains(&"manifest-1-of-2.jsonl".to_owned())
+    );
     assert_eq!(
         ["b.0001.png", "b.0002.png", "b.0003.png"].map(pixels),
         whole
@@ -157,7 +169,7 @@ fn threads_change_nothing() {
     succeed(&folder, &format!("{words} --threads 1 -o a.exr"));
     succeed(&folder, &format!("{words} --threads 2 -o b.exr"));
     for part in ["", ".noise", ".polarisation"] {
-        let [a, b] = ["a", "b"].map(|name| Exr::read(&folder.file(&format!("{name}{part}.exr"))));
+        let [a, b] = ["a", "b"].map(|name| Exr::read(&folder.file(format!("{name}{part}.exr"))));
         assert!(a.channels == b.channels, "{part}");
     }
 }

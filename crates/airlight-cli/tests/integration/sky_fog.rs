@@ -19,7 +19,7 @@ fn fog_changes_the_sky_or_is_refused() {
     let [clear, thinning, slab] = ["clear.png", "thinning.png", "slab.png"]
         .map(|name| image::open(folder.file(name)).unwrap().to_rgb8());
     assert!(clear != thinning && thinning != slab);
-    let before = folder.names();
+    let before = folder.names("");
     for (fog, sentence) in [
         ("--visibility-m 0", "above 0"),
         ("--visibility-m nan", "above 0"),
@@ -38,7 +38,7 @@ fn fog_changes_the_sky_or_is_refused() {
         let text = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(2), "{fog}: {text}");
         assert!(text.contains(sentence), "{fog}: {text}");
-        assert_eq!(folder.names(), before, "{fog} left something behind");
+        assert_eq!(folder.names(""), before, "{fog} left something behind");
     }
 }
 

@@ -1,9 +1,10 @@
 //! Errors of planning and running a batch.
 
 use crate::RenderError;
+use crate::manifest::{ManifestError, listed};
 use airlight_image::ImageError;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Why a batch could not be planned, or did not run to its end.
 #[derive(Debug, thiserror::Error)]
@@ -32,7 +33,7 @@ pub enum BatchError {
     },
     /// A folder or pattern without any picture in it.
     #[error(
-        "expected pictures, got none in `{path}`; try a folder of .exr, .hdr, .png or .jpg files, or a quoted pattern such as \
+        "expected pictures, got none in `{path}`; try a folder of .exr, .hdr, .png, .jpg or .tif files, or a quoted pattern such as \
          'rgb/*.png'", path = .0.display()
     )]
     NoPictures(PathBuf),
@@ -125,60 +126,9 @@ pub enum BatchError {
         /// Greatest number of their product.
         most: u64,
     },
-    /// Outputs that exist and were made with other settings.
-    #[error(
-        "expected existing pictures to have the same settings, got {} that differ; try overwrite to make them again, or \
-         another output:{}", .0.len(), listed(.0)
-    )]
-    DifferentSettings(Vec<String>),
-    /// Outputs that exist and are not in the manifest.
-    #[error(
-        "expected existing pictures to be in the manifest, got {} that are not; try overwrite to replace them, or another \
-         output:{}", .0.len(), listed(.0)
-    )]
-    NotInManifest(Vec<String>),
-    /// A manifest that cannot be read or written.
-    #[error("cannot read or write the manifest `{path}`: {source}", path = .path.display())]
-    Manifest {
-        /// The manifest.
-        path: PathBuf,
-        /// Error of the operating system.
-        source: io::Error,
-    },
-    /// A file that is not a manifest.
-    #[error(
-        "expected a manifest of pictures, got `{path}`, whose line {line} is something else ({reason}); try another manifest \
-         name, or move that file away", path = .path.display()
-    )]
-    NotAManifest {
-        /// The file.
-        path: PathBuf,
-        /// The line, from 1.
-        line: usize,
-        /// Why it is not a manifest's.
-        reason: String,
-    },
-    /// A manifest of an earlier version, whose lines name settings differently.
-    #[error(
-        "expected a manifest of version {expected}, got version {got} in line {line} of `{path}`; try another output folder or \
-         manifest name, or delete that manifest and its pictures", path = .path.display()
-    )]
-    ManifestVersion {
-        /// The manifest.
-        path: PathBuf,
-        /// The line, from 1.
-        line: usize,
-        /// The version that can be resumed.
-        expected: u32,
-        /// The version of the line.
-        got: u32,
-    },
-    /// A manifest that another run holds.
-    #[error(
-        "another run is writing to the manifest `{path}`; try again when it has ended, or another manifest name",
-        path = .0.display()
-    )]
-    ManifestLocked(PathBuf),
+    /// A manifest that is not usable, or existing pictures with other settings.
+    #[error(transparent)]
+    Manifest(#[from] ManifestError),
     /// A folder or file that the operating system cannot access.
     #[error("cannot {action} `{path}`: {source}", path = .path.display())]
     File {
@@ -214,13 +164,10 @@ impl BatchError {
             Self::NotUnicode(_)
             | Self::NoPictures(_)
             | Self::NoDepth { .. }
-            | Self::Manifest { .. }
-            | Self::NotAManifest { .. }
-            | Self::ManifestVersion { .. }
-            | Self::ManifestLocked(_)
             | Self::File { .. }
             | Self::Threads(_)
             | Self::FirstFailure(_) => false,
+            Self::Manifest(error) => error.is_refusal(),
             Self::Render(error) => error.is_refusal(),
             _ => true,
         }
@@ -230,25 +177,4 @@ impl BatchError {
     pub fn is_cancelled(&self) -> bool {
         matches!(self, Self::Render(error) if error.is_cancelled())
     }
-
-    pub(super) fn manifest(path: &Path, source: io::Error) -> Self {
-        Self::Manifest {
-            path: path.to_owned(),
-            source,
-        }
-    }
-}
-
-/// The first ten lines of a list, indented, and the number of remaining lines.
-pub fn listed(lines: &[String]) -> String {
-    const SHOWN: usize = 10;
-    let mut text: String = lines
-        .iter()
-        .take(SHOWN)
-        .map(|line| format!("\n  {line}"))
-        .collect();
-    if lines.len() > SHOWN {
-        text.push_str(&format!("\n  and {} more", lines.len() - SHOWN));
-    }
-    text
 }

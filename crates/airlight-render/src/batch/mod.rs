@@ -9,7 +9,6 @@
 mod draw;
 mod error;
 mod inputs;
-mod manifest;
 mod pattern;
 mod plan;
 mod record;
@@ -17,7 +16,8 @@ mod run;
 mod settings;
 mod vary;
 
-pub use error::{BatchError, listed};
+pub use crate::manifest::listed;
+pub use error::BatchError;
 pub use inputs::{FoundInputs, Input};
 pub use pattern::{Match, Pattern};
 pub use plan::{BatchPlan, BatchSettings, Variant, is_batch};

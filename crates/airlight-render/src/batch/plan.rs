@@ -3,6 +3,7 @@
 use super::inputs::{InputPath, find_inputs};
 use super::settings::Affects;
 use super::{BatchError, Each, FoundInputs, Input, Pattern, Variation};
+use crate::manifest;
 use crate::overlay::OverlayScene;
 use crate::shard::Shard;
 use airlight::Named;
@@ -181,10 +182,7 @@ impl BatchPlan {
         match &self.settings.manifest {
             Some(path) => path.clone(),
             None => {
-                let name = match &self.settings.shard {
-                    Some(shard) => shard.manifest_name(),
-                    None => "manifest.jsonl".to_owned(),
-                };
+                let name = manifest::name(self.settings.shard.as_ref());
                 self.output.folder(&self.settings.each).join(name)
             }
         }
@@ -196,11 +194,7 @@ impl BatchPlan {
             OutputPath::File(path) => path.clone(),
             OutputPath::Pattern(pattern) => pattern.path(&input.captures),
             OutputPath::Folder(folder) => {
-                let ending = input.colour.extension().unwrap_or_default();
-                let ending = match self.scene.overlay.layers {
-                    true => "exr".into(),
-                    false => ending.to_string_lossy(),
-                };
+                let ending = self.scene.overlay.ending_in_folder(&input.colour);
                 folder.join(format!("{}.{ending}", input.name()))
             }
         };

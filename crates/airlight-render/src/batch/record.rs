@@ -1,10 +1,10 @@
 //! Lines of a manifest.
 
-use super::{BatchError, Input, manifest::MANIFEST_VERSION};
+use super::Input;
+use crate::manifest::MANIFEST_VERSION;
 use crate::overlay::{LightLevelSource, OverlayImage, OverlayScene, PreparedOverlay};
 use airlight_image::tone::Exposure;
 use serde::Serialize;
-use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 
 /// The line of a picture.
@@ -17,7 +17,6 @@ pub(super) struct Record<'a> {
     #[serde(flatten)]
     which: Which,
     /// The description of the picture: its settings and files.
-    #[serde(flatten)]
     scene: &'a OverlayScene,
     #[serde(flatten)]
     outcome: Outcome<'a>,
@@ -122,92 +121,5 @@ impl<'a> Record<'a> {
             outcome,
             airlight: AIRLIGHT,
         }
-    }
-}
-
-/// Differences between the settings in a line and a description, such as `fog.visibility_m was 50.0, is 60.0`.
-///
-/// # Errors
-/// [`BatchError::Render`] if the description cannot be written as JSON.
-pub(super) fn differences(
-    scene: &OverlayScene,
-    line: &Map<String, Value>,
-) -> Result<Vec<String>, BatchError> {
-    // Written and read as lines are.
-    let now = serde_json::to_vec(scene).and_then(|text| serde_json::from_slice(&text));
-    let now = now.map_err(|error| {
-        crate::RenderError::setting(format!("cannot write the settings as JSON: {error}"))
-    })?;
-    let mut differences = Vec::new();
-    if let Value::Object(now) = &now {
-        compare(None, line, now, &mut differences);
-    }
-    Ok(differences)
-}
-
-/// Adds the differences between two tables; at the top level, a line also has keys that are not settings.
-fn compare(
-    path: Option<&str>,
-    was: &Map<String, Value>,
-    is: &Map<String, Value>,
-    differences: &mut Vec<String>,
-) {
-    let inner = was
-        .keys()
-        .filter(|key| path.is_some() && !is.contains_key(*key));
-    for key in is.keys().chain(inner) {
-        let name = match path {
-            Some(path) => format!("{path}.{key}"),
-            None => key.clone(),
-        };
-        let set =
-            |table: &Map<String, Value>| table.get(key).filter(|value| !value.is_null()).cloned();
-        match (set(was), set(is)) {
-            (Some(was), Some(is)) if was == is => {}
-            (Some(Value::Object(was)), Some(Value::Object(is))) => {
-                compare(Some(&name), &was, &is, differences);
-            }
-            (None, None) => {}
-            (was, is) => {
-                let shown = |value: Option<Value>| {
-                    value.map_or_else(|| "not set".to_owned(), |value| value.to_string())
-                };
-                differences.push(format!("{name} was {}, is {}", shown(was), shown(is)));
-            }
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use serde_json::json;
-
-    #[test]
-    fn differences_name_each_setting_with_its_table() {
-        let table = |value: Value| value.as_object().cloned().unwrap();
-        let was = table(json!({
-            "output": "a.png", "variant": 1,
-            "fog": {"visibility_m": 8.0, "profile": "height", "layers": [1]},
-            "camera": {"roll_deg": 2.0, "fov_deg": null},
-            "solver": {"paths": null}
-        }));
-        let is = table(json!({
-            "fog": {"visibility_m": 9.0, "profile": "height", "layers": [1, 2]},
-            "camera": {"size": null},
-            "sun": {"elevation_deg": 5.0}
-        }));
-        let mut differences = Vec::new();
-        compare(None, &was, &is, &mut differences);
-        differences.sort();
-        assert_eq!(
-            differences,
-            [
-                "camera.roll_deg was 2.0, is not set",
-                "fog.layers was [1], is [1,2]",
-                "fog.visibility_m was 8.0, is 9.0",
-                "sun was not set, is {\"elevation_deg\":5.0}",
-            ]
-        );
     }
 }

@@ -1,10 +1,10 @@
 //! Running a batch: each thread reads a picture, adds fog, writes it and takes the next.
 
-use super::manifest::{Manifest, is_whole};
-use super::record::{Record, Which, differences};
+use super::record::{Record, Which};
 use super::settings::Affects;
 use super::{BatchError, BatchPlan, Input, Variant};
 use crate::RenderError;
+use crate::manifest::{Existing, Manifest, is_whole};
 use crate::overlay::{OverlayImage, OverlayScene, PreparedOverlay, SkyLight};
 use airlight_image::output::AtomicFile;
 use airlight_image::{Control, ImageError, Notes};
@@ -151,10 +151,10 @@ fn remove_leftovers(plan: &BatchPlan, manifest: &Path) -> u64 {
 /// The pictures that do not exist yet, by input.
 ///
 /// # Errors
-/// [`BatchError::DifferentSettings`] or [`BatchError::NotInManifest`] for existing pictures.
+/// [`BatchError::Manifest`] for existing pictures with other settings or without a line.
 fn missing<'a>(plan: &'a BatchPlan, manifest: &Manifest) -> Result<Vec<Task<'a>>, BatchError> {
     let mut tasks: Vec<Task<'a>> = Vec::new();
-    let (mut unknown, mut different) = (Vec::new(), Vec::new());
+    let mut existing = Existing::default();
     for (input, variant) in plan.pictures() {
         let output = plan.output(input, variant);
         if plan.settings().overwrite || !is_whole(&output) {
@@ -170,25 +170,9 @@ fn missing<'a>(plan: &'a BatchPlan, manifest: &Manifest) -> Result<Vec<Task<'a>>
             }
             continue;
         }
-        let Some(line) = manifest.line(&manifest.name_of(&output))? else {
-            unknown.push(format!("`{}`", output.display()));
-            continue;
-        };
-        let differences = differences(&plan.scene_of(input, variant), &line)?;
-        if !differences.is_empty() {
-            different.push(format!(
-                "`{}`: {}",
-                output.display(),
-                differences.join("; ")
-            ));
-        }
+        manifest.compare(&output, &plan.scene_of(input, variant), &mut existing)?;
     }
-    if !different.is_empty() {
-        return Err(BatchError::DifferentSettings(different));
-    }
-    if !unknown.is_empty() {
-        return Err(BatchError::NotInManifest(unknown));
-    }
+    existing.check()?;
     Ok(tasks)
 }
 
@@ -312,18 +296,6 @@ impl Worker<'_> {
         let rows = prepared.output(scene, image, scene.output_format(output)?)?;
         let name = self.manifest.name_of(output);
         create_folder(output.parent())?;
-        // Remove the old picture first: if the process is killed after the new line is written, the old picture must not be
-        // taken for the new one.
-        match std::fs::remove_file(output) {
-            Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
-                return Err(BatchError::File {
-                    action: "overwrite",
-                    path: output.clone(),
-                    source,
-                });
-            }
-            _ => {}
-        }
         let settings = self.plan.settings();
         let seed = (!settings.vary.is_empty()).then_some(settings.seed);
         let record = Record::made(
@@ -335,7 +307,7 @@ impl Worker<'_> {
             image,
             (&prepared, rows.exposure()),
         );
-        self.manifest.add(&name, false, &record)?;
+        self.manifest.begin([output.as_path()], &name, &record)?;
         let written = rows.write(output, self.control.without_progress())?;
         let mut notes = rows.overlay().notes();
         notes.count(

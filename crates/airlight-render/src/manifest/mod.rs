@@ -4,8 +4,8 @@
 //! A line is written before its picture is renamed into place, so that every picture has a line even if the process is killed;
 //! an unfinished last line is dropped. At the end of a run the lines are sorted, and those without a picture are removed.
 
-mod differences;
 mod error;
+mod settings;
 
 pub use error::{ManifestError, listed};
 
@@ -20,8 +20,8 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 /// Version of the lines, incremented when keys change their meaning. Lines of version 1 had no version and contained options of
-/// the command line.
-pub(crate) const MANIFEST_VERSION: u32 = 2;
+/// the command line; version 2 had the tables of the scene among its other keys.
+pub(crate) const MANIFEST_VERSION: u32 = 3;
 
 /// Name of the manifest of pictures in a folder, or of a part of them.
 pub(crate) fn name(shard: Option<&Shard>) -> String {
@@ -182,7 +182,7 @@ impl Manifest {
             existing.unknown.push(name);
             return Ok(());
         };
-        let differences = differences::between(&line, settings)
+        let differences = settings::differences(&line, settings)
             .map_err(|error| ManifestError::file(&self.path, error.into()))?;
         if !differences.is_empty() {
             let differences = differences.join("; ");

@@ -3,12 +3,12 @@
 use super::{FramePattern, SequencePlan, parse_span_s};
 use crate::error::RenderError;
 use crate::layout::PictureFile;
+use crate::manifest::is_whole;
 use crate::renderer::Renderer;
 use airlight::scene::PreparedModel;
 use airlight::sky::SunCoverage;
 use airlight::sun::Moment;
 use airlight_image::Control;
-use airlight_image::output::AtomicFile;
 use airlight_image::tone::Exposure;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -92,7 +92,7 @@ impl Renderer {
     }
 
     /// Whether the pictures of a sequence have one exposure, which is metered.
-    fn meters_together(&self) -> bool {
+    pub(super) fn meters_together(&self) -> bool {
         let sequence = self.scene().sequence.as_ref();
         let is_linear = self
             .layout()
@@ -166,30 +166,17 @@ impl Sequence {
         &self.steps
     }
 
-    fn first_middle_last(&self) -> Vec<&SequenceStep> {
+    pub(super) fn first_middle_last(&self) -> Vec<&SequenceStep> {
         let last = self.steps.len().saturating_sub(1);
         let places = [0, last / 2, last];
         places.iter().filter_map(|&k| self.steps.get(k)).collect()
     }
-
-    /// Pictures with a missing or empty file. Files are renamed into place, so existing ones are complete.
-    pub fn missing(&self) -> Vec<SequenceStep> {
-        let missing = |step: &&SequenceStep| !step.is_whole();
-        self.steps.iter().filter(missing).cloned().collect()
-    }
 }
 
 impl SequenceStep {
-    /// Removes what killed runs left of pictures; returns the number of files.
-    pub fn remove_leftovers<'s>(steps: impl IntoIterator<Item = &'s Self>) -> u64 {
-        let files = steps.into_iter().flat_map(|step| &step.files);
-        AtomicFile::remove_leftovers(files.map(|file| file.path.as_path()))
-    }
-
-    fn is_whole(&self) -> bool {
-        self.files.iter().all(|file| {
-            std::fs::metadata(&file.path).is_ok_and(|about| about.is_file() && about.len() > 0)
-        })
+    /// Whether all its files exist.
+    pub(super) fn is_whole(&self) -> bool {
+        self.files.iter().all(|file| is_whole(&file.path))
     }
 
     /// Number of rows of all files.

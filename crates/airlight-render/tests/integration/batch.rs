@@ -132,7 +132,7 @@ fn folders_pair_by_name_and_patterns_by_their_captures() {
     }
     let lines = folder.manifest("by_name/manifest.jsonl");
     let line = &lines["b.png"];
-    let overlay = &line["overlay"];
+    let overlay = &line["scene"]["overlay"];
     assert_eq!(
         overlay["colour"],
         folder.file("rgb/b.png").to_str().unwrap()
@@ -141,7 +141,7 @@ fn folders_pair_by_name_and_patterns_by_their_captures() {
         overlay["depth"],
         folder.file("depth/b.png").to_str().unwrap()
     );
-    assert_eq!(line["fog"]["visibility_m"], 8.0);
+    assert_eq!(line["scene"]["fog"]["visibility_m"], 8.0);
     assert_eq!((&line["width"], &line["height"]), (&40.into(), &30.into()));
     let extinction = line["extinction_per_m"].as_f64().unwrap();
     assert!((extinction - 20f64.ln() / 8.0).abs() < 1e-12);
@@ -245,17 +245,17 @@ fn draws_depend_on_names_not_on_threads() {
     assert_eq!((one.len(), two.len()), (16, 16));
     let (mut visibilities, mut profiles) = (BTreeSet::new(), BTreeSet::new());
     for (first, second) in one.values().zip(two.values()) {
-        for key in ["name", "variant", "fog", "sun", "observer", "ambient_rgb"] {
+        for key in ["name", "variant", "scene", "ambient_rgb"] {
             assert_eq!(first[key], second[key], "{key}");
         }
         let bytes = |place, line: &Map<String, Value>| {
             folder.bytes(&format!("{place}/{}", line["output"].as_str().unwrap()))
         };
         assert_eq!(bytes("out", first), bytes("two", second));
-        let visibility_m = first["fog"]["visibility_m"].as_f64().unwrap();
+        let visibility_m = first["scene"]["fog"]["visibility_m"].as_f64().unwrap();
         assert!((5.0..=50.0).contains(&visibility_m));
         assert_eq!(first["seed"], 3);
-        profiles.insert(first["fog"]["profile"].to_string());
+        profiles.insert(first["scene"]["fog"]["profile"].to_string());
         visibilities.insert(visibility_m.to_string());
     }
     assert_eq!((profiles.len(), visibilities.len()), (2, 16));
@@ -263,7 +263,10 @@ fn draws_depend_on_names_not_on_threads() {
     let alone = folder.varied("rgb/p5.png", "depth", "alone/");
     made(alone, settings(1));
     let alone = folder.manifest("alone/manifest.jsonl");
-    assert_eq!(alone["p5_v0002.png"]["fog"], one["p5_v0002.png"]["fog"]);
+    assert_eq!(
+        alone["p5_v0002.png"]["scene"]["fog"],
+        one["p5_v0002.png"]["scene"]["fog"]
+    );
 }
 
 fn each(texts: &[&str], varied: &[&str]) -> BatchSettings {
@@ -287,19 +290,22 @@ fn every_picture_gets_each_value_and_all_combinations() {
     assert_eq!(made(all("out/*.png"), settings()), 24);
     let lines = folder.manifest("out/manifest.jsonl");
     let line = &lines["a_visibility-10_fog-profile-height_v0002.png"];
-    assert_eq!(line["fog"]["visibility_m"], 10.0);
-    assert_eq!(line["fog"]["profile"], "height");
+    assert_eq!(line["scene"]["fog"]["visibility_m"], 10.0);
+    assert_eq!(line["scene"]["fog"]["profile"], "height");
     assert_eq!(line["each"]["visibility"], 10.0);
     assert_eq!(line["each"]["fog-profile"], "height");
     // Draws are those of the variant, whatever the value.
     let other = &lines["a_visibility-5_fog-profile-uniform_v0002.png"];
-    assert_eq!(line["observer"], other["observer"]);
+    assert_eq!(line["scene"]["observer"], other["scene"]["observer"]);
     let (first, second) = (
         "a_visibility-5_fog-profile-height_v0001.png",
         "b_visibility-5_fog-profile-height_v0001.png",
     );
-    assert_ne!(line["observer"], lines[first]["observer"]);
-    assert_ne!(lines[first]["observer"], lines[second]["observer"]);
+    assert_ne!(line["scene"]["observer"], lines[first]["scene"]["observer"]);
+    assert_ne!(
+        lines[first]["scene"]["observer"],
+        lines[second]["scene"]["observer"]
+    );
     assert_eq!(made(all("out/*.png"), settings()), 0);
     // Places for values in the name of the output.
     let output = "v/{visibility}/*_{fog-profile}_{variant}.png";
@@ -439,7 +445,7 @@ fn a_cancelled_batch_leaves_what_is_done() {
         .unwrap();
     assert_eq!(report.made, 0);
     assert!(report.stopped.unwrap().is_cancelled());
-    assert_eq!(folder.names("out"), ["manifest.jsonl"]);
+    assert_eq!(folder.names("out"), [""; 0]);
     assert_eq!(made(folder.usual(8.0), BatchSettings::default()), 2);
 }
 
@@ -497,7 +503,7 @@ fn contradictions_are_refused_before_anything_is_written() {
     for (scene, part) in [
         (paths("none/*.png", "out/*.png"), "cannot read the folder"),
         (
-            paths("rgb/*.tif", "out/*.png"),
+            paths("rgb/*.bmp", "out/*.png"),
             "expected pictures, got none",
         ),
         (paths("empty", "out"), "expected pictures, got none"),
@@ -617,7 +623,7 @@ fn manifests_that_cannot_be_resumed_are_refused() {
     fs::write(folder.file("old.jsonl"), old).unwrap();
     let sentence = refused(folder.usual(8.0), with("old.jsonl"));
     assert!(
-        sentence.contains("version 2, got version 1 in line 1"),
+        sentence.contains("version 3, got version 1 in line 1"),
         "{sentence}"
     );
     assert_eq!(folder.bytes("old.jsonl"), old.as_bytes());
@@ -640,6 +646,82 @@ fn names_that_are_not_unicode_and_folders_that_cannot_be_created_are_refused() {
     fs::copy(folder.file("rgb/a.png"), folder.file("rgb").join(odd)).unwrap();
     let error = run(folder.usual(8.0), BatchSettings::default()).unwrap_err();
     assert!(matches!(error, BatchError::NotUnicode(_)), "{error}");
+}
+
+/// TIFF is read, not written: in a folder, its pictures are PNG.
+#[test]
+fn tiff_pictures_become_png() {
+    let folder = Pictures::new(&["a"]);
+    let bytes = folder.bytes("rgb/a.png");
+    fs::remove_file(folder.file("rgb/a.png")).unwrap();
+    let colours = image::load_from_memory(&bytes).unwrap().into_rgb8();
+    fs::create_dir(folder.file("tif")).unwrap();
+    fs::write(folder.file("tif/a.TIF"), tiff(&colours)).unwrap();
+    fs::write(folder.file("rgb/a.png"), bytes).unwrap();
+    for (colour, output) in [("tif", "from_tif"), ("rgb", "from_png")] {
+        let scene = folder.scene(colour, "depth", output, 8.0);
+        assert_eq!(made(scene, BatchSettings::default()), 1);
+    }
+    assert_eq!(
+        folder.bytes("from_tif/a.png"),
+        folder.bytes("from_png/a.png")
+    );
+    let mut alone = folder.scene("tif", "depth", "alone", 8.0);
+    alone.overlay.depth = None;
+    assert!(refused(alone, BatchSettings::default()).contains("only EXR pictures hold depth"));
+}
+
+/// An uncompressed TIFF file of 8 bits.
+fn tiff(colours: &image::RgbImage) -> Vec<u8> {
+    let (width, height) = colours.dimensions();
+    let count = colours.as_raw().len() as u32;
+    // Width, height, bits, interpretation (RGB), offset, components, bytes: tag, kind (16 or 32 bits), number, value.
+    let entries = [
+        (256u16, 4u16, 1u32, width),
+        (257, 4, 1, height),
+        (258, 3, 3, 98),
+        (262, 3, 1, 2),
+        (273, 4, 1, 104),
+        (277, 3, 1, 3),
+        (279, 4, 1, count),
+    ];
+    let mut bytes = b"II*\0\x08\0\0\0\x07\0".to_vec();
+    for (tag, kind, number, value) in entries {
+        bytes.extend(tag.to_le_bytes());
+        bytes.extend(kind.to_le_bytes());
+        bytes.extend(number.to_le_bytes());
+        bytes.extend(value.to_le_bytes());
+    }
+    bytes.extend([0; 4]);
+    assert_eq!(bytes.len(), 98);
+    bytes.extend([8, 0, 8, 0, 8, 0]);
+    bytes.extend(colours.as_raw());
+    bytes
+}
+
+/// Settings of the output, and settings that are no longer given.
+#[test]
+fn every_setting_is_recorded_and_compared() {
+    let folder = Pictures::new(&["a"]);
+    let settings = |change: fn(&mut OverlayScene)| {
+        let mut scene = folder.scene("rgb/*.png", "depth/*.png", "out/*.jpg", 8.0);
+        change(&mut scene);
+        scene
+    };
+    let as_given = |scene: &mut OverlayScene| {
+        scene.scene.output.quality = Some(50);
+        scene.scene.air.ground_albedo = Some(0.5);
+    };
+    let usual = BatchSettings::default;
+    assert_eq!(made(settings(as_given), usual()), 1);
+    assert_eq!(made(settings(as_given), usual()), 0);
+    let sentence = refused(settings(|_| {}), usual());
+    for part in [
+        "output.quality was 50, is not set",
+        "air.ground_albedo was 0.5, is not set",
+    ] {
+        assert!(sentence.contains(part), "{sentence}");
+    }
 }
 
 #[test]

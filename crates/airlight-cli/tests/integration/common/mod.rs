@@ -1,51 +1,19 @@
-//! Running the program, folders that go away, reading what it wrote.
+//! Running the program in folders that go away, reading what it wrote.
+
+#[path = "../../../../airlight-image/tests/integration/common/folder.rs"]
+mod folder;
+
+pub use folder::Folder;
+
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Output};
-use std::sync::atomic::{AtomicU32, Ordering};
-
-/// A folder of a test's own.
-pub struct Folder(pub PathBuf);
-
-impl Folder {
-    pub fn new() -> Self {
-        static COUNT: AtomicU32 = AtomicU32::new(0);
-        let name = format!(
-            "airlight-cli-{}-{}",
-            std::process::id(),
-            COUNT.fetch_add(1, Ordering::Relaxed)
-        );
-        let path = std::env::temp_dir().join(name);
-        std::fs::create_dir_all(&path).unwrap();
-        Self(path)
-    }
-
-    pub fn file(&self, name: &str) -> PathBuf {
-        self.0.join(name)
-    }
-
-    /// Names of the files in it, hidden ones too.
-    pub fn names(&self) -> Vec<String> {
-        let mut names: Vec<String> = std::fs::read_dir(&self.0)
-            .unwrap()
-            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-            .collect();
-        names.sort();
-        names
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
-}
 
 /// The program, to be run in a folder, with words split at spaces.
 pub fn command(folder: &Folder, words: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_airlight"));
     command
-        .current_dir(&folder.0)
+        .current_dir(folder.file(""))
         .args(words.split_whitespace());
     for variable in ["COLORTERM", "TERM", "NO_COLOR"] {
         command.env_remove(variable);

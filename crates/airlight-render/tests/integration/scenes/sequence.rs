@@ -9,20 +9,81 @@ const SCENE: &str = "solver.wavelengths = \"rgb\"\nsolver.scattering = \"single\
     sun = { latitude_deg = 50, longitude_deg = 10, time = \"2026-06-21T18:00:00+02:00\" }\n\
     sequence = { until = \"+3h\", every = \"1h\" }\n";
 
+/// The names of the pictures, and the manifest.
+const NAMES: [&str; 5] = [
+    "a.0001.exr",
+    "a.0002.exr",
+    "a.0003.exr",
+    "a.0004.exr",
+    "manifest.jsonl",
+];
+
 #[test]
 fn pictures_there_are_left_as_they_are() {
     let folder = Folder::new();
     assert_eq!(folder.write("a.exr", SCENE).len(), 4);
-    let names = ["a.0001.exr", "a.0002.exr", "a.0003.exr", "a.0004.exr"];
-    assert_eq!(folder.names(""), names);
+    assert_eq!(folder.names(""), NAMES);
     // One is missing, one is empty: both are made; the others are not touched.
-    std::fs::remove_file(folder.file(names[1])).unwrap();
-    std::fs::write(folder.file(names[2]), "").unwrap();
-    std::fs::write(folder.file(names[3]), "mine").unwrap();
+    std::fs::remove_file(folder.file(NAMES[1])).unwrap();
+    std::fs::write(folder.file(NAMES[2]), "").unwrap();
+    std::fs::write(folder.file(NAMES[3]), "mine").unwrap();
+    let manifest = || std::fs::read_to_string(folder.file("manifest.jsonl")).unwrap();
+    let before = manifest();
     assert_eq!(folder.write("a.exr", SCENE).len(), 2);
-    assert_eq!(std::fs::read(folder.file(names[3])).unwrap(), b"mine");
-    assert!(Exr::read(&folder.file(names[2])).luminance(3, 1) > 0.0);
+    assert_eq!(std::fs::read(folder.file(NAMES[3])).unwrap(), b"mine");
+    assert!(Exr::read(&folder.file(NAMES[2])).luminance(3, 1) > 0.0);
     assert!(folder.write("a.exr", SCENE).is_empty());
+    assert_eq!(manifest(), before);
+    let first: serde_json::Value = serde_json::from_str(before.lines().next().unwrap()).unwrap();
+    assert_eq!(first["output"], "a.0001.exr");
+    assert_eq!(first["scene"]["sun"]["time"], "2026-06-21T18:00:00+02:00");
+    assert!(
+        (first["sun_elevation_deg"].as_f64().unwrap() - 30.4).abs() < 1.0,
+        "{first}"
+    );
+}
+
+/// A picture that the scene would draw otherwise is not taken for its own.
+#[test]
+fn pictures_of_another_scene_are_refused_with_the_difference() {
+    let folder = Folder::new();
+    folder.write("a.exr", SCENE);
+    let refused = |name: &str, scene: &str, parts: &[&str]| {
+        let error = folder.try_write(name, scene).unwrap_err();
+        assert!(error.is_refusal());
+        let error = error.to_string();
+        for part in parts {
+            assert!(error.contains(part), "{part}: {error}");
+        }
+    };
+    let wide = SCENE.replace("[16, 8]", "[32, 16]");
+    let parts = [
+        "4 that differ",
+        "a.0004.exr",
+        "camera.size was [16,8], is [32,16]",
+        "overwrite",
+    ];
+    refused("a.exr", &wide, &parts);
+    let later = SCENE.replace("18:00", "18:30");
+    refused(
+        "a.exr",
+        &later,
+        &["sun.time was \"2026-06-21T18:00:00+02:00\", is \"2026-06-21T18:30"],
+    );
+    let hazy = format!("{SCENE}air.aod_550 = 0.3\n");
+    refused("a.exr", &hazy, &["air.aod_550 was not set, is 0.3"]);
+    // A picture that the program has not drawn.
+    std::fs::write(folder.file("b.0002.exr"), "mine").unwrap();
+    refused("b.exr", SCENE, &["1 that are not", "b.0002.exr"]);
+    assert_eq!(folder.names("").len(), NAMES.len() + 1);
+    // Longer: pictures of linear light depend on no other picture, exposed ones do.
+    let longer = SCENE.replace("+3h", "+4h");
+    assert_eq!(folder.write("a.exr", &longer).len(), 1);
+    folder.write("c.png", SCENE);
+    refused("c.png", &longer, &["metered_at was [", "c.0001.png"]);
+    let fixed = |scene: &str| format!("{scene}output.exposure = 12\n");
+    folder.write("d.png", &fixed(SCENE));
+    assert_eq!(folder.write("d.png", &fixed(&longer)).len(), 1);
 }
 
 #[test]
@@ -37,6 +98,7 @@ fn pictures_show_the_time_that_they_are_named_after() {
     assert_eq!(
         folder.names(""),
         [
+            "manifest.jsonl",
             "s-20260621T160000Z.png",
             "s-20260621T160000Z.sun.png",
             "s-20260621T170000Z.png",
@@ -110,7 +172,7 @@ fn a_stopped_sequence_keeps_its_whole_pictures() {
         Err(RenderError::Image(ImageError::Cancelled)) => {}
         other => panic!("{other:?}"),
     }
-    assert_eq!(folder.names(""), ["a.0001.png"]);
+    assert_eq!(folder.names(""), ["a.0001.png", "manifest.jsonl"]);
     assert_eq!(renderer.write(Control::default()).unwrap().len(), 3);
 }
 
