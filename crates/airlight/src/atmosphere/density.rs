@@ -14,8 +14,12 @@ pub use table::{AltitudeTable, Interpolation};
 use super::ray_segment::RaySegment;
 use super::standard_air;
 use crate::math::quadrature::FixedRule;
+use column::decayed;
 
 /// Relative density of a constituent as a function of height: a factor on its coefficients.
+///
+/// Densities of exponential profiles are limited to `e^57`, 6e24, which is opaque: deep below the reference height neither a
+/// density nor a column overflows.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum DensityProfile {
@@ -219,11 +223,11 @@ impl DensityProfile {
             Self::Exponential {
                 reference_height_m,
                 scale_height_m,
-            } => (-(z - reference_height_m) / scale_height_m).exp(),
+            } => decayed((z - reference_height_m) / scale_height_m),
             Self::Clamped {
                 base_height_m,
                 scale_height_m,
-            } => (-(z - base_height_m).max(0.0) / scale_height_m).exp(),
+            } => decayed((z - base_height_m).max(0.0) / scale_height_m),
             Self::Layer { bottom_m, top_m } => f64::from(z >= bottom_m && z < top_m),
             Self::Tent {
                 bottom_m,
@@ -280,14 +284,14 @@ impl DensityProfile {
             Self::Exponential {
                 reference_height_m,
                 scale_height_m: h,
-            } => -h * (-(a - reference_height_m) / h).exp() * (-(b - a) / h).exp_m1(),
+            } => -h * decayed((a - reference_height_m) / h) * (-(b - a) / h).exp_m1(),
             Self::Clamped {
                 base_height_m,
                 scale_height_m: h,
             } => {
                 let (from, to) = (a.max(base_height_m), b.max(base_height_m));
                 let falling = match to > from {
-                    true => -h * (-(from - base_height_m) / h).exp() * (-(to - from) / h).exp_m1(),
+                    true => -h * decayed((from - base_height_m) / h) * (-(to - from) / h).exp_m1(),
                     false => 0.0,
                 };
                 (b.min(base_height_m) - a).max(0.0) + falling
@@ -314,6 +318,7 @@ impl DensityProfile {
             Self::Tabulated(ref table) => table.column_m(a, b),
             Self::Sum(ref parts) => parts
                 .iter()
+                .filter(|(factor, _)| *factor > 0.0)
                 .map(|(factor, part)| factor * part.column_m(a, b))
                 .sum(),
         }
@@ -353,6 +358,7 @@ impl DensityProfile {
             }
             Self::Sum(ref parts) => parts
                 .iter()
+                .filter(|(factor, _)| *factor > 0.0)
                 .map(|(factor, part)| factor * part.column_along_m(ray))
                 .sum(),
         }

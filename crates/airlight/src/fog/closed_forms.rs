@@ -35,8 +35,11 @@ pub(crate) trait Lanes:
     /// Relative error below 1e-13 in f64, 1e-6 in f32.
     fn ramp_transmittance(self) -> Self;
 
-    /// The smaller of each lane and 0.
-    fn min_zero(self) -> Self;
+    /// The smaller of each lane of two.
+    fn smaller(self, other: Self) -> Self;
+
+    /// The larger of each lane of two.
+    fn larger(self, other: Self) -> Self;
 
     /// The absolute value.
     fn abs(self) -> Self;
@@ -80,8 +83,13 @@ impl Lanes for f64 {
     }
 
     #[inline(always)]
-    fn min_zero(self) -> Self {
-        self.min(0.0)
+    fn smaller(self, other: Self) -> Self {
+        self.min(other)
+    }
+
+    #[inline(always)]
+    fn larger(self, other: Self) -> Self {
+        self.max(other)
     }
 
     #[inline(always)]
@@ -137,8 +145,25 @@ impl<const N: usize> Lanes for Spectrum<N> {
     }
 
     #[inline(always)]
-    fn min_zero(self) -> Self {
-        self.map(|x| if x < 0.0 { x } else { 0.0 })
+    fn smaller(self, other: Self) -> Self {
+        Self::from_fn(|i| {
+            if self[i] < other[i] {
+                self[i]
+            } else {
+                other[i]
+            }
+        })
+    }
+
+    #[inline(always)]
+    fn larger(self, other: Self) -> Self {
+        Self::from_fn(|i| {
+            if self[i] > other[i] {
+                self[i]
+            } else {
+                other[i]
+            }
+        })
     }
 
     #[inline(always)]
@@ -147,18 +172,12 @@ impl<const N: usize> Lanes for Spectrum<N> {
     }
 }
 
-/// `int_0^along e^-(near + slope t) e^-t dt`, the contribution of a unit source; `growth = (1 + slope) along` is the increase
-/// of the exponent from the near to the far end. Exact to rounding, for arguments up to 1e30; `near`, `along` and
-/// `near + growth` must not be negative.
+/// Mean of `e^-(d + t)` along a ray: the contribution of a unit source per unit of optical depth. `near` is `d` at the near end,
+/// `far` is `d` at the far end plus the optical depth along the ray. Exact to rounding for arguments from 0 to 1e30, as no
+/// exponent is a difference.
 #[inline(always)]
-pub(crate) fn attenuated_source<L: Lanes>(near: L, growth: L, along: L) -> L {
-    along * mean_attenuated_source(near, growth)
-}
-
-/// [`attenuated_source`] per unit of optical depth: mean of `e^-(d + t)` along the ray.
-#[inline(always)]
-pub(crate) fn mean_attenuated_source<L: Lanes>(near: L, growth: L) -> L {
-    (near + growth.min_zero()).exp_neg() * growth.abs().mean_transmittance()
+pub(crate) fn mean_attenuated_source<L: Lanes>(near: L, far: L) -> L {
+    near.smaller(far).exp_neg() * (far - near).abs().mean_transmittance()
 }
 
 /// Path optics of a constant source function `J` (radiance scattered towards the eye per unit of optical depth):
@@ -238,16 +257,15 @@ mod tests {
                         continue;
                     }
                     let exact = weighted(tau, |t| (-(near + slope * t) - t).exp());
-                    let growth = (1.0 + slope) * tau;
-                    let got = attenuated_source(near, growth, tau);
+                    let far = near + (1.0 + slope) * tau;
+                    let got = tau * mean_attenuated_source(near, far);
                     assert!(
                         (got / exact - 1.0).abs() < 1e-9,
                         "{tau} {near} {slope}: {got} {exact}"
                     );
                     let lane = Spectrum::<4>::splat;
                     let lane =
-                        attenuated_source(lane(near as f32), lane(growth as f32), lane(tau as f32))
-                            [1];
+                        mean_attenuated_source(lane(near as f32), lane(far as f32))[1] * tau as f32;
                     assert!(
                         (f64::from(lane) / exact - 1.0).abs() < 1e-5,
                         "f32: {tau} {near} {slope}: {lane} {exact}"
@@ -274,14 +292,14 @@ mod tests {
 
     #[test]
     fn opaque_fog_is_finite() {
-        assert!((attenuated_source(0.0, 1e30, 1e30) - 1.0).abs() < 1e-12);
-        assert!((attenuated_source(0.0, 0.5e30, 1e30) - 2.0).abs() < 1e-12);
+        assert!((1e30 * mean_attenuated_source(0.0, 1e30) - 1.0).abs() < 1e-12);
+        assert!((1e30 * mean_attenuated_source(0.0, 0.5e30) - 2.0).abs() < 1e-12);
         let lane = Spectrum::<2>::splat;
-        assert!((attenuated_source(lane(0.0), lane(1e30), lane(1e30))[0] - 1.0).abs() < 1e-6);
-        assert_eq!(
-            attenuated_source(lane(1e30), lane(1e30), lane(1e30))[0],
-            0.0
-        );
+        assert!((mean_attenuated_source(lane(0.0), lane(1e30))[0] * 1e30 - 1.0).abs() < 1e-6);
+        assert_eq!(mean_attenuated_source(lane(1e30), lane(2e30))[0], 0.0);
+        // Sunlight that enters at the far end through thick fog.
+        let entering = mean_attenuated_source(lane(1e9), lane(5.0))[0];
+        assert!((f64::from(entering) / (1e-9 * (-5f64).exp()) - 1.0).abs() < 1e-6);
         let opaque = constant_source(lane(1e30), Spectrum::ONE).path_radiance;
         assert!((opaque[0] - 1.0).abs() < 1e-6);
     }

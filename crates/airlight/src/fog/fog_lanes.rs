@@ -226,11 +226,21 @@ impl<const N: usize> FogLanes<N> {
         let near = self.part(field, ray, &towards);
         let path = near.smooth + near.peaked;
         // Light from beyond the far end that the peak scatters into the ray.
-        let through = |reduced: Spectrum<N>| {
-            let rest = (depth - reduced).map(|d| if d > 0.0 { d } else { 0.0 });
+        let through = |reduced: Spectrum<N>, rest: Spectrum<N>| {
             reduced.exp_neg() * rest * rest.mean_transmittance()
         };
-        let (smooth, peaked) = (through(near.smooth_depth), through(near.peaked_depth));
+        let smooth = through(
+            near.smooth_depth,
+            self.depth_of(ray, &|s| s.peak_extinction(s.reduced_extinction_per_m)),
+        );
+        let peaked = match towards.in_peak {
+            true => through(
+                near.peaked_depth,
+                self.depth_of(ray, &|s| s.peak_extinction(s.residual_extinction(cos_sun))),
+            ),
+            // Nothing is scattered by the peak itself.
+            false => Spectrum::ZERO,
+        };
         let most = smooth.max_element().max(peaked.max_element());
         if most < 1e-7 * depth.max_element().min(1.0) {
             return path;
@@ -272,7 +282,10 @@ impl<const N: usize> FogLanes<N> {
         let residual = |s: &MergedLayer<N>| s.residual_extinction(cos_sun);
         let unbounded = self.layers.iter().filter(|s| s.density.is_uniform());
         let uniform_extinction = unbounded.fold(Spectrum::ZERO, |sum, s| sum + s.extinction_per_m);
-        let mut smooth = field.scattered(ray, &towards.weights, uniform_extinction);
+        // The series of the field falls below 0 in directions into which little is scattered.
+        let mut smooth = field
+            .scattered(ray, &towards.weights, uniform_extinction)
+            .max_scalar(0.0);
         let smooth_depth = self.depth_of(ray, &reduced);
         let (mut peaked, mut peaked_depth) = (Spectrum::ZERO, smooth_depth);
         // Inside the peak the residual has its own extinction; outside, the whole phase function has one.

@@ -294,6 +294,12 @@ impl<const N: usize> MergedLayer<N> {
         self.extinction_per_m - self.sum(fraction)
     }
 
+    /// Extinction by the part of the forward peak that another extinction coefficient leaves out, 1/m.
+    #[inline]
+    pub fn peak_extinction(&self, without_per_m: Spectrum<N>) -> Spectrum<N> {
+        (self.extinction_per_m - without_per_m).max_scalar(0.0)
+    }
+
     /// Whether an angle to the sun lies in the forward peak.
     #[inline]
     pub fn in_peak(&self, cos_sun: f64) -> bool {

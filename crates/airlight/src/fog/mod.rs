@@ -41,6 +41,6 @@ pub use patches::{FogPatches, PatchField};
 pub use spectral::{Fog, FogTable, RgbFog, RgbFogTable};
 pub use values::ChannelValues;
 
-pub(crate) use closed_forms::{Lanes, attenuated_source, constant_source};
+pub(crate) use closed_forms::{Lanes, constant_source, mean_attenuated_source};
 pub(crate) use fog_lanes::FogLanes;
 pub(crate) use layer::LayerLanes;

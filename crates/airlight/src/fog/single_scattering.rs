@@ -62,10 +62,12 @@ where
         } else if sin_sun <= 0.0 {
             Spectrum::ZERO
         } else {
-            let near = layer.density.column_above_m(ray.height_m) / sin_sun;
-            let near = extinction * near.min(OPAQUE) as f32;
-            let growth = along * (1.0 - ray.sin_elevation / sin_sun) as f32;
-            mean_attenuated_source(near, growth) * column as f32
+            let to_sun = |height_m: f64| {
+                let column_m = layer.density.column_above_m(height_m) / sin_sun;
+                extinction * column_m.min(OPAQUE) as f32
+            };
+            let (near, far) = (to_sun(ray.height_m), to_sun(ray.end_height_m()));
+            mean_attenuated_source(near, far + along) * column as f32
         };
         ((self.towards_eye)(layer) * arriving, uniform * opacity)
     }
@@ -96,7 +98,7 @@ where
                 let arriving = if self.attenuated {
                     let near = self.depth_to_sun(part.height_m, sin_sun);
                     let far = self.depth_to_sun(part.end_height_m(), sin_sun);
-                    mean_attenuated_source(near, far - near + along)
+                    mean_attenuated_source(near, far + along)
                 } else {
                     opacity
                 };

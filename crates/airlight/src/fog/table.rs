@@ -97,6 +97,10 @@ impl<const N: usize> TableLanes<N> {
             let mut source = place.interpolate(&rows, |row, node| row.mean[node]);
             if let Some(sun) = sun {
                 source += place.azimuth_modes(&rows, sun, direction);
+            }
+            // As in the field, and as cubics between rows undershoot.
+            source = source.max_scalar(0.0);
+            if let Some(sun) = sun {
                 let sunlit = table.sunlit(&fog.layers[0], cos_sun, &place, &rows);
                 source += sunlit * sun.irradiance;
             }
@@ -269,8 +273,8 @@ impl<const N: usize> Table<N> {
             let weights = cubic_weights(at[lane] - first as f32);
             (0..4).map(|k| weights[k] * logarithms[k][lane]).sum()
         });
-        let beyond = whole - layer.smooth_towards_eye(cos_sun);
-        whole * once + beyond * (logarithm.exp() - once)
+        let smooth = layer.smooth_towards_eye(cos_sun);
+        smooth * once + (whole - smooth) * logarithm.exp()
     }
 }
 
@@ -417,8 +421,11 @@ impl<const N: usize> Side<N> {
     /// Opacity to space or to the ground at an absolute sine of the elevation.
     #[inline]
     fn end(&self, sin_elevation: f64) -> f32 {
-        let per_sine = 1.0 / sin_elevation.max(1e-20) as f32;
-        mean(opacity(self.depth * per_sine, self.is_grey))
+        let per_sine = 1.0 / sin_elevation.max(1e-20);
+        let depth = self
+            .depth
+            .map(|depth| (f64::from(depth) * per_sine).min(OPAQUE) as f32);
+        mean(opacity(depth, self.is_grey))
     }
 
     /// Position of a ray with this absolute sine of the elevation and this opacity.
@@ -540,10 +547,10 @@ impl<const N: usize> Rays<'_, N> {
         let each = parts.iter().enumerate().map(|(k, (light, depth))| {
             near += before.exp_neg() * *light;
             before += *depth;
-            let whole = self
+            let whole = self.ray.part(0.0, self.lengths_m[k]);
+            let rest = self
                 .fog
-                .optical_depth(&self.ray.part(0.0, self.lengths_m[k]));
-            let rest = (whole - before).map(|d| if d > 0.0 { d } else { 0.0 });
+                .depth_of(&whole, &|s| s.peak_extinction(extinction(s)));
             near + before.exp_neg() * rest * rest.mean_transmittance() * arriving[k]
         });
         each.collect()

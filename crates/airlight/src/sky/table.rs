@@ -37,6 +37,8 @@ const SMALL_WIDTH: usize = 64;
 /// Table of a view's radiance in all directions, without the sun's disc.
 pub struct SkyTable {
     pub(super) channels: usize,
+    /// Whether the channels are radiances, which are not negative.
+    pub(super) is_spectral: bool,
     /// Number of values in a cell: all channels of all parts, padded for vector loads.
     pub(super) width: usize,
     pub(super) sun: DVec3,
@@ -341,6 +343,12 @@ impl SkyTable {
             let phase = Peaked::sampled(phase, half_sine);
             for (out, value) in out.iter_mut().zip(values) {
                 *out += phase * value;
+            }
+        }
+        if self.is_spectral {
+            // Cubics undershoot where the light ends, such as at the top of the air.
+            for out in &mut out[..self.channels] {
+                *out = if *out > 0.0 { *out } else { 0.0 };
             }
         }
     }

@@ -23,8 +23,8 @@ impl SkyTable {
         let shell = sky.shell();
         let radius_m = view.radius_m();
         let horizon_elevation = -(shell.ground_radius_m / radius_m).min(1.0).acos();
-        // From outside the atmosphere nothing is visible above its limb.
-        let highest_elevation = if radius_m > shell.top_radius_m {
+        // From the top of the atmosphere and outside nothing is visible above its limb.
+        let highest_elevation = if radius_m >= shell.top_radius_m {
             -(shell.top_radius_m / radius_m).acos()
         } else {
             FRAC_PI_2
@@ -50,6 +50,7 @@ impl SkyTable {
         let horizontal = DVec3::new(view.sun().x, 0.0, view.sun().z);
         Self {
             channels: channel_count,
+            is_spectral: matches!(channels, TableChannels::Spectral),
             width,
             sun: view.sun(),
             sun_azimuth: if horizontal.length() > 1e-9 {

@@ -52,14 +52,20 @@ impl<const N: usize> PathOptics<N> {
                 false => 0.0,
             }),
             path_radiance: Spectrum::from_fn(|lane| {
-                /// Depth below which `(1 - T^factor) / (1 - T)` follows from its series.
+                /// Depths below which `1 - e^-x` follows from its series: of the segment, and of the one of another density.
                 const THIN: f32 = 1e-3;
+                const SERIES: f32 = 0.1;
                 let (depth, light) = (depth[lane], self.path_radiance[lane]);
-                light
-                    * match depth < THIN {
-                        true => factor * (1.0 + 0.5 * depth * (1.0 - factor)),
-                        false => (1.0 - transmittance[lane]) / (1.0 - self.transmittance[lane]),
-                    }
+                if depth >= THIN {
+                    return light
+                        * ((1.0 - transmittance[lane]) / (1.0 - self.transmittance[lane]));
+                }
+                let x = depth * factor;
+                let mean = match x < SERIES {
+                    true => 1.0 - x * (1.0 / 2.0 - x * (1.0 / 6.0 - x / 24.0)),
+                    false => (1.0 - transmittance[lane]) / x,
+                };
+                light * factor * mean * (1.0 + 0.5 * depth)
             }),
         }
     }

@@ -15,5 +15,6 @@ mod monte_carlo_lines;
 mod monte_carlo_polarisation;
 mod night;
 mod patchy_fog;
+mod properties;
 mod sky_laws;
 mod thick_air;

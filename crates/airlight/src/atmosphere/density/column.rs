@@ -6,6 +6,15 @@ use crate::math::quadrature::FixedRule;
 /// Quadrature rule for each part of a ray.
 pub(super) static RULE: FixedRule<8> = FixedRule::fixed();
 
+/// Natural logarithm of the largest density of an exponential profile.
+pub(super) const MAX_LN_DENSITY: f64 = 57.0;
+
+/// Density that has decayed over `heights` scale heights (negative: increased), at most `e^57`.
+#[inline]
+pub(super) fn decayed(heights: f64) -> f64 {
+    (-heights).min(MAX_LN_DENSITY).exp()
+}
+
 /// Column of a layer of density 1 between two heights; `bottom_m` may be minus infinity.
 #[inline]
 pub(super) fn layer(ray: &RaySegment, bottom_m: f64, top_m: f64) -> f64 {
@@ -56,11 +65,11 @@ pub(super) fn exponential(ray: &RaySegment, reference_height_m: f64, scale_heigh
         } else {
             -(-rise).exp_m1() / rise
         };
-        return (-densest).exp() * length * mean;
+        return decayed(densest) * length * mean;
     }
     if curvature == 0.0 {
         return match slope > 0.0 {
-            true => (-start).exp() / slope,
+            true => decayed(start) / slope,
             false => f64::INFINITY,
         };
     }
@@ -68,12 +77,12 @@ pub(super) fn exponential(ray: &RaySegment, reference_height_m: f64, scale_heigh
     let lowest = -0.5 * slope / curvature;
     let exponent_at = |s: f64| start + s * (slope + s * curvature);
     let column = if lowest <= 0.0 {
-        (-start).exp() * falling(slope, curvature, length)
+        decayed(start) * falling(slope, curvature, length)
     } else if lowest >= length {
         let back = -(slope + 2.0 * curvature * length);
-        (-exponent_at(length)).exp() * falling(back, curvature, length)
+        decayed(exponent_at(length)) * falling(back, curvature, length)
     } else {
-        (-exponent_at(lowest)).exp()
+        decayed(exponent_at(lowest))
             * (falling(0.0, curvature, lowest) + falling(0.0, curvature, length - lowest))
     };
     column.min(f64::MAX)

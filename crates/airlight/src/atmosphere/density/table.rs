@@ -106,7 +106,11 @@ impl AltitudeTable {
     /// Integral of the density between two altitudes, m.
     pub(super) fn column_m(&self, from: f64, to: f64) -> f64 {
         let last = self.altitudes_m.len() - 1;
-        let mut sum = (self.altitudes_m[0].min(to) - from).max(0.0) * self.densities[0];
+        // Without density below the table nothing is added, not even of an infinite height.
+        let mut sum = match self.densities[0] > 0.0 {
+            true => (self.altitudes_m[0].min(to) - from).max(0.0) * self.densities[0],
+            false => 0.0,
+        };
         for i in 0..last {
             let (a, b) = (
                 self.altitudes_m[i].max(from),

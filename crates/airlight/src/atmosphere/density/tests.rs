@@ -1,3 +1,4 @@
+use super::column::MAX_LN_DENSITY;
 use super::*;
 use crate::math::quadrature::GaussRule;
 
@@ -222,11 +223,12 @@ fn columns_match_quadrature_at_all_scales() {
                     for length in [1e-6, 1e-2, 1.0, 63.0, 1e3, 1e5, 1e7] {
                         for height in [0.0, 1.7, 20.0, 500.0] {
                             let ray = RaySegment::new(height, sin_elevation, length, radius);
-                            // Deep below the ground the density is meaningless and overflows.
+                            // Deep below the ground the density is limited.
                             let dip =
                                 (-0.5 * ray.sin_elevation / ray.curvature_per_m).clamp(0.0, length);
                             let dip = if dip.is_nan() { 0.0 } else { dip };
-                            if ray.end_height_m().min(ray.height_at(dip)) < -50.0 * scale {
+                            let lowest = ray.end_height_m().min(ray.height_at(dip));
+                            if profile.at(lowest) > MAX_LN_DENSITY.exp() * 0.999 {
                                 continue;
                             }
                             let exact = by_quadrature(&profile, &ray, length);
@@ -329,4 +331,31 @@ fn the_formula_of_the_fog_note_is_for_unclamped_fog() {
     for (got, right) in too_much.iter().zip(right) {
         assert!((got - right).abs() < 1e-3, "{too_much:?}");
     }
+}
+
+#[test]
+fn densities_and_columns_far_below_the_reference_are_finite() {
+    let limit = MAX_LN_DENSITY.exp();
+    for radius in [f64::INFINITY, EARTH_M] {
+        for sin_elevation in [0.0, 1e-9, -1e-9, 0.5, -0.5, 1.0] {
+            for length_m in [0.0, 1e-6, 3.0, 1e5] {
+                let profile = DensityProfile::exponential(0.8);
+                let ray = RaySegment::new(-4e3, sin_elevation, length_m, radius);
+                let column = profile.column_along_m(&ray);
+                assert!(
+                    column.is_finite() && column <= limit * length_m * (1.0 + 1e-12),
+                    "{ray:?}: {column}"
+                );
+                assert!(length_m < 1.0 || column > 0.1 * limit);
+            }
+        }
+        assert_eq!(DensityProfile::exponential(0.8).at(-4e3), limit);
+    }
+    assert_eq!(DensityProfile::exponential(0.8).column_m(-4e3, -4e3), 0.0);
+    // A table without density below, and a part of a sum without weight, over an infinite height.
+    let empty = vec![0.0, 1.0, 0.0];
+    let table = DensityProfile::tabulated(vec![0.0, 1.0, 2.0], empty, Interpolation::Linear);
+    assert_eq!(table.unwrap().column_above_m(f64::NEG_INFINITY), 1.0);
+    let sum = DensityProfile::Sum(vec![(0.0, DensityProfile::Uniform)]);
+    assert_eq!(sum.column_above_m(0.0), 0.0);
 }

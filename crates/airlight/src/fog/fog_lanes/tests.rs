@@ -526,7 +526,7 @@ fn transmittance_is_between_0_and_1_and_decreases_with_distance() {
 /// The closed form of attenuated sunlight in f64.
 #[test]
 fn sunlight_in_exponential_fog_is_exact_in_f64() {
-    use crate::fog::closed_forms::attenuated_source;
+    use crate::fog::closed_forms::mean_attenuated_source;
     for scale_height_m in [1e-2, 1.0, 50.0, 1e4, 1e7] {
         let profile = DensityProfile::Exponential {
             reference_height_m: 0.0,
@@ -550,7 +550,8 @@ fn sunlight_in_exponential_fog_is_exact_in_f64() {
                 continue;
             }
             tested += 1;
-            let got = attenuated_source(near, along * (1.0 - sin_elevation / sine), along);
+            let far = near + along * (1.0 - sin_elevation / sine);
+            let got = along * mean_attenuated_source(near, far.max(0.0));
             // Intervals that shrink towards both ends.
             let mut breaks: Vec<f64> = (0..60)
                 .map(|k| length_m * 0.6f64.powi(k))

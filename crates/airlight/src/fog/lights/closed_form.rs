@@ -119,11 +119,9 @@ pub(super) fn airlight_isotropic_lanes<V: CubeRoot>(
     let one = V::splat(1.0);
     let x = extinction_per_m * V::splat(scale);
     // Inverse of the end of the integral: end of the ray, or where e^-(X s) is negligible.
-    let inverse = larger(
-        // Bounded by the range of f32, for very short rays.
-        V::splat((scale / geometry.excess_m()).min(1e30)),
-        x * V::splat(1.0 / nodes.cutoff_depth()),
-    );
+    // Bounded by the range of f32, for very short rays.
+    let inverse = V::splat((scale / geometry.excess_m()).min(1e30))
+        .larger(x * V::splat(1.0 / nodes.cutoff_depth()));
     let covered = one / (one + inverse);
     let last = (inverse * covered).cube_root();
     let span = covered / (one + last + last * last);
@@ -140,12 +138,6 @@ pub(super) fn airlight_isotropic_lanes<V: CubeRoot>(
     }
     let arriving = (extinction_per_m * V::splat(geometry.distance_m(0.0))).exp_neg();
     V::splat(0.5 / (PI * scale)) * arriving * span * sum
-}
-
-/// Maximum of two values that are not negative.
-#[inline(always)]
-fn larger<V: Lanes>(a: V, b: V) -> V {
-    a - (a - b).min_zero()
 }
 
 /// Euler's constant.

@@ -8,7 +8,7 @@ use super::march::{LitRay, Nodes, ScatteringLayer};
 use crate::atmosphere::{Constituent, RaySegment};
 use crate::fog::closed_forms::Lanes;
 use crate::fog::error::{FogError, check_light};
-use crate::fog::layer::{LayerLanes, RgbLayer};
+use crate::fog::layer::{LayerLanes, OPAQUE, RgbLayer};
 use crate::fog::lighting::Ground;
 use crate::fog::spectral::{BLOCK, InBlocks, in_blocks, sampled, store};
 use crate::math::slices::check_length;
@@ -354,7 +354,7 @@ impl<const N: usize> LightSetLanes<N> {
         };
         let ray = RaySegment::new(point.y, towards.y, path_m, self.ground_radius_m);
         let depth = self.layers.iter().fold(Spectrum::ZERO, |sum, layer| {
-            let column = layer.density.column_along_m(&ray);
+            let column = layer.density.column_along_m(&ray).min(OPAQUE);
             sum.scale_acc(layer.extinction_per_m, column as f32)
         });
         light.intensity() * depth.exp_neg() * (part / (distance * distance)) as f32

@@ -4,7 +4,7 @@ use super::geometry::{LightRayGeometry, ViewRay};
 use super::light::{Light, SpotCone, closeness};
 use crate::atmosphere::{Decay, DensityProfile, HeightStructure, RaySegment};
 use crate::fog::closed_forms::Lanes;
-use crate::fog::layer::LayerLanes;
+use crate::fog::layer::{LayerLanes, OPAQUE};
 use crate::math::quadrature::GaussRule;
 use crate::optics::PhaseFunction;
 use crate::spectrum::Spectrum;
@@ -274,7 +274,7 @@ impl<'a, const N: usize> LitRay<'a, N> {
     #[inline]
     fn column_m(&self, density: &DensityProfile, t: f64, r: f64, to_light_m: f64) -> f64 {
         if density.is_uniform() {
-            return t + to_light_m;
+            return (t + to_light_m).min(OPAQUE);
         }
         let view_ray = RaySegment {
             length_m: t,
@@ -289,7 +289,7 @@ impl<'a, const N: usize> LitRay<'a, N> {
             curvature_per_m: curvature * (1.0 - towards.y * towards.y).max(0.0),
             length_m: to_light_m,
         };
-        density.column_along_m(&view_ray) + density.column_along_m(&to_light)
+        (density.column_along_m(&view_ray) + density.column_along_m(&to_light)).min(OPAQUE)
     }
 
     /// Excess at which the panel ends or the optical depth of all lanes has increased by `depth`, and the largest mean increase of

@@ -127,7 +127,8 @@ impl<const N: usize> Field<N> {
             let step = (low - high) / parts;
             for part in 0..parts as usize {
                 // Mean over the part of exponentially attenuated light.
-                let sunlight = mean_attenuated_source(high + part as f64 * step, step);
+                let depth = |part: usize| high + part as f64 * step;
+                let sunlight = mean_attenuated_source(depth(part), depth(part + 1));
                 thin.push(Cell {
                     extinction: cell.extinction / parts,
                     scattering: cell.scattering.map(|s| s / parts),
@@ -294,7 +295,7 @@ impl<const N: usize> Field<N> {
         let whole = self.depths[k] - self.depths[k + 1];
         // Without fog between the heights the source function is 0 at both.
         let up = match whole > 0.0 {
-            true => (self.depths[k] - depth) / whole,
+            true => ((self.depths[k] - depth) / whole).clamp(0.0, 1.0),
             false => 0.0,
         };
         sum(0) * (1.0 - up) as f32 + sum(1) * up as f32

@@ -6,7 +6,7 @@
 //! figure).
 
 use crate::atmosphere::{Constituent, RaySegment};
-use crate::fog::{Lanes, LayerLanes, attenuated_source, constant_source};
+use crate::fog::{Lanes, LayerLanes, constant_source, mean_attenuated_source};
 use crate::spectrum::Spectrum;
 use crate::transfer::{PathOptics, RgbPathOptics};
 
@@ -71,23 +71,19 @@ impl<const N: usize> Slab1987<N> {
     ) -> PathOptics<N> {
         let extinction = self.extinction_per_m();
         let along = extinction * length_m as f32;
-        let (near_m, slope) = match depth {
-            SunDepth::Printed => (self.fog_top_m / self.sin_sun, 0.0),
-            SunDepth::Exact => (
-                (self.fog_top_m - eye_height_m).max(0.0) / self.sin_sun,
-                -sin_elevation / self.sin_sun,
-            ),
+        let to_sun_m = |height_m: f64| match depth {
+            SunDepth::Printed => self.fog_top_m / self.sin_sun,
+            SunDepth::Exact => (self.fog_top_m - height_m).max(0.0) / self.sin_sun,
         };
-        let arriving = attenuated_source(
-            extinction * near_m as f32,
-            along * (1.0 + slope) as f32,
-            along,
-        );
-        // Radiance scattered towards the eye per unit of optical depth.
-        let source = self.scattered(cos_sun) / extinction;
+        let near_m = to_sun_m(eye_height_m);
+        let far_m = to_sun_m(eye_height_m + sin_elevation * length_m) + length_m;
+        // Per metre, as extinction may be 0.
+        let arriving =
+            mean_attenuated_source(extinction * near_m as f32, extinction * far_m as f32);
+        let scattered = self.scattered(cos_sun) * length_m as f32;
         PathOptics {
             transmittance: along.exp_neg(),
-            path_radiance: self.irradiance_at_top() * source * arriving,
+            path_radiance: self.irradiance_at_top() * scattered * arriving,
         }
     }
 
@@ -100,9 +96,11 @@ impl<const N: usize> Slab1987<N> {
     /// Clear air, at the density of the ground, between an eye above the fog and the point where the ray enters the fog.
     pub fn air_above(&self, length_m: f64, cos_sun: f64) -> PathOptics<N> {
         let along = self.air.extinction_per_m * length_m as f32;
-        let albedo = self.air.scattering_per_m / self.air.extinction_per_m;
-        let source = self.irradiance_at_top() * albedo * self.air.phase_lanes(cos_sun);
-        constant_source(along, source)
+        let scattered = self.air.scattering_per_m * self.air.phase_lanes(cos_sun) * length_m as f32;
+        PathOptics {
+            transmittance: along.exp_neg(),
+            path_radiance: self.irradiance_at_top() * scattered * along.mean_transmittance(),
+        }
     }
 
     /// Air above the fog, then fog, between an eye at any height and an object `length_m` away.

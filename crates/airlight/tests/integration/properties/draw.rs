@@ -1,0 +1,159 @@
+//! Random valid inputs.
+
+use airlight::atmosphere::{DensityProfile, Interpolation};
+use airlight::axes;
+use airlight::fog::{Ground, RgbLayer};
+use airlight::optics::{Depolarization, PhaseFunction};
+use glam::DVec3;
+
+/// Random numbers from a seed: SplitMix64 (Steele, Lea & Flood, OOPSLA 2014).
+pub struct Draw(u64);
+
+impl Draw {
+    /// Seeds are scrambled, so that the numbers of one are not those of the next.
+    pub fn new(seed: u64) -> Self {
+        Self(Self(seed).bits())
+    }
+
+    fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// Uniform in `[0, 1)`.
+    pub fn unit(&mut self) -> f64 {
+        (self.bits() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// Uniform between two numbers.
+    pub fn between(&mut self, from: f64, to: f64) -> f64 {
+        from + (to - from) * self.unit()
+    }
+
+    /// Uniform in the logarithm.
+    pub fn scale(&mut self, from: f64, to: f64) -> f64 {
+        from * (to / from).powf(self.unit())
+    }
+
+    /// True with this probability.
+    pub fn chance(&mut self, probability: f64) -> bool {
+        self.unit() < probability
+    }
+
+    pub fn below(&mut self, count: usize) -> usize {
+        (self.unit() * count as f64) as usize
+    }
+
+    pub fn pick<T: Clone>(&mut self, list: &[T]) -> T {
+        list[self.below(list.len())].clone()
+    }
+
+    /// A direction: level, vertical, close to level, or anywhere.
+    pub fn direction(&mut self) -> DVec3 {
+        let azimuth = self.between(0.0, 360.0);
+        let elevation = match self.below(6) {
+            0 => 0.0,
+            1 => self.pick(&[-90.0, 90.0]),
+            2 => self.pick(&[-1.0, 1.0]) * self.scale(1e-6, 1.0),
+            _ => self.between(-1.0, 1.0).asin().to_degrees(),
+        };
+        axes::direction(azimuth, elevation)
+    }
+
+    /// A length in metres.
+    pub fn length_m(&mut self) -> f64 {
+        self.scale(1e-3, 1e6)
+    }
+
+    /// A height from the bottom of a valley to the highest clouds, m.
+    pub fn height_m(&mut self) -> f64 {
+        match self.below(4) {
+            0 => self.pick(&[0.0, 1.7, 20.0]),
+            1 => -self.scale(0.1, 5e3),
+            _ => self.scale(0.1, 2e4),
+        }
+    }
+
+    pub fn phase(&mut self) -> PhaseFunction {
+        match self.below(4) {
+            0 => PhaseFunction::Isotropic,
+            1 => PhaseFunction::Rayleigh(Depolarization::None),
+            2 => PhaseFunction::draine(self.between(0.0, 0.9), self.scale(0.01, 100.0)).unwrap(),
+            _ => PhaseFunction::henyey_greenstein(self.between(-0.9, 0.98)).unwrap(),
+        }
+    }
+
+    /// Strictly increasing heights, m.
+    fn heights_m<const N: usize>(&mut self) -> [f64; N] {
+        let mut height = self.height_m();
+        std::array::from_fn(|_| {
+            height += self.scale(0.1, 3e3);
+            height
+        })
+    }
+
+    pub fn density(&mut self) -> DensityProfile {
+        match self.below(9) {
+            0 => DensityProfile::Uniform,
+            1 | 2 => DensityProfile::Exponential {
+                reference_height_m: self.height_m(),
+                scale_height_m: self.scale(0.1, 1e5),
+            },
+            3 | 4 => DensityProfile::Clamped {
+                base_height_m: self.height_m(),
+                scale_height_m: self.scale(0.1, 1e5),
+            },
+            5 => DensityProfile::slab(self.height_m()),
+            6 => {
+                let [bottom_m, top_m] = self.heights_m();
+                DensityProfile::Layer { bottom_m, top_m }
+            }
+            7 => {
+                let [bottom_m, peak_m, top_m] = self.heights_m();
+                DensityProfile::Tent {
+                    bottom_m,
+                    peak_m,
+                    top_m,
+                }
+            }
+            _ => {
+                let heights = self.heights_m::<4>();
+                let densities = heights.map(|_| match self.chance(0.2) {
+                    true => 0.0,
+                    false => self.scale(1e-3, 1.0),
+                });
+                let kind = self.pick(&[Interpolation::Linear, Interpolation::LogLinear]);
+                DensityProfile::tabulated(heights.to_vec(), densities.to_vec(), kind).unwrap()
+            }
+        }
+    }
+
+    pub fn layer(&mut self, density: DensityProfile) -> RgbLayer {
+        let extinction = self.scale(1e-8, 10.0) as f32;
+        let albedo = match self.below(4) {
+            0 => 1.0,
+            1 => 0.0,
+            _ => self.unit() as f32,
+        };
+        RgbLayer {
+            density,
+            extinction_per_m: [extinction, 1.2 * extinction, 0.0],
+            single_scattering_albedo: [albedo, 0.9 * albedo, albedo],
+            phase: self.phase(),
+        }
+    }
+
+    pub fn ground(&mut self) -> Ground {
+        match self.below(3) {
+            0 => Ground::FLAT,
+            1 => Ground::EARTH,
+            _ => Ground {
+                height_m: self.between(-10.0, 10.0),
+                radius_m: self.scale(1e5, 1e8),
+            },
+        }
+    }
+}
