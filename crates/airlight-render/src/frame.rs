@@ -102,6 +102,10 @@ impl<'r> PreparedFrame<'r> {
             Some(time) => scene.night_at(&sun, time),
             None => scene.night(&sun),
         };
+        let moved = renderer
+            .patches_at(time)
+            .and_then(|patches| prepared.with_patches(patches.patches()));
+        let prepared = moved.as_deref().unwrap_or(prepared);
         let view_at = |altitude_m: f64, channels: Channels| match &night {
             Some(night) => prepared.night_view(altitude_m, &state, night, channels),
             None => prepared.view(altitude_m, &state, channels),

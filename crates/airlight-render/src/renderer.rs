@@ -8,7 +8,7 @@ use crate::layout::{Layout, is_spectral};
 use crate::objects::Objects;
 use airlight::models::registry;
 use airlight::scene::{
-    PreparedModel, RadianceModel, ResolvedScene, Scene, SunAngles, check_inputs,
+    FogPatchesSpec, PreparedModel, RadianceModel, ResolvedScene, Scene, SunAngles, check_inputs,
 };
 use airlight::sky::SunCoverage;
 use airlight::sun::Moment;
@@ -139,6 +139,14 @@ impl Renderer {
             Some(time) => self.resolved.sun.at(time)?,
             None => self.resolved.sun.at_start()?,
         })
+    }
+
+    /// The patches of the fog at a time of a sequence, moved by the wind since its start; `None` if they do not move.
+    pub(crate) fn patches_at(&self, time: Option<Moment>) -> Option<FogPatchesSpec> {
+        let patches = self.scene.fog.as_ref()?.patches.as_ref()?;
+        let (time, start) = (time?, self.resolved.sun.start()?);
+        let elapsed_s = time.unix_s() - start.unix_s().floor();
+        patches.wind_m_s.map(|_| patches.after(elapsed_s))
     }
 
     /// The smallest range of suns that includes one sun.

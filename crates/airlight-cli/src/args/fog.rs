@@ -55,7 +55,7 @@ pub struct FogArgs {
     /// Wind that moves the patches, to the east and to the north, m/s [default: 0,0]
     #[arg(long, value_name = "EAST,NORTH", value_parser = parse::two_numbers, allow_hyphen_values = true)]
     pub patch_wind: Option<(f64, f64)>,
-    /// Time for which that wind has moved the patches, s [default: 0]
+    /// Time for which that wind has moved the patches, s; in a sequence, at its first picture [default: 0]
     #[arg(long, value_name = "S", value_parser = parse::number)]
     pub patch_time_s: Option<f64>,
     /// Further layer of fog, as in 'visibility=500 scale-height=20'; can be repeated

@@ -1,5 +1,6 @@
 //! Options of `airlight fog` for many pictures.
 
+use crate::parse;
 use airlight_render::Shard;
 use airlight_render::batch::{BatchSettings, Each, Variation};
 use clap::Args;
@@ -21,6 +22,9 @@ pub struct BatchArgs {
     /// extension
     #[arg(long, value_name = "N", requires = "vary")]
     pub variants: Option<NonZeroU32>,
+    /// Time between successive pictures, as of a film, for which --patch-wind moves the patches of the fog, s [default: 0]
+    #[arg(long, value_name = "S", value_parser = parse::number)]
+    pub patch_interval_s: Option<f64>,
     /// Seed of the draws of --vary, which also depend on the picture's name and the variant [default: 0], and of Monte Carlo
     /// paths [default: 1]
     #[arg(long, value_name = "N")]
@@ -53,6 +57,7 @@ impl BatchArgs {
         !self.vary.is_empty()
             || !self.each.is_empty()
             || self.shard.is_some()
+            || self.patch_interval_s.is_some()
             || self.manifest.is_some()
             || self.jobs.is_some()
             || self.overwrite
@@ -67,6 +72,7 @@ impl BatchArgs {
             each: self.each.clone(),
             variants: self.variants,
             shard: self.shard,
+            patch_interval_s: self.patch_interval_s,
             seed: self.seed.unwrap_or_default(),
             manifest: self.manifest.clone(),
             overwrite: self.overwrite,

@@ -57,6 +57,8 @@ pub struct Input {
     pub colour: PathBuf,
     /// The depth map; the colour picture itself if that holds a depth channel.
     pub depth: PathBuf,
+    /// Place among the pictures with depth, from 0, whatever part of them is made.
+    pub index: usize,
 }
 
 impl Input {
@@ -123,6 +125,7 @@ pub fn find_inputs(
     for Match { captures, path } in colours {
         match depths.of(&captures, &path) {
             Ok(depth) => inputs.push(Input {
+                index: inputs.len(),
                 captures,
                 colour: path,
                 depth,

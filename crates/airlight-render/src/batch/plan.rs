@@ -3,6 +3,7 @@
 use super::inputs::{InputPath, find_inputs};
 use super::settings::Affects;
 use super::{BatchError, Each, FoundInputs, Input, Pattern, Variation};
+use crate::RenderError;
 use crate::manifest;
 use crate::overlay::OverlayScene;
 use crate::shard::Shard;
@@ -23,6 +24,8 @@ pub struct BatchSettings {
     pub variants: Option<NonZeroU32>,
     /// The part of the inputs whose pictures are made; `None`: all.
     pub shard: Option<Shard>,
+    /// Time between successive inputs, s, for which the wind moves the patches of the fog, as in a film; `None`: they do not move.
+    pub patch_interval_s: Option<f64>,
     /// Seed of the random draws, which also depend on the picture's name and the number of the variant.
     pub seed: u64,
     /// Path of the manifest; `None`: `manifest.jsonl` in the folder of the outputs, `manifest-3-of-16.jsonl` for a shard.
@@ -97,6 +100,9 @@ impl BatchPlan {
         }
         let drawn = settings.vary.iter();
         let listed = settings.each.iter().map(Each::variation);
+        if let Some(interval_s) = settings.patch_interval_s {
+            check_patch_interval(&scene, interval_s)?;
+        }
         check_variation(&scene, &drawn.chain(listed).collect::<Vec<_>>())?;
         let is_one = !InputPath::new(&scene.overlay.colour)?.is_many();
         let found = find_inputs(
@@ -239,6 +245,11 @@ impl BatchPlan {
         for (each, at) in self.chosen(variant) {
             each.set(&mut scene, at);
         }
+        if let Some(interval_s) = self.settings.patch_interval_s
+            && let Some(patches) = &mut scene.fog_mut().patches
+        {
+            *patches = patches.after(interval_s * input.index as f64);
+        }
         scene
     }
 
@@ -281,6 +292,20 @@ impl BatchPlan {
             }
         }
         Ok(())
+    }
+}
+
+/// Refuses an interval without a wind.
+fn check_patch_interval(scene: &OverlayScene, interval_s: f64) -> Result<(), RenderError> {
+    let patches = scene.fog().patches.as_ref();
+    match patches.and_then(|patches| patches.wind_m_s) {
+        Some(_) => Ok(()),
+        None => Err(RenderError::value(
+            "patch_interval_s",
+            "patches of fog that a wind moves",
+            format!("{interval_s} s without a wind"),
+            "patch-wind 2,0",
+        )),
     }
 }
 

@@ -78,6 +78,9 @@ impl Renderer {
             let mut scene = self.scene().clone();
             (scene.output.file, scene.sequence) = (None, None);
             scene.sun.time = Some(step.time.to_string());
+            if let (Some(fog), Some(patches)) = (&mut scene.fog, self.patches_at(Some(step.time))) {
+                fog.patches = Some(patches);
+            }
             StepSettings {
                 scene,
                 metered_at: metered_at.clone(),

@@ -699,6 +699,49 @@ fn tiff(colours: &image::RgbImage) -> Vec<u8> {
     bytes
 }
 
+/// The pictures of a film, of which the wind moves the patches: each as it is alone at its time, in a shard, too.
+#[test]
+fn patches_drift_from_picture_to_picture() {
+    let folder = Pictures::new(&["a", "b", "c"]);
+    let patchy = |colour: &str, output: &str, time_s: f64| {
+        let mut scene = folder.scene(colour, "depth/*.png", output, 8.0);
+        scene.fog_mut().patches = Some(airlight::scene::FogPatchesSpec {
+            size_m: Some(1.0),
+            wind_m_s: Some([3.0, 0.0]),
+            time_s: Some(time_s),
+            ..Default::default()
+        });
+        scene
+    };
+    let film = |shard: Option<&str>| BatchSettings {
+        patch_interval_s: Some(0.5),
+        shard: shard.map(|text| text.parse().unwrap()),
+        ..BatchSettings::default()
+    };
+    assert_eq!(made(patchy("rgb/*.png", "film/*.png", 4.0), film(None)), 3);
+    assert_eq!(
+        made(patchy("rgb/*.png", "part/*.png", 4.0), film(Some("2/2"))),
+        1
+    );
+    assert_eq!(folder.bytes("part/b.png"), folder.bytes("film/b.png"));
+    for (name, time_s) in [("a", 4.0), ("b", 4.5), ("c", 5.0)] {
+        let mut scene = patchy(
+            &format!("rgb/{name}.png"),
+            &format!("alone/{name}.png"),
+            time_s,
+        );
+        scene.overlay.depth = Some(folder.file(&format!("depth/{name}.png")));
+        assert_eq!(made(scene, BatchSettings::default()), 1);
+        assert_eq!(
+            folder.bytes(&format!("alone/{name}.png")),
+            folder.bytes(&format!("film/{name}.png"))
+        );
+    }
+    assert_ne!(folder.bytes("film/a.png"), folder.bytes("film/b.png"));
+    let calm = folder.scene("rgb/*.png", "depth/*.png", "calm/*.png", 8.0);
+    assert!(refused(calm, film(None)).contains("expected patches of fog that a wind moves"));
+}
+
 /// Settings of the output, and settings that are no longer given.
 #[test]
 fn every_setting_is_recorded_and_compared() {

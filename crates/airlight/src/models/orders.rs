@@ -1,6 +1,7 @@
 //! The solver `orders`: successive orders of scattering on the sphere, with fog in the sky.
 
 use crate::control::Control;
+use crate::fog::FogPatches;
 use crate::night::NightState;
 use crate::scene::{
     Capabilities, Channels, FogLayers, Input, NightSky, PreparedModel, RadianceModel, RadianceView,
@@ -137,5 +138,17 @@ impl PreparedModel for PreparedOrders {
             Some(sky) => Arc::new(sky.view(sunlit, night, channels)?),
             None => Arc::new(sunlit),
         })
+    }
+
+    fn with_patches(&self, patches: FogPatches) -> Option<Arc<dyn PreparedModel>> {
+        let fog = FogLayers {
+            patches: Some(patches),
+            ..self.fog.clone()?
+        };
+        Some(Arc::new(Self {
+            sky: self.sky.clone(),
+            night: self.night.as_ref().map(|night| night.with_fog(&fog)),
+            fog: Some(fog),
+        }))
     }
 }

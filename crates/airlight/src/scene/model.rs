@@ -12,6 +12,7 @@
 
 use super::{Capabilities, Channels, ResolvedScene, SceneError};
 use crate::control::Control;
+use crate::fog::FogPatches;
 use crate::monte_carlo::{Estimate, PolarisedEstimate};
 use crate::night::NightState;
 use crate::sky::{LineOfSight, SunCoverage};
@@ -79,6 +80,12 @@ pub trait PreparedModel: Debug + Send + Sync + 'static {
         channels: Channels,
     ) -> Result<Arc<dyn RadianceView>, SceneError> {
         self.view(observer_altitude_m, sun, channels)
+    }
+
+    /// The same light with other patches in the fog; `None` for models without [`Input::FogPatches`](super::Input::FogPatches) and
+    /// for scenes without fog.
+    fn with_patches(&self, _patches: FogPatches) -> Option<Arc<dyn PreparedModel>> {
+        None
     }
 }
 

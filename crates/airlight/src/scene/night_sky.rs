@@ -55,6 +55,14 @@ impl NightSky {
         })
     }
 
+    /// The same lights in another fog.
+    pub fn with_fog(&self, fog: &FogLayers) -> Self {
+        Self {
+            fog: Some(fog.clone()),
+            ..self.clone()
+        }
+    }
+
     /// The sky of a view by day, and the lights of a night with it.
     ///
     /// # Errors

@@ -145,6 +145,39 @@ fn pictures_share_an_exposure_unless_each_is_metered() {
     assert!(before == std::fs::read(folder.file("a.0003.png")).unwrap());
 }
 
+/// The wind moves patches of fog with the time of the pictures.
+#[test]
+fn patches_drift_from_picture_to_picture() {
+    let folder = Folder::new();
+    let of = |name: &str, start: &str, until: &str, patches: &str| {
+        let scene = SCENE.replace("18:00:00", start).replace(
+            "until = \"+3h\", every = \"1h\"",
+            &format!("until = \"{until}\", every = \"20s\""),
+        );
+        folder.write(
+            name,
+            &format!("{scene}fog = {{ visibility_m = 300, top_m = 40, patches = {{ seed = 3, {patches} }} }}\n"),
+        );
+    };
+    of("a.exr", "18:00:00", "+20s", "wind_m_s = [2, 1]");
+    // The same time of day and of the patches, in a sequence that begins earlier.
+    of(
+        "b.exr",
+        "17:59:20",
+        "+60s",
+        "wind_m_s = [2, 1], time_s = -40",
+    );
+    of("still.exr", "18:00:00", "+20s", "strength = 0.5");
+    let picture = |name: &str| Exr::read(&folder.file(name)).channels;
+    assert!(picture("a.0001.exr") == picture("b.0003.exr"));
+    assert!(picture("a.0002.exr") == picture("b.0004.exr"));
+    assert!(picture("a.0001.exr") == picture("still.0001.exr"));
+    let [moved, still] = ["a.0002.exr", "still.0002.exr"].map(|name| Exr::read(&folder.file(name)));
+    let off = |x, y| (moved.luminance(x, y) / still.luminance(x, y) - 1.0).abs();
+    let most = (0..16).map(|x| off(x, 3)).fold(0.0, f64::max);
+    assert!(most > 0.01, "{most}");
+}
+
 #[test]
 fn a_stopped_sequence_keeps_its_whole_pictures() {
     /// Stops as the second picture begins.

@@ -106,11 +106,19 @@ pub struct FogPatchesSpec {
     pub seed: Option<u64>,
     /// Velocity of the wind that moves the patches, to the east and to the north, m/s. Default: [0, 0].
     pub wind_m_s: Option<[f64; 2]>,
-    /// Time for which the wind has moved the patches, s. Default: 0.
+    /// Time for which the wind has moved the patches, s; in a sequence, at its first picture. Default: 0.
     pub time_s: Option<f64>,
 }
 
 impl FogPatchesSpec {
+    /// The same patches a time later, s.
+    pub fn after(&self, elapsed_s: f64) -> Self {
+        Self {
+            time_s: Some(self.time_s.unwrap_or(0.0) + elapsed_s),
+            ..self.clone()
+        }
+    }
+
     /// The patches, with defaults for what is not set.
     pub fn patches(&self) -> FogPatches {
         let usual = FogPatches::default();
