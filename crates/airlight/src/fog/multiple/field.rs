@@ -174,6 +174,11 @@ impl<const N: usize> Field<N> {
                 *sum += f64::from(scattering[lane]) * column;
             }
         }
+        // Coefficients are rounded to f32: thick fog must not gain light by that.
+        if cell.scattering[0] > cell.extinction {
+            let part = cell.extinction / cell.scattering[0];
+            cell.scattering.iter_mut().for_each(|s| *s *= part);
+        }
         cell
     }
 

@@ -2,7 +2,8 @@
 //!
 //! Each azimuth mode is a two-point boundary value problem in optical depth, solved by invariant imbedding: from the ground up,
 //! upward radiance is expressed as a linear function of downward radiance, `up = reflection * down + emission`, which is
-//! stable; then radiance is evaluated from the top down. The equation of transfer is discretized by central differences.
+//! stable; then radiance is evaluated from the top down. The equation of transfer is discretized by central differences, which
+//! keep radiance positive in thin cells; thicker ones are built from thin ones by doubling (van de Hulst 1963).
 
 use super::legendre::{self, COUNT, STREAMS};
 use crate::math::quadrature::FixedRule;
@@ -10,6 +11,12 @@ use std::f64::consts::PI;
 
 /// Number of polar angles in one hemisphere.
 const HALF: usize = STREAMS / 2;
+
+/// Optical depth above which a cell is built by doubling: central differences are positive up to twice the smallest cosine, 0.139.
+const THICK: f64 = 0.1;
+/// Optical depth to which all thick cells together are limited: about 1e-6 of the light passes without absorption, and rounding,
+/// which doubles with the cells, stays far below.
+const DEEPEST: f64 = 1e6;
 
 type Vector = [f64; HALF];
 type Matrix = [[f64; HALF]; HALF];
@@ -23,6 +30,17 @@ pub struct Cell {
     pub scattering: [f64; STREAMS],
     /// Direct irradiance on a surface facing the sun, mean over the layer's optical depth.
     pub sunlight: f64,
+}
+
+impl Cell {
+    /// A part of the optical depth of the layer.
+    fn part(&self, part: f64) -> Self {
+        Self {
+            extinction: self.extinction * part,
+            scattering: self.scattering.map(|s| s * part),
+            sunlight: self.sunlight,
+        }
+    }
 }
 
 /// Boundary conditions: light from above and reflection at the ground.
@@ -77,6 +95,7 @@ pub fn solve(cells: &[Cell], boundary: &Boundary) -> Solution {
         ground_irradiance: 0.0,
     };
     let sun = legendre::evaluate(boundary.sin_sun);
+    let cells = &limited(cells);
     for m in 0..STREAMS {
         let lit = |cell: &Cell| {
             let source = (m..STREAMS).map(|l| cell.scattering[l] * sun[legendre::index(l, m)]);
@@ -88,6 +107,18 @@ pub fn solve(cells: &[Cell], boundary: &Boundary) -> Solution {
         }
     }
     solution
+}
+
+/// Cells whose thick ones have at most [`DEEPEST`] optical depths together.
+fn limited(cells: &[Cell]) -> Vec<Cell> {
+    let is_thick = |cell: &&Cell| cell.extinction > THICK;
+    let thick: f64 = cells.iter().filter(is_thick).map(|c| c.extinction).sum();
+    let part = (DEEPEST / thick).min(1.0);
+    let limit = |cell: &Cell| match is_thick(&cell) {
+        true => cell.part(part),
+        false => *cell,
+    };
+    cells.iter().map(limit).collect()
 }
 
 fn solve_mode(
@@ -112,7 +143,10 @@ fn solve_mode(
     // From the ground up.
     let mut steps = Vec::with_capacity(cells.len());
     for cell in cells.iter().rev() {
-        let step = Step::new(m, cell, angles, sun, &reflection, &emission);
+        let step = match cell.extinction > THICK {
+            false => Step::new(m, cell, angles, sun, &reflection, &emission),
+            true => Step::by_doubling(m, cell, angles, sun).over(&reflection, &emission),
+        };
         steps.push((reflection, emission, step.transmission, step.arriving));
         (reflection, emission) = (step.reflection, step.emission);
     }
@@ -206,6 +240,55 @@ impl Step {
             emission: std::array::from_fn(|i| right[HALF + i][HALF]),
         }
     }
+
+    /// A cell of any optical depth over nothing.
+    fn by_doubling(m: usize, cell: &Cell, angles: &Angles, sun: &[f64; COUNT]) -> Self {
+        let doublings = (cell.extinction / THICK).log2().ceil().max(0.0);
+        let thin = cell.part((-doublings).exp2());
+        let (nothing, dark) = (Matrix::default(), Vector::default());
+        let mut slab = Self::new(m, &thin, angles, sun, &nothing, &dark);
+        for _ in 0..doublings as usize {
+            // Light between the halves, and on through the lower one.
+            let middle = slab.over(&slab.reflection, &slab.emission);
+            slab = Self {
+                transmission: product(&slab.transmission, &middle.transmission),
+                arriving: add(&slab.arriving, &times(&slab.transmission, &middle.arriving)),
+                ..middle
+            };
+        }
+        slab
+    }
+
+    /// A homogeneous layer over nothing, on top of the layers below it. All terms are sums of light that has been reflected
+    /// between both, so that nothing cancels.
+    fn over(&self, below: &Matrix, from_below: &Vector) -> Self {
+        // down_below = transmission * down + arriving + reflection * up_below,  up_below = below * down_below + from_below.
+        let echo = product(&self.reflection, below);
+        let mut matrix: Matrix = std::array::from_fn(|i| {
+            std::array::from_fn(|j| f64::from(u8::from(i == j)) - echo[i][j])
+        });
+        let source = add(&self.arriving, &times(&self.reflection, from_below));
+        let mut right: [[f64; HALF + 1]; HALF] = std::array::from_fn(|i| {
+            std::array::from_fn(|j| match j < HALF {
+                true => self.transmission[i][j],
+                false => source[i],
+            })
+        });
+        eliminate(&mut matrix, &mut right);
+        let transmission: Matrix = std::array::from_fn(|i| std::array::from_fn(|j| right[i][j]));
+        let arriving: Vector = std::array::from_fn(|i| right[i][HALF]);
+        let back = product(&self.transmission, below);
+        let returned = product(&back, &transmission);
+        let upward = add(from_below, &times(below, &arriving));
+        Self {
+            reflection: std::array::from_fn(|i| {
+                std::array::from_fn(|j| self.reflection[i][j] + returned[i][j])
+            }),
+            emission: add(&self.emission, &times(&self.transmission, &upward)),
+            transmission,
+            arriving,
+        }
+    }
 }
 
 /// Stores the moments of mode `m` of the radiance at the polar angles.
@@ -261,6 +344,43 @@ fn add(a: &Vector, b: &Vector) -> Vector {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// One thick cell is many thin ones, and light stays positive and conserved however thick it is.
+    #[test]
+    fn thick_cells_are_built_from_thin_ones() {
+        let boundary = Boundary {
+            sin_sun: 0.5,
+            sky: 1.0,
+            albedo: 0.3,
+            sun_on_ground: 0.0,
+        };
+        for (depth, albedo) in [(1.0, 0.9), (8.0, 1.0), (60.0, 0.999)] {
+            let thin = solve(
+                &slab(depth, (depth / 0.02) as usize, albedo, 0.8),
+                &boundary,
+            );
+            let thick = solve(&slab(depth, 1, albedo, 0.8), &boundary);
+            let (got, want) = (thick.ground_irradiance, thin.ground_irradiance);
+            assert!((got / want - 1.0).abs() < 2e-3, "{depth}: {got} {want}");
+        }
+        let mut last = f64::INFINITY;
+        for depth in [1e2, 1e3, 1e5, 1e6, 1e12, 1e24] {
+            let light = solve(&slab(depth, 1, 1.0, 0.8), &boundary).ground_irradiance;
+            let many = solve(&slab(depth, 300, 1.0, 0.8), &boundary).ground_irradiance;
+            assert!((many / light - 1.0).abs() < 0.01, "{depth}: {many} {light}");
+            assert!(
+                light > 0.0 && light <= last * (1.0 + 1e-5),
+                "{depth}: {light} after {last}"
+            );
+            // Diffusion: the transmittance is about 4 / (3 (1 - g) depth).
+            let expected = PI * 4.0 / (3.0 * 0.2 * depth.min(DEEPEST)) / (1.0 - 0.3);
+            assert!(
+                depth < 1e3 || (light / expected - 1.0).abs() < 0.1,
+                "{light} {expected}"
+            );
+            last = light;
+        }
+    }
 
     fn slab(depth: f64, cells: usize, albedo: f64, g: f64) -> Vec<Cell> {
         let each = depth / cells as f64;
