@@ -30,7 +30,7 @@ fn one(draw: &mut Draw) -> Light<[f32; 3]> {
     }
 }
 
-/// Light of lamps scattered into rays, and their irradiance.
+/// Light scattered from lights into rays, and their irradiance.
 pub fn lights(draw: &mut Draw) -> Result<(), Failure> {
     let lights: Vec<_> = (0..=draw.below(2)).map(|_| one(draw)).collect();
     let layers: Vec<_> = (0..=draw.below(2))

@@ -24,7 +24,7 @@ const LAYERED: &str = r#"
     absorption_per_m = 1e-3
 
     [[constituent]]
-    name = "veil"
+    name = "cirrus"
     density = { kind = "layer", bottom_m = 39.8e3, top_m = 39.9e3 }
     scattering_per_m = 2e-5
     phase = { kind = "henyey-greenstein", g = 0.7 }
