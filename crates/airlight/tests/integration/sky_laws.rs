@@ -196,6 +196,82 @@ fn every_number_of_threads_gives_the_same_bits() {
     assert_eq!(picture(1), picture(3));
 }
 
+#[test]
+fn single_scattering_under_a_low_sun_is_that_of_fine_quadrature() {
+    for air in [reference::earth_demo(), presets::preset("hazy").unwrap()] {
+        let mut worst = (0.0f64, String::new());
+        for sun_elevation in [10.0, 3.0, 2.0, 0.5] {
+            let settings = SkySettings {
+                suns: SunCoverage::near(sun_elevation, 0.0),
+                scattering: Scattering::Single,
+                ..Default::default()
+            };
+            let sky = Sky::prepare(&air, &WavelengthGrid::rgb(), &settings).unwrap();
+            let sun = direction(180.0, sun_elevation);
+            let view = sky.view(0.0, sun);
+            for (azimuth, elevation) in [
+                (180.0, 1.0),
+                (90.0, 5.0),
+                (0.0, 5.0),
+                (0.0, 30.0),
+                (0.0, 90.0),
+            ] {
+                let eye = direction(azimuth, elevation);
+                let got = view.along(eye, None).single;
+                let want = by_quadrature(&sky, sun, eye);
+                for (lane, (got, want)) in got.iter().zip(want).enumerate() {
+                    let error = (f64::from(*got) / want - 1.0).abs();
+                    if error > worst.0 {
+                        let place = format!(
+                            "{} sun {sun_elevation}, {azimuth} {elevation}, {lane}: {got} {want}",
+                            air.name
+                        );
+                        worst = (error, place);
+                    }
+                }
+            }
+        }
+        assert!(worst.0 < 1e-3, "{worst:?}");
+    }
+}
+
+/// Singly scattered sunlight along a ray from the ground by the midpoint rule, in steps that grow with the distance.
+fn by_quadrature(sky: &Sky, sun: DVec3, eye: DVec3) -> [f64; 3] {
+    const STEPS: u32 = 1500;
+    let air = sky.atmosphere();
+    let planet = &air.planet;
+    let (ground_m, top_m) = (planet.radius_m, planet.radius_m + planet.top_altitude_m);
+    let length_m =
+        (top_m * top_m - ground_m * ground_m * (1.0 - eye.y * eye.y)).sqrt() - ground_m * eye.y;
+    let nm = sky.grid().wavelengths_nm();
+    let solar = sky.view(0.0, sun).solar_irradiance();
+    let (mut sum, mut depth) = ([0.0; 3], [0.0; 3]);
+    for step in 0..STEPS {
+        let at = |step: f64| length_m * (step / f64::from(STEPS)).powi(2);
+        let (from_m, to_m) = (at(f64::from(step)), at(f64::from(step) + 1.0));
+        let point = DVec3::Y * ground_m + eye * (0.5 * (from_m + to_m));
+        let altitude_m = point.length() - ground_m;
+        let turn = glam::DQuat::from_rotation_arc(point.normalize(), DVec3::Y);
+        let sunlight = sky.view(altitude_m, sun).transmittance_to_space(turn * sun);
+        for lane in 0..3 {
+            let (mut extinction, mut scattered) = (0.0, 0.0);
+            for part in &air.constituents {
+                let density = part.density.at(altitude_m);
+                extinction += density * part.extinction_per_m(nm[lane]);
+                scattered += density
+                    * part.scattering_per_m.at(nm[lane])
+                    * part.phase.evaluate(eye.dot(sun), nm[lane]);
+            }
+            let step_depth = extinction * (to_m - from_m);
+            let seen = f64::exp(-(depth[lane] + 0.5 * step_depth));
+            sum[lane] +=
+                seen * scattered * (to_m - from_m) * f64::from(sunlight[lane] * solar[lane]);
+            depth[lane] += step_depth;
+        }
+    }
+    sum
+}
+
 /// Tables and coverage of suns beside the field that they are made from.
 mod guards {
     use super::*;
