@@ -5,9 +5,11 @@ mod fixed_table;
 pub(crate) mod mars;
 pub mod published;
 pub mod reference;
+mod wildfire;
 
 pub use earth::{Earth, average, clear, hazy};
 pub use mars::mars;
+pub use wildfire::wildfire;
 
 use super::Atmosphere;
 use crate::names::{UnknownName, named};
@@ -22,6 +24,8 @@ pub enum Preset {
     Average,
     /// Earth on a hazy day: aerosol optical depth 0.35 at 550 nm.
     Hazy,
+    /// Earth under the smoke of forest fires: smoke optical depth 4 at 550 nm.
+    Wildfire,
     /// Mars on a moderately dusty day: dust optical depth 0.5 at 880 nm.
     Mars,
     /// Earth of Bruneton's Precomputed Atmospheric Scattering (2017), spectral.
@@ -44,6 +48,7 @@ named! { Preset, "an atmosphere", [
     ("clear", (Clear), "Earth on a clear day: aerosol optical depth 0.05 at 550 nm"),
     ("average", (Average), "Earth on an average day: aerosol optical depth 0.12 at 550 nm"),
     ("hazy", (Hazy), "Earth on a hazy day: aerosol optical depth 0.35 at 550 nm"),
+    ("wildfire", (Wildfire), "Earth under the smoke of forest fires: smoke optical depth 4 at 550 nm"),
     ("mars", (Mars), "Mars on a moderately dusty day: dust optical depth 0.5 at 880 nm"),
     ("bruneton", (Bruneton), "Earth of Bruneton's Precomputed Atmospheric Scattering (2017), spectral"),
     ("hillaire", (Hillaire), "Earth of Hillaire's Scalable and Production Ready Sky (2020), red, green and blue"),
@@ -61,6 +66,7 @@ impl Preset {
             Self::Clear => earth::clear(),
             Self::Average => earth::average(),
             Self::Hazy => earth::hazy(),
+            Self::Wildfire => wildfire::wildfire(),
             Self::Mars => mars::mars(),
             Self::Bruneton => published::bruneton(),
             Self::Hillaire => published::hillaire(),
@@ -123,7 +129,12 @@ mod tests {
 
     #[test]
     fn optical_depths_match_the_descriptions() {
-        for (name, aerosol) in [("clear", 0.05), ("average", 0.12), ("hazy", 0.35)] {
+        for (name, aerosol) in [
+            ("clear", 0.05),
+            ("average", 0.12),
+            ("hazy", 0.35),
+            ("wildfire", 4.0),
+        ] {
             let earth = preset(name).unwrap();
             let ozone = earth
                 .constituent(&ConstituentKind::Ozone)

@@ -48,7 +48,17 @@ impl Earth {
     /// # Errors
     /// [`AerosolError`] for an invalid aerosol. Pressure, ozone and albedo are checked by [`Atmosphere::validate`].
     pub fn atmosphere(&self, name: &str) -> Result<Atmosphere, AerosolError> {
-        let mut atmosphere = Atmosphere {
+        let mut atmosphere = self.gases(name);
+        let aerosol = self
+            .aerosol
+            .constituent(atmosphere.clear_air(), 0.0, EARTH_TOP_M)?;
+        atmosphere.constituents.push(aerosol);
+        Ok(atmosphere)
+    }
+
+    /// The atmosphere without its aerosol.
+    pub(super) fn gases(&self, name: &str) -> Atmosphere {
+        Atmosphere {
             name: name.to_owned(),
             planet: planet(self.ground_albedo.clone()),
             constituents: vec![
@@ -57,12 +67,7 @@ impl Earth {
             ],
             solar_irradiance: SpectralCurve::Table(solar::extraterrestrial().clone()),
             sun: SunDisc::default(),
-        };
-        let aerosol = self
-            .aerosol
-            .constituent(atmosphere.clear_air(), 0.0, EARTH_TOP_M)?;
-        atmosphere.constituents.push(aerosol);
-        Ok(atmosphere)
+        }
     }
 }
 
