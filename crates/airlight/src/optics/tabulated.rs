@@ -4,6 +4,7 @@ mod matrix;
 mod moments;
 mod sample;
 
+use self::moments::MomentCache;
 use super::phase_error::PhaseError;
 use crate::math::interpolation::{Place, hermite, interval_of, lerp, monotone_slopes};
 use crate::math::quadrature::FixedRule;
@@ -28,6 +29,7 @@ pub struct TabulatedPhase {
     cumulative: Arc<[f64]>,
     /// `f12`, `f33` and `f34` of spheres relative to the phase function, with the angle varying fastest, if known.
     matrix: Option<Arc<[[f32; 3]]>>,
+    moments: MomentCache,
 }
 
 /// Number of points of the Gauss-Legendre rule in each panel.
@@ -89,6 +91,7 @@ impl TabulatedPhase {
             slopes: slopes.into(),
             cumulative: Arc::new([]),
             matrix: None,
+            moments: MomentCache::new(wavelengths),
         };
         table.normalize();
         Ok(table)

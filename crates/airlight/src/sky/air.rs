@@ -6,6 +6,7 @@ use crate::spectrum::Spectrum;
 use crate::transfer::coefficients::Coefficients;
 use crate::transfer::columns::SlantColumns;
 use crate::transfer::delta_m::peak_fraction;
+use crate::transfer::residual::{ONE_STREAM, Residual, Shares};
 use crate::transfer::shell::{Shell, divided};
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -22,6 +23,8 @@ pub struct Air<const N: usize> {
     /// Boundaries of the quadrature panels of rays: those of the shell, and more where sunlight is extinguished over a small
     /// change of altitude.
     pub panel_radii_m: Arc<[f64]>,
+    /// Extinction by the forward peaks that count as unscattered, in which `coefficients` differ from those of the real air.
+    pub peaks: Coefficients<Spectrum<N>>,
     wavelengths_nm: [f64; N],
 }
 
@@ -36,6 +39,8 @@ pub struct Scatterer<const N: usize> {
     pub whole_scattering: Spectrum<N>,
     /// Legendre moments of the phase function, `moments[l]`.
     pub moments: Vec<Spectrum<N>>,
+    /// Streams of singly scattered light, if a forward peak counts as unscattered.
+    residual: Option<Arc<Residual<N>>>,
     phase: PhaseFunction,
 }
 
@@ -65,12 +70,14 @@ impl<const N: usize> Air<N> {
                     moments: (0..=l_max + 1)
                         .map(|l| Spectrum::from_fn(|lane| by_lane[lane][l] as f32))
                         .collect(),
+                    residual: None,
                     phase: part.phase.clone(),
                 }
             })
             .collect();
         Self {
             panel_radii_m: panel_radii_m(&columns.shell, &coefficients, air_masses).into(),
+            peaks: Coefficients::none(coefficients.extinction_per_m.len()),
             columns,
             coefficients,
             scatterers,
@@ -87,7 +94,10 @@ impl<const N: usize> Air<N> {
             let rest = Spectrum::ONE - peak;
             let removed = s.scattering * peak;
             air.coefficients.extinction_per_m[s.constituent] -= removed;
+            air.peaks.extinction_per_m[s.constituent] = removed;
+            air.peaks.scattering_per_m[s.constituent] = removed;
             s.scattering -= removed;
+            s.residual = Residual::new(&s.phase, &self.wavelengths_nm, l_max).map(Arc::new);
             for moment in &mut s.moments {
                 *moment = (*moment - peak) / rest;
             }
@@ -106,6 +116,15 @@ impl<const N: usize> Air<N> {
     pub fn transmittance_to_sun(&self, radius_m: f64, mu_sun: f64) -> Spectrum<N> {
         let columns = self.columns.to_space_m(radius_m, mu_sun);
         self.coefficients.transmittance(&columns)
+    }
+
+    /// Shares of the streams in the light of each scatterer at the cosine `nu` of the scattering angle.
+    pub fn shares(&self, nu: f64) -> Vec<Shares<N>> {
+        let one_stream = ONE_STREAM.map(Spectrum::splat);
+        self.scatterers
+            .iter()
+            .map(|s| s.residual.as_ref().map_or(one_stream, |r| r.shares(nu)))
+            .collect()
     }
 
     /// Irradiance on the ground from the sun alone at the zenith cosine `mu_sun`, per unit solar irradiance.

@@ -13,6 +13,7 @@ use crate::math::simd::vectorized;
 use crate::spectrum::Spectrum;
 use crate::transfer::columns::SlantColumns;
 use crate::transfer::ray::Ray;
+use crate::transfer::residual::combined;
 use std::sync::Arc;
 
 /// Light along a view ray at the wavelengths of a block, per unit solar irradiance.
@@ -208,13 +209,13 @@ impl<const N: usize> Block for Solved<N> {
         samples
             .iter()
             .map(|sample| {
-                let mut parts = vec![sample.path.multiple_scatter; 1 + peaked.len()];
+                let mut parts = vec![sample.multiple_scatter; 1 + peaked.len()];
                 parts[1..].fill(Spectrum::ZERO);
                 for (s, single_scatter_without_phase) in self
                     .air
                     .scatterers
                     .iter()
-                    .zip(&sample.path.single_scatter_without_phase)
+                    .zip(&sample.single_scatter_without_phase)
                 {
                     let phased = *single_scatter_without_phase * s.phase(&self.air, ray.nu);
                     match peaked.iter().position(|&(c, _)| c == s.constituent) {
@@ -308,9 +309,16 @@ impl<const N: usize> Solved<N> {
         let dimming = diffuse.map_or(air, |d| &d.air);
         let path = Path::new(dimming, grid, &Tracer::marcher(air), row.start, degree);
         if path.is_lit(air, &row.bundle) {
+            let shares = row
+                .bundle
+                .nu
+                .iter()
+                .map(|&nu| dimming.shares(nu))
+                .collect::<Vec<_>>();
             path.accumulate_sunlight(
                 dimming,
                 &row.bundle,
+                |slot, place, streams| combined(streams, &shares[slot][place]),
                 &mut light.single_scatter_without_phase,
             );
             for (s, sums) in air
@@ -341,11 +349,13 @@ impl<const N: usize> Solved<N> {
                 .single_scatter_without_phase
                 .resize(air.scatterers.len() * rays, Spectrum::ZERO);
             for slot in 0..rays {
-                let one = tracer.arriving(&row.bundle.ray(row.start, slot));
+                let ray = row.bundle.ray(row.start, slot);
+                let one = tracer.arriving(&ray);
                 light.multiple_scatter[slot] = one.multiple_scatter;
-                for s in 0..air.scatterers.len() {
-                    light.single_scatter_without_phase[s * rays + slot] =
-                        one.single_scatter_without_phase[s];
+                let shares = dimming.shares(ray.nu);
+                for (place, (s, shares)) in air.scatterers.iter().zip(&shares).enumerate() {
+                    light.single_scatter_without_phase[place * rays + slot] =
+                        one.single_scatter_without_phase(place, shares) * s.whole_scattering;
                 }
             }
         }

@@ -10,6 +10,7 @@ use super::harmonics::Harmonics;
 use crate::spectrum::Spectrum;
 use crate::transfer::march::{MAX_NODES, Marcher};
 use crate::transfer::ray::{Ray, in_shadow};
+use crate::transfer::residual::{STREAMS, stream_transmittances};
 use crate::transfer::shell::PerConstituent;
 use std::ops::{ControlFlow, Range};
 
@@ -33,6 +34,8 @@ struct PathNode<const N: usize> {
     place: RadialStencil,
     /// Transmittance from the start times the length of the node's interval, m.
     weight: Spectrum<N>,
+    /// Optical depth from the start that counts as unscattered.
+    removed: Spectrum<N>,
     /// `weight` times the l-th phase moment of the scattering coefficients.
     source_weights: Vec<Spectrum<N>>,
 }
@@ -226,6 +229,7 @@ impl<const N: usize> Path<N> {
                         densities: node.densities,
                         place: grid.map_or(RadialStencil::GROUND, |g| g.place_of_radius(radius_m)),
                         weight,
+                        removed: air.peaks.extinction(&node.columns_m),
                         source_weights: Vec::new(),
                     });
                 }
@@ -264,12 +268,13 @@ impl<const N: usize> Path<N> {
     }
 
     /// Singly scattered sunlight along each ray, per unit scattering coefficient and without phase functions, into `out`:
-    /// `[scatterer][ray]`.
+    /// `[scatterer][ray]`. `combine(ray, scatterer, transmittances)` weights the transmittances of the streams.
     #[inline(always)]
     pub fn accumulate_sunlight(
         &self,
         air: &Air<N>,
         bundle: &RayBundle,
+        combine: impl Fn(usize, usize, &[Spectrum<N>; STREAMS]) -> Spectrum<N>,
         out: &mut Vec<Spectrum<N>>,
     ) {
         let shell = air.shell();
@@ -280,19 +285,22 @@ impl<const N: usize> Path<N> {
             for slot in 0..bundle.len() {
                 let mu_sun = (self.radius_m * bundle.mu_sun[slot] + node.t * bundle.nu[slot])
                     / node.radius_m;
-                let depth = if mu_sun >= 0.0 {
-                    air.coefficients
-                        .extinction_f32(&columns.to_space_m(mu_sun as f32))
+                let to_sun = if mu_sun >= 0.0 {
+                    columns.to_space_m(mu_sun as f32)
                 } else if in_shadow(node.radius_m, mu_sun, shell.ground_radius_m) {
                     continue;
                 } else {
-                    air.coefficients
-                        .extinction(&air.columns.to_space_m(node.radius_m, mu_sun))
+                    let to_sun = air.columns.to_space_m(node.radius_m, mu_sun);
+                    to_sun.map(|column| column as f32)
                 };
+                let depth = air.coefficients.extinction_f32(&to_sun);
                 let arriving = node.weight * (Spectrum::ZERO - depth).exp();
+                let streams =
+                    stream_transmittances(node.removed + air.peaks.extinction_f32(&to_sun));
                 for (place, s) in air.scatterers.iter().enumerate() {
                     let sum = &mut out[place * bundle.len() + slot];
-                    *sum = sum.scale_acc(arriving, node.densities[s.constituent] as f32);
+                    let kept = arriving * combine(slot, place, &streams);
+                    *sum = sum.scale_acc(kept, node.densities[s.constituent] as f32);
                 }
             }
         }

@@ -8,8 +8,9 @@
 //! S(d) = P(d) T/T' + (1 - T/T') L'
 //! ```
 //!
-//! without cancellation and without a separate march for each sample. As S is linear in P and L', it can be stored by
-//! scatterer and without phase functions, as in the sky's tables.
+//! without cancellation and without a separate march for each sample, for each stream of singly scattered sunlight and for all
+//! other light. As S is linear in P and L', it can be stored by scatterer and without phase functions, as in the sky's
+//! tables.
 
 use super::field::ground_irradiance;
 use super::harmonics::Harmonics;
@@ -17,6 +18,7 @@ use super::trace::{Arriving, Tracer};
 use crate::spectrum::Spectrum;
 use crate::transfer::march::Marcher;
 use crate::transfer::ray::Ray;
+use crate::transfer::residual::{STREAMS, Shares, combined};
 use crate::transfer::shell::{MAX_CONSTITUENTS, PerConstituent};
 use std::ops::ControlFlow;
 
@@ -25,8 +27,10 @@ use std::ops::ControlFlow;
 pub struct RaySample<const N: usize> {
     /// Optical depth of the real air.
     pub depth: Spectrum<N>,
-    /// Path radiance: singly scattered sunlight by scatterer, without its phase function, and all other light.
-    pub path: Arriving<N>,
+    /// Singly scattered sunlight by scatterer, without its phase function.
+    pub single_scatter_without_phase: [Spectrum<N>; MAX_CONSTITUENTS],
+    /// All other path radiance.
+    pub multiple_scatter: Spectrum<N>,
 }
 
 /// Columns and light accumulated up to a distance.
@@ -46,13 +50,12 @@ impl<const N: usize> Tracer<'_, N> {
     pub fn samples_along_ray(&mut self, ray: &Ray, samples_m: &[f64]) -> Vec<RaySample<N>> {
         let mut accumulated = Accumulated {
             columns_m: [0.0; MAX_CONSTITUENTS],
-            path: Arriving {
-                single_scatter_without_phase: [Spectrum::ZERO; MAX_CONSTITUENTS],
-                multiple_scatter: Spectrum::ZERO,
-            },
+            path: Arriving::NONE,
         };
+        let shares = self.dimming.shares(ray.nu);
         let Some(segment) = self.air.shell().segment(ray, f64::INFINITY) else {
-            return vec![self.sample(&accumulated, &accumulated.path); samples_m.len()];
+            let none = self.sample(&accumulated, &accumulated.path, &shares);
+            return vec![none; samples_m.len()];
         };
         let marcher = Marcher::new(
             &self.air.panel_radii_m,
@@ -89,27 +92,39 @@ impl<const N: usize> Tracer<'_, N> {
             }
         }
         all.iter()
-            .map(|one| self.sample(one, &accumulated.path))
+            .map(|one| self.sample(one, &accumulated.path, &shares))
             .collect()
     }
 
     /// Path radiance `S = P T/T' + (1 - T/T') L'` and optical depth of a sample.
     #[inline(always)]
-    fn sample(&self, accumulated: &Accumulated<N>, whole: &Arriving<N>) -> RaySample<N> {
-        let depth = self.air.coefficients.extinction(&accumulated.columns_m);
-        let into_peaks = depth - self.dimming.coefficients.extinction(&accumulated.columns_m);
-        let replaced = into_peaks.map(|tau| -(-tau).exp_m1());
-        let mix = |near: Spectrum<N>, whole: Spectrum<N>| near.mul_acc(replaced, whole - near);
-        let (near, whole) = (&accumulated.path, whole);
-        let mut path = *near;
-        path.multiple_scatter = mix(near.multiple_scatter, whole.multiple_scatter);
+    fn sample(
+        &self,
+        accumulated: &Accumulated<N>,
+        whole: &Arriving<N>,
+        shares: &[Shares<N>],
+    ) -> RaySample<N> {
+        let removed = self.dimming.peaks.extinction(&accumulated.columns_m);
+        // 1 - T/T' of each stream.
+        let replaced: [_; STREAMS] = std::array::from_fn(|k| {
+            let fraction = 1.0 - k as f32 / (STREAMS - 1) as f32;
+            (removed * fraction).map(|tau| -(-tau).exp_m1())
+        });
+        let mix = |near: Spectrum<N>, whole: Spectrum<N>, k: usize| {
+            near.mul_acc(replaced[k], whole - near)
+        };
+        let near = &accumulated.path;
+        let mut single_scatter_without_phase = [Spectrum::ZERO; MAX_CONSTITUENTS];
         for (s, scatterer) in self.air.scatterers.iter().enumerate() {
-            path.single_scatter_without_phase[s] = mix(
-                near.single_scatter_without_phase[s],
-                whole.single_scatter_without_phase[s],
-            ) * scatterer.whole_scattering;
+            let streams = std::array::from_fn(|k| mix(near.streams[s][k], whole.streams[s][k], k));
+            single_scatter_without_phase[s] =
+                combined(&streams, &shares[s]) * scatterer.whole_scattering;
         }
-        RaySample { depth, path }
+        RaySample {
+            depth: self.air.coefficients.extinction(&accumulated.columns_m),
+            single_scatter_without_phase,
+            multiple_scatter: mix(near.multiple_scatter, whole.multiple_scatter, 0),
+        }
     }
 
     /// Adds the light between two distances to that accumulated up to the first.
@@ -126,6 +141,7 @@ impl<const N: usize> Tracer<'_, N> {
         let mut y = [0.0f32; Harmonics::MAX_COUNT];
         let mut edges = std::mem::take(&mut self.edges);
         let path = &mut accumulated.path;
+        let before_m = accumulated.columns_m;
         marcher.march(
             self.air.shell(),
             ray,
@@ -137,7 +153,8 @@ impl<const N: usize> Tracer<'_, N> {
                     let transmittance =
                         transmittance_before * dimming.coefficients.transmittance(&node.columns_m);
                     let weight = transmittance * node.dt as f32;
-                    self.add(node, weight, &mut y, path);
+                    let from_eye = std::array::from_fn(|c| before_m[c] + node.columns_m[c]);
+                    self.add(node, weight, &from_eye, &mut y, path);
                 }
                 ControlFlow::Continue(())
             },

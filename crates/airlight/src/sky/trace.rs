@@ -11,7 +11,8 @@
 //! S = integral of T' J' + (T' - T) L'
 //! ```
 //!
-//! This composes exactly: splitting the segment does not change the result.
+//! This composes exactly: splitting the segment does not change the result. Singly scattered sunlight consists of streams
+//! ([`crate::transfer::residual`]), for each of which the air without forward peaks has an extinction of its own.
 
 use super::air::Air;
 use super::field::{Diffuse, ground_irradiance};
@@ -19,7 +20,8 @@ use super::harmonics::Harmonics;
 use crate::spectrum::Spectrum;
 use crate::transfer::march::{Marcher, Node};
 use crate::transfer::ray::Ray;
-use crate::transfer::shell::MAX_CONSTITUENTS;
+use crate::transfer::residual::{STREAMS, Shares, combined, stream_transmittances};
+use crate::transfer::shell::{MAX_CONSTITUENTS, PerConstituent};
 use std::ops::ControlFlow;
 
 /// Light along a view ray, per unit solar irradiance (1/sr).
@@ -40,10 +42,29 @@ pub struct Light<const N: usize> {
 /// All light along an unlimited view ray, per unit solar irradiance (1/sr).
 #[derive(Clone, Copy, Debug)]
 pub struct Arriving<const N: usize> {
-    /// Singly scattered sunlight by scatterer, without its phase function (dimensionless).
-    pub single_scatter_without_phase: [Spectrum<N>; MAX_CONSTITUENTS],
+    /// Singly scattered sunlight by scatterer and stream, each as if it held all light, per unit scattering coefficient
+    /// and without the phase function, m.
+    pub streams: [[Spectrum<N>; STREAMS]; MAX_CONSTITUENTS],
     /// All other light, including that of the ground.
     pub multiple_scatter: Spectrum<N>,
+}
+
+impl<const N: usize> Arriving<N> {
+    /// No light.
+    pub const NONE: Self = Self {
+        streams: [[Spectrum::ZERO; STREAMS]; MAX_CONSTITUENTS],
+        multiple_scatter: Spectrum::ZERO,
+    };
+
+    /// Singly scattered sunlight of a scatterer without its phase function: the streams by their shares.
+    #[inline(always)]
+    pub fn single_scatter_without_phase(
+        &self,
+        scatterer: usize,
+        shares: &Shares<N>,
+    ) -> Spectrum<N> {
+        combined(&self.streams[scatterer], shares)
+    }
 }
 
 /// Integrates light along view rays through air lit by the sun and by a solved field.
@@ -93,6 +114,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
             .iter()
             .map(|s| s.phase(air, ray.nu))
             .collect();
+        let shares = dimming.shares(ray.nu);
         let (mut single, mut path) = (Spectrum::ZERO, Spectrum::ZERO);
         let mut y = [0.0f32; Harmonics::MAX_COUNT];
         let mut edges = std::mem::take(&mut self.edges);
@@ -105,14 +127,20 @@ impl<'a, const N: usize> Tracer<'a, N> {
                     brightest = brightest.max(transmittance.max_element());
                     let mut source = self.source(node, &mut y);
                     if node.lit {
-                        let mut scattering = Spectrum::ZERO;
-                        for (s, phase) in air.scatterers.iter().zip(&phases) {
-                            let density = node.densities[s.constituent] as f32;
-                            scattering = scattering.scale_acc(s.whole_scattering * *phase, density);
-                        }
                         let to_sun = air.columns.to_space_m(node.here.radius_m, node.here.mu_sun);
-                        source =
-                            source.mul_acc(scattering, dimming.coefficients.transmittance(&to_sun));
+                        let streams = stream_transmittances(
+                            dimming.peaks.extinction(&to_sun)
+                                + dimming.peaks.extinction(&node.columns_m),
+                        );
+                        let (mut scattering, mut kept) = (Spectrum::ZERO, Spectrum::ZERO);
+                        for ((s, phase), shares) in air.scatterers.iter().zip(&phases).zip(&shares)
+                        {
+                            let density = node.densities[s.constituent] as f32;
+                            let scattered = s.whole_scattering * *phase * density;
+                            scattering += scattered;
+                            kept = kept.mul_acc(scattered, combined(&streams, shares));
+                        }
+                        source = source.mul_acc(kept, dimming.coefficients.transmittance(&to_sun));
                         let once = (Spectrum::ZERO
                             - air.coefficients.extinction(&node.columns_m)
                             - air.coefficients.extinction(&to_sun))
@@ -136,18 +164,33 @@ impl<'a, const N: usize> Tracer<'a, N> {
                 .reflected(ground_irradiance(air, self.diffuse, end.mu_sun)),
             false => Spectrum::ZERO,
         };
-        let behind = match segment.meets_ground {
-            true => ground,
-            false if self.diffuse.is_some() => self.radiance(&end),
-            false => Spectrum::ZERO,
-        };
         let transmittance = air.coefficients.transmittance(&columns);
-        // T' - T, without cancellation if both are close to 1, or overflow if both are close to 0.
-        let into_peaks =
-            air.coefficients.extinction(&columns) - dimming.coefficients.extinction(&columns);
-        let difference =
-            dimming.coefficients.transmittance(&columns) * into_peaks.map(|tau| -(-tau).exp_m1());
-        path = path.mul_acc(difference, behind);
+        if self.diffuse.is_some() {
+            // T' - T, without cancellation if both are close to 1, or overflow if both are close to 0.
+            let removed = dimming.peaks.extinction(&columns);
+            let through = dimming.coefficients.transmittance(&columns);
+            let lost = |fraction: f32| (removed * fraction).map(|tau| -(-tau).exp_m1());
+            if segment.meets_ground {
+                path = path.mul_acc(through * lost(1.0), ground);
+            } else {
+                let behind = self.arriving(&end);
+                path = path.mul_acc(through * lost(1.0), behind.multiple_scatter);
+                let relative = stream_transmittances(removed);
+                let into_peaks: [_; STREAMS] = std::array::from_fn(|k| {
+                    through * relative[k] * lost(1.0 - k as f32 / (STREAMS - 1) as f32)
+                });
+                for (((s, phase), shares), streams) in air
+                    .scatterers
+                    .iter()
+                    .zip(&phases)
+                    .zip(&shares)
+                    .zip(&behind.streams)
+                {
+                    let streams = std::array::from_fn(|k| streams[k] * into_peaks[k]);
+                    path = path.mul_acc(combined(&streams, shares), s.whole_scattering * *phase);
+                }
+            }
+        }
         Light {
             transmittance,
             single,
@@ -160,29 +203,11 @@ impl<'a, const N: usize> Tracer<'a, N> {
         }
     }
 
-    /// Total light along the whole of `ray`.
-    fn radiance(&mut self, ray: &Ray) -> Spectrum<N> {
-        let arriving = self.arriving(ray);
-        let mut sum = arriving.multiple_scatter;
-        for (s, single_scatter_without_phase) in self
-            .air
-            .scatterers
-            .iter()
-            .zip(&arriving.single_scatter_without_phase)
-        {
-            sum = sum.mul_acc(*single_scatter_without_phase, s.phase(self.air, ray.nu));
-        }
-        sum
-    }
-
-    /// Light along the whole of `ray`.
+    /// Light along the whole of `ray`, singly scattered per unit scattering coefficient.
     #[inline(always)]
     pub fn arriving(&mut self, ray: &Ray) -> Arriving<N> {
         let (air, dimming) = (self.air, self.dimming);
-        let mut light = Arriving {
-            single_scatter_without_phase: [Spectrum::ZERO; MAX_CONSTITUENTS],
-            multiple_scatter: Spectrum::ZERO,
-        };
+        let mut light = Arriving::NONE;
         let Some(segment) = air.shell().segment(ray, f64::INFINITY) else {
             return light;
         };
@@ -201,7 +226,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
                     let transmittance = dimming.coefficients.transmittance(&node.columns_m);
                     brightest = brightest.max(transmittance.max_element());
                     let weight = transmittance * node.dt as f32;
-                    self.add(node, weight, &mut y, &mut light);
+                    self.add(node, weight, &node.columns_m, &mut y, &mut light);
                 }
                 if brightest < 1e-7 {
                     ControlFlow::Break(())
@@ -211,13 +236,6 @@ impl<'a, const N: usize> Tracer<'a, N> {
             },
         );
         self.edges = edges;
-        for (s, sum) in air
-            .scatterers
-            .iter()
-            .zip(&mut light.single_scatter_without_phase)
-        {
-            *sum *= s.whole_scattering;
-        }
         if segment.meets_ground {
             let irradiance =
                 ground_irradiance(air, self.diffuse, ray.advanced(segment.end_m).mu_sun);
@@ -229,29 +247,31 @@ impl<'a, const N: usize> Tracer<'a, N> {
         light
     }
 
-    /// Adds the light scattered into the ray at a node, attenuated by `weight` (which includes the step length). Singly
-    /// scattered sunlight is added per unit scattering coefficient. `y` is scratch space.
+    /// Adds the light scattered into the ray at a node, attenuated by `weight` (which includes the step length), behind these
+    /// columns. Singly scattered sunlight is added per unit scattering coefficient. `y` is scratch space.
     #[inline(always)]
     pub(super) fn add(
         &self,
         node: &Node,
         weight: Spectrum<N>,
+        columns_m: &PerConstituent,
         y: &mut [f32],
         light: &mut Arriving<N>,
     ) {
         light.multiple_scatter = light.multiple_scatter.mul_acc(weight, self.source(node, y));
         if node.lit {
-            let sunlight = weight
-                * self
-                    .dimming
-                    .transmittance_to_sun(node.here.radius_m, node.here.mu_sun);
-            for (s, sum) in self
-                .air
-                .scatterers
-                .iter()
-                .zip(&mut light.single_scatter_without_phase)
-            {
-                *sum = sum.scale_acc(sunlight, node.densities[s.constituent] as f32);
+            let dimming = self.dimming;
+            let to_sun = dimming
+                .columns
+                .to_space_m(node.here.radius_m, node.here.mu_sun);
+            let sunlight = weight * dimming.coefficients.transmittance(&to_sun);
+            let removed = dimming.peaks.extinction(&to_sun) + dimming.peaks.extinction(columns_m);
+            let sunlight = stream_transmittances(removed).map(|stream| sunlight * stream);
+            for (s, sums) in self.air.scatterers.iter().zip(&mut light.streams) {
+                let density = node.densities[s.constituent] as f32;
+                for (sum, sunlight) in sums.iter_mut().zip(&sunlight) {
+                    *sum = sum.scale_acc(*sunlight, density);
+                }
             }
         }
     }

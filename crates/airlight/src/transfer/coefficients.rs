@@ -42,6 +42,15 @@ impl<const N: usize> Coefficients<Spectrum<N>> {
         })
     }
 
+    /// Coefficients of constituents that are transparent, above black ground.
+    pub fn none(constituents: usize) -> Self {
+        Self {
+            extinction_per_m: vec![Spectrum::ZERO; constituents],
+            scattering_per_m: vec![Spectrum::ZERO; constituents],
+            ground_albedo: Spectrum::ZERO,
+        }
+    }
+
     /// Optical depth of columns (m at density 1); extinction coefficient (1/m) of relative densities.
     #[inline(always)]
     pub fn extinction(&self, columns_m: &PerConstituent) -> Spectrum<N> {

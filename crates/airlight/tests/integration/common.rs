@@ -3,9 +3,10 @@
 use airlight::atmosphere::{Constituent, ConstituentKind, DensityProfile, presets};
 use airlight::fog::{DirectionalLight, Fog, FogLighting, FogScattering, Ground};
 use airlight::optics::PhaseFunction;
-use airlight::sky::{Sky, SkySettings, SunCoverage};
+use airlight::sky::{LineOfSight, Sky, SkySettings, SunCoverage, View};
 use airlight::spectrum::{SpectralCurve, WavelengthGrid};
-use glam::DVec3;
+use airlight::transfer::RgbPathOptics;
+use glam::{DQuat, DVec3};
 
 /// The sky of a preset in red, green and blue.
 pub fn sky(preset: &str, suns: SunCoverage) -> Sky {
@@ -15,6 +16,29 @@ pub fn sky(preset: &str, suns: SunCoverage) -> Sky {
     };
     let air = presets::preset(preset).unwrap();
     Sky::prepare(&air, &WavelengthGrid::rgb(), &settings).unwrap()
+}
+
+/// Path optics at the three wavelengths of a sky over `length_m`, along the whole line and joined from two parts.
+pub fn whole_and_joined(
+    near_view: &View,
+    eye: DVec3,
+    split_m: f64,
+    length_m: f64,
+) -> (RgbPathOptics, RgbPathOptics) {
+    let optics = |line: &LineOfSight| RgbPathOptics {
+        transmittance: line.transmittance.as_slice().try_into().unwrap(),
+        path_radiance: line.path_radiance().try_into().unwrap(),
+    };
+    let whole = optics(&near_view.along(eye, Some(length_m)));
+    let near = optics(&near_view.along(eye, Some(split_m)));
+    // The place of the split, turned so that its zenith is up.
+    let place = DVec3::Y * near_view.radius_m() + eye * split_m;
+    let turn = DQuat::from_rotation_arc(place.normalize(), DVec3::Y);
+    let sky = near_view.sky();
+    let altitude = place.length() - sky.atmosphere().planet.radius_m;
+    let far_view = sky.view(altitude, turn * near_view.sun());
+    let far = optics(&far_view.along(turn * eye, Some(length_m - split_m)));
+    (whole, near.then(far))
 }
 
 /// The wavelength of fog at one wavelength, nm.

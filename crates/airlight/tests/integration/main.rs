@@ -4,6 +4,7 @@
 //! (CONTRIBUTING.md, "Tests").
 
 mod analytic_drops;
+mod aureole;
 mod book;
 mod colour;
 mod common;

@@ -1,11 +1,10 @@
 //! Laws that every prepared sky obeys, whatever the numbers.
 
-use crate::common::sky;
+use crate::common::{sky, whole_and_joined};
 use airlight::atmosphere::{presets, reference};
 use airlight::axes::direction;
 use airlight::sky::{LineOfSight, Scattering, Sky, SkySettings, SunCoverage, TableChannels};
 use airlight::spectrum::{RgbSpace, WavelengthGrid};
-use airlight::transfer::RgbPathOptics;
 use glam::DVec3;
 
 fn relative_difference(a: &[f32], b: &[f32]) -> f32 {
@@ -15,30 +14,13 @@ fn relative_difference(a: &[f32], b: &[f32]) -> f32 {
         .fold(0.0, f32::max)
 }
 
-/// Path optics at the three wavelengths of a line of sight.
-fn optics(line: &LineOfSight) -> RgbPathOptics {
-    RgbPathOptics {
-        transmittance: line.transmittance.as_slice().try_into().unwrap(),
-        path_radiance: line.path_radiance().try_into().unwrap(),
-    }
-}
-
 #[test]
 fn a_line_of_sight_may_be_split_anywhere() {
     // Level on a ray that climbs: from the split on, the second half is seen from higher up under a turned sky.
     let sky = sky("average", SunCoverage::near(12.0, 0.0));
-    let (sun, eye) = (direction(180.0, 12.0), direction(170.0, 3.0));
-    let near_view = sky.view(100.0, sun);
+    let view = sky.view(100.0, direction(180.0, 12.0));
     for (split_m, length_m) in [(10.0, 2e3), (5e3, 40e3), (60e3, 61e3), (1e3, 2e5)] {
-        let whole = optics(&near_view.along(eye, Some(length_m)));
-        let near = optics(&near_view.along(eye, Some(split_m)));
-        // The place of the split, turned so that its zenith is up.
-        let place = DVec3::Y * near_view.radius_m() + eye * split_m;
-        let turn = glam::DQuat::from_rotation_arc(place.normalize(), DVec3::Y);
-        let altitude = place.length() - sky.atmosphere().planet.radius_m;
-        let far_view = sky.view(altitude, turn * sun);
-        let far = optics(&far_view.along(turn * eye, Some(length_m - split_m)));
-        let joined = near.then(far);
+        let (whole, joined) = whole_and_joined(&view, direction(170.0, 3.0), split_m, length_m);
         for lane in 0..3 {
             let (a, b) = (joined.transmittance[lane], whole.transmittance[lane]);
             assert!(

@@ -1,0 +1,224 @@
+//! Sunlight scattered by the residual of a phase function, the part that a solver's moments cannot represent.
+//!
+//! A solver keeps the moments `chi_l` of a phase function up to a degree and treats the fraction `f`, the first moment left
+//! out, as unscattered ([`super::delta_m`]). Sunlight scattered once is computed with the exact phase function. Of the light
+//! that this adds, with the moments `chi_l - f` of the degrees left out, the solver knows nothing: neither that the forward
+//! peak scatters it on, nor what it becomes. Scattering by small angles multiplies moments. Let `t` be the scattering optical
+//! depth of the path from the sun to the point of scattering and on to the eye. Light scattered `n` times at small angles
+//! has the moments `t^n / n! (chi_l - f)^n`. Counted equally at the points where it is scattered, all orders together have
+//! the phase function
+//!
+//! ```text
+//! G(t) = sum_l (2 l + 1) / (4 pi) (exp(t (chi_l - f)) - 1) / t P_l,    sum over the degrees left out
+//! ```
+//!
+//! in the place of that of the residual, `G(0)`. This holds as well for light scattered once by a large angle and otherwise by
+//! small ones: bows and glories are blurred. The terms of the series in `t` are those of the TMS and IMS corrections of
+//! Nakajima & Tanaka (J. Quant. Spectrosc. Radiat. Transfer 40, 51, 1988), where the second holds for a plane-parallel layer
+//! seen towards the sun.
+//!
+//! `(exp(-x t) - 1) / t` is the mean of `-x exp(-y t)` over rates `y` from 0 to `x`, and `x <= f`. Interpolated between the rates `0`,
+//! `f / 2` and `f`, the residual consists of three *streams*, with shares that depend on the angle alone, of which the forward
+//! peak removes nothing, half of its fraction, and all. A stream with its own extinction is singly scattered light.
+
+use crate::math::interpolation::{Place, lerp};
+use crate::math::parallel;
+use crate::math::simd::vectorized;
+use crate::optics::PhaseFunction;
+use crate::spectrum::Spectrum;
+use std::f64::consts::PI;
+
+/// Number of streams.
+pub const STREAMS: usize = 3;
+/// Shares of the streams, which sum to 1, in the light scattered by a constituent.
+pub type Shares<const N: usize> = [Spectrum<N>; STREAMS];
+/// Shares of a phase function without forward peak.
+pub const ONE_STREAM: [f32; STREAMS] = [1.0, 0.0, 0.0];
+
+/// Sum of streams by their shares, which can be negative.
+#[inline(always)]
+pub fn combined<const N: usize>(
+    streams: &[Spectrum<N>; STREAMS],
+    shares: &Shares<N>,
+) -> Spectrum<N> {
+    let mut sum = Spectrum::ZERO;
+    for (stream, share) in streams.iter().zip(shares) {
+        sum = sum.mul_acc(*stream, *share);
+    }
+    sum.max_scalar(0.0)
+}
+
+/// Transmittance of each stream relative to that of the air without forward peaks, through air in which the optical depth
+/// `removed` counts as unscattered.
+#[inline(always)]
+pub fn stream_transmittances<const N: usize>(removed: Spectrum<N>) -> [Spectrum<N>; STREAMS] {
+    let one_step = (removed * (-1.0 / (STREAMS - 1) as f32)).exp();
+    let mut out = [Spectrum::ONE; STREAMS];
+    for k in 1..STREAMS {
+        out[k] = out[k - 1] * one_step;
+    }
+    out
+}
+
+/// Number of moments.
+const MOMENTS: usize = 800;
+/// Number of intervals of the table in the angle.
+const INTERVALS: usize = 256;
+/// Smallest fraction of the scattering in a forward peak that matters.
+const MIN_FRACTION: f64 = 1e-3;
+
+/// The streams of a phase function at N wavelengths.
+#[derive(Clone, Debug)]
+pub struct Residual<const N: usize> {
+    /// Shares of the second and third stream at even steps of [`coordinate`].
+    shares: Vec<[Spectrum<N>; STREAMS - 1]>,
+}
+
+/// Coordinate from 0 to 1 of the scattering angle, dense near 0 and 180 degrees.
+fn coordinate(nu: f64) -> f64 {
+    let nu = nu.clamp(-1.0, 1.0);
+    // More accurate than acos near both ends.
+    let angle = ((1.0 - nu) * (1.0 + nu)).sqrt().atan2(nu);
+    (1.0 - 2.0 / PI * angle).clamp(-1.0, 1.0).acos() / PI
+}
+
+/// Cosine of the scattering angle of a coordinate.
+fn cosine(coordinate: f64) -> f64 {
+    (0.5 * PI * (1.0 - (PI * coordinate).cos())).cos()
+}
+
+/// Integrals from 0 to `s` of the Lagrange polynomials of the nodes 1 and 2 among 0, 1, 2.
+fn integrals(s: f64) -> [f64; STREAMS - 1] {
+    [s * s * (1.0 - s / 3.0), s * s * (s / 6.0 - 0.25)]
+}
+
+impl<const N: usize> Residual<N> {
+    /// The streams of a phase function whose moments up to `degree` are kept; `None` without a forward peak.
+    pub fn new(phase: &PhaseFunction, wavelengths_nm: &[f64; N], degree: usize) -> Option<Self> {
+        let chi = wavelengths_nm.map(|nm| phase.legendre_moments(MOMENTS, nm));
+        let fractions: [f64; N] =
+            std::array::from_fn(|lane| chi[lane][degree + 1].clamp(0.0, 0.99));
+        if fractions.iter().all(|&f| f < MIN_FRACTION) {
+            return None;
+        }
+        let end = integrals(2.0);
+        // The series of each share of the residual, times the phase function. Its moments end in a constant, that of a peak in
+        // the direction of the sun: without it they vanish, and so the degrees kept gain the constant.
+        let series: Vec<[[f64; N]; STREAMS - 1]> = (0..MOMENTS)
+            .map(|l| {
+                let scale = (2 * l + 1) as f64 / (4.0 * PI) * taper(l);
+                let mut out = [[0.0; N]; STREAMS - 1];
+                for lane in 0..N {
+                    let f = fractions[lane];
+                    let rate = match l > degree && f > 0.0 {
+                        true => (2.0 * (f - chi[lane][l]) / f).clamp(0.0, 2.0),
+                        false => 0.0,
+                    };
+                    let here = integrals(rate);
+                    for k in 0..STREAMS - 1 {
+                        out[k][lane] = scale * 0.5 * f * (end[k] - here[k]);
+                    }
+                }
+                out
+            })
+            .collect();
+        let shares = parallel::map(INTERVALS + 1, |k| {
+            let nu = cosine(k as f64 / INTERVALS as f64);
+            let p = phase.in_lanes(nu, wavelengths_nm);
+            let sums = vectorized(
+                #[inline(always)]
+                || sums(&series, nu),
+            );
+            sums.map(|sum| Spectrum(sum.map(|value| value as f32)) / p)
+        });
+        Some(Self { shares })
+    }
+
+    /// Shares at the cosine `nu` of the scattering angle.
+    pub fn shares(&self, nu: f64) -> Shares<N> {
+        let Place { below, fraction } = Place::evenly(coordinate(nu), INTERVALS + 1);
+        let (a, b) = (&self.shares[below], &self.shares[below + 1]);
+        let [half, all] = [0, 1].map(|k| lerp(a[k], b[k], fraction as f32));
+        [Spectrum::ONE - half - all, half, all]
+    }
+}
+
+/// Sums of series of Legendre polynomials at `nu`.
+#[inline(always)]
+fn sums<const N: usize>(series: &[[[f64; N]; STREAMS - 1]], nu: f64) -> [[f64; N]; STREAMS - 1] {
+    let mut sums = [[0.0; N]; STREAMS - 1];
+    let (mut before, mut now) = (0.0, 1.0);
+    for (l, terms) in series.iter().enumerate() {
+        for (sums, terms) in sums.iter_mut().zip(terms) {
+            for lane in 0..N {
+                sums[lane] += terms[lane] * now;
+            }
+        }
+        let l = l as f64;
+        (before, now) = (now, ((2.0 * l + 1.0) * nu * now - l * before) / (l + 1.0));
+    }
+    sums
+}
+
+/// Factor of the moments of degree `l`, which ends the series smoothly.
+fn taper(l: usize) -> f64 {
+    let x = l as f64 / MOMENTS as f64;
+    (1.0 - x.powi(4)).powi(2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::legendre::legendre_series;
+
+    const DEGREE: usize = 10;
+
+    /// The streams of a phase function whose series converges, against the series of all orders.
+    #[test]
+    fn streams_hold_all_orders_of_scattering_at_small_angles() {
+        let g: f64 = 0.93;
+        let phase = PhaseFunction::HenyeyGreenstein { g };
+        let residual = Residual::<4>::new(&phase, &[550.0; 4], DEGREE).unwrap();
+        let f = g.powi(DEGREE as i32 + 1);
+        let low = |nu: f64| legendre_series(&[1.0; DEGREE + 1], nu);
+        for depth in [0.1, 0.5, 1.0, 2.0, 4.0] {
+            // Without the constant to which the moments tend, that of a peak in the direction of the sun.
+            let all: Vec<f64> = (0..800)
+                .map(|l| match l <= DEGREE {
+                    true => 0.0,
+                    false => ((depth * (g.powi(l as i32) - f)).exp() - (-depth * f).exp()) / depth,
+                })
+                .collect();
+            let kept = (1.0 - (-depth * f).exp()) / depth;
+            for degrees in [0.5f64, 2.0, 5.0, 10.0, 30.0] {
+                let nu = degrees.to_radians().cos();
+                let p = phase.evaluate(nu, 550.0);
+                let chi: Vec<f64> = (0..=DEGREE).map(|l| g.powi(l as i32)).collect();
+                let first = p - legendre_series(&chi, nu) + f * low(nu);
+                let exact = 1.0 + (legendre_series(&all, nu) + kept * low(nu) - first) / p;
+                let streams = stream_transmittances(Spectrum::<4>::splat((depth * f) as f32));
+                let got = f64::from(combined(&streams, &residual.shares(nu))[0]);
+                assert!(
+                    (got - exact).abs() < 0.01,
+                    "{depth} {degrees}: {got} {exact}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn shares_sum_to_one_and_smooth_phase_functions_have_none() {
+        for phase in [
+            PhaseFunction::Isotropic,
+            PhaseFunction::HenyeyGreenstein { g: 0.4 },
+        ] {
+            assert!(Residual::<4>::new(&phase, &[550.0; 4], DEGREE).is_none());
+        }
+        let phase = PhaseFunction::HenyeyGreenstein { g: 0.8 };
+        let residual = Residual::<4>::new(&phase, &[550.0; 4], DEGREE).unwrap();
+        for nu in [-1.0, -0.3, 0.0, 0.9, 1.0] {
+            let [a, b, c] = residual.shares(nu);
+            assert!(((a + b + c)[0] - 1.0).abs() < 1e-5, "{nu}");
+        }
+    }
+}
