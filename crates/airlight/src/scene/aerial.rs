@@ -9,6 +9,7 @@ use crate::sky::View;
 use crate::spectrum::Spectrum;
 use crate::transfer::PathOptics;
 use glam::DVec3;
+use std::sync::Arc;
 
 /// Number of rows from the horizon to the zenith, and to the nadir.
 pub(super) const ROWS: [usize; 2] = [40, 32];
@@ -35,8 +36,8 @@ pub struct AerialPerspective<const N: usize> {
     pub(super) eye: Eye,
     pub(super) above: Half,
     pub(super) below: Half,
-    /// Phase function of each peaked scatterer, at even steps of the sine of half the scattering angle.
-    pub(super) phases: Vec<Vec<f32>>,
+    /// Phase functions of peaked scatterers.
+    pub(super) peaked: Arc<Peaked>,
 }
 
 debug_fields! { AerialPerspective<const N: usize> { sun, eye } }
@@ -141,21 +142,18 @@ impl<const N: usize> AerialPerspective<N> {
     #[inline(always)]
     fn source(&self, half: &Half, place: &Place, half_sine: f64) -> Spectrum<N> {
         let width = N.next_multiple_of(STEP);
-        let parts = 1 + self.phases.len();
+        let parts = 1 + self.peaked.parts.len();
         // Cells that fit into registers, for the usual numbers of lanes and peaked scatterers.
         match width * parts {
             4 => self.phased(&half.cell::<4>(place, 0, 4), half_sine),
-            8 => self.phased(&half.cell::<8>(place, 0, 8), half_sine),
             16 => self.phased(&half.cell::<16>(place, 0, 16), half_sine),
+            28 => self.phased(&half.cell::<28>(place, 0, 28), half_sine),
             32 => self.phased(&half.cell::<32>(place, 0, 32), half_sine),
             wide => {
                 let mut lanes = Spectrum::ZERO;
-                for part in 0..parts {
-                    let phase = self.phase(part, half_sine);
-                    for first in (0..N).step_by(STEP) {
-                        let values = half.cell::<STEP>(place, part * width + first, wide);
-                        put(&mut lanes, first, &values, phase);
-                    }
+                for first in (0..wide).step_by(STEP) {
+                    let values = half.cell::<STEP>(place, first, wide);
+                    self.add(&mut lanes, first, &values, half_sine);
                 }
                 lanes
             }
@@ -166,17 +164,24 @@ impl<const N: usize> AerialPerspective<N> {
     #[inline(always)]
     fn phased(&self, cell: &[f32], half_sine: f64) -> Spectrum<N> {
         let mut lanes = Spectrum::ZERO;
-        for (part, values) in cell.chunks_exact(N.next_multiple_of(STEP)).enumerate() {
-            put(&mut lanes, 0, values, self.phase(part, half_sine));
-        }
+        self.add(&mut lanes, 0, cell, half_sine);
         lanes
     }
 
+    /// Adds values of a cell from the index `first` on to their lanes.
     #[inline(always)]
-    fn phase(&self, part: usize, half_sine: f64) -> f32 {
-        match part {
-            0 => 1.0,
-            _ => Peaked::sampled(&self.phases[part - 1], half_sine),
+    fn add(&self, lanes: &mut Spectrum<N>, first: usize, values: &[f32], half_sine: f64) {
+        let width = N.next_multiple_of(STEP);
+        let factors = self.peaked.factors(half_sine);
+        for (index, value) in (first..).zip(values) {
+            let (part, lane) = (index / width, index % width);
+            if lane < N {
+                let factor = match part {
+                    0 => 1.0,
+                    _ => factors.get((part - 1) * N + lane),
+                };
+                lanes[lane] += factor * value;
+            }
         }
     }
 }

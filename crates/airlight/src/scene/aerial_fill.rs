@@ -34,7 +34,12 @@ fn tabulated<const N: usize>(
     converter: &Converter<N>,
     limit_m: f64,
 ) -> AerialPerspective<N> {
-    let peaked = Peaked::of(view);
+    let peaked = Peaked::of(view, N, |spectrum| {
+        converter
+            .radiance(spectrum)
+            .map(|value| value as f32)
+            .to_vec()
+    });
     let (ground_radius_m, top_radius_m) = view.bounds_m();
     let radius_m = view.radius_m();
     let horizon_elevation = -(ground_radius_m / radius_m).min(1.0).acos();
@@ -89,7 +94,7 @@ fn tabulated<const N: usize>(
         eye,
         above: half(false),
         below: half(true),
-        phases: peaked.phases,
+        peaked: peaked.into(),
     }
 }
 
@@ -116,7 +121,8 @@ fn row_of<const N: usize>(
         let cos_azimuth = 2.0 * azimuth as f64 / (AZIMUTHS - 1) as f64 - 1.0;
         let sin_azimuth = (1.0 - cos_azimuth * cos_azimuth).sqrt();
         let direction = DVec3::Y * sin + (sun_azimuth * cos_azimuth + across * sin_azimuth) * cos;
-        let stops = view.samples_along_ray(direction, &stops_m, peaked, &converter.used());
+        let stops = view.samples_along_ray(direction, &stops_m, &peaked.parts, &converter.used());
+        let phases = peaked.phases(0.5 * direction.distance(view.sun()));
         for (stop, stop_m) in stops.iter().zip(&stops_m) {
             let opacity = converter.opacity(&stop.depth).map(|a| a.min(1.0 - OPAQUE));
             if azimuth == 0 {
@@ -130,10 +136,19 @@ fn row_of<const N: usize>(
                 };
                 padded(&mut extinction, opacity.iter().map(mean));
             }
-            for part in &stop.path {
+            for (index, part) in stop.path.iter().enumerate() {
                 let path = converter.radiance(part);
-                let ratio = |(s, a): (&f64, &f64)| if *a == 0.0 { 0.0 } else { (s / a) as f32 };
-                padded(&mut source, path.iter().zip(&opacity).map(ratio));
+                let source_of = |lane: usize| {
+                    let phase = match index.checked_sub(1).map(|part| peaked.parts[part]) {
+                        None => 1.0,
+                        Some(part) => f64::from(phases.get(part.peaked * N + lane)),
+                    };
+                    match opacity[lane] == 0.0 {
+                        true => 0.0,
+                        false => (path[lane] / (phase * opacity[lane])) as f32,
+                    }
+                };
+                padded(&mut source, (0..N).map(source_of));
             }
         }
     }

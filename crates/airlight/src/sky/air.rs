@@ -6,7 +6,7 @@ use crate::spectrum::Spectrum;
 use crate::transfer::coefficients::Coefficients;
 use crate::transfer::columns::SlantColumns;
 use crate::transfer::delta_m::peak_fraction;
-use crate::transfer::residual::{ONE_STREAM, Residual, Shares};
+use crate::transfer::residual::{ONE_STREAM, Residual, STREAMS, Shares};
 use crate::transfer::shell::{Shell, divided};
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -120,11 +120,7 @@ impl<const N: usize> Air<N> {
 
     /// Shares of the streams in the light of each scatterer at the cosine `nu` of the scattering angle.
     pub fn shares(&self, nu: f64) -> Vec<Shares<N>> {
-        let one_stream = ONE_STREAM.map(Spectrum::splat);
-        self.scatterers
-            .iter()
-            .map(|s| s.residual.as_ref().map_or(one_stream, |r| r.shares(nu)))
-            .collect()
+        self.scatterers.iter().map(|s| s.shares(nu)).collect()
     }
 
     /// Irradiance on the ground from the sun alone at the zenith cosine `mu_sun`, per unit solar irradiance.
@@ -141,6 +137,19 @@ impl<const N: usize> Scatterer<N> {
     /// Phase function at the cosine `nu` of the scattering angle, 1/sr.
     pub fn phase(&self, air: &Air<N>, nu: f64) -> Spectrum<N> {
         self.phase.in_lanes(nu, &air.wavelengths_nm)
+    }
+
+    /// Shares of the streams in singly scattered light at the cosine `nu` of the scattering angle.
+    pub fn shares(&self, nu: f64) -> Shares<N> {
+        match &self.residual {
+            Some(residual) => residual.shares(nu),
+            None => ONE_STREAM.map(Spectrum::splat),
+        }
+    }
+
+    /// Number of streams of singly scattered light.
+    pub fn streams(&self) -> usize {
+        self.residual.as_ref().map_or(1, |_| STREAMS)
     }
 
     /// The phase function cut off after the degree of `legendre`, whose entries are `P_l(nu)`, 1/sr.

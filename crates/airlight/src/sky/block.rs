@@ -1,8 +1,9 @@
 //! Solutions for blocks of 4, 8 or 16 wavelengths behind a common interface.
 
-use super::air::Air;
+use super::air::{Air, Scatterer};
 use super::field::{Diffuse, FieldGrid, ground_irradiance};
 use super::orders;
+use super::peaked::{Part, Peaked};
 use super::ray_bundle::{Path, RayBundle, Scratch};
 use super::settings::{Scattering, SkyError, SkySettings};
 use super::trace::Tracer;
@@ -13,7 +14,7 @@ use crate::math::simd::vectorized;
 use crate::spectrum::Spectrum;
 use crate::transfer::columns::SlantColumns;
 use crate::transfer::ray::Ray;
-use crate::transfer::residual::combined;
+use crate::transfer::residual::{STREAMS, combined};
 use std::sync::Arc;
 
 /// Light along a view ray at the wavelengths of a block, per unit solar irradiance.
@@ -31,8 +32,18 @@ pub struct BlockLight {
 pub struct SampleLight {
     /// Optical depth.
     pub depth: Vec<f32>,
-    /// Path radiance per unit solar irradiance: first the smooth part, then that of each peaked constituent.
+    /// Path radiance per unit solar irradiance: first the smooth light, then that of each part without its share.
     pub path: Vec<Vec<f32>>,
+}
+
+/// Scattering by a constituent at an angle, in the lanes of a block.
+pub struct Scattered {
+    /// Scattering coefficient at density 1, 1/m.
+    pub coefficient: Vec<f32>,
+    /// Phase function, 1/sr.
+    pub phase: Vec<f32>,
+    /// Share of each stream.
+    pub shares: [Vec<f32>; STREAMS],
 }
 
 /// Weights that sum the lanes of a block into the channels of a table.
@@ -50,28 +61,25 @@ pub trait Block: Send + Sync {
     /// Light along a ray, over at most `limit_m`.
     fn trace(&self, ray: &Ray, limit_m: f64) -> BlockLight;
 
-    /// Light from the eye to each of the increasing distances `samples_m`. Light singly scattered by the `peaked`
-    /// constituents is returned without the phase function, whose value for this ray is the second entry of each pair.
-    fn samples_along_ray(
-        &self,
-        ray: &Ray,
-        samples_m: &[f64],
-        peaked: &[(usize, f32)],
-    ) -> Vec<SampleLight>;
+    /// Light from the eye to each of the increasing distances `samples_m`.
+    fn samples_along_ray(&self, ray: &Ray, samples_m: &[f64], parts: &[Part]) -> Vec<SampleLight>;
 
     /// Transmittance from a point to space along `mu`; 0 if the ray hits the planet.
     fn transmittance_to_space(&self, radius_m: f64, mu: f64) -> Vec<f32>;
 
-    /// Phase function of a constituent at the cosine `nu`, averaged over the lanes, 1/sr.
-    fn peaked_phase(&self, constituent: usize, nu: f64) -> f64;
+    /// Number of streams of the light that a constituent scatters once.
+    fn streams(&self, constituent: usize) -> usize;
 
-    /// Adds the light along each ray of `rows` to `out`. Each ray has `width` values: the smooth light in each channel, then for
-    /// each of the `peaked` constituents its singly scattered light in each channel, without the row's phase function.
+    /// Scattering by a constituent at the cosine `nu` of the angle.
+    fn scattered(&self, constituent: usize, nu: f64) -> Scattered;
+
+    /// Adds the light along each ray of `rows` to `out`. Each ray has `width` values: the smooth light in each channel, then each of
+    /// the parts in each channel, divided by the mean phase function.
     fn fill(
         &self,
         rows: &[TableRow],
         matrix: &ChannelMatrix,
-        peaked: &[usize],
+        peaked: &Peaked,
         width: usize,
         out: &mut [f32],
     );
@@ -82,9 +90,6 @@ pub struct TableRow {
     /// Radius of the eye, m, and cosine of the zenith angle.
     pub start: (f64, f64),
     pub bundle: RayBundle,
-    /// Phase function of each peaked constituent along each ray, the same for all blocks, by which the tabulated light is
-    /// divided and each pixel multiplied.
-    pub phases: Vec<Vec<f32>>,
 }
 
 /// Solves for all `wavelengths_nm` in blocks.
@@ -175,6 +180,17 @@ impl<const N: usize> Solved<N> {
         Tracer::new(&self.air, self.diffuse.as_ref())
     }
 
+    /// The air that attenuates light on its way: see `trace`.
+    fn dimming(&self) -> &Air<N> {
+        self.diffuse.as_ref().map_or(&self.air, |d| &d.air)
+    }
+
+    /// A constituent that scatters, in the air without forward peaks.
+    fn scatterer(&self, constituent: usize) -> Option<&Scatterer<N>> {
+        let mut scatterers = self.dimming().scatterers.iter();
+        scatterers.find(|s| s.constituent == constituent)
+    }
+
     fn used(&self, spectrum: &Spectrum<N>) -> Vec<f32> {
         spectrum.0[..self.lanes].to_vec()
     }
@@ -196,12 +212,7 @@ impl<const N: usize> Block for Solved<N> {
         }
     }
 
-    fn samples_along_ray(
-        &self,
-        ray: &Ray,
-        samples_m: &[f64],
-        peaked: &[(usize, f32)],
-    ) -> Vec<SampleLight> {
+    fn samples_along_ray(&self, ray: &Ray, samples_m: &[f64], parts: &[Part]) -> Vec<SampleLight> {
         let samples = vectorized(
             #[inline(always)]
             || self.tracer().samples_along_ray(ray, samples_m),
@@ -209,23 +220,25 @@ impl<const N: usize> Block for Solved<N> {
         samples
             .iter()
             .map(|sample| {
-                let mut parts = vec![sample.multiple_scatter; 1 + peaked.len()];
-                parts[1..].fill(Spectrum::ZERO);
-                for (s, single_scatter_without_phase) in self
-                    .air
-                    .scatterers
-                    .iter()
-                    .zip(&sample.single_scatter_without_phase)
-                {
-                    let phased = *single_scatter_without_phase * s.phase(&self.air, ray.nu);
-                    match peaked.iter().position(|&(c, _)| c == s.constituent) {
-                        None => parts[0] += phased,
-                        Some(place) => parts[1 + place] = phased / peaked[place].1,
+                let mut path = vec![Spectrum::ZERO; 1 + parts.len()];
+                path[0] = sample.multiple_scatter;
+                let scatterers = self.dimming().scatterers.iter();
+                for (s, streams) in scatterers.zip(&sample.streams) {
+                    let phase = s.phase(&self.air, ray.nu);
+                    let mut peaked = false;
+                    for (part, path) in parts.iter().zip(&mut path[1..]) {
+                        if part.constituent == s.constituent {
+                            *path = streams[part.stream] * phase;
+                            peaked = true;
+                        }
+                    }
+                    if !peaked {
+                        path[0] = path[0].mul_acc(combined(streams, &s.shares(ray.nu)), phase);
                     }
                 }
                 SampleLight {
                     depth: self.used(&sample.depth),
-                    path: parts.iter().map(|part| self.used(part)).collect(),
+                    path: path.iter().map(|part| self.used(part)).collect(),
                 }
             })
             .collect()
@@ -249,20 +262,28 @@ impl<const N: usize> Block for Solved<N> {
         self.used(&self.air.transmittance_to_sun(entry.radius_m, entry.mu))
     }
 
-    fn peaked_phase(&self, constituent: usize, nu: f64) -> f64 {
-        let scatterer = self
-            .air
-            .scatterers
-            .iter()
-            .find(|s| s.constituent == constituent);
-        scatterer.map_or(0.0, |s| f64::from(self.mean(&s.phase(&self.air, nu))))
+    fn streams(&self, constituent: usize) -> usize {
+        let scatterer = self.scatterer(constituent);
+        scatterer.map_or(1, Scatterer::streams)
+    }
+
+    fn scattered(&self, constituent: usize, nu: f64) -> Scattered {
+        let (coefficient, phase, shares) = match self.scatterer(constituent) {
+            Some(s) => (s.whole_scattering, s.phase(&self.air, nu), s.shares(nu)),
+            None => (Spectrum::ZERO, Spectrum::ZERO, [Spectrum::ZERO; STREAMS]),
+        };
+        Scattered {
+            coefficient: self.used(&coefficient),
+            phase: self.used(&phase),
+            shares: shares.map(|share| self.used(&share)),
+        }
     }
 
     fn fill(
         &self,
         rows: &[TableRow],
         matrix: &ChannelMatrix,
-        peaked: &[usize],
+        peaked: &Peaked,
         width: usize,
         out: &mut [f32],
     ) {
@@ -289,10 +310,17 @@ impl<const N: usize> Block for Solved<N> {
 
 /// Light along the rays of a table row.
 struct RowLight<const N: usize> {
-    /// Singly scattered sunlight without phase function, `[scatterer][ray]`.
-    single_scatter_without_phase: Vec<Spectrum<N>>,
+    /// Singly scattered sunlight without phase function, `[scatterer][stream][ray]`.
+    streams: Vec<Spectrum<N>>,
     /// All other light.
     multiple_scatter: Vec<Spectrum<N>>,
+}
+
+impl<const N: usize> RowLight<N> {
+    #[inline(always)]
+    fn stream(&self, scatterer: usize, stream: usize, ray: usize) -> Spectrum<N> {
+        self.streams[(scatterer * STREAMS + stream) * self.multiple_scatter.len() + ray]
+    }
 }
 
 impl<const N: usize> Solved<N> {
@@ -300,36 +328,15 @@ impl<const N: usize> Solved<N> {
     fn row_light(&self, row: &TableRow) -> RowLight<N> {
         let (air, diffuse, rays) = (&self.air, self.diffuse.as_ref(), row.bundle.len());
         let mut light = RowLight {
-            single_scatter_without_phase: Vec::new(),
+            streams: Vec::new(),
             multiple_scatter: vec![Spectrum::ZERO; rays],
         };
         let grid = diffuse.map(|d| &d.field.grid);
         let degree = diffuse.map_or(0, |d| d.field.basis.degree());
-        // The air that attenuates light on its way: see `trace`.
-        let dimming = diffuse.map_or(air, |d| &d.air);
+        let dimming = self.dimming();
         let path = Path::new(dimming, grid, &Tracer::marcher(air), row.start, degree);
         if path.is_lit(air, &row.bundle) {
-            let shares = row
-                .bundle
-                .nu
-                .iter()
-                .map(|&nu| dimming.shares(nu))
-                .collect::<Vec<_>>();
-            path.accumulate_sunlight(
-                dimming,
-                &row.bundle,
-                |slot, place, streams| combined(streams, &shares[slot][place]),
-                &mut light.single_scatter_without_phase,
-            );
-            for (s, sums) in air
-                .scatterers
-                .iter()
-                .zip(light.single_scatter_without_phase.chunks_exact_mut(rays))
-            {
-                for sum in sums {
-                    *sum *= s.whole_scattering;
-                }
-            }
+            path.accumulate_sunlight::<STREAMS>(dimming, &row.bundle, &mut light.streams);
             if let Some(Diffuse { field, .. }) = diffuse {
                 let scratch = &mut Scratch::default();
                 path.accumulate_scattered(
@@ -345,18 +352,24 @@ impl<const N: usize> Solved<N> {
         } else {
             // The planet's shadow ends at a different distance on each ray.
             let mut tracer = self.tracer();
-            light
-                .single_scatter_without_phase
-                .resize(air.scatterers.len() * rays, Spectrum::ZERO);
+            let count = air.scatterers.len() * STREAMS * rays;
+            light.streams.resize(count, Spectrum::ZERO);
             for slot in 0..rays {
-                let ray = row.bundle.ray(row.start, slot);
-                let one = tracer.arriving(&ray);
+                let one = tracer.arriving(&row.bundle.ray(row.start, slot));
                 light.multiple_scatter[slot] = one.multiple_scatter;
-                let shares = dimming.shares(ray.nu);
-                for (place, (s, shares)) in air.scatterers.iter().zip(&shares).enumerate() {
-                    light.single_scatter_without_phase[place * rays + slot] =
-                        one.single_scatter_without_phase(place, shares) * s.whole_scattering;
+                let streams = one.streams.as_flattened().iter();
+                for (sums, stream) in light.streams.chunks_exact_mut(rays).zip(streams) {
+                    sums[slot] = *stream;
                 }
+            }
+        }
+        for (s, sums) in air
+            .scatterers
+            .iter()
+            .zip(light.streams.chunks_exact_mut(STREAMS * rays))
+        {
+            for sum in sums {
+                *sum *= s.whole_scattering;
             }
         }
         light
@@ -369,40 +382,40 @@ impl<const N: usize> Solved<N> {
         row: &TableRow,
         slot: usize,
         weights: &[Spectrum<N>],
-        peaked: &[usize],
+        peaked: &Peaked,
         cell: &mut [f32],
     ) {
         let channels = weights.len();
+        let nu = row.bundle.nu[slot];
         let mut smooth = light.multiple_scatter[slot];
-        for (place, s) in self.air.scatterers.iter().enumerate() {
-            let single_scatter_without_phase =
-                light.single_scatter_without_phase[place * light.multiple_scatter.len() + slot];
-            let phase = s.phase(&self.air, row.bundle.nu[slot]);
-            match peaked.iter().position(|&c| c == s.constituent) {
-                None => smooth = smooth.mul_acc(single_scatter_without_phase, phase),
-                Some(part) => {
-                    let value = single_scatter_without_phase * phase / row.phases[part][slot];
-                    add_channels(
-                        &mut cell[(1 + part) * channels..][..channels],
-                        weights,
-                        &value,
-                    );
+        for (place, s) in self.dimming().scatterers.iter().enumerate() {
+            let phase = s.phase(&self.air, nu);
+            let mut is_peaked = false;
+            for (index, part) in peaked.parts.iter().enumerate() {
+                if part.constituent != s.constituent {
+                    continue;
+                }
+                is_peaked = true;
+                let phases = peaked.phases((0.5 * (1.0 - nu)).max(0.0).sqrt());
+                let out = &mut cell[(1 + index) * channels..][..channels];
+                let value = light.stream(place, part.stream, slot) * phase;
+                for (channel, (out, weights)) in out.iter_mut().zip(weights).enumerate() {
+                    let mean = phases.get(part.peaked * channels + channel);
+                    *out += sum_of_lanes(weights, &value) / mean;
                 }
             }
+            if !is_peaked {
+                let streams = std::array::from_fn(|k| light.stream(place, k, slot));
+                smooth = smooth.mul_acc(combined(&streams, &s.shares(nu)), phase);
+            }
         }
-        add_channels(&mut cell[..channels], weights, &smooth);
-    }
-
-    /// Mean over the lanes in use.
-    #[inline(always)]
-    fn mean(&self, spectrum: &Spectrum<N>) -> f32 {
-        spectrum.0[..self.lanes].iter().sum::<f32>() / self.lanes as f32
+        for (out, weights) in cell.iter_mut().zip(weights) {
+            *out += sum_of_lanes(weights, &smooth);
+        }
     }
 }
 
 #[inline(always)]
-fn add_channels<const N: usize>(out: &mut [f32], weights: &[Spectrum<N>], value: &Spectrum<N>) {
-    for (out, weights) in out.iter_mut().zip(weights) {
-        *out += (0..N).map(|lane| weights[lane] * value[lane]).sum::<f32>();
-    }
+fn sum_of_lanes<const N: usize>(weights: &Spectrum<N>, values: &Spectrum<N>) -> f32 {
+    (0..N).map(|lane| weights[lane] * values[lane]).sum()
 }

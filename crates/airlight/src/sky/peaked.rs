@@ -1,23 +1,202 @@
 //! Phase functions that are applied for each pixel instead of being tabulated with the light.
+//!
+//! The light that a constituent with a peaked phase function scatters once is tabulated by stream
+//! ([`crate::transfer::residual`]): what a channel stores of it has been divided by the mean phase function of the channel, and a
+//! pixel multiplies it by that mean and by the share of the stream.
 
-use crate::math::interpolation::Place;
+use super::block::{Block, Scattered};
+use crate::math::interpolation::{Place, lerp};
+use crate::math::parallel;
 
-/// Number of intervals of a sampled phase function, uniform in the sine of half the scattering angle.
-pub(super) const PHASE_SAMPLES: usize = 4096;
+/// Number of intervals of a sampled phase function.
+const SAMPLES: usize = 1024;
+
+/// Light of one stream scattered once by one constituent.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Part {
+    /// Index of the constituent.
+    pub constituent: usize,
+    /// Place of the constituent among those that are peaked.
+    pub peaked: usize,
+    /// Index of the stream.
+    pub stream: usize,
+}
 
 /// Constituents whose phase function is too peaked to be tabulated with the light.
 pub(crate) struct Peaked {
-    /// Indices of the constituents.
-    pub constituents: Vec<usize>,
-    /// Phase function of each (1/sr), uniform in the sine of half the scattering angle. The same for all blocks, because pixels
-    /// are multiplied by it: the mean over the lanes of the first block.
-    pub phases: Vec<Vec<f32>>,
+    /// The light that is tabulated apart.
+    pub parts: Vec<Part>,
+    /// Mean phase functions (1/sr): `[sample][constituent][channel]`.
+    phases: Vec<f32>,
+    /// Mean phase functions times the share of the stream (1/sr): `[sample][part][channel]`.
+    factors: Vec<f32>,
+}
+
+/// Values at an angle, between two samples.
+#[derive(Clone, Copy)]
+pub(crate) struct Between<'a> {
+    below: &'a [f32],
+    above: &'a [f32],
+    fraction: f32,
+}
+
+impl Between<'_> {
+    /// Value by index.
+    #[inline(always)]
+    pub fn get(&self, index: usize) -> f32 {
+        lerp(self.below[index], self.above[index], self.fraction)
+    }
+}
+
+/// Coordinate from 0 to 1 of the sine of half the scattering angle, dense at both ends.
+#[inline(always)]
+fn coordinate(half_sine: f64) -> f64 {
+    let half_cosine = ((1.0 - half_sine) * (1.0 + half_sine)).max(0.0).sqrt();
+    0.5 * (1.0 + half_sine.sqrt() - half_cosine.sqrt())
+}
+
+/// Inverse of [`coordinate`].
+fn half_sine_of(x: f64) -> f64 {
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        match coordinate(middle) < x {
+            true => low = middle,
+            false => high = middle,
+        }
+    }
+    0.5 * (low + high)
 }
 
 impl Peaked {
-    /// Interpolates a sampled phase function at the sine of half the scattering angle.
+    /// The phase functions of these constituents, in the channels that `convert` makes of a value at each wavelength.
+    pub fn new(
+        blocks: &[Box<dyn Block>],
+        constituents: &[usize],
+        channels: usize,
+        convert: impl Fn(&[f32]) -> Vec<f32> + Sync,
+    ) -> Self {
+        let parts: Vec<Part> = constituents
+            .iter()
+            .enumerate()
+            .flat_map(|(peaked, &constituent)| {
+                let streams = blocks.iter().map(|block| block.streams(constituent)).max();
+                (0..streams.unwrap_or(1)).map(move |stream| Part {
+                    constituent,
+                    peaked,
+                    stream,
+                })
+            })
+            .collect();
+        let samples = parallel::map(SAMPLES + 1, |sample| {
+            let half_sine = half_sine_of(sample as f64 / SAMPLES as f64);
+            let nu = 1.0 - 2.0 * half_sine * half_sine;
+            let (mut phases, mut factors) = (Vec::new(), Vec::new());
+            for (peaked, &constituent) in constituents.iter().enumerate() {
+                let scattered: Vec<Scattered> = blocks
+                    .iter()
+                    .map(|block| block.scattered(constituent, nu))
+                    .collect();
+                let all = |of: fn(&Scattered) -> &Vec<f32>| -> Vec<f32> {
+                    let lanes = scattered.iter().flat_map(|block| of(block));
+                    lanes.copied().collect()
+                };
+                let weights = all(|block| &block.coefficient);
+                let scale = convert(&weights);
+                let mean = |values: &[f32]| Means::new(&weights, &scale, values, &convert);
+                let phase = all(|block| &block.phase);
+                phases.push(mean(&phase));
+                for part in parts.iter().filter(|part| part.peaked == peaked) {
+                    let shares = scattered
+                        .iter()
+                        .flat_map(|block| &block.shares[part.stream]);
+                    let product: Vec<f32> = phase.iter().zip(shares).map(|(p, s)| p * s).collect();
+                    factors.push(mean(&product));
+                }
+            }
+            (phases, factors)
+        });
+        // A channel of saturated light has negative weights, whose mean of a phase function may be none.
+        let own: Vec<Vec<bool>> = (0..constituents.len())
+            .map(|peaked| {
+                (0..channels)
+                    .map(|channel| {
+                        samples.iter().all(|(phases, _)| {
+                            let Means { channels, all } = &phases[peaked];
+                            (0.25 * all..=4.0 * all).contains(&channels[channel])
+                        })
+                    })
+                    .collect()
+            })
+            .collect();
+        let values = |means: &Means, peaked: usize| -> Vec<f32> {
+            let channels = means.channels.iter().zip(&own[peaked]);
+            channels
+                .map(|(mean, own)| if *own { *mean } else { means.all })
+                .collect()
+        };
+        let (mut phases, mut factors) = (Vec::new(), Vec::new());
+        for (at_sample, by_part) in &samples {
+            for (peaked, means) in at_sample.iter().enumerate() {
+                phases.extend(values(means, peaked));
+            }
+            for (part, means) in parts.iter().zip(by_part) {
+                factors.extend(values(means, part.peaked));
+            }
+        }
+        Self {
+            parts,
+            phases,
+            factors,
+        }
+    }
+
+    /// Mean phase functions at the sine of half the scattering angle: `[constituent][channel]`.
     #[inline(always)]
-    pub fn sampled(phase: &[f32], half_sine: f64) -> f32 {
-        Place::evenly(half_sine, PHASE_SAMPLES + 1).value_in_f32(phase)
+    pub fn phases(&self, half_sine: f64) -> Between<'_> {
+        between(&self.phases, half_sine)
+    }
+
+    /// What pixels multiply the parts by, at the sine of half the scattering angle: `[part][channel]`.
+    #[inline(always)]
+    pub fn factors(&self, half_sine: f64) -> Between<'_> {
+        between(&self.factors, half_sine)
+    }
+}
+
+#[inline(always)]
+fn between(values: &[f32], half_sine: f64) -> Between<'_> {
+    let width = values.len() / (SAMPLES + 1);
+    let Place { below, fraction } = Place::evenly(coordinate(half_sine), SAMPLES + 1);
+    let (below, above) = values[below * width..][..2 * width].split_at(width);
+    Between {
+        below,
+        above,
+        fraction: fraction as f32,
+    }
+}
+
+/// Means of a spectrum, weighted by scattering coefficients.
+struct Means {
+    /// In each channel.
+    channels: Vec<f32>,
+    /// Over all wavelengths.
+    all: f32,
+}
+
+impl Means {
+    fn new(
+        weights: &[f32],
+        scale: &[f32],
+        spectrum: &[f32],
+        convert: &impl Fn(&[f32]) -> Vec<f32>,
+    ) -> Self {
+        let weighted: Vec<f32> = weights.iter().zip(spectrum).map(|(w, v)| w * v).collect();
+        let whole: f32 = weights.iter().sum();
+        let channels = convert(&weighted);
+        Self {
+            channels: channels.iter().zip(scale).map(|(v, s)| v / s).collect(),
+            all: weighted.iter().sum::<f32>() / whole.max(f32::MIN_POSITIVE),
+        }
     }
 }

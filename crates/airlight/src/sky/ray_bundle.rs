@@ -10,7 +10,7 @@ use super::harmonics::Harmonics;
 use crate::spectrum::Spectrum;
 use crate::transfer::march::{MAX_NODES, Marcher};
 use crate::transfer::ray::{Ray, in_shadow};
-use crate::transfer::residual::{STREAMS, stream_transmittances};
+use crate::transfer::residual::stream_transmittances;
 use crate::transfer::shell::PerConstituent;
 use std::ops::{ControlFlow, Range};
 
@@ -267,19 +267,18 @@ impl<const N: usize> Path<N> {
         })
     }
 
-    /// Singly scattered sunlight along each ray, per unit scattering coefficient and without phase functions, into `out`:
-    /// `[scatterer][ray]`. `combine(ray, scatterer, transmittances)` weights the transmittances of the streams.
+    /// The first `K` streams of singly scattered sunlight along each ray, per unit scattering coefficient and without phase
+    /// functions, into `out`: `[scatterer][stream][ray]`.
     #[inline(always)]
-    pub fn accumulate_sunlight(
+    pub fn accumulate_sunlight<const K: usize>(
         &self,
         air: &Air<N>,
         bundle: &RayBundle,
-        combine: impl Fn(usize, usize, &[Spectrum<N>; STREAMS]) -> Spectrum<N>,
         out: &mut Vec<Spectrum<N>>,
     ) {
         let shell = air.shell();
         out.clear();
-        out.resize(air.scatterers.len() * bundle.len(), Spectrum::ZERO);
+        out.resize(air.scatterers.len() * K * bundle.len(), Spectrum::ZERO);
         for node in &self.nodes {
             let columns = air.columns.at(node.radius_m);
             for slot in 0..bundle.len() {
@@ -298,9 +297,11 @@ impl<const N: usize> Path<N> {
                 let streams =
                     stream_transmittances(node.removed + air.peaks.extinction_f32(&to_sun));
                 for (place, s) in air.scatterers.iter().enumerate() {
-                    let sum = &mut out[place * bundle.len() + slot];
-                    let kept = arriving * combine(slot, place, &streams);
-                    *sum = sum.scale_acc(kept, node.densities[s.constituent] as f32);
+                    let density = node.densities[s.constituent] as f32;
+                    for (k, stream) in streams[..K].iter().enumerate() {
+                        let sum = &mut out[(place * K + k) * bundle.len() + slot];
+                        *sum = sum.scale_acc(arriving * *stream, density);
+                    }
                 }
             }
         }

@@ -18,7 +18,7 @@ use super::trace::{Arriving, Tracer};
 use crate::spectrum::Spectrum;
 use crate::transfer::march::Marcher;
 use crate::transfer::ray::Ray;
-use crate::transfer::residual::{STREAMS, Shares, combined};
+use crate::transfer::residual::STREAMS;
 use crate::transfer::shell::{MAX_CONSTITUENTS, PerConstituent};
 use std::ops::ControlFlow;
 
@@ -27,8 +27,8 @@ use std::ops::ControlFlow;
 pub struct RaySample<const N: usize> {
     /// Optical depth of the real air.
     pub depth: Spectrum<N>,
-    /// Singly scattered sunlight by scatterer, without its phase function.
-    pub single_scatter_without_phase: [Spectrum<N>; MAX_CONSTITUENTS],
+    /// Streams of singly scattered sunlight by scatterer, without its phase function.
+    pub streams: [[Spectrum<N>; STREAMS]; MAX_CONSTITUENTS],
     /// All other path radiance.
     pub multiple_scatter: Spectrum<N>,
 }
@@ -52,9 +52,8 @@ impl<const N: usize> Tracer<'_, N> {
             columns_m: [0.0; MAX_CONSTITUENTS],
             path: Arriving::NONE,
         };
-        let shares = self.dimming.shares(ray.nu);
         let Some(segment) = self.air.shell().segment(ray, f64::INFINITY) else {
-            let none = self.sample(&accumulated, &accumulated.path, &shares);
+            let none = self.sample(&accumulated, &accumulated.path);
             return vec![none; samples_m.len()];
         };
         let marcher = Marcher::new(
@@ -92,18 +91,13 @@ impl<const N: usize> Tracer<'_, N> {
             }
         }
         all.iter()
-            .map(|one| self.sample(one, &accumulated.path, &shares))
+            .map(|one| self.sample(one, &accumulated.path))
             .collect()
     }
 
     /// Path radiance `S = P T/T' + (1 - T/T') L'` and optical depth of a sample.
     #[inline(always)]
-    fn sample(
-        &self,
-        accumulated: &Accumulated<N>,
-        whole: &Arriving<N>,
-        shares: &[Shares<N>],
-    ) -> RaySample<N> {
+    fn sample(&self, accumulated: &Accumulated<N>, whole: &Arriving<N>) -> RaySample<N> {
         let removed = self.dimming.peaks.extinction(&accumulated.columns_m);
         // 1 - T/T' of each stream.
         let replaced: [_; STREAMS] = std::array::from_fn(|k| {
@@ -114,15 +108,15 @@ impl<const N: usize> Tracer<'_, N> {
             near.mul_acc(replaced[k], whole - near)
         };
         let near = &accumulated.path;
-        let mut single_scatter_without_phase = [Spectrum::ZERO; MAX_CONSTITUENTS];
+        let mut streams = [[Spectrum::ZERO; STREAMS]; MAX_CONSTITUENTS];
         for (s, scatterer) in self.air.scatterers.iter().enumerate() {
-            let streams = std::array::from_fn(|k| mix(near.streams[s][k], whole.streams[s][k], k));
-            single_scatter_without_phase[s] =
-                combined(&streams, &shares[s]) * scatterer.whole_scattering;
+            streams[s] = std::array::from_fn(|k| {
+                mix(near.streams[s][k], whole.streams[s][k], k) * scatterer.whole_scattering
+            });
         }
         RaySample {
             depth: self.air.coefficients.extinction(&accumulated.columns_m),
-            single_scatter_without_phase,
+            streams,
             multiple_scatter: mix(near.multiple_scatter, whole.multiple_scatter, 0),
         }
     }

@@ -31,7 +31,7 @@ pub(super) const ROWS_ABOVE: usize = 128;
 /// Number of rows from the horizon to the nadir.
 pub(super) const ROWS_BELOW: usize = 96;
 
-/// Widest cell that is interpolated without allocation: 16 wavelengths and three peaked scatterers.
+/// Widest cell that is interpolated without allocation: 16 wavelengths and one peaked scatterer.
 const SMALL_WIDTH: usize = 64;
 
 /// Table of a view's radiance in all directions, without the sun's disc.
@@ -46,8 +46,8 @@ pub struct SkyTable {
     pub(super) horizon_elevation: f64,
     pub(super) above: Half,
     pub(super) below: Half,
-    /// Phase function of each peaked scatterer, uniform in the sine of half the scattering angle.
-    pub(super) phases: Vec<Vec<f32>>,
+    /// Phase functions of peaked scatterers.
+    pub(super) peaked: Peaked,
 }
 
 debug_fields! { SkyTable { channels, sun, horizon_elevation } }
@@ -334,15 +334,17 @@ impl SkyTable {
     /// Applies the phase functions and sums the parts of a cell.
     #[inline(always)]
     fn combine(&self, cell: &[f32], half_sine: f64, out: &mut [f32]) {
-        out[..self.channels].copy_from_slice(&cell[..self.channels]);
-        for (phase, values) in self
-            .phases
-            .iter()
-            .zip(cell[self.channels..].chunks_exact(self.channels))
-        {
-            let phase = Peaked::sampled(phase, half_sine);
-            for (out, value) in out.iter_mut().zip(values) {
-                *out += phase * value;
+        let out = &mut out[..self.channels];
+        out.copy_from_slice(&cell[..self.channels]);
+        if self.peaked.parts.is_empty() {
+            return;
+        }
+        let factors = self.peaked.factors(half_sine);
+        for part in 0..self.peaked.parts.len() {
+            let first = part * self.channels;
+            let values = &cell[self.channels + first..][..self.channels];
+            for (channel, (out, value)) in out.iter_mut().zip(values).enumerate() {
+                *out += factors.get(first + channel) * value;
             }
         }
         if self.is_spectral {

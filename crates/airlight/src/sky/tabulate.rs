@@ -1,7 +1,7 @@
 //! Computation of a view's table.
 
 use super::block::{ChannelMatrix, TableRow};
-use super::peaked::{PHASE_SAMPLES, Peaked};
+use super::peaked::Peaked;
 use super::ray_bundle::RayBundle;
 use super::table::{AZIMUTHS, Half, ROWS_ABOVE, ROWS_BELOW, SkyTable, TableChannels};
 use super::view::View;
@@ -30,20 +30,16 @@ impl SkyTable {
             FRAC_PI_2
         };
         let matrices = channel_matrices(view, channels);
-        let peaked = Peaked::of(view);
         let channel_count = matrices[0].weights.len();
-        let width = (channel_count * (1 + peaked.constituents.len())).next_multiple_of(4);
+        let peaked = Peaked::of(view, channel_count, |spectrum| {
+            in_channels(&matrices, spectrum)
+        });
+        let width = (channel_count * (1 + peaked.parts.len())).next_multiple_of(4);
         let half = |span: f64, rows: usize| {
-            let table_rows = half_rows(view, &peaked.constituents, horizon_elevation, span, rows);
+            let table_rows = half_rows(view, horizon_elevation, span, rows);
             let mut values = vec![0.0; rows * (AZIMUTHS + 1) * width];
             for (block, matrix) in sky.blocks().iter().zip(&matrices) {
-                block.fill(
-                    &table_rows,
-                    matrix,
-                    &peaked.constituents,
-                    width,
-                    &mut values,
-                );
+                block.fill(&table_rows, matrix, &peaked, width, &mut values);
             }
             Half { span, rows, values }
         };
@@ -61,14 +57,14 @@ impl SkyTable {
             horizon_elevation,
             above: half(highest_elevation - horizon_elevation, ROWS_ABOVE),
             below: half(-FRAC_PI_2 - horizon_elevation, ROWS_BELOW),
-            phases: peaked.phases,
+            peaked,
         }
     }
 }
 
 impl Peaked {
-    /// Peaked constituents of a view's atmosphere.
-    pub fn of(view: &View) -> Self {
+    /// Peaked constituents of a view's atmosphere, in the channels that `convert` makes of a value at each wavelength.
+    pub fn of(view: &View, channels: usize, convert: impl Fn(&[f32]) -> Vec<f32> + Sync) -> Self {
         let wavelengths = view.sky().grid().wavelengths_nm();
         let scatters = |c: &Constituent| {
             wavelengths
@@ -85,28 +81,12 @@ impl Peaked {
             .filter(|(_, c)| scatters(c) && peaked(c))
             .map(|(place, _)| place)
             .collect();
-        let block = &view.sky().blocks()[0];
-        let phases = constituents
-            .iter()
-            .map(|&constituent| {
-                (0..=PHASE_SAMPLES)
-                    .map(|i| {
-                        let half_sine = i as f64 / PHASE_SAMPLES as f64;
-                        block.peaked_phase(constituent, 1.0 - 2.0 * half_sine * half_sine) as f32
-                    })
-                    .collect()
-            })
-            .collect();
-        Self {
-            constituents,
-            phases,
-        }
+        Self::new(view.sky().blocks(), &constituents, channels, convert)
     }
 }
 
 /// Rays of one half of the table.
-fn half_rows(view: &View, peaked: &[usize], horizon: f64, span: f64, rows: usize) -> Vec<TableRow> {
-    let first_block = &view.sky().blocks()[0];
+fn half_rows(view: &View, horizon: f64, span: f64, rows: usize) -> Vec<TableRow> {
     let mu_sun = view.ray(view.sun()).mu;
     let sin_sun = ((1.0 - mu_sun) * (1.0 + mu_sun)).max(0.0).sqrt();
     (0..rows)
@@ -122,18 +102,9 @@ fn half_rows(view: &View, peaked: &[usize], horizon: f64, span: f64, rows: usize
                     (mu * mu_sun + cos_elevation * sin_sun * cos_azimuth).clamp(-1.0, 1.0),
                 );
             }
-            let phase_of = |&c: &usize| {
-                bundle
-                    .nu
-                    .iter()
-                    .map(|&nu| first_block.peaked_phase(c, nu) as f32)
-                    .collect()
-            };
-            let phases = peaked.iter().map(phase_of).collect();
             TableRow {
                 start: (view.radius_m(), mu),
                 bundle,
-                phases,
             }
         })
         .collect()
@@ -188,4 +159,18 @@ fn channel_matrices(view: &View, channels: TableChannels) -> Vec<ChannelMatrix> 
             }
         })
         .collect()
+}
+
+/// Channels of a spectrum.
+fn in_channels(matrices: &[ChannelMatrix], spectrum: &[f32]) -> Vec<f32> {
+    let mut channels = vec![0.0; matrices[0].weights.len()];
+    let mut rest = spectrum;
+    for matrix in matrices {
+        let (lanes, beyond) = rest.split_at(matrix.weights[0].len());
+        rest = beyond;
+        for (channel, weights) in channels.iter_mut().zip(&matrix.weights) {
+            *channel += weights.iter().zip(lanes).map(|(w, v)| w * v).sum::<f32>();
+        }
+    }
+    channels
 }

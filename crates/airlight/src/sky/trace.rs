@@ -20,7 +20,7 @@ use super::harmonics::Harmonics;
 use crate::spectrum::Spectrum;
 use crate::transfer::march::{Marcher, Node};
 use crate::transfer::ray::Ray;
-use crate::transfer::residual::{STREAMS, Shares, combined, stream_transmittances};
+use crate::transfer::residual::{STREAMS, combined, stream_transmittances};
 use crate::transfer::shell::{MAX_CONSTITUENTS, PerConstituent};
 use std::ops::ControlFlow;
 
@@ -55,16 +55,6 @@ impl<const N: usize> Arriving<N> {
         streams: [[Spectrum::ZERO; STREAMS]; MAX_CONSTITUENTS],
         multiple_scatter: Spectrum::ZERO,
     };
-
-    /// Singly scattered sunlight of a scatterer without its phase function: the streams by their shares.
-    #[inline(always)]
-    pub fn single_scatter_without_phase(
-        &self,
-        scatterer: usize,
-        shares: &Shares<N>,
-    ) -> Spectrum<N> {
-        combined(&self.streams[scatterer], shares)
-    }
 }
 
 /// Integrates light along view rays through air lit by the sun and by a solved field.

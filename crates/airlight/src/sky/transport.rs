@@ -86,13 +86,7 @@ impl<'a, const N: usize> Transport<'a, N> {
         self.gather(
             #[inline(always)]
             |path, bundle, work| {
-                path.accumulate_sunlight(
-                    air,
-                    bundle,
-                    #[inline(always)]
-                    |_, _, [all, ..]| *all,
-                    &mut work.single_scatter_without_phase,
-                );
+                path.accumulate_sunlight::<1>(air, bundle, &mut work.single_scatter_without_phase);
                 let mut p = [0.0; Harmonics::MAX_DEGREE + 1];
                 let p = &mut p[..=self.basis.degree()];
                 for (slot, light) in work.light.iter_mut().enumerate() {

@@ -1,7 +1,7 @@
 //! View of a prepared sky from one position under one sun.
 
 use super::block::{BlockLight, SampleLight};
-use super::peaked::Peaked;
+use super::peaked::Part;
 use super::solver::Sky;
 use crate::sun::{SunDisc, SunState};
 use crate::transfer::ray::Ray;
@@ -183,26 +183,19 @@ impl View {
     }
 
     /// Light from the eye to each of the increasing distances `samples_m` along a unit vector: optical depths, one per
-    /// wavelength, and path radiance per unit solar irradiance, first the smooth part and then that of each peaked constituent
-    /// without the phase function. Wavelengths whose indices are not in `used` may be left at 0.
+    /// wavelength, and path radiance per unit solar irradiance, first the smooth light and then each part without its share.
+    /// Wavelengths whose indices are not in `used` may be left at 0.
     pub(crate) fn samples_along_ray(
         &self,
         direction: DVec3,
         samples_m: &[f64],
-        peaked: &Peaked,
+        parts: &[Part],
         used: &Range<usize>,
     ) -> Vec<SampleLight> {
         let ray = self.ray(direction);
-        let half_sine = (0.5 * (1.0 - ray.nu)).max(0.0).sqrt();
-        let phases: Vec<(usize, f32)> = peaked
-            .constituents
-            .iter()
-            .zip(&peaked.phases)
-            .map(|(&c, phase)| (c, Peaked::sampled(phase, half_sine)))
-            .collect();
         let nothing = SampleLight {
             depth: Vec::new(),
-            path: vec![Vec::new(); 1 + phases.len()],
+            path: vec![Vec::new(); 1 + parts.len()],
         };
         let mut all = vec![nothing; samples_m.len()];
         let mut first = 0;
@@ -221,7 +214,7 @@ impl View {
             }
             for (sample, more) in all
                 .iter_mut()
-                .zip(block.samples_along_ray(&ray, samples_m, &phases))
+                .zip(block.samples_along_ray(&ray, samples_m, parts))
             {
                 sample.depth.extend(more.depth);
                 for (part, more) in sample.path.iter_mut().zip(more.path) {

@@ -173,7 +173,8 @@ mod tests {
 
     const DEGREE: usize = 10;
 
-    /// The streams of a phase function whose series converges, against the series of all orders.
+    /// The streams of a phase function whose series converges, against the series of all orders: interpolation between the rates
+    /// errs by up to 1 % of singly scattered light at a depth of 1 and 3 % at 4.
     #[test]
     fn streams_hold_all_orders_of_scattering_at_small_angles() {
         let g: f64 = 0.93;
@@ -181,7 +182,13 @@ mod tests {
         let residual = Residual::<4>::new(&phase, &[550.0; 4], DEGREE).unwrap();
         let f = g.powi(DEGREE as i32 + 1);
         let low = |nu: f64| legendre_series(&[1.0; DEGREE + 1], nu);
-        for depth in [0.1, 0.5, 1.0, 2.0, 4.0] {
+        for (depth, limit) in [
+            (0.1, 0.001),
+            (0.5, 0.004),
+            (1.0, 0.01),
+            (2.0, 0.02),
+            (4.0, 0.03),
+        ] {
             // Without the constant to which the moments tend, that of a peak in the direction of the sun.
             let all: Vec<f64> = (0..800)
                 .map(|l| match l <= DEGREE {
@@ -199,7 +206,7 @@ mod tests {
                 let streams = stream_transmittances(Spectrum::<4>::splat((depth * f) as f32));
                 let got = f64::from(combined(&streams, &residual.shares(nu))[0]);
                 assert!(
-                    (got - exact).abs() < 0.01,
+                    (got - exact).abs() < limit,
                     "{depth} {degrees}: {got} {exact}"
                 );
             }
