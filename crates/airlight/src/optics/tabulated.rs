@@ -1,10 +1,11 @@
 //! Tabulated phase functions.
 
 mod matrix;
+mod moment_cache;
 mod moments;
 mod sample;
 
-use self::moments::MomentCache;
+use self::moment_cache::MomentCache;
 use super::phase_error::PhaseError;
 use crate::math::interpolation::{Place, hermite, interval_of, lerp, monotone_slopes};
 use crate::math::quadrature::FixedRule;

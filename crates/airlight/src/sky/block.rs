@@ -3,7 +3,7 @@
 use super::air::{Air, Scatterer};
 use super::field::{Diffuse, FieldGrid, ground_irradiance};
 use super::orders;
-use super::peaked::{Part, Peaked};
+use super::peaked::{Part, Peaked, Scattered};
 use super::ray_bundle::{Path, RayBundle, Scratch};
 use super::settings::{Scattering, SkyError, SkySettings};
 use super::trace::Tracer;
@@ -34,16 +34,6 @@ pub struct SampleLight {
     pub depth: Vec<f32>,
     /// Path radiance per unit solar irradiance: first the smooth light, then that of each part without its share.
     pub path: Vec<Vec<f32>>,
-}
-
-/// Scattering by a constituent at an angle, in the lanes of a block.
-pub struct Scattered {
-    /// Scattering coefficient at density 1, 1/m.
-    pub coefficient: Vec<f32>,
-    /// Phase function, 1/sr.
-    pub phase: Vec<f32>,
-    /// Share of each stream.
-    pub shares: [Vec<f32>; STREAMS],
 }
 
 /// Weights that sum the lanes of a block into the channels of a table.

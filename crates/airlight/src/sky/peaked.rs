@@ -4,9 +4,9 @@
 //! ([`crate::transfer::residual`]): what a channel stores of it has been divided by the mean phase function of the channel, and a
 //! pixel multiplies it by that mean and by the share of the stream.
 
-use super::block::{Block, Scattered};
 use crate::math::interpolation::{Place, lerp};
 use crate::math::parallel;
+use crate::transfer::residual::STREAMS;
 
 /// Number of intervals of a sampled phase function.
 const SAMPLES: usize = 1024;
@@ -30,6 +30,17 @@ pub(crate) struct Peaked {
     phases: Vec<f32>,
     /// Mean phase functions times the share of the stream (1/sr): `[sample][part][channel]`.
     factors: Vec<f32>,
+}
+
+/// Scattering by a constituent at an angle, for each wavelength.
+#[derive(Default)]
+pub struct Scattered {
+    /// Scattering coefficient at density 1, 1/m.
+    pub coefficient: Vec<f32>,
+    /// Phase function, 1/sr.
+    pub phase: Vec<f32>,
+    /// Share of each stream.
+    pub shares: [Vec<f32>; STREAMS],
 }
 
 /// Values at an angle, between two samples.
@@ -69,19 +80,19 @@ fn half_sine_of(x: f64) -> f64 {
 }
 
 impl Peaked {
-    /// The phase functions of these constituents, in the channels that `convert` makes of a value at each wavelength.
+    /// The phase functions of constituents, of which each is given with its number of streams, in the channels that `convert` makes
+    /// of a value at each wavelength. `scattered` is evaluated at a constituent and the cosine of an angle.
     pub fn new(
-        blocks: &[Box<dyn Block>],
-        constituents: &[usize],
+        constituents: &[(usize, usize)],
+        scattered: impl Fn(usize, f64) -> Scattered + Sync,
         channels: usize,
         convert: impl Fn(&[f32]) -> Vec<f32> + Sync,
     ) -> Self {
         let parts: Vec<Part> = constituents
             .iter()
             .enumerate()
-            .flat_map(|(peaked, &constituent)| {
-                let streams = blocks.iter().map(|block| block.streams(constituent)).max();
-                (0..streams.unwrap_or(1)).map(move |stream| Part {
+            .flat_map(|(peaked, &(constituent, streams))| {
+                (0..streams).map(move |stream| Part {
                     constituent,
                     peaked,
                     stream,
@@ -92,26 +103,19 @@ impl Peaked {
             let half_sine = half_sine_of(sample as f64 / SAMPLES as f64);
             let nu = 1.0 - 2.0 * half_sine * half_sine;
             let (mut phases, mut factors) = (Vec::new(), Vec::new());
-            for (peaked, &constituent) in constituents.iter().enumerate() {
-                let scattered: Vec<Scattered> = blocks
-                    .iter()
-                    .map(|block| block.scattered(constituent, nu))
-                    .collect();
-                let all = |of: fn(&Scattered) -> &Vec<f32>| -> Vec<f32> {
-                    let lanes = scattered.iter().flat_map(|block| of(block));
-                    lanes.copied().collect()
-                };
-                let weights = all(|block| &block.coefficient);
-                let scale = convert(&weights);
-                let mean = |values: &[f32]| Means::new(&weights, &scale, values, &convert);
-                let phase = all(|block| &block.phase);
-                phases.push(mean(&phase));
+            for (peaked, &(constituent, _)) in constituents.iter().enumerate() {
+                let Scattered {
+                    coefficient,
+                    phase,
+                    shares,
+                } = scattered(constituent, nu);
+                let scale = convert(&coefficient);
+                let means = |values: &[f32]| Means::new(&coefficient, &scale, values, &convert);
+                phases.push(means(&phase));
                 for part in parts.iter().filter(|part| part.peaked == peaked) {
-                    let shares = scattered
-                        .iter()
-                        .flat_map(|block| &block.shares[part.stream]);
+                    let shares = &shares[part.stream];
                     let product: Vec<f32> = phase.iter().zip(shares).map(|(p, s)| p * s).collect();
-                    factors.push(mean(&product));
+                    factors.push(means(&product));
                 }
             }
             (phases, factors)

@@ -1,7 +1,7 @@
 //! Computation of a view's table.
 
 use super::block::{ChannelMatrix, TableRow};
-use super::peaked::Peaked;
+use super::peaked::{Peaked, Scattered};
 use super::ray_bundle::RayBundle;
 use super::table::{AZIMUTHS, Half, ROWS_ABOVE, ROWS_BELOW, SkyTable, TableChannels};
 use super::view::View;
@@ -77,11 +77,28 @@ impl Peaked {
                 .any(|&nm| c.phase.asymmetry(nm).abs() > 0.1)
         };
         let all = view.sky().atmosphere().constituents.iter().enumerate();
-        let constituents: Vec<usize> = all
+        let constituents = all
             .filter(|(_, c)| scatters(c) && peaked(c))
-            .map(|(place, _)| place)
-            .collect();
-        Self::new(view.sky().blocks(), &constituents, channels, convert)
+            .map(|(place, _)| place);
+        let blocks = view.sky().blocks();
+        let with_streams = |constituent: usize| {
+            let streams = blocks.iter().map(|block| block.streams(constituent)).max();
+            (constituent, streams.unwrap_or(1))
+        };
+        let constituents: Vec<_> = constituents.map(with_streams).collect();
+        let scattered = |constituent: usize, nu: f64| {
+            let mut all = Scattered::default();
+            for block in blocks {
+                let lanes = block.scattered(constituent, nu);
+                all.coefficient.extend(lanes.coefficient);
+                all.phase.extend(lanes.phase);
+                for (all, share) in all.shares.iter_mut().zip(lanes.shares) {
+                    all.extend(share);
+                }
+            }
+            all
+        };
+        Self::new(&constituents, scattered, channels, convert)
     }
 }
 

@@ -3,28 +3,9 @@
 use super::{PANEL_POINTS, TabulatedPhase};
 use crate::math::interpolation::lerp;
 use crate::math::simd::vectorized;
-use std::sync::{Arc, OnceLock};
 
 /// Number of moments of each wavelength that are computed once.
 const CACHED: usize = 800;
-
-/// The first moments of each wavelength, computed when they are first used.
-#[derive(Clone, Debug)]
-pub(super) struct MomentCache(Arc<[OnceLock<Vec<f64>>]>);
-
-impl MomentCache {
-    /// An empty cache.
-    pub(super) fn new(wavelengths: usize) -> Self {
-        Self((0..wavelengths).map(|_| OnceLock::new()).collect())
-    }
-}
-
-/// Tables are equal whether or not their moments have been computed.
-impl PartialEq for MomentCache {
-    fn eq(&self, _: &Self) -> bool {
-        true
-    }
-}
 
 impl TabulatedPhase {
     /// Legendre moments, see [`crate::optics::PhaseFunction::legendre_moments`].
@@ -43,7 +24,7 @@ impl TabulatedPhase {
         if count > CACHED {
             return self.moments_of_row(row, count);
         }
-        let cached = self.moments.0[row].get_or_init(|| self.moments_of_row(row, CACHED));
+        let cached = self.moments.get(row, || self.moments_of_row(row, CACHED));
         cached[..count].to_vec()
     }
 
