@@ -1,11 +1,11 @@
 //! Tabulated phase functions.
 
+mod integrals;
 mod matrix;
-mod moment_cache;
 mod moments;
 mod sample;
 
-use self::moment_cache::MomentCache;
+use self::integrals::Integrals;
 use super::phase_error::PhaseError;
 use crate::math::interpolation::{Place, hermite, interval_of, lerp, monotone_slopes};
 use crate::math::quadrature::FixedRule;
@@ -26,11 +26,9 @@ pub struct TabulatedPhase {
     /// `ln p` and its slope, with the angle varying fastest.
     log_values: Arc<[f64]>,
     slopes: Arc<[f64]>,
-    /// Fraction of the light scattered by less than each angle, with the angle varying fastest.
-    cumulative: Arc<[f64]>,
+    integrals: Arc<Integrals>,
     /// `f12`, `f33` and `f34` of spheres relative to the phase function, with the angle varying fastest, if known.
     matrix: Option<Arc<[[f32; 3]]>>,
-    moments: MomentCache,
 }
 
 /// Number of points of the Gauss-Legendre rule in each panel.
@@ -90,9 +88,8 @@ impl TabulatedPhase {
             angles_rad: angles_rad.into(),
             log_values: log_values.into(),
             slopes: slopes.into(),
-            cumulative: Arc::new([]),
+            integrals: Arc::new(Integrals::new(Vec::new(), 0)),
             matrix: None,
-            moments: MomentCache::new(wavelengths),
         };
         table.normalize();
         Ok(table)
@@ -115,7 +112,7 @@ impl TabulatedPhase {
             logs.iter_mut().for_each(|log| *log -= sum.ln());
         }
         self.log_values = log_values.into();
-        self.cumulative = cumulative.into();
+        self.integrals = Arc::new(Integrals::new(cumulative, self.wavelengths_nm.len()));
     }
 
     /// Wavelengths of the table, nm.

@@ -24,7 +24,9 @@ impl TabulatedPhase {
         if count > CACHED {
             return self.moments_of_row(row, count);
         }
-        let cached = self.moments.get(row, || self.moments_of_row(row, CACHED));
+        let cached = self
+            .integrals
+            .moments(row, || self.moments_of_row(row, CACHED));
         cached[..count].to_vec()
     }
 

@@ -25,7 +25,7 @@ impl TabulatedPhase {
 
     fn sample_row(&self, row: usize, share: f64) -> f64 {
         let count = self.angles_rad.len();
-        let running = &self.cumulative[row * count..(row + 1) * count];
+        let running = &self.integrals.cumulative[row * count..(row + 1) * count];
         let interval = interval_of(running, share);
         let target = share - running[interval];
         let whole = running[interval + 1] - running[interval];
@@ -102,8 +102,8 @@ mod tests {
                 before = mu;
                 let angle = mu.acos();
                 let interval = interval_of(table.angles_rad(), angle);
-                let within =
-                    table.cumulative[row * count + interval] + table.mass(row, interval, angle);
+                let within = table.integrals.cumulative[row * count + interval]
+                    + table.mass(row, interval, angle);
                 assert!((within - share).abs() < 1e-7, "{nm} {share}: {within}");
             }
             assert_eq!((table.sample(0.0, nm), table.sample(1.0, nm)), (1.0, -1.0));
