@@ -48,6 +48,9 @@ pub trait Block: Send + Sync {
     /// Number of wavelengths.
     fn lanes(&self) -> usize;
 
+    /// Estimated relative error of the iteration.
+    fn iteration_error(&self) -> f32;
+
     /// Light along a ray, over at most `limit_m`.
     fn trace(&self, ray: &Ray, limit_m: f64) -> BlockLight;
 
@@ -189,6 +192,10 @@ impl<const N: usize> Solved<N> {
 impl<const N: usize> Block for Solved<N> {
     fn lanes(&self) -> usize {
         self.lanes
+    }
+
+    fn iteration_error(&self) -> f32 {
+        self.diffuse.as_ref().map_or(0.0, |diffuse| diffuse.error)
     }
 
     fn trace(&self, ray: &Ray, limit_m: f64) -> BlockLight {

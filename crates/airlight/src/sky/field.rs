@@ -362,6 +362,8 @@ pub struct Diffuse<const N: usize> {
     /// The air for which the field was solved, without forward peaks. The difference between sunlight attenuated by this air
     /// and by the real air is light scattered into forward peaks, which keeps the direction of the sun.
     pub air: Air<N>,
+    /// Estimated relative error of the intensity, by which it is not yet a solution; 0 for a given number of orders.
+    pub error: f32,
 }
 
 /// Irradiance on the ground from sun and sky at the sun cosine `mu_sun`, per unit solar irradiance.

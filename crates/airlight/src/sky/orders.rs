@@ -12,6 +12,9 @@ use super::settings::{OrderSettings, SkyError};
 use super::transport::Transport;
 use crate::control::Control;
 
+/// Number of iterations in a row whose changes grow, after which the solver gives up.
+const MAX_GROWING: usize = 3;
+
 /// Solves for all light scattered or reflected at least once; `report` receives the fraction of the work done.
 ///
 /// # Errors
@@ -35,6 +38,7 @@ pub fn solve<const N: usize>(
     let transport = transport(settings.rescattered_degree, &settings.later)?;
     report(PATHS);
     let mut light = once.clone();
+    let mut error = 0.0;
     if let Some(orders) = settings.only_orders {
         let mut order = once;
         for _ in 1..orders {
@@ -43,8 +47,9 @@ pub fn solve<const N: usize>(
         }
     } else {
         let plane_parallel = transport.plane_parallel()?;
-        let (mut last, mut error, mut converged) = (f32::INFINITY, f32::INFINITY, false);
-        for _ in 0..settings.max_iterations {
+        let (mut last, mut converged, mut growing, mut iterations) = (f32::INFINITY, false, 0, 0);
+        while iterations < settings.max_iterations && growing < MAX_GROWING {
+            iterations += 1;
             let mut missing = transport.scattered(&light.field(&grid, &basis))?;
             missing.add(&once);
             missing.subtract(&light);
@@ -53,20 +58,19 @@ pub fn solve<const N: usize>(
             let ratio = if last.is_finite() { change / last } else { 1.0 };
             error = change * ratio / (1.0 - ratio.min(0.99));
             converged = error < settings.tolerance;
+            // Changes that are not even finite grow as well.
+            growing = if change < last { 0 } else { growing + 1 };
+            last = change;
             if converged {
                 break;
             }
-            last = change;
             let done = f64::from(error.ln() / settings.tolerance.ln()).clamp(0.0, 1.0);
             report(PATHS + (1.0 - PATHS) * done);
         }
         if !converged {
-            return Err(SkyError::NotConverged {
-                error,
-                iterations: settings.max_iterations,
-            });
+            return Err(SkyError::NotConverged { error, iterations });
         }
     }
     let field = light.field(&grid, &basis);
-    Ok(Diffuse { field, air })
+    Ok(Diffuse { field, air, error })
 }

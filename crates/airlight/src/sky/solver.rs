@@ -87,6 +87,16 @@ impl Sky {
         &self.0.grid
     }
 
+    /// Estimated relative error of the iteration for light scattered more than once: the largest over heights, suns and
+    /// wavelengths, below [`OrderSettings::tolerance`](super::OrderSettings::tolerance); 0 for a given number of orders. Errors
+    /// of the resolution come on top.
+    pub fn iteration_error(&self) -> f32 {
+        let blocks = self.0.blocks.iter();
+        blocks
+            .map(|block| block.iteration_error())
+            .fold(0.0, f32::max)
+    }
+
     pub(super) fn shell(&self) -> &Shell {
         &self.0.columns.shell
     }

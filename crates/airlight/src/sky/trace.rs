@@ -269,7 +269,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
     /// Light of the field scattered into the ray at a node, per metre. `y` is scratch space.
     #[inline(always)]
     fn source(&self, node: &Node, y: &mut [f32]) -> Spectrum<N> {
-        let Some(Diffuse { field, air }) = self.diffuse else {
+        let Some(Diffuse { field, air, .. }) = self.diffuse else {
             return Spectrum::ZERO;
         };
         field

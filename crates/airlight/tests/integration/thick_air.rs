@@ -129,6 +129,8 @@ fn light_that_did_not_converge_is_refused() {
         ground_albedo: 0.5,
     };
     let mut settings = SkySettings::default();
+    let solved = slab.sky(10.0, settings.clone()).unwrap();
+    assert!((0.0..settings.orders.tolerance).contains(&solved.iteration_error()));
     settings.orders.max_iterations = 2;
     // Far below what two iterations reach.
     settings.orders.tolerance = 1e-12;
