@@ -134,7 +134,9 @@ impl<const N: usize> AerialPerspective<N> {
                     }
                 }
             }
-            put(&mut lanes, first, &sum, 1.0);
+            for (lane, value) in lanes.0[first..].iter_mut().zip(&sum) {
+                *lane += value;
+            }
         }
         lanes
     }
@@ -143,46 +145,34 @@ impl<const N: usize> AerialPerspective<N> {
     fn source(&self, half: &Half, place: &Place, half_sine: f64) -> Spectrum<N> {
         let width = N.next_multiple_of(STEP);
         let parts = 1 + self.peaked.parts.len();
+        let factors = self.peaked.factors(half_sine);
+        let mut lanes = Spectrum::ZERO;
+        // Adds values of a cell from the index `first` on to their lanes, multiplied by their phase functions.
+        let mut add = |first: usize, values: &[f32]| {
+            for (index, value) in (first..).zip(values) {
+                let (part, lane) = (index / width, index % width);
+                if lane < N {
+                    let factor = match part {
+                        0 => 1.0,
+                        _ => factors.get((part - 1) * N + lane),
+                    };
+                    lanes[lane] += factor * value;
+                }
+            }
+        };
         // Cells that fit into registers, for the usual numbers of lanes and peaked scatterers.
         match width * parts {
-            4 => self.phased(&half.cell::<4>(place, 0, 4), half_sine),
-            16 => self.phased(&half.cell::<16>(place, 0, 16), half_sine),
-            28 => self.phased(&half.cell::<28>(place, 0, 28), half_sine),
-            32 => self.phased(&half.cell::<32>(place, 0, 32), half_sine),
+            4 => add(0, &half.cell::<4>(place, 0, 4)),
+            16 => add(0, &half.cell::<16>(place, 0, 16)),
+            28 => add(0, &half.cell::<28>(place, 0, 28)),
+            32 => add(0, &half.cell::<32>(place, 0, 32)),
             wide => {
-                let mut lanes = Spectrum::ZERO;
                 for first in (0..wide).step_by(STEP) {
-                    let values = half.cell::<STEP>(place, first, wide);
-                    self.add(&mut lanes, first, &values, half_sine);
+                    add(first, &half.cell::<STEP>(place, first, wide));
                 }
-                lanes
             }
         }
-    }
-
-    /// Sums the parts of a cell, multiplied by their phase functions.
-    #[inline(always)]
-    fn phased(&self, cell: &[f32], half_sine: f64) -> Spectrum<N> {
-        let mut lanes = Spectrum::ZERO;
-        self.add(&mut lanes, 0, cell, half_sine);
         lanes
-    }
-
-    /// Adds values of a cell from the index `first` on to their lanes.
-    #[inline(always)]
-    fn add(&self, lanes: &mut Spectrum<N>, first: usize, values: &[f32], half_sine: f64) {
-        let width = N.next_multiple_of(STEP);
-        let factors = self.peaked.factors(half_sine);
-        for (index, value) in (first..).zip(values) {
-            let (part, lane) = (index / width, index % width);
-            if lane < N {
-                let factor = match part {
-                    0 => 1.0,
-                    _ => factors.get((part - 1) * N + lane),
-                };
-                lanes[lane] += factor * value;
-            }
-        }
     }
 }
 
@@ -266,12 +256,4 @@ struct Place {
     row: (usize, [f32; 4]),
     azimuth: (usize, [f32; 4]),
     distance: (usize, [f32; 2]),
-}
-
-/// Adds up to [`STEP`] lanes from `first` on.
-#[inline(always)]
-fn put<const N: usize>(lanes: &mut Spectrum<N>, first: usize, values: &[f32], factor: f32) {
-    for (lane, value) in lanes.0[first..].iter_mut().zip(values) {
-        *lane += factor * value;
-    }
 }

@@ -18,7 +18,7 @@ use super::trace::{Arriving, Tracer};
 use crate::spectrum::Spectrum;
 use crate::transfer::march::Marcher;
 use crate::transfer::ray::Ray;
-use crate::transfer::residual::STREAMS;
+use crate::transfer::residual::{STREAMS, scattered_into_peaks};
 use crate::transfer::shell::{MAX_CONSTITUENTS, PerConstituent};
 use std::ops::ControlFlow;
 
@@ -99,11 +99,7 @@ impl<const N: usize> Tracer<'_, N> {
     #[inline(always)]
     fn sample(&self, accumulated: &Accumulated<N>, whole: &Arriving<N>) -> RaySample<N> {
         let removed = self.dimming.peaks.extinction(&accumulated.columns_m);
-        // 1 - T/T' of each stream.
-        let replaced: [_; STREAMS] = std::array::from_fn(|k| {
-            let fraction = 1.0 - k as f32 / (STREAMS - 1) as f32;
-            (removed * fraction).map(|tau| -(-tau).exp_m1())
-        });
+        let replaced = scattered_into_peaks(removed);
         let mix = |near: Spectrum<N>, whole: Spectrum<N>, k: usize| {
             near.mul_acc(replaced[k], whole - near)
         };

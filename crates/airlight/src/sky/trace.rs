@@ -20,7 +20,7 @@ use super::harmonics::Harmonics;
 use crate::spectrum::Spectrum;
 use crate::transfer::march::{Marcher, Node};
 use crate::transfer::ray::Ray;
-use crate::transfer::residual::{STREAMS, combined, stream_transmittances};
+use crate::transfer::residual::{STREAMS, combined, scattered_into_peaks, stream_transmittances};
 use crate::transfer::shell::{MAX_CONSTITUENTS, PerConstituent};
 use std::ops::ControlFlow;
 
@@ -159,16 +159,15 @@ impl<'a, const N: usize> Tracer<'a, N> {
             // T' - T, without cancellation if both are close to 1, or overflow if both are close to 0.
             let removed = dimming.peaks.extinction(&columns);
             let through = dimming.coefficients.transmittance(&columns);
-            let lost = |fraction: f32| (removed * fraction).map(|tau| -(-tau).exp_m1());
+            let lost = scattered_into_peaks(removed);
             if segment.meets_ground {
-                path = path.mul_acc(through * lost(1.0), ground);
+                path = path.mul_acc(through * lost[0], ground);
             } else {
                 let behind = self.arriving(&end);
-                path = path.mul_acc(through * lost(1.0), behind.multiple_scatter);
+                path = path.mul_acc(through * lost[0], behind.multiple_scatter);
                 let relative = stream_transmittances(removed);
-                let into_peaks: [_; STREAMS] = std::array::from_fn(|k| {
-                    through * relative[k] * lost(1.0 - k as f32 / (STREAMS - 1) as f32)
-                });
+                let into_peaks: [_; STREAMS] =
+                    std::array::from_fn(|k| through * relative[k] * lost[k]);
                 for (((s, phase), shares), streams) in air
                     .scatterers
                     .iter()

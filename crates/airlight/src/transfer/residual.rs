@@ -60,6 +60,16 @@ pub fn stream_transmittances<const N: usize>(removed: Spectrum<N>) -> [Spectrum<
     out
 }
 
+/// Fraction of the light of each stream that the forward peak scatters out of a background, on air in which the optical depth
+/// `removed` counts as unscattered: `1 - T/T'`.
+#[inline(always)]
+pub fn scattered_into_peaks<const N: usize>(removed: Spectrum<N>) -> [Spectrum<N>; STREAMS] {
+    std::array::from_fn(|k| {
+        let fraction = 1.0 - k as f32 / (STREAMS - 1) as f32;
+        (removed * fraction).map(|depth| -(-depth).exp_m1())
+    })
+}
+
 /// Number of moments.
 const MOMENTS: usize = 800;
 /// Number of intervals of the table in the angle.

@@ -131,6 +131,16 @@ impl Draw {
         }
     }
 
+    /// One layer, or up to `more` more.
+    pub fn layers(&mut self, more: usize) -> Vec<RgbLayer> {
+        (0..=self.below(more + 1))
+            .map(|_| {
+                let density = self.density();
+                self.layer(density)
+            })
+            .collect()
+    }
+
     pub fn layer(&mut self, density: DensityProfile) -> RgbLayer {
         let extinction = self.scale(1e-8, 10.0) as f32;
         let albedo = match self.below(4) {

@@ -46,12 +46,7 @@ fn reversed(ray: &RaySegment) -> RaySegment {
 
 /// Single scattering, attenuated or not: closed forms.
 pub fn single_scattering(draw: &mut Draw) -> Result<(), Failure> {
-    let layers: Vec<_> = (0..=draw.below(3))
-        .map(|_| {
-            let density = draw.density();
-            draw.layer(density)
-        })
-        .collect();
+    let layers = draw.layers(2);
     let ground = draw.ground();
     let lighting = lighting(draw);
     let scattering = draw.pick(&[FogScattering::Single, FogScattering::Undimmed]);
@@ -123,12 +118,7 @@ pub fn single_scattering(draw: &mut Draw) -> Result<(), Failure> {
 
 /// All orders of scattering, by the solver and by its tables.
 pub fn multiple_scattering(draw: &mut Draw) -> Result<(), Failure> {
-    let layers: Vec<_> = (0..=draw.below(2))
-        .map(|_| {
-            let density = draw.density();
-            draw.layer(density)
-        })
-        .collect();
+    let layers = draw.layers(1);
     let ground = draw.ground();
     let lighting = lighting(draw);
     let fog = RgbFog::new(&layers, ground, &lighting, FogScattering::Multiple)

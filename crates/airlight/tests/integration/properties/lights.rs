@@ -33,12 +33,7 @@ fn one(draw: &mut Draw) -> Light<[f32; 3]> {
 /// Light scattered from lights into rays, and their irradiance.
 pub fn lights(draw: &mut Draw) -> Result<(), Failure> {
     let lights: Vec<_> = (0..=draw.below(2)).map(|_| one(draw)).collect();
-    let layers: Vec<_> = (0..=draw.below(2))
-        .map(|_| {
-            let density = draw.density();
-            draw.layer(density)
-        })
-        .collect();
+    let layers = draw.layers(1);
     let ground = draw.ground();
     let settings = LightSettings::default();
     let set =
