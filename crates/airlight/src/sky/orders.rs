@@ -58,8 +58,13 @@ pub fn solve<const N: usize>(
             let ratio = if last.is_finite() { change / last } else { 1.0 };
             error = change * ratio / (1.0 - ratio.min(0.99));
             converged = error < settings.tolerance;
-            // Changes that are not even finite grow as well.
-            growing = if change < last { 0 } else { growing + 1 };
+            // Steady changes do not count: light that falls to a tenth in each iteration is on its way into a shadow. Changes
+            // that are not even finite grow.
+            growing = if change <= 1.01 * last {
+                0
+            } else {
+                growing + 1
+            };
             last = change;
             if converged {
                 break;
