@@ -2,7 +2,7 @@
 
 use super::fog::{ContrastArgs, FogArgs};
 use super::overlay_batch::BatchArgs;
-use super::{OverlayLightArgs, OverlaySolverArgs, ToneArgs};
+use super::{NightArgs, OverlayLightArgs, OverlaySolverArgs, ToneArgs};
 use crate::parse;
 use airlight_image::input::{DepthPacking, UnknownDepth};
 use airlight_render::overlay::{DepthFileKind, NegativeDepth, OverlayScene};
@@ -12,7 +12,7 @@ use std::path::PathBuf;
 /// Options of `airlight fog`.
 #[derive(Clone, Debug, Args)]
 #[command(allow_negative_numbers = true, after_help = EXAMPLES)]
-#[command(mut_args(of_linear_pictures))]
+#[command(mut_args(of_fog))]
 pub struct OverlayArgs {
     /// Picture: EXR, HDR or TIFF of floats (linear), PNG, JPEG or TIFF of integers (decoded to light, encoded again); for many, a folder
     /// or 'rgb/*.png'
@@ -112,15 +112,19 @@ pub struct OverlayArgs {
     #[command(flatten)]
     pub light: OverlayLightArgs,
     #[command(flatten)]
+    pub night: NightArgs,
+    #[command(flatten)]
     pub solver: OverlaySolverArgs,
     #[command(flatten)]
     pub tone: ToneArgs,
 }
 
-/// The options of [`ToneArgs`], under a heading that says which pictures they act on.
-fn of_linear_pictures(arg: clap::Arg) -> clap::Arg {
+/// The options of [`ToneArgs`] and [`NightArgs`], under headings that say when they act; without `--stars`, which fog cannot show.
+fn of_fog(arg: clap::Arg) -> clap::Arg {
+    let hidden = arg.get_id() == "stars";
     match arg.get_help_heading() {
         Some("Picture") => arg.help_heading("Display (linear light in, PNG or JPEG out)"),
+        Some("Night") => arg.help_heading("Night (with --sky-light)").hide(hidden),
         _ => arg,
     }
 }
@@ -173,6 +177,7 @@ impl OverlayArgs {
         put(&mut scene.air.contrast, self.contrast.contrast);
         self.fog.fill(&mut scene.fog);
         self.solver.fill(scene);
+        self.night.fill(&mut to.scene);
         self.light.fill(to);
     }
 }
@@ -197,7 +202,10 @@ Examples:
     airlight fog photo.png --depth depth_mm.png --depth-scale 0.001 --visibility-m 12 \\
       --light 'pixel=120,80 intensity=3,2.5,2' -o fogged.png
     airlight fog render.exr --visibility-m 400 --fog-profile height --sky-light --sun-elevation 20 -o fogged.exr
-  The same by Monte Carlo, with a noise map in a second file (slow; for small pictures):
+  Ground fog on a night of full moon:
+    airlight fog render.exr --visibility-m 400 --fog-profile height --sky-light --sun-elevation -30 --moon-elevation 40 \\
+      --moon-phase 0 -o fogged.exr
+  Ground fog by Monte Carlo, with a noise map in a second file (slow; for small pictures):
     airlight fog small.exr --visibility-m 400 --fog-profile height --sky-light --sun-elevation 20 --solver monte-carlo \\
       --paths 512 --noise-map -o fogged.exr
   Every picture of a folder, with the depth map of the same name:
@@ -215,6 +223,8 @@ Examples:
 --vary and --each take the numeric options of one number, without their units: visibility, scale-height, base-height, top,
 contrast, patch-strength, patch-size, patch-height, patch-seed, patch-time, eye-height, camera-elevation, camera-azimuth,
 camera-roll, fov, focal, depth-scale, depth-offset, far, baseline, near-plane, far-plane, disparity-offset, ambient-scale,
-sun-elevation, sun-azimuth, sun-strength, ground-albedo, ground-altitude, aod-550, haze-visibility, radiance-scale, quality, exposure,
-brighten, tone-contrast, saturation and white-balance; and lists of fog-profile, droplets and fog-scattering. --vary draws lengths, ambient-scale, radiance-scale, focal,
-haze-visibility and white-balance uniformly in the logarithm, and others uniformly; NAME=log:LOW..HIGH and NAME=uniform:LOW..HIGH override this.";
+sun-elevation, sun-azimuth, sun-strength, moon-elevation, moon-azimuth, moon-phase, solar-flux, sky-quality, star-latitude,
+ground-albedo, ground-altitude, aod-550, haze-visibility, radiance-scale, quality, exposure, brighten, tone-contrast, saturation
+and white-balance; and lists of fog-profile, droplets and fog-scattering. --vary draws lengths, ambient-scale, radiance-scale,
+focal, haze-visibility and white-balance uniformly in the logarithm, and others uniformly; NAME=log:LOW..HIGH and
+NAME=uniform:LOW..HIGH override this.";

@@ -64,7 +64,7 @@ pub struct OverlayLightArgs {
     #[arg(long, value_name = "FORM", value_parser = parse::named::<LightForm>())]
     pub light_form: Option<LightForm>,
 
-    /// Light the fog by the solved sky and its sun (--sun-elevation, or --at and --when) instead of the ambient light
+    /// Light the fog by the solved sky with its sun (--sun-elevation, or --at and --when), moon and stars instead of the ambient light
     #[arg(long)]
     pub sky_light: bool,
     /// Atmosphere of --sky-light: a name or a TOML file, as for `airlight sky` [default: average]

@@ -233,6 +233,14 @@ fn options_that_contradict_are_refused() {
             "sky-light",
         ),
         (
+            "--visibility-m 5 --moon-elevation 30 -o a.exr",
+            "--sky-quality: expected a solved sky, got ambient light; try sky-light",
+        ),
+        (
+            &format!("--visibility-m 5 {lit} --stars true -o a.exr"),
+            "--stars: expected lights that fill the fog",
+        ),
+        (
             &format!("--visibility-m 5 {lit} --solver monte-carlo --paths 5 -o a.exr"),
             "128",
         ),

@@ -62,6 +62,9 @@ pub(super) enum Domain {
     Fraction,
     Length,
     Elevation,
+    MoonPhase,
+    SolarFlux,
+    SkyQuality,
     Altitude,
     FieldOfView,
     Contrast,
@@ -87,6 +90,9 @@ impl Domain {
             Self::Fraction => (0.0..=1.0).contains(&value),
             Self::Length => value > 0.0 && value <= 1e9,
             Self::Elevation => (-90.0..=90.0).contains(&value),
+            Self::MoonPhase => (0.0..=180.0).contains(&value),
+            Self::SolarFlux => (50.0..=400.0).contains(&value),
+            Self::SkyQuality => (14.0..=23.0).contains(&value),
             Self::Altitude => (-12e3..=1e9).contains(&value),
             Self::FieldOfView => value > 0.0 && value < 180.0,
             Self::Contrast => value == 0.05 || value == 0.02,
@@ -104,6 +110,9 @@ impl Domain {
             Self::Fraction => "a number from 0 to 1",
             Self::Length => "a number of metres above 0 and at most 1e9",
             Self::Elevation => "a number of degrees from -90 to 90",
+            Self::MoonPhase => "a number of degrees from 0 (full) to 180 (new)",
+            Self::SolarFlux => "a number of solar flux units from 50 to 400",
+            Self::SkyQuality => "a number of magnitudes per square arcsecond from 14 to 23",
             Self::Altitude => "a number of metres from -12000 to 1e9",
             Self::FieldOfView => "a number of degrees above 0 and below 180",
             Self::Contrast => "0.05 or 0.02",
@@ -161,12 +170,12 @@ fn patches(scene: &mut OverlayScene) -> &mut FogPatchesSpec {
 
 use Affects::{Files, Fog, Sky};
 use Domain::{
-    Altitude, Any, Contrast, Elevation, FieldOfView, Fraction, NotNegative, PatchStrength, Quality,
-    Whole,
+    Altitude, Any, Contrast, Elevation, FieldOfView, Fraction, MoonPhase, NotNegative,
+    PatchStrength, Quality, SkyQuality, SolarFlux, Whole,
 };
 
 /// Every setting that can differ.
-pub(super) static SETTINGS: [Setting; 41] = [
+pub(super) static SETTINGS: [Setting; 47] = [
     number("visibility", "m", LENGTH, Fog, |s, v| {
         s.fog_mut().visibility_m = Some(v)
     }),
@@ -240,6 +249,24 @@ pub(super) static SETTINGS: [Setting; 41] = [
     }),
     number("sun-azimuth", "deg", even(Any), Sky, |s, v| {
         s.scene.sun.azimuth_deg = Some(v)
+    }),
+    number("moon-elevation", "deg", even(Elevation), Sky, |s, v| {
+        s.scene.night.moon_elevation_deg = Some(v)
+    }),
+    number("moon-azimuth", "deg", even(Any), Sky, |s, v| {
+        s.scene.night.moon_azimuth_deg = Some(v)
+    }),
+    number("moon-phase", "deg", even(MoonPhase), Sky, |s, v| {
+        s.scene.night.moon_phase_deg = Some(v)
+    }),
+    number("solar-flux", "", even(SolarFlux), Sky, |s, v| {
+        s.scene.night.solar_flux_sfu = Some(v)
+    }),
+    number("sky-quality", "", even(SkyQuality), Sky, |s, v| {
+        s.scene.night.sky_quality_mag = Some(v)
+    }),
+    number("star-latitude", "deg", even(Elevation), Sky, |s, v| {
+        s.scene.night.latitude_deg = Some(v)
     }),
     number("sun-strength", "", even(NotNegative), Fog, |s, v| {
         s.overlay.sun_strength = Some(v)

@@ -3,7 +3,6 @@
 use super::primaries::Primaries;
 use super::{Ambient, FogOverlay, FogSource, OverlaySpec, estimate_ambient, horizon_pixels};
 use crate::RenderError;
-use airlight::fog::FogLighting;
 use airlight::scene::RgbFoggySky;
 use airlight_image::frame::Intrinsics;
 use airlight_image::input::{DepthMap, Picture};
@@ -93,10 +92,10 @@ impl PhotometricUnit {
                 },
                 _,
             ) => {
-                let white = white_surface(&sky.fog_lighting()).map(|c| c * radiance_scale);
+                let white = sky.white_radiance().map(|c| c * radiance_scale);
                 (1.0 / f64::from(*radiance_scale), white)
             }
-            FogOverlay::Fog(FogSource::Alone(fog), _) => (stated, white_surface(&fog.lighting())),
+            FogOverlay::Fog(FogSource::Alone(fog), _) => (stated, fog.lighting().white_radiance()),
             FogOverlay::ExponentialSquared(_, colour)
             | FogOverlay::Linear(_, _, colour)
             | FogOverlay::Encoded(_, colour) => (stated, *colour),
@@ -128,7 +127,7 @@ pub(super) fn radiance_scale(
     sky: &RgbFoggySky,
     view: &View<'_>,
 ) -> Result<(f32, LightLevel), RenderError> {
-    let white = white_surface(&sky.fog_lighting());
+    let white = sky.white_radiance();
     let primaries = Primaries::of(view.picture);
     let stated = view.picture.white_luminance_cd_m2.map(|white| 1.0 / white);
     let (scale, source) = match (spec.radiance_scale, stated) {
@@ -150,15 +149,6 @@ pub(super) fn radiance_scale(
     }
     let colour = primaries.in_picture(white.map(|c| c * scale));
     Ok((scale, LightLevel { colour, source }))
-}
-
-/// Radiance of a white horizontal surface at a fog's top.
-fn white_surface(light: &FogLighting<[f32; 3]>) -> [f32; 3] {
-    let sun = light.sun.map_or([0.0; 3], |sun| {
-        let factor = sun.direction.y.max(0.0) as f32 / PI;
-        sun.irradiance.map(|c| c * factor)
-    });
-    std::array::from_fn(|i| light.ambient[i] + sun[i])
 }
 
 /// Ratio of the picture's sky near the horizon to the solved one.

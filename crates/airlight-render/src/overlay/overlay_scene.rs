@@ -12,7 +12,7 @@ use airlight::fog::{DensityProfile, FogScattering};
 use airlight::monte_carlo::{MonteCarloSettings, SunShape};
 use airlight::scene::{
     FogLayer, FogLayerSpec, FogLayers, FogPatchesSpec, FogProfile, FogSpec, Input, LightKind,
-    OutputSpec, Projection, Scene, SceneDocument, SceneError,
+    NightLights, OutputSpec, Projection, Scene, SceneDocument, SceneError,
 };
 use airlight::spectrum::WavelengthGrid;
 use airlight::{Named, UnknownName};
@@ -36,11 +36,12 @@ const OF_FOG: [Input; 5] = [
     Input::GroundAlbedo,
 ];
 /// Inputs that change the solved sky.
-const OF_SKY: [Input; 7] = [
+const OF_SKY: [Input; 8] = [
     Input::Atmosphere,
     Input::Haze,
     Input::Ozone,
     Input::SunDistance,
+    Input::Night,
     Input::Wavelengths,
     Input::Scattering,
     Input::Effort,
@@ -284,6 +285,10 @@ impl OverlayScene {
         let ground_m = scene.air.ground_altitude_m.unwrap_or(0.0);
         scene.observer.altitude_m = Some(ground_m + self.eye_height_m());
         scene.observer.eye_height_m = Some(self.eye_height_m());
+        if self.monte_carlo().is_some() {
+            // Its paths lead to the sun only.
+            scene.night.lights = Some(NightLights::Off);
+        }
         scene
     }
 
@@ -343,9 +348,7 @@ impl OverlayScene {
     /// Refuses settings that would be ignored.
     fn check_ignored(&self) -> Result<(), RenderError> {
         let refuse = |key: &str, expected: &str, got: &str, advice: &str| {
-            Err(RenderError::setting(format!(
-                "{key}: expected {expected}, got {got}; try {advice}"
-            )))
+            Err(RenderError::value(key, expected, got, advice))
         };
         let (scene, overlay, sky_light) = (&self.scene, &self.overlay, self.overlay.sky_light);
         for input in scene.set_inputs() {
@@ -392,6 +395,18 @@ impl OverlayScene {
                     "sky-light, or leaving it out",
                 );
             }
+        }
+        if scene.night.stars.is_some() {
+            let expected = "lights that fill the fog";
+            return refuse("night.stars", expected, "single stars", "leaving it out");
+        }
+        if scene.set_inputs().contains(&Input::Night) && self.monte_carlo().is_some() {
+            return refuse(
+                Input::Night.key(),
+                "solver orders",
+                "solver monte-carlo, which knows sunlight only",
+                "leaving it out, or solver orders",
+            );
         }
         if overlay.sun_strength.is_some() && (sky_light || sun.elevation_deg.is_none()) {
             let got = if sky_light { "a solved sky" } else { "no sun" };

@@ -3,7 +3,7 @@
 use crate::RenderError;
 use airlight::atmosphere::{Atmosphere, Constituent};
 use airlight::fog::FogScattering;
-use airlight::scene::{ResolvedScene, RgbFoggySky, SceneError, SunState};
+use airlight::scene::{NightLight, ResolvedScene, RgbFoggySky, SceneError, SunState};
 use airlight::sky::{Sky, SunCoverage, View};
 use airlight::spectrum::RgbSpace;
 use std::fmt;
@@ -15,6 +15,7 @@ pub struct SkyLight {
     view: View,
     observer_altitude_m: f64,
     sun: SunState,
+    night: Option<NightLight>,
     last: Mutex<Option<LitFog>>,
 }
 
@@ -26,7 +27,7 @@ struct LitFog {
 }
 
 impl SkyLight {
-    /// Solves the sky of a scene.
+    /// Solves the sky of a scene, and the lights of its night.
     ///
     /// # Errors
     /// [`RenderError::Scene`] for a sun outside the range of the ephemeris, and if the solver fails.
@@ -36,11 +37,12 @@ impl SkyLight {
         let settings = scene.solver.sky_settings(suns);
         let sky =
             Sky::prepare(&scene.atmosphere, &scene.grid, &settings).map_err(SceneError::from)?;
-        let sun = sun.state();
+        let view = sky.view(scene.observer_altitude_m, sun.state());
         Ok(Self {
-            view: sky.view(scene.observer_altitude_m, sun),
+            night: NightLight::new(scene, &view, &sun, RgbSpace::Srgb)?,
+            view,
             observer_altitude_m: scene.observer_altitude_m,
-            sun,
+            sun: sun.state(),
             last: Mutex::new(None),
         })
     }
@@ -67,7 +69,10 @@ impl SkyLight {
                 return Ok(last.sky);
             }
             Some(last) => last.sky.with_fog(layers, scattering)?,
-            None => RgbFoggySky::new(&self.view, layers, scattering, RgbSpace::Srgb)?,
+            None => match &self.night {
+                Some(night) => RgbFoggySky::at_night(&self.view, night, layers, scattering)?,
+                None => RgbFoggySky::new(&self.view, layers, scattering, RgbSpace::Srgb)?,
+            },
         };
         *self.last.lock().unwrap_or_else(PoisonError::into_inner) = Some(LitFog {
             layers: layers.to_vec(),

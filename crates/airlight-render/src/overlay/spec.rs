@@ -115,7 +115,7 @@ pub struct OverlaySpec {
     /// `None`: 3.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sun_strength: Option<f64>,
-    /// Whether the fog is lit by the solved sky and its sun instead of the picture's ambient light.
+    /// Whether the fog is lit by the solved sky with its sun, moon and stars instead of the picture's ambient light.
     pub sky_light: bool,
     /// Units of the picture in one cd/m^2 of the solved sky; `None`: from the white luminance stated in the file, otherwise matched
     /// to the picture.

@@ -1,10 +1,12 @@
 //! Fog lit by a solved sky.
 
 use super::common::{depth, layers, picture};
+use airlight::models::registry;
+use airlight::scene::Channels;
 use airlight::sky::{Sky, SkySettings, SunCoverage, TableChannels};
 use airlight::spectrum::RgbSpace;
-use airlight_image::Size;
 use airlight_image::input::Picture;
+use airlight_image::{Control, Size};
 use airlight_render::overlay::{
     ExistingAerial, LightLevelSource, OverlayImage, OverlayScene, PreparedOverlay,
 };
@@ -189,6 +191,75 @@ fn skies_at_dusk_and_at_places_light_fog_in_photographs() {
         let seen = super::common::Layers::of(&prepared.overlay(&image).unwrap());
         let [_, _, blue] = seen.rgb(20, 25);
         assert!(blue > 0.04, "{source}: {blue}");
+    }
+}
+
+/// Fog over a picture at a place and time has the light that the night sky of that place and time has in the same fog.
+#[test]
+fn moonlit_fog_matches_the_sky_of_its_place_and_time() {
+    let mut scene = OverlayScene::default();
+    scene.overlay.sky_light = true;
+    scene.overlay.radiance_scale = Some(1.0);
+    scene.scene.solver.wavelengths = Some("fast".to_owned());
+    // The night before a full moon.
+    scene.scene.sun.latitude_deg = Some(48.86);
+    scene.scene.sun.longitude_deg = Some(2.29);
+    scene.scene.sun.time = Some("2026-01-03T00:00:00Z".to_owned());
+    scene.scene.camera.azimuth_deg = Some(120.0);
+    scene.scene.observer.eye_height_m = Some(1.6);
+    scene.fog_mut().visibility_m = Some(60.0);
+    scene.fog_mut().top_m = Some(80.0);
+    scene.check().unwrap();
+    let size = (16, 12);
+    let dark = picture(size, |_, _| [0.0; 3]);
+    let far = depth(size, |_, _| f32::INFINITY);
+    let image = OverlayImage::new(&scene.overlay, dark, far).unwrap();
+    scene.overlay.layers = true;
+    let seen = layers(&scene, &image);
+
+    let sky = scene.scene.resolve().unwrap();
+    let sun = sky.sun.at_start().unwrap();
+    let night = sky.night(&sun).unwrap();
+    assert!(night.moon.unwrap().lit_fraction() > 0.99);
+    let suns = SunCoverage::near(sun.elevation_deg, sky.observer_altitude_m);
+    let model = registry::prepare(&sky, suns, Control::default()).unwrap();
+    let channels = Channels::Rgb(RgbSpace::Srgb);
+    let view = model
+        .night_view(sky.observer_altitude_m, &sun.state(), &night, channels)
+        .unwrap();
+    let camera = scene.camera(image.picture.size, 1.0).unwrap();
+    for (x, y) in [(1, 0), (8, 5), (14, 3)] {
+        let mut want = [0.0; 3];
+        view.radiance(&[camera.pixel_direction(x, y)], &mut want);
+        let got = seen.rgb(x, y);
+        // Moonlit fog: 0.2 lx over pi, of which some is reflected.
+        assert!((0.01..0.1).contains(&got[1]), "{got:?}");
+        for (got, want) in got.iter().zip(want) {
+            assert!((got / want - 1.0).abs() < 1e-3, "{x}, {y}: {got} {want}");
+        }
+    }
+    // Moonlight is most of it.
+    scene.scene.night.moon = Some(false);
+    let dark = layers(&scene, &image).rgb(8, 5);
+    assert!(dark[1] < 0.1 * seen.rgb(8, 5)[1], "{dark:?}");
+    // Monte Carlo knows sunlight only, and fog shows no stars.
+    for (set, sentence) in [
+        (
+            (|s: &mut OverlayScene| s.scene.solver.name = Some("monte-carlo".to_owned()))
+                as fn(&mut OverlayScene),
+            "night: expected solver orders",
+        ),
+        (
+            |s| s.scene.night.stars = Some(true),
+            "night.stars: expected",
+        ),
+        (|s| s.overlay.sky_light = false, "try sky-light"),
+    ] {
+        let mut wrong = scene.clone();
+        wrong.fog_mut().scattering = None;
+        set(&mut wrong);
+        let error = wrong.check().unwrap_err().to_string();
+        assert!(error.contains(sentence), "{error}");
     }
 }
 

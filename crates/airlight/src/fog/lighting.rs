@@ -6,6 +6,7 @@ use crate::atmosphere::RaySegment;
 use crate::names::named;
 use crate::spectrum::SpectralCurve;
 use glam::DVec3;
+use std::f32::consts::PI;
 
 /// Sunlight above the fog. `C` is a [`SpectralCurve`], or `[f32; 3]` for red, green and blue.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -120,6 +121,17 @@ impl<C> FogLighting<C> {
             ambient: values(&self.ambient),
             ground_albedo: values(&self.ground_albedo),
         }
+    }
+}
+
+impl FogLighting<[f32; 3]> {
+    /// Radiance of a white horizontal surface in sunlight and ambient light.
+    pub fn white_radiance(&self) -> [f32; 3] {
+        let sunlight = self.sun.map_or([0.0; 3], |sun| {
+            let factor = sun.direction.y.max(0.0) as f32 / PI;
+            sun.irradiance.map(|c| c * factor)
+        });
+        std::array::from_fn(|i| self.ambient[i] + sunlight[i])
     }
 }
 

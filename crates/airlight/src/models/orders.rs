@@ -133,11 +133,13 @@ impl PreparedModel for PreparedOrders {
         night: &NightState,
         channels: Channels,
     ) -> Result<Arc<dyn RadianceView>, SceneError> {
-        let sunlit = self.solved_view(observer_altitude_m, sun, channels)?;
-        Ok(match &self.night {
-            Some(sky) => Arc::new(sky.view(sunlit, night, channels)?),
-            None => Arc::new(sunlit),
-        })
+        match &self.night {
+            Some(lights) => {
+                let sunlit = self.sky.view(observer_altitude_m, *sun);
+                Ok(Arc::new(lights.view(sunlit, night, channels)?))
+            }
+            None => self.view(observer_altitude_m, sun, channels),
+        }
     }
 
     fn with_patches(&self, patches: FogPatches) -> Option<Arc<dyn PreparedModel>> {

@@ -2,9 +2,10 @@
 
 use super::foggy::FoggySky;
 use super::lane_channels::LaneChannels;
+use super::light::LitSky;
 use super::{Channels, FogLayers, SceneError};
 use crate::fog::{FogScattering, PatchView};
-use crate::sky::{SkyTable, View};
+use crate::sky::SkyTable;
 use crate::spectrum::{Spectrum, WavelengthGrid};
 use glam::DVec3;
 use std::sync::Arc;
@@ -27,15 +28,16 @@ enum InChannels {
 }
 
 impl FogInSky {
-    /// Layers of fog under the sky of a view; clear air for no layers.
+    /// Layers of fog under a sky; clear air for no layers.
     ///
     /// # Errors
     /// [`SceneError`] for invalid layers.
     pub fn new(
         fog: Option<&FogLayers>,
-        view: &View,
+        sky: LitSky<'_>,
         channels: Channels,
     ) -> Result<Self, SceneError> {
+        let view = sky.view;
         let ground = FoggySky::<3>::round_ground(view);
         let scattering = fog.map_or(FogScattering::Single, |fog| fog.scattering);
         let layers = |nm: &[f64]| fog.map_or(Ok(Vec::new()), |fog| fog.constituents(nm));
@@ -43,12 +45,12 @@ impl FogInSky {
             Channels::Rgb(space) => {
                 let layers = layers(WavelengthGrid::standard().wavelengths_nm())?;
                 let channels = LaneChannels::Rgb(space);
-                let sky = FoggySky::new(view, channels, &layers, ground, scattering)?;
+                let sky = FoggySky::new(sky, channels, &layers, ground, scattering)?;
                 InChannels::Rgb(Box::new(sky))
             }
             Channels::Spectral => {
                 let layers = layers(view.sky().grid().wavelengths_nm())?;
-                InChannels::Spectral(FoggySky::spectral(view, &layers, ground, scattering)?)
+                InChannels::Spectral(FoggySky::spectral(sky, &layers, ground, scattering)?)
             }
         };
         let patches = match fog {
@@ -101,7 +103,23 @@ impl FogInSky {
             InChannels::Rgb(sky) => sky.fog_transmittance(direction)[0],
             InChannels::Spectral(pieces) => pieces[0].fog_transmittance(direction)[0],
         };
-        match self.factor(direction, f64::INFINITY) {
+        self.in_patches(even, direction, f64::INFINITY)
+    }
+
+    /// Transmittance of the fog to a point at a distance, m, of the first channel.
+    pub fn transmittance_to(&self, direction: DVec3, distance_m: f64) -> f32 {
+        let even = match &self.channels {
+            InChannels::Rgb(sky) => sky.fog_transmittance_to(direction, distance_m)[0],
+            InChannels::Spectral(pieces) => {
+                pieces[0].fog_transmittance_to(direction, distance_m)[0]
+            }
+        };
+        self.in_patches(even, direction, distance_m)
+    }
+
+    /// A transmittance with the patches on its ray.
+    fn in_patches(&self, even: f32, direction: DVec3, distance_m: f64) -> f32 {
+        match self.factor(direction, distance_m) {
             Some(factor) => (Spectrum([even]).ln() * factor).exp()[0],
             None => even,
         }
@@ -129,6 +147,26 @@ impl FogInSky {
                     .zip(path_radiance.chunks_mut(PIECE));
                 for (sky, (transmittance, path_radiance)) in pieces.iter().zip(outs) {
                     optics.path(sky, transmittance, path_radiance);
+                }
+            }
+        }
+    }
+
+    /// Transmittance of the air without the fog between the eye and a point at a distance, m.
+    pub fn air_transmittance(&self, direction: DVec3, distance_m: f64, out: &mut [f32]) {
+        match &self.channels {
+            InChannels::Rgb(sky) => {
+                put(
+                    sky.aerial().optics(direction, distance_m).transmittance,
+                    out,
+                );
+            }
+            InChannels::Spectral(pieces) => {
+                for (sky, out) in pieces.iter().zip(out.chunks_mut(PIECE)) {
+                    put(
+                        sky.aerial().optics(direction, distance_m).transmittance,
+                        out,
+                    );
                 }
             }
         }
@@ -178,7 +216,7 @@ impl Ray {
         transmittance: &mut [f32],
         path_radiance: &mut [f32],
     ) {
-        let optics = sky.optics_at_density(self.direction, self.distance_m, self.factor);
+        let optics = sky.optics(self.direction, self.distance_m, self.factor);
         put(optics.transmittance, transmittance);
         put(optics.path_radiance, path_radiance);
     }

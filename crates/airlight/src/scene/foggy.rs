@@ -3,7 +3,7 @@
 use super::aerial::AerialPerspective;
 use super::error::SceneError;
 use super::lane_channels::{Converter, LaneChannels};
-use super::light::{self, TopLight};
+use super::light::{self, LitSky, TopLight};
 use super::places;
 use crate::atmosphere::{Constituent, RaySegment};
 use crate::debug::debug_fields;
@@ -31,6 +31,8 @@ pub struct FoggySky<const N: usize> {
     first: usize,
     aerial: Arc<AerialPerspective<N>>,
     top: Arc<TopLight>,
+    /// Mean radiance of the rest of the sky's light.
+    glow: Spectrum<N>,
     pub(super) fog: FogLanes<N>,
     eye_height_m: f64,
     /// Irradiance of the ground relative to that without fog.
@@ -63,18 +65,20 @@ fn top_view<const N: usize>(
 }
 
 impl<const N: usize> FoggySky<N> {
-    /// Fog under the sky of a view. Heights of `layers` and of `ground` have the same origin; the eye is as high above the
+    /// Fog under a sky. Heights of `layers` and of `ground` have the same origin; the eye is as high above the
     /// fog's ground as the view's eye above its own ground. See [`FoggySky::round_ground`].
     ///
     /// # Errors
     /// [`SceneError`] if N lanes cannot hold these channels, or for an invalid fog.
-    pub fn new(
-        view: &View,
+    pub fn new<'a>(
+        sky: impl Into<LitSky<'a>>,
         channels: LaneChannels,
         layers: &[Constituent],
         ground: Ground,
         scattering: FogScattering,
     ) -> Result<Self, SceneError> {
+        let sky = sky.into();
+        let view = sky.view;
         let table = match channels {
             LaneChannels::Rgb(space) => TableChannels::Rgb(space),
             LaneChannels::Wavelengths { .. } => TableChannels::Spectral,
@@ -86,19 +90,21 @@ impl<const N: usize> FoggySky<N> {
             top: Arc::new(TopLight::of(&top_view(view, &layers, ground)?)),
             clear: Arc::new(view.table(table)),
         };
-        Self::among(view, channels, &layers, ground, scattering, &shared)
+        Self::among(sky, channels, &layers, ground, scattering, &shared)
     }
 
     /// The same at all wavelengths of the sky's grid, in blocks of N (lanes beyond the last wavelength repeat it).
     ///
     /// # Errors
     /// [`SceneError`] for invalid layers.
-    pub fn spectral(
-        view: &View,
+    pub fn spectral<'a>(
+        sky: impl Into<LitSky<'a>>,
         layers: &[Constituent],
         ground: Ground,
         scattering: FogScattering,
     ) -> Result<Vec<Self>, SceneError> {
+        let sky = sky.into();
+        let view = sky.view;
         let mut shared = None;
         let mut pieces = Vec::new();
         for first in (0..view.sky().grid().len()).step_by(N.max(1)) {
@@ -112,29 +118,32 @@ impl<const N: usize> FoggySky<N> {
                 }),
             };
             pieces.push(Self::among(
-                view, channels, &layers, ground, scattering, shared,
+                sky, channels, &layers, ground, scattering, shared,
             )?);
         }
         Ok(pieces)
     }
 
     fn among(
-        view: &View,
+        sky: LitSky<'_>,
         channels: LaneChannels,
         layers: &[LayerLanes<N>],
         ground: Ground,
         scattering: FogScattering,
         shared: &SharedSky,
     ) -> Result<Self, SceneError> {
+        let view = sky.view;
         let converter = Converter::new(view, channels)?;
         let top = shared.top.clone();
-        let light = top.on_fog(view, &converter, scattering);
+        let glow = sky.glow_lanes(converter.used().start);
+        let light = top.on_fog(view, &converter, scattering, glow);
         let fog = FogLanes::new(layers, ground, light, scattering, converter.used().len())?;
         Ok(Self {
             clear: shared.clear.clone(),
             first: converter.used().start,
             aerial: Arc::new(AerialPerspective::new(view, channels, f64::INFINITY)?),
             top,
+            glow,
             eye_height_m: view.radius_m() - view.bounds_m().0 + ground.height_m,
             ground_share: light::share_on_ground(&fog, layers),
             fog,
@@ -160,7 +169,7 @@ impl<const N: usize> FoggySky<N> {
             true => self.top.clone(),
             false => Arc::new(TopLight::of(&above)),
         };
-        let light = top.on_fog(&self.view, &self.converter, scattering);
+        let light = top.on_fog(&self.view, &self.converter, scattering, self.glow);
         let lanes = self.converter.used().len();
         let fog = FogLanes::new(&layers, ground, light, scattering, lanes)?;
         Ok(Self {
@@ -204,24 +213,12 @@ impl<const N: usize> FoggySky<N> {
     }
 
     /// Transmittance and path radiance of fog and air between the eye and a point at `distance_m` (infinite: in space) along
-    /// the unit vector `direction`.
-    #[inline]
-    pub fn optics(&self, direction: DVec3, distance_m: f64) -> PathOptics<N> {
-        self.optics_at_density(direction, distance_m, None)
-    }
-
-    /// [`Self::optics`] in fog of another density along the ray: a factor on its optical depth
+    /// the unit vector `direction`. `factor`, if any, is that of another density of the fog along the ray on its optical depth
     /// ([`PathOptics::at_density`]).
     #[inline]
-    pub fn optics_at_density(
-        &self,
-        direction: DVec3,
-        distance_m: f64,
-        factor: Option<f32>,
-    ) -> PathOptics<N> {
+    pub fn optics(&self, direction: DVec3, distance_m: f64, factor: Option<f32>) -> PathOptics<N> {
         let air = self.aerial.optics(direction, distance_m);
-        self.over_clear_at_density(direction, distance_m, factor)
-            .then(air)
+        self.over_clear(direction, distance_m, factor).then(air)
     }
 
     /// Radiance of sky or ground along the unit vector `direction`, seen through the fog, without the sun's disc.
@@ -247,15 +244,14 @@ impl<const N: usize> FoggySky<N> {
     #[inline]
     pub fn before(&self, direction: DVec3, clear: Spectrum<N>, factor: Option<f32>) -> Spectrum<N> {
         let Some(end_m) = self.aerial.ground_distance_m(direction) else {
-            let fog = self.over_clear_at_density(direction, f64::INFINITY, factor);
+            let fog = self.over_clear(direction, f64::INFINITY, factor);
             return fog.apply(clear);
         };
         // Light of the ground in the radiance without fog, attenuated by the air.
         let air = self.aerial.optics(direction, end_m).path_radiance;
         let ground = (clear - air).max_scalar(0.0);
         let behind = clear - ground + ground * self.ground_share;
-        self.over_clear_at_density(direction, end_m, factor)
-            .apply(behind)
+        self.over_clear(direction, end_m, factor).apply(behind)
     }
 
     /// Radiance of the sun's disc in a direction, attenuated by air and fog; 0 outside the disc. Allocates; for pictures,
@@ -283,8 +279,13 @@ impl<const N: usize> FoggySky<N> {
     #[inline]
     pub fn fog_transmittance(&self, direction: DVec3) -> Spectrum<N> {
         let far = self.aerial.ground_distance_m(direction);
-        let line = self.line(direction, far.unwrap_or(f64::INFINITY));
-        self.fog.transmittance(&line)
+        self.fog_transmittance_to(direction, far.unwrap_or(f64::INFINITY))
+    }
+
+    /// Transmittance of the fog without the air, to a point at `distance_m`.
+    #[inline]
+    pub fn fog_transmittance_to(&self, direction: DVec3, distance_m: f64) -> Spectrum<N> {
+        self.fog.transmittance(&self.line(direction, distance_m))
     }
 
     /// The view ray in the coordinates of the fog, which also ends at the fog's ground.
@@ -312,14 +313,10 @@ impl<const N: usize> FoggySky<N> {
     /// `int f dT_f / (T_f - 1)`, by Gauss-Legendre quadrature. The exact second mean is over `dS_f`, which is the same if the
     /// fog's source function varies little. The first term belongs to the light attenuated by the air; the others are the
     /// path radiance returned here.
+    ///
+    /// `factor` is that of another density along the ray, if any; the means `<f>` are then those of the even fog.
     #[inline]
-    pub fn over_clear(&self, direction: DVec3, distance_m: f64) -> PathOptics<N> {
-        self.over_clear_at_density(direction, distance_m, None)
-    }
-
-    /// [`Self::over_clear`] in fog of another density along the ray, whose means `<f>` are those of the even fog.
-    #[inline]
-    pub fn over_clear_at_density(
+    pub fn over_clear(
         &self,
         direction: DVec3,
         distance_m: f64,

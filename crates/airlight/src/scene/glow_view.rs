@@ -1,11 +1,12 @@
 //! [`GlowView`]: airglow, zodiacal light, starlight and the glow of cities as seen through the air.
 
+use super::Channels;
 use super::city_glow::CityGlow;
-use super::diffuse_fog::DiffuseFog;
+use super::fog_in_sky::FogInSky;
 use super::irradiance_map::{IrradianceMap, horizontal_irradiance_of};
 use super::model::StarField;
-use super::{Channels, FogLayers, SceneError};
 use crate::axes;
+use crate::debug::debug_fields;
 use crate::math::parallel;
 use crate::math::quadrature::GaussRule;
 use crate::math::slices::accumulate;
@@ -15,7 +16,7 @@ use crate::night::{
 use crate::sky::{Sky, View};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI};
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 /// Numbers of tabulated elevations above and below the horizon, odd.
 const ABOVE: usize = 49;
@@ -121,7 +122,6 @@ fn horizon_rad(view: &View) -> f64 {
 /// average over its azimuths. The scattered part therefore has the same brightness in all azimuths; at the zenith of clear air it
 /// is a tenth of the light at 550 nm. Under an even sky over white ground, air without absorption changes radiance by at most 1 %
 /// (test `air_without_absorption_is_invisible_under_an_even_sky`), instead of not at all.
-#[derive(Debug)]
 pub(super) struct GlowView {
     view: View,
     channels: Channels,
@@ -133,25 +133,22 @@ pub(super) struct GlowView {
     direct: Vec<f32>,
     /// `[elevation][channel]`: light that the air and the ground scatter.
     scattered: Vec<f32>,
-    fog: Option<DiffuseFog>,
-    /// `[channel]`: mean radiance of the sky that lights the fog.
-    sky_radiance: Vec<f32>,
+    /// Fog in front of the light. What it scatters is part of the fog itself.
+    fog: Option<Arc<FogInSky>>,
     irradiance: OnceLock<IrradianceMap>,
 }
 
+debug_fields! { GlowView { channels, horizon_rad } }
+
 impl GlowView {
     /// Tabulates the light for the eye of `rings`.
-    ///
-    /// # Errors
-    /// [`SceneError`] for an invalid fog.
     pub fn new(
         sky: &Sky,
         rings: &RingScattering,
         glow: NightGlow,
         (city, sky_quality_mag): (Option<&CityGlow>, Option<f64>),
-        fog: Option<&FogLayers>,
         channels: Channels,
-    ) -> Result<Self, SceneError> {
+    ) -> Self {
         let view = sky.view(rings.altitude_m(), DVec3::Y);
         let horizon_rad = horizon_rad(&view);
         let count = match channels {
@@ -168,7 +165,6 @@ impl GlowView {
             direct: Vec::new(),
             scattered: Vec::new(),
             fog: None,
-            sky_radiance: vec![0.0; count],
             irradiance: OnceLock::new(),
         };
         let elevations = elevations(horizon_rad);
@@ -178,13 +174,30 @@ impl GlowView {
         if let (Some(city), Some(magnitude)) = (city, sky_quality_mag) {
             this.add_city(city, magnitude, &elevations);
         }
-        if let Some(fog) = fog {
-            let mut sky_irradiance = vec![0.0; count];
-            this.horizontal_irradiance(&mut sky_irradiance);
-            this.sky_radiance = sky_irradiance.iter().map(|e| e / PI as f32).collect();
-            this.fog = Some(DiffuseFog::new(fog, &this.view)?);
+        this
+    }
+
+    /// The same light behind fog.
+    pub fn behind(self, fog: Arc<FogInSky>) -> Self {
+        Self {
+            fog: Some(fog),
+            irradiance: OnceLock::new(),
+            ..self
         }
-        Ok(this)
+    }
+
+    /// Mean radiance of the sky in each channel: its irradiance of a horizontal surface divided by pi.
+    pub fn mean_radiance(&self) -> Vec<f32> {
+        let mut irradiance = vec![0.0; self.count];
+        self.horizontal_irradiance(&mut irradiance);
+        irradiance.iter().map(|e| e / PI as f32).collect()
+    }
+
+    /// Transmittance of the fog to the ground or to space.
+    fn through_fog(&self, direction: DVec3) -> f32 {
+        self.fog
+            .as_ref()
+            .map_or(1.0, |fog| fog.transmittance(direction))
     }
 
     /// Index of the tabulated elevation below (above the horizon) or above (below it) a direction's, and the fraction from
@@ -346,11 +359,7 @@ impl GlowView {
 
     /// Adds the light along a unit vector to the values of a direction.
     pub fn add_radiance(&self, direction: DVec3, values: &mut [f32]) {
-        let fog = self
-            .fog
-            .as_ref()
-            .map(|fog| fog.along(direction, f64::INFINITY));
-        let (through, lit) = fog.unwrap_or((1.0, 0.0));
+        let through = self.through_fog(direction);
         let elevation_rad = axes::elevation_rad(direction);
         let (cell, t) = self.place(elevation_rad);
         let meets_ground = elevation_rad < self.horizon_rad;
@@ -372,7 +381,7 @@ impl GlowView {
                     sum += *amount as f32 * (direct(cell) * (1.0 - t) + direct(cell + 1) * t);
                 }
             }
-            *value += through * sum + lit * self.sky_radiance[channel];
+            *value += through * sum;
         }
     }
 
@@ -391,29 +400,23 @@ impl GlowView {
         self.add_radiance(direction, values);
     }
 
-    /// Adds the light of air and fog between the eye and a point at a distance: the share of the light that the air scatters
-    /// along the whole ray which its opacity up to the point has in that of the whole ray. `transmittance` is that of the air and
-    /// the fog up to the point.
+    /// Adds the light of the air between the eye and a point: the share of the light that the air scatters along the whole ray
+    /// which its opacity up to the point has in that of the whole ray. `transmittance` is that of the air up to the point, `whole`
+    /// that of the whole ray.
     pub fn add_path_radiance(
         &self,
         direction: DVec3,
-        distance_m: f64,
         transmittance: &[f32],
         whole: &[f32],
         path_radiance: &mut [f32],
     ) {
         let (cell, t) = self.place(axes::elevation_rad(direction).max(self.horizon_rad));
-        let fog = self
-            .fog
-            .as_ref()
-            .map(|fog| fog.along(direction, distance_m));
-        let (through, lit) = fog.unwrap_or((1.0, 0.0));
         for (channel, value) in path_radiance.iter_mut().enumerate() {
             let scattered = |cell: usize| self.scattered[cell * self.count + channel];
             let all = scattered(cell) * (1.0 - t) + scattered(cell + 1) * t;
-            let opaque = (1.0 - transmittance[channel] / through.max(1e-6)).clamp(0.0, 1.0);
+            let opaque = (1.0 - transmittance[channel]).clamp(0.0, 1.0);
             let share = (opaque / (1.0 - whole[channel]).max(1e-6)).min(1.0);
-            *value += through * share * all + lit * self.sky_radiance[channel];
+            *value += share * all;
         }
     }
 
@@ -451,11 +454,7 @@ impl GlowView {
             .collect();
         let light = parallel::map(seen.len(), |i| {
             let (star, direction) = seen[i];
-            let fog = self
-                .fog
-                .as_ref()
-                .map_or(1.0, |fog| fog.along(direction, f64::INFINITY).0);
-            let scale = star.illuminance_lx() * f64::from(fog);
+            let scale = star.illuminance_lx() * f64::from(self.through_fog(direction));
             let transmittance = self.view.transmittance_to_space(direction);
             let arriving: Vec<f64> = black_body(grid, star.temperature_k)
                 .iter()

@@ -12,6 +12,31 @@ const ABOVE_TOP: f64 = 0.01;
 /// Largest height of the effective top, m.
 const HIGHEST_M: f64 = 100e3;
 
+/// A view of a solved sky, and the rest of the sky's light.
+#[derive(Clone, Copy)]
+pub(super) struct LitSky<'a> {
+    pub view: &'a View,
+    /// Mean radiance of the sky that does not come from the view's source, such as that of airglow, in the channels of the fog; empty
+    /// for none.
+    pub glow: &'a [f32],
+}
+
+impl<'a> From<&'a View> for LitSky<'a> {
+    fn from(view: &'a View) -> Self {
+        Self { view, glow: &[] }
+    }
+}
+
+impl LitSky<'_> {
+    /// Mean radiance of the glow in lanes, of which the first is a channel's index.
+    pub fn glow_lanes<const N: usize>(&self, first: usize) -> Spectrum<N> {
+        let Some(last) = self.glow.len().checked_sub(1) else {
+            return Spectrum::ZERO;
+        };
+        Spectrum::from_fn(|lane| self.glow[(first + lane).min(last)].max(0.0))
+    }
+}
+
 /// Light of a sky at the top of a fog, at all wavelengths of its grid.
 pub(super) struct TopLight {
     /// Distance of the top from the planet's centre, m.
@@ -44,13 +69,14 @@ impl TopLight {
         self.radius_m
     }
 
-    /// Lighting of a fog in lanes. For multiple scattering the ambient light is that of the sky only, as the solution includes
-    /// the light reflected by the ground.
+    /// Lighting of a fog in lanes, with a glow of the sky. For multiple scattering the ambient light is that of the sky only, as
+    /// the solution includes the light reflected by the ground.
     pub fn on_fog<const N: usize>(
         &self,
         view: &View,
         to: &Converter<N>,
         scattering: FogScattering,
+        glow: Spectrum<N>,
     ) -> FogLighting<Spectrum<N>> {
         let even = match scattering {
             FogScattering::Multiple => &self.sky_radiance,
@@ -66,7 +92,7 @@ impl TopLight {
                 direction: view.sun(),
                 irradiance,
             }),
-            ambient: to.light(even, &solar),
+            ambient: to.light(even, &solar) + glow,
             ground_albedo: Spectrum(albedo),
         }
     }

@@ -12,7 +12,6 @@ mod air;
 mod capabilities;
 mod check_inputs;
 mod city_glow;
-mod diffuse_fog;
 #[cfg(feature = "config")]
 mod document;
 mod error;
@@ -26,6 +25,7 @@ mod lane_channels;
 mod light;
 mod model;
 mod night;
+mod night_light;
 mod night_sky;
 mod night_state;
 mod night_view;
@@ -57,6 +57,7 @@ pub use model::{
     PreparedModel, RadianceModel, RadianceSampler, RadianceView, RowSampler, StarField,
 };
 pub use night::{MoonSource, NightSettings};
+pub use night_light::NightLight;
 pub(crate) use night_sky::NightSky;
 pub use resolved::ResolvedScene;
 pub use rgb_foggy_sky::RgbFoggySky;

@@ -7,10 +7,14 @@ use super::{
     Channels, FogLayers, NightSettings, RadianceView, ResolvedScene, SceneError, SolvedView,
 };
 use crate::control::Control;
-use crate::night::{NightGlow, NightState};
-use crate::sky::{Sky, SunCoverage};
+use crate::night::{MoonState, NightGlow, NightState};
+use crate::sky::{Sky, SunCoverage, View};
 use crate::sun::SunState;
 use std::sync::{Arc, Mutex, PoisonError};
+
+/// Depth of the moon below the horizon from which its light does not matter: that of a full moon is then less than a thousandth of
+/// the airglow. Degrees.
+const MOON_DOWN_DEG: f64 = 10.0;
 
 /// The air, solved for sources anywhere above the horizon, and the lights of the night in it.
 #[derive(Clone, Debug)]
@@ -63,42 +67,62 @@ impl NightSky {
         }
     }
 
-    /// The sky of a view by day, and the lights of a night with it.
+    /// A sky under the sun, and the lights of a night with it.
     ///
     /// # Errors
     /// [`SceneError`] for an invalid fog.
     pub fn view(
         &self,
-        sunlit: SolvedView,
+        sunlit: View,
         night: &NightState,
         channels: Channels,
     ) -> Result<NightView, SceneError> {
-        let altitude_m = {
-            let view = sunlit.sky_view();
-            view.radius_m() - view.sky().atmosphere().planet.radius_m
-        };
+        let altitude_m = sunlit.radius_m() - sunlit.sky().atmosphere().planet.radius_m;
         let moon = night.moon.map(|moon| -> Result<_, SceneError> {
-            let ratios = self.sky.grid().wavelengths_nm().iter();
-            let view = self
-                .sky
-                .view(altitude_m, SunState::from(moon.direction))
-                .under_source(
-                    ratios.map(|&nm| moon.irradiance_ratio(nm)).collect(),
-                    moon.disc(),
-                );
+            let view = self.moonlit(altitude_m, &moon);
             let lit = SolvedView::new(view, self.fog.as_ref(), channels)?;
             Ok(Arc::new(lit.with_moon(moon)) as Arc<dyn RadianceView>)
         });
-        let glow = GlowView::new(
+        let glow = self.glow(altitude_m, night, channels);
+        let lighting = match self.fog {
+            Some(_) => glow.mean_radiance(),
+            None => Vec::new(),
+        };
+        let sunlit = SolvedView::with_glow(sunlit, &lighting, self.fog.as_ref(), channels)?;
+        let glow = match sunlit.fog() {
+            Some(fog) => glow.behind(fog.clone()),
+            None => glow,
+        };
+        let stars = self.settings.stars.then(|| glow.stars(&night.frame));
+        Ok(NightView::new(sunlit, moon.transpose()?, glow, stars))
+    }
+
+    /// The sky under the moon of a night, for an eye at an altitude, m; `None` if the moon is so low that its light does not matter.
+    pub fn moonlit_view(&self, altitude_m: f64, night: &NightState) -> Option<View> {
+        let moon = night.moon?;
+        let up_deg = moon.direction.y.clamp(-1.0, 1.0).asin().to_degrees();
+        (up_deg > -MOON_DOWN_DEG).then(|| self.moonlit(altitude_m, &moon))
+    }
+
+    fn moonlit(&self, altitude_m: f64, moon: &MoonState) -> View {
+        let ratios = self.sky.grid().wavelengths_nm().iter();
+        self.sky
+            .view(altitude_m, SunState::from(moon.direction))
+            .under_source(
+                ratios.map(|&nm| moon.irradiance_ratio(nm)).collect(),
+                moon.disc(),
+            )
+    }
+
+    /// The diffuse lights of a night for an eye at an altitude, m, without fog.
+    pub(super) fn glow(&self, altitude_m: f64, night: &NightState, channels: Channels) -> GlowView {
+        GlowView::new(
             &self.sky,
             self.rings(altitude_m).as_ref(),
             NightGlow::new(night.frame, self.settings.solar_flux_sfu),
             (self.city.as_deref(), self.settings.sky_quality_mag),
-            self.fog.as_ref(),
             channels,
-        )?;
-        let stars = self.settings.stars.then(|| glow.stars(&night.frame));
-        Ok(NightView::new(sunlit, moon.transpose()?, glow, stars))
+        )
     }
 
     /// Scattering for an eye at an altitude, m; computed once.

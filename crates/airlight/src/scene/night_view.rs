@@ -132,19 +132,30 @@ impl RadianceView for NightView {
         transmittance: &mut [f32],
         path_radiance: &mut [f32],
     ) {
-        let mut whole = vec![0.0; transmittance.len()];
-        let mut light = vec![0.0; transmittance.len()];
-        self.sunlit
-            .path(direction, f64::INFINITY, &mut whole, &mut light);
         self.sunlit
             .path(direction, distance_m, transmittance, path_radiance);
+        let mut light = vec![0.0; transmittance.len()];
         if let Some(moonlit) = &self.moonlit {
             let mut same = vec![0.0; transmittance.len()];
             moonlit.path(direction, distance_m, &mut same, &mut light);
             accumulate(&light, path_radiance);
         }
+        let [air, whole] = [distance_m, f64::INFINITY].map(|distance_m| {
+            let mut air = vec![0.0; transmittance.len()];
+            self.sunlit
+                .air_transmittance(direction, distance_m, &mut air);
+            air
+        });
+        let through = match self.sunlit.fog() {
+            Some(fog) => fog.transmittance_to(direction, distance_m),
+            None => 1.0,
+        };
+        light.fill(0.0);
         self.glow
-            .add_path_radiance(direction, distance_m, transmittance, &whole, path_radiance);
+            .add_path_radiance(direction, &air, &whole, &mut light);
+        for (sum, light) in path_radiance.iter_mut().zip(light) {
+            *sum += through * light;
+        }
     }
 }
 

@@ -2,13 +2,16 @@
 
 use super::error::SceneError;
 use super::foggy::FoggySky;
+use super::glow_view::GlowView;
 use super::lane_channels::LaneChannels;
+use super::light::LitSky;
+use super::night_light::NightLight;
 use crate::atmosphere::Constituent;
-use crate::fog::{FogLighting, FogScattering, Ground};
+use crate::fog::{FogScattering, Ground};
 use crate::math::slices::check_length;
 use crate::sky::View;
-use crate::spectrum::RgbSpace;
-use crate::transfer::RgbPathOptics;
+use crate::spectrum::{RgbSpace, Spectrum};
+use crate::transfer::{PathOptics, RgbPathOptics};
 use glam::DVec3;
 use std::sync::Arc;
 
@@ -25,6 +28,9 @@ use std::sync::Arc;
 /// Error of the path radiance of clear air compared with [`View::along`]: below 0.3 % for 99 % of rays in daylight from an eye
 /// below 1 km. Error of that of air and fog compared with thin segments of both: below 0.22 % for 90 % of rays, at most 1.3 %
 /// in haze that fills the lower kilometre.
+///
+/// [`RgbFoggySky::at_night`] adds the lights of a night. The fog then also scatters the light of the moon, with the errors stated
+/// above, and airglow, starlight and the glow of cities as light of an evenly bright sky.
 ///
 /// ```
 /// use airlight::atmosphere::{Constituent, DensityProfile, presets, droplets::Droplets};
@@ -46,7 +52,17 @@ use std::sync::Arc;
 /// ```
 #[derive(Clone, Debug)]
 pub struct RgbFoggySky {
+    /// Sky and fog under the sun; at night, the fog is lit by the glow of the sky, too.
     lanes: Arc<FoggySky<3>>,
+    night: Option<FoggyNight>,
+}
+
+/// The lights of a night over fog.
+#[derive(Clone, Debug)]
+struct FoggyNight {
+    /// Sky and fog under the moon.
+    moonlit: Option<Arc<FoggySky<3>>>,
+    glow: Arc<GlowView>,
 }
 
 impl RgbFoggySky {
@@ -65,6 +81,37 @@ impl RgbFoggySky {
         let lanes = FoggySky::new(view, channels, layers, ground, scattering)?;
         Ok(Self {
             lanes: Arc::new(lanes),
+            night: None,
+        })
+    }
+
+    /// [`RgbFoggySky::new`] with the lights of a night, in their RGB space.
+    ///
+    /// # Errors
+    /// [`SceneError`] for invalid layers.
+    pub fn at_night(
+        view: &View,
+        night: &NightLight,
+        layers: &[Constituent],
+        scattering: FogScattering,
+    ) -> Result<Self, SceneError> {
+        let ground = FoggySky::<3>::round_ground(view);
+        let channels = LaneChannels::Rgb(night.space);
+        let glow = &night.glow.mean_radiance();
+        let lanes = FoggySky::new(LitSky { view, glow }, channels, layers, ground, scattering)?;
+        let moonlit = match &night.moonlit {
+            Some(view) => {
+                let moonlit = FoggySky::new(view, channels, layers, ground, scattering)?;
+                Some(Arc::new(moonlit))
+            }
+            None => None,
+        };
+        Ok(Self {
+            lanes: Arc::new(lanes),
+            night: Some(FoggyNight {
+                moonlit,
+                glow: night.glow.clone(),
+            }),
         })
     }
 
@@ -78,9 +125,23 @@ impl RgbFoggySky {
         layers: &[Constituent],
         scattering: FogScattering,
     ) -> Result<Self, SceneError> {
+        let with_fog = |lanes: &Arc<FoggySky<3>>| lanes.with_fog(layers, scattering).map(Arc::new);
+        let night = match &self.night {
+            Some(night) => Some(FoggyNight {
+                moonlit: night.moonlit.as_ref().map(with_fog).transpose()?,
+                glow: night.glow.clone(),
+            }),
+            None => None,
+        };
         Ok(Self {
-            lanes: Arc::new(self.lanes.with_fog(layers, scattering)?),
+            lanes: with_fog(&self.lanes)?,
+            night,
         })
+    }
+
+    /// Sky and fog under the moon.
+    fn moonlit(&self) -> Option<&FoggySky<3>> {
+        self.night.as_ref()?.moonlit.as_deref()
     }
 
     /// The ground below the fog.
@@ -88,15 +149,27 @@ impl RgbFoggySky {
         self.lanes.ground()
     }
 
-    /// Lighting of the fog by this sky.
-    pub fn fog_lighting(&self) -> FogLighting<[f32; 3]> {
-        self.lanes.fog_lighting().map(|lanes| lanes.0)
+    /// Radiance of a white horizontal surface in the light that falls on the fog from above.
+    pub fn white_radiance(&self) -> [f32; 3] {
+        let sources = std::iter::once(self.lanes.as_ref()).chain(self.moonlit());
+        let white =
+            sources.map(|lit| Spectrum(lit.fog_lighting().map(|lanes| lanes.0).white_radiance()));
+        white.fold(Spectrum::ZERO, |sum, white| sum + white).0
     }
 
     /// Radiance along `direction`: sky or ground, seen through the fog, without the sun's disc.
     #[inline]
     pub fn radiance(&self, direction: DVec3) -> [f32; 3] {
-        self.lanes.sky(direction).0
+        let mut seen = self.lanes.sky(direction);
+        if let Some(night) = &self.night {
+            if let Some(moonlit) = &night.moonlit {
+                seen += moonlit.sky(direction);
+            }
+            let mut glow = Spectrum::ZERO;
+            night.glow.add_radiance(direction, &mut glow.0);
+            seen = seen.mul_acc(self.lanes.fog_transmittance(direction), glow);
+        }
+        seen.0
     }
 
     /// [`RgbFoggySky::radiance`] along many directions.
@@ -113,15 +186,25 @@ impl RgbFoggySky {
     /// Radiance along `direction` without the fog.
     #[inline]
     pub fn clear_radiance(&self, direction: DVec3) -> [f32; 3] {
-        let mut rgb = [0.0; 3];
-        self.lanes.clear().sample(direction, &mut rgb);
-        rgb
+        let sample = |lanes: &FoggySky<3>| {
+            let mut rgb = Spectrum::ZERO;
+            lanes.clear().sample(direction, &mut rgb.0);
+            rgb
+        };
+        let mut clear = sample(&self.lanes);
+        if let Some(night) = &self.night {
+            if let Some(moonlit) = &night.moonlit {
+                clear += sample(moonlit);
+            }
+            night.glow.add_radiance(direction, &mut clear.0);
+        }
+        clear.0
     }
 
     /// Transmittance and path radiance of fog and air between the eye and a point `distance_m` away (infinite: in space).
     #[inline]
     pub fn path(&self, direction: DVec3, distance_m: f64) -> RgbPathOptics {
-        self.lanes.optics(direction, distance_m).into()
+        self.path_at_density(direction, distance_m, None)
     }
 
     /// [`RgbFoggySky::path`] in fog of another density along the ray: `factor` times its optical depth, as of a
@@ -133,8 +216,8 @@ impl RgbFoggySky {
         distance_m: f64,
         factor: Option<f32>,
     ) -> RgbPathOptics {
-        let optics = self.lanes.optics_at_density(direction, distance_m, factor);
-        optics.into()
+        let fog = self.fog_over_clear(direction, distance_m, factor);
+        fog.then(self.clear_air(direction, distance_m)).into()
     }
 
     /// [`RgbFoggySky::path`] for many rays.
@@ -152,14 +235,32 @@ impl RgbFoggySky {
     /// Transmittance and path radiance of the clear air without the fog.
     #[inline]
     pub fn clear_path(&self, direction: DVec3, distance_m: f64) -> RgbPathOptics {
-        self.lanes.aerial().optics(direction, distance_m).into()
+        self.clear_air(direction, distance_m).into()
+    }
+
+    #[inline]
+    fn clear_air(&self, direction: DVec3, distance_m: f64) -> PathOptics<3> {
+        let aerial = self.lanes.aerial();
+        let mut air = aerial.optics(direction, distance_m);
+        if let Some(night) = &self.night {
+            if let Some(moonlit) = &night.moonlit {
+                let moonlit = moonlit.aerial().optics(direction, distance_m);
+                air.path_radiance += moonlit.path_radiance;
+            }
+            let whole = aerial.optics(direction, f64::INFINITY).transmittance;
+            let (through, light) = (&air.transmittance.0, &mut air.path_radiance.0);
+            night
+                .glow
+                .add_path_radiance(direction, through, &whole.0, light);
+        }
+        air
     }
 
     /// Effect of the fog on light that is already attenuated by the clear air, as in a picture of the scene without fog:
     /// `path_over_clear(..).then(clear_path(..))` is [`RgbFoggySky::path`].
     #[inline]
     pub fn path_over_clear(&self, direction: DVec3, distance_m: f64) -> RgbPathOptics {
-        self.lanes.over_clear(direction, distance_m).into()
+        self.path_over_clear_at_density(direction, distance_m, None)
     }
 
     /// [`RgbFoggySky::path_over_clear`] in fog of another density along the ray, as [`RgbFoggySky::path_at_density`].
@@ -170,10 +271,22 @@ impl RgbFoggySky {
         distance_m: f64,
         factor: Option<f32>,
     ) -> RgbPathOptics {
-        let optics = self
-            .lanes
-            .over_clear_at_density(direction, distance_m, factor);
-        optics.into()
+        self.fog_over_clear(direction, distance_m, factor).into()
+    }
+
+    #[inline]
+    fn fog_over_clear(
+        &self,
+        direction: DVec3,
+        distance_m: f64,
+        factor: Option<f32>,
+    ) -> PathOptics<3> {
+        let over = |lanes: &FoggySky<3>| lanes.over_clear(direction, distance_m, factor);
+        let mut fog = over(&self.lanes);
+        if let Some(moonlit) = self.moonlit() {
+            fog.path_radiance += over(moonlit).path_radiance;
+        }
+        fog
     }
 
     /// Distance to the ground along `direction`, m; `None` above the horizon.

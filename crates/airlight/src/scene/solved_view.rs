@@ -2,6 +2,7 @@
 
 use super::fog_in_sky::FogInSky;
 use super::irradiance_map::horizontal_irradiance_of;
+use super::light::LitSky;
 use super::sun_disc_table::SunDiscTable;
 use super::{Channels, FogLayers, IrradianceMap, RadianceView, RowSampler, SceneError};
 use crate::axes;
@@ -40,8 +41,22 @@ impl SolvedView {
         fog: Option<&FogLayers>,
         channels: Channels,
     ) -> Result<Self, SceneError> {
+        Self::with_glow(view, &[], fog, channels)
+    }
+
+    /// [`Self::new`] in which fog also scatters a glow of the sky, given by its mean radiance in the channels.
+    ///
+    /// # Errors
+    /// [`SceneError`] for fog that is refused.
+    pub fn with_glow(
+        view: View,
+        glow: &[f32],
+        fog: Option<&FogLayers>,
+        channels: Channels,
+    ) -> Result<Self, SceneError> {
+        let lit = LitSky { view: &view, glow };
         let fog = match fog {
-            Some(fog) => Some(Arc::new(FogInSky::new(Some(fog), &view, channels)?)),
+            Some(fog) => Some(Arc::new(FogInSky::new(Some(fog), lit, channels)?)),
             None => None,
         };
         let clear = match &fog {
@@ -81,12 +96,22 @@ impl SolvedView {
         &self.view
     }
 
+    /// The fog, if any.
+    pub(super) fn fog(&self) -> Option<&Arc<FogInSky>> {
+        self.fog.as_ref()
+    }
+
+    /// Transmittance of the air without fog between the eye and a point at a distance, m.
+    pub fn air_transmittance(&self, direction: DVec3, distance_m: f64, out: &mut [f32]) {
+        self.air().air_transmittance(direction, distance_m, out);
+    }
+
     /// Air with fog, if any.
     fn air(&self) -> &FogInSky {
         match &self.fog {
             Some(fog) => fog,
             None => self.air.get_or_init(|| {
-                FogInSky::new(None, &self.view, self.channels)
+                FogInSky::new(None, (&self.view).into(), self.channels)
                     .expect("channels of a view without fog are valid")
             }),
         }

@@ -1,10 +1,13 @@
 //! Lights of the night in the air: levels against measurements, and laws of their sum.
 
+use airlight::fog::FogScattering;
 use airlight::models::registry;
 use airlight::night::{NightState, magnitude_per_square_arcsec};
-use airlight::scene::{Channels, FogSpec, NightLights, PreparedModel, RadianceView, Scene};
-use airlight::sky::{Scattering, SunCoverage};
-use airlight::spectrum::RgbSpace;
+use airlight::scene::{
+    Channels, FogSpec, NightLight, NightLights, PreparedModel, RadianceView, RgbFoggySky, Scene,
+};
+use airlight::sky::{Scattering, Sky, SunCoverage};
+use airlight::spectrum::{RgbSpace, WavelengthGrid};
 use airlight::{Control, axes};
 use glam::DVec3;
 use std::sync::Arc;
@@ -211,11 +214,7 @@ fn fog_at_night_hides_the_stars_and_glows_as_the_sky() {
     let mut scene = quick_night();
     scene.night.moon_elevation_deg = Some(50.0);
     let clear = view(&scene);
-    scene.fog = Some(FogSpec {
-        visibility_m: Some(50.0),
-        top_m: Some(100.0),
-        ..Default::default()
-    });
+    scene.fog = Some(thick_fog());
     let foggy = view(&scene);
     let sum = |view: &dyn RadianceView| view.stars().unwrap().irradiance.iter().sum::<f32>();
     assert!(sum(foggy.as_ref()) < 0.02 * sum(clear.as_ref()));
@@ -247,6 +246,160 @@ fn fog_at_night_hides_the_stars_and_glows_as_the_sky() {
         assert!(through[1] >= 0.0 && through[1] <= 1.0 && path[1] >= before);
         before = path[1];
     }
+}
+
+/// Thick fog in a slab.
+fn thick_fog() -> FogSpec {
+    FogSpec {
+        visibility_m: Some(50.0),
+        top_m: Some(100.0),
+        ..Default::default()
+    }
+}
+
+/// The fog of a scene in its sky, for real-time use.
+fn foggy_sky(scene: &Scene) -> RgbFoggySky {
+    let scene = scene.resolve().unwrap();
+    let sun = scene.sun.at_start().unwrap();
+    let suns = SunCoverage::near(sun.elevation_deg, scene.observer_altitude_m);
+    let settings = scene.solver.sky_settings(suns);
+    let sky = Sky::prepare(&scene.atmosphere, &scene.grid, &settings).unwrap();
+    let view = sky.view(scene.observer_altitude_m, sun.state());
+    let fog = scene.fog.as_ref().unwrap();
+    let layers = fog
+        .constituents(WavelengthGrid::standard().wavelengths_nm())
+        .unwrap();
+    match NightLight::new(&scene, &view, &sun, RgbSpace::Srgb).unwrap() {
+        Some(night) => RgbFoggySky::at_night(&view, &night, &layers, fog.scattering),
+        None => RgbFoggySky::new(&view, &layers, fog.scattering, RgbSpace::Srgb),
+    }
+    .unwrap()
+}
+
+fn srgb_luminance(rgb: [f32; 3]) -> f64 {
+    RgbSpace::Srgb.luminance(rgb.map(f64::from))
+}
+
+/// Two implementations of one sky: per ray of a picture, and the sum of all lights in the model's view.
+#[test]
+fn fog_is_lit_by_the_night_as_in_the_sky_of_the_model() {
+    let mut scene = quick_night();
+    scene.sun.elevation_deg = Some(-9.0);
+    scene.night.moon_elevation_deg = Some(35.0);
+    scene.night.moon_phase_deg = Some(0.0);
+    for visibility_m in [50.0, 3000.0] {
+        scene.fog = Some(FogSpec {
+            visibility_m: Some(visibility_m),
+            ..thick_fog()
+        });
+        let (sky, model) = (foggy_sky(&scene), view(&scene));
+        for (azimuth_deg, elevation_deg) in [(180.0, 1.0), (40.0, 0.2), (300.0, 30.0), (90.0, -8.0)]
+        {
+            let direction = axes::direction(azimuth_deg, elevation_deg);
+            let mut want = [0.0; 3];
+            model.radiance(&[direction], &mut want);
+            let got = sky.radiance(direction);
+            for (got, want) in got.iter().zip(want) {
+                assert!((got / want - 1.0).abs() < 1e-4, "{direction}: {got} {want}");
+            }
+            for distance_m in [30.0, 2000.0] {
+                let (mut through, mut want) = ([0.0; 3], [0.0; 3]);
+                model.path(direction, distance_m, &mut through, &mut want);
+                let path = sky.path(direction, distance_m);
+                for lane in 0..3 {
+                    let off = path.transmittance[lane] - through[lane];
+                    assert!(off.abs() < 1e-6, "{direction}, {distance_m} m: {off}");
+                    let off = path.path_radiance[lane] / want[lane] - 1.0;
+                    assert!(off.abs() < 1e-4, "{direction}, {distance_m} m: {off}");
+                }
+            }
+        }
+    }
+}
+
+/// Over white ground, fog that hardly absorbs is as bright as an even sky above it, however thick it is, and has its colour.
+#[test]
+fn thick_fog_is_as_bright_as_the_night_on_it() {
+    for moon_deg in [None, Some(45.0f64)] {
+        let mut scene = quick_night();
+        scene.air.ground_albedo = Some(1.0);
+        scene.night.moon_elevation_deg = moon_deg;
+        scene.night.moon_phase_deg = moon_deg.map(|_| 0.0);
+        let clear = view(&scene);
+        let mut on_fog = [0.0; 3];
+        clear.horizontal_irradiance(&mut on_fog);
+        if let (Some(moon), Some(deg)) = (clear.moon(), moon_deg) {
+            let mut direct = [0.0; 3];
+            moon.sun_irradiance(&mut direct);
+            let sine = deg.to_radians().sin() as f32;
+            on_fog
+                .iter_mut()
+                .zip(direct)
+                .for_each(|(e, d)| *e += sine * d);
+        }
+        scene.fog = Some(thick_fog());
+        let sky = foggy_sky(&scene);
+        let fog = sky.path_over_clear(axes::direction(90.0, 0.0), f64::INFINITY);
+        assert!(fog.transmittance.iter().all(|t| *t < 1e-6));
+        let level = srgb_luminance(fog.path_radiance);
+        let even = srgb_luminance(on_fog) / std::f64::consts::PI;
+        println!("{moon_deg:?}: {level:.3e} under {even:.3e} cd/m^2");
+        // Moonlight from one direction is not even.
+        let limit = if moon_deg.is_some() { 0.2 } else { 0.03 };
+        assert!(
+            (level / even - 1.0).abs() < limit,
+            "{moon_deg:?}: {level} {even}"
+        );
+        // Dark sites have about 1 mlx, and a full moon 0.2 lx.
+        let expected = if moon_deg.is_some() {
+            0.03..0.12
+        } else {
+            2e-4..5e-4
+        };
+        assert!(expected.contains(&level), "{moon_deg:?}: {level}");
+        for lane in [0, 2] {
+            let colour = fog.path_radiance[lane] / fog.path_radiance[1];
+            let off = colour / (on_fog[lane] / on_fog[1]) - 1.0;
+            assert!(off.abs() < 0.03, "{moon_deg:?}, lane {lane}: {off}");
+        }
+    }
+}
+
+/// Twilight fades into the glow of the night without a step.
+#[test]
+fn fog_fades_into_the_night_without_a_step() {
+    let level = |sun_deg: f64, lights: NightLights| {
+        let mut scene = quick_night();
+        scene.solver.wavelengths = Some("rgb".to_owned());
+        scene.sun.elevation_deg = Some(sun_deg);
+        scene.night.lights = Some(lights);
+        scene.fog = Some(FogSpec {
+            scattering: Some(FogScattering::Single),
+            ..thick_fog()
+        });
+        let fog = foggy_sky(&scene).path_over_clear(axes::direction(90.0, 0.0), f64::INFINITY);
+        srgb_luminance(fog.path_radiance)
+    };
+    let [with, without] = [NightLights::Auto, NightLights::Off].map(|lights| level(-4.01, lights));
+    assert!(with > without && with / without < 1.001, "{with} {without}");
+    let levels: Vec<f64> = (6..=18)
+        .step_by(2)
+        .map(|deg| level(-f64::from(deg), NightLights::Auto).ln())
+        .collect();
+    // By twilight's own fading, up to 3 in 2 degrees, which changes gradually.
+    let steps: Vec<f64> = levels.windows(2).map(|pair| pair[0] - pair[1]).collect();
+    assert!(
+        steps.iter().all(|step| (-0.1..3.0).contains(step)),
+        "{steps:?}"
+    );
+    for pair in steps.windows(2) {
+        assert!((pair[0] - pair[1]).abs() < 1.6, "{steps:?}");
+    }
+    let deep = level(-30.0, NightLights::Auto).ln();
+    assert!(
+        (levels[levels.len() - 1] - deep).abs() < 0.3,
+        "{levels:?} {deep}"
+    );
 }
 
 /// Nothing jumps where the lights of the night begin, and far below the horizon the sun no longer matters.

@@ -53,13 +53,13 @@ fn changing_the_fog_of_a_sky_gives_the_bits_of_a_new_one() {
             (10.0, 30.0, 5e3),
         ] {
             let towards = direction(azimuth, elevation);
-            let optics = new_sky.optics(towards, distance_m);
-            assert_eq!(optics, changed.optics(towards, distance_m));
+            let optics = new_sky.optics(towards, distance_m, None);
+            assert_eq!(optics, changed.optics(towards, distance_m, None));
             let seen = [new_sky.sky(towards), changed.sky(towards)];
             assert_eq!(seen[0], seen[1]);
             // The fog over what has come through the air is the fog without the air.
             let air = new_sky.aerial().optics(towards, distance_m);
-            let both = new_sky.over_clear(towards, distance_m).then(air);
+            let both = new_sky.over_clear(towards, distance_m, None).then(air);
             assert_eq!(both, optics);
         }
         assert!(first.sky(direction(100.0, 1.0)) != changed.sky(direction(100.0, 1.0)));
@@ -180,7 +180,7 @@ mod guards {
                 for length_m in [300.0, 3e3, 20e3, 200e3] {
                     let length_m = f64::min(length_m, far);
                     let exact = sliced(&view, &foggy, towards, length_m);
-                    let (s, t) = off(foggy.optics(towards, length_m), exact);
+                    let (s, t) = off(foggy.optics(towards, length_m, None), exact);
                     all.push((s, t, what, eye_m, elevation, azimuth, length_m));
                 }
             }
@@ -237,7 +237,7 @@ mod guards {
                 assert_eq!(foggy.sky(towards).0, clear, "without fog nothing changes");
                 if elevation > 0.0 {
                     // The table of the air ends where the table of the sky lies.
-                    let end = foggy.optics(towards, f64::INFINITY).path_radiance;
+                    let end = foggy.optics(towards, f64::INFINITY, None).path_radiance;
                     for lane in 0..3 {
                         assert!(
                             (end[lane] / clear[lane] - 1.0).abs() < 0.01,
@@ -249,7 +249,8 @@ mod guards {
             // A black object at the horizon's distance, against the sky just above it.
             let horizon_deg = foggy.clear().horizon_elevation_rad().to_degrees();
             let below = direction(60.0, horizon_deg - 1e-4);
-            let black = foggy.optics(below, foggy.aerial().ground_distance_m(below).unwrap());
+            let ground_m = foggy.aerial().ground_distance_m(below).unwrap();
+            let black = foggy.optics(below, ground_m, None);
             foggy
                 .clear()
                 .sample(direction(60.0, horizon_deg + 1e-4), &mut clear);
@@ -274,7 +275,10 @@ mod guards {
                 .fog
                 .path_along(&ray, towards.dot(view.sun()))
                 .path_radiance;
-            for seen in [foggy.sky(towards), foggy.optics(towards, 1e4).path_radiance] {
+            for seen in [
+                foggy.sky(towards),
+                foggy.optics(towards, 1e4, None).path_radiance,
+            ] {
                 for lane in 0..3 {
                     let off = (seen[lane] / alone[lane] - 1.0).abs();
                     // The air in the fog counts as sunlit: towards the sun that is 2 % here.
@@ -318,13 +322,13 @@ mod guards {
             if let Some(irradiance) = foggy.fog.ground_irradiance() {
                 // The ground as the fog has it, seen through fog and air.
                 let lit = irradiance * albedo / std::f32::consts::PI;
-                let whole = foggy.optics(down, 120.0).apply(lit);
+                let whole = foggy.optics(down, 120.0, None).apply(lit);
                 for lane in 0..3 {
                     let off = (foggy.sky(down)[lane] / whole[lane] - 1.0).abs();
                     assert!(off < 0.01, "{visibility_m} m, lane {lane}: {off}");
                 }
             }
-            let added = foggy.optics(down, 120.0);
+            let added = foggy.optics(down, 120.0, None);
             let clear = view.along(down, None);
             let through = (foggy.sky(down) - added.path_radiance) / added.transmittance;
             f64::from(through[1] / (clear.ground[1] / clear.transmittance[1]))
