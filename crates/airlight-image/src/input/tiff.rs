@@ -12,7 +12,7 @@ use crate::{Notes, Size};
 use ::tiff::{
     ColorType, TiffError,
     decoder::{Decoder, DecodingResult, Limits, ifd::Value},
-    tags::{ExtraSamples, PlanarConfiguration, Tag},
+    tags::{ExtraSamples, PhotometricInterpretation, PlanarConfiguration, Tag},
 };
 use glam::Vec3;
 use std::io::BufReader;
@@ -70,29 +70,14 @@ pub(super) fn read(source: Source) -> Result<Picture, DecodeError> {
     let srgb = ColourDecoding::srgb();
     let encoded = || stated.as_ref().unwrap_or(&srgb);
     let mut picture = match image {
-        DecodingResult::U8(v) if components.is_premultiplied => {
-            let wide = v.into_iter().map(u16::from).collect();
-            let bits = SampleBits::U8;
-            displayed(
-                size,
-                &components,
-                &unmultiplied(wide, &components, 255),
-                bits,
-                encoded(),
-            )
+        DecodingResult::U8(v) => {
+            let values = unmultiplied(v, &components, u8::MAX.into());
+            displayed(size, &components, &values, SampleBits::U8, encoded())
         }
-        DecodingResult::U8(v) => displayed(size, &components, &v, SampleBits::U8, encoded()),
-        DecodingResult::U16(v) if components.is_premultiplied => {
-            let bits = SampleBits::U16;
-            displayed(
-                size,
-                &components,
-                &unmultiplied(v, &components, 65_535),
-                bits,
-                encoded(),
-            )
+        DecodingResult::U16(v) => {
+            let values = unmultiplied(v, &components, u16::MAX.into());
+            displayed(size, &components, &values, SampleBits::U16, encoded())
         }
-        DecodingResult::U16(v) => displayed(size, &components, &v, SampleBits::U16, encoded()),
         floats @ (DecodingResult::F16(_) | DecodingResult::F32(_) | DecodingResult::F64(_)) => {
             let (values, bits) = numbers(floats);
             linear(
@@ -120,6 +105,13 @@ pub(super) fn read(source: Source) -> Result<Picture, DecodeError> {
 
 /// The components of a file; those besides colours and opacity are noted.
 fn components(decoder: &mut TiffDecoder, notes: &mut Notes) -> Result<Components, DecodeError> {
+    // Kinds that the decoder refuses without a name that a user knows.
+    let photometric = number(decoder, Tag::PhotometricInterpretation)?;
+    match photometric.and_then(PhotometricInterpretation::from_u16) {
+        Some(PhotometricInterpretation::RGBPalette) => return Err(unsupported("a palette")),
+        Some(PhotometricInterpretation::CIELab) => return Err(unsupported("CIE L*a*b*")),
+        _ => {}
+    }
     let color = decoder.colortype().map_err(failed)?;
     let extra: Vec<u16> = decoder
         .find_tag_unsigned_vec(Tag::ExtraSamples)
@@ -136,10 +128,8 @@ fn components(decoder: &mut TiffDecoder, notes: &mut Notes) -> Result<Components
         }
         ColorType::RGB(_) => (3, false, 3),
         ColorType::RGBA(_) => (3, true, 4),
-        ColorType::Palette(_) => return Err(unsupported("a palette")),
         ColorType::CMYK(_) | ColorType::CMYKA(_) => return Err(unsupported("CMYK")),
         ColorType::YCbCr(_) => return Err(unsupported("luminance and chroma (YCbCr)")),
-        ColorType::Lab(_) => return Err(unsupported("CIE L*a*b*")),
         ColorType::Multiband { num_samples, .. } => {
             return Err(unsupported(&format!("{num_samples} bands")));
         }
@@ -201,18 +191,28 @@ fn displayed<T: Copy + Into<usize>>(
     })
 }
 
-/// Encoded colours divided by their opacity.
-fn unmultiplied(mut values: Vec<u16>, components: &Components, opaque: u16) -> Vec<u16> {
+/// Encoded colours divided by their opacity, of which `opaque` is the largest number, where a file has multiplied them by it.
+fn unmultiplied<T>(mut values: Vec<T>, components: &Components, opaque: u32) -> Vec<T>
+where
+    T: Copy + Into<u32> + TryFrom<u32>,
+{
     let Components {
-        layout, decoded, ..
+        layout,
+        is_premultiplied,
+        decoded,
     } = *components;
-    let opaque = u32::from(opaque);
+    if !is_premultiplied {
+        return values;
+    }
     for pixel in values.chunks_exact_mut(decoded) {
         let (colours, rest) = pixel.split_at_mut(layout.colours);
-        let opacity = u32::from(rest[0]);
+        let opacity: u32 = rest[0].into();
         for colour in colours {
-            let divided = (u32::from(*colour) * opaque + opacity / 2).checked_div(opacity);
-            *colour = divided.unwrap_or(0).min(opaque) as u16;
+            let multiplied: u32 = (*colour).into();
+            let divided = (multiplied * opaque + opacity / 2).checked_div(opacity);
+            if let Ok(plain) = T::try_from(divided.unwrap_or(0).min(opaque)) {
+                *colour = plain;
+            }
         }
     }
     values
@@ -352,9 +352,9 @@ fn failed(error: TiffError) -> DecodeError {
         TiffError::LimitsExceeded => {
             DecodeError::invalid("its samples take more than 8 GiB of memory")
         }
-        TiffError::UnsupportedError(what) => {
-            DecodeError::Invalid(format!("unsupported TIFF file: {what}"))
-        }
+        TiffError::UnsupportedError(what) => DecodeError::Invalid(format!(
+            "unsupported TIFF file: {what}; try saving it uncompressed, or as PNG or EXR"
+        )),
         other => DecodeError::Invalid(format!("corrupt TIFF data: {other}")),
     }
 }

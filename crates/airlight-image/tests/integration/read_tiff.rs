@@ -190,6 +190,41 @@ fn floats_are_linear_light() {
     assert!(error.contains("floats encoded by the curve"), "{error}");
 }
 
+/// A file of strips, each a plane of its own, with one number of bits for all samples.
+fn of_planes(bits: u16, planes: &[&[u8]]) -> Vec<u8> {
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    let mut encoder = tiff::encoder::TiffEncoder::new(&mut bytes).unwrap();
+    let mut directory = encoder.image_directory().unwrap();
+    let count = planes.len() as u16;
+    for (tag, number) in [
+        (Tag::ImageWidth, SIZE.0 as u16),
+        (Tag::ImageLength, SIZE.1 as u16),
+        (Tag::Compression, 1),
+        (
+            Tag::PhotometricInterpretation,
+            if count == 1 { 1 } else { 2 },
+        ),
+        (Tag::SamplesPerPixel, count),
+        (Tag::RowsPerStrip, SIZE.1 as u16),
+        (Tag::PlanarConfiguration, 2),
+    ] {
+        directory.write_tag(tag, number).unwrap();
+    }
+    let write = |plane: &&[u8]| directory.write_data(*plane).unwrap() as u32;
+    let offsets: Vec<u32> = planes.iter().map(write).collect();
+    let lengths: Vec<u32> = planes.iter().map(|plane| plane.len() as u32).collect();
+    let bits = vec![bits; planes.len()];
+    directory.write_tag(Tag::BitsPerSample, &bits[..]).unwrap();
+    directory
+        .write_tag(Tag::StripOffsets, &offsets[..])
+        .unwrap();
+    directory
+        .write_tag(Tag::StripByteCounts, &lengths[..])
+        .unwrap();
+    directory.finish().unwrap();
+    bytes.into_inner()
+}
+
 #[test]
 fn other_kinds_are_refused_by_name() {
     let refused = |file: Vec<u8>| read(&file).unwrap_err();
@@ -219,6 +254,52 @@ fn other_kinds_are_refused_by_name() {
     }
     let grey = of::<Gray8>(&bytes(18), &many, &[]);
     assert_eq!((grey.alpha, grey.rgb.len()), (None, 18));
+    // Grey or coloured pixels of which a tag says something else.
+    let palette = [0; 3 * 256];
+    let [grey, coloured] = [bytes(6), bytes(18)];
+    for (file, part) in [
+        (
+            of_planes(8, &[&[10; 6], &[20; 6], &[30; 6]]),
+            "components in planes of their own",
+        ),
+        (
+            tiff_of::<Gray8>(
+                SIZE,
+                &grey,
+                &[],
+                &[
+                    (Tag::PhotometricInterpretation, TiffTag::Short(3)),
+                    (Tag::ColorMap, TiffTag::Shorts(&palette)),
+                ],
+            ),
+            "got a palette",
+        ),
+        (
+            tiff_of::<RGB8>(
+                SIZE,
+                &coloured,
+                &[],
+                &[(Tag::PhotometricInterpretation, TiffTag::Short(8))],
+            ),
+            "CIE L*a*b*",
+        ),
+        (of_planes(4, &[&[0x12, 0x30, 0x45, 0x60]]), "got 4 bits"),
+        (
+            tiff_of::<RGB8>(
+                SIZE,
+                &coloured,
+                &[],
+                &[(Tag::PhotometricInterpretation, TiffTag::Short(1))],
+            ),
+            "got 3 bands",
+        ),
+    ] {
+        let error = refused(file);
+        assert!(
+            error.contains(part) && error.contains("or as PNG or EXR"),
+            "{part}: {error}"
+        );
+    }
     // The numbers of a picture are not its depth.
     let folder = Folder::new();
     let path = folder.file("a.tif");

@@ -187,6 +187,7 @@ pub fn tiff_file(size: (u32, u32), values: &[f32]) -> Vec<u8> {
 /// Value of a further tag of a TIFF file.
 pub enum TiffTag<'a> {
     Short(u16),
+    Shorts(&'a [u16]),
     Bytes(&'a [u8]),
     Fraction(u32, u32),
 }
@@ -211,6 +212,7 @@ where
         let directory = image.encoder();
         match *value {
             TiffTag::Short(number) => directory.write_tag(*tag, number),
+            TiffTag::Shorts(numbers) => directory.write_tag(*tag, numbers),
             TiffTag::Bytes(bytes) => directory.write_tag(*tag, bytes),
             TiffTag::Fraction(n, d) => directory.write_tag(*tag, tiff::encoder::Rational { n, d }),
         }
