@@ -225,6 +225,7 @@ contrast, patch-strength, patch-size, patch-height, patch-seed, patch-time, eye-
 camera-roll, fov, focal, depth-scale, depth-offset, far, baseline, near-plane, far-plane, disparity-offset, ambient-scale,
 sun-elevation, sun-azimuth, sun-strength, moon-elevation, moon-azimuth, moon-phase, solar-flux, sky-quality, star-latitude,
 ground-albedo, ground-altitude, aod-550, haze-visibility, radiance-scale, quality, exposure, brighten, tone-contrast, saturation
-and white-balance; and lists of fog-profile, droplets and fog-scattering. --vary draws lengths, ambient-scale, radiance-scale,
-focal, haze-visibility and white-balance uniformly in the logarithm, and others uniformly; NAME=log:LOW..HIGH and
-NAME=uniform:LOW..HIGH override this.";
+and white-balance; of options of several numbers each by itself: ambient-red, ambient-green, ambient-blue, patch-wind-east,
+patch-wind-north, principal-point-x and principal-point-y; and lists of fog-profile, droplets and fog-scattering. --vary draws
+lengths, ambient-scale, radiance-scale, focal, haze-visibility and white-balance uniformly in the logarithm, and others uniformly;
+NAME=log:LOW..HIGH and NAME=uniform:LOW..HIGH override this.";

@@ -168,6 +168,18 @@ fn patches(scene: &mut OverlayScene) -> &mut FogPatchesSpec {
     scene.fog_mut().patches.get_or_insert_default()
 }
 
+/// Components of a colour or a point; those that nothing sets stay NaN, which the checks of a description refuse.
+fn ambient(scene: &mut OverlayScene) -> &mut [f64; 3] {
+    scene.overlay.ambient.get_or_insert([f64::NAN; 3])
+}
+
+fn principal_point(scene: &mut OverlayScene) -> &mut [f64; 2] {
+    scene
+        .overlay
+        .principal_point_px
+        .get_or_insert([f64::NAN; 2])
+}
+
 use Affects::{Files, Fog, Sky};
 use Domain::{
     Altitude, Any, Contrast, Elevation, FieldOfView, Fraction, MoonPhase, NotNegative,
@@ -175,7 +187,7 @@ use Domain::{
 };
 
 /// Every setting that can differ.
-pub(super) static SETTINGS: [Setting; 47] = [
+pub(super) static SETTINGS: [Setting; 54] = [
     number("visibility", "m", LENGTH, Fog, |s, v| {
         s.fog_mut().visibility_m = Some(v)
     }),
@@ -204,6 +216,12 @@ pub(super) static SETTINGS: [Setting; 47] = [
     number("patch-time", "s", even(Any), Fog, |s, v| {
         patches(s).time_s = Some(v)
     }),
+    number("patch-wind-east", "", even(Any), Fog, |s, v| {
+        patches(s).wind_m_s.get_or_insert([0.0; 2])[0] = v
+    }),
+    number("patch-wind-north", "", even(Any), Fog, |s, v| {
+        patches(s).wind_m_s.get_or_insert([0.0; 2])[1] = v
+    }),
     number("eye-height", "m", LENGTH, Sky, |s, v| {
         s.scene.observer.eye_height_m = Some(v)
     }),
@@ -221,6 +239,12 @@ pub(super) static SETTINGS: [Setting; 47] = [
     }),
     number("focal", "px", POSITIVE, Files, |s, v| {
         s.overlay.focal_px = Some(v)
+    }),
+    number("principal-point-x", "px", even(Any), Fog, |s, v| {
+        principal_point(s)[0] = v
+    }),
+    number("principal-point-y", "px", even(Any), Fog, |s, v| {
+        principal_point(s)[1] = v
     }),
     number("depth-scale", "", even(Any), Files, |s, v| {
         s.overlay.depth_scale = v
@@ -240,6 +264,15 @@ pub(super) static SETTINGS: [Setting; 47] = [
     }),
     number("disparity-offset", "px", even(Any), Files, |s, v| {
         s.overlay.disparity_offset_px = v
+    }),
+    number("ambient-red", "", even(NotNegative), Files, |s, v| {
+        ambient(s)[0] = v
+    }),
+    number("ambient-green", "", even(NotNegative), Files, |s, v| {
+        ambient(s)[1] = v
+    }),
+    number("ambient-blue", "", even(NotNegative), Files, |s, v| {
+        ambient(s)[2] = v
     }),
     number("ambient-scale", "", POSITIVE, Fog, |s, v| {
         s.overlay.ambient_scale = v

@@ -307,6 +307,9 @@ mod tests {
             ("droplets=fine,coarse", "droplets=fine,coarse"),
             ("focal-px=500..800", "focal=log:500..800"),
             ("patch-seed=0..9", "patch-seed=uniform:0..9"),
+            ("ambient-red=0.5..0.7", "ambient-red=uniform:0.5..0.7"),
+            ("patch-wind-east=-2..2", "patch-wind-east=uniform:-2..2"),
+            ("principal-point-x-px=3,4", "principal-point-x=3,4"),
         ] {
             assert_eq!(text.parse::<Variation>().unwrap().to_string(), written);
         }
@@ -324,6 +327,44 @@ mod tests {
         }
         // Within five standard deviations.
         assert!(counts.iter().all(|n| (860..1140).contains(n)), "{counts:?}");
+    }
+
+    #[test]
+    fn components_of_colours_and_points_vary_by_themselves() {
+        let mut scene = OverlayScene::default();
+        scene.fog_mut().visibility_m = Some(50.0);
+        scene.overlay.ambient = Some([0.1; 3]);
+        let draw = |scene: &mut OverlayScene, text: &str| {
+            text.parse::<Variation>().unwrap().draw(scene, 1, "a", 0);
+        };
+        draw(&mut scene, "ambient-green=0.5..0.6");
+        draw(&mut scene, "patch-wind-north=3");
+        let [red, green, blue] = scene.overlay.ambient.unwrap();
+        assert!(red == 0.1 && (0.5..0.6).contains(&green) && blue == 0.1);
+        assert_eq!(patches(&scene), Some([0.0, 3.0]));
+        assert!(scene.check().is_ok());
+        // What nothing sets is refused.
+        for (text, part) in [
+            (
+                "ambient-blue=0.5",
+                "overlay.ambient: expected red, green and blue, 0 or above, got NaN,NaN,0.5",
+            ),
+            (
+                "principal-point-y=40",
+                "overlay.principal_point_px: expected two numbers of pixels, got NaN,40",
+            ),
+        ] {
+            let mut scene = scene.clone();
+            scene.overlay.ambient = None;
+            scene.overlay.focal_px = Some(100.0);
+            draw(&mut scene, text);
+            let error = scene.check().unwrap_err().to_string();
+            assert!(error.contains(part), "{error}");
+        }
+    }
+
+    fn patches(scene: &OverlayScene) -> Option<[f64; 2]> {
+        scene.fog().patches.as_ref()?.wind_m_s
     }
 
     #[test]

@@ -310,6 +310,7 @@ impl OverlayScene {
                 sky-light for twilight",
             ));
         }
+        self.check_components()?;
         self.check_solver()?;
         self.check_ignored()?;
         if is_one_colour(profile) {
@@ -322,6 +323,37 @@ impl OverlayScene {
         }
         self.check_patches()?;
         self.check_light_form(profile)
+    }
+
+    /// Refuses a colour or a point of which a component is out of range, or missing where only others vary.
+    fn check_components(&self) -> Result<(), RenderError> {
+        let refuse = |key, expected, got: &[f64], advice| {
+            let got: Vec<String> = got.iter().map(f64::to_string).collect();
+            Err(RenderError::value(key, expected, got.join(","), advice))
+        };
+        if let Some(rgb) = &self.overlay.ambient
+            && !rgb.iter().all(|c| c.is_finite() && *c >= 0.0)
+        {
+            let advice = "0.6,0.65,0.7, or varying ambient-red, ambient-green and ambient-blue";
+            return refuse(
+                "overlay.ambient",
+                "red, green and blue, 0 or above",
+                rgb,
+                advice,
+            );
+        }
+        match &self.overlay.principal_point_px {
+            Some(xy) if !xy.iter().all(|v| v.is_finite()) => {
+                let advice = "320,240, or varying principal-point-x and principal-point-y";
+                refuse(
+                    "overlay.principal_point_px",
+                    "two numbers of pixels",
+                    xy,
+                    advice,
+                )
+            }
+            _ => Ok(()),
+        }
     }
 
     /// The scene's solver.

@@ -533,6 +533,7 @@ fn contradictions_are_refused_before_anything_is_written() {
     given.fog_mut().profile = Some(FogProfile::Uniform);
     for (texts, part) in [
         (&["sun-azimuth=0..20"][..], "expected a sun"),
+        (&["ambient-red=0..1", "ambient-blue=1"], "overlay.ambient"),
         (&["droplets=fine", "droplets=coarse"], "each setting once"),
         (&["visibility=5..9"], "leaving one of them out"),
         (&["scale-height=5..9"], "fog-profile height or clamped"),
