@@ -17,6 +17,9 @@ use crate::spectrum::Spectrum;
 use crate::transfer::PathOptics;
 use std::ops::{Add, Div, Mul, Sub};
 
+/// Upper bound of columns and optical depths: opaque, and far below the largest f32.
+pub(super) const OPAQUE: f64 = 1e25;
+
 /// Number type of the closed forms: `f64` or the lanes of a [`Spectrum`].
 pub(crate) trait Lanes:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>

@@ -1,8 +1,8 @@
 //! Fog that is the same in every direction: the rays of a picture by vector instructions.
 
 use super::closed_forms::Lanes;
+use super::closed_forms::OPAQUE;
 use super::fog_lanes::FogLanes;
-use super::layer::OPAQUE;
 use crate::math::simd::vectorized;
 use crate::math::slices::check_length;
 use crate::spectrum::Spectrum;

@@ -1,8 +1,8 @@
 //! Fog in N lanes: transmittance and path radiance along rays.
 
-use super::closed_forms::Lanes;
+use super::closed_forms::{Lanes, OPAQUE};
 use super::error::FogError;
-use super::layer::{LayerLanes, MergedLayer, OPAQUE, merge_layers};
+use super::layer::{LayerLanes, MergedLayer, merge_layers};
 use super::lighting::{FogLighting, FogScattering, Ground};
 use super::multiple::{self, DirectionWeights, Field};
 use super::ray_cuts::height_breakpoints;
@@ -10,6 +10,7 @@ use super::single_scattering::SingleScattering;
 use crate::atmosphere::RaySegment;
 use crate::spectrum::Spectrum;
 use crate::transfer::PathOptics;
+use crate::transfer::residual::{STREAMS, scattered_into_peaks, stream_transmittances};
 use glam::DVec3;
 
 /// Fog in N lanes: wavelengths, or red, green and blue. Queries do not allocate.
@@ -76,8 +77,8 @@ impl<const N: usize> FogLanes<N> {
             return None;
         }
         let sin_sun = self.lighting.sun.map_or(1.0, |sun| sun.direction.y);
-        let single = self.single_scattering(|s| s.reduced_extinction_per_m, |_| Spectrum::ZERO);
-        let sun_depth = |height| single.depth_to_sun(height, sin_sun);
+        let single = self.single_scattering(|s| [s.reduced_extinction()], |_| [Spectrum::ZERO]);
+        let sun_depth = |height| single.depth_to_sun(height, sin_sun)[0];
         Some(Field::solve(
             reduced,
             &self.ground,
@@ -167,8 +168,8 @@ impl<const N: usize> FogLanes<N> {
         let path_radiance = match &self.field {
             Some(field) => self.multiple_scattering(field, ray, cos_sun, depth),
             None => {
-                let (sunlit, uniform) = self
-                    .single_scattering(|s| s.extinction_per_m, |s| s.towards_eye(cos_sun))
+                let ([sunlit], uniform) = self
+                    .single_scattering(|s| [s.extinction_per_m], |s| [s.towards_eye(cos_sun)])
                     .along(ray, &|s| s.scattering_per_m);
                 uniform * self.lighting.ambient + sunlit * self.sunlight()
             }
@@ -187,16 +188,16 @@ impl<const N: usize> FogLanes<N> {
         }
     }
 
-    /// Single scattering with an extinction coefficient and a scattering towards the eye for each layer.
+    /// Single scattering with an extinction coefficient and a scattering towards the eye for each layer and stream.
     #[inline]
-    pub(super) fn single_scattering<'a, X, S>(
+    pub(super) fn single_scattering<'a, const K: usize, X, S>(
         &'a self,
         extinction: X,
         towards_eye: S,
     ) -> SingleScattering<'a, N, X, S>
     where
-        X: Fn(&MergedLayer<N>) -> Spectrum<N>,
-        S: Fn(&MergedLayer<N>) -> Spectrum<N>,
+        X: Fn(&MergedLayer<N>) -> [Spectrum<N>; K],
+        S: Fn(&MergedLayer<N>) -> [Spectrum<N>; K],
     {
         SingleScattering {
             layers: &self.layers,
@@ -214,7 +215,8 @@ impl<const N: usize> FogLanes<N> {
     /// The solver treats light scattered by the forward peak as unscattered: the radiance `I` from the edge of the fog is
     /// attenuated by a reduced extinction, and includes light that the peak scatters into the ray. The path radiance of a segment
     /// is `I` minus the light that arrives unscattered from its far end, `S = I(near) - T I(far)`. This composes exactly when a
-    /// segment is split, and is `(1 - T) I` in uniform light. It is summed from terms that do not cancel.
+    /// segment is split, and is `(1 - T) I` in uniform light. It is summed from terms that do not cancel. Singly scattered sunlight
+    /// consists of streams ([`crate::transfer::residual`]), for each of which a part of the peak counts as unscattered.
     fn multiple_scattering(
         &self,
         field: &Field<N>,
@@ -224,34 +226,25 @@ impl<const N: usize> FogLanes<N> {
     ) -> Spectrum<N> {
         let towards = Towards::new(self, ray.sin_elevation, cos_sun);
         let near = self.part(field, ray, &towards);
-        let path = near.smooth + near.peaked;
         // Light from beyond the far end that the peak scatters into the ray.
-        let through = |reduced: Spectrum<N>, rest: Spectrum<N>| {
-            reduced.exp_neg() * rest * rest.mean_transmittance()
-        };
-        let smooth = through(
-            near.smooth_depth,
-            self.depth_of(ray, &|s| s.peak_extinction(s.reduced_extinction_per_m)),
-        );
-        let peaked = match towards.in_peak {
-            true => through(
-                near.peaked_depth,
-                self.depth_of(ray, &|s| s.peak_extinction(s.residual_extinction(cos_sun))),
-            ),
-            // Nothing is scattered by the peak itself.
-            false => Spectrum::ZERO,
-        };
-        let most = smooth.max_element().max(peaked.max_element());
-        if most < 1e-7 * depth.max_element().min(1.0) {
-            return path;
+        let removed = self.depth_of(ray, &|s| s.peak_extinction_per_m);
+        let through = near.depth.exp_neg();
+        let [into_peak, into_half, _] = scattered_into_peaks(removed).map(|lost| through * lost);
+        let [first, half, last] = near.sunlit;
+        let (mut diffuse, mut sunlit) = (near.diffuse, first + half + last);
+        if into_peak.max_element() >= 1e-7 * depth.max_element().min(1.0) {
+            let (beyond, mut arriving) = self.beyond(field, ray);
+            if let Some(beyond) = beyond {
+                let far = self.part(field, &beyond, &towards);
+                arriving = far.diffuse + far.depth.exp_neg() * arriving;
+                let [_, relative, _] = stream_transmittances(removed);
+                let [first, half, _] = far.sunlit;
+                sunlit += first * into_peak + half * into_half * relative;
+            }
+            diffuse += into_peak * arriving;
         }
-        let (beyond, boundary) = self.beyond(field, ray);
-        let Some(beyond) = beyond else {
-            return path + smooth * boundary;
-        };
-        let far = self.part(field, &beyond, &towards);
-        let arriving = far.smooth + far.smooth_depth.exp_neg() * boundary;
-        path + smooth * arriving + peaked * far.peaked
+        // Shares of the streams can be negative.
+        diffuse + sunlit.max_scalar(0.0)
     }
 
     /// The segment from the end of `ray` to the edge of the fog, if any is left, and the radiance there.
@@ -271,46 +264,27 @@ impl<const N: usize> FogLanes<N> {
         }
     }
 
-    /// Light scattered into a ray, by kind of extinction.
+    /// Light scattered into a ray.
     fn part(&self, field: &Field<N>, ray: &RaySegment, towards: &Towards) -> Part<N> {
-        let cos_sun = towards.cos_sun;
         let uniform_scattering = |s: &MergedLayer<N>| match s.density.is_uniform() {
             true => s.scattering_per_m,
             false => Spectrum::ZERO,
         };
-        let reduced = |s: &MergedLayer<N>| s.reduced_extinction_per_m;
-        let residual = |s: &MergedLayer<N>| s.residual_extinction(cos_sun);
         let unbounded = self.layers.iter().filter(|s| s.density.is_uniform());
         let uniform_extinction = unbounded.fold(Spectrum::ZERO, |sum, s| sum + s.extinction_per_m);
         // The series of the field falls below 0 in directions into which little is scattered.
-        let mut smooth = field
+        let diffuse = field
             .scattered(ray, &towards.weights, uniform_extinction)
             .max_scalar(0.0);
-        let smooth_depth = self.depth_of(ray, &reduced);
-        let (mut peaked, mut peaked_depth) = (Spectrum::ZERO, smooth_depth);
-        // Inside the peak the residual has its own extinction; outside, the whole phase function has one.
-        let in_peak = towards.in_peak;
         let (sunlit, uniform) = self
-            .single_scattering(reduced, |s| match in_peak {
-                true => s.smooth_towards_eye(cos_sun),
-                false => s.towards_eye(cos_sun),
+            .single_scattering(MergedLayer::stream_extinction, |s| {
+                s.streams_towards_eye(towards.cos_sun)
             })
             .along(ray, &uniform_scattering);
-        smooth += uniform * self.lighting.ambient + sunlit * self.sunlight();
-        if in_peak {
-            let beyond =
-                |s: &MergedLayer<N>| s.towards_eye(cos_sun) - s.smooth_towards_eye(cos_sun);
-            let (sunlit, _) = self
-                .single_scattering(residual, beyond)
-                .along(ray, &|_| Spectrum::ZERO);
-            peaked = sunlit * self.sunlight();
-            peaked_depth = self.depth_of(ray, &residual);
-        }
         Part {
-            smooth,
-            peaked,
-            smooth_depth,
-            peaked_depth,
+            diffuse: diffuse + uniform * self.lighting.ambient,
+            sunlit: sunlit.map(|stream| stream * self.sunlight()),
+            depth: self.depth_of(ray, &MergedLayer::reduced_extinction),
         }
     }
 }
@@ -335,20 +309,18 @@ fn scattering_depth_to_sun<const N: usize>(
     vertical / sun.direction.y.max(0.05)
 }
 
-/// Light scattered into a ray, attenuated by the extinction without the peak and by that of the residual, with both optical
-/// depths.
+/// Light scattered into a ray: diffuse light, singly scattered sunlight by stream, and the optical depth for diffuse light and the
+/// first stream.
 struct Part<const N: usize> {
-    smooth: Spectrum<N>,
-    peaked: Spectrum<N>,
-    smooth_depth: Spectrum<N>,
-    peaked_depth: Spectrum<N>,
+    diffuse: Spectrum<N>,
+    sunlit: [Spectrum<N>; STREAMS],
+    depth: Spectrum<N>,
 }
 
 /// A view direction, prepared for the field.
 struct Towards {
     cos_sun: f64,
     weights: DirectionWeights,
-    in_peak: bool,
 }
 
 impl Towards {
@@ -358,7 +330,6 @@ impl Towards {
             return Self {
                 cos_sun,
                 weights: multiple::in_direction(sin_elevation, 1.0),
-                in_peak: false,
             };
         };
         let sin_sun = sun.direction.y;
@@ -372,7 +343,6 @@ impl Towards {
         Self {
             cos_sun,
             weights: multiple::in_direction(sin_elevation, cos_azimuth),
-            in_peak: fog.layers.iter().any(|s| s.in_peak(cos_sun)),
         }
     }
 }

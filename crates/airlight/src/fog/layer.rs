@@ -2,18 +2,14 @@
 
 use super::error::FogError;
 use super::lighting::FogScattering;
-use super::multiple::{Reduced, STREAMS};
+use super::multiple::{DEGREES, Reduced};
 use crate::atmosphere::{Constituent, DensityProfile};
 use crate::optics::{PhaseError, PhaseFunction, TabulatedPhase};
 use crate::spectrum::rgb::{self, DOMINANT_NM};
 use crate::spectrum::{RgbSpace, Spectrum, WavelengthGrid};
-use crate::transfer::delta_m::ForwardPeak;
-
-/// Upper bound of columns and optical depths: opaque, and far below the largest f32.
-pub(super) const OPAQUE: f64 = 1e25;
-
-/// A phase function with its forward peak split off for the solver.
-type Peak = ForwardPeak<STREAMS>;
+use crate::transfer::delta_m::peak_fraction;
+use crate::transfer::residual::{ONE_STREAM, Residual, STREAMS, Shares};
+use std::sync::Arc;
 
 /// A layer of fog in red, green and blue.
 #[derive(Clone, Debug, PartialEq)]
@@ -217,8 +213,8 @@ pub(super) struct MergedLayer<const N: usize> {
     pub density: DensityProfile,
     pub extinction_per_m: Spectrum<N>,
     pub scattering_per_m: Spectrum<N>,
-    /// Extinction without the forward peak.
-    pub reduced_extinction_per_m: Spectrum<N>,
+    /// Extinction by scattering into forward peaks, which counts as unscattered in multiple scattering, 1/m.
+    pub peak_extinction_per_m: Spectrum<N>,
     parts: Vec<Part<N>>,
 }
 
@@ -226,12 +222,36 @@ pub(super) struct MergedLayer<const N: usize> {
 #[derive(Clone, Debug)]
 struct Part<const N: usize> {
     layer: LayerLanes<N>,
-    /// Forward peak of the phase function: one for all lanes, one for each lane, or none if the peak is not split off.
-    peaks: Vec<Peak>,
+    /// `None` if no forward peak is split off.
+    peak: Option<Peak<N>>,
 }
 
-/// Validates layers and merges those of one density profile. Forward peaks are divided for light that passes a scattering optical
-/// depth, `sun_depth`.
+/// The forward peak of a phase function.
+#[derive(Clone, Debug)]
+struct Peak<const N: usize> {
+    /// Fraction of the scattering that counts as unscattered.
+    fraction: Spectrum<N>,
+    /// Legendre moments of the whole phase function.
+    moments: [Spectrum<N>; DEGREES],
+    /// Streams of singly scattered light; `None` if the peak is negligible.
+    residual: Option<Arc<Residual<N>>>,
+}
+
+impl<const N: usize> Peak<N> {
+    fn new(layer: &LayerLanes<N>, depth: f64) -> Self {
+        let (phase, nm) = (&layer.phase, &layer.wavelengths_nm);
+        let by_lane = nm.map(|nm| phase.legendre_moments(DEGREES + 1, nm));
+        let moment = |l: usize| Spectrum::from_fn(|lane| by_lane[lane][l] as f32);
+        Self {
+            fraction: moment(DEGREES).map(peak_fraction),
+            moments: std::array::from_fn(moment),
+            residual: Residual::new(phase, nm, DEGREES - 1, depth).map(Arc::new),
+        }
+    }
+}
+
+/// Validates layers and merges those of one density profile. Streams are made for light that passes a scattering optical depth,
+/// `sun_depth`.
 ///
 /// # Errors
 /// [`FogError`] for the first value out of range.
@@ -241,32 +261,30 @@ pub(super) fn merge_layers<const N: usize>(
     sun_depth: f64,
 ) -> Result<Vec<MergedLayer<N>>, FogError> {
     let mut merged: Vec<MergedLayer<N>> = Vec::new();
-    for layer in layers.iter().flat_map(LayerLanes::terms) {
-        let peak = |nm: f64| Peak::new(&layer.phase, nm, sun_depth);
-        let peaks = if scattering != FogScattering::Multiple || layer.density.is_uniform() {
-            Vec::new()
-        } else if layer.phase.depends_on_wavelength() {
-            layer.wavelengths_nm.iter().map(|&nm| peak(nm)).collect()
-        } else {
-            vec![peak(layer.wavelengths_nm[0])]
-        };
-        let index = merged.iter().position(|m| m.density == layer.density);
-        let index = index.unwrap_or_else(|| {
-            merged.push(MergedLayer {
-                density: layer.density.clone(),
-                extinction_per_m: Spectrum::ZERO,
-                scattering_per_m: Spectrum::ZERO,
-                reduced_extinction_per_m: Spectrum::ZERO,
-                parts: Vec::new(),
+    for layer in layers {
+        let solved = scattering == FogScattering::Multiple;
+        let whole = (solved && !layer.density.is_uniform()).then(|| Peak::new(layer, sun_depth));
+        for layer in layer.terms() {
+            let peak = whole.clone().filter(|_| !layer.density.is_uniform());
+            let index = merged.iter().position(|m| m.density == layer.density);
+            let index = index.unwrap_or_else(|| {
+                merged.push(MergedLayer {
+                    density: layer.density.clone(),
+                    extinction_per_m: Spectrum::ZERO,
+                    scattering_per_m: Spectrum::ZERO,
+                    peak_extinction_per_m: Spectrum::ZERO,
+                    parts: Vec::new(),
+                });
+                merged.len() - 1
             });
-            merged.len() - 1
-        });
-        let into = &mut merged[index];
-        into.extinction_per_m += layer.extinction_per_m;
-        into.scattering_per_m += layer.scattering_per_m;
-        into.reduced_extinction_per_m += layer.extinction_per_m
-            - layer.scattering_per_m * by_lane(&peaks, |peak| peak.fraction as f32);
-        into.parts.push(Part { layer, peaks });
+            let into = &mut merged[index];
+            into.extinction_per_m += layer.extinction_per_m;
+            into.scattering_per_m += layer.scattering_per_m;
+            if let Some(peak) = &peak {
+                into.peak_extinction_per_m += layer.scattering_per_m * peak.fraction;
+            }
+            into.parts.push(Part { layer, peak });
+        }
     }
     Ok(merged)
 }
@@ -278,42 +296,44 @@ impl<const N: usize> MergedLayer<N> {
         self.sum(|part| part.layer.phase_lanes(cos_sun))
     }
 
-    /// Part of [`MergedLayer::towards_eye`] in the moments of the solver; all of it if peaks are not split off.
-    pub fn smooth_towards_eye(&self, cos_sun: f64) -> Spectrum<N> {
-        self.sum(|part| match &part.peaks[..] {
-            [] => part.layer.phase_lanes(cos_sun),
-            peaks => by_lane(peaks, |peak| peak.smooth(cos_sun) as f32),
+    /// [`MergedLayer::towards_eye`] by stream; the sum is all of it.
+    #[inline]
+    pub fn streams_towards_eye(&self, cos_sun: f64) -> [Spectrum<N>; STREAMS] {
+        let mut sums = [Spectrum::ZERO; STREAMS];
+        for part in &self.parts {
+            let whole = part.layer.scattering_per_m * part.layer.phase_lanes(cos_sun);
+            for (sum, share) in sums.iter_mut().zip(part.shares(cos_sun)) {
+                *sum = sum.mul_acc(whole, share);
+            }
+        }
+        sums
+    }
+
+    /// Extinction without forward peaks, 1/m.
+    #[inline]
+    pub fn reduced_extinction(&self) -> Spectrum<N> {
+        self.extinction_per_m - self.peak_extinction_per_m
+    }
+
+    /// Extinction for each stream of singly scattered sunlight: that without the peak, with half of it, and all of it.
+    #[inline]
+    pub fn stream_extinction(&self) -> [Spectrum<N>; STREAMS] {
+        std::array::from_fn(|k| {
+            let unscattered = 1.0 - k as f32 / (STREAMS - 1) as f32;
+            self.extinction_per_m - self.peak_extinction_per_m * unscattered
         })
-    }
-
-    /// Extinction coefficient of light scattered by the residual of the peak, 1/m.
-    #[inline]
-    pub fn residual_extinction(&self, cos_sun: f64) -> Spectrum<N> {
-        let fraction =
-            |part: &Part<N>| by_lane(&part.peaks, |peak| peak.residual_fraction(cos_sun));
-        self.extinction_per_m - self.sum(fraction)
-    }
-
-    /// Extinction by the part of the forward peak that another extinction coefficient leaves out, 1/m.
-    #[inline]
-    pub fn peak_extinction(&self, without_per_m: Spectrum<N>) -> Spectrum<N> {
-        (self.extinction_per_m - without_per_m).max_scalar(0.0)
-    }
-
-    /// Whether an angle to the sun lies in the forward peak.
-    #[inline]
-    pub fn in_peak(&self, cos_sun: f64) -> bool {
-        let mut peaks = self.parts.iter().flat_map(|part| &part.peaks);
-        peaks.any(|peak| peak.in_lobe(cos_sun))
     }
 
     /// Input of the solver; `None` for uniform density, which has no upper end.
     pub fn reduced(&self) -> Option<Reduced<N>> {
         (!self.density.is_uniform()).then(|| Reduced {
             density: self.density.clone(),
-            extinction_per_m: self.reduced_extinction_per_m,
-            scattering_per_m: std::array::from_fn::<_, STREAMS, _>(|l| {
-                self.sum(|part| by_lane(&part.peaks, |p| (p.moments[l] - p.fraction) as f32))
+            extinction_per_m: self.reduced_extinction(),
+            scattering_per_m: std::array::from_fn(|l| {
+                self.sum(|part| match &part.peak {
+                    Some(peak) => peak.moments[l] - peak.fraction,
+                    None => Spectrum::ZERO,
+                })
             }),
         })
     }
@@ -327,13 +347,14 @@ impl<const N: usize> MergedLayer<N> {
     }
 }
 
-/// A value for each lane from its peak; 0 without peaks.
-#[inline]
-fn by_lane<const N: usize>(peaks: &[Peak], of: impl Fn(&Peak) -> f32) -> Spectrum<N> {
-    match peaks {
-        [] => Spectrum::ZERO,
-        [peak] => Spectrum::splat(of(peak)),
-        _ => Spectrum::from_fn(|lane| of(&peaks[lane])),
+impl<const N: usize> Part<N> {
+    /// Shares of the streams in the light scattered at an angle to the sun.
+    #[inline]
+    fn shares(&self, cos_sun: f64) -> Shares<N> {
+        match self.peak.as_ref().and_then(|peak| peak.residual.as_ref()) {
+            Some(residual) => residual.shares(cos_sun),
+            None => ONE_STREAM.map(Spectrum::splat),
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! [`PatchView`]: the mean density of patchy fog along rays from an eye.
 
+use super::closed_forms::OPAQUE;
 use super::error::FogError;
-use super::layer::OPAQUE;
 use super::patches::{FogPatches, OCTAVES, PatchField, WAVES, ln_mean};
 use crate::atmosphere::{DensityProfile, RaySegment};
 use crate::math::simd::vectorized;

@@ -1,13 +1,14 @@
 //! Fog tabulated for the rays from one eye height, for pictures.
 
-use super::closed_forms::Lanes;
+use super::closed_forms::{Lanes, OPAQUE};
 use super::fog_lanes::FogLanes;
-use super::layer::{MergedLayer, OPAQUE};
-use super::multiple::{self, Field, STREAMS};
+use super::layer::MergedLayer;
+use super::multiple::{self, DEGREES, Field};
 use crate::atmosphere::RaySegment;
 use crate::math::interpolation::cubic_weights;
 use crate::spectrum::Spectrum;
 use crate::transfer::PathOptics;
+use crate::transfer::residual::STREAMS;
 use glam::DVec3;
 use std::sync::{Arc, OnceLock};
 
@@ -17,8 +18,6 @@ const ROWS: usize = 64;
 const LOGARITHMIC: f32 = 0.6;
 /// Number of distances up to the end of the fog or to the ground, and again beyond the ground.
 const NODES: usize = 41;
-/// Number of tabulated shares of the forward peak that count as scattered.
-const SHARES: usize = 7;
 /// Opacity of the first node relative to that of the last.
 const NEAREST: f32 = 1e-5;
 /// Logarithm of the smallest radiance.
@@ -28,9 +27,9 @@ const DARK: f32 = -80.0;
 ///
 /// Transmittance is evaluated exactly. For the path radiance `S = (1 - T) J` the mean source function `J` is interpolated, which
 /// is finite and smooth from the eye to infinity. It is the sum of multiple scattering, tabulated by azimuth mode, elevation
-/// and distance, and of single scattering of sunlight: `p(Theta)` times a function of elevation, distance and, in the forward
-/// peak, of the share of the peak that counts as scattered. So neither the peak nor the azimuth needs nodes. The coordinate of
-/// distance is `1 - (1 - x / x_end)^(1/4)`, where `x = 1 - T` is the opacity and `x_end` the opacity to space or to the ground.
+/// and distance, and of the streams of singly scattered sunlight ([`crate::transfer::residual`]), each a function of the angle
+/// to the sun times one of elevation and distance. So neither the peak nor the azimuth needs nodes. The coordinate of distance is
+/// `1 - (1 - x / x_end)^(1/4)`, where `x = 1 - T` is the opacity and `x_end` the opacity to space or to the ground.
 ///
 /// Error compared with [`FogLanes::path`]: below 0.3 % of the path radiance (test `tables_match_direct_evaluation`). Rows are
 /// computed on first use, by any thread; values do not depend on it. Fog of several profiles, over round ground, or without
@@ -101,8 +100,7 @@ impl<const N: usize> TableLanes<N> {
             // As in the field, and as cubics between rows undershoot.
             source = source.max_scalar(0.0);
             if let Some(sun) = sun {
-                let sunlit = table.sunlit(&fog.layers[0], cos_sun, &place, &rows);
-                source += sunlit * sun.irradiance;
+                source += sunlit(&fog.layers[0], cos_sun, &place, &rows) * sun.irradiance;
             }
             path_radiance = opacity * source;
         }
@@ -154,9 +152,8 @@ impl<const N: usize> TableLanes<N> {
             sunlit: Vec::new(),
         };
         if table.sun.is_some() {
-            values.modes = vec![[[0.0; STREAMS]; N]; lengths_m.len()];
-            values.sunlit = vec![[Spectrum::ZERO; SHARES]; lengths_m.len()];
-            for m in 1..STREAMS {
+            values.modes = vec![[[0.0; DEGREES]; N]; lengths_m.len()];
+            for m in 1..DEGREES {
                 let light = per_opacity(rays.diffuse(m));
                 for (by_lane, light) in values.modes.iter_mut().zip(light) {
                     for (lane, modes) in by_lane.iter_mut().enumerate() {
@@ -164,12 +161,11 @@ impl<const N: usize> TableLanes<N> {
                     }
                 }
             }
-            for k in 0..SHARES {
-                let light = per_opacity(rays.sunlit(Table::<N>::share(k)));
-                for (sunlit, light) in values.sunlit.iter_mut().zip(light) {
-                    sunlit[k] = light.map(|v| v.max(DARK.exp()).ln());
-                }
-            }
+            let streams: [_; STREAMS] = std::array::from_fn(|k| per_opacity(rays.sunlit(k)));
+            let logarithm = |light: Spectrum<N>| light.map(|v| v.max(DARK.exp()).ln());
+            values.sunlit = (0..lengths_m.len())
+                .map(|node| streams.each_ref().map(|stream| logarithm(stream[node])))
+                .collect();
         }
         values
     }
@@ -238,58 +234,30 @@ impl<const N: usize> Table<N> {
             }),
         }
     }
-
-    /// Share of the peak at a tabulated index, from 0 to 1: dense near 1, where sunlight is most attenuated.
-    fn share(index: usize) -> f32 {
-        let left = 1.0 - index as f32 / (SHARES - 1) as f32;
-        1.0 - left * left
-    }
-
-    /// Real index of a share: inverse of [`Table::share`].
-    #[inline]
-    fn index_of_share(share: f32) -> f32 {
-        (SHARES - 1) as f32 * (1.0 - (1.0 - share).max(0.0).sqrt())
-    }
-
-    /// Single scattering of sunlight by a layer per unit of irradiance and of opacity.
-    #[inline]
-    fn sunlit(
-        &self,
-        layer: &MergedLayer<N>,
-        cos_sun: f64,
-        place: &Place,
-        rows: &[&Row<N>; 4],
-    ) -> Spectrum<N> {
-        let arriving = |k: usize| place.interpolate(rows, |row, node| row.sunlit[node][k]);
-        let (whole, once) = (layer.towards_eye(cos_sun), arriving(0).exp());
-        if !layer.in_peak(cos_sun) {
-            return whole * once;
-        }
-        // All lanes use the same four nodes.
-        let at = share_at(layer, cos_sun).map(Self::index_of_share);
-        let first = (mean(at) as usize).clamp(1, SHARES - 3) - 1;
-        let logarithms: [Spectrum<N>; 4] = std::array::from_fn(|k| arriving(first + k));
-        let logarithm = Spectrum::from_fn(|lane| {
-            let weights = cubic_weights(at[lane] - first as f32);
-            (0..4).map(|k| weights[k] * logarithms[k][lane]).sum()
-        });
-        let smooth = layer.smooth_towards_eye(cos_sun);
-        smooth * once + (whole - smooth) * logarithm.exp()
-    }
 }
 
-/// Share of the forward peak that counts as scattered at an angle to the sun.
+/// Singly scattered sunlight by a layer per unit of irradiance and of opacity.
 #[inline]
-fn share_at<const N: usize>(layer: &MergedLayer<N>, cos_sun: f64) -> Spectrum<N> {
-    let reduced = layer.reduced_extinction_per_m;
-    let (part, whole) = (
-        layer.residual_extinction(cos_sun) - reduced,
-        layer.extinction_per_m - reduced,
-    );
-    Spectrum::from_fn(|lane| match whole[lane] > 0.0 {
-        true => part[lane] / whole[lane],
-        false => 0.0,
-    })
+fn sunlit<const N: usize>(
+    layer: &MergedLayer<N>,
+    cos_sun: f64,
+    place: &Place,
+    rows: &[&Row<N>; 4],
+) -> Spectrum<N> {
+    let mut logarithms = [Spectrum::ZERO; STREAMS];
+    for (row, [near, far]) in rows.iter().zip(place.weights) {
+        let (from, to) = (&row.sunlit[place.node], &row.sunlit[place.node + 1]);
+        for (k, sum) in logarithms.iter_mut().enumerate() {
+            *sum = sum.scale_acc(from[k], near).scale_acc(to[k], far);
+        }
+    }
+    let streams = layer.streams_towards_eye(cos_sun);
+    let mut sum = Spectrum::ZERO;
+    for (stream, logarithm) in streams.into_iter().zip(logarithms) {
+        sum = sum.mul_acc(stream, logarithm.exp());
+    }
+    // Shares of the streams can be negative.
+    sum.max_scalar(0.0)
 }
 
 /// All rising or all descending rays.
@@ -316,9 +284,9 @@ struct Row<const N: usize> {
     mean: Vec<Spectrum<N>>,
     /// Multiple scattering, azimuth mode `m` divided by the `m`-th power of the cosine of the elevation; 0 for mode 0. Modes are
     /// the inner index, so that they are summed as one vector.
-    modes: Vec<[[f32; STREAMS]; N]>,
-    /// Logarithm of singly scattered sunlight, by share of the peak.
-    sunlit: Vec<[Spectrum<N>; SHARES]>,
+    modes: Vec<[[f32; DEGREES]; N]>,
+    /// Logarithm of singly scattered sunlight by stream.
+    sunlit: Vec<[Spectrum<N>; STREAMS]>,
 }
 
 /// Position of a ray in the table of a side.
@@ -354,11 +322,11 @@ impl Place {
         sun: &SunSide<N>,
         direction: DVec3,
     ) -> Spectrum<N> {
-        let mut sums = [[0.0f32; STREAMS]; N];
+        let mut sums = [[0.0f32; DEGREES]; N];
         for (row, [near, far]) in rows.iter().zip(self.weights) {
             let (from, to) = (&row.modes[self.node], &row.modes[self.node + 1]);
             for lane in 0..N {
-                for m in 0..STREAMS {
+                for m in 0..DEGREES {
                     sums[lane][m] += near * from[lane][m] + far * to[lane][m];
                 }
             }
@@ -368,7 +336,7 @@ impl Place {
         let square = (direction.x * direction.x + direction.z * direction.z) as f32;
         let mut factors = [0.0, across, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
         let mut before = 1.0;
-        for m in 2..STREAMS {
+        for m in 2..DEGREES {
             let next = 2.0 * across * factors[m - 1] - square * before;
             (before, factors[m]) = (factors[m - 1], next);
         }
@@ -493,18 +461,16 @@ impl<const N: usize> Rays<'_, N> {
             0 => (self.fog.lighting.ambient, field.ground_radiance),
             _ => (Spectrum::ZERO, Spectrum::ZERO),
         };
-        self.to_each(|s| s.reduced_extinction_per_m, scattered, sky, ground)
+        self.to_each(MergedLayer::reduced_extinction, scattered, sky, ground)
     }
 
-    /// Path radiance of single scattering per unit of irradiance and of scattering towards the eye, if a share of the peak counts
-    /// as scattered.
-    fn sunlit(&self, share: f32) -> Vec<Spectrum<N>> {
-        let extinction = |s: &MergedLayer<N>| {
-            let reduced = s.reduced_extinction_per_m;
-            reduced.scale_acc(s.extinction_per_m - reduced, share)
-        };
-        let single = self.fog.single_scattering(extinction, |_| Spectrum::ONE);
-        let scattered = |part: &RaySegment| single.along(part, &|_| Spectrum::ZERO).0;
+    /// Path radiance of single scattering in a stream per unit of irradiance and of scattering towards the eye.
+    fn sunlit(&self, stream: usize) -> Vec<Spectrum<N>> {
+        let extinction = |s: &MergedLayer<N>| s.stream_extinction()[stream];
+        let single = self
+            .fog
+            .single_scattering(|s| [extinction(s)], |_| [Spectrum::ONE]);
+        let scattered = |part: &RaySegment| single.along(part, &|_| Spectrum::ZERO).0[0];
         self.to_each(extinction, scattered, Spectrum::ZERO, Spectrum::ZERO)
     }
 
@@ -548,9 +514,9 @@ impl<const N: usize> Rays<'_, N> {
             near += before.exp_neg() * *light;
             before += *depth;
             let whole = self.ray.part(0.0, self.lengths_m[k]);
-            let rest = self
-                .fog
-                .depth_of(&whole, &|s| s.peak_extinction(extinction(s)));
+            let rest = self.fog.depth_of(&whole, &|s| {
+                (s.extinction_per_m - extinction(s)).max_scalar(0.0)
+            });
             near + before.exp_neg() * rest * rest.mean_transmittance() * arriving[k]
         });
         each.collect()

@@ -1,5 +1,6 @@
 //! Legendre polynomials and Legendre series.
 
+#[cfg(test)]
 use std::f64::consts::PI;
 
 /// Legendre polynomials `P_l(x)` for `l` below `out.len()`.
@@ -18,6 +19,7 @@ pub fn legendre(x: f64, out: &mut [f64]) {
 }
 
 /// Legendre series `sum over l of (2 l + 1) / (4 pi) moments[l] P_l(x)`: a phase function (1/sr) from its moments.
+#[cfg(test)]
 pub fn legendre_series(moments: &[f64], x: f64) -> f64 {
     let (mut before, mut now) = (0.0, 1.0);
     let mut sum = 0.0;

@@ -90,14 +90,14 @@ impl<const N: usize> Air<N> {
     pub fn without_forward_peaks(&self, l_max: usize) -> Self {
         let mut air = self.clone();
         for s in &mut air.scatterers {
-            let peak = s.moments[l_max + 1].map(|moment| peak_fraction(moment, 0.99));
+            let peak = s.moments[l_max + 1].map(peak_fraction);
             let rest = Spectrum::ONE - peak;
             let removed = s.scattering * peak;
             air.coefficients.extinction_per_m[s.constituent] -= removed;
             air.peaks.extinction_per_m[s.constituent] = removed;
             air.peaks.scattering_per_m[s.constituent] = removed;
             s.scattering -= removed;
-            s.residual = Residual::new(&s.phase, &self.wavelengths_nm, l_max).map(Arc::new);
+            s.residual = Residual::new(&s.phase, &self.wavelengths_nm, l_max, 0.0).map(Arc::new);
             for moment in &mut s.moments {
                 *moment = (*moment - peak) / rest;
             }

@@ -6,7 +6,7 @@
 
 use crate::math::interpolation::{Place, lerp};
 use crate::math::parallel;
-use crate::transfer::residual::STREAMS;
+use crate::transfer::residual::{STREAMS, coordinate, cosine_of, half_sine_of};
 
 /// Number of intervals of a sampled phase function.
 const SAMPLES: usize = 1024;
@@ -59,26 +59,6 @@ impl Between<'_> {
     }
 }
 
-/// Coordinate from 0 to 1 of the sine of half the scattering angle, dense at both ends.
-#[inline(always)]
-fn coordinate(half_sine: f64) -> f64 {
-    let half_cosine = ((1.0 - half_sine) * (1.0 + half_sine)).max(0.0).sqrt();
-    0.5 * (1.0 + half_sine.sqrt() - half_cosine.sqrt())
-}
-
-/// Inverse of [`coordinate`].
-fn half_sine_of(x: f64) -> f64 {
-    let (mut low, mut high) = (0.0, 1.0);
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        match coordinate(middle) < x {
-            true => low = middle,
-            false => high = middle,
-        }
-    }
-    0.5 * (low + high)
-}
-
 impl Peaked {
     /// The phase functions of constituents, of which each is given with its number of streams, in the channels that `convert` makes
     /// of a value at each wavelength. `scattered` is evaluated at a constituent and the cosine of an angle.
@@ -100,8 +80,7 @@ impl Peaked {
             })
             .collect();
         let samples = parallel::map(SAMPLES + 1, |sample| {
-            let half_sine = half_sine_of(sample as f64 / SAMPLES as f64);
-            let nu = 1.0 - 2.0 * half_sine * half_sine;
+            let nu = cosine_of(half_sine_of(sample as f64 / SAMPLES as f64));
             let (mut phases, mut factors) = (Vec::new(), Vec::new());
             for (peaked, &(constituent, _)) in constituents.iter().enumerate() {
                 let Scattered {

@@ -19,14 +19,18 @@
 //!
 //! `(exp(-x t) - 1) / t` is the mean of `-x exp(-y t)` over rates `y` from 0 to `x`, and `x <= f`. Interpolated between the rates `0`,
 //! `f / 2` and `f`, the residual consists of three *streams*, with shares that depend on the angle alone, of which the forward
-//! peak removes nothing, half of its fraction, and all. A stream with its own extinction is singly scattered light.
+//! peak removes nothing, half of its fraction, and all. A stream with its own extinction is singly scattered light. The
+//! interpolation is exact to first order in thin air and at one depth, `t f` from 2 to 5: that of the whole air towards the sun, if it
+//! is known. At a depth of 2 it errs by 0.1 % of all orders of scattering up to there, and by 4 % at 4.
 
+use super::delta_m::peak_fraction;
 use crate::math::interpolation::{Place, lerp};
 use crate::math::parallel;
 use crate::math::simd::vectorized;
 use crate::optics::PhaseFunction;
 use crate::spectrum::Spectrum;
 use std::f64::consts::PI;
+use std::sync::LazyLock;
 
 /// Number of streams.
 pub const STREAMS: usize = 3;
@@ -70,10 +74,12 @@ pub fn scattered_into_peaks<const N: usize>(removed: Spectrum<N>) -> [Spectrum<N
     })
 }
 
-/// Number of moments.
-const MOMENTS: usize = 800;
+/// Number of moments, which resolve a tenth of a degree.
+const MOMENTS: usize = 1600;
 /// Number of intervals of the table in the angle.
 const INTERVALS: usize = 256;
+/// Number of angles that are computed at once.
+const BLOCK: usize = 8;
 /// Smallest fraction of the scattering in a forward peak that matters.
 const MIN_FRACTION: f64 = 1e-3;
 
@@ -84,37 +90,76 @@ pub struct Residual<const N: usize> {
     shares: Vec<[Spectrum<N>; STREAMS - 1]>,
 }
 
-/// Coordinate from 0 to 1 of the scattering angle, dense near 0 and 180 degrees.
-fn coordinate(nu: f64) -> f64 {
-    let nu = nu.clamp(-1.0, 1.0);
-    // More accurate than acos near both ends.
-    let angle = ((1.0 - nu) * (1.0 + nu)).sqrt().atan2(nu);
-    (1.0 - 2.0 / PI * angle).clamp(-1.0, 1.0).acos() / PI
+/// Coordinate from 0 to 1 of the sine of half the scattering angle, dense at both ends.
+#[inline(always)]
+pub(crate) fn coordinate(half_sine: f64) -> f64 {
+    let half_cosine = ((1.0 - half_sine) * (1.0 + half_sine)).max(0.0).sqrt();
+    0.5 * (1.0 + half_sine.sqrt() - half_cosine.sqrt())
 }
 
-/// Cosine of the scattering angle of a coordinate.
-fn cosine(coordinate: f64) -> f64 {
-    (0.5 * PI * (1.0 - (PI * coordinate).cos())).cos()
+/// Inverse of [`coordinate`].
+pub(crate) fn half_sine_of(x: f64) -> f64 {
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        match coordinate(middle) < x {
+            true => low = middle,
+            false => high = middle,
+        }
+    }
+    0.5 * (low + high)
 }
 
-/// Integrals from 0 to `s` of the Lagrange polynomials of the nodes 1 and 2 among 0, 1, 2.
-fn integrals(s: f64) -> [f64; STREAMS - 1] {
-    [s * s * (1.0 - s / 3.0), s * s * (s / 6.0 - 0.25)]
+/// Cosine of the angle of the sine of its half.
+#[inline(always)]
+pub(crate) fn cosine_of(half_sine: f64) -> f64 {
+    1.0 - 2.0 * half_sine * half_sine
+}
+
+/// Optical depths of the forward peak at which the sum of the streams can be exact.
+const EXACT: (f64, f64) = (2.0, 5.0);
+
+/// Cosines of the angles of the table.
+static COSINES: LazyLock<Vec<f64>> = LazyLock::new(|| {
+    let cosine = |k: usize| cosine_of(half_sine_of(k as f64 / INTERVALS as f64));
+    (0..=INTERVALS).map(cosine).collect()
+});
+
+/// Integrals from 0 to `s` of the weights of the rates 1 and 2 among 0, 1, 2. The weights sum to 1, have the mean rate `s`, and give
+/// `exp(-s depth)` exactly.
+fn integrals(s: f64, depth: f64) -> [f64; STREAMS - 1] {
+    let lost = |rate: f64| -(-rate * depth).exp_m1();
+    let of_first_order = 0.5 * s * s;
+    let fast = (of_first_order * lost(1.0) - s + lost(s) / depth) / lost(1.0).powi(2);
+    [of_first_order - 2.0 * fast, fast]
 }
 
 impl<const N: usize> Residual<N> {
-    /// The streams of a phase function whose moments up to `degree` are kept; `None` without a forward peak.
-    pub fn new(phase: &PhaseFunction, wavelengths_nm: &[f64; N], degree: usize) -> Option<Self> {
+    /// The streams of a phase function whose moments up to `degree` are kept, for light that passes about a scattering optical depth
+    /// (0 if unknown); `None` without a forward peak.
+    pub fn new(
+        phase: &PhaseFunction,
+        wavelengths_nm: &[f64; N],
+        degree: usize,
+        depth: f64,
+    ) -> Option<Self> {
+        if N > 1 && !phase.depends_on_wavelength() {
+            let one = Residual::new(phase, &[wavelengths_nm[0]], degree, depth)?;
+            let lanes = |[half, all]: &[Spectrum<1>; 2]| [half, all].map(|s| Spectrum::splat(s[0]));
+            return Some(Self {
+                shares: one.shares.iter().map(lanes).collect(),
+            });
+        }
         let chi = wavelengths_nm.map(|nm| phase.legendre_moments(MOMENTS, nm));
-        let fractions: [f64; N] =
-            std::array::from_fn(|lane| chi[lane][degree + 1].clamp(0.0, 0.99));
+        let fractions: [f64; N] = std::array::from_fn(|lane| peak_fraction(chi[lane][degree + 1]));
         if fractions.iter().all(|&f| f < MIN_FRACTION) {
             return None;
         }
-        let end = integrals(2.0);
+        let exact_at = fractions.map(|f| 0.5 * (f * depth).clamp(EXACT.0, EXACT.1));
+        let ends = exact_at.map(|depth| integrals(2.0, depth));
         // The series of each share of the residual, times the phase function. Its moments end in a constant, that of a peak in
         // the direction of the sun: without it they vanish, and so the degrees kept gain the constant.
-        let series: Vec<[[f64; N]; STREAMS - 1]> = (0..MOMENTS)
+        let mut series: Vec<[[f64; N]; STREAMS - 1]> = (0..MOMENTS)
             .map(|l| {
                 let scale = (2 * l + 1) as f64 / (4.0 * PI) * taper(l);
                 let mut out = [[0.0; N]; STREAMS - 1];
@@ -124,7 +169,7 @@ impl<const N: usize> Residual<N> {
                         true => (2.0 * (f - chi[lane][l]) / f).clamp(0.0, 2.0),
                         false => 0.0,
                     };
-                    let here = integrals(rate);
+                    let (here, end) = (integrals(rate, exact_at[lane]), ends[lane]);
                     for k in 0..STREAMS - 1 {
                         out[k][lane] = scale * 0.5 * f * (end[k] - here[k]);
                     }
@@ -132,40 +177,61 @@ impl<const N: usize> Residual<N> {
                 out
             })
             .collect();
-        let shares = parallel::map(INTERVALS + 1, |k| {
-            let nu = cosine(k as f64 / INTERVALS as f64);
-            let p = phase.in_lanes(nu, wavelengths_nm);
+        let counts =
+            |terms: &[[f64; N]; STREAMS - 1]| terms.iter().flatten().any(|term| term.abs() > 1e-9);
+        let last = series.iter().rposition(counts);
+        series.truncate(last.map_or(0, |last| last + 1));
+        let cosines = &*COSINES;
+        let blocks = parallel::map(cosines.len().div_ceil(BLOCK), |block| {
+            let cosines = &cosines[block * BLOCK..];
+            let nu: [f64; BLOCK] = std::array::from_fn(|k| *cosines.get(k).unwrap_or(&0.0));
             let sums = vectorized(
                 #[inline(always)]
-                || sums(&series, nu),
+                || sums(&series, &nu),
             );
-            sums.map(|sum| Spectrum(sum.map(|value| value as f32)) / p)
+            let shares = |(sums, &nu): (&[[f64; N]; STREAMS - 1], &f64)| {
+                let p = phase.in_lanes(nu, wavelengths_nm);
+                sums.map(|sum| Spectrum(sum.map(|value| value as f32)) / p)
+            };
+            sums.iter().zip(cosines).map(shares).collect::<Vec<_>>()
         });
-        Some(Self { shares })
+        Some(Self {
+            shares: blocks.concat(),
+        })
     }
 
     /// Shares at the cosine `nu` of the scattering angle.
+    #[inline]
     pub fn shares(&self, nu: f64) -> Shares<N> {
-        let Place { below, fraction } = Place::evenly(coordinate(nu), INTERVALS + 1);
+        let half_sine = (0.5 * (1.0 - nu)).clamp(0.0, 1.0).sqrt();
+        let Place { below, fraction } = Place::evenly(coordinate(half_sine), INTERVALS + 1);
         let (a, b) = (&self.shares[below], &self.shares[below + 1]);
         let [half, all] = [0, 1].map(|k| lerp(a[k], b[k], fraction as f32));
         [Spectrum::ONE - half - all, half, all]
     }
 }
 
-/// Sums of series of Legendre polynomials at `nu`.
+/// Sums of series of Legendre polynomials at several cosines.
 #[inline(always)]
-fn sums<const N: usize>(series: &[[[f64; N]; STREAMS - 1]], nu: f64) -> [[f64; N]; STREAMS - 1] {
-    let mut sums = [[0.0; N]; STREAMS - 1];
-    let (mut before, mut now) = (0.0, 1.0);
+fn sums<const N: usize>(
+    series: &[[[f64; N]; STREAMS - 1]],
+    nu: &[f64; BLOCK],
+) -> [[[f64; N]; STREAMS - 1]; BLOCK] {
+    let mut sums = [[[0.0; N]; STREAMS - 1]; BLOCK];
+    let (mut before, mut now) = ([0.0; BLOCK], [1.0; BLOCK]);
     for (l, terms) in series.iter().enumerate() {
-        for (sums, terms) in sums.iter_mut().zip(terms) {
-            for lane in 0..N {
-                sums[lane] += terms[lane] * now;
+        for (sums, now) in sums.iter_mut().zip(&now) {
+            for (sums, terms) in sums.iter_mut().zip(terms) {
+                for lane in 0..N {
+                    sums[lane] += terms[lane] * now;
+                }
             }
         }
         let l = l as f64;
-        (before, now) = (now, ((2.0 * l + 1.0) * nu * now - l * before) / (l + 1.0));
+        let (a, b) = ((2.0 * l + 1.0) / (l + 1.0), l / (l + 1.0));
+        for k in 0..BLOCK {
+            (before[k], now[k]) = (now[k], a * nu[k] * now[k] - b * before[k]);
+        }
     }
     sums
 }
@@ -189,7 +255,7 @@ mod tests {
     fn streams_hold_all_orders_of_scattering_at_small_angles() {
         let g: f64 = 0.93;
         let phase = PhaseFunction::HenyeyGreenstein { g };
-        let residual = Residual::<4>::new(&phase, &[550.0; 4], DEGREE).unwrap();
+        let residual = Residual::<4>::new(&phase, &[550.0; 4], DEGREE, 0.0).unwrap();
         let f = g.powi(DEGREE as i32 + 1);
         let low = |nu: f64| legendre_series(&[1.0; DEGREE + 1], nu);
         for (depth, limit) in [
@@ -229,10 +295,10 @@ mod tests {
             PhaseFunction::Isotropic,
             PhaseFunction::HenyeyGreenstein { g: 0.4 },
         ] {
-            assert!(Residual::<4>::new(&phase, &[550.0; 4], DEGREE).is_none());
+            assert!(Residual::<4>::new(&phase, &[550.0; 4], DEGREE, 0.0).is_none());
         }
         let phase = PhaseFunction::HenyeyGreenstein { g: 0.8 };
-        let residual = Residual::<4>::new(&phase, &[550.0; 4], DEGREE).unwrap();
+        let residual = Residual::<4>::new(&phase, &[550.0; 4], DEGREE, 0.0).unwrap();
         for nu in [-1.0, -0.3, 0.0, 0.9, 1.0] {
             let [a, b, c] = residual.shares(nu);
             assert!(((a + b + c)[0] - 1.0).abs() < 1e-5, "{nu}");

@@ -140,10 +140,9 @@ fn errors(drops: Drops, tau: f64, rays: &[ViewRay], paths: u64) -> Vec<[f64; 2]>
     rays.iter().map(error).collect()
 }
 
-/// The diffuse field has 8 moments; the rest of the peak is added to single scattering only. A glory, which is as narrow as the
-/// peak, is therefore not blurred by it and up to 17 % too bright; other errors are below 8 %.
+/// Errors are below 8 %, in the glory below 5 %: it is as narrow as the forward peak, which blurs it.
 fn check(drops: Drops, tau: f64, paths: u64) {
-    for (rays, limit) in [(&UP[..], 0.08), (&DOWN[..], 0.08), (&GLORY[..], 0.17)] {
+    for (rays, limit) in [(&UP[..], 0.08), (&DOWN[..], 0.08), (&GLORY[..], 0.05)] {
         for [error, noise] in errors(drops, tau, rays, paths) {
             assert!(error.abs() < limit + 3.0 * noise, "{error} {noise}");
         }

@@ -1,7 +1,7 @@
 //! The diffuse light in a fog, and its scattering into rays.
 
 use super::heights::{self, Weighted};
-use super::legendre::{self, COUNT, STREAMS};
+use super::legendre::{self, COUNT, DEGREES};
 use super::ordinates::{self, Boundary, Cell};
 use crate::atmosphere::DensityProfile;
 use crate::atmosphere::RaySegment;
@@ -22,7 +22,7 @@ pub struct Reduced<const N: usize> {
     /// Extinction without the peak, 1/m.
     pub extinction_per_m: Spectrum<N>,
     /// Scattering times its Legendre moments without the peak, 1/m.
-    pub scattering_per_m: [Spectrum<N>; STREAMS],
+    pub scattering_per_m: [Spectrum<N>; DEGREES],
 }
 
 /// Factor of each moment in a direction.
@@ -143,8 +143,8 @@ impl<const N: usize> Field<N> {
             stored.iter().rev().map(|&k| &solution.moments[k]).collect();
         for (k, cell) in cells.iter().enumerate() {
             for (end, moments) in [at_heights[k], at_heights[k + 1]].into_iter().enumerate() {
-                for m in 0..STREAMS {
-                    for l in m..STREAMS {
+                for m in 0..DEGREES {
+                    for l in m..DEGREES {
                         let at = legendre::index(l, m);
                         let scattered = (2 * l + 1) as f64 * cell.scattering[l] * moments[at];
                         let source = if cell.extinction > 0.0 {

@@ -4,26 +4,26 @@
 use std::sync::LazyLock;
 
 /// Number of polar angles in both hemispheres, and of Legendre moments.
-pub const STREAMS: usize = 8;
+pub const DEGREES: usize = 8;
 
-/// Number of pairs `l < STREAMS`, `m <= l`.
-pub const COUNT: usize = STREAMS * (STREAMS + 1) / 2;
+/// Number of pairs `l < DEGREES`, `m <= l`.
+pub const COUNT: usize = DEGREES * (DEGREES + 1) / 2;
 
 /// Index of the pair `(l, m)`: all `l` of `m = 0` first.
 #[inline(always)]
 pub const fn index(l: usize, m: usize) -> usize {
-    m * STREAMS - m * (m + 1) / 2 + l
+    m * DEGREES - m * (m + 1) / 2 + l
 }
 
 /// Factors `(a, b)` of the recurrence `Y_l = a mu Y_(l-1) - b Y_(l-2)` at fixed `m`, and of `Y_mm = a sine Y_(m-1)(m-1)`.
 static FACTORS: LazyLock<[(f64, f64); COUNT]> = LazyLock::new(|| {
     let mut factors = [(0.0, 0.0); COUNT];
-    for m in 0..STREAMS {
+    for m in 0..DEGREES {
         let y = m as f64;
         if m > 0 {
             factors[index(m, m)].0 = ((2.0 * y - 1.0) / (2.0 * y)).sqrt();
         }
-        for l in m + 1..STREAMS {
+        for l in m + 1..DEGREES {
             let x = l as f64;
             let norm = (x * x - y * y).sqrt();
             let back = ((x - 1.0) * (x - 1.0) - y * y).max(0.0).sqrt();
@@ -44,7 +44,7 @@ pub fn evaluate(mu: f64) -> [f64; COUNT] {
 pub fn of_mode(mu: f64, m: usize) -> [f32; COUNT] {
     let all = with_sine(mu, 1.0);
     let mut values = [0.0; COUNT];
-    for l in m..STREAMS {
+    for l in m..DEGREES {
         values[index(l, m)] = all[index(l, m)] as f32;
     }
     values
@@ -55,13 +55,13 @@ fn with_sine(mu: f64, sine: f64) -> [f64; COUNT] {
     let factors = &*FACTORS;
     let mut values = [0.0; COUNT];
     let mut diagonal = 1.0;
-    for m in 0..STREAMS {
+    for m in 0..DEGREES {
         if m > 0 {
             diagonal *= sine * factors[index(m, m)].0;
         }
         let (mut before, mut now) = (0.0, diagonal);
         values[index(m, m)] = now;
-        for l in m + 1..STREAMS {
+        for l in m + 1..DEGREES {
             let (a, b) = factors[index(l, m)];
             (before, now) = (now, a * mu * now - b * before);
             values[index(l, m)] = now;
@@ -76,8 +76,8 @@ pub fn in_direction(mu: f64, cos_azimuth: f64) -> [f32; COUNT] {
     let polar = evaluate(mu);
     let mut values = [0.0f32; COUNT];
     let (mut before, mut now) = (cos_azimuth, 1.0);
-    for m in 0..STREAMS {
-        for l in m..STREAMS {
+    for m in 0..DEGREES {
+        for l in m..DEGREES {
             values[index(l, m)] = (polar[index(l, m)] * now) as f32;
         }
         (before, now) = (now, 2.0 * cos_azimuth * now - before);
@@ -92,8 +92,8 @@ mod tests {
     #[test]
     fn indices_are_consecutive() {
         let mut next = 0;
-        for m in 0..STREAMS {
-            for l in m..STREAMS {
+        for m in 0..DEGREES {
+            for l in m..DEGREES {
                 assert_eq!(index(l, m), next);
                 next += 1;
             }
@@ -119,7 +119,7 @@ mod tests {
             let sines = ((1.0 - a * a) * (1.0 - b * b)).sqrt();
             let cos_angle = a * b + sines * azimuth.cos();
             let (from, to) = (evaluate(b), in_direction(a, azimuth.cos()));
-            for l in 0..STREAMS {
+            for l in 0..DEGREES {
                 let sum: f64 = (0..=l)
                     .map(|m| {
                         let twice = if m == 0 { 1.0 } else { 2.0 };

@@ -10,4 +10,4 @@ mod legendre;
 mod ordinates;
 
 pub(super) use field::{DirectionWeights, Field, Reduced};
-pub(super) use legendre::{STREAMS, in_direction, of_mode};
+pub(super) use legendre::{DEGREES, in_direction, of_mode};

@@ -5,12 +5,12 @@
 //! stable; then radiance is evaluated from the top down. The equation of transfer is discretized by central differences, which
 //! keep radiance positive in thin cells; thicker ones are built from thin ones by doubling (van de Hulst 1963).
 
-use super::legendre::{self, COUNT, STREAMS};
+use super::legendre::{self, COUNT, DEGREES};
 use crate::math::quadrature::FixedRule;
 use std::f64::consts::PI;
 
 /// Number of polar angles in one hemisphere.
-const HALF: usize = STREAMS / 2;
+const HALF: usize = DEGREES / 2;
 
 /// Optical depth above which a cell is built by doubling: central differences are positive up to twice the smallest cosine, 0.139.
 const THICK: f64 = 0.1;
@@ -27,7 +27,7 @@ pub struct Cell {
     /// Vertical optical depth.
     pub extinction: f64,
     /// Scattering optical depth times Legendre moment, for each `l`.
-    pub scattering: [f64; STREAMS],
+    pub scattering: [f64; DEGREES],
     /// Direct irradiance on a surface facing the sun, mean over the layer's optical depth.
     pub sunlight: f64,
 }
@@ -96,9 +96,9 @@ pub fn solve(cells: &[Cell], boundary: &Boundary) -> Solution {
     };
     let sun = legendre::evaluate(boundary.sin_sun);
     let cells = &limited(cells);
-    for m in 0..STREAMS {
+    for m in 0..DEGREES {
         let lit = |cell: &Cell| {
-            let source = (m..STREAMS).map(|l| cell.scattering[l] * sun[legendre::index(l, m)]);
+            let source = (m..DEGREES).map(|l| cell.scattering[l] * sun[legendre::index(l, m)]);
             cell.sunlight != 0.0 && source.map(f64::abs).sum::<f64>() > 1e-9 * cell.extinction
         };
         // Only sunlight depends on azimuth.
@@ -193,7 +193,7 @@ impl Step {
         let mut source_down = Vector::default();
         let mut source_up = Vector::default();
         let sunlight = cell.sunlight / (4.0 * PI) * if m == 0 { 1.0 } else { 2.0 };
-        for l in m..STREAMS {
+        for l in m..DEGREES {
             let strength = (2 * l + 1) as f64 * cell.scattering[l];
             let at = legendre::index(l, m);
             for i in 0..HALF {
@@ -293,7 +293,7 @@ impl Step {
 
 /// Stores the moments of mode `m` of the radiance at the polar angles.
 fn store(m: usize, down: &Vector, up: &Vector, angles: &Angles, moments: &mut [f64; COUNT]) {
-    for l in m..STREAMS {
+    for l in m..DEGREES {
         let at = legendre::index(l, m);
         moments[at] = (0..HALF)
             .map(|j| 0.5 * angles.weight[j] * angles.down[j][at] * (down[j] + parity(l, m) * up[j]))
