@@ -1,6 +1,7 @@
 //! Range of sun elevations that a sky is prepared for.
 
-/// The sun elevations and observer altitudes that a prepared sky supports.
+/// The sun elevations and observer altitudes that a sky is prepared for. For others it is solved again when they are first asked for
+/// ([`Sky::view`](super::Sky::view)).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum SunCoverage {
@@ -26,6 +27,30 @@ impl SunCoverage {
         Self::Near {
             sun_elevation_deg,
             observer_altitude_m,
+        }
+    }
+
+    /// True if the light is solved for wherever the rays of an eye at an altitude above the ground lead under a sun at an elevation.
+    pub(super) fn covers(
+        self,
+        (altitude_m, sun_elevation_deg): (f64, f64),
+        ground_radius_m: f64,
+        top_radius_m: f64,
+    ) -> bool {
+        /// Elevation below which a source has no light left that a coarse spacing could miss, degrees.
+        const SET_DEG: f64 = -2.0;
+        let zeniths = self.sun_zeniths_deg(ground_radius_m, top_radius_m);
+        let (first, last) = (zeniths[0] - 1e-6, zeniths[zeniths.len() - 1] + 1e-6);
+        let range = range_deg(altitude_m, ground_radius_m, top_radius_m);
+        let zenith = 90.0 - sun_elevation_deg;
+        match self {
+            Self::All => true,
+            Self::AboveHorizon => sun_elevation_deg > SET_DEG,
+            Self::Near { .. } if range > WIDE_DEG => first < 0.0 && last > NIGHT_DEG,
+            Self::Near { .. } => {
+                (zenith - range).clamp(0.0, NIGHT_DEG) >= first
+                    && (zenith + range).min(NIGHT_DEG) <= last
+            }
         }
     }
 
@@ -66,16 +91,8 @@ impl SunCoverage {
                 _ => all_zeniths_deg(),
             };
         };
-        // A view ray extends to the horizon of the highest air; there the sun's zenith angle differs by the curvature of the
-        // planet along the way.
-        let horizon_dip = |radius_m: f64| {
-            (ground_radius_m / radius_m.max(ground_radius_m))
-                .acos()
-                .to_degrees()
-        };
-        let range =
-            horizon_dip(top_radius_m) + horizon_dip(ground_radius_m + observer_altitude_m.max(0.0));
-        if range > 15.0 {
+        let range = range_deg(observer_altitude_m, ground_radius_m, top_radius_m);
+        if range > WIDE_DEG {
             return all_zeniths_deg();
         }
         let centre = (90.0 - sun_elevation_deg).clamp(0.0, NIGHT_DEG);
@@ -108,6 +125,20 @@ impl SunCoverage {
         }
         zeniths
     }
+}
+
+/// Range of a view beyond which it is prepared for all suns, degrees.
+const WIDE_DEG: f64 = 15.0;
+
+/// Largest difference of the sun's zenith angle along the view rays of an eye above the ground, degrees: a ray extends to the horizon
+/// of the highest air, where the sun's zenith angle differs by the curvature of the planet along the way.
+fn range_deg(altitude_m: f64, ground_radius_m: f64, top_radius_m: f64) -> f64 {
+    let horizon_dip = |radius_m: f64| {
+        (ground_radius_m / radius_m.max(ground_radius_m))
+            .acos()
+            .to_degrees()
+    };
+    horizon_dip(top_radius_m) + horizon_dip(ground_radius_m + altitude_m.max(0.0))
 }
 
 /// Zenith angles over the whole range: coarse for high suns, every degree through twilight.
@@ -155,6 +186,29 @@ mod tests {
             assert!(zeniths[0] <= (90.0 - elevation - 10.0).max(0.0));
             assert!(zeniths.len() < 32, "{zeniths:?}");
         }
+    }
+
+    #[test]
+    fn views_are_covered_by_what_was_prepared_for_them() {
+        let earth = (6.36e6, 6.46e6);
+        let covers = |coverage: SunCoverage, altitude_m: f64, elevation: f64| {
+            coverage.covers((altitude_m, elevation), earth.0, earth.1)
+        };
+        for elevation in [90.0, 60.0, 10.0, 2.0, -4.0, -18.0, -40.0, -90.0] {
+            for altitude_m in [0.0, 3e3, 12e3, 60e3, 400e3] {
+                let near = SunCoverage::near(elevation, altitude_m);
+                assert!(
+                    covers(near, altitude_m, elevation),
+                    "{elevation} {altitude_m}"
+                );
+                assert!(covers(SunCoverage::All, altitude_m, elevation));
+            }
+        }
+        let near = SunCoverage::near(30.0, 0.0);
+        assert!(covers(near, 0.0, 31.0) && covers(near, 10.0, 29.0));
+        assert!(!covers(near, 0.0, 10.0) && !covers(near, 0.0, 60.0));
+        assert!(!covers(near, 400e3, 30.0) && !covers(near, 20e3, 30.0));
+        assert!(covers(SunCoverage::near(30.0, 400e3), 0.0, -5.0));
     }
 
     #[test]

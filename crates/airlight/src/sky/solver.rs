@@ -1,6 +1,7 @@
 //! The prepared sky.
 
 use super::block::{self, Block};
+use super::coverage::SunCoverage;
 use super::settings::{SkyError, SkySettings};
 use crate::atmosphere::Atmosphere;
 use crate::control::Control;
@@ -8,7 +9,7 @@ use crate::spectrum::WavelengthGrid;
 use crate::transfer::columns::SlantColumns;
 use crate::transfer::shell::Shell;
 use std::fmt;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// The solved light inside an atmosphere at the wavelengths of a grid. A handle: cheap to clone and to share between
 /// threads.
@@ -19,8 +20,11 @@ pub struct Sky(Arc<Solution>);
 struct Solution {
     atmosphere: Atmosphere,
     grid: WavelengthGrid,
+    settings: SkySettings,
     columns: Arc<SlantColumns>,
     blocks: Vec<Box<dyn Block>>,
+    /// The same for all suns and altitudes, once a view needs it.
+    wider: OnceLock<Sky>,
 }
 
 impl fmt::Debug for Sky {
@@ -72,8 +76,10 @@ impl Sky {
         Ok(Self(Arc::new(Solution {
             atmosphere: atmosphere.clone(),
             grid,
+            settings: settings.clone(),
             columns,
             blocks,
+            wider: OnceLock::new(),
         })))
     }
 
@@ -97,6 +103,31 @@ impl Sky {
             .fold(0.0, f32::max)
     }
 
+    /// True if the sky is prepared for views from `altitude_m` (m above sea level) under a sun at an elevation (degrees):
+    /// [`SkySettings::suns`]. For others [`Sky::view`] has to solve again.
+    pub fn covers(&self, altitude_m: f64, sun_elevation_deg: f64) -> bool {
+        let shell = self.shell();
+        let height_m = shell.planet_radius_m + altitude_m - shell.ground_radius_m;
+        let bounds = (shell.ground_radius_m, shell.top_radius_m);
+        let suns = self.0.settings.suns;
+        suns.covers((height_m, sun_elevation_deg), bounds.0, bounds.1)
+    }
+
+    /// This sky if it covers a view, otherwise that for all suns and altitudes.
+    pub(super) fn covering(&self, altitude_m: f64, sun_elevation_deg: f64) -> &Self {
+        if self.covers(altitude_m, sun_elevation_deg) {
+            return self;
+        }
+        self.0.wider.get_or_init(|| {
+            let settings = SkySettings {
+                suns: SunCoverage::All,
+                ..self.0.settings.clone()
+            };
+            Self::prepare(&self.0.atmosphere, &self.0.grid, &settings)
+                .expect("air that was solved under one sun can be solved under all")
+        })
+    }
+
     pub(super) fn shell(&self) -> &Shell {
         &self.0.columns.shell
     }
@@ -112,7 +143,6 @@ mod tests {
     use super::*;
     use crate::atmosphere::reference;
     use crate::control::Progress;
-    use crate::sky::SunCoverage;
     use std::sync::Mutex;
     use std::sync::atomic::{AtomicBool, Ordering};
 

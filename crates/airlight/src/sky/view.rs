@@ -3,6 +3,7 @@
 use super::block::{BlockLight, SampleLight};
 use super::peaked::Part;
 use super::solver::Sky;
+use crate::axes;
 use crate::sun::{SunDisc, SunState};
 use crate::transfer::ray::Ray;
 use glam::DVec3;
@@ -61,6 +62,12 @@ impl LineOfSight {
 impl Sky {
     /// View from `altitude_m` (m; raised to the ground if below it) under a sun: a [`SunState`], or a direction (world axes:
     /// [`crate::axes`]), in which the sun is at the planet's mean distance.
+    ///
+    /// A view that the sky is not prepared for ([`Sky::covers`]) solves for all suns and altitudes when it is the first of its kind,
+    /// which takes a second or two, and is as right as the others.
+    ///
+    /// # Panics
+    /// Where that solution does not converge although the one that was asked for did.
     pub fn view(&self, altitude_m: f64, sun: impl Into<SunState>) -> View {
         View::new(self, altitude_m, sun.into())
     }
@@ -68,6 +75,8 @@ impl Sky {
 
 impl View {
     pub(super) fn new(sky: &Sky, altitude_m: f64, sun: SunState) -> Self {
+        let sun_elevation_deg = axes::elevation_deg(sun.direction.normalize());
+        let sky = sky.covering(altitude_m, sun_elevation_deg);
         let radius_m = (sky.shell().planet_radius_m + altitude_m).max(sky.shell().ground_radius_m);
         Self {
             sky: sky.clone(),
