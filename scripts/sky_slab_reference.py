@@ -2,7 +2,7 @@
 """Write the reference table of light in optically thick air for the tests of the crate `airlight`.
 
     pip install numpy PythonicDISORT
-    python3 scripts/sky_slab_reference.py > crates/airlight/tests/data/sky_slabs_disort.csv
+    python3 scripts/sky_slab_reference.py > crates/airlight-validation/data/sky_slabs_disort.csv
 
 Takes a minute. Slabs of a Henyey-Greenstein medium under a sun of unit irradiance, seen from the ground and from above.
 """

@@ -1,6 +1,6 @@
 //! [`PreparedFrame`]: one moment of a scene, ready to draw.
 
-use crate::canvas::{Canvas, POLARISATION_CHANNELS, Passes};
+use crate::canvas::{Canvas, POLARISATION_CHANNELS, Passes, polarisation};
 use crate::channels::PixelChannels;
 use crate::error::RenderError;
 use crate::exposure::{METERED_WIDTH, MeteredPicture};
@@ -18,6 +18,7 @@ use airlight::night::NightState;
 use airlight::scene::{
     Channels, Gamut, PreparedModel, RadianceSampler, RadianceView, SunAngles, SunDiscPlacement,
 };
+use airlight::sky::PolarisationTable;
 use airlight::sun::Moment;
 use airlight_image::output::exr::{self, ExrOptions, SamplePrecision};
 use airlight_image::output::{Metadata, Written, spectral};
@@ -299,8 +300,16 @@ impl<'r> PreparedFrame<'r> {
             exposure: self.file_exposure(&tone),
             ..WrittenFrame::default()
         };
+        let polarisation = match self.renderer.scene().output.polarisation {
+            Some(true) => self.preview.polarisation_table(),
+            _ => None,
+        };
         let mut done = 0;
         for file in files {
+            if let Some(table) = polarisation.as_ref().filter(|_| file.layer != Layer::Disc) {
+                let rows = polarisation_rows(&file.frame, table)?;
+                write_polarisation(&file.path, file.frame.size(), &rows, control)?;
+            }
             if let Some(objects) = self.depth_of(file) {
                 let path = tagged_path(&file.path, "depth").with_extension("exr");
                 write_depth(&path, &file.frame, objects, control.reporting_to(&SILENT))?;
@@ -393,8 +402,7 @@ impl<'r> PreparedFrame<'r> {
             write_picture(&path, size, &rows, tone, &self.options(file, tone), control)?;
         }
         if let Some(rows) = canvas.polarisation() {
-            let path = tagged_path(&file.path, "polarisation").with_extension("exr");
-            write_polarisation(&path, size, &rows?, control)?;
+            write_polarisation(&file.path, size, &rows?, control)?;
         }
         Ok(())
     }
@@ -478,19 +486,38 @@ impl<'r> PreparedFrame<'r> {
     }
 }
 
+/// Values of [`POLARISATION_CHANNELS`] at the centre of each pixel.
+fn polarisation_rows(frame: &Frame, table: &PolarisationTable) -> Result<StoredRows, ImageError> {
+    let size = frame.size();
+    let pixels = (0..size.height()).flat_map(|y| (0..size.width()).map(move |x| (x, y)));
+    let values =
+        pixels.flat_map(
+            |(x, y)| match frame.direction(f64::from(x) + 0.5, f64::from(y) + 0.5) {
+                Some(direction) => {
+                    let [q, u] = table.sample(direction);
+                    polarisation(&[1.0, q.into(), u.into()])
+                }
+                None => [0.0; 4],
+            },
+        );
+    StoredRows::new(size.width(), POLARISATION_CHANNELS.len(), values.collect())
+}
+
+/// Writes a map of polarisation beside a picture.
 fn write_polarisation(
-    path: &Path,
+    picture: &Path,
     size: Size,
     rows: &StoredRows,
     control: Control<'_>,
 ) -> Result<Written, ImageError> {
+    let path = tagged_path(picture, "polarisation").with_extension("exr");
     let options = ExrOptions {
         precision: SamplePrecision::Float,
         ..ExrOptions::default()
     };
     let metadata = Metadata::default();
     exr::write(
-        path,
+        &path,
         size,
         &POLARISATION_CHANNELS,
         rows,

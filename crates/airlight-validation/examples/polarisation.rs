@@ -4,11 +4,11 @@
 //! cargo run --release -p airlight-validation --example polarisation [PATHS]
 //! ```
 
-use airlight::atmosphere::AerosolType;
-use airlight::atmosphere::{AerosolLoad, AerosolMixture, Atmosphere, ConstituentKind, preset};
+use airlight::atmosphere::preset;
 use airlight::axes::direction;
 use airlight::monte_carlo::{MonteCarlo, MonteCarloSettings, PolarisedEstimate};
 use airlight::spectrum::WavelengthGrid;
+use airlight_validation::skies::truth_air;
 use std::error::Error;
 
 /// View azimuths from the sun and view elevations, degrees.
@@ -29,7 +29,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     for (name, air) in [
         ("`clear`", preset("clear")?),
         ("`hazy`", preset("hazy")?),
-        ("hazy, continental particles", continental()?),
+        (
+            "hazy, continental particles",
+            truth_air("continental").ok_or("no such air")?,
+        ),
     ] {
         let settings = MonteCarloSettings {
             paths,
@@ -41,26 +44,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
     }
     Ok(())
-}
-
-/// `hazy` with continental particles by Lorenz-Mie theory instead of its haze, with the same optical depth.
-fn continental() -> Result<Atmosphere, Box<dyn Error>> {
-    let mut air = preset("hazy")?;
-    let haze = air
-        .constituent(&ConstituentKind::Aerosol)
-        .ok_or("no aerosol")?;
-    let density = Some(haze.density.clone());
-    let mixture = AerosolMixture::of(
-        AerosolType::ContinentalAverage,
-        AerosolMixture::USUAL_HUMIDITY,
-    )?;
-    let load = Some(AerosolLoad::OpticalDepth550(0.35));
-    let (ground, top) = (air.planet.ground_altitude_m, air.planet.top_altitude_m);
-    let particles = mixture.constituent(load, density, air.clear_air(), ground, top)?;
-    air.constituents
-        .retain(|part| part.kind != ConstituentKind::Aerosol);
-    air.constituents.push(particles);
-    Ok(air)
 }
 
 fn row(sky: &MonteCarlo, sun_deg: f64) -> String {

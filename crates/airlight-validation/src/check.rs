@@ -11,6 +11,8 @@ pub enum Suite {
     Tables,
     /// Skies by day and in twilight compared with Airlight's Monte Carlo.
     MonteCarlo,
+    /// Skies around the sun, polarised, and of thick air compared with Airlight's Monte Carlo and discrete ordinates.
+    Limits,
     /// Other sky models compared with Airlight: differences, without a reference.
     Peers,
     /// The sky measured on 27 May 2013.
@@ -20,6 +22,7 @@ pub enum Suite {
 airlight::named! { Suite, "a set of comparisons", [
     ("tables", (Tables), "skies against tables of an independent Monte Carlo, SASKTRAN2 and libRadtran"),
     ("monte-carlo", (MonteCarlo), "skies in daylight and twilight against Airlight's Monte Carlo solver"),
+    ("limits", (Limits), "the sky around the sun, polarised light and optically thick air against Monte Carlo and discrete ordinates"),
     ("peers", (Peers), "published sky models against the default solver"),
     ("measured", (Measured), "the sky measured on 27 May 2013 against the solver and published models"),
 ] }
@@ -30,6 +33,7 @@ impl Suite {
         match self {
             Self::Tables => "Skies against tables of other solvers",
             Self::MonteCarlo => "Skies by day and in twilight against Airlight's Monte Carlo",
+            Self::Limits => "Skies around the sun, polarised, and of optically thick air",
             Self::Peers => "Differences to other models of the sky (without a reference)",
             Self::Measured => "The sky measured at Ithaca on 27 May 2013",
         }

@@ -4,10 +4,11 @@
 //! checks of some [`Suite`]s; [`report`] writes them.
 //!
 //! Modules, each importing only from those above it: [`check`] (rows and their statistics), [`table`] (the embedded tables),
-//! [`solved`] (a sky solved at a table's wavelengths), [`skies`] (tables of skies), [`measured`] (the measured sky),
+//! [`solved`] (a sky solved at a table's wavelengths), [`skies`] (tables of skies), [`limits`] (skies where solvers fail), [`measured`] (the measured sky),
 //! [`report`].
 
 pub mod check;
+pub mod limits;
 pub mod measured;
 pub mod report;
 pub mod skies;
@@ -25,6 +26,7 @@ pub fn run(suites: &[Suite]) -> Vec<Check> {
         .flat_map(|suite| match suite {
             Suite::Tables => skies::checks(),
             Suite::MonteCarlo => skies::against_truth(&SkySettings::default()),
+            Suite::Limits => limits::checks(),
             Suite::Peers => skies::peers(),
             Suite::Measured => measured::checks(),
         })

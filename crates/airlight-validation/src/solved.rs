@@ -48,6 +48,15 @@ impl Solved {
         })
     }
 
+    /// This sky under the mean solar irradiance around each wavelength, as Airlight's Monte Carlo has it, instead of that at the
+    /// wavelengths themselves.
+    pub fn with_mean_sunlight(self) -> Self {
+        Self {
+            solar: self.sky.grid().solar_irradiance().to_vec(),
+            ..self
+        }
+    }
+
     /// This sky with the sun at `sun_distance` times its mean distance.
     pub fn at_sun_distance(self, sun_distance: f64) -> Self {
         Self {
@@ -80,6 +89,7 @@ impl Solved {
         };
         Light {
             single: scaled(&line.single),
+            path: scaled(&line.path_radiance()),
             all: scaled(&line.radiance()),
         }
     }
@@ -100,6 +110,8 @@ impl Solved {
 pub struct Light {
     /// Single scattering.
     pub single: Vec<f64>,
+    /// All orders, without the light of the ground that is seen.
+    pub path: Vec<f64>,
     /// All orders.
     pub all: Vec<f64>,
 }

@@ -1,4 +1,4 @@
-//! Embedded comma-separated tables with a header.
+//! Embedded comma-separated tables with a header, after lines of comment that begin with `#`.
 //!
 //! They are compiled in and read completely by the tests, so parsing panics with a message on malformed ones.
 
@@ -13,7 +13,10 @@ impl Table {
     /// Parses a text.
     pub fn new(text: &'static str) -> Self {
         let split = |line: &'static str| line.split(',').collect::<Vec<_>>();
-        let mut lines = text.lines().filter(|line| !line.is_empty()).map(split);
+        let lines = text
+            .lines()
+            .filter(|line| !line.is_empty() && !line.starts_with('#'));
+        let mut lines = lines.map(split);
         Self {
             head: lines.next().unwrap_or_default(),
             rows: lines.collect(),

@@ -39,7 +39,7 @@ pub struct ProbeArgs {
     /// Length of the rays, m, for the air between the eye and an object at this distance [default: to the ground or to space]
     #[arg(long, value_name = "M", value_parser = parse::length_m, help_heading = "Directions")]
     pub distance_m: Option<f64>,
-    /// With --solver monte-carlo: also compute polarisation
+    /// Also compute the polarisation of the light
     #[arg(long, help_heading = "Directions")]
     pub polarisation: bool,
     /// Output format
@@ -82,7 +82,7 @@ Examples:
   The same by Monte Carlo, with standard errors:
     airlight probe --sun-elevation 20 --view 90,1 --distance-m 20e3 --haze-visibility-m 40e3 --solver monte-carlo
   Degree and angle of polarisation at a right angle from the sun:
-    airlight probe --sun-elevation 20 --view 0,70 --solver monte-carlo --polarisation
+    airlight probe --sun-elevation 20 --view 0,70 --polarisation
   The same sky by published models (the first has colours only, the second its own wavelengths):
     airlight probe --sun-elevation 20 --view 0,70 --solver single-scattering --variant printed
     airlight probe --sun-elevation 20 --view 0,70 --solver klassen1987

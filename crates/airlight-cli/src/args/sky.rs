@@ -27,7 +27,7 @@ pub struct SkyArgs {
     /// With --solver monte-carlo: write the standard error of each pixel's colour to NAME.noise.exr
     #[arg(long, help_heading = "Files")]
     pub noise_map: bool,
-    /// With --solver monte-carlo: write degree and angle of polarisation to NAME.polarisation.exr
+    /// Write degree and angle of polarisation to NAME.polarisation.exr
     #[arg(long, help_heading = "Files")]
     pub polarisation: bool,
     #[command(flatten)]
@@ -168,7 +168,7 @@ Examples:
   A sky by Monte Carlo, with a noise map:
     airlight sky --sun-elevation 3 --solver monte-carlo --paths 1024 --size 512x256 --noise-map -o truth.exr
   A sky with maps of polarisation: degree, and angle from the vertical, anticlockwise as seen by the eye:
-    airlight sky --sun-elevation 10 --solver monte-carlo --polarisation --projection fisheye --size 256x256 -o blue.exr
+    airlight sky --sun-elevation 10 --polarisation --projection fisheye --size 256x256 -o blue.exr
   The Earth from a height of 400 km; the sky of Mars:
     airlight sky --sun-elevation 20 --altitude-m 400e3 --projection perspective --camera-elevation -15 -o iss.png
     airlight sky --atmosphere mars --sun-elevation 5 --projection perspective -o mars.png";

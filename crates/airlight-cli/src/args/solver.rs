@@ -4,8 +4,8 @@ use crate::parse::{self, put};
 use airlight::models::registry;
 use airlight::scene::{BaseBlueKind, Effort, Klassen1987Spec, SolverSpec, SunlightKind, WetHaze};
 use airlight::sky::Scattering;
-use clap::Args;
-use clap::builder::{PossibleValue, PossibleValuesParser};
+use clap::builder::{BoolishValueParser, PossibleValue, PossibleValuesParser};
+use clap::{ArgAction, Args};
 
 /// Options for the solver.
 #[derive(Clone, Debug, Default, Args)]
@@ -25,6 +25,10 @@ pub struct SolverArgs {
     /// sun at the horizon: 4 %), and it is five times slower [default: standard]
     #[arg(long, value_parser = parse::named::<Effort>())]
     pub effort: Option<Effort>,
+    /// Whether light is polarised by scattering: on or off, for the equations of scalar light as in most published tables, which
+    /// are off by 1 to 3 % in clear skies [default: on]
+    #[arg(long, value_name = "on|off", action = ArgAction::Set, value_parser = BoolishValueParser::new())]
+    pub polarisation_correction: Option<bool>,
     /// Monte Carlo paths for each pixel [default: 256] or direction [default: 65536], 128 or above
     #[arg(long, value_name = "N")]
     pub paths: Option<u64>,
@@ -80,6 +84,8 @@ impl SolverArgs {
         put(&mut solver.wavelengths, &self.wavelengths);
         put(&mut solver.scattering, &self.scattering);
         put(&mut solver.effort, &self.effort);
+        let polarisation = &self.polarisation_correction;
+        put(&mut solver.polarisation_correction, polarisation);
         put(&mut solver.paths, &self.paths);
         put(&mut solver.seed, &self.seed);
         put(&mut solver.variant, &self.variant);

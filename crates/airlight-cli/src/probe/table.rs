@@ -130,12 +130,16 @@ fn one(answer: &ProbeAnswer, view: &RayAnswer) -> String {
         more.push(("Monte Carlo", single(&found.radiance_w_m2_sr_nm)));
         more.push(("std. error", single(&found.standard_error_w_m2_sr_nm)));
     }
-    if let Some(found) = found.and_then(|found| found.polarisation.as_ref()) {
-        more.push(("polarised", single(&found.stokes_i_w_m2_sr_nm)));
-        more.push(("degree", single(&found.degree)));
-        more.push(("std. error", single(&found.degree_standard_error)));
-        more.push(("angle, deg", single(&found.angle_deg)));
-        more.push(("std. error", single(&found.angle_standard_error_deg)));
+    if let Some(found) = view.polarisation() {
+        let values = [
+            ("polarised", &found.stokes_i_w_m2_sr_nm),
+            ("degree", &found.degree),
+            ("std. error", &found.degree_standard_error),
+            ("angle, deg", &found.angle_deg),
+            ("std. error", &found.angle_standard_error_deg),
+        ];
+        let known = values.into_iter().filter(|(_, values)| !values.is_empty());
+        more.extend(known.map(|(name, values)| (name, single(values))));
     }
     columns.extend(more.iter().map(|(name, values)| (*name, values)));
     lines(&mut text, &answer.wavelengths_nm, &columns);

@@ -10,4 +10,4 @@ mod picture;
 
 pub use moments::ColorMoments;
 pub use passes::{Pass, Passes, pixel_offset};
-pub use picture::{Canvas, POLARISATION_CHANNELS};
+pub use picture::{Canvas, POLARISATION_CHANNELS, polarisation};

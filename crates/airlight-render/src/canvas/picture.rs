@@ -173,7 +173,7 @@ impl Canvas {
 }
 
 /// Degree and angle of linear polarisation, `Q / I` and `U / I`; 0 for black pixels.
-fn polarisation(&[i, q, u]: &[f64; 3]) -> [f32; 4] {
+pub fn polarisation(&[i, q, u]: &[f64; 3]) -> [f32; 4] {
     if i <= 0.0 {
         return [0.0; 4];
     }

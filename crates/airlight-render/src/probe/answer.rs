@@ -1,6 +1,6 @@
 //! [`ProbeAnswer`]: result of a probe in the format `airlight-probe/1`, described in docs/src/probe.md.
 
-use super::MonteCarloAnswer;
+use super::{MonteCarloAnswer, PolarisationAnswer};
 use serde::Serialize;
 
 /// Name and version of the format.
@@ -141,4 +141,17 @@ pub struct RayAnswer {
     /// Monte Carlo estimate; `None` for other solvers.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub monte_carlo: Option<MonteCarloAnswer>,
+    /// The same light with its polarisation, if that was wanted and the solver is not Monte Carlo; only of whole rays.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub polarisation: Option<PolarisationAnswer>,
+}
+
+impl RayAnswer {
+    /// The polarisation of the light, by whichever solver.
+    pub fn polarisation(&self) -> Option<&PolarisationAnswer> {
+        let found = self.monte_carlo.as_ref();
+        found
+            .and_then(|found| found.polarisation.as_ref())
+            .or(self.polarisation.as_ref())
+    }
 }

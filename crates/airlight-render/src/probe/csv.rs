@@ -1,6 +1,6 @@
 //! Result of a probe as CSV: a line for each ray and wavelength; for a model without spectra, a line for each ray.
 
-use super::{ProbeAnswer, RayAnswer};
+use super::{PolarisationAnswer, ProbeAnswer, RayAnswer};
 use std::fmt::Write;
 
 /// Names of the first columns.
@@ -27,11 +27,7 @@ impl ProbeAnswer {
         if self.views.iter().any(|view| view.monte_carlo.is_some()) {
             text.push_str(MONTE_CARLO_HEADER);
         }
-        let polarised = |view: &RayAnswer| {
-            let found = view.monte_carlo.as_ref();
-            found.is_some_and(|found| found.polarisation.is_some())
-        };
-        if self.views.iter().any(polarised) {
+        if self.views.iter().any(|view| view.polarisation().is_some()) {
             text.push_str(POLARISATION_HEADER);
         }
         text.push_str(MODEL_HEADER);
@@ -98,19 +94,25 @@ fn line(text: &mut String, answer: &ProbeAnswer, number: usize, view: &RayAnswer
             ",{},{}",
             found.radiance_w_m2_sr_nm[lane], found.standard_error_w_m2_sr_nm[lane]
         );
-        if let Some(found) = &found.polarisation {
-            let values = [
-                &found.stokes_i_w_m2_sr_nm,
-                &found.stokes_q_w_m2_sr_nm,
-                &found.stokes_u_w_m2_sr_nm,
-                &found.degree,
-                &found.degree_standard_error,
-                &found.angle_deg,
-                &found.angle_standard_error_deg,
-            ];
-            for values in values {
-                let _ = write!(text, ",{}", values[lane]);
-            }
+    }
+    if answer
+        .views
+        .iter()
+        .any(|view| view.polarisation().is_some())
+    {
+        let nothing = PolarisationAnswer::default();
+        let found = view.polarisation().unwrap_or(&nothing);
+        let values = [
+            &found.stokes_i_w_m2_sr_nm,
+            &found.stokes_q_w_m2_sr_nm,
+            &found.stokes_u_w_m2_sr_nm,
+            &found.degree,
+            &found.degree_standard_error,
+            &found.angle_deg,
+            &found.angle_standard_error_deg,
+        ];
+        for values in values {
+            let _ = write!(text, ",{}", at(values, lane));
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Monte Carlo estimates along a ray, with standard errors.
 
 use airlight::monte_carlo::{Estimate, PolarisedEstimate};
+use airlight::sky::PolarisedLight;
 use airlight::spectrum::WavelengthGrid;
 use serde::Serialize;
 
@@ -24,7 +25,7 @@ pub struct MonteCarloAnswer {
 
 /// Polarised light along one direction. `Q` is positive for polarisation in the vertical plane through the ray, from which
 /// angles are measured anticlockwise as seen by the eye.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct PolarisationAnswer {
     /// Stokes parameter `I`, the radiance.
     pub stokes_i_w_m2_sr_nm: Vec<f64>,
@@ -32,20 +33,43 @@ pub struct PolarisationAnswer {
     pub stokes_q_w_m2_sr_nm: Vec<f64>,
     /// Stokes parameter `U`.
     pub stokes_u_w_m2_sr_nm: Vec<f64>,
-    /// Standard error of `I`.
+    /// Standard error of `I`; empty without noise, as the others.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub standard_error_i_w_m2_sr_nm: Vec<f64>,
     /// Standard error of `Q`.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub standard_error_q_w_m2_sr_nm: Vec<f64>,
     /// Standard error of `U`.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub standard_error_u_w_m2_sr_nm: Vec<f64>,
     /// Degree of linear polarisation, 0 to 1.
     pub degree: Vec<f64>,
     /// Its standard error.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub degree_standard_error: Vec<f64>,
     /// Angle of the plane of polarisation, degrees.
     pub angle_deg: Vec<f64>,
     /// Its standard error.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub angle_standard_error_deg: Vec<f64>,
+}
+
+impl From<PolarisedLight> for PolarisationAnswer {
+    fn from(light: PolarisedLight) -> Self {
+        let double = |values: &[f32]| values.iter().copied().map(f64::from).collect();
+        Self {
+            degree: double(&light.degree()),
+            angle_deg: double(&light.angle_deg()),
+            stokes_i_w_m2_sr_nm: double(&light.intensity),
+            stokes_q_w_m2_sr_nm: double(&light.q),
+            stokes_u_w_m2_sr_nm: double(&light.u),
+            standard_error_i_w_m2_sr_nm: Vec::new(),
+            standard_error_q_w_m2_sr_nm: Vec::new(),
+            standard_error_u_w_m2_sr_nm: Vec::new(),
+            degree_standard_error: Vec::new(),
+            angle_standard_error_deg: Vec::new(),
+        }
+    }
 }
 
 impl MonteCarloAnswer {
@@ -68,6 +92,7 @@ impl MonteCarloAnswer {
 
     /// Converts an estimate with polarisation.
     pub fn polarised(found: PolarisedEstimate, grid: &WavelengthGrid) -> Self {
+        let radiance = found.clone().radiance();
         Self {
             polarisation: Some(PolarisationAnswer {
                 stokes_i_w_m2_sr_nm: found.intensity.mean,
@@ -81,7 +106,7 @@ impl MonteCarloAnswer {
                 angle_deg: found.angle_deg.mean,
                 angle_standard_error_deg: found.angle_deg.standard_error,
             }),
-            ..Self::new(found.scalar, grid)
+            ..Self::new(radiance, grid)
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::answer::{
     MoonAnswer, ObserverAnswer, PROBE_FORMAT, ProbeAnswer, RayAnswer, SkyAnswer, SunAnswer,
 };
-use super::monte_carlo::MonteCarloAnswer;
+use super::monte_carlo::{MonteCarloAnswer, PolarisationAnswer};
 use super::rays::ProbeRay;
 use crate::error::RenderError;
 use crate::illuminance::Illuminances;
@@ -252,6 +252,7 @@ impl Asked {
             rgb_cd_m2: self.space.from_xyz(xyz),
             luminance_cd_m2: xyz[1],
             monte_carlo: self.monte_carlo(direction, limit_m),
+            polarisation: self.polarisation(direction, ray.distance_m),
         }
     }
 
@@ -270,6 +271,17 @@ impl Asked {
             None => self.values(|view, out| view.radiance(&[direction], out)),
         };
         (values, (self.foggy || self.lit_by_night).then_some(through))
+    }
+
+    /// Polarisation of the light along a whole ray, if it is wanted and the solver computes it without noise.
+    fn polarisation(
+        &self,
+        direction: DVec3,
+        distance_m: Option<f64>,
+    ) -> Option<PolarisationAnswer> {
+        let wanted = self.polarised && distance_m.is_none() && self.paths.sampler().is_none();
+        let light = wanted.then(|| self.view.polarised(direction)).flatten();
+        light.map(PolarisationAnswer::from)
     }
 
     fn monte_carlo(&self, direction: DVec3, limit_m: Option<f64>) -> Option<MonteCarloAnswer> {

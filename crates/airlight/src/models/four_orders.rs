@@ -58,6 +58,8 @@ fn solve(
         return Err(SkyError::Setting("at least 2 orders of scattering"));
     }
     let mut settings = settings.clone();
+    // As in the paper, light is scalar.
+    settings.polarisation_correction = false;
     // The field holds all orders but the last, which tracing the view ray adds.
     settings.orders.only_orders = Some(orders - 1);
     Sky::prepare_with(atmosphere, grid, &settings, control)

@@ -47,6 +47,7 @@ impl RadianceModel for MonteCarloModel {
                 Input::Fog,
                 Input::Wavelengths,
                 Input::Scattering,
+                Input::PolarisationCorrection,
                 Input::Paths,
                 Input::NoiseMap,
                 Input::Polarisation,
@@ -89,6 +90,9 @@ impl RadianceModel for MonteCarloModel {
         // Check the air before solving for the preview.
         MonteCarlo::new(&atmosphere, &scene.grid, settings)?;
         Ok(Arc::new(PreparedMonteCarlo {
+            polarised: solver.polarisation_correction.unwrap_or(true)
+                && scattering == Scattering::All
+                && polarises(&atmosphere),
             preview: PreparedOrders::new(scene, &solver.sky_settings(suns), control)?,
             atmosphere,
             settings,
@@ -100,12 +104,20 @@ impl RadianceModel for MonteCarloModel {
     }
 }
 
+/// True if a constituent is known to polarise the light that it scatters.
+fn polarises(atmosphere: &Atmosphere) -> bool {
+    let mut constituents = atmosphere.constituents.iter();
+    constituents.any(|part| part.phase.knows_polarisation())
+}
+
 /// Air with fog for path tracing, and its deterministic solution.
 #[derive(Debug)]
 struct PreparedMonteCarlo {
     preview: PreparedOrders,
     atmosphere: Atmosphere,
     settings: MonteCarloSettings,
+    /// Whether light is polarised by scattering.
+    polarised: bool,
     /// Number of orders of scattering that are summed.
     orders: usize,
 }
@@ -134,6 +146,7 @@ impl PreparedModel for PreparedMonteCarlo {
             paths: MonteCarlo::new(&air, grid, self.settings)?,
             eye_altitude_m: observer_altitude_m,
             weights,
+            polarised: self.polarised,
             orders: self.orders,
             preview: Arc::new(preview),
         }))
@@ -148,6 +161,8 @@ struct MonteCarloView {
     eye_altitude_m: f64,
     /// Weights of the wavelengths in red, green and blue; empty for spectral values.
     weights: Vec<[f32; 3]>,
+    /// Whether light is polarised by scattering.
+    polarised: bool,
     orders: usize,
     preview: Arc<SolvedView>,
 }
@@ -275,10 +290,15 @@ impl RadianceSampler for MonteCarloView {
     }
 
     fn add_bundle(&self, direction: DVec3, bundle: u64, sum: &mut [f64]) {
-        let sun = RadianceView::sun(self);
-        let sample = self
-            .paths
-            .sample(self.eye_altitude_m, sun, direction, bundle);
+        let (eye_m, sun) = (self.eye_altitude_m, RadianceView::sun(self));
+        if self.polarised {
+            let sample = self
+                .paths
+                .sample_polarised(eye_m, sun, direction, None, bundle);
+            let [intensity, _, _] = sample.stokes;
+            return self.put(intensity.into_iter(), sum);
+        }
+        let sample = self.paths.sample(eye_m, sun, direction, bundle);
         let orders = &sample[..self.orders];
         let lanes = self.paths.grid().len();
         let radiance = (0..lanes).map(|lane| orders.iter().map(|order| order[lane]).sum());
@@ -306,6 +326,9 @@ impl RadianceSampler for MonteCarloView {
     }
 
     fn estimate(&self, direction: DVec3, limit_m: Option<f64>) -> Estimate {
+        if self.polarised {
+            return self.polarised_estimate(direction, limit_m).radiance();
+        }
         let (eye_m, sun) = (self.eye_altitude_m, RadianceView::sun(self));
         let found = match self.limit_before_ground(direction, limit_m) {
             Some(limit_m) => self.paths.path_radiance(eye_m, sun, direction, limit_m),

@@ -41,6 +41,8 @@ impl RadianceModel for Orders {
                 Input::Wavelengths,
                 Input::Scattering,
                 Input::Effort,
+                Input::PolarisationCorrection,
+                Input::Polarisation,
                 Input::Spectra,
                 Input::Distances,
             ],
@@ -56,6 +58,14 @@ impl RadianceModel for Orders {
         suns: SunCoverage,
         control: Control<'_>,
     ) -> Result<Arc<dyn PreparedModel>, SceneError> {
+        if scene.set_inputs.contains(&Input::Polarisation) && scene.fog.is_some() {
+            return Err(SceneError::value(
+                "output.polarisation",
+                "air without fog, or the solver monte-carlo",
+                "fog",
+                "solver.name = \"monte-carlo\"",
+            ));
+        }
         let settings = scene.solver.sky_settings(suns);
         let prepared = PreparedOrders::new(scene, &settings, control)?;
         let night = scene.night.filter(|night| night.may_include(suns));

@@ -4,6 +4,7 @@ use super::estimate::{Estimate, Measured, Sample, Tally};
 use super::solver::{BUNDLE, MonteCarlo, Scene};
 use super::stokes::Stokes;
 use crate::math::parallel;
+use crate::optics::plane_of_polarisation_deg;
 use glam::DVec3;
 
 /// Mean over the paths of a bundle, at each wavelength, W m^-2 sr^-1 nm^-1.
@@ -101,6 +102,15 @@ impl MonteCarlo {
 }
 
 impl PolarisedEstimate {
+    /// The radiance `I` with its orders of scattering, which are those of scalar light.
+    pub fn radiance(self) -> Estimate {
+        Estimate {
+            mean: self.intensity.mean,
+            standard_error: self.intensity.standard_error,
+            ..self.scalar
+        }
+    }
+
     /// Statistics of independent samples. Standard errors of quantities that are not linear in the samples are first-order.
     fn of(samples: &[PolarisedSample], wavelengths: usize) -> Self {
         let mut tally = Tally::new(wavelengths);
@@ -143,9 +153,7 @@ impl PolarisedEstimate {
                 true => linear(lane) / intensity_of(lane),
                 false => 0.0,
             };
-            let angle = 0.5 * u.mean[lane].atan2(q.mean[lane]).to_degrees();
-            // The second `rem_euclid` maps a result of 180, from rounding, to 0.
-            angle_deg.mean[lane] = angle.rem_euclid(180.0).rem_euclid(180.0);
+            angle_deg.mean[lane] = plane_of_polarisation_deg(q.mean[lane], u.mean[lane]);
         }
         Self {
             intensity,

@@ -14,4 +14,5 @@ pub(crate) use phase::PhaseSampler;
 pub use phase::{Depolarization, PhaseFunction};
 pub use phase_error::PhaseError;
 pub use polarisation::MatrixRatios;
+pub(crate) use polarisation::{PolarisedMoments, plane_of_polarisation_deg};
 pub use tabulated::TabulatedPhase;

@@ -62,7 +62,81 @@ impl Depolarization {
     }
 }
 
+/// Angle of the plane of polarisation of light with the Stokes parameters `Q` and `U`, degrees in `[0, 180)`.
+pub(crate) fn plane_of_polarisation_deg(q: f64, u: f64) -> f64 {
+    let angle = 0.5 * u.atan2(q).to_degrees();
+    // The second `rem_euclid` maps a result of 180, from rounding, to 0.
+    angle.rem_euclid(180.0).rem_euclid(180.0)
+}
+
+/// Moments of degree 2 of a scattering matrix: the part of the degree-2 moments of intensity and polarisation that scattering
+/// preserves and exchanges. Those of isotropic molecules are 1/10, as is the moment of degree 2 of their phase function.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct PolarisedMoments {
+    /// From natural light to linear polarisation and back: `-1/4` of the integral of `F12 sin^2` over solid angle. This is the
+    /// coefficient `beta_1` of degree 2 in generalised spherical functions (Hovenier, van der Mee & Domke, Transfer of Polarized
+    /// Light in Planetary Atmospheres, 2004, sec. 2.8) over `5 sqrt(6)`.
+    pub natural_to_linear: f64,
+    /// From linear polarisation to linear polarisation: `1/24` of the integral of `F22 (1 + mu^2) + 2 mu F33`, which is the
+    /// coefficient `alpha_2` over 30.
+    pub linear_to_linear: f64,
+    /// Moment of degree 3 of linear polarisation, `(alpha_2 + alpha_3) / 14`: 0 for molecules, and 1 for a forward peak. Light
+    /// polarised with more detail than degree 2 can describe remains polarised in this proportion.
+    pub linear_of_degree_3: f64,
+}
+
+impl PolarisedMoments {
+    /// [`Self::linear_to_linear`] of a forward peak, which scatters nothing out of its direction.
+    pub const FORWARD: f64 = 1.0 / 6.0;
+
+    /// What light scattered by one angle adds per solid angle, for the phase function `phase`.
+    pub(super) fn of_angle(mu: f64, phase: f64, ratios: &MatrixRatios) -> Self {
+        let even = ratios.f22 * (1.0 + mu * mu);
+        // The generalised spherical function of degree 3 and orders 2, 2.
+        let third = 0.25 * (1.0 + mu) * (1.0 + mu) * (3.0 * mu - 2.0);
+        Self {
+            natural_to_linear: -0.25 * phase * ratios.f12 * (1.0 - mu * mu),
+            linear_to_linear: phase * (even + 2.0 * mu * ratios.f33) / 24.0,
+            linear_of_degree_3: 0.5 * phase * (ratios.f22 + ratios.f33) * third,
+        }
+    }
+
+    /// `self + factor * other`.
+    pub(super) fn plus(self, other: Self, factor: f64) -> Self {
+        Self {
+            natural_to_linear: self.natural_to_linear + factor * other.natural_to_linear,
+            linear_to_linear: self.linear_to_linear + factor * other.linear_to_linear,
+            linear_of_degree_3: self.linear_of_degree_3 + factor * other.linear_of_degree_3,
+        }
+    }
+}
+
 impl PhaseFunction {
+    /// Moments of degree 2 of the scattering matrix; 0 for scattering that removes all polarisation.
+    pub(crate) fn polarised_moments(&self, wavelength_nm: f64) -> PolarisedMoments {
+        match self {
+            Self::Rayleigh(depolarization) => {
+                let [share, _] = depolarization.polarised_shares(wavelength_nm);
+                PolarisedMoments {
+                    natural_to_linear: share / 10.0,
+                    linear_to_linear: share / 10.0,
+                    linear_of_degree_3: 0.0,
+                }
+            }
+            Self::Tabulated(table) => table.polarised_moments(wavelength_nm),
+            Self::Mixture(parts) => {
+                let sum = PolarisedMoments::default();
+                parts.iter().fold(sum, |sum, (weight, part)| {
+                    sum.plus(part.polarised_moments(wavelength_nm), *weight)
+                })
+            }
+            Self::Isotropic
+            | Self::HenyeyGreenstein { .. }
+            | Self::CornetteShanks { .. }
+            | Self::Draine { .. } => PolarisedMoments::default(),
+        }
+    }
+
     /// Scattering matrix relative to the phase function, at the cosine of the scattering angle.
     ///
     /// Known for molecules (Hansen & Travis, eq. 2.15) and for tables of spheres by Lorenz-Mie theory ([`super::mie`]).
@@ -118,9 +192,11 @@ fn rayleigh([share, circular]: [f64; 2], mu: f64) -> MatrixRatios {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::quadrature::GaussRule;
     use crate::optics::mie::{Particles, SizeDistribution, Sphere};
     use crate::optics::{RefractiveIndex, TabulatedPhase};
     use num_complex::Complex64;
+    use std::f64::consts::TAU;
 
     /// Isotropic molecules fully polarise light scattered at right angles; others to `(1 - rho) / (1 + rho)`, by the definition
     /// of the ratio.
@@ -178,6 +254,37 @@ mod tests {
                     (got - want / exact.f11).abs() < 5e-3,
                     "{mu}: {got} {exact:?}"
                 );
+            }
+        }
+    }
+
+    /// The closed forms of molecules, and those of spheres by quadrature over a table.
+    #[test]
+    fn polarised_moments_are_integrals_over_the_matrix() {
+        let integral = |phase: &PhaseFunction| {
+            let rule = GaussRule::new(200);
+            rule.on(-1.0, 1.0)
+                .fold(PolarisedMoments::default(), |sum, (mu, w)| {
+                    let p = phase.evaluate(mu, 550.0);
+                    let ratios = phase.matrix_ratios(mu, 550.0);
+                    sum.plus(PolarisedMoments::of_angle(mu, p, &ratios), w * TAU)
+                })
+        };
+        let sizes = SizeDistribution::log_normal(0.15, 1.6);
+        let index = RefractiveIndex::constant(Complex64::new(1.45, 0.01));
+        let particles = Particles::new(index, sizes).unwrap();
+        let spheres = PhaseFunction::Tabulated(particles.table(&[450.0, 600.0]).unwrap().0);
+        let molecules = PhaseFunction::rayleigh(0.03).unwrap();
+        let both = vec![(0.25, spheres.clone()), (0.75, molecules.clone())];
+        let both = PhaseFunction::mixture(both).unwrap();
+        for phase in [molecules, spheres, both] {
+            let (got, want) = (phase.polarised_moments(550.0), integral(&phase));
+            for (got, want) in [
+                (got.natural_to_linear, want.natural_to_linear),
+                (got.linear_to_linear, want.linear_to_linear),
+                (got.linear_of_degree_3, want.linear_of_degree_3),
+            ] {
+                assert!((got - want).abs() < 1e-5, "{got} {want}");
             }
         }
     }

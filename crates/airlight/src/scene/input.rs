@@ -36,6 +36,8 @@ pub enum Input {
     Scattering,
     /// Resolution of the solver.
     Effort,
+    /// Effect of polarisation on the radiance.
+    PolarisationCorrection,
     /// Number of Monte Carlo paths and their seed.
     Paths,
     /// Maps of the standard error.
@@ -73,6 +75,7 @@ impl Input {
             Self::Wavelengths => "solver.wavelengths",
             Self::Scattering => "solver.scattering",
             Self::Effort => "solver.effort",
+            Self::PolarisationCorrection => "solver.polarisation_correction",
             Self::Paths => "solver.paths and solver.seed",
             Self::NoiseMap => "output.noise_map",
             Self::Polarisation => "output.polarisation",
@@ -104,6 +107,7 @@ impl fmt::Display for Input {
             Self::Wavelengths => "the wavelengths",
             Self::Scattering => "the orders of scattering",
             Self::Effort => "the effort",
+            Self::PolarisationCorrection => "the correction for polarisation",
             Self::Paths => "the number of paths and their seed",
             Self::NoiseMap => "noise maps",
             Self::Polarisation => "polarisation",

@@ -15,7 +15,7 @@ use crate::control::Control;
 use crate::fog::FogPatches;
 use crate::monte_carlo::{Estimate, PolarisedEstimate};
 use crate::night::NightState;
-use crate::sky::{LineOfSight, SunCoverage};
+use crate::sky::{LineOfSight, PolarisationTable, PolarisedLight, SunCoverage};
 use crate::spectrum::WavelengthGrid;
 use crate::sun::{SunDisc, SunState};
 use glam::DVec3;
@@ -193,6 +193,16 @@ pub trait RadianceView: Debug + Send + Sync + 'static {
     /// Light along a ray by parts, at the model's wavelengths, over at most `limit_m` metres; `None` for models without
     /// [`Capabilities::parts`].
     fn line_of_sight(&self, _direction: DVec3, _limit_m: Option<f64>) -> Option<LineOfSight> {
+        None
+    }
+
+    /// Light along a whole ray with its polarisation, at the model's wavelengths; `None` for models that do not compute it.
+    fn polarised(&self, _direction: DVec3) -> Option<PolarisedLight> {
+        None
+    }
+
+    /// Linear polarisation in all directions, for pictures; `None` for models that do not compute it without noise.
+    fn polarisation_table(&self) -> Option<PolarisationTable> {
         None
     }
 

@@ -107,6 +107,10 @@ impl Scene {
             (Input::Scattering, solver.scattering.is_some()),
             (Input::Effort, solver.effort.is_some()),
             (
+                Input::PolarisationCorrection,
+                solver.polarisation_correction.is_some(),
+            ),
+            (
                 Input::Paths,
                 solver.paths.is_some() || solver.seed.is_some(),
             ),
@@ -155,6 +159,7 @@ impl Scene {
             Input::Wavelengths => self.solver.wavelengths = None,
             Input::Scattering => self.solver.scattering = None,
             Input::Effort => self.solver.effort = None,
+            Input::PolarisationCorrection => self.solver.polarisation_correction = None,
             Input::Paths => {
                 self.solver.paths = None;
                 self.solver.seed = None;
@@ -204,6 +209,7 @@ mod tests {
             name: Some("orders".to_owned()),
             scattering: Some(crate::sky::Scattering::Single),
             effort: Some(super::super::Effort::Fine),
+            polarisation_correction: Some(true),
             wavelengths: Some("rgb".to_owned()),
             paths: Some(128),
             variant: Some("printed".to_owned()),
@@ -224,13 +230,13 @@ mod tests {
     fn inputs_are_found_and_can_be_removed() {
         assert_eq!(Scene::default().set_inputs(), []);
         let all = full().set_inputs();
-        assert_eq!(all.len(), 21);
+        assert_eq!(all.len(), 22);
         assert!(all.windows(2).all(|pair| pair[0] < pair[1]));
         for input in all {
             let left = full().without(input).set_inputs();
             // Removing the fog also removes its scattering and its patches.
             let gone = if input == Input::Fog { 3 } else { 1 };
-            assert_eq!(left.len(), 21 - gone, "{input:?}");
+            assert_eq!(left.len(), 22 - gone, "{input:?}");
             assert!(!left.contains(&input));
         }
     }

@@ -7,7 +7,7 @@ use super::sun_disc_table::SunDiscTable;
 use super::{Channels, FogLayers, IrradianceMap, RadianceView, RowSampler, SceneError};
 use crate::axes;
 use crate::night::MoonState;
-use crate::sky::{LineOfSight, SkyColumns, SkyTable, View};
+use crate::sky::{LineOfSight, PolarisationTable, PolarisedLight, SkyColumns, SkyTable, View};
 use crate::spectrum::WavelengthGrid;
 use crate::sun::SunDisc;
 use glam::DVec3;
@@ -160,6 +160,16 @@ impl RadianceView for SolvedView {
 
     fn horizon_elevation_rad(&self) -> f64 {
         self.clear.horizon_elevation_rad()
+    }
+
+    fn polarised(&self, direction: DVec3) -> Option<PolarisedLight> {
+        let clear = self.fog.is_none();
+        clear.then(|| self.view.polarised(direction))
+    }
+
+    fn polarisation_table(&self) -> Option<PolarisationTable> {
+        let clear = self.fog.is_none();
+        clear.then(|| PolarisationTable::new(&self.view))
     }
 
     fn averages_horizon(&self) -> bool {

@@ -1,7 +1,7 @@
 //! An atmosphere at the N wavelengths of a block of lanes.
 
 use crate::atmosphere::Atmosphere;
-use crate::optics::PhaseFunction;
+use crate::optics::{PhaseFunction, PolarisedMoments};
 use crate::spectrum::Spectrum;
 use crate::transfer::coefficients::Coefficients;
 use crate::transfer::columns::SlantColumns;
@@ -25,6 +25,8 @@ pub struct Air<const N: usize> {
     pub panel_radii_m: Arc<[f64]>,
     /// Extinction by the forward peaks that count as unscattered, in which `coefficients` differ from those of the real air.
     pub peaks: Coefficients<Spectrum<N>>,
+    /// Extinction by the further forward peaks that count as unscattered for polarised light, which is only described to degree 2.
+    pub linear_peaks: Coefficients<Spectrum<N>>,
     wavelengths_nm: [f64; N],
 }
 
@@ -39,10 +41,21 @@ pub struct Scatterer<const N: usize> {
     pub whole_scattering: Spectrum<N>,
     /// Legendre moments of the phase function, `moments[l]`.
     pub moments: Vec<Spectrum<N>>,
+    /// Moments of degree 2 of the scattering matrix: from natural light to linear polarisation and back, and from linear polarisation
+    /// to itself, without the forward peak that counts as unscattered for polarised light.
+    pub polarised: [Spectrum<N>; 2],
+    /// Fraction of polarised light that counts as unscattered.
+    linear_peak: Spectrum<N>,
     /// Streams of singly scattered light, if a forward peak counts as unscattered.
     residual: Option<Arc<Residual<N>>>,
+    /// The element `F12` of the scattering matrix (1/sr) at equal steps of the cosine of the scattering angle; `None` if scattering
+    /// removes all polarisation.
+    f12: Option<Arc<[Spectrum<N>]>>,
     phase: PhaseFunction,
 }
+
+/// Number of intervals of the element F12, which is smooth.
+const F12_INTERVALS: usize = 256;
 
 impl<const N: usize> Air<N> {
     /// Samples `atmosphere` at N wavelengths, with phase-function moments up to degree `l_max + 1`, for sunlight that arrives
@@ -63,6 +76,7 @@ impl<const N: usize> Air<N> {
             .filter(|(_, (_, scattering))| scattering.max_element() > 0.0)
             .map(|(constituent, (part, &scattering))| {
                 let by_lane = wavelengths_nm.map(|nm| part.phase.legendre_moments(l_max + 2, nm));
+                let polarised = wavelengths_nm.map(|nm| part.phase.polarised_moments(nm));
                 Scatterer {
                     constituent,
                     scattering,
@@ -70,7 +84,15 @@ impl<const N: usize> Air<N> {
                     moments: (0..=l_max + 1)
                         .map(|l| Spectrum::from_fn(|lane| by_lane[lane][l] as f32))
                         .collect(),
+                    polarised: [
+                        Spectrum::from_fn(|lane| polarised[lane].natural_to_linear as f32),
+                        Spectrum::from_fn(|lane| polarised[lane].linear_to_linear as f32),
+                    ],
+                    linear_peak: Spectrum::from_fn(|lane| {
+                        polarised[lane].linear_of_degree_3.clamp(0.0, 1.0) as f32
+                    }),
                     residual: None,
+                    f12: f12(&part.phase, &wavelengths_nm),
                     phase: part.phase.clone(),
                 }
             })
@@ -78,6 +100,7 @@ impl<const N: usize> Air<N> {
         Self {
             panel_radii_m: panel_radii_m(&columns.shell, &coefficients, air_masses).into(),
             peaks: Coefficients::none(coefficients.extinction_per_m.len()),
+            linear_peaks: Coefficients::none(coefficients.extinction_per_m.len()),
             columns,
             coefficients,
             scatterers,
@@ -101,6 +124,12 @@ impl<const N: usize> Air<N> {
             for moment in &mut s.moments {
                 *moment = (*moment - peak) / rest;
             }
+            let [natural, linear] = &mut s.polarised;
+            let linear_peak = ((s.linear_peak - peak) / rest).max_scalar(0.0);
+            let kept = peak + rest * linear_peak;
+            *natural = *natural / rest;
+            *linear = (*linear - kept * PolarisedMoments::FORWARD as f32) / rest;
+            air.linear_peaks.extinction_per_m[s.constituent] = s.scattering * linear_peak;
         }
         air
     }
@@ -139,6 +168,28 @@ impl<const N: usize> Scatterer<N> {
         self.phase.in_lanes(nu, &air.wavelengths_nm)
     }
 
+    /// True unless scattering removes all polarisation.
+    pub fn polarises(&self) -> bool {
+        self.f12.is_some()
+    }
+
+    /// True if the polarisation of singly scattered light varies with direction as slowly as that of light scattered by molecules. Only
+    /// then does it pass through the forward peak for polarised light.
+    pub fn polarises_smoothly(&self) -> bool {
+        self.linear_peak.max_element() <= 0.0
+    }
+
+    /// The element `F12` of the scattering matrix at the cosine `nu` of the scattering angle, 1/sr: light polarised parallel to the
+    /// scattering plane, which is negative for light polarised across it; `None` if it is 0 at all angles.
+    #[inline(always)]
+    pub fn f12(&self, nu: f64) -> Option<Spectrum<N>> {
+        let table = self.f12.as_ref()?;
+        let x = (0.5 * (nu + 1.0)).clamp(0.0, 1.0) * F12_INTERVALS as f64;
+        let below = (x as usize).min(F12_INTERVALS - 1);
+        let t = (x - below as f64) as f32;
+        Some((table[below] * (1.0 - t)).scale_acc(table[below + 1], t))
+    }
+
     /// Shares of the streams in singly scattered light at the cosine `nu` of the scattering angle.
     pub fn shares(&self, nu: f64) -> Shares<N> {
         match &self.residual {
@@ -161,6 +212,22 @@ impl<const N: usize> Scatterer<N> {
         }
         sum
     }
+}
+
+/// Samples of the element F12 of a scattering matrix.
+fn f12<const N: usize>(
+    phase: &PhaseFunction,
+    wavelengths_nm: &[f64; N],
+) -> Option<Arc<[Spectrum<N>]>> {
+    phase.knows_polarisation().then(|| {
+        (0..=F12_INTERVALS)
+            .map(|k| {
+                let mu = 2.0 * k as f64 / F12_INTERVALS as f64 - 1.0;
+                let element = |nm| phase.matrix_ratios(mu, nm).f12 * phase.evaluate(mu, nm);
+                Spectrum(wavelengths_nm.map(|nm| element(nm) as f32))
+            })
+            .collect()
+    })
 }
 
 /// The panels of a shell, divided until the optical depth of the air above, times any of the air masses, changes by at most

@@ -54,6 +54,10 @@ pub trait Block: Send + Sync {
     /// Light along a ray, over at most `limit_m`.
     fn trace(&self, ray: &Ray, limit_m: f64) -> BlockLight;
 
+    /// Q and U of the light along the whole of a ray, in the frame of [`super::polarised`], given the cosine of the azimuth between
+    /// the ray and the sun.
+    fn linear(&self, ray: &Ray, cos_azimuth: f64) -> [Vec<f32>; 2];
+
     /// Light from the eye to each of the increasing distances `samples_m`.
     fn samples_along_ray(&self, ray: &Ray, samples_m: &[f64], parts: &[Part]) -> Vec<SampleLight>;
 
@@ -158,7 +162,10 @@ impl<const N: usize> Solved<N> {
                 .sun_zeniths_deg(air.shell().ground_radius_m, air.shell().top_radius_m);
             let grid = FieldGrid::new(&air, settings.altitudes, &zeniths);
             let report = |fraction| share.report(fraction);
-            let solved = orders::solve(&air, grid, &settings.orders, share.control, report)?;
+            let polarised =
+                settings.polarisation_correction && air.scatterers.iter().any(Scatterer::polarises);
+            let orders = &settings.orders;
+            let solved = orders::solve(&air, grid, orders, polarised, share.control, report)?;
             diffuse = Some(solved);
         }
         share.report(1.0);
@@ -207,6 +214,14 @@ impl<const N: usize> Block for Solved<N> {
             ground: self.used(&light.ground),
             meets_ground: light.meets_ground,
         }
+    }
+
+    fn linear(&self, ray: &Ray, cos_azimuth: f64) -> [Vec<f32>; 2] {
+        let light = vectorized(
+            #[inline(always)]
+            || self.tracer().linear(ray, cos_azimuth),
+        );
+        light.map(|part| self.used(&part))
     }
 
     fn samples_along_ray(&self, ray: &Ray, samples_m: &[f64], parts: &[Part]) -> Vec<SampleLight> {
@@ -333,7 +348,7 @@ impl<const N: usize> Solved<N> {
         let dimming = self.dimming();
         let path = Path::new(dimming, grid, &Tracer::marcher(air), row.start, degree);
         if path.is_lit(air, &row.bundle) {
-            path.accumulate_sunlight::<STREAMS>(dimming, &row.bundle, &mut light.streams);
+            path.accumulate_sunlight::<STREAMS, false>(dimming, &row.bundle, &mut light.streams);
             if let Some(Diffuse { field, .. }) = diffuse {
                 let scratch = &mut Scratch::default();
                 path.accumulate_scattered(
@@ -342,6 +357,7 @@ impl<const N: usize> Solved<N> {
                     &row.bundle,
                     scratch,
                     &mut light.multiple_scatter,
+                    None,
                 );
             }
             let irradiance = |mu_sun| ground_irradiance(air, diffuse, mu_sun);

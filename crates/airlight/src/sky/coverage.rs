@@ -1,7 +1,7 @@
 //! Range of sun elevations that a sky is prepared for.
 
-/// The sun elevations and observer altitudes that a sky is prepared for. For others it is solved again when they are first asked for
-/// ([`Sky::view`](super::Sky::view)).
+/// The sun elevations and observer altitudes that a sky is prepared for. For others it is solved again by the first
+/// [`Sky::view`](super::Sky::view) that needs it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum SunCoverage {

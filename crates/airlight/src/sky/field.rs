@@ -2,6 +2,7 @@
 
 use super::air::Air;
 use super::harmonics::Harmonics;
+use super::polarised::{MAX_RATIO, POLARISED, TensorHarmonics};
 use crate::math::interpolation::{Place, interval_of};
 use crate::spectrum::Spectrum;
 use crate::transfer::ray::Ray;
@@ -219,8 +220,8 @@ const GROWTH: f64 = 0.25;
 const MAX_STEP: f64 = 4.0;
 /// About the largest number of steps in the interior of very thick air, where the light changes slowly.
 const MAX_STEPS: f64 = 60.0;
-/// Moments of the radiance, `A_lm = integral of L Y_lm`, at each node of a grid, and the diffuse irradiance on the ground,
-/// both per unit solar irradiance.
+/// Moments of the radiance, `A_lm = integral of L Y_lm`, and of its polarisation at each node of a grid, and the diffuse irradiance on
+/// the ground, both per unit solar irradiance.
 ///
 /// `A_00` is stored as its logarithm and the other moments as ratios to it: light falls by orders of magnitude as the sun
 /// sets, so its logarithm is interpolated.
@@ -230,7 +231,10 @@ pub struct RadianceField<const N: usize> {
     pub grid: FieldGrid,
     /// Basis functions of the moments.
     pub basis: Harmonics,
-    /// `[radius][sun][harmonic]`.
+    /// Number of moments at each node: those of the radiance, and after them those of its polarisation
+    /// ([`super::polarised`]), if the light is polarised.
+    count: usize,
+    /// `[radius][sun][moment]`.
     moments: Vec<Spectrum<N>>,
     /// Logarithm of the diffuse irradiance on the ground for each sun cosine.
     ground_irradiance: Vec<Spectrum<N>>,
@@ -240,14 +244,16 @@ pub struct RadianceField<const N: usize> {
 const MIN_INTENSITY: f32 = 1e-34;
 
 impl<const N: usize> RadianceField<N> {
-    /// Creates a field from moments, `[radius][sun][harmonic]`, and irradiances on the ground, `[sun]`.
+    /// Creates a field from moments, `[radius][sun][moment]`, and irradiances on the ground, `[sun]`.
     pub fn new(
         grid: FieldGrid,
         basis: Harmonics,
         mut moments: Vec<Spectrum<N>>,
         ground: &[Spectrum<N>],
     ) -> Self {
-        for point in moments.chunks_exact_mut(basis.count()) {
+        let nodes = grid.radii_m.len() * grid.sun_cosines.len();
+        let count = moments.len() / nodes;
+        for point in moments.chunks_exact_mut(count) {
             let intensity = point[0].max_scalar(MIN_INTENSITY);
             for l in 1..=basis.degree() {
                 // Bound for non-negative radiance; rounding can exceed it where there is almost no light.
@@ -255,6 +261,9 @@ impl<const N: usize> RadianceField<N> {
                 for ratio in &mut point[basis.span(l)] {
                     *ratio = (*ratio / intensity).map(|r| r.clamp(-limit, limit));
                 }
+            }
+            for ratio in &mut point[basis.count()..] {
+                *ratio = (*ratio / intensity).map(|r| r.clamp(-MAX_RATIO, MAX_RATIO));
             }
             point[0] = intensity.ln();
         }
@@ -265,16 +274,22 @@ impl<const N: usize> RadianceField<N> {
         Self {
             grid,
             basis,
+            count,
             moments,
             ground_irradiance,
         }
     }
 
+    /// True if the field holds the polarisation of its light.
+    #[inline(always)]
+    pub fn is_polarised(&self) -> bool {
+        self.count > self.basis.count()
+    }
+
     #[inline(always)]
     fn point(&self, radius: usize, sun: usize) -> &[Spectrum<N>] {
-        let count = self.basis.count();
-        let start = (radius * self.grid.sun_cosines.len() + sun) * count;
-        &self.moments[start..start + count]
+        let start = (radius * self.grid.sun_cosines.len() + sun) * self.count;
+        &self.moments[start..start + self.count]
     }
 
     /// Diffuse irradiance on the ground for the sun cosine `mu_sun`.
@@ -284,8 +299,8 @@ impl<const N: usize> RadianceField<N> {
         at.value_in_f32(&self.ground_irradiance).exp()
     }
 
-    /// Interpolates the stored form of the first `count` moments in radius, for these sun cosines, into `out`:
-    /// `[sun][harmonic]`.
+    /// Interpolates the stored form of the first `count` moments in radius, and that of the moments of polarisation, for these sun
+    /// cosines, into `out`: `[sun][moment]`.
     #[inline(always)]
     pub fn at_radius(
         &self,
@@ -297,9 +312,12 @@ impl<const N: usize> RadianceField<N> {
         out.clear();
         let [wa, wb, wc, wd] = at.weights;
         for sun in suns {
-            let [a, b, c, d] = [0, 1, 2, 3].map(|k| &self.point(at.first + k, sun)[..count]);
-            for (((a, b), c), d) in a.iter().zip(b).zip(c).zip(d) {
-                out.push((*a * wa + *b * wb) + (*c * wc + *d * wd));
+            let points = [0, 1, 2, 3].map(|k| self.point(at.first + k, sun));
+            for part in [0..count, self.basis.count()..self.count] {
+                let [a, b, c, d] = points.map(|point| &point[part.clone()]);
+                for (((a, b), c), d) in a.iter().zip(b).zip(c).zip(d) {
+                    out.push((*a * wa + *b * wb) + (*c * wc + *d * wd));
+                }
             }
         }
     }
@@ -314,14 +332,7 @@ impl<const N: usize> RadianceField<N> {
         densities: &PerConstituent,
         harmonics: &[f32],
     ) -> Spectrum<N> {
-        let radius = self.grid.place_of_radius(here.radius_m);
-        let sun = self.grid.place_of_sun(here.mu_sun);
-        let (fr, fs) = (radius.weights, sun.fraction as f32);
-        let corners: [_; 8] = std::array::from_fn(|k| {
-            let side = k % 2;
-            let weight = fr[k / 2] * if side == 0 { 1.0 - fs } else { fs };
-            (self.point(radius.first + k / 2, sun.below + side), weight)
-        });
+        let corners = self.corners(here);
         let mut log_intensity = Spectrum::ZERO;
         for &(corner, w) in &corners {
             log_intensity = log_intensity.scale_acc(corner[0], w);
@@ -336,8 +347,65 @@ impl<const N: usize> RadianceField<N> {
             }
             sum = sum.mul_acc(scattering_moment(air, densities, l), degree);
         }
+        if self.is_polarised() {
+            let mut degree = Spectrum::ZERO;
+            for (k, y) in harmonics[Harmonics::index(2, 0)..][..POLARISED]
+                .iter()
+                .enumerate()
+            {
+                for &(corner, w) in &corners {
+                    degree = degree.scale_acc(corner[self.basis.count() + k], w * y);
+                }
+            }
+            let [natural, _] = polarised_moments(air, densities);
+            sum = sum.mul_acc(natural, degree);
+        }
         // Truncated harmonics can be negative in directions with almost no light.
         sum.max_scalar(0.0) * log_intensity.exp()
+    }
+}
+
+impl<const N: usize> RadianceField<N> {
+    /// Q and U of the light scattered per metre into a view ray at `here` from light that has been scattered at least once, per unit
+    /// solar irradiance, in the frame of [`super::polarised`].
+    #[inline(always)]
+    pub fn linear_source(
+        &self,
+        air: &Air<N>,
+        here: &Ray,
+        densities: &PerConstituent,
+        harmonics: &TensorHarmonics,
+    ) -> [Spectrum<N>; 2] {
+        if !self.is_polarised() {
+            return [Spectrum::ZERO; 2];
+        }
+        let corners = self.corners(here);
+        let between = |moment: usize| {
+            let start = Spectrum::ZERO;
+            corners
+                .iter()
+                .fold(start, |sum, (corner, w)| sum.scale_acc(corner[moment], *w))
+        };
+        let [natural, kept] = polarised_moments(air, densities);
+        let scattered = std::array::from_fn(|m| {
+            let intensity = between(Harmonics::index(2, m));
+            (between(self.basis.count() + m) * kept).mul_acc(natural, intensity)
+        });
+        let whole = between(0).exp();
+        harmonics.of_moments(&scattered).map(|light| light * whole)
+    }
+
+    /// The nodes around a place and their weights.
+    #[inline(always)]
+    fn corners(&self, here: &Ray) -> [(&[Spectrum<N>], f32); 8] {
+        let radius = self.grid.place_of_radius(here.radius_m);
+        let sun = self.grid.place_of_sun(here.mu_sun);
+        let (fr, fs) = (radius.weights, sun.fraction as f32);
+        std::array::from_fn(|k| {
+            let side = k % 2;
+            let weight = fr[k / 2] * if side == 0 { 1.0 - fs } else { fs };
+            (self.point(radius.first + k / 2, sun.below + side), weight)
+        })
     }
 }
 
@@ -353,6 +421,22 @@ pub fn scattering_moment<const N: usize>(
         sum = sum.scale_acc(s.scattering * s.moments[l], densities[s.constituent] as f32);
     }
     sum
+}
+
+/// Scattering coefficient times the moments of degree 2 of the scattering matrix, summed over the scatterers, 1/m.
+#[inline(always)]
+pub fn polarised_moments<const N: usize>(
+    air: &Air<N>,
+    densities: &PerConstituent,
+) -> [Spectrum<N>; 2] {
+    let mut sums = [Spectrum::ZERO; 2];
+    for s in &air.scatterers {
+        let density = densities[s.constituent] as f32;
+        for (sum, moment) in sums.iter_mut().zip(&s.polarised) {
+            *sum = sum.scale_acc(s.scattering * *moment, density);
+        }
+    }
+    sums
 }
 
 /// Light that has been scattered or reflected at least once, other than into a forward peak.

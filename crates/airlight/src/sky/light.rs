@@ -4,7 +4,7 @@ use super::field::{FieldGrid, RadianceField};
 use super::harmonics::Harmonics;
 use crate::spectrum::Spectrum;
 
-/// Moments of the radiance `[radius][sun][harmonic]` and irradiances on the ground `[sun]`, per unit solar irradiance.
+/// Moments of the radiance and of its polarisation `[radius][sun][moment]`, and irradiances on the ground `[sun]`, per unit solar irradiance.
 #[derive(Clone)]
 pub struct Light<const N: usize> {
     /// Number of moments at each grid point.

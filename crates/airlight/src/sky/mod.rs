@@ -17,7 +17,7 @@
 //! ```
 //!
 //! The geometry is in [`crate::transfer`]. Modules: `field` and `harmonics` (angular moments of the light inside the
-//! atmosphere), `orders` (all orders of scattering), `transport` (light scattered once more), `plane_parallel` (its direct
+//! atmosphere), `polarised` (moments of its polarisation), `orders` (all orders of scattering), `transport` (light scattered once more), `plane_parallel` (its direct
 //! solution in plane-parallel air), `ray_bundle` (rays that share their path), `trace` (light along one ray),
 //! `samples_along_ray` (light at many distances along a ray), `table` (all directions of a view).
 
@@ -31,11 +31,13 @@ mod light;
 mod orders;
 mod peaked;
 mod plane_parallel;
+mod polarised;
 mod ray_bundle;
 mod rgb_view;
 mod samples_along_ray;
 mod settings;
 mod solver;
+mod stokes;
 mod table;
 mod tabulate;
 mod trace;
@@ -47,6 +49,7 @@ pub(crate) use peaked::Peaked;
 pub use rgb_view::RgbView;
 pub use settings::{Directions, OrderSettings, Scattering, SkyError, SkySettings};
 pub use solver::Sky;
+pub use stokes::{PolarisationTable, PolarisedLight};
 pub use table::{SkyColumns, SkyTable, TableChannels};
 pub(crate) use tabulate::channel_weights;
 pub use view::{LineOfSight, View};

@@ -15,7 +15,7 @@ use crate::control::Control;
 /// Number of iterations in a row whose changes grow, after which the solver gives up.
 const MAX_GROWING: usize = 3;
 
-/// Solves for all light scattered or reflected at least once; `report` receives the fraction of the work done.
+/// Solves for all light scattered or reflected at least once, with or without its polarisation; `report` receives the fraction of the work done.
 ///
 /// # Errors
 /// [`SkyError::Cancelled`] soon after cancellation; [`SkyError::NotConverged`].
@@ -23,6 +23,7 @@ pub fn solve<const N: usize>(
     real_air: &Air<N>,
     grid: FieldGrid,
     settings: &OrderSettings,
+    polarised: bool,
     control: Control<'_>,
     report: impl Fn(f64),
 ) -> Result<Diffuse<N>, SkyError> {
@@ -31,8 +32,10 @@ pub fn solve<const N: usize>(
     const PATHS: f64 = 0.5;
     let air = real_air.without_forward_peaks(settings.peak_degree);
     let basis = Harmonics::new(settings.degree);
-    let transport =
-        |degree, directions| Transport::new((&air, &grid, &basis), degree, directions, control);
+    let transport = |degree, directions| {
+        let light = (degree, polarised);
+        Transport::new((&air, &grid, &basis), light, directions, control)
+    };
     let once = transport(0, &settings.first)?.sunlight()?;
     report(FIRST);
     let transport = transport(settings.rescattered_degree, &settings.later)?;

@@ -6,14 +6,47 @@
 
 use super::harmonics::Harmonics;
 use super::light::Light;
+use super::polarised::{POLARISED, TensorHarmonics};
+use super::ray_bundle::Response;
 use crate::math::parallel;
 use crate::math::simd::vectorized;
 use crate::spectrum::Spectrum;
 
+/// Moments of the light at a number of radii.
+#[derive(Clone, Copy, Debug)]
+pub struct Shape {
+    pub radii: usize,
+    /// Degree of the moments of the intensity.
+    pub degree: usize,
+    /// Degree up to which they are scattered again.
+    pub rescattered: usize,
+    /// True if the light has moments of polarisation.
+    pub polarised: bool,
+}
+
+impl Shape {
+    /// Number of moments of polarisation in an azimuthal mode.
+    fn polarised_in(&self, m: usize) -> usize {
+        usize::from(self.polarised && m < POLARISED)
+    }
+
+    /// Number of moments of a mode at each radius that are scattered again: those of the intensity, and that of the polarisation.
+    fn rescattered_in(&self, m: usize) -> usize {
+        self.rescattered + 1 - m + self.polarised_in(m)
+    }
+
+    /// Number of columns of a mode: moments at each radius, and the irradiance on the ground.
+    fn columns(&self, m: usize) -> usize {
+        self.radii * self.rescattered_in(m) + usize::from(m == 0)
+    }
+}
+
 /// The response of the light at one radius to the light at all radii.
 pub struct ResponseRow<const N: usize> {
-    /// For each azimuthal mode, `[degree][column]`; the columns are `[radius][degree]`, and the irradiance on the ground in
-    /// mode 0.
+    shape: Shape,
+    /// For each azimuthal mode, `[row][column]`. The rows are the moments of the intensity that are scattered again, the moment of
+    /// the polarisation if the mode has one, and the other moments of the intensity; the columns are the former two at each radius,
+    /// and the irradiance on the ground in mode 0.
     modes: Vec<Vec<Spectrum<N>>>,
     /// Downward irradiance: columns of mode 0.
     downward: Vec<Spectrum<N>>,
@@ -27,59 +60,72 @@ pub struct WeightedDirection<'a> {
 }
 
 impl<const N: usize> ResponseRow<N> {
-    /// No response, for light at `radii` radii, of moments in `basis` to moments in `rescattered`.
-    pub fn new(radii: usize, basis: &Harmonics, rescattered: &Harmonics) -> Self {
-        let low = rescattered.degree();
+    /// No response.
+    pub fn new(shape: Shape) -> Self {
+        let rows = |m| shape.degree + 1 - m + shape.polarised_in(m);
         Self {
-            modes: (0..=low)
-                .map(|m| vec![Spectrum::ZERO; (basis.degree() + 1 - m) * columns(radii, low, m)])
+            shape,
+            modes: (0..=shape.rescattered)
+                .map(|m| vec![Spectrum::ZERO; rows(m) * shape.columns(m)])
                 .collect(),
-            downward: vec![Spectrum::ZERO; columns(radii, low, 0)],
+            downward: vec![Spectrum::ZERO; shape.columns(0)],
         }
     }
 
-    /// Adds the light from a direction: its coefficients for the moments of the field, `[radius][harmonic]`, and for the
-    /// irradiance on the ground.
+    /// Adds the light from a direction: its response to the moments of the field, and to the irradiance on the ground.
     #[inline(always)]
     pub fn add(
         &mut self,
         direction: &WeightedDirection<'_>,
-        coefficients: &[Spectrum<N>],
+        response: &Response<N>,
         ground: Spectrum<N>,
     ) {
-        let low = self.modes.len() - 1;
-        let count = Harmonics::index(low, low) + 1;
-        let radii = coefficients.len() / count;
+        let shape = self.shape;
+        let amplitudes = TensorHarmonics::amplitudes(direction.mu as f32);
         for (m, rows) in self.modes.iter_mut().enumerate() {
-            // The mean of cos^2(m azimuth).
-            let weight = direction.weight * if m == 0 { 1.0 } else { 0.5 };
-            let columns = columns(radii, low, m);
-            for (degree, row) in rows.chunks_exact_mut(columns).enumerate() {
-                let y = direction.harmonics[Harmonics::index(m + degree, m)] * weight as f32;
-                accumulate(row, (m, low), coefficients, ground, y);
+            // The mean of cos^2(m azimuth), and of sin^2.
+            let weight = direction.weight as f32 * if m == 0 { 1.0 } else { 0.5 };
+            let columns = shape.columns(m);
+            let polarised_row = shape.rescattered + 1 - m;
+            for (place, row) in rows.chunks_exact_mut(columns).enumerate() {
+                let degree = match shape.polarised_in(m) {
+                    1 if place == polarised_row => {
+                        let factors = [amplitudes.q[m], amplitudes.u[m]].map(|f| f * weight);
+                        accumulate_linear(row, m, &shape, response, factors);
+                        continue;
+                    }
+                    1 if place > polarised_row => m + place - 1,
+                    _ => m + place,
+                };
+                let y = direction.harmonics[Harmonics::index(degree, m)] * weight;
+                accumulate(row, m, &shape, (response, ground), y);
             }
         }
         if direction.mu > 0.0 {
             let weight = (direction.weight * direction.mu) as f32;
-            accumulate(&mut self.downward, (0, low), coefficients, ground, weight);
+            accumulate(&mut self.downward, 0, &shape, (response, ground), weight);
         }
     }
 }
 
-/// Adds `weight` times the coefficients of one mode, up to a degree.
+/// Adds `weight` times the coefficients of one mode in the intensity.
 #[inline(always)]
 fn accumulate<const N: usize>(
     row: &mut [Spectrum<N>],
-    (m, low): (usize, usize),
-    coefficients: &[Spectrum<N>],
-    ground: Spectrum<N>,
+    m: usize,
+    shape: &Shape,
+    (response, ground): (&Response<N>, Spectrum<N>),
     weight: f32,
 ) {
-    let count = Harmonics::index(low, low) + 1;
-    let points = coefficients.chunks_exact(count);
-    for (out, point) in row.chunks_exact_mut(low + 1 - m).zip(points) {
-        for (l, out) in (m..).zip(out) {
+    let low = shape.rescattered;
+    let points = response.intensity.chunks_exact(response.stride);
+    for (out, point) in row.chunks_exact_mut(shape.rescattered_in(m)).zip(points) {
+        let (intensity, polarised) = out.split_at_mut(low + 1 - m);
+        for (l, out) in (m..).zip(intensity) {
             *out = out.scale_acc(point[Harmonics::index(l, m)], weight);
+        }
+        for out in polarised {
+            *out = out.scale_acc(point[Harmonics::index(low, low) + 1 + m], weight);
         }
     }
     if m == 0 {
@@ -88,9 +134,24 @@ fn accumulate<const N: usize>(
     }
 }
 
-/// Number of columns of a mode: moments at each radius, and the irradiance on the ground.
-fn columns(radii: usize, low: usize, m: usize) -> usize {
-    radii * (low + 1 - m) + usize::from(m == 0)
+/// Adds the coefficients of one mode in Q and U, times these factors.
+#[inline(always)]
+fn accumulate_linear<const N: usize>(
+    row: &mut [Spectrum<N>],
+    m: usize,
+    shape: &Shape,
+    response: &Response<N>,
+    factors: [f32; 2],
+) {
+    for (coefficients, factor) in response.linear.iter().zip(factors) {
+        let columns = row.chunks_exact_mut(shape.rescattered_in(m));
+        for (out, [natural, kept]) in columns.zip(coefficients) {
+            let places = [2 - m, shape.rescattered + 1 - m];
+            for (place, coefficients) in places.into_iter().zip([natural, kept]) {
+                out[place] = out[place].scale_acc(coefficients[m], factor);
+            }
+        }
+    }
 }
 
 /// The factorised operator of all azimuthal modes that are scattered again.
@@ -100,23 +161,27 @@ pub struct PlaneParallel<const N: usize> {
 
 struct Mode<const N: usize> {
     m: usize,
+    /// Number of moments of the intensity.
+    moments: usize,
     /// Number of degrees at each radius that are scattered again, and of all.
     low: usize,
     all: usize,
+    /// Number of moments of polarisation.
+    polarised: usize,
     size: usize,
     /// Factors L (below the diagonal, which is 1) and U of one minus the response among the columns.
     factors: Vec<Spectrum<N>>,
-    /// Response of the higher degrees, `[radius][degree][column]`.
+    /// Response of the higher degrees of the intensity, `[radius][degree][column]`.
     beyond: Vec<Spectrum<N>>,
 }
 
 impl<const N: usize> PlaneParallel<N> {
     /// Factorises the operator with these rows, one for each radius.
-    pub fn new(basis: &Harmonics, rescattered: &Harmonics, rows: &[ResponseRow<N>]) -> Self {
-        let modes = parallel::map(rescattered.degree() + 1, |m| {
+    pub fn new(shape: &Shape, rows: &[ResponseRow<N>]) -> Self {
+        let modes = parallel::map(shape.rescattered + 1, |m| {
             vectorized(
                 #[inline(always)]
-                || Mode::new(m, basis.degree(), rescattered.degree(), rows),
+                || Mode::new(m, shape, rows),
             )
         });
         Self { modes }
@@ -156,13 +221,13 @@ impl<const N: usize> PlaneParallel<N> {
 
 impl<const N: usize> Mode<N> {
     #[inline(always)]
-    fn new(m: usize, degree: usize, rescattered: usize, rows: &[ResponseRow<N>]) -> Self {
-        let (low, all) = (rescattered + 1 - m, degree + 1 - m);
-        let size = columns(rows.len(), rescattered, m);
+    fn new(m: usize, shape: &Shape, rows: &[ResponseRow<N>]) -> Self {
+        let (low, all) = (shape.rescattered + 1 - m, shape.degree + 1 - m);
+        let (polarised, size) = (shape.polarised_in(m), shape.columns(m));
         let mut factors = Vec::with_capacity(size * size);
         let mut beyond = Vec::with_capacity(rows.len() * (all - low) * size);
         for row in rows {
-            let (scattered_again, rest) = row.modes[m].split_at(low * size);
+            let (scattered_again, rest) = row.modes[m].split_at((low + polarised) * size);
             factors.extend(
                 scattered_again
                     .iter()
@@ -180,8 +245,10 @@ impl<const N: usize> Mode<N> {
         factorise(&mut factors, size);
         Self {
             m,
+            moments: Harmonics::index(shape.degree, shape.degree) + 1,
             low,
             all,
+            polarised,
             size,
             factors,
             beyond,
@@ -195,18 +262,23 @@ impl<const N: usize> Mode<N> {
             radius * count + Harmonics::index(self.m + degree, self.m)
         };
         let radii = column.len() / count;
-        let mut x: Vec<Spectrum<N>> = (0..radii)
-            .flat_map(|radius| (0..self.low).map(move |degree| (radius, degree)))
-            .map(|(radius, degree)| column[at(radius, degree)])
+        let scattered_again: Vec<usize> = (0..radii)
+            .flat_map(|radius| {
+                let intensity = (0..self.low).map(move |degree| at(radius, degree));
+                let polarised =
+                    (0..self.polarised).map(move |_| radius * count + self.moments + self.m);
+                intensity.chain(polarised)
+            })
             .collect();
+        let mut x: Vec<Spectrum<N>> = scattered_again.iter().map(|&k| column[k]).collect();
         if self.m == 0 {
             x.push(*ground);
         }
         substitute(&self.factors, &mut x);
+        for (&k, &x) in scattered_again.iter().zip(&x) {
+            column[k] = x;
+        }
         for radius in 0..radii {
-            for degree in 0..self.low {
-                column[at(radius, degree)] = x[radius * self.low + degree];
-            }
             let rows = &self.beyond[radius * (self.all - self.low) * self.size..];
             for degree in self.low..self.all {
                 let row = &rows[(degree - self.low) * self.size..][..self.size];

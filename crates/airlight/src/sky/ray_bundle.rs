@@ -5,8 +5,10 @@
 //! depends on the sun remains for each ray and is stored in arrays over the rays, so that the compiler vectorises it.
 
 use super::air::Air;
-use super::field::{FieldGrid, RadialStencil, RadianceField, scattering_moment};
+use super::field::{FieldGrid, RadialStencil, RadianceField, polarised_moments, scattering_moment};
 use super::harmonics::Harmonics;
+use super::polarised::{POLARISED, TensorHarmonics};
+use crate::math::interpolation::lerp;
 use crate::spectrum::Spectrum;
 use crate::transfer::march::{MAX_NODES, Marcher};
 use crate::transfer::ray::{Ray, in_shadow};
@@ -38,6 +40,12 @@ struct PathNode<const N: usize> {
     removed: Spectrum<N>,
     /// `weight` times the l-th phase moment of the scattering coefficients.
     source_weights: Vec<Spectrum<N>>,
+    /// Length of the node's interval times the moments of degree 2 of the scattering matrix: of the intensity that arises from
+    /// polarised light, attenuated as the intensity, and of the polarisation that arises from natural and from polarised light, which
+    /// is attenuated less.
+    polarised_weights: [Spectrum<N>; 3],
+    /// Factor by which polarised light is attenuated less.
+    linear_gain: Spectrum<N>,
 }
 
 /// Sums over the nodes of a panel of a path.
@@ -171,8 +179,21 @@ pub struct Scratch<const N: usize> {
     azimuthal: [Vec<f32>; 3],
     /// Basis functions, `[harmonic][ray]`.
     y: Vec<f32>,
-    /// The field at a node's radius, `[sun][harmonic]`.
+    /// What a node scatters of the field at its radius, `[sun][moment]`.
     row: Vec<Spectrum<N>>,
+    /// Intensity of the field at the node of each ray.
+    intensity: Vec<Spectrum<N>>,
+    tensor: TensorBundle,
+}
+
+/// Factor by which polarised light is attenuated less than natural light behind these columns.
+#[inline(always)]
+pub fn linear_gain<const N: usize>(air: &Air<N>, columns_m: &PerConstituent) -> Spectrum<N> {
+    // The attenuation of both exceeds the range of single precision in much thicker air.
+    air.linear_peaks
+        .extinction(columns_m)
+        .map(|depth| depth.min(60.0))
+        .exp()
 }
 
 impl<const N: usize> Path<N> {
@@ -231,6 +252,8 @@ impl<const N: usize> Path<N> {
                         weight,
                         removed: air.peaks.extinction(&node.columns_m),
                         source_weights: Vec::new(),
+                        polarised_weights: [Spectrum::ZERO; 3],
+                        linear_gain: linear_gain(air, &node.columns_m),
                     });
                 }
                 let correct = panel.correction((Spectrum::ZERO - before).exp());
@@ -239,6 +262,10 @@ impl<const N: usize> Path<N> {
                     node.source_weights = (0..=degree)
                         .map(|l| node.weight * scattering_moment(air, &node.densities, l))
                         .collect();
+                    let [natural, kept] =
+                        polarised_moments(air, &node.densities).map(|moment| node.weight * moment);
+                    node.polarised_weights =
+                        [natural, natural * node.linear_gain, kept * node.linear_gain];
                 }
                 before += panel.whole;
                 if before.min_element() > 16.0 {
@@ -268,9 +295,10 @@ impl<const N: usize> Path<N> {
     }
 
     /// The first `K` streams of singly scattered sunlight along each ray, per unit scattering coefficient and without phase
-    /// functions, into `out`: `[scatterer][stream][ray]`.
+    /// functions, into `out`: `[scatterer][stream][ray]`. With `LINEAR` one more stream is attenuated on its way to the eye as
+    /// polarised light is.
     #[inline(always)]
-    pub fn accumulate_sunlight<const K: usize>(
+    pub fn accumulate_sunlight<const K: usize, const LINEAR: bool>(
         &self,
         air: &Air<N>,
         bundle: &RayBundle,
@@ -278,7 +306,8 @@ impl<const N: usize> Path<N> {
     ) {
         let shell = air.shell();
         out.clear();
-        out.resize(air.scatterers.len() * K * bundle.len(), Spectrum::ZERO);
+        let count = K + usize::from(LINEAR);
+        out.resize(air.scatterers.len() * count * bundle.len(), Spectrum::ZERO);
         for node in &self.nodes {
             let columns = air.columns.at(node.radius_m);
             for slot in 0..bundle.len() {
@@ -298,16 +327,23 @@ impl<const N: usize> Path<N> {
                     stream_transmittances(node.removed + air.peaks.extinction_f32(&to_sun));
                 for (place, s) in air.scatterers.iter().enumerate() {
                     let density = node.densities[s.constituent] as f32;
+                    let mut add = |k: usize, factor: Spectrum<N>| {
+                        let sum = &mut out[(place * count + k) * bundle.len() + slot];
+                        *sum = sum.scale_acc(arriving * factor, density);
+                    };
                     for (k, stream) in streams[..K].iter().enumerate() {
-                        let sum = &mut out[(place * K + k) * bundle.len() + slot];
-                        *sum = sum.scale_acc(arriving * *stream, density);
+                        add(k, *stream);
+                    }
+                    if LINEAR {
+                        add(K, node.linear_gain);
                     }
                 }
             }
         }
     }
 
-    /// Adds the light of `field` scattered into each ray; `basis` is that of the field, or its low degrees.
+    /// Adds the light of `field` scattered into each ray; `basis` is that of the field, or its low degrees. `linear` receives its
+    /// Q and U, if wanted.
     #[inline(always)]
     pub fn accumulate_scattered(
         &self,
@@ -316,51 +352,103 @@ impl<const N: usize> Path<N> {
         bundle: &RayBundle,
         scratch: &mut Scratch<N>,
         out: &mut [Spectrum<N>],
+        mut linear: Option<&mut [[Spectrum<N>; 2]]>,
     ) {
         let (rays, count) = (bundle.len(), basis.count());
+        let stride = count + if field.is_polarised() { POLARISED } else { 0 };
         scratch.resize(rays, count);
         for node in &self.nodes {
             let suns = scratch.locate(&field.grid, self, node, bundle);
             let first_sun = suns.start;
             field.at_radius(node.place, suns, count, &mut scratch.row);
+            for point in scratch.row.chunks_exact_mut(stride) {
+                node.scatter(basis, point);
+            }
             basis.evaluate_bundle(
                 node.mu,
                 &scratch.toward_sun,
                 &mut scratch.azimuthal,
                 &mut scratch.y,
             );
+            let interval = |slot: usize| {
+                let below = (scratch.below[slot] as usize - first_sun) * stride;
+                scratch.row[below..below + 2 * stride].split_at(stride)
+            };
             for (slot, out) in out.iter_mut().enumerate() {
-                let below = (scratch.below[slot] as usize - first_sun) * count;
-                let (a, b) = scratch.row[below..below + 2 * count].split_at(count);
-                let (wa, wb) = (1.0 - scratch.fraction[slot], scratch.fraction[slot]);
-                let mut sum = node.source_weights[0] * scratch.y[slot];
-                for (l, weight) in node.source_weights.iter().enumerate().skip(1) {
-                    let mut degree = Spectrum::ZERO;
-                    for k in basis.span(l) {
-                        let y = scratch.y[k * rays + slot];
-                        degree = degree.scale_acc(a[k], wa * y).scale_acc(b[k], wb * y);
-                    }
-                    sum = sum.mul_acc(*weight, degree);
+                let (a, b) = interval(slot);
+                let fraction = scratch.fraction[slot];
+                let (mut below, mut above) = (node.source_weights[0], node.source_weights[0]);
+                let y = scratch.y[slot];
+                (below, above) = (below * y, above * y);
+                for k in 1..count {
+                    let y = scratch.y[k * rays + slot];
+                    below = below.scale_acc(a[k], y);
+                    above = above.scale_acc(b[k], y);
                 }
-                let intensity = (a[0] * wa + b[0] * wb).exp();
-                *out = out.mul_acc(sum.max_scalar(0.0), intensity);
+                let intensity = lerp(a[0], b[0], fraction).exp();
+                scratch.intensity[slot] = intensity;
+                *out = out.mul_acc(lerp(below, above, fraction).max_scalar(0.0), intensity);
+            }
+            if let Some(linear) = &mut linear {
+                scratch.tensor.evaluate(node.mu, &scratch.toward_sun);
+                let TensorBundle {
+                    q0,
+                    q: [q1, q2],
+                    u: [u1, u2],
+                } = &scratch.tensor;
+                for (slot, linear) in linear.iter_mut().enumerate() {
+                    let (a, b) = interval(slot);
+                    let q = |e: &[Spectrum<N>]| {
+                        (e[count] * *q0)
+                            .scale_acc(e[count + 1], q1[slot])
+                            .scale_acc(e[count + 2], q2[slot])
+                    };
+                    let u = |e: &[Spectrum<N>]| {
+                        (e[count + 1] * u1[slot]).scale_acc(e[count + 2], u2[slot])
+                    };
+                    let (fraction, intensity) = (scratch.fraction[slot], scratch.intensity[slot]);
+                    linear[0] = linear[0].mul_acc(lerp(q(a), q(b), fraction), intensity);
+                    linear[1] = linear[1].mul_acc(lerp(u(a), u(b), fraction), intensity);
+                }
             }
         }
     }
 
     /// Adds the light at the start of the path scattered from a field that is the same for all places with the same radius: the
-    /// coefficients of its moments, `[radius][harmonic]`, for harmonics of `basis` and a direction at azimuth 0.
+    /// coefficients of its moments, `[radius][moment]`, for harmonics of `basis` and a direction at azimuth 0.
     #[inline(always)]
-    pub fn accumulate_response(&self, basis: &Harmonics, y: &mut [f32], out: &mut [Spectrum<N>]) {
+    pub fn accumulate_response(&self, basis: &Harmonics, y: &mut [f32], out: &mut Response<N>) {
         let count = basis.count();
+        let stride = out.stride;
         for node in &self.nodes {
             let sin = (1.0 - node.mu * node.mu).max(0.0).sqrt();
             basis.evaluate(node.mu, sin, y);
             let RadialStencil { first, weights } = node.place;
-            for (out, w) in out[first * count..].chunks_exact_mut(count).zip(weights) {
+            let points = out.intensity[first * stride..].chunks_exact_mut(stride);
+            for (out, w) in points.zip(weights) {
                 for (l, source) in node.source_weights.iter().enumerate() {
                     for k in basis.span(l) {
                         out[k] = out[k].scale_acc(*source, w * y[k]);
+                    }
+                }
+                let [to_intensity, ..] = &node.polarised_weights;
+                for (m, out) in out[count..].iter_mut().enumerate() {
+                    *out = out.scale_acc(*to_intensity, w * y[Harmonics::index(2, m)]);
+                }
+            }
+            let linear = &node.polarised_weights[1..];
+            if stride > count {
+                let amplitudes = TensorHarmonics::amplitudes(node.mu);
+                for (factors, out) in [&amplitudes.q, &amplitudes.u]
+                    .into_iter()
+                    .zip(&mut out.linear)
+                {
+                    for (out, w) in out[first..].iter_mut().zip(weights) {
+                        for (sums, weight) in out.iter_mut().zip(linear) {
+                            for (sum, factor) in sums.iter_mut().zip(factors) {
+                                *sum = sum.scale_acc(*weight, w * factor);
+                            }
+                        }
                     }
                 }
             }
@@ -398,6 +486,91 @@ impl<const N: usize> Path<N> {
     }
 }
 
+impl<const N: usize> PathNode<N> {
+    /// Replaces the stored moments of a field, of which the first are those of `basis` and the last those of polarisation, by what the
+    /// node scatters of them relative to the intensity; the logarithm of the intensity remains.
+    #[inline(always)]
+    fn scatter(&self, basis: &Harmonics, point: &mut [Spectrum<N>]) {
+        let (intensity, polarised) = point.split_at_mut(basis.count());
+        let [to_intensity, natural, kept] = self.polarised_weights;
+        for (l, weight) in self.source_weights.iter().enumerate().skip(1) {
+            let degree = &mut intensity[basis.span(l)];
+            if l == 2 && !polarised.is_empty() {
+                for (moment, e) in degree.iter_mut().zip(polarised.iter_mut()) {
+                    let scattered = (*moment * natural).mul_acc(*e, kept);
+                    *moment = (*moment * *weight).mul_acc(*e, to_intensity);
+                    *e = scattered;
+                }
+            } else {
+                for moment in degree {
+                    *moment *= *weight;
+                }
+            }
+        }
+    }
+}
+
+/// Response of the light along a path to the moments of a field that is the same for all places with the same radius. Azimuthal mode m
+/// of a field gives light with the same mode: `I` and `Q` with the cosine of `m` times the azimuth, `U` with the sine.
+pub struct Response<const N: usize> {
+    /// Number of moments at each radius: those of the intensity, and those of the polarisation if light is polarised.
+    pub stride: usize,
+    /// Coefficients of the moments in `I`, `[radius][moment]`.
+    pub intensity: Vec<Spectrum<N>>,
+    /// Coefficients in `Q` and in `U` of the moments of degree 2 of the intensity, and of those of polarisation:
+    /// `[radius][which][m]`.
+    pub linear: [Vec<[[Spectrum<N>; POLARISED]; 2]>; 2],
+}
+
+impl<const N: usize> Response<N> {
+    /// No response, for light at `radii` radii with `stride` moments.
+    pub fn new(radii: usize, stride: usize) -> Self {
+        let linear = || vec![[[Spectrum::ZERO; POLARISED]; 2]; radii];
+        Self {
+            stride,
+            intensity: vec![Spectrum::ZERO; radii * stride],
+            linear: [linear(), linear()],
+        }
+    }
+
+    /// Sets all coefficients to 0.
+    pub fn clear(&mut self) {
+        self.intensity.fill(Spectrum::ZERO);
+        for part in &mut self.linear {
+            part.fill([[Spectrum::ZERO; POLARISED]; 2]);
+        }
+    }
+}
+
+/// [`TensorHarmonics`] of the rays of a bundle: those that differ from 0, of order 0 for all rays, then for each ray.
+#[derive(Default)]
+struct TensorBundle {
+    q0: f32,
+    q: [Vec<f32>; 2],
+    u: [Vec<f32>; 2],
+}
+
+impl TensorBundle {
+    #[inline(always)]
+    fn evaluate(&mut self, mu: f32, toward_sun: &[f32]) {
+        let rays = toward_sun.len();
+        for list in self.q.iter_mut().chain(&mut self.u) {
+            list.resize(rays, 0.0);
+        }
+        let amplitudes = TensorHarmonics::amplitudes(mu);
+        let inverse = 1.0 / (1.0 - mu * mu).max(1e-9).sqrt();
+        self.q0 = amplitudes.q[0];
+        let [[q1, q2], [u1, u2]] = [&mut self.q, &mut self.u];
+        let (q1, q2) = (&mut q1[..rays], &mut q2[..rays]);
+        let (u1, u2) = (&mut u1[..rays], &mut u2[..rays]);
+        for slot in 0..rays {
+            let harmonics = amplitudes.at(toward_sun[slot] * inverse);
+            (q1[slot], q2[slot]) = (harmonics.q[1], harmonics.q[2]);
+            (u1[slot], u2[slot]) = (harmonics.u[1], harmonics.u[2]);
+        }
+    }
+}
+
 impl<const N: usize> Scratch<N> {
     #[inline(always)]
     fn resize(&mut self, rays: usize, harmonics: usize) {
@@ -408,6 +581,7 @@ impl<const N: usize> Scratch<N> {
             list.resize(rays, 0.0);
         }
         self.below.resize(rays, 0);
+        self.intensity.resize(rays, Spectrum::ZERO);
         self.y.resize(rays * harmonics, 0.0);
     }
 

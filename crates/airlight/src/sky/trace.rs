@@ -17,6 +17,8 @@
 use super::air::Air;
 use super::field::{Diffuse, ground_irradiance};
 use super::harmonics::Harmonics;
+use super::polarised::{TensorHarmonics, scattering_plane};
+use super::ray_bundle::linear_gain;
 use crate::spectrum::Spectrum;
 use crate::transfer::march::{Marcher, Node};
 use crate::transfer::ray::Ray;
@@ -236,6 +238,67 @@ impl<'a, const N: usize> Tracer<'a, N> {
         light
     }
 
+    /// Q and U of the light along the whole of `ray`, in the frame of [`super::polarised`], given the cosine of the azimuth between
+    /// the ray and the sun.
+    pub fn linear(&mut self, ray: &Ray, cos_azimuth: f64) -> [Spectrum<N>; 2] {
+        let mut linear = [Spectrum::ZERO; 2];
+        let Some(segment) = self.air.shell().segment(ray, f64::INFINITY) else {
+            return linear;
+        };
+        let (dimming, diffuse) = (self.dimming, self.diffuse);
+        // Sunlight attenuated as natural and as polarised light.
+        let [mut natural, mut polarised] = [Arriving::NONE.streams; 2];
+        let mut edges = std::mem::take(&mut self.edges);
+        let span = (segment.start_m, segment.end_m);
+        let shell = self.air.shell();
+        self.marcher.march(shell, ray, span, &mut edges, |nodes| {
+            let mut brightest = 0.0f32;
+            for node in nodes {
+                let transmittance = dimming.coefficients.transmittance(&node.columns_m);
+                brightest = brightest.max(transmittance.max_element());
+                let weight = transmittance * node.dt as f32;
+                self.add_sunlight(node, weight, &node.columns_m, &mut natural);
+                let weight = weight * linear_gain(dimming, &node.columns_m);
+                self.add_sunlight(node, weight, &node.columns_m, &mut polarised);
+                if let Some(Diffuse { field, air, .. }) = diffuse {
+                    let here = &node.here;
+                    let sin = ((1.0 - here.mu) * (1.0 + here.mu)).max(0.0).sqrt();
+                    let cosine = match sin > 1e-5 {
+                        true => (here.toward_sun() / sin).clamp(-1.0, 1.0),
+                        false => cos_azimuth,
+                    };
+                    let harmonics = TensorHarmonics::amplitudes(here.mu as f32).at(cosine as f32);
+                    let source = field.linear_source(air, here, &node.densities, &harmonics);
+                    for (sum, source) in linear.iter_mut().zip(source) {
+                        *sum = sum.mul_acc(weight, source);
+                    }
+                }
+            }
+            match brightest < 1e-7 {
+                true => ControlFlow::Break(()),
+                false => ControlFlow::Continue(()),
+            }
+        });
+        self.edges = edges;
+        let scatterers = dimming.scatterers.iter();
+        let mut parallel = Spectrum::ZERO;
+        for (s, (natural, polarised)) in scatterers.zip(natural.iter().zip(&polarised)) {
+            if let Some(f12) = s.f12(ray.nu) {
+                let streams = match s.polarises_smoothly() {
+                    true => polarised,
+                    false => natural,
+                };
+                let once = combined(streams, &s.shares(ray.nu));
+                parallel = parallel.mul_acc(once, s.whole_scattering * f12);
+            }
+        }
+        let plane = scattering_plane(ray.mu as f32, ray.mu_sun as f32, cos_azimuth as f32);
+        for (sum, proportion) in linear.iter_mut().zip(plane) {
+            *sum = sum.scale_acc(parallel, proportion);
+        }
+        linear
+    }
+
     /// Adds the light scattered into the ray at a node, attenuated by `weight` (which includes the step length), behind these
     /// columns. Singly scattered sunlight is added per unit scattering coefficient. `y` is scratch space.
     #[inline(always)]
@@ -248,6 +311,18 @@ impl<'a, const N: usize> Tracer<'a, N> {
         light: &mut Arriving<N>,
     ) {
         light.multiple_scatter = light.multiple_scatter.mul_acc(weight, self.source(node, y));
+        self.add_sunlight(node, weight, columns_m, &mut light.streams);
+    }
+
+    /// Adds only the singly scattered sunlight.
+    #[inline(always)]
+    fn add_sunlight(
+        &self,
+        node: &Node,
+        weight: Spectrum<N>,
+        columns_m: &PerConstituent,
+        streams: &mut [[Spectrum<N>; STREAMS]; MAX_CONSTITUENTS],
+    ) {
         if node.lit {
             let dimming = self.dimming;
             let to_sun = dimming
@@ -256,7 +331,7 @@ impl<'a, const N: usize> Tracer<'a, N> {
             let sunlight = weight * dimming.coefficients.transmittance(&to_sun);
             let removed = dimming.peaks.extinction(&to_sun) + dimming.peaks.extinction(columns_m);
             let sunlight = stream_transmittances(removed).map(|stream| sunlight * stream);
-            for (s, sums) in self.air.scatterers.iter().zip(&mut light.streams) {
+            for (s, sums) in self.air.scatterers.iter().zip(streams) {
                 let density = node.densities[s.constituent] as f32;
                 for (sum, sunlight) in sums.iter_mut().zip(&sunlight) {
                     *sum = sum.scale_acc(*sunlight, density);

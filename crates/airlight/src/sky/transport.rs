@@ -7,8 +7,9 @@ use super::air::Air;
 use super::field::{FieldGrid, RadianceField};
 use super::harmonics::Harmonics;
 use super::light::Light;
-use super::plane_parallel::{PlaneParallel, ResponseRow, WeightedDirection};
-use super::ray_bundle::{Path, RayBundle, Scratch};
+use super::plane_parallel::{PlaneParallel, ResponseRow, Shape, WeightedDirection};
+use super::polarised::{POLARISED, TensorHarmonics, scattering_plane};
+use super::ray_bundle::{Path, RayBundle, Response, Scratch};
 use super::settings::Directions;
 use crate::control::{Cancelled, Control};
 use crate::math::legendre::legendre;
@@ -29,17 +30,20 @@ pub struct Transport<'a, const N: usize> {
     /// For each radius, the paths that start there, with their weights in an integral over the cosine of the zenith angle.
     paths: Vec<Vec<(Path<N>, f64)>>,
     azimuth_cosines: Vec<f64>,
+    /// Whether scattering polarises the light.
+    polarised: bool,
     control: Control<'a>,
 }
 
 impl<'a, const N: usize> Transport<'a, N> {
-    /// Traces the paths; `rescattered_degree` is the degree of the moments that [`Transport::scattered`] uses.
+    /// Traces the paths; `rescattered_degree` is the degree of the moments that [`Transport::scattered`] uses. `polarised` light needs
+    /// moments of degree 2.
     ///
     /// # Errors
     /// [`Cancelled`] soon after cancellation.
     pub fn new(
         (air, grid, basis): (&'a Air<N>, &'a FieldGrid, &'a Harmonics),
-        rescattered_degree: usize,
+        (rescattered_degree, polarised): (usize, bool),
         directions: &Directions,
         control: Control<'a>,
     ) -> Result<Self, Cancelled> {
@@ -73,6 +77,7 @@ impl<'a, const N: usize> Transport<'a, N> {
             rescattered: Harmonics::new(rescattered_degree),
             paths,
             azimuth_cosines,
+            polarised,
             control,
         })
     }
@@ -86,16 +91,34 @@ impl<'a, const N: usize> Transport<'a, N> {
         self.gather(
             #[inline(always)]
             |path, bundle, work| {
-                path.accumulate_sunlight::<1>(air, bundle, &mut work.single_scatter_without_phase);
+                let once = &mut work.single_scatter_without_phase;
+                match self.polarised {
+                    true => path.accumulate_sunlight::<1, true>(air, bundle, once),
+                    false => path.accumulate_sunlight::<1, false>(air, bundle, once),
+                }
+                let streams = 1 + usize::from(self.polarised);
                 let mut p = [0.0; Harmonics::MAX_DEGREE + 1];
                 let p = &mut p[..=self.basis.degree()];
                 for (slot, light) in work.light.iter_mut().enumerate() {
                     legendre(bundle.nu[slot], p);
+                    let mut parallel = Spectrum::ZERO;
                     for (place, s) in air.scatterers.iter().enumerate() {
-                        *light = light.mul_acc(
-                            work.single_scatter_without_phase[place * bundle.len() + slot],
-                            s.scattering * s.truncated_phase(p),
-                        );
+                        let once =
+                            &work.single_scatter_without_phase[streams * place * bundle.len()..];
+                        *light = light.mul_acc(once[slot], s.scattering * s.truncated_phase(p));
+                        if self.polarised
+                            && let Some(f12) = s.f12(bundle.nu[slot])
+                        {
+                            let stream = usize::from(s.polarises_smoothly());
+                            let linear = once[stream * bundle.len() + slot];
+                            parallel = parallel.mul_acc(linear, s.whole_scattering * f12);
+                        }
+                    }
+                    if self.polarised {
+                        let azimuth = self.azimuth_cosines[slot % self.azimuth_cosines.len()];
+                        let (mu, mu_sun) = (path.mu as f32, bundle.mu_sun[slot] as f32);
+                        work.linear[slot] = scattering_plane(mu, mu_sun, azimuth as f32)
+                            .map(|proportion| parallel * proportion);
                     }
                 }
                 path.accumulate_ground(
@@ -122,6 +145,7 @@ impl<'a, const N: usize> Transport<'a, N> {
                     bundle,
                     &mut work.scratch,
                     &mut work.light,
+                    self.polarised.then_some(&mut work.linear),
                 );
                 path.accumulate_ground(
                     self.air,
@@ -145,19 +169,30 @@ impl<'a, const N: usize> Transport<'a, N> {
                 || self.response_row(&self.paths[row]),
             ))
         })?;
-        Ok(PlaneParallel::new(self.basis, &self.rescattered, &rows))
+        Ok(PlaneParallel::new(&self.shape(), &rows))
+    }
+
+    /// Moments of the light.
+    fn shape(&self) -> Shape {
+        Shape {
+            radii: self.grid.radii_m.len(),
+            degree: self.basis.degree(),
+            rescattered: self.rescattered.degree(),
+            polarised: self.polarised,
+        }
     }
 
     /// Response of the light at one radius.
     #[inline(always)]
     fn response_row(&self, paths: &[(Path<N>, f64)]) -> ResponseRow<N> {
-        let radii = self.grid.radii_m.len();
-        let mut row = ResponseRow::new(radii, self.basis, &self.rescattered);
-        let mut coefficients = vec![Spectrum::ZERO; radii * self.rescattered.count()];
+        let mut row = ResponseRow::new(self.shape());
+        let polarised = self.count() - self.basis.count();
+        let stride = self.rescattered.count() + polarised;
+        let mut response = Response::new(self.grid.radii_m.len(), stride);
         let mut y = [0.0f32; Harmonics::MAX_COUNT];
         for (path, solid_weight) in paths {
-            coefficients.fill(Spectrum::ZERO);
-            path.accumulate_response(&self.rescattered, &mut y, &mut coefficients);
+            response.clear();
+            path.accumulate_response(&self.rescattered, &mut y, &mut response);
             let ground = match path.transmittance_to_ground() {
                 Some(transmittance) => {
                     transmittance * self.air.coefficients.reflected(Spectrum::ONE)
@@ -171,7 +206,7 @@ impl<'a, const N: usize> Transport<'a, N> {
                 weight: solid_weight * 2.0 * PI,
                 harmonics: &y,
             };
-            row.add(&direction, &coefficients, ground);
+            row.add(&direction, &response, ground);
         }
         row
     }
@@ -205,13 +240,18 @@ impl<'a, const N: usize> Transport<'a, N> {
         })?;
         let ground = rows[0].1.clone();
         Ok(Light {
-            count: self.basis.count(),
+            count: self.count(),
             moments: rows.into_iter().flat_map(|(moments, _)| moments).collect(),
             ground,
         })
     }
 
-    /// Moments, `[sun][harmonic]`, and downward irradiances, `[sun]`, at one radius.
+    /// Number of moments at each node.
+    fn count(&self) -> usize {
+        self.basis.count() + if self.polarised { POLARISED } else { 0 }
+    }
+
+    /// Moments, `[sun][moment]`, and downward irradiances, `[sun]`, at one radius.
     #[inline(always)]
     fn gather_row(
         &self,
@@ -221,18 +261,21 @@ impl<'a, const N: usize> Transport<'a, N> {
         let (suns, azimuths, count) = (
             self.grid.sun_cosines.len(),
             self.azimuth_cosines.len(),
-            self.basis.count(),
+            self.count(),
         );
+        let harmonics = self.basis.count();
         let mut moments = vec![Spectrum::ZERO; suns * count];
         let mut downward = vec![Spectrum::ZERO; suns];
         let mut work = Work {
             light: vec![Spectrum::ZERO; suns * azimuths],
+            linear: vec![[Spectrum::ZERO; 2]; suns * azimuths],
             ..Default::default()
         };
         let mut y = [0.0f32; Harmonics::MAX_COUNT];
         for (path, solid_weight) in paths {
             let bundle = self.bundle(path.mu);
             work.light.fill(Spectrum::ZERO);
+            work.linear.fill([Spectrum::ZERO; 2]);
             // A direct call: one through the reference would not be inlined into the vectorised code.
             (*accumulate)(path, &bundle, &mut work);
             let w = solid_weight * 2.0 * PI / azimuths as f64;
@@ -243,8 +286,15 @@ impl<'a, const N: usize> Transport<'a, N> {
                 let (sun, azimuth) = (slot / azimuths, slot % azimuths);
                 let toward_sun = (sin * self.azimuth_cosines[azimuth]) as f32;
                 self.basis.evaluate(path.mu as f32, toward_sun, &mut y);
-                for (moment, y) in moments[sun * count..(sun + 1) * count].iter_mut().zip(&y) {
+                let (intensity, polarised) =
+                    moments[sun * count..(sun + 1) * count].split_at_mut(harmonics);
+                for (moment, y) in intensity.iter_mut().zip(&y) {
                     *moment = moment.scale_acc(light, y * w as f32);
+                }
+                if self.polarised {
+                    let cosine = self.azimuth_cosines[azimuth] as f32;
+                    let harmonics = TensorHarmonics::amplitudes(path.mu as f32).at(cosine);
+                    harmonics.add_moments(work.linear[slot], w as f32, polarised);
                 }
                 if path.mu > 0.0 {
                     downward[sun] = downward[sun].scale_acc(light, (w * path.mu) as f32);
@@ -260,6 +310,8 @@ impl<'a, const N: usize> Transport<'a, N> {
 struct Work<const N: usize> {
     /// Light along each ray.
     light: Vec<Spectrum<N>>,
+    /// Its Q and U.
+    linear: Vec<[Spectrum<N>; 2]>,
     single_scatter_without_phase: Vec<Spectrum<N>>,
     scratch: Scratch<N>,
 }

@@ -67,7 +67,7 @@ impl Sky {
     /// which takes a second or two, and is as right as the others.
     ///
     /// # Panics
-    /// Where that solution does not converge although the one that was asked for did.
+    /// Where that solution does not converge although the first one did.
     pub fn view(&self, altitude_m: f64, sun: impl Into<SunState>) -> View {
         View::new(self, altitude_m, sun.into())
     }

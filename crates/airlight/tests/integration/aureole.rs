@@ -8,7 +8,7 @@ use airlight::monte_carlo::{MonteCarlo, MonteCarloSettings};
 use airlight::sky::{Sky, SkySettings, SunCoverage, TableChannels};
 use airlight::spectrum::WavelengthGrid;
 
-const TABLE: &str = include_str!("../data/sky_aureole_monte_carlo.csv");
+const TABLE: &str = include_str!("../../../airlight-validation/data/sky_aureole_monte_carlo.csv");
 
 /// A row of the table.
 struct Row {

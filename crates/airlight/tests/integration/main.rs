@@ -16,6 +16,7 @@ mod monte_carlo_lines;
 mod monte_carlo_polarisation;
 mod night;
 mod patchy_fog;
+mod polarised_sky;
 mod properties;
 mod sky_laws;
 mod thick_air;

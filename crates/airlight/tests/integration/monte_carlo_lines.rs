@@ -125,7 +125,8 @@ fn aerial_perspective_is_that_of_the_fast_solver() {
         .step_by(2)
         {
             let line = fast.view(eye_m, sun).along(view, Some(distance_m));
-            let found = random.path_radiance(eye_m, sun, view, distance_m);
+            let found = random.polarised(eye_m, sun, view, Some(distance_m));
+            let found = found.radiance();
             let left = random.transmittance(eye_m, view, distance_m);
             for lane in 0..3 {
                 let once = f64::from(line.single[lane]) / found.orders[0].mean[lane] - 1.0;

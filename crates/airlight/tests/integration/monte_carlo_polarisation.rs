@@ -1,4 +1,4 @@
-//! Monte Carlo with polarisation.
+//! Monte Carlo with polarisation, and the sky solver, against published values.
 
 use airlight::atmosphere::{
     Atmosphere, Constituent, ConstituentKind, DensityProfile, Planet, preset, reference,
@@ -8,6 +8,7 @@ use airlight::monte_carlo::{MonteCarlo, MonteCarloSettings, PolarisedEstimate};
 use airlight::optics::mie::Particles;
 use airlight::optics::mie::droplets::Drops;
 use airlight::optics::{PhaseFunction, RefractiveIndex};
+use airlight::sky::{Sky, SkySettings, SunCoverage};
 use airlight::spectrum::{SpectralCurve, WavelengthGrid};
 use airlight::sun::SunDisc;
 use glam::DVec3;
@@ -216,6 +217,53 @@ const RAYLEIGH_LAYER: [([f64; 2], [f64; 5]); 6] = [
     ),
 ];
 
+/// The sky solver against the same: errors in percent of the radiance, which scalar light misses by up to 10 %.
+#[test]
+fn the_solver_polarises_a_rayleigh_layer_as_published() {
+    let molecules = PhaseFunction::rayleigh(0.0).unwrap();
+    for (effort, settings, limit) in [
+        ("standard", SkySettings::default(), [0.6, 0.4]),
+        ("fine", SkySettings::fine(), [0.3, 0.2]),
+    ] {
+        let mut worst = [0.0f64; 2];
+        for albedo in [0.0, 0.8] {
+            let air = slab(molecules.clone(), 0.5, albedo);
+            let sun = direction(180.0, 0.2f64.asin().to_degrees());
+            for ([mu, azimuth], table) in RAYLEIGH_LAYER {
+                let (i, q, u) = match albedo {
+                    0.0 => (table[0], table[1], table[2]),
+                    _ => (table[3], table[4], table[2]),
+                };
+                let off = solver_off(&air, &settings, (sun, down(mu, azimuth)), [i, -q, -u]);
+                worst = [worst[0].max(off[0]), worst[1].max(off[1])];
+            }
+        }
+        println!(
+            "{effort}: I off by up to {:.2} %, Q and U by {:.2} %",
+            worst[0], worst[1]
+        );
+        assert!(worst[0] < limit[0] && worst[1] < limit[1], "{worst:?}");
+    }
+}
+
+/// What the sky solver misses published values of `I`, `Q` and `U` by, percent of `I`: `I`, and the distance of `Q` and `U`.
+fn solver_off(
+    air: &Atmosphere,
+    settings: &SkySettings,
+    (sun, view): (DVec3, DVec3),
+    [i, q, u]: [f64; 3],
+) -> [f64; 2] {
+    let grid = WavelengthGrid::from_wavelengths_nm(vec![700.0]).unwrap();
+    let settings = SkySettings {
+        suns: SunCoverage::near(sun.y.asin().to_degrees(), TOP_M),
+        ..settings.clone()
+    };
+    let sky = Sky::prepare(air, &grid, &settings).unwrap();
+    let light = sky.view(2.0 * TOP_M, sun).polarised(view);
+    let [fi, fq, fu] = [&light.intensity, &light.q, &light.u].map(|part| PI * f64::from(part[0]));
+    [(fi - i).abs(), (fq - q).hypot(fu - u)].map(|off| 100.0 * off / i)
+}
+
 #[test]
 fn a_rayleigh_layer_is_as_published() {
     let mut compared = Compared::default();
@@ -253,8 +301,8 @@ const HAZE: [([f64; 3], [f64; 3]); 11] = [
     ([0.1, 0.5, 30.0], [0.083628, 0.003839, -0.014492]),
 ];
 
-#[test]
-fn haze_under_molecules_is_as_published() {
+/// Air of [`HAZE`].
+fn haze_under_molecules() -> Atmosphere {
     let index = RefractiveIndex::constant(Complex64::new(1.33, 0.0));
     let haze = Particles::new(index, Drops::HazeL.sizes()).unwrap();
     let haze = PhaseFunction::Tabulated(haze.table(&[700.0]).unwrap().0);
@@ -265,7 +313,30 @@ fn haze_under_molecules_is_as_published() {
         (0.0, half, 0.1, molecules),
         (0.0, half, 0.4, haze),
     ];
-    let air = solver(&layers(&parts, 0.1), &[700.0], 65_536);
+    layers(&parts, 0.1)
+}
+
+/// The sky solver against the same, for suns it solves for.
+#[test]
+fn the_solver_polarises_haze_under_molecules_nearly_as_published() {
+    let air = haze_under_molecules();
+    let mut worst = [0.0f64; 2];
+    for ([sun, mu, azimuth], published) in HAZE {
+        let sun = direction(180.0, f64::asin(sun).to_degrees());
+        let view = down(mu, azimuth);
+        let off = solver_off(&air, &SkySettings::default(), (sun, view), published);
+        println!(
+            "{mu} {azimuth}: I off by {:.2} %, Q and U by {:.2} %",
+            off[0], off[1]
+        );
+        worst = [worst[0].max(off[0]), worst[1].max(off[1])];
+    }
+    assert!(worst[0] < 2.0 && worst[1] < 5.0, "{worst:?}");
+}
+
+#[test]
+fn haze_under_molecules_is_as_published() {
+    let air = solver(&haze_under_molecules(), &[700.0], 65_536);
     let mut compared = Compared::default();
     for ([sun, mu, azimuth], published) in HAZE {
         let sun = direction(180.0, f64::asin(sun).to_degrees());

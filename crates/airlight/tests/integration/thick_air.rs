@@ -42,7 +42,7 @@ impl Slab {
 
 #[test]
 fn skies_of_thick_slabs_are_those_of_discrete_ordinates() {
-    let table = include_str!("../data/sky_slabs_disort.csv");
+    let table = include_str!("../../../airlight-validation/data/sky_slabs_disort.csv");
     let mut last: Option<([f64; 5], Sky)> = None;
     for row in numbers::<9>(table) {
         let [

@@ -1,7 +1,7 @@
 //! Monte Carlo pictures and probes beside the deterministic solver.
 
 use super::{Exr, Folder, probe, try_probe};
-use airlight_render::probe::ProbeRay;
+use airlight_render::probe::{MonteCarloAnswer, ProbeRay};
 
 const SMALL: &str = "sun.elevation_deg = 20\noutput.sun_disc = \"out\"\ncamera.size = [16, 8]\nsolver.wavelengths = \"rgb\"\n";
 
@@ -98,14 +98,32 @@ fn a_probe_gives_both_and_the_error() {
             (solved - mean).abs() < 0.01 * mean + 4.0 * error,
             "{solved} {mean} {error}"
         );
-        let orders = found.radiance_by_order_w_m2_sr_nm.iter();
-        let sum: f64 = orders.map(|order| order[lane]).sum();
-        assert!((sum / mean - 1.0).abs() < 1e-9);
+        // Orders are those of scalar light.
+        let effect = sum_of_orders(found, lane) / mean - 1.0;
+        assert!(effect.abs() > 1e-4 && effect.abs() < 0.05, "{effect}");
+    }
+    let scalar = scene.replace(
+        "solver = { ",
+        "solver = { polarisation_correction = false, ",
+    );
+    let scalar = probe(&scalar, &[(0.0, 60.0)]);
+    let found = scalar.views[0].monte_carlo.as_ref().unwrap();
+    for lane in 0..3 {
+        let mean = found.radiance_w_m2_sr_nm[lane];
+        assert!((sum_of_orders(found, lane) / mean - 1.0).abs() < 1e-9);
+        let solved = f64::from(scalar.views[0].radiance_w_m2_sr_nm[lane]);
+        let error = found.standard_error_w_m2_sr_nm[lane];
+        assert!((solved - mean).abs() < 0.01 * mean + 4.0 * error);
     }
     let csv = answer.to_csv();
     let widths: Vec<usize> = csv.lines().map(|line| line.split(',').count()).collect();
     assert!(widths.len() == 4 && widths.iter().all(|width| *width == widths[0]));
     assert!(csv.contains("monte_carlo_standard_error_w_m2_sr_nm"));
+}
+
+fn sum_of_orders(found: &MonteCarloAnswer, lane: usize) -> f64 {
+    let orders = found.radiance_by_order_w_m2_sr_nm.iter();
+    orders.map(|order| order[lane]).sum()
 }
 
 /// What the air adds before an object, and before the ground where the ray ends there.
@@ -158,8 +176,7 @@ fn polarisation_is_followed() {
             polarised.stokes_q_w_m2_sr_nm[lane],
         );
         assert!(q < 0.0 && (-q / i / degree - 1.0).abs() < 0.01);
-        // Scalar light is off by percents at most.
-        assert!((i / found.radiance_w_m2_sr_nm[lane] - 1.0).abs() < 0.08);
+        assert!((i / found.radiance_w_m2_sr_nm[lane] - 1.0).abs() < 1e-9);
     }
     let csv = answer.to_csv();
     let widths: Vec<usize> = csv.lines().map(|line| line.split(',').count()).collect();
@@ -174,6 +191,59 @@ fn polarisation_is_followed() {
     let mean = |name: &str| map[name].iter().sum::<f32>() / 48.0;
     assert!((0.4..0.9).contains(&mean("degree")), "{}", mean("degree"));
     assert!((mean("angle_deg") - 90.0).abs() < 10.0 && mean("Q_over_I") < -0.4);
+}
+
+/// The solver without noise gives the same polarisation, as numbers and as a map; it does not know that of fog.
+#[test]
+fn polarisation_is_solved_for() {
+    let folder = Folder::new();
+    let scene = "sun.elevation_deg = 20\nsun.azimuth_deg = 180\noutput.polarisation = true\n\
+        solver.wavelengths = \"440,650\"\n";
+    let traced = format!("{scene}solver.name = \"monte-carlo\"\nsolver.paths = 16384\n");
+    for ray in [(0.0, 70.0), (120.0, 30.0), (240.0, 30.0)] {
+        let [solved, traced] = [scene, &traced].map(|scene| probe(scene, &[ray]));
+        let view = &solved.views[0];
+        assert!(view.monte_carlo.is_none());
+        let (solved_light, traced) = (view.polarisation().unwrap(), &traced.views[0]);
+        let traced = traced.polarisation().unwrap();
+        for lane in 0..2 {
+            let i = traced.stokes_i_w_m2_sr_nm[lane];
+            for (solved, traced, error) in [
+                (
+                    &solved_light.stokes_q_w_m2_sr_nm,
+                    &traced.stokes_q_w_m2_sr_nm,
+                    &traced.standard_error_q_w_m2_sr_nm,
+                ),
+                (
+                    &solved_light.stokes_u_w_m2_sr_nm,
+                    &traced.stokes_u_w_m2_sr_nm,
+                    &traced.standard_error_u_w_m2_sr_nm,
+                ),
+            ] {
+                let off = (solved[lane] - traced[lane]).abs();
+                assert!(off < 0.01 * i + 4.0 * error[lane], "{ray:?} {lane}: {off}");
+            }
+        }
+        let csv = solved.to_csv();
+        let widths: Vec<usize> = csv.lines().map(|line| line.split(',').count()).collect();
+        assert!(widths.len() == 3 && widths.iter().all(|width| *width == widths[0]));
+    }
+    let scene = format!(
+        "{scene}output.sun_disc = \"out\"\n\
+         camera = {{ projection = \"perspective\", fov_deg = 2, azimuth_deg = 0, elevation_deg = 70, size = [8, 6] }}"
+    );
+    folder.write("sky.exr", &scene);
+    assert_eq!(folder.names(""), ["sky.exr", "sky.polarisation.exr"]);
+    let map = Exr::read(&folder.file("sky.polarisation.exr")).channels;
+    let mean = |name: &str| map[name].iter().sum::<f32>() / 48.0;
+    assert!((0.4..0.9).contains(&mean("degree")), "{}", mean("degree"));
+    assert!((mean("angle_deg") - 90.0).abs() < 1.0 && mean("Q_over_I") < -0.4);
+    let foggy = format!("{scene}\nfog.visibility_m = 500");
+    let error = folder
+        .try_write("foggy.exr", &foggy)
+        .unwrap_err()
+        .to_string();
+    assert!(error.contains("monte-carlo"), "{error}");
 }
 
 #[test]

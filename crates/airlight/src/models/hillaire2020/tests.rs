@@ -26,6 +26,7 @@ fn worst(
     let grid = WavelengthGrid::rgb();
     let solver = SkySettings {
         scattering,
+        polarisation_correction: false,
         ..Default::default()
     };
     let sky = Sky::prepare(air, &grid, &solver).unwrap();

@@ -170,6 +170,7 @@ fn table_is_accurate() {
 fn solved(scattering: Scattering) -> impl Fn(f64, DVec3) -> [f64; 3] {
     let solver = SkySettings {
         scattering,
+        polarisation_correction: false,
         ..Default::default()
     };
     let air = published::sky_article();

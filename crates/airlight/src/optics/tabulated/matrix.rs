@@ -1,7 +1,7 @@
 //! Scattering matrix of spheres stored with a tabulated phase function.
 
 use super::{PhaseError, TabulatedPhase};
-use crate::optics::MatrixRatios;
+use crate::optics::{MatrixRatios, PolarisedMoments};
 
 impl TabulatedPhase {
     /// Adds the polarisation of spheres: `f12`, `f33` and `f34` relative to the phase function, in the order of the values of
@@ -46,14 +46,8 @@ impl TabulatedPhase {
         };
         let (interval, angle) = self.place(cos_angle);
         let (row, t) = self.bracket_wavelength(wavelength_nm);
-        let [low, high] = [self.angles_rad[interval], self.angles_rad[interval + 1]];
-        let part = ((angle - low) / (high - low)) as f32;
-        let of = |row: usize| -> [f64; 3] {
-            let at = row * self.angles_rad.len() + interval;
-            let (near, far) = (matrix[at], matrix[at + 1]);
-            std::array::from_fn(|i| f64::from(near[i] + part * (far[i] - near[i])))
-        };
-        let [f12, f33, f34] = match t {
+        let of = |row: usize| self.ratios_of_row(matrix, row, interval, angle);
+        let ratios = match t {
             0.0 => of(row),
             _ => {
                 // The matrix elements, not their ratios, are linear between wavelengths, as the phase function is.
@@ -64,13 +58,65 @@ impl TabulatedPhase {
                 std::array::from_fn(|i| near[i] + share * (far[i] - near[i]))
             }
         };
-        MatrixRatios {
-            f12,
-            f22: 1.0,
-            f33,
-            f34,
-            f44: f33,
+        of_spheres(ratios)
+    }
+
+    /// Ratios of a row of the table, linear in the angle.
+    fn ratios_of_row(
+        &self,
+        matrix: &[[f32; 3]],
+        row: usize,
+        interval: usize,
+        angle: f64,
+    ) -> [f64; 3] {
+        let [low, high] = [self.angles_rad[interval], self.angles_rad[interval + 1]];
+        let part = ((angle - low) / (high - low)) as f32;
+        let at = row * self.angles_rad.len() + interval;
+        let (near, far) = (matrix[at], matrix[at + 1]);
+        std::array::from_fn(|i| f64::from(near[i] + part * (far[i] - near[i])))
+    }
+
+    /// Moments of degree 2 of the scattering matrix, see [`crate::optics::PhaseFunction::polarised_moments`].
+    pub(crate) fn polarised_moments(&self, wavelength_nm: f64) -> PolarisedMoments {
+        let Some(matrix) = &self.matrix else {
+            return PolarisedMoments::default();
+        };
+        let of = |row: usize| {
+            let mut sum = PolarisedMoments::default();
+            for interval in 0..self.angles_rad.len() - 1 {
+                let to = self.angles_rad[interval + 1];
+                self.visit_panels(row, interval, to, MAX_PANEL, |angles, measures| {
+                    for (&angle, &measure) in angles.iter().zip(measures) {
+                        let ratios = of_spheres(self.ratios_of_row(matrix, row, interval, angle));
+                        let phase = self.at_row(row, interval, angle);
+                        let part = PolarisedMoments::of_angle(angle.cos(), phase, &ratios);
+                        sum = sum.plus(part, measure);
+                    }
+                });
+            }
+            sum
+        };
+        let (row, t) = self.bracket_wavelength(wavelength_nm);
+        match t {
+            0.0 => of(row),
+            _ => PolarisedMoments::default()
+                .plus(of(row), 1.0 - t)
+                .plus(of(row + 1), t),
         }
+    }
+}
+
+/// Widest panel of an integral over polynomials of the cosine of low degree, rad.
+const MAX_PANEL: f64 = 0.4;
+
+/// The matrix of spheres, of which three ratios are independent.
+fn of_spheres([f12, f33, f34]: [f64; 3]) -> MatrixRatios {
+    MatrixRatios {
+        f12,
+        f22: 1.0,
+        f33,
+        f34,
+        f44: f33,
     }
 }
 
