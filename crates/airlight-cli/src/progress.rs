@@ -1,7 +1,8 @@
 //! Progress bars on standard error, shown only on a terminal.
 
 use airlight_image::Progress;
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressState, ProgressStyle};
+use std::fmt::Write;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
@@ -10,8 +11,18 @@ const TICK: Duration = Duration::from_millis(200);
 
 /// Style of work of known length.
 fn bar_style() -> ProgressStyle {
-    let style = ProgressStyle::with_template("{msg} {wide_bar} {percent:>3} %, {eta} left");
-    style.unwrap_or_else(|_| ProgressStyle::default_bar())
+    let style = ProgressStyle::with_template("{msg} {wide_bar} {percent:>3} %{left}");
+    style
+        .unwrap_or_else(|_| ProgressStyle::default_bar())
+        .with_key("left", time_left)
+}
+
+/// Time left, which is not known before the first progress.
+fn time_left(state: &ProgressState, out: &mut dyn Write) {
+    if state.pos() > 0 {
+        // The text of a bar cannot fail.
+        let _ = write!(out, ", {:#} left", HumanDuration(state.eta()));
+    }
 }
 
 /// Style of work of unknown length.
@@ -47,6 +58,8 @@ impl RowsBar {
         } else {
             bar_style()
         });
+        // Until the first stage.
+        bar.set_message("preparing");
         bar.enable_steady_tick(TICK);
         Self {
             bar,
@@ -128,10 +141,10 @@ impl PicturesBar {
     /// A bar over a number of pictures.
     pub fn new(count: u64) -> Self {
         let bar = ProgressBar::new(count);
-        let style = ProgressStyle::with_template(
-            "{pos} of {len} pictures {wide_bar} {per_sec}, {eta} left",
-        );
-        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        let style =
+            ProgressStyle::with_template("{pos} of {len} pictures {wide_bar} {per_sec}{left}");
+        let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
+        bar.set_style(style.with_key("left", time_left));
         bar.enable_steady_tick(TICK);
         Self(bar)
     }

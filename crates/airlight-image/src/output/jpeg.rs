@@ -213,30 +213,29 @@ fn planar_band(
 /// Pixels converted together.
 const BLOCK: usize = 64;
 
-/// Converts at most [`BLOCK`] interleaved pixels to luma and chroma (JFIF). The weights are multiples of 2^-16: all sums are integers
-/// below 2^24, exact in single precision.
+/// Converts at most [`BLOCK`] interleaved pixels to luma and chroma (JFIF), with weights in units of 2^-16.
 fn to_ycbcr(rgb: &[u8], luma: &mut [u8], blue: &mut [u8], red: &mut [u8]) {
-    const ROUND: f32 = 32_767.0;
-    const MIDDLE: f32 = 128.0 * 65_536.0;
-    let mut planes = [[0.0f32; BLOCK]; 3];
+    const ROUND: i32 = (1 << 15) - 1;
+    const MIDDLE: i32 = 128 << 16;
+    let mut planes = [[0i32; BLOCK]; 3];
     for (i, pixel) in rgb.as_chunks::<3>().0.iter().enumerate().take(BLOCK) {
         for (plane, &value) in planes.iter_mut().zip(pixel) {
-            plane[i] = f32::from(value);
+            plane[i] = i32::from(value);
         }
     }
     let [r, g, b] = &planes;
-    let convert = |out: &mut [u8], [from_r, from_g, from_b]: [f32; 3], offset: f32| {
+    let convert = |out: &mut [u8], [from_r, from_g, from_b]: [i32; 3], offset: i32| {
         let mut values = [0u8; BLOCK];
         for i in 0..BLOCK {
             let sum = from_r * r[i] + from_g * g[i] + from_b * b[i] + (offset + ROUND);
-            values[i] = (sum * (1.0 / 65_536.0)) as i32 as u8;
+            values[i] = (sum >> 16) as u8;
         }
         let count = out.len().min(BLOCK);
         out[..count].copy_from_slice(&values[..count]);
     };
-    convert(luma, [19_595.0, 38_470.0, 7_471.0], 0.0);
-    convert(blue, [-11_059.0, -21_709.0, 32_768.0], MIDDLE);
-    convert(red, [32_768.0, -27_439.0, -5_329.0], MIDDLE);
+    convert(luma, [19_595, 38_470, 7_471], 0);
+    convert(blue, [-11_059, -21_709, 32_768], MIDDLE);
+    convert(red, [32_768, -27_439, -5_329], MIDDLE);
 }
 
 /// Rows as they arrive for the encoder, which reads them from top to bottom and may repeat the last one.

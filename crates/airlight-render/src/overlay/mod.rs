@@ -201,9 +201,10 @@ impl<'a> Overlay<'a> {
         }
     }
 
-    /// The fog, if it needs nothing but the distance of a pixel and its colour.
+    /// The fog, if it needs nothing but the distance of a pixel and its colour, and the factor of patches, which is one on the
+    /// distance.
     fn even_fog(&self) -> Option<&EvenFog> {
-        let is_plain = self.path_radiance.is_none() && self.patches.is_none() && !self.has_layers();
+        let is_plain = self.path_radiance.is_none() && !self.has_layers();
         self.fog
             .even()
             .filter(|_| is_plain && self.picture.alpha.is_none())
@@ -278,15 +279,20 @@ impl RowSource for Overlay<'_> {
     fn fill_row(&self, y: u32, out: &mut [f32]) {
         let width = self.picture.size.width() as usize;
         let first = y as usize * width;
+        let patches = self.patches.as_ref().map(|patches| patches.row(y));
         if let Some(fog) = self.even_fog() {
             let mut distances = vec![1.0; width];
             self.camera.fill_lengths(y, &mut distances);
             self.measure(y, &mut distances);
+            if let Some(row) = patches {
+                for (x, distance) in (0..).zip(&mut distances) {
+                    *distance *= f64::from(row.factor(x, *distance));
+                }
+            }
             fog.apply(&distances, &self.picture.rgb[3 * first..][..3 * width], out);
             return;
         }
         let rays = self.rays(y);
-        let patches = self.patches.as_ref().map(|patches| patches.row(y));
         let pixels = out.chunks_exact_mut(self.channels()).zip(rays);
         for (i, (out, (direction, distance))) in pixels.enumerate() {
             let pixel = first + i;

@@ -273,6 +273,20 @@ fn tables_of_patches_match_single_rays() {
     }
     let rms = f64::sqrt(squares / count);
     assert!(rms < 0.003 && worst < 0.025, "{rms} {worst}");
+    // The picture alone is computed by rows, with the factor on the distance.
+    let alone = Overlay::new(&picture, &depth, &camera, 1.6, &overlay, Channels::Picture).unwrap();
+    let alone = alone.with_patches(&strong).unwrap();
+    assert!(alone.even_fog().is_some());
+    for y in [10, 130, 300] {
+        let mut row = vec![0.0; (width * 3) as usize];
+        alone.fill_row(y, &mut row);
+        let pixels = rows[10 * (y * width) as usize..].as_chunks::<10>().0;
+        for (alone, pixel) in row.as_chunks::<3>().0.iter().zip(pixels) {
+            for (a, b) in alone.iter().zip(pixel) {
+                assert!((a - b).abs() < 1e-5, "{y}: {alone:?} {pixel:?}");
+            }
+        }
+    }
     // Patches without strength are even fog, to the rounding of exponentials.
     let flat = shown(&fog(0.0));
     let mut row = vec![0.0; (width * 10) as usize];
