@@ -290,15 +290,13 @@ impl RadianceSampler for MonteCarloView {
     }
 
     fn add_bundle(&self, direction: DVec3, bundle: u64, sum: &mut [f64]) {
-        let (eye_m, sun) = (self.eye_altitude_m, RadianceView::sun(self));
         if self.polarised {
-            let sample = self
-                .paths
-                .sample_polarised(eye_m, sun, direction, None, bundle);
-            let [intensity, _, _] = sample.stokes;
-            return self.put(intensity.into_iter(), sum);
+            return self.add_polarised_bundle(direction, bundle, sum, &mut [0.0; 3]);
         }
-        let sample = self.paths.sample(eye_m, sun, direction, bundle);
+        let sun = RadianceView::sun(self);
+        let sample = self
+            .paths
+            .sample(self.eye_altitude_m, sun, direction, bundle);
         let orders = &sample[..self.orders];
         let lanes = self.paths.grid().len();
         let radiance = (0..lanes).map(|lane| orders.iter().map(|order| order[lane]).sum());

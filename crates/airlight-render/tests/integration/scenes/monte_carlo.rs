@@ -1,7 +1,7 @@
 //! Monte Carlo pictures and probes beside the deterministic solver.
 
 use super::{Exr, Folder, probe, try_probe};
-use airlight_render::probe::{MonteCarloAnswer, ProbeRay};
+use airlight_render::probe::{MonteCarloAnswer, ProbeAnswer, ProbeRay};
 
 const SMALL: &str = "sun.elevation_deg = 20\noutput.sun_disc = \"out\"\ncamera.size = [16, 8]\nsolver.wavelengths = \"rgb\"\n";
 
@@ -115,10 +115,16 @@ fn a_probe_gives_both_and_the_error() {
         let error = found.standard_error_w_m2_sr_nm[lane];
         assert!((solved - mean).abs() < 0.01 * mean + 4.0 * error);
     }
+    let csv = rectangular_csv(&answer, 4);
+    assert!(csv.contains("monte_carlo_standard_error_w_m2_sr_nm"));
+}
+
+/// The answer as CSV, whose lines all have the same number of fields.
+fn rectangular_csv(answer: &ProbeAnswer, lines: usize) -> String {
     let csv = answer.to_csv();
     let widths: Vec<usize> = csv.lines().map(|line| line.split(',').count()).collect();
-    assert!(widths.len() == 4 && widths.iter().all(|width| *width == widths[0]));
-    assert!(csv.contains("monte_carlo_standard_error_w_m2_sr_nm"));
+    assert!(widths.len() == lines && widths.iter().all(|width| *width == widths[0]));
+    csv
 }
 
 fn sum_of_orders(found: &MonteCarloAnswer, lane: usize) -> f64 {
@@ -178,9 +184,7 @@ fn polarisation_is_followed() {
         assert!(q < 0.0 && (-q / i / degree - 1.0).abs() < 0.01);
         assert!((i / found.radiance_w_m2_sr_nm[lane] - 1.0).abs() < 1e-9);
     }
-    let csv = answer.to_csv();
-    let widths: Vec<usize> = csv.lines().map(|line| line.split(',').count()).collect();
-    assert!(widths.len() == 3 && widths.iter().all(|width| *width == widths[0]));
+    rectangular_csv(&answer, 3);
     let scene = format!(
         "{scene}solver.wavelengths = \"rgb\"\nsolver.paths = 256\noutput.sun_disc = \"out\"\n\
          camera = {{ projection = \"perspective\", fov_deg = 2, azimuth_deg = 0, elevation_deg = 70, size = [8, 6] }}"
@@ -224,9 +228,7 @@ fn polarisation_is_solved_for() {
                 assert!(off < 0.01 * i + 4.0 * error[lane], "{ray:?} {lane}: {off}");
             }
         }
-        let csv = solved.to_csv();
-        let widths: Vec<usize> = csv.lines().map(|line| line.split(',').count()).collect();
-        assert!(widths.len() == 3 && widths.iter().all(|width| *width == widths[0]));
+        rectangular_csv(&solved, 3);
     }
     let scene = format!(
         "{scene}output.sun_disc = \"out\"\n\
