@@ -46,6 +46,10 @@ impl Scene {
             (None, None) => {}
         }
         air.validate()?;
+        for change in spec.changes() {
+            air.name.push_str(", ");
+            air.name.push_str(&change);
+        }
         Ok(air)
     }
 
@@ -83,6 +87,24 @@ impl AirSpec {
             )),
             false => preset(name).map_err(SceneError::UnknownAtmosphere),
         }
+    }
+
+    /// What the scene changes in the constituents of the atmosphere that it names, in words.
+    fn changes(&self) -> impl Iterator<Item = String> {
+        let aerosol = self
+            .aerosol
+            .as_ref()
+            .map(|types| format!("aerosol {types}"));
+        let humidity = self.humidity.map(|share| format!("humidity {share}"));
+        let amount = self.haze_amount().map(|(_, load)| match load {
+            AerosolLoad::OpticalDepth550(depth) => format!("haze of optical depth {depth}"),
+            AerosolLoad::Turbidity(ratio) => format!("turbidity {ratio}"),
+            AerosolLoad::Visibility { range_m, .. } => format!("haze of visibility {range_m} m"),
+        });
+        let ozone = self
+            .ozone_du
+            .map(|column_du| format!("ozone {column_du} DU"));
+        [aerosol, humidity, amount, ozone].into_iter().flatten()
     }
 
     /// The amount of haze with the key that sets it.
@@ -279,6 +301,36 @@ mod tests {
         }
         let earth = |name| preset(name).unwrap().is_earth();
         assert!(earth("hillaire") && !earth("mars"));
+    }
+
+    /// The name of the air, which is stored with pictures, tells what the scene changes in it.
+    #[test]
+    fn the_air_is_named_with_what_is_changed_in_it() {
+        let named = |change: fn(&mut AirSpec)| {
+            let mut scene = Scene::default();
+            change(&mut scene.air);
+            scene.atmosphere().unwrap().name
+        };
+        assert_eq!(named(|_| ()), "average");
+        let urban = named(|air| {
+            air.aerosol = Some("urban".to_owned());
+            air.humidity = Some(0.5);
+            air.aod_550 = Some(0.4);
+        });
+        assert_eq!(
+            urban,
+            "average, aerosol urban, humidity 0.5, haze of optical depth 0.4"
+        );
+        let hazy = named(|air| {
+            air.atmosphere = Some("clear".to_owned());
+            air.haze_visibility_m = Some(20e3);
+            air.ozone_du = Some(250.0);
+        });
+        assert_eq!(hazy, "clear, haze of visibility 20000 m, ozone 250 DU");
+        assert_eq!(
+            named(|air| air.turbidity = Some(3.0)),
+            "average, turbidity 3"
+        );
     }
 
     #[test]
