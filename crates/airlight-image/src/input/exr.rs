@@ -66,10 +66,11 @@ pub(super) fn read(source: Source, layer: Option<&str>) -> Result<Picture, Decod
         coarse.len() as u64,
         "subsampled channels besides the colours left out",
     );
-    notes.count(
-        file.headers().len() as u64 - 1,
-        "other parts of the file left out",
-    );
+    let depth = exr_channels::depth(file.headers(), None, Some(&colours.layer)).ok();
+    let unused = (0..file.headers().len())
+        .filter(|&other| other != part && depth.as_ref().is_none_or(|found| other != found.0))
+        .count();
+    notes.count(unused as u64, "other parts of the file left out");
     let (cut, whole) = (header.layer_size, header.shared_attributes.display_window);
     let corner = header.own_attributes.layer_position - whole.position;
     let far = corner + Vec2(cut.0 as i32, cut.1 as i32);
