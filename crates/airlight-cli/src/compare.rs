@@ -8,7 +8,7 @@ use crate::report::{self, seconds};
 use airlight_image::Control;
 use airlight_image::tone::{Exposure, ToneMapper};
 use airlight_plot::{Colormap, ContactSheet, Panel, Raster};
-use airlight_render::compare::{Difference, Statistics};
+use airlight_render::compare::{Difference, Statistics, sky_horizontal_lx};
 use airlight_render::{RenderedImage, Renderer};
 
 /// Runs the command.
@@ -26,7 +26,7 @@ pub fn run(args: &CompareArgs) -> Result<(), CliError> {
     };
     let (first, second) = (draw(&renderers[0])?, draw(&renderers[1])?);
     let scale = match args.same_light {
-        true => first.light.sky_horizontal_lx / second.light.sky_horizontal_lx,
+        true => sky_horizontal_lx(&first) / sky_horizontal_lx(&second),
         false => 1.0,
     };
     if !scale.is_finite() || scale <= 0.0 {

@@ -6,6 +6,7 @@ use airlight::axes;
 use airlight::spectrum::difference::{ciede2000, xyz_to_lab};
 use airlight::spectrum::rgb;
 use serde::Serialize;
+use std::f64::consts::PI;
 use std::fmt::Write;
 
 /// Difference of two pictures of one frame at each pixel.
@@ -86,15 +87,37 @@ impl Difference {
             first: first_name.to_owned(),
             second: second_name.to_owned(),
             sun_elevation_deg: first.sun.elevation_deg,
-            sky_horizontal_lx: [
-                first.light.sky_horizontal_lx,
-                second.light.sky_horizontal_lx,
-            ],
+            sky_horizontal_lx: [first, second].map(sky_horizontal_lx),
             second_scaled_by: scale,
             luminance_percent: Spread::new(first, &self.percent)?,
             ciede2000: Spread::new(first, &self.ciede2000)?,
             seconds: [first.time.as_secs_f64(), second.time.as_secs_f64()],
         })
+    }
+}
+
+/// Illuminance of a horizontal surface by the sky of a picture, lx: summed over its pixels if it shows the whole sky, so that the
+/// light is that of the solver that drew it (solvers with noise state the illuminance of the fast solver).
+pub fn sky_horizontal_lx(image: &RenderedImage) -> f64 {
+    /// Difference of the sum of weights from that of the hemisphere up to which a picture shows the whole sky.
+    const WHOLE: f64 = 0.05;
+    let weights = image.space.to_xyz_matrix()[1];
+    let (width, height) = (image.frame.size().width(), image.frame.size().height());
+    let pixels = (0..height).flat_map(|j| (0..width).map(move |i| (i, j)));
+    let (mut light, mut whole) = (0.0, 0.0);
+    for ((i, j), rgb) in pixels.zip(&image.rgb) {
+        let direction = image.frame.pixel_direction(i, j);
+        let Some(direction) = direction.filter(|direction| direction.y > 0.0) else {
+            continue;
+        };
+        let weight = direction.y * image.frame.pixel_solid_angle(i, j);
+        let luminance: f64 = (0..3).map(|c| weights[c] * f64::from(rgb[c])).sum();
+        whole += weight;
+        light += weight * luminance;
+    }
+    match (whole / PI - 1.0).abs() < WHOLE {
+        true => light * PI / whole,
+        false => image.light.sky_horizontal_lx,
     }
 }
 
@@ -234,6 +257,25 @@ mod tests {
         ] {
             assert!((value - 25.0).abs() < 1e-4, "{brighter:?}");
         }
+    }
+
+    /// A sky of even luminance L lights a horizontal surface with pi L, whatever the solver states.
+    #[test]
+    fn the_light_is_that_of_the_picture() {
+        let even = image(|_| 100.0);
+        assert!((sky_horizontal_lx(&even) / (100.0 * PI) - 1.0).abs() < 1e-6);
+        let brighter = image(|row| if row < 4 { 110.0 } else { 0.0 });
+        let [first, second] = statistics(&even, &brighter, 1.0).unwrap().sky_horizontal_lx;
+        assert!((second / first - 1.1).abs() < 1e-6);
+        // A picture of part of the sky.
+        let size = airlight_image::Size::new(16, 8).unwrap();
+        let camera = airlight_image::Camera::with_horizontal_fov(0.0, 20.0, 60.0, size);
+        let projection = airlight_image::Projection::Perspective(camera);
+        let part = RenderedImage {
+            frame: Frame::new(projection, 16, 8).unwrap(),
+            ..even
+        };
+        assert_eq!(sky_horizontal_lx(&part), 1e4);
     }
 
     #[test]
