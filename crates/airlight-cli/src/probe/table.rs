@@ -36,13 +36,20 @@ fn head(answer: &ProbeAnswer) -> String {
     }
     let _ = writeln!(
         text,
-        "sun           elevation {:.4} deg, azimuth {:.4} deg\nilluminance   sun {} lx facing it, {} lx horizontal; sky \
+        "sun           elevation {:.4} deg, azimuth {:.4} deg; {}\nilluminance   sun {} lx facing it, {} lx horizontal; sky \
         {} lx horizontal",
         sun.elevation_deg,
         sun.azimuth_deg,
+        towards(sun.direction),
         short(sun.illuminance_normal_lx),
         short(sun.illuminance_horizontal_lx),
         short(answer.sky.illuminance_horizontal_lx)
+    );
+    let [sun_rgb, sky_rgb] = [sun.rgb_normal_lx, answer.sky.rgb_horizontal_lx].map(colour);
+    let _ = writeln!(
+        text,
+        "colour        {} sun {sun_rgb} lx facing it; sky {sky_rgb} lx horizontal",
+        answer.color_space
     );
     if let Some(moon) = &answer.moon {
         let _ = writeln!(
@@ -66,6 +73,17 @@ fn head(answer: &ProbeAnswer) -> String {
         lines(&mut text, &answer.wavelengths_nm, &columns);
     }
     text
+}
+
+/// A unit vector in world axes.
+fn towards(direction: [f64; 3]) -> String {
+    // No negative zeros.
+    let [east, up, south] = direction.map(|c| (c * 1e6).round() / 1e6 + 0.0);
+    format!("east {east}, up {up}, south {south}")
+}
+
+fn colour(rgb: [f64; 3]) -> String {
+    rgb.map(short).join(" ")
 }
 
 /// Line with the solver or published model, and whether it has spectra.
@@ -98,14 +116,15 @@ fn one(answer: &ProbeAnswer, view: &RayAnswer) -> String {
         (Some(m), false) => format!("over {} m", short(m)),
         (None, false) => "to space".to_owned(),
     };
-    let [r, g, b] = view.rgb_cd_m2.map(short);
+    let rgb = colour(view.rgb_cd_m2);
     let [x, y, z] = view.xyz_cd_m2.map(short);
     let mut text = format!(
-        "azimuth {} deg, elevation {} deg, {end}, {:.3} deg from the sun\nluminance {} cd/m^2{}; XYZ {x} {y} {z}; {} {r} {g} \
-         {b} cd/m^2\n",
+        "azimuth {} deg, elevation {} deg, {end}, {:.3} deg from the sun; {}\nluminance {} cd/m^2{}; XYZ {x} {y} {z}; {} {rgb} \
+         cd/m^2\n",
         view.azimuth_deg,
         view.elevation_deg,
         view.sun_angle_deg,
+        towards(view.direction),
         short(view.luminance_cd_m2),
         night_magnitude(view.luminance_cd_m2),
         answer.color_space,

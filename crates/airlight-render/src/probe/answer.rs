@@ -61,6 +61,8 @@ pub struct SunAnswer {
     pub azimuth_deg: f64,
     /// Apparent elevation above the horizontal, degrees.
     pub elevation_deg: f64,
+    /// Unit vector towards its centre: east, up, south.
+    pub direction: [f64; 3],
     /// Elevation without refraction, degrees; `None` for a fixed sun.
     pub geometric_elevation_deg: Option<f64>,
     /// Distance relative to the planet's mean distance.
@@ -77,6 +79,8 @@ pub struct SunAnswer {
     pub illuminance_normal_lx: f64,
     /// Illuminance at the eye on a horizontal surface.
     pub illuminance_horizontal_lx: f64,
+    /// Red, green and blue at the eye on a surface that faces the sun: 1, 1, 1 is 1 lx of the white of the space.
+    pub rgb_normal_lx: [f64; 3],
 }
 
 /// The moon and its light.
@@ -107,6 +111,8 @@ pub struct SkyAnswer {
     pub irradiance_horizontal_w_m2_nm: Vec<f32>,
     /// Illuminance at the eye on a horizontal surface.
     pub illuminance_horizontal_lx: f64,
+    /// Red, green and blue at the eye on a horizontal surface.
+    pub rgb_horizontal_lx: [f64; 3],
 }
 
 /// Light along one direction, without the sun's disc. Parts are `None` for models that do not separate them.
@@ -116,6 +122,8 @@ pub struct RayAnswer {
     pub azimuth_deg: f64,
     /// Elevation, degrees above the horizontal.
     pub elevation_deg: f64,
+    /// Unit vector away from the eye: east, up, south.
+    pub direction: [f64; 3],
     /// Length of the ray; `None`: to the ground or to space.
     pub distance_m: Option<f64>,
     /// Whether the ray ends on the ground.

@@ -9,7 +9,9 @@ const HEADER: &str = "view,azimuth_deg,elevation_deg,distance_m,meets_ground,sun
     luminance_cd_m2,x_cd_m2,y_cd_m2,z_cd_m2,red_cd_m2,green_cd_m2,blue_cd_m2,\
     sun_azimuth_deg,sun_elevation_deg,sun_irradiance_outside_w_m2_nm,sun_irradiance_normal_w_m2_nm,\
     sun_irradiance_horizontal_w_m2_nm,sky_irradiance_horizontal_w_m2_nm,sun_illuminance_normal_lx,\
-    sun_illuminance_horizontal_lx,sky_illuminance_horizontal_lx";
+    sun_illuminance_horizontal_lx,sky_illuminance_horizontal_lx,\
+    direction_east,direction_up,direction_south,sun_direction_east,sun_direction_up,sun_direction_south,\
+    sun_red_normal_lx,sun_green_normal_lx,sun_blue_normal_lx,sky_red_horizontal_lx,sky_green_horizontal_lx,sky_blue_horizontal_lx";
 /// Additional columns for Monte Carlo.
 const MONTE_CARLO_HEADER: &str =
     ",monte_carlo_radiance_w_m2_sr_nm,monte_carlo_standard_error_w_m2_sr_nm";
@@ -88,6 +90,14 @@ fn line(text: &mut String, answer: &ProbeAnswer, number: usize, view: &RayAnswer
         sun.illuminance_horizontal_lx,
         sky.illuminance_horizontal_lx
     );
+    for values in [
+        view.direction,
+        sun.direction,
+        sun.rgb_normal_lx,
+        sky.rgb_horizontal_lx,
+    ] {
+        let _ = values.iter().try_for_each(|value| write!(text, ",{value}"));
+    }
     if let Some(found) = &view.monte_carlo {
         let _ = write!(
             text,

@@ -184,6 +184,7 @@ impl Asked {
         SunAnswer {
             azimuth_deg: sun.azimuth_deg,
             elevation_deg: sun.elevation_deg,
+            direction: view.sun().to_array(),
             geometric_elevation_deg: sun.geometric_elevation_deg,
             distance_ratio: sun.distance_ratio,
             angular_radius_deg: view.disc().angular_radius_rad.to_degrees(),
@@ -192,6 +193,7 @@ impl Asked {
             irradiance_horizontal_w_m2_nm: self.spectrum(&horizontal),
             illuminance_normal_lx: light.sun_normal_lx,
             illuminance_horizontal_lx: light.sun_horizontal_lx,
+            rgb_normal_lx: self.space.from_xyz(self.xyz(&normal)),
         }
     }
 
@@ -217,6 +219,7 @@ impl Asked {
         SkyAnswer {
             irradiance_horizontal_w_m2_nm: self.spectrum(&values),
             illuminance_horizontal_lx: Illuminances::of(self.view.as_ref()).sky_horizontal_lx,
+            rgb_horizontal_lx: self.space.from_xyz(self.xyz(&values)),
         }
     }
 
@@ -240,6 +243,7 @@ impl Asked {
         RayAnswer {
             azimuth_deg: ray.azimuth_deg,
             elevation_deg: ray.elevation_deg,
+            direction: direction.to_array(),
             distance_m: ray.distance_m,
             meets_ground,
             sun_angle_deg: direction.angle_between(self.view.sun()).to_degrees(),
