@@ -69,9 +69,12 @@ impl From<ImageError> for CliError {
     fn from(error: ImageError) -> Self {
         match error {
             ImageError::Cancelled => Self::Interrupted,
-            ImageError::Size { .. }
-            | ImageError::Setting { .. }
-            | ImageError::UnknownFormat { .. } => Self::usage(error.to_string()),
+            // Pictures that are read are recognised by their contents.
+            ImageError::UnknownFormat { .. } => Self::usage(format!("--output: {error}")),
+            ImageError::Setting { what, .. } if what.contains("field of view") => {
+                Self::usage(format!("--fov: {error}"))
+            }
+            ImageError::Size { .. } | ImageError::Setting { .. } => Self::usage(error.to_string()),
             _ => Self::failure(error.to_string()),
         }
     }
@@ -81,6 +84,7 @@ impl From<RenderError> for CliError {
     fn from(error: RenderError) -> Self {
         match error {
             RenderError::Scene(error) => error.into(),
+            RenderError::Image(error) => error.into(),
             error if error.is_cancelled() => Self::Interrupted,
             error if error.is_refusal() => Self::usage(error.to_string()),
             error => Self::failure(error.to_string()),
@@ -165,7 +169,7 @@ const SUN_FLAGS: [(&str, &str); 6] = [
 ];
 
 /// The flag that sets a key of a scene.
-fn flag(key: &str) -> String {
+pub fn flag(key: &str) -> String {
     let known = match key {
         "sun" => "--sun-elevation",
         "sun.elevation_deg" => "--sun-elevation",

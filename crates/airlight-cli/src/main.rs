@@ -4,7 +4,7 @@
 //! reports.
 //!
 //! Modules, each importing only from those above it:
-//! - [`error`]: errors and exit codes; [`parse`]: parsing of argument values.
+//! - [`error`]: errors and exit codes; [`option_names`]: options in messages; [`parse`]: parsing of argument values.
 //! - [`interrupt`], [`progress`], [`report`]: Ctrl-C, progress bars on standard error, text on standard output.
 //! - [`topics`]: recipes. [`args`]: options of all commands, and the scenes that they describe; [`short_help`]: what `-h`
 //!   lists of them.
@@ -22,6 +22,7 @@ mod fog;
 mod generate;
 mod grid;
 mod interrupt;
+mod option_names;
 mod parse;
 mod plot;
 mod probe;
@@ -39,13 +40,17 @@ use error::CliError;
 use std::{io::Write, process::ExitCode};
 
 fn main() -> ExitCode {
-    let cli = Cli::from_arg_matches(&short_help::command().get_matches());
+    let mut command = short_help::command();
+    let matches = command.get_matches_mut();
+    option_names::install(&command, &matches);
+    let cli = Cli::from_arg_matches(&matches);
     let cli = cli.unwrap_or_else(|error| error.exit());
     match run(&cli) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             if let Some(sentence) = error.sentence() {
                 // Errors of standard error cannot be reported.
+                let sentence = option_names::in_message(sentence);
                 let _ = writeln!(std::io::stderr(), "airlight: {sentence}");
             }
             ExitCode::from(error.exit_code())

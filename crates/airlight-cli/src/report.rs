@@ -2,6 +2,7 @@
 
 use crate::error::CliError;
 use crate::interrupt;
+use crate::option_names;
 use airlight::Named;
 use airlight_image::Notes;
 use airlight_image::output::AtomicFile;
@@ -54,9 +55,10 @@ pub fn check_writable(path: &Path) -> Result<(), CliError> {
 /// [`CliError`] if it does not, or cannot.
 pub fn check_png(path: &Path) -> Result<(), CliError> {
     if path.extension().is_none_or(|ending| ending != "png") {
-        return Err(CliError::usage(
-            "--output: expected a name that ends in .png, got another",
-        ));
+        return Err(CliError::usage(format!(
+            "--output: expected a name that ends in .png, got `{}`",
+            path.display()
+        )));
     }
     check_writable(path)
 }
@@ -89,6 +91,7 @@ pub fn write_contact_sheet(path: &Path, sheet: &ContactSheet) -> Result<(), CliE
 
 /// Writes a remark to standard error, ignoring errors.
 pub fn note(text: &str) {
+    let text = option_names::in_message(text);
     let _ = writeln!(std::io::stderr(), "airlight: {text}");
 }
 

@@ -11,8 +11,8 @@ pub struct NightArgs {
     /// When moon, stars, airglow and zodiacal light are part of the sky [default: auto]
     #[arg(long, value_name = "WHEN", value_parser = parse::named::<NightLights>())]
     pub night: Option<NightLights>,
-    /// Whether the moon is there [default: true, with --at]
-    #[arg(long, value_name = "BOOL", action = ArgAction::Set)]
+    /// Whether the moon is there [default: on, with --at]
+    #[arg(long, value_name = "on|off", action = ArgAction::Set, value_parser = parse::on_off)]
     pub moon: Option<bool>,
     /// Elevation of the moon's centre, degrees, instead of the moon of --at and --when
     #[arg(long, value_name = "DEG", value_parser = parse::elevation_deg, allow_hyphen_values = true)]
@@ -24,8 +24,8 @@ pub struct NightArgs {
     /// Phase angle of the moon, degrees from 0 (full) to 180 (new) [default: from its angle to the sun]
     #[arg(long, value_name = "DEG", value_parser = parse::number)]
     pub moon_phase: Option<f64>,
-    /// Whether pictures show single stars, up to magnitude 6.5 [default: true]
-    #[arg(long, value_name = "BOOL", action = ArgAction::Set)]
+    /// Whether pictures show single stars, up to magnitude 6.5 [default: on]
+    #[arg(long, value_name = "on|off", action = ArgAction::Set, value_parser = parse::on_off)]
     pub stars: Option<bool>,
     /// Solar radio flux at 10.7 cm that determines the airglow, solar flux units: 70 in quiet years, 200 in active ones [default:
     /// 100]

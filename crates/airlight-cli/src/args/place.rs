@@ -14,7 +14,7 @@ pub struct PlaceArgs {
     pub at: Option<LatLon>,
     /// Time with its offset from UTC or its time zone, as in 2026-06-21T21:15:00+02:00 or "2026-06-21 21:15 Europe/Paris"; or now
     /// [default: now]
-    #[arg(long, value_name = "TIME")]
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
     pub when: Option<String>,
     /// Elevation of the sun's centre above the horizontal, degrees, instead of place and time
     #[arg(long, value_name = "DEG", value_parser = parse::elevation_deg, conflicts_with = "when")]
@@ -28,8 +28,8 @@ pub struct PlaceArgs {
     /// Smallest height of the eye above the ground, m [default: 2]
     #[arg(long, value_name = "M", value_parser = parse::length_m)]
     pub eye_height_m: Option<f64>,
-    /// Whether refraction raises the sun of --at and --when, by half a degree at the horizon [default: true]
-    #[arg(long, value_name = "BOOL", action = ArgAction::Set)]
+    /// Whether refraction raises the sun of --at and --when, by half a degree at the horizon [default: on]
+    #[arg(long, value_name = "on|off", action = ArgAction::Set, value_parser = parse::on_off)]
     pub refraction: Option<bool>,
 }
 

@@ -4,7 +4,7 @@ use crate::parse::{self, put};
 use airlight::models::registry;
 use airlight::scene::{BaseBlueKind, Effort, Klassen1987Spec, SolverSpec, SunlightKind, WetHaze};
 use airlight::sky::Scattering;
-use clap::builder::{BoolishValueParser, PossibleValue, PossibleValuesParser};
+use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{ArgAction, Args};
 
 /// Options for the solver.
@@ -27,7 +27,7 @@ pub struct SolverArgs {
     pub effort: Option<Effort>,
     /// Whether light is polarised by scattering: on or off, for the equations of scalar light as in most published tables, which
     /// are off by 1 to 3 % in clear skies [default: on]
-    #[arg(long, value_name = "on|off", action = ArgAction::Set, value_parser = BoolishValueParser::new())]
+    #[arg(long, value_name = "on|off", action = ArgAction::Set, value_parser = parse::on_off)]
     pub polarisation_correction: Option<bool>,
     /// Monte Carlo paths for each pixel [default: 256] or direction [default: 65536], 128 or above
     #[arg(long, value_name = "N")]

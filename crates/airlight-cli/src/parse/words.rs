@@ -11,9 +11,12 @@ impl<'a> Words<'a> {
     pub fn new(text: &'a str, keys: &[&str]) -> Result<Self, String> {
         let mut words = Vec::new();
         for word in text.split_whitespace() {
-            let (key, value) = word
-                .split_once('=')
-                .ok_or_else(|| format!("expected KEY=VALUE, got \"{word}\""))?;
+            let (key, value) = word.split_once('=').ok_or_else(|| {
+                format!(
+                    "expected KEY=VALUE with keys of {}, got \"{word}\"",
+                    keys.join(", ")
+                )
+            })?;
             if !keys.contains(&key) {
                 return Err(format!(
                     "expected a known key, got {key}; try {}",

@@ -32,9 +32,10 @@ pub fn run(args: &PlotArgs) -> Result<(), CliError> {
         Some("svg") => false,
         Some("png") => true,
         _ => {
-            return Err(CliError::usage(
-                "--output: expected a name that ends in .svg or .png, got another",
-            ));
+            return Err(CliError::usage(format!(
+                "--output: expected a name that ends in .svg or .png, got `{}`",
+                output.display()
+            )));
         }
     };
     let svg = match &args.what {

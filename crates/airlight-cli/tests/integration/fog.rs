@@ -234,10 +234,10 @@ fn options_that_contradict_are_refused() {
         ),
         (
             "--visibility-m 5 --moon-elevation 30 -o a.exr",
-            "--sky-quality: expected a solved sky, got ambient light; try sky-light",
+            "--sky-quality: expected a solved sky, got ambient light; try --sky-light",
         ),
         (
-            &format!("--visibility-m 5 {lit} --stars true -o a.exr"),
+            &format!("--visibility-m 5 {lit} --stars on -o a.exr"),
             "--stars: expected lights that fill the fog",
         ),
         (
@@ -249,6 +249,23 @@ fn options_that_contradict_are_refused() {
             "one picture",
         ),
         ("--visibility-m 5 --variants 2 -o a.exr", "--vary"),
+        // The library's names of settings are given as options.
+        (
+            "-o a.exr",
+            "try --visibility-m 100, or --vary visibility=50..500",
+        ),
+        (
+            "--visibility-m 5 --depth-kind disparity -o a.exr",
+            "--depth-kind disparity: expected",
+        ),
+        (
+            "--visibility-m 5 --layers -o a.png",
+            "--layers: expected an OpenEXR output",
+        ),
+        (
+            "--visibility-m 5 -o foggy_v1.0",
+            "--output: unknown picture format",
+        ),
         ("--visibility-m 5 --jobs 0 -o a.exr", "--jobs"),
         ("--vary fogginess=1..2 -o a.exr", "visibility, scale-height"),
         ("--vary visibilty=5..9 -o a.exr", "try \"visibility\""),

@@ -58,6 +58,32 @@ fn bad_use_of_sky() {
             "--scale: expected a file whose name ends in .exr or .hdr",
         ),
         ("sky --sun-elevation 30 --bits 16 -o a.jpg", "--bits"),
+        // Values and options in advice are as typed here, not as in scene files.
+        (
+            "sky --sun-elevation 30 --polarisation-correction maybe -o a.exr",
+            "expected on or off",
+        ),
+        (
+            "sky --sun-elevation 30 --stars maybe -o a.exr",
+            "expected on or off",
+        ),
+        (
+            "sky --sun-elevation 30 --top-m 40 -o a.exr",
+            "try --visibility-m 200",
+        ),
+        (
+            "sky --sun-elevation 30 --until +1h -o a.exr",
+            "try --every 10m",
+        ),
+        (
+            "sky --sun-elevation 30 --tone clip --tone-contrast 2 -o a.png",
+            "try --tone camera",
+        ),
+        (
+            "sky --sun-elevation 30 --projection perspective --fov 190 -o a.exr",
+            "--fov: the camera's field of view",
+        ),
+        ("plot phase --droplets rain -o a.gif", "got `a.gif`"),
         (
             "sky --sun-elevation 30 --meter-each -o a.png",
             "--meter-each: expected a sequence",

@@ -303,7 +303,7 @@ mod tests {
         assert!(earth("hillaire") && !earth("mars"));
     }
 
-    /// The name of the air, which is stored with pictures, tells what the scene changes in it.
+    /// The name of the air, which is stored with pictures, states what the scene changes in it.
     #[test]
     fn the_air_is_named_with_what_is_changed_in_it() {
         let named = |change: fn(&mut AirSpec)| {

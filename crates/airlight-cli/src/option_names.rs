@@ -1,0 +1,182 @@
+//! Names of options in messages of the library, which knows settings by the names of scene files.
+
+use crate::error::flag;
+use clap::{ArgMatches, Command};
+use std::sync::OnceLock;
+
+/// Long options of the command that runs.
+static OPTIONS: OnceLock<Vec<String>> = OnceLock::new();
+
+/// Remembers the options of the command that was given.
+pub fn install(command: &Command, matches: &ArgMatches) {
+    let mut options = Vec::new();
+    let (mut command, mut matches) = (command, matches);
+    loop {
+        options.extend(
+            command
+                .get_arguments()
+                .filter_map(|arg| arg.get_long())
+                .map(str::to_owned),
+        );
+        let Some((name, inner)) = matches.subcommand() else {
+            break;
+        };
+        let Some(inner_command) = command.find_subcommand(name) else {
+            break;
+        };
+        (command, matches) = (inner_command, inner);
+    }
+    // Only the first command of the process has options.
+    let _ = OPTIONS.set(options);
+}
+
+/// A message in which settings are named as options of the command.
+pub fn in_message(message: &str) -> String {
+    named(message, OPTIONS.get().map_or(&[], Vec::as_slice))
+}
+
+/// Names settings in a message as options: `key = value` of scene files becomes `--key value`, `some-option` becomes
+/// `--some-option`, and `option` does so at the beginning of the message and in advice. Quoted text stays as it is.
+fn named(message: &str, options: &[String]) -> String {
+    let is_option = |name: &str| options.iter().any(|option| option == name);
+    let mut text = String::with_capacity(message.len() + 16);
+    let mut rest = message;
+    while let Some(first) = rest.chars().next() {
+        if let Some(length) = quoted(rest, first) {
+            text.push_str(&rest[..length]);
+            rest = &rest[length..];
+            continue;
+        }
+        let length = rest.find(|c| !is_of_name(c)).unwrap_or(rest.len());
+        if length == 0 {
+            text.push(first);
+            rest = &rest[first.len_utf8()..];
+            continue;
+        }
+        let (word, after) = rest.split_at(length);
+        let name = word.trim_end_matches(['.', '-', '_']);
+        let flag = flag(name);
+        let value = after
+            .strip_prefix(" = ")
+            .filter(|_| is_option(flag.trim_start_matches('-')));
+        if let Some((value, remainder)) = value.and_then(value_of) {
+            text.push_str(&format!("{flag} {value}"));
+            rest = remainder;
+            continue;
+        }
+        let is_named = match name.contains('-') {
+            true => !text.ends_with('/'),
+            false => match text.is_empty() {
+                true => heads(after),
+                false => ["try ", " or ", "leaving out "]
+                    .iter()
+                    .any(|before| text.ends_with(before)),
+            },
+        };
+        if is_named && is_option(name) {
+            text.push_str("--");
+        }
+        text.push_str(word);
+        rest = after;
+    }
+    text
+}
+
+fn is_of_name(c: char) -> bool {
+    c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.')
+}
+
+/// Length of the quoted text that begins here.
+fn quoted(text: &str, first: char) -> Option<usize> {
+    match first {
+        '`' | '"' => text[1..].find(first).map(|end| end + 2),
+        _ => None,
+    }
+}
+
+/// Whether a word at the beginning of a message is its subject: `word:` or `word value:`.
+fn heads(after: &str) -> bool {
+    match after.split_once(": ") {
+        Some((between, _)) => {
+            between.is_empty() || (between.starts_with(' ') && !between[1..].contains(' '))
+        }
+        None => false,
+    }
+}
+
+/// The number or quoted text of a TOML file with which a text begins, as an argument, and what follows; `None` for lists.
+fn value_of(text: &str) -> Option<(String, &str)> {
+    if let Some(inner) = text.strip_prefix('"') {
+        let (value, rest) = inner.split_once('"')?;
+        return Some(match value.contains(' ') {
+            true => (format!("\"{value}\""), rest),
+            false => (value.to_owned(), rest),
+        });
+    }
+    let end = text.find([' ', ',', ';', ')']).unwrap_or(text.len());
+    let is_number = text[..end].parse::<f64>().is_ok();
+    is_number.then(|| (text[..end].to_owned(), &text[end..]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn settings_are_named_as_options() {
+        let options = [
+            "visibility-m",
+            "every",
+            "tone",
+            "vary",
+            "overwrite",
+            "layers",
+            "fog-profile",
+            "depth",
+            "baseline-m",
+            "focal-px",
+            "solver",
+            "negative",
+        ]
+        .map(str::to_owned);
+        for (message, right) in [
+            ("try visibility_m = 200", "try --visibility-m 200"),
+            ("got none; try every = \"10m\"", "got none; try --every 10m"),
+            ("try output.tone = \"camera\"", "try --tone camera"),
+            (
+                "vary visibility: expected a drawn visibility, as visibility-m is 100",
+                "--vary visibility: expected a drawn visibility, as --visibility-m is 100",
+            ),
+            (
+                "try visibility-m 100, or vary visibility=5..9 in a batch",
+                "try --visibility-m 100, or --vary visibility=5..9 in a batch",
+            ),
+            (
+                "layers: expected an OpenEXR output, got `layers/focal-px`",
+                "--layers: expected an OpenEXR output, got `layers/focal-px`",
+            ),
+            (
+                "solver monte-carlo: expected fog",
+                "--solver monte-carlo: expected fog",
+            ),
+            (
+                "try overwrite to make them again",
+                "try --overwrite to make them again",
+            ),
+            (
+                "try focal-px with baseline-m",
+                "try --focal-px with --baseline-m",
+            ),
+            // Nothing is changed twice, and nothing that is not an option.
+            ("--layers: try --depth FILE", "--layers: try --depth FILE"),
+            ("try radius_m = 3", "try radius_m = 3"),
+            (
+                "depth map resized from 60 x 40 to 12 x 8: a",
+                "depth map resized from 60 x 40 to 12 x 8: a",
+            ),
+            ("one `", "one `"),
+        ] {
+            assert_eq!(named(message, &options), right);
+        }
+    }
+}
