@@ -20,3 +20,4 @@ mod polarised_sky;
 mod properties;
 mod sky_laws;
 mod thick_air;
+mod wildfire;
