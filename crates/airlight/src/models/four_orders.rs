@@ -7,7 +7,7 @@
 //! been scattered more often.)
 
 use super::PublishedModel;
-use super::prepared::Prepared;
+use super::orders::PreparedOrders;
 use crate::atmosphere::Atmosphere;
 use crate::control::Control;
 use crate::scene::{Capabilities, Input, PreparedModel, RadianceModel, ResolvedScene, SceneError};
@@ -39,21 +39,16 @@ impl FourOrders {
         let sun = sun_direction
             .try_normalize()
             .ok_or(SkyError::Setting("a finite sun direction that is not zero"))?;
-        let sky = solve(atmosphere, grid, orders, settings, Control::default())?;
+        let settings = stopped_after(orders, settings)?;
+        let sky = Sky::prepare_with(atmosphere, grid, &settings, Control::default())?;
         Ok(Self {
             view: sky.view(eye_altitude_m, sun),
         })
     }
 }
 
-/// Solves for the first `orders` orders of scattering.
-fn solve(
-    atmosphere: &Atmosphere,
-    grid: &WavelengthGrid,
-    orders: usize,
-    settings: &SkySettings,
-    control: Control<'_>,
-) -> Result<Sky, SkyError> {
+/// Settings with which the solver computes the first `orders` orders of scattering.
+fn stopped_after(orders: usize, settings: &SkySettings) -> Result<SkySettings, SkyError> {
     if orders < 2 {
         return Err(SkyError::Setting("at least 2 orders of scattering"));
     }
@@ -62,7 +57,7 @@ fn solve(
     settings.polarisation_correction = false;
     // The field holds all orders but the last, which tracing the view ray adds.
     settings.orders.only_orders = Some(orders - 1);
-    Sky::prepare_with(atmosphere, grid, &settings, control)
+    Ok(settings)
 }
 
 /// The solver of [`Orders`](super::orders::Orders) stopped after four orders of scattering.
@@ -105,14 +100,8 @@ impl RadianceModel for FourOrdersModel {
         suns: SunCoverage,
         control: Control<'_>,
     ) -> Result<Arc<dyn PreparedModel>, SceneError> {
-        let settings = scene.solver.sky_settings(suns);
-        let sky = solve(&scene.atmosphere, &scene.grid, 4, &settings, control)?;
-        let grid = Some(sky.grid().clone());
-        let prepared = Prepared::new(self.name(), scene, grid, move |altitude_m, sun| {
-            let view = sky.view(altitude_m, *sun);
-            Ok(Arc::new(FourOrders { view }))
-        });
-        Ok(Arc::new(prepared))
+        let settings = stopped_after(4, &scene.solver.sky_settings(suns))?;
+        Ok(Arc::new(PreparedOrders::new(scene, &settings, control)?))
     }
 }
 
