@@ -25,6 +25,15 @@ fn checks() -> Vec<Check> {
 }
 
 #[test]
+fn comparisons_without_claims_do_not_read_as_failures() {
+    let mut checks = checks();
+    checks[0].limit = None;
+    let text = text(&checks);
+    assert!(text.ends_with("nothing is claimed about them.\n"), "{text}");
+    assert!(!text.contains("0 claims"), "{text}");
+}
+
+#[test]
 fn broken_claims_appear_in_all_formats() {
     let checks = checks();
     let text = text(&checks);

@@ -24,8 +24,12 @@ pub fn text(checks: &[Check]) -> String {
         .iter()
         .filter(|check| !claim(check).is_empty())
         .count();
-    let _ = match broken.as_slice() {
-        [] => writeln!(out, "{claimed} claims hold."),
+    let _ = match (broken.as_slice(), claimed) {
+        ([], 0) => writeln!(
+            out,
+            "Differences between models; nothing is claimed about them."
+        ),
+        ([], _) => writeln!(out, "{claimed} claims hold."),
         _ => writeln!(out, "{} of {claimed} claims do not hold:", broken.len()),
     };
     for check in broken {
