@@ -81,7 +81,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         axis: axes::direction(options.azimuth, options.elevation),
         samples: options.samples,
     };
-    let pixels = scene.draw();
+    let pixels = scene.draw(|rows| {
+        let tenths = |rows: u32| u64::from(rows) * 10 / u64::from(height);
+        if tenths(rows) > tenths(rows - 1) {
+            eprintln!("{rows} of {height} rows");
+        }
+    });
     let drawn = start.elapsed();
 
     let metadata = describe(&options, &frame, &camera, altitude);

@@ -9,6 +9,7 @@ use crate::{
 };
 use airlight_image::Frame;
 use glam::DVec3;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 /// How far the eye looks for ground, metres.
 pub const FARTHEST: f64 = 150e3;
@@ -55,13 +56,19 @@ impl Relief for Scene {
 }
 
 impl Scene {
-    /// Red, green, blue and depth of every pixel, row after row.
-    pub fn draw(&self) -> Vec<f32> {
+    /// Red, green, blue and depth of every pixel, row after row. `progress` receives the number of rows done, from any thread.
+    pub fn draw(&self, progress: impl Fn(u32) + Sync) -> Vec<f32> {
         use rayon::prelude::*;
         let width = self.frame.size().width();
+        let done = AtomicU32::new(0);
+        let row = |y| {
+            let row: Vec<f32> = (0..width).flat_map(|x| self.pixel(x, y)).collect();
+            progress(done.fetch_add(1, Ordering::Relaxed) + 1);
+            row
+        };
         (0..self.frame.size().height())
             .into_par_iter()
-            .flat_map_iter(|y| (0..width).flat_map(move |x| self.pixel(x, y)))
+            .flat_map_iter(row)
             .collect()
     }
 
