@@ -36,7 +36,8 @@ pub fn in_message(message: &str) -> String {
 }
 
 /// Names settings in a message as options: `key = value` of scene files becomes `--key value`, `some-option` becomes
-/// `--some-option`, and `option` does so at the beginning of the message and in advice. Quoted text stays as it is.
+/// `--some-option`, and `option` does so at the beginning of the message, after the name of a file and in advice. Quoted text
+/// stays as it is.
 fn named(message: &str, options: &[String]) -> String {
     let is_option = |name: &str| options.iter().any(|option| option == name);
     let mut text = String::with_capacity(message.len() + 16);
@@ -66,7 +67,7 @@ fn named(message: &str, options: &[String]) -> String {
         }
         let is_named = match name.contains('-') {
             true => !text.ends_with('/'),
-            false => match text.is_empty() {
+            false => match text.is_empty() || text.ends_with("`: ") {
                 true => heads(after),
                 false => ["try ", " or ", "leaving out "]
                     .iter()
@@ -166,6 +167,10 @@ mod tests {
             (
                 "try focal-px with baseline-m",
                 "try --focal-px with --baseline-m",
+            ),
+            (
+                "  `a/b.png`: depth: expected the size",
+                "  `a/b.png`: --depth: expected the size",
             ),
             // Nothing is changed twice, and nothing that is not an option.
             ("--layers: try --depth FILE", "--layers: try --depth FILE"),

@@ -131,9 +131,10 @@ pub enum ImageError {
         /// Its number in the file, before scaling.
         value: f32,
     },
-    /// A depth map of another size than its picture.
+    /// A depth map of another aspect ratio than its picture.
     #[error(
-        "expected a depth map and a picture of the same size, got {} x {} and {} x {} pixels{}",
+        "depth: expected the size or the aspect ratio of the picture, got {} x {} pixels for a picture of {} x {}{}; try a depth map of \
+         {2} x {3}",
         .depth.0, .depth.1, .picture.0, .picture.1,
         match .exif_orientation {
             Some(value) => format!(" (after turning the picture upright by its EXIF orientation, {value})"),

@@ -152,7 +152,10 @@ fn files_that_are_not_what_they_should_be_are_refused() {
         ("missing.png", "missing.png"),
         ("empty.png", "empty.png"),
         ("cut.png", "cut.png"),
-        ("wide.png", "41 x 30"),
+        (
+            "wide.png",
+            "--depth: expected the size or the aspect ratio of the picture, got 41 x 30",
+        ),
         ("small.png", "small.png"),
         ("negative.npy", "-1"),
     ] {
