@@ -227,7 +227,7 @@ fn molecules(
         return Ok(());
     };
     let base_pressure_pa = match base {
-        "mars" => presets::mars::MARS_PRESSURE_PA,
+        "mars" | "dust-storm" => presets::mars::MARS_PRESSURE_PA,
         _ => STANDARD_PRESSURE_PA,
     };
     match atmosphere

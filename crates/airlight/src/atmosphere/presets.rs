@@ -8,7 +8,7 @@ pub mod reference;
 mod wildfire;
 
 pub use earth::{Earth, average, clear, hazy};
-pub use mars::mars;
+pub use mars::{dust_storm, mars};
 pub use wildfire::wildfire;
 
 use super::Atmosphere;
@@ -28,6 +28,8 @@ pub enum Preset {
     Wildfire,
     /// Mars on a moderately dusty day: dust optical depth 0.5 at 880 nm.
     Mars,
+    /// Mars in a planet-encircling dust storm: dust optical depth 8.5 at 880 nm.
+    DustStorm,
     /// Earth of Bruneton's Precomputed Atmospheric Scattering (2017), spectral.
     Bruneton,
     /// Earth of Hillaire's Scalable and Production Ready Sky (2020), red, green and blue.
@@ -50,6 +52,7 @@ named! { Preset, "an atmosphere", [
     ("hazy", (Hazy), "Earth on a hazy day: aerosol optical depth 0.35 at 550 nm"),
     ("wildfire", (Wildfire), "Earth under the smoke of forest fires: smoke optical depth 4 at 550 nm"),
     ("mars", (Mars), "Mars on a moderately dusty day: dust optical depth 0.5 at 880 nm"),
+    ("dust-storm", (DustStorm), "Mars in a planet-encircling dust storm: dust optical depth 8.5 at 880 nm"),
     ("bruneton", (Bruneton), "Earth of Bruneton's Precomputed Atmospheric Scattering (2017), spectral"),
     ("hillaire", (Hillaire), "Earth of Hillaire's Scalable and Production Ready Sky (2020), red, green and blue"),
     ("sky-article", (SkyArticle), "Earth of \"Sky and Atmosphere rendering: A physical approach\", as printed"),
@@ -68,6 +71,7 @@ impl Preset {
             Self::Hazy => earth::hazy(),
             Self::Wildfire => wildfire::wildfire(),
             Self::Mars => mars::mars(),
+            Self::DustStorm => mars::dust_storm(),
             Self::Bruneton => published::bruneton(),
             Self::Hillaire => published::hillaire(),
             Self::SkyArticle => published::sky_article(),

@@ -5,7 +5,7 @@ use super::harmonics::Harmonics;
 use crate::spectrum::Spectrum;
 
 /// Moments of the radiance and of its polarisation `[radius][sun][moment]`, and irradiances on the ground `[sun]`, per unit solar irradiance.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct Light<const N: usize> {
     /// Number of moments at each grid point.
     pub count: usize,
@@ -40,9 +40,25 @@ impl<const N: usize> Light<N> {
         }
     }
 
-    /// Adds a correction, limited where it would leave no light; returns its largest fraction of the intensity at any point that
-    /// is not [`DARK`].
-    pub fn correct(&mut self, correction: &Self) -> f32 {
+    /// Adds other light under one sun times these factors.
+    pub fn add_scaled(&mut self, other: &Self, sun: usize, factor: Spectrum<N>) {
+        let (count, suns) = (self.count, self.ground.len());
+        let points = self.moments.chunks_exact_mut(count).skip(sun).step_by(suns);
+        let others = other.moments.chunks_exact(count).skip(sun).step_by(suns);
+        for (a, b) in points.flatten().zip(others.flatten()) {
+            *a = a.mul_acc(*b, factor);
+        }
+        self.ground[sun] = self.ground[sun].mul_acc(other.ground[sun], factor);
+    }
+
+    /// Intensities at all radii under one sun.
+    pub fn intensities(&self, sun: usize) -> impl Iterator<Item = Spectrum<N>> {
+        let points = self.moments.chunks_exact(self.count);
+        points.skip(sun).step_by(self.ground.len()).map(|p| p[0])
+    }
+
+    /// Largest fraction of the intensity, at any point that is not [`DARK`], that a correction changes.
+    pub fn change_by(&self, correction: &Self) -> f32 {
         let (count, suns) = (self.count, self.ground.len());
         let mut brightest = vec![Spectrum::<N>::splat(f32::MIN_POSITIVE); suns];
         for (place, point) in self.moments.chunks_exact(count).enumerate() {
@@ -50,28 +66,38 @@ impl<const N: usize> Light<N> {
             *most = Spectrum::from_fn(|lane| most[lane].max(point[0][lane]));
         }
         let mut change = 0.0f32;
-        let points = self.moments.chunks_exact_mut(count);
+        let points = self.moments.chunks_exact(count);
         let corrections = correction.moments.chunks_exact(count);
         for (place, (point, correction)) in points.zip(corrections).enumerate() {
+            let scale = admissible(point[0], correction[0]);
+            let corrected = point[0].mul_acc(correction[0], scale);
+            let least = brightest[place % suns] * DARK;
+            change = (0..N).fold(change, |change, lane| {
+                let value = corrected[lane].max(least[lane]);
+                change.max((correction[0][lane] * scale[lane] / value).abs())
+            });
+        }
+        change
+    }
+
+    /// Adds a correction, limited where it would leave no light.
+    pub fn correct(&mut self, correction: &Self) {
+        let points = self.moments.chunks_exact_mut(self.count);
+        let corrections = correction.moments.chunks_exact(self.count);
+        for (point, correction) in points.zip(corrections) {
             let scale = admissible(point[0], correction[0]);
             for (a, b) in point.iter_mut().zip(correction) {
                 *a = a.mul_acc(*b, scale);
             }
-            let least = brightest[place % suns] * DARK;
-            change = (0..N).fold(change, |change, lane| {
-                let value = point[0][lane].max(least[lane]);
-                change.max((correction[0][lane] * scale[lane] / value).abs())
-            });
         }
         for (a, b) in self.ground.iter_mut().zip(&correction.ground) {
             *a = a.mul_acc(*b, admissible(*a, *b));
         }
-        change
     }
 }
 
 /// Fraction of the brightest light under the same sun below which a point does not count.
-const DARK: f32 = 1e-9;
+pub const DARK: f32 = 1e-9;
 
 /// Factor of a change that keeps at least a tenth of a value.
 #[inline(always)]

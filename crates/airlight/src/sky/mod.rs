@@ -28,6 +28,7 @@ mod coverage;
 mod field;
 mod harmonics;
 mod light;
+mod mixing;
 mod orders;
 mod peaked;
 mod plane_parallel;

@@ -3,17 +3,27 @@
 //! Light is what the sun's light becomes by being scattered or reflected once, plus itself scattered or reflected once more
 //! ([`super::transport`]). Each iteration adds the light that is missing in this equation together with all orders of its
 //! scattering in plane-parallel air ([`super::plane_parallel`]): what remains falls by the small difference between spherical and
-//! plane-parallel air, in thin and in thick air alike.
+//! plane-parallel air, in thin and in thick air alike. Where it does not fall fast, [`super::mixing`] combines the corrections.
 
 use super::air::Air;
 use super::field::{Diffuse, FieldGrid};
 use super::harmonics::Harmonics;
+use super::mixing::Mixing;
 use super::settings::{OrderSettings, SkyError};
 use super::transport::Transport;
 use crate::control::Control;
 
 /// Number of iterations in a row whose changes grow, after which the solver gives up.
 const MAX_GROWING: usize = 3;
+
+/// Fraction of the last change from which on changes fall slowly.
+const SLOW: f32 = 0.5;
+
+/// Change below which corrections are combined: larger ones are those of light on its way into a shadow.
+const SHAPED: f32 = 0.03;
+
+/// Factor of the last change above which earlier steps are forgotten.
+const RESTART: f32 = 2.0;
 
 /// Solves for all light scattered or reflected at least once, with or without its polarisation; `report` receives the fraction of the work done.
 ///
@@ -51,14 +61,31 @@ pub fn solve<const N: usize>(
     } else {
         let plane_parallel = transport.plane_parallel()?;
         let (mut last, mut converged, mut growing, mut iterations) = (f32::INFINITY, false, 0, 0);
+        let mut mixing: Option<Mixing<N>> = None;
         while iterations < settings.max_iterations && growing < MAX_GROWING {
             iterations += 1;
             let mut missing = transport.scattered(&light.field(&grid, &basis))?;
             missing.add(&once);
             missing.subtract(&light);
-            let change = light.correct(&plane_parallel.all_orders(&missing));
-            // The changes fall by a nearly constant factor; the first is the light that is missing in the beginning.
-            let ratio = if last.is_finite() { change / last } else { 1.0 };
+            let correction = plane_parallel.all_orders(&missing);
+            let change = light.change_by(&correction);
+            // Steps on the way into a shadow, or from which changes grow, say nothing about the next.
+            if change > SHAPED || change > RESTART * last {
+                mixing = None;
+            } else if change > SLOW * last && mixing.is_none() {
+                mixing = Some(Mixing::new());
+            }
+            match &mut mixing {
+                Some(mixing) => light.correct(&mixing.step(&light, &correction)),
+                None => light.correct(&correction),
+            }
+            // The changes fall by a nearly constant factor, or unevenly where corrections are combined; the first is the light that is
+            // missing in the beginning.
+            let ratio = match last.is_finite() {
+                true if mixing.is_some() => (change / last).max(SLOW),
+                true => change / last,
+                false => 1.0,
+            };
             error = change * ratio / (1.0 - ratio.min(0.99));
             converged = error < settings.tolerance;
             // Steady changes do not count: light that falls to a tenth in each iteration is on its way into a shadow. Changes

@@ -21,3 +21,4 @@ mod properties;
 mod sky_laws;
 mod thick_air;
 mod wildfire;
+mod worlds;

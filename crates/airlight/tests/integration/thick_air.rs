@@ -2,7 +2,7 @@
 //! converge.
 
 use crate::common::{grey_layer, numbers};
-use airlight::atmosphere::{Atmosphere, DensityProfile};
+use airlight::atmosphere::{Atmosphere, ConstituentKind, DensityProfile, Interpolation, presets};
 use airlight::axes::direction;
 use airlight::optics::PhaseFunction;
 use airlight::sky::{Sky, SkyError, SkySettings, SunCoverage, TableChannels};
@@ -141,4 +141,40 @@ fn light_that_did_not_converge_is_refused() {
         matches!(error, SkyError::NotConverged { iterations: 2, .. }),
         "{error}"
     );
+}
+
+/// Airs that extend far above a thick layer, where light spreads sideways, with profiles given by few knots: without mixing the
+/// iteration alternates and grows.
+#[test]
+fn dust_of_tabulated_profiles_converges() {
+    for (nu, top_m, interpolation) in [
+        (0.003, 100e3, Interpolation::Linear),
+        (0.01, 100e3, Interpolation::LogLinear),
+    ] {
+        let mut air = presets::mars();
+        let altitudes_m: Vec<f64> = (0..=20).map(|i| top_m * f64::from(i) / 20.0).collect();
+        let density = |z: &f64| {
+            let thinner = (z / 11.1e3_f64).exp();
+            (nu * (1.0 - thinner)).exp() / thinner
+        };
+        let densities = altitudes_m.iter().map(density).collect();
+        let profile = DensityProfile::tabulated(altitudes_m, densities, interpolation).unwrap();
+        let dust = air
+            .constituents
+            .iter_mut()
+            .find(|part| part.kind == ConstituentKind::Aerosol);
+        let dust = dust.unwrap();
+        let thicker = 8.5 / (dust.extinction_per_m(550.0) * profile.column_m(0.0, 120e3));
+        dust.scattering_per_m = dust.scattering_per_m.clone().scaled(thicker);
+        dust.absorption_per_m = dust.absorption_per_m.clone().scaled(thicker);
+        dust.density = profile;
+        let settings = SkySettings {
+            suns: SunCoverage::near(45.0, 0.0),
+            ..SkySettings::default()
+        };
+        let grid = WavelengthGrid::from_wavelengths_nm(vec![680.0]).unwrap();
+        let sky = Sky::prepare(&air, &grid, &settings);
+        let error = sky.map(|sky| sky.iteration_error());
+        assert!(matches!(error, Ok(0.0..0.002)), "{nu}: {error:?}");
+    }
 }

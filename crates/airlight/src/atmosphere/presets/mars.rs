@@ -1,7 +1,9 @@
 //! Mars: carbon dioxide and suspended dust.
 
 use super::fixed_table::fixed_table;
-use crate::atmosphere::{Atmosphere, Constituent, ConstituentKind, DensityProfile, Planet};
+use crate::atmosphere::{
+    Atmosphere, Constituent, ConstituentKind, DensityProfile, Interpolation, Planet,
+};
 use crate::optics::rayleigh::number_density_per_m3;
 use crate::optics::{Depolarization, PhaseFunction, TabulatedPhase};
 use crate::spectrum::{SpectralCurve, embedded_table, solar};
@@ -36,6 +38,11 @@ pub(crate) fn carbon_dioxide_cross_section_m2(wavelength_nm: f64) -> f64 {
     24.0 * PI.powi(3) * (lorentz / (molecules * lambda * lambda)).powi(2) * (1.1364 + 2.53e-3 * s2)
 }
 
+/// Vertical optical depth of the dust of [`dust_storm`] at 880 nm.
+const STORM_DEPTH_880: f64 = 8.5;
+/// Conrath's parameter of the vertical profile of [`dust_storm`].
+const STORM_CONRATH: f64 = 0.005;
+
 /// Mars on a moderately dusty day.
 ///
 /// - Radius 3389.5 km; gas and dust with a scale height of 11.1 km (dust 11 to 19 km at three sites, Lemmon et al. 2015).
@@ -48,6 +55,32 @@ pub(crate) fn carbon_dioxide_cross_section_m2(wavelength_nm: f64) -> f64 {
 /// - Ground: rounded albedo of bright, dusty regions (0.07 at 440 nm, 0.29 at 680 nm), accurate to about 20 %.
 /// - Sun: the solar spectrum at the Earth divided by 1.5237^2, and a disc 1.5237 times smaller.
 pub fn mars() -> Atmosphere {
+    let dust = DensityProfile::exponential(SCALE_HEIGHT_M);
+    under_dust("mars", DUST_DEPTH_880, dust)
+}
+
+/// Mars in a planet-encircling dust storm.
+///
+/// - Dust: optical depth 8.5 at 880 nm, the largest that Curiosity measured in the storm of 2018 (Guzewich et al., Geophys. Res. Lett.
+///   46, 71, 2019).
+/// - Height: the profile of Conrath (Icarus 24, 36, 1975), `exp(-z / H) exp(nu (1 - exp(z / H)))`, with a scale height of 11.1 km and
+///   `nu` 0.005: a mixing ratio that is uniform up to about 40 km and falls to a third at 60 km, as in the storm of 2018, when dust
+///   reached 60 to 80 km (Kass et al., Geophys. Res. Lett. 47, e2019GL083931, 2020).
+/// - All else is that of [`mars`].
+pub fn dust_storm() -> Atmosphere {
+    let altitudes_m: Vec<f64> = (0..=50).map(|i| 2e3 * f64::from(i)).collect();
+    let density = |z: &f64| {
+        let thinner = (z / SCALE_HEIGHT_M).exp();
+        (STORM_CONRATH * (1.0 - thinner)).exp() / thinner
+    };
+    let densities = altitudes_m.iter().map(density).collect();
+    let dust = DensityProfile::tabulated(altitudes_m, densities, Interpolation::LogLinear)
+        .expect("constant tables are valid");
+    under_dust("dust-storm", STORM_DEPTH_880, dust)
+}
+
+/// Mars under dust of this optical depth at 880 nm and this density profile.
+fn under_dust(name: &str, depth_880: f64, dust_density: DensityProfile) -> Atmosphere {
     let density = DensityProfile::exponential(SCALE_HEIGHT_M);
     let top_m = 120e3;
     let molecules = 0.972 * number_density_per_m3(MARS_PRESSURE_PA, TEMPERATURE_K);
@@ -55,8 +88,8 @@ pub fn mars() -> Atmosphere {
         .map(|i| 5.0 * f64::from(i))
         .map(|nm| (nm, molecules * carbon_dioxide_cross_section_m2(nm)))
         .collect();
-    let column_m = density.column_m(0.0, top_m);
-    let extinction = |nm: f64| DUST_DEPTH_880 * (nm / 880.0).powf(0.09) / column_m;
+    let column_m = dust_density.column_m(0.0, top_m);
+    let extinction = |nm: f64| depth_880 * (nm / 880.0).powf(0.09) / column_m;
     let albedo = fixed_table(&[
         (388.0, 0.730),
         (440.0, 0.777),
@@ -73,7 +106,7 @@ pub fn mars() -> Atmosphere {
     };
     let distance = MARS_DISTANCE_AU;
     Atmosphere {
-        name: "mars".into(),
+        name: name.into(),
         planet: Planet {
             radius_m: 3_389.5e3,
             top_altitude_m: top_m,
@@ -91,7 +124,7 @@ pub fn mars() -> Atmosphere {
         constituents: vec![
             Constituent {
                 kind: ConstituentKind::Molecules,
-                density: density.clone(),
+                density,
                 scattering_per_m: fixed_table(&gas),
                 absorption_per_m: SpectralCurve::Constant(0.0),
                 // From the King factor at 550 nm.
@@ -99,7 +132,7 @@ pub fn mars() -> Atmosphere {
             },
             Constituent {
                 kind: ConstituentKind::Aerosol,
-                density,
+                density: dust_density,
                 scattering_per_m: dust(&|albedo| albedo),
                 absorption_per_m: dust(&|albedo| 1.0 - albedo),
                 phase: PhaseFunction::Tabulated(dust_phase()),
@@ -137,6 +170,16 @@ mod tests {
             .unwrap()
             .optical_depth(0.0, 120e3, 440.0);
         assert!((gas / 0.0065 - 1.0).abs() < 0.03, "{gas}");
+    }
+
+    #[test]
+    fn the_dust_of_a_storm_is_mixed_up_to_sixty_kilometres() {
+        let storm = dust_storm();
+        let dust = storm.constituent(&ConstituentKind::Aerosol).unwrap();
+        let depth = dust.optical_depth(0.0, 120e3, 880.0);
+        assert!((depth / 8.5 - 1.0).abs() < 1e-3, "{depth}");
+        let mixing = |z: f64| dust.density.at(z) / DensityProfile::exponential(11.1e3).at(z);
+        assert!(mixing(40e3) > 0.8 && (0.3..0.4).contains(&mixing(60e3)));
     }
 
     #[test]
