@@ -146,6 +146,7 @@ fn light_that_did_not_converge_is_refused() {
 /// Airs that extend far above a thick layer, where light spreads sideways, with profiles given by few knots: without mixing the
 /// iteration alternates and grows.
 #[test]
+#[ignore = "takes half a minute"]
 fn dust_of_tabulated_profiles_converges() {
     for (nu, top_m, interpolation) in [
         (0.003, 100e3, Interpolation::Linear),
