@@ -1,4 +1,4 @@
-//! Skies where solvers fail: around the sun in coarse aerosol, polarised light, optically thick air.
+//! Skies where solvers fail: around the sun and at the horizon in coarse aerosol, polarised light, optically thick air.
 //!
 //! The tables are those of tests of the crate `airlight`, which recompute the ones by path tracing.
 
@@ -12,6 +12,7 @@ use airlight::sky::SkySettings;
 use airlight::spectrum::SpectralCurve;
 
 const AUREOLE: &str = include_str!("../data/sky_aureole_monte_carlo.csv");
+const HORIZON: &str = include_str!("../data/sky_horizon_monte_carlo.csv");
 const POLARISED: &str = include_str!("../data/sky_polarised_monte_carlo.csv");
 const SLABS: &str = include_str!("../data/sky_slabs_disort.csv");
 
@@ -20,7 +21,7 @@ const SLAB_M: f64 = 1000.0;
 
 /// All checks of the suite.
 pub fn checks() -> Vec<Check> {
-    [around_the_sun(), polarised(), thick()].concat()
+    [around_the_sun(), at_the_horizon(), polarised(), thick()].concat()
 }
 
 /// A check against a table, without rows.
@@ -68,15 +69,40 @@ fn scalar() -> SkySettings {
 
 /// Views from 1 to 10 degrees beside the sun.
 fn around_the_sun() -> Vec<Check> {
+    in_particles(AUREOLE, &["air", "aod_550", "sun"], |group, of| {
+        let sun = group.number("sun");
+        let limit = if sun < 5.0 { 3.5 } else { 1.5 };
+        (format!("around a sun at {sun} degrees, {of}"), limit)
+    })
+}
+
+/// Views from 0.3 to 8 degrees above the horizon, and from 1 km on both sides of it.
+fn at_the_horizon() -> Vec<Check> {
+    let columns = ["air", "aod_550", "sun", "altitude_m"];
+    in_particles(HORIZON, &columns, |group, of| {
+        let [sun, altitude_m] = ["sun", "altitude_m"].map(|name| group.number(name));
+        (
+            format!("at the horizon from {altitude_m} m, sun at {sun} degrees, {of}"),
+            2.0,
+        )
+    })
+}
+
+/// Views in air with particles, whose name and limit follow from the first line of a group and the name of the air.
+fn in_particles(
+    text: &'static str,
+    columns: &[&str],
+    claim: impl Fn(&Line<'_>, &str) -> (String, f64),
+) -> Vec<Check> {
     const WAVELENGTHS_NM: [f64; 3] = [440.0, 550.0, 680.0];
-    let table = Table::new(AUREOLE);
-    let groups = groups(&table, &["air", "aod_550", "sun"]);
+    let table = Table::new(text);
+    let groups = groups(&table, columns);
     let check = |group: &Vec<Line<'_>>| {
-        let (name, depth, sun) = (
-            group[0].text("air"),
-            group[0].text("aod_550"),
-            group[0].number("sun"),
-        );
+        let (name, depth) = (group[0].text("air"), group[0].text("aod_550"));
+        let altitude_m = match group[0].has("altitude_m") {
+            true => group[0].number("altitude_m"),
+            false => 0.0,
+        };
         let air = match depth {
             "" => atmosphere::preset(name).expect("a preset"),
             _ => {
@@ -84,13 +110,19 @@ fn around_the_sun() -> Vec<Check> {
                 Atmosphere::from_toml(&text).expect("an aerosol")
             }
         };
-        let solved = solved(&air, &WAVELENGTHS_NM, 90.0 - sun, &scalar()).with_mean_sunlight();
-        let limit = if sun < 5.0 { 3.5 } else { 1.5 };
+        let solved = solved(
+            &air,
+            &WAVELENGTHS_NM,
+            90.0 - group[0].number("sun"),
+            &scalar(),
+        )
+        .with_mean_sunlight()
+        .seen_from(altitude_m);
         let of = match depth {
             "" => name.to_owned(),
             _ => format!("{name} aerosol of optical depth {depth}"),
         };
-        let what = format!("around a sun at {sun} degrees, {of}");
+        let (what, limit) = claim(&group[0], &of);
         let mut check = check(what, "Airlight's Monte Carlo", limit);
         for line in group {
             let view = (90.0 - line.number("elevation"), line.number("azimuth"));

@@ -6,7 +6,7 @@ use airlight::axes::direction;
 use airlight::sky::{Sky, SkyError, SkySettings, SunCoverage};
 use airlight::spectrum::WavelengthGrid;
 
-/// One atmosphere with one position of the sun, seen from the ground.
+/// One atmosphere with one position of the sun, seen from near the ground.
 #[derive(Debug)]
 pub struct Solved {
     sky: Sky,
@@ -14,6 +14,7 @@ pub struct Solved {
     /// Solar irradiance at the wavelengths, W m^-2 nm^-1; the solver uses means about them.
     solar: Vec<f64>,
     sun_zenith_deg: f64,
+    altitude_m: f64,
     /// Distance of the sun relative to its mean.
     sun_distance: f64,
 }
@@ -44,6 +45,7 @@ impl Solved {
                 .map(|&nm| air.solar_irradiance.at(nm))
                 .collect(),
             sun_zenith_deg,
+            altitude_m: 0.0,
             sun_distance: 1.0,
         })
     }
@@ -65,6 +67,11 @@ impl Solved {
         }
     }
 
+    /// This sky seen from an altitude, m.
+    pub fn seen_from(self, altitude_m: f64) -> Self {
+        Self { altitude_m, ..self }
+    }
+
     /// Zenith angle of the sun, degrees.
     pub fn sun_zenith_deg(&self) -> f64 {
         self.sun_zenith_deg
@@ -74,7 +81,7 @@ impl Solved {
     pub fn look(&self, view_zenith_deg: f64, relative_azimuth_deg: f64) -> Light {
         let view = self
             .sky
-            .view(0.0, direction(0.0, 90.0 - self.sun_zenith_deg));
+            .view(self.altitude_m, direction(0.0, 90.0 - self.sun_zenith_deg));
         let towards = direction(relative_azimuth_deg, 90.0 - view_zenith_deg);
         let line = view.along(towards, None);
         let scale: Vec<f64> = self

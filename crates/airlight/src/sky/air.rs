@@ -163,6 +163,12 @@ impl<const N: usize> Air<N> {
 }
 
 impl<const N: usize> Scatterer<N> {
+    /// Legendre moments of the whole phase function, `[lane][l]`.
+    pub fn legendre_moments(&self, air: &Air<N>, count: usize) -> [Vec<f64>; N] {
+        air.wavelengths_nm
+            .map(|nm| self.phase.legendre_moments(count, nm))
+    }
+
     /// Phase function at the cosine `nu` of the scattering angle, 1/sr.
     pub fn phase(&self, air: &Air<N>, nu: f64) -> Spectrum<N> {
         self.phase.in_lanes(nu, &air.wavelengths_nm)

@@ -2,6 +2,8 @@
 
 use super::air::Air;
 use super::harmonics::Harmonics;
+use super::horizon::{self, HorizonPlace, MODES};
+use super::light::Light;
 use super::polarised::{MAX_RATIO, POLARISED, TensorHarmonics};
 use crate::math::interpolation::{Place, interval_of};
 use crate::spectrum::Spectrum;
@@ -231,9 +233,10 @@ pub struct RadianceField<const N: usize> {
     pub grid: FieldGrid,
     /// Basis functions of the moments.
     pub basis: Harmonics,
-    /// Number of moments at each node: those of the radiance, and after them those of its polarisation
-    /// ([`super::polarised`]), if the light is polarised.
+    /// Number of values at each node: the moments of the radiance, after them those of its polarisation ([`super::polarised`]), if
+    /// the light is polarised, and the light that forward peaks scatter at the horizon ([`horizon`]), if there is any.
     count: usize,
+    polarised: bool,
     /// `[radius][sun][moment]`.
     moments: Vec<Spectrum<N>>,
     /// Logarithm of the diffuse irradiance on the ground for each sun cosine.
@@ -273,6 +276,7 @@ impl<const N: usize> RadianceField<N> {
             .collect();
         Self {
             grid,
+            polarised: count > basis.count(),
             basis,
             count,
             moments,
@@ -280,10 +284,32 @@ impl<const N: usize> RadianceField<N> {
         }
     }
 
+    /// This field of `light` with the light that forward peaks scatter at the horizon, `[radius][sun][value]`.
+    pub fn with_horizon(mut self, light: &Light<N>, horizon: &[Spectrum<N>]) -> Self {
+        let points = self.moments.chunks_exact(self.count);
+        let values = horizon.chunks_exact(horizon::VALUES);
+        let mut moments = Vec::with_capacity(self.moments.len() + horizon.len());
+        for ((point, values), raw) in points.zip(values).zip(light.moments.chunks(light.count)) {
+            let intensity = raw[0].max_scalar(MIN_INTENSITY);
+            moments.extend_from_slice(point);
+            moments.extend(values.iter().map(|value| *value / intensity));
+        }
+        self.moments = moments;
+        self.count += horizon::VALUES;
+        self
+    }
+
     /// True if the field holds the polarisation of its light.
     #[inline(always)]
     pub fn is_polarised(&self) -> bool {
-        self.count > self.basis.count()
+        self.polarised
+    }
+
+    /// Index of the first value of the light at the horizon at each node, if there is any.
+    #[inline(always)]
+    pub fn horizon_start(&self) -> Option<usize> {
+        let start = self.basis.count() + if self.polarised { POLARISED } else { 0 };
+        (self.count > start).then_some(start)
     }
 
     #[inline(always)]
@@ -299,21 +325,28 @@ impl<const N: usize> RadianceField<N> {
         at.value_in_f32(&self.ground_irradiance).exp()
     }
 
-    /// Interpolates the stored form of the first `count` moments in radius, and that of the moments of polarisation, for these sun
-    /// cosines, into `out`: `[sun][moment]`.
+    /// Interpolates the stored form of the first `count` moments in radius, that of the moments of polarisation, and the light at a
+    /// place beside the horizon for these sun cosines, into `out`: `[sun][moment]`.
     #[inline(always)]
     pub fn at_radius(
         &self,
         at: RadialStencil,
         suns: Range<usize>,
         count: usize,
+        horizon: Option<HorizonPlace>,
         out: &mut Vec<Spectrum<N>>,
     ) {
         out.clear();
         let [wa, wb, wc, wd] = at.weights;
         for sun in suns {
             let points = [0, 1, 2, 3].map(|k| self.point(at.first + k, sun));
-            for part in [0..count, self.basis.count()..self.count] {
+            let polarised = self.basis.count();
+            let polarised = polarised..polarised + if self.polarised { POLARISED } else { 0 };
+            let beside = match (horizon, self.horizon_start()) {
+                (Some(place), Some(start)) => start + place.first..start + place.first + 2 * MODES,
+                _ => 0..0,
+            };
+            for part in [0..count, polarised, beside] {
                 let [a, b, c, d] = points.map(|point| &point[part.clone()]);
                 for (((a, b), c), d) in a.iter().zip(b).zip(c).zip(d) {
                     out.push((*a * wa + *b * wb) + (*c * wc + *d * wd));
@@ -359,6 +392,24 @@ impl<const N: usize> RadianceField<N> {
             }
             let [natural, _] = polarised_moments(air, densities);
             sum = sum.mul_acc(natural, degree);
+        }
+        let horizon = self.horizon_start().and_then(|start| {
+            let place = HorizonPlace::of(here.radius_m, here.mu, air.shell().ground_radius_m)?;
+            Some((start + place.first, place))
+        });
+        if let Some((start, place)) = horizon {
+            let sin = ((1.0 - here.mu) * (1.0 + here.mu)).max(0.0).sqrt();
+            let cosine = (here.toward_sun() / sin.max(1e-9)).clamp(-1.0, 1.0) as f32;
+            let mut change = Spectrum::ZERO;
+            for (node, weight) in place.weights().into_iter().enumerate() {
+                for (m, mode) in horizon::modes(cosine).into_iter().enumerate() {
+                    for &(corner, w) in &corners {
+                        let value = corner[start + node * MODES + m];
+                        change = change.scale_acc(value, w * weight * mode);
+                    }
+                }
+            }
+            sum = sum.mul_acc(air.peaks.extinction(densities), change);
         }
         // Truncated harmonics can be negative in directions with almost no light.
         sum.max_scalar(0.0) * log_intensity.exp()

@@ -17,7 +17,8 @@
 //! ```
 //!
 //! The geometry is in [`crate::transfer`]. Modules: `field` and `harmonics` (angular moments of the light inside the
-//! atmosphere), `polarised` (moments of its polarisation), `orders` (all orders of scattering), `transport` (light scattered once more), `plane_parallel` (its direct
+//! atmosphere), `polarised` (moments of its polarisation), `horizon` (light that forward
+//! peaks scatter at the horizon), `orders` (all orders of scattering), `transport` (light scattered once more), `plane_parallel` (its direct
 //! solution in plane-parallel air), `ray_bundle` (rays that share their path), `trace` (light along one ray),
 //! `samples_along_ray` (light at many distances along a ray), `table` (all directions of a view).
 
@@ -27,6 +28,7 @@ mod block;
 mod coverage;
 mod field;
 mod harmonics;
+mod horizon;
 mod light;
 mod mixing;
 mod orders;

@@ -8,6 +8,7 @@
 use super::air::Air;
 use super::field::{Diffuse, FieldGrid};
 use super::harmonics::Harmonics;
+use super::horizon;
 use super::mixing::Mixing;
 use super::settings::{OrderSettings, SkyError};
 use super::transport::Transport;
@@ -46,16 +47,17 @@ pub fn solve<const N: usize>(
         let light = (degree, polarised);
         Transport::new((&air, &grid, &basis), light, directions, control)
     };
-    let once = transport(0, &settings.first)?.sunlight()?;
+    let (once, once_by_direction) = transport(0, &settings.first)?.sunlight()?;
     report(FIRST);
     let transport = transport(settings.rescattered_degree, &settings.later)?;
     report(PATHS);
     let mut light = once.clone();
     let mut error = 0.0;
+    let mut by_direction = None;
     if let Some(orders) = settings.only_orders {
         let mut order = once;
         for _ in 1..orders {
-            order = transport.scattered(&order.field(&grid, &basis))?;
+            order = transport.scattered(&order.field(&grid, &basis))?.0;
             light.add(&order);
         }
     } else {
@@ -64,7 +66,8 @@ pub fn solve<const N: usize>(
         let mut mixing: Option<Mixing<N>> = None;
         while iterations < settings.max_iterations && growing < MAX_GROWING {
             iterations += 1;
-            let mut missing = transport.scattered(&light.field(&grid, &basis))?;
+            let (mut missing, directions) = transport.scattered(&light.field(&grid, &basis))?;
+            by_direction = Some(directions);
             missing.add(&once);
             missing.subtract(&light);
             let correction = plane_parallel.all_orders(&missing);
@@ -106,6 +109,16 @@ pub fn solve<const N: usize>(
             return Err(SkyError::NotConverged { error, iterations });
         }
     }
-    let field = light.field(&grid, &basis);
+    let mut field = light.field(&grid, &basis);
+    if let Some(by_direction) = by_direction {
+        let parts = [
+            (&once_by_direction, &settings.first),
+            (&by_direction, &settings.later),
+        ];
+        let air = (real_air, &air);
+        if let Some(correction) = horizon::correction(air, &grid, settings.peak_degree, &parts) {
+            field = field.with_horizon(&light, &correction);
+        }
+    }
     Ok(Diffuse { field, air, error })
 }

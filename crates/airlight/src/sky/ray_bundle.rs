@@ -7,6 +7,7 @@
 use super::air::Air;
 use super::field::{FieldGrid, RadialStencil, RadianceField, polarised_moments, scattering_moment};
 use super::harmonics::Harmonics;
+use super::horizon::{self, HorizonPlace, MODES};
 use super::polarised::{POLARISED, TensorHarmonics};
 use crate::math::interpolation::lerp;
 use crate::spectrum::Spectrum;
@@ -46,6 +47,9 @@ struct PathNode<const N: usize> {
     polarised_weights: [Spectrum<N>; 3],
     /// Factor by which polarised light is attenuated less.
     linear_gain: Spectrum<N>,
+    /// Place beside the horizon, and `weight` times the extinction that counts as unscattered.
+    horizon: Option<HorizonPlace>,
+    peak_weight: Spectrum<N>,
 }
 
 /// Sums over the nodes of a panel of a path.
@@ -254,11 +258,18 @@ impl<const N: usize> Path<N> {
                         source_weights: Vec::new(),
                         polarised_weights: [Spectrum::ZERO; 3],
                         linear_gain: linear_gain(air, &node.columns_m),
+                        horizon: HorizonPlace::of(
+                            radius_m,
+                            node.here.mu,
+                            air.shell().ground_radius_m,
+                        ),
+                        peak_weight: air.peaks.extinction(&node.densities),
                     });
                 }
                 let correct = panel.correction((Spectrum::ZERO - before).exp());
                 for (node, &depth) in path.nodes[first..].iter_mut().zip(&panel.depths) {
                     node.weight *= correct.at(depth);
+                    node.peak_weight *= node.weight;
                     node.source_weights = (0..=degree)
                         .map(|l| node.weight * scattering_moment(air, &node.densities, l))
                         .collect();
@@ -355,14 +366,20 @@ impl<const N: usize> Path<N> {
         mut linear: Option<&mut [[Spectrum<N>; 2]]>,
     ) {
         let (rays, count) = (bundle.len(), basis.count());
-        let stride = count + if field.is_polarised() { POLARISED } else { 0 };
+        let polarised_end = count + if field.is_polarised() { POLARISED } else { 0 };
         scratch.resize(rays, count);
         for node in &self.nodes {
             let suns = scratch.locate(&field.grid, self, node, bundle);
             let first_sun = suns.start;
-            field.at_radius(node.place, suns, count, &mut scratch.row);
+            let horizon = node.horizon.filter(|_| field.horizon_start().is_some());
+            field.at_radius(node.place, suns, count, horizon, &mut scratch.row);
+            let stride = polarised_end + horizon.map_or(0, |_| 2 * MODES);
             for point in scratch.row.chunks_exact_mut(stride) {
-                node.scatter(basis, point);
+                let (moments, beside) = point.split_at_mut(polarised_end);
+                node.scatter(basis, moments);
+                if let Some(place) = horizon {
+                    node.scatter_at_horizon(place, beside);
+                }
             }
             basis.evaluate_bundle(
                 node.mu,
@@ -370,6 +387,7 @@ impl<const N: usize> Path<N> {
                 &mut scratch.azimuthal,
                 &mut scratch.y,
             );
+            let inverse_sin = 1.0 / (1.0 - node.mu * node.mu).max(1e-9).sqrt();
             let interval = |slot: usize| {
                 let below = (scratch.below[slot] as usize - first_sun) * stride;
                 scratch.row[below..below + 2 * stride].split_at(stride)
@@ -384,6 +402,13 @@ impl<const N: usize> Path<N> {
                     let y = scratch.y[k * rays + slot];
                     below = below.scale_acc(a[k], y);
                     above = above.scale_acc(b[k], y);
+                }
+                if horizon.is_some() {
+                    let cosine = (scratch.toward_sun[slot] * inverse_sin).clamp(-1.0, 1.0);
+                    for (m, mode) in horizon::modes(cosine).into_iter().enumerate() {
+                        below = below.scale_acc(a[polarised_end + m], mode);
+                        above = above.scale_acc(b[polarised_end + m], mode);
+                    }
                 }
                 let intensity = lerp(a[0], b[0], fraction).exp();
                 scratch.intensity[slot] = intensity;
@@ -487,6 +512,16 @@ impl<const N: usize> Path<N> {
 }
 
 impl<const N: usize> PathNode<N> {
+    /// Replaces the values at the two nodes beside the horizon by what the node adds of them in each azimuthal mode.
+    #[inline(always)]
+    fn scatter_at_horizon(&self, place: HorizonPlace, values: &mut [Spectrum<N>]) {
+        let [first, second] = place.weights();
+        for m in 0..MODES {
+            let value = (values[m] * first).scale_acc(values[MODES + m], second);
+            values[m] = value * self.peak_weight;
+        }
+    }
+
     /// Replaces the stored moments of a field, of which the first are those of `basis` and the last those of polarisation, by what the
     /// node scatters of them relative to the intensity; the logarithm of the intensity remains.
     #[inline(always)]

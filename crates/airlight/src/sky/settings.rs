@@ -85,15 +85,15 @@ impl Default for SkySettings {
             orders: OrderSettings {
                 degree: 10,
                 peak_degree: 10,
-                rescattered_degree: 4,
+                rescattered_degree: 6,
                 first: Directions {
-                    zenith_nodes: [7, 5, 8],
+                    zenith_nodes: [8, 7, 8],
                     azimuths: 12,
                     panel_nodes: 2,
                 },
                 later: Directions {
-                    zenith_nodes: [4, 4, 5],
-                    azimuths: 7,
+                    zenith_nodes: [5, 5, 6],
+                    azimuths: 8,
                     panel_nodes: 2,
                 },
                 tolerance: 0.002,
@@ -114,6 +114,7 @@ impl SkySettings {
         let orders = &mut settings.orders;
         (orders.degree, orders.peak_degree, orders.rescattered_degree) = (12, 12, 8);
         orders.later.zenith_nodes = [8, 8, 10];
+        orders.later.azimuths = 11;
         (orders.first.panel_nodes, orders.later.panel_nodes) = (3, 3);
         settings
     }

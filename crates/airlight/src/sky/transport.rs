@@ -6,6 +6,7 @@
 use super::air::Air;
 use super::field::{FieldGrid, RadianceField};
 use super::harmonics::Harmonics;
+use super::horizon;
 use super::light::Light;
 use super::plane_parallel::{PlaneParallel, ResponseRow, Shape, WeightedDirection};
 use super::polarised::{POLARISED, TensorHarmonics, scattering_plane};
@@ -14,11 +15,13 @@ use super::settings::Directions;
 use crate::control::{Cancelled, Control};
 use crate::math::legendre::legendre;
 use crate::math::parallel;
-use crate::math::quadrature::GaussRule;
 use crate::math::simd::vectorized;
 use crate::spectrum::Spectrum;
 use crate::transfer::march::Marcher;
 use std::f64::consts::PI;
+
+/// For each radius, the light along each path by azimuthal mode, `[sun][path][mode]`, for the modes of [`horizon`].
+pub type ByDirection<const N: usize> = Vec<Vec<Spectrum<N>>>;
 
 /// Rays from the nodes of a grid in a set of directions.
 pub struct Transport<'a, const N: usize> {
@@ -86,7 +89,7 @@ impl<'a, const N: usize> Transport<'a, N> {
     ///
     /// # Errors
     /// [`Cancelled`] soon after cancellation.
-    pub fn sunlight(&self) -> Result<Light<N>, Cancelled> {
+    pub fn sunlight(&self) -> Result<(Light<N>, ByDirection<N>), Cancelled> {
         let air = self.air;
         self.gather(
             #[inline(always)]
@@ -135,7 +138,10 @@ impl<'a, const N: usize> Transport<'a, N> {
     ///
     /// # Errors
     /// [`Cancelled`] soon after cancellation.
-    pub fn scattered(&self, field: &RadianceField<N>) -> Result<Light<N>, Cancelled> {
+    pub fn scattered(
+        &self,
+        field: &RadianceField<N>,
+    ) -> Result<(Light<N>, ByDirection<N>), Cancelled> {
         self.gather(
             #[inline(always)]
             |path, bundle, work| {
@@ -230,7 +236,7 @@ impl<'a, const N: usize> Transport<'a, N> {
     fn gather(
         &self,
         accumulate: impl Fn(&Path<N>, &RayBundle, &mut Work<N>) + Send + Sync,
-    ) -> Result<Light<N>, Cancelled> {
+    ) -> Result<(Light<N>, ByDirection<N>), Cancelled> {
         let rows = parallel::try_map(self.paths.len(), |row| {
             self.control.check()?;
             Ok(vectorized(
@@ -239,11 +245,17 @@ impl<'a, const N: usize> Transport<'a, N> {
             ))
         })?;
         let ground = rows[0].1.clone();
-        Ok(Light {
+        let mut light = Light {
             count: self.count(),
-            moments: rows.into_iter().flat_map(|(moments, _)| moments).collect(),
+            moments: Vec::new(),
             ground,
-        })
+        };
+        let mut by_direction = ByDirection::new();
+        for (moments, _, directions) in rows {
+            light.moments.extend(moments);
+            by_direction.push(directions);
+        }
+        Ok((light, by_direction))
     }
 
     /// Number of moments at each node.
@@ -251,13 +263,13 @@ impl<'a, const N: usize> Transport<'a, N> {
         self.basis.count() + if self.polarised { POLARISED } else { 0 }
     }
 
-    /// Moments, `[sun][moment]`, and downward irradiances, `[sun]`, at one radius.
+    /// Moments, `[sun][moment]`, downward irradiances, `[sun]`, and the light by direction, `[sun][path][mode]`, at one radius.
     #[inline(always)]
     fn gather_row(
         &self,
         paths: &[(Path<N>, f64)],
         accumulate: &impl Fn(&Path<N>, &RayBundle, &mut Work<N>),
-    ) -> (Vec<Spectrum<N>>, Vec<Spectrum<N>>) {
+    ) -> (Vec<Spectrum<N>>, Vec<Spectrum<N>>, Vec<Spectrum<N>>) {
         let (suns, azimuths, count) = (
             self.grid.sun_cosines.len(),
             self.azimuth_cosines.len(),
@@ -266,13 +278,14 @@ impl<'a, const N: usize> Transport<'a, N> {
         let harmonics = self.basis.count();
         let mut moments = vec![Spectrum::ZERO; suns * count];
         let mut downward = vec![Spectrum::ZERO; suns];
+        let mut by_direction = vec![Spectrum::ZERO; suns * paths.len() * horizon::MODES];
         let mut work = Work {
             light: vec![Spectrum::ZERO; suns * azimuths],
             linear: vec![[Spectrum::ZERO; 2]; suns * azimuths],
             ..Default::default()
         };
         let mut y = [0.0f32; Harmonics::MAX_COUNT];
-        for (path, solid_weight) in paths {
+        for (place, (path, solid_weight)) in paths.iter().enumerate() {
             let bundle = self.bundle(path.mu);
             work.light.fill(Spectrum::ZERO);
             work.linear.fill([Spectrum::ZERO; 2]);
@@ -296,12 +309,18 @@ impl<'a, const N: usize> Transport<'a, N> {
                     let harmonics = TensorHarmonics::amplitudes(path.mu as f32).at(cosine);
                     harmonics.add_moments(work.linear[slot], w as f32, polarised);
                 }
+                let cosines = horizon::modes(self.azimuth_cosines[azimuth] as f32);
+                let modes = &mut by_direction[(sun * paths.len() + place) * horizon::MODES..];
+                for (m, (mode, cosine)) in modes.iter_mut().zip(cosines).enumerate() {
+                    let factor = if m == 0 { 1.0 } else { 2.0 } / azimuths as f32;
+                    *mode = mode.scale_acc(light, cosine * factor);
+                }
                 if path.mu > 0.0 {
                     downward[sun] = downward[sun].scale_acc(light, (w * path.mu) as f32);
                 }
             }
         }
-        (moments, downward)
+        (moments, downward, by_direction)
     }
 }
 
@@ -323,13 +342,6 @@ fn zenith_rule<const N: usize>(
     radius_m: f64,
     directions: &Directions,
 ) -> Vec<(f64, f64)> {
-    const BAND: f64 = 0.2;
-    let sin = (air.shell().ground_radius_m / radius_m).min(1.0);
-    let horizon = -((1.0 - sin) * (1.0 + sin)).sqrt();
-    let [below, band, above] = directions.zenith_nodes.map(GaussRule::new);
-    below
-        .on(-1.0, horizon)
-        .chain(band.on(horizon, horizon + BAND))
-        .chain(above.on(horizon + BAND, 1.0))
-        .collect()
+    let horizon = horizon::horizon(radius_m, air.shell().ground_radius_m);
+    horizon::zenith_rule(horizon, directions).concat()
 }

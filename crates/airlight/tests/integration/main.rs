@@ -4,13 +4,13 @@
 //! (CONTRIBUTING.md, "Tests").
 
 mod analytic_drops;
-mod aureole;
 mod book;
 mod colour;
 mod common;
 mod fog_drops;
 mod fog_monte_carlo;
 mod fog_reference;
+mod forward_peaks;
 mod models;
 mod monte_carlo_lines;
 mod monte_carlo_polarisation;

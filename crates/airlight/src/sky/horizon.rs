@@ -1,0 +1,352 @@
+//! Diffuse light that forward peaks scatter out of its direction beside the horizon.
+//!
+//! The moments of a field describe its light up to a degree, and what the forward peaks of phase functions keep of the moments
+//! beyond it counts as unscattered ([`crate::transfer::delta_m`]). Diffuse light hardly has such moments except at the horizon, where
+//! the bright sky ends and darker ground begins: forward peaks scatter light from the sky's lowest degrees below the horizon, and
+//! less comes back. With the fraction `f` of the scattering coefficient `b` that counts as unscattered, and the moments `chi_l` of the
+//! phase function, the light changes by
+//!
+//! ```text
+//! b f D,   D = sum of r_l L_l - L,   r_l = 1 up to the degree of the field,   r_l = chi_l / f beyond,
+//! ```
+//!
+//! per metre: the moments `r_l` are those of the part of the phase function that counts as unscattered. This is exact if `L` is the light of the real air. Here it is the light of the solution, integrated along the rays with which the
+//! field was solved, so `D` is right to first order. It is tabulated at nodes of the zenith angle on both sides of the horizon for the
+//! azimuthal modes 0 to 4, at all radii and suns of the field, and interpolated in views.
+
+use super::air::Air;
+use super::field::FieldGrid;
+use super::settings::Directions;
+use super::transport::ByDirection;
+use crate::math::parallel;
+use crate::math::quadrature::GaussRule;
+use crate::math::simd::vectorized;
+use crate::spectrum::Spectrum;
+use crate::transfer::delta_m::peak_fraction;
+use std::f32::consts::PI;
+
+/// Number of azimuthal modes.
+pub const MODES: usize = 5;
+/// Number of intervals of the zenith angle on each side of the horizon.
+const INTERVALS: usize = 8;
+/// Distance from the horizon beyond which there is no correction, in the cosine of the zenith angle.
+const WIDTH: f64 = 0.4;
+/// Number of values at each grid point: `[side][node][mode]`, of which those of the last node of each side are 0.
+pub const VALUES: usize = 2 * (INTERVALS + 1) * MODES;
+/// Highest degree of the light: a peak narrower than a degree counts as unscattered.
+const MAX_DEGREE: usize = 72;
+
+/// Place of a direction between two nodes.
+#[derive(Clone, Copy, Debug)]
+pub struct HorizonPlace {
+    /// Index of the values of the first node; those of the second follow.
+    pub first: usize,
+    /// Position between the nodes, 0 to 1.
+    pub fraction: f32,
+}
+
+impl HorizonPlace {
+    /// Place of a direction with the cosine `mu` of the zenith angle at a radius, if it is near the horizon.
+    #[inline(always)]
+    pub fn of(radius_m: f64, mu: f64, ground_radius_m: f64) -> Option<Self> {
+        let above = mu - horizon(radius_m, ground_radius_m);
+        let x = (above.abs() / WIDTH).sqrt() * INTERVALS as f64;
+        if x >= INTERVALS as f64 {
+            return None;
+        }
+        let side = usize::from(above >= 0.0) * (INTERVALS + 1);
+        Some(Self {
+            first: (side + x as usize) * MODES,
+            fraction: x.fract() as f32,
+        })
+    }
+
+    /// Factors of the two nodes.
+    #[inline(always)]
+    pub fn weights(self) -> [f32; 2] {
+        [1.0 - self.fraction, self.fraction]
+    }
+}
+
+/// `cos(m phi)` of the azimuthal modes for the cosine of the azimuth `phi`.
+#[inline(always)]
+pub fn modes(cosine: f32) -> [f32; MODES] {
+    let mut out = [1.0, cosine, 0.0, 0.0, 0.0];
+    for m in 2..MODES {
+        out[m] = 2.0 * cosine * out[m - 1] - out[m - 2];
+    }
+    out
+}
+
+/// Cosine of the zenith angle of the horizon at a radius.
+#[inline(always)]
+pub fn horizon(radius_m: f64, ground_radius_m: f64) -> f64 {
+    let sin = (ground_radius_m / radius_m).min(1.0);
+    -((1.0 - sin) * (1.0 + sin)).max(0.0).sqrt()
+}
+
+/// Ends of the pieces of the zenith angle: below the horizon, just above it, and higher up.
+fn piece_edges(horizon: f64) -> [f64; 4] {
+    const BAND: f64 = 0.2;
+    [-1.0, horizon, horizon + BAND, 1.0]
+}
+
+/// Distances below the horizon of two rays that are in no integral, relative to that of the highest ray of the rule: from a little
+/// above the ground, ground turns into haze within a few degrees.
+const EXTRA: [f64; 2] = [0.3, 0.03];
+
+/// Cosines of the zenith angle and quadrature weights, with a Gauss rule on each piece; the rays of the first piece end with the
+/// [`EXTRA`] ones, whose weight is 0.
+pub fn zenith_rule(horizon: f64, directions: &Directions) -> [Vec<(f64, f64)>; 3] {
+    let edges = piece_edges(horizon);
+    let mut rules = std::array::from_fn(|piece| {
+        let rule = GaussRule::new(directions.zenith_nodes[piece]);
+        rule.on(edges[piece], edges[piece + 1]).collect::<Vec<_>>()
+    });
+    let below: &mut Vec<_> = &mut rules[0];
+    let highest = below.iter().map(|ray| ray.0).fold(-1.0, f64::max);
+    below.extend(EXTRA.map(|distance| (horizon - distance * (horizon - highest), 0.0)));
+    rules
+}
+
+/// Cosines of the zenith angles of the nodes: on the side below the horizon, then above it, without the last of each side.
+fn node_cosines(horizon: f64) -> Vec<f64> {
+    let distance = |k: usize| WIDTH * (k as f64 / INTERVALS as f64).powi(2);
+    let below = (0..INTERVALS).map(|k| (horizon - distance(k)).max(-1.0));
+    below
+        .chain((0..INTERVALS).map(|k| horizon + distance(k)))
+        .collect()
+}
+
+/// Light by direction, and the directions.
+pub type Directed<'a, const N: usize> = (&'a ByDirection<N>, &'a Directions);
+
+/// The correction `D` at the grid points, `[radius][sun][VALUES]`, for light that is a sum of parts along different rays, in `air`
+/// without forward peaks beyond degree `peak_degree`; `None` if there are none.
+pub fn correction<const N: usize>(
+    (real, air): (&Air<N>, &Air<N>),
+    grid: &FieldGrid,
+    peak_degree: usize,
+    parts: &[Directed<'_, N>],
+) -> Option<Vec<Spectrum<N>>> {
+    let peaks = Peaks::new(real, air, peak_degree)?;
+    let suns = grid.sun_cosines.len();
+    let rows = parallel::map(grid.radii_m.len(), |row| {
+        let radius_m = grid.radii_m[row];
+        let mut out = vec![Spectrum::ZERO; suns * VALUES];
+        if let Some(weights) = peaks.weights(air, radius_m) {
+            let horizon = horizon(radius_m, air.shell().ground_radius_m);
+            vectorized(
+                #[inline(always)]
+                || {
+                    for (light, directions) in parts {
+                        add(horizon, &weights, &light[row], directions, &mut out);
+                    }
+                },
+            );
+        }
+        out
+    });
+    Some(rows.into_iter().flatten().collect())
+}
+
+/// Adds the correction for light along the rays at a radius with this horizon, `[sun][path][mode]`, given the moments `r_l` of the
+/// highest degrees; those of lower degrees are 1.
+#[inline(always)]
+fn add<const N: usize>(
+    horizon: f64,
+    weights: &[Spectrum<N>],
+    light: &[Spectrum<N>],
+    directions: &Directions,
+    out: &mut [Spectrum<N>],
+) {
+    let first_degree = MAX_DEGREE + 1 - weights.len();
+    let paths = directions.zenith_nodes.iter().sum::<usize>() + EXTRA.len();
+    let nodes: Vec<_> = node_cosines(horizon).into_iter().map(associated).collect();
+    for (m, rays) in single_rays(horizon, directions).iter().enumerate() {
+        for (place, node) in nodes.iter().enumerate() {
+            // The last node of each side is left out.
+            let at = (place + place / INTERVALS) * MODES + m;
+            for (path, ray) in rays.iter().enumerate() {
+                let product = |l: usize| node[m][l] * ray.moments[l];
+                let low_degrees: f64 = (0..first_degree).map(product).sum();
+                let mut factor = Spectrum::splat((low_degrees - ray.at_nodes[place]) as f32);
+                for (l, weight) in (first_degree..).zip(weights) {
+                    factor = factor.scale_acc(*weight, product(l) as f32);
+                }
+                for (out, light) in out
+                    .chunks_exact_mut(VALUES)
+                    .zip(light.chunks_exact(paths * MODES))
+                {
+                    out[at] = out[at].mul_acc(factor, light[path * MODES + m]);
+                }
+            }
+        }
+    }
+}
+
+/// Forward peaks of the constituents.
+struct Peaks<const N: usize> {
+    /// For each constituent with a peak, `chi_l / f` for the degrees that the field leaves out.
+    factors: Vec<(usize, Vec<Spectrum<N>>)>,
+}
+
+impl<const N: usize> Peaks<N> {
+    fn new(real: &Air<N>, air: &Air<N>, peak_degree: usize) -> Option<Self> {
+        let mut factors = Vec::new();
+        for s in &real.scatterers {
+            let peak = s.moments[peak_degree + 1].map(peak_fraction);
+            if air.peaks.extinction_per_m[s.constituent].max_element() <= 0.0
+                || peak.min_element() < 1e-3
+            {
+                continue;
+            }
+            let by_lane = s.legendre_moments(real, MAX_DEGREE + 1);
+            let of_degree = |l: usize| {
+                let moment = Spectrum::from_fn(|lane| by_lane[lane][l] as f32);
+                moment / peak * end(l)
+            };
+            let degrees = (peak_degree + 1..=MAX_DEGREE).map(of_degree).collect();
+            factors.push((s.constituent, degrees));
+        }
+        (!factors.is_empty()).then_some(Self { factors })
+    }
+
+    /// Mean of the factors over the constituents at a radius, if there are peaks.
+    fn weights(&self, air: &Air<N>, radius_m: f64) -> Option<Vec<Spectrum<N>>> {
+        let densities = air.shell().densities_at(radius_m);
+        let whole = air.peaks.extinction(&densities);
+        if whole.min_element() <= 0.0 {
+            return None;
+        }
+        let count = self.factors[0].1.len();
+        let mut mean = vec![Spectrum::ZERO; count];
+        for (constituent, factors) in &self.factors {
+            let share =
+                air.peaks.extinction_per_m[*constituent] * densities[*constituent] as f32 / whole;
+            for (mean, factor) in mean.iter_mut().zip(factors) {
+                *mean = mean.mul_acc(share, *factor);
+            }
+        }
+        Some(mean)
+    }
+}
+
+/// Factor that ends the series of moments smoothly, so that the horizon causes no ripples.
+fn end(l: usize) -> f32 {
+    let from = 2 * MAX_DEGREE / 3;
+    if l <= from {
+        return 1.0;
+    }
+    let x = (l - from) as f32 / (MAX_DEGREE + 1 - from) as f32;
+    0.5 * (1.0 + (PI * x).cos())
+}
+
+/// Associated Legendre functions with integral 1 of their square, `[m][l]`.
+fn associated(mu: f64) -> [Vec<f64>; MODES] {
+    let sin2 = ((1.0 - mu) * (1.0 + mu)).max(0.0);
+    // The square of the first is that of the one before times `(2 m + 1) / (2 m) sin^2`.
+    let mut first = [0.5f64.sqrt(); MODES];
+    for m in 1..MODES {
+        let mf = m as f64;
+        first[m] = first[m - 1] * ((2.0 * mf + 1.0) / (2.0 * mf) * sin2).sqrt();
+    }
+    std::array::from_fn(|m| {
+        let mut p = vec![0.0; MAX_DEGREE + 1];
+        p[m] = first[m];
+        for l in m + 1..=MAX_DEGREE {
+            let (lf, mf) = (l as f64, m as f64);
+            let a = ((4.0 * lf * lf - 1.0) / (lf * lf - mf * mf)).sqrt();
+            let below = lf - 1.0;
+            let b = match l >= m + 2 {
+                true => {
+                    a * ((below * below - mf * mf) / (4.0 * below * below - 1.0)).sqrt() * p[l - 2]
+                }
+                false => 0.0,
+            };
+            p[l] = a * mu * p[l - 1] - b;
+        }
+        p
+    })
+}
+
+/// Light that is 1 along one ray of a zenith rule and 0 along the others, with a polynomial between those on each piece of the rule.
+struct SingleRay {
+    /// Moments by degree, in an azimuthal mode.
+    moments: Vec<f64>,
+    /// The light in the directions of the nodes beside the horizon.
+    at_nodes: Vec<f64>,
+}
+
+/// Light along each ray of the rule at a radius with this horizon, `[m][ray]`.
+fn single_rays(horizon: f64, directions: &Directions) -> [Vec<SingleRay>; MODES] {
+    const POINTS: [usize; 3] = [40, 20, 40];
+    let edges = piece_edges(horizon);
+    let nodes = node_cosines(horizon);
+    let mut out: [Vec<SingleRay>; MODES] = std::array::from_fn(|_| Vec::new());
+    for (piece, rays) in zenith_rule(horizon, directions).iter().enumerate() {
+        let rays: Vec<f64> = rays.iter().map(|ray| ray.0).collect();
+        let light = |ray: usize, mu: f64| match piece {
+            0 => between_with_extra(&rays, ray, mu, horizon),
+            _ => between(&rays, ray, mu),
+        };
+        let of_node = |place: usize| match place < INTERVALS {
+            true => 0,
+            false => 1 + usize::from(nodes[place] > edges[2]),
+        };
+        let rule = GaussRule::new(POINTS[piece]);
+        let rule: Vec<_> = rule.on(edges[piece], edges[piece + 1]).collect();
+        let associated: Vec<_> = rule.iter().map(|(mu, _)| associated(*mu)).collect();
+        for (m, list) in out.iter_mut().enumerate() {
+            for ray in 0..rays.len() {
+                let mut moments = vec![0.0; MAX_DEGREE + 1];
+                for ((mu, weight), p) in rule.iter().zip(&associated) {
+                    let light = weight * light(ray, *mu);
+                    for (sum, p) in moments.iter_mut().zip(&p[m]) {
+                        *sum += light * p;
+                    }
+                }
+                let at_node = |place: usize| match of_node(place) == piece {
+                    true => light(ray, nodes[place]),
+                    false => 0.0,
+                };
+                let at_nodes = (0..nodes.len()).map(at_node).collect();
+                list.push(SingleRay { moments, at_nodes });
+            }
+        }
+    }
+    out
+}
+
+/// The polynomial that is 1 at one of `rays` and 0 at the others.
+fn between(rays: &[f64], ray: usize, mu: f64) -> f64 {
+    let others = rays.iter().enumerate().filter(|(other, _)| *other != ray);
+    others
+        .map(|(_, other)| (mu - other) / (rays[ray] - other))
+        .product()
+}
+
+/// The same below the horizon, where the last of the rays are the [`EXTRA`] ones: what they add to the polynomial through the others
+/// is linear between them, and 0 from the highest other ray down.
+fn between_with_extra(rays: &[f64], ray: usize, mu: f64, horizon: f64) -> f64 {
+    let (ordinary, extra) = rays.split_at(rays.len() - EXTRA.len());
+    let highest = ordinary.iter().copied().fold(-1.0, f64::max);
+    let distance = (horizon - mu) / (horizon - highest);
+    let first = if distance > EXTRA[0] {
+        ((1.0 - distance) / (1.0 - EXTRA[0])).max(0.0)
+    } else {
+        ((distance - EXTRA[1]) / (EXTRA[0] - EXTRA[1])).max(0.0)
+    };
+    let second = ((EXTRA[0] - distance) / (EXTRA[0] - EXTRA[1])).clamp(0.0, 1.0);
+    let hats = [first, second];
+    match ray.checked_sub(ordinary.len()) {
+        Some(place) => hats[place],
+        None => {
+            let replaced = extra.iter().zip(hats);
+            let replaced: f64 = replaced
+                .map(|(extra, hat)| hat * between(ordinary, ray, *extra))
+                .sum();
+            between(ordinary, ray, mu) - replaced
+        }
+    }
+}
