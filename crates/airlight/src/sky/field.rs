@@ -3,7 +3,6 @@
 use super::air::Air;
 use super::harmonics::Harmonics;
 use super::horizon::{self, HorizonPlace, MODES};
-use super::light::Light;
 use super::polarised::{MAX_RATIO, POLARISED, TensorHarmonics};
 use crate::math::interpolation::{Place, interval_of};
 use crate::spectrum::Spectrum;
@@ -284,13 +283,13 @@ impl<const N: usize> RadianceField<N> {
         }
     }
 
-    /// This field of `light` with the light that forward peaks scatter at the horizon, `[radius][sun][value]`.
-    pub fn with_horizon(mut self, light: &Light<N>, horizon: &[Spectrum<N>]) -> Self {
+    /// This field with the light that forward peaks scatter at the horizon, `[radius][sun][value]`.
+    pub fn with_horizon(mut self, horizon: &[Spectrum<N>]) -> Self {
         let points = self.moments.chunks_exact(self.count);
         let values = horizon.chunks_exact(horizon::VALUES);
         let mut moments = Vec::with_capacity(self.moments.len() + horizon.len());
-        for ((point, values), raw) in points.zip(values).zip(light.moments.chunks(light.count)) {
-            let intensity = raw[0].max_scalar(MIN_INTENSITY);
+        for (point, values) in points.zip(values) {
+            let intensity = point[0].exp();
             moments.extend_from_slice(point);
             moments.extend(values.iter().map(|value| *value / intensity));
         }

@@ -15,9 +15,7 @@
 //! azimuthal modes 0 to 4, at all radii and suns of the field, and interpolated in views.
 
 use super::air::Air;
-use super::field::FieldGrid;
 use super::settings::Directions;
-use super::transport::ByDirection;
 use crate::math::parallel;
 use crate::math::quadrature::GaussRule;
 use crate::math::simd::vectorized;
@@ -118,6 +116,9 @@ fn node_cosines(horizon: f64) -> Vec<f64> {
         .collect()
 }
 
+/// For each radius, the light along each path by azimuthal mode, `[sun][path][mode]`.
+pub type ByDirection<const N: usize> = Vec<Vec<Spectrum<N>>>;
+
 /// Light by direction, and the directions.
 pub type Directed<'a, const N: usize> = (&'a ByDirection<N>, &'a Directions);
 
@@ -125,14 +126,16 @@ pub type Directed<'a, const N: usize> = (&'a ByDirection<N>, &'a Directions);
 /// without forward peaks beyond degree `peak_degree`; `None` if there are none.
 pub fn correction<const N: usize>(
     (real, air): (&Air<N>, &Air<N>),
-    grid: &FieldGrid,
+    radii_m: &[f64],
     peak_degree: usize,
     parts: &[Directed<'_, N>],
 ) -> Option<Vec<Spectrum<N>>> {
     let peaks = Peaks::new(real, air, peak_degree)?;
-    let suns = grid.sun_cosines.len();
-    let rows = parallel::map(grid.radii_m.len(), |row| {
-        let radius_m = grid.radii_m[row];
+    let paths =
+        |directions: &Directions| directions.zenith_nodes.iter().sum::<usize>() + EXTRA.len();
+    let suns = parts[0].0[0].len() / (paths(parts[0].1) * MODES);
+    let rows = parallel::map(radii_m.len(), |row| {
+        let radius_m = radii_m[row];
         let mut out = vec![Spectrum::ZERO; suns * VALUES];
         if let Some(weights) = peaks.weights(air, radius_m) {
             let horizon = horizon(radius_m, air.shell().ground_radius_m);

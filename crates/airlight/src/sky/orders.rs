@@ -116,8 +116,10 @@ pub fn solve<const N: usize>(
             (&by_direction, &settings.later),
         ];
         let air = (real_air, &air);
-        if let Some(correction) = horizon::correction(air, &grid, settings.peak_degree, &parts) {
-            field = field.with_horizon(&light, &correction);
+        if let Some(correction) =
+            horizon::correction(air, &grid.radii_m, settings.peak_degree, &parts)
+        {
+            field = field.with_horizon(&correction);
         }
     }
     Ok(Diffuse { field, air, error })

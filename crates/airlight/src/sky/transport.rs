@@ -6,7 +6,7 @@
 use super::air::Air;
 use super::field::{FieldGrid, RadianceField};
 use super::harmonics::Harmonics;
-use super::horizon;
+use super::horizon::{self, ByDirection};
 use super::light::Light;
 use super::plane_parallel::{PlaneParallel, ResponseRow, Shape, WeightedDirection};
 use super::polarised::{POLARISED, TensorHarmonics, scattering_plane};
@@ -19,9 +19,6 @@ use crate::math::simd::vectorized;
 use crate::spectrum::Spectrum;
 use crate::transfer::march::Marcher;
 use std::f64::consts::PI;
-
-/// For each radius, the light along each path by azimuthal mode, `[sun][path][mode]`, for the modes of [`horizon`].
-pub type ByDirection<const N: usize> = Vec<Vec<Spectrum<N>>>;
 
 /// Rays from the nodes of a grid in a set of directions.
 pub struct Transport<'a, const N: usize> {
