@@ -42,7 +42,7 @@ fn tabulated<const N: usize>(
     });
     let (ground_radius_m, top_radius_m) = view.bounds_m();
     let radius_m = view.radius_m();
-    let horizon_elevation = -(ground_radius_m / radius_m).min(1.0).acos();
+    let horizon_elevation = view.horizon_elevation_rad();
     let eye = Eye {
         radius_m,
         ground_radius_m,

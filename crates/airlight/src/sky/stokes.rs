@@ -88,8 +88,7 @@ pub struct PolarisationTable {
 impl PolarisationTable {
     /// Computes the table.
     pub fn new(view: &View) -> Self {
-        let (ground_m, _) = view.bounds_m();
-        let horizon_rad = -(ground_m / view.radius_m()).min(1.0).acos();
+        let horizon_rad = view.horizon_elevation_rad();
         let sun = view.sun();
         let towards = level(sun);
         let left = DVec3::Y.cross(towards);

@@ -22,7 +22,7 @@ impl SkyTable {
         let sky = view.sky();
         let shell = sky.shell();
         let radius_m = view.radius_m();
-        let horizon_elevation = -(shell.ground_radius_m / radius_m).min(1.0).acos();
+        let horizon_elevation = view.horizon_elevation_rad();
         // From the top of the atmosphere and outside nothing is visible above its limb.
         let highest_elevation = if radius_m >= shell.top_radius_m {
             -(shell.top_radius_m / radius_m).acos()

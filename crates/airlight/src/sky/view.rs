@@ -115,6 +115,7 @@ impl View {
     pub fn at_altitude(&self, altitude_m: f64) -> Self {
         let place = Self::new(&self.sky, altitude_m, self.sun);
         Self {
+            sky: place.sky,
             position: place.position,
             ..self.clone()
         }
@@ -240,6 +241,13 @@ impl View {
         (shell.ground_radius_m, shell.top_radius_m)
     }
 
+    /// Elevation of the horizon, rad: 0 on the ground, and below it from above.
+    pub(crate) fn horizon_elevation_rad(&self) -> f64 {
+        -(self.sky.shell().ground_radius_m / self.radius_m())
+            .min(1.0)
+            .acos()
+    }
+
     /// Transmittance from the eye to space along `direction`; 0 if the ray hits the planet.
     pub fn transmittance_to_space(&self, direction: DVec3) -> Vec<f32> {
         let ray = self.ray(direction.normalize());
@@ -262,9 +270,8 @@ impl View {
             DVec3::X
         };
         // Height at which the horizon cuts the disc, relative to its centre.
-        let ground_radius_m = self.sky.shell().ground_radius_m;
-        let horizon = -(ground_radius_m / self.radius_m()).min(1.0).acos();
-        let cut = (horizon - sun.y.clamp(-1.0, 1.0).asin()).clamp(-radius, radius);
+        let cut =
+            (self.horizon_elevation_rad() - sun.y.clamp(-1.0, 1.0).asin()).clamp(-radius, radius);
         let mut sum = vec![0.0f64; self.sky.grid().len()];
         for (height, light) in self.disc_strips(cut) {
             let direction = (sun + up * height.tan()).normalize();

@@ -288,6 +288,21 @@ mod guards {
         }
     }
 
+    /// Also out of the range that the sky was prepared for.
+    #[test]
+    fn raising_a_view_is_looking_from_there() {
+        let sky = sky("average", SunCoverage::near(5.0, 0.0));
+        let (sun, eye) = (direction(180.0, 5.0), direction(100.0, -3.0));
+        for altitude_m in [100.0, 20e3] {
+            let raised = sky.view(0.0, sun).at_altitude(altitude_m);
+            let there = sky.view(altitude_m, sun);
+            assert_eq!(
+                raised.along(eye, None).radiance(),
+                there.along(eye, None).radiance()
+            );
+        }
+    }
+
     #[test]
     fn a_table_gives_what_tracing_gives() {
         for (preset, altitude, elevation) in [
