@@ -5,6 +5,7 @@ use crate::summary::short;
 use airlight::axes;
 use airlight::spectrum::difference::{ciede2000, xyz_to_lab};
 use airlight::spectrum::rgb;
+use glam::DVec3;
 use serde::Serialize;
 use std::f64::consts::PI;
 use std::fmt::Write;
@@ -102,15 +103,9 @@ pub fn sky_horizontal_lx(image: &RenderedImage) -> f64 {
     /// Difference of the sum of weights from that of the hemisphere up to which a picture shows the whole sky.
     const WHOLE: f64 = 0.05;
     let weights = image.space.to_xyz_matrix()[1];
-    let (width, height) = (image.frame.size().width(), image.frame.size().height());
-    let pixels = (0..height).flat_map(|j| (0..width).map(move |i| (i, j)));
     let (mut light, mut whole) = (0.0, 0.0);
-    for ((i, j), rgb) in pixels.zip(&image.rgb) {
-        let direction = image.frame.pixel_direction(i, j);
-        let Some(direction) = direction.filter(|direction| direction.y > 0.0) else {
-            continue;
-        };
-        let weight = direction.y * image.frame.pixel_solid_angle(i, j);
+    for (rgb, direction, solid_angle) in above_the_horizon(image, &image.rgb) {
+        let weight = direction.y * solid_angle;
         let luminance: f64 = (0..3).map(|c| weights[c] * f64::from(rgb[c])).sum();
         whole += weight;
         light += weight * luminance;
@@ -121,21 +116,30 @@ pub fn sky_horizontal_lx(image: &RenderedImage) -> f64 {
     }
 }
 
+/// The values of the pixels above the horizon, with the direction and solid angle of each.
+fn above_the_horizon<'a, T>(
+    image: &'a RenderedImage,
+    values: &'a [T],
+) -> impl Iterator<Item = (&'a T, DVec3, f64)> {
+    let (width, height) = (image.frame.size().width(), image.frame.size().height());
+    let pixels = (0..height).flat_map(move |j| (0..width).map(move |i| (i, j)));
+    pixels.zip(values).filter_map(|((i, j), value)| {
+        let direction = image.frame.pixel_direction(i, j)?;
+        (direction.y > 0.0).then(|| (value, direction, image.frame.pixel_solid_angle(i, j)))
+    })
+}
+
 impl Spread {
     /// Distribution of values over the pixels above the horizon; `None` if there are none.
     pub fn new(image: &RenderedImage, values: &[f64]) -> Option<Self> {
-        let (width, height) = (image.frame.size().width(), image.frame.size().height());
-        let pixels = (0..height).flat_map(|j| (0..width).map(move |i| (i, j)));
-        let mut sky: Vec<(f64, f64, [f64; 2])> = pixels
-            .zip(values)
-            .filter_map(|((i, j), &value)| {
-                let direction = image.frame.pixel_direction(i, j)?;
-                let above = direction.y > 0.0 && value.is_finite();
+        let mut sky: Vec<(f64, f64, [f64; 2])> = above_the_horizon(image, values)
+            .filter(|(value, ..)| value.is_finite())
+            .map(|(&value, direction, solid_angle)| {
                 let at = [
                     axes::azimuth_deg(direction),
                     direction.y.asin().to_degrees(),
                 ];
-                above.then(|| (value, image.frame.pixel_solid_angle(i, j), at))
+                (value, solid_angle, at)
             })
             .collect();
         let whole: f64 = sky.iter().map(|pixel| pixel.1).sum();

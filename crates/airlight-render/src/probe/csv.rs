@@ -29,7 +29,8 @@ impl ProbeAnswer {
         if self.views.iter().any(|view| view.monte_carlo.is_some()) {
             text.push_str(MONTE_CARLO_HEADER);
         }
-        if self.views.iter().any(|view| view.polarisation().is_some()) {
+        let polarised = self.views.iter().any(|view| view.polarisation().is_some());
+        if polarised {
             text.push_str(POLARISATION_HEADER);
         }
         text.push_str(MODEL_HEADER);
@@ -38,6 +39,9 @@ impl ProbeAnswer {
         for (number, view) in (1..).zip(&self.views) {
             for lane in 0..self.wavelengths_nm.len().max(1) {
                 line(&mut text, self, number, view, lane);
+                if polarised {
+                    polarisation(&mut text, view, lane);
+                }
                 // Writing to a string cannot fail.
                 let _ = writeln!(text, ",{},{variant}", self.solver);
             }
@@ -105,24 +109,22 @@ fn line(text: &mut String, answer: &ProbeAnswer, number: usize, view: &RayAnswer
             found.radiance_w_m2_sr_nm[lane], found.standard_error_w_m2_sr_nm[lane]
         );
     }
-    if answer
-        .views
-        .iter()
-        .any(|view| view.polarisation().is_some())
-    {
-        let nothing = PolarisationAnswer::default();
-        let found = view.polarisation().unwrap_or(&nothing);
-        let values = [
-            &found.stokes_i_w_m2_sr_nm,
-            &found.stokes_q_w_m2_sr_nm,
-            &found.stokes_u_w_m2_sr_nm,
-            &found.degree,
-            &found.degree_standard_error,
-            &found.angle_deg,
-            &found.angle_standard_error_deg,
-        ];
-        for values in values {
-            let _ = write!(text, ",{}", at(values, lane));
-        }
+}
+
+/// The columns of polarisation, empty where it is not known.
+fn polarisation(text: &mut String, view: &RayAnswer, lane: usize) {
+    let nothing = PolarisationAnswer::default();
+    let found = view.polarisation().unwrap_or(&nothing);
+    for values in [
+        &found.stokes_i_w_m2_sr_nm,
+        &found.stokes_q_w_m2_sr_nm,
+        &found.stokes_u_w_m2_sr_nm,
+        &found.degree,
+        &found.degree_standard_error,
+        &found.angle_deg,
+        &found.angle_standard_error_deg,
+    ] {
+        // Writing to a string cannot fail.
+        let _ = write!(text, ",{}", at(values, lane));
     }
 }

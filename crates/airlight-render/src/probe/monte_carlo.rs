@@ -63,11 +63,7 @@ impl From<PolarisedLight> for PolarisationAnswer {
             stokes_i_w_m2_sr_nm: double(&light.intensity),
             stokes_q_w_m2_sr_nm: double(&light.q),
             stokes_u_w_m2_sr_nm: double(&light.u),
-            standard_error_i_w_m2_sr_nm: Vec::new(),
-            standard_error_q_w_m2_sr_nm: Vec::new(),
-            standard_error_u_w_m2_sr_nm: Vec::new(),
-            degree_standard_error: Vec::new(),
-            angle_standard_error_deg: Vec::new(),
+            ..Self::default()
         }
     }
 }

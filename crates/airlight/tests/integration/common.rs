@@ -18,6 +18,15 @@ pub fn sky(preset: &str, suns: SunCoverage) -> Sky {
     Sky::prepare(&air, &WavelengthGrid::rgb(), &settings).unwrap()
 }
 
+/// Settings for scalar light, as paths of light without polarisation have it.
+pub fn scalar_settings(suns: SunCoverage) -> SkySettings {
+    SkySettings {
+        suns,
+        polarisation_correction: false,
+        ..Default::default()
+    }
+}
+
 /// Path optics at the three wavelengths of a sky over `length_m`, along the whole line and joined from two parts.
 pub fn whole_and_joined(
     near_view: &View,

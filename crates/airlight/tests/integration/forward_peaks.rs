@@ -1,7 +1,7 @@
 //! The sky around the sun and at the horizon in air with aerosol whose forward peak the solver's moments do not resolve, against
 //! paths of light that know no peak.
 
-use crate::common::whole_and_joined;
+use crate::common::{self, scalar_settings, whole_and_joined};
 use airlight::atmosphere::{Atmosphere, presets};
 use airlight::axes::direction;
 use airlight::monte_carlo::{MonteCarlo, MonteCarloSettings};
@@ -23,10 +23,8 @@ struct Row {
 }
 
 fn rows(table: &'static str) -> Vec<Row> {
-    let lines = table.lines().filter(|line| !line.starts_with('#')).skip(1);
-    lines
-        .map(|line| {
-            let fields: Vec<&str> = line.split(',').collect();
+    common::rows(table)
+        .map(|fields| {
             let number = |k: usize| fields[k].parse::<f64>().unwrap();
             Row {
                 air: (fields[0], fields[1]),
@@ -61,11 +59,7 @@ fn for_each_sky(table: &'static str, check: impl Fn(&Row, f64)) {
     let key = |row: &Row| (row.air, row.sun.to_bits(), row.altitude_m.to_bits());
     for group in rows(table).chunk_by(|a, b| key(a) == key(b)) {
         let (sun, altitude_m) = (group[0].sun, group[0].altitude_m);
-        let settings = SkySettings {
-            suns: SunCoverage::near(sun, altitude_m),
-            polarisation_correction: false,
-            ..Default::default()
-        };
+        let settings = scalar_settings(SunCoverage::near(sun, altitude_m));
         let sky = Sky::prepare(&atmosphere(group[0].air), &grid(), &settings).unwrap();
         let view = sky.view(altitude_m, direction(0.0, sun));
         let mut worst: f64 = 0.0;

@@ -1,5 +1,6 @@
 //! Polarised light of the sky solver against paths of light.
 
+use crate::common;
 use airlight::atmosphere::{
     AerosolLoad, AerosolMixture, AerosolType, Atmosphere, ConstituentKind, preset,
 };
@@ -23,10 +24,8 @@ struct Row {
 }
 
 fn rows() -> Vec<Row> {
-    let lines = TABLE.lines().filter(|line| !line.starts_with('#')).skip(1);
-    lines
-        .map(|line| {
-            let fields: Vec<&str> = line.split(',').collect();
+    common::rows(TABLE)
+        .map(|fields| {
             let number = |k: usize| fields[k].parse::<f64>().unwrap();
             Row {
                 air: fields[0],

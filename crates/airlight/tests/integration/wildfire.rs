@@ -1,9 +1,10 @@
 //! The sky under the smoke of forest fires: against paths of light, and against the loss of irradiance measured over Moscow.
 
+use crate::common::{numbers, scalar_settings};
 use airlight::atmosphere::{Atmosphere, ConstituentKind, presets};
 use airlight::axes::direction;
 use airlight::monte_carlo::{MonteCarlo, MonteCarloSettings};
-use airlight::sky::{Sky, SkySettings, SunCoverage, TableChannels};
+use airlight::sky::{Sky, SunCoverage, TableChannels};
 use airlight::spectrum::WavelengthGrid;
 use glam::DVec3;
 
@@ -22,29 +23,19 @@ struct Row {
 }
 
 fn rows() -> Vec<Row> {
-    let lines = TABLE.lines().filter(|line| !line.starts_with('#')).skip(1);
-    lines
-        .map(|line| {
-            let fields: Vec<f64> = line
-                .split(',')
-                .map(|field| field.parse().unwrap())
-                .collect();
-            Row {
-                sun: fields[0],
-                azimuth: fields[1],
-                elevation: fields[2],
-                radiance: [3, 4, 5].map(|k| fields[k]),
-                standard_error: [6, 7, 8].map(|k| fields[k]),
-            }
+    numbers::<9>(TABLE)
+        .map(|[sun, azimuth, elevation, light @ ..]| Row {
+            sun,
+            azimuth,
+            elevation,
+            radiance: [light[0], light[1], light[2]],
+            standard_error: [light[3], light[4], light[5]],
         })
         .collect()
 }
 
 fn solved(air: &Atmosphere, nm: &[f64], sun: f64) -> Sky {
-    let settings = SkySettings {
-        suns: SunCoverage::near(sun, 0.0),
-        ..Default::default()
-    };
+    let settings = scalar_settings(SunCoverage::near(sun, 0.0));
     let grid = WavelengthGrid::from_wavelengths_nm(nm.to_vec()).unwrap();
     Sky::prepare(air, &grid, &settings).unwrap()
 }

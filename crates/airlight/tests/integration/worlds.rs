@@ -1,9 +1,10 @@
 //! The thick airs of other worlds: published measurements at the surface, and paths of light.
 
+use crate::common::scalar_settings;
 use airlight::atmosphere::presets::preset;
 use airlight::axes::direction;
 use airlight::monte_carlo::{MonteCarlo, MonteCarloSettings};
-use airlight::sky::{Sky, SkySettings, SunCoverage, TableChannels, View};
+use airlight::sky::{Sky, SunCoverage, TableChannels, View};
 use airlight::spectrum::WavelengthGrid;
 use glam::DVec3;
 
@@ -12,10 +13,7 @@ fn grid(nm: &[f64]) -> WavelengthGrid {
 }
 
 fn view(name: &str, nm: &[f64], sun: f64) -> View {
-    let settings = SkySettings {
-        suns: SunCoverage::near(sun, 0.0),
-        ..Default::default()
-    };
+    let settings = scalar_settings(SunCoverage::near(sun, 0.0));
     let sky = Sky::prepare(&preset(name).unwrap(), &grid(nm), &settings).unwrap();
     sky.view(0.0, direction(0.0, sun))
 }

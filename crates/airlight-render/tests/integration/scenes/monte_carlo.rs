@@ -185,16 +185,22 @@ fn polarisation_is_followed() {
         assert!((i / found.radiance_w_m2_sr_nm[lane] - 1.0).abs() < 1e-9);
     }
     rectangular_csv(&answer, 3);
+    let scene = format!("{scene}solver.wavelengths = \"rgb\"\nsolver.paths = 256\n");
+    let mean = polarisation_map(&folder, &scene);
+    assert!((0.4..0.9).contains(&mean("degree")), "{}", mean("degree"));
+    assert!((mean("angle_deg") - 90.0).abs() < 10.0 && mean("Q_over_I") < -0.4);
+}
+
+/// Means of the channels of the map of polarisation written with a small picture across the sun's plane.
+fn polarisation_map(folder: &Folder, scene: &str) -> impl Fn(&str) -> f32 {
     let scene = format!(
-        "{scene}solver.wavelengths = \"rgb\"\nsolver.paths = 256\noutput.sun_disc = \"out\"\n\
+        "{scene}output.sun_disc = \"out\"\n\
          camera = {{ projection = \"perspective\", fov_deg = 2, azimuth_deg = 0, elevation_deg = 70, size = [8, 6] }}"
     );
     folder.write("sky.exr", &scene);
     assert_eq!(folder.names(""), ["sky.exr", "sky.polarisation.exr"]);
     let map = Exr::read(&folder.file("sky.polarisation.exr")).channels;
-    let mean = |name: &str| map[name].iter().sum::<f32>() / 48.0;
-    assert!((0.4..0.9).contains(&mean("degree")), "{}", mean("degree"));
-    assert!((mean("angle_deg") - 90.0).abs() < 10.0 && mean("Q_over_I") < -0.4);
+    move |name| map[name].iter().sum::<f32>() / 48.0
 }
 
 /// The solver without noise gives the same polarisation, as numbers and as a map; it does not know that of fog.
@@ -230,14 +236,7 @@ fn polarisation_is_solved_for() {
         }
         rectangular_csv(&solved, 3);
     }
-    let scene = format!(
-        "{scene}output.sun_disc = \"out\"\n\
-         camera = {{ projection = \"perspective\", fov_deg = 2, azimuth_deg = 0, elevation_deg = 70, size = [8, 6] }}"
-    );
-    folder.write("sky.exr", &scene);
-    assert_eq!(folder.names(""), ["sky.exr", "sky.polarisation.exr"]);
-    let map = Exr::read(&folder.file("sky.polarisation.exr")).channels;
-    let mean = |name: &str| map[name].iter().sum::<f32>() / 48.0;
+    let mean = polarisation_map(&folder, scene);
     assert!((0.4..0.9).contains(&mean("degree")), "{}", mean("degree"));
     assert!((mean("angle_deg") - 90.0).abs() < 1.0 && mean("Q_over_I") < -0.4);
     let foggy = format!("{scene}\nfog.visibility_m = 500");
