@@ -18,6 +18,21 @@ pub fn legendre(x: f64, out: &mut [f64]) {
     }
 }
 
+/// Coefficients `(p, q)` of the recurrence `P_lm = p x P_(l-1)m - q P_(l-2)m`, `l > m`, of associated Legendre functions whose squares
+/// have equal integrals for all degrees; `q` is 0 for `l = m + 1`.
+pub fn associated_recurrence(l: usize, m: usize) -> (f64, f64) {
+    let (lf, mf) = (l as f64, m as f64);
+    let p = ((4.0 * lf * lf - 1.0) / (lf * lf - mf * mf)).sqrt();
+    let below = lf - 1.0;
+    let q = match l >= 2 {
+        true => ((below * below - mf * mf) / (4.0 * below * below - 1.0))
+            .max(0.0)
+            .sqrt(),
+        false => 0.0,
+    };
+    (p, p * q)
+}
+
 /// Legendre series `sum over l of (2 l + 1) / (4 pi) moments[l] P_l(x)`: a phase function (1/sr) from its moments.
 #[cfg(test)]
 pub fn legendre_series(moments: &[f64], x: f64) -> f64 {

@@ -304,10 +304,17 @@ impl<const N: usize> RadianceField<N> {
         self.polarised
     }
 
+    /// Places of the moments of polarisation at each node.
+    #[inline(always)]
+    fn polarised_span(&self) -> Range<usize> {
+        let start = self.basis.count();
+        start..start + if self.polarised { POLARISED } else { 0 }
+    }
+
     /// Index of the first value of the light at the horizon at each node, if there is any.
     #[inline(always)]
     pub fn horizon_start(&self) -> Option<usize> {
-        let start = self.basis.count() + if self.polarised { POLARISED } else { 0 };
+        let start = self.polarised_span().end;
         (self.count > start).then_some(start)
     }
 
@@ -339,13 +346,11 @@ impl<const N: usize> RadianceField<N> {
         let [wa, wb, wc, wd] = at.weights;
         for sun in suns {
             let points = [0, 1, 2, 3].map(|k| self.point(at.first + k, sun));
-            let polarised = self.basis.count();
-            let polarised = polarised..polarised + if self.polarised { POLARISED } else { 0 };
             let beside = match (horizon, self.horizon_start()) {
                 (Some(place), Some(start)) => start + place.first..start + place.first + 2 * MODES,
                 _ => 0..0,
             };
-            for part in [0..count, polarised, beside] {
+            for part in [0..count, self.polarised_span(), beside] {
                 let [a, b, c, d] = points.map(|point| &point[part.clone()]);
                 for (((a, b), c), d) in a.iter().zip(b).zip(c).zip(d) {
                     out.push((*a * wa + *b * wb) + (*c * wc + *d * wd));
@@ -413,9 +418,7 @@ impl<const N: usize> RadianceField<N> {
         // Truncated harmonics can be negative in directions with almost no light.
         sum.max_scalar(0.0) * log_intensity.exp()
     }
-}
 
-impl<const N: usize> RadianceField<N> {
     /// Q and U of the light scattered per metre into a view ray at `here` from light that has been scattered at least once, per unit
     /// solar irradiance, in the frame of [`super::polarised`].
     #[inline(always)]

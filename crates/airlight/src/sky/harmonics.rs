@@ -5,6 +5,7 @@
 //! `a = sin(theta) cos(phi)`, both polynomials of the direction's components, so no angles are needed and the zenith is not
 //! a special case.
 
+use crate::math::legendre::associated_recurrence;
 use std::ops::RangeInclusive;
 
 /// Number of harmonics of degree up to `l_max`.
@@ -29,16 +30,7 @@ impl Harmonics {
         let mut recurrence = vec![(0.0, 0.0); count(degree)];
         for l in 1..=degree {
             for m in 0..l {
-                let (lf, mf) = (l as f64, m as f64);
-                let p = ((4.0 * lf * lf - 1.0) / (lf * lf - mf * mf)).sqrt();
-                let q = if l >= 2 {
-                    let below = lf - 1.0;
-                    p * ((below * below - mf * mf) / (4.0 * below * below - 1.0))
-                        .max(0.0)
-                        .sqrt()
-                } else {
-                    0.0
-                };
+                let (p, q) = associated_recurrence(l, m);
                 recurrence[Self::index(l, m)] = (p as f32, q as f32);
             }
         }

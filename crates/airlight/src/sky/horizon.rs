@@ -10,12 +10,14 @@
 //! b f D,   D = sum of r_l L_l - L,   r_l = 1 up to the degree of the field,   r_l = chi_l / f beyond,
 //! ```
 //!
-//! per metre: the moments `r_l` are those of the part of the phase function that counts as unscattered. This is exact if `L` is the light of the real air. Here it is the light of the solution, integrated along the rays with which the
-//! field was solved, so `D` is right to first order. It is tabulated at nodes of the zenith angle on both sides of the horizon for the
-//! azimuthal modes 0 to 4, at all radii and suns of the field, and interpolated in views.
+//! per metre: the moments `r_l` are those of the part of the phase function that counts as unscattered. This is exact if `L` is the
+//! light of the real air. Here it is the light of the solution, integrated along the rays with which the field was solved, so `D` is
+//! right to first order. It is tabulated at nodes of the zenith angle on both sides of the horizon for the azimuthal modes 0 to 4, at
+//! all radii and suns of the field, and interpolated in views.
 
 use super::air::Air;
 use super::settings::Directions;
+use crate::math::legendre::associated_recurrence;
 use crate::math::parallel;
 use crate::math::quadrature::GaussRule;
 use crate::math::simd::vectorized;
@@ -107,6 +109,11 @@ pub fn zenith_rule(horizon: f64, directions: &Directions) -> [Vec<(f64, f64)>; 3
     rules
 }
 
+/// Number of rays of a [`zenith_rule`].
+fn ray_count(directions: &Directions) -> usize {
+    directions.zenith_nodes.iter().sum::<usize>() + EXTRA.len()
+}
+
 /// Cosines of the zenith angles of the nodes: on the side below the horizon, then above it, without the last of each side.
 fn node_cosines(horizon: f64) -> Vec<f64> {
     let distance = |k: usize| WIDTH * (k as f64 / INTERVALS as f64).powi(2);
@@ -122,18 +129,15 @@ pub type ByDirection<const N: usize> = Vec<Vec<Spectrum<N>>>;
 /// Light by direction, and the directions.
 pub type Directed<'a, const N: usize> = (&'a ByDirection<N>, &'a Directions);
 
-/// The correction `D` at the grid points, `[radius][sun][VALUES]`, for light that is a sum of parts along different rays, in `air`
-/// without forward peaks beyond degree `peak_degree`; `None` if there are none.
+/// The correction `D` at the grid points of radii and a number of suns, `[radius][sun][VALUES]`, for light that is a sum of parts along
+/// different rays, in `air` without forward peaks beyond degree `peak_degree`; `None` if there are none.
 pub fn correction<const N: usize>(
     (real, air): (&Air<N>, &Air<N>),
-    radii_m: &[f64],
+    (radii_m, suns): (&[f64], usize),
     peak_degree: usize,
     parts: &[Directed<'_, N>],
 ) -> Option<Vec<Spectrum<N>>> {
     let peaks = Peaks::new(real, air, peak_degree)?;
-    let paths =
-        |directions: &Directions| directions.zenith_nodes.iter().sum::<usize>() + EXTRA.len();
-    let suns = parts[0].0[0].len() / (paths(parts[0].1) * MODES);
     let rows = parallel::map(radii_m.len(), |row| {
         let radius_m = radii_m[row];
         let mut out = vec![Spectrum::ZERO; suns * VALUES];
@@ -164,7 +168,7 @@ fn add<const N: usize>(
     out: &mut [Spectrum<N>],
 ) {
     let first_degree = MAX_DEGREE + 1 - weights.len();
-    let paths = directions.zenith_nodes.iter().sum::<usize>() + EXTRA.len();
+    let paths = ray_count(directions);
     let nodes: Vec<_> = node_cosines(horizon).into_iter().map(associated).collect();
     for (m, rays) in single_rays(horizon, directions).iter().enumerate() {
         for (place, node) in nodes.iter().enumerate() {
@@ -258,16 +262,8 @@ fn associated(mu: f64) -> [Vec<f64>; MODES] {
         let mut p = vec![0.0; MAX_DEGREE + 1];
         p[m] = first[m];
         for l in m + 1..=MAX_DEGREE {
-            let (lf, mf) = (l as f64, m as f64);
-            let a = ((4.0 * lf * lf - 1.0) / (lf * lf - mf * mf)).sqrt();
-            let below = lf - 1.0;
-            let b = match l >= m + 2 {
-                true => {
-                    a * ((below * below - mf * mf) / (4.0 * below * below - 1.0)).sqrt() * p[l - 2]
-                }
-                false => 0.0,
-            };
-            p[l] = a * mu * p[l - 1] - b;
+            let (a, b) = associated_recurrence(l, m);
+            p[l] = a * mu * p[l - 1] - if l > m + 1 { b * p[l - 2] } else { 0.0 };
         }
         p
     })
@@ -300,21 +296,25 @@ fn single_rays(horizon: f64, directions: &Directions) -> [Vec<SingleRay>; MODES]
         let rule = GaussRule::new(POINTS[piece]);
         let rule: Vec<_> = rule.on(edges[piece], edges[piece + 1]).collect();
         let associated: Vec<_> = rule.iter().map(|(mu, _)| associated(*mu)).collect();
-        for (m, list) in out.iter_mut().enumerate() {
-            for ray in 0..rays.len() {
+        for ray in 0..rays.len() {
+            let weighted = rule.iter().map(|&(mu, weight)| weight * light(ray, mu));
+            let weighted: Vec<f64> = weighted.collect();
+            let at_node = |place: usize| match of_node(place) == piece {
+                true => light(ray, nodes[place]),
+                false => 0.0,
+            };
+            let at_nodes: Vec<f64> = (0..nodes.len()).map(at_node).collect();
+            for (m, list) in out.iter_mut().enumerate() {
                 let mut moments = vec![0.0; MAX_DEGREE + 1];
-                for ((mu, weight), p) in rule.iter().zip(&associated) {
-                    let light = weight * light(ray, *mu);
+                for (light, p) in weighted.iter().zip(&associated) {
                     for (sum, p) in moments.iter_mut().zip(&p[m]) {
                         *sum += light * p;
                     }
                 }
-                let at_node = |place: usize| match of_node(place) == piece {
-                    true => light(ray, nodes[place]),
-                    false => 0.0,
-                };
-                let at_nodes = (0..nodes.len()).map(at_node).collect();
-                list.push(SingleRay { moments, at_nodes });
+                list.push(SingleRay {
+                    moments,
+                    at_nodes: at_nodes.clone(),
+                });
             }
         }
     }

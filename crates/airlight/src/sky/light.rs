@@ -4,7 +4,8 @@ use super::field::{FieldGrid, RadianceField};
 use super::harmonics::Harmonics;
 use crate::spectrum::Spectrum;
 
-/// Moments of the radiance and of its polarisation `[radius][sun][moment]`, and irradiances on the ground `[sun]`, per unit solar irradiance.
+/// Moments of the radiance and of its polarisation `[radius][sun][moment]`, and irradiances on the ground `[sun]`, per unit solar
+/// irradiance.
 #[derive(Clone, Debug)]
 pub struct Light<const N: usize> {
     /// Number of moments at each grid point.

@@ -26,7 +26,8 @@ const SHAPED: f32 = 0.03;
 /// Factor of the last change above which earlier steps are forgotten.
 const RESTART: f32 = 2.0;
 
-/// Solves for all light scattered or reflected at least once, with or without its polarisation; `report` receives the fraction of the work done.
+/// Solves for all light scattered or reflected at least once, with or without its polarisation; `report` receives the fraction of the
+/// work done.
 ///
 /// # Errors
 /// [`SkyError::Cancelled`] soon after cancellation; [`SkyError::NotConverged`].
@@ -116,9 +117,8 @@ pub fn solve<const N: usize>(
             (&by_direction, &settings.later),
         ];
         let air = (real_air, &air);
-        if let Some(correction) =
-            horizon::correction(air, &grid.radii_m, settings.peak_degree, &parts)
-        {
+        let nodes = (&grid.radii_m[..], grid.sun_cosines.len());
+        if let Some(correction) = horizon::correction(air, nodes, settings.peak_degree, &parts) {
             field = field.with_horizon(&correction);
         }
     }

@@ -19,7 +19,8 @@
 //! of molecules these three numbers hold all there is to know about polarisation: the solution is that of the vector equation of
 //! transfer (Chandrasekhar, Radiative Transfer, 1960, sec. 16 to 18). Particles scatter further moments of polarised light. What they
 //! keep of the moments of degree 3 counts as unscattered, as a forward peak does ([`crate::transfer::delta_m`]), so that polarised
-//! light passes through haze as it should; the rest of the further moments is neglected. Circular polarisation arises only from the linear polarisation of light that particles scatter, and is neglected.
+//! light passes through haze as it should; the rest of the further moments is neglected. Circular polarisation arises only from the
+//! linear polarisation of light that particles scatter, and is neglected.
 //!
 //! `Q` and `U` are those of frames whose first axis lies in the vertical plane of the direction and points up, and whose second axis is
 //! horizontal. A straight ray remains in its vertical plane, so its frame does not turn.

@@ -193,7 +193,7 @@ impl<'a, const N: usize> Transport<'a, N> {
         let stride = self.rescattered.count() + polarised;
         let mut response = Response::new(self.grid.radii_m.len(), stride);
         let mut y = [0.0f32; Harmonics::MAX_COUNT];
-        for (path, solid_weight) in paths {
+        for (path, solid_weight) in paths.iter().filter(|(_, weight)| *weight > 0.0) {
             response.clear();
             path.accumulate_response(&self.rescattered, &mut y, &mut response);
             let ground = match path.transmittance_to_ground() {
@@ -260,6 +260,24 @@ impl<'a, const N: usize> Transport<'a, N> {
         self.basis.count() + if self.polarised { POLARISED } else { 0 }
     }
 
+    /// Functions of the directions with a zenith angle, for each azimuth.
+    #[inline(always)]
+    fn functions(&self, mu: f64) -> Vec<Functions> {
+        let sin = ((1.0 - mu) * (1.0 + mu)).max(0.0).sqrt();
+        let amplitudes = TensorHarmonics::amplitudes(mu as f32);
+        let of_azimuth = |&cosine: &f64| {
+            let mut harmonics = [0.0; Harmonics::MAX_COUNT];
+            let toward_sun = (sin * cosine) as f32;
+            self.basis.evaluate(mu as f32, toward_sun, &mut harmonics);
+            Functions {
+                harmonics,
+                tensor: amplitudes.at(cosine as f32),
+                modes: horizon::modes(cosine as f32),
+            }
+        };
+        self.azimuth_cosines.iter().map(of_azimuth).collect()
+    }
+
     /// Moments, `[sun][moment]`, downward irradiances, `[sun]`, and the light by direction, `[sun][path][mode]`, at one radius.
     #[inline(always)]
     fn gather_row(
@@ -281,7 +299,6 @@ impl<'a, const N: usize> Transport<'a, N> {
             linear: vec![[Spectrum::ZERO; 2]; suns * azimuths],
             ..Default::default()
         };
-        let mut y = [0.0f32; Harmonics::MAX_COUNT];
         for (place, (path, solid_weight)) in paths.iter().enumerate() {
             let bundle = self.bundle(path.mu);
             work.light.fill(Spectrum::ZERO);
@@ -289,28 +306,28 @@ impl<'a, const N: usize> Transport<'a, N> {
             // A direct call: one through the reference would not be inlined into the vectorised code.
             (*accumulate)(path, &bundle, &mut work);
             let w = solid_weight * 2.0 * PI / azimuths as f64;
-            let sin = ((1.0 - path.mu) * (1.0 + path.mu)).max(0.0).sqrt();
+            let functions = self.functions(path.mu);
             for (slot, light) in work.light.iter().enumerate() {
                 // A truncated phase function can be slightly negative.
                 let light = light.max_scalar(0.0);
                 let (sun, azimuth) = (slot / azimuths, slot % azimuths);
-                let toward_sun = (sin * self.azimuth_cosines[azimuth]) as f32;
-                self.basis.evaluate(path.mu as f32, toward_sun, &mut y);
+                let functions = &functions[azimuth];
+                let modes = &mut by_direction[(sun * paths.len() + place) * horizon::MODES..];
+                for (m, (mode, cosine)) in modes.iter_mut().zip(functions.modes).enumerate() {
+                    let factor = if m == 0 { 1.0 } else { 2.0 } / azimuths as f32;
+                    *mode = mode.scale_acc(light, cosine * factor);
+                }
+                if *solid_weight == 0.0 {
+                    continue;
+                }
                 let (intensity, polarised) =
                     moments[sun * count..(sun + 1) * count].split_at_mut(harmonics);
-                for (moment, y) in intensity.iter_mut().zip(&y) {
+                for (moment, y) in intensity.iter_mut().zip(&functions.harmonics) {
                     *moment = moment.scale_acc(light, y * w as f32);
                 }
                 if self.polarised {
-                    let cosine = self.azimuth_cosines[azimuth] as f32;
-                    let harmonics = TensorHarmonics::amplitudes(path.mu as f32).at(cosine);
-                    harmonics.add_moments(work.linear[slot], w as f32, polarised);
-                }
-                let cosines = horizon::modes(self.azimuth_cosines[azimuth] as f32);
-                let modes = &mut by_direction[(sun * paths.len() + place) * horizon::MODES..];
-                for (m, (mode, cosine)) in modes.iter_mut().zip(cosines).enumerate() {
-                    let factor = if m == 0 { 1.0 } else { 2.0 } / azimuths as f32;
-                    *mode = mode.scale_acc(light, cosine * factor);
+                    let tensor = &functions.tensor;
+                    tensor.add_moments(work.linear[slot], w as f32, polarised);
                 }
                 if path.mu > 0.0 {
                     downward[sun] = downward[sun].scale_acc(light, (w * path.mu) as f32);
@@ -319,6 +336,14 @@ impl<'a, const N: usize> Transport<'a, N> {
         }
         (moments, downward, by_direction)
     }
+}
+
+/// Functions of a direction with which light is projected.
+struct Functions {
+    harmonics: [f32; Harmonics::MAX_COUNT],
+    tensor: TensorHarmonics,
+    /// Azimuthal modes.
+    modes: [f32; horizon::MODES],
 }
 
 /// Reused buffers for the rays of one radius.
