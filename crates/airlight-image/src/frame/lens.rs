@@ -322,7 +322,10 @@ fn rectangle_solid_angle(x: (f64, f64), y: (f64, f64)) -> f64 {
     /// Longest side up to which quadrature is exact to rounding, where the closed form cancels.
     const SMALL: f64 = 0.01;
     if x.1 - x.0 <= SMALL && y.1 - y.0 <= SMALL {
-        return over_rectangle(x, y, |x, y| (1.0 + x * x + y * y).powf(-1.5));
+        return over_rectangle(x, y, |x, y| {
+            let squared = 1.0 + x * x + y * y;
+            1.0 / (squared * squared.sqrt())
+        });
     }
     // The rectangle from the axis to the corner (x, y) has the solid angle atan(x y / sqrt(1 + x^2 + y^2)).
     let corner = |x: f64, y: f64| (x * y).atan2((1.0 + x * x + y * y).sqrt());

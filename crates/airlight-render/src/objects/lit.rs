@@ -1,7 +1,7 @@
 //! Objects lit by a view.
 
 use super::surface::Shading;
-use super::{Hit, Object, Objects, Ray};
+use super::{Candidate, Hit, Object, Objects, Ray};
 use crate::channels::{PixelChannels, RgbWeights};
 use airlight::scene::{Channels, RadianceView, ResolvedScene, SceneError};
 use airlight::spectrum::{RgbSpace, SpectralCurve, WavelengthGrid};
@@ -123,6 +123,35 @@ impl LitObjects {
         })
     }
 
+    /// [`Self::hit`] of all rays of a pixel that hit an object, in their order. `width` is only called if one may.
+    pub fn hits<'s>(
+        &'s self,
+        directions: &[DVec3],
+        width: impl FnOnce() -> f64,
+        scratch: &mut Scratch,
+        out: &mut Vec<ViewRay<'s>>,
+    ) {
+        out.clear();
+        let candidates = &mut scratch.candidates;
+        self.objects.candidates(self.eye, directions, candidates);
+        if candidates.is_empty() {
+            return;
+        }
+        let width = width();
+        out.extend(directions.iter().filter_map(|&direction| {
+            let ray = Ray {
+                origin: self.eye,
+                direction,
+            };
+            let hit = self.objects.hit_among(candidates, &ray)?;
+            Some(ViewRay {
+                hit,
+                direction,
+                width,
+            })
+        }));
+    }
+
     /// Buffers for the values of a pixel.
     pub fn scratch(&self) -> Scratch {
         let values = || vec![0.0; self.view.channel_count()];
@@ -136,6 +165,9 @@ impl LitObjects {
             other: values(),
             transmittance: values(),
             path_radiance: values(),
+            candidates: Vec::new(),
+            sun_shadows: Vec::new(),
+            moon_shadows: Vec::new(),
         }
     }
 
@@ -154,8 +186,11 @@ impl LitObjects {
                 moon.sunlight(height_m, &mut scratch.moonlight);
             }
             scratch.light.fill(0.0);
+            self.find_shadows(beside, scratch);
+            let mut before = None;
             for ray in beside {
-                self.add_reflected(ray, scratch);
+                self.add_reflected(ray, before, scratch);
+                before = Some(ray);
             }
             self.view.path(
                 beside[beside.len() / 2].direction,
@@ -180,8 +215,30 @@ impl LitObjects {
         &scratch.sum
     }
 
-    /// Adds the radiance that a surface reflects to the eye.
-    fn add_reflected(&self, ray: &ViewRay<'_>, scratch: &mut Scratch) {
+    /// Finds the objects that may hide the sun and the moon from the ends of rays.
+    fn find_shadows(&self, rays: &[ViewRay<'_>], scratch: &mut Scratch) {
+        if !self.shadows {
+            return;
+        }
+        let find = |source: DVec3, out: &mut Vec<Candidate>| {
+            let lit = rays.iter().map(|ray| &ray.hit);
+            let lit = lit.filter(|hit| hit.normal.dot(source) > 0.0);
+            self.objects.shadow_candidates(lit, source, out);
+        };
+        find(self.view.sun(), &mut scratch.sun_shadows);
+        if let Some(moon) = self.view.moon() {
+            find(moon.sun(), &mut scratch.moon_shadows);
+        }
+    }
+
+    /// Adds the radiance that a surface reflects to the eye. `before` is the ray of the previous call, if its ambient light may be
+    /// used again.
+    fn add_reflected(
+        &self,
+        ray: &ViewRay<'_>,
+        before: Option<&ViewRay<'_>>,
+        scratch: &mut Scratch,
+    ) {
         let ViewRay { hit, direction, .. } = ray;
         let height_m = hit.point.y;
         let Scratch {
@@ -191,17 +248,25 @@ impl LitObjects {
             ambient,
             mirrored,
             other,
+            sun_shadows,
+            moon_shadows,
             ..
         } = scratch;
-        self.ambient(height_m, hit.normal, ambient, other);
+        let same = |other: &ViewRay<'_>| {
+            other.hit.normal == hit.normal
+                && (self.around.len() == 1 || other.hit.point.y == height_m)
+        };
+        if !before.is_some_and(same) {
+            self.ambient(height_m, hit.normal, ambient, other);
+        }
         if hit.surface.gloss.is_some() {
             let mirror = direction - 2.0 * direction.dot(hit.normal) * hit.normal;
             self.ambient(height_m, mirror, mirrored, other);
         }
-        let shading = self.shading(ray, self.view.sun());
+        let shading = self.shading(ray, self.view.sun(), sun_shadows);
         let moon = self.view.moon();
         let moonlit = moon.map_or((0.0, 0.0), |moon| {
-            let shading = self.shading(ray, moon.sun());
+            let shading = self.shading(ray, moon.sun(), moon_shadows);
             (shading.sun, shading.sun_mirrored)
         });
         let share = checker_share(ray);
@@ -218,12 +283,12 @@ impl LitObjects {
         }
     }
 
-    /// Reflection at the end of a ray under a distant source, whose light is 0 in shadow.
-    fn shading(&self, ray: &ViewRay<'_>, source: DVec3) -> Shading {
+    /// Reflection at the end of a ray under a distant source, whose light is 0 in the shadow of objects.
+    fn shading(&self, ray: &ViewRay<'_>, source: DVec3, objects: &[Candidate]) -> Shading {
         let hit = &ray.hit;
         let shading = hit.surface.shading(hit.normal, -ray.direction, source);
-        let dark =
-            hit.normal.dot(source) <= 0.0 || self.shadows && self.objects.shadowed(hit, source);
+        let dark = hit.normal.dot(source) <= 0.0
+            || self.shadows && self.objects.shadowed_by(objects, hit, source);
         match dark {
             true => Shading {
                 sun: 0.0,
@@ -255,7 +320,7 @@ impl LitObjects {
     }
 }
 
-/// Buffers for the values of a pixel, one value for each channel of the views.
+/// Buffers for a pixel: values of each channel of the views, and objects that its rays may hit.
 #[derive(Clone, Debug)]
 pub struct Scratch {
     sum: Vec<f32>,
@@ -267,6 +332,9 @@ pub struct Scratch {
     other: Vec<f32>,
     transmittance: Vec<f32>,
     path_radiance: Vec<f32>,
+    candidates: Vec<Candidate>,
+    sun_shadows: Vec<Candidate>,
+    moon_shadows: Vec<Candidate>,
 }
 
 /// Share of the checker's second reflectance in the footprint of a ray, 0 to 1.

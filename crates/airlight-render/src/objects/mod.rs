@@ -7,17 +7,21 @@
 //! Positions are in metres east, up and south of the point of the ground below the eye.
 
 pub mod file;
+mod hierarchy;
 mod lit;
 mod rows;
 pub mod shape;
 pub mod surface;
 
+pub use hierarchy::Candidate;
 pub use lit::{LitObjects, Scratch, ViewRay};
 pub use rows::{ObjectRows, write_depth};
 pub use shape::Ray;
 
 use glam::DVec3;
+use hierarchy::{Beam, BoundingSphere, Hierarchy};
 use shape::{Met, Shape};
+use std::cmp::Ordering;
 use surface::Surface;
 
 /// A shape with a surface.
@@ -52,16 +56,21 @@ const OFF: f64 = 1e-7;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Objects {
     objects: Vec<Object>,
-    /// Bounding sphere of each object: centre and squared radius.
-    bounds: Vec<(DVec3, f64)>,
+    /// Bounding sphere of each object.
+    bounds: Vec<BoundingSphere>,
+    hierarchy: Hierarchy,
 }
 
 impl Objects {
     /// A list of valid objects.
     pub fn new(objects: Vec<Object>) -> Self {
         let bounds = objects.iter().map(|object| object.shape.bounding_sphere());
+        let bounds: Vec<BoundingSphere> = bounds
+            .map(|(centre, radius_m)| BoundingSphere { centre, radius_m })
+            .collect();
         Self {
-            bounds: bounds.map(|(middle, r)| (middle, r * r)).collect(),
+            hierarchy: Hierarchy::new(&bounds),
+            bounds,
             objects,
         }
     }
@@ -79,41 +88,104 @@ impl Objects {
 
     /// The first intersection of a ray.
     pub fn hit(&self, ray: &Ray) -> Option<Hit<'_>> {
-        let (index, met) = self
-            .met(ray)
-            .min_by(|(_, a), (_, b)| a.distance_m.total_cmp(&b.distance_m))?;
+        let beam = Beam::ray(ray.origin, ray.direction);
+        let met = self
+            .hierarchy
+            .candidates(&beam)
+            .filter_map(|candidate| self.met(candidate.index, ray));
+        met.min_by(nearer).map(|first| self.hit_of(ray, first))
+    }
+
+    /// The objects that rays from one point in these directions may hit, from near to far.
+    pub fn candidates(&self, origin: DVec3, directions: &[DVec3], out: &mut Vec<Candidate>) {
+        out.clear();
+        if let Some(beam) = Beam::diverging(origin, directions.iter().copied()) {
+            out.extend(self.hierarchy.candidates(&beam));
+            out.sort_unstable_by(|a, b| a.entry_m.total_cmp(&b.entry_m));
+        }
+    }
+
+    /// [`Self::hit`] of a ray among the [`Self::candidates`] of a beam that contains it.
+    pub fn hit_among(&self, candidates: &[Candidate], ray: &Ray) -> Option<Hit<'_>> {
+        let mut first: Option<(usize, Met)> = None;
+        for candidate in candidates {
+            if first.is_some_and(|(_, met)| met.distance_m < candidate.entry_m) {
+                break;
+            }
+            if let Some(met) = self.met(candidate.index, ray)
+                && first.is_none_or(|first| nearer(&met, &first).is_lt())
+            {
+                first = Some(met);
+            }
+        }
+        first.map(|first| self.hit_of(ray, first))
+    }
+
+    /// Whether an object blocks light from this direction at a point of a surface.
+    pub fn shadowed(&self, hit: &Hit<'_>, to_light: DVec3) -> bool {
+        let start = shadow_start(hit);
+        let beam = Beam::ray(start, to_light);
+        let mut candidates = self.hierarchy.candidates(&beam);
+        candidates.any(|candidate| self.blocks(candidate, start, to_light))
+    }
+
+    /// The objects that may block light from this direction at any of these points.
+    pub fn shadow_candidates<'h>(
+        &self,
+        hits: impl Iterator<Item = &'h Hit<'h>> + Clone,
+        to_light: DVec3,
+        out: &mut Vec<Candidate>,
+    ) {
+        out.clear();
+        if let Some(beam) = Beam::parallel(hits.map(shadow_start), to_light) {
+            out.extend(self.hierarchy.candidates(&beam));
+        }
+    }
+
+    /// [`Self::shadowed`] at one of the points of [`Self::shadow_candidates`].
+    pub fn shadowed_by(&self, candidates: &[Candidate], hit: &Hit<'_>, to_light: DVec3) -> bool {
+        let start = shadow_start(hit);
+        let mut candidates = candidates.iter();
+        candidates.any(|&candidate| self.blocks(candidate, start, to_light))
+    }
+
+    fn blocks(&self, candidate: Candidate, origin: DVec3, direction: DVec3) -> bool {
+        let ray = Ray { origin, direction };
+        self.met(candidate.index, &ray).is_some()
+    }
+
+    /// Intersection of a ray with an object, with its index.
+    fn met(&self, index: usize, ray: &Ray) -> Option<(usize, Met)> {
+        let BoundingSphere { centre, radius_m } = self.bounds[index];
+        let to = centre - ray.origin;
+        let along = to.dot(ray.direction);
+        if to.length_squared() - along * along > radius_m * radius_m {
+            return None;
+        }
+        Some((index, self.objects[index].shape.meet(ray)?))
+    }
+
+    fn hit_of(&self, ray: &Ray, (index, met): (usize, Met)) -> Hit<'_> {
         let facing = met.normal.dot(ray.direction) <= 0.0;
-        Some(Hit {
+        Hit {
             distance_m: met.distance_m,
             point: ray.at(met.distance_m),
             normal: if facing { met.normal } else { -met.normal },
             index,
             surface: &self.objects[index].surface,
-        })
+        }
     }
+}
 
-    /// Whether an object blocks light from this direction at a point of a surface.
-    pub fn shadowed(&self, hit: &Hit<'_>, to_light: DVec3) -> bool {
-        let off_m = OFF * hit.point.abs().max_element().max(10.0);
-        let ray = Ray {
-            origin: hit.point + off_m * hit.normal,
-            direction: to_light,
-        };
-        self.met(&ray).next().is_some()
-    }
+/// Order of intersections by distance; of equal ones, the object that is listed first precedes.
+fn nearer(a: &(usize, Met), b: &(usize, Met)) -> Ordering {
+    let distances = a.1.distance_m.total_cmp(&b.1.distance_m);
+    distances.then(a.0.cmp(&b.0))
+}
 
-    /// Intersections of a ray with all objects, by index.
-    fn met<'s>(&'s self, ray: &'s Ray) -> impl Iterator<Item = (usize, Met)> + 's {
-        let near = |(middle, squared): &(DVec3, f64)| {
-            let to = middle - ray.origin;
-            let along = to.dot(ray.direction);
-            to.length_squared() - along * along <= *squared
-        };
-        (0..)
-            .zip(self.objects.iter().zip(&self.bounds))
-            .filter(move |(_, (_, bound))| near(bound))
-            .filter_map(|(index, (object, _))| Some((index, object.shape.meet(ray)?)))
-    }
+/// Start of the shadow rays of a point of a surface.
+fn shadow_start(hit: &Hit<'_>) -> DVec3 {
+    hit.point + OFF * hit.point.abs().max_element().max(10.0) * hit.normal
 }
 
 #[cfg(test)]

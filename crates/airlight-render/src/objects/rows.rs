@@ -53,18 +53,17 @@ impl<'a> ObjectRows<'a> {
     }
 
     /// Draws objects over the value of a pixel.
-    fn cover(
-        &self,
-        (i, j): (u32, u32),
-        pixel: &mut [f32],
-        covered: &mut [f32],
-        scratch: &mut Scratch,
-    ) {
-        let across = self.frame.pixel_solid_angle(i, j).sqrt();
-        let width = across / f64::from(POINTS).sqrt();
-        let rays: Vec<ViewRay<'_>> = directions_within(&self.frame, (i, j))
-            .filter_map(|direction| self.objects.hit(direction, width))
-            .collect();
+    fn cover(&self, (i, j): (u32, u32), pixel: &mut [f32], buffers: &mut Buffers<'a>) {
+        let Buffers {
+            directions,
+            rays,
+            covered,
+            scratch,
+        } = buffers;
+        directions.clear();
+        directions.extend(directions_within(&self.frame, (i, j)));
+        let width = || (self.frame.pixel_solid_angle(i, j) / f64::from(POINTS)).sqrt();
+        self.objects.hits(directions, width, scratch, rays);
         if rays.is_empty() {
             return;
         }
@@ -72,13 +71,21 @@ impl<'a> ObjectRows<'a> {
         let open = 1.0 - rays.len() as f32 / all;
         covered.fill(0.0);
         if self.draws_objects {
-            let sum = self.objects.radiance(&rays, scratch);
+            let sum = self.objects.radiance(rays, scratch);
             self.channels.add(sum, self.scale / all, covered);
         }
         for (value, covered) in pixel.iter_mut().zip(covered) {
             *value = open * *value + *covered;
         }
     }
+}
+
+/// Buffers for the pixels of a row.
+struct Buffers<'a> {
+    directions: Vec<DVec3>,
+    rays: Vec<ViewRay<'a>>,
+    covered: Vec<f32>,
+    scratch: Scratch,
 }
 
 impl RowSource for ObjectRows<'_> {
@@ -88,10 +95,14 @@ impl RowSource for ObjectRows<'_> {
 
     fn fill_row(&self, y: u32, out: &mut [f32]) {
         self.sky.fill_row(y, out);
-        let mut scratch = self.objects.scratch();
-        let mut covered = vec![0.0; self.channels.count()];
+        let mut buffers = Buffers {
+            directions: Vec::with_capacity(POINTS as usize),
+            rays: Vec::with_capacity(POINTS as usize),
+            covered: vec![0.0; self.channels.count()],
+            scratch: self.objects.scratch(),
+        };
         for (i, pixel) in (0..).zip(out.chunks_exact_mut(self.channels.count())) {
-            self.cover((i, y), pixel, &mut covered, &mut scratch);
+            self.cover((i, y), pixel, &mut buffers);
         }
     }
 }

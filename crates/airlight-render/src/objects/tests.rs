@@ -1,6 +1,6 @@
 use super::shape::Shape;
 use super::surface::{Checker, Gloss, Surface, fresnel};
-use super::{Object, Objects, Ray};
+use super::{Hit, Object, Objects, Ray, shadow_start};
 use airlight::axes;
 use airlight::spectrum::SpectralCurve;
 use glam::DVec3;
@@ -160,6 +160,127 @@ fn the_nearest_object_is_hit_and_casts_a_shadow() {
         assert!(!objects.shadowed(&hit, hit.normal));
     }
     assert_eq!(objects.top_m(), 2.0);
+}
+
+/// Numbers from 0 to 1.
+struct Random(u64);
+
+impl Random {
+    fn uniform(&mut self) -> f64 {
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 33) as f64 / (1u64 << 31) as f64
+    }
+}
+
+/// Ground and `count` small shapes in all directions from the origin, at 0.5 m to 1 km.
+fn scattered(count: usize) -> Vec<Object> {
+    let surface = Surface {
+        reflectance: SpectralCurve::Constant(0.5),
+        checker: None,
+        gloss: None,
+    };
+    let mut random = Random(17);
+    let mut shapes = vec![Shape::Ground { height_m: -30.0 }];
+    shapes.resize_with(count + 1, || {
+        let distance_m = 0.5 * 2000f64.powf(random.uniform());
+        let up = 60.0 * random.uniform() - 30.0;
+        let base = distance_m * axes::direction(360.0 * random.uniform(), up);
+        let radius_m = 0.2 * distance_m * random.uniform();
+        match random.uniform() {
+            kind if kind < 0.3 => Shape::Sphere {
+                centre: base,
+                radius_m,
+            },
+            kind if kind < 0.6 => Shape::Block {
+                base,
+                half_m: DVec3::new(radius_m, 3.0 * random.uniform(), 0.2 * radius_m),
+                turn: (6.0 * kind).sin_cos(),
+            },
+            kind => Shape::Frustum {
+                base,
+                radius_m,
+                top_radius_m: (kind - 0.6) * radius_m,
+                height_m: 1.0 + 4.0 * radius_m * random.uniform(),
+            },
+        }
+    });
+    let object = |shape| Object {
+        shape,
+        surface: surface.clone(),
+    };
+    shapes.into_iter().map(object).collect()
+}
+
+#[test]
+fn beams_find_what_single_shapes_meet() {
+    let source = axes::direction(70.0, 25.0);
+    let (mut met, mut in_shadow) = (0, 0);
+    for count in [0, 1, 2, 3, 300] {
+        let objects = Objects::new(scattered(count));
+        let first = |ray: &Ray| {
+            let hits = objects
+                .all()
+                .iter()
+                .enumerate()
+                .filter_map(|(index, object)| Some((index, object.shape.meet(ray)?.distance_m)));
+            hits.min_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)))
+        };
+        let mut random = Random(3);
+        let mut candidates = Vec::new();
+        // From rays beside each other to rays in all directions.
+        for spread in [0.0, 1e-9, 1e-4, 0.02, 0.3, 1.5, 3.0] {
+            for _ in 0..60 {
+                let toward =
+                    axes::direction(360.0 * random.uniform(), 80.0 * random.uniform() - 40.0);
+                let origin = 2.0 * DVec3::Y * random.uniform();
+                let directions: Vec<DVec3> = (0..16)
+                    .map(|_| {
+                        let mut aside = || spread * (random.uniform() - 0.5);
+                        (toward + DVec3::new(aside(), aside(), aside())).normalize()
+                    })
+                    .collect();
+                objects.candidates(origin, &directions, &mut candidates);
+                let hits: Vec<Hit<'_>> = directions
+                    .iter()
+                    .filter_map(|&direction| {
+                        let ray = Ray { origin, direction };
+                        let among = objects.hit_among(&candidates, &ray);
+                        let got = among.map(|hit| (hit.index, hit.distance_m));
+                        assert_eq!(got, first(&ray), "{count} {spread} {ray:?}");
+                        let alone = objects.hit(&ray).map(|hit| (hit.index, hit.distance_m));
+                        assert_eq!(alone, got, "{count} {spread} {ray:?}");
+                        among
+                    })
+                    .collect();
+                objects.shadow_candidates(hits.iter(), source, &mut candidates);
+                for hit in &hits {
+                    let ray = Ray {
+                        origin: shadow_start(hit),
+                        direction: source,
+                    };
+                    let dark = first(&ray).is_some();
+                    assert_eq!(objects.shadowed_by(&candidates, hit, source), dark);
+                    assert_eq!(objects.shadowed(hit, source), dark);
+                    in_shadow += usize::from(dark);
+                }
+                met += hits.len();
+            }
+        }
+    }
+    assert!(met > 10_000 && in_shadow > 1_000, "{met} {in_shadow}");
+}
+
+#[test]
+fn beams_reach_few_of_many_objects() {
+    let objects = Objects::new(scattered(5000));
+    let direction = axes::direction(10.0, 3.0);
+    let beside = (direction + 1e-3 * DVec3::Y).normalize();
+    let mut candidates = Vec::new();
+    objects.candidates(DVec3::ZERO, &[direction, beside], &mut candidates);
+    assert!(candidates.len() < 200, "{}", candidates.len());
 }
 
 #[test]
