@@ -35,13 +35,14 @@ mod topics;
 
 use airlight::scene::Scene;
 use args::{Cli, Command};
-use clap::FromArgMatches;
+use clap::error::{ContextKind, ErrorKind};
+use clap::{ArgMatches, FromArgMatches};
 use error::CliError;
-use std::{io::Write, process::ExitCode};
+use std::{ffi::OsString, io::Write, process::ExitCode};
 
 fn main() -> ExitCode {
     let mut command = short_help::command();
-    let matches = command.get_matches_mut();
+    let matches = parse_words(&mut command, std::env::args_os().collect());
     option_names::install(&command, &matches);
     let cli = Cli::from_arg_matches(&matches);
     let cli = cli.unwrap_or_else(|error| error.exit());
@@ -56,6 +57,28 @@ fn main() -> ExitCode {
             ExitCode::from(error.exit_code())
         }
     }
+}
+
+/// Parses the words of the command line, or exits. The command `help` of clap does not suggest the command that an unknown one
+/// resembles; the unknown command by itself does.
+fn parse_words(command: &mut clap::Command, mut words: Vec<OsString>) -> ArgMatches {
+    let error = match command.try_get_matches_from_mut(&words) {
+        Ok(matches) => return matches,
+        Err(error) => error,
+    };
+    let help = words.iter().position(|word| word == "help");
+    if error.kind() == ErrorKind::InvalidSubcommand
+        && error.get(ContextKind::SuggestedSubcommand).is_none()
+        && let Some(help) = help
+    {
+        words.remove(help);
+        if let Err(suggesting) = command.try_get_matches_from_mut(&words)
+            && suggesting.kind() == ErrorKind::InvalidSubcommand
+        {
+            suggesting.exit();
+        }
+    }
+    error.exit()
 }
 
 fn run(cli: &Cli) -> Result<(), CliError> {

@@ -363,6 +363,15 @@ fn help_and_lists_name_what_there_is() {
     assert!(short.contains("--help lists all") && !short.contains("--humidity"));
     assert!(succeed(&folder, "help topics").contains("airlight fog rgb --depth depth"));
     assert!(succeed(&folder, "topics").contains("--orientation blender"));
+    for (words, similar) in [
+        ("help topicz", "'topics'"),
+        ("help --threads 2 grit", "'grid'"),
+        ("help plot spectrun", "'spectrum'"),
+        ("topicz", "'topics'"),
+    ] {
+        refused(&folder, words, 2, similar);
+    }
+    refused(&folder, "help xyz", 2, "unrecognized subcommand 'xyz'");
     assert!(succeed(&folder, "completions bash").contains("--haze-visibility-m"));
     succeed(&folder, "man pages");
     let page = std::fs::read_to_string(folder.file("pages/airlight-sky.1")).unwrap();
