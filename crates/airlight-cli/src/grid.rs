@@ -7,8 +7,8 @@ use crate::progress::PicturesBar;
 use crate::report;
 use airlight_image::Control;
 use airlight_plot::ContactSheet;
-use airlight_render::Renderer;
 use airlight_render::contact_sheet::ContactSheetSpec;
+use airlight_render::{Renderer, Solutions};
 
 /// Runs the command.
 ///
@@ -33,9 +33,10 @@ pub fn run(args: &GridArgs) -> Result<(), CliError> {
         .collect::<Result<Vec<_>, CliError>>()?;
     let bar = PicturesBar::new(renderers.len() as u64);
     let mut panels = Vec::with_capacity(renderers.len());
+    let mut solutions = Solutions::default();
     for (number, (label, renderer)) in (1..).zip(renderers) {
         let image = renderer
-            .render(Control::cancelled_by(&STOP))
+            .render_sharing(&mut solutions, Control::cancelled_by(&STOP))
             .map_err(|error| wrong(number, error.into()))?;
         panels.push(report::panel(label, &image, &image.tone));
         bar.one_more();

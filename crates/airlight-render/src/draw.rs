@@ -5,6 +5,7 @@ use crate::frame::WrittenFile;
 use crate::image::RenderedImage;
 use crate::renderer::Renderer;
 use crate::sequence::SequenceSettings;
+use crate::solutions::Solutions;
 use airlight_image::Control;
 use std::time::Instant;
 
@@ -14,9 +15,22 @@ impl Renderer {
     /// # Errors
     /// [`RenderError`] if the solver fails, for a cube, and if the caller cancelled.
     pub fn render(&self, control: Control<'_>) -> Result<RenderedImage, RenderError> {
+        self.render_sharing(&mut Solutions::default(), control)
+    }
+
+    /// [`Self::render`] with the light of a solution that another picture left, if air and suns are the same.
+    ///
+    /// # Errors
+    /// As [`Self::render`].
+    pub fn render_sharing(
+        &self,
+        solutions: &mut Solutions,
+        control: Control<'_>,
+    ) -> Result<RenderedImage, RenderError> {
         let frame = self.layout().only_frame()?;
         let begun = Instant::now();
-        let prepared = self.prepare(self.suns_near(&self.sun(None)?), control)?;
+        let suns = self.suns_near(&self.sun(None)?);
+        let prepared = solutions.prepare(self, suns, control)?;
         let image = self
             .frame(prepared.as_ref(), None)?
             .image(&frame, control)?;

@@ -16,7 +16,8 @@ use crate::sky_rows::{Layer, SkyRows, SkySources, SkyValues};
 use crate::sun_disc::SunDiscImage;
 use airlight::night::NightState;
 use airlight::scene::{
-    Channels, Gamut, PreparedModel, RadianceSampler, RadianceView, SunAngles, SunDiscPlacement,
+    Channels, FogLayers, Gamut, PreparedModel, RadianceSampler, RadianceView, SunAngles,
+    SunDiscPlacement,
 };
 use airlight::sky::PolarisationTable;
 use airlight::sun::Moment;
@@ -103,9 +104,13 @@ impl<'r> PreparedFrame<'r> {
             Some(time) => scene.night_at(&sun, time),
             None => scene.night(&sun),
         };
-        let moved = renderer
-            .patches_at(time)
-            .and_then(|patches| prepared.with_patches(patches.patches()));
+        let moved = renderer.patches_at(time).and_then(|patches| {
+            let fog = FogLayers {
+                patches: Some(patches.patches()),
+                ..scene.fog.clone()?
+            };
+            prepared.with_fog(Some(&fog))
+        });
         let prepared = moved.as_deref().unwrap_or(prepared);
         let view_at = |altitude_m: f64, channels: Channels| match &night {
             Some(night) => prepared.night_view(altitude_m, &state, night, channels),

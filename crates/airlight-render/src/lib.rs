@@ -7,7 +7,8 @@
 //! - [`layout`], [`channels`], [`pixels`]: files of a picture, values of a pixel, and directions within a pixel.
 //! - [`sun_disc`], [`sky_rows`], [`objects`]: rows of sky, sun's disc and objects; [`canvas`]: Monte Carlo in passes.
 //! - [`illuminance`], [`exposure`], [`metadata`]: illuminances, exposure and metadata of a picture.
-//! - [`renderer`], [`frame`], [`image`], [`sequence`]: a scene, one moment of it, a picture in memory, and many moments.
+//! - [`renderer`], [`frame`], [`solutions`], [`image`], [`sequence`]: a scene, one moment of it, light that pictures share, a picture
+//!   in memory, and many moments.
 //! - [`compare`], [`contact_sheet`], [`probe`]: comparison of solvers, pictures of several scenes, and light as numbers.
 //! - [`overlay`]: fog over a picture with a depth map; [`batch`]: fog over many pictures, with varied settings and a manifest.
 
@@ -37,6 +38,7 @@ pub mod scene_file;
 pub mod sequence;
 mod shard;
 pub mod sky_rows;
+pub mod solutions;
 pub mod star_points;
 pub mod summary;
 pub mod sun_disc;
@@ -50,3 +52,4 @@ pub use image::RenderedImage;
 pub use manifest::ManifestError;
 pub use renderer::Renderer;
 pub use shard::Shard;
+pub use solutions::Solutions;

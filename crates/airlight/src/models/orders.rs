@@ -1,7 +1,6 @@
 //! The solver `orders`: successive orders of scattering on the sphere, with fog in the sky.
 
 use crate::control::Control;
-use crate::fog::FogPatches;
 use crate::night::NightState;
 use crate::scene::{
     Capabilities, Channels, FogLayers, Input, NightSky, PreparedModel, RadianceModel, RadianceView,
@@ -152,15 +151,11 @@ impl PreparedModel for PreparedOrders {
         }
     }
 
-    fn with_patches(&self, patches: FogPatches) -> Option<Arc<dyn PreparedModel>> {
-        let fog = FogLayers {
-            patches: Some(patches),
-            ..self.fog.clone()?
-        };
+    fn with_fog(&self, fog: Option<&FogLayers>) -> Option<Arc<dyn PreparedModel>> {
         Some(Arc::new(Self {
             sky: self.sky.clone(),
-            night: self.night.as_ref().map(|night| night.with_fog(&fog)),
-            fog: Some(fog),
+            night: self.night.as_ref().map(|night| night.with_fog(fog)),
+            fog: fog.cloned(),
         }))
     }
 }

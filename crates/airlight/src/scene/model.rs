@@ -10,9 +10,8 @@
 //! A [`RadianceView`] evaluates many directions at once and writes interleaved values, [`RadianceView::channel_count`] for
 //! each direction. All three traits are `Send + Sync + 'static`, so that implementations can be stored in an [`Arc`].
 
-use super::{Capabilities, Channels, ResolvedScene, SceneError};
+use super::{Capabilities, Channels, FogLayers, ResolvedScene, SceneError};
 use crate::control::Control;
-use crate::fog::FogPatches;
 use crate::monte_carlo::{Estimate, PolarisedEstimate};
 use crate::night::NightState;
 use crate::sky::{LineOfSight, PolarisationTable, PolarisedLight, SunCoverage};
@@ -82,9 +81,8 @@ pub trait PreparedModel: Debug + Send + Sync + 'static {
         self.view(observer_altitude_m, sun, channels)
     }
 
-    /// The same light with other patches in the fog; `None` for models without [`Input::FogPatches`](super::Input::FogPatches) and
-    /// for scenes without fog.
-    fn with_patches(&self, _patches: FogPatches) -> Option<Arc<dyn PreparedModel>> {
+    /// The same air with another fog, as if it had been prepared with it; `None` for models that cannot exchange their fog.
+    fn with_fog(&self, _fog: Option<&FogLayers>) -> Option<Arc<dyn PreparedModel>> {
         None
     }
 }

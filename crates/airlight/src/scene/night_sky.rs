@@ -60,9 +60,9 @@ impl NightSky {
     }
 
     /// The same lights in another fog.
-    pub fn with_fog(&self, fog: &FogLayers) -> Self {
+    pub fn with_fog(&self, fog: Option<&FogLayers>) -> Self {
         Self {
-            fog: Some(fog.clone()),
+            fog: fog.cloned(),
             ..self.clone()
         }
     }

@@ -1,9 +1,10 @@
 //! Every format is written and read back; the light in it is that of the report and of the probe.
 
-use super::{Exr, Folder, equirectangular, probe, rays_of, render};
+use super::{Exr, Folder, equirectangular, parse, probe, rays_of, render};
 use airlight::scene::RadianceView;
 use airlight_image::output::spectral::channel_name;
-use airlight_image::{Camera, Frame, Projection, Size};
+use airlight_image::{Camera, Control, Frame, Projection, Size};
+use airlight_render::{Renderer, Solutions};
 use image::GenericImageView;
 
 /// Solves quickly.
@@ -238,5 +239,41 @@ fn odd_sizes_and_places_are_drawn() {
             let written = folder.write(name, &format!("{QUICK}{scene}"));
             assert_eq!(written[0].written.nan_samples, 0, "{scene}");
         }
+    }
+}
+
+#[test]
+fn pictures_of_equal_air_and_suns_share_a_solution() {
+    let mut solutions = Solutions::default();
+    let fog = "fog.visibility_m = 300\nfog.top_m = 50";
+    let model = "solver.name = \"klassen1987\"";
+    for (overrides, count) in [
+        ("", 1),
+        (
+            "camera.projection = \"perspective\"\nsun.azimuth_deg = 250",
+            1,
+        ),
+        (fog, 1),
+        ("observer.altitude_m = 20", 2),
+        ("sun.elevation_deg = 4", 3),
+        ("air.aod_550 = 0.3", 4),
+        (
+            "air.aod_550 = 0.3\nfog.visibility_m = 80\nfog.top_m = 50",
+            4,
+        ),
+        ("solver.scattering = \"all\"", 5),
+        (model, 6),
+        (&format!("{model}\n{fog}"), 7),
+    ] {
+        let base = match overrides.contains("klassen") {
+            true => "sun.elevation_deg = 30",
+            false => QUICK,
+        };
+        let scene = parse(&format!("{base}\ncamera.size = [24, 12]\n{overrides}"));
+        let renderer = Renderer::new(&scene).unwrap();
+        let shared = renderer.render_sharing(&mut solutions, Control::default());
+        assert_eq!(solutions.len(), count, "{overrides}");
+        let alone = renderer.render(Control::default()).unwrap();
+        assert_eq!(shared.unwrap().rgb, alone.rgb, "{overrides}");
     }
 }
