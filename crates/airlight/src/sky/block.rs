@@ -346,36 +346,16 @@ impl<const N: usize> Solved<N> {
         let grid = diffuse.map(|d| &d.field.grid);
         let degree = diffuse.map_or(0, |d| d.field.basis.degree());
         let dimming = self.dimming();
-        let path = Path::new(dimming, grid, &Tracer::marcher(air), row.start, degree);
-        if path.is_lit(air, &row.bundle) {
-            path.accumulate_sunlight::<STREAMS, false>(dimming, &row.bundle, &mut light.streams);
-            if let Some(Diffuse { field, .. }) = diffuse {
-                let scratch = &mut Scratch::default();
-                path.accumulate_scattered(
-                    field,
-                    &field.basis,
-                    &row.bundle,
-                    scratch,
-                    &mut light.multiple_scatter,
-                    None,
-                );
-            }
-            let irradiance = |mu_sun| ground_irradiance(air, diffuse, mu_sun);
-            path.accumulate_ground(air, &row.bundle, irradiance, &mut light.multiple_scatter);
-        } else {
-            // The planet's shadow ends at a different distance on each ray.
-            let mut tracer = self.tracer();
-            let count = air.scatterers.len() * STREAMS * rays;
-            light.streams.resize(count, Spectrum::ZERO);
-            for slot in 0..rays {
-                let one = tracer.arriving(&row.bundle.ray(row.start, slot));
-                light.multiple_scatter[slot] = one.multiple_scatter;
-                let streams = one.streams.as_flattened().iter();
-                for (sums, stream) in light.streams.chunks_exact_mut(rays).zip(streams) {
-                    sums[slot] = *stream;
-                }
-            }
+        let marcher = Tracer::marcher(air);
+        let path = Path::new(dimming, grid, &marcher, row.start, degree);
+        let (bundle, multiple) = (&row.bundle, &mut light.multiple_scatter);
+        path.accumulate_sunlight::<STREAMS, false>(dimming, &marcher, bundle, &mut light.streams);
+        if let Some(Diffuse { field, .. }) = diffuse {
+            let scratch = &mut Scratch::default();
+            path.accumulate_scattered(field, &field.basis, bundle, scratch, multiple, None);
         }
+        let irradiance = |mu_sun| ground_irradiance(air, diffuse, mu_sun);
+        path.accumulate_ground(air, bundle, irradiance, multiple);
         for (s, sums) in air
             .scatterers
             .iter()

@@ -242,6 +242,38 @@ pub struct RadianceField<const N: usize> {
     ground_irradiance: Vec<Spectrum<N>>,
 }
 
+/// Values between radii: those at four radii, and their weights.
+#[derive(Clone, Copy, Debug)]
+pub struct AtRadius<'a, const N: usize> {
+    points: [&'a [Spectrum<N>]; 4],
+    weights: [f32; 4],
+}
+
+impl<'a, const N: usize> AtRadius<'a, N> {
+    /// Some of the values.
+    #[inline(always)]
+    pub fn part(&self, start: usize, count: usize) -> Self {
+        let [a, b, c, d] = self.points;
+        let part = start..start + count;
+        Self {
+            points: [
+                &a[part.clone()],
+                &b[part.clone()],
+                &c[part.clone()],
+                &d[part],
+            ],
+            weights: self.weights,
+        }
+    }
+
+    /// One of the values.
+    #[inline(always)]
+    pub fn at(&self, k: usize) -> Spectrum<N> {
+        let ([a, b, c, d], [wa, wb, wc, wd]) = (self.points, self.weights);
+        (a[k] * wa + b[k] * wb) + (c[k] * wc + d[k] * wd)
+    }
+}
+
 /// Smallest stored intensity, to keep the logarithm finite.
 const MIN_INTENSITY: f32 = 1e-34;
 
@@ -298,23 +330,16 @@ impl<const N: usize> RadianceField<N> {
         self
     }
 
-    /// True if the field holds the polarisation of its light.
+    /// Index of the first moment of polarisation at each node, if the field holds the polarisation of its light.
     #[inline(always)]
-    pub fn is_polarised(&self) -> bool {
-        self.polarised
-    }
-
-    /// Places of the moments of polarisation at each node.
-    #[inline(always)]
-    fn polarised_span(&self) -> Range<usize> {
-        let start = self.basis.count();
-        start..start + if self.polarised { POLARISED } else { 0 }
+    pub fn polarised_start(&self) -> Option<usize> {
+        self.polarised.then_some(self.basis.count())
     }
 
     /// Index of the first value of the light at the horizon at each node, if there is any.
     #[inline(always)]
     pub fn horizon_start(&self) -> Option<usize> {
-        let start = self.polarised_span().end;
+        let start = self.basis.count() + if self.polarised { POLARISED } else { 0 };
         (self.count > start).then_some(start)
     }
 
@@ -331,31 +356,18 @@ impl<const N: usize> RadianceField<N> {
         at.value_in_f32(&self.ground_irradiance).exp()
     }
 
-    /// Interpolates the stored form of the first `count` moments in radius, that of the moments of polarisation, and the light at a
-    /// place beside the horizon for these sun cosines, into `out`: `[sun][moment]`.
+    /// Stored values at a radius under one sun.
     #[inline(always)]
-    pub fn at_radius(
-        &self,
-        at: RadialStencil,
-        suns: Range<usize>,
-        count: usize,
-        horizon: Option<HorizonPlace>,
-        out: &mut Vec<Spectrum<N>>,
-    ) {
-        out.clear();
-        let [wa, wb, wc, wd] = at.weights;
-        for sun in suns {
-            let points = [0, 1, 2, 3].map(|k| self.point(at.first + k, sun));
-            let beside = match (horizon, self.horizon_start()) {
-                (Some(place), Some(start)) => start + place.first..start + place.first + 2 * MODES,
-                _ => 0..0,
-            };
-            for part in [0..count, self.polarised_span(), beside] {
-                let [a, b, c, d] = points.map(|point| &point[part.clone()]);
-                for (((a, b), c), d) in a.iter().zip(b).zip(c).zip(d) {
-                    out.push((*a * wa + *b * wb) + (*c * wc + *d * wd));
-                }
-            }
+    pub fn at_radius(&self, place: RadialStencil, sun: usize) -> AtRadius<'_, N> {
+        let RadialStencil { first, weights } = place;
+        AtRadius {
+            points: [
+                self.point(first, sun),
+                self.point(first + 1, sun),
+                self.point(first + 2, sun),
+                self.point(first + 3, sun),
+            ],
+            weights,
         }
     }
 
@@ -384,7 +396,7 @@ impl<const N: usize> RadianceField<N> {
             }
             sum = sum.mul_acc(scattering_moment(air, densities, l), degree);
         }
-        if self.is_polarised() {
+        if self.polarised {
             let mut degree = Spectrum::ZERO;
             for (k, y) in harmonics[Harmonics::index(2, 0)..][..POLARISED]
                 .iter()
@@ -429,7 +441,7 @@ impl<const N: usize> RadianceField<N> {
         densities: &PerConstituent,
         harmonics: &TensorHarmonics,
     ) -> [Spectrum<N>; 2] {
-        if !self.is_polarised() {
+        if !self.polarised {
             return [Spectrum::ZERO; 2];
         }
         let corners = self.corners(here);

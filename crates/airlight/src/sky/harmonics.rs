@@ -108,53 +108,6 @@ impl Harmonics {
             azimuthal = next;
         }
     }
-
-    /// Evaluates the harmonics for many rays with the same `mu` into `out`: `[harmonic][ray]`. `scratch` holds three arrays
-    /// with one entry per ray.
-    #[inline(always)]
-    pub fn evaluate_bundle(
-        &self,
-        mu: f32,
-        toward_sun: &[f32],
-        scratch: &mut [Vec<f32>; 3],
-        out: &mut [f32],
-    ) {
-        let rays = toward_sun.len();
-        let sin2 = (1.0 - mu * mu).max(0.0);
-        let [below, here, next] = scratch;
-        below[..rays].copy_from_slice(toward_sun);
-        here[..rays].fill(1.0);
-        for m in 0..=self.degree {
-            let diagonal = Self::index(m, m) * rays;
-            for (y, azimuthal) in out[diagonal..diagonal + rays].iter_mut().zip(&here[..rays]) {
-                *y = self.diagonal[m] * azimuthal;
-            }
-            for l in m + 1..=self.degree {
-                let (p, q) = self.recurrence[Self::index(l, m)];
-                let (done, rest) = out.split_at_mut(Self::index(l, m) * rays);
-                let one = &done[Self::index(l - 1, m) * rays..][..rays];
-                if l == m + 1 {
-                    for (y, one) in rest[..rays].iter_mut().zip(one) {
-                        *y = p * mu * one;
-                    }
-                } else {
-                    let two = &done[Self::index(l - 2, m) * rays..][..rays];
-                    for ((y, one), two) in rest[..rays].iter_mut().zip(one).zip(two) {
-                        *y = p * mu * one - q * two;
-                    }
-                }
-            }
-            for slot in 0..rays {
-                next[slot] = if m == 0 {
-                    toward_sun[slot]
-                } else {
-                    2.0 * toward_sun[slot] * here[slot] - sin2 * below[slot]
-                };
-            }
-            std::mem::swap(below, here);
-            std::mem::swap(here, next);
-        }
-    }
 }
 
 #[cfg(test)]

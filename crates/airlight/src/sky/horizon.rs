@@ -33,6 +33,10 @@ const INTERVALS: usize = 8;
 const WIDTH: f64 = 0.4;
 /// Number of values at each grid point: `[side][node][mode]`, of which those of the last node of each side are 0.
 pub const VALUES: usize = 2 * (INTERVALS + 1) * MODES;
+/// Optical depth of the peaks below which there is no correction, and the distance for which it holds, m: that through air of a small
+/// range of altitudes at most.
+const NEGLIGIBLE: f32 = 1e-3;
+const LONGEST_M: f32 = 3e5;
 /// Highest degree of the light: a peak narrower than a degree counts as unscattered.
 const MAX_DEGREE: usize = 72;
 
@@ -168,24 +172,42 @@ fn add<const N: usize>(
     out: &mut [Spectrum<N>],
 ) {
     let first_degree = MAX_DEGREE + 1 - weights.len();
-    let paths = ray_count(directions);
-    let nodes: Vec<_> = node_cosines(horizon).into_iter().map(associated).collect();
-    for (m, rays) in single_rays(horizon, directions).iter().enumerate() {
-        for (place, node) in nodes.iter().enumerate() {
+    let nodes = node_cosines(horizon);
+    let rays = SingleRays::new(horizon, directions);
+    let paths = rays.count;
+    // The correction at a node for light along each ray.
+    let mut factors = vec![Spectrum::ZERO; paths];
+    let mut low_degrees = vec![0.0; paths];
+    for (m, moments) in rays.moments.iter().enumerate() {
+        let at_nodes = associated(m, &nodes);
+        for place in 0..nodes.len() {
+            low_degrees.copy_from_slice(&rays.at_nodes[place * paths..][..paths]);
+            for low in &mut low_degrees {
+                *low = -*low;
+            }
+            for l in m..first_degree {
+                let node = at_nodes[l * nodes.len() + place];
+                for (low, moment) in low_degrees.iter_mut().zip(&moments[l * paths..]) {
+                    *low += node * moment;
+                }
+            }
+            for (factor, low) in factors.iter_mut().zip(&low_degrees) {
+                *factor = Spectrum::splat(*low as f32);
+            }
+            for (l, weight) in (first_degree..).zip(weights) {
+                let node = at_nodes[l * nodes.len() + place];
+                for (factor, moment) in factors.iter_mut().zip(&moments[l * paths..]) {
+                    *factor = factor.scale_acc(*weight, (node * moment) as f32);
+                }
+            }
             // The last node of each side is left out.
             let at = (place + place / INTERVALS) * MODES + m;
-            for (path, ray) in rays.iter().enumerate() {
-                let product = |l: usize| node[m][l] * ray.moments[l];
-                let low_degrees: f64 = (0..first_degree).map(product).sum();
-                let mut factor = Spectrum::splat((low_degrees - ray.at_nodes[place]) as f32);
-                for (l, weight) in (first_degree..).zip(weights) {
-                    factor = factor.scale_acc(*weight, product(l) as f32);
-                }
-                for (out, light) in out
-                    .chunks_exact_mut(VALUES)
-                    .zip(light.chunks_exact(paths * MODES))
-                {
-                    out[at] = out[at].mul_acc(factor, light[path * MODES + m]);
+            for (out, light) in out
+                .chunks_exact_mut(VALUES)
+                .zip(light.chunks_exact(paths * MODES))
+            {
+                for (factor, light) in factors.iter().zip(light.chunks_exact(MODES)) {
+                    out[at] = out[at].mul_acc(*factor, light[m]);
                 }
             }
         }
@@ -223,7 +245,7 @@ impl<const N: usize> Peaks<N> {
     fn weights(&self, air: &Air<N>, radius_m: f64) -> Option<Vec<Spectrum<N>>> {
         let densities = air.shell().densities_at(radius_m);
         let whole = air.peaks.extinction(&densities);
-        if whole.min_element() <= 0.0 {
+        if whole.min_element() <= 0.0 || whole.max_element() * LONGEST_M < NEGLIGIBLE {
             return None;
         }
         let count = self.factors[0].1.len();
@@ -249,76 +271,105 @@ fn end(l: usize) -> f32 {
     0.5 * (1.0 + (PI * x).cos())
 }
 
-/// Associated Legendre functions with integral 1 of their square, `[m][l]`.
-fn associated(mu: f64) -> [Vec<f64>; MODES] {
-    let sin2 = ((1.0 - mu) * (1.0 + mu)).max(0.0);
-    // The square of the first is that of the one before times `(2 m + 1) / (2 m) sin^2`.
-    let mut first = [0.5f64.sqrt(); MODES];
-    for m in 1..MODES {
-        let mf = m as f64;
-        first[m] = first[m - 1] * ((2.0 * mf + 1.0) / (2.0 * mf) * sin2).sqrt();
-    }
-    std::array::from_fn(|m| {
-        let mut p = vec![0.0; MAX_DEGREE + 1];
-        p[m] = first[m];
-        for l in m + 1..=MAX_DEGREE {
-            let (a, b) = associated_recurrence(l, m);
-            p[l] = a * mu * p[l - 1] - if l > m + 1 { b * p[l - 2] } else { 0.0 };
+/// Associated Legendre functions of a mode with integral 1 of their square at a number of cosines, `[l][cosine]`.
+#[inline(always)]
+fn associated(m: usize, cosines: &[f64]) -> Vec<f64> {
+    let count = cosines.len();
+    let mut p = vec![0.0; (MAX_DEGREE + 1) * count];
+    for (p, mu) in p[m * count..].iter_mut().zip(cosines) {
+        // The square of the first is that of the one before times `(2 m + 1) / (2 m) sin^2`.
+        let sin2 = ((1.0 - mu) * (1.0 + mu)).max(0.0);
+        let mut square = 0.5;
+        for m in 1..=m {
+            square *= (2 * m + 1) as f64 / (2 * m) as f64 * sin2;
         }
-        p
-    })
-}
-
-/// Light that is 1 along one ray of a zenith rule and 0 along the others, with a polynomial between those on each piece of the rule.
-struct SingleRay {
-    /// Moments by degree, in an azimuthal mode.
-    moments: Vec<f64>,
-    /// The light in the directions of the nodes beside the horizon.
-    at_nodes: Vec<f64>,
-}
-
-/// Light along each ray of the rule at a radius with this horizon, `[m][ray]`.
-fn single_rays(horizon: f64, directions: &Directions) -> [Vec<SingleRay>; MODES] {
-    const POINTS: [usize; 3] = [40, 20, 40];
-    let edges = piece_edges(horizon);
-    let nodes = node_cosines(horizon);
-    let mut out: [Vec<SingleRay>; MODES] = std::array::from_fn(|_| Vec::new());
-    for (piece, rays) in zenith_rule(horizon, directions).iter().enumerate() {
-        let rays: Vec<f64> = rays.iter().map(|ray| ray.0).collect();
-        let light = |ray: usize, mu: f64| match piece {
-            0 => between_with_extra(&rays, ray, mu, horizon),
-            _ => between(&rays, ray, mu),
-        };
-        let of_node = |place: usize| match place < INTERVALS {
-            true => 0,
-            false => 1 + usize::from(nodes[place] > edges[2]),
-        };
-        let rule = GaussRule::new(POINTS[piece]);
-        let rule: Vec<_> = rule.on(edges[piece], edges[piece + 1]).collect();
-        let associated: Vec<_> = rule.iter().map(|(mu, _)| associated(*mu)).collect();
-        for ray in 0..rays.len() {
-            let weighted = rule.iter().map(|&(mu, weight)| weight * light(ray, mu));
-            let weighted: Vec<f64> = weighted.collect();
-            let at_node = |place: usize| match of_node(place) == piece {
-                true => light(ray, nodes[place]),
-                false => 0.0,
-            };
-            let at_nodes: Vec<f64> = (0..nodes.len()).map(at_node).collect();
-            for (m, list) in out.iter_mut().enumerate() {
-                let mut moments = vec![0.0; MAX_DEGREE + 1];
-                for (light, p) in weighted.iter().zip(&associated) {
-                    for (sum, p) in moments.iter_mut().zip(&p[m]) {
-                        *sum += light * p;
-                    }
-                }
-                list.push(SingleRay {
-                    moments,
-                    at_nodes: at_nodes.clone(),
-                });
+        *p = square.sqrt();
+    }
+    for l in m + 1..=MAX_DEGREE {
+        let (a, b) = associated_recurrence(l, m);
+        let (done, rest) = p.split_at_mut(l * count);
+        let one = &done[(l - 1) * count..];
+        for ((p, mu), one) in rest[..count].iter_mut().zip(cosines).zip(one) {
+            *p = a * mu * one;
+        }
+        if l > m + 1 {
+            let two = &done[(l - 2) * count..][..count];
+            for (p, two) in rest[..count].iter_mut().zip(two) {
+                *p -= b * two;
             }
         }
     }
-    out
+    p
+}
+
+/// For each ray of a zenith rule, light that is 1 along it and 0 along the others, with a polynomial between those on each piece of the
+/// rule.
+struct SingleRays {
+    /// Number of rays.
+    count: usize,
+    /// Moments by degree for each azimuthal mode, `[m][degree][ray]`.
+    moments: [Vec<f64>; MODES],
+    /// The light in the directions of the nodes beside the horizon, `[node][ray]`.
+    at_nodes: Vec<f64>,
+}
+
+impl SingleRays {
+    /// Light along the rays at a radius with this horizon.
+    #[inline(always)]
+    fn new(horizon: f64, directions: &Directions) -> Self {
+        const POINTS: [usize; 3] = [40, 20, 40];
+        let edges = piece_edges(horizon);
+        let nodes = node_cosines(horizon);
+        let count = ray_count(directions);
+        let mut out = Self {
+            count,
+            moments: std::array::from_fn(|_| vec![0.0; (MAX_DEGREE + 1) * count]),
+            at_nodes: vec![0.0; nodes.len() * count],
+        };
+        let mut first = 0;
+        for (piece, rays) in zenith_rule(horizon, directions).iter().enumerate() {
+            let rays: Vec<f64> = rays.iter().map(|ray| ray.0).collect();
+            let light = |ray: usize, mu: f64| match piece {
+                0 => between_with_extra(&rays, ray, mu, horizon),
+                _ => between(&rays, ray, mu),
+            };
+            for (place, &mu) in nodes.iter().enumerate() {
+                let of_node = match place < INTERVALS {
+                    true => 0,
+                    false => 1 + usize::from(mu > edges[2]),
+                };
+                if of_node == piece {
+                    for ray in 0..rays.len() {
+                        out.at_nodes[place * count + first + ray] = light(ray, mu);
+                    }
+                }
+            }
+            let rule = GaussRule::new(POINTS[piece]);
+            let rule: Vec<_> = rule.on(edges[piece], edges[piece + 1]).collect();
+            let cosines: Vec<f64> = rule.iter().map(|(mu, _)| *mu).collect();
+            // `[point][ray]`
+            let mut weighted = Vec::with_capacity(rule.len() * rays.len());
+            for &(mu, weight) in &rule {
+                weighted.extend((0..rays.len()).map(|ray| weight * light(ray, mu)));
+            }
+            for (m, moments) in out.moments.iter_mut().enumerate() {
+                let associated = associated(m, &cosines);
+                for (moments, p) in moments
+                    .chunks_exact_mut(count)
+                    .zip(associated.chunks_exact(cosines.len()))
+                {
+                    let moments = &mut moments[first..first + rays.len()];
+                    for (p, weighted) in p.iter().zip(weighted.chunks_exact(rays.len())) {
+                        for (moment, weighted) in moments.iter_mut().zip(weighted) {
+                            *moment += p * weighted;
+                        }
+                    }
+                }
+            }
+            first += rays.len();
+        }
+        out
+    }
 }
 
 /// The polynomial that is 1 at one of `rays` and 0 at the others.

@@ -1,9 +1,10 @@
 //! All orders of scattering in spherical geometry.
 //!
 //! Light is what the sun's light becomes by being scattered or reflected once, plus itself scattered or reflected once more
-//! ([`super::transport`]). Each iteration adds the light that is missing in this equation together with all orders of its
-//! scattering in plane-parallel air ([`super::plane_parallel`]): what remains falls by the small difference between spherical and
-//! plane-parallel air, in thin and in thick air alike. Where it does not fall fast, [`super::mixing`] combines the corrections.
+//! ([`super::transport`]). The iteration starts with the light of plane-parallel air ([`super::plane_parallel`]). Each step adds the
+//! light that is missing in the equation together with all orders of its scattering in plane-parallel air: what remains falls by the
+//! small difference between spherical and plane-parallel air, in thin and in thick air alike. Where it does not fall fast,
+//! [`super::mixing`] combines the corrections.
 
 use super::air::Air;
 use super::field::{Diffuse, FieldGrid};
@@ -63,6 +64,7 @@ pub fn solve<const N: usize>(
         }
     } else {
         let plane_parallel = transport.plane_parallel()?;
+        light = plane_parallel.all_orders(&once);
         let (mut last, mut converged, mut growing, mut iterations) = (f32::INFINITY, false, 0, 0);
         let mut mixing: Option<Mixing<N>> = None;
         while iterations < settings.max_iterations && growing < MAX_GROWING {

@@ -7,14 +7,14 @@
 use super::air::Air;
 use super::field::{FieldGrid, RadialStencil, RadianceField, polarised_moments, scattering_moment};
 use super::harmonics::Harmonics;
-use super::horizon::{self, HorizonPlace, MODES};
+use super::horizon::{HorizonPlace, MODES};
 use super::polarised::{POLARISED, TensorHarmonics};
 use crate::math::interpolation::lerp;
 use crate::spectrum::Spectrum;
-use crate::transfer::march::{MAX_NODES, Marcher};
+use crate::transfer::march::{MAX_NODES, Marcher, Node};
 use crate::transfer::ray::{Ray, in_shadow};
 use crate::transfer::residual::stream_transmittances;
-use crate::transfer::shell::PerConstituent;
+use crate::transfer::shell::{MAX_CONSTITUENTS, PerConstituent};
 use std::ops::{ControlFlow, Range};
 
 /// What the rays of a bundle have in common: quadrature nodes, transmittances and densities along the path.
@@ -24,8 +24,17 @@ pub struct Path<const N: usize> {
     /// Cosine of the zenith angle at the start.
     pub mu: f64,
     nodes: Vec<PathNode<N>>,
+    steps: Vec<PathStep>,
     /// Distance to the ground and transmittance to it, if the rays end there.
     ground: Option<(f64, Spectrum<N>)>,
+}
+
+/// A step of a [`Path`]: the distances to its ends, the columns before it, m, and its nodes.
+struct PathStep {
+    from_m: f64,
+    to_m: f64,
+    columns_m: PerConstituent,
+    nodes: Range<usize>,
 }
 
 /// A quadrature node of a [`Path`].
@@ -180,14 +189,81 @@ pub struct Scratch<const N: usize> {
     toward_sun: Vec<f32>,
     below: Vec<u32>,
     fraction: Vec<f32>,
-    azimuthal: [Vec<f32>; 3],
-    /// Basis functions, `[harmonic][ray]`.
+    /// Cosines of the multiples of the azimuth from the sun, `[multiple][ray]`.
+    cosines: Vec<f32>,
+    /// Harmonics at azimuth 0.
     y: Vec<f32>,
-    /// What a node scatters of the field at its radius, `[sun][moment]`.
-    row: Vec<Spectrum<N>>,
-    /// Intensity of the field at the node of each ray.
-    intensity: Vec<Spectrum<N>>,
-    tensor: TensorBundle,
+    /// What a node scatters of each moment into its azimuthal mode.
+    factors: Vec<Spectrum<N>>,
+    /// What a node scatters of the field at its radius, for each sun: [`Modes`].
+    row: Vec<Modes<N>>,
+}
+
+/// Light that a node scatters into the rays of a bundle, of a field under one sun: all rays have the same zenith angle there, so it
+/// only varies with the azimuth.
+#[derive(Clone, Copy, Debug)]
+struct Modes<const N: usize> {
+    /// Logarithm of the intensity of the field, to which the others are relative.
+    log_intensity: Spectrum<N>,
+    /// Intensity by azimuthal mode.
+    intensity: [Spectrum<N>; Harmonics::MAX_DEGREE + 1],
+    /// Q by mode, and U of modes 1 and 2, which vary with the sine of the azimuth.
+    q: [Spectrum<N>; POLARISED],
+    u: [Spectrum<N>; POLARISED - 1],
+}
+
+impl<const N: usize> Modes<N> {
+    const NONE: Self = Self {
+        log_intensity: Spectrum::ZERO,
+        intensity: [Spectrum::ZERO; Harmonics::MAX_DEGREE + 1],
+        q: [Spectrum::ZERO; POLARISED],
+        u: [Spectrum::ZERO; POLARISED - 1],
+    };
+
+    /// Q and U, given the cosines and sines of the azimuth and of twice the azimuth.
+    #[inline(always)]
+    fn linear(&self, (cosines, sines): ([f32; 2], [f32; 2])) -> [Spectrum<N>; 2] {
+        let q = self.q[0].scale_acc(self.q[1], cosines[0]);
+        [
+            q.scale_acc(self.q[2], cosines[1]),
+            (self.u[0] * sines[0]).scale_acc(self.u[1], sines[1]),
+        ]
+    }
+}
+
+impl PathStep {
+    /// True if one of these distances lies in the step.
+    #[inline(always)]
+    fn has_edge(&self, edges: &[Option<f64>; 2]) -> bool {
+        let inside = |edge: Option<f64>| edge.is_some_and(|t| self.from_m < t && t < self.to_m);
+        inside(edges[0]) || inside(edges[1])
+    }
+}
+
+/// Adds the sunlight that a point scatters into one of a number of rays to `out`: `[scatterer][stream][ray]`. Light on its way from there
+/// is attenuated by a transmittance, which is given times the length that the point stands for; by the optical depth that counts as
+/// unscattered, depending on the stream; and less by a factor if it is polarised.
+#[inline(always)]
+fn add_sunlight<const K: usize, const LINEAR: bool, const N: usize>(
+    air: &Air<N>,
+    (weight, removed, linear_gain): (Spectrum<N>, Spectrum<N>, Spectrum<N>),
+    densities: &PerConstituent,
+    to_sun: &[f32; MAX_CONSTITUENTS],
+    (slot, rays): (usize, usize),
+    out: &mut [Spectrum<N>],
+) {
+    let depth = air.coefficients.extinction_f32(to_sun);
+    let arriving = weight * (Spectrum::ZERO - depth).exp();
+    let streams = stream_transmittances(removed + air.peaks.extinction_f32(to_sun));
+    let count = K + usize::from(LINEAR);
+    for (place, s) in air.scatterers.iter().enumerate() {
+        let density = densities[s.constituent] as f32;
+        for k in 0..count {
+            let factor = if k < K { streams[k] } else { linear_gain };
+            let sum = &mut out[(place * count + k) * rays + slot];
+            *sum = sum.scale_acc(arriving * factor, density);
+        }
+    }
 }
 
 /// Factor by which polarised light is attenuated less than natural light behind these columns.
@@ -214,9 +290,10 @@ impl<const N: usize> Path<N> {
             radius_m,
             mu,
             nodes: Vec::new(),
+            steps: Vec::new(),
             ground: None,
         };
-        // With the sun at the zenith no shadow edge crosses the ray, so the panels serve all sun angles.
+        // With the sun at the zenith no shadow edge crosses the ray, so the steps serve all sun angles.
         let ray = Ray {
             radius_m,
             mu,
@@ -234,10 +311,10 @@ impl<const N: usize> Path<N> {
             (segment.start_m, segment.end_m),
             &mut Vec::new(),
             #[inline(always)]
-            |nodes| {
+            |step| {
                 let first = path.nodes.len();
                 let mut panel = Panel::<N>::default();
-                for node in nodes {
+                for node in step.nodes {
                     let depth = air.coefficients.extinction(&node.columns_m);
                     let weight = (Spectrum::ZERO - depth).exp() * node.dt as f32;
                     let extinction = air.coefficients.extinction(&node.densities);
@@ -278,6 +355,12 @@ impl<const N: usize> Path<N> {
                     node.polarised_weights =
                         [natural, natural * node.linear_gain, kept * node.linear_gain];
                 }
+                path.steps.push(PathStep {
+                    from_m: step.from_m,
+                    to_m: step.to_m,
+                    columns_m: step.columns_m,
+                    nodes: first..path.nodes.len(),
+                });
                 before += panel.whole;
                 if before.min_element() > 16.0 {
                     ControlFlow::Break(())
@@ -292,63 +375,133 @@ impl<const N: usize> Path<N> {
         path
     }
 
-    /// True if the sun is above the planet's limb at all nodes of all rays.
+    /// True if the sun is above the horizontal plane at all nodes of some of the rays.
     #[inline(always)]
-    pub fn is_lit(&self, air: &Air<N>, bundle: &RayBundle) -> bool {
-        let ground_radius_m = air.shell().ground_radius_m;
-        self.nodes.iter().all(|node| {
-            (0..bundle.len()).all(|slot| {
-                let mu_sun = (self.radius_m * bundle.mu_sun[slot] + node.t * bundle.nu[slot])
-                    / node.radius_m;
-                !in_shadow(node.radius_m, mu_sun, ground_radius_m)
-            })
+    pub fn has_sun_above_horizon(&self, bundle: &RayBundle, rays: Range<usize>) -> bool {
+        // The product of the radius and the sun cosine is linear in the distance.
+        let last = self.nodes.last().map_or(0.0, |node| node.t);
+        rays.into_iter().all(|slot| {
+            let at_start = self.radius_m * bundle.mu_sun[slot];
+            at_start >= 0.0 && at_start + last * bundle.nu[slot] >= 0.0
         })
     }
 
     /// The first `K` streams of singly scattered sunlight along each ray, per unit scattering coefficient and without phase
     /// functions, into `out`: `[scatterer][stream][ray]`. With `LINEAR` one more stream is attenuated on its way to the eye as
-    /// polarised light is.
+    /// polarised light is. `marcher` is that of the path.
     #[inline(always)]
     pub fn accumulate_sunlight<const K: usize, const LINEAR: bool>(
         &self,
         air: &Air<N>,
+        marcher: &Marcher<'_>,
         bundle: &RayBundle,
         out: &mut Vec<Spectrum<N>>,
     ) {
         let shell = air.shell();
+        let rays = bundle.len();
         out.clear();
-        let count = K + usize::from(LINEAR);
-        out.resize(air.scatterers.len() * count * bundle.len(), Spectrum::ZERO);
-        for node in &self.nodes {
-            let columns = air.columns.at(node.radius_m);
-            for slot in 0..bundle.len() {
-                let mu_sun = (self.radius_m * bundle.mu_sun[slot] + node.t * bundle.nu[slot])
-                    / node.radius_m;
-                let to_sun = if mu_sun >= 0.0 {
-                    columns.to_space_m(mu_sun as f32)
-                } else if in_shadow(node.radius_m, mu_sun, shell.ground_radius_m) {
-                    continue;
-                } else {
-                    let to_sun = air.columns.to_space_m(node.radius_m, mu_sun);
-                    to_sun.map(|column| column as f32)
-                };
-                let depth = air.coefficients.extinction_f32(&to_sun);
-                let arriving = node.weight * (Spectrum::ZERO - depth).exp();
-                let streams =
-                    stream_transmittances(node.removed + air.peaks.extinction_f32(&to_sun));
-                for (place, s) in air.scatterers.iter().enumerate() {
-                    let density = node.densities[s.constituent] as f32;
-                    let mut add = |k: usize, factor: Spectrum<N>| {
-                        let sum = &mut out[(place * count + k) * bundle.len() + slot];
-                        *sum = sum.scale_acc(arriving * factor, density);
+        out.resize(
+            air.scatterers.len() * (K + usize::from(LINEAR)) * rays,
+            Spectrum::ZERO,
+        );
+        let edges: Vec<_> = (0..rays)
+            .map(|slot| {
+                let ray = bundle.ray((self.radius_m, self.mu), slot);
+                ray.shadow_edges(shell.ground_radius_m)
+            })
+            .collect();
+        for step in &self.steps {
+            for node in &self.nodes[step.nodes.clone()] {
+                let columns = air.columns.at(node.radius_m);
+                for slot in 0..rays {
+                    if step.has_edge(&edges[slot]) {
+                        continue;
+                    }
+                    let mu_sun = (self.radius_m * bundle.mu_sun[slot] + node.t * bundle.nu[slot])
+                        / node.radius_m;
+                    let to_sun = if mu_sun >= 0.0 {
+                        columns.to_space_m(mu_sun as f32)
+                    } else if in_shadow(node.radius_m, mu_sun, shell.ground_radius_m) {
+                        continue;
+                    } else {
+                        let to_sun = air.columns.to_space_m(node.radius_m, mu_sun);
+                        to_sun.map(|column| column as f32)
                     };
-                    for (k, stream) in streams[..K].iter().enumerate() {
-                        add(k, *stream);
-                    }
-                    if LINEAR {
-                        add(K, node.linear_gain);
-                    }
+                    let ray = (slot, rays);
+                    let attenuated = (node.weight, node.removed, node.linear_gain);
+                    add_sunlight::<K, LINEAR, N>(
+                        air,
+                        attenuated,
+                        &node.densities,
+                        &to_sun,
+                        ray,
+                        out,
+                    );
                 }
+            }
+            for slot in 0..rays {
+                if step.has_edge(&edges[slot]) {
+                    self.accumulate_partly_lit::<K, LINEAR>(
+                        air,
+                        marcher,
+                        step,
+                        (bundle, slot),
+                        edges[slot],
+                        out,
+                    );
+                }
+            }
+        }
+    }
+
+    /// The same of a step in which a ray crosses an edge of the planet's shadow.
+    #[inline(always)]
+    fn accumulate_partly_lit<const K: usize, const LINEAR: bool>(
+        &self,
+        air: &Air<N>,
+        marcher: &Marcher<'_>,
+        step: &PathStep,
+        (bundle, slot): (&RayBundle, usize),
+        edges: [Option<f64>; 2],
+        out: &mut [Spectrum<N>],
+    ) {
+        let shell = air.shell();
+        let ray = bundle.ray((self.radius_m, self.mu), slot);
+        let inside = |edge: Option<f64>| edge.unwrap_or(step.to_m).clamp(step.from_m, step.to_m);
+        let [a, b] = [inside(edges[0]), inside(edges[1])];
+        let mut columns_m = step.columns_m;
+        for (from_m, to_m) in [
+            (step.from_m, a.min(b)),
+            (a.min(b), a.max(b)),
+            (a.max(b), step.to_m),
+        ] {
+            if from_m >= to_m {
+                continue;
+            }
+            let mut nodes = [Node::default(); MAX_NODES];
+            let part = marcher.step(shell, &ray, (from_m, to_m), &columns_m, &mut nodes);
+            for node in part.nodes {
+                for (column, density) in columns_m.iter_mut().zip(&node.densities) {
+                    *column += node.dt * density;
+                }
+                if !node.lit {
+                    continue;
+                }
+                let Ray {
+                    radius_m, mu_sun, ..
+                } = node.here;
+                let to_sun = air.columns.to_space_m(radius_m, mu_sun);
+                let to_sun = to_sun.map(|column| column as f32);
+                let attenuated = (
+                    air.coefficients.transmittance(&node.columns_m) * node.dt as f32,
+                    air.peaks.extinction(&node.columns_m),
+                    match LINEAR {
+                        true => linear_gain(air, &node.columns_m),
+                        false => Spectrum::ONE,
+                    },
+                );
+                let ray = (slot, bundle.len());
+                add_sunlight::<K, LINEAR, N>(air, attenuated, &node.densities, &to_sun, ray, out);
             }
         }
     }
@@ -365,75 +518,37 @@ impl<const N: usize> Path<N> {
         out: &mut [Spectrum<N>],
         mut linear: Option<&mut [[Spectrum<N>; 2]]>,
     ) {
-        let (rays, count) = (bundle.len(), basis.count());
-        let polarised_end = count + if field.is_polarised() { POLARISED } else { 0 };
-        scratch.resize(rays, count);
+        let rays = bundle.len();
+        // Those of the light at the horizon, and of polarised light, are among them.
+        let modes = MODES.max(basis.degree() + 1);
+        scratch.resize(rays, modes, basis.count());
         for node in &self.nodes {
             let suns = scratch.locate(&field.grid, self, node, bundle);
             let first_sun = suns.start;
-            let horizon = node.horizon.filter(|_| field.horizon_start().is_some());
-            field.at_radius(node.place, suns, count, horizon, &mut scratch.row);
-            let stride = polarised_end + horizon.map_or(0, |_| 2 * MODES);
-            for point in scratch.row.chunks_exact_mut(stride) {
-                let (moments, beside) = point.split_at_mut(polarised_end);
-                node.scatter(basis, moments);
-                if let Some(place) = horizon {
-                    node.scatter_at_horizon(place, beside);
-                }
-            }
-            basis.evaluate_bundle(
-                node.mu,
-                &scratch.toward_sun,
-                &mut scratch.azimuthal,
-                &mut scratch.y,
-            );
-            let inverse_sin = 1.0 / (1.0 - node.mu * node.mu).max(1e-9).sqrt();
-            let interval = |slot: usize| {
-                let below = (scratch.below[slot] as usize - first_sun) * stride;
-                scratch.row[below..below + 2 * stride].split_at(stride)
-            };
+            node.scatter(field, basis, suns, scratch);
+            scratch.evaluate_cosines(node.mu, modes);
             for (slot, out) in out.iter_mut().enumerate() {
-                let (a, b) = interval(slot);
+                let first = scratch.below[slot] as usize - first_sun;
+                let (a, b) = (&scratch.row[first], &scratch.row[first + 1]);
                 let fraction = scratch.fraction[slot];
-                let (mut below, mut above) = (node.source_weights[0], node.source_weights[0]);
-                let y = scratch.y[slot];
-                (below, above) = (below * y, above * y);
-                for k in 1..count {
-                    let y = scratch.y[k * rays + slot];
-                    below = below.scale_acc(a[k], y);
-                    above = above.scale_acc(b[k], y);
+                let (mut below, mut above) = (a.intensity[0], b.intensity[0]);
+                for m in 1..modes {
+                    let cosine = scratch.cosines[m * rays + slot];
+                    below = below.scale_acc(a.intensity[m], cosine);
+                    above = above.scale_acc(b.intensity[m], cosine);
                 }
-                if horizon.is_some() {
-                    let cosine = (scratch.toward_sun[slot] * inverse_sin).clamp(-1.0, 1.0);
-                    for (m, mode) in horizon::modes(cosine).into_iter().enumerate() {
-                        below = below.scale_acc(a[polarised_end + m], mode);
-                        above = above.scale_acc(b[polarised_end + m], mode);
-                    }
-                }
-                let intensity = lerp(a[0], b[0], fraction).exp();
-                scratch.intensity[slot] = intensity;
+                let intensity = lerp(a.log_intensity, b.log_intensity, fraction).exp();
                 *out = out.mul_acc(lerp(below, above, fraction).max_scalar(0.0), intensity);
-            }
-            if let Some(linear) = &mut linear {
-                scratch.tensor.evaluate(node.mu, &scratch.toward_sun);
-                let TensorBundle {
-                    q0,
-                    q: [q1, q2],
-                    u: [u1, u2],
-                } = &scratch.tensor;
-                for (slot, linear) in linear.iter_mut().enumerate() {
-                    let (a, b) = interval(slot);
-                    let q = |e: &[Spectrum<N>]| {
-                        (e[count] * *q0)
-                            .scale_acc(e[count + 1], q1[slot])
-                            .scale_acc(e[count + 2], q2[slot])
-                    };
-                    let u = |e: &[Spectrum<N>]| {
-                        (e[count + 1] * u1[slot]).scale_acc(e[count + 2], u2[slot])
-                    };
-                    let (fraction, intensity) = (scratch.fraction[slot], scratch.intensity[slot]);
-                    linear[0] = linear[0].mul_acc(lerp(q(a), q(b), fraction), intensity);
-                    linear[1] = linear[1].mul_acc(lerp(u(a), u(b), fraction), intensity);
+                if let Some(linear) = &mut linear {
+                    let one = scratch.cosines[rays + slot];
+                    let two = scratch.cosines[2 * rays + slot];
+                    let sine = (1.0 - one * one).max(0.0).sqrt();
+                    let azimuth = ([one, two], [sine, 2.0 * sine * one]);
+                    let [qa, ua] = a.linear(azimuth);
+                    let [qb, ub] = b.linear(azimuth);
+                    let linear = &mut linear[slot];
+                    linear[0] = linear[0].mul_acc(lerp(qa, qb, fraction), intensity);
+                    linear[1] = linear[1].mul_acc(lerp(ua, ub, fraction), intensity);
                 }
             }
         }
@@ -512,33 +627,62 @@ impl<const N: usize> Path<N> {
 }
 
 impl<const N: usize> PathNode<N> {
-    /// Replaces the values at the two nodes beside the horizon by what the node adds of them in each azimuthal mode.
+    /// Computes what the node scatters of the light of `field`, of the moments up to the degree of `basis`, under each of `suns`.
     #[inline(always)]
-    fn scatter_at_horizon(&self, place: HorizonPlace, values: &mut [Spectrum<N>]) {
-        let [first, second] = place.weights();
-        for m in 0..MODES {
-            let value = (values[m] * first).scale_acc(values[MODES + m], second);
-            values[m] = value * self.peak_weight;
+    fn scatter(
+        &self,
+        field: &RadianceField<N>,
+        basis: &Harmonics,
+        suns: Range<usize>,
+        scratch: &mut Scratch<N>,
+    ) {
+        let count = basis.count();
+        let sin = (1.0 - self.mu * self.mu).max(0.0).sqrt();
+        let y = &mut scratch.y[..count];
+        basis.evaluate(self.mu, sin, y);
+        let factors = &mut scratch.factors[..count];
+        for (l, weight) in self.source_weights.iter().enumerate() {
+            for k in basis.span(l) {
+                factors[k] = *weight * y[k];
+            }
         }
-    }
-
-    /// Replaces the stored moments of a field, of which the first are those of `basis` and the last those of polarisation, by what the
-    /// node scatters of them relative to the intensity; the logarithm of the intensity remains.
-    #[inline(always)]
-    fn scatter(&self, basis: &Harmonics, point: &mut [Spectrum<N>]) {
-        let (intensity, polarised) = point.split_at_mut(basis.count());
         let [to_intensity, natural, kept] = self.polarised_weights;
-        for (l, weight) in self.source_weights.iter().enumerate().skip(1) {
-            let degree = &mut intensity[basis.span(l)];
-            if l == 2 && !polarised.is_empty() {
-                for (moment, e) in degree.iter_mut().zip(polarised.iter_mut()) {
-                    let scattered = (*moment * natural).mul_acc(*e, kept);
-                    *moment = (*moment * *weight).mul_acc(*e, to_intensity);
-                    *e = scattered;
+        let amplitudes = TensorHarmonics::amplitudes(self.mu);
+        scratch.row.resize(suns.len(), Modes::NONE);
+        for (modes, sun) in scratch.row.iter_mut().zip(suns) {
+            let points = field.at_radius(self.place, sun);
+            let moments = points.part(0, count);
+            modes.log_intensity = moments.at(0);
+            modes.intensity = [Spectrum::ZERO; Harmonics::MAX_DEGREE + 1];
+            modes.intensity[0] = factors[0];
+            for l in 1..=basis.degree() {
+                let first = Harmonics::index(l, 0);
+                for m in 0..=l {
+                    let sum = &mut modes.intensity[m];
+                    *sum = sum.mul_acc(factors[first + m], moments.at(first + m));
                 }
-            } else {
-                for moment in degree {
-                    *moment *= *weight;
+            }
+            if let Some(start) = field.polarised_start() {
+                let polarised = points.part(start, POLARISED);
+                for m in 0..POLARISED {
+                    let e = polarised.at(m);
+                    let degree_2 = Harmonics::index(2, m);
+                    let sum = &mut modes.intensity[m];
+                    *sum = sum.mul_acc(to_intensity * y[degree_2], e);
+                    let scattered = (moments.at(degree_2) * natural).mul_acc(e, kept);
+                    modes.q[m] = scattered * amplitudes.q[m];
+                    if m > 0 {
+                        modes.u[m - 1] = scattered * amplitudes.u[m];
+                    }
+                }
+            }
+            if let (Some(place), Some(start)) = (self.horizon, field.horizon_start()) {
+                let beside = points.part(start + place.first, 2 * MODES);
+                let [first, second] = place.weights();
+                for m in 0..MODES {
+                    let value = (beside.at(m) * first).scale_acc(beside.at(MODES + m), second);
+                    let sum = &mut modes.intensity[m];
+                    *sum = sum.mul_acc(value, self.peak_weight);
                 }
             }
         }
@@ -577,47 +721,36 @@ impl<const N: usize> Response<N> {
     }
 }
 
-/// [`TensorHarmonics`] of the rays of a bundle: those that differ from 0, of order 0 for all rays, then for each ray.
-#[derive(Default)]
-struct TensorBundle {
-    q0: f32,
-    q: [Vec<f32>; 2],
-    u: [Vec<f32>; 2],
-}
-
-impl TensorBundle {
-    #[inline(always)]
-    fn evaluate(&mut self, mu: f32, toward_sun: &[f32]) {
-        let rays = toward_sun.len();
-        for list in self.q.iter_mut().chain(&mut self.u) {
-            list.resize(rays, 0.0);
-        }
-        let amplitudes = TensorHarmonics::amplitudes(mu);
-        let inverse = 1.0 / (1.0 - mu * mu).max(1e-9).sqrt();
-        self.q0 = amplitudes.q[0];
-        let [[q1, q2], [u1, u2]] = [&mut self.q, &mut self.u];
-        let (q1, q2) = (&mut q1[..rays], &mut q2[..rays]);
-        let (u1, u2) = (&mut u1[..rays], &mut u2[..rays]);
-        for slot in 0..rays {
-            let harmonics = amplitudes.at(toward_sun[slot] * inverse);
-            (q1[slot], q2[slot]) = (harmonics.q[1], harmonics.q[2]);
-            (u1[slot], u2[slot]) = (harmonics.u[1], harmonics.u[2]);
-        }
-    }
-}
-
 impl<const N: usize> Scratch<N> {
     #[inline(always)]
-    fn resize(&mut self, rays: usize, harmonics: usize) {
+    fn resize(&mut self, rays: usize, modes: usize, harmonics: usize) {
         for list in [&mut self.mu_sun, &mut self.toward_sun, &mut self.fraction] {
             list.resize(rays, 0.0);
         }
-        for list in &mut self.azimuthal {
-            list.resize(rays, 0.0);
-        }
         self.below.resize(rays, 0);
-        self.intensity.resize(rays, Spectrum::ZERO);
-        self.y.resize(rays * harmonics, 0.0);
+        self.cosines.resize(modes * rays, 0.0);
+        self.y.resize(harmonics, 0.0);
+        self.factors.resize(harmonics, Spectrum::ZERO);
+    }
+
+    /// Computes the cosines of the multiples of the azimuth of each ray where the cosine of its zenith angle is `mu`.
+    #[inline(always)]
+    fn evaluate_cosines(&mut self, mu: f32, modes: usize) {
+        let rays = self.toward_sun.len();
+        let inverse_sin = 1.0 / (1.0 - mu * mu).max(1e-9).sqrt();
+        let (ones, rest) = self.cosines.split_at_mut(rays);
+        ones.fill(1.0);
+        for (cosine, toward_sun) in rest.iter_mut().zip(&self.toward_sun) {
+            *cosine = (toward_sun * inverse_sin).clamp(-1.0, 1.0);
+        }
+        for m in 2..modes {
+            let (done, rest) = self.cosines.split_at_mut(m * rays);
+            let (one, two) = (&done[(m - 1) * rays..], &done[(m - 2) * rays..][..rays]);
+            let first = &done[rays..2 * rays];
+            for (slot, cosine) in rest[..rays].iter_mut().enumerate() {
+                *cosine = 2.0 * first[slot] * one[slot] - two[slot];
+            }
+        }
     }
 
     /// Computes for each ray the position of the sun relative to `node` and its interval in the sun cosines of the grid; returns

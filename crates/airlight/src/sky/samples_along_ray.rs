@@ -138,8 +138,8 @@ impl<const N: usize> Tracer<'_, N> {
             span,
             &mut edges,
             #[inline(always)]
-            |nodes| {
-                for node in nodes {
+            |step| {
+                for node in step.nodes {
                     let transmittance =
                         transmittance_before * dimming.coefficients.transmittance(&node.columns_m);
                     let weight = transmittance * node.dt as f32;

@@ -112,9 +112,9 @@ impl<'a, const N: usize> Tracer<'a, N> {
         let mut edges = std::mem::take(&mut self.edges);
         let span = (segment.start_m, segment.end_m);
         self.marcher
-            .march(air.shell(), ray, span, &mut edges, |nodes| {
+            .march(air.shell(), ray, span, &mut edges, |step| {
                 let mut brightest = 0.0f32;
-                for node in nodes {
+                for node in step.nodes {
                     let transmittance = dimming.coefficients.transmittance(&node.columns_m);
                     brightest = brightest.max(transmittance.max_element());
                     let mut source = self.source(node, &mut y);
@@ -211,9 +211,9 @@ impl<'a, const N: usize> Tracer<'a, N> {
             span,
             &mut edges,
             #[inline(always)]
-            |nodes| {
+            |step| {
                 let mut brightest = 0.0f32;
-                for node in nodes {
+                for node in step.nodes {
                     let transmittance = dimming.coefficients.transmittance(&node.columns_m);
                     brightest = brightest.max(transmittance.max_element());
                     let weight = transmittance * node.dt as f32;
@@ -251,9 +251,9 @@ impl<'a, const N: usize> Tracer<'a, N> {
         let mut edges = std::mem::take(&mut self.edges);
         let span = (segment.start_m, segment.end_m);
         let shell = self.air.shell();
-        self.marcher.march(shell, ray, span, &mut edges, |nodes| {
+        self.marcher.march(shell, ray, span, &mut edges, |step| {
             let mut brightest = 0.0f32;
-            for node in nodes {
+            for node in step.nodes {
                 let transmittance = dimming.coefficients.transmittance(&node.columns_m);
                 brightest = brightest.max(transmittance.max_element());
                 let weight = transmittance * node.dt as f32;

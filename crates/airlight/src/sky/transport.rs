@@ -6,7 +6,7 @@
 use super::air::Air;
 use super::field::{FieldGrid, RadianceField};
 use super::harmonics::Harmonics;
-use super::horizon::{self, ByDirection};
+use super::horizon::{self, ByDirection, MODES};
 use super::light::Light;
 use super::plane_parallel::{PlaneParallel, ResponseRow, Shape, WeightedDirection};
 use super::polarised::{POLARISED, TensorHarmonics, scattering_plane};
@@ -29,7 +29,13 @@ pub struct Transport<'a, const N: usize> {
     rescattered: Harmonics,
     /// For each radius, the paths that start there, with their weights in an integral over the cosine of the zenith angle.
     paths: Vec<Vec<(Path<N>, f64)>>,
+    marcher: Marcher<'a>,
     azimuth_cosines: Vec<f64>,
+    /// Half as many, and their weights at each of the azimuths.
+    few_azimuth_cosines: Vec<f64>,
+    between_few_azimuths: Vec<Vec<f32>>,
+    /// Cosines of the multiples of each azimuth, at least [`MODES`].
+    azimuth_modes: Vec<Vec<f32>>,
     /// Whether scattering polarises the light.
     polarised: bool,
     control: Control<'a>,
@@ -66,17 +72,23 @@ impl<'a, const N: usize> Transport<'a, N> {
                 },
             ))
         })?;
-        let azimuths = directions.azimuths;
-        let azimuth_cosines = (0..azimuths)
-            .map(|k| (PI * (k as f64 + 0.5) / azimuths as f64).cos())
-            .collect();
+        let (many, few) = (directions.azimuths, directions.azimuths.div_ceil(2));
+        let modes = MODES.max(basis.degree() + 1);
+        let multiples = |azimuth: f64| {
+            let cosine = |m: usize| (m as f64 * azimuth).cos() as f32;
+            (0..modes).map(cosine).collect()
+        };
         Ok(Self {
             air,
             grid,
             basis,
             rescattered: Harmonics::new(rescattered_degree),
             paths,
-            azimuth_cosines,
+            marcher,
+            azimuth_cosines: azimuths(many).map(f64::cos).collect(),
+            few_azimuth_cosines: azimuths(few).map(f64::cos).collect(),
+            between_few_azimuths: between_azimuths(few, many),
+            azimuth_modes: azimuths(many).map(multiples).collect(),
             polarised,
             control,
         })
@@ -91,12 +103,11 @@ impl<'a, const N: usize> Transport<'a, N> {
         self.gather(
             #[inline(always)]
             |path, bundle, work| {
-                let once = &mut work.single_scatter_without_phase;
-                match self.polarised {
-                    true => path.accumulate_sunlight::<1, true>(air, bundle, once),
-                    false => path.accumulate_sunlight::<1, false>(air, bundle, once),
-                }
                 let streams = 1 + usize::from(self.polarised);
+                match self.polarised {
+                    true => self.sunlight_without_phase::<true>(path, bundle, work),
+                    false => self.sunlight_without_phase::<false>(path, bundle, work),
+                }
                 let mut p = [0.0; Harmonics::MAX_DEGREE + 1];
                 let p = &mut p[..=self.basis.degree()];
                 for (slot, light) in work.light.iter_mut().enumerate() {
@@ -129,6 +140,53 @@ impl<'a, const N: usize> Transport<'a, N> {
                 );
             },
         )
+    }
+
+    /// Sunlight scattered into each ray of a path per unit scattering coefficient and without phase functions. Where the whole path
+    /// lies in sunlight, the light changes slowly with the azimuth and is interpolated between half as many rays.
+    #[inline(always)]
+    fn sunlight_without_phase<const LINEAR: bool>(
+        &self,
+        path: &Path<N>,
+        bundle: &RayBundle,
+        work: &mut Work<N>,
+    ) {
+        let (suns, azimuths) = (self.grid.sun_cosines.len(), self.azimuth_cosines.len());
+        let few = self.few_azimuth_cosines.len();
+        let is_lit: Vec<bool> = (0..suns)
+            .map(|sun| path.has_sun_above_horizon(bundle, sun * azimuths..(sun + 1) * azimuths))
+            .collect();
+        let of_suns = |lit: bool| {
+            let suns = self.grid.sun_cosines.iter().zip(&is_lit);
+            suns.filter(move |(_, is_lit)| **is_lit == lit)
+                .map(|(mu_sun, _)| *mu_sun)
+        };
+        let lit = bundle_of(path.mu, of_suns(true), &self.few_azimuth_cosines);
+        let other = bundle_of(path.mu, of_suns(false), &self.azimuth_cosines);
+        let [lit_light, other_light] = &mut work.parts;
+        path.accumulate_sunlight::<1, LINEAR>(self.air, &self.marcher, &lit, lit_light);
+        path.accumulate_sunlight::<1, LINEAR>(self.air, &self.marcher, &other, other_light);
+        let streams = self.air.scatterers.len() * (1 + usize::from(LINEAR));
+        let out = &mut work.single_scatter_without_phase;
+        out.clear();
+        for stream in 0..streams {
+            let mut lit_light = lit_light[stream * lit.len()..].chunks_exact(few);
+            let mut other_light = other_light[stream * other.len()..].chunks_exact(azimuths);
+            for &is_lit in &is_lit {
+                if is_lit {
+                    let light = lit_light.next().expect("a sun in light");
+                    for weights in &self.between_few_azimuths {
+                        let mut sum = Spectrum::ZERO;
+                        for (light, weight) in light.iter().zip(weights) {
+                            sum = sum.scale_acc(*light, *weight);
+                        }
+                        out.push(sum.max_scalar(0.0));
+                    }
+                } else {
+                    out.extend_from_slice(other_light.next().expect("another sun"));
+                }
+            }
+        }
     }
 
     /// Light of `field`, scattered or reflected once more.
@@ -214,20 +272,6 @@ impl<'a, const N: usize> Transport<'a, N> {
         row
     }
 
-    /// Rays with the same start and zenith angle: each azimuth for each sun cosine.
-    #[inline(always)]
-    fn bundle(&self, mu: f64) -> RayBundle {
-        let sin = ((1.0 - mu) * (1.0 + mu)).max(0.0).sqrt();
-        let mut bundle = RayBundle::default();
-        for &mu_sun in &self.grid.sun_cosines {
-            let sin_sun = ((1.0 - mu_sun) * (1.0 + mu_sun)).max(0.0).sqrt();
-            for &cos_azimuth in &self.azimuth_cosines {
-                bundle.push(mu_sun, mu * mu_sun + sin * sin_sun * cos_azimuth);
-            }
-        }
-        bundle
-    }
-
     /// Integrates the light along the rays of each path with `accumulate` and projects it onto moments and irradiances on the
     /// ground.
     fn gather(
@@ -260,24 +304,6 @@ impl<'a, const N: usize> Transport<'a, N> {
         self.basis.count() + if self.polarised { POLARISED } else { 0 }
     }
 
-    /// Functions of the directions with a zenith angle, for each azimuth.
-    #[inline(always)]
-    fn functions(&self, mu: f64) -> Vec<Functions> {
-        let sin = ((1.0 - mu) * (1.0 + mu)).max(0.0).sqrt();
-        let amplitudes = TensorHarmonics::amplitudes(mu as f32);
-        let of_azimuth = |&cosine: &f64| {
-            let mut harmonics = [0.0; Harmonics::MAX_COUNT];
-            let toward_sun = (sin * cosine) as f32;
-            self.basis.evaluate(mu as f32, toward_sun, &mut harmonics);
-            Functions {
-                harmonics,
-                tensor: amplitudes.at(cosine as f32),
-                modes: horizon::modes(cosine as f32),
-            }
-        };
-        self.azimuth_cosines.iter().map(of_azimuth).collect()
-    }
-
     /// Moments, `[sun][moment]`, downward irradiances, `[sun]`, and the light by direction, `[sun][path][mode]`, at one radius.
     #[inline(always)]
     fn gather_row(
@@ -290,47 +316,64 @@ impl<'a, const N: usize> Transport<'a, N> {
             self.azimuth_cosines.len(),
             self.count(),
         );
-        let harmonics = self.basis.count();
+        let (harmonics, modes) = (self.basis.count(), self.azimuth_modes[0].len());
         let mut moments = vec![Spectrum::ZERO; suns * count];
         let mut downward = vec![Spectrum::ZERO; suns];
-        let mut by_direction = vec![Spectrum::ZERO; suns * paths.len() * horizon::MODES];
+        let mut by_direction = vec![Spectrum::ZERO; suns * paths.len() * MODES];
         let mut work = Work {
             light: vec![Spectrum::ZERO; suns * azimuths],
             linear: vec![[Spectrum::ZERO; 2]; suns * azimuths],
             ..Default::default()
         };
+        let mut y = [0.0; Harmonics::MAX_COUNT];
         for (place, (path, solid_weight)) in paths.iter().enumerate() {
-            let bundle = self.bundle(path.mu);
+            let sun_cosines = self.grid.sun_cosines.iter().copied();
+            let bundle = bundle_of(path.mu, sun_cosines, &self.azimuth_cosines);
             work.light.fill(Spectrum::ZERO);
             work.linear.fill([Spectrum::ZERO; 2]);
             // A direct call: one through the reference would not be inlined into the vectorised code.
             (*accumulate)(path, &bundle, &mut work);
-            let w = solid_weight * 2.0 * PI / azimuths as f64;
-            let functions = self.functions(path.mu);
-            for (slot, light) in work.light.iter().enumerate() {
-                // A truncated phase function can be slightly negative.
-                let light = light.max_scalar(0.0);
-                let (sun, azimuth) = (slot / azimuths, slot % azimuths);
-                let functions = &functions[azimuth];
-                let modes = &mut by_direction[(sun * paths.len() + place) * horizon::MODES..];
-                for (m, (mode, cosine)) in modes.iter_mut().zip(functions.modes).enumerate() {
-                    let factor = if m == 0 { 1.0 } else { 2.0 } / azimuths as f32;
-                    *mode = mode.scale_acc(light, cosine * factor);
+            let sin = ((1.0 - path.mu) * (1.0 + path.mu)).max(0.0).sqrt();
+            self.basis.evaluate(path.mu as f32, sin as f32, &mut y);
+            let amplitudes = TensorHarmonics::amplitudes(path.mu as f32);
+            let tensor = |&cosine: &f64| amplitudes.at(cosine as f32);
+            let tensor: Vec<_> = self.azimuth_cosines.iter().map(tensor).collect();
+            let w = solid_weight * 2.0 * PI;
+            for sun in 0..suns {
+                let light = &work.light[sun * azimuths..][..azimuths];
+                // Means over the azimuth of the light times the cosines of its multiples.
+                let mut mean = [Spectrum::ZERO; Harmonics::MAX_DEGREE + 1];
+                for (light, cosines) in light.iter().zip(&self.azimuth_modes) {
+                    // A truncated phase function can be slightly negative.
+                    let light = light.max_scalar(0.0) * (1.0 / azimuths as f32);
+                    for (mean, cosine) in mean.iter_mut().zip(cosines) {
+                        *mean = mean.scale_acc(light, *cosine);
+                    }
+                }
+                let directed = &mut by_direction[(sun * paths.len() + place) * MODES..][..MODES];
+                for (m, (directed, mean)) in directed.iter_mut().zip(&mean).enumerate() {
+                    *directed = *mean * if m == 0 { 1.0 } else { 2.0 };
                 }
                 if *solid_weight == 0.0 {
                     continue;
                 }
                 let (intensity, polarised) =
                     moments[sun * count..(sun + 1) * count].split_at_mut(harmonics);
-                for (moment, y) in intensity.iter_mut().zip(&functions.harmonics) {
-                    *moment = moment.scale_acc(light, y * w as f32);
+                for (m, mean) in mean[..modes].iter().enumerate() {
+                    for l in m..=self.basis.degree() {
+                        let k = Harmonics::index(l, m);
+                        intensity[k] = intensity[k].scale_acc(*mean, y[k] * w as f32);
+                    }
                 }
                 if self.polarised {
-                    let tensor = &functions.tensor;
-                    tensor.add_moments(work.linear[slot], w as f32, polarised);
+                    let weight = (w / azimuths as f64) as f32;
+                    let linear = &work.linear[sun * azimuths..][..azimuths];
+                    for (linear, tensor) in linear.iter().zip(&tensor) {
+                        tensor.add_moments(*linear, weight, polarised);
+                    }
                 }
                 if path.mu > 0.0 {
-                    downward[sun] = downward[sun].scale_acc(light, (w * path.mu) as f32);
+                    downward[sun] = downward[sun].scale_acc(mean[0], (w * path.mu) as f32);
                 }
             }
         }
@@ -338,12 +381,38 @@ impl<'a, const N: usize> Transport<'a, N> {
     }
 }
 
-/// Functions of a direction with which light is projected.
-struct Functions {
-    harmonics: [f32; Harmonics::MAX_COUNT],
-    tensor: TensorHarmonics,
-    /// Azimuthal modes.
-    modes: [f32; horizon::MODES],
+/// Rays with the same start and zenith angle: each azimuth for each sun cosine.
+#[inline(always)]
+fn bundle_of(
+    mu: f64,
+    sun_cosines: impl Iterator<Item = f64>,
+    azimuth_cosines: &[f64],
+) -> RayBundle {
+    let sin = ((1.0 - mu) * (1.0 + mu)).max(0.0).sqrt();
+    let mut bundle = RayBundle::default();
+    for mu_sun in sun_cosines {
+        let sin_sun = ((1.0 - mu_sun) * (1.0 + mu_sun)).max(0.0).sqrt();
+        for &cos_azimuth in azimuth_cosines {
+            bundle.push(mu_sun, mu * mu_sun + sin * sin_sun * cos_azimuth);
+        }
+    }
+    bundle
+}
+
+/// Azimuths from that of the sun to the opposite one, in the middle of equal intervals.
+fn azimuths(count: usize) -> impl Iterator<Item = f64> + Clone {
+    (0..count).map(move |k| PI * (k as f64 + 0.5) / count as f64)
+}
+
+/// Weights of values at `few` azimuths in the value at each of `many`, exact for the first modes.
+fn between_azimuths(few: usize, many: usize) -> Vec<Vec<f32>> {
+    let weight = |to: f64, from: f64| {
+        let modes = (1..few).map(|m| (m as f64 * to).cos() * (m as f64 * from).cos());
+        ((1.0 + 2.0 * modes.sum::<f64>()) / few as f64) as f32
+    };
+    azimuths(many)
+        .map(|to| azimuths(few).map(|from| weight(to, from)).collect())
+        .collect()
 }
 
 /// Reused buffers for the rays of one radius.
@@ -354,6 +423,8 @@ struct Work<const N: usize> {
     /// Its Q and U.
     linear: Vec<[Spectrum<N>; 2]>,
     single_scatter_without_phase: Vec<Spectrum<N>>,
+    /// The same for the suns that light a whole path, and for the others.
+    parts: [Vec<Spectrum<N>>; 2],
     scratch: Scratch<N>,
 }
 

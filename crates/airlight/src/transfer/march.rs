@@ -46,6 +46,18 @@ impl Default for Node {
     }
 }
 
+/// A step of a march: a panel, or a piece of one.
+#[derive(Clone, Copy, Debug)]
+pub struct Step<'a> {
+    /// Distances from the eye to its ends, m.
+    pub from_m: f64,
+    pub to_m: f64,
+    /// Columns from the eye to the step, m.
+    pub columns_m: PerConstituent,
+    /// Quadrature nodes in the step.
+    pub nodes: &'a [Node],
+}
+
 /// Step size and quadrature of a march.
 #[derive(Clone, Debug)]
 pub struct Marcher<'a> {
@@ -75,7 +87,7 @@ impl<'a> Marcher<'a> {
         }
     }
 
-    /// Calls `visit` with the nodes of each panel from `start_m` to `end_m`, until it breaks; returns the columns up to there.
+    /// Calls `visit` with each step from `start_m` to `end_m`, until it breaks; returns the columns up to there.
     /// `edges` is scratch space.
     #[inline(always)]
     pub fn march(
@@ -84,49 +96,67 @@ impl<'a> Marcher<'a> {
         ray: &Ray,
         (start_m, end_m): (f64, f64),
         edges: &mut Vec<f64>,
-        mut visit: impl FnMut(&[Node]) -> ControlFlow<()>,
+        mut visit: impl FnMut(&Step<'_>) -> ControlFlow<()>,
     ) -> PerConstituent {
         panel_edges(shell, self.radii_m, ray, (start_m, end_m), edges);
-        let count = shell.constituents();
         let mut columns = [0.0; MAX_CONSTITUENTS];
-        let RunningRule { rule, running } = &self.rule;
-        let mut nodes = [Node::default(); MAX_NODES];
-        let nodes = &mut nodes[..rule.len()];
         for window in edges.windows(2) {
             let pieces = self.pieces(shell, ray, window[0], window[1]);
             let length = (window[1] - window[0]) / pieces as f64;
             for piece in 0..pieces {
                 let from = window[0] + piece as f64 * length;
-                for (node, (t, dt)) in nodes.iter_mut().zip(rule.on(from, from + length)) {
-                    let here = ray.advanced(t);
-                    *node = Node {
-                        t,
-                        dt,
-                        here,
-                        densities: shell.densities_at(here.radius_m),
-                        columns_m: columns,
-                        lit: !in_shadow(here.radius_m, here.mu_sun, shell.ground_radius_m),
-                    };
-                }
-                for k in 0..nodes.len() {
-                    for c in 0..count {
-                        let inside: f64 = (0..nodes.len())
-                            .map(|j| running[k][j] * nodes[j].densities[c])
-                            .sum();
-                        nodes[k].columns_m[c] += length * inside;
-                    }
-                }
-                for node in nodes.iter() {
+                let mut nodes = [Node::default(); MAX_NODES];
+                let step = self.step(shell, ray, (from, from + length), &columns, &mut nodes);
+                for node in step.nodes {
                     for (column, density) in columns.iter_mut().zip(&node.densities) {
                         *column += node.dt * density;
                     }
                 }
-                if visit(nodes).is_break() {
+                if visit(&step).is_break() {
                     return columns;
                 }
             }
         }
         columns
+    }
+
+    /// One step behind these columns; `nodes` receives its nodes.
+    #[inline(always)]
+    pub fn step<'n>(
+        &self,
+        shell: &Shell,
+        ray: &Ray,
+        (from_m, to_m): (f64, f64),
+        columns_m: &PerConstituent,
+        nodes: &'n mut [Node; MAX_NODES],
+    ) -> Step<'n> {
+        let RunningRule { rule, running } = &self.rule;
+        let nodes = &mut nodes[..rule.len()];
+        for (node, (t, dt)) in nodes.iter_mut().zip(rule.on(from_m, to_m)) {
+            let here = ray.advanced(t);
+            *node = Node {
+                t,
+                dt,
+                here,
+                densities: shell.densities_at(here.radius_m),
+                columns_m: *columns_m,
+                lit: !in_shadow(here.radius_m, here.mu_sun, shell.ground_radius_m),
+            };
+        }
+        for k in 0..nodes.len() {
+            for c in 0..shell.constituents() {
+                let inside: f64 = (0..nodes.len())
+                    .map(|j| running[k][j] * nodes[j].densities[c])
+                    .sum();
+                nodes[k].columns_m[c] += (to_m - from_m) * inside;
+            }
+        }
+        Step {
+            from_m,
+            to_m,
+            columns_m: *columns_m,
+            nodes,
+        }
     }
 
     /// Number of pieces into which a panel is divided to limit its optical depth.
