@@ -1,0 +1,29 @@
+//! Shader functions for fog, haze and skies, in WGSL, each with a Rust twin.
+//!
+//! [`source`] returns the WGSL text of the [`Part`]s that a program needs, with the parts that these need. The functions take all
+//! inputs as parameters and touch no bindings, so the text goes in front of any shader:
+//!
+//! ```
+//! use airlight_shaders::{Part, source};
+//!
+//! let shader = source(&[Part::Fog]) + "
+//! @fragment fn main(@location(0) distance_m: f32) -> @location(0) vec4<f32> {
+//!     let medium = FogMedium(vec3<f32>(0.02), vec3<f32>(0.02));
+//!     let light = FogLight(vec3<f32>(0.0), 0.5, vec3<f32>(0.3, 0.35, 0.4));
+//!     let path = uniform_fog(medium, distance_m, light);
+//!     return vec4<f32>(apply_path_optics(path, vec3<f32>(0.1)), 1.0);
+//! }";
+//! # assert!(shader.contains("fn mean_transmittance"));
+//! ```
+//!
+//! Each function states its cost (exponentials, texture reads) and its largest error against f64 ([`functions`]); the tests count
+//! the one and measure the other, on the CPU and on a Vulkan device. [`twins`] holds the functions in Rust.
+//!
+//! Only core WebGPU is used: f32, no extensions.
+
+mod function;
+mod part;
+pub mod twins;
+
+pub use function::{ErrorBound, Function, functions};
+pub use part::{Part, source, with_required};

@@ -1,0 +1,107 @@
+//! [`Part`]: the WGSL files.
+
+use airlight::{Named, named};
+
+/// A file of WGSL functions on one subject.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[non_exhaustive]
+pub enum Part {
+    /// Exponentials of optical depth without cancellation.
+    Exponentials,
+    /// Phase functions.
+    Phase,
+    /// The affine map that air applies to radiance.
+    PathOptics,
+    /// Integrals of density along rays.
+    Columns,
+    /// Fog in sunlight and ambient light.
+    Fog,
+}
+
+named! { Part, "a part of the shader library", [
+    ("exponentials", (Exponentials), "exponentials of optical depth without cancellation"),
+    ("phase", (Phase), "phase functions of molecules, haze and fog droplets"),
+    ("path-optics", (PathOptics), "transmittance and path radiance of a ray segment"),
+    ("columns", (Columns), "integrals of density along rays over flat or round ground"),
+    ("fog", (Fog), "fog in sunlight and ambient light, by single scattering"),
+] }
+
+impl Part {
+    /// The text of the file alone.
+    pub const fn text(self) -> &'static str {
+        match self {
+            Self::Exponentials => include_str!("../wgsl/exponentials.wgsl"),
+            Self::Phase => include_str!("../wgsl/phase.wgsl"),
+            Self::PathOptics => include_str!("../wgsl/path_optics.wgsl"),
+            Self::Columns => include_str!("../wgsl/columns.wgsl"),
+            Self::Fog => include_str!("../wgsl/fog.wgsl"),
+        }
+    }
+
+    /// The parts whose functions this one calls, as named in the first line of the file.
+    pub fn requires(self) -> Vec<Self> {
+        let first = self.text().lines().next().unwrap_or_default();
+        let Some(names) = first.strip_prefix("// requires: ") else {
+            return Vec::new();
+        };
+        let part = |name: &str| Self::from_name(&name.trim().replace('_', "-")).ok();
+        names.split(',').filter_map(part).collect()
+    }
+}
+
+/// Parts with all parts that they require, each once, in an order in which none is used before it is defined.
+pub fn with_required(parts: &[Part]) -> Vec<Part> {
+    let mut all = Vec::new();
+    for &part in parts {
+        for part in with_required(&part.requires())
+            .into_iter()
+            .chain(std::iter::once(part))
+        {
+            if !all.contains(&part) {
+                all.push(part);
+            }
+        }
+    }
+    all
+}
+
+/// WGSL text of parts with all parts that they require.
+pub fn source(parts: &[Part]) -> String {
+    let texts: Vec<&str> = with_required(parts).into_iter().map(Part::text).collect();
+    texts.join("\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn required_parts_come_first_and_once() {
+        assert_eq!(
+            with_required(&[Part::Fog, Part::Phase]),
+            [
+                Part::Exponentials,
+                Part::Columns,
+                Part::PathOptics,
+                Part::Fog,
+                Part::Phase
+            ]
+        );
+        for &part in Part::ALL {
+            // A name that is misspelt in the first line would be lost.
+            let first = part.text().lines().next().unwrap();
+            let named = match first.strip_prefix("// requires: ") {
+                Some(names) => names.split(',').count(),
+                None => 0,
+            };
+            assert_eq!(part.requires().len(), named, "{part}");
+        }
+    }
+
+    #[test]
+    fn files_are_parts() {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/wgsl");
+        let files = std::fs::read_dir(folder).unwrap().count();
+        assert_eq!(files, Part::ALL.len());
+    }
+}

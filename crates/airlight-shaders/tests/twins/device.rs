@@ -1,0 +1,180 @@
+//! A Vulkan device that computes functions of rows of numbers.
+
+use crate::module;
+use airlight::Named;
+use airlight_shaders::{Part, source};
+use std::fmt::Write;
+use wgpu::util::{BufferInitDescriptor, DeviceExt};
+
+/// The device and the shader that holds an entry point for each function.
+pub struct Device {
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+    shader: wgpu::ShaderModule,
+    module: naga::Module,
+    /// What the device is, in words.
+    pub name: String,
+}
+
+impl Device {
+    /// The first Vulkan device.
+    ///
+    /// # Panics
+    /// If there is none, with the way to get one.
+    pub fn new() -> Self {
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+            backends: wgpu::Backends::VULKAN,
+            ..wgpu::InstanceDescriptor::new_without_display_handle()
+        });
+        let adapter =
+            pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()))
+                .unwrap_or_else(|e| {
+                    panic!(
+                        "no Vulkan device to run shaders on ({e}): install a driver; on Debian: \
+                     apt-get install mesa-vulkan-drivers libvulkan1"
+                    )
+                });
+        let info = adapter.get_info();
+        let (device, queue) =
+            pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default()))
+                .expect("a device of the adapter");
+        let module = module::whole();
+        let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: None,
+            source: wgpu::ShaderSource::Wgsl(with_entry_points(&module).into()),
+        });
+        Self {
+            device,
+            queue,
+            shader,
+            module,
+            name: format!("{}, {}", info.name, info.driver_info),
+        }
+    }
+
+    /// Results of a function for rows of its arguments.
+    pub fn run(&self, name: &str, arguments: &[Vec<f32>]) -> Vec<Vec<f32>> {
+        let function = module::function(&self.module, name);
+        let result = function.result.as_ref().expect("a result");
+        let width = module::write(&self.module, result.ty, "").len();
+        let numbers: Vec<u8> = arguments
+            .iter()
+            .flatten()
+            .flat_map(|x| x.to_ne_bytes())
+            .collect();
+        let bytes = (arguments.len() * width * 4) as u64;
+        let inputs = self.device.create_buffer_init(&BufferInitDescriptor {
+            label: None,
+            // A buffer may not be empty.
+            contents: if numbers.is_empty() {
+                &[0; 4]
+            } else {
+                &numbers
+            },
+            usage: wgpu::BufferUsages::STORAGE,
+        });
+        let buffer = |usage| {
+            self.device.create_buffer(&wgpu::BufferDescriptor {
+                label: None,
+                size: bytes,
+                usage,
+                mapped_at_creation: false,
+            })
+        };
+        let outputs = buffer(wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
+        let readable = buffer(wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST);
+        let pipeline = self
+            .device
+            .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some(name),
+                layout: None,
+                module: &self.shader,
+                entry_point: Some(&format!("run_{name}")),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                cache: None,
+            });
+        let mut entries = vec![wgpu::BindGroupEntry {
+            binding: 1,
+            resource: outputs.as_entire_binding(),
+        }];
+        if !function.arguments.is_empty() {
+            entries.push(wgpu::BindGroupEntry {
+                binding: 0,
+                resource: inputs.as_entire_binding(),
+            });
+        }
+        let group = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: None,
+            layout: &pipeline.get_bind_group_layout(0),
+            entries: &entries,
+        });
+        let mut encoder = self
+            .device
+            .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            pass.set_pipeline(&pipeline);
+            pass.set_bind_group(0, &group, &[]);
+            pass.dispatch_workgroups(arguments.len().div_ceil(64) as u32, 1, 1);
+        }
+        encoder.copy_buffer_to_buffer(&outputs, 0, &readable, 0, bytes);
+        self.queue.submit([encoder.finish()]);
+        readable.slice(..).map_async(wgpu::MapMode::Read, |result| {
+            result.expect("results of the device");
+        });
+        self.device
+            .poll(wgpu::PollType::wait_indefinitely())
+            .expect("a device that is not lost");
+        let view = readable
+            .slice(..)
+            .get_mapped_range()
+            .expect("mapped results");
+        let results: Vec<f32> = view
+            .as_chunks::<4>()
+            .0
+            .iter()
+            .map(|bytes| f32::from_ne_bytes(*bytes))
+            .collect();
+        results.chunks(width).map(<[f32]>::to_vec).collect()
+    }
+}
+
+/// The library with a compute shader for each function, which reads rows of arguments and writes rows of results.
+fn with_entry_points(module: &naga::Module) -> String {
+    let mut text = source(Part::ALL);
+    text.push_str(
+        "
+        @group(0) @binding(0) var<storage, read> arguments: array<f32>;
+        @group(0) @binding(1) var<storage, read_write> results: array<f32>;
+        ",
+    );
+    for (_, function) in module.functions.iter() {
+        let name = function.name.as_deref().expect("the name of a function");
+        let mut width = 0;
+        let values: Vec<String> = function
+            .arguments
+            .iter()
+            .map(|argument| module::read(module, argument.ty, "arguments[first + ", &mut width))
+            .collect();
+        let result = function.result.as_ref().expect("a result");
+        let numbers = module::write(module, result.ty, "result");
+        write!(
+            text,
+            "@compute @workgroup_size(64)
+            fn run_{name}(@builtin(global_invocation_id) id: vec3<u32>) {{
+                if id.x * {count}u >= arrayLength(&results) {{ return; }}
+                let first = id.x * {width}u;
+                let result = {name}({values});
+                let into = id.x * {count}u;
+                ",
+            count = numbers.len(),
+            values = values.join(", "),
+        )
+        .expect("a text");
+        for (k, number) in numbers.iter().enumerate() {
+            writeln!(text, "results[into + {k}u] = {number};").expect("a text");
+        }
+        text.push_str("}\n");
+    }
+    text
+}
