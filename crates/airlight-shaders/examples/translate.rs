@@ -1,0 +1,27 @@
+//! Writes all shader functions in every language to the folder `generated` of the crate, or to another folder.
+//!
+//! ```sh
+//! cargo run -p airlight-shaders --example translate
+//! ```
+
+use airlight::Named;
+use airlight_shaders::{Language, Part, translate};
+use std::path::PathBuf;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let folder = std::env::args_os().nth(1).map_or_else(
+        || PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/generated")),
+        PathBuf::from,
+    );
+    for &language in Language::ALL {
+        if language == Language::Wgsl {
+            continue;
+        }
+        let folder = folder.join(language.name());
+        std::fs::create_dir_all(&folder)?;
+        let file = folder.join(format!("airlight.{}", language.extension()));
+        std::fs::write(&file, translate(Part::ALL, language)?)?;
+        println!("{}", file.display());
+    }
+    Ok(())
+}

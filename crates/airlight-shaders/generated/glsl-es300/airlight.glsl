@@ -1,0 +1,866 @@
+// Generated from the WGSL of airlight-shaders by its example `translate`: change that, not this.
+
+precision highp float;
+precision highp int;
+
+struct DropletPhase {
+    float peak_one_minus_g;
+    float wide_g;
+    float wide_alpha;
+    float wide_weight;
+};
+struct PathOptics {
+    vec3 transmittance;
+    vec3 path_radiance;
+};
+struct RaySegment {
+    float height_m;
+    float sin_elevation;
+    float curvature_per_m;
+    float length_m;
+};
+struct FogMedium {
+    vec3 extinction_per_m;
+    vec3 scattering_per_m;
+};
+struct FogLight {
+    vec3 sunlight;
+    float sin_sun;
+    vec3 ambient;
+};
+struct FogLayer {
+    vec3 extinction_per_m;
+    uint profile;
+    vec3 scattering_per_m;
+    float height_m;
+    vec3 phase;
+    float scale_m;
+};
+struct FogLayers {
+    FogLayer layers[4];
+    uint count;
+    float ground_height_m;
+    float inverse_radius_per_m;
+    FogLight light;
+};
+const float OPAQUE = 1e25;
+const float INFINITE_M = 1000000000000.0;
+const float LARGEST_LN_DENSITY = 57.0;
+const uint FOG_UNIFORM = 0u;
+const uint FOG_EXPONENTIAL = 1u;
+const uint FOG_CLAMPED = 2u;
+const uint FOG_SLAB = 3u;
+
+
+// Mean transmittance over optical depths from 0 to `x`, not negative: `(1 - e^-x) / x`, 1 at 0.
+// Cost: 1 exp.
+float mean_transmittance(float x) {
+    float series = (1.0 + (x * (-0.5 + (x * (0.16666667 + (x * (-0.041666668 + (x * (0.008333334 + (x * (-0.0013888889 + (x * (0.0001984127 - (x / 40320.0))))))))))))));
+    float direct = ((1.0 - exp(-(x))) / max(x, 0.75));
+    return ((x < 0.75) ? series : direct);
+}
+
+// `mean_transmittance` of three channels.
+// Cost: 3 exp.
+vec3 mean_transmittance_rgb(vec3 x_1) {
+    float _e2 = mean_transmittance(x_1.x);
+    float _e4 = mean_transmittance(x_1.y);
+    float _e6 = mean_transmittance(x_1.z);
+    return vec3(_e2, _e4, _e6);
+}
+
+// Mean of `e^-t t / x` over optical depths from 0 to `x`, not negative: `((1 - e^-x) / x - e^-x) / x`, 1/2 at 0.
+// Cost: 1 exp.
+float ramp_transmittance(float x_2) {
+    float series_1 = (0.5 + (x_2 * (-0.33333334 + (x_2 * (0.125 + (x_2 * (-0.033333335 + (x_2 * (0.0069444445 + (x_2 * (-0.0011904762 + (x_2 * (0.00017361112 - (x_2 / 45360.0))))))))))))));
+    float divisor = max(x_2, 0.75);
+    float transmittance = exp(-(x_2));
+    float direct_1 = ((((1.0 - transmittance) / divisor) - transmittance) / divisor);
+    return ((x_2 < 0.75) ? series_1 : direct_1);
+}
+
+// Mean of `e^-(d + t)` along a ray of optical depth `tau`, where the light that arrives at optical depth `t` from the eye is attenuated by `d(t)`, linear in `t`: the divided difference `(e^-near - e^-far) / (far - near)`. `near` is `d(0)`, `far` is `d(tau) + tau`; both from 0 to 1e30. No special case: `near` and `far` may be equal.
+// Cost: 2 exp.
+float mean_attenuated_source(float near, float far) {
+    float _e7 = mean_transmittance(abs((far - near)));
+    return (exp(-(min(near, far))) * _e7);
+}
+
+// `mean_attenuated_source` of three channels.
+// Cost: 6 exp.
+vec3 mean_attenuated_source_rgb(vec3 near_1, vec3 far_1) {
+    vec3 _e7 = mean_transmittance_rgb(abs((far_1 - near_1)));
+    return (exp(-(min(near_1, far_1))) * _e7);
+}
+
+// Weights of the near (x) and the far (y) end of a segment of optical depth `along` for a source that is linear in optical depth, per unit of optical depth.
+// Cost: 2 exp.
+vec2 linear_source_mean(float along) {
+    float _e1 = ramp_transmittance(along);
+    float _e2 = mean_transmittance(along);
+    return vec2((_e2 - _e1), _e1);
+}
+
+// Scaled complementary error function `e^(z^2) erfc(z)` for `z` not negative. Chebyshev fit in `1 / (1 + z / 2)`.
+// Cost: no exp.
+float scaled_erfc(float z) {
+    float t = (1.0 / (1.0 + (0.5 * z)));
+    return (t * (0.2820948 + (t * (0.28209376 + (t * (0.24688388 + (t * (0.17532408 + (t * (0.093414746 + (t * (-0.05905091 + (t * (0.13185003 + (t * (-0.4545637 + (t * (0.49338573 + (t * (-0.23460549 + (t * 0.043173067)))))))))))))))))))));
+}
+
+// 1 minus the cosine of the angle between two unit vectors, without cancellation for small angles: half the square of their distance. The scattering angle of light from the sun is the angle between the view ray and the direction to the sun.
+// Cost: no exp.
+float one_minus_cos_between(vec3 a, vec3 b) {
+    vec3 apart = (a - b);
+    return (0.5 * dot(apart, apart));
+}
+
+// Isotropic scattering.
+// Cost: no exp.
+float isotropic_phase() {
+    return 0.07957747;
+}
+
+// Rayleigh scattering by molecules with a depolarization ratio for natural light in [0, 6/7), 0.028 for air (Bucholtz, Appl. Opt. 34, 2765, 1995, eqs. 10 and 12).
+// Cost: no exp.
+float rayleigh_phase(float one_minus_cos, float depolarization_ratio) {
+    float gamma = (depolarization_ratio / (2.0 - depolarization_ratio));
+    float cos_angle = (1.0 - one_minus_cos);
+    return ((0.059683103 / (1.0 + (2.0 * gamma))) * ((1.0 + (3.0 * gamma)) + (((1.0 - gamma) * cos_angle) * cos_angle)));
+}
+
+// Henyey-Greenstein phase function of a forward peak, of mean cosine `1 - one_minus_g`: `one_minus_g` from 1e-6 to 1, which keeps the width of narrow peaks.
+// Cost: no exp.
+float henyey_greenstein_peak(float one_minus_cos_1, float one_minus_g) {
+    float d = ((one_minus_g * one_minus_g) + ((2.0 * (1.0 - one_minus_g)) * one_minus_cos_1));
+    return (((0.07957747 * one_minus_g) * (2.0 - one_minus_g)) / (d * sqrt(d)));
+}
+
+// Henyey & Greenstein (1941): mean cosine `g`, -1 < g < 1.
+// Cost: no exp.
+float henyey_greenstein(float one_minus_cos_2, float g) {
+    float _e10 = henyey_greenstein_peak(((g >= 0.0) ? one_minus_cos_2 : (2.0 - one_minus_cos_2)), (1.0 - abs(g)));
+    return _e10;
+}
+
+// Draine (Astrophys. J. 598, 1017, 2003, eq. 6): Henyey-Greenstein times `1 + alpha cos^2`, normalised; `alpha` not negative.
+// Cost: no exp.
+float draine(float one_minus_cos_3, float g_1, float alpha) {
+    float norm = (1.0 + ((alpha * (1.0 + ((2.0 * g_1) * g_1))) / 3.0));
+    float cos_angle_1 = (1.0 - one_minus_cos_3);
+    float _e15 = henyey_greenstein(one_minus_cos_3, g_1);
+    return ((_e15 * (1.0 + ((alpha * cos_angle_1) * cos_angle_1))) / norm);
+}
+
+// Cornette & Shanks (Appl. Opt. 31, 3152, 1992, eq. 8): Henyey-Greenstein times `1 + cos^2`, normalised.
+// Cost: no exp.
+float cornette_shanks(float one_minus_cos_4, float g_2) {
+    float _e3 = draine(one_minus_cos_4, g_2, 1.0);
+    return _e3;
+}
+
+// Fog droplets of a diameter of 5 to 50 micrometres, to which other diameters are clamped (Jendersie & d'Eon, "An approximate Mie scattering function for fog and cloud rendering", SIGGRAPH 2023 Talks, eqs. 4-7). Compute it once for all pixels.
+// Cost: 4 exp.
+DropletPhase droplet_phase(float diameter_um) {
+    float d_1 = clamp(diameter_um, 5.0, 50.0);
+    float peak = (0.0990567 / (d_1 - 1.67154));
+    float _e8 = mean_transmittance(peak);
+    return DropletPhase((peak * _e8), exp(((-2.20679 / (d_1 + 3.91029)) - 0.428934)), exp((3.62489 - (8.29288 / (d_1 + 5.52825)))), exp(((-0.599085 / (d_1 - 0.641583)) - 0.665888)));
+}
+
+// Value of the phase function of fog droplets.
+// Cost: no exp.
+float evaluate_droplet_phase(DropletPhase phase, float one_minus_cos_5) {
+    float _e6 = henyey_greenstein_peak(one_minus_cos_5, phase.peak_one_minus_g);
+    float _e11 = draine(one_minus_cos_5, phase.wide_g, phase.wide_alpha);
+    return (((1.0 - phase.wide_weight) * _e6) + (phase.wide_weight * _e11));
+}
+
+// Radiance at the eye of the radiance behind the segment.
+// Cost: no exp.
+vec3 apply_path_optics(PathOptics path, vec3 radiance) {
+    return ((path.transmittance * radiance) + path.path_radiance);
+}
+
+// A segment followed by one farther away, as one segment.
+// Cost: no exp.
+PathOptics near_then_far(PathOptics near_2, PathOptics far_2) {
+    return PathOptics((near_2.transmittance * far_2.transmittance), (near_2.path_radiance + (near_2.transmittance * far_2.path_radiance)));
+}
+
+// Segment of an optical depth with a source function (radiance scattered towards the eye per unit of optical depth) that is constant along it: `(1 - T) source`, exact in thin and opaque air.
+// Cost: 6 exp.
+PathOptics constant_source(vec3 optical_depth, vec3 source) {
+    vec3 _e4 = mean_transmittance_rgb(optical_depth);
+    return PathOptics(exp(-(optical_depth)), (source * (optical_depth * _e4)));
+}
+
+// A segment over ground of curvature `inverse_radius_per_m` = 1 / R, 0 for flat ground.
+// Cost: no exp.
+RaySegment ray_segment(float height_m, float sin_elevation, float length_m, float inverse_radius_per_m) {
+    float squared_cos = ((1.0 - sin_elevation) * (1.0 + sin_elevation));
+    return RaySegment(height_m, sin_elevation, ((0.5 * max(squared_cos, 0.0)) * inverse_radius_per_m), length_m);
+}
+
+// Height after `s_m` metres, m.
+// Cost: no exp.
+float height_at(RaySegment ray, float s_m) {
+    return (ray.height_m + (s_m * (ray.sin_elevation + (s_m * ray.curvature_per_m))));
+}
+
+// The part from `from_m` to `to_m`, as a segment that starts there.
+// Cost: no exp.
+RaySegment ray_part(RaySegment ray_1, float from_m, float to_m) {
+    float _e3 = height_at(ray_1, from_m);
+    return RaySegment(_e3, (ray_1.sin_elevation + ((2.0 * from_m) * ray_1.curvature_per_m)), ray_1.curvature_per_m, (to_m - from_m));
+}
+
+// Interval of distances (m) in which the segment is below `height_m`; (0, 0) if it never is. Only a ray that grazes this height over round ground has an error above 1e-2 m.
+// Cost: no exp.
+vec2 below_height(RaySegment ray_2, float height_m_1) {
+    float first = 0.0;
+    float last = 0.0;
+    float above = (ray_2.height_m - height_m_1);
+    if ((ray_2.curvature_per_m > 0.0)) {
+        float discriminant = ((ray_2.sin_elevation * ray_2.sin_elevation) - ((4.0 * ray_2.curvature_per_m) * above));
+        if ((discriminant > 0.0)) {
+            float root = sqrt(discriminant);
+            float q = (-0.5 * (ray_2.sin_elevation + ((ray_2.sin_elevation >= 0.0) ? root : -(root))));
+            float a_2 = (q / ray_2.curvature_per_m);
+            float b_2 = (above / q);
+            first = min(a_2, b_2);
+            last = max(a_2, b_2);
+        }
+    } else {
+        if ((ray_2.sin_elevation == 0.0)) {
+            last = ((above < 0.0) ? ray_2.length_m : 0.0);
+        } else {
+            if ((ray_2.sin_elevation > 0.0)) {
+                last = (-(above) / ray_2.sin_elevation);
+            } else {
+                first = (above / -(ray_2.sin_elevation));
+                last = ray_2.length_m;
+            }
+        }
+    }
+    float _e54 = first;
+    first = max(_e54, 0.0);
+    float _e57 = last;
+    last = min(_e57, ray_2.length_m);
+    float _e62 = first;
+    float _e63 = last;
+    float _e65 = last;
+    float _e66 = first;
+    return ((_e65 > _e66) ? vec2(_e62, _e63) : vec2(0.0));
+}
+
+// Density that has decayed over `heights` scale heights (negative: increased).
+// Cost: 1 exp.
+float decayed(float heights) {
+    return exp(min(-(heights), LARGEST_LN_DENSITY));
+}
+
+// `int_0^length e^-(a s + b s^2) ds` for `a` not negative and `b` above 0.
+// Cost: 4 exp.
+float falling_column_m(float a_1, float b_1, float length_m_1) {
+    float fall = (length_m_1 * (a_1 + (b_1 * length_m_1)));
+    if ((fall < 0.5)) {
+        float s1_ = (0.06943184 * length_m_1);
+        float s2_ = (0.3300095 * length_m_1);
+        float s3_ = (0.66999054 * length_m_1);
+        float s4_ = (0.93056816 * length_m_1);
+        float outer = (exp((-(s1_) * (a_1 + (b_1 * s1_)))) + exp((-(s4_) * (a_1 + (b_1 * s4_)))));
+        float inner = (exp((-(s2_) * (a_1 + (b_1 * s2_)))) + exp((-(s3_) * (a_1 + (b_1 * s3_)))));
+        return (length_m_1 * ((0.17392743 * outer) + (0.32607257 * inner)));
+    }
+    float root_1 = sqrt(b_1);
+    float near_3 = ((0.5 * a_1) / root_1);
+    float _e52 = scaled_erfc((near_3 + (root_1 * length_m_1)));
+    float far_3 = (exp(-(fall)) * _e52);
+    float _e56 = scaled_erfc(near_3);
+    return ((0.88622695 / root_1) * (_e56 - far_3));
+}
+
+// Column of the density `e^-((height - reference_height_m) / scale_height_m)` along a ray over flat ground: height fog (Ishiyama 2018, eqs. 14 and 23). Level rays and infinite ones included; at most `OPAQUE`.
+// Cost: 2 exp.
+float flat_exponential_column_m(float height_m_2, float sin_elevation_1, float length_m_2, float reference_height_m, float scale_height_m) {
+    float rise = ((sin_elevation_1 * length_m_2) / scale_height_m);
+    float densest = (((height_m_2 - reference_height_m) / scale_height_m) + min(rise, 0.0));
+    float _e12 = decayed(densest);
+    float _e14 = mean_transmittance(abs(rise));
+    return min((_e12 * (length_m_2 * _e14)), OPAQUE);
+}
+
+// `flat_exponential_column_m` over flat or round ground: height fog, or a gas.
+// Cost: 9 exp; over flat ground 2.
+float exponential_column_m(RaySegment ray_3, float reference_height_m_1, float scale_height_m_1) {
+    float column = 0.0;
+    float length_ = ray_3.length_m;
+    if ((ray_3.curvature_per_m <= 0.0)) {
+        float _e9 = flat_exponential_column_m(ray_3.height_m, ray_3.sin_elevation, length_, reference_height_m_1, scale_height_m_1);
+        return _e9;
+    }
+    float slope = (ray_3.sin_elevation / scale_height_m_1);
+    float curvature = (ray_3.curvature_per_m / scale_height_m_1);
+    float start = ((ray_3.height_m - reference_height_m_1) / scale_height_m_1);
+    float lowest = clamp(((-0.5 * slope) / curvature), 0.0, length_);
+    float densest_1 = (start + (lowest * (slope + (lowest * curvature))));
+    float back = max(-((slope + ((2.0 * curvature) * lowest))), 0.0);
+    float ahead = max((slope + ((2.0 * curvature) * lowest)), 0.0);
+    if ((lowest > 0.0)) {
+        float _e43 = column;
+        float _e44 = falling_column_m(back, curvature, lowest);
+        column = (_e43 + _e44);
+    }
+    if ((lowest < length_)) {
+        float _e47 = column;
+        float _e49 = falling_column_m(ahead, curvature, (length_ - lowest));
+        column = (_e47 + _e49);
+    }
+    float _e51 = decayed(densest_1);
+    float _e52 = column;
+    return min((_e51 * _e52), OPAQUE);
+}
+
+// Column of a density that is 1 up to the base and falls exponentially above it, `e^-(max(0, height - base) / scale)`, along a ray over flat ground: the height fog after Wenzel, split where the ray crosses the base.
+// Cost: 2 exp.
+float flat_clamped_column_m(float height_m_3, float sin_elevation_2, float length_m_3, float base_height_m, float scale_height_m_2) {
+    vec2 _e7 = below_height(RaySegment(height_m_3, sin_elevation_2, 0.0, length_m_3), base_height_m);
+    float below_m = (_e7.y - _e7.x);
+    if ((below_m <= 0.0)) {
+        float _e13 = flat_exponential_column_m(height_m_3, sin_elevation_2, length_m_3, base_height_m, scale_height_m_2);
+        return _e13;
+    }
+    float beyond_m = (length_m_3 - below_m);
+    float _e18 = flat_exponential_column_m(0.0, abs(sin_elevation_2), beyond_m, 0.0, scale_height_m_2);
+    return min((below_m + _e18), OPAQUE);
+}
+
+// `flat_clamped_column_m` over flat or round ground.
+// Cost: 18 exp; over flat ground 2.
+float clamped_column_m(RaySegment ray_4, float base_height_m_1, float scale_height_m_3) {
+    float column_1 = 0.0;
+    if ((ray_4.curvature_per_m <= 0.0)) {
+        float _e9 = flat_clamped_column_m(ray_4.height_m, ray_4.sin_elevation, ray_4.length_m, base_height_m_1, scale_height_m_3);
+        return _e9;
+    }
+    vec2 _e10 = below_height(ray_4, base_height_m_1);
+    if ((_e10.x == _e10.y)) {
+        float _e14 = exponential_column_m(ray_4, base_height_m_1, scale_height_m_3);
+        return _e14;
+    }
+    column_1 = (_e10.y - _e10.x);
+    if ((_e10.x > 0.0)) {
+        float _e22 = column_1;
+        RaySegment _e25 = ray_part(ray_4, 0.0, _e10.x);
+        float _e26 = exponential_column_m(_e25, base_height_m_1, scale_height_m_3);
+        column_1 = (_e22 + _e26);
+    }
+    if ((_e10.y < ray_4.length_m)) {
+        float _e31 = column_1;
+        RaySegment _e34 = ray_part(ray_4, _e10.y, ray_4.length_m);
+        float _e35 = exponential_column_m(_e34, base_height_m_1, scale_height_m_3);
+        column_1 = (_e31 + _e35);
+    }
+    float _e37 = column_1;
+    return min(_e37, OPAQUE);
+}
+
+// Column of a density that is 1 from `bottom_m` to `top_m` and 0 elsewhere. Only a ray that grazes an edge over round ground has an error above 1e-2 m.
+// Cost: no exp.
+float layer_column_m(RaySegment ray_5, float bottom_m, float top_m) {
+    float down = 0.0;
+    float up = 0.0;
+    bool local = false;
+    vec2 _e3 = below_height(ray_5, top_m);
+    vec2 _e4 = below_height(ray_5, bottom_m);
+    if ((_e4.x == _e4.y)) {
+        return (_e3.y - _e3.x);
+    }
+    float thickness = (top_m - bottom_m);
+    down = max((_e4.x - _e3.x), 0.0);
+    if ((_e3.x > 0.0)) {
+        down = (-(thickness) / (ray_5.sin_elevation + (ray_5.curvature_per_m * (_e3.x + _e4.x))));
+    }
+    up = max((_e3.y - _e4.y), 0.0);
+    if ((_e3.y < ray_5.length_m)) {
+        local = (_e4.y < ray_5.length_m);
+    } else {
+        local = false;
+    }
+    bool _e45 = local;
+    if (_e45) {
+        up = (thickness / (ray_5.sin_elevation + (ray_5.curvature_per_m * (_e3.y + _e4.y))));
+    }
+    float _e54 = down;
+    float _e55 = up;
+    return (_e54 + _e55);
+}
+
+// Column of the exponential profile above a height, m.
+// Cost: 1 exp.
+float exponential_column_above_m(float height_m_4, float reference_height_m_2, float scale_height_m_4) {
+    float _e5 = decayed(((height_m_4 - reference_height_m_2) / scale_height_m_4));
+    return (scale_height_m_4 * _e5);
+}
+
+// Column of the clamped profile above a height, m.
+// Cost: 1 exp.
+float clamped_column_above_m(float height_m_5, float base_height_m_2, float scale_height_m_5) {
+    float _e10 = decayed((max((height_m_5 - base_height_m_2), 0.0) / scale_height_m_5));
+    return (max((base_height_m_2 - height_m_5), 0.0) + (scale_height_m_5 * _e10));
+}
+
+// Fog of any profile along a column (m), with sunlight that the fog does not attenuate on its way to the ray: Ishiyama 2018 as printed, eqs. 22 and 23. Correct in thin fog; in dense fog up to three times as bright as all orders of scattering.
+// Cost: 6 exp.
+PathOptics fog_undimmed(FogMedium medium, float column_m, FogLight light) {
+    vec3 depth_2 = (medium.extinction_per_m * column_m);
+    vec3 _e5 = mean_transmittance_rgb(depth_2);
+    vec3 opacity = (_e5 * column_m);
+    return PathOptics(exp(-(depth_2)), ((medium.scattering_per_m * (light.sunlight + light.ambient)) * opacity));
+}
+
+// Fog of one profile over flat ground, with sunlight attenuated by the fog above the ray: exact for single scattering. The columns (m) are those of the ray, and those from its start and its end to the sun (the column above divided by `sin_sun`).
+// Cost: 12 exp.
+PathOptics fog_single_scattering(FogMedium medium_1, float column_m_1, float to_sun_near_m, float to_sun_far_m, FogLight light_1) {
+    vec3 depth_3 = (medium_1.extinction_per_m * column_m_1);
+    vec3 near_4 = (medium_1.extinction_per_m * to_sun_near_m);
+    vec3 far_4 = (medium_1.extinction_per_m * (to_sun_far_m + column_m_1));
+    vec3 _e13 = mean_attenuated_source_rgb(near_4, far_4);
+    vec3 sunlit_1 = (light_1.sunlight * _e13);
+    vec3 _e16 = mean_transmittance_rgb(depth_3);
+    vec3 ambient = (light_1.ambient * _e16);
+    return PathOptics(exp(-(depth_3)), (medium_1.scattering_per_m * ((sunlit_1 + ambient) * column_m_1)));
+}
+
+// Uniform fog over a distance (m). It has no upper end, so sunlight is not attenuated.
+// Cost: 6 exp.
+PathOptics uniform_fog(FogMedium medium_2, float length_m_4, FogLight light_2) {
+    PathOptics _e3 = fog_undimmed(medium_2, length_m_4, light_2);
+    return _e3;
+}
+
+// Column between a height and the sun over flat ground, m, from the column above that height; `OPAQUE` if the sun is down.
+// Cost: no exp.
+float column_to_sun_m(float column_above_m, float sin_sun) {
+    return ((sin_sun > 0.0) ? min((min(column_above_m, OPAQUE) / max(sin_sun, 1e-12)), OPAQUE) : OPAQUE);
+}
+
+// Exponential height fog over flat ground, with unattenuated sunlight: Ishiyama 2018 as printed, without its 0/0 on level rays.
+// Cost: 8 exp.
+PathOptics exponential_fog_undimmed(FogMedium medium_3, float height_m_6, float sin_elevation_3, float length_m_5, float reference_height_m_3, float scale_height_m_6, FogLight light_3) {
+    float _e7 = flat_exponential_column_m(height_m_6, sin_elevation_3, length_m_5, reference_height_m_3, scale_height_m_6);
+    PathOptics _e8 = fog_undimmed(medium_3, _e7, light_3);
+    return _e8;
+}
+
+// Exponential height fog over flat ground, with sunlight that the fog above attenuates.
+// Cost: 16 exp.
+PathOptics exponential_fog(FogMedium medium_4, float height_m_7, float sin_elevation_4, float length_m_6, float reference_height_m_4, float scale_height_m_7, FogLight light_4) {
+    float _e7 = flat_exponential_column_m(height_m_7, sin_elevation_4, length_m_6, reference_height_m_4, scale_height_m_7);
+    float end_height_m = (height_m_7 + (sin_elevation_4 * length_m_6));
+    float _e10 = exponential_column_above_m(height_m_7, reference_height_m_4, scale_height_m_7);
+    float _e11 = exponential_column_above_m(end_height_m, reference_height_m_4, scale_height_m_7);
+    float _e13 = column_to_sun_m(_e10, light_4.sin_sun);
+    float _e15 = column_to_sun_m(_e11, light_4.sin_sun);
+    PathOptics _e16 = fog_single_scattering(medium_4, _e7, _e13, _e15, light_4);
+    return _e16;
+}
+
+// Fog that is uniform up to the base and thins exponentially above it (after Wenzel), over flat ground, with sunlight that the fog above attenuates.
+// Cost: 16 exp.
+PathOptics clamped_fog(FogMedium medium_5, float height_m_8, float sin_elevation_5, float length_m_7, float base_height_m_3, float scale_height_m_8, FogLight light_5) {
+    float _e7 = flat_clamped_column_m(height_m_8, sin_elevation_5, length_m_7, base_height_m_3, scale_height_m_8);
+    float end_height_m_1 = (height_m_8 + (sin_elevation_5 * length_m_7));
+    float _e10 = clamped_column_above_m(height_m_8, base_height_m_3, scale_height_m_8);
+    float _e11 = clamped_column_above_m(end_height_m_1, base_height_m_3, scale_height_m_8);
+    float _e13 = column_to_sun_m(_e10, light_5.sin_sun);
+    float _e15 = column_to_sun_m(_e11, light_5.sin_sun);
+    PathOptics _e16 = fog_single_scattering(medium_5, _e7, _e13, _e15, light_5);
+    return _e16;
+}
+
+// Column of a layer along a ray, m.
+// Cost: 18 exp; over flat ground 2.
+float fog_layer_column_m(FogLayer layer, RaySegment ray_6) {
+    switch(layer.profile) {
+        case 1u: {
+            float _e5 = exponential_column_m(ray_6, layer.height_m, layer.scale_m);
+            return _e5;
+        }
+        case 2u: {
+            float _e8 = clamped_column_m(ray_6, layer.height_m, layer.scale_m);
+            return _e8;
+        }
+        case 3u: {
+            float _e13 = layer_column_m(ray_6, layer.height_m, (layer.height_m + layer.scale_m));
+            return _e13;
+        }
+        default: {
+            return ray_6.length_m;
+        }
+    }
+}
+
+// Optical depth of all layers along a ray, exact over flat and round ground.
+// Cost: 18 exp a step.
+vec3 fog_optical_depth(FogLayers fog, RaySegment ray_7) {
+    vec3 depth = vec3(0.0);
+    uint i = 0u;
+    bool loop_init = true;
+    while(true) {
+        if (!loop_init) {
+            uint _e20 = i;
+            i = (_e20 + 1u);
+        }
+        loop_init = false;
+        uint _e7 = i;
+        if ((_e7 < min(fog.count, 4u))) {
+        } else {
+            break;
+        }
+        {
+            uint _e13 = i;
+            FogLayer layer_2 = fog.layers[_e13];
+            vec3 _e15 = depth;
+            float _e17 = fog_layer_column_m(layer_2, ray_7);
+            depth = (_e15 + (layer_2.extinction_per_m * _e17));
+        }
+    }
+    vec3 _e23 = depth;
+    return _e23;
+}
+
+// Optical depth of all layers between a height and the sun. Uniform layers are ignored, as they would block all light; `OPAQUE` where the ground hides the sun.
+// Cost: 18 exp a step.
+vec3 fog_depth_to_sun(FogLayers fog_1, float height_m_9) {
+    bool local_1 = false;
+    bool local_2 = false;
+    bool local_3 = false;
+    bool local_4 = false;
+    vec3 depth_1 = vec3(0.0);
+    uint i_1 = 0u;
+    RaySegment _e6 = ray_segment(height_m_9, fog_1.light.sin_sun, INFINITE_M, fog_1.inverse_radius_per_m);
+    if ((_e6.curvature_per_m > 0.0)) {
+        local_1 = (_e6.sin_elevation < 0.0);
+    } else {
+        local_1 = false;
+    }
+    bool dips = local_1;
+    float lowest_m = (height_m_9 - (((0.25 * _e6.sin_elevation) * _e6.sin_elevation) / max(_e6.curvature_per_m, 1e-30)));
+    if ((_e6.curvature_per_m <= 0.0)) {
+        local_2 = (_e6.sin_elevation <= 0.0);
+    } else {
+        local_2 = false;
+    }
+    bool _e36 = local_2;
+    if (!(_e36)) {
+        if (dips) {
+            local_4 = (lowest_m < fog_1.ground_height_m);
+        } else {
+            local_4 = false;
+        }
+        bool _e45 = local_4;
+        local_3 = _e45;
+    } else {
+        local_3 = true;
+    }
+    bool _e47 = local_3;
+    if (_e47) {
+        return vec3(1e25);
+    }
+    bool loop_init_1 = true;
+    while(true) {
+        if (!loop_init_1) {
+            uint _e71 = i_1;
+            i_1 = (_e71 + 1u);
+        }
+        loop_init_1 = false;
+        uint _e55 = i_1;
+        if ((_e55 < min(fog_1.count, 4u))) {
+        } else {
+            break;
+        }
+        {
+            uint _e61 = i_1;
+            FogLayer layer_3 = fog_1.layers[_e61];
+            if ((layer_3.profile != FOG_UNIFORM)) {
+                vec3 _e66 = depth_1;
+                float _e68 = fog_layer_column_m(layer_3, _e6);
+                depth_1 = (_e66 + (layer_3.extinction_per_m * _e68));
+            }
+        }
+    }
+    vec3 _e74 = depth_1;
+    return _e74;
+}
+
+// The nearest height above (`rising`) or below a level at which `layered_fog` splits a ray because of a layer; 1e30 times the direction if there is none. Exponential decays have steps that are dense where most of the fog is.
+// Cost: no exp.
+float next_fog_break_m(FogLayer layer_1, float level_m, bool rising, float ground_height_m) {
+    float steps[14] = float[14](0.0, 0.12, 0.25, 0.4, 0.57, 0.77, 1.0, 1.3, 1.65, 2.1, 2.7, 3.5, 5.0, 8.0);
+    float from_m_1 = 0.0;
+    int count = 14;
+    float nearest = 0.0;
+    int i_2 = 0;
+    bool local_5 = false;
+    bool local_6 = false;
+    from_m_1 = layer_1.height_m;
+    if ((layer_1.profile == FOG_UNIFORM)) {
+        count = 0;
+    } else {
+        if ((layer_1.profile == FOG_SLAB)) {
+            steps[1] = 1.0;
+            count = 2;
+        } else {
+            if ((layer_1.profile == FOG_EXPONENTIAL)) {
+                from_m_1 = ground_height_m;
+            } else {
+                from_m_1 = max(layer_1.height_m, ground_height_m);
+            }
+        }
+    }
+    nearest = (rising ? 1e30 : -1e30);
+    bool loop_init_2 = true;
+    while(true) {
+        if (!loop_init_2) {
+            int _e73 = i_2;
+            i_2 = (_e73 + 1);
+        }
+        loop_init_2 = false;
+        int _e45 = i_2;
+        int _e46 = count;
+        if ((_e45 < _e46)) {
+        } else {
+            break;
+        }
+        {
+            float _e48 = from_m_1;
+            int _e49 = i_2;
+            float _e51 = steps[_e49];
+            float height = (_e48 + (_e51 * layer_1.scale_m));
+            if (rising) {
+                float _e55 = nearest;
+                if ((height > level_m)) {
+                    float _e59 = nearest;
+                    local_5 = (height < _e59);
+                } else {
+                    local_5 = false;
+                }
+                bool _e62 = local_5;
+                nearest = (_e62 ? height : _e55);
+            } else {
+                float _e64 = nearest;
+                if ((height < level_m)) {
+                    float _e68 = nearest;
+                    local_6 = (height > _e68);
+                } else {
+                    local_6 = false;
+                }
+                bool _e71 = local_6;
+                nearest = (_e71 ? height : _e64);
+            }
+        }
+    }
+    float _e76 = nearest;
+    return _e76;
+}
+
+// Several layers of fog, over flat or round ground. The ray is split at heights, and between them all layers count as one: single scattering of sunlight and ambient light within 0.2 % of exact over flat ground, 1 % over round ground.
+// Cost: 3 exp, 84 exp a step; over flat ground 9 a step and 4 a layer.
+PathOptics layered_fog(FogLayers fog_2, RaySegment ray_8) {
+    vec3 before = vec3(0.0);
+    vec3 radiance_1 = vec3(0.0);
+    float at_m = 0.0;
+    float level_m_1 = 0.0;
+    vec3 to_sun = vec3(0.0);
+    bool local_7 = false;
+    bool local_8 = false;
+    bool rising_1 = false;
+    int step_ = 0;
+    float next_level_m = 0.0;
+    uint i_3 = 0u;
+    float end_m = 0.0;
+    bool local_9 = false;
+    bool local_10 = false;
+    vec3 along_1 = vec3(0.0);
+    vec3 sunlit = vec3(0.0);
+    vec3 scattered = vec3(0.0);
+    uint i_4 = 0u;
+    bool local_11 = false;
+    uint count_1 = min(fog_2.count, 4u);
+    level_m_1 = ray_8.height_m;
+    float _e15 = level_m_1;
+    vec3 _e16 = fog_depth_to_sun(fog_2, _e15);
+    to_sun = _e16;
+    float dip_m = ((ray_8.curvature_per_m > 0.0) ? ((-0.5 * ray_8.sin_elevation) / max(ray_8.curvature_per_m, 1e-30)) : 0.0);
+    if (!((ray_8.sin_elevation > 0.0))) {
+        if ((ray_8.sin_elevation == 0.0)) {
+            local_8 = (ray_8.curvature_per_m > 0.0);
+        } else {
+            local_8 = false;
+        }
+        bool _e45 = local_8;
+        local_7 = _e45;
+    } else {
+        local_7 = true;
+    }
+    bool _e47 = local_7;
+    rising_1 = _e47;
+    bool loop_init_3 = true;
+    while(true) {
+        if (!loop_init_3) {
+            int _e205 = step_;
+            step_ = (_e205 + 1);
+        }
+        loop_init_3 = false;
+        int _e51 = step_;
+        if ((_e51 < 124)) {
+        } else {
+            break;
+        }
+        {
+            float _e54 = at_m;
+            if ((_e54 >= ray_8.length_m)) {
+                break;
+            }
+            bool _e57 = rising_1;
+            next_level_m = (_e57 ? 1e30 : -1e30);
+            i_3 = 0u;
+            bool loop_init_4 = true;
+            while(true) {
+                if (!loop_init_4) {
+                    uint _e79 = i_3;
+                    i_3 = (_e79 + 1u);
+                }
+                loop_init_4 = false;
+                uint _e64 = i_3;
+                if ((_e64 < count_1)) {
+                } else {
+                    break;
+                }
+                {
+                    uint _e67 = i_3;
+                    float _e69 = level_m_1;
+                    bool _e70 = rising_1;
+                    float _e72 = next_fog_break_m(fog_2.layers[_e67], _e69, _e70, fog_2.ground_height_m);
+                    float _e73 = next_level_m;
+                    float _e75 = next_level_m;
+                    bool _e77 = rising_1;
+                    next_level_m = (_e77 ? min(_e75, _e72) : max(_e73, _e72));
+                }
+            }
+            end_m = ray_8.length_m;
+            float _e84 = next_level_m;
+            if ((abs(_e84) < 1e30)) {
+                float _e88 = next_level_m;
+                vec2 _e89 = below_height(ray_8, _e88);
+                if ((_e89.y > _e89.x)) {
+                    bool _e95 = rising_1;
+                    end_m = (_e95 ? _e89.y : _e89.x);
+                } else {
+                    bool _e97 = rising_1;
+                    if (_e97) {
+                        float _e98 = at_m;
+                        end_m = _e98;
+                    }
+                }
+            }
+            bool _e99 = rising_1;
+            if (!(_e99)) {
+                float _e103 = at_m;
+                local_9 = (dip_m > _e103);
+            } else {
+                local_9 = false;
+            }
+            bool _e106 = local_9;
+            if (_e106) {
+                float _e109 = end_m;
+                local_10 = (dip_m < _e109);
+            } else {
+                local_10 = false;
+            }
+            bool turns = local_10;
+            if (turns) {
+                end_m = dip_m;
+            }
+            float _e113 = end_m;
+            float _e114 = at_m;
+            if ((_e113 > _e114)) {
+                float _e116 = at_m;
+                float _e117 = end_m;
+                RaySegment _e118 = ray_part(ray_8, _e116, _e117);
+                along_1 = vec3(0.0);
+                sunlit = vec3(0.0);
+                scattered = vec3(0.0);
+                i_4 = 0u;
+                bool loop_init_5 = true;
+                while(true) {
+                    if (!loop_init_5) {
+                        uint _e150 = i_4;
+                        i_4 = (_e150 + 1u);
+                    }
+                    loop_init_5 = false;
+                    uint _e130 = i_4;
+                    if ((_e130 < count_1)) {
+                    } else {
+                        break;
+                    }
+                    {
+                        uint _e133 = i_4;
+                        FogLayer layer_4 = fog_2.layers[_e133];
+                        float _e135 = fog_layer_column_m(layer_4, _e118);
+                        vec3 _e136 = along_1;
+                        along_1 = (_e136 + (layer_4.extinction_per_m * _e135));
+                        vec3 _e140 = sunlit;
+                        sunlit = (_e140 + ((layer_4.scattering_per_m * layer_4.phase) * _e135));
+                        vec3 _e146 = scattered;
+                        scattered = (_e146 + (layer_4.scattering_per_m * _e135));
+                    }
+                }
+                float _e153 = end_m;
+                float _e154 = height_at(ray_8, _e153);
+                vec3 _e155 = fog_depth_to_sun(fog_2, _e154);
+                vec3 _e158 = sunlit;
+                vec3 _e160 = to_sun;
+                vec3 _e161 = along_1;
+                vec3 _e163 = mean_attenuated_source_rgb(_e160, (_e155 + _e161));
+                vec3 _e167 = scattered;
+                vec3 _e169 = along_1;
+                vec3 _e170 = mean_transmittance_rgb(_e169);
+                vec3 arriving = (((fog_2.light.sunlight * _e158) * _e163) + ((fog_2.light.ambient * _e167) * _e170));
+                vec3 _e173 = radiance_1;
+                vec3 _e174 = before;
+                radiance_1 = (_e173 + (exp(-(_e174)) * arriving));
+                vec3 _e179 = before;
+                vec3 _e180 = along_1;
+                before = (_e179 + _e180);
+                to_sun = _e155;
+            }
+            float _e182 = at_m;
+            float _e183 = end_m;
+            at_m = max(_e182, _e183);
+            float _e185 = next_level_m;
+            float _e186 = end_m;
+            float _e187 = height_at(ray_8, _e186);
+            level_m_1 = (turns ? _e187 : _e185);
+            bool _e189 = rising_1;
+            if (!(_e189)) {
+                local_11 = turns;
+            } else {
+                local_11 = true;
+            }
+            bool _e194 = local_11;
+            rising_1 = _e194;
+            float _e196 = before.x;
+            float _e198 = before.y;
+            float _e200 = before.z;
+            if ((min(_e196, min(_e198, _e200)) > 40.0)) {
+                break;
+            }
+        }
+    }
+    vec3 _e208 = fog_optical_depth(fog_2, ray_8);
+    vec3 _e211 = radiance_1;
+    return PathOptics(exp(-(_e208)), _e211);
+}

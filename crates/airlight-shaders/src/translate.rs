@@ -1,0 +1,211 @@
+//! Translation of parts to other shading languages.
+
+use crate::function::functions;
+use crate::part::{Part, source, with_required};
+use airlight::named;
+use naga::back::{glsl, hlsl, msl};
+use naga::{Expression, Module, Span, Statement};
+
+/// A shading language.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Language {
+    /// WGSL, the source itself.
+    Wgsl,
+    /// GLSL ES 3.00: WebGL 2.
+    GlslEs300,
+    /// GLSL 4.50.
+    Glsl450,
+    /// HLSL, shader model 5.1.
+    Hlsl,
+    /// Metal shading language 2.0.
+    Msl,
+}
+
+named! { Language, "a shading language", [
+    ("wgsl", (Wgsl), "WGSL, the source itself"),
+    ("glsl-es300", (GlslEs300), "GLSL ES 3.00, for WebGL 2"),
+    ("glsl450", (Glsl450), "GLSL 4.50"),
+    ("hlsl", (Hlsl), "HLSL, shader model 5.1"),
+    ("msl", (Msl), "Metal shading language 2.0"),
+] }
+
+impl Language {
+    /// Usual ending of files in this language.
+    pub fn extension(self) -> &'static str {
+        match self {
+            Self::Wgsl => "wgsl",
+            Self::GlslEs300 | Self::Glsl450 => "glsl",
+            Self::Hlsl => "hlsl",
+            Self::Msl => "metal",
+        }
+    }
+}
+
+/// Error of a translation: what the translator reports.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("expected functions that {language} can express, got: {message}")]
+pub struct TranslateError {
+    /// The language.
+    pub language: Language,
+    /// The translator's report.
+    pub message: String,
+}
+
+/// Name of the entry point that keeps all functions; what it is translated to is cut off.
+const ENTRY: &str = "keeps_all_functions";
+
+/// Parts, with all parts that they require, in a language: text to include in a shader, after a `#version` line in GLSL. Functions
+/// and structs keep their names, parameters may get a number; each function is preceded by its documentation.
+///
+/// # Errors
+/// [`TranslateError`] if the language lacks something that a function uses.
+pub fn translate(parts: &[Part], language: Language) -> Result<String, TranslateError> {
+    let failed = |message: String| TranslateError { language, message };
+    let module = with_entry_point(parts).map_err(failed)?;
+    let text = match language {
+        Language::Wgsl => return Ok(source(parts)),
+        Language::GlslEs300 => to_glsl(&module, 300),
+        Language::Glsl450 => to_glsl(&module, 450),
+        Language::Hlsl => to_hlsl(&module),
+        Language::Msl => to_msl(&module),
+    }
+    .map_err(failed)?;
+    Ok(documented(&without_entry_point(&text), parts))
+}
+
+/// The parts with a fragment shader that calls every function.
+fn with_entry_point(parts: &[Part]) -> Result<Module, String> {
+    let text = source(parts) + &format!("\n@fragment fn {ENTRY}() {{}}\n");
+    let mut module = naga::front::wgsl::parse_str(&text).map_err(|e| e.emit_to_string(&text))?;
+    let Module {
+        functions,
+        entry_points,
+        ..
+    } = &mut module;
+    let entry = &mut entry_points[0].function;
+    entry.body = naga::Block::new();
+    for (handle, function) in functions.iter() {
+        let arguments = function
+            .arguments
+            .iter()
+            .map(|argument| {
+                let zero = Expression::ZeroValue(argument.ty);
+                entry.expressions.append(zero, Span::UNDEFINED)
+            })
+            .collect();
+        let result = function.result.as_ref().map(|_| {
+            entry
+                .expressions
+                .append(Expression::CallResult(handle), Span::UNDEFINED)
+        });
+        let call = Statement::Call {
+            function: handle,
+            arguments,
+            result,
+        };
+        entry.body.push(call, Span::UNDEFINED);
+    }
+    entry
+        .body
+        .push(Statement::Return { value: None }, Span::UNDEFINED);
+    Ok(module)
+}
+
+fn validated(module: &Module) -> Result<naga::valid::ModuleInfo, String> {
+    let flags = naga::valid::ValidationFlags::all();
+    naga::valid::Validator::new(flags, naga::valid::Capabilities::empty())
+        .validate(module)
+        .map_err(|e| format!("{:?}", e.into_inner()))
+}
+
+fn to_glsl(module: &Module, version: u16) -> Result<String, String> {
+    let info = validated(module)?;
+    let options = glsl::Options {
+        version: match version {
+            300 => glsl::Version::Embedded {
+                version,
+                is_webgl: true,
+            },
+            version => glsl::Version::Desktop(version),
+        },
+        writer_flags: glsl::WriterFlags::empty(),
+        binding_map: glsl::BindingMap::default(),
+        zero_initialize_workgroup_memory: true,
+    };
+    let pipeline = glsl::PipelineOptions {
+        shader_stage: naga::ShaderStage::Fragment,
+        entry_point: ENTRY.to_owned(),
+        multiview: None,
+    };
+    let mut text = String::new();
+    let policies = naga::proc::BoundsCheckPolicies::default();
+    glsl::Writer::new(&mut text, module, &info, &options, &pipeline, policies)
+        .and_then(|mut writer| writer.write())
+        .map_err(|e| e.to_string())?;
+    // The host's shader begins with a version of its own.
+    let lines = text.lines().filter(|line| !line.starts_with("#version"));
+    Ok(lines.map(|line| format!("{line}\n")).collect())
+}
+
+fn to_hlsl(module: &Module) -> Result<String, String> {
+    let info = validated(module)?;
+    let options = hlsl::Options {
+        // The loops of the library end by themselves, and it has no index from outside.
+        force_loop_bounding: false,
+        restrict_indexing: false,
+        ..hlsl::Options::default()
+    };
+    let mut text = String::new();
+    hlsl::Writer::new(&mut text, &options, &hlsl::PipelineOptions::default())
+        .write(module, &info, None)
+        .map_err(|e| e.to_string())?;
+    Ok(text)
+}
+
+fn to_msl(module: &Module) -> Result<String, String> {
+    let info = validated(module)?;
+    let options = msl::Options {
+        lang_version: (2, 0),
+        force_loop_bounding: false,
+        ..msl::Options::default()
+    };
+    let (text, _) = msl::write_string(module, &info, &options, &msl::PipelineOptions::default())
+        .map_err(|e| e.to_string())?;
+    Ok(text)
+}
+
+/// The text up to the entry point, which is the last function and is called `main` in GLSL.
+fn without_entry_point(text: &str) -> String {
+    let is_entry = |line: &&str| line.starts_with("void main(") || line.contains(ENTRY);
+    let lines = text.lines().take_while(|line| !is_entry(line));
+    let kept: Vec<&str> = lines.collect();
+    kept.join("\n").trim().to_owned() + "\n"
+}
+
+/// The text with the documentation of each function before it, which the translator drops.
+fn documented(text: &str, parts: &[Part]) -> String {
+    let all: Vec<_> = with_required(parts)
+        .into_iter()
+        .flat_map(functions)
+        .collect();
+    let mut documented = String::from(
+        "// Generated from the WGSL of airlight-shaders by its example `translate`: change that, not this.\n\n",
+    );
+    for line in text.lines() {
+        let defined = all.iter().find(|function| {
+            !line.starts_with([' ', '/', '#'])
+                && !line.ends_with(';')
+                && line.contains(&format!(" {}(", function.name))
+        });
+        if let Some(function) = defined {
+            for paragraph in &function.documentation {
+                documented.push_str(&format!("// {paragraph}\n"));
+            }
+            documented.push_str(&format!("// Cost: {}.\n", function.cost));
+        }
+        documented.push_str(line.trim_end());
+        documented.push('\n');
+    }
+    documented
+}
