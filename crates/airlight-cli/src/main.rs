@@ -9,8 +9,8 @@
 //! - [`topics`]: recipes. [`args`]: options of all commands, and the scenes that they describe; [`short_help`]: what `-h`
 //!   lists of them.
 //! - [`scene`]: saving scenes, threads; [`atmosphere`], [`aerosol`]: lists of names.
-//! - [`sky`], [`fog`], [`probe`], [`compare`], [`grid`], [`accuracy`] and [`plot`]: the commands; [`generate`]: files for
-//!   shells.
+//! - [`sky`], [`fog`], [`probe`], [`compare`], [`grid`], [`accuracy`], [`plot`] and [`shaders`]: the commands; [`generate`]:
+//!   files for shells.
 
 mod accuracy;
 mod aerosol;
@@ -29,6 +29,7 @@ mod probe;
 mod progress;
 mod report;
 mod scene;
+mod shaders;
 mod short_help;
 mod sky;
 mod topics;
@@ -92,6 +93,7 @@ fn run(cli: &Cli) -> Result<(), CliError> {
         Command::Grid(args) => grid::run(args),
         Command::Accuracy(args) => accuracy::run(args),
         Command::Plot(args) => plot::run(args),
+        Command::Shaders(args) => shaders::run(args),
         Command::Atmospheres(args) => atmosphere::list(args),
         Command::Topics => topics::run(),
         Command::Completions(args) => generate::completions(args),

@@ -16,6 +16,7 @@ mod place;
 mod plot;
 mod probe;
 mod scene;
+mod shaders;
 mod sky;
 mod solver;
 
@@ -36,6 +37,7 @@ pub use plot::{
 };
 pub use probe::{FormatArg, ProbeArgs};
 pub use scene::SceneArgs;
+pub use shaders::ShadersArgs;
 pub use sky::{ObjectArgs, SkyArgs};
 pub use solver::SolverArgs;
 
@@ -86,6 +88,8 @@ pub enum Command {
     Accuracy(AccuracyArgs),
     /// Plot curves and maps as SVG or PNG: phase functions, efficiencies, spectra, transmittance, fog.
     Plot(PlotArgs),
+    /// Write functions for shaders in WGSL, GLSL, HLSL or Metal: fog, phase functions, columns.
+    Shaders(ShadersArgs),
     /// List the names of atmospheres and types of haze, or describe one.
     Atmospheres(AtmospheresArgs),
     /// Print worked recipes: panoramas for other programs, photographs, air, fog over pictures, numbers.

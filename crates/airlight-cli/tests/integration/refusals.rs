@@ -282,6 +282,9 @@ fn bad_use_of_sky() {
         ("", "Usage"),
         ("draw", "--help"),
         ("atmospheres claer", "\"clear\""),
+        ("shaders --lang glsl -o shaders", "glsl450"),
+        ("shaders --only fogs -o shaders", "'fog'"),
+        ("shaders", "--output"),
     ] {
         refused(&folder, words, 2, part);
     }
@@ -377,6 +380,12 @@ fn help_and_lists_name_what_there_is() {
     let page = std::fs::read_to_string(folder.file("pages/airlight-sky.1")).unwrap();
     assert!(page.contains("orientation") && page.contains(".SH"));
     assert!(succeed(&folder, "--version").starts_with("airlight "));
+    succeed(
+        &folder,
+        "shaders --lang glsl-es300 --only phase -o web/shaders",
+    );
+    let glsl = std::fs::read_to_string(folder.file("web/shaders/airlight.glsl")).unwrap();
+    assert!(glsl.contains("float henyey_greenstein(") && !glsl.contains("uniform_fog"));
     let list = succeed(&folder, "atmospheres");
     assert!(list.lines().count() > 8 && list.contains("average"));
     assert!(list.contains("maritime-clean") && list.contains("biomass-savanna"));
