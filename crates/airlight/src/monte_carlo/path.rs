@@ -26,6 +26,9 @@ pub type ByOrder<const N: usize> = [Spectrum<N>; ORDERS];
 
 /// Probability of sampling a new direction about the sun instead of about the current direction.
 const TOWARDS_SUN: f64 = 0.2;
+/// Number of scatterings and reflections after which directions follow the phase function alone: the weights of thousands of choices
+/// between two lobes would vary by orders of magnitude.
+const TOWARDS_SUN_ORDERS: usize = 20;
 /// Russian roulette applies to paths whose expected contribution is below this fraction of that at the first vertex.
 const ROULETTE_THRESHOLD: f32 = 0.3;
 
@@ -257,7 +260,11 @@ impl<const N: usize> PathScene<'_, N> {
         if whole[hero] <= 0.0 {
             return false;
         }
-        let axis = match random.unit() < TOWARDS_SUN {
+        let towards_sun = match path.order < TOWARDS_SUN_ORDERS {
+            true => TOWARDS_SUN,
+            false => 0.0,
+        };
+        let axis = match random.unit() < towards_sun {
             true => self.sun,
             false => path.direction,
         };
@@ -266,7 +273,7 @@ impl<const N: usize> PathScene<'_, N> {
         let phases = self.phases_between(path.direction, next);
         let onward = lanes::phased(&scattering, &phases);
         let sunward = lanes::phased(&scattering, &self.phases_between(self.sun, next));
-        let (onward_share, sunward_share) = ((1.0 - TOWARDS_SUN) as f32, TOWARDS_SUN as f32);
+        let (onward_share, sunward_share) = ((1.0 - towards_sun) as f32, towards_sun as f32);
         let norm = whole.max_scalar(f32::MIN_POSITIVE);
         let pdf = (onward * onward_share + sunward * sunward_share) / norm;
         path.step(onward, pdf);
@@ -276,9 +283,10 @@ impl<const N: usize> PathScene<'_, N> {
         path.order += 1;
         // A path towards the sun will find more light than others.
         let isotropic = (0.25 / PI) as f32;
-        path.expected_contribution = path.throughput.max_element()
-            * (sunward / norm).max_element().max(isotropic)
-            / isotropic;
+        path.expected_contribution = path.throughput.max_element();
+        if towards_sun > 0.0 {
+            path.expected_contribution *= (sunward / norm).max_element().max(isotropic) / isotropic;
+        }
         true
     }
 

@@ -30,6 +30,7 @@ mod coverage;
 mod field;
 mod harmonics;
 mod horizon;
+mod horizontal_exchange;
 mod light;
 mod mixing;
 mod orders;

@@ -3,13 +3,15 @@
 //! Light is what the sun's light becomes by being scattered or reflected once, plus itself scattered or reflected once more
 //! ([`super::transport`]). The iteration starts with the light of plane-parallel air ([`super::plane_parallel`]). Each step adds the
 //! light that is missing in the equation together with all orders of its scattering in plane-parallel air: what remains falls by the
-//! small difference between spherical and plane-parallel air, in thin and in thick air alike. Where it does not fall fast,
-//! [`super::mixing`] combines the corrections.
+//! small difference between spherical and plane-parallel air, in thin and in thick air alike; light that in thick air spreads from
+//! place to place is left out of that sum ([`super::horizontal_exchange`]). Where what remains does not fall fast, [`super::mixing`]
+//! combines the corrections.
 
 use super::air::Air;
 use super::field::{Diffuse, FieldGrid};
 use super::harmonics::Harmonics;
 use super::horizon;
+use super::horizontal_exchange::HorizontalExchange;
 use super::mixing::Mixing;
 use super::settings::{OrderSettings, SkyError};
 use super::transport::Transport;
@@ -22,10 +24,10 @@ const MAX_GROWING: usize = 3;
 const SLOW: f32 = 0.5;
 
 /// Change below which corrections are combined: larger ones are those of light on its way into a shadow.
-const SHAPED: f32 = 0.03;
+const SHAPED: f32 = 0.3;
 
 /// Factor of the last change above which earlier steps are forgotten.
-const RESTART: f32 = 2.0;
+const RESTART: f32 = 10.0;
 
 /// Solves for all light scattered or reflected at least once, with or without its polarisation; `report` receives the fraction of the
 /// work done.
@@ -64,6 +66,7 @@ pub fn solve<const N: usize>(
         }
     } else {
         let plane_parallel = transport.plane_parallel()?;
+        let exchange = HorizontalExchange::new(&air, &grid);
         light = plane_parallel.all_orders(&once);
         let (mut last, mut converged, mut growing, mut iterations) = (f32::INFINITY, false, 0, 0);
         let mut mixing: Option<Mixing<N>> = None;
@@ -73,7 +76,13 @@ pub fn solve<const N: usize>(
             by_direction = Some(directions);
             missing.add(&once);
             missing.subtract(&light);
-            let correction = plane_parallel.all_orders(&missing);
+            let amplified = match &exchange {
+                Some(exchange) => exchange.amplified(&light, &missing),
+                None => missing.clone(),
+            };
+            missing.subtract(&amplified);
+            let mut correction = plane_parallel.all_orders(&amplified);
+            correction.add(&missing);
             let change = light.change_by(&correction);
             // Steps on the way into a shadow, or from which changes grow, say nothing about the next.
             if change > SHAPED || change > RESTART * last {

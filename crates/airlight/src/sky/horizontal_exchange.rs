@@ -1,0 +1,211 @@
+//! Horizontal exchange of light between places under different suns, for the corrections of [`super::orders`].
+//!
+//! All orders of scattering in plane-parallel air amplify light by the number of times that it is scattered. Light that differs from
+//! sun to sun is amplified less, as it spreads horizontally between scatterings: by diffusion over the length `L` of the slowest decaying
+//! vertical mode, and through the interpolation between suns. A correction that ignores this is too large, alternates and grows in
+//! thick air. With the exchange between two suns at the distance `d` over the ground, light at each is
+//!
+//! ```text
+//! w u + sum over the neighbours of (L + L^2 / d) min(I, I') (u / I - u' / I') = w r,
+//! ```
+//!
+//! where `w` is the distance over which the sun stands for the others, and `I` the intensity at the same place: light that is the same
+//! fraction of it under both suns is in balance. `u` is the part of `r` that plane-parallel air amplifies. This only steers the
+//! iteration, whose result does not depend on it.
+
+use super::air::Air;
+use super::field::FieldGrid;
+use super::light::Light;
+use crate::spectrum::Spectrum;
+
+/// Exchange between the suns of a grid.
+#[derive(Debug)]
+pub struct HorizontalExchange {
+    /// Distances for which the suns stand.
+    widths: Vec<f32>,
+    /// `L + L^2 / d` of neighbours.
+    exchange: Vec<f32>,
+}
+
+impl HorizontalExchange {
+    /// The exchange in an atmosphere, unless light spreads by much less than the distance between suns.
+    pub fn new<const N: usize>(air: &Air<N>, grid: &FieldGrid) -> Option<Self> {
+        /// Length in distances between suns below which spreading does not matter.
+        const NEGLIGIBLE: f64 = 0.1;
+        let length_m = length_m(air)?;
+        let radius_m = air.shell().ground_radius_m;
+        let arc = |pair: &[f64]| radius_m * (pair[0].acos() - pair[1].acos());
+        let distances: Vec<f64> = grid.sun_cosines.windows(2).map(arc).collect();
+        let shortest = distances.iter().copied().fold(f64::INFINITY, f64::min);
+        if length_m < NEGLIGIBLE * shortest {
+            return None;
+        }
+        let half = |k: Option<usize>| k.and_then(|k| distances.get(k)).map_or(0.0, |d| 0.5 * d);
+        let width = |k: usize| (half(k.checked_sub(1)) + half(Some(k))) as f32;
+        let exchange = |d: &f64| (length_m + length_m * length_m / d) as f32;
+        Some(Self {
+            widths: (0..grid.sun_cosines.len()).map(width).collect(),
+            exchange: distances.iter().map(exchange).collect(),
+        })
+    }
+
+    /// The part of `change` that plane-parallel air amplifies, where there is `light`.
+    pub fn amplified<const N: usize>(&self, light: &Light<N>, change: &Light<N>) -> Light<N> {
+        let mut out = change.clone();
+        let (count, suns) = (light.count, self.widths.len());
+        let row = suns * count;
+        let rows = light.moments.chunks_exact(row);
+        for (out, light) in out.moments.chunks_exact_mut(row).zip(rows) {
+            let balance = Balance::new(self, light.chunks_exact(count).map(|point| point[0]));
+            for moment in 0..count {
+                balance.solve(out[moment..].iter_mut().step_by(count));
+            }
+        }
+        Balance::new(self, light.ground.iter().copied()).solve(out.ground.iter_mut());
+        out
+    }
+}
+
+/// Factorised equations of the exchange at one radius.
+struct Balance<const N: usize> {
+    widths: Vec<Spectrum<N>>,
+    /// Exchange with the next sun over the intensity at this sun and at the next.
+    to_next: Vec<[Spectrum<N>; 2]>,
+    inverse_diagonal: Vec<Spectrum<N>>,
+}
+
+impl<const N: usize> Balance<N> {
+    fn new(exchange: &HorizontalExchange, intensities: impl Iterator<Item = Spectrum<N>>) -> Self {
+        let intensities: Vec<_> = intensities.map(|i| i.max_scalar(1e-30)).collect();
+        let to_next: Vec<_> = intensities
+            .windows(2)
+            .zip(&exchange.exchange)
+            .map(|(pair, exchange)| {
+                let least = Spectrum::from_fn(|lane| pair[0][lane].min(pair[1][lane]));
+                [0, 1].map(|k| least * *exchange / pair[k])
+            })
+            .collect();
+        let widths: Vec<_> = exchange
+            .widths
+            .iter()
+            .map(|w| Spectrum::splat(*w))
+            .collect();
+        let mut inverse_diagonal = Vec::<Spectrum<N>>::with_capacity(widths.len());
+        for (sun, width) in widths.iter().enumerate() {
+            let mut diagonal = *width;
+            if let Some([here, _]) = to_next.get(sun) {
+                diagonal += *here;
+            }
+            if sun > 0 {
+                let [before, here] = to_next[sun - 1];
+                diagonal += here - before * here * inverse_diagonal[sun - 1];
+            }
+            inverse_diagonal.push(Spectrum::ONE / diagonal);
+        }
+        Self {
+            widths,
+            to_next,
+            inverse_diagonal,
+        }
+    }
+
+    /// Replaces values under each sun by the solution.
+    fn solve<'v>(&self, values: impl Iterator<Item = &'v mut Spectrum<N>>) {
+        let mut values: Vec<_> = values.collect();
+        for sun in 0..values.len() {
+            *values[sun] *= self.widths[sun];
+            if sun > 0 {
+                let earlier = *values[sun - 1] * self.inverse_diagonal[sun - 1];
+                *values[sun] += earlier * self.to_next[sun - 1][0];
+            }
+        }
+        for sun in (0..values.len()).rev() {
+            if sun + 1 < values.len() {
+                let next = *values[sun + 1];
+                *values[sun] += next * self.to_next[sun][1];
+            }
+            *values[sun] *= self.inverse_diagonal[sun];
+        }
+    }
+}
+
+/// Distance over which light spreads horizontally, m: the altitude above which the air has an optical depth of 1, if it has.
+fn length_m<const N: usize>(air: &Air<N>) -> Option<f64> {
+    const STEPS: usize = 400;
+    let shell = air.shell();
+    (0..STEPS)
+        .rev()
+        .map(|step| shell.radius_of_coordinate(step as f64 / STEPS as f64))
+        .find(|&radius_m| {
+            let columns = shell.vertical_columns_m(radius_m);
+            air.coefficients.extinction(&columns).max_element() >= 1.0
+        })
+        .map(|radius_m| radius_m - shell.ground_radius_m)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SUNS: usize = 6;
+
+    fn exchange() -> HorizontalExchange {
+        HorizontalExchange {
+            widths: vec![0.5, 1.0, 1.5, 1.5, 1.0, 0.5],
+            exchange: vec![3.0, 2.0, 4.0, 2.0, 3.0],
+        }
+    }
+
+    /// Light at one radius with one moment.
+    fn light(values: [f32; SUNS]) -> Light<4> {
+        Light {
+            count: 1,
+            moments: values.map(Spectrum::splat).to_vec(),
+            ground: values.map(Spectrum::splat).to_vec(),
+        }
+    }
+
+    /// From day to a shadow.
+    const INTENSITIES: [f32; SUNS] = [2.0, 1.0, 0.3, 1e-3, 1e-6, 1e-12];
+
+    #[test]
+    fn light_in_balance_is_amplified_whole() {
+        let change = INTENSITIES.map(|i| 0.1 * i);
+        let amplified = exchange().amplified(&light(INTENSITIES), &light(change));
+        for values in [&amplified.moments, &amplified.ground] {
+            for (got, want) in values.iter().zip(change) {
+                assert!((got[0] / want - 1.0).abs() < 1e-5, "{} {want}", got[0]);
+            }
+        }
+    }
+
+    /// Exchange neither adds nor removes light.
+    #[test]
+    fn all_light_is_conserved() {
+        let change = [1.0, -0.7, 0.2, 3e-3, -1e-5, 1e-9];
+        let amplified = exchange().amplified(&light(INTENSITIES), &light(change));
+        let sum = |values: &mut dyn Iterator<Item = f32>| -> f32 {
+            values.zip(exchange().widths).map(|(v, w)| v * w).sum()
+        };
+        let got = sum(&mut amplified.moments.iter().map(|v| v[0]));
+        let want = sum(&mut change.into_iter());
+        assert!((got / want - 1.0).abs() < 1e-5, "{got} {want}");
+    }
+
+    #[test]
+    fn light_that_alternates_is_hardly_amplified() {
+        let change = [1.0, -1.0, 1.0, -1.0, 1.0, -1.0];
+        let amplified = exchange().amplified(&light([1.0; SUNS]), &light(change));
+        for value in &amplified.moments {
+            assert!(value[0].abs() < 0.2, "{}", value[0]);
+        }
+    }
+
+    /// A shadow does not disturb the light beside it.
+    #[test]
+    fn changes_in_a_shadow_stay_there() {
+        let change = [0.0, 0.0, 0.0, 0.0, 0.0, 1e-9];
+        let amplified = exchange().amplified(&light(INTENSITIES), &light(change));
+        assert!(amplified.moments[0][0].abs() < 1e-8);
+    }
+}
