@@ -100,22 +100,34 @@ impl<'a> FogSampler<'a> {
         (self.eye_height_m, ground.radius_m)
     }
 
-    /// Transmittance and path radiance up to a distance (m; infinite: the sky) in a direction. `factor`, if given, is that of patches
-    /// on the optical depth of fog that scatters light; `path_radiance` replaces that of the fog.
+    /// Optics of many rays without patches, where they are computed together.
+    pub fn even_optics(&self, directions: &[DVec3], distances_m: &[f64]) -> Vec<RgbPathOptics> {
+        let Some(table) = &self.table else {
+            return Vec::new();
+        };
+        let mut optics = vec![RgbPathOptics::CLEAR; directions.len()];
+        table.paths(directions, distances_m, &mut optics);
+        optics
+    }
+
+    /// Transmittance and path radiance up to a distance (m; infinite: the sky) in a direction. `even` is that of
+    /// [`Self::even_optics`], if it is known. `factor`, if given, is that of patches on the optical depth of fog that scatters light;
+    /// `path_radiance` replaces that of the fog.
     pub fn optics(
         &self,
-        direction: DVec3,
-        distance_m: f64,
+        (direction, distance_m): (DVec3, f64),
+        even: Option<&RgbPathOptics>,
         factor: Option<f32>,
         path_radiance: Option<[f32; 3]>,
     ) -> RgbPathOptics {
         let optics = match self.overlay {
             FogOverlay::Fog(source, lights) => {
-                let mut optics = match &self.table {
-                    Some(table) => {
-                        let even = table.path(direction, distance_m);
-                        factor.map_or(even, |factor| even.at_density(factor))
-                    }
+                let even = even.copied().or_else(|| {
+                    let table = self.table.as_ref()?;
+                    Some(table.path(direction, distance_m))
+                });
+                let mut optics = match even {
+                    Some(even) => factor.map_or(even, |factor| even.at_density(factor)),
                     None => source.optics(self.eye_height_m, direction, distance_m, factor),
                 };
                 optics.path_radiance = path_radiance.unwrap_or(optics.path_radiance);

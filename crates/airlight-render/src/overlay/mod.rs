@@ -182,12 +182,18 @@ impl<'a> Overlay<'a> {
 
     /// Direction and distance (m; infinite: the sky) of each pixel of row `y`.
     pub fn rays(&self, y: u32) -> Vec<(DVec3, f64)> {
+        let (directions, distances) = self.rays_apart(y);
+        directions.into_iter().zip(distances).collect()
+    }
+
+    /// [`Self::rays`] as two lists.
+    fn rays_apart(&self, y: u32) -> (Vec<DVec3>, Vec<f64>) {
         let width = self.picture.size.width() as usize;
         let mut directions = vec![DVec3::ZERO; width];
         let mut distances = vec![1.0; width];
         self.camera.fill(y, &mut directions, &mut distances);
         self.measure(y, &mut distances);
-        directions.into_iter().zip(distances).collect()
+        (directions, distances)
     }
 
     /// Distances (m) of the pixels of row `y`, in the place of their ray lengths per depth.
@@ -218,12 +224,9 @@ impl<'a> Overlay<'a> {
         for row in 0..SAMPLES.min(height) {
             let rays = self.rays(row * height / SAMPLES.min(height));
             let step = width.div_ceil(SAMPLES) as usize;
-            for (direction, distance) in rays.into_iter().step_by(step) {
-                if distance.is_finite() && distance > 0.0 {
-                    let seen = self
-                        .fog
-                        .optics(direction, distance, None, None)
-                        .transmittance;
+            for ray in rays.into_iter().step_by(step) {
+                if ray.1.is_finite() && ray.1 > 0.0 {
+                    let seen = self.fog.optics(ray, None, None, None).transmittance;
                     least = least.min(seen[1]);
                     most = most.max(seen[1]);
                 }
@@ -292,10 +295,10 @@ impl RowSource for Overlay<'_> {
             fog.apply(&distances, &self.picture.rgb[3 * first..][..3 * width], out);
             return;
         }
-        let rays = self.rays(y);
-        let pixels = out.chunks_exact_mut(self.channels()).zip(rays);
-        for (i, (out, (direction, distance))) in pixels.enumerate() {
-            let pixel = first + i;
+        let (directions, distances) = self.rays_apart(y);
+        let even = self.fog.even_optics(&directions, &distances);
+        for (i, out) in out.chunks_exact_mut(self.channels()).enumerate() {
+            let (pixel, distance) = (first + i, distances[i]);
             let rgb = &self.picture.rgb[3 * pixel..3 * pixel + 3];
             let colour = [rgb[0], rgb[1], rgb[2]];
             let path_radiance = self.path_radiance.map(|all| {
@@ -303,7 +306,8 @@ impl RowSource for Overlay<'_> {
                 [rgb[0], rgb[1], rgb[2]]
             });
             let factor = patches.map(|row| row.factor(i as u32, distance));
-            let optics = self.fog.optics(direction, distance, factor, path_radiance);
+            let ray = (directions[i], distance);
+            let optics = self.fog.optics(ray, even.get(i), factor, path_radiance);
             let opacity = self.picture.alpha.as_ref().map(|alpha| alpha[pixel]);
             let seen = self.through(&optics, colour, opacity.unwrap_or(1.0));
             out[..3].copy_from_slice(&seen);

@@ -1,13 +1,15 @@
 //! Fog in N lanes: transmittance and path radiance along rays.
 
-use super::closed_forms::{Lanes, OPAQUE};
+use super::closed_forms::{Lanes, OPAQUE, mean_attenuated_source};
 use super::error::FogError;
 use super::layer::{LayerLanes, MergedLayer, merge_layers};
 use super::lighting::{FogLighting, FogScattering, Ground};
 use super::multiple::{self, DirectionWeights, Field};
+use super::ray_block::{PerRay, RAYS, RayBlock, in_lanes, store};
 use super::ray_cuts::height_breakpoints;
 use super::single_scattering::SingleScattering;
 use crate::atmosphere::RaySegment;
+use crate::math::simd::vectorized;
 use crate::spectrum::Spectrum;
 use crate::transfer::PathOptics;
 use crate::transfer::residual::{STREAMS, scattered_into_peaks, stream_transmittances};
@@ -117,6 +119,98 @@ impl<const N: usize> FogLanes<N> {
     pub fn path(&self, eye_height_m: f64, direction: DVec3, distance_m: f64) -> PathOptics<N> {
         let ray = RaySegment::new(eye_height_m, direction.y, distance_m, self.ground.radius_m);
         self.path_along(&ray, self.cos_sun(direction))
+    }
+
+    /// [`FogLanes::path`] for many rays from one eye, to rounding; in blocks, if the fog has one profile, flat ground and no
+    /// multiple scattering.
+    pub fn paths<T: From<PathOptics<N>>>(
+        &self,
+        eye_height_m: f64,
+        directions: &[DVec3],
+        distances_m: &[f64],
+        out: &mut [T],
+    ) {
+        let layer = match &self.layers[..] {
+            [layer] if self.ground.is_flat() && self.field.is_none() => layer,
+            _ => {
+                let rays = directions.iter().zip(distances_m);
+                for (out, (&direction, &distance_m)) in out.iter_mut().zip(rays) {
+                    *out = self.path(eye_height_m, direction, distance_m).into();
+                }
+                return;
+            }
+        };
+        vectorized(
+            #[inline(always)]
+            || {
+                let rays = directions.chunks(RAYS).zip(distances_m.chunks(RAYS));
+                for (out, (directions, distances_m)) in out.chunks_mut(RAYS).zip(rays) {
+                    self.block(layer, eye_height_m, directions, distances_m, out);
+                }
+            },
+        );
+    }
+
+    /// Single scattering by one layer over flat ground along the rays of a block: [`Self::path_along`] in other lanes.
+    #[inline(always)]
+    fn block<T: From<PathOptics<N>>>(
+        &self,
+        layer: &MergedLayer<N>,
+        eye_height_m: f64,
+        directions: &[DVec3],
+        distances_m: &[f64],
+        out: &mut [T],
+    ) {
+        let rays = RayBlock::new(eye_height_m, directions, distances_m);
+        let columns_m = rays.columns_m(&layer.density);
+        let opacities_m = in_lanes(
+            layer.extinction_per_m,
+            #[inline(always)]
+            |extinction| (columns_m * extinction).mean_transmittance() * columns_m,
+        );
+        let uniform = layer.scattering_per_m * self.lighting.ambient;
+        let mut light = opacities_m;
+        for lane in 0..N {
+            light[lane] = light[lane] * uniform[lane];
+        }
+        if let Some(sun) = &self.lighting.sun {
+            let is_dimmed =
+                self.scattering != FogScattering::Undimmed && !layer.density.is_uniform();
+            let sin_sun = sun.direction.y;
+            let sunlit_m = if !is_dimmed {
+                opacities_m
+            } else if sin_sun <= 0.0 {
+                [PerRay::ZERO; N]
+            } else {
+                let opaque = PerRay::splat(OPAQUE as f32);
+                let near_m = (layer.density.column_above_m(eye_height_m) / sin_sun).min(OPAQUE);
+                let far_m = rays.columns_above_end_m(&layer.density) * (1.0 / sin_sun) as f32;
+                let far_m = far_m.smaller(opaque) + columns_m;
+                in_lanes(
+                    layer.extinction_per_m,
+                    #[inline(always)]
+                    |extinction| {
+                        let near = PerRay::splat(near_m as f32) * extinction;
+                        mean_attenuated_source(near, far_m * extinction) * columns_m
+                    },
+                )
+            };
+            let mut cos_sun = [0.0; RAYS];
+            for (cosine, direction) in cos_sun.iter_mut().zip(directions) {
+                *cosine = direction.dot(sun.direction);
+            }
+            let towards_eye = layer.towards_eye_along(&cos_sun);
+            for lane in 0..N {
+                let sunlight = towards_eye[lane] * sun.irradiance[lane];
+                light[lane] = light[lane].mul_acc(sunlight, sunlit_m[lane]);
+            }
+        }
+        let transmittance = in_lanes(
+            layer.extinction_per_m,
+            #[inline(always)]
+            |extinction| (columns_m * extinction).exp_neg(),
+        );
+        store(&transmittance, &light, out);
     }
 
     /// Cosine of the angle between a unit vector and the direction to the sun; 0 without a sun.

@@ -296,6 +296,44 @@ impl<const N: usize> MergedLayer<N> {
         self.sum(|part| part.layer.phase_lanes(cos_sun))
     }
 
+    /// [`MergedLayer::towards_eye`] for several rays: for each lane, the values of the rays.
+    pub fn towards_eye_along<const R: usize>(&self, cos_sun: &[f64; R]) -> [Spectrum<R>; N] {
+        let mut sums = [Spectrum::ZERO; N];
+        for part in &self.parts {
+            let phase = part
+                .layer
+                .phase
+                .along_rays(cos_sun, &part.layer.wavelengths_nm);
+            for lane in 0..N {
+                sums[lane] = sums[lane].scale_acc(phase[lane], part.layer.scattering_per_m[lane]);
+            }
+        }
+        sums
+    }
+
+    /// [`MergedLayer::streams_towards_eye`] for several rays.
+    pub fn streams_towards_eye_along<const R: usize>(
+        &self,
+        cos_sun: &[f64; R],
+    ) -> [[Spectrum<R>; N]; STREAMS] {
+        let mut sums = [[Spectrum::ZERO; N]; STREAMS];
+        for part in &self.parts {
+            let phase = part
+                .layer
+                .phase
+                .along_rays(cos_sun, &part.layer.wavelengths_nm);
+            let scattering = part.layer.scattering_per_m;
+            for (ray, cosine) in cos_sun.iter().enumerate() {
+                for (sum, share) in sums.iter_mut().zip(part.shares(*cosine)) {
+                    for lane in 0..N {
+                        sum[lane][ray] += scattering[lane] * phase[lane][ray] * share[lane];
+                    }
+                }
+            }
+        }
+        sums
+    }
+
     /// [`MergedLayer::towards_eye`] by stream; the sum is all of it.
     #[inline]
     pub fn streams_towards_eye(&self, cos_sun: f64) -> [Spectrum<N>; STREAMS] {

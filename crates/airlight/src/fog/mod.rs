@@ -24,6 +24,7 @@ pub mod lights;
 mod multiple;
 mod patch_view;
 mod patches;
+mod ray_block;
 mod ray_cuts;
 mod single_scattering;
 mod spectral;

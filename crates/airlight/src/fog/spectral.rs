@@ -303,7 +303,8 @@ impl RgbFog {
         self.lanes.path(eye_height_m, direction, distance_m).into()
     }
 
-    /// [`RgbFog::path`] for many rays.
+    /// [`RgbFog::path`] for many rays, to rounding (a few 1e-7). Fog of one profile over flat ground with single scattering takes a fraction of the
+    /// time.
     ///
     /// # Panics
     /// If the slices differ in length.
@@ -316,9 +317,7 @@ impl RgbFog {
     ) {
         check_length(distances_m, directions.len());
         check_length(out, directions.len());
-        for ((out, &direction), &distance_m) in out.iter_mut().zip(directions).zip(distances_m) {
-            *out = self.path(eye_height_m, direction, distance_m);
-        }
+        self.lanes.paths(eye_height_m, directions, distances_m, out);
     }
 
     /// Transmittance and path radiance along a ray; `cos_sun` is the cosine of the angle between the ray and the direction to the
@@ -372,16 +371,14 @@ impl RgbFogTable {
         self.lanes.path(direction, distance_m).into()
     }
 
-    /// [`RgbFogTable::path`] for many rays.
+    /// [`RgbFogTable::path`] for many rays, to rounding (a few 1e-7), in a fraction of the time.
     ///
     /// # Panics
     /// If the slices differ in length.
     pub fn paths(&self, directions: &[DVec3], distances_m: &[f64], out: &mut [RgbPathOptics]) {
         check_length(distances_m, directions.len());
         check_length(out, directions.len());
-        for ((out, &direction), &distance_m) in out.iter_mut().zip(directions).zip(distances_m) {
-            *out = self.path(direction, distance_m);
-        }
+        self.lanes.paths(directions, distances_m, out);
     }
 }
 

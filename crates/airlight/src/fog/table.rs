@@ -4,8 +4,10 @@ use super::closed_forms::{Lanes, OPAQUE};
 use super::fog_lanes::FogLanes;
 use super::layer::MergedLayer;
 use super::multiple::{self, DEGREES, Field};
+use super::ray_block::{PerRay, RAYS, RayBlock, in_lanes, store};
 use crate::atmosphere::RaySegment;
 use crate::math::interpolation::cubic_weights;
+use crate::math::simd::vectorized;
 use crate::spectrum::Spectrum;
 use crate::transfer::PathOptics;
 use crate::transfer::residual::STREAMS;
@@ -89,11 +91,8 @@ impl<const N: usize> TableLanes<N> {
         if mean_opacity > 0.0 {
             let side = &table.sides[usize::from(direction.y > 0.0)];
             let place = side.place(direction.y.abs(), mean_opacity);
-            let rows: [&Row<N>; 4] = std::array::from_fn(|r| {
-                let row = place.row + r;
-                side.rows[row].get_or_init(|| self.row(table, field, side, row))
-            });
-            let mut source = place.interpolate(&rows, |row, node| row.mean[node]);
+            let rows = self.rows_at(table, field, side, &place);
+            let mut source = place.interpolate(&rows, |node| node.mean);
             if let Some(sun) = sun {
                 source += place.azimuth_modes(&rows, sun, direction);
             }
@@ -113,8 +112,124 @@ impl<const N: usize> TableLanes<N> {
         }
     }
 
+    /// [`TableLanes::path`] for many rays, to rounding, in blocks.
+    pub fn paths<T: From<PathOptics<N>>>(
+        &self,
+        directions: &[DVec3],
+        distances_m: &[f64],
+        out: &mut [T],
+    ) {
+        let (Some(table), Some(field)) = (&self.table, &self.fog.field) else {
+            return self
+                .fog
+                .paths(self.eye_height_m, directions, distances_m, out);
+        };
+        vectorized(
+            #[inline(always)]
+            || {
+                let rays = directions.chunks(RAYS).zip(distances_m.chunks(RAYS));
+                for (out, (directions, distances_m)) in out.chunks_mut(RAYS).zip(rays) {
+                    self.block((table, field), directions, distances_m, out);
+                }
+            },
+        );
+    }
+
+    /// The rays of a block: [`Self::path`] in other lanes.
+    #[inline(always)]
+    fn block<T: From<PathOptics<N>>>(
+        &self,
+        (table, field): (&Table<N>, &Field<N>),
+        directions: &[DVec3],
+        distances_m: &[f64],
+        out: &mut [T],
+    ) {
+        let layer = &self.fog.layers[0];
+        let rays = RayBlock::new(self.eye_height_m, directions, distances_m);
+        let columns_m = rays.columns_m(&layer.density);
+        let opacity = in_lanes(
+            layer.extinction_per_m,
+            #[inline(always)]
+            |extinction| {
+                let depth = columns_m * extinction;
+                depth * depth.mean_transmittance()
+            },
+        );
+        let mean_opacity = mean_of(&opacity);
+        let ends = table.ends(rays.sin_elevation());
+        let rows = table.rows_of(rays.sin_elevation());
+        let mut diffuse = [PerRay::ZERO; N];
+        let mut logarithms = [[PerRay::ZERO; N]; STREAMS];
+        for (i, &direction) in directions.iter().enumerate() {
+            if mean_opacity[i] <= 0.0 {
+                continue;
+            }
+            let side = &table.sides[usize::from(direction.y > 0.0)];
+            let place = side.place_at(ends[i], rows[i], mean_opacity[i]);
+            let rows = self.rows_at(table, field, side, &place);
+            let mut source = place.interpolate(&rows, |node| node.mean);
+            if let Some(sun) = &table.sun {
+                source += place.azimuth_modes(&rows, sun, direction);
+                for (k, logarithms) in logarithms.iter_mut().enumerate() {
+                    let stream = place.interpolate(&rows, |node| node.sunlit[k]);
+                    for lane in 0..N {
+                        logarithms[lane][i] = stream[lane];
+                    }
+                }
+            }
+            for lane in 0..N {
+                diffuse[lane][i] = source[lane];
+            }
+        }
+        let mut source = diffuse;
+        for lane in &mut source {
+            *lane = lane.max_scalar(0.0);
+        }
+        if let Some(sun) = &table.sun {
+            let mut cos_sun = [0.0; RAYS];
+            for (cosine, direction) in cos_sun.iter_mut().zip(directions) {
+                *cosine = direction.dot(sun.direction);
+            }
+            let streams = layer.streams_towards_eye_along(&cos_sun);
+            for lane in 0..N {
+                let mut sum = PerRay::ZERO;
+                for (stream, logarithm) in streams.iter().zip(&logarithms) {
+                    sum = sum.mul_acc(stream[lane], logarithm[lane].exp());
+                }
+                // Shares of the streams can be negative.
+                source[lane] = source[lane].scale_acc(sum.max_scalar(0.0), sun.irradiance[lane]);
+            }
+        }
+        let mut path_radiance = source;
+        for (light, opacity) in path_radiance.iter_mut().zip(opacity) {
+            *light = opacity * *light;
+        }
+        let transmittance = in_lanes(
+            layer.extinction_per_m,
+            #[inline(always)]
+            |extinction| (columns_m * extinction).exp_neg(),
+        );
+        store(&transmittance, &path_radiance, out);
+    }
+
+    /// The rows of a place.
+    #[inline(always)]
+    fn rows_at<'t>(
+        &self,
+        table: &Table<N>,
+        field: &Field<N>,
+        side: &'t Side<N>,
+        place: &Place,
+    ) -> [&'t [Node<N>]; 4] {
+        let mut rows: [&[Node<N>]; 4] = [&[]; 4];
+        for (row, nodes) in (place.row..).zip(&mut rows) {
+            *nodes = side.rows[row].get_or_init(|| self.row(table, field, side, row));
+        }
+        rows
+    }
+
     /// Values of one elevation at all distances.
-    fn row(&self, table: &Table<N>, field: &Field<N>, side: &Side<N>, row: usize) -> Row<N> {
+    fn row(&self, table: &Table<N>, field: &Field<N>, side: &Side<N>, row: usize) -> Vec<Node<N>> {
         let sin_elevation = side.sign * side.sin_elevations[row];
         let ray = RaySegment::flat(self.eye_height_m, sin_elevation, f64::INFINITY);
         let lengths_m = self.lengths_m(side, &ray);
@@ -146,28 +261,28 @@ impl<const N: usize> TableLanes<N> {
             })
             .collect()
         };
-        let mut values = Row {
-            mean: per_opacity(rays.diffuse(0)),
-            modes: Vec::new(),
-            sunlit: Vec::new(),
+        let node = |mean| Node {
+            mean,
+            modes: [[0.0; DEGREES]; N],
+            sunlit: [Spectrum::ZERO; STREAMS],
         };
+        let mean = per_opacity(rays.diffuse(0));
+        let mut nodes: Vec<Node<N>> = mean.into_iter().map(node).collect();
         if table.sun.is_some() {
-            values.modes = vec![[[0.0; DEGREES]; N]; lengths_m.len()];
             for m in 1..DEGREES {
-                let light = per_opacity(rays.diffuse(m));
-                for (by_lane, light) in values.modes.iter_mut().zip(light) {
-                    for (lane, modes) in by_lane.iter_mut().enumerate() {
+                for (node, light) in nodes.iter_mut().zip(per_opacity(rays.diffuse(m))) {
+                    for (lane, modes) in node.modes.iter_mut().enumerate() {
                         modes[m] = light[lane];
                     }
                 }
             }
-            let streams: [_; STREAMS] = std::array::from_fn(|k| per_opacity(rays.sunlit(k)));
-            let logarithm = |light: Spectrum<N>| light.map(|v| v.max(DARK.exp()).ln());
-            values.sunlit = (0..lengths_m.len())
-                .map(|node| streams.each_ref().map(|stream| logarithm(stream[node])))
-                .collect();
+            for k in 0..STREAMS {
+                for (node, light) in nodes.iter_mut().zip(per_opacity(rays.sunlit(k))) {
+                    node.sunlit[k] = light.map(|v| v.max(DARK.exp()).ln());
+                }
+            }
         }
-        values
+        nodes
     }
 
     /// Distances of the nodes, m.
@@ -236,17 +351,61 @@ impl<const N: usize> Table<N> {
     }
 }
 
+impl<const N: usize> Table<N> {
+    /// [`Side::end`] of several rays.
+    #[inline(always)]
+    fn ends(&self, sin_elevation: &[f64; RAYS]) -> PerRay {
+        let per_sine = |i: usize| 1.0 / sin_elevation[i].abs().max(1e-20);
+        let mut opacity = [PerRay::ZERO; N];
+        for lane in 0..if self.is_grey { 1 } else { N } {
+            let [below, above] = [0, 1].map(|side| f64::from(self.sides[side].depth[lane]));
+            let depth = PerRay::from_fn(|i| {
+                let vertical = if sin_elevation[i] > 0.0 { above } else { below };
+                (vertical * per_sine(i)).min(OPAQUE) as f32
+            });
+            opacity[lane] = depth * depth.mean_transmittance();
+        }
+        match self.is_grey {
+            true => opacity[0],
+            false => mean_of(&opacity),
+        }
+    }
+
+    /// [`Side::row_of`] for several rays.
+    #[inline(always)]
+    fn rows_of(&self, sin_elevation: &[f64; RAYS]) -> PerRay {
+        let sides = self.sides.each_ref();
+        let even_to = sides.map(|side| 1.0 / side.even_to);
+        let per_logarithm = sides.map(|side| side.per_logarithm);
+        let up = |i: usize| usize::from(sin_elevation[i] > 0.0);
+        let sines = PerRay::from_fn(|i| sin_elevation[i].abs() as f32);
+        let logarithms =
+            PerRay::from_fn(|i| (1.0 + sin_elevation[i].abs() * even_to[up(i)]) as f32).ln();
+        PerRay::from_fn(|i| {
+            let logarithm = logarithms[i] * per_logarithm[up(i)];
+            (ROWS - 1) as f32 * (LOGARITHMIC * logarithm + (1.0 - LOGARITHMIC) * sines[i])
+        })
+    }
+}
+
+/// Mean over lanes of several rays.
+#[inline(always)]
+fn mean_of<const N: usize>(lanes: &[PerRay; N]) -> PerRay {
+    let sum = lanes.iter().fold(PerRay::ZERO, |sum, lane| sum + *lane);
+    sum * (1.0 / N as f32)
+}
+
 /// Singly scattered sunlight by a layer per unit of irradiance and of opacity.
 #[inline]
 fn sunlit<const N: usize>(
     layer: &MergedLayer<N>,
     cos_sun: f64,
     place: &Place,
-    rows: &[&Row<N>; 4],
+    rows: &[&[Node<N>]; 4],
 ) -> Spectrum<N> {
     let mut logarithms = [Spectrum::ZERO; STREAMS];
     for (row, [near, far]) in rows.iter().zip(place.weights) {
-        let (from, to) = (&row.sunlit[place.node], &row.sunlit[place.node + 1]);
+        let (from, to) = (&row[place.node].sunlit, &row[place.node + 1].sunlit);
         for (k, sum) in logarithms.iter_mut().enumerate() {
             *sum = sum.scale_acc(from[k], near).scale_acc(to[k], far);
         }
@@ -272,21 +431,21 @@ struct Side<const N: usize> {
     even_to: f64,
     /// Absolute sine of the elevation of each row; nearly 0 for the first.
     sin_elevations: Vec<f64>,
-    rows: Vec<OnceLock<Row<N>>>,
+    rows: Vec<OnceLock<Vec<Node<N>>>>,
     /// `1 / ln(1 + 1 / even_to)`.
     per_logarithm: f32,
 }
 
-/// Path radiance per unit of opacity along rays of one elevation, at each distance.
+/// Path radiance per unit of opacity along rays of one elevation to one distance.
 #[derive(Debug)]
-struct Row<const N: usize> {
+struct Node<const N: usize> {
     /// Multiple scattering, mean over azimuth.
-    mean: Vec<Spectrum<N>>,
+    mean: Spectrum<N>,
     /// Multiple scattering, azimuth mode `m` divided by the `m`-th power of the cosine of the elevation; 0 for mode 0. Modes are
     /// the inner index, so that they are summed as one vector.
-    modes: Vec<[[f32; DEGREES]; N]>,
+    modes: [[f32; DEGREES]; N],
     /// Logarithm of singly scattered sunlight by stream.
-    sunlit: Vec<[Spectrum<N>; STREAMS]>,
+    sunlit: [Spectrum<N>; STREAMS],
 }
 
 /// Position of a ray in the table of a side.
@@ -299,32 +458,32 @@ struct Place {
 
 impl Place {
     /// Interpolates a value of the table.
-    #[inline]
+    #[inline(always)]
     fn interpolate<const N: usize>(
         &self,
-        rows: &[&Row<N>; 4],
-        value: impl Fn(&Row<N>, usize) -> Spectrum<N>,
+        rows: &[&[Node<N>]; 4],
+        value: impl Fn(&Node<N>) -> Spectrum<N>,
     ) -> Spectrum<N> {
         let mut sum = Spectrum::ZERO;
         for (row, [near, far]) in rows.iter().zip(self.weights) {
             sum = sum
-                .scale_acc(value(row, self.node), near)
-                .scale_acc(value(row, self.node + 1), far);
+                .scale_acc(value(&row[self.node]), near)
+                .scale_acc(value(&row[self.node + 1]), far);
         }
         sum
     }
 
     /// Sum of the azimuth modes above 0 in a direction.
-    #[inline]
+    #[inline(always)]
     fn azimuth_modes<const N: usize>(
         &self,
-        rows: &[&Row<N>; 4],
+        rows: &[&[Node<N>]; 4],
         sun: &SunSide<N>,
         direction: DVec3,
     ) -> Spectrum<N> {
         let mut sums = [[0.0f32; DEGREES]; N];
         for (row, [near, far]) in rows.iter().zip(self.weights) {
-            let (from, to) = (&row.modes[self.node], &row.modes[self.node + 1]);
+            let (from, to) = (&row[self.node].modes, &row[self.node + 1].modes);
             for lane in 0..N {
                 for m in 0..DEGREES {
                     sums[lane][m] += near * from[lane][m] + far * to[lane][m];
@@ -340,10 +499,13 @@ impl Place {
             let next = 2.0 * across * factors[m - 1] - square * before;
             (before, factors[m]) = (factors[m - 1], next);
         }
-        Spectrum(sums.map(|modes| {
-            let each = modes.iter().zip(&factors);
-            each.map(|(mode, factor)| mode * factor).sum()
-        }))
+        Spectrum::from_fn(|lane| {
+            let mut sum = 0.0;
+            for m in 0..DEGREES {
+                sum += sums[lane][m] * factors[m];
+            }
+            sum
+        })
     }
 }
 
@@ -399,7 +561,12 @@ impl<const N: usize> Side<N> {
     /// Position of a ray with this absolute sine of the elevation and this opacity.
     #[inline]
     fn place(&self, sin_elevation: f64, opacity: f32) -> Place {
-        let end = self.end(sin_elevation);
+        self.place_at(self.end(sin_elevation), self.row_of(sin_elevation), opacity)
+    }
+
+    /// [`Self::place`] of a ray with the opacity `end` to space or to the ground, at the real index `row` of a row.
+    #[inline(always)]
+    fn place_at(&self, end: f32, row: f32, opacity: f32) -> Place {
         let even = |part: f32| 1.0 - (1.0 - part).max(0.0).sqrt().sqrt();
         let steps = (NODES - 1) as f32;
         let along = if opacity < end || self.sign > 0.0 {
@@ -413,7 +580,6 @@ impl<const N: usize> Side<N> {
         let last = if self.sign > 0.0 { 1.0 } else { 2.0 } * steps - 1.0;
         let node = along.min(last).floor();
         let far = (along - node).clamp(0.0, 1.0);
-        let row = self.row_of(sin_elevation);
         let first = (row as usize).clamp(1, ROWS - 3) - 1;
         let weights = cubic_weights(row - first as f32);
         Place {

@@ -10,6 +10,7 @@ pub use sample::PhaseSampler;
 use super::phase_error::PhaseError;
 use super::rayleigh;
 use super::tabulated::TabulatedPhase;
+use crate::math::simd::vectorized;
 use crate::spectrum::Spectrum;
 use std::f64::consts::PI;
 
@@ -219,6 +220,57 @@ impl PhaseFunction {
         }
     }
 
+    /// [`Self::in_lanes`] at several cosines: for each wavelength, the values at the cosines.
+    pub(crate) fn along_rays<const R: usize, const N: usize>(
+        &self,
+        cos_angles: &[f64; R],
+        wavelengths_nm: &[f64; N],
+    ) -> [Spectrum<R>; N] {
+        let narrow = |values: [f64; R]| Spectrum(values.map(|p| p as f32));
+        if self.depends_on_wavelength() {
+            let by_ray = cos_angles.map(|cosine| self.in_lanes(cosine, wavelengths_nm));
+            return std::array::from_fn(|lane| Spectrum::from_fn(|ray| by_ray[ray][lane]));
+        }
+        [narrow(self.at_all(cos_angles, wavelengths_nm[0])); N]
+    }
+
+    /// [`Self::evaluate`] at several cosines.
+    fn at_all<const R: usize>(&self, cos_angles: &[f64; R], wavelength_nm: f64) -> [f64; R] {
+        let mut out = [0.0; R];
+        match self {
+            Self::HenyeyGreenstein { g } => vectorized(
+                #[inline(always)]
+                || {
+                    for (out, mu) in out.iter_mut().zip(cos_angles) {
+                        *out = henyey_greenstein(*g, *mu);
+                    }
+                },
+            ),
+            Self::Draine { g, alpha } => vectorized(
+                #[inline(always)]
+                || {
+                    for (out, mu) in out.iter_mut().zip(cos_angles) {
+                        *out = draine(*g, *alpha, *mu);
+                    }
+                },
+            ),
+            Self::Mixture(parts) => {
+                for (weight, part) in parts {
+                    let values = part.at_all(cos_angles, wavelength_nm);
+                    for (out, value) in out.iter_mut().zip(values) {
+                        *out += weight * value;
+                    }
+                }
+            }
+            other => {
+                for (out, mu) in out.iter_mut().zip(cos_angles) {
+                    *out = other.evaluate(*mu, wavelength_nm);
+                }
+            }
+        }
+        out
+    }
+
     /// Legendre moments `chi_l`, `l = 0 .. count`, of `p(mu) = sum (2 l + 1) / (4 pi) chi_l P_l(mu)`; `chi_0 = 1` and `chi_1`
     /// is the mean cosine.
     ///
@@ -274,6 +326,7 @@ impl PhaseFunction {
 }
 
 /// Henyey-Greenstein phase function without cancellation at either peak.
+#[inline(always)]
 fn henyey_greenstein(g: f64, mu: f64) -> f64 {
     let a = g.abs();
     let from_peak = 1.0 - mu.clamp(-1.0, 1.0).copysign(mu * g);
@@ -281,6 +334,7 @@ fn henyey_greenstein(g: f64, mu: f64) -> f64 {
     (1.0 - a) * (1.0 + a) / (4.0 * PI * d * d.sqrt())
 }
 
+#[inline(always)]
 fn draine(g: f64, alpha: f64, mu: f64) -> f64 {
     let norm = 1.0 + alpha * (1.0 + 2.0 * g * g) / 3.0;
     henyey_greenstein(g, mu) * (1.0 + alpha * mu * mu) / norm

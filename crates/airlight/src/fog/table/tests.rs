@@ -84,6 +84,80 @@ const CLAMPED: DensityProfile = DensityProfile::Clamped {
 };
 const SLAB: DensityProfile = DensityProfile::slab(20.0);
 
+/// Rays in all directions and to all distances; more of them and fewer than a block.
+fn many_rays() -> (Vec<DVec3>, Vec<f64>) {
+    let mut elevations = vec![0.0, -0.0];
+    for k in 0..14 {
+        let up = (0.03 * 1.9f64.powi(k)).min(90.0);
+        elevations.extend([up, -up]);
+    }
+    let lengths_m = (-9..30).map(|k| 0.01 * 1.9f64.powi(k));
+    let lengths_m: Vec<f64> = lengths_m.chain([0.0, f64::INFINITY]).collect();
+    let rays = elevations.into_iter().flat_map(|elevation| {
+        let azimuths = [150.0, 151.0, 170.0, 260.0].into_iter();
+        azimuths.flat_map({
+            let lengths_m = &lengths_m;
+            move |azimuth| {
+                let direction = axes::direction(azimuth, elevation);
+                lengths_m.iter().map(move |&length_m| (direction, length_m))
+            }
+        })
+    });
+    rays.unzip()
+}
+
+/// Rays of blocks are single rays to rounding: of fog with closed forms, and of tables.
+#[test]
+fn many_rays_are_the_same_as_single_ones() {
+    let (directions, lengths_m) = many_rays();
+    assert!(directions.len() % RAYS != 0);
+    let peaked = droplets::phase(10.0);
+    let measured = PhaseFunction::Rayleigh(crate::optics::Depolarization::Air);
+    for profile in [
+        DensityProfile::Uniform,
+        DensityProfile::exponential(30.0),
+        CLAMPED,
+        SLAB,
+    ] {
+        for (extinction, sun, phase) in [
+            (0.004, None, &peaked),
+            (0.004, Some(30.0), &peaked),
+            (0.3, Some(-2.0), &peaked),
+            (0.04, Some(4.0), &measured),
+        ] {
+            for scattering in [
+                FogScattering::Undimmed,
+                FogScattering::Single,
+                FogScattering::Multiple,
+            ] {
+                let mut layers = [layer(profile.clone(), extinction, phase.clone())];
+                if extinction == 0.3 {
+                    layers[0].extinction_per_m = [extinction; 3];
+                }
+                let layers = layers.each_ref().map(LayerLanes::rgb);
+                let fog = FogLanes::new(&layers, Ground::FLAT, lighting(sun), scattering, 3);
+                let table = TableLanes::new(Arc::new(fog.unwrap()), 15.0);
+                let mut many = vec![PathOptics::<3>::CLEAR; directions.len()];
+                table.paths(&directions, &lengths_m, &mut many);
+                for ((many, &direction), &length_m) in many.iter().zip(&directions).zip(&lengths_m)
+                {
+                    let one = table.path(direction, length_m);
+                    let what = format!("{profile:?} {extinction} {sun:?} {scattering:?}");
+                    for lane in 0..3 {
+                        let (got, exact) = (many.transmittance[lane], one.transmittance[lane]);
+                        assert!((got - exact).abs() < 1e-6, "{what}: {got} {exact}");
+                        let (got, exact) = (many.path_radiance[lane], one.path_radiance[lane]);
+                        assert!(
+                            (got - exact).abs() < 1e-7 + 3e-5 * exact.abs(),
+                            "{what} {direction} {length_m} m: {got} {exact}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+}
+
 mod guards {
     use super::*;
 
