@@ -76,7 +76,7 @@ impl RayBlock {
                     lengths_m[i] = if rises {
                         self.length_m[i] - below_m[i]
                     } else {
-                        self.lengths_above_m(base_height_m, i)
+                        self.passes_at_m(base_height_m, i)
                     };
                 }
                 let decaying_m = self.decaying_m(&above_m, &lengths_m, scale_height_m);
@@ -88,7 +88,7 @@ impl RayBlock {
                 PerRay::from_fn(|i| {
                     let inside_m = match self.sin_elevation[i] < 0.0 {
                         // Not as a difference of lengths that may be infinite.
-                        true => self.lengths_above_m(bottom_m, i) - self.lengths_above_m(top_m, i),
+                        true => self.passes_at_m(bottom_m, i) - self.passes_at_m(top_m, i),
                         false => below_m[i] - under_m[i],
                     };
                     inside_m as f32
@@ -136,7 +136,7 @@ impl RayBlock {
         }
     }
 
-    /// Distance at which each ray passes a height, within its length.
+    /// Distance at which a ray passes a height, within its length; of a descending ray, its length above the height.
     #[inline(always)]
     fn passes_at_m(&self, height_m: f64, i: usize) -> f64 {
         let above_m = self.height_m - height_m;
@@ -162,12 +162,6 @@ impl RayBlock {
             };
         }
         lengths_m
-    }
-
-    /// Length of a descending ray above a height.
-    #[inline(always)]
-    fn lengths_above_m(&self, height_m: f64, i: usize) -> f64 {
-        self.passes_at_m(height_m, i)
     }
 
     /// Columns of a density that decays exponentially from 1 at height 0, along rays from heights `above_m`.

@@ -303,8 +303,8 @@ impl RgbFog {
         self.lanes.path(eye_height_m, direction, distance_m).into()
     }
 
-    /// [`RgbFog::path`] for many rays, to rounding (a few 1e-7). Fog of one profile over flat ground with single scattering takes a fraction of the
-    /// time.
+    /// [`RgbFog::path`] for many rays, to rounding (a few 1e-7). Fog of one profile over flat ground with single scattering takes a
+    /// fraction of the time.
     ///
     /// # Panics
     /// If the slices differ in length.

@@ -349,9 +349,7 @@ impl<const N: usize> Table<N> {
             }),
         }
     }
-}
 
-impl<const N: usize> Table<N> {
     /// [`Side::end`] of several rays.
     #[inline(always)]
     fn ends(&self, sin_elevation: &[f64; RAYS]) -> PerRay {

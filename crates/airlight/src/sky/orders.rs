@@ -76,13 +76,16 @@ pub fn solve<const N: usize>(
             by_direction = Some(directions);
             missing.add(&once);
             missing.subtract(&light);
-            let amplified = match &exchange {
-                Some(exchange) => exchange.amplified(&light, &missing),
-                None => missing.clone(),
+            let correction = match &exchange {
+                Some(exchange) => {
+                    let amplified = exchange.amplified(&light, &missing);
+                    missing.subtract(&amplified);
+                    let mut correction = plane_parallel.all_orders(&amplified);
+                    correction.add(&missing);
+                    correction
+                }
+                None => plane_parallel.all_orders(&missing),
             };
-            missing.subtract(&amplified);
-            let mut correction = plane_parallel.all_orders(&amplified);
-            correction.add(&missing);
             let change = light.change_by(&correction);
             // Steps on the way into a shadow, or from which changes grow, say nothing about the next.
             if change > SHAPED || change > RESTART * last {

@@ -480,10 +480,8 @@ impl<const N: usize> Path<N> {
             }
             let mut nodes = [Node::default(); MAX_NODES];
             let part = marcher.step(shell, &ray, (from_m, to_m), &columns_m, &mut nodes);
+            columns_m = part.columns_behind_m();
             for node in part.nodes {
-                for (column, density) in columns_m.iter_mut().zip(&node.densities) {
-                    *column += node.dt * density;
-                }
                 if !node.lit {
                     continue;
                 }

@@ -58,6 +58,20 @@ pub struct Step<'a> {
     pub nodes: &'a [Node],
 }
 
+impl Step<'_> {
+    /// Columns from the eye to the end of the step, m.
+    #[inline(always)]
+    pub fn columns_behind_m(&self) -> PerConstituent {
+        let mut columns_m = self.columns_m;
+        for node in self.nodes {
+            for (column, density) in columns_m.iter_mut().zip(&node.densities) {
+                *column += node.dt * density;
+            }
+        }
+        columns_m
+    }
+}
+
 /// Step size and quadrature of a march.
 #[derive(Clone, Debug)]
 pub struct Marcher<'a> {
@@ -107,11 +121,7 @@ impl<'a> Marcher<'a> {
                 let from = window[0] + piece as f64 * length;
                 let mut nodes = [Node::default(); MAX_NODES];
                 let step = self.step(shell, ray, (from, from + length), &columns, &mut nodes);
-                for node in step.nodes {
-                    for (column, density) in columns.iter_mut().zip(&node.densities) {
-                        *column += node.dt * density;
-                    }
-                }
+                columns = step.columns_behind_m();
                 if visit(&step).is_break() {
                     return columns;
                 }
