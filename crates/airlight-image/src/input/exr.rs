@@ -215,15 +215,29 @@ impl ExrFile {
         }
     }
 
-    /// Primaries and white point, where the file states them.
+    /// Primaries, white point and neutral colour, where the file states one of them.
     fn chromaticities(&self, part: usize) -> Option<Chromaticities> {
-        let c = self.headers()[part].shared_attributes.chromaticities?;
-        Some(Chromaticities {
-            red: [c.red.0, c.red.1],
-            green: [c.green.0, c.green.1],
-            blue: [c.blue.0, c.blue.1],
-            white: [c.white.0, c.white.1],
-        })
+        let header = &self.headers()[part];
+        let xy = |point: Vec2<f32>| [point.0, point.1];
+        let primaries = header.shared_attributes.chromaticities;
+        let primaries = primaries.map(|c| Chromaticities {
+            red: xy(c.red),
+            green: xy(c.green),
+            blue: xy(c.blue),
+            white: xy(c.white),
+            neutral: xy(c.white),
+        });
+        let neutral = header.own_attributes.adopted_neutral.map(xy);
+        match (primaries, neutral) {
+            (None, None) => None,
+            (primaries, neutral) => {
+                let primaries = primaries.unwrap_or(RgbSpace::Srgb.into());
+                Some(Chromaticities {
+                    neutral: neutral.unwrap_or(primaries.neutral),
+                    ..primaries
+                })
+            }
+        }
     }
 
     /// Luminance of red, green and blue of 1, cd/m^2, where the file states one above 0.

@@ -4,7 +4,10 @@ use super::{
     picture::{LightReference, Picture, REPAIRED, SampleBits, repair_colours},
     source::{DecodeError, Source, checked_size, reserve, sample_count},
 };
-use crate::{Notes, Size, output::Chromaticities};
+use crate::{
+    Notes, Size,
+    output::{Chromaticities, hdr},
+};
 use glam::Vec3;
 use std::io::{BufRead, Read};
 
@@ -19,6 +22,7 @@ struct Header {
     /// Factor for the stored values.
     factor: f64,
     chromaticities: Option<Chromaticities>,
+    white_luminance_cd_m2: Option<f32>,
     is_xyz: bool,
     pixel_aspect: f32,
 }
@@ -63,6 +67,7 @@ pub(super) fn read(mut source: Source) -> Result<Picture, DecodeError> {
     }
     let mut picture = Picture {
         chromaticities,
+        white_luminance_cd_m2: header.white_luminance_cd_m2,
         pixel_aspect: header.pixel_aspect,
         notes,
         ..Picture::new(size, rgb, LightReference::Scene, SampleBits::Float)
@@ -73,7 +78,7 @@ pub(super) fn read(mut source: Source) -> Result<Picture, DecodeError> {
 
 fn header(reader: &mut impl BufRead) -> Result<Header, DecodeError> {
     let (mut exposure, mut aspect) = (1.0, 1.0);
-    let mut chromaticities = None;
+    let (mut primaries, mut neutral, mut white) = (None, None, None);
     let mut is_xyz = false;
     for number in 0.. {
         let line = header_line(reader)?;
@@ -105,7 +110,9 @@ fn header(reader: &mut impl BufRead) -> Result<Header, DecodeError> {
             // Several exposures multiply.
             "EXPOSURE" => exposure *= value.parse().unwrap_or(1.0),
             "PIXASPECT" => aspect *= value.parse().unwrap_or(1.0),
-            "PRIMARIES" => chromaticities = primaries(value),
+            "PRIMARIES" => primaries = chromaticities(value),
+            hdr::NEUTRAL => neutral = numbers(value),
+            hdr::WHITE_LUMINANCE => white = value.parse().ok(),
             _ => {}
         }
     }
@@ -113,7 +120,11 @@ fn header(reader: &mut impl BufRead) -> Result<Header, DecodeError> {
     Ok(Header {
         size: dimensions(&header_line(reader)?)?,
         factor: if usable { 1.0 / exposure } else { 1.0 },
-        chromaticities,
+        chromaticities: primaries.map(|stated: Chromaticities| Chromaticities {
+            neutral: neutral.unwrap_or(stated.neutral),
+            ..stated
+        }),
+        white_luminance_cd_m2: white.filter(|white: &f32| white.is_finite() && *white > 0.0),
         is_xyz,
         // Radiance states height over width.
         pixel_aspect: Picture::checked_aspect((1.0 / aspect) as f32),
@@ -131,18 +142,24 @@ fn header_line(reader: &mut impl BufRead) -> Result<String, DecodeError> {
     Ok(String::from_utf8_lossy(&line).trim().to_owned())
 }
 
-fn primaries(value: &str) -> Option<Chromaticities> {
-    let numbers: Vec<f32> = value
-        .split_whitespace()
-        .map(|n| n.parse().ok().filter(|n: &f32| n.is_finite()))
-        .collect::<Option<_>>()?;
-    let [rx, ry, gx, gy, bx, by, wx, wy] = numbers.try_into().ok()?;
+fn chromaticities(value: &str) -> Option<Chromaticities> {
+    let [rx, ry, gx, gy, bx, by, wx, wy] = numbers(value)?;
     Some(Chromaticities {
         red: [rx, ry],
         green: [gx, gy],
         blue: [bx, by],
         white: [wx, wy],
+        neutral: [wx, wy],
     })
+}
+
+/// Exactly `N` finite numbers.
+fn numbers<const N: usize>(value: &str) -> Option<[f32; N]> {
+    let numbers: Vec<f32> = value
+        .split_whitespace()
+        .map(|n| n.parse().ok().filter(|n: &f32| n.is_finite()))
+        .collect::<Option<_>>()?;
+    numbers.try_into().ok()
 }
 
 fn dimensions(line: &str) -> Result<Size, DecodeError> {

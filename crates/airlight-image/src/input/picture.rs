@@ -51,7 +51,7 @@ pub struct Picture {
     /// Primaries and white of the colours, where a file of light in the scene states them; sRGB otherwise. Display colours are
     /// converted to sRGB.
     pub chromaticities: Option<Chromaticities>,
-    /// Luminance of a value of 1, cd/m^2, where an EXR file states it (`whiteLuminance`).
+    /// Luminance of a value of 1, cd/m^2, where an EXR file (`whiteLuminance`) or an HDR file of this program states it.
     pub white_luminance_cd_m2: Option<f32>,
     /// Width of a pixel over its height.
     pub pixel_aspect: f32,
@@ -86,9 +86,8 @@ impl Picture {
 
     /// Matrix from the colours to linear sRGB, white to white; `None` where they are sRGB.
     pub fn to_linear_srgb(&self) -> Option<DMat3> {
-        let matrix = self.chromaticities?.to_linear_srgb()?;
-        // Files state chromaticities in single precision.
-        (!matrix.abs_diff_eq(DMat3::IDENTITY, 1e-5)).then_some(matrix)
+        let stated = self.chromaticities.filter(|stated| !stated.are_srgb())?;
+        stated.to_linear_srgb()
     }
 
     /// Turns a picture upright that lies in its file by an orientation.

@@ -226,6 +226,7 @@ fn decoding(info: &Info<'_>, components: usize, notes: &mut Notes) -> ColourDeco
             green: xy(c.green),
             blue: xy(c.blue),
             white: xy(c.white),
+            neutral: xy(c.white),
         }
     });
     ColourDecoding::from_primaries(primaries, exponent).unwrap_or_else(|| {

@@ -36,6 +36,7 @@ impl Carried {
             layer_name: None,
             layer_position: Vec2(0, 0),
             white_luminance: None,
+            adopted_neutral: None,
             environment_map: None,
             deep_image_state: None,
             original_data_window: None,

@@ -283,6 +283,10 @@ fn attributes(metadata: &Metadata) -> LayerAttributes {
         longitude: metadata.longitude_deg.or(carried.longitude),
         altitude: metadata.altitude_m.or(carried.altitude),
         white_luminance: metadata.white_luminance_cd_m2,
+        adopted_neutral: metadata
+            .chromaticities
+            .and_then(|stated| stated.stated_neutral())
+            .map(|[x, y]| Vec2(x, y)),
         ..carried
     }
 }

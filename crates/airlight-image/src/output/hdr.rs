@@ -27,6 +27,12 @@ pub(super) static ENTRY: FormatEntry = FormatEntry {
     },
 };
 
+/// Variable of the header: luminance of RGB (1, 1, 1) in cd/m^2, called `whiteLuminance` in EXR files.
+pub(crate) const WHITE_LUMINANCE: &str = "WHITE_LUMINANCE";
+
+/// Variable of the header: x and y of what looks white, called `adoptedNeutral` in EXR files.
+pub(crate) const NEUTRAL: &str = "ADOPTED_NEUTRAL";
+
 /// Largest RGBE value: mantissa 255 with the highest exponent.
 const MAX: f32 = 255.0 * 6.646_14e35;
 
@@ -116,6 +122,13 @@ fn header(size: Size, metadata: &Metadata) -> String {
             c.white[0],
             c.white[1]
         ));
+        if let Some([x, y]) = c.stated_neutral() {
+            text.push_str(&format!("{NEUTRAL}={x} {y}\n"));
+        }
+    }
+    // The format has no field for the unit; readers pass over variables that they do not know.
+    if let Some(white) = metadata.white_luminance_cd_m2 {
+        text.push_str(&format!("{WHITE_LUMINANCE}={white}\n"));
     }
     text.push_str(&format!(
         "FORMAT=32-bit_rle_rgbe\n\n-Y {} +X {}\n",

@@ -63,7 +63,7 @@ pub fn write(
 ///
 /// # Errors
 /// [`ImageError`] where the source does not have three channels, a side is above 65535, the quality is out of range, the
-/// stream fails, or the caller cancels.
+/// metadata state other primaries than those of sRGB, the stream fails, or the caller cancels.
 pub fn encode(
     out: &mut (dyn Write + Send),
     size: Size,
@@ -81,6 +81,7 @@ pub fn encode(
             right: "1 to 100",
         });
     }
+    metadata.require_srgb(FORMAT)?;
     let side = |n: u32| {
         u16::try_from(n).map_err(|_| ImageError::Encode {
             format: FORMAT,

@@ -1,7 +1,7 @@
 //! Metadata of picture files.
 
 use super::carried::Carried;
-use crate::{Frame, Projection};
+use crate::{Frame, ImageError, Projection};
 use airlight::spectrum::RgbSpace;
 use airlight::spectrum::rgb::adaptation_matrix;
 use glam::{DMat3, DVec3};
@@ -29,7 +29,7 @@ pub struct Metadata {
     pub altitude_m: Option<f32>,
     /// Luminance of RGB (1, 1, 1), cd/m^2: 1 where the values are in cd/m^2.
     pub white_luminance_cd_m2: Option<f32>,
-    /// Primaries and white of the RGB values; readers assume sRGB where they are missing.
+    /// Primaries and white of the RGB values; readers assume sRGB where they are missing. PNG and JPEG files hold sRGB only.
     pub chromaticities: Option<Chromaticities>,
     /// Width of a pixel over its height; square where missing.
     pub pixel_aspect: Option<f32>,
@@ -48,8 +48,10 @@ pub struct Chromaticities {
     pub green: [f32; 2],
     /// Blue primary.
     pub blue: [f32; 2],
-    /// White point.
+    /// White point: RGB (1, 1, 1).
     pub white: [f32; 2],
+    /// What looks white; the white point in most files, and D65 in those with colours that are not adapted to their white point.
+    pub neutral: [f32; 2],
 }
 
 impl Chromaticities {
@@ -59,17 +61,31 @@ impl Chromaticities {
         green: [0.0, 1.0],
         blue: [0.0, 0.0],
         white: [1.0 / 3.0, 1.0 / 3.0],
+        neutral: [1.0 / 3.0, 1.0 / 3.0],
     };
 
-    /// Matrix from linear RGB of these primaries to linear sRGB. White becomes white, adapted by the Bradford transform.
+    /// Matrix from linear RGB of these primaries to linear sRGB. The neutral colour becomes white, adapted by the Bradford transform.
     ///
-    /// `None` where the primaries lie on one line, or the white is no colour.
+    /// `None` where the primaries lie on one line, the white is no colour, or the neutral colour is outside their gamut.
     pub fn to_linear_srgb(&self) -> Option<DMat3> {
         let srgb = Self::from(RgbSpace::Srgb);
-        let [from, to] = [self.white, srgb.white].map(|white| white.map(f64::from));
+        let [from, to] = [self.neutral, srgb.neutral].map(|white| white.map(f64::from));
         let adaptation = DMat3::from_cols_array_2d(&adaptation_matrix(from, to)).transpose();
         let matrix = srgb.to_xyz()?.inverse() * adaptation * self.to_xyz()?;
-        (matrix.is_finite() && matrix.determinant().abs() > 1e-9).then_some(matrix)
+        let neutral = matrix.inverse() * DVec3::ONE;
+        let is_usable = matrix.is_finite() && matrix.determinant().abs() > 1e-9;
+        (is_usable && neutral.min_element() > 1e-3).then_some(matrix)
+    }
+
+    /// Whether colours of these primaries are linear sRGB, within the rounding of single precision.
+    pub fn are_srgb(&self) -> bool {
+        let matrix = self.to_linear_srgb();
+        matrix.is_some_and(|matrix| matrix.abs_diff_eq(DMat3::IDENTITY, 1e-5))
+    }
+
+    /// The neutral colour, where it is not the white point.
+    pub(super) fn stated_neutral(&self) -> Option<[f32; 2]> {
+        (self.neutral != self.white).then_some(self.neutral)
     }
 
     /// Luminance of red, green and blue of 1; of sRGB for impossible primaries.
@@ -100,6 +116,7 @@ impl From<RgbSpace> for Chromaticities {
             green,
             blue,
             white: xy(space.white_point_xy()),
+            neutral: xy(space.neutral_xy()),
         }
     }
 }
@@ -131,6 +148,17 @@ impl Metadata {
     pub fn with_text(mut self, name: impl Into<String>, text: impl Into<String>) -> Self {
         self.texts.push((name.into(), text.into()));
         self
+    }
+
+    /// Refuses primaries other than those of sRGB, for formats that hold no others.
+    pub(super) fn require_srgb(&self, format: &'static str) -> Result<(), ImageError> {
+        match self.chromaticities.is_none_or(|stated| stated.are_srgb()) {
+            true => Ok(()),
+            false => Err(ImageError::Encode {
+                format,
+                reason: "expected colours in sRGB, got other primaries; try EXR or HDR".to_owned(),
+            }),
+        }
     }
 
     /// All metadata as names and texts, for formats without standard fields.

@@ -55,8 +55,8 @@ pub fn write(
 /// Writes rows to a stream as [`write()`] does; [`Written::bytes`] stays 0.
 ///
 /// # Errors
-/// [`ImageError`] where the source has neither three nor four channels, a setting is out of range, the stream fails, or the
-/// caller cancels.
+/// [`ImageError`] where the source has neither three nor four channels, a setting is out of range, the metadata state other
+/// primaries than those of sRGB, the stream fails, or the caller cancels.
 pub fn encode(
     out: &mut (dyn Write + Send),
     size: Size,
@@ -77,6 +77,7 @@ pub fn encode(
             right: "0 to 9",
         });
     }
+    metadata.require_srgb(FORMAT)?;
     let mut png = header(out, size, channels, options, metadata).map_err(failed)?;
     let bands = Bands::for_channels(size, channels, 1);
     let pixel_bytes = channels * options.depth.bytes();

@@ -14,5 +14,6 @@ mod read_exr;
 mod read_pictures;
 mod read_robust;
 mod read_tiff;
+mod round_trips;
 mod terminal;
 mod tone;

@@ -1,7 +1,7 @@
 //! Pictures read back by decoders that share no code with the writers.
 
 use crate::common::{Folder, full_metadata, sample, size, sky, tone};
-use airlight::spectrum::rgb::srgb_decode;
+use airlight::spectrum::{RgbSpace, rgb::srgb_decode};
 use airlight_image::{
     Control,
     output::{
@@ -108,6 +108,7 @@ fn exr_files_have_the_standard_attributes() {
     assert_eq!(own.longitude, Some(13.4));
     assert_eq!(own.altitude, Some(34.0));
     assert_eq!(own.white_luminance, Some(1.0));
+    assert_eq!(own.adopted_neutral, None);
     // Its layout has samples on the poles and the seam, not pixels between them.
     assert_eq!(own.environment_map, None);
     let text = |text: &Option<Text>| String::from_utf8(text.as_ref().unwrap().bytes().into());
@@ -123,6 +124,31 @@ fn exr_files_have_the_standard_attributes() {
     assert_eq!(named("place"), "Łódź");
     assert_eq!(named("airlight:channels"), "not really");
     assert!(named("projection").contains("equirectangular"));
+}
+
+#[test]
+fn exr_files_of_unadapted_colours_adopt_d65_as_neutral() {
+    let size = size(8, 4);
+    let mut bytes = Cursor::new(Vec::new());
+    let metadata = Metadata {
+        chromaticities: Some(RgbSpace::AcesCgUnadapted.into()),
+        ..Metadata::default()
+    };
+    exr::encode(
+        &mut bytes,
+        size,
+        &["R", "G", "B"],
+        &sky(size, 3),
+        &ExrOptions::default(),
+        &metadata,
+        Control::default(),
+    )
+    .unwrap();
+    let image = read_back(bytes);
+    let neutral = image.layer_data.attributes.adopted_neutral;
+    assert_eq!(neutral, Some(::exr::math::Vec2(0.3127, 0.329)));
+    let white = image.attributes.chromaticities.unwrap().white;
+    assert_eq!(white, ::exr::math::Vec2(0.32168, 0.33767));
 }
 
 #[test]

@@ -1,18 +1,13 @@
 //! Pictures read from files.
 
 use crate::common::{Folder, files::*, size};
-use airlight::spectrum::{
-    RgbSpace,
-    rgb::{srgb_decode, srgb_encode},
-};
-use airlight_image::output::exr::{ExrOptions, SamplePrecision};
+use airlight::spectrum::rgb::{srgb_decode, srgb_encode};
 use airlight_image::{
-    Control, ImageError, Picture, PictureOptions,
+    Control, ImageError, Picture,
     input::{LightReference, SampleBits, read_picture},
     output::{self, Metadata, png::PngDepth, png::PngOptions},
     rows::StoredRows,
     tone::ToneMapper,
-    write_picture,
 };
 use jpeg_encoder::JpegColorType;
 use png::{BitDepth, ColorType};
@@ -278,62 +273,6 @@ fn jpegs_agree_with_another_decoder() {
     let cmyk = jpeg_file((16, 16), JpegColorType::Cmyk, false, &[]);
     let error = read_as(&folder, &cmyk, None).unwrap_err().to_string();
     assert!(error.contains("CMYK"), "{error}");
-}
-
-#[test]
-fn written_pictures_are_read_back() {
-    let folder = Folder::new();
-    let (width, height) = (61, 19);
-    let samples: Vec<f32> = (0..width * height * 3)
-        .map(|i| (i % 97) as f32 * 0.25)
-        .collect();
-    let rows = StoredRows::new(width, 3, samples.clone()).unwrap();
-    let tone = ToneMapper::as_displayed();
-    let options = PictureOptions {
-        metadata: Metadata {
-            chromaticities: Some(RgbSpace::Rec2020.into()),
-            white_luminance_cd_m2: Some(250.0),
-            ..Metadata::default()
-        },
-        exr: ExrOptions {
-            precision: SamplePrecision::Half,
-            ..ExrOptions::default()
-        },
-        ..PictureOptions::default()
-    };
-    for ending in ["exr", "hdr", "png", "jpg"] {
-        let path = folder.file(format!("picture.{ending}"));
-        let size = size(width, height);
-        write_picture(&path, size, &rows, &tone, &options, Control::default()).unwrap();
-        // Formats are recognised by contents.
-        let moved = folder.file("picture.txt");
-        std::fs::rename(&path, &moved).unwrap();
-        let picture = read_picture(&moved, None).unwrap();
-        assert_eq!(picture.size, size);
-        assert!(picture.notes.is_empty(), "{}", picture.notes);
-        match ending {
-            "exr" => {
-                assert_eq!(picture.rgb, samples);
-                assert_eq!(picture.bits, SampleBits::Half);
-            }
-            "hdr" => {
-                for (got, expected) in picture.rgb.iter().zip(&samples) {
-                    assert!(
-                        (got - expected).abs() <= 0.5 / 128.0 * 24.0,
-                        "{got} {expected}"
-                    );
-                }
-                assert_eq!(picture.bits, SampleBits::Float);
-            }
-            _ => assert_eq!(picture.bits, SampleBits::U8),
-        }
-        let white = (ending == "exr").then_some(250.0);
-        assert_eq!(picture.white_luminance_cd_m2, white, "{ending}");
-        if picture.reference == LightReference::Scene {
-            let rec2020 = Some(RgbSpace::Rec2020.into());
-            assert_eq!(picture.chromaticities, rec2020, "{ending}");
-        }
-    }
 }
 
 #[test]

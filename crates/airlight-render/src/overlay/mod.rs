@@ -62,7 +62,8 @@ pub struct Overlay<'a> {
 pub enum Channels {
     /// Red, green and blue of the picture in fog.
     Picture,
-    /// The picture, then red, green and blue of the transmittance and of the path radiance, and the distance in metres.
+    /// The picture, then red, green and blue of the transmittance and of the path radiance, and the depth along the camera's axis
+    /// in metres.
     Layers,
 }
 
@@ -314,7 +315,10 @@ impl RowSource for Overlay<'_> {
             if self.has_layers() {
                 out[3..6].copy_from_slice(&optics.transmittance);
                 out[6..9].copy_from_slice(&optics.path_radiance);
-                out[9] = distance as f32;
+                out[9] = match self.depth.kind {
+                    DepthKind::Z => self.depth.metres[pixel],
+                    DepthKind::Ray => (distance / self.camera.ray_length_per_z(i as u32, y)) as f32,
+                };
             }
             if let (Some(opacity), Some(last)) = (opacity, out.last_mut()) {
                 *last = opacity;

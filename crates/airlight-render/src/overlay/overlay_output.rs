@@ -192,9 +192,9 @@ impl<'a> OverlayOutput<'a> {
                 ..Default::default()
             },
             metadata: Metadata {
-                chromaticities: match picture.reference {
-                    LightReference::Display => Some(RgbSpace::Srgb.into()),
-                    _ => picture.chromaticities,
+                chromaticities: match (picture.reference, self.format.is_linear()) {
+                    (LightReference::Scene, true) => picture.chromaticities,
+                    _ => Some(RgbSpace::Srgb.into()),
                 },
                 white_luminance_cd_m2: picture.white_luminance_cd_m2,
                 pixel_aspect: Some(picture.pixel_aspect),

@@ -182,6 +182,7 @@ impl PreparedOverlay {
             let names = ["R", "G", "B"];
             let metadata = Metadata {
                 chromaticities: Some(RgbSpace::Srgb.into()),
+                white_luminance_cd_m2: image.picture.white_luminance_cd_m2,
                 ..Metadata::default()
             };
             exr::write(&path, size, &names, &rows, &options, &metadata, control)?;

@@ -2,7 +2,7 @@
 
 use airlight::transfer::RgbPathOptics;
 use airlight_image::Picture;
-use glam::{Mat3, Vec3};
+use glam::{DVec3, Mat3, Vec3};
 
 /// Conversion between the primaries of a picture and linear sRGB, white to white.
 #[derive(Clone, Copy, Debug)]
@@ -12,14 +12,20 @@ pub(super) struct Primaries(Option<Matrices>);
 struct Matrices {
     to_srgb: Mat3,
     from_srgb: Mat3,
+    /// White of sRGB in the picture's primaries: not (1, 1, 1) where these are not adapted to their white point.
+    white: Vec3,
 }
 
 impl Primaries {
     /// Those of a picture.
     pub fn of(picture: &Picture) -> Self {
-        Self(picture.to_linear_srgb().map(|matrix| Matrices {
-            to_srgb: matrix.as_mat3(),
-            from_srgb: matrix.inverse().as_mat3(),
+        Self(picture.to_linear_srgb().map(|matrix| {
+            let from_srgb = matrix.inverse();
+            Matrices {
+                to_srgb: matrix.as_mat3(),
+                from_srgb: from_srgb.as_mat3(),
+                white: (from_srgb * DVec3::ONE).as_vec3(),
+            }
         }))
     }
 
@@ -46,12 +52,17 @@ impl Primaries {
         }
     }
 
-    /// Optics for red, green and blue of the picture: path radiance is converted as a colour, and transmittance is what becomes of
+    /// Optics for red, green and blue of the picture: path radiance is converted as a colour, and transmittance is what remains of
     /// white. Grey fog thus has the same transmittance in all primaries.
     pub fn optics(self, optics: RgbPathOptics) -> RgbPathOptics {
-        RgbPathOptics {
-            transmittance: self.in_picture(optics.transmittance),
-            path_radiance: self.in_picture(optics.path_radiance),
+        match self.0 {
+            Some(matrices) => RgbPathOptics {
+                transmittance: (matrices.from_srgb * Vec3::from(optics.transmittance)
+                    / matrices.white)
+                    .into(),
+                path_radiance: (matrices.from_srgb * Vec3::from(optics.path_radiance)).into(),
+            },
+            None => optics,
         }
     }
 }

@@ -1,21 +1,28 @@
 //! Fog over pictures in other primaries and with other pixels than square ones.
 
 use super::common::{Folder, depth, layers, picture, scene};
+use airlight::Named;
 use airlight::spectrum::RgbSpace;
 use airlight_image::Control;
 use airlight_image::output::PictureFormat;
 use airlight_render::overlay::{OverlayImage, PreparedOverlay};
-use glam::{Mat3, Vec3};
+use glam::Vec3;
 
 /// Fog that is grey gives the same picture in all primaries.
 #[test]
 fn fog_is_the_same_light_in_all_primaries() {
+    for &space in RgbSpace::ALL {
+        assert_same_light_in(space);
+    }
+}
+
+fn assert_same_light_in(space: RgbSpace) {
     let size = (4, 3);
     let colour = |x: u32, y: u32| [0.1 + 0.2 * x as f32, 0.5, 0.3 * y as f32];
     let plain = picture(size, colour);
     let mut wide = plain.clone();
-    wide.chromaticities = Some(RgbSpace::AcesCg.into());
-    let to_srgb: Mat3 = wide.to_linear_srgb().unwrap().as_mat3();
+    wide.chromaticities = Some(space.into());
+    let to_srgb = wide.to_linear_srgb().unwrap_or_default().as_mat3();
     let from_srgb = to_srgb.inverse();
     for rgb in wide.rgb.as_chunks_mut::<3>().0 {
         *rgb = (from_srgb * Vec3::from(*rgb)).into();
@@ -53,9 +60,12 @@ fn pixel_shape_is_used_for_rays() {
     scene.scene.camera.fov_deg = Some(90.0);
     let image = OverlayImage::new(&scene.overlay, wide, depth((4, 4), |_, _| 8.0)).unwrap();
     let layers = layers(&scene, &image);
-    // The corner pixel: 3/4 of the half width, 1 at the edge; 3/8 up.
-    let expected = 8.0 * (1.0f32 + 0.75 * 0.75 + 0.375 * 0.375).sqrt();
-    assert!((layers.pixel(0, 0)[9] - expected).abs() < 1e-5);
+    // The corner pixel: 3/4 of the half width, 1 at the edge; 3/8 up. Optical depth is proportional to distance.
+    let ratio = |x, y| layers.pixel(x, y)[3].ln() / layers.pixel(1, 1)[3].ln();
+    let [corner, inner] =
+        [[0.75f32, 0.375], [0.25, 0.125]].map(|[x, y]| (1.0 + x * x + y * y).sqrt());
+    assert!((ratio(0, 0) - corner / inner).abs() < 1e-5);
+    assert_eq!(layers.pixel(0, 0)[9], 8.0);
 }
 
 /// Attributes of a file hold for its picture in fog, so that fog over the result has the same light.

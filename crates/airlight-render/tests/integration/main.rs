@@ -7,5 +7,6 @@ mod display;
 mod forms;
 mod lights;
 mod monte_carlo;
+mod round_trips;
 mod scenes;
 mod sky;

@@ -61,6 +61,14 @@ impl RgbSpace {
         }
     }
 
+    /// Chromaticity (x, y) of light that counts as white: of D65, in the XYZ of the RGB values.
+    pub fn neutral_xy(self) -> [f64; 2] {
+        match self.is_adapted() {
+            true => self.white_point_xy(),
+            false => XYZ_WHITE_XY,
+        }
+    }
+
     /// Whether white, RGB (1, 1, 1), stands for D65 although the space has another white point.
     pub fn is_adapted(self) -> bool {
         self == Self::AcesCg
