@@ -209,7 +209,7 @@ fn every_format_returns_the_colours_of_every_space() {
 
 /// Light that looks white in one space looks white in all: D65, or what a file says that it adopts as neutral.
 #[test]
-fn unadapted_colours_are_told_from_adapted_ones() {
+fn unadapted_colours_differ_from_adapted_ones() {
     let folder = Folder::new();
     let white = [[1.0; 3]];
     for form in forms().into_iter().filter(|form| form.format.is_linear()) {
