@@ -19,17 +19,21 @@
 //! Each function states its cost (exponentials, texture reads) and its largest error against f64 ([`functions`]); the tests count
 //! the one and measure the other, on the CPU and on a Vulkan device. [`twins`] holds the functions in Rust.
 //!
+//! [`SkyTables`] fills the tables of [`Part::SkyTables`] from a sky that the library solves.
+//!
 //! With the feature `translate`, `translate` gives the same functions in GLSL, HLSL and MSL; the folder `generated` holds them.
 //!
 //! Only core WebGPU is used: f32, no extensions.
 
 mod function;
 mod part;
+mod sky_tables;
 #[cfg(feature = "translate")]
 mod translate;
 pub mod twins;
 
 pub use function::{ErrorBound, Function, functions};
 pub use part::{Part, source, with_required};
+pub use sky_tables::{SkyTables, SkyTablesError, WAVELENGTHS_NM, wavelength_grid};
 #[cfg(feature = "translate")]
 pub use translate::{Language, TranslateError, translate};

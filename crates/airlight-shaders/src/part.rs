@@ -16,6 +16,8 @@ pub enum Part {
     Columns,
     /// Fog in sunlight and ambient light.
     Fog,
+    /// Skies and aerial perspective from tables.
+    SkyTables,
 }
 
 named! { Part, "a part of the shader library", [
@@ -24,6 +26,7 @@ named! { Part, "a part of the shader library", [
     ("path-optics", (PathOptics), "transmittance and path radiance of a ray segment"),
     ("columns", (Columns), "integrals of density along rays over flat or round ground"),
     ("fog", (Fog), "fog in sunlight and ambient light, by single scattering"),
+    ("sky-tables", (SkyTables), "skies and aerial perspective from tables at four wavelengths"),
 ] }
 
 impl Part {
@@ -35,6 +38,7 @@ impl Part {
             Self::PathOptics => include_str!("../wgsl/path_optics.wgsl"),
             Self::Columns => include_str!("../wgsl/columns.wgsl"),
             Self::Fog => include_str!("../wgsl/fog.wgsl"),
+            Self::SkyTables => include_str!("../wgsl/sky_tables.wgsl"),
         }
     }
 

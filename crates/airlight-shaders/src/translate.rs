@@ -4,7 +4,9 @@ use crate::function::functions;
 use crate::part::{Part, source, with_required};
 use airlight::named;
 use naga::back::{glsl, hlsl, msl};
-use naga::{Expression, Module, Span, Statement};
+use naga::{
+    AddressSpace, Expression, GlobalVariable, Module, ResourceBinding, Span, Statement, TypeInner,
+};
 
 /// A shading language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -55,6 +57,18 @@ pub struct TranslateError {
 /// Name of the entry point that keeps all functions; what it is translated to is cut off.
 const ENTRY: &str = "keeps_all_functions";
 
+/// Start of the names of its textures and samplers, whose declarations are cut out.
+const GLOBAL: &str = "argument_of_entry_";
+
+/// What a line contains that declares them: in MSL and HLSL, in GLSL, in HLSL.
+const GLOBALS: [&str; 5] = [
+    GLOBAL,
+    "_group_0_binding_",
+    "nagaSamplerHeap",
+    "nagaComparisonSamplerHeap",
+    "nagaGroup0SamplerIndexArray",
+];
+
 /// Parts, with all parts that they require, in a language: text to include in a shader, after a `#version` line in GLSL. Functions
 /// and structs keep their names, parameters may get a number; each function is preceded by its documentation.
 ///
@@ -81,19 +95,41 @@ fn with_entry_point(parts: &[Part]) -> Result<Module, String> {
     let Module {
         functions,
         entry_points,
+        global_variables,
+        types,
         ..
     } = &mut module;
     let entry = &mut entry_points[0].function;
     entry.body = naga::Block::new();
+    // Textures and samplers exist only as globals: one of each type.
+    let mut globals = Vec::new();
     for (handle, function) in functions.iter() {
-        let arguments = function
-            .arguments
-            .iter()
-            .map(|argument| {
-                let zero = Expression::ZeroValue(argument.ty);
-                entry.expressions.append(zero, Span::UNDEFINED)
-            })
-            .collect();
+        let mut arguments = Vec::new();
+        for argument in &function.arguments {
+            let of_type = argument.ty;
+            let expression = match types[of_type].inner {
+                TypeInner::Image { .. } | TypeInner::Sampler { .. } => {
+                    let known = globals.iter().position(|&(known, _)| known == of_type);
+                    let index = known.unwrap_or_else(|| {
+                        let binding = globals.len() as u32;
+                        let variable = GlobalVariable {
+                            name: Some(format!("{GLOBAL}{binding}")),
+                            space: AddressSpace::Handle,
+                            binding: Some(ResourceBinding { group: 0, binding }),
+                            ty: of_type,
+                            init: None,
+                            memory_decorations: naga::MemoryDecorations::empty(),
+                        };
+                        let global = global_variables.append(variable, Span::UNDEFINED);
+                        globals.push((of_type, global));
+                        globals.len() - 1
+                    });
+                    Expression::GlobalVariable(globals[index].1)
+                }
+                _ => Expression::ZeroValue(of_type),
+            };
+            arguments.push(entry.expressions.append(expression, Span::UNDEFINED));
+        }
         let result = function.result.as_ref().map(|_| {
             entry
                 .expressions
@@ -178,8 +214,9 @@ fn to_msl(module: &Module) -> Result<String, String> {
 /// The text up to the entry point, which is the last function and is called `main` in GLSL.
 fn without_entry_point(text: &str) -> String {
     let is_entry = |line: &&str| line.starts_with("void main(") || line.contains(ENTRY);
+    let is_global = |line: &str| GLOBALS.iter().any(|global| line.contains(global));
     let lines = text.lines().take_while(|line| !is_entry(line));
-    let kept: Vec<&str> = lines.collect();
+    let kept: Vec<&str> = lines.filter(|line| !is_global(line)).collect();
     kept.join("\n").trim().to_owned() + "\n"
 }
 

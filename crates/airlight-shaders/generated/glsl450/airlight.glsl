@@ -40,6 +40,27 @@ struct FogLayers {
     float inverse_radius_per_m;
     FogLight light;
 };
+struct SkyView {
+    vec3 sun;
+    float height_m;
+    float ground_radius_m;
+    float air_height_m;
+    float horizon_rad;
+    float highest_rad;
+};
+struct SkyScales {
+    vec4 smooth_light;
+    vec4 haze;
+};
+struct SpectralPath {
+    vec4 transmittance;
+    vec4 path_radiance;
+};
+struct RgbWeights {
+    vec4 red;
+    vec4 green;
+    vec4 blue;
+};
 const float OPAQUE = 1e25;
 const float INFINITE_M = 1000000000000.0;
 const float LARGEST_LN_DENSITY = 57.0;
@@ -47,6 +68,16 @@ const uint FOG_UNIFORM = 0u;
 const uint FOG_EXPONENTIAL = 1u;
 const uint FOG_CLAMPED = 2u;
 const uint FOG_SLAB = 3u;
+const float SKY_AZIMUTHS = 64.0;
+const float SKY_ROWS_ABOVE = 64.0;
+const float SKY_ROWS_BELOW = 32.0;
+const float AERIAL_AZIMUTHS = 32.0;
+const float AERIAL_ROWS_ABOVE = 32.0;
+const float AERIAL_ROWS_BELOW = 32.0;
+const float AERIAL_DISTANCES = 32.0;
+const float PHASE_ANGLES = 1024.0;
+
+
 
 
 // Mean transmittance over optical depths from 0 to `x`, not negative: `(1 - e^-x) / x`, 1 at 0.
@@ -71,8 +102,8 @@ vec3 mean_transmittance_rgb(vec3 x_1) {
 float ramp_transmittance(float x_2) {
     float series_1 = (0.5 + (x_2 * (-0.33333334 + (x_2 * (0.125 + (x_2 * (-0.033333335 + (x_2 * (0.0069444445 + (x_2 * (-0.0011904762 + (x_2 * (0.00017361112 - (x_2 / 45360.0))))))))))))));
     float divisor = max(x_2, 0.75);
-    float transmittance = exp(-(x_2));
-    float direct_1 = ((((1.0 - transmittance) / divisor) - transmittance) / divisor);
+    float transmittance_1 = exp(-(x_2));
+    float direct_1 = ((((1.0 - transmittance_1) / divisor) - transmittance_1) / divisor);
     return ((x_2 < 0.75) ? series_1 : direct_1);
 }
 
@@ -685,7 +716,7 @@ PathOptics layered_fog(FogLayers fog_2, RaySegment ray_8) {
     vec3 scattered = vec3(0.0);
     uint i_4 = 0u;
     bool local_11 = false;
-    uint count_1 = min(fog_2.count, 4u);
+    uint count_3 = min(fog_2.count, 4u);
     level_m_1 = ray_8.height_m;
     float _e15 = level_m_1;
     vec3 _e16 = fog_depth_to_sun(fog_2, _e15);
@@ -732,7 +763,7 @@ PathOptics layered_fog(FogLayers fog_2, RaySegment ray_8) {
                 }
                 loop_init_4 = false;
                 uint _e64 = i_3;
-                if ((_e64 < count_1)) {
+                if ((_e64 < count_3)) {
                 } else {
                     break;
                 }
@@ -799,7 +830,7 @@ PathOptics layered_fog(FogLayers fog_2, RaySegment ray_8) {
                     }
                     loop_init_5 = false;
                     uint _e130 = i_4;
-                    if ((_e130 < count_1)) {
+                    if ((_e130 < count_3)) {
                     } else {
                         break;
                     }
@@ -860,4 +891,210 @@ PathOptics layered_fog(FogLayers fog_2, RaySegment ray_8) {
     vec3 _e208 = fog_optical_depth(fog_2, ray_8);
     vec3 _e211 = radiance_1;
     return PathOptics(exp(-(_e208)), _e211);
+}
+
+// Texture coordinate of a place from 0 (centre of the first texel) to 1 (centre of the last) among `count` texels.
+// Cost: no exp.
+float texel_coordinate(float place, float count_1) {
+    return ((0.5 + (place * (count_1 - 1.0))) / count_1);
+}
+
+// Inverse of `texel_coordinate`.
+// Cost: no exp.
+float place_from_texel_coordinate(float coordinate, float count_2) {
+    return (((coordinate * count_2) - 0.5) / (count_2 - 1.0));
+}
+
+// Azimuth of a direction from that of the sun as a fraction of half a turn. Under a vertical sun azimuths count from east.
+// Cost: no exp.
+float azimuth_place(vec3 direction, vec3 sun) {
+    bool local_12 = false;
+    bool is_vertical = ((abs(sun.x) + abs(sun.z)) < 1e-9);
+    vec2 towards = (is_vertical ? vec2(1.0, 0.0) : sun.xz);
+    float across = abs(((direction.x * towards.y) - (direction.z * towards.x)));
+    float along_2 = dot(direction.xz, towards);
+    if ((across == 0.0)) {
+        local_12 = (along_2 >= 0.0);
+    } else {
+        local_12 = false;
+    }
+    bool _e31 = local_12;
+    if (_e31) {
+        return 0.0;
+    }
+    return (atan(across, along_2) * 0.31830987);
+}
+
+// Texture coordinate of an elevation in a table with rows above and below the horizon, dense towards it: at the square of the row above, and at its fourth power below, where rays from a low eye soon meet the ground. The first rows hold the elevations from the horizon on; both parts end in texel centres, so that filtering does not mix them.
+// Cost: no exp.
+float row_coordinate(SkyView view, float elevation_rad, bool is_below, float rows_above, float rows_below) {
+    float end_1 = (is_below ? -1.5707964 : view.highest_rad);
+    float rows = (is_below ? rows_below : rows_above);
+    float part_1 = clamp(((elevation_rad - view.horizon_rad) / (end_1 - view.horizon_rad)), 0.0, 1.0);
+    float place_3 = (is_below ? sqrt(sqrt(part_1)) : sqrt(part_1));
+    float first_1 = (is_below ? rows_above : 0.0);
+    return (((first_1 + 0.5) + (place_3 * (rows - 1.0))) / (rows_above + rows_below));
+}
+
+// Inverse of `row_coordinate`: elevation of a texture coordinate, rad.
+// Cost: no exp.
+float elevation_from_row_coordinate(SkyView view_1, float coordinate_1, float rows_above_1, float rows_below_1) {
+    float row = (coordinate_1 * (rows_above_1 + rows_below_1));
+    bool is_below_1 = (row >= rows_above_1);
+    float end_2 = (is_below_1 ? -1.5707964 : view_1.highest_rad);
+    float rows_1 = (is_below_1 ? rows_below_1 : rows_above_1);
+    float place_4 = (((row - (is_below_1 ? rows_above_1 : 0.0)) - 0.5) / (rows_1 - 1.0));
+    float squared = (place_4 * place_4);
+    return (view_1.horizon_rad + ((end_2 - view_1.horizon_rad) * (is_below_1 ? (squared * squared) : squared)));
+}
+
+// Elevation of a direction, rad.
+// Cost: no exp.
+float elevation_of(vec3 direction_1) {
+    return atan(direction_1.y, length(direction_1.xz));
+}
+
+// Texture coordinates of a direction in a sky table.
+// Cost: no exp.
+vec2 uv_from_direction(SkyView view_2, vec3 direction_2) {
+    float _e2 = elevation_of(direction_2);
+    bool is_below_2 = (_e2 < view_2.horizon_rad);
+    float _e6 = azimuth_place(direction_2, view_2.sun);
+    float _e8 = texel_coordinate(_e6, SKY_AZIMUTHS);
+    float _e11 = row_coordinate(view_2, _e2, is_below_2, SKY_ROWS_ABOVE, SKY_ROWS_BELOW);
+    return vec2(_e8, _e11);
+}
+
+// Unit vector at an azimuth from the sun, as a fraction of half a turn, and an elevation.
+// Cost: no exp.
+vec3 direction_from_azimuth_elevation(SkyView view_3, float azimuth, float elevation_rad_1) {
+    bool is_vertical_1 = ((abs(view_3.sun.x) + abs(view_3.sun.z)) < 1e-9);
+    vec2 towards_1 = normalize((is_vertical_1 ? vec2(1.0, 0.0) : view_3.sun.xz));
+    float along_3 = (cos((azimuth * 3.1415927)) * cos(elevation_rad_1));
+    float across_1 = (sin((azimuth * 3.1415927)) * cos(elevation_rad_1));
+    return vec3(((towards_1.x * along_3) - (towards_1.y * across_1)), sin(elevation_rad_1), ((towards_1.y * along_3) + (towards_1.x * across_1)));
+}
+
+// Interval of a ray inside the air, m from the eye: up to the ground, if it meets that, or to the top. From space, a ray that misses the air has an empty interval.
+// Cost: no exp.
+vec2 air_span_m(SkyView view_4, float sin_elevation_6, bool meets_ground) {
+    float end = 0.0;
+    float b_3 = ((view_4.ground_radius_m + view_4.height_m) * sin_elevation_6);
+    float over_ground = (view_4.height_m * ((2.0 * view_4.ground_radius_m) + view_4.height_m));
+    float over_top = ((view_4.height_m - view_4.air_height_m) * (((2.0 * view_4.ground_radius_m) + view_4.height_m) + view_4.air_height_m));
+    float root_2 = sqrt(max(((b_3 * b_3) - over_top), 0.0));
+    float start_1 = ((over_top > 0.0) ? (over_top / (root_2 - b_3)) : 0.0);
+    end = (root_2 - b_3);
+    if (meets_ground) {
+        end = (over_ground / (sqrt(max(((b_3 * b_3) - over_ground), 0.0)) - b_3));
+    } else {
+        if ((b_3 > 0.0)) {
+            end = (-(over_top) / (root_2 + b_3));
+        }
+    }
+    float _e50 = end;
+    return vec2(start_1, max(_e50, start_1));
+}
+
+// Place from 0 to 1 of a part of the way through the air in tables by distance, which are dense near the eye.
+// Cost: no exp.
+float place_from_part(float part) {
+    return sqrt(part);
+}
+
+// Inverse of `place_from_part`.
+// Cost: no exp.
+float part_from_place(float place_1) {
+    return (place_1 * place_1);
+}
+
+// Place from 0 to 1 of a scattering angle in a table of phase functions, dense forwards, by 1 minus the cosine.
+// Cost: no exp.
+float phase_place(float one_minus_cos_6) {
+    float half_angle = atan(sqrt(max(one_minus_cos_6, 0.0)), sqrt(max((2.0 - one_minus_cos_6), 0.0)));
+    return sqrt((half_angle * 0.63661975));
+}
+
+// Inverse of `phase_place`.
+// Cost: no exp.
+float one_minus_cos_from_phase_place(float place_2) {
+    float half_sine = sin(((1.5707964 * place_2) * place_2));
+    return ((2.0 * half_sine) * half_sine);
+}
+
+// Phase function of haze between a direction and the sun at four wavelengths, 1/sr.
+// Cost: 1 read.
+vec4 haze_phase(sampler2D phase_table, float one_minus_cos_7) {
+    float _e3 = phase_place(one_minus_cos_7);
+    float _e5 = texel_coordinate(_e3, PHASE_ANGLES);
+    vec4 _e9 = textureLod(phase_table, vec2(vec2(_e5, 0.5)), 0.0);
+    return _e9;
+}
+
+// Radiance of the sky, or of the ground below the horizon, along a direction at four wavelengths, without the sun's disc.
+// Cost: 8 exp, 3 reads.
+vec4 sky_radiance(SkyView view_5, SkyScales scales, sampler2D smooth_table, sampler2D haze_table, sampler2D phase_table_1, vec3 direction_3) {
+    float _e7 = elevation_of(direction_3);
+    if ((_e7 > view_5.highest_rad)) {
+        return vec4(0.0);
+    }
+    vec2 _e12 = uv_from_direction(view_5, direction_3);
+    float _e14 = one_minus_cos_between(direction_3, view_5.sun);
+    vec4 _e15 = haze_phase(phase_table_1, _e14);
+    vec4 _e17 = textureLod(smooth_table, vec2(_e12), 0.0);
+    vec4 smooth_light = (exp(_e17) * scales.smooth_light);
+    vec4 _e22 = textureLod(haze_table, vec2(_e12), 0.0);
+    vec4 haze = (exp(_e22) * scales.haze);
+    return (smooth_light + (haze * _e15));
+}
+
+// Air between the eye and a point at a distance along a direction, at four wavelengths. The extinction table holds the mean extinction from the first air on, 1/km.
+// Cost: 12 exp, 4 reads.
+SpectralPath aerial_perspective(SkyView view_6, SkyScales scales_1, sampler3D smooth_table_1, sampler3D haze_table_1, sampler2D extinction_table, sampler2D phase_table_2, vec3 direction_4, float distance_m) {
+    bool local_13 = false;
+    float _e9 = elevation_of(direction_4);
+    bool is_below_3 = (_e9 < view_6.horizon_rad);
+    vec2 _e13 = air_span_m(view_6, direction_4.y, is_below_3);
+    float length_m_8 = (min(distance_m, _e13.y) - _e13.x);
+    if (!((length_m_8 <= 0.0))) {
+        local_13 = (_e9 > view_6.highest_rad);
+    } else {
+        local_13 = true;
+    }
+    bool _e26 = local_13;
+    if (_e26) {
+        return SpectralPath(vec4(1.0), vec4(0.0));
+    }
+    float _e39 = place_from_part(clamp((length_m_8 / (_e13.y - _e13.x)), 0.0, 1.0));
+    float _e42 = row_coordinate(view_6, _e9, is_below_3, AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW);
+    float _e44 = azimuth_place(direction_4, view_6.sun);
+    float _e46 = texel_coordinate(_e44, AERIAL_AZIMUTHS);
+    float _e48 = texel_coordinate(_e39, AERIAL_DISTANCES);
+    vec3 uvw = vec3(_e46, _e42, _e48);
+    float _e51 = one_minus_cos_between(direction_4, view_6.sun);
+    vec4 _e52 = haze_phase(phase_table_2, _e51);
+    vec4 _e55 = textureLod(extinction_table, vec2(uvw.zy), 0.0);
+    vec4 depth_4 = (_e55 * (length_m_8 * 0.001));
+    vec4 _e60 = textureLod(smooth_table_1, vec3(uvw), 0.0);
+    vec4 smooth_light_1 = (exp(_e60) * scales_1.smooth_light);
+    vec4 _e65 = textureLod(haze_table_1, vec3(uvw), 0.0);
+    vec4 haze_1 = (exp(_e65) * scales_1.haze);
+    vec3 _e70 = mean_transmittance_rgb(depth_4.xyz);
+    float _e72 = mean_transmittance(depth_4.w);
+    vec4 opacity_1 = (depth_4 * vec4(_e70, _e72));
+    return SpectralPath((vec4(1.0) - opacity_1), ((smooth_light_1 + (haze_1 * _e52)) * opacity_1));
+}
+
+// Red, green and blue of a radiance at four wavelengths.
+// Cost: no exp.
+vec3 rgb_from_spectrum(RgbWeights weights, vec4 spectrum) {
+    return vec3(dot(weights.red, spectrum), dot(weights.green, spectrum), dot(weights.blue, spectrum));
+}
+
+// A stretch of air in red, green and blue, for scenes in these: the transmittance of a channel is that of sunlight.
+// Cost: no exp.
+PathOptics rgb_path(RgbWeights radiance_2, RgbWeights transmittance, SpectralPath path_1) {
+    vec3 _e4 = rgb_from_spectrum(transmittance, path_1.transmittance);
+    vec3 _e6 = rgb_from_spectrum(radiance_2, path_1.path_radiance);
+    return PathOptics(_e4, _e6);
 }

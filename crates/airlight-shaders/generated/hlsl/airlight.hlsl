@@ -53,6 +53,31 @@ struct FogLayers {
     FogLight light;
 };
 
+struct SkyView {
+    float3 sun;
+    float height_m;
+    float ground_radius_m;
+    float air_height_m;
+    float horizon_rad;
+    float highest_rad;
+};
+
+struct SkyScales {
+    float4 smooth_light;
+    float4 haze;
+};
+
+struct SpectralPath {
+    float4 transmittance;
+    float4 path_radiance;
+};
+
+struct RgbWeights {
+    float4 red;
+    float4 green;
+    float4 blue;
+};
+
 static const float OPAQUE = 1e25;
 static const float INFINITE_M = 1000000000000.0;
 static const float LARGEST_LN_DENSITY = 57.0;
@@ -60,6 +85,15 @@ static const uint FOG_UNIFORM = 0u;
 static const uint FOG_EXPONENTIAL = 1u;
 static const uint FOG_CLAMPED = 2u;
 static const uint FOG_SLAB = 3u;
+static const float SKY_AZIMUTHS = 64.0;
+static const float SKY_ROWS_ABOVE = 64.0;
+static const float SKY_ROWS_BELOW = 32.0;
+static const float AERIAL_AZIMUTHS = 32.0;
+static const float AERIAL_ROWS_ABOVE = 32.0;
+static const float AERIAL_ROWS_BELOW = 32.0;
+static const float AERIAL_DISTANCES = 32.0;
+static const float PHASE_ANGLES = 1024.0;
+
 
 // Mean transmittance over optical depths from 0 to `x`, not negative: `(1 - e^-x) / x`, 1 at 0.
 // Cost: 1 exp.
@@ -86,8 +120,8 @@ float ramp_transmittance(float x_2)
 {
     float series_1 = (0.5 + (x_2 * (-0.33333334 + (x_2 * (0.125 + (x_2 * (-0.033333335 + (x_2 * (0.0069444445 + (x_2 * (-0.0011904762 + (x_2 * (0.00017361112 - (x_2 / 45360.0))))))))))))));
     float divisor = max(x_2, 0.75);
-    float transmittance = exp(-(x_2));
-    float direct_1 = ((((1.0 - transmittance) / divisor) - transmittance) / divisor);
+    float transmittance_1 = exp(-(x_2));
+    float direct_1 = ((((1.0 - transmittance_1) / divisor) - transmittance_1) / divisor);
     return ((x_2 < 0.75) ? series_1 : direct_1);
 }
 
@@ -791,7 +825,7 @@ PathOptics layered_fog(FogLayers fog_2, RaySegment ray_8)
     uint i_4 = (uint)0;
     bool local_11 = (bool)0;
 
-    uint count_1 = min(fog_2.count, 4u);
+    uint count_3 = min(fog_2.count, 4u);
     level_m_1 = ray_8.height_m;
     float _e15 = level_m_1;
     const float3 _e16 = fog_depth_to_sun(fog_2, _e15);
@@ -838,7 +872,7 @@ PathOptics layered_fog(FogLayers fog_2, RaySegment ray_8)
                 }
                 loop_init_4 = false;
                 uint _e64 = i_3;
-                if ((_e64 < count_1)) {
+                if ((_e64 < count_3)) {
                 } else {
                     break;
                 }
@@ -905,7 +939,7 @@ PathOptics layered_fog(FogLayers fog_2, RaySegment ray_8)
                     }
                     loop_init_5 = false;
                     uint _e130 = i_4;
-                    if ((_e130 < count_1)) {
+                    if ((_e130 < count_3)) {
                     } else {
                         break;
                     }
@@ -969,6 +1003,243 @@ PathOptics layered_fog(FogLayers fog_2, RaySegment ray_8)
     return pathoptics_8;
 }
 
+// Texture coordinate of a place from 0 (centre of the first texel) to 1 (centre of the last) among `count` texels.
+// Cost: no exp.
+float texel_coordinate(float place, float count_1)
+{
+    return ((0.5 + (place * (count_1 - 1.0))) / count_1);
+}
+
+// Inverse of `texel_coordinate`.
+// Cost: no exp.
+float place_from_texel_coordinate(float coordinate, float count_2)
+{
+    return (((coordinate * count_2) - 0.5) / (count_2 - 1.0));
+}
+
+// Azimuth of a direction from that of the sun as a fraction of half a turn. Under a vertical sun azimuths count from east.
+// Cost: no exp.
+float azimuth_place(float3 direction, float3 sun)
+{
+    bool local_12 = (bool)0;
+
+    bool is_vertical = ((abs(sun.x) + abs(sun.z)) < 1e-9);
+    float2 towards = (is_vertical ? float2(1.0, 0.0) : sun.xz);
+    float across = abs(((direction.x * towards.y) - (direction.z * towards.x)));
+    float along_2 = dot(direction.xz, towards);
+    if ((across == 0.0)) {
+        local_12 = (along_2 >= 0.0);
+    } else {
+        local_12 = false;
+    }
+    bool _e31 = local_12;
+    if (_e31) {
+        return 0.0;
+    }
+    return (atan2(across, along_2) * 0.31830987);
+}
+
+// Texture coordinate of an elevation in a table with rows above and below the horizon, dense towards it: at the square of the row above, and at its fourth power below, where rays from a low eye soon meet the ground. The first rows hold the elevations from the horizon on; both parts end in texel centres, so that filtering does not mix them.
+// Cost: no exp.
+float row_coordinate(SkyView view, float elevation_rad, bool is_below, float rows_above, float rows_below)
+{
+    float end_1 = (is_below ? -1.5707964 : view.highest_rad);
+    float rows = (is_below ? rows_below : rows_above);
+    float part_1 = clamp(((elevation_rad - view.horizon_rad) / (end_1 - view.horizon_rad)), 0.0, 1.0);
+    float place_3 = (is_below ? sqrt(sqrt(part_1)) : sqrt(part_1));
+    float first_1 = (is_below ? rows_above : 0.0);
+    return (((first_1 + 0.5) + (place_3 * (rows - 1.0))) / (rows_above + rows_below));
+}
+
+// Inverse of `row_coordinate`: elevation of a texture coordinate, rad.
+// Cost: no exp.
+float elevation_from_row_coordinate(SkyView view_1, float coordinate_1, float rows_above_1, float rows_below_1)
+{
+    float row = (coordinate_1 * (rows_above_1 + rows_below_1));
+    bool is_below_1 = (row >= rows_above_1);
+    float end_2 = (is_below_1 ? -1.5707964 : view_1.highest_rad);
+    float rows_1 = (is_below_1 ? rows_below_1 : rows_above_1);
+    float place_4 = (((row - (is_below_1 ? rows_above_1 : 0.0)) - 0.5) / (rows_1 - 1.0));
+    float squared = (place_4 * place_4);
+    return (view_1.horizon_rad + ((end_2 - view_1.horizon_rad) * (is_below_1 ? (squared * squared) : squared)));
+}
+
+// Elevation of a direction, rad.
+// Cost: no exp.
+float elevation_of(float3 direction_1)
+{
+    return atan2(direction_1.y, length(direction_1.xz));
+}
+
+// Texture coordinates of a direction in a sky table.
+// Cost: no exp.
+float2 uv_from_direction(SkyView view_2, float3 direction_2)
+{
+    const float _e2 = elevation_of(direction_2);
+    bool is_below_2 = (_e2 < view_2.horizon_rad);
+    const float _e6 = azimuth_place(direction_2, view_2.sun);
+    const float _e8 = texel_coordinate(_e6, SKY_AZIMUTHS);
+    const float _e11 = row_coordinate(view_2, _e2, is_below_2, SKY_ROWS_ABOVE, SKY_ROWS_BELOW);
+    return float2(_e8, _e11);
+}
+
+// Unit vector at an azimuth from the sun, as a fraction of half a turn, and an elevation.
+// Cost: no exp.
+float3 direction_from_azimuth_elevation(SkyView view_3, float azimuth, float elevation_rad_1)
+{
+    bool is_vertical_1 = ((abs(view_3.sun.x) + abs(view_3.sun.z)) < 1e-9);
+    float2 towards_1 = normalize((is_vertical_1 ? float2(1.0, 0.0) : view_3.sun.xz));
+    float along_3 = (cos((azimuth * 3.1415927)) * cos(elevation_rad_1));
+    float across_1 = (sin((azimuth * 3.1415927)) * cos(elevation_rad_1));
+    return float3(((towards_1.x * along_3) - (towards_1.y * across_1)), sin(elevation_rad_1), ((towards_1.y * along_3) + (towards_1.x * across_1)));
+}
+
+// Interval of a ray inside the air, m from the eye: up to the ground, if it meets that, or to the top. From space, a ray that misses the air has an empty interval.
+// Cost: no exp.
+float2 air_span_m(SkyView view_4, float sin_elevation_6, bool meets_ground)
+{
+    float end = (float)0;
+
+    float b_3 = ((view_4.ground_radius_m + view_4.height_m) * sin_elevation_6);
+    float over_ground = (view_4.height_m * ((2.0 * view_4.ground_radius_m) + view_4.height_m));
+    float over_top = ((view_4.height_m - view_4.air_height_m) * (((2.0 * view_4.ground_radius_m) + view_4.height_m) + view_4.air_height_m));
+    float root_2 = sqrt(max(((b_3 * b_3) - over_top), 0.0));
+    float start_1 = ((over_top > 0.0) ? (over_top / (root_2 - b_3)) : 0.0);
+    end = (root_2 - b_3);
+    if (meets_ground) {
+        end = (over_ground / (sqrt(max(((b_3 * b_3) - over_ground), 0.0)) - b_3));
+    } else {
+        if ((b_3 > 0.0)) {
+            end = (-(over_top) / (root_2 + b_3));
+        }
+    }
+    float _e50 = end;
+    return float2(start_1, max(_e50, start_1));
+}
+
+// Place from 0 to 1 of a part of the way through the air in tables by distance, which are dense near the eye.
+// Cost: no exp.
+float place_from_part(float part)
+{
+    return sqrt(part);
+}
+
+// Inverse of `place_from_part`.
+// Cost: no exp.
+float part_from_place(float place_1)
+{
+    return (place_1 * place_1);
+}
+
+// Place from 0 to 1 of a scattering angle in a table of phase functions, dense forwards, by 1 minus the cosine.
+// Cost: no exp.
+float phase_place(float one_minus_cos_6)
+{
+    float half_angle = atan2(sqrt(max(one_minus_cos_6, 0.0)), sqrt(max((2.0 - one_minus_cos_6), 0.0)));
+    return sqrt((half_angle * 0.63661975));
+}
+
+// Inverse of `phase_place`.
+// Cost: no exp.
+float one_minus_cos_from_phase_place(float place_2)
+{
+    float half_sine = sin(((1.5707964 * place_2) * place_2));
+    return ((2.0 * half_sine) * half_sine);
+}
+
+// Phase function of haze between a direction and the sun at four wavelengths, 1/sr.
+// Cost: 1 read.
+float4 haze_phase(Texture2D<float4> phase_table, SamplerState linear_sampler, float one_minus_cos_7)
+{
+    const float _e3 = phase_place(one_minus_cos_7);
+    const float _e5 = texel_coordinate(_e3, PHASE_ANGLES);
+    float4 _e9 = phase_table.SampleLevel(linear_sampler, float2(_e5, 0.5), 0.0);
+    return _e9;
+}
+
+// Radiance of the sky, or of the ground below the horizon, along a direction at four wavelengths, without the sun's disc.
+// Cost: 8 exp, 3 reads.
+float4 sky_radiance(SkyView view_5, SkyScales scales, Texture2D<float4> smooth_table, Texture2D<float4> haze_table, Texture2D<float4> phase_table_1, SamplerState linear_sampler_1, float3 direction_3)
+{
+    const float _e7 = elevation_of(direction_3);
+    if ((_e7 > view_5.highest_rad)) {
+        return (0.0).xxxx;
+    }
+    const float2 _e12 = uv_from_direction(view_5, direction_3);
+    const float _e14 = one_minus_cos_between(direction_3, view_5.sun);
+    const float4 _e15 = haze_phase(phase_table_1, linear_sampler_1, _e14);
+    float4 _e17 = smooth_table.SampleLevel(linear_sampler_1, _e12, 0.0);
+    float4 smooth_light = (exp(_e17) * scales.smooth_light);
+    float4 _e22 = haze_table.SampleLevel(linear_sampler_1, _e12, 0.0);
+    float4 haze = (exp(_e22) * scales.haze);
+    return (smooth_light + (haze * _e15));
+}
+
+SpectralPath ConstructSpectralPath(float4 arg0, float4 arg1) {
+    SpectralPath ret = (SpectralPath)0;
+    ret.transmittance = arg0;
+    ret.path_radiance = arg1;
+    return ret;
+}
+
+// Air between the eye and a point at a distance along a direction, at four wavelengths. The extinction table holds the mean extinction from the first air on, 1/km.
+// Cost: 12 exp, 4 reads.
+SpectralPath aerial_perspective(SkyView view_6, SkyScales scales_1, Texture3D<float4> smooth_table_1, Texture3D<float4> haze_table_1, Texture2D<float4> extinction_table, Texture2D<float4> phase_table_2, SamplerState linear_sampler_2, float3 direction_4, float distance_m)
+{
+    bool local_13 = (bool)0;
+
+    const float _e9 = elevation_of(direction_4);
+    bool is_below_3 = (_e9 < view_6.horizon_rad);
+    const float2 _e13 = air_span_m(view_6, direction_4.y, is_below_3);
+    float length_m_8 = (min(distance_m, _e13.y) - _e13.x);
+    if (!((length_m_8 <= 0.0))) {
+        local_13 = (_e9 > view_6.highest_rad);
+    } else {
+        local_13 = true;
+    }
+    bool _e26 = local_13;
+    if (_e26) {
+        const SpectralPath spectralpath = ConstructSpectralPath((1.0).xxxx, (0.0).xxxx);
+        return spectralpath;
+    }
+    const float _e39 = place_from_part(clamp((length_m_8 / (_e13.y - _e13.x)), 0.0, 1.0));
+    const float _e42 = row_coordinate(view_6, _e9, is_below_3, AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW);
+    const float _e44 = azimuth_place(direction_4, view_6.sun);
+    const float _e46 = texel_coordinate(_e44, AERIAL_AZIMUTHS);
+    const float _e48 = texel_coordinate(_e39, AERIAL_DISTANCES);
+    float3 uvw = float3(_e46, _e42, _e48);
+    const float _e51 = one_minus_cos_between(direction_4, view_6.sun);
+    const float4 _e52 = haze_phase(phase_table_2, linear_sampler_2, _e51);
+    float4 _e55 = extinction_table.SampleLevel(linear_sampler_2, uvw.zy, 0.0);
+    float4 depth_4 = (_e55 * (length_m_8 * 0.001));
+    float4 _e60 = smooth_table_1.SampleLevel(linear_sampler_2, uvw, 0.0);
+    float4 smooth_light_1 = (exp(_e60) * scales_1.smooth_light);
+    float4 _e65 = haze_table_1.SampleLevel(linear_sampler_2, uvw, 0.0);
+    float4 haze_1 = (exp(_e65) * scales_1.haze);
+    const float3 _e70 = mean_transmittance_rgb(depth_4.xyz);
+    const float _e72 = mean_transmittance(depth_4.w);
+    float4 opacity_1 = (depth_4 * float4(_e70, _e72));
+    const SpectralPath spectralpath_1 = ConstructSpectralPath(((1.0).xxxx - opacity_1), ((smooth_light_1 + (haze_1 * _e52)) * opacity_1));
+    return spectralpath_1;
+}
+
+// Red, green and blue of a radiance at four wavelengths.
+// Cost: no exp.
+float3 rgb_from_spectrum(RgbWeights weights, float4 spectrum)
+{
+    return float3(dot(weights.red, spectrum), dot(weights.green, spectrum), dot(weights.blue, spectrum));
+}
+
+// A stretch of air in red, green and blue, for scenes in these: the transmittance of a channel is that of sunlight.
+// Cost: no exp.
+PathOptics rgb_path(RgbWeights radiance_2, RgbWeights transmittance, SpectralPath path_1)
+{
+    const float3 _e4 = rgb_from_spectrum(transmittance, path_1.transmittance);
+    const float3 _e6 = rgb_from_spectrum(radiance_2, path_1.path_radiance);
+    const PathOptics pathoptics_9 = ConstructPathOptics(_e4, _e6);
+    return pathoptics_9;
+}
+
 float ZeroValuefloat() {
     return (float)0;
 }
@@ -1007,4 +1278,24 @@ FogLayers ZeroValueFogLayers() {
 
 bool ZeroValuebool() {
     return (bool)0;
+}
+
+SkyView ZeroValueSkyView() {
+    return (SkyView)0;
+}
+
+SkyScales ZeroValueSkyScales() {
+    return (SkyScales)0;
+}
+
+RgbWeights ZeroValueRgbWeights() {
+    return (RgbWeights)0;
+}
+
+float4 ZeroValuefloat4() {
+    return (float4)0;
+}
+
+SpectralPath ZeroValueSpectralPath() {
+    return (SpectralPath)0;
 }

@@ -8,3 +8,5 @@ pub mod exponentials;
 pub mod fog;
 pub mod path_optics;
 pub mod phase;
+pub mod sky_tables;
+pub mod texture;

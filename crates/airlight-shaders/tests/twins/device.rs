@@ -1,10 +1,16 @@
 //! A Vulkan device that computes functions of rows of numbers.
 
 use crate::module;
+use crate::textures;
 use airlight::Named;
 use airlight_shaders::{Part, source};
 use std::fmt::Write;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
+
+/// Binding of the sampler.
+const SAMPLER: u32 = 2;
+/// Binding of the first texture.
+const FIRST_TEXTURE: u32 = 3;
 
 /// The device and the shader that holds an entry point for each function.
 pub struct Device {
@@ -97,7 +103,27 @@ impl Device {
             binding: 1,
             resource: outputs.as_entire_binding(),
         }];
-        if !function.arguments.is_empty() {
+        let views: Vec<(u32, wgpu::TextureView)> = module::textures(&self.module, function)
+            .map(|(place, name)| (place, self.texture(name)))
+            .collect();
+        for (place, view) in &views {
+            entries.push(wgpu::BindGroupEntry {
+                binding: FIRST_TEXTURE + place,
+                resource: wgpu::BindingResource::TextureView(view),
+            });
+        }
+        let sampler = self.device.create_sampler(&wgpu::SamplerDescriptor {
+            mag_filter: wgpu::FilterMode::Linear,
+            min_filter: wgpu::FilterMode::Linear,
+            ..Default::default()
+        });
+        if !views.is_empty() {
+            entries.push(wgpu::BindGroupEntry {
+                binding: SAMPLER,
+                resource: wgpu::BindingResource::Sampler(&sampler),
+            });
+        }
+        if !arguments[0].is_empty() {
             entries.push(wgpu::BindGroupEntry {
                 binding: 0,
                 resource: inputs.as_entire_binding(),
@@ -139,6 +165,41 @@ impl Device {
     }
 }
 
+impl Device {
+    /// A texture of [`textures`] on the device.
+    fn texture(&self, name: &str) -> wgpu::TextureView {
+        let texture = textures::named(name);
+        let [width, height, depth] = texture.size().map(|n| n as u32);
+        let bytes: Vec<u8> = texture
+            .texels()
+            .iter()
+            .flat_map(|texel| texel.to_array())
+            .flat_map(|value| half::f16::from_f32(value).to_ne_bytes())
+            .collect();
+        let descriptor = wgpu::TextureDescriptor {
+            label: Some(name),
+            size: wgpu::Extent3d {
+                width,
+                height,
+                depth_or_array_layers: depth,
+            },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: match depth {
+                1 => wgpu::TextureDimension::D2,
+                _ => wgpu::TextureDimension::D3,
+            },
+            format: wgpu::TextureFormat::Rgba16Float,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+            view_formats: &[],
+        };
+        let order = wgpu::util::TextureDataOrder::default();
+        self.device
+            .create_texture_with_data(&self.queue, &descriptor, order, &bytes)
+            .create_view(&wgpu::TextureViewDescriptor::default())
+    }
+}
+
 /// The library with a compute shader for each function, which reads rows of arguments and writes rows of results.
 fn with_entry_points(module: &naga::Module) -> String {
     let mut text = source(Part::ALL);
@@ -148,13 +209,27 @@ fn with_entry_points(module: &naga::Module) -> String {
         @group(0) @binding(1) var<storage, read_write> results: array<f32>;
         ",
     );
+    writeln!(
+        text,
+        "@group(0) @binding({SAMPLER}) var linear_sampler_of_all: sampler;"
+    )
+    .expect("a text");
+    for (place, name) in textures::NAMES.iter().enumerate() {
+        let dimension = textures::dimension(name);
+        writeln!(
+            text,
+            "@group(0) @binding({}) var {name}: texture_{dimension}d<f32>;",
+            FIRST_TEXTURE + place as u32
+        )
+        .expect("a text");
+    }
     for (_, function) in module.functions.iter() {
         let name = function.name.as_deref().expect("the name of a function");
         let mut width = 0;
         let values: Vec<String> = function
             .arguments
             .iter()
-            .map(|argument| module::read(module, argument.ty, "arguments[first + ", &mut width))
+            .map(|argument| module::argument(module, argument, "arguments[first + ", &mut width))
             .collect();
         let result = function.result.as_ref().expect("a result");
         let numbers = module::write(module, result.ty, "result");

@@ -7,6 +7,7 @@ mod flat;
 mod module;
 mod random;
 mod rows;
+mod textures;
 
 use airlight::Named;
 use airlight_shaders::{ErrorBound, Part, functions};

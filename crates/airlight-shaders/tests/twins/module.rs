@@ -1,8 +1,12 @@
 //! The library as naga reads it: arguments, results and costs of its functions.
 
+use crate::textures;
 use airlight::Named;
 use airlight_shaders::{Part, source};
-use naga::{Block, Expression, Function, Handle, MathFunction, Module, ScalarKind, Statement};
+use naga::{
+    Block, Expression, Function, FunctionArgument, Handle, ImageDimension, MathFunction, Module,
+    ScalarKind, Statement,
+};
 use naga::{Type, TypeInner};
 
 /// All parts.
@@ -48,6 +52,45 @@ fn length(size: &naga::ArraySize) -> u32 {
         naga::ArraySize::Constant(count) => count.get(),
         other => panic!("{other:?}"),
     }
+}
+
+/// WGSL expression of an argument: a texture or sampler of the tests, or a value as of [`read`].
+pub fn argument(
+    module: &Module,
+    argument: &FunctionArgument,
+    numbers: &str,
+    at: &mut usize,
+) -> String {
+    match module.types[argument.ty].inner {
+        TypeInner::Image { .. } => texture_name(module, argument),
+        TypeInner::Sampler { .. } => "linear_sampler_of_all".to_owned(),
+        _ => read(module, argument.ty, numbers, at),
+    }
+}
+
+/// Name of the test's texture for an argument: its own name and the dimension.
+fn texture_name(module: &Module, argument: &FunctionArgument) -> String {
+    let TypeInner::Image { dim, .. } = module.types[argument.ty].inner else {
+        panic!("a texture");
+    };
+    let name = argument.name.as_deref().expect("the name of an argument");
+    let dimension = match dim {
+        ImageDimension::D3 => 3,
+        _ => 2,
+    };
+    format!("{name}_{dimension}d")
+}
+
+/// The textures that a function takes: places and names in [`textures::NAMES`].
+pub fn textures(module: &Module, function: &Function) -> impl Iterator<Item = (u32, &'static str)> {
+    let is_texture = |argument: &&FunctionArgument| {
+        matches!(module.types[argument.ty].inner, TypeInner::Image { .. })
+    };
+    let arguments = function.arguments.iter().filter(is_texture);
+    let names: Vec<String> = arguments.map(|a| texture_name(module, a)).collect();
+    let all = textures::NAMES.iter().enumerate();
+    all.filter(move |(_, name)| names.iter().any(|n| n == *name))
+        .map(|(place, name)| (place as u32, *name))
 }
 
 /// WGSL expression of a value made of `numbers[at]`, `numbers[at + 1]` ..; advances `at`.

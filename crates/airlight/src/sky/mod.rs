@@ -20,7 +20,8 @@
 //! atmosphere), `polarised` (moments of its polarisation), `horizon` (light that forward peaks scatter at the horizon), `orders`
 //! (all orders of scattering), `horizontal_exchange` and `mixing` (its corrections in thick air), `transport` (light scattered once
 //! more), `plane_parallel` (its direct solution in plane-parallel air), `ray_bundle` (rays that share their path), `trace` (light
-//! along one ray), `samples_along_ray` (light at many distances along a ray), `table` (all directions of a view), `stokes` (its
+//! along one ray), `samples_along_ray` (light at many distances along a ray), `table` (all directions of a view), `split` (its light in
+//! two parts that vary slowly, for tables), `stokes` (its
 //! polarisation).
 
 mod air;
@@ -42,6 +43,7 @@ mod rgb_view;
 mod samples_along_ray;
 mod settings;
 mod solver;
+mod split;
 mod stokes;
 mod table;
 mod tabulate;
@@ -54,6 +56,7 @@ pub(crate) use peaked::Peaked;
 pub use rgb_view::RgbView;
 pub use settings::{Directions, OrderSettings, Scattering, SkyError, SkySettings};
 pub use solver::Sky;
+pub use split::{SplitLight, SplitPath, SplitView};
 pub use stokes::{PolarisationTable, PolarisedLight};
 pub use table::{SkyColumns, SkyTable, TableChannels};
 pub(crate) use tabulate::channel_weights;

@@ -89,19 +89,36 @@ impl SkyTable {
     /// Evaluates the radiance along the unit vector `direction` into `out`, one value per channel.
     #[inline]
     pub fn sample(&self, direction: DVec3, out: &mut [f32]) {
+        let (elevation, nodes, weights) = self.column(direction);
+        let half_sine = 0.5 * direction.distance(self.sun);
+        match self.place(elevation) {
+            Some((half, row)) => self.interpolate(half, row, &nodes, &weights, half_sine, out),
+            None => out[..self.channels].fill(0.0),
+        }
+    }
+
+    /// Elevation of a direction, and its columns with their weights.
+    #[inline(always)]
+    fn column(&self, direction: DVec3) -> (f64, [usize; 4], [f32; 4]) {
         let horizontal = (direction.x * direction.x + direction.z * direction.z).sqrt();
-        let elevation = direction.y.atan2(horizontal);
         let cos_azimuth = if horizontal > 0.0 {
             (direction.x * self.sun_azimuth.x + direction.z * self.sun_azimuth.z) / horizontal
         } else {
             1.0
         };
         let (nodes, weights) = cubic_mirrored(cos_azimuth.clamp(-1.0, 1.0).acos() / PI, AZIMUTHS);
-        let half_sine = 0.5 * direction.distance(self.sun);
-        match self.place(elevation) {
-            Some((half, row)) => self.interpolate(half, row, &nodes, &weights, half_sine, out),
-            None => out[..self.channels].fill(0.0),
+        (direction.y.atan2(horizontal), nodes, weights)
+    }
+
+    /// Values along the unit vector `direction`, first of the smooth light, then of each part without its factor; 0 above the
+    /// atmosphere's limb.
+    pub(super) fn parts(&self, direction: DVec3) -> Vec<f32> {
+        let mut cell = vec![0.0; self.width];
+        let (elevation, nodes, weights) = self.column(direction);
+        if let Some((half, row)) = self.place(elevation) {
+            self.interpolate_cell(half, row, &nodes, &weights, &mut cell);
         }
+        cell
     }
 
     /// [`SkyTable::sample`] of many directions; `out` is `[direction][channel]`.
@@ -303,9 +320,6 @@ impl SkyTable {
         half_sine: f64,
         out: &mut [f32],
     ) {
-        let stride = (AZIMUTHS + 1) * self.width;
-        let (first_row, row_weights) = cubic_f32(row, half.rows);
-        // Groups of four values stay in a register over all sixteen cells.
         let mut small = [0.0f32; SMALL_WIDTH];
         let mut large = Vec::new();
         let cell = if self.width <= SMALL_WIDTH {
@@ -314,6 +328,23 @@ impl SkyTable {
             large.resize(self.width, 0.0);
             &mut large[..]
         };
+        self.interpolate_cell(half, row, columns, column_weights, cell);
+        self.combine(cell, half_sine, out);
+    }
+
+    /// All values of a cell.
+    #[inline(always)]
+    fn interpolate_cell(
+        &self,
+        half: &Half,
+        row: f64,
+        columns: &[usize; 4],
+        column_weights: &[f32; 4],
+        cell: &mut [f32],
+    ) {
+        let stride = (AZIMUTHS + 1) * self.width;
+        let (first_row, row_weights) = cubic_f32(row, half.rows);
+        // Groups of four values stay in a register over all sixteen cells.
         for (part, sums) in cell.chunks_exact_mut(4).enumerate() {
             let mut sum = [0.0f32; 4];
             for (i, &wr) in row_weights.iter().enumerate() {
@@ -328,7 +359,6 @@ impl SkyTable {
             }
             sums.copy_from_slice(&sum);
         }
-        self.combine(cell, half_sine, out);
     }
 
     /// Applies the phase functions and sums the parts of a cell.

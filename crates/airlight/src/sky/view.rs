@@ -236,13 +236,13 @@ impl View {
     }
 
     /// Radii of the ground and of the top of the atmosphere, m.
-    pub(crate) fn bounds_m(&self) -> (f64, f64) {
+    pub fn bounds_m(&self) -> (f64, f64) {
         let shell = self.sky.shell();
         (shell.ground_radius_m, shell.top_radius_m)
     }
 
     /// Elevation of the horizon, rad: 0 on the ground, and below it from above.
-    pub(crate) fn horizon_elevation_rad(&self) -> f64 {
+    pub fn horizon_elevation_rad(&self) -> f64 {
         -(self.sky.shell().ground_radius_m / self.radius_m())
             .min(1.0)
             .acos()

@@ -3,6 +3,7 @@
 mod air;
 mod fog;
 mod phase;
+mod sky_tables;
 
 use crate::flat::FlatFunction;
 use crate::random::Random;
@@ -42,5 +43,6 @@ pub fn all() -> Vec<Row> {
     all.extend(air::path_optics());
     all.extend(air::columns());
     all.extend(fog::fog());
+    all.extend(sky_tables::sky_tables());
     all
 }

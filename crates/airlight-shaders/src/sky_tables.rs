@@ -1,0 +1,411 @@
+//! [`SkyTables`]: the tables of `wgsl/sky_tables.wgsl`, filled from a solved sky.
+
+use crate::twins::sky_tables as twin;
+use crate::twins::texture::Texture;
+use airlight::atmosphere::Atmosphere;
+use airlight::glam::DVec3;
+use airlight::sky::{SplitPath, SplitView, View};
+use airlight::spectrum::{RgbSpace, WavelengthGrid, rgb};
+use glam::Vec4;
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// Wavelengths of the tables, nm: with fitted weights, the four that reproduce the colours of skies best.
+pub const WAVELENGTHS_NM: [f64; 4] = [445.0, 525.0, 575.0, 640.0];
+
+/// Wavelength grid to solve skies with for [`SkyTables`].
+pub fn wavelength_grid() -> WavelengthGrid {
+    WavelengthGrid::from_wavelengths_nm(WAVELENGTHS_NM.to_vec()).expect("increasing wavelengths")
+}
+
+/// Logarithm of the least light that a table holds, relative to its scale.
+const DARKEST: f64 = -30.0;
+/// First distance of a ray, in steps: means are undefined at the eye itself.
+const FIRST_STEP: f64 = 0.01;
+/// Part of the span of elevations from the horizon to the first rows, as radiance jumps there.
+const BESIDE_HORIZON: f64 = 1e-9;
+
+/// Tables of the sky and of aerial perspective for one height of the eye and one direction of the sun, with the parameters of the
+/// shader functions that read them. Textures may be stored as half floats.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SkyTables {
+    /// What the tables are made for.
+    pub view: twin::SkyView,
+    /// Factors from table values to radiance, W m^-2 sr^-1 nm^-1.
+    pub scales: twin::SkyScales,
+    /// Logarithm of the radiance of the sky other than `sky_haze`.
+    pub sky_smooth: Texture,
+    /// Logarithm of the radiance that haze scatters once, divided by its phase function.
+    pub sky_haze: Texture,
+    /// Source function of the path radiance, as `sky_smooth`.
+    pub aerial_smooth: Texture,
+    /// Source function of the path radiance, as `sky_haze`.
+    pub aerial_haze: Texture,
+    /// Mean extinction, 1/km.
+    pub extinction: Texture,
+    /// Phase function of haze, 1/sr.
+    pub phase: Texture,
+    /// Weights from radiance to red, green and blue, cd/m^2.
+    pub radiance_weights: twin::RgbWeights,
+    /// Weights from transmittance to that of sunlight in red, green and blue.
+    pub transmittance_weights: twin::RgbWeights,
+}
+
+/// Error of [`SkyTables::new`].
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SkyTablesError {
+    /// The sky was solved at other wavelengths.
+    #[error(
+        "expected a sky at {WAVELENGTHS_NM:?} nm, got {0:?} nm; try airlight_shaders::wavelength_grid()"
+    )]
+    Wavelengths(Vec<f64>),
+}
+
+impl SkyTables {
+    /// Tables of a view of a sky that was solved on the [`wavelength_grid`], for colours in an RGB space.
+    ///
+    /// # Errors
+    /// [`SkyTablesError`] for a sky at other wavelengths.
+    pub fn new(view: &View, space: RgbSpace) -> Result<Self, SkyTablesError> {
+        let grid = view.sky().grid();
+        if grid.wavelengths_nm() != WAVELENGTHS_NM {
+            let wavelengths_nm = grid.wavelengths_nm().to_vec();
+            return Err(SkyTablesError::Wavelengths(wavelengths_nm));
+        }
+        let split = view.split();
+        let (ground_radius_m, top_radius_m) = view.bounds_m();
+        let radius_m = view.radius_m();
+        let highest = match radius_m >= top_radius_m {
+            true => -(top_radius_m / radius_m).acos(),
+            false => FRAC_PI_2,
+        };
+        let place = Eye {
+            horizon: view.horizon_elevation_rad(),
+            highest,
+            sun: view.sun(),
+        };
+        let sky_view = twin::SkyView {
+            sun: view.sun().as_vec3(),
+            height_m: (radius_m - ground_radius_m) as f32,
+            ground_radius_m: ground_radius_m as f32,
+            air_height_m: (top_radius_m - ground_radius_m) as f32,
+            horizon_rad: place.horizon as f32,
+            highest_rad: highest as f32,
+        };
+        let sky = sky(&split, &place);
+        let scales = twin::SkyScales {
+            smooth_light: scale(&sky.0),
+            haze: scale(&sky.1),
+        };
+        let aerial = aerial(&split, &place, &sky_view);
+        let (radiance_weights, transmittance_weights) = rgb_weights(view, space);
+        Ok(Self {
+            view: sky_view,
+            scales,
+            sky_smooth: logarithms(sky_size(), &sky.0, scales.smooth_light),
+            sky_haze: logarithms(sky_size(), &sky.1, scales.haze),
+            aerial_smooth: logarithms(aerial_size(), &aerial.smooth, scales.smooth_light),
+            aerial_haze: logarithms(aerial_size(), &aerial.haze, scales.haze),
+            extinction: aerial.extinction,
+            phase: phase(&split),
+            radiance_weights,
+            transmittance_weights,
+        })
+    }
+}
+
+/// Elevations that bound the tables, rad, and the sun.
+struct Eye {
+    horizon: f64,
+    highest: f64,
+    sun: DVec3,
+}
+
+impl Eye {
+    /// Elevation of a row, and whether it is below the horizon.
+    fn elevation(&self, row: usize, [above, below]: [usize; 2]) -> (f64, bool) {
+        let is_below = row >= above;
+        let (end, place) = match is_below {
+            true => (-FRAC_PI_2, (row - above) as f64 / (below - 1) as f64),
+            false => (self.highest, row as f64 / (above - 1) as f64),
+        };
+        let power = if is_below { 4 } else { 2 };
+        let part = place.powi(power).max(BESIDE_HORIZON);
+        (self.horizon + (end - self.horizon) * part, is_below)
+    }
+
+    /// Unit vector of a column and an elevation.
+    fn direction(&self, column: usize, columns: usize, elevation: f64) -> DVec3 {
+        let towards = DVec3::new(self.sun.x, 0.0, self.sun.z);
+        let towards = match self.sun.x.abs() + self.sun.z.abs() < 1e-9 {
+            true => DVec3::X,
+            false => towards.normalize(),
+        };
+        let across = DVec3::new(-towards.z, 0.0, towards.x);
+        let (sin, cos) = (PI * column as f64 / (columns - 1) as f64).sin_cos();
+        (towards * cos + across * sin) * elevation.cos() + DVec3::Y * elevation.sin()
+    }
+}
+
+const SKY_COLUMNS: usize = twin::SKY_AZIMUTHS as usize;
+const SKY_ROWS: [usize; 2] = [twin::SKY_ROWS_ABOVE as usize, twin::SKY_ROWS_BELOW as usize];
+const AERIAL_COLUMNS: usize = twin::AERIAL_AZIMUTHS as usize;
+const AERIAL_ROWS: [usize; 2] = [
+    twin::AERIAL_ROWS_ABOVE as usize,
+    twin::AERIAL_ROWS_BELOW as usize,
+];
+const DISTANCES: usize = twin::AERIAL_DISTANCES as usize;
+
+fn sky_size() -> [usize; 3] {
+    [SKY_COLUMNS, SKY_ROWS[0] + SKY_ROWS[1], 1]
+}
+
+fn aerial_size() -> [usize; 3] {
+    [AERIAL_COLUMNS, AERIAL_ROWS[0] + AERIAL_ROWS[1], DISTANCES]
+}
+
+/// Smooth light and haze of the sky by texel.
+fn sky(split: &SplitView, eye: &Eye) -> (Vec<Vec4>, Vec<Vec4>) {
+    let [columns, rows, _] = sky_size();
+    let mut directions = Vec::with_capacity(columns * rows);
+    for row in 0..rows {
+        let (elevation, _) = eye.elevation(row, SKY_ROWS);
+        directions.extend((0..columns).map(|column| eye.direction(column, columns, elevation)));
+    }
+    let light = split.radiances(&directions);
+    light
+        .iter()
+        .map(|light| (vec4(&light.smooth), vec4(&light.peaked)))
+        .unzip()
+}
+
+/// Aerial perspective by texel.
+struct Aerial {
+    smooth: Vec<Vec4>,
+    haze: Vec<Vec4>,
+    extinction: Texture,
+}
+
+fn aerial(split: &SplitView, eye: &Eye, view: &twin::SkyView) -> Aerial {
+    let [columns, rows, distances] = aerial_size();
+    let mut rays = Vec::with_capacity(columns * rows);
+    let mut starts_m = Vec::with_capacity(rows);
+    for row in 0..rows {
+        let (elevation, is_below) = eye.elevation(row, AERIAL_ROWS);
+        let span = twin::air_span_m(*view, elevation.sin() as f32, is_below);
+        let (start_m, length_m) = (f64::from(span.x), f64::from(span.y - span.x));
+        starts_m.push(start_m);
+        let stops_m = (0..distances).map(|step| {
+            let place = (step as f64).max(FIRST_STEP) / (distances - 1) as f64;
+            start_m + length_m * f64::from(twin::part_from_place(place as f32))
+        });
+        let stops_m: Vec<f64> = stops_m.collect();
+        for column in 0..columns {
+            rays.push((eye.direction(column, columns, elevation), stops_m.clone()));
+        }
+    }
+    let paths = split.many_paths(&rays);
+    let mut smooth = vec![Vec4::ZERO; columns * rows * distances];
+    let mut haze = smooth.clone();
+    for (index, path) in paths.iter().enumerate() {
+        for (step, stop) in path.iter().enumerate() {
+            let texel = step * columns * rows + index;
+            let opacity = vec4(&stop.optical_depth).map_lanes(|depth| -(-depth).exp_m1());
+            smooth[texel] = source(&stop.smooth, opacity);
+            haze[texel] = source(&stop.peaked, opacity);
+        }
+    }
+    let mut extinction = Vec::with_capacity(rows * distances);
+    for row in 0..rows {
+        let (_, stops_m) = &rays[row * columns];
+        let mean = |(stop, stop_m): (&SplitPath, &f64)| {
+            let length_km = (1e-3 * (stop_m - starts_m[row])) as f32;
+            match length_km > 0.0 {
+                true => vec4(&stop.optical_depth) / length_km,
+                false => Vec4::ZERO,
+            }
+        };
+        extinction.extend(paths[row * columns].iter().zip(stops_m).map(mean));
+    }
+    Aerial {
+        smooth,
+        haze,
+        extinction: Texture::new([distances, rows, 1], extinction),
+    }
+}
+
+/// Path radiance divided by opacity.
+fn source(path: &[f32], opacity: Vec4) -> Vec4 {
+    let path = vec4(path);
+    Vec4::from_array(std::array::from_fn(|k| match opacity[k] > 0.0 {
+        true => path[k] / opacity[k],
+        false => 0.0,
+    }))
+}
+
+fn phase(split: &SplitView) -> Texture {
+    let count = twin::PHASE_ANGLES as usize;
+    let texels = (0..count).map(|k| {
+        let place = k as f32 / (count - 1) as f32;
+        let one_minus_cos = twin::one_minus_cos_from_phase_place(place);
+        vec4(&split.phase(1.0 - f64::from(one_minus_cos)))
+    });
+    Texture::new([count, 1, 1], texels.collect())
+}
+
+/// Geometric mean of the light in each channel.
+fn scale(light: &[Vec4]) -> Vec4 {
+    Vec4::from_array(std::array::from_fn(|k| {
+        let brightest = light.iter().map(|v| v[k]).fold(0.0, f32::max);
+        let lit = light.iter().map(|v| v[k]).filter(|v| *v > 1e-6 * brightest);
+        let (count, sum) = lit.fold((0.0, 0.0), |(n, sum), v| (n + 1.0, sum + f64::from(v).ln()));
+        match count > 0.0 {
+            true => (sum / count).exp() as f32,
+            false => f32::MIN_POSITIVE,
+        }
+    }))
+}
+
+fn logarithms(size: [usize; 3], light: &[Vec4], scale: Vec4) -> Texture {
+    let texels = light.iter().map(|value| {
+        let ln = |k: usize| f64::from(value[k] / scale[k]).ln().max(DARKEST) as f32;
+        Vec4::new(ln(0), ln(1), ln(2), ln(3))
+    });
+    Texture::new(size, texels.collect())
+}
+
+/// The four wavelengths of a list.
+fn vec4(values: &[f32]) -> Vec4 {
+    Vec4::from_slice(values)
+}
+
+trait MapLanes {
+    fn map_lanes(self, f: impl Fn(f32) -> f32) -> Self;
+}
+
+impl MapLanes for Vec4 {
+    fn map_lanes(self, f: impl Fn(f32) -> f32) -> Self {
+        Self::from_array(self.to_array().map(f))
+    }
+}
+
+/// Weights to red, green and blue: of radiance, and of transmittance.
+fn rgb_weights(view: &View, space: RgbSpace) -> (twin::RgbWeights, twin::RgbWeights) {
+    let xyz = fitted_xyz(view.sky().atmosphere());
+    let from_xyz = space.from_xyz_matrix();
+    let columns = xyz.map(|column| rgb::apply(&from_xyz, column));
+    let solar = view.sky().grid().solar_irradiance();
+    let weights = |of: &dyn Fn(usize, usize) -> f64| {
+        let row = |c: usize| Vec4::from_array(std::array::from_fn(|k| of(c, k) as f32));
+        twin::RgbWeights {
+            red: row(0),
+            green: row(1),
+            blue: row(2),
+        }
+    };
+    let radiance = weights(&|c, k| columns[k][c] / solar[k].max(f64::MIN_POSITIVE));
+    let total = |c: usize| columns.iter().map(|column| column[c]).sum::<f64>();
+    let transmittance = weights(&|c, k| columns[k][c] / total(c));
+    (radiance, transmittance)
+}
+
+/// XYZ of a response of 1 at each of the wavelengths: least squares over spectra of light that an atmosphere scatters once or lets
+/// through, of which a response that does not depend on wavelength is exact.
+///
+/// The spectra are `s(l) exp(-t(l)) (1 - exp(-u(l))) / u(l)`, with the optical depths `t` of the air above and `u` of the view ray, and
+/// `s` the scattering coefficient of a constituent or 1. Low light passes less of the particles, which lie low, and more of the
+/// ozone.
+fn fitted_xyz(atmosphere: &Atmosphere) -> [[f64; 3]; 4] {
+    /// Weight of the response that does not depend on wavelength, relative to that of one spectrum.
+    const FLAT: f64 = 1e3;
+    /// Largest optical depth of particles: what comes through more comes from above them.
+    const DEEPEST: f64 = 2.0;
+    let grid = WavelengthGrid::fine().with_solar(&atmosphere.solar_irradiance);
+    let solar = grid.solar_irradiance();
+    // All wavelengths: those of the tables first.
+    let all_nm: Vec<f64> = [&WAVELENGTHS_NM[..], grid.wavelengths_nm()].concat();
+    let spectrum = |response: &[f64]| {
+        let (few, fine) = response.split_at(WAVELENGTHS_NM.len());
+        let radiance = fine.iter().zip(solar).map(|(r, e)| (r * e) as f32);
+        let xyz = grid.to_xyz(&radiance.collect::<Vec<_>>());
+        ([few[0], few[1], few[2], few[3]], xyz)
+    };
+    // Vertical optical depths of gases that scatter, of gases that only absorb, and of particles.
+    let vertical = |nm: f64| -> [f64; 3] {
+        let mut depths = [0.0; 3];
+        for c in &atmosphere.constituents {
+            let kind = match c.scattering_per_m.at(550.0) > 0.0 {
+                true if c.phase.asymmetry(550.0).abs() > 0.1 => 2,
+                true => 0,
+                false => 1,
+            };
+            depths[kind] += c.extinction_per_m(nm) * c.density.column_above_m(0.0);
+        }
+        depths
+    };
+    let depths: Vec<[f64; 3]> = all_nm.iter().map(|&nm| vertical(nm)).collect();
+    let thickest = DEEPEST / vertical(550.0)[2].max(1e-9);
+    let mut normal = [[0.0; 4]; 4];
+    let mut right = [[0.0; 3]; 4];
+    let mut add = |(response, xyz): ([f64; 4], [f64; 3]), weight: f64| {
+        // Relative errors count.
+        let scale = weight / (xyz[1] * xyz[1]).max(f64::MIN_POSITIVE);
+        for i in 0..4 {
+            for j in 0..4 {
+                normal[i][j] += scale * response[i] * response[j];
+            }
+            for c in 0..3 {
+                right[i][c] += scale * response[i] * xyz[c];
+            }
+        }
+    };
+    let flat = vec![1.0; all_nm.len()];
+    add(spectrum(&flat), FLAT);
+    let mut scatterers = vec![flat];
+    for c in &atmosphere.constituents {
+        if c.scattering_per_m.at(550.0) > 0.0 {
+            scatterers.push(all_nm.iter().map(|&nm| c.scattering_per_m.at(nm)).collect());
+        }
+    }
+    for m in [0.0f64, 1.0, 2.0, 5.0, 12.0, 30.0] {
+        for [absorbing, particles] in [[1.0, 1.0], [1.0, 0.1], [2.0, 0.1]] {
+            let masses = [m, m * absorbing, (m * particles).min(thickest)];
+            for n in [0.1f64, 1.0, 4.0, 15.0] {
+                let along = [n, n, n.min(thickest)];
+                let optical_depth = |masses: [f64; 3], vertical: &[f64; 3]| -> f64 {
+                    masses.iter().zip(vertical).map(|(m, tau)| m * tau).sum()
+                };
+                for scattering in &scatterers {
+                    let light = scattering.iter().zip(&depths).map(|(s, vertical)| {
+                        let tau = optical_depth(along, vertical).max(1e-9);
+                        s * (-optical_depth(masses, vertical)).exp() * -(-tau).exp_m1() / tau
+                    });
+                    add(spectrum(&light.collect::<Vec<_>>()), 1.0);
+                }
+            }
+        }
+    }
+    solved(normal, right)
+}
+
+/// Solution of `a x = b` by elimination with pivots.
+fn solved(mut a: [[f64; 4]; 4], mut b: [[f64; 3]; 4]) -> [[f64; 3]; 4] {
+    for k in 0..4 {
+        let pivot = (k..4).max_by(|&i, &j| a[i][k].abs().total_cmp(&a[j][k].abs()));
+        let pivot = pivot.unwrap_or(k);
+        a.swap(k, pivot);
+        b.swap(k, pivot);
+        for i in 0..4 {
+            if i != k && a[k][k] != 0.0 {
+                let factor = a[i][k] / a[k][k];
+                for j in 0..4 {
+                    a[i][j] -= factor * a[k][j];
+                }
+                for c in 0..3 {
+                    b[i][c] -= factor * b[k][c];
+                }
+            }
+        }
+    }
+    std::array::from_fn(|k| b[k].map(|v| if a[k][k] == 0.0 { 0.0 } else { v / a[k][k] }))
+}

@@ -1,0 +1,317 @@
+//! Skies and aerial perspective from tables: `wgsl/sky_tables.wgsl`.
+
+use super::exponentials::{mean_transmittance, mean_transmittance_rgb};
+use super::path_optics::PathOptics;
+use super::phase::one_minus_cos_between;
+use super::texture::{LinearSampler, Texture2d, Texture3d};
+use glam::{Vec2, Vec3, Vec3Swizzles, Vec4, Vec4Swizzles};
+use std::f32::consts::{FRAC_1_PI, FRAC_2_PI, FRAC_PI_2, PI};
+
+/// Columns of a sky table, from the azimuth of the sun to the opposite one.
+pub const SKY_AZIMUTHS: f32 = 64.0;
+/// Rows of a sky table from the horizon to the highest elevation; they come first.
+pub const SKY_ROWS_ABOVE: f32 = 64.0;
+/// Rows of a sky table from the horizon to the nadir.
+pub const SKY_ROWS_BELOW: f32 = 32.0;
+/// Columns of an aerial-perspective table.
+pub const AERIAL_AZIMUTHS: f32 = 32.0;
+/// Rows of an aerial-perspective table from the horizon to the highest elevation; they come first.
+pub const AERIAL_ROWS_ABOVE: f32 = 32.0;
+/// Rows of an aerial-perspective table from the horizon to the nadir.
+pub const AERIAL_ROWS_BELOW: f32 = 32.0;
+/// Distances of an aerial-perspective table.
+pub const AERIAL_DISTANCES: f32 = 32.0;
+/// Angles of a table of phase functions.
+pub const PHASE_ANGLES: f32 = 1024.0;
+
+/// What the tables of a sky are made for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SkyView {
+    /// Unit vector to the sun.
+    pub sun: Vec3,
+    /// Height of the eye above the ground, m.
+    pub height_m: f32,
+    /// Radius of the ground, m.
+    pub ground_radius_m: f32,
+    /// Height of the top of the air above the ground, m.
+    pub air_height_m: f32,
+    /// Elevation of the horizon, rad.
+    pub horizon_rad: f32,
+    /// Elevation above which a ray meets no air, rad.
+    pub highest_rad: f32,
+}
+
+/// Factors from the normalised values in tables to radiance, at four wavelengths.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SkyScales {
+    /// Of the smooth light of the sky, and of its source function.
+    pub smooth_light: Vec4,
+    /// Of the light scattered once by haze.
+    pub haze: Vec4,
+}
+
+/// Transmittance and path radiance at four wavelengths.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpectralPath {
+    /// Transmittance, 0 to 1.
+    pub transmittance: Vec4,
+    /// Radiance scattered into the ray.
+    pub path_radiance: Vec4,
+}
+
+/// Weights of four wavelengths in red, green and blue.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RgbWeights {
+    /// In red.
+    pub red: Vec4,
+    /// In green.
+    pub green: Vec4,
+    /// In blue.
+    pub blue: Vec4,
+}
+
+/// Texture coordinate of a place from 0 to 1 among `count` texels.
+pub fn texel_coordinate(place: f32, count: f32) -> f32 {
+    (0.5 + place * (count - 1.0)) / count
+}
+
+/// Inverse of [`texel_coordinate`].
+pub fn place_from_texel_coordinate(coordinate: f32, count: f32) -> f32 {
+    (coordinate * count - 0.5) / (count - 1.0)
+}
+
+/// Horizontal direction to the sun; east under a vertical sun.
+fn towards_sun(sun: Vec3) -> Vec2 {
+    match sun.x.abs() + sun.z.abs() < 1e-9 {
+        true => Vec2::X,
+        false => sun.xz(),
+    }
+}
+
+/// Azimuth of a direction from that of the sun as a fraction of half a turn.
+pub fn azimuth_place(direction: Vec3, sun: Vec3) -> f32 {
+    let towards = towards_sun(sun);
+    let across = (direction.x * towards.y - direction.z * towards.x).abs();
+    let along = direction.xz().dot(towards);
+    if across == 0.0 && along >= 0.0 {
+        return 0.0;
+    }
+    across.atan2(along) * FRAC_1_PI
+}
+
+/// Texture coordinate of an elevation in a table with rows above and below the horizon.
+pub fn row_coordinate(
+    view: SkyView,
+    elevation_rad: f32,
+    is_below: bool,
+    rows_above: f32,
+    rows_below: f32,
+) -> f32 {
+    let (end, rows, first) = match is_below {
+        true => (-FRAC_PI_2, rows_below, rows_above),
+        false => (view.highest_rad, rows_above, 0.0),
+    };
+    let part = ((elevation_rad - view.horizon_rad) / (end - view.horizon_rad)).clamp(0.0, 1.0);
+    let place = if is_below {
+        part.sqrt().sqrt()
+    } else {
+        part.sqrt()
+    };
+    (first + 0.5 + place * (rows - 1.0)) / (rows_above + rows_below)
+}
+
+/// Inverse of [`row_coordinate`]: elevation of a texture coordinate, rad.
+pub fn elevation_from_row_coordinate(
+    view: SkyView,
+    coordinate: f32,
+    rows_above: f32,
+    rows_below: f32,
+) -> f32 {
+    let row = coordinate * (rows_above + rows_below);
+    let is_below = row >= rows_above;
+    let (end, rows, first) = match is_below {
+        true => (-FRAC_PI_2, rows_below, rows_above),
+        false => (view.highest_rad, rows_above, 0.0),
+    };
+    let place = (row - first - 0.5) / (rows - 1.0);
+    let squared = place * place;
+    let part = if is_below { squared * squared } else { squared };
+    view.horizon_rad + (end - view.horizon_rad) * part
+}
+
+/// Elevation of a direction, rad.
+pub fn elevation_of(direction: Vec3) -> f32 {
+    direction.y.atan2(direction.xz().length())
+}
+
+/// Texture coordinates of a direction in a sky table.
+pub fn uv_from_direction(view: SkyView, direction: Vec3) -> Vec2 {
+    let elevation_rad = elevation_of(direction);
+    let is_below = elevation_rad < view.horizon_rad;
+    Vec2::new(
+        texel_coordinate(azimuth_place(direction, view.sun), SKY_AZIMUTHS),
+        row_coordinate(
+            view,
+            elevation_rad,
+            is_below,
+            SKY_ROWS_ABOVE,
+            SKY_ROWS_BELOW,
+        ),
+    )
+}
+
+/// Unit vector at an azimuth from the sun, as a fraction of half a turn, and an elevation.
+pub fn direction_from_azimuth_elevation(view: SkyView, azimuth: f32, elevation_rad: f32) -> Vec3 {
+    let towards = towards_sun(view.sun).normalize();
+    let along = (azimuth * PI).cos() * elevation_rad.cos();
+    let across = (azimuth * PI).sin() * elevation_rad.cos();
+    Vec3::new(
+        towards.x * along - towards.y * across,
+        elevation_rad.sin(),
+        towards.y * along + towards.x * across,
+    )
+}
+
+/// Interval of a ray inside the air, m from the eye.
+pub fn air_span_m(view: SkyView, sin_elevation: f32, meets_ground: bool) -> Vec2 {
+    let b = (view.ground_radius_m + view.height_m) * sin_elevation;
+    let over_ground = view.height_m * (2.0 * view.ground_radius_m + view.height_m);
+    let over_top = (view.height_m - view.air_height_m)
+        * (2.0 * view.ground_radius_m + view.height_m + view.air_height_m);
+    let root = (b * b - over_top).max(0.0).sqrt();
+    let start = match over_top > 0.0 {
+        true => over_top / (root - b),
+        false => 0.0,
+    };
+    let mut end = root - b;
+    if meets_ground {
+        end = over_ground / ((b * b - over_ground).max(0.0).sqrt() - b);
+    } else if b > 0.0 {
+        end = -over_top / (root + b);
+    }
+    Vec2::new(start, end.max(start))
+}
+
+/// Place from 0 to 1 of a part of the way through the air.
+pub fn place_from_part(part: f32) -> f32 {
+    part.sqrt()
+}
+
+/// Inverse of [`place_from_part`].
+pub fn part_from_place(place: f32) -> f32 {
+    place * place
+}
+
+/// Place from 0 to 1 of a scattering angle in a table of phase functions.
+pub fn phase_place(one_minus_cos: f32) -> f32 {
+    let half_angle = one_minus_cos
+        .max(0.0)
+        .sqrt()
+        .atan2((2.0 - one_minus_cos).max(0.0).sqrt());
+    (half_angle * FRAC_2_PI).sqrt()
+}
+
+/// Inverse of [`phase_place`].
+pub fn one_minus_cos_from_phase_place(place: f32) -> f32 {
+    let half_sine = (FRAC_PI_2 * place * place).sin();
+    2.0 * half_sine * half_sine
+}
+
+/// Phase function of haze between a direction and the sun at four wavelengths, 1/sr.
+pub fn haze_phase(
+    phase_table: &Texture2d,
+    linear_sampler: LinearSampler,
+    one_minus_cos: f32,
+) -> Vec4 {
+    let u = texel_coordinate(phase_place(one_minus_cos), PHASE_ANGLES);
+    phase_table.sample(linear_sampler, Vec2::new(u, 0.5))
+}
+
+/// Radiance of the sky, or of the ground below the horizon, along a direction at four wavelengths, without the sun's disc.
+pub fn sky_radiance(
+    view: SkyView,
+    scales: SkyScales,
+    smooth_table: &Texture2d,
+    haze_table: &Texture2d,
+    phase_table: &Texture2d,
+    linear_sampler: LinearSampler,
+    direction: Vec3,
+) -> Vec4 {
+    if elevation_of(direction) > view.highest_rad {
+        return Vec4::ZERO;
+    }
+    let uv = uv_from_direction(view, direction);
+    let one_minus_cos = one_minus_cos_between(direction, view.sun);
+    let phase = haze_phase(phase_table, linear_sampler, one_minus_cos);
+    let smooth_light = smooth_table.sample(linear_sampler, uv).exp() * scales.smooth_light;
+    let haze = haze_table.sample(linear_sampler, uv).exp() * scales.haze;
+    smooth_light + haze * phase
+}
+
+/// Air between the eye and a point at a distance along a direction, at four wavelengths.
+#[expect(
+    clippy::too_many_arguments,
+    reason = "the shape of the shader function"
+)]
+pub fn aerial_perspective(
+    view: SkyView,
+    scales: SkyScales,
+    smooth_table: &Texture3d,
+    haze_table: &Texture3d,
+    extinction_table: &Texture2d,
+    phase_table: &Texture2d,
+    linear_sampler: LinearSampler,
+    direction: Vec3,
+    distance_m: f32,
+) -> SpectralPath {
+    let elevation_rad = elevation_of(direction);
+    let is_below = elevation_rad < view.horizon_rad;
+    let span = air_span_m(view, direction.y, is_below);
+    let length_m = distance_m.min(span.y) - span.x;
+    if length_m <= 0.0 || elevation_rad > view.highest_rad {
+        return SpectralPath {
+            transmittance: Vec4::ONE,
+            path_radiance: Vec4::ZERO,
+        };
+    }
+    let place = place_from_part((length_m / (span.y - span.x)).clamp(0.0, 1.0));
+    let row = row_coordinate(
+        view,
+        elevation_rad,
+        is_below,
+        AERIAL_ROWS_ABOVE,
+        AERIAL_ROWS_BELOW,
+    );
+    let uvw = Vec3::new(
+        texel_coordinate(azimuth_place(direction, view.sun), AERIAL_AZIMUTHS),
+        row,
+        texel_coordinate(place, AERIAL_DISTANCES),
+    );
+    let one_minus_cos = one_minus_cos_between(direction, view.sun);
+    let phase = haze_phase(phase_table, linear_sampler, one_minus_cos);
+    let depth = extinction_table.sample(linear_sampler, uvw.zy()) * (length_m * 1e-3);
+    let smooth_light = smooth_table.sample_3d(linear_sampler, uvw).exp() * scales.smooth_light;
+    let haze = haze_table.sample_3d(linear_sampler, uvw).exp() * scales.haze;
+    let opacity = depth * mean_transmittance_rgb(depth.xyz()).extend(mean_transmittance(depth.w));
+    SpectralPath {
+        transmittance: 1.0 - opacity,
+        path_radiance: (smooth_light + haze * phase) * opacity,
+    }
+}
+
+/// Red, green and blue of a radiance at four wavelengths.
+pub fn rgb_from_spectrum(weights: RgbWeights, spectrum: Vec4) -> Vec3 {
+    Vec3::new(
+        weights.red.dot(spectrum),
+        weights.green.dot(spectrum),
+        weights.blue.dot(spectrum),
+    )
+}
+
+/// A stretch of air in red, green and blue, for scenes in these.
+pub fn rgb_path(radiance: RgbWeights, transmittance: RgbWeights, path: SpectralPath) -> PathOptics {
+    PathOptics {
+        transmittance: rgb_from_spectrum(transmittance, path.transmittance),
+        path_radiance: rgb_from_spectrum(radiance, path.path_radiance),
+    }
+}

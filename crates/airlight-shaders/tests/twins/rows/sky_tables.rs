@@ -1,0 +1,330 @@
+//! Skies and aerial perspective from tables.
+
+use super::{Row, rows};
+use crate::flat::{FlatFunction, Twin, flat_struct};
+use crate::random::Random;
+use crate::textures;
+use airlight_shaders::twins;
+use airlight_shaders::twins::sky_tables::{SkyScales, SkyView};
+use airlight_shaders::twins::texture::LinearSampler;
+use glam::Vec3;
+use std::f64::consts::{FRAC_PI_2, PI};
+
+flat_struct! {
+    twins::sky_tables::SkyView { sun, height_m, ground_radius_m, air_height_m, horizon_rad, highest_rad }
+    twins::sky_tables::SkyScales { smooth_light, haze }
+    twins::sky_tables::SpectralPath { transmittance, path_radiance }
+    twins::sky_tables::RgbWeights { red, green, blue }
+}
+
+const RADIUS_M: f64 = 6.36e6;
+const TOP_M: f64 = 1.0e5;
+
+/// A view of the Earth from the ground to orbit.
+fn view(r: &mut Random) -> Vec<f32> {
+    let height_m = r.or(&[0.0, 2.0, 3e3, 4e5], |r| r.decades(1.0, 4e5));
+    let radius_m = RADIUS_M + f64::from(height_m);
+    let horizon = -(RADIUS_M / radius_m).min(1.0).acos();
+    let highest = match f64::from(height_m) > TOP_M {
+        true => -((RADIUS_M + TOP_M) / radius_m).acos(),
+        false => FRAC_PI_2,
+    };
+    let mut all = r.direction().to_vec();
+    all.extend([
+        height_m,
+        RADIUS_M as f32,
+        TOP_M as f32,
+        horizon as f32,
+        highest as f32,
+    ]);
+    all
+}
+
+/// A view and a direction, which is not at the horizon or the limb, where radiance jumps.
+fn view_and_direction(r: &mut Random) -> Vec<f32> {
+    let mut all = view(r);
+    loop {
+        let direction = r.direction();
+        let elevation = direction[1].clamp(-1.0, 1.0).asin();
+        if all[6..8].iter().all(|edge| (elevation - edge).abs() > 1e-3) {
+            all.extend(direction);
+            return all;
+        }
+    }
+}
+
+fn scales(r: &mut Random) -> Vec<f32> {
+    (0..8).map(|_| r.between(0.5, 2.0)).collect()
+}
+
+fn texel(place: f64, count: f64) -> f64 {
+    (0.5 + place * (count - 1.0)) / count
+}
+
+fn azimuth(direction: &[f64], sun: &[f64]) -> f64 {
+    let sun = match sun[0].abs() + sun[2].abs() < 1e-9 {
+        true => [1.0, 0.0],
+        false => [sun[0], sun[2]],
+    };
+    if direction[0].abs() + direction[2].abs() == 0.0 {
+        return 0.0;
+    }
+    let difference = direction[2].atan2(direction[0]) - sun[1].atan2(sun[0]);
+    let turn = difference.rem_euclid(2.0 * PI);
+    turn.min(2.0 * PI - turn) / PI
+}
+
+fn elevation(direction: &[f64]) -> f64 {
+    direction[1].atan2(direction[0].hypot(direction[2]))
+}
+
+fn row(view: &[f64], elevation: f64, below: bool, rows: [f64; 2]) -> f64 {
+    let (end, count, first) = match below {
+        true => (-FRAC_PI_2, rows[1], rows[0]),
+        false => (view[7], rows[0], 0.0),
+    };
+    let part = ((elevation - view[6]) / (end - view[6])).clamp(0.0, 1.0);
+    let power = if below { 0.25 } else { 0.5 };
+    (first + 0.5 + part.powf(power) * (count - 1.0)) / (rows[0] + rows[1])
+}
+
+fn elevation_of_row(view: &[f64], coordinate: f64, rows: [f64; 2]) -> f64 {
+    let row = coordinate * (rows[0] + rows[1]);
+    let (end, count, first) = match row >= rows[0] {
+        true => (-FRAC_PI_2, rows[1], rows[0]),
+        false => (view[7], rows[0], 0.0),
+    };
+    let power = if row >= rows[0] { 4 } else { 2 };
+    view[6] + (end - view[6]) * ((row - first - 0.5) / (count - 1.0)).powi(power)
+}
+
+const SKY_ROWS: [f64; 2] = [64.0, 32.0];
+const AERIAL_ROWS: [f64; 2] = [32.0, 32.0];
+
+fn uv(view: &[f64], direction: &[f64]) -> [f64; 2] {
+    let elevation = elevation(direction);
+    let v = row(view, elevation, elevation < view[6], SKY_ROWS);
+    [texel(azimuth(direction, view), 64.0), v]
+}
+
+/// Distances at which a ray enters and leaves the air, from the two spheres.
+fn span(view: &[f64], sine: f64, meets_ground: bool) -> [f64; 2] {
+    let radius = view[4] + view[3];
+    let roots = |sphere: f64| {
+        let c = radius * radius - sphere * sphere;
+        let root = (radius * radius * sine * sine - c).max(0.0).sqrt();
+        [-radius * sine - root, -radius * sine + root]
+    };
+    let top = roots(view[4] + view[5]);
+    let start = if view[3] > view[5] { top[0] } else { 0.0 };
+    let end = if meets_ground {
+        roots(view[4])[0]
+    } else {
+        top[1]
+    };
+    [start, end.max(start)]
+}
+
+fn place_of_phase(one_minus_cos: f64) -> f64 {
+    (2.0 * (0.5 * one_minus_cos).sqrt().min(1.0).asin() / PI).sqrt()
+}
+
+/// A texture at coordinates, in f64.
+fn sample(name: &str, uvw: [f64; 3]) -> [f64; 4] {
+    let texture = textures::named(name);
+    let size = texture.size();
+    let axis = |k: usize| {
+        let place = (uvw[k] * size[k] as f64 - 0.5).clamp(0.0, size[k] as f64 - 1.0);
+        let below = place.floor().min(size[k] as f64 - 2.0).max(0.0);
+        (below as usize, place - below)
+    };
+    let places = [axis(0), axis(1), axis(2)];
+    let mut sum = [0.0; 4];
+    for corner in 0..8 {
+        let mut weight = 1.0;
+        let mut index = [0; 3];
+        for k in 0..3 {
+            let far = corner >> k & 1;
+            weight *= if far == 1 {
+                places[k].1
+            } else {
+                1.0 - places[k].1
+            };
+            index[k] = (places[k].0 + far).min(size[k] - 1);
+        }
+        let texel = texture.texels()[(index[2] * size[1] + index[1]) * size[0] + index[0]];
+        for (sum, value) in sum.iter_mut().zip(texel.to_array()) {
+            *sum += weight * f64::from(value);
+        }
+    }
+    sum
+}
+
+fn haze_phase(one_minus_cos: f64) -> [f64; 4] {
+    sample(
+        "phase_table_2d",
+        [texel(place_of_phase(one_minus_cos), 1024.0), 0.5, 0.5],
+    )
+}
+
+fn one_minus_cos(a: &[f64], b: &[f64]) -> f64 {
+    0.5 * (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>()
+}
+
+/// Smooth light and haze of the tables of a dimension.
+fn light(dimension: u32, uvw: [f64; 3], scales: &[f64], phase: [f64; 4]) -> [f64; 4] {
+    let smooth = sample(&format!("smooth_table_{dimension}d"), uvw);
+    let haze = sample(&format!("haze_table_{dimension}d"), uvw);
+    std::array::from_fn(|k| smooth[k].exp() * scales[k] + haze[k].exp() * scales[4 + k] * phase[k])
+}
+
+fn sky(x: &[f64]) -> Vec<f64> {
+    let (view, scales, direction) = (&x[..8], &x[8..16], &x[16..19]);
+    if elevation(direction) > view[7] {
+        return vec![0.0; 4];
+    }
+    let [u, v] = uv(view, direction);
+    let phase = haze_phase(one_minus_cos(direction, view));
+    light(2, [u, v, 0.5], scales, phase).to_vec()
+}
+
+fn aerial(x: &[f64]) -> Vec<f64> {
+    let (view, scales, direction, distance_m) = (&x[..8], &x[8..16], &x[16..19], x[19]);
+    let elevation = elevation(direction);
+    let below = elevation < view[6];
+    let [start, end] = span(view, direction[1], below);
+    let length = distance_m.min(end) - start;
+    if length <= 0.0 || elevation > view[7] {
+        return [[1.0; 4], [0.0; 4]].concat();
+    }
+    let place = (length / (end - start)).clamp(0.0, 1.0).sqrt();
+    let w = texel(place, 32.0);
+    let v = row(view, elevation, below, AERIAL_ROWS);
+    let u = texel(azimuth(direction, view), 32.0);
+    let phase = haze_phase(one_minus_cos(direction, view));
+    let depth = sample("extinction_table_2d", [w, v, 0.5]).map(|e| e * length * 1e-3);
+    let source = light(3, [u, v, w], scales, phase);
+    let path = (0..4).map(|k| -(-depth[k]).exp_m1() * source[k]);
+    depth.map(|d| (-d).exp()).into_iter().chain(path).collect()
+}
+
+/// Twins with the textures of the tests.
+fn with_textures() -> [(&'static str, FlatFunction); 3] {
+    use twins::sky_tables::{aerial_perspective, haze_phase, sky_radiance};
+    let haze = |one_minus_cos: f32| {
+        haze_phase(
+            textures::named("phase_table_2d"),
+            LinearSampler,
+            one_minus_cos,
+        )
+    };
+    let sky = |view: SkyView, scales: SkyScales, direction: Vec3| {
+        let [smooth, haze, phase] =
+            ["smooth_table_2d", "haze_table_2d", "phase_table_2d"].map(textures::named);
+        sky_radiance(view, scales, smooth, haze, phase, LinearSampler, direction)
+    };
+    let aerial = |view: SkyView, scales: SkyScales, direction: Vec3, distance_m: f32| {
+        let [smooth, haze, extinction, phase] = [
+            "smooth_table_3d",
+            "haze_table_3d",
+            "extinction_table_2d",
+            "phase_table_2d",
+        ]
+        .map(textures::named);
+        let sampler = LinearSampler;
+        aerial_perspective(
+            view, scales, smooth, haze, extinction, phase, sampler, direction, distance_m,
+        )
+    };
+    [
+        ("haze_phase", haze.flat()),
+        ("sky_radiance", sky.flat()),
+        ("aerial_perspective", aerial.flat()),
+    ]
+}
+
+fn weighted(weights: &[f64], spectrum: &[f64]) -> Vec<f64> {
+    let channel = |c: usize| (0..4).map(|k| weights[4 * c + k] * spectrum[k]).sum();
+    (0..3).map(channel).collect()
+}
+
+pub fn sky_tables() -> Vec<Row> {
+    let mut all = rows!(twins::sky_tables {
+        texel_coordinate: |r| vec![r.or(&[0.0, 1.0], Random::unit), r.one_of(&[2.0, 64.0])]
+            => |x| vec![texel(x[0], x[1])];
+        place_from_texel_coordinate: |r| vec![r.unit(), r.one_of(&[2.0, 64.0])]
+            => |x| vec![(x[0] * x[1] - 0.5) / (x[1] - 1.0)];
+        azimuth_place: |r| [r.direction(), r.direction()].concat()
+            => |x| vec![azimuth(&x[..3], &x[3..])];
+        row_coordinate: |r| {
+            let mut all = view_and_direction(r);
+            let elevation = all[9].clamp(-1.0, 1.0).asin();
+            let below = elevation < all[6];
+            all.truncate(8);
+            all.extend([elevation, f32::from(below), 64.0, 32.0]);
+            all
+        } => |x| vec![row(x, x[8], x[9] != 0.0, [x[10], x[11]])];
+        elevation_from_row_coordinate: |r| {
+            let mut all = view(r);
+            // A texel's centre, as rows from different halves do not mix.
+            let row = (r.unit() * 96.0).floor();
+            all.extend([(row + 0.5) / 96.0, 64.0, 32.0]);
+            all
+        } => |x| vec![elevation_of_row(x, x[8], [x[9], x[10]])];
+        elevation_of: |r| r.direction().to_vec() => |x| vec![elevation(x)];
+        uv_from_direction: view_and_direction => |x| uv(x, &x[8..]).to_vec();
+        direction_from_azimuth_elevation: |r| {
+            let mut all = view(r);
+            all.extend([r.or(&[0.0, 1.0], Random::unit), r.or(&[0.0, 1.57], |r| r.between(-1.57, 1.57))]);
+            all
+        } => |x| {
+            let sun = if x[0].abs() + x[2].abs() < 1e-9 { 0.0 } else { x[2].atan2(x[0]) };
+            let (turn, cos) = (sun + PI * x[8], x[9].cos());
+            vec![turn.cos() * cos, x[9].sin(), turn.sin() * cos]
+        };
+        air_span_m: |r| {
+            let mut all = view_and_direction(r);
+            // From space, rays that meet the air.
+            let elevation = all[9].clamp(-1.0, 1.0).asin().min(all[7] - 1e-3);
+            let below = elevation < all[6];
+            all.truncate(8);
+            all.extend([elevation.sin(), f32::from(below)]);
+            all
+        } => |x| span(x, x[8], x[9] != 0.0).to_vec();
+        place_from_part: |r| vec![r.or(&[0.0, 1.0], Random::unit)] => |x| vec![x[0].sqrt()];
+        part_from_place: |r| vec![r.or(&[0.0, 1.0], Random::unit)] => |x| vec![x[0] * x[0]];
+        phase_place: |r| vec![r.one_minus_cos()] => |x| vec![place_of_phase(x[0])];
+        one_minus_cos_from_phase_place: |r| vec![r.or(&[0.0, 1.0], Random::unit)]
+            => |x| vec![2.0 * (FRAC_PI_2 * x[0] * x[0]).sin().powi(2)];
+        rgb_from_spectrum: |r| (0..16).map(|_| r.unit()).collect()
+            => |x| weighted(&x[..12], &x[12..]);
+        rgb_path: |r| (0..32).map(|_| r.unit()).collect() => |x| {
+            [weighted(&x[12..24], &x[24..28]), weighted(&x[..12], &x[28..])].concat()
+        };
+    });
+    for (name, twin) in with_textures() {
+        all.push(Row {
+            name,
+            twin,
+            inputs: match name {
+                "haze_phase" => |r| vec![r.one_minus_cos()],
+                "sky_radiance" => |r| {
+                    let mut all = view_and_direction(r);
+                    let direction = all.split_off(8);
+                    [all, scales(r), direction].concat()
+                },
+                _ => |r| {
+                    let mut all = view_and_direction(r);
+                    let direction = all.split_off(8);
+                    [all, scales(r), direction, vec![r.length_m()]].concat()
+                },
+            },
+            exact: match name {
+                "haze_phase" => Box::new(|x| haze_phase(x[0]).to_vec()),
+                "sky_radiance" => Box::new(sky),
+                _ => Box::new(aerial),
+            },
+        });
+    }
+    all
+}

@@ -1,0 +1,284 @@
+// requires: exponentials, phase, path_optics
+// Skies and aerial perspective from tables at four wavelengths, made for one position of the eye and one of the sun and fixed to
+// the world's axes: nothing changes when the camera turns. World axes: y up at the eye. Two tables hold the sky, as logarithms
+// of normalised radiance: the light that haze scatters once, divided by its phase function, and all other light. Two more hold
+// the source function of aerial perspective in the same way, and one the mean extinction.
+
+/// Columns of a sky table, from the azimuth of the sun to the opposite one.
+const SKY_AZIMUTHS: f32 = 64.0;
+/// Rows of a sky table from the horizon to the highest elevation; they come first.
+const SKY_ROWS_ABOVE: f32 = 64.0;
+/// Rows of a sky table from the horizon to the nadir.
+const SKY_ROWS_BELOW: f32 = 32.0;
+/// Columns of an aerial-perspective table.
+const AERIAL_AZIMUTHS: f32 = 32.0;
+/// Rows of an aerial-perspective table from the horizon to the highest elevation; they come first.
+const AERIAL_ROWS_ABOVE: f32 = 32.0;
+/// Rows of an aerial-perspective table from the horizon to the nadir.
+const AERIAL_ROWS_BELOW: f32 = 32.0;
+/// Distances of an aerial-perspective table.
+const AERIAL_DISTANCES: f32 = 32.0;
+/// Angles of a table of phase functions.
+const PHASE_ANGLES: f32 = 1024.0;
+
+/// What the tables of a sky are made for.
+struct SkyView {
+    /// Unit vector to the sun.
+    sun: vec3<f32>,
+    /// Height of the eye above the ground, m.
+    height_m: f32,
+    /// Radius of the ground, m.
+    ground_radius_m: f32,
+    /// Height of the top of the air above the ground, m.
+    air_height_m: f32,
+    /// Elevation of the horizon, rad.
+    horizon_rad: f32,
+    /// Elevation above which a ray meets no air, rad: the zenith, or from space the limb.
+    highest_rad: f32,
+}
+
+/// Factors from the normalised values in tables to radiance, at four wavelengths.
+struct SkyScales {
+    /// Of the smooth light of the sky, and of its source function.
+    smooth_light: vec4<f32>,
+    /// Of the light scattered once by haze.
+    haze: vec4<f32>,
+}
+
+/// Transmittance and path radiance at four wavelengths.
+struct SpectralPath {
+    /// Transmittance, 0 to 1.
+    transmittance: vec4<f32>,
+    /// Radiance scattered into the ray.
+    path_radiance: vec4<f32>,
+}
+
+/// Weights of four wavelengths in red, green and blue.
+struct RgbWeights {
+    /// In red.
+    red: vec4<f32>,
+    /// In green.
+    green: vec4<f32>,
+    /// In blue.
+    blue: vec4<f32>,
+}
+
+/// Texture coordinate of a place from 0 (centre of the first texel) to 1 (centre of the last) among `count` texels.
+///
+/// Cost: no exp. Error: 2e-7 relative.
+fn texel_coordinate(place: f32, count: f32) -> f32 {
+    return (0.5 + place * (count - 1.0)) / count;
+}
+
+/// Inverse of `texel_coordinate`.
+///
+/// Cost: no exp. Error: 5e-7 relative plus 3e-7 absolute.
+fn place_from_texel_coordinate(coordinate: f32, count: f32) -> f32 {
+    return (coordinate * count - 0.5) / (count - 1.0);
+}
+
+/// Azimuth of a direction from that of the sun as a fraction of half a turn. Under a vertical sun azimuths count from east.
+///
+/// Cost: no exp. Error: 1e-6 relative plus 2e-6 absolute.
+fn azimuth_place(direction: vec3<f32>, sun: vec3<f32>) -> f32 {
+    let is_vertical = abs(sun.x) + abs(sun.z) < 1e-9;
+    let towards = select(sun.xz, vec2<f32>(1.0, 0.0), is_vertical);
+    let across = abs(direction.x * towards.y - direction.z * towards.x);
+    let along = dot(direction.xz, towards);
+    if across == 0.0 && along >= 0.0 {
+        return 0.0;
+    }
+    return atan2(across, along) * 0.3183098861837907;
+}
+
+/// Texture coordinate of an elevation in a table with rows above and below the horizon, dense towards it: at the square of the row
+/// above, and at its fourth power below, where rays from a low eye soon meet the ground. The first rows hold the elevations from
+/// the horizon on; both parts end in texel centres, so that filtering does not mix them.
+///
+/// Cost: no exp. Error: 1e-6 relative plus 1e-6 absolute.
+fn row_coordinate(view: SkyView, elevation_rad: f32, is_below: bool, rows_above: f32, rows_below: f32) -> f32 {
+    let end = select(view.highest_rad, -1.5707963267948966, is_below);
+    let rows = select(rows_above, rows_below, is_below);
+    let part = clamp((elevation_rad - view.horizon_rad) / (end - view.horizon_rad), 0.0, 1.0);
+    let place = select(sqrt(part), sqrt(sqrt(part)), is_below);
+    let first = select(0.0, rows_above, is_below);
+    return (first + 0.5 + place * (rows - 1.0)) / (rows_above + rows_below);
+}
+
+/// Inverse of `row_coordinate`: elevation of a texture coordinate, rad.
+///
+/// Cost: no exp. Error: 1e-6 relative plus 4e-6 absolute.
+fn elevation_from_row_coordinate(view: SkyView, coordinate: f32, rows_above: f32, rows_below: f32) -> f32 {
+    let row = coordinate * (rows_above + rows_below);
+    let is_below = row >= rows_above;
+    let end = select(view.highest_rad, -1.5707963267948966, is_below);
+    let rows = select(rows_above, rows_below, is_below);
+    let place = (row - select(0.0, rows_above, is_below) - 0.5) / (rows - 1.0);
+    let squared = place * place;
+    return view.horizon_rad + (end - view.horizon_rad) * select(squared, squared * squared, is_below);
+}
+
+/// Elevation of a direction, rad.
+///
+/// Cost: no exp. Error: 1e-6 relative plus 4e-6 absolute.
+fn elevation_of(direction: vec3<f32>) -> f32 {
+    return atan2(direction.y, length(direction.xz));
+}
+
+/// Texture coordinates of a direction in a sky table.
+///
+/// Cost: no exp. Error: 2e-6 relative plus 1e-4 absolute.
+fn uv_from_direction(view: SkyView, direction: vec3<f32>) -> vec2<f32> {
+    let elevation_rad = elevation_of(direction);
+    let is_below = elevation_rad < view.horizon_rad;
+    return vec2<f32>(
+        texel_coordinate(azimuth_place(direction, view.sun), SKY_AZIMUTHS),
+        row_coordinate(view, elevation_rad, is_below, SKY_ROWS_ABOVE, SKY_ROWS_BELOW),
+    );
+}
+
+/// Unit vector at an azimuth from the sun, as a fraction of half a turn, and an elevation.
+///
+/// Cost: no exp. Error: 1e-6 relative plus 2e-6 absolute.
+fn direction_from_azimuth_elevation(view: SkyView, azimuth: f32, elevation_rad: f32) -> vec3<f32> {
+    let is_vertical = abs(view.sun.x) + abs(view.sun.z) < 1e-9;
+    let towards = normalize(select(view.sun.xz, vec2<f32>(1.0, 0.0), is_vertical));
+    let along = cos(azimuth * 3.141592653589793) * cos(elevation_rad);
+    let across = sin(azimuth * 3.141592653589793) * cos(elevation_rad);
+    return vec3<f32>(towards.x * along - towards.y * across, sin(elevation_rad), towards.y * along + towards.x * across);
+}
+
+/// Interval of a ray inside the air, m from the eye: up to the ground, if it meets that, or to the top. From space, a ray that
+/// misses the air has an empty interval.
+///
+/// Cost: no exp. Error: 3e-5 relative plus 50 absolute.
+fn air_span_m(view: SkyView, sin_elevation: f32, meets_ground: bool) -> vec2<f32> {
+    // Roots of t^2 + 2 b t + c = 0 without cancellation: the smaller root is c over the larger. c is the power of the eye with
+    // respect to a sphere.
+    let b = (view.ground_radius_m + view.height_m) * sin_elevation;
+    let over_ground = view.height_m * (2.0 * view.ground_radius_m + view.height_m);
+    let over_top = (view.height_m - view.air_height_m) * (2.0 * view.ground_radius_m + view.height_m + view.air_height_m);
+    let root = sqrt(max(b * b - over_top, 0.0));
+    let start = select(0.0, over_top / (root - b), over_top > 0.0);
+    var end = root - b;
+    if meets_ground {
+        end = over_ground / (sqrt(max(b * b - over_ground, 0.0)) - b);
+    } else if b > 0.0 {
+        end = -over_top / (root + b);
+    }
+    return vec2<f32>(start, max(end, start));
+}
+
+/// Place from 0 to 1 of a part of the way through the air in tables by distance, which are dense near the eye.
+///
+/// Cost: no exp. Error: 4e-7 relative.
+fn place_from_part(part: f32) -> f32 {
+    return sqrt(part);
+}
+
+/// Inverse of `place_from_part`.
+///
+/// Cost: no exp. Error: 4e-7 relative.
+fn part_from_place(place: f32) -> f32 {
+    return place * place;
+}
+
+/// Place from 0 to 1 of a scattering angle in a table of phase functions, dense forwards, by 1 minus the cosine.
+///
+/// Cost: no exp. Error: 2e-5 relative plus 1e-7 absolute.
+fn phase_place(one_minus_cos: f32) -> f32 {
+    let half_angle = atan2(sqrt(max(one_minus_cos, 0.0)), sqrt(max(2.0 - one_minus_cos, 0.0)));
+    return sqrt(half_angle * 0.6366197723675814);
+}
+
+/// Inverse of `phase_place`.
+///
+/// Cost: no exp. Error: 3e-6 relative.
+fn one_minus_cos_from_phase_place(place: f32) -> f32 {
+    let half_sine = sin(1.5707963267948966 * place * place);
+    return 2.0 * half_sine * half_sine;
+}
+
+/// Phase function of haze between a direction and the sun at four wavelengths, 1/sr.
+///
+/// Cost: 1 read. Error: 1e-3 relative plus 1e-5 absolute.
+fn haze_phase(phase_table: texture_2d<f32>, linear_sampler: sampler, one_minus_cos: f32) -> vec4<f32> {
+    let u = texel_coordinate(phase_place(one_minus_cos), PHASE_ANGLES);
+    return textureSampleLevel(phase_table, linear_sampler, vec2<f32>(u, 0.5), 0.0);
+}
+
+/// Radiance of the sky, or of the ground below the horizon, along a direction at four wavelengths, without the sun's disc.
+///
+/// Cost: 8 exp, 3 reads. Error: 2e-3 relative plus 1e-6 absolute.
+fn sky_radiance(
+    view: SkyView,
+    scales: SkyScales,
+    smooth_table: texture_2d<f32>,
+    haze_table: texture_2d<f32>,
+    phase_table: texture_2d<f32>,
+    linear_sampler: sampler,
+    direction: vec3<f32>,
+) -> vec4<f32> {
+    if elevation_of(direction) > view.highest_rad {
+        return vec4<f32>(0.0);
+    }
+    let uv = uv_from_direction(view, direction);
+    let phase = haze_phase(phase_table, linear_sampler, one_minus_cos_between(direction, view.sun));
+    let smooth_light = exp(textureSampleLevel(smooth_table, linear_sampler, uv, 0.0)) * scales.smooth_light;
+    let haze = exp(textureSampleLevel(haze_table, linear_sampler, uv, 0.0)) * scales.haze;
+    return smooth_light + haze * phase;
+}
+
+/// Air between the eye and a point at a distance along a direction, at four wavelengths. The extinction table holds the mean
+/// extinction from the first air on, 1/km.
+///
+/// Cost: 12 exp, 4 reads. Error: 3e-3 relative plus 1e-5 absolute.
+fn aerial_perspective(
+    view: SkyView,
+    scales: SkyScales,
+    smooth_table: texture_3d<f32>,
+    haze_table: texture_3d<f32>,
+    extinction_table: texture_2d<f32>,
+    phase_table: texture_2d<f32>,
+    linear_sampler: sampler,
+    direction: vec3<f32>,
+    distance_m: f32,
+) -> SpectralPath {
+    let elevation_rad = elevation_of(direction);
+    let is_below = elevation_rad < view.horizon_rad;
+    let span = air_span_m(view, direction.y, is_below);
+    let length_m = min(distance_m, span.y) - span.x;
+    if length_m <= 0.0 || elevation_rad > view.highest_rad {
+        return SpectralPath(vec4<f32>(1.0), vec4<f32>(0.0));
+    }
+    let place = place_from_part(clamp(length_m / (span.y - span.x), 0.0, 1.0));
+    let row = row_coordinate(view, elevation_rad, is_below, AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW);
+    let uvw = vec3<f32>(
+        texel_coordinate(azimuth_place(direction, view.sun), AERIAL_AZIMUTHS),
+        row,
+        texel_coordinate(place, AERIAL_DISTANCES),
+    );
+    let phase = haze_phase(phase_table, linear_sampler, one_minus_cos_between(direction, view.sun));
+    let depth = textureSampleLevel(extinction_table, linear_sampler, uvw.zy, 0.0) * (length_m * 1e-3);
+    let smooth_light = exp(textureSampleLevel(smooth_table, linear_sampler, uvw, 0.0)) * scales.smooth_light;
+    let haze = exp(textureSampleLevel(haze_table, linear_sampler, uvw, 0.0)) * scales.haze;
+    let opacity = depth * vec4<f32>(mean_transmittance_rgb(depth.xyz), mean_transmittance(depth.w));
+    return SpectralPath(1.0 - opacity, (smooth_light + haze * phase) * opacity);
+}
+
+/// Red, green and blue of a radiance at four wavelengths.
+///
+/// Cost: no exp. Error: 1e-6 relative plus 1e-6 absolute.
+fn rgb_from_spectrum(weights: RgbWeights, spectrum: vec4<f32>) -> vec3<f32> {
+    return vec3<f32>(dot(weights.red, spectrum), dot(weights.green, spectrum), dot(weights.blue, spectrum));
+}
+
+/// A stretch of air in red, green and blue, for scenes in these: the transmittance of a channel is that of sunlight.
+///
+/// Cost: no exp. Error: 2e-6 relative plus 1e-6 absolute.
+fn rgb_path(radiance: RgbWeights, transmittance: RgbWeights, path: SpectralPath) -> PathOptics {
+    return PathOptics(
+        rgb_from_spectrum(transmittance, path.transmittance),
+        rgb_from_spectrum(radiance, path.path_radiance),
+    );
+}
