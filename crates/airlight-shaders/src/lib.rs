@@ -25,6 +25,7 @@
 //!
 //! Only core WebGPU is used: f32, no extensions.
 
+mod colour_fit;
 mod function;
 mod part;
 mod sky_tables;
@@ -32,6 +33,7 @@ mod sky_tables;
 mod translate;
 pub mod twins;
 
+pub use colour_fit::ColourFit;
 pub use function::{ErrorBound, Function, functions};
 pub use part::{Part, source, with_required};
 pub use sky_tables::{SkyTables, SkyTablesError, WAVELENGTHS_NM, wavelength_grid};

@@ -1,8 +1,8 @@
 //! [`SkyTables`]: the tables of `wgsl/sky_tables.wgsl`, filled from a solved sky.
 
+use crate::colour_fit::ColourFit;
 use crate::twins::sky_tables as twin;
 use crate::twins::texture::Texture;
-use airlight::atmosphere::Atmosphere;
 use airlight::glam::DVec3;
 use airlight::sky::{SplitPath, SplitView, View};
 use airlight::spectrum::{RgbSpace, WavelengthGrid, rgb};
@@ -62,11 +62,11 @@ pub enum SkyTablesError {
 }
 
 impl SkyTables {
-    /// Tables of a view of a sky that was solved on the [`wavelength_grid`], for colours in an RGB space.
+    /// Tables of a view of a sky that was solved on the [`wavelength_grid`], for colours in an RGB space by the fit of its atmosphere.
     ///
     /// # Errors
     /// [`SkyTablesError`] for a sky at other wavelengths.
-    pub fn new(view: &View, space: RgbSpace) -> Result<Self, SkyTablesError> {
+    pub fn new(view: &View, fit: &ColourFit, space: RgbSpace) -> Result<Self, SkyTablesError> {
         let grid = view.sky().grid();
         if grid.wavelengths_nm() != WAVELENGTHS_NM {
             let wavelengths_nm = grid.wavelengths_nm().to_vec();
@@ -98,7 +98,7 @@ impl SkyTables {
             haze: scale(&sky.1),
         };
         let aerial = aerial(&split, &place, &sky_view);
-        let (radiance_weights, transmittance_weights) = rgb_weights(view, space);
+        let (radiance_weights, transmittance_weights) = rgb_weights(view, fit, space);
         Ok(Self {
             view: sky_view,
             scales,
@@ -290,8 +290,12 @@ impl MapLanes for Vec4 {
 }
 
 /// Weights to red, green and blue: of radiance, and of transmittance.
-fn rgb_weights(view: &View, space: RgbSpace) -> (twin::RgbWeights, twin::RgbWeights) {
-    let xyz = fitted_xyz(view.sky().atmosphere());
+fn rgb_weights(
+    view: &View,
+    fit: &ColourFit,
+    space: RgbSpace,
+) -> (twin::RgbWeights, twin::RgbWeights) {
+    let xyz = fit.xyz_weights(view);
     let from_xyz = space.from_xyz_matrix();
     let columns = xyz.map(|column| rgb::apply(&from_xyz, column));
     let solar = view.sky().grid().solar_irradiance();
@@ -307,105 +311,4 @@ fn rgb_weights(view: &View, space: RgbSpace) -> (twin::RgbWeights, twin::RgbWeig
     let total = |c: usize| columns.iter().map(|column| column[c]).sum::<f64>();
     let transmittance = weights(&|c, k| columns[k][c] / total(c));
     (radiance, transmittance)
-}
-
-/// XYZ of a response of 1 at each of the wavelengths: least squares over spectra of light that an atmosphere scatters once or lets
-/// through, of which a response that does not depend on wavelength is exact.
-///
-/// The spectra are `s(l) exp(-t(l)) (1 - exp(-u(l))) / u(l)`, with the optical depths `t` of the air above and `u` of the view ray, and
-/// `s` the scattering coefficient of a constituent or 1. Low light passes less of the particles, which lie low, and more of the
-/// ozone.
-fn fitted_xyz(atmosphere: &Atmosphere) -> [[f64; 3]; 4] {
-    /// Weight of the response that does not depend on wavelength, relative to that of one spectrum.
-    const FLAT: f64 = 1e3;
-    /// Largest optical depth of particles: what comes through more comes from above them.
-    const DEEPEST: f64 = 2.0;
-    let grid = WavelengthGrid::fine().with_solar(&atmosphere.solar_irradiance);
-    let solar = grid.solar_irradiance();
-    // All wavelengths: those of the tables first.
-    let all_nm: Vec<f64> = [&WAVELENGTHS_NM[..], grid.wavelengths_nm()].concat();
-    let spectrum = |response: &[f64]| {
-        let (few, fine) = response.split_at(WAVELENGTHS_NM.len());
-        let radiance = fine.iter().zip(solar).map(|(r, e)| (r * e) as f32);
-        let xyz = grid.to_xyz(&radiance.collect::<Vec<_>>());
-        ([few[0], few[1], few[2], few[3]], xyz)
-    };
-    // Vertical optical depths of gases that scatter, of gases that only absorb, and of particles.
-    let vertical = |nm: f64| -> [f64; 3] {
-        let mut depths = [0.0; 3];
-        for c in &atmosphere.constituents {
-            let kind = match c.scattering_per_m.at(550.0) > 0.0 {
-                true if c.phase.asymmetry(550.0).abs() > 0.1 => 2,
-                true => 0,
-                false => 1,
-            };
-            depths[kind] += c.extinction_per_m(nm) * c.density.column_above_m(0.0);
-        }
-        depths
-    };
-    let depths: Vec<[f64; 3]> = all_nm.iter().map(|&nm| vertical(nm)).collect();
-    let thickest = DEEPEST / vertical(550.0)[2].max(1e-9);
-    let mut normal = [[0.0; 4]; 4];
-    let mut right = [[0.0; 3]; 4];
-    let mut add = |(response, xyz): ([f64; 4], [f64; 3]), weight: f64| {
-        // Relative errors count.
-        let scale = weight / (xyz[1] * xyz[1]).max(f64::MIN_POSITIVE);
-        for i in 0..4 {
-            for j in 0..4 {
-                normal[i][j] += scale * response[i] * response[j];
-            }
-            for c in 0..3 {
-                right[i][c] += scale * response[i] * xyz[c];
-            }
-        }
-    };
-    let flat = vec![1.0; all_nm.len()];
-    add(spectrum(&flat), FLAT);
-    let mut scatterers = vec![flat];
-    for c in &atmosphere.constituents {
-        if c.scattering_per_m.at(550.0) > 0.0 {
-            scatterers.push(all_nm.iter().map(|&nm| c.scattering_per_m.at(nm)).collect());
-        }
-    }
-    for m in [0.0f64, 1.0, 2.0, 5.0, 12.0, 30.0] {
-        for [absorbing, particles] in [[1.0, 1.0], [1.0, 0.1], [2.0, 0.1]] {
-            let masses = [m, m * absorbing, (m * particles).min(thickest)];
-            for n in [0.1f64, 1.0, 4.0, 15.0] {
-                let along = [n, n, n.min(thickest)];
-                let optical_depth = |masses: [f64; 3], vertical: &[f64; 3]| -> f64 {
-                    masses.iter().zip(vertical).map(|(m, tau)| m * tau).sum()
-                };
-                for scattering in &scatterers {
-                    let light = scattering.iter().zip(&depths).map(|(s, vertical)| {
-                        let tau = optical_depth(along, vertical).max(1e-9);
-                        s * (-optical_depth(masses, vertical)).exp() * -(-tau).exp_m1() / tau
-                    });
-                    add(spectrum(&light.collect::<Vec<_>>()), 1.0);
-                }
-            }
-        }
-    }
-    solved(normal, right)
-}
-
-/// Solution of `a x = b` by elimination with pivots.
-fn solved(mut a: [[f64; 4]; 4], mut b: [[f64; 3]; 4]) -> [[f64; 3]; 4] {
-    for k in 0..4 {
-        let pivot = (k..4).max_by(|&i, &j| a[i][k].abs().total_cmp(&a[j][k].abs()));
-        let pivot = pivot.unwrap_or(k);
-        a.swap(k, pivot);
-        b.swap(k, pivot);
-        for i in 0..4 {
-            if i != k && a[k][k] != 0.0 {
-                let factor = a[i][k] / a[k][k];
-                for j in 0..4 {
-                    a[i][j] -= factor * a[k][j];
-                }
-                for c in 0..3 {
-                    b[i][c] -= factor * b[k][c];
-                }
-            }
-        }
-    }
-    std::array::from_fn(|k| b[k].map(|v| if a[k][k] == 0.0 { 0.0 } else { v / a[k][k] }))
 }

@@ -273,7 +273,7 @@ fn rgb_from_spectrum(weights: RgbWeights, spectrum: vec4<f32>) -> vec3<f32> {
     return vec3<f32>(dot(weights.red, spectrum), dot(weights.green, spectrum), dot(weights.blue, spectrum));
 }
 
-/// A stretch of air in red, green and blue, for scenes in these: the transmittance of a channel is that of sunlight.
+/// Transmittance and path radiance in red, green and blue, for scenes in these: the transmittance of a channel is that of sunlight.
 ///
 /// Cost: no exp. Error: 2e-6 relative plus 1e-6 absolute.
 fn rgb_path(radiance: RgbWeights, transmittance: RgbWeights, path: SpectralPath) -> PathOptics {

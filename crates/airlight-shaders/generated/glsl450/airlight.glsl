@@ -1091,7 +1091,7 @@ vec3 rgb_from_spectrum(RgbWeights weights, vec4 spectrum) {
     return vec3(dot(weights.red, spectrum), dot(weights.green, spectrum), dot(weights.blue, spectrum));
 }
 
-// A stretch of air in red, green and blue, for scenes in these: the transmittance of a channel is that of sunlight.
+// Transmittance and path radiance in red, green and blue, for scenes in these: the transmittance of a channel is that of sunlight.
 // Cost: no exp.
 PathOptics rgb_path(RgbWeights radiance_2, RgbWeights transmittance, SpectralPath path_1) {
     vec3 _e4 = rgb_from_spectrum(transmittance, path_1.transmittance);

@@ -1230,7 +1230,7 @@ float3 rgb_from_spectrum(RgbWeights weights, float4 spectrum)
     return float3(dot(weights.red, spectrum), dot(weights.green, spectrum), dot(weights.blue, spectrum));
 }
 
-// A stretch of air in red, green and blue, for scenes in these: the transmittance of a channel is that of sunlight.
+// Transmittance and path radiance in red, green and blue, for scenes in these: the transmittance of a channel is that of sunlight.
 // Cost: no exp.
 PathOptics rgb_path(RgbWeights radiance_2, RgbWeights transmittance, SpectralPath path_1)
 {

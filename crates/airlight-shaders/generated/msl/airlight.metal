@@ -1328,7 +1328,7 @@ metal::float3 rgb_from_spectrum(
     return metal::float3(metal::dot(weights.red, spectrum), metal::dot(weights.green, spectrum), metal::dot(weights.blue, spectrum));
 }
 
-// A stretch of air in red, green and blue, for scenes in these: the transmittance of a channel is that of sunlight.
+// Transmittance and path radiance in red, green and blue, for scenes in these: the transmittance of a channel is that of sunlight.
 // Cost: no exp.
 PathOptics rgb_path(
     RgbWeights radiance_2,

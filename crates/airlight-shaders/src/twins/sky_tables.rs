@@ -308,7 +308,7 @@ pub fn rgb_from_spectrum(weights: RgbWeights, spectrum: Vec4) -> Vec3 {
     )
 }
 
-/// A stretch of air in red, green and blue, for scenes in these.
+/// Transmittance and path radiance in red, green and blue, for scenes in these.
 pub fn rgb_path(radiance: RgbWeights, transmittance: RgbWeights, path: SpectralPath) -> PathOptics {
     PathOptics {
         transmittance: rgb_from_spectrum(transmittance, path.transmittance),

@@ -1,0 +1,27 @@
+//! [`SkyRendererError`].
+
+use airlight::sky::SkyError;
+use airlight_shaders::SkyTablesError;
+
+/// Error of [`SkyRenderer`](crate::SkyRenderer).
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SkyRendererError {
+    /// The sky cannot be solved.
+    #[error(transparent)]
+    Sky(#[from] SkyError),
+    /// The tables cannot be filled.
+    #[error(transparent)]
+    Tables(#[from] SkyTablesError),
+    /// The target cannot be blended.
+    #[error(
+        "expected a target format that the device can blend, got {0:?}; try TextureFormat::Rgba16Float"
+    )]
+    Format(wgpu::TextureFormat),
+    /// The height of the eye is not a number.
+    #[error("expected a finite height of the eye, got {0} m")]
+    Height(f64),
+    /// The direction to the sun has no length.
+    #[error("expected a direction to the sun, got {0}")]
+    Sun(airlight::glam::DVec3),
+}

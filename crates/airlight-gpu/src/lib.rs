@@ -1,0 +1,22 @@
+//! Skies, aerial perspective and the sun's disc for programs that use wgpu.
+//!
+//! [`SkyRenderer`] draws over a frame that a program has rendered: it reads the depth, dims what is behind the air, adds the light that
+//! the air scatters, and fills the rest of the frame with the sky, the planet's ground and the sun. The colours come from tables of a
+//! sky that the `airlight` solver computes with all orders of scattering; the shader functions are those of `airlight-shaders`.
+//! Nothing is computed again when only the camera turns.
+//!
+//! The eye is the origin, y is up at the eye, distances are in metres, light is in cd/m^2 times an exposure.
+
+mod camera;
+mod error;
+mod gpu_tables;
+mod renderer;
+
+pub use camera::Camera;
+pub use error::SkyRendererError;
+pub use renderer::{SkyRenderer, SkyRendererSettings, Work};
+
+/// The example of the README, compiled as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -1,0 +1,270 @@
+//! [`SkyRenderer`].
+
+use crate::camera::Camera;
+use crate::error::SkyRendererError;
+use crate::gpu_tables::{self, GpuTables};
+use airlight::atmosphere::Atmosphere;
+use airlight::glam::DVec3;
+use airlight::sky::{Sky, SkySettings};
+use airlight::spectrum::RgbSpace;
+use airlight_shaders::{ColourFit, Part, SkyTables, source, wavelength_grid};
+use wgpu::util::{BufferInitDescriptor, DeviceExt};
+
+/// Settings of a [`SkyRenderer`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct SkyRendererSettings {
+    /// Format of the target: linear, and blendable, such as `Rgba16Float`.
+    pub target_format: wgpu::TextureFormat,
+    /// RGB space of the target.
+    pub space: RgbSpace,
+    /// Settings of the solver. With the default suns it solves once for all suns and heights.
+    pub solver: SkySettings,
+}
+
+impl SkyRendererSettings {
+    /// Linear sRGB in a target of a format.
+    pub fn new(target_format: wgpu::TextureFormat) -> Self {
+        Self {
+            target_format,
+            space: RgbSpace::Srgb,
+            solver: SkySettings::default(),
+        }
+    }
+}
+
+/// What a [`SkyRenderer`] has computed since it was made.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Work {
+    /// Tables filled and uploaded.
+    pub tables: u64,
+    /// Frames recorded.
+    pub frames: u64,
+}
+
+/// Draws air, sky and sun over frames.
+#[derive(Debug)]
+pub struct SkyRenderer {
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+    sky: Sky,
+    fit: ColourFit,
+    space: RgbSpace,
+    tables_layout: wgpu::BindGroupLayout,
+    frame_layout: wgpu::BindGroupLayout,
+    dim: wgpu::RenderPipeline,
+    add: wgpu::RenderPipeline,
+    /// The tables, and the height and sun that they are for.
+    tables: Option<(GpuTables, f64, DVec3)>,
+    work: Work,
+}
+
+impl SkyRenderer {
+    /// Solves for the light in an atmosphere, which takes a second or more, and makes the pipelines.
+    ///
+    /// # Errors
+    /// [`SkyRendererError`] if the sky cannot be solved, or for a target that cannot be blended.
+    pub fn new(
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        atmosphere: &Atmosphere,
+        settings: &SkyRendererSettings,
+    ) -> Result<Self, SkyRendererError> {
+        let format = settings.target_format;
+        let features = format.guaranteed_format_features(device.features());
+        let blendable = wgpu::TextureFormatFeatureFlags::BLENDABLE;
+        if !features.flags.contains(blendable) {
+            return Err(SkyRendererError::Format(format));
+        }
+        let sky = Sky::prepare(atmosphere, &wavelength_grid(), &settings.solver)?;
+        let fit = ColourFit::new(atmosphere)?;
+        let tables_layout = gpu_tables::layout(device);
+        let frame_layout = frame_layout(device);
+        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("airlight sky"),
+            bind_group_layouts: &[Some(&tables_layout), Some(&frame_layout)],
+            immediate_size: 0,
+        });
+        let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("airlight sky"),
+            source: wgpu::ShaderSource::Wgsl(
+                (source(&[Part::SkyTables]) + include_str!("sky.wgsl")).into(),
+            ),
+        });
+        let pipeline = |entry: &str, source: wgpu::BlendFactor, target: wgpu::BlendFactor| {
+            let component = |src_factor, dst_factor| wgpu::BlendComponent {
+                src_factor,
+                dst_factor,
+                operation: wgpu::BlendOperation::Add,
+            };
+            let keep = component(wgpu::BlendFactor::Zero, wgpu::BlendFactor::One);
+            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                label: Some(entry),
+                layout: Some(&layout),
+                vertex: wgpu::VertexState {
+                    module: &shader,
+                    entry_point: Some("corner"),
+                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                    buffers: &[],
+                },
+                primitive: wgpu::PrimitiveState::default(),
+                depth_stencil: None,
+                multisample: wgpu::MultisampleState::default(),
+                fragment: Some(wgpu::FragmentState {
+                    module: &shader,
+                    entry_point: Some(entry),
+                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                    targets: &[Some(wgpu::ColorTargetState {
+                        format,
+                        blend: Some(wgpu::BlendState {
+                            color: component(source, target),
+                            alpha: keep,
+                        }),
+                        write_mask: wgpu::ColorWrites::ALL,
+                    })],
+                }),
+                multiview_mask: None,
+                cache: None,
+            })
+        };
+        let (zero, one) = (wgpu::BlendFactor::Zero, wgpu::BlendFactor::One);
+        Ok(Self {
+            dim: pipeline("dim", zero, wgpu::BlendFactor::Src),
+            add: pipeline("add", one, one),
+            device: device.clone(),
+            queue: queue.clone(),
+            sky,
+            fit,
+            space: settings.space,
+            tables_layout,
+            frame_layout,
+            tables: None,
+            work: Work::default(),
+        })
+    }
+
+    /// Sets the height of the eye above sea level, m, and the direction to the sun. Fills the tables if either has changed.
+    ///
+    /// # Errors
+    /// [`SkyRendererError`] for numbers that are no place or direction.
+    pub fn update(&mut self, height_m: f64, sun: DVec3) -> Result<(), SkyRendererError> {
+        if !height_m.is_finite() {
+            return Err(SkyRendererError::Height(height_m));
+        }
+        let sun = sun.try_normalize().ok_or(SkyRendererError::Sun(sun))?;
+        if matches!(&self.tables, Some((_, h, s)) if *h == height_m && *s == sun) {
+            return Ok(());
+        }
+        let view = self.sky.view(height_m, sun);
+        let tables = SkyTables::new(&view, &self.fit, self.space)?;
+        let gpu = GpuTables::new(
+            &self.device,
+            &self.queue,
+            &self.tables_layout,
+            &tables,
+            &view,
+        );
+        self.tables = Some((gpu, height_m, sun));
+        self.work.tables += 1;
+        Ok(())
+    }
+
+    /// Records the air, sky and sun of a frame into `target`, which holds what the program has rendered, with its depth. Before the
+    /// first [`SkyRenderer::update`] it draws nothing.
+    pub fn record(
+        &mut self,
+        encoder: &mut wgpu::CommandEncoder,
+        target: &wgpu::TextureView,
+        depth: &wgpu::TextureView,
+        camera: &Camera,
+    ) {
+        let Some((tables, ..)) = &self.tables else {
+            return;
+        };
+        // A buffer for each frame, as an encoder may record several.
+        let camera = self.device.create_buffer_init(&BufferInitDescriptor {
+            label: Some("airlight camera"),
+            contents: &gpu_tables::bytes(&camera.numbers()),
+            usage: wgpu::BufferUsages::UNIFORM,
+        });
+        let frame = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("airlight frame"),
+            layout: &self.frame_layout,
+            entries: &[
+                wgpu::BindGroupEntry {
+                    binding: 0,
+                    resource: camera.as_entire_binding(),
+                },
+                wgpu::BindGroupEntry {
+                    binding: 1,
+                    resource: wgpu::BindingResource::TextureView(depth),
+                },
+            ],
+        });
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("airlight sky"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: target,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations {
+                    load: wgpu::LoadOp::Load,
+                    store: wgpu::StoreOp::Store,
+                },
+            })],
+            depth_stencil_attachment: None,
+            timestamp_writes: None,
+            occlusion_query_set: None,
+            multiview_mask: None,
+        });
+        pass.set_bind_group(0, &tables.group, &[]);
+        pass.set_bind_group(1, &frame, &[]);
+        for pipeline in [&self.dim, &self.add] {
+            pass.set_pipeline(pipeline);
+            pass.draw(0..3, 0..1);
+        }
+        drop(pass);
+        self.work.frames += 1;
+    }
+
+    /// What has been computed so far.
+    pub fn work(&self) -> Work {
+        self.work
+    }
+
+    /// The solved sky.
+    pub fn sky(&self) -> &Sky {
+        &self.sky
+    }
+}
+
+/// Layout of the second group: camera and depth.
+fn frame_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::FRAGMENT,
+        ty,
+        count: None,
+    };
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("airlight frame"),
+        entries: &[
+            entry(
+                0,
+                wgpu::BindingType::Buffer {
+                    ty: wgpu::BufferBindingType::Uniform,
+                    has_dynamic_offset: false,
+                    min_binding_size: None,
+                },
+            ),
+            entry(
+                1,
+                wgpu::BindingType::Texture {
+                    sample_type: wgpu::TextureSampleType::Depth,
+                    view_dimension: wgpu::TextureViewDimension::D2,
+                    multisampled: false,
+                },
+            ),
+        ],
+    })
+}

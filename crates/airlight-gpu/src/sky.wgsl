@@ -1,0 +1,106 @@
+// The passes of SkyRenderer, behind the functions of airlight-shaders: one multiplies the frame by the transmittance of the air, one
+// adds the light of air, sky and sun.
+
+struct Camera {
+    world_from_clip: mat4x4<f32>,
+    exposure: f32,
+    far_depth: f32,
+}
+
+struct Sky {
+    view: SkyView,
+    scales: SkyScales,
+    radiance_weights: RgbWeights,
+    transmittance_weights: RgbWeights,
+    /// 1 minus the cosine of the angular radius of the sun's disc.
+    disc_one_minus_cos: f32,
+}
+
+@group(0) @binding(0) var<uniform> sky: Sky;
+@group(0) @binding(1) var linear_sampler: sampler;
+@group(0) @binding(2) var sky_smooth: texture_2d<f32>;
+@group(0) @binding(3) var sky_haze: texture_2d<f32>;
+@group(0) @binding(4) var aerial_smooth: texture_3d<f32>;
+@group(0) @binding(5) var aerial_haze: texture_3d<f32>;
+@group(0) @binding(6) var extinction: texture_2d<f32>;
+@group(0) @binding(7) var phase: texture_2d<f32>;
+@group(0) @binding(8) var disc: texture_2d<f32>;
+@group(1) @binding(0) var<uniform> camera: Camera;
+@group(1) @binding(1) var depth_texture: texture_depth_2d;
+
+/// Longer than any way through the air.
+const BEYOND_AIR_M: f32 = 1e9;
+
+struct Corner {
+    @builtin(position) position: vec4<f32>,
+    @location(0) clip: vec2<f32>,
+}
+
+/// A triangle that covers the frame.
+@vertex
+fn corner(@builtin(vertex_index) index: u32) -> Corner {
+    let clip = vec2<f32>(f32(index & 1u), f32(index >> 1u)) * 4.0 - 1.0;
+    return Corner(vec4<f32>(clip, 0.0, 1.0), clip);
+}
+
+/// What a pixel sees: its direction, and the distance of its geometry, negative without any.
+struct Pixel {
+    direction: vec3<f32>,
+    distance_m: f32,
+}
+
+fn pixel(in: Corner) -> Pixel {
+    // The depth away from the far end, where positions may be infinite.
+    let near = camera.world_from_clip * vec4<f32>(in.clip, 1.0 - camera.far_depth, 1.0);
+    let direction = normalize(near.xyz / near.w);
+    let depth = textureLoad(depth_texture, vec2<i32>(in.position.xy), 0);
+    if depth == camera.far_depth {
+        return Pixel(direction, -1.0);
+    }
+    let here = camera.world_from_clip * vec4<f32>(in.clip, depth, 1.0);
+    return Pixel(direction, length(here.xyz / here.w));
+}
+
+fn air_to(seen: Pixel) -> SpectralPath {
+    let distance_m = select(seen.distance_m, BEYOND_AIR_M, seen.distance_m < 0.0);
+    return aerial_perspective(
+        sky.view, sky.scales, aerial_smooth, aerial_haze, extinction, phase, linear_sampler, seen.direction, distance_m,
+    );
+}
+
+fn is_ground(seen: Pixel) -> bool {
+    return seen.distance_m < 0.0 && elevation_of(seen.direction) < sky.view.horizon_rad;
+}
+
+/// Radiance of the sun's disc, dimmed by the air.
+fn sun_disc(seen: Pixel) -> vec4<f32> {
+    let one_minus_cos = one_minus_cos_between(seen.direction, sky.view.sun);
+    if one_minus_cos >= sky.disc_one_minus_cos || is_ground(seen) {
+        return vec4<f32>(0.0);
+    }
+    let mu = sqrt(1.0 - one_minus_cos / sky.disc_one_minus_cos);
+    let outside = textureSampleLevel(disc, linear_sampler, vec2<f32>(texel_coordinate(mu, 64.0), 0.5), 0.0);
+    return outside * air_to(seen).transmittance;
+}
+
+@fragment
+fn dim(in: Corner) -> @location(0) vec4<f32> {
+    let seen = pixel(in);
+    if is_ground(seen) {
+        return vec4<f32>(0.0, 0.0, 0.0, 1.0);
+    }
+    return vec4<f32>(rgb_from_spectrum(sky.transmittance_weights, air_to(seen).transmittance), 1.0);
+}
+
+@fragment
+fn add(in: Corner) -> @location(0) vec4<f32> {
+    let seen = pixel(in);
+    var light = vec4<f32>(0.0);
+    if seen.distance_m < 0.0 {
+        light = sun_disc(seen)
+            + sky_radiance(sky.view, sky.scales, sky_smooth, sky_haze, phase, linear_sampler, seen.direction);
+    } else {
+        light = air_to(seen).path_radiance;
+    }
+    return vec4<f32>(rgb_from_spectrum(sky.radiance_weights, light) * camera.exposure, 0.0);
+}
