@@ -213,6 +213,7 @@ impl Intrinsics {
         let x = (f64::from(i) + 0.5 - self.principal_px.0) / self.focal_px.0;
         let length = (1.0 + x * x + y * y).sqrt();
         let ray = self.axes.forward + self.axes.right * x + self.axes.up * y;
-        (ray / length, length)
+        // One division instead of three.
+        (ray * (1.0 / length), length)
     }
 }

@@ -64,6 +64,8 @@ pub(super) struct FogSampler<'a> {
     /// Table of [`FogSource::Alone`].
     table: Option<RgbFogTable>,
     even: Option<EvenFog>,
+    /// The encoded colour of [`FogOverlay::Encoded`] in the picture's primaries.
+    encoded: Option<[f32; 3]>,
 }
 
 impl<'a> FogSampler<'a> {
@@ -77,12 +79,17 @@ impl<'a> FogSampler<'a> {
             FogOverlay::Fog(FogSource::Alone(fog), None) if primaries.are_srgb() => fog.even(),
             _ => None,
         };
+        let encoded = match overlay {
+            FogOverlay::Encoded(_, colour) => Some(primaries.in_picture(*colour).map(encode)),
+            _ => None,
+        };
         Self {
             overlay,
             eye_height_m,
             primaries,
             table,
             even,
+            encoded,
         }
     }
 
@@ -100,77 +107,118 @@ impl<'a> FogSampler<'a> {
         (self.eye_height_m, ground.radius_m)
     }
 
-    /// Optics of many rays without patches, where they are computed together.
-    pub fn even_optics(&self, directions: &[DVec3], distances_m: &[f64]) -> Vec<RgbPathOptics> {
-        let Some(table) = &self.table else {
-            return Vec::new();
-        };
-        let mut optics = vec![RgbPathOptics::CLEAR; directions.len()];
-        table.paths(directions, distances_m, &mut optics);
-        optics
-    }
-
-    /// Transmittance and path radiance up to a distance (m; infinite: the sky) in a direction. `even` is that of
-    /// [`Self::even_optics`], if it is known. `factor`, if given, is that of patches on the optical depth of fog that scatters light;
-    /// `path_radiance` replaces that of the fog.
+    /// Transmittance and path radiance of rays with directions up to distances (m; infinite: the sky). `factors`, if given, are
+    /// those of patches on the optical depth of fog that scatters light; `path_radiance` replaces that of the fog.
     pub fn optics(
         &self,
-        (direction, distance_m): (DVec3, f64),
-        even: Option<&RgbPathOptics>,
-        factor: Option<f32>,
-        path_radiance: Option<[f32; 3]>,
-    ) -> RgbPathOptics {
-        let optics = match self.overlay {
+        directions: &[DVec3],
+        distances_m: &[f64],
+        factors: Option<&[f32]>,
+        path_radiance: Option<&[[f32; 3]]>,
+        out: &mut [RgbPathOptics],
+    ) {
+        let rays = directions.iter().zip(distances_m);
+        match self.overlay {
             FogOverlay::Fog(source, lights) => {
-                let even = even.copied().or_else(|| {
-                    let table = self.table.as_ref()?;
-                    Some(table.path(direction, distance_m))
-                });
-                let mut optics = match even {
-                    Some(even) => factor.map_or(even, |factor| even.at_density(factor)),
-                    None => source.optics(self.eye_height_m, direction, distance_m, factor),
-                };
-                optics.path_radiance = path_radiance.unwrap_or(optics.path_radiance);
-                if let Some(lights) = lights {
-                    let glow = lights.path_radiance(&ViewRay {
-                        eye: DVec3::Y * self.eye_height_m,
-                        direction,
-                        length_m: distance_m,
-                    });
-                    optics.path_radiance =
-                        std::array::from_fn(|i| optics.path_radiance[i] + glow[i]);
+                match (source, &self.table) {
+                    (FogSource::Alone(_), Some(table)) => {
+                        table.paths(directions, distances_m, out);
+                        for (optics, factor) in out.iter_mut().zip(factors.into_iter().flatten()) {
+                            *optics = optics.at_density(*factor);
+                        }
+                    }
+                    _ => {
+                        for (i, (out, (&direction, &distance_m))) in
+                            out.iter_mut().zip(rays.clone()).enumerate()
+                        {
+                            let factor = factors.map(|factors| factors[i]);
+                            *out = source.optics(self.eye_height_m, direction, distance_m, factor);
+                        }
+                    }
                 }
-                optics
+                for (optics, given) in out.iter_mut().zip(path_radiance.into_iter().flatten()) {
+                    optics.path_radiance = *given;
+                }
+                if let Some(lights) = lights {
+                    for (optics, (&direction, &distance_m)) in out.iter_mut().zip(rays) {
+                        let glow = lights.path_radiance(&ViewRay {
+                            eye: DVec3::Y * self.eye_height_m,
+                            direction,
+                            length_m: distance_m,
+                        });
+                        for (light, glow) in optics.path_radiance.iter_mut().zip(glow) {
+                            *light += glow;
+                        }
+                    }
+                }
             }
             FogOverlay::ExponentialSquared(density, colour) => {
-                legacy::exponential_squared(*density, distance_m, *colour)
-            }
-            FogOverlay::Linear(start, end, colour) => {
-                legacy::linear(*start, *end, distance_m, *colour)
-            }
-            FogOverlay::Encoded(extinction, colour) => {
-                let transmittance = (-extinction * distance_m).exp() as f32;
-                RgbPathOptics {
-                    transmittance: [transmittance; 3],
-                    path_radiance: colour.map(|c| c * (1.0 - transmittance)),
+                for (out, &distance_m) in out.iter_mut().zip(distances_m) {
+                    *out = legacy::exponential_squared(*density, distance_m, *colour);
                 }
             }
-        };
-        self.primaries.optics(optics)
+            FogOverlay::Linear(start, end, colour) => {
+                for (out, &distance_m) in out.iter_mut().zip(distances_m) {
+                    *out = legacy::linear(*start, *end, distance_m, *colour);
+                }
+            }
+            FogOverlay::Encoded(extinction, colour) => {
+                for (out, &distance_m) in out.iter_mut().zip(distances_m) {
+                    let transmittance = (-extinction * distance_m).exp() as f32;
+                    *out = RgbPathOptics {
+                        transmittance: [transmittance; 3],
+                        path_radiance: colour.map(|c| c * (1.0 - transmittance)),
+                    };
+                }
+            }
+        }
+        if !self.primaries.are_srgb() {
+            for optics in out {
+                *optics = self.primaries.optics(*optics);
+            }
+        }
     }
 
     /// A colour through the fog.
+    #[inline]
     pub fn apply(&self, optics: &RgbPathOptics, colour: [f32; 3]) -> [f32; 3] {
-        let FogOverlay::Encoded(_, fog) = self.overlay else {
-            return optics.apply(colour);
-        };
-        let fog = self.primaries.in_picture(*fog);
-        let part = optics.transmittance[0];
-        if part == 1.0 {
-            return colour;
+        match &self.encoded {
+            Some(fog) => blended(colour, optics.transmittance[0], fog),
+            None => optics.apply(colour),
         }
-        std::array::from_fn(|i| decode(encode(colour[i]) * part + encode(fog[i]) * (1.0 - part)))
     }
+
+    /// Colours through the fog.
+    pub fn apply_all(&self, optics: &[RgbPathOptics], colours: &[[f32; 3]], out: &mut [[f32; 3]]) {
+        let pixels = out.iter_mut().zip(optics).zip(colours);
+        match &self.encoded {
+            Some(fog) => {
+                for ((out, optics), colour) in pixels {
+                    *out = blended(*colour, optics.transmittance[0], fog);
+                }
+            }
+            None => {
+                for ((out, optics), colour) in pixels {
+                    for c in 0..3 {
+                        out[c] = optics.path_radiance[c] + optics.transmittance[c] * colour[c];
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A part of a colour and the rest of an encoded one, blended in encoded values.
+#[inline]
+fn blended(colour: [f32; 3], part: f32, fog: &[f32; 3]) -> [f32; 3] {
+    if part == 1.0 {
+        return colour;
+    }
+    let mut out = [0.0; 3];
+    for c in 0..3 {
+        out[c] = decode(encode(colour[c]) * part + fog[c] * (1.0 - part));
+    }
+    out
 }
 
 impl FogSource {
@@ -226,6 +274,7 @@ static LINEAR: LazyLock<Vec<f32>> = LazyLock::new(|| {
 });
 
 /// [`srgb_encode`] to 1e-6.
+#[inline]
 fn encode(linear: f32) -> f32 {
     match linear {
         0.004..=1.0 => interpolate(&SIGNALS, linear.sqrt()),
@@ -234,6 +283,7 @@ fn encode(linear: f32) -> f32 {
 }
 
 /// [`srgb_decode`] to 1e-6.
+#[inline]
 fn decode(signal: f32) -> f32 {
     match signal {
         0.0..=1.0 => interpolate(&LINEAR, signal),

@@ -223,14 +223,18 @@ impl<'a> Overlay<'a> {
         let (width, height) = (self.picture.size.width(), self.picture.size.height());
         let (mut least, mut most) = (1.0f32, 0.0f32);
         for row in 0..SAMPLES.min(height) {
-            let rays = self.rays(row * height / SAMPLES.min(height));
+            let rays = self.rays(row * height / SAMPLES.min(height)).into_iter();
             let step = width.div_ceil(SAMPLES) as usize;
-            for ray in rays.into_iter().step_by(step) {
-                if ray.1.is_finite() && ray.1 > 0.0 {
-                    let seen = self.fog.optics(ray, None, None, None).transmittance;
-                    least = least.min(seen[1]);
-                    most = most.max(seen[1]);
-                }
+            let seen = rays
+                .step_by(step)
+                .filter(|ray| ray.1.is_finite() && ray.1 > 0.0);
+            let (directions, distances): (Vec<_>, Vec<_>) = seen.unzip();
+            let mut optics = vec![RgbPathOptics::CLEAR; directions.len()];
+            self.fog
+                .optics(&directions, &distances, None, None, &mut optics);
+            for [_, green, _] in optics.iter().map(|optics| optics.transmittance) {
+                least = least.min(green);
+                most = most.max(green);
             }
         }
         let mut notes = Notes::default();
@@ -297,27 +301,46 @@ impl RowSource for Overlay<'_> {
             return;
         }
         let (directions, distances) = self.rays_apart(y);
-        let even = self.fog.even_optics(&directions, &distances);
+        let factors = patches.map(|row| -> Vec<f32> {
+            let rays = (0..).zip(&distances);
+            rays.map(|(x, distance)| row.factor(x, *distance)).collect()
+        });
+        let pixels = first..first + width;
+        let path_radiance = self
+            .path_radiance
+            .map(|all| &all.as_chunks::<3>().0[pixels.clone()]);
+        let mut optics = vec![RgbPathOptics::CLEAR; width];
+        self.fog.optics(
+            &directions,
+            &distances,
+            factors.as_deref(),
+            path_radiance,
+            &mut optics,
+        );
+        let colours = &self.picture.rgb.as_chunks::<3>().0[pixels.clone()];
+        let opacities = self
+            .picture
+            .alpha
+            .as_ref()
+            .map(|alpha| &alpha[pixels.clone()]);
+        if !self.has_layers() && opacities.is_none() {
+            self.fog
+                .apply_all(&optics, colours, out.as_chunks_mut::<3>().0);
+            return;
+        }
         for (i, out) in out.chunks_exact_mut(self.channels()).enumerate() {
-            let (pixel, distance) = (first + i, distances[i]);
-            let rgb = &self.picture.rgb[3 * pixel..3 * pixel + 3];
-            let colour = [rgb[0], rgb[1], rgb[2]];
-            let path_radiance = self.path_radiance.map(|all| {
-                let rgb = &all[3 * pixel..3 * pixel + 3];
-                [rgb[0], rgb[1], rgb[2]]
-            });
-            let factor = patches.map(|row| row.factor(i as u32, distance));
-            let ray = (directions[i], distance);
-            let optics = self.fog.optics(ray, even.get(i), factor, path_radiance);
-            let opacity = self.picture.alpha.as_ref().map(|alpha| alpha[pixel]);
-            let seen = self.through(&optics, colour, opacity.unwrap_or(1.0));
+            let optics = &optics[i];
+            let opacity = opacities.map(|opacities| opacities[i]);
+            let seen = self.through(optics, colours[i], opacity.unwrap_or(1.0));
             out[..3].copy_from_slice(&seen);
             if self.has_layers() {
                 out[3..6].copy_from_slice(&optics.transmittance);
                 out[6..9].copy_from_slice(&optics.path_radiance);
                 out[9] = match self.depth.kind {
-                    DepthKind::Z => self.depth.metres[pixel],
-                    DepthKind::Ray => (distance / self.camera.ray_length_per_z(i as u32, y)) as f32,
+                    DepthKind::Z => self.depth.metres[first + i],
+                    DepthKind::Ray => {
+                        (distances[i] / self.camera.ray_length_per_z(i as u32, y)) as f32
+                    }
                 };
             }
             if let (Some(opacity), Some(last)) = (opacity, out.last_mut()) {

@@ -297,6 +297,7 @@ impl<const N: usize> MergedLayer<N> {
     }
 
     /// [`MergedLayer::towards_eye`] for several rays: for each lane, the values of the rays.
+    #[inline(always)]
     pub fn towards_eye_along<const R: usize>(&self, cos_sun: &[f64; R]) -> [Spectrum<R>; N] {
         let mut sums = [Spectrum::ZERO; N];
         for part in &self.parts {
@@ -312,6 +313,7 @@ impl<const N: usize> MergedLayer<N> {
     }
 
     /// [`MergedLayer::streams_towards_eye`] for several rays.
+    #[inline(always)]
     pub fn streams_towards_eye_along<const R: usize>(
         &self,
         cos_sun: &[f64; R],
@@ -323,11 +325,11 @@ impl<const N: usize> MergedLayer<N> {
                 .phase
                 .along_rays(cos_sun, &part.layer.wavelengths_nm);
             let scattering = part.layer.scattering_per_m;
-            for (ray, cosine) in cos_sun.iter().enumerate() {
-                for (sum, share) in sums.iter_mut().zip(part.shares(*cosine)) {
-                    for lane in 0..N {
-                        sum[lane][ray] += scattering[lane] * phase[lane][ray] * share[lane];
-                    }
+            let shares = part.shares_along(cos_sun);
+            for k in 0..STREAMS {
+                for lane in 0..N {
+                    let whole = phase[lane] * scattering[lane];
+                    sums[k][lane] = sums[k][lane].mul_acc(whole, shares[k][lane]);
                 }
             }
         }
@@ -386,6 +388,15 @@ impl<const N: usize> MergedLayer<N> {
 }
 
 impl<const N: usize> Part<N> {
+    /// [`Part::shares`] for several rays: by stream and lane.
+    #[inline(always)]
+    fn shares_along<const R: usize>(&self, cos_sun: &[f64; R]) -> [[Spectrum<R>; N]; STREAMS] {
+        match self.peak.as_ref().and_then(|peak| peak.residual.as_ref()) {
+            Some(residual) => residual.shares_along(cos_sun),
+            None => ONE_STREAM.map(|share| [Spectrum::splat(share); N]),
+        }
+    }
+
     /// Shares of the streams in the light scattered at an angle to the sun.
     #[inline]
     fn shares(&self, cos_sun: f64) -> Shares<N> {

@@ -44,11 +44,6 @@ impl RayBlock {
         block
     }
 
-    /// Sines of the elevations.
-    pub fn sin_elevation(&self) -> &[f64; RAYS] {
-        &self.sin_elevation
-    }
-
     /// [`DensityProfile::column_along_m`], at most [`OPAQUE`]. The relative error of the closed forms is a few 1e-7.
     #[inline(always)]
     pub fn columns_m(&self, density: &DensityProfile) -> PerRay {
@@ -200,11 +195,11 @@ fn decayed(heights: impl Fn(usize) -> f64) -> PerRay {
 
 /// A function of the value of each lane, which is evaluated once for equal ones.
 #[inline(always)]
-pub(super) fn in_lanes<const N: usize>(
+pub(super) fn in_lanes<const N: usize, const R: usize>(
     values: Spectrum<N>,
-    of: impl Fn(f32) -> PerRay,
-) -> [PerRay; N] {
-    let mut out = [PerRay::ZERO; N];
+    of: impl Fn(f32) -> Spectrum<R>,
+) -> [Spectrum<R>; N] {
+    let mut out = [Spectrum::ZERO; N];
     for lane in 0..N {
         out[lane] = match lane > 0 && values[lane] == values[lane - 1] {
             true => out[lane - 1],

@@ -4,7 +4,7 @@ use super::closed_forms::{Lanes, OPAQUE};
 use super::fog_lanes::FogLanes;
 use super::layer::MergedLayer;
 use super::multiple::{self, DEGREES, Field};
-use super::ray_block::{PerRay, RAYS, RayBlock, in_lanes, store};
+use super::ray_block::{RAYS, RayBlock, in_lanes, store};
 use crate::atmosphere::RaySegment;
 use crate::math::interpolation::cubic_weights;
 use crate::math::simd::vectorized;
@@ -81,34 +81,14 @@ impl<const N: usize> TableLanes<N> {
         let (Some(table), Some(field)) = (&self.table, &fog.field) else {
             return fog.path(self.eye_height_m, direction, distance_m);
         };
-        let sun = table.sun.as_ref();
-        let cos_sun = sun.map_or(0.0, |sun| direction.dot(sun.direction));
         let ray = RaySegment::flat(self.eye_height_m, direction.y, distance_m);
-        let depth = fog.optical_depth(&ray);
-        let opacity = opacity(depth, table.is_grey);
-        let mut path_radiance = Spectrum::ZERO;
-        let mean_opacity = mean(opacity);
-        if mean_opacity > 0.0 {
-            let side = &table.sides[usize::from(direction.y > 0.0)];
-            let place = side.place(direction.y.abs(), mean_opacity);
-            let rows = self.rows_at(table, field, side, &place);
-            let mut source = place.interpolate(&rows, |node| node.mean);
-            if let Some(sun) = sun {
-                source += place.azimuth_modes(&rows, sun, direction);
-            }
-            // As in the field, and as cubics between rows undershoot.
-            source = source.max_scalar(0.0);
-            if let Some(sun) = sun {
-                source += sunlit(&fog.layers[0], cos_sun, &place, &rows) * sun.irradiance;
-            }
-            path_radiance = opacity * source;
-        }
+        let column_m = fog.layers[0].density.column_along_m(&ray).min(OPAQUE);
+        let columns_m = Spectrum([column_m as f32]);
+        let rays = self.along((table, field), columns_m, &[direction]);
+        let first = |lanes: [Spectrum<1>; N]| Spectrum::from_fn(|lane| lanes[lane][0]);
         PathOptics {
-            transmittance: match table.is_grey {
-                true => Spectrum::splat(Spectrum([depth[0]]).exp_neg()[0]),
-                false => depth.exp_neg(),
-            },
-            path_radiance,
+            transmittance: first(rays.transmittance),
+            path_radiance: first(rays.path_radiance),
         }
     }
 
@@ -135,18 +115,30 @@ impl<const N: usize> TableLanes<N> {
         );
     }
 
-    /// The rays of a block: [`Self::path`] in other lanes.
+    /// The rays of a block.
     #[inline(always)]
     fn block<T: From<PathOptics<N>>>(
         &self,
-        (table, field): (&Table<N>, &Field<N>),
+        parts: (&Table<N>, &Field<N>),
         directions: &[DVec3],
         distances_m: &[f64],
         out: &mut [T],
     ) {
-        let layer = &self.fog.layers[0];
         let rays = RayBlock::new(self.eye_height_m, directions, distances_m);
-        let columns_m = rays.columns_m(&layer.density);
+        let columns_m = rays.columns_m(&self.fog.layers[0].density);
+        let rays = self.along(parts, columns_m, directions);
+        store(&rays.transmittance, &rays.path_radiance, out);
+    }
+
+    /// Optics of at most R rays with columns of density.
+    #[inline(always)]
+    fn along<const R: usize>(
+        &self,
+        (table, field): (&Table<N>, &Field<N>),
+        columns_m: Spectrum<R>,
+        directions: &[DVec3],
+    ) -> RayOptics<N, R> {
+        let layer = &self.fog.layers[0];
         let opacity = in_lanes(
             layer.extinction_per_m,
             #[inline(always)]
@@ -155,84 +147,119 @@ impl<const N: usize> TableLanes<N> {
                 depth * depth.mean_transmittance()
             },
         );
-        let mean_opacity = mean_of(&opacity);
-        let ends = table.ends(rays.sin_elevation());
-        let rows = table.rows_of(rays.sin_elevation());
-        let mut diffuse = [PerRay::ZERO; N];
-        let mut logarithms = [[PerRay::ZERO; N]; STREAMS];
-        for (i, &direction) in directions.iter().enumerate() {
-            if mean_opacity[i] <= 0.0 {
-                continue;
+        let mut sin_elevation = [0.0; R];
+        for (sine, direction) in sin_elevation.iter_mut().zip(directions) {
+            *sine = direction.y;
+        }
+        let places = table.places(&sin_elevation, mean_of(&opacity));
+        let mut sums = [*Node::<N>::ZERO; R];
+        let has_sun = table.sun.is_some();
+        let azimuths: [Values; R] = match &table.sun {
+            Some(sun) => azimuth_factors(sun.horizontal, directions),
+            None => [Values::ZERO; R],
+        };
+        let mut rows = Rows {
+            side: &table.sides[0],
+            first: usize::MAX,
+            nodes: [&[]; 4],
+        };
+        for (i, sine) in sin_elevation.iter().enumerate().take(directions.len()) {
+            let side = &table.sides[usize::from(*sine > 0.0)];
+            let (first, node) = (places.first[i] as usize, places.node[i] as usize);
+            if rows.first != first || !std::ptr::eq(rows.side, side) {
+                rows = self.rows_at(table, field, side, first);
             }
-            let side = &table.sides[usize::from(direction.y > 0.0)];
-            let place = side.place_at(ends[i], rows[i], mean_opacity[i]);
-            let rows = self.rows_at(table, field, side, &place);
-            let mut source = place.interpolate(&rows, |node| node.mean);
-            if let Some(sun) = &table.sun {
-                source += place.azimuth_modes(&rows, sun, direction);
-                for (k, logarithms) in logarithms.iter_mut().enumerate() {
-                    let stream = place.interpolate(&rows, |node| node.sunlit[k]);
-                    for lane in 0..N {
-                        logarithms[lane][i] = stream[lane];
-                    }
+            let (mut nodes, mut weights) = ([[Node::ZERO; 2]; 4], [[0.0; 2]; 4]);
+            for r in 0..4 {
+                if let [from, to, ..] = &rows.nodes[r][node..] {
+                    nodes[r] = [from, to];
                 }
+                weights[r] = [places.weights[r][0][i], places.weights[r][1][i]];
             }
+            // Whole vectors into memory: the compiler would otherwise compute the few numbers that are used one by one.
+            let sum = &mut sums[i];
             for lane in 0..N {
-                diffuse[lane][i] = source[lane];
+                let mut modes = Values::ZERO;
+                for r in 0..4 {
+                    let [from, to] = nodes[r];
+                    modes.add(&from.modes[lane], &to.modes[lane], weights[r]);
+                }
+                sum.modes[lane] = modes;
+            }
+            for lane in 0..if has_sun { N } else { 0 } {
+                let mut sunlit = Values::ZERO;
+                for r in 0..4 {
+                    let [from, to] = nodes[r];
+                    sunlit.add(&from.sunlit[lane], &to.sunlit[lane], weights[r]);
+                }
+                sum.sunlit[lane] = sunlit;
             }
         }
-        let mut source = diffuse;
+        let mut source = [Spectrum::<R>::ZERO; N];
+        for lane in 0..N {
+            for i in 0..R {
+                source[lane][i] = match has_sun {
+                    true => sums[i].modes[lane].dot(&azimuths[i]),
+                    false => sums[i].modes[lane].0[0],
+                };
+            }
+        }
+        // As in the field, and as cubics between rows undershoot.
         for lane in &mut source {
             *lane = lane.max_scalar(0.0);
         }
         if let Some(sun) = &table.sun {
-            let mut cos_sun = [0.0; RAYS];
+            let mut cos_sun = [0.0; R];
             for (cosine, direction) in cos_sun.iter_mut().zip(directions) {
                 *cosine = direction.dot(sun.direction);
             }
             let streams = layer.streams_towards_eye_along(&cos_sun);
             for lane in 0..N {
-                let mut sum = PerRay::ZERO;
-                for (stream, logarithm) in streams.iter().zip(&logarithms) {
-                    sum = sum.mul_acc(stream[lane], logarithm[lane].exp());
+                let mut sum = Spectrum::ZERO;
+                for k in 0..STREAMS {
+                    let mut logarithms = Spectrum::<R>::ZERO;
+                    for i in 0..R {
+                        logarithms[i] = sums[i].sunlit[lane].0[k];
+                    }
+                    sum = sum.mul_acc(streams[k][lane], logarithms.exp());
                 }
                 // Shares of the streams can be negative.
                 source[lane] = source[lane].scale_acc(sum.max_scalar(0.0), sun.irradiance[lane]);
             }
         }
-        let mut path_radiance = source;
-        for (light, opacity) in path_radiance.iter_mut().zip(opacity) {
+        for (light, opacity) in source.iter_mut().zip(opacity) {
             *light = opacity * *light;
         }
-        let transmittance = in_lanes(
-            layer.extinction_per_m,
-            #[inline(always)]
-            |extinction| (columns_m * extinction).exp_neg(),
-        );
-        store(&transmittance, &path_radiance, out);
+        RayOptics {
+            transmittance: in_lanes(
+                layer.extinction_per_m,
+                #[inline(always)]
+                |extinction| (columns_m * extinction).exp_neg(),
+            ),
+            path_radiance: source,
+        }
     }
 
-    /// The rows of a place.
-    #[inline(always)]
+    /// Four rows from an index on.
     fn rows_at<'t>(
         &self,
         table: &Table<N>,
         field: &Field<N>,
         side: &'t Side<N>,
-        place: &Place,
-    ) -> [&'t [Node<N>]; 4] {
-        let mut rows: [&[Node<N>]; 4] = [&[]; 4];
-        for (row, nodes) in (place.row..).zip(&mut rows) {
+        first: usize,
+    ) -> Rows<'t, N> {
+        let mut nodes: [&[Node<N>]; 4] = [&[]; 4];
+        for (row, nodes) in (first..).zip(&mut nodes) {
             *nodes = side.rows[row].get_or_init(|| self.row(table, field, side, row));
         }
-        rows
+        Rows { side, first, nodes }
     }
 
     /// Values of one elevation at all distances.
     fn row(&self, table: &Table<N>, field: &Field<N>, side: &Side<N>, row: usize) -> Vec<Node<N>> {
         let sin_elevation = side.sign * side.sin_elevations[row];
         let ray = RaySegment::flat(self.eye_height_m, sin_elevation, f64::INFINITY);
-        let lengths_m = self.lengths_m(side, &ray);
+        let lengths_m = self.lengths_m(table, side, &ray);
         let ground = match side.sign < 0.0 {
             true => NODES - 1,
             false => usize::MAX,
@@ -261,24 +288,19 @@ impl<const N: usize> TableLanes<N> {
             })
             .collect()
         };
-        let node = |mean| Node {
-            mean,
-            modes: [[0.0; DEGREES]; N],
-            sunlit: [Spectrum::ZERO; STREAMS],
-        };
-        let mean = per_opacity(rays.diffuse(0));
-        let mut nodes: Vec<Node<N>> = mean.into_iter().map(node).collect();
-        if table.sun.is_some() {
-            for m in 1..DEGREES {
-                for (node, light) in nodes.iter_mut().zip(per_opacity(rays.diffuse(m))) {
-                    for (lane, modes) in node.modes.iter_mut().enumerate() {
-                        modes[m] = light[lane];
-                    }
+        let mut nodes = vec![*Node::ZERO; lengths_m.len()];
+        let has_sun = table.sun.is_some();
+        for m in 0..if has_sun { DEGREES } else { 1 } {
+            for (node, light) in nodes.iter_mut().zip(per_opacity(rays.diffuse(m))) {
+                for (lane, modes) in node.modes.iter_mut().enumerate() {
+                    modes.0[m] = light[lane];
                 }
             }
-            for k in 0..STREAMS {
-                for (node, light) in nodes.iter_mut().zip(per_opacity(rays.sunlit(k))) {
-                    node.sunlit[k] = light.map(|v| v.max(DARK.exp()).ln());
+        }
+        for k in 0..if has_sun { STREAMS } else { 0 } {
+            for (node, light) in nodes.iter_mut().zip(per_opacity(rays.sunlit(k))) {
+                for (lane, sunlit) in node.sunlit.iter_mut().enumerate() {
+                    sunlit.0[k] = light[lane].max(DARK.exp()).ln();
                 }
             }
         }
@@ -286,12 +308,12 @@ impl<const N: usize> TableLanes<N> {
     }
 
     /// Distances of the nodes, m.
-    fn lengths_m(&self, side: &Side<N>, ray: &RaySegment) -> Vec<f64> {
+    fn lengths_m(&self, table: &Table<N>, side: &Side<N>, ray: &RaySegment) -> Vec<f64> {
         let opacity = |length_m: f64| {
             let depth = self.fog.optical_depth(&ray.part(0.0, length_m));
             mean(depth * depth.mean_transmittance())
         };
-        let end = side.end(ray.sin_elevation.abs());
+        let end = table.ends(&[ray.sin_elevation])[0];
         let nearest = NEAREST * if end > 0.0 { end } else { 1.0 };
         let left = |node: usize| 1.0 - node as f32 / (NODES - 1) as f32;
         let mut lengths_m = vec![0.0];
@@ -339,8 +361,8 @@ impl<const N: usize> Table<N> {
         Self {
             is_grey,
             sides: [
-                Side::new(-1.0, fog.optical_depth(&under), is_grey),
-                Side::new(1.0, above, is_grey),
+                Side::new(-1.0, fog.optical_depth(&under)),
+                Side::new(1.0, above),
             ],
             sun: sun.map(|sun| SunSide {
                 irradiance: sun.irradiance,
@@ -350,17 +372,19 @@ impl<const N: usize> Table<N> {
         }
     }
 
-    /// [`Side::end`] of several rays.
+    /// Opacities to space or to the ground along several rays, mean over lanes.
     #[inline(always)]
-    fn ends(&self, sin_elevation: &[f64; RAYS]) -> PerRay {
-        let per_sine = |i: usize| 1.0 / sin_elevation[i].abs().max(1e-20);
-        let mut opacity = [PerRay::ZERO; N];
+    fn ends<const R: usize>(&self, sin_elevation: &[f64; R]) -> Spectrum<R> {
+        let mut opacity = [Spectrum::<R>::ZERO; N];
         for lane in 0..if self.is_grey { 1 } else { N } {
-            let [below, above] = [0, 1].map(|side| f64::from(self.sides[side].depth[lane]));
-            let depth = PerRay::from_fn(|i| {
+            let [below, above] = [&self.sides[0], &self.sides[1]];
+            let (below, above) = (f64::from(below.depth[lane]), f64::from(above.depth[lane]));
+            let mut depth = Spectrum::<R>::ZERO;
+            for i in 0..R {
                 let vertical = if sin_elevation[i] > 0.0 { above } else { below };
-                (vertical * per_sine(i)).min(OPAQUE) as f32
-            });
+                let per_sine = 1.0 / sin_elevation[i].abs().max(1e-20);
+                depth[i] = (vertical * per_sine).min(OPAQUE) as f32;
+            }
             opacity[lane] = depth * depth.mean_transmittance();
         }
         match self.is_grey {
@@ -369,52 +393,113 @@ impl<const N: usize> Table<N> {
         }
     }
 
-    /// [`Side::row_of`] for several rays.
+    /// Positions of rays with these sines of the elevation and opacities.
     #[inline(always)]
-    fn rows_of(&self, sin_elevation: &[f64; RAYS]) -> PerRay {
-        let sides = self.sides.each_ref();
-        let even_to = sides.map(|side| 1.0 / side.even_to);
-        let per_logarithm = sides.map(|side| side.per_logarithm);
-        let up = |i: usize| usize::from(sin_elevation[i] > 0.0);
-        let sines = PerRay::from_fn(|i| sin_elevation[i].abs() as f32);
-        let logarithms =
-            PerRay::from_fn(|i| (1.0 + sin_elevation[i].abs() * even_to[up(i)]) as f32).ln();
-        PerRay::from_fn(|i| {
-            let logarithm = logarithms[i] * per_logarithm[up(i)];
-            (ROWS - 1) as f32 * (LOGARITHMIC * logarithm + (1.0 - LOGARITHMIC) * sines[i])
-        })
+    fn places<const R: usize>(&self, sin_elevation: &[f64; R], opacity: Spectrum<R>) -> Places<R> {
+        const STEPS: f32 = (NODES - 1) as f32;
+        let ends = self.ends(sin_elevation);
+        let [below, above] = [&self.sides[0], &self.sides[1]];
+        let mut sines = [0.0; R];
+        let mut spacing = [Spacing::default(); R];
+        for i in 0..R {
+            sines[i] = sin_elevation[i].abs();
+            spacing[i] = if sin_elevation[i] > 0.0 {
+                above.spacing
+            } else {
+                below.spacing
+            };
+        }
+        let rows = rows_of(&sines, &spacing);
+        let mut places = Places {
+            first: [0; R],
+            node: [0; R],
+            weights: [[Spectrum::ZERO; 2]; 4],
+        };
+        for i in 0..R {
+            let (end, opacity) = (ends[i], opacity[i]);
+            let rises = sin_elevation[i] > 0.0;
+            let part = if opacity > 0.0 { opacity / end } else { 0.0 };
+            let rest = if part < 1.0 { 1.0 - part } else { 0.0 };
+            let before = STEPS * (1.0 - rest.sqrt().sqrt());
+            // Beyond the ground evenly spaced in 1 / x.
+            let nearest = if end > NEAREST { end } else { NEAREST };
+            let farthest = 1.0 - end;
+            let farthest = if farthest > f32::MIN_POSITIVE {
+                farthest
+            } else {
+                f32::MIN_POSITIVE
+            };
+            let more = opacity - end;
+            let inverse = more / (more + nearest) * ((farthest + nearest) / farthest);
+            let along = if rises || opacity < end {
+                before
+            } else {
+                STEPS * (1.0 + inverse)
+            };
+            let last = if rises { STEPS } else { 2.0 * STEPS } - 1.0;
+            let node = if along < last { along } else { last };
+            let node = node as i32;
+            let far = along - node as f32;
+            let far = if far < 1.0 { far } else { 1.0 };
+            let first = (rows[i] as i32).clamp(1, ROWS as i32 - 3) - 1;
+            let weights = cubic_weights(rows[i] - first as f32);
+            (places.first[i], places.node[i]) = (first as u32, node as u32);
+            for row in 0..4 {
+                places.weights[row][0][i] = weights[row] * (1.0 - far);
+                places.weights[row][1][i] = weights[row] * far;
+            }
+        }
+        places
     }
+}
+
+/// Transmittance and path radiance of R rays, by lane.
+struct RayOptics<const N: usize, const R: usize> {
+    transmittance: [Spectrum<R>; N],
+    path_radiance: [Spectrum<R>; N],
+}
+
+/// Positions of R rays in the table of a side.
+struct Places<const R: usize> {
+    /// First of four rows.
+    first: [u32; R],
+    /// The nearer of two nodes.
+    node: [u32; R],
+    /// Weights of the rows at the nearer and the farther node.
+    weights: [[Spectrum<R>; 2]; 4],
+}
+
+/// Four rows of a side from the index `first` on.
+struct Rows<'t, const N: usize> {
+    side: &'t Side<N>,
+    first: usize,
+    nodes: [&'t [Node<N>]; 4],
+}
+
+/// `c^m cos(m azimuth)` of each ray for each mode `m`, where `c` is the cosine of the elevation and azimuths are from the
+/// horizontal unit vector towards the sun.
+#[inline(always)]
+fn azimuth_factors<const R: usize>(towards_sun: DVec3, directions: &[DVec3]) -> [Values; R] {
+    let mut factors = [Values::ZERO; R];
+    for (Values(factors), direction) in factors.iter_mut().zip(directions) {
+        let across = direction.dot(towards_sun) as f32;
+        let square = (direction.x * direction.x + direction.z * direction.z) as f32;
+        (factors[0], factors[1]) = (1.0, across);
+        for m in 2..DEGREES {
+            factors[m] = 2.0 * across * factors[m - 1] - square * factors[m - 2];
+        }
+    }
+    factors
 }
 
 /// Mean over lanes of several rays.
 #[inline(always)]
-fn mean_of<const N: usize>(lanes: &[PerRay; N]) -> PerRay {
-    let sum = lanes.iter().fold(PerRay::ZERO, |sum, lane| sum + *lane);
-    sum * (1.0 / N as f32)
-}
-
-/// Singly scattered sunlight by a layer per unit of irradiance and of opacity.
-#[inline]
-fn sunlit<const N: usize>(
-    layer: &MergedLayer<N>,
-    cos_sun: f64,
-    place: &Place,
-    rows: &[&[Node<N>]; 4],
-) -> Spectrum<N> {
-    let mut logarithms = [Spectrum::ZERO; STREAMS];
-    for (row, [near, far]) in rows.iter().zip(place.weights) {
-        let (from, to) = (&row[place.node].sunlit, &row[place.node + 1].sunlit);
-        for (k, sum) in logarithms.iter_mut().enumerate() {
-            *sum = sum.scale_acc(from[k], near).scale_acc(to[k], far);
-        }
-    }
-    let streams = layer.streams_towards_eye(cos_sun);
+fn mean_of<const N: usize, const R: usize>(lanes: &[Spectrum<R>; N]) -> Spectrum<R> {
     let mut sum = Spectrum::ZERO;
-    for (stream, logarithm) in streams.into_iter().zip(logarithms) {
-        sum = sum.mul_acc(stream, logarithm.exp());
+    for lane in lanes {
+        sum += *lane;
     }
-    // Shares of the streams can be negative.
-    sum.max_scalar(0.0)
+    sum * (1.0 / N as f32)
 }
 
 /// All rising or all descending rays.
@@ -424,177 +509,118 @@ struct Side<const N: usize> {
     sign: f64,
     /// Vertical optical depth to space or to the ground.
     depth: Spectrum<N>,
-    is_grey: bool,
-    /// Absolute sine of the elevation up to which the spacing of rows is even; beyond, it becomes partly logarithmic.
-    even_to: f64,
+    spacing: Spacing,
     /// Absolute sine of the elevation of each row; nearly 0 for the first.
     sin_elevations: Vec<f64>,
     rows: Vec<OnceLock<Vec<Node<N>>>>,
-    /// `1 / ln(1 + 1 / even_to)`.
+}
+
+/// Spacing of the rows of a side: even up to an absolute sine of the elevation, beyond it partly logarithmic.
+#[derive(Clone, Copy, Debug, Default)]
+struct Spacing {
+    /// One over that sine.
+    per_sine: f64,
+    /// `1 / ln(1 + per_sine)`.
     per_logarithm: f32,
 }
 
+/// Real indices of the rows of rays with these absolute sines of the elevation.
+#[inline(always)]
+fn rows_of<const R: usize>(sines: &[f64; R], spacing: &[Spacing; R]) -> Spectrum<R> {
+    let mut logarithms = Spectrum::<R>::ZERO;
+    for i in 0..R {
+        logarithms[i] = (1.0 + sines[i] * spacing[i].per_sine) as f32;
+    }
+    let logarithms = logarithms.ln();
+    let mut rows = Spectrum::ZERO;
+    for i in 0..R {
+        let logarithm = logarithms[i] * spacing[i].per_logarithm;
+        let even = (1.0 - LOGARITHMIC) * sines[i] as f32;
+        rows[i] = (ROWS - 1) as f32 * (LOGARITHMIC * logarithm + even);
+    }
+    rows
+}
+
 /// Path radiance per unit of opacity along rays of one elevation to one distance.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 struct Node<const N: usize> {
-    /// Multiple scattering, mean over azimuth.
-    mean: Spectrum<N>,
-    /// Multiple scattering, azimuth mode `m` divided by the `m`-th power of the cosine of the elevation; 0 for mode 0. Modes are
-    /// the inner index, so that they are summed as one vector.
-    modes: [[f32; DEGREES]; N],
-    /// Logarithm of singly scattered sunlight by stream.
-    sunlit: [Spectrum<N>; STREAMS],
+    /// Multiple scattering, azimuth mode `m` divided by the `m`-th power of the cosine of the elevation.
+    modes: [Values; N],
+    /// Logarithm of singly scattered sunlight by stream, in the first places.
+    sunlit: [Values; N],
 }
 
-/// Position of a ray in the table of a side.
-struct Place {
-    row: usize,
-    node: usize,
-    /// Weights of four rows at the nearer and the farther node.
-    weights: [[f32; 2]; 4],
+/// Values that are interpolated as one vector.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(32))]
+struct Values([f32; DEGREES]);
+
+const _: () = assert!(STREAMS <= DEGREES);
+
+impl<const N: usize> Node<N> {
+    const ZERO: &Self = &Self {
+        modes: [Values::ZERO; N],
+        sunlit: [Values::ZERO; N],
+    };
 }
 
-impl Place {
-    /// Interpolates a value of the table.
+impl Values {
+    const ZERO: Self = Self([0.0; DEGREES]);
+
     #[inline(always)]
-    fn interpolate<const N: usize>(
-        &self,
-        rows: &[&[Node<N>]; 4],
-        value: impl Fn(&Node<N>) -> Spectrum<N>,
-    ) -> Spectrum<N> {
-        let mut sum = Spectrum::ZERO;
-        for (row, [near, far]) in rows.iter().zip(self.weights) {
-            sum = sum
-                .scale_acc(value(&row[self.node]), near)
-                .scale_acc(value(&row[self.node + 1]), far);
+    fn add(&mut self, from: &Self, to: &Self, [near, far]: [f32; 2]) {
+        for k in 0..DEGREES {
+            self.0[k] += near * from.0[k] + far * to.0[k];
         }
-        sum
     }
 
-    /// Sum of the azimuth modes above 0 in a direction.
+    /// Sum of products, added in pairs for vector instructions.
     #[inline(always)]
-    fn azimuth_modes<const N: usize>(
-        &self,
-        rows: &[&[Node<N>]; 4],
-        sun: &SunSide<N>,
-        direction: DVec3,
-    ) -> Spectrum<N> {
-        let mut sums = [[0.0f32; DEGREES]; N];
-        for (row, [near, far]) in rows.iter().zip(self.weights) {
-            let (from, to) = (&row[self.node].modes, &row[self.node + 1].modes);
-            for lane in 0..N {
-                for m in 0..DEGREES {
-                    sums[lane][m] += near * from[lane][m] + far * to[lane][m];
-                }
-            }
+    fn dot(&self, other: &Self) -> f32 {
+        const HALF: usize = DEGREES / 2;
+        let mut pairs = [0.0; HALF];
+        for k in 0..HALF {
+            pairs[k] = self.0[k] * other.0[k] + self.0[k + HALF] * other.0[k + HALF];
         }
-        // c^m cos(m azimuth), where c is the cosine of the elevation.
-        let across = direction.dot(sun.horizontal) as f32;
-        let square = (direction.x * direction.x + direction.z * direction.z) as f32;
-        let mut factors = [0.0, across, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
-        let mut before = 1.0;
-        for m in 2..DEGREES {
-            let next = 2.0 * across * factors[m - 1] - square * before;
-            (before, factors[m]) = (factors[m - 1], next);
+        let mut sum = 0.0;
+        for k in 0..HALF / 2 {
+            sum += pairs[k] + pairs[k + HALF / 2];
         }
-        Spectrum::from_fn(|lane| {
-            let mut sum = 0.0;
-            for m in 0..DEGREES {
-                sum += sums[lane][m] * factors[m];
-            }
-            sum
-        })
+        sum
     }
 }
 
 impl<const N: usize> Side<N> {
-    fn new(sign: f64, depth: Spectrum<N>, is_grey: bool) -> Self {
+    fn new(sign: f64, depth: Spectrum<N>) -> Self {
         let even_to = f64::from(0.1 * mean(depth)).clamp(1e-6, 0.05);
-        let mut side = Self {
+        let spacing = Spacing {
+            per_sine: 1.0 / even_to,
+            per_logarithm: (1.0 / (1.0 / even_to).ln_1p()) as f32,
+        };
+        Self {
             sign,
             depth,
-            is_grey,
-            even_to,
-            per_logarithm: (1.0 / (1.0 / even_to).ln_1p()) as f32,
-            sin_elevations: Vec::new(),
+            spacing,
+            sin_elevations: (0..ROWS).map(|row| spacing.sine_at(row)).collect(),
             rows: std::iter::repeat_with(OnceLock::new).take(ROWS).collect(),
-        };
-        side.sin_elevations = (0..ROWS).map(|row| side.sin_elevation_at(row)).collect();
-        side
+        }
     }
+}
 
-    /// Real index of the row of an absolute sine of the elevation.
-    #[inline]
-    fn row_of(&self, sin_elevation: f64) -> f32 {
-        let logarithm = (1.0 + sin_elevation / self.even_to) as f32;
-        let logarithm = logarithm.ln() * self.per_logarithm;
-        (ROWS - 1) as f32 * (LOGARITHMIC * logarithm + (1.0 - LOGARITHMIC) * sin_elevation as f32)
-    }
-
-    /// Inverse of [`Side::row_of`], by bisection.
-    fn sin_elevation_at(&self, row: usize) -> f64 {
+impl Spacing {
+    /// Absolute sine of the elevation of a row: the inverse of [`rows_of`], by bisection.
+    fn sine_at(self, row: usize) -> f64 {
         let row = if row == 0 { 1e-3 } else { row as f32 };
         let (mut low, mut high) = (0.0, 1.0);
         for _ in 0..60 {
             let middle = 0.5 * (low + high);
-            if self.row_of(middle) < row {
+            if rows_of(&[middle], &[self])[0] < row {
                 low = middle;
             } else {
                 high = middle;
             }
         }
         high
-    }
-
-    /// Opacity to space or to the ground at an absolute sine of the elevation.
-    #[inline]
-    fn end(&self, sin_elevation: f64) -> f32 {
-        let per_sine = 1.0 / sin_elevation.max(1e-20);
-        let depth = self
-            .depth
-            .map(|depth| (f64::from(depth) * per_sine).min(OPAQUE) as f32);
-        mean(opacity(depth, self.is_grey))
-    }
-
-    /// Position of a ray with this absolute sine of the elevation and this opacity.
-    #[inline]
-    fn place(&self, sin_elevation: f64, opacity: f32) -> Place {
-        self.place_at(self.end(sin_elevation), self.row_of(sin_elevation), opacity)
-    }
-
-    /// [`Self::place`] of a ray with the opacity `end` to space or to the ground, at the real index `row` of a row.
-    #[inline(always)]
-    fn place_at(&self, end: f32, row: f32, opacity: f32) -> Place {
-        let even = |part: f32| 1.0 - (1.0 - part).max(0.0).sqrt().sqrt();
-        let steps = (NODES - 1) as f32;
-        let along = if opacity < end || self.sign > 0.0 {
-            steps * even(opacity / end)
-        } else {
-            let (nearest, farthest) = (end.max(NEAREST), 1.0 - end);
-            // Evenly spaced in 1 / x.
-            let inverse = |more: f32| more / (more + nearest);
-            steps * (1.0 + inverse(opacity - end) / inverse(farthest.max(f32::MIN_POSITIVE)))
-        };
-        let last = if self.sign > 0.0 { 1.0 } else { 2.0 } * steps - 1.0;
-        let node = along.min(last).floor();
-        let far = (along - node).clamp(0.0, 1.0);
-        let first = (row as usize).clamp(1, ROWS - 3) - 1;
-        let weights = cubic_weights(row - first as f32);
-        Place {
-            row: first,
-            node: node as usize,
-            weights: weights.map(|w| [w * (1.0 - far), w * far]),
-        }
-    }
-}
-
-/// `1 - e^-depth`, accurate for small depths.
-#[inline]
-fn opacity<const N: usize>(depth: Spectrum<N>, is_grey: bool) -> Spectrum<N> {
-    let of = |depth: f32| depth * Spectrum([depth]).mean_transmittance()[0];
-    match is_grey {
-        true => Spectrum::splat(of(depth[0])),
-        false => depth * depth.mean_transmittance(),
     }
 }
 

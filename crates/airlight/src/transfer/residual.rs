@@ -211,6 +211,35 @@ impl<const N: usize> Residual<N> {
     }
 }
 
+impl<const N: usize> Residual<N> {
+    /// [`Self::shares`] at several cosines: by stream and lane.
+    #[inline(always)]
+    pub fn shares_along<const R: usize>(&self, nu: &[f64; R]) -> [[Spectrum<R>; N]; STREAMS] {
+        let mut below = [0; R];
+        let mut fractions = [0.0; R];
+        for i in 0..R {
+            let half_sine = (0.5 * (1.0 - nu[i])).clamp(0.0, 1.0).sqrt();
+            let position = coordinate(half_sine).clamp(0.0, 1.0) * INTERVALS as f64;
+            below[i] = (position as i32).min(INTERVALS as i32 - 1);
+            fractions[i] = (position - f64::from(below[i])) as f32;
+        }
+        let mut shares = [[Spectrum::ZERO; N]; STREAMS];
+        for i in 0..R {
+            let at = below[i] as usize;
+            let (a, b) = (&self.shares[at], &self.shares[at + 1]);
+            for lane in 0..N {
+                let (near, far) = (1.0 - fractions[i], fractions[i]);
+                let half = a[0][lane] * near + b[0][lane] * far;
+                let all = a[1][lane] * near + b[1][lane] * far;
+                shares[0][lane][i] = 1.0 - half - all;
+                shares[1][lane][i] = half;
+                shares[2][lane][i] = all;
+            }
+        }
+        shares
+    }
+}
+
 /// Sums of series of Legendre polynomials at several cosines.
 #[inline(always)]
 fn sums<const N: usize>(
