@@ -36,7 +36,8 @@ mod topics;
 
 use airlight::scene::Scene;
 use args::{Cli, Command};
-use clap::error::{ContextKind, ErrorKind};
+use clap::builder::StyledStr;
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{ArgMatches, FromArgMatches};
 use error::CliError;
 use std::{ffi::OsString, io::Write, process::ExitCode};
@@ -60,13 +61,19 @@ fn main() -> ExitCode {
     }
 }
 
-/// Parses the words of the command line, or exits. The command `help` of clap does not suggest the command that an unknown one
+/// Parses the words of the command line, or exits. An error of a missing argument shows an example. The command `help` of clap does not suggest the command that an unknown one
 /// resembles; the unknown command by itself does.
 fn parse_words(command: &mut clap::Command, mut words: Vec<OsString>) -> ArgMatches {
-    let error = match command.try_get_matches_from_mut(&words) {
+    let mut error = match command.try_get_matches_from_mut(&words) {
         Ok(matches) => return matches,
         Err(error) => error,
     };
+    if error.kind() == ErrorKind::MissingRequiredArgument
+        && let Some(example) = short_help::example(command, &words)
+    {
+        let tip = vec![StyledStr::from(format!("for example: {example}"))];
+        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(tip));
+    }
     let help = words.iter().position(|word| word == "help");
     if error.kind() == ErrorKind::InvalidSubcommand
         && error.get(ContextKind::SuggestedSubcommand).is_none()

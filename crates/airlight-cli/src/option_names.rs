@@ -1,15 +1,19 @@
 //! Names of options in messages of the library, which knows settings by the names of scene files.
 
 use crate::error::flag;
+use airlight::UnknownName;
 use clap::{ArgMatches, Command};
+use std::path::Path;
 use std::sync::OnceLock;
 
 /// Long options of the command that runs.
 static OPTIONS: OnceLock<Vec<String>> = OnceLock::new();
+/// Names of its options and arguments, each with a value given for it.
+static GIVEN: OnceLock<Vec<(String, String)>> = OnceLock::new();
 
 /// Remembers the options of the command that was given.
 pub fn install(command: &Command, matches: &ArgMatches) {
-    let mut options = Vec::new();
+    let (mut options, mut given) = (Vec::new(), Vec::new());
     let (mut command, mut matches) = (command, matches);
     loop {
         options.extend(
@@ -18,6 +22,17 @@ pub fn install(command: &Command, matches: &ArgMatches) {
                 .filter_map(|arg| arg.get_long())
                 .map(str::to_owned),
         );
+        for argument in command.get_arguments() {
+            let name = match (argument.get_long(), argument.get_value_names()) {
+                (Some(long), _) => format!("--{long}"),
+                (None, Some([name, ..])) => name.to_string(),
+                _ => continue,
+            };
+            let values = matches.try_get_raw(argument.get_id().as_str());
+            let values = values.ok().flatten().into_iter().flatten();
+            let words = values.map(|value| value.to_string_lossy().into_owned());
+            given.extend(words.map(|word| (name.clone(), word)));
+        }
         let Some((name, inner)) = matches.subcommand() else {
             break;
         };
@@ -28,11 +43,59 @@ pub fn install(command: &Command, matches: &ArgMatches) {
     }
     // Only the first command of the process has options.
     let _ = OPTIONS.set(options);
+    let _ = GIVEN.set(given);
 }
 
-/// A message in which settings are named as options of the command.
+/// A message in which settings are named as options of the command, and a file that cannot be read with its option.
 pub fn in_message(message: &str) -> String {
-    named(message, OPTIONS.get().map_or(&[], Vec::as_slice))
+    let message = named(message, OPTIONS.get().map_or(&[], Vec::as_slice));
+    of_file(&message, GIVEN.get().map_or(&[], Vec::as_slice))
+}
+
+/// A message that a file cannot be read, with the option that names the file, and with a file that is there if there is none of
+/// that name.
+fn of_file(message: &str, given: &[(String, String)]) -> String {
+    let Some((file, reason)) = message
+        .strip_prefix("cannot read `")
+        .and_then(|rest| rest.split_once('`'))
+    else {
+        return message.to_owned();
+    };
+    let option = given.iter().find(|(_, value)| value == file);
+    let option = option.map_or(String::new(), |(name, _)| format!("{name}: "));
+    let advice = match reason.contains("os error 2)") {
+        true => {
+            similar_file(Path::new(file)).map_or(String::new(), |name| format!("; try `{name}`"))
+        }
+        false => String::new(),
+    };
+    format!("{option}{message}{advice}")
+}
+
+/// The file of the most similar name in the same folder; of those with the same ending, any where there is only one.
+fn similar_file(missing: &Path) -> Option<String> {
+    let name = missing.file_name()?.to_str()?;
+    let folder = missing.parent()?;
+    let listed = match folder.as_os_str().is_empty() {
+        true => Path::new("."),
+        false => folder,
+    };
+    let files = std::fs::read_dir(listed).ok()?.flatten();
+    let mut names: Vec<String> = files
+        .filter_map(|file| file.file_name().into_string().ok())
+        .collect();
+    names.sort();
+    let nearest = UnknownName::new("a file", name, names.iter().map(String::as_str)).nearest;
+    let ending = missing.extension()?;
+    let mut alike = names
+        .iter()
+        .filter(|name| Path::new(name).extension() == Some(ending));
+    let only = match (alike.next(), alike.next()) {
+        (Some(only), None) => Some(only.clone()),
+        _ => None,
+    };
+    let found = folder.join(nearest.or(only)?);
+    Some(found.display().to_string())
 }
 
 /// Names settings in a message as options: `key = value` of scene files becomes `--key value`, `some-option` becomes

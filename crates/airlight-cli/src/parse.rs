@@ -5,6 +5,8 @@ pub mod words;
 use airlight::Named;
 use airlight::scene::Exposure;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use std::fmt::Display;
+use std::ops::RangeInclusive;
 use std::str::FromStr;
 
 /// A place on the Earth.
@@ -104,6 +106,35 @@ pub fn altitude_m(text: &str) -> Result<f64, String> {
     within(text, "a number of metres from -12000 to 1e9", |v| {
         (-12e3..=1e9).contains(&v)
     })
+}
+
+/// The quality of a JPEG file.
+pub fn quality(text: &str) -> Result<u8, String> {
+    whole(text, 1..=100, 92)
+}
+
+/// A number of Monte Carlo paths for a pixel.
+pub fn paths(text: &str) -> Result<u64, String> {
+    whole(text, 128..=1_000_000_000, 256)
+}
+
+/// A number of threads.
+pub fn threads(text: &str) -> Result<u32, String> {
+    whole(text, 1..=1024, 4)
+}
+
+/// A whole number in a range, with an example.
+fn whole<T>(text: &str, range: RangeInclusive<T>, such_as: T) -> Result<T, String>
+where
+    T: FromStr + PartialOrd + Display,
+{
+    let number = text.trim().parse().ok();
+    number
+        .filter(|number| range.contains(number))
+        .ok_or_else(|| {
+            let (from, to) = (range.start(), range.end());
+            format!("expected a whole number from {from} to {to}, such as {such_as}")
+        })
 }
 
 /// A distance or a height in metres.

@@ -56,8 +56,9 @@ pub fn check_writable(path: &Path) -> Result<(), CliError> {
 pub fn check_png(path: &Path) -> Result<(), CliError> {
     if path.extension().is_none_or(|ending| ending != "png") {
         return Err(CliError::usage(format!(
-            "--output: expected a name that ends in .png, got `{}`",
-            path.display()
+            "--output: expected a name that ends in .png, got `{}`; try `{}`",
+            path.display(),
+            path.with_extension("png").display()
         )));
     }
     check_writable(path)

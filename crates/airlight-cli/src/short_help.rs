@@ -3,6 +3,7 @@
 
 use crate::args::Cli;
 use clap::{Arg, Command, CommandFactory};
+use std::ffi::OsString;
 
 /// Options of a scene that most pictures need.
 const SCENE: [&str; 11] = [
@@ -103,6 +104,22 @@ fn first_clause(arg: Arg) -> Arg {
     let short = help[..end.unwrap_or(help.len())].to_owned();
     let long = arg.get_long_help().map_or(help, ToString::to_string);
     arg.help(short).long_help(long)
+}
+
+/// The first example of the command that the words name, on one line.
+pub fn example(command: &Command, words: &[OsString]) -> Option<String> {
+    let mut command = command;
+    for word in words {
+        let named = word.to_str().and_then(|word| command.find_subcommand(word));
+        command = named.unwrap_or(command);
+    }
+    let help = command.get_after_long_help().or(command.get_after_help())?;
+    let help = help.to_string().replace("\\\n", " ");
+    let lines = help.lines().map(str::trim);
+    let example = lines
+        .into_iter()
+        .find(|line| line.starts_with("airlight "))?;
+    Some(example.split_whitespace().collect::<Vec<_>>().join(" "))
 }
 
 #[cfg(test)]

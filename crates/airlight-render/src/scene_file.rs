@@ -50,7 +50,7 @@ pub fn read_text(path: &Path) -> Result<String, RenderError> {
     })?;
     String::from_utf8(bytes).map_err(|error| {
         RenderError::setting(format!(
-            "`{}`: expected text in UTF-8, got an invalid byte at position {}",
+            "`{}`: expected text in UTF-8, got an invalid byte at position {}; try a file in TOML",
             path.display(),
             error.utf8_error().valid_up_to()
         ))

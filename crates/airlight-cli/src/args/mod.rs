@@ -58,7 +58,7 @@ pub struct Cli {
     #[command(subcommand)]
     pub command: Command,
     /// Number of threads [default: one for each processor]
-    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
+    #[arg(long, global = true, value_name = "N", value_parser = crate::parse::threads)]
     pub threads: Option<u32>,
 }
 

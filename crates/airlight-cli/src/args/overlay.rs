@@ -28,11 +28,11 @@ pub struct OverlayArgs {
     /// File to write: .png, .jpg, .exr or .hdr; a folder, or 'out/*.png'
     #[arg(short, long, value_name = "FILE", required_unless_present = "scene")]
     pub output: Option<String>,
-    /// Also write transmittance, path radiance and distance as layers (.exr)
+    /// Also write transmittance, path radiance and depth as layers (.exr)
     #[arg(long)]
     pub layers: bool,
     /// Quality of .jpg, 1 to 100 [default: 92]
-    #[arg(long, value_name = "Q", value_parser = clap::value_parser!(u8).range(1..=100))]
+    #[arg(long, value_name = "Q", value_parser = parse::quality)]
     pub quality: Option<u8>,
     /// Scene file, which the other options override
     #[arg(long, value_name = "FILE.toml")]

@@ -13,7 +13,7 @@ pub struct OverlaySolverArgs {
     #[arg(long, value_name = "SOLVER", value_parser = parse::named::<OverlaySolver>())]
     pub solver: Option<OverlaySolver>,
     /// Monte Carlo paths for each pixel [default: 256]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(128..=1_000_000_000))]
+    #[arg(long, value_name = "N", value_parser = parse::paths)]
     pub paths: Option<u64>,
     /// With --solver monte-carlo: write the standard error of each pixel's path radiance to NAME.noise.exr
     #[arg(long)]

@@ -111,7 +111,7 @@ pub struct EncodingArgs {
     #[arg(long, value_name = "BITS", value_parser = PossibleValuesParser::new(["8", "16"]).map(|bits| bits.parse::<u8>().unwrap_or(8)))]
     pub bits: Option<u8>,
     /// Quality of .jpg, 1 to 100 [default: 92]
-    #[arg(long, value_name = "Q", value_parser = clap::value_parser!(u8).range(1..=100))]
+    #[arg(long, value_name = "Q", value_parser = parse::quality)]
     pub quality: Option<u8>,
 }
 

@@ -33,8 +33,9 @@ pub fn run(args: &PlotArgs) -> Result<(), CliError> {
         Some("png") => true,
         _ => {
             return Err(CliError::usage(format!(
-                "--output: expected a name that ends in .svg or .png, got `{}`",
-                output.display()
+                "--output: expected a name that ends in .svg or .png, got `{}`; try `{}`",
+                output.display(),
+                output.with_extension("svg").display()
             )));
         }
     };

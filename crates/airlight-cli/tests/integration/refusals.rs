@@ -247,9 +247,15 @@ fn bad_use_of_sky() {
             "as wide as high",
         ),
         ("sky --sun-elevation 30 --scale 0 -o a.exr", "above 0"),
-        ("sky --sun-elevation 30 --quality 0 -o a.jpg", "1..=100"),
+        (
+            "sky --sun-elevation 30 --quality 0 -o a.jpg",
+            "from 1 to 100",
+        ),
         ("sky --sun-elevation 30 --bits 12 -o a.png", "16"),
-        ("sky --sun-elevation 30 --threads 0 -o a.png", "1..=1024"),
+        (
+            "sky --sun-elevation 30 --threads 0 -o a.png",
+            "from 1 to 1024",
+        ),
         ("sky --sun-elevation 30 --altitude-m inf -o a.png", "metres"),
         (
             "sky --sun-elevation 30 --until +1h --every 10m -o a.png",
@@ -391,4 +397,56 @@ fn help_and_lists_name_what_there_is() {
     assert!(list.contains("maritime-clean") && list.contains("biomass-savanna"));
     assert!(succeed(&folder, "atmospheres desert").contains("humidity  0.8"));
     assert!(succeed(&folder, "atmospheres mars").contains("optical depth"));
+}
+
+/// Errors of arguments show what would work, and errors of files the option that names them.
+#[test]
+fn errors_name_the_option_and_what_works() {
+    let folder = Folder::new();
+    for name in ["left.png", "depth.npy", "objects.toml"] {
+        std::fs::write(folder.file(name), "").unwrap();
+    }
+    for (words, code, part) in [
+        ("fog", 2, "for example: airlight fog photo.png --depth"),
+        ("compare orders", 2, "for example: airlight compare orders"),
+        (
+            "sky --sun-elevation 9 --quality 200 -o a.jpg",
+            2,
+            "expected a whole number from 1 to 100, such as 92",
+        ),
+        (
+            "sky --sun-elevation 9 --threads 0 -o a.jpg",
+            2,
+            "expected a whole number from 1 to 1024, such as 4",
+        ),
+        (
+            "compare orders preetham --sun-elevation 9 -o a.exr",
+            2,
+            "got `a.exr`; try `a.png`",
+        ),
+        ("plot phase -o a.txt", 2, "got `a.txt`; try `a.svg`"),
+        (
+            "sky --sun-elevation 9 --objects object.toml -o a.png",
+            1,
+            "--objects: cannot read `object.toml`",
+        ),
+        (
+            "sky --sun-elevation 9 --objects object.toml -o a.png",
+            1,
+            "; try `objects.toml`",
+        ),
+        (
+            "fog letf.png --depth depth.npy --visibility-m 50 -o a.png",
+            1,
+            "COLOUR: cannot read `letf.png`",
+        ),
+        (
+            "fog left.png --depth depth.npy --visibility-m 50 --each visibility=5,10 -o a.png",
+            2,
+            "--each visibility: expected",
+        ),
+        ("grid left.png -o a.png", 2, ""),
+    ] {
+        refused(&folder, words, code, part);
+    }
 }

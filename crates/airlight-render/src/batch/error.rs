@@ -102,8 +102,10 @@ pub enum BatchError {
         output: PathBuf,
     },
     /// A variation that contradicts the settings or another variation, or changes nothing.
-    #[error("vary {name}: expected {expected}, got {got}; try {advice}")]
+    #[error("{option} {name}: expected {expected}, got {got}; try {advice}")]
     Variation {
+        /// How it is given: `vary` or `each`.
+        option: &'static str,
         /// The varied setting.
         name: String,
         /// What is valid.

@@ -98,8 +98,8 @@ impl BatchPlan {
                 most: MOST_VARIANTS,
             });
         }
-        let drawn = settings.vary.iter();
-        let listed = settings.each.iter().map(Each::variation);
+        let drawn = settings.vary.iter().map(|drawn| ("vary", drawn));
+        let listed = settings.each.iter().map(|each| ("each", each.variation()));
         if let Some(interval_s) = settings.patch_interval_s {
             check_patch_interval(&scene, interval_s)?;
         }
@@ -310,9 +310,15 @@ fn check_patch_interval(scene: &OverlayScene, interval_s: f64) -> Result<(), Ren
 }
 
 /// Refuses variations that contradict each other or the description or have no effect, and invalid choices.
-fn check_variation(scene: &OverlayScene, vary: &[&Variation]) -> Result<(), BatchError> {
+fn check_variation(
+    scene: &OverlayScene,
+    given: &[(&'static str, &Variation)],
+) -> Result<(), BatchError> {
+    let vary = || given.iter().map(|(_, variation)| *variation);
     let refuse = |name: &str, expected: &str, got: String, advice: &str| {
+        let option = given.iter().rev().find(|(_, its)| its.name() == name);
         Err(BatchError::Variation {
+            option: option.map_or("vary", |(option, _)| option),
             name: name.to_owned(),
             expected: expected.to_owned(),
             got,
@@ -320,7 +326,7 @@ fn check_variation(scene: &OverlayScene, vary: &[&Variation]) -> Result<(), Batc
         })
     };
     let mut names = HashSet::new();
-    for variation in vary {
+    for variation in vary() {
         let name = variation.name();
         if !names.insert(name) {
             return refuse(
@@ -340,9 +346,7 @@ fn check_variation(scene: &OverlayScene, vary: &[&Variation]) -> Result<(), Batc
         );
     }
     let own = [scene.fog_profile().name()];
-    let profiles = vary
-        .iter()
-        .find(|variation| variation.name() == "fog-profile");
+    let profiles = vary().find(|variation| variation.name() == "fog-profile");
     let profiles = profiles
         .and_then(|variation| variation.choices())
         .unwrap_or(&own);
@@ -374,10 +378,10 @@ fn check_variation(scene: &OverlayScene, vary: &[&Variation]) -> Result<(), Batc
     }
     // Check each value of a list and both ends of a range with the first values of the other settings.
     let mut base = scene.clone();
-    for variation in vary {
+    for variation in vary() {
         variation.set(&mut base, 0.0);
     }
-    for variation in vary {
+    for variation in vary() {
         for scene in variation.extremes(&base) {
             scene.check()?;
         }
