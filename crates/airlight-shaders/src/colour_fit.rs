@@ -22,6 +22,10 @@ const ABOVE: [f64; 6] = [0.005, 0.03, 0.1, 0.3, 0.6, 0.95];
 const BELOW: [f64; 2] = [-0.02, -0.2];
 /// Powers of the wavelength by which light of further orders differs from that scattered once.
 const TILTS: [f64; 4] = [-0.8, -0.4, 0.0, 0.4];
+/// Least ratio of the radiances at the first and the last wavelength of ground that sunlight lights more than the sky.
+const LEAST_BLUE: f32 = 0.2;
+/// Least light of a direction, relative to the brightest.
+const FAINTEST: f32 = 0.01;
 /// Weight of light whose spectrum is the sun's, relative to that of one direction.
 const SUNLIGHT: f64 = 10.0;
 
@@ -62,20 +66,25 @@ impl ColourFit {
         };
         let solar = [few.solar_irradiance(), many.solar_irradiance()];
         add([&solar[0], &solar[1]], 0.0, SUNLIGHT);
-        for direction in directions(view) {
-            let light = [&few, &many].map(|view| view.along(direction, None));
+        let rays: Vec<_> = directions(view)
+            .map(|direction| [&few, &many].map(|view| view.along(direction, None)))
+            .collect();
+        let brightest = rays
+            .iter()
+            .map(|[few, _]| few.single[1])
+            .fold(0.0, f32::max);
+        for light in rays {
+            // Light out of the planet's shadow is too faint to matter, and its colour extreme.
+            if light[0].single[1] < FAINTEST * brightest {
+                continue;
+            }
             for tilt in TILTS {
                 add([&light[0].single, &light[1].single], tilt, 1.0);
             }
-            if light[0].meets_ground {
-                // Under a low sun the ground gets its light from the sky.
-                let share = f64::from(light[0].ground[1] / light[0].single[1]);
-                let weight = if share.is_finite() {
-                    share.min(1.0).powi(2)
-                } else {
-                    1.0
-                };
-                add([&light[0].ground, &light[1].ground], 0.0, weight);
+            // Under a low sun the ground gets its light from the sky.
+            let ground = &light[0].ground;
+            if light[0].meets_ground && ground[0] > LEAST_BLUE * ground[3] {
+                add([&light[0].ground, &light[1].ground], 0.0, 1.0);
                 let all = light.map(|light| light.radiance());
                 add([&all[0], &all[1]], 0.0, 1.0);
             }

@@ -207,7 +207,7 @@ mod guards {
                 difference.rms(),
                 difference.worst
             );
-            assert!(difference.rms() < 0.25 && difference.worst < 0.6);
+            assert!(difference.rms() < 0.5 && difference.worst < 1.5);
         }
     }
 

@@ -7,7 +7,7 @@
 /// Columns of a sky table, from the azimuth of the sun to the opposite one.
 const SKY_AZIMUTHS: f32 = 64.0;
 /// Rows of a sky table from the horizon to the highest elevation; they come first.
-const SKY_ROWS_ABOVE: f32 = 64.0;
+const SKY_ROWS_ABOVE: f32 = 128.0;
 /// Rows of a sky table from the horizon to the nadir.
 const SKY_ROWS_BELOW: f32 = 32.0;
 /// Columns of an aerial-perspective table.

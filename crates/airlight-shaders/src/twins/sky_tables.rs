@@ -10,7 +10,7 @@ use std::f32::consts::{FRAC_1_PI, FRAC_2_PI, FRAC_PI_2, PI};
 /// Columns of a sky table, from the azimuth of the sun to the opposite one.
 pub const SKY_AZIMUTHS: f32 = 64.0;
 /// Rows of a sky table from the horizon to the highest elevation; they come first.
-pub const SKY_ROWS_ABOVE: f32 = 64.0;
+pub const SKY_ROWS_ABOVE: f32 = 128.0;
 /// Rows of a sky table from the horizon to the nadir.
 pub const SKY_ROWS_BELOW: f32 = 32.0;
 /// Columns of an aerial-perspective table.

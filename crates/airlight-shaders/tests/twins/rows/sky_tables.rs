@@ -98,7 +98,7 @@ fn elevation_of_row(view: &[f64], coordinate: f64, rows: [f64; 2]) -> f64 {
     view[6] + (end - view[6]) * ((row - first - 0.5) / (count - 1.0)).powi(power)
 }
 
-const SKY_ROWS: [f64; 2] = [64.0, 32.0];
+const SKY_ROWS: [f64; 2] = [128.0, 32.0];
 const AERIAL_ROWS: [f64; 2] = [32.0, 32.0];
 
 fn uv(view: &[f64], direction: &[f64]) -> [f64; 2] {
