@@ -1,17 +1,19 @@
 //! Horizontal exchange of light between places under different suns, for the corrections of [`super::orders`].
 //!
 //! All orders of scattering in plane-parallel air amplify light by the number of times that it is scattered. Light that differs from
-//! sun to sun is amplified less, as it spreads horizontally between scatterings: by diffusion over the length `L` of the slowest decaying
-//! vertical mode, and through the interpolation between suns. A correction that ignores this is too large, alternates and grows in
-//! thick air. With the exchange between two suns at the distance `d` over the ground, light at each is
+//! sun to sun is amplified less, as it spreads horizontally between scatterings. A correction that ignores this is too large,
+//! alternates and grows in thick air. With the exchange `E` between two suns, light at each is
 //!
 //! ```text
-//! w u + sum over the neighbours of (L + L^2 / d) min(I, I') (u / I - u' / I') = w r,
+//! w u + sum over the neighbours of E min(I, I') (u / I - u' / I') = w r,
 //! ```
 //!
-//! where `w` is the distance over which the sun stands for the others, and `I` the intensity at the same place: light that is the same
-//! fraction of it under both suns is in balance. `u` is the part of `r` that plane-parallel air amplifies. This only steers the
-//! iteration, whose result does not depend on it.
+//! where `w` is the area for which the sun stands, a ring round the place under the sun, and `I` the intensity at the same place: light
+//! that is the same fraction of it under both suns is in balance. `u` is the part of `r` that plane-parallel air amplifies. Light that
+//! spreads into a shadow, with which the iteration begins, follows the same equation with equal intensities.
+//!
+//! By diffusion over the length `L` of the slowest decaying vertical mode the exchange over the distance `d` is `L^2 / d` times the
+//! length of the border. All this only steers the iteration, whose result does not depend on it.
 
 use super::air::Air;
 use super::field::FieldGrid;
@@ -21,11 +23,15 @@ use crate::spectrum::Spectrum;
 /// Exchange between the suns of a grid.
 #[derive(Debug)]
 pub struct HorizontalExchange {
-    /// Distances for which the suns stand.
-    widths: Vec<f32>,
-    /// `L + L^2 / d` of neighbours.
+    /// Areas for which the suns stand, per length of a great circle over 2 pi.
+    areas: Vec<f32>,
+    /// Exchange between neighbours.
     exchange: Vec<f32>,
 }
+
+/// Factor of the exchange in corrections. Light between clouds and the ground spreads farther than `L`; corrections that are too small
+/// only fall more slowly.
+const CAUTION: f32 = 8.0;
 
 impl HorizontalExchange {
     /// The exchange in an atmosphere, unless light spreads by much less than the distance between suns.
@@ -34,65 +40,83 @@ impl HorizontalExchange {
         const NEGLIGIBLE: f64 = 0.1;
         let length_m = length_m(air)?;
         let radius_m = air.shell().ground_radius_m;
-        let arc = |pair: &[f64]| radius_m * (pair[0].acos() - pair[1].acos());
-        let distances: Vec<f64> = grid.sun_cosines.windows(2).map(arc).collect();
+        let zeniths: Vec<f64> = grid.sun_cosines.iter().map(|mu| mu.acos()).collect();
+        let distances: Vec<f64> = zeniths
+            .windows(2)
+            .map(|z| radius_m * (z[0] - z[1]))
+            .collect();
         let shortest = distances.iter().copied().fold(f64::INFINITY, f64::min);
         if length_m < NEGLIGIBLE * shortest {
             return None;
         }
-        let half = |k: Option<usize>| k.and_then(|k| distances.get(k)).map_or(0.0, |d| 0.5 * d);
-        let width = |k: usize| (half(k.checked_sub(1)) + half(Some(k))) as f32;
-        let exchange = |d: &f64| (length_m + length_m * length_m / d) as f32;
+        let borders: Vec<f64> = zeniths.windows(2).map(|z| 0.5 * (z[0] + z[1])).collect();
+        let area = |k: usize| {
+            let outer = k.checked_sub(1).map_or(zeniths[0], |k| borders[k]);
+            let inner = borders.get(k).unwrap_or(&zeniths[k]);
+            (radius_m * (inner.cos() - outer.cos())) as f32
+        };
+        let exchange = |(d, border): (&f64, &f64)| (length_m * length_m / d * border.sin()) as f32;
         Some(Self {
-            widths: (0..grid.sun_cosines.len()).map(width).collect(),
-            exchange: distances.iter().map(exchange).collect(),
+            areas: (0..zeniths.len()).map(area).collect(),
+            exchange: distances.iter().zip(&borders).map(exchange).collect(),
         })
+    }
+
+    /// What `light` becomes by spreading.
+    pub fn spread<const N: usize>(&self, light: &Light<N>) -> Light<N> {
+        let mut out = light.clone();
+        let even = self.areas.iter().map(|_| Spectrum::<N>::ONE);
+        let balance = Balance::new(self, 1.0, even);
+        for radius in out.moments.chunks_exact_mut(self.areas.len() * light.count) {
+            balance.solve_moments(radius, light.count);
+        }
+        balance.solve(out.ground.iter_mut());
+        out
     }
 
     /// The part of `change` that plane-parallel air amplifies, where there is `light`.
     pub fn amplified<const N: usize>(&self, light: &Light<N>, change: &Light<N>) -> Light<N> {
         let mut out = change.clone();
-        let (count, suns) = (light.count, self.widths.len());
-        let row = suns * count;
-        let rows = light.moments.chunks_exact(row);
-        for (out, light) in out.moments.chunks_exact_mut(row).zip(rows) {
-            let balance = Balance::new(self, light.chunks_exact(count).map(|point| point[0]));
-            for moment in 0..count {
-                balance.solve(out[moment..].iter_mut().step_by(count));
-            }
+        let count = light.count;
+        let radius = self.areas.len() * count;
+        let lights = light.moments.chunks_exact(radius);
+        for (out, light) in out.moments.chunks_exact_mut(radius).zip(lights) {
+            let intensities = light.chunks_exact(count).map(|point| point[0]);
+            Balance::new(self, CAUTION, intensities).solve_moments(out, count);
         }
-        Balance::new(self, light.ground.iter().copied()).solve(out.ground.iter_mut());
+        Balance::new(self, CAUTION, light.ground.iter().copied()).solve(out.ground.iter_mut());
         out
     }
 }
 
 /// Factorised equations of the exchange at one radius.
 struct Balance<const N: usize> {
-    widths: Vec<Spectrum<N>>,
+    areas: Vec<Spectrum<N>>,
     /// Exchange with the next sun over the intensity at this sun and at the next.
     to_next: Vec<[Spectrum<N>; 2]>,
     inverse_diagonal: Vec<Spectrum<N>>,
 }
 
 impl<const N: usize> Balance<N> {
-    fn new(exchange: &HorizontalExchange, intensities: impl Iterator<Item = Spectrum<N>>) -> Self {
+    /// Equations with the exchange times `factor`.
+    fn new(
+        exchange: &HorizontalExchange,
+        factor: f32,
+        intensities: impl Iterator<Item = Spectrum<N>>,
+    ) -> Self {
         let intensities: Vec<_> = intensities.map(|i| i.max_scalar(1e-30)).collect();
         let to_next: Vec<_> = intensities
             .windows(2)
             .zip(&exchange.exchange)
             .map(|(pair, exchange)| {
                 let least = Spectrum::from_fn(|lane| pair[0][lane].min(pair[1][lane]));
-                [0, 1].map(|k| least * *exchange / pair[k])
+                [0, 1].map(|k| least * (factor * exchange) / pair[k])
             })
             .collect();
-        let widths: Vec<_> = exchange
-            .widths
-            .iter()
-            .map(|w| Spectrum::splat(*w))
-            .collect();
-        let mut inverse_diagonal = Vec::<Spectrum<N>>::with_capacity(widths.len());
-        for (sun, width) in widths.iter().enumerate() {
-            let mut diagonal = *width;
+        let areas: Vec<_> = exchange.areas.iter().map(|a| Spectrum::splat(*a)).collect();
+        let mut inverse_diagonal = Vec::<Spectrum<N>>::with_capacity(areas.len());
+        for (sun, area) in areas.iter().enumerate() {
+            let mut diagonal = *area;
             if let Some([here, _]) = to_next.get(sun) {
                 diagonal += *here;
             }
@@ -103,9 +127,16 @@ impl<const N: usize> Balance<N> {
             inverse_diagonal.push(Spectrum::ONE / diagonal);
         }
         Self {
-            widths,
+            areas,
             to_next,
             inverse_diagonal,
+        }
+    }
+
+    /// Replaces moments `[sun][moment]` by the solution.
+    fn solve_moments(&self, moments: &mut [Spectrum<N>], count: usize) {
+        for moment in 0..count {
+            self.solve(moments[moment..].iter_mut().step_by(count));
         }
     }
 
@@ -113,7 +144,7 @@ impl<const N: usize> Balance<N> {
     fn solve<'v>(&self, values: impl Iterator<Item = &'v mut Spectrum<N>>) {
         let mut values: Vec<_> = values.collect();
         for sun in 0..values.len() {
-            *values[sun] *= self.widths[sun];
+            *values[sun] *= self.areas[sun];
             if sun > 0 {
                 let earlier = *values[sun - 1] * self.inverse_diagonal[sun - 1];
                 *values[sun] += earlier * self.to_next[sun - 1][0];
@@ -151,7 +182,7 @@ mod tests {
 
     fn exchange() -> HorizontalExchange {
         HorizontalExchange {
-            widths: vec![0.5, 1.0, 1.5, 1.5, 1.0, 0.5],
+            areas: vec![0.5, 1.0, 1.5, 1.5, 1.0, 0.5],
             exchange: vec![3.0, 2.0, 4.0, 2.0, 3.0],
         }
     }
@@ -185,11 +216,22 @@ mod tests {
         let change = [1.0, -0.7, 0.2, 3e-3, -1e-5, 1e-9];
         let amplified = exchange().amplified(&light(INTENSITIES), &light(change));
         let sum = |values: &mut dyn Iterator<Item = f32>| -> f32 {
-            values.zip(exchange().widths).map(|(v, w)| v * w).sum()
+            values.zip(exchange().areas).map(|(v, w)| v * w).sum()
         };
         let got = sum(&mut amplified.moments.iter().map(|v| v[0]));
         let want = sum(&mut change.into_iter());
         assert!((got / want - 1.0).abs() < 1e-5, "{got} {want}");
+    }
+
+    #[test]
+    fn light_spreads_into_a_shadow() {
+        let light = light([1.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        let spread = exchange().spread(&light);
+        assert!(
+            spread.moments.is_sorted_by(|a, b| a[0] > b[0]),
+            "{spread:?}"
+        );
+        assert!(spread.ground[SUNS - 1][0] > 0.0);
     }
 
     #[test]

@@ -41,38 +41,37 @@ impl<const N: usize> Light<N> {
         }
     }
 
-    /// Adds other light under one sun times these factors.
-    pub fn add_scaled(&mut self, other: &Self, sun: usize, factor: Spectrum<N>) {
-        let (count, suns) = (self.count, self.ground.len());
-        let points = self.moments.chunks_exact_mut(count).skip(sun).step_by(suns);
-        let others = other.moments.chunks_exact(count).skip(sun).step_by(suns);
-        for (a, b) in points.flatten().zip(others.flatten()) {
-            *a = a.mul_acc(*b, factor);
+    /// Adds other light times factors.
+    pub fn add_scaled(&mut self, other: &Self, factors: Spectrum<N>) {
+        let all = self.moments.iter_mut().chain(&mut self.ground);
+        for (a, b) in all.zip(other.moments.iter().chain(&other.ground)) {
+            *a = a.mul_acc(*b, factors);
         }
-        self.ground[sun] = self.ground[sun].mul_acc(other.ground[sun], factor);
     }
 
-    /// Intensities at all radii under one sun.
-    pub fn intensities(&self, sun: usize) -> impl Iterator<Item = Spectrum<N>> {
-        let points = self.moments.chunks_exact(self.count);
-        points.skip(sun).step_by(self.ground.len()).map(|p| p[0])
+    /// Intensities at all points.
+    pub fn intensities(&self) -> impl Iterator<Item = Spectrum<N>> {
+        self.moments.chunks_exact(self.count).map(|point| point[0])
     }
 
-    /// Largest fraction of the intensity, at any point that is not [`DARK`], that a correction changes.
+    /// Largest fraction of the intensity, at any point that is neither [`DARK`] nor at [`NIGHT`], that a correction changes.
     pub fn change_by(&self, correction: &Self) -> f32 {
         let (count, suns) = (self.count, self.ground.len());
+        let brighter =
+            |a: Spectrum<N>, b: Spectrum<N>| Spectrum::from_fn(|lane| a[lane].max(b[lane]));
         let mut brightest = vec![Spectrum::<N>::splat(f32::MIN_POSITIVE); suns];
-        for (place, point) in self.moments.chunks_exact(count).enumerate() {
+        for (place, intensity) in self.intensities().enumerate() {
             let most = &mut brightest[place % suns];
-            *most = Spectrum::from_fn(|lane| most[lane].max(point[0][lane]));
+            *most = brighter(*most, intensity);
         }
+        let day = brightest.iter().copied().fold(Spectrum::ZERO, brighter);
         let mut change = 0.0f32;
         let points = self.moments.chunks_exact(count);
         let corrections = correction.moments.chunks_exact(count);
         for (place, (point, correction)) in points.zip(corrections).enumerate() {
             let scale = admissible(point[0], correction[0]);
             let corrected = point[0].mul_acc(correction[0], scale);
-            let least = brightest[place % suns] * DARK;
+            let least = brighter(brightest[place % suns] * DARK, day * NIGHT);
             change = (0..N).fold(change, |change, lane| {
                 let value = corrected[lane].max(least[lane]);
                 change.max((correction[0][lane] * scale[lane] / value).abs())
@@ -99,6 +98,9 @@ impl<const N: usize> Light<N> {
 
 /// Fraction of the brightest light under the same sun below which a point does not count.
 pub const DARK: f32 = 1e-9;
+
+/// Fraction of the brightest light under any sun below which a point does not count: a hundredth of the light of stars.
+const NIGHT: f32 = 1e-11;
 
 /// Factor of a change that keeps at least a tenth of a value.
 #[inline(always)]

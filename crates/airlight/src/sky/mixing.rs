@@ -46,21 +46,19 @@ impl<const N: usize> Mixing<N> {
             self.changes.push([change, with_step]);
         }
         let mut step = correction.clone();
-        for sun in 0..light.ground.len() {
-            let factors = self.factors(light, correction, sun);
-            for ([_, with_step], factor) in self.changes.iter().zip(&factors) {
-                step.add_scaled(with_step, sun, Spectrum::ZERO - *factor);
-            }
+        let factors = self.factors(light, correction);
+        for ([_, with_step], factor) in self.changes.iter().zip(&factors) {
+            step.add_scaled(with_step, Spectrum::ZERO - *factor);
         }
         self.last = Some([light.clone(), correction.clone()]);
         step
     }
 
-    /// Factors of the changes in the combination with the smallest correction of the intensity relative to the light under a sun.
-    fn factors(&self, light: &Light<N>, correction: &Light<N>, sun: usize) -> [Spectrum<N>; DEPTH] {
+    /// Factors of the changes in the combination with the smallest correction of the intensities, relative to the light at each point.
+    fn factors(&self, light: &Light<N>, correction: &Light<N>) -> [Spectrum<N>; DEPTH] {
         let mut out = [Spectrum::ZERO; DEPTH];
         let count = self.changes.len();
-        let intensities = |of: &Light<N>| of.intensities(sun).collect::<Vec<_>>();
+        let intensities = |of: &Light<N>| of.intensities().collect::<Vec<_>>();
         let [whole, wanted] = [light, correction].map(intensities);
         let changes: Vec<_> = self.changes.iter().map(|[c, _]| intensities(c)).collect();
         for lane in 0..N {

@@ -4,7 +4,7 @@
 //! ([`super::transport`]). The iteration starts with the light of plane-parallel air ([`super::plane_parallel`]). Each step adds the
 //! light that is missing in the equation together with all orders of its scattering in plane-parallel air: what remains falls by the
 //! small difference between spherical and plane-parallel air, in thin and in thick air alike; light that in thick air spreads from
-//! place to place is left out of that sum ([`super::horizontal_exchange`]). Where what remains does not fall fast, [`super::mixing`]
+//! place to place is left out of that sum, and begins with some light in shadows ([`super::horizontal_exchange`]). Where what remains does not fall fast, [`super::mixing`]
 //! combines the corrections.
 
 use super::air::Air;
@@ -24,7 +24,7 @@ const MAX_GROWING: usize = 3;
 const SLOW: f32 = 0.5;
 
 /// Change below which corrections are combined: larger ones are those of light on its way into a shadow.
-const SHAPED: f32 = 0.3;
+const SHAPED: f32 = 0.2;
 
 /// Factor of the last change above which earlier steps are forgotten.
 const RESTART: f32 = 10.0;
@@ -68,6 +68,9 @@ pub fn solve<const N: usize>(
         let plane_parallel = transport.plane_parallel()?;
         let exchange = HorizontalExchange::new(&air, &grid);
         light = plane_parallel.all_orders(&once);
+        if let Some(exchange) = &exchange {
+            light = exchange.spread(&light);
+        }
         let (mut last, mut converged, mut growing, mut iterations) = (f32::INFINITY, false, 0, 0);
         let mut mixing: Option<Mixing<N>> = None;
         while iterations < settings.max_iterations && growing < MAX_GROWING {

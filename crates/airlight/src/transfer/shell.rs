@@ -243,10 +243,11 @@ fn panel_altitudes_m(
         .zip(&peaks)
         .zip(resolutions)
         .flat_map(|((density, peak), resolution)| {
-            density
-                .breakpoints_m()
-                .into_iter()
-                .filter(move |&h| sharpness(density, h, top - bottom) > peak * resolution.kink)
+            let breakpoints = density.breakpoints_m();
+            let sharp = sharpnesses(density, &breakpoints, top - bottom);
+            let parts = breakpoints.into_iter().zip(sharp);
+            let least = peak * resolution.kink;
+            parts.filter_map(move |(h, sharpness)| (sharpness > least).then_some(h))
         })
         .filter(|&h| h > bottom && h < top)
         .collect();
@@ -281,12 +282,23 @@ fn panel_altitudes_m(
     (edges, kinks)
 }
 
-/// Jump of a density at an altitude, plus the change of its slope times an eighth of the thickness.
-fn sharpness(density: &DensityProfile, altitude_m: f64, thickness_m: f64) -> f64 {
+/// Jumps of a density at its breakpoints, plus the change of its slope there times an eighth of the thickness or, where breakpoints are
+/// closer, the distance between them: bends of a table that follows a smooth profile are small then.
+fn sharpnesses(density: &DensityProfile, breakpoints_m: &[f64], thickness_m: f64) -> Vec<f64> {
+    let farthest_m = thickness_m / 8.0;
     let step = 1e-6 * thickness_m;
-    let [below2, below, above, above2] =
-        [-2.0, -1.0, 1.0, 2.0].map(|k| density.at(altitude_m + k * step));
-    let jump = (above - below).abs();
-    let bend = ((above2 - above) - (below - below2)).abs() / step;
-    jump + bend * thickness_m / 8.0
+    let distance = |k: Option<usize>, altitude_m: f64| {
+        let neighbour = k.and_then(|k| breakpoints_m.get(k));
+        neighbour.map_or(farthest_m, |h| (h - altitude_m).abs().min(farthest_m))
+    };
+    let of = |(k, &altitude_m): (usize, &f64)| {
+        let [below2, below, above, above2] =
+            [-2.0, -1.0, 1.0, 2.0].map(|k| density.at(altitude_m + k * step));
+        let jump = (above - below).abs();
+        let bend = ((above2 - above) - (below - below2)).abs() / step;
+        let before = distance(k.checked_sub(1), altitude_m);
+        let after = distance(Some(k + 1), altitude_m);
+        jump + bend * before.max(after)
+    };
+    breakpoints_m.iter().enumerate().map(of).collect()
 }
