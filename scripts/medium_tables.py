@@ -3,6 +3,11 @@
 
     python3 scripts/medium_tables.py csm csm_atmosphere_parameters.csv data/atmosphere/csm_atmosphere.txt
     python3 scripts/medium_tables.py mars-dust                         data/atmosphere/mars_dust_phase.txt
+    python3 scripts/medium_tables.py venus-air venus_seiff1985.txt     data/atmosphere/venus_air.txt
+    python3 scripts/medium_tables.py venus-absorber haus_uv_xsec_low.dat data/atmosphere/venus_absorber.txt
+    python3 scripts/medium_tables.py venus-absorber-profile venus_haus_uv.cld data/atmosphere/venus_absorber_profile.txt
+    python3 scripts/medium_tables.py titan-haze Tomasko2008_PhaseFunction.txt data/atmosphere/titan_haze_phase.txt
+    python3 scripts/medium_tables.py titan-air Waite2013Model.txt      data/atmosphere/titan_air.txt
 
 (output paths relative to crates/airlight/)
 
@@ -11,6 +16,8 @@ Sources
              Sky Models", IEEE TVCG 23(12), 2017: comma-separated columns wavelength nm, solar irradiance, Rayleigh
              scattering, aerosol extinction, aerosol scattering, ground albedo.
   mars-dust  computed here; see `mars_dust`.
+  venus-*, titan-*  tables of publications that the header of each output names, as files in the folders input/Venus,
+             input/Venus/clouds and input/Titan of github.com/Nicholaswogan/SolarSystemExploration.
 """
 
 import math
@@ -144,6 +151,116 @@ def mars_dust(path):
     )
 
 
+def numbers(source):
+    """Return the rows of a file whose fields are all numbers."""
+    rows = []
+    with open(source, encoding="utf-8") as lines:
+        for line in lines:
+            try:
+                rows.append([float(field) for field in line.split(";")[0].split()])
+            except ValueError:
+                continue
+    return [row for row in rows if len(row) > 1]
+
+
+BOLTZMANN_J_PER_K = 1.380649e-23
+
+
+def venus_air(source, path):
+    write(
+        path,
+        [
+            "The air of Venus at 45 degrees latitude.",
+            "Columns: altitude km, molecules per m^3 (pressure over Boltzmann's constant and temperature).",
+            "Source: A. Seiff et al., Models of the structure of the atmosphere of Venus from the surface to 100 kilometers",
+            "altitude, Adv. Space Res. 5(11), 3-58, 1985, doi:10.1016/0273-1177(85)90197-8.",
+            "Made by scripts/medium_tables.py venus-air",
+        ],
+        [[f"{z:g}", f"{1e5 * bar / (BOLTZMANN_J_PER_K * kelvin):.4e}"] for z, kelvin, bar in numbers(source)],
+    )
+
+
+def venus_absorber(source, path):
+    rows = sorted({row[0]: row[1] for row in numbers(source)}.items())
+    write(
+        path,
+        [
+            "Cross-section of the unknown absorber in the clouds of Venus, for the profile in venus_absorber_profile.txt.",
+            "Columns: wavelength nm, cross-section m^2.",
+            "Source: R. Haus, D. Kappel and G. Arnold, Radiative heating and cooling in the middle and lower atmosphere of Venus",
+            "and responses to atmospheric and spectroscopic parameter variations, Planet. Space Sci. 117, 262-294, 2015,",
+            'doi:10.1016/j.pss.2015.06.024 (their "low" model).',
+            "Made by scripts/medium_tables.py venus-absorber",
+        ],
+        [[f"{1e3 * um:g}", f"{1e-4 * cm2:.4e}"] for um, cm2 in rows],
+    )
+
+
+def venus_absorber_profile(source, path):
+    rows = [
+        (km, low * pascal / (BOLTZMANN_J_PER_K * kelvin)) for pascal, kelvin, km, low, _ in numbers(source) if km > 47.0
+    ]
+    inside = [i for i, (_, density) in enumerate(rows) if density > 0.0]
+    write(
+        path,
+        [
+            "The unknown absorber in the clouds of Venus.",
+            "Columns: altitude km, particles per m^3 (mixing ratio times molecules).",
+            "Source: as for venus_absorber.txt.",
+            "Made by scripts/medium_tables.py venus-absorber-profile",
+        ],
+        [[f"{km:.3f}", f"{density:.4e}"] for km, density in sorted(rows[inside[0] - 1 : inside[-1] + 2])],
+    )
+
+
+def titan_haze(source, path):
+    # Two tables, of which only the first row of wavelengths up to 935 nm is used; below 80 km they differ from 713 nm on.
+    rows = [row for row in numbers(source) if len(row) == 19]
+    half = len(rows) // 2
+    high, low = rows[:half], rows[half:]
+    assert [row[0] for row in high] == [row[0] for row in low]
+    write(
+        path,
+        [
+            "Phase functions of the haze of Titan, relative to isotropic scattering.",
+            "Columns: angle in degrees; above 80 km at 355, 430, 490.9, 599.9, 713.1, 822.4 and 934.8 nm; the same below 80 km.",
+            "Source: M. G. Tomasko et al., A model of Titan's aerosols based on measurements made inside the atmosphere, Planet.",
+            "Space Sci. 56, 669-707, 2008, doi:10.1016/j.pss.2007.11.019, table 1.",
+            "Made by scripts/medium_tables.py titan-haze",
+        ],
+        [[f"{a[0]:g}"] + [f"{value:g}" for value in a[1:8] + b[1:8]] for a, b in zip(high, low)],
+    )
+
+
+def titan_air(source, path):
+    nitrogen_kg, methane_kg = 28.014 * 1.66053907e-27, 16.043 * 1.66053907e-27
+    levels = [*range(0, 20, 2), *range(20, 60, 5), *range(60, 401, 20)]
+    rows = {row[0]: row for row in numbers(source)}
+    write(
+        path,
+        [
+            "The air of Titan.",
+            "Columns: altitude km, molecules per m^3 (density over the mean mass of nitrogen and methane), fraction of methane.",
+            "Source: the recommended profile of J. H. Waite et al., Model for Titan atmosphere, 2013, from Huygens' descent.",
+            "Made by scripts/medium_tables.py titan-air",
+        ],
+        [
+            [f"{z}", f"{rows[z][3] / (methane * methane_kg + (1.0 - methane) * nitrogen_kg):.4e}", f"{methane:g}"]
+            for z in levels
+            for methane in [rows[z][9]]
+        ],
+    )
+
+
 if __name__ == "__main__":
     kind, *arguments = sys.argv[1:]
-    {"csm": csm, "mars-dust": mars_dust}[kind](*arguments)
+    tables = {
+        "csm": csm,
+        "mars-dust": mars_dust,
+        "venus-air": venus_air,
+        "venus-absorber": venus_absorber,
+        "venus-absorber-profile": venus_absorber_profile,
+        "titan-haze": titan_haze,
+        "titan-air": titan_air,
+    }
+    tables[kind](*arguments)

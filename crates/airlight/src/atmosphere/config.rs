@@ -228,6 +228,8 @@ fn molecules(
     };
     let base_pressure_pa = match base {
         "mars" | "dust-storm" => presets::mars::MARS_PRESSURE_PA,
+        "venus" => presets::venus::VENUS_PRESSURE_PA,
+        "titan" => presets::titan::TITAN_PRESSURE_PA,
         _ => STANDARD_PRESSURE_PA,
     };
     match atmosphere

@@ -1,20 +1,25 @@
-//! Named atmospheres of the Earth, of Mars and of published models.
+//! Named atmospheres of the Earth, of other worlds and of published models.
 
 pub(crate) mod earth;
 mod fixed_table;
 pub(crate) mod mars;
+mod molecules;
 pub mod published;
 pub mod reference;
+pub(crate) mod titan;
+pub(crate) mod venus;
 mod wildfire;
 
 pub use earth::{Earth, average, clear, hazy};
 pub use mars::{dust_storm, mars};
+pub use titan::titan;
+pub use venus::venus;
 pub use wildfire::wildfire;
 
 use super::Atmosphere;
 use crate::names::{UnknownName, named};
 
-/// Named atmospheres of the Earth, of Mars and of published models.
+/// Named atmospheres of the Earth, of other worlds and of published models.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Preset {
@@ -30,6 +35,10 @@ pub enum Preset {
     Mars,
     /// Mars in a planet-encircling dust storm: dust optical depth 8.5 at 880 nm.
     DustStorm,
+    /// Venus below its clouds: optical depth 35.
+    Venus,
+    /// Titan below its haze: optical depth 8 at 550 nm.
+    Titan,
     /// Earth of Bruneton's Precomputed Atmospheric Scattering (2017), spectral.
     Bruneton,
     /// Earth of Hillaire's Scalable and Production Ready Sky (2020), red, green and blue.
@@ -53,6 +62,8 @@ named! { Preset, "an atmosphere", [
     ("wildfire", (Wildfire), "Earth under the smoke of forest fires: smoke optical depth 4 at 550 nm"),
     ("mars", (Mars), "Mars on a moderately dusty day: dust optical depth 0.5 at 880 nm"),
     ("dust-storm", (DustStorm), "Mars in a planet-encircling dust storm: dust optical depth 8.5 at 880 nm"),
+    ("venus", (Venus), "Venus below its clouds: optical depth 35"),
+    ("titan", (Titan), "Titan below its haze: optical depth 8 at 550 nm"),
     ("bruneton", (Bruneton), "Earth of Bruneton's Precomputed Atmospheric Scattering (2017), spectral"),
     ("hillaire", (Hillaire), "Earth of Hillaire's Scalable and Production Ready Sky (2020), red, green and blue"),
     ("sky-article", (SkyArticle), "Earth of \"Sky and Atmosphere rendering: A physical approach\", as printed"),
@@ -72,6 +83,8 @@ impl Preset {
             Self::Wildfire => wildfire::wildfire(),
             Self::Mars => mars::mars(),
             Self::DustStorm => mars::dust_storm(),
+            Self::Venus => venus::venus(),
+            Self::Titan => titan::titan(),
             Self::Bruneton => published::bruneton(),
             Self::Hillaire => published::hillaire(),
             Self::SkyArticle => published::sky_article(),

@@ -6,6 +6,7 @@ use crate::atmosphere::aerosol::{AerosolLoad, REFERENCE_NM, extinction_at_densit
 use crate::atmosphere::presets::earth::EARTH_TOP_M;
 use crate::atmosphere::{ClearAir, Constituent, ConstituentKind, DensityProfile};
 use crate::optics::PhaseFunction;
+use crate::optics::mie::SizeDistribution;
 use crate::spectrum::{CurveError, SpectralCurve};
 
 /// A part of a mixture.
@@ -186,6 +187,30 @@ impl AerosolMixture {
             phase: PhaseFunction::Tabulated(optics.phase()?),
         })
     }
+}
+
+/// Droplets of 75 % sulfuric acid: with this number per cubic centimetre at density 1.
+///
+/// # Errors
+/// [`AerosolTypeError`] for an invalid size distribution.
+pub(in crate::atmosphere) fn sulfuric_acid(
+    kind: ConstituentKind,
+    sizes: SizeDistribution,
+    number_per_cm3: f64,
+    density: DensityProfile,
+) -> Result<Constituent, AerosolTypeError> {
+    let optics = Optics::of(&[Mode {
+        number_per_cm3,
+        index: Component::Sulfate.index(0.0),
+        sizes,
+    }])?;
+    Ok(Constituent {
+        kind,
+        density,
+        scattering_per_m: curve(&optics.scattering_per_m, 1.0)?,
+        absorption_per_m: curve(&optics.absorption_per_m, 1.0)?,
+        phase: PhaseFunction::Tabulated(optics.phase()?),
+    })
 }
 
 impl Ingredient {

@@ -18,6 +18,7 @@ mod smoke;
 mod tests;
 
 pub use material::Component;
+pub(super) use mixture::sulfuric_acid;
 pub use mixture::{AerosolMixture, AerosolSummary, Ingredient};
 pub use smoke::Smoke;
 
