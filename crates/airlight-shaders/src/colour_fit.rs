@@ -1,6 +1,6 @@
 //! [`ColourFit`]: colours from the four wavelengths of sky tables.
 
-use crate::sky_tables::{WAVELENGTHS_NM, wavelength_grid};
+use crate::wavelengths::{WAVELENGTHS_NM, wavelength_grid};
 use airlight::atmosphere::Atmosphere;
 use airlight::glam::DVec3;
 use airlight::sky::{Scattering, Sky, SkyError, SkySettings, View};

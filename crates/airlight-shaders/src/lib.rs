@@ -32,10 +32,12 @@ mod sky_tables;
 #[cfg(feature = "translate")]
 mod translate;
 pub mod twins;
+mod wavelengths;
 
 pub use colour_fit::ColourFit;
 pub use function::{ErrorBound, Function, functions};
 pub use part::{Part, source, with_required};
-pub use sky_tables::{SkyTables, SkyTablesError, WAVELENGTHS_NM, wavelength_grid};
+pub use sky_tables::{SkyTables, SkyTablesError};
 #[cfg(feature = "translate")]
 pub use translate::{Language, TranslateError, translate};
+pub use wavelengths::{WAVELENGTHS_NM, wavelength_grid};

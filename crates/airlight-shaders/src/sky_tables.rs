@@ -3,19 +3,12 @@
 use crate::colour_fit::ColourFit;
 use crate::twins::sky_tables as twin;
 use crate::twins::texture::Texture;
+use crate::wavelengths::WAVELENGTHS_NM;
 use airlight::glam::DVec3;
 use airlight::sky::{SplitPath, SplitView, View};
-use airlight::spectrum::{RgbSpace, WavelengthGrid, rgb};
+use airlight::spectrum::{RgbSpace, rgb};
 use glam::Vec4;
 use std::f64::consts::{FRAC_PI_2, PI};
-
-/// Wavelengths of the tables, nm: with fitted weights, the four that reproduce the colours of skies best.
-pub const WAVELENGTHS_NM: [f64; 4] = [445.0, 525.0, 575.0, 640.0];
-
-/// Wavelength grid to solve skies with for [`SkyTables`].
-pub fn wavelength_grid() -> WavelengthGrid {
-    WavelengthGrid::from_wavelengths_nm(WAVELENGTHS_NM.to_vec()).expect("increasing wavelengths")
-}
 
 /// Logarithm of the least light that a table holds, relative to its scale.
 const DARKEST: f64 = -30.0;
@@ -62,7 +55,7 @@ pub enum SkyTablesError {
 }
 
 impl SkyTables {
-    /// Tables of a view of a sky that was solved on the [`wavelength_grid`], for colours in an RGB space by the fit of its atmosphere.
+    /// Tables of a view of a sky that was solved on the [`crate::wavelength_grid`], for colours in an RGB space by the fit of its atmosphere.
     ///
     /// # Errors
     /// [`SkyTablesError`] for a sky at other wavelengths.
