@@ -44,13 +44,16 @@ fn main() -> Result<(), Box<dyn Error>> {
         start.elapsed().as_secs_f64()
     );
     let frame = Frame::towards(towards, SIDE);
+    let radius_m = atmosphere.planet.radius_m;
+    let horizon = -(2.0 * height_m.max(0.0) / radius_m).sqrt() as f32;
     let hills = |x: u32, y: u32| {
         let direction = frame.direction(x, y);
         let azimuth = direction.x.atan2(direction.z);
         let ridge = |distance_m: f32, peak_m: f32, waves: f32| {
             let shape = (azimuth * waves).sin() + 0.5 * (azimuth * waves * 2.7 + 1.0).sin();
             let top_m = peak_m * (0.6 + 0.25 * shape) - height_m as f32;
-            let covers = direction.y * distance_m < top_m;
+            // Below the horizon is the ground of the planet.
+            let covers = direction.y > horizon && direction.y * distance_m < top_m;
             if covers { distance_m } else { f32::INFINITY }
         };
         let nearest = ridge(5e3, 300.0, 5.0).min(ridge(2e4, 1500.0, 8.0));
