@@ -61,8 +61,8 @@ fn main() -> ExitCode {
     }
 }
 
-/// Parses the words of the command line, or exits. An error of a missing argument shows an example. The command `help` of clap does not suggest the command that an unknown one
-/// resembles; the unknown command by itself does.
+/// Parses the words of the command line, or exits. An error of a missing argument shows an example. The command `help` of clap does not
+/// suggest the command that an unknown one resembles; the unknown command by itself does.
 fn parse_words(command: &mut clap::Command, mut words: Vec<OsString>) -> ArgMatches {
     let mut error = match command.try_get_matches_from_mut(&words) {
         Ok(matches) => return matches,
