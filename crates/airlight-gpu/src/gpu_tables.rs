@@ -5,7 +5,6 @@ use airlight_shaders::twins::sky_tables::RgbWeights;
 use airlight_shaders::twins::texture::Texture;
 use airlight_shaders::{SkyTables, WAVELENGTHS_NM};
 use glam::Vec4;
-use half::f16;
 use wgpu::util::{BufferInitDescriptor, DeviceExt, TextureDataOrder};
 
 /// Texels of the table of the sun's disc.
@@ -155,9 +154,7 @@ fn disc(view: &View) -> Texture {
 /// A texture of half floats.
 fn upload(device: &wgpu::Device, queue: &wgpu::Queue, texture: &Texture) -> wgpu::TextureView {
     let [width, height, depth] = texture.size().map(|n| n as u32);
-    let values = texture.texels().iter().flat_map(|texel| texel.to_array());
-    let halves = values.map(|value| f16::from_f32(value.clamp(-65504.0, 65504.0)));
-    let bytes: Vec<u8> = halves.flat_map(f16::to_ne_bytes).collect();
+    let bytes = texture.half_float_bytes();
     let descriptor = wgpu::TextureDescriptor {
         label: Some("airlight sky"),
         size: wgpu::Extent3d {

@@ -1,6 +1,7 @@
 //! Textures of the twins.
 
 use glam::{Vec2, Vec3, Vec4};
+use half::f16;
 
 /// The sampler of the twins: linear, clamped to the edge.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -38,6 +39,14 @@ impl Texture {
     /// The texels, with x varying fastest.
     pub fn texels(&self) -> &[Vec4] {
         &self.texels
+    }
+
+    /// The texels as half floats in the byte order of the machine, for upload; larger values become the largest.
+    pub fn half_float_bytes(&self) -> Vec<u8> {
+        let largest = f16::MAX.to_f32();
+        let values = self.texels.iter().flat_map(|texel| texel.to_array());
+        let halves = values.map(|value| f16::from_f32(value.clamp(-largest, largest)));
+        halves.flat_map(f16::to_ne_bytes).collect()
     }
 
     /// Interpolated texels at coordinates from 0 to 1.

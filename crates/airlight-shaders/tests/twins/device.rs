@@ -170,12 +170,7 @@ impl Device {
     fn texture(&self, name: &str) -> wgpu::TextureView {
         let texture = textures::named(name);
         let [width, height, depth] = texture.size().map(|n| n as u32);
-        let bytes: Vec<u8> = texture
-            .texels()
-            .iter()
-            .flat_map(|texel| texel.to_array())
-            .flat_map(|value| half::f16::from_f32(value).to_ne_bytes())
-            .collect();
+        let bytes = texture.half_float_bytes();
         let descriptor = wgpu::TextureDescriptor {
             label: Some(name),
             size: wgpu::Extent3d {
