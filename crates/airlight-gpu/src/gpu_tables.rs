@@ -1,7 +1,7 @@
 //! The tables of a sky on the device.
 
 use airlight::sky::View;
-use airlight_shaders::twins::sky_tables::RgbWeights;
+use airlight_shaders::twins::colour::RgbWeights;
 use airlight_shaders::twins::texture::Texture;
 use airlight_shaders::{SkyTables, WAVELENGTHS_NM};
 use glam::Vec4;

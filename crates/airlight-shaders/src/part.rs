@@ -16,8 +16,16 @@ pub enum Part {
     Columns,
     /// Fog in sunlight and ambient light.
     Fog,
+    /// Wavelengths, XYZ, RGB spaces, sRGB signals.
+    Colour,
     /// Skies and aerial perspective from tables.
     SkyTables,
+    /// The sun's disc.
+    Disc,
+    /// Tone curves.
+    Tone,
+    /// Dither.
+    Dither,
 }
 
 named! { Part, "a part of the shader library", [
@@ -26,7 +34,11 @@ named! { Part, "a part of the shader library", [
     ("path-optics", (PathOptics), "transmittance and path radiance of a ray segment"),
     ("columns", (Columns), "integrals of density along rays over flat or round ground"),
     ("fog", (Fog), "fog in sunlight and ambient light, by single scattering"),
+    ("colour", (Colour), "wavelengths, XYZ, linear RGB spaces, sRGB signals"),
     ("sky-tables", (SkyTables), "skies and aerial perspective from tables at four wavelengths"),
+    ("disc", (Disc), "the sun's disc with limb darkening and a smooth edge"),
+    ("tone", (Tone), "tone curves: camera, AgX, clipping"),
+    ("dither", (Dither), "triangular noise for 8-bit targets"),
 ] }
 
 impl Part {
@@ -38,7 +50,11 @@ impl Part {
             Self::PathOptics => include_str!("../wgsl/path_optics.wgsl"),
             Self::Columns => include_str!("../wgsl/columns.wgsl"),
             Self::Fog => include_str!("../wgsl/fog.wgsl"),
+            Self::Colour => include_str!("../wgsl/colour.wgsl"),
             Self::SkyTables => include_str!("../wgsl/sky_tables.wgsl"),
+            Self::Disc => include_str!("../wgsl/disc.wgsl"),
+            Self::Tone => include_str!("../wgsl/tone.wgsl"),
+            Self::Dither => include_str!("../wgsl/dither.wgsl"),
         }
     }
 

@@ -1,6 +1,7 @@
 //! [`SkyTables`]: the tables of `wgsl/sky_tables.wgsl`, filled from a solved sky.
 
 use crate::colour_fit::ColourFit;
+use crate::twins::colour::RgbWeights;
 use crate::twins::sky_tables as twin;
 use crate::twins::texture::Texture;
 use crate::wavelengths::WAVELENGTHS_NM;
@@ -38,9 +39,9 @@ pub struct SkyTables {
     /// Phase function of haze, 1/sr.
     pub phase: Texture,
     /// Weights from radiance to red, green and blue, cd/m^2.
-    pub radiance_weights: twin::RgbWeights,
+    pub radiance_weights: RgbWeights,
     /// Weights from transmittance to that of sunlight in red, green and blue.
-    pub transmittance_weights: twin::RgbWeights,
+    pub transmittance_weights: RgbWeights,
 }
 
 /// Error of [`SkyTables::new`].
@@ -283,18 +284,14 @@ impl MapLanes for Vec4 {
 }
 
 /// Weights to red, green and blue: of radiance, and of transmittance.
-fn rgb_weights(
-    view: &View,
-    fit: &ColourFit,
-    space: RgbSpace,
-) -> (twin::RgbWeights, twin::RgbWeights) {
+fn rgb_weights(view: &View, fit: &ColourFit, space: RgbSpace) -> (RgbWeights, RgbWeights) {
     let xyz = fit.xyz_weights(view);
     let from_xyz = space.from_xyz_matrix();
     let columns = xyz.map(|column| rgb::apply(&from_xyz, column));
     let solar = view.sky().grid().solar_irradiance();
     let weights = |of: &dyn Fn(usize, usize) -> f64| {
         let row = |c: usize| Vec4::from_array(std::array::from_fn(|k| of(c, k) as f32));
-        twin::RgbWeights {
+        RgbWeights {
             red: row(0),
             green: row(1),
             blue: row(2),

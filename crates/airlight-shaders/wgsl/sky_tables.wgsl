@@ -1,4 +1,4 @@
-// requires: exponentials, phase, path_optics
+// requires: exponentials, phase, path_optics, colour
 // Skies and aerial perspective from tables at four wavelengths, made for one position of the eye and one of the sun and fixed to
 // the world's axes: nothing changes when the camera turns. World axes: y up at the eye. Two tables hold the sky, as logarithms
 // of normalised radiance: the light that haze scatters once, divided by its phase function, and all other light. Two more hold
@@ -51,16 +51,6 @@ struct SpectralPath {
     transmittance: vec4<f32>,
     /// Radiance scattered into the ray.
     path_radiance: vec4<f32>,
-}
-
-/// Weights of four wavelengths in red, green and blue.
-struct RgbWeights {
-    /// In red.
-    red: vec4<f32>,
-    /// In green.
-    green: vec4<f32>,
-    /// In blue.
-    blue: vec4<f32>,
 }
 
 /// Texture coordinate of a place from 0 (centre of the first texel) to 1 (centre of the last) among `count` texels.
@@ -264,13 +254,6 @@ fn aerial_perspective(
     let haze = exp(textureSampleLevel(haze_table, linear_sampler, uvw, 0.0)) * scales.haze;
     let opacity = depth * vec4<f32>(mean_transmittance_rgb(depth.xyz), mean_transmittance(depth.w));
     return SpectralPath(1.0 - opacity, (smooth_light + haze * phase) * opacity);
-}
-
-/// Red, green and blue of a radiance at four wavelengths.
-///
-/// Cost: no exp. Error: 1e-6 relative plus 1e-6 absolute.
-fn rgb_from_spectrum(weights: RgbWeights, spectrum: vec4<f32>) -> vec3<f32> {
-    return vec3<f32>(dot(weights.red, spectrum), dot(weights.green, spectrum), dot(weights.blue, spectrum));
 }
 
 /// Transmittance and path radiance in red, green and blue, for scenes in these: the transmittance of a channel is that of sunlight.

@@ -43,6 +43,11 @@ struct FogLayers {
     float inverse_radius_per_m;
     FogLight light;
 };
+struct RgbWeights {
+    vec4 red;
+    vec4 green;
+    vec4 blue;
+};
 struct SkyView {
     vec3 sun;
     float height_m;
@@ -59,10 +64,13 @@ struct SpectralPath {
     vec4 transmittance;
     vec4 path_radiance;
 };
-struct RgbWeights {
-    vec4 red;
-    vec4 green;
-    vec4 blue;
+struct LimbDarkening {
+    vec4 zeroth;
+    vec4 first;
+    vec4 second;
+    vec4 third;
+    vec4 fourth;
+    vec4 fifth;
 };
 const float OPAQUE = 1e25;
 const float INFINITE_M = 1000000000000.0;
@@ -896,6 +904,97 @@ PathOptics layered_fog(FogLayers fog_2, RaySegment ray_8) {
     return PathOptics(exp(-(_e208)), _e211);
 }
 
+// Red, green and blue of a radiance at four wavelengths.
+// Cost: no exp.
+vec3 rgb_from_spectrum(RgbWeights weights, vec4 spectrum) {
+    return vec3(dot(weights.red, spectrum), dot(weights.green, spectrum), dot(weights.blue, spectrum));
+}
+
+// XYZ of linear sRGB (IEC 61966-2-1), in the unit of its components.
+// Cost: no exp.
+vec3 xyz_from_srgb(vec3 rgb) {
+    return vec3(dot(vec3(0.4123908, 0.35758433, 0.1804808), rgb), dot(vec3(0.212639, 0.71516865, 0.07219232), rgb), dot(vec3(0.019330818, 0.11919478, 0.95053214), rgb));
+}
+
+// Linear sRGB of XYZ, with negative components outside the gamut.
+// Cost: no exp.
+vec3 srgb_from_xyz(vec3 xyz) {
+    return vec3(dot(vec3(3.24097, -1.5373832, -0.49861076), xyz), dot(vec3(-0.96924365, 1.8759675, 0.04155506), xyz), dot(vec3(0.05563008, -0.20397696, 1.0569715), xyz));
+}
+
+// XYZ of linear BT.2020.
+// Cost: no exp.
+vec3 xyz_from_rec2020_rgb(vec3 rgb_1) {
+    return vec3(dot(vec3(0.63695806, 0.1446169, 0.16888097), rgb_1), dot(vec3(0.2627002, 0.67799807, 0.059301715), rgb_1), dot(vec3(0.0, 0.028072692, 1.0609851), rgb_1));
+}
+
+// Linear BT.2020 of XYZ, with negative components outside the gamut.
+// Cost: no exp.
+vec3 rec2020_from_xyz(vec3 xyz_1) {
+    return vec3(dot(vec3(1.7166512, -0.35567078, -0.2533663), xyz_1), dot(vec3(-0.6666843, 1.6164812, 0.015768547), xyz_1), dot(vec3(0.017639857, -0.042770613, 0.94210315), xyz_1));
+}
+
+// XYZ of ACEScg, whose white is adapted to D65 by Bradford's transform: what is neutral stays neutral.
+// Cost: no exp.
+vec3 xyz_from_acescg(vec3 rgb_2) {
+    return vec3(dot(vec3(0.65223753, 0.12823613, 0.16998225), rgb_2), dot(vec3(0.26767218, 0.67434, 0.05798783), rgb_2), dot(vec3(-0.0053818156, 0.0013690602, 1.0930705), rgb_2));
+}
+
+// ACEScg of XYZ, D65 adapted to its white by Bradford's transform.
+// Cost: no exp.
+vec3 acescg_from_xyz(vec3 xyz_2) {
+    return vec3(dot(vec3(1.6605853, -0.31529555, -0.24150933), xyz_2), dot(vec3(-0.65992606, 1.6083915, 0.017298594), xyz_2), dot(vec3(0.009002569, -0.0035668763, 0.9136433), xyz_2));
+}
+
+// sRGB signal of linear components (IEC 61966-2-1), odd below 0 and not clipped above 1.
+// Cost: 3 exp.
+vec3 srgb_encode(vec3 linear) {
+    vec3 v = abs(linear);
+    vec3 curved = ((1.055 * pow(max(v, vec3(0.0031308)), vec3(0.41666666))) - vec3(0.055));
+    return (sign(linear) * mix(curved, (12.92 * v), lessThanEqual(v, vec3(0.0031308))));
+}
+
+// Linear components of an sRGB signal, the inverse of `srgb_encode`.
+// Cost: 3 exp.
+vec3 srgb_decode(vec3 signal) {
+    vec3 v_1 = abs(signal);
+    vec3 curved_1 = pow(((v_1 + vec3(0.055)) / vec3(1.055)), vec3(2.4));
+    return (sign(signal) * mix(curved_1, (v_1 / vec3(12.92)), lessThanEqual(v_1, vec3(0.04045))));
+}
+
+// Luminance of linear sRGB with the rounded weights of BT.709, in the unit of its components.
+// Cost: no exp.
+float srgb_luminance(vec3 rgb_3) {
+    return dot(vec3(0.2126, 0.7152, 0.0722), rgb_3);
+}
+
+// Linear sRGB moved towards grey of the same luminance until no component is negative; black where the luminance is not positive.
+// Cost: no exp.
+vec3 without_negatives(vec3 rgb_4) {
+    float bottom = min(rgb_4.x, min(rgb_4.y, rgb_4.z));
+    if ((bottom >= 0.0)) {
+        return rgb_4;
+    }
+    float _e8 = srgb_luminance(rgb_4);
+    float grey = max(_e8, 0.0);
+    return max((vec3(grey) + ((grey / (grey - bottom)) * (rgb_4 - vec3(grey)))), vec3(0.0));
+}
+
+// Linear sRGB moved towards grey of the same luminance until all components are from 0 to 1.
+// Cost: no exp.
+vec3 into_unit_cube(vec3 rgb_5) {
+    vec3 _e1 = without_negatives(rgb_5);
+    float top = max(_e1.x, max(_e1.y, _e1.z));
+    if ((top <= 1.0)) {
+        return _e1;
+    }
+    float _e9 = srgb_luminance(_e1);
+    if ((_e9 >= 1.0)) {
+        return vec3(1.0);
+    }
+    return clamp((vec3(_e9) + (((1.0 - _e9) / (top - _e9)) * (_e1 - vec3(_e9)))), vec3(0.0), vec3(1.0));
+}
+
 // Texture coordinate of a place from 0 (centre of the first texel) to 1 (centre of the last) among `count` texels.
 // Cost: no exp.
 float texel_coordinate(float place, float count_1) {
@@ -934,20 +1033,20 @@ float row_coordinate(SkyView view, float elevation_rad, bool is_below, float row
     float end_1 = (is_below ? -1.5707964 : view.highest_rad);
     float rows = (is_below ? rows_below : rows_above);
     float part_1 = clamp(((elevation_rad - view.horizon_rad) / (end_1 - view.horizon_rad)), 0.0, 1.0);
-    float place_3 = (is_below ? sqrt(sqrt(part_1)) : sqrt(part_1));
+    float place_4 = (is_below ? sqrt(sqrt(part_1)) : sqrt(part_1));
     float first_1 = (is_below ? rows_above : 0.0);
-    return (((first_1 + 0.5) + (place_3 * (rows - 1.0))) / (rows_above + rows_below));
+    return (((first_1 + 0.5) + (place_4 * (rows - 1.0))) / (rows_above + rows_below));
 }
 
 // Inverse of `row_coordinate`: elevation of a texture coordinate, rad.
 // Cost: no exp.
 float elevation_from_row_coordinate(SkyView view_1, float coordinate_1, float rows_above_1, float rows_below_1) {
-    float row = (coordinate_1 * (rows_above_1 + rows_below_1));
-    bool is_below_1 = (row >= rows_above_1);
+    float row_2 = (coordinate_1 * (rows_above_1 + rows_below_1));
+    bool is_below_1 = (row_2 >= rows_above_1);
     float end_2 = (is_below_1 ? -1.5707964 : view_1.highest_rad);
     float rows_1 = (is_below_1 ? rows_below_1 : rows_above_1);
-    float place_4 = (((row - (is_below_1 ? rows_above_1 : 0.0)) - 0.5) / (rows_1 - 1.0));
-    float squared = (place_4 * place_4);
+    float place_5 = (((row_2 - (is_below_1 ? rows_above_1 : 0.0)) - 0.5) / (rows_1 - 1.0));
+    float squared = (place_5 * place_5);
     return (view_1.horizon_rad + ((end_2 - view_1.horizon_rad) * (is_below_1 ? (squared * squared) : squared)));
 }
 
@@ -1088,16 +1187,147 @@ SpectralPath aerial_perspective(SkyView view_6, SkyScales scales_1, highp sample
     return SpectralPath((vec4(1.0) - opacity_1), ((smooth_light_1 + (haze_1 * _e52)) * opacity_1));
 }
 
-// Red, green and blue of a radiance at four wavelengths.
-// Cost: no exp.
-vec3 rgb_from_spectrum(RgbWeights weights, vec4 spectrum) {
-    return vec3(dot(weights.red, spectrum), dot(weights.green, spectrum), dot(weights.blue, spectrum));
-}
-
 // Transmittance and path radiance in red, green and blue, for scenes in these: the transmittance of a channel is that of sunlight.
 // Cost: no exp.
 PathOptics rgb_path(RgbWeights radiance_2, RgbWeights transmittance, SpectralPath path_1) {
     vec3 _e4 = rgb_from_spectrum(transmittance, path_1.transmittance);
     vec3 _e6 = rgb_from_spectrum(radiance_2, path_1.path_radiance);
     return PathOptics(_e4, _e6);
+}
+
+// Limb darkening at wavelengths from 423 to 1099 nm, to which others are clamped (Neckel, Sol. Phys. 229, 13, 2005, table 2). Compute it once for all pixels.
+// Cost: no exp.
+LimbDarkening limb_darkening(vec4 wavelengths_nm) {
+    vec4 per_um = (vec4(1000.0) / clamp(wavelengths_nm, vec4(422.57), vec4(1099.0)));
+    vec4 power = ((((per_um * per_um) * per_um) * per_um) * per_um);
+    vec4 zeroth = (vec4(0.75267) - (0.265577 * per_um));
+    vec4 first_2 = ((vec4(0.93874) + (0.265577 * per_um)) - (0.004095 * power));
+    vec4 second = (vec4(-1.89287) + (0.012582 * power));
+    vec4 third = (vec4(2.42234) - (0.017117 * power));
+    vec4 fourth = (vec4(-1.7115) + (0.011977 * power));
+    vec4 fifth = (vec4(0.49062) - (0.003347 * power));
+    vec4 mean = (((((zeroth + (first_2 * 0.6666667)) + (second * 0.5)) + (third * 0.4)) + (fourth * 0.33333334)) + (fifth * 0.2857143));
+    return LimbDarkening((zeroth / mean), (first_2 / mean), (second / mean), (third / mean), (fourth / mean), (fifth / mean));
+}
+
+// Radiance of the disc at `mu`, relative to its mean.
+// Cost: no exp.
+vec4 limb_profile(LimbDarkening limb, float mu) {
+    return (limb.zeroth + (mu * (limb.first + (mu * (limb.second + (mu * (limb.third + (mu * (limb.fourth + (mu * limb.fifth))))))))));
+}
+
+// Place of a direction on the disc: the sine of its angle from the centre divided by the sine of the disc's angular radius, 0 to 1; more than 1 outside. `one_minus_cos` is that between the direction and the sun.
+// Cost: no exp.
+float place_on_disc(float sin_radius, float one_minus_cos_8) {
+    return (((one_minus_cos_8 < 1.0) ? sqrt(max((one_minus_cos_8 * (2.0 - one_minus_cos_8)), 0.0)) : 2.0) / sin_radius);
+}
+
+// Part of a pixel that the disc covers, 0 to 1: a ramp as wide as a pixel across the edge, so that the edge is smooth and the disc's light is kept, within `(pixel / radius)^2 / 12`. `sin_pixel` is the sine of the angle that a pixel spans; 0 gives a sharp edge.
+// Cost: no exp.
+float disc_coverage(float place_3, float sin_radius_1, float sin_pixel) {
+    return clamp((((1.0 - place_3) * (sin_radius_1 / max(sin_pixel, (1e-6 * sin_radius_1)))) + 0.5), 0.0, 1.0);
+}
+
+// Radiance of the sun's disc in a pixel whose centre is `one_minus_cos` from the sun, from the disc's mean radiance: the irradiance on a surface that faces the sun, divided by `pi sin_radius^2`. Without attenuation by air.
+// Cost: no exp.
+vec4 sun_disc_radiance(LimbDarkening limb_1, vec4 mean_radiance, float sin_radius_2, float sin_pixel_1, float one_minus_cos_9) {
+    float _e5 = place_on_disc(sin_radius_2, one_minus_cos_9);
+    float mu_1 = sqrt(max(((1.0 - _e5) * (1.0 + _e5)), 0.0));
+    vec4 _e14 = limb_profile(limb_1, mu_1);
+    float _e16 = disc_coverage(_e5, sin_radius_2, sin_pixel_1);
+    return ((mean_radiance * _e14) * _e16);
+}
+
+// No curve: components above 1 and below 0 are clipped.
+// Cost: no exp.
+vec3 clip_tone(vec3 exposed) {
+    return clamp(exposed, vec3(0.0), vec3(1.0));
+}
+
+// Response `x^n / (x^n + q)` of film and retina (Naka & Rushton 1966), at which 0.18 stays 0.18. `contrast` is its slope there on logarithmic axes, 0.5 to 3.
+// Cost: 3 exp.
+vec3 camera_response(vec3 x_3, float contrast) {
+    vec3 ratio = (vec3(0.18) / max(x_3, vec3(1e-8)));
+    vec3 response = (vec3(1.0) / (vec3(1.0) + (4.555556 * pow(ratio, vec3((contrast / 0.82))))));
+    return mix(response, vec3(0.0), lessThanEqual(x_3, vec3(1.1e-8)));
+}
+
+// Curve in the manner of a camera: contrast around middle grey, highlights that roll off to white, hue kept. `contrast` is usually 1.2, `saturation` 1 (0: grey).
+// Cost: 3 exp.
+vec3 camera_tone(vec3 exposed_1, float contrast_1, float saturation) {
+    vec3 _e3 = without_negatives(exposed_1);
+    float _e4 = srgb_luminance(_e3);
+    vec3 linear_1 = mix(_e3, vec3(_e4), 0.01);
+    float least = min(linear_1.x, min(linear_1.y, linear_1.z));
+    float most = max(linear_1.x, max(linear_1.y, linear_1.z));
+    vec3 _e18 = camera_response(linear_1, contrast_1);
+    float hi = max(_e18.x, max(_e18.y, _e18.z));
+    float dark = (((1.0 - hi) * (1.0 - hi)) * (1.0 - hi));
+    vec3 curved_2 = mix(_e18, (linear_1 * (hi / max(most, 1e-30))), dark);
+    float lo = min(curved_2.x, min(curved_2.y, curved_2.z));
+    vec3 kept = (vec3(lo) + (((hi - lo) / max((most - least), 1e-30)) * (linear_1 - vec3(least))));
+    vec3 toned = mix(kept, curved_2, 0.2);
+    float _e54 = srgb_luminance(toned);
+    vec3 _e57 = into_unit_cube(mix(vec3(_e54), toned, saturation));
+    return _e57;
+}
+
+// Response of the base look of AgX (T. Sobotka 2022): a sigmoid of the logarithm from 10 stops below middle grey to 6.5 stops above.
+// Cost: 9 exp.
+vec3 agx_response(vec3 x_4) {
+    vec3 stops = log2((max(x_4, vec3(1e-9)) / vec3(0.18)));
+    vec3 place_6 = clamp(((stops + vec3(10.0)) / vec3(16.5)), vec3(0.0), vec3(1.0));
+    vec3 from_grey = (place_6 - vec3(0.6060606));
+    bvec3 is_toe = lessThan(from_grey, vec3(0.0));
+    vec3 limit = mix(vec3(0.7151983), vec3(0.5656756), is_toe);
+    vec3 u = (2.4 * abs(from_grey));
+    vec3 bent = (u / limit);
+    vec3 rise_1 = (u / pow((vec3(1.0) + (bent * sqrt(bent))), vec3(0.6666667)));
+    vec3 signal_2 = clamp((vec3(0.4894371) + mix(rise_1, -(rise_1), is_toe)), vec3(0.0), vec3(1.0));
+    return pow(signal_2, vec3(2.4));
+}
+
+// Base look of AgX: highlights roll off, and bright saturated colours turn white early.
+// Cost: 9 exp.
+vec3 agx_tone(vec3 exposed_2) {
+    vec3 weights_1 = vec3(0.212, 0.3922, 0.3958);
+    vec3 _e5 = without_negatives(exposed_2);
+    vec3 inset = mix(_e5, vec3(dot(weights_1, _e5)), 0.2);
+    vec3 _e10 = agx_response(inset);
+    vec3 _e19 = into_unit_cube(((_e10 - vec3((0.2 * dot(weights_1, _e10)))) / vec3(0.8)));
+    return _e19;
+}
+
+// Hash of a number: neighbours are unrelated.
+// Cost: no exp.
+uint dither_hash(uint n) {
+    uint once = ((n ^ (n >> 16u)) * 569420461u);
+    uint twice = ((once ^ (once >> 15u)) * 1935289751u);
+    return (twice ^ (twice >> 15u));
+}
+
+// Three numbers from 0 to below 1 from the bits of a hash.
+// Cost: no exp.
+vec3 numbers_from_bits(uint bits) {
+    return (vec3(float((bits >> 22u)), float(((bits >> 11u) & 1023u)), float((bits & 1023u))) / vec3(1024.0));
+}
+
+// Noise of a pixel, in levels: between -1 and 1, mean 0, variance 1/6. Along a row it is the difference of successive hashes.
+// Cost: no exp.
+vec3 triangular_noise(uint column_2, uint row) {
+    uint _e4 = dither_hash((row ^ 1540483477u));
+    uint _e8 = dither_hash((_e4 + (column_2 * 2654435769u)));
+    vec3 _e9 = numbers_from_bits(_e8);
+    uint _e15 = dither_hash((_e4 + ((column_2 + 1u) * 2654435769u)));
+    vec3 _e16 = numbers_from_bits(_e15);
+    return (_e16 - _e9);
+}
+
+// A signal from 0 to 1 with noise, to be stored in a target of `levels` levels above 0 (255 for 8 bits), which rounds to the nearest. Black and white stay unchanged, and no noise exceeds them.
+// Cost: no exp.
+vec3 dithered(vec3 signal_1, float levels, uint column_3, uint row_1) {
+    vec3 level = (signal_1 * levels);
+    vec3 room = min(min(level, (vec3(levels) - level)), vec3(1.0));
+    vec3 _e11 = triangular_noise(column_3, row_1);
+    return ((level + (_e11 * room)) / vec3(levels));
 }

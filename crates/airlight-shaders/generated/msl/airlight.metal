@@ -53,6 +53,11 @@ struct FogLayers {
 struct type_6 {
     float inner[14];
 };
+struct RgbWeights {
+    metal::float4 red;
+    metal::float4 green;
+    metal::float4 blue;
+};
 struct SkyView {
     metal::packed_float3 sun;
     float height_m;
@@ -69,10 +74,13 @@ struct SpectralPath {
     metal::float4 transmittance;
     metal::float4 path_radiance;
 };
-struct RgbWeights {
-    metal::float4 red;
-    metal::float4 green;
-    metal::float4 blue;
+struct LimbDarkening {
+    metal::float4 zeroth;
+    metal::float4 first;
+    metal::float4 second;
+    metal::float4 third;
+    metal::float4 fourth;
+    metal::float4 fifth;
 };
 constant float OPAQUE = 10000000000000000000000000.0;
 constant float INFINITE_M = 1000000000000.0;
@@ -1064,6 +1072,122 @@ PathOptics layered_fog(
     return PathOptics {metal::exp(-(_e208)), _e211};
 }
 
+// Red, green and blue of a radiance at four wavelengths.
+// Cost: no exp.
+metal::float3 rgb_from_spectrum(
+    RgbWeights weights,
+    metal::float4 spectrum
+) {
+    return metal::float3(metal::dot(weights.red, spectrum), metal::dot(weights.green, spectrum), metal::dot(weights.blue, spectrum));
+}
+
+// XYZ of linear sRGB (IEC 61966-2-1), in the unit of its components.
+// Cost: no exp.
+metal::float3 xyz_from_srgb(
+    metal::float3 rgb
+) {
+    return metal::float3(metal::dot(metal::float3(0.4123908, 0.35758433, 0.1804808), rgb), metal::dot(metal::float3(0.212639, 0.71516865, 0.07219232), rgb), metal::dot(metal::float3(0.019330818, 0.11919478, 0.95053214), rgb));
+}
+
+// Linear sRGB of XYZ, with negative components outside the gamut.
+// Cost: no exp.
+metal::float3 srgb_from_xyz(
+    metal::float3 xyz
+) {
+    return metal::float3(metal::dot(metal::float3(3.24097, -1.5373832, -0.49861076), xyz), metal::dot(metal::float3(-0.96924365, 1.8759675, 0.04155506), xyz), metal::dot(metal::float3(0.05563008, -0.20397696, 1.0569715), xyz));
+}
+
+// XYZ of linear BT.2020.
+// Cost: no exp.
+metal::float3 xyz_from_rec2020_rgb(
+    metal::float3 rgb_1
+) {
+    return metal::float3(metal::dot(metal::float3(0.63695806, 0.1446169, 0.16888097), rgb_1), metal::dot(metal::float3(0.2627002, 0.67799807, 0.059301715), rgb_1), metal::dot(metal::float3(0.0, 0.028072692, 1.0609851), rgb_1));
+}
+
+// Linear BT.2020 of XYZ, with negative components outside the gamut.
+// Cost: no exp.
+metal::float3 rec2020_from_xyz(
+    metal::float3 xyz_1
+) {
+    return metal::float3(metal::dot(metal::float3(1.7166512, -0.35567078, -0.2533663), xyz_1), metal::dot(metal::float3(-0.6666843, 1.6164812, 0.015768547), xyz_1), metal::dot(metal::float3(0.017639857, -0.042770613, 0.94210315), xyz_1));
+}
+
+// XYZ of ACEScg, whose white is adapted to D65 by Bradford's transform: what is neutral stays neutral.
+// Cost: no exp.
+metal::float3 xyz_from_acescg(
+    metal::float3 rgb_2
+) {
+    return metal::float3(metal::dot(metal::float3(0.65223753, 0.12823613, 0.16998225), rgb_2), metal::dot(metal::float3(0.26767218, 0.67434, 0.05798783), rgb_2), metal::dot(metal::float3(-0.0053818156, 0.0013690602, 1.0930705), rgb_2));
+}
+
+// ACEScg of XYZ, D65 adapted to its white by Bradford's transform.
+// Cost: no exp.
+metal::float3 acescg_from_xyz(
+    metal::float3 xyz_2
+) {
+    return metal::float3(metal::dot(metal::float3(1.6605853, -0.31529555, -0.24150933), xyz_2), metal::dot(metal::float3(-0.65992606, 1.6083915, 0.017298594), xyz_2), metal::dot(metal::float3(0.009002569, -0.0035668763, 0.9136433), xyz_2));
+}
+
+// sRGB signal of linear components (IEC 61966-2-1), odd below 0 and not clipped above 1.
+// Cost: 3 exp.
+metal::float3 srgb_encode(
+    metal::float3 linear
+) {
+    metal::float3 v = metal::abs(linear);
+    metal::float3 curved = (1.055 * metal::pow(metal::max(v, metal::float3(0.0031308)), metal::float3(0.41666666))) - metal::float3(0.055);
+    return metal::sign(linear) * metal::select(curved, 12.92 * v, v <= metal::float3(0.0031308));
+}
+
+// Linear components of an sRGB signal, the inverse of `srgb_encode`.
+// Cost: 3 exp.
+metal::float3 srgb_decode(
+    metal::float3 signal
+) {
+    metal::float3 v_1 = metal::abs(signal);
+    metal::float3 curved_1 = metal::pow((v_1 + metal::float3(0.055)) / metal::float3(1.055), metal::float3(2.4));
+    return metal::sign(signal) * metal::select(curved_1, v_1 / metal::float3(12.92), v_1 <= metal::float3(0.04045));
+}
+
+// Luminance of linear sRGB with the rounded weights of BT.709, in the unit of its components.
+// Cost: no exp.
+float srgb_luminance(
+    metal::float3 rgb_3
+) {
+    return metal::dot(metal::float3(0.2126, 0.7152, 0.0722), rgb_3);
+}
+
+// Linear sRGB moved towards grey of the same luminance until no component is negative; black where the luminance is not positive.
+// Cost: no exp.
+metal::float3 without_negatives(
+    metal::float3 rgb_4
+) {
+    float bottom = metal::min(rgb_4.x, metal::min(rgb_4.y, rgb_4.z));
+    if (bottom >= 0.0) {
+        return rgb_4;
+    }
+    float _e8 = srgb_luminance(rgb_4);
+    float grey = metal::max(_e8, 0.0);
+    return metal::max(metal::float3(grey) + ((grey / (grey - bottom)) * (rgb_4 - metal::float3(grey))), metal::float3(0.0));
+}
+
+// Linear sRGB moved towards grey of the same luminance until all components are from 0 to 1.
+// Cost: no exp.
+metal::float3 into_unit_cube(
+    metal::float3 rgb_5
+) {
+    metal::float3 _e1 = without_negatives(rgb_5);
+    float top = metal::max(_e1.x, metal::max(_e1.y, _e1.z));
+    if (top <= 1.0) {
+        return _e1;
+    }
+    float _e9 = srgb_luminance(_e1);
+    if (_e9 >= 1.0) {
+        return metal::float3(1.0);
+    }
+    return metal::clamp(metal::float3(_e9) + (((1.0 - _e9) / (top - _e9)) * (_e1 - metal::float3(_e9))), metal::float3(0.0), metal::float3(1.0));
+}
+
 // Texture coordinate of a place from 0 (centre of the first texel) to 1 (centre of the last) among `count` texels.
 // Cost: no exp.
 float texel_coordinate(
@@ -1117,9 +1241,9 @@ float row_coordinate(
     float end_1 = is_below ? -1.5707964 : view.highest_rad;
     float rows = is_below ? rows_below : rows_above;
     float part_1 = metal::clamp((elevation_rad - view.horizon_rad) / (end_1 - view.horizon_rad), 0.0, 1.0);
-    float place_3 = is_below ? metal::sqrt(metal::sqrt(part_1)) : metal::sqrt(part_1);
+    float place_4 = is_below ? metal::sqrt(metal::sqrt(part_1)) : metal::sqrt(part_1);
     float first_1 = is_below ? rows_above : 0.0;
-    return ((first_1 + 0.5) + (place_3 * (rows - 1.0))) / (rows_above + rows_below);
+    return ((first_1 + 0.5) + (place_4 * (rows - 1.0))) / (rows_above + rows_below);
 }
 
 // Inverse of `row_coordinate`: elevation of a texture coordinate, rad.
@@ -1130,12 +1254,12 @@ float elevation_from_row_coordinate(
     float rows_above_1,
     float rows_below_1
 ) {
-    float row = coordinate_1 * (rows_above_1 + rows_below_1);
-    bool is_below_1 = row >= rows_above_1;
+    float row_2 = coordinate_1 * (rows_above_1 + rows_below_1);
+    bool is_below_1 = row_2 >= rows_above_1;
     float end_2 = is_below_1 ? -1.5707964 : view_1.highest_rad;
     float rows_1 = is_below_1 ? rows_below_1 : rows_above_1;
-    float place_4 = ((row - (is_below_1 ? rows_above_1 : 0.0)) - 0.5) / (rows_1 - 1.0);
-    float squared = place_4 * place_4;
+    float place_5 = ((row_2 - (is_below_1 ? rows_above_1 : 0.0)) - 0.5) / (rows_1 - 1.0);
+    float squared = place_5 * place_5;
     return view_1.horizon_rad + ((end_2 - view_1.horizon_rad) * (is_below_1 ? (squared * squared) : squared));
 }
 
@@ -1319,15 +1443,6 @@ SpectralPath aerial_perspective(
     return SpectralPath {metal::float4(1.0) - opacity_1, (smooth_light_1 + (haze_1 * _e52)) * opacity_1};
 }
 
-// Red, green and blue of a radiance at four wavelengths.
-// Cost: no exp.
-metal::float3 rgb_from_spectrum(
-    RgbWeights weights,
-    metal::float4 spectrum
-) {
-    return metal::float3(metal::dot(weights.red, spectrum), metal::dot(weights.green, spectrum), metal::dot(weights.blue, spectrum));
-}
-
 // Transmittance and path radiance in red, green and blue, for scenes in these: the transmittance of a channel is that of sunlight.
 // Cost: no exp.
 PathOptics rgb_path(
@@ -1338,4 +1453,184 @@ PathOptics rgb_path(
     metal::float3 _e4 = rgb_from_spectrum(transmittance, path_1.transmittance);
     metal::float3 _e6 = rgb_from_spectrum(radiance_2, path_1.path_radiance);
     return PathOptics {_e4, _e6};
+}
+
+// Limb darkening at wavelengths from 423 to 1099 nm, to which others are clamped (Neckel, Sol. Phys. 229, 13, 2005, table 2). Compute it once for all pixels.
+// Cost: no exp.
+LimbDarkening limb_darkening(
+    metal::float4 wavelengths_nm
+) {
+    metal::float4 per_um = metal::float4(1000.0) / metal::clamp(wavelengths_nm, metal::float4(422.57), metal::float4(1099.0));
+    metal::float4 power = (((per_um * per_um) * per_um) * per_um) * per_um;
+    metal::float4 zeroth = metal::float4(0.75267) - (0.265577 * per_um);
+    metal::float4 first_2 = (metal::float4(0.93874) + (0.265577 * per_um)) - (0.004095 * power);
+    metal::float4 second = metal::float4(-1.89287) + (0.012582 * power);
+    metal::float4 third = metal::float4(2.42234) - (0.017117 * power);
+    metal::float4 fourth = metal::float4(-1.7115) + (0.011977 * power);
+    metal::float4 fifth = metal::float4(0.49062) - (0.003347 * power);
+    metal::float4 mean = ((((zeroth + (first_2 * 0.6666667)) + (second * 0.5)) + (third * 0.4)) + (fourth * 0.33333334)) + (fifth * 0.2857143);
+    return LimbDarkening {zeroth / mean, first_2 / mean, second / mean, third / mean, fourth / mean, fifth / mean};
+}
+
+// Radiance of the disc at `mu`, relative to its mean.
+// Cost: no exp.
+metal::float4 limb_profile(
+    LimbDarkening limb,
+    float mu
+) {
+    return limb.zeroth + (mu * (limb.first + (mu * (limb.second + (mu * (limb.third + (mu * (limb.fourth + (mu * limb.fifth)))))))));
+}
+
+// Place of a direction on the disc: the sine of its angle from the centre divided by the sine of the disc's angular radius, 0 to 1; more than 1 outside. `one_minus_cos` is that between the direction and the sun.
+// Cost: no exp.
+float place_on_disc(
+    float sin_radius,
+    float one_minus_cos_8
+) {
+    return ((one_minus_cos_8 < 1.0) ? metal::sqrt(metal::max(one_minus_cos_8 * (2.0 - one_minus_cos_8), 0.0)) : 2.0) / sin_radius;
+}
+
+// Part of a pixel that the disc covers, 0 to 1: a ramp as wide as a pixel across the edge, so that the edge is smooth and the disc's light is kept, within `(pixel / radius)^2 / 12`. `sin_pixel` is the sine of the angle that a pixel spans; 0 gives a sharp edge.
+// Cost: no exp.
+float disc_coverage(
+    float place_3,
+    float sin_radius_1,
+    float sin_pixel
+) {
+    return metal::clamp(((1.0 - place_3) * (sin_radius_1 / metal::max(sin_pixel, 0.000001 * sin_radius_1))) + 0.5, 0.0, 1.0);
+}
+
+// Radiance of the sun's disc in a pixel whose centre is `one_minus_cos` from the sun, from the disc's mean radiance: the irradiance on a surface that faces the sun, divided by `pi sin_radius^2`. Without attenuation by air.
+// Cost: no exp.
+metal::float4 sun_disc_radiance(
+    LimbDarkening limb_1,
+    metal::float4 mean_radiance,
+    float sin_radius_2,
+    float sin_pixel_1,
+    float one_minus_cos_9
+) {
+    float _e5 = place_on_disc(sin_radius_2, one_minus_cos_9);
+    float mu_1 = metal::sqrt(metal::max((1.0 - _e5) * (1.0 + _e5), 0.0));
+    metal::float4 _e14 = limb_profile(limb_1, mu_1);
+    float _e16 = disc_coverage(_e5, sin_radius_2, sin_pixel_1);
+    return (mean_radiance * _e14) * _e16;
+}
+
+// No curve: components above 1 and below 0 are clipped.
+// Cost: no exp.
+metal::float3 clip_tone(
+    metal::float3 exposed
+) {
+    return metal::clamp(exposed, metal::float3(0.0), metal::float3(1.0));
+}
+
+// Response `x^n / (x^n + q)` of film and retina (Naka & Rushton 1966), at which 0.18 stays 0.18. `contrast` is its slope there on logarithmic axes, 0.5 to 3.
+// Cost: 3 exp.
+metal::float3 camera_response(
+    metal::float3 x_3,
+    float contrast
+) {
+    metal::float3 ratio = metal::float3(0.18) / metal::max(x_3, metal::float3(0.00000001));
+    metal::float3 response = metal::float3(1.0) / (metal::float3(1.0) + (4.555556 * metal::pow(ratio, metal::float3(contrast / 0.82))));
+    return metal::select(response, metal::float3(0.0), x_3 <= metal::float3(0.000000011));
+}
+
+// Curve in the manner of a camera: contrast around middle grey, highlights that roll off to white, hue kept. `contrast` is usually 1.2, `saturation` 1 (0: grey).
+// Cost: 3 exp.
+metal::float3 camera_tone(
+    metal::float3 exposed_1,
+    float contrast_1,
+    float saturation
+) {
+    metal::float3 _e3 = without_negatives(exposed_1);
+    float _e4 = srgb_luminance(_e3);
+    metal::float3 linear_1 = metal::mix(_e3, metal::float3(_e4), 0.01);
+    float least = metal::min(linear_1.x, metal::min(linear_1.y, linear_1.z));
+    float most = metal::max(linear_1.x, metal::max(linear_1.y, linear_1.z));
+    metal::float3 _e18 = camera_response(linear_1, contrast_1);
+    float hi = metal::max(_e18.x, metal::max(_e18.y, _e18.z));
+    float dark = ((1.0 - hi) * (1.0 - hi)) * (1.0 - hi);
+    metal::float3 curved_2 = metal::mix(_e18, linear_1 * (hi / metal::max(most, 0.000000000000000000000000000001)), dark);
+    float lo = metal::min(curved_2.x, metal::min(curved_2.y, curved_2.z));
+    metal::float3 kept = metal::float3(lo) + (((hi - lo) / metal::max(most - least, 0.000000000000000000000000000001)) * (linear_1 - metal::float3(least)));
+    metal::float3 toned = metal::mix(kept, curved_2, 0.2);
+    float _e54 = srgb_luminance(toned);
+    metal::float3 _e57 = into_unit_cube(metal::mix(metal::float3(_e54), toned, saturation));
+    return _e57;
+}
+
+// Response of the base look of AgX (T. Sobotka 2022): a sigmoid of the logarithm from 10 stops below middle grey to 6.5 stops above.
+// Cost: 9 exp.
+metal::float3 agx_response(
+    metal::float3 x_4
+) {
+    metal::float3 stops = metal::log2(metal::max(x_4, metal::float3(0.000000001)) / metal::float3(0.18));
+    metal::float3 place_6 = metal::clamp((stops + metal::float3(10.0)) / metal::float3(16.5), metal::float3(0.0), metal::float3(1.0));
+    metal::float3 from_grey = place_6 - metal::float3(0.6060606);
+    metal::bool3 is_toe = from_grey < metal::float3(0.0);
+    metal::float3 limit = metal::select(metal::float3(0.7151983), metal::float3(0.5656756), is_toe);
+    metal::float3 u = 2.4 * metal::abs(from_grey);
+    metal::float3 bent = u / limit;
+    metal::float3 rise_1 = u / metal::pow(metal::float3(1.0) + (bent * metal::sqrt(bent)), metal::float3(0.6666667));
+    metal::float3 signal_2 = metal::clamp(metal::float3(0.4894371) + metal::select(rise_1, -(rise_1), is_toe), metal::float3(0.0), metal::float3(1.0));
+    return metal::pow(signal_2, metal::float3(2.4));
+}
+
+// Base look of AgX: highlights roll off, and bright saturated colours turn white early.
+// Cost: 9 exp.
+metal::float3 agx_tone(
+    metal::float3 exposed_2
+) {
+    metal::float3 weights_1 = metal::float3(0.212, 0.3922, 0.3958);
+    metal::float3 _e5 = without_negatives(exposed_2);
+    metal::float3 inset = metal::mix(_e5, metal::float3(metal::dot(weights_1, _e5)), 0.2);
+    metal::float3 _e10 = agx_response(inset);
+    metal::float3 _e19 = into_unit_cube((_e10 - metal::float3(0.2 * metal::dot(weights_1, _e10))) / metal::float3(0.8));
+    return _e19;
+}
+
+// Hash of a number: neighbours are unrelated.
+// Cost: no exp.
+uint dither_hash(
+    uint n
+) {
+    uint once = (n ^ (n >> 16u)) * 569420461u;
+    uint twice = (once ^ (once >> 15u)) * 1935289751u;
+    return twice ^ (twice >> 15u);
+}
+
+// Three numbers from 0 to below 1 from the bits of a hash.
+// Cost: no exp.
+metal::float3 numbers_from_bits(
+    uint bits
+) {
+    return metal::float3(static_cast<float>(bits >> 22u), static_cast<float>((bits >> 11u) & 1023u), static_cast<float>(bits & 1023u)) / metal::float3(1024.0);
+}
+
+// Noise of a pixel, in levels: between -1 and 1, mean 0, variance 1/6. Along a row it is the difference of successive hashes.
+// Cost: no exp.
+metal::float3 triangular_noise(
+    uint column_2,
+    uint row
+) {
+    uint _e4 = dither_hash(row ^ 1540483477u);
+    uint _e8 = dither_hash(_e4 + (column_2 * 2654435769u));
+    metal::float3 _e9 = numbers_from_bits(_e8);
+    uint _e15 = dither_hash(_e4 + ((column_2 + 1u) * 2654435769u));
+    metal::float3 _e16 = numbers_from_bits(_e15);
+    return _e16 - _e9;
+}
+
+// A signal from 0 to 1 with noise, to be stored in a target of `levels` levels above 0 (255 for 8 bits), which rounds to the nearest. Black and white stay unchanged, and no noise exceeds them.
+// Cost: no exp.
+metal::float3 dithered(
+    metal::float3 signal_1,
+    float levels,
+    uint column_3,
+    uint row_1
+) {
+    metal::float3 level = signal_1 * levels;
+    metal::float3 room = metal::min(metal::min(level, metal::float3(levels) - level), metal::float3(1.0));
+    metal::float3 _e11 = triangular_noise(column_3, row_1);
+    return (level + (_e11 * room)) / metal::float3(levels);
 }

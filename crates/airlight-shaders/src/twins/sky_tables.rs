@@ -1,5 +1,6 @@
 //! Skies and aerial perspective from tables: `wgsl/sky_tables.wgsl`.
 
+use super::colour::{RgbWeights, rgb_from_spectrum};
 use super::exponentials::{mean_transmittance, mean_transmittance_rgb};
 use super::path_optics::PathOptics;
 use super::phase::one_minus_cos_between;
@@ -57,17 +58,6 @@ pub struct SpectralPath {
     pub transmittance: Vec4,
     /// Radiance scattered into the ray.
     pub path_radiance: Vec4,
-}
-
-/// Weights of four wavelengths in red, green and blue.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RgbWeights {
-    /// In red.
-    pub red: Vec4,
-    /// In green.
-    pub green: Vec4,
-    /// In blue.
-    pub blue: Vec4,
 }
 
 /// Texture coordinate of a place from 0 to 1 among `count` texels.
@@ -297,15 +287,6 @@ pub fn aerial_perspective(
         transmittance: 1.0 - opacity,
         path_radiance: (smooth_light + haze * phase) * opacity,
     }
-}
-
-/// Red, green and blue of a radiance at four wavelengths.
-pub fn rgb_from_spectrum(weights: RgbWeights, spectrum: Vec4) -> Vec3 {
-    Vec3::new(
-        weights.red.dot(spectrum),
-        weights.green.dot(spectrum),
-        weights.blue.dot(spectrum),
-    )
 }
 
 /// Transmittance and path radiance in red, green and blue, for scenes in these.

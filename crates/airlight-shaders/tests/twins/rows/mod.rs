@@ -1,6 +1,7 @@
 //! The table of functions: for each its twin, inputs, and the value in f64.
 
 mod air;
+mod colour;
 mod fog;
 mod phase;
 mod sky_tables;
@@ -44,5 +45,9 @@ pub fn all() -> Vec<Row> {
     all.extend(air::columns());
     all.extend(fog::fog());
     all.extend(sky_tables::sky_tables());
+    all.extend(colour::colour_functions());
+    all.extend(colour::tone());
+    all.extend(colour::dither());
+    all.extend(colour::disc());
     all
 }

@@ -14,7 +14,6 @@ flat_struct! {
     twins::sky_tables::SkyView { sun, height_m, ground_radius_m, air_height_m, horizon_rad, highest_rad }
     twins::sky_tables::SkyScales { smooth_light, haze }
     twins::sky_tables::SpectralPath { transmittance, path_radiance }
-    twins::sky_tables::RgbWeights { red, green, blue }
 }
 
 const RADIUS_M: f64 = 6.36e6;
@@ -243,7 +242,7 @@ fn with_textures() -> [(&'static str, FlatFunction); 3] {
     ]
 }
 
-fn weighted(weights: &[f64], spectrum: &[f64]) -> Vec<f64> {
+pub fn weighted(weights: &[f64], spectrum: &[f64]) -> Vec<f64> {
     let channel = |c: usize| (0..4).map(|k| weights[4 * c + k] * spectrum[k]).sum();
     (0..3).map(channel).collect()
 }
@@ -296,8 +295,6 @@ pub fn sky_tables() -> Vec<Row> {
         phase_place: |r| vec![r.one_minus_cos()] => |x| vec![place_of_phase(x[0])];
         one_minus_cos_from_phase_place: |r| vec![r.or(&[0.0, 1.0], Random::unit)]
             => |x| vec![2.0 * (FRAC_PI_2 * x[0] * x[0]).sin().powi(2)];
-        rgb_from_spectrum: |r| (0..16).map(|_| r.unit()).collect()
-            => |x| weighted(&x[..12], &x[12..]);
         rgb_path: |r| (0..32).map(|_| r.unit()).collect() => |x| {
             [weighted(&x[12..24], &x[24..28]), weighted(&x[..12], &x[28..])].concat()
         };
