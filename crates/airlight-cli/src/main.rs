@@ -7,7 +7,7 @@
 //! - [`error`]: errors and exit codes; [`option_names`]: options in messages; [`parse`]: parsing of argument values.
 //! - [`interrupt`], [`progress`], [`report`]: Ctrl-C, progress bars on standard error, text on standard output.
 //! - [`topics`]: recipes. [`args`]: options of all commands, and the scenes that they describe; [`short_help`]: what `-h`
-//!   lists of them.
+//!   lists of them; [`example_values`]: values that work, in errors.
 //! - [`scene`]: saving scenes, threads; [`atmosphere`], [`aerosol`]: lists of names.
 //! - [`sky`], [`fog`], [`probe`], [`compare`], [`grid`], [`accuracy`], [`plot`] and [`shaders`]: the commands; [`generate`]:
 //!   files for shells.
@@ -18,6 +18,7 @@ mod args;
 mod atmosphere;
 mod compare;
 mod error;
+mod example_values;
 mod fog;
 mod generate;
 mod grid;
@@ -61,15 +62,17 @@ fn main() -> ExitCode {
     }
 }
 
-/// Parses the words of the command line, or exits. An error of a missing argument shows an example. The command `help` of clap does not
+/// Parses the words of the command line, or exits. An error of a missing argument or value shows an example. The command `help` of clap does not
 /// suggest the command that an unknown one resembles; the unknown command by itself does.
 fn parse_words(command: &mut clap::Command, mut words: Vec<OsString>) -> ArgMatches {
     let mut error = match command.try_get_matches_from_mut(&words) {
         Ok(matches) => return matches,
         Err(error) => error,
     };
+    let named = short_help::named_command(command, &words);
+    example_values::explain(&mut error, named);
     if error.kind() == ErrorKind::MissingRequiredArgument
-        && let Some(example) = short_help::example(command, &words)
+        && let Some(example) = short_help::example(named)
     {
         let tip = vec![StyledStr::from(format!("for example: {example}"))];
         error.insert(ContextKind::Suggested, ContextValue::StyledStrs(tip));

@@ -106,13 +106,18 @@ fn first_clause(arg: Arg) -> Arg {
     arg.help(short).long_help(long)
 }
 
-/// The first example of the command that the words name, on one line.
-pub fn example(command: &Command, words: &[OsString]) -> Option<String> {
+/// The command that words name.
+pub fn named_command<'a>(command: &'a Command, words: &[OsString]) -> &'a Command {
     let mut command = command;
     for word in words {
         let named = word.to_str().and_then(|word| command.find_subcommand(word));
         command = named.unwrap_or(command);
     }
+    command
+}
+
+/// The first example of a command, on one line.
+pub fn example(command: &Command) -> Option<String> {
     let help = command.get_after_long_help().or(command.get_after_help())?;
     let help = help.to_string().replace("\\\n", " ");
     let lines = help.lines().map(str::trim);

@@ -408,6 +408,9 @@ fn errors_name_the_option_and_what_works() {
     }
     for (words, code, part) in [
         ("fog", 2, "for example: airlight fog photo.png --depth"),
+        ("probe --view", 2, "for example: --view 0,90"),
+        ("fog left.png --each", 2, "for example: --each "),
+        ("sky --seed x -o a.png", 2, "for example: --seed 7"),
         ("compare orders", 2, "for example: airlight compare orders"),
         (
             "sky --sun-elevation 9 --quality 200 -o a.jpg",
