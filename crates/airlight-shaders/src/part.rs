@@ -16,6 +16,10 @@ pub enum Part {
     Columns,
     /// Fog in sunlight and ambient light.
     Fog,
+    /// Point, spot and sphere lights in fog.
+    Lights,
+    /// Fog with shadows.
+    Shadows,
     /// Wavelengths, XYZ, RGB spaces, sRGB signals.
     Colour,
     /// Skies and aerial perspective from tables.
@@ -34,6 +38,8 @@ named! { Part, "a part of the shader library", [
     ("path-optics", (PathOptics), "transmittance and path radiance of a ray segment"),
     ("columns", (Columns), "integrals of density along rays over flat or round ground"),
     ("fog", (Fog), "fog in sunlight and ambient light, by single scattering"),
+    ("lights", (Lights), "point, spot and sphere lights in uniform and in exponential fog"),
+    ("shadows", (Shadows), "fog with shadows, from visibilities that the program supplies"),
     ("colour", (Colour), "wavelengths, XYZ, linear RGB spaces, sRGB signals"),
     ("sky-tables", (SkyTables), "skies and aerial perspective from tables at four wavelengths"),
     ("disc", (Disc), "the sun's disc with limb darkening and a smooth edge"),
@@ -50,6 +56,8 @@ impl Part {
             Self::PathOptics => include_str!("../wgsl/path_optics.wgsl"),
             Self::Columns => include_str!("../wgsl/columns.wgsl"),
             Self::Fog => include_str!("../wgsl/fog.wgsl"),
+            Self::Lights => include_str!("../wgsl/lights.wgsl"),
+            Self::Shadows => include_str!("../wgsl/shadows.wgsl"),
             Self::Colour => include_str!("../wgsl/colour.wgsl"),
             Self::SkyTables => include_str!("../wgsl/sky_tables.wgsl"),
             Self::Disc => include_str!("../wgsl/disc.wgsl"),

@@ -43,6 +43,33 @@ struct FogLayers {
     float inverse_radius_per_m;
     FogLight light;
 };
+struct LocalLight {
+    vec3 position;
+    uint kind;
+    vec3 intensity;
+    float radius_m;
+    vec3 axis;
+    float cos_inner;
+    float cos_outer;
+};
+struct LightRayGeometry {
+    float nearest_m;
+    float start_m;
+    float length_m;
+};
+struct LightRay {
+    LightRayGeometry geometry;
+    LocalLight light;
+    float nearest_m;
+    float across_m;
+    float along;
+};
+struct ExponentialFog {
+    FogMedium medium;
+    float mean_cosine;
+    float reference_height_m;
+    float scale_height_m;
+};
 struct RgbWeights {
     vec4 red;
     vec4 green;
@@ -79,6 +106,11 @@ const uint FOG_UNIFORM = 0u;
 const uint FOG_EXPONENTIAL = 1u;
 const uint FOG_CLAMPED = 2u;
 const uint FOG_SLAB = 3u;
+const uint LIGHT_POINT = 0u;
+const uint LIGHT_SPOT = 1u;
+const uint LIGHT_SPHERE = 2u;
+const uint LIGHT_NODES = 8u;
+const float LIGHT_CUTOFF = 12.667;
 const float SKY_AZIMUTHS = 64.0;
 const float SKY_ROWS_ABOVE = 128.0;
 const float SKY_ROWS_BELOW = 32.0;
@@ -164,8 +196,8 @@ float isotropic_phase() {
 // Cost: no exp.
 float rayleigh_phase(float one_minus_cos, float depolarization_ratio) {
     float gamma = (depolarization_ratio / (2.0 - depolarization_ratio));
-    float cos_angle = (1.0 - one_minus_cos);
-    return ((0.059683103 / (1.0 + (2.0 * gamma))) * ((1.0 + (3.0 * gamma)) + (((1.0 - gamma) * cos_angle) * cos_angle)));
+    float cos_angle_1 = (1.0 - one_minus_cos);
+    return ((0.059683103 / (1.0 + (2.0 * gamma))) * ((1.0 + (3.0 * gamma)) + (((1.0 - gamma) * cos_angle_1) * cos_angle_1)));
 }
 
 // Henyey-Greenstein phase function of a forward peak, of mean cosine `1 - one_minus_g`: `one_minus_g` from 1e-6 to 1, which keeps the width of narrow peaks.
@@ -186,9 +218,9 @@ float henyey_greenstein(float one_minus_cos_2, float g) {
 // Cost: no exp.
 float draine(float one_minus_cos_3, float g_1, float alpha) {
     float norm = (1.0 + ((alpha * (1.0 + ((2.0 * g_1) * g_1))) / 3.0));
-    float cos_angle_1 = (1.0 - one_minus_cos_3);
+    float cos_angle_2 = (1.0 - one_minus_cos_3);
     float _e15 = henyey_greenstein(one_minus_cos_3, g_1);
-    return ((_e15 * (1.0 + ((alpha * cos_angle_1) * cos_angle_1))) / norm);
+    return ((_e15 * (1.0 + ((alpha * cos_angle_2) * cos_angle_2))) / norm);
 }
 
 // Cornette & Shanks (Appl. Opt. 31, 3152, 1992, eq. 8): Henyey-Greenstein times `1 + cos^2`, normalised.
@@ -904,10 +936,635 @@ PathOptics layered_fog(FogLayers fog_2, RaySegment ray_8) {
     return PathOptics(exp(-(_e208)), _e211);
 }
 
+// A point light.
+// Cost: no exp.
+LocalLight point_light(vec3 position, float radius_m, vec3 intensity) {
+    return LocalLight(position, LIGHT_POINT, intensity, radius_m, vec3(0.0), 0.0, 0.0);
+}
+
+// A spot light, whose intensity falls between the inner and the outer angle as in glTF's `KHR_lights_punctual`.
+// Cost: no exp.
+LocalLight spot_light(vec3 position_1, float radius_m_1, vec3 intensity_1, vec3 axis, float cos_inner, float cos_outer) {
+    return LocalLight(position_1, LIGHT_SPOT, intensity_1, radius_m_1, axis, cos_inner, cos_outer);
+}
+
+// A sphere light. Rays that hit it end there.
+// Cost: no exp.
+LocalLight sphere_light(vec3 position_2, float radius_m_2, vec3 radiance_2) {
+    vec3 intensity_2 = (((3.1415927 * radius_m_2) * radius_m_2) * radiance_2);
+    return LocalLight(position_2, LIGHT_SPHERE, intensity_2, radius_m_2, vec3(0.0), 0.0, 0.0);
+}
+
+// A segment past a light, from which it is at least `at_least_m` away.
+// Cost: no exp.
+LightRayGeometry light_ray_geometry(vec3 eye, vec3 direction, float length_m_8, vec3 light_6, float at_least_m) {
+    vec3 to_light = (light_6 - eye);
+    return LightRayGeometry(max(length(cross(to_light, direction)), at_least_m), -(dot(to_light, direction)), length_m_8);
+}
+
+// Distance from the light at a place, m.
+// Cost: no exp.
+float light_distance_m(float nearest_m, float place_m) {
+    return sqrt(((nearest_m * nearest_m) + (place_m * place_m)));
+}
+
+// Distance from the light plus the place, m, without cancellation.
+// Cost: no exp.
+float light_ahead_m(float nearest_m_1, float place_m_1) {
+    float _e2 = light_distance_m(nearest_m_1, place_m_1);
+    float far_5 = (_e2 + abs(place_m_1));
+    return ((place_m_1 < 0.0) ? (nearest_m_1 * (nearest_m_1 / far_5)) : far_5);
+}
+
+// Excess of the end: by how much the path from the start to the end and on to the light is longer than from the start to the light, m.
+// Cost: no exp.
+float light_excess_m(LightRayGeometry geometry) {
+    float h = geometry.nearest_m;
+    float end_2 = (geometry.start_m + geometry.length_m);
+    float _e6 = light_ahead_m(h, geometry.start_m);
+    float _e7 = light_ahead_m(h, end_2);
+    float ahead_1 = (_e6 + _e7);
+    float _e11 = light_distance_m(h, geometry.start_m);
+    float _e12 = light_distance_m(h, end_2);
+    return (geometry.length_m * (ahead_1 / (_e11 + _e12)));
+}
+
+// Angle that the segment subtends at the light, 0 to pi.
+// Cost: no exp.
+float light_angle(LightRayGeometry geometry_1) {
+    float h_1 = geometry_1.nearest_m;
+    float u = geometry_1.start_m;
+    return atan((h_1 * geometry_1.length_m), ((h_1 * h_1) + (u * (u + geometry_1.length_m))));
+}
+
+// Radiance scattered from a point light of unit intensity by uniform fog of unit scattering coefficient that scatters equally in all directions, 1/m, without extinction: `angle / (4 pi h)` (after Macklin 2010, corrected).
+// Cost: no exp.
+float airlight_without_extinction(LightRayGeometry geometry_2) {
+    float _e1 = light_angle(geometry_2);
+    return ((_e1 * 0.07957747) / geometry_2.nearest_m);
+}
+
+// Place (x) and weight (y) of a node on the unit interval.
+// Cost: no exp.
+vec2 light_gauss_node(uint i_5) {
+    float places[4] = float[4](0.019855073, 0.10166676, 0.23723379, 0.40828267);
+    float weights[4] = float[4](0.050614268, 0.11119052, 0.15685332, 0.18134189);
+    uint k_1 = min(i_5, (7u - min(i_5, 7u)));
+    float _e19 = places[k_1];
+    float _e21 = places[k_1];
+    float _e28 = weights[k_1];
+    return vec2(((i_5 > 3u) ? (1.0 - _e21) : _e19), _e28);
+}
+
+// Interval of `q` that nodes cover: from 1 down to 1 minus this, where the excess is `scale (1 - q^3) / q^3`, from 0 to `end`.
+// Cost: 1 exp.
+float light_node_span(float scale_m, float end_m_1) {
+    float inverse_ = min((scale_m / max(end_m_1, 1e-30)), 1e30);
+    float covered = (1.0 / (1.0 + inverse_));
+    float last_1 = pow(max((inverse_ * covered), 1e-30), 0.33333334);
+    return (covered / ((1.0 + last_1) + (last_1 * last_1)));
+}
+
+// Excess (x) and step (y) of a node, m.
+// Cost: no exp.
+vec2 light_node(uint i_6, float scale_m_1, float span) {
+    vec2 _e3 = light_gauss_node(i_6);
+    float z_1 = (span * _e3.x);
+    float q_1 = (1.0 - z_1);
+    float p = ((q_1 * q_1) * q_1);
+    return vec2((((scale_m_1 * z_1) * ((3.0 - (3.0 * z_1)) + (z_1 * z_1))) / p), ((((3.0 * _e3.y) * span) * scale_m_1) / (q_1 * p)));
+}
+
+// `airlight_without_extinction` with extinction between light, fog and eye (1/m): the integral of Sun, Ramamoorthi, Narasimhan and Nayar (2005) by quadrature with 8 nodes.
+// Cost: 6 exp, 3 exp a step; 8 steps.
+vec3 airlight_isotropic(LightRayGeometry geometry_3, vec3 extinction_per_m) {
+    vec3 sum = vec3(0.0);
+    uint i_7 = 0u;
+    float h_2 = geometry_3.nearest_m;
+    float _e4 = light_ahead_m(h_2, geometry_3.start_m);
+    float _e5 = light_distance_m(h_2, _e4);
+    float spread = ((2.0 * _e4) / _e5);
+    vec3 x_5 = (extinction_per_m * _e5);
+    float _e10 = light_excess_m(geometry_3);
+    vec3 inverse_1 = max(vec3(min((_e5 / max(_e10, 1e-30)), 1e30)), (x_5 / vec3(12.667)));
+    vec3 covered_1 = (vec3(1.0) / (vec3(1.0) + inverse_1));
+    vec3 last_2 = pow(max((inverse_1 * covered_1), vec3(1e-30)), vec3(0.33333334));
+    vec3 span_1 = (covered_1 / ((vec3(1.0) + last_2) + (last_2 * last_2)));
+    bool loop_init_6 = true;
+    while(true) {
+        if (!loop_init_6) {
+            uint _e89 = i_7;
+            i_7 = (_e89 + 1u);
+        }
+        loop_init_6 = false;
+        uint _e45 = i_7;
+        if ((_e45 < LIGHT_NODES)) {
+        } else {
+            break;
+        }
+        {
+            uint _e48 = i_7;
+            vec2 _e49 = light_gauss_node(_e48);
+            vec3 z_2 = (span_1 * _e49.x);
+            vec3 q_2 = (vec3(1.0) - z_2);
+            vec3 p_1 = ((q_2 * q_2) * q_2);
+            vec3 y = (z_2 * (vec3(3.0) + (z_2 * (z_2 - vec3(3.0)))));
+            vec3 fall_1 = ((p_1 * p_1) + (y * ((spread * p_1) + y)));
+            vec3 both = (vec3(1.0) / (p_1 * fall_1));
+            vec3 _e74 = sum;
+            sum = (_e74 + ((((((3.0 * _e49.y) * q_2) * q_2) * p_1) * both) * exp((((-(x_5) * y) * fall_1) * both))));
+        }
+    }
+    float _e94 = light_distance_m(h_2, geometry_3.start_m);
+    vec3 arriving_1 = exp((-(extinction_per_m) * _e94));
+    vec3 _e101 = sum;
+    return ((((0.15915494 / _e5) * arriving_1) * span_1) * _e101);
+}
+
+// A point light in uniform fog that scatters equally in all directions.
+// Cost: 6 exp, 3 exp a step; 8 steps.
+vec3 point_light_in_isotropic_fog(FogMedium medium_6, LocalLight light_7, vec3 eye_1, vec3 direction_1, float length_m_9) {
+    LightRayGeometry _e7 = light_ray_geometry(eye_1, direction_1, length_m_9, light_7.position, light_7.radius_m);
+    vec3 _e12 = airlight_isotropic(_e7, medium_6.extinction_per_m);
+    return ((medium_6.scattering_per_m * light_7.intensity) * _e12);
+}
+
+// A ray past a light.
+// Cost: no exp.
+LightRay light_ray(LocalLight light_8, vec3 eye_2, vec3 direction_2, float length_m_10) {
+    LightRayGeometry geometry_4 = LightRayGeometry(0.0, 0.0, 0.0);
+    bool local_12 = false;
+    LightRayGeometry _e6 = light_ray_geometry(eye_2, direction_2, length_m_10, light_8.position, light_8.radius_m);
+    geometry_4 = _e6;
+    vec3 to_light_1 = (light_8.position - eye_2);
+    float nearest_m_2 = length(cross(to_light_1, direction_2));
+    if ((light_8.kind == LIGHT_SPHERE)) {
+        float distance_m_2 = length(to_light_1);
+        float inside = ((light_8.radius_m - nearest_m_2) * (light_8.radius_m + nearest_m_2));
+        if ((distance_m_2 <= light_8.radius_m)) {
+            geometry_4.length_m = 0.0;
+        } else {
+            float _e26 = geometry_4.start_m;
+            if ((_e26 < 0.0)) {
+                local_12 = (inside > 0.0);
+            } else {
+                local_12 = false;
+            }
+            bool _e34 = local_12;
+            if (_e34) {
+                float _e42 = geometry_4.start_m;
+                float hit_m = (((distance_m_2 - light_8.radius_m) * (distance_m_2 + light_8.radius_m)) / (sqrt(inside) - _e42));
+                geometry_4.length_m = min(length_m_10, hit_m);
+            }
+        }
+    }
+    float _e49 = geometry_4.start_m;
+    vec3 closest = (-(to_light_1) - (_e49 * direction_2));
+    LightRayGeometry _e52 = geometry_4;
+    return LightRay(_e52, light_8, nearest_m_2, dot(closest, light_8.axis), dot(direction_2, light_8.axis));
+}
+
+// Interval of a ray, m from its start, in which the direction from a spot light is within a cone of this cosine of its half-angle; the whole ray for other lights, (0, 0) outside.
+// Cost: no exp.
+vec2 lit_interval(LightRay ray_9, float cos_angle) {
+    float from_m_2 = -1000000000000.0;
+    bool local_13 = false;
+    float to_m_1 = INFINITE_M;
+    bool local_14 = false;
+    float length_m_14 = ray_9.geometry.length_m;
+    if ((ray_9.light.kind != LIGHT_SPOT)) {
+        return vec2(0.0, length_m_14);
+    }
+    float h_3 = ray_9.geometry.nearest_m;
+    float across = (ray_9.across_m / h_3);
+    float _e15 = light_distance_m(across, ray_9.along);
+    if ((cos_angle >= _e15)) {
+        return vec2(0.0);
+    }
+    vec2 middle = (vec2(across, ray_9.along) / vec2(_e15));
+    float width = (cos_angle / _e15);
+    float sin_width = sqrt(max(((1.0 - width) * (1.0 + width)), 0.0));
+    vec2 first_1 = vec2(((middle.x * width) + (middle.y * sin_width)), ((middle.y * width) - (middle.x * sin_width)));
+    vec2 last_3 = vec2(((middle.x * width) - (middle.y * sin_width)), ((middle.y * width) + (middle.x * sin_width)));
+    if ((first_1.x > 0.0)) {
+        from_m_2 = ((h_3 * first_1.y) / first_1.x);
+    } else {
+        if ((across <= 0.0)) {
+            local_13 = (ray_9.along >= 0.0);
+        } else {
+            local_13 = false;
+        }
+        bool _e71 = local_13;
+        if (_e71) {
+            return vec2(0.0);
+        }
+    }
+    if ((last_3.x > 0.0)) {
+        to_m_1 = ((h_3 * last_3.y) / last_3.x);
+    } else {
+        if ((across <= 0.0)) {
+            local_14 = (ray_9.along <= 0.0);
+        } else {
+            local_14 = false;
+        }
+        bool _e91 = local_14;
+        if (_e91) {
+            return vec2(0.0);
+        }
+    }
+    float _e94 = from_m_2;
+    float _e95 = to_m_1;
+    vec2 interval = clamp((vec2(_e94, _e95) - vec2(ray_9.geometry.start_m)), vec2(0.0), vec2(length_m_14));
+    return ((interval.y > interval.x) ? interval : vec2(0.0));
+}
+
+// Light at a place of a ray: its intensity there relative to `intensity` (x), times the ratio of the squared distances `geometry` and the light have; the distance to the light's surface, m (y); 1 minus the cosine of the scattering angle (z).
+// Cost: no exp.
+vec3 light_at(LightRay ray_10, float place_m_2) {
+    float h_4 = ray_10.geometry.nearest_m;
+    float _e4 = light_distance_m(h_4, place_m_2);
+    float _e5 = light_ahead_m(h_4, place_m_2);
+    float one_minus_cos_10 = (_e5 / _e4);
+    if ((ray_10.light.kind == LIGHT_SPOT)) {
+        float cos_angle_3 = ((ray_10.across_m + (place_m_2 * ray_10.along)) / _e4);
+        float range = max((ray_10.light.cos_inner - ray_10.light.cos_outer), 1e-6);
+        float part_1 = clamp(((cos_angle_3 - ray_10.light.cos_outer) / range), 0.0, 1.0);
+        return vec3((part_1 * part_1), _e4, one_minus_cos_10);
+    }
+    if ((ray_10.light.kind == LIGHT_SPHERE)) {
+        float radius_m_3 = ray_10.light.radius_m;
+        float _e39 = light_distance_m(ray_10.nearest_m, place_m_2);
+        float centre_m = max(_e39, radius_m_3);
+        float sine = (radius_m_3 / centre_m);
+        float closeness = (2.0 / (1.0 + sqrt(max(((1.0 - sine) * (1.0 + sine)), 0.0))));
+        return vec3(((closeness * (_e4 / centre_m)) * (_e4 / centre_m)), (centre_m - radius_m_3), min((1.0 + (place_m_2 / centre_m)), 2.0));
+    }
+    return vec3(1.0, _e4, one_minus_cos_10);
+}
+
+// Width of the forward peak of a Henyey-Greenstein function in the tangent of half the scattering angle, at most 1.
+// Cost: no exp.
+float light_peak(float mean_cosine) {
+    return min(((1.0 - mean_cosine) / (1.0 + mean_cosine)), 1.0);
+}
+
+// Part of a ray past a light in uniform fog, for unit intensity and unit scattering coefficient, 1/m.
+// Cost: 1 exp, 3 exp a step; 8 steps.
+vec3 light_panel_in_uniform_fog(vec3 extinction_per_m_1, float mean_cosine_1, LightRay ray_11, float from_m_3, float to_m_2) {
+    vec3 sum_1 = vec3(0.0);
+    uint i_8 = 0u;
+    float h_5 = ray_11.geometry.nearest_m;
+    float start_1 = (ray_11.geometry.start_m + from_m_3);
+    float _e10 = light_distance_m(h_5, start_1);
+    float _e11 = light_ahead_m(h_5, start_1);
+    float least = min(extinction_per_m_1.x, min(extinction_per_m_1.y, extinction_per_m_1.z));
+    float rate = max(extinction_per_m_1.x, max(extinction_per_m_1.y, extinction_per_m_1.z));
+    float _e24 = light_excess_m(LightRayGeometry(h_5, start_1, (to_m_2 - from_m_3)));
+    float end_3 = min(_e24, (LIGHT_CUTOFF / max(least, 1e-12)));
+    float _e30 = light_peak(mean_cosine_1);
+    float _e32 = light_distance_m((_e30 * h_5), _e11);
+    float _e37 = light_distance_m(1.0, ((rate * _e32) / 12.0));
+    float scale = (_e32 / _e37);
+    float _e39 = light_node_span(scale, end_3);
+    bool loop_init_7 = true;
+    while(true) {
+        if (!loop_init_7) {
+            uint _e89 = i_8;
+            i_8 = (_e89 + 1u);
+        }
+        loop_init_7 = false;
+        uint _e45 = i_8;
+        if ((_e45 < LIGHT_NODES)) {
+        } else {
+            break;
+        }
+        {
+            uint _e48 = i_8;
+            vec2 _e49 = light_node(_e48, scale, _e39);
+            float s = (_e49.x + _e11);
+            float t_1 = ((0.5 * _e49.x) * ((_e49.x + (2.0 * _e10)) / s));
+            vec3 _e67 = light_at(ray_11, ((0.5 * (s - h_5)) * ((s + h_5) / s)));
+            float _e69 = henyey_greenstein(_e67.z, mean_cosine_1);
+            float weight = ((((2.0 * _e49.y) / ((h_5 * h_5) + (s * s))) * _e67.x) * _e69);
+            vec3 _e80 = sum_1;
+            sum_1 = (_e80 + (weight * exp((-(extinction_per_m_1) * ((from_m_3 + t_1) + _e67.y)))));
+        }
+    }
+    vec3 _e92 = sum_1;
+    return _e92;
+}
+
+// A light of any kind in uniform fog whose phase function is that of Henyey and Greenstein, of mean cosine from -0.3 to 0.95.
+// Cost: 3 exp, 9 exp a step; 8 steps, for point and sphere lights a third.
+vec3 light_in_uniform_fog(FogMedium medium_7, float mean_cosine_2, LocalLight light_9, vec3 eye_3, vec3 direction_3, float length_m_11) {
+    vec3 sum_2 = vec3(0.0);
+    LightRay _e6 = light_ray(light_9, eye_3, direction_3, length_m_11);
+    vec2 _e8 = lit_interval(_e6, light_9.cos_outer);
+    vec2 _e10 = lit_interval(_e6, light_9.cos_inner);
+    vec2 inner_1 = clamp(_e10, vec2(_e8.x), vec2(_e8.y));
+    if ((inner_1.x > _e8.x)) {
+        vec3 _e22 = sum_2;
+        vec3 _e26 = light_panel_in_uniform_fog(medium_7.extinction_per_m, mean_cosine_2, _e6, _e8.x, inner_1.x);
+        sum_2 = (_e22 + _e26);
+    }
+    if ((inner_1.y > inner_1.x)) {
+        vec3 _e31 = sum_2;
+        vec3 _e35 = light_panel_in_uniform_fog(medium_7.extinction_per_m, mean_cosine_2, _e6, inner_1.x, inner_1.y);
+        sum_2 = (_e31 + _e35);
+    }
+    if ((_e8.y > inner_1.y)) {
+        vec3 _e40 = sum_2;
+        vec3 _e44 = light_panel_in_uniform_fog(medium_7.extinction_per_m, mean_cosine_2, _e6, inner_1.y, _e8.y);
+        sum_2 = (_e40 + _e44);
+    }
+    vec3 _e49 = sum_2;
+    return ((medium_7.scattering_per_m * light_9.intensity) * _e49);
+}
+
+// Column from the eye to a distance along a ray and from there to a light, m.
+// Cost: 4 exp.
+float column_by_light_m(ExponentialFog fog_3, float eye_height_m, float sin_elevation_6, float distance_m, float light_height_m, float to_centre_m, float to_light_m) {
+    float height_m_11 = (eye_height_m + (sin_elevation_6 * distance_m));
+    float sine_1 = ((light_height_m - height_m_11) / max(to_centre_m, 1e-6));
+    float _e15 = flat_exponential_column_m(eye_height_m, sin_elevation_6, distance_m, fog_3.reference_height_m, fog_3.scale_height_m);
+    float _e18 = flat_exponential_column_m(height_m_11, sine_1, to_light_m, fog_3.reference_height_m, fog_3.scale_height_m);
+    return (_e15 + _e18);
+}
+
+// Part of a ray past a light in exponential height fog, for unit intensity and unit scattering coefficient, 1/m.
+// Cost: 5 exp, 12 exp a step; 8 steps of 8, and 1 to 8 of 4.
+vec3 light_panel_in_exponential_fog(ExponentialFog fog_4, float eye_height_m_1, float sin_elevation_7, LightRay ray_12, float from_m_4, float to_m_3) {
+    float end = 0.0;
+    float reached = 0.0;
+    uint i_9 = 0u;
+    bool local_15 = false;
+    float origin_m = 0.0;
+    float forward = 1.0;
+    float anchor = 0.0;
+    vec3 sum_3 = vec3(0.0);
+    uint i_10 = 0u;
+    float h_6 = ray_12.geometry.nearest_m;
+    float start_2 = (ray_12.geometry.start_m + from_m_4);
+    vec3 extinction = fog_4.medium.extinction_per_m;
+    float least_1 = max(min(extinction.x, min(extinction.y, extinction.z)), 1e-12);
+    float most = max(extinction.x, max(extinction.y, extinction.z));
+    float light_height_m_1 = ray_12.light.position.y;
+    float _e28 = light_distance_m(h_6, start_2);
+    float _e29 = light_ahead_m(h_6, start_2);
+    float _e32 = light_excess_m(LightRayGeometry(h_6, start_2, (to_m_3 - from_m_4)));
+    float _e33 = column_by_light_m(fog_4, eye_height_m_1, sin_elevation_7, from_m_4, light_height_m_1, _e28, _e28);
+    end = _e32;
+    bool loop_init_8 = true;
+    while(true) {
+        if (!loop_init_8) {
+            uint _e70 = i_9;
+            i_9 = (_e70 + 1u);
+        }
+        loop_init_8 = false;
+        uint _e39 = i_9;
+        if ((_e39 < 8u)) {
+        } else {
+            break;
+        }
+        {
+            float _e42 = end;
+            float _e45 = end;
+            float _e49 = end;
+            float t_2 = ((0.5 * _e42) * ((_e45 + (2.0 * _e28)) / (_e49 + _e29)));
+            float _e54 = light_distance_m(h_6, (start_2 + t_2));
+            float _e56 = column_by_light_m(fog_4, eye_height_m_1, sin_elevation_7, (from_m_4 + t_2), light_height_m_1, _e54, _e54);
+            reached = (least_1 * (_e56 - _e33));
+            float _e59 = reached;
+            if ((_e59 <= 25.334)) {
+                break;
+            }
+            float _e62 = end;
+            float _e63 = reached;
+            end = (_e62 * ((_e63 > 253.34) ? 0.1 : 0.5));
+        }
+    }
+    float _e73 = reached;
+    float _e74 = end;
+    float rate_1 = (max((_e73 / max(_e74, 1e-30)), 0.0) * (most / least_1));
+    if (((start_2 + (to_m_3 - from_m_4)) <= 0.0)) {
+        float _e88 = end;
+        local_15 = ((rate_1 * _e88) < 4.0);
+    } else {
+        local_15 = false;
+    }
+    bool outwards = local_15;
+    origin_m = from_m_4;
+    anchor = start_2;
+    if (outwards) {
+        float _e98 = end;
+        float _e101 = end;
+        float _e105 = end;
+        float reach = min(((0.5 * _e98) * ((_e101 + (2.0 * _e28)) / (_e105 + _e29))), (to_m_3 - from_m_4));
+        origin_m = (from_m_4 + reach);
+        forward = -1.0;
+        anchor = -((start_2 + reach));
+        float _e115 = anchor;
+        float _e117 = light_excess_m(LightRayGeometry(h_6, _e115, reach));
+        end = _e117;
+    }
+    float _e118 = anchor;
+    float _e119 = light_distance_m(h_6, _e118);
+    float _e120 = anchor;
+    float _e121 = light_ahead_m(h_6, _e120);
+    float _e123 = light_peak(fog_4.mean_cosine);
+    float _e127 = light_distance_m(((outwards ? 1.0 : _e123) * h_6), _e121);
+    float _e134 = light_distance_m(1.0, (((outwards ? 0.0 : rate_1) * _e127) / 12.0));
+    float scale_1 = (_e127 / _e134);
+    float _e136 = end;
+    float _e137 = light_node_span(scale_1, _e136);
+    bool loop_init_9 = true;
+    while(true) {
+        if (!loop_init_9) {
+            uint _e213 = i_10;
+            i_10 = (_e213 + 1u);
+        }
+        loop_init_9 = false;
+        uint _e143 = i_10;
+        if ((_e143 < LIGHT_NODES)) {
+        } else {
+            break;
+        }
+        {
+            uint _e146 = i_10;
+            vec2 _e147 = light_node(_e146, scale_1, _e137);
+            float s_1 = (_e147.x + _e121);
+            float _e150 = origin_m;
+            float _e151 = forward;
+            float t_3 = max((_e150 + (((_e151 * 0.5) * _e147.x) * ((_e147.x + (2.0 * _e119)) / s_1))), 0.0);
+            float _e165 = forward;
+            float place_5 = (((_e165 * 0.5) * (s_1 - h_6)) * ((s_1 + h_6) / s_1));
+            vec3 _e173 = light_at(ray_12, place_5);
+            float centre_m_1 = ((ray_12.light.kind == LIGHT_SPHERE) ? (_e173.y + ray_12.light.radius_m) : _e173.y);
+            float _e185 = column_by_light_m(fog_4, eye_height_m_1, sin_elevation_7, t_3, light_height_m_1, centre_m_1, _e173.y);
+            float _e192 = decayed((((eye_height_m_1 + (sin_elevation_7 * t_3)) - fog_4.reference_height_m) / fog_4.scale_height_m));
+            float _e195 = henyey_greenstein(_e173.z, fog_4.mean_cosine);
+            float weight_1 = (((((2.0 * _e147.y) / ((h_6 * h_6) + (s_1 * s_1))) * _e173.x) * _e195) * _e192);
+            vec3 _e207 = sum_3;
+            sum_3 = (_e207 + (weight_1 * exp((-(extinction) * _e185))));
+        }
+    }
+    vec3 _e216 = sum_3;
+    return _e216;
+}
+
+// A light of any kind in exponential height fog over flat ground.
+// Cost: 2 exp, 17 exp a step; 1 to 6 steps of 73 to 101.
+vec3 light_in_exponential_fog(ExponentialFog fog_5, LocalLight light_10, vec3 eye_4, vec3 direction_4, float length_m_12) {
+    float last_m = 0.0;
+    float floor_ = 0.0;
+    float cuts[6] = float[6](0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    vec3 sum_4 = vec3(0.0);
+    float from_m_5 = 0.0;
+    uint i_11 = 0u;
+    float to_m_4 = 0.0;
+    uint k = 0u;
+    LightRay _e5 = light_ray(light_10, eye_4, direction_4, length_m_12);
+    vec2 _e7 = lit_interval(_e5, light_10.cos_outer);
+    vec2 _e9 = lit_interval(_e5, light_10.cos_inner);
+    last_m = _e7.y;
+    float rise_1 = (direction_4.y / fog_5.scale_height_m);
+    float start_3 = ((eye_4.y - fog_5.reference_height_m) / fog_5.scale_height_m);
+    floor_ = (start_3 + min((rise_1 * _e5.geometry.length_m), 0.0));
+    if ((rise_1 < 0.0)) {
+        vec3 extinction_1 = fog_5.medium.extinction_per_m;
+        float least_2 = max(min(extinction_1.x, min(extinction_1.y, extinction_1.z)), 1e-12);
+        float _e38 = decayed(start_3);
+        float dark = -(log((_e38 + ((90.0 * -(rise_1)) / least_2))));
+        float _e46 = floor_;
+        if ((dark > _e46)) {
+            floor_ = dark;
+            float _e48 = last_m;
+            last_m = min(_e48, max(((dark - start_3) / rise_1), 0.0));
+        }
+    }
+    float _e59 = last_m;
+    float _e60 = last_m;
+    float _e61 = last_m;
+    cuts = float[6](_e9.x, _e9.y, -(_e5.geometry.start_m), _e59, _e60, _e61);
+    if ((rise_1 != 0.0)) {
+        float _e67 = floor_;
+        cuts[3] = (((_e67 + 3.0) - start_3) / rise_1);
+        float _e73 = floor_;
+        cuts[4] = (((_e73 + 10.0) - start_3) / rise_1);
+        float _e78 = floor_;
+        float top_m_1 = (((_e78 + 40.0) - start_3) / rise_1);
+        cuts[5] = top_m_1;
+        if ((rise_1 > 0.0)) {
+            float _e86 = last_m;
+            last_m = min(_e86, max(top_m_1, 0.0));
+        }
+    }
+    from_m_5 = _e7.x;
+    bool loop_init_10 = true;
+    while(true) {
+        if (!loop_init_10) {
+            uint _e133 = i_11;
+            i_11 = (_e133 + 1u);
+        }
+        loop_init_10 = false;
+        uint _e97 = i_11;
+        if ((_e97 < 7u)) {
+        } else {
+            break;
+        }
+        {
+            float _e100 = from_m_5;
+            float _e101 = last_m;
+            if ((_e100 >= _e101)) {
+                break;
+            }
+            float _e103 = last_m;
+            to_m_4 = _e103;
+            k = 0u;
+            bool loop_init_11 = true;
+            while(true) {
+                if (!loop_init_11) {
+                    uint _e122 = k;
+                    k = (_e122 + 1u);
+                }
+                loop_init_11 = false;
+                uint _e107 = k;
+                if ((_e107 < 6u)) {
+                } else {
+                    break;
+                }
+                {
+                    float _e110 = to_m_4;
+                    float _e111 = to_m_4;
+                    uint _e112 = k;
+                    float _e114 = cuts[_e112];
+                    uint _e116 = k;
+                    float _e118 = cuts[_e116];
+                    float _e119 = from_m_5;
+                    to_m_4 = ((_e118 > _e119) ? min(_e111, _e114) : _e110);
+                }
+            }
+            vec3 _e125 = sum_4;
+            float _e128 = from_m_5;
+            float _e129 = to_m_4;
+            vec3 _e130 = light_panel_in_exponential_fog(fog_5, eye_4.y, direction_4.y, _e5, _e128, _e129);
+            sum_4 = (_e125 + _e130);
+            float _e132 = to_m_4;
+            from_m_5 = _e132;
+        }
+    }
+    vec3 _e140 = sum_4;
+    return ((fog_5.medium.scattering_per_m * light_10.intensity) * _e140);
+}
+
+// No fog: what a march starts with.
+// Cost: no exp.
+PathOptics no_fog() {
+    return PathOptics(vec3(1.0), vec3(0.0));
+}
+
+// Distance of a place from 0 to 1 along a segment, m, such that steps that are even in `place` have even shares of the light of uniform fog of this optical depth along the segment: short near the eye.
+// Cost: 3 exp.
+float shadow_edge_m(float place, float length_m_13, float optical_depth_1) {
+    if ((place >= 1.0)) {
+        return length_m_13;
+    }
+    float _e5 = mean_transmittance(optical_depth_1);
+    float mean = (place * _e5);
+    float u_1 = (mean * optical_depth_1);
+    float series_2 = (mean * (1.0 + (u_1 * (0.5 + (u_1 * (0.33333334 + (u_1 * (0.25 + (u_1 * 0.2)))))))));
+    float direct_2 = (-(log(max(((1.0 - place) + (place * exp(-(optical_depth_1)))), 1e-30))) / max(optical_depth_1, 0.05));
+    return (length_m_13 * min(((u_1 < 0.05) ? series_2 : direct_2), 1.0));
+}
+
+// Light whose sun is visible in part, 0 to 1.
+// Cost: no exp.
+FogLight with_visibility(FogLight light_11, float visibility) {
+    return FogLight((light_11.sunlight * visibility), light_11.sin_sun, light_11.ambient);
+}
+
+// A march in uniform fog with one step more, from which the sun is visible in part.
+// Cost: 6 exp.
+PathOptics shadowed_uniform_fog(PathOptics before_1, FogMedium medium_8, float from_m_6, float to_m_5, FogLight light_12, float visibility_1) {
+    FogLight _e7 = with_visibility(light_12, visibility_1);
+    PathOptics _e8 = uniform_fog(medium_8, (to_m_5 - from_m_6), _e7);
+    PathOptics _e9 = near_then_far(before_1, _e8);
+    return _e9;
+}
+
+// A march in exponential height fog over flat ground with one step more, from which the sun is visible in part. The fog above the ray attenuates sunlight.
+// Cost: 16 exp.
+PathOptics shadowed_exponential_fog(PathOptics before_2, FogMedium medium_9, float height_m_10, float sin_elevation_8, float from_m_7, float to_m_6, float reference_height_m_5, float scale_height_m_9, FogLight light_13, float visibility_2) {
+    FogLight _e13 = with_visibility(light_13, visibility_2);
+    PathOptics _e14 = exponential_fog(medium_9, (height_m_10 + (sin_elevation_8 * from_m_7)), sin_elevation_8, (to_m_6 - from_m_7), reference_height_m_5, scale_height_m_9, _e13);
+    PathOptics _e15 = near_then_far(before_2, _e14);
+    return _e15;
+}
+
 // Red, green and blue of a radiance at four wavelengths.
 // Cost: no exp.
-vec3 rgb_from_spectrum(RgbWeights weights, vec4 spectrum) {
-    return vec3(dot(weights.red, spectrum), dot(weights.green, spectrum), dot(weights.blue, spectrum));
+vec3 rgb_from_spectrum(RgbWeights weights_1, vec4 spectrum) {
+    return vec3(dot(weights_1.red, spectrum), dot(weights_1.green, spectrum), dot(weights_1.blue, spectrum));
 }
 
 // XYZ of linear sRGB (IEC 61966-2-1), in the unit of its components.
@@ -997,8 +1654,8 @@ vec3 into_unit_cube(vec3 rgb_5) {
 
 // Texture coordinate of a place from 0 (centre of the first texel) to 1 (centre of the last) among `count` texels.
 // Cost: no exp.
-float texel_coordinate(float place, float count_1) {
-    return ((0.5 + (place * (count_1 - 1.0))) / count_1);
+float texel_coordinate(float place_1, float count_1) {
+    return ((0.5 + (place_1 * (count_1 - 1.0))) / count_1);
 }
 
 // Inverse of `texel_coordinate`.
@@ -1009,33 +1666,33 @@ float place_from_texel_coordinate(float coordinate, float count_2) {
 
 // Azimuth of a direction from that of the sun as a fraction of half a turn. Under a vertical sun azimuths count from east.
 // Cost: no exp.
-float azimuth_place(vec3 direction, vec3 sun) {
-    bool local_12 = false;
+float azimuth_place(vec3 direction_5, vec3 sun) {
+    bool local_16 = false;
     bool is_vertical = ((abs(sun.x) + abs(sun.z)) < 1e-9);
     vec2 towards = (is_vertical ? vec2(1.0, 0.0) : sun.xz);
-    float across = abs(((direction.x * towards.y) - (direction.z * towards.x)));
-    float along_2 = dot(direction.xz, towards);
-    if ((across == 0.0)) {
-        local_12 = (along_2 >= 0.0);
+    float across_1 = abs(((direction_5.x * towards.y) - (direction_5.z * towards.x)));
+    float along_2 = dot(direction_5.xz, towards);
+    if ((across_1 == 0.0)) {
+        local_16 = (along_2 >= 0.0);
     } else {
-        local_12 = false;
+        local_16 = false;
     }
-    bool _e31 = local_12;
+    bool _e31 = local_16;
     if (_e31) {
         return 0.0;
     }
-    return (atan(across, along_2) * 0.31830987);
+    return (atan(across_1, along_2) * 0.31830987);
 }
 
 // Texture coordinate of an elevation in a table with rows above and below the horizon, dense towards it: at the square of the row above, and at its fourth power below, where rays from a low eye soon meet the ground. The first rows hold the elevations from the horizon on; both parts end in texel centres, so that filtering does not mix them.
 // Cost: no exp.
 float row_coordinate(SkyView view, float elevation_rad, bool is_below, float rows_above, float rows_below) {
-    float end_1 = (is_below ? -1.5707964 : view.highest_rad);
+    float end_4 = (is_below ? -1.5707964 : view.highest_rad);
     float rows = (is_below ? rows_below : rows_above);
-    float part_1 = clamp(((elevation_rad - view.horizon_rad) / (end_1 - view.horizon_rad)), 0.0, 1.0);
-    float place_4 = (is_below ? sqrt(sqrt(part_1)) : sqrt(part_1));
-    float first_1 = (is_below ? rows_above : 0.0);
-    return (((first_1 + 0.5) + (place_4 * (rows - 1.0))) / (rows_above + rows_below));
+    float part_2 = clamp(((elevation_rad - view.horizon_rad) / (end_4 - view.horizon_rad)), 0.0, 1.0);
+    float place_6 = (is_below ? sqrt(sqrt(part_2)) : sqrt(part_2));
+    float first_2 = (is_below ? rows_above : 0.0);
+    return (((first_2 + 0.5) + (place_6 * (rows - 1.0))) / (rows_above + rows_below));
 }
 
 // Inverse of `row_coordinate`: elevation of a texture coordinate, rad.
@@ -1043,25 +1700,25 @@ float row_coordinate(SkyView view, float elevation_rad, bool is_below, float row
 float elevation_from_row_coordinate(SkyView view_1, float coordinate_1, float rows_above_1, float rows_below_1) {
     float row_2 = (coordinate_1 * (rows_above_1 + rows_below_1));
     bool is_below_1 = (row_2 >= rows_above_1);
-    float end_2 = (is_below_1 ? -1.5707964 : view_1.highest_rad);
+    float end_5 = (is_below_1 ? -1.5707964 : view_1.highest_rad);
     float rows_1 = (is_below_1 ? rows_below_1 : rows_above_1);
-    float place_5 = (((row_2 - (is_below_1 ? rows_above_1 : 0.0)) - 0.5) / (rows_1 - 1.0));
-    float squared = (place_5 * place_5);
-    return (view_1.horizon_rad + ((end_2 - view_1.horizon_rad) * (is_below_1 ? (squared * squared) : squared)));
+    float place_7 = (((row_2 - (is_below_1 ? rows_above_1 : 0.0)) - 0.5) / (rows_1 - 1.0));
+    float squared = (place_7 * place_7);
+    return (view_1.horizon_rad + ((end_5 - view_1.horizon_rad) * (is_below_1 ? (squared * squared) : squared)));
 }
 
 // Elevation of a direction, rad.
 // Cost: no exp.
-float elevation_of(vec3 direction_1) {
-    return atan(direction_1.y, length(direction_1.xz));
+float elevation_of(vec3 direction_6) {
+    return atan(direction_6.y, length(direction_6.xz));
 }
 
 // Texture coordinates of a direction in a sky table.
 // Cost: no exp.
-vec2 uv_from_direction(SkyView view_2, vec3 direction_2) {
-    float _e2 = elevation_of(direction_2);
+vec2 uv_from_direction(SkyView view_2, vec3 direction_7) {
+    float _e2 = elevation_of(direction_7);
     bool is_below_2 = (_e2 < view_2.horizon_rad);
-    float _e6 = azimuth_place(direction_2, view_2.sun);
+    float _e6 = azimuth_place(direction_7, view_2.sun);
     float _e8 = texel_coordinate(_e6, SKY_AZIMUTHS);
     float _e11 = row_coordinate(view_2, _e2, is_below_2, SKY_ROWS_ABOVE, SKY_ROWS_BELOW);
     return vec2(_e8, _e11);
@@ -1073,29 +1730,29 @@ vec3 direction_from_azimuth_elevation(SkyView view_3, float azimuth, float eleva
     bool is_vertical_1 = ((abs(view_3.sun.x) + abs(view_3.sun.z)) < 1e-9);
     vec2 towards_1 = normalize((is_vertical_1 ? vec2(1.0, 0.0) : view_3.sun.xz));
     float along_3 = (cos((azimuth * 3.1415927)) * cos(elevation_rad_1));
-    float across_1 = (sin((azimuth * 3.1415927)) * cos(elevation_rad_1));
-    return vec3(((towards_1.x * along_3) - (towards_1.y * across_1)), sin(elevation_rad_1), ((towards_1.y * along_3) + (towards_1.x * across_1)));
+    float across_2 = (sin((azimuth * 3.1415927)) * cos(elevation_rad_1));
+    return vec3(((towards_1.x * along_3) - (towards_1.y * across_2)), sin(elevation_rad_1), ((towards_1.y * along_3) + (towards_1.x * across_2)));
 }
 
 // Interval of a ray inside the air, m from the eye: up to the ground, if it meets that, or to the top. From space, a ray that misses the air has an empty interval.
 // Cost: no exp.
-vec2 air_span_m(SkyView view_4, float sin_elevation_6, bool meets_ground) {
-    float end = 0.0;
-    float b_3 = ((view_4.ground_radius_m + view_4.height_m) * sin_elevation_6);
+vec2 air_span_m(SkyView view_4, float sin_elevation_9, bool meets_ground) {
+    float end_1 = 0.0;
+    float b_3 = ((view_4.ground_radius_m + view_4.height_m) * sin_elevation_9);
     float over_ground = (view_4.height_m * ((2.0 * view_4.ground_radius_m) + view_4.height_m));
     float over_top = ((view_4.height_m - view_4.air_height_m) * (((2.0 * view_4.ground_radius_m) + view_4.height_m) + view_4.air_height_m));
     float root_2 = sqrt(max(((b_3 * b_3) - over_top), 0.0));
-    float start_1 = ((over_top > 0.0) ? (over_top / (root_2 - b_3)) : 0.0);
-    end = (root_2 - b_3);
+    float start_4 = ((over_top > 0.0) ? (over_top / (root_2 - b_3)) : 0.0);
+    end_1 = (root_2 - b_3);
     if (meets_ground) {
-        end = (over_ground / (sqrt(max(((b_3 * b_3) - over_ground), 0.0)) - b_3));
+        end_1 = (over_ground / (sqrt(max(((b_3 * b_3) - over_ground), 0.0)) - b_3));
     } else {
         if ((b_3 > 0.0)) {
-            end = (-(over_top) / (root_2 + b_3));
+            end_1 = (-(over_top) / (root_2 + b_3));
         }
     }
-    float _e50 = end;
-    return vec2(start_1, max(_e50, start_1));
+    float _e50 = end_1;
+    return vec2(start_4, max(_e50, start_4));
 }
 
 // Place from 0 to 1 of a part of the way through the air in tables by distance, which are dense near the eye.
@@ -1106,8 +1763,8 @@ float place_from_part(float part) {
 
 // Inverse of `place_from_part`.
 // Cost: no exp.
-float part_from_place(float place_1) {
-    return (place_1 * place_1);
+float part_from_place(float place_2) {
+    return (place_2 * place_2);
 }
 
 // Place from 0 to 1 of a scattering angle in a table of phase functions, dense forwards, by 1 minus the cosine.
@@ -1119,8 +1776,8 @@ float phase_place(float one_minus_cos_6) {
 
 // Inverse of `phase_place`.
 // Cost: no exp.
-float one_minus_cos_from_phase_place(float place_2) {
-    float half_sine = sin(((1.5707964 * place_2) * place_2));
+float one_minus_cos_from_phase_place(float place_3) {
+    float half_sine = sin(((1.5707964 * place_3) * place_3));
     return ((2.0 * half_sine) * half_sine);
 }
 
@@ -1135,13 +1792,13 @@ vec4 haze_phase(highp sampler2D phase_table, float one_minus_cos_7) {
 
 // Radiance of the sky, or of the ground below the horizon, along a direction at four wavelengths, without the sun's disc.
 // Cost: 8 exp, 3 reads.
-vec4 sky_radiance(SkyView view_5, SkyScales scales, highp sampler2D smooth_table, highp sampler2D haze_table, highp sampler2D phase_table_1, vec3 direction_3) {
-    float _e7 = elevation_of(direction_3);
+vec4 sky_radiance(SkyView view_5, SkyScales scales, highp sampler2D smooth_table, highp sampler2D haze_table, highp sampler2D phase_table_1, vec3 direction_8) {
+    float _e7 = elevation_of(direction_8);
     if ((_e7 > view_5.highest_rad)) {
         return vec4(0.0);
     }
-    vec2 _e12 = uv_from_direction(view_5, direction_3);
-    float _e14 = one_minus_cos_between(direction_3, view_5.sun);
+    vec2 _e12 = uv_from_direction(view_5, direction_8);
+    float _e14 = one_minus_cos_between(direction_8, view_5.sun);
     vec4 _e15 = haze_phase(phase_table_1, _e14);
     vec4 _e17 = textureLod(smooth_table, vec2(_e12), 0.0);
     vec4 smooth_light = (exp(_e17) * scales.smooth_light);
@@ -1152,31 +1809,31 @@ vec4 sky_radiance(SkyView view_5, SkyScales scales, highp sampler2D smooth_table
 
 // Air between the eye and a point at a distance along a direction, at four wavelengths. The extinction table holds the mean extinction from the first air on, 1/km.
 // Cost: 12 exp, 4 reads.
-SpectralPath aerial_perspective(SkyView view_6, SkyScales scales_1, highp sampler3D smooth_table_1, highp sampler3D haze_table_1, highp sampler2D extinction_table, highp sampler2D phase_table_2, vec3 direction_4, float distance_m) {
-    bool local_13 = false;
-    float _e9 = elevation_of(direction_4);
+SpectralPath aerial_perspective(SkyView view_6, SkyScales scales_1, highp sampler3D smooth_table_1, highp sampler3D haze_table_1, highp sampler2D extinction_table, highp sampler2D phase_table_2, vec3 direction_9, float distance_m_1) {
+    bool local_17 = false;
+    float _e9 = elevation_of(direction_9);
     bool is_below_3 = (_e9 < view_6.horizon_rad);
-    vec2 _e13 = air_span_m(view_6, direction_4.y, is_below_3);
-    float length_m_8 = (min(distance_m, _e13.y) - _e13.x);
-    if (!((length_m_8 <= 0.0))) {
-        local_13 = (_e9 > view_6.highest_rad);
+    vec2 _e13 = air_span_m(view_6, direction_9.y, is_below_3);
+    float length_m_15 = (min(distance_m_1, _e13.y) - _e13.x);
+    if (!((length_m_15 <= 0.0))) {
+        local_17 = (_e9 > view_6.highest_rad);
     } else {
-        local_13 = true;
+        local_17 = true;
     }
-    bool _e26 = local_13;
+    bool _e26 = local_17;
     if (_e26) {
         return SpectralPath(vec4(1.0), vec4(0.0));
     }
-    float _e39 = place_from_part(clamp((length_m_8 / (_e13.y - _e13.x)), 0.0, 1.0));
+    float _e39 = place_from_part(clamp((length_m_15 / (_e13.y - _e13.x)), 0.0, 1.0));
     float _e42 = row_coordinate(view_6, _e9, is_below_3, AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW);
-    float _e44 = azimuth_place(direction_4, view_6.sun);
+    float _e44 = azimuth_place(direction_9, view_6.sun);
     float _e46 = texel_coordinate(_e44, AERIAL_AZIMUTHS);
     float _e48 = texel_coordinate(_e39, AERIAL_DISTANCES);
     vec3 uvw = vec3(_e46, _e42, _e48);
-    float _e51 = one_minus_cos_between(direction_4, view_6.sun);
+    float _e51 = one_minus_cos_between(direction_9, view_6.sun);
     vec4 _e52 = haze_phase(phase_table_2, _e51);
     vec4 _e55 = textureLod(extinction_table, vec2(uvw.zy), 0.0);
-    vec4 depth_4 = (_e55 * (length_m_8 * 0.001));
+    vec4 depth_4 = (_e55 * (length_m_15 * 0.001));
     vec4 _e60 = textureLod(smooth_table_1, vec3(uvw), 0.0);
     vec4 smooth_light_1 = (exp(_e60) * scales_1.smooth_light);
     vec4 _e65 = textureLod(haze_table_1, vec3(uvw), 0.0);
@@ -1189,9 +1846,9 @@ SpectralPath aerial_perspective(SkyView view_6, SkyScales scales_1, highp sample
 
 // Transmittance and path radiance in red, green and blue, for scenes in these: the transmittance of a channel is that of sunlight.
 // Cost: no exp.
-PathOptics rgb_path(RgbWeights radiance_2, RgbWeights transmittance, SpectralPath path_1) {
+PathOptics rgb_path(RgbWeights radiance_3, RgbWeights transmittance, SpectralPath path_1) {
     vec3 _e4 = rgb_from_spectrum(transmittance, path_1.transmittance);
-    vec3 _e6 = rgb_from_spectrum(radiance_2, path_1.path_radiance);
+    vec3 _e6 = rgb_from_spectrum(radiance_3, path_1.path_radiance);
     return PathOptics(_e4, _e6);
 }
 
@@ -1201,13 +1858,13 @@ LimbDarkening limb_darkening(vec4 wavelengths_nm) {
     vec4 per_um = (vec4(1000.0) / clamp(wavelengths_nm, vec4(422.57), vec4(1099.0)));
     vec4 power = ((((per_um * per_um) * per_um) * per_um) * per_um);
     vec4 zeroth = (vec4(0.75267) - (0.265577 * per_um));
-    vec4 first_2 = ((vec4(0.93874) + (0.265577 * per_um)) - (0.004095 * power));
+    vec4 first_3 = ((vec4(0.93874) + (0.265577 * per_um)) - (0.004095 * power));
     vec4 second = (vec4(-1.89287) + (0.012582 * power));
     vec4 third = (vec4(2.42234) - (0.017117 * power));
     vec4 fourth = (vec4(-1.7115) + (0.011977 * power));
     vec4 fifth = (vec4(0.49062) - (0.003347 * power));
-    vec4 mean = (((((zeroth + (first_2 * 0.6666667)) + (second * 0.5)) + (third * 0.4)) + (fourth * 0.33333334)) + (fifth * 0.2857143));
-    return LimbDarkening((zeroth / mean), (first_2 / mean), (second / mean), (third / mean), (fourth / mean), (fifth / mean));
+    vec4 mean_1 = (((((zeroth + (first_3 * 0.6666667)) + (second * 0.5)) + (third * 0.4)) + (fourth * 0.33333334)) + (fifth * 0.2857143));
+    return LimbDarkening((zeroth / mean_1), (first_3 / mean_1), (second / mean_1), (third / mean_1), (fourth / mean_1), (fifth / mean_1));
 }
 
 // Radiance of the disc at `mu`, relative to its mean.
@@ -1224,8 +1881,8 @@ float place_on_disc(float sin_radius, float one_minus_cos_8) {
 
 // Part of a pixel that the disc covers, 0 to 1: a ramp as wide as a pixel across the edge, so that the edge is smooth and the disc's light is kept, within `(pixel / radius)^2 / 12`. `sin_pixel` is the sine of the angle that a pixel spans; 0 gives a sharp edge.
 // Cost: no exp.
-float disc_coverage(float place_3, float sin_radius_1, float sin_pixel) {
-    return clamp((((1.0 - place_3) * (sin_radius_1 / max(sin_pixel, (1e-6 * sin_radius_1)))) + 0.5), 0.0, 1.0);
+float disc_coverage(float place_4, float sin_radius_1, float sin_pixel) {
+    return clamp((((1.0 - place_4) * (sin_radius_1 / max(sin_pixel, (1e-6 * sin_radius_1)))) + 0.5), 0.0, 1.0);
 }
 
 // Radiance of the sun's disc in a pixel whose centre is `one_minus_cos` from the sun, from the disc's mean radiance: the irradiance on a surface that faces the sun, divided by `pi sin_radius^2`. Without attenuation by air.
@@ -1258,14 +1915,14 @@ vec3 camera_tone(vec3 exposed_1, float contrast_1, float saturation) {
     vec3 _e3 = without_negatives(exposed_1);
     float _e4 = srgb_luminance(_e3);
     vec3 linear_1 = mix(_e3, vec3(_e4), 0.01);
-    float least = min(linear_1.x, min(linear_1.y, linear_1.z));
-    float most = max(linear_1.x, max(linear_1.y, linear_1.z));
+    float least_3 = min(linear_1.x, min(linear_1.y, linear_1.z));
+    float most_1 = max(linear_1.x, max(linear_1.y, linear_1.z));
     vec3 _e18 = camera_response(linear_1, contrast_1);
     float hi = max(_e18.x, max(_e18.y, _e18.z));
-    float dark = (((1.0 - hi) * (1.0 - hi)) * (1.0 - hi));
-    vec3 curved_2 = mix(_e18, (linear_1 * (hi / max(most, 1e-30))), dark);
+    float dark_1 = (((1.0 - hi) * (1.0 - hi)) * (1.0 - hi));
+    vec3 curved_2 = mix(_e18, (linear_1 * (hi / max(most_1, 1e-30))), dark_1);
     float lo = min(curved_2.x, min(curved_2.y, curved_2.z));
-    vec3 kept = (vec3(lo) + (((hi - lo) / max((most - least), 1e-30)) * (linear_1 - vec3(least))));
+    vec3 kept = (vec3(lo) + (((hi - lo) / max((most_1 - least_3), 1e-30)) * (linear_1 - vec3(least_3))));
     vec3 toned = mix(kept, curved_2, 0.2);
     float _e54 = srgb_luminance(toned);
     vec3 _e57 = into_unit_cube(mix(vec3(_e54), toned, saturation));
@@ -1276,25 +1933,25 @@ vec3 camera_tone(vec3 exposed_1, float contrast_1, float saturation) {
 // Cost: 9 exp.
 vec3 agx_response(vec3 x_4) {
     vec3 stops = log2((max(x_4, vec3(1e-9)) / vec3(0.18)));
-    vec3 place_6 = clamp(((stops + vec3(10.0)) / vec3(16.5)), vec3(0.0), vec3(1.0));
-    vec3 from_grey = (place_6 - vec3(0.6060606));
+    vec3 place_8 = clamp(((stops + vec3(10.0)) / vec3(16.5)), vec3(0.0), vec3(1.0));
+    vec3 from_grey = (place_8 - vec3(0.6060606));
     bvec3 is_toe = lessThan(from_grey, vec3(0.0));
     vec3 limit = mix(vec3(0.7151983), vec3(0.5656756), is_toe);
-    vec3 u = (2.4 * abs(from_grey));
-    vec3 bent = (u / limit);
-    vec3 rise_1 = (u / pow((vec3(1.0) + (bent * sqrt(bent))), vec3(0.6666667)));
-    vec3 signal_2 = clamp((vec3(0.4894371) + mix(rise_1, -(rise_1), is_toe)), vec3(0.0), vec3(1.0));
+    vec3 u_2 = (2.4 * abs(from_grey));
+    vec3 bent = (u_2 / limit);
+    vec3 rise_2 = (u_2 / pow((vec3(1.0) + (bent * sqrt(bent))), vec3(0.6666667)));
+    vec3 signal_2 = clamp((vec3(0.4894371) + mix(rise_2, -(rise_2), is_toe)), vec3(0.0), vec3(1.0));
     return pow(signal_2, vec3(2.4));
 }
 
 // Base look of AgX: highlights roll off, and bright saturated colours turn white early.
 // Cost: 9 exp.
 vec3 agx_tone(vec3 exposed_2) {
-    vec3 weights_1 = vec3(0.212, 0.3922, 0.3958);
+    vec3 weights_2 = vec3(0.212, 0.3922, 0.3958);
     vec3 _e5 = without_negatives(exposed_2);
-    vec3 inset = mix(_e5, vec3(dot(weights_1, _e5)), 0.2);
+    vec3 inset = mix(_e5, vec3(dot(weights_2, _e5)), 0.2);
     vec3 _e10 = agx_response(inset);
-    vec3 _e19 = into_unit_cube(((_e10 - vec3((0.2 * dot(weights_1, _e10)))) / vec3(0.8)));
+    vec3 _e19 = into_unit_cube(((_e10 - vec3((0.2 * dot(weights_2, _e10)))) / vec3(0.8)));
     return _e19;
 }
 

@@ -53,6 +53,43 @@ struct FogLayers {
 struct type_6 {
     float inner[14];
 };
+struct LocalLight {
+    metal::packed_float3 position;
+    uint kind;
+    metal::packed_float3 intensity;
+    float radius_m;
+    metal::packed_float3 axis;
+    float cos_inner;
+    float cos_outer;
+    char _pad7[12];
+};
+struct LightRayGeometry {
+    float nearest_m;
+    float start_m;
+    float length_m;
+};
+struct type_8 {
+    float inner[4];
+};
+struct LightRay {
+    LightRayGeometry geometry;
+    char _pad1[4];
+    LocalLight light;
+    float nearest_m;
+    float across_m;
+    float along;
+    char _pad5[4];
+};
+struct ExponentialFog {
+    FogMedium medium;
+    float mean_cosine;
+    float reference_height_m;
+    float scale_height_m;
+    char _pad4[4];
+};
+struct type_9 {
+    float inner[6];
+};
 struct RgbWeights {
     metal::float4 red;
     metal::float4 green;
@@ -89,6 +126,11 @@ constant uint FOG_UNIFORM = 0u;
 constant uint FOG_EXPONENTIAL = 1u;
 constant uint FOG_CLAMPED = 2u;
 constant uint FOG_SLAB = 3u;
+constant uint LIGHT_POINT = 0u;
+constant uint LIGHT_SPOT = 1u;
+constant uint LIGHT_SPHERE = 2u;
+constant uint LIGHT_NODES = 8u;
+constant float LIGHT_CUTOFF = 12.667;
 constant float SKY_AZIMUTHS = 64.0;
 constant float SKY_ROWS_ABOVE = 128.0;
 constant float SKY_ROWS_BELOW = 32.0;
@@ -194,8 +236,8 @@ float rayleigh_phase(
     float depolarization_ratio
 ) {
     float gamma = depolarization_ratio / (2.0 - depolarization_ratio);
-    float cos_angle = 1.0 - one_minus_cos;
-    return (0.059683103 / (1.0 + (2.0 * gamma))) * ((1.0 + (3.0 * gamma)) + (((1.0 - gamma) * cos_angle) * cos_angle));
+    float cos_angle_1 = 1.0 - one_minus_cos;
+    return (0.059683103 / (1.0 + (2.0 * gamma))) * ((1.0 + (3.0 * gamma)) + (((1.0 - gamma) * cos_angle_1) * cos_angle_1));
 }
 
 // Henyey-Greenstein phase function of a forward peak, of mean cosine `1 - one_minus_g`: `one_minus_g` from 1e-6 to 1, which keeps the width of narrow peaks.
@@ -226,9 +268,9 @@ float draine(
     float alpha
 ) {
     float norm = 1.0 + ((alpha * (1.0 + ((2.0 * g_1) * g_1))) / 3.0);
-    float cos_angle_1 = 1.0 - one_minus_cos_3;
+    float cos_angle_2 = 1.0 - one_minus_cos_3;
     float _e15 = henyey_greenstein(one_minus_cos_3, g_1);
-    return (_e15 * (1.0 + ((alpha * cos_angle_1) * cos_angle_1))) / norm;
+    return (_e15 * (1.0 + ((alpha * cos_angle_2) * cos_angle_2))) / norm;
 }
 
 // Cornette & Shanks (Appl. Opt. 31, 3152, 1992, eq. 8): Henyey-Greenstein times `1 + cos^2`, normalised.
@@ -1072,13 +1114,762 @@ PathOptics layered_fog(
     return PathOptics {metal::exp(-(_e208)), _e211};
 }
 
+// A point light.
+// Cost: no exp.
+LocalLight point_light(
+    metal::float3 position,
+    float radius_m,
+    metal::float3 intensity
+) {
+    return LocalLight {position, LIGHT_POINT, intensity, radius_m, metal::float3(0.0), 0.0, 0.0};
+}
+
+// A spot light, whose intensity falls between the inner and the outer angle as in glTF's `KHR_lights_punctual`.
+// Cost: no exp.
+LocalLight spot_light(
+    metal::float3 position_1,
+    float radius_m_1,
+    metal::float3 intensity_1,
+    metal::float3 axis,
+    float cos_inner,
+    float cos_outer
+) {
+    return LocalLight {position_1, LIGHT_SPOT, intensity_1, radius_m_1, axis, cos_inner, cos_outer};
+}
+
+// A sphere light. Rays that hit it end there.
+// Cost: no exp.
+LocalLight sphere_light(
+    metal::float3 position_2,
+    float radius_m_2,
+    metal::float3 radiance_2
+) {
+    metal::float3 intensity_2 = ((3.1415927 * radius_m_2) * radius_m_2) * radiance_2;
+    return LocalLight {position_2, LIGHT_SPHERE, intensity_2, radius_m_2, metal::float3(0.0), 0.0, 0.0};
+}
+
+// A segment past a light, from which it is at least `at_least_m` away.
+// Cost: no exp.
+LightRayGeometry light_ray_geometry(
+    metal::float3 eye,
+    metal::float3 direction,
+    float length_m_8,
+    metal::float3 light_6,
+    float at_least_m
+) {
+    metal::float3 to_light = light_6 - eye;
+    return LightRayGeometry {metal::max(metal::length(metal::cross(to_light, direction)), at_least_m), -(metal::dot(to_light, direction)), length_m_8};
+}
+
+// Distance from the light at a place, m.
+// Cost: no exp.
+float light_distance_m(
+    float nearest_m,
+    float place_m
+) {
+    return metal::sqrt((nearest_m * nearest_m) + (place_m * place_m));
+}
+
+// Distance from the light plus the place, m, without cancellation.
+// Cost: no exp.
+float light_ahead_m(
+    float nearest_m_1,
+    float place_m_1
+) {
+    float _e2 = light_distance_m(nearest_m_1, place_m_1);
+    float far_5 = _e2 + metal::abs(place_m_1);
+    return (place_m_1 < 0.0) ? (nearest_m_1 * (nearest_m_1 / far_5)) : far_5;
+}
+
+// Excess of the end: by how much the path from the start to the end and on to the light is longer than from the start to the light, m.
+// Cost: no exp.
+float light_excess_m(
+    LightRayGeometry geometry
+) {
+    float h = geometry.nearest_m;
+    float end_2 = geometry.start_m + geometry.length_m;
+    float _e6 = light_ahead_m(h, geometry.start_m);
+    float _e7 = light_ahead_m(h, end_2);
+    float ahead_1 = _e6 + _e7;
+    float _e11 = light_distance_m(h, geometry.start_m);
+    float _e12 = light_distance_m(h, end_2);
+    return geometry.length_m * (ahead_1 / (_e11 + _e12));
+}
+
+// Angle that the segment subtends at the light, 0 to pi.
+// Cost: no exp.
+float light_angle(
+    LightRayGeometry geometry_1
+) {
+    float h_1 = geometry_1.nearest_m;
+    float u = geometry_1.start_m;
+    return metal::atan2(h_1 * geometry_1.length_m, (h_1 * h_1) + (u * (u + geometry_1.length_m)));
+}
+
+// Radiance scattered from a point light of unit intensity by uniform fog of unit scattering coefficient that scatters equally in all directions, 1/m, without extinction: `angle / (4 pi h)` (after Macklin 2010, corrected).
+// Cost: no exp.
+float airlight_without_extinction(
+    LightRayGeometry geometry_2
+) {
+    float _e1 = light_angle(geometry_2);
+    return (_e1 * 0.07957747) / geometry_2.nearest_m;
+}
+
+// Place (x) and weight (y) of a node on the unit interval.
+// Cost: no exp.
+metal::float2 light_gauss_node(
+    uint i_5
+) {
+    type_8 places = type_8 {{0.019855073, 0.10166676, 0.23723379, 0.40828267}};
+    type_8 weights = type_8 {{0.050614268, 0.11119052, 0.15685332, 0.18134189}};
+    uint k_1 = metal::min(i_5, 7u - metal::min(i_5, 7u));
+    float _e19 = places.inner[k_1];
+    float _e21 = places.inner[k_1];
+    float _e28 = weights.inner[k_1];
+    return metal::float2((i_5 > 3u) ? (1.0 - _e21) : _e19, _e28);
+}
+
+// Interval of `q` that nodes cover: from 1 down to 1 minus this, where the excess is `scale (1 - q^3) / q^3`, from 0 to `end`.
+// Cost: 1 exp.
+float light_node_span(
+    float scale_m,
+    float end_m_1
+) {
+    float inverse = metal::min(scale_m / metal::max(end_m_1, 0.000000000000000000000000000001), 1000000000000000000000000000000.0);
+    float covered = 1.0 / (1.0 + inverse);
+    float last_1 = metal::pow(metal::max(inverse * covered, 0.000000000000000000000000000001), 0.33333334);
+    return covered / ((1.0 + last_1) + (last_1 * last_1));
+}
+
+// Excess (x) and step (y) of a node, m.
+// Cost: no exp.
+metal::float2 light_node(
+    uint i_6,
+    float scale_m_1,
+    float span
+) {
+    metal::float2 _e3 = light_gauss_node(i_6);
+    float z_1 = span * _e3.x;
+    float q_1 = 1.0 - z_1;
+    float p = (q_1 * q_1) * q_1;
+    return metal::float2(((scale_m_1 * z_1) * ((3.0 - (3.0 * z_1)) + (z_1 * z_1))) / p, (((3.0 * _e3.y) * span) * scale_m_1) / (q_1 * p));
+}
+
+// `airlight_without_extinction` with extinction between light, fog and eye (1/m): the integral of Sun, Ramamoorthi, Narasimhan and Nayar (2005) by quadrature with 8 nodes.
+// Cost: 6 exp, 3 exp a step; 8 steps.
+metal::float3 airlight_isotropic(
+    LightRayGeometry geometry_3,
+    metal::float3 extinction_per_m
+) {
+    metal::float3 sum = metal::float3(0.0);
+    uint i_7 = 0u;
+    float h_2 = geometry_3.nearest_m;
+    float _e4 = light_ahead_m(h_2, geometry_3.start_m);
+    float _e5 = light_distance_m(h_2, _e4);
+    float spread = (2.0 * _e4) / _e5;
+    metal::float3 x_5 = extinction_per_m * _e5;
+    float _e10 = light_excess_m(geometry_3);
+    metal::float3 inverse_1 = metal::max(metal::float3(metal::min(_e5 / metal::max(_e10, 0.000000000000000000000000000001), 1000000000000000000000000000000.0)), x_5 / metal::float3(12.667));
+    metal::float3 covered_1 = metal::float3(1.0) / (metal::float3(1.0) + inverse_1);
+    metal::float3 last_2 = metal::pow(metal::max(inverse_1 * covered_1, metal::float3(0.000000000000000000000000000001)), metal::float3(0.33333334));
+    metal::float3 span_1 = covered_1 / ((metal::float3(1.0) + last_2) + (last_2 * last_2));
+    bool loop_init_6 = true;
+    while(true) {
+        if (!loop_init_6) {
+            uint _e89 = i_7;
+            i_7 = _e89 + 1u;
+        }
+        loop_init_6 = false;
+        uint _e45 = i_7;
+        if (_e45 < LIGHT_NODES) {
+        } else {
+            break;
+        }
+        {
+            uint _e48 = i_7;
+            metal::float2 _e49 = light_gauss_node(_e48);
+            metal::float3 z_2 = span_1 * _e49.x;
+            metal::float3 q_2 = metal::float3(1.0) - z_2;
+            metal::float3 p_1 = (q_2 * q_2) * q_2;
+            metal::float3 y = z_2 * (metal::float3(3.0) + (z_2 * (z_2 - metal::float3(3.0))));
+            metal::float3 fall_1 = (p_1 * p_1) + (y * ((spread * p_1) + y));
+            metal::float3 both = metal::float3(1.0) / (p_1 * fall_1);
+            metal::float3 _e74 = sum;
+            sum = _e74 + ((((((3.0 * _e49.y) * q_2) * q_2) * p_1) * both) * metal::exp(((-(x_5) * y) * fall_1) * both));
+        }
+    }
+    float _e94 = light_distance_m(h_2, geometry_3.start_m);
+    metal::float3 arriving_1 = metal::exp(-(extinction_per_m) * _e94);
+    metal::float3 _e101 = sum;
+    return (((0.15915494 / _e5) * arriving_1) * span_1) * _e101;
+}
+
+// A point light in uniform fog that scatters equally in all directions.
+// Cost: 6 exp, 3 exp a step; 8 steps.
+metal::float3 point_light_in_isotropic_fog(
+    FogMedium medium_6,
+    LocalLight light_7,
+    metal::float3 eye_1,
+    metal::float3 direction_1,
+    float length_m_9
+) {
+    LightRayGeometry _e7 = light_ray_geometry(eye_1, direction_1, length_m_9, light_7.position, light_7.radius_m);
+    metal::float3 _e12 = airlight_isotropic(_e7, medium_6.extinction_per_m);
+    return (medium_6.scattering_per_m * light_7.intensity) * _e12;
+}
+
+// A ray past a light.
+// Cost: no exp.
+LightRay light_ray(
+    LocalLight light_8,
+    metal::float3 eye_2,
+    metal::float3 direction_2,
+    float length_m_10
+) {
+    LightRayGeometry geometry_4 = {};
+    bool local_12 = {};
+    LightRayGeometry _e6 = light_ray_geometry(eye_2, direction_2, length_m_10, light_8.position, light_8.radius_m);
+    geometry_4 = _e6;
+    metal::float3 to_light_1 = light_8.position - eye_2;
+    float nearest_m_2 = metal::length(metal::cross(to_light_1, direction_2));
+    if (light_8.kind == LIGHT_SPHERE) {
+        float distance_m_2 = metal::length(to_light_1);
+        float inside = (light_8.radius_m - nearest_m_2) * (light_8.radius_m + nearest_m_2);
+        if (distance_m_2 <= light_8.radius_m) {
+            geometry_4.length_m = 0.0;
+        } else {
+            float _e26 = geometry_4.start_m;
+            if (_e26 < 0.0) {
+                local_12 = inside > 0.0;
+            } else {
+                local_12 = false;
+            }
+            bool _e34 = local_12;
+            if (_e34) {
+                float _e42 = geometry_4.start_m;
+                float hit_m = ((distance_m_2 - light_8.radius_m) * (distance_m_2 + light_8.radius_m)) / (metal::sqrt(inside) - _e42);
+                geometry_4.length_m = metal::min(length_m_10, hit_m);
+            }
+        }
+    }
+    float _e49 = geometry_4.start_m;
+    metal::float3 closest = -(to_light_1) - (_e49 * direction_2);
+    LightRayGeometry _e52 = geometry_4;
+    return LightRay {_e52, {}, light_8, nearest_m_2, metal::dot(closest, light_8.axis), metal::dot(direction_2, light_8.axis)};
+}
+
+// Interval of a ray, m from its start, in which the direction from a spot light is within a cone of this cosine of its half-angle; the whole ray for other lights, (0, 0) outside.
+// Cost: no exp.
+metal::float2 lit_interval(
+    LightRay ray_9,
+    float cos_angle
+) {
+    float from_m_2 = -1000000000000.0;
+    bool local_13 = {};
+    float to_m_1 = INFINITE_M;
+    bool local_14 = {};
+    float length_m_14 = ray_9.geometry.length_m;
+    if (ray_9.light.kind != LIGHT_SPOT) {
+        return metal::float2(0.0, length_m_14);
+    }
+    float h_3 = ray_9.geometry.nearest_m;
+    float across = ray_9.across_m / h_3;
+    float _e15 = light_distance_m(across, ray_9.along);
+    if (cos_angle >= _e15) {
+        return metal::float2(0.0);
+    }
+    metal::float2 middle = metal::float2(across, ray_9.along) / metal::float2(_e15);
+    float width = cos_angle / _e15;
+    float sin_width = metal::sqrt(metal::max((1.0 - width) * (1.0 + width), 0.0));
+    metal::float2 first_1 = metal::float2((middle.x * width) + (middle.y * sin_width), (middle.y * width) - (middle.x * sin_width));
+    metal::float2 last_3 = metal::float2((middle.x * width) - (middle.y * sin_width), (middle.y * width) + (middle.x * sin_width));
+    if (first_1.x > 0.0) {
+        from_m_2 = (h_3 * first_1.y) / first_1.x;
+    } else {
+        if (across <= 0.0) {
+            local_13 = ray_9.along >= 0.0;
+        } else {
+            local_13 = false;
+        }
+        bool _e71 = local_13;
+        if (_e71) {
+            return metal::float2(0.0);
+        }
+    }
+    if (last_3.x > 0.0) {
+        to_m_1 = (h_3 * last_3.y) / last_3.x;
+    } else {
+        if (across <= 0.0) {
+            local_14 = ray_9.along <= 0.0;
+        } else {
+            local_14 = false;
+        }
+        bool _e91 = local_14;
+        if (_e91) {
+            return metal::float2(0.0);
+        }
+    }
+    float _e94 = from_m_2;
+    float _e95 = to_m_1;
+    metal::float2 interval = metal::clamp(metal::float2(_e94, _e95) - metal::float2(ray_9.geometry.start_m), metal::float2(0.0), metal::float2(length_m_14));
+    return (interval.y > interval.x) ? interval : metal::float2(0.0);
+}
+
+// Light at a place of a ray: its intensity there relative to `intensity` (x), times the ratio of the squared distances `geometry` and the light have; the distance to the light's surface, m (y); 1 minus the cosine of the scattering angle (z).
+// Cost: no exp.
+metal::float3 light_at(
+    LightRay ray_10,
+    float place_m_2
+) {
+    float h_4 = ray_10.geometry.nearest_m;
+    float _e4 = light_distance_m(h_4, place_m_2);
+    float _e5 = light_ahead_m(h_4, place_m_2);
+    float one_minus_cos_10 = _e5 / _e4;
+    if (ray_10.light.kind == LIGHT_SPOT) {
+        float cos_angle_3 = (ray_10.across_m + (place_m_2 * ray_10.along)) / _e4;
+        float range = metal::max(ray_10.light.cos_inner - ray_10.light.cos_outer, 0.000001);
+        float part_1 = metal::clamp((cos_angle_3 - ray_10.light.cos_outer) / range, 0.0, 1.0);
+        return metal::float3(part_1 * part_1, _e4, one_minus_cos_10);
+    }
+    if (ray_10.light.kind == LIGHT_SPHERE) {
+        float radius_m_3 = ray_10.light.radius_m;
+        float _e39 = light_distance_m(ray_10.nearest_m, place_m_2);
+        float centre_m = metal::max(_e39, radius_m_3);
+        float sine = radius_m_3 / centre_m;
+        float closeness = 2.0 / (1.0 + metal::sqrt(metal::max((1.0 - sine) * (1.0 + sine), 0.0)));
+        return metal::float3((closeness * (_e4 / centre_m)) * (_e4 / centre_m), centre_m - radius_m_3, metal::min(1.0 + (place_m_2 / centre_m), 2.0));
+    }
+    return metal::float3(1.0, _e4, one_minus_cos_10);
+}
+
+// Width of the forward peak of a Henyey-Greenstein function in the tangent of half the scattering angle, at most 1.
+// Cost: no exp.
+float light_peak(
+    float mean_cosine
+) {
+    return metal::min((1.0 - mean_cosine) / (1.0 + mean_cosine), 1.0);
+}
+
+// Part of a ray past a light in uniform fog, for unit intensity and unit scattering coefficient, 1/m.
+// Cost: 1 exp, 3 exp a step; 8 steps.
+metal::float3 light_panel_in_uniform_fog(
+    metal::float3 extinction_per_m_1,
+    float mean_cosine_1,
+    LightRay ray_11,
+    float from_m_3,
+    float to_m_2
+) {
+    metal::float3 sum_1 = metal::float3(0.0);
+    uint i_8 = 0u;
+    float h_5 = ray_11.geometry.nearest_m;
+    float start_1 = ray_11.geometry.start_m + from_m_3;
+    float _e10 = light_distance_m(h_5, start_1);
+    float _e11 = light_ahead_m(h_5, start_1);
+    float least = metal::min(extinction_per_m_1.x, metal::min(extinction_per_m_1.y, extinction_per_m_1.z));
+    float rate = metal::max(extinction_per_m_1.x, metal::max(extinction_per_m_1.y, extinction_per_m_1.z));
+    float _e24 = light_excess_m(LightRayGeometry {h_5, start_1, to_m_2 - from_m_3});
+    float end_3 = metal::min(_e24, LIGHT_CUTOFF / metal::max(least, 0.000000000001));
+    float _e30 = light_peak(mean_cosine_1);
+    float _e32 = light_distance_m(_e30 * h_5, _e11);
+    float _e37 = light_distance_m(1.0, (rate * _e32) / 12.0);
+    float scale = _e32 / _e37;
+    float _e39 = light_node_span(scale, end_3);
+    bool loop_init_7 = true;
+    while(true) {
+        if (!loop_init_7) {
+            uint _e89 = i_8;
+            i_8 = _e89 + 1u;
+        }
+        loop_init_7 = false;
+        uint _e45 = i_8;
+        if (_e45 < LIGHT_NODES) {
+        } else {
+            break;
+        }
+        {
+            uint _e48 = i_8;
+            metal::float2 _e49 = light_node(_e48, scale, _e39);
+            float s = _e49.x + _e11;
+            float t_1 = (0.5 * _e49.x) * ((_e49.x + (2.0 * _e10)) / s);
+            metal::float3 _e67 = light_at(ray_11, (0.5 * (s - h_5)) * ((s + h_5) / s));
+            float _e69 = henyey_greenstein(_e67.z, mean_cosine_1);
+            float weight = (((2.0 * _e49.y) / ((h_5 * h_5) + (s * s))) * _e67.x) * _e69;
+            metal::float3 _e80 = sum_1;
+            sum_1 = _e80 + (weight * metal::exp(-(extinction_per_m_1) * ((from_m_3 + t_1) + _e67.y)));
+        }
+    }
+    metal::float3 _e92 = sum_1;
+    return _e92;
+}
+
+// A light of any kind in uniform fog whose phase function is that of Henyey and Greenstein, of mean cosine from -0.3 to 0.95.
+// Cost: 3 exp, 9 exp a step; 8 steps, for point and sphere lights a third.
+metal::float3 light_in_uniform_fog(
+    FogMedium medium_7,
+    float mean_cosine_2,
+    LocalLight light_9,
+    metal::float3 eye_3,
+    metal::float3 direction_3,
+    float length_m_11
+) {
+    metal::float3 sum_2 = metal::float3(0.0);
+    LightRay _e6 = light_ray(light_9, eye_3, direction_3, length_m_11);
+    metal::float2 _e8 = lit_interval(_e6, light_9.cos_outer);
+    metal::float2 _e10 = lit_interval(_e6, light_9.cos_inner);
+    metal::float2 inner_1 = metal::clamp(_e10, metal::float2(_e8.x), metal::float2(_e8.y));
+    if (inner_1.x > _e8.x) {
+        metal::float3 _e22 = sum_2;
+        metal::float3 _e26 = light_panel_in_uniform_fog(medium_7.extinction_per_m, mean_cosine_2, _e6, _e8.x, inner_1.x);
+        sum_2 = _e22 + _e26;
+    }
+    if (inner_1.y > inner_1.x) {
+        metal::float3 _e31 = sum_2;
+        metal::float3 _e35 = light_panel_in_uniform_fog(medium_7.extinction_per_m, mean_cosine_2, _e6, inner_1.x, inner_1.y);
+        sum_2 = _e31 + _e35;
+    }
+    if (_e8.y > inner_1.y) {
+        metal::float3 _e40 = sum_2;
+        metal::float3 _e44 = light_panel_in_uniform_fog(medium_7.extinction_per_m, mean_cosine_2, _e6, inner_1.y, _e8.y);
+        sum_2 = _e40 + _e44;
+    }
+    metal::float3 _e49 = sum_2;
+    return (medium_7.scattering_per_m * light_9.intensity) * _e49;
+}
+
+// Column from the eye to a distance along a ray and from there to a light, m.
+// Cost: 4 exp.
+float column_by_light_m(
+    ExponentialFog fog_3,
+    float eye_height_m,
+    float sin_elevation_6,
+    float distance_m,
+    float light_height_m,
+    float to_centre_m,
+    float to_light_m
+) {
+    float height_m_11 = eye_height_m + (sin_elevation_6 * distance_m);
+    float sine_1 = (light_height_m - height_m_11) / metal::max(to_centre_m, 0.000001);
+    float _e15 = flat_exponential_column_m(eye_height_m, sin_elevation_6, distance_m, fog_3.reference_height_m, fog_3.scale_height_m);
+    float _e18 = flat_exponential_column_m(height_m_11, sine_1, to_light_m, fog_3.reference_height_m, fog_3.scale_height_m);
+    return _e15 + _e18;
+}
+
+// Part of a ray past a light in exponential height fog, for unit intensity and unit scattering coefficient, 1/m.
+// Cost: 5 exp, 12 exp a step; 8 steps of 8, and 1 to 8 of 4.
+metal::float3 light_panel_in_exponential_fog(
+    ExponentialFog fog_4,
+    float eye_height_m_1,
+    float sin_elevation_7,
+    LightRay ray_12,
+    float from_m_4,
+    float to_m_3
+) {
+    float end = {};
+    float reached = 0.0;
+    uint i_9 = 0u;
+    bool local_15 = {};
+    float origin_m = {};
+    float forward = 1.0;
+    float anchor = {};
+    metal::float3 sum_3 = metal::float3(0.0);
+    uint i_10 = 0u;
+    float h_6 = ray_12.geometry.nearest_m;
+    float start_2 = ray_12.geometry.start_m + from_m_4;
+    metal::float3 extinction = fog_4.medium.extinction_per_m;
+    float least_1 = metal::max(metal::min(fog_4.medium.extinction_per_m.x, metal::min(fog_4.medium.extinction_per_m.y, fog_4.medium.extinction_per_m.z)), 0.000000000001);
+    float most = metal::max(fog_4.medium.extinction_per_m.x, metal::max(fog_4.medium.extinction_per_m.y, fog_4.medium.extinction_per_m.z));
+    float light_height_m_1 = ray_12.light.position[1];
+    float _e28 = light_distance_m(h_6, start_2);
+    float _e29 = light_ahead_m(h_6, start_2);
+    float _e32 = light_excess_m(LightRayGeometry {h_6, start_2, to_m_3 - from_m_4});
+    float _e33 = column_by_light_m(fog_4, eye_height_m_1, sin_elevation_7, from_m_4, light_height_m_1, _e28, _e28);
+    end = _e32;
+    bool loop_init_8 = true;
+    while(true) {
+        if (!loop_init_8) {
+            uint _e70 = i_9;
+            i_9 = _e70 + 1u;
+        }
+        loop_init_8 = false;
+        uint _e39 = i_9;
+        if (_e39 < 8u) {
+        } else {
+            break;
+        }
+        {
+            float _e42 = end;
+            float _e45 = end;
+            float _e49 = end;
+            float t_2 = (0.5 * _e42) * ((_e45 + (2.0 * _e28)) / (_e49 + _e29));
+            float _e54 = light_distance_m(h_6, start_2 + t_2);
+            float _e56 = column_by_light_m(fog_4, eye_height_m_1, sin_elevation_7, from_m_4 + t_2, light_height_m_1, _e54, _e54);
+            reached = least_1 * (_e56 - _e33);
+            float _e59 = reached;
+            if (_e59 <= 25.334) {
+                break;
+            }
+            float _e62 = end;
+            float _e63 = reached;
+            end = _e62 * ((_e63 > 253.34) ? 0.1 : 0.5);
+        }
+    }
+    float _e73 = reached;
+    float _e74 = end;
+    float rate_1 = metal::max(_e73 / metal::max(_e74, 0.000000000000000000000000000001), 0.0) * (most / least_1);
+    if ((start_2 + (to_m_3 - from_m_4)) <= 0.0) {
+        float _e88 = end;
+        local_15 = (rate_1 * _e88) < 4.0;
+    } else {
+        local_15 = false;
+    }
+    bool outwards = local_15;
+    origin_m = from_m_4;
+    anchor = start_2;
+    if (outwards) {
+        float _e98 = end;
+        float _e101 = end;
+        float _e105 = end;
+        float reach = metal::min((0.5 * _e98) * ((_e101 + (2.0 * _e28)) / (_e105 + _e29)), to_m_3 - from_m_4);
+        origin_m = from_m_4 + reach;
+        forward = -1.0;
+        anchor = -((start_2 + reach));
+        float _e115 = anchor;
+        float _e117 = light_excess_m(LightRayGeometry {h_6, _e115, reach});
+        end = _e117;
+    }
+    float _e118 = anchor;
+    float _e119 = light_distance_m(h_6, _e118);
+    float _e120 = anchor;
+    float _e121 = light_ahead_m(h_6, _e120);
+    float _e123 = light_peak(fog_4.mean_cosine);
+    float _e127 = light_distance_m((outwards ? 1.0 : _e123) * h_6, _e121);
+    float _e134 = light_distance_m(1.0, ((outwards ? 0.0 : rate_1) * _e127) / 12.0);
+    float scale_1 = _e127 / _e134;
+    float _e136 = end;
+    float _e137 = light_node_span(scale_1, _e136);
+    bool loop_init_9 = true;
+    while(true) {
+        if (!loop_init_9) {
+            uint _e213 = i_10;
+            i_10 = _e213 + 1u;
+        }
+        loop_init_9 = false;
+        uint _e143 = i_10;
+        if (_e143 < LIGHT_NODES) {
+        } else {
+            break;
+        }
+        {
+            uint _e146 = i_10;
+            metal::float2 _e147 = light_node(_e146, scale_1, _e137);
+            float s_1 = _e147.x + _e121;
+            float _e150 = origin_m;
+            float _e151 = forward;
+            float t_3 = metal::max(_e150 + (((_e151 * 0.5) * _e147.x) * ((_e147.x + (2.0 * _e119)) / s_1)), 0.0);
+            float _e165 = forward;
+            float place_5 = ((_e165 * 0.5) * (s_1 - h_6)) * ((s_1 + h_6) / s_1);
+            metal::float3 _e173 = light_at(ray_12, place_5);
+            float centre_m_1 = (ray_12.light.kind == LIGHT_SPHERE) ? (_e173.y + ray_12.light.radius_m) : _e173.y;
+            float _e185 = column_by_light_m(fog_4, eye_height_m_1, sin_elevation_7, t_3, light_height_m_1, centre_m_1, _e173.y);
+            float _e192 = decayed(((eye_height_m_1 + (sin_elevation_7 * t_3)) - fog_4.reference_height_m) / fog_4.scale_height_m);
+            float _e195 = henyey_greenstein(_e173.z, fog_4.mean_cosine);
+            float weight_1 = ((((2.0 * _e147.y) / ((h_6 * h_6) + (s_1 * s_1))) * _e173.x) * _e195) * _e192;
+            metal::float3 _e207 = sum_3;
+            sum_3 = _e207 + (weight_1 * metal::exp(-(extinction) * _e185));
+        }
+    }
+    metal::float3 _e216 = sum_3;
+    return _e216;
+}
+
+// A light of any kind in exponential height fog over flat ground.
+// Cost: 2 exp, 17 exp a step; 1 to 6 steps of 73 to 101.
+metal::float3 light_in_exponential_fog(
+    ExponentialFog fog_5,
+    LocalLight light_10,
+    metal::float3 eye_4,
+    metal::float3 direction_4,
+    float length_m_12
+) {
+    float last_m = {};
+    float floor = {};
+    type_9 cuts = {};
+    metal::float3 sum_4 = metal::float3(0.0);
+    float from_m_5 = {};
+    uint i_11 = 0u;
+    float to_m_4 = {};
+    uint k = {};
+    LightRay _e5 = light_ray(light_10, eye_4, direction_4, length_m_12);
+    metal::float2 _e7 = lit_interval(_e5, light_10.cos_outer);
+    metal::float2 _e9 = lit_interval(_e5, light_10.cos_inner);
+    last_m = _e7.y;
+    float rise_1 = direction_4.y / fog_5.scale_height_m;
+    float start_3 = (eye_4.y - fog_5.reference_height_m) / fog_5.scale_height_m;
+    floor = start_3 + metal::min(rise_1 * _e5.geometry.length_m, 0.0);
+    if (rise_1 < 0.0) {
+        metal::float3 extinction_1 = fog_5.medium.extinction_per_m;
+        float least_2 = metal::max(metal::min(fog_5.medium.extinction_per_m.x, metal::min(fog_5.medium.extinction_per_m.y, fog_5.medium.extinction_per_m.z)), 0.000000000001);
+        float _e38 = decayed(start_3);
+        float dark = -(metal::log(_e38 + ((90.0 * -(rise_1)) / least_2)));
+        float _e46 = floor;
+        if (dark > _e46) {
+            floor = dark;
+            float _e48 = last_m;
+            last_m = metal::min(_e48, metal::max((dark - start_3) / rise_1, 0.0));
+        }
+    }
+    float _e59 = last_m;
+    float _e60 = last_m;
+    float _e61 = last_m;
+    cuts = type_9 {{_e9.x, _e9.y, -(_e5.geometry.start_m), _e59, _e60, _e61}};
+    if (rise_1 != 0.0) {
+        float _e67 = floor;
+        cuts.inner[3] = ((_e67 + 3.0) - start_3) / rise_1;
+        float _e73 = floor;
+        cuts.inner[4] = ((_e73 + 10.0) - start_3) / rise_1;
+        float _e78 = floor;
+        float top_m_1 = ((_e78 + 40.0) - start_3) / rise_1;
+        cuts.inner[5] = top_m_1;
+        if (rise_1 > 0.0) {
+            float _e86 = last_m;
+            last_m = metal::min(_e86, metal::max(top_m_1, 0.0));
+        }
+    }
+    from_m_5 = _e7.x;
+    bool loop_init_10 = true;
+    while(true) {
+        if (!loop_init_10) {
+            uint _e133 = i_11;
+            i_11 = _e133 + 1u;
+        }
+        loop_init_10 = false;
+        uint _e97 = i_11;
+        if (_e97 < 7u) {
+        } else {
+            break;
+        }
+        {
+            float _e100 = from_m_5;
+            float _e101 = last_m;
+            if (_e100 >= _e101) {
+                break;
+            }
+            float _e103 = last_m;
+            to_m_4 = _e103;
+            k = 0u;
+            bool loop_init_11 = true;
+            while(true) {
+                if (!loop_init_11) {
+                    uint _e122 = k;
+                    k = _e122 + 1u;
+                }
+                loop_init_11 = false;
+                uint _e107 = k;
+                if (_e107 < 6u) {
+                } else {
+                    break;
+                }
+                {
+                    float _e110 = to_m_4;
+                    float _e111 = to_m_4;
+                    uint _e112 = k;
+                    float _e114 = cuts.inner[_e112];
+                    uint _e116 = k;
+                    float _e118 = cuts.inner[_e116];
+                    float _e119 = from_m_5;
+                    to_m_4 = (_e118 > _e119) ? metal::min(_e111, _e114) : _e110;
+                }
+            }
+            metal::float3 _e125 = sum_4;
+            float _e128 = from_m_5;
+            float _e129 = to_m_4;
+            metal::float3 _e130 = light_panel_in_exponential_fog(fog_5, eye_4.y, direction_4.y, _e5, _e128, _e129);
+            sum_4 = _e125 + _e130;
+            float _e132 = to_m_4;
+            from_m_5 = _e132;
+        }
+    }
+    metal::float3 _e140 = sum_4;
+    return (fog_5.medium.scattering_per_m * light_10.intensity) * _e140;
+}
+
+// No fog: what a march starts with.
+// Cost: no exp.
+PathOptics no_fog(
+) {
+    return PathOptics {metal::float3(1.0), metal::float3(0.0)};
+}
+
+// Distance of a place from 0 to 1 along a segment, m, such that steps that are even in `place` have even shares of the light of uniform fog of this optical depth along the segment: short near the eye.
+// Cost: 3 exp.
+float shadow_edge_m(
+    float place,
+    float length_m_13,
+    float optical_depth_1
+) {
+    if (place >= 1.0) {
+        return length_m_13;
+    }
+    float _e5 = mean_transmittance(optical_depth_1);
+    float mean = place * _e5;
+    float u_1 = mean * optical_depth_1;
+    float series_2 = mean * (1.0 + (u_1 * (0.5 + (u_1 * (0.33333334 + (u_1 * (0.25 + (u_1 * 0.2))))))));
+    float direct_2 = -(metal::log(metal::max((1.0 - place) + (place * metal::exp(-(optical_depth_1))), 0.000000000000000000000000000001))) / metal::max(optical_depth_1, 0.05);
+    return length_m_13 * metal::min((u_1 < 0.05) ? series_2 : direct_2, 1.0);
+}
+
+// Light whose sun is visible in part, 0 to 1.
+// Cost: no exp.
+FogLight with_visibility(
+    FogLight light_11,
+    float visibility
+) {
+    return FogLight {light_11.sunlight * visibility, light_11.sin_sun, light_11.ambient};
+}
+
+// A march in uniform fog with one step more, from which the sun is visible in part.
+// Cost: 6 exp.
+PathOptics shadowed_uniform_fog(
+    PathOptics before_1,
+    FogMedium medium_8,
+    float from_m_6,
+    float to_m_5,
+    FogLight light_12,
+    float visibility_1
+) {
+    FogLight _e7 = with_visibility(light_12, visibility_1);
+    PathOptics _e8 = uniform_fog(medium_8, to_m_5 - from_m_6, _e7);
+    PathOptics _e9 = near_then_far(before_1, _e8);
+    return _e9;
+}
+
+// A march in exponential height fog over flat ground with one step more, from which the sun is visible in part. The fog above the ray attenuates sunlight.
+// Cost: 16 exp.
+PathOptics shadowed_exponential_fog(
+    PathOptics before_2,
+    FogMedium medium_9,
+    float height_m_10,
+    float sin_elevation_8,
+    float from_m_7,
+    float to_m_6,
+    float reference_height_m_5,
+    float scale_height_m_9,
+    FogLight light_13,
+    float visibility_2
+) {
+    FogLight _e13 = with_visibility(light_13, visibility_2);
+    PathOptics _e14 = exponential_fog(medium_9, height_m_10 + (sin_elevation_8 * from_m_7), sin_elevation_8, to_m_6 - from_m_7, reference_height_m_5, scale_height_m_9, _e13);
+    PathOptics _e15 = near_then_far(before_2, _e14);
+    return _e15;
+}
+
 // Red, green and blue of a radiance at four wavelengths.
 // Cost: no exp.
 metal::float3 rgb_from_spectrum(
-    RgbWeights weights,
+    RgbWeights weights_1,
     metal::float4 spectrum
 ) {
-    return metal::float3(metal::dot(weights.red, spectrum), metal::dot(weights.green, spectrum), metal::dot(weights.blue, spectrum));
+    return metal::float3(metal::dot(weights_1.red, spectrum), metal::dot(weights_1.green, spectrum), metal::dot(weights_1.blue, spectrum));
 }
 
 // XYZ of linear sRGB (IEC 61966-2-1), in the unit of its components.
@@ -1191,10 +1982,10 @@ metal::float3 into_unit_cube(
 // Texture coordinate of a place from 0 (centre of the first texel) to 1 (centre of the last) among `count` texels.
 // Cost: no exp.
 float texel_coordinate(
-    float place,
+    float place_1,
     float count_1
 ) {
-    return (0.5 + (place * (count_1 - 1.0))) / count_1;
+    return (0.5 + (place_1 * (count_1 - 1.0))) / count_1;
 }
 
 // Inverse of `texel_coordinate`.
@@ -1209,24 +2000,24 @@ float place_from_texel_coordinate(
 // Azimuth of a direction from that of the sun as a fraction of half a turn. Under a vertical sun azimuths count from east.
 // Cost: no exp.
 float azimuth_place(
-    metal::float3 direction,
+    metal::float3 direction_5,
     metal::float3 sun
 ) {
-    bool local_12 = {};
+    bool local_16 = {};
     bool is_vertical = (metal::abs(sun.x) + metal::abs(sun.z)) < 0.000000001;
     metal::float2 towards = is_vertical ? metal::float2(1.0, 0.0) : sun.xz;
-    float across = metal::abs((direction.x * towards.y) - (direction.z * towards.x));
-    float along_2 = metal::dot(direction.xz, towards);
-    if (across == 0.0) {
-        local_12 = along_2 >= 0.0;
+    float across_1 = metal::abs((direction_5.x * towards.y) - (direction_5.z * towards.x));
+    float along_2 = metal::dot(direction_5.xz, towards);
+    if (across_1 == 0.0) {
+        local_16 = along_2 >= 0.0;
     } else {
-        local_12 = false;
+        local_16 = false;
     }
-    bool _e31 = local_12;
+    bool _e31 = local_16;
     if (_e31) {
         return 0.0;
     }
-    return metal::atan2(across, along_2) * 0.31830987;
+    return metal::atan2(across_1, along_2) * 0.31830987;
 }
 
 // Texture coordinate of an elevation in a table with rows above and below the horizon, dense towards it: at the square of the row above, and at its fourth power below, where rays from a low eye soon meet the ground. The first rows hold the elevations from the horizon on; both parts end in texel centres, so that filtering does not mix them.
@@ -1238,12 +2029,12 @@ float row_coordinate(
     float rows_above,
     float rows_below
 ) {
-    float end_1 = is_below ? -1.5707964 : view.highest_rad;
+    float end_4 = is_below ? -1.5707964 : view.highest_rad;
     float rows = is_below ? rows_below : rows_above;
-    float part_1 = metal::clamp((elevation_rad - view.horizon_rad) / (end_1 - view.horizon_rad), 0.0, 1.0);
-    float place_4 = is_below ? metal::sqrt(metal::sqrt(part_1)) : metal::sqrt(part_1);
-    float first_1 = is_below ? rows_above : 0.0;
-    return ((first_1 + 0.5) + (place_4 * (rows - 1.0))) / (rows_above + rows_below);
+    float part_2 = metal::clamp((elevation_rad - view.horizon_rad) / (end_4 - view.horizon_rad), 0.0, 1.0);
+    float place_6 = is_below ? metal::sqrt(metal::sqrt(part_2)) : metal::sqrt(part_2);
+    float first_2 = is_below ? rows_above : 0.0;
+    return ((first_2 + 0.5) + (place_6 * (rows - 1.0))) / (rows_above + rows_below);
 }
 
 // Inverse of `row_coordinate`: elevation of a texture coordinate, rad.
@@ -1256,30 +2047,30 @@ float elevation_from_row_coordinate(
 ) {
     float row_2 = coordinate_1 * (rows_above_1 + rows_below_1);
     bool is_below_1 = row_2 >= rows_above_1;
-    float end_2 = is_below_1 ? -1.5707964 : view_1.highest_rad;
+    float end_5 = is_below_1 ? -1.5707964 : view_1.highest_rad;
     float rows_1 = is_below_1 ? rows_below_1 : rows_above_1;
-    float place_5 = ((row_2 - (is_below_1 ? rows_above_1 : 0.0)) - 0.5) / (rows_1 - 1.0);
-    float squared = place_5 * place_5;
-    return view_1.horizon_rad + ((end_2 - view_1.horizon_rad) * (is_below_1 ? (squared * squared) : squared));
+    float place_7 = ((row_2 - (is_below_1 ? rows_above_1 : 0.0)) - 0.5) / (rows_1 - 1.0);
+    float squared = place_7 * place_7;
+    return view_1.horizon_rad + ((end_5 - view_1.horizon_rad) * (is_below_1 ? (squared * squared) : squared));
 }
 
 // Elevation of a direction, rad.
 // Cost: no exp.
 float elevation_of(
-    metal::float3 direction_1
+    metal::float3 direction_6
 ) {
-    return metal::atan2(direction_1.y, metal::length(direction_1.xz));
+    return metal::atan2(direction_6.y, metal::length(direction_6.xz));
 }
 
 // Texture coordinates of a direction in a sky table.
 // Cost: no exp.
 metal::float2 uv_from_direction(
     SkyView view_2,
-    metal::float3 direction_2
+    metal::float3 direction_7
 ) {
-    float _e2 = elevation_of(direction_2);
+    float _e2 = elevation_of(direction_7);
     bool is_below_2 = _e2 < view_2.horizon_rad;
-    float _e6 = azimuth_place(direction_2, view_2.sun);
+    float _e6 = azimuth_place(direction_7, view_2.sun);
     float _e8 = texel_coordinate(_e6, SKY_AZIMUTHS);
     float _e11 = row_coordinate(view_2, _e2, is_below_2, SKY_ROWS_ABOVE, SKY_ROWS_BELOW);
     return metal::float2(_e8, _e11);
@@ -1295,33 +2086,33 @@ metal::float3 direction_from_azimuth_elevation(
     bool is_vertical_1 = (metal::abs(view_3.sun[0]) + metal::abs(view_3.sun[2])) < 0.000000001;
     metal::float2 towards_1 = metal::normalize(is_vertical_1 ? metal::float2(1.0, 0.0) : metal::float3(view_3.sun).xz);
     float along_3 = metal::cos(azimuth * 3.1415927) * metal::cos(elevation_rad_1);
-    float across_1 = metal::sin(azimuth * 3.1415927) * metal::cos(elevation_rad_1);
-    return metal::float3((towards_1.x * along_3) - (towards_1.y * across_1), metal::sin(elevation_rad_1), (towards_1.y * along_3) + (towards_1.x * across_1));
+    float across_2 = metal::sin(azimuth * 3.1415927) * metal::cos(elevation_rad_1);
+    return metal::float3((towards_1.x * along_3) - (towards_1.y * across_2), metal::sin(elevation_rad_1), (towards_1.y * along_3) + (towards_1.x * across_2));
 }
 
 // Interval of a ray inside the air, m from the eye: up to the ground, if it meets that, or to the top. From space, a ray that misses the air has an empty interval.
 // Cost: no exp.
 metal::float2 air_span_m(
     SkyView view_4,
-    float sin_elevation_6,
+    float sin_elevation_9,
     bool meets_ground
 ) {
-    float end = {};
-    float b_3 = (view_4.ground_radius_m + view_4.height_m) * sin_elevation_6;
+    float end_1 = {};
+    float b_3 = (view_4.ground_radius_m + view_4.height_m) * sin_elevation_9;
     float over_ground = view_4.height_m * ((2.0 * view_4.ground_radius_m) + view_4.height_m);
     float over_top = (view_4.height_m - view_4.air_height_m) * (((2.0 * view_4.ground_radius_m) + view_4.height_m) + view_4.air_height_m);
     float root_2 = metal::sqrt(metal::max((b_3 * b_3) - over_top, 0.0));
-    float start_1 = (over_top > 0.0) ? (over_top / (root_2 - b_3)) : 0.0;
-    end = root_2 - b_3;
+    float start_4 = (over_top > 0.0) ? (over_top / (root_2 - b_3)) : 0.0;
+    end_1 = root_2 - b_3;
     if (meets_ground) {
-        end = over_ground / (metal::sqrt(metal::max((b_3 * b_3) - over_ground, 0.0)) - b_3);
+        end_1 = over_ground / (metal::sqrt(metal::max((b_3 * b_3) - over_ground, 0.0)) - b_3);
     } else {
         if (b_3 > 0.0) {
-            end = -(over_top) / (root_2 + b_3);
+            end_1 = -(over_top) / (root_2 + b_3);
         }
     }
-    float _e50 = end;
-    return metal::float2(start_1, metal::max(_e50, start_1));
+    float _e50 = end_1;
+    return metal::float2(start_4, metal::max(_e50, start_4));
 }
 
 // Place from 0 to 1 of a part of the way through the air in tables by distance, which are dense near the eye.
@@ -1335,9 +2126,9 @@ float place_from_part(
 // Inverse of `place_from_part`.
 // Cost: no exp.
 float part_from_place(
-    float place_1
+    float place_2
 ) {
-    return place_1 * place_1;
+    return place_2 * place_2;
 }
 
 // Place from 0 to 1 of a scattering angle in a table of phase functions, dense forwards, by 1 minus the cosine.
@@ -1352,9 +2143,9 @@ float phase_place(
 // Inverse of `phase_place`.
 // Cost: no exp.
 float one_minus_cos_from_phase_place(
-    float place_2
+    float place_3
 ) {
-    float half_sine = metal::sin((1.5707964 * place_2) * place_2);
+    float half_sine = metal::sin((1.5707964 * place_3) * place_3);
     return (2.0 * half_sine) * half_sine;
 }
 
@@ -1380,14 +2171,14 @@ metal::float4 sky_radiance(
     metal::texture2d<float, metal::access::sample> haze_table,
     metal::texture2d<float, metal::access::sample> phase_table_1,
     metal::sampler linear_sampler_1,
-    metal::float3 direction_3
+    metal::float3 direction_8
 ) {
-    float _e7 = elevation_of(direction_3);
+    float _e7 = elevation_of(direction_8);
     if (_e7 > view_5.highest_rad) {
         return metal::float4(0.0);
     }
-    metal::float2 _e12 = uv_from_direction(view_5, direction_3);
-    float _e14 = one_minus_cos_between(direction_3, view_5.sun);
+    metal::float2 _e12 = uv_from_direction(view_5, direction_8);
+    float _e14 = one_minus_cos_between(direction_8, view_5.sun);
     metal::float4 _e15 = haze_phase(phase_table_1, linear_sampler_1, _e14);
     metal::float4 _e17 = smooth_table.sample(linear_sampler_1, _e12, metal::level(0.0));
     metal::float4 smooth_light = metal::exp(_e17) * scales.smooth_light;
@@ -1406,33 +2197,33 @@ SpectralPath aerial_perspective(
     metal::texture2d<float, metal::access::sample> extinction_table,
     metal::texture2d<float, metal::access::sample> phase_table_2,
     metal::sampler linear_sampler_2,
-    metal::float3 direction_4,
-    float distance_m
+    metal::float3 direction_9,
+    float distance_m_1
 ) {
-    bool local_13 = {};
-    float _e9 = elevation_of(direction_4);
+    bool local_17 = {};
+    float _e9 = elevation_of(direction_9);
     bool is_below_3 = _e9 < view_6.horizon_rad;
-    metal::float2 _e13 = air_span_m(view_6, direction_4.y, is_below_3);
-    float length_m_8 = metal::min(distance_m, _e13.y) - _e13.x;
-    if (!((length_m_8 <= 0.0))) {
-        local_13 = _e9 > view_6.highest_rad;
+    metal::float2 _e13 = air_span_m(view_6, direction_9.y, is_below_3);
+    float length_m_15 = metal::min(distance_m_1, _e13.y) - _e13.x;
+    if (!((length_m_15 <= 0.0))) {
+        local_17 = _e9 > view_6.highest_rad;
     } else {
-        local_13 = true;
+        local_17 = true;
     }
-    bool _e26 = local_13;
+    bool _e26 = local_17;
     if (_e26) {
         return SpectralPath {metal::float4(1.0), metal::float4(0.0)};
     }
-    float _e39 = place_from_part(metal::clamp(length_m_8 / (_e13.y - _e13.x), 0.0, 1.0));
+    float _e39 = place_from_part(metal::clamp(length_m_15 / (_e13.y - _e13.x), 0.0, 1.0));
     float _e42 = row_coordinate(view_6, _e9, is_below_3, AERIAL_ROWS_ABOVE, AERIAL_ROWS_BELOW);
-    float _e44 = azimuth_place(direction_4, view_6.sun);
+    float _e44 = azimuth_place(direction_9, view_6.sun);
     float _e46 = texel_coordinate(_e44, AERIAL_AZIMUTHS);
     float _e48 = texel_coordinate(_e39, AERIAL_DISTANCES);
     metal::float3 uvw = metal::float3(_e46, _e42, _e48);
-    float _e51 = one_minus_cos_between(direction_4, view_6.sun);
+    float _e51 = one_minus_cos_between(direction_9, view_6.sun);
     metal::float4 _e52 = haze_phase(phase_table_2, linear_sampler_2, _e51);
     metal::float4 _e55 = extinction_table.sample(linear_sampler_2, uvw.zy, metal::level(0.0));
-    metal::float4 depth_4 = _e55 * (length_m_8 * 0.001);
+    metal::float4 depth_4 = _e55 * (length_m_15 * 0.001);
     metal::float4 _e60 = smooth_table_1.sample(linear_sampler_2, uvw, metal::level(0.0));
     metal::float4 smooth_light_1 = metal::exp(_e60) * scales_1.smooth_light;
     metal::float4 _e65 = haze_table_1.sample(linear_sampler_2, uvw, metal::level(0.0));
@@ -1446,12 +2237,12 @@ SpectralPath aerial_perspective(
 // Transmittance and path radiance in red, green and blue, for scenes in these: the transmittance of a channel is that of sunlight.
 // Cost: no exp.
 PathOptics rgb_path(
-    RgbWeights radiance_2,
+    RgbWeights radiance_3,
     RgbWeights transmittance,
     SpectralPath path_1
 ) {
     metal::float3 _e4 = rgb_from_spectrum(transmittance, path_1.transmittance);
-    metal::float3 _e6 = rgb_from_spectrum(radiance_2, path_1.path_radiance);
+    metal::float3 _e6 = rgb_from_spectrum(radiance_3, path_1.path_radiance);
     return PathOptics {_e4, _e6};
 }
 
@@ -1463,13 +2254,13 @@ LimbDarkening limb_darkening(
     metal::float4 per_um = metal::float4(1000.0) / metal::clamp(wavelengths_nm, metal::float4(422.57), metal::float4(1099.0));
     metal::float4 power = (((per_um * per_um) * per_um) * per_um) * per_um;
     metal::float4 zeroth = metal::float4(0.75267) - (0.265577 * per_um);
-    metal::float4 first_2 = (metal::float4(0.93874) + (0.265577 * per_um)) - (0.004095 * power);
+    metal::float4 first_3 = (metal::float4(0.93874) + (0.265577 * per_um)) - (0.004095 * power);
     metal::float4 second = metal::float4(-1.89287) + (0.012582 * power);
     metal::float4 third = metal::float4(2.42234) - (0.017117 * power);
     metal::float4 fourth = metal::float4(-1.7115) + (0.011977 * power);
     metal::float4 fifth = metal::float4(0.49062) - (0.003347 * power);
-    metal::float4 mean = ((((zeroth + (first_2 * 0.6666667)) + (second * 0.5)) + (third * 0.4)) + (fourth * 0.33333334)) + (fifth * 0.2857143);
-    return LimbDarkening {zeroth / mean, first_2 / mean, second / mean, third / mean, fourth / mean, fifth / mean};
+    metal::float4 mean_1 = ((((zeroth + (first_3 * 0.6666667)) + (second * 0.5)) + (third * 0.4)) + (fourth * 0.33333334)) + (fifth * 0.2857143);
+    return LimbDarkening {zeroth / mean_1, first_3 / mean_1, second / mean_1, third / mean_1, fourth / mean_1, fifth / mean_1};
 }
 
 // Radiance of the disc at `mu`, relative to its mean.
@@ -1493,11 +2284,11 @@ float place_on_disc(
 // Part of a pixel that the disc covers, 0 to 1: a ramp as wide as a pixel across the edge, so that the edge is smooth and the disc's light is kept, within `(pixel / radius)^2 / 12`. `sin_pixel` is the sine of the angle that a pixel spans; 0 gives a sharp edge.
 // Cost: no exp.
 float disc_coverage(
-    float place_3,
+    float place_4,
     float sin_radius_1,
     float sin_pixel
 ) {
-    return metal::clamp(((1.0 - place_3) * (sin_radius_1 / metal::max(sin_pixel, 0.000001 * sin_radius_1))) + 0.5, 0.0, 1.0);
+    return metal::clamp(((1.0 - place_4) * (sin_radius_1 / metal::max(sin_pixel, 0.000001 * sin_radius_1))) + 0.5, 0.0, 1.0);
 }
 
 // Radiance of the sun's disc in a pixel whose centre is `one_minus_cos` from the sun, from the disc's mean radiance: the irradiance on a surface that faces the sun, divided by `pi sin_radius^2`. Without attenuation by air.
@@ -1545,14 +2336,14 @@ metal::float3 camera_tone(
     metal::float3 _e3 = without_negatives(exposed_1);
     float _e4 = srgb_luminance(_e3);
     metal::float3 linear_1 = metal::mix(_e3, metal::float3(_e4), 0.01);
-    float least = metal::min(linear_1.x, metal::min(linear_1.y, linear_1.z));
-    float most = metal::max(linear_1.x, metal::max(linear_1.y, linear_1.z));
+    float least_3 = metal::min(linear_1.x, metal::min(linear_1.y, linear_1.z));
+    float most_1 = metal::max(linear_1.x, metal::max(linear_1.y, linear_1.z));
     metal::float3 _e18 = camera_response(linear_1, contrast_1);
     float hi = metal::max(_e18.x, metal::max(_e18.y, _e18.z));
-    float dark = ((1.0 - hi) * (1.0 - hi)) * (1.0 - hi);
-    metal::float3 curved_2 = metal::mix(_e18, linear_1 * (hi / metal::max(most, 0.000000000000000000000000000001)), dark);
+    float dark_1 = ((1.0 - hi) * (1.0 - hi)) * (1.0 - hi);
+    metal::float3 curved_2 = metal::mix(_e18, linear_1 * (hi / metal::max(most_1, 0.000000000000000000000000000001)), dark_1);
     float lo = metal::min(curved_2.x, metal::min(curved_2.y, curved_2.z));
-    metal::float3 kept = metal::float3(lo) + (((hi - lo) / metal::max(most - least, 0.000000000000000000000000000001)) * (linear_1 - metal::float3(least)));
+    metal::float3 kept = metal::float3(lo) + (((hi - lo) / metal::max(most_1 - least_3, 0.000000000000000000000000000001)) * (linear_1 - metal::float3(least_3)));
     metal::float3 toned = metal::mix(kept, curved_2, 0.2);
     float _e54 = srgb_luminance(toned);
     metal::float3 _e57 = into_unit_cube(metal::mix(metal::float3(_e54), toned, saturation));
@@ -1565,14 +2356,14 @@ metal::float3 agx_response(
     metal::float3 x_4
 ) {
     metal::float3 stops = metal::log2(metal::max(x_4, metal::float3(0.000000001)) / metal::float3(0.18));
-    metal::float3 place_6 = metal::clamp((stops + metal::float3(10.0)) / metal::float3(16.5), metal::float3(0.0), metal::float3(1.0));
-    metal::float3 from_grey = place_6 - metal::float3(0.6060606);
+    metal::float3 place_8 = metal::clamp((stops + metal::float3(10.0)) / metal::float3(16.5), metal::float3(0.0), metal::float3(1.0));
+    metal::float3 from_grey = place_8 - metal::float3(0.6060606);
     metal::bool3 is_toe = from_grey < metal::float3(0.0);
     metal::float3 limit = metal::select(metal::float3(0.7151983), metal::float3(0.5656756), is_toe);
-    metal::float3 u = 2.4 * metal::abs(from_grey);
-    metal::float3 bent = u / limit;
-    metal::float3 rise_1 = u / metal::pow(metal::float3(1.0) + (bent * metal::sqrt(bent)), metal::float3(0.6666667));
-    metal::float3 signal_2 = metal::clamp(metal::float3(0.4894371) + metal::select(rise_1, -(rise_1), is_toe), metal::float3(0.0), metal::float3(1.0));
+    metal::float3 u_2 = 2.4 * metal::abs(from_grey);
+    metal::float3 bent = u_2 / limit;
+    metal::float3 rise_2 = u_2 / metal::pow(metal::float3(1.0) + (bent * metal::sqrt(bent)), metal::float3(0.6666667));
+    metal::float3 signal_2 = metal::clamp(metal::float3(0.4894371) + metal::select(rise_2, -(rise_2), is_toe), metal::float3(0.0), metal::float3(1.0));
     return metal::pow(signal_2, metal::float3(2.4));
 }
 
@@ -1581,11 +2372,11 @@ metal::float3 agx_response(
 metal::float3 agx_tone(
     metal::float3 exposed_2
 ) {
-    metal::float3 weights_1 = metal::float3(0.212, 0.3922, 0.3958);
+    metal::float3 weights_2 = metal::float3(0.212, 0.3922, 0.3958);
     metal::float3 _e5 = without_negatives(exposed_2);
-    metal::float3 inset = metal::mix(_e5, metal::float3(metal::dot(weights_1, _e5)), 0.2);
+    metal::float3 inset = metal::mix(_e5, metal::float3(metal::dot(weights_2, _e5)), 0.2);
     metal::float3 _e10 = agx_response(inset);
-    metal::float3 _e19 = into_unit_cube((_e10 - metal::float3(0.2 * metal::dot(weights_1, _e10))) / metal::float3(0.8));
+    metal::float3 _e19 = into_unit_cube((_e10 - metal::float3(0.2 * metal::dot(weights_2, _e10))) / metal::float3(0.8));
     return _e19;
 }
 

@@ -125,3 +125,5 @@ twin!(A B C D E);
 twin!(A B C D E G);
 twin!(A B C D E G H);
 twin!(A B C D E G H I);
+twin!(A B C D E G H I J);
+twin!(A B C D E G H I J K);

@@ -20,14 +20,14 @@ flat_struct! {
 }
 
 /// Extinction and scattering, 1/m, from clear air to dense fog.
-fn medium(r: &mut Random) -> Vec<f32> {
+pub fn medium(r: &mut Random) -> Vec<f32> {
     let extinction = r.rgb(|r| r.or(&[0.0, 0.02], |r| r.decades(1e-6, 0.3)));
     let scattering = extinction.map(|x| x * r.between(0.5, 1.0));
     [extinction, scattering].concat()
 }
 
 /// Sunlight, the sine of the sun's elevation, ambient light.
-fn light(r: &mut Random) -> Vec<f32> {
+pub fn light(r: &mut Random) -> Vec<f32> {
     let mut all = r.rgb(Random::unit).to_vec();
     all.push(r.or(&[0.0, -0.1, 1.0, 0.01], |r| r.between(0.0, 1.0)));
     all.extend(r.rgb(Random::unit));
@@ -43,7 +43,7 @@ fn between<const N: usize>(r: &mut Random, others: [fn(&mut Random) -> f32; N]) 
 }
 
 /// Single scattering of one profile in f64: columns along the ray, and to the sun from both ends.
-fn single(x: &[f64], light: &[f64], column_m: f64, to_sun_m: Option<[f64; 2]>) -> Vec<f64> {
+pub fn single(x: &[f64], light: &[f64], column_m: f64, to_sun_m: Option<[f64; 2]>) -> Vec<f64> {
     let transmittance = (0..3).map(|c| (-x[c] * column_m).exp());
     let radiance = (0..3).map(|c| {
         let depth = x[c] * column_m;
@@ -62,7 +62,7 @@ fn flat_ray(x: &[f64]) -> RaySegment {
 }
 
 /// Single scattering of a profile over flat ground.
-fn in_profile(profile: &DensityProfile, x: &[f64], attenuated: bool) -> Vec<f64> {
+pub fn in_profile(profile: &DensityProfile, x: &[f64], attenuated: bool) -> Vec<f64> {
     let ray = flat_ray(x);
     let light = &x[11..];
     let column_m = profile.column_along_m(&ray).min(1e25);

@@ -3,7 +3,9 @@
 mod air;
 mod colour;
 mod fog;
+mod lights;
 mod phase;
+mod shadows;
 mod sky_tables;
 
 use crate::flat::FlatFunction;
@@ -44,6 +46,8 @@ pub fn all() -> Vec<Row> {
     all.extend(air::path_optics());
     all.extend(air::columns());
     all.extend(fog::fog());
+    all.extend(lights::lights());
+    all.extend(shadows::shadows());
     all.extend(sky_tables::sky_tables());
     all.extend(colour::colour_functions());
     all.extend(colour::tone());
