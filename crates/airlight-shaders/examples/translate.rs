@@ -1,4 +1,5 @@
-//! Writes all shader functions in every language to the folder `generated` of the crate, or to another folder.
+//! Writes all shader functions in every language to the folder `generated` of the crate, or to another folder, and with it the page
+//! `examples/web/sky-article.html`.
 //!
 //! ```sh
 //! cargo run -p airlight-shaders --example translate
@@ -7,6 +8,9 @@
 use airlight::Named;
 use airlight_shaders::{Language, Part, translate};
 use std::path::PathBuf;
+
+#[path = "web/page.rs"]
+mod page;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = std::env::args_os().nth(1).map_or_else(
@@ -23,5 +27,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         std::fs::write(&file, translate(Part::ALL, language)?)?;
         println!("{}", file.display());
     }
+    let page = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/web/sky-article.html");
+    std::fs::write(page, page::assembled()?)?;
+    println!("{page}");
     Ok(())
 }

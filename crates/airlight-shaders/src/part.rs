@@ -24,6 +24,8 @@ pub enum Part {
     Colour,
     /// Skies and aerial perspective from tables.
     SkyTables,
+    /// The sky article's shader as printed.
+    Article,
     /// The sun's disc.
     Disc,
     /// Tone curves.
@@ -42,6 +44,7 @@ named! { Part, "a part of the shader library", [
     ("shadows", (Shadows), "fog with shadows, from visibilities that the program supplies"),
     ("colour", (Colour), "wavelengths, XYZ, linear RGB spaces, sRGB signals"),
     ("sky-tables", (SkyTables), "skies and aerial perspective from tables at four wavelengths"),
+    ("article", (Article), "the sky article's shader as printed: single scattering in 8 steps"),
     ("disc", (Disc), "the sun's disc with limb darkening and a smooth edge"),
     ("tone", (Tone), "tone curves: camera, AgX, clipping"),
     ("dither", (Dither), "triangular noise for 8-bit targets"),
@@ -60,6 +63,7 @@ impl Part {
             Self::Shadows => include_str!("../wgsl/shadows.wgsl"),
             Self::Colour => include_str!("../wgsl/colour.wgsl"),
             Self::SkyTables => include_str!("../wgsl/sky_tables.wgsl"),
+            Self::Article => include_str!("../wgsl/article.wgsl"),
             Self::Disc => include_str!("../wgsl/disc.wgsl"),
             Self::Tone => include_str!("../wgsl/tone.wgsl"),
             Self::Dither => include_str!("../wgsl/dither.wgsl"),

@@ -45,7 +45,8 @@ fn translations_define_every_function_once_under_its_name() {
     }
 }
 
-/// The GLSL in a fragment shader of a host, by glslangValidator (Debian: glslang-tools).
+/// GLSL and HLSL in a fragment shader of a host, by glslangValidator (Debian: glslang-tools), and the SPIR-V that it makes of HLSL by
+/// spirv-val (Debian: spirv-tools).
 #[test]
 fn glslang_accepts_the_translations() {
     if Command::new("glslangValidator")
@@ -59,30 +60,44 @@ fn glslang_accepts_the_translations() {
     for (language, head) in [
         (Language::GlslEs300, "#version 300 es\n"),
         (Language::Glsl450, "#version 450\n"),
+        (Language::Hlsl, ""),
     ] {
-        let out = match language {
-            Language::Glsl450 => "layout(location = 0) out vec4 colour;",
-            _ => "out vec4 colour;",
+        let main = match language {
+            Language::Glsl450 => {
+                "layout(location = 0) out vec4 colour; void main() { colour = vec4(mean_transmittance(0.5)); }"
+            }
+            Language::Hlsl => "float4 main() : SV_Target { return mean_transmittance(0.5); }",
+            _ => "out vec4 colour; void main() { colour = vec4(mean_transmittance(0.5)); }",
         };
-        let text = head.to_owned()
-            + &translate(Part::ALL, language).unwrap()
-            + out
-            + "void main() { colour = vec4(mean_transmittance(0.5)); }\n";
+        let text = head.to_owned() + &translate(Part::ALL, language).unwrap() + main + "\n";
         let file = std::env::temp_dir().join(format!(
             "airlight-{}-{}.frag",
             std::process::id(),
             language.name()
         ));
         std::fs::write(&file, text).unwrap();
-        let output = Command::new("glslangValidator")
-            .arg(&file)
-            .output()
-            .unwrap();
+        let binary = file.with_extension("spv");
+        let mut compile = Command::new("glslangValidator");
+        if language == Language::Hlsl {
+            compile.args(["-D", "-V", "-e", "main", "-o"]).arg(&binary);
+        }
+        let output = compile.arg(&file).output().unwrap();
         std::fs::remove_file(&file).unwrap();
         assert!(
             output.status.success(),
             "{language}: {}",
             String::from_utf8_lossy(&output.stdout)
         );
+        if language == Language::Hlsl {
+            match Command::new("spirv-val").arg(&binary).output() {
+                Ok(output) => assert!(
+                    output.status.success(),
+                    "{}",
+                    String::from_utf8_lossy(&output.stderr)
+                ),
+                Err(_) => println!("spirv-val is not installed: SPIR-V is not checked"),
+            }
+            std::fs::remove_file(&binary).unwrap();
+        }
     }
 }

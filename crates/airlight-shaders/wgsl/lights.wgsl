@@ -496,14 +496,12 @@ fn light_in_exponential_fog(
             last_m = min(last_m, max((dark - start) / rise, 0.0));
         }
     }
-    var cuts = array<f32, 6>(inner.x, inner.y, -ray.geometry.start_m, last_m, last_m, last_m);
+    let light_cuts = vec3<f32>(inner, -ray.geometry.start_m);
+    var height_cuts = vec3<f32>(last_m);
     if rise != 0.0 {
-        cuts[3] = (floor + 3.0 - start) / rise;
-        cuts[4] = (floor + 10.0 - start) / rise;
-        let top_m = (floor + 40.0 - start) / rise;
-        cuts[5] = top_m;
+        height_cuts = (floor + vec3<f32>(3.0, 10.0, 40.0) - start) / rise;
         if rise > 0.0 {
-            last_m = min(last_m, max(top_m, 0.0));
+            last_m = min(last_m, max(height_cuts.z, 0.0));
         }
     }
     var sum = vec3<f32>(0.0);
@@ -512,10 +510,10 @@ fn light_in_exponential_fog(
         if from_m >= last_m {
             break;
         }
-        var to_m = last_m;
-        for (var k = 0u; k < 6u; k += 1u) {
-            to_m = select(to_m, min(to_m, cuts[k]), cuts[k] > from_m);
-        }
+        let beside_light = select(vec3<f32>(last_m), light_cuts, light_cuts > vec3<f32>(from_m));
+        let at_height = select(vec3<f32>(last_m), height_cuts, height_cuts > vec3<f32>(from_m));
+        let next = min(beside_light, at_height);
+        let to_m = min(min(next.x, last_m), min(next.y, next.z));
         sum += light_panel_in_exponential_fog(fog, eye.y, direction.y, ray, from_m, to_m);
         from_m = to_m;
     }

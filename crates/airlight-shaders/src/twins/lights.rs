@@ -587,21 +587,12 @@ pub fn light_in_exponential_fog(
             last_m = last_m.min(((dark - start) / rise).max(0.0));
         }
     }
-    let mut cuts = [
-        inner.x,
-        inner.y,
-        -ray.geometry.start_m,
-        last_m,
-        last_m,
-        last_m,
-    ];
+    let light_cuts = inner.extend(-ray.geometry.start_m);
+    let mut height_cuts = Vec3::splat(last_m);
     if rise != 0.0 {
-        cuts[3] = (floor + 3.0 - start) / rise;
-        cuts[4] = (floor + 10.0 - start) / rise;
-        let top_m = (floor + 40.0 - start) / rise;
-        cuts[5] = top_m;
+        height_cuts = (floor + Vec3::new(3.0, 10.0, 40.0) - start) / rise;
         if rise > 0.0 {
-            last_m = last_m.min(top_m.max(0.0));
+            last_m = last_m.min(height_cuts.z.max(0.0));
         }
     }
     let mut sum = Vec3::ZERO;
@@ -610,12 +601,12 @@ pub fn light_in_exponential_fog(
         if from_m >= last_m {
             break;
         }
-        let mut to_m = last_m;
-        for cut in cuts {
-            if cut > from_m {
-                to_m = to_m.min(cut);
-            }
-        }
+        let ahead = |cuts: Vec3| {
+            let from = Vec3::splat(from_m);
+            Vec3::select(cuts.cmpgt(from), cuts, Vec3::splat(last_m))
+        };
+        let next = ahead(light_cuts).min(ahead(height_cuts));
+        let to_m = next.x.min(last_m).min(next.y.min(next.z));
         sum += light_panel_in_exponential_fog(fog, eye.y, direction.y, ray, from_m, to_m);
         from_m = to_m;
     }

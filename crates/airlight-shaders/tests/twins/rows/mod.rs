@@ -1,6 +1,7 @@
 //! The table of functions: for each its twin, inputs, and the value in f64.
 
 mod air;
+mod article;
 mod colour;
 mod fog;
 mod lights;
@@ -53,5 +54,6 @@ pub fn all() -> Vec<Row> {
     all.extend(colour::tone());
     all.extend(colour::dither());
     all.extend(colour::disc());
+    all.extend(article::article());
     all
 }
