@@ -18,6 +18,8 @@ pub enum Language {
     GlslEs300,
     /// GLSL 4.50.
     Glsl450,
+    /// Godot 4's shading language, which is close to GLSL ES 3.00.
+    Godot,
     /// HLSL, shader model 5.1.
     Hlsl,
     /// Metal shading language 2.0.
@@ -28,6 +30,7 @@ named! { Language, "a shading language", [
     ("wgsl", (Wgsl), "WGSL, the source itself"),
     ("glsl-es300", (GlslEs300), "GLSL ES 3.00, for WebGL 2"),
     ("glsl450", (Glsl450), "GLSL 4.50"),
+    ("godot", (Godot), "Godot 4's shading language"),
     ("hlsl", (Hlsl), "HLSL, shader model 5.1"),
     ("msl", (Msl), "Metal shading language 2.0"),
 ] }
@@ -38,6 +41,7 @@ impl Language {
         match self {
             Self::Wgsl => "wgsl",
             Self::GlslEs300 | Self::Glsl450 => "glsl",
+            Self::Godot => "gdshaderinc",
             Self::Hlsl => "hlsl",
             Self::Msl => "metal",
         }
@@ -69,7 +73,7 @@ const GLOBALS: [&str; 5] = [
     "nagaGroup0SamplerIndexArray",
 ];
 
-/// Parts, with all parts that they require, in a language: text to include in a shader, after a `#version` line in GLSL. Functions
+/// Parts, with all parts that they require, in a language: text to include in a shader, after a `#version` line in GLSL (not Godot). Functions
 /// and structs keep their names, parameters may get a number; each function is preceded by its documentation.
 ///
 /// # Errors
@@ -81,6 +85,7 @@ pub fn translate(parts: &[Part], language: Language) -> Result<String, Translate
         Language::Wgsl => return Ok(source(parts)),
         Language::GlslEs300 => to_glsl(&module, 300),
         Language::Glsl450 => to_glsl(&module, 450),
+        Language::Godot => to_glsl(&module, 300).map(|text| without_precision(&text)),
         Language::Hlsl => to_hlsl(&module),
         Language::Msl => to_msl(&module),
     }
@@ -182,6 +187,12 @@ fn to_glsl(module: &Module, version: u16) -> Result<String, String> {
     // The host's shader begins with a version of its own.
     let lines = text.lines().filter(|line| !line.starts_with("#version"));
     Ok(lines.map(|line| format!("{line}\n")).collect())
+}
+
+/// GLSL ES without the lines that set a precision, which Godot has not.
+fn without_precision(text: &str) -> String {
+    let lines = text.lines().filter(|line| !line.starts_with("precision "));
+    lines.map(|line| format!("{line}\n")).collect()
 }
 
 fn to_hlsl(module: &Module) -> Result<String, String> {

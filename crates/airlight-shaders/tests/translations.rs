@@ -45,6 +45,30 @@ fn translations_define_every_function_once_under_its_name() {
     }
 }
 
+/// The pass in HLSL with the translated functions, as a host compiles it.
+#[test]
+fn glslang_accepts_the_pass_in_hlsl() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let binary = std::env::temp_dir().join(format!("airlight-pass-{}.spv", std::process::id()));
+    let output = Command::new("glslangValidator")
+        .args(["-D", "-V", "-S", "frag", "-e", "add_fog"])
+        .arg(format!("-I{}", folder.join("generated/hlsl").display()))
+        .arg(folder.join("examples/passes/fog_pass.hlsl"))
+        .arg("-o")
+        .arg(&binary)
+        .output();
+    let Ok(output) = output else {
+        println!("glslangValidator is not installed: skipped");
+        return;
+    };
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stdout)
+    );
+    std::fs::remove_file(&binary).unwrap();
+}
+
 /// GLSL and HLSL in a fragment shader of a host, by glslangValidator (Debian: glslang-tools), and the SPIR-V that it makes of HLSL by
 /// spirv-val (Debian: spirv-tools).
 #[test]
@@ -60,6 +84,11 @@ fn glslang_accepts_the_translations() {
     for (language, head) in [
         (Language::GlslEs300, "#version 300 es\n"),
         (Language::Glsl450, "#version 450\n"),
+        // There is no other parser of Godot's language than Godot.
+        (
+            Language::Godot,
+            "#version 300 es\nprecision highp float;\nprecision highp int;\n",
+        ),
         (Language::Hlsl, ""),
     ] {
         let main = match language {
