@@ -12,7 +12,7 @@
 
 use super::PublishedModel;
 use super::lut::{
-    AirLanes, MultipleScatteringSettings, MultipleScatteringTable, TransmittanceTable,
+    AirLanes, MultipleScatteringSettings, MultipleScatteringTable, TransmittanceTable, add_scaled,
 };
 use super::prepared::Prepared;
 use crate::atmosphere::{Atmosphere, AtmosphereError};
@@ -103,7 +103,7 @@ struct Tables {
 debug_fields! { Hillaire2020 { grid, disc, eye, sun } }
 
 /// Exponent of the step positions along a view ray.
-const STEP_POWER: f64 = 2.0;
+const STEP_POWER: i32 = 2;
 
 impl Hillaire2020 {
     /// Sky of `atmosphere` at the wavelengths of `grid`, with the atmosphere's solar spectrum and the paper's table sizes, for an
@@ -199,7 +199,7 @@ impl Hillaire2020 {
         };
         line.meets_ground = segment.meets_ground;
         let scattered = air.scattered(ray.nu);
-        let (mut sunlight, mut psi) = (dark(), dark());
+        let (mut sunlight, mut psi, mut once) = (dark(), dark(), dark());
         let span = (segment.start_m, segment.end_m);
         line.transmittance = air.march(&ray, span, (*steps, STEP_POWER), |step| {
             let here = &step.here;
@@ -207,18 +207,22 @@ impl Hillaire2020 {
             if let Some(table) = multiple {
                 table.look_up(here.radius_m, here.mu_sun, &mut psi);
             }
-            for lane in 0..lanes {
-                let once: f32 = step
-                    .densities
-                    .iter()
-                    .zip(&scattered)
-                    .map(|(&density, s)| density as f32 * s[lane])
-                    .sum();
-                let weight = step.weight_m[lane] * self.solar[lane];
-                line.single[lane] += weight * once * sunlight[lane];
-                line.multiple[lane] += weight * step.scattering_per_m[lane] * psi[lane];
+            once.fill(0.0);
+            for (&density, scattered) in step.densities.iter().zip(&scattered) {
+                add_scaled(&mut once, scattered, density as f32);
             }
+            add_products(&mut line.single, [step.weight_m, &once, &sunlight]);
+            add_products(
+                &mut line.multiple,
+                [step.weight_m, step.scattering_per_m, &psi],
+            );
         });
+        for light in [&mut line.single, &mut line.multiple] {
+            light
+                .iter_mut()
+                .zip(&self.solar)
+                .for_each(|(light, e)| *light *= e);
+        }
         if line.meets_ground {
             let mu_sun = ray.advanced(segment.end_m).mu_sun;
             air.ground_radiance(transmittance, mu_sun, &mut sunlight);
@@ -256,6 +260,13 @@ impl Hillaire2020 {
             *light *= e * self.disc.radiance_per_irradiance(angle, nm) as f32;
         }
         light
+    }
+}
+
+/// Adds the products of three lists to a sum.
+fn add_products(sum: &mut [f32], [a, b, c]: [&[f32]; 3]) {
+    for (((sum, a), b), c) in sum.iter_mut().zip(a).zip(b).zip(c) {
+        *sum += a * b * c;
     }
 }
 

@@ -12,7 +12,7 @@ use std::f64::consts::{PI, TAU};
 use std::fmt;
 use std::sync::{Arc, LazyLock, OnceLock};
 
-/// A published model of the sky for one eye and one sun.
+/// A published model of the sky for one eye and one sun, symmetric about the vertical plane of the sun.
 ///
 /// Colours are CIE 1931 XYZ with `Y` in cd/m^2. Directions are unit vectors that point away from the eye
 /// ([`crate::axes`]).
@@ -351,16 +351,18 @@ fn add(sum: &mut [f64], values: &[f64]) {
     sum.iter_mut().zip(values).for_each(|(sum, v)| *sum += v);
 }
 
-/// Irradiance of the sky on a horizontal surface.
+/// Irradiance of the sky, which is symmetric about the vertical plane of the sun, on a horizontal surface.
 fn sky_horizontal(model: &dyn PublishedModel) -> Vec<f64> {
     /// Number of rings, and of directions in each.
     const DIRECTIONS: (usize, usize) = (48, 96);
     let azimuth_deg = axes::azimuth_deg(model.sun());
     let lanes = dark(model).len();
     horizontal_irradiance(DIRECTIONS, azimuth_deg, lanes, |directions, sum| {
-        for &direction in directions {
+        // One side of the sun's plane.
+        for &direction in &directions[..directions.len() / 2] {
             add(sum, &sky(model, direction));
         }
+        sum.iter_mut().for_each(|v| *v *= 2.0);
     })
 }
 

@@ -77,6 +77,36 @@ fn names_are_in_kebab_case_and_found() {
     assert!(error.ends_with("try \"orders\""), "{error}");
 }
 
+/// Published models are integrated over one side of the sun's plane only.
+#[test]
+fn skies_are_symmetric_about_the_plane_of_the_sun() {
+    for model in registry::ALL {
+        let name = model.name();
+        if model.capabilities().honours(Input::Paths) {
+            continue;
+        }
+        let view = view(&scene(name), SRGB);
+        let azimuth = axes::azimuth_deg(view.sun());
+        let mut values = [[0.0; 3]; 2];
+        for from_sun in [2.0, 15.0, 70.0, 110.0, 179.0] {
+            for elevation in [-40.0, 0.5, 5.0, 24.0, 60.0] {
+                for (values, side) in values.iter_mut().zip([-1.0, 1.0]) {
+                    let direction = axes::direction(azimuth + side * from_sun, elevation);
+                    view.radiance(&[direction], values);
+                }
+                let [left, right] = values;
+                for (left, right) in left.iter().zip(right) {
+                    let apart = (left - right).abs();
+                    assert!(
+                        apart <= 2e-5 * right.abs(),
+                        "{name} {from_sun} {elevation}: {values:?}"
+                    );
+                }
+            }
+        }
+    }
+}
+
 /// Light is a number not below 0 in every direction; no direction has none; disc, sky and ground are where they belong.
 #[test]
 fn every_model_answers_everywhere() {

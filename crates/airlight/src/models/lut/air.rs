@@ -2,7 +2,9 @@
 
 use super::TransmittanceTable;
 use crate::atmosphere::{Atmosphere, DensityProfile};
+use crate::fog::Lanes;
 use crate::optics::PhaseFunction;
+use crate::spectrum::Spectrum;
 use crate::transfer::coefficients::Coefficients;
 use crate::transfer::ray::{AirSegment, Ray, in_shadow};
 
@@ -87,7 +89,7 @@ impl AirLanes {
         &self,
         ray: &Ray,
         (start_m, end_m): (f64, f64),
-        (steps, power): (usize, f64),
+        (steps, power): (usize, i32),
         mut visit: impl FnMut(&Step<'_>),
     ) -> Vec<f32> {
         let lanes = self.lanes();
@@ -95,7 +97,7 @@ impl AirLanes {
         let (mut scattering, mut weight) = (vec![0.0f32; lanes], vec![0.0f32; lanes]);
         let mut extinction = vec![0.0f32; lanes];
         let mut densities = vec![0.0; self.densities.len()];
-        let edge = |k: usize| start_m + (end_m - start_m) * (k as f64 / steps as f64).powf(power);
+        let edge = |k: usize| start_m + (end_m - start_m) * (k as f64 / steps as f64).powi(power);
         for k in 0..steps {
             let (from, to) = (edge(k), edge(k + 1));
             let middle = 0.5 * (from + to);
@@ -105,24 +107,23 @@ impl AirLanes {
             for (part, density) in densities.iter_mut().enumerate() {
                 *density = self.densities[part].at(altitude);
                 let d = *density as f32;
-                for lane in 0..lanes {
-                    scattering[lane] += d * self.coefficients.scattering_per_m[part][lane];
-                    extinction[lane] += d * self.coefficients.extinction_per_m[part][lane];
-                }
+                add_scaled(
+                    &mut scattering,
+                    &self.coefficients.scattering_per_m[part],
+                    d,
+                );
+                add_scaled(
+                    &mut extinction,
+                    &self.coefficients.extinction_per_m[part],
+                    d,
+                );
             }
-            let dt = (to - from) as f32;
-            for lane in 0..lanes {
-                let tau = extinction[lane] * dt;
-                let lost = -(-tau).exp_m1();
-                // (1 - e^-tau) / sigma_t, with the limit dt for small tau.
-                let mean = if tau > 1e-6 {
-                    lost / extinction[lane]
-                } else {
-                    dt
-                };
-                weight[lane] = throughput[lane] * mean;
-                throughput[lane] *= 1.0 - lost;
-            }
+            attenuate(
+                &extinction,
+                (to - from) as f32,
+                &mut throughput,
+                &mut weight,
+            );
             visit(&Step {
                 here: ray.advanced(middle),
                 densities: &densities,
@@ -150,10 +151,7 @@ impl AirLanes {
                     ray.radius_m - self.planet_radius_m + ray.climb_at((k as f64 + 0.5) * step);
                 let extinction = self.coefficients.extinction_per_m.iter();
                 for (density, extinction) in self.densities.iter().zip(extinction) {
-                    let column = (density.at(altitude) * step) as f32;
-                    for (tau, sigma) in out.iter_mut().zip(extinction) {
-                        *tau += column * sigma;
-                    }
+                    add_scaled(out, extinction, (density.at(altitude) * step) as f32);
                 }
             }
         })
@@ -183,6 +181,61 @@ impl AirLanes {
         table.look_up(self.ground_radius_m, mu_sun, out);
         for (o, albedo) in out.iter_mut().zip(&self.coefficients.ground_albedo) {
             *o *= albedo * (mu_sun * std::f64::consts::FRAC_1_PI) as f32;
+        }
+    }
+}
+
+/// Adds `factor * values` to a sum.
+pub fn add_scaled(sum: &mut [f32], values: &[f32], factor: f32) {
+    for (sum, value) in sum.iter_mut().zip(values) {
+        *sum += factor * value;
+    }
+}
+
+/// Attenuates `throughput` over `length_m` of a constant extinction; `weight_m` receives the throughput integrated over the
+/// length.
+fn attenuate(
+    extinction_per_m: &[f32],
+    length_m: f32,
+    throughput: &mut [f32],
+    weight_m: &mut [f32],
+) {
+    /// Wavelengths that are computed together by vector instructions.
+    const TOGETHER: usize = 8;
+    let extinction = extinction_per_m.chunks(TOGETHER);
+    let out = throughput
+        .chunks_mut(TOGETHER)
+        .zip(weight_m.chunks_mut(TOGETHER));
+    for (extinction, (throughput, weight)) in extinction.zip(out) {
+        let mut depth = Spectrum::<TOGETHER>::ZERO;
+        for (depth, extinction) in depth.0.iter_mut().zip(extinction) {
+            *depth = extinction * length_m;
+        }
+        let mean = depth.mean_transmittance();
+        let lost = mean * depth;
+        for (((throughput, weight), mean), lost) in
+            throughput.iter_mut().zip(weight).zip(mean.0).zip(lost.0)
+        {
+            *weight = *throughput * mean * length_m;
+            *throughput *= 1.0 - lost;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn light_is_attenuated_exactly_in_every_lane() {
+        let extinction: Vec<f32> = (0..11).map(|i| 1e-9 * 10f32.powi(i)).collect();
+        let (mut throughput, mut weight) = (vec![0.5; 11], vec![0.0; 11]);
+        attenuate(&extinction, 30.0, &mut throughput, &mut weight);
+        for ((extinction, throughput), weight) in extinction.iter().zip(throughput).zip(weight) {
+            let extinction = f64::from(*extinction);
+            let lost = -(-30.0 * extinction).exp_m1();
+            assert!((f64::from(throughput) - 0.5 * (1.0 - lost)).abs() < 1e-7);
+            assert!((f64::from(weight) / (0.5 * lost / extinction) - 1.0).abs() < 1e-6);
         }
     }
 }

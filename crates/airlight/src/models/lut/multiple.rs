@@ -113,7 +113,7 @@ fn psi(
             let through = air.march(
                 &ray,
                 (segment.start_m, segment.end_m),
-                (settings.steps, 1.0),
+                (settings.steps, 1),
                 |step| {
                     air.transmittance_to_sun(
                         transmittance,
