@@ -97,6 +97,7 @@ fn of_sphere(x: f64, index: Index, pattern: bool) -> Result<Curve, CliError> {
 pub fn efficiency(args: &EfficiencyPlotArgs) -> Result<String, CliError> {
     const STEPS: usize = 2500;
     const SMOOTH_STEPS: usize = 120;
+    let _busy = Busy::with("summing over spheres");
     let index = Complex64::new(args.index.real, args.index.imaginary);
     let to = args.to;
     let places = |steps: usize| (1..=steps).map(move |i| to * i as f64 / steps as f64);
