@@ -19,13 +19,15 @@
 //! Each function states its cost (exponentials, texture reads) and its largest error against f64 ([`functions`]); the tests count
 //! the one and measure the other, on the CPU and on a Vulkan device. [`twins`] holds the functions in Rust.
 //!
-//! [`SkyTables`] fills the tables of [`Part::SkyTables`] from a sky that the library solves.
+//! [`SkyTables`] fills the tables of [`Part::SkyTables`] from a sky that the library solves, [`FogTables`] those of [`Part::FogTable`] from
+//! a fog.
 //!
 //! With the feature `translate`, `translate` gives the same functions in GLSL, HLSL and MSL; the folder `generated` holds them.
 //!
 //! Only core WebGPU is used: f32, no extensions.
 
 mod colour_fit;
+mod fog_tables;
 mod function;
 mod part;
 mod sky_tables;
@@ -35,6 +37,7 @@ pub mod twins;
 mod wavelengths;
 
 pub use colour_fit::ColourFit;
+pub use fog_tables::{FogTables, FogTablesError};
 pub use function::{ErrorBound, Function, functions};
 pub use part::{Part, source, with_required};
 pub use sky_tables::{SkyTables, SkyTablesError};

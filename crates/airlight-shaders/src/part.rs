@@ -24,6 +24,8 @@ pub enum Part {
     Colour,
     /// Skies and aerial perspective from tables.
     SkyTables,
+    /// Fog with all orders of scattering from tables.
+    FogTable,
     /// The sky article's shader as printed.
     Article,
     /// The sun's disc.
@@ -44,6 +46,7 @@ named! { Part, "a part of the shader library", [
     ("shadows", (Shadows), "fog with shadows, from visibilities that the program supplies"),
     ("colour", (Colour), "wavelengths, XYZ, linear RGB spaces, sRGB signals"),
     ("sky-tables", (SkyTables), "skies and aerial perspective from tables at four wavelengths"),
+    ("fog-table", (FogTable), "fog with all orders of scattering from tables"),
     ("article", (Article), "the sky article's shader as printed: single scattering in 8 steps"),
     ("disc", (Disc), "the sun's disc with limb darkening and a smooth edge"),
     ("tone", (Tone), "tone curves: camera, AgX, clipping"),
@@ -63,6 +66,7 @@ impl Part {
             Self::Shadows => include_str!("../wgsl/shadows.wgsl"),
             Self::Colour => include_str!("../wgsl/colour.wgsl"),
             Self::SkyTables => include_str!("../wgsl/sky_tables.wgsl"),
+            Self::FogTable => include_str!("../wgsl/fog_table.wgsl"),
             Self::Article => include_str!("../wgsl/article.wgsl"),
             Self::Disc => include_str!("../wgsl/disc.wgsl"),
             Self::Tone => include_str!("../wgsl/tone.wgsl"),

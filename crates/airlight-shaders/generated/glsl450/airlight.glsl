@@ -88,6 +88,15 @@ struct SpectralPath {
     vec4 transmittance;
     vec4 path_radiance;
 };
+struct FogTableView {
+    vec3 sun;
+    float below_per_sine;
+    vec3 depth_below;
+    float above_per_sine;
+    vec3 depth_above;
+    float diffuse_scale;
+    float sunlit_scale;
+};
 struct ArticleSky {
     vec3 eye;
     float sun_radius_rad;
@@ -122,6 +131,10 @@ const float AERIAL_ROWS_ABOVE = 32.0;
 const float AERIAL_ROWS_BELOW = 32.0;
 const float AERIAL_DISTANCES = 32.0;
 const float PHASE_ANGLES = 1024.0;
+const float FOG_AZIMUTHS = 32.0;
+const float FOG_ROWS = 64.0;
+const float FOG_DISTANCES = 32.0;
+const float FOG_LOGARITHMIC = 0.6;
 const int ARTICLE_STEPS = 8;
 const float ARTICLE_PI = 3.1415927;
 const float ARTICLE_PLANET_RADIUS_M = 6360000.0;
@@ -154,8 +167,8 @@ vec3 mean_transmittance_rgb(vec3 x_1) {
 float ramp_transmittance(float x_2) {
     float series_1 = (0.5 + (x_2 * (-0.33333334 + (x_2 * (0.125 + (x_2 * (-0.033333335 + (x_2 * (0.0069444445 + (x_2 * (-0.0011904762 + (x_2 * (0.00017361112 - (x_2 / 45360.0))))))))))))));
     float divisor = max(x_2, 0.75);
-    float transmittance_1 = exp(-(x_2));
-    float direct_1 = ((((1.0 - transmittance_1) / divisor) - transmittance_1) / divisor);
+    float transmittance_2 = exp(-(x_2));
+    float direct_1 = ((((1.0 - transmittance_2) / divisor) - transmittance_2) / divisor);
     return ((x_2 < 0.75) ? series_1 : direct_1);
 }
 
@@ -494,23 +507,23 @@ float clamped_column_above_m(float height_m_5, float base_height_m_2, float scal
 // Fog of any profile along a column (m), with sunlight that the fog does not attenuate on its way to the ray: Ishiyama 2018 as printed, eqs. 22 and 23. Correct in thin fog; in dense fog up to three times as bright as all orders of scattering.
 // Cost: 6 exp.
 PathOptics fog_undimmed(FogMedium medium, float column_m, FogLight light) {
-    vec3 depth_2 = (medium.extinction_per_m * column_m);
-    vec3 _e5 = mean_transmittance_rgb(depth_2);
-    vec3 opacity = (_e5 * column_m);
-    return PathOptics(exp(-(depth_2)), ((medium.scattering_per_m * (light.sunlight + light.ambient)) * opacity));
+    vec3 depth_3 = (medium.extinction_per_m * column_m);
+    vec3 _e5 = mean_transmittance_rgb(depth_3);
+    vec3 opacity_1 = (_e5 * column_m);
+    return PathOptics(exp(-(depth_3)), ((medium.scattering_per_m * (light.sunlight + light.ambient)) * opacity_1));
 }
 
 // Fog of one profile over flat ground, with sunlight attenuated by the fog above the ray: exact for single scattering. The columns (m) are those of the ray, and those from its start and its end to the sun (the column above divided by `sin_sun`).
 // Cost: 12 exp.
 PathOptics fog_single_scattering(FogMedium medium_1, float column_m_1, float to_sun_near_m, float to_sun_far_m, FogLight light_1) {
-    vec3 depth_3 = (medium_1.extinction_per_m * column_m_1);
+    vec3 depth_4 = (medium_1.extinction_per_m * column_m_1);
     vec3 near_4 = (medium_1.extinction_per_m * to_sun_near_m);
     vec3 far_4 = (medium_1.extinction_per_m * (to_sun_far_m + column_m_1));
     vec3 _e13 = mean_attenuated_source_rgb(near_4, far_4);
     vec3 sunlit_1 = (light_1.sunlight * _e13);
-    vec3 _e16 = mean_transmittance_rgb(depth_3);
+    vec3 _e16 = mean_transmittance_rgb(depth_4);
     vec3 ambient = (light_1.ambient * _e16);
-    return PathOptics(exp(-(depth_3)), (medium_1.scattering_per_m * ((sunlit_1 + ambient) * column_m_1)));
+    return PathOptics(exp(-(depth_4)), (medium_1.scattering_per_m * ((sunlit_1 + ambient) * column_m_1)));
 }
 
 // Uniform fog over a distance (m). It has no upper end, so sunlight is not attenuated.
@@ -1204,8 +1217,8 @@ vec3 light_at(LightRay ray_10, float place_m_2) {
         float radius_m_4 = ray_10.light.radius_m;
         float _e39 = light_distance_m(ray_10.nearest_m, place_m_2);
         float centre_m = max(_e39, radius_m_4);
-        float sine = (radius_m_4 / centre_m);
-        float closeness = (2.0 / (1.0 + sqrt(max(((1.0 - sine) * (1.0 + sine)), 0.0))));
+        float sine_1 = (radius_m_4 / centre_m);
+        float closeness = (2.0 / (1.0 + sqrt(max(((1.0 - sine_1) * (1.0 + sine_1)), 0.0))));
         return vec3(((closeness * (_e4 / centre_m)) * (_e4 / centre_m)), (centre_m - radius_m_4), min((1.0 + (place_m_2 / centre_m)), 2.0));
     }
     return vec3(1.0, _e4, one_minus_cos_10);
@@ -1294,9 +1307,9 @@ vec3 light_in_uniform_fog(FogMedium medium_7, float mean_cosine_2, LocalLight li
 // Cost: 4 exp.
 float column_by_light_m(ExponentialFog fog_3, float eye_height_m, float sin_elevation_6, float distance_m, float light_height_m, float to_centre_m, float to_light_m) {
     float height_m_11 = (eye_height_m + (sin_elevation_6 * distance_m));
-    float sine_1 = ((light_height_m - height_m_11) / max(to_centre_m, 1e-6));
+    float sine_2 = ((light_height_m - height_m_11) / max(to_centre_m, 1e-6));
     float _e15 = flat_exponential_column_m(eye_height_m, sin_elevation_6, distance_m, fog_3.reference_height_m, fog_3.scale_height_m);
-    float _e18 = flat_exponential_column_m(height_m_11, sine_1, to_light_m, fog_3.reference_height_m, fog_3.scale_height_m);
+    float _e18 = flat_exponential_column_m(height_m_11, sine_2, to_light_m, fog_3.reference_height_m, fog_3.scale_height_m);
     return (_e15 + _e18);
 }
 
@@ -1406,8 +1419,8 @@ vec3 light_panel_in_exponential_fog(ExponentialFog fog_4, float eye_height_m_1, 
             float _e151 = forward;
             float t_3 = max((_e150 + (((_e151 * 0.5) * _e147.x) * ((_e147.x + (2.0 * _e119)) / s_1))), 0.0);
             float _e165 = forward;
-            float place_5 = (((_e165 * 0.5) * (s_1 - h_6)) * ((s_1 + h_6) / s_1));
-            vec3 _e173 = light_at(ray_12, place_5);
+            float place_6 = (((_e165 * 0.5) * (s_1 - h_6)) * ((s_1 + h_6) / s_1));
+            vec3 _e173 = light_at(ray_12, place_6);
             float centre_m_1 = ((ray_12.light.kind == LIGHT_SPHERE) ? (_e173.y + ray_12.light.radius_m) : _e173.y);
             float _e185 = column_by_light_m(fog_4, eye_height_m_1, sin_elevation_7, t_3, light_height_m_1, centre_m_1, _e173.y);
             float _e192 = decayed((((eye_height_m_1 + (sin_elevation_7 * t_3)) - fog_4.reference_height_m) / fog_4.scale_height_m));
@@ -1675,9 +1688,9 @@ float row_coordinate(SkyView view, float elevation_rad, bool is_below, float row
     float end_4 = (is_below ? -1.5707964 : view.highest_rad);
     float rows = (is_below ? rows_below : rows_above);
     float part_2 = clamp(((elevation_rad - view.horizon_rad) / (end_4 - view.horizon_rad)), 0.0, 1.0);
-    float place_6 = (is_below ? sqrt(sqrt(part_2)) : sqrt(part_2));
+    float place_7 = (is_below ? sqrt(sqrt(part_2)) : sqrt(part_2));
     float first_2 = (is_below ? rows_above : 0.0);
-    return (((first_2 + 0.5) + (place_6 * (rows - 1.0))) / (rows_above + rows_below));
+    return (((first_2 + 0.5) + (place_7 * (rows - 1.0))) / (rows_above + rows_below));
 }
 
 // Inverse of `row_coordinate`: elevation of a texture coordinate, rad.
@@ -1687,8 +1700,8 @@ float elevation_from_row_coordinate(SkyView view_1, float coordinate_1, float ro
     bool is_below_1 = (row_2 >= rows_above_1);
     float end_5 = (is_below_1 ? -1.5707964 : view_1.highest_rad);
     float rows_1 = (is_below_1 ? rows_below_1 : rows_above_1);
-    float place_7 = (((row_2 - (is_below_1 ? rows_above_1 : 0.0)) - 0.5) / (rows_1 - 1.0));
-    float squared = (place_7 * place_7);
+    float place_8 = (((row_2 - (is_below_1 ? rows_above_1 : 0.0)) - 0.5) / (rows_1 - 1.0));
+    float squared = (place_8 * place_8);
     return (view_1.horizon_rad + ((end_5 - view_1.horizon_rad) * (is_below_1 ? (squared * squared) : squared)));
 }
 
@@ -1818,15 +1831,15 @@ SpectralPath aerial_perspective(SkyView view_6, SkyScales scales_1, sampler3D sm
     float _e51 = one_minus_cos_between(direction_9, view_6.sun);
     vec4 _e52 = haze_phase(phase_table_2, _e51);
     vec4 _e55 = textureLod(extinction_table, vec2(uvw.zy), 0.0);
-    vec4 depth_4 = (_e55 * (length_m_15 * 0.001));
+    vec4 depth_5 = (_e55 * (length_m_15 * 0.001));
     vec4 _e60 = textureLod(smooth_table_1, vec3(uvw), 0.0);
     vec4 smooth_light_1 = (exp(_e60) * scales_1.smooth_light);
     vec4 _e65 = textureLod(haze_table_1, vec3(uvw), 0.0);
     vec4 haze_1 = (exp(_e65) * scales_1.haze);
-    vec3 _e70 = mean_transmittance_rgb(depth_4.xyz);
-    float _e72 = mean_transmittance(depth_4.w);
-    vec4 opacity_1 = (depth_4 * vec4(_e70, _e72));
-    return SpectralPath((vec4(1.0) - opacity_1), ((smooth_light_1 + (haze_1 * _e52)) * opacity_1));
+    vec3 _e70 = mean_transmittance_rgb(depth_5.xyz);
+    float _e72 = mean_transmittance(depth_5.w);
+    vec4 opacity_2 = (depth_5 * vec4(_e70, _e72));
+    return SpectralPath((vec4(1.0) - opacity_2), ((smooth_light_1 + (haze_1 * _e52)) * opacity_2));
 }
 
 // Transmittance and path radiance in red, green and blue, for scenes in these: the transmittance of a channel is that of sunlight.
@@ -1835,6 +1848,76 @@ PathOptics rgb_path(RgbWeights radiance_3, RgbWeights transmittance, SpectralPat
     vec3 _e4 = rgb_from_spectrum(transmittance, path_1.transmittance);
     vec3 _e6 = rgb_from_spectrum(radiance_3, path_1.path_radiance);
     return PathOptics(_e4, _e6);
+}
+
+// Place of a row, 0 to 1, from the absolute elevation and its sine.
+// Cost: 2 exp.
+float fog_row_place(float per_sine, float sine, float elevation_rad_2) {
+    float logarithm = (log((1.0 + (sine * per_sine))) / log((1.0 + per_sine)));
+    return ((FOG_LOGARITHMIC * logarithm) + (0.25464788 * elevation_rad_2));
+}
+
+// Texture coordinate of the rows of a direction: falling rays come first.
+// Cost: 2 exp.
+float fog_row_coordinate(FogTableView view_7, vec3 direction_10) {
+    bool is_above = (direction_10.y > 0.0);
+    float per_sine_1 = (is_above ? view_7.above_per_sine : view_7.below_per_sine);
+    float _e10 = elevation_of(direction_10);
+    float _e12 = fog_row_place(per_sine_1, abs(direction_10.y), abs(_e10));
+    return ((((is_above ? FOG_ROWS : 0.0) + 0.5) + (_e12 * 63.0)) / 128.0);
+}
+
+// Opacity of an optical depth: 1 minus the transmittance, without cancellation.
+// Cost: 3 exp.
+vec3 fog_opacity(vec3 depth_2) {
+    vec3 _e1 = mean_transmittance_rgb(depth_2);
+    return (depth_2 * _e1);
+}
+
+// Place of a distance, 0 to 1, from the opacity and the transmittance up to there, relative to those of the whole ray to the ground or through the fog.
+// Cost: 6 exp.
+float fog_distance_place(FogTableView view_8, float sin_elevation_10, vec3 opacity, vec3 transmittance_1) {
+    vec3 vertical = ((sin_elevation_10 > 0.0) ? view_8.depth_above : view_8.depth_below);
+    vec3 depth_6 = min((vertical / vec3(max(abs(sin_elevation_10), 1e-10))), vec3(1e25));
+    vec3 _e17 = fog_opacity(depth_6);
+    float whole = dot(_e17, vec3(1.0));
+    float thin = (whole - dot(opacity, vec3(1.0)));
+    float dense = dot((transmittance_1 - exp(-(depth_6))), vec3(1.0));
+    float left = clamp((((whole < 1.5) ? thin : dense) / max(whole, 1e-30)), 0.0, 1.0);
+    return (1.0 - sqrt(sqrt(left)));
+}
+
+// Sunlight that a stream (0, 1 or 2) scatters once, per unit of opacity, before its scale: from the texture coordinates of distance, row and angle.
+// Cost: 3 exp, 2 reads.
+vec3 fog_stream_light(sampler3D stream_table, sampler2D stream_phase_table, vec3 place_4, float stream) {
+    float layer_5 = ((stream + 0.5) / 3.0);
+    vec4 logarithms = textureLod(stream_table, vec3(vec3(place_4.xy, layer_5)), 0.0);
+    vec4 phase_1 = textureLod(stream_phase_table, vec2(vec2(place_4.z, layer_5)), 0.0);
+    return (exp(logarithms.xyz) * phase_1.xyz);
+}
+
+// Fog between the eye and a point, by the optical depth on the way: extinction times `exponential_column_m`, or the column of another profile. Rays end at the ground.
+// Cost: 23 exp, 7 reads.
+PathOptics tabulated_fog(FogTableView view_9, sampler3D diffuse_table, sampler3D stream_table_1, sampler2D stream_phase_table_1, vec3 direction_11, vec3 optical_depth_2) {
+    vec3 _e7 = fog_opacity(optical_depth_2);
+    vec3 transmittance_3 = exp(-(optical_depth_2));
+    float _e11 = azimuth_place(direction_11, view_9.sun);
+    float _e13 = texel_coordinate(_e11, FOG_AZIMUTHS);
+    float _e14 = fog_row_coordinate(view_9, direction_11);
+    float _e16 = fog_distance_place(view_9, direction_11.y, _e7, transmittance_3);
+    float _e18 = texel_coordinate(_e16, FOG_DISTANCES);
+    vec4 _e21 = textureLod(diffuse_table, vec3(vec3(_e13, _e14, _e18)), 0.0);
+    vec3 diffuse = _e21.xyz;
+    float _e24 = one_minus_cos_between(direction_11, view_9.sun);
+    float _e25 = phase_place(_e24);
+    float _e27 = texel_coordinate(_e25, PHASE_ANGLES);
+    vec3 place_9 = vec3(_e18, _e14, _e27);
+    vec3 _e30 = fog_stream_light(stream_table_1, stream_phase_table_1, place_9, 0.0);
+    vec3 _e32 = fog_stream_light(stream_table_1, stream_phase_table_1, place_9, 1.0);
+    vec3 _e35 = fog_stream_light(stream_table_1, stream_phase_table_1, place_9, 2.0);
+    vec3 sunlit_2 = ((_e30 + _e32) + _e35);
+    vec3 source_1 = ((view_9.diffuse_scale * diffuse) + (view_9.sunlit_scale * max(sunlit_2, vec3(0.0))));
+    return PathOptics(transmittance_3, (_e7 * source_1));
 }
 
 // Scattering by molecules, 1/m.
@@ -1898,8 +1981,8 @@ vec3 article_transmittance(vec3 from_m_8, vec3 to_m_6) {
 
 // Distance to a sphere around the centre from a point inside, m.
 // Cost: no exp.
-float article_distance_m(vec3 origin, vec3 direction_10, float radius_m_3) {
-    float b_4 = dot(origin, direction_10);
+float article_distance_m(vec3 origin, vec3 direction_12, float radius_m_3) {
+    float b_4 = dot(origin, direction_12);
     return (-(b_4) + sqrt(((b_4 * b_4) - (dot(origin, origin) - (radius_m_3 * radius_m_3)))));
 }
 
@@ -1922,18 +2005,18 @@ ArticleSky article_sky(float eye_altitude_m, float zenith_illuminance) {
     float origin_h = (eye_5.y - ARTICLE_PLANET_RADIUS_M);
     float rayleigh_m = (ARTICLE_RAYLEIGH_SCALE_M * (exp((-(origin_h) / ARTICLE_RAYLEIGH_SCALE_M)) - exp((-(60000.0) / ARTICLE_RAYLEIGH_SCALE_M))));
     float mie_m = (ARTICLE_MIE_SCALE_M * (exp((-(origin_h) / ARTICLE_MIE_SCALE_M)) - exp((-(60000.0) / ARTICLE_MIE_SCALE_M))));
-    vec3 depth_5 = (((vec3(5.8e-6, 1.35e-5, 3.3099997e-5) * rayleigh_m) + (vec3(2.1e-5, 2.1e-5, 2.1e-5) * mie_m)) + (vec3(2.0556e-6, 4.9788e-6, 2.136e-7) * rayleigh_m));
+    vec3 depth_7 = (((vec3(5.8e-6, 1.35e-5, 3.3099997e-5) * rayleigh_m) + (vec3(2.1e-5, 2.1e-5, 2.1e-5) * mie_m)) + (vec3(2.0556e-6, 4.9788e-6, 2.136e-7) * rayleigh_m));
     float solid_angle = (6.2831855 * (1.0 - cos(0.0046251225)));
-    return ArticleSky(eye_5, 0.0046251225, ((vec3(zenith_illuminance) / vec3(solid_angle)) / exp(-(depth_5))), solid_angle);
+    return ArticleSky(eye_5, 0.0046251225, ((vec3(zenith_illuminance) / vec3(solid_angle)) / exp(-(depth_7))), solid_angle);
 }
 
 // Light that a point scatters along a view ray, per metre.
 // Cost: 6 exp, 3 exp a step; 8 steps.
-vec3 article_source(ArticleSky sky, vec3 position_7, vec3 view_7, vec3 sun_1) {
+vec3 article_source(ArticleSky sky, vec3 position_7, vec3 view_10, vec3 sun_1) {
     float _e5 = article_distance_m(position_7, sun_1, ARTICLE_TOP_RADIUS_M);
     vec3 leaves = (position_7 + (sun_1 * _e5));
     vec3 _e8 = article_transmittance(position_7, leaves);
-    float mu_3 = dot(view_7, sun_1);
+    float mu_3 = dot(view_10, sun_1);
     vec3 _e10 = article_sigma_rayleigh(position_7);
     float _e11 = article_rayleigh_phase(mu_3);
     vec3 rayleigh = (_e10 * _e11);
@@ -1945,13 +2028,13 @@ vec3 article_source(ArticleSky sky, vec3 position_7, vec3 view_7, vec3 sun_1) {
 
 // Luminance of the sky along a direction above the horizon, without the sun's disc.
 // Cost: 15 exp a step; 8 steps, in each of which two marches of 8 steps take 6 of these, 456 in all.
-vec3 article_luminance(ArticleSky sky_1, vec3 view_8, vec3 sun_2) {
+vec3 article_luminance(ArticleSky sky_1, vec3 view_11, vec3 sun_2) {
     vec3 sum_6 = vec3(0.0);
     int i_13 = 0;
-    float _e6 = article_distance_m(sky_1.eye, view_8, ARTICLE_TOP_RADIUS_M);
-    vec3 leaves_1 = (sky_1.eye + (view_8 * _e6));
+    float _e6 = article_distance_m(sky_1.eye, view_11, ARTICLE_TOP_RADIUS_M);
+    vec3 leaves_1 = (sky_1.eye + (view_11 * _e6));
     vec3 ds_1 = ((leaves_1 - sky_1.eye) / vec3(8.0));
-    vec3 direction_11 = (ds_1 / vec3(length(ds_1)));
+    vec3 direction_13 = (ds_1 / vec3(length(ds_1)));
     bool loop_init_12 = true;
     while(true) {
         if (!loop_init_12) {
@@ -1969,7 +2052,7 @@ vec3 article_luminance(ArticleSky sky_1, vec3 view_8, vec3 sun_2) {
             vec3 s_2 = (sky_1.eye + ((float(_e26) + 0.5) * ds_1));
             vec3 _e32 = sum_6;
             vec3 _e34 = article_transmittance(sky_1.eye, s_2);
-            vec3 _e35 = article_source(sky_1, s_2, direction_11, sun_2);
+            vec3 _e35 = article_source(sky_1, s_2, direction_13, sun_2);
             sum_6 = (_e32 + (_e34 * _e35));
         }
     }
@@ -1979,11 +2062,11 @@ vec3 article_luminance(ArticleSky sky_1, vec3 view_8, vec3 sun_2) {
 
 // Luminance of the sun's disc along a direction above the horizon, whose edge is smooth from 0.95 to 1.05 of its radius. The cosine is clamped to 1, unlike as printed.
 // Cost: 3 exp, 3 exp a step; 8 steps.
-vec3 article_disc(ArticleSky sky_2, vec3 view_9, vec3 sun_3) {
-    float angle = acos(min(dot(view_9, sun_3), 1.0));
+vec3 article_disc(ArticleSky sky_2, vec3 view_12, vec3 sun_3) {
+    float angle = acos(min(dot(view_12, sun_3), 1.0));
     float disc = (1.0 - smoothstep((0.95 * sky_2.sun_radius_rad), (1.05 * sky_2.sun_radius_rad), angle));
-    float _e19 = article_distance_m(sky_2.eye, view_9, ARTICLE_TOP_RADIUS_M);
-    vec3 leaves_2 = (sky_2.eye + (view_9 * _e19));
+    float _e19 = article_distance_m(sky_2.eye, view_12, ARTICLE_TOP_RADIUS_M);
+    vec3 leaves_2 = (sky_2.eye + (view_12 * _e19));
     vec3 _e25 = article_transmittance(sky_2.eye, leaves_2);
     return ((sky_2.outer_space * disc) * _e25);
 }
@@ -2017,8 +2100,8 @@ float place_on_disc(float sin_radius, float one_minus_cos_8) {
 
 // Part of a pixel that the disc covers, 0 to 1: a ramp as wide as a pixel across the edge, so that the edge is smooth and the disc's light is kept, within `(pixel / radius)^2 / 12`. `sin_pixel` is the sine of the angle that a pixel spans; 0 gives a sharp edge.
 // Cost: no exp.
-float disc_coverage(float place_4, float sin_radius_1, float sin_pixel) {
-    return clamp((((1.0 - place_4) * (sin_radius_1 / max(sin_pixel, (1e-6 * sin_radius_1)))) + 0.5), 0.0, 1.0);
+float disc_coverage(float place_5, float sin_radius_1, float sin_pixel) {
+    return clamp((((1.0 - place_5) * (sin_radius_1 / max(sin_pixel, (1e-6 * sin_radius_1)))) + 0.5), 0.0, 1.0);
 }
 
 // Radiance of the sun's disc in a pixel whose centre is `one_minus_cos` from the sun, from the disc's mean radiance: the irradiance on a surface that faces the sun, divided by `pi sin_radius^2`. Without attenuation by air.
@@ -2069,8 +2152,8 @@ vec3 camera_tone(vec3 exposed_1, float contrast_1, float saturation) {
 // Cost: 9 exp.
 vec3 agx_response(vec3 x_4) {
     vec3 stops = log2((max(x_4, vec3(1e-9)) / vec3(0.18)));
-    vec3 place_8 = clamp(((stops + vec3(10.0)) / vec3(16.5)), vec3(0.0), vec3(1.0));
-    vec3 from_grey = (place_8 - vec3(0.6060606));
+    vec3 place_10 = clamp(((stops + vec3(10.0)) / vec3(16.5)), vec3(0.0), vec3(1.0));
+    vec3 from_grey = (place_10 - vec3(0.6060606));
     bvec3 is_toe = lessThan(from_grey, vec3(0.0));
     vec3 limit = mix(vec3(0.7151983), vec3(0.5656756), is_toe);
     vec3 u_2 = (2.4 * abs(from_grey));

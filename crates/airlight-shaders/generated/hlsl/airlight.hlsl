@@ -115,6 +115,19 @@ struct SpectralPath {
     float4 path_radiance;
 };
 
+struct FogTableView {
+    float3 sun;
+    float below_per_sine;
+    float3 depth_below;
+    float above_per_sine;
+    float3 depth_above;
+    float diffuse_scale;
+    float sunlit_scale;
+    int _end_pad_0;
+    int _end_pad_1;
+    int _end_pad_2;
+};
+
 struct ArticleSky {
     float3 eye;
     float sun_radius_rad;
@@ -151,6 +164,10 @@ static const float AERIAL_ROWS_ABOVE = 32.0;
 static const float AERIAL_ROWS_BELOW = 32.0;
 static const float AERIAL_DISTANCES = 32.0;
 static const float PHASE_ANGLES = 1024.0;
+static const float FOG_AZIMUTHS = 32.0;
+static const float FOG_ROWS = 64.0;
+static const float FOG_DISTANCES = 32.0;
+static const float FOG_LOGARITHMIC = 0.6;
 static const int ARTICLE_STEPS = int(8);
 static const float ARTICLE_PI = 3.1415927;
 static const float ARTICLE_PLANET_RADIUS_M = 6360000.0;
@@ -184,8 +201,8 @@ float ramp_transmittance(float x_2)
 {
     float series_1 = (0.5 + (x_2 * (-0.33333334 + (x_2 * (0.125 + (x_2 * (-0.033333335 + (x_2 * (0.0069444445 + (x_2 * (-0.0011904762 + (x_2 * (0.00017361112 - (x_2 / 45360.0))))))))))))));
     float divisor = max(x_2, 0.75);
-    float transmittance_1 = exp(-(x_2));
-    float direct_1 = ((((1.0 - transmittance_1) / divisor) - transmittance_1) / divisor);
+    float transmittance_2 = exp(-(x_2));
+    float direct_1 = ((((1.0 - transmittance_2) / divisor) - transmittance_2) / divisor);
     return ((x_2 < 0.75) ? series_1 : direct_1);
 }
 
@@ -588,10 +605,10 @@ float clamped_column_above_m(float height_m_5, float base_height_m_2, float scal
 // Cost: 6 exp.
 PathOptics fog_undimmed(FogMedium medium, float column_m, FogLight light)
 {
-    float3 depth_2 = (medium.extinction_per_m * column_m);
-    const float3 _e5 = mean_transmittance_rgb(depth_2);
-    float3 opacity = (_e5 * column_m);
-    const PathOptics pathoptics_2 = ConstructPathOptics(exp(-(depth_2)), ((medium.scattering_per_m * (light.sunlight + light.ambient)) * opacity));
+    float3 depth_3 = (medium.extinction_per_m * column_m);
+    const float3 _e5 = mean_transmittance_rgb(depth_3);
+    float3 opacity_1 = (_e5 * column_m);
+    const PathOptics pathoptics_2 = ConstructPathOptics(exp(-(depth_3)), ((medium.scattering_per_m * (light.sunlight + light.ambient)) * opacity_1));
     return pathoptics_2;
 }
 
@@ -599,14 +616,14 @@ PathOptics fog_undimmed(FogMedium medium, float column_m, FogLight light)
 // Cost: 12 exp.
 PathOptics fog_single_scattering(FogMedium medium_1, float column_m_1, float to_sun_near_m, float to_sun_far_m, FogLight light_1)
 {
-    float3 depth_3 = (medium_1.extinction_per_m * column_m_1);
+    float3 depth_4 = (medium_1.extinction_per_m * column_m_1);
     float3 near_4 = (medium_1.extinction_per_m * to_sun_near_m);
     float3 far_4 = (medium_1.extinction_per_m * (to_sun_far_m + column_m_1));
     const float3 _e13 = mean_attenuated_source_rgb(near_4, far_4);
     float3 sunlit_1 = (light_1.sunlight * _e13);
-    const float3 _e16 = mean_transmittance_rgb(depth_3);
+    const float3 _e16 = mean_transmittance_rgb(depth_4);
     float3 ambient = (light_1.ambient * _e16);
-    const PathOptics pathoptics_3 = ConstructPathOptics(exp(-(depth_3)), (medium_1.scattering_per_m * ((sunlit_1 + ambient) * column_m_1)));
+    const PathOptics pathoptics_3 = ConstructPathOptics(exp(-(depth_4)), (medium_1.scattering_per_m * ((sunlit_1 + ambient) * column_m_1)));
     return pathoptics_3;
 }
 
@@ -1388,8 +1405,8 @@ float3 light_at(LightRay ray_10, float place_m_2)
         float radius_m_4 = ray_10.light.radius_m;
         const float _e39 = light_distance_m(ray_10.nearest_m, place_m_2);
         float centre_m = max(_e39, radius_m_4);
-        float sine = (radius_m_4 / centre_m);
-        float closeness = (2.0 / (1.0 + sqrt(max(((1.0 - sine) * (1.0 + sine)), 0.0))));
+        float sine_1 = (radius_m_4 / centre_m);
+        float closeness = (2.0 / (1.0 + sqrt(max(((1.0 - sine_1) * (1.0 + sine_1)), 0.0))));
         return float3(((closeness * (_e4 / centre_m)) * (_e4 / centre_m)), (centre_m - radius_m_4), min((1.0 + (place_m_2 / centre_m)), 2.0));
     }
     return float3(1.0, _e4, one_minus_cos_10);
@@ -1484,9 +1501,9 @@ float3 light_in_uniform_fog(FogMedium medium_7, float mean_cosine_2, LocalLight 
 float column_by_light_m(ExponentialFog fog_3, float eye_height_m, float sin_elevation_6, float distance_m, float light_height_m, float to_centre_m, float to_light_m)
 {
     float height_m_11 = (eye_height_m + (sin_elevation_6 * distance_m));
-    float sine_1 = ((light_height_m - height_m_11) / max(to_centre_m, 1e-6));
+    float sine_2 = ((light_height_m - height_m_11) / max(to_centre_m, 1e-6));
     const float _e15 = flat_exponential_column_m(eye_height_m, sin_elevation_6, distance_m, fog_3.reference_height_m, fog_3.scale_height_m);
-    const float _e18 = flat_exponential_column_m(height_m_11, sine_1, to_light_m, fog_3.reference_height_m, fog_3.scale_height_m);
+    const float _e18 = flat_exponential_column_m(height_m_11, sine_2, to_light_m, fog_3.reference_height_m, fog_3.scale_height_m);
     return (_e15 + _e18);
 }
 
@@ -1598,8 +1615,8 @@ float3 light_panel_in_exponential_fog(ExponentialFog fog_4, float eye_height_m_1
             float _e151 = forward;
             float t_3 = max((_e150 + (((_e151 * 0.5) * _e147.x) * ((_e147.x + (2.0 * _e119)) / s_1))), 0.0);
             float _e165 = forward;
-            float place_5 = (((_e165 * 0.5) * (s_1 - h_6)) * ((s_1 + h_6) / s_1));
-            const float3 _e173 = light_at(ray_12, place_5);
+            float place_6 = (((_e165 * 0.5) * (s_1 - h_6)) * ((s_1 + h_6) / s_1));
+            const float3 _e173 = light_at(ray_12, place_6);
             float centre_m_1 = ((ray_12.light.kind == LIGHT_SPHERE) ? (_e173.y + ray_12.light.radius_m) : _e173.y);
             const float _e185 = column_by_light_m(fog_4, eye_height_m_1, sin_elevation_7, t_3, light_height_m_1, centre_m_1, _e173.y);
             const float _e192 = decayed((((eye_height_m_1 + (sin_elevation_7 * t_3)) - fog_4.reference_height_m) / fog_4.scale_height_m));
@@ -1903,9 +1920,9 @@ float row_coordinate(SkyView view, float elevation_rad, bool is_below, float row
     float end_4 = (is_below ? -1.5707964 : view.highest_rad);
     float rows = (is_below ? rows_below : rows_above);
     float part_2 = clamp(((elevation_rad - view.horizon_rad) / (end_4 - view.horizon_rad)), 0.0, 1.0);
-    float place_6 = (is_below ? sqrt(sqrt(part_2)) : sqrt(part_2));
+    float place_7 = (is_below ? sqrt(sqrt(part_2)) : sqrt(part_2));
     float first_2 = (is_below ? rows_above : 0.0);
-    return (((first_2 + 0.5) + (place_6 * (rows - 1.0))) / (rows_above + rows_below));
+    return (((first_2 + 0.5) + (place_7 * (rows - 1.0))) / (rows_above + rows_below));
 }
 
 // Inverse of `row_coordinate`: elevation of a texture coordinate, rad.
@@ -1916,8 +1933,8 @@ float elevation_from_row_coordinate(SkyView view_1, float coordinate_1, float ro
     bool is_below_1 = (row_2 >= rows_above_1);
     float end_5 = (is_below_1 ? -1.5707964 : view_1.highest_rad);
     float rows_1 = (is_below_1 ? rows_below_1 : rows_above_1);
-    float place_7 = (((row_2 - (is_below_1 ? rows_above_1 : 0.0)) - 0.5) / (rows_1 - 1.0));
-    float squared = (place_7 * place_7);
+    float place_8 = (((row_2 - (is_below_1 ? rows_above_1 : 0.0)) - 0.5) / (rows_1 - 1.0));
+    float squared = (place_8 * place_8);
     return (view_1.horizon_rad + ((end_5 - view_1.horizon_rad) * (is_below_1 ? (squared * squared) : squared)));
 }
 
@@ -2068,15 +2085,15 @@ SpectralPath aerial_perspective(SkyView view_6, SkyScales scales_1, Texture3D<fl
     const float _e51 = one_minus_cos_between(direction_9, view_6.sun);
     const float4 _e52 = haze_phase(phase_table_2, linear_sampler_2, _e51);
     float4 _e55 = extinction_table.SampleLevel(linear_sampler_2, uvw.zy, 0.0);
-    float4 depth_4 = (_e55 * (length_m_15 * 0.001));
+    float4 depth_5 = (_e55 * (length_m_15 * 0.001));
     float4 _e60 = smooth_table_1.SampleLevel(linear_sampler_2, uvw, 0.0);
     float4 smooth_light_1 = (exp(_e60) * scales_1.smooth_light);
     float4 _e65 = haze_table_1.SampleLevel(linear_sampler_2, uvw, 0.0);
     float4 haze_1 = (exp(_e65) * scales_1.haze);
-    const float3 _e70 = mean_transmittance_rgb(depth_4.xyz);
-    const float _e72 = mean_transmittance(depth_4.w);
-    float4 opacity_1 = (depth_4 * float4(_e70, _e72));
-    const SpectralPath spectralpath_1 = ConstructSpectralPath(((1.0).xxxx - opacity_1), ((smooth_light_1 + (haze_1 * _e52)) * opacity_1));
+    const float3 _e70 = mean_transmittance_rgb(depth_5.xyz);
+    const float _e72 = mean_transmittance(depth_5.w);
+    float4 opacity_2 = (depth_5 * float4(_e70, _e72));
+    const SpectralPath spectralpath_1 = ConstructSpectralPath(((1.0).xxxx - opacity_2), ((smooth_light_1 + (haze_1 * _e52)) * opacity_2));
     return spectralpath_1;
 }
 
@@ -2088,6 +2105,83 @@ PathOptics rgb_path(RgbWeights radiance_3, RgbWeights transmittance, SpectralPat
     const float3 _e6 = rgb_from_spectrum(radiance_3, path_1.path_radiance);
     const PathOptics pathoptics_12 = ConstructPathOptics(_e4, _e6);
     return pathoptics_12;
+}
+
+// Place of a row, 0 to 1, from the absolute elevation and its sine.
+// Cost: 2 exp.
+float fog_row_place(float per_sine, float sine, float elevation_rad_2)
+{
+    float logarithm = (log((1.0 + (sine * per_sine))) / log((1.0 + per_sine)));
+    return ((FOG_LOGARITHMIC * logarithm) + (0.25464788 * elevation_rad_2));
+}
+
+// Texture coordinate of the rows of a direction: falling rays come first.
+// Cost: 2 exp.
+float fog_row_coordinate(FogTableView view_7, float3 direction_10)
+{
+    bool is_above = (direction_10.y > 0.0);
+    float per_sine_1 = (is_above ? view_7.above_per_sine : view_7.below_per_sine);
+    const float _e10 = elevation_of(direction_10);
+    const float _e12 = fog_row_place(per_sine_1, abs(direction_10.y), abs(_e10));
+    return ((((is_above ? FOG_ROWS : 0.0) + 0.5) + (_e12 * 63.0)) / 128.0);
+}
+
+// Opacity of an optical depth: 1 minus the transmittance, without cancellation.
+// Cost: 3 exp.
+float3 fog_opacity(float3 depth_2)
+{
+    const float3 _e1 = mean_transmittance_rgb(depth_2);
+    return (depth_2 * _e1);
+}
+
+// Place of a distance, 0 to 1, from the opacity and the transmittance up to there, relative to those of the whole ray to the ground or through the fog.
+// Cost: 6 exp.
+float fog_distance_place(FogTableView view_8, float sin_elevation_10, float3 opacity, float3 transmittance_1)
+{
+    float3 vertical = ((sin_elevation_10 > 0.0) ? view_8.depth_above : view_8.depth_below);
+    float3 depth_6 = min((vertical / (max(abs(sin_elevation_10), 1e-10)).xxx), (1e25).xxx);
+    const float3 _e17 = fog_opacity(depth_6);
+    float whole = dot(_e17, (1.0).xxx);
+    float thin = (whole - dot(opacity, (1.0).xxx));
+    float dense = dot((transmittance_1 - exp(-(depth_6))), (1.0).xxx);
+    float left = clamp((((whole < 1.5) ? thin : dense) / max(whole, 1e-30)), 0.0, 1.0);
+    return (1.0 - sqrt(sqrt(left)));
+}
+
+// Sunlight that a stream (0, 1 or 2) scatters once, per unit of opacity, before its scale: from the texture coordinates of distance, row and angle.
+// Cost: 3 exp, 2 reads.
+float3 fog_stream_light(Texture3D<float4> stream_table, Texture2D<float4> stream_phase_table, SamplerState linear_sampler_3, float3 place_4, float stream)
+{
+    float layer_5 = ((stream + 0.5) / 3.0);
+    float4 logarithms = stream_table.SampleLevel(linear_sampler_3, float3(place_4.xy, layer_5), 0.0);
+    float4 phase_1 = stream_phase_table.SampleLevel(linear_sampler_3, float2(place_4.z, layer_5), 0.0);
+    return (exp(logarithms.xyz) * phase_1.xyz);
+}
+
+// Fog between the eye and a point, by the optical depth on the way: extinction times `exponential_column_m`, or the column of another profile. Rays end at the ground.
+// Cost: 23 exp, 7 reads.
+PathOptics tabulated_fog(FogTableView view_9, Texture3D<float4> diffuse_table, Texture3D<float4> stream_table_1, Texture2D<float4> stream_phase_table_1, SamplerState linear_sampler_4, float3 direction_11, float3 optical_depth_2)
+{
+    const float3 _e7 = fog_opacity(optical_depth_2);
+    float3 transmittance_3 = exp(-(optical_depth_2));
+    const float _e11 = azimuth_place(direction_11, view_9.sun);
+    const float _e13 = texel_coordinate(_e11, FOG_AZIMUTHS);
+    const float _e14 = fog_row_coordinate(view_9, direction_11);
+    const float _e16 = fog_distance_place(view_9, direction_11.y, _e7, transmittance_3);
+    const float _e18 = texel_coordinate(_e16, FOG_DISTANCES);
+    float4 _e21 = diffuse_table.SampleLevel(linear_sampler_4, float3(_e13, _e14, _e18), 0.0);
+    float3 diffuse = _e21.xyz;
+    const float _e24 = one_minus_cos_between(direction_11, view_9.sun);
+    const float _e25 = phase_place(_e24);
+    const float _e27 = texel_coordinate(_e25, PHASE_ANGLES);
+    float3 place_9 = float3(_e18, _e14, _e27);
+    const float3 _e30 = fog_stream_light(stream_table_1, stream_phase_table_1, linear_sampler_4, place_9, 0.0);
+    const float3 _e32 = fog_stream_light(stream_table_1, stream_phase_table_1, linear_sampler_4, place_9, 1.0);
+    const float3 _e35 = fog_stream_light(stream_table_1, stream_phase_table_1, linear_sampler_4, place_9, 2.0);
+    float3 sunlit_2 = ((_e30 + _e32) + _e35);
+    float3 source_1 = ((view_9.diffuse_scale * diffuse) + (view_9.sunlit_scale * max(sunlit_2, (0.0).xxx)));
+    const PathOptics pathoptics_13 = ConstructPathOptics(transmittance_3, (_e7 * source_1));
+    return pathoptics_13;
 }
 
 // Scattering by molecules, 1/m.
@@ -2157,9 +2251,9 @@ float3 article_transmittance(float3 from_m_8, float3 to_m_6)
 
 // Distance to a sphere around the centre from a point inside, m.
 // Cost: no exp.
-float article_distance_m(float3 origin, float3 direction_10, float radius_m_3)
+float article_distance_m(float3 origin, float3 direction_12, float radius_m_3)
 {
-    float b_4 = dot(origin, direction_10);
+    float b_4 = dot(origin, direction_12);
     return (-(b_4) + sqrt(((b_4 * b_4) - (dot(origin, origin) - (radius_m_3 * radius_m_3)))));
 }
 
@@ -2194,20 +2288,20 @@ ArticleSky article_sky(float eye_altitude_m, float zenith_illuminance)
     float origin_h = (eye_5.y - ARTICLE_PLANET_RADIUS_M);
     float rayleigh_m = (ARTICLE_RAYLEIGH_SCALE_M * (exp((-(origin_h) / ARTICLE_RAYLEIGH_SCALE_M)) - exp((-(60000.0) / ARTICLE_RAYLEIGH_SCALE_M))));
     float mie_m = (ARTICLE_MIE_SCALE_M * (exp((-(origin_h) / ARTICLE_MIE_SCALE_M)) - exp((-(60000.0) / ARTICLE_MIE_SCALE_M))));
-    float3 depth_5 = (((float3(5.8e-6, 1.35e-5, 3.3099997e-5) * rayleigh_m) + (float3(2.1e-5, 2.1e-5, 2.1e-5) * mie_m)) + (float3(2.0556e-6, 4.9788e-6, 2.136e-7) * rayleigh_m));
+    float3 depth_7 = (((float3(5.8e-6, 1.35e-5, 3.3099997e-5) * rayleigh_m) + (float3(2.1e-5, 2.1e-5, 2.1e-5) * mie_m)) + (float3(2.0556e-6, 4.9788e-6, 2.136e-7) * rayleigh_m));
     float solid_angle = (6.2831855 * (1.0 - cos(0.0046251225)));
-    const ArticleSky articlesky = ConstructArticleSky(eye_5, 0.0046251225, (((zenith_illuminance).xxx / (solid_angle).xxx) / exp(-(depth_5))), solid_angle);
+    const ArticleSky articlesky = ConstructArticleSky(eye_5, 0.0046251225, (((zenith_illuminance).xxx / (solid_angle).xxx) / exp(-(depth_7))), solid_angle);
     return articlesky;
 }
 
 // Light that a point scatters along a view ray, per metre.
 // Cost: 6 exp, 3 exp a step; 8 steps.
-float3 article_source(ArticleSky sky, float3 position_7, float3 view_7, float3 sun_1)
+float3 article_source(ArticleSky sky, float3 position_7, float3 view_10, float3 sun_1)
 {
     const float _e5 = article_distance_m(position_7, sun_1, ARTICLE_TOP_RADIUS_M);
     float3 leaves = (position_7 + (sun_1 * _e5));
     const float3 _e8 = article_transmittance(position_7, leaves);
-    float mu_3 = dot(view_7, sun_1);
+    float mu_3 = dot(view_10, sun_1);
     const float3 _e10 = article_sigma_rayleigh(position_7);
     const float _e11 = article_rayleigh_phase(mu_3);
     float3 rayleigh = (_e10 * _e11);
@@ -2219,15 +2313,15 @@ float3 article_source(ArticleSky sky, float3 position_7, float3 view_7, float3 s
 
 // Luminance of the sky along a direction above the horizon, without the sun's disc.
 // Cost: 15 exp a step; 8 steps, in each of which two marches of 8 steps take 6 of these, 456 in all.
-float3 article_luminance(ArticleSky sky_1, float3 view_8, float3 sun_2)
+float3 article_luminance(ArticleSky sky_1, float3 view_11, float3 sun_2)
 {
     float3 sum_6 = (0.0).xxx;
     int i_13 = int(0);
 
-    const float _e6 = article_distance_m(sky_1.eye, view_8, ARTICLE_TOP_RADIUS_M);
-    float3 leaves_1 = (sky_1.eye + (view_8 * _e6));
+    const float _e6 = article_distance_m(sky_1.eye, view_11, ARTICLE_TOP_RADIUS_M);
+    float3 leaves_1 = (sky_1.eye + (view_11 * _e6));
     float3 ds_1 = ((leaves_1 - sky_1.eye) / (8.0).xxx);
-    float3 direction_11 = (ds_1 / (length(ds_1)).xxx);
+    float3 direction_13 = (ds_1 / (length(ds_1)).xxx);
     bool loop_init_12 = true;
     while(true) {
         if (!loop_init_12) {
@@ -2245,7 +2339,7 @@ float3 article_luminance(ArticleSky sky_1, float3 view_8, float3 sun_2)
             float3 s_2 = (sky_1.eye + ((float(_e26) + 0.5) * ds_1));
             float3 _e32 = sum_6;
             const float3 _e34 = article_transmittance(sky_1.eye, s_2);
-            const float3 _e35 = article_source(sky_1, s_2, direction_11, sun_2);
+            const float3 _e35 = article_source(sky_1, s_2, direction_13, sun_2);
             sum_6 = (_e32 + (_e34 * _e35));
         }
     }
@@ -2255,12 +2349,12 @@ float3 article_luminance(ArticleSky sky_1, float3 view_8, float3 sun_2)
 
 // Luminance of the sun's disc along a direction above the horizon, whose edge is smooth from 0.95 to 1.05 of its radius. The cosine is clamped to 1, unlike as printed.
 // Cost: 3 exp, 3 exp a step; 8 steps.
-float3 article_disc(ArticleSky sky_2, float3 view_9, float3 sun_3)
+float3 article_disc(ArticleSky sky_2, float3 view_12, float3 sun_3)
 {
-    float angle = acos(min(dot(view_9, sun_3), 1.0));
+    float angle = acos(min(dot(view_12, sun_3), 1.0));
     float disc = (1.0 - smoothstep((0.95 * sky_2.sun_radius_rad), (1.05 * sky_2.sun_radius_rad), angle));
-    const float _e19 = article_distance_m(sky_2.eye, view_9, ARTICLE_TOP_RADIUS_M);
-    float3 leaves_2 = (sky_2.eye + (view_9 * _e19));
+    const float _e19 = article_distance_m(sky_2.eye, view_12, ARTICLE_TOP_RADIUS_M);
+    float3 leaves_2 = (sky_2.eye + (view_12 * _e19));
     const float3 _e25 = article_transmittance(sky_2.eye, leaves_2);
     return ((sky_2.outer_space * disc) * _e25);
 }
@@ -2309,9 +2403,9 @@ float place_on_disc(float sin_radius, float one_minus_cos_8)
 
 // Part of a pixel that the disc covers, 0 to 1: a ramp as wide as a pixel across the edge, so that the edge is smooth and the disc's light is kept, within `(pixel / radius)^2 / 12`. `sin_pixel` is the sine of the angle that a pixel spans; 0 gives a sharp edge.
 // Cost: no exp.
-float disc_coverage(float place_4, float sin_radius_1, float sin_pixel)
+float disc_coverage(float place_5, float sin_radius_1, float sin_pixel)
 {
-    return clamp((((1.0 - place_4) * (sin_radius_1 / max(sin_pixel, (1e-6 * sin_radius_1)))) + 0.5), 0.0, 1.0);
+    return clamp((((1.0 - place_5) * (sin_radius_1 / max(sin_pixel, (1e-6 * sin_radius_1)))) + 0.5), 0.0, 1.0);
 }
 
 // Radiance of the sun's disc in a pixel whose centre is `one_minus_cos` from the sun, from the disc's mean radiance: the irradiance on a surface that faces the sun, divided by `pi sin_radius^2`. Without attenuation by air.
@@ -2367,8 +2461,8 @@ float3 camera_tone(float3 exposed_1, float contrast_1, float saturation)
 float3 agx_response(float3 x_4)
 {
     float3 stops = log2((max(x_4, (1e-9).xxx) / (0.18).xxx));
-    float3 place_8 = clamp(((stops + (10.0).xxx) / (16.5).xxx), (0.0).xxx, (1.0).xxx);
-    float3 from_grey = (place_8 - (0.6060606).xxx);
+    float3 place_10 = clamp(((stops + (10.0).xxx) / (16.5).xxx), (0.0).xxx, (1.0).xxx);
+    float3 from_grey = (place_10 - (0.6060606).xxx);
     bool3 is_toe = (from_grey < (0.0).xxx);
     float3 limit = (is_toe ? (0.5656756).xxx : (0.7151983).xxx);
     float3 u_2 = (2.4 * abs(from_grey));
@@ -2506,6 +2600,10 @@ SkyScales ZeroValueSkyScales() {
 
 SpectralPath ZeroValueSpectralPath() {
     return (SpectralPath)0;
+}
+
+FogTableView ZeroValueFogTableView() {
+    return (FogTableView)0;
 }
 
 ArticleSky ZeroValueArticleSky() {

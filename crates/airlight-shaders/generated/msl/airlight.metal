@@ -108,6 +108,16 @@ struct SpectralPath {
     metal::float4 transmittance;
     metal::float4 path_radiance;
 };
+struct FogTableView {
+    metal::packed_float3 sun;
+    float below_per_sine;
+    metal::packed_float3 depth_below;
+    float above_per_sine;
+    metal::packed_float3 depth_above;
+    float diffuse_scale;
+    float sunlit_scale;
+    char _pad7[12];
+};
 struct ArticleSky {
     metal::packed_float3 eye;
     float sun_radius_rad;
@@ -142,6 +152,10 @@ constant float AERIAL_ROWS_ABOVE = 32.0;
 constant float AERIAL_ROWS_BELOW = 32.0;
 constant float AERIAL_DISTANCES = 32.0;
 constant float PHASE_ANGLES = 1024.0;
+constant float FOG_AZIMUTHS = 32.0;
+constant float FOG_ROWS = 64.0;
+constant float FOG_DISTANCES = 32.0;
+constant float FOG_LOGARITHMIC = 0.6;
 constant int ARTICLE_STEPS = 8;
 constant float ARTICLE_PI = 3.1415927;
 constant float ARTICLE_PLANET_RADIUS_M = 6360000.0;
@@ -177,8 +191,8 @@ float ramp_transmittance(
 ) {
     float series_1 = 0.5 + (x_2 * (-0.33333334 + (x_2 * (0.125 + (x_2 * (-0.033333335 + (x_2 * (0.0069444445 + (x_2 * (-0.0011904762 + (x_2 * (0.00017361112 - (x_2 / 45360.0)))))))))))));
     float divisor = metal::max(x_2, 0.75);
-    float transmittance_1 = metal::exp(-(x_2));
-    float direct_1 = (((1.0 - transmittance_1) / divisor) - transmittance_1) / divisor;
+    float transmittance_2 = metal::exp(-(x_2));
+    float direct_1 = (((1.0 - transmittance_2) / divisor) - transmittance_2) / divisor;
     return (x_2 < 0.75) ? series_1 : direct_1;
 }
 
@@ -618,10 +632,10 @@ PathOptics fog_undimmed(
     float column_m,
     FogLight light
 ) {
-    metal::float3 depth_2 = medium.extinction_per_m * column_m;
-    metal::float3 _e5 = mean_transmittance_rgb(depth_2);
-    metal::float3 opacity = _e5 * column_m;
-    return PathOptics {metal::exp(-(depth_2)), (medium.scattering_per_m * (light.sunlight + light.ambient)) * opacity};
+    metal::float3 depth_3 = medium.extinction_per_m * column_m;
+    metal::float3 _e5 = mean_transmittance_rgb(depth_3);
+    metal::float3 opacity_1 = _e5 * column_m;
+    return PathOptics {metal::exp(-(depth_3)), (medium.scattering_per_m * (light.sunlight + light.ambient)) * opacity_1};
 }
 
 // Fog of one profile over flat ground, with sunlight attenuated by the fog above the ray: exact for single scattering. The columns (m) are those of the ray, and those from its start and its end to the sun (the column above divided by `sin_sun`).
@@ -633,14 +647,14 @@ PathOptics fog_single_scattering(
     float to_sun_far_m,
     FogLight light_1
 ) {
-    metal::float3 depth_3 = medium_1.extinction_per_m * column_m_1;
+    metal::float3 depth_4 = medium_1.extinction_per_m * column_m_1;
     metal::float3 near_4 = medium_1.extinction_per_m * to_sun_near_m;
     metal::float3 far_4 = medium_1.extinction_per_m * (to_sun_far_m + column_m_1);
     metal::float3 _e13 = mean_attenuated_source_rgb(near_4, far_4);
     metal::float3 sunlit_1 = light_1.sunlight * _e13;
-    metal::float3 _e16 = mean_transmittance_rgb(depth_3);
+    metal::float3 _e16 = mean_transmittance_rgb(depth_4);
     metal::float3 ambient = light_1.ambient * _e16;
-    return PathOptics {metal::exp(-(depth_3)), medium_1.scattering_per_m * ((sunlit_1 + ambient) * column_m_1)};
+    return PathOptics {metal::exp(-(depth_4)), medium_1.scattering_per_m * ((sunlit_1 + ambient) * column_m_1)};
 }
 
 // Uniform fog over a distance (m). It has no upper end, so sunlight is not attenuated.
@@ -1444,8 +1458,8 @@ metal::float3 light_at(
         float radius_m_4 = ray_10.light.radius_m;
         float _e39 = light_distance_m(ray_10.nearest_m, place_m_2);
         float centre_m = metal::max(_e39, radius_m_4);
-        float sine = radius_m_4 / centre_m;
-        float closeness = 2.0 / (1.0 + metal::sqrt(metal::max((1.0 - sine) * (1.0 + sine), 0.0)));
+        float sine_1 = radius_m_4 / centre_m;
+        float closeness = 2.0 / (1.0 + metal::sqrt(metal::max((1.0 - sine_1) * (1.0 + sine_1), 0.0)));
         return metal::float3((closeness * (_e4 / centre_m)) * (_e4 / centre_m), centre_m - radius_m_4, metal::min(1.0 + (place_m_2 / centre_m), 2.0));
     }
     return metal::float3(1.0, _e4, one_minus_cos_10);
@@ -1557,9 +1571,9 @@ float column_by_light_m(
     float to_light_m
 ) {
     float height_m_11 = eye_height_m + (sin_elevation_6 * distance_m);
-    float sine_1 = (light_height_m - height_m_11) / metal::max(to_centre_m, 0.000001);
+    float sine_2 = (light_height_m - height_m_11) / metal::max(to_centre_m, 0.000001);
     float _e15 = flat_exponential_column_m(eye_height_m, sin_elevation_6, distance_m, fog_3.reference_height_m, fog_3.scale_height_m);
-    float _e18 = flat_exponential_column_m(height_m_11, sine_1, to_light_m, fog_3.reference_height_m, fog_3.scale_height_m);
+    float _e18 = flat_exponential_column_m(height_m_11, sine_2, to_light_m, fog_3.reference_height_m, fog_3.scale_height_m);
     return _e15 + _e18;
 }
 
@@ -1676,8 +1690,8 @@ metal::float3 light_panel_in_exponential_fog(
             float _e151 = forward;
             float t_3 = metal::max(_e150 + (((_e151 * 0.5) * _e147.x) * ((_e147.x + (2.0 * _e119)) / s_1)), 0.0);
             float _e165 = forward;
-            float place_5 = ((_e165 * 0.5) * (s_1 - h_6)) * ((s_1 + h_6) / s_1);
-            metal::float3 _e173 = light_at(ray_12, place_5);
+            float place_6 = ((_e165 * 0.5) * (s_1 - h_6)) * ((s_1 + h_6) / s_1);
+            metal::float3 _e173 = light_at(ray_12, place_6);
             float centre_m_1 = (ray_12.light.kind == LIGHT_SPHERE) ? (_e173.y + ray_12.light.radius_m) : _e173.y;
             float _e185 = column_by_light_m(fog_4, eye_height_m_1, sin_elevation_7, t_3, light_height_m_1, centre_m_1, _e173.y);
             float _e192 = decayed(((eye_height_m_1 + (sin_elevation_7 * t_3)) - fog_4.reference_height_m) / fog_4.scale_height_m);
@@ -2017,9 +2031,9 @@ float row_coordinate(
     float end_4 = is_below ? -1.5707964 : view.highest_rad;
     float rows = is_below ? rows_below : rows_above;
     float part_2 = metal::clamp((elevation_rad - view.horizon_rad) / (end_4 - view.horizon_rad), 0.0, 1.0);
-    float place_6 = is_below ? metal::sqrt(metal::sqrt(part_2)) : metal::sqrt(part_2);
+    float place_7 = is_below ? metal::sqrt(metal::sqrt(part_2)) : metal::sqrt(part_2);
     float first_2 = is_below ? rows_above : 0.0;
-    return ((first_2 + 0.5) + (place_6 * (rows - 1.0))) / (rows_above + rows_below);
+    return ((first_2 + 0.5) + (place_7 * (rows - 1.0))) / (rows_above + rows_below);
 }
 
 // Inverse of `row_coordinate`: elevation of a texture coordinate, rad.
@@ -2034,8 +2048,8 @@ float elevation_from_row_coordinate(
     bool is_below_1 = row_2 >= rows_above_1;
     float end_5 = is_below_1 ? -1.5707964 : view_1.highest_rad;
     float rows_1 = is_below_1 ? rows_below_1 : rows_above_1;
-    float place_7 = ((row_2 - (is_below_1 ? rows_above_1 : 0.0)) - 0.5) / (rows_1 - 1.0);
-    float squared = place_7 * place_7;
+    float place_8 = ((row_2 - (is_below_1 ? rows_above_1 : 0.0)) - 0.5) / (rows_1 - 1.0);
+    float squared = place_8 * place_8;
     return view_1.horizon_rad + ((end_5 - view_1.horizon_rad) * (is_below_1 ? (squared * squared) : squared));
 }
 
@@ -2208,15 +2222,15 @@ SpectralPath aerial_perspective(
     float _e51 = one_minus_cos_between(direction_9, view_6.sun);
     metal::float4 _e52 = haze_phase(phase_table_2, linear_sampler_2, _e51);
     metal::float4 _e55 = extinction_table.sample(linear_sampler_2, uvw.zy, metal::level(0.0));
-    metal::float4 depth_4 = _e55 * (length_m_15 * 0.001);
+    metal::float4 depth_5 = _e55 * (length_m_15 * 0.001);
     metal::float4 _e60 = smooth_table_1.sample(linear_sampler_2, uvw, metal::level(0.0));
     metal::float4 smooth_light_1 = metal::exp(_e60) * scales_1.smooth_light;
     metal::float4 _e65 = haze_table_1.sample(linear_sampler_2, uvw, metal::level(0.0));
     metal::float4 haze_1 = metal::exp(_e65) * scales_1.haze;
-    metal::float3 _e70 = mean_transmittance_rgb(depth_4.xyz);
-    float _e72 = mean_transmittance(depth_4.w);
-    metal::float4 opacity_1 = depth_4 * metal::float4(_e70, _e72);
-    return SpectralPath {metal::float4(1.0) - opacity_1, (smooth_light_1 + (haze_1 * _e52)) * opacity_1};
+    metal::float3 _e70 = mean_transmittance_rgb(depth_5.xyz);
+    float _e72 = mean_transmittance(depth_5.w);
+    metal::float4 opacity_2 = depth_5 * metal::float4(_e70, _e72);
+    return SpectralPath {metal::float4(1.0) - opacity_2, (smooth_light_1 + (haze_1 * _e52)) * opacity_2};
 }
 
 // Transmittance and path radiance in red, green and blue, for scenes in these: the transmittance of a channel is that of sunlight.
@@ -2229,6 +2243,104 @@ PathOptics rgb_path(
     metal::float3 _e4 = rgb_from_spectrum(transmittance, path_1.transmittance);
     metal::float3 _e6 = rgb_from_spectrum(radiance_3, path_1.path_radiance);
     return PathOptics {_e4, _e6};
+}
+
+// Place of a row, 0 to 1, from the absolute elevation and its sine.
+// Cost: 2 exp.
+float fog_row_place(
+    float per_sine,
+    float sine,
+    float elevation_rad_2
+) {
+    float logarithm = metal::log(1.0 + (sine * per_sine)) / metal::log(1.0 + per_sine);
+    return (FOG_LOGARITHMIC * logarithm) + (0.25464788 * elevation_rad_2);
+}
+
+// Texture coordinate of the rows of a direction: falling rays come first.
+// Cost: 2 exp.
+float fog_row_coordinate(
+    FogTableView view_7,
+    metal::float3 direction_10
+) {
+    bool is_above = direction_10.y > 0.0;
+    float per_sine_1 = is_above ? view_7.above_per_sine : view_7.below_per_sine;
+    float _e10 = elevation_of(direction_10);
+    float _e12 = fog_row_place(per_sine_1, metal::abs(direction_10.y), metal::abs(_e10));
+    return (((is_above ? FOG_ROWS : 0.0) + 0.5) + (_e12 * 63.0)) / 128.0;
+}
+
+// Opacity of an optical depth: 1 minus the transmittance, without cancellation.
+// Cost: 3 exp.
+metal::float3 fog_opacity(
+    metal::float3 depth_2
+) {
+    metal::float3 _e1 = mean_transmittance_rgb(depth_2);
+    return depth_2 * _e1;
+}
+
+// Place of a distance, 0 to 1, from the opacity and the transmittance up to there, relative to those of the whole ray to the ground or through the fog.
+// Cost: 6 exp.
+float fog_distance_place(
+    FogTableView view_8,
+    float sin_elevation_10,
+    metal::float3 opacity,
+    metal::float3 transmittance_1
+) {
+    metal::float3 vertical = (sin_elevation_10 > 0.0) ? view_8.depth_above : view_8.depth_below;
+    metal::float3 depth_6 = metal::min(vertical / metal::float3(metal::max(metal::abs(sin_elevation_10), 0.0000000001)), metal::float3(10000000000000000000000000.0));
+    metal::float3 _e17 = fog_opacity(depth_6);
+    float whole = metal::dot(_e17, metal::float3(1.0));
+    float thin = whole - metal::dot(opacity, metal::float3(1.0));
+    float dense = metal::dot(transmittance_1 - metal::exp(-(depth_6)), metal::float3(1.0));
+    float left = metal::clamp(((whole < 1.5) ? thin : dense) / metal::max(whole, 0.000000000000000000000000000001), 0.0, 1.0);
+    return 1.0 - metal::sqrt(metal::sqrt(left));
+}
+
+// Sunlight that a stream (0, 1 or 2) scatters once, per unit of opacity, before its scale: from the texture coordinates of distance, row and angle.
+// Cost: 3 exp, 2 reads.
+metal::float3 fog_stream_light(
+    metal::texture3d<float, metal::access::sample> stream_table,
+    metal::texture2d<float, metal::access::sample> stream_phase_table,
+    metal::sampler linear_sampler_3,
+    metal::float3 place_4,
+    float stream
+) {
+    float layer_5 = (stream + 0.5) / 3.0;
+    metal::float4 logarithms = stream_table.sample(linear_sampler_3, metal::float3(place_4.xy, layer_5), metal::level(0.0));
+    metal::float4 phase_1 = stream_phase_table.sample(linear_sampler_3, metal::float2(place_4.z, layer_5), metal::level(0.0));
+    return metal::exp(logarithms.xyz) * phase_1.xyz;
+}
+
+// Fog between the eye and a point, by the optical depth on the way: extinction times `exponential_column_m`, or the column of another profile. Rays end at the ground.
+// Cost: 23 exp, 7 reads.
+PathOptics tabulated_fog(
+    FogTableView view_9,
+    metal::texture3d<float, metal::access::sample> diffuse_table,
+    metal::texture3d<float, metal::access::sample> stream_table_1,
+    metal::texture2d<float, metal::access::sample> stream_phase_table_1,
+    metal::sampler linear_sampler_4,
+    metal::float3 direction_11,
+    metal::float3 optical_depth_2
+) {
+    metal::float3 _e7 = fog_opacity(optical_depth_2);
+    metal::float3 transmittance_3 = metal::exp(-(optical_depth_2));
+    float _e11 = azimuth_place(direction_11, view_9.sun);
+    float _e13 = texel_coordinate(_e11, FOG_AZIMUTHS);
+    float _e14 = fog_row_coordinate(view_9, direction_11);
+    float _e16 = fog_distance_place(view_9, direction_11.y, _e7, transmittance_3);
+    float _e18 = texel_coordinate(_e16, FOG_DISTANCES);
+    metal::float4 _e21 = diffuse_table.sample(linear_sampler_4, metal::float3(_e13, _e14, _e18), metal::level(0.0));
+    metal::float3 diffuse = _e21.xyz;
+    float _e24 = one_minus_cos_between(direction_11, view_9.sun);
+    float _e25 = phase_place(_e24);
+    float _e27 = texel_coordinate(_e25, PHASE_ANGLES);
+    metal::float3 place_9 = metal::float3(_e18, _e14, _e27);
+    metal::float3 _e30 = fog_stream_light(stream_table_1, stream_phase_table_1, linear_sampler_4, place_9, 0.0);
+    metal::float3 _e32 = fog_stream_light(stream_table_1, stream_phase_table_1, linear_sampler_4, place_9, 1.0);
+    metal::float3 _e35 = fog_stream_light(stream_table_1, stream_phase_table_1, linear_sampler_4, place_9, 2.0);
+    metal::float3 sunlit_2 = (_e30 + _e32) + _e35;
+    metal::float3 source_1 = (view_9.diffuse_scale * diffuse) + (view_9.sunlit_scale * metal::max(sunlit_2, metal::float3(0.0)));
+    return PathOptics {transmittance_3, _e7 * source_1};
 }
 
 // Scattering by molecules, 1/m.
@@ -2305,10 +2417,10 @@ metal::float3 article_transmittance(
 // Cost: no exp.
 float article_distance_m(
     metal::float3 origin,
-    metal::float3 direction_10,
+    metal::float3 direction_12,
     float radius_m_3
 ) {
-    float b_4 = metal::dot(origin, direction_10);
+    float b_4 = metal::dot(origin, direction_12);
     return -(b_4) + metal::sqrt((b_4 * b_4) - (metal::dot(origin, origin) - (radius_m_3 * radius_m_3)));
 }
 
@@ -2338,9 +2450,9 @@ ArticleSky article_sky(
     float origin_h = eye_5.y - ARTICLE_PLANET_RADIUS_M;
     float rayleigh_m = ARTICLE_RAYLEIGH_SCALE_M * (metal::exp(-(origin_h) / ARTICLE_RAYLEIGH_SCALE_M) - metal::exp(-(60000.0) / ARTICLE_RAYLEIGH_SCALE_M));
     float mie_m = ARTICLE_MIE_SCALE_M * (metal::exp(-(origin_h) / ARTICLE_MIE_SCALE_M) - metal::exp(-(60000.0) / ARTICLE_MIE_SCALE_M));
-    metal::float3 depth_5 = ((metal::float3(0.0000058, 0.0000135, 0.000033099997) * rayleigh_m) + (metal::float3(0.000021, 0.000021, 0.000021) * mie_m)) + (metal::float3(0.0000020556, 0.0000049788, 0.0000002136) * rayleigh_m);
+    metal::float3 depth_7 = ((metal::float3(0.0000058, 0.0000135, 0.000033099997) * rayleigh_m) + (metal::float3(0.000021, 0.000021, 0.000021) * mie_m)) + (metal::float3(0.0000020556, 0.0000049788, 0.0000002136) * rayleigh_m);
     float solid_angle = 6.2831855 * (1.0 - metal::cos(0.0046251225));
-    return ArticleSky {eye_5, 0.0046251225, (metal::float3(zenith_illuminance) / metal::float3(solid_angle)) / metal::exp(-(depth_5)), solid_angle};
+    return ArticleSky {eye_5, 0.0046251225, (metal::float3(zenith_illuminance) / metal::float3(solid_angle)) / metal::exp(-(depth_7)), solid_angle};
 }
 
 // Light that a point scatters along a view ray, per metre.
@@ -2348,13 +2460,13 @@ ArticleSky article_sky(
 metal::float3 article_source(
     ArticleSky sky,
     metal::float3 position_7,
-    metal::float3 view_7,
+    metal::float3 view_10,
     metal::float3 sun_1
 ) {
     float _e5 = article_distance_m(position_7, sun_1, ARTICLE_TOP_RADIUS_M);
     metal::float3 leaves = position_7 + (sun_1 * _e5);
     metal::float3 _e8 = article_transmittance(position_7, leaves);
-    float mu_3 = metal::dot(view_7, sun_1);
+    float mu_3 = metal::dot(view_10, sun_1);
     metal::float3 _e10 = article_sigma_rayleigh(position_7);
     float _e11 = article_rayleigh_phase(mu_3);
     metal::float3 rayleigh = _e10 * _e11;
@@ -2368,15 +2480,15 @@ metal::float3 article_source(
 // Cost: 15 exp a step; 8 steps, in each of which two marches of 8 steps take 6 of these, 456 in all.
 metal::float3 article_luminance(
     ArticleSky sky_1,
-    metal::float3 view_8,
+    metal::float3 view_11,
     metal::float3 sun_2
 ) {
     metal::float3 sum_6 = metal::float3(0.0);
     int i_13 = 0;
-    float _e6 = article_distance_m(sky_1.eye, view_8, ARTICLE_TOP_RADIUS_M);
-    metal::float3 leaves_1 = sky_1.eye + (view_8 * _e6);
+    float _e6 = article_distance_m(sky_1.eye, view_11, ARTICLE_TOP_RADIUS_M);
+    metal::float3 leaves_1 = sky_1.eye + (view_11 * _e6);
     metal::float3 ds_1 = (leaves_1 - sky_1.eye) / metal::float3(8.0);
-    metal::float3 direction_11 = ds_1 / metal::float3(metal::length(ds_1));
+    metal::float3 direction_13 = ds_1 / metal::float3(metal::length(ds_1));
     bool loop_init_12 = true;
     while(true) {
         if (!loop_init_12) {
@@ -2394,7 +2506,7 @@ metal::float3 article_luminance(
             metal::float3 s_2 = sky_1.eye + ((static_cast<float>(_e26) + 0.5) * ds_1);
             metal::float3 _e32 = sum_6;
             metal::float3 _e34 = article_transmittance(sky_1.eye, s_2);
-            metal::float3 _e35 = article_source(sky_1, s_2, direction_11, sun_2);
+            metal::float3 _e35 = article_source(sky_1, s_2, direction_13, sun_2);
             sum_6 = _e32 + (_e34 * _e35);
         }
     }
@@ -2406,13 +2518,13 @@ metal::float3 article_luminance(
 // Cost: 3 exp, 3 exp a step; 8 steps.
 metal::float3 article_disc(
     ArticleSky sky_2,
-    metal::float3 view_9,
+    metal::float3 view_12,
     metal::float3 sun_3
 ) {
-    float angle = metal::acos(metal::min(metal::dot(view_9, sun_3), 1.0));
+    float angle = metal::acos(metal::min(metal::dot(view_12, sun_3), 1.0));
     float disc = 1.0 - metal::smoothstep(0.95 * sky_2.sun_radius_rad, 1.05 * sky_2.sun_radius_rad, angle);
-    float _e19 = article_distance_m(sky_2.eye, view_9, ARTICLE_TOP_RADIUS_M);
-    metal::float3 leaves_2 = sky_2.eye + (view_9 * _e19);
+    float _e19 = article_distance_m(sky_2.eye, view_12, ARTICLE_TOP_RADIUS_M);
+    metal::float3 leaves_2 = sky_2.eye + (view_12 * _e19);
     metal::float3 _e25 = article_transmittance(sky_2.eye, leaves_2);
     return (sky_2.outer_space * disc) * _e25;
 }
@@ -2455,11 +2567,11 @@ float place_on_disc(
 // Part of a pixel that the disc covers, 0 to 1: a ramp as wide as a pixel across the edge, so that the edge is smooth and the disc's light is kept, within `(pixel / radius)^2 / 12`. `sin_pixel` is the sine of the angle that a pixel spans; 0 gives a sharp edge.
 // Cost: no exp.
 float disc_coverage(
-    float place_4,
+    float place_5,
     float sin_radius_1,
     float sin_pixel
 ) {
-    return metal::clamp(((1.0 - place_4) * (sin_radius_1 / metal::max(sin_pixel, 0.000001 * sin_radius_1))) + 0.5, 0.0, 1.0);
+    return metal::clamp(((1.0 - place_5) * (sin_radius_1 / metal::max(sin_pixel, 0.000001 * sin_radius_1))) + 0.5, 0.0, 1.0);
 }
 
 // Radiance of the sun's disc in a pixel whose centre is `one_minus_cos` from the sun, from the disc's mean radiance: the irradiance on a surface that faces the sun, divided by `pi sin_radius^2`. Without attenuation by air.
@@ -2527,8 +2639,8 @@ metal::float3 agx_response(
     metal::float3 x_4
 ) {
     metal::float3 stops = metal::log2(metal::max(x_4, metal::float3(0.000000001)) / metal::float3(0.18));
-    metal::float3 place_8 = metal::clamp((stops + metal::float3(10.0)) / metal::float3(16.5), metal::float3(0.0), metal::float3(1.0));
-    metal::float3 from_grey = place_8 - metal::float3(0.6060606);
+    metal::float3 place_10 = metal::clamp((stops + metal::float3(10.0)) / metal::float3(16.5), metal::float3(0.0), metal::float3(1.0));
+    metal::float3 from_grey = place_10 - metal::float3(0.6060606);
     metal::bool3 is_toe = from_grey < metal::float3(0.0);
     metal::float3 limit = metal::select(metal::float3(0.7151983), metal::float3(0.5656756), is_toe);
     metal::float3 u_2 = 2.4 * metal::abs(from_grey);

@@ -10,6 +10,7 @@ pub mod disc;
 pub mod dither;
 pub mod exponentials;
 pub mod fog;
+pub mod fog_table;
 pub mod lights;
 pub mod path_optics;
 pub mod phase;

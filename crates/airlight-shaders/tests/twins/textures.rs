@@ -1,19 +1,22 @@
 //! Textures that the functions are called with: smooth, with values that half floats hold exactly.
 
-use airlight_shaders::twins::sky_tables;
 use airlight_shaders::twins::texture::Texture;
+use airlight_shaders::twins::{fog_table, sky_tables};
 use glam::Vec4;
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
 /// Names of all textures: that of the argument and its dimension.
-pub const NAMES: [&str; 6] = [
+pub const NAMES: [&str; 9] = [
     "smooth_table_2d",
     "haze_table_2d",
     "phase_table_2d",
     "smooth_table_3d",
     "haze_table_3d",
     "extinction_table_2d",
+    "diffuse_table_3d",
+    "stream_table_3d",
+    "stream_phase_table_2d",
 ];
 
 /// Dimension of a texture.
@@ -39,6 +42,13 @@ fn size(name: &str) -> [usize; 3] {
         "smooth_table_2d" | "haze_table_2d" => [sky_tables::SKY_AZIMUTHS, sky_rows, 1.0],
         "phase_table_2d" => [sky_tables::PHASE_ANGLES, 1.0, 1.0],
         "extinction_table_2d" => [sky_tables::AERIAL_DISTANCES, rows, 1.0],
+        "diffuse_table_3d" => [
+            fog_table::FOG_AZIMUTHS,
+            2.0 * fog_table::FOG_ROWS,
+            fog_table::FOG_DISTANCES,
+        ],
+        "stream_table_3d" => [fog_table::FOG_DISTANCES, 2.0 * fog_table::FOG_ROWS, 3.0],
+        "stream_phase_table_2d" => [sky_tables::PHASE_ANGLES, 3.0, 1.0],
         _ => [
             sky_tables::AERIAL_AZIMUTHS,
             rows,

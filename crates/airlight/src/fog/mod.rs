@@ -39,7 +39,7 @@ pub use layer::RgbLayer;
 pub use lighting::{DirectionalLight, FogLighting, FogScattering, Ground};
 pub use patch_view::PatchView;
 pub use patches::{FogPatches, PatchField};
-pub use spectral::{Fog, FogTable, RgbFog, RgbFogTable};
+pub use spectral::{FOG_STREAMS, Fog, FogTable, RgbFog, RgbFogParts, RgbFogTable};
 pub use values::ChannelValues;
 
 pub(crate) use closed_forms::{Lanes, constant_source, mean_attenuated_source};

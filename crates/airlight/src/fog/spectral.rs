@@ -5,10 +5,12 @@ use super::even::EvenFog;
 use super::fog_lanes::FogLanes;
 use super::layer::{LayerLanes, RgbLayer};
 use super::lighting::{FogLighting, FogScattering, Ground};
+use super::multiple::DEGREES;
 use super::table::TableLanes;
 use crate::atmosphere::{Constituent, RaySegment};
 use crate::math::slices::check_length;
 use crate::spectrum::{SpectralCurve, Spectrum, WavelengthGrid};
+use crate::transfer::residual::STREAMS;
 use crate::transfer::{PathOptics, RgbPathOptics};
 use glam::DVec3;
 use std::fmt::Debug;
@@ -379,6 +381,53 @@ impl RgbFogTable {
         check_length(distances_m, directions.len());
         check_length(out, directions.len());
         self.lanes.paths(directions, distances_m, out);
+    }
+}
+
+impl RgbFogTable {
+    /// Parts of the path radiance to some distances (m, increasing, not beyond the ground) along rays of one elevation, for tables on
+    /// other devices. `None` for fog without multiple scattering, of several profiles, or over round ground.
+    ///
+    /// The path radiance along a unit vector is its opacity, `1 - T`, times the sum of [`RgbFogParts::diffuse`] and, for each stream, of
+    /// [`RgbFogParts::streams`] times [`RgbFogTable::sun_streams`]; negative sums count as 0.
+    pub fn parts(&self, sin_elevation: f64, distances_m: &[f64]) -> Option<Vec<RgbFogParts>> {
+        let parts = self.lanes.parts(sin_elevation, distances_m)?;
+        let parts = parts.into_iter().map(|parts| RgbFogParts {
+            modes: parts.modes.map(|lanes| lanes.0),
+            streams: parts.streams.map(|lanes| lanes.0),
+        });
+        Some(parts.collect())
+    }
+
+    /// Sunlight that the fog scatters towards the eye at density 1, by stream, at a cosine of the angle between ray and sun: irradiance
+    /// times scattering coefficient times the stream's share of the phase function, which can be negative.
+    pub fn sun_streams(&self, cos_sun: f64) -> [[f32; 3]; FOG_STREAMS] {
+        self.lanes.sun_streams(cos_sun).map(|lanes| lanes.0)
+    }
+}
+
+/// Number of streams of sunlight: light from which the forward peak removes nothing, half of its fraction, and all.
+pub const FOG_STREAMS: usize = STREAMS;
+
+/// Path radiance of fog per unit of opacity in parts ([`RgbFogTable::parts`]).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RgbFogParts {
+    modes: [[f32; 3]; DEGREES],
+    /// Sunlight scattered once, by stream, per unit of [`RgbFogTable::sun_streams`].
+    pub streams: [[f32; 3]; FOG_STREAMS],
+}
+
+impl RgbFogParts {
+    /// Light scattered several times, towards an azimuth from the sun, at the cosine of the elevation of the ray. Not negative.
+    pub fn diffuse(&self, cos_elevation: f64, azimuth_rad: f64) -> [f32; 3] {
+        let mut sum = [0.0; 3];
+        for (m, mode) in (0..).zip(&self.modes) {
+            let factor = cos_elevation.powi(m) * (f64::from(m) * azimuth_rad).cos();
+            for (sum, mode) in sum.iter_mut().zip(mode) {
+                *sum += factor * f64::from(*mode);
+            }
+        }
+        sum.map(|light| light.max(0.0) as f32)
     }
 }
 

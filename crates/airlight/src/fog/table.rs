@@ -264,11 +264,60 @@ impl<const N: usize> TableLanes<N> {
             true => NODES - 1,
             false => usize::MAX,
         };
+        self.nodes(field, &ray, &lengths_m, ground)
+    }
+
+    /// Parts of the path radiance to some distances (increasing, not beyond the ground) along rays of one elevation; `None` if the fog is
+    /// not tabulated.
+    pub fn parts(&self, sin_elevation: f64, distances_m: &[f64]) -> Option<Vec<FogParts<N>>> {
+        let field = self.table.as_ref().and(self.fog.field.as_ref())?;
+        let ray = RaySegment::flat(self.eye_height_m, sin_elevation, f64::INFINITY);
+        let mut lengths_m = distances_m.to_vec();
+        // To the ground or through all fog, from where light arrives that the forward peak scatters into the ray.
+        let falls = sin_elevation < 0.0;
+        let end_m = match falls {
+            true => self.above_ground_m() / -sin_elevation,
+            false => f64::INFINITY,
+        };
+        let ground = if falls { lengths_m.len() } else { usize::MAX };
+        lengths_m.push(lengths_m.last().map_or(end_m, |last| end_m.max(*last)));
+        let mut nodes = self.nodes(field, &ray, &lengths_m, ground);
+        nodes.pop();
+        let has_sun = self.table.as_ref().is_some_and(|table| table.sun.is_some());
+        let parts = nodes.iter().map(|node| FogParts {
+            modes: std::array::from_fn(|m| Spectrum::from_fn(|lane| node.modes[lane].0[m])),
+            streams: std::array::from_fn(|k| match has_sun {
+                true => Spectrum::from_fn(|lane| node.sunlit[lane].0[k].exp()),
+                false => Spectrum::ZERO,
+            }),
+        });
+        Some(parts.collect())
+    }
+
+    /// Light of the sun that the fog scatters towards the eye at density 1, by stream, at a cosine of the angle to the sun, 1/m times
+    /// irradiance. The sum of its products with [`FogParts::streams`] is not negative, but shares can be.
+    pub fn sun_streams(&self, cos_sun: f64) -> [Spectrum<N>; STREAMS] {
+        match &self.table {
+            Some(Table { sun: Some(sun), .. }) => self.fog.layers[0]
+                .streams_towards_eye(cos_sun)
+                .map(|stream| stream * sun.irradiance),
+            _ => [Spectrum::ZERO; STREAMS],
+        }
+    }
+
+    /// Values along a ray at some distances, of which one may be that of the ground.
+    fn nodes(
+        &self,
+        field: &Field<N>,
+        ray: &RaySegment,
+        lengths_m: &[f64],
+        ground: usize,
+    ) -> Vec<Node<N>> {
         let rays = Rays {
             fog: &self.fog,
             field,
-            ray,
-            lengths_m: &lengths_m,
+            ray: *ray,
+            lengths_m,
             ground,
         };
         let opacities: Vec<Spectrum<N>> = lengths_m
@@ -289,7 +338,7 @@ impl<const N: usize> TableLanes<N> {
             .collect()
         };
         let mut nodes = vec![*Node::ZERO; lengths_m.len()];
-        let has_sun = table.sun.is_some();
+        let has_sun = self.table.as_ref().is_some_and(|table| table.sun.is_some());
         for m in 0..if has_sun { DEGREES } else { 1 } {
             for (node, light) in nodes.iter_mut().zip(per_opacity(rays.diffuse(m))) {
                 for (lane, modes) in node.modes.iter_mut().enumerate() {
@@ -548,6 +597,15 @@ struct Node<const N: usize> {
     modes: [Values; N],
     /// Logarithm of singly scattered sunlight by stream, in the first places.
     sunlit: [Values; N],
+}
+
+/// Path radiance per unit of opacity along rays of one elevation to one distance, in parts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct FogParts<const N: usize> {
+    /// Light scattered several times: the factor of `cos(m azimuth)`, divided by the `m`-th power of the cosine of the elevation.
+    pub modes: [Spectrum<N>; DEGREES],
+    /// Sunlight scattered once, by stream, per unit of light scattered towards the eye.
+    pub streams: [Spectrum<N>; STREAMS],
 }
 
 /// Values that are interpolated as one vector.

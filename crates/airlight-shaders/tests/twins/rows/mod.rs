@@ -4,6 +4,7 @@ mod air;
 mod article;
 mod colour;
 mod fog;
+mod fog_table;
 mod lights;
 mod phase;
 mod shadows;
@@ -55,5 +56,6 @@ pub fn all() -> Vec<Row> {
     all.extend(colour::dither());
     all.extend(colour::disc());
     all.extend(article::article());
+    all.extend(fog_table::fog_table());
     all
 }

@@ -56,11 +56,11 @@ fn scales(r: &mut Random) -> Vec<f32> {
     (0..8).map(|_| r.between(0.5, 2.0)).collect()
 }
 
-fn texel(place: f64, count: f64) -> f64 {
+pub fn texel(place: f64, count: f64) -> f64 {
     (0.5 + place * (count - 1.0)) / count
 }
 
-fn azimuth(direction: &[f64], sun: &[f64]) -> f64 {
+pub fn azimuth(direction: &[f64], sun: &[f64]) -> f64 {
     let sun = match sun[0].abs() + sun[2].abs() < 1e-9 {
         true => [1.0, 0.0],
         false => [sun[0], sun[2]],
@@ -73,7 +73,7 @@ fn azimuth(direction: &[f64], sun: &[f64]) -> f64 {
     turn.min(2.0 * PI - turn) / PI
 }
 
-fn elevation(direction: &[f64]) -> f64 {
+pub fn elevation(direction: &[f64]) -> f64 {
     direction[1].atan2(direction[0].hypot(direction[2]))
 }
 
@@ -124,12 +124,12 @@ fn span(view: &[f64], sine: f64, meets_ground: bool) -> [f64; 2] {
     [start, end.max(start)]
 }
 
-fn place_of_phase(one_minus_cos: f64) -> f64 {
+pub fn place_of_phase(one_minus_cos: f64) -> f64 {
     (2.0 * (0.5 * one_minus_cos).sqrt().min(1.0).asin() / PI).sqrt()
 }
 
 /// A texture at coordinates, in f64.
-fn sample(name: &str, uvw: [f64; 3]) -> [f64; 4] {
+pub fn sample(name: &str, uvw: [f64; 3]) -> [f64; 4] {
     let texture = textures::named(name);
     let size = texture.size();
     let axis = |k: usize| {
@@ -166,7 +166,7 @@ fn haze_phase(one_minus_cos: f64) -> [f64; 4] {
     )
 }
 
-fn one_minus_cos(a: &[f64], b: &[f64]) -> f64 {
+pub fn one_minus_cos(a: &[f64], b: &[f64]) -> f64 {
     0.5 * (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>()
 }
 

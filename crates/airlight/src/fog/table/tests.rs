@@ -240,3 +240,54 @@ fn tabulated_fog_without_absorption_is_invisible_in_uniform_light() {
         }
     }
 }
+
+#[test]
+fn parts_sum_to_the_path_radiance() {
+    let droplets = droplets::phase(20.0);
+    let profile = DensityProfile::Exponential {
+        reference_height_m: 0.0,
+        scale_height_m: 40.0,
+    };
+    for sun in [Some(25.0), None] {
+        let fog = fog(&[layer(profile.clone(), 0.02, droplets.clone())], sun);
+        let table = TableLanes::new(fog.clone(), 12.0);
+        for elevation in [-30.0, -2.0, 0.01, 3.0, 80.0] {
+            let sine = f64::to_radians(elevation).sin();
+            let far_m = if sine < 0.0 { 12.0 / -sine } else { 5000.0 };
+            let distances_m = [0.001, 0.2, 1.0].map(|part| part * far_m);
+            let parts = table.parts(sine, &distances_m).unwrap();
+            for azimuth in [150.0, 152.0, 220.0, 330.0] {
+                let view = axes::direction(azimuth, elevation);
+                let cos_sun = table.table.as_ref().unwrap().sun.as_ref();
+                let streams = table.sun_streams(cos_sun.map_or(0.0, |s| view.dot(s.direction)));
+                for (parts, distance_m) in parts.iter().zip(distances_m) {
+                    let path = fog.path(12.0, view, distance_m);
+                    let azimuth_rad = f64::to_radians(azimuth - 150.0);
+                    for lane in 0..3 {
+                        let mut sum = 0.0;
+                        for (m, mode) in parts.modes.iter().enumerate() {
+                            let factor = (1.0 - sine * sine).sqrt().powi(m as i32)
+                                * (m as f64 * azimuth_rad).cos();
+                            sum += mode[lane] * factor as f32;
+                        }
+                        for (part, stream) in parts.streams.iter().zip(&streams) {
+                            sum += part[lane] * stream[lane];
+                        }
+                        let depth = fog.optical_depth(&RaySegment::flat(12.0, sine, distance_m));
+                        let got = sum * -(-depth[lane]).exp_m1();
+                        let right = path.path_radiance[lane];
+                        assert!(
+                            (got / right - 1.0).abs() < 1e-3,
+                            "{sun:?} {elevation} {azimuth} {distance_m}: {got} {right}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+    // Fog that is not tabulated has none.
+    let slabs = [10.0, 30.0].map(DensityProfile::slab);
+    let layers = slabs.map(|slab| layer(slab, 0.01, PhaseFunction::Isotropic));
+    let table = TableLanes::new(solved(&layers, Ground::FLAT, lighting(Some(30.0))), 2.0);
+    assert!(table.parts(0.1, &[1.0]).is_none());
+}
