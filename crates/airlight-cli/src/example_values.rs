@@ -3,6 +3,7 @@
 use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Arg, Command, Error};
+use std::path::Path;
 
 /// Adds an example to an error of an option of `command` whose value is missing or, where the sentence does not say what would work,
 /// invalid.
@@ -31,6 +32,25 @@ pub fn explain(error: &mut Error, command: &Command) {
     if let Some(value) = argument.and_then(|argument| value(argument, command)) {
         let tip = StyledStr::from(format!("for example: --{long} {value}"));
         error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip]));
+    }
+}
+
+/// Adds a pattern in quotes to an error of several pictures that a shell has put in place of a pattern.
+pub fn explain_pattern(error: &mut Error, command: &Command) {
+    let Some(ContextValue::String(second)) = error.get(ContextKind::InvalidArg) else {
+        return;
+    };
+    let path = Path::new(second);
+    let is_one_of_several =
+        error.kind() == ErrorKind::UnknownArgument && command.get_name() == "fog" && path.exists();
+    if let (true, Some(ending)) = (is_one_of_several, path.extension()) {
+        let pattern = path.with_file_name(format!("*.{}", ending.to_string_lossy()));
+        let tip = format!(
+            "for several pictures, give their folder, or a pattern in quotes: airlight fog '{}'",
+            pattern.display()
+        );
+        let tips = ContextValue::StyledStrs(vec![tip.into()]);
+        error.insert(ContextKind::Suggested, tips);
     }
 }
 
@@ -222,6 +242,8 @@ mod tests {
             ("--ground-albedo=2", "--ground-albedo 0.2"),
             ("--sun-elevation=95", "--sun-elevation 3"),
             ("--shard=5/2", "3/16"),
+            ("--white-balance=warm", "--white-balance 4000"),
+            ("--visibility-m=-5", "--visibility-m 200"),
             ("--size=3", "such as 2048x1024"),
         ] {
             let sentence = error_of(&mut cli, &words, option.to_owned())

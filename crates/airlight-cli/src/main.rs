@@ -71,6 +71,7 @@ fn parse_words(command: &mut clap::Command, mut words: Vec<OsString>) -> ArgMatc
     };
     let named = short_help::named_command(command, &words);
     example_values::explain(&mut error, named);
+    example_values::explain_pattern(&mut error, named);
     if error.kind() == ErrorKind::MissingRequiredArgument
         && let Some(example) = short_help::example(named)
     {

@@ -49,18 +49,25 @@ pub fn install(command: &Command, matches: &ArgMatches) {
 /// A message in which settings are named as options of the command, and a file that cannot be read with its option.
 pub fn in_message(message: &str) -> String {
     let message = named(message, OPTIONS.get().map_or(&[], Vec::as_slice));
-    of_file(&message, GIVEN.get().map_or(&[], Vec::as_slice))
+    let given = GIVEN.get().map_or(&[][..], Vec::as_slice);
+    let lines: Vec<String> = message.lines().map(|line| of_file(line, given)).collect();
+    lines.join("\n")
 }
 
-/// A message that a file cannot be read, with the option that names the file, and with a file that is there if there is none of
+/// A line that a file cannot be read, also one of a list of failed pictures, with the option that names the file, and with a file that is there if there is none of
 /// that name.
 fn of_file(message: &str, given: &[(String, String)]) -> String {
-    let Some((file, reason)) = message
-        .strip_prefix("cannot read `")
-        .and_then(|rest| rest.split_once('`'))
-    else {
+    const SENTENCE: &str = "cannot read `";
+    let begin = message
+        .find(SENTENCE)
+        .filter(|&begin| begin == 0 || message[..begin].ends_with("`: "));
+    let Some((before, (file, reason))) = begin.and_then(|begin| {
+        let (before, rest) = message.split_at(begin);
+        Some((before, rest[SENTENCE.len()..].split_once('`')?))
+    }) else {
         return message.to_owned();
     };
+    let message = &message[before.len()..];
     let option = given.iter().find(|(_, value)| value == file);
     let option = option.map_or(String::new(), |(name, _)| format!("{name}: "));
     let advice = match reason.contains("os error 2)") {
@@ -69,7 +76,7 @@ fn of_file(message: &str, given: &[(String, String)]) -> String {
         }
         false => String::new(),
     };
-    format!("{option}{message}{advice}")
+    format!("{before}{option}{message}{advice}")
 }
 
 /// The file of the most similar name in the same folder; of those with the same ending, any where there is only one.

@@ -67,21 +67,17 @@ pub fn contrast(text: &str) -> Result<f64, String> {
 
 /// A finite number.
 pub fn number(text: &str) -> Result<f64, String> {
-    within(text, "a number, such as 0.5", f64::is_finite)
+    within(text, "a number", f64::is_finite)
 }
 
 /// A number of at least 0.
 pub fn not_negative(text: &str) -> Result<f64, String> {
-    within(text, "a number, 0 or above, such as 0.5", |v| {
-        v.is_finite() && v >= 0.0
-    })
+    within(text, "a number, 0 or above", |v| v.is_finite() && v >= 0.0)
 }
 
 /// A number above 0.
 pub fn positive(text: &str) -> Result<f64, String> {
-    within(text, "a number above 0, such as 0.5", |v| {
-        v.is_finite() && v > 0.0
-    })
+    within(text, "a number above 0", |v| v.is_finite() && v > 0.0)
 }
 
 /// A number from 0 to 1.
@@ -139,11 +135,9 @@ where
 
 /// A distance or a height in metres.
 pub fn length_m(text: &str) -> Result<f64, String> {
-    within(
-        text,
-        "a number of metres above 0 and at most 1e9, such as 100",
-        |v| v > 0.0 && v <= 1e9,
-    )
+    within(text, "a number of metres above 0 and at most 1e9", |v| {
+        v > 0.0 && v <= 1e9
+    })
 }
 
 fn within(text: &str, right: &str, accepts: impl Fn(f64) -> bool) -> Result<f64, String> {

@@ -26,6 +26,14 @@ pub fn print(text: &str) -> Result<(), CliError> {
         .map_err(|error| CliError::from_stdout(&error))
 }
 
+/// The noun for a number of pictures.
+pub fn pictures(count: usize) -> &'static str {
+    match count {
+        1 => "picture",
+        _ => "pictures",
+    }
+}
+
 /// Writes a text or bytes to a file, which is renamed into place when it is complete.
 ///
 /// # Errors

@@ -20,7 +20,8 @@ impl Notes {
         self.push(text.into(), 0, 1);
     }
 
-    /// Adds a text that follows a number, such as "NaN samples repaired"; nothing for 0.
+    /// Adds a text that follows a number and whose first word in -s is the noun counted, such as "NaN samples repaired"; nothing for
+    /// 0.
     pub fn count(&mut self, count: u64, text: impl Into<String>) {
         if count > 0 {
             self.push(text.into(), count, 1);
@@ -57,14 +58,23 @@ impl fmt::Display for Notes {
             if i > 0 {
                 f.write_str("; ")?;
             }
-            if note.count > 0 {
-                write!(f, "{} ", note.count)?;
+            match note.count {
+                0 => f.write_str(&note.text)?,
+                1 => write!(f, "1 {}", singular(&note.text))?,
+                count => write!(f, "{count} {}", note.text)?,
             }
-            f.write_str(&note.text)?;
             if note.files > 1 {
                 write!(f, " (in {} files)", note.files)?;
             }
         }
         Ok(())
+    }
+}
+
+/// A text with its first plural as a singular.
+fn singular(text: &str) -> String {
+    match text.find("s ") {
+        Some(end) => format!("{}{}", &text[..end], &text[end + 1..]),
+        None => text.to_owned(),
     }
 }

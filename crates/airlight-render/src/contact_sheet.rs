@@ -59,7 +59,7 @@ impl ContactSheetSpec {
     /// # Errors
     /// [`RenderError`] for files that cannot be read, and for invalid keys and values, with their place.
     pub fn load(path: &Path) -> Result<Self, RenderError> {
-        let text = scene_file::read_text(path)?;
+        let text = scene_file::read_text(path, "TOML")?;
         let folder = path.parent().unwrap_or(Path::new(""));
         let mut sheet = Self::from_toml(&text).map_err(|error| {
             RenderError::setting(format!("contact sheet `{}`: {error}", path.display()))

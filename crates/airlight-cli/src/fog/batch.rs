@@ -48,9 +48,10 @@ pub fn run(args: &OverlayArgs, scene: OverlayScene) -> Result<(), CliError> {
         }
         let time = begun.elapsed();
         report::print(&format!(
-            "{}: {} of {total} pictures{shard} written{also}\n  manifest      {}\n  time          {}, {} pictures/s\n",
+            "{}: {} of {total} {}{shard} written{also}\n  manifest      {}\n  time          {}, {} pictures/s\n",
             plan.scene().output()?.display(),
             report.made,
+            report::pictures(total),
             plan.manifest().display(),
             seconds(time),
             report::short(report.made as f64 / time.as_secs_f64().max(1e-9))
@@ -59,7 +60,8 @@ pub fn run(args: &OverlayArgs, scene: OverlayScene) -> Result<(), CliError> {
     match report.stopped {
         Some(error) => Err(error.into()),
         None if failures > 0 => Err(CliError::failure(format!(
-            "{failures} pictures failed:{}",
+            "{failures} {} failed:{}",
+            report::pictures(failures),
             listed(&report.failures)
         ))),
         None => Ok(()),

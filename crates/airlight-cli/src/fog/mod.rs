@@ -70,7 +70,7 @@ fn file_in_folder(scene: &mut OverlayScene) {
 
 /// Reads a description from a scene file.
 fn read(path: &Path) -> Result<OverlayScene, CliError> {
-    let text = scene_file::read_text(path)?;
+    let text = scene_file::read_text(path, "TOML")?;
     OverlayScene::from_toml(&text)
         .map_err(|error| CliError::usage(format!("`{}`, {error}", path.display())))
 }

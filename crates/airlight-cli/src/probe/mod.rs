@@ -67,7 +67,7 @@ fn rays(args: &ProbeArgs) -> Result<Vec<ProbeRay>, CliError> {
                     })?;
                 text
             }
-            false => read_text(path)?,
+            false => read_text(path, "CSV")?,
         };
         let found = ProbeRay::list_from_csv(&text, args.distance_m)
             .map_err(|error| CliError::usage(format!("`{}`, {error}", path.display())))?;

@@ -192,8 +192,9 @@ fn many(
         format!("  exposure      EV {ev100} at ISO 100 in all pictures\n")
     });
     report::print(&format!(
-        "{}: {made} of {total} pictures{shard} written{skipped}, {}\n{exposure}  manifest      {manifest}\n  time          {}\n",
+        "{}: {made} of {total} {}{shard} written{skipped}, {}\n{exposure}  manifest      {manifest}\n  time          {}\n",
         renderer.output_path()?.display(),
+        report::pictures(total),
         renderer.kind(),
         seconds(begun.elapsed())
     ))

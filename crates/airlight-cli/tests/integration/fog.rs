@@ -388,7 +388,7 @@ fn a_batch_is_made_reported_and_resumed() {
     let text = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(1), "{text}");
     assert!(
-        text.contains("1 pictures failed:") && text.contains("rgb/a.png"),
+        text.contains("1 picture failed:") && text.contains("rgb/a.png"),
         "{text}"
     );
 }

@@ -410,6 +410,11 @@ fn errors_name_the_option_and_what_works() {
         ("fog", 2, "for example: airlight fog photo.png --depth"),
         ("probe --view", 2, "for example: --view 0,90"),
         ("fog left.png --each", 2, "for example: --each "),
+        (
+            "fog left.png left.png --depth depth.npy -o out/",
+            2,
+            "a pattern in quotes: airlight fog '*.png'",
+        ),
         ("sky --seed x -o a.png", 2, "for example: --seed 7"),
         ("compare orders", 2, "for example: airlight compare orders"),
         (

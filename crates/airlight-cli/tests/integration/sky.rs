@@ -138,7 +138,7 @@ fn sequences_report_what_they_made() {
     let parts = words.replace("a.png", "b.png");
     for (shard, said) in [
         ("1/2", "2 of 2 pictures in shard 1/2"),
-        ("2/2", "1 of 1 pictures in shard 2/2"),
+        ("2/2", "1 of 1 picture in shard 2/2"),
     ] {
         let text = succeed(&folder, &format!("{parts} --shard {shard}"));
         assert!(text.contains(said), "{text}");

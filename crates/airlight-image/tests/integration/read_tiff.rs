@@ -158,7 +158,7 @@ fn floats_are_linear_light() {
         picture
             .notes
             .to_string()
-            .contains("1 NaN or infinite samples repaired")
+            .contains("1 NaN or infinite sample repaired")
     );
     let grey = of::<Gray32Float>(&values[..6], &[], &[]);
     assert_eq!(grey.rgb[15..], [0.25; 3]);

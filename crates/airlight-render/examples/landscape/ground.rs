@@ -88,17 +88,20 @@ impl Ground {
         self.highest
     }
 
-    /// The surface above sea level, metres, for looks that take in `footprint` metres.
-    pub fn surface(&self, x: f64, z: f64, footprint: f64) -> f64 {
+    /// Height of the surface above the bare terrain, metres, for looks that take in `footprint` metres.
+    pub fn cover(&self, x: f64, z: f64, footprint: f64) -> f64 {
         let density = self.woods.linear(x, z);
         let crown = crown(x, z, density, footprint);
-        self.terrain(x, z) + density * UNDERGROWTH + crown.height + roughness(x, z, footprint)
+        density * UNDERGROWTH + crown.height + roughness(x, z, footprint)
     }
 
     /// What is found where a look meets the surface.
     pub fn medium(&self, x: f64, z: f64, footprint: f64) -> Medium {
         let reach = (0.6 * footprint).max(0.25);
-        let at = |dx: f64, dz: f64| self.surface(x + dx * reach, z + dz * reach, footprint);
+        let at = |dx: f64, dz: f64| {
+            let (x, z) = (x + dx * reach, z + dz * reach);
+            self.terrain(x, z) + self.cover(x, z, footprint)
+        };
         let normal = DVec3::new(
             at(-1.0, 0.0) - at(1.0, 0.0),
             2.0 * reach,

@@ -8,13 +8,12 @@ const PLANET_RADIUS: f64 = 6.36e6;
 /// Something with a height above sea level everywhere, over a map whose ground falls away from the eye as the planet's
 /// does: by the square of the distance over twice the radius.
 pub trait Relief {
-    /// Metres above sea level, at metres east and south of the eye; `footprint` metres are looked at together.
-    fn surface(&self, x: f64, z: f64, footprint: f64) -> f64;
-    /// A surface that is cheaper to ask for, never higher than [`Relief::surface`] and lower by at most
-    /// [`Relief::thickness`].
-    fn below(&self, x: f64, z: f64) -> f64;
-    /// Metres from [`Relief::below`] to what nothing exceeds.
-    fn thickness(&self) -> f64;
+    /// The bare terrain, metres above sea level, at metres east and south of the eye.
+    fn bare(&self, x: f64, z: f64) -> f64;
+    /// Height of the surface above the bare terrain, metres; `footprint` metres are looked at together. Costs more.
+    fn cover(&self, x: f64, z: f64, footprint: f64) -> f64;
+    /// What the cover exceeds nowhere, metres.
+    fn tallest(&self) -> f64;
     /// Nothing stands higher, metres above sea level.
     fn highest(&self) -> f64;
 }
@@ -60,13 +59,14 @@ pub fn first_hit(relief: &impl Relief, ray: &Ray, start: f64, limit: f64) -> Opt
             return None;
         }
         let least = (0.35 * ray.footprint_at(t)).max(0.1);
-        let above = height - relief.below(point.x, point.z) - relief.thickness();
-        let free = if above > 0.0 {
-            above / (STEEPEST - rise).max(0.05)
+        let above = height - relief.bare(point.x, point.z);
+        let clear = above - relief.tallest();
+        let free = if clear > 0.0 {
+            clear / (STEEPEST - rise).max(0.05)
         } else {
-            let gap = height - relief.surface(point.x, point.z, ray.footprint_at(t));
+            let gap = above - relief.cover(point.x, point.z, ray.footprint_at(t));
             if gap <= 0.0 {
-                return Some(refine(relief, ray, before, t));
+                return Some(refine(relief, ray, [before, t], gap));
             }
             0.3 * gap
         };
@@ -76,15 +76,43 @@ pub fn first_hit(relief: &impl Relief, ray: &Ray, start: f64, limit: f64) -> Opt
     None
 }
 
-/// Halves the stretch between a point above the ground and one below.
-fn refine(relief: &impl Relief, ray: &Ray, mut above: f64, mut below: f64) -> f64 {
-    for _ in 0..24 {
-        let t = 0.5 * (above + below);
+/// Where a ray meets the surface between a point above it and one below, with the gap at the latter, to a thousandth of the
+/// footprint, by false position (Illinois algorithm).
+fn refine(
+    relief: &impl Relief,
+    ray: &Ray,
+    [mut above, mut below]: [f64; 2],
+    mut gap_below: f64,
+) -> f64 {
+    let gap = |t: f64| {
         let point = ray.at(t);
-        if altitude(point) > relief.surface(point.x, point.z, ray.footprint_at(t)) {
-            above = t;
+        let bare = relief.bare(point.x, point.z);
+        altitude(point) - bare - relief.cover(point.x, point.z, ray.footprint_at(t))
+    };
+    let precise = 1e-3 * ray.footprint_at(below) + 1e-4;
+    let mut gap_above = gap(above);
+    if gap_above <= 0.0 {
+        return above;
+    }
+    let mut last = 0;
+    while below - above > precise {
+        let t = (above * gap_below - below * gap_above) / (gap_below - gap_above);
+        let here = gap(t);
+        if here.abs() < 0.1 * precise || t <= above || t >= below {
+            return t;
+        }
+        if here > 0.0 {
+            (above, gap_above) = (t, here);
+            if last == 1 {
+                gap_below *= 0.5;
+            }
+            last = 1;
         } else {
-            below = t;
+            (below, gap_below) = (t, here);
+            if last == -1 {
+                gap_above *= 0.5;
+            }
+            last = -1;
         }
     }
     0.5 * (above + below)
@@ -101,13 +129,13 @@ mod tests {
     }
 
     impl Relief for Slope {
-        fn surface(&self, x: f64, _: f64, _: f64) -> f64 {
-            self.below(x, 0.0) + self.ripple * (1.0 + (x / 20.0).sin())
-        }
-        fn below(&self, x: f64, _: f64) -> f64 {
+        fn bare(&self, x: f64, _: f64) -> f64 {
             100.0 + self.rise * x
         }
-        fn thickness(&self) -> f64 {
+        fn cover(&self, x: f64, _: f64, _: f64) -> f64 {
+            self.ripple * (1.0 + (x / 20.0).sin())
+        }
+        fn tallest(&self) -> f64 {
             2.0 * self.ripple
         }
         fn highest(&self) -> f64 {
@@ -149,7 +177,7 @@ mod tests {
             };
             let gap = |t: f64| {
                 let point = ray.at(t);
-                altitude(point) - rippled.surface(point.x, point.z, 0.0)
+                altitude(point) - rippled.bare(point.x, 0.0) - rippled.cover(point.x, 0.0, 0.0)
             };
             assert!(gap(t).abs() < 1e-3);
             assert!((0..999).all(|i| gap(t * f64::from(i) / 1000.0) > -0.05));

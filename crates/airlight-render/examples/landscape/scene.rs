@@ -14,9 +14,6 @@ use std::sync::atomic::{AtomicU32, Ordering};
 /// How far the eye looks for ground, metres.
 pub const FARTHEST: f64 = 150e3;
 
-/// How far the soil lies below the terrain at most, metres.
-const HOLLOW: f64 = 2.0;
-
 /// Everything that is seen, and from where.
 pub struct Scene {
     pub ground: Ground,
@@ -36,18 +33,18 @@ pub struct Scene {
 
 /// Measured from the eye's place on the map.
 impl Relief for Scene {
-    fn surface(&self, x: f64, z: f64, footprint: f64) -> f64 {
+    fn bare(&self, x: f64, z: f64) -> f64 {
         let [east, south] = self.eye;
-        self.ground.surface(x + east, z + south, footprint)
+        self.ground.terrain(x + east, z + south)
     }
 
-    fn below(&self, x: f64, z: f64) -> f64 {
+    fn cover(&self, x: f64, z: f64, footprint: f64) -> f64 {
         let [east, south] = self.eye;
-        self.ground.terrain(x + east, z + south) - HOLLOW
+        self.ground.cover(x + east, z + south, footprint)
     }
 
-    fn thickness(&self) -> f64 {
-        TALLEST + HOLLOW
+    fn tallest(&self) -> f64 {
+        TALLEST
     }
 
     fn highest(&self) -> f64 {

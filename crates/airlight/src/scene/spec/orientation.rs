@@ -76,18 +76,21 @@ mod tests {
             1,
             [[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]],
         ),
+        // `LookupLongLat` in TextureCompressorModule.cpp, whose y and z `TransformSideToWorldSpace` has exchanged.
         (
             Orientation::Unreal,
             |[x, y, _]| 0.5 + x.atan2(-y) / TAU,
             2,
             [[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]],
         ),
+        // `ToRadialCoords` in Skybox-Panoramic.shader.
         (
             Orientation::Unity,
             |[x, _, z]| 0.5 - z.atan2(x) / TAU,
             1,
             [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]],
         ),
+        // `panorama_coords` in sky.glsl, the SKY_COORDS of shaders.
         (
             Orientation::Godot,
             |[x, _, z]| x.atan2(-z) / TAU,
