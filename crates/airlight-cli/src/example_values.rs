@@ -243,7 +243,7 @@ mod tests {
             ("--sun-elevation=95", "--sun-elevation 3"),
             ("--shard=5/2", "3/16"),
             ("--white-balance=warm", "--white-balance 4000"),
-            ("--visibility-m=-5", "--visibility-m 200"),
+            ("--visibility-m=-5", "--visibility-m 150"),
             ("--size=3", "such as 2048x1024"),
         ] {
             let sentence = error_of(&mut cli, &words, option.to_owned())

@@ -137,7 +137,7 @@ fn further_components_are_what_the_file_says() {
     }
     let other = of::<RGB8>(&plain, &[ExtraSamples::Unspecified], &[]);
     assert_eq!((other.alpha, other.rgb), (None, straight.rgb));
-    assert!(other.notes.to_string().contains("1 other components"));
+    assert!(other.notes.to_string().contains("1 other component of"));
 }
 
 #[test]
