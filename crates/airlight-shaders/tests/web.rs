@@ -1,13 +1,17 @@
 //! The page `examples/web/sky-article.html`: up to date, and drawn by a browser as the library computes it.
 
+use airlight::Named;
 use airlight::axes;
 use airlight::glam::DVec3;
 use airlight::models::single_scattering::{Settings, SkyArticle, Variant};
 use airlight_image::read_picture;
 use airlight_shaders::twins::{colour::srgb_encode, tone::camera_tone};
+use airlight_shaders::{Part, source};
 use glam::Vec3;
-use std::path::Path;
-use std::process::{Command, Stdio};
+use std::io::{Read, Write};
+use std::net::{TcpListener, TcpStream};
+use std::path::PathBuf;
+use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 #[path = "../examples/web/page.rs"]
@@ -34,36 +38,68 @@ fn chromium() -> Option<&'static str> {
     names.into_iter().find(runs)
 }
 
-/// Draws the page without a screen.
-fn draw(browser: &str, fragment: &str, folder: &Path) -> airlight_image::Picture {
-    let picture = folder.join("page.png");
-    let mut run = Command::new(browser)
-        .args([
-            "--headless",
-            "--no-sandbox",
-            "--no-first-run",
-            "--disable-background-networking",
-            "--disable-component-update",
-            "--disable-sync",
-            "--disable-quic",
-            "--use-gl=angle",
-            "--use-angle=swiftshader",
-            "--enable-unsafe-swiftshader",
-            "--ignore-gpu-blocklist",
-            "--hide-scrollbars",
-            "--force-device-scale-factor=1",
-            "--window-size=500,400",
-        ])
-        .arg(format!("--user-data-dir={}", folder.display()))
-        .arg(format!("--screenshot={}", picture.display()))
-        .arg(format!("file://{FILE}#{fragment}"))
+/// Options for a run without a screen and without a network.
+const HEADLESS: [&str; 12] = [
+    "--headless",
+    "--no-sandbox",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--disable-quic",
+    "--ignore-gpu-blocklist",
+    "--use-gl=angle",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--use-webgpu-adapter=swiftshader",
+];
+
+/// A folder for a browser's files, removed with it.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let folder = std::env::temp_dir().join(format!("airlight-{name}-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).expect("a folder");
+        Self(folder)
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        // A browser that was ended may still write to it.
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+/// A browser that is started on a page.
+fn started(browser: &str, options: &[&str], folder: &Folder, page: &str) -> Child {
+    Command::new(browser)
+        .args(HEADLESS)
+        .args(options)
+        .arg(format!("--user-data-dir={}", folder.0.display()))
+        .arg(page)
         .stdout(Stdio::null())
         .stderr(Stdio::null())
         .spawn()
-        .expect("a browser");
-    let started = Instant::now();
+        .expect("a browser")
+}
+
+/// Draws the page without a screen.
+fn draw(browser: &str, fragment: &str, folder: &Folder) -> airlight_image::Picture {
+    let picture = folder.0.join("page.png");
+    let screenshot = format!("--screenshot={}", picture.display());
+    let options = [
+        "--hide-scrollbars",
+        "--force-device-scale-factor=1",
+        "--window-size=500,400",
+        &screenshot,
+    ];
+    let page = format!("file://{FILE}#{fragment}");
+    let mut run = started(browser, &options, folder, &page);
+    let begin = Instant::now();
     while run.try_wait().expect("a process").is_none() {
-        if started.elapsed() > Duration::from_secs(90) {
+        if begin.elapsed() > Duration::from_secs(90) {
             run.kill().expect("a process");
             panic!("{browser} has not ended after 90 s");
         }
@@ -81,8 +117,7 @@ fn browser_draws_what_the_library_computes() {
         );
         return;
     };
-    let folder = std::env::temp_dir().join(format!("airlight-page-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).expect("a folder");
+    let folder = Folder::new("page");
     let (width, height) = (320, 200);
     let mut compared = 0;
     for (sun_deg, ev, altitude_m) in [(20.0, 13.0, 1.0), (1.0, 11.0, 3000.0)] {
@@ -123,5 +158,96 @@ fn browser_draws_what_the_library_computes() {
         }
     }
     assert_eq!(compared, 12);
-    std::fs::remove_dir_all(&folder).expect("a folder");
+}
+
+/// A page that compiles the WGSL of the page `/wgsl` and sends what the browser says of it.
+const COMPILE: &str = r#"<!doctype html><script>
+(async () => {
+    let text;
+    try {
+        const adapter = await navigator.gpu?.requestAdapter();
+        if (!adapter) throw new Error("no adapter");
+        const device = await adapter.requestDevice();
+        const code = await (await fetch("/wgsl")).text();
+        const { messages } = await device.createShaderModule({ code }).getCompilationInfo();
+        text = messages.map((m) => `${m.type} ${m.lineNum}: ${m.message}`).join("\n") || "accepted";
+    } catch (error) {
+        text = error.message;
+    }
+    await fetch("/result", { method: "POST", body: text });
+})();
+</script>"#;
+
+/// Method and path of a request, and its body.
+fn request(stream: &mut TcpStream) -> (String, String) {
+    let mut bytes = Vec::new();
+    let mut buffer = [0; 4096];
+    loop {
+        let read = stream.read(&mut buffer).unwrap_or_default();
+        bytes.extend_from_slice(&buffer[..read]);
+        let text = String::from_utf8_lossy(&bytes);
+        if let Some((head, body)) = text.split_once("\r\n\r\n") {
+            let length = head.lines().find_map(|line| {
+                let (name, value) = line.split_once(':')?;
+                let is_length = name.eq_ignore_ascii_case("content-length");
+                is_length.then(|| value.trim().parse::<usize>().ok())?
+            });
+            if read == 0 || body.len() >= length.unwrap_or_default() {
+                let first = head.lines().next().unwrap_or_default();
+                return (first.to_owned(), body.to_owned());
+            }
+        } else if read == 0 {
+            return (String::new(), String::new());
+        }
+    }
+}
+
+/// The compiler of Chromium's WebGPU is independent of the one that the other tests use.
+#[test]
+fn browser_accepts_the_wgsl() {
+    let Some(browser) = chromium() else {
+        println!(
+            "chromium is not installed: its compiler is not asked (Debian: apt-get install chromium)"
+        );
+        return;
+    };
+    let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
+    listener.set_nonblocking(true).expect("a port");
+    let folder = Folder::new("wgsl");
+    let page = format!("http://{}/", listener.local_addr().expect("a port"));
+    let mut run = started(browser, &["--enable-unsafe-webgpu"], &folder, &page);
+    let begin = Instant::now();
+    let mut result = None;
+    while result.is_none() && begin.elapsed() < Duration::from_secs(90) {
+        let Ok((mut stream, _)) = listener.accept() else {
+            std::thread::sleep(Duration::from_millis(20));
+            continue;
+        };
+        stream.set_nonblocking(false).expect("a connection");
+        let timeout = Some(Duration::from_secs(5));
+        stream.set_read_timeout(timeout).expect("a connection");
+        let (first, body) = request(&mut stream);
+        let (kind, text) = match first.split(' ').nth(1) {
+            Some("/") => ("text/html", COMPILE.to_owned()),
+            Some("/wgsl") => ("text/plain", source(Part::ALL)),
+            Some("/result") => {
+                result = Some(body);
+                ("text/plain", String::new())
+            }
+            _ => ("text/plain", String::new()),
+        };
+        let answer = format!(
+            "HTTP/1.1 200 OK\r\nContent-Type: {kind}\r\nContent-Length: {}\r\nConnection: close\r\n\r\n{text}",
+            text.len()
+        );
+        // A connection that the browser gave up is of no use to it.
+        let _ = stream.write_all(answer.as_bytes());
+    }
+    run.kill().expect("a process");
+    run.wait().expect("a process");
+    match result.as_deref() {
+        Some("no adapter") => println!("chromium has no WebGPU here: its compiler is not asked"),
+        Some(result) => assert_eq!(result, "accepted"),
+        None => panic!("{browser} has not answered after 90 s"),
+    }
 }
