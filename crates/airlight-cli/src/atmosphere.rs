@@ -15,7 +15,16 @@ fn named(name: &str) -> Result<Atmosphere, CliError> {
     let mut scene = Scene::default();
     scene.air.atmosphere = Some(name.to_owned());
     scene_file::inline_files(&mut scene, Path::new(""))?;
-    Ok(scene.air.named_atmosphere()?)
+    scene
+        .air
+        .named_atmosphere()
+        .map_err(|error| match error.into() {
+            // The name is an argument here.
+            CliError::Usage(sentence) => {
+                CliError::Usage(sentence.replacen("--atmosphere", "NAME", 1))
+            }
+            error => error,
+        })
 }
 
 /// Runs `airlight atmospheres`.

@@ -54,7 +54,7 @@ fn main() -> ExitCode {
         Err(error) => {
             if let Some(sentence) = error.sentence() {
                 // Errors of standard error cannot be reported.
-                let sentence = option_names::in_message(sentence);
+                let sentence = option_names::in_error(sentence);
                 let _ = writeln!(std::io::stderr(), "airlight: {sentence}");
             }
             ExitCode::from(error.exit_code())

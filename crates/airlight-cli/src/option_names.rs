@@ -54,29 +54,47 @@ pub fn in_message(message: &str) -> String {
     lines.join("\n")
 }
 
-/// A line that a file cannot be read, also one of a list of failed pictures, with the option that names the file, and with a file that is there if there is none of
-/// that name.
+/// [`in_message`] for an error, with the option of a file whose contents are wrong.
+pub fn in_error(message: &str) -> String {
+    let given = GIVEN.get().map_or(&[][..], Vec::as_slice);
+    let message = in_message(message);
+    let file = message
+        .strip_prefix('`')
+        .and_then(|rest| rest.split_once('`'));
+    match file.and_then(|(file, _)| option_of(file, given)) {
+        Some(option) => format!("{option}: {message}"),
+        None => message,
+    }
+}
+
+/// The option that a value is given for.
+fn option_of<'a>(value: &str, given: &'a [(String, String)]) -> Option<&'a str> {
+    let option = given.iter().find(|(_, given)| given == value)?;
+    Some(&option.0)
+}
+
+/// A line that a file cannot be read or written, also one of a list of failed pictures, with the option that names the file, and
+/// with a file that is there if there is none of that name.
 fn of_file(message: &str, given: &[(String, String)]) -> String {
-    const SENTENCE: &str = "cannot read `";
-    let begin = message
-        .find(SENTENCE)
-        .filter(|&begin| begin == 0 || message[..begin].ends_with("`: "));
-    let Some((before, (file, reason))) = begin.and_then(|begin| {
+    const SENTENCES: [&str; 2] = ["cannot read `", "cannot write `"];
+    let quoted = SENTENCES.iter().find_map(|sentence| {
+        let begin = message.find(sentence)?;
         let (before, rest) = message.split_at(begin);
-        Some((before, rest[SENTENCE.len()..].split_once('`')?))
-    }) else {
+        let (file, reason) = rest[sentence.len()..].split_once('`')?;
+        (before.is_empty() || before.ends_with("`: ")).then_some((before, rest, file, reason))
+    });
+    let Some((before, rest, file, reason)) = quoted else {
         return message.to_owned();
     };
-    let message = &message[before.len()..];
-    let option = given.iter().find(|(_, value)| value == file);
-    let option = option.map_or(String::new(), |(name, _)| format!("{name}: "));
-    let advice = match reason.contains("os error 2)") {
-        true => {
-            similar_file(Path::new(file)).map_or(String::new(), |name| format!("; try `{name}`"))
-        }
-        false => String::new(),
+    let option = option_of(file, given).map_or(String::new(), |option| format!("{option}: "));
+    let advice = if reason.contains("there is no folder") {
+        "; create it first".to_owned()
+    } else if reason.contains("os error 2)") {
+        similar_file(Path::new(file)).map_or(String::new(), |name| format!("; try `{name}`"))
+    } else {
+        String::new()
     };
-    format!("{before}{option}{message}{advice}")
+    format!("{before}{option}{rest}{advice}")
 }
 
 /// The file of the most similar name in the same folder; of those with the same ending, any where there is only one.
@@ -192,6 +210,33 @@ fn value_of(text: &str) -> Option<(String, &str)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn files_are_named_with_their_options() {
+        let given = [("--depth", "none/10"), ("--output", "none/a.png")];
+        let given = given.map(|(option, value)| (option.to_owned(), value.to_owned()));
+        for (message, right) in [
+            (
+                "cannot read `none/10`: No such file or directory (os error 2)",
+                "--depth: cannot read `none/10`: No such file or directory (os error 2)",
+            ),
+            (
+                "  `a.png`: cannot read `none/10`: it is a folder",
+                "  `a.png`: --depth: cannot read `none/10`: it is a folder",
+            ),
+            (
+                "cannot write `none/a.png`: there is no folder `none`",
+                "--output: cannot write `none/a.png`: there is no folder `none`; create it first",
+            ),
+            (
+                "they cannot read `none/10`: no",
+                "they cannot read `none/10`: no",
+            ),
+            ("cannot read `b.png`: no", "cannot read `b.png`: no"),
+        ] {
+            assert_eq!(of_file(message, &given), right);
+        }
+    }
 
     #[test]
     fn settings_are_named_as_options() {

@@ -77,7 +77,11 @@ enum Form {
 impl SolverChoice {
     fn parse(text: &str) -> Result<Self, String> {
         let (name, form) = text.split_once(':').unwrap_or((text, ""));
-        let model = registry::find(name).map_err(|error| error.to_string())?;
+        let model = registry::find(name).map_err(|error| {
+            let sentence = error.to_string();
+            let expected = sentence.strip_prefix("solver.name: ");
+            expected.unwrap_or(&sentence).to_owned()
+        })?;
         let capabilities = model.capabilities();
         let mut forms: Vec<&str> = capabilities.variants.to_vec();
         for (input, name) in [(Input::Scattering, "single"), (Input::Effort, "fine")] {

@@ -406,10 +406,23 @@ fn errors_name_the_option_and_what_works() {
     for name in ["left.png", "depth.npy", "objects.toml"] {
         std::fs::write(folder.file(name), "").unwrap();
     }
+    std::fs::write(folder.file("binary.csv"), [0xff, 0xfe]).unwrap();
     for (words, code, part) in [
         ("fog", 2, "for example: airlight fog photo.png --depth"),
         ("probe --view", 2, "for example: --view 0,90"),
         ("fog left.png --each", 2, "for example: --each "),
+        ("compare orders orders2", 2, "'<SOLVER>': expected a solver"),
+        ("atmospheres mar", 2, "NAME: expected an atmosphere"),
+        (
+            "sky --sun-elevation 9 -o none/a.png",
+            1,
+            "--output: cannot write `none/a.png`: there is no folder `none`; create it first",
+        ),
+        (
+            "probe --sun-elevation 9 --views binary.csv",
+            2,
+            "--views: `binary.csv`: expected text in UTF-8",
+        ),
         (
             "fog left.png left.png --depth depth.npy -o out/",
             2,
