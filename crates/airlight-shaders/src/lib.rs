@@ -19,8 +19,8 @@
 //! Each function states its cost (exponentials, texture reads) and its largest error against f64 ([`functions`]); the tests count
 //! the one and measure the other, on the CPU and on a Vulkan device. [`twins`] holds the functions in Rust.
 //!
-//! [`SkyTables`] fills the tables of [`Part::SkyTables`] from a sky that the library solves, [`FogTables`] those of [`Part::FogTable`] from
-//! a fog.
+//! [`SkyTables`] fills the tables of [`Part::SkyTables`] from a sky that the library solves, [`FogTables`] those of
+//! [`Part::FogTable`] from a fog.
 //!
 //! With the feature `translate`, `translate` gives the same functions in GLSL, HLSL and MSL; the folder `generated` holds them.
 //!

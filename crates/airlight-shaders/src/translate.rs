@@ -73,8 +73,8 @@ const GLOBALS: [&str; 5] = [
     "nagaGroup0SamplerIndexArray",
 ];
 
-/// Parts, with all parts that they require, in a language: text to include in a shader, after a `#version` line in GLSL (not Godot). Functions
-/// and structs keep their names, parameters may get a number; each function is preceded by its documentation.
+/// Parts, with all parts that they require, in a language: text to include in a shader, after a `#version` line in GLSL (not
+/// Godot). Functions and structs keep their names, parameters may get a number; each function is preceded by its documentation.
 ///
 /// # Errors
 /// [`TranslateError`] if the language lacks something that a function uses.

@@ -69,8 +69,8 @@ fn glslang_accepts_the_pass_in_hlsl() {
     std::fs::remove_file(&binary).unwrap();
 }
 
-/// GLSL and HLSL in a fragment shader of a host, by glslangValidator (Debian: glslang-tools), and the SPIR-V that it makes of HLSL by
-/// spirv-val (Debian: spirv-tools).
+/// GLSL and HLSL in a fragment shader of a host, by glslangValidator (Debian: glslang-tools), and the SPIR-V that it makes of HLSL
+/// by spirv-val (Debian: spirv-tools).
 #[test]
 fn glslang_accepts_the_translations() {
     if Command::new("glslangValidator")

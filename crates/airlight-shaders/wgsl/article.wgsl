@@ -1,6 +1,7 @@
-// The shader of the article "Sky and Atmosphere rendering: A physical approach" as printed, with its errors: 8 steps of equal length,
-// three channels in cd/m^2, ozone with the profile of molecules, no planet in the way (below the horizon, values may not be numbers).
-// For skies that are right use `sky_tables`. Directions are unit vectors, y up; positions count from the planet's centre, m.
+// The shader of the article "Sky and Atmosphere rendering: A physical approach" as printed, with its errors: 8 steps of equal
+// length, three channels in cd/m^2, ozone with the profile of molecules, no planet in the way (below the horizon, values may not be
+// numbers). For skies that are right use `sky_tables`. Directions are unit vectors, y up; positions count from the planet's centre,
+// m.
 
 /// Steps along each ray.
 const ARTICLE_STEPS: i32 = 8;
@@ -93,8 +94,8 @@ fn article_mie_phase(mu: f32) -> f32 {
     return (1.0 - g * g) / (4.0 * ARTICLE_PI * pow(1.0 + g * g - 2.0 * g * mu, 1.5));
 }
 
-/// Eye at an altitude, and a sun that is white and has an illuminance (120 000 lx in the article) on the ground when it stands at the
-/// zenith. Compute it once for all pixels. The solid angle, `1 - cos`, keeps three digits at best.
+/// Eye at an altitude, and a sun that is white and has an illuminance (120 000 lx in the article) on the ground when it stands at
+/// the zenith. Compute it once for all pixels. The solid angle, `1 - cos`, keeps three digits at best.
 ///
 /// Cost: 7 exp. Error: 4e-3 relative.
 fn article_sky(eye_altitude_m: f32, zenith_illuminance: f32) -> ArticleSky {
@@ -125,7 +126,8 @@ fn article_source(sky: ArticleSky, position: vec3<f32>, view: vec3<f32>, sun: ve
 
 /// Luminance of the sky along a direction above the horizon, without the sun's disc.
 ///
-/// Cost: 15 exp a step; 8 steps, in each of which two marches of 8 steps take 6 of these, 456 in all. Error: 2e-3 relative plus 1e-2 absolute.
+/// Cost: 15 exp a step; 8 steps, in each of which two marches of 8 steps take 6 of these, 456 in all. Error: 2e-3 relative plus
+/// 1e-2 absolute.
 fn article_luminance(sky: ArticleSky, view: vec3<f32>, sun: vec3<f32>) -> vec3<f32> {
     let leaves = sky.eye + view * article_distance_m(sky.eye, view, ARTICLE_TOP_RADIUS_M);
     let ds = (leaves - sky.eye) / f32(ARTICLE_STEPS);
@@ -138,8 +140,8 @@ fn article_luminance(sky: ArticleSky, view: vec3<f32>, sun: vec3<f32>) -> vec3<f
     return sum * length(ds);
 }
 
-/// Luminance of the sun's disc along a direction above the horizon, whose edge is smooth from 0.95 to 1.05 of its radius. The cosine is
-/// clamped to 1, unlike as printed.
+/// Luminance of the sun's disc along a direction above the horizon, whose edge is smooth from 0.95 to 1.05 of its radius. The
+/// cosine is clamped to 1, unlike as printed.
 ///
 /// Cost: 3 exp, 3 exp a step; 8 steps. Error: 5e-3 relative plus 1e-2 absolute.
 fn article_disc(sky: ArticleSky, view: vec3<f32>, sun: vec3<f32>) -> vec3<f32> {

@@ -1,7 +1,7 @@
 // The sun's disc with limb darkening, at four wavelengths.
 
-/// Limb darkening at four wavelengths: a polynomial in the cosine `mu` between the line of sight and the normal of the sun's surface,
-/// 1 at the centre and 0 at the limb. The mean over the disc is 1. A uniform disc has 1 in `zeroth` and 0 elsewhere.
+/// Limb darkening at four wavelengths: a polynomial in the cosine `mu` between the line of sight and the normal of the sun's
+/// surface, 1 at the centre and 0 at the limb. The mean over the disc is 1. A uniform disc has 1 in `zeroth` and 0 elsewhere.
 struct LimbDarkening {
     /// Constant term.
     zeroth: vec4<f32>,
@@ -41,24 +41,25 @@ fn limb_profile(limb: LimbDarkening, mu: f32) -> vec4<f32> {
     return limb.zeroth + mu * (limb.first + mu * (limb.second + mu * (limb.third + mu * (limb.fourth + mu * limb.fifth))));
 }
 
-/// Place of a direction on the disc: the sine of its angle from the centre divided by the sine of the disc's angular radius, 0 to 1;
-/// more than 1 outside. `one_minus_cos` is that between the direction and the sun.
+/// Place of a direction on the disc: the sine of its angle from the centre divided by the sine of the disc's angular radius, 0 to
+/// 1; more than 1 outside. `one_minus_cos` is that between the direction and the sun.
 ///
 /// Cost: no exp. Error: 3e-7 relative.
 fn place_on_disc(sin_radius: f32, one_minus_cos: f32) -> f32 {
     return select(2.0, sqrt(max(one_minus_cos * (2.0 - one_minus_cos), 0.0)), one_minus_cos < 1.0) / sin_radius;
 }
 
-/// Part of a pixel that the disc covers, 0 to 1: a ramp as wide as a pixel across the edge, so that the edge is smooth and the disc's
-/// light is kept, within `(pixel / radius)^2 / 12`. `sin_pixel` is the sine of the angle that a pixel spans; 0 gives a sharp edge.
+/// Part of a pixel that the disc covers, 0 to 1: a ramp as wide as a pixel across the edge, so that the edge is smooth and the
+/// disc's light is kept, within `(pixel / radius)^2 / 12`. `sin_pixel` is the sine of the angle that a pixel spans; 0 gives a sharp
+/// edge.
 ///
 /// Cost: no exp. Error: 1e-6 relative plus 1e-6 absolute.
 fn disc_coverage(place: f32, sin_radius: f32, sin_pixel: f32) -> f32 {
     return clamp((1.0 - place) * (sin_radius / max(sin_pixel, 1e-6 * sin_radius)) + 0.5, 0.0, 1.0);
 }
 
-/// Radiance of the sun's disc in a pixel whose centre is `one_minus_cos` from the sun, from the disc's mean radiance: the irradiance
-/// on a surface that faces the sun, divided by `pi sin_radius^2`. Without attenuation by air.
+/// Radiance of the sun's disc in a pixel whose centre is `one_minus_cos` from the sun, from the disc's mean radiance: the
+/// irradiance on a surface that faces the sun, divided by `pi sin_radius^2`. Without attenuation by air.
 ///
 /// Cost: no exp. Error: 2e-6 relative plus 2e-5 absolute.
 fn sun_disc_radiance(

@@ -1,8 +1,8 @@
 // requires: exponentials, phase, path_optics, sky_tables
-// Fog of one profile over flat ground with all orders of scattering, from tables that the library fills for one fog, one height of the
-// eye and one sun (`FogTables`). The tables hold the source function, path radiance per unit of opacity, in two parts: light that is
-// scattered several times, and sunlight that is scattered once, without its phase function, in three streams, of which the fog's
-// forward peak removes nothing, half and all. So neither the peak nor its blur needs texels.
+// Fog of one profile over flat ground with all orders of scattering, from tables that the library fills for one fog, one height of
+// the eye and one sun (`FogTables`). The tables hold the source function, path radiance per unit of opacity, in two parts: light
+// that is scattered several times, and sunlight that is scattered once, without its phase function, in three streams, of which the
+// fog's forward peak removes nothing, half and all. So neither the peak nor its blur needs texels.
 
 /// Columns of the table of diffuse light, from the azimuth of the sun to the opposite one.
 const FOG_AZIMUTHS: f32 = 32.0;
@@ -56,8 +56,8 @@ fn fog_opacity(depth: vec3<f32>) -> vec3<f32> {
     return depth * mean_transmittance_rgb(depth);
 }
 
-/// Place of a distance, 0 to 1, from the opacity and the transmittance up to there, relative to those of the whole ray to the ground or
-/// through the fog.
+/// Place of a distance, 0 to 1, from the opacity and the transmittance up to there, relative to those of the whole ray to the
+/// ground or through the fog.
 ///
 /// Cost: 6 exp. Error: 1e-5 absolute.
 fn fog_distance_place(view: FogTableView, sin_elevation: f32, opacity: vec3<f32>, transmittance: vec3<f32>) -> f32 {
@@ -71,8 +71,8 @@ fn fog_distance_place(view: FogTableView, sin_elevation: f32, opacity: vec3<f32>
     return 1.0 - sqrt(sqrt(left));
 }
 
-/// Sunlight that a stream (0, 1 or 2) scatters once, per unit of opacity, before its scale: from the texture coordinates of distance,
-/// row and angle.
+/// Sunlight that a stream (0, 1 or 2) scatters once, per unit of opacity, before its scale: from the texture coordinates of
+/// distance, row and angle.
 ///
 /// Cost: 3 exp, 2 reads. Error: 2e-3 relative plus 1e-5 absolute.
 fn fog_stream_light(
@@ -88,8 +88,8 @@ fn fog_stream_light(
     return exp(logarithms.xyz) * phase.xyz;
 }
 
-/// Fog between the eye and a point, by the optical depth on the way: extinction times `exponential_column_m`, or the column of another
-/// profile. Rays end at the ground.
+/// Fog between the eye and a point, by the optical depth on the way: extinction times `exponential_column_m`, or the column of
+/// another profile. Rays end at the ground.
 ///
 /// Cost: 23 exp, 7 reads. Error: 3e-3 relative plus 1e-5 absolute.
 fn tabulated_fog(

@@ -1,7 +1,7 @@
 // requires: exponentials, phase, columns, fog
 // Point, spot and sphere lights in fog: the radiance that fog scatters from a light into a ray, by single scattering, attenuated on
-// the way to the point and from there to the eye. Add it to the path radiance of the fog without the light. Positions are in metres;
-// y is the height. A light's radius should be at least 1/1000 of its distance, so that rounding of positions does not show.
+// the way to the point and from there to the eye. Add it to the path radiance of the fog without the light. Positions are in
+// metres; y is the height. A light's radius should be at least 1/1000 of its distance, so that rounding of positions does not show.
 
 /// Kind of a `LocalLight`: a small light with the same intensity in all directions.
 const LIGHT_POINT: u32 = 0u;
@@ -101,7 +101,8 @@ fn light_ahead_m(nearest_m: f32, place_m: f32) -> f32 {
     return select(far, nearest_m * (nearest_m / far), place_m < 0.0);
 }
 
-/// Excess of the end: by how much the path from the start to the end and on to the light is longer than from the start to the light, m.
+/// Excess of the end: by how much the path from the start to the end and on to the light is longer than from the start to the
+/// light, m.
 ///
 /// Cost: no exp. Error: 2e-6 relative.
 fn light_excess_m(geometry: LightRayGeometry) -> f32 {
@@ -120,8 +121,8 @@ fn light_angle(geometry: LightRayGeometry) -> f32 {
     return atan2(h * geometry.length_m, h * h + u * (u + geometry.length_m));
 }
 
-/// Radiance scattered from a point light of unit intensity by uniform fog of unit scattering coefficient that scatters equally in all
-/// directions, 1/m, without extinction: `angle / (4 pi h)` (after Macklin 2010, corrected).
+/// Radiance scattered from a point light of unit intensity by uniform fog of unit scattering coefficient that scatters equally in
+/// all directions, 1/m, without extinction: `angle / (4 pi h)` (after Macklin 2010, corrected).
 ///
 /// Cost: no exp. Error: 3e-5 relative.
 fn airlight_without_extinction(geometry: LightRayGeometry) -> f32 {
@@ -159,8 +160,8 @@ fn light_node(i: u32, scale_m: f32, span: f32) -> vec2<f32> {
     return vec2<f32>(scale_m * z * (3.0 - 3.0 * z + z * z) / p, 3.0 * node.y * span * scale_m / (q * p));
 }
 
-/// `airlight_without_extinction` with extinction between light, fog and eye (1/m): the integral of Sun, Ramamoorthi, Narasimhan and Nayar
-/// (2005) by quadrature with 8 nodes.
+/// `airlight_without_extinction` with extinction between light, fog and eye (1/m): the integral of Sun, Ramamoorthi, Narasimhan and
+/// Nayar (2005) by quadrature with 8 nodes.
 ///
 /// Cost: 6 exp, 3 exp a step; 8 steps. Error: 1.5e-4 relative plus 1e-12 absolute.
 fn airlight_isotropic(geometry: LightRayGeometry, extinction_per_m: vec3<f32>) -> vec3<f32> {
@@ -276,8 +277,8 @@ fn lit_interval(ray: LightRay, cos_angle: f32) -> vec2<f32> {
     return select(vec2<f32>(0.0), interval, interval.y > interval.x);
 }
 
-/// Light at a place of a ray: its intensity there relative to `intensity` (x), times the ratio of the squared distances `geometry` and
-/// the light have; the distance to the light's surface, m (y); 1 minus the cosine of the scattering angle (z).
+/// Light at a place of a ray: its intensity there relative to `intensity` (x), times the ratio of the squared distances `geometry`
+/// and the light have; the distance to the light's surface, m (y); 1 minus the cosine of the scattering angle (z).
 ///
 /// Cost: no exp. Error: 4e-5 relative plus 4e-5 absolute.
 fn light_at(ray: LightRay, place_m: f32) -> vec3<f32> {

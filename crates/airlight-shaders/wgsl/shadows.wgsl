@@ -1,6 +1,6 @@
 // requires: exponentials, columns, path_optics, fog
-// Fog with shadows (god rays): a march in which the program supplies the visibility of the sun, as from its shadow map. WGSL and its
-// translations have no function pointers, so the loop is the program's:
+// Fog with shadows (god rays): a march in which the program supplies the visibility of the sun, as from its shadow map. WGSL and
+// its translations have no function pointers, so the loop is the program's:
 //
 //     var path = no_fog();
 //     for (var i = 0u; i < steps; i++) {
@@ -20,8 +20,8 @@ fn no_fog() -> PathOptics {
     return PathOptics(vec3<f32>(1.0), vec3<f32>(0.0));
 }
 
-/// Distance of a place from 0 to 1 along a segment, m, such that steps that are even in `place` have even shares of the light of uniform
-/// fog of this optical depth along the segment: short near the eye.
+/// Distance of a place from 0 to 1 along a segment, m, such that steps that are even in `place` have even shares of the light of
+/// uniform fog of this optical depth along the segment: short near the eye.
 ///
 /// Cost: 3 exp. Error: 4e-6 relative.
 fn shadow_edge_m(place: f32, length_m: f32, optical_depth: f32) -> f32 {
@@ -57,8 +57,8 @@ fn shadowed_uniform_fog(
     return near_then_far(before, uniform_fog(medium, to_m - from_m, with_visibility(light, visibility)));
 }
 
-/// A march in exponential height fog over flat ground with one step more, from which the sun is visible in part. The fog above the ray
-/// attenuates sunlight.
+/// A march in exponential height fog over flat ground with one step more, from which the sun is visible in part. The fog above the
+/// ray attenuates sunlight.
 ///
 /// Cost: 16 exp. Error: 1e-5 relative plus 3e-6 absolute.
 fn shadowed_exponential_fog(

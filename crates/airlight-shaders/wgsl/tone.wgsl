@@ -40,7 +40,8 @@ fn camera_tone(exposed: vec3<f32>, contrast: f32, saturation: f32) -> vec3<f32> 
     return into_unit_cube(mix(vec3<f32>(srgb_luminance(toned)), toned, saturation));
 }
 
-/// Response of the base look of AgX (T. Sobotka 2022): a sigmoid of the logarithm from 10 stops below middle grey to 6.5 stops above.
+/// Response of the base look of AgX (T. Sobotka 2022): a sigmoid of the logarithm from 10 stops below middle grey to 6.5 stops
+/// above.
 ///
 /// Cost: 9 exp. Error: 4e-6 relative plus 1e-6 absolute.
 fn agx_response(x: vec3<f32>) -> vec3<f32> {

@@ -1,5 +1,5 @@
-// A pass that adds exponential height fog, lit by the sun and the sky, to a frame with its depth: fog_pass.wgsl in HLSL. In Unity it
-// is the fragment program of a full-screen pass, in Unreal the code of a post-process material's Custom node (see the book).
+// A pass that adds exponential height fog, lit by the sun and the sky, to a frame with its depth: fog_pass.wgsl in HLSL. In Unity
+// it is the fragment program of a full-screen pass, in Unreal the code of a post-process material's Custom node (see the book).
 #include "airlight.hlsl"
 
 cbuffer FogPass : register(b0) {

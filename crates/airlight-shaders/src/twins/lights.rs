@@ -126,7 +126,8 @@ pub fn light_ahead_m(nearest_m: f32, place_m: f32) -> f32 {
     }
 }
 
-/// Excess of the end: by how much the path from the start to the end and on to the light is longer than from the start to the light, m.
+/// Excess of the end: by how much the path from the start to the end and on to the light is longer than from the start to the
+/// light, m.
 pub fn light_excess_m(geometry: LightRayGeometry) -> f32 {
     let h = geometry.nearest_m;
     let end = geometry.start_m + geometry.length_m;
@@ -141,8 +142,8 @@ pub fn light_angle(geometry: LightRayGeometry) -> f32 {
     (h * geometry.length_m).atan2(h * h + u * (u + geometry.length_m))
 }
 
-/// Radiance scattered from a point light of unit intensity by uniform fog of unit scattering coefficient that scatters equally in all
-/// directions, 1/m, without extinction: `angle / (4 pi h)` (after Macklin 2010, corrected).
+/// Radiance scattered from a point light of unit intensity by uniform fog of unit scattering coefficient that scatters equally in
+/// all directions, 1/m, without extinction: `angle / (4 pi h)` (after Macklin 2010, corrected).
 pub fn airlight_without_extinction(geometry: LightRayGeometry) -> f32 {
     light_angle(geometry) * 0.079_577_47 / geometry.nearest_m
 }
@@ -175,8 +176,8 @@ pub fn light_node(i: u32, scale_m: f32, span: f32) -> Vec2 {
     )
 }
 
-/// `airlight_without_extinction` with extinction between light, fog and eye (1/m): the integral of Sun, Ramamoorthi, Narasimhan and Nayar
-/// (2005) by quadrature with 8 nodes.
+/// `airlight_without_extinction` with extinction between light, fog and eye (1/m): the integral of Sun, Ramamoorthi, Narasimhan and
+/// Nayar (2005) by quadrature with 8 nodes.
 pub fn airlight_isotropic(geometry: LightRayGeometry, extinction_per_m: Vec3) -> Vec3 {
     let h = geometry.nearest_m;
     let ahead = light_ahead_m(h, geometry.start_m);
@@ -306,8 +307,8 @@ pub fn lit_interval(ray: LightRay, cos_angle: f32) -> Vec2 {
     }
 }
 
-/// Light at a place of a ray: its intensity there relative to `intensity` (x), times the ratio of the squared distances `geometry` and
-/// the light have; the distance to the light's surface, m (y); 1 minus the cosine of the scattering angle (z).
+/// Light at a place of a ray: its intensity there relative to `intensity` (x), times the ratio of the squared distances `geometry`
+/// and the light have; the distance to the light's surface, m (y); 1 minus the cosine of the scattering angle (z).
 pub fn light_at(ray: LightRay, place_m: f32) -> Vec3 {
     let h = ray.geometry.nearest_m;
     let r = light_distance_m(h, place_m);

@@ -191,9 +191,9 @@ fn in_fog(medium: &[f64], g: f64, density: DensityProfile, light: &[f64]) -> Vec
     (0..3).map(|c| radiance[c] * albedo(medium, c)).collect()
 }
 
-/// A panel of a ray past a light for unit intensity and scattering: the ray of the library that starts there, behind what is before.
-/// The scene is one with the numbers of the ray: `a` is the part of the vector from the light to the closest point that is in the
-/// vertical plane of the ray.
+/// A panel of a ray past a light for unit intensity and scattering: the ray of the library that starts there, behind what is
+/// before. The scene is one with the numbers of the ray: `a` is the part of the vector from the light to the closest point that is
+/// in the vertical plane of the ray.
 fn panel(
     ray: &[f64],
     [eye_height_m, sine]: [f64; 2],

@@ -82,8 +82,8 @@ pub fn shadows() -> Vec<Row> {
     })
 }
 
-/// A march in steps of even light, sampled in the middle of each, through a shadow from one distance to another: each edge of the shadow
-/// misplaces at most a step's light, and without shadow there is no error.
+/// A march in steps of even light, sampled in the middle of each, through a shadow from one distance to another: each edge of the
+/// shadow misplaces at most a step's light, and without shadow there is no error.
 #[test]
 fn edges_of_shadows_cost_a_step_each() {
     use twins::fog::{FogLight, FogMedium, uniform_fog};
