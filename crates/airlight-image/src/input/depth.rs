@@ -305,8 +305,9 @@ const SKY_M: f64 = 1e9;
 /// Number from which a pixel is sky at any scale.
 const SKY: f32 = 9.9e9;
 
-/// Pixels converted together.
+/// Pixels that a thread converts at a time, and those of them whose numbers it keeps until their signs are known.
 const BLOCK: usize = 1 << 14;
+const PIECE: usize = 1 << 8;
 
 /// A depth map in the numbers of its file.
 pub(super) struct RawDepth {
@@ -420,27 +421,30 @@ impl RawDepth {
         let far = far.min(SKY_M);
         let convert = |block: usize, values: &mut [f32]| {
             let mut counts = Counts::default();
-            let is_negative = |value: &f32| metres(*value) < 0.0;
-            let negative: u32 = values
-                .iter()
-                .map(|value| u32::from(is_negative(value)))
-                .sum();
-            if negative > 0 && !options.negative_is_unknown {
-                counts.negative = negative.into();
-                let first = values.iter().position(is_negative);
-                counts.first_negative = first.map(|at| (block * BLOCK + at, values[at]));
+            let mut given = [0.0; PIECE];
+            for (piece, values) in values.chunks_mut(PIECE).enumerate() {
+                let given = &mut given[..values.len()];
+                given.copy_from_slice(values);
+                let (mut infinite, mut holes, mut negative) = (0u32, 0u32, 0u32);
+                for value in values {
+                    let metres = metres(*value);
+                    let is_known = metres >= 0.0;
+                    let is_far = metres >= far;
+                    holes += u32::from(!is_known);
+                    infinite += u32::from(is_far);
+                    negative += u32::from(metres < 0.0);
+                    let known = if is_known { metres as f32 } else { f32::NAN };
+                    *value = if is_far { f32::INFINITY } else { known };
+                }
+                counts.holes += u64::from(holes);
+                counts.infinite += u64::from(infinite);
+                if negative > 0 && !options.negative_is_unknown {
+                    counts.negative += u64::from(negative);
+                    let first = given.iter().position(|&value| metres(value) < 0.0);
+                    let first = first.map(|at| (block * BLOCK + piece * PIECE + at, given[at]));
+                    counts.first_negative = counts.first_negative.or(first);
+                }
             }
-            let (mut infinite, mut holes) = (0, 0);
-            for value in values {
-                let metres = metres(*value);
-                let is_known = metres >= 0.0;
-                let is_far = metres >= far;
-                holes += u32::from(!is_known);
-                infinite += u32::from(is_far);
-                let known = if is_known { metres as f32 } else { f32::NAN };
-                *value = if is_far { f32::INFINITY } else { known };
-            }
-            (counts.holes, counts.infinite) = (holes.into(), infinite.into());
             counts
         };
         let blocks = self.values.par_chunks_mut(BLOCK).enumerate();
@@ -463,12 +467,18 @@ fn holes_of(meaning: &DepthMeaning) -> &'static str {
 /// Depth of a number that is proportional to it, m: NaN where it is unknown.
 #[inline(always)]
 fn scaled_depth(value: f32, scale: f64) -> f64 {
+    // Comparisons of the wide number, so that the compiler vectorizes all of it.
+    let value = f64::from(value);
     let known = if value == 0.0 {
         f64::NAN
     } else {
-        f64::from(value) * scale
+        value * scale
     };
-    if value >= SKY { f64::INFINITY } else { known }
+    if value >= f64::from(SKY) {
+        f64::INFINITY
+    } else {
+        known
+    }
 }
 
 /// Depth of a number, m: NaN where it is unknown, below 0 where it is negative.

@@ -53,7 +53,13 @@ pub(super) fn read(mut source: Source) -> Result<Picture, DecodeError> {
     let mut rgb = reserve(sample_count(size, 3))?;
     let mut decoded = vec![0; count];
     decoder.decode_into(&mut decoded).map_err(failed)?;
-    let light = |v: u8| table.get(usize::from(v)).copied().unwrap_or(0.0);
+    // An array, as every byte is a valid index of it.
+    let mut light = [0.0; 256];
+    light
+        .iter_mut()
+        .zip(table.iter())
+        .for_each(|(light, v)| *light = *v);
+    let light = |v: u8| light[usize::from(v)];
     if is_grey {
         rgb.extend(decoded.iter().flat_map(|&v| [light(v); 3]));
     } else {
