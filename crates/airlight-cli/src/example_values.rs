@@ -1,5 +1,7 @@
 //! Values that work, for errors of options whose value is missing or invalid.
 
+use crate::parse;
+use airlight_render::batch::Each;
 use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Arg, Command, Error};
@@ -29,10 +31,36 @@ pub fn explain(error: &mut Error, command: &Command) {
     };
     let mut arguments = command.get_arguments();
     let argument = arguments.find(|arg| arg.get_long() == Some(long));
-    if let Some(value) = argument.and_then(|argument| value(argument, command)) {
-        let tip = StyledStr::from(format!("for example: --{long} {value}"));
+    let each = sentence
+        .contains(parse::SEVERAL)
+        .then(|| each(long, error))
+        .flatten();
+    let example = || {
+        let value = argument.and_then(|argument| value(argument, command))?;
+        Some(format!("for example: --{long} {value}"))
+    };
+    if let Some(tip) = each.or_else(example) {
+        let tip = StyledStr::from(tip);
         error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![tip]));
     }
+}
+
+/// The option that makes a picture with each value of a list that was given for an option of one number.
+fn each(long: &str, error: &Error) -> Option<String> {
+    let Some(ContextValue::String(list)) = error.get(ContextKind::InvalidValue) else {
+        return None;
+    };
+    // Settings are named without units.
+    let names = [
+        long.strip_suffix("-m"),
+        long.strip_suffix("-px"),
+        Some(long),
+    ];
+    let mut all = names.iter().flatten().map(|name| format!("{name}={list}"));
+    let each = all.find(|each| each.parse::<Each>().is_ok())?;
+    Some(format!(
+        "airlight fog makes a picture with each of several values: --each {each}"
+    ))
 }
 
 /// Adds a pattern in quotes to an error of several pictures that a shell has put in place of a pattern.
@@ -245,15 +273,17 @@ mod tests {
             ("--white-balance=warm", "--white-balance 4000"),
             ("--visibility-m=-5", "--visibility-m 150"),
             ("--size=3", "such as 2048x1024"),
+            ("--sun-elevation=5,10", "--each sun-elevation=5,10"),
+            ("--visibility-m=5,10,20", "--each visibility=5,10,20"),
+            ("--ozone-du=5,10,20", "for example: --ozone-du "),
         ] {
             let sentence = error_of(&mut cli, &words, option.to_owned())
                 .unwrap()
                 .to_string();
             assert!(sentence.contains(right), "{option}: {sentence}");
-            assert!(
-                sentence.matches("such as").count() + sentence.matches("for example").count() == 1,
-                "{sentence}"
-            );
+            let tips = ["such as", "for example", "--each"];
+            let count: usize = tips.iter().map(|tip| sentence.matches(tip).count()).sum();
+            assert_eq!(count, 1, "{sentence}");
         }
     }
 }

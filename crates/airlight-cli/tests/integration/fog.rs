@@ -273,7 +273,7 @@ fn options_that_contradict_are_refused() {
         ("--vary fogginess=1..2 -o a.exr", "visibility, scale-height"),
         ("--vary visibilty=5..9 -o a.exr", "try \"visibility\""),
         ("--each visibility=5..9 -o a.exr", "try visibility=5,9"),
-        ("--visibility-m 5,9 -o a.exr", "--each NAME=5,9"),
+        ("--visibility-m 5,9 -o a.exr", "--each visibility=5,9"),
         ("--visibility-m 5 --shard 4/3 -o a.exr", "try 1/4"),
         ("--visibility-m 5 --patch-strength 3 -o a.exr", "0 to 2"),
         (
