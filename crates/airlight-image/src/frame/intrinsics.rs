@@ -210,7 +210,9 @@ impl Intrinsics {
 
     #[inline(always)]
     fn ray(&self, i: u32, y: f64) -> (DVec3, f64) {
-        let x = (f64::from(i) + 0.5 - self.principal_px.0) / self.focal_px.0;
+        // A loop over columns divides once.
+        let per_px = 1.0 / self.focal_px.0;
+        let x = (f64::from(i) + 0.5 - self.principal_px.0) * per_px;
         let length = (1.0 + x * x + y * y).sqrt();
         let ray = self.axes.forward + self.axes.right * x + self.axes.up * y;
         // One division instead of three.
