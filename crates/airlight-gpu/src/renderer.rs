@@ -146,7 +146,8 @@ impl SkyRenderer {
     /// Sets the height of the eye above sea level, m, and the direction to the sun. Fills the tables if either has changed.
     ///
     /// # Errors
-    /// [`SkyRendererError`] for numbers that are no place or direction.
+    /// [`SkyRendererError`] for numbers that are no place or direction, and for a sun that the sky is not prepared for and cannot be
+    /// solved under.
     pub fn update(&mut self, height_m: f64, sun: DVec3) -> Result<(), SkyRendererError> {
         if !height_m.is_finite() {
             return Err(SkyRendererError::Height(height_m));
@@ -155,7 +156,7 @@ impl SkyRenderer {
         if matches!(&self.tables, Some((_, h, s)) if *h == height_m && *s == sun) {
             return Ok(());
         }
-        let view = self.sky.view(height_m, sun);
+        let view = self.sky.try_view(height_m, sun)?;
         let tables = SkyTables::new(&view, &self.fit, self.space)?;
         let gpu = GpuTables::new(
             &self.device,

@@ -42,7 +42,7 @@ impl FourOrders {
         let settings = stopped_after(orders, settings)?;
         let sky = Sky::prepare_with(atmosphere, grid, &settings, Control::default())?;
         Ok(Self {
-            view: sky.view(eye_altitude_m, sun),
+            view: sky.try_view(eye_altitude_m, sun)?,
         })
     }
 }

@@ -105,14 +105,14 @@ impl PreparedOrders {
     /// View for an eye at an altitude (m above sea level) under a sun.
     ///
     /// # Errors
-    /// [`SceneError`] for an invalid fog.
+    /// [`SceneError`] for an invalid fog, and where the sky is not prepared for the view and does not converge.
     pub fn solved_view(
         &self,
         observer_altitude_m: f64,
         sun: &SunState,
         channels: Channels,
     ) -> Result<SolvedView, SceneError> {
-        let view = self.sky.view(observer_altitude_m, *sun);
+        let view = self.sky.try_view(observer_altitude_m, *sun)?;
         SolvedView::new(view, self.fog.as_ref(), channels)
     }
 }
@@ -144,7 +144,7 @@ impl PreparedModel for PreparedOrders {
     ) -> Result<Arc<dyn RadianceView>, SceneError> {
         match &self.night {
             Some(lights) => {
-                let sunlit = self.sky.view(observer_altitude_m, *sun);
+                let sunlit = self.sky.try_view(observer_altitude_m, *sun)?;
                 Ok(Arc::new(lights.view(sunlit, night, channels)?))
             }
             None => self.view(observer_altitude_m, sun, channels),

@@ -4,7 +4,7 @@ use super::{ResolvedScene, SceneError};
 use crate::axes;
 use crate::control::Control;
 use crate::night::black_body;
-use crate::sky::{Sky, SkySettings, SunCoverage};
+use crate::sky::{Sky, SkyError, SkySettings, SunCoverage};
 use crate::spectrum::SpectralCurve;
 use glam::DVec3;
 
@@ -52,17 +52,24 @@ impl CityGlow {
     /// Radiance of the sky at each wavelength along directions (unit vectors), for an eye at an altitude, over ground with the
     /// spectrum of street lighting; scaled so that the luminance at the zenith is 1 cd/m^2. Towards the ground 0: streets are
     /// not drawn.
-    pub fn radiance(&self, altitude_m: f64, directions: &[DVec3]) -> Vec<Vec<f64>> {
+    ///
+    /// # Errors
+    /// [`SkyError::NotConverged`] for an altitude far from that of the scene.
+    pub fn radiance(
+        &self,
+        altitude_m: f64,
+        directions: &[DVec3],
+    ) -> Result<Vec<Vec<f64>>, SkyError> {
         let sun = axes::direction(180.0, SUN_DEG);
         let grid = self.bright.grid();
         let street_light = black_body(grid, TEMPERATURE_K);
         let ground = self
             .bright
-            .view(self.ground_altitude_m, sun)
+            .try_view(self.ground_altitude_m, sun)?
             .along(-DVec3::Y, None);
         let (bright, black) = (
-            self.bright.view(altitude_m, sun),
-            self.black.view(altitude_m, sun),
+            self.bright.try_view(altitude_m, sun)?,
+            self.black.try_view(altitude_m, sun)?,
         );
         let along = |direction: DVec3| -> Vec<f64> {
             let (over_bright, over_black) =
@@ -80,10 +87,10 @@ impl CityGlow {
         };
         let zenith: Vec<f32> = along(DVec3::Y).iter().map(|&v| v as f32).collect();
         let scale = 1.0 / grid.to_xyz(&zenith)[1];
-        directions
+        Ok(directions
             .iter()
             .map(|&direction| along(direction).iter().map(|v| v * scale).collect())
-            .collect()
+            .collect())
     }
 }
 
@@ -101,7 +108,7 @@ mod tests {
         let directions: Vec<DVec3> = [90.0, 60.0, 30.0, 10.0]
             .map(|deg| axes::direction(0.0, deg))
             .to_vec();
-        let values = glow.radiance(2.0, &directions);
+        let values = glow.radiance(2.0, &directions).unwrap();
         let luminance: Vec<f64> = values
             .iter()
             .map(|v| {

@@ -61,7 +61,7 @@ fn top_view<const N: usize>(
     // Validates the layers without solving for light.
     FogLanes::new(layers, ground, unlit, FogScattering::Single, N)?;
     let ground_m = view.sky().atmosphere().planet.ground_altitude_m;
-    Ok(view.at_altitude(ground_m + light::top_m(layers, &ground) - ground.height_m))
+    Ok(view.at_altitude(ground_m + light::top_m(layers, &ground) - ground.height_m)?)
 }
 
 impl<const N: usize> FoggySky<N> {

@@ -13,7 +13,7 @@ use crate::math::slices::accumulate;
 use crate::night::{
     CelestialFrame, GlowComponent, NightGlow, black_body, bright_stars, luminance_of_magnitude,
 };
-use crate::sky::{Sky, View};
+use crate::sky::{Sky, SkyError, View};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::{Arc, OnceLock};
@@ -142,13 +142,16 @@ debug_fields! { GlowView { channels, horizon_rad } }
 
 impl GlowView {
     /// Tabulates the light for the eye of `rings`.
+    ///
+    /// # Errors
+    /// As [`CityGlow::radiance`].
     pub fn new(
         sky: &Sky,
         rings: &RingScattering,
         glow: NightGlow,
         (city, sky_quality_mag): (Option<&CityGlow>, Option<f64>),
         channels: Channels,
-    ) -> Self {
+    ) -> Result<Self, SkyError> {
         let view = sky.view(rings.altitude_m(), DVec3::Y);
         let horizon_rad = horizon_rad(&view);
         let count = match channels {
@@ -172,9 +175,9 @@ impl GlowView {
         this.direct = this.tabulate_direct(&elevations, &spectra);
         this.scattered = this.tabulate_scattered(rings, &spectra);
         if let (Some(city), Some(magnitude)) = (city, sky_quality_mag) {
-            this.add_city(city, magnitude, &elevations);
+            this.add_city(city, magnitude, &elevations)?;
         }
-        this
+        Ok(this)
     }
 
     /// The same light behind fog.
@@ -303,13 +306,18 @@ impl GlowView {
     }
 
     /// Adds the glow of cities, so that the zenith has a magnitude per square arcsecond; nothing if it is as bright without.
-    fn add_city(&mut self, city: &CityGlow, magnitude: f64, elevations: &[f64]) {
+    fn add_city(
+        &mut self,
+        city: &CityGlow,
+        magnitude: f64,
+        elevations: &[f64],
+    ) -> Result<(), SkyError> {
         let mut zenith = vec![0.0; self.count];
         self.radiance(DVec3::Y, &mut zenith);
         let natural = self.luminance(&zenith);
         let needed = luminance_of_magnitude(magnitude) - natural;
         if needed <= 0.0 {
-            return;
+            return Ok(());
         }
         let altitude_m = self.view.radius_m() - self.sea_level_m;
         let above: Vec<DVec3> = elevations[..ABOVE]
@@ -317,7 +325,7 @@ impl GlowView {
             .map(|rad| axes::direction(0.0, rad.to_degrees()))
             .collect();
         let glow: Vec<Vec<f64>> = city
-            .radiance(altitude_m, &above)
+            .radiance(altitude_m, &above)?
             .into_iter()
             .map(|spectrum| spectrum.iter().map(|v| v * needed).collect())
             .collect();
@@ -329,6 +337,7 @@ impl GlowView {
         for values in self.scattered[ABOVE * self.count..].chunks_exact_mut(self.count) {
             accumulate(&ground, values);
         }
+        Ok(())
     }
 
     /// Radiance of the ground at each wavelength under a glow of the same radiance in all azimuths, given at the tabulated

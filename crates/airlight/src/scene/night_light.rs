@@ -41,8 +41,8 @@ impl NightLight {
         let sky = NightSky::new(scene, settings, (view.sky(), suns), Control::default())?;
         Ok(Some(Self {
             space,
-            moonlit: sky.moonlit_view(altitude_m, &night),
-            glow: Arc::new(sky.glow(altitude_m, &night, Channels::Rgb(space))),
+            moonlit: sky.moonlit_view(altitude_m, &night)?,
+            glow: Arc::new(sky.glow(altitude_m, &night, Channels::Rgb(space))?),
         }))
     }
 }

@@ -8,7 +8,7 @@ use super::{
 };
 use crate::control::Control;
 use crate::night::{MoonState, NightGlow, NightState};
-use crate::sky::{Sky, SunCoverage, View};
+use crate::sky::{Sky, SkyError, SunCoverage, View};
 use crate::sun::SunState;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -79,11 +79,11 @@ impl NightSky {
     ) -> Result<NightView, SceneError> {
         let altitude_m = sunlit.radius_m() - sunlit.sky().atmosphere().planet.radius_m;
         let moon = night.moon.map(|moon| -> Result<_, SceneError> {
-            let view = self.moonlit(altitude_m, &moon);
+            let view = self.moonlit(altitude_m, &moon)?;
             let lit = SolvedView::new(view, self.fog.as_ref(), channels)?;
             Ok(Arc::new(lit.with_moon(moon)) as Arc<dyn RadianceView>)
         });
-        let glow = self.glow(altitude_m, night, channels);
+        let glow = self.glow(altitude_m, night, channels)?;
         let lighting = match self.fog {
             Some(_) => glow.mean_radiance(),
             None => Vec::new(),
@@ -98,24 +98,44 @@ impl NightSky {
     }
 
     /// The sky under the moon of a night, for an eye at an altitude, m; `None` if the moon is so low that its light does not matter.
-    pub fn moonlit_view(&self, altitude_m: f64, night: &NightState) -> Option<View> {
-        let moon = night.moon?;
+    ///
+    /// # Errors
+    /// [`SkyError::NotConverged`].
+    pub fn moonlit_view(
+        &self,
+        altitude_m: f64,
+        night: &NightState,
+    ) -> Result<Option<View>, SkyError> {
+        let Some(moon) = night.moon else {
+            return Ok(None);
+        };
         let up_deg = moon.direction.y.clamp(-1.0, 1.0).asin().to_degrees();
-        (up_deg > -MOON_DOWN_DEG).then(|| self.moonlit(altitude_m, &moon))
+        (up_deg > -MOON_DOWN_DEG)
+            .then(|| self.moonlit(altitude_m, &moon))
+            .transpose()
     }
 
-    fn moonlit(&self, altitude_m: f64, moon: &MoonState) -> View {
+    fn moonlit(&self, altitude_m: f64, moon: &MoonState) -> Result<View, SkyError> {
         let ratios = self.sky.grid().wavelengths_nm().iter();
-        self.sky
-            .view(altitude_m, SunState::from(moon.direction))
-            .under_source(
-                ratios.map(|&nm| moon.irradiance_ratio(nm)).collect(),
-                moon.disc(),
-            )
+        let view = self
+            .sky
+            .try_view(altitude_m, SunState::from(moon.direction))?;
+        Ok(view.under_source(
+            ratios.map(|&nm| moon.irradiance_ratio(nm)).collect(),
+            moon.disc(),
+        ))
     }
 
     /// The diffuse lights of a night for an eye at an altitude, m, without fog.
-    pub(super) fn glow(&self, altitude_m: f64, night: &NightState, channels: Channels) -> GlowView {
+    ///
+    /// # Errors
+    /// [`SkyError::NotConverged`] for an altitude far from that of the scene, under the glow of cities.
+    pub(super) fn glow(
+        &self,
+        altitude_m: f64,
+        night: &NightState,
+        channels: Channels,
+    ) -> Result<GlowView, SkyError> {
         GlowView::new(
             &self.sky,
             self.rings(altitude_m).as_ref(),

@@ -24,7 +24,7 @@ struct Solution {
     columns: Arc<SlantColumns>,
     blocks: Vec<Box<dyn Block>>,
     /// The same for all suns and altitudes, once a view needs it.
-    wider: OnceLock<Sky>,
+    wider: OnceLock<Result<Sky, SkyError>>,
 }
 
 impl fmt::Debug for Sky {
@@ -104,7 +104,7 @@ impl Sky {
     }
 
     /// True if the sky is prepared for views from `altitude_m` (m above sea level) under a sun at an elevation (degrees):
-    /// [`SkySettings::suns`]. For others [`Sky::view`] has to solve again.
+    /// [`SkySettings::suns`]. For others [`Sky::view`] and [`Sky::try_view`] have to solve again.
     pub fn covers(&self, altitude_m: f64, sun_elevation_deg: f64) -> bool {
         let shell = self.shell();
         let height_m = shell.planet_radius_m + altitude_m - shell.ground_radius_m;
@@ -114,18 +114,25 @@ impl Sky {
     }
 
     /// This sky if it covers a view, otherwise that for all suns and altitudes.
-    pub(super) fn covering(&self, altitude_m: f64, sun_elevation_deg: f64) -> &Self {
+    ///
+    /// # Errors
+    /// [`SkyError::NotConverged`].
+    pub(super) fn covering(
+        &self,
+        altitude_m: f64,
+        sun_elevation_deg: f64,
+    ) -> Result<&Self, SkyError> {
         if self.covers(altitude_m, sun_elevation_deg) {
-            return self;
+            return Ok(self);
         }
-        self.0.wider.get_or_init(|| {
+        let wider = self.0.wider.get_or_init(|| {
             let settings = SkySettings {
                 suns: SunCoverage::All,
                 ..self.0.settings.clone()
             };
             Self::prepare(&self.0.atmosphere, &self.0.grid, &settings)
-                .expect("air that was solved under one sun can be solved under all")
-        })
+        });
+        wider.as_ref().map_err(Clone::clone)
     }
 
     pub(super) fn shell(&self) -> &Shell {
@@ -142,6 +149,7 @@ impl Sky {
 mod tests {
     use super::*;
     use crate::atmosphere::reference;
+    use crate::axes;
     use crate::control::Progress;
     use std::sync::Mutex;
     use std::sync::atomic::{AtomicBool, Ordering};
@@ -188,6 +196,21 @@ mod tests {
         assert!(reports.is_sorted(), "{reports:?}");
         assert!(reports.iter().all(|&(_, total)| total == 2000));
         assert_eq!(reports.last(), Some(&(2000, 2000)));
+    }
+
+    #[test]
+    fn a_view_beyond_the_prepared_ones_that_does_not_converge_is_an_error() {
+        let grid = WavelengthGrid::from_wavelengths_nm(vec![450.0]).unwrap();
+        let mut settings = SkySettings {
+            suns: SunCoverage::near(70.0, 0.0),
+            ..Default::default()
+        };
+        // Enough for high suns, whose light needs no horizontal exchange, and not for all suns.
+        settings.orders.max_iterations = 2;
+        let sky = Sky::prepare(&reference::earth_demo(), &grid, &settings).unwrap();
+        assert!(sky.try_view(0.0, axes::direction(180.0, 70.0)).is_ok());
+        let view = sky.try_view(0.0, axes::direction(180.0, -3.0));
+        assert!(matches!(view, Err(SkyError::NotConverged { .. })));
     }
 
     #[test]

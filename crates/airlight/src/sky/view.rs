@@ -2,6 +2,7 @@
 
 use super::block::{BlockLight, SampleLight};
 use super::peaked::Part;
+use super::settings::SkyError;
 use super::solver::Sky;
 use crate::axes;
 use crate::sun::{SunDisc, SunState};
@@ -67,18 +68,28 @@ impl Sky {
     /// which takes a second or two, and is as right as the others.
     ///
     /// # Panics
-    /// Where that solution does not converge although the first one did.
+    /// Where the sky is not prepared for the view and that solution does not converge, as may happen in optically thick air. See
+    /// [`Sky::try_view`].
     pub fn view(&self, altitude_m: f64, sun: impl Into<SunState>) -> View {
+        self.try_view(altitude_m, sun)
+            .unwrap_or_else(|error| panic!("a view that the sky is not prepared for: {error}"))
+    }
+
+    /// As [`Sky::view`], without a panic.
+    ///
+    /// # Errors
+    /// [`SkyError::NotConverged`].
+    pub fn try_view(&self, altitude_m: f64, sun: impl Into<SunState>) -> Result<View, SkyError> {
         View::new(self, altitude_m, sun.into())
     }
 }
 
 impl View {
-    pub(super) fn new(sky: &Sky, altitude_m: f64, sun: SunState) -> Self {
+    pub(super) fn new(sky: &Sky, altitude_m: f64, sun: SunState) -> Result<Self, SkyError> {
         let sun_elevation_deg = axes::elevation_deg(sun.direction.normalize());
-        let sky = sky.covering(altitude_m, sun_elevation_deg);
+        let sky = sky.covering(altitude_m, sun_elevation_deg)?;
         let radius_m = (sky.shell().planet_radius_m + altitude_m).max(sky.shell().ground_radius_m);
-        Self {
+        Ok(Self {
             sky: sky.clone(),
             position: DVec3::Y * radius_m,
             sun: SunState {
@@ -87,7 +98,7 @@ impl View {
             },
             disc: sun.disc(&sky.atmosphere().sun),
             source: None,
-        }
+        })
     }
 
     /// This view under another distant source in the place of the sun, such as the moon: its irradiance outside the air
@@ -112,13 +123,16 @@ impl View {
     }
 
     /// This view from another altitude (m; raised to the ground if below it), vertically above or below.
-    pub fn at_altitude(&self, altitude_m: f64) -> Self {
-        let place = Self::new(&self.sky, altitude_m, self.sun);
-        Self {
+    ///
+    /// # Errors
+    /// As [`Sky::try_view`].
+    pub fn at_altitude(&self, altitude_m: f64) -> Result<Self, SkyError> {
+        let place = Self::new(&self.sky, altitude_m, self.sun)?;
+        Ok(Self {
             sky: place.sky,
             position: place.position,
             ..self.clone()
-        }
+        })
     }
 
     /// The sky.

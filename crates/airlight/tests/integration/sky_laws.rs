@@ -294,7 +294,7 @@ mod guards {
         let sky = sky("average", SunCoverage::near(5.0, 0.0));
         let (sun, eye) = (direction(180.0, 5.0), direction(100.0, -3.0));
         for altitude_m in [100.0, 20e3] {
-            let raised = sky.view(0.0, sun).at_altitude(altitude_m);
+            let raised = sky.view(0.0, sun).at_altitude(altitude_m).unwrap();
             let there = sky.view(altitude_m, sun);
             assert_eq!(
                 raised.along(eye, None).radiance(),

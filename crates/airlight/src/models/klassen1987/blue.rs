@@ -4,7 +4,7 @@ use super::lanes::{Lanes, to_xyz, wavelengths_nm};
 use super::settings::{BaseBlue, Klassen1987Error, Klassen1987Settings};
 use crate::axes;
 use crate::control::Control;
-use crate::sky::{Sky, SkySettings, SkyTable, SunCoverage, TableChannels};
+use crate::sky::{Sky, SkyError, SkySettings, SkyTable, SunCoverage, TableChannels};
 use crate::spectrum::WavelengthGrid;
 use crate::sun::SunState;
 use glam::DVec3;
@@ -32,17 +32,20 @@ pub(super) enum Blue {
 impl Blue {
     /// Blue for checked settings and an elevation of the sun (rad), at a distance relative to the mean distance; `grid` has the
     /// solar irradiance at that distance.
+    ///
+    /// # Errors
+    /// [`SkyError::NotConverged`] for a sun that the base is not prepared for.
     pub fn new(
         settings: &Klassen1987Settings,
         grid: &WavelengthGrid,
         (sun_elevation, sun_distance_ratio): (f64, f64),
         base: &BaseSky,
-    ) -> Self {
-        match base {
+    ) -> Result<Self, SkyError> {
+        Ok(match base {
             BaseSky::Solved(sky) => {
                 let ground_m = sky.atmosphere().planet.ground_altitude_m;
                 let sun = SunState::from(axes::direction(180.0, sun_elevation.to_degrees()));
-                let view = sky.view(ground_m, sun.at_distance_ratio(sun_distance_ratio));
+                let view = sky.try_view(ground_m, sun.at_distance_ratio(sun_distance_ratio))?;
                 let table = view.table(TableChannels::Spectral);
                 Self::Table(Box::new(table), sun_elevation)
             }
@@ -63,7 +66,7 @@ impl Blue {
                 let unit = noon_luminance_cd_m2 / to_xyz(grid, &scattered(1.0))[1];
                 Self::Constant(scattered(settings.air_density) * (unit * brightness) as f32)
             }
-        }
+        })
     }
 
     /// Radiance behind the haze along a view ray.

@@ -163,7 +163,7 @@ impl Klassen1987 {
                 &grid,
                 (sin_sun.asin(), sun.distance_ratio),
                 &base.sky,
-            ),
+            )?,
             cells: OnceLock::new(),
             settings: settings.clone(),
             grid,
