@@ -8,17 +8,21 @@
 //! w u + sum over the neighbours of E min(I, I') (u / I - u' / I') = w r,
 //! ```
 //!
-//! where `w` is the area for which the sun stands, a ring round the place under the sun, and `I` the intensity at the same place: light
-//! that is the same fraction of it under both suns is in balance. `u` is the part of `r` that plane-parallel air amplifies. Light that
-//! spreads into a shadow, with which the iteration begins, follows the same equation with equal intensities.
+//! where `w` is the area for which the sun stands, a ring round the place under the sun, and `I` the intensity at the same place, or
+//! a little if there is none: light that is the same fraction of it under both suns is in balance. `u` is the part of `r` that
+//! plane-parallel air amplifies. Light that spreads into a shadow, with which the iteration begins, follows the same equation with
+//! equal intensities.
 //!
 //! By diffusion over the length `L` of the slowest decaying vertical mode the exchange over the distance `d` is `L^2 / d` times the
 //! length of the border. All this only steers the iteration, whose result does not depend on it.
 
 use super::air::Air;
 use super::field::FieldGrid;
-use super::light::Light;
+use super::light::{Light, brighter};
 use crate::spectrum::Spectrum;
+
+/// Fraction of the least intensity that counts below which places exchange light as if they had this much.
+const FAINT: f32 = 0.01;
 
 /// Exchange between the suns of a grid.
 #[derive(Debug)]
@@ -79,12 +83,16 @@ impl HorizontalExchange {
         let mut out = change.clone();
         let count = light.count;
         let radius = self.areas.len() * count;
+        let least: Vec<_> = light.least().iter().map(|l| *l * FAINT).collect();
         let lights = light.moments.chunks_exact(radius);
         for (out, light) in out.moments.chunks_exact_mut(radius).zip(lights) {
-            let intensities = light.chunks_exact(count).map(|point| point[0]);
+            let points = light.chunks_exact(count).zip(&least);
+            let intensities = points.map(|(point, least)| brighter(point[0], *least));
             Balance::new(self, CAUTION, intensities).solve_moments(out, count);
         }
-        Balance::new(self, CAUTION, light.ground.iter().copied()).solve(out.ground.iter_mut());
+        let ground = light.ground.iter().zip(&least);
+        let irradiances = ground.map(|(light, least)| brighter(*light, *least));
+        Balance::new(self, CAUTION, irradiances).solve(out.ground.iter_mut());
         out
     }
 }
@@ -104,7 +112,7 @@ impl<const N: usize> Balance<N> {
         factor: f32,
         intensities: impl Iterator<Item = Spectrum<N>>,
     ) -> Self {
-        let intensities: Vec<_> = intensities.map(|i| i.max_scalar(1e-30)).collect();
+        let intensities: Vec<_> = intensities.collect();
         let to_next: Vec<_> = intensities
             .windows(2)
             .zip(&exchange.exchange)
@@ -115,16 +123,15 @@ impl<const N: usize> Balance<N> {
             .collect();
         let areas: Vec<_> = exchange.areas.iter().map(|a| Spectrum::splat(*a)).collect();
         let mut inverse_diagonal = Vec::<Spectrum<N>>::with_capacity(areas.len());
+        // What the diagonal exceeds the exchange with the next sun by, without a difference of large numbers.
+        let mut excess = Spectrum::ZERO;
         for (sun, area) in areas.iter().enumerate() {
-            let mut diagonal = *area;
-            if let Some([here, _]) = to_next.get(sun) {
-                diagonal += *here;
-            }
             if sun > 0 {
-                let [before, here] = to_next[sun - 1];
-                diagonal += here - before * here * inverse_diagonal[sun - 1];
+                excess *= to_next[sun - 1][1] * inverse_diagonal[sun - 1];
             }
-            inverse_diagonal.push(Spectrum::ONE / diagonal);
+            excess += *area;
+            let next = to_next.get(sun).map_or(Spectrum::ZERO, |[here, _]| *here);
+            inverse_diagonal.push(Spectrum::ONE / (excess + next));
         }
         Self {
             areas,
@@ -197,7 +204,7 @@ mod tests {
     }
 
     /// From day to a shadow.
-    const INTENSITIES: [f32; SUNS] = [2.0, 1.0, 0.3, 1e-3, 1e-6, 1e-12];
+    const INTENSITIES: [f32; SUNS] = [2.0, 1.0, 0.3, 1e-3, 1e-6, 1e-10];
 
     #[test]
     fn light_in_balance_is_amplified_whole() {

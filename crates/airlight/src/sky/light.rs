@@ -54,33 +54,39 @@ impl<const N: usize> Light<N> {
         self.moments.chunks_exact(self.count).map(|point| point[0])
     }
 
-    /// Largest fraction of the intensity, at any point that is neither [`DARK`] nor at [`NIGHT`], that a correction changes.
-    pub fn change_by(&self, correction: &Self) -> f32 {
-        let (count, suns) = (self.count, self.ground.len());
-        let brighter =
-            |a: Spectrum<N>, b: Spectrum<N>| Spectrum::from_fn(|lane| a[lane].max(b[lane]));
-        let mut brightest = vec![Spectrum::<N>::splat(f32::MIN_POSITIVE); suns];
+    /// Under each sun the intensity below which a point does not count: [`DARK`], or at [`NIGHT`].
+    pub fn least(&self) -> Vec<Spectrum<N>> {
+        let suns = self.ground.len();
+        let mut brightest = vec![Spectrum::<N>::splat(f32::MIN_POSITIVE / DARK); suns];
         for (place, intensity) in self.intensities().enumerate() {
             let most = &mut brightest[place % suns];
             *most = brighter(*most, intensity);
         }
         let day = brightest.iter().copied().fold(Spectrum::ZERO, brighter);
+        brightest
+            .into_iter()
+            .map(|brightest| brighter(brightest * DARK, day * NIGHT))
+            .collect()
+    }
+
+    /// Largest fraction of the intensity, at any point that counts ([`Light::least`]), that a correction changes.
+    pub fn change_by(&self, correction: &Self) -> f32 {
+        let (count, suns, least) = (self.count, self.ground.len(), self.least());
         let mut change = 0.0f32;
         let points = self.moments.chunks_exact(count);
         let corrections = correction.moments.chunks_exact(count);
         for (place, (point, correction)) in points.zip(corrections).enumerate() {
             let scale = admissible(point[0], correction[0]);
             let corrected = point[0].mul_acc(correction[0], scale);
-            let least = brighter(brightest[place % suns] * DARK, day * NIGHT);
+            let value = brighter(corrected, least[place % suns]);
             change = (0..N).fold(change, |change, lane| {
-                let value = corrected[lane].max(least[lane]);
-                change.max((correction[0][lane] * scale[lane] / value).abs())
+                change.max((correction[0][lane] * scale[lane] / value[lane]).abs())
             });
         }
         change
     }
 
-    /// Adds a correction, limited where it would leave no light.
+    /// Adds a correction, limited where it would leave no light or more moments than light has.
     pub fn correct(&mut self, correction: &Self) {
         let points = self.moments.chunks_exact_mut(self.count);
         let corrections = correction.moments.chunks_exact(self.count);
@@ -89,6 +95,7 @@ impl<const N: usize> Light<N> {
             for (a, b) in point.iter_mut().zip(correction) {
                 *a = a.mul_acc(*b, scale);
             }
+            limit_moments(point);
         }
         for (a, b) in self.ground.iter_mut().zip(&correction.ground) {
             *a = a.mul_acc(*b, admissible(*a, *b));
@@ -97,10 +104,39 @@ impl<const N: usize> Light<N> {
 }
 
 /// Fraction of the brightest light under the same sun below which a point does not count.
-pub const DARK: f32 = 1e-9;
+const DARK: f32 = 1e-8;
 
-/// Fraction of the brightest light under any sun below which a point does not count: a hundredth of the light of stars.
-const NIGHT: f32 = 1e-11;
+/// Fraction of the brightest light under any sun below which a point does not count: a twentieth of what the sky of a moonless night
+/// has.
+const NIGHT: f32 = 1e-9;
+
+/// Reduces the other moments of a point to what light of its intensity can have. Where little light is the difference of much, they
+/// could otherwise grow without bounds.
+#[inline(always)]
+fn limit_moments<const N: usize>(point: &mut [Spectrum<N>]) {
+    /// Largest ratio of a moment of light that is nowhere negative to its intensity, the first moment:
+    /// `max |Y_lm| / Y_00 <= sqrt(2 (2 l + 1))`, up to degree 16.
+    const MAX_RATIO: f32 = 8.2;
+    let (intensity, others) = point.split_first_mut().expect("a moment");
+    let mut largest = Spectrum::ZERO;
+    for moment in others.iter() {
+        largest = brighter(largest, moment.map(f32::abs));
+    }
+    let most = *intensity * MAX_RATIO;
+    if (0..N).all(|lane| largest[lane] <= most[lane]) {
+        return;
+    }
+    let scale = Spectrum::from_fn(|lane| (most[lane].max(0.0) / largest[lane]).min(1.0));
+    for moment in others {
+        *moment *= scale;
+    }
+}
+
+/// The larger of two values in each lane.
+#[inline(always)]
+pub fn brighter<const N: usize>(a: Spectrum<N>, b: Spectrum<N>) -> Spectrum<N> {
+    Spectrum::from_fn(|lane| a[lane].max(b[lane]))
+}
 
 /// Factor of a change that keeps at least a tenth of a value.
 #[inline(always)]

@@ -5,7 +5,7 @@
 //! corrections are too large, up to the number of times that light is scattered, and can alternate and grow. The last steps and
 //! corrections show by how much, and their combination with the smallest correction is the next step.
 
-use super::light::{DARK, Light};
+use super::light::Light;
 use crate::spectrum::Spectrum;
 
 /// Largest number of earlier steps in a combination.
@@ -61,15 +61,14 @@ impl<const N: usize> Mixing<N> {
         let intensities = |of: &Light<N>| of.intensities().collect::<Vec<_>>();
         let [whole, wanted] = [light, correction].map(intensities);
         let changes: Vec<_> = self.changes.iter().map(|[c, _]| intensities(c)).collect();
+        let least = light.least();
         for lane in 0..N {
-            let brightest = whole
-                .iter()
-                .fold(0.0, |most: f32, point| most.max(point[lane]));
-            let least = (brightest * DARK).max(f32::MIN_POSITIVE);
             let relative = |values: &[Spectrum<N>]| -> Vec<f64> {
-                let parts = values.iter().zip(&whole);
+                let parts = values.iter().zip(&whole).zip(least.iter().cycle());
                 parts
-                    .map(|(value, whole)| f64::from(value[lane] / whole[lane].max(least)))
+                    .map(|((value, whole), least)| {
+                        f64::from(value[lane] / whole[lane].max(least[lane]))
+                    })
                     .collect()
             };
             let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();

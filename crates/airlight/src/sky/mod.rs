@@ -18,7 +18,7 @@
 //!
 //! The geometry is in [`crate::transfer`]. Modules: `field` and `harmonics` (angular moments of the light inside the
 //! atmosphere), `polarised` (moments of its polarisation), `horizon` (light that forward peaks scatter at the horizon), `orders`
-//! (all orders of scattering), `horizontal_exchange` and `mixing` (its corrections in thick air), `transport` (light scattered once
+//! (all orders of scattering), `horizontal_exchange`, `damping` and `mixing` (its corrections in thick air), `transport` (light scattered once
 //! more), `plane_parallel` (its direct solution in plane-parallel air), `ray_bundle` (rays that share their path), `trace` (light
 //! along one ray), `samples_along_ray` (light at many distances along a ray), `table` (all directions of a view), `split` (its light in
 //! two parts that vary slowly, for tables), `stokes` (its
@@ -28,6 +28,7 @@ mod air;
 mod batch;
 mod block;
 mod coverage;
+mod damping;
 mod field;
 mod harmonics;
 mod horizon;

@@ -4,10 +4,11 @@
 //! ([`super::transport`]). The iteration starts with the light of plane-parallel air ([`super::plane_parallel`]). Each step adds the
 //! light that is missing in the equation together with all orders of its scattering in plane-parallel air: what remains falls by the
 //! small difference between spherical and plane-parallel air, in thin and in thick air alike; light that in thick air spreads from
-//! place to place is left out of that sum, and begins with some light in shadows ([`super::horizontal_exchange`]). Where what remains does not fall fast, [`super::mixing`]
-//! combines the corrections.
+//! place to place is left out of that sum, and begins with some light in shadows ([`super::horizontal_exchange`]). Where what remains does
+//! not fall fast, [`super::mixing`] combines the corrections; before that, in shadows, [`super::damping`] reduces those that alternate.
 
 use super::air::Air;
+use super::damping::Damping;
 use super::field::{Diffuse, FieldGrid};
 use super::harmonics::Harmonics;
 use super::horizon;
@@ -17,7 +18,8 @@ use super::settings::{OrderSettings, SkyError};
 use super::transport::Transport;
 use crate::control::Control;
 
-/// Number of iterations in a row whose changes grow, after which the solver gives up.
+/// Number of iterations in a row whose changes grow, after which the solver begins to combine corrections anew, or gives up where
+/// it does not combine any.
 const MAX_GROWING: usize = 3;
 
 /// Fraction of the last change from which on changes fall slowly.
@@ -73,13 +75,14 @@ pub fn solve<const N: usize>(
         }
         let (mut last, mut converged, mut growing, mut iterations) = (f32::INFINITY, false, 0, 0);
         let mut mixing: Option<Mixing<N>> = None;
+        let mut damping = Damping::new();
         while iterations < settings.max_iterations && growing < MAX_GROWING {
             iterations += 1;
             let (mut missing, directions) = transport.scattered(&light.field(&grid, &basis))?;
             by_direction = Some(directions);
             missing.add(&once);
             missing.subtract(&light);
-            let correction = match &exchange {
+            let mut correction = match &exchange {
                 Some(exchange) => {
                     let amplified = exchange.amplified(&light, &missing);
                     missing.subtract(&amplified);
@@ -98,7 +101,10 @@ pub fn solve<const N: usize>(
             }
             match &mut mixing {
                 Some(mixing) => light.correct(&mixing.step(&light, &correction)),
-                None => light.correct(&correction),
+                None => {
+                    damping.limit(&mut correction);
+                    light.correct(&correction);
+                }
             }
             // The changes fall by a nearly constant factor, or unevenly where corrections are combined; the first is the light that is
             // missing in the beginning.
@@ -116,6 +122,10 @@ pub fn solve<const N: usize>(
             } else {
                 growing + 1
             };
+            if growing == MAX_GROWING && mixing.is_some() {
+                // The earlier steps mislead.
+                (mixing, growing) = (None, 0);
+            }
             last = change;
             if converged {
                 break;

@@ -8,6 +8,7 @@ mod draw;
 mod fog;
 mod lights;
 mod sky;
+mod thick;
 
 use draw::Draw;
 
@@ -97,4 +98,25 @@ models! {
     patches: fog::patches;
     lights_in_fog: lights::lights;
     skies: sky::view;
+}
+
+mod thick_skies {
+    use super::*;
+
+    #[test]
+    fn random_thick_airs_converge() {
+        // Those of this range that take seconds.
+        for seed in [1, 8, 10] {
+            check(seed..seed + 1, thick::sky);
+        }
+    }
+
+    #[test]
+    #[ignore = "thick skies of random airs, for minutes"]
+    fn most_random_thick_airs_converge() {
+        let failed: Vec<(u64, Failure)> = (0..12)
+            .filter_map(|seed| Some((seed, thick::sky(&mut Draw::new(seed)).err()?)))
+            .collect();
+        assert!(failed.len() <= 1, "{failed:#?}");
+    }
 }
