@@ -3,17 +3,19 @@
 //! [`SkyRenderer`] draws over a frame that a program has rendered: it reads the depth, dims what is behind the air, adds the light that
 //! the air scatters, and fills the rest of the frame with the sky, the planet's ground and the sun. The colours come from tables of a
 //! sky that the `airlight` solver computes with all orders of scattering; the shader functions are those of `airlight-shaders`.
-//! Nothing is computed again when only the camera turns.
+//! Nothing is computed again when only the camera turns. [`Lighting`] is the light of sun and sky for the program's own surfaces.
 //!
 //! The eye is the origin, y is up at the eye, distances are in metres, light is in cd/m^2 times an exposure.
 
 mod camera;
 mod error;
 mod gpu_tables;
+mod lighting;
 mod renderer;
 
 pub use camera::Camera;
 pub use error::SkyRendererError;
+pub use lighting::Lighting;
 pub use renderer::{SkyRenderer, SkyRendererSettings, Work};
 
 /// The example of the README, compiled as a test.

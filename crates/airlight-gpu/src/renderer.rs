@@ -3,11 +3,15 @@
 use crate::camera::Camera;
 use crate::error::SkyRendererError;
 use crate::gpu_tables::{self, GpuTables};
+use crate::lighting::Lighting;
 use airlight::atmosphere::Atmosphere;
 use airlight::glam::DVec3;
-use airlight::sky::{Sky, SkySettings};
+use airlight::sky::{Sky, SkySettings, View};
 use airlight::spectrum::RgbSpace;
 use airlight_shaders::{ColourFit, Part, SkyTables, source, wavelength_grid};
+use std::panic::resume_unwind;
+use std::sync::Arc;
+use std::thread::JoinHandle;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
 /// Settings of a [`SkyRenderer`].
@@ -48,15 +52,34 @@ pub struct SkyRenderer {
     device: wgpu::Device,
     queue: wgpu::Queue,
     sky: Sky,
-    fit: ColourFit,
+    fit: Arc<ColourFit>,
     space: RgbSpace,
     tables_layout: wgpu::BindGroupLayout,
     frame_layout: wgpu::BindGroupLayout,
     dim: wgpu::RenderPipeline,
     add: wgpu::RenderPipeline,
-    /// The tables, and the height and sun that they are for.
-    tables: Option<(GpuTables, f64, DVec3)>,
+    drawn: Option<Drawn>,
+    /// Tables that are being filled, and the eye and sun that they are for.
+    filling: Option<(JoinHandle<Result<Filled, SkyRendererError>>, Place)>,
     work: Work,
+}
+
+/// Height of the eye above sea level, m, and unit vector towards the sun.
+type Place = (f64, DVec3);
+
+/// What frames are drawn with.
+#[derive(Debug)]
+struct Drawn {
+    tables: GpuTables,
+    lighting: Lighting,
+    place: Place,
+}
+
+/// Tables on the CPU.
+struct Filled {
+    view: View,
+    tables: SkyTables,
+    lighting: Lighting,
 }
 
 impl SkyRenderer {
@@ -77,7 +100,7 @@ impl SkyRenderer {
             return Err(SkyRendererError::Format(format));
         }
         let sky = Sky::prepare(atmosphere, &wavelength_grid(), &settings.solver)?;
-        let fit = ColourFit::new(atmosphere)?;
+        let fit = Arc::new(ColourFit::new(atmosphere)?);
         let tables_layout = gpu_tables::layout(device);
         let frame_layout = frame_layout(device);
         let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -138,7 +161,8 @@ impl SkyRenderer {
             space: settings.space,
             tables_layout,
             frame_layout,
-            tables: None,
+            drawn: None,
+            filling: None,
             work: Work::default(),
         })
     }
@@ -146,32 +170,93 @@ impl SkyRenderer {
     /// Sets the height of the eye above sea level, m, and the direction to the sun. Fills the tables if either has changed.
     ///
     /// # Errors
-    /// [`SkyRendererError`] for numbers that are no place or direction, and for a sun that the sky is not prepared for and cannot be
-    /// solved under.
+    /// [`SkyRendererError`] for numbers that are no place or direction, and for a place that the sky is not prepared for and cannot be
+    /// solved for.
     pub fn update(&mut self, height_m: f64, sun: DVec3) -> Result<(), SkyRendererError> {
-        if !height_m.is_finite() {
-            return Err(SkyRendererError::Height(height_m));
+        let place = checked(height_m, sun)?;
+        if !self.is_drawn(place) {
+            let filled = self.fill(place)()?;
+            self.upload(filled, place);
         }
-        let sun = sun.try_normalize().ok_or(SkyRendererError::Sun(sun))?;
-        if matches!(&self.tables, Some((_, h, s)) if *h == height_m && *s == sun) {
-            return Ok(());
-        }
-        let view = self.sky.try_view(height_m, sun)?;
-        let tables = SkyTables::new(&view, &self.fit, self.space)?;
-        let gpu = GpuTables::new(
-            &self.device,
-            &self.queue,
-            &self.tables_layout,
-            &tables,
-            &view,
-        );
-        self.tables = Some((gpu, height_m, sun));
-        self.work.tables += 1;
         Ok(())
     }
 
+    /// As [`SkyRenderer::update`], but fills the tables on a thread of their own. Until they are filled, frames are drawn with the last
+    /// ones, so that a program that calls this before each frame keeps its pace while the sun moves. True if the tables are those
+    /// of this eye and sun. Where threads cannot be started, as in a browser, it fills the tables at once.
+    ///
+    /// # Errors
+    /// As [`SkyRenderer::update`], in this or in a later call.
+    ///
+    /// # Panics
+    /// Where the thread has panicked.
+    pub fn update_in_background(
+        &mut self,
+        height_m: f64,
+        sun: DVec3,
+    ) -> Result<bool, SkyRendererError> {
+        let place = checked(height_m, sun)?;
+        if let Some((thread, filled_for)) = self.filling.take_if(|(t, _)| t.is_finished()) {
+            let filled = thread.join().unwrap_or_else(|panic| resume_unwind(panic))?;
+            self.upload(filled, filled_for);
+        }
+        if !self.is_drawn(place) && self.filling.is_none() {
+            match std::thread::Builder::new().spawn(self.fill(place)) {
+                Ok(thread) => self.filling = Some((thread, place)),
+                Err(_) => self.update(height_m, sun)?,
+            }
+        }
+        Ok(self.is_drawn(place))
+    }
+
+    fn is_drawn(&self, place: Place) -> bool {
+        self.drawn
+            .as_ref()
+            .is_some_and(|drawn| drawn.place == place)
+    }
+
+    /// The work that fills tables for an eye and a sun.
+    fn fill(
+        &self,
+        (height_m, sun): Place,
+    ) -> impl FnOnce() -> Result<Filled, SkyRendererError> + Send + use<> {
+        let (sky, fit, space) = (self.sky.clone(), self.fit.clone(), self.space);
+        move || {
+            let view = sky.view(height_m, sun);
+            let tables = SkyTables::new(&view, &fit, space)?;
+            let lighting = Lighting::new(&view, &tables);
+            Ok(Filled {
+                view,
+                tables,
+                lighting,
+            })
+        }
+    }
+
+    /// Draws with tables from now on.
+    fn upload(&mut self, filled: Filled, place: Place) {
+        let tables = GpuTables::new(
+            &self.device,
+            &self.queue,
+            &self.tables_layout,
+            &filled.tables,
+            &filled.view,
+        );
+        self.drawn = Some(Drawn {
+            tables,
+            lighting: filled.lighting,
+            place,
+        });
+        self.work.tables += 1;
+    }
+
+    /// The light of sun and sky at the eye that frames are drawn for; `None` before the first tables.
+    pub fn lighting(&self) -> Option<&Lighting> {
+        self.drawn.as_ref().map(|drawn| &drawn.lighting)
+    }
+
     /// Records the air, sky and sun of a frame into `target`, which holds what the program has rendered, with its depth. Before the
-    /// first [`SkyRenderer::update`] it draws nothing.
+    /// first tables it draws nothing.
     pub fn record(
         &mut self,
         encoder: &mut wgpu::CommandEncoder,
@@ -179,7 +264,7 @@ impl SkyRenderer {
         depth: &wgpu::TextureView,
         camera: &Camera,
     ) {
-        let Some((tables, ..)) = &self.tables else {
+        let Some(drawn) = &self.drawn else {
             return;
         };
         // A buffer for each frame, as an encoder may record several.
@@ -218,7 +303,7 @@ impl SkyRenderer {
             occlusion_query_set: None,
             multiview_mask: None,
         });
-        pass.set_bind_group(0, &tables.group, &[]);
+        pass.set_bind_group(0, &drawn.tables.group, &[]);
         pass.set_bind_group(1, &frame, &[]);
         for pipeline in [&self.dim, &self.add] {
             pass.set_pipeline(pipeline);
@@ -237,6 +322,15 @@ impl SkyRenderer {
     pub fn sky(&self) -> &Sky {
         &self.sky
     }
+}
+
+/// A height that is a number, and a unit vector towards the sun.
+fn checked(height_m: f64, sun: DVec3) -> Result<Place, SkyRendererError> {
+    if !height_m.is_finite() {
+        return Err(SkyRendererError::Height(height_m));
+    }
+    let sun = sun.try_normalize().ok_or(SkyRendererError::Sun(sun))?;
+    Ok((height_m, sun))
 }
 
 /// Layout of the second group: camera and depth.

@@ -4,7 +4,7 @@ mod device;
 
 use airlight::atmosphere::Preset;
 use airlight::axes;
-use airlight::sky::{Sky, SkySettings, SunCoverage, View};
+use airlight::sky::{Sky, SkySettings, SunCoverage, TableChannels, View};
 use airlight::spectrum::{RgbSpace, WavelengthGrid, difference};
 use airlight_gpu::{SkyRenderer, SkyRendererError, SkyRendererSettings};
 use device::{FORMAT, Frame, Gpu};
@@ -181,6 +181,75 @@ fn only_a_moved_eye_or_sun_fills_the_tables() {
     renderer.update(3.0, sun).unwrap();
     renderer.update(3.0, axes::direction(141.0, 30.0)).unwrap();
     assert_eq!(renderer.work().tables, 3);
+}
+
+#[test]
+fn tables_filled_in_the_background_are_those_of_an_update() {
+    let gpu = Gpu::new();
+    let mut renderer = renderer(&gpu, Preset::Clear, 30.0, 2.0);
+    let frame = Frame::towards(axes::direction(100.0, 10.0).as_vec3(), 8);
+    let [first, second] = [140.0, 170.0].map(|azimuth| axes::direction(azimuth, 30.0));
+    let mut draw = |renderer: &mut SkyRenderer| gpu.draw(renderer, &frame, 1e-4, [0.0; 3], None);
+    renderer.update(2.0, second).unwrap();
+    let right = draw(&mut renderer);
+    renderer.update(2.0, first).unwrap();
+    let before = draw(&mut renderer);
+    assert_ne!(before, right);
+    // The first call cannot have filled them yet.
+    assert!(!renderer.update_in_background(2.0, second).unwrap());
+    assert_eq!(draw(&mut renderer), before);
+    while !renderer.update_in_background(2.0, second).unwrap() {
+        std::thread::yield_now();
+    }
+    assert_eq!(draw(&mut renderer), right);
+    assert_eq!(renderer.work().tables, 3);
+}
+
+/// Red, green and blue of light at sixteen wavelengths.
+fn rgb_of(grid: &WavelengthGrid, light: &[f32]) -> [f64; 3] {
+    RgbSpace::Srgb.from_xyz(grid.to_xyz(light))
+}
+
+#[test]
+fn lighting_is_that_of_the_solver() {
+    let gpu = Gpu::new();
+    // Harmonics of degree 2 cannot follow light that comes from beside the horizon.
+    for (sun_deg, limit) in [(50.0, 0.05), (5.0, 0.15)] {
+        let sun = axes::direction(140.0, sun_deg);
+        let mut renderer = renderer(&gpu, Preset::Clear, sun_deg, 2.0);
+        assert!(renderer.lighting().is_none());
+        renderer.update(2.0, sun).unwrap();
+        let lighting = renderer.lighting().unwrap();
+        let view = reference(Preset::Clear, sun_deg, 2.0, sun);
+        let grid = view.sky().grid();
+        let error = |got: glam::Vec3, right: [f64; 3], luminance: f64| {
+            let channels = got.to_array().into_iter().zip(right);
+            channels
+                .map(|(got, right)| ((f64::from(got) - right) / luminance).abs())
+                .fold(0.0, f64::max)
+        };
+        let right = rgb_of(grid, &view.sun_irradiance());
+        let sun_error = error(
+            lighting.sun_illuminance_lx,
+            right,
+            RgbSpace::Srgb.luminance(right),
+        );
+        let table = view.table(TableChannels::Spectral);
+        let on = |normal: DVec3| rgb_of(grid, &table.irradiance(normal));
+        let horizontal = RgbSpace::Srgb.luminance(on(DVec3::Y));
+        let normals = (0..60)
+            .map(|k| axes::direction(30.0 * f64::from(k % 12), f64::from(k / 12) * 45.0 - 90.0));
+        let sky_error = normals.map(|normal| {
+            let got = lighting.sky_illuminance_lx(normal.as_vec3());
+            error(got, on(normal), horizontal)
+        });
+        let sky_error = sky_error.fold(0.0, f64::max);
+        println!("sun {sun_deg}: illuminance by the sun {sun_error:.4}, by the sky {sky_error:.3}");
+        assert!(
+            sun_error < 0.02 && sky_error < limit,
+            "{sun_error} {sky_error}"
+        );
+    }
 }
 
 #[test]
