@@ -1,13 +1,13 @@
 //! Draws a sky behind black hills at 5, 20 and 60 km without a window:
-//! `cargo run --release -p airlight-gpu --example draw_png -- OUT.png ATMOSPHERE SUN_DEG HEIGHT_M [AZIMUTH_DEG [ELEVATION_DEG]]`.
-//! The sun is in the south (180).
+//! `cargo run --release -p airlight-gpu --example draw_png -- OUT.png ATMOSPHERE SUN_DEG HEIGHT_M [AZIMUTH_DEG [ELEVATION_DEG
+//! [VISIBILITY_M]]]`. The sun is in the south (180); the visibility is that of a fog that thins by e in 100 m.
 
 #[path = "../tests/frames/device.rs"]
 mod device;
 
 use airlight::spectrum::RgbSpace;
 use airlight::{Named, atmosphere::Preset, axes, sky::SkySettings, sky::SunCoverage};
-use airlight_gpu::{SkyRenderer, SkyRendererSettings};
+use airlight_gpu::{Fog, SkyRenderer, SkyRendererSettings};
 use airlight_image::rows::StoredRows;
 use airlight_image::tone::{Exposure, Metering, ToneCurve, ToneMapper};
 use airlight_image::{Control, PictureOptions, Size, write_picture};
@@ -20,7 +20,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [output, air, sun_deg, height_m, look @ ..] = arguments.as_slice() else {
         return Err(
-            "expected OUT.png ATMOSPHERE SUN_DEG HEIGHT_M [AZIMUTH_DEG [ELEVATION_DEG]]".into(),
+            "expected OUT.png ATMOSPHERE SUN_DEG HEIGHT_M [AZIMUTH_DEG [ELEVATION_DEG [VISIBILITY_M]]]"
+                .into(),
         );
     };
     let (sun_deg, height_m): (f64, f64) = (sun_deg.parse()?, height_m.parse()?);
@@ -36,6 +37,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let atmosphere = Preset::from_name(air)?.atmosphere();
     let mut renderer = SkyRenderer::new(&gpu.device, &gpu.queue, &atmosphere, &settings)?;
+    if look.len() > 2 {
+        renderer.set_fog(Some(Fog::new(angle(2, 0.0)?, 100.0)))?;
+    }
     let start = Instant::now();
     renderer.update(height_m, axes::direction(180.0, sun_deg))?;
     println!(

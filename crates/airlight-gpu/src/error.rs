@@ -1,7 +1,8 @@
 //! [`SkyRendererError`].
 
+use airlight::fog::FogError;
 use airlight::sky::SkyError;
-use airlight_shaders::SkyTablesError;
+use airlight_shaders::{FogTablesError, SkyTablesError};
 
 /// Error of [`SkyRenderer`](crate::SkyRenderer).
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -13,6 +14,17 @@ pub enum SkyRendererError {
     /// The tables cannot be filled.
     #[error(transparent)]
     Tables(#[from] SkyTablesError),
+    /// The fog is invalid.
+    #[error(transparent)]
+    Fog(#[from] FogError),
+    /// The tables of the fog cannot be filled.
+    #[error(transparent)]
+    FogTables(#[from] FogTablesError),
+    /// The fog has another profile.
+    #[error(
+        "expected fog with a uniform, exponential or clamped profile, or a layer with two edges"
+    )]
+    FogProfile,
     /// The target cannot be blended.
     #[error(
         "expected a target format that the device can blend, got {0:?}; try TextureFormat::Rgba16Float"

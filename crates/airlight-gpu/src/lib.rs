@@ -1,20 +1,25 @@
-//! Skies, aerial perspective and the sun's disc for programs that use wgpu.
+//! Skies, aerial perspective, fog and the sun's disc for programs that use wgpu.
 //!
 //! [`SkyRenderer`] draws over a frame that a program has rendered: it reads the depth, dims what is behind the air, adds the light that
 //! the air scatters, and fills the rest of the frame with the sky, the planet's ground and the sun. The colours come from tables of a
-//! sky that the `airlight` solver computes with all orders of scattering; the shader functions are those of `airlight-shaders`.
+//! sky that the `airlight` solver computes with all orders of scattering, as does the light of a [`Fog`]; the
+//! shader functions are those of `airlight-shaders`.
 //! Nothing is computed again when only the camera turns. [`Lighting`] is the light of sun and sky for the program's own surfaces.
 //!
 //! The eye is the origin, y is up at the eye, distances are in metres, light is in cd/m^2 times an exposure.
 
 mod camera;
 mod error;
+mod fog;
 mod gpu_tables;
 mod lighting;
+mod pass;
 mod renderer;
+mod sky;
 
 pub use camera::Camera;
 pub use error::SkyRendererError;
+pub use fog::Fog;
 pub use lighting::Lighting;
 pub use renderer::{SkyRenderer, SkyRendererSettings, Work};
 

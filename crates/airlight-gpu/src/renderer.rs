@@ -2,13 +2,16 @@
 
 use crate::camera::Camera;
 use crate::error::SkyRendererError;
-use crate::gpu_tables::{self, GpuTables};
+use crate::fog::{self, Fog};
+use crate::gpu_tables::{GpuTables, bytes};
 use crate::lighting::Lighting;
+use crate::pass::Pass;
+use crate::sky;
 use airlight::atmosphere::Atmosphere;
 use airlight::glam::DVec3;
 use airlight::sky::{Sky, SkySettings, View};
 use airlight::spectrum::RgbSpace;
-use airlight_shaders::{ColourFit, Part, SkyTables, source, wavelength_grid};
+use airlight_shaders::{ColourFit, FogTables, Part, SkyTables, source, wavelength_grid};
 use std::panic::resume_unwind;
 use std::sync::Arc;
 use std::thread::JoinHandle;
@@ -54,10 +57,12 @@ pub struct SkyRenderer {
     sky: Sky,
     fit: Arc<ColourFit>,
     space: RgbSpace,
-    tables_layout: wgpu::BindGroupLayout,
+    sky_layout: wgpu::BindGroupLayout,
+    fog_layout: wgpu::BindGroupLayout,
     frame_layout: wgpu::BindGroupLayout,
-    dim: wgpu::RenderPipeline,
-    add: wgpu::RenderPipeline,
+    sky_pass: Pass,
+    fog_pass: Pass,
+    fog: Option<Fog>,
     drawn: Option<Drawn>,
     /// Tables that are being filled, and the eye and sun that they are for.
     filling: Option<(JoinHandle<Result<Filled, SkyRendererError>>, Place)>,
@@ -70,7 +75,8 @@ type Place = (f64, DVec3);
 /// What frames are drawn with.
 #[derive(Debug)]
 struct Drawn {
-    tables: GpuTables,
+    sky: GpuTables,
+    fog: Option<(GpuTables, Fog)>,
     lighting: Lighting,
     place: Place,
 }
@@ -78,7 +84,8 @@ struct Drawn {
 /// Tables on the CPU.
 struct Filled {
     view: View,
-    tables: SkyTables,
+    sky: SkyTables,
+    fog: Option<(FogTables, Fog)>,
     lighting: Lighting,
 }
 
@@ -101,65 +108,27 @@ impl SkyRenderer {
         }
         let sky = Sky::prepare(atmosphere, &wavelength_grid(), &settings.solver)?;
         let fit = Arc::new(ColourFit::new(atmosphere)?);
-        let tables_layout = gpu_tables::layout(device);
+        let sky_layout = sky::layout(device);
+        let fog_layout = fog::layout(device);
         let frame_layout = frame_layout(device);
-        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("airlight sky"),
-            bind_group_layouts: &[Some(&tables_layout), Some(&frame_layout)],
-            immediate_size: 0,
-        });
-        let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("airlight sky"),
-            source: wgpu::ShaderSource::Wgsl(
-                (source(&[Part::SkyTables]) + include_str!("sky.wgsl")).into(),
-            ),
-        });
-        let pipeline = |entry: &str, source: wgpu::BlendFactor, target: wgpu::BlendFactor| {
-            let component = |src_factor, dst_factor| wgpu::BlendComponent {
-                src_factor,
-                dst_factor,
-                operation: wgpu::BlendOperation::Add,
-            };
-            let keep = component(wgpu::BlendFactor::Zero, wgpu::BlendFactor::One);
-            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-                label: Some(entry),
-                layout: Some(&layout),
-                vertex: wgpu::VertexState {
-                    module: &shader,
-                    entry_point: Some("corner"),
-                    compilation_options: wgpu::PipelineCompilationOptions::default(),
-                    buffers: &[],
-                },
-                primitive: wgpu::PrimitiveState::default(),
-                depth_stencil: None,
-                multisample: wgpu::MultisampleState::default(),
-                fragment: Some(wgpu::FragmentState {
-                    module: &shader,
-                    entry_point: Some(entry),
-                    compilation_options: wgpu::PipelineCompilationOptions::default(),
-                    targets: &[Some(wgpu::ColorTargetState {
-                        format,
-                        blend: Some(wgpu::BlendState {
-                            color: component(source, target),
-                            alpha: keep,
-                        }),
-                        write_mask: wgpu::ColorWrites::ALL,
-                    })],
-                }),
-                multiview_mask: None,
-                cache: None,
-            })
+        let pass = |first: &wgpu::BindGroupLayout, parts: &[Part], passes: &str| {
+            let shader = source(parts) + include_str!("frame.wgsl") + passes;
+            Pass::new(device, [first, &frame_layout], &shader, format)
         };
-        let (zero, one) = (wgpu::BlendFactor::Zero, wgpu::BlendFactor::One);
+        let sky_pass = pass(&sky_layout, &[Part::SkyTables], include_str!("sky.wgsl"));
+        let parts = [Part::Fog, Part::FogTable];
+        let fog_pass = pass(&fog_layout, &parts, include_str!("fog.wgsl"));
         Ok(Self {
-            dim: pipeline("dim", zero, wgpu::BlendFactor::Src),
-            add: pipeline("add", one, one),
+            sky_pass,
+            fog_pass,
+            fog: None,
             device: device.clone(),
             queue: queue.clone(),
             sky,
             fit,
             space: settings.space,
-            tables_layout,
+            sky_layout,
+            fog_layout,
             frame_layout,
             drawn: None,
             filling: None,
@@ -167,7 +136,8 @@ impl SkyRenderer {
         })
     }
 
-    /// Sets the height of the eye above sea level, m, and the direction to the sun. Fills the tables if either has changed.
+    /// Sets the height of the eye above sea level, m, and the direction to the sun. Fills the tables if either has changed,
+    /// or the fog.
     ///
     /// # Errors
     /// [`SkyRendererError`] for numbers that are no place or direction, and for a place that the sky is not prepared for and cannot be
@@ -178,6 +148,16 @@ impl SkyRenderer {
             let filled = self.fill(place)()?;
             self.upload(filled, place);
         }
+        Ok(())
+    }
+
+    /// Sets or removes a fog in front of everything, from the next update on.
+    ///
+    /// # Errors
+    /// [`SkyRendererError::Fog`] and [`SkyRendererError::FogProfile`] for an invalid fog.
+    pub fn set_fog(&mut self, fog: Option<Fog>) -> Result<(), SkyRendererError> {
+        fog.as_ref().map_or(Ok(()), Fog::validate)?;
+        self.fog = fog;
         Ok(())
     }
 
@@ -210,9 +190,9 @@ impl SkyRenderer {
     }
 
     fn is_drawn(&self, place: Place) -> bool {
-        self.drawn
-            .as_ref()
-            .is_some_and(|drawn| drawn.place == place)
+        self.drawn.as_ref().is_some_and(|drawn| {
+            drawn.place == place && drawn.fog.as_ref().map(|(_, fog)| fog) == self.fog.as_ref()
+        })
     }
 
     /// The work that fills tables for an eye and a sun.
@@ -221,13 +201,19 @@ impl SkyRenderer {
         (height_m, sun): Place,
     ) -> impl FnOnce() -> Result<Filled, SkyRendererError> + Send + use<> {
         let (sky, fit, space) = (self.sky.clone(), self.fit.clone(), self.space);
+        let fog = self.fog.clone();
         move || {
-            let view = sky.view(height_m, sun);
-            let tables = SkyTables::new(&view, &fit, space)?;
-            let lighting = Lighting::new(&view, &tables);
+            let view = sky.try_view(height_m, sun)?;
+            let sky = SkyTables::new(&view, &fit, space)?;
+            let lighting = Lighting::new(&view, &sky);
+            let fog = match fog {
+                Some(fog) => Some((fog.tables(height_m, &lighting)?, fog)),
+                None => None,
+            };
             Ok(Filled {
                 view,
-                tables,
+                sky,
+                fog,
                 lighting,
             })
         }
@@ -235,15 +221,15 @@ impl SkyRenderer {
 
     /// Draws with tables from now on.
     fn upload(&mut self, filled: Filled, place: Place) {
-        let tables = GpuTables::new(
-            &self.device,
-            &self.queue,
-            &self.tables_layout,
-            &filled.tables,
-            &filled.view,
-        );
+        let device = (&self.device, &self.queue);
+        let sky = sky::upload(device, &self.sky_layout, &filled.sky, &filled.view);
+        let fog = filled.fog.map(|(tables, fog)| {
+            let uploaded = fog.upload(device, &self.fog_layout, &tables, place.0);
+            (uploaded, fog)
+        });
         self.drawn = Some(Drawn {
-            tables,
+            sky,
+            fog,
             lighting: filled.lighting,
             place,
         });
@@ -270,7 +256,7 @@ impl SkyRenderer {
         // A buffer for each frame, as an encoder may record several.
         let camera = self.device.create_buffer_init(&BufferInitDescriptor {
             label: Some("airlight camera"),
-            contents: &gpu_tables::bytes(&camera.numbers()),
+            contents: &bytes(&camera.numbers()),
             usage: wgpu::BufferUsages::UNIFORM,
         });
         let frame = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
@@ -303,11 +289,10 @@ impl SkyRenderer {
             occlusion_query_set: None,
             multiview_mask: None,
         });
-        pass.set_bind_group(0, &drawn.tables.group, &[]);
         pass.set_bind_group(1, &frame, &[]);
-        for pipeline in [&self.dim, &self.add] {
-            pass.set_pipeline(pipeline);
-            pass.draw(0..3, 0..1);
+        self.sky_pass.draw(&mut pass, &drawn.sky);
+        if let Some((fog, _)) = &drawn.fog {
+            self.fog_pass.draw(&mut pass, fog);
         }
         drop(pass);
         self.work.frames += 1;

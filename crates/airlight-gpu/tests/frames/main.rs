@@ -2,13 +2,15 @@
 
 mod device;
 
-use airlight::atmosphere::Preset;
+use airlight::atmosphere::{DensityProfile, Preset};
 use airlight::axes;
+use airlight::fog::{DirectionalLight, FogLighting, FogScattering, Ground, RgbFog, RgbLayer};
+use airlight::optics::PhaseFunction;
 use airlight::sky::{Sky, SkySettings, SunCoverage, TableChannels, View};
 use airlight::spectrum::{RgbSpace, WavelengthGrid, difference};
-use airlight_gpu::{SkyRenderer, SkyRendererError, SkyRendererSettings};
+use airlight_gpu::{Fog, SkyRenderer, SkyRendererError, SkyRendererSettings};
 use device::{FORMAT, Frame, Gpu};
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use std::fmt;
 
 /// Luminance errors in %, and CIEDE2000, of the pixels of frames.
@@ -189,7 +191,7 @@ fn tables_filled_in_the_background_are_those_of_an_update() {
     let mut renderer = renderer(&gpu, Preset::Clear, 30.0, 2.0);
     let frame = Frame::towards(axes::direction(100.0, 10.0).as_vec3(), 8);
     let [first, second] = [140.0, 170.0].map(|azimuth| axes::direction(azimuth, 30.0));
-    let mut draw = |renderer: &mut SkyRenderer| gpu.draw(renderer, &frame, 1e-4, [0.0; 3], None);
+    let draw = |renderer: &mut SkyRenderer| gpu.draw(renderer, &frame, 1e-4, [0.0; 3], None);
     renderer.update(2.0, second).unwrap();
     let right = draw(&mut renderer);
     renderer.update(2.0, first).unwrap();
@@ -222,7 +224,7 @@ fn lighting_is_that_of_the_solver() {
         let lighting = renderer.lighting().unwrap();
         let view = reference(Preset::Clear, sun_deg, 2.0, sun);
         let grid = view.sky().grid();
-        let error = |got: glam::Vec3, right: [f64; 3], luminance: f64| {
+        let error = |got: Vec3, right: [f64; 3], luminance: f64| {
             let channels = got.to_array().into_iter().zip(right);
             channels
                 .map(|(got, right)| ((f64::from(got) - right) / luminance).abs())
@@ -249,6 +251,76 @@ fn lighting_is_that_of_the_solver() {
             sun_error < 0.02 && sky_error < limit,
             "{sun_error} {sky_error}"
         );
+    }
+}
+
+/// Fog with a visibility of 200 m that thins by e in 30 m.
+fn valley_fog() -> Fog {
+    Fog {
+        layer: RgbLayer {
+            density: DensityProfile::exponential(30.0),
+            extinction_per_m: [0.0196; 3],
+            single_scattering_albedo: [0.999; 3],
+            phase: PhaseFunction::henyey_greenstein(0.8).unwrap(),
+        },
+        ground_height_m: 0.0,
+        ground_albedo: [0.2; 3],
+    }
+}
+
+/// Frames in fog against the same frames without, behind the library's fog.
+#[test]
+fn fog_in_a_frame_is_that_of_the_library() {
+    let gpu = Gpu::new();
+    let fog = valley_fog();
+    for (sun_deg, height_m) in [(30.0, 2.0), (5.0, 60.0)] {
+        let sun = axes::direction(140.0, sun_deg);
+        let mut renderer = renderer(&gpu, Preset::Clear, sun_deg, height_m);
+        let distance_m = |x: u32, y: u32| match (x + y) % 3 {
+            0 => f32::INFINITY,
+            _ => 10.0 * 200f32.powf(((3 * x + 7 * y) % 101) as f32 / 100.0),
+        };
+        let frame = Frame::towards(axes::direction(120.0, 0.0).as_vec3(), SIDE);
+        let draw = |renderer: &mut SkyRenderer| {
+            renderer.update(height_m, sun).unwrap();
+            gpu.draw(renderer, &frame, 1e-4, [0.5; 3], Some(&distance_m))
+        };
+        let clear = draw(&mut renderer);
+        renderer.set_fog(Some(fog.clone())).unwrap();
+        let foggy = draw(&mut renderer);
+        assert_eq!(renderer.work().tables, 2);
+        let lighting = renderer.lighting().unwrap();
+        let lighting = FogLighting {
+            sun: Some(DirectionalLight {
+                direction: sun,
+                irradiance: lighting.sun_illuminance_lx.to_array(),
+            }),
+            ambient: (lighting.sky_illuminance_lx(Vec3::Y) / std::f32::consts::PI).to_array(),
+            ground_albedo: fog.ground_albedo,
+        };
+        let layers = [fog.layer.clone()];
+        let right = RgbFog::new(&layers, Ground::FLAT, &lighting, FogScattering::Multiple).unwrap();
+        let mut worst = 0.0f32;
+        for k in 0..(SIDE * SIDE) as usize {
+            let (x, y) = (k as u32 % SIDE, k as u32 / SIDE);
+            let direction = frame.direction(x, y).as_dvec3().normalize();
+            // Rays end at the ground.
+            let to_ground_m = match direction.y < 0.0 {
+                true => height_m / -direction.y,
+                false => f64::INFINITY,
+            };
+            let length_m = f64::from(distance_m(x, y)).min(to_ground_m);
+            let path = right.path(height_m, direction, length_m);
+            for channel in 0..3 {
+                let behind = clear[k][channel] * path.transmittance[channel];
+                let want = behind + 1e-4 * path.path_radiance[channel];
+                worst = worst.max((foggy[k][channel] / want - 1.0).abs());
+            }
+        }
+        println!("sun {sun_deg}, eye {height_m} m: {worst:.4}");
+        assert!(worst < 0.02, "{worst}");
+        renderer.set_fog(None).unwrap();
+        assert_eq!(draw(&mut renderer), clear);
     }
 }
 
@@ -289,6 +361,17 @@ fn wrong_inputs_are_errors() {
     assert!(matches!(
         renderer.update(f64::NAN, up),
         Err(SkyRendererError::Height(_))
+    ));
+    let mut fog = valley_fog();
+    fog.layer.density = DensityProfile::StandardAir1976;
+    assert!(matches!(
+        renderer.set_fog(Some(fog.clone())),
+        Err(SkyRendererError::FogProfile)
+    ));
+    fog.layer.density = DensityProfile::exponential(-30.0);
+    assert!(matches!(
+        renderer.set_fog(Some(fog)),
+        Err(SkyRendererError::Fog(_))
     ));
     let none = renderer.update(2.0, DVec3::ZERO);
     assert!(matches!(none, Err(SkyRendererError::Sun(_))));

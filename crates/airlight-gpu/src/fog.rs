@@ -1,0 +1,148 @@
+//! [`Fog`], and its tables on the device.
+
+use crate::error::SkyRendererError;
+use crate::gpu_tables::{self, FLAT, GpuTables, SOLID};
+use crate::lighting::Lighting;
+use airlight::atmosphere::DensityProfile;
+use airlight::fog::droplets::Droplets;
+use airlight::fog::visibility::{self, Contrast};
+use airlight::fog::{DirectionalLight, FogLighting, FogScattering, Ground, RgbFog, RgbLayer};
+use airlight_shaders::FogTables;
+use airlight_shaders::twins::fog::{FOG_CLAMPED, FOG_EXPONENTIAL, FOG_SLAB, FOG_UNIFORM};
+use glam::Vec3;
+use std::f32::consts::PI;
+
+/// A layer of fog over flat ground, with all orders of scattering of the light of sun and sky.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fog {
+    /// The fog, in the RGB space of the target: uniform, exponential, clamped or with two edges. Heights are above sea level, m.
+    pub layer: RgbLayer,
+    /// Height of the ground, m.
+    pub ground_height_m: f64,
+    /// Albedo of the ground, 0 to 1.
+    pub ground_albedo: [f32; 3],
+}
+
+impl Fog {
+    /// Fog of droplets over grass at sea level, with a visibility (m) at the ground, that thins by a factor e over each scale height, m.
+    pub fn new(visibility_m: f64, scale_height_m: f64) -> Self {
+        let extinction_per_m = visibility::extinction_per_m(visibility_m, Contrast::default());
+        Self {
+            layer: RgbLayer {
+                density: DensityProfile::exponential(scale_height_m),
+                extinction_per_m: [extinction_per_m as f32; 3],
+                single_scattering_albedo: [1.0; 3],
+                phase: Droplets::default().phase(),
+            },
+            ground_height_m: 0.0,
+            ground_albedo: [0.05, 0.1, 0.03],
+        }
+    }
+
+    /// Checks the values.
+    pub(crate) fn validate(&self) -> Result<(), SkyRendererError> {
+        profile(&self.layer.density).ok_or(SkyRendererError::FogProfile)?;
+        let dark = FogLighting {
+            sun: None,
+            ambient: [0.0; 3],
+            ground_albedo: self.ground_albedo,
+        };
+        self.under(&dark, FogScattering::Single).map(drop)
+    }
+
+    fn under(
+        &self,
+        lighting: &FogLighting<[f32; 3]>,
+        scattering: FogScattering,
+    ) -> Result<RgbFog, SkyRendererError> {
+        let ground = Ground {
+            height_m: self.ground_height_m,
+            ..Ground::FLAT
+        };
+        let layers = std::slice::from_ref(&self.layer);
+        Ok(RgbFog::new(layers, ground, lighting, scattering)?)
+    }
+
+    /// The fog in the light of sun and sky.
+    pub(crate) fn lit(&self, lighting: &Lighting) -> Result<RgbFog, SkyRendererError> {
+        let sun = (lighting.sun.y > 0.0).then(|| DirectionalLight {
+            direction: lighting.sun.as_dvec3().normalize(),
+            irradiance: lighting.sun_illuminance_lx.max(Vec3::ZERO).to_array(),
+        });
+        let lighting = FogLighting {
+            sun,
+            ambient: (lighting.sky_illuminance_lx(Vec3::Y) / PI).to_array(),
+            ground_albedo: self.ground_albedo,
+        };
+        self.under(&lighting, FogScattering::Multiple)
+    }
+
+    /// The tables for an eye at a height above sea level, m.
+    pub(crate) fn tables(
+        &self,
+        height_m: f64,
+        lighting: &Lighting,
+    ) -> Result<FogTables, SkyRendererError> {
+        let eye_height_m = height_m.max(self.ground_height_m);
+        Ok(FogTables::new(&self.lit(lighting)?, eye_height_m)?)
+    }
+
+    /// Uploads the tables for an eye at a height.
+    pub(crate) fn upload(
+        &self,
+        device: (&wgpu::Device, &wgpu::Queue),
+        layout: &wgpu::BindGroupLayout,
+        tables: &FogTables,
+        height_m: f64,
+    ) -> GpuTables {
+        let textures = [&tables.diffuse, &tables.streams, &tables.stream_phase];
+        GpuTables::new(device, layout, &self.numbers(tables, height_m), &textures)
+    }
+
+    /// The numbers of the shader's struct `Fog`, whose heights are above the ground.
+    fn numbers(&self, tables: &FogTables, height_m: f64) -> Vec<f32> {
+        let view = &tables.view;
+        let mut all = view.sun.to_array().to_vec();
+        all.push(view.below_per_sine);
+        all.extend(view.depth_below.to_array());
+        all.push(view.above_per_sine);
+        all.extend(view.depth_above.to_array());
+        all.extend([view.diffuse_scale, view.sunlit_scale, 0.0, 0.0, 0.0]);
+        let (profile, from_m, scale_m) =
+            profile(&self.layer.density).expect("a profile that was checked");
+        all.extend(self.layer.extinction_per_m);
+        all.push(f32::from_bits(profile));
+        // The tables hold scattering and phase function.
+        all.extend([0.0; 3]);
+        all.push((from_m - self.ground_height_m) as f32);
+        all.extend([0.0; 3]);
+        all.push(scale_m as f32);
+        let eye_height_m = (height_m - self.ground_height_m).max(0.0);
+        all.extend([eye_height_m as f32, 0.0, 0.0, 0.0]);
+        all
+    }
+}
+
+/// Profile, height (m) and scale (m) of the shader's struct `FogLayer`.
+fn profile(density: &DensityProfile) -> Option<(u32, f64, f64)> {
+    match *density {
+        DensityProfile::Uniform => Some((FOG_UNIFORM, 0.0, 1.0)),
+        DensityProfile::Exponential {
+            reference_height_m,
+            scale_height_m,
+        } => Some((FOG_EXPONENTIAL, reference_height_m, scale_height_m)),
+        DensityProfile::Clamped {
+            base_height_m,
+            scale_height_m,
+        } => Some((FOG_CLAMPED, base_height_m, scale_height_m)),
+        DensityProfile::Layer { bottom_m, top_m } if bottom_m.is_finite() => {
+            Some((FOG_SLAB, bottom_m, top_m - bottom_m))
+        }
+        _ => None,
+    }
+}
+
+/// Layout of the tables.
+pub fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    gpu_tables::layout(device, &[SOLID, SOLID, FLAT])
+}

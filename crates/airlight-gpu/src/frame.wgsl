@@ -1,0 +1,40 @@
+// What a pass over a frame knows of its pixels: direction and distance.
+
+struct Camera {
+    world_from_clip: mat4x4<f32>,
+    exposure: f32,
+    far_depth: f32,
+}
+
+@group(1) @binding(0) var<uniform> camera: Camera;
+@group(1) @binding(1) var depth_texture: texture_depth_2d;
+
+struct Corner {
+    @builtin(position) position: vec4<f32>,
+    @location(0) clip: vec2<f32>,
+}
+
+/// A triangle that covers the frame.
+@vertex
+fn corner(@builtin(vertex_index) index: u32) -> Corner {
+    let clip = vec2<f32>(f32(index & 1u), f32(index >> 1u)) * 4.0 - 1.0;
+    return Corner(vec4<f32>(clip, 0.0, 1.0), clip);
+}
+
+/// What a pixel sees: its direction, and the distance of its geometry, negative without any.
+struct Pixel {
+    direction: vec3<f32>,
+    distance_m: f32,
+}
+
+fn pixel(in: Corner) -> Pixel {
+    // The depth away from the far end, where positions may be infinite.
+    let near = camera.world_from_clip * vec4<f32>(in.clip, 1.0 - camera.far_depth, 1.0);
+    let direction = normalize(near.xyz / near.w);
+    let depth = textureLoad(depth_texture, vec2<i32>(in.position.xy), 0);
+    if depth == camera.far_depth {
+        return Pixel(direction, -1.0);
+    }
+    let here = camera.world_from_clip * vec4<f32>(in.clip, depth, 1.0);
+    return Pixel(direction, length(here.xyz / here.w));
+}

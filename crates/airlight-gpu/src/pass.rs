@@ -1,0 +1,80 @@
+//! Passes that cover a frame: one dims it, one adds light.
+
+use crate::gpu_tables::GpuTables;
+
+/// The two pipelines of a medium.
+#[derive(Debug)]
+pub struct Pass {
+    dim: wgpu::RenderPipeline,
+    add: wgpu::RenderPipeline,
+}
+
+impl Pass {
+    /// The pipelines of a shader with the entry points `corner`, `dim` and `add`, for targets of a format.
+    pub fn new(
+        device: &wgpu::Device,
+        groups: [&wgpu::BindGroupLayout; 2],
+        shader: &str,
+        format: wgpu::TextureFormat,
+    ) -> Self {
+        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("airlight"),
+            bind_group_layouts: &groups.map(Some),
+            immediate_size: 0,
+        });
+        let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("airlight"),
+            source: wgpu::ShaderSource::Wgsl(shader.into()),
+        });
+        let pipeline = |entry: &str, source: wgpu::BlendFactor, target: wgpu::BlendFactor| {
+            let component = |src_factor, dst_factor| wgpu::BlendComponent {
+                src_factor,
+                dst_factor,
+                operation: wgpu::BlendOperation::Add,
+            };
+            let keep = component(wgpu::BlendFactor::Zero, wgpu::BlendFactor::One);
+            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+                label: Some(entry),
+                layout: Some(&layout),
+                vertex: wgpu::VertexState {
+                    module: &shader,
+                    entry_point: Some("corner"),
+                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                    buffers: &[],
+                },
+                primitive: wgpu::PrimitiveState::default(),
+                depth_stencil: None,
+                multisample: wgpu::MultisampleState::default(),
+                fragment: Some(wgpu::FragmentState {
+                    module: &shader,
+                    entry_point: Some(entry),
+                    compilation_options: wgpu::PipelineCompilationOptions::default(),
+                    targets: &[Some(wgpu::ColorTargetState {
+                        format,
+                        blend: Some(wgpu::BlendState {
+                            color: component(source, target),
+                            alpha: keep,
+                        }),
+                        write_mask: wgpu::ColorWrites::ALL,
+                    })],
+                }),
+                multiview_mask: None,
+                cache: None,
+            })
+        };
+        let (zero, one) = (wgpu::BlendFactor::Zero, wgpu::BlendFactor::One);
+        Self {
+            dim: pipeline("dim", zero, wgpu::BlendFactor::Src),
+            add: pipeline("add", one, one),
+        }
+    }
+
+    /// Draws over the frame with the tables of the medium; the second group is set.
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, tables: &GpuTables) {
+        pass.set_bind_group(0, &tables.group, &[]);
+        for pipeline in [&self.dim, &self.add] {
+            pass.set_pipeline(pipeline);
+            pass.draw(0..3, 0..1);
+        }
+    }
+}
