@@ -1,7 +1,7 @@
 //! Damping of corrections that alternate at single points.
 //!
 //! Where little light comes from much, at the edge of a shadow, a correction of [`super::orders`] can be twice too large and the next one
-//! as large with the other sign. The secant through the last two corrections at a point tells the fraction that settles them
+//! as large with the other sign. The secant through the last two corrections at a point gives the fraction that settles them
 //! there, each point and wavelength by itself.
 
 use super::light::Light;

@@ -18,7 +18,7 @@ use super::settings::{OrderSettings, SkyError};
 use super::transport::Transport;
 use crate::control::Control;
 
-/// Number of iterations in a row whose changes grow, after which the solver begins to combine corrections anew, or gives up where
+/// Number of iterations in a row whose changes grow, after which the solver starts combining corrections from none, or gives up where
 /// it does not combine any.
 const MAX_GROWING: usize = 3;
 
