@@ -65,7 +65,8 @@ fn two_solvers_agree() {
     for air in [ExistingAerial::Drawn, ExistingAerial::Missing] {
         scene.overlay.air = air;
         let fast = layers(&scene, &image);
-        let (paths, pass) = monte_carlo(&scene, &image, 512, 1);
+        // Paths that meet the sun by chance make up most of the noise; with few paths it depends on the seed.
+        let (paths, pass) = monte_carlo(&scene, &image, 2048, 1);
         let errors = pass.standard_error.iter().skip(1).step_by(3);
         let (mut sums, mut squares) = ([0.0; 2], 0.0);
         for ((fast, paths), error) in fast.channel(7).zip(paths.channel(7)).zip(errors) {
