@@ -8,8 +8,8 @@
 //! w u + sum over the neighbours of E min(I, I') (u / I - u' / I') = w r,
 //! ```
 //!
-//! where `w` is the area for which the sun stands, a ring round the place under the sun, and `I` the intensity at the same place, or
-//! a little if there is none: light that is the same fraction of it under both suns is in balance. `u` is the part of `r` that
+//! where `w` is the area for which the sun stands, a ring round the place under the sun, and `I` the intensity at the same place:
+//! light that is the same fraction of it under both suns is in balance. `u` is the part of `r` that
 //! plane-parallel air amplifies. Light that spreads into a shadow, with which the iteration begins, follows the same equation with
 //! equal intensities.
 //!
@@ -18,11 +18,8 @@
 
 use super::air::Air;
 use super::field::FieldGrid;
-use super::light::{Light, brighter};
+use super::light::Light;
 use crate::spectrum::Spectrum;
-
-/// Fraction of the least intensity that counts below which places exchange light as if they had this much.
-const FAINT: f32 = 0.01;
 
 /// Exchange between the suns of a grid.
 #[derive(Debug)]
@@ -83,16 +80,12 @@ impl HorizontalExchange {
         let mut out = change.clone();
         let count = light.count;
         let radius = self.areas.len() * count;
-        let least: Vec<_> = light.least().iter().map(|l| *l * FAINT).collect();
         let lights = light.moments.chunks_exact(radius);
         for (out, light) in out.moments.chunks_exact_mut(radius).zip(lights) {
-            let points = light.chunks_exact(count).zip(&least);
-            let intensities = points.map(|(point, least)| brighter(point[0], *least));
+            let intensities = light.chunks_exact(count).map(|point| point[0]);
             Balance::new(self, CAUTION, intensities).solve_moments(out, count);
         }
-        let ground = light.ground.iter().zip(&least);
-        let irradiances = ground.map(|(light, least)| brighter(*light, *least));
-        Balance::new(self, CAUTION, irradiances).solve(out.ground.iter_mut());
+        Balance::new(self, CAUTION, light.ground.iter().copied()).solve(out.ground.iter_mut());
         out
     }
 }
@@ -112,7 +105,7 @@ impl<const N: usize> Balance<N> {
         factor: f32,
         intensities: impl Iterator<Item = Spectrum<N>>,
     ) -> Self {
-        let intensities: Vec<_> = intensities.collect();
+        let intensities: Vec<_> = intensities.map(|i| i.max_scalar(1e-30)).collect();
         let to_next: Vec<_> = intensities
             .windows(2)
             .zip(&exchange.exchange)

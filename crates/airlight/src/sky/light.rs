@@ -134,7 +134,7 @@ fn limit_moments<const N: usize>(point: &mut [Spectrum<N>]) {
 
 /// The larger of two values in each lane.
 #[inline(always)]
-pub fn brighter<const N: usize>(a: Spectrum<N>, b: Spectrum<N>) -> Spectrum<N> {
+fn brighter<const N: usize>(a: Spectrum<N>, b: Spectrum<N>) -> Spectrum<N> {
     Spectrum::from_fn(|lane| a[lane].max(b[lane]))
 }
 
