@@ -21,8 +21,7 @@ impl<const N: usize> Damping<N> {
 
     /// Multiplies a correction with the fractions.
     pub fn limit(&mut self, correction: &mut Light<N>) {
-        let first = self.last.is_empty();
-        if first {
+        if self.last.is_empty() {
             let points = correction.moments.len() / correction.count + correction.ground.len();
             self.last = vec![[Spectrum::ZERO, Spectrum::ONE]; points];
         }

@@ -1,6 +1,6 @@
 //! Mars: carbon dioxide and suspended dust.
 
-use super::fixed_table::fixed_table;
+use super::fixed_table::{fixed_table, sampled};
 use super::molecules::carbon_dioxide_m2;
 use crate::atmosphere::{
     Atmosphere, Constituent, ConstituentKind, DensityProfile, Interpolation, Planet,
@@ -67,10 +67,6 @@ fn under_dust(name: &str, depth_880: f64, dust_density: DensityProfile) -> Atmos
     let density = DensityProfile::exponential(SCALE_HEIGHT_M);
     let top_m = 120e3;
     let molecules = 0.972 * number_density_per_m3(MARS_PRESSURE_PA, TEMPERATURE_K);
-    let gas: Vec<(f64, f64)> = (50..=220)
-        .map(|i| 5.0 * f64::from(i))
-        .map(|nm| (nm, molecules * carbon_dioxide_m2(nm)))
-        .collect();
     let column_m = dust_density.column_m(0.0, top_m);
     let extinction = |nm: f64| depth_880 * (nm / 880.0).powf(0.09) / column_m;
     let albedo = fixed_table(&[
@@ -108,7 +104,7 @@ fn under_dust(name: &str, depth_880: f64, dust_density: DensityProfile) -> Atmos
             Constituent {
                 kind: ConstituentKind::Molecules,
                 density,
-                scattering_per_m: fixed_table(&gas),
+                scattering_per_m: sampled(|nm| molecules * carbon_dioxide_m2(nm)),
                 absorption_per_m: SpectralCurve::Constant(0.0),
                 // From the King factor at 550 nm.
                 phase: PhaseFunction::Rayleigh(Depolarization::Factor(0.079)),

@@ -1,6 +1,6 @@
 //! Titan: nitrogen and a haze of aggregates.
 
-use super::fixed_table::fixed_table;
+use super::fixed_table::{fixed_profile, fixed_table, sampled};
 use super::molecules::nitrogen_m2;
 use crate::atmosphere::{
     Atmosphere, Constituent, ConstituentKind, DensityProfile, Interpolation, Planet,
@@ -49,18 +49,14 @@ const ALBEDO: [(f64, [f64; 3]); 10] = [
 pub fn titan() -> Atmosphere {
     let air = embedded_table::<3>(include_str!("../../../data/atmosphere/titan_air.txt"));
     let densities: Vec<f64> = air.iter().map(|row| row[1] / air[0][1]).collect();
-    let gas: Vec<(f64, f64)> = (50..=220)
-        .map(|i| 5.0 * f64::from(i))
-        .map(|nm| (nm, air[0][1] * nitrogen_m2(nm)))
-        .collect();
     let mut constituents = vec![Constituent {
         kind: ConstituentKind::Molecules,
-        density: table(
+        density: fixed_profile(
             air.iter().map(|row| row[0]),
             densities,
             Interpolation::LogLinear,
         ),
-        scattering_per_m: fixed_table(&gas),
+        scattering_per_m: sampled(|nm| air[0][1] * nitrogen_m2(nm)),
         absorption_per_m: SpectralCurve::Constant(0.0),
         // From the King factor at 550 nm.
         phase: PhaseFunction::Rayleigh(Depolarization::Factor(0.0205)),
@@ -73,7 +69,7 @@ pub fn titan() -> Atmosphere {
         let density = |km: f64| (-(km - 80.0) / 65.0).exp() * of(km);
         let values: Vec<f64> = heights.clone().map(density).collect();
         // Nothing below 80 km.
-        table(
+        fixed_profile(
             [79.999].into_iter().chain(heights),
             [0.0].into_iter().chain(values).collect(),
             Interpolation::Linear,
@@ -135,17 +131,6 @@ pub fn titan() -> Atmosphere {
             .scaled(DISTANCE_AU.powi(-2)),
         sun: SunDisc::at_distance_au(DISTANCE_AU).unwrap_or_default(),
     }
-}
-
-/// A profile at altitudes in kilometres.
-fn table(
-    altitudes_km: impl Iterator<Item = f64>,
-    densities: Vec<f64>,
-    interpolation: Interpolation,
-) -> DensityProfile {
-    let altitudes_m = altitudes_km.map(|km| 1e3 * km).collect();
-    DensityProfile::tabulated(altitudes_m, densities, interpolation)
-        .expect("the embedded table is valid")
 }
 
 /// Phase functions of the haze above and below 80 km.

@@ -1,6 +1,6 @@
 //! Venus: carbon dioxide below clouds of sulfuric acid.
 
-use super::fixed_table::fixed_table;
+use super::fixed_table::{fixed_profile, fixed_table, sampled};
 use super::molecules::{carbon_dioxide_m2, nitrogen_m2};
 use crate::atmosphere::aerosol_types::sulfuric_acid;
 use crate::atmosphere::{
@@ -82,8 +82,8 @@ impl CloudMode {
         let lowest_km = self.base_km - ENDS * self.scale_height_below_km;
         let highest_km = (top_km + ENDS * self.scale_height_above_km).min(TOP_KM);
         let above = (-(highest_km - top_km) / self.scale_height_above_km).exp();
-        profile(
-            &[
+        fixed_profile(
+            [
                 lowest_km - 0.001,
                 lowest_km,
                 self.base_km,
@@ -91,6 +91,7 @@ impl CloudMode {
                 highest_km,
             ],
             vec![0.0, (-ENDS).exp(), 1.0, 1.0, above],
+            Interpolation::LogLinear,
         )
     }
 }
@@ -109,18 +110,10 @@ pub fn venus() -> Atmosphere {
     let air = embedded_table::<2>(include_str!("../../../data/atmosphere/venus_air.txt"));
     let ground = air[0][1];
     let column = |rows: &[[f64; 2]], i: usize| rows.iter().map(|row| row[i]).collect::<Vec<_>>();
-    let gas: Vec<(f64, f64)> = (50..=220)
-        .map(|i| 5.0 * f64::from(i))
-        .map(|nm| {
-            (
-                nm,
-                ground * (0.965 * carbon_dioxide_m2(nm) + 0.035 * nitrogen_m2(nm)),
-            )
-        })
-        .collect();
+    let gas = |nm: f64| ground * (0.965 * carbon_dioxide_m2(nm) + 0.035 * nitrogen_m2(nm));
     let relative = |rows: &[[f64; 2]], most: f64| {
         let values = column(rows, 1).iter().map(|value| value / most).collect();
-        profile(&column(rows, 0), values)
+        fixed_profile(column(rows, 0), values, Interpolation::LogLinear)
     };
     let absorber = embedded_table::<2>(include_str!(
         "../../../data/atmosphere/venus_absorber_profile.txt"
@@ -135,7 +128,7 @@ pub fn venus() -> Atmosphere {
         Constituent {
             kind: ConstituentKind::Molecules,
             density: relative(&air, ground),
-            scattering_per_m: fixed_table(&gas),
+            scattering_per_m: sampled(gas),
             absorption_per_m: SpectralCurve::Constant(0.0),
             // From the King factor of carbon dioxide at 550 nm.
             phase: PhaseFunction::Rayleigh(Depolarization::Factor(0.079)),
@@ -167,12 +160,6 @@ pub fn venus() -> Atmosphere {
             .scaled(DISTANCE_AU.powi(-2)),
         sun: SunDisc::at_distance_au(DISTANCE_AU).unwrap_or_default(),
     }
-}
-
-fn profile(altitudes_km: &[f64], densities: Vec<f64>) -> DensityProfile {
-    let altitudes_m = altitudes_km.iter().map(|km| 1e3 * km).collect();
-    DensityProfile::tabulated(altitudes_m, densities, Interpolation::LogLinear)
-        .expect("the embedded table is valid")
 }
 
 #[cfg(test)]
