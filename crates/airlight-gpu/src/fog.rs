@@ -1,7 +1,7 @@
 //! [`Fog`], and its tables on the device.
 
 use crate::error::SkyRendererError;
-use crate::gpu_tables::{self, FLAT, GpuTables, SOLID};
+use crate::gpu_tables::{self, FLAT, SOLID};
 use crate::lighting::Lighting;
 use airlight::atmosphere::DensityProfile;
 use airlight::fog::droplets::Droplets;
@@ -94,9 +94,9 @@ impl Fog {
         layout: &wgpu::BindGroupLayout,
         tables: &FogTables,
         height_m: f64,
-    ) -> GpuTables {
+    ) -> wgpu::BindGroup {
         let textures = [&tables.diffuse, &tables.streams, &tables.stream_phase];
-        GpuTables::new(device, layout, &self.numbers(tables, height_m), &textures)
+        gpu_tables::group(device, layout, &self.numbers(tables, height_m), &textures)
     }
 
     /// The numbers of the shader's struct `Fog`, whose heights are above the ground.

@@ -9,12 +9,6 @@ pub const FLAT: TextureViewDimension = TextureViewDimension::D2;
 /// A texture of three dimensions.
 pub const SOLID: TextureViewDimension = TextureViewDimension::D3;
 
-/// The bind group, with the buffer and the textures that it keeps alive.
-#[derive(Debug)]
-pub struct GpuTables {
-    pub group: wgpu::BindGroup,
-}
-
 /// Layout of a group: numbers, a sampler, and textures.
 pub fn layout(device: &wgpu::Device, textures: &[TextureViewDimension]) -> wgpu::BindGroupLayout {
     let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
@@ -44,52 +38,49 @@ pub fn layout(device: &wgpu::Device, textures: &[TextureViewDimension]) -> wgpu:
     })
 }
 
-impl GpuTables {
-    /// Uploads numbers and textures.
-    pub fn new(
-        (device, queue): (&wgpu::Device, &wgpu::Queue),
-        layout: &wgpu::BindGroupLayout,
-        numbers: &[f32],
-        textures: &[&Texture],
-    ) -> Self {
-        let numbers = device.create_buffer_init(&BufferInitDescriptor {
-            label: Some("airlight numbers"),
-            contents: &bytes(numbers),
-            usage: wgpu::BufferUsages::UNIFORM,
+/// Uploads numbers and textures, which the group keeps alive.
+pub fn group(
+    (device, queue): (&wgpu::Device, &wgpu::Queue),
+    layout: &wgpu::BindGroupLayout,
+    numbers: &[f32],
+    textures: &[&Texture],
+) -> wgpu::BindGroup {
+    let numbers = device.create_buffer_init(&BufferInitDescriptor {
+        label: Some("airlight numbers"),
+        contents: &bytes(numbers),
+        usage: wgpu::BufferUsages::UNIFORM,
+    });
+    let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
+        label: Some("airlight tables"),
+        mag_filter: wgpu::FilterMode::Linear,
+        min_filter: wgpu::FilterMode::Linear,
+        ..Default::default()
+    });
+    let views: Vec<_> = textures
+        .iter()
+        .map(|texture| upload(device, queue, texture))
+        .collect();
+    let mut entries = vec![
+        wgpu::BindGroupEntry {
+            binding: 0,
+            resource: numbers.as_entire_binding(),
+        },
+        wgpu::BindGroupEntry {
+            binding: 1,
+            resource: wgpu::BindingResource::Sampler(&sampler),
+        },
+    ];
+    for (binding, view) in (2..).zip(&views) {
+        entries.push(wgpu::BindGroupEntry {
+            binding,
+            resource: wgpu::BindingResource::TextureView(view),
         });
-        let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
-            label: Some("airlight tables"),
-            mag_filter: wgpu::FilterMode::Linear,
-            min_filter: wgpu::FilterMode::Linear,
-            ..Default::default()
-        });
-        let views: Vec<_> = textures
-            .iter()
-            .map(|texture| upload(device, queue, texture))
-            .collect();
-        let mut entries = vec![
-            wgpu::BindGroupEntry {
-                binding: 0,
-                resource: numbers.as_entire_binding(),
-            },
-            wgpu::BindGroupEntry {
-                binding: 1,
-                resource: wgpu::BindingResource::Sampler(&sampler),
-            },
-        ];
-        for (binding, view) in (2..).zip(&views) {
-            entries.push(wgpu::BindGroupEntry {
-                binding,
-                resource: wgpu::BindingResource::TextureView(view),
-            });
-        }
-        let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("airlight tables"),
-            layout,
-            entries: &entries,
-        });
-        Self { group }
     }
+    device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("airlight tables"),
+        layout,
+        entries: &entries,
+    })
 }
 
 /// A texture of half floats.

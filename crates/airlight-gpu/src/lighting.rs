@@ -28,7 +28,7 @@ pub struct Lighting {
     pub sun_illuminance_lx: Vec3,
     /// Illuminance of surfaces by everything else, sky and ground, lx: coefficients of 1, x, y, z, xy, yz, zx, 3 y^2 - 1 and
     /// x^2 - z^2 of the unit normal (x, y, z), y up.
-    pub sky_illuminance_lx: [Vec3; 9],
+    pub sky_coefficients_lx: [Vec3; 9],
 }
 
 impl Lighting {
@@ -40,12 +40,12 @@ impl Lighting {
         let mut arriving = vec![0.0; 4 * normals.len()];
         view.table(TableChannels::Spectral)
             .irradiances(&normals, &mut arriving);
-        let mut sky_illuminance_lx = [Vec3::ZERO; 9];
+        let mut sky_coefficients_lx = [Vec3::ZERO; 9];
         for ((normal, weight), light) in normals.iter().zip(weights).zip(arriving.chunks_exact(4)) {
             let light = rgb(light) * weight as f32;
             let values = polynomials(normal.as_vec3());
             for ((out, value), square) in
-                sky_illuminance_lx.iter_mut().zip(values).zip(MEAN_SQUARES)
+                sky_coefficients_lx.iter_mut().zip(values).zip(MEAN_SQUARES)
             {
                 *out += light * (value / square);
             }
@@ -53,13 +53,13 @@ impl Lighting {
         Self {
             sun: view.sun().as_vec3(),
             sun_illuminance_lx: rgb(&view.sun_irradiance()),
-            sky_illuminance_lx,
+            sky_coefficients_lx,
         }
     }
 
     /// Illuminance of a surface with this unit normal by everything but the sun's disc, lx. Nowhere negative.
     pub fn sky_illuminance_lx(&self, normal: Vec3) -> Vec3 {
-        let terms = self.sky_illuminance_lx.iter().zip(polynomials(normal));
+        let terms = self.sky_coefficients_lx.iter().zip(polynomials(normal));
         terms
             .map(|(c, value)| *c * value)
             .sum::<Vec3>()
@@ -79,7 +79,7 @@ fn normals() -> impl Iterator<Item = (DVec3, f64)> {
     })
 }
 
-/// The polynomials of a unit normal that [`Lighting::sky_illuminance_lx`] lists: harmonics up to degree 2.
+/// The polynomials of a unit normal that [`Lighting::sky_coefficients_lx`] lists: harmonics up to degree 2.
 fn polynomials(n: Vec3) -> [f32; 9] {
     [
         1.0,

@@ -1,7 +1,5 @@
 //! Passes that cover a frame: one dims it, one adds light.
 
-use crate::gpu_tables::GpuTables;
-
 /// The two pipelines of a medium.
 #[derive(Debug)]
 pub struct Pass {
@@ -70,8 +68,8 @@ impl Pass {
     }
 
     /// Draws over the frame with the tables of the medium; the second group is set.
-    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, tables: &GpuTables) {
-        pass.set_bind_group(0, &tables.group, &[]);
+    pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, tables: &wgpu::BindGroup) {
+        pass.set_bind_group(0, tables, &[]);
         for pipeline in [&self.dim, &self.add] {
             pass.set_pipeline(pipeline);
             pass.draw(0..3, 0..1);

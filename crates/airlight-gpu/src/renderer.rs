@@ -3,7 +3,7 @@
 use crate::camera::Camera;
 use crate::error::SkyRendererError;
 use crate::fog::{self, Fog};
-use crate::gpu_tables::{GpuTables, bytes};
+use crate::gpu_tables::bytes;
 use crate::lighting::Lighting;
 use crate::pass::Pass;
 use crate::sky;
@@ -75,8 +75,8 @@ type Place = (f64, DVec3);
 /// What frames are drawn with.
 #[derive(Debug)]
 struct Drawn {
-    sky: GpuTables,
-    fog: Option<(GpuTables, Fog)>,
+    sky: wgpu::BindGroup,
+    fog: Option<(wgpu::BindGroup, Fog)>,
     lighting: Lighting,
     place: Place,
 }

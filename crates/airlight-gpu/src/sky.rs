@@ -1,6 +1,6 @@
 //! The tables of a sky on the device.
 
-use crate::gpu_tables::{self, FLAT, GpuTables, SOLID};
+use crate::gpu_tables::{self, FLAT, SOLID};
 use airlight::sky::View;
 use airlight_shaders::twins::colour::RgbWeights;
 use airlight_shaders::twins::texture::Texture;
@@ -21,7 +21,7 @@ pub fn upload(
     layout: &wgpu::BindGroupLayout,
     tables: &SkyTables,
     view: &View,
-) -> GpuTables {
+) -> wgpu::BindGroup {
     let textures = [
         &tables.sky_smooth,
         &tables.sky_haze,
@@ -31,7 +31,7 @@ pub fn upload(
         &tables.phase,
         &disc(view),
     ];
-    GpuTables::new(device, layout, &numbers(tables, view), &textures)
+    gpu_tables::group(device, layout, &numbers(tables, view), &textures)
 }
 
 /// The numbers of the shader's struct `Sky`.

@@ -9,6 +9,8 @@ use airlight_shaders::{Part, source};
 use glam::{Mat4, Vec3, Vec4};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
+mod vulkan;
+
 const SIZE: u32 = 64;
 const EYE: Vec3 = Vec3::new(3.0, 12.0, -4.0);
 const EXTINCTION: [f32; 3] = [0.02, 0.022, 0.025];
@@ -57,14 +59,7 @@ fn uniform() -> Vec<u8> {
 
 /// Frames of one colour, all at one depth each, with fog.
 fn draw(depths: &[f32]) -> Vec<Vec<f32>> {
-    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
-        backends: wgpu::Backends::VULKAN,
-        ..wgpu::InstanceDescriptor::new_without_display_handle()
-    });
-    let adapter = pollster::block_on(instance.request_adapter(&Default::default()))
-        .expect("a Vulkan device (Debian: apt-get install mesa-vulkan-drivers libvulkan1)");
-    let (device, queue) =
-        pollster::block_on(adapter.request_device(&Default::default())).expect("a device");
+    let (_, device, queue) = vulkan::open();
     let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: None,
         source: wgpu::ShaderSource::Wgsl(

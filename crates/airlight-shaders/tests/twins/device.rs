@@ -2,6 +2,7 @@
 
 use crate::module;
 use crate::textures;
+use crate::vulkan;
 use airlight::Named;
 use airlight_shaders::{Part, source};
 use std::fmt::Write;
@@ -23,27 +24,9 @@ pub struct Device {
 }
 
 impl Device {
-    /// The first Vulkan device.
-    ///
-    /// # Panics
-    /// If there is none, with the way to get one.
+    /// The first Vulkan device ([`vulkan::open`]).
     pub fn new() -> Self {
-        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
-            backends: wgpu::Backends::VULKAN,
-            ..wgpu::InstanceDescriptor::new_without_display_handle()
-        });
-        let adapter =
-            pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()))
-                .unwrap_or_else(|e| {
-                    panic!(
-                        "no Vulkan device to run shaders on ({e}): install a driver; on Debian: \
-                     apt-get install mesa-vulkan-drivers libvulkan1"
-                    )
-                });
-        let info = adapter.get_info();
-        let (device, queue) =
-            pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default()))
-                .expect("a device of the adapter");
+        let (name, device, queue) = vulkan::open();
         let module = module::whole();
         let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: None,
@@ -54,7 +37,7 @@ impl Device {
             queue,
             shader,
             module,
-            name: format!("{}, {}", info.name, info.driver_info),
+            name,
         }
     }
 

@@ -8,6 +8,8 @@ mod module;
 mod random;
 mod rows;
 mod textures;
+#[path = "../vulkan/mod.rs"]
+mod vulkan;
 
 use airlight::Named;
 use airlight_shaders::{ErrorBound, Part, functions};
