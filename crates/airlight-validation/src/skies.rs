@@ -42,8 +42,8 @@ const fn monte_carlo(text: &'static str) -> Source {
 /// Airlight's Monte Carlo, which other tests compare with other codes; computed by the example `sky_truth`.
 const TRUTH: [Source; 3] = [
     truth(include_str!("../data/mc_airlight_clear.csv"), [1.0, 3.0]),
-    truth(include_str!("../data/mc_airlight_hazy.csv"), [2.5, 3.5]),
-    truth(include_str!("../data/mc_airlight_desert.csv"), [2.5, 7.0]),
+    truth(include_str!("../data/mc_airlight_hazy.csv"), [1.5, 3.0]),
+    truth(include_str!("../data/mc_airlight_desert.csv"), [2.0, 4.0]),
 ];
 
 const fn truth(text: &'static str, claims: [f64; 2]) -> Source {

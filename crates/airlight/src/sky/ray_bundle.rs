@@ -14,7 +14,7 @@ use crate::spectrum::Spectrum;
 use crate::transfer::march::{MAX_NODES, Marcher, Node};
 use crate::transfer::ray::{Ray, in_shadow};
 use crate::transfer::residual::stream_transmittances;
-use crate::transfer::shell::{MAX_CONSTITUENTS, PerConstituent};
+use crate::transfer::shell::{MAX_CONSTITUENTS, PerConstituent, Shell};
 use std::ops::{ControlFlow, Range};
 
 /// What the rays of a bundle have in common: quadrature nodes, transmittances and densities along the path.
@@ -231,12 +231,38 @@ impl<const N: usize> Modes<N> {
     }
 }
 
-impl PathStep {
-    /// True if one of these distances lies in the step.
+/// Distances at which each ray of a bundle enters or leaves the shadow of one of [`Shell::shadow_radii_m`].
+///
+/// [`Shell::shadow_radii_m`]: crate::transfer::shell::Shell::shadow_radii_m
+struct ShadowEdges {
+    /// For each ray, as many as there can be; those that do not exist are infinite.
+    distances_m: Vec<f64>,
+    per_ray: usize,
+}
+
+impl ShadowEdges {
     #[inline(always)]
-    fn has_edge(&self, edges: &[Option<f64>; 2]) -> bool {
-        let inside = |edge: Option<f64>| edge.is_some_and(|t| self.from_m < t && t < self.to_m);
-        inside(edges[0]) || inside(edges[1])
+    fn new(shell: &Shell, rays: impl Iterator<Item = Ray>) -> Self {
+        let distances = rays.flat_map(|ray| {
+            let edges = shell
+                .shadow_radii_m
+                .iter()
+                .map(move |&radius_m| ray.shadow_edges(radius_m));
+            edges.flatten().map(|edge| edge.unwrap_or(f64::INFINITY))
+        });
+        Self {
+            distances_m: distances.collect(),
+            per_ray: 2 * shell.shadow_radii_m.len(),
+        }
+    }
+
+    /// The distances of a ray that lie in a step, m.
+    #[inline(always)]
+    fn inside(&self, step: &PathStep, slot: usize) -> impl Iterator<Item = f64> + use<'_> {
+        let (from_m, to_m) = (step.from_m, step.to_m);
+        let all = &self.distances_m[slot * self.per_ray..][..self.per_ray];
+        let inside = move |t: &f64| from_m < *t && *t < to_m;
+        all.iter().copied().filter(inside)
     }
 }
 
@@ -404,17 +430,14 @@ impl<const N: usize> Path<N> {
             air.scatterers.len() * (K + usize::from(LINEAR)) * rays,
             Spectrum::ZERO,
         );
-        let edges: Vec<_> = (0..rays)
-            .map(|slot| {
-                let ray = bundle.ray((self.radius_m, self.mu), slot);
-                ray.shadow_edges(shell.ground_radius_m)
-            })
-            .collect();
+        let all = (0..rays).map(|slot| bundle.ray((self.radius_m, self.mu), slot));
+        let edges = ShadowEdges::new(shell, all);
+        let mut ends_m = Vec::new();
         for step in &self.steps {
             for node in &self.nodes[step.nodes.clone()] {
                 let columns = air.columns.at(node.radius_m);
                 for slot in 0..rays {
-                    if step.has_edge(&edges[slot]) {
+                    if edges.inside(step, slot).next().is_some() {
                         continue;
                     }
                     let mu_sun = (self.radius_m * bundle.mu_sun[slot] + node.t * bundle.nu[slot])
@@ -440,13 +463,17 @@ impl<const N: usize> Path<N> {
                 }
             }
             for slot in 0..rays {
-                if step.has_edge(&edges[slot]) {
+                ends_m.clear();
+                ends_m.extend(edges.inside(step, slot));
+                if !ends_m.is_empty() {
+                    ends_m.push(step.to_m);
+                    ends_m.sort_unstable_by(f64::total_cmp);
                     self.accumulate_partly_lit::<K, LINEAR>(
                         air,
                         marcher,
                         step,
                         (bundle, slot),
-                        edges[slot],
+                        &ends_m,
                         out,
                     );
                 }
@@ -454,7 +481,7 @@ impl<const N: usize> Path<N> {
         }
     }
 
-    /// The same of a step in which a ray crosses an edge of the planet's shadow.
+    /// The same of a step in which a ray crosses edges of shadows, which divide it into parts with these ends.
     #[inline(always)]
     fn accumulate_partly_lit<const K: usize, const LINEAR: bool>(
         &self,
@@ -462,25 +489,18 @@ impl<const N: usize> Path<N> {
         marcher: &Marcher<'_>,
         step: &PathStep,
         (bundle, slot): (&RayBundle, usize),
-        edges: [Option<f64>; 2],
+        ends_m: &[f64],
         out: &mut [Spectrum<N>],
     ) {
         let shell = air.shell();
         let ray = bundle.ray((self.radius_m, self.mu), slot);
-        let inside = |edge: Option<f64>| edge.unwrap_or(step.to_m).clamp(step.from_m, step.to_m);
-        let [a, b] = [inside(edges[0]), inside(edges[1])];
         let mut columns_m = step.columns_m;
-        for (from_m, to_m) in [
-            (step.from_m, a.min(b)),
-            (a.min(b), a.max(b)),
-            (a.max(b), step.to_m),
-        ] {
-            if from_m >= to_m {
-                continue;
-            }
+        let mut from_m = step.from_m;
+        for &to_m in ends_m {
             let mut nodes = [Node::default(); MAX_NODES];
             let part = marcher.step(shell, &ray, (from_m, to_m), &columns_m, &mut nodes);
             columns_m = part.columns_behind_m();
+            from_m = to_m;
             for node in part.nodes {
                 if !node.lit {
                     continue;

@@ -184,7 +184,7 @@ impl<'a> Marcher<'a> {
 }
 
 /// Fills `edges` with increasing distances from `start_m` to `end_m`: where a density has a kink or has changed enough, the
-/// lowest point of the ray, and the edges of the planet's shadow.
+/// lowest point of the ray, and where the sunlight changes abruptly.
 #[inline(always)]
 pub(super) fn panel_edges(
     shell: &Shell,
@@ -210,12 +210,10 @@ pub(super) fn panel_edges(
             add(closest + half_chord);
         }
     }
-    for edge in ray
-        .shadow_edges(shell.ground_radius_m)
-        .into_iter()
-        .flatten()
-    {
-        add(edge);
+    for &radius_m in &shell.shadow_radii_m {
+        for edge in ray.shadow_edges(radius_m).into_iter().flatten() {
+            add(edge);
+        }
     }
     edges.push(end_m);
     edges.sort_unstable_by(f64::total_cmp);

@@ -138,14 +138,14 @@ impl Ray {
         })
     }
 
-    /// Distances at which the line enters and leaves the planet's cylindrical shadow (radius `ground_radius_m`, on the side away
-    /// from the sun), if it does; in no particular order.
-    pub fn shadow_edges(&self, ground_radius_m: f64) -> [Option<f64>; 2] {
+    /// Distances at which the line enters and leaves the cylindrical shadow, on the side away from the sun, of a sphere of this radius
+    /// around the planet's centre, if it does; in no particular order.
+    pub fn shadow_edges(&self, sphere_radius_m: f64) -> [Option<f64>; 2] {
         // |x|^2 - (x.s)^2 = R^2 along x(t): a t^2 + 2 b t + c = 0.
         let a = (1.0 - self.nu) * (1.0 + self.nu);
         let b = self.radius_m * (self.mu - self.mu_sun * self.nu);
         let sin2 = (1.0 - self.mu_sun) * (1.0 + self.mu_sun);
-        let c = self.radius_m * self.radius_m * sin2 - ground_radius_m * ground_radius_m;
+        let c = self.radius_m * self.radius_m * sin2 - sphere_radius_m * sphere_radius_m;
         let discriminant = b * b - a * c;
         if discriminant < 0.0 || a < 1e-14 {
             return [None, None];

@@ -29,6 +29,9 @@ pub struct Shell {
     pub panel_radii_m: Vec<f64>,
     /// Radii at which a density has a jump or a sharp bend.
     pub kink_radii_m: Vec<f64>,
+    /// Radii of the spheres behind which sunlight changes abruptly: the ground, and jumps of a density, where a grazing ray begins to
+    /// pass through dense air.
+    pub shadow_radii_m: Vec<f64>,
     /// Largest extinction of each constituent at density 1 from 280 to 830 nm, 1/m.
     pub(super) max_extinction_per_m: Vec<f64>,
     densities: Vec<DensityProfile>,
@@ -70,20 +73,24 @@ impl Shell {
             let radius = |altitude| planet.radius_m + altitude;
             altitudes.into_iter().map(radius).collect()
         };
+        let max_extinction_per_m: Vec<f64> = atmosphere
+            .constituents
+            .iter()
+            .map(|part| {
+                let extinction = |nm| part.extinction_per_m(f64::from(nm));
+                (280..=830).step_by(10).map(extinction).fold(0.0, f64::max)
+            })
+            .collect();
+        let jumps = jump_altitudes_m(&densities, &max_extinction_per_m, planet.radius_m);
+        let inside = jumps.into_iter().filter(|&h| h > bottom && h < top);
         Ok(Self {
             planet_radius_m: planet.radius_m,
             ground_radius_m: planet.radius_m + bottom,
             top_radius_m: planet.radius_m + top,
             panel_radii_m: radii(panels),
             kink_radii_m: radii(kinks),
-            max_extinction_per_m: atmosphere
-                .constituents
-                .iter()
-                .map(|part| {
-                    let extinction = |nm| part.extinction_per_m(f64::from(nm));
-                    (280..=830).step_by(10).map(extinction).fold(0.0, f64::max)
-                })
-                .collect(),
+            shadow_radii_m: radii(std::iter::once(bottom).chain(inside).collect()),
+            max_extinction_per_m,
             densities,
         })
     }
@@ -280,6 +287,34 @@ fn panel_altitudes_m(
         edges.push(top);
     }
     (edges, kinks)
+}
+
+/// Altitudes of jumps of a density through which grazing sunlight is dimmed: the optical depth of a ray rises with the root of the
+/// distance of its lowest point below the jump.
+fn jump_altitudes_m(
+    densities: &[DensityProfile],
+    max_extinction_per_m: &[f64],
+    planet_radius_m: f64,
+) -> Vec<f64> {
+    /// Distance of the lowest point of a ray below the jump, m, and its optical depth that matters.
+    const BELOW_M: f64 = 1e3;
+    const DEPTH: f64 = 0.05;
+    const STEP_M: f64 = 0.1;
+    let chord_m = 2.0 * (2.0 * planet_radius_m * BELOW_M).sqrt();
+    let parts = densities.iter().zip(max_extinction_per_m);
+    let mut jumps: Vec<f64> = parts
+        .flat_map(|(density, extinction_per_m)| {
+            let breakpoints = density.breakpoints_m().into_iter();
+            breakpoints.filter(move |h| {
+                let jump = (density.at(h + STEP_M) - density.at(h - STEP_M)).abs();
+                jump * extinction_per_m * chord_m > DEPTH
+            })
+        })
+        .collect();
+    jumps.sort_by(f64::total_cmp);
+    // Closer jumps are one.
+    jumps.dedup_by(|above, below| *above - *below < THINNEST_M);
+    jumps
 }
 
 /// Jumps of a density at its breakpoints, plus the change of its slope there times an eighth of the thickness or, where breakpoints are

@@ -1,10 +1,14 @@
 //! Laws that every prepared sky obeys, whatever the numbers.
 
 use crate::common::{sky, whole_and_joined};
-use airlight::atmosphere::{presets, reference};
+use airlight::atmosphere::{
+    AerosolLoad, AerosolMixture, AerosolType, Atmosphere, Constituent, ConstituentKind,
+    DensityProfile, presets, reference,
+};
 use airlight::axes::direction;
+use airlight::optics::PhaseFunction;
 use airlight::sky::{LineOfSight, Scattering, Sky, SkySettings, SunCoverage, TableChannels};
-use airlight::spectrum::{RgbSpace, WavelengthGrid};
+use airlight::spectrum::{RgbSpace, SpectralCurve, WavelengthGrid};
 use glam::DVec3;
 
 fn relative_difference(a: &[f32], b: &[f32]) -> f32 {
@@ -178,11 +182,53 @@ fn every_number_of_threads_gives_the_same_bits() {
     assert_eq!(picture(1), picture(3));
 }
 
+/// The average air with desert dust, which ends at 6 km.
+fn dusty() -> Atmosphere {
+    let mut air = presets::preset("average").unwrap();
+    let (ground, top) = (air.planet.ground_altitude_m, air.planet.top_altitude_m);
+    let dust = AerosolMixture::of(AerosolType::Desert, AerosolMixture::USUAL_HUMIDITY)
+        .unwrap()
+        .constituent(
+            Some(AerosolLoad::OpticalDepth550(0.3)),
+            None,
+            air.clear_air(),
+            ground,
+            top,
+        )
+        .unwrap();
+    air.constituents
+        .retain(|part| part.kind != ConstituentKind::Aerosol);
+    air.constituents.push(dust);
+    air
+}
+
+/// The average air over a layer of haze with a sharp upper edge, at the ground.
+fn layered() -> Atmosphere {
+    let mut air = presets::preset("average").unwrap();
+    let layer = Constituent {
+        kind: ConstituentKind::Other("layer".into()),
+        density: DensityProfile::slab(400.0),
+        scattering_per_m: SpectralCurve::Constant(5e-5),
+        absorption_per_m: SpectralCurve::Constant(0.0),
+        phase: PhaseFunction::HenyeyGreenstein { g: 0.6 },
+    };
+    air.constituents.push(layer);
+    air
+}
+
+/// Where a density ends abruptly, sunlight that grazes the end changes with the root of the distance: the transmittance along a ray has
+/// an edge at which its quadrature starts again.
 #[test]
 fn single_scattering_under_a_low_sun_is_that_of_fine_quadrature() {
-    for air in [reference::earth_demo(), presets::preset("hazy").unwrap()] {
+    let airs = [
+        reference::earth_demo(),
+        presets::preset("hazy").unwrap(),
+        dusty(),
+        layered(),
+    ];
+    for air in airs {
         let mut worst = (0.0f64, String::new());
-        for sun_elevation in [10.0, 3.0, 2.0, 0.5] {
+        for sun_elevation in [10.0, 3.0, 2.0, 0.5, -2.0, -4.0] {
             let settings = SkySettings {
                 suns: SunCoverage::near(sun_elevation, 0.0),
                 scattering: Scattering::Single,
@@ -198,11 +244,17 @@ fn single_scattering_under_a_low_sun_is_that_of_fine_quadrature() {
                 (0.0, 30.0),
                 (0.0, 90.0),
             ] {
+                // In twilight next to nothing is scattered once there.
+                if sun_elevation < 0.0 && elevation < 30.0 && azimuth != 90.0 {
+                    continue;
+                }
                 let eye = direction(azimuth, elevation);
                 let got = view.along(eye, None).single;
                 let want = by_quadrature(&sky, sun, eye);
                 for (lane, (got, want)) in got.iter().zip(want).enumerate() {
-                    let error = (f64::from(*got) / want - 1.0).abs();
+                    // Three times as large an error is accepted in twilight.
+                    let scale = if sun_elevation < 0.0 { 1.0 / 3.0 } else { 1.0 };
+                    let error = scale * (f64::from(*got) / want - 1.0).abs();
                     if error > worst.0 {
                         let place = format!(
                             "{} sun {sun_elevation}, {azimuth} {elevation}, {lane}: {got} {want}",
@@ -219,7 +271,7 @@ fn single_scattering_under_a_low_sun_is_that_of_fine_quadrature() {
 
 /// Singly scattered sunlight along a ray from the ground by the midpoint rule, in steps that grow with the distance.
 fn by_quadrature(sky: &Sky, sun: DVec3, eye: DVec3) -> [f64; 3] {
-    const STEPS: u32 = 1500;
+    const STEPS: u32 = 8000;
     let air = sky.atmosphere();
     let planet = &air.planet;
     let (ground_m, top_m) = (planet.radius_m, planet.radius_m + planet.top_altitude_m);
