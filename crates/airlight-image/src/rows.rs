@@ -1,6 +1,8 @@
 //! Sources of picture rows.
 
-use crate::ImageError;
+use crate::{Control, ImageError, Size};
+use airlight::Cancelled;
+use rayon::prelude::*;
 
 /// Supplies linear pixels row by row. Writers call it from many threads, in any order, once for each row.
 pub trait RowSource: Sync {
@@ -75,6 +77,28 @@ impl StoredRows {
     }
 }
 
+/// All rows of a picture in memory, drawn on all threads: interleaved samples, row after row from the top.
+///
+/// # Errors
+/// [`Cancelled`], within the time of a few rows.
+pub fn draw_rows(
+    rows: &dyn RowSource,
+    size: Size,
+    control: Control<'_>,
+) -> Result<Vec<f32>, Cancelled> {
+    let row = size.width() as usize * rows.channels();
+    let mut samples = vec![0.0; row * size.height() as usize];
+    samples
+        .par_chunks_mut(row)
+        .zip(0..size.height())
+        .try_for_each(|(out, y)| {
+            control.check()?;
+            rows.fill_row(y, out);
+            Ok(())
+        })?;
+    Ok(samples)
+}
+
 impl RowSource for StoredRows {
     fn channels(&self) -> usize {
         self.channels
@@ -88,5 +112,28 @@ impl RowSource for StoredRows {
             let n = row.min(out.len());
             out[..n].copy_from_slice(&samples[..n]);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::atomic::AtomicBool;
+
+    #[test]
+    fn rows_are_drawn_in_order_and_stop_when_cancelled() {
+        let size = Size::new(2, 3).unwrap();
+        let rows = RowFn::new(1, |y, out: &mut [f32]| {
+            for (x, out) in out.iter_mut().enumerate() {
+                *out = 10.0 * y as f32 + x as f32;
+            }
+        });
+        let drawn = draw_rows(&rows, size, Control::default()).unwrap();
+        assert_eq!(drawn, [0.0, 1.0, 10.0, 11.0, 20.0, 21.0]);
+        let stop = AtomicBool::new(true);
+        assert_eq!(
+            draw_rows(&rows, size, Control::cancelled_by(&stop)),
+            Err(Cancelled)
+        );
     }
 }

@@ -14,6 +14,7 @@ use crate::pixels::tagged_path;
 use crate::renderer::Renderer;
 use crate::sky_rows::{Layer, SkyRows, SkySources, SkyValues};
 use crate::sun_disc::SunDiscImage;
+use airlight::Cancelled;
 use airlight::night::NightState;
 use airlight::scene::{
     Channels, FogLayers, Gamut, PreparedModel, RadianceSampler, RadianceView, SunAngles,
@@ -23,7 +24,7 @@ use airlight::sky::PolarisationTable;
 use airlight::sun::Moment;
 use airlight_image::output::exr::{self, ExrOptions, SamplePrecision};
 use airlight_image::output::{Metadata, Written, spectral};
-use airlight_image::rows::StoredRows;
+use airlight_image::rows::{StoredRows, draw_rows};
 use airlight_image::tone::{Exposure, ToneCurve, ToneMapper};
 use airlight_image::{
     Control, Frame, ImageError, PictureOptions, Progress, RowSource, Size, write_picture,
@@ -217,7 +218,12 @@ impl<'r> PreparedFrame<'r> {
 
     /// Red, green and blue of a small picture, row by row, without noise.
     pub fn pixels(&self, frame: &Frame, layer: Layer) -> Vec<[f32; 3]> {
-        stored(self.rows(frame, layer, 1.0).as_ref(), frame)
+        let drawn = stored(
+            self.rows(frame, layer, 1.0).as_ref(),
+            frame,
+            Control::default(),
+        );
+        drawn.expect("nothing cancels it")
     }
 
     /// The exposure of display pictures.
@@ -273,7 +279,7 @@ impl<'r> PreparedFrame<'r> {
         Ok(RenderedImage {
             frame: *frame,
             space: self.channels.space(),
-            rgb: stored(rows.as_ref(), frame),
+            rgb: stored(rows.as_ref(), frame, control)?,
             sun: self.sun,
             light: self.light,
             tone: self.tone()?,
@@ -558,18 +564,14 @@ fn rows_of<'f>(frames: impl IntoIterator<Item = &'f Frame>) -> u64 {
 }
 
 /// Red, green and blue of the pixels of rows.
-fn stored(rows: &dyn RowSource, frame: &Frame) -> Vec<[f32; 3]> {
-    let (width, channels) = (frame.size().width() as usize, rows.channels());
-    let mut pixels = vec![[0.0; 3]; width * frame.size().height() as usize];
-    pixels
-        .par_chunks_mut(width)
-        .zip(0..frame.size().height())
-        .for_each(|(pixels, y)| {
-            let mut row = vec![0.0; width * channels];
-            rows.fill_row(y, &mut row);
-            for (pixel, values) in pixels.iter_mut().zip(row.chunks_exact(channels)) {
-                pixel.copy_from_slice(&values[..3]);
-            }
-        });
-    pixels
+fn stored(
+    rows: &dyn RowSource,
+    frame: &Frame,
+    control: Control<'_>,
+) -> Result<Vec<[f32; 3]>, Cancelled> {
+    let samples = draw_rows(rows, frame.size(), control)?;
+    let pixels = samples.par_chunks_exact(rows.channels());
+    Ok(pixels
+        .map(|values| [values[0], values[1], values[2]])
+        .collect())
 }

@@ -27,7 +27,7 @@ pub use exr_channels::ExrLayer;
 pub use orientation::Orientation;
 pub use picture::{LightReference, Picture, SampleBits};
 
-use crate::{ImageError, PictureFormat};
+use crate::{ImageError, PictureFormat, Size};
 use depth::RawDepth;
 use source::{DecodeError, FileKind, Source, decode_file, decode_source};
 use std::path::Path;
@@ -142,6 +142,31 @@ pub fn read_depth(path: &Path, options: &DepthOptions) -> Result<DepthMap, Image
     })
 }
 
+impl DepthMap {
+    /// A map from the numbers of an array, row by row from the upper left, as [`read_depth`] takes those of a file. Errors call the
+    /// array `depth`.
+    ///
+    /// # Errors
+    /// As [`read_depth`]; [`ImageError::Setting`] if the number of values does not match the size.
+    pub fn from_numbers(
+        size: Size,
+        values: Vec<f32>,
+        bits: SampleBits,
+        options: &DepthOptions,
+    ) -> Result<Self, ImageError> {
+        options.validate()?;
+        let pixels = size.width() as usize * size.height() as usize;
+        ImageError::require(
+            values.len() == pixels,
+            "the number of depths",
+            values.len() as f64,
+            "one for each pixel",
+        )?;
+        let raw = RawDepth { size, values, bits };
+        into_map(raw, Path::new("depth"), options)
+    }
+}
+
 /// Converts the numbers of a file to metres, and fills in unknown ones.
 fn finish_depth(
     path: &Path,
@@ -149,7 +174,10 @@ fn finish_depth(
     decode: impl FnOnce(&Path) -> Result<RawDepth, ImageError>,
 ) -> Result<DepthMap, ImageError> {
     options.validate()?;
-    let raw = decode(path)?;
+    into_map(decode(path)?, path, options)
+}
+
+fn into_map(raw: RawDepth, path: &Path, options: &DepthOptions) -> Result<DepthMap, ImageError> {
     let mut map = raw.into_map(path, options)?;
     if map.holes > 0 {
         match options.unknown {

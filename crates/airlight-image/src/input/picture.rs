@@ -2,11 +2,12 @@
 
 use super::{ExrLayer, Orientation};
 use crate::{
-    Notes, Size,
+    ImageError, Notes, Size,
     output::{Carried, Chromaticities},
 };
 use airlight::spectrum::rgb::srgb_decode;
 use glam::DMat3;
+use rayon::prelude::*;
 use std::sync::{Arc, LazyLock};
 
 /// Meaning of a value of 1.
@@ -82,6 +83,52 @@ impl Picture {
             orientation: Orientation::UPRIGHT,
             notes: Notes::default(),
         }
+    }
+
+    /// An opaque picture from sRGB values of 8 bits, as they are in PNG and JPEG files: red, green and blue, row by row.
+    ///
+    /// # Errors
+    /// [`ImageError::Setting`] if there are not three values for each pixel.
+    pub fn from_srgb_u8(size: Size, values: &[u8]) -> Result<Self, ImageError> {
+        let linear = |value: &u8| SRGB_8[usize::from(*value)];
+        Self::from_values(size, values.par_iter().map(linear), SampleBits::U8)
+    }
+
+    /// An opaque picture from sRGB values of 16 bits: red, green and blue, row by row.
+    ///
+    /// # Errors
+    /// As [`Self::from_srgb_u8`].
+    pub fn from_srgb_u16(size: Size, values: &[u16]) -> Result<Self, ImageError> {
+        let linear = |value: &u16| SRGB_16[usize::from(*value)];
+        Self::from_values(size, values.par_iter().map(linear), SampleBits::U16)
+    }
+
+    /// An opaque picture from linear light in sRGB primaries, in any unit, repaired as that of a file is.
+    ///
+    /// # Errors
+    /// As [`Self::from_srgb_u8`].
+    pub fn from_linear(size: Size, values: &[f32]) -> Result<Self, ImageError> {
+        let mut picture = Self::from_values(size, values.par_iter().copied(), SampleBits::Float)?;
+        picture.reference = LightReference::Scene;
+        let repaired = repair_colours(&mut picture.rgb);
+        picture.notes.count(repaired, REPAIRED);
+        Ok(picture)
+    }
+
+    fn from_values(
+        size: Size,
+        linear: impl IndexedParallelIterator<Item = f32>,
+        bits: SampleBits,
+    ) -> Result<Self, ImageError> {
+        let samples = 3 * size.width() as usize * size.height() as usize;
+        ImageError::require(
+            linear.len() == samples,
+            "the number of colours",
+            linear.len() as f64,
+            "three for each pixel",
+        )?;
+        let rgb = linear.collect();
+        Ok(Self::new(size, rgb, LightReference::Display, bits))
     }
 
     /// Matrix from the colours to linear sRGB, white to white; `None` where they are sRGB.
@@ -178,4 +225,26 @@ pub(super) fn decoding_table(count: u32, decode: impl Fn(f64) -> f64) -> Vec<f32
     (0..count)
         .map(|n| decode(f64::from(n) * scale) as f32)
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn arrays_are_pictures_of_their_kind_of_light() {
+        let size = Size::new(2, 1).unwrap();
+        let bytes = Picture::from_srgb_u8(size, &[0, 255, 128, 1, 2, 3]).unwrap();
+        assert_eq!(bytes.reference, LightReference::Display);
+        assert_eq!(bytes.rgb[..2], [0.0, 1.0]);
+        assert!((bytes.rgb[2] - 0.215_861).abs() < 1e-6);
+        let words: Vec<u16> = [0, 255, 128, 1, 2, 3].map(|v| 257 * v).to_vec();
+        let wide = Picture::from_srgb_u16(size, &words).unwrap();
+        assert_eq!(wide.rgb, bytes.rgb);
+        let light = [0.5, f32::NAN, -1.0, f32::INFINITY, 2.0, 3.0];
+        let linear = Picture::from_linear(size, &light).unwrap();
+        assert_eq!(linear.reference, LightReference::Scene);
+        assert_eq!(linear.rgb, [0.5, 0.0, -1.0, MAX_HALF, 2.0, 3.0]);
+        assert!(Picture::from_linear(size, &light[..5]).is_err());
+    }
 }

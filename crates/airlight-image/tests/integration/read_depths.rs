@@ -16,6 +16,26 @@ fn options() -> DepthOptions {
 const INF: f32 = f32::INFINITY;
 
 #[test]
+fn arrays_have_the_meaning_of_files() {
+    let folder = Folder::new();
+    let values = [2.0, f32::NAN, 0.0, 3.0, INF, 1e10];
+    let options = DepthOptions {
+        scale: 0.5,
+        ..options()
+    };
+    let file = read_as(&folder, &pfm_file((6, 1), true, &values), &options).unwrap();
+    let array = |values: &[f32]| {
+        DepthMap::from_numbers(size(6, 1), values.to_vec(), SampleBits::Float, &options)
+    };
+    assert_eq!(array(&values).unwrap().metres, file.metres);
+    assert!(matches!(
+        array(&[-1.0; 6]),
+        Err(ImageError::NegativeDepth { count: 6, .. })
+    ));
+    assert!(array(&values[1..]).is_err());
+}
+
+#[test]
 fn each_number_has_the_documented_meaning() {
     let folder = Folder::new();
     let mut bits = options();

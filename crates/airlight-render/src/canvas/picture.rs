@@ -114,8 +114,8 @@ impl Canvas {
             .try_for_each(|(y, ((sums, colors), stokes))| {
                 let mut found = vec![0.0; count];
                 for (x, (sums, color)) in sums.chunks_mut(count).zip(colors).enumerate() {
-                    control.check()?;
                     for bundle in pass.bundles.clone() {
+                        control.check()?;
                         found.fill(0.0);
                         sample(x as u32, y as u32, bundle, &mut found, stokes.get_mut(x));
                         sums.iter_mut().zip(&found).for_each(|(sum, v)| *sum += v);

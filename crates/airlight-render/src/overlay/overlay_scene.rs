@@ -15,7 +15,7 @@ use airlight::scene::{
     NightLights, OutputSpec, Projection, Scene, SceneDocument, SceneError,
 };
 use airlight::spectrum::WavelengthGrid;
-use airlight::{Named, UnknownName};
+use airlight::{Control, Named, UnknownName};
 use airlight_image::frame::Intrinsics;
 use airlight_image::output::PictureFormat;
 use airlight_image::{ImageError, Size};
@@ -272,10 +272,18 @@ impl OverlayScene {
     /// # Errors
     /// [`RenderError`] for invalid air, sun or place.
     pub fn solve_sky(&self) -> Result<Option<SkyLight>, RenderError> {
+        self.solve_sky_with(Control::default())
+    }
+
+    /// As [`Self::solve_sky`], with progress and cancellation.
+    ///
+    /// # Errors
+    /// As [`Self::solve_sky`], and if the caller cancelled.
+    pub fn solve_sky_with(&self, control: Control<'_>) -> Result<Option<SkyLight>, RenderError> {
         if !self.overlay.sky_light {
             return Ok(None);
         }
-        SkyLight::solve(&self.sky_scene().resolve()?).map(Some)
+        SkyLight::solve_with(&self.sky_scene().resolve()?, control).map(Some)
     }
 
     /// The scene whose sky lights the fog: without the fog, and with the eye at its height above the ground.

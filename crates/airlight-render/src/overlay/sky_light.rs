@@ -1,6 +1,7 @@
 //! Fog lit by a solved sky.
 
 use crate::RenderError;
+use airlight::Control;
 use airlight::atmosphere::{Atmosphere, Constituent};
 use airlight::fog::FogScattering;
 use airlight::scene::{NightLight, ResolvedScene, RgbFoggySky, SceneError, SunState};
@@ -32,12 +33,22 @@ impl SkyLight {
     /// # Errors
     /// [`RenderError::Scene`] for a sun outside the range of the ephemeris, and if the solver fails.
     pub fn solve(scene: &ResolvedScene) -> Result<Self, RenderError> {
+        Self::solve_with(scene, Control::default())
+    }
+
+    /// As [`Self::solve`], with progress and cancellation.
+    ///
+    /// # Errors
+    /// As [`Self::solve`], and if the caller cancelled.
+    pub fn solve_with(scene: &ResolvedScene, control: Control<'_>) -> Result<Self, RenderError> {
         let sun = scene.sun.at_start()?;
         let suns = SunCoverage::near(sun.elevation_deg, scene.observer_altitude_m);
         let settings = scene.solver.sky_settings(suns);
-        let sky =
-            Sky::prepare(&scene.atmosphere, &scene.grid, &settings).map_err(SceneError::from)?;
-        let view = sky.view(scene.observer_altitude_m, sun.state());
+        let sky = Sky::prepare_with(&scene.atmosphere, &scene.grid, &settings, control)
+            .map_err(SceneError::from)?;
+        let view = sky
+            .view_with(scene.observer_altitude_m, sun.state(), control)
+            .map_err(SceneError::from)?;
         Ok(Self {
             night: NightLight::new(scene, &view, &sun, RgbSpace::Srgb)?,
             view,

@@ -31,6 +31,14 @@ pub(crate) struct SolvedView {
     irradiance: OnceLock<IrradianceMap>,
 }
 
+impl View {
+    /// The light of this view through the interface of all models, tabulated in `channels`, as pictures are drawn from it.
+    pub fn radiance_view(&self, channels: Channels) -> Arc<dyn RadianceView> {
+        let solved = SolvedView::new(self.clone(), None, channels);
+        Arc::new(solved.expect("a view without fog is valid in all channels"))
+    }
+}
+
 impl SolvedView {
     /// Tabulates the sky of a view, with or without fog.
     ///

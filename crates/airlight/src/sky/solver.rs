@@ -9,7 +9,7 @@ use crate::spectrum::WavelengthGrid;
 use crate::transfer::columns::SlantColumns;
 use crate::transfer::shell::Shell;
 use std::fmt;
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// The solved light inside an atmosphere at the wavelengths of a grid. A handle: cheap to clone and to share between
 /// threads.
@@ -25,6 +25,8 @@ struct Solution {
     blocks: Vec<Box<dyn Block>>,
     /// The same for all suns and altitudes, once a view needs it.
     wider: OnceLock<Result<Sky, SkyError>>,
+    /// Held while that is solved for, so that views in other threads wait for it.
+    widening: Mutex<()>,
 }
 
 impl fmt::Debug for Sky {
@@ -80,6 +82,7 @@ impl Sky {
             columns,
             blocks,
             wider: OnceLock::new(),
+            widening: Mutex::new(()),
         })))
     }
 
@@ -116,23 +119,39 @@ impl Sky {
     /// This sky if it covers a view, otherwise that for all suns and altitudes.
     ///
     /// # Errors
-    /// [`SkyError::NotConverged`].
+    /// [`SkyError::NotConverged`]; [`SkyError::Cancelled`], after which the next view solves again.
     pub(super) fn covering(
         &self,
         altitude_m: f64,
         sun_elevation_deg: f64,
+        control: Control<'_>,
     ) -> Result<&Self, SkyError> {
         if self.covers(altitude_m, sun_elevation_deg) {
             return Ok(self);
         }
-        let wider = self.0.wider.get_or_init(|| {
-            let settings = SkySettings {
-                suns: SunCoverage::All,
-                ..self.0.settings.clone()
-            };
-            Self::prepare(&self.0.atmosphere, &self.0.grid, &settings)
-        });
-        wider.as_ref().map_err(Clone::clone)
+        let wider = &self.0.wider;
+        if wider.get().is_none() {
+            let _widening = self
+                .0
+                .widening
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner);
+            if wider.get().is_none() {
+                let settings = SkySettings {
+                    suns: SunCoverage::All,
+                    ..self.0.settings.clone()
+                };
+                let (air, grid) = (&self.0.atmosphere, &self.0.grid);
+                match Self::prepare_with(air, grid, &settings, control) {
+                    Err(SkyError::Cancelled(cancelled)) => return Err(cancelled.into()),
+                    solved => drop(wider.set(solved)),
+                }
+            }
+        }
+        match wider.get() {
+            Some(solved) => solved.as_ref().map_err(Clone::clone),
+            None => unreachable!("the wider sky was solved for under the lock"),
+        }
     }
 
     pub(super) fn shell(&self) -> &Shell {
@@ -151,7 +170,6 @@ mod tests {
     use crate::atmosphere::reference;
     use crate::axes;
     use crate::control::Progress;
-    use std::sync::Mutex;
     use std::sync::atomic::{AtomicBool, Ordering};
 
     /// Records progress and cancels after a number of reports.
@@ -220,5 +238,22 @@ mod tests {
             assert!(matches!(sky, Err(SkyError::Cancelled(_))), "{at}");
             assert_eq!(reports.len(), at, "nothing was done after {at} reports");
         }
+    }
+
+    #[test]
+    fn a_view_after_a_cancelled_one_is_solved() {
+        let settings = SkySettings {
+            suns: SunCoverage::near(60.0, 0.0),
+            scattering: crate::sky::Scattering::Single,
+            ..SkySettings::default()
+        };
+        let (air, grid) = (reference::rayleigh(0.1), WavelengthGrid::rgb());
+        let sky = Sky::prepare(&air, &grid, &settings).unwrap();
+        let (stop, sun) = (AtomicBool::new(true), axes::direction(0.0, 10.0));
+        let stopped = sky.view_with(0.0, sun, Control::cancelled_by(&stop));
+        assert!(matches!(stopped, Err(SkyError::Cancelled(_))));
+        let view = sky.view_with(0.0, sun, Control::default()).unwrap();
+        let zenith = view.along(axes::direction(0.0, 90.0), None).radiance();
+        assert!(zenith.iter().all(|&v| v > 0.0), "{zenith:?}");
     }
 }

@@ -5,6 +5,7 @@ use super::peaked::Part;
 use super::settings::SkyError;
 use super::solver::Sky;
 use crate::axes;
+use crate::control::Control;
 use crate::sun::{SunDisc, SunState};
 use crate::transfer::ray::Ray;
 use glam::DVec3;
@@ -80,14 +81,32 @@ impl Sky {
     /// # Errors
     /// [`SkyError::NotConverged`].
     pub fn try_view(&self, altitude_m: f64, sun: impl Into<SunState>) -> Result<View, SkyError> {
-        View::new(self, altitude_m, sun.into())
+        self.view_with(altitude_m, sun, Control::default())
+    }
+
+    /// As [`Sky::try_view`], with progress and cancellation of the solution for all suns, if the view needs it.
+    ///
+    /// # Errors
+    /// [`SkyError::NotConverged`]; [`SkyError::Cancelled`].
+    pub fn view_with(
+        &self,
+        altitude_m: f64,
+        sun: impl Into<SunState>,
+        control: Control<'_>,
+    ) -> Result<View, SkyError> {
+        View::new(self, altitude_m, sun.into(), control)
     }
 }
 
 impl View {
-    pub(super) fn new(sky: &Sky, altitude_m: f64, sun: SunState) -> Result<Self, SkyError> {
+    fn new(
+        sky: &Sky,
+        altitude_m: f64,
+        sun: SunState,
+        control: Control<'_>,
+    ) -> Result<Self, SkyError> {
         let sun_elevation_deg = axes::elevation_deg(sun.direction.normalize());
-        let sky = sky.covering(altitude_m, sun_elevation_deg)?;
+        let sky = sky.covering(altitude_m, sun_elevation_deg, control)?;
         let radius_m = (sky.shell().planet_radius_m + altitude_m).max(sky.shell().ground_radius_m);
         Ok(Self {
             sky: sky.clone(),
@@ -127,7 +146,7 @@ impl View {
     /// # Errors
     /// As [`Sky::try_view`].
     pub fn at_altitude(&self, altitude_m: f64) -> Result<Self, SkyError> {
-        let place = Self::new(&self.sky, altitude_m, self.sun)?;
+        let place = Self::new(&self.sky, altitude_m, self.sun, Control::default())?;
         Ok(Self {
             sky: place.sky,
             position: place.position,
