@@ -114,26 +114,3 @@ impl RowSource for StoredRows {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use std::sync::atomic::AtomicBool;
-
-    #[test]
-    fn rows_are_drawn_in_order_and_stop_when_cancelled() {
-        let size = Size::new(2, 3).unwrap();
-        let rows = RowFn::new(1, |y, out: &mut [f32]| {
-            for (x, out) in out.iter_mut().enumerate() {
-                *out = 10.0 * y as f32 + x as f32;
-            }
-        });
-        let drawn = draw_rows(&rows, size, Control::default()).unwrap();
-        assert_eq!(drawn, [0.0, 1.0, 10.0, 11.0, 20.0, 21.0]);
-        let stop = AtomicBool::new(true);
-        assert_eq!(
-            draw_rows(&rows, size, Control::cancelled_by(&stop)),
-            Err(Cancelled)
-        );
-    }
-}

@@ -10,6 +10,7 @@ use airlight::sun::{EphemerisError, MomentError};
 use airlight::{Cancelled, UnknownName};
 use airlight_image::ImageError;
 use airlight_render::RenderError;
+use airlight_render::batch::BatchError;
 use pyo3::PyErr;
 use pyo3::exceptions::{PyKeyboardInterrupt, PyOSError, PyValueError};
 
@@ -71,6 +72,16 @@ impl From<ImageError> for Failure {
                 true => Self::Invalid(sentence),
                 false => Self::System(sentence),
             },
+        }
+    }
+}
+
+impl From<BatchError> for Failure {
+    fn from(error: BatchError) -> Self {
+        match (error.is_cancelled(), error.is_refusal()) {
+            (true, _) => Self::Cancelled,
+            (false, true) => Self::Invalid(error.to_string()),
+            (false, false) => Self::System(error.to_string()),
         }
     }
 }

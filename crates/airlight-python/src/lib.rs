@@ -1,15 +1,19 @@
 //! The Python module `airlight`: the libraries of Airlight over NumPy arrays, with the same words.
 //!
 //! - [`compute`]: threads, the lock of the interpreter, and Ctrl-C; [`errors`]: exceptions; [`arrays`]: directions and pictures.
-//! - [`atmosphere`], [`sun`], [`sky`], [`scene`], [`picture`], [`fog`]: the classes and functions of Python.
+//! - [`atmosphere`], [`sun`], [`sky`], [`scene`], [`picture`], [`fog`], [`batch`], [`mie`], [`accuracy`]: the classes and functions of
+//!   Python.
 //!
 //! What is only Python, such as xarray output and transforms for training, is in `python/airlight`.
 
+mod accuracy;
 mod arrays;
 mod atmosphere;
+mod batch;
 mod compute;
 mod errors;
 mod fog;
+mod mie;
 mod picture;
 mod scene;
 mod sky;
@@ -27,6 +31,12 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<scene::RadianceView>()?;
     module.add_class::<picture::Picture>()?;
     module.add_class::<fog::Fog>()?;
+    module.add_class::<mie::Particles>()?;
+    module.add_class::<accuracy::AccuracyReport>()?;
+    module.add_function(wrap_pyfunction!(accuracy::accuracy, module)?)?;
+    module.add_function(wrap_pyfunction!(batch::fog_batch, module)?)?;
+    module.add_function(wrap_pyfunction!(mie::mie_phase, module)?)?;
+    module.add_function(wrap_pyfunction!(mie::mie_sphere, module)?)?;
     module.add_function(wrap_pyfunction!(scene::models, module)?)?;
     module.add_function(wrap_pyfunction!(sun::sun_position, module)?)?;
     module.add_function(wrap_pyfunction!(sun::unix_time, module)?)?;

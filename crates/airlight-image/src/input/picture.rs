@@ -226,25 +226,3 @@ pub(super) fn decoding_table(count: u32, decode: impl Fn(f64) -> f64) -> Vec<f32
         .map(|n| decode(f64::from(n) * scale) as f32)
         .collect()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn arrays_are_pictures_of_their_kind_of_light() {
-        let size = Size::new(2, 1).unwrap();
-        let bytes = Picture::from_srgb_u8(size, &[0, 255, 128, 1, 2, 3]).unwrap();
-        assert_eq!(bytes.reference, LightReference::Display);
-        assert_eq!(bytes.rgb[..2], [0.0, 1.0]);
-        assert!((bytes.rgb[2] - 0.215_861).abs() < 1e-6);
-        let words: Vec<u16> = [0, 255, 128, 1, 2, 3].map(|v| 257 * v).to_vec();
-        let wide = Picture::from_srgb_u16(size, &words).unwrap();
-        assert_eq!(wide.rgb, bytes.rgb);
-        let light = [0.5, f32::NAN, -1.0, f32::INFINITY, 2.0, 3.0];
-        let linear = Picture::from_linear(size, &light).unwrap();
-        assert_eq!(linear.reference, LightReference::Scene);
-        assert_eq!(linear.rgb, [0.5, 0.0, -1.0, MAX_HALF, 2.0, 3.0]);
-        assert!(Picture::from_linear(size, &light[..5]).is_err());
-    }
-}

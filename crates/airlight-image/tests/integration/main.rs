@@ -1,5 +1,6 @@
 //! Picture and depth files, checked against independent decoders and encoders.
 
+mod arrays;
 mod common;
 mod enlarge;
 mod frames;

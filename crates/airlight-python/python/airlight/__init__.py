@@ -7,15 +7,21 @@ threads.
 """
 
 from airlight._native import (
+    AccuracyReport,
     Atmosphere,
     Fog,
+    Particles,
     Picture,
     RadianceView,
     Scene,
     Sky,
     View,
     __version__,
+    accuracy,
     direction,
+    fog_batch,
+    mie_phase,
+    mie_sphere,
     models,
     read_depth,
     read_picture,
@@ -23,8 +29,10 @@ from airlight._native import (
 from airlight._sun import SunPosition, sun_position
 
 __all__ = [
+    "AccuracyReport",
     "Atmosphere",
     "Fog",
+    "Particles",
     "Picture",
     "RadianceView",
     "Scene",
@@ -32,7 +40,11 @@ __all__ = [
     "SunPosition",
     "View",
     "__version__",
+    "accuracy",
     "direction",
+    "fog_batch",
+    "mie_phase",
+    "mie_sphere",
     "models",
     "read_depth",
     "read_picture",

@@ -244,7 +244,7 @@ mod tests {
     fn a_view_after_a_cancelled_one_is_solved() {
         let settings = SkySettings {
             suns: SunCoverage::near(60.0, 0.0),
-            scattering: crate::sky::Scattering::Single,
+            altitudes: 6,
             ..SkySettings::default()
         };
         let (air, grid) = (reference::rayleigh(0.1), WavelengthGrid::rgb());

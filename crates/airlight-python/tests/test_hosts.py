@@ -1,0 +1,190 @@
+"""Hand-over to renderers and farms, with the real packages."""
+
+import json
+import os
+import pathlib
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import airlight
+from airlight import openjd
+
+
+@pytest.fixture
+def pictures(tmp_path, photograph, depth):
+    """A folder of pictures with depth, and the scene that adds fog to them."""
+    cv2 = pytest.importorskip("cv2")
+    (tmp_path / "rgb").mkdir()
+    (tmp_path / "depth").mkdir()
+    for number in range(10):
+        cv2.imwrite(str(tmp_path / f"rgb/{number:02}.png"), np.roll(photograph, number, axis=1))
+        np.save(tmp_path / f"depth/{number:02}.npy", depth)
+
+    def scene(output, fog="fog.visibility_m = 100"):
+        return f"""
+            {fog}
+            overlay = {{ colour = "{tmp_path}/rgb", depth = "{tmp_path}/depth" }}
+            output.file = "{output}/"
+        """
+
+    return scene
+
+
+def files(folder):
+    return {path.name: path.read_bytes() for path in pathlib.Path(folder).glob("*.png")}
+
+
+def test_shards_make_the_pictures_of_the_whole(pictures, tmp_path):
+    settings = {"vary": ["visibility=50..500"], "seed": 3}
+    assert airlight.fog_batch(pictures(tmp_path / "whole", ""), **settings) == (10, 0, [])
+    for shard in ("1/3", "2/3", "3/3"):
+        airlight.fog_batch(pictures(tmp_path / "parts", ""), shard=shard, **settings)
+    assert files(tmp_path / "parts") == files(tmp_path / "whole")
+    assert len(files(tmp_path / "parts")) == 10
+    assert airlight.fog_batch(pictures(tmp_path / "whole", ""), **settings) == (0, 10, [])
+    with pytest.raises(ValueError, match="4/3"):
+        airlight.fog_batch(pictures(tmp_path / "parts", ""), shard="4/3", **settings)
+
+
+def test_a_corrupt_picture_fails_alone(pictures, tmp_path):
+    (tmp_path / "rgb/04.png").write_bytes(b"no picture")
+    made, existing, failures = airlight.fog_batch(pictures(tmp_path / "out"))
+    assert (made, existing, len(failures)) == (9, 0, 1)
+    assert "04.png" in failures[0]
+
+
+def test_jobs_that_cannot_be_split_are_refused():
+    for command, shards in ((["airlight"], 3), (["airlight", "probe"], 3), (["airlight", "fog", "--shard", "1/2"], 3)):
+        with pytest.raises(ValueError, match="expected"):
+            openjd.job("job", command, shards)
+    with pytest.raises(ValueError, match="shards"):
+        openjd.job("job", ["airlight", "fog"], 0)
+
+
+@pytest.mark.slow
+def test_openjd_runs_a_job_in_parts(program, pictures, tmp_path):
+    runner = pathlib.Path(sys.executable).with_name("openjd")
+    if not runner.exists():
+        pytest.skip("needs openjd-cli")
+    airlight.fog_batch(pictures(tmp_path / "whole", ""), vary=["visibility=50..500"], seed=3)
+    name = os.environ.get("AIRLIGHT_PROGRAM", "airlight")
+    command = [name, "fog", tmp_path / "rgb", "--depth", tmp_path / "depth"]
+    command += ["--vary", "visibility=50..500", "--seed", 3, "-o", f"{tmp_path}/farm/"]
+    openjd.write_job(tmp_path / "job.json", "fog", command, 4)
+    for action in (["check", tmp_path / "job.json"], ["run", tmp_path / "job.json", "--step", "fog"]):
+        done = subprocess.run([runner, *action], capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stdout + done.stderr
+    assert files(tmp_path / "farm") == files(tmp_path / "whole")
+    assert json.loads((tmp_path / "job.json").read_text())["name"] == "fog"
+
+
+@pytest.mark.slow
+class TestMitsuba:
+    """The sky as the light of a scene in Mitsuba 3."""
+
+    @pytest.fixture
+    def mitsuba(self):
+        mitsuba = pytest.importorskip("mitsuba")
+        mitsuba.set_variant("scalar_rgb")
+        return mitsuba
+
+    def radiance(self, mitsuba, sky, origin, target, up, objects=None):
+        """Mean of a narrow picture."""
+        scene = mitsuba.load_dict(
+            {
+                "type": "scene",
+                "integrator": {"type": "path"},
+                "sky": sky,
+                "sensor": {
+                    "type": "perspective",
+                    "fov": 0.5,
+                    "to_world": mitsuba.ScalarTransform4f().look_at(origin=origin, target=target, up=up),
+                    "film": {"type": "hdrfilm", "width": 4, "height": 4, "rfilter": {"type": "box"}},
+                    "sampler": {"type": "independent", "sample_count": 4096},
+                },
+                **(objects or {}),
+            }
+        )
+        return np.array(mitsuba.render(scene))[:, :, :3].mean(axis=(0, 1))
+
+    @pytest.mark.parametrize(("azimuth", "elevation"), [(0.0, 20.0), (90.0, 40.0), (200.0, 15.0), (300.0, 60.0)])
+    def test_directions_are_those_of_the_sky(self, mitsuba, azimuth, elevation):
+        from airlight.mitsuba import environment
+
+        view = airlight.Sky("clear", sun_elevation_deg=30).view(sun_elevation_deg=30, sun_azimuth_deg=120)
+        direction = airlight.direction([azimuth], [elevation])
+        seen = self.radiance(mitsuba, environment(view, 256), [0, 0, 0], direction[0].tolist(), [0, 1, 0])
+        np.testing.assert_allclose(seen, view.rgb(direction)[0], rtol=0.02)
+
+    def test_a_white_plane_reflects_the_irradiance(self, mitsuba):
+        from airlight.mitsuba import environment
+
+        view = airlight.Sky("clear", sun_elevation_deg=30).view(sun_elevation_deg=30)
+        white = {"type": "diffuse", "reflectance": {"type": "rgb", "value": 1.0}}
+        turn = mitsuba.ScalarTransform4f().rotate([1, 0, 0], -90)
+        plane = {"plane": {"type": "rectangle", "to_world": turn, "bsdf": white}}
+        seen = self.radiance(mitsuba, environment(view, 256), [0, 1, 0], [0, 0, 0], [0, 0, -1], plane)
+        scene = airlight.Scene.from_toml("sun.elevation_deg = 30\nair.atmosphere = 'clear'").view("srgb")
+        expected = scene.irradiance([[0, 1, 0]])[0] + scene.sun_irradiance() * np.sin(np.radians(30))
+        np.testing.assert_allclose(np.pi * seen, expected, rtol=0.03)
+
+
+@pytest.mark.slow
+class TestRay:
+    """Data sets on a local cluster of processes."""
+
+    @pytest.fixture(scope="class")
+    def ray(self):
+        ray = pytest.importorskip("ray")
+        ray.init(num_cpus=2, include_dashboard=False, log_to_driver=False)
+        yield ray
+        ray.shutdown()
+
+    def test_pictures_do_not_depend_on_the_number_of_tasks(self, ray, pictures, tmp_path):
+        from airlight.ray import fog_dataset
+
+        settings = {"vary": ["visibility=50..500"], "seed": 3}
+        airlight.fog_batch(pictures(tmp_path / "whole", ""), **settings)
+        for shards in (1, 4):
+            report = fog_dataset(pictures(tmp_path / f"ray{shards}", ""), shards=shards, **settings)
+            assert (report.made, report.existing, report.failures, report.lost) == (10, 0, [], {})
+            assert files(tmp_path / f"ray{shards}") == files(tmp_path / "whole")
+
+    def test_an_interrupted_data_set_is_resumed_and_a_corrupt_picture_named(self, ray, pictures, tmp_path):
+        from airlight.ray import fog_dataset
+
+        picture = tmp_path / "rgb/03.png"
+        whole = picture.read_bytes()
+        picture.write_bytes(whole[:100])
+        report = fog_dataset(pictures(tmp_path / "out"), shards=3)
+        assert (report.made, len(report.failures)) == (9, 1)
+        assert "03.png" in report.failures[0]
+        picture.write_bytes(whole)
+        report = fog_dataset(pictures(tmp_path / "out"), shards=3)
+        assert (report.made, report.existing, report.failures) == (1, 9, [])
+
+    def test_a_killed_worker_is_replaced(self, ray, pictures, tmp_path):
+        from airlight.ray import fog_dataset
+
+        @ray.remote(max_retries=0)
+        def kill_soon():
+            import signal
+            import time
+
+            time.sleep(0.3)
+            os.kill(os.getpid(), signal.SIGKILL)
+
+        dying = kill_soon.remote()
+        report = fog_dataset(pictures(tmp_path / "out"), shards=4)
+        assert (report.made, report.lost) == (10, {})
+        with pytest.raises(ray.exceptions.WorkerCrashedError):
+            ray.get(dying)
+
+    def test_bad_settings_are_refused(self, ray, pictures, tmp_path):
+        from airlight.ray import fog_dataset
+
+        with pytest.raises(ValueError, match="expected"):
+            fog_dataset(pictures(tmp_path / "out"), vary=["thickness=1..2"])
