@@ -3,8 +3,11 @@
 import json
 import os
 import pathlib
+import signal
 import subprocess
 import sys
+import threading
+import time
 
 import numpy as np
 import pytest
@@ -132,16 +135,31 @@ class TestMitsuba:
         np.testing.assert_allclose(np.pi * seen, expected, rtol=0.03)
 
 
+@pytest.fixture(scope="module")
+def ray():
+    """A local cluster of two processes."""
+    ray = pytest.importorskip("ray")
+    ray.init(num_cpus=2, include_dashboard=False, log_to_driver=False)
+    yield ray
+    ray.shutdown()
+
+
+def workers():
+    """Processes of the tasks of a data set, which Ray names after them."""
+    found = []
+    for folder in pathlib.Path("/proc").glob("[0-9]*"):
+        try:
+            name = (folder / "cmdline").read_text()
+        except OSError:
+            continue
+        if name.startswith("ray::_make"):
+            found.append(int(folder.name))
+    return found
+
+
 @pytest.mark.slow
 class TestRay:
     """Data sets on a local cluster of processes."""
-
-    @pytest.fixture(scope="class")
-    def ray(self):
-        ray = pytest.importorskip("ray")
-        ray.init(num_cpus=2, include_dashboard=False, log_to_driver=False)
-        yield ray
-        ray.shutdown()
 
     def test_pictures_do_not_depend_on_the_number_of_tasks(self, ray, pictures, tmp_path):
         from airlight.ray import fog_dataset
@@ -166,22 +184,48 @@ class TestRay:
         report = fog_dataset(pictures(tmp_path / "out"), shards=3)
         assert (report.made, report.existing, report.failures) == (1, 9, [])
 
-    def test_a_killed_worker_is_replaced(self, ray, pictures, tmp_path):
+    def test_a_killed_worker_is_replaced(self, ray, pictures, tmp_path, photograph, depth):
+        import cv2
+
         from airlight.ray import fog_dataset
 
-        @ray.remote(max_retries=0)
-        def kill_soon():
-            import signal
-            import time
+        for number in range(10):
+            large = np.tile(np.roll(photograph, number, axis=0), (24, 24, 1))
+            cv2.imwrite(str(tmp_path / f"rgb/{number:02}.png"), large)
+            np.save(tmp_path / f"depth/{number:02}.npy", np.tile(depth, (24, 24)))
+        airlight.fog_batch(pictures(tmp_path / "whole"))
+        killed = []
 
-            time.sleep(0.3)
-            os.kill(os.getpid(), signal.SIGKILL)
+        def kill():
+            deadline = time.monotonic() + 60
+            while time.monotonic() < deadline and not files(tmp_path / "out"):
+                time.sleep(0.01)
+            # One that this test started, and that works on its pictures.
+            for worker in workers()[:1]:
+                os.kill(worker, signal.SIGKILL)
+                killed.append(worker)
 
-        dying = kill_soon.remote()
-        report = fog_dataset(pictures(tmp_path / "out"), shards=4)
-        assert (report.made, report.lost) == (10, {})
-        with pytest.raises(ray.exceptions.WorkerCrashedError):
-            ray.get(dying)
+        killer = threading.Thread(target=kill)
+        killer.start()
+        report = fog_dataset(pictures(tmp_path / "out"), shards=2)
+        killer.join()
+        assert len(killed) == 1
+        assert report.lost == {}
+        assert report.made + report.existing == 10
+        assert files(tmp_path / "out") == files(tmp_path / "whole")
+
+    def test_a_shard_that_cannot_write_is_lost_and_resumed(self, ray, pictures, tmp_path):
+        from airlight.ray import fog_dataset
+
+        # A folder in the place of its manifest.
+        obstacle = tmp_path / "out/manifest-2-of-3.jsonl"
+        obstacle.mkdir(parents=True)
+        report = fog_dataset(pictures(tmp_path / "out"), shards=3)
+        assert list(report.lost) == ["2/3"]
+        assert report.made == 7
+        obstacle.rmdir()
+        report = fog_dataset(pictures(tmp_path / "out"), shards=3)
+        assert (report.made, report.existing, report.lost) == (3, 7, {})
 
     def test_bad_settings_are_refused(self, ray, pictures, tmp_path):
         from airlight.ray import fog_dataset
