@@ -29,6 +29,7 @@ def test_table_has_a_row_for_each_time(day, table):
     assert table.direct_normal.max() < 900
 
 
+@pytest.mark.slow
 def test_bands_are_the_integrals_of_the_spectra(day, table):
     pytest.importorskip("xarray")
     spectra = irradiance.clear_sky_spectra(day[[4]], *PLACE, atmosphere="average")
