@@ -45,6 +45,26 @@ def test_linear_light_in_lit_patchy_height_fog_is_that_of_the_program(program, t
     np.testing.assert_array_equal(fog(light, depth), airlight.read_picture(tmp_path / "a.exr"))
 
 
+def test_fog_with_lights_in_a_solved_sky_is_that_of_the_program(program, tmp_path, photograph, depth):
+    cv2 = pytest.importorskip("cv2")
+    cv2.imwrite(str(tmp_path / "rgb.png"), photograph[..., ::-1])
+    np.save(tmp_path / "depth.npy", depth)
+    toml = f"""
+        sun = {{ elevation_deg = 12, azimuth_deg = 20 }}
+        fog = {{ visibility_m = 200, profile = "height", scale_height_m = 40 }}
+        lights = [{{ kind = "spot", position_m = [2, 6, -20], intensity = [40, 30, 20] }}]
+        overlay = {{ sky_light = true, colour = "{tmp_path}/rgb.png", depth = "{tmp_path}/depth.npy" }}
+        output.file = "{tmp_path}/a.png"
+    """
+    (tmp_path / "scene.toml").write_text(toml)
+    program("fog", "--scene", tmp_path / "scene.toml")
+    fog = airlight.Fog.from_toml(toml)
+    expected = cv2.imread(str(tmp_path / "a.png"))[..., ::-1]
+    np.testing.assert_array_equal(fog(photograph, depth), expected)
+    again = pickle.loads(pickle.dumps(fog))
+    np.testing.assert_array_equal(again(photograph, depth), expected)
+
+
 def test_transmittance_at_the_visibility_is_5_percent(photograph):
     depth = np.full((48, 64), 100.0)
     transmittance, path_radiance, depth_m = airlight.Fog(100, depth_kind="ray").layers(photograph, depth)
