@@ -22,11 +22,14 @@
 //! [`SkyTables`] fills the tables of [`Part::SkyTables`] from a sky that the library solves, [`FogTables`] those of
 //! [`Part::FogTable`] from a fog.
 //!
-//! With the feature `translate`, `translate` gives the same functions in GLSL, HLSL and MSL; the folder `generated` holds them.
+//! With the feature `translate`, `translate` gives the same functions in GLSL, HLSL and MSL (the folder `generated` holds them), and
+//! `costs` counts what the functions of any WGSL shader evaluate.
 //!
 //! Only core WebGPU is used: f32, no extensions.
 
 mod colour_fit;
+#[cfg(feature = "translate")]
+mod cost;
 mod fog_tables;
 mod function;
 mod part;
@@ -37,6 +40,8 @@ pub mod twins;
 mod wavelengths;
 
 pub use colour_fit::ColourFit;
+#[cfg(feature = "translate")]
+pub use cost::{Cost, CostError, costs};
 pub use fog_tables::{FogTables, FogTablesError};
 pub use function::{ErrorBound, Function, functions};
 pub use part::{Part, source, with_required};
