@@ -4,15 +4,14 @@
 
 #[path = "../tests/frames/device.rs"]
 mod device;
+mod picture;
 
 use airlight::spectrum::RgbSpace;
 use airlight::{Named, atmosphere::Preset, axes, sky::SkySettings, sky::SunCoverage};
 use airlight_gpu::{Fog, SkyRenderer, SkyRendererSettings};
-use airlight_image::rows::StoredRows;
-use airlight_image::tone::{Exposure, Metering, ToneCurve, ToneMapper};
-use airlight_image::{Control, PictureOptions, Size, write_picture};
+use airlight_image::tone::{Exposure, Metering};
 use device::{FORMAT, Frame, Gpu};
-use std::{error::Error, path::Path, time::Instant};
+use std::{error::Error, time::Instant};
 
 const SIDE: u32 = 640;
 
@@ -64,28 +63,16 @@ fn main() -> Result<(), Box<dyn Error>> {
         nearest.min(ridge(6e4, 4500.0, 11.0))
     };
     // In the dark of twilight half floats need light.
-    let exposure = if sun_deg > 0.0 { 1e-4 } else { 1.0 };
-    let pixels = gpu.draw(&mut renderer, &frame, exposure, [0.0; 3], Some(&hills));
-    let rgb: Vec<f32> = pixels.iter().flatten().map(|v| v / exposure).collect();
-    let luminances: Vec<(f32, f32)> = rgb
-        .as_chunks::<3>()
-        .0
-        .iter()
-        .map(|rgb| (RgbSpace::Srgb.luminance(rgb.map(f64::from)) as f32, 1.0))
-        .collect();
+    let frame_exposure = if sun_deg > 0.0 { 1e-4 } else { 1.0 };
+    let before = [0.0; 3];
+    let pixels = gpu.draw(&mut renderer, &frame, frame_exposure, before, Some(&hills));
+    let luminance = |rgb: &[f32; 3]| {
+        let light = rgb.map(|v| f64::from(v / frame_exposure));
+        (RgbSpace::Srgb.luminance(light) as f32, 1.0)
+    };
+    let luminances: Vec<(f32, f32)> = pixels.iter().map(luminance).collect();
     let exposure = Exposure::metered(&luminances, Metering::default())
         .ok_or("expected a picture with light, got a black one")?;
-    let tone = ToneMapper::new(exposure.factor() as f32, ToneCurve::default())?;
-    let rows = StoredRows::new(SIDE, 3, rgb)?;
-    let options = PictureOptions::default();
-    let size = Size::new(SIDE, SIDE)?;
-    write_picture(
-        Path::new(output),
-        size,
-        &rows,
-        &tone,
-        &options,
-        Control::default(),
-    )?;
-    Ok(())
+    // The pixels hold light times the exposure of the frame.
+    picture::write(output, &pixels, exposure.factor() as f32 / frame_exposure)
 }

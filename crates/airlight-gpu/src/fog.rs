@@ -77,14 +77,13 @@ impl Fog {
         self.under(&lighting, FogScattering::Multiple)
     }
 
-    /// The tables for an eye at a height above sea level, m.
+    /// The tables of the lit fog for an eye at a height above sea level, m.
     pub(crate) fn tables(
         &self,
         height_m: f64,
-        lighting: &Lighting,
+        lit: &RgbFog,
     ) -> Result<FogTables, SkyRendererError> {
-        let eye_height_m = height_m.max(self.ground_height_m);
-        Ok(FogTables::new(&self.lit(lighting)?, eye_height_m)?)
+        Ok(FogTables::new(lit, height_m.max(self.ground_height_m))?)
     }
 
     /// Uploads the tables for an eye at a height.

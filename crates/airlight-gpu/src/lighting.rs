@@ -1,11 +1,13 @@
 //! [`Lighting`].
 
+use airlight::fog::RgbFog;
 use airlight::glam::DVec3;
 use airlight::sky::{TableChannels, View};
+use airlight::transfer::RgbPathOptics;
 use airlight_shaders::SkyTables;
 use airlight_shaders::twins::colour::rgb_from_spectrum;
 use glam::{Vec3, Vec4};
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 /// Gauss-Legendre nodes and weights on -1..1: with [`AROUND`] azimuths they integrate harmonics up to degree 9 over the sphere.
 const HEIGHTS: [(f64, f64); 5] = [
@@ -18,7 +20,8 @@ const HEIGHTS: [(f64, f64); 5] = [
 /// Number of normals at each height.
 const AROUND: usize = 10;
 
-/// The light of sun and sky on a program's own surfaces, at the eye, in the RGB space of the target.
+/// The light of sun and sky on a program's own surfaces, at the eye, in the RGB space of the target; in fog, that of the fog and
+/// what it lets through.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Lighting {
@@ -32,8 +35,8 @@ pub struct Lighting {
 }
 
 impl Lighting {
-    /// Light at the eye of a view, from its tables.
-    pub(crate) fn new(view: &View, tables: &SkyTables) -> Self {
+    /// Light at the eye of a view, from its tables, with the illuminance by the sun's disc.
+    pub(crate) fn new(view: &View, tables: &SkyTables, sun_illuminance_lx: [f64; 3]) -> Self {
         let rgb =
             |light: &[f32]| rgb_from_spectrum(tables.radiance_weights, Vec4::from_slice(light));
         let (normals, weights): (Vec<DVec3>, Vec<f64>) = normals().unzip();
@@ -52,8 +55,48 @@ impl Lighting {
         }
         Self {
             sun: view.sun().as_vec3(),
-            sun_illuminance_lx: rgb(&view.sun_irradiance()),
+            sun_illuminance_lx: Vec3::from_array(sun_illuminance_lx.map(|v| v as f32)),
             sky_coefficients_lx,
+        }
+    }
+
+    /// This light behind a fog, for an eye at a height, m: the sun dimmed, and the light that the fog scatters besides the radiance of
+    /// sky and ground that it lets through.
+    pub(crate) fn in_fog(
+        &self,
+        fog: &RgbFog,
+        height_m: f64,
+        radiance: impl Fn(Vec3) -> Vec3,
+    ) -> Self {
+        let eye_m = height_m.max(fog.ground().height_m);
+        let seen = fog.seen_from(eye_m);
+        let rays = around(self.sun.as_dvec3());
+        let (directions, weights): (Vec<DVec3>, Vec<f64>) = rays.unzip();
+        let length_m = |direction: &DVec3| match direction.y < 0.0 {
+            true => (eye_m - fog.ground().height_m) / -direction.y,
+            false => f64::INFINITY,
+        };
+        let lengths_m: Vec<f64> = directions.iter().map(length_m).collect();
+        let mut paths = vec![RgbPathOptics::CLEAR; directions.len()];
+        seen.paths(&directions, &lengths_m, &mut paths);
+        let mut sky_coefficients_lx = [Vec3::ZERO; 9];
+        for ((direction, weight), path) in directions.iter().zip(weights).zip(paths) {
+            let direction = direction.as_vec3();
+            let behind = radiance(direction) * Vec3::from_array(path.transmittance);
+            let light = (behind + Vec3::from_array(path.path_radiance)) * weight as f32;
+            let values = polynomials(direction);
+            let factors = MEAN_SQUARES.iter().zip(COSINE_FACTORS);
+            for ((out, value), (square, factor)) in
+                sky_coefficients_lx.iter_mut().zip(values).zip(factors)
+            {
+                *out += light * (factor as f32 * value / square);
+            }
+        }
+        let to_sun = seen.path(self.sun.as_dvec3(), f64::INFINITY).transmittance;
+        Self {
+            sun_illuminance_lx: self.sun_illuminance_lx * Vec3::from_array(to_sun),
+            sky_coefficients_lx,
+            ..*self
         }
     }
 
@@ -78,6 +121,34 @@ fn normals() -> impl Iterator<Item = (DVec3, f64)> {
         })
     })
 }
+
+/// Unit vectors over the sphere, dense towards one of them, where fog is brightest, and their weights in a mean.
+fn around(pole: DVec3) -> impl Iterator<Item = (DVec3, f64)> {
+    const RINGS: usize = 48;
+    const DIRECTIONS: usize = 32;
+    let across = pole.any_orthonormal_vector();
+    let other = pole.cross(across);
+    (0..RINGS).flat_map(move |ring| {
+        // Equal steps of the third root of the angle.
+        let place = (ring as f64 + 0.5) / RINGS as f64;
+        let (sin, cos) = (PI * place.powi(3)).sin_cos();
+        let width = 3.0 * PI * place * place / RINGS as f64;
+        (0..DIRECTIONS).map(move |k| {
+            let azimuth = TAU * (k as f64 + 0.5) / DIRECTIONS as f64;
+            let level = across * azimuth.cos() + other * azimuth.sin();
+            let weight = 0.5 * sin * width / DIRECTIONS as f64;
+            (pole * cos + level * sin, weight)
+        })
+    })
+}
+
+/// Irradiance of a surface by the radiance of a harmonic, relative to it, for each of the polynomials: those of degree 0, 1 and 2.
+const COSINE_FACTORS: [f64; 9] = {
+    let [flat, first, second] = [PI, 2.0 * PI / 3.0, PI / 4.0];
+    [
+        flat, first, first, first, second, second, second, second, second,
+    ]
+};
 
 /// The polynomials of a unit normal that [`Lighting::sky_coefficients_lx`] lists: harmonics up to degree 2.
 fn polynomials(n: Vec3) -> [f32; 9] {
@@ -110,6 +181,58 @@ const MEAN_SQUARES: [f32; 9] = [
 #[cfg(test)]
 mod tests {
     use super::*;
+    use airlight::atmosphere::DensityProfile;
+    use airlight::axes;
+    use airlight::fog::droplets::Droplets;
+    use airlight::fog::{DirectionalLight, FogLighting, FogScattering, Ground, RgbLayer};
+
+    /// An even sky, with which the library's fog is lit, too: what falls on the ground below. Thin fog under a low sun is left out:
+    /// harmonics of degree 2 cannot follow its glow.
+    #[test]
+    fn light_below_a_fog_is_that_of_the_library() {
+        for (sun_deg, extinction_per_m) in [(50.0, 0.03f32), (10.0, 0.03), (50.0, 0.003)] {
+            let lighting = Lighting {
+                sun: axes::direction(140.0, sun_deg).as_vec3(),
+                sun_illuminance_lx: Vec3::splat(1e5),
+                sky_coefficients_lx: [Vec3::ZERO; 9],
+            };
+            let layer = RgbLayer {
+                density: DensityProfile::exponential(30.0),
+                extinction_per_m: [extinction_per_m; 3],
+                single_scattering_albedo: [0.99; 3],
+                phase: Droplets::default().phase(),
+            };
+            let sky = 3e3;
+            let light = FogLighting {
+                sun: Some(DirectionalLight {
+                    direction: lighting.sun.as_dvec3(),
+                    irradiance: [1e5; 3],
+                }),
+                ambient: [sky; 3],
+                ground_albedo: [0.2; 3],
+            };
+            let fog = RgbFog::new(&[layer], Ground::FLAT, &light, FogScattering::Multiple);
+            let fog = fog.unwrap();
+            let even = |d: Vec3| Vec3::splat(if d.y > 0.0 { sky } else { 0.0 });
+            let below = lighting.in_fog(&fog, 0.0, even);
+            let got =
+                below.sun_illuminance_lx.y * lighting.sun.y + below.sky_illuminance_lx(Vec3::Y).y;
+            let error = got / fog.ground_irradiance().unwrap()[1] - 1.0;
+            println!("{sun_deg} {extinction_per_m}: {error:.4}");
+            assert!(error.abs() < 0.03, "{error}");
+        }
+    }
+
+    #[test]
+    fn directions_around_a_pole_cover_the_sphere() {
+        let pole = DVec3::new(0.3, 0.5, -0.8).normalize();
+        let mean = |f: &dyn Fn(DVec3) -> f64| around(pole).map(|(d, w)| f(d) * w).sum::<f64>();
+        assert!((mean(&|_| 1.0) - 1.0).abs() < 2e-3);
+        assert!((mean(&|d| d.y * d.y) - 1.0 / 3.0).abs() < 2e-3);
+        // A glow of half a degree, whose mean is 1.
+        let glow = |d: DVec3| 2.0 / 7.6e-5 * (-d.distance_squared(pole) / 7.6e-5).exp();
+        assert!((mean(&|d| 2.0 * glow(d)) - 1.0).abs() < 0.05);
+    }
 
     #[test]
     fn polynomials_are_orthogonal_over_the_normals() {

@@ -107,17 +107,15 @@ impl SkyRenderer {
             return Err(SkyRendererError::Format(format));
         }
         let sky = Sky::prepare(atmosphere, &wavelength_grid(), &settings.solver)?;
-        let fit = Arc::new(ColourFit::new(atmosphere)?);
+        let fit = Arc::new(ColourFit::new(atmosphere, settings.solver.suns)?);
         let sky_layout = sky::layout(device);
         let fog_layout = fog::layout(device);
         let frame_layout = frame_layout(device);
-        let pass = |first: &wgpu::BindGroupLayout, parts: &[Part], passes: &str| {
-            let shader = source(parts) + include_str!("frame.wgsl") + passes;
-            Pass::new(device, [first, &frame_layout], &shader, format)
+        let pass = |first: &wgpu::BindGroupLayout, shader: &str| {
+            Pass::new(device, [first, &frame_layout], shader, format)
         };
-        let sky_pass = pass(&sky_layout, &[Part::SkyTables], include_str!("sky.wgsl"));
-        let parts = [Part::Fog, Part::FogTable];
-        let fog_pass = pass(&fog_layout, &parts, include_str!("fog.wgsl"));
+        let sky_pass = pass(&sky_layout, &sky_shader());
+        let fog_pass = pass(&fog_layout, &fog_shader());
         Ok(Self {
             sky_pass,
             fog_pass,
@@ -205,10 +203,16 @@ impl SkyRenderer {
         move || {
             let view = sky.try_view(height_m, sun)?;
             let sky = SkyTables::new(&view, &fit, space)?;
-            let lighting = Lighting::new(&view, &sky);
-            let fog = match fog {
-                Some(fog) => Some((fog.tables(height_m, &lighting)?, fog)),
-                None => None,
+            let direct = fit.sun_illuminance_lx(&view, space)?;
+            let lighting = Lighting::new(&view, &sky, direct);
+            let (fog, lighting) = match fog {
+                Some(fog) => {
+                    let lit = fog.lit(&lighting)?;
+                    let tables = fog.tables(height_m, &lit)?;
+                    let in_fog = lighting.in_fog(&lit, height_m, |d| sky.rgb_radiance(d));
+                    (Some((tables, fog)), in_fog)
+                }
+                None => (None, lighting),
             };
             Ok(Filled {
                 view,
@@ -309,6 +313,16 @@ impl SkyRenderer {
     }
 }
 
+/// The passes of the sky.
+fn sky_shader() -> String {
+    source(&[Part::SkyTables]) + include_str!("frame.wgsl") + include_str!("sky.wgsl")
+}
+
+/// The passes of the fog.
+fn fog_shader() -> String {
+    source(&[Part::Fog, Part::FogTable]) + include_str!("frame.wgsl") + include_str!("fog.wgsl")
+}
+
 /// A height that is a number, and a unit vector towards the sun.
 fn checked(height_m: f64, sun: DVec3) -> Result<Place, SkyRendererError> {
     if !height_m.is_finite() {
@@ -347,4 +361,25 @@ fn frame_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
             ),
         ],
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use airlight_shaders::{Cost, costs};
+
+    /// What a pixel costs at most in the passes `dim` and `add`: as the README states it.
+    #[test]
+    fn pixels_cost_what_the_readme_states() {
+        let readme = include_str!("../README.md");
+        for (shader, name) in [(sky_shader(), "sky"), (fog_shader(), "fog")] {
+            let all = costs(&shader).unwrap();
+            let of = |entry: &str| -> Cost {
+                let named = all.iter().find(|(name, _)| name == entry);
+                named.expect("an entry point").1
+            };
+            let row = format!("| {name} | {} | {} |", of("dim"), of("add"));
+            assert!(readme.contains(&row), "{row}");
+        }
+    }
 }

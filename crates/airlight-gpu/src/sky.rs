@@ -53,6 +53,7 @@ fn numbers(tables: &SkyTables, view: &View) -> Vec<f32> {
     };
     add(&tables.radiance_weights);
     add(&tables.transmittance_weights);
+    add(&tables.disc_weights);
     let half_sine = (0.5 * view.disc().angular_radius_rad).sin();
     all.extend([(2.0 * half_sine * half_sine) as f32, 0.0, 0.0, 0.0]);
     all

@@ -6,6 +6,7 @@ struct Sky {
     scales: SkyScales,
     radiance_weights: RgbWeights,
     transmittance_weights: RgbWeights,
+    disc_weights: RgbWeights,
     /// 1 minus the cosine of the angular radius of the sun's disc.
     disc_one_minus_cos: f32,
 }
@@ -34,15 +35,15 @@ fn is_ground(seen: Pixel) -> bool {
     return seen.distance_m < 0.0 && elevation_of(seen.direction) < sky.view.horizon_rad;
 }
 
-/// Radiance of the sun's disc, dimmed by the air.
-fn sun_disc(seen: Pixel) -> vec4<f32> {
+/// Red, green and blue of the sun's disc, dimmed by the air.
+fn sun_disc(seen: Pixel) -> vec3<f32> {
     let one_minus_cos = one_minus_cos_between(seen.direction, sky.view.sun);
     if one_minus_cos >= sky.disc_one_minus_cos || is_ground(seen) {
-        return vec4<f32>(0.0);
+        return vec3<f32>(0.0);
     }
     let mu = sqrt(1.0 - one_minus_cos / sky.disc_one_minus_cos);
     let outside = textureSampleLevel(disc, linear_sampler, vec2<f32>(texel_coordinate(mu, 64.0), 0.5), 0.0);
-    return outside * air_to(seen).transmittance;
+    return rgb_from_spectrum(sky.disc_weights, outside * air_to(seen).transmittance);
 }
 
 @fragment
@@ -57,12 +58,12 @@ fn dim(in: Corner) -> @location(0) vec4<f32> {
 @fragment
 fn add(in: Corner) -> @location(0) vec4<f32> {
     let seen = pixel(in);
-    var light = vec4<f32>(0.0);
+    var light = vec3<f32>(0.0);
     if seen.distance_m < 0.0 {
-        light = sun_disc(seen)
-            + sky_radiance(sky.view, sky.scales, sky_smooth, sky_haze, phase, linear_sampler, seen.direction);
+        let radiance = sky_radiance(sky.view, sky.scales, sky_smooth, sky_haze, phase, linear_sampler, seen.direction);
+        light = sun_disc(seen) + rgb_from_spectrum(sky.radiance_weights, radiance);
     } else {
-        light = air_to(seen).path_radiance;
+        light = rgb_from_spectrum(sky.radiance_weights, air_to(seen).path_radiance);
     }
-    return vec4<f32>(rgb_from_spectrum(sky.radiance_weights, light) * camera.exposure, 0.0);
+    return vec4<f32>(light * camera.exposure, 0.0);
 }

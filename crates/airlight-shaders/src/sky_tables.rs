@@ -1,14 +1,14 @@
 //! [`SkyTables`]: the tables of `wgsl/sky_tables.wgsl`, filled from a solved sky.
 
 use crate::colour_fit::ColourFit;
-use crate::twins::colour::RgbWeights;
+use crate::twins::colour::{RgbWeights, rgb_from_spectrum};
 use crate::twins::sky_tables as twin;
-use crate::twins::texture::Texture;
+use crate::twins::texture::{LinearSampler, Texture};
 use crate::wavelengths::WAVELENGTHS_NM;
 use airlight::glam::DVec3;
-use airlight::sky::{SplitPath, SplitView, View};
+use airlight::sky::{SkyError, SplitPath, SplitView, View};
 use airlight::spectrum::{RgbSpace, rgb};
-use glam::Vec4;
+use glam::{Vec3, Vec4};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Logarithm of the least light that a table holds, relative to its scale.
@@ -42,6 +42,8 @@ pub struct SkyTables {
     pub radiance_weights: RgbWeights,
     /// Weights from transmittance to that of sunlight in red, green and blue.
     pub transmittance_weights: RgbWeights,
+    /// Weights from the radiance of the sun's disc behind the air to red, green and blue, cd/m^2.
+    pub disc_weights: RgbWeights,
 }
 
 /// Error of [`SkyTables::new`].
@@ -53,13 +55,16 @@ pub enum SkyTablesError {
         "expected a sky at {WAVELENGTHS_NM:?} nm, got {0:?} nm; try airlight_shaders::wavelength_grid()"
     )]
     Wavelengths(Vec<f64>),
+    /// The fit of the colours is not prepared for the view and cannot be solved for it.
+    #[error(transparent)]
+    Sky(#[from] SkyError),
 }
 
 impl SkyTables {
     /// Tables of a view of a sky that was solved on the [`crate::wavelength_grid`], for colours in an RGB space by the fit of its atmosphere.
     ///
     /// # Errors
-    /// [`SkyTablesError`] for a sky at other wavelengths.
+    /// [`SkyTablesError`] for a sky at other wavelengths, and for a view that the fit cannot be solved for.
     pub fn new(view: &View, fit: &ColourFit, space: RgbSpace) -> Result<Self, SkyTablesError> {
         let grid = view.sky().grid();
         if grid.wavelengths_nm() != WAVELENGTHS_NM {
@@ -92,7 +97,8 @@ impl SkyTables {
             haze: scale(&sky.1),
         };
         let aerial = aerial(&split, &place, &sky_view);
-        let (radiance_weights, transmittance_weights) = rgb_weights(view, fit, space);
+        let [radiance_weights, transmittance_weights, disc_weights] =
+            rgb_weights(view, fit, space)?;
         Ok(Self {
             view: sky_view,
             scales,
@@ -104,7 +110,23 @@ impl SkyTables {
             phase: phase(&split),
             radiance_weights,
             transmittance_weights,
+            disc_weights,
         })
+    }
+
+    /// Red, green and blue of the sky, or of the ground below the horizon, along a unit vector, without the sun's disc, cd/m^2: what the
+    /// shaders compute.
+    pub fn rgb_radiance(&self, direction: Vec3) -> Vec3 {
+        let radiance = twin::sky_radiance(
+            self.view,
+            self.scales,
+            &self.sky_smooth,
+            &self.sky_haze,
+            &self.phase,
+            LinearSampler,
+            direction,
+        );
+        rgb_from_spectrum(self.radiance_weights, radiance)
     }
 }
 
@@ -283,12 +305,12 @@ impl MapLanes for Vec4 {
     }
 }
 
-/// Weights to red, green and blue: of radiance, and of transmittance.
-fn rgb_weights(view: &View, fit: &ColourFit, space: RgbSpace) -> (RgbWeights, RgbWeights) {
-    let xyz = fit.xyz_weights(view);
+/// Weights to red, green and blue: of radiance, of transmittance, and of the sun's disc.
+fn rgb_weights(view: &View, fit: &ColourFit, space: RgbSpace) -> Result<[RgbWeights; 3], SkyError> {
+    let xyz = fit.xyz_weights(view)?;
     let from_xyz = space.from_xyz_matrix();
-    let columns = xyz.map(|column| rgb::apply(&from_xyz, column));
-    let solar = view.sky().grid().solar_irradiance();
+    let [radiance, sunlight, disc] = [xyz.radiance, xyz.sunlight, xyz.disc]
+        .map(|xyz| xyz.map(|column| rgb::apply(&from_xyz, column)));
     let weights = |of: &dyn Fn(usize, usize) -> f64| {
         let row = |c: usize| Vec4::from_array(std::array::from_fn(|k| of(c, k) as f32));
         RgbWeights {
@@ -297,8 +319,13 @@ fn rgb_weights(view: &View, fit: &ColourFit, space: RgbSpace) -> (RgbWeights, Rg
             blue: row(2),
         }
     };
-    let radiance = weights(&|c, k| columns[k][c] / solar[k].max(f64::MIN_POSITIVE));
-    let total = |c: usize| columns.iter().map(|column| column[c]).sum::<f64>();
-    let transmittance = weights(&|c, k| columns[k][c] / total(c));
-    (radiance, transmittance)
+    let solar = view.sky().grid().solar_irradiance();
+    let per_radiance =
+        |light: &[[f64; 3]; 4]| weights(&|c, k| light[k][c] / solar[k].max(f64::MIN_POSITIVE));
+    let total = |c: usize| sunlight.iter().map(|column| column[c]).sum::<f64>();
+    Ok([
+        per_radiance(&radiance),
+        weights(&|c, k| sunlight[k][c] / total(c)),
+        per_radiance(&disc),
+    ])
 }

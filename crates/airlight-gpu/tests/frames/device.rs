@@ -127,6 +127,20 @@ impl Gpu {
         before: [f64; 3],
         distances_m: Option<&dyn Fn(u32, u32) -> f32>,
     ) -> Vec<[f32; 3]> {
+        let camera = frame.camera(exposure);
+        self.draw_program(frame, before, distances_m, |encoder, target, depth| {
+            renderer.record(encoder, target, depth, &camera);
+        })
+    }
+
+    /// Pixels of a program's frame over which `record` draws.
+    pub fn draw_program(
+        &self,
+        frame: &Frame,
+        before: [f64; 3],
+        distances_m: Option<&dyn Fn(u32, u32) -> f32>,
+        record: impl FnOnce(&mut wgpu::CommandEncoder, &wgpu::TextureView, &wgpu::TextureView),
+    ) -> Vec<[f32; 3]> {
         let side = frame.side;
         let texture = |format, usage| {
             self.device.create_texture(&wgpu::TextureDescriptor {
@@ -164,12 +178,7 @@ impl Gpu {
             &depths,
             side,
         );
-        renderer.record(
-            &mut encoder,
-            &target_view,
-            &depth_view,
-            &frame.camera(exposure),
-        );
+        record(&mut encoder, &target_view, &depth_view);
         let bytes_per_row = (side * 8).next_multiple_of(256);
         let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
             label: None,

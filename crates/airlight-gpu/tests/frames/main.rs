@@ -286,10 +286,10 @@ fn fog_in_a_frame_is_that_of_the_library() {
             gpu.draw(renderer, &frame, 1e-4, [0.5; 3], Some(&distance_m))
         };
         let clear = draw(&mut renderer);
+        let lighting = *renderer.lighting().unwrap();
         renderer.set_fog(Some(fog.clone())).unwrap();
         let foggy = draw(&mut renderer);
         assert_eq!(renderer.work().tables, 2);
-        let lighting = renderer.lighting().unwrap();
         let lighting = FogLighting {
             sun: Some(DirectionalLight {
                 direction: sun,
@@ -324,6 +324,54 @@ fn fog_in_a_frame_is_that_of_the_library() {
     }
 }
 
+/// The light below a fog, against what the library's fog lets fall on the ground. That fog is lit evenly by the sky, whose light comes
+/// from beside the horizon under a low sun.
+#[test]
+fn lighting_in_fog_is_that_of_the_library() {
+    let gpu = Gpu::new();
+    for sun_deg in [50.0, 10.0] {
+        let sun = axes::direction(140.0, sun_deg);
+        let mut renderer = renderer(&gpu, Preset::Clear, sun_deg, 0.0);
+        renderer.update(0.0, sun).unwrap();
+        let clear = *renderer.lighting().unwrap();
+        let in_fog = |renderer: &mut SkyRenderer, extinction_per_m: f32| {
+            let mut fog = valley_fog();
+            fog.layer.extinction_per_m = [extinction_per_m; 3];
+            renderer.set_fog(Some(fog.clone())).unwrap();
+            renderer.update(0.0, sun).unwrap();
+            let light = FogLighting {
+                sun: Some(DirectionalLight {
+                    direction: sun,
+                    irradiance: clear.sun_illuminance_lx.to_array(),
+                }),
+                ambient: (clear.sky_illuminance_lx(Vec3::Y) / std::f32::consts::PI).to_array(),
+                ground_albedo: fog.ground_albedo,
+            };
+            let fog = RgbFog::new(&[fog.layer], Ground::FLAT, &light, FogScattering::Multiple);
+            let fog = fog.unwrap();
+            let on_ground = Vec3::from_array(fog.ground_irradiance().unwrap());
+            let to_sun = fog.path(0.0, sun, f64::INFINITY).transmittance;
+            (*renderer.lighting().unwrap(), on_ground, to_sun)
+        };
+        let horizontal = |light: &airlight_gpu::Lighting| {
+            light.sun_illuminance_lx * sun.y as f32 + light.sky_illuminance_lx(Vec3::Y)
+        };
+        for extinction_per_m in [0.0196, 0.002, 1e-7] {
+            let (light, on_ground, to_sun) = in_fog(&mut renderer, extinction_per_m);
+            let dimmed = clear.sun_illuminance_lx * Vec3::from_array(to_sun);
+            assert!(
+                (light.sun_illuminance_lx / dimmed - 1.0)
+                    .abs()
+                    .max_element()
+                    < 1e-4
+            );
+            let error = (horizontal(&light) / on_ground - 1.0).abs().max_element();
+            println!("sun {sun_deg}, {extinction_per_m} 1/m: {error:.4}");
+            assert!(error < 0.1, "{error}");
+        }
+    }
+}
+
 #[test]
 fn the_sun_shines_where_it_is_and_only_there() {
     let gpu = Gpu::new();
@@ -347,6 +395,12 @@ fn the_sun_shines_where_it_is_and_only_there() {
         let inside = direction.angle_between(sun) < view.disc().angular_radius_rad;
         assert_eq!(luminance(k) > 0.01, inside, "{direction}");
     }
+}
+
+#[test]
+fn the_example_that_adds_a_sky_is_short() {
+    let lines = include_str!("../../examples/add_sky.rs").lines().count();
+    assert!(lines <= 60, "{lines} lines");
 }
 
 #[test]
