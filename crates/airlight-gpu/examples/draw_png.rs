@@ -3,6 +3,7 @@
 //! [VISIBILITY_M]]]`. The sun is in the south (180); the visibility is that of a fog that thins by e in 100 m.
 
 #[path = "../tests/frames/device.rs"]
+#[allow(dead_code)] // Tests use the rest.
 mod device;
 mod picture;
 

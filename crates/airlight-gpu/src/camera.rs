@@ -2,6 +2,9 @@
 
 use glam::Mat4;
 
+/// Place of the factor of the sun's disc among the numbers.
+const DISC: usize = 18;
+
 /// Where the pixels of a frame look.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
@@ -18,7 +21,14 @@ impl Camera {
     /// The numbers of the shader's struct `Camera`.
     pub(crate) fn numbers(&self) -> Vec<f32> {
         let mut numbers = self.world_from_clip.to_cols_array().to_vec();
-        numbers.extend([self.exposure, self.far_depth, 0.0, 0.0]);
+        numbers.extend([self.exposure, self.far_depth, 1.0, 0.0]);
+        numbers
+    }
+
+    /// The same for a frame without the sun's disc.
+    pub(crate) fn numbers_without_disc(&self) -> Vec<f32> {
+        let mut numbers = self.numbers();
+        numbers[DISC] = 0.0;
         numbers
     }
 }

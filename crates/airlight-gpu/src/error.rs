@@ -30,6 +30,9 @@ pub enum SkyRendererError {
         "expected a target format that the device can blend, got {0:?}; try TextureFormat::Rgba16Float"
     )]
     Format(wgpu::TextureFormat),
+    /// The faces of an environment map cannot have this size.
+    #[error("expected faces with a power of two from 8 to 2048 texels on a side, got {0}")]
+    EnvironmentSide(u32),
     /// The height of the eye is not a number.
     #[error("expected a finite height of the eye, got {0} m")]
     Height(f64),

@@ -4,6 +4,8 @@ struct Camera {
     world_from_clip: mat4x4<f32>,
     exposure: f32,
     far_depth: f32,
+    /// 1 with the sun's disc, 0 without.
+    disc: f32,
 }
 
 @group(1) @binding(0) var<uniform> camera: Camera;

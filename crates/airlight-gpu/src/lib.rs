@@ -4,11 +4,13 @@
 //! the air scatters, and fills the rest of the frame with the sky, the planet's ground and the sun. The colours come from tables of a
 //! sky that the `airlight` solver computes with all orders of scattering, as does the light of a [`Fog`]; the
 //! shader functions are those of `airlight-shaders`.
-//! Nothing is computed again when only the camera turns. [`Lighting`] is the light of sun and sky for the program's own surfaces.
+//! Nothing is computed again when only the camera turns. [`Lighting`] is the light of sun and sky for the program's own surfaces,
+//! [`EnvironmentMap`] what they reflect.
 //!
 //! The eye is the origin, y is up at the eye, distances are in metres, light is in cd/m^2 times an exposure.
 
 mod camera;
+mod environment;
 mod error;
 mod fog;
 mod gpu_tables;
@@ -18,6 +20,7 @@ mod renderer;
 mod sky;
 
 pub use camera::Camera;
+pub use environment::EnvironmentMap;
 pub use error::SkyRendererError;
 pub use fog::Fog;
 pub use lighting::Lighting;

@@ -1,6 +1,7 @@
 //! [`SkyRenderer`].
 
 use crate::camera::Camera;
+use crate::environment::EnvironmentMap;
 use crate::error::SkyRendererError;
 use crate::fog::{self, Fog};
 use crate::gpu_tables::bytes;
@@ -254,13 +255,76 @@ impl SkyRenderer {
         depth: &wgpu::TextureView,
         camera: &Camera,
     ) {
+        if let Some(drawn) = &self.drawn {
+            let passes = [&self.sky_pass, &self.fog_pass];
+            self.draw(
+                drawn,
+                passes,
+                encoder,
+                (target, wgpu::LoadOp::Load),
+                depth,
+                &camera.numbers(),
+            );
+            self.work.frames += 1;
+        }
+    }
+
+    /// A map of light from all directions, with faces of `side` texels on a side: a power of two from 8 to 2048.
+    ///
+    /// # Errors
+    /// [`SkyRendererError::EnvironmentSide`] for another side.
+    pub fn environment_map(&self, side: u32) -> Result<EnvironmentMap, SkyRendererError> {
+        let groups = [&self.sky_layout, &self.fog_layout].map(|first| [first, &self.frame_layout]);
+        let shaders = [sky_shader(), fog_shader()];
+        EnvironmentMap::new(&self.device, side, groups, [&shaders[0], &shaders[1]])
+    }
+
+    /// Records the light of sky, ground and fog around the eye into a map, in cd/m^2 times an exposure. Before the first tables it records
+    /// nothing.
+    pub fn record_environment(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        map: &mut EnvironmentMap,
+        exposure: f32,
+    ) {
         let Some(drawn) = &self.drawn else {
             return;
         };
+        map.clear_depth(encoder);
+        let black = wgpu::LoadOp::Clear(wgpu::Color::BLACK);
+        for (target, world_from_clip) in map.faces() {
+            let camera = Camera {
+                world_from_clip,
+                exposure,
+                far_depth: 0.0,
+            };
+            let numbers = camera.numbers_without_disc();
+            self.draw(
+                drawn,
+                map.passes(),
+                encoder,
+                (&target, black),
+                map.depth(),
+                &numbers,
+            );
+        }
+        map.filter(&self.device, encoder);
+    }
+
+    /// Records the passes of a frame.
+    fn draw(
+        &self,
+        drawn: &Drawn,
+        [sky_pass, fog_pass]: [&Pass; 2],
+        encoder: &mut wgpu::CommandEncoder,
+        (target, load): (&wgpu::TextureView, wgpu::LoadOp<wgpu::Color>),
+        depth: &wgpu::TextureView,
+        camera: &[f32],
+    ) {
         // A buffer for each frame, as an encoder may record several.
         let camera = self.device.create_buffer_init(&BufferInitDescriptor {
             label: Some("airlight camera"),
-            contents: &bytes(&camera.numbers()),
+            contents: &bytes(camera),
             usage: wgpu::BufferUsages::UNIFORM,
         });
         let frame = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
@@ -284,7 +348,7 @@ impl SkyRenderer {
                 depth_slice: None,
                 resolve_target: None,
                 ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Load,
+                    load,
                     store: wgpu::StoreOp::Store,
                 },
             })],
@@ -294,12 +358,10 @@ impl SkyRenderer {
             multiview_mask: None,
         });
         pass.set_bind_group(1, &frame, &[]);
-        self.sky_pass.draw(&mut pass, &drawn.sky);
+        sky_pass.draw(&mut pass, &drawn.sky);
         if let Some((fog, _)) = &drawn.fog {
-            self.fog_pass.draw(&mut pass, fog);
+            fog_pass.draw(&mut pass, fog);
         }
-        drop(pass);
-        self.work.frames += 1;
     }
 
     /// What has been computed so far.

@@ -38,7 +38,7 @@ fn is_ground(seen: Pixel) -> bool {
 /// Red, green and blue of the sun's disc, dimmed by the air.
 fn sun_disc(seen: Pixel) -> vec3<f32> {
     let one_minus_cos = one_minus_cos_between(seen.direction, sky.view.sun);
-    if one_minus_cos >= sky.disc_one_minus_cos || is_ground(seen) {
+    if camera.disc == 0.0 || one_minus_cos >= sky.disc_one_minus_cos || is_ground(seen) {
         return vec3<f32>(0.0);
     }
     let mu = sqrt(1.0 - one_minus_cos / sky.disc_one_minus_cos);

@@ -9,6 +9,7 @@ use airlight::optics::PhaseFunction;
 use airlight::sky::{Sky, SkySettings, SunCoverage, TableChannels, View};
 use airlight::spectrum::{RgbSpace, WavelengthGrid, difference};
 use airlight_gpu::{Fog, SkyRenderer, SkyRendererError, SkyRendererSettings};
+use airlight_shaders::{ColourFit, SkyTables};
 use device::{FORMAT, Frame, Gpu};
 use glam::{DVec3, Vec3};
 use std::fmt;
@@ -394,6 +395,81 @@ fn the_sun_shines_where_it_is_and_only_there() {
         let direction = frame.direction(k as u32 % side, k as u32 / side).as_dvec3();
         let inside = direction.angle_between(sun) < view.disc().angular_radius_rad;
         assert_eq!(luminance(k) > 0.01, inside, "{direction}");
+    }
+}
+
+/// Directions over the sphere, evenly, away from the horizon.
+fn scattered() -> impl Iterator<Item = Vec3> {
+    (0..400).map(|k| {
+        let y = 1.0 - 2.0 * (f64::from(k) + 0.5) / 400.0;
+        let (sin, cos) = (2.399_963_229_728_653 * f64::from(k)).sin_cos();
+        let level = (1.0 - y * y).sqrt();
+        DVec3::new(level * cos, y, level * sin).as_vec3()
+    })
+}
+
+/// Mean reflected by a rough surface (GGX), by a sum over half vectors.
+fn reflected(radiance: &dyn Fn(Vec3) -> Vec3, normal: Vec3, roughness: f32) -> Vec3 {
+    const COUNT: u32 = 40_000;
+    let across = normal.any_orthonormal_vector();
+    let other = normal.cross(across);
+    let squared = roughness.powi(4);
+    let mut sum = (Vec3::ZERO, 0.0);
+    for k in 0..COUNT {
+        let u = (k as f32 + 0.5) / COUNT as f32;
+        let cos = ((1.0 - u) / (1.0 + (squared - 1.0) * u)).sqrt();
+        let azimuth = (2.399_963_229_728_653 * f64::from(k)) as f32;
+        let level = across * azimuth.cos() + other * azimuth.sin();
+        let half = level * (1.0 - cos * cos).max(0.0).sqrt() + normal * cos;
+        let light = 2.0 * cos * half - normal;
+        let weight = light.dot(normal).max(0.0);
+        sum = (sum.0 + weight * radiance(light), sum.1 + weight);
+    }
+    sum.0 / sum.1
+}
+
+#[test]
+fn an_environment_map_holds_what_surfaces_reflect() {
+    let gpu = Gpu::new();
+    let (sun_deg, height_m) = (35.0, 2.0);
+    let sun = axes::direction(140.0, sun_deg);
+    let mut renderer = renderer(&gpu, Preset::Clear, sun_deg, height_m);
+    assert!(matches!(
+        renderer.environment_map(100),
+        Err(SkyRendererError::EnvironmentSide(100))
+    ));
+    renderer.update(height_m, sun).unwrap();
+    let air = Preset::Clear.atmosphere();
+    let fit = ColourFit::new(&air, SunCoverage::near(sun_deg, height_m)).unwrap();
+    let view = renderer.sky().view(height_m, sun);
+    let tables = SkyTables::new(&view, &fit, RgbSpace::Srgb).unwrap();
+    let right = |d: Vec3| tables.rgb_radiance(d);
+    let exposure = 1e-4;
+    let mut map = renderer.environment_map(128).unwrap();
+    assert_eq!(map.levels(), 5);
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    renderer.record_environment(&mut encoder, &mut map, exposure);
+    gpu.queue.submit([encoder.finish()]);
+    let mean = right(Vec3::Y).y;
+    for level in 0..map.levels() {
+        let roughness = level as f32 / 4.0;
+        let directions: Vec<Vec3> = match level {
+            // Texels across the horizon hold both sides.
+            0 => scattered().filter(|d| d.y.abs() > 0.05).collect(),
+            _ => scattered().step_by(25).collect(),
+        };
+        let got = gpu.sample_cube(map.view(), &directions, level as f32);
+        let errors = directions.iter().zip(got).map(|(&d, got)| {
+            let want = match level {
+                0 => right(d),
+                _ => reflected(&right, d, roughness),
+            };
+            let error = (got / exposure - want).abs().max_element() / want.y.max(mean);
+            (error, d)
+        });
+        let worst = errors.fold((0.0, Vec3::ZERO), |a, b| if b.0 > a.0 { b } else { a });
+        println!("level {level}: {:.4} at {}", worst.0, worst.1);
+        assert!(worst.0 < 0.05, "level {level}");
     }
 }
 

@@ -1,0 +1,359 @@
+//! [`EnvironmentMap`].
+
+use crate::error::SkyRendererError;
+use crate::gpu_tables::bytes;
+use crate::pass::Pass;
+use glam::{Mat4, Vec3, Vec4};
+use wgpu::util::{BufferInitDescriptor, DeviceExt};
+
+/// Format of the map.
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+/// Texels on a side of the smallest level.
+const SMALLEST: u32 = 8;
+/// Texels on a side of the largest map.
+const LARGEST: u32 = 2048;
+/// Right, up and forward of the faces of a cube, in the order of its layers.
+const FACES: [[Vec3; 3]; 6] = [
+    [Vec3::NEG_Z, Vec3::Y, Vec3::X],
+    [Vec3::Z, Vec3::Y, Vec3::NEG_X],
+    [Vec3::X, Vec3::NEG_Z, Vec3::Y],
+    [Vec3::X, Vec3::Z, Vec3::NEG_Y],
+    [Vec3::X, Vec3::Y, Vec3::Z],
+    [Vec3::NEG_X, Vec3::Y, Vec3::NEG_Z],
+];
+
+/// A cube of light from all directions for reflections, which [`SkyRenderer::record_environment`](crate::SkyRenderer::record_environment)
+/// fills: the sky, the ground of the planet and the fog, without the sun's disc, whose light is that of
+/// [`Lighting::sun_illuminance_lx`](crate::Lighting::sun_illuminance_lx).
+///
+/// Level 0 is what a mirror reflects; level *k* of *n* is what a surface of microfacets (GGX) with the roughness *k* / (*n* - 1), the
+/// square root of its alpha, reflects when seen from above: the first sum of the split-sum approximation.
+#[derive(Debug)]
+pub struct EnvironmentMap {
+    texture: wgpu::Texture,
+    view: wgpu::TextureView,
+    /// Level 0, and its means over ever larger texels.
+    source: wgpu::Texture,
+    /// Depth without geometry.
+    depth: wgpu::TextureView,
+    is_depth_clear: bool,
+    halve: wgpu::RenderPipeline,
+    reflect_rough: wgpu::RenderPipeline,
+    layout: wgpu::BindGroupLayout,
+    sampler: wgpu::Sampler,
+    sky_pass: Pass,
+    fog_pass: Pass,
+}
+
+/// One of the passes that filter the map.
+struct FilterPass<'a> {
+    pipeline: &'a wgpu::RenderPipeline,
+    from: &'a wgpu::TextureView,
+    into: &'a wgpu::Texture,
+    level: u32,
+    roughness: f32,
+}
+
+impl EnvironmentMap {
+    /// A map of faces with `side` texels on a side.
+    pub(crate) fn new(
+        device: &wgpu::Device,
+        side: u32,
+        [sky_groups, fog_groups]: [[&wgpu::BindGroupLayout; 2]; 2],
+        [sky, fog]: [&str; 2],
+    ) -> Result<Self, SkyRendererError> {
+        if !side.is_power_of_two() || !(SMALLEST..=LARGEST).contains(&side) {
+            return Err(SkyRendererError::EnvironmentSide(side));
+        }
+        let cube = |levels: u32, usage: wgpu::TextureUsages| {
+            device.create_texture(&wgpu::TextureDescriptor {
+                label: Some("airlight environment"),
+                size: wgpu::Extent3d {
+                    width: side,
+                    height: side,
+                    depth_or_array_layers: 6,
+                },
+                mip_level_count: levels,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format: FORMAT,
+                usage: usage
+                    | wgpu::TextureUsages::TEXTURE_BINDING
+                    | wgpu::TextureUsages::RENDER_ATTACHMENT,
+                view_formats: &[],
+            })
+        };
+        let levels = side.ilog2() - SMALLEST.ilog2() + 1;
+        let texture = cube(
+            levels,
+            wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::COPY_SRC,
+        );
+        let source = cube(side.ilog2() + 1, wgpu::TextureUsages::COPY_SRC);
+        let depth = device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("airlight environment depth"),
+            size: wgpu::Extent3d {
+                width: side,
+                height: side,
+                depth_or_array_layers: 1,
+            },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Depth32Float,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::RENDER_ATTACHMENT,
+            view_formats: &[],
+        });
+        let layout = layout(device);
+        let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("airlight environment"),
+            source: wgpu::ShaderSource::Wgsl(include_str!("environment.wgsl").into()),
+        });
+        let pipeline = |entry| filter_pipeline(device, &layout, &shader, entry);
+        let [halve, reflect_rough] = [pipeline("halve"), pipeline("reflect_rough")];
+        Ok(Self {
+            view: cube_view(&texture, 0, None),
+            texture,
+            source,
+            depth: depth.create_view(&wgpu::TextureViewDescriptor::default()),
+            is_depth_clear: false,
+            halve,
+            reflect_rough,
+            layout,
+            sampler: device.create_sampler(&wgpu::SamplerDescriptor {
+                label: Some("airlight environment"),
+                mag_filter: wgpu::FilterMode::Linear,
+                min_filter: wgpu::FilterMode::Linear,
+                mipmap_filter: wgpu::MipmapFilterMode::Linear,
+                ..Default::default()
+            }),
+            sky_pass: Pass::new(device, sky_groups, sky, FORMAT),
+            fog_pass: Pass::new(device, fog_groups, fog, FORMAT),
+        })
+    }
+
+    /// The cube, as `Rgba16Float`, with all levels.
+    pub fn view(&self) -> &wgpu::TextureView {
+        &self.view
+    }
+
+    /// The texture of the cube.
+    pub fn texture(&self) -> &wgpu::Texture {
+        &self.texture
+    }
+
+    /// Number of levels.
+    pub fn levels(&self) -> u32 {
+        self.texture.mip_level_count()
+    }
+
+    /// The passes that draw into faces.
+    pub(crate) fn passes(&self) -> [&Pass; 2] {
+        [&self.sky_pass, &self.fog_pass]
+    }
+
+    /// The depth of faces without geometry.
+    pub(crate) fn depth(&self) -> &wgpu::TextureView {
+        &self.depth
+    }
+
+    /// Clears the depth the first time.
+    pub(crate) fn clear_depth(&mut self, encoder: &mut wgpu::CommandEncoder) {
+        if !std::mem::replace(&mut self.is_depth_clear, true) {
+            encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                label: Some("airlight environment depth"),
+                color_attachments: &[],
+                depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                    view: &self.depth,
+                    depth_ops: Some(wgpu::Operations {
+                        load: wgpu::LoadOp::Clear(0.0),
+                        store: wgpu::StoreOp::Store,
+                    }),
+                    stencil_ops: None,
+                }),
+                timestamp_writes: None,
+                occlusion_query_set: None,
+                multiview_mask: None,
+            });
+        }
+    }
+
+    /// Faces to draw the light into, with the matrices from clip space to the world, for a depth that is 0 without geometry.
+    pub(crate) fn faces(&self) -> impl Iterator<Item = (wgpu::TextureView, Mat4)> {
+        (0..6).map(|layer| {
+            let [right, up, forward] = FACES[layer as usize];
+            let world_from_clip = Mat4::from_cols(
+                right.extend(0.0),
+                up.extend(0.0),
+                Vec4::ZERO,
+                forward.extend(1.0),
+            );
+            (face_view(&self.source, layer, 0), world_from_clip)
+        })
+    }
+
+    /// Fills the map from the faces.
+    pub(crate) fn filter(&self, device: &wgpu::Device, encoder: &mut wgpu::CommandEncoder) {
+        for level in 1..self.source.mip_level_count() {
+            let pass = FilterPass {
+                pipeline: &self.halve,
+                from: &cube_view(&self.source, level - 1, Some(1)),
+                into: &self.source,
+                level,
+                roughness: 0.0,
+            };
+            self.record(device, encoder, &pass);
+        }
+        encoder.copy_texture_to_texture(
+            self.source.as_image_copy(),
+            self.texture.as_image_copy(),
+            self.texture.size(),
+        );
+        let whole = cube_view(&self.source, 0, None);
+        for level in 1..self.levels() {
+            let pass = FilterPass {
+                pipeline: &self.reflect_rough,
+                from: &whole,
+                into: &self.texture,
+                level,
+                roughness: level as f32 / (self.levels() - 1) as f32,
+            };
+            self.record(device, encoder, &pass);
+        }
+    }
+
+    /// Draws the six faces of a level.
+    fn record(
+        &self,
+        device: &wgpu::Device,
+        encoder: &mut wgpu::CommandEncoder,
+        pass: &FilterPass<'_>,
+    ) {
+        for (layer, axes) in (0..6).zip(FACES) {
+            let mut numbers: Vec<f32> =
+                axes.iter().flat_map(|v| v.extend(0.0).to_array()).collect();
+            let side = self.source.width() as f32;
+            numbers.extend([pass.roughness, side, 0.0, 0.0]);
+            let numbers = device.create_buffer_init(&BufferInitDescriptor {
+                label: Some("airlight environment"),
+                contents: &bytes(&numbers),
+                usage: wgpu::BufferUsages::UNIFORM,
+            });
+            let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("airlight environment"),
+                layout: &self.layout,
+                entries: &[
+                    wgpu::BindGroupEntry {
+                        binding: 0,
+                        resource: numbers.as_entire_binding(),
+                    },
+                    wgpu::BindGroupEntry {
+                        binding: 1,
+                        resource: wgpu::BindingResource::Sampler(&self.sampler),
+                    },
+                    wgpu::BindGroupEntry {
+                        binding: 2,
+                        resource: wgpu::BindingResource::TextureView(pass.from),
+                    },
+                ],
+            });
+            let target = face_view(pass.into, layer, pass.level);
+            let mut drawing = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                label: Some("airlight environment"),
+                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                    view: &target,
+                    depth_slice: None,
+                    resolve_target: None,
+                    ops: wgpu::Operations {
+                        load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                        store: wgpu::StoreOp::Store,
+                    },
+                })],
+                depth_stencil_attachment: None,
+                timestamp_writes: None,
+                occlusion_query_set: None,
+                multiview_mask: None,
+            });
+            drawing.set_pipeline(pass.pipeline);
+            drawing.set_bind_group(0, &group, &[]);
+            drawing.draw(0..3, 0..1);
+        }
+    }
+}
+
+fn cube_view(texture: &wgpu::Texture, level: u32, levels: Option<u32>) -> wgpu::TextureView {
+    texture.create_view(&wgpu::TextureViewDescriptor {
+        dimension: Some(wgpu::TextureViewDimension::Cube),
+        base_mip_level: level,
+        mip_level_count: levels,
+        ..Default::default()
+    })
+}
+
+fn face_view(texture: &wgpu::Texture, layer: u32, level: u32) -> wgpu::TextureView {
+    texture.create_view(&wgpu::TextureViewDescriptor {
+        dimension: Some(wgpu::TextureViewDimension::D2),
+        base_mip_level: level,
+        mip_level_count: Some(1),
+        base_array_layer: layer,
+        array_layer_count: Some(1),
+        ..Default::default()
+    })
+}
+
+fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::FRAGMENT,
+        ty,
+        count: None,
+    };
+    let uniform = wgpu::BindingType::Buffer {
+        ty: wgpu::BufferBindingType::Uniform,
+        has_dynamic_offset: false,
+        min_binding_size: None,
+    };
+    let cube = wgpu::BindingType::Texture {
+        sample_type: wgpu::TextureSampleType::Float { filterable: true },
+        view_dimension: wgpu::TextureViewDimension::Cube,
+        multisampled: false,
+    };
+    let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("airlight environment"),
+        entries: &[entry(0, uniform), entry(1, sampler), entry(2, cube)],
+    })
+}
+
+fn filter_pipeline(
+    device: &wgpu::Device,
+    layout: &wgpu::BindGroupLayout,
+    shader: &wgpu::ShaderModule,
+    entry: &str,
+) -> wgpu::RenderPipeline {
+    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some("airlight environment"),
+        bind_group_layouts: &[Some(layout)],
+        immediate_size: 0,
+    });
+    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some(entry),
+        layout: Some(&layout),
+        vertex: wgpu::VertexState {
+            module: shader,
+            entry_point: Some("corner"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            buffers: &[],
+        },
+        primitive: wgpu::PrimitiveState::default(),
+        depth_stencil: None,
+        multisample: wgpu::MultisampleState::default(),
+        fragment: Some(wgpu::FragmentState {
+            module: shader,
+            entry_point: Some(entry),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            targets: &[Some(FORMAT.into())],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}
