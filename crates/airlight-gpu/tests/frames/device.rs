@@ -11,14 +11,17 @@ pub const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 const NEAR_M: f32 = 0.1;
 
 /// Writes the depth of a storage buffer.
-const DEPTH: &str = "
+const GEOMETRY: &str = "
 @group(0) @binding(0) var<storage, read> depths: array<f32>;
-@group(0) @binding(1) var<uniform> width: u32;
+struct Surface { colour: vec3<f32>, width: u32 }
+@group(0) @binding(1) var<uniform> surface: Surface;
+struct Out { @location(0) colour: vec4<f32>, @builtin(frag_depth) depth: f32 }
 @vertex fn corner(@builtin(vertex_index) i: u32) -> @builtin(position) vec4<f32> {
     return vec4<f32>(vec2<f32>(f32(i & 1u), f32(i >> 1u)) * 4.0 - 1.0, 0.0, 1.0);
 }
-@fragment fn depth(@builtin(position) p: vec4<f32>) -> @builtin(frag_depth) f32 {
-    return depths[u32(p.y) * width + u32(p.x)];
+@fragment fn draw(@builtin(position) p: vec4<f32>) -> Out {
+    let depth = depths[u32(p.y) * surface.width + u32(p.x)];
+    return Out(vec4<f32>(select(vec3<f32>(0.0), surface.colour, depth > 0.0), 1.0), depth);
 }";
 
 /// Samples a cube in directions.
@@ -130,7 +133,7 @@ impl Gpu {
         }
     }
 
-    /// Pixels of a frame over the colour `before`, with geometry at the distances, or none.
+    /// Pixels of a frame with geometry of the colour `before` at the distances, or none.
     pub fn draw(
         &self,
         renderer: &mut SkyRenderer,
@@ -145,7 +148,7 @@ impl Gpu {
         })
     }
 
-    /// Pixels of a program's frame over which `record` draws.
+    /// Pixels of a program's frame, with geometry of one colour before black, over which `record` draws.
     pub fn draw_program(
         &self,
         frame: &Frame,
@@ -315,7 +318,7 @@ impl Gpu {
         encoder: &mut wgpu::CommandEncoder,
         target: &wgpu::TextureView,
         depth: &wgpu::TextureView,
-        [r, g, b]: [f64; 3],
+        colour: [f64; 3],
         depths: &[f32],
         side: u32,
     ) {
@@ -323,7 +326,7 @@ impl Gpu {
             .device
             .create_shader_module(wgpu::ShaderModuleDescriptor {
                 label: None,
-                source: wgpu::ShaderSource::Wgsl(DEPTH.into()),
+                source: wgpu::ShaderSource::Wgsl(GEOMETRY.into()),
             });
         let pipeline = self
             .device
@@ -352,7 +355,7 @@ impl Gpu {
                     targets: &[Some(wgpu::ColorTargetState {
                         format: FORMAT,
                         blend: None,
-                        write_mask: wgpu::ColorWrites::empty(),
+                        write_mask: wgpu::ColorWrites::ALL,
                     })],
                 }),
                 multiview_mask: None,
@@ -368,9 +371,9 @@ impl Gpu {
         };
         let bytes: Vec<u8> = depths.iter().flat_map(|d| d.to_ne_bytes()).collect();
         let depths = buffer(&bytes, wgpu::BufferUsages::STORAGE);
-        let mut width = side.to_ne_bytes().to_vec();
-        width.resize(16, 0);
-        let width = buffer(&width, wgpu::BufferUsages::UNIFORM);
+        let colour = colour.iter().flat_map(|c| (*c as f32).to_ne_bytes());
+        let surface: Vec<u8> = colour.chain(side.to_ne_bytes()).collect();
+        let surface = buffer(&surface, wgpu::BufferUsages::UNIFORM);
         let group = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: None,
             layout: &pipeline.get_bind_group_layout(0),
@@ -381,7 +384,7 @@ impl Gpu {
                 },
                 wgpu::BindGroupEntry {
                     binding: 1,
-                    resource: width.as_entire_binding(),
+                    resource: surface.as_entire_binding(),
                 },
             ],
         });
@@ -392,7 +395,7 @@ impl Gpu {
                 depth_slice: None,
                 resolve_target: None,
                 ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a: 1.0 }),
+                    load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
                     store: wgpu::StoreOp::Store,
                 },
             })],
