@@ -1,10 +1,9 @@
 //! [`EnvironmentMap`].
 
 use crate::error::SkyRendererError;
-use crate::gpu_tables::bytes;
-use crate::pass::Pass;
+use crate::gpu_tables;
+use crate::pass::{CORNER, Pass, covering};
 use glam::{Mat4, Vec3, Vec4};
-use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
 /// Format of the map.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
@@ -37,21 +36,46 @@ pub struct EnvironmentMap {
     /// Depth without geometry.
     depth: wgpu::TextureView,
     is_depth_clear: bool,
-    halve: wgpu::RenderPipeline,
-    reflect_rough: wgpu::RenderPipeline,
-    layout: wgpu::BindGroupLayout,
-    sampler: wgpu::Sampler,
+    /// Passes that fill the smaller levels of the source.
+    halve: Filter,
+    /// Passes that fill the rough levels from the source.
+    reflect_rough: Filter,
     sky_pass: Pass,
     fog_pass: Pass,
 }
 
-/// One of the passes that filter the map.
-struct FilterPass<'a> {
-    pipeline: &'a wgpu::RenderPipeline,
-    from: &'a wgpu::TextureView,
-    into: &'a wgpu::Texture,
-    level: u32,
-    roughness: f32,
+/// Passes with one pipeline.
+#[derive(Debug)]
+struct Filter {
+    pipeline: wgpu::RenderPipeline,
+    /// A target for each pass, and what it draws from.
+    faces: Vec<(wgpu::TextureView, wgpu::BindGroup)>,
+}
+
+impl Filter {
+    fn record(&self, encoder: &mut wgpu::CommandEncoder) {
+        for (target, group) in &self.faces {
+            let mut drawing = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+                label: Some("airlight environment"),
+                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                    view: target,
+                    depth_slice: None,
+                    resolve_target: None,
+                    ops: wgpu::Operations {
+                        load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                        store: wgpu::StoreOp::Store,
+                    },
+                })],
+                depth_stencil_attachment: None,
+                timestamp_writes: None,
+                occlusion_query_set: None,
+                multiview_mask: None,
+            });
+            drawing.set_pipeline(&self.pipeline);
+            drawing.set_bind_group(0, group, &[]);
+            drawing.draw(0..3, 0..1);
+        }
+    }
 }
 
 impl EnvironmentMap {
@@ -103,13 +127,47 @@ impl EnvironmentMap {
             usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::RENDER_ATTACHMENT,
             view_formats: &[],
         });
-        let layout = layout(device);
+        let layout = gpu_tables::layout(device, &[wgpu::TextureViewDimension::Cube]);
+        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("airlight environment"),
+            bind_group_layouts: &[Some(&layout)],
+            immediate_size: 0,
+        });
         let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("airlight environment"),
-            source: wgpu::ShaderSource::Wgsl(include_str!("environment.wgsl").into()),
+            source: wgpu::ShaderSource::Wgsl(
+                [CORNER, include_str!("environment.wgsl")].concat().into(),
+            ),
         });
-        let pipeline = |entry| filter_pipeline(device, &layout, &shader, entry);
-        let [halve, reflect_rough] = [pipeline("halve"), pipeline("reflect_rough")];
+        let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
+            label: Some("airlight environment"),
+            mag_filter: wgpu::FilterMode::Linear,
+            min_filter: wgpu::FilterMode::Linear,
+            mipmap_filter: wgpu::MipmapFilterMode::Linear,
+            ..Default::default()
+        });
+        let face = |(layer, axes): (u32, [Vec3; 3]), from, into, level, roughness: f32| {
+            let axes = axes.iter().flat_map(|v| v.extend(0.0).to_array());
+            let numbers: Vec<f32> = axes.chain([roughness, side as f32, 0.0, 0.0]).collect();
+            let group = gpu_tables::bind(device, &layout, &numbers, &sampler, &[from]);
+            (face_view(into, layer, level), group)
+        };
+        let filter = |entry, faces| Filter {
+            pipeline: covering(device, &pipeline_layout, &shader, entry, (FORMAT, None)),
+            faces,
+        };
+        let each =
+            |levels| (1..levels).flat_map(|level| (0..6).zip(FACES).map(move |f| (level, f)));
+        let halved = each(source.mip_level_count()).map(|(level, of)| {
+            let larger = cube_view(&source, level - 1, Some(1));
+            face(of, larger, &source, level, 0.0)
+        });
+        let rough = each(levels).map(|(level, of)| {
+            let roughness = level as f32 / (levels - 1) as f32;
+            face(of, cube_view(&source, 0, None), &texture, level, roughness)
+        });
+        let halve = filter("halve", halved.collect());
+        let reflect_rough = filter("reflect_rough", rough.collect());
         Ok(Self {
             view: cube_view(&texture, 0, None),
             texture,
@@ -118,14 +176,6 @@ impl EnvironmentMap {
             is_depth_clear: false,
             halve,
             reflect_rough,
-            layout,
-            sampler: device.create_sampler(&wgpu::SamplerDescriptor {
-                label: Some("airlight environment"),
-                mag_filter: wgpu::FilterMode::Linear,
-                min_filter: wgpu::FilterMode::Linear,
-                mipmap_filter: wgpu::MipmapFilterMode::Linear,
-                ..Default::default()
-            }),
             sky_pass: Pass::new(device, sky_groups, sky, FORMAT),
             fog_pass: Pass::new(device, fog_groups, fog, FORMAT),
         })
@@ -192,91 +242,14 @@ impl EnvironmentMap {
     }
 
     /// Fills the map from the faces.
-    pub(crate) fn filter(&self, device: &wgpu::Device, encoder: &mut wgpu::CommandEncoder) {
-        for level in 1..self.source.mip_level_count() {
-            let pass = FilterPass {
-                pipeline: &self.halve,
-                from: &cube_view(&self.source, level - 1, Some(1)),
-                into: &self.source,
-                level,
-                roughness: 0.0,
-            };
-            self.record(device, encoder, &pass);
-        }
+    pub(crate) fn filter(&self, encoder: &mut wgpu::CommandEncoder) {
+        self.halve.record(encoder);
         encoder.copy_texture_to_texture(
             self.source.as_image_copy(),
             self.texture.as_image_copy(),
             self.texture.size(),
         );
-        let whole = cube_view(&self.source, 0, None);
-        for level in 1..self.levels() {
-            let pass = FilterPass {
-                pipeline: &self.reflect_rough,
-                from: &whole,
-                into: &self.texture,
-                level,
-                roughness: level as f32 / (self.levels() - 1) as f32,
-            };
-            self.record(device, encoder, &pass);
-        }
-    }
-
-    /// Draws the six faces of a level.
-    fn record(
-        &self,
-        device: &wgpu::Device,
-        encoder: &mut wgpu::CommandEncoder,
-        pass: &FilterPass<'_>,
-    ) {
-        for (layer, axes) in (0..6).zip(FACES) {
-            let mut numbers: Vec<f32> =
-                axes.iter().flat_map(|v| v.extend(0.0).to_array()).collect();
-            let side = self.source.width() as f32;
-            numbers.extend([pass.roughness, side, 0.0, 0.0]);
-            let numbers = device.create_buffer_init(&BufferInitDescriptor {
-                label: Some("airlight environment"),
-                contents: &bytes(&numbers),
-                usage: wgpu::BufferUsages::UNIFORM,
-            });
-            let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some("airlight environment"),
-                layout: &self.layout,
-                entries: &[
-                    wgpu::BindGroupEntry {
-                        binding: 0,
-                        resource: numbers.as_entire_binding(),
-                    },
-                    wgpu::BindGroupEntry {
-                        binding: 1,
-                        resource: wgpu::BindingResource::Sampler(&self.sampler),
-                    },
-                    wgpu::BindGroupEntry {
-                        binding: 2,
-                        resource: wgpu::BindingResource::TextureView(pass.from),
-                    },
-                ],
-            });
-            let target = face_view(pass.into, layer, pass.level);
-            let mut drawing = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                label: Some("airlight environment"),
-                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                    view: &target,
-                    depth_slice: None,
-                    resolve_target: None,
-                    ops: wgpu::Operations {
-                        load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
-                        store: wgpu::StoreOp::Store,
-                    },
-                })],
-                depth_stencil_attachment: None,
-                timestamp_writes: None,
-                occlusion_query_set: None,
-                multiview_mask: None,
-            });
-            drawing.set_pipeline(pass.pipeline);
-            drawing.set_bind_group(0, &group, &[]);
-            drawing.draw(0..3, 0..1);
-        }
+        self.reflect_rough.record(encoder);
     }
 }
 
@@ -297,63 +270,5 @@ fn face_view(texture: &wgpu::Texture, layer: u32, level: u32) -> wgpu::TextureVi
         base_array_layer: layer,
         array_layer_count: Some(1),
         ..Default::default()
-    })
-}
-
-fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
-    let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::FRAGMENT,
-        ty,
-        count: None,
-    };
-    let uniform = wgpu::BindingType::Buffer {
-        ty: wgpu::BufferBindingType::Uniform,
-        has_dynamic_offset: false,
-        min_binding_size: None,
-    };
-    let cube = wgpu::BindingType::Texture {
-        sample_type: wgpu::TextureSampleType::Float { filterable: true },
-        view_dimension: wgpu::TextureViewDimension::Cube,
-        multisampled: false,
-    };
-    let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("airlight environment"),
-        entries: &[entry(0, uniform), entry(1, sampler), entry(2, cube)],
-    })
-}
-
-fn filter_pipeline(
-    device: &wgpu::Device,
-    layout: &wgpu::BindGroupLayout,
-    shader: &wgpu::ShaderModule,
-    entry: &str,
-) -> wgpu::RenderPipeline {
-    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some("airlight environment"),
-        bind_group_layouts: &[Some(layout)],
-        immediate_size: 0,
-    });
-    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some(entry),
-        layout: Some(&layout),
-        vertex: wgpu::VertexState {
-            module: shader,
-            entry_point: Some("corner"),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            buffers: &[],
-        },
-        primitive: wgpu::PrimitiveState::default(),
-        depth_stencil: None,
-        multisample: wgpu::MultisampleState::default(),
-        fragment: Some(wgpu::FragmentState {
-            module: shader,
-            entry_point: Some(entry),
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-            targets: &[Some(FORMAT.into())],
-        }),
-        multiview_mask: None,
-        cache: None,
     })
 }

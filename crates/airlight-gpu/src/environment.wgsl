@@ -14,17 +14,6 @@ struct Face {
 @group(0) @binding(1) var linear_sampler: sampler;
 @group(0) @binding(2) var source: texture_cube<f32>;
 
-struct Corner {
-    @builtin(position) position: vec4<f32>,
-    @location(0) clip: vec2<f32>,
-}
-
-@vertex
-fn corner(@builtin(vertex_index) index: u32) -> Corner {
-    let clip = vec2<f32>(f32(index & 1u), f32(index >> 1u)) * 4.0 - 1.0;
-    return Corner(vec4<f32>(clip, 0.0, 1.0), clip);
-}
-
 fn direction(in: Corner) -> vec3<f32> {
     return normalize(face.forward.xyz + face.right.xyz * in.clip.x + face.up.xyz * in.clip.y);
 }

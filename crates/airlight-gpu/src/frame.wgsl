@@ -11,18 +11,6 @@ struct Camera {
 @group(1) @binding(0) var<uniform> camera: Camera;
 @group(1) @binding(1) var depth_texture: texture_depth_2d;
 
-struct Corner {
-    @builtin(position) position: vec4<f32>,
-    @location(0) clip: vec2<f32>,
-}
-
-/// A triangle that covers the frame.
-@vertex
-fn corner(@builtin(vertex_index) index: u32) -> Corner {
-    let clip = vec2<f32>(f32(index & 1u), f32(index >> 1u)) * 4.0 - 1.0;
-    return Corner(vec4<f32>(clip, 0.0, 1.0), clip);
-}
-
 /// What a pixel sees: its direction, and the distance of its geometry, negative without any.
 struct Pixel {
     direction: vec3<f32>,

@@ -45,11 +45,6 @@ pub fn group(
     numbers: &[f32],
     textures: &[&Texture],
 ) -> wgpu::BindGroup {
-    let numbers = device.create_buffer_init(&BufferInitDescriptor {
-        label: Some("airlight numbers"),
-        contents: &bytes(numbers),
-        usage: wgpu::BufferUsages::UNIFORM,
-    });
     let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
         label: Some("airlight tables"),
         mag_filter: wgpu::FilterMode::Linear,
@@ -60,6 +55,22 @@ pub fn group(
         .iter()
         .map(|texture| upload(device, queue, texture))
         .collect();
+    bind(device, layout, numbers, &sampler, &views)
+}
+
+/// Uploads numbers for a group with a sampler and textures that are on the device.
+pub fn bind(
+    device: &wgpu::Device,
+    layout: &wgpu::BindGroupLayout,
+    numbers: &[f32],
+    sampler: &wgpu::Sampler,
+    views: &[wgpu::TextureView],
+) -> wgpu::BindGroup {
+    let numbers = device.create_buffer_init(&BufferInitDescriptor {
+        label: Some("airlight numbers"),
+        contents: &bytes(numbers),
+        usage: wgpu::BufferUsages::UNIFORM,
+    });
     let mut entries = vec![
         wgpu::BindGroupEntry {
             binding: 0,
@@ -67,10 +78,10 @@ pub fn group(
         },
         wgpu::BindGroupEntry {
             binding: 1,
-            resource: wgpu::BindingResource::Sampler(&sampler),
+            resource: wgpu::BindingResource::Sampler(sampler),
         },
     ];
-    for (binding, view) in (2..).zip(&views) {
+    for (binding, view) in (2..).zip(views) {
         entries.push(wgpu::BindGroupEntry {
             binding,
             resource: wgpu::BindingResource::TextureView(view),

@@ -1,4 +1,42 @@
-//! Passes that cover a frame: one dims it, one adds light.
+//! Passes that cover a target; over a frame, one dims it and one adds light.
+
+/// The vertex stage of [`covering`] pipelines.
+pub const CORNER: &str = include_str!("corner.wgsl");
+
+/// A pipeline that draws a fragment stage of a shader with [`CORNER`] over a target.
+pub fn covering(
+    device: &wgpu::Device,
+    layout: &wgpu::PipelineLayout,
+    shader: &wgpu::ShaderModule,
+    entry: &str,
+    (format, blend): (wgpu::TextureFormat, Option<wgpu::BlendState>),
+) -> wgpu::RenderPipeline {
+    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some(entry),
+        layout: Some(layout),
+        vertex: wgpu::VertexState {
+            module: shader,
+            entry_point: Some("corner"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            buffers: &[],
+        },
+        primitive: wgpu::PrimitiveState::default(),
+        depth_stencil: None,
+        multisample: wgpu::MultisampleState::default(),
+        fragment: Some(wgpu::FragmentState {
+            module: shader,
+            entry_point: Some(entry),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            targets: &[Some(wgpu::ColorTargetState {
+                format,
+                blend,
+                write_mask: wgpu::ColorWrites::ALL,
+            })],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}
 
 /// The two pipelines of a medium.
 #[derive(Debug)]
@@ -8,7 +46,7 @@ pub struct Pass {
 }
 
 impl Pass {
-    /// The pipelines of a shader with the entry points `corner`, `dim` and `add`, for targets of a format.
+    /// The pipelines of a shader with [`CORNER`] and the entry points `dim` and `add`, for targets of a format.
     pub fn new(
         device: &wgpu::Device,
         groups: [&wgpu::BindGroupLayout; 2],
@@ -31,34 +69,11 @@ impl Pass {
                 operation: wgpu::BlendOperation::Add,
             };
             let keep = component(wgpu::BlendFactor::Zero, wgpu::BlendFactor::One);
-            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-                label: Some(entry),
-                layout: Some(&layout),
-                vertex: wgpu::VertexState {
-                    module: &shader,
-                    entry_point: Some("corner"),
-                    compilation_options: wgpu::PipelineCompilationOptions::default(),
-                    buffers: &[],
-                },
-                primitive: wgpu::PrimitiveState::default(),
-                depth_stencil: None,
-                multisample: wgpu::MultisampleState::default(),
-                fragment: Some(wgpu::FragmentState {
-                    module: &shader,
-                    entry_point: Some(entry),
-                    compilation_options: wgpu::PipelineCompilationOptions::default(),
-                    targets: &[Some(wgpu::ColorTargetState {
-                        format,
-                        blend: Some(wgpu::BlendState {
-                            color: component(source, target),
-                            alpha: keep,
-                        }),
-                        write_mask: wgpu::ColorWrites::ALL,
-                    })],
-                }),
-                multiview_mask: None,
-                cache: None,
-            })
+            let blend = wgpu::BlendState {
+                color: component(source, target),
+                alpha: keep,
+            };
+            covering(device, &layout, &shader, entry, (format, Some(blend)))
         };
         let (zero, one) = (wgpu::BlendFactor::Zero, wgpu::BlendFactor::One);
         Self {

@@ -6,7 +6,7 @@ use crate::error::SkyRendererError;
 use crate::fog::{self, Fog};
 use crate::gpu_tables::bytes;
 use crate::lighting::Lighting;
-use crate::pass::Pass;
+use crate::pass::{CORNER, Pass};
 use crate::sky;
 use airlight::atmosphere::Atmosphere;
 use airlight::glam::DVec3;
@@ -308,7 +308,7 @@ impl SkyRenderer {
                 &numbers,
             );
         }
-        map.filter(&self.device, encoder);
+        map.filter(encoder);
     }
 
     /// Records the passes of a frame.
@@ -377,12 +377,15 @@ impl SkyRenderer {
 
 /// The passes of the sky.
 fn sky_shader() -> String {
-    source(&[Part::SkyTables]) + include_str!("frame.wgsl") + include_str!("sky.wgsl")
+    source(&[Part::SkyTables]) + CORNER + include_str!("frame.wgsl") + include_str!("sky.wgsl")
 }
 
 /// The passes of the fog.
 fn fog_shader() -> String {
-    source(&[Part::Fog, Part::FogTable]) + include_str!("frame.wgsl") + include_str!("fog.wgsl")
+    source(&[Part::Fog, Part::FogTable])
+        + CORNER
+        + include_str!("frame.wgsl")
+        + include_str!("fog.wgsl")
 }
 
 /// A height that is a number, and a unit vector towards the sun.
