@@ -118,6 +118,20 @@ pub fn matrix<T: Element>(
     values.into_pyarray(py).reshape([rows, columns])
 }
 
+/// Two arrays of shape `(n, columns)`, from rows that hold those of both.
+pub fn matrix_pair<'py, T: Element + Copy>(
+    py: Python<'py>,
+    values: &[T],
+    columns: usize,
+) -> PyResult<[Bound<'py, PyArray2<T>>; 2]> {
+    let part = |first: usize| {
+        let rows = values.chunks_exact(2 * columns);
+        let part = rows.flat_map(|row| row[first..first + columns].iter().copied());
+        matrix(py, part.collect(), columns)
+    };
+    Ok([part(0)?, part(columns)?])
+}
+
 /// An array of shape `(height, width, channels)`.
 pub fn picture<T: Element>(
     py: Python<'_>,
@@ -150,6 +164,22 @@ pub fn for_directions<T: Default + Clone + Send>(
             fill(directions, out)
         })?;
     Ok(out)
+}
+
+/// As [`for_directions`], of a function of one direction.
+///
+/// # Errors
+/// As [`for_directions`].
+pub fn for_each_direction<T: Default + Clone + Send>(
+    directions: &[DVec3],
+    count: usize,
+    control: Control<'_>,
+    fill: impl Fn(DVec3, &mut [T]) -> Result<(), Failure> + Sync,
+) -> Result<Vec<T>, Failure> {
+    for_directions(directions, count, control, |directions, out| {
+        let mut pairs = directions.iter().zip(out.chunks_exact_mut(count));
+        pairs.try_for_each(|(&direction, out)| fill(direction, out))
+    })
 }
 
 /// Width and height of an array of shape `(height, width, ..)`.

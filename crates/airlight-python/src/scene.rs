@@ -353,26 +353,16 @@ impl RadianceView {
                     "estimate: expected a scene with solver.name = \"monte-carlo\", got \"{solver}\", which has no noise; try radiance"
                 ))
             })?;
-            arrays::for_directions(&directions, 2 * count, control, |directions, out| {
-                for (&direction, out) in directions.iter().zip(out.chunks_exact_mut(2 * count)) {
-                    control.check()?;
-                    let found = sampler.estimate(direction, None);
-                    let (mean, error) = out.split_at_mut(count);
-                    mean.copy_from_slice(&found.mean);
-                    error.copy_from_slice(&found.standard_error);
-                }
+            arrays::for_each_direction(&directions, 2 * count, control, |direction, out| {
+                control.check()?;
+                let found = sampler.estimate(direction, None);
+                let (mean, error) = out.split_at_mut(count);
+                mean.copy_from_slice(&found.mean);
+                error.copy_from_slice(&found.standard_error);
                 Ok(())
             })
         })?;
-        let part = |first: usize| {
-            let rows = values.chunks_exact(2 * count);
-            rows.flat_map(|row| row[first..first + count].iter().copied())
-                .collect::<Vec<f64>>()
-        };
-        Ok([
-            arrays::matrix(py, part(0), count)?,
-            arrays::matrix(py, part(count), count)?,
-        ])
+        arrays::matrix_pair(py, &values, count)
     }
 
     /// Irradiance of surfaces at the eye by all light except the sun's disc.
@@ -447,23 +437,13 @@ impl RadianceView {
         let count = self.view.channel_count();
         let view = self.view.clone();
         let values = compute_apart(py, threads, move |control| {
-            arrays::for_directions(&directions, 2 * count, control, |directions, out| {
-                for (&direction, out) in directions.iter().zip(out.chunks_exact_mut(2 * count)) {
-                    let (transmittance, path_radiance) = out.split_at_mut(count);
-                    view.path(direction, distance_m, transmittance, path_radiance);
-                }
+            arrays::for_each_direction(&directions, 2 * count, control, |direction, out| {
+                let (transmittance, path_radiance) = out.split_at_mut(count);
+                view.path(direction, distance_m, transmittance, path_radiance);
                 Ok(())
             })
         })?;
-        let part = |first: usize| {
-            let rows = values.chunks_exact(2 * count);
-            rows.flat_map(|row| row[first..first + count].iter().copied())
-                .collect::<Vec<f32>>()
-        };
-        Ok([
-            arrays::matrix(py, part(0), count)?,
-            arrays::matrix(py, part(count), count)?,
-        ])
+        arrays::matrix_pair(py, &values, count)
     }
 
     fn __repr__(&self) -> String {

@@ -238,10 +238,8 @@ impl View {
         values: impl Fn(&LineOfSight, &mut [f32]) + Sync,
     ) -> PyResult<Vec<f32>> {
         compute(py, threads, |control| {
-            arrays::for_directions(directions, count, control, |directions, out| {
-                for (&direction, out) in directions.iter().zip(out.chunks_exact_mut(count)) {
-                    values(&self.view.along(direction, None), out);
-                }
+            arrays::for_each_direction(directions, count, control, |direction, out| {
+                values(&self.view.along(direction, None), out);
                 Ok(())
             })
         })
@@ -466,10 +464,8 @@ impl View {
     ) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let (directions, count) = (arrays::directions(directions), self.grid().len());
         let values = compute(py, threads, |control| {
-            arrays::for_directions(&directions, count, control, |directions, out| {
-                for (&direction, out) in directions.iter().zip(out.chunks_exact_mut(count)) {
-                    out.copy_from_slice(&self.view.sun_disc_radiance(direction));
-                }
+            arrays::for_each_direction(&directions, count, control, |direction, out| {
+                out.copy_from_slice(&self.view.sun_disc_radiance(direction));
                 Ok(())
             })
         })?;

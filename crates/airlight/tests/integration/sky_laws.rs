@@ -196,9 +196,7 @@ fn dusty() -> Atmosphere {
             top,
         )
         .unwrap();
-    air.constituents
-        .retain(|part| part.kind != ConstituentKind::Aerosol);
-    air.constituents.push(dust);
+    air.put(dust);
     air
 }
 
@@ -212,7 +210,7 @@ fn layered() -> Atmosphere {
         absorption_per_m: SpectralCurve::Constant(0.0),
         phase: PhaseFunction::HenyeyGreenstein { g: 0.6 },
     };
-    air.constituents.push(layer);
+    air.put(layer);
     air
 }
 
