@@ -7,7 +7,7 @@ use crate::renderer::Renderer;
 use crate::sequence::SequenceSettings;
 use crate::solutions::Solutions;
 use airlight_image::Control;
-use std::time::Instant;
+use web_time::Instant;
 
 impl Renderer {
     /// Draws the scene at its time to memory.

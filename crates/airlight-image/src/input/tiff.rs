@@ -18,13 +18,13 @@ use glam::Vec3;
 use std::io::BufReader;
 
 /// Largest size of the decoded samples, bytes.
-const MAX_BYTES: usize = 1 << 33;
+const MAX_BYTES: u64 = 1 << 33;
 
 type TiffDecoder = Decoder<BufReader<TrackedFile>>;
 
 fn start(source: Source) -> Result<(TiffDecoder, Size), DecodeError> {
     let mut limits = Limits::default();
-    limits.decoding_buffer_size = MAX_BYTES;
+    limits.decoding_buffer_size = usize::try_from(MAX_BYTES).unwrap_or(usize::MAX);
     let mut decoder = Decoder::new(source.reader)
         .map_err(failed)?
         .with_limits(limits);

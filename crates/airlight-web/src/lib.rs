@@ -1,0 +1,5 @@
+//! The viewer as a web page, and values that the browser must compute as the processor does.
+
+#[cfg(target_arch = "wasm32")]
+mod exports;
+pub mod sample;
