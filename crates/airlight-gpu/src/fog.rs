@@ -8,7 +8,13 @@ use airlight::fog::droplets::Droplets;
 use airlight::fog::visibility::{self, Contrast};
 use airlight::fog::{DirectionalLight, FogLighting, FogScattering, Ground, RgbFog, RgbLayer};
 use airlight_shaders::FogTables;
-use airlight_shaders::twins::fog::{FOG_CLAMPED, FOG_EXPONENTIAL, FOG_SLAB, FOG_UNIFORM};
+use airlight_shaders::twins::columns::{INFINITE_M, ray_segment};
+use airlight_shaders::twins::exponentials::OPAQUE;
+use airlight_shaders::twins::fog::{
+    FOG_CLAMPED, FOG_EXPONENTIAL, FOG_SLAB, FOG_UNIFORM, FogLayer, fog_layer_column_m,
+};
+use airlight_shaders::twins::fog_table::tabulated_fog;
+use airlight_shaders::twins::texture::LinearSampler;
 use glam::Vec3;
 use std::f32::consts::PI;
 
@@ -86,38 +92,87 @@ impl Fog {
         Ok(FogTables::new(lit, height_m.max(self.ground_height_m))?)
     }
 
-    /// Uploads the tables for an eye at a height.
+    /// The fog of a frame, for an eye at a height above sea level, m.
+    pub(crate) fn frame(&self, tables: FogTables, height_m: f64) -> FogFrame {
+        let (profile, from_m, scale_m) =
+            profile(&self.layer.density).expect("a profile that was checked");
+        FogFrame {
+            tables,
+            layer: FogLayer {
+                extinction_per_m: Vec3::from_array(self.layer.extinction_per_m),
+                profile,
+                // The tables hold scattering and phase function.
+                scattering_per_m: Vec3::ZERO,
+                height_m: (from_m - self.ground_height_m) as f32,
+                phase: Vec3::ZERO,
+                scale_m: scale_m as f32,
+            },
+            eye_height_m: (height_m - self.ground_height_m).max(0.0) as f32,
+        }
+    }
+}
+
+/// Fog of a frame: plain data.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FogFrame {
+    /// Light of the fog for the eye and the sun.
+    pub tables: FogTables,
+    /// Extinction and profile; heights are above the ground.
+    pub layer: FogLayer,
+    /// Height of the eye above the ground, m.
+    pub eye_height_m: f32,
+}
+
+impl FogFrame {
+    /// Light of a direction behind the fog, for an eye that sees no geometry.
+    pub(crate) fn in_front_of(&self, behind: Vec3, direction: Vec3) -> Vec3 {
+        let length_m = match direction.y < 0.0 {
+            true => (self.eye_height_m / -direction.y).min(INFINITE_M),
+            false => INFINITE_M,
+        };
+        let ray = ray_segment(self.eye_height_m, direction.y, length_m, 0.0);
+        let column_m = fog_layer_column_m(self.layer, ray);
+        let depth = (self.layer.extinction_per_m * column_m).min(Vec3::splat(OPAQUE));
+        let tables = &self.tables;
+        let path = tabulated_fog(
+            tables.view,
+            &tables.diffuse,
+            &tables.streams,
+            &tables.stream_phase,
+            LinearSampler,
+            direction,
+            depth,
+        );
+        path.transmittance * behind + path.path_radiance
+    }
+
+    /// Uploads the tables.
     pub(crate) fn upload(
         &self,
         device: (&wgpu::Device, &wgpu::Queue),
         layout: &wgpu::BindGroupLayout,
-        tables: &FogTables,
-        height_m: f64,
     ) -> wgpu::BindGroup {
+        let tables = &self.tables;
         let textures = [&tables.diffuse, &tables.streams, &tables.stream_phase];
-        gpu_tables::group(device, layout, &self.numbers(tables, height_m), &textures)
+        gpu_tables::group(device, layout, &self.numbers(), &textures)
     }
 
-    /// The numbers of the shader's struct `Fog`, whose heights are above the ground.
-    fn numbers(&self, tables: &FogTables, height_m: f64) -> Vec<f32> {
-        let view = &tables.view;
+    /// The numbers of the shader's struct `Fog`.
+    fn numbers(&self) -> Vec<f32> {
+        let (view, layer) = (&self.tables.view, &self.layer);
         let mut all = view.sun.to_array().to_vec();
         all.push(view.below_per_sine);
         all.extend(view.depth_below.to_array());
         all.push(view.above_per_sine);
         all.extend(view.depth_above.to_array());
         all.extend([view.diffuse_scale, view.sunlit_scale, 0.0, 0.0, 0.0]);
-        let (profile, from_m, scale_m) =
-            profile(&self.layer.density).expect("a profile that was checked");
-        all.extend(self.layer.extinction_per_m);
-        all.push(f32::from_bits(profile));
-        // The tables hold scattering and phase function.
-        all.extend([0.0; 3]);
-        all.push((from_m - self.ground_height_m) as f32);
-        all.extend([0.0; 3]);
-        all.push(scale_m as f32);
-        let eye_height_m = (height_m - self.ground_height_m).max(0.0);
-        all.extend([eye_height_m as f32, 0.0, 0.0, 0.0]);
+        all.extend(layer.extinction_per_m.to_array());
+        all.push(f32::from_bits(layer.profile));
+        all.extend(layer.scattering_per_m.to_array());
+        all.push(layer.height_m);
+        all.extend(layer.phase.to_array());
+        all.push(layer.scale_m);
+        all.extend([self.eye_height_m, 0.0, 0.0, 0.0]);
         all
     }
 }

@@ -4,6 +4,8 @@
 //! the air scatters, and fills the rest of the frame with the sky, the planet's ground and the sun. The colours come from tables of a
 //! sky that the `airlight` solver computes with all orders of scattering, as does the light of a [`Fog`]; the
 //! shader functions are those of `airlight-shaders`.
+//! [`SkySolver`] and [`SkyPasses`] are its two halves, for programs that compute on a thread or in a worker of their own. [`TonePass`]
+//! shows a frame on a display.
 //! Nothing is computed again when only the camera turns. [`Lighting`] is the light of sun and sky for the program's own surfaces,
 //! [`EnvironmentMap`] what they reflect.
 //!
@@ -13,18 +15,24 @@ mod camera;
 mod environment;
 mod error;
 mod fog;
+mod frame_tables;
 mod gpu_tables;
 mod lighting;
 mod pass;
+mod passes;
 mod renderer;
 mod sky;
+mod tone;
 
 pub use camera::Camera;
 pub use environment::EnvironmentMap;
 pub use error::SkyRendererError;
-pub use fog::Fog;
+pub use fog::{Fog, FogFrame};
+pub use frame_tables::{FrameTables, SkySolver};
 pub use lighting::Lighting;
+pub use passes::SkyPasses;
 pub use renderer::{SkyRenderer, SkyRendererSettings, Work};
+pub use tone::{ToneCurve, TonePass, ToneSettings};
 
 /// The example of the README, compiled as a test.
 #[cfg(doctest)]

@@ -23,7 +23,6 @@ const AROUND: usize = 10;
 /// The light of sun and sky on a program's own surfaces, at the eye, in the RGB space of the target; in fog, that of the fog and
 /// what it lets through.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct Lighting {
     /// Unit vector towards the sun.
     pub sun: Vec3,

@@ -1,0 +1,268 @@
+//! [`SkyPasses`].
+
+use crate::camera::Camera;
+use crate::environment::EnvironmentMap;
+use crate::error::SkyRendererError;
+use crate::fog;
+use crate::frame_tables::FrameTables;
+use crate::gpu_tables::bytes;
+use crate::lighting::Lighting;
+use crate::pass::{CORNER, Pass};
+use crate::sky;
+use airlight_shaders::{Part, source};
+use wgpu::util::{BufferInitDescriptor, DeviceExt};
+
+/// Draws air, sky and sun over frames, with tables that a [`SkySolver`](crate::SkySolver) has filled.
+#[derive(Debug)]
+pub struct SkyPasses {
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+    sky_layout: wgpu::BindGroupLayout,
+    fog_layout: wgpu::BindGroupLayout,
+    frame_layout: wgpu::BindGroupLayout,
+    sky_pass: Pass,
+    fog_pass: Pass,
+    drawn: Option<Drawn>,
+}
+
+/// What frames are drawn with.
+#[derive(Debug)]
+struct Drawn {
+    sky: wgpu::BindGroup,
+    fog: Option<wgpu::BindGroup>,
+    lighting: Lighting,
+}
+
+impl SkyPasses {
+    /// Makes the pipelines for targets of a format: linear, and blendable, such as `Rgba16Float`.
+    ///
+    /// # Errors
+    /// [`SkyRendererError::Format`] for a target that cannot be blended.
+    pub fn new(
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        target_format: wgpu::TextureFormat,
+    ) -> Result<Self, SkyRendererError> {
+        let features = target_format.guaranteed_format_features(device.features());
+        let blendable = wgpu::TextureFormatFeatureFlags::BLENDABLE;
+        if !features.flags.contains(blendable) {
+            return Err(SkyRendererError::Format(target_format));
+        }
+        let sky_layout = sky::layout(device);
+        let fog_layout = fog::layout(device);
+        let frame_layout = frame_layout(device);
+        let pass = |first: &wgpu::BindGroupLayout, shader: &str| {
+            Pass::new(device, [first, &frame_layout], shader, target_format)
+        };
+        Ok(Self {
+            sky_pass: pass(&sky_layout, &sky_shader()),
+            fog_pass: pass(&fog_layout, &fog_shader()),
+            device: device.clone(),
+            queue: queue.clone(),
+            sky_layout,
+            fog_layout,
+            frame_layout,
+            drawn: None,
+        })
+    }
+
+    /// Uploads tables, with which frames are drawn from now on.
+    pub fn set_tables(&mut self, tables: &FrameTables) {
+        let device = (&self.device, &self.queue);
+        self.drawn = Some(Drawn {
+            sky: sky::upload(device, &self.sky_layout, tables),
+            fog: tables
+                .fog
+                .as_ref()
+                .map(|fog| fog.upload(device, &self.fog_layout)),
+            lighting: tables.lighting,
+        });
+    }
+
+    /// The light of sun and sky at the eye that frames are drawn for; `None` before the first tables.
+    pub fn lighting(&self) -> Option<&Lighting> {
+        self.drawn.as_ref().map(|drawn| &drawn.lighting)
+    }
+
+    /// Records the air, sky and sun of a frame into `target`, which holds what the program has rendered, with its depth. Before the
+    /// first tables it draws nothing.
+    pub fn record(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        target: &wgpu::TextureView,
+        depth: &wgpu::TextureView,
+        camera: &Camera,
+    ) {
+        if let Some(drawn) = &self.drawn {
+            let passes = [&self.sky_pass, &self.fog_pass];
+            self.draw(
+                drawn,
+                passes,
+                encoder,
+                (target, wgpu::LoadOp::Load),
+                depth,
+                &camera.numbers(),
+            );
+        }
+    }
+
+    /// A map of light from all directions, with faces of `side` texels on a side: a power of two from 8 to 2048.
+    ///
+    /// # Errors
+    /// [`SkyRendererError::EnvironmentSide`] for another side.
+    pub fn environment_map(&self, side: u32) -> Result<EnvironmentMap, SkyRendererError> {
+        let groups = [&self.sky_layout, &self.fog_layout].map(|first| [first, &self.frame_layout]);
+        let shaders = [sky_shader(), fog_shader()];
+        EnvironmentMap::new(&self.device, side, groups, [&shaders[0], &shaders[1]])
+    }
+
+    /// Records the light of sky, ground and fog around the eye into a map, in cd/m^2 times an exposure. Before the first tables it records
+    /// nothing.
+    pub fn record_environment(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        map: &mut EnvironmentMap,
+        exposure: f32,
+    ) {
+        let Some(drawn) = &self.drawn else {
+            return;
+        };
+        map.clear_depth(encoder);
+        let black = wgpu::LoadOp::Clear(wgpu::Color::BLACK);
+        for (target, world_from_clip) in map.faces() {
+            let camera = Camera {
+                world_from_clip,
+                exposure,
+                far_depth: 0.0,
+            };
+            let numbers = camera.numbers_without_disc();
+            self.draw(
+                drawn,
+                map.passes(),
+                encoder,
+                (&target, black),
+                map.depth(),
+                &numbers,
+            );
+        }
+        map.filter(encoder);
+    }
+
+    /// Records the passes of a frame.
+    fn draw(
+        &self,
+        drawn: &Drawn,
+        [sky_pass, fog_pass]: [&Pass; 2],
+        encoder: &mut wgpu::CommandEncoder,
+        (target, load): (&wgpu::TextureView, wgpu::LoadOp<wgpu::Color>),
+        depth: &wgpu::TextureView,
+        camera: &[f32],
+    ) {
+        // A buffer for each frame, as an encoder may record several.
+        let camera = self.device.create_buffer_init(&BufferInitDescriptor {
+            label: Some("airlight camera"),
+            contents: &bytes(camera),
+            usage: wgpu::BufferUsages::UNIFORM,
+        });
+        let frame = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("airlight frame"),
+            layout: &self.frame_layout,
+            entries: &[
+                wgpu::BindGroupEntry {
+                    binding: 0,
+                    resource: camera.as_entire_binding(),
+                },
+                wgpu::BindGroupEntry {
+                    binding: 1,
+                    resource: wgpu::BindingResource::TextureView(depth),
+                },
+            ],
+        });
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("airlight sky"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: target,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations {
+                    load,
+                    store: wgpu::StoreOp::Store,
+                },
+            })],
+            depth_stencil_attachment: None,
+            timestamp_writes: None,
+            occlusion_query_set: None,
+            multiview_mask: None,
+        });
+        pass.set_bind_group(1, &frame, &[]);
+        sky_pass.draw(&mut pass, &drawn.sky);
+        if let Some(fog) = &drawn.fog {
+            fog_pass.draw(&mut pass, fog);
+        }
+    }
+}
+
+/// The passes of the sky.
+fn sky_shader() -> String {
+    source(&[Part::SkyTables]) + CORNER + include_str!("frame.wgsl") + include_str!("sky.wgsl")
+}
+
+/// The passes of the fog.
+fn fog_shader() -> String {
+    source(&[Part::Fog, Part::FogTable])
+        + CORNER
+        + include_str!("frame.wgsl")
+        + include_str!("fog.wgsl")
+}
+
+/// Layout of the second group: camera and depth.
+fn frame_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::FRAGMENT,
+        ty,
+        count: None,
+    };
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("airlight frame"),
+        entries: &[
+            entry(
+                0,
+                wgpu::BindingType::Buffer {
+                    ty: wgpu::BufferBindingType::Uniform,
+                    has_dynamic_offset: false,
+                    min_binding_size: None,
+                },
+            ),
+            entry(
+                1,
+                wgpu::BindingType::Texture {
+                    sample_type: wgpu::TextureSampleType::Depth,
+                    view_dimension: wgpu::TextureViewDimension::D2,
+                    multisampled: false,
+                },
+            ),
+        ],
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use airlight_shaders::{Cost, costs};
+
+    /// What a pixel costs at most in the passes `dim` and `add`: as the README states it.
+    #[test]
+    fn pixels_cost_what_the_readme_states() {
+        let readme = include_str!("../README.md");
+        for (shader, name) in [(sky_shader(), "sky"), (fog_shader(), "fog")] {
+            let all = costs(&shader).unwrap();
+            let of = |entry: &str| -> Cost {
+                let named = all.iter().find(|(name, _)| name == entry);
+                named.expect("an entry point").1
+            };
+            let row = format!("| {name} | {} | {} |", of("dim"), of("add"));
+            assert!(readme.contains(&row), "{row}");
+        }
+    }
+}
