@@ -9,7 +9,8 @@
 //! - [`topics`]: recipes. [`args`]: options of all commands, and the scenes that they describe; [`short_help`]: what `-h`
 //!   lists of them; [`example_values`]: values that work, in errors.
 //! - [`scene`]: saving scenes, threads; [`atmosphere`], [`aerosol`]: lists of names.
-//! - [`sky`], [`fog`], [`probe`], [`compare`], [`grid`], [`accuracy`], [`plot`] and [`shaders`]: the commands; [`generate`]:
+//! - [`sky`], [`fog`], [`probe`], [`compare`], [`grid`], [`accuracy`], [`view`], [`plot`] and
+//!   [`shaders`]: the commands; [`generate`]:
 //!   files for shells.
 
 mod accuracy;
@@ -34,6 +35,7 @@ mod shaders;
 mod short_help;
 mod sky;
 mod topics;
+mod view;
 
 use airlight::scene::Scene;
 use args::{Cli, Command};
@@ -103,6 +105,7 @@ fn run(cli: &Cli) -> Result<(), CliError> {
         Command::Compare(args) => compare::run(args),
         Command::Grid(args) => grid::run(args),
         Command::Accuracy(args) => accuracy::run(args),
+        Command::View(args) => view::run(args),
         Command::Plot(args) => plot::run(args),
         Command::Shaders(args) => shaders::run(args),
         Command::Atmospheres(args) => atmosphere::list(args),

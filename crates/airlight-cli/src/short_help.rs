@@ -21,7 +21,7 @@ const SCENE: [&str; 11] = [
 ];
 
 /// Commands with many options, and those of their options that the short help lists besides [`SCENE`].
-const USUAL: [(&[&str], &[&str]); 6] = [
+const USUAL: [(&[&str], &[&str]); 7] = [
     (
         &["sky"],
         &[
@@ -67,6 +67,19 @@ const USUAL: [(&[&str], &[&str]); 6] = [
     (
         &["compare"],
         &["first", "second", "output", "format", "projection", "size"],
+    ),
+    (
+        &["view"],
+        &[
+            "file",
+            "screenshot",
+            "no_panel",
+            "size",
+            "camera_azimuth",
+            "camera_elevation",
+            "fov",
+            "exposure",
+        ],
     ),
     (&["plot", "spectrum"], &["output", "view"]),
     (&["plot", "transmittance"], &["output", "zenith_deg", "map"]),

@@ -19,6 +19,7 @@ mod scene;
 mod shaders;
 mod sky;
 mod solver;
+mod view;
 
 pub use accuracy::{AccuracyArgs, ReportArg};
 pub use air::{AirArgs, AtmospheresArgs};
@@ -40,6 +41,7 @@ pub use scene::SceneArgs;
 pub use shaders::ShadersArgs;
 pub use sky::{ObjectArgs, SkyArgs};
 pub use solver::SolverArgs;
+pub use view::ViewArgs;
 
 use clap::{Parser, Subcommand};
 
@@ -86,6 +88,8 @@ pub enum Command {
     Grid(GridArgs),
     /// Report accuracy against measurements and other codes.
     Accuracy(AccuracyArgs),
+    /// Open a window in which to look around under any sun, in any air.
+    View(Box<ViewArgs>),
     /// Plot curves and maps as SVG or PNG: phase functions, efficiencies, spectra, transmittance, fog.
     Plot(PlotArgs),
     /// Write functions for shaders in WGSL, GLSL, HLSL or Metal: fog, phase functions, columns.

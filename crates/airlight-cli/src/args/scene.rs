@@ -35,10 +35,18 @@ impl SceneArgs {
     /// # Errors
     /// [`CliError`] if a file cannot be read or is invalid.
     pub fn read(&self, more: impl FnOnce(&mut Scene)) -> Result<Scene, CliError> {
-        let mut scene = match &self.scene {
+        let scene = match &self.scene {
             Some(path) => scene_file::load(path)?,
             None => Scene::default(),
         };
+        self.over(scene, more)
+    }
+
+    /// A scene with the options over it, and the files that it names; `more` applies further options.
+    ///
+    /// # Errors
+    /// [`CliError`] if a file cannot be read or is invalid.
+    pub fn over(&self, mut scene: Scene, more: impl FnOnce(&mut Scene)) -> Result<Scene, CliError> {
         self.place.fill(&mut scene);
         self.night.fill(&mut scene);
         self.air.fill(&mut scene.air);

@@ -35,6 +35,11 @@ impl WhiteBalance {
         Ok(Self(matrix.map(|row| row.map(|v| v as f32))))
     }
 
+    /// Rows of the map of linear sRGB.
+    pub fn matrix(&self) -> [[f32; 3]; 3] {
+        self.0
+    }
+
     /// Maps colours.
     #[inline(always)]
     pub(super) fn apply<const N: usize>(&self, planes: &mut Planes<N>) {

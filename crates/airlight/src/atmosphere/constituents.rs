@@ -290,7 +290,7 @@ impl Atmosphere {
     }
 
     /// Whether the planet is the Earth, judged by its radius.
-    pub(crate) fn is_earth(&self) -> bool {
+    pub fn is_earth(&self) -> bool {
         (self.planet.radius_m / EARTH_RADIUS_M - 1.0).abs() < 0.02
     }
 

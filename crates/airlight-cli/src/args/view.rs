@@ -1,0 +1,77 @@
+//! Options of `airlight view`.
+
+use super::fog::{ContrastArgs, FogArgs};
+use super::{AirArgs, CameraArgs, PlaceArgs, SceneArgs, ToneArgs};
+use crate::error::CliError;
+use airlight::scene::Scene;
+use clap::Args;
+use std::path::PathBuf;
+
+/// Options of `airlight view`.
+#[derive(Debug, Args)]
+#[command(after_help = NOTES)]
+pub struct ViewArgs {
+    /// Scene file, which the other options override [default: a hazy evening]
+    #[arg(value_name = "FILE.toml")]
+    pub file: Option<PathBuf>,
+    /// Draw the window into a picture file instead of opening it; --size is then that of the file
+    #[arg(long, value_name = "FILE")]
+    pub screenshot: Option<PathBuf>,
+    /// Show the picture alone, without controls (F2)
+    #[arg(long)]
+    pub no_panel: bool,
+    #[command(flatten)]
+    pub place: PlaceArgs,
+    #[command(flatten)]
+    pub air: AirArgs,
+    #[command(flatten)]
+    pub contrast: ContrastArgs,
+    #[command(flatten)]
+    pub fog: FogArgs,
+    #[command(flatten)]
+    pub camera: CameraArgs,
+    #[command(flatten)]
+    pub tone: ToneArgs,
+}
+
+impl ViewArgs {
+    /// The scene of the file, or another, with the options.
+    ///
+    /// # Errors
+    /// [`CliError`] if a file cannot be read or is invalid.
+    pub fn read(&self, usual: Scene) -> Result<Scene, CliError> {
+        let scene = SceneArgs {
+            scene: self.file.clone(),
+            place: self.place.clone(),
+            air: self.air.clone(),
+            contrast: self.contrast.clone(),
+            fog: self.fog.clone(),
+            ..Default::default()
+        };
+        let more = |scene: &mut Scene| {
+            self.camera.fill(&mut scene.camera);
+            self.tone.fill(&mut scene.output);
+        };
+        match self.file {
+            Some(_) => scene.read(more),
+            None => {
+                let mut usual = usual;
+                let place = &self.place;
+                if place.at.is_some() || place.sun_elevation.is_some() {
+                    // Towards the sun.
+                    usual.camera.azimuth_deg = None;
+                }
+                scene.over(usual, more)
+            }
+        }
+    }
+}
+
+const NOTES: &str = "\
+Drag to look around, scroll to zoom, Ctrl and drag to move the sun. With the focus on the picture: arrow keys look around, + and - zoom,
+Page Up and Page Down climb. Ctrl+Z undoes. F2 hides the controls.
+
+Examples:
+  airlight view
+  airlight view --at 48.8584,2.2945 --when 2026-06-21T21:15:00+02:00
+  airlight view evening.toml --screenshot evening.png --size 1920x1080 --no-panel";

@@ -1,0 +1,41 @@
+//! `airlight view`: the window.
+
+use crate::args::ViewArgs;
+use crate::error::CliError;
+
+/// Opens the window, or draws it into a file.
+///
+/// # Errors
+/// [`CliError`] for an invalid scene, and without a display or a graphics device.
+#[cfg(feature = "view")]
+pub fn run(args: &ViewArgs) -> Result<(), CliError> {
+    use airlight_viewer::{Options, State};
+
+    let usual = Options::default();
+    let scene = args.read(usual.state.scene)?;
+    scene.validate()?;
+    let size = scene.camera.size;
+    let options = Options {
+        state: State::of_scene(scene),
+        size: size.map_or(usual.size, |size| size.map(|v| v as f32)),
+        panel: !args.no_panel,
+    };
+    let shown = match &args.screenshot {
+        Some(file) => airlight_viewer::screenshot(options, file),
+        None => airlight_viewer::run(options),
+    };
+    shown.map_err(|error| CliError::failure(error.to_string()))
+}
+
+/// States how to build the window.
+///
+/// # Errors
+/// Always.
+#[cfg(not(feature = "view"))]
+pub fn run(args: &ViewArgs) -> Result<(), CliError> {
+    args.read(airlight::scene::Scene::default())?;
+    Err(CliError::failure(
+        "this program was built without the viewer; try \
+         cargo install --locked --path crates/airlight-cli --features view",
+    ))
+}

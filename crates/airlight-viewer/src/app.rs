@@ -1,0 +1,405 @@
+//! [`Viewer`]: state, light and picture together.
+
+use crate::compute::{Facts, Light, Request, SPACE};
+use crate::options::Options;
+use crate::picture::{Look, Picture, Shot, tone_of};
+use crate::platform::Worker;
+use crate::state::{History, State};
+use crate::{panel, style, view};
+use airlight::scene::{OutputSpec, Scene};
+use airlight_gpu::SkyRendererError;
+use airlight_image::tone::Exposure;
+use airlight_image::{Camera, Frame, Projection, Size};
+use airlight_render::exposure::{ExposureSettings, METERED_WIDTH, MeteredPicture};
+use eframe::egui::{self, Align2, Color32, FontId, Key, Rect, TextureId, Ui, pos2, vec2};
+use eframe::egui_wgpu::RenderState;
+use eframe::wgpu;
+use std::fmt;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Why there is no viewer.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ViewerError {
+    /// There is no graphics device.
+    #[error(
+        "expected a graphics device, got none; try installing a Vulkan driver, such as mesa-vulkan-drivers on Debian"
+    )]
+    NoDevice,
+    /// The device cannot draw the picture.
+    #[error(transparent)]
+    Renderer(#[from] SkyRendererError),
+    /// The window cannot be opened.
+    #[error("cannot open a window: {0}")]
+    Window(String),
+    /// The device does not return pixels.
+    #[error("cannot read the pixels back: {0}")]
+    Pixels(String),
+    /// The picture cannot be written.
+    #[error(transparent)]
+    Image(#[from] airlight_image::ImageError),
+}
+
+/// The program.
+pub struct Viewer {
+    state: State,
+    /// The state that undo does not leave: the last one that was not under change.
+    settled: State,
+    history: History,
+    has_panel: bool,
+    worker: Worker,
+    number: u64,
+    /// The scene that light is being computed for.
+    asked: Option<Scene>,
+    /// The scene that was answered last, with light or not.
+    answered: Option<Scene>,
+    error: Option<String>,
+    light: Option<Box<Light>>,
+    metered: Option<(Metered, Exposure)>,
+    picture: Picture,
+    render: RenderState,
+    texture: Option<TextureId>,
+    drawn: Option<Drawn>,
+    frames: u64,
+    /// Whether the graphics device is gone.
+    is_lost: Arc<AtomicBool>,
+}
+
+/// What an exposure was metered for: the number of the light, camera, size and settings.
+type Metered = (u64, Look, [u32; 2], OutputSpec);
+
+/// What the picture was drawn for: the number of the light, size and shot.
+type Drawn = (u64, [u32; 2], Shot);
+
+impl fmt::Debug for Viewer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Viewer")
+            .field("state", &self.state)
+            .field("error", &self.error)
+            .field("frames", &self.frames)
+            .finish_non_exhaustive()
+    }
+}
+
+impl Viewer {
+    /// A viewer on a device.
+    ///
+    /// # Errors
+    /// [`ViewerError::Renderer`] where the device cannot draw the picture.
+    pub fn new(
+        context: &egui::Context,
+        render: RenderState,
+        options: Options,
+    ) -> Result<Self, ViewerError> {
+        style::apply(context);
+        let repaint = context.clone();
+        let is_lost = Arc::new(AtomicBool::new(false));
+        let lost = is_lost.clone();
+        render
+            .device
+            .set_device_lost_callback(move |_, _| lost.store(true, Ordering::Relaxed));
+        Ok(Self {
+            is_lost,
+            settled: options.state.clone(),
+            state: options.state,
+            history: History::default(),
+            has_panel: options.panel,
+            worker: Worker::new(move || repaint.request_repaint()),
+            number: 0,
+            asked: None,
+            answered: None,
+            error: None,
+            light: None,
+            metered: None,
+            picture: Picture::new(&render.device, &render.queue)?,
+            render,
+            texture: None,
+            drawn: None,
+            frames: 0,
+        })
+    }
+
+    /// What the user has set.
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// Sets everything, as a step that can be undone.
+    pub fn set_state(&mut self, state: State) {
+        self.state = state;
+    }
+
+    /// The light that is shown.
+    pub fn light(&self) -> Option<&Light> {
+        self.light.as_deref()
+    }
+
+    /// Why the scene has no light, as a sentence.
+    pub fn error(&self) -> Option<&str> {
+        self.error.as_deref()
+    }
+
+    /// Whether the picture shows the state: nothing is being computed.
+    pub fn is_current(&self) -> bool {
+        self.asked.is_none() && self.answered.as_ref() == Some(&self.state.lit_scene())
+    }
+
+    /// The device that draws.
+    pub fn device(&self) -> &wgpu::Device {
+        &self.render.device
+    }
+
+    /// Number of frames drawn so far. A window that shows the same again draws none.
+    pub fn frames(&self) -> u64 {
+        self.frames
+    }
+
+    /// Size of the picture, pixels, and the light of its pixels: red, green and blue of linear sRGB, cd/m^2. Empty before the first frame.
+    ///
+    /// # Errors
+    /// [`ViewerError::Pixels`] where the device does not return them.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn pixels(&self) -> Result<([u32; 2], Vec<[f32; 3]>), ViewerError> {
+        let Some((_, size, shot)) = self.drawn else {
+            return Ok(([0, 0], Vec::new()));
+        };
+        let mut pixels = self.picture.light().map_err(ViewerError::Pixels)?;
+        for channel in pixels.as_flattened_mut() {
+            *channel /= shot.exposure;
+        }
+        Ok((size, pixels))
+    }
+
+    /// What the picture shows in a size, pixels; `None` before the first light.
+    pub fn shot(&mut self, size: [u32; 2]) -> Option<Shot> {
+        let light = self.light.as_ref()?;
+        let look = view::look_of(&self.state, light.facts.sun_azimuth_deg);
+        let output = &self.state.scene.output;
+        let metered = (self.number_of_light(), look, size, output.clone());
+        let exposure = match self.metered.take().filter(|(of, _)| *of == metered) {
+            Some((_, exposure)) => exposure,
+            None => exposure(light, look, size, output)?,
+        };
+        self.metered = Some((metered, exposure));
+        Some(Shot {
+            look,
+            exposure: exposure.factor() as f32,
+            tone: tone_of(output),
+        })
+    }
+
+    /// Shows the controls and the picture.
+    pub fn show(&mut self, ui: &mut Ui) {
+        self.take_answers();
+        self.shortcuts(ui);
+        if self.has_panel {
+            let facts = self.facts();
+            let ev100 = self.metered.as_ref().map_or(15.0, |(_, e)| e.ev100());
+            egui::Panel::right("controls")
+                .resizable(false)
+                .exact_size(style::PANEL_WIDTH)
+                .frame(style::panel_frame())
+                .show(ui, |ui| {
+                    egui::ScrollArea::vertical().show(ui, |ui| {
+                        ui.set_width(ui.available_width());
+                        ui.heading("Airlight");
+                        panel::show(ui, &mut self.state, &facts, ev100);
+                    });
+                });
+        }
+        egui::CentralPanel::default()
+            .frame(egui::Frame::NONE.fill(Color32::BLACK))
+            .show(ui, |ui| self.show_picture(ui));
+        self.ask();
+        self.settle(ui);
+    }
+
+    fn facts(&self) -> Facts {
+        self.light
+            .as_ref()
+            .map(|light| light.facts)
+            .unwrap_or_default()
+    }
+
+    fn number_of_light(&self) -> u64 {
+        self.number
+    }
+
+    fn take_answers(&mut self) {
+        while let Some(answer) = self.worker.receive() {
+            self.take(answer);
+        }
+    }
+
+    fn take(&mut self, answer: crate::compute::Answer) {
+        self.answered = self.asked.take();
+        if self.is_lost.load(Ordering::Relaxed) {
+            return;
+        }
+        match answer.result {
+            Ok(light) => {
+                self.picture.set_light(&light);
+                self.light = Some(light);
+                self.number = answer.number;
+                self.error = None;
+            }
+            Err(sentence) => self.error = Some(sentence),
+        }
+    }
+
+    /// Waits for the light that is being computed.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn wait(&mut self) {
+        if self.asked.is_some()
+            && let Some(answer) = self.worker.wait()
+        {
+            self.take(answer);
+        }
+    }
+
+    /// Asks for the light of the state, unless other light is being computed.
+    fn ask(&mut self) {
+        let scene = self.state.lit_scene();
+        if self.asked.is_none() && self.answered.as_ref() != Some(&scene) {
+            let request = Request {
+                number: self.number + 1,
+                scene: scene.clone(),
+            };
+            match self.worker.send(request) {
+                true => self.asked = Some(scene),
+                false => self.error = Some("expected a thread that computes, got none".to_owned()),
+            }
+        }
+    }
+
+    fn shortcuts(&mut self, ui: &Ui) {
+        let pressed = |modifiers, key| ui.input_mut(|i| i.consume_key(modifiers, key));
+        let command = egui::Modifiers::COMMAND;
+        let redo = pressed(command | egui::Modifiers::SHIFT, Key::Z) || pressed(command, Key::Y);
+        let state = match (redo, pressed(command, Key::Z)) {
+            (true, _) => self.history.redo(&self.state),
+            (false, true) => self.history.undo(&self.state),
+            _ => None,
+        };
+        if let Some(state) = state {
+            self.settled = state.clone();
+            self.state = state;
+        }
+        if pressed(egui::Modifiers::NONE, Key::F2) {
+            self.has_panel = !self.has_panel;
+        }
+    }
+
+    /// Keeps the state for undo, once the pointer is released.
+    fn settle(&mut self, ui: &Ui) {
+        if self.state != self.settled && !ui.input(|i| i.pointer.any_down()) {
+            let left = std::mem::replace(&mut self.settled, self.state.clone());
+            self.history.push(left);
+        }
+    }
+
+    fn show_picture(&mut self, ui: &mut Ui) {
+        let rect = ui.available_rect_before_wrap();
+        let scale = ui.pixels_per_point();
+        let size = [rect.width(), rect.height()].map(|v| ((v * scale).round() as u32).max(1));
+        let look = view::look_of(&self.state, self.facts().sun_azimuth_deg);
+        view::interact(ui, rect, &mut self.state, look);
+        if let Some(shot) = self.shot(size) {
+            self.draw(size, &shot);
+        }
+        if let Some(texture) = self.texture {
+            // Texels lie on pixels.
+            let shown = vec2(size[0] as f32, size[1] as f32) / scale;
+            let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+            let at = Rect::from_min_size(rect.min, shown);
+            ui.painter().image(texture, at, whole, Color32::WHITE);
+        }
+        self.show_notes(ui, rect);
+    }
+
+    /// Draws the picture if it shows something else than before.
+    fn draw(&mut self, size: [u32; 2], shot: &Shot) {
+        if self.is_lost.load(Ordering::Relaxed) {
+            self.error =
+                Some("the graphics device was lost; save the scene and start again".to_owned());
+            return;
+        }
+        let drawn = (self.number_of_light(), size, *shot);
+        if self.drawn == Some(drawn) {
+            return;
+        }
+        let is_new = self.picture.draw(size, shot);
+        self.drawn = Some(drawn);
+        self.frames += 1;
+        let Some(shown) = self.picture.shown().filter(|_| is_new) else {
+            return;
+        };
+        let mut renderer = self.render.renderer.write();
+        let (device, filter) = (&self.render.device, wgpu::FilterMode::Nearest);
+        match self.texture {
+            Some(texture) => {
+                renderer.update_egui_texture_from_wgpu_texture(device, shown, filter, texture);
+            }
+            None => {
+                self.texture = Some(renderer.register_native_texture(device, shown, filter));
+            }
+        }
+    }
+
+    /// What is not in the picture: that light is being computed, or why there is none.
+    fn show_notes(&self, ui: &Ui, rect: Rect) {
+        let note = match (&self.error, &self.asked) {
+            (Some(error), _) => error.as_str(),
+            (None, Some(_)) => "solving …",
+            (None, None) => return,
+        };
+        let at = rect.left_bottom() + vec2(12.0, -10.0);
+        let font = FontId::proportional(12.0);
+        let painter = ui.painter();
+        let galley = painter.layout(
+            note.to_owned(),
+            font,
+            Color32::from_gray(235),
+            rect.width() - 24.0,
+        );
+        let place = Align2::LEFT_BOTTOM.anchor_size(at, galley.size());
+        painter.rect_filled(place.expand(5.0), 4.0, Color32::from_black_alpha(150));
+        painter.galley(place.min, galley, Color32::WHITE);
+    }
+}
+
+impl eframe::App for Viewer {
+    fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
+        self.show(ui);
+    }
+}
+
+/// The exposure of a picture, metered as the program `airlight` does.
+fn exposure(light: &Light, look: Look, size: [u32; 2], output: &OutputSpec) -> Option<Exposure> {
+    let [width, height] = size;
+    let camera = Camera::with_horizontal_fov(
+        look.azimuth_deg,
+        look.elevation_deg,
+        look.fov_deg,
+        Size::new(width, height).ok()?,
+    );
+    let frame = Frame::new(Projection::Perspective(camera), width, height).ok()?;
+    let frame = frame.preview(METERED_WIDTH);
+    let small = frame.size();
+    let pixels = (0..small.height()).flat_map(|j| (0..small.width()).map(move |i| (i, j)));
+    let colour = |(i, j)| match frame.pixel_direction(i, j) {
+        Some(direction) => light.tables.rgb_radiance(direction.as_vec3()).to_array(),
+        None => [0.0; 3],
+    };
+    let colours: Vec<[f32; 3]> = pixels.map(colour).collect();
+    let facts = &light.facts;
+    let picture = MeteredPicture::of_frame(
+        &frame,
+        &colours,
+        SPACE,
+        facts.horizon_deg.to_radians(),
+        facts.sun_lx + facts.sky_lx,
+    );
+    ExposureSettings::of(output).metered(&picture).ok()
+}

@@ -1,0 +1,34 @@
+//! Viewer of skies, haze and fog: a window, or a page, with the picture of [`airlight_gpu`] and controls in physical units.
+//!
+//! [`run`] opens a window; [`screenshot`] draws the same without one. [`Viewer`] is the program itself, for [`eframe`] or for tests.
+//!
+//! [`State`] is all that the user has set: a [`Scene`](airlight::scene::Scene), from which everything on the screen follows.
+//! [`compute()`] is the work that takes time, from plain data to plain data; the module `platform` runs it beside the window. The solver,
+//! the drawing and the colours are those of the library; the viewer adds no physics.
+//!
+//! Modules, each importing only from those above it: [`state`], `options`, [`compute`](mod@compute), `platform`, `picture`, `style`, `widgets`,
+//! `panel`, `view`, `app`, `headless`, `window`.
+
+mod app;
+pub mod compute;
+#[cfg(not(target_arch = "wasm32"))]
+mod headless;
+mod options;
+mod panel;
+mod picture;
+mod platform;
+pub mod state;
+mod style;
+mod view;
+mod widgets;
+#[cfg(not(target_arch = "wasm32"))]
+mod window;
+
+pub use app::{Viewer, ViewerError};
+pub use compute::{Answer, Computer, Request, compute};
+#[cfg(not(target_arch = "wasm32"))]
+pub use headless::screenshot;
+pub use options::Options;
+pub use state::State;
+#[cfg(not(target_arch = "wasm32"))]
+pub use window::run;

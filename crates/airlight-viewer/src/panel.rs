@@ -1,0 +1,267 @@
+//! The panel of controls.
+
+use crate::compute::Facts;
+use crate::state::{ALTITUDES_M, State};
+use crate::widgets::{Number, choice, title};
+use airlight::Named;
+use airlight::atmosphere::{AerosolType, Preset};
+use airlight::scene::{Exposure, FogSpec, ToneKind};
+use airlight::sun::Moment;
+use eframe::egui::{self, RichText, Ui};
+
+/// Shows the controls; they change the state.
+pub fn show(ui: &mut Ui, state: &mut State, facts: &Facts, ev100: f64) {
+    sun(ui, state, facts);
+    eye(ui, state, facts);
+    air(ui, state, facts);
+    fog(ui, state);
+    display(ui, state, ev100);
+}
+
+/// Place and time of a scene that has only a sun: Paris, on an evening in June.
+const PLACE: (f64, f64) = (48.8584, 2.2945);
+const TIME: &str = "2026-06-21T21:15:00+02:00";
+const DAY_S: f64 = 86_400.0;
+
+fn sun(ui: &mut Ui, state: &mut State, facts: &Facts) {
+    title(ui, "Sun");
+    let sun = &mut state.scene.sun;
+    let mut by_hand = sun.elevation_deg.is_some();
+    ui.horizontal(|ui| {
+        let hand = ui.radio_value(&mut by_hand, true, "By hand");
+        let place = ui.radio_value(&mut by_hand, false, "Place and time");
+        if hand.changed() {
+            sun.elevation_deg = Some(rounded(facts.sun_elevation_deg));
+            sun.azimuth_deg = Some(rounded(facts.sun_azimuth_deg));
+        }
+        if place.changed() {
+            sun.elevation_deg = None;
+            sun.azimuth_deg = None;
+            sun.distance_ratio = None;
+            sun.latitude_deg.get_or_insert(PLACE.0);
+            sun.longitude_deg.get_or_insert(PLACE.1);
+            sun.time.get_or_insert_with(|| TIME.to_owned());
+        }
+    });
+    if by_hand {
+        let mut elevation_deg = sun.elevation_deg.unwrap_or_default();
+        let elevation = Number::new("Elevation", "°", -18.0..=90.0).decimals(2);
+        let elevation = elevation.help("Of the sun's centre above the horizontal. Ctrl and drag in the picture to move the sun.");
+        if elevation.show(ui, &mut elevation_deg) {
+            sun.elevation_deg = Some(elevation_deg.clamp(-90.0, 90.0));
+        }
+        Number::new("Azimuth", "°", 0.0..=360.0)
+            .help("Clockwise from north.")
+            .show_optional(ui, &mut sun.azimuth_deg, 180.0);
+    } else {
+        Number::new("Latitude", "°", -90.0..=90.0)
+            .decimals(4)
+            .show_optional(ui, &mut sun.latitude_deg, PLACE.0);
+        Number::new("Longitude", "°", -180.0..=180.0)
+            .decimals(4)
+            .show_optional(ui, &mut sun.longitude_deg, PLACE.1);
+        time(ui, &mut sun.time);
+        quiet(
+            ui,
+            format!(
+                "elevation {:.2}°, azimuth {:.2}°",
+                facts.sun_elevation_deg, facts.sun_azimuth_deg
+            ),
+        );
+    }
+}
+
+/// Day and hour. A time that cannot be read is replaced when it is changed.
+fn time(ui: &mut Ui, text: &mut Option<String>) {
+    let moment = Moment::parse(text.as_deref().unwrap_or("now"));
+    let moment = moment.unwrap_or_else(|_| Moment::now());
+    let local_s = moment.unix_s() + f64::from(moment.offset_s());
+    let midnight_s = (local_s / DAY_S).floor() * DAY_S;
+    let mut hour = (local_s - midnight_s) / 3600.0;
+    let mut day_of_year = day_of_year(midnight_s);
+    let first_s = midnight_s - (day_of_year - 1.0) * DAY_S;
+    let day = Number::new("Day of year", "", 1.0..=365.0).decimals(0);
+    let hours = Number::new("Local time", " h", 0.0..=24.0).decimals(2);
+    if day.show(ui, &mut day_of_year) | hours.show(ui, &mut hour) {
+        let local_s = first_s + (day_of_year.round() - 1.0) * DAY_S + hour * 3600.0;
+        let moment = moment.at((local_s - f64::from(moment.offset_s())).round());
+        *text = Some(moment.to_string());
+    }
+    quiet(ui, moment.to_string());
+}
+
+/// Day of the year, from 1, of a local midnight in seconds since 1970 began.
+fn day_of_year(midnight_s: f64) -> f64 {
+    let date = Moment::from_unix_s(midnight_s).to_string();
+    let year_start = format!(
+        "{}-01-01T00:00:00Z",
+        date.split('-').next().unwrap_or("1970")
+    );
+    let start_s = Moment::parse(&year_start).map_or(0.0, Moment::unix_s);
+    ((midnight_s - start_s) / DAY_S).round() + 1.0
+}
+
+fn eye(ui: &mut Ui, state: &mut State, facts: &Facts) {
+    title(ui, "Eye");
+    let [lowest, highest] = ALTITUDES_M;
+    Number::new("Altitude", " m", lowest..=highest)
+        .logarithmic()
+        .help("Above sea level. Page Up and Page Down in the picture change it, too.")
+        .show_optional(ui, &mut state.scene.observer.altitude_m, facts.altitude_m);
+    let camera = &mut state.scene.camera;
+    Number::new("Direction", "°", 0.0..=360.0)
+        .help("Azimuth of the centre of the picture, clockwise from north. Drag the picture, or use the arrow keys in it.")
+        .show_optional(ui, &mut camera.azimuth_deg, facts.sun_azimuth_deg);
+    Number::new("Inclination", "°", -90.0..=90.0)
+        .help("Elevation of the centre of the picture.")
+        .show_optional(ui, &mut camera.elevation_deg, 10.0);
+    Number::new("Field of view", "°", 0.5..=120.0)
+        .logarithmic()
+        .help("From the left to the right edge. Scroll, pinch, or press + and - in the picture.")
+        .show_optional(ui, &mut camera.fov_deg, 75.0);
+}
+
+fn air(ui: &mut Ui, state: &mut State, facts: &Facts) {
+    title(ui, "Air");
+    let air = &mut state.scene.air;
+    let presets: Vec<_> = Preset::ALL
+        .iter()
+        .map(|preset| (Some(preset.name().to_owned()), preset.name().to_owned()))
+        .collect();
+    let mut atmosphere = air.atmosphere.clone().or(Some("average".to_owned()));
+    if choice(ui, "Atmosphere", &mut atmosphere, &presets) {
+        // What is set for the air before would be refused for, or hide, that of another planet.
+        *air = Default::default();
+        air.atmosphere = atmosphere;
+    }
+    if facts.is_earth {
+        let mut types = vec![(None, "as the atmosphere".to_owned())];
+        types.extend(
+            AerosolType::ALL
+                .iter()
+                .map(|kind| (Some(kind.name().to_owned()), kind.name().to_owned())),
+        );
+        if choice(ui, "Haze", &mut air.aerosol, &types) {
+            air.humidity = None;
+        }
+    }
+    let depth = Number::new("Optical depth", "", 0.0..=4.0)
+        .logarithmic()
+        .decimals(3);
+    let depth = depth.help("Vertical optical depth of the haze at 550 nm.");
+    if depth.show_optional(ui, &mut air.aod_550, facts.haze_depth_550) {
+        air.turbidity = None;
+        air.haze_visibility_m = None;
+    }
+    if facts.is_earth {
+        let is_dry = air
+            .aerosol
+            .as_deref()
+            .is_some_and(|name| name.starts_with("biomass"));
+        if air.aerosol.is_some() && !is_dry {
+            Number::new("Humidity", "", 0.0..=0.99)
+                .decimals(2)
+                .help("Relative humidity, which decides the size of the haze's particles.")
+                .show_optional(ui, &mut air.humidity, 0.8);
+        }
+        Number::new("Ozone", " DU", 0.0..=600.0)
+            .decimals(0)
+            .show_optional(ui, &mut air.ozone_du, facts.ozone_du);
+    }
+    Number::new("Ground albedo", "", 0.0..=1.0)
+        .decimals(2)
+        .show_optional(ui, &mut air.ground_albedo, facts.ground_albedo);
+}
+
+fn fog(ui: &mut Ui, state: &mut State) {
+    title(ui, "Fog");
+    let mut has_fog = state.scene.fog.is_some();
+    if ui.checkbox(&mut has_fog, "Fog near the ground").changed() {
+        state.scene.fog = has_fog.then(|| FogSpec {
+            visibility_m: Some(500.0),
+            scale_height_m: Some(40.0),
+            ..Default::default()
+        });
+    }
+    if let Some(fog) = &mut state.scene.fog {
+        Number::new("Visibility", " m", 20.0..=2e4)
+            .logarithmic()
+            .decimals(0)
+            .help("At the ground, where the fog is densest.")
+            .show_optional(ui, &mut fog.visibility_m, 500.0);
+        fog.visibility_m.get_or_insert(500.0);
+        Number::new("Scale height", " m", 5.0..=1000.0)
+            .logarithmic()
+            .decimals(0)
+            .help("Height over which the fog thins by a factor e.")
+            .show_optional(ui, &mut fog.scale_height_m, 50.0);
+    }
+}
+
+fn display(ui: &mut Ui, state: &mut State, metered_ev100: f64) {
+    title(ui, "Picture");
+    let output = &mut state.scene.output;
+    let mut auto = !matches!(output.exposure, Some(Exposure::Ev100(_)));
+    if ui.checkbox(&mut auto, "Automatic exposure").changed() {
+        output.exposure = (!auto).then_some(Exposure::Ev100(rounded(metered_ev100)));
+    }
+    if auto {
+        Number::new("Brighten", " EV", -4.0..=4.0)
+            .help("Stops by which the picture is brighter than metered.")
+            .show_optional(ui, &mut output.brighten, 0.0);
+        quiet(ui, format!("metered at EV {metered_ev100:.1}"));
+    } else if let Some(Exposure::Ev100(ev100)) = &mut output.exposure {
+        Number::new("Exposure", " EV", -8.0..=18.0)
+            .help("Exposure value at ISO 100: 15 in sunshine, 8 at dusk.")
+            .show(ui, ev100);
+    }
+    let curves: Vec<_> = ToneKind::ALL
+        .iter()
+        .map(|kind| (*kind, kind.name().to_owned()))
+        .collect();
+    let mut tone = output.tone.unwrap_or_default();
+    if choice(ui, "Tone curve", &mut tone, &curves) {
+        output.tone = Some(tone);
+        if tone != ToneKind::Camera {
+            output.tone_contrast = None;
+            output.saturation = None;
+        }
+    }
+    if tone == ToneKind::Camera {
+        Number::new("Contrast", "", 0.5..=3.0)
+            .decimals(2)
+            .show_optional(ui, &mut output.tone_contrast, 1.2);
+        Number::new("Saturation", "", 0.0..=3.0)
+            .decimals(2)
+            .show_optional(ui, &mut output.saturation, 1.0);
+    }
+    Number::new("White balance", " K", 1667.0..=25_000.0)
+        .logarithmic()
+        .decimals(0)
+        .help("Colour temperature of the light that is shown as neutral.")
+        .show_optional(ui, &mut output.white_balance_k, 6504.0);
+}
+
+/// A line of less important text.
+pub fn quiet(ui: &mut Ui, text: String) {
+    let text = RichText::new(text).color(crate::style::QUIET).small();
+    ui.add(egui::Label::new(text).wrap());
+}
+
+/// A number to hundredths, as users type it.
+fn rounded(value: f64) -> f64 {
+    (100.0 * value).round() / 100.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn days_are_counted_in_their_year() {
+        let midnight = |text: &str| Moment::parse(text).unwrap().unix_s();
+        assert_eq!(day_of_year(midnight("2026-01-01T00:00:00Z")), 1.0);
+        assert_eq!(day_of_year(midnight("2026-06-21T00:00:00Z")), 172.0);
+        assert_eq!(day_of_year(midnight("2024-12-31T00:00:00Z")), 366.0);
+    }
+}

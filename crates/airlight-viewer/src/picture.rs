@@ -1,0 +1,290 @@
+//! [`Picture`]: the light of a frame on the graphics device, and what of it is shown.
+
+use crate::compute::Light;
+use airlight::axes;
+use airlight::scene::{OutputSpec, ToneKind};
+use airlight_gpu::{Camera, SkyPasses, SkyRendererError, ToneCurve, TonePass, ToneSettings};
+use airlight_image::tone::WhiteBalance;
+use eframe::wgpu;
+use glam::{DVec3, Mat4, Vec4};
+
+/// Format of the light.
+const LIGHT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+/// Format of what is shown.
+const SHOWN: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+
+/// Direction and field of view of a perspective camera.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Look {
+    /// Azimuth of the centre, degrees clockwise from north.
+    pub azimuth_deg: f64,
+    /// Elevation of the centre, degrees.
+    pub elevation_deg: f64,
+    /// Field of view from the left to the right edge, degrees.
+    pub fov_deg: f64,
+}
+
+impl Look {
+    /// Right, up and forward.
+    pub fn axes(&self) -> [DVec3; 3] {
+        let forward = axes::direction(self.azimuth_deg, self.elevation_deg);
+        let right = axes::direction(self.azimuth_deg + 90.0, 0.0);
+        [right, right.cross(forward), forward]
+    }
+
+    /// Tangents of half the field of view, across and up, in a picture of a size.
+    pub fn tangents(&self, [width, height]: [u32; 2]) -> [f64; 2] {
+        let across = (0.5 * self.fov_deg.to_radians()).tan();
+        [across, across * f64::from(height) / f64::from(width)]
+    }
+
+    /// From clip space to the world, for a depth that is 0 without geometry.
+    pub fn world_from_clip(&self, size: [u32; 2]) -> Mat4 {
+        let [right, up, forward] = self.axes().map(|v| v.as_vec3());
+        let [across, high] = self.tangents(size).map(|v| v as f32);
+        Mat4::from_cols(
+            (right * across).extend(0.0),
+            (up * high).extend(0.0),
+            Vec4::ZERO,
+            forward.extend(1.0),
+        )
+    }
+}
+
+/// What a picture shows, apart from the light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shot {
+    /// Where the camera looks.
+    pub look: Look,
+    /// Factor on light in cd/m^2.
+    pub exposure: f32,
+    /// Tone curve and white balance.
+    pub tone: ToneSettings,
+}
+
+/// The tone settings of a scene's output. Values that are out of range count as not set.
+pub fn tone_of(output: &OutputSpec) -> ToneSettings {
+    let usual = ToneSettings::default();
+    let curve = match output.tone.unwrap_or_default() {
+        ToneKind::AgxBase => ToneCurve::Agx,
+        ToneKind::Clip => ToneCurve::Clip,
+        _ => ToneCurve::Camera {
+            contrast: output.tone_contrast.unwrap_or(1.2) as f32,
+            saturation: output.saturation.unwrap_or(1.0) as f32,
+        },
+    };
+    let balance = output.white_balance_k.map(WhiteBalance::new);
+    let colour_map = match balance {
+        Some(Ok(balance)) => balance.matrix(),
+        _ => usual.colour_map,
+    };
+    ToneSettings {
+        curve,
+        colour_map,
+        ..usual
+    }
+}
+
+/// Draws frames.
+#[derive(Debug)]
+pub struct Picture {
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+    sky: SkyPasses,
+    tone: TonePass,
+    targets: Option<Targets>,
+}
+
+/// Textures of one size.
+#[derive(Debug)]
+struct Targets {
+    size: [u32; 2],
+    light: wgpu::Texture,
+    light_view: wgpu::TextureView,
+    depth: wgpu::TextureView,
+    shown_view: wgpu::TextureView,
+}
+
+impl Picture {
+    /// Makes the pipelines.
+    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Self, SkyRendererError> {
+        Ok(Self {
+            device: device.clone(),
+            queue: queue.clone(),
+            sky: SkyPasses::new(device, queue, LIGHT)?,
+            tone: TonePass::new(device, SHOWN),
+            targets: None,
+        })
+    }
+
+    /// Draws with this light from now on.
+    pub fn set_light(&mut self, light: &Light) {
+        self.sky.set_tables(&light.tables);
+    }
+
+    /// Draws a frame of a size, pixels. True if the texture of [`Self::shown`] is a new one.
+    pub fn draw(&mut self, size: [u32; 2], shot: &Shot) -> bool {
+        let is_new = self.targets.as_ref().is_none_or(|t| t.size != size);
+        if is_new {
+            self.targets = Some(self.new_targets(size));
+        }
+        let Some(targets) = &self.targets else {
+            return false;
+        };
+        let mut encoder = self
+            .device
+            .create_command_encoder(&wgpu::CommandEncoderDescriptor {
+                label: Some("airlight viewer"),
+            });
+        clear(&mut encoder, targets);
+        let camera = Camera {
+            world_from_clip: shot.look.world_from_clip(size),
+            exposure: shot.exposure,
+            far_depth: 0.0,
+        };
+        self.sky
+            .record(&mut encoder, &targets.light_view, &targets.depth, &camera);
+        self.tone.record(
+            &mut encoder,
+            &targets.light_view,
+            &targets.shown_view,
+            &shot.tone,
+        );
+        self.queue.submit([encoder.finish()]);
+        is_new
+    }
+
+    /// What is shown: signals of sRGB.
+    pub fn shown(&self) -> Option<&wgpu::TextureView> {
+        self.targets.as_ref().map(|targets| &targets.shown_view)
+    }
+
+    /// Red, green and blue of the last frame, exposed.
+    ///
+    /// # Errors
+    /// A sentence where the device does not return them.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn light(&self) -> Result<Vec<[f32; 3]>, String> {
+        let Some(targets) = &self.targets else {
+            return Ok(Vec::new());
+        };
+        let bytes = read_texture(&self.device, &self.queue, &targets.light)?;
+        let channel = |texel: &[u8; 8], c: usize| {
+            half::f16::from_ne_bytes([texel[2 * c], texel[2 * c + 1]]).to_f32()
+        };
+        let texels = bytes.as_chunks::<8>().0.iter();
+        Ok(texels
+            .map(|texel| std::array::from_fn(|c| channel(texel, c)))
+            .collect())
+    }
+
+    fn new_targets(&self, [width, height]: [u32; 2]) -> Targets {
+        let texture = |format, usage| {
+            self.device.create_texture(&wgpu::TextureDescriptor {
+                label: Some("airlight viewer"),
+                size: wgpu::Extent3d {
+                    width,
+                    height,
+                    depth_or_array_layers: 1,
+                },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage: usage
+                    | wgpu::TextureUsages::RENDER_ATTACHMENT
+                    | wgpu::TextureUsages::TEXTURE_BINDING,
+                view_formats: &[],
+            })
+        };
+        let view =
+            |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let copied = wgpu::TextureUsages::COPY_SRC;
+        let light = texture(LIGHT, copied);
+        Targets {
+            size: [width, height],
+            light_view: view(&light),
+            light,
+            depth: view(&texture(
+                wgpu::TextureFormat::Depth32Float,
+                wgpu::TextureUsages::empty(),
+            )),
+            shown_view: view(&texture(SHOWN, copied)),
+        }
+    }
+}
+
+/// Starts a frame: black, without geometry.
+fn clear(encoder: &mut wgpu::CommandEncoder, targets: &Targets) {
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some("airlight viewer"),
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view: &targets.light_view,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations {
+                load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                store: wgpu::StoreOp::Store,
+            },
+        })],
+        depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+            view: &targets.depth,
+            depth_ops: Some(wgpu::Operations {
+                load: wgpu::LoadOp::Clear(0.0),
+                store: wgpu::StoreOp::Store,
+            }),
+            stencil_ops: None,
+        }),
+        timestamp_writes: None,
+        occlusion_query_set: None,
+        multiview_mask: None,
+    });
+}
+
+/// The bytes of a texture, row by row without padding.
+#[cfg(not(target_arch = "wasm32"))]
+pub fn read_texture(
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
+    texture: &wgpu::Texture,
+) -> Result<Vec<u8>, String> {
+    let size = texture.size();
+    let texel = texture.format().block_copy_size(None).unwrap_or(4);
+    let row = size.width * texel;
+    let bytes_per_row = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("airlight pixels"),
+        size: u64::from(bytes_per_row * size.height),
+        usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    encoder.copy_texture_to_buffer(
+        texture.as_image_copy(),
+        wgpu::TexelCopyBufferInfo {
+            buffer: &buffer,
+            layout: wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(bytes_per_row),
+                rows_per_image: None,
+            },
+        },
+        size,
+    );
+    queue.submit([encoder.finish()]);
+    let (done, mapped) = std::sync::mpsc::channel();
+    buffer
+        .slice(..)
+        .map_async(wgpu::MapMode::Read, move |result| {
+            let _ = done.send(result);
+        });
+    device
+        .poll(wgpu::PollType::wait_indefinitely())
+        .map_err(|error| error.to_string())?;
+    let mapped = mapped.recv().map_err(|error| error.to_string())?;
+    mapped.map_err(|error| error.to_string())?;
+    let bytes = buffer.slice(..).get_mapped_range();
+    let bytes = bytes.map_err(|error| error.to_string())?;
+    let rows = bytes.chunks(bytes_per_row as usize);
+    Ok(rows.flat_map(|of| &of[..row as usize]).copied().collect())
+}

@@ -1,0 +1,66 @@
+//! Colours, type and spacing.
+
+use eframe::egui::{
+    self, Color32, CornerRadius, FontFamily, FontId, Margin, Stroke, TextStyle, vec2,
+};
+
+/// Width of the panel, points.
+pub const PANEL_WIDTH: f32 = 316.0;
+/// Colour of what is active.
+pub const ACCENT: Color32 = Color32::from_rgb(232, 168, 96);
+/// Colour of text that is less important.
+pub const QUIET: Color32 = Color32::from_gray(150);
+const TEXT: Color32 = Color32::from_gray(214);
+const PANEL: Color32 = Color32::from_rgb(20, 22, 25);
+const WIDGET: Color32 = Color32::from_rgb(42, 46, 52);
+const WIDGET_HOVERED: Color32 = Color32::from_rgb(58, 63, 71);
+
+/// Sets the look of all widgets: dark, so that the picture is judged beside dim surroundings.
+pub fn apply(context: &egui::Context) {
+    context.set_theme(egui::Theme::Dark);
+    context.all_styles_mut(|style| {
+        style.text_styles = [
+            (TextStyle::Heading, 17.0, FontFamily::Proportional),
+            (TextStyle::Body, 13.0, FontFamily::Proportional),
+            (TextStyle::Button, 13.0, FontFamily::Proportional),
+            (TextStyle::Small, 11.0, FontFamily::Proportional),
+            (TextStyle::Monospace, 12.0, FontFamily::Monospace),
+        ]
+        .into_iter()
+        .map(|(style, size, family)| (style, FontId::new(size, family)))
+        .collect();
+        style.spacing.item_spacing = vec2(6.0, 5.0);
+        style.spacing.interact_size.y = 20.0;
+        style.spacing.button_padding = vec2(7.0, 2.0);
+        style.spacing.slider_rail_height = 4.0;
+        let visuals = &mut style.visuals;
+        visuals.panel_fill = PANEL;
+        visuals.window_fill = PANEL;
+        visuals.extreme_bg_color = Color32::from_rgb(12, 13, 15);
+        visuals.override_text_color = Some(TEXT);
+        visuals.selection.bg_fill = ACCENT.gamma_multiply(0.75);
+        visuals.selection.stroke = Stroke::new(1.5, ACCENT);
+        visuals.hyperlink_color = ACCENT;
+        visuals.slider_trailing_fill = true;
+        visuals.window_corner_radius = CornerRadius::same(6);
+        let widgets = &mut visuals.widgets;
+        for (widget, fill) in [
+            (&mut widgets.inactive, WIDGET),
+            (&mut widgets.hovered, WIDGET_HOVERED),
+            (&mut widgets.active, WIDGET_HOVERED),
+            (&mut widgets.open, WIDGET),
+        ] {
+            widget.bg_fill = fill;
+            widget.weak_bg_fill = fill;
+            widget.bg_stroke = Stroke::NONE;
+            widget.corner_radius = CornerRadius::same(4);
+        }
+    });
+}
+
+/// Frame of the panel.
+pub fn panel_frame() -> egui::Frame {
+    egui::Frame::new()
+        .fill(PANEL)
+        .inner_margin(Margin::symmetric(14, 10))
+}

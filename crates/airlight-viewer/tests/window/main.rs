@@ -1,0 +1,231 @@
+//! The viewer in a window that is not shown, on a Vulkan device.
+
+use airlight::atmosphere::Preset;
+use airlight::axes;
+use airlight::scene::Scene;
+use airlight::sky::{Sky, SkySettings, SunCoverage};
+use airlight::spectrum::{RgbSpace, WavelengthGrid};
+use airlight_image::{Camera, Frame, Projection, Size, read_picture};
+use airlight_viewer::{Options, State, Viewer, screenshot};
+use eframe::egui::{Key, Modifiers, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+use std::collections::HashSet;
+
+const SIZE: [f32; 2] = [800.0, 600.0];
+
+fn options(toml: &str) -> Options {
+    Options {
+        state: State::of_scene(Scene::from_toml(toml).unwrap()),
+        size: SIZE,
+        panel: true,
+    }
+}
+
+fn window(options: Options) -> Harness<'static, Viewer> {
+    Harness::builder()
+        .with_size(vec2(options.size[0], options.size[1]))
+        .wgpu()
+        .build_eframe(|context| {
+            let render = context.wgpu_render_state.clone().unwrap();
+            Viewer::new(&context.egui_ctx, render, options).unwrap()
+        })
+}
+
+/// Lets the window draw until it shows its state.
+fn settle(window: &mut Harness<'_, Viewer>) {
+    for _ in 0..100 {
+        window.step();
+        if window.state().is_current() && window.state().error().is_none() {
+            window.step();
+            return;
+        }
+        window.state_mut().wait();
+    }
+    panic!("no light: {:?}", window.state().error());
+}
+
+const EVENING: &str = "
+sun.elevation_deg = 12
+sun.azimuth_deg = 250
+observer.altitude_m = 2
+air.atmosphere = \"clear\"
+camera.projection = \"perspective\"
+camera.azimuth_deg = 200
+camera.elevation_deg = 20
+camera.fov_deg = 80
+";
+
+/// Probe points over the picture, against the solver at sixteen wavelengths.
+#[test]
+fn the_picture_is_that_of_the_solver() {
+    let mut window = window(options(EVENING));
+    settle(&mut window);
+    let (size, pixels) = window.state().pixels().unwrap();
+    let camera =
+        Camera::with_horizontal_fov(200.0, 20.0, 80.0, Size::new(size[0], size[1]).unwrap());
+    let frame = Frame::new(Projection::Perspective(camera), size[0], size[1]).unwrap();
+    let settings = SkySettings {
+        suns: SunCoverage::near(12.0, 2.0),
+        ..Default::default()
+    };
+    let grid = WavelengthGrid::standard();
+    let sky = Sky::prepare(&Preset::Clear.atmosphere(), &grid, &settings).unwrap();
+    let view = sky.view(2.0, axes::direction(250.0, 12.0));
+    let mut worst = 0.0f64;
+    for k in 0..40 {
+        let (x, y) = (13 * k % size[0], (17 * k + 5) % size[1]);
+        let direction = frame.pixel_direction(x, y).unwrap();
+        let right = grid.to_xyz(&view.along(direction, None).radiance())[1];
+        let got = RgbSpace::Srgb.luminance(pixels[(y * size[0] + x) as usize].map(f64::from));
+        worst = worst.max((got / right - 1.0).abs());
+    }
+    println!("{size:?}: worst luminance error {worst:.4}");
+    assert!(worst < 0.03, "{worst}");
+}
+
+#[test]
+fn only_changes_are_drawn() {
+    let mut window = window(options(EVENING));
+    settle(&mut window);
+    let drawn = window.state().frames();
+    for _ in 0..5 {
+        window.step();
+    }
+    assert_eq!(window.state().frames(), drawn);
+    let before = window.state().pixels().unwrap();
+    let mut state = window.state().state().clone();
+    state.scene.sun.elevation_deg = Some(2.0);
+    window.state_mut().set_state(state);
+    settle(&mut window);
+    assert!(window.state().frames() > drawn);
+    assert_ne!(window.state().pixels().unwrap(), before);
+    // A turn needs no new light.
+    let light = window.state().light().unwrap().clone();
+    window.get_by_label("Picture of the sky").focus();
+    window.step();
+    window.key_press(Key::ArrowRight);
+    window.step();
+    let azimuth_deg = window.state().state().scene.camera.azimuth_deg.unwrap();
+    assert!((azimuth_deg - 204.0).abs() < 1.0, "{azimuth_deg}");
+    assert_eq!(window.state().light(), Some(&light));
+}
+
+#[test]
+fn changes_are_undone_and_redone() {
+    let mut window = window(options(EVENING));
+    settle(&mut window);
+    let first = window.state().state().clone();
+    window.get_by_label("Fog near the ground").click();
+    settle(&mut window);
+    let foggy = window.state().state().clone();
+    assert!(foggy.scene.fog.is_some());
+    window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    window.step();
+    assert_eq!(window.state().state(), &first);
+    window.key_press_modifiers(Modifiers::COMMAND, Key::Y);
+    settle(&mut window);
+    assert_eq!(window.state().state(), &foggy);
+}
+
+#[test]
+fn every_control_has_a_name_and_is_reached_by_keyboard() {
+    let mut window = window(options(EVENING));
+    settle(&mut window);
+    let mut reached = HashSet::new();
+    for _ in 0..200 {
+        window.key_press(Key::Tab);
+        window.step();
+        let focused = window
+            .root()
+            .children_recursive()
+            .find(|node| node.is_focused());
+        if let Some(node) = focused {
+            let node = node.accesskit_node();
+            let names = [node.label(), node.value()].into_iter().flatten();
+            let name = names.into_iter().next().unwrap_or_default();
+            assert!(!name.is_empty(), "{node:?}");
+            reached.insert(name);
+        }
+    }
+    for name in [
+        "Elevation",
+        "Altitude",
+        "Ozone",
+        "Picture of the sky",
+        "White balance",
+    ] {
+        assert!(reached.contains(name), "{name}: {reached:?}");
+    }
+}
+
+#[test]
+fn the_picture_follows_the_size_of_the_window() {
+    let mut window = window(options(EVENING));
+    settle(&mut window);
+    for size in [vec2(1000.0, 500.0), vec2(500.0, 400.0)] {
+        window.set_size(size);
+        window.step();
+        window.step();
+        let ([width, height], pixels) = window.state().pixels().unwrap();
+        assert_eq!(height as f32, size.y);
+        assert!(width > 100 && (width as f32) < size.x, "{width}");
+        assert_eq!(pixels.len(), (width * height) as usize);
+    }
+}
+
+#[test]
+fn a_lost_device_is_reported() {
+    let mut window = window(options(EVENING));
+    settle(&mut window);
+    let device = window.state().device().clone();
+    device.destroy();
+    let _ = device.poll(eframe::wgpu::PollType::wait_indefinitely());
+    window.get_by_label("Picture of the sky").focus();
+    window.key_press(Key::ArrowRight);
+    window.step();
+    window.step();
+    let error = window.state().error().unwrap();
+    assert!(error.contains("device was lost"), "{error}");
+}
+
+#[test]
+fn a_scene_without_light_says_why() {
+    let mut window = window(options(EVENING));
+    settle(&mut window);
+    let mut state = window.state().state().clone();
+    state.scene.air.atmosphere = Some("claer".to_owned());
+    window.state_mut().set_state(state);
+    window.step();
+    window.state_mut().wait();
+    window.step();
+    let error = window.state().error().unwrap();
+    assert!(error.contains("clear"), "{error}");
+    // The last light stays.
+    assert!(window.state().light().is_some());
+}
+
+#[test]
+fn a_screenshot_shows_sky_and_controls() {
+    let folder = std::env::temp_dir().join(format!("airlight-viewer-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let file = folder.join("window.png");
+    screenshot(options(EVENING), &file).unwrap();
+    let picture = read_picture(&file, None).unwrap();
+    let size = picture.size;
+    assert_eq!([size.width(), size.height()], SIZE.map(|v| v as u32));
+    let pixel = |x: u32, y: u32| {
+        let k = 3 * (y * size.width() + x) as usize;
+        &picture.rgb[k..k + 3]
+    };
+    let [sky, low, panel] = [pixel(100, 100), pixel(100, 400), pixel(795, 595)];
+    assert!(
+        sky[2] > 1.2 * sky[0] && sky[2] > 0.1,
+        "the sky is blue: {sky:?}"
+    );
+    assert!(
+        low != sky && panel.iter().all(|v| *v < 0.02),
+        "{low:?} {panel:?}"
+    );
+    std::fs::remove_dir_all(&folder).unwrap();
+}
