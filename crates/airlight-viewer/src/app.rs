@@ -1,11 +1,12 @@
 //! [`Viewer`]: state, light and picture together.
 
-use crate::compute::{Facts, Light, Request, SPACE};
+use crate::beside::{Beside, Comparison, Wanted};
+use crate::compute::{Answer, Facts, Light, Output, Request, SPACE, Task};
 use crate::options::Options;
-use crate::picture::{Look, Picture, Shot, tone_of};
+use crate::picture::{Look, Picture, Shot, tone_mapper, tone_of};
 use crate::platform::Worker;
-use crate::state::{History, State};
-use crate::{panel, style, view};
+use crate::state::{CompareMode, History, State};
+use crate::{panel, reading, style, truth, view};
 use airlight::scene::{OutputSpec, Scene};
 use airlight_gpu::SkyRendererError;
 use airlight_image::tone::Exposure;
@@ -14,6 +15,7 @@ use airlight_render::exposure::{ExposureSettings, METERED_WIDTH, MeteredPicture}
 use eframe::egui::{self, Align2, Color32, FontId, Key, Rect, TextureId, Ui, pos2, vec2};
 use eframe::egui_wgpu::RenderState;
 use eframe::wgpu;
+use glam::DVec3;
 use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -49,6 +51,12 @@ pub struct Viewer {
     history: History,
     has_panel: bool,
     worker: Worker,
+    /// Taken out while it works with what else is here.
+    beside: Option<Beside>,
+    /// Direction whose spectrum is shown.
+    direction: Option<DVec3>,
+    /// The comparison on the screen, and what of it.
+    compared: Option<(Compared, egui::TextureHandle)>,
     number: u64,
     /// The scene that light is being computed for.
     asked: Option<Scene>,
@@ -94,6 +102,7 @@ impl Viewer {
     ) -> Result<Self, ViewerError> {
         style::apply(context);
         let repaint = context.clone();
+        let beside = context.clone();
         let is_lost = Arc::new(AtomicBool::new(false));
         let lost = is_lost.clone();
         render
@@ -106,6 +115,9 @@ impl Viewer {
             history: History::default(),
             has_panel: options.panel,
             worker: Worker::new(move || repaint.request_repaint()),
+            beside: Some(Beside::new(move || beside.request_repaint())),
+            direction: None,
+            compared: None,
             number: 0,
             asked: None,
             answered: None,
@@ -142,7 +154,10 @@ impl Viewer {
 
     /// Whether the picture shows the state: nothing is being computed.
     pub fn is_current(&self) -> bool {
-        self.asked.is_none() && self.answered.as_ref() == Some(&self.state.lit_scene())
+        let has_light =
+            self.asked.is_none() && self.answered.as_ref() == Some(&self.state.lit_scene());
+        let beside = self.beside.as_ref().zip(self.wanted());
+        has_light && beside.is_none_or(|(beside, wanted)| beside.is_current(&wanted))
     }
 
     /// The device that draws.
@@ -212,6 +227,7 @@ impl Viewer {
             .frame(egui::Frame::NONE.fill(Color32::BLACK))
             .show(ui, |ui| self.show_picture(ui));
         self.ask();
+        self.update_beside();
         self.settle(ui);
     }
 
@@ -232,19 +248,48 @@ impl Viewer {
         }
     }
 
-    fn take(&mut self, answer: crate::compute::Answer) {
+    fn take(&mut self, answer: Answer) {
         self.answered = self.asked.take();
         if self.is_lost.load(Ordering::Relaxed) {
             return;
         }
         match answer.result {
-            Ok(light) => {
+            Ok(Output::Light(light)) => {
                 self.picture.set_light(&light);
                 self.light = Some(light);
                 self.number = answer.number;
                 self.error = None;
             }
+            Ok(_) => {}
             Err(sentence) => self.error = Some(sentence),
+        }
+    }
+
+    /// What is wanted beside the picture, once it shows the state.
+    fn wanted(&self) -> Option<Wanted<'_>> {
+        let light = self.light.as_deref()?;
+        let (_, size, shot) = self.drawn?;
+        if self.asked.is_some() || self.error.is_some() {
+            return None;
+        }
+        let compare = self.state.compare.as_ref();
+        Some(Wanted {
+            number: self.number,
+            light,
+            scene: self.answered.as_ref()?,
+            look: shot.look,
+            direction: self.direction,
+            model: compare.map(|compare| (compare.model.as_str(), compared_size(size))),
+        })
+    }
+
+    /// Asks for and takes what is wanted beside the picture.
+    fn update_beside(&mut self) {
+        if let Some(mut beside) = self.beside.take() {
+            if let Some(wanted) = self.wanted() {
+                beside.update(&wanted);
+            }
+            self.beside = Some(beside);
         }
     }
 
@@ -255,6 +300,14 @@ impl Viewer {
             && let Some(answer) = self.worker.wait()
         {
             self.take(answer);
+        } else {
+            let Some(mut beside) = self.beside.take() else {
+                return;
+            };
+            if let Some(wanted) = self.wanted() {
+                beside.wait(&wanted);
+            }
+            self.beside = Some(beside);
         }
     }
 
@@ -265,6 +318,7 @@ impl Viewer {
             let request = Request {
                 number: self.number + 1,
                 scene: scene.clone(),
+                task: Task::Light,
             };
             match self.worker.send(request) {
                 true => self.asked = Some(scene),
@@ -304,7 +358,12 @@ impl Viewer {
         let scale = ui.pixels_per_point();
         let size = [rect.width(), rect.height()].map(|v| ((v * scale).round() as u32).max(1));
         let look = view::look_of(&self.state, self.facts().sun_azimuth_deg);
-        view::interact(ui, rect, &mut self.state, look);
+        let response = view::interact(ui, rect, &mut self.state, look);
+        if response.clicked()
+            && let Some(at) = response.interact_pointer_pos()
+        {
+            self.direction = Some(view::direction_at(rect, at, size, look));
+        }
         if let Some(shot) = self.shot(size) {
             self.draw(size, &shot);
         }
@@ -314,8 +373,17 @@ impl Viewer {
             let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
             let at = Rect::from_min_size(rect.min, shown);
             ui.painter().image(texture, at, whole, Color32::WHITE);
+            self.show_comparison(ui, at);
         }
         self.show_notes(ui, rect);
+        if let Some(direction) = self.direction {
+            let beside = self.beside.as_ref().zip(self.wanted());
+            let spectrum = beside.as_ref().and_then(|(beside, w)| beside.spectrum(w));
+            let is_open = reading::show(ui, direction, spectrum, &self.facts());
+            if !is_open {
+                self.direction = None;
+            }
+        }
     }
 
     /// Draws the picture if it shows something else than before.
@@ -347,22 +415,117 @@ impl Viewer {
         }
     }
 
+    /// Shows the comparison over the picture.
+    fn show_comparison(&mut self, ui: &Ui, at: Rect) {
+        let (Some(compare), Some((_, _, shot))) = (self.state.compare.clone(), self.drawn) else {
+            self.compared = None;
+            return;
+        };
+        let beside = self.beside.as_ref().zip(self.wanted());
+        let Some(comparison) = beside.as_ref().and_then(|(beside, w)| beside.comparison(w)) else {
+            return;
+        };
+        let of = (
+            self.number,
+            shot,
+            compare.model.clone(),
+            compare.mode,
+            comparison.size,
+        );
+        if self.compared.as_ref().is_none_or(|(shown, _)| *shown != of) {
+            let Some(image) = compared(comparison, compare.mode, &self.state.scene.output, shot)
+            else {
+                return;
+            };
+            let options = egui::TextureOptions::LINEAR;
+            let texture = ui.ctx().load_texture("comparison", image, options);
+            self.compared = Some((of, texture));
+        }
+        let Some((_, texture)) = &self.compared else {
+            return;
+        };
+        let from = match compare.mode {
+            CompareMode::Split => compare.split.clamp(0.0, 1.0) as f32,
+            _ => 0.0,
+        };
+        let x = at.left() + from * at.width();
+        let part = Rect::from_min_max(pos2(x, at.top()), at.max);
+        let texels = Rect::from_min_max(pos2(from, 0.0), pos2(1.0, 1.0));
+        ui.painter()
+            .image(texture.id(), part, texels, Color32::WHITE);
+        if from > 0.0 {
+            let stroke = egui::Stroke::new(1.0, Color32::from_white_alpha(170));
+            ui.painter().vline(x, at.y_range(), stroke);
+        }
+    }
+
+    /// The spectrum of the pixel that was clicked.
+    pub fn spectrum(&self) -> Option<&crate::compute::Spectrum> {
+        let (beside, wanted) = self.beside.as_ref().zip(self.wanted())?;
+        beside.spectrum(&wanted)
+    }
+
+    /// What is known of the error of the picture and of its difference from a model: a sentence each, one a line.
+    pub fn judgement(&self) -> Option<String> {
+        let (beside, wanted) = self.beside.as_ref().zip(self.wanted())?;
+        let sentence = |s: &truth::Statistics| {
+            format!(
+                "luminance {:.2} % rms (largest {:+.1} %), CIEDE2000 {:.2} rms",
+                s.rms_percent, s.worst_percent, s.rms_ciede2000
+            )
+        };
+        let mut text = beside
+            .check(&wanted)
+            .map(|s| format!("error against the solver: {}", sentence(s)));
+        if let Some((model, _)) = wanted.model {
+            let line = match (beside.comparison(&wanted), beside.refusal(&wanted)) {
+                (Some(comparison), _) => {
+                    let found = comparison.statistics.as_ref().map(sentence);
+                    let mode = self.state.compare.as_ref().map(|compare| compare.mode);
+                    let legend = match (comparison.statistics, mode) {
+                        (Some(s), Some(CompareMode::Luminance)) => format!(
+                            "; red: the picture is brighter, blue: darker, to {} %",
+                            truth::end(s.rms_percent)
+                        ),
+                        (Some(s), Some(CompareMode::Colour)) => {
+                            format!(
+                                "; black: none, white: {} or more",
+                                truth::end(s.rms_ciede2000)
+                            )
+                        }
+                        _ => String::new(),
+                    };
+                    let mut line = format!(
+                        "difference of the sky from {model}: {}",
+                        found.unwrap_or_default()
+                    );
+                    if !comparison.ignored.is_empty() {
+                        line += &format!("; it ignores {}", comparison.ignored.join(", "));
+                    }
+                    line + &legend
+                }
+                (None, Some(refusal)) => refusal.to_owned(),
+                (None, None) => format!("computing {model} …"),
+            };
+            text = Some(text.map_or(line.clone(), |text| format!("{text}\n{line}")));
+        }
+        text
+    }
+
     /// What is not in the picture: that light is being computed, or why there is none.
     fn show_notes(&self, ui: &Ui, rect: Rect) {
         let note = match (&self.error, &self.asked) {
-            (Some(error), _) => error.as_str(),
-            (None, Some(_)) => "solving …",
-            (None, None) => return,
+            (Some(error), _) => error.clone(),
+            (None, Some(_)) => "solving …".to_owned(),
+            (None, None) => match self.judgement() {
+                Some(text) => text,
+                None => return,
+            },
         };
         let at = rect.left_bottom() + vec2(12.0, -10.0);
         let font = FontId::proportional(12.0);
         let painter = ui.painter();
-        let galley = painter.layout(
-            note.to_owned(),
-            font,
-            Color32::from_gray(235),
-            rect.width() - 24.0,
-        );
+        let galley = painter.layout(note, font, Color32::from_gray(235), rect.width() - 24.0);
         let place = Align2::LEFT_BOTTOM.anchor_size(at, galley.size());
         painter.rect_filled(place.expand(5.0), 4.0, Color32::from_black_alpha(150));
         painter.galley(place.min, galley, Color32::WHITE);
@@ -373,6 +536,56 @@ impl eframe::App for Viewer {
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
         self.show(ui);
     }
+}
+
+/// What a comparison on the screen shows: number of the light, shot, model, mode and size.
+type Compared = (u64, Shot, String, CompareMode, [u32; 2]);
+
+/// Size of a compared picture: half that of the picture.
+fn compared_size(size: [u32; 2]) -> [u32; 2] {
+    size.map(|v| v.div_ceil(2))
+}
+
+/// The picture of a comparison.
+fn compared(
+    comparison: &Comparison,
+    mode: CompareMode,
+    output: &OutputSpec,
+    shot: Shot,
+) -> Option<egui::ColorImage> {
+    let [width, height] = comparison.size.map(|v| v as usize);
+    let pixels: Vec<Color32> = match mode {
+        CompareMode::Split => {
+            let mapper = tone_mapper(output, shot.exposure)?;
+            let row = 3 * width;
+            let mut bytes = vec![0; row * height];
+            let rows = comparison.rgb.as_flattened().chunks(row);
+            for (y, (linear, out)) in rows.zip(bytes.chunks_mut(row)).enumerate() {
+                mapper.row_to_u8(y as u32, linear, out);
+            }
+            let pixels = bytes.as_chunks::<3>().0.iter();
+            pixels
+                .map(|[r, g, b]| Color32::from_rgb(*r, *g, *b))
+                .collect()
+        }
+        CompareMode::Luminance => {
+            let end = truth::end(comparison.statistics?.rms_percent);
+            shades(comparison, |d| truth::percent_colour(d.percent, end))
+        }
+        CompareMode::Colour => {
+            let end = truth::end(comparison.statistics?.rms_ciede2000);
+            shades(comparison, |d| truth::ciede2000_colour(d.ciede2000, end))
+        }
+    };
+    Some(egui::ColorImage::new([width, height], pixels))
+}
+
+/// A colour for each difference; black where there is none.
+fn shades(comparison: &Comparison, of: impl Fn(&truth::Difference) -> Color32) -> Vec<Color32> {
+    let differences = comparison.differences.iter();
+    differences
+        .map(|d| d.as_ref().map_or(Color32::BLACK, &of))
+        .collect()
 }
 
 /// The exposure of a picture, metered as the program `airlight` does.

@@ -2,14 +2,22 @@
 //!
 //! A thread or a worker of a page holds a [`Computer`], which answers as [`compute`] does and keeps solved skies for the next request.
 
+use airlight::Control;
 use airlight::atmosphere::{Atmosphere, ConstituentKind, gases};
 use airlight::fog::RgbLayer;
-use airlight::scene::{AirSpec, ResolvedScene, Scene, SceneError, SolverSpec, SunAngles};
+use airlight::glam::DVec3;
+use airlight::models::registry;
+use airlight::scene::{
+    AirSpec, Channels, PreparedModel, RadianceView, ResolvedScene, Scene, SceneError, SolverSpec,
+    SunAngles,
+};
 use airlight::sky::SunCoverage;
 use airlight::spectrum::RgbSpace;
 use airlight_gpu::{Fog, FrameTables, SkyRendererError, SkySolver};
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::sync::Arc;
 
 /// RGB space of all colours.
 pub const SPACE: RgbSpace = RgbSpace::Srgb;
@@ -17,13 +25,31 @@ pub const SPACE: RgbSpace = RgbSpace::Srgb;
 /// Wavelength at which amounts are stated, nm.
 const NM: f64 = 550.0;
 
-/// A request for light.
+/// A request.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Request {
     /// Number of the request, which the answer repeats.
     pub number: u64,
     /// The scene; its camera and output do not matter.
     pub scene: Scene,
+    /// What is asked of it.
+    pub task: Task,
+}
+
+/// What a [`Request`] asks.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Task {
+    /// What frames are drawn with.
+    Light,
+    /// The spectrum of the solver in a direction, a unit vector.
+    Spectrum([f64; 3]),
+    /// Colours of a solver or a published model.
+    Colours {
+        /// Name of the model.
+        model: String,
+        /// Directions, unit vectors; those without length are black.
+        directions: Vec<[f32; 3]>,
+    },
 }
 
 /// The answer to a [`Request`].
@@ -31,8 +57,39 @@ pub struct Request {
 pub struct Answer {
     /// Number of the request.
     pub number: u64,
-    /// The light, or why there is none, as a sentence.
-    pub result: Result<Box<Light>, String>,
+    /// What was asked, or why it cannot be had, as a sentence.
+    pub result: Result<Output, String>,
+}
+
+/// What is answered to a [`Task`].
+#[derive(Clone, Debug, PartialEq)]
+pub enum Output {
+    /// To [`Task::Light`].
+    Light(Box<Light>),
+    /// To [`Task::Spectrum`].
+    Spectrum(Spectrum),
+    /// To [`Task::Colours`].
+    Colours(Colours),
+}
+
+/// Light from a direction, without the sun's disc.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Spectrum {
+    /// Wavelengths, nm.
+    pub wavelengths_nm: Vec<f64>,
+    /// Radiance, W m^-2 sr^-1 nm^-1.
+    pub radiance: Vec<f32>,
+    /// CIE XYZ, cd/m^2.
+    pub xyz: [f64; 3],
+}
+
+/// Colours by a model.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Colours {
+    /// Red, green and blue by direction, cd/m^2.
+    pub rgb: Vec<[f32; 3]>,
+    /// Inputs of the scene that the model ignores, and for which it has its defaults.
+    pub ignored: Vec<String>,
 }
 
 /// The light of a scene.
@@ -74,10 +131,32 @@ pub fn compute(request: &Request) -> Answer {
     Computer::default().compute(request)
 }
 
-/// Computes answers, and keeps the last solved sky.
-#[derive(Debug, Default)]
+/// Computes answers, and keeps what was solved last.
+#[derive(Default)]
 pub struct Computer {
     solved: Option<Solved>,
+    /// Prepared models with what they are prepared for; the last is the newest.
+    prepared: Vec<(Prepared, Arc<dyn PreparedModel>)>,
+}
+
+/// What a model is prepared for: the scene, reduced to the inputs that it honours, and the name of the model.
+type Prepared = (Scene, String);
+
+/// Number of prepared models that are kept.
+const PREPARED: usize = 3;
+
+impl fmt::Debug for Computer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let prepared: Vec<&str> = self
+            .prepared
+            .iter()
+            .map(|((_, name), _)| name.as_str())
+            .collect();
+        f.debug_struct("Computer")
+            .field("solved", &self.solved)
+            .field("prepared", &prepared)
+            .finish()
+    }
 }
 
 /// A sky, and the air that it is solved for.
@@ -101,11 +180,85 @@ enum Refusal {
 impl Computer {
     /// The answer to a request: what [`compute`] returns, sooner if the air is that of the request before.
     pub fn compute(&mut self, request: &Request) -> Answer {
-        let light = self.light(&request.scene).map(Box::new);
+        let scene = &request.scene;
+        let result = match &request.task {
+            Task::Light => self
+                .light(scene)
+                .map(|light| Output::Light(Box::new(light))),
+            Task::Spectrum(direction) => self.spectrum(scene, *direction).map(Output::Spectrum),
+            Task::Colours { model, directions } => {
+                let colours = self.colours(scene, model, directions);
+                colours.map(Output::Colours)
+            }
+        };
         Answer {
             number: request.number,
-            result: light.map_err(|error| error.to_string()),
+            result: result.map_err(|error| error.to_string()),
         }
+    }
+
+    fn spectrum(&mut self, scene: &Scene, direction: [f64; 3]) -> Result<Spectrum, Refusal> {
+        let (view, _) = self.view(scene, registry::DEFAULT, Channels::Spectral)?;
+        let mut radiance = vec![0.0; view.channel_count()];
+        view.radiance(&[DVec3::from_array(direction)], &mut radiance);
+        let grid = view.grid().expect("a spectral view");
+        Ok(Spectrum {
+            wavelengths_nm: grid.wavelengths_nm().to_vec(),
+            xyz: grid.to_xyz(&radiance),
+            radiance,
+        })
+    }
+
+    fn colours(
+        &mut self,
+        scene: &Scene,
+        model: &str,
+        directions: &[[f32; 3]],
+    ) -> Result<Colours, Refusal> {
+        let (view, ignored) = self.view(scene, model, Channels::Rgb(SPACE))?;
+        let directions: Vec<DVec3> = directions
+            .iter()
+            .map(|d| Vec3::from_array(*d).as_dvec3().normalize_or_zero())
+            .collect();
+        let mut rgb = vec![[0.0; 3]; directions.len()];
+        view.radiance(&directions, rgb.as_flattened_mut());
+        Ok(Colours { rgb, ignored })
+    }
+
+    /// The view of a model without the inputs that it ignores, which are named.
+    fn view(
+        &mut self,
+        scene: &Scene,
+        model: &str,
+        channels: Channels,
+    ) -> Result<(Arc<dyn RadianceView>, Vec<String>), Refusal> {
+        let found = registry::find(model)?;
+        let mut scene = scene.clone();
+        scene.solver.name = Some(model.to_owned());
+        let mut ignored = Vec::new();
+        for input in scene.resolve()?.set_inputs {
+            if !found.capabilities().honours(input) {
+                ignored.push(input.to_string());
+                scene = scene.without(input);
+            }
+        }
+        let resolved = scene.resolve()?;
+        let sun = resolved.sun.at_start()?;
+        let altitude_m = resolved.observer_altitude_m;
+        let of = (scene, model.to_owned());
+        let known = self.prepared.iter().position(|(known, _)| *known == of);
+        let prepared = match known {
+            Some(place) => self.prepared.remove(place).1,
+            None => {
+                let suns = SunCoverage::near(sun.elevation_deg, altitude_m);
+                registry::prepare(&resolved, suns, Control::default())?
+            }
+        };
+        let view = prepared.view(altitude_m, &sun.state(), channels)?;
+        self.prepared.push((of, prepared));
+        let more = self.prepared.len().saturating_sub(PREPARED);
+        self.prepared.drain(..more);
+        Ok((view, ignored))
     }
 
     fn light(&mut self, scene: &Scene) -> Result<Light, Refusal> {

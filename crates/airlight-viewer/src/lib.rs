@@ -6,10 +6,11 @@
 //! [`compute()`] is the work that takes time, from plain data to plain data; the module `platform` runs it beside the window. The solver,
 //! the drawing and the colours are those of the library; the viewer adds no physics.
 //!
-//! Modules, each importing only from those above it: [`state`], `options`, [`compute`](mod@compute), `platform`, `picture`, `style`, `widgets`,
-//! `panel`, `view`, `app`, `headless`, `window`.
+//! Modules, each importing only from those above it: [`state`], `options`, [`compute`](mod@compute), `platform`, `picture`, `truth`, `style`,
+//! `widgets`, `panel`, `view`, `reading`, `beside`, `app`, `headless`, `window`.
 
 mod app;
+mod beside;
 pub mod compute;
 #[cfg(not(target_arch = "wasm32"))]
 mod headless;
@@ -17,15 +18,17 @@ mod options;
 mod panel;
 mod picture;
 mod platform;
+mod reading;
 pub mod state;
 mod style;
+mod truth;
 mod view;
 mod widgets;
 #[cfg(not(target_arch = "wasm32"))]
 mod window;
 
 pub use app::{Viewer, ViewerError};
-pub use compute::{Answer, Computer, Request, compute};
+pub use compute::{Answer, Computer, Output, Request, Task, compute};
 #[cfg(not(target_arch = "wasm32"))]
 pub use headless::screenshot;
 pub use options::Options;

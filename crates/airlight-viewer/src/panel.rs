@@ -1,10 +1,11 @@
 //! The panel of controls.
 
 use crate::compute::Facts;
-use crate::state::{ALTITUDES_M, State};
+use crate::state::{ALTITUDES_M, Compare, CompareMode, State};
 use crate::widgets::{Number, choice, title};
 use airlight::Named;
 use airlight::atmosphere::{AerosolType, Preset};
+use airlight::models::registry;
 use airlight::scene::{Exposure, FogSpec, ToneKind};
 use airlight::sun::Moment;
 use eframe::egui::{self, RichText, Ui};
@@ -16,6 +17,7 @@ pub fn show(ui: &mut Ui, state: &mut State, facts: &Facts, ev100: f64) {
     air(ui, state, facts);
     fog(ui, state);
     display(ui, state, ev100);
+    compare(ui, state);
 }
 
 /// Place and time of a scene that has only a sun: Paris, on an evening in June.
@@ -240,6 +242,45 @@ fn display(ui: &mut Ui, state: &mut State, metered_ev100: f64) {
         .decimals(0)
         .help("Colour temperature of the light that is shown as neutral.")
         .show_optional(ui, &mut output.white_balance_k, 6504.0);
+}
+
+fn compare(ui: &mut Ui, state: &mut State) {
+    title(ui, "Compare");
+    // Monte Carlo takes minutes for a picture.
+    let models = registry::ALL.iter().map(|model| model.name());
+    let models = models.filter(|name| *name != "monte-carlo");
+    let mut named = vec![(None, "nothing".to_owned())];
+    named.extend(models.map(|name| {
+        let text = match name == registry::DEFAULT {
+            true => "the solver".to_owned(),
+            false => name.to_owned(),
+        };
+        (Some(name.to_owned()), text)
+    }));
+    let mut model = state.compare.as_ref().map(|compare| compare.model.clone());
+    if choice(ui, "With", &mut model, &named) {
+        let before = state.compare.take();
+        state.compare = model.map(|model| Compare {
+            model,
+            mode: before.as_ref().map_or(CompareMode::Split, |c| c.mode),
+            split: before.as_ref().map_or(0.5, |c| c.split),
+        });
+    }
+    if let Some(compare) = &mut state.compare {
+        let modes = [
+            (CompareMode::Split, "side by side"),
+            (CompareMode::Luminance, "difference of luminance"),
+            (CompareMode::Colour, "difference of colour"),
+        ];
+        let modes = modes.map(|(mode, text)| (mode, text.to_owned()));
+        choice(ui, "Shown", &mut compare.mode, &modes);
+        if compare.mode == CompareMode::Split {
+            Number::new("Line", "", 0.0..=1.0)
+                .decimals(2)
+                .help("Left of it the picture, right of it the model.")
+                .show(ui, &mut compare.split);
+        }
+    }
 }
 
 /// A line of less important text.

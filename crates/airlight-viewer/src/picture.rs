@@ -4,7 +4,7 @@ use crate::compute::Light;
 use airlight::axes;
 use airlight::scene::{OutputSpec, ToneKind};
 use airlight_gpu::{Camera, SkyPasses, SkyRendererError, ToneCurve, TonePass, ToneSettings};
-use airlight_image::tone::WhiteBalance;
+use airlight_image::tone::{self, AgxSettings, CameraSettings, ToneMapper, WhiteBalance};
 use eframe::wgpu;
 use glam::{DVec3, Mat4, Vec4};
 
@@ -83,6 +83,23 @@ pub fn tone_of(output: &OutputSpec) -> ToneSettings {
         colour_map,
         ..usual
     }
+}
+
+/// The same on the processor, for a factor on light in cd/m^2; `None` for settings out of range.
+pub fn tone_mapper(output: &OutputSpec, exposure: f32) -> Option<ToneMapper> {
+    let curve = match output.tone.unwrap_or_default() {
+        ToneKind::AgxBase => tone::ToneCurve::Agx(AgxSettings::default()),
+        ToneKind::Clip => tone::ToneCurve::Clip,
+        _ => tone::ToneCurve::Camera(CameraSettings {
+            contrast: output.tone_contrast.unwrap_or(1.2),
+            saturation: output.saturation.unwrap_or(1.0),
+        }),
+    };
+    let balance = output
+        .white_balance_k
+        .and_then(|k| WhiteBalance::new(k).ok());
+    let mapper = ToneMapper::new(exposure, curve).ok()?;
+    Some(mapper.with_white_balance(balance))
 }
 
 /// Draws frames.

@@ -17,6 +17,33 @@ pub struct State {
     pub version: u32,
     /// Sun, eye, air, fog, camera and display, as the program `airlight` reads them.
     pub scene: Scene,
+    /// What the picture is compared with.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub compare: Option<Compare>,
+}
+
+/// A comparison of the picture with a solver or a published model.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Compare {
+    /// Name of the model.
+    pub model: String,
+    /// What is shown.
+    pub mode: CompareMode,
+    /// Place of the line of [`CompareMode::Split`], 0 at the left edge, 1 at the right.
+    pub split: f64,
+}
+
+/// What is shown of a comparison.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum CompareMode {
+    /// The picture on the left, the model on the right of a line.
+    Split,
+    /// Luminance of the picture relative to the model, in percent.
+    Luminance,
+    /// Difference of colour, CIEDE2000.
+    Colour,
 }
 
 impl Default for State {
@@ -57,6 +84,7 @@ impl State {
         Self {
             version: STATE_VERSION,
             scene,
+            compare: None,
         }
     }
 

@@ -6,8 +6,9 @@ use airlight::scene::Scene;
 use airlight::sky::{Sky, SkySettings, SunCoverage};
 use airlight::spectrum::{RgbSpace, WavelengthGrid};
 use airlight_image::{Camera, Frame, Projection, Size, read_picture};
+use airlight_viewer::state::{Compare, CompareMode};
 use airlight_viewer::{Options, State, Viewer, screenshot};
-use eframe::egui::{Key, Modifiers, vec2};
+use eframe::egui::{self, Key, Modifiers, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use std::collections::HashSet;
@@ -82,6 +83,80 @@ fn the_picture_is_that_of_the_solver() {
     }
     println!("{size:?}: worst luminance error {worst:.4}");
     assert!(worst < 0.03, "{worst}");
+}
+
+/// The picture beside that of the solver, and of a published model.
+#[test]
+fn models_are_compared_with_the_picture() {
+    let mut options = options(EVENING);
+    let compare = |model: &str, mode| {
+        Some(Compare {
+            model: model.to_owned(),
+            mode,
+            split: 0.5,
+        })
+    };
+    options.state.compare = compare("orders", CompareMode::Split);
+    let mut window = window(options);
+    settle(&mut window);
+    let text = window.state().judgement().unwrap();
+    let errors = |text: &str| -> Vec<f64> {
+        let lines = text.lines();
+        lines
+            .map(|line| {
+                let (_, after) = line.split_once("luminance ").expect(line);
+                after.split_once(' ').unwrap().0.parse().unwrap()
+            })
+            .collect()
+    };
+    let [check, solver] = errors(&text)[..] else {
+        panic!("{text}");
+    };
+    assert!(check < 0.5 && solver < 0.5, "{text}");
+    // The right half is the solver's picture, which continues the left one.
+    let image = window.render().unwrap();
+    let at = |x: u32| image.get_pixel(x, 100).0;
+    let middle = (SIZE[0] as u32 - 316) / 2;
+    for (left, right) in at(middle - 3).into_iter().zip(at(middle + 3)) {
+        assert!(
+            left.abs_diff(right) <= 3,
+            "{:?} {:?}",
+            at(middle - 3),
+            at(middle + 3)
+        );
+    }
+    let mut state = window.state().state().clone();
+    state.compare = compare("hillaire2020", CompareMode::Luminance);
+    window.state_mut().set_state(state);
+    settle(&mut window);
+    let text = window.state().judgement().unwrap();
+    assert!(errors(&text)[1] > 5.0 && text.contains("red"), "{text}");
+}
+
+/// A click on a pixel against the solver there.
+#[test]
+fn a_click_reads_the_spectrum() {
+    let mut window = window(options(EVENING));
+    settle(&mut window);
+    let at = pos2(120.0, 150.0);
+    window.hover_at(at);
+    window.step();
+    for pressed in [true, false] {
+        window.event(egui::Event::PointerButton {
+            pos: at,
+            button: egui::PointerButton::Primary,
+            pressed,
+            modifiers: Modifiers::NONE,
+        });
+        window.step();
+    }
+    settle(&mut window);
+    window.get_by_label("Copy spectrum as CSV");
+    let (size, pixels) = window.state().pixels().unwrap();
+    let drawn = pixels[150 * size[0] as usize + 120].map(f64::from);
+    let right = window.state().spectrum().unwrap().xyz[1];
+    let error = RgbSpace::Srgb.luminance(drawn) / right - 1.0;
+    assert!(error.abs() < 0.01, "{error}");
 }
 
 #[test]
