@@ -1,24 +1,36 @@
 //! [`Viewer`]: state, light and picture together.
 
 use crate::beside::{Beside, Comparison, Wanted};
+use crate::command::command_line;
 use crate::compute::{Answer, Facts, Light, Output, Request, SPACE, Task};
+use crate::examples::{self, EXAMPLES};
 use crate::options::Options;
 use crate::picture::{Look, Picture, Shot, tone_mapper, tone_of};
 use crate::platform::Worker;
 use crate::state::{CompareMode, History, State};
+use crate::widgets::choice;
 use crate::{panel, reading, style, truth, view};
 use airlight::scene::{OutputSpec, Scene};
 use airlight_gpu::SkyRendererError;
+#[cfg(not(target_arch = "wasm32"))]
+use airlight_image::rows::StoredRows;
 use airlight_image::tone::Exposure;
 use airlight_image::{Camera, Frame, Projection, Size};
+#[cfg(not(target_arch = "wasm32"))]
+use airlight_image::{Control, PictureOptions, write_picture};
 use airlight_render::exposure::{ExposureSettings, METERED_WIDTH, MeteredPicture};
 use eframe::egui::{self, Align2, Color32, FontId, Key, Rect, TextureId, Ui, pos2, vec2};
 use eframe::egui_wgpu::RenderState;
 use eframe::wgpu;
 use glam::DVec3;
 use std::fmt;
+#[cfg(not(target_arch = "wasm32"))]
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+
+/// The command for a scene that is saved.
+const FROM_FILE: &str = "airlight sky --scene scene.toml -o sky.png";
 
 /// Why there is no viewer.
 #[derive(Debug, thiserror::Error)]
@@ -70,6 +82,10 @@ pub struct Viewer {
     texture: Option<TextureId>,
     drawn: Option<Drawn>,
     frames: u64,
+    /// Why a file was not opened or saved.
+    notice: Option<String>,
+    /// Name of a file to open or save.
+    file: String,
     /// Whether the graphics device is gone.
     is_lost: Arc<AtomicBool>,
 }
@@ -129,6 +145,8 @@ impl Viewer {
             texture: None,
             drawn: None,
             frames: 0,
+            notice: None,
+            file: "scene.toml".to_owned(),
         })
     }
 
@@ -208,6 +226,10 @@ impl Viewer {
     pub fn show(&mut self, ui: &mut Ui) {
         self.take_answers();
         self.shortcuts(ui);
+        #[cfg(not(target_arch = "wasm32"))]
+        for file in ui.input(|i| i.raw.dropped_files.clone()) {
+            self.notice = self.open(file.path()).err();
+        }
         if self.has_panel {
             let facts = self.facts();
             let ev100 = self.metered.as_ref().map_or(15.0, |(_, e)| e.ev100());
@@ -219,6 +241,7 @@ impl Viewer {
                     egui::ScrollArea::vertical().show(ui, |ui| {
                         ui.set_width(ui.available_width());
                         ui.heading("Airlight");
+                        self.show_actions(ui);
                         panel::show(ui, &mut self.state, &facts, ev100);
                     });
                 });
@@ -229,6 +252,115 @@ impl Viewer {
         self.ask();
         self.update_beside();
         self.settle(ui);
+    }
+
+    /// Undo, examples, files and the command line.
+    fn show_actions(&mut self, ui: &mut Ui) {
+        ui.horizontal(|ui| {
+            let [undo, redo] = self.history.can();
+            let button = |ui: &mut Ui, enabled, text| {
+                ui.add_enabled(enabled, egui::Button::new(text)).clicked()
+            };
+            if button(ui, undo, "Undo") {
+                self.step_back();
+            }
+            if button(ui, redo, "Redo") {
+                self.step_forward();
+            }
+            if button(ui, true, "Reset") {
+                self.state = State::default();
+            }
+            let command = command_line(&self.state.scene);
+            let text = command.clone().unwrap_or_else(|| FROM_FILE.to_owned());
+            let copy = ui.button("Copy command").on_hover_text(text);
+            if copy.clicked() {
+                let command = command.unwrap_or_else(|| FROM_FILE.to_owned());
+                ui.ctx().copy_text(command);
+            }
+        });
+        let mut chosen = "";
+        let named = EXAMPLES.map(|(name, toml)| (toml, name.to_owned()));
+        if choice(ui, "Examples", &mut chosen, &named)
+            && let Some(state) = examples::state(chosen)
+        {
+            self.state = state;
+        }
+        #[cfg(not(target_arch = "wasm32"))]
+        self.show_files(ui);
+    }
+
+    /// A file to open or to save: a scene, or the picture.
+    #[cfg(not(target_arch = "wasm32"))]
+    fn show_files(&mut self, ui: &mut Ui) {
+        ui.horizontal(|ui| {
+            let name = crate::widgets::name(ui, "File", true);
+            let field = egui::TextEdit::singleline(&mut self.file).desired_width(84.0);
+            ui.add(field).labelled_by(name.id).on_hover_text(
+                "A scene (.toml) to open or save, or the picture to save: .exr, .hdr, .png, .jpg",
+            );
+            let done = match [ui.button("Open").clicked(), ui.button("Save").clicked()] {
+                [true, _] => self.open(self.file.clone().as_ref()),
+                [_, true] => self.save(self.file.clone().as_ref()),
+                _ => return,
+            };
+            self.notice = done.err();
+        });
+    }
+
+    /// Opens a scene file.
+    ///
+    /// # Errors
+    /// A sentence where it cannot be read or is invalid.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn open(&mut self, file: &Path) -> Result<(), String> {
+        let scene = airlight_render::scene_file::load(file).map_err(|error| error.to_string())?;
+        self.state = State::of_scene(scene);
+        Ok(())
+    }
+
+    /// Saves the scene as TOML, or the picture in the format of the file's ending.
+    ///
+    /// # Errors
+    /// A sentence where it cannot be written.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn save(&self, file: &Path) -> Result<(), String> {
+        if file.extension().is_some_and(|ending| ending == "toml") {
+            let text = self
+                .state
+                .scene
+                .to_toml()
+                .map_err(|error| error.to_string())?;
+            return std::fs::write(file, text)
+                .map_err(|error| format!("cannot write `{}`: {error}", file.display()));
+        }
+        let (_, _, shot) = self
+            .drawn
+            .ok_or("expected a picture to save, got none yet")?;
+        let (size, pixels) = self.pixels().map_err(|error| error.to_string())?;
+        let output = &self.state.scene.output;
+        let mapper = tone_mapper(output, shot.exposure);
+        let mapper = mapper.ok_or("expected tone settings in their ranges")?;
+        let write = || {
+            let rows = StoredRows::new(size[0], 3, pixels.as_flattened().to_vec())?;
+            let size = Size::new(size[0], size[1])?;
+            let options = PictureOptions::default();
+            write_picture(file, size, &rows, &mapper, &options, Control::default())
+        };
+        write().map(drop).map_err(|error| error.to_string())
+    }
+
+    fn step_back(&mut self) {
+        if let Some(state) = self.history.undo(&self.state) {
+            self.settled = state.clone();
+            self.state = state;
+        }
+    }
+
+    fn step_forward(&mut self) {
+        if let Some(state) = self.history.redo(&self.state) {
+            self.settled = state.clone();
+            self.state = state;
+        }
     }
 
     fn facts(&self) -> Facts {
@@ -250,6 +382,7 @@ impl Viewer {
 
     fn take(&mut self, answer: Answer) {
         self.answered = self.asked.take();
+        self.notice = None;
         if self.is_lost.load(Ordering::Relaxed) {
             return;
         }
@@ -331,14 +464,10 @@ impl Viewer {
         let pressed = |modifiers, key| ui.input_mut(|i| i.consume_key(modifiers, key));
         let command = egui::Modifiers::COMMAND;
         let redo = pressed(command | egui::Modifiers::SHIFT, Key::Z) || pressed(command, Key::Y);
-        let state = match (redo, pressed(command, Key::Z)) {
-            (true, _) => self.history.redo(&self.state),
-            (false, true) => self.history.undo(&self.state),
-            _ => None,
-        };
-        if let Some(state) = state {
-            self.settled = state.clone();
-            self.state = state;
+        match (redo, pressed(command, Key::Z)) {
+            (true, _) => self.step_forward(),
+            (false, true) => self.step_back(),
+            _ => {}
         }
         if pressed(egui::Modifiers::NONE, Key::F2) {
             self.has_panel = !self.has_panel;
@@ -515,9 +644,10 @@ impl Viewer {
     /// What is not in the picture: that light is being computed, or why there is none.
     fn show_notes(&self, ui: &Ui, rect: Rect) {
         let note = match (&self.error, &self.asked) {
+            _ if self.notice.is_some() => self.notice.clone().unwrap_or_default(),
             (Some(error), _) => error.clone(),
             (None, Some(_)) => "solving …".to_owned(),
-            (None, None) => match self.judgement() {
+            (None, None) => match self.judgement().filter(|_| self.has_panel) {
                 Some(text) => text,
                 None => return,
             },

@@ -6,12 +6,14 @@
 //! [`compute()`] is the work that takes time, from plain data to plain data; the module `platform` runs it beside the window. The solver,
 //! the drawing and the colours are those of the library; the viewer adds no physics.
 //!
-//! Modules, each importing only from those above it: [`state`], `options`, [`compute`](mod@compute), `platform`, `picture`, `truth`, `style`,
+//! Modules, each importing only from those above it: [`state`], `examples`, `options`, `command`, [`compute`](mod@compute), `platform`, `picture`, `truth`, `style`,
 //! `widgets`, `panel`, `view`, `reading`, `beside`, `app`, `headless`, `window`.
 
 mod app;
 mod beside;
+mod command;
 pub mod compute;
+mod examples;
 #[cfg(not(target_arch = "wasm32"))]
 mod headless;
 mod options;
@@ -28,6 +30,7 @@ mod widgets;
 mod window;
 
 pub use app::{Viewer, ViewerError};
+pub use command::command_line;
 pub use compute::{Answer, Computer, Output, Request, Task, compute};
 #[cfg(not(target_arch = "wasm32"))]
 pub use headless::screenshot;
