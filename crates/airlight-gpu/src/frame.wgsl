@@ -9,7 +9,8 @@ struct Camera {
 }
 
 @group(1) @binding(0) var<uniform> camera: Camera;
-@group(1) @binding(1) var depth_texture: texture_depth_2d;
+// Not `texture_depth_2d`, whose texels WebGL cannot load.
+@group(1) @binding(1) var depth_texture: texture_2d<f32>;
 
 /// What a pixel sees: its direction, and the distance of its geometry, negative without any.
 struct Pixel {
@@ -21,7 +22,7 @@ fn pixel(in: Corner) -> Pixel {
     // The depth away from the far end, where positions may be infinite.
     let near = camera.world_from_clip * vec4<f32>(in.clip, 1.0 - camera.far_depth, 1.0);
     let direction = normalize(near.xyz / near.w);
-    let depth = textureLoad(depth_texture, vec2<i32>(in.position.xy), 0);
+    let depth = textureLoad(depth_texture, vec2<i32>(in.position.xy), 0).x;
     if depth == camera.far_depth {
         return Pixel(direction, -1.0);
     }

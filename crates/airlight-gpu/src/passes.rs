@@ -237,7 +237,7 @@ fn frame_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
             entry(
                 1,
                 wgpu::BindingType::Texture {
-                    sample_type: wgpu::TextureSampleType::Depth,
+                    sample_type: wgpu::TextureSampleType::Float { filterable: false },
                     view_dimension: wgpu::TextureViewDimension::D2,
                     multisampled: false,
                 },

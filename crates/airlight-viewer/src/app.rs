@@ -479,6 +479,8 @@ impl Viewer {
         if self.state != self.settled && !ui.input(|i| i.pointer.any_down()) {
             let left = std::mem::replace(&mut self.settled, self.state.clone());
             self.history.push(left);
+            #[cfg(target_arch = "wasm32")]
+            crate::platform::keep(&self.state.to_fragment());
         }
     }
 

@@ -6,9 +6,10 @@
 //! [`compute()`] is the work that takes time, from plain data to plain data; the module `platform` runs it beside the window. The solver,
 //! the drawing and the colours are those of the library; the viewer adds no physics.
 //!
-//! Modules, each importing only from those above it: [`state`], `examples`, `options`, `command`, [`compute`](mod@compute), `platform`, `picture`, `truth`, `style`,
-//! `widgets`, `panel`, `view`, `reading`, `beside`, `app`, `headless`, `window`.
+//! Modules, each importing only from those above it: [`state`], `address`, `examples`, `options`, `command`, [`compute`](mod@compute),
+//! `message`, `platform`, `picture`, `truth`, `style`, `widgets`, `panel`, `view`, `reading`, `beside`, `app`, `headless`, `window`, `page`.
 
+mod address;
 mod app;
 mod beside;
 mod command;
@@ -16,7 +17,11 @@ pub mod compute;
 mod examples;
 #[cfg(not(target_arch = "wasm32"))]
 mod headless;
+#[cfg(any(test, target_arch = "wasm32"))]
+mod message;
 mod options;
+#[cfg(target_arch = "wasm32")]
+mod page;
 mod panel;
 mod picture;
 mod platform;
@@ -35,6 +40,8 @@ pub use compute::{Answer, Computer, Output, Request, Task, compute};
 #[cfg(not(target_arch = "wasm32"))]
 pub use headless::screenshot;
 pub use options::Options;
+#[cfg(target_arch = "wasm32")]
+pub use page::run_in_page;
 pub use state::State;
 #[cfg(not(target_arch = "wasm32"))]
 pub use window::run;

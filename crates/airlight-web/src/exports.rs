@@ -1,7 +1,45 @@
-//! What the page and its tests call.
+//! What the page, its worker and its tests call.
 
 use crate::sample;
+use airlight_viewer::{Answer, Computer, Options, Request, State, run_in_page};
+use std::cell::RefCell;
 use wasm_bindgen::prelude::wasm_bindgen;
+use web_sys::HtmlCanvasElement;
+
+/// Shows the viewer in a canvas, with the state of a fragment, or the first one without.
+///
+/// # Errors
+/// Why it cannot be shown, as a sentence.
+#[wasm_bindgen]
+pub async fn start(canvas: HtmlCanvasElement, fragment: String) -> Result<(), String> {
+    let state = match fragment.as_str() {
+        "" => State::default(),
+        fragment => State::from_fragment(fragment)?,
+    };
+    let options = Options {
+        state,
+        ..Options::default()
+    };
+    run_in_page(canvas, options).await
+}
+
+thread_local! {
+    /// What the worker has solved.
+    static COMPUTER: RefCell<Computer> = RefCell::default();
+}
+
+/// Answers a request of the page, in the worker.
+#[wasm_bindgen]
+pub fn answer(request: &[u8]) -> Vec<u8> {
+    let answer = match Request::from_bytes(request) {
+        Ok(request) => COMPUTER.with_borrow_mut(|computer| computer.compute(&request)),
+        Err(sentence) => Answer {
+            number: 0,
+            result: Err(sentence),
+        },
+    };
+    answer.to_bytes()
+}
 
 /// [`sample::values`] as text, one name and value a line.
 #[wasm_bindgen]
