@@ -25,6 +25,34 @@ const PLACE: (f64, f64) = (48.8584, 2.2945);
 const TIME: &str = "2026-06-21T21:15:00+02:00";
 const DAY_S: f64 = 86_400.0;
 
+/// Cities with latitude and longitude, degrees north and east.
+const CITIES: [(&str, f64, f64); 24] = [
+    ("Anchorage", 61.2181, -149.9003),
+    ("Bangalore", 12.9716, 77.5946),
+    ("Beijing", 39.9042, 116.4074),
+    ("Berlin", 52.52, 13.405),
+    ("Buenos Aires", -34.6037, -58.3816),
+    ("Cairo", 30.0444, 31.2357),
+    ("Cape Town", -33.9249, 18.4241),
+    ("Honolulu", 21.3069, -157.8583),
+    ("Istanbul", 41.0082, 28.9784),
+    ("Lagos", 6.5244, 3.3792),
+    ("London", 51.5074, -0.1278),
+    ("Los Angeles", 34.0522, -118.2437),
+    ("Mexico City", 19.4326, -99.1332),
+    ("Nairobi", -1.2921, 36.8219),
+    ("New York", 40.7128, -74.006),
+    ("Paris", 48.8584, 2.2945),
+    ("Quito", -0.1807, -78.4678),
+    ("Reykjavik", 64.1466, -21.9426),
+    ("Rome", 41.9028, 12.4964),
+    ("Singapore", 1.3521, 103.8198),
+    ("Sydney", -33.8688, 151.2093),
+    ("Tokyo", 35.6762, 139.6503),
+    ("Tromsø", 69.6492, 18.9553),
+    ("Wellington", -41.2866, 174.7756),
+];
+
 fn sun(ui: &mut Ui, state: &mut State, facts: &Facts) {
     title(ui, "Sun");
     let sun = &mut state.scene.sun;
@@ -56,6 +84,13 @@ fn sun(ui: &mut Ui, state: &mut State, facts: &Facts) {
             .help("Clockwise from north.")
             .show_optional(ui, &mut sun.azimuth_deg, 180.0);
     } else {
+        let named = CITIES.map(|(name, latitude_deg, longitude_deg)| {
+            ((Some(latitude_deg), Some(longitude_deg)), name.to_owned())
+        });
+        let mut place = (sun.latitude_deg, sun.longitude_deg);
+        if choice(ui, "City", &mut place, &named) {
+            (sun.latitude_deg, sun.longitude_deg) = place;
+        }
         Number::new("Latitude", "°", -90.0..=90.0)
             .decimals(4)
             .show_optional(ui, &mut sun.latitude_deg, PLACE.0);
