@@ -7,6 +7,7 @@ use airlight::atmosphere::Atmosphere;
 use airlight::glam::DVec3;
 use airlight::sky::{Sky, SkySettings, View};
 use airlight::spectrum::RgbSpace;
+use airlight::sun::SunState;
 use airlight_shaders::twins::texture::Texture;
 use airlight_shaders::{ColourFit, SkyTables, WAVELENGTHS_NM, wavelength_grid};
 use glam::{Vec3, Vec4};
@@ -56,7 +57,7 @@ impl SkySolver {
         })
     }
 
-    /// Tables for an eye at a height above sea level, m, a direction to the sun, and a fog.
+    /// Tables for an eye at a height above sea level, m, a sun, by its direction or with its distance, and a fog.
     ///
     /// # Errors
     /// [`SkyRendererError`] for numbers that are no place or direction, for an invalid fog, and for a place that the sky is not
@@ -64,10 +65,12 @@ impl SkySolver {
     pub fn tables(
         &self,
         height_m: f64,
-        sun: DVec3,
+        sun: impl Into<SunState>,
         fog: Option<&Fog>,
     ) -> Result<FrameTables, SkyRendererError> {
-        let (height_m, sun) = checked(height_m, sun)?;
+        let sun = sun.into();
+        let (height_m, direction) = checked(height_m, sun.direction)?;
+        let sun = SunState { direction, ..sun };
         fog.map_or(Ok(()), Fog::validate)?;
         let view = self.sky.try_view(height_m, sun)?;
         let sky = SkyTables::new(&view, &self.fit, self.space)?;

@@ -319,7 +319,9 @@ fn rgb_weights(view: &View, fit: &ColourFit, space: RgbSpace) -> Result<[RgbWeig
             blue: row(2),
         }
     };
-    let solar = view.sky().grid().solar_irradiance();
+    // At the sun's distance, as the fit.
+    let solar = view.solar_irradiance().into_iter().map(f64::from);
+    let solar: Vec<f64> = solar.collect();
     let per_radiance =
         |light: &[[f64; 3]; 4]| weights(&|c, k| light[k][c] / solar[k].max(f64::MIN_POSITIVE));
     let total = |c: usize| sunlight.iter().map(|column| column[c]).sum::<f64>();

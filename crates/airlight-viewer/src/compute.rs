@@ -267,7 +267,7 @@ impl Computer {
         let altitude_m = resolved.observer_altitude_m;
         let fog = fog(&resolved)?;
         let solver = self.solver(scene, &resolved, &sun)?;
-        let tables = solver.tables(altitude_m, sun.direction(), fog.as_ref())?;
+        let tables = solver.tables(altitude_m, sun.state(), fog.as_ref())?;
         let facts = facts(&resolved, &sun, &tables);
         Ok(Light { tables, facts })
     }

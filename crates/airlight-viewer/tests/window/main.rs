@@ -2,7 +2,7 @@
 
 use airlight::atmosphere::Preset;
 use airlight::axes;
-use airlight::scene::Scene;
+use airlight::scene::{Scene, SunState};
 use airlight::sky::{Sky, SkySettings, SunCoverage};
 use airlight::spectrum::{RgbSpace, WavelengthGrid};
 use airlight_image::{Camera, Frame, Projection, Size, read_picture};
@@ -49,6 +49,7 @@ fn settle(window: &mut Harness<'_, Viewer>) {
 const EVENING: &str = "
 sun.elevation_deg = 12
 sun.azimuth_deg = 250
+sun.distance_ratio = 1.0167
 observer.altitude_m = 2
 air.atmosphere = \"clear\"
 camera.projection = \"perspective\"
@@ -72,7 +73,13 @@ fn the_picture_is_that_of_the_solver() {
     };
     let grid = WavelengthGrid::standard();
     let sky = Sky::prepare(&Preset::Clear.atmosphere(), &grid, &settings).unwrap();
-    let view = sky.view(2.0, axes::direction(250.0, 12.0));
+    let view = sky.view(
+        2.0,
+        SunState {
+            direction: axes::direction(250.0, 12.0),
+            distance_ratio: 1.0167,
+        },
+    );
     let mut worst = 0.0f64;
     for k in 0..40 {
         let (x, y) = (13 * k % size[0], (17 * k + 5) % size[1]);
