@@ -4,7 +4,7 @@ use super::closed_forms::{Lanes, OPAQUE, mean_attenuated_source};
 use super::error::FogError;
 use super::layer::{LayerLanes, MergedLayer, merge_layers};
 use super::lighting::{FogLighting, FogScattering, Ground};
-use super::multiple::{self, DirectionWeights, Field};
+use super::multiple::{self, DEGREES, DirectionWeights, Field, KINDS};
 use super::ray_block::{PerRay, RAYS, RayBlock, in_lanes, store};
 use super::ray_cuts::height_breakpoints;
 use super::single_scattering::SingleScattering;
@@ -79,8 +79,10 @@ impl<const N: usize> FogLanes<N> {
             return None;
         }
         let sin_sun = self.lighting.sun.map_or(1.0, |sun| sun.direction.y);
-        let single = self.single_scattering(|s| [s.reduced_extinction()], |_| [Spectrum::ZERO]);
-        let sun_depth = |height| single.depth_to_sun(height, sin_sun)[0];
+        let single = self.single_scattering(MergedLayer::stream_extinctions, |_| {
+            [Spectrum::ZERO; STREAMS]
+        });
+        let sun_depth = |height| single.depth_to_sun(height, sin_sun);
         Some(Field::solve(
             reduced,
             &self.ground,
@@ -263,7 +265,7 @@ impl<const N: usize> FogLanes<N> {
             Some(field) => self.multiple_scattering(field, ray, cos_sun, depth),
             None => {
                 let ([sunlit], uniform) = self
-                    .single_scattering(|s| [s.extinction_per_m], |s| [s.towards_eye(cos_sun)])
+                    .single_scattering(|s| [[s.extinction_per_m]; 2], |s| [s.towards_eye(cos_sun)])
                     .along(ray, &|s| s.scattering_per_m);
                 uniform * self.lighting.ambient + sunlit * self.sunlight()
             }
@@ -282,7 +284,8 @@ impl<const N: usize> FogLanes<N> {
         }
     }
 
-    /// Single scattering with an extinction coefficient and a scattering towards the eye for each layer and stream.
+    /// Single scattering with an extinction coefficient along rays and one towards the sun, and a scattering towards the eye, for
+    /// each layer and stream.
     #[inline]
     pub(super) fn single_scattering<'a, const K: usize, X, S>(
         &'a self,
@@ -290,7 +293,7 @@ impl<const N: usize> FogLanes<N> {
         towards_eye: S,
     ) -> SingleScattering<'a, N, X, S>
     where
-        X: Fn(&MergedLayer<N>) -> [Spectrum<N>; K],
+        X: Fn(&MergedLayer<N>) -> [[Spectrum<N>; K]; 2],
         S: Fn(&MergedLayer<N>) -> [Spectrum<N>; K],
     {
         SingleScattering {
@@ -306,11 +309,11 @@ impl<const N: usize> FogLanes<N> {
 
     /// Path radiance of all orders of scattering.
     ///
-    /// The solver treats light scattered by the forward peak as unscattered: the radiance `I` from the edge of the fog is
-    /// attenuated by a reduced extinction, and includes light that the peak scatters into the ray. The path radiance of a segment
+    /// Light scattered by the narrow part of the forward peak counts as unscattered: the radiance `I` from the edge of the fog is
+    /// attenuated by a reduced extinction, and includes light that this part scatters into the ray. The path radiance of a segment
     /// is `I` minus the light that arrives unscattered from its far end, `S = I(near) - T I(far)`. This composes exactly when a
     /// segment is split, and is `(1 - T) I` in uniform light. It is summed from terms that do not cancel. Singly scattered sunlight
-    /// consists of streams ([`crate::transfer::residual`]), for each of which a part of the peak counts as unscattered.
+    /// consists of streams ([`crate::transfer::residual`]), for each of which a part of it counts as unscattered.
     fn multiple_scattering(
         &self,
         field: &Field<N>,
@@ -321,11 +324,11 @@ impl<const N: usize> FogLanes<N> {
         let towards = Towards::new(self, ray.sin_elevation, cos_sun);
         let near = self.part(field, ray, &towards);
         // Light from beyond the far end that the peak scatters into the ray.
-        let removed = self.depth_of(ray, &|s| s.peak_extinction_per_m);
+        let removed = self.depth_of(ray, &|s| s.narrow_scattering_per_m);
         let through = near.depth.exp_neg();
         let [into_peak, into_half, _] = scattered_into_peaks(removed).map(|lost| through * lost);
         let [first, half, last] = near.sunlit;
-        let (mut diffuse, mut sunlit) = (near.diffuse, first + half + last);
+        let (mut diffuse, mut sunlit) = (near.diffuse, first + half + last + near.scattered_again);
         if into_peak.max_element() >= 1e-7 * depth.max_element().min(1.0) {
             let (beyond, mut arriving) = self.beyond(field, ray);
             if let Some(beyond) = beyond {
@@ -333,12 +336,52 @@ impl<const N: usize> FogLanes<N> {
                 arriving = far.diffuse + far.depth.exp_neg() * arriving;
                 let [_, relative, _] = stream_transmittances(removed);
                 let [first, half, _] = far.sunlit;
-                sunlit += first * into_peak + half * into_half * relative;
+                sunlit += (first + far.scattered_again) * into_peak + half * into_half * relative;
             }
             diffuse += into_peak * arriving;
         }
         // Shares of the streams can be negative.
         diffuse + sunlit.max_scalar(0.0)
+    }
+
+    /// Weights of the kinds of light that peaks scatter: [`Field::scattered`]. All layers count as having the mean phase
+    /// function.
+    #[inline]
+    fn kinds(&self, towards: &Towards) -> [Spectrum<N>; KINDS] {
+        let mut weights = [Spectrum::ZERO; KINDS];
+        for (weight, azimuth) in weights.iter_mut().zip(towards.azimuth) {
+            *weight = Spectrum::splat(azimuth);
+        }
+        let Some(sun) = &self.lighting.sun else {
+            return weights;
+        };
+        let mut scattering = Spectrum::ZERO;
+        let mut streams = [Spectrum::ZERO; STREAMS];
+        for layer in self.layers.iter().filter(|s| !s.density.is_uniform()) {
+            let column_m = layer
+                .density
+                .column_above_m(self.ground.height_m)
+                .min(OPAQUE) as f32;
+            scattering = scattering.scale_acc(layer.scattering_per_m, column_m);
+            let towards_eye = layer.streams_towards_eye(towards.cos_sun);
+            for (sum, stream) in streams.iter_mut().zip(towards_eye) {
+                *sum = sum.scale_acc(stream, column_m);
+            }
+        }
+        for (weight, stream) in weights[DEGREES..].iter_mut().zip(streams) {
+            let light = stream * sun.irradiance;
+            *weight = Spectrum::from_fn(|lane| match scattering[lane] > 0.0 {
+                true => light[lane] / scattering[lane],
+                false => 0.0,
+            });
+        }
+        weights
+    }
+
+    /// Extinction of uniform layers, 1/m.
+    fn uniform_extinction(&self) -> Spectrum<N> {
+        let unbounded = self.layers.iter().filter(|s| s.density.is_uniform());
+        unbounded.fold(Spectrum::ZERO, |sum, s| sum + s.extinction_per_m)
     }
 
     /// The segment from the end of `ray` to the edge of the fog, if any is left, and the radiance there.
@@ -364,21 +407,21 @@ impl<const N: usize> FogLanes<N> {
             true => s.scattering_per_m,
             false => Spectrum::ZERO,
         };
-        let unbounded = self.layers.iter().filter(|s| s.density.is_uniform());
-        let uniform_extinction = unbounded.fold(Spectrum::ZERO, |sum, s| sum + s.extinction_per_m);
         // The series of the field falls below 0 in directions into which little is scattered.
-        let diffuse = field
-            .scattered(ray, &towards.weights, uniform_extinction)
-            .max_scalar(0.0);
+        let kinds = self.kinds(towards);
+        let uniform = self.uniform_extinction();
+        let [several, once] = field.scattered(ray, &towards.weights, &kinds, uniform);
+        let diffuse = several.max_scalar(0.0);
         let (sunlit, uniform) = self
-            .single_scattering(MergedLayer::stream_extinction, |s| {
+            .single_scattering(MergedLayer::stream_extinctions, |s| {
                 s.streams_towards_eye(towards.cos_sun)
             })
             .along(ray, &uniform_scattering);
         Part {
             diffuse: diffuse + uniform * self.lighting.ambient,
             sunlit: sunlit.map(|stream| stream * self.sunlight()),
-            depth: self.depth_of(ray, &MergedLayer::reduced_extinction),
+            scattered_again: once,
+            depth: self.depth_of(ray, &MergedLayer::seen_extinction),
         }
     }
 }
@@ -408,6 +451,8 @@ fn scattering_depth_to_sun<const N: usize>(
 struct Part<const N: usize> {
     diffuse: Spectrum<N>,
     sunlit: [Spectrum<N>; STREAMS],
+    /// Singly scattered sunlight that peaks scatter again.
+    scattered_again: Spectrum<N>,
     depth: Spectrum<N>,
 }
 
@@ -415,16 +460,31 @@ struct Part<const N: usize> {
 struct Towards {
     cos_sun: f64,
     weights: DirectionWeights,
+    /// `c^m cos(m azimuth)` for each mode `m`, where `c` is the cosine of the elevation.
+    azimuth: [f32; DEGREES],
 }
 
 impl Towards {
     fn new<const N: usize>(fog: &FogLanes<N>, sin_elevation: f64, cos_sun: f64) -> Self {
         let sin_elevation = sin_elevation.clamp(-1.0, 1.0);
-        let Some(sun) = &fog.lighting.sun else {
-            return Self {
+        let towards = |cos_azimuth: f64| {
+            let cos_elevation = (1.0 - sin_elevation * sin_elevation).max(0.0).sqrt();
+            let mut azimuth = [1.0; DEGREES];
+            let across = cos_elevation * cos_azimuth;
+            azimuth[1] = across as f32;
+            for m in 2..DEGREES {
+                let square = cos_elevation * cos_elevation;
+                azimuth[m] = (2.0 * across * f64::from(azimuth[m - 1])
+                    - square * f64::from(azimuth[m - 2])) as f32;
+            }
+            Self {
                 cos_sun,
-                weights: multiple::in_direction(sin_elevation, 1.0),
-            };
+                weights: multiple::in_direction(sin_elevation, cos_azimuth),
+                azimuth,
+            }
+        };
+        let Some(sun) = &fog.lighting.sun else {
+            return towards(1.0);
         };
         let sin_sun = sun.direction.y;
         let across = ((1.0 - sin_elevation * sin_elevation) * (1.0 - sin_sun * sin_sun))
@@ -434,10 +494,7 @@ impl Towards {
             true => ((cos_sun - sin_elevation * sin_sun) / across).clamp(-1.0, 1.0),
             false => 1.0,
         };
-        Self {
-            cos_sun,
-            weights: multiple::in_direction(sin_elevation, cos_azimuth),
-        }
+        towards(cos_azimuth)
     }
 }
 

@@ -2,13 +2,13 @@
 
 use super::error::FogError;
 use super::lighting::FogScattering;
-use super::multiple::{DEGREES, Reduced};
+use super::multiple::{DEGREES, ORDERS, PeakScattering, Reduced};
 use crate::atmosphere::{Constituent, DensityProfile};
 use crate::optics::{PhaseError, PhaseFunction, TabulatedPhase};
 use crate::spectrum::rgb::{self, DOMINANT_NM};
 use crate::spectrum::{RgbSpace, Spectrum, WavelengthGrid};
 use crate::transfer::delta_m::peak_fraction;
-use crate::transfer::residual::{ONE_STREAM, Residual, STREAMS, Shares};
+use crate::transfer::residual::{ONE_STREAM, Residual, STREAMS, Shares, kept_by_peak};
 use std::sync::Arc;
 
 /// A layer of fog in red, green and blue.
@@ -213,8 +213,10 @@ pub(super) struct MergedLayer<const N: usize> {
     pub density: DensityProfile,
     pub extinction_per_m: Spectrum<N>,
     pub scattering_per_m: Spectrum<N>,
-    /// Extinction by scattering into forward peaks, which counts as unscattered in multiple scattering, 1/m.
-    pub peak_extinction_per_m: Spectrum<N>,
+    /// Scattering by forward peaks, which counts as unscattered in the solver, 1/m.
+    pub peak_scattering_per_m: Spectrum<N>,
+    /// The part of it by the smallest angles, which counts as unscattered along rays, 1/m.
+    pub narrow_scattering_per_m: Spectrum<N>,
     parts: Vec<Part<N>>,
 }
 
@@ -233,17 +235,43 @@ struct Peak<const N: usize> {
     fraction: Spectrum<N>,
     /// Legendre moments of the whole phase function.
     moments: [Spectrum<N>; DEGREES],
+    /// Its moments, per scattering.
+    scattering: PeakScattering<N>,
     /// Streams of singly scattered light; `None` if the peak is negligible.
     residual: Option<Arc<Residual<N>>>,
 }
 
+/// Smallest fraction of the scattering in the resolved part of a forward peak.
+const MIN_RESOLVED: f32 = 1e-3;
+
 impl<const N: usize> Peak<N> {
     fn new(layer: &LayerLanes<N>, depth: f64) -> Self {
         let (phase, nm) = (&layer.phase, &layer.wavelengths_nm);
-        let by_lane = nm.map(|nm| phase.legendre_moments(DEGREES + 1, nm));
+        let by_lane = nm.map(|nm| phase.legendre_moments(ORDERS + 1, nm));
         let moment = |l: usize| Spectrum::from_fn(|lane| by_lane[lane][l] as f32);
+        let fraction = moment(DEGREES).map(peak_fraction);
+        // A peak that is narrow, or weak, is not resolved.
+        let narrow = Spectrum::from_fn(|lane| {
+            let (narrow, all) = (moment(ORDERS)[lane], fraction[lane]);
+            if all - narrow < MIN_RESOLVED {
+                all
+            } else {
+                narrow.max(0.0)
+            }
+        });
+        let resolved = |lane: usize| fraction[lane] > narrow[lane];
+        let scattered = |l: usize| if l < DEGREES { fraction } else { moment(l) };
         Self {
-            fraction: moment(DEGREES).map(peak_fraction),
+            fraction,
+            scattering: PeakScattering {
+                moments: (0..ORDERS)
+                    .map(|l| {
+                        let moment = scattered(l) - narrow;
+                        Spectrum::from_fn(|lane| if resolved(lane) { moment[lane] } else { 0.0 })
+                    })
+                    .collect(),
+                narrow,
+            },
             moments: std::array::from_fn(moment),
             residual: Residual::new(phase, nm, DEGREES - 1, depth).map(Arc::new),
         }
@@ -272,7 +300,8 @@ pub(super) fn merge_layers<const N: usize>(
                     density: layer.density.clone(),
                     extinction_per_m: Spectrum::ZERO,
                     scattering_per_m: Spectrum::ZERO,
-                    peak_extinction_per_m: Spectrum::ZERO,
+                    peak_scattering_per_m: Spectrum::ZERO,
+                    narrow_scattering_per_m: Spectrum::ZERO,
                     parts: Vec::new(),
                 });
                 merged.len() - 1
@@ -281,7 +310,8 @@ pub(super) fn merge_layers<const N: usize>(
             into.extinction_per_m += layer.extinction_per_m;
             into.scattering_per_m += layer.scattering_per_m;
             if let Some(peak) = &peak {
-                into.peak_extinction_per_m += layer.scattering_per_m * peak.fraction;
+                into.peak_scattering_per_m += layer.scattering_per_m * peak.fraction;
+                into.narrow_scattering_per_m += layer.scattering_per_m * peak.scattering.narrow;
             }
             into.parts.push(Part { layer, peak });
         }
@@ -352,16 +382,23 @@ impl<const N: usize> MergedLayer<N> {
     /// Extinction without forward peaks, 1/m.
     #[inline]
     pub fn reduced_extinction(&self) -> Spectrum<N> {
-        self.extinction_per_m - self.peak_extinction_per_m
+        self.extinction_per_m - self.peak_scattering_per_m
     }
 
-    /// Extinction for each stream of singly scattered sunlight: that without the peak, with half of it, and all of it.
+    /// Extinction along rays of light scattered several times, 1/m.
     #[inline]
-    pub fn stream_extinction(&self) -> [Spectrum<N>; STREAMS] {
-        std::array::from_fn(|k| {
-            let unscattered = 1.0 - k as f32 / (STREAMS - 1) as f32;
-            self.extinction_per_m - self.peak_extinction_per_m * unscattered
-        })
+    pub fn seen_extinction(&self) -> Spectrum<N> {
+        self.extinction_per_m - self.narrow_scattering_per_m
+    }
+
+    /// Extinction of each stream of singly scattered light, along rays and of sunlight on the way to them: that without the part
+    /// that the peak keeps.
+    #[inline]
+    pub fn stream_extinctions(&self) -> [[Spectrum<N>; STREAMS]; 2] {
+        let extinction = |unscattered: Spectrum<N>| {
+            std::array::from_fn(|k| self.extinction_per_m - unscattered * kept_by_peak(k))
+        };
+        [self.narrow_scattering_per_m, self.peak_scattering_per_m].map(extinction)
     }
 
     /// Input of the solver; `None` for uniform density, which has no upper end.
@@ -375,7 +412,20 @@ impl<const N: usize> MergedLayer<N> {
                     None => Spectrum::ZERO,
                 })
             }),
+            whole_scattering_per_m: self.scattering_per_m,
+            peak: self.peak_scattering(),
         })
+    }
+
+    /// Scattering by forward peaks, 1/m.
+    fn peak_scattering(&self) -> PeakScattering<N> {
+        let mut sum = PeakScattering::none();
+        for part in &self.parts {
+            if let Some(peak) = &part.peak {
+                sum.add(&peak.scattering, part.layer.scattering_per_m);
+            }
+        }
+        sum
     }
 
     /// Sum over constituents of scattering coefficient times a factor.

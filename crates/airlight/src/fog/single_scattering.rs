@@ -16,7 +16,7 @@ pub(super) struct SingleScattering<'a, const N: usize, X, S> {
     pub sin_sun: Option<f64>,
     /// Whether the fog attenuates sunlight on its way to the ray.
     pub attenuated: bool,
-    /// Extinction coefficient of each layer by stream, 1/m.
+    /// Extinction coefficients of each layer by stream, 1/m: along rays, and on the way of sunlight to them.
     pub extinction: X,
     /// Scattering coefficient of each layer times its phase function towards the eye, by stream, 1/(m sr).
     pub towards_eye: S,
@@ -24,7 +24,7 @@ pub(super) struct SingleScattering<'a, const N: usize, X, S> {
 
 impl<const N: usize, const K: usize, X, S> SingleScattering<'_, N, X, S>
 where
-    X: Fn(&MergedLayer<N>) -> [Spectrum<N>; K],
+    X: Fn(&MergedLayer<N>) -> [[Spectrum<N>; K]; 2],
     S: Fn(&MergedLayer<N>) -> [Spectrum<N>; K],
 {
     /// Radiance of sunlight scattered into a ray, by stream, and of a uniform source (`uniform`, 1/m, for each layer) that is not
@@ -49,7 +49,7 @@ where
         ray: &RaySegment,
         uniform: Spectrum<N>,
     ) -> ([Spectrum<N>; K], Spectrum<N>) {
-        let extinction = (self.extinction)(layer);
+        let [extinction, sun_extinction] = (self.extinction)(layer);
         let column = layer.density.column_along_m(ray).min(OPAQUE) as f32;
         // Per metre of column, as extinction may be 0.
         let opacity = |k: usize| (extinction[k] * column).mean_transmittance() * column;
@@ -68,7 +68,8 @@ where
             };
             let (near, far) = (to_sun(ray.height_m), to_sun(ray.end_height_m()));
             std::array::from_fn(|k| {
-                let [near, far] = [near, far + column].map(|column| extinction[k] * column);
+                let [near, far] = [near, far].map(|column| sun_extinction[k] * column);
+                let far = far.scale_acc(extinction[k], column);
                 towards_eye[k] * mean_attenuated_source(near, far) * column
             })
         };
@@ -90,7 +91,7 @@ where
             let mut direct = [Spectrum::ZERO; K];
             for layer in self.layers {
                 let column = layer.density.column_along_m(part).min(OPAQUE) as f32;
-                let (extinction, towards_eye) =
+                let ([extinction, _], towards_eye) =
                     ((self.extinction)(layer), (self.towards_eye)(layer));
                 for k in 0..K {
                     along[k] = along[k].scale_acc(extinction[k], column);
@@ -136,7 +137,8 @@ where
             .filter(|layer| !layer.density.is_uniform())
         {
             let column = layer.density.column_along_m(&ray).min(OPAQUE) as f32;
-            for (depth, extinction) in depth.iter_mut().zip((self.extinction)(layer)) {
+            let [_, extinction] = (self.extinction)(layer);
+            for (depth, extinction) in depth.iter_mut().zip(extinction) {
                 *depth = depth.scale_acc(extinction, column);
             }
         }

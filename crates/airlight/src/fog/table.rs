@@ -3,7 +3,7 @@
 use super::closed_forms::{Lanes, OPAQUE};
 use super::fog_lanes::FogLanes;
 use super::layer::MergedLayer;
-use super::multiple::{self, DEGREES, Field};
+use super::multiple::{self, DEGREES, Field, KEPT};
 use super::ray_block::{RAYS, RayBlock, in_lanes, store};
 use crate::atmosphere::RaySegment;
 use crate::math::interpolation::cubic_weights;
@@ -223,6 +223,13 @@ impl<const N: usize> TableLanes<N> {
                     }
                     sum = sum.mul_acc(streams[k][lane], logarithms.exp());
                 }
+                for k in 0..KEPT {
+                    let mut again = Spectrum::<R>::ZERO;
+                    for i in 0..R {
+                        again[i] = sums[i].sunlit[lane].0[STREAMS + k];
+                    }
+                    sum = sum.mul_acc(streams[k][lane], again);
+                }
                 // Shares of the streams can be negative.
                 source[lane] = source[lane].scale_acc(sum.max_scalar(0.0), sun.irradiance[lane]);
             }
@@ -287,7 +294,7 @@ impl<const N: usize> TableLanes<N> {
         let parts = nodes.iter().map(|node| FogParts {
             modes: std::array::from_fn(|m| Spectrum::from_fn(|lane| node.modes[lane].0[m])),
             streams: std::array::from_fn(|k| match has_sun {
-                true => Spectrum::from_fn(|lane| node.sunlit[lane].0[k].exp()),
+                true => Spectrum::from_fn(|lane| node.sunlit[lane].stream(k)),
                 false => Spectrum::ZERO,
             }),
         });
@@ -350,6 +357,13 @@ impl<const N: usize> TableLanes<N> {
             for (node, light) in nodes.iter_mut().zip(per_opacity(rays.sunlit(k))) {
                 for (lane, sunlit) in node.sunlit.iter_mut().enumerate() {
                     sunlit.0[k] = light[lane].max(DARK.exp()).ln();
+                }
+            }
+        }
+        for k in 0..if has_sun { KEPT } else { 0 } {
+            for (node, light) in nodes.iter_mut().zip(per_opacity(rays.scattered_again(k))) {
+                for (lane, sunlit) in node.sunlit.iter_mut().enumerate() {
+                    sunlit.0[STREAMS + k] = light[lane];
                 }
             }
         }
@@ -595,7 +609,7 @@ fn rows_of<const R: usize>(sines: &[f64; R], spacing: &[Spacing; R]) -> Spectrum
 struct Node<const N: usize> {
     /// Multiple scattering, azimuth mode `m` divided by the `m`-th power of the cosine of the elevation.
     modes: [Values; N],
-    /// Logarithm of singly scattered sunlight by stream, in the first places.
+    /// Logarithm of singly scattered sunlight by stream, in the first places, then what peaks scatter of it again.
     sunlit: [Values; N],
 }
 
@@ -613,7 +627,7 @@ pub(crate) struct FogParts<const N: usize> {
 #[repr(C, align(32))]
 struct Values([f32; DEGREES]);
 
-const _: () = assert!(STREAMS <= DEGREES);
+const _: () = assert!(STREAMS + KEPT <= DEGREES);
 
 impl<const N: usize> Node<N> {
     const ZERO: &Self = &Self {
@@ -630,6 +644,12 @@ impl Values {
         for k in 0..DEGREES {
             self.0[k] += near * from.0[k] + far * to.0[k];
         }
+    }
+
+    /// Singly scattered sunlight of a stream, with what peaks scatter of it again.
+    fn stream(&self, k: usize) -> f32 {
+        let again = if k < KEPT { self.0[STREAMS + k] } else { 0.0 };
+        self.0[k].exp() + again
     }
 
     /// Sum of products, added in pairs for vector instructions.
@@ -704,22 +724,32 @@ impl<const N: usize> Rays<'_, N> {
     fn diffuse(&self, mode: usize) -> Vec<Spectrum<N>> {
         let field = self.field;
         let weights = multiple::of_mode(self.ray.sin_elevation, mode);
-        let scattered = |part: &RaySegment| field.scattered(part, &weights, Spectrum::ZERO);
+        let scattered = |part: &RaySegment| field.scattered_of_mode(part, &weights, mode);
         let (sky, ground) = match mode {
             0 => (self.fog.lighting.ambient, field.ground_radiance),
             _ => (Spectrum::ZERO, Spectrum::ZERO),
         };
-        self.to_each(MergedLayer::reduced_extinction, scattered, sky, ground)
+        self.to_each(MergedLayer::seen_extinction, scattered, sky, ground)
     }
 
     /// Path radiance of single scattering in a stream per unit of irradiance and of scattering towards the eye.
     fn sunlit(&self, stream: usize) -> Vec<Spectrum<N>> {
-        let extinction = |s: &MergedLayer<N>| s.stream_extinction()[stream];
-        let single = self
-            .fog
-            .single_scattering(|s| [extinction(s)], |_| [Spectrum::ONE]);
+        let dark = Spectrum::ZERO;
+        let extinctions = |s: &MergedLayer<N>| s.stream_extinctions().map(|all| [all[stream]]);
+        let single = self.fog.single_scattering(extinctions, |_| [Spectrum::ONE]);
         let scattered = |part: &RaySegment| single.along(part, &|_| Spectrum::ZERO).0[0];
-        self.to_each(extinction, scattered, Spectrum::ZERO, Spectrum::ZERO)
+        self.to_each(|s| extinctions(s)[0][0], scattered, dark, dark)
+    }
+
+    /// Path radiance of what peaks scatter again of a stream, in the same unit.
+    fn scattered_again(&self, stream: usize) -> Vec<Spectrum<N>> {
+        let dark = Spectrum::ZERO;
+        let kind = DEGREES + stream;
+        let scattered = |part: &RaySegment| self.field.scattered_by_peaks(part, kind);
+        let light = self.to_each(MergedLayer::seen_extinction, scattered, dark, dark);
+        let scattering = self.fog.layers[0].scattering_per_m;
+        let unit = scattering.max_scalar(f32::MIN_POSITIVE);
+        light.into_iter().map(|light| light / unit).collect()
     }
 
     /// Path radiance up to each distance, from light scattered in segments and light from the sky or the ground, attenuated by an

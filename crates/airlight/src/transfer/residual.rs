@@ -39,6 +39,12 @@ pub type Shares<const N: usize> = [Spectrum<N>; STREAMS];
 /// Shares of a phase function without forward peak.
 pub const ONE_STREAM: [f32; STREAMS] = [1.0, 0.0, 0.0];
 
+/// Part of a stream that the forward peak keeps: that which counts as unscattered.
+#[inline(always)]
+pub const fn kept_by_peak(stream: usize) -> f32 {
+    1.0 - stream as f32 / (STREAMS - 1) as f32
+}
+
 /// Sum of streams by their shares, which can be negative.
 #[inline(always)]
 pub fn combined<const N: usize>(
@@ -68,10 +74,7 @@ pub fn stream_transmittances<const N: usize>(removed: Spectrum<N>) -> [Spectrum<
 /// `removed` counts as unscattered: `1 - T/T'`.
 #[inline(always)]
 pub fn scattered_into_peaks<const N: usize>(removed: Spectrum<N>) -> [Spectrum<N>; STREAMS] {
-    std::array::from_fn(|k| {
-        let fraction = 1.0 - k as f32 / (STREAMS - 1) as f32;
-        (removed * fraction).map(|depth| -(-depth).exp_m1())
-    })
+    std::array::from_fn(|k| (removed * kept_by_peak(k)).map(|depth| -(-depth).exp_m1()))
 }
 
 /// Number of moments, which resolve a tenth of a degree.

@@ -217,7 +217,7 @@ struct Row {
 const KINDS: [(&str, f64); 3] = [
     ("2 to 12° beside the sun", 2.0),
     ("bow and glory", 2.0),
-    ("level or 1° above", 32.0),
+    ("level or 1° above", 3.0),
 ];
 
 fn table() -> Vec<Row> {

@@ -3,6 +3,7 @@
 use super::heights::{self, Weighted};
 use super::legendre::{self, COUNT, DEGREES};
 use super::ordinates::{self, Boundary, Cell};
+use super::peak::{Kinds, PeakCell, PeakScattering, PeakSource, Rows, Solved};
 use crate::atmosphere::DensityProfile;
 use crate::atmosphere::RaySegment;
 use crate::fog::closed_forms::{Lanes, linear_source_mean, mean_attenuated_source};
@@ -10,6 +11,7 @@ use crate::fog::lighting::{FogLighting, Ground};
 use crate::fog::ray_cuts::split_at_heights;
 use crate::math::interpolation::{interval_of, lerp};
 use crate::spectrum::Spectrum;
+use crate::transfer::residual::STREAMS;
 use std::f64::consts::PI;
 
 /// Optical depth of the cells of the solver.
@@ -23,6 +25,24 @@ pub struct Reduced<const N: usize> {
     pub extinction_per_m: Spectrum<N>,
     /// Scattering times its Legendre moments without the peak, 1/m.
     pub scattering_per_m: [Spectrum<N>; DEGREES],
+    /// Scattering with the peak, 1/m.
+    pub whole_scattering_per_m: Spectrum<N>,
+    /// Scattering by the peak.
+    pub peak: PeakScattering<N>,
+}
+
+impl<const N: usize> Reduced<N> {
+    /// Column between two heights, m.
+    fn column_between_m(&self, low_m: f64, high_m: f64) -> f64 {
+        let up = RaySegment::flat(low_m, 1.0, high_m - low_m);
+        self.density.column_along_m(&up)
+    }
+
+    /// Extinction of rays: all but scattering by the smallest angles, 1/m.
+    #[inline(always)]
+    fn seen_extinction_per_m(&self) -> Spectrum<N> {
+        self.extinction_per_m + self.peak.moments[0]
+    }
 }
 
 /// Factor of each moment in a direction.
@@ -41,6 +61,8 @@ pub struct Field<const N: usize> {
     columns_m: Vec<f64>,
     /// Moments of the source function in each cell between two heights, at its lower and upper end.
     sources: Vec<[[Spectrum<N>; COUNT]; 2]>,
+    /// Source function of what peaks scatter into rays.
+    peaks: Option<PeakSource<N>>,
     /// Radiance of the ground.
     pub ground_radiance: Spectrum<N>,
     /// Irradiance on the ground, by sun and diffuse light.
@@ -48,13 +70,13 @@ pub struct Field<const N: usize> {
 }
 
 impl<const N: usize> Field<N> {
-    /// Solves for the light in these layers. `sun_depth(height)` is the reduced optical depth to the sun, huge where the
-    /// ground blocks it. Lanes from `lanes` on are copies of the last lane before.
+    /// Solves for the light in these layers. `sun_depth(height)` is the optical depth to the sun for each stream, of which the
+    /// first has the reduced extinction; huge where the ground blocks it. Lanes from `lanes` on are copies of the last lane before.
     pub fn solve(
         layers: Vec<Reduced<N>>,
         ground: &Ground,
         light: &FogLighting<Spectrum<N>>,
-        sun_depth: impl Fn(f64) -> Spectrum<N>,
+        sun_depth: impl Fn(f64) -> [Spectrum<N>; STREAMS],
         lanes: usize,
     ) -> Self {
         let weighted: Vec<Weighted> = layers
@@ -74,6 +96,7 @@ impl<const N: usize> Field<N> {
         let mut field = Self {
             columns_m,
             sources: vec![[[Spectrum::ZERO; COUNT]; 2]; heights_m.len() - 1],
+            peaks: None,
             ground_radiance: Spectrum::ZERO,
             ground_irradiance: Spectrum::ZERO,
             layers,
@@ -81,12 +104,27 @@ impl<const N: usize> Field<N> {
             heights_m,
             depths,
         };
-        let sun_depths: Vec<Spectrum<N>> = field.heights_m.iter().map(|&h| sun_depth(h)).collect();
+        let sun_depths: Vec<[Spectrum<N>; STREAMS]> =
+            field.heights_m.iter().map(|&h| sun_depth(h)).collect();
         for lane in 0..lanes.min(N) {
             field.solve_lane(lane, light, &sun_depths);
         }
         for lane in lanes..N {
             field.copy_lane(lanes - 1, lane);
+        }
+        let cells = field.peak_cells();
+        field.peaks = PeakSource::new(&Solved {
+            cells: &cells,
+            sources: &field.sources,
+            sun_depths: light.sun.is_some().then_some(&sun_depths),
+            ambient: light.ambient,
+            ground: field.ground_radiance,
+            is_one_layer: field.layers.len() == 1,
+        });
+        // Per optical depth that rays see.
+        for (ends, cell) in field.sources.iter_mut().zip(&cells) {
+            let part = cell.part_without_peaks();
+            ends.iter_mut().flatten().for_each(|moment| *moment *= part);
         }
         field
     }
@@ -103,7 +141,7 @@ impl<const N: usize> Field<N> {
         &mut self,
         lane: usize,
         light: &FogLighting<Spectrum<N>>,
-        sun_depths: &[Spectrum<N>],
+        sun_depths: &[[Spectrum<N>; STREAMS]],
     ) {
         let (sin_sun, irradiance) = match &light.sun {
             Some(sun) => (sun.direction.y, f64::from(sun.irradiance[lane])),
@@ -116,13 +154,15 @@ impl<const N: usize> Field<N> {
             sin_sun,
             sky: f64::from(light.ambient[lane]),
             albedo: f64::from(light.ground_albedo[lane]),
-            sun_on_ground: irradiance * sin_sun.max(0.0) * f64::from(sun_depths[0][lane]).exp_neg(),
+            sun_on_ground: irradiance
+                * sin_sun.max(0.0)
+                * f64::from(sun_depths[0][0][lane]).exp_neg(),
         };
         // The solver's cells are ordered from the top, and thinner than the stored ones.
         let mut thin = Vec::new();
         let mut stored = vec![0];
         for (k, cell) in cells.iter().enumerate().rev() {
-            let [low, high] = [sun_depths[k][lane], sun_depths[k + 1][lane]].map(f64::from);
+            let [low, high] = [sun_depths[k][0][lane], sun_depths[k + 1][0][lane]].map(f64::from);
             let parts = (cell.extinction / CELL_DEPTH).ceil().clamp(1.0, 64.0);
             let step = (low - high) / parts;
             for part in 0..parts as usize {
@@ -166,9 +206,7 @@ impl<const N: usize> Field<N> {
         let (low, high) = (self.heights_m[k], self.heights_m[k + 1]);
         let mut cell = Cell::default();
         for layer in &self.layers {
-            let column = layer
-                .density
-                .column_along_m(&RaySegment::flat(low, 1.0, high - low));
+            let column = layer.column_between_m(low, high);
             cell.extinction += f64::from(layer.extinction_per_m[lane]) * column;
             for (sum, scattering) in cell.scattering.iter_mut().zip(&layer.scattering_per_m) {
                 *sum += f64::from(scattering[lane]) * column;
@@ -182,56 +220,149 @@ impl<const N: usize> Field<N> {
         cell
     }
 
-    /// Diffuse light scattered into a ray, attenuated by the reduced extinction of all layers (`uniform` is that of uniform
-    /// layers, which are not part of the field).
+    /// The cells between heights.
+    fn peak_cells(&self) -> Vec<PeakCell<N>> {
+        let cell = |heights_m: &[f64]| {
+            let mut cell = PeakCell {
+                reduced: Spectrum::ZERO,
+                scattering: Spectrum::ZERO,
+                peak: PeakScattering::none(),
+            };
+            for layer in &self.layers {
+                let column = layer.column_between_m(heights_m[0], heights_m[1]) as f32;
+                cell.reduced = cell.reduced.scale_acc(layer.extinction_per_m, column);
+                cell.scattering = cell
+                    .scattering
+                    .scale_acc(layer.whole_scattering_per_m, column);
+                cell.peak.add(&layer.peak, Spectrum::splat(column));
+            }
+            cell
+        };
+        self.heights_m.windows(2).map(cell).collect()
+    }
+
+    /// Diffuse light scattered into a ray, attenuated by the extinction that rays see, of all layers (`uniform` is that of uniform
+    /// layers, which are not part of the field): light scattered several times, and singly scattered sunlight that peaks scatter
+    /// again. `weights` and `kinds` are those of a direction: of the moments of the source function, and of the kinds of light, for a
+    /// mode `m` the `m`-th power of the cosine of the elevation times `cos(m azimuth)`, for a stream the phase function towards the
+    /// eye times the irradiance.
+    #[inline]
     pub fn scattered(
         &self,
         ray: &RaySegment,
         weights: &DirectionWeights,
+        kinds: &Kinds<N>,
         uniform: Spectrum<N>,
+    ) -> [Spectrum<N>; 2] {
+        let solved = |cell: usize, end: usize| weighted(&self.sources[cell][end], weights);
+        let Some(peaks) = &self.peaks else {
+            let [light] = self.along(ray, uniform, |cell, end| [solved(cell, end)]);
+            return [light, Spectrum::ZERO];
+        };
+        let sum = |light: &[Spectrum<N>], weights: &[Spectrum<N>]| {
+            let each = light.iter().zip(weights);
+            each.fold(Spectrum::ZERO, |sum, (light, weight)| {
+                sum.mul_acc(*light, *weight)
+            })
+        };
+        let ((modes, streams), rows) = (kinds.split_at(DEGREES), Rows::at(ray.sin_elevation));
+        self.along(ray, uniform, |cell, end| {
+            let [several, once] = peaks.at(cell, end, &rows, |light| {
+                let (of_modes, of_streams) = light.split_at(DEGREES);
+                [sum(of_modes, modes), sum(of_streams, streams)]
+            });
+            [solved(cell, end) + several, once]
+        })
+    }
+
+    /// Diffuse light of one azimuth mode: [`Self::scattered`] with the weights of its moments.
+    pub fn scattered_of_mode(
+        &self,
+        ray: &RaySegment,
+        weights: &DirectionWeights,
+        mode: usize,
     ) -> Spectrum<N> {
+        let rows = Rows::at(ray.sin_elevation);
+        let [light] = self.along(ray, Spectrum::ZERO, |cell, end| {
+            let solved = weighted(&self.sources[cell][end], weights);
+            [match &self.peaks {
+                Some(peaks) => solved + peaks.at(cell, end, &rows, |kinds| [kinds[mode]])[0],
+                None => solved,
+            }]
+        });
+        light
+    }
+
+    /// Light of one kind that peaks scatter into a ray.
+    pub fn scattered_by_peaks(&self, ray: &RaySegment, kind: usize) -> Spectrum<N> {
+        let Some(peaks) = &self.peaks else {
+            return Spectrum::ZERO;
+        };
+        let rows = Rows::at(ray.sin_elevation);
+        let source = |cell, end| peaks.at(cell, end, &rows, |kinds| [kinds[kind]]);
+        let [light] = self.along(ray, Spectrum::ZERO, source);
+        light
+    }
+
+    /// Integrals along a ray of source functions, given at the lower and upper end of each cell, attenuated by the extinction that
+    /// rays see, of the layers and of uniform fog.
+    #[inline(always)]
+    fn along<const K: usize>(
+        &self,
+        ray: &RaySegment,
+        uniform: Spectrum<N>,
+        source: impl Fn(usize, usize) -> [Spectrum<N>; K],
+    ) -> [Spectrum<N>; K] {
         if let [layer] = &self.layers[..]
             && ray.curvature_per_m == 0.0
             && ray.sin_elevation.abs() > 1e-3
             && uniform == Spectrum::ZERO
         {
-            return self.scattered_in_single_layer(layer, ray, weights);
+            return self.along_in_single_layer(layer, ray, source);
         }
-        let mut path = Spectrum::ZERO;
+        let mut path = [Spectrum::ZERO; K];
         let mut before = Spectrum::ZERO;
         split_at_heights(ray, &self.heights_m, |part| {
             let inside = part.height_at(0.5 * part.length_m.min(1e9));
             let k = interval_of(&self.heights_m, inside);
             let along = self.layers.iter().fold(Spectrum::ZERO, |sum, layer| {
                 let column = layer.density.column_along_m(part).min(1e25);
-                sum.scale_acc(layer.extinction_per_m, column as f32)
+                sum.scale_acc(layer.seen_extinction_per_m(), column as f32)
             });
-            let near = self.source(k, part.height_m, weights);
-            let far = self.source(k, part.end_height_m(), weights);
+            let near = self.between_ends(k, part.height_m, &source);
+            let far = self.between_ends(k, part.end_height_m(), &source);
             let whole = along.scale_acc(uniform, part.length_m.min(1e25) as f32);
             let (w_near, w_far) = linear_source_mean(whole);
-            path += before.exp_neg() * along * (w_near * near + w_far * far);
+            let scattered = before.exp_neg() * along;
+            for k in 0..K {
+                path[k] += scattered * (w_near * near[k] + w_far * far[k]);
+            }
             before += whole;
             before.min_element() < 17.0
         });
         path
     }
 
-    /// [`Field::scattered`] in one profile over flat ground. The coordinate of height is the vertical column: optical depth along
-    /// a ray is linear in it, and so is the source function between two heights.
-    fn scattered_in_single_layer(
+    /// [`Self::along`] in one profile over flat ground. The coordinate of height is the vertical column: optical depth along a ray
+    /// is linear in it, and so is the source function between two heights.
+    #[inline(always)]
+    fn along_in_single_layer<const K: usize>(
         &self,
         layer: &Reduced<N>,
         ray: &RaySegment,
-        weights: &DirectionWeights,
-    ) -> Spectrum<N> {
+        source: impl Fn(usize, usize) -> [Spectrum<N>; K],
+    ) -> [Spectrum<N>; K] {
         let column_m = |height_m: f64| layer.density.column_above_m(height_m).min(1e25);
-        let per_m = layer.extinction_per_m * (1.0 / ray.sin_elevation.abs()) as f32;
+        let per_m = layer.seen_extinction_per_m() * (1.0 / ray.sin_elevation.abs()) as f32;
         let (from, to) = (column_m(ray.height_m), column_m(ray.end_height_m()));
         // Columns decrease with height: count the heights with a larger column than the start.
         let above = self.columns_m.partition_point(|&column| column > from);
         let last = self.columns_m.len() - 1;
-        let node = |k: usize| self.at_node(k, weights);
+        // At a height in the cell below it (above it at the ground).
+        let node = |k: usize| match k {
+            0 => source(0, 0),
+            _ => source(k - 1, 1),
+        };
         let between = |k: usize, column: f64| {
             // In the cell below height `k`, clamped to its ends.
             let (low, high) = (self.columns_m[k - 1], self.columns_m[k]);
@@ -239,12 +370,12 @@ impl<const N: usize> Field<N> {
                 true => ((low - column) / (low - high)).clamp(0.0, 1.0) as f32,
                 false => 0.0,
             };
-            lerp(node(k - 1), node(k), up)
+            lerp_each(node(k - 1), node(k), up)
         };
-        let mut path = Spectrum::ZERO;
+        let mut path = [Spectrum::ZERO; K];
         let mut before = Spectrum::ZERO;
         let mut column = from;
-        let mut source = between(above.clamp(1, last), from);
+        let mut near = between(above.clamp(1, last), from);
         let rises = ray.sin_elevation > 0.0;
         let mut next = if rises { above } else { above.wrapping_sub(1) };
         loop {
@@ -261,12 +392,15 @@ impl<const N: usize> Field<N> {
             };
             let along = per_m * (column - until).abs() as f32;
             let (w_near, w_far) = linear_source_mean(along);
-            path += before.exp_neg() * along * (w_near * source + w_far * far);
+            let scattered = before.exp_neg() * along;
+            for k in 0..K {
+                path[k] += scattered * (w_near * near[k] + w_far * far[k]);
+            }
             before += along;
             if !passes || before.min_element() > 17.0 {
                 return path;
             }
-            (column, source) = (until, far);
+            (column, near) = (until, far);
             next = if rises {
                 next + 1
             } else {
@@ -275,19 +409,15 @@ impl<const N: usize> Field<N> {
         }
     }
 
-    /// Source function at height `k` in the cell below it (above it at the ground).
+    /// Source functions at a height in or next to cell `k`, given at the ends of cells.
     #[inline]
-    fn at_node(&self, k: usize, weights: &DirectionWeights) -> Spectrum<N> {
-        match k {
-            0 => weighted(&self.sources[0][0], weights),
-            _ => weighted(&self.sources[k - 1][1], weights),
-        }
-    }
-
-    /// Source function at a height in or next to cell `k`.
-    #[inline]
-    fn source(&self, k: usize, height_m: f64, weights: &DirectionWeights) -> Spectrum<N> {
-        let sum = |end: usize| weighted(&self.sources[k][end], weights);
+    fn between_ends<const K: usize>(
+        &self,
+        k: usize,
+        height_m: f64,
+        source: impl Fn(usize, usize) -> [Spectrum<N>; K],
+    ) -> [Spectrum<N>; K] {
+        let sum = |end: usize| source(k, end);
         let (low, high) = (self.heights_m[k], self.heights_m[k + 1]);
         let slack = 1e-7 * (high - low);
         if height_m <= low + slack {
@@ -303,8 +433,18 @@ impl<const N: usize> Field<N> {
             true => ((self.depths[k] - depth) / whole).clamp(0.0, 1.0),
             false => 0.0,
         };
-        sum(0) * (1.0 - up) as f32 + sum(1) * up as f32
+        lerp_each(sum(0), sum(1), up as f32)
     }
+}
+
+/// Linear interpolation of each of several spectra.
+#[inline(always)]
+fn lerp_each<const N: usize, const K: usize>(
+    near: [Spectrum<N>; K],
+    far: [Spectrum<N>; K],
+    fraction: f32,
+) -> [Spectrum<N>; K] {
+    std::array::from_fn(|k| lerp(near[k], far[k], fraction))
 }
 
 /// Source function in a direction: weighted sum of its moments.

@@ -45,7 +45,7 @@ const MAX_STEPS: usize = 200;
 
 /// Optical depths from the top, with steps that grow away from both ends.
 fn depths(whole: f64) -> Vec<f64> {
-    let first = (whole / 10.0).min(0.05);
+    let first = (whole / 20.0).min(0.01);
     let mut from_end = Vec::new();
     let mut depth = 0.0;
     while depth < 0.5 * whole && from_end.len() < MAX_STEPS {

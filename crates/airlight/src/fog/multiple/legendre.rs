@@ -19,19 +19,41 @@ pub const fn index(l: usize, m: usize) -> usize {
 static FACTORS: LazyLock<[(f64, f64); COUNT]> = LazyLock::new(|| {
     let mut factors = [(0.0, 0.0); COUNT];
     for m in 0..DEGREES {
-        let y = m as f64;
         if m > 0 {
-            factors[index(m, m)].0 = ((2.0 * y - 1.0) / (2.0 * y)).sqrt();
+            factors[index(m, m)].0 = diagonal_factor(m);
         }
         for l in m + 1..DEGREES {
-            let x = l as f64;
-            let norm = (x * x - y * y).sqrt();
-            let back = ((x - 1.0) * (x - 1.0) - y * y).max(0.0).sqrt();
-            factors[index(l, m)] = ((2.0 * x - 1.0) / norm, back / norm);
+            factors[index(l, m)] = factors_of(l, m);
         }
     }
     factors
 });
+
+/// Factors of the recurrence for `l > m`.
+fn factors_of(l: usize, m: usize) -> (f64, f64) {
+    let (x, y) = (l as f64, m as f64);
+    let norm = (x * x - y * y).sqrt();
+    let back = ((x - 1.0) * (x - 1.0) - y * y).max(0.0).sqrt();
+    ((2.0 * x - 1.0) / norm, back / norm)
+}
+
+/// Factor of the recurrence for `l = m > 0`.
+fn diagonal_factor(m: usize) -> f64 {
+    let y = m as f64;
+    ((2.0 * y - 1.0) / (2.0 * y)).sqrt()
+}
+
+/// The functions of one `m` of all degrees below `count`, divided by the `m`-th power of the sine of the polar angle.
+pub fn degrees_of_mode(mu: f64, m: usize, count: usize) -> Vec<f64> {
+    let mut values = vec![0.0; count];
+    values[m] = (1..=m).map(diagonal_factor).product();
+    for l in m + 1..count {
+        let (a, b) = factors_of(l, m);
+        let before = if l > m + 1 { values[l - 2] } else { 0.0 };
+        values[l] = a * mu * values[l - 1] - b * before;
+    }
+    values
+}
 
 /// `sqrt((l - m)! / (l + m)!) P_l^m(mu)` for all pairs, without the sign `(-1)^m`.
 #[inline]
@@ -99,6 +121,20 @@ mod tests {
             }
         }
         assert_eq!(next, COUNT);
+    }
+
+    #[test]
+    fn more_degrees_continue_the_first_ones() {
+        for m in [0, 3, 7] {
+            let few = of_mode(-0.4, m);
+            for (l, y) in degrees_of_mode(-0.4, m, DEGREES).into_iter().enumerate() {
+                let few = if l < m { 0.0 } else { few[index(l, m)] };
+                assert!((y as f32 - few).abs() < 1e-5, "{l} {m}");
+            }
+        }
+        // P_20(0.5), Abramowitz & Stegun 22.3.8.
+        let p = degrees_of_mode(0.5, 0, 21)[20];
+        assert!((p + 0.048_358_381).abs() < 1e-8, "{p}");
     }
 
     #[test]

@@ -8,6 +8,8 @@ mod field;
 mod heights;
 mod legendre;
 mod ordinates;
+mod peak;
 
 pub(super) use field::{DirectionWeights, Field, Reduced};
 pub(super) use legendre::{DEGREES, in_direction, of_mode};
+pub(super) use peak::{KEPT, KINDS, ORDERS, PeakScattering};
