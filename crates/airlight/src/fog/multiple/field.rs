@@ -14,6 +14,9 @@ use crate::spectrum::Spectrum;
 use crate::transfer::residual::STREAMS;
 use std::f64::consts::PI;
 
+/// Index of the cell below the ground, where pictures can have depth: the light there is that of endless fog of the lowest height.
+const BELOW: usize = usize::MAX;
+
 /// Optical depth of the cells of the solver.
 const CELL_DEPTH: f64 = 0.05;
 
@@ -63,6 +66,8 @@ pub struct Field<const N: usize> {
     sources: Vec<[[Spectrum<N>; COUNT]; 2]>,
     /// Source function of what peaks scatter into rays.
     peaks: Option<PeakSource<N>>,
+    /// One over the part of the extinction that rays see that is not by peaks, in the lowest cell.
+    per_part_below: Spectrum<N>,
     /// Radiance of the ground.
     pub ground_radiance: Spectrum<N>,
     /// Irradiance on the ground, by sun and diffuse light.
@@ -97,6 +102,7 @@ impl<const N: usize> Field<N> {
             columns_m,
             sources: vec![[[Spectrum::ZERO; COUNT]; 2]; heights_m.len() - 1],
             peaks: None,
+            per_part_below: Spectrum::ONE,
             ground_radiance: Spectrum::ZERO,
             ground_irradiance: Spectrum::ZERO,
             layers,
@@ -121,6 +127,8 @@ impl<const N: usize> Field<N> {
             ground: field.ground_radiance,
             is_one_layer: field.layers.len() == 1,
         });
+        let part = cells[0].part_without_peaks();
+        field.per_part_below = part.map(|part| if part > 0.0 { 1.0 / part } else { 0.0 });
         // Per optical depth that rays see.
         for (ends, cell) in field.sources.iter_mut().zip(&cells) {
             let part = cell.part_without_peaks();
@@ -254,7 +262,7 @@ impl<const N: usize> Field<N> {
         kinds: &Kinds<N>,
         uniform: Spectrum<N>,
     ) -> [Spectrum<N>; 2] {
-        let solved = |cell: usize, end: usize| weighted(&self.sources[cell][end], weights);
+        let solved = |cell: usize, end: usize| self.solved(cell, end, weights);
         let Some(peaks) = &self.peaks else {
             let [light] = self.along(ray, uniform, |cell, end| [solved(cell, end)]);
             return [light, Spectrum::ZERO];
@@ -267,6 +275,9 @@ impl<const N: usize> Field<N> {
         };
         let ((modes, streams), rows) = (kinds.split_at(DEGREES), Rows::at(ray.sin_elevation));
         self.along(ray, uniform, |cell, end| {
+            if cell == BELOW {
+                return [solved(cell, end), sum(&peaks.below, streams)];
+            }
             let [several, once] = peaks.at(cell, end, &rows, |light| {
                 let (of_modes, of_streams) = light.split_at(DEGREES);
                 [sum(of_modes, modes), sum(of_streams, streams)]
@@ -284,22 +295,36 @@ impl<const N: usize> Field<N> {
     ) -> Spectrum<N> {
         let rows = Rows::at(ray.sin_elevation);
         let [light] = self.along(ray, Spectrum::ZERO, |cell, end| {
-            let solved = weighted(&self.sources[cell][end], weights);
+            let solved = self.solved(cell, end, weights);
             [match &self.peaks {
-                Some(peaks) => solved + peaks.at(cell, end, &rows, |kinds| [kinds[mode]])[0],
-                None => solved,
+                Some(peaks) if cell != BELOW => {
+                    solved + peaks.at(cell, end, &rows, |kinds| [kinds[mode]])[0]
+                }
+                _ => solved,
             }]
         });
         light
     }
 
-    /// Light of one kind that peaks scatter into a ray.
+    /// Source function of the solver at an end of a cell in the direction of weights.
+    #[inline(always)]
+    fn solved(&self, cell: usize, end: usize, weights: &DirectionWeights) -> Spectrum<N> {
+        match cell {
+            BELOW => weighted(&self.sources[0][0], weights) * self.per_part_below,
+            _ => weighted(&self.sources[cell][end], weights),
+        }
+    }
+
+    /// Light of one stream that peaks scatter into a ray, by its kind.
     pub fn scattered_by_peaks(&self, ray: &RaySegment, kind: usize) -> Spectrum<N> {
         let Some(peaks) = &self.peaks else {
             return Spectrum::ZERO;
         };
         let rows = Rows::at(ray.sin_elevation);
-        let source = |cell, end| peaks.at(cell, end, &rows, |kinds| [kinds[kind]]);
+        let source = |cell, end| match cell {
+            BELOW => [peaks.below[kind - DEGREES]],
+            _ => peaks.at(cell, end, &rows, |kinds| [kinds[kind]]),
+        };
         let [light] = self.along(ray, Spectrum::ZERO, source);
         light
     }
@@ -329,8 +354,11 @@ impl<const N: usize> Field<N> {
                 let column = layer.density.column_along_m(part).min(1e25);
                 sum.scale_acc(layer.seen_extinction_per_m(), column as f32)
             });
-            let near = self.between_ends(k, part.height_m, &source);
-            let far = self.between_ends(k, part.end_height_m(), &source);
+            let [near, far] = match inside < self.heights_m[0] {
+                true => [source(BELOW, 0); 2],
+                false => [part.height_m, part.end_height_m()]
+                    .map(|height_m| self.between_ends(k, height_m, &source)),
+            };
             let whole = along.scale_acc(uniform, part.length_m.min(1e25) as f32);
             let (w_near, w_far) = linear_source_mean(whole);
             let scattered = before.exp_neg() * along;
@@ -393,8 +421,13 @@ impl<const N: usize> Field<N> {
             let along = per_m * (column - until).abs() as f32;
             let (w_near, w_far) = linear_source_mean(along);
             let scattered = before.exp_neg() * along;
+            let is_below = column.min(until) >= self.columns_m[0] && column != until;
+            let [from, to] = match is_below {
+                true => [source(BELOW, 0); 2],
+                false => [near, far],
+            };
             for k in 0..K {
-                path[k] += scattered * (w_near * near[k] + w_far * far[k]);
+                path[k] += scattered * (w_near * from[k] + w_far * to[k]);
             }
             before += along;
             if !passes || before.min_element() > 17.0 {

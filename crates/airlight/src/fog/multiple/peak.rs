@@ -221,6 +221,8 @@ pub type Kinds<const N: usize> = [Spectrum<N>; KINDS];
 pub struct PeakSource<const N: usize> {
     /// For each end of each cell and each row, per optical depth that rays see.
     values: Vec<Kinds<N>>,
+    /// Of the streams, per optical depth, along endless rays at the lowest height.
+    pub below: [Spectrum<N>; KEPT],
 }
 
 /// Weights of four rows around a direction.
@@ -268,6 +270,7 @@ impl<const N: usize> PeakSource<N> {
                 || {
                     let mut source = Self {
                         values: vec![[Spectrum::ZERO; KINDS]; solved.cells.len() * 2 * ROWS],
+                        below: solved.along_the_ground(),
                     };
                     source.scatter(solved, &solved.light(None));
                     for _ in 1..ITERATIONS {
@@ -364,6 +367,26 @@ const fn both(q: usize) -> [usize; 2] {
 }
 
 impl<const N: usize> Solved<'_, N> {
+    /// What the peak scatters of the streams into endless rays at the lowest height, per optical depth.
+    fn along_the_ground(&self) -> [Spectrum<N>; KEPT] {
+        let mut light = [Spectrum::ZERO; KEPT];
+        let (Some(sun_depths), cell) = (self.sun_depths, &self.cells[0]) else {
+            return light;
+        };
+        for (stream, light) in light.iter_mut().enumerate() {
+            let kind = DEGREES + stream;
+            let sunlight = sun_depths[0][stream].exp_neg();
+            let extinction = cell.extinction(kind, cell.peak.whole());
+            let scattered = cell.peak.moments[0] * kept(kind) * cell.scattering * sunlight;
+            let attenuation = cell.seen() * extinction;
+            *light = Spectrum::from_fn(|lane| match attenuation[lane] > 0.0 {
+                true => scattered[lane] / attenuation[lane],
+                false => 0.0,
+            });
+        }
+        light
+    }
+
     /// The light at all heights and in all directions: that of the solver, or that with a source by peaks.
     #[inline(always)]
     fn light(&self, peaks: Option<&PeakSource<N>>) -> Vec<Kinds<N>> {
