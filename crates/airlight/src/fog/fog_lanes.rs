@@ -27,6 +27,9 @@ pub(crate) struct FogLanes<const N: usize> {
     pub(super) ground: Ground,
     pub(super) lighting: FogLighting<Spectrum<N>>,
     scattering: FogScattering,
+    /// Weights of the layers' scattering towards the eye in the mean phase function: columns over the scattering optical depth of
+    /// all, m.
+    mean_weights: Vec<Spectrum<N>>,
     /// Heights at which rays are split, in increasing order, m.
     breakpoints_m: Vec<f64>,
     /// Diffuse light; `None` for single scattering, and for fog without an upper end.
@@ -56,6 +59,7 @@ impl<const N: usize> FogLanes<N> {
         let structures: Vec<_> = layers.iter().map(|s| s.density.structure()).collect();
         let mut fog = Self {
             breakpoints_m: height_breakpoints(&structures, ground.height_m),
+            mean_weights: mean_weights(&layers, &ground),
             layers,
             ground,
             lighting,
@@ -324,7 +328,7 @@ impl<const N: usize> FogLanes<N> {
         let towards = Towards::new(self, ray.sin_elevation, cos_sun);
         let near = self.part(field, ray, &towards);
         // Light from beyond the far end that the peak scatters into the ray.
-        let removed = self.depth_of(ray, &|s| s.narrow_scattering_per_m);
+        let removed = self.depth_of(ray, &|s| s.peak.narrow);
         let through = near.depth.exp_neg();
         let [into_peak, into_half, _] = scattered_into_peaks(removed).map(|lost| through * lost);
         let [first, half, last] = near.sunlit;
@@ -347,33 +351,18 @@ impl<const N: usize> FogLanes<N> {
     /// Weights of the kinds of light that peaks scatter: [`Field::scattered`]. All layers count as having the mean phase
     /// function.
     #[inline]
-    fn kinds(&self, towards: &Towards) -> [Spectrum<N>; KINDS] {
+    fn kinds(&self, azimuth: [f32; DEGREES], cos_sun: f64) -> [Spectrum<N>; KINDS] {
         let mut weights = [Spectrum::ZERO; KINDS];
-        for (weight, azimuth) in weights.iter_mut().zip(towards.azimuth) {
+        for (weight, azimuth) in weights.iter_mut().zip(azimuth) {
             *weight = Spectrum::splat(azimuth);
         }
-        let Some(sun) = &self.lighting.sun else {
-            return weights;
-        };
-        let mut scattering = Spectrum::ZERO;
-        let mut streams = [Spectrum::ZERO; STREAMS];
-        for layer in self.layers.iter().filter(|s| !s.density.is_uniform()) {
-            let column_m = layer
-                .density
-                .column_above_m(self.ground.height_m)
-                .min(OPAQUE) as f32;
-            scattering = scattering.scale_acc(layer.scattering_per_m, column_m);
-            let towards_eye = layer.streams_towards_eye(towards.cos_sun);
-            for (sum, stream) in streams.iter_mut().zip(towards_eye) {
-                *sum = sum.scale_acc(stream, column_m);
+        if let Some(sun) = &self.lighting.sun {
+            for (layer, &part) in self.layers.iter().zip(&self.mean_weights) {
+                let towards_eye = layer.streams_towards_eye(cos_sun);
+                for (weight, stream) in weights[DEGREES..].iter_mut().zip(towards_eye) {
+                    *weight = weight.mul_acc(stream * part, sun.irradiance);
+                }
             }
-        }
-        for (weight, stream) in weights[DEGREES..].iter_mut().zip(streams) {
-            let light = stream * sun.irradiance;
-            *weight = Spectrum::from_fn(|lane| match scattering[lane] > 0.0 {
-                true => light[lane] / scattering[lane],
-                false => 0.0,
-            });
         }
         weights
     }
@@ -402,15 +391,14 @@ impl<const N: usize> FogLanes<N> {
     }
 
     /// Light scattered into a ray.
-    fn part(&self, field: &Field<N>, ray: &RaySegment, towards: &Towards) -> Part<N> {
+    fn part(&self, field: &Field<N>, ray: &RaySegment, towards: &Towards<N>) -> Part<N> {
         let uniform_scattering = |s: &MergedLayer<N>| match s.density.is_uniform() {
             true => s.scattering_per_m,
             false => Spectrum::ZERO,
         };
         // The series of the field falls below 0 in directions into which little is scattered.
-        let kinds = self.kinds(towards);
         let uniform = self.uniform_extinction();
-        let [several, once] = field.scattered(ray, &towards.weights, &kinds, uniform);
+        let [several, once] = field.scattered(ray, &towards.weights, &towards.kinds, uniform);
         let diffuse = several.max_scalar(0.0);
         let (sunlit, uniform) = self
             .single_scattering(MergedLayer::stream_extinctions, |s| {
@@ -424,6 +412,27 @@ impl<const N: usize> FogLanes<N> {
             depth: self.depth_of(ray, &MergedLayer::seen_extinction),
         }
     }
+}
+
+/// Weights of layers in their mean phase function; those without an upper end have none.
+fn mean_weights<const N: usize>(layers: &[MergedLayer<N>], ground: &Ground) -> Vec<Spectrum<N>> {
+    let column_m = |layer: &MergedLayer<N>| match layer.density.is_uniform() {
+        true => 0.0,
+        false => layer.density.column_above_m(ground.height_m).min(OPAQUE) as f32,
+    };
+    let scattering = layers.iter().fold(Spectrum::ZERO, |sum, layer| {
+        sum.scale_acc(layer.scattering_per_m, column_m(layer))
+    });
+    let weight = |layer: &MergedLayer<N>| {
+        scattering.map(|all| {
+            if all > 0.0 {
+                column_m(layer) / all
+            } else {
+                0.0
+            }
+        })
+    };
+    layers.iter().map(weight).collect()
 }
 
 /// Scattering optical depth of all fog above the ground towards the sun, of the first lane; 0 without a sun. Curvature limits the
@@ -457,30 +466,26 @@ struct Part<const N: usize> {
 }
 
 /// A view direction, prepared for the field.
-struct Towards {
+struct Towards<const N: usize> {
     cos_sun: f64,
     weights: DirectionWeights,
-    /// `c^m cos(m azimuth)` for each mode `m`, where `c` is the cosine of the elevation.
-    azimuth: [f32; DEGREES],
+    /// Weights of the kinds of light that peaks scatter.
+    kinds: [Spectrum<N>; KINDS],
 }
 
-impl Towards {
-    fn new<const N: usize>(fog: &FogLanes<N>, sin_elevation: f64, cos_sun: f64) -> Self {
+impl<const N: usize> Towards<N> {
+    fn new(fog: &FogLanes<N>, sin_elevation: f64, cos_sun: f64) -> Self {
         let sin_elevation = sin_elevation.clamp(-1.0, 1.0);
         let towards = |cos_azimuth: f64| {
-            let cos_elevation = (1.0 - sin_elevation * sin_elevation).max(0.0).sqrt();
-            let mut azimuth = [1.0; DEGREES];
-            let across = cos_elevation * cos_azimuth;
-            azimuth[1] = across as f32;
-            for m in 2..DEGREES {
-                let square = cos_elevation * cos_elevation;
-                azimuth[m] = (2.0 * across * f64::from(azimuth[m - 1])
-                    - square * f64::from(azimuth[m - 2])) as f32;
-            }
+            let square = (1.0 - sin_elevation * sin_elevation).max(0.0);
+            let across = square.sqrt() * cos_azimuth;
             Self {
                 cos_sun,
                 weights: multiple::in_direction(sin_elevation, cos_azimuth),
-                azimuth,
+                kinds: fog.kinds(
+                    multiple::azimuth_factors(across as f32, square as f32),
+                    cos_sun,
+                ),
             }
         };
         let Some(sun) = &fog.lighting.sun else {

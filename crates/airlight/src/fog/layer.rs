@@ -213,10 +213,8 @@ pub(super) struct MergedLayer<const N: usize> {
     pub density: DensityProfile,
     pub extinction_per_m: Spectrum<N>,
     pub scattering_per_m: Spectrum<N>,
-    /// Scattering by forward peaks, which counts as unscattered in the solver, 1/m.
-    pub peak_scattering_per_m: Spectrum<N>,
-    /// The part of it by the smallest angles, which counts as unscattered along rays, 1/m.
-    pub narrow_scattering_per_m: Spectrum<N>,
+    /// Scattering by forward peaks, 1/m: all of it counts as unscattered in the solver, the narrow part along rays.
+    pub peak: PeakScattering<N>,
     parts: Vec<Part<N>>,
 }
 
@@ -300,8 +298,7 @@ pub(super) fn merge_layers<const N: usize>(
                     density: layer.density.clone(),
                     extinction_per_m: Spectrum::ZERO,
                     scattering_per_m: Spectrum::ZERO,
-                    peak_scattering_per_m: Spectrum::ZERO,
-                    narrow_scattering_per_m: Spectrum::ZERO,
+                    peak: PeakScattering::none(),
                     parts: Vec::new(),
                 });
                 merged.len() - 1
@@ -310,8 +307,7 @@ pub(super) fn merge_layers<const N: usize>(
             into.extinction_per_m += layer.extinction_per_m;
             into.scattering_per_m += layer.scattering_per_m;
             if let Some(peak) = &peak {
-                into.peak_scattering_per_m += layer.scattering_per_m * peak.fraction;
-                into.narrow_scattering_per_m += layer.scattering_per_m * peak.scattering.narrow;
+                into.peak.add(&peak.scattering, layer.scattering_per_m);
             }
             into.parts.push(Part { layer, peak });
         }
@@ -382,13 +378,13 @@ impl<const N: usize> MergedLayer<N> {
     /// Extinction without forward peaks, 1/m.
     #[inline]
     pub fn reduced_extinction(&self) -> Spectrum<N> {
-        self.extinction_per_m - self.peak_scattering_per_m
+        self.extinction_per_m - self.peak.whole()
     }
 
     /// Extinction along rays of light scattered several times, 1/m.
     #[inline]
     pub fn seen_extinction(&self) -> Spectrum<N> {
-        self.extinction_per_m - self.narrow_scattering_per_m
+        self.extinction_per_m - self.peak.narrow
     }
 
     /// Extinction of each stream of singly scattered light, along rays and of sunlight on the way to them: that without the part
@@ -398,7 +394,7 @@ impl<const N: usize> MergedLayer<N> {
         let extinction = |unscattered: Spectrum<N>| {
             std::array::from_fn(|k| self.extinction_per_m - unscattered * kept_by_peak(k))
         };
-        [self.narrow_scattering_per_m, self.peak_scattering_per_m].map(extinction)
+        [self.peak.narrow, self.peak.whole()].map(extinction)
     }
 
     /// Input of the solver; `None` for uniform density, which has no upper end.
@@ -413,19 +409,8 @@ impl<const N: usize> MergedLayer<N> {
                 })
             }),
             whole_scattering_per_m: self.scattering_per_m,
-            peak: self.peak_scattering(),
+            peak: self.peak.clone(),
         })
-    }
-
-    /// Scattering by forward peaks, 1/m.
-    fn peak_scattering(&self) -> PeakScattering<N> {
-        let mut sum = PeakScattering::none();
-        for part in &self.parts {
-            if let Some(peak) = &part.peak {
-                sum.add(&peak.scattering, part.layer.scattering_per_m);
-            }
-        }
-        sum
     }
 
     /// Sum over constituents of scattering coefficient times a factor.

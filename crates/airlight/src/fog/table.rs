@@ -547,10 +547,7 @@ fn azimuth_factors<const R: usize>(towards_sun: DVec3, directions: &[DVec3]) -> 
     for (Values(factors), direction) in factors.iter_mut().zip(directions) {
         let across = direction.dot(towards_sun) as f32;
         let square = (direction.x * direction.x + direction.z * direction.z) as f32;
-        (factors[0], factors[1]) = (1.0, across);
-        for m in 2..DEGREES {
-            factors[m] = 2.0 * across * factors[m - 1] - square * factors[m - 2];
-        }
+        *factors = multiple::azimuth_factors(across, square);
     }
     factors
 }

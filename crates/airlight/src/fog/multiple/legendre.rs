@@ -92,6 +92,17 @@ fn with_sine(mu: f64, sine: f64) -> [f64; COUNT] {
     values
 }
 
+/// `c^m cos(m azimuth)` for each mode `m`, from `c cos(azimuth)` and `c^2`, where `c` is the sine of the polar angle.
+#[inline(always)]
+pub fn azimuth_factors(across: f32, square: f32) -> [f32; DEGREES] {
+    let mut factors = [1.0; DEGREES];
+    factors[1] = across;
+    for m in 2..DEGREES {
+        factors[m] = 2.0 * across * factors[m - 1] - square * factors[m - 2];
+    }
+    factors
+}
+
 /// [`evaluate`] times `cos(m azimuth)`: weight of each moment in a direction.
 #[inline]
 pub fn in_direction(mu: f64, cos_azimuth: f64) -> [f32; COUNT] {

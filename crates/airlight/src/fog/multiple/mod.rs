@@ -11,5 +11,5 @@ mod ordinates;
 mod peak;
 
 pub(super) use field::{DirectionWeights, Field, Reduced};
-pub(super) use legendre::{DEGREES, in_direction, of_mode};
+pub(super) use legendre::{DEGREES, azimuth_factors, in_direction, of_mode};
 pub(super) use peak::{KEPT, KINDS, ORDERS, PeakScattering};

@@ -264,7 +264,8 @@ impl Rows {
 impl<const N: usize> PeakSource<N> {
     /// The source in fog whose light is solved for; `None` if no moment of a peak matters.
     pub fn new(solved: &Solved<N>) -> Option<Self> {
-        (vectors_of(solved.cells) > 0).then(|| {
+        let vectors = vectors_of(solved.cells);
+        (vectors > 0).then(|| {
             vectorized(
                 #[inline(always)]
                 || {
@@ -272,10 +273,10 @@ impl<const N: usize> PeakSource<N> {
                         values: vec![[Spectrum::ZERO; KINDS]; solved.cells.len() * 2 * ROWS],
                         below: solved.along_the_ground(),
                     };
-                    source.scatter(solved, &solved.light(None));
+                    source.scatter(solved, &solved.light(None), vectors);
                     for _ in 1..ITERATIONS {
                         let light = solved.light(Some(&source));
-                        source.scatter(solved, &light);
+                        source.scatter(solved, &light, vectors);
                     }
                     source
                 },
@@ -283,12 +284,11 @@ impl<const N: usize> PeakSource<N> {
         })
     }
 
-    /// `P light` at the ends of all cells, per optical depth.
+    /// `P light` at the ends of all cells, per optical depth, with so many vectors of degrees.
     #[inline(always)]
-    fn scatter(&mut self, solved: &Solved<N>, light: &[Kinds<N>]) {
+    fn scatter(&mut self, solved: &Solved<N>, light: &[Kinds<N>], vectors: usize) {
         let basis = &*BASIS;
         let cells = solved.cells;
-        let vectors = vectors_of(cells);
         for node in 0..=cells.len() {
             // The cell above the height, and the one below it.
             let sides = [(node, 0), (node.wrapping_sub(1), 1)];
