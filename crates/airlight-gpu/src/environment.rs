@@ -2,7 +2,7 @@
 
 use crate::error::SkyRendererError;
 use crate::gpu_tables;
-use crate::pass::{CORNER, Pass, covering};
+use crate::pass::{CORNER, Pass, cover, covering};
 use glam::{Mat4, Vec3, Vec4};
 
 /// Format of the map.
@@ -55,25 +55,13 @@ struct Filter {
 impl Filter {
     fn record(&self, encoder: &mut wgpu::CommandEncoder) {
         for (target, group) in &self.faces {
-            let mut drawing = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                label: Some("airlight environment"),
-                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                    view: target,
-                    depth_slice: None,
-                    resolve_target: None,
-                    ops: wgpu::Operations {
-                        load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
-                        store: wgpu::StoreOp::Store,
-                    },
-                })],
-                depth_stencil_attachment: None,
-                timestamp_writes: None,
-                occlusion_query_set: None,
-                multiview_mask: None,
-            });
-            drawing.set_pipeline(&self.pipeline);
-            drawing.set_bind_group(0, group, &[]);
-            drawing.draw(0..3, 0..1);
+            cover(
+                encoder,
+                "airlight environment",
+                target,
+                &self.pipeline,
+                group,
+            );
         }
     }
 }

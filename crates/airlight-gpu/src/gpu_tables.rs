@@ -1,5 +1,6 @@
 //! Tables on the device: the first group of a pass.
 
+use crate::pass::{UNIFORM, group_layout, texture};
 use airlight_shaders::twins::texture::Texture;
 use wgpu::TextureViewDimension;
 use wgpu::util::{BufferInitDescriptor, DeviceExt, TextureDataOrder};
@@ -11,31 +12,10 @@ pub const SOLID: TextureViewDimension = TextureViewDimension::D3;
 
 /// Layout of a group: numbers, a sampler, and textures.
 pub fn layout(device: &wgpu::Device, textures: &[TextureViewDimension]) -> wgpu::BindGroupLayout {
-    let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::FRAGMENT,
-        ty,
-        count: None,
-    };
-    let uniform = wgpu::BindingType::Buffer {
-        ty: wgpu::BufferBindingType::Uniform,
-        has_dynamic_offset: false,
-        min_binding_size: None,
-    };
     let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
-    let mut entries = vec![entry(0, uniform), entry(1, sampler)];
-    for (binding, &view_dimension) in (2..).zip(textures) {
-        let texture = wgpu::BindingType::Texture {
-            sample_type: wgpu::TextureSampleType::Float { filterable: true },
-            view_dimension,
-            multisampled: false,
-        };
-        entries.push(entry(binding, texture));
-    }
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("airlight tables"),
-        entries: &entries,
-    })
+    let mut types = vec![UNIFORM, sampler];
+    types.extend(textures.iter().map(|&view| texture(view, true)));
+    group_layout(device, "airlight tables", &types)
 }
 
 /// Uploads numbers and textures, which the group keeps alive.

@@ -5,9 +5,9 @@ use crate::environment::EnvironmentMap;
 use crate::error::SkyRendererError;
 use crate::fog;
 use crate::frame_tables::FrameTables;
-use crate::gpu_tables::bytes;
+use crate::gpu_tables::{FLAT, bytes};
 use crate::lighting::Lighting;
-use crate::pass::{CORNER, Pass};
+use crate::pass::{CORNER, Pass, UNIFORM, group_layout, texture};
 use crate::sky;
 use airlight_shaders::{Part, source};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
@@ -217,33 +217,7 @@ fn fog_shader() -> String {
 
 /// Layout of the second group: camera and depth.
 fn frame_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
-    let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::FRAGMENT,
-        ty,
-        count: None,
-    };
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("airlight frame"),
-        entries: &[
-            entry(
-                0,
-                wgpu::BindingType::Buffer {
-                    ty: wgpu::BufferBindingType::Uniform,
-                    has_dynamic_offset: false,
-                    min_binding_size: None,
-                },
-            ),
-            entry(
-                1,
-                wgpu::BindingType::Texture {
-                    sample_type: wgpu::TextureSampleType::Float { filterable: false },
-                    view_dimension: wgpu::TextureViewDimension::D2,
-                    multisampled: false,
-                },
-            ),
-        ],
-    })
+    group_layout(device, "airlight frame", &[UNIFORM, texture(FLAT, false)])
 }
 
 #[cfg(test)]

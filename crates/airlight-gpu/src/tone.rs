@@ -1,7 +1,7 @@
 //! [`TonePass`].
 
-use crate::gpu_tables::bytes;
-use crate::pass::{CORNER, covering};
+use crate::gpu_tables::{FLAT, bytes};
+use crate::pass::{CORNER, UNIFORM, cover, covering, group_layout, texture};
 use airlight_shaders::{Part, source};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
@@ -60,33 +60,7 @@ pub struct TonePass {
 impl TonePass {
     /// Makes the pipeline for targets of a format.
     pub fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Self {
-        let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::FRAGMENT,
-            ty,
-            count: None,
-        };
-        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("airlight tone"),
-            entries: &[
-                entry(
-                    0,
-                    wgpu::BindingType::Buffer {
-                        ty: wgpu::BufferBindingType::Uniform,
-                        has_dynamic_offset: false,
-                        min_binding_size: None,
-                    },
-                ),
-                entry(
-                    1,
-                    wgpu::BindingType::Texture {
-                        sample_type: wgpu::TextureSampleType::Float { filterable: false },
-                        view_dimension: wgpu::TextureViewDimension::D2,
-                        multisampled: false,
-                    },
-                ),
-            ],
-        });
+        let layout = group_layout(device, "airlight tone", &[UNIFORM, texture(FLAT, false)]);
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("airlight tone"),
             bind_group_layouts: &[Some(&layout)],
@@ -132,25 +106,7 @@ impl TonePass {
                 },
             ],
         });
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("airlight tone"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: target,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
-                    store: wgpu::StoreOp::Store,
-                },
-            })],
-            depth_stencil_attachment: None,
-            timestamp_writes: None,
-            occlusion_query_set: None,
-            multiview_mask: None,
-        });
-        pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, &group, &[]);
-        pass.draw(0..3, 0..1);
+        cover(encoder, "airlight tone", target, &self.pipeline, &group);
     }
 
     /// The numbers of the shader's struct `Tone`.

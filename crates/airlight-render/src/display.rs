@@ -22,7 +22,8 @@ pub(crate) fn tone_mapper(
         .with_scotopic(output.scotopic.unwrap_or(false)))
 }
 
-fn tone_curve(output: &OutputSpec) -> ToneCurve {
+/// The tone curve of an output, whose settings may be out of range.
+pub fn tone_curve(output: &OutputSpec) -> ToneCurve {
     let camera = CameraSettings::default();
     match output.tone.unwrap_or_default() {
         ToneKind::AgxBase => ToneCurve::Agx(AgxSettings::default()),

@@ -17,7 +17,7 @@ pub mod canvas;
 pub mod channels;
 pub mod compare;
 pub mod contact_sheet;
-mod display;
+pub mod display;
 mod draw;
 pub mod error;
 pub mod exposure;

@@ -2,9 +2,10 @@
 
 use crate::compute::Light;
 use airlight::axes;
-use airlight::scene::{OutputSpec, ToneKind};
+use airlight::scene::OutputSpec;
 use airlight_gpu::{Camera, SkyPasses, SkyRendererError, ToneCurve, TonePass, ToneSettings};
-use airlight_image::tone::{self, AgxSettings, CameraSettings, ToneMapper, WhiteBalance};
+use airlight_image::tone::{self, ToneMapper, WhiteBalance};
+use airlight_render::display::tone_curve;
 use eframe::wgpu;
 use glam::{DVec3, Mat4, Vec4};
 
@@ -65,13 +66,14 @@ pub struct Shot {
 /// The tone settings of a scene's output. Values that are out of range count as not set.
 pub fn tone_of(output: &OutputSpec) -> ToneSettings {
     let usual = ToneSettings::default();
-    let curve = match output.tone.unwrap_or_default() {
-        ToneKind::AgxBase => ToneCurve::Agx,
-        ToneKind::Clip => ToneCurve::Clip,
-        _ => ToneCurve::Camera {
-            contrast: output.tone_contrast.unwrap_or(1.2) as f32,
-            saturation: output.saturation.unwrap_or(1.0) as f32,
+    let curve = match tone_curve(output) {
+        tone::ToneCurve::Agx(_) => ToneCurve::Agx,
+        tone::ToneCurve::Clip => ToneCurve::Clip,
+        tone::ToneCurve::Camera(camera) => ToneCurve::Camera {
+            contrast: camera.contrast as f32,
+            saturation: camera.saturation as f32,
         },
+        _ => usual.curve,
     };
     let balance = output.white_balance_k.map(WhiteBalance::new);
     let colour_map = match balance {
@@ -87,18 +89,10 @@ pub fn tone_of(output: &OutputSpec) -> ToneSettings {
 
 /// The same on the processor, for a factor on light in cd/m^2; `None` for settings out of range.
 pub fn tone_mapper(output: &OutputSpec, exposure: f32) -> Option<ToneMapper> {
-    let curve = match output.tone.unwrap_or_default() {
-        ToneKind::AgxBase => tone::ToneCurve::Agx(AgxSettings::default()),
-        ToneKind::Clip => tone::ToneCurve::Clip,
-        _ => tone::ToneCurve::Camera(CameraSettings {
-            contrast: output.tone_contrast.unwrap_or(1.2),
-            saturation: output.saturation.unwrap_or(1.0),
-        }),
-    };
     let balance = output
         .white_balance_k
         .and_then(|k| WhiteBalance::new(k).ok());
-    let mapper = ToneMapper::new(exposure, curve).ok()?;
+    let mapper = ToneMapper::new(exposure, tone_curve(output)).ok()?;
     Some(mapper.with_white_balance(balance))
 }
 
