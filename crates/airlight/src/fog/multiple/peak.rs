@@ -284,7 +284,7 @@ impl<const N: usize> PeakSource<N> {
         })
     }
 
-    /// `P light` at the ends of all cells, per optical depth, with so many vectors of degrees.
+    /// `P light` at the ends of all cells, per optical depth, from the first `vectors` of degrees.
     #[inline(always)]
     fn scatter(&mut self, solved: &Solved<N>, light: &[Kinds<N>], vectors: usize) {
         let basis = &*BASIS;
