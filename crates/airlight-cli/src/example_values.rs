@@ -233,6 +233,24 @@ mod tests {
     }
 
     #[test]
+    fn suns_below_the_horizon_are_given_as_numbers() {
+        let mut cli = short_help::command();
+        cli.build();
+        let mut commands: Vec<&Command> = cli.get_subcommands().collect();
+        let mut found = 0;
+        while let Some(command) = commands.pop() {
+            commands.extend(command.get_subcommands());
+            let is_elevation = |option: &Arg| option.get_long() == Some("sun-elevation");
+            if command.get_arguments().any(is_elevation) {
+                found += 1;
+                let name = command.get_name();
+                assert!(command.is_allow_negative_numbers_set(), "{name}");
+            }
+        }
+        assert!(found >= 5, "{found}");
+    }
+
+    #[test]
     fn every_option_without_its_value_shows_one_that_is_accepted() {
         let mut cli = short_help::command();
         cli.build();

@@ -47,6 +47,19 @@ pub enum ViewerError {
     /// The window cannot be opened.
     #[error("cannot open a window: {0}")]
     Window(String),
+    /// There is no display to open a window on.
+    #[error(
+        "cannot open a window: no display is reached; try setting DISPLAY or WAYLAND_DISPLAY, or drawing into a file"
+    )]
+    NoDisplay,
+    /// A picture is larger than the device can draw.
+    #[error("expected at most {largest} pixels on a side on this graphics device, got {} x {}", size[0], size[1])]
+    TooLarge {
+        /// Width and height, pixels.
+        size: [u32; 2],
+        /// Most pixels on a side.
+        largest: u32,
+    },
     /// The device does not return pixels.
     #[error("cannot read the pixels back: {0}")]
     Pixels(String),

@@ -19,7 +19,7 @@ const FRAMES: usize = 3;
 /// Draws what a window would show, without one, into a picture file. One point is one pixel.
 ///
 /// # Errors
-/// [`ViewerError`] without a graphics device, or where the file cannot be written.
+/// [`ViewerError`] without a graphics device, for a size that it cannot draw, or where the file cannot be written.
 pub fn screenshot(options: Options, file: &Path) -> Result<(), ViewerError> {
     let size = options.size.map(|v| v.round().max(1.0) as u32);
     let setup = WgpuSetup::without_display_handle();
@@ -34,6 +34,10 @@ pub fn screenshot(options: Options, file: &Path) -> Result<(), ViewerError> {
     };
     let render = RenderState::create(&configuration, &instance, None, settings);
     let render = pollster::block_on(render).map_err(|_| ViewerError::NoDevice)?;
+    let largest = render.device.limits().max_texture_dimension_2d;
+    if size.iter().any(|&side| side > largest) {
+        return Err(ViewerError::TooLarge { size, largest });
+    }
     let context = egui::Context::default();
     let mut viewer = Viewer::new(&context, render.clone(), options)?;
     let input = || RawInput {

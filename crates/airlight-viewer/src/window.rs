@@ -23,6 +23,8 @@ pub fn run(options: Options) -> Result<(), ViewerError> {
         let viewer = Viewer::new(&context.egui_ctx, render, options)?;
         Ok(Box::new(viewer))
     });
-    eframe::run_native("Airlight", native, create)
-        .map_err(|error| ViewerError::Window(error.to_string()))
+    eframe::run_native("Airlight", native, create).map_err(|error| match error {
+        eframe::Error::WinitEventLoop(_) => ViewerError::NoDisplay,
+        error => ViewerError::Window(error.to_string()),
+    })
 }

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 
 /// Options of `airlight view`.
 #[derive(Debug, Args)]
-#[command(after_help = NOTES)]
+#[command(allow_negative_numbers = true, after_help = NOTES)]
 pub struct ViewArgs {
     /// Scene file, which the other options override [default: a hazy evening]
     #[arg(value_name = "FILE.toml")]

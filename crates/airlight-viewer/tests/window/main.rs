@@ -319,6 +319,18 @@ fn a_scene_without_light_says_why() {
 }
 
 #[test]
+fn a_screenshot_that_is_too_large_is_refused() {
+    let file = std::env::temp_dir().join(format!("airlight-large-{}.png", std::process::id()));
+    let large = Options {
+        size: [65536.0, 300.0],
+        ..options(EVENING)
+    };
+    let error = screenshot(large, &file).unwrap_err().to_string();
+    assert!(error.contains("got 65536 x 300"), "{error}");
+    assert!(!file.exists());
+}
+
+#[test]
 fn a_screenshot_shows_sky_and_controls() {
     let folder = std::env::temp_dir().join(format!("airlight-viewer-{}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();
