@@ -14,10 +14,16 @@ pub fn run(args: &ViewArgs) -> Result<(), CliError> {
     let usual = Options::default();
     let scene = args.read(usual.state.scene)?;
     scene.validate()?;
-    let size = scene.camera.size;
+    let size = scene.camera.size.map_or(usual.size, |size| {
+        let size = size.map(|v| v as f32);
+        match args.screenshot {
+            Some(_) => size,
+            None => on_screen(size),
+        }
+    });
     let options = Options {
         state: State::of_scene(scene),
-        size: size.map_or(usual.size, |size| size.map(|v| v as f32)),
+        size,
         panel: !args.no_panel,
     };
     let shown = match &args.screenshot {
@@ -26,6 +32,17 @@ pub fn run(args: &ViewArgs) -> Result<(), CliError> {
     };
     shown.map_err(|error| CliError::failure(error.to_string()))
 }
+
+/// The size of a window for a picture of a size: at most [`LARGEST_SIDE`] on a side.
+#[cfg(feature = "view")]
+fn on_screen(size: [f32; 2]) -> [f32; 2] {
+    let factor = (LARGEST_SIDE / size[0].max(size[1])).min(1.0);
+    size.map(|side| factor * side)
+}
+
+/// Longest side of a window, points.
+#[cfg(feature = "view")]
+const LARGEST_SIDE: f32 = 1920.0;
 
 /// States how to build the window.
 ///

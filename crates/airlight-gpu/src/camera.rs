@@ -1,6 +1,8 @@
-//! [`Camera`].
+//! [`Camera`] and [`Projection`].
 
-use glam::Mat4;
+use airlight::axes;
+use glam::{DVec3, Mat4};
+use std::f32::consts::{FRAC_PI_2, PI};
 
 /// Place of the factor of the sun's disc among the numbers.
 const DISC: usize = 18;
@@ -8,20 +10,65 @@ const DISC: usize = 18;
 /// Where the pixels of a frame look.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// From clip space to the world around the eye: the inverse of projection times rotation. World axes: y up at the eye, the unit
-    /// is the metre.
-    pub world_from_clip: Mat4,
+    /// Directions of the pixels.
+    pub projection: Projection,
     /// What luminances in cd/m^2 are multiplied by before they reach the target, which a half float holds up to 65504.
     pub exposure: f32,
-    /// Depth of a pixel without geometry: 0 with reversed depth, otherwise 1.
-    pub far_depth: f32,
+}
+
+/// Mapping of directions to the pixels of a frame, and what their depth means.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Projection {
+    /// What graphics pipelines draw: a matrix, usually perspective.
+    Perspective {
+        /// From clip space to the world around the eye: the inverse of projection times rotation. World axes: y up at the eye, the
+        /// unit is the metre.
+        world_from_clip: Mat4,
+        /// Depth of a pixel without geometry: 0 with reversed depth, otherwise 1.
+        far_depth: f32,
+    },
+    /// Equidistant: the angle from the central direction is proportional to the distance from the centre of the picture. Pixels
+    /// beyond the largest angle stay as they are. The depth is the distance of the geometry, m, and 0 without any.
+    Fisheye {
+        /// Right, up and forward of the centre: unit vectors in the world.
+        axes: [DVec3; 3],
+        /// Angles from the centre to the right and to the upper edge, rad.
+        half_angles_rad: [f32; 2],
+        /// Angle from the centre to the edge of the circle, rad.
+        largest_rad: f32,
+    },
+    /// The whole sphere: azimuth increases linearly from left to right, elevation decreases linearly from the zenith to the nadir. The
+    /// depth is the distance of the geometry, m, and 0 without any.
+    Equirectangular {
+        /// Azimuth of the centre, degrees clockwise from north.
+        center_azimuth_deg: f64,
+    },
 }
 
 impl Camera {
     /// The numbers of the shader's struct `Camera`.
     pub(crate) fn numbers(&self) -> Vec<f32> {
-        let mut numbers = self.world_from_clip.to_cols_array().to_vec();
-        numbers.extend([self.exposure, self.far_depth, 1.0, 0.0]);
+        let (kind, matrix, far_depth, [across, up], largest) = match self.projection {
+            Projection::Perspective {
+                world_from_clip,
+                far_depth,
+            } => (0, world_from_clip, far_depth, [0.0; 2], 0.0),
+            Projection::Fisheye {
+                axes,
+                half_angles_rad,
+                largest_rad,
+            } => (1, turn(axes), 0.0, half_angles_rad, largest_rad),
+            Projection::Equirectangular { center_azimuth_deg } => {
+                let right = axes::direction(center_azimuth_deg + 90.0, 0.0);
+                let forward = axes::direction(center_azimuth_deg, 0.0);
+                let turn = turn([right, DVec3::Y, forward]);
+                (2, turn, 0.0, [PI, FRAC_PI_2], 0.0)
+            }
+        };
+        let mut numbers = matrix.to_cols_array().to_vec();
+        numbers.extend([self.exposure, far_depth, 1.0, f32::from_bits(kind)]);
+        numbers.extend([across, up, largest, 0.0]);
         numbers
     }
 
@@ -31,4 +78,10 @@ impl Camera {
         numbers[DISC] = 0.0;
         numbers
     }
+}
+
+/// From components to the right, up and forward to the world.
+fn turn([right, up, forward]: [DVec3; 3]) -> Mat4 {
+    let column = |axis: DVec3| axis.as_vec3().extend(0.0);
+    Mat4::from_cols(column(right), column(up), column(forward), glam::Vec4::ZERO)
 }

@@ -24,7 +24,7 @@ mod renderer;
 mod sky;
 mod tone;
 
-pub use camera::Camera;
+pub use camera::{Camera, Projection};
 pub use environment::EnvironmentMap;
 pub use error::SkyRendererError;
 pub use fog::{Fog, FogFrame};

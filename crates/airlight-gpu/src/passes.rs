@@ -1,6 +1,6 @@
 //! [`SkyPasses`].
 
-use crate::camera::Camera;
+use crate::camera::{Camera, Projection};
 use crate::environment::EnvironmentMap;
 use crate::error::SkyRendererError;
 use crate::fog;
@@ -131,9 +131,11 @@ impl SkyPasses {
         let black = wgpu::LoadOp::Clear(wgpu::Color::BLACK);
         for (target, world_from_clip) in map.faces() {
             let camera = Camera {
-                world_from_clip,
+                projection: Projection::Perspective {
+                    world_from_clip,
+                    far_depth: 0.0,
+                },
                 exposure,
-                far_depth: 0.0,
             };
             let numbers = camera.numbers_without_disc();
             self.draw(

@@ -5,19 +5,20 @@ use crate::command::command_line;
 use crate::compute::{Answer, Facts, Light, Output, Request, SPACE, Task};
 use crate::examples::{self, EXAMPLES};
 use crate::options::Options;
-use crate::picture::{Look, Picture, Shot, tone_mapper, tone_of};
+use crate::picture::{Picture, Shot, tone_mapper, tone_of};
 use crate::platform::Worker;
+use crate::play::Play;
 use crate::state::{CompareMode, History, State};
 use crate::widgets::choice;
 use crate::{panel, reading, style, truth, view};
 use airlight::scene::{OutputSpec, Scene};
 use airlight_gpu::SkyRendererError;
+use airlight_image::Frame;
 #[cfg(not(target_arch = "wasm32"))]
 use airlight_image::rows::StoredRows;
 use airlight_image::tone::Exposure;
-use airlight_image::{Camera, Frame, Projection, Size};
 #[cfg(not(target_arch = "wasm32"))]
-use airlight_image::{Control, PictureOptions, write_picture};
+use airlight_image::{Control, PictureOptions, Size, write_picture};
 use airlight_render::exposure::{ExposureSettings, METERED_WIDTH, MeteredPicture};
 use eframe::egui::{self, Align2, Color32, FontId, Key, Rect, TextureId, Ui, pos2, vec2};
 use eframe::egui_wgpu::RenderState;
@@ -29,6 +30,8 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+/// Longest time that passes between two frames, s: after a pause, time goes on from where it stood.
+const LONGEST_FRAME_S: f32 = 0.1;
 /// The command for a scene that is saved.
 const FROM_FILE: &str = "airlight sky --scene scene.toml -o sky.png";
 
@@ -60,6 +63,9 @@ pub enum ViewerError {
         /// Most pixels on a side.
         largest: u32,
     },
+    /// The scene's camera draws no picture.
+    #[error("{0}")]
+    Camera(String),
     /// The device does not return pixels.
     #[error("cannot read the pixels back: {0}")]
     Pixels(String),
@@ -75,6 +81,8 @@ pub struct Viewer {
     settled: State,
     history: History,
     has_panel: bool,
+    play: Play,
+    dragged: Option<view::Handle>,
     worker: Worker,
     /// Taken out while it works with what else is here.
     beside: Option<Beside>,
@@ -95,6 +103,8 @@ pub struct Viewer {
     texture: Option<TextureId>,
     drawn: Option<Drawn>,
     frames: u64,
+    /// Why the camera draws no picture.
+    unframed: Option<String>,
     /// Why a file was not opened or saved.
     notice: Option<String>,
     /// Name of a file to open or save.
@@ -103,11 +113,11 @@ pub struct Viewer {
     is_lost: Arc<AtomicBool>,
 }
 
-/// What an exposure was metered for: the number of the light, camera, size and settings.
-type Metered = (u64, Look, [u32; 2], OutputSpec);
+/// What an exposure was metered for: the number of the light, projection and settings.
+type Metered = (u64, Frame, OutputSpec);
 
-/// What the picture was drawn for: the number of the light, size and shot.
-type Drawn = (u64, [u32; 2], Shot);
+/// What the picture was drawn for: the number of the light and the shot.
+type Drawn = (u64, Shot);
 
 impl fmt::Debug for Viewer {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -123,12 +133,14 @@ impl Viewer {
     /// A viewer on a device.
     ///
     /// # Errors
-    /// [`ViewerError::Renderer`] where the device cannot draw the picture.
+    /// [`ViewerError::Renderer`] where the device cannot draw the picture, [`ViewerError::Camera`] for a camera that draws none.
     pub fn new(
         context: &egui::Context,
         render: RenderState,
         options: Options,
     ) -> Result<Self, ViewerError> {
+        let size = options.size.map(|v| v.max(1.0) as u32);
+        view::frame_of(&options.state, size, 0.0).map_err(ViewerError::Camera)?;
         style::apply(context);
         let repaint = context.clone();
         let beside = context.clone();
@@ -143,6 +155,8 @@ impl Viewer {
             state: options.state,
             history: History::default(),
             has_panel: options.panel,
+            play: Play::default(),
+            dragged: None,
             worker: Worker::new(move || repaint.request_repaint()),
             beside: Some(Beside::new(move || beside.request_repaint())),
             direction: None,
@@ -158,6 +172,7 @@ impl Viewer {
             texture: None,
             drawn: None,
             frames: 0,
+            unframed: None,
             notice: None,
             file: "scene.toml".to_owned(),
         })
@@ -207,29 +222,25 @@ impl Viewer {
     /// [`ViewerError::Pixels`] where the device does not return them.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn pixels(&self) -> Result<([u32; 2], Vec<[f32; 3]>), ViewerError> {
-        let Some((_, size, shot)) = self.drawn else {
+        let Some((_, shot)) = self.drawn else {
             return Ok(([0, 0], Vec::new()));
         };
-        let mut pixels = self.picture.light().map_err(ViewerError::Pixels)?;
-        for channel in pixels.as_flattened_mut() {
-            *channel /= shot.exposure;
-        }
-        Ok((size, pixels))
+        let exposed = self.picture.light().map_err(ViewerError::Pixels)?;
+        Ok((shot.size(), luminances(exposed, shot.exposure)))
     }
 
-    /// What the picture shows in a size, pixels; `None` before the first light.
-    pub fn shot(&mut self, size: [u32; 2]) -> Option<Shot> {
+    /// What the picture shows in a projection; `None` before the first light.
+    pub fn shot(&mut self, frame: Frame) -> Option<Shot> {
         let light = self.light.as_ref()?;
-        let look = view::look_of(&self.state, light.facts.sun_azimuth_deg);
         let output = &self.state.scene.output;
-        let metered = (self.number_of_light(), look, size, output.clone());
+        let metered = (self.number_of_light(), frame, output.clone());
         let exposure = match self.metered.take().filter(|(of, _)| *of == metered) {
             Some((_, exposure)) => exposure,
-            None => exposure(light, look, size, output)?,
+            None => exposure(light, &frame, output)?,
         };
         self.metered = Some((metered, exposure));
         Some(Shot {
-            look,
+            frame,
             exposure: exposure.factor() as f32,
             tone: tone_of(output),
         })
@@ -239,6 +250,7 @@ impl Viewer {
     pub fn show(&mut self, ui: &mut Ui) {
         self.take_answers();
         self.shortcuts(ui);
+        self.pass_time(ui);
         #[cfg(not(target_arch = "wasm32"))]
         for file in ui.input(|i| i.raw.dropped_files.clone()) {
             self.notice = self.open(file.path()).err();
@@ -255,7 +267,8 @@ impl Viewer {
                         ui.set_width(ui.available_width());
                         ui.heading("Airlight");
                         self.show_actions(ui);
-                        panel::show(ui, &mut self.state, &facts, ev100);
+                        let state = &mut self.state;
+                        panel::show(ui, state, &mut self.play, &facts, ev100);
                     });
                 });
         }
@@ -265,6 +278,17 @@ impl Viewer {
         self.ask();
         self.update_beside();
         self.settle(ui);
+    }
+
+    /// Lets time pass in a scene whose sun follows from it.
+    fn pass_time(&mut self, ui: &Ui) {
+        let sun = &mut self.state.scene.sun;
+        self.play.is_on &= sun.elevation_deg.is_none();
+        if self.play.is_on {
+            let elapsed_s = f64::from(ui.input(|i| i.stable_dt.min(LONGEST_FRAME_S)));
+            self.play.advance(&mut sun.time, elapsed_s);
+            ui.ctx().request_repaint();
+        }
     }
 
     /// Undo, examples, files and the command line.
@@ -331,12 +355,13 @@ impl Viewer {
         Ok(())
     }
 
-    /// Saves the scene as TOML, or the picture in the format of the file's ending.
+    /// Saves the scene as TOML, or the picture in the format of the file's ending: in the size of the scene's camera, or as large as on
+    /// the screen.
     ///
     /// # Errors
     /// A sentence where it cannot be written.
     #[cfg(not(target_arch = "wasm32"))]
-    pub fn save(&self, file: &Path) -> Result<(), String> {
+    pub fn save(&mut self, file: &Path) -> Result<(), String> {
         if file.extension().is_some_and(|ending| ending == "toml") {
             let text = self
                 .state
@@ -346,20 +371,34 @@ impl Viewer {
             return std::fs::write(file, text)
                 .map_err(|error| format!("cannot write `{}`: {error}", file.display()));
         }
-        let (_, _, shot) = self
-            .drawn
-            .ok_or("expected a picture to save, got none yet")?;
-        let (size, pixels) = self.pixels().map_err(|error| error.to_string())?;
-        let output = &self.state.scene.output;
-        let mapper = tone_mapper(output, shot.exposure);
+        let shot = self.saved_shot()?;
+        let mapper = tone_mapper(&self.state.scene.output, shot.exposure);
         let mapper = mapper.ok_or("expected tone settings in their ranges")?;
+        let exposure = shot.exposure.min(self.light().map_or(1.0, sun_exposure));
+        let exposed = self.picture.light_of(&Shot { exposure, ..shot })?;
+        let pixels = luminances(exposed, exposure);
+        let [width, height] = shot.size();
         let write = || {
-            let rows = StoredRows::new(size[0], 3, pixels.as_flattened().to_vec())?;
-            let size = Size::new(size[0], size[1])?;
+            let rows = StoredRows::new(width, 3, pixels.as_flattened().to_vec())?;
+            let size = Size::new(width, height)?;
             let options = PictureOptions::default();
             write_picture(file, size, &rows, &mapper, &options, Control::default())
         };
         write().map(drop).map_err(|error| error.to_string())
+    }
+
+    /// The picture that is saved.
+    #[cfg(not(target_arch = "wasm32"))]
+    fn saved_shot(&mut self) -> Result<Shot, String> {
+        let (_, drawn) = self
+            .drawn
+            .ok_or("expected a picture to save, got none yet")?;
+        let size = self.state.scene.camera.size.unwrap_or(drawn.size());
+        let frame = view::frame_of(&self.state, size, self.facts().sun_azimuth_deg)?;
+        let metered = self.metered.take();
+        let shot = self.shot(frame);
+        self.metered = metered;
+        shot.ok_or_else(|| "expected light to save, got none yet".to_owned())
     }
 
     fn step_back(&mut self) {
@@ -414,7 +453,7 @@ impl Viewer {
     /// What is wanted beside the picture, once it shows the state.
     fn wanted(&self) -> Option<Wanted<'_>> {
         let light = self.light.as_deref()?;
-        let (_, size, shot) = self.drawn?;
+        let (_, shot) = self.drawn?;
         if self.asked.is_some() || self.error.is_some() {
             return None;
         }
@@ -423,9 +462,9 @@ impl Viewer {
             number: self.number,
             light,
             scene: self.answered.as_ref()?,
-            look: shot.look,
+            frame: shot.frame,
             direction: self.direction,
-            model: compare.map(|compare| (compare.model.as_str(), compared_size(size))),
+            model: compare.map(|compare| (compare.model.as_str(), compared_size(shot.size()))),
         })
     }
 
@@ -487,9 +526,10 @@ impl Viewer {
         }
     }
 
-    /// Keeps the state for undo, once the pointer is released.
+    /// Keeps the state for undo, once the pointer is released and time does not pass.
     fn settle(&mut self, ui: &Ui) {
-        if self.state != self.settled && !ui.input(|i| i.pointer.any_down()) {
+        let is_changing = self.play.is_on || ui.input(|i| i.pointer.any_down());
+        if self.state != self.settled && !is_changing {
             let left = std::mem::replace(&mut self.settled, self.state.clone());
             self.history.push(left);
             #[cfg(target_arch = "wasm32")]
@@ -498,28 +538,18 @@ impl Viewer {
     }
 
     fn show_picture(&mut self, ui: &mut Ui) {
-        let rect = ui.available_rect_before_wrap();
+        let area = ui.available_rect_before_wrap();
+        let rect = view::part_of(area, &self.state);
         let scale = ui.pixels_per_point();
         let size = [rect.width(), rect.height()].map(|v| ((v * scale).round() as u32).max(1));
-        let look = view::look_of(&self.state, self.facts().sun_azimuth_deg);
-        let response = view::interact(ui, rect, &mut self.state, look);
-        if response.clicked()
-            && let Some(at) = response.interact_pointer_pos()
-        {
-            self.direction = Some(view::direction_at(rect, at, size, look));
+        match view::frame_of(&self.state, size, self.facts().sun_azimuth_deg) {
+            Ok(frame) => {
+                self.unframed = None;
+                self.show_frame(ui, rect, frame);
+            }
+            Err(sentence) => self.unframed = Some(sentence),
         }
-        if let Some(shot) = self.shot(size) {
-            self.draw(size, &shot);
-        }
-        if let Some(texture) = self.texture {
-            // Texels lie on pixels.
-            let shown = vec2(size[0] as f32, size[1] as f32) / scale;
-            let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
-            let at = Rect::from_min_size(rect.min, shown);
-            ui.painter().image(texture, at, whole, Color32::WHITE);
-            self.show_comparison(ui, at);
-        }
-        self.show_notes(ui, rect);
+        self.show_notes(ui, area);
         if let Some(direction) = self.direction {
             let beside = self.beside.as_ref().zip(self.wanted());
             let spectrum = beside.as_ref().and_then(|(beside, w)| beside.spectrum(w));
@@ -530,18 +560,45 @@ impl Viewer {
         }
     }
 
+    /// Shows the picture of a frame in a rectangle, and takes the input on it.
+    fn show_frame(&mut self, ui: &mut Ui, rect: Rect, frame: Frame) {
+        let response = view::interact(ui, rect, &mut self.state, &frame, &mut self.dragged);
+        if response.clicked()
+            && let Some(at) = response.interact_pointer_pos()
+            && let Some(direction) = view::direction_at(rect, at, &frame)
+        {
+            self.direction = Some(direction);
+        }
+        if let Some(shot) = self.shot(frame) {
+            self.draw(&shot);
+        }
+        if let Some(texture) = self.texture {
+            let size = [frame.size().width(), frame.size().height()];
+            let scale = ui.pixels_per_point();
+            // Texels lie on pixels.
+            let shown = vec2(size[0] as f32, size[1] as f32) / scale;
+            let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+            let at = Rect::from_min_size(rect.min, shown);
+            ui.painter().image(texture, at, whole, Color32::WHITE);
+            self.show_comparison(ui, at);
+        }
+        if self.dragged == Some(view::Handle::Sun) {
+            view::mark_sun(ui, rect, &self.state, &frame);
+        }
+    }
+
     /// Draws the picture if it shows something else than before.
-    fn draw(&mut self, size: [u32; 2], shot: &Shot) {
+    fn draw(&mut self, shot: &Shot) {
         if self.is_lost.load(Ordering::Relaxed) {
             self.error =
                 Some("the graphics device was lost; save the scene and start again".to_owned());
             return;
         }
-        let drawn = (self.number_of_light(), size, *shot);
+        let drawn = (self.number_of_light(), *shot);
         if self.drawn == Some(drawn) {
             return;
         }
-        let is_new = self.picture.draw(size, shot);
+        let is_new = self.picture.draw(shot);
         self.drawn = Some(drawn);
         self.frames += 1;
         let Some(shown) = self.picture.shown().filter(|_| is_new) else {
@@ -561,7 +618,7 @@ impl Viewer {
 
     /// Shows the comparison over the picture.
     fn show_comparison(&mut self, ui: &Ui, at: Rect) {
-        let (Some(compare), Some((_, _, shot))) = (self.state.compare.clone(), self.drawn) else {
+        let (Some(compare), Some((_, shot))) = (self.state.compare.clone(), self.drawn) else {
             self.compared = None;
             return;
         };
@@ -660,6 +717,7 @@ impl Viewer {
     fn show_notes(&self, ui: &Ui, rect: Rect) {
         let note = match (&self.error, &self.asked) {
             _ if self.notice.is_some() => self.notice.clone().unwrap_or_default(),
+            _ if self.unframed.is_some() => self.unframed.clone().unwrap_or_default(),
             (Some(error), _) => error.clone(),
             (None, Some(_)) => "solving …".to_owned(),
             (None, None) => match self.judgement().filter(|_| self.has_panel) {
@@ -734,15 +792,7 @@ fn shades(comparison: &Comparison, of: impl Fn(&truth::Difference) -> Color32) -
 }
 
 /// The exposure of a picture, metered as the program `airlight` does.
-fn exposure(light: &Light, look: Look, size: [u32; 2], output: &OutputSpec) -> Option<Exposure> {
-    let [width, height] = size;
-    let camera = Camera::with_horizontal_fov(
-        look.azimuth_deg,
-        look.elevation_deg,
-        look.fov_deg,
-        Size::new(width, height).ok()?,
-    );
-    let frame = Frame::new(Projection::Perspective(camera), width, height).ok()?;
+fn exposure(light: &Light, frame: &Frame, output: &OutputSpec) -> Option<Exposure> {
     let frame = frame.preview(METERED_WIDTH);
     let small = frame.size();
     let pixels = (0..small.height()).flat_map(|j| (0..small.width()).map(move |i| (i, j)));
@@ -760,4 +810,21 @@ fn exposure(light: &Light, look: Look, size: [u32; 2], output: &OutputSpec) -> O
         facts.sun_lx + facts.sky_lx,
     );
     ExposureSettings::of(output).metered(&picture).ok()
+}
+
+/// Exposed light as luminances, cd/m^2.
+#[cfg(not(target_arch = "wasm32"))]
+fn luminances(mut exposed: Vec<[f32; 3]>, exposure: f32) -> Vec<[f32; 3]> {
+    for channel in exposed.as_flattened_mut() {
+        *channel /= exposure;
+    }
+    exposed
+}
+
+/// Exposure at which half floats hold the sun's disc, whose centre is at most twice as bright as its mean.
+#[cfg(not(target_arch = "wasm32"))]
+fn sun_exposure(light: &Light) -> f32 {
+    let solid_angle = std::f32::consts::TAU * light.tables.disc_one_minus_cos;
+    let mean = light.tables.lighting.sun_illuminance_lx.max_element() / solid_angle;
+    f32::from(half::f16::MAX) / (2.0 * mean).max(1.0)
 }

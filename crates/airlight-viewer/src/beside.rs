@@ -1,12 +1,12 @@
 //! [`Beside`]: what is computed beside the picture, to judge it: a spectrum, the error of the picture, another model's picture.
 
 use crate::compute::{Answer, Light, Output, Request, Spectrum, Task};
-use crate::picture::Look;
 use crate::platform::Worker;
 use crate::truth::{self, Difference, Statistics};
 use airlight::glam::DVec3;
 use airlight::models::registry;
 use airlight::scene::Scene;
+use airlight_image::Frame;
 
 /// Pixels, across and up, at which the picture is checked against the solver.
 const CHECKED: [u32; 2] = [16, 12];
@@ -20,8 +20,8 @@ pub struct Wanted<'a> {
     pub light: &'a Light,
     /// The scene that it is of.
     pub scene: &'a Scene,
-    /// Where the camera looks.
-    pub look: Look,
+    /// Projection and size of the picture.
+    pub frame: Frame,
     /// Direction of the spectrum.
     pub direction: Option<DVec3>,
     /// Model to compare with, and the size of its picture.
@@ -61,8 +61,8 @@ pub struct Beside {
 #[derive(Clone, Debug, PartialEq)]
 enum Question {
     Spectrum(u64, DVec3),
-    Check(u64, Look),
-    Compare(u64, Look, [u32; 2], String),
+    Check(u64, Frame),
+    Compare(u64, Frame, [u32; 2], String),
 }
 
 impl Beside {
@@ -124,7 +124,7 @@ impl Beside {
     /// Differences of the picture from the solver, over the whole of it.
     pub fn check(&self, wanted: &Wanted<'_>) -> Option<&Statistics> {
         let (of, statistics) = self.check.as_ref()?;
-        (*of == Question::Check(wanted.number, wanted.look)).then_some(statistics)
+        (*of == Question::Check(wanted.number, wanted.frame)).then_some(statistics)
     }
 
     /// The wanted comparison.
@@ -145,7 +145,7 @@ impl Beside {
         let spectrum = wanted
             .direction
             .map(|d| Question::Spectrum(wanted.number, d));
-        let check = Some(Question::Check(wanted.number, wanted.look));
+        let check = Some(Question::Check(wanted.number, wanted.frame));
         let is_open = |question: &Question| {
             let answered = match question {
                 Question::Spectrum(..) => self.spectrum.as_ref().map(|(of, _)| of),
@@ -173,15 +173,15 @@ impl Beside {
         }
         match (answer.result, &question) {
             (Ok(Output::Spectrum(spectrum)), _) => self.spectrum = Some((question, spectrum)),
-            (Ok(Output::Colours(colours)), Question::Check(_, look)) => {
-                let directions = truth::directions(*look, CHECKED);
+            (Ok(Output::Colours(colours)), Question::Check(_, frame)) => {
+                let directions = truth::directions(frame, CHECKED);
                 let differences = truth::differences(wanted.light, &directions, &colours);
                 let found = truth::statistics(wanted.light, &directions, &differences);
                 self.check = Some((question, found.unwrap_or_default()));
             }
-            (Ok(Output::Colours(colours)), Question::Compare(_, look, size, _)) => {
+            (Ok(Output::Colours(colours)), Question::Compare(_, frame, size, _)) => {
                 let size = *size;
-                let directions = truth::directions(*look, size);
+                let directions = truth::directions(frame, size);
                 let differences = truth::differences(wanted.light, &directions, &colours);
                 self.comparison = Some(Comparison {
                     size,
@@ -202,7 +202,7 @@ fn compare(wanted: &Wanted<'_>) -> Option<Question> {
     let (model, size) = wanted.model?;
     Some(Question::Compare(
         wanted.number,
-        wanted.look,
+        wanted.frame,
         size,
         model.to_owned(),
     ))
@@ -211,13 +211,13 @@ fn compare(wanted: &Wanted<'_>) -> Option<Question> {
 fn task(question: &Question) -> Task {
     match question {
         Question::Spectrum(_, direction) => Task::Spectrum(direction.to_array()),
-        Question::Check(_, look) => Task::Colours {
+        Question::Check(_, frame) => Task::Colours {
             model: registry::DEFAULT.to_owned(),
-            directions: truth::directions(*look, CHECKED),
+            directions: truth::directions(frame, CHECKED),
         },
-        Question::Compare(_, look, size, model) => Task::Colours {
+        Question::Compare(_, frame, size, model) => Task::Colours {
             model: model.clone(),
-            directions: truth::directions(*look, *size),
+            directions: truth::directions(frame, *size),
         },
     }
 }

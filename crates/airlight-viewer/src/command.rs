@@ -55,10 +55,12 @@ pub fn command_line(scene: &Scene) -> Option<String> {
     );
     line.number("--camera-azimuth", camera.azimuth_deg);
     line.number("--camera-elevation", camera.elevation_deg);
+    line.number("--camera-roll", camera.roll_deg);
     line.number("--fov", camera.fov_deg);
-    if camera.roll_deg.is_some() || camera.orientation.is_some() {
-        return None;
-    }
+    line.text(
+        "--orientation",
+        camera.orientation.map(|program| program.name().to_owned()),
+    );
     let output = &mut rest.output;
     match output.exposure.take() {
         Some(Exposure::Ev100(ev100)) => line.number("--exposure", Some(ev100)),

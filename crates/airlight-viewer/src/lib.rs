@@ -7,7 +7,7 @@
 //! the drawing and the colours are those of the library; the viewer adds no physics.
 //!
 //! Modules, each importing only from those above it: [`state`], `address`, `examples`, `options`, `command`, [`compute`](mod@compute),
-//! `message`, `platform`, `picture`, `truth`, `style`, `widgets`, `panel`, `view`, `reading`, `beside`, `app`, `headless`, `window`, `page`.
+//! `message`, `platform`, `picture`, `truth`, `style`, `widgets`, `play`, `view`, `panel`, `reading`, `beside`, `app`, `headless`, `window`, `page`.
 
 mod address;
 mod app;
@@ -25,6 +25,7 @@ mod page;
 mod panel;
 mod picture;
 mod platform;
+mod play;
 mod reading;
 pub mod state;
 mod style;

@@ -1,18 +1,20 @@
 //! The panel of controls.
 
 use crate::compute::Facts;
+use crate::play::{Play, SPEEDS};
 use crate::state::{ALTITUDES_M, Compare, CompareMode, State};
+use crate::view::{FISHEYE_FOV_DEG, FOV_DEG, SUN_AZIMUTH_DEG};
 use crate::widgets::{Number, choice, title};
 use airlight::Named;
 use airlight::atmosphere::{AerosolType, Preset};
 use airlight::models::registry;
-use airlight::scene::{Exposure, FogSpec, ToneKind};
+use airlight::scene::{CameraSpec, Exposure, FogSpec, Projection, ToneKind};
 use airlight::sun::Moment;
 use eframe::egui::{self, RichText, Ui};
 
 /// Shows the controls; they change the state.
-pub fn show(ui: &mut Ui, state: &mut State, facts: &Facts, ev100: f64) {
-    sun(ui, state, facts);
+pub fn show(ui: &mut Ui, state: &mut State, play: &mut Play, facts: &Facts, ev100: f64) {
+    sun(ui, state, play, facts);
     eye(ui, state, facts);
     air(ui, state, facts);
     fog(ui, state);
@@ -53,8 +55,10 @@ const CITIES: [(&str, f64, f64); 24] = [
     ("Wellington", -41.2866, 174.7756),
 ];
 
-fn sun(ui: &mut Ui, state: &mut State, facts: &Facts) {
-    title(ui, "Sun");
+fn sun(ui: &mut Ui, state: &mut State, play: &mut Play, facts: &Facts) {
+    if title(ui, "Sun") {
+        state.scene.sun = State::default().scene.sun;
+    }
     let sun = &mut state.scene.sun;
     let mut by_hand = sun.elevation_deg.is_some();
     ui.horizontal(|ui| {
@@ -76,13 +80,13 @@ fn sun(ui: &mut Ui, state: &mut State, facts: &Facts) {
     if by_hand {
         let mut elevation_deg = sun.elevation_deg.unwrap_or_default();
         let elevation = Number::new("Elevation", "°", -18.0..=90.0).decimals(2);
-        let elevation = elevation.help("Of the sun's centre above the horizontal. Ctrl and drag in the picture to move the sun.");
+        let elevation = elevation.help("Of the sun's centre above the horizontal. Drag the sun in the picture, or Ctrl and drag anywhere.");
         if elevation.show(ui, &mut elevation_deg) {
             sun.elevation_deg = Some(elevation_deg.clamp(-90.0, 90.0));
         }
         Number::new("Azimuth", "°", 0.0..=360.0)
             .help("Clockwise from north.")
-            .show_optional(ui, &mut sun.azimuth_deg, 180.0);
+            .show_optional(ui, &mut sun.azimuth_deg, SUN_AZIMUTH_DEG);
     } else {
         let named = CITIES.map(|(name, latitude_deg, longitude_deg)| {
             ((Some(latitude_deg), Some(longitude_deg)), name.to_owned())
@@ -98,6 +102,7 @@ fn sun(ui: &mut Ui, state: &mut State, facts: &Facts) {
             .decimals(4)
             .show_optional(ui, &mut sun.longitude_deg, PLACE.1);
         time(ui, &mut sun.time);
+        passing(ui, play);
         quiet(
             ui,
             format!(
@@ -127,6 +132,16 @@ fn time(ui: &mut Ui, text: &mut Option<String>) {
     quiet(ui, moment.to_string());
 }
 
+/// Whether time passes, and how fast.
+fn passing(ui: &mut Ui, play: &mut Play) {
+    let named = SPEEDS.map(|(speed, name)| (speed, name.to_owned()));
+    choice(ui, "Speed", &mut play.speed, &named);
+    let text = if play.is_on { "Pause" } else { "Play" };
+    if ui.button(text).clicked() {
+        play.is_on = !play.is_on;
+    }
+}
+
 /// Day of the year, from 1, of a local midnight in seconds since 1970 began.
 fn day_of_year(midnight_s: f64) -> f64 {
     let date = Moment::from_unix_s(midnight_s).to_string();
@@ -139,27 +154,86 @@ fn day_of_year(midnight_s: f64) -> f64 {
 }
 
 fn eye(ui: &mut Ui, state: &mut State, facts: &Facts) {
-    title(ui, "Eye");
+    if title(ui, "Eye") {
+        let usual = State::default().scene;
+        (state.scene.observer, state.scene.camera) = (usual.observer, usual.camera);
+    }
     let [lowest, highest] = ALTITUDES_M;
     Number::new("Altitude", " m", lowest..=highest)
         .logarithmic()
         .help("Above sea level. Page Up and Page Down in the picture change it, too.")
         .show_optional(ui, &mut state.scene.observer.altitude_m, facts.altitude_m);
-    let camera = &mut state.scene.camera;
-    Number::new("Direction", "°", 0.0..=360.0)
-        .help("Azimuth of the centre of the picture, clockwise from north. Drag the picture, or use the arrow keys in it.")
-        .show_optional(ui, &mut camera.azimuth_deg, facts.sun_azimuth_deg);
+    camera(ui, &mut state.scene.camera, facts);
+}
+
+/// Names of the projections. A cube map has six pictures.
+const PROJECTIONS: [(Projection, &str); 3] = [
+    (Projection::Perspective, "perspective"),
+    (Projection::Fisheye, "fisheye"),
+    (Projection::Equirectangular, "whole sphere"),
+];
+
+fn camera(ui: &mut Ui, camera: &mut CameraSpec, facts: &Facts) {
+    let named = PROJECTIONS.map(|(kind, name)| (kind, name.to_owned()));
+    let mut kind = camera.projection.unwrap_or_default();
+    if choice(ui, "Projection", &mut kind, &named) {
+        // Angles of one projection are out of range in, or mean nothing to, another.
+        *camera = CameraSpec {
+            projection: Some(kind),
+            azimuth_deg: camera.azimuth_deg.filter(|_| kind != Projection::Fisheye),
+            ..Default::default()
+        };
+    }
+    let [azimuth_deg, elevation_deg, fov_deg] = match kind {
+        Projection::Perspective => [facts.sun_azimuth_deg, 10.0, 75.0],
+        Projection::Fisheye => [180.0, 90.0, 180.0],
+        _ => [0.0, 0.0, 360.0],
+    };
+    let azimuth = Number::new("Direction", "°", 0.0..=360.0)
+        .help("Azimuth of the centre of the picture, clockwise from north. Drag the picture, or use the arrow keys in it.");
+    if azimuth.show_optional(ui, &mut camera.azimuth_deg, azimuth_deg) {
+        camera.orientation = None;
+    }
+    let [narrowest, widest] = match kind {
+        Projection::Perspective => FOV_DEG,
+        Projection::Fisheye => FISHEYE_FOV_DEG,
+        _ => return,
+    };
     Number::new("Inclination", "°", -90.0..=90.0)
         .help("Elevation of the centre of the picture.")
-        .show_optional(ui, &mut camera.elevation_deg, 10.0);
-    Number::new("Field of view", "°", 0.5..=120.0)
+        .show_optional(ui, &mut camera.elevation_deg, elevation_deg);
+    Number::new("Field of view", "°", narrowest..=widest)
         .logarithmic()
-        .help("From the left to the right edge. Scroll, pinch, or press + and - in the picture.")
-        .show_optional(ui, &mut camera.fov_deg, 75.0);
+        .help("From the left to the right edge, or across the circle of a fisheye. Scroll, pinch, or press + and - in the picture.")
+        .show_optional(ui, &mut camera.fov_deg, fov_deg);
+}
+
+/// Sizes of pictures that are saved, pixels.
+const SIZES: [[u32; 2]; 8] = [
+    [1920, 1080],
+    [3840, 2160],
+    [1024, 1024],
+    [2048, 2048],
+    [4096, 4096],
+    [2048, 1024],
+    [4096, 2048],
+    [8192, 4096],
+];
+
+fn size(ui: &mut Ui, camera: &mut CameraSpec) {
+    let text = |[width, height]: [u32; 2]| format!("{width} × {height}");
+    let mut named = vec![(None, "as shown".to_owned())];
+    named.extend(SIZES.map(|size| (Some(size), text(size))));
+    if let Some(size) = camera.size.filter(|size| !SIZES.contains(size)) {
+        named.push((Some(size), text(size)));
+    }
+    choice(ui, "Size of a file", &mut camera.size, &named);
 }
 
 fn air(ui: &mut Ui, state: &mut State, facts: &Facts) {
-    title(ui, "Air");
+    if title(ui, "Air") {
+        state.scene.air = State::default().scene.air;
+    }
     let air = &mut state.scene.air;
     let presets: Vec<_> = Preset::ALL
         .iter()
@@ -211,7 +285,9 @@ fn air(ui: &mut Ui, state: &mut State, facts: &Facts) {
 }
 
 fn fog(ui: &mut Ui, state: &mut State) {
-    title(ui, "Fog");
+    if title(ui, "Fog") {
+        state.scene.fog = State::default().scene.fog;
+    }
     let mut has_fog = state.scene.fog.is_some();
     if ui.checkbox(&mut has_fog, "Fog near the ground").changed() {
         state.scene.fog = has_fog.then(|| FogSpec {
@@ -236,7 +312,11 @@ fn fog(ui: &mut Ui, state: &mut State) {
 }
 
 fn display(ui: &mut Ui, state: &mut State, metered_ev100: f64) {
-    title(ui, "Picture");
+    if title(ui, "Picture") {
+        state.scene.output = State::default().scene.output;
+        state.scene.camera.size = None;
+    }
+    size(ui, &mut state.scene.camera);
     let output = &mut state.scene.output;
     let mut auto = !matches!(output.exposure, Some(Exposure::Ev100(_)));
     if ui.checkbox(&mut auto, "Automatic exposure").changed() {
@@ -280,7 +360,9 @@ fn display(ui: &mut Ui, state: &mut State, metered_ev100: f64) {
 }
 
 fn compare(ui: &mut Ui, state: &mut State) {
-    title(ui, "Compare");
+    if title(ui, "Compare") {
+        state.compare = None;
+    }
     // Monte Carlo takes minutes for a picture.
     let models = registry::ALL.iter().map(|model| model.name());
     let models = models.filter(|name| *name != "monte-carlo");

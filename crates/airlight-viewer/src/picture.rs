@@ -1,66 +1,74 @@
 //! [`Picture`]: the light of a frame on the graphics device, and what of it is shown.
 
 use crate::compute::Light;
-use airlight::axes;
 use airlight::scene::OutputSpec;
 use airlight_gpu::{Camera, SkyPasses, SkyRendererError, ToneCurve, TonePass, ToneSettings};
 use airlight_image::tone::{self, ToneMapper, WhiteBalance};
+use airlight_image::{Frame, Projection};
 use airlight_render::display::tone_curve;
 use eframe::wgpu;
-use glam::{DVec3, Mat4, Vec4};
+use glam::{Mat4, Vec4};
 
 /// Format of the light.
 const LIGHT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// Format of what is shown.
 const SHOWN: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
-/// Direction and field of view of a perspective camera.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Look {
-    /// Azimuth of the centre, degrees clockwise from north.
-    pub azimuth_deg: f64,
-    /// Elevation of the centre, degrees.
-    pub elevation_deg: f64,
-    /// Field of view from the left to the right edge, degrees.
-    pub fov_deg: f64,
-}
-
-impl Look {
-    /// Right, up and forward.
-    pub fn axes(&self) -> [DVec3; 3] {
-        let forward = axes::direction(self.azimuth_deg, self.elevation_deg);
-        let right = axes::direction(self.azimuth_deg + 90.0, 0.0);
-        [right, right.cross(forward), forward]
-    }
-
-    /// Tangents of half the field of view, across and up, in a picture of a size.
-    pub fn tangents(&self, [width, height]: [u32; 2]) -> [f64; 2] {
-        let across = (0.5 * self.fov_deg.to_radians()).tan();
-        [across, across * f64::from(height) / f64::from(width)]
-    }
-
-    /// From clip space to the world, for a depth that is 0 without geometry.
-    pub fn world_from_clip(&self, size: [u32; 2]) -> Mat4 {
-        let [right, up, forward] = self.axes().map(|v| v.as_vec3());
-        let [across, high] = self.tangents(size).map(|v| v as f32);
-        Mat4::from_cols(
-            (right * across).extend(0.0),
-            (up * high).extend(0.0),
-            Vec4::ZERO,
-            forward.extend(1.0),
-        )
-    }
-}
-
 /// What a picture shows, apart from the light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shot {
-    /// Where the camera looks.
-    pub look: Look,
+    /// Projection and size.
+    pub frame: Frame,
     /// Factor on light in cd/m^2.
     pub exposure: f32,
     /// Tone curve and white balance.
     pub tone: ToneSettings,
+}
+
+impl Shot {
+    /// Width and height, pixels.
+    pub fn size(&self) -> [u32; 2] {
+        let size = self.frame.size();
+        [size.width(), size.height()]
+    }
+
+    /// The camera that draws it; depth is 0 without geometry. `None` for the face of a cube, which the viewer does not show.
+    fn camera(&self) -> Option<Camera> {
+        let [width, height] = self.size().map(f64::from);
+        let projection = match *self.frame.projection() {
+            Projection::Perspective(camera) => {
+                let [right, up, forward] = camera.axes();
+                let high = (0.5 * camera.vertical_fov_deg.to_radians()).tan();
+                let across = high * width / height;
+                airlight_gpu::Projection::Perspective {
+                    world_from_clip: Mat4::from_cols(
+                        (right * across).as_vec3().extend(0.0),
+                        (up * high).as_vec3().extend(0.0),
+                        Vec4::ZERO,
+                        forward.as_vec3().extend(1.0),
+                    ),
+                    far_depth: 0.0,
+                }
+            }
+            Projection::AngularFisheye(fisheye) => {
+                let largest_rad = 0.5 * fisheye.field_of_view_deg.to_radians();
+                let side = width.min(height);
+                airlight_gpu::Projection::Fisheye {
+                    axes: fisheye.axes(),
+                    half_angles_rad: [width, height].map(|v| (largest_rad * v / side) as f32),
+                    largest_rad: largest_rad as f32,
+                }
+            }
+            Projection::Equirectangular { center_azimuth_deg } => {
+                airlight_gpu::Projection::Equirectangular { center_azimuth_deg }
+            }
+            _ => return None,
+        };
+        Some(Camera {
+            projection,
+            exposure: self.exposure,
+        })
+    }
 }
 
 /// The tone settings of a scene's output. Values that are out of range count as not set.
@@ -133,28 +141,29 @@ impl Picture {
         self.sky.set_tables(&light.tables);
     }
 
-    /// Draws a frame of a size, pixels. True if the texture of [`Self::shown`] is a new one.
-    pub fn draw(&mut self, size: [u32; 2], shot: &Shot) -> bool {
-        let is_new = self.targets.as_ref().is_none_or(|t| t.size != size);
+    /// Draws a picture. True if the texture of [`Self::shown`] is a new one.
+    pub fn draw(&mut self, shot: &Shot) -> bool {
+        let is_new = self.targets.as_ref().is_none_or(|t| t.size != shot.size());
         if is_new {
-            self.targets = Some(self.new_targets(size));
+            self.targets = Some(self.new_targets(shot.size()));
         }
-        let Some(targets) = &self.targets else {
-            return false;
-        };
+        if let Some(targets) = &self.targets {
+            self.draw_into(targets, shot);
+        }
+        is_new
+    }
+
+    fn draw_into(&self, targets: &Targets, shot: &Shot) {
         let mut encoder = self
             .device
             .create_command_encoder(&wgpu::CommandEncoderDescriptor {
                 label: Some("airlight viewer"),
             });
         clear(&mut encoder, targets);
-        let camera = Camera {
-            world_from_clip: shot.look.world_from_clip(size),
-            exposure: shot.exposure,
-            far_depth: 0.0,
-        };
-        self.sky
-            .record(&mut encoder, &targets.light_view, &targets.depth, &camera);
+        if let Some(camera) = shot.camera() {
+            self.sky
+                .record(&mut encoder, &targets.light_view, &targets.depth, &camera);
+        }
         self.tone.record(
             &mut encoder,
             &targets.light_view,
@@ -162,7 +171,6 @@ impl Picture {
             &shot.tone,
         );
         self.queue.submit([encoder.finish()]);
-        is_new
     }
 
     /// What is shown: signals of sRGB.
@@ -170,15 +178,38 @@ impl Picture {
         self.targets.as_ref().map(|targets| &targets.shown_view)
     }
 
-    /// Red, green and blue of the last frame, exposed.
+    /// Red, green and blue of the last picture, exposed.
     ///
     /// # Errors
     /// A sentence where the device does not return them.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn light(&self) -> Result<Vec<[f32; 3]>, String> {
-        let Some(targets) = &self.targets else {
-            return Ok(Vec::new());
-        };
+        match &self.targets {
+            Some(targets) => self.light_in(targets),
+            None => Ok(Vec::new()),
+        }
+    }
+
+    /// Red, green and blue of a picture of any size, exposed, which is not shown.
+    ///
+    /// # Errors
+    /// A sentence where the device cannot draw it or does not return it.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn light_of(&self, shot: &Shot) -> Result<Vec<[f32; 3]>, String> {
+        let largest = self.device.limits().max_texture_dimension_2d;
+        let [width, height] = shot.size();
+        if width.max(height) > largest {
+            return Err(format!(
+                "expected at most {largest} pixels on a side on this graphics device, got {width} x {height}"
+            ));
+        }
+        let targets = self.new_targets([width, height]);
+        self.draw_into(&targets, shot);
+        self.light_in(&targets)
+    }
+
+    #[cfg(not(target_arch = "wasm32"))]
+    fn light_in(&self, targets: &Targets) -> Result<Vec<[f32; 3]>, String> {
         let bytes = read_texture(&self.device, &self.queue, &targets.light)?;
         let channel = |texel: &[u8; 8], c: usize| {
             half::f16::from_ne_bytes([texel[2 * c], texel[2 * c + 1]]).to_f32()

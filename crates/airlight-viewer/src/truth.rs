@@ -1,8 +1,8 @@
 //! Differences between what is drawn and what a model computes.
 
 use crate::compute::{Colours, Light, SPACE};
-use crate::picture::Look;
 use airlight::spectrum::difference::{D65_WHITE, ciede2000, xyz_to_lab};
+use airlight_image::Frame;
 use eframe::egui::Color32;
 use glam::Vec3;
 
@@ -11,17 +11,20 @@ const ENDS: [f64; 7] = [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0];
 /// Distance from the horizon, where radiance jumps within a pixel, up to which directions are left out of statistics, degrees.
 const BESIDE_HORIZON_DEG: f64 = 0.3;
 
-/// Directions of the pixels of a picture, row by row.
-pub fn directions(look: Look, [width, height]: [u32; 2]) -> Vec<[f32; 3]> {
-    let [right, up, forward] = look.axes();
-    let [across, high] = look.tangents([width, height]);
-    let place = |k: u32, count: u32| 2.0 * (f64::from(k) + 0.5) / f64::from(count) - 1.0;
-    let pixels = (0..height).flat_map(|j| (0..width).map(move |i| (i, j)));
-    pixels
+/// Directions of a grid over a picture, row by row: at the centres of its pixels where it is as large; zero outside the circle of a
+/// fisheye.
+pub fn directions(frame: &Frame, [across, down]: [u32; 2]) -> Vec<[f32; 3]> {
+    let size = frame.size();
+    let place =
+        |k: u32, count: u32, side: u32| (f64::from(k) + 0.5) / f64::from(count) * f64::from(side);
+    let points = (0..down).flat_map(|j| (0..across).map(move |i| (i, j)));
+    points
         .map(|(i, j)| {
-            let x = place(i, width) * across;
-            let y = -place(j, height) * high;
-            let direction = (forward + right * x + up * y).normalize();
+            let (x, y) = (
+                place(i, across, size.width()),
+                place(j, down, size.height()),
+            );
+            let direction = frame.direction(x, y).unwrap_or_default();
             direction.as_vec3().to_array()
         })
         .collect()
@@ -47,7 +50,7 @@ pub struct Statistics {
     pub rms_ciede2000: f64,
 }
 
-/// Differences between the drawn light and a model's; `None` where either is black.
+/// Differences between the drawn light and a model's; `None` where either is black, and in directions without length.
 pub fn differences(
     light: &Light,
     directions: &[[f32; 3]],
@@ -63,7 +66,8 @@ pub fn differences(
     let pairs = directions.iter().zip(&colours.rgb);
     pairs
         .map(|(direction, rgb)| {
-            let drawn = light.tables.rgb_radiance(Vec3::from_array(*direction));
+            let direction = Vec3::from_array(*direction).try_normalize()?;
+            let drawn = light.tables.rgb_radiance(direction);
             let [got, right] = [drawn.to_array(), *rgb].map(xyz);
             (got[1] > 0.0 && right[1] > 1e-4 * white).then(|| Difference {
                 percent: 100.0 * (got[1] / right[1] - 1.0),
@@ -146,6 +150,7 @@ pub fn ciede2000_colour(difference: f64, end: f64) -> Color32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use airlight_image::{Fisheye, Projection};
 
     #[test]
     fn maps_are_white_or_black_without_a_difference_and_end() {
@@ -159,21 +164,17 @@ mod tests {
     }
 
     #[test]
-    fn directions_are_those_of_a_camera() {
-        let look = Look {
-            azimuth_deg: 30.0,
-            elevation_deg: -20.0,
-            fov_deg: 70.0,
-        };
-        let size = airlight_image::Size::new(7, 5).unwrap();
-        let camera = airlight_image::Camera::with_horizontal_fov(30.0, -20.0, 70.0, size);
-        let projection = airlight_image::Projection::Perspective(camera);
-        let frame = airlight_image::Frame::new(projection, 7, 5).unwrap();
-        let directions = directions(look, [7, 5]);
-        for (k, direction) in (0..).zip(&directions) {
-            let right = frame.pixel_direction(k % 7, k / 7).unwrap().as_vec3();
-            assert!(Vec3::from_array(*direction).distance(right) < 1e-6, "{k}");
+    fn directions_are_those_of_the_picture() {
+        let projection = Projection::AngularFisheye(Fisheye::ALL_SKY);
+        let frame = Frame::new(projection, 9, 6).unwrap();
+        for (k, direction) in (0..).zip(directions(&frame, [9, 6])) {
+            let right = frame.pixel_direction(k % 9, k / 9).unwrap_or_default();
+            let apart = Vec3::from_array(direction).distance(right.as_vec3());
+            assert!(apart < 1e-6, "{k}");
         }
-        assert_eq!(directions.len(), 35);
+        // A grid of fewer points spans the same picture.
+        let coarse = directions(&frame, [3, 2]);
+        let right = frame.pixel_direction(4, 1).unwrap().as_vec3();
+        assert!(Vec3::from_array(coarse[1]).distance(right) < 1e-6);
     }
 }

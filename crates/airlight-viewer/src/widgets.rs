@@ -1,6 +1,6 @@
 //! Controls with a name, a unit and a reset.
 
-use eframe::egui::{self, Response, RichText, Slider, SliderClamping, Ui};
+use eframe::egui::{self, Response, RichText, Role, Slider, SliderClamping, Ui, WidgetInfo};
 use std::ops::RangeInclusive;
 
 /// Width of the names of controls, points.
@@ -147,13 +147,25 @@ pub fn choice<T: PartialEq + Clone>(
     .inner
 }
 
-/// A title of a group of controls.
-pub fn title(ui: &mut Ui, text: &str) {
+/// A title of a group of controls. True if the group is to be reset.
+pub fn title(ui: &mut Ui, text: &str) -> bool {
     ui.add_space(8.0);
-    ui.label(
-        RichText::new(text)
-            .strong()
-            .color(crate::style::ACCENT)
-            .size(12.0),
-    );
+    ui.horizontal(|ui| {
+        ui.label(
+            RichText::new(text)
+                .strong()
+                .color(crate::style::ACCENT)
+                .size(12.0),
+        );
+        let right = egui::Layout::right_to_left(egui::Align::Center);
+        ui.with_layout(right, |ui| {
+            let text = format!("Reset {}", text.to_lowercase());
+            let small = RichText::new("reset").color(crate::style::QUIET).small();
+            let button = ui.add(egui::Button::new(small).frame(false));
+            button.widget_info(|| WidgetInfo::labeled(Role::Button, true, &text));
+            button.on_hover_text(&text).clicked()
+        })
+        .inner
+    })
+    .inner
 }

@@ -1,6 +1,6 @@
 //! A device without a window: frames with a depth and a colour, and their pixels.
 
-use airlight_gpu::{Camera, SkyRenderer};
+use airlight_gpu::{Camera, Projection, SkyRenderer};
 use glam::{Mat4, Vec3};
 use half::f16;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
@@ -69,9 +69,11 @@ impl Frame {
 
     pub fn camera(&self, exposure: f32) -> Camera {
         Camera {
-            world_from_clip: self.clip_from_world.inverse(),
+            projection: Projection::Perspective {
+                world_from_clip: self.clip_from_world.inverse(),
+                far_depth: 0.0,
+            },
             exposure,
-            far_depth: 0.0,
         }
     }
 

@@ -57,6 +57,11 @@ impl CameraAxes {
         }
     }
 
+    /// Right, up and forward.
+    pub(super) fn to_array(self) -> [DVec3; 3] {
+        [self.right, self.up, self.forward]
+    }
+
     /// Components of a direction to the right, up and forward.
     fn split(&self, direction: DVec3) -> (f64, f64, f64) {
         (

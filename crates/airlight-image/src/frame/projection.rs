@@ -1,6 +1,8 @@
 //! Kinds of projection and their settings.
 
+use super::lens::CameraAxes;
 use crate::{ImageError, Size};
+use glam::DVec3;
 
 /// Mapping of directions to a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -85,6 +87,11 @@ impl Fisheye {
         elevation_deg: 90.0,
         field_of_view_deg: 180.0,
     };
+
+    /// Right, up and forward of the centre: unit vectors in the world axes of [`airlight::axes`].
+    pub fn axes(&self) -> [DVec3; 3] {
+        CameraAxes::new(self.azimuth_deg, self.elevation_deg, 0.0).to_array()
+    }
 }
 
 /// A pinhole camera.
@@ -101,6 +108,11 @@ pub struct Camera {
 }
 
 impl Camera {
+    /// Right, up and forward: unit vectors in the world axes of [`airlight::axes`].
+    pub fn axes(&self) -> [DVec3; 3] {
+        CameraAxes::new(self.azimuth_deg, self.elevation_deg, self.roll_deg).to_array()
+    }
+
     /// A camera without roll from its horizontal field of view (degrees, above 0 and below 180) in a picture of this size.
     pub fn with_horizontal_fov(
         azimuth_deg: f64,

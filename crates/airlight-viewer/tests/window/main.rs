@@ -5,10 +5,12 @@ use airlight::axes;
 use airlight::scene::{Scene, SunState};
 use airlight::sky::{Sky, SkySettings, SunCoverage};
 use airlight::spectrum::{RgbSpace, WavelengthGrid};
-use airlight_image::{Camera, Frame, Projection, Size, read_picture};
+use airlight::sun::Moment;
+use airlight_image::{Camera, Control, Frame, Projection, Size, read_picture};
+use airlight_render::Renderer;
 use airlight_viewer::state::{Compare, CompareMode};
 use airlight_viewer::{Options, State, Viewer, screenshot};
-use eframe::egui::{self, Key, Modifiers, pos2, vec2};
+use eframe::egui::{self, Key, Modifiers, Pos2, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use std::collections::HashSet;
@@ -90,6 +92,78 @@ fn the_picture_is_that_of_the_solver() {
     }
     println!("{size:?}: worst luminance error {worst:.4}");
     assert!(worst < 0.03, "{worst}");
+}
+
+/// Saved pictures of all projections against those of the program, without pixels that horizon and sun cross, whose means it draws.
+#[test]
+fn saved_projections_are_those_of_the_program() {
+    let folder = std::env::temp_dir().join(format!("airlight-projections-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let file = folder.join("picture.exr");
+    let mut window = window(options(EVENING));
+    settle(&mut window);
+    let cameras = [
+        "projection = \"equirectangular\"\nsize = [96, 48]\nazimuth_deg = 70",
+        "projection = \"fisheye\"\nsize = [64, 48]",
+        "projection = \"fisheye\"\nsize = [48, 64]\nazimuth_deg = 30\nelevation_deg = -20\nfov_deg = 250",
+        "projection = \"perspective\"\nsize = [70, 40]\nazimuth_deg = 215\nroll_deg = 30\nfov_deg = 90",
+    ];
+    for camera in cameras {
+        let mut state = window.state().state().clone();
+        let scene = Scene::from_toml(&format!("[camera]\n{camera}")).unwrap();
+        state.scene.camera = scene.camera;
+        window.state_mut().set_state(state);
+        settle(&mut window);
+        window.state_mut().save(&file).unwrap();
+        let got = read_picture(&file, None).unwrap();
+        let renderer = Renderer::new(&window.state().state().scene).unwrap();
+        let right = renderer.render(Control::default()).unwrap();
+        assert_eq!(got.size, right.frame.size());
+        let sun = axes::direction(250.0, 12.0);
+        let width = right.frame.size().width();
+        let mut errors = Vec::new();
+        let pixels = got.rgb.as_chunks::<3>().0.iter().zip(&right.rgb);
+        for (k, (got, right_rgb)) in (0..).zip(pixels) {
+            let (x, y) = (k % width, k / width);
+            let Some(direction) = right.frame.pixel_direction(x, y) else {
+                assert_eq!(*got, [0.0; 3], "{camera}: {x} {y}");
+                continue;
+            };
+            let near_horizon = axes::elevation_deg(direction).abs() < 5.0;
+            if near_horizon || direction.dot(sun) > 0.99 {
+                continue;
+            }
+            let [got, right] =
+                [*got, *right_rgb].map(|rgb| RgbSpace::Srgb.luminance(rgb.map(f64::from)));
+            errors.push(got / right - 1.0);
+        }
+        let worst = errors.iter().fold(0.0f64, |a, b| a.max(b.abs()));
+        let squares: f64 = errors.iter().map(|e| e * e).sum();
+        let rms = (squares / errors.len() as f64).sqrt();
+        println!(
+            "{camera}: {} pixels, rms {rms:.5}, worst {worst:.5}",
+            errors.len()
+        );
+        assert!(
+            errors.len() > 1000 && rms < 0.002 && worst < 0.01,
+            "{camera}"
+        );
+    }
+    std::fs::remove_dir_all(&folder).unwrap();
+}
+
+#[test]
+fn a_cube_map_is_refused() {
+    let state = State::of_scene(Scene::from_toml("camera.projection = \"cube\"").unwrap());
+    let file = std::env::temp_dir().join(format!("airlight-cube-{}.png", std::process::id()));
+    let options = Options {
+        state,
+        size: SIZE,
+        panel: true,
+    };
+    let error = screenshot(options, &file).unwrap_err().to_string();
+    assert!(error.contains("fisheye"), "{error}");
+    assert!(!file.exists());
 }
 
 /// The picture beside that of the solver, and of a published model.
@@ -174,12 +248,15 @@ fn scenes_and_pictures_are_saved_and_opened() {
     settle(&mut window);
     let [scene, exr, png] = ["a.toml", "a.exr", "a.png"].map(|name| folder.join(name));
     for file in [&scene, &exr, &png] {
-        window.state().save(file).unwrap();
+        window.state_mut().save(file).unwrap();
     }
     // Light in the one file, what is shown in the other.
     let (_, pixels) = window.state().pixels().unwrap();
     let stored = read_picture(&exr, None).unwrap();
-    assert_eq!(stored.rgb, pixels.as_flattened());
+    let rounding = f32::from(half::f16::EPSILON);
+    for (stored, shown) in stored.rgb.iter().zip(pixels.as_flattened()) {
+        assert!((stored / shown - 1.0).abs() <= rounding, "{stored} {shown}");
+    }
     let shown = read_picture(&png, None).unwrap();
     assert!(shown.rgb.iter().all(|v| (0.0..=1.0).contains(v)));
     let before = window.state().state().clone();
@@ -235,6 +312,105 @@ fn changes_are_undone_and_redone() {
     window.key_press_modifiers(Modifiers::COMMAND, Key::Y);
     settle(&mut window);
     assert_eq!(window.state().state(), &foggy);
+}
+
+/// Presses at a point, moves to another and releases.
+fn drag(window: &mut Harness<'_, Viewer>, from: Pos2, to: Pos2) {
+    let button = |pos, pressed| egui::Event::PointerButton {
+        pos,
+        button: egui::PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    window.hover_at(from);
+    window.step();
+    window.event(button(from, true));
+    window.step();
+    for part in 1..=4 {
+        window.hover_at(from.lerp(to, 0.25 * part as f32));
+        window.step();
+    }
+    window.event(button(to, false));
+    window.step();
+}
+
+#[test]
+fn the_sun_and_the_line_of_a_comparison_are_dragged() {
+    let mut options = options(EVENING);
+    options.state.scene.camera.azimuth_deg = Some(240.0);
+    let mut window = window(options);
+    settle(&mut window);
+    let rect = window.get_by_label("Picture of the sky").rect();
+    let size = [rect.width(), rect.height()].map(|v| v as u32);
+    let camera =
+        Camera::with_horizontal_fov(240.0, 20.0, 80.0, Size::new(size[0], size[1]).unwrap());
+    let frame = Frame::new(Projection::Perspective(camera), size[0], size[1]).unwrap();
+    let place = |azimuth_deg, elevation_deg| {
+        let direction = axes::direction(azimuth_deg, elevation_deg);
+        let (x, y) = frame.pixel_of(direction).unwrap();
+        rect.min + vec2(x as f32, y as f32)
+    };
+    drag(&mut window, place(250.0, 12.0), place(225.0, 30.0));
+    let sun = window.state().state().scene.sun.clone();
+    assert!((sun.azimuth_deg.unwrap() - 225.0).abs() < 0.5, "{sun:?}");
+    assert!((sun.elevation_deg.unwrap() - 30.0).abs() < 0.5, "{sun:?}");
+    let camera = window.state().state().scene.camera.clone();
+    assert_eq!(camera.azimuth_deg, Some(240.0));
+    // Beside the sun, the picture is dragged.
+    drag(&mut window, place(250.0, 12.0), place(225.0, 30.0));
+    assert_eq!(window.state().state().scene.sun, sun);
+    assert_ne!(window.state().state().scene.camera, camera);
+    let mut state = window.state().state().clone();
+    state.compare = Some(Compare {
+        model: "preetham".to_owned(),
+        mode: CompareMode::Split,
+        split: 0.5,
+    });
+    window.state_mut().set_state(state);
+    window.step();
+    let at = |split: f32| pos2(rect.left() + split * rect.width(), rect.top() + 30.0);
+    drag(&mut window, at(0.5), at(0.2));
+    let split = window.state().state().compare.as_ref().unwrap().split;
+    assert!((split - 0.2).abs() < 0.01, "{split}");
+}
+
+#[test]
+fn time_passes_while_it_is_played() {
+    let start = "2026-06-21T21:15:00+02:00";
+    let scene = format!("sun = {{ latitude_deg = 48.9, longitude_deg = 2.3, time = \"{start}\" }}");
+    let mut window = window(options(&scene));
+    settle(&mut window);
+    window.get_by_label("Play").click_accesskit();
+    window.step();
+    for _ in 0..5 {
+        window.step();
+    }
+    window.get_by_label("Pause").click_accesskit();
+    window.step();
+    let moment = |window: &Harness<'_, Viewer>| {
+        let time = window.state().state().scene.sun.time.clone();
+        Moment::parse(&time.unwrap()).unwrap()
+    };
+    let passed_s = moment(&window).unix_s() - Moment::parse(start).unwrap().unix_s();
+    assert!(passed_s >= 30.0, "{passed_s}");
+    let stopped = moment(&window);
+    window.step();
+    assert_eq!(moment(&window), stopped);
+    // One step for undo.
+    window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    window.step();
+    assert_eq!(moment(&window), Moment::parse(start).unwrap());
+}
+
+#[test]
+fn groups_of_controls_are_reset() {
+    let mut window = window(options(EVENING));
+    settle(&mut window);
+    window.get_by_label("Reset sun").click_accesskit();
+    window.step();
+    let (scene, usual) = (window.state().state().scene.clone(), State::default().scene);
+    assert_eq!(scene.sun, usual.sun);
+    assert_ne!(scene.air, usual.air);
 }
 
 #[test]
