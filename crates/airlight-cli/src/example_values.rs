@@ -182,6 +182,7 @@ fn usual(long: &str) -> Option<&'static str> {
         "solar-flux" => "140",
         "star-latitude" => "48.8",
         "sun-strength" => "3",
+        "terrain-spacing-m" => "30",
         "to" => "50",
         "to-m" => "300",
         "tone-contrast" => "1.3",

@@ -74,6 +74,7 @@ const USUAL: [(&[&str], &[&str]); 7] = [
             "file",
             "screenshot",
             "no_panel",
+            "terrain",
             "size",
             "camera_azimuth",
             "camera_elevation",

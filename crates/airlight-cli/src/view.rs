@@ -9,7 +9,9 @@ use crate::error::CliError;
 /// [`CliError`] for an invalid scene, and without a display or a graphics device.
 #[cfg(feature = "view")]
 pub fn run(args: &ViewArgs) -> Result<(), CliError> {
+    use airlight_viewer::state::Terrain;
     use airlight_viewer::{Options, State};
+    use std::path::Path;
 
     let usual = Options::default();
     let scene = args.read(usual.state.scene)?;
@@ -21,8 +23,16 @@ pub fn run(args: &ViewArgs) -> Result<(), CliError> {
             None => on_screen(size),
         }
     });
+    let terrain = args.terrain.as_ref().map(|file| Terrain {
+        file: (file != Path::new("mountains")).then(|| file.display().to_string()),
+        spacing_m: args.terrain_spacing_m,
+        ..Default::default()
+    });
     let options = Options {
-        state: State::of_scene(scene),
+        state: State {
+            terrain,
+            ..State::of_scene(scene)
+        },
         size,
         panel: !args.no_panel,
     };

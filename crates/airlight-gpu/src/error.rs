@@ -33,6 +33,11 @@ pub enum SkyRendererError {
     /// The faces of an environment map cannot have this size.
     #[error("expected faces with a power of two from 8 to 2048 texels on a side, got {0}")]
     EnvironmentSide(u32),
+    /// The heights are none.
+    #[error(
+        "expected 2 to 8192 posts a side, 0.01 m to 100 km apart, and heights from 0 to 32 km, got {0}"
+    )]
+    HeightField(String),
     /// The height of the eye is not a number.
     #[error("expected a finite height of the eye, got {0} m")]
     Height(f64),

@@ -75,7 +75,7 @@ pub fn bind(
 }
 
 /// A texture of half floats.
-fn upload(device: &wgpu::Device, queue: &wgpu::Queue, texture: &Texture) -> wgpu::TextureView {
+pub fn upload(device: &wgpu::Device, queue: &wgpu::Queue, texture: &Texture) -> wgpu::TextureView {
     let [width, height, depth] = texture.size().map(|n| n as u32);
     let bytes = texture.half_float_bytes();
     let descriptor = wgpu::TextureDescriptor {

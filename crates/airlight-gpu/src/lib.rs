@@ -7,7 +7,7 @@
 //! [`SkySolver`] and [`SkyPasses`] are its two halves, for programs that compute on a thread or in a worker of their own. [`TonePass`]
 //! shows a frame on a display.
 //! Nothing is computed again when only the camera turns. [`Lighting`] is the light of sun and sky for the program's own surfaces,
-//! [`EnvironmentMap`] what they reflect.
+//! [`EnvironmentMap`] what they reflect. [`TerrainPass`] draws ground of given heights.
 //!
 //! The eye is the origin, y is up at the eye, distances are in metres, light is in cd/m^2 times an exposure.
 
@@ -22,6 +22,7 @@ mod pass;
 mod passes;
 mod renderer;
 mod sky;
+mod terrain;
 mod tone;
 
 pub use camera::{Camera, Projection};
@@ -32,6 +33,7 @@ pub use frame_tables::{FrameTables, SkySolver};
 pub use lighting::Lighting;
 pub use passes::SkyPasses;
 pub use renderer::{SkyRenderer, SkyRendererSettings, Work};
+pub use terrain::{HeightField, TerrainPass, TerrainView};
 pub use tone::{ToneCurve, TonePass, ToneSettings};
 
 /// The example of the README, compiled as a test.

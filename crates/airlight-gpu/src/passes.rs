@@ -204,17 +204,17 @@ impl SkyPasses {
     }
 }
 
+/// What passes know of their pixels.
+const FRAME: &str = concat!(include_str!("camera.wgsl"), include_str!("frame.wgsl"));
+
 /// The passes of the sky.
 fn sky_shader() -> String {
-    source(&[Part::SkyTables]) + CORNER + include_str!("frame.wgsl") + include_str!("sky.wgsl")
+    source(&[Part::SkyTables]) + CORNER + FRAME + include_str!("sky.wgsl")
 }
 
 /// The passes of the fog.
 fn fog_shader() -> String {
-    source(&[Part::Fog, Part::FogTable])
-        + CORNER
-        + include_str!("frame.wgsl")
-        + include_str!("fog.wgsl")
+    source(&[Part::Fog, Part::FogTable]) + CORNER + FRAME + include_str!("fog.wgsl")
 }
 
 /// Layout of the second group: camera and depth.

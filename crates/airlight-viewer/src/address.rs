@@ -6,8 +6,9 @@ use airlight::scene::Scene;
 use std::fmt::Write;
 use toml::{Table, Value};
 
-/// The table of the comparison, beside those of the scene.
+/// The tables of the comparison and of the terrain, beside those of the scene.
 const COMPARE: &str = "compare";
+const TERRAIN: &str = "terrain";
 
 impl State {
     /// The state as a fragment, without `#`. Numbers keep seven digits.
@@ -17,8 +18,11 @@ impl State {
         let mut pairs = vec![STATE_VERSION.to_string()];
         flatten(&mut pairs, "", &table);
         let compare = self.compare.as_ref().map(Table::try_from);
-        if let Some(Ok(compare)) = compare {
-            flatten(&mut pairs, &format!("{COMPARE}."), &compare);
+        let terrain = self.terrain.as_ref().map(Table::try_from);
+        for (name, table) in [(COMPARE, compare), (TERRAIN, terrain)] {
+            if let Some(Ok(table)) = table {
+                flatten(&mut pairs, &format!("{name}."), &table);
+            }
         }
         encoded(&pairs.join("\n"))
     }
@@ -39,9 +43,11 @@ impl State {
             .parse()
             .map_err(|error: toml::de::Error| error.to_string())?;
         let compare = table.remove(COMPARE).map(Value::try_into).transpose();
+        let terrain = table.remove(TERRAIN).map(Value::try_into).transpose();
         let scene = Scene::from_toml(&table.to_string()).map_err(|error| error.to_string())?;
         Ok(Self {
             compare: compare.map_err(|error| error.to_string())?,
+            terrain: terrain.map_err(|error| error.to_string())?,
             ..Self::of_scene(scene)
         })
     }
@@ -112,7 +118,7 @@ fn decoded(fragment: &str) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::state::{Compare, CompareMode};
+    use crate::state::{Compare, CompareMode, Terrain};
 
     #[test]
     fn states_return_from_addresses() {
@@ -124,6 +130,12 @@ mod tests {
                 model: "preetham".to_owned(),
                 mode: CompareMode::Luminance,
                 split: 0.5,
+            }),
+            terrain: Some(Terrain {
+                file: Some("alps 1.png".to_owned()),
+                spacing_m: Some(25.0),
+                east_m: -1200.5,
+                south_m: 0.0,
             }),
             ..State::default()
         };

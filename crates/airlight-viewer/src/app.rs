@@ -5,14 +5,15 @@ use crate::command::command_line;
 use crate::compute::{Answer, Facts, Light, Output, Request, SPACE, Task};
 use crate::examples::{self, EXAMPLES};
 use crate::options::Options;
-use crate::picture::{Picture, Shot, tone_mapper, tone_of};
+use crate::picture::{Ground, Picture, Shot, tone_mapper, tone_of};
 use crate::platform::Worker;
 use crate::play::Play;
-use crate::state::{CompareMode, History, State};
+use crate::state::{CompareMode, History, State, Terrain};
+use crate::terrain;
 use crate::widgets::choice;
 use crate::{panel, reading, style, truth, view};
 use airlight::scene::{OutputSpec, Scene};
-use airlight_gpu::SkyRendererError;
+use airlight_gpu::{HeightField, SkyRendererError};
 use airlight_image::Frame;
 #[cfg(not(target_arch = "wasm32"))]
 use airlight_image::rows::StoredRows;
@@ -105,12 +106,22 @@ pub struct Viewer {
     frames: u64,
     /// Why the camera draws no picture.
     unframed: Option<String>,
+    terrain: Option<LoadedTerrain>,
     /// Why a file was not opened or saved.
     notice: Option<String>,
     /// Name of a file to open or save.
     file: String,
     /// Whether the graphics device is gone.
     is_lost: Arc<AtomicBool>,
+}
+
+/// Heights of a terrain's file, or why there are none.
+#[derive(Debug)]
+struct LoadedTerrain {
+    file: Option<String>,
+    spacing_m: Option<f64>,
+    number: u64,
+    heights: Result<HeightField, String>,
 }
 
 /// What an exposure was metered for: the number of the light, projection and settings.
@@ -173,6 +184,7 @@ impl Viewer {
             drawn: None,
             frames: 0,
             unframed: None,
+            terrain: None,
             notice: None,
             file: "scene.toml".to_owned(),
         })
@@ -241,9 +253,61 @@ impl Viewer {
         self.metered = Some((metered, exposure));
         Some(Shot {
             frame,
+            ground: self.ground(),
             exposure: exposure.factor() as f32,
             tone: tone_of(output),
         })
+    }
+
+    /// The ground that is drawn.
+    fn ground(&self) -> Option<Ground> {
+        let (terrain, loaded) = (self.state.terrain.as_ref()?, self.terrain.as_ref()?);
+        loaded.heights.as_ref().ok()?;
+        Some(Ground {
+            number: loaded.number,
+            place_m: [terrain.east_m, terrain.south_m],
+        })
+    }
+
+    /// Reads the heights of the terrain, and keeps the eye above them.
+    fn stand_on_terrain(&mut self) {
+        let Some(wanted) = &self.state.terrain else {
+            return;
+        };
+        let is_loaded = |loaded: &LoadedTerrain| {
+            loaded.file == wanted.file && loaded.spacing_m == wanted.spacing_m
+        };
+        if !self.terrain.as_ref().is_some_and(is_loaded) {
+            let heights = terrain::heights(wanted);
+            if let Ok(heights) = &heights {
+                self.picture.set_heights(heights);
+            }
+            self.terrain = Some(LoadedTerrain {
+                file: wanted.file.clone(),
+                spacing_m: wanted.spacing_m,
+                number: self.terrain.as_ref().map_or(0, |loaded| loaded.number + 1),
+                heights,
+            });
+        }
+        let (Some(light), Some(loaded)) = (&self.light, &self.terrain) else {
+            return;
+        };
+        if let Ok(heights) = &loaded.heights {
+            let sea_m = light.facts.altitude_m - f64::from(light.tables.sky.view.height_m);
+            let ground_m = sea_m + heights.height_m([wanted.east_m, wanted.south_m]);
+            let lowest_m = ground_m + terrain::CLEARANCE_M;
+            let altitude_m = &mut self.state.scene.observer.altitude_m;
+            if altitude_m.unwrap_or(light.facts.altitude_m) < lowest_m {
+                *altitude_m = Some(lowest_m.ceil());
+            }
+        }
+    }
+
+    /// Why there is no terrain, as a sentence.
+    pub fn terrain_error(&self) -> Option<&str> {
+        self.state.terrain.as_ref()?;
+        let heights = self.terrain.as_ref().map(|loaded| &loaded.heights);
+        heights?.as_ref().err().map(String::as_str)
     }
 
     /// Shows the controls and the picture.
@@ -275,6 +339,7 @@ impl Viewer {
         egui::CentralPanel::default()
             .frame(egui::Frame::NONE.fill(Color32::BLACK))
             .show(ui, |ui| self.show_picture(ui));
+        self.stand_on_terrain();
         self.ask();
         self.update_beside();
         self.settle(ui);
@@ -333,7 +398,7 @@ impl Viewer {
             let name = crate::widgets::name(ui, "File", true);
             let field = egui::TextEdit::singleline(&mut self.file).desired_width(84.0);
             ui.add(field).labelled_by(name.id).on_hover_text(
-                "A scene (.toml) to open or save, or the picture to save: .exr, .hdr, .png, .jpg",
+                "A scene (.toml) to open or save, heights of terrain to open, or the picture to save: .exr, .hdr, .png, .jpg",
             );
             let done = match [ui.button("Open").clicked(), ui.button("Save").clicked()] {
                 [true, _] => self.open(self.file.clone().as_ref()),
@@ -344,14 +409,24 @@ impl Viewer {
         });
     }
 
-    /// Opens a scene file.
+    /// Opens a scene file, or a file of heights as terrain.
     ///
     /// # Errors
-    /// A sentence where it cannot be read or is invalid.
+    /// A sentence where a scene cannot be read or is invalid.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn open(&mut self, file: &Path) -> Result<(), String> {
+        if terrain::is_name(file) {
+            self.state.terrain = Some(Terrain {
+                file: Some(file.display().to_string()),
+                ..Default::default()
+            });
+            return Ok(());
+        }
         let scene = airlight_render::scene_file::load(file).map_err(|error| error.to_string())?;
-        self.state = State::of_scene(scene);
+        self.state = State {
+            terrain: self.state.terrain.clone(),
+            ..State::of_scene(scene)
+        };
         Ok(())
     }
 
@@ -718,6 +793,9 @@ impl Viewer {
         let note = match (&self.error, &self.asked) {
             _ if self.notice.is_some() => self.notice.clone().unwrap_or_default(),
             _ if self.unframed.is_some() => self.unframed.clone().unwrap_or_default(),
+            _ if self.terrain_error().is_some() => {
+                self.terrain_error().unwrap_or_default().to_owned()
+            }
             (Some(error), _) => error.clone(),
             (None, Some(_)) => "solving …".to_owned(),
             (None, None) => match self.judgement().filter(|_| self.has_panel) {

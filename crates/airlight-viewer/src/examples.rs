@@ -2,9 +2,10 @@
 
 use crate::state::State;
 use airlight::scene::Scene;
+use toml::{Table, Value};
 
-/// Names of the scenes, and their TOML.
-pub const EXAMPLES: [(&str, &str); 7] = [
+/// Names of the scenes, and their TOML, with their terrain.
+pub const EXAMPLES: [(&str, &str); 8] = [
     (
         "noon in the mountains",
         "sun = { elevation_deg = 55, azimuth_deg = 180 }
@@ -19,6 +20,15 @@ pub const EXAMPLES: [(&str, &str); 7] = [
         air.atmosphere = \"clear\"
         fog = { visibility_m = 400, scale_height_m = 20 }
         camera = { azimuth_deg = 85, elevation_deg = 4 }",
+    ),
+    (
+        "fog in the valleys",
+        "sun = { elevation_deg = 8, azimuth_deg = 100 }
+        observer.altitude_m = 420
+        air.atmosphere = \"clear\"
+        fog = { visibility_m = 400, scale_height_m = 40 }
+        camera = { azimuth_deg = 70, elevation_deg = -4 }
+        terrain = { east_m = 2000, south_m = 3000 }",
     ),
     (
         "dusk",
@@ -59,7 +69,13 @@ pub const EXAMPLES: [(&str, &str); 7] = [
 
 /// The state of an example.
 pub fn state(toml: &str) -> Option<State> {
-    Scene::from_toml(toml).ok().map(State::of_scene)
+    let mut table: Table = toml.parse().ok()?;
+    let terrain = table.remove("terrain").map(Value::try_into).transpose();
+    let scene = Scene::from_toml(&table.to_string()).ok()?;
+    Some(State {
+        terrain: terrain.ok()?,
+        ..State::of_scene(scene)
+    })
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@
 //! [`compute()`] is the work that takes time, from plain data to plain data; the module `platform` runs it beside the window. The solver,
 //! the drawing and the colours are those of the library; the viewer adds no physics.
 //!
-//! Modules, each importing only from those above it: [`state`], `address`, `examples`, `options`, `command`, [`compute`](mod@compute),
+//! Modules, each importing only from those above it: [`state`], `terrain`, `address`, `examples`, `options`, `command`, [`compute`](mod@compute),
 //! `message`, `platform`, `picture`, `truth`, `style`, `widgets`, `play`, `view`, `panel`, `reading`, `beside`, `app`, `headless`, `window`, `page`.
 
 mod address;
@@ -29,6 +29,7 @@ mod play;
 mod reading;
 pub mod state;
 mod style;
+mod terrain;
 mod truth;
 mod view;
 mod widgets;

@@ -2,7 +2,8 @@
 
 use crate::compute::Facts;
 use crate::play::{Play, SPEEDS};
-use crate::state::{ALTITUDES_M, Compare, CompareMode, State};
+use crate::state::{ALTITUDES_M, Compare, CompareMode, State, Terrain};
+use crate::terrain::SPACING_M;
 use crate::view::{FISHEYE_FOV_DEG, FOV_DEG, SUN_AZIMUTH_DEG};
 use crate::widgets::{Number, choice, title};
 use airlight::Named;
@@ -18,6 +19,7 @@ pub fn show(ui: &mut Ui, state: &mut State, play: &mut Play, facts: &Facts, ev10
     eye(ui, state, facts);
     air(ui, state, facts);
     fog(ui, state);
+    ground(ui, state);
     display(ui, state, ev100);
     compare(ui, state);
 }
@@ -308,6 +310,37 @@ fn fog(ui: &mut Ui, state: &mut State) {
             .decimals(0)
             .help("Height over which the fog thins by a factor e.")
             .show_optional(ui, &mut fog.scale_height_m, 50.0);
+    }
+}
+
+fn ground(ui: &mut Ui, state: &mut State) {
+    if title(ui, "Terrain") {
+        state.terrain = None;
+    }
+    let mut has_terrain = state.terrain.is_some();
+    let mountains = ui.checkbox(&mut has_terrain, "Mountains");
+    let help = "The Cumberland Mountains; drop a file of heights on the window for others. W, A, S and D in the picture move the eye.";
+    if mountains.on_hover_text(help).changed() {
+        state.terrain = has_terrain.then(Terrain::default);
+    }
+    let Some(terrain) = &mut state.terrain else {
+        return;
+    };
+    if let Some(file) = &terrain.file {
+        quiet(ui, file.clone());
+        Number::new("Spacing", " m", 0.5..=1000.0)
+            .logarithmic()
+            .help("Distance between the pixels of the file.")
+            .show_optional(ui, &mut terrain.spacing_m, SPACING_M);
+    }
+    for (name, place_m) in [
+        ("East", &mut terrain.east_m),
+        ("South", &mut terrain.south_m),
+    ] {
+        Number::new(name, " m", -15_000.0..=15_000.0)
+            .decimals(0)
+            .help("Place of the eye from the middle of the terrain.")
+            .show(ui, place_m);
     }
 }
 

@@ -2,23 +2,45 @@
 
 use crate::compute::Light;
 use airlight::scene::OutputSpec;
-use airlight_gpu::{Camera, SkyPasses, SkyRendererError, ToneCurve, TonePass, ToneSettings};
+use airlight_gpu::{
+    Camera, HeightField, SkyPasses, SkyRendererError, TerrainPass, TerrainView, ToneCurve,
+    TonePass, ToneSettings,
+};
 use airlight_image::tone::{self, ToneMapper, WhiteBalance};
 use airlight_image::{Frame, Projection};
 use airlight_render::display::tone_curve;
 use eframe::wgpu;
-use glam::{Mat4, Vec4};
+use glam::{DVec3, Mat4, Vec4};
 
 /// Format of the light.
 const LIGHT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+/// Formats of the depth without ground, and with it.
+const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+const GROUND_DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
+/// Distance of the near plane, m.
+const NEAR_M: f32 = 0.1;
+/// Albedo of meadows and woods in linear sRGB, and of rock.
+const LEVEL_ALBEDO: [f32; 3] = [0.055, 0.075, 0.03];
+const STEEP_ALBEDO: [f32; 3] = [0.17, 0.155, 0.13];
 /// Format of what is shown.
 const SHOWN: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+
+/// The ground of the heights that were set last.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ground {
+    /// Number of the heights.
+    pub number: u64,
+    /// Place of the eye to the east and south of their middle, m.
+    pub place_m: [f64; 2],
+}
 
 /// What a picture shows, apart from the light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shot {
     /// Projection and size.
     pub frame: Frame,
+    /// Ground in front of the sky.
+    pub ground: Option<Ground>,
     /// Factor on light in cd/m^2.
     pub exposure: f32,
     /// Tone curve and white balance.
@@ -44,8 +66,8 @@ impl Shot {
                     world_from_clip: Mat4::from_cols(
                         (right * across).as_vec3().extend(0.0),
                         (up * high).as_vec3().extend(0.0),
-                        Vec4::ZERO,
-                        forward.as_vec3().extend(1.0),
+                        Vec4::new(0.0, 0.0, 0.0, 1.0 / NEAR_M),
+                        forward.as_vec3().extend(0.0),
                     ),
                     far_depth: 0.0,
                 }
@@ -110,6 +132,10 @@ pub struct Picture {
     device: wgpu::Device,
     queue: wgpu::Queue,
     sky: SkyPasses,
+    /// Draws ground, once there are heights.
+    terrain: Option<TerrainPass>,
+    /// Height of the eye above the ground of the planet, and the radius of the planet, m.
+    eye_m: [f64; 2],
     tone: TonePass,
     targets: Option<Targets>,
 }
@@ -121,6 +147,8 @@ struct Targets {
     light: wgpu::Texture,
     light_view: wgpu::TextureView,
     depth: wgpu::TextureView,
+    /// Whether the depth is that of ground, and has the format of a colour.
+    has_ground: bool,
     shown_view: wgpu::TextureView,
 }
 
@@ -131,6 +159,8 @@ impl Picture {
             device: device.clone(),
             queue: queue.clone(),
             sky: SkyPasses::new(device, queue, LIGHT)?,
+            terrain: None,
+            eye_m: [0.0; 2],
             tone: TonePass::new(device, SHOWN),
             targets: None,
         })
@@ -139,13 +169,24 @@ impl Picture {
     /// Draws with this light from now on.
     pub fn set_light(&mut self, light: &Light) {
         self.sky.set_tables(&light.tables);
+        let view = &light.tables.sky.view;
+        self.eye_m = [view.height_m, view.ground_radius_m].map(f64::from);
+    }
+
+    /// Draws ground of these heights from now on, in pictures that have any.
+    pub fn set_heights(&mut self, heights: &HeightField) {
+        let pass = || TerrainPass::new(&self.device, &self.queue, LIGHT);
+        self.terrain.get_or_insert_with(pass).set_heights(heights);
     }
 
     /// Draws a picture. True if the texture of [`Self::shown`] is a new one.
     pub fn draw(&mut self, shot: &Shot) -> bool {
-        let is_new = self.targets.as_ref().is_none_or(|t| t.size != shot.size());
+        let fits = |targets: &Targets| {
+            targets.size == shot.size() && targets.has_ground == shot.ground.is_some()
+        };
+        let is_new = !self.targets.as_ref().is_some_and(fits);
         if is_new {
-            self.targets = Some(self.new_targets(shot.size()));
+            self.targets = Some(self.new_targets(shot));
         }
         if let Some(targets) = &self.targets {
             self.draw_into(targets, shot);
@@ -161,6 +202,7 @@ impl Picture {
             });
         clear(&mut encoder, targets);
         if let Some(camera) = shot.camera() {
+            self.draw_ground(&mut encoder, targets, shot, &camera);
             self.sky
                 .record(&mut encoder, &targets.light_view, &targets.depth, &camera);
         }
@@ -171,6 +213,32 @@ impl Picture {
             &shot.tone,
         );
         self.queue.submit([encoder.finish()]);
+    }
+
+    fn draw_ground(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        targets: &Targets,
+        shot: &Shot,
+        camera: &Camera,
+    ) {
+        let (Some(ground), Some(pass)) = (&shot.ground, &self.terrain) else {
+            return;
+        };
+        let Some(lighting) = self.sky.lighting() else {
+            return;
+        };
+        let [height_m, planet_radius_m] = self.eye_m;
+        let [east_m, south_m] = ground.place_m;
+        let view = TerrainView {
+            eye_m: DVec3::new(east_m, height_m, south_m),
+            planet_radius_m,
+            lighting: *lighting,
+            level_albedo: LEVEL_ALBEDO,
+            steep_albedo: STEEP_ALBEDO,
+        };
+        let (light, depth) = (&targets.light_view, &targets.depth);
+        pass.record(encoder, light, depth, camera, &view);
     }
 
     /// What is shown: signals of sRGB.
@@ -203,7 +271,7 @@ impl Picture {
                 "expected at most {largest} pixels on a side on this graphics device, got {width} x {height}"
             ));
         }
-        let targets = self.new_targets([width, height]);
+        let targets = self.new_targets(shot);
         self.draw_into(&targets, shot);
         self.light_in(&targets)
     }
@@ -220,7 +288,9 @@ impl Picture {
             .collect())
     }
 
-    fn new_targets(&self, [width, height]: [u32; 2]) -> Targets {
+    fn new_targets(&self, shot: &Shot) -> Targets {
+        let [width, height] = shot.size();
+        let has_ground = shot.ground.is_some();
         let texture = |format, usage| {
             self.device.create_texture(&wgpu::TextureDescriptor {
                 label: Some("airlight viewer"),
@@ -242,15 +312,14 @@ impl Picture {
         let view =
             |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
         let copied = wgpu::TextureUsages::COPY_SRC;
+        let depth = if has_ground { GROUND_DEPTH } else { DEPTH };
         let light = texture(LIGHT, copied);
         Targets {
             size: [width, height],
             light_view: view(&light),
             light,
-            depth: view(&texture(
-                wgpu::TextureFormat::Depth32Float,
-                wgpu::TextureUsages::empty(),
-            )),
+            depth: view(&texture(depth, wgpu::TextureUsages::empty())),
+            has_ground,
             shown_view: view(&texture(SHOWN, copied)),
         }
     }
@@ -258,25 +327,34 @@ impl Picture {
 
 /// Starts a frame: black, without geometry.
 fn clear(encoder: &mut wgpu::CommandEncoder, targets: &Targets) {
-    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-        label: Some("airlight viewer"),
-        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-            view: &targets.light_view,
+    let cleared = |view| {
+        Some(wgpu::RenderPassColorAttachment {
+            view,
             depth_slice: None,
             resolve_target: None,
             ops: wgpu::Operations {
-                load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
                 store: wgpu::StoreOp::Store,
             },
-        })],
-        depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-            view: &targets.depth,
-            depth_ops: Some(wgpu::Operations {
-                load: wgpu::LoadOp::Clear(0.0),
-                store: wgpu::StoreOp::Store,
-            }),
-            stencil_ops: None,
+        })
+    };
+    let colours = [cleared(&targets.light_view), cleared(&targets.depth)];
+    let depth = wgpu::RenderPassDepthStencilAttachment {
+        view: &targets.depth,
+        depth_ops: Some(wgpu::Operations {
+            load: wgpu::LoadOp::Clear(0.0),
+            store: wgpu::StoreOp::Store,
         }),
+        stencil_ops: None,
+    };
+    let (colours, depth) = match targets.has_ground {
+        true => (&colours[..], None),
+        false => (&colours[..1], Some(depth)),
+    };
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some("airlight viewer"),
+        color_attachments: colours,
+        depth_stencil_attachment: depth,
         timestamp_writes: None,
         occlusion_query_set: None,
         multiview_mask: None,

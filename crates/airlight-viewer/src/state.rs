@@ -17,9 +17,28 @@ pub struct State {
     pub version: u32,
     /// Sun, eye, air, fog, camera and display, as the program `airlight` reads them.
     pub scene: Scene,
+    /// Ground in front of the sky.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub terrain: Option<Terrain>,
     /// What the picture is compared with.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub compare: Option<Compare>,
+}
+
+/// Ground of given heights, and where the eye stands on it. Beyond its edges it goes on as in mirrors.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Terrain {
+    /// File of heights, m, from north to south: a picture or an array with one number a pixel. Without one, the Cumberland Mountains.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub file: Option<String>,
+    /// Distance between the pixels of the file, m. Default: 30.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub spacing_m: Option<f64>,
+    /// Place of the eye to the east of the middle, m.
+    pub east_m: f64,
+    /// Place of the eye to the south of the middle, m.
+    pub south_m: f64,
 }
 
 /// A comparison of the picture with a solver or a published model.
@@ -84,6 +103,7 @@ impl State {
         Self {
             version: STATE_VERSION,
             scene,
+            terrain: None,
             compare: None,
         }
     }

@@ -22,6 +22,9 @@ const KEY_STEP: f64 = 0.05;
 /// Factor by which a key zooms, and changes the altitude.
 const KEY_FACTOR: f64 = 1.15;
 
+/// Distance by which a key moves the eye over terrain, m, and the part of its altitude that is added.
+const WALK_M: f64 = 20.0;
+const WALK_PART: f64 = 0.1;
 /// Distance from the sun's centre, and from the line of a comparison, within which they are dragged, points.
 const SUN_REACH: f32 = 14.0;
 const LINE_REACH: f32 = 5.0;
@@ -248,6 +251,15 @@ fn keys(ui: &Ui, state: &mut State, look: Look, moves_sun: bool) {
     let zooms = along(Key::Minus, Key::Plus) - pressed(Key::Equals);
     if zooms != 0.0 {
         zoom(state, look, KEY_FACTOR.powf(zooms));
+    }
+    if let Some(terrain) = &mut state.terrain {
+        let altitude_m = state.scene.observer.altitude_m.unwrap_or(0.0);
+        let step_m = WALK_M + WALK_PART * altitude_m;
+        let ahead = along(Key::W, Key::S) * step_m;
+        let aside = along(Key::D, Key::A) * step_m;
+        let [sin, cos] = [f64::sin, f64::cos].map(|f| f(look.azimuth_deg.to_radians()));
+        terrain.east_m += ahead * sin + aside * cos;
+        terrain.south_m += aside * sin - ahead * cos;
     }
     let climbs = along(Key::PageUp, Key::PageDown);
     if climbs != 0.0 {

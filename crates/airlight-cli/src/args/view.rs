@@ -3,6 +3,7 @@
 use super::fog::{ContrastArgs, FogArgs};
 use super::{AirArgs, CameraArgs, PlaceArgs, SceneArgs, ToneArgs};
 use crate::error::CliError;
+use crate::parse;
 use airlight::scene::Scene;
 use clap::Args;
 use std::path::PathBuf;
@@ -20,6 +21,12 @@ pub struct ViewArgs {
     /// Show the picture alone, without controls (F2)
     #[arg(long)]
     pub no_panel: bool,
+    /// Ground in front of the sky: a file of heights in metres, from north to south (PNG, TIFF, EXR, PFM, NPY), or the word mountains
+    #[arg(long, value_name = "FILE|mountains")]
+    pub terrain: Option<PathBuf>,
+    /// Distance between the pixels of a --terrain file, m [default: 30]
+    #[arg(long, value_name = "M", value_parser = parse::positive, requires = "terrain")]
+    pub terrain_spacing_m: Option<f64>,
     #[command(flatten)]
     pub place: PlaceArgs,
     #[command(flatten)]
@@ -69,9 +76,10 @@ impl ViewArgs {
 
 const NOTES: &str = "\
 Drag to look around, scroll to zoom, Ctrl and drag to move the sun. With the focus on the picture: arrow keys look around, + and - zoom,
-Page Up and Page Down climb. Ctrl+Z undoes. F2 hides the controls.
+Page Up and Page Down climb, W, A, S and D move over terrain. Ctrl+Z undoes. F2 hides the controls.
 
 Examples:
   airlight view
   airlight view --at 48.8584,2.2945 --when 2026-06-21T21:15:00+02:00
+  airlight view --terrain mountains --altitude-m 700 --visibility-m 600 --scale-height-m 40
   airlight view evening.toml --screenshot evening.png --size 1920x1080 --no-panel";

@@ -8,7 +8,7 @@ use airlight::spectrum::{RgbSpace, WavelengthGrid};
 use airlight::sun::Moment;
 use airlight_image::{Camera, Control, Frame, Projection, Size, read_picture};
 use airlight_render::Renderer;
-use airlight_viewer::state::{Compare, CompareMode};
+use airlight_viewer::state::{Compare, CompareMode, Terrain};
 use airlight_viewer::{Options, State, Viewer, screenshot};
 use eframe::egui::{self, Key, Modifiers, Pos2, pos2, vec2};
 use egui_kittest::Harness;
@@ -400,6 +400,44 @@ fn time_passes_while_it_is_played() {
     window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     window.step();
     assert_eq!(moment(&window), Moment::parse(start).unwrap());
+}
+
+/// Ground in front of the sky, above which the eye stays and over which it moves.
+#[test]
+fn the_eye_stands_on_terrain() {
+    let mut window = window(options(EVENING));
+    settle(&mut window);
+    let (_, sky) = window.state().pixels().unwrap();
+    window.get_by_label("Mountains").click_accesskit();
+    settle(&mut window);
+    let state = window.state().state().clone();
+    let altitude_m = state.scene.observer.altitude_m.unwrap();
+    assert!(altitude_m > 50.0, "{altitude_m}");
+    let (size, pixels) = window.state().pixels().unwrap();
+    let row = |y: u32| (y * size[0]) as usize..((y + 1) * size[0]) as usize;
+    // The sky stays, up to what the eye's greater altitude makes of it; the ground is darker than the level one.
+    for (got, before) in pixels[row(10)].iter().zip(&sky[row(10)]) {
+        assert!((got[1] / before[1] - 1.0).abs() < 0.2, "{got:?} {before:?}");
+    }
+    assert_ne!(pixels[row(size[1] - 10)], sky[row(size[1] - 10)]);
+    window.get_by_label("Picture of the sky").focus();
+    window.step();
+    window.key_press(Key::W);
+    settle(&mut window);
+    let moved = window.state().state().terrain.clone().unwrap();
+    // The camera looks to the south and a little to the west.
+    assert!(moved.south_m > 10.0 && moved.east_m < -1.0, "{moved:?}");
+    assert_ne!(window.state().pixels().unwrap().1, pixels);
+    // A file that is not there is named.
+    let mut state = window.state().state().clone();
+    state.terrain = Some(Terrain {
+        file: Some("none.png".to_owned()),
+        ..Default::default()
+    });
+    window.state_mut().set_state(state);
+    settle(&mut window);
+    let error = window.state().terrain_error().unwrap();
+    assert!(error.contains("none.png"), "{error}");
 }
 
 #[test]
