@@ -2,7 +2,7 @@
 
 use super::{
     Camera, Size,
-    lens::CameraAxes,
+    axes::CameraAxes,
     projection::{check_azimuth, check_elevation},
 };
 use crate::ImageError;

@@ -1,5 +1,6 @@
 //! Projections prepared for one picture size: from pixels to directions and back, and solid angles of pixels.
 
+use super::axes::CameraAxes;
 use super::projection::{CubeFace, Projection};
 use crate::Size;
 use airlight::axes as world;
@@ -34,42 +35,6 @@ pub(super) enum Lens {
         /// Tangents of half the horizontal and the vertical angle of axes.
         tangents: (f64, f64),
     },
-}
-
-/// Axes of a camera: orthogonal unit vectors.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct CameraAxes {
-    pub(super) right: DVec3,
-    pub(super) up: DVec3,
-    pub(super) forward: DVec3,
-}
-
-impl CameraAxes {
-    pub(super) fn new(azimuth_deg: f64, elevation_deg: f64, roll_deg: f64) -> Self {
-        let forward = world::direction(azimuth_deg, elevation_deg);
-        let level = world::direction(azimuth_deg + 90.0, 0.0);
-        let upright = level.cross(forward);
-        let (sin, cos) = roll_deg.to_radians().sin_cos();
-        Self {
-            right: level * cos - upright * sin,
-            up: upright * cos + level * sin,
-            forward,
-        }
-    }
-
-    /// Right, up and forward.
-    pub(super) fn to_array(self) -> [DVec3; 3] {
-        [self.right, self.up, self.forward]
-    }
-
-    /// Components of a direction to the right, up and forward.
-    fn split(&self, direction: DVec3) -> (f64, f64, f64) {
-        (
-            direction.dot(self.right),
-            direction.dot(self.up),
-            direction.dot(self.forward),
-        )
-    }
 }
 
 /// Direction from the sines and cosines of azimuth and elevation.

@@ -4,6 +4,7 @@
 //! pixel `(i, j)` is at `(i + 0.5, j + 0.5)`. Directions are unit vectors in the world axes of [`airlight::axes`]
 //! (x east, y up, z south).
 
+mod axes;
 mod intrinsics;
 mod lens;
 mod projection;

@@ -1,6 +1,6 @@
 //! Kinds of projection and their settings.
 
-use super::lens::CameraAxes;
+use super::axes::CameraAxes;
 use crate::{ImageError, Size};
 use glam::DVec3;
 
