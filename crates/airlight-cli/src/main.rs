@@ -9,7 +9,7 @@
 //! - [`topics`]: recipes. [`args`]: options of all commands, and the scenes that they describe; [`short_help`]: what `-h`
 //!   lists of them; [`example_values`]: values that work, in errors.
 //! - [`scene`]: saving scenes, threads; [`atmosphere`], [`aerosol`]: lists of names.
-//! - [`sky`], [`fog`], [`probe`], [`compare`], [`grid`], [`accuracy`], [`view`], [`plot`] and
+//! - [`sky`], [`fog`], [`probe`], [`compare`], [`grid`], [`join`], [`accuracy`], [`view`], [`plot`] and
 //!   [`shaders`]: the commands; [`generate`]:
 //!   files for shells.
 
@@ -24,6 +24,7 @@ mod fog;
 mod generate;
 mod grid;
 mod interrupt;
+mod join;
 mod option_names;
 mod parse;
 mod plot;
@@ -104,6 +105,7 @@ fn run(cli: &Cli) -> Result<(), CliError> {
         Command::Probe(args) => probe::run(args),
         Command::Compare(args) => compare::run(args),
         Command::Grid(args) => grid::run(args),
+        Command::Join(args) => join::run(args),
         Command::Accuracy(args) => accuracy::run(args),
         Command::View(args) => view::run(args),
         Command::Plot(args) => plot::run(args),

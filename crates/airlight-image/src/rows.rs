@@ -77,6 +77,38 @@ impl StoredRows {
     }
 }
 
+/// The rows of a source from one of them on.
+#[derive(Clone, Copy)]
+pub struct RowsFrom<'a> {
+    source: &'a dyn RowSource,
+    first: u32,
+}
+
+impl<'a> RowsFrom<'a> {
+    /// Rows of which row 0 is row `first` of the source.
+    pub fn new(source: &'a dyn RowSource, first: u32) -> Self {
+        Self { source, first }
+    }
+}
+
+impl std::fmt::Debug for RowsFrom<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("RowsFrom")
+            .field("first", &self.first)
+            .finish_non_exhaustive()
+    }
+}
+
+impl RowSource for RowsFrom<'_> {
+    fn channels(&self) -> usize {
+        self.source.channels()
+    }
+
+    fn fill_row(&self, y: u32, out: &mut [f32]) {
+        self.source.fill_row(self.first + y, out);
+    }
+}
+
 /// All rows of a picture in memory, drawn on all threads: interleaved samples, row after row from the top.
 ///
 /// # Errors

@@ -10,8 +10,8 @@ use crate::image::RenderedImage;
 use crate::layout::PictureFile;
 use crate::metadata::FrameMetadata;
 use crate::objects::{LitObjects, ObjectRows, write_depth};
-use crate::pixels::tagged_path;
 use crate::renderer::Renderer;
+use crate::shard::Shard;
 use crate::sky_rows::{Layer, SkyRows, SkySources, SkyValues};
 use crate::sun_disc::SunDiscImage;
 use airlight::Cancelled;
@@ -24,7 +24,7 @@ use airlight::sky::PolarisationTable;
 use airlight::sun::Moment;
 use airlight_image::output::exr::{self, ExrOptions, SamplePrecision};
 use airlight_image::output::{Metadata, Written, spectral};
-use airlight_image::rows::{StoredRows, draw_rows};
+use airlight_image::rows::{RowsFrom, StoredRows, draw_rows};
 use airlight_image::tone::{Exposure, ToneCurve, ToneMapper};
 use airlight_image::{
     Control, Frame, ImageError, PictureOptions, Progress, RowSource, Size, write_picture,
@@ -265,14 +265,18 @@ impl<'r> PreparedFrame<'r> {
                 Canvas::check_memory(std::iter::once(frame.size()), &self.channels)?;
                 let mut canvas = Canvas::new(frame.size(), &self.channels, false);
                 let pass = Passes::new(sampler.paths()).at_once();
-                control.stage("tracing Monte Carlo paths", rows_of([frame]));
+                let rows = u64::from(frame.size().height());
+                control.stage("tracing Monte Carlo paths", rows);
                 canvas.add(frame, sampler, &pass, control)?;
                 Some(canvas.means())
             }
             None => None,
         };
         let sky = match &means {
-            Some(means) => SkyValues::Stored(means),
+            Some(means) => SkyValues::Stored {
+                values: means,
+                first_row: 0,
+            },
             None => SkyValues::View(self.preview.as_ref()),
         };
         let rows = self.rows_over(frame, layer, sky, 1.0);
@@ -292,10 +296,31 @@ impl<'r> PreparedFrame<'r> {
     /// # Errors
     /// [`RenderError`]; files that are already written remain, and unfinished ones are removed.
     pub fn write(&self, path: &Path, control: Control<'_>) -> Result<WrittenFrame, RenderError> {
-        let files = self.renderer.layout().files(path);
+        self.write_files(&self.renderer.layout().files(path), control)
+    }
+
+    /// Writes the files of a shard's band of rows of a picture called `path`, as [`Layout::files_of`](crate::layout::Layout::files_of) names
+    /// them. Their pixels have the bits of [`PreparedFrame::write`].
+    ///
+    /// # Errors
+    /// As [`PreparedFrame::write`] and [`Layout::files_of`](crate::layout::Layout::files_of).
+    pub fn write_shard(
+        &self,
+        path: &Path,
+        shard: Shard,
+        control: Control<'_>,
+    ) -> Result<WrittenFrame, RenderError> {
+        self.write_files(&self.renderer.layout().files_of(path, shard)?, control)
+    }
+
+    fn write_files(
+        &self,
+        files: &[PictureFile],
+        control: Control<'_>,
+    ) -> Result<WrittenFrame, RenderError> {
         match self.view.sampler() {
-            Some(sampler) => self.write_passes(&files, sampler, control),
-            None => self.write_once(&files, control),
+            Some(sampler) => self.write_passes(files, sampler, control),
+            None => self.write_once(files, control),
         }
     }
 
@@ -305,7 +330,7 @@ impl<'r> PreparedFrame<'r> {
         control: Control<'_>,
     ) -> Result<WrittenFrame, RenderError> {
         let tone = self.file_tone()?;
-        let total = rows_of(files.iter().map(|file| &file.frame));
+        let total = rows_of(files);
         control.stage("drawing", total);
         let mut whole = WrittenFrame {
             exposure: self.file_exposure(&tone),
@@ -318,12 +343,11 @@ impl<'r> PreparedFrame<'r> {
         let mut done = 0;
         for file in files {
             if let Some(table) = polarisation.as_ref().filter(|_| file.layer != Layer::Disc) {
-                let rows = polarisation_rows(&file.frame, table)?;
-                write_polarisation(&file.path, file.frame.size(), &rows, control)?;
+                let rows = polarisation_rows(file, table)?;
+                write_polarisation(file, &rows, control)?;
             }
             if let Some(objects) = self.depth_of(file) {
-                let path = tagged_path(&file.path, "depth").with_extension("exr");
-                write_depth(&path, &file.frame, objects, control.reporting_to(&SILENT))?;
+                write_depth(file, objects, control.reporting_to(&SILENT))?;
             }
             let part = Part {
                 control,
@@ -335,7 +359,7 @@ impl<'r> PreparedFrame<'r> {
             whole
                 .files
                 .push(self.write_file(file, sky, &tone, control)?);
-            done += u64::from(file.frame.size().height());
+            done += u64::from(file.size().height());
         }
         Ok(whole)
     }
@@ -349,16 +373,17 @@ impl<'r> PreparedFrame<'r> {
     ) -> Result<WrittenFrame, RenderError> {
         let tone = self.file_tone()?;
         let drawn = || files.iter().filter(|file| file.layer != Layer::Disc);
-        Canvas::check_memory(drawn().map(|file| file.frame.size()), &self.channels)?;
+        Canvas::check_memory(drawn().map(PictureFile::size), &self.channels)?;
         let polarised = self.renderer.scene().output.polarisation == Some(true);
         let mut canvases: Vec<Option<Canvas>> = files
             .iter()
             .map(|file| {
-                (file.layer != Layer::Disc)
-                    .then(|| Canvas::new(file.frame.size(), &self.channels, polarised))
+                (file.layer != Layer::Disc).then(|| {
+                    Canvas::new(file.size(), &self.channels, polarised).from_row(file.rows().start)
+                })
             })
             .collect();
-        let total = rows_of(drawn().map(|file| &file.frame));
+        let total = rows_of(drawn());
         // Writing takes little time compared with tracing: its progress is not reported.
         let quiet = control.reporting_to(&SILENT);
         let mut whole = WrittenFrame {
@@ -379,13 +404,16 @@ impl<'r> PreparedFrame<'r> {
                             total,
                         };
                         canvas.add(&file.frame, sampler, &pass, control.reporting_to(&part))?;
-                        done += u64::from(file.frame.size().height());
+                        done += u64::from(file.size().height());
                         self.write_maps(file, canvas, &tone, quiet)?;
                         Some(canvas.means())
                     }
                 };
                 let sky = match &means {
-                    Some(means) => SkyValues::Stored(means),
+                    Some(means) => SkyValues::Stored {
+                        values: means,
+                        first_row: file.rows().start,
+                    },
                     None => SkyValues::View(self.preview.as_ref()),
                 };
                 whole.files.push(self.write_file(file, sky, &tone, quiet)?);
@@ -406,14 +434,13 @@ impl<'r> PreparedFrame<'r> {
         control: Control<'_>,
     ) -> Result<(), RenderError> {
         let output = &self.renderer.scene().output;
-        let size = file.frame.size();
         if output.noise_map == Some(true) {
             let rows = canvas.noise(output.scale.unwrap_or(1.0) as f32)?;
-            let path = tagged_path(&file.path, "noise").with_extension("exr");
+            let (path, size) = (file.map_path("noise"), file.size());
             write_picture(&path, size, &rows, tone, &self.options(file, tone), control)?;
         }
         if let Some(rows) = canvas.polarisation() {
-            write_polarisation(&file.path, size, &rows?, control)?;
+            write_polarisation(file, &rows?, control)?;
         }
         Ok(())
     }
@@ -435,19 +462,20 @@ impl<'r> PreparedFrame<'r> {
         if is_linear && renderer.scene().output.gamut == Some(Gamut::Desaturate) {
             rows = Box::new(InGamut::new(rows, self.channels.space()));
         }
+        let rows = RowsFrom::new(rows.as_ref(), file.rows().start);
         let options = self.options(file, tone);
-        let (path, size) = (&file.path, file.frame.size());
+        let (path, size) = (&file.path, file.size());
         let written = match self.channels.layout() {
             Some(layout) => spectral::write(
                 path,
                 size,
                 layout,
-                rows.as_ref(),
+                &rows,
                 &options.exr,
                 &options.metadata,
                 control,
             )?,
-            None => write_picture(path, size, rows.as_ref(), tone, &options, control)?,
+            None => write_picture(path, size, &rows, tone, &options, control)?,
         };
         Ok(WrittenFile {
             path: path.clone(),
@@ -483,7 +511,10 @@ impl<'r> PreparedFrame<'r> {
             exposure: self.file_exposure(tone),
         };
         PictureOptions {
-            metadata: metadata.of_layer(file.layer).with_frame(&file.frame),
+            metadata: Metadata {
+                band: file.band(),
+                ..metadata.of_layer(file.layer).with_frame(&file.frame)
+            },
             ..self.renderer.picture_options()
         }
     }
@@ -497,10 +528,13 @@ impl<'r> PreparedFrame<'r> {
     }
 }
 
-/// Values of [`POLARISATION_CHANNELS`] at the centre of each pixel.
-fn polarisation_rows(frame: &Frame, table: &PolarisationTable) -> Result<StoredRows, ImageError> {
-    let size = frame.size();
-    let pixels = (0..size.height()).flat_map(|y| (0..size.width()).map(move |x| (x, y)));
+/// Values of [`POLARISATION_CHANNELS`] at the centre of each pixel of a file.
+fn polarisation_rows(
+    file: &PictureFile,
+    table: &PolarisationTable,
+) -> Result<StoredRows, ImageError> {
+    let (frame, width) = (&file.frame, file.size().width());
+    let pixels = file.rows().flat_map(|y| (0..width).map(move |x| (x, y)));
     let values =
         pixels.flat_map(
             |(x, y)| match frame.direction(f64::from(x) + 0.5, f64::from(y) + 0.5) {
@@ -511,25 +545,26 @@ fn polarisation_rows(frame: &Frame, table: &PolarisationTable) -> Result<StoredR
                 None => [0.0; 4],
             },
         );
-    StoredRows::new(size.width(), POLARISATION_CHANNELS.len(), values.collect())
+    StoredRows::new(width, POLARISATION_CHANNELS.len(), values.collect())
 }
 
 /// Writes a map of polarisation beside a picture.
 fn write_polarisation(
-    picture: &Path,
-    size: Size,
+    file: &PictureFile,
     rows: &StoredRows,
     control: Control<'_>,
 ) -> Result<Written, ImageError> {
-    let path = tagged_path(picture, "polarisation").with_extension("exr");
     let options = ExrOptions {
         precision: SamplePrecision::Float,
         ..ExrOptions::default()
     };
-    let metadata = Metadata::default();
+    let metadata = Metadata {
+        band: file.band(),
+        ..Metadata::default()
+    };
     exr::write(
-        &path,
-        size,
+        &file.map_path("polarisation"),
+        file.size(),
         &POLARISATION_CHANNELS,
         rows,
         &options,
@@ -556,10 +591,10 @@ impl Progress for Part<'_> {
 /// Progress callback that does nothing.
 static SILENT: fn(u64, u64) = |_, _| {};
 
-fn rows_of<'f>(frames: impl IntoIterator<Item = &'f Frame>) -> u64 {
-    frames
+fn rows_of<'f>(files: impl IntoIterator<Item = &'f PictureFile>) -> u64 {
+    files
         .into_iter()
-        .map(|frame| u64::from(frame.size().height()))
+        .map(|file| u64::from(file.size().height()))
         .sum()
 }
 

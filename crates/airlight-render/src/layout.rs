@@ -2,12 +2,15 @@
 
 use crate::error::RenderError;
 use crate::pixels::{is_spectral_path, tagged_path};
+use crate::shard::Shard;
 use crate::sky_rows::Layer;
 use airlight::Named;
 use airlight::scene::{
     CameraSpec, Orientation, OutputSpec, Projection as ProjectionKind, SunDiscPlacement,
 };
+use airlight_image::output::RowBand;
 use airlight_image::{Camera, CubeFace, Fisheye, Frame, PictureFormat, Projection, Size};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 /// Frames of a picture, and names and encoding of its files.
@@ -20,15 +23,70 @@ pub struct Layout {
     sun_disc: SunDiscPlacement,
 }
 
-/// One file to write.
+/// One file to write: a picture, or a band of its rows.
 #[derive(Clone, Debug)]
 pub struct PictureFile {
     /// Path of the file.
     pub path: PathBuf,
-    /// Projection and size.
+    /// Path of the picture.
+    picture: PathBuf,
+    /// Projection and size of the picture.
     pub frame: Frame,
     /// Layer that it shows.
     pub layer: Layer,
+    /// The shard whose rows the file holds; `None`: all.
+    shard: Option<Shard>,
+}
+
+impl PictureFile {
+    /// The file of a whole picture.
+    pub fn whole(picture: PathBuf, frame: Frame, layer: Layer) -> Self {
+        Self {
+            path: picture.clone(),
+            picture,
+            frame,
+            layer,
+            shard: None,
+        }
+    }
+
+    /// The file of a shard's rows.
+    fn of_shard(self, shard: Shard) -> Self {
+        Self {
+            path: shard.path_of(&self.picture),
+            shard: Some(shard),
+            ..self
+        }
+    }
+
+    /// Path of an EXR file beside it, such as its depth.
+    pub fn map_path(&self, tag: &str) -> PathBuf {
+        let map = tagged_path(&self.picture, tag).with_extension("exr");
+        match &self.shard {
+            Some(shard) => shard.path_of(&map),
+            None => map,
+        }
+    }
+
+    /// Rows of the picture that the file holds.
+    pub fn rows(&self) -> Range<u32> {
+        let height = self.frame.size().height();
+        self.shard.map_or(0..height, |shard| shard.rows(height))
+    }
+
+    /// Width and height of what the file holds.
+    pub fn size(&self) -> Size {
+        let width = self.frame.size().width();
+        Size::new(width, self.rows().len() as u32).expect("checked by Layout::files_of")
+    }
+
+    /// The larger picture of which the file holds a band.
+    pub fn band(&self) -> Option<RowBand> {
+        self.shard.map(|_| RowBand {
+            first_row: self.rows().start,
+            picture_rows: self.frame.size().height(),
+        })
+    }
 }
 
 impl Layout {
@@ -120,14 +178,40 @@ impl Layout {
                     .into_iter()
                     .flatten()
                     .fold(path.to_owned(), |path, tag| tagged_path(&path, tag));
-                files.push(PictureFile {
-                    path,
-                    frame: *frame,
-                    layer: *layer,
-                });
+                files.push(PictureFile::whole(path, *frame, *layer));
             }
         }
         files
+    }
+
+    /// Files of a shard's rows of a picture called `path`, in the order of [`Layout::files`]: EXR files whose data window is the
+    /// band, which [`exr::join`](airlight_image::output::exr::join) joins.
+    ///
+    /// # Errors
+    /// [`RenderError`] for formats other than EXR, and for more shards than the picture has bands.
+    pub fn files_of(&self, path: &Path, shard: Shard) -> Result<Vec<PictureFile>, RenderError> {
+        if self.format != Some(PictureFormat::EXR) {
+            return Err(RenderError::value(
+                "output.file",
+                "an OpenEXR file for a shard of one picture",
+                format!("`{}`", path.display()),
+                "a name that ends in .exr",
+            ));
+        }
+        let files = self.files(path).into_iter();
+        let parts = files.map(|file| file.of_shard(shard));
+        parts
+            .map(|file| match file.rows().is_empty() {
+                false => Ok(file),
+                true => Err(RenderError::setting(format!(
+                    "shard: expected at most {} shards of a picture of {} rows, one for each {}, got {}",
+                    file.frame.size().height().div_ceil(RowBand::MULTIPLE),
+                    file.frame.size().height(),
+                    RowBand::MULTIPLE,
+                    shard.count()
+                ))),
+            })
+            .collect()
     }
 
     /// The single frame of a picture.
@@ -320,11 +404,11 @@ mod tests {
         let files = layout.files(Path::new("a/dome.exr"));
         let names: Vec<_> = files
             .iter()
-            .map(|file| file.path.to_str().unwrap())
+            .map(|file| file.path.display().to_string())
             .collect();
         assert_eq!(files.len(), 12);
         assert_eq!(
-            [names[0], names[11]],
+            [&names[0], &names[11]],
             ["a/dome.sun.px.exr", "a/dome.nz.exr"]
         );
         assert_eq!([files[0].layer, files[11].layer], [Layer::Disc, Layer::Sky]);

@@ -8,7 +8,7 @@
 //! - [`sun_disc`], [`sky_rows`], [`objects`]: rows of sky, sun's disc and objects; [`canvas`]: Monte Carlo in passes.
 //! - [`illuminance`], [`exposure`], [`metadata`]: illuminances, exposure and metadata of a picture.
 //! - [`renderer`], [`frame`], [`solutions`], [`image`], [`sequence`]: a scene, one moment of it, light that pictures share, a picture
-//!   in memory, and many moments.
+//!   in memory, and many moments. [`openjd`]: jobs for render farms.
 //! - [`compare`], [`contact_sheet`], [`probe`]: comparison of solvers, pictures of several scenes, and light as numbers.
 //! - [`overlay`]: fog over a picture with a depth map; [`batch`]: fog over many pictures, with varied settings and a manifest.
 
@@ -30,6 +30,7 @@ pub mod layout;
 mod manifest;
 pub mod metadata;
 pub mod objects;
+pub mod openjd;
 pub mod overlay;
 pub mod pixels;
 pub mod probe;

@@ -25,8 +25,13 @@ pub enum Layer {
 pub enum SkyValues<'a> {
     /// A view, evaluated in each direction.
     View(&'a dyn RadianceView),
-    /// Values of all pixels in the channels of a view, row by row.
-    Stored(&'a [f32]),
+    /// Values of the pixels of rows in the channels of a view.
+    Stored {
+        /// Values, row by row.
+        values: &'a [f32],
+        /// The row with which they begin.
+        first_row: u32,
+    },
 }
 
 /// What is drawn of a sky.
@@ -145,8 +150,9 @@ impl RowSource for SkyRows<'_> {
         };
         match self.sky {
             None => {}
-            Some(SkyValues::Stored(values)) => {
-                put(&values[y as usize * width * count..][..width * count], out);
+            Some(SkyValues::Stored { values, first_row }) => {
+                let start = (y - first_row) as usize * width * count;
+                put(&values[start..][..width * count], out);
             }
             Some(SkyValues::View(view)) => {
                 let mut values = vec![0.0; width * count];
@@ -233,7 +239,13 @@ mod tests {
     fn stored_values_replace_the_view() {
         let frame = Frame::equirectangular(2).unwrap();
         let stored: Vec<f32> = (0..3 * 4 * 2).map(|i| i as f32).collect();
-        let second = row(&frame, SkyValues::Stored(&stored), Layer::Sky, 1);
+        let from = |first_row| SkyValues::Stored {
+            values: &stored,
+            first_row,
+        };
+        let second = row(&frame, from(0), Layer::Sky, 1);
         assert_eq!(second[..3], [24.0, 26.0, 28.0]);
+        let begun = row(&frame, from(1), Layer::Sky, 1);
+        assert_eq!(begun[..3], [0.0, 2.0, 4.0]);
     }
 }

@@ -6,6 +6,7 @@ mod compare;
 mod fog;
 mod generate;
 mod grid;
+mod join;
 mod night;
 mod overlay;
 mod overlay_batch;
@@ -26,6 +27,7 @@ pub use air::{AirArgs, AtmospheresArgs};
 pub use compare::{CompareArgs, StatisticsArg};
 pub use generate::{CompletionsArgs, ManArgs};
 pub use grid::GridArgs;
+pub use join::JoinArgs;
 pub use night::NightArgs;
 pub use overlay::OverlayArgs;
 pub use overlay_light::OverlayLightArgs;
@@ -86,6 +88,8 @@ pub enum Command {
     Compare(Box<CompareArgs>),
     /// Draw a contact sheet of skies described by a TOML file.
     Grid(GridArgs),
+    /// Join the bands of a picture that several machines drew with --shard.
+    Join(JoinArgs),
     /// Report accuracy against measurements and other codes.
     Accuracy(AccuracyArgs),
     /// Open a window in which to look around under any sun, in any air.

@@ -35,6 +35,8 @@ pub struct SkyArgs {
     #[command(flatten)]
     pub sequence: SequenceArgs,
     #[command(flatten)]
+    pub machines: MachinesArgs,
+    #[command(flatten)]
     pub camera: CameraArgs,
     #[command(flatten)]
     pub display: DisplayArgs,
@@ -58,9 +60,6 @@ pub struct SequenceArgs {
     /// last
     #[arg(long)]
     pub meter_each: bool,
-    /// Draw only a part of a sequence, for one of several machines: 3/16 is the third of 16 parts
-    #[arg(long, value_name = "K/N")]
-    pub shard: Option<Shard>,
     /// Manifest, with a line of JSON for each picture [default: manifest.jsonl beside the pictures; with --shard 3/16
     /// manifest-3-of-16.jsonl]
     #[arg(long, value_name = "FILE")]
@@ -68,6 +67,23 @@ pub struct SequenceArgs {
     /// Replace existing pictures of a sequence; otherwise they are kept, and must have been made with the same options
     #[arg(long)]
     pub overwrite: bool,
+}
+
+/// Pictures drawn by several machines.
+#[derive(Clone, Debug, Default, Args)]
+#[command(next_help_heading = "Many machines")]
+pub struct MachinesArgs {
+    /// Draw only a part, for one of several machines: 3/16 is the third of 16 parts of a sequence. Of a single picture, it is a band
+    /// of rows, written to NAME-3-of-16.exr; airlight join makes the picture of all bands
+    #[arg(long, value_name = "K/N")]
+    pub shard: Option<Shard>,
+    /// Draw nothing and write a job template of Open Job Description for render farms, whose tasks draw the shards
+    #[arg(long, value_name = "FILE.json")]
+    #[arg(conflicts_with_all = ["preview", "shard", "manifest", "overwrite"])]
+    pub openjd: Option<PathBuf>,
+    /// Number of tasks of the job [default: 16, or fewer for small jobs]
+    #[arg(long, value_name = "N", requires = "openjd")]
+    pub tasks: Option<u32>,
 }
 
 /// Objects in front of the sky.
@@ -127,14 +143,9 @@ impl ObjectArgs {
 }
 
 impl SequenceArgs {
-    /// The first option that a single picture would ignore.
+    /// An option that a single picture would ignore.
     pub fn of_sequences(&self) -> Option<&'static str> {
-        let options = [
-            ("--shard", self.shard.is_some()),
-            ("--manifest", self.manifest.is_some()),
-        ];
-        let given = options.into_iter().find(|(_, is_given)| *is_given);
-        given.map(|(option, _)| option)
+        self.manifest.is_some().then_some("--manifest")
     }
 
     fn fill(&self, sequence: &mut Option<SequenceSpec>) {
@@ -163,6 +174,10 @@ Examples:
   A day with a picture every ten minutes (day.0001.png, ...); a second run draws missing pictures:
     airlight sky --at 64.1,-21.9 --when 2026-06-21T00:00:00Z --until +24h --every 10m \\
       --projection fisheye -o day.png
+  A panorama in four bands on four machines, and joined; the same as a job for a render farm:
+    airlight sky --sun-elevation 20 --size 32768x16384 -o big.exr --shard 1/4
+    airlight join big-1-of-4.exr big-2-of-4.exr big-3-of-4.exr big-4-of-4.exr -o big.exr
+    airlight sky --sun-elevation 20 --size 32768x16384 -o big.exr --openjd job.json
   Ground fog at sunrise, seen from a hill 60 m high:
     airlight sky --sun-elevation 2 --visibility-m 150 --top-m 40 --altitude-m 60 --projection perspective -o fog.png
   A sky by Monte Carlo, with a noise map:

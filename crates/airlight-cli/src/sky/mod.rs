@@ -8,14 +8,17 @@ use crate::interrupt::{self, STOP};
 use crate::progress::RowsBar;
 use crate::report::{self, bytes, seconds};
 use crate::scene;
+use airlight::scene::Scene;
 use airlight_image::Control;
 use airlight_image::output::{AtomicFile, Written};
 use airlight_image::tone::Exposure;
 use airlight_render::exposure::DARKEST_EV100;
+use airlight_render::openjd::JobTemplate;
 use airlight_render::sequence::{PreparedSequence, Sequence, SequenceSettings};
 use airlight_render::summary::{self, short};
 use airlight_render::{PreparedFrame, Renderer, WrittenFile};
 use std::fmt::Write;
+use std::path::Path;
 use std::time::Instant;
 
 /// Runs the command.
@@ -29,6 +32,9 @@ pub fn run(args: &SkyArgs) -> Result<(), CliError> {
         if scene.output.file.is_none() && !args.preview {
             return Ok(());
         }
+    }
+    if let Some(path) = &args.machines.openjd {
+        return write_job(args, &scene, path);
     }
     let preview = preview::wanted(args.preview, scene.output.file.is_some())?;
     let renderer = match preview {
@@ -47,14 +53,33 @@ pub fn run(args: &SkyArgs) -> Result<(), CliError> {
     }
 }
 
+/// Writes a job for a render farm.
+fn write_job(args: &SkyArgs, scene: &Scene, path: &Path) -> Result<(), CliError> {
+    let job = JobTemplate::of_scene(&Renderer::new(scene)?, args.machines.tasks)?;
+    report::write(path, job.to_json())?;
+    match args.quiet {
+        true => Ok(()),
+        false => report::print(&format!("{}: job template\n", path.display())),
+    }
+}
+
 fn one(
     args: &SkyArgs,
     renderer: &Renderer,
     preview: Option<preview::Terminal>,
 ) -> Result<(), CliError> {
     let output = renderer.output_path().ok();
-    let files = output.map(|path| renderer.layout().files(path));
-    let files = files.unwrap_or_default();
+    let shard = args.machines.shard;
+    let files = match (output, shard) {
+        (Some(path), Some(shard)) => renderer.layout().files_of(path, shard)?,
+        (Some(path), None) => renderer.layout().files(path),
+        (None, Some(_)) => {
+            return Err(CliError::usage(
+                "--shard: expected a file to write, got none; try --output sky.exr",
+            ));
+        }
+        (None, None) => Vec::new(),
+    };
     AtomicFile::remove_leftovers(files.iter().map(|file| file.path.as_path()));
     for file in &files {
         report::check_writable(&file.path)?;
@@ -76,7 +101,11 @@ fn one(
     if let Some(path) = output {
         let bar = RowsBar::by_stages();
         let writing = interrupt::start_writing()?;
-        let written = frame.write(path, Control::cancelled_by(&STOP).reporting_to(&bar))?;
+        let control = Control::cancelled_by(&STOP).reporting_to(&bar);
+        let written = match shard {
+            Some(shard) => frame.write_shard(path, shard, control)?,
+            None => frame.write(path, control)?,
+        };
         drop(writing);
         drop(bar);
         for file in &written.files {
@@ -128,7 +157,7 @@ fn many(
     preview: Option<preview::Terminal>,
 ) -> Result<(), CliError> {
     let settings = SequenceSettings {
-        shard: args.sequence.shard,
+        shard: args.machines.shard,
         overwrite: args.sequence.overwrite,
         manifest: args.sequence.manifest.clone(),
     };

@@ -4,6 +4,7 @@ mod common;
 
 mod accuracy;
 mod compare;
+mod farm;
 mod fog;
 mod interrupt;
 mod plot;

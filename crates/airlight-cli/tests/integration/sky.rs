@@ -152,7 +152,7 @@ fn sequences_report_what_they_made() {
         ["b.0001.png", "b.0002.png", "b.0003.png"].map(pixels),
         whole
     );
-    let one = format!("sky {QUICK} --sun-elevation 20 --shard 1/2 -o c.png");
+    let one = format!("sky {QUICK} --sun-elevation 20 --manifest m.jsonl -o c.png");
     let refused = run(&folder, &one);
     let said = String::from_utf8_lossy(&refused.stderr);
     assert_eq!(refused.status.code(), Some(2));

@@ -3,6 +3,7 @@
 //! The `exr` crate describes headers and compresses blocks; the file itself is written here, block after block, so that a picture
 //! is never in memory as a whole, except for channels carried from another file. Attributes are sorted by name, so that equal pictures give equal bytes.
 
+pub use super::exr_join::join;
 pub use super::options::{ExrCompression, ExrOptions, SamplePrecision};
 use super::{
     Metadata,
@@ -36,7 +37,7 @@ use std::{
     path::Path,
 };
 
-const FORMAT: &str = "OpenEXR";
+pub(super) const FORMAT: &str = "OpenEXR";
 
 /// Registry entry of the format.
 pub(super) static ENTRY: FormatEntry = FormatEntry {
@@ -246,6 +247,18 @@ fn build_header(
     if let Some(carried) = carried {
         carried.set_shared(&mut header);
     }
+    if let Some(band) = metadata.band {
+        let end = band.first_row.checked_add(size.height());
+        if end.is_none_or(|end| end > band.picture_rows) {
+            return Err(ImageError::Setting {
+                what: "the last row of a band",
+                got: format!("{} + {}", band.first_row, size.height()),
+                right: "at most the number of rows of the picture",
+            });
+        }
+        header.own_attributes.layer_position.1 += band.first_row as i32;
+        header.shared_attributes.display_window.size.1 = band.picture_rows as usize;
+    }
     header.shared_attributes.chromaticities = metadata.chromaticities.map(|c| Chromaticities {
         red: point(c.red),
         green: point(c.green),
@@ -446,7 +459,7 @@ const VERSION: u32 = 2;
 const LONG_NAMES: u32 = 1 << 10;
 
 /// A scan-line file being written: header, table of offsets, blocks in order.
-struct ScanLineStream<'a> {
+pub(super) struct ScanLineStream<'a> {
     out: &'a mut dyn WriteSeek,
     /// First row of the data window.
     top: i32,
@@ -457,7 +470,7 @@ struct ScanLineStream<'a> {
 
 impl<'a> ScanLineStream<'a> {
     /// Writes the header and an empty table.
-    fn start(out: &'a mut dyn WriteSeek, header: &Header) -> Result<Self, ImageError> {
+    pub(super) fn start(out: &'a mut dyn WriteSeek, header: &Header) -> Result<Self, ImageError> {
         MetaData::validate(std::slice::from_ref(header), true).map_err(failed)?;
         let bytes = header_bytes(header)?;
         let start = out.stream_position().map_err(stream_error)?;
@@ -475,7 +488,7 @@ impl<'a> ScanLineStream<'a> {
     }
 
     /// Writes the compressed block that starts with row `y`.
-    fn block(&mut self, y: u32, packed: &[u8]) -> Result<(), ImageError> {
+    pub(super) fn block(&mut self, y: u32, packed: &[u8]) -> Result<(), ImageError> {
         let length = i32::try_from(packed.len()).map_err(|_| ImageError::Encode {
             format: FORMAT,
             reason: "a block of scan lines is larger than 2 GiB".to_owned(),
@@ -489,7 +502,7 @@ impl<'a> ScanLineStream<'a> {
     }
 
     /// Writes the table.
-    fn finish(self) -> Result<(), ImageError> {
+    pub(super) fn finish(self) -> Result<(), ImageError> {
         let table: Vec<u8> = self.offsets.iter().flat_map(|o| o.to_le_bytes()).collect();
         self.out
             .seek(SeekFrom::Start(self.table_at))

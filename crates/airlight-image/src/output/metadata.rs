@@ -33,10 +33,27 @@ pub struct Metadata {
     pub chromaticities: Option<Chromaticities>,
     /// Width of a pixel over its height; square where missing.
     pub pixel_aspect: Option<f32>,
+    /// The larger picture of which an EXR file holds a band of rows; other formats ignore it.
+    pub band: Option<RowBand>,
     /// Attributes and channels of an EXR file, carried to another.
     pub carried: Option<Arc<Carried>>,
     /// Further named texts, such as units or the command line.
     pub texts: Vec<(String, String)>,
+}
+
+/// A band of the rows of a larger picture, as the data window of an EXR file in a display window of the size of the picture.
+/// [`join`](super::exr::join) makes the picture of its bands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RowBand {
+    /// Row of the picture that is the first of the band.
+    pub first_row: u32,
+    /// Number of rows of the picture.
+    pub picture_rows: u32,
+}
+
+impl RowBand {
+    /// Numbers of rows of which bands consist, except the last of a picture, so that compressed blocks of rows end with them.
+    pub const MULTIPLE: u32 = 32;
 }
 
 /// CIE 1931 xy of the primaries and white of an RGB space.

@@ -8,6 +8,7 @@ mod bands;
 mod carried;
 mod deflate;
 pub mod exr;
+mod exr_join;
 mod format;
 pub mod hdr;
 pub mod jpeg;
@@ -20,7 +21,7 @@ pub mod spectral;
 pub use atomic::AtomicFile;
 pub use carried::Carried;
 pub use format::Written;
-pub use metadata::{Chromaticities, Metadata};
+pub use metadata::{Chromaticities, Metadata, RowBand};
 pub use options::PictureOptions;
 
 use crate::{Control, ImageError, RowSource, Size, tone::ToneMapper};

@@ -5,6 +5,7 @@ mod common;
 mod enlarge;
 mod frames;
 mod intrinsics;
+mod join;
 mod memory;
 mod picture_files;
 mod pictures;

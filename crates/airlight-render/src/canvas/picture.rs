@@ -19,6 +19,8 @@ const MOST_BYTES: f64 = 8e9;
 #[derive(Clone, Debug)]
 pub struct Canvas {
     size: Size,
+    /// Row of a frame that is the first of the canvas.
+    first_row: u32,
     channels: PixelChannels,
     /// Sums in the channels of a view.
     sums: Vec<f64>,
@@ -34,12 +36,18 @@ impl Canvas {
         let pixels = size.width() as usize * size.height() as usize;
         Self {
             size,
+            first_row: 0,
             channels: channels.clone(),
             sums: vec![0.0; pixels * channels.view_count()],
             colors: vec![ColorMoments::default(); pixels],
             stokes: vec![[0.0; 3]; if polarised { pixels } else { 0 }],
             bundles: 0,
         }
+    }
+
+    /// The same for a band of the rows of a frame, which begins with a row.
+    pub fn from_row(self, first_row: u32) -> Self {
+        Self { first_row, ..self }
     }
 
     /// Refuses pictures that are too large to be kept in memory.
@@ -65,7 +73,7 @@ impl Canvas {
         }
     }
 
-    /// Traces the paths of a pass for every pixel of a frame of this size; each bundle starts at another point of the pixel.
+    /// Traces the paths of a pass for every pixel of the canvas in a frame; each bundle starts at another point of the pixel.
     ///
     /// # Errors
     /// [`ImageError::Cancelled`] if the caller cancelled.
@@ -76,8 +84,10 @@ impl Canvas {
         pass: &Pass,
         control: Control<'_>,
     ) -> Result<(), ImageError> {
+        let first_row = self.first_row;
         self.add_with(pass, control, |x, y, bundle, found, stokes| {
             let [u, v] = pixel_offset(bundle);
+            let y = first_row + y;
             match (frame.direction(f64::from(x) + u, f64::from(y) + v), stokes) {
                 (Some(direction), Some(stokes)) => {
                     sampler.add_polarised_bundle(direction, bundle, found, stokes);

@@ -2,15 +2,15 @@
 
 use super::lit::{LitObjects, Scratch, ViewRay};
 use crate::channels::PixelChannels;
+use crate::layout::PictureFile;
 use crate::pixels::{POINTS, directions_within};
 use crate::sky_rows::Layer;
 use airlight_image::output::exr::{self, ExrOptions, SamplePrecision};
 use airlight_image::output::{Metadata, Written};
-use airlight_image::rows::RowFn;
+use airlight_image::rows::{RowFn, RowsFrom};
 use airlight_image::{Control, Frame, ImageError, Projection, RowSource};
 use glam::DVec3;
 use std::fmt;
-use std::path::Path;
 
 /// Rows of objects in front of rows of a sky.
 pub struct ObjectRows<'a> {
@@ -113,11 +113,11 @@ impl RowSource for ObjectRows<'_> {
 /// # Errors
 /// [`ImageError`] if the file cannot be written.
 pub fn write_depth(
-    path: &Path,
-    frame: &Frame,
+    file: &PictureFile,
     objects: &LitObjects,
     control: Control<'_>,
 ) -> Result<Written, ImageError> {
+    let frame = &file.frame;
     let rows = frame.rows();
     let size = frame.size();
     let centre = frame.direction(
@@ -146,8 +146,21 @@ pub fn write_depth(
         precision: SamplePrecision::Float,
         ..ExrOptions::default()
     };
-    let metadata = Metadata::default().with_frame(frame);
-    exr::write(path, size, &[name], &depths, &options, &metadata, control)
+    let metadata = Metadata {
+        band: file.band(),
+        ..Metadata::default().with_frame(frame)
+    };
+    let depths = RowsFrom::new(&depths, file.rows().start);
+    let path = file.map_path("depth");
+    exr::write(
+        &path,
+        file.size(),
+        &[name],
+        &depths,
+        &options,
+        &metadata,
+        control,
+    )
 }
 
 #[cfg(test)]
@@ -227,8 +240,11 @@ mod tests {
         let level = 5f64.to_radians();
         let ahead = objects.hit(-DVec3::Z, 0.0).unwrap();
         assert!((ahead.hit.distance_m - 18.0).abs() < 1e-9);
-        let path = std::env::temp_dir().join(format!("airlight-depth-{}.exr", std::process::id()));
-        write_depth(&path, &frame, &objects, Control::default()).unwrap();
+        let path =
+            std::env::temp_dir().join(format!("airlight-objects-{}.exr", std::process::id()));
+        let file = PictureFile::whole(path, frame, Layer::All);
+        let path = file.map_path("depth");
+        write_depth(&file, &objects, Control::default()).unwrap();
         let options = airlight_image::DepthOptions {
             unknown: airlight_image::input::UnknownDepth::Far,
             ..Default::default()

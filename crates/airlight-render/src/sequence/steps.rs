@@ -183,7 +183,7 @@ impl SequenceStep {
     pub fn rows(&self) -> u64 {
         self.files
             .iter()
-            .map(|file| u64::from(file.frame.size().height()))
+            .map(|file| u64::from(file.size().height()))
             .sum()
     }
 }

@@ -9,4 +9,5 @@ mod lights;
 mod monte_carlo;
 mod round_trips;
 mod scenes;
+mod shards;
 mod sky;

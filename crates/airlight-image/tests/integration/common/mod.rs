@@ -58,6 +58,7 @@ pub fn full_metadata() -> Metadata {
         white_luminance_cd_m2: Some(1.0),
         chromaticities: Some(RgbSpace::Srgb.into()),
         pixel_aspect: None,
+        band: None,
         carried: None,
         texts: vec![
             ("units".into(), "cd/m^2".into()),
