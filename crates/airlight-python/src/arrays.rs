@@ -31,6 +31,15 @@ pub struct Depths {
     pub values: Vec<f32>,
 }
 
+/// Linear light as an argument: anything that converts to an array of shape `(height, width, 3)`.
+#[derive(Debug)]
+pub struct Linear {
+    /// Width and height.
+    pub size: Size,
+    /// Red, green and blue, pixel by pixel, row by row.
+    pub values: Vec<f32>,
+}
+
 /// The array that NumPy makes of an argument, of one of the numbers of dimensions.
 fn as_array<'py, T: Element>(
     argument: Borrowed<'_, 'py, PyAny>,
@@ -88,6 +97,24 @@ impl<'py> FromPyObject<'_, 'py> for Depths {
 
     fn extract(argument: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
         let array = as_array::<f32>(argument, "(height, width)", &[2])?;
+        Ok(Self {
+            size: size_of(array.shape())?,
+            values: in_order(&array).into_owned(),
+        })
+    }
+}
+
+impl<'py> FromPyObject<'_, 'py> for Linear {
+    type Error = PyErr;
+
+    fn extract(argument: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        let array = as_array::<f32>(argument, "(height, width, 3)", &[3])?;
+        if array.shape()[2] != 3 {
+            return Err(PyValueError::new_err(format!(
+                "expected a picture of shape (height, width, 3), got {:?}",
+                array.shape()
+            )));
+        }
         Ok(Self {
             size: size_of(array.shape())?,
             values: in_order(&array).into_owned(),

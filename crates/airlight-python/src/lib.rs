@@ -1,8 +1,8 @@
 //! The Python module `airlight`: the libraries of Airlight over NumPy arrays, with the same words.
 //!
 //! - [`compute`]: threads, the lock of the interpreter, and Ctrl-C; [`errors`]: exceptions; [`arrays`]: directions and pictures.
-//! - [`atmosphere`], [`sun`], [`sky`], [`scene`], [`picture`], [`fog`], [`batch`], [`mie`], [`accuracy`]: the classes and functions of
-//!   Python.
+//! - [`atmosphere`], [`sun`], [`sky`], [`scene`], [`picture`], [`fog`], [`batch`], [`mie`], [`accuracy`], [`openjd`]: the classes and
+//!   functions of Python.
 //!
 //! What is only Python, such as xarray output and transforms for training, is in `python/airlight`.
 
@@ -14,6 +14,7 @@ mod compute;
 mod errors;
 mod fog;
 mod mie;
+mod openjd;
 mod picture;
 mod scene;
 mod sky;
@@ -37,11 +38,14 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(batch::fog_batch, module)?)?;
     module.add_function(wrap_pyfunction!(mie::mie_phase, module)?)?;
     module.add_function(wrap_pyfunction!(mie::mie_sphere, module)?)?;
+    module.add_function(wrap_pyfunction!(openjd::job_of_command, module)?)?;
+    module.add_function(wrap_pyfunction!(openjd::job_of_scene, module)?)?;
     module.add_function(wrap_pyfunction!(scene::models, module)?)?;
     module.add_function(wrap_pyfunction!(sun::sun_position, module)?)?;
     module.add_function(wrap_pyfunction!(sun::unix_time, module)?)?;
     module.add_function(wrap_pyfunction!(sun::direction, module)?)?;
     module.add_function(wrap_pyfunction!(picture::read_picture, module)?)?;
     module.add_function(wrap_pyfunction!(picture::read_depth, module)?)?;
+    module.add_function(wrap_pyfunction!(picture::write_picture, module)?)?;
     Ok(())
 }

@@ -67,10 +67,13 @@ pub fn mie_phase<'py>(
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
     let sphere = mie::Sphere::new(size_parameter, index).map_err(Failure::from)?;
     let angles = arrays::numbers(angle_deg);
-    let values = py.detach(|| {
-        let phase = |degrees: &f64| sphere.phase(degrees.to_radians().cos());
-        angles.iter().map(phase).collect()
-    });
+    let values = compute(py, None, |control| {
+        let phase = |degrees: &f64| {
+            control.check()?;
+            Ok(sphere.phase(degrees.to_radians().cos()))
+        };
+        angles.iter().map(phase).collect::<Result<_, Failure>>()
+    })?;
     Ok(arrays::vector(py, values))
 }
 

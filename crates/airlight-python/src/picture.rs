@@ -1,13 +1,13 @@
 //! `Picture`, and reading pictures and depth maps.
 
-use crate::arrays;
+use crate::arrays::{self, Linear};
 use crate::compute::compute;
 use crate::errors::Failure;
 use airlight_image::input::DepthOptions;
 use airlight_image::output::{Metadata, png};
 use airlight_image::rows::StoredRows;
 use airlight_image::tone::ToneMapper;
-use airlight_image::{Control, Size};
+use airlight_image::{Control, PictureOptions, Size};
 use airlight_render::RenderedImage;
 use airlight_render::overlay::OverlaySpec;
 use numpy::{PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray3};
@@ -135,6 +135,26 @@ pub fn read_picture<'py>(
 ) -> PyResult<Bound<'py, PyArray3<f32>>> {
     let picture = compute(py, None, |_| airlight_image::read_picture(&path, layer))?;
     arrays::picture(py, picture.rgb, picture.size, 3)
+}
+
+/// Writes a picture in the format of the ending of its name: EXR or HDR (linear light), PNG or JPEG (sRGB, cut off at white).
+///
+/// Parameters
+/// ----------
+/// path : str or os.PathLike
+///     The file.
+/// rgb : array_like, shape (height, width, 3)
+///     Linear light in sRGB primaries: in any unit for EXR and HDR, relative to white for PNG and JPEG.
+#[pyfunction]
+pub fn write_picture(py: Python<'_>, path: PathBuf, rgb: Linear) -> PyResult<()> {
+    let Linear { size, values } = rgb;
+    let options = PictureOptions::default();
+    compute(py, None, |control| {
+        let rows = StoredRows::new(size.width(), 3, values)?;
+        let tone = ToneMapper::as_displayed();
+        airlight_image::write_picture(&path, size, &rows, &tone, &options, control)
+    })?;
+    Ok(())
 }
 
 /// Reads a depth map: EXR, PNG, NPY, NPZ, PFM or TIFF.

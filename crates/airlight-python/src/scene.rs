@@ -42,6 +42,13 @@ pub fn models() -> BTreeMap<&'static str, &'static str> {
 #[derive(Debug)]
 pub struct Scene(scene::Scene);
 
+impl Scene {
+    /// The scene of the library.
+    pub fn scene(&self) -> &scene::Scene {
+        &self.0
+    }
+}
+
 #[pymethods]
 impl Scene {
     /// A scene from TOML. Files that it names are read from the working folder.

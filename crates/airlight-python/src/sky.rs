@@ -8,12 +8,14 @@ use crate::picture::encode_png;
 use airlight::Control;
 use airlight::atmosphere;
 use airlight::axes;
-use airlight::scene::{Channels, Effort, OutputSpec, RadianceView, SolverSpec, SunState};
+use airlight::scene::{
+    Channels, Effort, Orientation, OutputSpec, RadianceView, SolverSpec, SunState,
+};
 use airlight::sky::{self, LineOfSight, SunCoverage};
 use airlight::spectrum::{RgbSpace, WavelengthGrid};
-use airlight_image::Frame;
 use airlight_image::rows::draw_rows;
 use airlight_image::tone::{ToneCurve, ToneMapper};
+use airlight_image::{Frame, Projection};
 use airlight_render::channels::PixelChannels;
 use airlight_render::exposure::{ExposureSettings, MeteredPicture};
 use airlight_render::illuminance::Illuminances;
@@ -442,6 +444,35 @@ impl View {
         arrays::vector(py, values)
     }
 
+    /// Illuminance by the sun's disc of a surface that faces it, as red, green and blue.
+    ///
+    /// Parameters
+    /// ----------
+    /// space : str
+    ///     RGB space, as for ``rgb``.
+    ///
+    /// Returns
+    /// -------
+    /// numpy.ndarray, shape (3,), float32
+    ///     Linear light, lx; below 0 for colours outside the space, such as those of a low sun.
+    #[pyo3(signature = (space="srgb"))]
+    fn sun_illuminance<'py>(
+        &self,
+        py: Python<'py>,
+        space: &str,
+    ) -> PyResult<Bound<'py, PyArray1<f32>>> {
+        let space: RgbSpace = space.parse().map_err(Failure::from)?;
+        let spectrum = py.detach(|| self.view.sun_irradiance());
+        let rgb = space.from_xyz(self.grid().to_xyz(&spectrum));
+        Ok(arrays::vector(py, rgb.map(|v| v as f32).to_vec()))
+    }
+
+    /// Diameter of the sun's disc at its distance, degrees.
+    #[getter]
+    fn sun_diameter_deg(&self) -> f64 {
+        2.0 * self.view.disc().angular_radius_rad.to_degrees()
+    }
+
     /// Radiance of the sun's disc at the eye; 0 outside the disc and behind the planet.
     ///
     /// Parameters
@@ -472,7 +503,7 @@ impl View {
         arrays::matrix(py, values, count)
     }
 
-    /// The whole sphere as an equirectangular picture: north in the centre, west on the left, the zenith at the top.
+    /// The whole sphere as an equirectangular picture: the zenith at the top, azimuth increases to the right.
     ///
     /// The values are those of ``airlight sky`` with the same settings, to the bit.
     ///
@@ -484,6 +515,9 @@ impl View {
     ///     RGB space.
     /// sun_disc : bool
     ///     Whether the sun's disc is drawn.
+    /// orientation : str
+    ///     Program for whose axes it is oriented: ``airlight`` (north in the centre), ``blender``, ``mitsuba``, ``three``, ``unreal``,
+    ///     ``unity`` or ``godot``.
     /// threads : int or None
     ///     Number of threads.
     ///
@@ -491,17 +525,22 @@ impl View {
     /// -------
     /// numpy.ndarray, shape (height, 2 * height, 3), float32
     ///     Linear light, cd/m^2.
-    #[pyo3(signature = (height=512, space="srgb", *, sun_disc=true, threads=None))]
+    #[pyo3(signature = (height=512, space="srgb", *, sun_disc=true, orientation="airlight", threads=None))]
     fn panorama<'py>(
         &self,
         py: Python<'py>,
         height: u32,
         space: &str,
         sun_disc: bool,
+        orientation: &str,
         threads: Option<usize>,
     ) -> PyResult<Bound<'py, PyArray3<f32>>> {
         let space: RgbSpace = space.parse().map_err(Failure::from)?;
-        let frame = Frame::equirectangular(height).map_err(Failure::from)?;
+        let orientation: Orientation = orientation.parse().map_err(Failure::from)?;
+        let center_azimuth_deg = orientation.center_azimuth_deg();
+        let projection = Projection::Equirectangular { center_azimuth_deg };
+        let frame =
+            Frame::new(projection, height.saturating_mul(2), height).map_err(Failure::from)?;
         let layer = if sun_disc { Layer::All } else { Layer::Sky };
         let values = compute(py, threads, |control| {
             let view = self.view.radiance_view(Channels::Rgb(space));

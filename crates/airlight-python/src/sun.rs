@@ -1,6 +1,7 @@
 //! Position of the sun, and directions.
 
 use crate::arrays::{self, Numbers};
+use crate::compute::compute;
 use crate::errors::Failure;
 use airlight::axes;
 use airlight::sun::{self, Moment, Place, RefractingAir};
@@ -41,7 +42,7 @@ pub fn sun_position<'py>(
     altitude_m: f64,
     pressure_pa: Option<f64>,
     temperature_c: f64,
-) -> Result<Position<'py>, Failure> {
+) -> PyResult<Position<'py>> {
     let place = Place {
         latitude_deg,
         longitude_deg,
@@ -56,11 +57,18 @@ pub fn sun_position<'py>(
         return Err(Failure::invalid(format!(
             "expected times, got {} at index {index}",
             times[index]
-        )));
+        ))
+        .into());
     }
-    let positions = py.detach(|| {
-        let position = |&time: &f64| sun::sun_position(Moment::from_unix_s(time), place, air);
-        times.iter().map(position).collect::<Result<Vec<_>, _>>()
+    let positions = compute(py, None, |control| {
+        let position = |&time: &f64| {
+            control.check()?;
+            Ok(sun::sun_position(Moment::from_unix_s(time), place, air)?)
+        };
+        times
+            .iter()
+            .map(position)
+            .collect::<Result<Vec<_>, Failure>>()
     })?;
     let parts = [
         |sun: &sun::SunPosition| sun.azimuth_deg,

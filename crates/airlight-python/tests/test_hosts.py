@@ -1,6 +1,5 @@
 """Hand-over to renderers and farms, with the real packages."""
 
-import json
 import os
 import pathlib
 import signal
@@ -60,28 +59,63 @@ def test_a_corrupt_picture_fails_alone(pictures, tmp_path):
 
 
 def test_jobs_that_cannot_be_split_are_refused():
-    for command, shards in ((["airlight"], 3), (["airlight", "probe"], 3), (["airlight", "fog", "--shard", "1/2"], 3)):
+    for command, tasks in ((["airlight"], 3), (["airlight", "probe"], 3), (["airlight", "fog", "--shard", "1/2"], 3)):
         with pytest.raises(ValueError, match="expected"):
-            openjd.job("job", command, shards)
-    with pytest.raises(ValueError, match="shards"):
+            openjd.job("job", command, tasks)
+    with pytest.raises(ValueError, match="tasks"):
         openjd.job("job", ["airlight", "fog"], 0)
+
+
+def run_job(path, *options):
+    """Run a job by the command line of Open Job Description."""
+    runner = pathlib.Path(sys.executable).with_name("openjd")
+    if not runner.exists():
+        pytest.skip("needs openjd-cli")
+    program = pathlib.Path(os.environ.get("AIRLIGHT_PROGRAM", "airlight")).resolve().parent
+    environment = {**os.environ, "PATH": f"{program}:{os.environ['PATH']}"}
+    for action in (["check", path], ["run", path, *options]):
+        done = subprocess.run([runner, *action], capture_output=True, text=True, check=False, env=environment)
+        assert done.returncode == 0, done.stdout + done.stderr
 
 
 @pytest.mark.slow
 def test_openjd_runs_a_job_in_parts(program, pictures, tmp_path):
-    runner = pathlib.Path(sys.executable).with_name("openjd")
-    if not runner.exists():
-        pytest.skip("needs openjd-cli")
     airlight.fog_batch(pictures(tmp_path / "whole", ""), vary=["visibility=50..500"], seed=3)
     name = os.environ.get("AIRLIGHT_PROGRAM", "airlight")
     command = [name, "fog", tmp_path / "rgb", "--depth", tmp_path / "depth"]
     command += ["--vary", "visibility=50..500", "--seed", 3, "-o", f"{tmp_path}/farm/"]
-    openjd.write_job(tmp_path / "job.json", "fog", command, 4)
-    for action in (["check", tmp_path / "job.json"], ["run", tmp_path / "job.json", "--step", "fog"]):
-        done = subprocess.run([runner, *action], capture_output=True, text=True, check=False)
-        assert done.returncode == 0, done.stdout + done.stderr
+    openjd.write(tmp_path / "job.json", openjd.job("fog", command, 4))
+    run_job(tmp_path / "job.json")
     assert files(tmp_path / "farm") == files(tmp_path / "whole")
-    assert json.loads((tmp_path / "job.json").read_text())["name"] == "fog"
+
+
+@pytest.mark.slow
+def test_openjd_draws_a_sequence_of_the_program(program, tmp_path):
+    sky = ["sky", "--at", "50,10", "--when", "2026-06-21T18:00:00Z", "--every", "1h", "--until", "+3h", "--size", "32x16"]
+    for name in ("farm", "whole"):
+        (tmp_path / name).mkdir()
+    program(*sky, "-o", tmp_path / "farm/day.png", "--openjd", tmp_path / "job.json", "--tasks", 2)
+    run_job(tmp_path / "job.json", "-p", f"OutputDir={tmp_path}/farm")
+    program(*sky, "-o", tmp_path / "whole/day.png")
+    drawn, expected = (sorted((tmp_path / folder).glob("*.png")) for folder in ("farm", "whole"))
+    assert [path.name for path in drawn] == [f"day.000{number}.png" for number in (1, 2, 3, 4)]
+    for one, other in zip(drawn, expected, strict=True):
+        np.testing.assert_array_equal(airlight.read_picture(one), airlight.read_picture(other))
+
+
+@pytest.mark.slow
+def test_openjd_draws_a_panorama_in_bands_and_joins_it(program, tmp_path):
+    program("sky", "--sun-elevation", 20, "--size", "256x128", "--sun-disc", "separate", "-o", tmp_path / "sky.exr")
+    scene = airlight.Scene.from_toml(
+        f"sun.elevation_deg = 20\ncamera.size = [256, 128]\noutput = {{ file = '{tmp_path}/sky.exr', sun_disc = 'separate' }}"
+    )
+    openjd.write(tmp_path / "job.json", openjd.sky_job(scene, 3))
+    (tmp_path / "farm").mkdir()
+    run_job(tmp_path / "job.json", "-p", f"OutputDir={tmp_path}/farm")
+    for name in ("sky.exr", "sky.sun.exr"):
+        np.testing.assert_array_equal(
+            airlight.read_picture(tmp_path / "farm" / name), airlight.read_picture(tmp_path / name), err_msg=name
+        )
 
 
 @pytest.mark.slow
@@ -157,6 +191,21 @@ def workers():
     return found
 
 
+@pytest.fixture
+def small_disk(tmp_path):
+    """A file system of its own with space for a few pictures, and a function that enlarges it."""
+    folder = tmp_path / "disk"
+    folder.mkdir()
+
+    def mount(*options):
+        return subprocess.run(["mount", *options, folder], capture_output=True, check=False).returncode == 0
+
+    if not mount("-t", "tmpfs", "-o", "size=48k", "tmpfs"):
+        pytest.skip("needs the right to mount a file system")
+    yield folder, lambda: mount("-o", "remount,size=8m")
+    subprocess.run(["umount", folder], check=True)
+
+
 @pytest.mark.slow
 class TestRay:
     """Data sets on a local cluster of processes."""
@@ -226,6 +275,23 @@ class TestRay:
         obstacle.rmdir()
         report = fog_dataset(pictures(tmp_path / "out"), shards=3)
         assert (report.made, report.existing, report.lost) == (3, 7, {})
+
+    def test_a_full_disk_loses_shards_that_are_resumed(self, ray, pictures, tmp_path, small_disk):
+        from airlight.ray import fog_dataset
+
+        airlight.fog_batch(pictures(tmp_path / "whole"))
+        folder, enlarge = small_disk
+        report = fog_dataset(pictures(folder / "out"), shards=5)
+        assert report.lost
+        for reason in report.lost.values():
+            assert "No space left on device" in reason
+        whole, written = files(tmp_path / "whole"), files(folder / "out")
+        assert 0 < len(written) < 10
+        assert all(whole[name] == content for name, content in written.items())
+        enlarge()
+        again = fog_dataset(pictures(folder / "out"), shards=5)
+        assert (again.made, again.existing, again.failures, again.lost) == (10 - len(written), len(written), [], {})
+        assert files(folder / "out") == whole
 
     def test_bad_settings_are_refused(self, ray, pictures, tmp_path):
         from airlight.ray import fog_dataset

@@ -32,6 +32,14 @@ def many_rays():
         view.radiance(np.tile([[0.3, 0.5, 0.1]], (2_000_000, 1)))
 
 
+def many_suns():
+    airlight.sun_position(np.datetime64("2026-01-01") + np.arange(5_000_000).astype("timedelta64[s]"), 48.86, 2.29)
+
+
+def many_angles_of_a_sphere():
+    airlight.mie_phase(20_000.0, 1.333 + 0j, np.linspace(0.0, 180.0, 200_000))
+
+
 @pytest.fixture
 def ctrl_c_raises():
     """The handler of a shell's own programs: one started in the background ignores Ctrl-C."""
@@ -61,7 +69,7 @@ def cost_after_ctrl_c(work):
 
 # Processor time, since other programs may hold the processors.
 @pytest.mark.usefixtures("ctrl_c_raises")
-@pytest.mark.parametrize("work", [fine_sky, monte_carlo_picture, monte_carlo_rays, many_rays])
+@pytest.mark.parametrize("work", [fine_sky, monte_carlo_picture, monte_carlo_rays, many_rays, many_suns, many_angles_of_a_sphere])
 def test_ctrl_c_stops_within_a_fifth_of_a_second(work):
     assert cost_after_ctrl_c(work) < 0.2
 

@@ -25,8 +25,9 @@ from airlight._native import (
     models,
     read_depth,
     read_picture,
+    write_picture,
 )
-from airlight._sun import SunPosition, sun_position
+from airlight._sun import SunPosition, sun_position, view_at
 
 __all__ = [
     "AccuracyReport",
@@ -49,4 +50,6 @@ __all__ = [
     "read_depth",
     "read_picture",
     "sun_position",
+    "view_at",
+    "write_picture",
 ]

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from airlight import _native
 
@@ -127,3 +127,58 @@ def sun_position(
     pressure = pressure_pa if refraction else None
     parts = _native.sun_position(unix_times(times), latitude_deg, longitude_deg, altitude_m, pressure, temperature_c)
     return SunPosition(*parts)
+
+
+def view_at(
+    time: Any,
+    latitude_deg: float,
+    longitude_deg: float,
+    altitude_m: float = 2.0,
+    *,
+    atmosphere: _native.Atmosphere | str = "average",
+    wavelengths: ArrayLike | str = "standard",
+    threads: int | None = None,
+) -> _native.View:
+    """The sky of a clear day at a place and an hour.
+
+    Parameters
+    ----------
+    time : str, datetime.datetime, numpy.datetime64
+        One time, as for ``sun_position``.
+    latitude_deg, longitude_deg : float
+        Degrees north and east.
+    altitude_m : float
+        Altitude of the eye above sea level, m.
+    atmosphere : Atmosphere or str
+        The air.
+    wavelengths : str or array_like, shape (w,)
+        A grid or wavelengths, as for ``Sky``.
+    threads : int or None
+        Number of threads.
+
+    Returns
+    -------
+    View
+
+    Raises
+    ------
+    ValueError
+        For several times, and for one without an offset from UTC.
+
+    Examples
+    --------
+    >>> airlight.view_at("2026-06-21T12:00:00Z", 48.86, 2.29, wavelengths="rgb")
+    View("average", sun 64.54 degrees high at azimuth 183.92)
+    """
+    sun = sun_position(time, latitude_deg, longitude_deg, altitude_m)
+    if len(sun.elevation_deg) != 1:
+        raise ValueError(f"time: expected one time, got {len(sun.elevation_deg)}")
+    elevation_deg = float(sun.elevation_deg[0])
+    sky = _native.Sky(atmosphere, wavelengths=wavelengths, sun_elevation_deg=elevation_deg, altitude_m=altitude_m, threads=threads)
+    return sky.view(
+        altitude_m,
+        sun_elevation_deg=elevation_deg,
+        sun_azimuth_deg=float(sun.azimuth_deg[0]),
+        distance_ratio=float(sun.distance_au[0]),
+        threads=threads,
+    )

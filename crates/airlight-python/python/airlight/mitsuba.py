@@ -34,7 +34,6 @@ def environment(
     """
     import mitsuba
 
-    picture = view.panorama(height, "srgb", sun_disc=sun_disc, threads=threads)
-    # The centre of Mitsuba's map is south. Colours outside sRGB have negative components, which Mitsuba refuses.
-    turned = np.maximum(np.roll(picture, height, axis=1), 0.0)
-    return {"type": "envmap", "bitmap": mitsuba.Bitmap(np.ascontiguousarray(turned)), "scale": scale}
+    picture = view.panorama(height, "srgb", sun_disc=sun_disc, orientation="mitsuba", threads=threads)
+    # Colours outside sRGB have negative components, which Mitsuba refuses.
+    return {"type": "envmap", "bitmap": mitsuba.Bitmap(np.maximum(picture, 0.0)), "scale": scale}
