@@ -408,3 +408,130 @@ pub fn read_texture(
     let rows = bytes.chunks(bytes_per_row as usize);
     Ok(rows.flat_map(|of| &of[..row as usize]).copied().collect())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use airlight::Named;
+    use airlight::scene::ToneKind;
+    use half::f16;
+
+    const SIDE: u32 = 64;
+
+    /// Light from black to far beyond white, of all hues, some outside the gamut.
+    fn light() -> Vec<[f32; 3]> {
+        let channel = |k: u32, c: u32| {
+            let tint = ((0.37 * k as f32) + 2.1 * c as f32).sin();
+            let brightness = 10f32.powf(8.0 * k as f32 / (SIDE * SIDE) as f32 - 5.0);
+            f16::from_f32(brightness * (0.8 + tint)).to_f32()
+        };
+        let pixel = |k| std::array::from_fn(|c| channel(k, c as u32));
+        (0..SIDE * SIDE).map(pixel).collect()
+    }
+
+    fn texture(
+        device: &wgpu::Device,
+        format: wgpu::TextureFormat,
+        usage: wgpu::TextureUsages,
+    ) -> wgpu::Texture {
+        device.create_texture(&wgpu::TextureDescriptor {
+            label: None,
+            size: wgpu::Extent3d {
+                width: SIDE,
+                height: SIDE,
+                depth_or_array_layers: 1,
+            },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage,
+            view_formats: &[],
+        })
+    }
+
+    /// The pass on the device against the tone mapper of picture files, for the same settings of a scene, dither included.
+    #[test]
+    fn pictures_are_shown_as_files_are_written() {
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+            backends: wgpu::Backends::VULKAN,
+            ..wgpu::InstanceDescriptor::new_without_display_handle()
+        });
+        let adapter = instance.request_adapter(&wgpu::RequestAdapterOptions::default());
+        let adapter = pollster::block_on(adapter).expect("a Vulkan device");
+        let device = adapter.request_device(&wgpu::DeviceDescriptor::default());
+        let (device, queue) = pollster::block_on(device).unwrap();
+        let light = light();
+        let source = texture(
+            &device,
+            LIGHT,
+            wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::TEXTURE_BINDING,
+        );
+        let halves = light.iter().flat_map(|[r, g, b]| [*r, *g, *b, 1.0]);
+        let bytes: Vec<u8> = halves
+            .flat_map(|value| f16::from_f32(value).to_ne_bytes())
+            .collect();
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(8 * SIDE),
+            rows_per_image: None,
+        };
+        queue.write_texture(source.as_image_copy(), &bytes, layout, source.size());
+        let target = texture(
+            &device,
+            SHOWN,
+            wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+        );
+        let pass = TonePass::new(&device, SHOWN);
+        let camera = |contrast, saturation, kelvin| OutputSpec {
+            tone: Some(ToneKind::Camera),
+            tone_contrast: contrast,
+            saturation,
+            white_balance_k: kelvin,
+            ..Default::default()
+        };
+        let mut outputs = vec![
+            OutputSpec::default(),
+            camera(Some(2.0), Some(1.6), Some(4000.0)),
+            camera(Some(0.7), Some(0.0), Some(12_000.0)),
+        ];
+        outputs.extend(ToneKind::ALL.iter().map(|kind| OutputSpec {
+            tone: Some(*kind),
+            ..Default::default()
+        }));
+        for output in outputs {
+            let mut encoder = device.create_command_encoder(&Default::default());
+            let [source, target_view] =
+                [&source, &target].map(|texture| texture.create_view(&Default::default()));
+            pass.record(&mut encoder, &source, &target_view, &tone_of(&output));
+            queue.submit([encoder.finish()]);
+            let shown = read_texture(&device, &queue, &target).unwrap();
+            let mapper = tone_mapper(&output, 1.0).unwrap();
+            let row = 3 * SIDE as usize;
+            let mut right = vec![0; row * SIDE as usize];
+            let rows = light.as_flattened().chunks(row);
+            for (y, (linear, out)) in rows.zip(right.chunks_mut(row)).enumerate() {
+                mapper.row_to_u8(y as u32, linear, out);
+            }
+            let grey = right.iter().filter(|level| (20..236).contains(*level));
+            assert!(grey.count() > 1000, "{output:?}");
+            let shown = shown
+                .as_chunks::<4>()
+                .0
+                .iter()
+                .flat_map(|p| [p[0], p[1], p[2]]);
+            let apart: Vec<u8> = shown.zip(&right).map(|(a, b)| a.abs_diff(*b)).collect();
+            let largest = apart.iter().max().unwrap();
+            let differ = apart.iter().filter(|d| **d > 0).count();
+            println!(
+                "{:?}: largest {largest}, {differ} of {}",
+                output.tone,
+                apart.len()
+            );
+            assert!(
+                *largest <= 1 && 20 * differ < apart.len(),
+                "{output:?}: {largest} {differ}"
+            );
+        }
+    }
+}
