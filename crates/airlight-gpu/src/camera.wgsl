@@ -17,7 +17,7 @@ struct Camera {
 
 @group(1) @binding(0) var<uniform> camera: Camera;
 
-/// Direction of a place in clip space. Outside the circle of a fisheye the pixel is left as it is.
+/// Direction of a place in clip space.
 fn direction_at(clip: vec2<f32>) -> vec3<f32> {
     if camera.projection == 0u {
         // The depth away from the far end, where positions may be infinite.
@@ -27,12 +27,14 @@ fn direction_at(clip: vec2<f32>) -> vec3<f32> {
     let angles = clip * camera.half_angles;
     var direction = equirectangular_direction(angles);
     if camera.projection == 1u {
-        if length(angles) > camera.largest_angle {
-            discard;
-        }
         direction = fisheye_direction(angles);
     }
     return normalize((camera.world_from_clip * vec4<f32>(direction, 0.0)).xyz);
+}
+
+/// Whether a place in clip space is outside the circle of a fisheye.
+fn is_outside(clip: vec2<f32>) -> bool {
+    return camera.projection == 1u && length(clip * camera.half_angles) > camera.largest_angle;
 }
 
 /// Distance of a depth, m.

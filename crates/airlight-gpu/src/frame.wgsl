@@ -12,6 +12,9 @@ struct Pixel {
 fn pixel(in: Corner) -> Pixel {
     let depth = textureLoad(depth_texture, vec2<i32>(in.position.xy), 0).x;
     let direction = direction_at(in.clip);
+    if is_outside(in.clip) {
+        discard;
+    }
     if depth == camera.far_depth {
         return Pixel(direction, -1.0);
     }

@@ -21,6 +21,8 @@ struct Sky {
 @group(0) @binding(7) var phase: texture_2d<f32>;
 @group(0) @binding(8) var disc: texture_2d<f32>;
 
+/// Samples on a side of a pixel that the edge of the sun's disc crosses.
+const DISC_SAMPLES: u32 = 8u;
 /// Longer than any way through the air.
 const BEYOND_AIR_M: f32 = 1e9;
 
@@ -35,15 +37,45 @@ fn is_ground(seen: Pixel) -> bool {
     return seen.distance_m < 0.0 && elevation_of(seen.direction) < sky.view.horizon_rad;
 }
 
-/// Red, green and blue of the sun's disc, dimmed by the air.
-fn sun_disc(seen: Pixel) -> vec3<f32> {
-    let one_minus_cos = one_minus_cos_between(seen.direction, sky.view.sun);
-    if camera.disc == 0.0 || one_minus_cos >= sky.disc_one_minus_cos || is_ground(seen) {
-        return vec3<f32>(0.0);
+/// Radiance of the sun's disc outside the air along a direction without geometry; 0 beside it and below the horizon.
+fn disc_outside_air(direction: vec3<f32>) -> vec4<f32> {
+    let one_minus_cos = one_minus_cos_between(direction, sky.view.sun);
+    if one_minus_cos >= sky.disc_one_minus_cos || is_ground(Pixel(direction, -1.0)) {
+        return vec4<f32>(0.0);
     }
     let mu = sqrt(1.0 - one_minus_cos / sky.disc_one_minus_cos);
-    let outside = textureSampleLevel(disc, linear_sampler, vec2<f32>(texel_coordinate(mu, 64.0), 0.5), 0.0);
-    return rgb_from_spectrum(sky.disc_weights, outside * air_to(seen).transmittance);
+    return textureSampleLevel(disc, linear_sampler, vec2<f32>(texel_coordinate(mu, 64.0), 0.5), 0.0);
+}
+
+/// Red, green and blue of the sun's disc, dimmed by the air: the mean over a pixel without geometry.
+fn sun_disc(in: Corner, seen: Pixel) -> vec3<f32> {
+    let pixel_size = 2.0 / vec2<f32>(textureDimensions(depth_texture));
+    let reach = distance(direction_at(in.clip + 0.5 * pixel_size), seen.direction);
+    let radius = sqrt(2.0 * sky.disc_one_minus_cos);
+    let away = sqrt(2.0 * one_minus_cos_between(seen.direction, sky.view.sun));
+    if camera.disc == 0.0 || away > radius + reach {
+        return vec3<f32>(0.0);
+    }
+    var samples = DISC_SAMPLES;
+    if away + 8.0 * reach < radius {
+        // Brightness is even across a pixel far inside the disc.
+        samples = 1u;
+    }
+    var outside = vec4<f32>(0.0);
+    var towards = vec3<f32>(0.0);
+    for (var k = 0u; k < samples * samples; k++) {
+        let place = (vec2<f32>(vec2<u32>(k % samples, k / samples)) + 0.5) / f32(samples) - 0.5;
+        let direction = direction_at(in.clip + place * pixel_size);
+        let radiance = disc_outside_air(direction);
+        outside += radiance;
+        towards += direction * radiance.x;
+    }
+    if outside.x <= 0.0 {
+        return vec3<f32>(0.0);
+    }
+    let mean = outside / f32(samples * samples);
+    let transmittance = air_to(Pixel(normalize(towards), -1.0)).transmittance;
+    return rgb_from_spectrum(sky.disc_weights, mean * transmittance);
 }
 
 @fragment
@@ -61,7 +93,7 @@ fn add(in: Corner) -> @location(0) vec4<f32> {
     var light = vec3<f32>(0.0);
     if seen.distance_m < 0.0 {
         let radiance = sky_radiance(sky.view, sky.scales, sky_smooth, sky_haze, phase, linear_sampler, seen.direction);
-        light = sun_disc(seen) + rgb_from_spectrum(sky.radiance_weights, radiance);
+        light = sun_disc(in, seen) + rgb_from_spectrum(sky.radiance_weights, radiance);
     } else {
         light = rgb_from_spectrum(sky.radiance_weights, air_to(seen).path_radiance);
     }

@@ -149,6 +149,9 @@ struct Drawn {
 @fragment
 fn draw(in: Corner) -> Drawn {
     let direction = direction_at(in.clip);
+    if is_outside(in.clip) {
+        discard;
+    }
     let distance_m = terrain_distance(direction);
     if distance_m < 0.0 {
         discard;

@@ -389,13 +389,31 @@ fn the_sun_shines_where_it_is_and_only_there() {
     let pixels = gpu.draw(&mut renderer, &frame, exposure, [0.0; 3], None);
     let luminance = |k: usize| RgbSpace::Srgb.luminance(pixels[k].map(f64::from));
     let middle = pixels.len() / 2;
-    let error = luminance(middle) - 1.0;
+    let pixel = 2.0 / f64::from(side);
+    let across = sun.any_orthonormal_vector();
+    let up = sun.cross(across);
+    let place = |k: i32| (f64::from(k) - 4.0) / 9.0 * pixel;
+    let parts = (0..81).map(|k| (sun + across * place(k % 9) + up * place(k / 9)).normalize());
+    let disc = |part| view.sky().grid().to_xyz(&view.sun_disc_radiance(part))[1] / right[1];
+    let error = luminance(middle) / (parts.map(disc).sum::<f64>() / 81.0) - 1.0;
     assert!(error.abs() < 0.02, "{error}");
+    // Pixels are means over what they show of the disc, so that all of its light is in the frame.
+    let radius = view.disc().angular_radius_rad;
+    let mut sum = 0.0;
     for (k, _) in pixels.iter().enumerate() {
         let direction = frame.direction(k as u32 % side, k as u32 / side).as_dvec3();
-        let inside = direction.angle_between(sun) < view.disc().angular_radius_rad;
-        assert_eq!(luminance(k) > 0.01, inside, "{direction}");
+        let away = direction.angle_between(sun);
+        match away > radius + pixel {
+            true => assert!(luminance(k) < 0.01, "{direction}"),
+            false => sum += luminance(k) * pixel * pixel * away.cos().powi(3),
+        }
+        assert!(luminance(k) > 0.01 || away > radius - pixel, "{direction}");
     }
+    let lighting = renderer.lighting().unwrap();
+    let illuminance = lighting.sun_illuminance_lx.as_dvec3().to_array();
+    let error = sum / (f64::from(exposure) * RgbSpace::Srgb.luminance(illuminance)) - 1.0;
+    println!("light of the disc in the frame: {error:.4}");
+    assert!(error.abs() < 0.02, "{error}");
 }
 
 /// Directions over the sphere, evenly, away from the horizon.
