@@ -36,7 +36,7 @@ pub enum Drops {
     HazeL,
     /// Stratospheric haze, Deirmendjian's haze H: mode radius 0.1 micrometres.
     HazeH,
-    /// Rain of 1 mm per hour, Feingold & Levin: median radius 360 micrometres. Computing its table takes seconds.
+    /// Rain of 1 mm per hour, Feingold & Levin: median radius 360 micrometres.
     Rain,
 }
 

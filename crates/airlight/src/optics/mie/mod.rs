@@ -7,7 +7,7 @@
 //!
 //! Modules: `recurrence` (Riccati-Bessel functions), [`Sphere`] (coefficients, efficiencies), `angular` (amplitudes at many
 //! angles), [`SizeDistribution`], [`Particles`] (bulk coefficients and phase functions of many spheres), [`droplets`]
-//! (published fogs and clouds), [`DropTable`] (their tables, cached).
+//! (published fogs and clouds), [`DropTable`] (their tables, cached), `stored` (embedded tables).
 
 mod angles;
 mod angular;
@@ -19,6 +19,7 @@ mod recurrence;
 mod shared;
 mod sizes;
 mod sphere;
+mod stored;
 
 pub use matrix::ScatteringMatrix;
 pub use num_complex::Complex64;

@@ -335,5 +335,15 @@ pub(super) struct Steps {
     pub log: f64,
 }
 
+impl Steps {
+    /// Steps wider by a factor.
+    pub fn times(self, factor: f64) -> Self {
+        Self {
+            size: factor * self.size,
+            log: factor * self.log,
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests;

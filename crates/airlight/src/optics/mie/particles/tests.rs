@@ -31,11 +31,7 @@ fn sums_over_sizes_converge() {
         [(drops(2.5), 6e-3, 0.03, 5e-4), (haze, 1e-6, 1e-5, 1e-7)]
     {
         let at = |factor: f64| {
-            let steps = Steps {
-                size: STEPS.size * factor,
-                log: STEPS.log * factor,
-            };
-            let prepared = particles.prepare(550.0, steps).unwrap();
+            let prepared = particles.prepare(550.0, STEPS.times(factor)).unwrap();
             let matrices = prepared.matrices(&cosines());
             (particles.bulk_of(550.0, &prepared), matrices)
         };
