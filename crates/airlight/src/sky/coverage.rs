@@ -104,9 +104,10 @@ impl SunCoverage {
         let mut zeniths = vec![centre];
         for (side, end) in [(-1.0, lowest), (1.0, highest)] {
             let (mut step, growth) = if twilight {
-                (0.8, if centre > 98.0 { 1.12 } else { 1.25 })
+                (1.1, if centre > 98.0 { 1.17 } else { 1.35 })
             } else {
-                (1.5, 1.5)
+                // The light varies with the air mass of the sunlight.
+                (f64::max(1.5, 0.25 * (90.0 - centre)), 1.6)
             };
             let mut zenith = centre;
             while (zenith - end) * side < 0.0 {
@@ -144,8 +145,8 @@ fn range_deg(altitude_m: f64, ground_radius_m: f64, top_radius_m: f64) -> f64 {
 /// Zenith angles over the whole range: coarse for high suns, every degree through twilight.
 fn all_zeniths_deg() -> Vec<f64> {
     zeniths_deg(NIGHT_DEG, |zenith| match zenith {
-        z if z < 55.0 => 5.0,
-        z if z < 73.0 => 3.0,
+        z if z < 55.0 => 7.0,
+        z if z < 73.0 => 4.0,
         z if z < 83.0 => 2.0,
         z if z < 112.0 => 1.0,
         _ => 2.0,

@@ -225,7 +225,7 @@ const MAX_STEPS: f64 = 60.0;
 /// the ground, both per unit solar irradiance.
 ///
 /// `A_00` is stored as its logarithm and the other moments as ratios to it: light falls by orders of magnitude as the sun
-/// sets, so its logarithm is interpolated.
+/// sets, so its logarithm is interpolated. Between suns the ratios are linear in the sun cosine, and the logarithm has a [`Bend`].
 #[derive(Clone, Debug)]
 pub struct RadianceField<const N: usize> {
     /// Grid of the moments.
@@ -238,8 +238,68 @@ pub struct RadianceField<const N: usize> {
     polarised: bool,
     /// `[radius][sun][moment]`.
     moments: Vec<Spectrum<N>>,
-    /// Logarithm of the diffuse irradiance on the ground for each sun cosine.
+    /// Bends of the logarithm of the intensity, `[radius][interval between suns]`.
+    bends: Vec<Bend<N>>,
+    /// Logarithm of the diffuse irradiance on the ground for each sun cosine, and its bends.
     ground_irradiance: Vec<Spectrum<N>>,
+    ground_bends: Vec<Bend<N>>,
+}
+
+/// Curvature of a logarithm between two sun cosines: the logarithm is higher by the bend times `f (1 - f)` than the line between
+/// its ends, where `f` is the fraction of the interval.
+#[derive(Clone, Copy, Debug)]
+pub struct Bend<const N: usize>(Spectrum<N>);
+
+impl<const N: usize> Bend<N> {
+    /// Rise of the logarithm over the line at a fraction of the interval.
+    #[inline(always)]
+    pub fn at(self, fraction: f32) -> Spectrum<N> {
+        self.0 * (fraction * (1.0 - fraction))
+    }
+
+    /// Weighted sum.
+    #[inline(always)]
+    fn sum(bends: impl Iterator<Item = (Self, f32)>) -> Self {
+        Self(bends.fold(Spectrum::ZERO, |sum, (Self(bend), w)| {
+            sum.scale_acc(bend, w)
+        }))
+    }
+
+    /// Bends in the intervals between increasing nodes with these logarithms: half the mean of the second derivatives at both ends,
+    /// at most twice the smaller one, and none where they differ in sign: the light has kinks where the sun sets on a radius.
+    fn of(nodes: &[f64], logs: impl Fn(usize) -> Spectrum<N>) -> Vec<Self> {
+        let width = |i: usize| (nodes[i + 1] - nodes[i]) as f32;
+        let slope = |i: usize| (logs(i + 1) - logs(i)) * (1.0 / width(i));
+        let last = nodes.len() - 1;
+        let curvature = |i: usize| match i {
+            0 => None,
+            _ if i == last => None,
+            _ => Some((slope(i) - slope(i - 1)) * (2.0 / (width(i) + width(i - 1)))),
+        };
+        (0..last)
+            .map(|i| {
+                let scale = -0.5 * width(i) * width(i);
+                let bend = match (curvature(i), curvature(i + 1)) {
+                    (Some(a), Some(b)) => Spectrum::from_fn(|lane| limited_mean(a[lane], b[lane])),
+                    // Towards the ends of the range the curvature of the next interval is the best guess.
+                    (Some(one), None) | (None, Some(one)) => one,
+                    (None, None) => Spectrum::ZERO,
+                };
+                Self(bend * scale)
+            })
+            .collect()
+    }
+}
+
+/// The mean of two numbers of the same sign, at most twice the one nearer to 0; 0 if their signs differ.
+fn limited_mean(a: f32, b: f32) -> f32 {
+    match a * b > 0.0 {
+        true => (0.5 * (a + b))
+            .abs()
+            .min(2.0 * a.abs().min(b.abs()))
+            .copysign(a),
+        false => 0.0,
+    }
 }
 
 /// Values between radii: those at four radii, and their weights.
@@ -301,11 +361,18 @@ impl<const N: usize> RadianceField<N> {
             }
             point[0] = intensity.ln();
         }
-        let ground_irradiance = ground
+        let ground_irradiance: Vec<Spectrum<N>> = ground
             .iter()
             .map(|e| e.max_scalar(MIN_INTENSITY).ln())
             .collect();
+        let suns = &grid.sun_cosines;
+        let bends = moments
+            .chunks_exact(count * suns.len())
+            .flat_map(|suns_at_radius| Bend::of(suns, |sun| suns_at_radius[sun * count]))
+            .collect();
         Self {
+            ground_bends: Bend::of(suns, |sun| ground_irradiance[sun]),
+            bends,
             grid,
             polarised: count > basis.count(),
             basis,
@@ -353,7 +420,16 @@ impl<const N: usize> RadianceField<N> {
     #[inline(always)]
     pub fn ground_irradiance(&self, mu_sun: f64) -> Spectrum<N> {
         let at = self.grid.place_of_sun(mu_sun);
-        at.value_in_f32(&self.ground_irradiance).exp()
+        let bend = self.ground_bends[at.below].at(at.fraction as f32);
+        (at.value_in_f32(&self.ground_irradiance) + bend).exp()
+    }
+
+    /// Bend of the logarithm of the intensity in an interval between suns.
+    #[inline(always)]
+    pub fn bend(&self, place: RadialStencil, interval: usize) -> Bend<N> {
+        let intervals = self.grid.sun_cosines.len() - 1;
+        let weights = place.weights.into_iter().enumerate();
+        Bend::sum(weights.map(|(k, w)| (self.bends[(place.first + k) * intervals + interval], w)))
     }
 
     /// Stored values at a radius under one sun.
@@ -381,8 +457,7 @@ impl<const N: usize> RadianceField<N> {
         densities: &PerConstituent,
         harmonics: &[f32],
     ) -> Spectrum<N> {
-        let corners = self.corners(here);
-        let mut log_intensity = Spectrum::ZERO;
+        let (corners, mut log_intensity) = self.corners(here);
         for &(corner, w) in &corners {
             log_intensity = log_intensity.scale_acc(corner[0], w);
         }
@@ -444,33 +519,34 @@ impl<const N: usize> RadianceField<N> {
         if !self.polarised {
             return [Spectrum::ZERO; 2];
         }
-        let corners = self.corners(here);
-        let between = |moment: usize| {
-            let start = Spectrum::ZERO;
+        let (corners, bend) = self.corners(here);
+        let sum = |start: Spectrum<N>, moment: usize| {
             corners
                 .iter()
                 .fold(start, |sum, (corner, w)| sum.scale_acc(corner[moment], *w))
         };
+        let between = |moment: usize| sum(Spectrum::ZERO, moment);
         let [natural, kept] = polarised_moments(air, densities);
         let scattered = std::array::from_fn(|m| {
             let intensity = between(Harmonics::index(2, m));
             (between(self.basis.count() + m) * kept).mul_acc(natural, intensity)
         });
-        let whole = between(0).exp();
+        let whole = sum(bend, 0).exp();
         harmonics.of_moments(&scattered).map(|light| light * whole)
     }
 
-    /// The nodes around a place and their weights.
+    /// The nodes around a place and their weights, and the rise of the logarithm of the intensity over their weighted sum.
     #[inline(always)]
-    fn corners(&self, here: &Ray) -> [(&[Spectrum<N>], f32); 8] {
+    fn corners(&self, here: &Ray) -> ([(&[Spectrum<N>], f32); 8], Spectrum<N>) {
         let radius = self.grid.place_of_radius(here.radius_m);
         let sun = self.grid.place_of_sun(here.mu_sun);
         let (fr, fs) = (radius.weights, sun.fraction as f32);
-        std::array::from_fn(|k| {
+        let corners = std::array::from_fn(|k| {
             let side = k % 2;
             let weight = fr[k / 2] * if side == 0 { 1.0 - fs } else { fs };
             (self.point(radius.first + k / 2, sun.below + side), weight)
-        })
+        });
+        (corners, self.bend(radius, sun.below).at(fs))
     }
 }
 
@@ -527,5 +603,43 @@ pub fn ground_irradiance<const N: usize>(
             diffuse.field.ground_irradiance(mu_sun) + diffuse.air.sun_on_ground(mu_sun)
         }
         None => air.sun_on_ground(mu_sun),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const NODES: [f64; 6] = [-0.3, -0.1, 0.0, 0.15, 0.4, 0.9];
+
+    fn bends(log: impl Fn(f64) -> f64) -> Vec<f32> {
+        let bends = Bend::<1>::of(&NODES, |sun| Spectrum::from_fn(|_| log(NODES[sun]) as f32));
+        bends.iter().map(|bend| bend.at(0.5)[0]).collect()
+    }
+
+    #[test]
+    fn bends_make_parabolas_exact() {
+        let log = |mu: f64| 2.0 - 3.0 * mu - 4.0 * mu * mu;
+        for (i, bend) in bends(log).into_iter().enumerate() {
+            let (a, b) = (NODES[i], NODES[i + 1]);
+            let rise = log(0.5 * (a + b)) - 0.5 * (log(a) + log(b));
+            assert!((f64::from(bend) - rise).abs() < 1e-5, "{i}: {bend} {rise}");
+        }
+    }
+
+    /// Beside a kink the line stays the line, and it is not bent the wrong way.
+    #[test]
+    fn kinks_do_not_ring() {
+        let kink = |mu: f64| 5.0 * mu.min(0.15);
+        for (i, bend) in bends(kink).into_iter().enumerate() {
+            assert!(bend.abs() < 1e-5, "{i}: {bend}");
+        }
+    }
+
+    #[test]
+    fn two_suns_are_joined_by_a_line() {
+        let bends = Bend::<1>::of(&[0.1, 0.3], |sun| Spectrum::from_fn(|_| sun as f32));
+        assert_eq!(bends.len(), 1);
+        assert_eq!(bends[0].at(0.5)[0], 0.0);
     }
 }

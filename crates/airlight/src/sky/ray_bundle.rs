@@ -5,7 +5,9 @@
 //! depends on the sun remains for each ray and is stored in arrays over the rays, so that the compiler vectorises it.
 
 use super::air::Air;
-use super::field::{FieldGrid, RadialStencil, RadianceField, polarised_moments, scattering_moment};
+use super::field::{
+    Bend, FieldGrid, RadialStencil, RadianceField, polarised_moments, scattering_moment,
+};
 use super::harmonics::Harmonics;
 use super::horizon::{HorizonPlace, MODES};
 use super::polarised::{POLARISED, TensorHarmonics};
@@ -195,8 +197,9 @@ pub struct Scratch<const N: usize> {
     y: Vec<f32>,
     /// What a node scatters of each moment into its azimuthal mode.
     factors: Vec<Spectrum<N>>,
-    /// What a node scatters of the field at its radius, for each sun: [`Modes`].
+    /// What a node scatters of the field at its radius, for each sun: [`Modes`]; and the bends of the logarithm between suns.
     row: Vec<Modes<N>>,
+    bends: Vec<Bend<N>>,
 }
 
 /// Light that a node scatters into the rays of a bundle, of a field under one sun: all rays have the same zenith angle there, so it
@@ -555,7 +558,8 @@ impl<const N: usize> Path<N> {
                     below = below.scale_acc(a.intensity[m], cosine);
                     above = above.scale_acc(b.intensity[m], cosine);
                 }
-                let intensity = lerp(a.log_intensity, b.log_intensity, fraction).exp();
+                let line = lerp(a.log_intensity, b.log_intensity, fraction);
+                let intensity = (line + scratch.bends[first].at(fraction)).exp();
                 *out = out.mul_acc(lerp(below, above, fraction).max_scalar(0.0), intensity);
                 if let Some(linear) = &mut linear {
                     let one = scratch.cosines[rays + slot];
@@ -666,6 +670,11 @@ impl<const N: usize> PathNode<N> {
         }
         let [to_intensity, natural, kept] = self.polarised_weights;
         let amplitudes = TensorHarmonics::amplitudes(self.mu);
+        scratch.bends.clear();
+        let intervals = suns.start..suns.end - 1;
+        scratch
+            .bends
+            .extend(intervals.map(|interval| field.bend(self.place, interval)));
         scratch.row.resize(suns.len(), Modes::NONE);
         for (modes, sun) in scratch.row.iter_mut().zip(suns) {
             let points = field.at_radius(self.place, sun);
