@@ -1,5 +1,6 @@
 //! Mathematics without physics: interpolation, quadrature, polynomials, random numbers, SIMD.
 
+pub(crate) mod arctangent;
 pub(crate) mod interpolation;
 pub(crate) mod legendre;
 pub(crate) mod parallel;

@@ -185,9 +185,14 @@ impl RadianceView for SolvedView {
     }
 
     fn radiance(&self, directions: &[DVec3], out: &mut [f32]) {
+        self.clear.samples_on_this_thread(directions, out);
         let values = out.chunks_exact_mut(self.clear.channels());
         for (&direction, values) in directions.iter().zip(values) {
-            self.sample(direction, values);
+            if direction == DVec3::ZERO {
+                values.fill(0.0);
+            } else if let Some(fog) = &self.fog {
+                fog.cover(direction, values);
+            }
         }
     }
 

@@ -57,6 +57,13 @@ impl Between<'_> {
     pub fn get(&self, index: usize) -> f32 {
         lerp(self.below[index], self.above[index], self.fraction)
     }
+
+    /// Values of a part in all of `C` channels.
+    #[inline(always)]
+    pub fn channels<const C: usize>(&self, part: usize) -> [f32; C] {
+        let [below, above] = [self.below, self.above].map(|values| &values[part * C..][..C]);
+        std::array::from_fn(|channel| lerp(below[channel], above[channel], self.fraction))
+    }
 }
 
 impl Peaked {

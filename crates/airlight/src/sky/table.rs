@@ -6,6 +6,7 @@
 
 use super::peaked::Peaked;
 use crate::debug::debug_fields;
+use crate::math::arctangent::arctangent;
 use crate::math::interpolation::{cubic_f32, cubic_mirrored};
 use crate::math::parallel;
 use crate::math::quadrature::GaussRule;
@@ -30,6 +31,9 @@ pub(super) const AZIMUTHS: usize = 64;
 pub(super) const ROWS_ABOVE: usize = 128;
 /// Number of rows from the horizon to the nadir.
 pub(super) const ROWS_BELOW: usize = 96;
+
+/// Number of directions that are looked up together.
+const TOGETHER: usize = 64;
 
 /// Widest cell that is interpolated without allocation: 16 wavelengths and one peaked scatterer.
 const SMALL_WIDTH: usize = 64;
@@ -75,6 +79,16 @@ struct Column {
     half_sine2: f64,
 }
 
+/// Angles of directions, as the table's coordinates need them.
+struct Angles<const N: usize> {
+    /// Elevations, rad.
+    elevations: [f64; N],
+    /// Azimuths from that of the sun, to either side; 1 is the opposite one.
+    azimuths: [f64; N],
+    /// Sines of half the angle to the sun.
+    half_sines: [f64; N],
+}
+
 impl SkyTable {
     /// Number of channels.
     pub fn channels(&self) -> usize {
@@ -89,53 +103,116 @@ impl SkyTable {
     /// Evaluates the radiance along the unit vector `direction` into `out`, one value per channel.
     #[inline]
     pub fn sample(&self, direction: DVec3, out: &mut [f32]) {
-        let (elevation, nodes, weights) = self.column(direction);
-        let half_sine = 0.5 * direction.distance(self.sun);
-        match self.place(elevation) {
-            Some((half, row)) => self.interpolate(half, row, &nodes, &weights, half_sine, out),
-            None => out[..self.channels].fill(0.0),
+        self.look_up(&[direction], &mut out[..self.channels]);
+    }
+
+    /// [`SkyTable::sample`] of many directions, on all threads; `out` is `[direction][channel]`.
+    ///
+    /// # Panics
+    /// Where `out` has another length.
+    pub fn samples(&self, directions: &[DVec3], out: &mut [f32]) {
+        let width = self.channels();
+        check_length(out, directions.len() * width);
+        parallel::for_each_chunk(out, TOGETHER * width, |index, out| {
+            let count = out.len() / width;
+            self.samples_on_this_thread(&directions[index * TOGETHER..][..count], out);
+        });
+    }
+
+    /// As [`SkyTable::samples`], on the calling thread.
+    pub(crate) fn samples_on_this_thread(&self, directions: &[DVec3], out: &mut [f32]) {
+        let width = self.channels();
+        let (whole, rest) = directions.as_chunks::<TOGETHER>();
+        let (out, out_of_rest) = out.split_at_mut(whole.len() * TOGETHER * width);
+        for (directions, out) in whole.iter().zip(out.chunks_exact_mut(TOGETHER * width)) {
+            vectorized(
+                #[inline(always)]
+                || self.look_up(directions, out),
+            );
+        }
+        for (&direction, out) in rest.iter().zip(out_of_rest.chunks_exact_mut(width)) {
+            self.sample(direction, out);
         }
     }
 
-    /// Elevation of a direction, and its columns with their weights.
+    /// The radiance in directions; `out` is `[direction][channel]`.
     #[inline(always)]
-    fn column(&self, direction: DVec3) -> (f64, [usize; 4], [f32; 4]) {
-        let horizontal = (direction.x * direction.x + direction.z * direction.z).sqrt();
-        let cos_azimuth = if horizontal > 0.0 {
-            (direction.x * self.sun_azimuth.x + direction.z * self.sun_azimuth.z) / horizontal
-        } else {
-            1.0
+    fn look_up<const N: usize>(&self, directions: &[DVec3; N], out: &mut [f32]) {
+        let angles = self.angles(directions);
+        match self.width {
+            4 => self.look_up_cells::<4, N>(&angles, out),
+            8 => self.look_up_cells::<8, N>(&angles, out),
+            12 => self.look_up_cells::<12, N>(&angles, out),
+            _ => self.look_up_wide_cells(&angles, out),
+        }
+    }
+
+    /// The angles of directions.
+    #[inline(always)]
+    fn angles<const N: usize>(&self, directions: &[DVec3; N]) -> Angles<N> {
+        let DVec3 {
+            x: sun_x, z: sun_z, ..
+        } = self.sun_azimuth;
+        let mut angles = Angles {
+            elevations: [0.0; N],
+            azimuths: [0.0; N],
+            half_sines: [0.0; N],
         };
-        let (nodes, weights) = cubic_mirrored(cos_azimuth.clamp(-1.0, 1.0).acos() / PI, AZIMUTHS);
-        (direction.y.atan2(horizontal), nodes, weights)
+        for (i, &DVec3 { x, y, z }) in directions.iter().enumerate() {
+            let horizontal = (x * x + z * z).sqrt();
+            let (along, across) = (x * sun_x + z * sun_z, x * sun_z - z * sun_x);
+            angles.elevations[i] = arctangent(y, horizontal, (x * x + y * y + z * z).sqrt());
+            angles.azimuths[i] = arctangent(across.abs(), along, horizontal) / PI;
+            let [x, y, z] = [x - self.sun.x, y - self.sun.y, z - self.sun.z];
+            angles.half_sines[i] = 0.5 * (x * x + y * y + z * z).sqrt();
+        }
+        angles
+    }
+
+    /// The radiance in directions, for cells that fit in registers.
+    #[inline(always)]
+    fn look_up_cells<const W: usize, const N: usize>(&self, angles: &Angles<N>, out: &mut [f32]) {
+        for (i, out) in out.chunks_exact_mut(self.channels).enumerate() {
+            let mut cell = [0.0f32; W];
+            if self.interpolate(angles.elevations[i], angles.azimuths[i], &mut cell) {
+                self.combine(&cell, angles.half_sines[i], out);
+            } else {
+                out.fill(0.0);
+            }
+        }
+    }
+
+    /// The radiance in directions, for cells of any width.
+    fn look_up_wide_cells<const N: usize>(&self, angles: &Angles<N>, out: &mut [f32]) {
+        let mut small = [0.0f32; SMALL_WIDTH];
+        let mut large = Vec::new();
+        let cell = match small.get_mut(..self.width) {
+            Some(cell) => cell,
+            None => {
+                large.resize(self.width, 0.0);
+                &mut large[..]
+            }
+        };
+        for (i, out) in out.chunks_exact_mut(self.channels).enumerate() {
+            if self.interpolate_wide(angles.elevations[i], angles.azimuths[i], cell) {
+                self.combine(cell, angles.half_sines[i], out);
+            } else {
+                out.fill(0.0);
+            }
+        }
     }
 
     /// Values along the unit vector `direction`, first of the smooth light, then of each part without its factor; 0 above the
     /// atmosphere's limb.
     pub(super) fn parts(&self, direction: DVec3) -> Vec<f32> {
+        let Angles {
+            elevations: [elevation],
+            azimuths: [azimuth],
+            ..
+        } = self.angles(&[direction]);
         let mut cell = vec![0.0; self.width];
-        let (elevation, nodes, weights) = self.column(direction);
-        if let Some((half, row)) = self.place(elevation) {
-            self.interpolate_cell(half, row, &nodes, &weights, &mut cell);
-        }
+        self.interpolate_wide(elevation, azimuth, &mut cell);
         cell
-    }
-
-    /// [`SkyTable::sample`] of many directions; `out` is `[direction][channel]`.
-    ///
-    /// # Panics
-    /// Where `out` has another length.
-    pub fn samples(&self, directions: &[DVec3], out: &mut [f32]) {
-        /// Directions that a thread takes at a time.
-        const LOOK_UPS: usize = 64;
-        let width = self.channels();
-        check_length(out, directions.len() * width);
-        parallel::for_each_chunk(out, LOOK_UPS * width, |index, out| {
-            let directions = &directions[index * LOOK_UPS..];
-            for (out, &direction) in out.chunks_exact_mut(width).zip(directions) {
-                self.sample(direction, out);
-            }
-        });
     }
 
     /// Prepares the columns of a picture; `azimuths_rad` are relative to the sun's azimuth.
@@ -155,7 +232,6 @@ impl SkyTable {
     }
 
     /// Evaluates the radiance at one elevation (rad) in all prepared columns into `out`, one value per channel and column.
-    /// Several times faster than [`SkyTable::sample`].
     pub fn sample_row(&self, elevation_rad: f64, columns: &SkyColumns, out: &mut [f32]) {
         let Some((half, row)) = self.place(elevation_rad) else {
             out.fill(0.0);
@@ -310,45 +386,54 @@ impl SkyTable {
         (depth <= 1.0 + 1e-12).then(|| (half, depth.clamp(0.0, 1.0).sqrt()))
     }
 
+    /// Interpolates all values of a cell at an elevation (rad) and an azimuth from the sun's (1 is the opposite one); false
+    /// above the atmosphere's limb.
     #[inline(always)]
-    fn interpolate(
+    fn interpolate<const W: usize>(
         &self,
-        half: &Half,
-        row: f64,
-        columns: &[usize; 4],
-        column_weights: &[f32; 4],
-        half_sine: f64,
-        out: &mut [f32],
-    ) {
-        let mut small = [0.0f32; SMALL_WIDTH];
-        let mut large = Vec::new();
-        let cell = if self.width <= SMALL_WIDTH {
-            &mut small[..self.width]
-        } else {
-            large.resize(self.width, 0.0);
-            &mut large[..]
+        elevation: f64,
+        azimuth: f64,
+        cell: &mut [f32; W],
+    ) -> bool {
+        let Some((half, row)) = self.place(elevation) else {
+            return false;
         };
-        self.interpolate_cell(half, row, columns, column_weights, cell);
-        self.combine(cell, half_sine, out);
+        let (columns, column_weights) = cubic_mirrored(azimuth, AZIMUTHS);
+        let (first_row, row_weights) = cubic_f32(row, half.rows);
+        let (cells, _) = half.values.as_chunks::<W>();
+        let rows: [&[[f32; W]]; 4] =
+            std::array::from_fn(|i| &cells[(first_row + i) * (AZIMUTHS + 1)..][..AZIMUTHS + 1]);
+        // Groups of four values stay in a register over all sixteen cells.
+        let (groups, _) = cell.as_chunks_mut::<4>();
+        for (group, sums) in groups.iter_mut().enumerate() {
+            let mut sum = [0.0f32; 4];
+            for (row, row_weight) in rows.iter().zip(&row_weights) {
+                for (&column, column_weight) in columns.iter().zip(&column_weights) {
+                    let (values, _) = row[column].as_chunks::<4>();
+                    let w = row_weight * column_weight;
+                    for (sum, value) in sum.iter_mut().zip(&values[group]) {
+                        *sum += w * value;
+                    }
+                }
+            }
+            *sums = sum;
+        }
+        true
     }
 
-    /// All values of a cell.
-    #[inline(always)]
-    fn interpolate_cell(
-        &self,
-        half: &Half,
-        row: f64,
-        columns: &[usize; 4],
-        column_weights: &[f32; 4],
-        cell: &mut [f32],
-    ) {
+    /// As [`Self::interpolate`], for cells of any width, which are overwritten.
+    fn interpolate_wide(&self, elevation: f64, azimuth: f64, cell: &mut [f32]) -> bool {
+        let Some((half, row)) = self.place(elevation) else {
+            return false;
+        };
         let stride = (AZIMUTHS + 1) * self.width;
+        let (columns, column_weights) = cubic_mirrored(azimuth, AZIMUTHS);
         let (first_row, row_weights) = cubic_f32(row, half.rows);
         // Groups of four values stay in a register over all sixteen cells.
         for (part, sums) in cell.chunks_exact_mut(4).enumerate() {
             let mut sum = [0.0f32; 4];
             for (i, &wr) in row_weights.iter().enumerate() {
-                for (&column, &wc) in columns.iter().zip(column_weights) {
+                for (&column, &wc) in columns.iter().zip(&column_weights) {
                     let start = (first_row + i) * stride + column * self.width + 4 * part;
                     let values = &half.values[start..start + 4];
                     let w = wr * wc;
@@ -359,22 +444,47 @@ impl SkyTable {
             }
             sums.copy_from_slice(&sum);
         }
+        true
     }
 
     /// Applies the phase functions and sums the parts of a cell.
     #[inline(always)]
     fn combine(&self, cell: &[f32], half_sine: f64, out: &mut [f32]) {
-        let out = &mut out[..self.channels];
-        out.copy_from_slice(&cell[..self.channels]);
+        match out.first_chunk_mut() {
+            Some(rgb) if self.channels == 3 && !self.is_spectral => {
+                self.combine_rgb(cell, half_sine, rgb)
+            }
+            _ => self.combine_channels(cell, half_sine, out),
+        }
+    }
+
+    #[inline(always)]
+    fn combine_rgb(&self, cell: &[f32], half_sine: f64, out: &mut [f32; 3]) {
+        let (parts, _) = cell.as_chunks::<3>();
+        *out = parts[0];
         if self.peaked.parts.is_empty() {
             return;
         }
         let factors = self.peaked.factors(half_sine);
-        for part in 0..self.peaked.parts.len() {
-            let first = part * self.channels;
-            let values = &cell[self.channels + first..][..self.channels];
-            for (channel, (out, value)) in out.iter_mut().zip(values).enumerate() {
-                *out += factors.get(first + channel) * value;
+        for (part, values) in parts[1..][..self.peaked.parts.len()].iter().enumerate() {
+            let factors = factors.channels::<3>(part);
+            for (channel, out) in out.iter_mut().enumerate() {
+                *out += factors[channel] * values[channel];
+            }
+        }
+    }
+
+    fn combine_channels(&self, cell: &[f32], half_sine: f64, out: &mut [f32]) {
+        let out = &mut out[..self.channels];
+        out.copy_from_slice(&cell[..self.channels]);
+        if !self.peaked.parts.is_empty() {
+            let factors = self.peaked.factors(half_sine);
+            for part in 0..self.peaked.parts.len() {
+                let first = part * self.channels;
+                let values = &cell[self.channels + first..][..self.channels];
+                for (channel, (out, value)) in out.iter_mut().zip(values).enumerate() {
+                    *out += factors.get(first + channel) * value;
+                }
             }
         }
         if self.is_spectral {
