@@ -9,10 +9,15 @@
 //! Steps are denser near the eye: step k of n begins at the fraction `(k / n)^2` of the ray, as in the author's published
 //! shaders; the paper does not mention it. Samples are at the midpoints of steps. As there, the ground is lit by direct
 //! sunlight only, and black for later orders.
+//!
+//! The variant `even-steps` marches view rays as the atmosphere of Bevy 0.20 does (`raymarch_atmosphere`): 16 samples at even
+//! distances, the first at 0.3 of one, each for the way from the sample before. Only the march differs from the paper: Bevy's own
+//! air is not that of the paper, and its table of multiple scattering is filled with steps of that kind as well.
 
 use super::PublishedModel;
 use super::lut::{
-    AirLanes, MultipleScatteringSettings, MultipleScatteringTable, TransmittanceTable, add_scaled,
+    AirLanes, MultipleScatteringSettings, MultipleScatteringTable, Steps, TransmittanceTable,
+    add_scaled,
 };
 use super::prepared::Prepared;
 use crate::atmosphere::{Atmosphere, AtmosphereError};
@@ -35,8 +40,8 @@ pub(crate) struct Settings {
     pub transmittance_steps: usize,
     /// Settings of the multiple-scattering table; `None` for single scattering.
     pub multiple: Option<MultipleScatteringSettings>,
-    /// Number of steps along each view ray, at least 1.
-    pub steps: usize,
+    /// Steps along each view ray, at least 1.
+    pub steps: Steps,
 }
 
 impl Default for Settings {
@@ -46,10 +51,23 @@ impl Default for Settings {
             transmittance_size: [256, 64],
             transmittance_steps: 40,
             multiple: Some(MultipleScatteringSettings::default()),
-            steps: 30,
+            steps: PAPER_STEPS,
         }
     }
 }
+
+/// Steps along a view ray in the paper (table 2).
+const PAPER_STEPS: Steps = Steps::Midpoints {
+    count: 30,
+    power: 2,
+};
+/// Steps along a view ray of the variant `even-steps`.
+const EVEN_STEPS: Steps = Steps::Ends {
+    count: 16,
+    place: 0.3,
+};
+/// Names of the variants, the default first.
+const VARIANTS: [&str; 2] = ["paper", "even-steps"];
 
 /// Error of [`Hillaire2020::new`].
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -95,15 +113,12 @@ struct Tables {
     air: AirLanes,
     transmittance: TransmittanceTable,
     multiple: Option<MultipleScatteringTable>,
-    steps: usize,
+    steps: Steps,
     disc: SunDisc,
     ground_altitude_m: f64,
 }
 
 debug_fields! { Hillaire2020 { grid, disc, eye, sun } }
-
-/// Exponent of the step positions along a view ray.
-const STEP_POWER: i32 = 2;
 
 impl Hillaire2020 {
     /// Sky of `atmosphere` at the wavelengths of `grid`, with the atmosphere's solar spectrum and the paper's table sizes, for an
@@ -201,7 +216,7 @@ impl Hillaire2020 {
         let scattered = air.scattered(ray.nu);
         let (mut sunlight, mut psi, mut once) = (dark(), dark(), dark());
         let span = (segment.start_m, segment.end_m);
-        line.transmittance = air.march(&ray, span, (*steps, STEP_POWER), |step| {
+        line.transmittance = air.march(&ray, span, *steps, |step| {
             let here = &step.here;
             air.transmittance_to_sun(transmittance, here.radius_m, here.mu_sun, &mut sunlight);
             if let Some(table) = multiple {
@@ -282,7 +297,7 @@ impl Tables {
         });
         if settings.transmittance_size.iter().any(|&n| n < 2)
             || settings.transmittance_steps == 0
-            || settings.steps == 0
+            || settings.steps.count() == 0
             || !multiple_fits
         {
             return Err(HillaireError::Settings);
@@ -333,8 +348,9 @@ impl RadianceModel for Hillaire2020Model {
                 Input::Scattering,
                 Input::Spectra,
                 Input::Distances,
+                Input::Variant,
             ],
-            variants: &[],
+            variants: &VARIANTS,
             twilight: true,
             parts: true,
         }
@@ -351,6 +367,9 @@ impl RadianceModel for Hillaire2020Model {
         let mut settings = Settings::default();
         if scene.solver.scattering == Some(Scattering::Single) {
             settings.multiple = None;
+        }
+        if scene.solver.variant.as_deref() == Some(VARIANTS[1]) {
+            settings.steps = EVEN_STEPS;
         }
         let tables = Tables::new(&scene.atmosphere, &scene.grid, &settings).map_err(refused)?;
         let tables = Arc::new(tables);

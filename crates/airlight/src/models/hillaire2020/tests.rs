@@ -52,7 +52,10 @@ fn worst(
 fn single_scattering_converges_to_the_solver() {
     let settings = Settings {
         multiple: None,
-        steps: 400,
+        steps: Steps::Midpoints {
+            count: 400,
+            power: 2,
+        },
         transmittance_steps: 1000,
         ..Default::default()
     };
@@ -148,9 +151,49 @@ fn invalid_arguments_are_refused() {
     }
     assert!(Hillaire2020::new(&air, &grid, 0.0, DVec3::ZERO).is_err());
     let none = Settings {
-        steps: 0,
+        steps: Steps::Midpoints { count: 0, power: 2 },
         ..Default::default()
     };
     let error = Hillaire2020::with_settings(&air, &grid, 0.0, DVec3::Y, &none).err();
     assert_eq!(error, Some(HillaireError::Settings));
+}
+
+#[test]
+fn even_steps_err_more_than_those_of_the_paper() {
+    let settings = Settings {
+        steps: EVEN_STEPS,
+        ..Default::default()
+    };
+    let suns = [60.0, 10.0];
+    let air = reference::earth_demo();
+    let even = worst(&air, Scattering::All, &settings, &suns);
+    let paper = worst(&air, Scattering::All, &Settings::default(), &suns);
+    println!("{even:?}, paper {paper:?}");
+    for (even, paper) in even.iter().flatten().zip(paper.iter().flatten()) {
+        assert!(even > paper);
+    }
+    // Beside the horizon under a low sun.
+    assert!(even[1].iter().any(|error| *error > 0.3));
+}
+
+#[test]
+fn variants_march_in_their_steps() {
+    let toml = |variant: &str| {
+        format!("sun.elevation_deg = 10\nsolver.name = \"hillaire2020\"\n{variant}")
+    };
+    let zenith = |variant: &str| {
+        let scene = crate::scene::Scene::from_toml(&toml(variant)).unwrap();
+        let scene = scene.resolve().unwrap();
+        let sun = scene.sun.at_start().unwrap();
+        let suns = SunCoverage::near(sun.elevation_deg, 0.0);
+        let prepared = crate::models::registry::prepare(&scene, suns, Control::default()).unwrap();
+        let channels = crate::scene::Channels::Rgb(crate::spectrum::RgbSpace::Srgb);
+        let view = prepared.view(0.0, &sun.state(), channels).unwrap();
+        let mut rgb = [0.0; 3];
+        view.radiance(&[axes::direction(0.0, 5.0)], &mut rgb);
+        rgb
+    };
+    let paper = zenith("");
+    assert_eq!(zenith("solver.variant = \"paper\""), paper);
+    assert_ne!(zenith("solver.variant = \"even-steps\""), paper);
 }

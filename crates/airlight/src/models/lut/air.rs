@@ -19,9 +19,54 @@ pub struct AirLanes {
     phases: Vec<PhaseFunction>,
 }
 
+/// How a march divides a ray into steps, and where each step samples the air.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Steps {
+    /// Step k begins at the fraction `(k / count)^power` of the ray and samples its midpoint.
+    Midpoints {
+        /// Number of steps, at least 1.
+        count: usize,
+        /// Exponent, at least 1.
+        power: i32,
+    },
+    /// Step k ends at its sample, at the fraction `(k + place) / count`, and begins at the sample before; behind the last sample
+    /// the ray is not marched.
+    Ends {
+        /// Number of steps, at least 1.
+        count: usize,
+        /// Fraction of the distance between samples, from 0 to 1.
+        place: f64,
+    },
+}
+
+impl Steps {
+    /// Number of steps.
+    pub fn count(self) -> usize {
+        match self {
+            Self::Midpoints { count, .. } | Self::Ends { count, .. } => count,
+        }
+    }
+
+    /// Fractions of the ray at which a step begins, ends and samples the air.
+    fn step(self, k: usize) -> [f64; 3] {
+        match self {
+            Self::Midpoints { count, power } => {
+                let edge = |k: usize| (k as f64 / count as f64).powi(power);
+                let (from, to) = (edge(k), edge(k + 1));
+                [from, to, 0.5 * (from + to)]
+            }
+            Self::Ends { count, place } => {
+                let sample = |k: f64| (k + place) / count as f64;
+                let here = sample(k as f64);
+                [sample(k as f64 - 1.0).max(0.0), here, here]
+            }
+        }
+    }
+}
+
 /// A step of a march.
 pub struct Step<'a> {
-    /// The ray relative to the midpoint of the step.
+    /// The ray relative to the sample of the step.
     pub here: Ray,
     /// Relative densities of the constituents.
     pub densities: &'a [f64],
@@ -82,14 +127,13 @@ impl AirLanes {
         ray.segment_in_air(self.ground_radius_m, self.top_radius_m, limit_m)
     }
 
-    /// Marches from `start_m` to `end_m` in `steps` steps with the density of their midpoints; step k of n begins at the fraction
-    /// `(k / n)^power`. Within a step the source function is constant and extinction is integrated exactly. Returns the
-    /// transmittances.
+    /// Marches from `start_m` to `end_m` in steps. Within a step the source function is constant and extinction is integrated
+    /// exactly. Returns the transmittances.
     pub fn march(
         &self,
         ray: &Ray,
         (start_m, end_m): (f64, f64),
-        (steps, power): (usize, i32),
+        steps: Steps,
         mut visit: impl FnMut(&Step<'_>),
     ) -> Vec<f32> {
         let lanes = self.lanes();
@@ -97,11 +141,9 @@ impl AirLanes {
         let (mut scattering, mut weight) = (vec![0.0f32; lanes], vec![0.0f32; lanes]);
         let mut extinction = vec![0.0f32; lanes];
         let mut densities = vec![0.0; self.densities.len()];
-        let edge = |k: usize| start_m + (end_m - start_m) * (k as f64 / steps as f64).powi(power);
-        for k in 0..steps {
-            let (from, to) = (edge(k), edge(k + 1));
-            let middle = 0.5 * (from + to);
-            let altitude = ray.radius_m - self.planet_radius_m + ray.climb_at(middle);
+        for k in 0..steps.count() {
+            let [from, to, sample] = steps.step(k).map(|part| start_m + (end_m - start_m) * part);
+            let altitude = ray.radius_m - self.planet_radius_m + ray.climb_at(sample);
             scattering.fill(0.0);
             extinction.fill(0.0);
             for (part, density) in densities.iter_mut().enumerate() {
@@ -125,7 +167,7 @@ impl AirLanes {
                 &mut weight,
             );
             visit(&Step {
-                here: ray.advanced(middle),
+                here: ray.advanced(sample),
                 densities: &densities,
                 scattering_per_m: &scattering,
                 weight_m: &weight,
@@ -225,6 +267,30 @@ fn attenuate(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn steps_follow_one_another() {
+        let parts = |steps: Steps| (0..steps.count()).map(move |k| steps.step(k));
+        for steps in [
+            Steps::Midpoints { count: 7, power: 2 },
+            Steps::Ends {
+                count: 16,
+                place: 0.3,
+            },
+        ] {
+            let mut end = 0.0;
+            for [from, to, sample] in parts(steps) {
+                assert_eq!(from, end);
+                assert!(to > from && (from..=to).contains(&sample));
+                end = to;
+            }
+            let marched = match steps {
+                Steps::Midpoints { .. } => 1.0,
+                Steps::Ends { .. } => 15.3 / 16.0,
+            };
+            assert!((end - marched).abs() < 1e-12);
+        }
+    }
 
     #[test]
     fn light_is_attenuated_exactly_in_every_lane() {

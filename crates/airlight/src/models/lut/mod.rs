@@ -4,6 +4,6 @@ mod air;
 mod multiple;
 mod transmittance;
 
-pub use air::{AirLanes, add_scaled};
+pub use air::{AirLanes, Steps, add_scaled};
 pub use multiple::{MultipleScatteringSettings, MultipleScatteringTable};
 pub use transmittance::TransmittanceTable;

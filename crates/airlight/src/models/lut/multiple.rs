@@ -4,7 +4,7 @@
 //! 2020, section 5.5: second-order light with an isotropic phase function (eqs. 5 and 6), the fraction of it that the
 //! surroundings return with each further order (eqs. 7 and 8), and the geometric series of all later orders (eqs. 9 and 10).
 
-use super::{AirLanes, TransmittanceTable};
+use super::{AirLanes, Steps, TransmittanceTable};
 use crate::math::interpolation::bilinear;
 use crate::math::parallel;
 use crate::transfer::ray::Ray;
@@ -113,7 +113,10 @@ fn psi(
             let through = air.march(
                 &ray,
                 (segment.start_m, segment.end_m),
-                (settings.steps, 1),
+                Steps::Midpoints {
+                    count: settings.steps,
+                    power: 1,
+                },
                 |step| {
                     air.transmittance_to_sun(
                         transmittance,
