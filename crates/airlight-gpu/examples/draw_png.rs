@@ -2,16 +2,13 @@
 //! `cargo run --release -p airlight-gpu --example draw_png -- OUT.png ATMOSPHERE SUN_DEG HEIGHT_M [AZIMUTH_DEG [ELEVATION_DEG
 //! [VISIBILITY_M]]]`. The sun is in the south (180); the visibility is that of a fog that thins by e in 100 m.
 
-#[path = "../tests/frames/device.rs"]
-#[allow(dead_code)] // Tests use the rest.
-mod device;
 mod picture;
 
 use airlight::spectrum::RgbSpace;
 use airlight::{Named, atmosphere::Preset, axes, sky::SkySettings, sky::SunCoverage};
+use airlight_gpu::headless::{FORMAT, Frame, Geometry, Headless};
 use airlight_gpu::{Fog, SkyRenderer, SkyRendererSettings};
 use airlight_image::tone::{Exposure, Metering};
-use device::{FORMAT, Frame, Gpu};
 use std::{error::Error, time::Instant};
 
 const SIDE: u32 = 640;
@@ -27,7 +24,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (sun_deg, height_m): (f64, f64) = (sun_deg.parse()?, height_m.parse()?);
     let angle = |k: usize, default: f64| look.get(k).map_or(Ok(default), |text| text.parse());
     let towards = axes::direction(angle(0, 180.0)?, angle(1, 10.0)?).as_vec3();
-    let gpu = Gpu::new();
+    let gpu = Headless::new()?;
     let settings = SkyRendererSettings {
         solver: SkySettings {
             suns: SunCoverage::near(sun_deg, height_m),
@@ -65,8 +62,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     // In the dark of twilight half floats need light.
     let frame_exposure = if sun_deg > 0.0 { 1e-4 } else { 1.0 };
-    let before = [0.0; 3];
-    let pixels = gpu.draw(&mut renderer, &frame, frame_exposure, before, Some(&hills));
+    let geometry = Geometry {
+        colour: [0.0; 3],
+        distance_m: &hills,
+    };
+    let camera = frame.camera(frame_exposure);
+    let pixels = gpu.draw(&frame, Some(&geometry), |encoder, target, depth| {
+        renderer.record(encoder, target, depth, &camera);
+    })?;
     let luminance = |rgb: &[f32; 3]| {
         let light = rgb.map(|v| f64::from(v / frame_exposure));
         (RgbSpace::Srgb.luminance(light) as f32, 1.0)

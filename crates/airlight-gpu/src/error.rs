@@ -25,6 +25,22 @@ pub enum SkyRendererError {
         "expected fog with a uniform, exponential or clamped profile, or a layer with two edges"
     )]
     FogProfile,
+    /// More lights than a fog can hold.
+    #[error("expected at most {most} lights in fog, got {count}; try the nearest and brightest")]
+    TooManyLights {
+        /// Number of lights.
+        count: usize,
+        /// [`MOST_LIGHTS`](crate::MOST_LIGHTS).
+        most: usize,
+    },
+    /// A kind of light that the shaders do not have.
+    #[error("expected point, spot and sphere lights")]
+    LightKind,
+    /// Lights in a fog that is not exponential.
+    #[error(
+        "expected an exponential fog around lights, got another profile; try the fog without lights"
+    )]
+    LightProfile,
     /// The target cannot be blended.
     #[error(
         "expected a target format that the device can blend, got {0:?}; try TextureFormat::Rgba16Float"

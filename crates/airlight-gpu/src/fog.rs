@@ -11,9 +11,10 @@ use airlight_shaders::FogTables;
 use airlight_shaders::twins::columns::{INFINITE_M, ray_segment};
 use airlight_shaders::twins::exponentials::OPAQUE;
 use airlight_shaders::twins::fog::{
-    FOG_CLAMPED, FOG_EXPONENTIAL, FOG_SLAB, FOG_UNIFORM, FogLayer, fog_layer_column_m,
+    FOG_CLAMPED, FOG_EXPONENTIAL, FOG_SLAB, FOG_UNIFORM, FogLayer, FogMedium, fog_layer_column_m,
 };
 use airlight_shaders::twins::fog_table::tabulated_fog;
+use airlight_shaders::twins::lights::ExponentialFog;
 use airlight_shaders::twins::texture::LinearSampler;
 use glam::Vec3;
 use std::f32::consts::PI;
@@ -47,7 +48,7 @@ impl Fog {
 
     /// Checks the values.
     pub(crate) fn validate(&self) -> Result<(), SkyRendererError> {
-        profile(&self.layer.density).ok_or(SkyRendererError::FogProfile)?;
+        self.profile().ok_or(SkyRendererError::FogProfile)?;
         let dark = FogLighting {
             sun: None,
             ambient: [0.0; 3],
@@ -94,8 +95,7 @@ impl Fog {
 
     /// The fog of a frame, for an eye at a height above sea level, m.
     pub(crate) fn frame(&self, tables: FogTables, height_m: f64) -> FogFrame {
-        let (profile, from_m, scale_m) =
-            profile(&self.layer.density).expect("a profile that was checked");
+        let (profile, from_m, scale_m) = self.profile().expect("a profile that was checked");
         FogFrame {
             tables,
             layer: FogLayer {
@@ -108,7 +108,33 @@ impl Fog {
                 scale_m: scale_m as f32,
             },
             eye_height_m: (height_m - self.ground_height_m).max(0.0) as f32,
+            around_lights: self.around_lights(),
         }
+    }
+
+    /// Profile, height (m) and scale (m) of the shader's struct `FogLayer`; `None` for a profile that it does not have.
+    pub(crate) fn profile(&self) -> Option<(u32, f64, f64)> {
+        profile(&self.layer.density)
+    }
+
+    /// The fog as lights see it, in which heights count from the ground; `None` for a fog that is not exponential.
+    pub(crate) fn around_lights(&self) -> Option<ExponentialFog> {
+        /// Wavelength at which the mean cosine of the phase function is taken, nm.
+        const MEAN_COSINE_NM: f64 = 550.0;
+        let (profile, reference_height_m, scale_height_m) = self.profile()?;
+        let layer = &self.layer;
+        let extinction_per_m = Vec3::from_array(layer.extinction_per_m);
+        let albedo = Vec3::from_array(layer.single_scattering_albedo);
+        (profile == FOG_EXPONENTIAL).then_some(ExponentialFog {
+            medium: FogMedium {
+                extinction_per_m,
+                scattering_per_m: extinction_per_m * albedo,
+            },
+            // The range of the shader's function.
+            mean_cosine: layer.phase.asymmetry(MEAN_COSINE_NM).clamp(-0.3, 0.95) as f32,
+            reference_height_m: (reference_height_m - self.ground_height_m) as f32,
+            scale_height_m: scale_height_m as f32,
+        })
     }
 }
 
@@ -121,6 +147,8 @@ pub struct FogFrame {
     pub layer: FogLayer,
     /// Height of the eye above the ground, m.
     pub eye_height_m: f32,
+    /// The fog around lights; `None` if it is not exponential.
+    pub around_lights: Option<ExponentialFog>,
 }
 
 impl FogFrame {

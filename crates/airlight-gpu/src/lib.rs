@@ -17,7 +17,10 @@ mod error;
 mod fog;
 mod frame_tables;
 mod gpu_tables;
+#[cfg(feature = "headless")]
+pub mod headless;
 mod lighting;
+mod lights;
 mod pass;
 mod passes;
 mod renderer;
@@ -31,6 +34,7 @@ pub use error::SkyRendererError;
 pub use fog::{Fog, FogFrame};
 pub use frame_tables::{FrameTables, SkySolver};
 pub use lighting::Lighting;
+pub use lights::MOST_LIGHTS;
 pub use passes::SkyPasses;
 pub use renderer::{SkyRenderer, SkyRendererSettings, Work};
 pub use terrain::{HeightField, TerrainPass, TerrainView};

@@ -120,41 +120,82 @@ impl Pass {
         shader: &str,
         format: wgpu::TextureFormat,
     ) -> Self {
-        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("airlight"),
-            bind_group_layouts: &groups.map(Some),
-            immediate_size: 0,
-        });
-        let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("airlight"),
-            source: wgpu::ShaderSource::Wgsl(shader.into()),
-        });
-        let pipeline = |entry: &str, source: wgpu::BlendFactor, target: wgpu::BlendFactor| {
-            let component = |src_factor, dst_factor| wgpu::BlendComponent {
-                src_factor,
-                dst_factor,
-                operation: wgpu::BlendOperation::Add,
-            };
-            let keep = component(wgpu::BlendFactor::Zero, wgpu::BlendFactor::One);
-            let blend = wgpu::BlendState {
-                color: component(source, target),
-                alpha: keep,
-            };
-            covering(device, &layout, &shader, entry, (format, Some(blend)))
-        };
-        let (zero, one) = (wgpu::BlendFactor::Zero, wgpu::BlendFactor::One);
+        let (layout, shader) = parts(device, groups, shader);
         Self {
-            dim: pipeline("dim", zero, wgpu::BlendFactor::Src),
-            add: pipeline("add", one, one),
+            dim: blending(device, &layout, &shader, "dim", format),
+            add: blending(device, &layout, &shader, "add", format),
         }
     }
 
     /// Draws over the frame with the tables of the medium; the second group is set.
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, tables: &wgpu::BindGroup) {
-        pass.set_bind_group(0, tables, &[]);
         for pipeline in [&self.dim, &self.add] {
-            pass.set_pipeline(pipeline);
-            pass.draw(0..3, 0..1);
+            draw(pass, pipeline, tables);
         }
     }
+}
+
+/// The pipeline of a shader with [`CORNER`] and the entry point `add` alone, for targets of a format.
+pub fn adding(
+    device: &wgpu::Device,
+    groups: [&wgpu::BindGroupLayout; 2],
+    shader: &str,
+    format: wgpu::TextureFormat,
+) -> wgpu::RenderPipeline {
+    let (layout, shader) = parts(device, groups, shader);
+    blending(device, &layout, &shader, "add", format)
+}
+
+/// Draws over the frame with a first group; the second is set.
+pub fn draw(
+    pass: &mut wgpu::RenderPass<'_>,
+    pipeline: &wgpu::RenderPipeline,
+    group: &wgpu::BindGroup,
+) {
+    pass.set_bind_group(0, group, &[]);
+    pass.set_pipeline(pipeline);
+    pass.draw(0..3, 0..1);
+}
+
+/// Layout and module of pipelines.
+fn parts(
+    device: &wgpu::Device,
+    groups: [&wgpu::BindGroupLayout; 2],
+    shader: &str,
+) -> (wgpu::PipelineLayout, wgpu::ShaderModule) {
+    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some("airlight"),
+        bind_group_layouts: &groups.map(Some),
+        immediate_size: 0,
+    });
+    let shader = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some("airlight"),
+        source: wgpu::ShaderSource::Wgsl(shader.into()),
+    });
+    (layout, shader)
+}
+
+/// A pipeline whose entry point `dim` multiplies the colours of the target, and whose `add` adds to them.
+fn blending(
+    device: &wgpu::Device,
+    layout: &wgpu::PipelineLayout,
+    shader: &wgpu::ShaderModule,
+    entry: &str,
+    format: wgpu::TextureFormat,
+) -> wgpu::RenderPipeline {
+    let component = |src_factor, dst_factor| wgpu::BlendComponent {
+        src_factor,
+        dst_factor,
+        operation: wgpu::BlendOperation::Add,
+    };
+    let (zero, one) = (wgpu::BlendFactor::Zero, wgpu::BlendFactor::One);
+    let color = match entry {
+        "dim" => component(zero, wgpu::BlendFactor::Src),
+        _ => component(one, one),
+    };
+    let blend = wgpu::BlendState {
+        color,
+        alpha: component(zero, one),
+    };
+    covering(device, layout, shader, entry, (format, Some(blend)))
 }

@@ -7,8 +7,11 @@ use crate::fog;
 use crate::frame_tables::FrameTables;
 use crate::gpu_tables::{FLAT, bytes};
 use crate::lighting::Lighting;
-use crate::pass::{CORNER, Pass, UNIFORM, group_layout, texture};
+use crate::lights;
+use crate::pass::{CORNER, Pass, UNIFORM, adding, draw, group_layout, texture};
 use crate::sky;
+use airlight::fog::lights::Light;
+use airlight_shaders::twins::lights::{ExponentialFog, LocalLight};
 use airlight_shaders::{Part, source};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
@@ -19,9 +22,12 @@ pub struct SkyPasses {
     queue: wgpu::Queue,
     sky_layout: wgpu::BindGroupLayout,
     fog_layout: wgpu::BindGroupLayout,
+    light_layout: wgpu::BindGroupLayout,
     frame_layout: wgpu::BindGroupLayout,
     sky_pass: Pass,
     fog_pass: Pass,
+    light_pass: wgpu::RenderPipeline,
+    lights: Vec<LocalLight>,
     drawn: Option<Drawn>,
 }
 
@@ -29,8 +35,17 @@ pub struct SkyPasses {
 #[derive(Debug)]
 struct Drawn {
     sky: wgpu::BindGroup,
-    fog: Option<wgpu::BindGroup>,
+    fog: Option<DrawnFog>,
     lighting: Lighting,
+}
+
+/// A fog, and the lights in it if there are any.
+#[derive(Debug)]
+struct DrawnFog {
+    tables: wgpu::BindGroup,
+    eye_height_m: f32,
+    around_lights: Option<ExponentialFog>,
+    lights: Option<wgpu::BindGroup>,
 }
 
 impl SkyPasses {
@@ -50,6 +65,7 @@ impl SkyPasses {
         }
         let sky_layout = sky::layout(device);
         let fog_layout = fog::layout(device);
+        let light_layout = lights::layout(device);
         let frame_layout = frame_layout(device);
         let pass = |first: &wgpu::BindGroupLayout, shader: &str| {
             Pass::new(device, [first, &frame_layout], shader, target_format)
@@ -57,11 +73,19 @@ impl SkyPasses {
         Ok(Self {
             sky_pass: pass(&sky_layout, &sky_shader()),
             fog_pass: pass(&fog_layout, &fog_shader()),
+            light_pass: adding(
+                device,
+                [&light_layout, &frame_layout],
+                &light_shader(),
+                target_format,
+            ),
             device: device.clone(),
             queue: queue.clone(),
             sky_layout,
             fog_layout,
+            light_layout,
             frame_layout,
+            lights: Vec::new(),
             drawn: None,
         })
     }
@@ -71,11 +95,38 @@ impl SkyPasses {
         let device = (&self.device, &self.queue);
         self.drawn = Some(Drawn {
             sky: sky::upload(device, &self.sky_layout, tables),
-            fog: tables
-                .fog
-                .as_ref()
-                .map(|fog| fog.upload(device, &self.fog_layout)),
+            fog: tables.fog.as_ref().map(|fog| DrawnFog {
+                tables: fog.upload(device, &self.fog_layout),
+                eye_height_m: fog.eye_height_m,
+                around_lights: fog.around_lights,
+                lights: None,
+            }),
             lighting: tables.lighting,
+        });
+        self.upload_lights();
+    }
+
+    /// Sets the lights that shine in the fog from now on, at most [`MOST_LIGHTS`](crate::MOST_LIGHTS), instead of those before. Their
+    /// positions are around the eye, y up; light is in cd and cd/m^2. Nothing is computed on the processor, so that they may move in each
+    /// frame. The fog scatters their light once, as Henyey and Greenstein's function of its mean cosine does. They are not drawn
+    /// themselves, add nothing to [`SkyPasses::lighting`] and environment maps, and shine in exponential fog only.
+    ///
+    /// # Errors
+    /// [`SkyRendererError`] for invalid lights, and for more than there may be.
+    pub fn set_lights(&mut self, lights: &[Light<[f32; 3]>]) -> Result<(), SkyRendererError> {
+        self.lights = lights::local_lights(lights)?;
+        self.upload_lights();
+        Ok(())
+    }
+
+    fn upload_lights(&mut self) {
+        let Some(fog) = self.drawn.as_mut().and_then(|drawn| drawn.fog.as_mut()) else {
+            return;
+        };
+        let shining = fog.around_lights.filter(|_| !self.lights.is_empty());
+        fog.lights = shining.map(|around| {
+            let fog = (&around, fog.eye_height_m);
+            lights::upload(&self.device, &self.light_layout, fog, &self.lights)
         });
     }
 
@@ -97,7 +148,7 @@ impl SkyPasses {
             let passes = [&self.sky_pass, &self.fog_pass];
             self.draw(
                 drawn,
-                passes,
+                (passes, Some(&self.light_pass)),
                 encoder,
                 (target, wgpu::LoadOp::Load),
                 depth,
@@ -140,7 +191,7 @@ impl SkyPasses {
             let numbers = camera.numbers_without_disc();
             self.draw(
                 drawn,
-                map.passes(),
+                (map.passes(), None),
                 encoder,
                 (&target, black),
                 map.depth(),
@@ -154,7 +205,7 @@ impl SkyPasses {
     fn draw(
         &self,
         drawn: &Drawn,
-        [sky_pass, fog_pass]: [&Pass; 2],
+        ([sky_pass, fog_pass], light_pass): ([&Pass; 2], Option<&wgpu::RenderPipeline>),
         encoder: &mut wgpu::CommandEncoder,
         (target, load): (&wgpu::TextureView, wgpu::LoadOp<wgpu::Color>),
         depth: &wgpu::TextureView,
@@ -199,7 +250,10 @@ impl SkyPasses {
         pass.set_bind_group(1, &frame, &[]);
         sky_pass.draw(&mut pass, &drawn.sky);
         if let Some(fog) = &drawn.fog {
-            fog_pass.draw(&mut pass, fog);
+            fog_pass.draw(&mut pass, &fog.tables);
+            if let (Some(pipeline), Some(lights)) = (light_pass, &fog.lights) {
+                draw(&mut pass, pipeline, lights);
+            }
         }
     }
 }
@@ -215,6 +269,11 @@ fn sky_shader() -> String {
 /// The passes of the fog.
 fn fog_shader() -> String {
     source(&[Part::Fog, Part::FogTable]) + CORNER + FRAME + include_str!("fog.wgsl")
+}
+
+/// The pass of lights in fog.
+fn light_shader() -> String {
+    source(&[Part::Lights]) + CORNER + FRAME + include_str!("lights.wgsl")
 }
 
 /// Layout of the second group: camera and depth.
@@ -240,5 +299,9 @@ mod tests {
             let row = format!("| {name} | {} | {} |", of("dim"), of("add"));
             assert!(readme.contains(&row), "{row}");
         }
+        let all = costs(&light_shader()).unwrap();
+        let (_, add) = all.iter().find(|(name, _)| name == "add").unwrap();
+        let row = format!("| lights | none | {add} |");
+        assert!(readme.contains(&row), "{row}");
     }
 }

@@ -8,6 +8,7 @@ use crate::frame_tables::{FrameTables, SkySolver, checked};
 use crate::lighting::Lighting;
 use crate::passes::SkyPasses;
 use airlight::atmosphere::Atmosphere;
+use airlight::fog::lights::Light;
 use airlight::glam::DVec3;
 use airlight::sky::{Sky, SkySettings};
 use airlight::spectrum::RgbSpace;
@@ -52,6 +53,7 @@ pub struct SkyRenderer {
     solver: SkySolver,
     passes: SkyPasses,
     fog: Option<Fog>,
+    has_lights: bool,
     drawn: Option<Place>,
     /// Tables that are being filled, and what they are for.
     filling: Option<(JoinHandle<Result<FrameTables, SkyRendererError>>, Place)>,
@@ -76,6 +78,7 @@ impl SkyRenderer {
             passes: SkyPasses::new(device, queue, settings.target_format)?,
             solver: SkySolver::new(atmosphere, &settings.solver, settings.space)?,
             fog: None,
+            has_lights: false,
             drawn: None,
             filling: None,
             work: Work::default(),
@@ -100,10 +103,24 @@ impl SkyRenderer {
     /// Sets or removes a fog in front of everything, from the next update on.
     ///
     /// # Errors
-    /// [`SkyRendererError::Fog`] and [`SkyRendererError::FogProfile`] for an invalid fog.
+    /// [`SkyRendererError::Fog`] and [`SkyRendererError::FogProfile`] for an invalid fog, and [`SkyRendererError::LightProfile`] for one
+    /// that lights cannot be in.
     pub fn set_fog(&mut self, fog: Option<Fog>) -> Result<(), SkyRendererError> {
         fog.as_ref().map_or(Ok(()), Fog::validate)?;
+        check_lights(fog.as_ref(), self.has_lights)?;
         self.fog = fog;
+        Ok(())
+    }
+
+    /// Sets the lights that shine in the fog from the next frame on, at most [`MOST_LIGHTS`](crate::MOST_LIGHTS), instead of those before:
+    /// see [`SkyPasses::set_lights`]. No tables are filled.
+    ///
+    /// # Errors
+    /// [`SkyRendererError`] for invalid lights, for more than there may be, and for a fog that they cannot be in.
+    pub fn set_lights(&mut self, lights: &[Light<[f32; 3]>]) -> Result<(), SkyRendererError> {
+        check_lights(self.fog.as_ref(), !lights.is_empty())?;
+        self.passes.set_lights(lights)?;
+        self.has_lights = !lights.is_empty();
         Ok(())
     }
 
@@ -205,5 +222,13 @@ impl SkyRenderer {
     /// The solved sky.
     pub fn sky(&self) -> &Sky {
         self.solver.sky()
+    }
+}
+
+/// Refuses lights in a fog that is not exponential.
+fn check_lights(fog: Option<&Fog>, has_lights: bool) -> Result<(), SkyRendererError> {
+    match fog.filter(|_| has_lights).map(Fog::around_lights) {
+        Some(None) => Err(SkyRendererError::LightProfile),
+        _ => Ok(()),
     }
 }

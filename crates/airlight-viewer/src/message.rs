@@ -4,8 +4,9 @@ use crate::compute::{Answer, Colours, Facts, Light, Output, Request, Spectrum, T
 use airlight::scene::Scene;
 use airlight_gpu::{FogFrame, FrameTables, Lighting};
 use airlight_shaders::twins::colour::RgbWeights;
-use airlight_shaders::twins::fog::FogLayer;
+use airlight_shaders::twins::fog::{FogLayer, FogMedium};
 use airlight_shaders::twins::fog_table::FogTableView;
+use airlight_shaders::twins::lights::ExponentialFog;
 use airlight_shaders::twins::sky_tables::{SkyScales, SkyView};
 use airlight_shaders::twins::texture::Texture;
 use airlight_shaders::{FogTables, SkyTables};
@@ -113,7 +114,9 @@ structs! {
     SkyView { sun, height_m, ground_radius_m, air_height_m, horizon_rad, highest_rad }
     SkyScales { smooth_light, haze }
     RgbWeights { red, green, blue }
-    FogFrame { tables, layer, eye_height_m }
+    FogFrame { tables, layer, eye_height_m, around_lights }
+    ExponentialFog { medium, mean_cosine, reference_height_m, scale_height_m }
+    FogMedium { extinction_per_m, scattering_per_m }
     FogTables { view, diffuse, streams, stream_phase }
     FogTableView { sun, below_per_sine, depth_below, above_per_sine, depth_above, diffuse_scale, sunlit_scale }
     FogLayer { extinction_per_m, profile, scattering_per_m, height_m, phase, scale_m }

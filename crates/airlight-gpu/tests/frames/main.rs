@@ -1,16 +1,20 @@
 //! Whole frames of a device against the solver.
 
-mod device;
+mod cube;
 
 use airlight::atmosphere::{DensityProfile, Preset};
 use airlight::axes;
+use airlight::fog::lights::{
+    Light, LightSettings, PointLight, RgbLightSet, SphereLight, SpotLight, ViewRay,
+};
 use airlight::fog::{DirectionalLight, FogLighting, FogScattering, Ground, RgbFog, RgbLayer};
 use airlight::optics::PhaseFunction;
 use airlight::sky::{Sky, SkySettings, SunCoverage, TableChannels, View};
 use airlight::spectrum::{RgbSpace, WavelengthGrid, difference};
+use airlight_gpu::headless::{FORMAT, Frame, Geometry, Headless};
 use airlight_gpu::{Fog, SkyRenderer, SkyRendererError, SkyRendererSettings};
 use airlight_shaders::{ColourFit, SkyTables};
-use device::{FORMAT, Frame, Gpu};
+use cube::sample_cube;
 use glam::{DVec3, Vec3};
 use std::fmt;
 
@@ -78,7 +82,7 @@ fn settings(sun_deg: f64, height_m: f64) -> SkySettings {
     }
 }
 
-fn renderer(gpu: &Gpu, air: Preset, sun_deg: f64, height_m: f64) -> SkyRenderer {
+fn renderer(gpu: &Headless, air: Preset, sun_deg: f64, height_m: f64) -> SkyRenderer {
     let settings = SkyRendererSettings {
         solver: settings(sun_deg, height_m),
         ..SkyRendererSettings::new(FORMAT)
@@ -93,14 +97,30 @@ fn reference(air: Preset, sun_deg: f64, height_m: f64, sun: DVec3) -> View {
     sky.view(height_m, sun)
 }
 
+const SIDE: u32 = 64;
+
+/// Pixels of a frame that the renderer has drawn over.
+fn draw(
+    gpu: &Headless,
+    renderer: &mut SkyRenderer,
+    frame: &Frame,
+    exposure: f32,
+    geometry: Option<&Geometry<'_>>,
+) -> Vec<[f32; 3]> {
+    let camera = frame.camera(exposure);
+    let pixels = gpu.draw(frame, geometry, |encoder, target, depth| {
+        renderer.record(encoder, target, depth, &camera);
+    });
+    pixels.unwrap()
+}
+
 /// Luminance relative to that of the white above which errors count.
 const DARK: f64 = 1e-3;
-const SIDE: u32 = 64;
 /// Pixels between those that are compared.
 const STEP: usize = 5;
 
 /// Errors of sky, and of aerial perspective from 0.1 to 100 km, in frames to four sides, up and down.
-fn errors(gpu: &Gpu, air: Preset, sun_deg: f64, height_m: f64) -> [Errors; 2] {
+fn errors(gpu: &Headless, air: Preset, sun_deg: f64, height_m: f64) -> [Errors; 2] {
     let sun = axes::direction(140.0, sun_deg);
     let mut renderer = renderer(gpu, air, sun_deg, height_m);
     renderer.update(height_m, sun).unwrap();
@@ -137,8 +157,12 @@ fn errors(gpu: &Gpu, air: Preset, sun_deg: f64, height_m: f64) -> [Errors; 2] {
         let frame = Frame::towards(axes::direction(azimuth, elevation).as_vec3(), SIDE);
         let distance_m =
             |x: u32, y: u32| 100.0 * 1e3f32.powf(((3 * x + 7 * y) % 101) as f32 / 100.0);
-        let sky = gpu.draw(&mut renderer, &frame, exposure, [0.0; 3], None);
-        let walls = gpu.draw(&mut renderer, &frame, exposure, before, Some(&distance_m));
+        let geometry = Geometry {
+            colour: before,
+            distance_m: &distance_m,
+        };
+        let sky = draw(gpu, &mut renderer, &frame, exposure, None);
+        let walls = draw(gpu, &mut renderer, &frame, exposure, Some(&geometry));
         for k in (0..(SIDE * SIDE) as usize).step_by(STEP) {
             let (x, y) = (k as u32 % SIDE, k as u32 / SIDE);
             let direction = frame.direction(x, y).as_dvec3().normalize();
@@ -171,13 +195,13 @@ fn errors(gpu: &Gpu, air: Preset, sun_deg: f64, height_m: f64) -> [Errors; 2] {
 
 #[test]
 fn only_a_moved_eye_or_sun_fills_the_tables() {
-    let gpu = Gpu::new();
+    let gpu = Headless::new().unwrap();
     let mut renderer = renderer(&gpu, Preset::Clear, 30.0, 2.0);
     let sun = axes::direction(140.0, 30.0);
     for (count, azimuth) in [0.0, 45.0, 200.0].into_iter().enumerate() {
         renderer.update(2.0, sun).unwrap();
         let frame = Frame::towards(axes::direction(azimuth, 10.0).as_vec3(), 8);
-        gpu.draw(&mut renderer, &frame, 1e-4, [0.0; 3], None);
+        draw(&gpu, &mut renderer, &frame, 1e-4, None);
         let work = renderer.work();
         assert_eq!((work.tables, work.frames), (1, count as u64 + 1));
     }
@@ -188,11 +212,11 @@ fn only_a_moved_eye_or_sun_fills_the_tables() {
 
 #[test]
 fn tables_filled_in_the_background_are_those_of_an_update() {
-    let gpu = Gpu::new();
+    let gpu = Headless::new().unwrap();
     let mut renderer = renderer(&gpu, Preset::Clear, 30.0, 2.0);
     let frame = Frame::towards(axes::direction(100.0, 10.0).as_vec3(), 8);
     let [first, second] = [140.0, 170.0].map(|azimuth| axes::direction(azimuth, 30.0));
-    let draw = |renderer: &mut SkyRenderer| gpu.draw(renderer, &frame, 1e-4, [0.0; 3], None);
+    let draw = |renderer: &mut SkyRenderer| draw(&gpu, renderer, &frame, 1e-4, None);
     renderer.update(2.0, second).unwrap();
     let right = draw(&mut renderer);
     renderer.update(2.0, first).unwrap();
@@ -215,7 +239,7 @@ fn rgb_of(grid: &WavelengthGrid, light: &[f32]) -> [f64; 3] {
 
 #[test]
 fn lighting_is_that_of_the_solver() {
-    let gpu = Gpu::new();
+    let gpu = Headless::new().unwrap();
     // Harmonics of degree 2 cannot follow light that comes from beside the horizon.
     for (sun_deg, limit) in [(50.0, 0.05), (5.0, 0.15)] {
         let sun = axes::direction(140.0, sun_deg);
@@ -272,7 +296,7 @@ fn valley_fog() -> Fog {
 /// Frames in fog against the same frames without, behind the library's fog.
 #[test]
 fn fog_in_a_frame_is_that_of_the_library() {
-    let gpu = Gpu::new();
+    let gpu = Headless::new().unwrap();
     let fog = valley_fog();
     for (sun_deg, height_m) in [(30.0, 2.0), (5.0, 60.0)] {
         let sun = axes::direction(140.0, sun_deg);
@@ -284,7 +308,11 @@ fn fog_in_a_frame_is_that_of_the_library() {
         let frame = Frame::towards(axes::direction(120.0, 0.0).as_vec3(), SIDE);
         let draw = |renderer: &mut SkyRenderer| {
             renderer.update(height_m, sun).unwrap();
-            gpu.draw(renderer, &frame, 1e-4, [0.5; 3], Some(&distance_m))
+            let geometry = Geometry {
+                colour: [0.5; 3],
+                distance_m: &distance_m,
+            };
+            draw(&gpu, renderer, &frame, 1e-4, Some(&geometry))
         };
         let clear = draw(&mut renderer);
         let lighting = *renderer.lighting().unwrap();
@@ -329,7 +357,7 @@ fn fog_in_a_frame_is_that_of_the_library() {
 /// from beside the horizon under a low sun.
 #[test]
 fn lighting_in_fog_is_that_of_the_library() {
-    let gpu = Gpu::new();
+    let gpu = Headless::new().unwrap();
     for sun_deg in [50.0, 10.0] {
         let sun = axes::direction(140.0, sun_deg);
         let mut renderer = renderer(&gpu, Preset::Clear, sun_deg, 0.0);
@@ -373,9 +401,76 @@ fn lighting_in_fog_is_that_of_the_library() {
     }
 }
 
+/// What lights add to frames in fog, against the library's lights in the same fog: with its phase function, that of Henyey and
+/// Greenstein, and within the error that the shader functions state.
+#[test]
+fn lights_in_fog_are_those_of_the_library() {
+    let gpu = Headless::new().unwrap();
+    let (sun_deg, height_m) = (-12.0, 3.0);
+    let sun = axes::direction(140.0, sun_deg);
+    let mut renderer = renderer(&gpu, Preset::Clear, sun_deg, height_m);
+    let lights = |eye: DVec3| {
+        let at = |x: f64, y: f64, z: f64| DVec3::new(x, y, z) - eye;
+        let down = DVec3::new(0.3, -1.0, 0.2);
+        [
+            Light::Point(PointLight::new(at(30.0, 8.0, -10.0), [1e4, 8e3, 5e3], 0.1).unwrap()),
+            Light::Spot(
+                SpotLight::new(at(60.0, 15.0, 20.0), down, [5e5, 5e5, 6e5], 0.3, 0.6, 0.2).unwrap(),
+            ),
+            Light::Sphere(SphereLight::new(at(25.0, 4.0, 15.0), 0.8, [3e4, 4e4, 6e4]).unwrap()),
+        ]
+    };
+    let eye = DVec3::Y * height_m;
+    let frame = Frame::towards(Vec3::X, SIDE);
+    let distance_m = |x: u32, y: u32| match (x + y) % 2 {
+        0 => f32::INFINITY,
+        _ => 20.0 + ((3 * x + 7 * y) % 101) as f32,
+    };
+    let walls = Geometry {
+        colour: [0.0; 3],
+        distance_m: &distance_m,
+    };
+    let fog = valley_fog();
+    renderer.set_fog(Some(fog.clone())).unwrap();
+    renderer.update(height_m, sun).unwrap();
+    let draw = |renderer: &mut SkyRenderer| draw(&gpu, renderer, &frame, 1.0, Some(&walls));
+    let dark = draw(&mut renderer);
+    let tables = renderer.work().tables;
+    renderer.set_lights(&lights(eye)).unwrap();
+    let lit = draw(&mut renderer);
+    assert_eq!(renderer.work().tables, tables);
+    let all = lights(DVec3::ZERO).to_vec();
+    let right = RgbLightSet::new(all, &[fog.layer], Ground::FLAT, LightSettings::default());
+    let right = right.unwrap();
+    let mut worst = (0.0, Vec3::ZERO);
+    for k in 0..(SIDE * SIDE) as usize {
+        let (x, y) = (k as u32 % SIDE, k as u32 / SIDE);
+        let direction = frame.direction(x, y).as_dvec3().normalize();
+        let to_ground_m = match direction.y < 0.0 {
+            true => height_m / -direction.y,
+            false => f64::INFINITY,
+        };
+        let want = right.path_radiance(&ViewRay {
+            eye,
+            direction,
+            length_m: f64::from(distance_m(x, y)).min(to_ground_m),
+        });
+        for channel in 0..3 {
+            let error = (lit[k][channel] - dark[k][channel]) / want[channel] - 1.0;
+            if error.abs() > worst.0 {
+                worst = (error.abs(), direction.as_vec3());
+            }
+        }
+    }
+    println!("{:.4} at {}", worst.0, worst.1);
+    assert!(worst.0 < 0.04, "{worst:?}");
+    renderer.set_lights(&[]).unwrap();
+    assert_eq!(draw(&mut renderer), dark);
+}
+
 #[test]
 fn the_sun_shines_where_it_is_and_only_there() {
-    let gpu = Gpu::new();
+    let gpu = Headless::new().unwrap();
     let (sun_deg, height_m) = (10.0, 2.0);
     let sun = axes::direction(140.0, sun_deg);
     let mut renderer = renderer(&gpu, Preset::Clear, sun_deg, height_m);
@@ -386,7 +481,7 @@ fn the_sun_shines_where_it_is_and_only_there() {
     // An odd side, so that the sun is in the middle of a pixel, which is smaller than the disc.
     let side = 401;
     let frame = Frame::towards(sun.as_vec3(), side);
-    let pixels = gpu.draw(&mut renderer, &frame, exposure, [0.0; 3], None);
+    let pixels = draw(&gpu, &mut renderer, &frame, exposure, None);
     let luminance = |k: usize| RgbSpace::Srgb.luminance(pixels[k].map(f64::from));
     let middle = pixels.len() / 2;
     let pixel = 2.0 / f64::from(side);
@@ -448,7 +543,7 @@ fn reflected(radiance: &dyn Fn(Vec3) -> Vec3, normal: Vec3, roughness: f32) -> V
 
 #[test]
 fn an_environment_map_holds_what_surfaces_reflect() {
-    let gpu = Gpu::new();
+    let gpu = Headless::new().unwrap();
     let (sun_deg, height_m) = (35.0, 2.0);
     let sun = axes::direction(140.0, sun_deg);
     let mut renderer = renderer(&gpu, Preset::Clear, sun_deg, height_m);
@@ -476,7 +571,7 @@ fn an_environment_map_holds_what_surfaces_reflect() {
             0 => scattered().filter(|d| d.y.abs() > 0.05).collect(),
             _ => scattered().step_by(25).collect(),
         };
-        let got = gpu.sample_cube(map.view(), &directions, level as f32);
+        let got = sample_cube(&gpu, map.view(), &directions, level as f32);
         let errors = directions.iter().zip(got).map(|(&d, got)| {
             let want = match level {
                 0 => right(d),
@@ -499,7 +594,7 @@ fn the_example_that_adds_a_sky_is_short() {
 
 #[test]
 fn wrong_inputs_are_errors() {
-    let gpu = Gpu::new();
+    let gpu = Headless::new().unwrap();
     let air = Preset::Clear.atmosphere();
     let wrong = SkyRendererSettings::new(wgpu::TextureFormat::R32Uint);
     let error = SkyRenderer::new(&gpu.device, &gpu.queue, &air, &wrong).unwrap_err();
@@ -516,6 +611,31 @@ fn wrong_inputs_are_errors() {
         renderer.set_fog(Some(fog.clone())),
         Err(SkyRendererError::FogProfile)
     ));
+    let light = PointLight::new(DVec3::new(30.0, 2.0, 0.0), [1e3; 3], 0.1).unwrap();
+    let light = Light::Point(light);
+    let many = renderer.set_lights(&[light; 17]);
+    assert!(matches!(
+        many,
+        Err(SkyRendererError::TooManyLights { count: 17, .. })
+    ));
+    let invalid = Light::Point(PointLight {
+        position: DVec3::NAN,
+        intensity: [1e3; 3],
+        radius_m: 0.1,
+    });
+    assert!(matches!(
+        renderer.set_lights(&[invalid]),
+        Err(SkyRendererError::Fog(_))
+    ));
+    renderer.set_lights(&[light]).unwrap();
+    fog.layer.density = DensityProfile::Layer {
+        bottom_m: 0.0,
+        top_m: 50.0,
+    };
+    assert!(matches!(
+        renderer.set_fog(Some(fog.clone())),
+        Err(SkyRendererError::LightProfile)
+    ));
     fog.layer.density = DensityProfile::exponential(-30.0);
     assert!(matches!(
         renderer.set_fog(Some(fog)),
@@ -530,7 +650,7 @@ mod guards {
 
     #[test]
     fn a_frame_is_that_of_the_solver() {
-        let gpu = Gpu::new();
+        let gpu = Headless::new().unwrap();
         let [sky, walls] = errors(&gpu, Preset::Hazy, 10.0, 2.0);
         println!("{}: sky {sky}\n    walls {walls}", gpu.name);
         assert!(Errors::rms(&sky.luminance) < 0.5 && Errors::largest(&sky.luminance) < 2.0);
@@ -542,7 +662,7 @@ mod guards {
     /// Prints luminance errors in % and CIEDE2000, rms and largest, of the sky and of walls behind air; rms errors are below a limit
     /// in %.
     fn all_frames(heights_m: &[f64], limit: f64) {
-        let gpu = Gpu::new();
+        let gpu = Headless::new().unwrap();
         let mut wrong = Vec::new();
         for air in [Preset::Clear, Preset::Hazy] {
             for sun_deg in SUNS_DEG {
