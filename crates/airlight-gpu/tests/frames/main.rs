@@ -172,7 +172,10 @@ fn errors(gpu: &Headless, air: Preset, sun_deg: f64, height_m: f64) -> [Errors; 
             };
             // Radiance jumps at the horizon.
             let off_horizon = (direction.y.asin() - horizon).abs() > 1e-4;
-            let in_disc = direction.angle_between(sun) < 1.1 * view.disc().angular_radius_rad;
+            // A pixel that the disc touches holds a part of its light.
+            let half_diagonal = std::f64::consts::SQRT_2 / f64::from(SIDE);
+            let in_disc =
+                direction.angle_between(sun) < 1.1 * view.disc().angular_radius_rad + half_diagonal;
             let light = |pixel: [f32; 3]| pixel.map(|v| f64::from(v / exposure));
             if off_horizon && !in_disc {
                 all[0].add(light(sky[k]), radiance(direction), bright, at);
