@@ -1,9 +1,9 @@
 //! Tables on the device: the first group of a pass.
 
-use crate::pass::{UNIFORM, group_layout, texture};
+use crate::pass::{UNIFORM, bind_group, group_layout, texture, uniform};
 use airlight_shaders::twins::texture::Texture;
 use wgpu::TextureViewDimension;
-use wgpu::util::{BufferInitDescriptor, DeviceExt, TextureDataOrder};
+use wgpu::util::{DeviceExt, TextureDataOrder};
 
 /// A texture of two dimensions.
 pub const FLAT: TextureViewDimension = TextureViewDimension::D2;
@@ -46,32 +46,13 @@ pub fn bind(
     sampler: &wgpu::Sampler,
     views: &[wgpu::TextureView],
 ) -> wgpu::BindGroup {
-    let numbers = device.create_buffer_init(&BufferInitDescriptor {
-        label: Some("airlight numbers"),
-        contents: &bytes(numbers),
-        usage: wgpu::BufferUsages::UNIFORM,
-    });
-    let mut entries = vec![
-        wgpu::BindGroupEntry {
-            binding: 0,
-            resource: numbers.as_entire_binding(),
-        },
-        wgpu::BindGroupEntry {
-            binding: 1,
-            resource: wgpu::BindingResource::Sampler(sampler),
-        },
+    let numbers = uniform(device, "airlight numbers", numbers);
+    let mut resources = vec![
+        numbers.as_entire_binding(),
+        wgpu::BindingResource::Sampler(sampler),
     ];
-    for (binding, view) in (2..).zip(views) {
-        entries.push(wgpu::BindGroupEntry {
-            binding,
-            resource: wgpu::BindingResource::TextureView(view),
-        });
-    }
-    device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("airlight tables"),
-        layout,
-        entries: &entries,
-    })
+    resources.extend(views.iter().map(wgpu::BindingResource::TextureView));
+    bind_group(device, layout, "airlight tables", &resources)
 }
 
 /// A texture of half floats.
@@ -98,9 +79,4 @@ pub fn upload(device: &wgpu::Device, queue: &wgpu::Queue, texture: &Texture) -> 
     device
         .create_texture_with_data(queue, &descriptor, TextureDataOrder::default(), &bytes)
         .create_view(&wgpu::TextureViewDescriptor::default())
-}
-
-/// Numbers as a buffer holds them.
-pub fn bytes(numbers: &[f32]) -> Vec<u8> {
-    numbers.iter().flat_map(|x| x.to_ne_bytes()).collect()
 }

@@ -2,7 +2,8 @@
 //! pixels.
 
 use crate::camera::{Camera, Projection};
-use crate::gpu_tables::bytes;
+use crate::pass::bytes;
+use crate::read::{ReadTextureError, read_texture};
 use glam::{Mat4, Vec3};
 use half::f16;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
@@ -36,8 +37,8 @@ pub enum HeadlessError {
     )]
     NoDevice(String),
     /// The pixels could not be read.
-    #[error("cannot read the pixels of a frame, as with a device that is lost: {0}")]
-    Pixels(String),
+    #[error(transparent)]
+    Pixels(#[from] ReadTextureError),
 }
 
 /// A device that draws without a window.
@@ -290,51 +291,18 @@ impl Headless {
     /// Submits the commands and reads the pixels of a target.
     fn pixels(
         &self,
-        mut encoder: wgpu::CommandEncoder,
+        encoder: wgpu::CommandEncoder,
         target: &wgpu::Texture,
     ) -> Result<Vec<[f32; 3]>, HeadlessError> {
         const PIXEL_BYTES: usize = 8;
-        let side = target.width();
-        let row_bytes = side * PIXEL_BYTES as u32;
-        let bytes_per_row = row_bytes.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("airlight pixels"),
-            size: u64::from(bytes_per_row * side),
-            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
-        encoder.copy_texture_to_buffer(
-            target.as_image_copy(),
-            wgpu::TexelCopyBufferInfo {
-                buffer: &buffer,
-                layout: wgpu::TexelCopyBufferLayout {
-                    offset: 0,
-                    bytes_per_row: Some(bytes_per_row),
-                    rows_per_image: None,
-                },
-            },
-            target.size(),
-        );
         self.queue.submit([encoder.finish()]);
-        // A failure shows when the range is taken.
-        buffer.slice(..).map_async(wgpu::MapMode::Read, |_| {});
-        let failed = |error: &dyn std::fmt::Display| HeadlessError::Pixels(error.to_string());
-        self.device
-            .poll(wgpu::PollType::wait_indefinitely())
-            .map_err(|error| failed(&error))?;
-        let rows = buffer
-            .slice(..)
-            .get_mapped_range()
-            .map_err(|error| failed(&error))?;
-        let rows = rows.chunks(bytes_per_row as usize);
-        Ok(rows
-            .flat_map(|row| row[..row_bytes as usize].as_chunks::<PIXEL_BYTES>().0)
-            .map(|pixel| {
-                std::array::from_fn(|c| {
-                    f16::from_ne_bytes([pixel[2 * c], pixel[2 * c + 1]]).to_f32()
-                })
-            })
-            .collect())
+        let bytes = read_texture(&self.device, &self.queue, target)?;
+        let (pixels, _) = bytes.as_chunks::<PIXEL_BYTES>();
+        let channel = |pixel: &[u8; PIXEL_BYTES], c: usize| {
+            f16::from_ne_bytes([pixel[2 * c], pixel[2 * c + 1]]).to_f32()
+        };
+        let rgb = |pixel| std::array::from_fn(|c| channel(pixel, c));
+        Ok(pixels.iter().map(rgb).collect())
     }
 }
 

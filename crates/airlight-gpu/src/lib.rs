@@ -23,6 +23,8 @@ mod lighting;
 mod lights;
 mod pass;
 mod passes;
+#[cfg(not(target_arch = "wasm32"))]
+mod read;
 mod renderer;
 mod sky;
 mod terrain;
@@ -36,6 +38,8 @@ pub use frame_tables::{FrameTables, SkySolver};
 pub use lighting::Lighting;
 pub use lights::MOST_LIGHTS;
 pub use passes::SkyPasses;
+#[cfg(not(target_arch = "wasm32"))]
+pub use read::{ReadTextureError, read_texture};
 pub use renderer::{SkyRenderer, SkyRendererSettings, Work};
 pub use terrain::{HeightField, TerrainPass, TerrainView};
 pub use tone::{ToneCurve, TonePass, ToneSettings};

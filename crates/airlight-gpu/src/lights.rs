@@ -1,14 +1,12 @@
 //! Lights in fog: what the pass of `lights.wgsl` reads.
 
 use crate::error::SkyRendererError;
-use crate::gpu_tables::bytes;
-use crate::pass::{UNIFORM, group_layout};
+use crate::pass::{UNIFORM, bind_group, group_layout, uniform};
 use airlight::fog::lights::{Light, PointLight, SphereLight, SpotLight};
 use airlight_shaders::twins::lights::{
     ExponentialFog, LocalLight, point_light, sphere_light, spot_light,
 };
 use glam::Vec3;
-use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
 /// Largest number of lights in a fog.
 pub const MOST_LIGHTS: usize = 16;
@@ -20,19 +18,9 @@ pub fn upload(
     (fog, eye_height_m): (&ExponentialFog, f32),
     lights: &[LocalLight],
 ) -> wgpu::BindGroup {
-    let numbers = device.create_buffer_init(&BufferInitDescriptor {
-        label: Some("airlight lights"),
-        contents: &bytes(&numbers(fog, eye_height_m, lights)),
-        usage: wgpu::BufferUsages::UNIFORM,
-    });
-    device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("airlight lights"),
-        layout,
-        entries: &[wgpu::BindGroupEntry {
-            binding: 0,
-            resource: numbers.as_entire_binding(),
-        }],
-    })
+    let label = "airlight lights";
+    let numbers = uniform(device, label, &numbers(fog, eye_height_m, lights));
+    bind_group(device, layout, label, &[numbers.as_entire_binding()])
 }
 
 /// The numbers of the shader's struct `Lights`.

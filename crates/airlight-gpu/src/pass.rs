@@ -1,5 +1,7 @@
 //! Passes that cover a target; over a frame, one dims it and one adds light.
 
+use wgpu::util::{BufferInitDescriptor, DeviceExt};
+
 /// The vertex stage of [`covering`] pipelines.
 pub const CORNER: &str = include_str!("corner.wgsl");
 
@@ -55,6 +57,41 @@ pub fn group_layout(
         label: Some(label),
         entries: &entries,
     })
+}
+
+/// A group of what a [`group_layout`] holds, by binding.
+pub fn bind_group(
+    device: &wgpu::Device,
+    layout: &wgpu::BindGroupLayout,
+    label: &str,
+    resources: &[wgpu::BindingResource<'_>],
+) -> wgpu::BindGroup {
+    let entries: Vec<_> = (0..)
+        .zip(resources)
+        .map(|(binding, resource)| wgpu::BindGroupEntry {
+            binding,
+            resource: resource.clone(),
+        })
+        .collect();
+    device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some(label),
+        layout,
+        entries: &entries,
+    })
+}
+
+/// A buffer with the numbers of a pass, for a [`UNIFORM`].
+pub fn uniform(device: &wgpu::Device, label: &str, numbers: &[f32]) -> wgpu::Buffer {
+    device.create_buffer_init(&BufferInitDescriptor {
+        label: Some(label),
+        contents: &bytes(numbers),
+        usage: wgpu::BufferUsages::UNIFORM,
+    })
+}
+
+/// Numbers as a buffer holds them.
+pub fn bytes(numbers: &[f32]) -> Vec<u8> {
+    numbers.iter().flat_map(|x| x.to_ne_bytes()).collect()
 }
 
 /// Numbers of a pass.

@@ -5,15 +5,16 @@ use crate::environment::EnvironmentMap;
 use crate::error::SkyRendererError;
 use crate::fog;
 use crate::frame_tables::FrameTables;
-use crate::gpu_tables::{FLAT, bytes};
+use crate::gpu_tables::FLAT;
 use crate::lighting::Lighting;
 use crate::lights;
-use crate::pass::{CORNER, Pass, UNIFORM, adding, draw, group_layout, texture};
+use crate::pass::{
+    CORNER, Pass, UNIFORM, adding, bind_group, draw, group_layout, texture, uniform,
+};
 use crate::sky;
 use airlight::fog::lights::Light;
 use airlight_shaders::twins::lights::{ExponentialFog, LocalLight};
 use airlight_shaders::{Part, source};
-use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
 /// Draws air, sky and sun over frames, with tables that a [`SkySolver`](crate::SkySolver) has filled.
 #[derive(Debug)]
@@ -212,25 +213,16 @@ impl SkyPasses {
         camera: &[f32],
     ) {
         // A buffer for each frame, as an encoder may record several.
-        let camera = self.device.create_buffer_init(&BufferInitDescriptor {
-            label: Some("airlight camera"),
-            contents: &bytes(camera),
-            usage: wgpu::BufferUsages::UNIFORM,
-        });
-        let frame = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("airlight frame"),
-            layout: &self.frame_layout,
-            entries: &[
-                wgpu::BindGroupEntry {
-                    binding: 0,
-                    resource: camera.as_entire_binding(),
-                },
-                wgpu::BindGroupEntry {
-                    binding: 1,
-                    resource: wgpu::BindingResource::TextureView(depth),
-                },
+        let camera = uniform(&self.device, "airlight camera", camera);
+        let frame = bind_group(
+            &self.device,
+            &self.frame_layout,
+            "airlight frame",
+            &[
+                camera.as_entire_binding(),
+                wgpu::BindingResource::TextureView(depth),
             ],
-        });
+        );
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("airlight sky"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {

@@ -2,13 +2,12 @@
 
 use crate::camera::Camera;
 use crate::error::SkyRendererError;
-use crate::gpu_tables::{self, FLAT, bytes};
+use crate::gpu_tables::{self, FLAT};
 use crate::lighting::Lighting;
-use crate::pass::{CORNER, UNIFORM, group_layout};
+use crate::pass::{CORNER, UNIFORM, bind_group, group_layout, uniform};
 use airlight::glam::DVec3;
 use airlight_shaders::twins::texture::Texture;
 use glam::Vec4;
-use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
 /// Multiple of heights that half floats hold exactly, m.
 const WHOLE_M: f32 = 16.0;
@@ -284,19 +283,10 @@ impl TerrainPass {
             &self.sampler,
             std::slice::from_ref(&heights.view),
         );
-        let numbers = self.device.create_buffer_init(&BufferInitDescriptor {
-            label: Some("airlight camera"),
-            contents: &bytes(&camera.numbers()),
-            usage: wgpu::BufferUsages::UNIFORM,
-        });
-        let camera = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("airlight camera"),
-            layout: &self.camera_layout,
-            entries: &[wgpu::BindGroupEntry {
-                binding: 0,
-                resource: numbers.as_entire_binding(),
-            }],
-        });
+        let label = "airlight camera";
+        let camera = uniform(&self.device, label, &camera.numbers());
+        let camera = [camera.as_entire_binding()];
+        let camera = bind_group(&self.device, &self.camera_layout, label, &camera);
         let attachment = |view| {
             Some(wgpu::RenderPassColorAttachment {
                 view,
@@ -357,6 +347,8 @@ fn numbers(heights: &Heights, view: &TerrainView) -> Vec<f32> {
 mod tests {
     use super::*;
     use crate::camera::Projection;
+    use crate::headless::Headless;
+    use crate::read::read_texture;
     use airlight::axes;
     use glam::Vec3;
     use std::f32::consts::{FRAC_PI_2, PI};
@@ -414,7 +406,7 @@ mod tests {
 
     /// Luminances and distances of the pixels of a fisheye of 180 degrees, 0 where no ground is drawn.
     fn drawn(field: &HeightField, view: &TerrainView, axes: [DVec3; 3]) -> Vec<[f32; 2]> {
-        let (device, queue) = device();
+        let Headless { device, queue, .. } = Headless::new().unwrap();
         let target = |format| {
             device.create_texture(&wgpu::TextureDescriptor {
                 label: None,
@@ -447,58 +439,15 @@ mod tests {
         };
         let mut encoder = device.create_command_encoder(&Default::default());
         pass.record(&mut encoder, &light, &depth, &camera, view);
-        let [light, depth] = textures.each_ref().map(|texture| {
-            let row = (SIDE * texture.format().block_copy_size(None).unwrap())
-                .next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-            let buffer = device.create_buffer(&wgpu::BufferDescriptor {
-                label: None,
-                size: u64::from(row * SIDE),
-                usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            });
-            let layout = wgpu::TexelCopyBufferLayout {
-                offset: 0,
-                bytes_per_row: Some(row),
-                rows_per_image: None,
-            };
-            encoder.copy_texture_to_buffer(
-                texture.as_image_copy(),
-                wgpu::TexelCopyBufferInfo {
-                    buffer: &buffer,
-                    layout,
-                },
-                texture.size(),
-            );
-            (buffer, row)
-        });
         queue.submit([encoder.finish()]);
-        let read = |(buffer, row): &(wgpu::Buffer, u32), texel: usize| -> Vec<f32> {
-            buffer.slice(..).map_async(wgpu::MapMode::Read, |_| {});
-            device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
-            let bytes = buffer.slice(..).get_mapped_range().unwrap();
-            let rows = bytes.chunks(*row as usize);
+        let read = |texture: &wgpu::Texture| -> Vec<f32> {
+            let texel = texture.format().block_copy_size(None).unwrap() as usize;
             let first = |of: &[u8]| f32::from_ne_bytes([of[0], of[1], of[2], of[3]]);
-            rows.flat_map(|row| {
-                row.chunks(texel)
-                    .take(SIDE as usize)
-                    .map(first)
-                    .collect::<Vec<_>>()
-            })
-            .collect()
+            let pixels = read_texture(&device, &queue, texture).unwrap();
+            pixels.chunks(texel).map(first).collect()
         };
-        let (light, depth) = (read(&light, 16), read(&depth, 4));
+        let [light, depth] = textures.each_ref().map(read);
         light.into_iter().zip(depth).map(|(l, d)| [l, d]).collect()
-    }
-
-    fn device() -> (wgpu::Device, wgpu::Queue) {
-        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
-            backends: wgpu::Backends::VULKAN,
-            ..wgpu::InstanceDescriptor::new_without_display_handle()
-        });
-        let adapter = instance.request_adapter(&wgpu::RequestAdapterOptions::default());
-        let adapter =
-            pollster::block_on(adapter).expect("a Vulkan device, such as mesa-vulkan-drivers");
-        pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default())).unwrap()
     }
 
     /// Direction of a pixel of [`drawn`].

@@ -1,9 +1,8 @@
 //! [`TonePass`].
 
-use crate::gpu_tables::{FLAT, bytes};
-use crate::pass::{CORNER, UNIFORM, cover, covering, group_layout, texture};
+use crate::gpu_tables::FLAT;
+use crate::pass::{CORNER, UNIFORM, bind_group, cover, covering, group_layout, texture, uniform};
 use airlight_shaders::{Part, source};
-use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
 /// Curve from exposed light to the light of a display.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -87,26 +86,14 @@ impl TonePass {
         target: &wgpu::TextureView,
         settings: &ToneSettings,
     ) {
-        let numbers = self.device.create_buffer_init(&BufferInitDescriptor {
-            label: Some("airlight tone"),
-            contents: &bytes(&self.numbers(settings)),
-            usage: wgpu::BufferUsages::UNIFORM,
-        });
-        let group = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("airlight tone"),
-            layout: &self.layout,
-            entries: &[
-                wgpu::BindGroupEntry {
-                    binding: 0,
-                    resource: numbers.as_entire_binding(),
-                },
-                wgpu::BindGroupEntry {
-                    binding: 1,
-                    resource: wgpu::BindingResource::TextureView(frame),
-                },
-            ],
-        });
-        cover(encoder, "airlight tone", target, &self.pipeline, &group);
+        let label = "airlight tone";
+        let numbers = uniform(&self.device, label, &self.numbers(settings));
+        let resources = [
+            numbers.as_entire_binding(),
+            wgpu::BindingResource::TextureView(frame),
+        ];
+        let group = bind_group(&self.device, &self.layout, label, &resources);
+        cover(encoder, label, target, &self.pipeline, &group);
     }
 
     /// The numbers of the shader's struct `Tone`.

@@ -136,5 +136,6 @@ fn drawn(
     });
     renderer.render(&mut pass.forget_lifetime(), &shapes, &screen);
     queue.submit(more.into_iter().chain([encoder.finish()]));
-    crate::picture::read_texture(device, queue, &texture).map_err(ViewerError::Pixels)
+    airlight_gpu::read_texture(device, queue, &texture)
+        .map_err(|error| ViewerError::Pixels(error.to_string()))
 }

@@ -278,7 +278,8 @@ impl Picture {
 
     #[cfg(not(target_arch = "wasm32"))]
     fn light_in(&self, targets: &Targets) -> Result<Vec<[f32; 3]>, String> {
-        let bytes = read_texture(&self.device, &self.queue, &targets.light)?;
+        let bytes = airlight_gpu::read_texture(&self.device, &self.queue, &targets.light)
+            .map_err(|error| error.to_string())?;
         let channel = |texel: &[u8; 8], c: usize| {
             half::f16::from_ne_bytes([texel[2 * c], texel[2 * c + 1]]).to_f32()
         };
@@ -359,54 +360,6 @@ fn clear(encoder: &mut wgpu::CommandEncoder, targets: &Targets) {
         occlusion_query_set: None,
         multiview_mask: None,
     });
-}
-
-/// The bytes of a texture, row by row without padding.
-#[cfg(not(target_arch = "wasm32"))]
-pub fn read_texture(
-    device: &wgpu::Device,
-    queue: &wgpu::Queue,
-    texture: &wgpu::Texture,
-) -> Result<Vec<u8>, String> {
-    let size = texture.size();
-    let texel = texture.format().block_copy_size(None).unwrap_or(4);
-    let row = size.width * texel;
-    let bytes_per_row = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("airlight pixels"),
-        size: u64::from(bytes_per_row * size.height),
-        usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    });
-    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    encoder.copy_texture_to_buffer(
-        texture.as_image_copy(),
-        wgpu::TexelCopyBufferInfo {
-            buffer: &buffer,
-            layout: wgpu::TexelCopyBufferLayout {
-                offset: 0,
-                bytes_per_row: Some(bytes_per_row),
-                rows_per_image: None,
-            },
-        },
-        size,
-    );
-    queue.submit([encoder.finish()]);
-    let (done, mapped) = std::sync::mpsc::channel();
-    buffer
-        .slice(..)
-        .map_async(wgpu::MapMode::Read, move |result| {
-            let _ = done.send(result);
-        });
-    device
-        .poll(wgpu::PollType::wait_indefinitely())
-        .map_err(|error| error.to_string())?;
-    let mapped = mapped.recv().map_err(|error| error.to_string())?;
-    mapped.map_err(|error| error.to_string())?;
-    let bytes = buffer.slice(..).get_mapped_range();
-    let bytes = bytes.map_err(|error| error.to_string())?;
-    let rows = bytes.chunks(bytes_per_row as usize);
-    Ok(rows.flat_map(|of| &of[..row as usize]).copied().collect())
 }
 
 #[cfg(test)]
@@ -505,7 +458,7 @@ mod tests {
                 [&source, &target].map(|texture| texture.create_view(&Default::default()));
             pass.record(&mut encoder, &source, &target_view, &tone_of(&output));
             queue.submit([encoder.finish()]);
-            let shown = read_texture(&device, &queue, &target).unwrap();
+            let shown = airlight_gpu::read_texture(&device, &queue, &target).unwrap();
             let mapper = tone_mapper(&output, 1.0).unwrap();
             let row = 3 * SIDE as usize;
             let mut right = vec![0; row * SIDE as usize];
