@@ -161,7 +161,8 @@ pub fn title(ui: &mut Ui, text: &str) -> bool {
         ui.with_layout(right, |ui| {
             let text = format!("Reset {}", text.to_lowercase());
             let small = RichText::new("reset").color(crate::style::QUIET).small();
-            let button = ui.add(egui::Button::new(small).frame(false));
+            // The frame shows the keyboard where it is.
+            let button = ui.add(egui::Button::new(small).frame_when_inactive(false));
             button.widget_info(|| WidgetInfo::labeled(Role::Button, true, &text));
             button.on_hover_text(&text).clicked()
         })
