@@ -139,11 +139,16 @@ impl SkyTable {
     #[inline(always)]
     fn look_up<const N: usize>(&self, directions: &[DVec3; N], out: &mut [f32]) {
         let angles = self.angles(directions);
+        let mut small = [0.0f32; SMALL_WIDTH];
+        // Cells of a fixed width stay in registers.
         match self.width {
-            4 => self.look_up_cells::<4, N>(&angles, out),
-            8 => self.look_up_cells::<8, N>(&angles, out),
-            12 => self.look_up_cells::<12, N>(&angles, out),
-            _ => self.look_up_wide_cells(&angles, out),
+            4 => self.look_up_cells(&angles, &mut [0.0; 4], out),
+            8 => self.look_up_cells(&angles, &mut [0.0; 8], out),
+            12 => self.look_up_cells(&angles, &mut [0.0; 12], out),
+            width => match small.get_mut(..width) {
+                Some(cell) => self.look_up_cells(&angles, cell, out),
+                None => self.look_up_cells(&angles, &mut vec![0.0; width], out),
+            },
         }
     }
 
@@ -169,32 +174,11 @@ impl SkyTable {
         angles
     }
 
-    /// The radiance in directions, for cells that fit in registers.
+    /// The radiance in directions, interpolated in `cell`.
     #[inline(always)]
-    fn look_up_cells<const W: usize, const N: usize>(&self, angles: &Angles<N>, out: &mut [f32]) {
+    fn look_up_cells<const N: usize>(&self, angles: &Angles<N>, cell: &mut [f32], out: &mut [f32]) {
         for (i, out) in out.chunks_exact_mut(self.channels).enumerate() {
-            let mut cell = [0.0f32; W];
-            if self.interpolate(angles.elevations[i], angles.azimuths[i], &mut cell) {
-                self.combine(&cell, angles.half_sines[i], out);
-            } else {
-                out.fill(0.0);
-            }
-        }
-    }
-
-    /// The radiance in directions, for cells of any width.
-    fn look_up_wide_cells<const N: usize>(&self, angles: &Angles<N>, out: &mut [f32]) {
-        let mut small = [0.0f32; SMALL_WIDTH];
-        let mut large = Vec::new();
-        let cell = match small.get_mut(..self.width) {
-            Some(cell) => cell,
-            None => {
-                large.resize(self.width, 0.0);
-                &mut large[..]
-            }
-        };
-        for (i, out) in out.chunks_exact_mut(self.channels).enumerate() {
-            if self.interpolate_wide(angles.elevations[i], angles.azimuths[i], cell) {
+            if self.interpolate(angles.elevations[i], angles.azimuths[i], cell) {
                 self.combine(cell, angles.half_sines[i], out);
             } else {
                 out.fill(0.0);
@@ -211,7 +195,7 @@ impl SkyTable {
             ..
         } = self.angles(&[direction]);
         let mut cell = vec![0.0; self.width];
-        self.interpolate_wide(elevation, azimuth, &mut cell);
+        self.interpolate(elevation, azimuth, &mut cell);
         cell
     }
 
@@ -241,11 +225,12 @@ impl SkyTable {
             #[inline(always)]
             || {
                 let line = self.line(half, row);
+                let row = (&line[..], elevation_rad);
                 match self.width {
-                    4 => self.cells::<4>(&line, elevation_rad, columns, out),
-                    8 => self.cells::<8>(&line, elevation_rad, columns, out),
-                    12 => self.cells::<12>(&line, elevation_rad, columns, out),
-                    _ => self.wide_cells(&line, elevation_rad, columns, out),
+                    4 => self.cells(row, columns, &mut [0.0; 4], out),
+                    8 => self.cells(row, columns, &mut [0.0; 8], out),
+                    12 => self.cells(row, columns, &mut [0.0; 12], out),
+                    width => self.cells(row, columns, &mut vec![0.0; width], out),
                 }
             },
         );
@@ -274,51 +259,26 @@ impl SkyTable {
         (between * between, elevation_rad.cos() * sun_elevation.cos())
     }
 
-    /// Evaluates the columns of one row, for cells that fit in registers.
+    /// Evaluates the columns of one row, interpolated in `cell`.
     #[inline(always)]
-    fn cells<const W: usize>(
+    fn cells(
         &self,
-        line: &[f32],
-        elevation_rad: f64,
+        (line, elevation_rad): (&[f32], f64),
         columns: &SkyColumns,
+        cell: &mut [f32],
         out: &mut [f32],
     ) {
         let (a, b) = self.half_sines2(elevation_rad);
-        let (line, _) = line.as_chunks::<W>();
-        for (column, out) in columns
-            .columns
-            .iter()
-            .zip(out.chunks_exact_mut(self.channels))
-        {
-            let mut cell = [0.0f32; W];
-            for (node, w) in column.nodes.iter().zip(&column.weights) {
-                for (sum, value) in cell.iter_mut().zip(&line[*node]) {
-                    *sum += w * value;
-                }
-            }
-            self.combine(&cell, (a + b * column.half_sine2).sqrt(), out);
-        }
-    }
-
-    /// Evaluates the columns of one row, for cells of any width.
-    fn wide_cells(&self, line: &[f32], elevation_rad: f64, columns: &SkyColumns, out: &mut [f32]) {
-        let (a, b) = self.half_sines2(elevation_rad);
-        let mut cell = vec![0.0f32; self.width];
-        for (column, out) in columns
-            .columns
-            .iter()
-            .zip(out.chunks_exact_mut(self.channels))
-        {
+        let out = out.chunks_exact_mut(self.channels);
+        for (column, out) in columns.columns.iter().zip(out) {
             cell.fill(0.0);
             for (node, w) in column.nodes.iter().zip(&column.weights) {
-                for (sum, value) in cell
-                    .iter_mut()
-                    .zip(&line[node * self.width..][..self.width])
-                {
+                let values = &line[node * cell.len()..][..cell.len()];
+                for (sum, value) in cell.iter_mut().zip(values) {
                     *sum += w * value;
                 }
             }
-            self.combine(&cell, (a + b * column.half_sine2).sqrt(), out);
+            self.combine(cell, (a + b * column.half_sine2).sqrt(), out);
         }
     }
 
@@ -389,60 +349,30 @@ impl SkyTable {
     /// Interpolates all values of a cell at an elevation (rad) and an azimuth from the sun's (1 is the opposite one); false
     /// above the atmosphere's limb.
     #[inline(always)]
-    fn interpolate<const W: usize>(
-        &self,
-        elevation: f64,
-        azimuth: f64,
-        cell: &mut [f32; W],
-    ) -> bool {
+    fn interpolate(&self, elevation: f64, azimuth: f64, cell: &mut [f32]) -> bool {
         let Some((half, row)) = self.place(elevation) else {
             return false;
         };
+        let width = cell.len();
         let (columns, column_weights) = cubic_mirrored(azimuth, AZIMUTHS);
         let (first_row, row_weights) = cubic_f32(row, half.rows);
-        let (cells, _) = half.values.as_chunks::<W>();
-        let rows: [&[[f32; W]]; 4] =
-            std::array::from_fn(|i| &cells[(first_row + i) * (AZIMUTHS + 1)..][..AZIMUTHS + 1]);
+        let stride = (AZIMUTHS + 1) * width;
+        let rows: [&[f32]; 4] =
+            std::array::from_fn(|i| &half.values[(first_row + i) * stride..][..stride]);
         // Groups of four values stay in a register over all sixteen cells.
         let (groups, _) = cell.as_chunks_mut::<4>();
         for (group, sums) in groups.iter_mut().enumerate() {
             let mut sum = [0.0f32; 4];
             for (row, row_weight) in rows.iter().zip(&row_weights) {
                 for (&column, column_weight) in columns.iter().zip(&column_weights) {
-                    let (values, _) = row[column].as_chunks::<4>();
+                    let values = &row[column * width + 4 * group..][..4];
                     let w = row_weight * column_weight;
-                    for (sum, value) in sum.iter_mut().zip(&values[group]) {
+                    for (sum, value) in sum.iter_mut().zip(values) {
                         *sum += w * value;
                     }
                 }
             }
             *sums = sum;
-        }
-        true
-    }
-
-    /// As [`Self::interpolate`], for cells of any width, which are overwritten.
-    fn interpolate_wide(&self, elevation: f64, azimuth: f64, cell: &mut [f32]) -> bool {
-        let Some((half, row)) = self.place(elevation) else {
-            return false;
-        };
-        let stride = (AZIMUTHS + 1) * self.width;
-        let (columns, column_weights) = cubic_mirrored(azimuth, AZIMUTHS);
-        let (first_row, row_weights) = cubic_f32(row, half.rows);
-        // Groups of four values stay in a register over all sixteen cells.
-        for (part, sums) in cell.chunks_exact_mut(4).enumerate() {
-            let mut sum = [0.0f32; 4];
-            for (i, &wr) in row_weights.iter().enumerate() {
-                for (&column, &wc) in columns.iter().zip(&column_weights) {
-                    let start = (first_row + i) * stride + column * self.width + 4 * part;
-                    let values = &half.values[start..start + 4];
-                    let w = wr * wc;
-                    for k in 0..4 {
-                        sum[k] += w * values[k];
-                    }
-                }
-            }
-            sums.copy_from_slice(&sum);
         }
         true
     }
