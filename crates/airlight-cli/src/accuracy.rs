@@ -2,11 +2,11 @@
 
 use crate::args::{AccuracyArgs, ReportArg};
 use crate::error::CliError;
-use crate::progress::Busy;
+use crate::progress::RowsBar;
 use crate::report;
-use airlight::Named;
+use airlight::Control;
 use airlight_validation::report::{html, json, text};
-use airlight_validation::{Check, Suite, run as make};
+use airlight_validation::{Check, RunError, Suite, run_with};
 
 /// Runs the command.
 ///
@@ -23,12 +23,18 @@ pub fn run(args: &AccuracyArgs) -> Result<(), CliError> {
         report::check_writable(path)?;
     }
     let suites: Vec<Suite> = match args.suites.as_slice() {
-        [] => Suite::ALL.to_vec(),
+        [] => Suite::USUAL.to_vec(),
         some => some.to_vec(),
     };
-    let busy = Busy::with("comparing");
-    let checks = make(&suites);
-    drop(busy);
+    let bar = RowsBar::by_stages();
+    let checks = run_with(&suites, Control::default().reporting_to(&bar));
+    drop(bar);
+    let checks = checks.map_err(|error| match error {
+        RunError::WithoutGpu(_) => CliError::failure(format!(
+            "{error}; try cargo install --locked --path crates/airlight-cli --features gpu"
+        )),
+        error => CliError::failure(error.to_string()),
+    })?;
     let wrong = |error: &dyn std::fmt::Display| {
         CliError::failure(format!("cannot write the report: {error}"))
     };

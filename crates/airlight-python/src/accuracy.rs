@@ -2,9 +2,8 @@
 
 use crate::compute::compute_apart;
 use crate::errors::Failure;
-use airlight::Named;
 use airlight_validation::report::{html, json, text};
-use airlight_validation::{Check, Suite, run};
+use airlight_validation::{Check, Suite, run_with};
 use pyo3::prelude::*;
 
 /// Compares the solvers with measurements and other codes, as ``airlight accuracy`` does.
@@ -12,7 +11,8 @@ use pyo3::prelude::*;
 /// Parameters
 /// ----------
 /// suites : list of str or None
-///     ``tables``, ``monte-carlo``, ``limits``, ``peers``, ``measured``; None: all, which takes minutes.
+///     ``tables``, ``monte-carlo``, ``limits``, ``peers``, ``measured``; None: all of these, which takes minutes. The suites of
+///     frames of a graphics device are those of the program alone.
 /// threads : int or None
 ///     Number of threads.
 ///
@@ -31,15 +31,13 @@ pub fn accuracy(
             .iter()
             .map(|name| name.parse().map_err(Failure::from))
             .collect::<Result<Vec<Suite>, _>>()?,
-        None => Suite::ALL.to_vec(),
+        None => Suite::USUAL.to_vec(),
     };
     compute_apart(py, threads, move |control| {
-        let mut checks = Vec::new();
-        for suite in Suite::ALL.iter().filter(|suite| suites.contains(suite)) {
-            control.check()?;
-            checks.extend(run(&[*suite]));
-        }
-        Ok::<_, Failure>(AccuracyReport(checks))
+        let checks = run_with(&suites, control);
+        checks
+            .map(AccuracyReport)
+            .map_err(|error| Failure::invalid(error.to_string()))
     })
 }
 

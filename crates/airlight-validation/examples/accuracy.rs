@@ -1,9 +1,9 @@
 //! Prints how far the sky solver is from the tables of other codes: `cargo run --release -p airlight-validation --example accuracy`.
 
-use airlight_validation::{Suite, report, run};
+use airlight_validation::{RunError, Suite, report, run};
 
-fn main() {
-    let checks = run(&[Suite::Tables]);
+fn main() -> Result<(), RunError> {
+    let checks = run(&[Suite::Tables])?;
     print!("{}", report::text(&checks));
     for check in checks.iter().filter(|check| check.claims()) {
         let Some(found) = check.statistics() else {
@@ -16,4 +16,5 @@ fn main() {
         };
         println!("{}: worst {:.3}, {verdict}", check.what, found.worst);
     }
+    Ok(())
 }

@@ -6,7 +6,8 @@
 //!
 //! `tables` (other solvers), `twilight` (Airlight's Monte Carlo, also with the fine settings; takes some minutes), `measured`
 //! (the measured sky) and `fit` (the fitted aerosol); `settings` prints the errors against Monte Carlo with one setting of the
-//! solver changed at a time, for the chapter on the solver.
+//! solver changed at a time, for the chapter on the solver. With the feature `gpu`: `frames` (frames of a graphics device, by renderer
+//! and sun) and `frames-monte-carlo`; both take minutes.
 
 use airlight::sky::SkySettings;
 use airlight_validation::check::Statistics;
@@ -27,7 +28,15 @@ fn main() -> Result<(), Box<dyn Error>> {
             settings();
             Ok(())
         }
-        _ => Err("expected the name of a table: tables, twilight, measured, fit, settings".into()),
+        #[cfg(feature = "gpu")]
+        Some("frames") => frames::table(),
+        #[cfg(feature = "gpu")]
+        Some("frames-monte-carlo") => frames::monte_carlo_table(),
+        _ => Err(
+            "expected the name of a table: tables, twilight, measured, fit, settings; with the feature gpu also frames, \
+             frames-monte-carlo"
+                .into(),
+        ),
     }
 }
 
@@ -45,7 +54,7 @@ fn sun_zenith_deg(check: &Check) -> f64 {
 fn tables() -> Result<(), Box<dyn Error>> {
     println!("| against | atmosphere | sun zenith | views | mean | rms | worst |");
     println!("|---|---|---|---|---|---|---|");
-    let checks = run(&[Suite::Tables]);
+    let checks = run(&[Suite::Tables])?;
     let mut rows = Vec::new();
     // The plane-parallel libRadtran makes no claim.
     for check in checks.iter().filter(|check| check.limit.is_some()) {
@@ -112,7 +121,7 @@ fn twilight() -> Result<(), Box<dyn Error>> {
 /// Airlight and published models compared with the measured sky.
 fn measured() -> Result<(), Box<dyn Error>> {
     println!("| what | rms, mW m⁻² sr⁻¹ nm⁻¹, these 8 scans | all 15 |\n|---|---|---|");
-    let checks = run(&[Suite::Measured]);
+    let checks = run(&[Suite::Measured])?;
     let [published_air, of_the_day, ..] = checks.as_slice() else {
         return Err("the measured sky lacks a check".into());
     };
@@ -212,5 +221,102 @@ fn settings() {
             rms(|sun| sun <= 80.0),
             rms(|sun| sun > 80.0)
         );
+    }
+}
+
+#[cfg(feature = "gpu")]
+mod frames {
+    use airlight::Control;
+    use airlight_gpu::headless::Headless;
+    use airlight_validation::frames::{
+        Case, DIRECTIONS, FrameRow, PATH_DIRECTIONS, PATHS, Place, Quantity, Renderer, SUNS_DEG,
+        against_monte_carlo, against_solver,
+    };
+    use airlight_validation::{Row, Unit};
+    use std::error::Error;
+
+    /// Errors by renderer and sun, of an eye in the air and of one at 400 km: rms and largest.
+    pub fn table() -> Result<(), Box<dyn Error>> {
+        let device = Headless::new()?;
+        let rows = against_solver(&device, &Case::all(), DIRECTIONS, reported())?;
+        println!(
+            "| | sun | sky, % | sky, CIEDE2000 | walls, % | walls, CIEDE2000 | from 400 km, % | CIEDE2000 |"
+        );
+        println!("|---|---|---|---|---|---|---|---|");
+        for renderer in Renderer::ALL {
+            for sun_deg in SUNS_DEG {
+                let errors = |quantity: Quantity, place: Place| {
+                    let chosen = |r: &&FrameRow| {
+                        r.renderer == renderer
+                            && r.quantity == quantity
+                            && r.row.at.sun_zenith_deg == 90.0 - sun_deg
+                            && Place::of(&r.row.at) == place
+                    };
+                    let rows = rows.iter().filter(chosen);
+                    rms_and_largest(rows.map(|r| quantity.unit().error(&r.row)))
+                };
+                let name = if sun_deg == SUNS_DEG[0] {
+                    renderer.name()
+                } else {
+                    ""
+                };
+                let in_air = Quantity::ALL.map(|quantity| errors(quantity, Place::Air));
+                let [sky, walls, sky_colour, wall_colour] = in_air;
+                let space = errors(Quantity::Sky, Place::Space);
+                let space_colour = errors(Quantity::SkyColour, Place::Space);
+                println!(
+                    "| {name} | {sun_deg}° | {sky} | {sky_colour} | {walls} | {wall_colour} | {space} | {space_colour} |"
+                );
+            }
+        }
+        Ok(())
+    }
+
+    /// Errors of `airlight-gpu` by sun, of an eye in the air and of one at 400 km: rms, noise of the reference, and largest.
+    pub fn monte_carlo_table() -> Result<(), Box<dyn Error>> {
+        let device = Headless::new()?;
+        let rows = against_monte_carlo(&device, &Case::all(), PATH_DIRECTIONS, PATHS, reported())?;
+        println!("| sun | eye up to 10 km: rms | noise | mean | from 400 km: rms | noise | mean |");
+        println!("|---|---|---|---|---|---|---|");
+        for sun_deg in SUNS_DEG {
+            let of = |inside: bool| {
+                let chosen = |row: &&Row| {
+                    row.at.sun_zenith_deg == 90.0 - sun_deg
+                        && (Place::of(&row.at) != Place::Space) == inside
+                };
+                let rows: Vec<&Row> = rows.iter().filter(chosen).collect();
+                let rms = |of: &dyn Fn(&Row) -> f64| {
+                    let squares: f64 = rows.iter().map(|row| of(row).powi(2)).sum();
+                    (squares / rows.len() as f64).sqrt()
+                };
+                let mean = rows.iter().map(|row| Unit::Percent.error(row)).sum::<f64>();
+                format!(
+                    "{:.2} | {:.2} | {:+.2}",
+                    rms(&|row| Unit::Percent.error(row)),
+                    rms(&|row| Unit::Percent.noise(row)),
+                    mean / rows.len() as f64
+                )
+            };
+            println!("| {sun_deg}° | {} | {} |", of(true), of(false));
+        }
+        Ok(())
+    }
+
+    /// Prints how far a comparison is on standard error.
+    fn reported() -> Control<'static> {
+        Control::default().reporting_to(&|done: u64, total: u64| eprintln!("{done} of {total}"))
+    }
+
+    fn rms_and_largest(errors: impl Iterator<Item = f64>) -> String {
+        let (mut count, mut squares, mut largest) = (0.0, 0.0, 0.0f64);
+        for error in errors {
+            count += 1.0;
+            squares += error * error;
+            largest = largest.max(error.abs());
+        }
+        match count > 0.0 {
+            true => format!("{:.2}, {largest:.1}", f64::sqrt(squares / count)),
+            false => String::new(),
+        }
     }
 }

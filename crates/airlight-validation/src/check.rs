@@ -17,6 +17,12 @@ pub enum Suite {
     Peers,
     /// The sky measured on 27 May 2013.
     Measured,
+    /// Whole frames of a graphics device, and of published real-time models, compared with the solver in one atmosphere.
+    Gpu,
+    /// The same in four atmospheres.
+    GpuAll,
+    /// Whole frames of a graphics device compared with Airlight's Monte Carlo.
+    GpuMonteCarlo,
 }
 
 airlight::named! { Suite, "a set of comparisons", [
@@ -25,9 +31,21 @@ airlight::named! { Suite, "a set of comparisons", [
     ("limits", (Limits), "the sky around the sun, polarised light and optically thick air against Monte Carlo and discrete ordinates"),
     ("peers", (Peers), "published sky models against the default solver"),
     ("measured", (Measured), "the sky measured on 27 May 2013 against the solver and published models"),
+    ("gpu", (Gpu), "frames of airlight-gpu and of published real-time models in hazy air against the fine solver (a minute; needs a graphics device)"),
+    ("gpu-all", (GpuAll), "the same in four atmospheres (minutes)"),
+    ("gpu-monte-carlo", (GpuMonteCarlo), "frames of airlight-gpu against Airlight's Monte Carlo solver (minutes; needs a graphics device)"),
 ] }
 
 impl Suite {
+    /// The suites that need no graphics device.
+    pub const USUAL: [Self; 5] = [
+        Self::Tables,
+        Self::MonteCarlo,
+        Self::Limits,
+        Self::Peers,
+        Self::Measured,
+    ];
+
     /// Title in reports.
     pub fn title(self) -> &'static str {
         match self {
@@ -36,6 +54,13 @@ impl Suite {
             Self::Limits => "Skies around the sun, polarised, and of optically thick air",
             Self::Peers => "Differences to other models of the sky (without a reference)",
             Self::Measured => "The sky measured at Ithaca on 27 May 2013",
+            Self::Gpu => {
+                "Frames of airlight-gpu and of real-time models in hazy air against the solver"
+            }
+            Self::GpuAll => {
+                "Frames of airlight-gpu and of real-time models in four atmospheres against the solver"
+            }
+            Self::GpuMonteCarlo => "Frames of airlight-gpu against Airlight's Monte Carlo",
         }
     }
 }
@@ -48,6 +73,28 @@ pub enum Unit {
     Percent,
     /// `ours - reference`, mW m^-2 sr^-1 nm^-1 (values in W m^-2 sr^-1 nm^-1).
     Milliwatts,
+    /// Colour difference of `ours` from the reference.
+    Ciede2000,
+}
+
+impl Unit {
+    /// Error of a row, in this unit.
+    pub fn error(self, row: &Row) -> f64 {
+        match self {
+            Self::Percent => 100.0 * (row.ours / row.reference - 1.0),
+            Self::Milliwatts => 1e3 * (row.ours - row.reference),
+            Self::Ciede2000 => row.ours - row.reference,
+        }
+    }
+
+    /// Standard error of a row, in this unit.
+    pub fn noise(self, row: &Row) -> f64 {
+        match self {
+            Self::Percent => 100.0 * row.standard_error / row.reference,
+            Self::Milliwatts => 1e3 * row.standard_error,
+            Self::Ciede2000 => row.standard_error,
+        }
+    }
 }
 
 impl fmt::Display for Unit {
@@ -55,21 +102,30 @@ impl fmt::Display for Unit {
         f.write_str(match self {
             Self::Percent => "%",
             Self::Milliwatts => "mW/(m2 sr nm)",
+            Self::Ciede2000 => "CIEDE2000",
         })
     }
 }
 
-/// Identifies a value: a view direction from the ground and a wavelength. Angles in degrees; relative azimuth 0 is towards the sun.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+/// Identifies a value: a view direction and a wavelength. Angles in degrees; relative azimuth 0 is towards the sun.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct At {
+    /// Name of the atmosphere, where a check has several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub air: Option<&'static str>,
+    /// Altitude of the eye, m.
+    pub altitude_m: f64,
     /// Zenith angle of the sun, degrees.
     pub sun_zenith_deg: f64,
     /// Zenith angle of the view, degrees.
     pub view_zenith_deg: f64,
     /// Azimuth of the view relative to the sun, degrees.
     pub relative_azimuth_deg: f64,
-    /// Wavelength, nm.
-    pub wavelength_nm: f64,
+    /// Distance of what is seen through the air, m; `None` for the whole ray.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub distance_m: Option<f64>,
+    /// Wavelength, nm; `None` for luminance and colour.
+    pub wavelength_nm: Option<f64>,
 }
 
 impl At {
@@ -88,14 +144,24 @@ impl At {
 
 impl fmt::Display for At {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(air) = self.air {
+            write!(f, "{air}, ")?;
+        }
+        if self.altitude_m > 0.0 {
+            write!(f, "eye at {:.0} m, ", self.altitude_m)?;
+        }
         write!(
             f,
-            "sun zenith {:.1}, view zenith {:.1}, azimuth {:.1} from the sun, {} nm",
-            self.sun_zenith_deg,
-            self.view_zenith_deg,
-            self.relative_azimuth_deg,
-            self.wavelength_nm
-        )
+            "sun zenith {:.1}, view zenith {:.1}, azimuth {:.1} from the sun",
+            self.sun_zenith_deg, self.view_zenith_deg, self.relative_azimuth_deg,
+        )?;
+        if let Some(distance_m) = self.distance_m {
+            write!(f, ", at {distance_m:.0} m")?;
+        }
+        match self.wavelength_nm {
+            Some(nm) => write!(f, ", {nm} nm"),
+            None => Ok(()),
+        }
     }
 }
 
@@ -155,18 +221,12 @@ pub struct Statistics {
 impl Check {
     /// Error of a row.
     pub fn error(&self, row: &Row) -> f64 {
-        match self.unit {
-            Unit::Percent => 100.0 * (row.ours / row.reference - 1.0),
-            Unit::Milliwatts => 1e3 * (row.ours - row.reference),
-        }
+        self.unit.error(row)
     }
 
     /// Standard error of a row, in the unit of errors.
     pub fn noise(&self, row: &Row) -> f64 {
-        match self.unit {
-            Unit::Percent => 100.0 * row.standard_error / row.reference,
-            Unit::Milliwatts => 1e3 * row.standard_error,
-        }
+        self.unit.noise(row)
     }
 
     /// Statistics of all rows; `None` without rows.
@@ -221,8 +281,8 @@ mod tests {
         let at = At {
             sun_zenith_deg: 60.0,
             view_zenith_deg: 0.0,
-            relative_azimuth_deg: 0.0,
-            wavelength_nm: 550.0,
+            wavelength_nm: Some(550.0),
+            ..Default::default()
         };
         Check {
             suite: Suite::Tables,

@@ -104,10 +104,12 @@ impl Solved {
     /// Identifies the value at a direction and wavelength.
     pub fn at(&self, view_zenith_deg: f64, relative_azimuth_deg: f64, lane: usize) -> At {
         At {
+            altitude_m: self.altitude_m,
             sun_zenith_deg: self.sun_zenith_deg,
             view_zenith_deg,
             relative_azimuth_deg,
-            wavelength_nm: self.wavelengths_nm[lane],
+            wavelength_nm: Some(self.wavelengths_nm[lane]),
+            ..Default::default()
         }
     }
 }

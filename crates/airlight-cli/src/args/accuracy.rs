@@ -26,7 +26,7 @@ airlight::named! { ReportArg, "a format of a report", [
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub struct AccuracyArgs {
-    /// Comparisons to run [default: all]
+    /// Comparisons to run [default: all that need no graphics device]
     #[arg(value_name = "SUITE", value_parser = parse::named::<Suite>())]
     pub suites: Vec<Suite>,
     /// Format of the report [default: by the extension of --output, otherwise text]
@@ -46,4 +46,5 @@ Errors are Airlight minus the reference. The exit code is 1 if a claim of the do
 Examples:
   airlight accuracy
   airlight accuracy measured -o measured.html
+  airlight accuracy gpu -o frames.html
   airlight accuracy tables --format json --rows -o errors.json";

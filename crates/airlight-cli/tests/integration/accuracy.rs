@@ -27,3 +27,17 @@ fn bad_requests_are_refused_before_anything_is_computed() {
         assert!(folder.names("").is_empty(), "{words}");
     }
 }
+
+#[test]
+#[cfg(not(feature = "gpu"))]
+fn suites_of_a_graphics_device_say_how_to_build_them() {
+    for suite in ["gpu", "gpu-all", "gpu-monte-carlo"] {
+        let output = run(&Folder::new(), &format!("accuracy {suite}"));
+        let error = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{error}");
+        assert!(
+            error.contains(suite) && error.contains("--features gpu"),
+            "{error}"
+        );
+    }
+}

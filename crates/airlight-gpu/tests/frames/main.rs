@@ -1,4 +1,4 @@
-//! Whole frames of a device against the solver.
+//! Frames of a device against the library. The crate `airlight-validation` compares whole skies.
 
 mod cube;
 
@@ -10,70 +10,12 @@ use airlight::fog::lights::{
 use airlight::fog::{DirectionalLight, FogLighting, FogScattering, Ground, RgbFog, RgbLayer};
 use airlight::optics::PhaseFunction;
 use airlight::sky::{Sky, SkySettings, SunCoverage, TableChannels, View};
-use airlight::spectrum::{RgbSpace, WavelengthGrid, difference};
+use airlight::spectrum::{RgbSpace, WavelengthGrid};
 use airlight_gpu::headless::{FORMAT, Frame, Geometry, Headless};
 use airlight_gpu::{Fog, SkyRenderer, SkyRendererError, SkyRendererSettings};
 use airlight_shaders::{ColourFit, SkyTables};
 use cube::sample_cube;
 use glam::{DVec3, Vec3};
-use std::fmt;
-
-/// Luminance errors in %, and CIEDE2000, of the pixels of frames.
-#[derive(Default)]
-struct Errors {
-    luminance: Vec<f64>,
-    colour: Vec<f64>,
-    worst: (f64, String),
-}
-
-impl Errors {
-    fn rms(values: &[f64]) -> f64 {
-        let squares: f64 = values.iter().map(|v| v * v).sum();
-        (squares / values.len() as f64).sqrt()
-    }
-
-    fn largest(values: &[f64]) -> f64 {
-        values.iter().fold(0.0, |a, b| a.max(b.abs()))
-    }
-
-    /// Compares a pixel with an XYZ, where `white` is a bright luminance of the frame.
-    fn add(&mut self, rgb: [f64; 3], right: [f64; 3], white: f64, at: impl Fn() -> String) {
-        let got = RgbSpace::Srgb.to_xyz(rgb);
-        // Space above the limb, and the planet's night.
-        if right[1] < DARK * white {
-            assert!(
-                got[1].abs() < 2.0 * DARK * white,
-                "{got:?}, {right:?} at {}",
-                at()
-            );
-            return;
-        }
-        let error = 100.0 * (got[1] / right[1] - 1.0);
-        if error.abs() > self.worst.0.abs() {
-            self.worst = (error, at());
-        }
-        self.luminance.push(error);
-        let lab = |xyz: [f64; 3]| {
-            difference::xyz_to_lab(xyz.map(|v| 100.0 * v / white), difference::D65_WHITE)
-        };
-        self.colour
-            .push(difference::ciede2000(lab(got), lab(right)));
-    }
-}
-
-impl fmt::Display for Errors {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "{:.2} {:.2} % | {:.2} {:.2} | {}",
-            Self::rms(&self.luminance),
-            Self::largest(&self.luminance),
-            Self::rms(&self.colour),
-            Self::largest(&self.colour),
-            self.worst.1
-        )
-    }
-}
 
 fn settings(sun_deg: f64, height_m: f64) -> SkySettings {
     SkySettings {
@@ -112,88 +54,6 @@ fn draw(
         renderer.record(encoder, target, depth, &camera);
     });
     pixels.unwrap()
-}
-
-/// Luminance relative to that of the white above which errors count.
-const DARK: f64 = 1e-3;
-/// Pixels between those that are compared.
-const STEP: usize = 5;
-
-/// Errors of sky, and of aerial perspective from 0.1 to 100 km, in frames to four sides, up and down.
-fn errors(gpu: &Headless, air: Preset, sun_deg: f64, height_m: f64) -> [Errors; 2] {
-    let sun = axes::direction(140.0, sun_deg);
-    let mut renderer = renderer(gpu, air, sun_deg, height_m);
-    renderer.update(height_m, sun).unwrap();
-    let view = reference(air, sun_deg, height_m, sun);
-    let grid = view.sky().grid();
-    let radiance = |d: DVec3| grid.to_xyz(&view.along(d, None).radiance());
-    let horizon = view.horizon_elevation_rad();
-    // From space there is light below the horizon only.
-    let bright = match radiance(axes::direction(160.0, 30.0))[1] {
-        0.0 => radiance(axes::direction(160.0, horizon.to_degrees() - 5.0))[1],
-        luminance => luminance,
-    };
-    let exposure = (1.0 / bright) as f32;
-    // A grey wall in the sun's own colour, as bright as the sky.
-    let solar = view.solar_irradiance();
-    let sunlight = grid.to_xyz(&solar);
-    let wall: Vec<f32> = solar
-        .iter()
-        .map(|e| e * (bright / sunlight[1]) as f32)
-        .collect();
-    let before = RgbSpace::Srgb
-        .from_xyz(grid.to_xyz(&wall))
-        .map(|v| v * f64::from(exposure));
-    let mut all: [Errors; 2] = Default::default();
-    let sides = [
-        (100.0, 0.0),
-        (190.0, 0.0),
-        (280.0, 0.0),
-        (10.0, 0.0),
-        (140.0, 90.0),
-        (140.0, -90.0),
-    ];
-    for (azimuth, elevation) in sides {
-        let frame = Frame::towards(axes::direction(azimuth, elevation).as_vec3(), SIDE);
-        let distance_m =
-            |x: u32, y: u32| 100.0 * 1e3f32.powf(((3 * x + 7 * y) % 101) as f32 / 100.0);
-        let geometry = Geometry {
-            colour: before,
-            distance_m: &distance_m,
-        };
-        let sky = draw(gpu, &mut renderer, &frame, exposure, None);
-        let walls = draw(gpu, &mut renderer, &frame, exposure, Some(&geometry));
-        for k in (0..(SIDE * SIDE) as usize).step_by(STEP) {
-            let (x, y) = (k as u32 % SIDE, k as u32 / SIDE);
-            let direction = frame.direction(x, y).as_dvec3().normalize();
-            let at = || {
-                let elevation = axes::elevation_deg(direction);
-                format!("elevation {elevation:.3}, {:.0} m", distance_m(x, y))
-            };
-            // Radiance jumps at the horizon.
-            let off_horizon = (direction.y.asin() - horizon).abs() > 1e-4;
-            // A pixel that the disc touches holds a part of its light.
-            let half_diagonal = std::f64::consts::SQRT_2 / f64::from(SIDE);
-            let in_disc =
-                direction.angle_between(sun) < 1.1 * view.disc().angular_radius_rad + half_diagonal;
-            let light = |pixel: [f32; 3]| pixel.map(|v| f64::from(v / exposure));
-            if off_horizon && !in_disc {
-                all[0].add(light(sky[k]), radiance(direction), bright, at);
-            }
-            let along = view.along(direction, Some(f64::from(distance_m(x, y))));
-            let behind: Vec<f32> = along
-                .transmittance
-                .iter()
-                .zip(&wall)
-                .zip(along.path_radiance())
-                .map(|((t, w), s)| t * w + s)
-                .collect();
-            if off_horizon {
-                all[1].add(light(walls[k]), grid.to_xyz(&behind), bright, at);
-            }
-        }
-    }
-    all
 }
 
 #[test]
@@ -646,53 +506,4 @@ fn wrong_inputs_are_errors() {
     ));
     let none = renderer.update(2.0, DVec3::ZERO);
     assert!(matches!(none, Err(SkyRendererError::Sun(_))));
-}
-
-mod guards {
-    use super::*;
-
-    #[test]
-    fn a_frame_is_that_of_the_solver() {
-        let gpu = Headless::new().unwrap();
-        let [sky, walls] = errors(&gpu, Preset::Hazy, 10.0, 2.0);
-        println!("{}: sky {sky}\n    walls {walls}", gpu.name);
-        assert!(Errors::rms(&sky.luminance) < 0.5 && Errors::largest(&sky.luminance) < 2.0);
-        assert!(Errors::rms(&walls.luminance) < 0.5 && Errors::largest(&walls.luminance) < 2.0);
-    }
-
-    const SUNS_DEG: [f64; 9] = [60.0, 30.0, 10.0, 5.0, 2.0, 0.0, -2.0, -4.0, -6.0];
-
-    /// Prints luminance errors in % and CIEDE2000, rms and largest, of the sky and of walls behind air; rms errors are below a limit
-    /// in %.
-    fn all_frames(heights_m: &[f64], limit: f64) {
-        let gpu = Headless::new().unwrap();
-        let mut wrong = Vec::new();
-        for air in [Preset::Clear, Preset::Hazy] {
-            for sun_deg in SUNS_DEG {
-                for &height_m in heights_m {
-                    let [sky, walls] = errors(&gpu, air, sun_deg, height_m);
-                    println!("{air:?} {sun_deg} {height_m}: sky {sky}\n    walls {walls}");
-                    for errors in [sky, walls] {
-                        let rms = Errors::rms(&errors.luminance);
-                        if rms.is_nan() || rms > limit {
-                            wrong.push(format!("{air:?} {sun_deg} {height_m}: {errors}"));
-                        }
-                    }
-                }
-            }
-        }
-        assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
-    }
-
-    #[test]
-    #[ignore = "solves 54 skies twice: five minutes"]
-    fn frames_from_inside_the_air_are_those_of_the_solver() {
-        all_frames(&[2.0, 3e3, 1e4], 1.0);
-    }
-
-    #[test]
-    #[ignore = "solves 18 skies for all suns twice"]
-    fn frames_from_orbit_are_those_of_the_solver() {
-        all_frames(&[4e5], 1.0);
-    }
 }

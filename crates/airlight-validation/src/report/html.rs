@@ -24,7 +24,7 @@ pub fn html(checks: &[Check]) -> Result<String, Box<dyn std::error::Error>> {
         out,
         "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" \
          content=\"width=device-width,initial-scale=1\"><title>{title}</title><style>{STYLE}</style></head><body>\n\
-         <h1>{title}</h1>\n<p>Version {}. An error is ours minus the reference, in percent of it or in mW/(m² sr nm); noise is \
+         <h1>{title}</h1>\n<p>Version {}. An error is ours minus the reference, in percent of it, in mW/(m² sr nm) or as CIEDE2000; noise is \
          the root mean square of the reference's standard errors.</p>\n",
         env!("CARGO_PKG_VERSION")
     )?;
@@ -43,17 +43,21 @@ pub fn html(checks: &[Check]) -> Result<String, Box<dyn std::error::Error>> {
                 "Spectra of the measured sky (points) and of the air of the day (lines).",
             )?;
         }
-        let (svg, caption) = match suite[0].suite {
-            Suite::Measured => (
+        if suite[0].suite == Suite::Measured {
+            figure(
+                &mut out,
                 plot::errors(&suite[..2.min(suite.len())], true, |check| &check.what)?,
                 "Errors against the measured sky by the angle from the sun.",
-            ),
-            _ => (
-                plot::errors(suite, false, |check| &check.against)?,
+            )?;
+            continue;
+        }
+        for checks in suite.chunk_by(|a, b| a.unit == b.unit) {
+            figure(
+                &mut out,
+                plot::errors(checks, false, |check| &check.against)?,
                 "Errors by the zenith angle of the view.",
-            ),
-        };
-        figure(&mut out, svg, caption)?;
+            )?;
+        }
     }
     out.push_str("</body></html>\n");
     Ok(out)

@@ -30,7 +30,15 @@ pub fn errors(
     let most = 1.1 * most.copied().unwrap_or(1.0).max(1e-3);
     let (right, x) = match by_angle_from_sun {
         true => (180.0, "angle from the sun, degrees"),
-        false => (90.0, "zenith angle of the view, degrees"),
+        false => {
+            let below = checks.iter().flat_map(|check| &check.rows);
+            let right = if below.map(place).any(|zenith| zenith > 90.0) {
+                180.0
+            } else {
+                90.0
+            };
+            (right, "zenith angle of the view, degrees")
+        }
     };
     draw(SIZE, |root| {
         let mut chart = ChartBuilder::on(root)
@@ -124,11 +132,9 @@ pub fn spectra(checks: &[Check]) -> Result<String, PlotError> {
     let Some(check) = checks.get(1) else {
         return Ok(String::new());
     };
+    let nm = |row: &crate::Row| row.at.wavelength_nm.unwrap_or_default();
     // Rows come wavelength by wavelength, direction after direction.
-    let directions: Vec<&[crate::Row]> = check
-        .rows
-        .chunk_by(|a, b| a.at.wavelength_nm < b.at.wavelength_nm)
-        .collect();
+    let directions: Vec<&[crate::Row]> = check.rows.chunk_by(|a, b| nm(a) < nm(b)).collect();
     let wanted = [15.0, 40.0, 90.0, 120.0].map(|angle: f64| {
         let far = |rows: &&&[crate::Row]| (rows[0].at.from_sun_deg() - angle).abs();
         let of_scan = directions.iter().take(81);
@@ -140,7 +146,7 @@ pub fn spectra(checks: &[Check]) -> Result<String, PlotError> {
         .map(|r| r.reference.max(r.ours))
         .fold(0.0, f64::max);
     let ends = values().fold((f64::INFINITY, 0.0f64), |(low, high), r| {
-        (low.min(r.at.wavelength_nm), high.max(r.at.wavelength_nm))
+        (low.min(nm(r)), high.max(nm(r)))
     });
     draw(SIZE, |root| {
         let mut chart = ChartBuilder::on(root)
@@ -160,8 +166,7 @@ pub fn spectra(checks: &[Check]) -> Result<String, PlotError> {
             .draw()?;
         for (index, rows) in rows.iter().enumerate() {
             let colour = COLOURS[index];
-            let at = |row: &crate::Row| row.at.wavelength_nm;
-            let line = rows.iter().map(|row| (at(row), row.ours));
+            let line = rows.iter().map(|row| (nm(row), row.ours));
             let dots = rows.iter();
             chart
                 .draw_series(LineSeries::new(line, colour.stroke_width(2)))?
@@ -171,7 +176,7 @@ pub fn spectra(checks: &[Check]) -> Result<String, PlotError> {
                 ))
                 .legend(move |(x, y)| Circle::new((x + 6, y), 4, colour.filled()));
             chart.draw_series(
-                dots.map(|row| Circle::new((at(row), row.reference), 3, colour.filled())),
+                dots.map(|row| Circle::new((nm(row), row.reference), 3, colour.filled())),
             )?;
         }
         draw_legend(&mut chart, SeriesLabelPosition::UpperRight)?;

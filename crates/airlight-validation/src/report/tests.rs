@@ -6,8 +6,8 @@ fn checks() -> Vec<Check> {
         at: At {
             sun_zenith_deg: 60.0,
             view_zenith_deg,
-            relative_azimuth_deg: 0.0,
-            wavelength_nm: 550.0,
+            wavelength_nm: Some(550.0),
+            ..Default::default()
         },
         ours,
         reference: 1.0,

@@ -15,9 +15,9 @@ pub(super) fn short(value: f64) -> String {
 
 /// What is claimed of a check, in words.
 pub(super) fn claim(check: &Check) -> String {
-    match (check.limit, check.limit_of_rms) {
-        (Some(limit), _) => format!("each within {limit} {}", check.unit),
-        (None, Some(limit)) => format!("rms within {limit} {}", check.unit),
-        (None, None) => String::new(),
-    }
+    let part = |name: &str, limit: Option<f64>| {
+        limit.map(|limit| format!("{name} within {limit} {}", check.unit))
+    };
+    let parts = [part("each", check.limit), part("rms", check.limit_of_rms)];
+    parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
 }

@@ -19,7 +19,7 @@ fn print(check: &Check) {
 }
 
 fn hold(suite: Suite) -> Vec<Check> {
-    let checks = run(&[suite]);
+    let checks = run(&[suite]).unwrap();
     for check in &checks {
         print(check);
         assert!(check.holds(), "{}: {:?}", check.what, check.broken());
