@@ -59,7 +59,10 @@ def clear_sky(
     atmosphere: _native.Atmosphere | str = "average",
     threads: int | None = None,
 ) -> pandas.DataFrame:
-    """Irradiance from 300 to 900 nm of a clear sky, in which two thirds of the sun's energy lie.
+    """Irradiance of a clear sky from 300 to 900 nm, the range of the solver.
+
+    Under suns 16 to 65 degrees high, that is 60 to 66 % of the direct and 88 to 90 % of the diffuse light of the whole spectrum by
+    pvlib's spectrl2; the rest is infrared.
 
     Parameters
     ----------
