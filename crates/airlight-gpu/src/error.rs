@@ -22,7 +22,8 @@ pub enum SkyRendererError {
     FogTables(#[from] FogTablesError),
     /// The fog has another profile.
     #[error(
-        "expected fog with a uniform, exponential or clamped profile, or a layer with two edges"
+        "expected fog with an exponential or clamped profile, or a layer with two edges, got another profile; try a high layer for \
+         uniform fog, which lets no light in from above"
     )]
     FogProfile,
     /// More lights than a fog can hold.

@@ -11,7 +11,7 @@ use airlight_shaders::FogTables;
 use airlight_shaders::twins::columns::{INFINITE_M, ray_segment};
 use airlight_shaders::twins::exponentials::OPAQUE;
 use airlight_shaders::twins::fog::{
-    FOG_CLAMPED, FOG_EXPONENTIAL, FOG_SLAB, FOG_UNIFORM, FogLayer, FogMedium, fog_layer_column_m,
+    FOG_CLAMPED, FOG_EXPONENTIAL, FOG_SLAB, FogLayer, FogMedium, fog_layer_column_m,
 };
 use airlight_shaders::twins::fog_table::tabulated_fog;
 use airlight_shaders::twins::lights::ExponentialFog;
@@ -22,7 +22,8 @@ use std::f32::consts::PI;
 /// A layer of fog over flat ground, with all orders of scattering of the light of sun and sky.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fog {
-    /// The fog, in the RGB space of the target: uniform, exponential, clamped or with two edges. Heights are above sea level, m.
+    /// The fog, in the RGB space of the target: exponential, clamped or with two edges. Uniform fog, without an upper edge, lets no light
+    /// in. Heights are above sea level, m.
     pub layer: RgbLayer,
     /// Height of the ground, m.
     pub ground_height_m: f64,
@@ -208,7 +209,6 @@ impl FogFrame {
 /// Profile, height (m) and scale (m) of the shader's struct `FogLayer`.
 fn profile(density: &DensityProfile) -> Option<(u32, f64, f64)> {
     match *density {
-        DensityProfile::Uniform => Some((FOG_UNIFORM, 0.0, 1.0)),
         DensityProfile::Exponential {
             reference_height_m,
             scale_height_m,

@@ -12,7 +12,7 @@ use airlight::optics::PhaseFunction;
 use airlight::sky::{Sky, SkySettings, SunCoverage, TableChannels, View};
 use airlight::spectrum::{RgbSpace, WavelengthGrid};
 use airlight_gpu::headless::{FORMAT, Frame, Geometry, Headless};
-use airlight_gpu::{Fog, SkyRenderer, SkyRendererError, SkyRendererSettings};
+use airlight_gpu::{Fog, SkyRenderer, SkyRendererError, SkyRendererSettings, SkySolver};
 use airlight_shaders::{ColourFit, SkyTables};
 use cube::sample_cube;
 use glam::{DVec3, Vec3};
@@ -214,6 +214,38 @@ fn fog_in_a_frame_is_that_of_the_library() {
         renderer.set_fog(None).unwrap();
         assert_eq!(draw(&mut renderer), clear);
     }
+}
+
+#[test]
+fn fog_has_any_profile_of_its_documentation() {
+    let solver = SkySolver::new(
+        &Preset::Clear.atmosphere(),
+        &settings(30.0, 2.0),
+        RgbSpace::Srgb,
+    )
+    .unwrap();
+    let sun = axes::direction(140.0, 30.0);
+    let profiles = [
+        DensityProfile::exponential(30.0),
+        DensityProfile::Clamped {
+            base_height_m: 20.0,
+            scale_height_m: 10.0,
+        },
+        DensityProfile::Layer {
+            bottom_m: 5.0,
+            top_m: 40.0,
+        },
+    ];
+    for density in profiles {
+        let mut fog = valley_fog();
+        fog.layer.density = density.clone();
+        let tables = solver.tables(2.0, sun, Some(&fog)).unwrap();
+        assert!(tables.fog.is_some(), "{density:?}");
+    }
+    let mut fog = valley_fog();
+    fog.layer.density = DensityProfile::Uniform;
+    let error = solver.tables(2.0, sun, Some(&fog)).unwrap_err();
+    assert_eq!(error, SkyRendererError::FogProfile);
 }
 
 /// The light below a fog, against what the library's fog lets fall on the ground. That fog is lit evenly by the sky, whose light comes
@@ -469,11 +501,13 @@ fn wrong_inputs_are_errors() {
         Err(SkyRendererError::Height(_))
     ));
     let mut fog = valley_fog();
-    fog.layer.density = DensityProfile::StandardAir1976;
-    assert!(matches!(
-        renderer.set_fog(Some(fog.clone())),
-        Err(SkyRendererError::FogProfile)
-    ));
+    for density in [DensityProfile::StandardAir1976, DensityProfile::Uniform] {
+        fog.layer.density = density;
+        assert!(matches!(
+            renderer.set_fog(Some(fog.clone())),
+            Err(SkyRendererError::FogProfile)
+        ));
+    }
     let light = PointLight::new(DVec3::new(30.0, 2.0, 0.0), [1e3; 3], 0.1).unwrap();
     let light = Light::Point(light);
     let many = renderer.set_lights(&[light; 17]);
